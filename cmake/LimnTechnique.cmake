@@ -1,0 +1,30 @@
+# limn_embed(TARGET FUNCTION ROOT FILES...): compiles text files into TARGET behind `FUNCTION()`.
+# limn_add_technique(NAME): the plug-in in the current folder: its *.cpp and its *.glsl, nothing else to say.
+# Both are installed, so that an out-of-tree technique is built by the same call.
+
+set(LIMN_EMBED_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/embed.py)
+if(NOT Python3_EXECUTABLE)
+  find_package(Python3 REQUIRED COMPONENTS Interpreter)
+endif()
+
+function(limn_embed target function root)
+  string(REPLACE "::" "_" file ${function})
+  set(out ${CMAKE_CURRENT_BINARY_DIR}/${file}.cpp)
+  add_custom_command(OUTPUT ${out}
+    COMMAND ${Python3_EXECUTABLE} ${LIMN_EMBED_SCRIPT} ${out} ${function} ${root} ${ARGN}
+    DEPENDS ${LIMN_EMBED_SCRIPT} ${ARGN} VERBATIM)
+  target_sources(${target} PRIVATE ${out})
+endfunction()
+
+function(limn_add_technique name)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  file(GLOB shaders CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.glsl)
+  add_library(technique_${name} MODULE ${sources})
+  target_link_libraries(technique_${name} PRIVATE limn::limn)
+  target_compile_definitions(technique_${name} PRIVATE LIMN_TECHNIQUE_NAME="${name}")
+  set_target_properties(technique_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name}
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
+    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/limn/techniques)
+  limn_embed(technique_${name} limn_technique_${name}::embeddedSources ${CMAKE_CURRENT_SOURCE_DIR} ${shaders})
+  install(TARGETS technique_${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/limn/techniques)
+endfunction()

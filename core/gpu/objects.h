@@ -1,0 +1,195 @@
+// Move-only owners of OpenGL objects. A default-constructed one owns nothing and may be destroyed or assigned to.
+// All use direct state access; none touches bindings except through explicit bind calls.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/gpu/device.h"
+
+namespace limn::gpu {
+
+/// Common part: the device and the name, moved as one.
+class LIMN_API Object {
+ public:
+  GLuint id() const { return id_; }
+  explicit operator bool() const { return id_ != 0; }
+  Device& device() const { return *device_; }
+
+ protected:
+  Object() = default;
+  Object(Device& device, GLuint id) : device_(&device), id_(id) {}
+  Object(Object&& other) noexcept
+      : device_(std::exchange(other.device_, nullptr)), id_(std::exchange(other.id_, 0u)) {}
+  void swap(Object& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(id_, other.id_);
+  }
+  Device* device_ = nullptr;
+  GLuint id_ = 0;
+};
+
+enum class BufferUse {
+  fixed,    ///< written by the GPU or once at creation
+  updated,  ///< rewritten from the CPU with update(), at most once a frame
+};
+
+class LIMN_API Buffer : public Object {
+ public:
+  Buffer() = default;
+  /// `bytes` may be 0 (then 16 bytes are allocated, so that the buffer can be bound). Throws Error when out of memory.
+  Buffer(Device& device, std::string_view label, size_t bytes, BufferUse use = BufferUse::fixed,
+         const void* data = nullptr);
+  Buffer(Buffer&& other) noexcept;
+  Buffer& operator=(Buffer&& other) noexcept;
+  ~Buffer();
+
+  size_t size() const { return bytes_; }
+  void update(size_t offset, const void* data, size_t bytes);
+  /// Blocks until the GPU is done: for tests, tools and saved results, never on the frame path.
+  void read(size_t offset, void* data, size_t bytes) const;
+  void clear(uint32_t value = 0);
+
+  template <class T>
+  static Buffer of(Device& device, std::string_view label, std::span<const T> data,
+                   BufferUse use = BufferUse::fixed) {
+    return Buffer(device, label, data.size_bytes(), use, data.data());
+  }
+
+ private:
+  size_t bytes_ = 0;
+};
+
+/// What a texture is. Equal descriptions are interchangeable: the frame graph's pool keys on this.
+struct TextureDesc {
+  GLenum target = GL_TEXTURE_2D;  ///< GL_TEXTURE_2D, _2D_ARRAY, _CUBE_MAP, _CUBE_MAP_ARRAY or _3D
+  GLenum format = GL_RGBA8;       ///< sized internal format
+  int width = 1, height = 1;
+  int layers = 1;  ///< array layers, depth of a 3D texture, 6 x cubes of a cube map array; 6 for a cube map
+  int levels = 1;  ///< mip levels; 0: the full chain
+  bool operator==(const TextureDesc&) const = default;
+};
+
+/// Mip levels of a full chain.
+LIMN_API int fullMipLevels(int width, int height);
+/// Bytes of all levels and layers as limn accounts for them (the driver's padding is not known).
+LIMN_API int64_t textureBytes(const TextureDesc& desc);
+/// Throws Error for a size beyond the device's limits.
+LIMN_API void checkTextureDesc(const Device& device, std::string_view label, const TextureDesc& desc);
+
+class LIMN_API Texture : public Object {
+ public:
+  Texture() = default;
+  /// Immutable storage. Minification is nearest (or nearest mipmap), magnification nearest, edges clamped, unless
+  /// setSampling() says otherwise; passes that filter bind a Sampler or set this at creation.
+  Texture(Device& device, std::string_view label, const TextureDesc& desc);
+  Texture(Texture&& other) noexcept;
+  Texture& operator=(Texture&& other) noexcept;
+  ~Texture();
+
+  const TextureDesc& desc() const { return desc_; }
+  void setSampling(GLenum minFilter, GLenum magFilter, GLenum wrapS = GL_CLAMP_TO_EDGE,
+                   GLenum wrapT = GL_CLAMP_TO_EDGE);
+  /// Uploads one level of one layer (layer of a cube map: face). `format`/`type` describe `data`, tightly packed.
+  void upload(int level, int layer, GLenum format, GLenum type, const void* data);
+  /// Reads one whole level, all layers, tightly packed. Blocks; never on the frame path.
+  void read(int level, GLenum format, GLenum type, void* data, size_t bytes) const;
+  void clear(const float (&value)[4]);
+  void clearUint(const uint32_t (&value)[4]);
+
+ private:
+  TextureDesc desc_;
+};
+
+/// One image attached to a framebuffer. layer -1: all layers (layered rendering).
+struct Attachment {
+  const Texture* texture = nullptr;
+  int level = 0;
+  int layer = -1;
+};
+
+class LIMN_API Framebuffer : public Object {
+ public:
+  Framebuffer() = default;
+  /// Any number of colours, optional depth. With neither, `width` x `height` is a framebuffer without attachments.
+  /// Throws Error naming the status when incomplete.
+  Framebuffer(Device& device, std::string_view label, std::span<const Attachment> colours, Attachment depth = {},
+              int width = 0, int height = 0);
+  Framebuffer(Framebuffer&& other) noexcept;
+  Framebuffer& operator=(Framebuffer&& other) noexcept;
+  ~Framebuffer();
+};
+
+class LIMN_API Sampler : public Object {
+ public:
+  Sampler() = default;
+  Sampler(Device& device, GLenum minFilter, GLenum magFilter, GLenum wrap = GL_CLAMP_TO_EDGE);
+  Sampler(Sampler&& other) noexcept;
+  Sampler& operator=(Sampler&& other) noexcept;
+  ~Sampler();
+};
+
+struct VertexAttribute {
+  GLuint location;
+  GLint components;
+  GLenum type;
+  bool normalised = false;
+  bool integer = false;
+  GLuint offset = 0;   ///< within one element, bytes
+  GLuint binding = 0;  ///< vertex buffer binding it reads
+};
+
+/// Attribute formats; the buffers are bound per draw with glVertexArrayVertexBuffer.
+class LIMN_API VertexArray : public Object {
+ public:
+  VertexArray() = default;
+  VertexArray(Device& device, std::span<const VertexAttribute> attributes);
+  VertexArray(VertexArray&& other) noexcept;
+  VertexArray& operator=(VertexArray&& other) noexcept;
+  ~VertexArray();
+};
+
+class LIMN_API Query : public Object {
+ public:
+  Query() = default;
+  Query(Device& device, GLenum target);
+  Query(Query&& other) noexcept;
+  Query& operator=(Query&& other) noexcept;
+  ~Query();
+  void begin();
+  void end();
+  bool available() const;
+  uint64_t result() const;  ///< blocks until available
+
+ private:
+  GLenum target_ = 0;
+};
+
+class LIMN_API Program : public Object {
+ public:
+  Program() = default;
+  /// Takes a linked program object (see ShaderLibrary).
+  Program(Device& device, GLuint program, std::string label);
+  Program(Program&& other) noexcept;
+  Program& operator=(Program&& other) noexcept;
+  ~Program();
+  void use() const;
+  const std::string& label() const { return label_; }
+  // Plain uniforms are allowed for a few scalars per dispatch; an unknown name throws Error (it is a bug).
+  void set(const char* name, int value);
+  void set(const char* name, unsigned value);
+  void set(const char* name, float value);
+  void set2(const char* name, float x, float y);
+  void set4(const char* name, const float* value);
+
+ private:
+  GLint location(const char* name) const;
+  std::string label_;
+};
+
+}  // namespace limn::gpu
