@@ -1,0 +1,131 @@
+// Pictures in memory and on disk: any number of named float channels, linear values.
+//
+// Channel names are the EXR ones. limn writes: R, G, B (linear radiance, or the term asked for), A, Z
+// (distance from the camera plane, metres), coverage (0 or 1), id (instance index; exact in float up to
+// 2^24), albedo.R/G/B, N.X/Y/Z (world space shading normal).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <initializer_list>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/export.h"
+
+namespace limn {
+
+/// Limits on what is read or created: pixels per side, pixels, and values (pixels times channels).
+inline constexpr int kMaxImageSide = 32768;
+inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 28;
+inline constexpr std::int64_t kMaxImageValues = std::int64_t{1} << 30;
+inline constexpr int kMaxImageChannels = 256;
+
+/// width x height pixels, rows from the top, channel-interleaved float32.
+class LIMN_API Image {
+ public:
+  Image() = default;
+  /// All values 0. Throws Error if a size is not in [1, kMaxImageSide], the limits above are exceeded, or a
+  /// channel name is empty or repeated.
+  Image(int width, int height, std::vector<std::string> channels);
+  /// An image with channels R, G, B.
+  static Image rgb(int width, int height);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  int channelCount() const { return static_cast<int>(channels_.size()); }
+  std::size_t pixelCount() const {
+    return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  }
+  bool empty() const { return data_.empty(); }
+  const std::vector<std::string>& channels() const { return channels_; }
+
+  /// Position of a channel within a pixel; nullopt if there is none of that name.
+  std::optional<int> findChannel(std::string_view name) const;
+  /// The same; throws Error naming the channels there are.
+  int channel(std::string_view name) const;
+  /// Positions of R, G, B; an image with one single channel (Y or any other) answers it three times. Throws
+  /// Error if there is neither.
+  std::array<int, 3> rgbChannels() const;
+
+  std::span<float> data() { return data_; }
+  std::span<const float> data() const { return data_; }
+  /// The channels of one pixel, x from the left, y from the top; not range-checked.
+  std::span<float> pixel(int x, int y) { return {data_.data() + offset(x, y), channels_.size()}; }
+  std::span<const float> pixel(int x, int y) const { return {data_.data() + offset(x, y), channels_.size()}; }
+  float& at(int x, int y, int channel) { return data_[offset(x, y) + static_cast<std::size_t>(channel)]; }
+  float at(int x, int y, int channel) const {
+    return data_[offset(x, y) + static_cast<std::size_t>(channel)];
+  }
+
+  /// Adds a channel at the end. `values` holds one value per pixel, or is empty for zeros. Throws Error on a
+  /// repeated name or a wrong count. Moves all data: build images with their channels where speed matters.
+  void addChannel(std::string name, std::span<const float> values = {});
+  /// Copies of the named channels, in that order.
+  Image select(std::span<const std::string> names) const;
+  Image select(std::initializer_list<std::string> names) const;
+
+  /// Free-form text stored with an EXR and read back (for example "limn/sceneHash", "limn/noise_rms").
+  std::map<std::string, std::string>& metadata() { return metadata_; }
+  const std::map<std::string, std::string>& metadata() const { return metadata_; }
+
+ private:
+  std::size_t offset(int x, int y) const {
+    return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)) *
+           channels_.size();
+  }
+
+  int width_ = 0;
+  int height_ = 0;
+  std::vector<std::string> channels_;
+  std::vector<float> data_;
+  std::map<std::string, std::string> metadata_;
+};
+
+/// 8-bit RGBA as stored (textures): rows from the top, no colour conversion, missing alpha 255.
+struct Image8 {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> data;  ///< width * height * 4
+};
+
+/// Reads EXR (first part, all channels), HDR, PNG or JPEG. The result is linear: 8- and 16-bit PNG and JPEG
+/// colours are decoded from sRGB (alpha is not), float formats are taken as they are; one- and three-channel
+/// files get channels Y and R, G, B. Throws Error of one line naming the file if it is missing, truncated,
+/// not an image, or larger than the limits above (checked before anything is allocated).
+LIMN_API Image readImage(const std::filesystem::path& path);
+
+/// The same from memory. `name` is used in messages and, by its extension, to choose the decoder; the content
+/// decides where there is no known extension.
+LIMN_API Image readImageMemory(std::span<const std::byte> bytes, const std::string& name);
+
+/// A texture as 8-bit RGBA (PNG or JPEG; 16-bit values are rounded), from memory or a file.
+LIMN_API Image8 readImage8Memory(std::span<const std::byte> bytes, const std::string& name);
+LIMN_API Image8 readImage8(const std::filesystem::path& path);
+
+/// Writes every channel as float32, ZIP-compressed, with the metadata. The file appears whole or not at all;
+/// throws Error naming it otherwise (missing folder, full disk, no permission).
+LIMN_API void writeExr(const std::filesystem::path& path, const Image& image);
+
+/// Writes R, G, B as 8-bit sRGB of clamp(2^exposureEv * value, 0, 1); NaN becomes 0. Whole or not at all.
+LIMN_API void writePng(const std::filesystem::path& path, const Image& image, float exposureEv = 0.0f);
+
+/// Writes by extension: .exr as writeExr, .png as writePng. Throws UsageError for any other.
+LIMN_API void writeImage(const std::filesystem::path& path, const Image& image, float exposureEv = 0.0f);
+
+/// Calls `write` with a name beside `path` (same extension), then renames it to `path`; removes it if `write`
+/// throws. Throws Error if the rename fails.
+LIMN_API void writeWhole(const std::filesystem::path& path,
+                         const std::function<void(const std::filesystem::path&)>& write);
+
+/// Writes text whole or not at all.
+LIMN_API void writeTextFile(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace limn

@@ -1,0 +1,55 @@
+// How far a picture is from its reference: the project's error metrics (design, "Comparability").
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/base/export.h"
+#include "core/image/image.h"
+
+namespace limn {
+
+/// All over the unmasked pixels, x the image, r the reference, linear values.
+struct Metrics {
+  double rmse = 0;     ///< root mean square error over R, G, B
+  double rel_mse = 0;  ///< mean((x - r)^2 / (r^2 + 1e-2 mean(r)^2)), per channel; mean(r) over all channels
+  double bias = 0;     ///< mean of x - r over R, G, B (signed)
+  double p999 = 0;     ///< 99.9th percentile of |x - r| in luminance (Rec. 709)
+  double psnr = 0;     ///< 20 log10(peak / rmse), peak = 99.9th percentile of r; infinite for equal images
+  double flip = 0;     ///< mean LDR-FLIP of the tone-mapped pictures, in [0, 1]
+  double structured = 0;  ///< RMS of the error after a 9 x 9 Gaussian (sigma 2 pixels, renormalised at masks)
+  std::size_t pixels = 0;  ///< pixels compared
+  double masked_share =
+      0;  ///< share of the pixels covered in either picture that disagree in coverage, id or depth
+  std::optional<double> noise_rms;  ///< the reference's own noise (metadata limn/noise_rms), if it says
+};
+
+struct CompareOptions {
+  float exposureEv = 0;           ///< exposure of the tone mapping for FLIP
+  double maxMaskedShare = 0.005;  ///< more is an Error (foliage: 0.02)
+  double depthTolerance = 1e-3;   ///< relative difference in Z beyond which a pixel is dropped
+  bool useMask = true;            ///< drop pixels by coverage, id and Z where both pictures have them
+  /// Only pixels whose reference, R, lies in the open interval (penumbra pixels of a visibility term).
+  std::optional<std::pair<float, float>> maskTermRange;
+};
+
+struct Comparison {
+  Metrics metrics;
+  std::vector<float> flipMap;       ///< per pixel, 0 where masked
+  std::vector<unsigned char> mask;  ///< 1 where compared
+};
+
+/// Throws Error if the sizes differ, a value of R, G, B (of a compared pixel) is NaN or infinite, no pixel is
+/// left, or the masked share exceeds its limit.
+LIMN_API Comparison compareImagesDetailed(const Image& image, const Image& reference,
+                                          const CompareOptions& options = {});
+LIMN_API Metrics compareImages(const Image& image, const Image& reference,
+                               const CompareOptions& options = {});
+
+/// The FLIP map in false colour (dark = equal, bright yellow = 1), as linear R, G, B for writePng.
+LIMN_API Image differenceImage(const Image& image, const Image& reference,
+                               const CompareOptions& options = {});
+
+}  // namespace limn
