@@ -1,0 +1,245 @@
+// A scene on the CPU: what a glTF 2.0 file holds, validated, in plain values. Units: metres, radians, seconds, radiance
+// W/(sr m^2), intensity W/sr. Everything may move: evaluate() gives the state at a time.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/export.h"
+#include "glsl/light.glsl"
+
+namespace limn::scene {
+
+constexpr int none = -1;
+
+struct Bounds {
+  glm::vec3 low{std::numeric_limits<float>::max()};
+  glm::vec3 high{std::numeric_limits<float>::lowest()};
+  bool empty() const { return low.x > high.x; }
+  void add(const glm::vec3& p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  void add(const Bounds& other) {
+    low = glm::min(low, other.low);
+    high = glm::max(high, other.high);
+  }
+  glm::vec3 centre() const { return empty() ? glm::vec3(0) : 0.5f * (low + high); }
+  /// Radius of the sphere through the corners; 0 when empty.
+  float radius() const { return empty() ? 0.f : 0.5f * glm::length(high - low); }
+};
+
+/// 8-bit RGBA with its whole mip chain, made once on the CPU (averaged in linear light for sRGB), so that the GPU and
+/// the reference filter the same texels.
+struct TextureImage {
+  std::string name;
+  bool srgb = false;
+  struct Level {
+    int width = 0, height = 0;
+    std::vector<uint8_t> rgba;  ///< width * height * 4, top row first
+  };
+  std::vector<Level> levels;  ///< [0] is the full size
+};
+
+enum class Wrap { repeat, clamp, mirror };
+
+struct TextureRef {
+  int image = none;  ///< index into Scene::images; none: absent
+  Wrap wrapS = Wrap::repeat, wrapT = Wrap::repeat;
+};
+
+struct Material {
+  std::string name;
+  glm::vec4 baseColour{1};
+  float metallic = 1, roughness = 1;
+  float normalScale = 1;
+  glm::vec3 emission{0};  ///< emissiveFactor * emissive_strength
+  float alphaCutoff = 0;  ///< 0: opaque; MASK's cutoff; BLEND counts as 0.5
+  bool doubleSided = false;
+  float ior = 1.5f;
+  float specularFactor = 1;
+  glm::vec3 specularColour{1};
+  float transmission = 0;
+  float thickness = 0;
+  float attenuationDistance = 0;  ///< 0: infinite
+  glm::vec3 attenuationColour{1};
+  TextureRef baseColourTexture, metalRoughTexture, normalTexture, emissiveTexture;
+
+  /// Blocks direct and indirect light in both renderers (transmission > 0, or metallic with roughness below 0.05).
+  bool specularSurface() const { return transmission > 0 || (metallic >= 0.5f && roughness < 0.05f); }
+};
+
+struct MorphTarget {
+  std::vector<glm::vec3> positions, normals, tangents;  ///< deltas; empty or one per vertex
+};
+
+/// Triangles with one material. All vertex arrays have positions.size() elements or are empty.
+struct Primitive {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;   ///< unit; always present after loading (flat if the file has none)
+  std::vector<glm::vec4> tangents;  ///< xyz unit, w = +-1; present when the material has a normal map
+  std::vector<glm::vec2> uvs;       ///< present when the material has a texture
+  std::vector<glm::vec4> colours;   ///< linear factor on the base colour; may be empty
+  std::vector<glm::u16vec4> joints;
+  std::vector<glm::vec4> weights;  ///< normalised to sum 1
+  std::vector<uint32_t> indices;   ///< 3 per triangle, every one < positions.size()
+  std::vector<MorphTarget> morphTargets;
+  int material = none;  ///< always valid after loading
+  Bounds bounds;
+};
+
+struct Mesh {
+  std::string name;
+  std::vector<Primitive> primitives;
+  std::vector<float> morphWeights;  ///< default weights
+};
+
+struct Transform {
+  glm::vec3 translation{0};
+  glm::quat rotation{1, 0, 0, 0};
+  glm::vec3 scale{1};
+  LIMN_API glm::mat4 matrix() const;
+};
+
+/// KHR_lights_punctual, with the extras limn_angle; limn_area is the node's.
+struct LightSource {
+  std::string name;
+  uint32_t type = glsl::light_point;  ///< light_point, light_spot or light_directional
+  glm::vec3 colour{1};
+  float intensity = 1;  ///< W/sr (point, spot, rectangle); W/m^2 (directional)
+  float range = 0;      ///< metres, 0: unlimited
+  float innerCone = 0, outerCone = 0.7853982f;  ///< half angles, radians (spot)
+  float angle = 0;                              ///< angular diameter of a directional light, radians
+};
+
+struct CameraLens {
+  std::string name;
+  float yfov = 0.8f;  ///< vertical, radians
+  float near = 0.01f;
+};
+
+struct Node {
+  std::string name;
+  int parent = none;
+  Transform transform;
+  std::optional<glm::mat4> matrix;  ///< replaces transform when the file gives a matrix
+  int mesh = none, skin = none, camera = none, light = none;
+  std::vector<float> morphWeights;   ///< overrides the mesh's
+  std::vector<Transform> instances;  ///< EXT_mesh_gpu_instancing; empty: the node itself
+  glm::vec2 limnArea{0};             ///< extras.limn_area (u, v) in metres: its light is a rectangle facing -Z
+};
+
+struct Skin {
+  std::vector<int> joints;
+  std::vector<glm::mat4> inverseBind;
+};
+
+struct AnimationChannel {
+  enum class Path { translation, rotation, scale, weights } path;
+  enum class Interpolation { step, linear, cubic } interpolation;
+  int node = none;
+  std::vector<float> times;   ///< strictly increasing
+  std::vector<float> values;  ///< times.size() * (cubic ? 3 : 1) * components
+};
+struct Animation {
+  std::string name;
+  float duration = 0;
+  std::vector<AnimationChannel> channels;
+};
+
+/// Equirectangular radiance, RGB float, top row first, >= 0 and finite.
+struct Environment {
+  int width = 0, height = 0;
+  std::vector<glm::vec3> texels;
+  float rotation = 0;  ///< about +Y, radians
+  float scale = 1;
+  explicit operator bool() const { return width > 0; }
+};
+
+/// Homogeneous participating medium from extras.limn_medium or flags; per metre.
+struct Medium {
+  glm::vec3 sigmaA{0}, sigmaS{0};
+  float g = 0;
+  std::string grid;  ///< OpenVDB file, empty: homogeneous
+  bool present() const { return sigmaA != glm::vec3(0) || sigmaS != glm::vec3(0); }
+};
+
+/// Triangles that an outside source rewrites, in count and topology too (iso-surfaces, cloth, particles).
+class LIMN_API GeometrySource {
+ public:
+  virtual ~GeometrySource() = default;
+  /// Fills `out` (positions, normals, indices; anything else optional) for `time` and returns true, or returns false
+  /// when nothing changed since the last call.
+  virtual bool update(double time, Primitive& out) = 0;
+};
+
+struct Scene {
+  std::filesystem::path file;
+  std::vector<TextureImage> images;
+  std::vector<Material> materials;
+  std::vector<Mesh> meshes;
+  std::vector<Node> nodes;  ///< parents come before children
+  std::vector<Skin> skins;
+  std::vector<Animation> animations;
+  std::vector<CameraLens> cameras;
+  std::vector<LightSource> lights;
+  Environment environment;
+  Medium medium;
+  struct Dynamic {
+    std::string name;
+    std::shared_ptr<GeometrySource> source;
+    int material = 0;
+  };
+  std::vector<Dynamic> dynamic;
+  std::vector<std::string> warnings;  ///< one line each, shown once
+  LIMN_API uint64_t triangles() const;  ///< drawn, instances counted
+};
+
+/// One drawn primitive. Its index in Pose::instances is the instance id of the G-buffer, in both renderers.
+struct DrawInstance {
+  int node = none;  ///< none: dynamic geometry
+  int mesh = none;  ///< Scene::meshes index, or Scene::dynamic index when node is none
+  int primitive = 0;
+  glm::mat4 objectToWorld{1};  ///< identity for skinned primitives: their vertices are deformed into world space
+  int deformed = none;         ///< index into Pose::deformed when skinned or morphed
+};
+
+/// Skin and morph state of one primitive instance.
+struct Deformation {
+  int mesh = none, primitive = 0;
+  std::vector<glm::mat4> joints;    ///< empty: not skinned; maps bind-space positions to world
+  std::vector<float> morphWeights;  ///< empty: not morphed
+};
+
+struct CameraPose {
+  std::string name;
+  glm::mat4 worldToView{1};
+  float yfov = 0.8f;
+  float near = 0.01f;
+};
+
+struct Pose {
+  std::vector<DrawInstance> instances;
+  std::vector<Deformation> deformed;
+  std::vector<glsl::Light> lights;      ///< punctual lights in node order, then emissive quads
+  std::vector<std::string> lightNames;  ///< parallel to lights; "#index" where the file gives no name
+  std::vector<CameraPose> cameras;
+  Bounds bounds;  ///< world, all instances (skinned ones: conservative)
+};
+
+/// The state at `time` seconds; `animation` none: the first one. Animations repeat.
+LIMN_API Pose evaluate(const Scene& scene, double time, int animation = none);
+
+/// Deformed vertices of one primitive on the CPU: the reference's twin of the compute shader (same formulas, from
+/// glsl/deform.glsl). Positions and normals are in world space when skinned, in object space when only morphed.
+LIMN_API void deform(const Primitive& primitive, const Deformation& state, std::vector<glm::vec3>& positions,
+                     std::vector<glm::vec3>& normals, std::vector<glm::vec4>& tangents);
+
+}  // namespace limn::scene

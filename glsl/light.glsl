@@ -1,0 +1,38 @@
+// One light as the GPU, the reference and the shadow techniques all see it, in world space (metres, right-handed).
+#ifndef LIMN_LIGHT_GLSL
+#define LIMN_LIGHT_GLSL
+#include "glsl/language.glsl"
+LIMN_BEGIN
+
+LIMN_CONST uint light_point = 0u;        // emission: radiant intensity, W/sr
+LIMN_CONST uint light_spot = 1u;         // emission: radiant intensity on the axis, W/sr
+LIMN_CONST uint light_directional = 2u;  // emission: irradiance on a perpendicular surface, W/m^2
+LIMN_CONST uint light_rectangle = 3u;    // emission: radiance, W/(sr m^2)
+
+LIMN_CONST uint light_flag_two_sided = 1u;  // rectangle that emits from both faces (doubleSided emissive quad)
+LIMN_CONST uint light_flag_geometry = 2u;   // rectangle that is an emissive quad of the scene: visible, blocks others
+LIMN_CONST uint light_flag_cone = 4u;       // spot cone applies (spot, or rectangle made from a spot)
+LIMN_CONST uint no_instance = 0xffffffffu;
+
+struct Light {
+  vec4 position;   // xyz: centre
+  vec4 direction;  // xyz: unit vector the light looks along (propagation); the rectangle's face normal
+  vec4 axis_u;     // xyz: unit vector along the rectangle's first side; w: its length u in metres (0: none)
+  vec4 axis_v;     // xyz: unit vector along the second side; w: its length v; cross(axis_u, axis_v) = -direction
+  vec4 emission;   // rgb, unit by type above
+  vec4 cone;       // x: cos of the inner, y: of the outer cone angle; z: range in metres (0: unlimited);
+                   // w: angular diameter of a directional light, radians
+  uvec4 info;      // x: type, y: flags, z: draw instance to skip in its own shadow map (or no_instance), w: index
+};
+
+// Cone factor at a receiver in direction w (unit, from the light's centre): a factor at the receiver, in both
+// renderers (KHR_lights_punctual: squared linear ramp in the cosine between the outer and the inner angle).
+LIMN_FN float spot_cone_factor(Light light, vec3 w) {
+  if ((light.info.y & light_flag_cone) == 0u) return 1.0f;
+  float range = max(light.cone.x - light.cone.y, 1e-4f);
+  float t = clamp((dot(vec3(light.direction), w) - light.cone.y) / range, 0.0f, 1.0f);
+  return t * t;
+}
+
+LIMN_END
+#endif
