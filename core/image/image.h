@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <initializer_list>
 #include <map>
 #include <optional>
@@ -72,7 +71,7 @@ class LIMN_API Image {
   Image select(std::span<const std::string> names) const;
   Image select(std::initializer_list<std::string> names) const;
 
-  /// Free-form text stored with an EXR and read back (for example "limn/sceneHash", "limn/noise_rms").
+  /// Free-form text stored with an EXR (as attributes "limn/KEY") and read back; for example "noise_rms".
   std::map<std::string, std::string>& metadata() { return metadata_; }
   const std::map<std::string, std::string>& metadata() const { return metadata_; }
 
@@ -119,13 +118,5 @@ LIMN_API void writePng(const std::filesystem::path& path, const Image& image, fl
 
 /// Writes by extension: .exr as writeExr, .png as writePng. Throws UsageError for any other.
 LIMN_API void writeImage(const std::filesystem::path& path, const Image& image, float exposureEv = 0.0f);
-
-/// Calls `write` with a name beside `path` (same extension), then renames it to `path`; removes it if `write`
-/// throws. Throws Error if the rename fails.
-LIMN_API void writeWhole(const std::filesystem::path& path,
-                         const std::function<void(const std::filesystem::path&)>& write);
-
-/// Writes text whole or not at all.
-LIMN_API void writeTextFile(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace limn

@@ -23,7 +23,7 @@ struct Metrics {
   std::size_t pixels = 0;  ///< pixels compared
   double masked_share =
       0;  ///< share of the pixels covered in either picture that disagree in coverage, id or depth
-  std::optional<double> noise_rms;  ///< the reference's own noise (metadata limn/noise_rms), if it says
+  std::optional<double> noise_rms;  ///< the reference's own noise (its metadata "noise_rms"), if it says
 };
 
 struct CompareOptions {
