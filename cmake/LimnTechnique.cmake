@@ -21,7 +21,7 @@ function(limn_add_technique name)
   file(GLOB shaders CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.glsl)
   add_library(technique_${name} MODULE ${sources})
   target_link_libraries(technique_${name} PRIVATE limn::limn)
-  target_compile_definitions(technique_${name} PRIVATE LIMN_TECHNIQUE_NAME="${name}")
+  target_compile_definitions(technique_${name} PRIVATE LIMN_TECHNIQUE_ID=${name})
   set_target_properties(technique_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name}
     CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/limn/techniques)
