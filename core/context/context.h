@@ -2,8 +2,8 @@
 //
 // gl* pointers differ per back end, so the table is owned by the context and there is no global one.
 // At most one context is current on a thread. makeCurrent() first releases whatever other limn context is
-// current on this thread: an OSMesa context that replaces a current EGL one without a release leaves no dispatch at
-// all (GL_RENDERER is then null and every picture black).
+// current on this thread: an OSMesa context that replaces a current EGL one without a release leaves no
+// dispatch at all (GL_RENDERER is then null and every picture black).
 #pragma once
 
 #include <memory>
@@ -26,11 +26,12 @@ LIMN_API Backend parseBackend(std::string_view text);
 
 struct ContextOptions {
   Backend backend = Backend::egl;
-  int device = -1;       ///< EGL device index as `limn info` lists them; -1: the default (surfaceless) platform
-  bool debug = false;    ///< KHR_debug output; errors and high-severity messages are collected, see takeErrors()
-  int width = 1280;      ///< window only, pixels
-  int height = 720;      ///< window only, pixels
-  bool visible = true;   ///< window only
+  int device = -1;  ///< EGL device index as `limn info` lists them; -1: the default (surfaceless) platform
+  bool debug =
+      false;         ///< KHR_debug output; errors and high-severity messages are collected, see takeErrors()
+  int width = 1280;  ///< window only, pixels
+  int height = 720;  ///< window only, pixels
+  bool visible = true;  ///< window only
   std::string title = "limn";
 };
 
@@ -38,38 +39,45 @@ struct ContextInfo {
   Backend backend;
   std::string renderer, vendor, version, glslVersion;
   bool software = false;  ///< llvmpipe, softpipe, swrast: timer queries of raster passes cannot be trusted
+  bool debug = false;     ///< made with ContextOptions::debug
 };
 
 class LIMN_API Context {
  public:
-  /// Creates a context and makes it current. Throws Error in one line when the back end, the device or OpenGL 4.5 is
-  /// not to be had.
+  /// Creates a context and makes it current. Throws Error in one line when the back end, the device or
+  /// OpenGL 4.5 is not to be had.
   static std::unique_ptr<Context> create(const ContextOptions& options);
 
   virtual ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
+  /// A context is current on at most one thread; a GLFW context belongs to the main thread. Throws Error.
   void makeCurrent();
-  void release();
+  /// Nothing is current afterwards, whichever context was.
+  static void release();
   bool isCurrent() const;
+  /// The limn context of this thread, or null.
+  static Context* current();
 
   const gl::Functions& gl() const { return functions_; }
   const ContextInfo& info() const { return info_; }
 
-  /// Errors that KHR_debug reported since the last call (type error or severity high), one line each. Empty without
-  /// ContextOptions::debug.
+  /// Errors that KHR_debug reported since the last call (type error or severity high), one line each. Empty
+  /// without ContextOptions::debug.
   std::vector<std::string> takeErrors();
 
   /// The window of a GLFW context, otherwise null.
   virtual GLFWwindow* window() const { return nullptr; }
 
  protected:
-  Context() = default;
-  virtual void bind() = 0;    ///< makes the native context current
-  virtual void unbind() = 0;  ///< makes no native context current
+  // A back end's destructor destroys its native context inside ContextScope(nullptr): even destroying one may
+  // touch what another back end believes to be current.
+  Context();
+  virtual void bind() = 0;             ///< makes the native context current; throws Error
+  virtual void unbind() noexcept = 0;  ///< makes no native context current
   /// Called once by create() after the native context exists: binds, loads the table, checks the version.
-  void initialise(const ContextOptions& options, gl::GetProcAddress getProcAddress);
+  void initialise(const ContextOptions& options, const gl::GetProcAddress& getProcAddress);
 
   gl::Functions functions_{};
   ContextInfo info_;
@@ -79,6 +87,19 @@ class LIMN_API Context {
   std::unique_ptr<DebugLog> debugLog_;
 };
 
+/// Gives the thread another current context (or none) for a scope, and the former one back at its end.
+class LIMN_API ContextScope {
+ public:
+  explicit ContextScope(Context* context);
+  ~ContextScope();
+  ContextScope(const ContextScope&) = delete;
+  ContextScope& operator=(const ContextScope&) = delete;
+
+ private:
+  Context* previous_;
+  Context* context_;
+};
+
 /// What a back end offers on this machine, for `limn info`.
 struct DeviceDescription {
   Backend backend;
@@ -86,6 +107,7 @@ struct DeviceDescription {
   std::string description;
   std::string problem;  ///< empty when a context can be made
 };
+/// Tries every back end and EGL device by making a context; the current context is current again afterwards.
 LIMN_API std::vector<DeviceDescription> listDevices();
 
 }  // namespace limn

@@ -10,7 +10,10 @@ namespace limn::gpu {
 
 struct Limits {
   int maxTextureSize = 0;
+  int max3dTextureSize = 0;
+  int maxCubeMapSize = 0;
   int maxArrayLayers = 0;
+  int maxColourAttachments = 0;
   int64_t maxStorageBlockBytes = 0;
   int maxUniformBlockBytes = 0;
   int maxSharedMemoryBytes = 0;
@@ -29,6 +32,9 @@ struct Counters {
 };
 
 /// Wraps a context; must outlive every GPU object made with it and be destroyed before the context.
+/// State set once, which nobody changes: pixel rows tightly packed, seamless cube maps on, sRGB encoding of
+/// framebuffers and dithering off.
+/// An object is destroyed in its own context, which is made current for the moment where it is not.
 class LIMN_API Device {
  public:
   explicit Device(Context& context);

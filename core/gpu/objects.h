@@ -1,5 +1,5 @@
-// Move-only owners of OpenGL objects. A default-constructed one owns nothing and may be destroyed or assigned to.
-// All use direct state access; none touches bindings except through explicit bind calls.
+// Move-only owners of OpenGL objects. A default-constructed one owns nothing and may be destroyed or assigned
+// to. All use direct state access; none touches bindings except through explicit bind calls.
 #pragma once
 
 #include <cstddef>
@@ -24,12 +24,15 @@ class LIMN_API Object {
  protected:
   Object() = default;
   Object(Device& device, GLuint id) : device_(&device), id_(id) {}
+  ~Object() = default;
   Object(Object&& other) noexcept
       : device_(std::exchange(other.device_, nullptr)), id_(std::exchange(other.id_, 0u)) {}
   void swap(Object& other) noexcept {
     std::swap(device_, other.device_);
     std::swap(id_, other.id_);
   }
+  void setLabel(GLenum kind, std::string_view label) const;
+
   Device* device_ = nullptr;
   GLuint id_ = 0;
 };
@@ -42,7 +45,8 @@ enum class BufferUse {
 class LIMN_API Buffer : public Object {
  public:
   Buffer() = default;
-  /// `bytes` may be 0 (then 16 bytes are allocated, so that the buffer can be bound). Throws Error when out of memory.
+  /// `bytes` may be 0 (then 16 bytes are allocated, so that the buffer can be bound; size() is 0). Throws
+  /// Error when out of memory.
   Buffer(Device& device, std::string_view label, size_t bytes, BufferUse use = BufferUse::fixed,
          const void* data = nullptr);
   Buffer(Buffer&& other) noexcept;
@@ -50,10 +54,11 @@ class LIMN_API Buffer : public Object {
   ~Buffer();
 
   size_t size() const { return bytes_; }
+  /// BufferUse::updated only. Throws Error beyond the end, as read() does.
   void update(size_t offset, const void* data, size_t bytes);
   /// Blocks until the GPU is done: for tests, tools and saved results, never on the frame path.
   void read(size_t offset, void* data, size_t bytes) const;
-  void clear(uint32_t value = 0);
+  void clear(uint32_t value = 0);  ///< every whole 32-bit word; the size must be a multiple of 4
 
   template <class T>
   static Buffer of(Device& device, std::string_view label, std::span<const T> data,
@@ -63,6 +68,7 @@ class LIMN_API Buffer : public Object {
 
  private:
   size_t bytes_ = 0;
+  BufferUse use_ = BufferUse::fixed;
 };
 
 /// What a texture is. Equal descriptions are interchangeable: the frame graph's pool keys on this.
@@ -76,29 +82,38 @@ struct TextureDesc {
 };
 
 /// Mip levels of a full chain.
-LIMN_API int fullMipLevels(int width, int height);
+LIMN_API int fullMipLevels(int width, int height, int depth = 1);
+/// The same description with levels = 0 replaced by the length of the full chain.
+LIMN_API TextureDesc resolved(TextureDesc desc);
 /// Bytes of all levels and layers as limn accounts for them (the driver's padding is not known).
 LIMN_API int64_t textureBytes(const TextureDesc& desc);
-/// Throws Error for a size beyond the device's limits.
+/// Throws Error for an unknown target or format, a size that is not positive or beyond the device's limits,
+/// too many levels, and a cube map that is not square or lacks faces.
 LIMN_API void checkTextureDesc(const Device& device, std::string_view label, const TextureDesc& desc);
 
 class LIMN_API Texture : public Object {
  public:
   Texture() = default;
-  /// Immutable storage. Minification is nearest (or nearest mipmap), magnification nearest, edges clamped, unless
-  /// setSampling() says otherwise; passes that filter bind a Sampler or set this at creation.
+  /// Immutable storage. Minification is nearest (or nearest mipmap), magnification nearest, edges clamped,
+  /// unless setSampling() says otherwise; passes that filter bind a Sampler or set this at creation.
   Texture(Device& device, std::string_view label, const TextureDesc& desc);
   Texture(Texture&& other) noexcept;
   Texture& operator=(Texture&& other) noexcept;
   ~Texture();
 
-  const TextureDesc& desc() const { return desc_; }
+  const TextureDesc& desc() const { return desc_; }  ///< levels resolved
+  /// Layers (depth of a 3D texture) of one level.
+  int layersOf(int level) const;
   void setSampling(GLenum minFilter, GLenum magFilter, GLenum wrapS = GL_CLAMP_TO_EDGE,
                    GLenum wrapT = GL_CLAMP_TO_EDGE);
-  /// Uploads one level of one layer (layer of a cube map: face). `format`/`type` describe `data`, tightly packed.
+  /// Uploads one level of one layer (layer of a cube map: face). `format`/`type` describe `data`, tightly
+  /// packed.
   void upload(int level, int layer, GLenum format, GLenum type, const void* data);
-  /// Reads one whole level, all layers, tightly packed. Blocks; never on the frame path.
+  /// Reads one whole level, all layers, tightly packed; `bytes` must be exactly that much. Blocks; never on
+  /// the frame path.
   void read(int level, GLenum format, GLenum type, void* data, size_t bytes) const;
+  /// All levels and layers. clear() is for colour and depth formats, clearUint() for integer ones; else
+  /// throws Error.
   void clear(const float (&value)[4]);
   void clearUint(const uint32_t (&value)[4]);
 
@@ -116,10 +131,10 @@ struct Attachment {
 class LIMN_API Framebuffer : public Object {
  public:
   Framebuffer() = default;
-  /// Any number of colours, optional depth. With neither, `width` x `height` is a framebuffer without attachments.
-  /// Throws Error naming the status when incomplete.
-  Framebuffer(Device& device, std::string_view label, std::span<const Attachment> colours, Attachment depth = {},
-              int width = 0, int height = 0);
+  /// Any number of colours, optional depth. With neither, `width` x `height` is a framebuffer without
+  /// attachments. Throws Error naming the status when incomplete.
+  Framebuffer(Device& device, std::string_view label, std::span<const Attachment> colours,
+              Attachment depth = {}, int width = 0, int height = 0);
   Framebuffer(Framebuffer&& other) noexcept;
   Framebuffer& operator=(Framebuffer&& other) noexcept;
   ~Framebuffer();

@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/gpu/object_support.h"
+#include "core/gpu/objects.h"
+
+namespace limn::gpu {
+namespace {
+
+constexpr size_t minimumBytes = 16;
+
+size_t storageBytes(size_t bytes) {
+  return bytes == 0 ? minimumBytes : bytes;
+}
+
+void checkRange(const char* what, size_t offset, size_t bytes, size_t size) {
+  if (offset > size || bytes > size - offset) {
+    throw Error(
+        fmt::format("buffer {} of {} bytes at {} is outside its {} bytes", what, bytes, offset, size));
+  }
+}
+
+}  // namespace
+
+Buffer::Buffer(Device& device, std::string_view label, size_t bytes, BufferUse use, const void* data)
+    : Object(device, 0), bytes_(bytes), use_(use) {
+  if (bytes > static_cast<size_t>(std::numeric_limits<GLsizeiptr>::max())) {
+    throw Error(fmt::format("buffer '{}' of {} bytes is larger than memory can be", label, bytes));
+  }
+  const gl::Functions& gl = device.gl();
+  const auto storage = static_cast<GLsizeiptr>(storageBytes(bytes));
+  gl.CreateBuffers(1, &id_);
+  gl.NamedBufferStorage(id_, storage, bytes == 0 ? nullptr : data,
+                        use == BufferUse::updated ? GL_DYNAMIC_STORAGE_BIT : 0);
+  if (outOfMemory(gl)) {
+    gl.DeleteBuffers(1, &id_);
+    throw Error(fmt::format("out of GPU memory for buffer '{}' of {} bytes", label, bytes));
+  }
+  setLabel(GL_BUFFER, label);
+  ++device.mutableCounters().buffers;
+  device.mutableCounters().bufferBytes += storage;
+}
+
+Buffer::Buffer(Buffer&& other) noexcept
+    : Object(std::move(other)), bytes_(std::exchange(other.bytes_, 0)), use_(other.use_) {}
+
+Buffer& Buffer::operator=(Buffer&& other) noexcept {
+  Buffer moved(std::move(other));
+  swap(moved);
+  std::swap(bytes_, moved.bytes_);
+  std::swap(use_, moved.use_);
+  return *this;
+}
+
+Buffer::~Buffer() {
+  if (id_ == 0) return;
+  const ContextScope scope(&device_->context());
+  device_->gl().DeleteBuffers(1, &id_);
+  --device_->mutableCounters().buffers;
+  device_->mutableCounters().bufferBytes -= static_cast<int64_t>(storageBytes(bytes_));
+}
+
+void Buffer::update(size_t offset, const void* data, size_t bytes) {
+  checkRange("update", offset, bytes, bytes_);
+  if (use_ != BufferUse::updated) throw Error("buffer update needs BufferUse::updated at creation");
+  if (bytes == 0) return;
+  device_->gl().NamedBufferSubData(id_, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), data);
+}
+
+void Buffer::read(size_t offset, void* data, size_t bytes) const {
+  checkRange("read", offset, bytes, bytes_);
+  if (bytes == 0) return;
+  // Shader writes become visible to this read only behind this barrier.
+  device_->gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  device_->gl().GetNamedBufferSubData(id_, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes),
+                                      data);
+}
+
+void Buffer::clear(uint32_t value) {
+  if (bytes_ % sizeof value != 0)
+    throw Error(fmt::format("buffer of {} bytes cannot be cleared by words of 4", bytes_));
+  device_->gl().ClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
+}
+
+}  // namespace limn::gpu
