@@ -1,0 +1,61 @@
+#include "core/base/text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+
+namespace limn {
+namespace {
+
+size_t editDistance(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 1; i <= a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i;
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::optional<double> parseNumber(std::string_view text) {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::string joined(std::span<const std::string> names, std::string_view last) {
+  std::string text;
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? " " + std::string(last) + " " : ", ";
+    text += names[i];
+  }
+  return text;
+}
+
+std::string didYouMean(std::string_view name, std::span<const std::string> known) {
+  constexpr size_t longest_name = 200;  // beyond this nobody mistyped
+  if (name.size() > longest_name) return {};
+  std::vector<std::pair<size_t, std::string>> close;
+  for (const std::string& candidate : known) {
+    const size_t distance = editDistance(name, candidate);
+    const bool contained = name.size() >= 3 && candidate.find(name) != std::string::npos;
+    if (distance <= 2 + candidate.size() / 5 || contained) close.emplace_back(distance, candidate);
+  }
+  std::stable_sort(close.begin(), close.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  if (close.size() > 3) close.resize(3);
+  std::vector<std::string> names;
+  for (auto& [distance, candidate] : close) names.push_back(std::move(candidate));
+  return names.empty() ? std::string() : " (did you mean " + joined(names, "or") + "?)";
+}
+
+}  // namespace limn
