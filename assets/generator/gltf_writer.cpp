@@ -1,0 +1,303 @@
+#include "assets/generator/gltf_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <glm/gtc/type_ptr.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+
+namespace limn::assets {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kFloat = 5126, kUint32 = 5125, kUint16 = 5123, kUint8 = 5121;
+constexpr int kVertexBuffer = 34962, kIndexBuffer = 34963, kNoTarget = 0;
+
+template <int N>
+json array(const glm::vec<N, float>& v) {
+  json result = json::array();
+  for (int i = 0; i < N; ++i) result.push_back(v[i]);
+  return result;
+}
+json array(const glm::quat& q) {
+  return {q.x, q.y, q.z, q.w};
+}
+
+/// Collects the binary chunk and the JSON that points into it.
+class Writer {
+ public:
+  explicit Writer(const Scene& scene) : scene_(scene) {}
+
+  std::string binary() {
+    writeTextures();
+    writeMaterials();
+    writeMeshes();
+    writeNodes();
+    writeAnimations();
+    writeRoot();
+    return glb();
+  }
+
+ private:
+  template <class T>
+  int accessor(const std::vector<T>& data, int componentType, const char* type, int target,
+               json bounds = {}) {
+    bytes_.resize((bytes_.size() + 3) / 4 * 4);
+    const std::size_t offset = bytes_.size(), size = data.size() * sizeof(T);
+    bytes_.resize(offset + size);
+    std::memcpy(bytes_.data() + offset, data.data(), size);
+    json view = {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", size}};
+    if (target != kNoTarget) view["target"] = target;
+    root_["bufferViews"].push_back(view);
+    json entry = {{"bufferView", root_["bufferViews"].size() - 1},
+                  {"componentType", componentType},
+                  {"count", data.size()},
+                  {"type", type}};
+    if (!bounds.is_null()) entry.update(bounds);
+    root_["accessors"].push_back(entry);
+    return static_cast<int>(root_["accessors"].size()) - 1;
+  }
+
+  int positionAccessor(const std::vector<glm::vec3>& positions) {
+    glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
+    for (const glm::vec3& p : positions) {
+      low = glm::min(low, p);
+      high = glm::max(high, p);
+    }
+    return accessor(positions, kFloat, "VEC3", kVertexBuffer, {{"min", array(low)}, {"max", array(high)}});
+  }
+
+  int indexAccessor(const std::vector<std::uint32_t>& indices, std::size_t vertexCount) {
+    if (vertexCount > 65535) return accessor(indices, kUint32, "SCALAR", kIndexBuffer);
+    return accessor(std::vector<std::uint16_t>(indices.begin(), indices.end()), kUint16, "SCALAR",
+                    kIndexBuffer);
+  }
+
+  void writeTextures() {
+    if (scene_.textures.empty()) return;
+    root_["samplers"] = {{{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 10497}, {"wrapT", 10497}}};
+    for (const Texture& texture : scene_.textures) {
+      root_["textures"].push_back(
+          {{"name", texture.name}, {"sampler", 0}, {"source", root_["images"].size()}});
+      root_["images"].push_back({{"name", texture.name}, {"uri", texture.name + ".png"}});
+    }
+  }
+
+  void writeMaterials() {
+    for (const Material& m : scene_.materials) {
+      json pbr = {{"baseColorFactor", array(m.baseColour)},
+                  {"roughnessFactor", m.roughness},
+                  {"metallicFactor", m.metallic}};
+      if (m.baseColourTexture >= 0) pbr["baseColorTexture"]["index"] = m.baseColourTexture;
+      json entry = {{"name", m.name}, {"pbrMetallicRoughness", pbr}};
+      if (m.normalTexture >= 0)
+        entry["normalTexture"] = {{"index", m.normalTexture}, {"scale", m.normalScale}};
+      if (m.emissive != glm::vec3(0)) entry["emissiveFactor"] = array(m.emissive);
+      if (m.doubleSided) entry["doubleSided"] = true;
+      if (m.alphaCutoff) entry.update({{"alphaMode", "MASK"}, {"alphaCutoff", *m.alphaCutoff}});
+      if (m.specularFactor != 1) {
+        entry["extensions"]["KHR_materials_specular"]["specularFactor"] = m.specularFactor;
+        extensions_.insert("KHR_materials_specular");
+      }
+      if (m.emissiveStrength != 1) {
+        entry["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = m.emissiveStrength;
+        extensions_.insert("KHR_materials_emissive_strength");
+      }
+      root_["materials"].push_back(entry);
+    }
+  }
+
+  json primitive(const Primitive& p) {
+    const Mesh& mesh = p.mesh;
+    json attributes = {{"POSITION", positionAccessor(mesh.positions)},
+                       {"NORMAL", accessor(mesh.normals, kFloat, "VEC3", kVertexBuffer)}};
+    const Material& material = scene_.materials.at(static_cast<std::size_t>(p.material));
+    if (material.baseColourTexture >= 0 || material.normalTexture >= 0) {
+      attributes["TEXCOORD_0"] = accessor(mesh.uvs, kFloat, "VEC2", kVertexBuffer);
+    }
+    if (!mesh.tangents.empty())
+      attributes["TANGENT"] = accessor(mesh.tangents, kFloat, "VEC4", kVertexBuffer);
+    if (!mesh.joints.empty()) {
+      attributes["JOINTS_0"] = accessor(mesh.joints, kUint8, "VEC4", kVertexBuffer);
+      attributes["WEIGHTS_0"] = accessor(mesh.weights, kFloat, "VEC4", kVertexBuffer);
+    }
+    return {{"attributes", attributes},
+            {"indices", indexAccessor(mesh.indices, mesh.positions.size())},
+            {"material", p.material}};
+  }
+
+  void writeMeshes() {
+    for (const MeshAsset& mesh : scene_.meshes) {
+      json primitives = json::array();
+      for (const Primitive& p : mesh.primitives) primitives.push_back(primitive(p));
+      root_["meshes"].push_back({{"name", mesh.name}, {"primitives", primitives}});
+    }
+  }
+
+  json instancing(const std::vector<Instance>& instances) {
+    std::vector<glm::vec3> translations, scales;
+    std::vector<glm::vec4> rotations;
+    for (const Instance& i : instances) {
+      translations.push_back(i.translation);
+      rotations.emplace_back(i.rotation.x, i.rotation.y, i.rotation.z, i.rotation.w);
+      scales.push_back(i.scale);
+    }
+    extensions_.insert("EXT_mesh_gpu_instancing");
+    return {{"attributes",
+             {{"TRANSLATION", accessor(translations, kFloat, "VEC3", kNoTarget)},
+              {"ROTATION", accessor(rotations, kFloat, "VEC4", kNoTarget)},
+              {"SCALE", accessor(scales, kFloat, "VEC3", kNoTarget)}}}};
+  }
+
+  json node(const Node& n) {
+    json entry = {{"name", n.name}};
+    if (n.translation != glm::vec3(0)) entry["translation"] = array(n.translation);
+    if (n.rotation != glm::quat(1, 0, 0, 0)) entry["rotation"] = array(n.rotation);
+    if (n.mesh >= 0) entry["mesh"] = n.mesh;
+    if (n.camera >= 0) entry["camera"] = n.camera;
+    if (n.skin >= 0) entry["skin"] = n.skin;
+    if (!n.children.empty()) entry["children"] = n.children;
+    if (n.area) entry["extras"]["limn_area"] = array(*n.area);
+    if (n.angle) entry["extras"]["limn_angle"] = *n.angle;
+    if (n.light >= 0) {
+      entry["extensions"]["KHR_lights_punctual"]["light"] = n.light;
+      extensions_.insert("KHR_lights_punctual");
+    }
+    if (!n.instances.empty()) entry["extensions"]["EXT_mesh_gpu_instancing"] = instancing(n.instances);
+    return entry;
+  }
+
+  json light(const Light& l, const std::string& name) {
+    const char* types[] = {"point", "spot", "directional"};
+    json entry = {{"name", name},
+                  {"type", types[static_cast<int>(l.type)]},
+                  {"color", array(l.colour)},
+                  {"intensity", l.intensity}};
+    if (l.type == Light::Type::spot) {
+      entry["spot"] = {{"innerConeAngle", l.innerConeAngle}, {"outerConeAngle", l.outerConeAngle}};
+    }
+    return entry;
+  }
+
+  void writeNodes() {
+    std::set<int> children;
+    for (const Node& n : scene_.nodes) {
+      children.insert(n.children.begin(), n.children.end());
+      root_["nodes"].push_back(node(n));
+      if (n.camera >= 0) {
+        const Camera& camera = scene_.cameras.at(static_cast<std::size_t>(n.camera));
+        root_["cameras"].push_back({{"name", n.name},
+                                    {"type", "perspective"},
+                                    {"perspective", {{"yfov", camera.yfov}, {"znear", camera.near}}}});
+      }
+      if (n.light >= 0) {
+        root_["extensions"]["KHR_lights_punctual"]["lights"].push_back(
+            light(scene_.lights.at(static_cast<std::size_t>(n.light)), n.name));
+      }
+    }
+    json roots = json::array();
+    for (int i = 0; i < static_cast<int>(scene_.nodes.size()); ++i) {
+      if (!children.count(i)) roots.push_back(i);
+    }
+    root_["scene"] = 0;
+    root_["scenes"] = json::array({{{"name", scene_.name}, {"nodes", roots}}});
+    if (scene_.environment) root_["scenes"][0]["extras"]["limn_environment"] = "environment.exr";
+    for (const Skin& skin : scene_.skins) {
+      const int matrices = accessor(skin.inverseBind, kFloat, "MAT4", kNoTarget);
+      root_["skins"].push_back({{"joints", skin.joints}, {"inverseBindMatrices", matrices}});
+    }
+  }
+
+  void writeAnimations() {
+    for (const Animation& animation : scene_.animations) {
+      json samplers = json::array(), channels = json::array();
+      for (const Channel& channel : animation.channels) {
+        const bool rotates = !channel.rotations.empty();
+        std::vector<glm::vec4> rotations;
+        for (const glm::quat& q : channel.rotations) rotations.emplace_back(q.x, q.y, q.z, q.w);
+        const int input = accessor(channel.times, kFloat, "SCALAR", kNoTarget,
+                                   {{"min", {channel.times.front()}}, {"max", {channel.times.back()}}});
+        const int output = rotates ? accessor(rotations, kFloat, "VEC4", kNoTarget)
+                                   : accessor(channel.translations, kFloat, "VEC3", kNoTarget);
+        channels.push_back(
+            {{"sampler", samplers.size()},
+             {"target", {{"node", channel.node}, {"path", rotates ? "rotation" : "translation"}}}});
+        samplers.push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
+      }
+      root_["animations"].push_back(
+          {{"name", animation.name}, {"samplers", samplers}, {"channels", channels}});
+    }
+  }
+
+  void writeRoot() {
+    root_["asset"] = {{"version", "2.0"}, {"generator", "limn-make-scenes"}};
+    if (!extensions_.empty()) root_["extensionsUsed"] = extensions_;
+    if (extensions_.count("EXT_mesh_gpu_instancing"))
+      root_["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+    root_["buffers"] = json::array({{{"byteLength", bytes_.size()}}});
+  }
+
+  std::string glb() const {
+    std::string text = root_.dump();
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    const std::size_t padded = (bytes_.size() + 3) / 4 * 4;
+    std::string out;
+    const auto word = [&](std::size_t value) {
+      for (int i = 0; i < 4; ++i) out.push_back(static_cast<char>(value >> (8 * i) & 0xff));
+    };
+    out += "glTF";
+    word(2);
+    word(12 + 8 + text.size() + 8 + padded);
+    word(text.size());
+    out += "JSON" + text;
+    word(padded);
+    out += std::string("BIN\0", 4);
+    out.append(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());
+    out.resize(out.size() + padded - bytes_.size(), '\0');
+    return out;
+  }
+
+  const Scene& scene_;
+  json root_;
+  std::vector<std::uint8_t> bytes_;
+  std::set<std::string> extensions_;
+};
+
+template <class Write>
+void writeBeside(const std::filesystem::path& file, const Write& write) {
+  std::filesystem::path beside = file;
+  beside.replace_filename(file.stem().string() + ".part" + file.extension().string());
+  write(beside);
+  std::filesystem::rename(beside, file);
+}
+
+}  // namespace
+
+void writeScene(const Scene& scene, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const Texture& texture : scene.textures) {
+    writeBeside(folder / (texture.name + ".png"),
+                [&](const auto& file) { writePng(texture.image, texture.linear, file); });
+  }
+  if (scene.environment) {
+    writeBeside(folder / "environment.exr", [&](const auto& file) { writeExr(*scene.environment, file); });
+  }
+  const std::string bytes = Writer(scene).binary();
+  writeBeside(folder / (scene.name + ".glb"), [&](const auto& file) {
+    std::ofstream out(file, std::ios::binary);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    out.close();
+    if (!out)
+      throw std::runtime_error(
+          fmt::format("cannot write {}: is the folder writable and the disk not full?", file.string()));
+  });
+}
+
+}  // namespace limn::assets

@@ -1,0 +1,66 @@
+// limn-make-scenes: writes the scene library as glTF 2.0.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+
+#include "assets/generator/gltf_writer.h"
+#include "assets/scenes/scenes.h"
+
+namespace {
+
+using limn::assets::allScenes;
+using limn::assets::SceneEntry;
+
+int usage(const std::string& problem) {
+  std::string names;
+  for (const SceneEntry& entry : allScenes()) names += fmt::format(" {}", entry.name);
+  fmt::print(stderr, "limn-make-scenes: {}; usage: limn-make-scenes FOLDER [SCENE...] | --list; scenes:{}\n",
+             problem, names);
+  return 2;
+}
+
+void report(const limn::assets::Scene& scene) {
+  std::size_t stored = 0, shown = 0;
+  for (const auto& mesh : scene.meshes) {
+    for (const auto& primitive : mesh.primitives) stored += primitive.mesh.triangleCount();
+  }
+  for (const auto& node : scene.nodes) {
+    if (node.mesh < 0) continue;
+    for (const auto& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+      shown += primitive.mesh.triangleCount() * std::max<std::size_t>(1, node.instances.size());
+    }
+  }
+  fmt::print("{}: {} triangles stored, {} shown\n", scene.name, stored, shown);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (arguments.empty()) return usage("no folder given");
+  if (arguments[0] == "--list") {
+    for (const SceneEntry& entry : allScenes()) fmt::print("{}\n", entry.name);
+    return 0;
+  }
+  std::vector<SceneEntry> chosen;
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    const auto found = std::find_if(allScenes().begin(), allScenes().end(),
+                                    [&](const SceneEntry& entry) { return entry.name == arguments[i]; });
+    if (found == allScenes().end()) return usage(fmt::format("no scene is called '{}'", arguments[i]));
+    chosen.push_back(*found);
+  }
+  if (chosen.empty()) chosen = allScenes();
+  try {
+    for (const SceneEntry& entry : chosen) {
+      limn::assets::Scene scene = entry.make();
+      scene.name = entry.name;
+      limn::assets::writeScene(scene, std::filesystem::path(arguments[0]) / entry.name);
+      report(scene);
+    }
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "limn-make-scenes: {}\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,124 @@
+// A scene as the generator describes it: plain data, indices into the scene's own arrays (-1: none).
+// The conventions beyond glTF 2.0 (extras.limn_area, limn_angle, limn_environment) are described in
+// assets/README.md.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "assets/generator/image.h"
+#include "assets/generator/mesh.h"
+
+namespace limn::assets {
+
+struct Material {
+  std::string name;
+  glm::vec4 baseColour{0.8f, 0.8f, 0.8f, 1};  ///< linear
+  float roughness = 0.8f;
+  float metallic = 0;
+  float specularFactor = 1;  ///< KHR_materials_specular; 0 with roughness 1 is a pure Lambert surface
+  glm::vec3 emissive{0};     ///< colour, at most 1 a channel
+  float emissiveStrength = 1;
+  int baseColourTexture = -1;
+  int normalTexture = -1;
+  float normalScale = 1;
+  bool doubleSided = false;
+  std::optional<float> alphaCutoff{};  ///< set: alpha mode MASK
+};
+
+struct Texture {
+  std::string name;  ///< written as NAME.png beside the scene
+  Image image;
+  bool linear = false;  ///< normal maps: no sRGB encoding
+};
+
+struct Primitive {
+  Mesh mesh;
+  int material = -1;
+};
+
+struct MeshAsset {
+  std::string name;
+  std::vector<Primitive> primitives;
+};
+
+struct Camera {
+  float yfov = 0.8f;  ///< vertical, radians
+  float near = 0.05f;
+};
+
+struct Light {
+  enum class Type { point, spot, directional };
+  Type type = Type::point;
+  glm::vec3 colour{1};
+  float intensity = 1;                                   ///< W/sr, directional: W/m^2
+  float innerConeAngle = 0, outerConeAngle = 0.785398f;  ///< half angles of a spot, radians
+};
+
+struct Instance {
+  glm::vec3 translation{0};
+  glm::quat rotation{1, 0, 0, 0};
+  glm::vec3 scale{1};
+};
+
+struct Node {
+  std::string name;
+  glm::vec3 translation{0};
+  glm::quat rotation{1, 0, 0, 0};
+  int mesh = -1, camera = -1, light = -1, skin = -1;
+  std::vector<int> children{};
+  std::vector<Instance> instances{};  ///< EXT_mesh_gpu_instancing where not empty
+  std::optional<glm::vec2> area{};    ///< extras.limn_area, metres
+  std::optional<float> angle{};       ///< extras.limn_angle, radians
+};
+
+struct Skin {
+  std::vector<int> joints;  ///< nodes
+  std::vector<glm::mat4> inverseBind;
+};
+
+struct Channel {
+  int node = -1;
+  std::vector<float> times;             ///< seconds, rising
+  std::vector<glm::quat> rotations;     ///< one per time, or
+  std::vector<glm::vec3> translations;  ///< one per time
+};
+
+struct Animation {
+  std::string name;
+  std::vector<Channel> channels;
+};
+
+struct Scene {
+  std::string name;
+  std::vector<Texture> textures;
+  std::vector<Material> materials;
+  std::vector<MeshAsset> meshes;
+  std::vector<Camera> cameras;
+  std::vector<Light> lights;
+  std::vector<Node> nodes;
+  std::vector<Skin> skins;
+  std::vector<Animation> animations;
+  std::optional<Image> environment;  ///< linear RGB, written as environment.exr
+
+  int addTexture(std::string textureName, Image image, bool linear = false);
+  int addMaterial(Material material);
+  int addMesh(std::string meshName, std::vector<Primitive> primitives);
+  int addNode(Node node);
+  /// A mesh of one primitive and the node that shows it.
+  int add(std::string nodeName, Mesh mesh, int material);
+  void addCamera(std::string cameraName, glm::vec3 eye, glm::vec3 target, float yfovDegrees);
+  void addLight(std::string lightName, const Light& light, glm::vec3 position, glm::vec3 target);
+  /// A one-sided Lambertian rectangle of `size` metres facing `target`; radiance = colour * intensity / area.
+  void addAreaLight(std::string lightName, glm::vec3 position, glm::vec3 target, glm::vec2 size,
+                    float intensity, glm::vec3 colour = glm::vec3(1));
+};
+
+/// A material that reflects by Lambert's law alone.
+Material lambert(std::string name, glm::vec3 albedo);
+
+/// A dielectric or metal.
+Material glossy(std::string name, glm::vec3 baseColour, float roughness, float metallic = 0);
+
+}  // namespace limn::assets

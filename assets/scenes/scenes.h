@@ -1,0 +1,22 @@
+// The scenes, one function each.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "assets/generator/scene.h"
+
+namespace limn::assets {
+
+Scene makeBalls();
+Scene makeCornellBox();
+
+struct SceneEntry {
+  std::string_view name;
+  Scene (*make)();
+};
+
+/// Every scene of the library.
+const std::vector<SceneEntry>& allScenes();
+
+}  // namespace limn::assets
