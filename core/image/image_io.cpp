@@ -1,0 +1,311 @@
+// Reading and writing picture files. OpenImageIO decodes and encodes in memory; files are read and written
+// whole.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/image/image.h"
+#include "glsl/srgb.glsl"
+
+namespace limn {
+namespace {
+
+constexpr const char* kMetadataPrefix = "limn/";
+
+enum class Format { exr, hdr, png, jpeg };
+
+const char* decoderName(Format format) {
+  switch (format) {
+    case Format::exr:
+      return "openexr";
+    case Format::hdr:
+      return "hdr";
+    case Format::png:
+      return "png";
+    case Format::jpeg:
+      return "jpeg";
+  }
+  return "";
+}
+
+/// By content, not by name: a wrong extension must not choose a decoder for foreign bytes.
+Format detectFormat(std::span<const std::byte> bytes, const std::string& name) {
+  const auto startsWith = [&](std::string_view magic) {
+    return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+  };
+  if (startsWith("\x76\x2f\x31\x01")) return Format::exr;
+  if (startsWith("\x89PNG\r\n\x1a\n")) return Format::png;
+  if (startsWith("\xff\xd8\xff")) return Format::jpeg;
+  if (startsWith("#?")) return Format::hdr;
+  throw Error(fmt::format("{}: not a picture; EXR, HDR, PNG or JPEG is accepted", name));
+}
+
+/// libjpeg fills what a truncated file lacks with grey. A complete one has an end marker (FF D9) after its
+/// first scan; within entropy-coded data FF is always followed by 00 or a restart marker.
+bool jpegIsComplete(std::span<const std::byte> bytes) {
+  const auto at = [&](std::size_t i) { return std::to_integer<unsigned>(bytes[i]); };
+  std::size_t i = 2;
+  while (i + 4 <= bytes.size()) {  // header segments, whose thumbnails may contain end markers
+    if (at(i) != 0xff) return false;
+    const unsigned marker = at(i + 1);
+    if (marker == 0xff) {
+      ++i;
+      continue;
+    }
+    i += 2 + (at(i + 2) << 8 | at(i + 3));
+    if (marker == 0xda) break;
+  }
+  for (; i + 1 < bytes.size(); ++i) {
+    if (at(i) == 0xff && at(i + 1) == 0xd9) return true;
+  }
+  return false;
+}
+
+/// Cyclic redundancy code of PNG chunks (ISO 3309; reflected polynomial EDB88320).
+std::uint32_t chunkCode(std::span<const std::byte> bytes) {
+  static constexpr auto kTable = [] {
+    std::array<std::uint32_t, 256> table{};
+    for (std::uint32_t i = 0; i < 256; ++i) {
+      table[i] = i;
+      for (int bit = 0; bit < 8; ++bit) table[i] = table[i] >> 1 ^ (table[i] & 1 ? 0xedb88320u : 0u);
+    }
+    return table;
+  }();
+  std::uint32_t code = ~0u;
+  for (const std::byte byte : bytes)
+    code = code >> 8 ^ kTable[(code ^ std::to_integer<std::uint32_t>(byte)) & 255];
+  return ~code;
+}
+
+/// Whether every chunk up to IEND is there and undamaged. libpng would print its complaints itself and
+/// overlooks some; none of the checked files gives it a reason.
+bool pngIsComplete(std::span<const std::byte> bytes) {
+  const auto number = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
+    return value;
+  };
+  for (std::size_t at = 8; at + 12 <= bytes.size();) {
+    const std::size_t length = number(at);
+    if (length > bytes.size() - at - 12) return false;
+    if (chunkCode(bytes.subspan(at + 4, length + 4)) != number(at + 8 + length)) return false;
+    if (std::memcmp(bytes.data() + at + 4, "IEND", 4) == 0) return true;
+    at += length + 12;
+  }
+  return false;
+}
+
+std::string oneLine(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  while (!text.empty() && text.back() == ' ') text.pop_back();
+  return text.empty() ? "unreadable or truncated" : text;
+}
+
+/// An opened decoder whose size has been checked against the limits; nothing of that size is allocated yet.
+class Decoder {
+ public:
+  Decoder(std::span<const std::byte> bytes, const std::string& name)
+      : name_(name), format_(detectFormat(bytes, name)), memory_(bytes.data(), bytes.size()) {
+    if (format_ == Format::jpeg && !jpegIsComplete(bytes)) fail("truncated JPEG");
+    if (format_ == Format::png && !pngIsComplete(bytes)) fail("truncated or damaged PNG");
+    input_ = OIIO::ImageInput::create(decoderName(format_), false);
+    if (!input_) fail(OIIO::geterror());
+    input_->set_ioproxy(&memory_);
+    OIIO::ImageSpec wanted;
+    wanted.attribute("oiio:UnassociatedAlpha", 1);
+    if (!input_->open(name, spec_, wanted)) fail(input_->geterror());
+    checkSize();
+  }
+
+  const OIIO::ImageSpec& spec() const { return spec_; }
+  bool isSrgb() const { return format_ == Format::png || format_ == Format::jpeg; }
+
+  void read(OIIO::TypeDesc type, void* target) {
+    if (!input_->read_image(0, 0, 0, spec_.nchannels, type, target)) fail(input_->geterror());
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw Error(fmt::format("{}: {}", name_, oneLine(reason)));
+  }
+
+  void checkSize() const {
+    const std::int64_t width = spec_.width, height = spec_.height, channels = spec_.nchannels;
+    if (spec_.deep || spec_.depth > 1) fail("deep and volume pictures are not accepted");
+    if (width < 1 || height < 1 || channels < 1 || width > kMaxImageSide || height > kMaxImageSide ||
+        channels > kMaxImageChannels || width * height > kMaxImagePixels ||
+        width * height * channels > kMaxImageValues) {
+      fail(fmt::format(
+          "{}x{} pixels of {} channels; at most {} per side, {} pixels, {} channels, {} values are accepted",
+          width, height, channels, kMaxImageSide, kMaxImagePixels, kMaxImageChannels, kMaxImageValues));
+    }
+  }
+
+  std::string name_;
+  Format format_;
+  OIIO::Filesystem::IOMemReader memory_;
+  std::unique_ptr<OIIO::ImageInput> input_;
+  OIIO::ImageSpec spec_;
+};
+
+/// Runs a decoding step; whatever a decoder throws becomes an Error of one line that names the picture.
+template <class Step>
+auto guarded(const std::string& name, Step step) {
+  try {
+    return step();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw Error(fmt::format("{}: not enough memory", name));
+  } catch (const std::exception& failure) {
+    throw Error(fmt::format("{}: {}", name, oneLine(failure.what())));
+  }
+}
+
+std::vector<std::string> channelNames(const Decoder& decoder) {
+  if (!decoder.isSrgb()) return decoder.spec().channelnames;
+  switch (decoder.spec().nchannels) {
+    case 1:
+      return {"Y"};
+    case 2:
+      return {"Y", "A"};
+    case 3:
+      return {"R", "G", "B"};
+    default:
+      return {"R", "G", "B", "A"};
+  }
+}
+
+void decodeSrgb(Image& image) {
+  const std::size_t channels = static_cast<std::size_t>(image.channelCount());
+  const std::size_t colours = channels == 2 || channels == 4 ? channels - 1 : channels;
+  std::span<float> data = image.data();
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    if (i % channels < colours) data[i] = glsl::srgb_decode(data[i]);
+  }
+}
+
+Image decode(std::span<const std::byte> bytes, const std::string& name) {
+  Decoder decoder(bytes, name);
+  const std::vector<std::string> names = channelNames(decoder);
+  if (names.size() != static_cast<std::size_t>(decoder.spec().nchannels)) {
+    throw Error(fmt::format("{}: {} channels without names", name, decoder.spec().nchannels));
+  }
+  Image image = [&] {
+    try {
+      return Image(decoder.spec().width, decoder.spec().height, names);
+    } catch (const Error& failure) {
+      throw Error(fmt::format("{}: {}", name, failure.what()));
+    }
+  }();
+  decoder.read(OIIO::TypeDesc::FLOAT, image.data().data());
+  if (decoder.isSrgb()) decodeSrgb(image);
+  for (const OIIO::ParamValue& attribute : decoder.spec().extra_attribs) {
+    const std::string key = attribute.name().string();
+    if (key.starts_with(kMetadataPrefix) && attribute.type() == OIIO::TypeString) {
+      image.metadata()[key.substr(std::strlen(kMetadataPrefix))] = attribute.get_string();
+    }
+  }
+  return image;
+}
+
+Image8 decode8(std::span<const std::byte> bytes, const std::string& name) {
+  Decoder decoder(bytes, name);
+  const std::size_t channels = static_cast<std::size_t>(decoder.spec().nchannels);
+  if (!decoder.isSrgb() || channels > 4) {
+    throw Error(fmt::format("{}: an 8-bit texture must be PNG or JPEG with 1 to 4 channels", name));
+  }
+  const std::size_t pixels =
+      static_cast<std::size_t>(decoder.spec().width) * static_cast<std::size_t>(decoder.spec().height);
+  std::vector<std::uint8_t> raw(pixels * channels);
+  decoder.read(OIIO::TypeDesc::UINT8, raw.data());
+  Image8 image{decoder.spec().width, decoder.spec().height, {}};
+  if (channels == 4) {
+    image.data = std::move(raw);
+    return image;
+  }
+  image.data.resize(pixels * 4);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const std::uint8_t* source = &raw[i * channels];
+    std::uint8_t* target = &image.data[i * 4];
+    for (std::size_t c = 0; c < 3; ++c) target[c] = source[channels == 3 ? c : 0];
+    target[3] = channels == 2 ? source[1] : 255;
+  }
+  return image;
+}
+
+/// Encodes in memory, then writes the file whole: the encoder never sees the disk, so a full one is noticed.
+void encode(const std::filesystem::path& path, const char* encoder, const OIIO::ImageSpec& spec,
+            OIIO::TypeDesc type, const void* pixels) {
+  OIIO::Filesystem::IOVecOutput memory;
+  std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(encoder);
+  if (!output) throw Error(fmt::format("{}: {}", path.string(), oneLine(OIIO::geterror())));
+  output->set_ioproxy(&memory);
+  if (!output->open(path.string(), spec) || !output->write_image(type, pixels) || !output->close()) {
+    throw Error(fmt::format("{}: {}", path.string(), oneLine(output->geterror())));
+  }
+  writeFile(path, std::as_bytes(std::span(memory.buffer())));
+}
+
+}  // namespace
+
+Image readImageMemory(std::span<const std::byte> bytes, const std::string& name) {
+  return guarded(name, [&] { return decode(bytes, name); });
+}
+
+Image readImage(const std::filesystem::path& path) {
+  return readImageMemory(readFile(path), path.string());
+}
+
+Image8 readImage8Memory(std::span<const std::byte> bytes, const std::string& name) {
+  return guarded(name, [&] { return decode8(bytes, name); });
+}
+
+Image8 readImage8(const std::filesystem::path& path) {
+  return readImage8Memory(readFile(path), path.string());
+}
+
+void writeExr(const std::filesystem::path& path, const Image& image) {
+  if (image.empty()) throw Error(fmt::format("{}: cannot write an empty image", path.string()));
+  OIIO::ImageSpec spec(image.width(), image.height(), image.channelCount(), OIIO::TypeDesc::FLOAT);
+  spec.channelnames = image.channels();
+  spec.attribute("compression", "zip");
+  for (const auto& [key, value] : image.metadata()) spec.attribute(kMetadataPrefix + key, value);
+  guarded(path.string(), [&] { encode(path, "openexr", spec, OIIO::TypeDesc::FLOAT, image.data().data()); });
+}
+
+void writePng(const std::filesystem::path& path, const Image& image, float exposureEv) {
+  if (image.empty()) throw Error(fmt::format("{}: cannot write an empty image", path.string()));
+  const std::array<int, 3> rgb = image.rgbChannels();
+  std::vector<std::uint8_t> pixels;
+  pixels.reserve(image.pixelCount() * 3);
+  const std::size_t channels = static_cast<std::size_t>(image.channelCount());
+  for (std::size_t i = 0; i < image.pixelCount(); ++i) {
+    for (const int c : rgb) {
+      const float value = image.data()[i * channels + static_cast<std::size_t>(c)];
+      pixels.push_back(static_cast<std::uint8_t>(glsl::tone_map(value, exposureEv) * 255.0f + 0.5f));
+    }
+  }
+  OIIO::ImageSpec spec(image.width(), image.height(), 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  guarded(path.string(), [&] { encode(path, "png", spec, OIIO::TypeDesc::UINT8, pixels.data()); });
+}
+
+void writeImage(const std::filesystem::path& path, const Image& image, float exposureEv) {
+  const std::string extension = path.extension().string();
+  if (extension == ".exr") return writeExr(path, image);
+  if (extension == ".png") return writePng(path, image, exposureEv);
+  throw UsageError(
+      fmt::format("{}: unknown picture format '{}'; .exr or .png is accepted", path.string(), extension));
+}
+
+}  // namespace limn
