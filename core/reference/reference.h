@@ -1,0 +1,98 @@
+// The CPU ground truth: Embree for ray queries, the GPU's own definitions (glsl/*.glsl) for everything that
+// both renderers must agree on. Deterministic: a request gives the same bits with any number of threads, and
+// whether or not it was interrupted and resumed.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/base/export.h"
+#include "core/image/image.h"
+#include "core/scene/scene.h"
+
+namespace limn::reference {
+
+/// What is asked of every pixel.
+enum class Term {
+  direct,  ///< reflected direct light of all lights and the environment, or of one of them; shadows included
+  visibility,  ///< V of one light
+  final,       ///< direct, the emission the camera sees, and the environment as background
+};
+LIMN_API const char* name(Term term);
+/// Throws UsageError naming the terms there are.
+LIMN_API Term termFromName(const std::string& name);
+
+constexpr int allLights = -1;
+
+struct Progress {
+  double fraction = 0;     ///< of the work, in [0, 1]; with a noise target an estimate
+  double noise = 0;        ///< RMS relative to the mean, so far; 0 until it is known
+  double secondsLeft = 0;  ///< estimate
+  int spp = 0;             ///< samples per pixel done
+};
+
+/// Called from the calling thread after each pass over the image. False stops the work: render() then writes
+/// the checkpoint, if there is one, and throws Error.
+using ProgressCallback = std::function<bool(const Progress&)>;
+
+struct Request {
+  const scene::Scene& scene;
+  const scene::Pose& pose;
+  scene::CameraPose camera;
+  int width = 0, height = 0;
+  Term term = Term::direct;
+  /// Index into Pose::lights, or lights.size() for the environment; allLights for all (not with visibility,
+  /// which takes one light of Pose::lights).
+  int light = allLights;
+  int spp = 64;  ///< samples per pixel and light, rounded up to an even number; the maximum if noise is given
+  /// Target noise, RMS relative to the mean; 0: take spp samples. Tested after 16, 32, 64, ... samples.
+  double noise = 0;
+  uint64_t seed = 0;
+  int aa =
+      1;  ///< aa x aa samples per pixel, on a regular grid and equally weighted; other channels: the centre's
+  int threads = 0;  ///< 0: all cores
+  ProgressCallback progress;
+  std::filesystem::path
+      checkpoint;                 ///< state of unfinished work, resumed if it fits the request; empty: none
+  double checkpointSeconds = 30;  ///< between two writes of it
+};
+
+/// Channels R, G, B (radiance in W/(sr m^2); V three times for visibility), variance (of the mean of R, G, B,
+/// estimated), Z, coverage, id, albedo.R/G/B, N.X/Y/Z; for visibility also V, Vw (V weighted by irradiance)
+/// and masked (1 where no part of the light lies above the geometric tangent plane: V = 1). Metadata:
+/// noise_rms, spp, seed, term, light.
+struct Result {
+  Image image;
+  double noiseRms =
+      0;  ///< RMS over pixels of the standard deviation of the mean, relative to the mean; Monte Carlo only
+  int spp = 0;
+};
+
+/// Throws UsageError for a request that makes no sense (names the member and what is accepted), Error if the
+/// work failed or was stopped.
+LIMN_API Result render(const Request& request);
+
+/// Hash (32 hexadecimal digits) of everything that determines the result: scene content with textures, pose,
+/// camera, size, term, light, samples or noise, seed, version of this code.
+LIMN_API std::string contentHash(const Request& request);
+
+/// Finished references on disk: one EXR per content hash.
+class LIMN_API Cache {
+ public:
+  /// Created when the first picture is put into it.
+  explicit Cache(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  std::filesystem::path pathOf(const std::string& contentHash) const;
+  /// nullopt if there is none, or if the file is broken or not of that hash.
+  std::optional<Result> get(const std::string& contentHash) const;
+  void put(const std::string& contentHash, const Result& result) const;
+  /// get(), else render() and put(). Interrupted work is kept in the folder and resumed.
+  Result render(Request request) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace limn::reference
