@@ -1,0 +1,89 @@
+// Command-line options that several commands share, each declared once.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/context/context.h"
+#include "core/render/renderer.h"
+#include "core/scene/scene.h"
+#include "core/technique/registry.h"
+
+namespace limn::app {
+
+/// What to look at: the scene, the camera, the time.
+struct SceneOptions {
+  std::filesystem::path scene;
+  std::string camera;  ///< name or #index; empty: the file's first camera, or one that frames the scene
+  std::string eye, target;
+  double fov = 0;  ///< vertical, degrees
+  std::filesystem::path environment;
+  double environmentRotation = 0;  ///< degrees
+  double environmentScale = 1;
+  double time = 0;
+  std::string animation;  ///< name or #index; empty: the first
+  std::string size = "1280x720";
+  std::string light;  ///< name or #index; empty: all
+
+  void addTo(CLI::App& command);
+};
+
+/// The command line's answer to SceneOptions.
+struct View {
+  scene::Scene scene;
+  int animation = scene::none;
+  double time = 0;
+  scene::CameraPose camera;
+  scene::Pose pose;
+  glm::ivec2 size;
+  int light = scene::none;
+};
+
+/// Loads everything SceneOptions names; prints the scene's warnings to stderr. Throws UsageError or Error.
+View open(const SceneOptions& options);
+
+glm::ivec2 parseSize(const std::string& text);
+/// Index of a name or "#index" among `names`; throws UsageError listing them.
+int findNamed(const std::string& what, const std::string& text, const std::vector<std::string>& names);
+scene::CameraPose chooseCamera(const SceneOptions& options, const scene::Pose& pose);
+
+/// Which techniques and with what parameters.
+struct TechniqueOptions {
+  std::string techniques;             ///< comma-separated
+  std::vector<std::string> settings;  ///< TECHNIQUE.PARAMETER=VALUE
+
+  void addTo(CLI::App& command);
+  std::vector<render::TechniqueUse> resolve(const TechniqueRegistry& registry) const;
+};
+
+struct BackendOptions {
+  std::string backend = "egl";
+  int device = -1;
+  bool debug = false;
+
+  void addTo(CLI::App& command);
+  ContextOptions contextOptions() const;
+};
+
+/// Runs `work`, reports what it throws in one line on stderr, and gives the exit status.
+int guarded(const std::function<int()>& work);
+
+/// A bar on a terminal, plain lines (at most one every 10 %) elsewhere; on stderr.
+class Progress {
+ public:
+  explicit Progress(std::string label);
+  ~Progress();
+  void update(double fraction, const std::string& note = {});
+
+ private:
+  std::string label_;
+  bool terminal_;
+  int lastShown_ = -1;
+};
+
+}  // namespace limn::app

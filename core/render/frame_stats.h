@@ -1,0 +1,52 @@
+// What a frame cost: the product of `limn render --stats` and of every bench row.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/frame/frame_graph.h"
+
+namespace limn::render {
+
+class Renderer;
+
+struct Quartiles {
+  double median = 0, q1 = 0, q3 = 0;
+  int n = 0;
+};
+/// Linear interpolation between order statistics; n = 0 for no samples.
+LIMN_API Quartiles quartiles(std::vector<double> samples);
+
+struct PassStats {
+  std::string name, technique;
+  frame::PassState state = frame::PassState::run;
+  std::string reason;
+  Quartiles ms;
+  int64_t bytes = 0;
+};
+
+struct FrameStats {
+  std::string renderer, backend;
+  frame::Timing timer = frame::Timing::finish;  ///< how the passes were timed
+  bool software = false;
+  bool dynamic = true;
+  int width = 0, height = 0;
+  std::string scene, technique;
+  std::vector<std::pair<std::string, std::string>> parameters;  ///< "technique.parameter", value
+  Quartiles frameMs;  ///< wall clock between two glFinish, in a run of its own without pass timing
+  double passSumMs = 0;  ///< median over frames of the passes' sum, in the run with pass timing
+  int64_t memoryBytes = 0;
+  std::vector<PassStats> passes;
+};
+
+/// Renders `warmup` frames, then `frames` timed ones as a whole, then as many with pass timing. The camera counts as moved
+/// in every frame; geometry and lights too unless the renderer is configured static.
+LIMN_API FrameStats measure(Renderer& renderer, int frames, int warmup = 3);
+
+LIMN_API std::string toJson(const FrameStats& stats);
+/// The inverse; throws Error for text that is not such an object.
+LIMN_API FrameStats frameStatsFromJson(const std::string& text);
+
+}  // namespace limn::render

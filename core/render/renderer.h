@@ -1,0 +1,90 @@
+// Puts a frame together: scene data, G-buffer, the techniques that were asked for, and core's answers to the terms nobody
+// claims (V = 1, the other terms 0), all as one frame graph.
+//
+//     L = L_e + sum over lights of L_u V  (or a technique's `direct`)  + indirect + caustic + background
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/frame/frame_graph.h"
+#include "core/image/image.h"
+#include "core/render/frame_stats.h"
+#include "core/scene/scene.h"
+#include "core/technique/technique.h"
+
+namespace limn::render {
+
+struct TechniqueUse {
+  const TechniquePlugin* plugin = nullptr;
+  ParameterValues parameters;
+};
+
+/// What the picture shows.
+enum class Output { final, visibility, direct, indirect, caustic, media };
+LIMN_API std::string_view name(Output output);
+/// Throws UsageError naming the accepted values.
+LIMN_API Output parseOutput(std::string_view text);
+
+struct Settings {
+  glm::ivec2 size{1280, 720};
+  Output output = Output::final;
+  std::vector<TechniqueUse> techniques;
+  /// Index into Pose::lights: the light whose visibility is wanted, or the only one that shines; -1: all.
+  int light = -1;
+  /// Everything that depends on geometry or lights is computed anew in each frame; otherwise unchanged results are kept.
+  bool dynamic = true;
+  /// Keep depth, coverage, instance id, albedo and normal for read().
+  bool channels = false;
+};
+
+/// Throws UsageError when two techniques claim the same exclusive term, or nobody answers the output asked for.
+LIMN_API void checkTechniques(const std::vector<TechniqueUse>& techniques, Output output);
+
+class LIMN_API Renderer {
+ public:
+  /// Uploads the scene. `scene` and `device` must outlive the renderer.
+  Renderer(gpu::Device& device, const scene::Scene& scene, std::filesystem::path shaderOverride = {});
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// Chooses what to render. The graph is built at the next render().
+  void configure(Settings settings);
+  void setCamera(const scene::CameraPose& camera);
+  void setTime(double seconds, int animation = scene::none);
+
+  /// Renders one frame. Throws Error (shader errors, memory, sizes).
+  void render(frame::Timing timing = frame::Timing::off);
+
+  /// The last frame: R, G, B (visibility: three equal channels), and with Settings::channels Z, coverage, id, albedo.*,
+  /// N.*. Blocks.
+  Image read() const;
+
+  /// Blocks until the GPU has done everything asked of it (glFinish).
+  void finish();
+
+  const scene::Pose& pose() const;
+  frame::FrameGraph& graph();
+  std::vector<frame::PassReport> explain() const;
+  /// The part of FrameStats that is known without measuring.
+  FrameStats describe() const;
+  /// Live buffers and textures of this device, bytes.
+  int64_t memoryBytes() const;
+
+  struct Reload {
+    int programs = 0;
+    std::vector<std::string> errors;
+  };
+  /// Recompiles shaders that changed on disk.
+  Reload reloadShaders();
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace limn::render
