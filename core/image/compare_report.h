@@ -8,8 +8,8 @@
 
 namespace limn {
 
-/// One JSON object: rmse, rel_mse, bias, p999, psnr, flip, structured, masked_share, pixels, and noise_rms if
-/// known. An infinite PSNR (equal images) is null.
+/// One JSON object: rmse, rel_mse, bias, p999, psnr, flip, structured, masked_share, pixels, and noise_floor
+/// if known. Infinite values (the PSNR of equal images) are null.
 LIMN_API std::string metricsJson(const Metrics& metrics);
 
 /// A table for people, one metric per line, saying so where an error is below three times the reference's

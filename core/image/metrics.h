@@ -21,16 +21,18 @@ struct Metrics {
   double flip = 0;     ///< mean LDR-FLIP of the tone-mapped pictures, in [0, 1]
   double structured = 0;  ///< RMS of the error after a 9 x 9 Gaussian (sigma 2 pixels, renormalised at masks)
   std::size_t pixels = 0;  ///< pixels compared
-  double masked_share =
-      0;  ///< share of the pixels covered in either picture that disagree in coverage, id or depth
-  std::optional<double> noise_rms;  ///< the reference's own noise (its metadata "noise_rms"), if it says
+  /// Share, among the pixels covered in either picture, of those that differ in coverage, id or depth.
+  double masked_share = 0;
+  /// Three times the reference's own noise, in image units: a smaller rmse is no difference. Known where the
+  /// reference's metadata has "noise_rms" (RMS relative to the mean).
+  std::optional<double> noise_floor;
 };
 
 struct CompareOptions {
   float exposureEv = 0;           ///< exposure of the tone mapping for FLIP
   double maxMaskedShare = 0.005;  ///< more is an Error (foliage: 0.02)
   double depthTolerance = 1e-3;   ///< relative difference in Z beyond which a pixel is dropped
-  bool useMask = true;            ///< drop pixels by coverage, id and Z where both pictures have them
+  bool useMask = true;            ///< drop pixels by coverage, id and Z, where the pictures have them
   /// Only pixels whose reference, R, lies in the open interval (penumbra pixels of a visibility term).
   std::optional<std::pair<float, float>> maskTermRange;
 };
@@ -41,14 +43,16 @@ struct Comparison {
   std::vector<unsigned char> mask;  ///< 1 where compared
 };
 
-/// Throws Error if the sizes differ, a value of R, G, B (of a compared pixel) is NaN or infinite, no pixel is
-/// left, or the masked share exceeds its limit.
+/// Where only one picture has a coverage channel, that one decides what is dropped. A ratio whose denominator
+/// is 0 (rel_mse, psnr of a black reference) is infinite. Throws Error if the sizes differ, a value of R, G,
+/// B is NaN or infinite (masked or not), no pixel is left, or the masked share exceeds its limit.
 LIMN_API Comparison compareImagesDetailed(const Image& image, const Image& reference,
                                           const CompareOptions& options = {});
 LIMN_API Metrics compareImages(const Image& image, const Image& reference,
                                const CompareOptions& options = {});
 
-/// The FLIP map in false colour (dark = equal, bright yellow = 1), as linear R, G, B for writePng.
+/// The FLIP map in false colour (black = equal, light yellow = 1; grey = masked), as linear R, G, B for
+/// writePng.
 LIMN_API Image differenceImage(const Image& image, const Image& reference,
                                const CompareOptions& options = {});
 
