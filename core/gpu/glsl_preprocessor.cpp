@@ -1,0 +1,134 @@
+#include "core/gpu/glsl_preprocessor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/gpu/glsl_lines.h"
+
+namespace limn::gpu {
+namespace {
+
+std::string normalised(const std::filesystem::path& path) {
+  return path.lexically_normal().generic_string();
+}
+
+bool isIdentifier(std::string_view text) {
+  const auto isWord = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  return !text.empty() && std::isdigit(static_cast<unsigned char>(text[0])) == 0 &&
+         std::all_of(text.begin(), text.end(), isWord);
+}
+
+class Expander {
+ public:
+  explicit Expander(const SourceLookup& lookup) : lookup_(lookup) {}
+
+  ExpandedSource run(const std::string& entry, const std::map<std::string, std::string>& defines) {
+    result_.text = "#version 450 core\n";
+    for (const auto& [name, value] : defines) define(name, value);
+    const auto text = lookup_(entry);
+    if (!text) throw Error(fmt::format("shader file '{}' does not exist", entry));
+    appendFile(entry, *text, false);
+    return std::move(result_);
+  }
+
+ private:
+  void define(const std::string& name, const std::string& value) {
+    if (!isIdentifier(name) || value.find_first_of("\n\r\\") != std::string::npos) {
+      throw Error(fmt::format("shader define '{}' = '{}': accepted are an identifier and a value on one line",
+                              name, value));
+    }
+    result_.text += fmt::format("#define {} {}\n", name, value);
+  }
+
+  /// Source string number of a file.
+  size_t numberOf(const std::string& path) {
+    const auto found = std::find(result_.files.begin(), result_.files.end(), path);
+    if (found == result_.files.end()) {
+      result_.files.push_back(path);
+      return result_.files.size() - 1;
+    }
+    return static_cast<size_t>(found - result_.files.begin());
+  }
+
+  /// From here on the compiler counts from `line` (1 is the first) of `file`.
+  void appendLineMark(size_t line, size_t file) { result_.text += fmt::format("#line {} {}\n", line, file); }
+
+  void appendFile(const std::string& path, const std::string& text, bool conditional) {
+    const GlslFile file(text);
+    const size_t number = numberOf(path);
+    stack_.push_back(path);
+    appendLineMark(1, number);
+    for (size_t i = 0; i < file.lines.size(); ++i) {
+      const GlslLine& line = file.lines[i];
+      if (line.directive == "version") {
+        throw Error(fmt::format("{}:{}: #version is written by the library: remove it", path, i + 1));
+      }
+      for (const std::string& macro : line.requiredMacros) appendRequirement(macro, i + 1, number);
+      if (line.directive == "include") {
+        appendInclude(path, i + 1, line.argument, conditional || line.conditional);
+        appendLineMark(i + 2, number);
+      } else {
+        result_.text.append(line.text).push_back('\n');
+      }
+    }
+    stack_.pop_back();
+  }
+
+  void appendRequirement(const std::string& macro, size_t line, size_t file) {
+    result_.text += fmt::format("#ifndef {}\n", macro);
+    appendLineMark(line, file);
+    result_.text += fmt::format("#error {} is tested but not defined\n#endif\n", macro);
+    appendLineMark(line, file);
+  }
+
+  void appendInclude(const std::string& from, size_t line, const std::string& argument, bool conditional) {
+    const auto refuse = [&](const std::string& problem) {
+      if (!conditional) throw Error(fmt::format("{}:{}: {}", from, line, problem));
+      appendLineMark(line, numberOf(from));
+      result_.text += fmt::format("#error {}\n", problem);
+    };
+    if (argument.size() < 3 || argument.front() != '"' || argument.back() != '"') {
+      return refuse(fmt::format("include {} is not of the form \"path\"", argument));
+    }
+    const std::string wanted = argument.substr(1, argument.size() - 2);
+    const std::string beside = normalised(std::filesystem::path(from).parent_path() / wanted);
+    for (const std::string& path : {beside, normalised(wanted)}) {
+      if (path.starts_with("../") || path.starts_with('/')) continue;
+      if (const auto text = lookup_(path)) return appendGuarded(from, line, path, *text, conditional);
+    }
+    refuse(
+        fmt::format("include '{}' not found (looked for '{}' and '{}')", wanted, beside, normalised(wanted)));
+  }
+
+  void appendGuarded(const std::string& from, size_t line, const std::string& path, const std::string& text,
+                     bool conditional) {
+    if (std::find(stack_.begin(), stack_.end(), path) != stack_.end()) {
+      throw Error(fmt::format("{}:{}: '{}' includes itself: {} -> {}", from, line, path,
+                              fmt::join(stack_, " -> "), path));
+    }
+    if (complete_.contains(path)) return;  // certainly there already, whatever the conditions
+    const size_t number = numberOf(path);
+    result_.text += fmt::format("#ifndef LIMN_INCLUDED_{0}\n#define LIMN_INCLUDED_{0}\n", number);
+    appendFile(path, text, conditional);
+    result_.text += "#endif\n";
+    if (!conditional) complete_.insert(path);
+  }
+
+  const SourceLookup& lookup_;
+  ExpandedSource result_;
+  std::vector<std::string> stack_;  // files being included, outermost first
+  std::set<std::string> complete_;  // files included outside every condition
+};
+
+}  // namespace
+
+ExpandedSource expandGlsl(const std::string& entry, const std::map<std::string, std::string>& defines,
+                          const SourceLookup& lookup) {
+  return Expander(lookup).run(entry, defines);
+}
+
+}  // namespace limn::gpu
