@@ -95,7 +95,8 @@ class LIMN_API PassContext {
     int level = 0;
     int layer = -1;  ///< -1: all layers (layered rendering)
   };
-  void bindFramebuffer(std::initializer_list<Target> colours, Target depth = {}) const;
+  void bindFramebuffer(std::initializer_list<Target> colours, Target depth) const;
+  void bindFramebuffer(std::initializer_list<Target> colours) const { bindFramebuffer(colours, Target{}); }
   /// glDispatchCompute over ceil(size / group).
   void dispatch(int width, int height, int depth, int groupX, int groupY, int groupZ = 1) const;
 
