@@ -28,5 +28,18 @@ LIMN_FN float equirectangular_pixel_solid_angle(int row, int width, int height) 
   return 2.0f * pi / float(width) * (top - bottom);
 }
 
+// World direction to the direction in which an environment turned by `rotation` radians about +Y (counter-clockwise
+// seen from above) is looked up.
+LIMN_FN vec3 environment_lookup_direction(vec3 world, float rotation) {
+  float c = cos(rotation);
+  float s = sin(rotation);
+  return vec3(c * world.x - s * world.z, world.y, s * world.x + c * world.z);
+}
+
+// Its inverse.
+LIMN_FN vec3 environment_world_direction(vec3 lookup, float rotation) {
+  return environment_lookup_direction(lookup, -rotation);
+}
+
 LIMN_END
 #endif  // LIMN_EQUIRECTANGULAR_GLSL

@@ -34,5 +34,32 @@ LIMN_FN float spot_cone_factor(Light light, vec3 w) {
   return t * t;
 }
 
+// Range window at `distance` metres from the light's centre (KHR_lights_punctual; 1 without a range). The inverse
+// square is not part of it.
+LIMN_FN float range_factor(Light light, float distance) {
+  if (!(light.cone.z > 0.0f)) return 1.0f;
+  float q = distance / light.cone.z;
+  return clamp(1.0f - q * q * q * q, 0.0f, 1.0f);
+}
+
+// What a receiver's place relative to the light's centre does to all light it gets from it: cone and range. 1 for
+// directional lights. Multiplies the radiance of a rectangle, the intensity of a point or spot light.
+LIMN_FN float receiver_factor(Light light, vec3 receiver) {
+  if (light.info.x == light_directional) return 1.0f;
+  vec3 offset = receiver - vec3(light.position);
+  float distance = length(offset);
+  if (!(distance > 0.0f)) return 0.0f;
+  return spot_cone_factor(light, offset / distance) * range_factor(light, distance);
+}
+
+// Irradiance (W/m^2) on a surface that faces the centre of a point or spot light, or a directional light's direction
+// of incidence, unoccluded.
+LIMN_FN vec3 punctual_irradiance(Light light, vec3 receiver) {
+  if (light.info.x == light_directional) return vec3(light.emission);
+  vec3 offset = receiver - vec3(light.position);
+  float distance2 = dot(offset, offset);
+  return distance2 > 0.0f ? vec3(light.emission) * (receiver_factor(light, receiver) / distance2) : vec3(0.0f);
+}
+
 LIMN_END
 #endif
