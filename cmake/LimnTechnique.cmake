@@ -1,5 +1,5 @@
 # limn_embed(TARGET FUNCTION ROOT FILES...): compiles text files into TARGET behind `FUNCTION()`.
-# limn_add_technique(NAME): the plug-in in the current folder: its *.cpp and its *.glsl, nothing else to say.
+# limn_add_technique(NAME [FOLDER]): the plug-in in FOLDER (default: the current one): its *.cpp and *.glsl.
 # Both are installed, so that an out-of-tree technique is built by the same call.
 
 set(LIMN_EMBED_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/embed.py)
@@ -17,14 +17,18 @@ function(limn_embed target function root)
 endfunction()
 
 function(limn_add_technique name)
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
-  file(GLOB shaders CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.glsl)
+  set(folder ${CMAKE_CURRENT_SOURCE_DIR})
+  if(ARGC GREATER 1)
+    set(folder ${ARGV1})
+  endif()
+  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
+  file(GLOB shaders CONFIGURE_DEPENDS ${folder}/*.glsl)
   add_library(technique_${name} MODULE ${sources})
   target_link_libraries(technique_${name} PRIVATE limn::limn)
   target_compile_definitions(technique_${name} PRIVATE LIMN_TECHNIQUE_ID=${name})
   set_target_properties(technique_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name}
     CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/limn/techniques)
-  limn_embed(technique_${name} limn_technique_${name}::embeddedSources ${CMAKE_CURRENT_SOURCE_DIR} ${shaders})
+  limn_embed(technique_${name} limn_technique_${name}::embeddedSources ${folder} ${shaders})
   install(TARGETS technique_${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/limn/techniques)
 endfunction()
