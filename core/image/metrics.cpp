@@ -83,12 +83,16 @@ class SurfaceMask {
  public:
   SurfaceMask(const Image& image, const Image& reference, double depthTolerance)
       : coverage_{OptionalChannel{image, "coverage"}, OptionalChannel{reference, "coverage"}},
+        undefined_{OptionalChannel{image, "masked"}, OptionalChannel{reference, "masked"}},
         id_{OptionalChannel{image, "id"}, OptionalChannel{reference, "id"}},
         depth_{OptionalChannel{image, "Z"}, OptionalChannel{reference, "Z"}},
         depthTolerance_(depthTolerance) {}
 
   /// True where the pixel is to be compared; adds to `counts`.
   bool keeps(int x, int y, MaskCounts& counts) const {
+    for (const OptionalChannel& channel : undefined_) {
+      if (channel && channel.at(x, y) >= 0.5f) return false;
+    }
     const bool first = !coverage_[0] || coverage_[0].at(x, y) >= 0.5f;
     const bool second = !coverage_[1] || coverage_[1].at(x, y) >= 0.5f;
     if (!first && !second) return false;
@@ -112,7 +116,7 @@ class SurfaceMask {
     return z == r || std::abs(z - r) <= depthTolerance_ * std::abs(r);  // false for NaN
   }
 
-  std::array<OptionalChannel, 2> coverage_, id_, depth_;
+  std::array<OptionalChannel, 2> coverage_, undefined_, id_, depth_;
   double depthTolerance_;
 };
 

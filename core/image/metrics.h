@@ -32,7 +32,7 @@ struct CompareOptions {
   float exposureEv = 0;           ///< exposure of the tone mapping for FLIP
   double maxMaskedShare = 0.005;  ///< more is an Error (foliage: 0.02)
   double depthTolerance = 1e-3;   ///< relative difference in Z beyond which a pixel is dropped
-  bool useMask = true;            ///< drop pixels by coverage, id and Z, where the pictures have them
+  bool useMask = true;            ///< drop pixels by the channels coverage, masked, id and Z
   /// Only pixels whose reference, R, lies in the open interval (penumbra pixels of a visibility term).
   std::optional<std::pair<float, float>> maskTermRange;
 };
@@ -43,9 +43,11 @@ struct Comparison {
   std::vector<unsigned char> mask;  ///< 1 where compared
 };
 
-/// Where only one picture has a coverage channel, that one decides what is dropped. A ratio whose denominator
-/// is 0 (rel_mse, psnr of a black reference) is infinite. Throws Error if the sizes differ, a value of R, G,
-/// B is NaN or infinite (masked or not), no pixel is left, or the masked share exceeds its limit.
+/// Where only one picture has a coverage channel, that one decides what is dropped; pixels whose channel
+/// "masked" is 1 in either (where a term is undefined) are dropped without being counted. A ratio whose
+/// denominator is 0 (rel_mse, psnr of a black reference) is infinite. Throws Error if the sizes differ, a
+/// value of R, G, B is NaN or infinite (masked or not), no pixel is left, or the masked share exceeds its
+/// limit.
 LIMN_API Comparison compareImagesDetailed(const Image& image, const Image& reference,
                                           const CompareOptions& options = {});
 LIMN_API Metrics compareImages(const Image& image, const Image& reference,

@@ -159,6 +159,17 @@ TEST(Metrics, BackgroundIsDroppedButNotCounted) {
   EXPECT_EQ(compareImages(image.select({"R", "G", "B"}), reference).pixels, 90u);
 }
 
+TEST(Metrics, PixelsWithoutAnAnswerAreDropped) {
+  Image reference = filled(10, 10, 0.5f), image = reference;
+  reference.addChannel("masked");
+  reference.at(4, 4, reference.channel("masked")) = 1.0f;
+  image.at(4, 4, 0) = 1.0f;
+  const Metrics metrics = compareImages(image, reference);
+  EXPECT_EQ(metrics.pixels, 99u);
+  EXPECT_EQ(metrics.masked_share, 0.0);
+  EXPECT_EQ(metrics.rmse, 0.0);
+}
+
 TEST(Metrics, RefusesTooManyMaskedPixels) {
   Image reference = withSurface(filled(10, 10, 0.5f)), image = reference;
   image.at(0, 0, image.channel("id")) = 5.0f;

@@ -1,0 +1,42 @@
+// results.jsonl: rows are added one by one and survive an interruption at any moment.
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/export.h"
+#include "core/bench/row.h"
+
+namespace limn::bench {
+
+class LIMN_API ResultsFile {
+ public:
+  /// Opens or creates; reads the rows there are. A torn last line (the writer was interrupted) is cut off; a
+  /// broken line elsewhere is an Error naming file and line.
+  explicit ResultsFile(std::filesystem::path path);
+  ~ResultsFile();
+  ResultsFile(const ResultsFile&) = delete;
+  ResultsFile& operator=(const ResultsFile&) = delete;
+
+  /// Whether there is a successful row of that key; failed ones are to be tried again.
+  bool contains(const std::string& key) const { return finished_.contains(key); }
+  /// Writes one whole line and hands it to the disk. Throws Error if that fails; the file then still ends in
+  /// a whole line.
+  void append(const Row& row);
+  /// All rows, for each key the last one, in the order of their first appearance.
+  std::vector<Row> rows() const;
+
+ private:
+  void readExisting();
+  void remember(Row row);
+
+  std::filesystem::path path_;
+  int file_ = -1;
+  std::vector<Row> rows_;
+  std::set<std::string> finished_;
+};
+
+}  // namespace limn::bench

@@ -1,0 +1,45 @@
+// One line of results.jsonl: what was asked, how wrong the answer is, what it cost.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/base/export.h"
+#include "core/bench/suite.h"
+#include "core/image/metrics.h"
+
+namespace limn::bench {
+
+struct FrameTime {
+  double median = 0, q1 = 0, q3 = 0;  ///< milliseconds
+  int n = 0;                          ///< timed frames; 0: not timed
+};
+
+struct Cost {
+  std::string renderer, backend;
+  std::string timer;      ///< "query" or "finish"
+  bool software = false;  ///< rows of software and hardware renderers never share a table
+  FrameTime frameMs;
+  std::int64_t memoryBytes = 0;
+  /// Everything `limn render --stats` says, as JSON text; "" if there is nothing more.
+  std::string details;
+};
+
+struct Row {
+  std::string key;  ///< rowKey of the case and cost.renderer
+  Case what;
+  std::string referenceFile;
+  std::optional<double> referenceNoise;  ///< RMS relative to the mean
+  Metrics error;
+  std::optional<Metrics> penumbra;  ///< visibility: over pixels whose reference lies in (0.02, 0.98)
+  Cost cost;
+  std::string failure;  ///< not empty: why there is no picture; error and cost are then void
+};
+
+/// One line of JSON, without the line's end.
+LIMN_API std::string toJson(const Row& row);
+/// Throws Error saying what is wrong.
+LIMN_API Row rowFromJson(const std::string& line);
+
+}  // namespace limn::bench

@@ -1,0 +1,53 @@
+// Runs the cases of a suite that have no row yet. Rendering is handed in, so that the logic is tested without
+// it.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/base/export.h"
+#include "core/bench/results_file.h"
+#include "core/image/image.h"
+
+namespace limn::bench {
+
+struct Reference {
+  Image image;
+  std::string file;             ///< as recorded in the row
+  std::optional<double> noise;  ///< RMS relative to the mean
+};
+
+struct Measurement {
+  Image image;
+  Cost cost;
+};
+
+struct Progress {
+  int index = 0, count = 0;  ///< case number from 0
+  const Case& what;
+  enum class State { skipped, started, done, failed } state;
+  std::string failure;
+};
+
+struct Callbacks {
+  /// Called once per question (consecutive cases share it).
+  std::function<Reference(const Case&)> reference;
+  /// The technique's picture and what it cost. kSeparationFloor asks for unshadowed light times the
+  /// reference's visibility, untimed.
+  std::function<Measurement(const Case&)> measure;
+  std::function<void(const Progress&)> progress;  ///< may be empty
+};
+
+struct Summary {
+  int done = 0, skipped = 0, failed = 0;
+};
+
+/// `renderer` becomes part of the row keys: results of another renderer are measured anew. An Error in a case
+/// is recorded in its row and the next case is run; a UsageError ends the run, as does an Error of the
+/// results file.
+LIMN_API Summary runCases(std::span<const Case> cases, const std::string& renderer, ResultsFile& results,
+                          const Callbacks& callbacks);
+
+}  // namespace limn::bench

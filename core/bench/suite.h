@@ -1,0 +1,91 @@
+// A bench suite: which questions are asked of which techniques. Read from TOML:
+//
+//     name = "quick"
+//     sizes = ["256x256"]
+//     frames = 20                 # timed frames
+//     warmup = 3
+//     modes = ["dynamic"]         # and/or "static"
+//     term = "visibility"
+//     reference = {spp = 256}     # or {noise = 0.005}: RMS relative to the mean; also bounces
+//
+//     [[scenes]]
+//     scene = "cornell_box"       # asset name or file
+//     cameras = ["front"]         # default: the first one
+//     lights = ["ceiling"]        # default: all lights together ("")
+//
+//     [[techniques]]
+//     technique = "pcss"          # or a combination, "vssm,airlight"
+//     parameters = {samples = [16, 64]}   # lists are swept, all combinations
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/base/export.h"
+
+namespace limn::bench {
+
+/// How good the references have to be.
+struct ReferenceSettings {
+  int spp = 256;       ///< samples per pixel; the maximum if noise is given
+  double noise = 0.0;  ///< RMS relative to the mean; 0: take spp samples
+  int bounces = 1;     ///< for indirect light
+  bool operator==(const ReferenceSettings&) const = default;
+};
+
+/// One picture of one technique: a row of the results.
+struct Case {
+  std::string scene;
+  std::string camera;  ///< "": the scene's first
+  std::string light;   ///< "": all
+  double time = 0;     ///< seconds of the scene's animation
+  std::string term;    ///< as --output-term
+  int width = 0, height = 0;
+  std::string technique;                                        ///< one name, or several joined by ","
+  std::vector<std::pair<std::string, std::string>> parameters;  ///< "technique.parameter", value
+  bool dynamic = true;
+  int frames = 0, warmup = 0;
+  double maxMaskedShare = 0.005;  ///< see CompareOptions
+  ReferenceSettings reference;
+  bool operator==(const Case&) const = default;
+};
+
+/// The technique name of the rows that show the error of unshadowed light times the reference's visibility.
+inline constexpr const char* kSeparationFloor = "separation_floor";
+
+/// The question without who answers it: cases with equal text share a reference.
+LIMN_API std::string question(const Case& c);
+/// The whole case for people and filters: scene/camera/light/term/256x256/dynamic/pcss?pcss.samples=16
+LIMN_API std::string label(const Case& c);
+/// 16 hexadecimal digits: the same for the same case on the same renderer.
+LIMN_API std::string rowKey(const Case& c, std::string_view renderer);
+
+struct Suite {
+  std::string name;
+  std::vector<Case> cases;  ///< in the order of the file, cases of one question side by side
+};
+
+/// Throws UsageError "FILE:LINE:COLUMN: ..." for syntax, unknown keys, wrong types and values.
+LIMN_API Suite parseSuite(std::string_view toml, const std::string& fileName);
+/// Reads a file; Error if it cannot be read.
+LIMN_API Suite readSuite(const std::filesystem::path& path);
+
+/// Part `index` of `count`, from 1.
+struct Shard {
+  int index = 1, count = 1;
+};
+/// "2/4"; throws UsageError.
+LIMN_API Shard parseShard(std::string_view text);
+
+/// The cases whose label contains every filter, then the shard's part of them. Questions are dealt out
+/// round-robin, so that each reference is rendered once; with fewer questions than shards, cases are.
+LIMN_API std::vector<Case> selectCases(std::span<const Case> cases, std::span<const std::string> filters,
+                                       Shard shard = {});
+
+}  // namespace limn::bench

@@ -1,0 +1,34 @@
+// Tables of error and time: one per question, renderer and mode, never mixed.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/export.h"
+#include "core/bench/row.h"
+
+namespace limn::bench {
+
+/// Rows that may be compared: same scene, camera, light, term, time, size, mode (dynamic or static) and
+/// renderer.
+struct Table {
+  std::string title;     ///< for people
+  std::string fileName;  ///< of the CSV, unique among the tables of one makeTables
+  std::vector<Row> rows;
+};
+
+/// Grouped by scene first; failed rows are kept and shown as such.
+LIMN_API std::vector<Table> makeTables(std::span<const Row> rows);
+
+/// Errors, frame time (median, quartiles, number of frames) and memory. Rows on the Pareto front of RMSE and
+/// time carry a star; an RMSE below three times the reference's noise is shown as that bound ("<0.001").
+LIMN_API std::string toMarkdown(const Table& table);
+/// The same numbers in full precision, with a header line (RFC 4180).
+LIMN_API std::string toCsv(const Table& table);
+
+/// Writes tables.md and one CSV per table into `folder`.
+LIMN_API void writeTables(std::span<const Row> rows, const std::filesystem::path& folder);
+
+}  // namespace limn::bench
