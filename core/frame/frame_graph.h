@@ -1,16 +1,18 @@
 // A frame as a graph of passes over typed handles.
 //
-// A pass names what it reads and writes, how (Access) and why. From that the graph orders the passes, leaves out those
-// whose results nobody needs (and says why), derives the memory barriers, places transient resources in a pool where
-// disjoint lifetimes share memory, keeps the results of cacheable passes while their inputs did not change, times each
-// pass, and prints itself.
+// A pass names what it reads and writes, how (Access) and why. From that the graph orders the passes, leaves
+// out those whose results nobody needs (and says why), derives the memory barriers, places transient
+// resources in a pool where disjoint lifetimes share memory, keeps the results of cacheable passes while
+// their inputs did not change, times each pass, and prints itself.
 //
-// Handles are versions of a resource: write() returns the next version; a read names the version it wants. A pass that
-// reads version k runs after the pass that wrote k and before the one that overwrites it. Among independent passes the
-// order of declaration decides. Two passes that both write on top of the same version are an error naming both.
+// Handles are versions of a resource: write() returns the next version; a read names the version it wants. A
+// pass that reads version k runs after the pass that wrote k and before the one that overwrites it. Among
+// independent passes the order of declaration decides. Two passes that both write on top of the same version
+// are an error naming both.
 //
-// The graph is built once and executed every frame; rebuild it when the set of passes, a size or a parameter changes.
-// Executing allocates nothing. A pass that is left out compiles no program and allocates no resource.
+// The graph is built once and executed every frame; rebuild it when the set of passes, a size or a parameter
+// changes. Executing allocates nothing. A pass that is left out compiles no program and allocates no
+// resource.
 #pragma once
 
 #include <cstdint>
@@ -30,12 +32,14 @@ namespace limn::frame {
 struct TextureHandle {
   uint32_t resource = ~0u;
   uint32_t version = 0;
+  uint32_t graph = 0;  ///< the graph that made it; another graph refuses it
   explicit operator bool() const { return resource != ~0u; }
   bool operator==(const TextureHandle&) const = default;
 };
 struct BufferHandle {
   uint32_t resource = ~0u;
   uint32_t version = 0;
+  uint32_t graph = 0;
   explicit operator bool() const { return resource != ~0u; }
   bool operator==(const BufferHandle&) const = default;
 };
@@ -58,13 +62,15 @@ enum class Access : uint8_t {
   storageStore,
   colourAttachment,  ///< cleared or fully covered by the pass
   depthAttachment,
-  copyTarget,  ///< also glClear*, glBufferSubData, glGenerateTextureMipmap
+  copyTarget,  ///< also glClearTexImage, glBufferSubData; glGenerateTextureMipmap together with a `sampled`
+               ///< read
   // read, modify, write
   imageLoadStore,
   storageLoadStore,  ///< also atomics
   colourBlend,       ///< attachment that keeps what earlier passes put there
   depthTest,         ///< depth attachment tested and possibly written on top of earlier contents
 };
+LIMN_API std::string_view name(Access access);
 
 /// What a transient buffer is.
 struct BufferDesc {
@@ -74,8 +80,12 @@ struct BufferDesc {
 
 class FrameGraph;
 
-/// What a pass sees while it executes. GL state on entry: no program, no framebuffer; depth test, blending, culling and
-/// scissor off; colour and depth writes on; viewport undefined. A pass sets what it needs and need not restore it.
+/// What a pass sees while it executes. GL state on entry: no program, no framebuffer, no vertex array; depth
+/// test (less), blending (one, zero, add), culling (back faces), scissor, stencil test and polygon offset
+/// off; colour and depth writes on; viewport undefined. A pass sets what it needs of these and need not
+/// restore it; other state it puts back itself. Barriers inside a pass are not derived: what depends on a
+/// shader's writes is another pass. In a debug context, using a handle in a way the pass did not declare
+/// throws Error naming pass, resource and access.
 class LIMN_API PassContext {
  public:
   const gpu::Device& device() const;
@@ -111,16 +121,17 @@ class LIMN_API PassBuilder {
  public:
   PassBuilder& read(TextureHandle handle, Access access, std::string_view why);
   PassBuilder& read(BufferHandle handle, Access access, std::string_view why);
-  /// The returned handle names the contents after this pass. With a read-modify-write access the pass also depends on
-  /// the contents before it.
+  /// The returned handle names the contents after this pass. With a read-modify-write access the pass also
+  /// depends on the contents before it.
   [[nodiscard]] TextureHandle write(TextureHandle handle, Access access, std::string_view why);
   [[nodiscard]] BufferHandle write(BufferHandle handle, Access access, std::string_view why);
   /// A program the pass uses; compiled when the graph is prepared, and only if the pass is kept.
   ProgramHandle program(gpu::ProgramDesc desc);
-  /// The outputs depend on nothing but the declared inputs: while none of those changed, the pass is skipped and its
-  /// outputs are kept (in memory of their own, never aliased).
+  /// The outputs depend on nothing but the declared inputs: while none of those changed, the pass is skipped
+  /// and its outputs are kept (in memory of their own, never aliased).
   PassBuilder& cacheable();
-  /// The pass is wanted for what it does outside the graph; it is never left out.
+  /// The pass is wanted for what it does outside the graph; it is never left out and never served from the
+  /// cache.
   PassBuilder& sideEffect();
   PassBuilder& execute(std::function<void(PassContext&)> function);
 
@@ -148,7 +159,8 @@ struct PassReport {
 enum class Timing {
   off,
   query,   ///< GL_TIME_ELAPSED; hardware
-  finish,  ///< glFinish and a steady clock around each pass; software renderers, whose queries are false for raster
+  finish,  ///< glFinish and a steady clock around each pass; software renderers, whose queries are false for
+           ///< raster
 };
 LIMN_API std::string_view name(Timing timing);
 /// finish on software renderers, query elsewhere.
@@ -183,16 +195,19 @@ class LIMN_API FrameGraph {
   FrameGraph(const FrameGraph&) = delete;
   FrameGraph& operator=(const FrameGraph&) = delete;
 
-  // --- declaring -------------------------------------------------------------------------------------------------
+  // --- declaring
+  // -------------------------------------------------------------------------------------------------
   TextureHandle createTexture(std::string_view name, const gpu::TextureDesc& desc);
   BufferHandle createBuffer(std::string_view name, const BufferDesc& desc);
   /// Resources owned elsewhere. The object must outlive the graph; its id may change between frames.
-  /// Contents count as changed when touch() is called, which invalidates the cacheable passes that depend on it.
+  /// Contents count as changed when touch() is called, which invalidates the cacheable passes that depend on
+  /// it. One object is imported once. What shaders outside the graph wrote to it must be visible
+  /// (glMemoryBarrier) already.
   TextureHandle importTexture(std::string_view name, const gpu::Texture& texture);
   BufferHandle importBuffer(std::string_view name, const gpu::Buffer& buffer);
 
-  /// `technique`: whose pass it is, "core" for the core's own. Names are unique per technique; a repeated one gets a
-  /// number appended.
+  /// `technique`: whose pass it is, "core" for the core's own. Names are unique per technique; a repeated one
+  /// gets a number appended.
   PassBuilder addPass(std::string_view name, std::string_view technique = "core");
   /// Records a pass that was not even declared because the scene does not need it (for --explain).
   void leaveOut(std::string_view name, std::string_view technique, std::string_view reason);
@@ -202,24 +217,34 @@ class LIMN_API FrameGraph {
 
   const gpu::TextureDesc& desc(TextureHandle handle) const;
 
-  // --- planning (no OpenGL) --------------------------------------------------------------------------------------
-  /// Orders, culls, derives barriers, assigns memory. Throws Error listing every problem at once (reads of contents
-  /// nobody writes, double writes, foreign handles). Called by prepare(); public for tests and `--explain`.
+  // --- planning (no OpenGL)
+  // --------------------------------------------------------------------------------------
+  /// Orders, culls, derives barriers, assigns memory. Throws Error listing every problem at once (reads of
+  /// contents nobody writes, double writes, foreign handles). Called by prepare(); public for tests and
+  /// `--explain`.
   void plan();
   std::vector<PassReport> explain() const;  ///< in execution order, left-out passes last
   std::string graphviz() const;
-  int64_t transientBytes() const;  ///< with aliasing
+  /// glMemoryBarrier bits issued after the last pass, so that outputs and imported resources that shaders
+  /// wrote can be used outside by any means.
+  GLbitfield finalBarriers() const;
+  int64_t transientBytes() const;  ///< with aliasing; buffers count with their size class
   int64_t transientBytesUnaliased() const;
 
-  // --- running ---------------------------------------------------------------------------------------------------
+  // --- running
+  // ---------------------------------------------------------------------------------------------------
   /// plan(), then compiles the programs and allocates the resources of the passes that are kept.
   void prepare(gpu::Device& device, gpu::ShaderLibrary& shaders, ResourcePool& pool);
+  /// The contents of an imported resource, or the object behind it, changed.
   void touch(TextureHandle imported);
   void touch(BufferHandle imported);
-  /// Forgets every cached result.
+  /// Forgets every cached result (after a shader was reloaded, for example).
   void invalidate();
+  /// Runs one frame. Needs prepare() and its context current. When a pass throws, cached results are
+  /// forgotten.
   void execute(Timing timing = Timing::off);
-  /// Of the last frame executed with timing. Timing::query blocks here until the results are there.
+  /// The passes that ran in the last frame executed with timing, in order. Timing::query blocks here until
+  /// the results are there, never in execute().
   std::vector<PassTime> passTimes();
   /// After prepare(): the object behind a handle, for readback.
   const gpu::Texture& texture(TextureHandle handle) const;

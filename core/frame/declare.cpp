@@ -1,0 +1,257 @@
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "core/frame/access.h"
+#include "core/frame/graph_data.h"
+
+namespace limn::frame {
+namespace {
+
+/// Tells handles of graphs that live at the same time apart.
+uint32_t tagOf(const Graph* graph) {
+  const uint64_t address = reinterpret_cast<uintptr_t>(graph);
+  return static_cast<uint32_t>((address * 0x9e3779b97f4a7c15u) >> 32) | 1u;
+}
+
+template <class Handle>
+constexpr bool is_texture = std::is_same_v<Handle, TextureHandle>;
+template <class Handle>
+constexpr const char* kind_name = is_texture<Handle> ? "texture" : "buffer";
+
+/// Empty when the handle names a resource of this graph, otherwise what is wrong with it.
+template <class Handle>
+std::string handleProblem(const Graph& graph, Handle handle) {
+  if (!handle) return fmt::format("a null {} handle", kind_name<Handle>);
+  if (handle.graph != graph.tag || handle.resource >= graph.resources.size() ||
+      graph.resources[handle.resource].texture != is_texture<Handle> ||
+      handle.version >= graph.resources[handle.resource].versions.size()) {
+    return fmt::format("a {} handle of another graph", kind_name<Handle>);
+  }
+  return {};
+}
+
+template <class Handle>
+bool accepts(Graph& graph, uint32_t pass, Handle handle, Access access, bool write, std::string_view why) {
+  const char* verb = write ? "writes" : "reads";
+  const std::string wrong = handleProblem(graph, handle);
+  if (!wrong.empty()) {
+    graph.problems.push_back(fmt::format("pass '{}' {} {} ({})", graph.title(pass), verb, wrong, why));
+    return false;
+  }
+  const bool fits = is_texture<Handle> ? fitsTexture(access) : fitsBuffer(access);
+  if (!fits || isWrite(access) != write) {
+    graph.problems.push_back(fmt::format(
+        "pass '{}' {} {} '{}' as {}, which is no {} of a {}", graph.title(pass), verb, kind_name<Handle>,
+        graph.resources[handle.resource].name, name(access), write ? "write" : "read", kind_name<Handle>));
+    return false;
+  }
+  return true;
+}
+
+template <class Handle>
+void declareRead(Graph& graph, uint32_t pass, Handle handle, Access access, std::string_view why) {
+  graph.planned = false;
+  if (!accepts(graph, pass, handle, access, false, why)) return;
+  graph.passes[pass].accesses.push_back(
+      {handle.resource, handle.version, no_index, access, std::string(why)});
+  graph.resources[handle.resource].versions[handle.version].readers.push_back(pass);
+}
+
+template <class Handle>
+Handle declareWrite(Graph& graph, uint32_t pass, Handle handle, Access access, std::string_view why) {
+  graph.planned = false;
+  if (!accepts(graph, pass, handle, access, true, why)) return handle;
+  Resource& resource = graph.resources[handle.resource];
+  const auto next = static_cast<uint32_t>(resource.versions.size());
+  Version& parent = resource.versions[handle.version];
+  if (parent.overwriter == no_index) {
+    parent.overwriter = next;
+  } else {
+    const uint32_t other = resource.versions[parent.overwriter].producer;
+    graph.problems.push_back(fmt::format("passes '{}' and '{}' both write on top of version {} of '{}'",
+                                         graph.title(other), graph.title(pass), handle.version,
+                                         resource.name));
+  }
+  resource.versions.push_back({pass, handle.version, no_index, {}});
+  graph.passes[pass].accesses.push_back({handle.resource, next, handle.version, access, std::string(why)});
+  return {handle.resource, next, handle.graph};
+}
+
+template <class Handle>
+void declareOutput(Graph& graph, Handle handle) {
+  graph.planned = false;
+  const std::string wrong = handleProblem(graph, handle);
+  if (!wrong.empty()) {
+    graph.problems.push_back("output of " + wrong);
+    return;
+  }
+  graph.resources[handle.resource].outputs.push_back(handle.version);
+}
+
+template <class Handle>
+Handle add(Graph& graph, Resource resource) {
+  graph.planned = false;
+  resource.texture = is_texture<Handle>;
+  resource.versions.resize(1);
+  graph.resources.push_back(std::move(resource));
+  return {static_cast<uint32_t>(graph.resources.size() - 1), 0, graph.tag};
+}
+
+/// Two names for one object would hide the hazards between them.
+void checkImportedOnce(Graph& graph, const void* object, std::string_view name) {
+  for (const Resource& other : graph.resources) {
+    if (other.importedTexture == object || other.importedBuffer == object) {
+      graph.problems.push_back(
+          fmt::format("'{}' and '{}' import the same object: import it once", other.name, name));
+    }
+  }
+}
+
+template <class Handle>
+Resource& importedResource(Graph& graph, Handle handle) {
+  const std::string wrong = handleProblem(graph, handle);
+  if (!wrong.empty()) throw Error("frame graph: touch of " + wrong);
+  Resource& resource = graph.resources[handle.resource];
+  if (!resource.imported()) {
+    throw Error(fmt::format("frame graph: touch of '{}', which is not imported", resource.name));
+  }
+  return resource;
+}
+
+}  // namespace
+
+std::string Graph::title(uint32_t pass) const {
+  const Pass& p = passes[pass];
+  return p.technique == "core" ? p.name : p.technique + "/" + p.name;
+}
+
+FrameGraph::FrameGraph() : implementation_(std::make_unique<Implementation>()) {
+  implementation_->tag = tagOf(implementation_.get());
+}
+
+FrameGraph::~FrameGraph() = default;
+
+TextureHandle FrameGraph::createTexture(std::string_view name, const gpu::TextureDesc& desc) {
+  Resource resource;
+  resource.name = name;
+  resource.textureDesc = desc;
+  if (desc.levels == 0) resource.textureDesc.levels = gpu::fullMipLevels(desc.width, desc.height);
+  return add<TextureHandle>(*implementation_, std::move(resource));
+}
+
+BufferHandle FrameGraph::createBuffer(std::string_view name, const BufferDesc& desc) {
+  Resource resource;
+  resource.name = name;
+  resource.bufferDesc = desc;
+  return add<BufferHandle>(*implementation_, std::move(resource));
+}
+
+TextureHandle FrameGraph::importTexture(std::string_view name, const gpu::Texture& texture) {
+  checkImportedOnce(*implementation_, &texture, name);
+  Resource resource;
+  resource.name = name;
+  resource.importedTexture = &texture;
+  return add<TextureHandle>(*implementation_, std::move(resource));
+}
+
+BufferHandle FrameGraph::importBuffer(std::string_view name, const gpu::Buffer& buffer) {
+  checkImportedOnce(*implementation_, &buffer, name);
+  Resource resource;
+  resource.name = name;
+  resource.importedBuffer = &buffer;
+  return add<BufferHandle>(*implementation_, std::move(resource));
+}
+
+PassBuilder FrameGraph::addPass(std::string_view name, std::string_view technique) {
+  Graph& graph = *implementation_;
+  graph.planned = false;
+  const auto taken = [&](const std::string& candidate) {
+    for (const Pass& pass : graph.passes) {
+      if (pass.technique == technique && pass.name == candidate) return true;
+    }
+    return false;
+  };
+  std::string unique(name);
+  for (int number = 2; taken(unique); ++number) unique = fmt::format("{} {}", name, number);
+  Pass& pass = graph.passes.emplace_back();
+  pass.name = std::move(unique);
+  pass.technique = technique;
+  return {*this, static_cast<uint32_t>(graph.passes.size() - 1)};
+}
+
+void FrameGraph::leaveOut(std::string_view name, std::string_view technique, std::string_view reason) {
+  implementation_->leftOut.push_back({std::string(name), std::string(technique), std::string(reason)});
+}
+
+void FrameGraph::output(TextureHandle handle) {
+  declareOutput(*implementation_, handle);
+}
+
+void FrameGraph::output(BufferHandle handle) {
+  declareOutput(*implementation_, handle);
+}
+
+const gpu::TextureDesc& FrameGraph::desc(TextureHandle handle) const {
+  const std::string wrong = handleProblem(*implementation_, handle);
+  if (!wrong.empty()) throw Error("frame graph: description of " + wrong);
+  const Resource& resource = implementation_->resources[handle.resource];
+  return resource.importedTexture ? resource.importedTexture->desc() : resource.textureDesc;
+}
+
+void FrameGraph::touch(TextureHandle imported) {
+  ++importedResource(*implementation_, imported).revision;
+  // The object may have been made anew, even under the same name.
+  std::erase_if(implementation_->framebuffers, [&](const auto& entry) {
+    for (const AttachmentKey& key : entry.first) {
+      if (key.resource == imported.resource) return true;
+    }
+    return false;
+  });
+}
+
+void FrameGraph::touch(BufferHandle imported) {
+  ++importedResource(*implementation_, imported).revision;
+}
+
+PassBuilder& PassBuilder::read(TextureHandle handle, Access access, std::string_view why) {
+  declareRead(*graph_.implementation_, pass_, handle, access, why);
+  return *this;
+}
+
+PassBuilder& PassBuilder::read(BufferHandle handle, Access access, std::string_view why) {
+  declareRead(*graph_.implementation_, pass_, handle, access, why);
+  return *this;
+}
+
+TextureHandle PassBuilder::write(TextureHandle handle, Access access, std::string_view why) {
+  return declareWrite(*graph_.implementation_, pass_, handle, access, why);
+}
+
+BufferHandle PassBuilder::write(BufferHandle handle, Access access, std::string_view why) {
+  return declareWrite(*graph_.implementation_, pass_, handle, access, why);
+}
+
+ProgramHandle PassBuilder::program(gpu::ProgramDesc desc) {
+  Graph& graph = *graph_.implementation_;
+  graph.programs.push_back({std::move(desc), pass_, nullptr});
+  const auto index = static_cast<uint32_t>(graph.programs.size() - 1);
+  graph.passes[pass_].programs.push_back(index);
+  return {index};
+}
+
+PassBuilder& PassBuilder::cacheable() {
+  graph_.implementation_->passes[pass_].cacheable = true;
+  return *this;
+}
+
+PassBuilder& PassBuilder::sideEffect() {
+  graph_.implementation_->passes[pass_].sideEffect = true;
+  return *this;
+}
+
+PassBuilder& PassBuilder::execute(std::function<void(PassContext&)> function) {
+  graph_.implementation_->passes[pass_].function = std::move(function);
+  return *this;
+}
+
+}  // namespace limn::frame

@@ -1,0 +1,105 @@
+// Programs and memory for the passes that are kept.
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "core/frame/graph_data.h"
+#include "core/frame/resource_pool.h"
+
+namespace limn::frame {
+namespace {
+
+bool isDebugContext(const gl::Functions& gl) {
+  GLint flags = 0;
+  gl.GetIntegerv(GL_CONTEXT_FLAGS, &flags);
+  return (flags & GL_CONTEXT_FLAG_DEBUG_BIT) != 0;
+}
+
+void compilePrograms(Graph& graph, gpu::ShaderLibrary& shaders) {
+  for (uint32_t p : graph.order) {
+    if (!graph.passes[p].function) {
+      throw Error(fmt::format("frame graph: pass '{}' has no function to execute", graph.title(p)));
+    }
+    for (uint32_t index : graph.passes[p].programs) {
+      graph.programs[index].program = &shaders.program(graph.programs[index].desc);
+    }
+  }
+}
+
+std::string labelOf(const Graph& graph, const Physical& physical) {
+  std::string label;
+  for (uint32_t r : physical.resources) {
+    if (!label.empty()) label += " | ";
+    label += graph.resources[r].name;
+  }
+  return label;
+}
+
+}  // namespace
+
+void Graph::release() {
+  framebuffers.clear();
+  textures.clear();
+  buffers.clear();
+  for (Resource& r : resources) {
+    r.textureObject = r.importedTexture;
+    r.bufferObject = r.importedBuffer;
+  }
+  for (ProgramUse& use : programs) use.program = nullptr;
+  for (Pass& pass : passes) {
+    pass.valid = false;
+    pass.run = true;
+    pass.queries = {};
+  }
+  device = nullptr;
+  firstFrame = true;
+  lastTiming = Timing::off;
+}
+
+void FrameGraph::prepare(gpu::Device& device, gpu::ShaderLibrary& shaders, ResourcePool& pool) {
+  plan();
+  Graph& graph = *implementation_;
+  compilePrograms(graph, shaders);
+  for (const Physical& physical : graph.physicals) {
+    const std::string label = labelOf(graph, physical);
+    if (physical.texture) {
+      graph.textures.push_back(pool.implementation_->texture(label, physical.textureDesc));
+    } else {
+      graph.buffers.push_back(pool.implementation_->buffer(label, physical.bufferBytes));
+    }
+    for (uint32_t r : physical.resources) {
+      if (physical.texture) graph.resources[r].textureObject = graph.textures.back().get();
+      if (!physical.texture) graph.resources[r].bufferObject = graph.buffers.back().get();
+    }
+  }
+  graph.checked = isDebugContext(device.gl());
+  graph.device = &device;
+}
+
+const gpu::Texture& FrameGraph::texture(TextureHandle handle) const {
+  const Graph& graph = *implementation_;
+  desc(handle);  // refuses a foreign handle
+  const gpu::Texture* texture = graph.resources[handle.resource].textureObject;
+  if (texture == nullptr) {
+    throw Error(
+        fmt::format("frame graph: texture '{}' has no memory: the graph is not prepared or nothing uses it",
+                    graph.resources[handle.resource].name));
+  }
+  return *texture;
+}
+
+const gpu::Buffer& FrameGraph::buffer(BufferHandle handle) const {
+  const Graph& graph = *implementation_;
+  if (handle.graph != graph.tag || handle.resource >= graph.resources.size() ||
+      graph.resources[handle.resource].texture) {
+    throw Error("frame graph: contents of a buffer handle of another graph");
+  }
+  const gpu::Buffer* buffer = graph.resources[handle.resource].bufferObject;
+  if (buffer == nullptr) {
+    throw Error(
+        fmt::format("frame graph: buffer '{}' has no memory: the graph is not prepared or nothing uses it",
+                    graph.resources[handle.resource].name));
+  }
+  return *buffer;
+}
+
+}  // namespace limn::frame

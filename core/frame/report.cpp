@@ -1,0 +1,156 @@
+// What the graph says about itself: --explain and Graphviz.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/frame/graph_data.h"
+
+namespace limn::frame {
+namespace {
+
+std::string described(const Graph& graph, const ResourceAccess& a) {
+  const std::string& resource = graph.resources[a.resource].name;
+  return a.why.empty() ? fmt::format("{} ({})", resource, name(a.access))
+                       : fmt::format("{} ({}): {}", resource, name(a.access), a.why);
+}
+
+PassReport report(const Graph& graph, uint32_t index) {
+  const Pass& pass = graph.passes[index];
+  PassReport row;
+  row.name = pass.name;
+  row.technique = pass.technique;
+  row.state = !pass.kept ? PassState::leftOut : pass.run ? PassState::run : PassState::cached;
+  row.reason = !pass.kept ? pass.reason : pass.run ? "" : "inputs unchanged";
+  row.barriers = pass.barriers;
+  std::vector<uint32_t> counted;
+  for (const ResourceAccess& a : pass.accesses) {
+    (a.write() ? row.writes : row.reads).push_back(described(graph, a));
+    const Resource& r = graph.resources[a.resource];
+    const bool firstWriter = a.write() && r.first != no_index && graph.order[r.first] == index;
+    if (firstWriter && std::find(counted.begin(), counted.end(), a.resource) == counted.end()) {
+      counted.push_back(a.resource);
+      row.bytes += resourceBytes(r);
+    }
+  }
+  return row;
+}
+
+/// Text within double quotes of a DOT file.
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    if (c == '\n') {
+      result += "\\n";
+    } else if (static_cast<unsigned char>(c) >= 0x20) {
+      result += c;
+    }
+  }
+  return result;
+}
+
+std::string passNode(const std::string& id, const std::string& title, PassState state,
+                     const std::string& reason) {
+  const std::string label = reason.empty() ? escaped(title) : escaped(title) + "\\n" + escaped(reason);
+  const char* style = state == PassState::leftOut  ? "dashed"
+                      : state == PassState::cached ? "filled"
+                                                   : "solid";
+  return fmt::format("  {} [shape=box, style={}, label=\"{}\"];\n", id, style, label);
+}
+
+std::string resourceNodes(const Graph& graph) {
+  std::string text;
+  for (size_t i = 0; i < graph.resources.size(); ++i) {
+    const Resource& r = graph.resources[i];
+    for (size_t v = 0; v < r.versions.size(); ++v) {
+      const Version& version = r.versions[v];
+      if (v == 0 && version.readers.empty() && !r.imported()) continue;
+      const bool dashed = version.producer != no_index && !graph.passes[version.producer].kept;
+      const bool output =
+          std::find(r.outputs.begin(), r.outputs.end(), static_cast<uint32_t>(v)) != r.outputs.end();
+      text += fmt::format("  r{}_{} [shape=ellipse, style={}, peripheries={}, label=\"{}{}\"];\n", i, v,
+                          dashed ? "dashed" : "solid", output ? 2 : 1, escaped(r.name),
+                          v > 1 || (r.imported() && v > 0) ? fmt::format(" v{}", v) : "");
+    }
+  }
+  return text;
+}
+
+std::string edges(const Graph& graph, size_t index) {
+  std::string text;
+  const Pass& pass = graph.passes[index];
+  const char* style = pass.kept ? "solid" : "dashed";
+  const auto arrow = [&](const std::string& from, const std::string& to, const ResourceAccess& a) {
+    text += fmt::format("  {} -> {} [style={}, label=\"{}\", tooltip=\"{}\"];\n", from, to, style,
+                        name(a.access), escaped(a.why));
+  };
+  for (const ResourceAccess& a : pass.accesses) {
+    const Resource& r = graph.resources[a.resource];
+    const std::string passId = fmt::format("p{}", index);
+    const auto node = [&](uint32_t version) { return fmt::format("r{}_{}", a.resource, version); };
+    if (!a.write()) {
+      arrow(node(a.version), passId, a);
+      continue;
+    }
+    if (a.parent > 0 || r.imported()) arrow(node(a.parent), passId, a);
+    arrow(passId, node(a.version), a);
+  }
+  return text;
+}
+
+void requirePlan(const Graph& graph) {
+  if (!graph.planned) throw Error("frame graph: not planned; call plan() or prepare() first");
+}
+
+}  // namespace
+
+std::string_view name(PassState state) {
+  switch (state) {
+    case PassState::run:
+      return "run";
+    case PassState::cached:
+      return "cached";
+    case PassState::leftOut:
+      return "left_out";
+  }
+  return "unknown";
+}
+
+std::vector<PassReport> FrameGraph::explain() const {
+  const Graph& graph = *implementation_;
+  requirePlan(graph);
+  std::vector<PassReport> rows;
+  for (uint32_t p : graph.order) rows.push_back(report(graph, p));
+  for (uint32_t p = 0; p < graph.passes.size(); ++p) {
+    if (!graph.passes[p].kept) rows.push_back(report(graph, p));
+  }
+  for (const LeftOut& entry : graph.leftOut) {
+    PassReport& row = rows.emplace_back();
+    row.name = entry.name;
+    row.technique = entry.technique;
+    row.state = PassState::leftOut;
+    row.reason = entry.reason;
+  }
+  return rows;
+}
+
+std::string FrameGraph::graphviz() const {
+  const Graph& graph = *implementation_;
+  requirePlan(graph);
+  std::string text = "digraph frame {\n  rankdir=LR;\n  node [fontname=\"sans-serif\"];\n";
+  for (uint32_t p = 0; p < graph.passes.size(); ++p) {
+    const PassReport row = report(graph, p);
+    text += passNode(fmt::format("p{}", p), graph.title(p), row.state, row.reason);
+  }
+  for (size_t i = 0; i < graph.leftOut.size(); ++i) {
+    const LeftOut& entry = graph.leftOut[i];
+    const std::string title = entry.technique == "core" ? entry.name : entry.technique + "/" + entry.name;
+    text += passNode(fmt::format("l{}", i), title, PassState::leftOut, entry.reason);
+  }
+  text += resourceNodes(graph);
+  for (size_t p = 0; p < graph.passes.size(); ++p) text += edges(graph, p);
+  return text + "}\n";
+}
+
+}  // namespace limn::frame
