@@ -31,8 +31,9 @@ class Hazards {
   void issue(GLbitfield bits) {
     for (; bits != 0; bits &= bits - 1) issued_[std::countr_zero(bits)] = now_;
   }
-  /// Whole contents replaced by a write in command order.
-  void replace(size_t object) { written_[object] = never; }
+  /// Whole contents replaced by a write in command order: it comes after all earlier accesses, and later ones
+  /// after it.
+  void replace(size_t object) { written_[object] = read_[object] = never; }
   void write(size_t object) { written_[object] = now_; }
   void read(size_t object) { read_[object] = now_; }
   void advance() { ++now_; }
@@ -80,10 +81,10 @@ GLbitfield stepPass(const Graph& graph, const Pass& pass, Hazards& hazards) {
   hazards.issue(bits);
   for (const ResourceAccess& a : pass.accesses) {
     const size_t object = objectOf(graph, a.resource);
-    if (!a.write()) hazards.read(object);
     if (a.write() && !isShaderWrite(a.access) && !isReadModifyWrite(a.access)) hazards.replace(object);
   }
   for (const ResourceAccess& a : pass.accesses) {
+    if (!a.write()) hazards.read(objectOf(graph, a.resource));
     if (isShaderWrite(a.access)) hazards.write(objectOf(graph, a.resource));
   }
   hazards.advance();

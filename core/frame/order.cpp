@@ -153,7 +153,7 @@ void sortTopologically(Graph& graph, std::vector<std::string>& problems) {
   if (graph.order.size() == kept) return;
   std::vector<std::string> stuck;
   for (uint32_t p = 0; p < graph.passes.size(); ++p) {
-    if (graph.passes[p].kept && waitsFor[p] > 0) stuck.push_back("'" + graph.title(p) + "'");
+    if (graph.passes[p].kept && waitsFor[p] > 0) stuck.push_back(fmt::format("'{}'", graph.title(p)));
   }
   problems.push_back(fmt::format(
       "no order satisfies passes {}: one reads contents that another overwrites earlier", joined(stuck)));
