@@ -3,11 +3,15 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/error.h"
 #include "core/context/backends.h"
 
 namespace limn {
 namespace {
+
+constexpr int largestWindow = 16384;  // pixels; GLFW and X do not survive every number
 
 std::string lastProblem() {
   const char* description = nullptr;
@@ -72,6 +76,11 @@ std::unique_ptr<Context> createGlfwContext(const ContextOptions& options) {
   if (options.device >= 0) {
     throw UsageError(
         fmt::format("device {} cannot be chosen with --backend glfw: only egl has devices", options.device));
+  }
+  if (std::min(options.width, options.height) < 1 ||
+      std::max(options.width, options.height) > largestWindow) {
+    throw UsageError(fmt::format("window of {} x {} pixels: accepted are 1 to {} each way", options.width,
+                                 options.height, largestWindow));
   }
   auto context = std::make_unique<GlfwContext>(options);
   context->initialise(options);

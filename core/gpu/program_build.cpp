@@ -74,8 +74,9 @@ std::string summary(std::span<const ShaderDiagnostic> diagnostics, const std::st
   return text;
 }
 
-/// Mesa's shader cache skips the compilation, and with it the warnings, of a text that it has compiled before, be it in
-/// another process. A comment that never comes twice makes warnings reproducible; machine code is cached all the same.
+/// Mesa's shader cache skips the compilation, and with it the warnings, of a text that it has compiled
+/// before, be it in another process. A comment that never comes twice makes warnings reproducible; machine
+/// code is cached all the same.
 std::string uniqueComment() {
   return fmt::format("// {}\n", std::chrono::system_clock::now().time_since_epoch().count());
 }

@@ -55,7 +55,8 @@ TEST_F(WindowTest, takesTurnsWithTheOtherBackEnds) {
 }
 
 TEST_F(WindowTest, impossibleSizesAreRefused) {
-  EXPECT_THROW(Context::create({.backend = Backend::glfw, .width = -1}), Error);
+  EXPECT_THROW(Context::create({.backend = Backend::glfw, .width = -1}), UsageError);
+  EXPECT_THROW(Context::create({.backend = Backend::glfw, .height = 1 << 30}), UsageError);
   EXPECT_THROW(Context::create({.backend = Backend::glfw, .device = 0}), UsageError);
 }
 
