@@ -6,6 +6,11 @@ const std::vector<SceneEntry>& allScenes() {
   static const std::vector<SceneEntry> scenes = {
       {"balls", makeBalls},
       {"cornell_box", makeCornellBox},
+      {"foliage_card", makeFoliageCard},
+      {"lights", makeLights},
+      {"statue", makeStatue},
+      {"teapot", makeTeapot},
+      {"white_furnace", makeWhiteFurnace},
   };
   return scenes;
 }

@@ -10,6 +10,11 @@ namespace limn::assets {
 
 Scene makeBalls();
 Scene makeCornellBox();
+Scene makeFoliageCard();
+Scene makeLights();
+Scene makeStatue();
+Scene makeTeapot();
+Scene makeWhiteFurnace();
 
 struct SceneEntry {
   std::string_view name;
