@@ -8,6 +8,8 @@ const std::vector<SceneEntry>& allScenes() {
       {"cornell_box", makeCornellBox},
       {"foliage_card", makeFoliageCard},
       {"lights", makeLights},
+      {"plant", makePlant},
+      {"robot", makeRobot},
       {"statue", makeStatue},
       {"teapot", makeTeapot},
       {"white_furnace", makeWhiteFurnace},

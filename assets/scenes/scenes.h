@@ -12,6 +12,8 @@ Scene makeBalls();
 Scene makeCornellBox();
 Scene makeFoliageCard();
 Scene makeLights();
+Scene makePlant();
+Scene makeRobot();
 Scene makeStatue();
 Scene makeTeapot();
 Scene makeWhiteFurnace();

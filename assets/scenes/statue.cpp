@@ -24,7 +24,8 @@ float skirt(glm::vec3 p) {
   const float side = (glm::length(q) - radius) * 0.62f;
   const float bell = smoothCut(std::max(side, p.y - 1.14f), -hem, 0.03f);
   // Hollow from below, so that the hem is a sheet with the legs inside it.
-  const float hollow = std::max((glm::length(q) - (radius - 0.05f)) * 0.62f, p.y - 0.62f);
+  const float inner = radius - depth * (fold + 1.25f) - 0.035f;
+  const float hollow = std::max((glm::length(q) - inner) * 0.62f, p.y - 0.62f);
   return smoothCut(bell, hollow, 0.03f);
 }
 
@@ -92,7 +93,8 @@ float arms(glm::vec3 p) {
   return std::min(left, right);
 }
 
-/// A veil from the raised hand around the back to the outstretched one and down to the hem.
+/// A veil from the raised hand around the back to the outstretched one and down to the hem: a band along a
+/// curve, its frame carried without twist, its edges rippled.
 class Veil {
  public:
   Veil() {
@@ -101,31 +103,39 @@ class Veil {
                                {-0.62f, 1.5f, -0.02f}, {-0.68f, 1.55f, 0.17f}, {-0.66f, 1.36f, 0.3f},
                                {-0.56f, 1.02f, 0.34f}, {-0.5f, 0.66f, 0.36f},  {-0.44f, 0.42f, 0.3f}};
     path_ = spline(std::span<const glm::vec3>(knots), 5);
+    glm::vec3 tall(0.6f, 0.3f, 0.6f);
+    for (std::size_t i = 0; i < path_.size(); ++i) {
+      const glm::vec3 along =
+          glm::normalize(path_[std::min(i + 1, path_.size() - 1)] - path_[i > 0 ? i - 1 : 0]);
+      tall = glm::normalize(tall - along * glm::dot(along, tall));
+      tall_.push_back(tall);
+    }
   }
 
-  /// A flattened tube: thin across the horizontal, tall along the vertical, its edge rippled.
   float operator()(glm::vec3 p) const {
     float best = 1e9f;
     for (std::size_t i = 0; i + 1 < path_.size(); ++i) {
-      const glm::vec3 a = path_[i], ab = path_[i + 1] - a;
-      const float t = glm::clamp(glm::dot(p - a, ab) / glm::dot(ab, ab), 0.0f, 1.0f);
+      const glm::vec3 ab = path_[i + 1] - path_[i];
+      const float t = glm::clamp(glm::dot(p - path_[i], ab) / glm::dot(ab, ab), 0.0f, 1.0f);
+      const glm::vec3 offset = p - (path_[i] + t * ab);
+      const float away = glm::length(offset);
+      if (0.75f * (away - 0.13f) > best) continue;
       const float along = (static_cast<float>(i) + t) / static_cast<float>(path_.size() - 1);
-      const glm::vec3 offset = p - (a + t * ab), direction = glm::normalize(ab);
-      const glm::vec3 tall =
-          glm::normalize(glm::cross(direction, glm::cross(glm::vec3(0.35f, 1, 0.2f), direction)));
-      const glm::vec3 thin = glm::cross(direction, tall);
-      const float reach = 0.035f + 0.075f * std::sin(glm::pi<float>() * glm::clamp(along, 0.0f, 1.0f));
-      const float x = glm::dot(offset, tall);
-      const float y = glm::dot(offset, thin) + 0.02f * std::sin(55 * x + 30 * along) * std::abs(x) / reach;
-      const float outside =
-          glm::length(glm::vec3(std::max(std::abs(x) - reach, 0.0f), y, glm::dot(offset, direction)));
-      best = std::min(best, 0.75f * (outside - 0.013f));
+      const glm::vec3 tall = glm::normalize(glm::mix(tall_[i], tall_[i + 1], t));
+      const float reach = 0.03f + 0.075f * std::sin(glm::pi<float>() * along);
+      const float x = glm::dot(offset, tall), flat = std::sqrt(std::max(away * away - x * x, 0.0f));
+      const glm::vec3 thin = glm::normalize(glm::cross(ab, tall));
+      const float ripple = 0.018f * std::sin(40 * along + (x > 0 ? 1.5f : 0)) * x * x / (reach * reach);
+      const float y =
+          std::abs(glm::dot(offset, thin) + ripple) + std::max(flat - std::abs(glm::dot(offset, thin)), 0.0f);
+      best =
+          std::min(best, 0.75f * (glm::length(glm::vec2(std::max(std::abs(x) - reach, 0.0f), y)) - 0.014f));
     }
     return best;
   }
 
  private:
-  std::vector<glm::vec3> path_;
+  std::vector<glm::vec3> path_, tall_;
 };
 
 float legsAndPlinth(glm::vec3 p) {
@@ -136,7 +146,7 @@ float legsAndPlinth(glm::vec3 p) {
   // Turned plinth: a stack of rounded discs.
   const float r = glm::length(glm::vec2(p.x, p.z));
   constexpr glm::vec3 discs[] = {
-      {0.4f, 0.02f, 0.045f}, {0.43f, -0.06f, 0.03f}, {0.36f, -0.13f, 0.05f}, {0.46f, -0.22f, 0.045f}};
+      {0.38f, 0.03f, 0.03f}, {0.42f, -0.04f, 0.035f}, {0.37f, -0.13f, 0.06f}, {0.46f, -0.225f, 0.04f}};
   for (const glm::vec3& disc : discs) {  // radius, height, half thickness
     const glm::vec2 q(r - (disc.x - disc.z), std::abs(p.y - disc.y));
     const float rounded =
@@ -146,12 +156,20 @@ float legsAndPlinth(glm::vec3 p) {
   return d;
 }
 
+/// A part of the figure, replaced by the distance to its bounding sphere where that is large: blends reach
+/// 0.05 at most.
+template <class Part>
+float within(glm::vec3 p, glm::vec3 centre, float radius, const Part& part) {
+  const float away = glm::distance(p, centre) - radius;
+  return away > 0.1f ? away : part(p);
+}
+
 Mesh dancer(float cell) {
   const Veil veil;
   const Distance figure = [&](glm::vec3 p) {
-    float d = smoothUnion(skirt(p), torso(p), 0.04f);
-    d = smoothUnion(d, arms(p), 0.045f);
-    d = smoothUnion(d, head(p), 0.025f);
+    float d = smoothUnion(skirt(p), within(p, {0, 1.3f, 0}, 0.42f, torso), 0.04f);
+    d = smoothUnion(d, within(p, {-0.15f, 1.65f, 0.05f}, 0.75f, arms), 0.045f);
+    d = smoothUnion(d, within(p, {-0.05f, 1.72f, 0}, 0.25f, head), 0.025f);
     d = smoothUnion(d, legsAndPlinth(p), 0.015f);
     return smoothUnion(d, veil(p), 0.012f);
   };
@@ -163,13 +181,12 @@ Mesh dancer(float cell) {
 Scene makeStatue() {
   Scene scene;
   Material floor = lambert("floor", {1, 1, 1});
-  floor.baseColourTexture =
-      scene.addTexture("marble", marbleImage(512, {0.52f, 0.5f, 0.47f}, {0.2f, 0.19f, 0.2f}));
+  floor.baseColourTexture = scene.addTexture("plaster", plasterImage(512, {0.4f, 0.42f, 0.45f}, 0.25f));
   scene.add("floor", backdrop(6, 4, 2.6f, 4.5f, 2.5f), scene.addMaterial(floor));
   const int stone = scene.addMaterial(glossy("stone", {0.72f, 0.68f, 0.61f}, 0.65f));
-  const int statue = scene.add("statue", dancer(0.0095f), stone);
+  const int statue = scene.add("statue", dancer(0.015f), stone);
   scene.nodes[static_cast<std::size_t>(statue)].translation = {0, 0.266f, 0};
-  scene.addAreaLight("key", {-2.2f, 3.6f, 2.2f}, {0, 1.1f, 0}, {0.9f, 0.9f}, 30, {1, 0.95f, 0.88f});
+  scene.addAreaLight("key", {-2.2f, 3.6f, 2.2f}, {0, 1.1f, 0}, {0.9f, 0.9f}, 44, {1, 0.95f, 0.88f});
   scene.addCamera("main", {0.9f, 1.6f, 4.9f}, {-0.05f, 1.18f, 0}, 34);
   scene.addCamera("close", {0.3f, 1.9f, 1.9f}, {-0.08f, 1.72f, 0}, 34);
   return scene;

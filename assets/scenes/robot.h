@@ -1,0 +1,52 @@
+// The robot's skeleton, shared by its body and its dance.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "assets/generator/scene.h"
+
+namespace limn::assets::robot {
+
+enum Joint {
+  hips,
+  spine,
+  chest,
+  neck,
+  head,
+  leftClavicle,
+  leftUpperArm,
+  leftForearm,
+  leftHand,
+  rightClavicle,
+  rightUpperArm,
+  rightForearm,
+  rightHand,
+  leftThigh,
+  leftShin,
+  leftFoot,
+  leftToes,
+  rightThigh,
+  rightShin,
+  rightFoot,
+  rightToes,
+  leftEar,
+  rightEar,
+  jointCount
+};
+
+struct JointInfo {
+  std::string_view name;
+  int parent;
+  glm::vec3 position;  ///< bind pose, model space: arms stretched along X, facing +Z
+};
+
+extern const std::array<JointInfo, jointCount> kSkeleton;
+
+/// The skinned mesh, one primitive per material. Adds its materials to `scene`.
+std::vector<Primitive> buildBody(Scene& scene);
+
+/// A four-second loop. `firstNode` is the node of joint 0; joint i is node firstNode + i.
+Animation buildDance(int firstNode);
+
+}  // namespace limn::assets::robot
