@@ -5,10 +5,10 @@
 // Directions v (to the viewer) and l (to the light) are unit and point away from the surface. A surface with
 // metallic 0 and specularFactor 0 is Lambertian whatever its roughness.
 //
-// Energy in a uniform environment: the specular part alone never exceeds 1 (and loses what single scattering loses,
-// 69 % at alpha = 1). The whole model inherits appendix B's imbalance: diffuse and specular are mixed by the
-// Fresnel term at the half vector, so a white dielectric returns at most 1.01 at n.v >= 0.8 but up to 1.88 where a
-// smooth one is seen at grazing angles.
+// Energy in a uniform environment: the specular part alone never exceeds 1 (and loses what single scattering
+// loses, 69 % at alpha = 1). The whole model inherits appendix B's imbalance: diffuse and specular are mixed by
+// the Fresnel term at the half vector, so a white dielectric returns at most 1.01 at n.v >= 0.8, but up to 1.88
+// where a smooth one is seen at grazing angles.
 #ifndef LIMN_BRDF_GLSL
 #define LIMN_BRDF_GLSL
 #include "glsl/geometry.glsl"

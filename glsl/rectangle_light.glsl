@@ -163,7 +163,7 @@ LIMN_FN vec3 rectangle_vector_irradiance(Rectangle r, RectanglePart p) {
     vec2 d = p.vertex[i] - p.vertex[far];
     float closer = -dot(d.x * u + d.y * v, point[i] + origin);  // r_0^2 - r_i^2
     inverse_r[i] = 1.0f / radius;
-    excess[i] = max(closer, 0.0f) / (radius * (1.0f + radius));
+    excess[i] = closer / (radius * (1.0f + radius));
   }
   vec3 sum = 2.0f * rectangle_part_share(p) * cross(u, v);
   for (int i = 0; i < p.count; ++i) {
