@@ -1,0 +1,77 @@
+#include "core/bench/suite.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+
+#include "core/base/error.h"
+
+namespace limn::bench {
+
+std::string question(const Case& c) {
+  return fmt::format("{}/{}/{}/t{}/{}/{}x{}/spp{}/noise{}/bounces{}", c.scene, c.camera, c.light, c.time,
+                     c.term, c.width, c.height, c.reference.spp, c.reference.noise, c.reference.bounces);
+}
+
+std::string label(const Case& c) {
+  std::string text =
+      fmt::format("{}/{}/{}/{}/{}x{}/{}/{}", c.scene, c.camera.empty() ? "first camera" : c.camera,
+                  c.light.empty() ? "all lights" : c.light, c.term, c.width, c.height,
+                  c.dynamic ? "dynamic" : "static", c.technique);
+  char separator = '?';
+  for (const auto& [name, value] : c.parameters) {
+    text += fmt::format("{}{}={}", separator, name, value);
+    separator = '&';
+  }
+  return text;
+}
+
+std::string rowKey(const Case& c, std::string_view renderer) {
+  // Separators that no name contains keep different cases different.
+  std::string text = fmt::format("{}\x1f{}\x1f{}\x1f{}\x1f{}\x1f{}", question(c), c.technique, c.dynamic,
+                                 c.frames, c.warmup, renderer);
+  for (const auto& [name, value] : c.parameters) text += fmt::format("\x1e{}\x1f{}", name, value);
+  return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+}
+
+Shard parseShard(std::string_view text) {
+  Shard shard;
+  const std::size_t slash = text.find('/');
+  const auto number = [&](std::string_view part, int& value) {
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    return error == std::errc{} && end == part.data() + part.size();
+  };
+  if (slash == std::string_view::npos || !number(text.substr(0, slash), shard.index) ||
+      !number(text.substr(slash + 1), shard.count) || shard.count < 1 || shard.index < 1 ||
+      shard.index > shard.count) {
+    throw UsageError(fmt::format("--shard '{}': i/n with 1 <= i <= n is accepted, such as 2/4", text));
+  }
+  return shard;
+}
+
+std::vector<Case> selectCases(std::span<const Case> cases, std::span<const std::string> filters,
+                              Shard shard) {
+  std::vector<Case> matching;
+  for (const Case& c : cases) {
+    const std::string text = label(c);
+    if (std::all_of(filters.begin(), filters.end(),
+                    [&](const std::string& filter) { return text.find(filter) != std::string::npos; })) {
+      matching.push_back(c);
+    }
+  }
+  std::map<std::string, int> questions;  // in order of appearance
+  for (const Case& c : matching) questions.emplace(question(c), static_cast<int>(questions.size()));
+  const bool byQuestion = static_cast<int>(questions.size()) >= shard.count;
+  std::vector<Case> selected;
+  for (std::size_t i = 0; i < matching.size(); ++i) {
+    const int position = byQuestion ? questions[question(matching[i])] : static_cast<int>(i);
+    if (position % shard.count == shard.index - 1) selected.push_back(matching[i]);
+  }
+  return selected;
+}
+
+}  // namespace limn::bench

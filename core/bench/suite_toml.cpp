@@ -1,0 +1,308 @@
+// Reads bench suites. Every complaint names file, line and column.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <initializer_list>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/bench/suite.h"
+
+namespace limn::bench {
+namespace {
+
+constexpr std::size_t kMaxCases = 100000;
+constexpr const char* kTerms[] = {"final", "visibility", "direct", "indirect", "caustic", "media"};
+
+[[noreturn]] void fail(const std::string& file, const toml::source_region& where,
+                       const std::string& message) {
+  throw UsageError(fmt::format("{}:{}:{}: {}", file, where.begin.line, where.begin.column, message));
+}
+
+/// A TOML table whose keys must all be read.
+class Section {
+ public:
+  Section(const std::string& file, const toml::table& table, std::string name,
+          std::initializer_list<const char*> keys)
+      : file_(file), table_(table), name_(std::move(name)) {
+    for (const auto& [key, node] : table) {
+      if (std::find(keys.begin(), keys.end(), key.str()) == keys.end()) {
+        fail(file_, key.source(),
+             fmt::format("unknown key '{}' in {}; known are {}", key.str(), name_, fmt::join(keys, ", ")));
+      }
+    }
+  }
+
+  const std::string& file() const { return file_; }
+  const toml::node* find(const char* key) const { return table_.get(key); }
+
+  [[noreturn]] void failAt(const toml::node& node, const std::string& message) const {
+    fail(file_, node.source(), message);
+  }
+
+  const toml::node& require(const char* key) const {
+    const toml::node* node = find(key);
+    if (node == nullptr) fail(file_, table_.source(), fmt::format("{} lacks the key '{}'", name_, key));
+    return *node;
+  }
+
+  std::string text(const toml::node& node, const char* key) const {
+    const auto value = node.value_exact<std::string>();
+    if (!value || value->empty()) failAt(node, fmt::format("'{}' must be a text that is not empty", key));
+    return *value;
+  }
+
+  std::string text(const char* key, const std::string& otherwise) const {
+    const toml::node* node = find(key);
+    return node == nullptr ? otherwise : text(*node, key);
+  }
+
+  int integer(const char* key, int otherwise, int low, int high) const {
+    const toml::node* node = find(key);
+    if (node == nullptr) return otherwise;
+    const auto value = node->value_exact<std::int64_t>();
+    if (!value || *value < low || *value > high) {
+      failAt(*node, fmt::format("'{}' must be a whole number in {}..{}", key, low, high));
+    }
+    return static_cast<int>(*value);
+  }
+
+  double real(const char* key, double otherwise, double low, double high) const {
+    const toml::node* node = find(key);
+    if (node == nullptr) return otherwise;
+    const auto value = node->value<double>();
+    if (!value || !node->is_number() || !(*value >= low && *value <= high)) {
+      failAt(*node, fmt::format("'{}' must be a number in {}..{}", key, low, high));
+    }
+    return *value;
+  }
+
+  bool boolean(const char* key, bool otherwise) const {
+    const toml::node* node = find(key);
+    if (node == nullptr) return otherwise;
+    const auto value = node->value_exact<bool>();
+    if (!value) failAt(*node, fmt::format("'{}' must be true or false", key));
+    return *value;
+  }
+
+  /// One text or a list of them.
+  std::vector<std::string> texts(const char* key, std::vector<std::string> otherwise) const {
+    const toml::node* node = find(key);
+    if (node == nullptr) return otherwise;
+    if (!node->is_array()) return {text(*node, key)};
+    if (node->as_array()->empty()) failAt(*node, fmt::format("'{}' is an empty list", key));
+    std::vector<std::string> values;
+    for (const toml::node& element : *node->as_array()) values.push_back(text(element, key));
+    return values;
+  }
+
+  std::string term(const std::string& otherwise) const {
+    const std::string value = text("term", otherwise);
+    if (std::find(std::begin(kTerms), std::end(kTerms), value) == std::end(kTerms)) {
+      failAt(*find("term"), fmt::format("unknown term '{}'; known are {}", value, fmt::join(kTerms, ", ")));
+    }
+    return value;
+  }
+
+  /// The tables of an array of tables, which must be there.
+  std::vector<const toml::table*> tables(const char* key) const {
+    const toml::node& node = require(key);
+    const toml::array* array = node.as_array();
+    if (array == nullptr || array->empty())
+      failAt(node, fmt::format("'{}' must be tables: [[{}]]", key, key));
+    std::vector<const toml::table*> result;
+    for (const toml::node& element : *array) {
+      if (!element.is_table()) failAt(element, fmt::format("'{}' must be tables: [[{}]]", key, key));
+      result.push_back(element.as_table());
+    }
+    return result;
+  }
+
+ private:
+  std::string file_;
+  const toml::table& table_;
+  std::string name_;
+};
+
+std::pair<int, int> parseSize(const Section& section, const toml::node& node) {
+  const std::string text = section.text(node, "sizes");
+  int width = 0, height = 0, used = 0;
+  if (std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &used) != 2 ||
+      used != static_cast<int>(text.size()) || width < 1 || height < 1 || width > 16384 || height > 16384) {
+    section.failAt(node, fmt::format("size '{}': WIDTHxHEIGHT with 1..16384 pixels is accepted", text));
+  }
+  return {width, height};
+}
+
+std::vector<std::pair<int, int>> parseSizes(const Section& section) {
+  const toml::node& node = section.require("sizes");
+  if (!node.is_array()) return {parseSize(section, node)};
+  if (node.as_array()->empty()) section.failAt(node, "'sizes' is an empty list");
+  std::vector<std::pair<int, int>> sizes;
+  for (const toml::node& element : *node.as_array()) sizes.push_back(parseSize(section, element));
+  return sizes;
+}
+
+ReferenceSettings parseReference(const Section& suite) {
+  const toml::node* node = suite.find("reference");
+  ReferenceSettings settings;
+  if (node == nullptr) return settings;
+  if (!node->is_table()) suite.failAt(*node, "'reference' must be a table such as {spp = 256}");
+  const Section section(suite.file(), *node->as_table(), "reference", {"spp", "noise", "bounces"});
+  settings.noise = section.real("noise", 0.0, 0.0, 1.0);
+  settings.spp = section.integer("spp", settings.noise > 0.0 ? 1 << 20 : settings.spp, 1, 1 << 24);
+  settings.bounces = section.integer("bounces", settings.bounces, 0, 64);
+  return settings;
+}
+
+std::vector<bool> parseModes(const Section& suite) {
+  std::vector<bool> modes;
+  for (const std::string& mode : suite.texts("modes", {"dynamic"})) {
+    if (mode != "dynamic" && mode != "static") {
+      suite.failAt(*suite.find("modes"), fmt::format("unknown mode '{}'; known are dynamic, static", mode));
+    }
+    modes.push_back(mode == "dynamic");
+  }
+  return modes;
+}
+
+/// A parameter's value as the command line takes it.
+std::string valueText(const Section& section, const toml::node& node, const std::string& name) {
+  if (const auto text = node.value_exact<std::string>()) return *text;
+  if (const auto flag = node.value_exact<bool>()) return *flag ? "true" : "false";
+  if (const auto whole = node.value_exact<std::int64_t>()) return fmt::format("{}", *whole);
+  if (const auto number = node.value_exact<double>(); number && std::isfinite(*number)) {
+    return fmt::format("{}", *number);
+  }
+  section.failAt(
+      node, fmt::format("parameter '{}' must be a number, a text, true or false, or a list of these", name));
+}
+
+struct SweptTechnique {
+  std::string name;
+  std::vector<std::vector<std::pair<std::string, std::string>>> settings;  // all combinations
+};
+
+SweptTechnique parseTechnique(const std::string& file, const toml::table& table) {
+  const Section section(file, table, "[[techniques]]", {"technique", "parameters"});
+  SweptTechnique technique{section.text(section.require("technique"), "technique"), {{}}};
+  const toml::node* parameters = section.find("parameters");
+  if (parameters == nullptr) return technique;
+  if (!parameters->is_table()) section.failAt(*parameters, "'parameters' must be a table");
+  for (const auto& [key, node] : *parameters->as_table()) {
+    std::string name(key.str());
+    if (name.find('.') == std::string::npos) {
+      if (technique.name.find(',') != std::string::npos) {
+        fail(file, key.source(),
+             fmt::format("parameter '{}' of a combination must be written \"technique.parameter\"", name));
+      }
+      name = fmt::format("{}.{}", technique.name, name);
+    }
+    std::vector<std::string> values;
+    if (const toml::array* list = node.as_array()) {
+      if (list->empty()) section.failAt(node, fmt::format("parameter '{}' has an empty list", name));
+      for (const toml::node& element : *list) values.push_back(valueText(section, element, name));
+    } else {
+      values.push_back(valueText(section, node, name));
+    }
+    decltype(technique.settings) combined;
+    for (const auto& setting : technique.settings) {
+      for (const std::string& value : values) {
+        combined.push_back(setting);
+        combined.back().emplace_back(name, value);
+      }
+    }
+    if (combined.size() > kMaxCases)
+      section.failAt(node, fmt::format("more than {} combinations", kMaxCases));
+    technique.settings = std::move(combined);
+  }
+  return technique;
+}
+
+/// All cases that ask one question of every technique.
+void addCases(const Case& base, const std::vector<SweptTechnique>& techniques, const std::vector<bool>& modes,
+              bool separationFloor, std::vector<Case>& cases) {
+  if (separationFloor && base.term == "direct") {
+    cases.push_back(base);
+    cases.back().technique = kSeparationFloor;
+  }
+  for (const SweptTechnique& technique : techniques) {
+    for (const auto& setting : technique.settings) {
+      for (const bool dynamic : modes) {
+        cases.push_back(base);
+        cases.back().technique = technique.name;
+        cases.back().parameters = setting;
+        cases.back().dynamic = dynamic;
+      }
+    }
+  }
+}
+
+Suite buildSuite(const toml::table& root, const std::string& file) {
+  const Section suite(file, root, "the suite",
+                      {"name", "sizes", "frames", "warmup", "modes", "term", "reference", "separation_floor",
+                       "scenes", "techniques"});
+  Case base;
+  base.frames = suite.integer("frames", 20, 0, 100000);
+  base.warmup = suite.integer("warmup", 3, 0, 100000);
+  base.reference = parseReference(suite);
+  const std::string term = suite.term("final");
+  const auto sizes = parseSizes(suite);
+  const std::vector<bool> modes = parseModes(suite);
+  const bool separationFloor = suite.boolean("separation_floor", false);
+  std::vector<SweptTechnique> techniques;
+  for (const toml::table* table : suite.tables("techniques"))
+    techniques.push_back(parseTechnique(file, *table));
+
+  Suite result{suite.text(suite.require("name"), "name"), {}};
+  for (const toml::table* table : suite.tables("scenes")) {
+    const Section scene(file, *table, "[[scenes]]",
+                        {"scene", "cameras", "lights", "time", "term", "max_masked_share"});
+    base.scene = scene.text(scene.require("scene"), "scene");
+    base.time = scene.real("time", 0.0, -1e6, 1e6);
+    base.maxMaskedShare = scene.real("max_masked_share", 0.005, 0.0, 1.0);
+    base.term = scene.term(term);
+    for (const std::string& camera : scene.texts("cameras", {""})) {
+      for (const std::string& light : scene.texts("lights", {""})) {
+        for (const auto& [width, height] : sizes) {
+          base.camera = camera;
+          base.light = light;
+          base.width = width;
+          base.height = height;
+          addCases(base, techniques, modes, separationFloor, result.cases);
+          if (result.cases.size() > kMaxCases) {
+            fail(file, table->source(), fmt::format("more than {} cases", kMaxCases));
+          }
+        }
+      }
+    }
+  }
+  std::set<std::string> keys;
+  for (const Case& c : result.cases) {
+    if (!keys.insert(rowKey(c, "")).second) {
+      throw UsageError(fmt::format("{}: the same case twice: {}", file, label(c)));
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+Suite parseSuite(std::string_view text, const std::string& fileName) {
+  try {
+    return buildSuite(toml::parse(text), fileName);
+  } catch (const toml::parse_error& error) {
+    fail(fileName, error.source(), std::string(error.description()));
+  }
+}
+
+Suite readSuite(const std::filesystem::path& path) {
+  return parseSuite(readTextFile(path, 1 << 24), path.string());
+}
+
+}  // namespace limn::bench

@@ -1,0 +1,186 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/bench/suite.h"
+
+namespace limn::bench {
+namespace {
+
+constexpr const char* kSuite = R"(
+name = "test"
+sizes = ["64x32", "128x64"]
+frames = 5
+term = "visibility"
+reference = {noise = 0.01}
+
+[[scenes]]
+scene = "cornell_box"
+cameras = ["front", "top"]
+lights = "ceiling"
+
+[[scenes]]
+scene = "balls"
+term = "direct"
+max_masked_share = 0.02
+
+[[techniques]]
+technique = "pcss"
+[techniques.parameters]
+samples = [16, 64]
+filter = ["disc", "square"]
+jitter = true
+
+[[techniques]]
+technique = "vssm,airlight"
+parameters = {"airlight.step" = 0.5}
+)";
+
+void expectUsageError(const std::string& text, const std::string& message) {
+  try {
+    parseSuite(text, "s.toml");
+    ADD_FAILURE() << "no error; expected " << message;
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+  }
+}
+
+TEST(BenchSuite, ExpandsAllCombinations) {
+  const Suite suite = parseSuite(kSuite, "s.toml");
+  EXPECT_EQ(suite.name, "test");
+  // (2 cameras + 1) x 2 sizes x (2 x 2 settings + 1).
+  ASSERT_EQ(suite.cases.size(), 30u);
+  const Case& first = suite.cases.front();
+  EXPECT_EQ(first.scene, "cornell_box");
+  EXPECT_EQ(first.camera, "front");
+  EXPECT_EQ(first.light, "ceiling");
+  EXPECT_EQ(first.term, "visibility");
+  EXPECT_EQ(first.width, 64);
+  EXPECT_EQ(first.height, 32);
+  EXPECT_EQ(first.technique, "pcss");
+  EXPECT_EQ(first.frames, 5);
+  EXPECT_EQ(first.warmup, 3);
+  EXPECT_TRUE(first.dynamic);
+  EXPECT_EQ(first.reference.noise, 0.01);
+  const std::set<std::pair<std::string, std::string>> parameters(first.parameters.begin(),
+                                                                 first.parameters.end());
+  EXPECT_TRUE(parameters.contains({"pcss.samples", "16"}));
+  EXPECT_TRUE(parameters.contains({"pcss.filter", "disc"}));
+  EXPECT_TRUE(parameters.contains({"pcss.jitter", "true"}));
+  const Case& last = suite.cases.back();
+  EXPECT_EQ(last.technique, "vssm,airlight");
+  EXPECT_EQ(last.parameters.front(), (std::pair<std::string, std::string>("airlight.step", "0.5")));
+  EXPECT_EQ(last.term, "direct");
+  EXPECT_EQ(last.maxMaskedShare, 0.02);
+  EXPECT_EQ(last.camera, "");
+}
+
+TEST(BenchSuite, KeysAreUniqueAndTellRenderersApart) {
+  const Suite suite = parseSuite(kSuite, "s.toml");
+  std::set<std::string> keys;
+  for (const Case& c : suite.cases) {
+    EXPECT_EQ(rowKey(c, "llvmpipe").size(), 16u);
+    keys.insert(rowKey(c, "llvmpipe"));
+    keys.insert(rowKey(c, "GPU"));
+  }
+  EXPECT_EQ(keys.size(), 60u);
+  EXPECT_EQ(rowKey(suite.cases[3], "x"), rowKey(parseSuite(kSuite, "other.toml").cases[3], "x"));
+}
+
+TEST(BenchSuite, ModesAndSeparationFloorAddCases) {
+  const Suite suite = parseSuite(
+      "name='a'\nsizes='8x8'\nterm='direct'\nmodes=['dynamic','static']\nseparation_floor=true\n"
+      "[[scenes]]\nscene='b'\n[[techniques]]\ntechnique='c'\n",
+      "s.toml");
+  ASSERT_EQ(suite.cases.size(), 3u);
+  EXPECT_EQ(suite.cases[0].technique, kSeparationFloor);
+  EXPECT_TRUE(suite.cases[1].dynamic);
+  EXPECT_FALSE(suite.cases[2].dynamic);
+}
+
+TEST(BenchSuite, ErrorsNameFileLineAndColumn) {
+  const std::string good = "name='a'\nsizes='8x8'\n[[scenes]]\nscene='b'\n[[techniques]]\ntechnique='c'\n";
+  EXPECT_EQ(parseSuite(good, "s.toml").cases.size(), 1u);
+  expectUsageError("name='a'\nsize='8x8'\n",
+                   "s.toml:2:1: unknown key 'size' in the suite; known are name, sizes");
+  expectUsageError("name = \n", "s.toml:1:");
+  expectUsageError("name='a'\nsizes='8by8'\n", "s.toml:2:7: size '8by8'");
+  expectUsageError("name='a'\nsizes='8x0'\n", "s.toml:2:7: size '8x0'");
+  expectUsageError("name='a'\nsizes=[]\n", "s.toml:2:7: 'sizes' is an empty list");
+  expectUsageError("name='a'\nsizes='8x8'\n", "lacks the key 'techniques'");
+  expectUsageError("frames=-1\n" + good, "s.toml:1:8: 'frames' must be a whole number");
+  expectUsageError("modes=['sometimes']\n" + good, "unknown mode 'sometimes'; known are dynamic, static");
+  expectUsageError("term='shadow'\n" + good,
+                   "s.toml:1:6: unknown term 'shadow'; known are final, visibility");
+  expectUsageError("reference={sp=1}\n" + good, "s.toml:1:12: unknown key 'sp' in reference; known are spp");
+  expectUsageError("reference={noise='low'}\n" + good, "'noise' must be a number in 0..1");
+  expectUsageError(good + "camera='x'\n", "s.toml:7:1: unknown key 'camera' in [[techniques]]");
+  expectUsageError(good + "parameters={a=[]}\n", "'c.a' has an empty list");
+  expectUsageError(good + "parameters={a={b=1}}\n", "parameter 'c.a' must be a number");
+  expectUsageError(
+      "name='a'\nsizes='8x8'\n[[scenes]]\nscene='b'\n[[techniques]]\ntechnique='c,d'\nparameters={x=1}\n",
+      "s.toml:7:13: parameter 'x' of a combination");
+  expectUsageError(good + "[[techniques]]\ntechnique='c'\n", "the same case twice");
+}
+
+TEST(BenchSuite, RefusesExplosions) {
+  std::string text =
+      "name='a'\nsizes='8x8'\n[[scenes]]\nscene='b'\n[[techniques]]\ntechnique='c'\n[techniques.parameters]"
+      "\n";
+  for (int i = 0; i < 20; ++i) text += "p" + std::to_string(i) + "=[1,2,3]\n";
+  expectUsageError(text, "combinations");
+}
+
+TEST(BenchSuite, FiltersByLabel) {
+  const Suite suite = parseSuite(kSuite, "s.toml");
+  const std::string filters[] = {"balls", "samples=16"};
+  const std::vector<Case> selected = selectCases(suite.cases, filters);
+  EXPECT_EQ(selected.size(), 4u);
+  for (const Case& c : selected) EXPECT_EQ(c.scene, "balls");
+}
+
+TEST(BenchSuite, ShardsPartitionTheCases) {
+  const Suite suite = parseSuite(kSuite, "s.toml");
+  for (const int count : {1, 2, 4, 7, 40}) {
+    std::set<std::string> keys;
+    std::size_t total = 0;
+    for (int i = 1; i <= count; ++i) {
+      const std::vector<Case> part = selectCases(suite.cases, {}, {i, count});
+      total += part.size();
+      for (const Case& c : part) keys.insert(rowKey(c, ""));
+    }
+    EXPECT_EQ(total, suite.cases.size());
+    EXPECT_EQ(keys.size(), suite.cases.size());
+  }
+  // A question is asked in one shard only.
+  std::set<std::string> first, second;
+  for (const Case& c : selectCases(suite.cases, {}, {1, 2})) first.insert(question(c));
+  for (const Case& c : selectCases(suite.cases, {}, {2, 2})) second.insert(question(c));
+  for (const std::string& q : first) EXPECT_FALSE(second.contains(q));
+}
+
+TEST(BenchSuite, ParsesShards) {
+  EXPECT_EQ(parseShard("2/4").index, 2);
+  EXPECT_EQ(parseShard("2/4").count, 4);
+  for (const char* text : {"", "2", "0/4", "5/4", "1/0", "a/b", "1/2x", "-1/2", "1/"}) {
+    EXPECT_THROW(parseShard(text), UsageError) << text;
+  }
+}
+
+TEST(BenchSuite, ReadsEverySuiteOfTheRepository) {
+  const std::filesystem::path folder = std::filesystem::path(LIMN_SOURCE_DIR) / "benchmarks";
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".toml") continue;
+    EXPECT_FALSE(readSuite(entry.path()).cases.empty()) << entry.path();
+    ++count;
+  }
+  EXPECT_GT(count, 0);
+  EXPECT_THROW(readSuite(folder / "none.toml"), Error);
+}
+
+}  // namespace
+}  // namespace limn::bench
