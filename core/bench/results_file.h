@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <set>
 #include <span>
 #include <string>
@@ -36,6 +37,7 @@ class LIMN_API ResultsFile {
   std::filesystem::path path_;
   int file_ = -1;
   std::vector<Row> rows_;
+  std::map<std::string, std::size_t> position_;  ///< of a key in rows_
   std::set<std::string> finished_;
 };
 

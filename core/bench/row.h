@@ -34,7 +34,8 @@ struct Row {
   Metrics error;
   std::optional<Metrics> penumbra;  ///< visibility: over pixels whose reference lies in (0.02, 0.98)
   Cost cost;
-  std::string failure;  ///< not empty: why there is no picture; error and cost are then void
+  std::string
+      failure;  ///< not empty: why there is no picture; error and cost are then void but for the renderer
 };
 
 /// One line of JSON, without the line's end.

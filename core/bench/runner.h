@@ -35,7 +35,7 @@ struct Callbacks {
   /// Called once per question (consecutive cases share it).
   std::function<Reference(const Case&)> reference;
   /// The technique's picture and what it cost. kSeparationFloor asks for unshadowed light times the
-  /// reference's visibility, untimed.
+  /// reference's visibility, untimed (n = 0).
   std::function<Measurement(const Case&)> measure;
   std::function<void(const Progress&)> progress;  ///< may be empty
 };
@@ -44,9 +44,9 @@ struct Summary {
   int done = 0, skipped = 0, failed = 0;
 };
 
-/// `renderer` becomes part of the row keys: results of another renderer are measured anew. An Error in a case
-/// is recorded in its row and the next case is run; a UsageError ends the run, as does an Error of the
-/// results file.
+/// `renderer` is recorded in the rows and part of their keys: results of another renderer are measured anew.
+/// An Error in a case is recorded in its row and the next case is run; a UsageError ends the run, as does an
+/// Error of the results file.
 LIMN_API Summary runCases(std::span<const Case> cases, const std::string& renderer, ResultsFile& results,
                           const Callbacks& callbacks);
 

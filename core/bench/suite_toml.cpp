@@ -228,8 +228,11 @@ SweptTechnique parseTechnique(const std::string& file, const toml::table& table)
 void addCases(const Case& base, const std::vector<SweptTechnique>& techniques, const std::vector<bool>& modes,
               bool separationFloor, std::vector<Case>& cases) {
   if (separationFloor && base.term == "direct") {
-    cases.push_back(base);
-    cases.back().technique = kSeparationFloor;
+    for (const bool dynamic : modes) {
+      cases.push_back(base);
+      cases.back().technique = kSeparationFloor;
+      cases.back().dynamic = dynamic;
+    }
   }
   for (const SweptTechnique& technique : techniques) {
     for (const auto& setting : technique.settings) {

@@ -95,10 +95,11 @@ TEST(BenchSuite, ModesAndSeparationFloorAddCases) {
       "name='a'\nsizes='8x8'\nterm='direct'\nmodes=['dynamic','static']\nseparation_floor=true\n"
       "[[scenes]]\nscene='b'\n[[techniques]]\ntechnique='c'\n",
       "s.toml");
-  ASSERT_EQ(suite.cases.size(), 3u);
+  ASSERT_EQ(suite.cases.size(), 4u);
   EXPECT_EQ(suite.cases[0].technique, kSeparationFloor);
-  EXPECT_TRUE(suite.cases[1].dynamic);
-  EXPECT_FALSE(suite.cases[2].dynamic);
+  EXPECT_EQ(suite.cases[1].technique, kSeparationFloor);
+  EXPECT_TRUE(suite.cases[2].dynamic);
+  EXPECT_FALSE(suite.cases[3].dynamic);
 }
 
 TEST(BenchSuite, ErrorsNameFileLineAndColumn) {
@@ -130,7 +131,7 @@ TEST(BenchSuite, RefusesExplosions) {
   std::string text =
       "name='a'\nsizes='8x8'\n[[scenes]]\nscene='b'\n[[techniques]]\ntechnique='c'\n[techniques.parameters]"
       "\n";
-  for (int i = 0; i < 20; ++i) text += "p" + std::to_string(i) + "=[1,2,3]\n";
+  for (int i = 0; i < 20; ++i) text.append("p").append(std::to_string(i)).append("=[1,2,3]\n");
   expectUsageError(text, "combinations");
 }
 

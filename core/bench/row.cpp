@@ -1,0 +1,162 @@
+#include "core/bench/row.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+
+namespace limn::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON knows no infinity: such values (the PSNR of equal pictures) are written as null.
+double numberOrInfinity(const Json& value) {
+  return value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>();
+}
+
+Json metricsToJson(const Metrics& m) {
+  Json json = {{"rmse", m.rmse},
+               {"rel_mse", m.rel_mse},
+               {"bias", m.bias},
+               {"p999", m.p999},
+               {"psnr", m.psnr},
+               {"flip", m.flip},
+               {"structured", m.structured},
+               {"masked_share", m.masked_share},
+               {"pixels", m.pixels}};
+  if (m.noise_floor) json["noise_floor"] = *m.noise_floor;
+  return json;
+}
+
+Metrics metricsFromJson(const Json& json) {
+  Metrics m;
+  m.rmse = json.at("rmse").get<double>();
+  m.rel_mse = numberOrInfinity(json.at("rel_mse"));
+  m.bias = json.at("bias").get<double>();
+  m.p999 = json.at("p999").get<double>();
+  m.psnr = numberOrInfinity(json.at("psnr"));
+  m.flip = json.at("flip").get<double>();
+  m.structured = json.at("structured").get<double>();
+  m.masked_share = json.at("masked_share").get<double>();
+  m.pixels = json.at("pixels").get<std::size_t>();
+  if (json.contains("noise_floor")) m.noise_floor = json["noise_floor"].get<double>();
+  return m;
+}
+
+/// The keys of `limn render --stats` that tables need; the rest of the statistics beside them.
+Json costToJson(const Cost& cost) {
+  Json json = cost.details.empty() ? Json::object() : Json::parse(cost.details);
+  json["renderer"] = cost.renderer;
+  json["backend"] = cost.backend;
+  json["timer"] = cost.timer;
+  json["software"] = cost.software;
+  json["frame_ms"] = {{"median", cost.frameMs.median},
+                      {"q1", cost.frameMs.q1},
+                      {"q3", cost.frameMs.q3},
+                      {"n", cost.frameMs.n}};
+  json["memory_bytes"] = cost.memoryBytes;
+  return json;
+}
+
+Cost costFromJson(const Json& json) {
+  Cost cost;
+  cost.renderer = json.at("renderer").get<std::string>();
+  cost.backend = json.at("backend").get<std::string>();
+  cost.timer = json.at("timer").get<std::string>();
+  cost.software = json.at("software").get<bool>();
+  const Json& time = json.at("frame_ms");
+  cost.frameMs = {time.at("median").get<double>(), time.at("q1").get<double>(), time.at("q3").get<double>(),
+                  time.at("n").get<int>()};
+  cost.memoryBytes = json.at("memory_bytes").get<std::int64_t>();
+  cost.details = json.dump();
+  return cost;
+}
+
+Json caseToJson(const Case& c) {
+  Json parameters = Json::object();
+  for (const auto& [name, value] : c.parameters) parameters[name] = value;
+  return {{"scene", c.scene},
+          {"camera", c.camera},
+          {"light", c.light},
+          {"time", c.time},
+          {"technique", c.technique},
+          {"parameters", parameters},
+          {"term", c.term},
+          {"size", {c.width, c.height}},
+          {"dynamic", c.dynamic},
+          {"frames", c.frames},
+          {"warmup", c.warmup},
+          {"max_masked_share", c.maxMaskedShare},
+          {"quality",
+           {{"spp", c.reference.spp}, {"noise", c.reference.noise}, {"bounces", c.reference.bounces}}}};
+}
+
+Case caseFromJson(const Json& json) {
+  Case c;
+  c.scene = json.at("scene").get<std::string>();
+  c.camera = json.at("camera").get<std::string>();
+  c.light = json.at("light").get<std::string>();
+  c.time = json.at("time").get<double>();
+  c.technique = json.at("technique").get<std::string>();
+  for (const auto& [name, value] : json.at("parameters").items()) {
+    c.parameters.emplace_back(name, value.get<std::string>());
+  }
+  c.term = json.at("term").get<std::string>();
+  c.width = json.at("size").at(0).get<int>();
+  c.height = json.at("size").at(1).get<int>();
+  c.dynamic = json.at("dynamic").get<bool>();
+  c.frames = json.at("frames").get<int>();
+  c.warmup = json.at("warmup").get<int>();
+  c.maxMaskedShare = json.at("max_masked_share").get<double>();
+  const Json& quality = json.at("quality");
+  c.reference = {quality.at("spp").get<int>(), quality.at("noise").get<double>(),
+                 quality.at("bounces").get<int>()};
+  return c;
+}
+
+}  // namespace
+
+std::string toJson(const Row& row) {
+  Json json = caseToJson(row.what);
+  json["key"] = row.key;
+  json["reference"] = {{"file", row.referenceFile}};
+  if (row.referenceNoise) json["reference"]["noise_rms"] = *row.referenceNoise;
+  if (row.failure.empty()) {
+    json["error"] = metricsToJson(row.error);
+    if (row.penumbra) json["penumbra"] = metricsToJson(*row.penumbra);
+    json["stats"] = costToJson(row.cost);
+  } else {
+    json["failure"] = row.failure;
+    json["renderer"] = row.cost.renderer;
+  }
+  // Foreign text (driver names, file names) may be no UTF-8; it must not stop the bench.
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Row rowFromJson(const std::string& line) {
+  try {
+    const Json json = Json::parse(line);
+    Row row;
+    row.key = json.at("key").get<std::string>();
+    row.what = caseFromJson(json);
+    row.referenceFile = json.at("reference").at("file").get<std::string>();
+    if (json["reference"].contains("noise_rms"))
+      row.referenceNoise = json["reference"]["noise_rms"].get<double>();
+    if (json.contains("failure")) {
+      row.failure = json["failure"].get<std::string>();
+      row.cost.renderer = json.at("renderer").get<std::string>();
+      return row;
+    }
+    row.error = metricsFromJson(json.at("error"));
+    if (json.contains("penumbra")) row.penumbra = metricsFromJson(json["penumbra"]);
+    row.cost = costFromJson(json.at("stats"));
+    return row;
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(fmt::format("not a row of results: {}", error.what()));
+  }
+}
+
+}  // namespace limn::bench

@@ -1,0 +1,85 @@
+#include "core/bench/runner.h"
+
+#include "core/base/error.h"
+
+namespace limn::bench {
+namespace {
+
+/// Over penumbra pixels alone, since lit pixels hide the error of a visibility technique; nullopt where the
+/// reference has none.
+std::optional<Metrics> penumbraMetrics(const Image& image, const Reference& reference,
+                                       CompareOptions options) {
+  constexpr float kLow = 0.02f, kHigh = 0.98f;
+  const int red = reference.image.rgbChannels()[0];
+  bool any = false;
+  for (std::size_t i = 0; i < reference.image.pixelCount() && !any; ++i) {
+    const float value = reference.image.data()[i * static_cast<std::size_t>(reference.image.channelCount()) +
+                                               static_cast<std::size_t>(red)];
+    any = value > kLow && value < kHigh;
+  }
+  if (!any) return std::nullopt;
+  options.maskTermRange = {kLow, kHigh};
+  return compareImages(image, reference.image, options);
+}
+
+Row measureRow(const Case& c, const Reference& reference, const Callbacks& callbacks) {
+  Row row;
+  row.what = c;
+  row.referenceFile = reference.file;
+  row.referenceNoise = reference.noise;
+  Measurement measurement = callbacks.measure(c);
+  CompareOptions options;
+  options.maxMaskedShare = c.maxMaskedShare;
+  row.error = compareImages(measurement.image, reference.image, options);
+  if (c.term == "visibility") row.penumbra = penumbraMetrics(measurement.image, reference, options);
+  row.cost = std::move(measurement.cost);
+  return row;
+}
+
+}  // namespace
+
+Summary runCases(std::span<const Case> cases, const std::string& renderer, ResultsFile& results,
+                 const Callbacks& callbacks) {
+  Summary summary;
+  std::optional<Reference> reference;
+  std::string referenceQuestion;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const Case& c = cases[i];
+    const auto report = [&](Progress::State state, std::string failure = "") {
+      if (callbacks.progress) {
+        callbacks.progress(
+            {static_cast<int>(i), static_cast<int>(cases.size()), c, state, std::move(failure)});
+      }
+    };
+    const std::string key = rowKey(c, renderer);
+    if (results.contains(key)) {
+      ++summary.skipped;
+      report(Progress::State::skipped);
+      continue;
+    }
+    report(Progress::State::started);
+    Row row;
+    try {
+      if (!reference || referenceQuestion != question(c)) {
+        reference.reset();
+        reference = callbacks.reference(c);
+        referenceQuestion = question(c);
+      }
+      row = measureRow(c, *reference, callbacks);
+    } catch (const UsageError&) {
+      throw;
+    } catch (const Error& error) {
+      row = Row{};
+      row.what = c;
+      row.failure = error.what();
+    }
+    row.key = key;
+    row.cost.renderer = renderer;
+    results.append(row);
+    ++(row.failure.empty() ? summary.done : summary.failed);
+    report(row.failure.empty() ? Progress::State::done : Progress::State::failed, row.failure);
+  }
+  return summary;
+}
+
+}  // namespace limn::bench

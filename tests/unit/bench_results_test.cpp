@@ -1,0 +1,289 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/bench/results_file.h"
+#include "core/bench/row.h"
+#include "core/bench/runner.h"
+#include "core/bench/tables.h"
+
+namespace limn::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+Case exampleCase(const std::string& technique = "pcss", int samples = 16) {
+  Case c;
+  c.scene = "cornell_box";
+  c.camera = "main";
+  c.term = "visibility";
+  c.width = 32;
+  c.height = 16;
+  c.technique = technique;
+  c.parameters = {{technique + ".samples", std::to_string(samples)}};
+  c.frames = 5;
+  c.warmup = 1;
+  return c;
+}
+
+Row exampleRow(const Case& c, double rmse = 0.25, double ms = 2.5) {
+  Row row;
+  row.what = c;
+  row.key = rowKey(c, "llvmpipe");
+  row.referenceFile = "references/a.exr";
+  row.referenceNoise = 0.001;
+  row.error.rmse = rmse;
+  row.error.rel_mse = 0.1;
+  row.error.bias = -0.01;
+  row.error.p999 = 0.7;
+  row.error.psnr = std::numeric_limits<double>::infinity();
+  row.error.flip = 0.125;
+  row.error.structured = 0.03;
+  row.error.pixels = 512;
+  row.error.noise_floor = 0.003;
+  row.penumbra = row.error;
+  row.cost.renderer = "llvmpipe";
+  row.cost.backend = "egl";
+  row.cost.timer = "finish";
+  row.cost.software = true;
+  row.cost.frameMs = {ms, ms - 0.25, ms + 0.25, 5};
+  row.cost.memoryBytes = 3 << 20;
+  row.cost.details = R"({"passes":[{"name":"shadow map"}]})";
+  return row;
+}
+
+class BenchResults : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("limn_bench_" + std::to_string(::getpid()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    path_ = folder_ / "results.jsonl";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path folder_, path_;
+};
+
+TEST_F(BenchResults, RowsSurviveJson) {
+  const Row row = exampleRow(exampleCase());
+  const std::string line = toJson(row);
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+  const Row back = rowFromJson(line);
+  EXPECT_EQ(back.what, row.what);
+  EXPECT_EQ(back.key, row.key);
+  EXPECT_EQ(back.referenceFile, row.referenceFile);
+  EXPECT_EQ(back.referenceNoise, row.referenceNoise);
+  EXPECT_EQ(back.error.rmse, row.error.rmse);
+  EXPECT_EQ(back.error.psnr, row.error.psnr);
+  EXPECT_EQ(back.error.noise_floor, row.error.noise_floor);
+  EXPECT_EQ(back.error.pixels, row.error.pixels);
+  ASSERT_TRUE(back.penumbra);
+  EXPECT_EQ(back.cost.frameMs.q3, row.cost.frameMs.q3);
+  EXPECT_EQ(back.cost.memoryBytes, row.cost.memoryBytes);
+  EXPECT_NE(back.cost.details.find("shadow map"), std::string::npos);
+  EXPECT_EQ(toJson(back), line);
+}
+
+TEST_F(BenchResults, BrokenRowsAreRefused) {
+  for (const char* text : {"", "{", "[]", "{}", R"({"key":1})", "null"})
+    EXPECT_THROW(rowFromJson(text), Error) << text;
+}
+
+TEST_F(BenchResults, AppendedRowsAreThereAfterReopening) {
+  const Row a = exampleRow(exampleCase("pcss", 16)), b = exampleRow(exampleCase("pcss", 64));
+  {
+    ResultsFile file(path_);
+    EXPECT_TRUE(file.rows().empty());
+    file.append(a);
+    file.append(b);
+    EXPECT_TRUE(file.contains(a.key));
+  }
+  ResultsFile file(path_);
+  EXPECT_EQ(file.rows().size(), 2u);
+  EXPECT_TRUE(file.contains(a.key) && file.contains(b.key));
+}
+
+TEST_F(BenchResults, TornLastLineIsCutOffAtEveryLength) {
+  const Row a = exampleRow(exampleCase("pcss", 16)), b = exampleRow(exampleCase("pcss", 64));
+  const std::string first = toJson(a) + "\n", second = toJson(b);
+  for (std::size_t length = 1; length <= second.size(); length += 37) {
+    writeTextFile(path_, first + second.substr(0, length));
+    {
+      ResultsFile file(path_);
+      EXPECT_EQ(file.rows().size(), 1u);
+      EXPECT_FALSE(file.contains(b.key));
+      file.append(b);
+    }
+    EXPECT_EQ(readTextFile(path_), first + second + "\n");
+  }
+}
+
+TEST_F(BenchResults, BrokenLineInTheMiddleIsAnError) {
+  writeTextFile(path_, toJson(exampleRow(exampleCase())) + "\nnonsense\n");
+  try {
+    ResultsFile file(path_);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("results.jsonl:2: not a row"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(BenchResults, FailedRowsAreTriedAgain) {
+  Row failed = exampleRow(exampleCase());
+  failed.failure = "no driver";
+  ResultsFile file(path_);
+  file.append(failed);
+  EXPECT_FALSE(file.contains(failed.key));
+  file.append(exampleRow(exampleCase()));
+  EXPECT_TRUE(file.contains(failed.key));
+  ASSERT_EQ(file.rows().size(), 1u);
+  EXPECT_TRUE(file.rows()[0].failure.empty());
+}
+
+/// Callbacks that count their calls; the picture of technique "bad" fails.
+struct Fakes {
+  int references = 0, measurements = 0;
+  Callbacks callbacks() {
+    return {[this](const Case& c) {
+              ++references;
+              Reference reference{Image::rgb(c.width, c.height), "reference.exr", 0.001};
+              std::ranges::fill(reference.image.data(), 0.5f);
+              return reference;
+            },
+            [this](const Case& c) {
+              ++measurements;
+              if (c.technique == "bad") throw Error("shader does not compile");
+              Measurement m{Image::rgb(c.width, c.height), {}};
+              std::ranges::fill(m.image.data(), 0.6f);
+              m.cost.frameMs = {1, 1, 1, c.frames};
+              return m;
+            },
+            {}};
+  }
+};
+
+TEST_F(BenchResults, RunnerSharesReferencesRecordsFailuresAndResumes) {
+  const std::vector<Case> cases = {exampleCase("pcss", 16), exampleCase("bad"), exampleCase("pcss", 64)};
+  Fakes fakes;
+  {
+    ResultsFile results(path_);
+    const Summary summary = runCases(cases, "llvmpipe", results, fakes.callbacks());
+    EXPECT_EQ(summary.done, 2);
+    EXPECT_EQ(summary.failed, 1);
+  }
+  EXPECT_EQ(fakes.references, 1);
+  EXPECT_EQ(fakes.measurements, 3);
+
+  ResultsFile results(path_);
+  std::vector<Progress::State> states;
+  Callbacks callbacks = fakes.callbacks();
+  callbacks.progress = [&](const Progress& progress) { states.push_back(progress.state); };
+  const Summary again = runCases(cases, "llvmpipe", results, callbacks);
+  EXPECT_EQ(again.skipped, 2);
+  EXPECT_EQ(again.failed, 1);
+  EXPECT_EQ(fakes.measurements, 4);
+  using State = Progress::State;
+  EXPECT_EQ(states, (std::vector{State::skipped, State::started, State::failed, State::skipped}));
+
+  EXPECT_EQ(runCases(cases, "another GPU", results, fakes.callbacks()).done, 2);
+  const Row row = results.rows().front();
+  EXPECT_NEAR(row.error.rmse, 0.1, 1e-6);
+  ASSERT_TRUE(row.penumbra);
+  EXPECT_EQ(row.cost.renderer, "llvmpipe");
+}
+
+TEST_F(BenchResults, RunnerLetsUsageErrorsThrough) {
+  Fakes fakes;
+  Callbacks callbacks = fakes.callbacks();
+  callbacks.measure = [](const Case&) -> Measurement { throw UsageError("unknown technique"); };
+  ResultsFile results(path_);
+  const std::vector<Case> cases = {exampleCase()};
+  EXPECT_THROW(runCases(cases, "x", results, callbacks), UsageError);
+  EXPECT_TRUE(results.rows().empty());
+}
+
+TEST(BenchTables, NeverMixModesRenderersOrQuestions) {
+  std::vector<Row> rows = {exampleRow(exampleCase("pcss", 16)), exampleRow(exampleCase("pcss", 64))};
+  EXPECT_EQ(makeTables(rows).size(), 1u);
+  Row other = exampleRow(exampleCase());
+  other.what.dynamic = false;
+  rows.push_back(other);
+  EXPECT_EQ(makeTables(rows).size(), 2u);
+  other.cost.renderer = "GPU";
+  rows.push_back(other);
+  EXPECT_EQ(makeTables(rows).size(), 3u);
+  other.what.width = 64;
+  rows.push_back(other);
+  other.what.term = "direct";
+  rows.push_back(other);
+  EXPECT_EQ(makeTables(rows).size(), 5u);
+  std::set<std::string> names;
+  for (const Table& table : makeTables(rows)) names.insert(table.fileName);
+  EXPECT_EQ(names.size(), 5u);
+}
+
+TEST(BenchTables, MarkdownShowsErrorTimeNoiseFloorAndFront) {
+  // The second is beaten in both; the third's error is below the noise floor.
+  const std::vector<Row> rows = {exampleRow(exampleCase("fast"), 0.25, 1.0),
+                                 exampleRow(exampleCase("beaten"), 0.3, 1.5),
+                                 exampleRow(exampleCase("good"), 0.002, 9.0)};
+  const std::string text = toMarkdown(makeTables(rows).front());
+  EXPECT_NE(text.find("| fast | fast.samples=16 | 0.25 | 0.1 | -0.01 | 0.7 | inf | 0.1250 | 0.03 | 0.25 | "
+                      "1.000 | 0.750 | "
+                      "1.250 | 5 | 3.0 | * |"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("| beaten | beaten.samples=16 | 0.3 "), std::string::npos) << text;
+  EXPECT_NE(text.find("| 1.500 | 1.250 | 1.750 | 5 | 3.0 |  |"), std::string::npos) << text;
+  EXPECT_NE(text.find("| good | good.samples=16 | <0.003 "), std::string::npos) << text;
+  // Every line of the table has as many cells.
+  std::size_t bars = 0;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || line[0] != '|') continue;
+    const std::size_t count = static_cast<std::size_t>(std::count(line.begin(), line.end(), '|'));
+    if (bars == 0) bars = count;
+    EXPECT_EQ(count, bars) << line;
+  }
+}
+
+TEST(BenchTables, CsvQuotesAndKeepsPrecision) {
+  Row row = exampleRow(exampleCase("a,b"), 0.1 + 0.2);
+  Row failed = row;
+  failed.failure = "he said \"no\"";
+  const std::vector<Row> rows = {row, failed};
+  const std::string text = toCsv(makeTables(rows).front());
+  EXPECT_NE(text.find("\"a,b\""), std::string::npos);
+  EXPECT_NE(text.find("0.30000000000000004"), std::string::npos);
+  EXPECT_NE(text.find("\"he said \"\"no\"\"\""), std::string::npos);
+  std::vector<long> fields;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t quoted = line.find("\"a,b\"");
+    if (quoted != std::string::npos) line.replace(quoted, 5, "a");
+    std::size_t parameters = line.find("\"a,b.samples");
+    EXPECT_EQ(parameters == std::string::npos, fields.empty());
+    if (parameters != std::string::npos) line.replace(parameters, 4, "a");
+    fields.push_back(std::count(line.begin(), line.end(), ','));
+  }
+  ASSERT_EQ(fields.size(), 3u);
+  EXPECT_EQ(fields[0], fields[1]);
+  EXPECT_EQ(fields[0], fields[2]);
+}
+
+TEST_F(BenchResults, TablesAreWritten) {
+  const std::vector<Row> rows = {exampleRow(exampleCase())};
+  writeTables(rows, folder_);
+  EXPECT_NE(readTextFile(folder_ / "tables.md").find("## cornell_box"), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder_ / makeTables(rows).front().fileName));
+}
+
+}  // namespace
+}  // namespace limn::bench
