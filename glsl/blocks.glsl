@@ -22,7 +22,7 @@ LIMN_END_UNIFORM_BLOCK(frame)
 struct Instance {
   mat4 object_to_world;
   mat4 normal_to_world;  // inverse transpose, upper 3x3
-  uvec4 info;            // x: material, y: vertex offset, z: flags (1: double sided, 2: mirrored winding), w: unused
+  uvec4 info;            // x: material, y: vertex offset, z: flags (1: double sided, 2: mirrored winding), w: first index
 };
 
 // Material constants (storage buffer element); textures are bound per draw.

@@ -54,7 +54,7 @@ class LIMN_API DrawList {
 
 /// Programs of the depth passes; `alphaTest` textures unit 0. Both are made from the caller's vertex shader,
 /// see glsl/depth/.
-struct DepthPrograms {
+struct DrawPrograms {
   frame::ProgramHandle opaque, masked;
 };
 
@@ -80,6 +80,7 @@ class LIMN_API GpuScene {
   void forget();
 
   const Scene& scene() const;
+  gpu::Device& device() const;
   const glsl::FrameBlock& frame() const;
   const CameraPose& camera() const;
   /// World bounds of one instance at the last update(); conservative for deformed primitives.
@@ -97,14 +98,14 @@ class LIMN_API GpuScene {
   /// depth test reversed (cleared to 0). Uniform block FrameBlock, storage bindings 0 (instances) and 1
   /// (materials), 2 and 3 (positions, indices) are bound by it.
   void drawGBuffer(const frame::PassContext& context, const SceneHandles& handles,
-                   frame::ProgramHandle program, DrawList& list);
+                   const DrawPrograms& programs, DrawList& list);
 
   /// Draws depth of all `views`, both sides of every surface. `layered`: one call for all views, whose vertex
   /// shader writes gl_Layer; otherwise `beginView` is called before each view to bind its target. The vertex
   /// shader gets the instance and view index in attribute 1 (uvec2), instances in storage binding 0.
-  void drawDepth(const frame::PassContext& context, const SceneHandles& handles,
-                 const DepthPrograms& programs, std::span<const DepthView> views, DrawList& list,
-                 bool layered, const std::function<void(const DepthView&)>& beginView);
+  void drawDepth(const frame::PassContext& context, const SceneHandles& handles, const DrawPrograms& programs,
+                 std::span<const DepthView> views, DrawList& list, bool layered,
+                 const std::function<void(const DepthView&)>& beginView);
 
  private:
   struct Implementation;

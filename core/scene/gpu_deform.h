@@ -1,0 +1,59 @@
+// Morphing and skinning on the GPU: rest data of every primitive that can be deformed, the state of this
+// frame, and the compute pass that writes the deformed vertices.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "core/frame/frame_graph.h"
+#include "core/scene/gpu_geometry.h"
+#include "core/scene/scene.h"
+
+namespace limn::scene {
+
+class GpuDeform {
+ public:
+  GpuDeform(gpu::Device& device, const Scene& scene);
+
+  /// Collects the state of all deformed primitives, whose vertices go to `targets` (parallel to
+  /// Pose::deformed). True if anything changed since the last call.
+  bool update(const Pose& pose, const GpuGeometry& geometry, const std::vector<GeometryRange>& targets);
+  /// World bounds (object space if only morphed) of one deformation; conservative.
+  Bounds bounds(const Scene& scene, const Deformation& state) const;
+
+  /// Declares "deform": writes the deformed ranges of `geometry` and returns it.
+  frame::BufferHandle addPass(frame::FrameGraph& graph, const GpuGeometry& streams,
+                              frame::BufferHandle geometry);
+  /// Marks the state as changed in the graph of the last addPass().
+  void touch(frame::FrameGraph& graph) const;
+  void forget();
+  size_t jobCount() const { return jobs_.size(); }
+
+ private:
+  struct Rest {
+    uint32_t skin = ~0u;   ///< first word in skin_
+    uint32_t morph = ~0u;  ///< first float in morph_
+    uint32_t targets = 0;
+    std::vector<Bounds> jointBounds;  ///< of the rest vertices that each joint moves
+    std::vector<Bounds> morphBounds;  ///< of each target's position deltas
+  };
+  struct Job {
+    glm::uvec4 range{0};  ///< first source vertex, first target vertex, vertices, skin
+    glm::uvec4 state{0};  ///< first joint, first weight, morph targets, morph
+    bool operator==(const Job&) const = default;
+  };
+  void addRest(const Primitive& primitive, Rest& rest, std::vector<uint32_t>& skin,
+               std::vector<float>& morph);
+
+  gpu::Device& device_;
+  std::map<std::pair<int, int>, Rest> rest_;
+  gpu::Buffer skin_, morph_, jobBuffer_, jointBuffer_, weightBuffer_;
+  std::vector<Job> jobs_;
+  std::vector<glm::mat4> joints_;
+  std::vector<float> weights_;
+  frame::BufferHandle jobHandle_, jointHandle_, weightHandle_;
+};
+
+}  // namespace limn::scene

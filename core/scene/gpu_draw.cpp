@@ -1,0 +1,210 @@
+// Culling, draw lists and the draw calls of GpuScene.
+#include <algorithm>
+#include <bit>
+
+#include "core/scene/gpu_scene_data.h"
+
+namespace limn::scene {
+namespace {
+
+constexpr GLuint positionBinding = 0, attributeBinding = 1, colourBinding = 2, entryBinding = 3;
+
+void ensure(gpu::Device& device, gpu::Buffer& buffer, const char* label, size_t bytes) {
+  if (!buffer || buffer.size() < bytes)
+    buffer =
+        gpu::Buffer(device, label, std::bit_ceil(std::max<size_t>(bytes, 1024)), gpu::BufferUse::updated);
+}
+
+/// The camera's side planes and the plane through the eye, from the rows of the clip matrix.
+CullVolume cameraVolume(const glm::mat4& worldToClip) {
+  const glm::mat4 rows = glm::transpose(worldToClip);
+  CullVolume volume;
+  volume.planes = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1], rows[3]};
+  return volume;
+}
+
+/// Restores the clip convention that the rest of the frame expects, even when a draw throws.
+class ReversedDepth {
+ public:
+  explicit ReversedDepth(const gl::Functions& gl) : gl_(gl) {
+    gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthFunc(GL_GREATER);
+  }
+  ~ReversedDepth() {
+    gl_.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+    gl_.FrontFace(GL_CCW);
+  }
+
+ private:
+  const gl::Functions& gl_;
+};
+
+}  // namespace
+
+bool CullVolume::mayContain(const Bounds& box) const {
+  if (box.empty()) return false;
+  for (const glm::vec4& plane : planes) {
+    const glm::vec3 n(plane);
+    const glm::vec3 farthest(n.x >= 0 ? box.high.x : box.low.x, n.y >= 0 ? box.high.y : box.low.y,
+                             n.z >= 0 ? box.high.z : box.low.z);
+    if (glm::dot(n, farthest) + plane.w < 0) return false;
+  }
+  return true;
+}
+
+DrawList::DrawList() : implementation_(std::make_unique<Implementation>()) {}
+DrawList::~DrawList() = default;
+DrawList::DrawList(DrawList&&) noexcept = default;
+DrawList& DrawList::operator=(DrawList&&) noexcept = default;
+uint64_t DrawList::triangles() const {
+  return implementation_->triangles;
+}
+
+void DrawList::Implementation::clear() {
+  entries.clear();
+  commands.clear();
+  runs.clear();
+  viewRuns.clear();
+  triangles = 0;
+}
+
+void DrawList::Implementation::upload(gpu::Device& device) {
+  for (const DrawCommand& c : commands) triangles += uint64_t{c.count / 3} * c.instanceCount;
+  if (commands.empty()) return;
+  const size_t entryBytes = entries.size() * sizeof(entries[0]),
+               commandBytes = commands.size() * sizeof(DrawCommand);
+  ensure(device, entryBuffer, "draw entries", entryBytes);
+  ensure(device, commandBuffer, "draw commands", commandBytes);
+  entryBuffer.update(0, entries.data(), entryBytes);
+  commandBuffer.update(0, commands.data(), commandBytes);
+}
+
+/// Appends what the views see, in `order`: one command per primitive, one run per state.
+void GpuScene::Implementation::fill(DrawList::Implementation& list, const std::vector<uint32_t>& order,
+                                    std::span<const DepthView> views, bool depthOnly) const {
+  list.viewRuns.push_back(static_cast<uint32_t>(list.runs.size()));
+  uint32_t primitive = ~0u;
+  DrawRun state;
+  bool started = false;
+  for (const uint32_t id : order) {
+    const InstanceState& instance = states[id];
+    for (const DepthView& view : views) {
+      if (id == view.skipInstance || !view.volume.mayContain(instance.bounds)) continue;
+      DrawRun wanted;
+      wanted.material = instance.material;
+      wanted.masked = materials.masked(instance.material);
+      if (!depthOnly) {
+        wanted.mirrored = instance.mirrored;
+        wanted.doubleSided = materials.doubleSided(instance.material);
+      }
+      const auto key = [&](const DrawRun& run) {
+        if (!depthOnly) return materials.textureKey(run.material);
+        return run.masked ? materials.baseColourKey(run.material) : 0u;
+      };
+      const bool sameRun = started && key(wanted) == key(state) && wanted.masked == state.masked &&
+                           wanted.mirrored == state.mirrored && wanted.doubleSided == state.doubleSided;
+      if (!sameRun) {
+        wanted.firstCommand = static_cast<uint32_t>(list.commands.size());
+        list.runs.push_back(wanted);
+        state = wanted;
+      }
+      if (!sameRun || primitive != instance.primitive) {
+        list.commands.push_back({instance.range.indexCount, 0, instance.range.firstIndex,
+                                 static_cast<int32_t>(instance.range.firstVertex),
+                                 static_cast<uint32_t>(list.entries.size())});
+        ++list.runs.back().commandCount;
+        primitive = instance.primitive;
+      }
+      started = true;
+      list.entries.emplace_back(id, view.view);
+      ++list.commands.back().instanceCount;
+    }
+  }
+}
+
+void GpuScene::Implementation::bindVertices(const gpu::Buffer& entries) const {
+  const gl::Functions& gl = device.gl();
+  const GLuint array = vertexArray.id();
+  gl.VertexArrayVertexBuffer(array, positionBinding, geometry.positions().id(), 0, 12);
+  gl.VertexArrayVertexBuffer(array, attributeBinding, geometry.attributes().id(), 0, 16);
+  if (geometry.hasColours()) gl.VertexArrayVertexBuffer(array, colourBinding, geometry.colours().id(), 0, 8);
+  gl.VertexArrayVertexBuffer(array, entryBinding, entries.id(), 0, sizeof(glm::uvec2));
+  gl.VertexArrayBindingDivisor(array, entryBinding, 1);
+  gl.VertexArrayElementBuffer(array, geometry.indices().id());
+  gl.BindVertexArray(array);
+  if (!geometry.hasColours()) gl.VertexAttrib4f(4, 1, 1, 1, 1);
+}
+
+void GpuScene::Implementation::drawRun(const DrawRun& run) const {
+  const size_t offset = run.firstCommand * sizeof(DrawCommand);
+  device.gl().MultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset),
+                                        static_cast<GLsizei>(run.commandCount), sizeof(DrawCommand));
+}
+
+void GpuScene::drawGBuffer(const frame::PassContext& context, const SceneHandles& handles,
+                           const DrawPrograms& programs, DrawList& list) {
+  Implementation& scene = *implementation_;
+  const gl::Functions& gl = scene.device.gl();
+  DrawList::Implementation& draws = *list.implementation_;
+  draws.clear();
+  const DepthView view{.volume = cameraVolume(scene.frame.world_to_clip)};
+  scene.fill(draws, scene.cameraOrder, {&view, 1}, false);
+  draws.upload(scene.device);
+  if (draws.runs.empty()) return;
+
+  context.bindUniform(glsl::FrameBlock::binding, handles.frame);
+  context.bindStorage(0, handles.instances);
+  context.bindStorage(1, handles.materials);
+  context.bindStorage(2, handles.geometry);
+  gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, scene.geometry.indices().id());
+  scene.bindVertices(draws.entryBuffer);
+  gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, draws.commandBuffer.id());
+  const ReversedDepth reversed(gl);
+  gl.CullFace(GL_BACK);
+  for (const DrawRun& run : draws.runs) {
+    gpu::Program& program = context.program(run.masked ? programs.masked : programs.opaque);
+    program.use();
+    program.set("near_plane", scene.nearPlane);
+    scene.materials.bind(run.material);
+    gl.FrontFace(run.mirrored ? GL_CW : GL_CCW);
+    (run.doubleSided ? gl.Disable : gl.Enable)(GL_CULL_FACE);
+    scene.drawRun(run);
+  }
+}
+
+void GpuScene::drawDepth(const frame::PassContext& context, const SceneHandles& handles,
+                         const DrawPrograms& programs, std::span<const DepthView> views, DrawList& list,
+                         bool layered, const std::function<void(const DepthView&)>& beginView) {
+  Implementation& scene = *implementation_;
+  const gl::Functions& gl = scene.device.gl();
+  DrawList::Implementation& draws = *list.implementation_;
+  draws.clear();
+  if (layered) {
+    scene.fill(draws, scene.depthOrder, views, true);
+  } else {
+    for (const DepthView& view : views) scene.fill(draws, scene.depthOrder, {&view, 1}, true);
+  }
+  draws.viewRuns.push_back(static_cast<uint32_t>(draws.runs.size()));
+  draws.upload(scene.device);
+  if (draws.runs.empty()) return;
+
+  context.bindStorage(0, handles.instances);
+  context.bindStorage(1, handles.materials);
+  scene.bindVertices(draws.entryBuffer);
+  gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, draws.commandBuffer.id());
+  const ReversedDepth reversed(gl);
+  gl.Disable(GL_CULL_FACE);
+  for (size_t part = 0; part + 1 < draws.viewRuns.size(); ++part) {
+    if (draws.viewRuns[part] == draws.viewRuns[part + 1]) continue;
+    if (!layered) beginView(views[part]);
+    for (uint32_t r = draws.viewRuns[part]; r < draws.viewRuns[part + 1]; ++r) {
+      const DrawRun& run = draws.runs[r];
+      context.program(run.masked ? programs.masked : programs.opaque).use();
+      if (run.masked) scene.materials.bindBaseColour(run.material);
+      scene.drawRun(run);
+    }
+  }
+}
+
+}  // namespace limn::scene

@@ -1,0 +1,61 @@
+// Vertex and index memory of a GpuScene: shared streams that only grow.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/gpu/objects.h"
+#include "core/scene/scene.h"
+
+namespace limn::scene {
+
+/// Where a primitive lies in the streams.
+struct GeometryRange {
+  uint32_t firstVertex = 0, vertexCount = 0;
+  uint32_t firstIndex = 0, indexCount = 0;
+};
+
+class GpuGeometry {
+ public:
+  /// Uploads every primitive of every mesh. Throws Error beyond 2^32 vertices or indices, or when out of
+  /// memory.
+  GpuGeometry(gpu::Device& device, const Scene& scene);
+
+  const GeometryRange& primitive(int mesh, int primitive) const {
+    return ranges_[meshOffsets_[static_cast<size_t>(mesh)] + static_cast<size_t>(primitive)];
+  }
+  /// Number that identifies a primitive among all.
+  uint32_t primitiveIndex(int mesh, int primitive) const {
+    return static_cast<uint32_t>(meshOffsets_[static_cast<size_t>(mesh)] + static_cast<size_t>(primitive));
+  }
+  uint32_t primitiveCount() const { return static_cast<uint32_t>(ranges_.size()); }
+
+  /// Gives back what allocate() handed out.
+  void releaseAllocated();
+  /// Room behind the scene's own vertices and indices, for deformed and dynamic primitives.
+  uint32_t allocateVertices(uint32_t count);
+  uint32_t allocateIndices(uint32_t count);
+  /// Grows the buffers to hold what was allocated, keeping their contents.
+  void commit();
+  /// Writes a dynamic primitive into its allocated range.
+  void write(const GeometryRange& range, const Primitive& primitive);
+
+  const gpu::Buffer& positions() const { return positions_; }
+  const gpu::Buffer& attributes() const { return attributes_; }
+  const gpu::Buffer& indices() const { return indices_; }
+  const gpu::Buffer& colours() const { return colours_; }
+  bool hasColours() const { return hasColours_; }
+
+ private:
+  gpu::Device& device_;
+  std::vector<GeometryRange> ranges_;
+  std::vector<size_t> meshOffsets_;
+  uint64_t sceneVertices_ = 0, sceneIndices_ = 0;
+  uint64_t vertices_ = 0, indexCount_ = 0;
+  bool hasColours_ = false;
+  bool dynamic_ = false;
+  gpu::Buffer positions_, attributes_, colours_, indices_;
+};
+
+}  // namespace limn::scene

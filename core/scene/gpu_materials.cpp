@@ -1,0 +1,96 @@
+#include "core/scene/gpu_materials.h"
+
+#include <map>
+
+#include "glsl/blocks.glsl"
+
+namespace limn::scene {
+namespace {
+
+glsl::Material packConstants(const Material& m) {
+  glsl::Material out{};
+  out.base_colour = m.baseColour;
+  out.emission = glm::vec4(m.emission, m.alphaCutoff);
+  out.metal_rough = glm::vec4(m.metallic, m.roughness, m.normalScale, m.ior);
+  out.specular = glm::vec4(m.specularColour * m.specularFactor, m.specularFactor);
+  out.transmission = glm::vec4(m.transmission, m.thickness, m.attenuationDistance, 0);
+  out.attenuation = glm::vec4(m.attenuationColour, 0);
+  uint32_t flags = 0;
+  if (m.doubleSided) flags |= glsl::material_double_sided;
+  if (m.baseColourTexture.image != none) flags |= glsl::material_has_base_colour_texture;
+  if (m.metalRoughTexture.image != none) flags |= glsl::material_has_metal_rough_texture;
+  if (m.normalTexture.image != none) flags |= glsl::material_has_normal_texture;
+  if (m.emissiveTexture.image != none) flags |= glsl::material_has_emissive_texture;
+  if (m.specularSurface()) flags |= glsl::material_specular_surface;
+  out.info.x = flags;
+  return out;
+}
+
+gpu::Texture upload(gpu::Device& device, const TextureImage& image) {
+  gpu::Texture texture(device, image.name,
+                       {.target = GL_TEXTURE_2D,
+                        .format = static_cast<GLenum>(image.srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8),
+                        .width = image.levels[0].width,
+                        .height = image.levels[0].height,
+                        .levels = static_cast<int>(image.levels.size())});
+  for (size_t level = 0; level < image.levels.size(); ++level)
+    texture.upload(static_cast<int>(level), 0, GL_RGBA, GL_UNSIGNED_BYTE, image.levels[level].rgba.data());
+  return texture;
+}
+
+constexpr std::array<GLint, 3> wraps{GL_REPEAT, GL_CLAMP_TO_EDGE, GL_MIRRORED_REPEAT};
+
+}  // namespace
+
+GpuMaterials::GpuMaterials(gpu::Device& device, const Scene& scene) : device_(device) {
+  std::vector<glsl::Material> all;
+  std::map<std::array<int, 8>, uint32_t> keys{{{none, none, none, none, 0, 0, 0, 0}, 0u}};
+  const auto keyOf = [&](const std::array<int, 4>& t, const std::array<int, 4>& s) {
+    const std::array<int, 8> both{t[0], t[1], t[2], t[3], s[0], s[1], s[2], s[3]};
+    return keys.emplace(both, static_cast<uint32_t>(keys.size())).first->second;
+  };
+  for (const Material& material : scene.materials) {
+    all.push_back(packConstants(material));
+    Set set;
+    const std::array<const TextureRef*, 4> refs{&material.baseColourTexture, &material.metalRoughTexture,
+                                                &material.normalTexture, &material.emissiveTexture};
+    for (size_t i = 0; i < refs.size(); ++i) {
+      if (refs[i]->image == none) continue;
+      set.textures[i] = refs[i]->image;
+      set.samplers[i] = 3 * static_cast<int>(refs[i]->wrapS) + static_cast<int>(refs[i]->wrapT);
+    }
+    set.key = keyOf(set.textures, set.samplers);
+    set.baseColourKey = keyOf({set.textures[0], none, none, none}, {set.samplers[0], 0, 0, 0});
+    set.masked = material.alphaCutoff > 0;
+    set.doubleSided = material.doubleSided;
+    sets_.push_back(set);
+  }
+  constants_ = gpu::Buffer::of<glsl::Material>(device, "materials", all);
+  for (const TextureImage& image : scene.images) textures_.push_back(upload(device, image));
+  if (textures_.empty()) return;
+  for (const GLint wrapS : wraps) {
+    for (const GLint wrapT : wraps) {
+      gpu::Sampler& sampler = samplers_.emplace_back(device, GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR);
+      device.gl().SamplerParameteri(sampler.id(), GL_TEXTURE_WRAP_S, wrapS);
+      device.gl().SamplerParameteri(sampler.id(), GL_TEXTURE_WRAP_T, wrapT);
+    }
+  }
+}
+
+void GpuMaterials::bind(int material) const {
+  const Set& set = sets_[static_cast<size_t>(material)];
+  for (GLuint unit = 0; unit < set.textures.size(); ++unit) {
+    if (set.textures[unit] == none) continue;
+    device_.gl().BindTextureUnit(unit, textures_[static_cast<size_t>(set.textures[unit])].id());
+    device_.gl().BindSampler(unit, samplers_[static_cast<size_t>(set.samplers[unit])].id());
+  }
+}
+
+void GpuMaterials::bindBaseColour(int material) const {
+  const Set& set = sets_[static_cast<size_t>(material)];
+  if (set.textures[0] == none) return;
+  device_.gl().BindTextureUnit(0, textures_[static_cast<size_t>(set.textures[0])].id());
+  device_.gl().BindSampler(0, samplers_[static_cast<size_t>(set.samplers[0])].id());
+}
+
+}  // namespace limn::scene

@@ -1,0 +1,100 @@
+// The insides of GpuScene and DrawList, shared by the files that implement them.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "core/scene/gpu_deform.h"
+#include "core/scene/gpu_geometry.h"
+#include "core/scene/gpu_materials.h"
+#include "core/scene/gpu_scene.h"
+
+namespace limn::scene {
+
+struct DrawCommand {
+  uint32_t count, instanceCount, firstIndex;
+  int32_t baseVertex;
+  uint32_t baseInstance;
+};
+
+/// Commands that share textures and fixed-function state.
+struct DrawRun {
+  int material = 0;
+  bool masked = false, mirrored = false, doubleSided = false;
+  uint32_t firstCommand = 0, commandCount = 0;
+};
+
+struct DrawList::Implementation {
+  std::vector<glm::uvec2> entries;  ///< draw instance, view
+  std::vector<DrawCommand> commands;
+  std::vector<DrawRun> runs;
+  std::vector<uint32_t> viewRuns;  ///< first run of each separately drawn view, then the end
+  uint64_t triangles = 0;
+  gpu::Buffer entryBuffer, commandBuffer;
+
+  void clear();
+  void upload(gpu::Device& device);
+};
+
+/// What drawing needs to know about one draw instance.
+struct InstanceState {
+  GeometryRange range;
+  uint32_t primitive = 0;  ///< equal for instances of the same vertices
+  int material = 0;
+  bool mirrored = false;
+  Bounds bounds;
+};
+
+struct DynamicState {
+  Primitive primitive;
+  GeometryRange range;
+  uint32_t vertexCapacity = 0, indexCapacity = 0;
+  bool dirty = false;
+};
+
+struct GpuScene::Implementation {
+  Implementation(gpu::Device& device, const Scene& scene);
+
+  bool allocate(const Pose& pose);
+  bool writeDynamic();
+  void updateInstances(const Pose& pose);
+  void sort();
+  void fill(DrawList::Implementation& list, const std::vector<uint32_t>& order,
+            std::span<const DepthView> views, bool depthOnly) const;
+  void bindVertices(const gpu::Buffer& entries) const;
+  void drawRun(const DrawRun& run) const;
+  template <class T>
+  bool upload(gpu::Buffer& buffer, const char* label, std::vector<T>& current, std::vector<T>& next);
+  void touch(frame::BufferHandle SceneHandles::*member);
+
+  gpu::Device& device;
+  const Scene& scene;
+  GpuGeometry geometry;
+  GpuMaterials materials;
+  GpuDeform deform;
+  gpu::VertexArray vertexArray;
+
+  std::vector<DynamicState> dynamic;
+  std::vector<GeometryRange> deformedRanges;
+  std::vector<std::pair<int, int>> deformedPrimitives;
+
+  std::vector<InstanceState> states;
+  std::vector<uint64_t> sortKeys;
+  std::vector<uint32_t> cameraOrder, depthOrder;
+  std::vector<glsl::Instance> instances, nextInstances;
+  std::vector<glsl::Light> lights, nextLights;
+  glsl::FrameBlock frame{};
+  CameraPose camera;
+  float nearPlane = 0;
+  Bounds bounds;
+  gpu::Buffer instanceBuffer, lightBuffer, frameBuffer;
+
+  frame::FrameGraph* graph = nullptr;
+  SceneHandles imported;
+};
+
+/// Bounds of a transformed box.
+Bounds transformed(const Bounds& box, const glm::mat4& matrix);
+
+}  // namespace limn::scene

@@ -1,0 +1,31 @@
+// Vertices of the G-buffer. Clip depth is reversed and infinite: z = near, w = view depth.
+#include "glsl/blocks.glsl"
+#include "glsl/vertex.glsl"
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in uvec2 entry;  // x: draw instance
+layout(location = 2) in uvec2 directions;
+layout(location = 3) in vec2 uv;
+layout(location = 4) in vec4 colour;
+
+layout(std430, binding = 0) readonly buffer Instances { Instance instances[]; };
+uniform float near_plane;  // metres
+
+layout(location = 0) out vec3 normal_ws;
+layout(location = 1) out vec4 tangent_ws;
+layout(location = 2) out vec2 surface_uv;
+layout(location = 3) out vec4 surface_colour;
+layout(location = 4) flat out uint instance_index;
+
+void main() {
+  instance_index = entry.x;
+  mat4 object_to_world = instances[entry.x].object_to_world;
+  vec4 clip = frame.world_to_clip * (object_to_world * vec4(position, 1.0));
+  gl_Position = vec4(clip.xy, near_plane, clip.w);
+
+  vec4 tangent = vertex_unpack_tangent(directions.y);
+  normal_ws = mat3(instances[entry.x].normal_to_world) * vertex_unpack_normal(directions.x);
+  tangent_ws = vec4(mat3(object_to_world) * tangent.xyz, tangent.w);
+  surface_uv = uv;
+  surface_colour = colour;
+}
