@@ -1,0 +1,300 @@
+#include "core/scene/gpu_scene.h"
+
+#include <gmock/gmock.h>
+
+#include <functional>
+
+#include "glsl/gbuffer.glsl"
+#include "tests/gpu/gl_test.h"
+#include "tests/gpu/test_scenes.h"
+
+namespace limn {
+namespace {
+
+using namespace limn::test;
+
+constexpr int side = 128;
+
+/// A G-buffer on the CPU, row 0 at the bottom.
+struct Picture {
+  std::vector<float> depth;
+  std::vector<uint32_t> instance;
+  std::vector<glm::vec2> normal, geometricNormal;
+  std::vector<glm::u8vec4> albedo;
+
+  size_t at(int x, int y) const { return static_cast<size_t>(y) * side + static_cast<size_t>(x); }
+  glm::vec3 shadingNormal(int x, int y) const { return glsl::octahedral_decode(normal[at(x, y)]); }
+  glm::vec3 faceNormal(int x, int y) const { return glsl::octahedral_decode(geometricNormal[at(x, y)]); }
+};
+
+class GpuSceneTest : public GlTest {
+ protected:
+  /// Renders the scene once and reads the G-buffer.
+  Picture draw(const scene::Scene& scene, const scene::Pose& pose, const scene::CameraPose& camera) {
+    scene::GpuScene gpuScene(device(), scene);
+    gpuScene.update(pose, camera, {side, side}, 0);
+    frame::ResourcePool pool(device());
+    scene::GBufferPass pass;
+    frame::FrameGraph graph;
+    const SceneHandles handles = gpuScene.import(graph);
+    const GBuffer g = pass.add(graph, gpuScene, handles, {side, side});
+    for (const frame::TextureHandle h : {g.depth, g.normal, g.geometricNormal, g.albedo, g.instance})
+      graph.output(h);
+    graph.prepare(device(), shaders(), pool);
+    graph.execute();
+    Picture picture;
+    const auto read = [&](frame::TextureHandle handle, auto& out, GLenum format, GLenum type) {
+      out.resize(side * side);
+      graph.texture(handle).read(0, format, type, out.data(), out.size() * sizeof(out[0]));
+    };
+    read(g.depth, picture.depth, GL_RED, GL_FLOAT);
+    read(g.instance, picture.instance, GL_RED_INTEGER, GL_UNSIGNED_INT);
+    read(g.normal, picture.normal, GL_RG, GL_FLOAT);
+    read(g.geometricNormal, picture.geometricNormal, GL_RG, GL_FLOAT);
+    read(g.albedo, picture.albedo, GL_RGBA, GL_UNSIGNED_BYTE);
+    gpuScene.forget();
+    return picture;
+  }
+};
+
+glm::vec3 ray(const glsl::FrameBlock& frame, int x, int y) {
+  return glm::vec3(frame.view_ray_origin) + static_cast<float>(x) * glm::vec3(frame.view_ray_dx) +
+         static_cast<float>(y) * glm::vec3(frame.view_ray_dy);
+}
+
+TEST_F(GpuSceneTest, DepthOfAPlaneIsExactAtEveryScale) {
+  for (const float scale : {1e-4f, 1.f, 1e4f}) {
+    scene::Scene scene;
+    addMesh(scene, floorPrimitive(10 * scale, addMaterial(scene)));
+    scene::Pose pose;
+    addInstance(scene, pose, 0);
+    const auto camera = scene::lookAt({0, 2 * scale, 5 * scale}, {0, 0, 0}, 0.8f);
+    const Picture picture = draw(scene, pose, camera);
+    glsl::FrameBlock frame{};
+    scene::setCamera(frame, camera, pose.bounds, side, side);
+    int covered = 0;
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) {
+        const glm::vec3 d = ray(frame, x, y);
+        const float expected = -frame.camera_position.y / d.y;
+        const glm::vec3 hit = glm::vec3(frame.camera_position) + expected * d;
+        if (d.y >= 0 || std::max(std::abs(hit.x), std::abs(hit.z)) > 9.9f * scale) continue;
+        ++covered;
+        EXPECT_NEAR(picture.depth[picture.at(x, y)] / expected, 1, 2e-5)
+            << x << "," << y << " scale " << scale;
+        EXPECT_EQ(picture.instance[picture.at(x, y)], 0u);
+      }
+    }
+    EXPECT_GT(covered, side * side / 3);
+    EXPECT_LT(glm::distance(picture.faceNormal(64, 40), glm::vec3(0, 1, 0)), 1e-4f);
+    EXPECT_EQ(picture.depth[picture.at(0, side - 1)], 0.f);
+    EXPECT_EQ(picture.instance[picture.at(0, side - 1)], glsl::no_instance);
+  }
+}
+
+TEST_F(GpuSceneTest, NearAndFarMayBeAMillionApart) {
+  scene::Scene scene;
+  const int material = addMaterial(scene);
+  addMesh(scene, floorPrimitive(1, material));
+  scene::Pose pose;
+  const glm::mat4 upright = glm::rotate(glm::mat4(1), 0.5f * glsl::pi, {1, 0, 0});
+  addInstance(scene, pose, 0, at(-1, 0, -1) * upright);                              // left half, 1 m away
+  addInstance(scene, pose, 0, at(0, 0, -1.0e6f) * upright * at(0, 0, 0, 1e6f));      // everything, 1000 km
+  addInstance(scene, pose, 0, at(0, 0, -1.001e6f) * upright * at(0, 0, 0, 1.1e6f));  // 1 km behind it
+  auto camera = scene::lookAt({0, 0, 0}, {0, 0, -1}, 0.8f);
+  camera.near = 0.5f;
+  const Picture picture = draw(scene, pose, camera);
+  EXPECT_EQ(picture.instance[picture.at(30, 64)], 0u);
+  EXPECT_EQ(picture.instance[picture.at(127, 64)], 1u);
+  EXPECT_NEAR(picture.depth[picture.at(127, 64)], 1e6, 30);
+  EXPECT_THAT(picture.instance, ::testing::Each(::testing::AnyOf(0u, 1u)));
+}
+
+TEST_F(GpuSceneTest, InstancesShareOneDrawAndKeepTheirIds) {
+  scene::Scene scene;
+  addMesh(scene, spherePrimitive(0.4f, addMaterial(scene), 12));
+  addMesh(scene, spherePrimitive(0.4f, 0, 6));
+  scene::Pose pose;
+  for (int i = 0; i < 16; ++i)
+    addInstance(scene, pose, i % 2,
+                at(static_cast<float>(i % 4) - 1.5f, static_cast<float>(i / 4) - 1.5f, 0));
+  const auto camera = scene::lookAt({0, 0, 8}, {0, 0, 0}, 0.6f);
+  const Picture picture = draw(scene, pose, camera);
+  glsl::FrameBlock frame{};
+  scene::setCamera(frame, camera, pose.bounds, side, side);
+  for (uint32_t i = 0; i < 16; ++i) {
+    const glm::vec4 clip = frame.world_to_clip * pose.instances[i].objectToWorld * glm::vec4(0, 0, 0, 1);
+    const int x = static_cast<int>((clip.x / clip.w * 0.5f + 0.5f) * side);
+    const int y = static_cast<int>((clip.y / clip.w * 0.5f + 0.5f) * side);
+    EXPECT_EQ(picture.instance[picture.at(x, y)], i);
+  }
+}
+
+TEST_F(GpuSceneTest, CullingFollowsSidesAndMirroring) {
+  scene::Scene scene;
+  scene::Material twoSided;
+  twoSided.doubleSided = true;
+  const int single = addMaterial(scene), both = addMaterial(scene, twoSided);
+  const int one = addMesh(scene, floorPrimitive(0.4f, single)),
+            two = addMesh(scene, floorPrimitive(0.4f, both));
+  const glm::mat4 towards = glm::rotate(glm::mat4(1), 0.5f * glsl::pi, {1, 0, 0});  // faces +z, the camera
+  const glm::mat4 away = glm::rotate(glm::mat4(1), -0.5f * glsl::pi, {1, 0, 0});
+  const glm::mat4 mirror = glm::scale(glm::mat4(1), glm::vec3(-1, 1, 1));
+  scene::Pose pose;
+  addInstance(scene, pose, one, at(-1, 1, 0) * towards);
+  addInstance(scene, pose, one, at(0, 1, 0) * away);  // unseen
+  addInstance(scene, pose, one, at(1, 1, 0) * towards * mirror);
+  addInstance(scene, pose, one, at(-1, 0, 0) * away * mirror);  // unseen
+  addInstance(scene, pose, two, at(0, 0, 0) * towards);
+  addInstance(scene, pose, two, at(1, 0, 0) * away);
+  addInstance(scene, pose, two, at(0, -1, 0) * away * mirror);
+  const Picture picture = draw(scene, pose, scene::lookAt({0, 0, 4}, {0, 0, 0}, 0.9f));
+  const auto idAt = [&](int column, int row) {
+    return picture.instance[picture.at(64 + 33 * column, 64 + 33 * row)];
+  };
+  EXPECT_EQ(idAt(-1, 1), 0u);
+  EXPECT_EQ(idAt(0, 1), glsl::no_instance);
+  EXPECT_EQ(idAt(1, 1), 2u);
+  EXPECT_EQ(idAt(-1, 0), glsl::no_instance);
+  EXPECT_EQ(idAt(0, 0), 4u);
+  EXPECT_EQ(idAt(1, 0), 5u);
+  EXPECT_EQ(idAt(0, -1), 6u);
+  for (const auto& [column, row] : {std::pair(-1, 1), {1, 1}, {0, 0}, {1, 0}, {0, -1}}) {
+    const int x = 64 + 33 * column, y = 64 + 33 * row;
+    EXPECT_LT(glm::distance(picture.shadingNormal(x, y), glm::vec3(0, 0, 1)), 1e-3f) << column << "," << row;
+    EXPECT_LT(glm::distance(picture.faceNormal(x, y), glm::vec3(0, 0, 1)), 1e-3f) << column << "," << row;
+  }
+}
+
+/// A texture of one texel per level, level k of grey value 20 (k + 1).
+scene::TextureImage levelTexture(int size) {
+  scene::TextureImage image;
+  for (uint8_t value = 20; size > 0; size /= 2, value = static_cast<uint8_t>(value + 20)) {
+    scene::TextureImage::Level level{size, size, {}};
+    level.rgba.assign(static_cast<size_t>(size * size) * 4, value);
+    for (size_t i = 3; i < level.rgba.size(); i += 4) level.rgba[i] = 255;
+    image.levels.push_back(std::move(level));
+  }
+  return image;
+}
+
+TEST_F(GpuSceneTest, TextureLevelFollowsTheSharedFormula) {
+  scene::Scene scene;
+  scene.images.push_back(levelTexture(256));
+  scene::Material material;
+  material.baseColourTexture.image = 0;
+  const glm::mat4 upright = glm::rotate(glm::mat4(1), 0.5f * glsl::pi, {1, 0, 0});
+  addMesh(scene, floorPrimitive(1, addMaterial(scene, material)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0, upright);
+  for (const float distance : {2.f, 4.f, 8.f}) {
+    const Picture picture = draw(scene, pose, scene::lookAt({0, 0, distance}, {0, 0, 0}, 0.8f));
+    const float texelsPerPixel = 128 * (2 * std::tan(0.4f) * distance / side);
+    const float linear = 20 * (1 + std::max(0.f, std::log2(texelsPerPixel))) / 255.f;
+    const float encoded = glsl::srgb_encode(glm::vec3(linear)).x * 255;
+    EXPECT_NEAR(picture.albedo[picture.at(64, 64)].x, encoded, 2) << distance;
+  }
+}
+
+TEST_F(GpuSceneTest, MaskedTexelsAreHoles) {
+  scene::Scene scene;
+  scene::TextureImage image;
+  image.levels.push_back({2, 1, {255, 255, 255, 255, 255, 255, 255, 0}});
+  scene.images.push_back(image);
+  scene::Material material;
+  material.baseColourTexture = {0, scene::Wrap::clamp, scene::Wrap::clamp};
+  material.alphaCutoff = 0.5f;
+  const glm::mat4 upright = glm::rotate(glm::mat4(1), 0.5f * glsl::pi, {1, 0, 0});
+  addMesh(scene, floorPrimitive(1, addMaterial(scene, material)));
+  addMesh(scene, floorPrimitive(1, addMaterial(scene)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0, upright);
+  addInstance(scene, pose, 1, at(0, 0, -0.5f) * upright);
+  const Picture picture = draw(scene, pose, scene::lookAt({0, 0, 4}, {0, 0, 0}, 0.4f));
+  EXPECT_EQ(picture.instance[picture.at(32, 64)], 0u);
+  EXPECT_EQ(picture.instance[picture.at(96, 64)], 1u);
+}
+
+TEST_F(GpuSceneTest, SkinnedAndMorphedVerticesEqualTransformedOnes) {
+  scene::Scene scene;
+  scene::Primitive plain = floorPrimitive(1, addMaterial(scene)), skinned = plain, morphed = plain;
+  skinned.joints.assign(4, {0, 1, 0, 0});
+  skinned.weights.assign(4, {0.25f, 0.75f, 0, 0});
+  scene::MorphTarget target;
+  target.positions.assign(4, {0, 1, 0});
+  morphed.morphTargets.push_back(target);
+  const int plainMesh = addMesh(scene, plain), skinnedMesh = addMesh(scene, skinned),
+            morphedMesh = addMesh(scene, morphed);
+  const glm::mat4 upright = glm::rotate(glm::mat4(1), 1.3f, {1, 0.2f, 0});
+  const auto camera = scene::lookAt({0.5f, 0.5f, 4}, {0, 0, 0}, 0.6f);
+
+  scene::Pose still, skin, morph;
+  addInstance(scene, still, plainMesh, at(0.3f, 0.2f, -1) * upright);
+  const Picture expected = draw(scene, still, camera);
+
+  addInstance(scene, skin, skinnedMesh);
+  skin.instances[0].deformed = 0;
+  skin.deformed.push_back({skinnedMesh, 0, {at(1.2f, 0.2f, -1) * upright, at(0, 0.2f, -1) * upright}, {}});
+  addInstance(scene, morph, morphedMesh, at(0.3f, 0.2f, -1) * upright * at(0, -0.75f, 0));
+  morph.instances[0].deformed = 0;
+  morph.deformed.push_back({morphedMesh, 0, {}, {0.75f}});
+  for (const scene::Pose* pose : {&skin, &morph}) {
+    const Picture picture = draw(scene, *pose, camera);
+    int differ = 0, covered = 0;
+    for (size_t i = 0; i < expected.depth.size(); ++i) {
+      if (picture.instance[i] != expected.instance[i]) {
+        ++differ;
+      } else if (expected.depth[i] > 0) {
+        ++covered;
+        EXPECT_NEAR(picture.depth[i], expected.depth[i], 1e-4f);
+        EXPECT_LT(glm::distance(picture.normal[i], expected.normal[i]), 2e-4f);
+      }
+    }
+    EXPECT_LT(differ, 5);  // rounding at the silhouette
+    EXPECT_GT(covered, 1000);
+  }
+}
+
+TEST_F(GpuSceneTest, OnlyWhatMovesIsTouched) {
+  scene::Scene scene;
+  addMesh(scene, floorPrimitive(1, addMaterial(scene)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addLight(pose, pointLight({0, 2, 0}));
+  scene::GpuScene gpuScene(device(), scene);
+  auto camera = scene::lookAt({0, 2, 4}, {0, 0, 0}, 0.6f);
+  EXPECT_FALSE(gpuScene.update(pose, camera, {side, side}, 0));
+  frame::ResourcePool pool(device());
+  frame::FrameGraph graph;
+  const SceneHandles handles = gpuScene.import(graph);
+  // A stand-in for a shadow map: depends on geometry, instances and lights, not on the camera.
+  frame::PassBuilder builder = graph.addPass("map");
+  scene::GpuScene::declareReads(builder, handles);
+  builder.read(handles.lights, frame::Access::storageLoad, "test");
+  int runs = 0;
+  const auto out = builder.write(graph.createBuffer("out", {16}), frame::Access::copyTarget, "test");
+  builder.cacheable().execute([&](frame::PassContext&) { ++runs; });
+  graph.output(out);
+  graph.prepare(device(), shaders(), pool);
+  graph.execute();
+  EXPECT_EQ(runs, 1);
+
+  camera = scene::lookAt({1, 2, 4}, {0, 0, 0}, 0.6f);
+  EXPECT_FALSE(gpuScene.update(pose, camera, {side, side}, 1));
+  graph.execute();
+  EXPECT_EQ(runs, 1);
+  pose.instances[0].objectToWorld = at(0, 1, 0);
+  EXPECT_FALSE(gpuScene.update(pose, camera, {side, side}, 2));
+  graph.execute();
+  EXPECT_EQ(runs, 2);
+  pose.lights[0].position.x = 1;
+  EXPECT_FALSE(gpuScene.update(pose, camera, {side, side}, 3));
+  graph.execute();
+  EXPECT_EQ(runs, 3);
+  addLight(pose, pointLight({0, 3, 0}));
+  EXPECT_TRUE(gpuScene.update(pose, camera, {side, side}, 4));
+  gpuScene.forget();
+}
+
+}  // namespace
+}  // namespace limn
