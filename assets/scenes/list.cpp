@@ -4,6 +4,7 @@ namespace limn::assets {
 
 const std::vector<SceneEntry>& allScenes() {
   static const std::vector<SceneEntry> scenes = {
+      {"atrium", makeAtrium},
       {"balls", makeBalls},
       {"cornell_box", makeCornellBox},
       {"foliage_card", makeFoliageCard},

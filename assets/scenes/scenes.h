@@ -8,6 +8,7 @@
 
 namespace limn::assets {
 
+Scene makeAtrium();
 Scene makeBalls();
 Scene makeCornellBox();
 Scene makeFoliageCard();
