@@ -52,6 +52,7 @@ class PassTimer {
     }
   }
   ~PassTimer() {
+    pass_.timed |= timing_ != Timing::off;
     if (timing_ == Timing::query) pass_.queries[graph_.querySet].end();
     if (timing_ == Timing::finish) {
       graph_.device->gl().Finish();
@@ -124,6 +125,7 @@ void FrameGraph::execute(Timing timing) {
   if (timing != Timing::off) {
     graph.lastTiming = timing;
     graph.querySet = 1 - graph.querySet;  // the other set's results may still be on their way
+    for (uint32_t p : graph.order) graph.passes[p].timed = false;
   }
   PassContext context(*this);
   try {
@@ -148,7 +150,7 @@ std::vector<PassTime> FrameGraph::passTimes() {
   if (graph.lastTiming == Timing::off) return times;
   for (uint32_t p : graph.order) {
     Pass& pass = graph.passes[p];
-    if (!pass.run) continue;
+    if (!pass.timed) continue;
     if (graph.lastTiming == Timing::query) {
       pass.milliseconds = static_cast<double>(pass.queries[graph.querySet].result()) * 1e-6;
     }

@@ -82,6 +82,7 @@ struct Pass {
   // Running.
   bool valid = false;  ///< the outputs of an earlier frame are still there
   bool run = true;     ///< in the last frame
+  bool timed = false;  ///< ran in the last frame with timing
   std::array<gpu::Query, 2> queries;
   double milliseconds = 0;
 };

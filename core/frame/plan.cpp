@@ -7,8 +7,8 @@ namespace limn::frame {
 
 void FrameGraph::plan() {
   Graph& graph = *implementation_;
+  if (graph.planned) return;
   graph.release();
-  graph.planned = false;
   std::vector<std::string> problems = graph.problems;
   cullAndOrder(graph, problems);
   if (!problems.empty()) {

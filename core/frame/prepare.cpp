@@ -8,10 +8,11 @@
 namespace limn::frame {
 namespace {
 
+/// Not every back end can make what OpenGL calls a debug context, but messages are switched on in all.
 bool isDebugContext(const gl::Functions& gl) {
   GLint flags = 0;
   gl.GetIntegerv(GL_CONTEXT_FLAGS, &flags);
-  return (flags & GL_CONTEXT_FLAG_DEBUG_BIT) != 0;
+  return (flags & GL_CONTEXT_FLAG_DEBUG_BIT) != 0 || gl.IsEnabled(GL_DEBUG_OUTPUT) == GL_TRUE;
 }
 
 void compilePrograms(Graph& graph, gpu::ShaderLibrary& shaders) {
@@ -48,6 +49,7 @@ void Graph::release() {
   for (Pass& pass : passes) {
     pass.valid = false;
     pass.run = true;
+    pass.timed = false;
     pass.queries = {};
   }
   device = nullptr;
@@ -56,8 +58,9 @@ void Graph::release() {
 }
 
 void FrameGraph::prepare(gpu::Device& device, gpu::ShaderLibrary& shaders, ResourcePool& pool) {
-  plan();
   Graph& graph = *implementation_;
+  graph.release();
+  plan();
   compilePrograms(graph, shaders);
   for (const Physical& physical : graph.physicals) {
     const std::string label = labelOf(graph, physical);
