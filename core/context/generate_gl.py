@@ -1,7 +1,7 @@
 """Writes the OpenGL function table from the Khronos registry: generate_gl.py GL_XML HEADER SOURCE.
 
-The table holds the commands of the OpenGL 4.5 core profile and nothing else, because limn runs on what the core
-profile alone offers. The header declares the types, the GL_ constants (as macros behind #ifndef, so that it
+The table holds the commands of the OpenGL 4.5 core profile and nothing else, because limn runs on what the
+core profile alone offers. The header declares the types, the GL_ constants (as macros behind #ifndef, so that it
 can be included before or after another OpenGL header) and `limn::gl::Functions`.
 """
 import os
@@ -10,7 +10,8 @@ import sys
 import xml.etree.ElementTree as ElementTree
 
 VERSION = (4, 5)
-# Bounded reads that Mesa 22's OSMesa does not export under their core names; limn reads through direct state access.
+# Bounded reads that Mesa 22's OSMesa does not export under their core names; limn reads through direct state
+# access.
 LEFT_OUT = {"glGetnCompressedTexImage", "glGetnTexImage", "glGetnUniformdv"}
 NOTICE = "// Generated from the Khronos OpenGL registry by core/context/generate_gl.py. Do not edit.\n"
 
@@ -70,7 +71,7 @@ def constants(registry, wanted):
 
 
 def commands(registry, wanted):
-    """(name without gl, return type, [parameter declaration], [type name]) of the wanted commands, by name."""
+    """(name without gl, return type, [parameter declaration], [type name]) of the wanted commands, sorted."""
     found = []
     for node in registry.find("commands").iter("command"):
         prototype = node.find("proto")
