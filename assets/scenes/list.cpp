@@ -11,6 +11,7 @@ const std::vector<SceneEntry>& allScenes() {
       {"lights", makeLights},
       {"plant", makePlant},
       {"robot", makeRobot},
+      {"soldiers", makeSoldiers},
       {"statue", makeStatue},
       {"teapot", makeTeapot},
       {"white_furnace", makeWhiteFurnace},

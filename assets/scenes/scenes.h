@@ -15,6 +15,7 @@ Scene makeFoliageCard();
 Scene makeLights();
 Scene makePlant();
 Scene makeRobot();
+Scene makeSoldiers();
 Scene makeStatue();
 Scene makeTeapot();
 Scene makeWhiteFurnace();
