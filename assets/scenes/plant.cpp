@@ -1,4 +1,5 @@
 // A potted fig: branching stems and well over a thousand curved leaves, all of them geometry.
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
@@ -17,7 +18,8 @@ constexpr float kGoldenAngle = 2.39996323f;
 Mesh leafShape(float droop, float fold, float wave) {
   return surface(4, 8, [=](glm::vec2 uv) {
     const float t = uv.y, across = 2 * uv.x - 1;
-    const float width = 0.27f * std::pow(std::sin(kPi * std::pow(t, 0.75f)), 0.85f) + 0.004f * (1 - t);
+    const float width =
+        0.27f * std::pow(std::max(std::sin(kPi * std::pow(t, 0.75f)), 0.0f), 0.85f) + 0.004f * (1 - t);
     const float bend = droop * t * t;
     const float lift = width * (fold * std::abs(across) + wave * across * across * std::sin(9 * t + across));
     const glm::vec3 rib(0, std::sin(bend) / std::max(droop * t, 1e-3f),

@@ -1,4 +1,5 @@
 // The robot's body: rigid shells, and ribbed rubber sleeves whose weights blend across the joints.
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
@@ -20,7 +21,8 @@ Mesh superellipsoid(glm::vec3 radii, float squareVertical, float squareHorizonta
                     int rings = 28) {
   return surface(2 * rings, rings, [=](glm::vec2 uv) {
     const float a = 2 * kPi * uv.x, b = kPi * (uv.y - 0.5f);
-    const float c = signedPower(std::cos(b), squareVertical), y = signedPower(std::sin(b), squareVertical);
+    const float c = std::pow(std::max(std::cos(b), 0.0f), squareVertical),
+                y = signedPower(std::sin(b), squareVertical);
     const float wide = 1 + taper * y;
     return glm::vec3(radii.x * wide * c * signedPower(std::cos(a), squareHorizontal), radii.y * y,
                      -radii.z * wide * c * signedPower(std::sin(a), squareHorizontal));

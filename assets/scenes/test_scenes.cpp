@@ -1,5 +1,6 @@
 // Small scenes for tests: white_furnace, lights (one light of every type), foliage_card (alpha-masked
 // leaves).
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
@@ -14,7 +15,8 @@ namespace {
 Image leafImage(int size) {
   return makeImage(size, size, [](glm::vec2 uv) {
     const float y = 1 - uv.y, x = std::abs(uv.x - 0.5f);
-    const float halfWidth = 0.42f * std::pow(std::sin(glm::pi<float>() * std::pow(y, 0.8f)), 0.8f);
+    const float halfWidth =
+        0.42f * std::pow(std::max(std::sin(glm::pi<float>() * std::pow(y, 0.8f)), 0.0f), 0.8f);
     const float lobes = 1 - 0.12f * std::abs(std::sin(9 * glm::pi<float>() * y));
     const float vein = std::abs(std::fmod(y - 0.7f * x + 1, 0.11f) - 0.055f);
     const float pale =
