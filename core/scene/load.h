@@ -10,9 +10,10 @@
 namespace limn::scene {
 
 struct LoadLimits {
-  uint64_t vertices = 200'000'000;  ///< in all meshes
+  uint64_t vertices = 200'000'000;  ///< vertices, indices / 3, morph deltas and animation keys, all together
   uint64_t imageTexels = 1ull << 28;
   int nodes = 1'000'000;
+  uint64_t instances = 10'000'000;  ///< drawn primitives, and joint matrices
 };
 
 /// Loads glTF 2.0 (.gltf, .glb). Throws Error of one line naming file, place, value and what would be accepted.

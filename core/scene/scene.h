@@ -78,6 +78,13 @@ struct Material {
 
 struct MorphTarget {
   std::vector<glm::vec3> positions, normals, tangents;  ///< deltas; empty or one per vertex
+  Bounds deltaBounds;                                   ///< of the position deltas, 0 included
+};
+
+/// Two coplanar triangles that form a rectangle, in object space.
+struct Quad {
+  glm::vec3 centre{0};
+  glm::vec3 sideU{0}, sideV{0};  ///< whole sides; cross(sideU, sideV) points to the front face
 };
 
 /// Triangles with one material. All vertex arrays have positions.size() elements or are empty.
@@ -93,6 +100,8 @@ struct Primitive {
   std::vector<MorphTarget> morphTargets;
   int material = none;  ///< always valid after loading
   Bounds bounds;
+  std::vector<Bounds> jointBounds;   ///< skinned: of the vertices that each joint moves
+  std::optional<Quad> emissiveQuad;  ///< a rectangle light as well as geometry
 };
 
 struct Mesh {
@@ -178,6 +187,8 @@ class LIMN_API GeometrySource {
   /// Fills `out` (positions, normals, indices; anything else optional) for `time` and returns true, or returns false
   /// when nothing changed since the last call.
   virtual bool update(double time, Primitive& out) = 0;
+  /// World bounds at `time`, if known without making the triangles; counted in Pose::bounds.
+  virtual Bounds bounds(double /*time*/) const { return {}; }
 };
 
 struct Scene {
@@ -236,6 +247,9 @@ struct Pose {
 
 /// The state at `time` seconds; `animation` none: the first one. Animations repeat.
 LIMN_API Pose evaluate(const Scene& scene, double time, int animation = none);
+
+/// World bounds of an instance at `pose`; conservative for deformed ones, empty for dynamic geometry.
+LIMN_API Bounds instanceBounds(const Scene& scene, const Pose& pose, const DrawInstance& instance);
 
 /// Deformed vertices of one primitive on the CPU: the reference's twin of the compute shader (same formulas, from
 /// glsl/deform.glsl). Positions and normals are in world space when skinned, in object space when only morphed.
