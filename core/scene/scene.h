@@ -1,5 +1,5 @@
-// A scene on the CPU: what a glTF 2.0 file holds, validated, in plain values. Units: metres, radians, seconds, radiance
-// W/(sr m^2), intensity W/sr. Everything may move: evaluate() gives the state at a time.
+// A scene on the CPU: what a glTF 2.0 file holds, validated, in plain values. Units: metres, radians,
+// seconds, radiance W/(sr m^2), intensity W/sr. Everything may move: evaluate() gives the state at a time.
 #pragma once
 
 #include <cstdint>
@@ -36,8 +36,8 @@ struct Bounds {
   float radius() const { return empty() ? 0.f : 0.5f * glm::length(high - low); }
 };
 
-/// 8-bit RGBA with its whole mip chain, made once on the CPU (averaged in linear light for sRGB), so that the GPU and
-/// the reference filter the same texels.
+/// 8-bit RGBA with its whole mip chain, made once on the CPU (averaged in linear light for sRGB), so that the
+/// GPU and the reference filter the same texels.
 struct TextureImage {
   std::string name;
   bool srgb = false;
@@ -72,7 +72,8 @@ struct Material {
   glm::vec3 attenuationColour{1};
   TextureRef baseColourTexture, metalRoughTexture, normalTexture, emissiveTexture;
 
-  /// Blocks direct and indirect light in both renderers (transmission > 0, or metallic with roughness below 0.05).
+  /// Blocks direct and indirect light in both renderers (transmission > 0, or metallic with roughness below
+  /// 0.05).
   bool specularSurface() const { return transmission > 0 || (metallic >= 0.5f && roughness < 0.05f); }
 };
 
@@ -122,8 +123,8 @@ struct LightSource {
   std::string name;
   uint32_t type = glsl::light_point;  ///< light_point, light_spot or light_directional
   glm::vec3 colour{1};
-  float intensity = 1;  ///< W/sr (point, spot, rectangle); W/m^2 (directional)
-  float range = 0;      ///< metres, 0: unlimited
+  float intensity = 1;                          ///< W/sr (point, spot, rectangle); W/m^2 (directional)
+  float range = 0;                              ///< metres, 0: unlimited
   float innerCone = 0, outerCone = 0.7853982f;  ///< half angles, radians (spot)
   float angle = 0;                              ///< angular diameter of a directional light, radians
 };
@@ -142,7 +143,7 @@ struct Node {
   int mesh = none, skin = none, camera = none, light = none;
   std::vector<float> morphWeights;   ///< overrides the mesh's
   std::vector<Transform> instances;  ///< EXT_mesh_gpu_instancing; empty: the node itself
-  glm::vec2 limnArea{0};             ///< extras.limn_area (u, v) in metres: its light is a rectangle facing -Z
+  glm::vec2 limnArea{0};  ///< extras.limn_area (u, v) in metres: its light is a rectangle facing -Z
 };
 
 struct Skin {
@@ -184,8 +185,8 @@ struct Medium {
 class LIMN_API GeometrySource {
  public:
   virtual ~GeometrySource() = default;
-  /// Fills `out` (positions, normals, indices; anything else optional) for `time` and returns true, or returns false
-  /// when nothing changed since the last call.
+  /// Fills `out` (positions, normals, indices; anything else optional) for `time` and returns true, or
+  /// returns false when nothing changed since the last call.
   virtual bool update(double time, Primitive& out) = 0;
   /// World bounds at `time`, if known without making the triangles; counted in Pose::bounds.
   virtual Bounds bounds(double /*time*/) const { return {}; }
@@ -209,7 +210,7 @@ struct Scene {
     int material = 0;
   };
   std::vector<Dynamic> dynamic;
-  std::vector<std::string> warnings;  ///< one line each, shown once
+  std::vector<std::string> warnings;    ///< one line each, shown once
   LIMN_API uint64_t triangles() const;  ///< drawn, instances counted
 };
 
@@ -218,8 +219,9 @@ struct DrawInstance {
   int node = none;  ///< none: dynamic geometry
   int mesh = none;  ///< Scene::meshes index, or Scene::dynamic index when node is none
   int primitive = 0;
-  glm::mat4 objectToWorld{1};  ///< identity for skinned primitives: their vertices are deformed into world space
-  int deformed = none;         ///< index into Pose::deformed when skinned or morphed
+  glm::mat4 objectToWorld{
+      1};               ///< identity for skinned primitives: their vertices are deformed into world space
+  int deformed = none;  ///< index into Pose::deformed when skinned or morphed
 };
 
 /// Skin and morph state of one primitive instance.
@@ -242,17 +244,24 @@ struct Pose {
   std::vector<glsl::Light> lights;      ///< punctual lights in node order, then emissive quads
   std::vector<std::string> lightNames;  ///< parallel to lights; "#index" where the file gives no name
   std::vector<CameraPose> cameras;
-  Bounds bounds;  ///< world, all instances (skinned ones: conservative)
+  Bounds bounds;                       ///< world, all instances (skinned ones: conservative)
+  std::vector<Transform> nodeLocal;    ///< animated transform of each node
+  std::vector<glm::mat4> nodeToWorld;  ///< of each node
+  std::vector<int> weightChannel;      ///< of each node: the animation channel of its morph weights, or none
 };
 
-/// The state at `time` seconds; `animation` none: the first one. Animations repeat.
+/// The state at `time` seconds; `animation` none: the first one. Animations repeat (time modulo duration).
+/// Throws UsageError if `time` is not finite or there is no such animation.
 LIMN_API Pose evaluate(const Scene& scene, double time, int animation = none);
+/// The same into `pose`, whose memory is reused: nothing is allocated from the second call for one scene on.
+LIMN_API void evaluate(const Scene& scene, double time, int animation, Pose& pose);
 
 /// World bounds of an instance at `pose`; conservative for deformed ones, empty for dynamic geometry.
 LIMN_API Bounds instanceBounds(const Scene& scene, const Pose& pose, const DrawInstance& instance);
 
-/// Deformed vertices of one primitive on the CPU: the reference's twin of the compute shader (same formulas, from
-/// glsl/deform.glsl). Positions and normals are in world space when skinned, in object space when only morphed.
+/// Deformed vertices of one primitive on the CPU: the reference's twin of the compute shader (same formulas,
+/// from glsl/deform.glsl). Positions and normals are in world space when skinned, in object space when only
+/// morphed.
 LIMN_API void deform(const Primitive& primitive, const Deformation& state, std::vector<glm::vec3>& positions,
                      std::vector<glm::vec3>& normals, std::vector<glm::vec4>& tangents);
 

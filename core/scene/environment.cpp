@@ -1,0 +1,38 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/image/image.h"
+#include "core/scene/load.h"
+
+namespace limn::scene {
+
+Environment loadEnvironment(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  if (extension != ".exr" && extension != ".hdr")
+    throw Error(fmt::format("{}: an environment is an equirectangular .exr or .hdr file", file.string()));
+  const Image image = readImage(file);
+  const std::array<int, 3> rgb = image.rgbChannels();
+  Environment out;
+  out.width = image.width();
+  out.height = image.height();
+  out.texels.resize(image.pixelCount());
+  for (int y = 0; y < out.height; ++y) {
+    for (int x = 0; x < out.width; ++x) {
+      glm::vec3& texel = out.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(out.width) +
+                                    static_cast<std::size_t>(x)];
+      for (int c = 0; c < 3; ++c) {
+        const float value = image.at(x, y, rgb[static_cast<std::size_t>(c)]);
+        if (!std::isfinite(value))
+          throw Error(fmt::format("{}: pixel ({}, {}) is not a finite number", file.string(), x, y));
+        texel[c] = std::max(value, 0.f);
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace limn::scene

@@ -1,0 +1,275 @@
+// The state of a scene at a time: animation, world matrices, skins, cameras, lights, bounds.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/scene/animate.h"
+#include "core/scene/scene.h"
+#include "core/scene/world_light.h"
+
+namespace limn::scene {
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+/// The box of a transformed box (Arvo 1990, "Transforming Axis-Aligned Bounding Boxes").
+Bounds transformed(const glm::mat4& m, const Bounds& box) {
+  if (box.empty()) return {};
+  const glm::vec3 centre(m * glm::vec4(0.5f * box.low + 0.5f * box.high, 1));
+  const glm::vec3 half = 0.5f * box.high - 0.5f * box.low;
+  const glm::vec3 extent = glm::abs(glm::vec3(m[0])) * half.x + glm::abs(glm::vec3(m[1])) * half.y +
+                           glm::abs(glm::vec3(m[2])) * half.z;
+  return {centre - extent, centre + extent};
+}
+
+Bounds morphReach(const Primitive& primitive, const std::vector<float>& weights) {
+  Bounds reach{glm::vec3(0), glm::vec3(0)};
+  for (std::size_t t = 0; t < std::min(weights.size(), primitive.morphTargets.size()); ++t) {
+    const Bounds& delta = primitive.morphTargets[t].deltaBounds;
+    if (delta.empty()) continue;
+    reach.low += glm::min(weights[t] * delta.low, weights[t] * delta.high);
+    reach.high += glm::max(weights[t] * delta.low, weights[t] * delta.high);
+  }
+  return reach;
+}
+
+const Animation* chooseAnimation(const Scene& scene, double time, int animation) {
+  if (!std::isfinite(time)) throw UsageError("time: a finite number of seconds is accepted");
+  if (animation == none) return scene.animations.empty() ? nullptr : &scene.animations.front();
+  if (animation < 0 || at(animation) >= scene.animations.size())
+    throw UsageError(
+        fmt::format("animation {} does not exist; the scene has {}", animation, scene.animations.size()));
+  return &scene.animations[at(animation)];
+}
+
+double wrapped(double time, double duration) {
+  if (!(duration > 0)) return 0;
+  const double rest = std::fmod(time, duration);
+  return rest < 0 ? rest + duration : rest;
+}
+
+void animate(const Scene& scene, const Animation* animation, double time, Pose& pose) {
+  pose.nodeLocal.resize(scene.nodes.size());
+  pose.weightChannel.assign(scene.nodes.size(), none);
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) pose.nodeLocal[i] = scene.nodes[i].transform;
+  if (!animation) return;
+  for (std::size_t k = 0; k < animation->channels.size(); ++k) {
+    const AnimationChannel& channel = animation->channels[k];
+    if (channel.path == AnimationChannel::Path::weights) {
+      pose.weightChannel[at(channel.node)] = static_cast<int>(k);
+      continue;
+    }
+    Transform& local = pose.nodeLocal[at(channel.node)];
+    std::array<float, 4> v{};
+    const bool rotation = channel.path == AnimationChannel::Path::rotation;
+    sampleChannel(channel, time, std::span(v).first(rotation ? 4 : 3));
+    if (rotation) {
+      local.rotation = glm::quat(v[3], v[0], v[1], v[2]);
+    } else if (channel.path == AnimationChannel::Path::translation) {
+      local.translation = {v[0], v[1], v[2]};
+    } else {
+      local.scale = {v[0], v[1], v[2]};
+    }
+  }
+}
+
+void updateWorldMatrices(const Scene& scene, Pose& pose) {
+  pose.nodeToWorld.resize(scene.nodes.size());
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    const Node& node = scene.nodes[i];
+    const glm::mat4 local = node.matrix ? *node.matrix : pose.nodeLocal[i].matrix();
+    pose.nodeToWorld[i] = node.parent == none ? local : pose.nodeToWorld[at(node.parent)] * local;
+  }
+}
+
+/// Appends elements to a vector whose elements own memory, without giving that memory back between frames.
+template <class T>
+class Refill {
+ public:
+  explicit Refill(std::vector<T>& values) : values_(values) {}
+  ~Refill() { values_.resize(count_); }
+  T& next() {
+    if (count_ == values_.size()) values_.emplace_back();
+    return values_[count_++];
+  }
+  int count() const { return static_cast<int>(count_); }
+
+ private:
+  std::vector<T>& values_;
+  std::size_t count_ = 0;
+};
+
+void setWeights(const Scene& scene, const Animation* animation, double time, const Pose& pose, int node,
+                std::vector<float>& weights) {
+  const Node& source = scene.nodes[at(node)];
+  const std::vector<float>& mesh = scene.meshes[at(source.mesh)].morphWeights;
+  const std::vector<float>& start = source.morphWeights.empty() ? mesh : source.morphWeights;
+  weights.assign(start.begin(), start.end());
+  const int channel = pose.weightChannel[at(node)];
+  if (animation && channel != none) sampleChannel(animation->channels[at(channel)], time, weights);
+}
+
+void setJoints(const Skin& skin, const Pose& pose, std::vector<glm::mat4>& joints) {
+  joints.resize(skin.joints.size());
+  for (std::size_t j = 0; j < skin.joints.size(); ++j)
+    joints[j] = pose.nodeToWorld[at(skin.joints[j])] * skin.inverseBind[j];
+}
+
+/// Index into pose.deformed of one primitive of a node, or none if it is rigid.
+int addDeformation(const Scene& scene, const Animation* animation, double time, int nodeIndex,
+                   int primitiveIndex, Pose& pose, Refill<Deformation>& deformed) {
+  const Node& node = scene.nodes[at(nodeIndex)];
+  const Primitive& primitive = scene.meshes[at(node.mesh)].primitives[at(primitiveIndex)];
+  const bool skinned = node.skin != none && !primitive.joints.empty();
+  if (!skinned && primitive.morphTargets.empty()) return none;
+  const int index = deformed.count();
+  Deformation& out = deformed.next();
+  out.mesh = node.mesh;
+  out.primitive = primitiveIndex;
+  out.joints.clear();
+  out.morphWeights.clear();
+  if (skinned) setJoints(scene.skins[at(node.skin)], pose, out.joints);
+  if (!primitive.morphTargets.empty()) setWeights(scene, animation, time, pose, nodeIndex, out.morphWeights);
+  return index;
+}
+
+void addInstances(const Scene& scene, const Animation* animation, double time, Pose& pose) {
+  Refill<Deformation> deformed(pose.deformed);
+  pose.instances.clear();
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+    const Node& node = scene.nodes[n];
+    if (node.mesh == none) continue;
+    const int firstDeformed = deformed.count();
+    const std::size_t copies = std::max<std::size_t>(1, node.instances.size());
+    for (std::size_t copy = 0; copy < copies; ++copy) {
+      const glm::mat4 world =
+          node.instances.empty() ? pose.nodeToWorld[n] : pose.nodeToWorld[n] * node.instances[copy].matrix();
+      int known = firstDeformed;  // copies share their node's morph state
+      for (std::size_t p = 0; p < scene.meshes[at(node.mesh)].primitives.size(); ++p) {
+        DrawInstance instance;
+        instance.node = static_cast<int>(n);
+        instance.mesh = node.mesh;
+        instance.primitive = static_cast<int>(p);
+        if (copy == 0) {
+          instance.deformed =
+              addDeformation(scene, animation, time, instance.node, instance.primitive, pose, deformed);
+        } else if (!scene.meshes[at(node.mesh)].primitives[p].morphTargets.empty()) {
+          instance.deformed = known++;
+        }
+        const bool inWorld =
+            instance.deformed != none && !pose.deformed[at(instance.deformed)].joints.empty();
+        instance.objectToWorld = inWorld ? glm::mat4(1) : world;
+        pose.instances.push_back(instance);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < scene.dynamic.size(); ++i) {
+    DrawInstance instance;
+    instance.mesh = static_cast<int>(i);
+    pose.instances.push_back(instance);
+  }
+}
+
+void addCameras(const Scene& scene, Pose& pose) {
+  Refill<CameraPose> cameras(pose.cameras);
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+    if (scene.nodes[n].camera == none) continue;
+    const CameraLens& lens = scene.cameras[at(scene.nodes[n].camera)];
+    CameraPose& camera = cameras.next();
+    setName(camera.name, scene.nodes[n].name, lens.name, cameras.count() - 1);
+    camera.worldToView = worldToView(pose.nodeToWorld[n]);
+    camera.yfov = lens.yfov;
+    camera.near = lens.near;
+  }
+}
+
+void addLights(const Scene& scene, Pose& pose) {
+  Refill<std::string> names(pose.lightNames);
+  pose.lights.clear();
+  const auto add = [&](glsl::Light light, const std::string& first, const std::string& second) {
+    light.info.w = static_cast<uint32_t>(pose.lights.size());
+    setName(names.next(), first, second, static_cast<int>(pose.lights.size()));
+    pose.lights.push_back(light);
+  };
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+    const Node& node = scene.nodes[n];
+    if (node.light == none) continue;
+    const LightSource& source = scene.lights[at(node.light)];
+    add(punctualLight(source, node.limnArea, pose.nodeToWorld[n]), node.name, source.name);
+  }
+  for (std::size_t i = 0; i < pose.instances.size(); ++i) {
+    const DrawInstance& instance = pose.instances[i];
+    if (instance.node == none) continue;
+    const Mesh& mesh = scene.meshes[at(instance.mesh)];
+    const Primitive& primitive = mesh.primitives[at(instance.primitive)];
+    if (!primitive.emissiveQuad) continue;
+    const auto light = quadLight(*primitive.emissiveQuad, scene.materials[at(primitive.material)],
+                                 instance.objectToWorld, static_cast<uint32_t>(i));
+    if (light) add(*light, scene.nodes[at(instance.node)].name, mesh.name);
+  }
+}
+
+}  // namespace
+
+glm::mat4 Transform::matrix() const {
+  glm::mat4 m = glm::mat4_cast(rotation);
+  for (int c = 0; c < 3; ++c) m[c] *= scale[c];
+  m[3] = glm::vec4(translation, 1);
+  return m;
+}
+
+uint64_t Scene::triangles() const {
+  uint64_t count = 0;
+  for (const Node& node : nodes) {
+    if (node.mesh == none) continue;
+    uint64_t one = 0;
+    for (const Primitive& primitive : meshes[at(node.mesh)].primitives) one += primitive.indices.size() / 3;
+    count += one * std::max<uint64_t>(1, node.instances.size());
+  }
+  return count;
+}
+
+Bounds instanceBounds(const Scene& scene, const Pose& pose, const DrawInstance& instance) {
+  if (instance.node == none) return {};
+  const Primitive& primitive = scene.meshes[at(instance.mesh)].primitives[at(instance.primitive)];
+  if (instance.deformed == none) return transformed(instance.objectToWorld, primitive.bounds);
+  const Deformation& state = pose.deformed[at(instance.deformed)];
+  const Bounds reach = morphReach(primitive, state.morphWeights);
+  const auto grown = [&](const Bounds& box) {
+    return box.empty() ? box : Bounds{box.low + reach.low, box.high + reach.high};
+  };
+  if (state.joints.empty()) return transformed(instance.objectToWorld, grown(primitive.bounds));
+  // A blended position is a convex combination of what its joints make of it.
+  Bounds bounds;
+  for (std::size_t j = 0; j < primitive.jointBounds.size(); ++j) {
+    if (!primitive.jointBounds[j].empty())
+      bounds.add(transformed(state.joints[j], grown(primitive.jointBounds[j])));
+  }
+  return bounds;
+}
+
+void evaluate(const Scene& scene, double time, int animation, Pose& pose) {
+  const Animation* chosen = chooseAnimation(scene, time, animation);
+  const double local = chosen ? wrapped(time, chosen->duration) : 0;
+  animate(scene, chosen, local, pose);
+  updateWorldMatrices(scene, pose);
+  addInstances(scene, chosen, local, pose);
+  addCameras(scene, pose);
+  addLights(scene, pose);
+  pose.bounds = {};
+  for (const DrawInstance& instance : pose.instances) pose.bounds.add(instanceBounds(scene, pose, instance));
+  for (const Scene::Dynamic& dynamic : scene.dynamic) pose.bounds.add(dynamic.source->bounds(time));
+}
+
+Pose evaluate(const Scene& scene, double time, int animation) {
+  Pose pose;
+  evaluate(scene, time, animation, pose);
+  return pose;
+}
+
+}  // namespace limn::scene

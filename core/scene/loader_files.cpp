@@ -1,0 +1,94 @@
+// Which files a scene may name: those in its own folder or below.
+#include <tiny_gltf.h>
+
+#include <cctype>
+#include <system_error>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/scene/loader.h"
+
+namespace limn::scene {
+namespace {
+
+int hexDigit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+std::string percentDecoded(const std::string& uri) {
+  std::string out;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] == '%' && i + 2 < uri.size() && hexDigit(uri[i + 1]) >= 0 && hexDigit(uri[i + 2]) >= 0) {
+      out.push_back(static_cast<char>(16 * hexDigit(uri[i + 1]) + hexDigit(uri[i + 2])));
+      i += 2;
+    } else {
+      out.push_back(uri[i]);
+    }
+  }
+  return out;
+}
+
+/// For messages: one line, not endless.
+std::string shown(const std::string& uri) {
+  std::string text = uri.substr(0, 80);
+  for (char& c : text) {
+    if (std::iscntrl(static_cast<unsigned char>(c))) c = '?';
+  }
+  return uri.size() > 80 ? text + "..." : text;
+}
+
+bool isInside(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  auto part = file.begin();
+  for (const auto& step : folder) {
+    if (part == file.end() || *part != step) return false;
+    ++part;
+  }
+  return part != file.end();
+}
+
+}  // namespace
+
+std::filesystem::path Loader::resolve(const std::string& uri, const std::string& what) const {
+  const std::string decoded = percentDecoded(uri);
+  if (folder_.empty())
+    fail(fmt::format("{}: '{}' is another file; a scene in memory can name none", what, shown(uri)));
+  if (decoded.empty() || decoded.find('\0') != std::string::npos || decoded.find("://") != std::string::npos)
+    fail(fmt::format("{}: '{}' is not a file name; a file in the scene's folder is accepted", what,
+                     shown(uri)));
+  const std::filesystem::path relative(decoded);
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::weakly_canonical(folder_, error);
+  if (error) fail(fmt::format("{}: cannot resolve the scene's folder: {}", what, error.message()));
+  const std::filesystem::path file = std::filesystem::weakly_canonical(folder / relative, error);
+  if (error) fail(fmt::format("{}: '{}' cannot be resolved: {}", what, shown(uri), error.message()));
+  // `..` is refused even where it would lead back: whether it does depends on the folder's own name.
+  bool climbs = relative.is_absolute();
+  for (const auto& step : relative) climbs = climbs || step == "..";
+  if (climbs || !isInside(file, folder))
+    fail(fmt::format("{}: '{}' lies outside the scene's folder; only files in it or below are read", what,
+                     shown(uri)));
+  return file;
+}
+
+std::vector<std::byte> Loader::readUri(const std::string& uri, const std::string& what,
+                                       std::uint64_t maxBytes) const {
+  if (!tinygltf::IsDataURI(uri)) {
+    const std::filesystem::path file = resolve(uri, what);
+    try {
+      return readFile(file, maxBytes);
+    } catch (const Error& error) {
+      fail(fmt::format("{}: {}", what, error.what()));
+    }
+  }
+  std::vector<unsigned char> decoded;
+  std::string type;
+  if (!tinygltf::DecodeDataURI(&decoded, type, uri, 0, false) || decoded.empty())
+    fail(fmt::format("{}: the data URI cannot be decoded; base64 is accepted", what));
+  const auto bytes = std::as_bytes(std::span(decoded));
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace limn::scene

@@ -1,0 +1,62 @@
+// Lights and cameras.
+#include <tiny_gltf.h>
+
+#include "core/scene/loader.h"
+
+namespace limn::scene {
+
+void Loader::readLights() {
+  for (std::size_t i = 0; i < model_->lights.size(); ++i) {
+    const tinygltf::Light& source = model_->lights[i];
+    const std::string what =
+        source.name.empty() ? fmt::format("light {}", i) : fmt::format("light {} '{}'", i, source.name);
+    LightSource light;
+    light.name = source.name;
+    if (source.type == "point") {
+      light.type = glsl::light_point;
+    } else if (source.type == "spot") {
+      light.type = glsl::light_spot;
+      light.outerCone = ranged(source.spot.outerConeAngle, 0, 0.5 * glsl::pi, what + " outerConeAngle");
+      light.innerCone = ranged(source.spot.innerConeAngle, 0, light.outerCone, what + " innerConeAngle");
+    } else if (source.type == "directional") {
+      light.type = glsl::light_directional;
+    } else {
+      fail(fmt::format("{}: type '{}'; point, spot or directional is accepted", what, source.type));
+    }
+    if (source.color.size() == 3) {
+      for (int c = 0; c < 3; ++c)
+        light.colour[c] = ranged(source.color[static_cast<std::size_t>(c)], 0, 1e30, what + " color");
+    }
+    light.intensity = ranged(source.intensity, 0, 1e30, what + " intensity");
+    light.range = ranged(source.range, 0, 1e30, what + " range");
+    if (source.extras.IsObject() && source.extras.Has("limn_angle")) {
+      const tinygltf::Value& angle = source.extras.Get("limn_angle");
+      if (!angle.IsNumber()) fail(what + " limn_angle: one number (radians) is accepted");
+      light.angle = ranged(angle.GetNumberAsDouble(), 0, glsl::pi, what + " limn_angle");
+    }
+    scene_.lights.push_back(std::move(light));
+  }
+}
+
+void Loader::readCameras() {
+  for (std::size_t i = 0; i < model_->cameras.size(); ++i) {
+    const tinygltf::Camera& source = model_->cameras[i];
+    if (source.type != "perspective") {
+      warn("orthographic cameras are ignored");
+      cameraIndex_.push_back(none);
+      continue;
+    }
+    const std::string what = fmt::format("camera {}", i);
+    CameraLens lens;
+    lens.name = source.name;
+    lens.yfov = number(source.perspective.yfov, what + " yfov");
+    lens.near = number(source.perspective.znear, what + " znear");
+    if (!(lens.yfov > 0 && lens.yfov < glsl::pi))
+      fail(fmt::format("{}: yfov {} rad; more than 0 and less than pi is accepted", what, lens.yfov));
+    if (!(lens.near > 0)) fail(fmt::format("{}: znear {}; more than 0 is accepted", what, lens.near));
+    cameraIndex_.push_back(static_cast<int>(scene_.cameras.size()));
+    scene_.cameras.push_back(std::move(lens));
+  }
+}
+
+}  // namespace limn::scene

@@ -1,0 +1,100 @@
+#include "core/scene/mip_chain.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "glsl/srgb.glsl"
+
+namespace limn::scene {
+namespace {
+
+/// The texels of one side that a texel of the next level covers, and the share of each.
+struct Footprint {
+  int first = 0, count = 0;
+  std::array<float, 3> weight{};
+};
+
+std::vector<Footprint> footprints(int from, int to) {
+  std::vector<Footprint> out(static_cast<std::size_t>(to));
+  const double width = static_cast<double>(from) / to;  // 1, 2, or 2 + 1/to: at most 3 texels, 4 never
+  for (int i = 0; i < to; ++i) {
+    const double low = i * width, high = (i + 1) * width;
+    Footprint& f = out[static_cast<std::size_t>(i)];
+    f.first = static_cast<int>(low + 1e-9);
+    for (int j = f.first; j < from && f.count < 3; ++j) {
+      const double share = std::min<double>(high, j + 1) - std::max<double>(low, j);
+      if (share <= 1e-9) break;
+      f.weight[static_cast<std::size_t>(f.count++)] = static_cast<float>(share / width);
+    }
+  }
+  return out;
+}
+
+using LinearTable = std::array<float, 256>;
+
+LinearTable decodeTable(bool srgb) {
+  LinearTable table;
+  for (int i = 0; i < 256; ++i) {
+    const float value = static_cast<float>(i) / 255.f;
+    table[static_cast<std::size_t>(i)] = srgb ? glsl::srgb_decode(value) : value;
+  }
+  return table;
+}
+
+/// Linear value to the nearest byte, as sRGB by a search among the decoded steps' midpoints.
+class Encoder {
+ public:
+  explicit Encoder(bool srgb) : srgb_(srgb) {
+    for (int i = 0; i < 255; ++i)
+      midpoint_[static_cast<std::size_t>(i)] = glsl::srgb_decode((static_cast<float>(i) + 0.5f) / 255.f);
+  }
+  std::uint8_t operator()(float value) const {
+    if (!srgb_) return static_cast<std::uint8_t>(std::clamp(value, 0.f, 1.f) * 255.f + 0.5f);
+    return static_cast<std::uint8_t>(std::upper_bound(midpoint_.begin(), midpoint_.end(), value) -
+                                     midpoint_.begin());
+  }
+
+ private:
+  bool srgb_;
+  std::array<float, 255> midpoint_{};
+};
+
+TextureImage::Level halve(const TextureImage::Level& from, const LinearTable& table, const Encoder& encode) {
+  TextureImage::Level to;
+  to.width = std::max(1, from.width / 2);
+  to.height = std::max(1, from.height / 2);
+  to.rgba.resize(static_cast<std::size_t>(to.width) * static_cast<std::size_t>(to.height) * 4);
+  const auto columns = footprints(from.width, to.width), rows = footprints(from.height, to.height);
+  std::uint8_t* out = to.rgba.data();
+  for (const Footprint& row : rows) {
+    for (const Footprint& column : columns) {
+      glm::vec4 sum(0);
+      for (int r = 0; r < row.count; ++r) {
+        const std::size_t line =
+            static_cast<std::size_t>(row.first + r) * static_cast<std::size_t>(from.width);
+        for (int c = 0; c < column.count; ++c) {
+          const std::uint8_t* texel = &from.rgba[(line + static_cast<std::size_t>(column.first + c)) * 4];
+          const float weight =
+              row.weight[static_cast<std::size_t>(r)] * column.weight[static_cast<std::size_t>(c)];
+          sum += weight * glm::vec4(table[texel[0]], table[texel[1]], table[texel[2]],
+                                    static_cast<float>(texel[3]) / 255.f);
+        }
+      }
+      for (int channel = 0; channel < 3; ++channel) *out++ = encode(sum[channel]);
+      *out++ = static_cast<std::uint8_t>(std::min(sum.w, 1.f) * 255.f + 0.5f);
+    }
+  }
+  return to;
+}
+
+}  // namespace
+
+void buildMipChain(TextureImage& texture) {
+  const LinearTable table = decodeTable(texture.srgb);
+  const Encoder encode(texture.srgb);
+  while (texture.levels.back().width > 1 || texture.levels.back().height > 1)
+    texture.levels.push_back(halve(texture.levels.back(), table, encode));
+}
+
+}  // namespace limn::scene

@@ -1,0 +1,29 @@
+// The one tangent generation of this project: for files that bring none, in both renderers.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace limn::scene {
+
+/// One tangent per vertex: xyz unit and perpendicular to the normal, w the bitangent's sign, so that
+/// bitangent = w * cross(normal, tangent). Each triangle's direction of growing u (Lengyel 2001, "Computing
+/// Tangent Space Basis Vectors for an Arbitrary Mesh") is projected onto the vertex's tangent plane and
+/// accumulated with the triangle's angle at the vertex as its weight; w follows the orientation of the
+/// majority by the same weight. Vertices are not split: where mirrored texture halves share vertices the seam
+/// is one triangle wide. Without a usable direction: any perpendicular, w = 1.
+LIMN_API std::vector<glm::vec4> generateTangents(std::span<const glm::vec3> positions,
+                                                 std::span<const glm::vec3> normals,
+                                                 std::span<const glm::vec2> uvs,
+                                                 std::span<const uint32_t> indices);
+
+/// Area-weighted vertex normals; zero for vertices without a triangle of positive area.
+LIMN_API std::vector<glm::vec3> smoothNormals(std::span<const glm::vec3> positions,
+                                              std::span<const uint32_t> indices);
+
+/// Unit normal of a triangle by its winding (counter-clockwise front); +Y if it has no area.
+LIMN_API glm::vec3 triangleNormal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
+
+}  // namespace limn::scene

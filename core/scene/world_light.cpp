@@ -1,0 +1,87 @@
+#include "core/scene/world_light.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+namespace limn::scene {
+namespace {
+
+/// Right-handed axes of a node without its scale; z is kept, x made perpendicular to it.
+glm::mat3 axes(const glm::mat4& m) {
+  const auto unit = [](const glm::dvec3& v, const glm::dvec3& fallback) {
+    const double length = glm::length(v);
+    return length > 0 && std::isfinite(length) ? v / length : fallback;
+  };
+  const glm::dvec3 z = unit(glm::dvec3(m[2]), glm::dvec3(0, 0, 1));
+  const glm::dvec3 other = std::abs(z.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 any = unit(other - glm::dot(other, z) * z, other);
+  glm::dvec3 x = unit(glm::dvec3(m[0]), any);
+  x = unit(x - glm::dot(x, z) * z, any);
+  return glm::mat3(glm::vec3(x), glm::vec3(glm::cross(z, x)), glm::vec3(z));
+}
+
+}  // namespace
+
+glsl::Light punctualLight(const LightSource& source, const glm::vec2& area, const glm::mat4& nodeToWorld) {
+  const glm::mat3 axis = axes(nodeToWorld);
+  const bool rectangle = area.x > 0 && area.y > 0 && source.type != glsl::light_directional;
+  glsl::Light light{};
+  light.position = glm::vec4(glm::vec3(nodeToWorld[3]), 1);
+  light.direction = glm::vec4(-axis[2], 0);
+  light.axis_u = glm::vec4(axis[0], rectangle ? area.x : 0.f);
+  light.axis_v = glm::vec4(axis[1], rectangle ? area.y : 0.f);
+  const float scale = rectangle ? source.intensity / (area.x * area.y) : source.intensity;
+  light.emission = glm::vec4(source.colour * scale, 0);
+  const bool cone = source.type == glsl::light_spot;
+  light.cone = glm::vec4(cone ? std::cos(source.innerCone) : -1.f, cone ? std::cos(source.outerCone) : -1.f,
+                         source.range, source.angle);
+  light.info = glm::uvec4(rectangle ? glsl::light_rectangle : source.type, cone ? glsl::light_flag_cone : 0u,
+                          glsl::no_instance, 0u);
+  return light;
+}
+
+std::optional<glsl::Light> quadLight(const Quad& quad, const Material& material,
+                                     const glm::mat4& objectToWorld, uint32_t instance) {
+  const glm::dmat3 m(objectToWorld);
+  glm::dvec3 u = m * glm::dvec3(quad.sideU), v = m * glm::dvec3(quad.sideV);
+  const double lengthU = glm::length(u), lengthV = glm::length(v);
+  if (!(lengthU > 0 && lengthV > 0) || std::abs(glm::dot(u, v)) > 1e-3 * lengthU * lengthV)
+    return std::nullopt;
+  u /= lengthU;
+  v /= lengthV;
+  // A mirroring transform turns the winding around and the front face with it (glTF 2.0, section 3.7.4).
+  const glm::dvec3 front = (glm::determinant(m) < 0 ? -1.0 : 1.0) * glm::normalize(glm::cross(u, v));
+  v = glm::cross(-front, u);  // removes the last 1e-3 of skew, and cross(u, v) = -front
+  glsl::Light light{};
+  light.position = glm::vec4(glm::vec3(objectToWorld * glm::vec4(quad.centre, 1)), 1);
+  light.direction = glm::vec4(glm::vec3(front), 0);
+  light.axis_u = glm::vec4(glm::vec3(u), static_cast<float>(lengthU));
+  light.axis_v = glm::vec4(glm::vec3(v), static_cast<float>(lengthV));
+  light.emission = glm::vec4(material.emission, 0);
+  light.cone = glm::vec4(-1, -1, 0, 0);
+  const uint32_t sides = material.doubleSided ? glsl::light_flag_two_sided : 0u;
+  light.info = glm::uvec4(glsl::light_rectangle, glsl::light_flag_geometry | sides, instance, 0u);
+  return light;
+}
+
+glm::mat4 worldToView(const glm::mat4& nodeToWorld) {
+  const glm::mat3 inverse = glm::transpose(axes(nodeToWorld));
+  glm::mat4 view(inverse);
+  view[3] = glm::vec4(-(inverse * glm::vec3(nodeToWorld[3])), 1);
+  return view;
+}
+
+void setName(std::string& out, const std::string& first, const std::string& second, int index) {
+  if (!first.empty()) {
+    out = first;
+  } else if (!second.empty()) {
+    out = second;
+  } else {
+    out.clear();
+    fmt::format_to(std::back_inserter(out), "#{}", index);
+  }
+}
+
+}  // namespace limn::scene
