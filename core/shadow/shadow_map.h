@@ -73,6 +73,8 @@ class LIMN_API ShadowMapService {
 
   /// Forgets the requests of the former graph: call before building a new one.
   void begin(frame::FrameGraph& graph, const SceneHandles& handles, const scene::Pose& pose);
+  /// The graph is about to be destroyed.
+  void forget();
   /// Maps for `lights` (indices into Pose::lights), declared in the graph at the first request; equal
   /// requests share them. Throws UsageError if the maps would take more memory or layers than the device has.
   ShadowMaps request(std::span<const uint32_t> lights, const ShadowMapDesc& desc);

@@ -1,0 +1,43 @@
+// Which views a light's shadow maps need, fitted to what they must cover. No OpenGL.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/base/export.h"
+#include "core/scene/scene.h"
+#include "core/shadow/shadow_map.h"
+#include "glsl/light.glsl"
+#include "glsl/shadow_view.glsl"
+
+namespace limn::shadow {
+
+/// Beyond this half angle a perspective map gives way to cube faces, radians.
+constexpr float largestHalfAngle = 75.f * glsl::pi / 180.f;
+/// near is at least this fraction of far.
+constexpr float leastNear = 1e-4f;
+
+/// How a light is covered, whichever the sample on it: the layout of its layers.
+struct LightLayout {
+  uint32_t projection = glsl::shadow_perspective;
+  uint32_t faces = glsl::shadow_faces_single;
+  bool operator==(const LightLayout&) const = default;
+};
+
+/// `boxes`: world bounds of everything that casts or receives shadows.
+LIMN_API LightLayout fitLayout(const glsl::Light& light, std::span<const scene::Bounds> boxes,
+                               const ShadowMapDesc& desc);
+
+/// Appends the views of one light, for every sample of `desc` in turn, with layers numbered from
+/// views.size(), and one ShadowLight per sample.
+LIMN_API void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayout& layout,
+                          std::span<const scene::Bounds> boxes, const ShadowMapDesc& desc,
+                          std::vector<glsl::ShadowView>& views, std::vector<glsl::ShadowLight>& lights);
+
+/// Samples that apply to the light: all of `desc`, or one for lights without extent.
+LIMN_API std::vector<glm::vec2> samplesOf(const glsl::Light& light, const ShadowMapDesc& desc);
+
+/// World planes of a view, for culling.
+LIMN_API scene::CullVolume cullVolume(const glsl::ShadowView& view);
+
+}  // namespace limn::shadow

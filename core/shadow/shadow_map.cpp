@@ -1,0 +1,266 @@
+#include "core/shadow/shadow_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/base/error.h"
+#include "core/shadow/light_fit.h"
+
+namespace limn::shadow {
+namespace {
+
+using frame::Access;
+
+constexpr int64_t memoryLimit = int64_t{4} << 30;  // bytes of one request
+
+template <class T>
+bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+std::string_view projectionName(const LightLayout& layout) {
+  if (layout.projection == glsl::shadow_orthographic) return "orthographic";
+  if (layout.projection == glsl::shadow_paraboloid) return "paraboloid";
+  if (layout.faces == glsl::shadow_faces_cube) return "cube";
+  return layout.faces == glsl::shadow_faces_hemicube ? "hemicube" : "perspective";
+}
+
+/// One set of maps and what draws it.
+struct Request {
+  std::vector<uint32_t> lights;
+  ShadowMapDesc desc;
+  ShadowMaps maps;
+  std::vector<LightLayout> layouts;
+  std::vector<glsl::ShadowView> views;
+  std::vector<glsl::ShadowLight> shadowLights;
+  std::vector<scene::DepthView> depthViews;
+  gpu::Buffer viewBuffer, lightBuffer;
+  frame::BufferHandle importedViews, importedLights;
+  scene::DrawList drawList;
+};
+
+}  // namespace
+
+struct ShadowMapService::Implementation {
+  Implementation(gpu::Device& onDevice, scene::GpuScene& ofScene) : device(onDevice), scene(ofScene) {}
+
+  gpu::Device& device;
+  scene::GpuScene& scene;
+  frame::FrameGraph* graph = nullptr;
+  SceneHandles handles;
+  std::vector<glsl::Light> lights;
+  std::vector<std::string> lightNames;
+  std::vector<scene::Bounds> boxes;
+  std::vector<std::unique_ptr<Request>> requests;
+
+  void take(const scene::Pose& pose) {
+    lights = pose.lights;
+    lightNames = pose.lightNames;
+    boxes.resize(scene.instanceCount());
+    for (uint32_t i = 0; i < boxes.size(); ++i) boxes[i] = scene.bounds(i);
+  }
+  const glsl::Light& light(uint32_t index) const {
+    if (index >= lights.size())
+      throw UsageError(fmt::format("shadow map of light {}: the scene has {} lights", index, lights.size()));
+    return lights[index];
+  }
+  std::vector<scene::Bounds> boxesFor(const glsl::Light& light) const {
+    std::vector<scene::Bounds> result = boxes;
+    if (light.info.z < result.size()) result[light.info.z] = {};  // its own quad is not in its map
+    return result;
+  }
+  std::vector<LightLayout> layoutsOf(const Request& request) const {
+    std::vector<LightLayout> layouts;
+    for (const uint32_t l : request.lights)
+      layouts.push_back(fitLayout(light(l), boxesFor(light(l)), request.desc));
+    return layouts;
+  }
+  bool fit(Request& request) const;
+  void check(const Request& request, size_t layers) const;
+  void addPasses(Request& request);
+};
+
+/// Recomputes views for the current lights and bounds. True if they changed.
+bool ShadowMapService::Implementation::fit(Request& request) const {
+  std::vector<glsl::ShadowView> views;
+  std::vector<glsl::ShadowLight> shadowLights;
+  for (size_t i = 0; i < request.lights.size(); ++i) {
+    const glsl::Light& l = light(request.lights[i]);
+    appendViews(l, request.lights[i], request.layouts[i], boxesFor(l), request.desc, views, shadowLights);
+  }
+  request.depthViews.clear();
+  for (const glsl::ShadowView& view : views) {
+    request.depthViews.push_back({.volume = cullVolume(view),
+                                  .skipInstance = lights[view.info.w].info.z,
+                                  .view = view.info.y,
+                                  .layer = static_cast<int>(view.info.y)});
+  }
+  const bool changed = !sameBytes(views, request.views) || !sameBytes(shadowLights, request.shadowLights);
+  request.views = std::move(views);
+  request.shadowLights = std::move(shadowLights);
+  return changed;
+}
+
+void ShadowMapService::Implementation::check(const Request& request, size_t layers) const {
+  const int size = request.desc.size, largest = device.limits().maxTextureSize;
+  if (size < 1 || size > largest)
+    throw UsageError(fmt::format("shadow map of {} texels: the size must be from 1 to {}", size, largest));
+  const auto most = static_cast<size_t>(device.limits().maxArrayLayers);
+  if (layers > most)
+    throw UsageError(
+        fmt::format("shadow maps in {} layers: the device has at most {} in one array", layers, most));
+  const int64_t bytes = int64_t{size} * size * 4 * static_cast<int64_t>(layers);
+  if (bytes > memoryLimit)
+    throw UsageError(
+        fmt::format("shadow maps of {} layers of {} x {} texels take {} MiB, more than the {} MiB that one "
+                    "request may; ask for a smaller shadow_map_size or fewer lights at once",
+                    layers, size, size, bytes >> 20, memoryLimit >> 20));
+}
+
+void ShadowMapService::Implementation::addPasses(Request& request) {
+  ShadowMaps& maps = request.maps;
+  request.importedViews = maps.views = graph->importBuffer("shadow views", request.viewBuffer);
+  request.importedLights = maps.lights = graph->importBuffer("shadow lights", request.lightBuffer);
+  const gpu::TextureDesc desc{.target = GL_TEXTURE_2D_ARRAY,
+                              .format = GL_DEPTH_COMPONENT32F,
+                              .width = maps.size,
+                              .height = maps.size,
+                              .layers = maps.layers};
+  gpu::TextureDesc linearDesc = desc;
+  linearDesc.format = GL_R32F;
+
+  frame::PassBuilder raster = graph->addPass("shadow maps");
+  scene::GpuScene::declareReads(raster, handles);
+  raster.read(maps.views, Access::storageLoad, "projections");
+  const frame::TextureHandle rasterised = raster.write(graph->createTexture("rasterised shadow depth", desc),
+                                                       Access::depthAttachment, "depth per view");
+  const bool layered = !device.software() && device.limits().layerFromVertexShader;
+  const auto program = [&](bool masked) {
+    gpu::ProgramDesc d{.files = {"glsl/shadow/depth.vert.glsl"},
+                       .defines = {{"LAYERED", layered ? "1" : "0"}, {"MASKED", masked ? "1" : "0"}}};
+    if (masked) d.files.push_back("glsl/shadow/masked.frag.glsl");
+    return raster.program(d);
+  };
+  scene::DrawPrograms programs;
+  programs.opaque = program(false);
+  programs.masked = scene.hasMasked() ? program(true) : programs.opaque;
+  if (request.desc.cacheable) raster.cacheable();
+  raster.execute([this, &request, rasterised, layered, programs](frame::PassContext& context) {
+    const gl::Functions& gl = context.gl();
+    constexpr GLfloat nothing = 0;
+    context.bindFramebuffer({}, {rasterised});
+    gl.ClearBufferfv(GL_DEPTH, 0, &nothing);
+    context.bindStorage(2, request.maps.views);
+    scene.drawDepth(context, handles, programs, request.depthViews, request.drawList, layered,
+                    [&](const scene::DepthView& view) {
+                      context.bindFramebuffer({}, {rasterised, 0, view.layer});
+                    });
+  });
+
+  frame::PassBuilder linearise = graph->addPass("linear shadow depth");
+  linearise.read(rasterised, Access::sampled, "depth per view")
+      .read(maps.views, Access::storageLoad, "near and far");
+  maps.depth =
+      linearise.write(graph->createTexture("shadow maps", linearDesc), Access::imageStore, "linear depth");
+  const frame::ProgramHandle kernel =
+      linearise.program({.files = {"glsl/shadow/linearise.comp.glsl"}, .defines = {}});
+  if (request.desc.cacheable) linearise.cacheable();
+  linearise.execute([maps, rasterised, kernel](frame::PassContext& context) {
+    context.program(kernel).use();
+    context.bindSampled(0, rasterised);
+    context.bindImage(0, maps.depth, GL_WRITE_ONLY);
+    context.bindStorage(0, maps.views);
+    context.dispatch(maps.size, maps.size, maps.layers, 16, 16);
+  });
+}
+
+ShadowMapService::ShadowMapService(gpu::Device& device, scene::GpuScene& scene)
+    : implementation_(std::make_unique<Implementation>(device, scene)) {}
+ShadowMapService::~ShadowMapService() = default;
+
+void ShadowMapService::begin(frame::FrameGraph& graph, const SceneHandles& handles, const scene::Pose& pose) {
+  implementation_->requests.clear();
+  implementation_->graph = &graph;
+  implementation_->handles = handles;
+  implementation_->take(pose);
+}
+
+void ShadowMapService::forget() {
+  implementation_->graph = nullptr;
+}
+
+ShadowMaps ShadowMapService::request(std::span<const uint32_t> lights, const ShadowMapDesc& desc) {
+  Implementation& s = *implementation_;
+  for (const auto& known : s.requests) {
+    if (known->desc == desc && std::ranges::equal(known->lights, lights)) return known->maps;
+  }
+  auto made = std::make_unique<Request>();
+  made->lights.assign(lights.begin(), lights.end());
+  made->desc = desc;
+  made->layouts = s.layoutsOf(*made);
+  size_t layers = 0;
+  for (size_t i = 0; i < made->lights.size(); ++i)
+    layers +=
+        glsl::shadow_face_count(made->layouts[i].faces) * samplesOf(s.light(made->lights[i]), desc).size();
+  s.check(*made, layers);
+  s.fit(*made);
+  made->viewBuffer =
+      gpu::Buffer::of<glsl::ShadowView>(s.device, "shadow views", made->views, gpu::BufferUse::updated);
+  made->lightBuffer = gpu::Buffer::of<glsl::ShadowLight>(s.device, "shadow lights", made->shadowLights,
+                                                         gpu::BufferUse::updated);
+  made->maps.layers = static_cast<int>(made->views.size());
+  made->maps.size = desc.size;
+  made->maps.index = static_cast<uint32_t>(s.requests.size());
+  s.addPasses(*made);
+  s.requests.push_back(std::move(made));
+  return s.requests.back()->maps;
+}
+
+bool ShadowMapService::update(const scene::Pose& pose) {
+  Implementation& s = *implementation_;
+  const bool lightsCameOrWent = pose.lights.size() != s.lights.size();
+  s.take(pose);
+  if (lightsCameOrWent) return true;
+  for (const auto& request : s.requests) {
+    if (s.layoutsOf(*request) != request->layouts) return true;
+    if (!s.fit(*request)) continue;
+    request->viewBuffer.update(0, request->views.data(), request->views.size() * sizeof(request->views[0]));
+    request->lightBuffer.update(0, request->shadowLights.data(),
+                                request->shadowLights.size() * sizeof(request->shadowLights[0]));
+    if (s.graph == nullptr) continue;
+    s.graph->touch(request->importedViews);
+    s.graph->touch(request->importedLights);
+  }
+  return false;
+}
+
+int ShadowMapService::layersOf(uint32_t light, const ShadowMapDesc& desc) const {
+  const Implementation& s = *implementation_;
+  const glsl::Light& l = s.light(light);
+  const LightLayout layout = fitLayout(l, s.boxesFor(l), desc);
+  return static_cast<int>(glsl::shadow_face_count(layout.faces) * samplesOf(l, desc).size());
+}
+
+std::vector<ShadowMapStats> ShadowMapService::stats() const {
+  std::vector<ShadowMapStats> all;
+  for (const auto& request : implementation_->requests) {
+    size_t first = 0;
+    for (const glsl::ShadowLight& l : request->shadowLights) {
+      if (l.info.z != request->lights[first] && first + 1 < request->lights.size()) ++first;
+      const LightLayout& layout = request->layouts[first];
+      const glsl::ShadowView& view = request->views[l.info.x];
+      const bool perspective = layout.projection == glsl::shadow_perspective;
+      all.push_back({.light = implementation_->lightNames[l.info.z],
+                     .projection = std::string(projectionName(layout)),
+                     .layers = static_cast<int>(glsl::shadow_face_count(layout.faces)),
+                     .near = view.origin.w,
+                     .far = view.axis_z.w,
+                     .halfAngle = perspective ? std::atan(0.5f / view.axis_x.w) : 0.f});
+    }
+  }
+  return all;
+}
+
+}  // namespace limn::shadow

@@ -1,0 +1,287 @@
+#include "core/shadow/shadow_map.h"
+
+#include <gmock/gmock.h>
+
+#include <random>
+
+#include "core/base/error.h"
+#include "core/shadow/light_fit.h"
+#include "tests/gpu/gl_test.h"
+#include "tests/gpu/test_scenes.h"
+
+namespace limn {
+namespace {
+
+using namespace limn::test;
+using glm::vec3;
+
+constexpr int texels = 128;
+
+/// Shadow maps on the CPU.
+struct Maps {
+  std::vector<glsl::ShadowView> views;
+  std::vector<glsl::ShadowLight> lights;
+  std::vector<shadow::ShadowMapStats> stats;
+  std::vector<float> depth;
+  int size = 0;
+
+  float stored(int layer, int x, int y) const {
+    return depth[(static_cast<size_t>(layer) * static_cast<size_t>(size) + static_cast<size_t>(y)) *
+                     static_cast<size_t>(size) +
+                 static_cast<size_t>(x)];
+  }
+  /// Offset of what a texel sees from its view's origin, in world axes.
+  vec3 seen(int layer, int x, int y) const {
+    const glsl::ShadowView& view = views[static_cast<size_t>(layer)];
+    const glm::vec2 uv((static_cast<float>(x) + 0.5f) / static_cast<float>(size),
+                       (static_cast<float>(y) + 0.5f) / static_cast<float>(size));
+    const vec3 r = glsl::shadow_unproject_local(view, uv, glsl::shadow_metres(view, stored(layer, x, y)));
+    return r.x * vec3(view.axis_x) + r.y * vec3(view.axis_y) + r.z * vec3(view.axis_z);
+  }
+};
+
+class ShadowMapTest : public GlTest {
+ protected:
+  Maps draw(const scene::Scene& scene, const scene::Pose& pose, std::vector<uint32_t> lights,
+            const shadow::ShadowMapDesc& desc) {
+    scene::GpuScene gpuScene(device(), scene);
+    gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
+    shadow::ShadowMapService service(device(), gpuScene);
+    frame::ResourcePool pool(device());
+    frame::FrameGraph graph;
+    service.begin(graph, gpuScene.import(graph), pose);
+    const shadow::ShadowMaps maps = service.request(lights, desc);
+    graph.output(maps.depth);
+    graph.prepare(device(), shaders(), pool);
+    graph.execute();
+    Maps out;
+    out.size = desc.size;
+    out.stats = service.stats();
+    out.views.resize(static_cast<size_t>(maps.layers));
+    out.depth.resize(static_cast<size_t>(maps.layers * desc.size * desc.size));
+    const gpu::Buffer& views = graph.buffer(maps.views);
+    views.read(0, out.views.data(), views.size());
+    const gpu::Buffer& shadowLights = graph.buffer(maps.lights);
+    out.lights.resize(shadowLights.size() / sizeof(glsl::ShadowLight));
+    shadowLights.read(0, out.lights.data(), shadowLights.size());
+    graph.texture(maps.depth).read(0, GL_RED, GL_FLOAT, out.depth.data(), out.depth.size() * sizeof(float));
+    gpuScene.forget();
+    return out;
+  }
+};
+
+TEST_F(ShadowMapTest, DepthOfAPlaneIsLinearAndExactAtEveryScale) {
+  std::vector<float> first;
+  for (const float scale : {1.f, 1e-4f, 1e4f}) {
+    scene::Scene scene;
+    addMesh(scene, floorPrimitive(8 * scale, addMaterial(scene)));
+    scene::Pose pose;
+    addInstance(scene, pose, 0);
+    addLight(pose, spotLight(vec3(1, 3, 0.5f) * scale, {0.2f, -1, 0.1f}, 0.6f));
+    const Maps maps = draw(scene, pose, {0}, {.size = texels});
+    ASSERT_EQ(maps.views.size(), 1u);
+    EXPECT_EQ(maps.stats[0].projection, "perspective");
+    for (int y = 0; y < texels; ++y) {
+      for (int x = 0; x < texels; ++x) {
+        ASSERT_GE(maps.stored(0, x, y), 0.f);
+        ASSERT_LT(maps.stored(0, x, y), 1.f);
+        EXPECT_NEAR((vec3(maps.views[0].origin) + maps.seen(0, x, y)).y / scale, 0, 2e-5f) << x << "," << y;
+      }
+    }
+    if (first.empty()) first = maps.depth;
+    for (size_t i = 0; i < first.size(); ++i) EXPECT_NEAR(maps.depth[i], first[i], 2e-6f);
+  }
+}
+
+/// A sphere over nothing: every texel sees the sphere or nothing.
+TEST_F(ShadowMapTest, DepthOfASphereUnderEveryProjection) {
+  scene::Scene scene;
+  addMesh(scene, spherePrimitive(1, addMaterial(scene), 96));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addLight(pose, pointLight({0, 0, 3}));
+  addLight(pose, spotLight({0, 0, 3}, {0, 0, -1}, 0.5f));
+  addLight(pose, directionalLight({0, 0, -1}, 0));
+  addLight(pose, rectangleLight({0, 0, 3}, {0, 0, -1}, 1, 1));
+  for (const auto projection :
+       {shadow::Projection::automatic, shadow::Projection::cube, shadow::Projection::paraboloid}) {
+    const Maps maps = draw(scene, pose, {0, 1, 2, 3}, {.size = texels, .projection = projection});
+    ASSERT_EQ(maps.lights.size(), 4u);
+    for (const glsl::ShadowLight& light : maps.lights) {
+      int covered = 0;
+      const uint32_t faces = glsl::shadow_face_count(light.info.y);
+      for (uint32_t layer = light.info.x; layer < light.info.x + faces; ++layer) {
+        for (int y = 0; y < texels; ++y) {
+          for (int x = 0; x < texels; ++x) {
+            if (maps.stored(static_cast<int>(layer), x, y) >= 1) continue;
+            ++covered;
+            const vec3 p = vec3(maps.views[layer].origin) + maps.seen(static_cast<int>(layer), x, y);
+            // A point of a chord of the tessellated sphere: up to pi^2 / (8 * 96^2) inside it, more where
+            // seen at grazing.
+            EXPECT_NEAR(glm::length(p), 1, projection == shadow::Projection::paraboloid ? 4e-3f : 1e-3f)
+                << "light " << light.info.z << " layer " << layer << " texel " << x << "," << y;
+            EXPECT_GT(p.z, 0.1f) << "the side that faces the light";
+          }
+        }
+      }
+      EXPECT_GT(covered, texels * texels / 40) << "light " << light.info.z;
+    }
+  }
+}
+
+TEST_F(ShadowMapTest, CubeAndParaboloidsSeeAllAround) {
+  scene::Scene scene;
+  addMesh(scene, spherePrimitive(2, addMaterial(scene), 96));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addLight(pose, pointLight({0.3f, -0.2f, 0.1f}));
+  for (const auto projection : {shadow::Projection::cube, shadow::Projection::paraboloid}) {
+    const Maps maps = draw(scene, pose, {0}, {.size = texels, .projection = projection});
+    EXPECT_EQ(maps.views.size(), projection == shadow::Projection::cube ? 6u : 2u);
+    std::mt19937 random(7);
+    std::normal_distribution<float> normal;
+    for (int i = 0; i < 2000; ++i) {
+      const vec3 p = 2.f * glm::normalize(vec3(normal(random), normal(random), normal(random)));
+      const glsl::ShadowLight& light = maps.lights[0];
+      const uint32_t layer = light.info.x + glsl::shadow_face(light.info.y, maps.views[light.info.x], p);
+      const glsl::ShadowPoint q = glsl::shadow_project(maps.views[layer], p);
+      ASSERT_TRUE(glsl::shadow_inside(q)) << p.x << " " << p.y << " " << p.z;
+      const int x = static_cast<int>(q.uv.x * texels), y = static_cast<int>(q.uv.y * texels);
+      const float metres = glsl::shadow_metres(maps.views[layer], maps.stored(static_cast<int>(layer), x, y));
+      EXPECT_NEAR(metres, q.depth, 0.05f);
+    }
+  }
+}
+
+TEST_F(ShadowMapTest, LightsThatSeeMoreThanOneMapHoldsGetAHemicube) {
+  scene::Scene scene;
+  addMesh(scene, floorPrimitive(10, addMaterial(scene)));
+  addMesh(scene, floorPrimitive(0.5f, 0));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  const uint32_t own = addInstance(scene, pose, 1, at(0, 0.5f, 0));
+  glsl::Light low = rectangleLight({0, 0.5f, 0}, {0, -1, 0}, 1, 1);
+  low.info.z = own;
+  glsl::Light high = rectangleLight({0, 8, 0}, {0, -1, 0}, 1, 1);
+  addLight(pose, low);
+  addLight(pose, high);
+  const Maps maps = draw(scene, pose, {0, 1}, {.size = texels});
+  EXPECT_EQ(maps.stats[0].projection, "hemicube");
+  EXPECT_EQ(maps.stats[1].projection, "perspective");
+  ASSERT_EQ(maps.views.size(), 6u);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> uniform(-9.9f, 9.9f);
+  for (const glsl::ShadowLight& light : maps.lights) {
+    for (int i = 0; i < 2000; ++i) {
+      const vec3 p(uniform(random), 0, uniform(random));
+      const uint32_t layer = light.info.x + glsl::shadow_face(light.info.y, maps.views[light.info.x], p);
+      const glsl::ShadowPoint q = glsl::shadow_project(maps.views[layer], p);
+      ASSERT_TRUE(glsl::shadow_inside(q));
+      const int x = static_cast<int>(q.uv.x * texels), y = static_cast<int>(q.uv.y * texels);
+      const vec3 seen = vec3(maps.views[layer].origin) + maps.seen(static_cast<int>(layer), x, y);
+      const bool shadowed = light.info.z == 1 && std::max(std::abs(p.x), std::abs(p.z)) < 0.4f;
+      if (shadowed) EXPECT_NEAR(seen.y, 0.5f, 1e-4f);
+      if (light.info.z == 0) EXPECT_NEAR(seen.y, 0, 1e-4f) << "its own quad must not be in the way";
+    }
+  }
+}
+
+TEST_F(ShadowMapTest, MaskedTexelsLetLightThrough) {
+  scene::Scene scene;
+  scene::TextureImage image;
+  image.levels.push_back({2, 1, {255, 255, 255, 255, 255, 255, 255, 0}});
+  scene.images.push_back(image);
+  scene::Material material;
+  material.baseColourTexture = {0, scene::Wrap::clamp, scene::Wrap::clamp};
+  material.alphaCutoff = 0.5f;
+  addMesh(scene, floorPrimitive(1, addMaterial(scene, material)));
+  addMesh(scene, floorPrimitive(2, addMaterial(scene)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0, at(0, 1, 0));
+  addInstance(scene, pose, 1);
+  addLight(pose, directionalLight({0, -1, 0}, 0));
+  const Maps maps = draw(scene, pose, {0}, {.size = texels});
+  for (const float x : {-0.8f, -0.4f, 0.4f, 0.8f}) {
+    const glsl::ShadowPoint q = glsl::shadow_project(maps.views[0], {x, 0, 0});
+    const vec3 seen = maps.seen(0, static_cast<int>(q.uv.x * texels), static_cast<int>(q.uv.y * texels));
+    EXPECT_NEAR((seen + vec3(maps.views[0].origin)).y, x < 0 ? 1 : 0, 1e-4f) << x;
+  }
+}
+
+TEST_F(ShadowMapTest, SamplesOfALightGetMapsOfTheirOwn) {
+  scene::Scene scene;
+  addMesh(scene, floorPrimitive(2, addMaterial(scene)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addLight(pose, rectangleLight({0, 4, 0}, {0, -1, 0}, 2, 1));
+  addLight(pose, pointLight({0, 4, 0}));
+  const Maps maps = draw(scene, pose, {0, 1}, {.size = 16, .samples = {{-0.5f, 0}, {0, 0.5f}, {0.5f, 0}}});
+  ASSERT_EQ(maps.lights.size(), 4u);  // three on the rectangle, one on the point
+  const vec3 u(pose.lights[0].axis_u), v(pose.lights[0].axis_v);
+  EXPECT_LT(glm::distance(vec3(maps.lights[0].origin), vec3(0, 4, 0) - u), 1e-6f);
+  EXPECT_LT(glm::distance(vec3(maps.lights[1].origin), vec3(0, 4, 0) + 0.5f * v), 1e-6f);
+  EXPECT_EQ(maps.views.size(), 9u);
+}
+
+TEST_F(ShadowMapTest, StaticMapsAreCachedAndSharedAndFollowWhatMoves) {
+  scene::Scene scene;
+  addMesh(scene, floorPrimitive(2, addMaterial(scene)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addLight(pose, rectangleLight({0, 4, 0}, {0, -1, 0}, 2, 1));
+  scene::GpuScene gpuScene(device(), scene);
+  const auto camera = scene::frameBounds(pose.bounds);
+  gpuScene.update(pose, camera, {64, 64}, 0);
+  shadow::ShadowMapService service(device(), gpuScene);
+  frame::ResourcePool pool(device());
+  frame::FrameGraph graph;
+  service.begin(graph, gpuScene.import(graph), pose);
+  const std::vector<uint32_t> lights{0};
+  const shadow::ShadowMaps maps = service.request(lights, {.size = 64});
+  EXPECT_EQ(service.request(lights, {.size = 64}).depth, maps.depth);
+  EXPECT_NE(service.request(lights, {.size = 32}).depth, maps.depth);
+  graph.output(maps.depth);
+  graph.prepare(device(), shaders(), pool);
+  const auto state = [&] {
+    graph.execute();
+    for (const frame::PassReport& report : graph.explain()) {
+      if (report.name == "shadow maps") return report.state;
+    }
+    return frame::PassState::leftOut;
+  };
+  EXPECT_EQ(state(), frame::PassState::run);
+  EXPECT_EQ(state(), frame::PassState::cached);
+  gpuScene.update(pose, scene::lookAt({1, 2, 3}, {0, 0, 0}, 0.5f), {64, 64}, 1);
+  EXPECT_FALSE(service.update(pose));
+  EXPECT_EQ(state(), frame::PassState::cached);
+  pose.lights[0].position.x = 0.5f;
+  gpuScene.update(pose, camera, {64, 64}, 2);
+  EXPECT_FALSE(service.update(pose));
+  EXPECT_EQ(state(), frame::PassState::run);
+  pose.lights[0].position.y = 0.1f;
+  gpuScene.update(pose, camera, {64, 64}, 3);
+  EXPECT_TRUE(service.update(pose)) << "one map is not enough any more";
+  gpuScene.forget();
+}
+
+TEST_F(ShadowMapTest, ImpossibleRequestsAreRefused) {
+  scene::Scene scene;
+  addMesh(scene, floorPrimitive(2, addMaterial(scene)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addLight(pose, pointLight({0, 4, 0}));
+  scene::GpuScene gpuScene(device(), scene);
+  gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
+  shadow::ShadowMapService service(device(), gpuScene);
+  frame::FrameGraph graph;
+  service.begin(graph, gpuScene.import(graph), pose);
+  const std::vector<uint32_t> light{0}, absent{1};
+  EXPECT_THROW(service.request(light, {.size = 0}), UsageError);
+  EXPECT_THROW(service.request(light, {.size = 1 << 20}), UsageError);
+  EXPECT_THROW(service.request(light, {.size = 16384}), UsageError);
+  EXPECT_THROW(service.request(absent, {.size = 64}), UsageError);
+  gpuScene.forget();
+}
+
+}  // namespace
+}  // namespace limn
