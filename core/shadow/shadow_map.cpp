@@ -137,9 +137,12 @@ void ShadowMapService::Implementation::addPasses(Request& request) {
   const frame::TextureHandle rasterised = raster.write(graph->createTexture("rasterised shadow depth", desc),
                                                        Access::depthAttachment, "depth per view");
   const bool layered = !device.software() && device.limits().layerFromVertexShader;
+  const bool paraboloid = request.desc.projection == Projection::paraboloid;
   const auto program = [&](bool masked) {
     gpu::ProgramDesc d{.files = {"glsl/shadow/depth.vert.glsl"},
-                       .defines = {{"LAYERED", layered ? "1" : "0"}, {"MASKED", masked ? "1" : "0"}}};
+                       .defines = {{"LAYERED", layered ? "1" : "0"},
+                                   {"MASKED", masked ? "1" : "0"},
+                                   {"PARABOLOID", paraboloid ? "1" : "0"}}};
     if (masked) d.files.push_back("glsl/shadow/masked.frag.glsl");
     return raster.program(d);
   };
@@ -147,16 +150,18 @@ void ShadowMapService::Implementation::addPasses(Request& request) {
   programs.opaque = program(false);
   programs.masked = scene.hasMasked() ? program(true) : programs.opaque;
   if (request.desc.cacheable) raster.cacheable();
-  raster.execute([this, &request, rasterised, layered, programs](frame::PassContext& context) {
+  raster.execute([this, &request, rasterised, layered, paraboloid, programs](frame::PassContext& context) {
     const gl::Functions& gl = context.gl();
     constexpr GLfloat nothing = 0;
     context.bindFramebuffer({}, {rasterised});
     gl.ClearBufferfv(GL_DEPTH, 0, &nothing);
     context.bindStorage(2, request.maps.views);
+    if (paraboloid) gl.Enable(GL_CLIP_DISTANCE0);
     scene.drawDepth(context, handles, programs, request.depthViews, request.drawList, layered,
                     [&](const scene::DepthView& view) {
                       context.bindFramebuffer({}, {rasterised, 0, view.layer});
                     });
+    if (paraboloid) gl.Disable(GL_CLIP_DISTANCE0);
   });
 
   frame::PassBuilder linearise = graph->addPass("linear shadow depth");

@@ -34,7 +34,7 @@ struct ShadowMapDesc {
   /// Points on each light from which maps are rendered: x, y in [-1/2, 1/2] along axis_u and axis_v of a
   /// rectangle, or inside the circle of radius 1/2 for a directional light's disc. Empty: the centre alone.
   /// Lights without extent ignore all but the first.
-  std::vector<glm::vec2> samples;
+  std::vector<glm::vec2> samples = {};
   /// Keep the maps while nothing changed. False where many batches of maps are to share one piece of memory.
   bool cacheable = true;
   bool operator==(const ShadowMapDesc&) const = default;

@@ -1,5 +1,6 @@
 // Depth of the scene from the views of shadow maps. LAYERED 1: all views in one draw, each to its own layer.
-// MASKED 1: passes on what an alpha test needs.
+// MASKED 1: passes on what an alpha test needs. PARABOLOID 1: some views are paraboloids, whose clip coordinates do not
+// cut off what lies behind them.
 #if LAYERED
 #ifdef GL_ARB_shader_viewport_layer_array
 #extension GL_ARB_shader_viewport_layer_array : require
@@ -27,6 +28,10 @@ void main() {
   ShadowView view = views[entry.y];
   vec3 world = (instances[entry.x].object_to_world * vec4(position, 1.0)).xyz;
   gl_Position = shadow_clip(view, world);
+#if PARABOLOID
+  vec3 local = shadow_local(view, world);
+  gl_ClipDistance[0] = view.info.x == shadow_paraboloid ? local.z + 0.1 * length(local) : 1.0;
+#endif
 #if MASKED
   surface_uv = uv;
   surface_alpha = colour.a;

