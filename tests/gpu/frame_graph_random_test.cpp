@@ -78,13 +78,13 @@ class FrameGraphRandom : public GlTest {
     const size_t passes = 3 + pick(10);
     const bool caching = pick(2) == 0;
     // Mostly what was made recently, so that lifetimes end.
-    const auto source = [&] { return live[live.size() - 1 - pick(pick(4) == 0 ? live.size() : size_t{2})]; };
+    const auto recent = [&] { return live[live.size() - 1 - pick(pick(4) == 0 ? live.size() : size_t{2})]; };
     for (size_t p = 0; p < passes; ++p) {
       Step step;
       PassBuilder pass = scene.graph.addPass("step");
       if (caching && pick(4) != 0) pass.cacheable();
       for (size_t i = pick(3); i > 0; --i) {
-        step.sources.push_back(source());
+        step.sources.push_back(recent());
         pass.read(step.sources.back(), Access::sampled, "");
       }
       step.before = pick(3) == 0 ? live[pick(live.size())] : scene.graph.createTexture("t", desc);

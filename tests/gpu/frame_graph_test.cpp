@@ -3,45 +3,10 @@
 
 #include <gmock/gmock.h>
 
-#include <chrono>
-#include <cstdio>
-#include <cstdlib>
-#include <new>
 #include <numeric>
 
 #include "core/base/error.h"
 #include "tests/gpu/gl_test.h"
-
-namespace {
-/// Heap allocations of this thread while counting is on.
-thread_local bool counting = false;
-thread_local int64_t allocations = 0;
-
-void* allocate(std::size_t bytes) {
-  if (counting) ++allocations;
-  if (void* memory = std::malloc(bytes > 0 ? bytes : 1)) return memory;
-  throw std::bad_alloc();
-}
-}  // namespace
-
-void* operator new(std::size_t bytes) {
-  return allocate(bytes);
-}
-void* operator new[](std::size_t bytes) {
-  return allocate(bytes);
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
 
 namespace limn::frame {
 namespace {
@@ -494,39 +459,6 @@ TEST_F(FrameGraphGpu, theDerivedBarriersAreWhatIsIssued) {
   graph.invalidate();
   graph.execute();
   EXPECT_THAT(BarrierRecorder::take(), ElementsAreArray(derived));
-}
-
-TEST_F(FrameGraphGpu, executingAllocatesNothingOnTheHeapAndCostsLittle) {
-  FrameGraph graph;
-  TextureHandle current = set(graph, "set", 1, true);
-  for (int i = 0; i < 8; ++i) current = add(graph, "add", current, 1);
-  PassBuilder pass = graph.addPass("draw");
-  const TextureHandle drawn =
-      pass.write(graph.createTexture("drawn", value_desc), Access::colourAttachment, "");
-  pass.execute([=](PassContext& context) { context.bindFramebuffer({{drawn}}); });
-  graph.output(current);
-  graph.output(drawn);
-  prepare(graph);
-  for (const Timing timing : {Timing::off, Timing::query, Timing::finish}) {
-    for (int frame = 0; frame < 4; ++frame) graph.execute(timing);
-    gl().Finish();
-    allocations = 0;
-    counting = true;
-    for (int frame = 0; frame < 10; ++frame) graph.execute(timing);
-    counting = false;
-    EXPECT_EQ(allocations, 0) << name(timing);
-  }
-
-  // Overhead of the graph itself: passes that do nothing.
-  FrameGraph idle;
-  for (int i = 0; i < 10; ++i) idle.addPass("idle").sideEffect().execute([](PassContext&) {});
-  prepare(idle);
-  idle.execute();
-  constexpr int frames = 200;
-  const auto start = std::chrono::steady_clock::now();
-  for (int frame = 0; frame < frames; ++frame) idle.execute();
-  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-  std::printf("frame graph of 10 idle passes: %.4f ms per frame\n", elapsed.count() / frames);
 }
 
 }  // namespace
