@@ -122,7 +122,7 @@ Scene makeRobot() {
   floor.baseColourTexture = scene.addTexture(
       "tiles", tileImage(512, 4, {0.5f, 0.52f, 0.55f}, {0.3f, 0.34f, 0.4f}, {0.16f, 0.17f, 0.18f}));
   floor.normalTexture = scene.addTexture("tiles_normal", tileNormalImage(512, 4), true);
-  Mesh stage = backdrop(5, 3.5f, 2.4f, 4, 1.6f);
+  Mesh stage = backdrop(9, 3.5f, 2.4f, 4, 1.6f);
   computeTangents(stage);
   scene.add("floor", std::move(stage), scene.addMaterial(floor));
 

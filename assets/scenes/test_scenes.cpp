@@ -67,7 +67,7 @@ Scene makeLights() {
   scene.addAreaLight("key", {-0.6f, 2.4f, -1.6f}, {0, 0, 0}, {0.8f, 0.5f}, 3);
   Material panel = lambert("panel", {0, 0, 0});
   panel.emissive = {0.6f, 1, 0.7f};
-  panel.emissiveStrength = 8;
+  panel.emissiveStrength = 5;
   scene.add("panel", quad({0.2f, 0.9f, -1.7f}, {0.5f, 0, 0}, {0, 0.3f, 0}), scene.addMaterial(panel));
   scene.addCamera("main", {0.2f, 2.1f, 4.2f}, {0.1f, 0.25f, 0}, 36);
   scene.addCamera("close", {-0.5f, 1, 2}, {-0.1f, 0.25f, 0}, 40);

@@ -1,4 +1,5 @@
 // The scene library as written to disk: valid, complete, the size it promises, and the same bytes every time.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -16,6 +17,8 @@
 #include <set>
 #include <string>
 #include <vector>
+
+#include "core/scene/load.h"
 
 namespace {
 
@@ -241,6 +244,22 @@ TEST(Assets, RobotIsSkinnedAndItsDanceLoops) {
     float dot = 0;  // q and -q are the same rotation
     for (std::size_t k = 0; k < 4; ++k) dot += values.front()[k] * values.back()[k];
     EXPECT_NEAR(std::abs(dot), 1, 1e-5);
+  }
+}
+
+TEST(Assets, TheLoaderTakesEverySceneWithoutAWarning) {
+  const std::map<std::string, std::size_t> lights = {{"lights", 5}, {"white_furnace", 0}};
+  for (const char* name : kScenes) {
+    SCOPED_TRACE(name);
+    const limn::scene::Scene scene = limn::scene::load(kAssets / name / (std::string(name) + ".glb"));
+    EXPECT_THAT(scene.warnings, testing::IsEmpty());
+    EXPECT_EQ(scene.triangles(), Glb(name).trianglesShown());
+    const limn::scene::Pose pose = limn::scene::evaluate(scene, 0.5);
+    EXPECT_EQ(pose.lights.size(), lights.count(name) ? lights.at(name) : 1u);
+    if (!pose.lights.empty()) {
+      EXPECT_THAT(pose.lightNames, testing::Contains("key"));
+    }
+    EXPECT_EQ(static_cast<bool>(scene.environment), std::string(name) == "white_furnace");
   }
 }
 
