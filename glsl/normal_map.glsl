@@ -4,10 +4,10 @@
 #include "glsl/language.glsl"
 LIMN_BEGIN
 
-// World shading normal from the interpolated world normal and tangent (any length; w: sign of the bitangent) and the
-// texel of the normal map in [0, 1]^3 (glTF 2.0, 3.9.3: x, y scaled by normalTexture.scale). The tangent is made
-// perpendicular to the normal, the bitangent is cross(normal, tangent) * w, all in world space. A vanishing tangent
-// leaves the interpolated normal.
+// World shading normal from the interpolated world normal and tangent (any length; w: sign of the bitangent, negated by
+// the caller where object to world is a mirroring) and the texel of the normal map in [0, 1]^3 (glTF 2.0, 3.9.3: x, y
+// scaled by normalTexture.scale). The tangent is made perpendicular to the normal, the bitangent is
+// cross(normal, tangent) * w, all in world space. A vanishing tangent leaves the interpolated normal.
 LIMN_FN vec3 mapped_normal(vec3 normal, vec4 tangent, vec3 texel, float scale) {
   vec3 n = normalize(normal);
   vec3 t = vec3(tangent) - n * dot(n, vec3(tangent));

@@ -54,9 +54,9 @@ struct Request {
   int aa =
       1;  ///< aa x aa samples per pixel, on a regular grid and equally weighted; other channels: the centre's
   int threads = 0;  ///< 0: all cores
-  ProgressCallback progress;
-  std::filesystem::path
-      checkpoint;                 ///< state of unfinished work, resumed if it fits the request; empty: none
+  ProgressCallback progress{};
+  /// State of unfinished work, resumed if it fits the request; empty: none.
+  std::filesystem::path checkpoint{};
   double checkpointSeconds = 30;  ///< between two writes of it
 };
 

@@ -83,7 +83,8 @@ CameraPose lookAt(const glm::vec3& eye, const glm::vec3& target, float yfov) {
   if (!(distance > 0))
     throw UsageError(fmt::format("camera: eye and target are the same point {},{},{}", eye.x, eye.y, eye.z));
   const glm::dvec3 forward = (to - from) / distance;
-  const glm::dvec3 up = std::abs(forward.y) > 0.9999 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+  const bool vertical = std::abs(forward.y) > 0.9999;  // +X stays on the right
+  const glm::dvec3 up = vertical ? glm::dvec3(0, 0, std::copysign(1.0, forward.y)) : glm::dvec3(0, 1, 0);
   CameraPose camera;
   camera.worldToView = glm::mat4(glm::lookAt(from, to, up));
   camera.yfov = yfov;

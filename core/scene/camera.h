@@ -23,9 +23,9 @@ struct DepthRange {
 };
 LIMN_API DepthRange fitDepthRange(const CameraPose& camera, const Bounds& bounds);
 
-/// A camera at `eye` looking at `target`, world +Y up (+Z where it looks along Y); near is 1e-4 of the
-/// distance between the two. yfov in radians. Throws UsageError if eye and target coincide or a value is not
-/// finite.
+/// A camera at `eye` looking at `target`, world +Y up (where it looks along Y: +X to the right); near is 1e-4
+/// of the distance between the two. yfov in radians. Throws UsageError if eye and target coincide or a value
+/// is not finite.
 LIMN_API CameraPose lookAt(const glm::vec3& eye, const glm::vec3& target, float yfov);
 
 /// A camera that sees all of `bounds` from the front, slightly above: for scenes that bring none.

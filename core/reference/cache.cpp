@@ -1,0 +1,78 @@
+#include <charconv>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/reference/film.h"
+#include "core/reference/reference.h"
+
+namespace limn::reference {
+namespace {
+
+template <class Number>
+std::optional<Number> numberOf(const Image& image, const std::string& key) {
+  const auto found = image.metadata().find(key);
+  if (found == image.metadata().end()) return std::nullopt;
+  Number value{};
+  const char* end = found->second.data() + found->second.size();
+  const auto parsed = std::from_chars(found->second.data(), end, value);
+  if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+std::filesystem::path Cache::pathOf(const std::string& contentHash) const {
+  return folder_ / (contentHash + ".exr");
+}
+
+std::optional<Result> Cache::get(const std::string& contentHash) const {
+  const std::filesystem::path file = pathOf(contentHash);
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return std::nullopt;
+  try {
+    Result result;
+    result.image = readImage(file);
+    const auto& metadata = result.image.metadata();
+    const auto hash = metadata.find("content_hash");
+    const auto noise = numberOf<double>(result.image, "noise_rms");
+    const auto spp = numberOf<int>(result.image, "spp");
+    const auto term = metadata.find("term");
+    if (hash == metadata.end() || hash->second != contentHash || !noise || !spp || term == metadata.end())
+      return std::nullopt;
+    const auto kept = metadata;
+    result.image = result.image.select(channelNames(termFromName(term->second)));  // files order them by name
+    result.image.metadata() = kept;
+    result.noiseRms = *noise;
+    result.spp = *spp;
+    return result;
+  } catch (const Error&) {
+    return std::nullopt;  // a broken file is rendered again
+  }
+}
+
+void Cache::put(const std::string& contentHash, const Result& result) const {
+  std::error_code failure;
+  std::filesystem::create_directories(folder_, failure);
+  if (failure)
+    throw Error("reference cache: cannot create the folder " + folder_.string() + " (" + failure.message() +
+                ")");
+  Image image = result.image;
+  image.metadata()["content_hash"] = contentHash;
+  writeExr(pathOf(contentHash), image);
+}
+
+Result Cache::render(Request request) const {
+  const std::string hash = contentHash(request);
+  if (auto cached = get(hash)) return *std::move(cached);
+  if (request.checkpoint.empty()) {
+    std::error_code failure;
+    std::filesystem::create_directories(folder_, failure);
+    if (!failure) request.checkpoint = folder_ / (hash + ".partial");
+  }
+  Result result = reference::render(request);
+  put(hash, result);
+  result.image.metadata()["content_hash"] = hash;
+  return result;
+}
+
+}  // namespace limn::reference

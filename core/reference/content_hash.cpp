@@ -1,0 +1,113 @@
+#include "core/reference/content_hash.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+namespace limn::reference {
+namespace {
+
+/// Counts the changes of this code that change pictures: old cached results are then not found any more.
+constexpr uint32_t codeVersion = 1;
+
+class Hasher {
+ public:
+  Hasher() : state_(XXH3_createState(), XXH3_freeState) { XXH3_128bits_reset(state_.get()); }
+
+  /// Values without padding bytes.
+  template <class T>
+  void add(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    XXH3_128bits_update(state_.get(), &value, sizeof(T));
+  }
+  template <class T>
+  void add(const std::vector<T>& values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    add(values.size());
+    if (!values.empty()) XXH3_128bits_update(state_.get(), values.data(), values.size() * sizeof(T));
+  }
+  template <class... T>
+  void addAll(const T&... values) {
+    (add(values), ...);
+  }
+  std::string digest() const {
+    const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
+    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+  }
+
+ private:
+  std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
+};
+
+void addTexture(Hasher& h, const scene::TextureRef& texture) {
+  h.addAll(texture.image, texture.wrapS, texture.wrapT);
+}
+
+void addMaterial(Hasher& h, const scene::Material& m) {
+  h.addAll(m.baseColour, m.metallic, m.roughness, m.normalScale, m.emission, m.alphaCutoff, m.doubleSided,
+           m.ior);
+  h.addAll(m.specularFactor, m.specularColour, m.transmission, m.thickness, m.attenuationDistance,
+           m.attenuationColour);
+  for (const auto* texture :
+       {&m.baseColourTexture, &m.metalRoughTexture, &m.normalTexture, &m.emissiveTexture})
+    addTexture(h, *texture);
+}
+
+void addPrimitive(Hasher& h, const scene::Primitive& p) {
+  h.addAll(p.positions, p.normals, p.tangents, p.uvs, p.colours, p.joints, p.weights, p.indices, p.material);
+  for (const auto& target : p.morphTargets) h.addAll(target.positions, target.normals, target.tangents);
+}
+
+void addScene(Hasher& h, const scene::Scene& scene) {
+  h.add(scene.images.size());
+  for (const auto& image : scene.images) {
+    h.addAll(image.srgb, image.levels.size());
+    for (const auto& level : image.levels) h.addAll(level.width, level.height, level.rgba);
+  }
+  h.add(scene.materials.size());
+  for (const auto& material : scene.materials) addMaterial(h, material);
+  h.add(scene.meshes.size());
+  for (const auto& mesh : scene.meshes) {
+    h.add(mesh.primitives.size());
+    for (const auto& primitive : mesh.primitives) addPrimitive(h, primitive);
+  }
+  const scene::Environment& e = scene.environment;
+  h.addAll(e.width, e.height, e.texels, e.rotation, e.scale);
+}
+
+void addPose(Hasher& h, const scene::Pose& pose) {
+  h.add(pose.instances.size());
+  for (const auto& i : pose.instances)
+    h.addAll(i.node == scene::none, i.mesh, i.primitive, i.objectToWorld, i.deformed);
+  h.add(pose.deformed.size());
+  for (const auto& d : pose.deformed) h.addAll(d.mesh, d.primitive, d.joints, d.morphWeights);
+  h.add(pose.lights);
+}
+
+void addWork(Hasher& h, const Request& r) {
+  h.add(codeVersion);
+  addScene(h, r.scene);
+  addPose(h, r.pose);
+  h.addAll(r.camera.worldToView, r.camera.yfov, r.camera.near);
+  h.addAll(r.width, r.height, r.term, r.light, r.seed, r.aa);
+}
+
+}  // namespace
+
+std::string workHash(const Request& request) {
+  Hasher hasher;
+  addWork(hasher, request);
+  return hasher.digest();
+}
+
+std::string contentHash(const Request& request) {
+  Hasher hasher;
+  addWork(hasher, request);
+  hasher.addAll(request.spp, request.noise);
+  return hasher.digest();
+}
+
+}  // namespace limn::reference

@@ -1,0 +1,156 @@
+#include "core/reference/film.h"
+
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/reference/camera_radiance.h"
+
+namespace limn::reference {
+namespace {
+
+struct Mean {
+  glm::dvec3 value{0}, deviation{0};  ///< deviation: half the difference of the two halves
+};
+
+Mean meanOf(const Integrator& integrator, const Accumulators& state, size_t pixel) {
+  const glm::dvec3 a = integrator.estimate(state.sums[2 * pixel], state.samples);
+  const glm::dvec3 b = integrator.estimate(state.sums[2 * pixel + 1], state.samples);
+  return {0.5 * (a + b), 0.5 * (a - b)};
+}
+
+/// V of both halves together: samples above the tangent plane are not equally many in each.
+double ratioOf(const Accumulators& state, size_t pixel, size_t part) {
+  const Sums& a = state.sums[2 * pixel];
+  const Sums& b = state.sums[2 * pixel + 1];
+  const double all = a[part + 1] + b[part + 1];
+  return all > 0 ? (a[part] + b[part]) / all : 1.0;
+}
+
+bool isMaskedPixel(const Accumulators& state, size_t pixel) {
+  return state.sums[2 * pixel][1] + state.sums[2 * pixel + 1][1] == 0;
+}
+
+glm::vec3 viewDirection(const View& view, size_t pixel) {
+  const int x = static_cast<int>(pixel % static_cast<size_t>(view.width));
+  const int y = static_cast<int>(pixel / static_cast<size_t>(view.width));
+  return glm::normalize(viewRay(view.frame, static_cast<float>(x), static_cast<float>(y)));
+}
+
+/// A pixel of the image, rows from the top.
+std::span<float> imagePixel(const View& view, Image& image, size_t pixel) {
+  const int x = static_cast<int>(pixel % static_cast<size_t>(view.width));
+  const int y = static_cast<int>(pixel / static_cast<size_t>(view.width));
+  return image.pixel(x, view.height - 1 - y);
+}
+
+void writeColour(std::span<float> out, const glm::dvec3& colour, double variance) {
+  for (int c = 0; c < 3; ++c) out[static_cast<size_t>(c)] = static_cast<float>(colour[c]);
+  out[3] = static_cast<float>(variance);
+}
+
+}  // namespace
+
+bool View::surface(size_t index, Surface& surface) const {
+  const int x = static_cast<int>(index % static_cast<size_t>(width));
+  const int y = static_cast<int>(index / static_cast<size_t>(width));
+  Hit hit;
+  if (!rays.see(frame, near, x, y, hit)) return false;
+  surface = surfaceAt(rays, hit, frame, x, y);
+  return true;
+}
+
+std::vector<std::string> channelNames(Term term) {
+  std::vector<std::string> names{"R",        "G",        "B",        "variance", "Z",   "coverage", "id",
+                                 "albedo.R", "albedo.G", "albedo.B", "N.X",      "N.Y", "N.Z"};
+  if (term == Term::visibility) names.insert(names.end(), {"V", "Vw", "masked"});
+  return names;
+}
+
+Image renderFeatures(const View& view, Term term, std::vector<unsigned char>& covered) {
+  Image image(view.width, view.height, channelNames(term));
+  covered.assign(view.pixelCount(), 0);
+  tbb::parallel_for(size_t{0}, view.pixelCount(), [&](size_t pixel) {
+    Surface surface;
+    if (!view.surface(pixel, surface)) return;
+    covered[pixel] = 1;
+    const glsl::GBufferSurface& values = surface.values;
+    const std::array<float, 9> features{surface.depth,
+                                        1.f,
+                                        static_cast<float>(surface.draw),
+                                        values.base_colour.x,
+                                        values.base_colour.y,
+                                        values.base_colour.z,
+                                        values.normal.x,
+                                        values.normal.y,
+                                        values.normal.z};
+    std::copy(features.begin(), features.end(), imagePixel(view, image, pixel).begin() + 4);
+  });
+  return image;
+}
+
+double noiseOf(const Integrator& integrator, Term term, const Accumulators& state,
+               const std::vector<unsigned char>& covered) {
+  glm::dvec3 sum(0), squares(0);
+  size_t count = 0;
+  for (size_t pixel = 0; pixel < covered.size(); ++pixel) {
+    if (!covered[pixel] || (term == Term::visibility && isMaskedPixel(state, pixel))) continue;
+    const Mean mean = meanOf(integrator, state, pixel);
+    sum += mean.value;
+    squares += mean.deviation * mean.deviation;
+    ++count;
+  }
+  const double total = sum.x + sum.y + sum.z;
+  if (count == 0 || !(total > 0)) return 0;
+  const double values = 3.0 * static_cast<double>(count);
+  return std::sqrt((squares.x + squares.y + squares.z) / values) / (total / values);
+}
+
+void develop(const Integrator& integrator, const View& view, const Request& request,
+             const Accumulators& state, const std::vector<unsigned char>& covered, Image& image) {
+  const EnvironmentLight environment(request.scene.environment);
+  tbb::parallel_for(size_t{0}, view.pixelCount(), [&](size_t pixel) {
+    const std::span<float> out = imagePixel(view, image, pixel);
+    if (request.term == Term::visibility) {
+      const double v = ratioOf(state, pixel, 0);
+      const glm::dvec3 deviation = meanOf(integrator, state, pixel).deviation;
+      writeColour(out, glm::dvec3(v), deviation.x * deviation.x);
+      out[13] = static_cast<float>(v);
+      out[14] = static_cast<float>(ratioOf(state, pixel, 2));
+      out[15] = isMaskedPixel(state, pixel) ? 1.f : 0.f;
+      return;
+    }
+    Mean mean;
+    if (covered[pixel]) mean = meanOf(integrator, state, pixel);
+    if (request.term == Term::final) {
+      Surface surface;
+      mean.value += covered[pixel] && view.surface(pixel, surface)
+                        ? glm::dvec3(cameraRadiance(surface, environment))
+                        : glm::dvec3(environment.radiance(viewDirection(view, pixel)));
+    }
+    writeColour(out, mean.value, glm::dot(mean.deviation, mean.deviation) / 3);
+  });
+}
+
+Image downsample(const Image& image, int aa) {
+  if (aa == 1) return image;
+  Image result(image.width() / aa, image.height() / aa, image.channels());
+  result.metadata() = image.metadata();
+  const auto averaged = [&](size_t channel) { return channel < 4 || channel == 13 || channel == 14; };
+  for (int y = 0; y < result.height(); ++y)
+    for (int x = 0; x < result.width(); ++x) {
+      const std::span<float> out = result.pixel(x, y);
+      const auto centre = image.pixel(x * aa + aa / 2, y * aa + (aa - 1) / 2);
+      for (size_t c = 0; c < out.size(); ++c) {
+        double sum = 0;
+        for (int i = 0; i < aa * aa; ++i)
+          sum += image.at(x * aa + i % aa, y * aa + i / aa, static_cast<int>(c));
+        const double mean = sum / (aa * aa);
+        out[c] = averaged(c) ? static_cast<float>(c == 3 ? mean / (aa * aa) : mean) : centre[c];
+      }
+    }
+  return result;
+}
+
+}  // namespace limn::reference

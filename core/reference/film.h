@@ -1,0 +1,44 @@
+// From accumulated samples to pictures.
+#pragma once
+
+#include <vector>
+
+#include "core/reference/checkpoint.h"
+#include "core/reference/environment.h"
+#include "core/reference/integrator.h"
+
+namespace limn::reference {
+
+/// The camera and the pixels, with aa x aa of them per pixel of the result. Pixels are numbered y * width + x
+/// from the lower left.
+struct View {
+  const RayScene& rays;
+  glsl::FrameBlock frame{};
+  float near = 0;
+  int width = 0, height = 0;
+
+  size_t pixelCount() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
+  /// The surface that pixel `index` shows; false: none.
+  bool surface(size_t index, Surface& surface) const;
+};
+
+/// The channels of a result, in their order.
+std::vector<std::string> channelNames(Term term);
+
+/// Which pixels show a surface, and what the G-buffer would say of it: Z, coverage, id, albedo, normal, rows
+/// from the top, behind empty channels R, G, B and variance.
+Image renderFeatures(const View& view, Term term, std::vector<unsigned char>& covered);
+
+/// RMS of the standard deviation of the mean over covered pixels (of visibility: those not masked) and
+/// channels, relative to the mean; 0 where the mean is 0.
+double noiseOf(const Integrator& integrator, Term term, const Accumulators& state,
+               const std::vector<unsigned char>& covered);
+
+/// Writes the channels that the samples determine into the features' image.
+void develop(const Integrator& integrator, const View& view, const Request& request,
+             const Accumulators& state, const std::vector<unsigned char>& covered, Image& image);
+
+/// Averages aa x aa pixels; the G-buffer's channels are those of the centre one (of four: the upper right).
+Image downsample(const Image& image, int aa);
+
+}  // namespace limn::reference

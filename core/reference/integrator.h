@@ -1,0 +1,33 @@
+// One estimator per term: what a sample of a pixel adds up to.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "core/reference/reference.h"
+#include "core/reference/sampler.h"
+#include "core/reference/surface.h"
+
+namespace limn::reference {
+
+/// What one pixel has gathered over the samples of one half; the meaning is the integrator's.
+using Sums = std::array<double, 4>;
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  /// Adds samples first .. first + count - 1 to `sums`. Called from several threads.
+  virtual void sample(const Surface& surface, Sampler& sampler, uint32_t first, uint32_t count,
+                      Sums& sums) const = 0;
+  /// R, G, B of `sums`, gathered over `samples` samples.
+  virtual glm::dvec3 estimate(const Sums& sums, double samples) const = 0;
+};
+
+/// Reflected direct light; sums: R, G, B. Next-event estimation with one light sample and one BRDF sample per
+/// light, weighted by the power heuristic (Veach 1997, section 9.2.4); punctual lights are evaluated once.
+std::unique_ptr<Integrator> makeDirectIntegrator(const RayScene& rays, const Request& request);
+
+/// V of one light; sums: visible samples, samples above the tangent plane, and both weighted by irradiance.
+std::unique_ptr<Integrator> makeVisibilityIntegrator(const RayScene& rays, const Request& request);
+
+}  // namespace limn::reference

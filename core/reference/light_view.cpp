@@ -1,0 +1,129 @@
+#include "core/reference/light_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace limn::reference {
+namespace {
+
+/// Distance along the light's normal that clears its own surface, as Draw::rayOffset does for receivers.
+float lightOffset(const glsl::Light& light) {
+  const glm::vec3 reach = glm::abs(glm::vec3(light.position)) +
+                          glm::abs(glm::vec3(light.axis_u)) * light.axis_u.w +
+                          glm::abs(glm::vec3(light.axis_v)) * light.axis_v.w;
+  return 0x1p-20f * std::max(reach.x, std::max(reach.y, reach.z));
+}
+
+}  // namespace
+
+bool isPunctual(const glsl::Light& light) {
+  return light.info.x == glsl::light_point || light.info.x == glsl::light_spot ||
+         (light.info.x == glsl::light_directional && !(light.cone.w > 0.f));
+}
+
+bool unblocked(const RayScene& rays, const Surface& receiver, const Arrival& arrival) {
+  const glm::vec3 origin = receiver.rayOrigin(arrival.direction);
+  if (arrival.finite) return !rays.occluded(origin, arrival.target - origin, 1.f);
+  return !rays.occluded(origin, arrival.direction, std::numeric_limits<float>::infinity());
+}
+
+PointView::PointView(const glsl::Light& light, const Surface& receiver) {
+  if (light.info.x == glsl::light_directional) {
+    arrival_.direction = -glm::vec3(light.direction);
+  } else {
+    const glm::vec3 offset = glm::vec3(light.position) - receiver.position;
+    const float distance = glm::length(offset);
+    if (!(distance > 0.f)) return;
+    arrival_.direction = offset / distance;
+    arrival_.target = glm::vec3(light.position);
+    arrival_.finite = true;
+  }
+  above_ = glm::dot(arrival_.direction, receiver.values.geometric_normal) > 0.f;
+  irradiance_ = glsl::punctual_irradiance(light, receiver.position);
+}
+
+RectangleView::RectangleView(const glsl::Light& light, const Surface& receiver)
+    : light_(light), receiver_(receiver.position), normal_(receiver.values.geometric_normal) {
+  // A flat light does not see itself; rounding must not decide on which side of itself it lies.
+  if (light.info.z == receiver.draw) return;
+  part_ = glsl::rectangle_visible_part(light, receiver_, normal_);
+  if (part_.count == 0) return;
+  rectangle_ = glsl::rectangle_from(light, receiver_);
+  area_ = glsl::rectangle_part_share(part_) * light.axis_u.w * light.axis_v.w;
+  radiance_ = glm::vec3(light.emission) * glsl::receiver_factor(light, receiver_);
+  clearance_ = lightOffset(light) * glsl::rectangle_side(light, receiver_) * glm::vec3(light.direction);
+}
+
+Arrival RectangleView::at(glm::vec2 ab) const {
+  Arrival arrival;
+  const glm::vec3 offset = glsl::rectangle_point(rectangle_, ab);
+  const float distance2 = glm::dot(offset, offset);
+  if (!(distance2 > 0.f)) return arrival;
+  arrival.direction = offset / std::sqrt(distance2);
+  arrival.target = receiver_ + offset + clearance_;
+  arrival.finite = true;
+  const float projected = std::abs(glm::dot(glm::vec3(light_.direction), arrival.direction)) * area_;
+  if (!(projected > 0.f)) return arrival;
+  arrival.pdf = distance2 / projected;
+  arrival.radiance = radiance_;
+  arrival.irradianceWeight = std::max(glm::dot(normal_, arrival.direction), 0.f) / arrival.pdf;
+  return arrival;
+}
+
+Arrival RectangleView::sample(glm::vec2 u) const {
+  return at(glsl::rectangle_part_sample(part_, u));
+}
+
+Arrival RectangleView::towards(const glm::vec3& direction) const {
+  const glm::vec3 facing(light_.direction);
+  const float distance = glm::dot(facing, rectangle_.centre) / glm::dot(facing, direction);
+  if (!(distance > 0.f && std::isfinite(distance))) return {};
+  const glm::vec3 offset = distance * direction - rectangle_.centre;
+  const glm::vec2 ab(glm::dot(offset, glm::vec3(light_.axis_u)) / light_.axis_u.w,
+                     glm::dot(offset, glm::vec3(light_.axis_v)) / light_.axis_v.w);
+  return std::abs(ab.x) <= 0.5f && std::abs(ab.y) <= 0.5f ? at(ab) : Arrival{};
+}
+
+ConeView::ConeView(const glsl::Light& light, const Surface& receiver)
+    : normal_(receiver.values.geometric_normal) {
+  const float half = std::min(0.5f * light.cone.w, 1.55f);
+  const float sine = std::sin(half), sineHalf = std::sin(0.5f * half);
+  frame_ = glsl::frame_around(-glm::vec3(light.direction));
+  oneMinusCosine_ = 2.f * sineHalf * sineHalf;
+  radiance_ = glm::vec3(light.emission) / (glsl::pi * sine * sine);
+  above_ = glm::dot(frame_.n, normal_) > -sine;
+}
+
+Arrival ConeView::along(const glm::vec3& direction) const {
+  Arrival arrival;
+  arrival.direction = direction;
+  arrival.pdf = 1.f / (2.f * glsl::pi * oneMinusCosine_);
+  arrival.radiance = radiance_;
+  arrival.irradianceWeight = std::max(glm::dot(normal_, direction), 0.f);
+  return arrival;
+}
+
+Arrival ConeView::sample(glm::vec2 u) const {
+  const glm::vec2 disc = glsl::sample_disc(u);
+  const float radius2 = std::min(glm::dot(disc, disc), 1.f);
+  // 1 - cos is uniform; the sine is sqrt((1 - cos)(1 + cos)).
+  const float cap = radius2 * oneMinusCosine_;
+  const float lateral = std::sqrt(oneMinusCosine_ * (2.f - cap));
+  return along(glm::normalize(glsl::from_local(frame_, glm::vec3(lateral * disc, 1.f - cap))));
+}
+
+Arrival ConeView::towards(const glm::vec3& direction) const {
+  const glm::vec3 away = direction - frame_.n;  // |away|^2 / 2 = 1 - cos
+  return 0.5f * glm::dot(away, away) <= oneMinusCosine_ ? along(direction) : Arrival{};
+}
+
+Arrival EnvironmentView::towards(const glm::vec3& direction) const {
+  Arrival arrival;
+  arrival.direction = direction;
+  arrival.pdf = environment_.pdf(direction);
+  arrival.radiance = environment_.radiance(direction);
+  return arrival;
+}
+
+}  // namespace limn::reference

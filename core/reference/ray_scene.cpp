@@ -1,0 +1,336 @@
+#include "core/reference/ray_scene.h"
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/reference/texture.h"
+#include "glsl/texture_level.glsl"
+
+namespace limn::reference {
+namespace {
+
+/// Ray query that knows which pixel asks (for the camera's filter).
+struct Context {
+  RTCIntersectContext embree;
+  const RayScene* scene;
+  const glsl::FrameBlock* frame;
+  int x, y;
+};
+
+/// What a filter needs of the geometry that was hit. For instanced geometry `draw` is none: the context names
+/// it.
+struct GeometryUser {
+  const scene::Primitive* primitive;
+  const scene::Material* material;
+  int draw;
+  float orientation;
+};
+
+uint32_t drawOf(const GeometryUser& user, const RTCIntersectContext& context) {
+  return user.draw != scene::none ? static_cast<uint32_t>(user.draw) : context.instID[0];
+}
+
+glm::vec2 uvAt(const scene::Primitive& primitive, uint32_t triangle, float u, float v) {
+  const uint32_t* i = &primitive.indices[3 * static_cast<size_t>(triangle)];
+  return (1.f - u - v) * primitive.uvs[i[0]] + u * primitive.uvs[i[1]] + v * primitive.uvs[i[2]];
+}
+
+float coverageAt(const scene::Scene& scene, const scene::Primitive& primitive,
+                 const scene::Material& material, uint32_t triangle, float u, float v, float lod) {
+  float alpha = material.baseColour.a;
+  if (material.baseColourTexture.image != scene::none && !primitive.uvs.empty())
+    alpha *= sampleTexture(scene, material.baseColourTexture, uvAt(primitive, triangle, u, v), lod).a;
+  if (!primitive.colours.empty()) {
+    const uint32_t* i = &primitive.indices[3 * static_cast<size_t>(triangle)];
+    alpha *= (1.f - u - v) * primitive.colours[i[0]].a + u * primitive.colours[i[1]].a +
+             v * primitive.colours[i[2]].a;
+  }
+  return alpha;
+}
+
+bool isMasked(const scene::Material& material) {
+  return material.alphaCutoff > 0.f;
+}
+
+void cameraFilter(const RTCFilterFunctionNArguments* args) {
+  const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
+  const auto& context = *reinterpret_cast<const Context*>(args->context);
+  const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);
+  const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
+  if (!user.material->doubleSided) {
+    // Embree gives ray and normal in the geometry's own space, where the winding is the file's.
+    const float facing = hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z;
+    if (facing * user.orientation >= 0.f) {
+      args->valid[0] = 0;
+      return;
+    }
+  }
+  if (!isMasked(*user.material)) return;
+  const scene::Scene& scene = context.scene->scene();
+  const Draw& draw = context.scene->draws()[drawOf(user, context.embree)];
+  float lod = 0.f;
+  if (user.material->baseColourTexture.image != scene::none && !user.primitive->uvs.empty())
+    lod = levelOfDetail(scene, user.material->baseColourTexture,
+                        textureFootprint(draw, hit.primID, *context.frame, context.x, context.y));
+  if (coverageAt(scene, *user.primitive, *user.material, hit.primID, hit.u, hit.v, lod) <
+      user.material->alphaCutoff)
+    args->valid[0] = 0;
+}
+
+void shadowFilter(const RTCFilterFunctionNArguments* args) {
+  const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
+  const auto& context = *reinterpret_cast<const Context*>(args->context);
+  const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
+  if (coverageAt(context.scene->scene(), *user.primitive, *user.material, hit.primID, hit.u, hit.v, 0.f) <
+      user.material->alphaCutoff)
+    args->valid[0] = 0;
+}
+
+/// Largest coordinate met when the box of `positions` goes through `matrix`: bounds the rounding error of the
+/// result.
+float largestCoordinate(const glm::vec3* positions, size_t count, const glm::mat4& matrix) {
+  glm::vec3 reach(0);
+  for (size_t i = 0; i < count; ++i) reach = glm::max(reach, glm::abs(positions[i]));
+  float largest = 0;
+  for (int row = 0; row < 3; ++row)
+    largest = std::max(largest, std::abs(matrix[0][row]) * reach.x + std::abs(matrix[1][row]) * reach.y +
+                                    std::abs(matrix[2][row]) * reach.z + std::abs(matrix[3][row]));
+  return largest;
+}
+
+void fail(RTCDevice device, const char* what) {
+  const RTCError code = rtcGetDeviceError(device);
+  if (code != RTC_ERROR_NONE)
+    throw Error(fmt::format("reference: Embree failed to {} ({}, error {})", what,
+                            code == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "internal",
+                            static_cast<int>(code)));
+}
+
+}  // namespace
+
+glm::vec2 barycentricOnPlane(const glm::vec3& p0, const glm::vec3& p1, const glm::vec3& p2,
+                             const glm::vec3& origin, const glm::vec3& direction) {
+  // Moeller and Trumbore 1997, in double: the quotients lose what nearly parallel lines leave.
+  const glm::dvec3 e1 = glm::dvec3(p1) - glm::dvec3(p0), e2 = glm::dvec3(p2) - glm::dvec3(p0);
+  const glm::dvec3 d(direction), from = glm::dvec3(origin) - glm::dvec3(p0);
+  const glm::dvec3 p = glm::cross(d, e2), q = glm::cross(from, e1);
+  const double determinant = glm::dot(e1, p);
+  return glm::vec2(glm::dot(from, p) / determinant, glm::dot(d, q) / determinant);
+}
+
+TextureFootprint textureFootprint(const Draw& draw, uint32_t triangle, const glsl::FrameBlock& frame, int x,
+                                  int y) {
+  const uint32_t* i = &draw.primitive->indices[3 * static_cast<size_t>(triangle)];
+  glm::vec3 p[3];
+  for (int k = 0; k < 3; ++k) p[k] = glm::vec3(draw.toWorld * glm::vec4(draw.positions[i[k]], 1.f));
+  const glm::vec3 origin(frame.camera_position);
+  const auto uvOf = [&](int px, int py) {
+    const glm::vec2 b = barycentricOnPlane(p[0], p[1], p[2], origin,
+                                           viewRay(frame, static_cast<float>(px), static_cast<float>(py)));
+    return uvAt(*draw.primitive, triangle, b.x, b.y);
+  };
+  return {uvOf(x | 1, y) - uvOf(x & ~1, y), uvOf(x, y | 1) - uvOf(x, y & ~1)};
+}
+
+float levelOfDetail(const scene::Scene& scene, const scene::TextureRef& texture,
+                    const TextureFootprint& footprint) {
+  const float lod = glsl::texture_level(footprint.dx, footprint.dy, textureSize(scene, texture));
+  return std::isnan(lod) ? 32.f : lod;
+}
+
+struct RayScene::Hierarchy {
+  RTCDevice device = nullptr;
+  RTCScene top = nullptr;
+  std::vector<GeometryUser> users;              ///< addresses are given to Embree: reserved once
+  std::vector<std::vector<glm::vec3>> normals;  ///< of deformed primitives
+  std::vector<std::vector<glm::vec4>> tangents;
+  std::vector<RTCScene> shared;
+  struct SharedGeometry {
+    RTCScene scene;
+    const glm::vec3* positions;
+  };
+  std::map<std::pair<int, int>, SharedGeometry> sharedOf;  ///< by mesh and primitive
+
+  Hierarchy() {
+    device = rtcNewDevice(nullptr);
+    if (!device) throw Error("reference: Embree could not be started");
+    top = newScene();
+  }
+  ~Hierarchy() {
+    for (RTCScene scene : shared) rtcReleaseScene(scene);
+    if (top) rtcReleaseScene(top);
+    rtcReleaseDevice(device);
+  }
+  Hierarchy(const Hierarchy&) = delete;
+  Hierarchy& operator=(const Hierarchy&) = delete;
+
+  RTCScene newScene() const {
+    RTCScene scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+    return scene;
+  }
+
+  /// Attaches `primitive`'s triangles with vertices matrix * positions and returns those vertices, which live
+  /// as long as the scene.
+  const glm::vec3* attach(RTCScene scene, unsigned id, const scene::Primitive& primitive,
+                          const std::vector<glm::vec3>& positions, const glm::mat4& matrix,
+                          GeometryUser user) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), positions.size()));
+    auto* indices =
+        static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                       3 * sizeof(uint32_t), primitive.indices.size() / 3));
+    if (!vertices || !indices) {
+      rtcReleaseGeometry(geometry);
+      fail(device, "allocate a geometry");
+      throw Error("reference: Embree gave no buffer for a geometry");
+    }
+    for (size_t i = 0; i < positions.size(); ++i)
+      vertices[i] = glm::vec3(matrix * glm::vec4(positions[i], 1.f));
+    std::memcpy(indices, primitive.indices.data(), primitive.indices.size() * sizeof(uint32_t));
+    users.push_back(user);
+    rtcSetGeometryUserData(geometry, &users.back());
+    if (!user.material->doubleSided || isMasked(*user.material))
+      rtcSetGeometryIntersectFilterFunction(geometry, cameraFilter);
+    if (isMasked(*user.material)) rtcSetGeometryOccludedFilterFunction(geometry, shadowFilter);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, id);
+    rtcReleaseGeometry(geometry);
+    fail(device, "attach a geometry");
+    return vertices;
+  }
+
+  /// Attaches an instance of a primitive that several draws share; built when first asked for.
+  const glm::vec3* attachShared(unsigned id, std::pair<int, int> key, const scene::Primitive& primitive,
+                                const glm::mat4& matrix, const GeometryUser& user) {
+    auto found = sharedOf.find(key);
+    if (found == sharedOf.end()) {
+      RTCScene scene = newScene();
+      shared.push_back(scene);
+      const glm::vec3* positions = attach(scene, 0, primitive, primitive.positions, glm::mat4(1), user);
+      rtcCommitScene(scene);
+      fail(device, "build a hierarchy");
+      found = sharedOf.emplace(key, SharedGeometry{scene, positions}).first;
+    }
+    RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(instance, found->second.scene);
+    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &matrix);
+    rtcCommitGeometry(instance);
+    rtcAttachGeometryByID(top, instance, id);
+    rtcReleaseGeometry(instance);
+    fail(device, "attach an instance");
+    return found->second.positions;
+  }
+};
+
+RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose)
+    : scene_(scene), hierarchy_(std::make_unique<Hierarchy>()) {
+  Hierarchy& h = *hierarchy_;
+  std::map<std::pair<int, int>, int> uses;
+  for (const auto& instance : pose.instances)
+    if (instance.deformed == scene::none) ++uses[{instance.mesh, instance.primitive}];
+  h.users.reserve(pose.instances.size() + uses.size());
+  draws_.reserve(pose.instances.size());
+
+  for (const scene::DrawInstance& instance : pose.instances) {
+    const auto id = static_cast<unsigned>(draws_.size());
+    if (instance.node == scene::none)
+      throw UsageError(
+          fmt::format("reference: the geometry source '{}' cannot be traced; make it a mesh of the scene",
+                      scene.dynamic[static_cast<size_t>(instance.mesh)].name));
+    const scene::Primitive& primitive =
+        scene.meshes[static_cast<size_t>(instance.mesh)].primitives[static_cast<size_t>(instance.primitive)];
+    Draw& draw = draws_.emplace_back();
+    draw.primitive = &primitive;
+    draw.material = &scene.materials[static_cast<size_t>(primitive.material)];
+    draw.normals = primitive.normals.data();
+    draw.tangents = primitive.tangents.empty() ? nullptr : primitive.tangents.data();
+    const glm::mat4& matrix = instance.objectToWorld;
+    draw.tangentToWorld = glm::mat3(matrix);
+    draw.normalToWorld = glm::mat3(glm::transpose(glm::inverse(glm::dmat3(glm::dmat4(matrix)))));
+    draw.orientation = glm::determinant(glm::dmat3(glm::dmat4(matrix))) < 0 ? -1.f : 1.f;
+
+    const std::pair<int, int> key{instance.mesh, instance.primitive};
+    if (instance.deformed == scene::none && uses[key] > 1) {
+      draw.toWorld = matrix;
+      draw.positions =
+          h.attachShared(id, key, primitive, matrix, {&primitive, draw.material, scene::none, 1.f});
+    } else {
+      std::vector<glm::vec3> deformedPositions;
+      const std::vector<glm::vec3>* positions = &primitive.positions;
+      if (instance.deformed != scene::none) {
+        auto& normals = h.normals.emplace_back();
+        auto& tangents = h.tangents.emplace_back();
+        scene::deform(primitive, pose.deformed[static_cast<size_t>(instance.deformed)], deformedPositions,
+                      normals, tangents);
+        positions = &deformedPositions;
+        draw.normals = normals.data();
+        draw.tangents = tangents.empty() ? nullptr : tangents.data();
+      }
+      draw.positions = h.attach(h.top, id, primitive, *positions, matrix,
+                                {&primitive, draw.material, static_cast<int>(id), draw.orientation});
+    }
+    draw.rayOffset = 0x1p-20f * largestCoordinate(draw.positions, primitive.positions.size(), draw.toWorld);
+  }
+  rtcCommitScene(h.top);
+  fail(h.device, "build the hierarchy");
+}
+
+RayScene::~RayScene() = default;
+
+bool RayScene::see(const glsl::FrameBlock& frame, float near, int x, int y, Hit& hit) const {
+  Context context;
+  rtcInitIntersectContext(&context.embree);
+  context.scene = this;
+  context.frame = &frame;
+  context.x = x;
+  context.y = y;
+  const glm::vec3 direction = viewRay(frame, static_cast<float>(x), static_cast<float>(y));
+  RTCRayHit query{};
+  query.ray.org_x = frame.camera_position.x;
+  query.ray.org_y = frame.camera_position.y;
+  query.ray.org_z = frame.camera_position.z;
+  query.ray.dir_x = direction.x;
+  query.ray.dir_y = direction.y;
+  query.ray.dir_z = direction.z;
+  query.ray.tnear = near;
+  query.ray.tfar = std::numeric_limits<float>::infinity();
+  query.ray.mask = ~0u;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(hierarchy_->top, &context.embree, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  hit.draw = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID ? query.hit.instID[0] : query.hit.geomID;
+  hit.triangle = query.hit.primID;
+  hit.u = query.hit.u;
+  hit.v = query.hit.v;
+  hit.depth = query.ray.tfar;
+  return true;
+}
+
+bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, float end) const {
+  Context context;
+  rtcInitIntersectContext(&context.embree);
+  context.scene = this;
+  RTCRay ray{};
+  ray.org_x = origin.x;
+  ray.org_y = origin.y;
+  ray.org_z = origin.z;
+  ray.dir_x = direction.x;
+  ray.dir_y = direction.y;
+  ray.dir_z = direction.z;
+  ray.tfar = end;
+  ray.mask = ~0u;
+  rtcOccluded1(hierarchy_->top, &context.embree, &ray);
+  return ray.tfar < 0.f;
+}
+
+}  // namespace limn::reference

@@ -1,0 +1,203 @@
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/reference/content_hash.h"
+#include "core/reference/film.h"
+#include "core/reference/reference.h"
+#include "core/scene/camera.h"
+
+namespace limn::reference {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void validate(const Request& r) {
+  const int lights = static_cast<int>(r.pose.lights.size());
+  if (r.aa < 1 || r.aa > 16) throw UsageError(fmt::format("reference: aa {} is not in 1 .. 16", r.aa));
+  if (r.width < 1 || r.height < 1 || r.width > kMaxImageSide / r.aa || r.height > kMaxImageSide / r.aa)
+    throw UsageError(fmt::format("reference: size {}x{} with aa {} is not in 1 .. {} per side", r.width,
+                                 r.height, r.aa, kMaxImageSide));
+  if (r.spp < 1 || r.spp > (1 << 24))
+    throw UsageError(fmt::format("reference: spp {} is not in 1 .. 2^24", r.spp));
+  if (!(r.noise >= 0 && r.noise < 1))
+    throw UsageError(fmt::format("reference: noise {} is not in [0, 1) (0: take spp samples)", r.noise));
+  if (r.term == Term::visibility && (r.light < 0 || r.light >= lights))
+    throw UsageError(
+        fmt::format("reference: visibility needs one light; {} is not in 0 .. {}", r.light, lights - 1));
+  if (r.light < allLights || r.light > lights)
+    throw UsageError(fmt::format("reference: light {} is not in 0 .. {} ({}: the environment) nor {} (all)",
+                                 r.light, lights, lights, allLights));
+}
+
+std::unique_ptr<Integrator> makeIntegrator(const RayScene& rays, const Request& request) {
+  return request.term == Term::visibility ? makeVisibilityIntegrator(rays, request)
+                                          : makeDirectIntegrator(rays, request);
+}
+
+/// One picture in the making.
+class Work {
+ public:
+  explicit Work(const Request& request)
+      : request_(request),
+        rays_(request.scene, request.pose),
+        view_{.rays = rays_,
+              .near = request.camera.near,
+              .width = request.width * request.aa,
+              .height = request.height * request.aa},
+        integrator_(makeIntegrator(rays_, request)),
+        needed_(static_cast<uint32_t>(request.spp + 1) / 2) {
+    scene::setCamera(view_.frame, request.camera, request.pose.bounds, view_.width, view_.height);
+    image_ = renderFeatures(view_, request.term, covered_);
+    state_.sums.resize(2 * view_.pixelCount());
+    if (!request.checkpoint.empty()) resume();
+  }
+
+  Result run() {
+    const Clock::time_point start = Clock::now();
+    const uint32_t before = state_.samples;
+    Clock::time_point saved = start;
+    while (!finished()) {
+      pass(std::min(passSize(), needed_ - state_.samples));
+      const bool last = finished();
+      const bool goOn =
+          last || !request_.progress || request_.progress(progress(secondsSince(start), before));
+      if (!last && !request_.checkpoint.empty() &&
+          (!goOn || secondsSince(saved) >= request_.checkpointSeconds)) {
+        saveCheckpoint(request_.checkpoint, hash_, state_);
+        saved = Clock::now();
+      }
+      if (!goOn)
+        throw Error(fmt::format(
+            "reference: stopped after {} of {} samples per pixel{}", 2 * state_.samples, 2 * needed_,
+            request_.checkpoint.empty() ? "" : "; kept in " + request_.checkpoint.string()));
+    }
+    return finish();
+  }
+
+ private:
+  void resume() {
+    hash_ = workHash(request_);
+    Accumulators found;
+    found.sums.resize(state_.sums.size());
+    if (loadCheckpoint(request_.checkpoint, hash_, found) && found.samples <= needed_)
+      state_ = std::move(found);
+  }
+
+  /// Samples per half of the next pass: as many as there are, between limits, so that the counts 8, 16, 32,
+  /// ... at which noise is tested all occur. A power of two that depends on the request and on what is done
+  /// alone.
+  uint32_t passSize() const {
+    const double work =
+        static_cast<double>(view_.pixelCount()) * static_cast<double>(1 + request_.pose.lights.size());
+    const double wanted = std::clamp(0x1p21 / work, 1.0, 64.0);
+    return std::min(std::bit_floor(static_cast<uint32_t>(wanted)), std::max(state_.samples, 8u));
+  }
+
+  void pass(uint32_t count) {
+    constexpr size_t block = 64;
+    const size_t pixels = view_.pixelCount();
+    tbb::parallel_for(size_t{0}, (pixels + block - 1) / block, [&](size_t b) {
+      for (size_t pixel = b * block; pixel < std::min(pixels, (b + 1) * block); ++pixel)
+        samplePixel(pixel, count);
+    });
+    state_.samples += count;
+    if (std::has_single_bit(state_.samples) || state_.samples == needed_)
+      noise_ = noiseOf(*integrator_, request_.term, state_, covered_);
+  }
+
+  void samplePixel(size_t pixel, uint32_t count) {
+    Surface surface;
+    if (!covered_[pixel] || !view_.surface(pixel, surface)) return;
+    for (uint32_t half = 0; half < 2; ++half) {
+      Sampler sampler(request_.seed, pixel, half);
+      integrator_->sample(surface, sampler, state_.samples, count, state_.sums[2 * pixel + half]);
+    }
+  }
+
+  bool finished() const {
+    if (state_.samples >= needed_) return true;
+    return request_.noise > 0 && state_.samples >= 8 && std::has_single_bit(state_.samples) &&
+           noiseOf(*integrator_, request_.term, state_, covered_) <= request_.noise;
+  }
+
+  Progress progress(double seconds, uint32_t before) const {
+    double wanted = needed_;
+    if (request_.noise > 0 && noise_ > 0) {
+      const double ratio = noise_ / request_.noise;
+      wanted = std::clamp(state_.samples * ratio * ratio, static_cast<double>(state_.samples), wanted);
+    }
+    const double perSample = seconds / std::max(1u, state_.samples - before);
+    return {.fraction = state_.samples / wanted,
+            .noise = noise_,
+            .secondsLeft = perSample * (wanted - state_.samples),
+            .spp = static_cast<int>(2 * state_.samples)};
+  }
+
+  Result finish() {
+    Result result;
+    result.noiseRms = noiseOf(*integrator_, request_.term, state_, covered_);
+    result.spp = static_cast<int>(2 * state_.samples);
+    develop(*integrator_, view_, request_, state_, covered_, image_);
+    auto& metadata = image_.metadata();
+    metadata["noise_rms"] = fmt::format("{}", result.noiseRms);
+    metadata["spp"] = fmt::format("{}", result.spp);
+    metadata["seed"] = fmt::format("{}", request_.seed);
+    metadata["term"] = name(request_.term);
+    metadata["light"] = fmt::format("{}", request_.light);
+    result.image = downsample(image_, request_.aa);
+    if (request_.progress) request_.progress({1, result.noiseRms, 0, result.spp});
+    std::error_code ignored;
+    if (!request_.checkpoint.empty()) std::filesystem::remove(request_.checkpoint, ignored);
+    return result;
+  }
+
+  const Request& request_;
+  RayScene rays_;
+  View view_;
+  std::unique_ptr<Integrator> integrator_;
+  uint32_t needed_;  ///< samples per half
+  std::vector<unsigned char> covered_;
+  Image image_;
+  Accumulators state_;
+  std::string hash_;
+  double noise_ = 0;
+};
+
+}  // namespace
+
+const char* name(Term term) {
+  switch (term) {
+    case Term::direct:
+      return "direct";
+    case Term::visibility:
+      return "visibility";
+    case Term::final:
+      return "final";
+  }
+  return "";
+}
+
+Term termFromName(const std::string& text) {
+  for (const Term term : {Term::direct, Term::visibility, Term::final})
+    if (text == name(term)) return term;
+  throw UsageError(fmt::format("reference: unknown term '{}'; there are direct, visibility, final", text));
+}
+
+Result render(const Request& request) {
+  validate(request);
+  tbb::task_arena arena(request.threads > 0 ? request.threads : tbb::task_arena::automatic);
+  return arena.execute([&] { return Work(request).run(); });
+}
+
+}  // namespace limn::reference

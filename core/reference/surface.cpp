@@ -1,0 +1,108 @@
+#include "core/reference/surface.h"
+
+#include "core/reference/texture.h"
+#include "glsl/normal_map.glsl"
+
+namespace limn::reference {
+namespace {
+
+/// A triangle's vertices and how to blend what they carry.
+struct Corner {
+  uint32_t index[3];
+  float weight[3];
+
+  template <class T>
+  T blend(const T* values) const {
+    return weight[0] * values[index[0]] + weight[1] * values[index[1]] + weight[2] * values[index[2]];
+  }
+};
+
+/// Material textures at the pixel's level; white without image or coordinates.
+struct TextureLookup {
+  const scene::Scene& scene;
+  bool hasUv;
+  glm::vec2 uv;
+  TextureFootprint footprint;
+
+  bool has(const scene::TextureRef& texture) const { return hasUv && texture.image != scene::none; }
+  glm::vec4 operator()(const scene::TextureRef& texture) const {
+    if (!has(texture)) return glm::vec4(1);
+    return sampleTexture(scene, texture, uv, levelOfDetail(scene, texture, footprint));
+  }
+};
+
+glm::vec3 shadingNormal(const Draw& draw, const Corner& corner, const TextureLookup& lookup,
+                        const glm::vec3& geometricNormal) {
+  const scene::Material& material = *draw.material;
+  const glm::vec3 interpolated = draw.normalToWorld * corner.blend(draw.normals);
+  const float size = glm::length(interpolated);
+  if (!(size > 0.f)) return geometricNormal;
+  const glm::vec3 normal = interpolated / size;
+  if (!lookup.has(material.normalTexture) || !draw.tangents) return normal;
+  const glm::vec4 tangent = corner.blend(draw.tangents);
+  return glsl::mapped_normal(
+      normal, glm::vec4(draw.tangentToWorld * glm::vec3(tangent), tangent.w * draw.orientation),
+      glm::vec3(lookup(material.normalTexture)), material.normalScale);
+}
+
+void fillMaterial(const Draw& draw, const Corner& corner, const TextureLookup& lookup,
+                  glsl::GBufferSurface& values) {
+  const scene::Material& material = *draw.material;
+  glm::vec4 base = material.baseColour * lookup(material.baseColourTexture);
+  if (!draw.primitive->colours.empty()) base *= corner.blend(draw.primitive->colours.data());
+  const glm::vec4 metalRough = lookup(material.metalRoughTexture);
+  // The G-buffer's ranges.
+  values.base_colour = glm::clamp(glm::vec3(base), 0.f, 1.f);
+  values.metallic = glm::clamp(material.metallic * metalRough.b, 0.f, 1.f);
+  values.roughness = glm::clamp(material.roughness * metalRough.g, 0.f, 1.f);
+  values.specular_factor = glm::clamp(material.specularFactor, 0.f, 1.f);
+  values.specular_colour = glm::clamp(material.specularColour, 0.f, 1.f);
+  values.ior = glm::clamp(material.ior, 1.f, 3.f);
+  values.emission = material.emission * glm::vec3(lookup(material.emissiveTexture));
+  values.flags = material.specularSurface() ? glsl::gbuffer_flag_specular : 0u;
+}
+
+}  // namespace
+
+Surface surfaceAt(const RayScene& rays, const Hit& hit, const glsl::FrameBlock& frame, int x, int y) {
+  const Draw& draw = rays.draws()[hit.draw];
+  const scene::Primitive& primitive = *draw.primitive;
+  const uint32_t* indices = &primitive.indices[3 * static_cast<size_t>(hit.triangle)];
+  const Corner corner{{indices[0], indices[1], indices[2]}, {1.f - hit.u - hit.v, hit.u, hit.v}};
+
+  glm::dvec3 p[3];
+  for (int k = 0; k < 3; ++k)
+    p[k] = glm::dvec3(glm::vec3(draw.toWorld * glm::vec4(draw.positions[corner.index[k]], 1.f)));
+  Surface surface;
+  surface.position = glm::vec3(p[0] + static_cast<double>(hit.u) * (p[1] - p[0]) +
+                               static_cast<double>(hit.v) * (p[2] - p[0]));
+  const glm::vec3 direction = viewRay(frame, static_cast<float>(x), static_cast<float>(y));
+  surface.view = -glm::normalize(direction);
+  surface.depth = hit.depth;
+  surface.rayOffset = draw.rayOffset;
+  surface.draw = hit.draw;
+
+  const glm::dvec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
+  const double size = glm::length(across);
+  glm::vec3 geometricNormal = size > 0 ? draw.orientation * glm::vec3(across / size) : surface.view;
+  TextureLookup lookup{rays.scene(), !primitive.uvs.empty(), {}, {}};
+  if (lookup.hasUv) {
+    lookup.uv = corner.blend(primitive.uvs.data());
+    lookup.footprint = textureFootprint(draw, hit.triangle, frame, x, y);
+  }
+  glm::vec3 normal = shadingNormal(draw, corner, lookup, geometricNormal);
+  // Only a double-sided surface shows its back: both of its normals turn towards the camera.
+  if (glm::dot(geometricNormal, surface.view) < 0.f) {
+    geometricNormal = -geometricNormal;
+    normal = -normal;
+  }
+  glsl::GBufferSurface& values = surface.values;
+  fillMaterial(draw, corner, lookup, values);
+  values.normal = normal;
+  values.geometric_normal = geometricNormal;
+  surface.brdf = glsl::surface_brdf(values.base_colour, values.metallic, values.roughness,
+                                    values.specular_factor, values.specular_colour, values.ior);
+  return surface;
+}
+
+}  // namespace limn::reference
