@@ -27,7 +27,12 @@ class Polygoniser {
       }
     }
     for (int i = 0; i < 3; ++i) relax();
-    for (const glm::vec3& p : mesh_.positions) mesh_.normals.push_back(glm::normalize(gradient(p)));
+    computeNormals(mesh_);
+    for (std::size_t v = 0; v < mesh_.positions.size(); ++v) {
+      // Where the gradient turns faster than the triangles can follow, their own normal stays.
+      const glm::vec3 n = glm::normalize(gradient(mesh_.positions[v]));
+      if (glm::dot(n, mesh_.normals[v]) > 0.5f) mesh_.normals[v] = n;
+    }
     mesh_.uvs.resize(mesh_.positions.size());
     return std::move(mesh_);
   }

@@ -130,9 +130,6 @@ Mesh archedWall(float width, float height, float depth, float radius) {
         [](float a) { return glm::vec3(-std::cos(a), -std::sin(a), 0); });
   for (const float side : {-1.0f, 1.0f}) {  // the strips on which the wall rests
     append(mesh, quad({side * (half + radius) / 2, 0, 0}, {(half - radius) / 2, 0, 0}, {0, 0, depth / 2}));
-    std::swap(mesh.indices[mesh.indices.size() - 2], mesh.indices[mesh.indices.size() - 1]);
-    std::swap(mesh.indices[mesh.indices.size() - 5], mesh.indices[mesh.indices.size() - 4]);
-    for (std::size_t i = mesh.normals.size() - 4; i < mesh.normals.size(); ++i) mesh.normals[i] = {0, -1, 0};
   }
   for (const float face : {-1.0f, 1.0f}) {
     for (const auto& [at, thick] : {std::pair{radius + 0.03f, 0.035f}, {radius + 0.13f, 0.022f}}) {

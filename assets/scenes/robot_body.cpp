@@ -29,15 +29,16 @@ Mesh superellipsoid(glm::vec3 radii, float squareVertical, float squareHorizonta
   });
 }
 
-/// A ribbed sleeve from height 0 to `length` with `ribs` ribs of `depth`.
+/// A closed, ribbed sleeve from height 0 to `length` with `ribs` ribs of `depth`.
 Mesh sleeve(float bottom, float top, float length, int ribs, float depth) {
-  Profile profile;
+  Profile profile = {{0, 0}};  // closed at both ends
   const int steps = ribs * 6;
   for (int i = 0; i <= steps; ++i) {
     const float t = static_cast<float>(i) / static_cast<float>(steps);
     const float rib = 0.5f - 0.5f * std::cos(2 * kPi * t * static_cast<float>(ribs));
     profile.emplace_back(glm::mix(bottom, top, t) + depth * (rib - 0.5f), t * length);
   }
+  profile.emplace_back(0, length);
   return lathe(profile, 32, 80);
 }
 
@@ -165,7 +166,7 @@ void buildArm(Body& body, float side) {
                at(0.585f));
   const Profile forearm = {{0.036f, 0},      {0.048f, 0.003f}, {0.053f, 0.015f}, {0.064f, 0.075f},
                            {0.066f, 0.12f},  {0.061f, 0.126f}, {0.061f, 0.134f}, {0.067f, 0.14f},
-                           {0.066f, 0.175f}, {0.058f, 0.182f}, {0.045f, 0.176f}, {0.04f, 0.16f}};
+                           {0.066f, 0.175f}, {0.058f, 0.182f}, {0.045f, 0.176f}, {0.03f, 0.155f}};
   body.rigid(Body::shell, lathe(forearm, 48), along(0.595f), fore);
   body.rigid(Body::accent, torus(0.0615f, 0.008f, 48, 12), along(0.725f), fore);
   body.blended(Body::rubber, sleeve(0.032f, 0.03f, 0.06f, 4, 0.008f), along(0.755f), fore, hand, at(0.765f),

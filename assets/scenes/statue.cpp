@@ -70,7 +70,7 @@ float hand(glm::vec3 p, glm::vec3 wrist, glm::vec3 along, glm::vec3 spread) {
     const glm::vec3 root = palm + 0.024f * at * spread + 0.012f * along;
     const glm::vec3 tip =
         root + (0.085f - 0.012f * std::abs(at)) * glm::normalize(along + 0.25f * at * spread);
-    d = smoothUnion(d, roundCone(p, root, tip, 0.0125f, 0.0095f), 0.012f);
+    d = smoothUnion(d, roundCone(p, root, tip, 0.0155f, 0.0125f), 0.012f);
   }
   const glm::vec3 thumb = wrist + 0.025f * along - 0.022f * spread;
   return smoothUnion(
@@ -188,7 +188,7 @@ Scene makeStatue() {
   scene.nodes[static_cast<std::size_t>(statue)].translation = {0, 0.266f, 0};
   scene.addAreaLight("key", {-2.2f, 3.6f, 2.2f}, {0, 1.1f, 0}, {0.9f, 0.9f}, 44, {1, 0.95f, 0.88f});
   scene.addCamera("main", {0.9f, 1.6f, 4.9f}, {-0.05f, 1.18f, 0}, 34);
-  scene.addCamera("close", {0.3f, 1.9f, 1.9f}, {-0.08f, 1.72f, 0}, 34);
+  scene.addCamera("close", {0.3f, 1.95f, 2.1f}, {-0.06f, 1.82f, 0}, 38);
   return scene;
 }
 

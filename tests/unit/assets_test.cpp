@@ -144,7 +144,7 @@ TEST(Assets, EveryMeshIsValid) {
           }
           against += sum < 0;
         }
-        EXPECT_LE(against, indices.size() / 3 / 200) << "triangles wound against their normals";
+        EXPECT_LE(against, indices.size() / 3 / 1000) << "triangles wound against their normals";
         if (attributes.contains("TANGENT")) {
           for (const Vec4& t : glb.read<Vec4>(attributes["TANGENT"])) {
             ASSERT_NEAR(std::hypot(t[0], t[1], t[2]), 1, 1e-4);
