@@ -44,7 +44,10 @@ struct Request {
 }  // namespace
 
 struct ShadowMapService::Implementation {
-  Implementation(gpu::Device& onDevice, scene::GpuScene& ofScene) : device(onDevice), scene(ofScene) {}
+  Implementation(gpu::Device& onDevice, scene::GpuScene& ofScene)
+      : device(onDevice), scene(ofScene), coverage(onDevice, "uncovered pixels", sizeof(uint32_t)) {
+    coverage.clear();
+  }
 
   gpu::Device& device;
   scene::GpuScene& scene;
@@ -54,6 +57,7 @@ struct ShadowMapService::Implementation {
   std::vector<std::string> lightNames;
   std::vector<scene::Bounds> boxes;
   std::vector<std::unique_ptr<Request>> requests;
+  gpu::Buffer coverage;
 
   void take(const scene::Pose& pose) {
     lights = pose.lights;
@@ -225,6 +229,7 @@ ShadowMaps ShadowMapService::request(std::span<const uint32_t> lights, const Sha
 
 bool ShadowMapService::update(const scene::Pose& pose) {
   Implementation& s = *implementation_;
+  s.coverage.clear();
   const bool lightsCameOrWent = pose.lights.size() != s.lights.size();
   s.take(pose);
   if (lightsCameOrWent) return true;
@@ -246,6 +251,17 @@ int ShadowMapService::layersOf(uint32_t light, const ShadowMapDesc& desc) const 
   const glsl::Light& l = s.light(light);
   const LightLayout layout = fitLayout(l, s.boxesFor(l), desc);
   return static_cast<int>(glsl::shadow_face_count(layout.faces) * samplesOf(l, desc).size());
+}
+
+void ShadowMapService::bindCoverage(unsigned storageBinding) const {
+  const Implementation& s = *implementation_;
+  s.device.gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, storageBinding, s.coverage.id());
+}
+
+uint32_t ShadowMapService::uncoveredPixels() const {
+  uint32_t count = 0;
+  implementation_->coverage.read(0, &count, sizeof(count));
+  return count;
 }
 
 std::vector<ShadowMapStats> ShadowMapService::stats() const {

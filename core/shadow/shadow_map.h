@@ -87,6 +87,12 @@ class LIMN_API ShadowMapService {
   int layersOf(uint32_t light, const ShadowMapDesc& desc) const;
   std::vector<ShadowMapStats> stats() const;
 
+  /// Binds the counter of pixels (times lights) that no map covers, for atomic increments by visibility
+  /// passes. It lies outside the graph, so that counting orders no passes; update() sets it to 0.
+  void bindCoverage(unsigned storageBinding) const;
+  /// Since the last update(). Blocks: for statistics and tests.
+  uint32_t uncoveredPixels() const;
+
  private:
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;

@@ -1,0 +1,52 @@
+#include "core/shadow/visibility_pass.h"
+
+#include <utility>
+
+#include "glsl/gbuffer.glsl"
+
+namespace limn::shadow {
+
+using frame::Access;
+
+frame::TextureHandle addVisibilityPass(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                       frame::TextureHandle target, VisibilityPass pass) {
+  const GBuffer& g = inputs.gbuffer;
+  const SceneHandles& scene = inputs.handles;
+  const int layers = graph.desc(target).layers;
+  frame::PassBuilder builder = graph.addPass(pass.name, pass.technique);
+  builder.read(scene.frame, Access::uniformBuffer, "camera")
+      .read(scene.lights, Access::storageLoad, "which part of each light counts")
+      .read(g.depth, Access::sampled, "receivers")
+      .read(g.geometricNormal, Access::sampled, "tangent planes")
+      .read(g.instance, Access::sampled, "a light does not see itself")
+      .read(pass.maps.depth, Access::sampled, "shadow maps")
+      .read(pass.maps.views, Access::storageLoad, "projections")
+      .read(pass.maps.lights, Access::storageLoad, "layers of each light");
+  if (pass.declare) pass.declare(builder);
+  const frame::TextureHandle result =
+      builder.write(target, pass.accumulate ? Access::imageLoadStore : Access::imageStore,
+                    "visibility, one layer per light");
+  const frame::ProgramHandle program = builder.program(pass.program);
+  builder.execute([=, pass = std::move(pass), size = inputs.size,
+                   &service = inputs.shadowMaps](frame::PassContext& context) {
+    gpu::Program& kernel = context.program(program);
+    kernel.use();
+    kernel.set("bias", pass.bias);
+    kernel.set("light_size", pass.lightSize);
+    context.bindUniform(glsl::FrameBlock::binding, scene.frame);
+    context.bindSampled(glsl::gbuffer_unit_depth, g.depth);
+    context.bindSampled(glsl::gbuffer_unit_geometric_normal, g.geometricNormal);
+    context.bindSampled(glsl::gbuffer_unit_instance, g.instance);
+    context.bindSampled(8, pass.maps.depth);
+    context.bindStorage(0, scene.lights);
+    context.bindStorage(1, pass.maps.views);
+    context.bindStorage(2, pass.maps.lights);
+    service.bindCoverage(3);
+    context.bindImage(0, result, pass.accumulate ? GL_READ_WRITE : GL_WRITE_ONLY);
+    if (pass.bind) pass.bind(context, kernel);
+    context.dispatch(size.x, size.y, layers, 8, 8);
+  });
+  return result;
+}
+
+}  // namespace limn::shadow

@@ -1,0 +1,199 @@
+// What every shadow-map technique must hold, and what each of them promises.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "core/image/image.h"
+#include "glsl/light_view.glsl"
+#include "tests/gpu/technique_harness.h"
+#include "tests/gpu/test_scenes.h"
+
+namespace limn {
+namespace {
+
+using namespace limn::test;
+using glm::vec3;
+
+/// A ball of radius 1/2 at (0, 1, 0) over a floor, seen from above, lit by one light of every type.
+struct BallScene {
+  scene::Scene scene;
+  scene::Pose pose;
+  scene::CameraPose camera;
+  float scale;
+
+  explicit BallScene(float s = 1, bool ball = true, const glm::mat4& turn = glm::mat4(1)) : scale(s) {
+    addMesh(scene, floorPrimitive(4 * s, addMaterial(scene)));
+    addMesh(scene, spherePrimitive(0.5f * s, 0, 64));
+    addInstance(scene, pose, 0, turn);
+    if (ball) addInstance(scene, pose, 1, at(0, s, 0));
+    addLight(pose, pointLight(s * vec3(1, 3, 0.5f)));
+    addLight(pose, spotLight(s * vec3(-1, 3, 0.5f), {1, -2.2f, -0.2f}, 0.9f));
+    addLight(pose, directionalLight({0.3f, -1, 0.2f}, 0.1f));
+    addLight(pose, rectangleLight(s * vec3(0, 4, 0), {0, -1, 0}, 0.8f * s, 0.6f * s));
+    addLight(pose,
+             rectangleLight(s * vec3(1.5f, 1.5f, 1), {-1, -0.7f, -0.6f}, 0.5f * s, 0.5f * s));  // hemicube
+    addLight(pose,
+             rectangleLight(s * vec3(0, 3.5f, 0.5f), {0, 1, 0}, 0.5f * s, 0.5f * s, true));  // two-sided
+    camera = scene::lookAt(s * vec3(0, 6, 3), s * vec3(0, 0.2f, 0), 0.8f);
+  }
+
+  vec3 position(const Visibility& v, int x, int y) const {
+    glsl::FrameBlock frame{};
+    scene::setCamera(frame, camera, pose.bounds, v.width, v.height);
+    return vec3(frame.camera_position) +
+           v.depth[static_cast<size_t>(y * v.width + x)] *
+               (vec3(frame.view_ray_origin) + static_cast<float>(x) * vec3(frame.view_ray_dx) +
+                static_cast<float>(y) * vec3(frame.view_ray_dy));
+  }
+};
+
+/// Saves a picture for people, where LIMN_TEST_PICTURES names a folder.
+void keep(const Visibility& v, const std::string& name) {
+  const char* folder = std::getenv("LIMN_TEST_PICTURES");
+  if (folder == nullptr) return;
+  for (size_t l = 0; l < v.lights.size(); ++l) {
+    Image image = Image::rgb(v.width, v.height);
+    for (int y = 0; y < v.height; ++y) {
+      for (int x = 0; x < v.width; ++x) {
+        for (float& c : image.pixel(x, v.height - 1 - y)) c = v.at(l, x, y);
+      }
+    }
+    writePng(std::filesystem::path(folder) / (name + "_" + std::to_string(l) + ".png"), image);
+  }
+}
+
+/// Signed distance, in sphere radii, between the segment from p to the light's centre and the ball's surface.
+float clearance(const BallScene& s, const glsl::Light& light, const vec3& p) {
+  const bool directional = light.info.x == glsl::light_directional;
+  const vec3 to = directional ? -vec3(light.direction) : vec3(light.position) - p;
+  const vec3 d = glm::normalize(to), ball = s.scale * vec3(0, 1, 0);
+  const float along = glm::dot(ball - p, d);
+  if (along < 0 || (!directional && along > glm::length(to))) return 1;
+  return (glm::distance(ball, p + along * d) / s.scale - 0.5f) / 0.5f;
+}
+
+class ShadowTechniqueTest : public TechniqueTest {};
+
+TEST_F(ShadowTechniqueTest, HardShadowOfABallUnderEveryLight) {
+  for (const char* filter : {"nearest", "2x2"}) {
+    const BallScene s;
+    const Visibility v = visibility("hard_shadow_map", {{"filter", filter}, {"shadow_map_size", "512"}},
+                                    s.scene, s.pose, s.camera);
+    keep(v, std::string("hard_") + filter);
+    for (size_t l = 0; l < s.pose.lights.size(); ++l) {
+      int shadowed = 0, lit = 0, wrong = 0;
+      for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+          const size_t i = static_cast<size_t>(y * side + x);
+          if (v.instance[i] != 0) continue;  // the floor
+          const vec3 p = s.position(v, x, y);
+          const float c = clearance(s, s.pose.lights[l], p);
+          if (std::abs(c) < 0.04f) continue;  // a few texels around the silhouette
+          const vec3 centre(s.pose.lights[l].position), axis(s.pose.lights[l].direction);
+          const bool masked = s.pose.lights[l].info.x == glsl::light_rectangle &&
+                              s.pose.lights[l].info.y == 0 && glm::dot(axis, p - centre) <= 0;
+          const bool outside = s.pose.lights[l].info.x == glsl::light_spot &&
+                               glm::dot(axis, glm::normalize(p - centre)) < s.pose.lights[l].cone.y;
+          const float expected = c > 0 || masked || outside ? 1.f : 0.f;
+          (expected > 0 ? lit : shadowed) += 1;
+          if (v.lights[l][i] != expected) ++wrong;
+        }
+      }
+      EXPECT_GT(shadowed, 100) << "light " << l;
+      EXPECT_GT(lit, 1000) << "light " << l;
+      EXPECT_EQ(wrong, 0) << "light " << l << " filter " << filter;
+    }
+  }
+}
+
+TEST_F(ShadowTechniqueTest, LightsGiveTheSameAloneAndTogether) {
+  const BallScene s;
+  for (const TechniquePlugin* plugin : registry().all()) {
+    if (!contains(plugin->info->terms, Term::visibility)) continue;
+    const std::string name = plugin->info->name;
+    const Visibility together = visibility(name, {}, s.scene, s.pose, s.camera);
+    for (uint32_t l = 0; l < s.pose.lights.size(); ++l) {
+      const Visibility alone = visibility(name, {}, s.scene, s.pose, s.camera, {l});
+      EXPECT_EQ(alone.lights[0], together.lights[l]) << name << " light " << l;
+    }
+  }
+}
+
+TEST_F(ShadowTechniqueTest, PlanesDoNotShadowThemselvesAtAnySlopeAndLightSize) {
+  for (const float tilt : {0.f, 0.4f, 1.1f}) {
+    const BallScene s(1, false, glm::rotate(glm::mat4(1), tilt, {1, 0, 0.3f}));
+    for (const TechniquePlugin* plugin : registry().all()) {
+      if (!contains(plugin->info->terms, Term::visibility)) continue;
+      const bool sized = std::ranges::any_of(plugin->info->parameters, [](const Parameter& p) {
+        return std::string_view(p.name) == "light_size";
+      });
+      for (const char* size : {"-1", "0.3", "2"}) {
+        std::map<std::string, std::string> settings{{"shadow_map_size", "256"}};
+        if (sized) settings["light_size"] = size;
+        const Visibility v = visibility(plugin->info->name, settings, s.scene, s.pose, s.camera);
+        for (size_t l = 0; l < v.lights.size(); ++l) {
+          EXPECT_EQ(*std::ranges::min_element(v.lights[l]), 1.f)
+              << plugin->info->name << " tilt " << tilt << " light " << l << " size " << size;
+        }
+        if (!sized) break;
+      }
+    }
+  }
+}
+
+TEST_F(ShadowTechniqueTest, ScaleChangesNothing) {
+  for (const TechniquePlugin* plugin : registry().all()) {
+    if (!contains(plugin->info->terms, Term::visibility)) continue;
+    const BallScene one(1);
+    const Visibility expected = visibility(plugin->info->name, {}, one.scene, one.pose, one.camera);
+    for (const float scale : {1e-4f, 1e4f}) {
+      const BallScene s(scale);
+      const Visibility v = visibility(plugin->info->name, {}, s.scene, s.pose, s.camera);
+      for (size_t l = 0; l < v.lights.size(); ++l) {
+        double squares = 0;
+        for (size_t i = 0; i < v.lights[l].size(); ++i)
+          squares += std::pow(double{v.lights[l][i]} - expected.lights[l][i], 2);
+        EXPECT_LT(std::sqrt(squares / static_cast<double>(v.lights[l].size())), 1e-2)
+            << plugin->info->name << " scale " << scale << " light " << l;
+      }
+    }
+  }
+}
+
+/// A thin wall that stands on the floor: its shadow begins at its foot.
+TEST_F(ShadowTechniqueTest, ContactShadowsDoNotDetach) {
+  scene::Scene scene;
+  scene::Pose pose;
+  addMesh(scene, floorPrimitive(2, addMaterial(scene)));
+  addMesh(scene, floorPrimitive(0.5f, 0));
+  addInstance(scene, pose, 0);
+  // Leans 30 degrees from the floor towards +x, its lower edge on the line x = 0.
+  const glm::mat4 lean = glm::rotate(glm::mat4(1), glsl::pi / 6, {0, 0, 1}) * at(0.5f, 0, 0);
+  addInstance(scene, pose, 1, lean);
+  addLight(pose, directionalLight({0.3f, -1, 0}, 0));
+  const auto camera = scene::lookAt({0.3f, 0.6f, 2.5f}, {0.1f, 0, 0}, 0.5f);  // from the side, under the wall
+  constexpr float texel = 4 / 256.f;                                          // of the map on the floor
+  const Visibility v = visibility("hard_shadow_map", {{"shadow_map_size", "256"}}, scene, pose, camera);
+  keep(v, "contact");
+  glsl::FrameBlock frame{};
+  scene::setCamera(frame, camera, pose.bounds, side, side);
+  int shadowed = 0;
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const size_t i = static_cast<size_t>(y * side + x);
+      if (v.instance[i] != 0) continue;
+      const vec3 p =
+          vec3(frame.camera_position) +
+          v.depth[i] * (vec3(frame.view_ray_origin) + static_cast<float>(x) * vec3(frame.view_ray_dx) +
+                        static_cast<float>(y) * vec3(frame.view_ray_dy));
+      if (std::abs(p.z) > 0.45f || p.x < 0 || p.x > 0.8f) continue;
+      if (p.x < 4 * texel / std::tan(glsl::pi / 6)) continue;
+      ++shadowed;
+      EXPECT_EQ(v.lights[0][i], 0.f) << p.x << " " << p.z;
+    }
+  }
+  EXPECT_GT(shadowed, 300);
+}
+
+}  // namespace
+}  // namespace limn
