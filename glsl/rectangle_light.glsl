@@ -3,9 +3,10 @@
 //
 // Polygons live in the rectangle's own coordinates: (a, b) in [-1/2, 1/2]^2 stands for centre + a u + b v.
 // Vertex differences are then exact to rounding however far the receiver is, which is what keeps the formulas
-// below free of cancellation: the relative error is below (1e-6 + 1e-7 long side / short side) / cosine at the
-// light, from touching distance to 1e5 sizes away and at any scale; where the inputs' own rounding decides (light
-// seen edge-on or on the horizon) it is below 1e-6 of what the same light would give facing the receiver.
+// below free of cancellation: the relative error is below (1e-6 + 1e-7 long side / short side) / cosine at
+// the light, from touching distance to 1e5 sizes away and at any scale; where the inputs' own rounding
+// decides (light seen edge-on or on the horizon) it is below 1e-6 of what the same light would give facing
+// the receiver.
 #ifndef LIMN_RECTANGLE_LIGHT_GLSL
 #define LIMN_RECTANGLE_LIGHT_GLSL
 #include "glsl/geometry.glsl"
@@ -20,10 +21,13 @@ struct Rectangle {
   vec3 v;
 };
 
-// Convex part of a rectangle in (a, b); count is 0, 3, 4 or 5, in the order of the corners.
+LIMN_CONST int rectangle_part_vertices = 6;
+
+// Convex part of a rectangle in (a, b), in the order of the corners. count is 0, or 3 to 5 after one cut (6
+// after two).
 struct RectanglePart {
   int count;
-  vec2 vertex[5];
+  vec2 vertex[rectangle_part_vertices];
 };
 
 LIMN_FN Rectangle rectangle_from(Light light, vec3 receiver) {
@@ -57,36 +61,40 @@ LIMN_FN RectanglePart rectangle_whole() {
   p.vertex[1] = vec2(0.5f, -0.5f);
   p.vertex[2] = vec2(0.5f, 0.5f);
   p.vertex[3] = vec2(-0.5f, 0.5f);
-  p.vertex[4] = vec2(-0.5f, 0.5f);
+  p.vertex[4] = p.vertex[3];
+  p.vertex[5] = p.vertex[3];
   return p;
 }
 
-// The part with dot(normal, point) >= 0 (normal: any length but 0). Height is affine in (a, b), so that
-// cutting the square needs no vertex position. Points within rounding of the plane count as above it or below
-// it as they fall.
-LIMN_FN RectanglePart rectangle_above(Rectangle r, vec3 normal) {
+// The points of `part` with dot(normal, point) >= 0 (normal: any length but 0). Height is affine in (a, b),
+// so that cutting needs no vertex position. Points within rounding of the plane count as above it or below it
+// as they fall.
+LIMN_FN RectanglePart rectangle_part_above(Rectangle r, RectanglePart part, vec3 normal) {
   float height = dot(normal, r.centre);
   vec2 slope = vec2(dot(normal, r.u), dot(normal, r.v));
   float reach = 0.5f * (abs(slope.x) + abs(slope.y));
-  RectanglePart whole = rectangle_whole();
-  if (height >= reach) return whole;
-  RectanglePart part;
-  part.count = 0;
-  for (int i = 0; i < 5; ++i) part.vertex[i] = vec2(0.0f);
-  if (height <= -reach) return part;
-  for (int i = 0; i < 4; ++i) {
-    vec2 here = whole.vertex[i];
-    vec2 next = whole.vertex[(i + 1) % 4];
+  if (height >= reach) return part;
+  RectanglePart cut = part;
+  cut.count = 0;
+  if (height <= -reach) return cut;
+  for (int i = 0; i < part.count; ++i) {
+    vec2 here = part.vertex[i];
+    vec2 next = part.vertex[i + 1 < part.count ? i + 1 : 0];
     float h0 = height + dot(slope, here);
     float h1 = height + dot(slope, next);
-    if (h0 >= 0.0f && part.count < 5) part.vertex[part.count++] = here;
-    if ((h0 >= 0.0f) != (h1 >= 0.0f) && part.count < 5) {
+    if (h0 >= 0.0f && cut.count < rectangle_part_vertices) cut.vertex[cut.count++] = here;
+    if ((h0 >= 0.0f) != (h1 >= 0.0f) && cut.count < rectangle_part_vertices) {
       float t = clamp(h0 / -dot(slope, next - here), 0.0f, 1.0f);
-      part.vertex[part.count++] = here + t * (next - here);
+      cut.vertex[cut.count++] = here + t * (next - here);
     }
   }
-  if (part.count < 3) part.count = 0;
-  return part;
+  if (cut.count < 3) cut.count = 0;
+  return cut;
+}
+
+// The part of the whole rectangle with dot(normal, point) >= 0.
+LIMN_FN RectanglePart rectangle_above(Rectangle r, vec3 normal) {
+  return rectangle_part_above(r, rectangle_whole(), normal);
 }
 
 // Share of the rectangle's area, in [0, 1].
@@ -138,7 +146,7 @@ LIMN_FN RectanglePart rectangle_visible_part(Light light, vec3 receiver, vec3 ng
 // * normal, in closed form, and the differences w_i - w >= 0 come from products of non-negative numbers.
 LIMN_FN vec3 rectangle_vector_irradiance(Rectangle r, RectanglePart p) {
   if (p.count == 0) return vec3(0.0f);
-  vec3 point[5];
+  vec3 point[rectangle_part_vertices];
   float distance2 = 0.0f;
   int far = 0;
   for (int i = 0; i < p.count; ++i) {
@@ -155,8 +163,8 @@ LIMN_FN vec3 rectangle_vector_irradiance(Rectangle r, RectanglePart p) {
   vec3 u = r.u * unit;
   vec3 v = r.v * unit;
   vec3 origin = point[far] * unit;
-  float inverse_r[5];
-  float excess[5];  // 1 / r_i - 1 / r_0
+  float inverse_r[rectangle_part_vertices];
+  float excess[rectangle_part_vertices];  // 1 / r_i - 1 / r_0
   for (int i = 0; i < p.count; ++i) {
     point[i] *= unit;
     float radius = max(length(point[i]), 1e-12f);
