@@ -21,10 +21,10 @@ struct Rectangle {
   vec3 v;
 };
 
-LIMN_CONST int rectangle_part_vertices = 6;
+LIMN_CONST int rectangle_part_vertices = 7;
 
-// Convex part of a rectangle in (a, b), in the order of the corners. count is 0, or 3 to 5 after one cut (6
-// after two).
+// Convex part of a rectangle in (a, b), in the order of the corners. count is 0, or 3 to 4 + the number of
+// cuts (at most 3).
 struct RectanglePart {
   int count;
   vec2 vertex[rectangle_part_vertices];
@@ -61,8 +61,7 @@ LIMN_FN RectanglePart rectangle_whole() {
   p.vertex[1] = vec2(0.5f, -0.5f);
   p.vertex[2] = vec2(0.5f, 0.5f);
   p.vertex[3] = vec2(-0.5f, 0.5f);
-  p.vertex[4] = p.vertex[3];
-  p.vertex[5] = p.vertex[3];
+  for (int i = 4; i < rectangle_part_vertices; ++i) p.vertex[i] = p.vertex[3];
   return p;
 }
 
@@ -84,8 +83,7 @@ LIMN_FN RectanglePart rectangle_part_above(Rectangle r, RectanglePart part, vec3
     float h1 = height + dot(slope, next);
     if (h0 >= 0.0f && cut.count < rectangle_part_vertices) cut.vertex[cut.count++] = here;
     if ((h0 >= 0.0f) != (h1 >= 0.0f) && cut.count < rectangle_part_vertices) {
-      float t = clamp(h0 / -dot(slope, next - here), 0.0f, 1.0f);
-      cut.vertex[cut.count++] = here + t * (next - here);
+      cut.vertex[cut.count++] = here + h0 / (h0 - h1) * (next - here);
     }
   }
   if (cut.count < 3) cut.count = 0;

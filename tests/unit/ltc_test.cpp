@@ -1,14 +1,13 @@
 // The fitted table against numeric integration of the BRDF it stands for.
 #include "glsl/ltc.glsl"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
-
-#include <fmt/format.h>
 
 namespace limn::glsl {
 namespace {
@@ -22,7 +21,7 @@ struct Reflectance {
   double a = 0, b = 0;
 };
 
-Reflectance reflectance(float alpha, const vec3& v, int side = 300) {
+Reflectance reflectance(float alpha, const vec3& v, int side = 150) {
   Reflectance sum;
   for (int i = 0; i < side * side; ++i) {
     const vec3 h = ggx_sample_visible_normal(v, alpha, {(i % side + 0.5f) / side, (i / side + 0.5f) / side});
@@ -43,9 +42,10 @@ TEST(Ltc, ReflectancesMatchIntegrationBetweenTexels) {
       const float alpha = roughness * roughness;
       const LtcTerms terms = ltc_lookup(cosine, alpha);
       const Reflectance expected = reflectance(alpha, direction(cosine, 0));
-      const double error = std::max(std::abs(terms.reflectance.x - expected.a), std::abs(terms.reflectance.y - expected.b));
+      const double error =
+          std::max(std::abs(terms.reflectance.x - expected.a), std::abs(terms.reflectance.y - expected.b));
       worst = std::max(worst, error);
-      EXPECT_LT(error, 0.01) << roughness << ' ' << cosine;
+      EXPECT_LT(error, cosine < 0.05f ? 0.012 : 0.004) << roughness << ' ' << cosine;
     }
   }
   RecordProperty("worst_1e6", static_cast<int>(1e6 * worst));
@@ -55,7 +55,7 @@ TEST(Ltc, DiffuseFresnelMeanMatchesIntegration) {
   for (float cosine : {0.01f, 0.1f, 0.3f, 0.6f, 0.95f}) {
     const vec3 v = direction(cosine, 0);
     double sum = 0;
-    const int side = 500;
+    const int side = 200;
     for (int i = 0; i < side * side; ++i) {
       const vec3 l = sample_cosine({(i % side + 0.5f) / side, (i / side + 0.5f) / side});
       sum += schlick_weight(half_vector(vec3(0, 0, 1), v, l).v_dot_h);
@@ -72,7 +72,8 @@ TEST(Ltc, WholeSkyHoldsTheWholeLobe) {
       const float alpha = roughness * roughness;
       const vec3 v = direction(cosine, 0.7f);
       const LtcTerms terms = ltc_lookup(cosine, alpha);
-      const float share = ltc_rectangle(ltc_transform(terms, n, v, alpha), terms, sky, rectangle_above(sky, n));
+      const float share =
+          ltc_rectangle(ltc_transform(terms, n, v, alpha), terms, sky, rectangle_above(sky, n)).share;
       EXPECT_NEAR(share, 1, 0.01) << roughness << ' ' << cosine;
     }
   }
@@ -95,8 +96,11 @@ double lobeOverRectangle(const Rectangle& r, float alpha, const vec3& v, int sid
   return sum / (double(side) * side);
 }
 
-// Rectangles of 0.2 to 4 distances around the mirror direction, so that each holds part of the lobe's core or edge.
-// Errors are of the reflected share of the light's radiance, which is at most 1.
+// Rectangles of 0.2 to 4 distances around the mirror direction, so that each holds part of the lobe's core or
+// edge. Errors are of the reflected share of the light's radiance, which is at most 1. Measured root mean
+// squares: 0.0016 at roughness 0.06, 0.019 at 0.25, 0.018 at 0.4, 0.0066 at 0.6, 0.0018 at 1; the worst
+// 0.088. The table's resolution has no part in it: the total variation between lobe and fit is the same at
+// and between texels.
 TEST(Ltc, RectanglesMatchIntegrationWithinTheStatedError) {
   std::mt19937 random(11);
   std::uniform_real_distribution<float> unit(0.f, 1.f);
@@ -104,31 +108,31 @@ TEST(Ltc, RectanglesMatchIntegrationWithinTheStatedError) {
   for (float roughness : {0.06f, 0.15f, 0.25f, 0.4f, 0.6f, 0.8f, 1.f}) {
     const float alpha = roughness * roughness;
     std::vector<double> errors;
-    double squares = 0, signal = 0;
+    double squares = 0;
     for (int i = 0; i < 150; ++i) {
       const vec3 v = direction(0.05f + 0.95f * unit(random), 6.28f * unit(random));
       const vec3 mirror(-v.x, -v.y, v.z);
       const vec3 spread(unit(random) - 0.5f, unit(random) - 0.5f, unit(random) - 0.5f);
       Rectangle r;
       r.centre = normalize(mirror + (0.2f + 2 * alpha) * spread);
-      const Frame frame = frame_around(normalize(r.centre + 0.6f * vec3(unit(random), unit(random), unit(random))));
+      const Frame frame =
+          frame_around(normalize(r.centre + 0.6f * vec3(unit(random), unit(random), unit(random))));
       r.u = frame.t * (0.2f * std::pow(20.f, unit(random)));
       r.v = frame.b * (0.2f * std::pow(20.f, unit(random)));
       const LtcTerms terms = ltc_lookup(v.z, alpha);
-      const float share = ltc_rectangle(ltc_transform(terms, n, v, alpha), terms, r, rectangle_above(r, n));
-      const double expected = lobeOverRectangle(r, alpha, v, 300);
+      const float share =
+          ltc_rectangle(ltc_transform(terms, n, v, alpha), terms, r, rectangle_above(r, n)).share;
+      const double expected = lobeOverRectangle(r, alpha, v, 150);
       const double error = share * (terms.reflectance.x + terms.reflectance.y) - expected;
       errors.push_back(std::abs(error));
       squares += error * error;
-      signal += expected * expected;
     }
     std::sort(errors.begin(), errors.end());
     const double rms = std::sqrt(squares / errors.size()), worst = errors.back();
     RecordProperty(fmt::format("rms_1e6_roughness_{}", roughness), static_cast<int>(1e6 * rms));
     RecordProperty(fmt::format("worst_1e6_roughness_{}", roughness), static_cast<int>(1e6 * worst));
-    std::printf("roughness %.2f: rms error %.5f (relative %.4f), worst %.5f\n", roughness, rms,
-                std::sqrt(squares / signal), worst);
-    EXPECT_LT(rms, 0.05) << roughness;
+    EXPECT_LT(rms, 0.022) << roughness;
+    EXPECT_LT(worst, 0.1) << roughness;
   }
 }
 

@@ -1,13 +1,16 @@
-// limn-fit-ltc: fits linearly transformed cosines to the glossy lobe of glsl/brdf.glsl and writes the table that
-// core/shading/ltc_table.cpp compiles in. Run it after changing that lobe:
+// limn-fit-ltc: fits linearly transformed cosines to the glossy lobe of glsl/brdf.glsl and writes the table
+// that core/shading/ltc_table.cpp compiles in. Run it after changing that lobe:
 //
 //     limn-fit-ltc core/shading/ltc_table.inc
 //
-// For every (roughness, n.v) the directional reflectance is integrated by sampling visible normals; then m11, m22, m13
-// and the tilt minimise the difference between the lobe and the transformed cosine over samples of both (Heitz et al.
-// 2016, section 3), by Nelder and Mead's simplex. Two things differ from the paper: the transformed cosine is cut at
-// the horizon and normalised over what is left, which lets it follow the cut lobes of grazing views, and the
-// difference counts to the power 3/2, not 3; together they halve the total variation between the two. Deterministic.
+// For every (roughness, n.v) the directional reflectance is integrated by sampling visible normals; then m11,
+// m22, m13 and the tilt minimise the difference between the lobe and the transformed cosine over samples of
+// both (Heitz et al. 2016, section 3), by Nelder and Mead's simplex. Two things differ from the paper: the
+// transformed cosine is cut at the horizon and normalised over what is left, which lets it follow the cut
+// lobes of grazing views, and the difference counts to the power 3/2, not 3; together they halve the total
+// variation between the two. Deterministic.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,8 +20,6 @@
 #include <iostream>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "core/base/error.h"
 #include "glsl/ltc.glsl"
 
@@ -27,8 +28,8 @@ namespace {
 using namespace limn::glsl;
 
 constexpr int kSize = ltc_size;
-constexpr int kFitSide = 24;     // samples per axis and strategy while fitting
-constexpr int kAlbedoSide = 128; // samples per axis for reflectances
+constexpr int kFitSide = 24;      // samples per axis and strategy while fitting
+constexpr int kAlbedoSide = 128;  // samples per axis for reflectances
 constexpr float kSmallestTheta = 0.02f;
 
 struct Setting {
@@ -130,7 +131,8 @@ Transformed transformed(const Point& p) {
   return {std::exp(p[0]), std::exp(p[1]), p[2], p[3]};
 }
 
-/// What the fit minimises: the mean of |difference|^(3/2), sampled from both distributions (balance heuristic).
+/// What the fit minimises: the mean of |difference|^(3/2), sampled from both distributions (balance
+/// heuristic).
 double misfit(const Setting& s, double total, const std::vector<vec3>& fromLobe, const Point& p) {
   const Transformed t = transformed(p);
   double sum = 0;
@@ -212,14 +214,16 @@ Texels fit(const Setting& s, Point& state) {
   }
   state = error(found[1]) < error(found[0]) ? found[1] : found[0];
   Texels texels;
-  texels.shape = vec4(std::exp(state[0]) / s.alpha, std::exp(state[1]) / s.alpha, state[2] / s.v.x, state[3] / s.theta);
+  texels.shape =
+      vec4(std::exp(state[0]) / s.alpha, std::exp(state[1]) / s.alpha, state[2] / s.v.x, state[3] / s.theta);
   texels.reflectance = vec4(total.a, total.b, diffuseFresnel(s), transformed(state).share);
   return texels;
 }
 
 void write(const char* path, const std::vector<Texels>& table) {
   std::ofstream out(path);
-  out << "// Written by limn-fit-ltc; see glsl/ltc.glsl. Rows of n.v, columns of roughness, two texels each.\n";
+  out << "// Written by limn-fit-ltc; see glsl/ltc.glsl. Rows of n.v, columns of roughness, two texels "
+         "each.\n";
   for (const Texels& t : table) {
     for (const vec4& v : {t.shape, t.reflectance}) {
       out << fmt::format("{{{:.6g}, {:.6g}, {:.6g}, {:.6g}}},", v.x, v.y, v.z, v.w);
