@@ -3,7 +3,7 @@
 //
 // Polygons live in the rectangle's own coordinates: (a, b) in [-1/2, 1/2]^2 stands for centre + a u + b v.
 // Vertex differences are then exact to rounding however far the receiver is, which is what keeps the formulas
-// below free of cancellation: the relative error is below (1e-6 + 1e-7 long side / short side) / cosine at
+// below free of cancellation: the relative error is below (1e-6 + 2e-7 long side / short side) / cosine at
 // the light, from touching distance to 1e5 sizes away and at any scale; where the inputs' own rounding
 // decides (light seen edge-on or on the horizon) it is below 1e-6 of what the same light would give facing
 // the receiver.
@@ -71,22 +71,21 @@ LIMN_FN RectanglePart rectangle_whole() {
 LIMN_FN RectanglePart rectangle_part_above(Rectangle r, RectanglePart part, vec3 normal) {
   float height = dot(normal, r.centre);
   vec2 slope = vec2(dot(normal, r.u), dot(normal, r.v));
-  float reach = 0.5f * (abs(slope.x) + abs(slope.y));
-  if (height >= reach) return part;
   RectanglePart cut = part;
-  cut.count = 0;
-  if (height <= -reach) return cut;
+  int count = 0;
+  vec2 here = part.vertex[max(part.count - 1, 0)];
+  float h0 = height + dot(slope, here);
   for (int i = 0; i < part.count; ++i) {
-    vec2 here = part.vertex[i];
-    vec2 next = part.vertex[i + 1 < part.count ? i + 1 : 0];
-    float h0 = height + dot(slope, here);
+    vec2 next = part.vertex[i];
     float h1 = height + dot(slope, next);
-    if (h0 >= 0.0f && cut.count < rectangle_part_vertices) cut.vertex[cut.count++] = here;
-    if ((h0 >= 0.0f) != (h1 >= 0.0f) && cut.count < rectangle_part_vertices) {
-      cut.vertex[cut.count++] = here + h0 / (h0 - h1) * (next - here);
+    if ((h0 >= 0.0f) != (h1 >= 0.0f) && count < rectangle_part_vertices) {
+      cut.vertex[count++] = here + h0 / (h0 - h1) * (next - here);
     }
+    if (h1 >= 0.0f && count < rectangle_part_vertices) cut.vertex[count++] = next;
+    here = next;
+    h0 = h1;
   }
-  if (cut.count < 3) cut.count = 0;
+  cut.count = count < 3 ? 0 : count;
   return cut;
 }
 
@@ -134,6 +133,25 @@ LIMN_FN RectanglePart rectangle_visible_part(Light light, vec3 receiver, vec3 ng
   return none;
 }
 
+// A vertex while irradiance is summed, in units of the farthest vertex's distance r_0.
+struct RectangleVertex {
+  vec2 ab;
+  vec3 point;
+  float inverse_r;
+  float excess;  // 1 / r - 1 / r_0, from r_0^2 - r^2 = (P_0 - P) . (P_0 + P)
+};
+
+LIMN_FN RectangleVertex rectangle_vertex(Rectangle r, vec2 ab, vec2 far, vec3 farthest) {
+  RectangleVertex x;
+  x.ab = ab;
+  x.point = rectangle_point(r, ab);
+  float radius = max(length(x.point), 1e-12f);
+  vec2 d = far - ab;
+  x.inverse_r = 1.0f / radius;
+  x.excess = dot(d.x * r.u + d.y * r.v, x.point + farthest) / (radius * (1.0f + radius));
+  return x;
+}
+
 // Vector irradiance of the part for radiance 1: dot(n, result) is the irradiance (W/m^2 per W/(sr m^2)) on a
 // surface with normal n for which the part is above the horizon. Positive towards the light where cross(u, v)
 // points away from the receiver, else negated.
@@ -143,45 +161,35 @@ LIMN_FN RectanglePart rectangle_visible_part(Light light, vec3 receiver, vec3 ng
 // and the sum cancels; subtracting the common w = 1/r_0^2 of the farthest vertex leaves that part as w * area
 // * normal, in closed form, and the differences w_i - w >= 0 come from products of non-negative numbers.
 LIMN_FN vec3 rectangle_vector_irradiance(Rectangle r, RectanglePart p) {
-  if (p.count == 0) return vec3(0.0f);
-  vec3 point[rectangle_part_vertices];
   float distance2 = 0.0f;
-  int far = 0;
+  vec2 far = vec2(0.0f);
   for (int i = 0; i < p.count; ++i) {
-    point[i] = rectangle_point(r, p.vertex[i]);
-    float d2 = dot(point[i], point[i]);
-    if (d2 > distance2) {
-      distance2 = d2;
-      far = i;
-    }
+    vec3 point = rectangle_point(r, p.vertex[i]);
+    float d2 = dot(point, point);
+    far = d2 > distance2 ? p.vertex[i] : far;
+    distance2 = max(d2, distance2);
   }
   if (!(distance2 > 0.0f)) return vec3(0.0f);
   // From here on in units of the farthest vertex's distance r_0: r_0 = w = 1.
   float unit = 1.0f / sqrt(distance2);
-  vec3 u = r.u * unit;
-  vec3 v = r.v * unit;
-  vec3 origin = point[far] * unit;
-  float inverse_r[rectangle_part_vertices];
-  float excess[rectangle_part_vertices];  // 1 / r_i - 1 / r_0
+  Rectangle scaled;
+  scaled.centre = r.centre * unit;
+  scaled.u = r.u * unit;
+  scaled.v = r.v * unit;
+  vec3 farthest = rectangle_point(scaled, far);
+  vec3 sum = vec3(0.0f);
+  RectangleVertex here = rectangle_vertex(scaled, p.vertex[p.count - 1], far, farthest);
   for (int i = 0; i < p.count; ++i) {
-    point[i] *= unit;
-    float radius = max(length(point[i]), 1e-12f);
-    vec2 d = p.vertex[i] - p.vertex[far];
-    float closer = -dot(d.x * u + d.y * v, point[i] + origin);  // r_0^2 - r_i^2
-    inverse_r[i] = 1.0f / radius;
-    excess[i] = closer / (radius * (1.0f + radius));
-  }
-  vec3 sum = 2.0f * rectangle_part_share(p) * cross(u, v);
-  for (int i = 0; i < p.count; ++i) {
-    int next = i + 1 < p.count ? i + 1 : 0;
-    vec2 d = p.vertex[next] - p.vertex[i];
-    vec3 normal = cross(point[i], d.x * u + d.y * v);
-    float inverse_rr = inverse_r[i] * inverse_r[next];
+    RectangleVertex next = rectangle_vertex(scaled, p.vertex[i], far, farthest);
+    vec2 d = next.ab - here.ab;
+    vec3 normal = cross(here.point, d.x * scaled.u + d.y * scaled.v);
+    float inverse_rr = here.inverse_r * next.inverse_r;
     float bend =
-        angle_over_sine_minus_one(length(normal) * inverse_rr, dot(point[i], point[next]) * inverse_rr);
-    sum += (bend * inverse_rr + excess[i] * inverse_r[next] + excess[next]) * normal;
+        angle_over_sine_minus_one(length(normal) * inverse_rr, dot(here.point, next.point) * inverse_rr);
+    sum += (bend * inverse_rr + here.excess * next.inverse_r + next.excess) * normal;
+    here = next;
   }
-  return 0.5f * sum;
+  return rectangle_part_share(p) * cross(scaled.u, scaled.v) + 0.5f * sum;
 }
 
 // Irradiance (per unit radiance) on a surface with unit normal n from the whole rectangle, clipped by the
