@@ -1,9 +1,19 @@
 #include "core/reference/camera_radiance.h"
 
+#include "glsl/specular_view.glsl"
+
 namespace limn::reference {
 
-glm::vec3 cameraRadiance(const Surface& surface, const EnvironmentLight&) {
-  return surface.values.emission;
+glm::vec3 cameraRadiance(const Surface& surface, const scene::Material& material,
+                         const EnvironmentLight& environment) {
+  const glsl::GBufferSurface& values = surface.values;
+  if (!surface.specular()) return values.emission;
+  const glsl::SpecularView seen =
+      glsl::specular_view(surface.brdf, values.base_colour, values.metallic, material.transmission,
+                          values.ior, material.thickness, material.attenuationColour,
+                          material.attenuationDistance, values.normal, surface.view);
+  return values.emission + seen.reflected * environment.radiance(seen.reflection) +
+         seen.transmitted * environment.radiance(seen.refraction);
 }
 
 }  // namespace limn::reference

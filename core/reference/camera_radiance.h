@@ -8,6 +8,7 @@
 namespace limn::reference {
 
 /// Radiance towards the camera, W/(sr m^2).
-glm::vec3 cameraRadiance(const Surface& surface, const EnvironmentLight& environment);
+glm::vec3 cameraRadiance(const Surface& surface, const scene::Material& material,
+                         const EnvironmentLight& environment);
 
 }  // namespace limn::reference

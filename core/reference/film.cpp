@@ -125,9 +125,10 @@ void develop(const Integrator& integrator, const View& view, const Request& requ
     if (covered[pixel]) mean = meanOf(integrator, state, pixel);
     if (request.term == Term::final) {
       Surface surface;
-      mean.value += covered[pixel] && view.surface(pixel, surface)
-                        ? glm::dvec3(cameraRadiance(surface, environment))
-                        : glm::dvec3(environment.radiance(viewDirection(view, pixel)));
+      mean.value +=
+          covered[pixel] && view.surface(pixel, surface)
+              ? glm::dvec3(cameraRadiance(surface, *view.rays.draws()[surface.draw].material, environment))
+              : glm::dvec3(environment.radiance(viewDirection(view, pixel)));
     }
     writeColour(out, mean.value, glm::dot(mean.deviation, mean.deviation) / 3);
   });

@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -102,6 +103,16 @@ float largestCoordinate(const glm::vec3* positions, size_t count, const glm::mat
     largest = std::max(largest, std::abs(matrix[0][row]) * reach.x + std::abs(matrix[1][row]) * reach.y +
                                     std::abs(matrix[2][row]) * reach.z + std::abs(matrix[3][row]));
   return largest;
+}
+
+/// Direction of the inverse transpose by cofactors: no division, so that flat and tiny instances keep their
+/// normals.
+glm::mat3 normalMatrix(const glm::mat4& matrix) {
+  const glm::dmat3 m{glm::dmat4(matrix)};
+  const double scale = std::max({glm::length(m[0]), glm::length(m[1]), glm::length(m[2]), 1e-300});
+  const double side = (glm::determinant(m) < 0 ? -1 : 1) / (scale * scale);
+  return glm::mat3(glm::dmat3(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
+                              side * glm::cross(m[0], m[1])));
 }
 
 void fail(RTCDevice device, const char* what) {
@@ -255,7 +266,7 @@ RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose)
     draw.tangents = primitive.tangents.empty() ? nullptr : primitive.tangents.data();
     const glm::mat4& matrix = instance.objectToWorld;
     draw.tangentToWorld = glm::mat3(matrix);
-    draw.normalToWorld = glm::mat3(glm::transpose(glm::inverse(glm::dmat3(glm::dmat4(matrix)))));
+    draw.normalToWorld = normalMatrix(matrix);
     draw.orientation = glm::determinant(glm::dmat3(glm::dmat4(matrix))) < 0 ? -1.f : 1.f;
 
     const std::pair<int, int> key{instance.mesh, instance.primitive};

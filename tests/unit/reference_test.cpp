@@ -356,5 +356,29 @@ TEST(ReferenceDirect, EverySurfaceBlocksFromBothSidesAndMaskedTexelsDoNot) {
   EXPECT_EQ(ids.at(12, 8, ids.channel("id")), 0.f);
 }
 
+TEST(ReferenceFinal, SpecularSurfacesShowTheEnvironmentAndTakeNoLight) {
+  World world;
+  const int metal = world.addMaterial(glm::vec3(1));
+  auto& material = world.scene.materials[static_cast<size_t>(metal)];
+  material.metallic = 1;
+  material.roughness = 0;
+  world.addInstance(world.addMesh(World::sphere(64, metal)));
+  world.addLight(glsl::light_point, {0, 0, 3}, {0, 0, -1}, glm::vec3(10));
+  world.camera = scene::lookAt({0, 0, 4}, {0, 0, 0}, 0.3f);
+  auto& environment = world.scene.environment;
+  environment.width = 4;
+  environment.height = 2;
+  environment.texels.assign(8, glm::vec3(2));
+  EXPECT_EQ(render(world.request(8, Term::direct, 2)).image.at(4, 4, 0), 0.f);
+  EXPECT_NEAR(render(world.request(8, Term::final, 2)).image.at(4, 4, 0), 2.f, 1e-4f);  // a white mirror
+  material.metallic = 0;
+  material.transmission = 1;
+  material.specularFactor = 1;
+  // Clear glass: what Fresnel reflects, it does not transmit.
+  EXPECT_NEAR(render(world.request(8, Term::final, 2)).image.at(4, 4, 1), 2.f, 1e-4f);
+  material.baseColour = {0.5f, 0.5f, 0.5f, 1};
+  EXPECT_NEAR(render(world.request(9, Term::final, 2)).image.at(4, 4, 1), 2 * (0.04f + 0.96f * 0.5f), 1e-3f);
+}
+
 }  // namespace
 }  // namespace limn::reference

@@ -249,6 +249,24 @@ TEST(ReferenceGeometry, InstancesEqualCopies) {
   EXPECT_GT(sum, 0);
 }
 
+TEST(ReferenceGeometry, SkinnedAndMorphedPrimitivesAreTracedDeformed) {
+  World world = floorWorld();
+  auto& primitive = world.scene.meshes[0].primitives[0];
+  primitive.joints.assign(4, glm::u16vec4(0));
+  primitive.weights.assign(4, glm::vec4(1, 0, 0, 0));
+  primitive.morphTargets.emplace_back().positions.assign(4, glm::vec3(0, 0.5f, 0));
+  scene::Deformation state;
+  state.mesh = 0;
+  state.joints = {glm::translate(glm::mat4(1), glm::vec3(0, 0.25f, 0))};
+  state.morphWeights = {0.5f};
+  world.pose.deformed.push_back(state);
+  world.pose.instances[0].deformed = 0;
+  world.addLight(glsl::light_point, {0, 1, 0}, {0, -1, 0}, glm::vec3(1));
+  const Image image = render(world.request(9, Term::direct, 2)).image;
+  EXPECT_NEAR(positionOf(world, image, 4, 4).y, 0.5, 1e-5);
+  EXPECT_NEAR(image.at(4, 4, 0), 0.5f * glsl::inverse_pi / 0.25f, 1e-3f);  // 0.5 m below the light
+}
+
 TEST(ReferenceGeometry, FeaturesAreThoseOfTheSurface) {
   const World world = busyWorld();
   const Image image = render(world.request(33, Term::direct, 2)).image;
