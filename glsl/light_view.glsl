@@ -17,6 +17,7 @@ struct LightView {
   float depth;          // of the receiver from the centre along the axis, metres
   Rectangle rectangle;  // relative to the receiver
   RectanglePart part;
+  bool whole;           // the part is all of the rectangle
   Frame frame;          // directional: n points to the light
   float cap;            // directional: 1 - cos(half the angular diameter)
 };
@@ -30,6 +31,7 @@ LIMN_FN LightView light_view(Light light, vec3 receiver, vec3 ng, float size) {
   v.centre = vec3(light.position);
   v.axis = vec3(light.direction);
   v.part = rectangle_whole();
+  v.whole = true;
   v.frame = frame_around(-v.axis);
   v.cap = 0.0f;
   if (v.cone) {
@@ -64,6 +66,7 @@ LIMN_FN LightView light_view(Light light, vec3 receiver, vec3 ng, float size) {
     v.part = rectangle_visible_part(sized, receiver, ng);
     v.axis = v.axis * rectangle_side(light, receiver);
   }
+  v.whole = v.part.count == 4 && rectangle_part_share(v.part) == 1.0f;
   v.extended = max(sized.axis_u.w, sized.axis_v.w) > 0.0f;
   v.masked = v.part.count == 0;
   v.depth = dot(v.axis, receiver - v.centre);
@@ -81,11 +84,25 @@ LIMN_FN vec3 light_view_slope(LightView v, vec2 u) {
     vec3 direction = from_local(v.frame, vec3(lateral * disc.x, lateral * disc.y, 1.0f - cap));
     return direction / (1.0f - cap);
   }
-  return rectangle_point(v.rectangle, rectangle_part_sample(v.part, u)) / v.depth;
+  vec2 ab = v.whole ? u - vec2(0.5f) : rectangle_part_sample(v.part, u);
+  return rectangle_point(v.rectangle, ab) / v.depth;
 }
 
-// The same for the light's centre.
-LIMN_FN vec3 light_view_centre_slope(LightView v) { return v.cone ? v.frame.n : v.rectangle.centre / v.depth; }
+// Whether the ray with this slope meets the light (rectangle: all of it, not only the part), give or take `tolerance`
+// metres per metre of depth.
+LIMN_FN bool light_view_contains(LightView v, vec3 slope, float tolerance) {
+  if (v.cone) {
+    float cosine = 1.0f - v.cap;
+    vec3 lateral = slope - v.frame.n * dot(slope, v.frame.n);
+    return length(lateral) <= sqrt(v.cap * (2.0f - v.cap)) / cosine + tolerance;
+  }
+  vec3 offset = slope * v.depth - v.rectangle.centre;
+  float u = dot(v.rectangle.u, v.rectangle.u);
+  float w = dot(v.rectangle.v, v.rectangle.v);
+  float reach = tolerance * v.depth;
+  return abs(dot(offset, v.rectangle.u)) <= 0.5f * u + reach * sqrt(u) &&
+         abs(dot(offset, v.rectangle.v)) <= 0.5f * w + reach * sqrt(w);
+}
 
 LIMN_END
 #endif  // LIMN_LIGHT_VIEW_GLSL

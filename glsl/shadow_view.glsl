@@ -105,6 +105,16 @@ LIMN_FN vec3 shadow_unproject_local(ShadowView view, vec2 uv, float depth) {
   return depth * vec3(k * x, k * y, k - 1.0f);
 }
 
+// An offset from the origin in the view's axes, in world axes.
+LIMN_FN vec3 shadow_world_offset(ShadowView view, vec3 r) {
+  return r.x * vec3(view.axis_x) + r.y * vec3(view.axis_y) + r.z * vec3(view.axis_z);
+}
+
+// The depth of an offset from the origin: what shadow_project_local finds.
+LIMN_FN float shadow_depth_of(ShadowView view, vec3 r) {
+  return view.info.x == shadow_paraboloid ? sqrt(dot(r, r)) : r.z;
+}
+
 // Metres to what the map stores, and back.
 LIMN_FN float shadow_normalise(ShadowView view, float depth) {
   return (depth - view.origin.w) / (view.axis_z.w - view.origin.w);

@@ -44,60 +44,78 @@ VisibilityQuery visibility_query(ivec3 at, int samples, int shadow_sample) {
   return q;
 }
 
+// The view that taps of a query land in; kept between taps, most of which land in the same one.
+struct ShadowCursor {
+  ShadowView first;
+  uint face;
+  uint layer;
+  ShadowView view;
+  ShadowReceiver receiver;
+};
+
+void shadow_enter(inout ShadowCursor cursor, VisibilityQuery q, uint face) {
+  cursor.face = face;
+  cursor.layer = q.maps.info.x + face;
+  cursor.view = shadow_views[cursor.layer];
+  cursor.receiver = shadow_receiver(cursor.view, q.position, q.normal, q.light.axis, bias);
+}
+
+// Starts in the view that sees the receiver.
+ShadowCursor shadow_cursor(VisibilityQuery q) {
+  ShadowCursor cursor;
+  cursor.first = shadow_views[q.maps.info.x];
+  shadow_enter(cursor, q, shadow_face(q.maps.info.y, cursor.first, q.position));
+  return cursor;
+}
+
 // One texel of a shadow map against the receiver.
 struct ShadowTap {
-  bool covered;  // some view sees the point asked for
   bool blocked;
-  float depth;   // of what the map holds, from the light along its axis, metres
+  vec3 offset;  // from the view's origin to what the map holds, in the view's axes
 };
 
 // The texel that holds the direction of world point p.
-ShadowTap shadow_tap(VisibilityQuery q, vec3 p) {
+ShadowTap shadow_tap(inout ShadowCursor cursor, VisibilityQuery q, vec3 p) {
+  if (q.maps.info.y != shadow_faces_single) {
+    uint face = shadow_face(q.maps.info.y, cursor.first, p);
+    if (face != cursor.face) shadow_enter(cursor, q, face);
+  }
   ShadowTap tap;
-  uint layer = q.maps.info.x + shadow_face(q.maps.info.y, shadow_views[q.maps.info.x], p);
-  ShadowView view = shadow_views[layer];
-  ShadowPoint at = shadow_project(view, p);
-  tap.covered = shadow_inside(at);
   tap.blocked = false;
-  tap.depth = 0.0;
-  if (!tap.covered) return tap;
-  float size = float(view.info.z);
-  ivec2 texel = min(ivec2(at.uv * size), ivec2(view.info.z) - 1);
-  float stored = texelFetch(shadow_depth, ivec3(texel, layer), 0).r;
-  if (stored >= 1.0) return tap;
-  vec3 b = shadow_unproject_local(view, (vec2(texel) + 0.5) / size, shadow_metres(view, stored));
-  ShadowReceiver receiver = shadow_receiver(view, q.position, q.normal, q.light.axis, bias);
-  tap.blocked = shadow_blocks(receiver, b);
-  tap.depth = q.light.depth - receiver.axis.w + dot(receiver.axis.xyz, b);
+  ShadowPoint at = shadow_project(cursor.view, p);
+  if (!shadow_inside(at)) return tap;
+  float size = float(cursor.view.info.z);
+  ivec2 texel = min(ivec2(at.uv * size), ivec2(cursor.view.info.z) - 1);
+  float stored = texelFetch(shadow_depth, ivec3(texel, cursor.layer), 0).r;
+  float metres = shadow_metres(cursor.view, stored);
+  tap.offset = shadow_unproject_local(cursor.view, (vec2(texel) + 0.5) / size, metres);
+  tap.blocked = stored < 1.0 && shadow_blocks(cursor.receiver, tap.offset);
   return tap;
 }
 
-// The four texels around the direction of p, weighted bilinearly: the lit share.
-float shadow_tap_2x2(VisibilityQuery q, vec3 p) {
-  uint layer = q.maps.info.x + shadow_face(q.maps.info.y, shadow_views[q.maps.info.x], p);
-  ShadowView view = shadow_views[layer];
+// The four texels of the cursor's view around the direction of p, weighted bilinearly: the lit share.
+float shadow_tap_2x2(ShadowCursor cursor, vec3 p) {
+  ShadowView view = cursor.view;
   ShadowPoint at = shadow_project(view, p);
   if (!shadow_inside(at)) return 1.0;
   float size = float(view.info.z);
   vec2 corner = at.uv * size - 0.5;
   vec2 weight = fract(corner);
-  ShadowReceiver receiver = shadow_receiver(view, q.position, q.normal, q.light.axis, bias);
   float lit = 0.0;
   for (int i = 0; i < 4; ++i) {
     ivec2 step = ivec2(i & 1, i >> 1);
     ivec2 texel = clamp(ivec2(floor(corner)) + step, ivec2(0), ivec2(view.info.z) - 1);
-    float stored = texelFetch(shadow_depth, ivec3(texel, layer), 0).r;
+    float stored = texelFetch(shadow_depth, ivec3(texel, cursor.layer), 0).r;
     vec3 b = shadow_unproject_local(view, (vec2(texel) + 0.5) / size, shadow_metres(view, stored));
     vec2 w = mix(1.0 - weight, weight, vec2(step));
-    if (stored >= 1.0 || !shadow_blocks(receiver, b)) lit += w.x * w.y;
+    if (stored >= 1.0 || !shadow_blocks(cursor.receiver, b)) lit += w.x * w.y;
   }
   return lit;
 }
 
 // Pixels whose receiver no map of the light covers have V = 1 and are counted.
-bool shadow_covers_receiver(VisibilityQuery q) {
-  uint layer = q.maps.info.x + shadow_face(q.maps.info.y, shadow_views[q.maps.info.x], q.position);
-  if (shadow_inside(shadow_project(shadow_views[layer], q.position))) return true;
+bool shadow_covers_receiver(ShadowCursor cursor, VisibilityQuery q) {
+  if (shadow_inside(shadow_project(cursor.view, q.position))) return true;
   atomicAdd(uncovered_pixels, 1u);
   return false;
 }

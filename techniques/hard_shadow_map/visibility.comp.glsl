@@ -8,12 +8,15 @@ void main() {
   if (any(greaterThanEqual(at, imageSize(visibility)))) return;
   VisibilityQuery q = visibility_query(at, 1, 0);
   float v = 1.0;
-  if (!q.masked && shadow_covers_receiver(q)) {
+  if (!q.masked) {
+    ShadowCursor cursor = shadow_cursor(q);
+    if (shadow_covers_receiver(cursor, q)) {
 #if FILTER == 0
-    v = shadow_tap(q, q.position).blocked ? 0.0 : 1.0;
+      v = shadow_tap(cursor, q, q.position).blocked ? 0.0 : 1.0;
 #else
-    v = shadow_tap_2x2(q, q.position);
+      v = shadow_tap_2x2(cursor, q.position);
 #endif
+    }
   }
   imageStore(visibility, at, vec4(v));
 }

@@ -1,0 +1,36 @@
+// Sample points in the unit square and cube.
+#ifndef LIMN_SAMPLING_GLSL
+#define LIMN_SAMPLING_GLSL
+#include "glsl/language.glsl"
+LIMN_BEGIN
+
+// Additive recurrences on the generalised golden ratio (Roberts 2018, The Unreasonable Effectiveness of Quasirandom
+// Sequences), in fixed point so that they stay exact for all i: multiples of 2^32 / g^k.
+LIMN_FN vec2 r2_sequence(uint i) {
+  return vec2(float((i * 3242174889u) >> 8), float((i * 2447445414u) >> 8)) * 5.9604644775390625e-8f;
+}
+LIMN_FN vec3 r3_sequence(uint i) {
+  return vec3(float((i * 3518319155u) >> 8), float((i * 2882110345u) >> 8), float((i * 2360945575u) >> 8)) *
+         5.9604644775390625e-8f;
+}
+
+// Centres of the cells of a regular grid of side x side.
+LIMN_FN vec2 grid_point(int i, int side) {
+  return vec2((float(i % side) + 0.5f) / float(side), (float(i / side) + 0.5f) / float(side));
+}
+
+// Three independent numbers in [0, 1) for a pixel (pcg3d; Jarzynski and Olano 2020, Hash Functions for GPU Rendering).
+LIMN_FN vec3 pixel_noise(uint x, uint y, uint seed) {
+  uvec3 v = uvec3(x, y, seed) * 1664525u + 1013904223u;
+  v.x += v.y * v.z;
+  v.y += v.z * v.x;
+  v.z += v.x * v.y;
+  v ^= v >> 16u;
+  v.x += v.y * v.z;
+  v.y += v.z * v.x;
+  v.z += v.x * v.y;
+  return vec3(float(v.x >> 8), float(v.y >> 8), float(v.z >> 8)) * 5.9604644775390625e-8f;
+}
+
+LIMN_END
+#endif  // LIMN_SAMPLING_GLSL
