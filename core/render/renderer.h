@@ -67,7 +67,8 @@ class LIMN_API Renderer {
   /// Blocks until the GPU has done everything asked of it (glFinish).
   void finish();
 
-  const scene::Pose& pose() const;
+  /// The state of the scene at the time set.
+  const scene::Pose& pose();
   frame::FrameGraph& graph();
   std::vector<frame::PassReport> explain() const;
   /// The part of FrameStats that is known without measuring.

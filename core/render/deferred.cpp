@@ -1,0 +1,151 @@
+#include "core/render/deferred.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/shading/ltc_table.h"
+#include "glsl/blocks.glsl"
+#include "glsl/gbuffer.glsl"
+
+namespace limn::render {
+namespace {
+
+using frame::Access;
+using frame::TextureHandle;
+
+constexpr int group_size = 8;
+constexpr unsigned visibility_unit = 7;
+constexpr unsigned environment_unit = 7;
+
+constexpr std::array<const char*, light_batch> light_index_names{
+    "light_indices[0]", "light_indices[1]", "light_indices[2]", "light_indices[3]",
+    "light_indices[4]", "light_indices[5]", "light_indices[6]", "light_indices[7]"};
+
+struct GBufferInput {
+  unsigned unit;
+  TextureHandle texture;
+  const char* why;
+};
+
+/// What glsl/deferred/gbuffer_input.glsl samples.
+std::array<GBufferInput, 6> gbufferInputs(const GBuffer& g) {
+  return {{{glsl::gbuffer_unit_depth, g.depth, "position"},
+           {glsl::gbuffer_unit_normal, g.normal, "shading normal"},
+           {glsl::gbuffer_unit_geometric_normal, g.geometricNormal, "horizon"},
+           {glsl::gbuffer_unit_albedo, g.albedo, "base colour, metallic"},
+           {glsl::gbuffer_unit_material, g.material, "roughness, specular"},
+           {glsl::gbuffer_unit_emission, g.emission, "emission"}}};
+}
+
+}  // namespace
+
+struct Deferred::Implementation {
+  gpu::Device& device;
+  const scene::Scene& scene;
+  gpu::Texture environmentMap, ltcTable;
+  // Imports of the graph that start() was last called for.
+  TextureHandle environmentHandle, ltcHandle;
+
+  /// The equirectangular map with bilinear filtering, repeated around the horizon.
+  TextureHandle environment(frame::FrameGraph& graph) {
+    if (!environmentMap) {
+      const scene::Environment& e = scene.environment;
+      environmentMap =
+          gpu::Texture(device, "environment map", {.format = GL_RGB32F, .width = e.width, .height = e.height});
+      environmentMap.setSampling(GL_LINEAR, GL_LINEAR, GL_REPEAT, GL_CLAMP_TO_EDGE);
+      environmentMap.upload(0, 0, GL_RGB, GL_FLOAT, e.texels.data());
+    }
+    if (!environmentHandle) environmentHandle = graph.importTexture("environment map", environmentMap);
+    return environmentHandle;
+  }
+
+  TextureHandle ltc(frame::FrameGraph& graph) {
+    if (!ltcTable) ltcTable = shading::makeLtcTexture(device);
+    if (!ltcHandle) ltcHandle = graph.importTexture("table of linearly transformed cosines", ltcTable);
+    return ltcHandle;
+  }
+};
+
+Deferred::Deferred(gpu::Device& device, const scene::Scene& scene)
+    : implementation_(new Implementation{device, scene, {}, {}, {}, {}}) {}
+Deferred::~Deferred() = default;
+
+TextureHandle Deferred::start(const Frame& frame, bool emission) {
+  frame::FrameGraph& graph = frame.graph;
+  implementation_->environmentHandle = implementation_->ltcHandle = {};
+  const TextureHandle target =
+      graph.createTexture("radiance", {.format = GL_RGBA32F, .width = frame.size.x, .height = frame.size.y});
+  const bool geometry = static_cast<bool>(frame.gbuffer.depth);
+  const bool environment = static_cast<bool>(implementation_->scene.environment);
+  if (!emission || (!geometry && !environment)) {
+    frame::PassBuilder clear = graph.addPass("clear radiance");
+    const TextureHandle cleared = clear.write(target, Access::copyTarget, "no light yet");
+    clear.execute([cleared](frame::PassContext& context) {
+      constexpr float black[4] = {0, 0, 0, 1};
+      context.gl().ClearTexImage(context.texture(cleared).id(), 0, GL_RGBA, GL_FLOAT, black);
+    });
+    return cleared;
+  }
+
+  frame::PassBuilder builder = graph.addPass("emission and background");
+  builder.read(frame.handles.frame, Access::uniformBuffer, "camera");
+  TextureHandle map;
+  if (environment) {
+    map = implementation_->environment(graph);
+    builder.read(map, Access::sampled, "background");
+  }
+  if (geometry) {
+    builder.read(frame.gbuffer.depth, Access::sampled, "coverage");
+    builder.read(frame.gbuffer.emission, Access::sampled, "emitted radiance");
+  }
+  const TextureHandle radiance = builder.write(target, Access::imageStore, "light the camera sees without reflection");
+  const auto program = builder.program({.files = {"glsl/deferred/background.comp.glsl"},
+                                        .defines = {{"GEOMETRY", geometry ? "1" : "0"},
+                                                    {"ENVIRONMENT", environment ? "1" : "0"}}});
+  builder.execute([=, handles = frame.handles, g = frame.gbuffer, size = frame.size](frame::PassContext& context) {
+    context.program(program).use();
+    context.bindUniform(glsl::FrameBlock::binding, handles.frame);
+    if (geometry) {
+      context.bindSampled(glsl::gbuffer_unit_depth, g.depth);
+      context.bindSampled(glsl::gbuffer_unit_emission, g.emission);
+    }
+    if (environment) context.bindSampled(environment_unit, map);
+    context.bindImage(0, radiance, GL_WRITE_ONLY);
+    context.dispatch(size.x, size.y, 1, group_size, group_size);
+  });
+  return radiance;
+}
+
+TextureHandle Deferred::addLights(const Frame& frame, TextureHandle before, std::span<const uint32_t> lights,
+                                  TextureHandle visibility) {
+  frame::PassBuilder builder = frame.graph.addPass("accumulate lights");
+  builder.read(frame.handles.frame, Access::uniformBuffer, "camera");
+  builder.read(frame.handles.lights, Access::storageLoad, "lights");
+  for (const GBufferInput& input : gbufferInputs(frame.gbuffer)) builder.read(input.texture, Access::sampled, input.why);
+  if (visibility) builder.read(visibility, Access::sampled, "V of each light");
+  const TextureHandle ltc = implementation_->ltc(frame.graph);
+  builder.read(ltc, Access::sampled, "glossy light of rectangles");
+  const TextureHandle radiance = builder.write(before, Access::imageLoadStore, "sum of L_u V");
+  const auto program = builder.program({.files = {"glsl/deferred/light_accumulate.comp.glsl"},
+                                        .defines = {{"VISIBILITY", visibility ? "1" : "0"},
+                                                    {"LIGHT_COUNT", std::to_string(lights.size())}}});
+  builder.execute([=, handles = frame.handles, g = frame.gbuffer, size = frame.size,
+                   indices = std::vector<uint32_t>(lights.begin(), lights.end())](frame::PassContext& context) {
+    gpu::Program& accumulate = context.program(program);
+    accumulate.use();
+    for (size_t i = 0; i < indices.size(); ++i) accumulate.set(light_index_names[i], indices[i]);
+    context.bindUniform(glsl::FrameBlock::binding, handles.frame);
+    context.bindStorage(0, handles.lights);
+    for (const GBufferInput& input : gbufferInputs(g)) context.bindSampled(input.unit, input.texture);
+    if (visibility) context.bindSampled(visibility_unit, visibility);
+    context.bindSampled(glsl::ltc_unit, ltc);
+    context.bindImage(0, radiance, GL_READ_WRITE);
+    context.dispatch(size.x, size.y, 1, group_size, group_size);
+  });
+  return radiance;
+}
+
+TextureHandle Deferred::addEnvironment(const Frame&, TextureHandle before) { return before; }
+
+}  // namespace limn::render

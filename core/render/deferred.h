@@ -1,0 +1,43 @@
+// Core's own passes of the frame: emission and background, unshadowed light times visibility, environment light.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "core/frame/frame_graph.h"
+#include "core/scene/scene.h"
+#include "core/technique/technique.h"
+
+namespace limn::render {
+
+/// Lights whose visibility is held at once (layers of the visibility texture).
+constexpr int light_batch = 8;
+
+class Deferred {
+ public:
+  /// Tables and environment maps are uploaded when a pass that needs them is first declared.
+  Deferred(gpu::Device& device, const scene::Scene& scene);
+  ~Deferred();
+
+  struct Frame {
+    frame::FrameGraph& graph;
+    const SceneHandles& handles;
+    const GBuffer& gbuffer;  ///< handles may be empty: the scene has no geometry
+    glm::ivec2 size;
+  };
+
+  /// Black, or with `emission` what the camera sees without any light: emission and background.
+  frame::TextureHandle start(const Frame& frame, bool emission);
+  /// Adds sum of L_u V over `lights` (at most light_batch). `visibility`: R16 array, layer per light; empty handle: V = 1.
+  frame::TextureHandle addLights(const Frame& frame, frame::TextureHandle radiance, std::span<const uint32_t> lights,
+                                 frame::TextureHandle visibility);
+  /// Adds the light of the environment, V = 1.
+  frame::TextureHandle addEnvironment(const Frame& frame, frame::TextureHandle radiance);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace limn::render

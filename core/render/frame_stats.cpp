@@ -1,0 +1,156 @@
+#include "core/render/frame_stats.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/render/renderer.h"
+
+namespace limn::render {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json toJsonValue(const Quartiles& q) { return {{"median", q.median}, {"q1", q.q1}, {"q3", q.q3}, {"n", q.n}}; }
+
+Quartiles quartilesFrom(const Json& json) {
+  return {json.at("median"), json.at("q1"), json.at("q3"), json.at("n")};
+}
+
+frame::PassState stateFrom(const std::string& text) {
+  for (frame::PassState state : {frame::PassState::run, frame::PassState::cached, frame::PassState::leftOut})
+    if (text == frame::name(state)) return state;
+  throw Error(fmt::format("pass state '{}' is unknown; expected run, cached or left_out", text));
+}
+
+frame::Timing timingFrom(const std::string& text) {
+  for (frame::Timing timing : {frame::Timing::off, frame::Timing::query, frame::Timing::finish})
+    if (text == frame::name(timing)) return timing;
+  throw Error(fmt::format("timer '{}' is unknown; expected off, query or finish", text));
+}
+
+double frameMilliseconds(Renderer& renderer, frame::Timing timing) {
+  const auto start = std::chrono::steady_clock::now();
+  renderer.render(timing);
+  renderer.finish();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Samples of each pass by its position in execution order.
+struct PassSamples {
+  std::vector<std::vector<double>> ms;
+  std::vector<double> sums;
+
+  void add(const std::vector<frame::PassTime>& times) {
+    ms.resize(std::max(ms.size(), times.size()));
+    double sum = 0;
+    for (size_t i = 0; i < times.size(); ++i) {
+      ms[i].push_back(times[i].milliseconds);
+      sum += times[i].milliseconds;
+    }
+    sums.push_back(sum);
+  }
+};
+
+}  // namespace
+
+Quartiles quartiles(std::vector<double> samples) {
+  if (samples.empty()) return {};
+  std::sort(samples.begin(), samples.end());
+  const auto at = [&](double p) {
+    const double position = p * static_cast<double>(samples.size() - 1);
+    const auto low = static_cast<size_t>(position);
+    const size_t high = std::min(low + 1, samples.size() - 1);
+    return std::lerp(samples[low], samples[high], position - static_cast<double>(low));
+  };
+  return {at(0.5), at(0.25), at(0.75), static_cast<int>(samples.size())};
+}
+
+FrameStats measure(Renderer& renderer, int frames, int warmup) {
+  FrameStats stats = renderer.describe();
+  for (int i = 0; i < warmup; ++i) renderer.render();
+  renderer.finish();
+  std::vector<double> wall;
+  for (int i = 0; i < frames; ++i) wall.push_back(frameMilliseconds(renderer, frame::Timing::off));
+  stats.frameMs = quartiles(wall);
+
+  PassSamples samples;
+  std::map<std::pair<std::string, std::string>, size_t> position;
+  for (int i = 0; i < frames; ++i) {
+    frameMilliseconds(renderer, stats.timer);
+    const auto times = renderer.graph().passTimes();
+    if (i == 0)
+      for (size_t p = 0; p < times.size(); ++p) position[{times[p].technique, times[p].name}] = p;
+    samples.add(times);
+  }
+  stats.passSumMs = quartiles(samples.sums).median;
+  for (const frame::PassReport& report : renderer.explain()) {
+    PassStats pass{report.name, report.technique, report.state, report.reason, {}, report.bytes};
+    const auto found = position.find({report.technique, report.name});
+    if (report.state == frame::PassState::run && found != position.end())
+      pass.ms = quartiles(samples.ms[found->second]);
+    stats.passes.push_back(std::move(pass));
+  }
+  stats.memoryBytes = renderer.memoryBytes();
+  return stats;
+}
+
+std::string toJson(const FrameStats& stats) {
+  Json parameters = Json::object();
+  for (const auto& [name, value] : stats.parameters) parameters[name] = value;
+  Json passes = Json::array();
+  for (const PassStats& pass : stats.passes)
+    passes.push_back({{"name", pass.name},
+                      {"technique", pass.technique},
+                      {"state", frame::name(pass.state)},
+                      {"reason", pass.reason},
+                      {"ms", toJsonValue(pass.ms)},
+                      {"bytes", pass.bytes}});
+  return Json{{"renderer", stats.renderer},
+              {"backend", stats.backend},
+              {"software", stats.software},
+              {"timer", frame::name(stats.timer)},
+              {"dynamic", stats.dynamic},
+              {"size", {stats.width, stats.height}},
+              {"scene", stats.scene},
+              {"technique", stats.technique},
+              {"parameters", parameters},
+              {"frame_ms", toJsonValue(stats.frameMs)},
+              {"pass_sum_ms", stats.passSumMs},
+              {"memory_bytes", stats.memoryBytes},
+              {"passes", passes}}
+      .dump();
+}
+
+FrameStats frameStatsFromJson(const std::string& text) {
+  try {
+    const Json json = Json::parse(text);
+    FrameStats stats;
+    stats.renderer = json.at("renderer");
+    stats.backend = json.at("backend");
+    stats.software = json.at("software");
+    stats.timer = timingFrom(json.at("timer"));
+    stats.dynamic = json.at("dynamic");
+    stats.width = json.at("size").at(0);
+    stats.height = json.at("size").at(1);
+    stats.scene = json.at("scene");
+    stats.technique = json.at("technique");
+    for (const auto& [name, value] : json.at("parameters").items()) stats.parameters.emplace_back(name, value);
+    stats.frameMs = quartilesFrom(json.at("frame_ms"));
+    stats.passSumMs = json.at("pass_sum_ms");
+    stats.memoryBytes = json.at("memory_bytes");
+    for (const Json& pass : json.at("passes"))
+      stats.passes.push_back({pass.at("name"), pass.at("technique"), stateFrom(pass.at("state")), pass.at("reason"),
+                              quartilesFrom(pass.at("ms")), pass.at("bytes")});
+    return stats;
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(fmt::format("frame statistics are not as expected: {}", error.what()));
+  }
+}
+
+}  // namespace limn::render

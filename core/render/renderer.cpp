@@ -1,0 +1,372 @@
+#include "core/render/renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/render/deferred.h"
+#include "core/scene/gpu_scene.h"
+#include "core/shadow/shadow_map.h"
+#include "glsl/gbuffer.glsl"
+#include "glsl/srgb.glsl"
+
+namespace limn::render {
+namespace {
+
+constexpr std::array<std::pair<Output, std::string_view>, 6> output_names{{{Output::final, "final"},
+                                                                           {Output::visibility, "visibility"},
+                                                                           {Output::direct, "direct"},
+                                                                           {Output::indirect, "indirect"},
+                                                                           {Output::caustic, "caustic"},
+                                                                           {Output::media, "media"}}};
+
+TermSet termsOf(const TechniqueUse& use) { return use.plugin->info->terms; }
+
+/// The techniques that answer the direct light of this output, whichever way.
+bool claimsDirect(const TechniqueUse& use) {
+  return contains(termsOf(use), Term::visibility) || contains(termsOf(use), Term::direct);
+}
+
+Term termOf(Output output) {
+  switch (output) {
+    case Output::visibility: return Term::visibility;
+    case Output::indirect: return Term::indirect;
+    case Output::caustic: return Term::caustic;
+    case Output::media: return Term::media;
+    default: return Term::direct;
+  }
+}
+
+}  // namespace
+
+std::string_view name(Output output) {
+  for (const auto& [value, text] : output_names)
+    if (value == output) return text;
+  return {};
+}
+
+Output parseOutput(std::string_view text) {
+  std::vector<std::string> names;
+  for (const auto& [value, known] : output_names) {
+    if (text == known) return value;
+    names.emplace_back(known);
+  }
+  throw UsageError(fmt::format("output term '{}' is unknown{}; expected {}", text, didYouMean(text, names),
+                               joined(names, "or")));
+}
+
+void checkTechniques(const std::vector<TechniqueUse>& techniques, Output output) {
+  const TechniqueUse* first = nullptr;
+  for (const TechniqueUse& use : techniques) {
+    if (!claimsDirect(use)) continue;
+    if (first)
+      throw UsageError(fmt::format("techniques {} and {} both answer direct light; name one of them",
+                                   first->plugin->info->name, use.plugin->info->name));
+    first = &use;
+  }
+  if (output == Output::final || output == Output::direct) return;
+  const bool answered = std::any_of(techniques.begin(), techniques.end(),
+                                    [&](const TechniqueUse& use) { return contains(termsOf(use), termOf(output)); });
+  if (!answered)
+    throw UsageError(fmt::format("no technique given answers the output term {}; limn list says which do", name(output)));
+}
+
+struct Renderer::Implementation {
+  struct Use {
+    const TechniqueUse* settings;
+    std::unique_ptr<Technique> technique;
+  };
+
+  gpu::Device& device;
+  const scene::Scene& scene;
+  std::filesystem::path shaderOverride;
+  gpu::ShaderLibrary shaders;
+  frame::ResourcePool pool;
+  scene::GpuScene gpuScene;
+  shadow::ShadowMapService shadowMaps;
+  Deferred deferred;
+  scene::GBufferPass gbufferPass;
+  Settings settings;
+  scene::CameraPose camera;
+  scene::Pose pose;
+  double time = 0;
+  int animation = scene::none;
+  bool poseDirty = true;
+  uint32_t frameIndex = 0;
+  std::vector<std::string> mounted;
+  std::vector<Use> uses;
+
+  // Handles of the current graph.
+  std::unique_ptr<frame::FrameGraph> graph;
+  SceneHandles handles;
+  GBuffer gbuffer;
+  frame::TextureHandle output;
+
+  Implementation(gpu::Device& gpuDevice, const scene::Scene& shown, std::filesystem::path overrideFolder)
+      : device(gpuDevice),
+        scene(shown),
+        shaderOverride(std::move(overrideFolder)),
+        shaders(gpuDevice),
+        pool(gpuDevice),
+        gpuScene(gpuDevice, shown),
+        shadowMaps(gpuDevice, gpuScene),
+        deferred(gpuDevice, shown) {
+    shaders.mount("", embeddedSources(), shaderOverride);
+  }
+
+  ~Implementation() { dropGraph(); }
+
+  void dropGraph() {
+    if (!graph) return;
+    gpuScene.forget();
+    graph.reset();
+    uses.clear();
+  }
+
+  void mountTechnique(const TechniquePlugin& plugin) {
+    const std::string prefix = fmt::format("techniques/{}/", plugin.info->name);
+    if (std::find(mounted.begin(), mounted.end(), prefix) != mounted.end()) return;
+    shaders.mount(prefix, plugin.sources(), shaderOverride.empty() ? shaderOverride : shaderOverride / prefix);
+    mounted.push_back(prefix);
+  }
+
+  frame::TextureHandle ask(Use& use, Term term, std::span<const uint32_t> lights, frame::TextureHandle target) {
+    const TechniqueInputs inputs{scene,    pose,    gpuScene, shadowMaps, use.settings->parameters,
+                                 handles,  gbuffer, settings.size};
+    return use.technique->addPasses(*graph, inputs, {term, lights, target});
+  }
+
+  Use* answering(Term term) {
+    for (Use& use : uses)
+      if (contains(termsOf(*use.settings), term)) return &use;
+    return nullptr;
+  }
+
+  /// The lights that can contribute: the one asked for, or all that emit.
+  std::vector<uint32_t> activeLights() const {
+    std::vector<uint32_t> lights;
+    for (uint32_t i = 0; i < pose.lights.size(); ++i) {
+      if (settings.light >= 0 && static_cast<uint32_t>(settings.light) != i) continue;
+      if (glm::vec3(pose.lights[i].emission) == glm::vec3(0) && settings.output != Output::visibility) {
+        graph->leaveOut(fmt::format("light {}", pose.lightNames[i]), "core", "it emits nothing");
+        continue;
+      }
+      lights.push_back(i);
+    }
+    return lights;
+  }
+
+  frame::TextureHandle visibilityTarget(int layers) {
+    return graph->createTexture("visibility",
+                                {GL_TEXTURE_2D_ARRAY, GL_R16, settings.size.x, settings.size.y, layers, 1});
+  }
+
+  frame::TextureHandle addDirect(const Deferred::Frame& frame, frame::TextureHandle radiance,
+                                 std::span<const uint32_t> lights) {
+    if (Use* direct = answering(Term::direct)) return ask(*direct, Term::direct, lights, radiance);
+    Use* shadowing = answering(Term::visibility);
+    for (size_t first = 0; first < lights.size(); first += light_batch) {
+      const auto batch = lights.subspan(first, std::min<size_t>(light_batch, lights.size() - first));
+      frame::TextureHandle visibility;
+      if (shadowing)
+        visibility = ask(*shadowing, Term::visibility, batch, visibilityTarget(static_cast<int>(batch.size())));
+      radiance = deferred.addLights(frame, radiance, batch, visibility);
+    }
+    return radiance;
+  }
+
+  frame::TextureHandle addRadiance() {
+    const Deferred::Frame frame{*graph, handles, gbuffer, settings.size};
+    const bool all = settings.output == Output::final;
+    frame::TextureHandle radiance = deferred.start(frame, all);
+    if (!gbuffer.depth) {
+      graph->leaveOut("lighting", "core", "the scene has no geometry");
+      return radiance;
+    }
+    if (all || settings.output == Output::direct) {
+      const std::vector<uint32_t> lights = activeLights();
+      if (!lights.empty()) radiance = addDirect(frame, radiance, lights);
+      else graph->leaveOut("lights", "core", "the scene has no light");
+      if (scene.environment && settings.light < 0) radiance = deferred.addEnvironment(frame, radiance);
+      else graph->leaveOut("environment light", "core", scene.environment ? "another light was chosen" : "no environment");
+    }
+    const std::vector<uint32_t> lights = activeLights();
+    for (const auto& [term, wanted] : {std::pair(Term::indirect, Output::indirect),
+                                       std::pair(Term::caustic, Output::caustic), std::pair(Term::media, Output::media)})
+      if (all || settings.output == wanted)
+        for (Use& use : uses)
+          if (contains(termsOf(*use.settings), term)) radiance = ask(use, term, lights, radiance);
+    return radiance;
+  }
+
+  frame::TextureHandle addVisibility() {
+    const std::vector<uint32_t> lights = activeLights();
+    if (lights.size() != 1) throw UsageError("--output-term visibility shows one light; choose it with --light");
+    if (!gbuffer.depth) throw Error("visibility has no surface to show: the scene has no geometry");
+    return ask(*answering(Term::visibility), Term::visibility, lights, visibilityTarget(1));
+  }
+
+  void build() {
+    dropGraph();
+    graph = std::make_unique<frame::FrameGraph>();
+    for (const TechniqueUse& use : settings.techniques) {
+      mountTechnique(*use.plugin);
+      uses.push_back({&use, use.plugin->create()});
+    }
+    handles = gpuScene.import(*graph);
+    gbuffer = {};
+    if (gpuScene.instanceCount() > 0) gbuffer = gbufferPass.add(*graph, gpuScene, handles, settings.size);
+    else graph->leaveOut("gbuffer", "core", "the scene has no geometry");
+    shadowMaps.begin(*graph, handles, pose);
+    output = settings.output == Output::visibility ? addVisibility() : addRadiance();
+    graph->output(output);
+    if (settings.channels && gbuffer.depth)
+      for (frame::TextureHandle kept : {gbuffer.depth, gbuffer.instance, gbuffer.albedo, gbuffer.normal})
+        graph->output(kept);
+    graph->prepare(device, shaders, pool);
+    pool.trim();
+    shadowMaps.update(pose);
+  }
+
+  void render(frame::Timing timing) {
+    if (poseDirty) {
+      gpuScene.updateDynamic(time);
+      scene::evaluate(scene, time, animation, pose);
+      poseDirty = false;
+    }
+    bool rebuild = gpuScene.update(pose, camera, settings.size, frameIndex++) || !graph;
+    if (!rebuild) {
+      rebuild = shadowMaps.update(pose);
+      for (Use& use : uses) rebuild = use.technique->update(pose) || rebuild;
+    }
+    if (rebuild) build();
+    if (settings.dynamic) graph->invalidate();
+    graph->execute(timing);
+  }
+
+  template <class T>
+  std::vector<T> readTexture(frame::TextureHandle handle, GLenum format, GLenum type, int components) const {
+    const gpu::Texture& texture = graph->texture(handle);
+    std::vector<T> data(static_cast<size_t>(settings.size.x) * settings.size.y * components * texture.desc().layers);
+    texture.read(0, format, type, data.data(), data.size() * sizeof(T));
+    return data;
+  }
+
+  /// Calls f(pixel of the image, index of the texel): texture rows count from below.
+  template <class F>
+  void forEachPixel(Image& image, const F& f) const {
+    for (int y = 0; y < settings.size.y; ++y)
+      for (int x = 0; x < settings.size.x; ++x)
+        f(image.pixel(x, settings.size.y - 1 - y), static_cast<size_t>(y) * settings.size.x + x);
+  }
+
+  void readChannels(Image& image) const;
+};
+
+void Renderer::Implementation::readChannels(Image& image) const {
+  const auto depth = readTexture<float>(gbuffer.depth, GL_RED, GL_FLOAT, 1);
+  const auto instance = readTexture<uint32_t>(gbuffer.instance, GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
+  const auto albedo = readTexture<float>(gbuffer.albedo, GL_RGBA, GL_FLOAT, 4);
+  const auto normal = readTexture<float>(gbuffer.normal, GL_RG, GL_FLOAT, 2);
+  forEachPixel(image, [&](std::span<float> pixel, size_t i) {
+    const bool covered = depth[i] > 0;
+    pixel[3] = depth[i];
+    pixel[4] = covered ? 1.f : 0.f;
+    pixel[5] = covered ? static_cast<float>(instance[i]) : -1.f;
+    if (!covered) return;
+    const glm::vec3 colour = glsl::srgb_decode(glm::vec3(albedo[4 * i], albedo[4 * i + 1], albedo[4 * i + 2]));
+    const glm::vec3 n = glsl::octahedral_decode(glm::vec2(normal[2 * i], normal[2 * i + 1]));
+    for (int c = 0; c < 3; ++c) {
+      pixel[static_cast<size_t>(6 + c)] = colour[c];
+      pixel[static_cast<size_t>(9 + c)] = n[c];
+    }
+  });
+}
+
+Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, std::filesystem::path shaderOverride)
+    : implementation_(std::make_unique<Implementation>(device, scene, std::move(shaderOverride))) {}
+Renderer::~Renderer() = default;
+
+void Renderer::configure(Settings settings) {
+  checkTechniques(settings.techniques, settings.output);
+  Implementation& self = *implementation_;
+  self.dropGraph();
+  self.settings = std::move(settings);
+}
+
+void Renderer::setCamera(const scene::CameraPose& camera) { implementation_->camera = camera; }
+
+void Renderer::setTime(double seconds, int animation) {
+  implementation_->time = seconds;
+  implementation_->animation = animation;
+  implementation_->poseDirty = true;
+}
+
+void Renderer::render(frame::Timing timing) { implementation_->render(timing); }
+void Renderer::finish() { implementation_->device.gl().Finish(); }
+
+const scene::Pose& Renderer::pose() {
+  Implementation& self = *implementation_;
+  if (self.poseDirty) scene::evaluate(self.scene, self.time, self.animation, self.pose);
+  return self.pose;
+}
+
+Image Renderer::read() const {
+  const Implementation& self = *implementation_;
+  const glm::ivec2 size = self.settings.size;
+  const bool channels = self.settings.channels && self.gbuffer.depth;
+  std::vector<std::string> names{"R", "G", "B"};
+  if (channels)
+    names.insert(names.end(),
+                 {"Z", "coverage", "id", "albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z"});
+  Image image(size.x, size.y, names);
+  if (self.settings.output == Output::visibility) {
+    const auto v = self.readTexture<float>(self.output, GL_RED, GL_FLOAT, 1);
+    self.forEachPixel(image, [&](std::span<float> pixel, size_t i) { pixel[0] = pixel[1] = pixel[2] = v[i]; });
+  } else {
+    const auto rgba = self.readTexture<float>(self.output, GL_RGBA, GL_FLOAT, 4);
+    self.forEachPixel(image, [&](std::span<float> pixel, size_t i) {
+      for (size_t c = 0; c < 3; ++c) pixel[c] = rgba[4 * i + c];
+    });
+  }
+  if (channels) self.readChannels(image);
+  return image;
+}
+
+frame::FrameGraph& Renderer::graph() { return *implementation_->graph; }
+std::vector<frame::PassReport> Renderer::explain() const { return implementation_->graph->explain(); }
+
+int64_t Renderer::memoryBytes() const {
+  const gpu::Counters& counters = implementation_->device.counters();
+  return counters.bufferBytes + counters.textureBytes;
+}
+
+FrameStats Renderer::describe() const {
+  const Implementation& self = *implementation_;
+  const ContextInfo& info = self.device.context().info();
+  FrameStats stats;
+  stats.renderer = info.renderer;
+  stats.backend = limn::name(info.backend);
+  stats.software = info.software;
+  stats.timer = frame::preferredTiming(self.device);
+  stats.dynamic = self.settings.dynamic;
+  stats.width = self.settings.size.x;
+  stats.height = self.settings.size.y;
+  stats.scene = self.scene.file.string();
+  for (const TechniqueUse& use : self.settings.techniques) {
+    stats.technique += (stats.technique.empty() ? "" : ",") + std::string(use.plugin->info->name);
+    for (const auto& [parameter, value] : use.parameters.printed())
+      stats.parameters.emplace_back(fmt::format("{}.{}", use.plugin->info->name, parameter), value);
+  }
+  return stats;
+}
+
+Renderer::Reload Renderer::reloadShaders() {
+  const auto result = implementation_->shaders.reload();
+  return {result.reloaded, result.errors};
+}
+
+}  // namespace limn::render

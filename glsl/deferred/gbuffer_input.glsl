@@ -1,0 +1,38 @@
+// The G-buffer as the compute passes of the frame read it: sampler bindings, the surface of a pixel, its position.
+#ifndef LIMN_GBUFFER_INPUT_GLSL
+#define LIMN_GBUFFER_INPUT_GLSL
+#include "glsl/blocks.glsl"
+#include "glsl/gbuffer.glsl"
+
+layout(binding = 0) uniform sampler2D gbuffer_depth;
+layout(binding = 1) uniform sampler2D gbuffer_normal;
+layout(binding = 2) uniform sampler2D gbuffer_geometric_normal;
+layout(binding = 3) uniform sampler2D gbuffer_albedo;
+layout(binding = 4) uniform sampler2D gbuffer_material;
+layout(binding = 5) uniform sampler2D gbuffer_emission;
+
+// Metres along the view axis; 0: no coverage.
+float pixel_depth(ivec2 pixel) { return texelFetch(gbuffer_depth, pixel, 0).x; }
+
+GBufferSurface pixel_surface(ivec2 pixel) {
+  GBufferTexels t;
+  t.normal = texelFetch(gbuffer_normal, pixel, 0).xy;
+  t.geometric_normal = texelFetch(gbuffer_geometric_normal, pixel, 0).xy;
+  t.albedo = texelFetch(gbuffer_albedo, pixel, 0);
+  t.material = texelFetch(gbuffer_material, pixel, 0);
+  t.emission = texelFetch(gbuffer_emission, pixel, 0);
+  return gbuffer_unpack(t);
+}
+
+vec3 pixel_geometric_normal(ivec2 pixel) {
+  return octahedral_decode(texelFetch(gbuffer_geometric_normal, pixel, 0).xy);
+}
+
+// World direction through a pixel's centre, not normalised: one metre long along the view axis.
+vec3 pixel_ray(ivec2 pixel) {
+  return frame.view_ray_origin.xyz + float(pixel.x) * frame.view_ray_dx.xyz + float(pixel.y) * frame.view_ray_dy.xyz;
+}
+
+vec3 pixel_position(ivec2 pixel, float depth) { return frame.camera_position.xyz + depth * pixel_ray(pixel); }
+
+#endif

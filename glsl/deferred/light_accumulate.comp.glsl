@@ -1,0 +1,38 @@
+// Adds sum of L_u V over a batch of lights to the radiance: unshadowed reflected light, exact for diffuse surfaces, times
+// visibility (layer per light; V = 1 where nobody was asked).
+#include "glsl/deferred/gbuffer_input.glsl"
+#include "glsl/unshadowed_light.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(rgba32f, binding = 0) uniform image2D radiance;
+layout(std430, binding = 0) readonly buffer LightBuffer { Light lights[]; };
+#if VISIBILITY
+layout(binding = 7) uniform sampler2DArray visibility;
+#endif
+uniform uint light_indices[LIGHT_COUNT];
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  float depth = pixel_depth(pixel);
+  if (depth == 0.0) return;
+  GBufferSurface surface = pixel_surface(pixel);
+  if ((surface.flags & gbuffer_flag_specular) != 0u) return;
+  vec3 position = pixel_position(pixel, depth);
+  vec3 v = normalize(frame.camera_position.xyz - position);
+  SurfaceBrdf material = surface_brdf(surface.base_colour, surface.metallic, surface.roughness, surface.specular_factor,
+                                      surface.specular_colour, surface.ior);
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < LIGHT_COUNT; ++i) {
+#if VISIBILITY
+    float lit = texelFetch(visibility, ivec3(pixel, i), 0).x;
+    if (lit == 0.0) continue;
+#else
+    const float lit = 1.0;
+#endif
+    sum += lit * unshadowed_light(lights[light_indices[i]], material, position, surface.normal,
+                                  surface.geometric_normal, v);
+  }
+  if (sum == vec3(0.0)) return;
+  imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(sum, 0.0));
+}
