@@ -47,6 +47,9 @@ struct View {
 /// Loads everything SceneOptions names; prints the scene's warnings to stderr. Throws UsageError or Error.
 View open(const SceneOptions& options);
 
+/// The file itself, or the scene of that name that was built with limn. Throws Error when there is neither.
+std::filesystem::path findScene(const std::filesystem::path& nameOrFile);
+
 glm::ivec2 parseSize(const std::string& text);
 /// Index of a name or "#index" among `names`; throws UsageError listing them.
 int findNamed(const std::string& what, const std::string& text, const std::vector<std::string>& names);

@@ -1,0 +1,154 @@
+#include "apps/limn/bench_session.h"
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "core/render/frame_stats.h"
+
+namespace limn::app {
+namespace fs = std::filesystem;
+
+struct BenchSession::Loaded {
+  SceneOptions options;
+  View view;
+  render::Renderer renderer;
+
+  Loaded(gpu::Device& device, SceneOptions chosen)
+      : options(std::move(chosen)), view(open(options)), renderer(device, view.scene) {}
+};
+
+namespace {
+
+SceneOptions sceneOptions(const bench::Case& c) {
+  SceneOptions options;
+  options.scene = findScene(c.scene);
+  options.camera = c.camera;
+  options.light = c.light;
+  options.time = c.time;
+  options.size = fmt::format("{}x{}", c.width, c.height);
+  return options;
+}
+
+bool sameScene(const SceneOptions& a, const SceneOptions& b) { return a.scene == b.scene && a.time == b.time; }
+
+render::Settings baseSettings(const View& view, render::Output output, int light) {
+  render::Settings settings;
+  settings.size = view.size;
+  settings.output = output;
+  settings.light = light;
+  settings.channels = true;
+  return settings;
+}
+
+}  // namespace
+
+BenchSession::BenchSession(const BackendOptions& backend, const fs::path& out)
+    : cache_(out / "references"),
+      context_(Context::create(backend.contextOptions())),
+      device_(*context_),
+      registry_(TechniqueRegistry::defaultFolders()) {}
+
+BenchSession::~BenchSession() = default;
+
+BenchSession::Loaded& BenchSession::load(const bench::Case& c) {
+  SceneOptions options = sceneOptions(c);
+  if (!loaded_ || !sameScene(loaded_->options, options)) {
+    loaded_.reset();
+    loaded_ = std::make_unique<Loaded>(device_, std::move(options));
+    loaded_->renderer.setTime(loaded_->view.time, loaded_->view.animation);
+    return *loaded_;
+  }
+  View& view = loaded_->view;
+  view.size = {c.width, c.height};
+  view.camera = chooseCamera(options, view.pose);
+  view.light = c.light.empty() ? scene::none : findNamed("light", c.light, view.pose.lightNames);
+  return *loaded_;
+}
+
+reference::Request BenchSession::request(const bench::Case& c, reference::Term term, int light) {
+  const View& view = load(c).view;
+  reference::Request request{
+      .scene = view.scene, .pose = view.pose, .camera = view.camera, .progress = {}, .checkpoint = {}};
+  request.width = c.width;
+  request.height = c.height;
+  request.term = term;
+  request.light = light == scene::none ? reference::allLights : light;
+  request.spp = c.reference.spp;
+  request.noise = c.reference.noise;
+  return request;
+}
+
+bench::Reference BenchSession::reference(const bench::Case& c) {
+  const reference::Request asked = request(c, reference::termFromName(c.term), load(c).view.light);
+  reference::Result result = cache_.render(asked);
+  const fs::path file = cache_.pathOf(reference::contentHash(asked));
+  return {std::move(result.image), fs::path("references") / file.filename(), result.noiseRms};
+}
+
+Image BenchSession::unshadowed(const bench::Case& c, int light) {
+  Loaded& loaded = load(c);
+  loaded.renderer.configure(baseSettings(loaded.view, render::Output::direct, light));
+  loaded.renderer.setCamera(loaded.view.camera);
+  loaded.renderer.render();
+  return loaded.renderer.read();
+}
+
+/// Sum over the lights of L_u * V_reference: what no visibility technique can beat.
+Image BenchSession::separationFloor(const bench::Case& c) {
+  const int chosen = load(c).view.light;
+  const size_t lights = load(c).view.pose.lights.size();
+  Image sum;
+  for (size_t light = 0; light < lights; ++light) {
+    if (chosen != scene::none && static_cast<size_t>(chosen) != light) continue;
+    const Image v = cache_.render(request(c, reference::Term::visibility, static_cast<int>(light))).image;
+    Image lit = unshadowed(c, static_cast<int>(light));
+    for (int y = 0; y < lit.height(); ++y)
+      for (int x = 0; x < lit.width(); ++x)
+        for (int i = 0; i < 3; ++i) lit.at(x, y, i) *= v.at(x, y, v.channel("R"));
+    if (sum.empty()) {
+      sum = std::move(lit);
+      continue;
+    }
+    for (int y = 0; y < sum.height(); ++y)
+      for (int x = 0; x < sum.width(); ++x)
+        for (int i = 0; i < 3; ++i) sum.at(x, y, i) += lit.at(x, y, i);
+  }
+  if (sum.empty()) throw Error(fmt::format("scene {} has no light to separate", c.scene));
+  return sum;
+}
+
+bench::Measurement BenchSession::measure(const bench::Case& c) {
+  if (c.technique == bench::kSeparationFloor) {
+    bench::Measurement floor{separationFloor(c), {}};
+    floor.cost.renderer = rendererName();
+    floor.cost.software = context_->info().software;
+    return floor;
+  }
+  Loaded& loaded = load(c);
+  TechniqueOptions techniques;
+  techniques.techniques = c.technique;
+  for (const auto& [name, value] : c.parameters) techniques.settings.push_back(fmt::format("{}={}", name, value));
+  render::Settings settings = baseSettings(loaded.view, render::parseOutput(c.term), loaded.view.light);
+  settings.techniques = techniques.resolve(registry_);
+  settings.dynamic = c.dynamic;
+  settings.channels = true;
+  loaded.renderer.configure(settings);
+  loaded.renderer.setCamera(loaded.view.camera);
+  loaded.renderer.render();
+  bench::Measurement result{loaded.renderer.read(), {}};
+
+  settings.channels = false;  // what a frame costs does not include what only the comparison needs
+  loaded.renderer.configure(settings);
+  render::FrameStats stats = render::measure(loaded.renderer, c.frames, c.warmup);
+  stats.scene = c.scene;
+  result.cost.renderer = stats.renderer;
+  result.cost.backend = stats.backend;
+  result.cost.timer = frame::name(stats.timer);
+  result.cost.software = stats.software;
+  result.cost.frameMs = {stats.frameMs.median, stats.frameMs.q1, stats.frameMs.q3, stats.frameMs.n};
+  result.cost.memoryBytes = stats.memoryBytes;
+  result.cost.details = render::toJson(stats);
+  return result;
+}
+
+}  // namespace limn::app

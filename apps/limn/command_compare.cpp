@@ -1,0 +1,60 @@
+// limn compare: how far an image is from its reference.
+#include <fmt/format.h>
+
+#include "apps/limn/commands.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/image/compare_report.h"
+#include "core/image/metrics.h"
+
+namespace limn::app {
+namespace {
+
+struct Options {
+  std::string image, reference, diff, maskTermRange;
+  double exposure = 0;
+  double maxMasked = 0.5;  // percent
+  bool json = false;
+};
+
+std::optional<std::pair<float, float>> parseTermRange(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const size_t comma = text.find(',');
+  const auto low = comma == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(0, comma));
+  const auto high = comma == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(comma + 1));
+  if (!low || !high || *low >= *high)
+    throw UsageError(fmt::format("--mask-term-range '{}' is not accepted; expected a,b with a < b", text));
+  return std::pair(static_cast<float>(*low), static_cast<float>(*high));
+}
+
+int run(const Options& options) {
+  CompareOptions compare;
+  compare.exposureEv = static_cast<float>(options.exposure);
+  compare.maxMaskedShare = options.maxMasked / 100;
+  compare.maskTermRange = parseTermRange(options.maskTermRange);
+  const Image image = readImage(options.image), reference = readImage(options.reference);
+  const Metrics metrics = compareImages(image, reference, compare);
+  if (!options.diff.empty()) writePng(options.diff, differenceImage(image, reference, compare));
+  fmt::print("{}\n", options.json ? metricsJson(metrics) : metricsTable(metrics));
+  return 0;
+}
+
+}  // namespace
+
+Action addCompareCommand(CLI::App& command) {
+  auto options = std::make_shared<Options>();
+  command.add_option("image", options->image, "EXR, HDR or PNG")->required();
+  command.add_option("reference", options->reference, "What it should be")->required();
+  command.add_flag("--json", options->json, "Print JSON");
+  command.add_option("--diff", options->diff, "Write the FLIP map as a PNG in false colour");
+  command.add_option("--mask-term-range", options->maskTermRange,
+                     "Only pixels whose reference lies in the open interval (a,b), e.g. 0.02,0.98 for penumbrae");
+  command.add_option("--exposure", options->exposure, "Exposure of the tone mapping for FLIP, EV");
+  command.add_option("--max-masked", options->maxMasked,
+                     "Fail above this share of pixels whose coverage, instance or depth differ, percent")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 100.0));
+  return [options] { return run(*options); };
+}
+
+}  // namespace limn::app

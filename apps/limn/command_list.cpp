@@ -1,0 +1,99 @@
+// limn list: what techniques there are.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/limn/commands.h"
+#include "core/technique/registry.h"
+
+namespace limn::app {
+namespace {
+
+constexpr Term all_terms[] = {Term::visibility, Term::direct, Term::indirect, Term::caustic, Term::media};
+
+const char* typeName(ParameterType type) {
+  switch (type) {
+    case ParameterType::boolean: return "boolean";
+    case ParameterType::integer: return "integer";
+    case ParameterType::real: return "real";
+    case ParameterType::choice: return "choice";
+  }
+  return "";
+}
+
+std::string defaultText(const Parameter& p) {
+  return ParameterValues("", {&p, 1}).printed().front().second;
+}
+
+nlohmann::ordered_json parameterJson(const Parameter& p) {
+  nlohmann::ordered_json json{{"name", p.name}, {"type", typeName(p.type)}, {"default", defaultText(p)}};
+  if (p.type == ParameterType::choice)
+    json["choices"] = std::vector<std::string>(p.choices, p.choices + p.choiceCount);
+  else if (p.type != ParameterType::boolean)
+    json["range"] = {p.range.low, p.range.high};
+  json["unit"] = p.unit;
+  json["doc"] = p.doc;
+  json["trades_error_for_time"] = p.tradesErrorForTime;
+  return json;
+}
+
+std::vector<std::string> termNames(TermSet terms) {
+  std::vector<std::string> names;
+  for (Term term : all_terms)
+    if (contains(terms, term)) names.emplace_back(name(term));
+  return names;
+}
+
+void printJson(const TechniqueRegistry& registry) {
+  nlohmann::ordered_json techniques = nlohmann::ordered_json::array();
+  for (const TechniquePlugin* plugin : registry.all()) {
+    const TechniqueInfo& info = *plugin->info;
+    nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
+    for (const Parameter& p : info.parameters) parameters.push_back(parameterJson(p));
+    techniques.push_back({{"name", info.name},
+                          {"title", info.title},
+                          {"source", info.source},
+                          {"terms", termNames(info.terms)},
+                          {"parameters", parameters}});
+  }
+  nlohmann::ordered_json refused = nlohmann::ordered_json::array();
+  for (const auto& refusal : registry.refused()) refused.push_back({{"name", refusal.name}, {"reason", refusal.reason}});
+  fmt::print("{}\n", nlohmann::ordered_json{{"techniques", techniques}, {"refused", refused}}.dump(2));
+}
+
+std::string rangeText(const Parameter& p) {
+  if (p.type == ParameterType::boolean) return "true|false";
+  if (p.type == ParameterType::choice)
+    return fmt::format("{}", fmt::join(p.choices, p.choices + p.choiceCount, "|"));
+  return fmt::format("{}..{}", p.range.low, p.range.high);
+}
+
+void printText(const TechniqueRegistry& registry) {
+  for (const TechniquePlugin* plugin : registry.all()) {
+    const TechniqueInfo& info = *plugin->info;
+    fmt::print("{}: {}\n  answers: {}\n  source: {}\n", info.name, info.title,
+               fmt::join(termNames(info.terms), ", "), info.source);
+    for (const Parameter& p : info.parameters)
+      fmt::print("    {:<22} {:<12} {:<22} {}{}\n", p.name, defaultText(p),
+                 fmt::format("{}{}{}", rangeText(p), *p.unit ? " " : "", p.unit), p.doc,
+                 p.tradesErrorForTime ? " [quality]" : "");
+    fmt::print("\n");
+  }
+  for (const auto& refusal : registry.refused())
+    fmt::print(stderr, "limn: technique {} was refused: {}\n", refusal.name, refusal.reason);
+}
+
+}  // namespace
+
+Action addListCommand(CLI::App& command) {
+  auto json = std::make_shared<bool>(false);
+  command.add_flag("--json", *json, "Print JSON");
+  return [json] {
+    const auto folders = TechniqueRegistry::defaultFolders();
+    const TechniqueRegistry registry(folders);
+    *json ? printJson(registry) : printText(registry);
+    return 0;
+  };
+}
+
+}  // namespace limn::app

@@ -1,0 +1,80 @@
+// limn reference: the ground truth of one term, on the CPU.
+#include <fmt/format.h>
+
+#include "apps/limn/commands.h"
+#include "apps/limn/options.h"
+#include "core/base/error.h"
+#include "core/reference/reference.h"
+
+namespace limn::app {
+namespace fs = std::filesystem;
+namespace {
+
+struct Options {
+  SceneOptions scene;
+  std::string term = "direct";
+  int spp = 256, threads = 0, aa = 1;
+  double noise = 0, exposure = 0;
+  uint64_t seed = 0;
+  fs::path out, cache;
+};
+
+reference::Request makeRequest(const Options& options, const View& view) {
+  reference::Request request{
+      .scene = view.scene, .pose = view.pose, .camera = view.camera, .progress = {}, .checkpoint = {}};
+  request.width = view.size.x;
+  request.height = view.size.y;
+  request.term = reference::termFromName(options.term);
+  request.light = view.light == scene::none ? reference::allLights : view.light;
+  request.spp = options.spp;
+  request.noise = options.noise;
+  request.seed = options.seed;
+  request.aa = options.aa;
+  request.threads = options.threads;
+  return request;
+}
+
+int run(const Options& options) {
+  if (options.out.extension() != ".exr" && options.out.extension() != ".png")
+    throw UsageError(fmt::format("--out '{}' is not accepted; expected a name ending in .exr or .png", options.out.string()));
+  const View view = open(options.scene);
+  reference::Request request = makeRequest(options, view);
+  Progress progress("reference");
+  request.progress = [&progress](const reference::Progress& state) {
+    progress.update(state.fraction, fmt::format("{} spp, noise {:.4f}, {:.0f} s left", state.spp, state.noise,
+                                                state.secondsLeft));
+    return true;
+  };
+  reference::Result result;
+  if (options.cache.empty()) {
+    request.checkpoint = fs::path(options.out.string() + ".checkpoint");
+    result = reference::render(request);
+  } else {
+    result = reference::Cache(options.cache).render(request);
+  }
+  writeImage(options.out, result.image, static_cast<float>(options.exposure));
+  fmt::print("{}: {} samples per pixel, noise {:.5f} of the mean\n", options.out.string(), result.spp, result.noiseRms);
+  return 0;
+}
+
+}  // namespace
+
+Action addReferenceCommand(CLI::App& command) {
+  auto options = std::make_shared<Options>();
+  options->scene.addTo(command);
+  command.add_option("--term", options->term, "direct, visibility (with --light) or final")->capture_default_str();
+  command.add_option("--spp", options->spp, "Samples per pixel and light; with --noise the most that are taken")
+                  ->capture_default_str()
+                  ->check(CLI::Range(1, 1 << 22));
+  command.add_option("--noise", options->noise, "Stop at this noise: RMS relative to the mean")->check(CLI::Range(0.0, 1.0));
+  command.add_option("--aa", options->aa, "N x N samples in each pixel (both renderers or neither)")->check(CLI::Range(1, 16));
+  command.add_option("--seed", options->seed, "Of the random numbers");
+  command.add_option("--threads", options->threads, "0: all cores")->check(CLI::Range(0, 1024));
+  command.add_option("--exposure", options->exposure, "EV, for .png only")->check(CLI::Range(-60.0, 60.0));
+  command.add_option("--cache", options->cache, "Folder of finished references, found again by their content");
+  command.add_option("--out", options->out, "Picture (.exr with all channels, or .png); interrupted work is kept beside it")
+      ->required();
+  return [options] { return run(*options); };
+}
+
+}  // namespace limn::app

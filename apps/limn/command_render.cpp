@@ -1,0 +1,143 @@
+// limn render: a picture, or a sequence, and what it cost.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/limn/commands.h"
+#include "apps/limn/options.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/text.h"
+#include "core/gpu/device.h"
+
+namespace limn::app {
+namespace fs = std::filesystem;
+namespace {
+
+struct Options {
+  SceneOptions scene;
+  TechniqueOptions technique;
+  BackendOptions backend;
+  std::string outputTerm = "final", frames;
+  double fps = 30, exposure = 0;
+  int repeat = 0;
+  bool dynamicFrames = false, staticFrames = false, explain = false;
+  fs::path out, stats, graph, shaders;
+};
+
+struct FrameRange {
+  int first, last;  // inclusive
+};
+
+std::optional<FrameRange> parseFrames(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const size_t colon = text.find(':');
+  const auto first = colon == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(0, colon));
+  const auto last = colon == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(colon + 1));
+  const auto whole = [](double v) { return v == std::floor(v) && v >= 0 && v <= 1e6; };
+  if (!first || !last || !whole(*first) || !whole(*last) || *first > *last)
+    throw UsageError(fmt::format("--frames '{}' is not accepted; expected a:b with 0 <= a <= b <= 1000000", text));
+  return FrameRange{static_cast<int>(*first), static_cast<int>(*last)};
+}
+
+void checkOutputName(const fs::path& out) {
+  if (out.extension() != ".png" && out.extension() != ".exr")
+    throw UsageError(fmt::format("--out '{}' is not accepted; expected a name ending in .exr or .png", out.string()));
+}
+
+/// picture.png, frame 7 -> picture.0007.png
+fs::path numbered(const fs::path& out, int frame) {
+  return out.parent_path() / fmt::format("{}.{:04}{}", out.stem().string(), frame, out.extension().string());
+}
+
+void printExplanation(const std::vector<frame::PassReport>& passes, const render::FrameStats* stats) {
+  fmt::print("{:<9} {:<24} {:<34} {:>10} {:>9}  {}\n", "state", "technique", "pass", "KiB", "ms", "why");
+  for (size_t i = 0; i < passes.size(); ++i) {
+    const auto& pass = passes[i];
+    const bool timed = stats && stats->passes[i].ms.n > 0;
+    fmt::print("{:<9} {:<24} {:<34} {:>10.1f} {:>9}  {}\n", frame::name(pass.state), pass.technique, pass.name,
+               static_cast<double>(pass.bytes) / 1024, timed ? fmt::format("{:.3f}", stats->passes[i].ms.median) : "",
+               pass.reason);
+  }
+}
+
+int run(const Options& options) {
+  checkOutputName(options.out);
+  const auto frames = parseFrames(options.frames);
+  const auto folders = TechniqueRegistry::defaultFolders();
+  const TechniqueRegistry registry(folders);
+  render::Settings settings;
+  settings.techniques = options.technique.resolve(registry);
+  settings.output = render::parseOutput(options.outputTerm);
+  settings.dynamic = !options.staticFrames;
+  settings.channels = options.out.extension() == ".exr";
+  render::checkTechniques(settings.techniques, settings.output);
+
+  View view = open(options.scene);
+  settings.size = view.size;
+  settings.light = view.light;
+  const auto context = Context::create(options.backend.contextOptions());
+  gpu::Device device(*context);
+  render::Renderer renderer(device, view.scene, options.shaders);
+  renderer.configure(settings);
+  renderer.setCamera(view.camera);
+  renderer.setTime(view.time, view.animation);
+
+  if (frames) {
+    Progress progress("rendering");
+    for (int frame = frames->first; frame <= frames->last; ++frame) {
+      renderer.setTime(frame / options.fps, view.animation);
+      renderer.setCamera(chooseCamera(options.scene, renderer.pose()));
+      renderer.render();
+      writeImage(numbered(options.out, frame), renderer.read(), static_cast<float>(options.exposure));
+      progress.update(double(frame - frames->first + 1) / (frames->last - frames->first + 1));
+    }
+  } else {
+    renderer.render();
+    writeImage(options.out, renderer.read(), static_cast<float>(options.exposure));
+  }
+
+  std::optional<render::FrameStats> stats;
+  const int repeat = options.repeat > 0 ? options.repeat : (options.stats.empty() ? 0 : 10);
+  if (repeat > 0) {
+    stats = render::measure(renderer, repeat);
+    stats->scene = options.scene.scene.string();
+    fmt::print("{}: {:.3f} ms a frame (quartiles {:.3f} to {:.3f}, {} frames, {}), {:.1f} MiB\n", stats->renderer,
+               stats->frameMs.median, stats->frameMs.q1, stats->frameMs.q3, stats->frameMs.n,
+               stats->dynamic ? "dynamic" : "static", static_cast<double>(stats->memoryBytes) / (1 << 20));
+  }
+  if (options.explain) printExplanation(renderer.explain(), stats ? &*stats : nullptr);
+  if (!options.stats.empty()) writeTextFile(options.stats, render::toJson(*stats) + "\n");
+  if (!options.graph.empty()) writeTextFile(options.graph, renderer.graph().graphviz());
+  for (const std::string& error : context->takeErrors()) throw Error("OpenGL: " + error);
+  return 0;
+}
+
+}  // namespace
+
+Action addRenderCommand(CLI::App& command) {
+  auto options = std::make_shared<Options>();
+  options->scene.addTo(command);
+  options->technique.addTo(command);
+  options->backend.addTo(command);
+  command.add_option("--output-term", options->outputTerm, "final, visibility, direct, indirect, caustic or media")
+      ->capture_default_str();
+  command.add_option("--frames", options->frames, "Render the frames a to b (inclusive) of the animation, as NAME.0000.png");
+  command.add_option("--fps", options->fps, "Frames per second of the animation")
+      ->capture_default_str()
+      ->check(CLI::Range(0.001, 1e5));
+  command.add_option("--exposure", options->exposure, "EV, for .png only")->check(CLI::Range(-60.0, 60.0));
+  command.add_option("--repeat", options->repeat, "Time this many frames after the picture")->check(CLI::Range(1, 100000));
+  auto* dynamicFlag = command.add_flag("--dynamic", options->dynamicFrames,
+                                       "Timed frames compute everything anew (default)");
+  command.add_flag("--static", options->staticFrames, "Timed frames keep what did not change")->excludes(dynamicFlag);
+  command.add_option("--out", options->out, "Picture: .exr (linear, with depth, id, albedo, normal) or .png")->required();
+  command.add_flag("--explain", options->explain, "Print every pass: run, cached or left out, why, memory and time");
+  command.add_option("--stats", options->stats, "Write times and memory as JSON");
+  command.add_option("--graph", options->graph, "Write the frame graph for Graphviz");
+  command.add_option("--shaders", options->shaders,
+                     "Folder with glsl/ and techniques/ that overrides the embedded shaders");
+  return [options] { return run(*options); };
+}
+
+}  // namespace limn::app

@@ -1,0 +1,19 @@
+// The commands of limn. Each adds its options to the command line and runs when chosen.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace limn::app {
+
+using Action = std::function<int()>;  ///< returns the exit status; may throw limn::Error
+
+/// Each returns what to do once the command line has been parsed.
+Action addListCommand(CLI::App& command);
+Action addInfoCommand(CLI::App& command);
+Action addRenderCommand(CLI::App& command);
+Action addReferenceCommand(CLI::App& command);
+Action addCompareCommand(CLI::App& command);
+Action addBenchCommand(CLI::App& command);
+
+}  // namespace limn::app

@@ -1,0 +1,212 @@
+#include "apps/limn/options.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <new>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/scene/camera.h"
+#include "core/scene/load.h"
+
+namespace limn::app {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double degrees = 3.14159265358979323846 / 180;
+
+glm::vec3 parseVector(const char* option, const std::string& text) {
+  glm::vec3 v;
+  std::string_view rest = text;
+  for (int i = 0; i < 3; ++i) {
+    const size_t comma = i < 2 ? rest.find(',') : rest.size();
+    const auto number = comma == std::string_view::npos ? std::nullopt : parseNumber(rest.substr(0, comma));
+    if (!number || std::abs(*number) > 1e30)
+      throw UsageError(fmt::format("{} '{}' is not accepted; expected three numbers x,y,z in metres", option, text));
+    v[i] = static_cast<float>(*number);
+    rest = i < 2 ? rest.substr(comma + 1) : rest;
+  }
+  return v;
+}
+
+std::vector<std::string> cameraNames(const scene::Pose& pose) {
+  std::vector<std::string> names;
+  for (const auto& camera : pose.cameras) names.push_back(camera.name);
+  return names;
+}
+
+}  // namespace
+
+void SceneOptions::addTo(CLI::App& command) {
+  command.add_option("scene", scene, "glTF 2.0 scene (.gltf, .glb), or the name of one of limn's own; convert other formats\n"
+                                     "beforehand, e.g. with assimp")
+      ->required();
+  command.add_option("--camera", camera, "Camera by name or #index");
+  command.add_option("--eye", eye, "Camera position x,y,z in metres (with --target)");
+  command.add_option("--target", target, "Point looked at x,y,z in metres");
+  command.add_option("--fov", fov, "Vertical field of view, degrees")->check(CLI::Range(0.1, 179.0));
+  command.add_option("--environment", environment, "Equirectangular .hdr or .exr");
+  command.add_option("--environment-rotation", environmentRotation, "About the vertical axis, degrees");
+  command.add_option("--environment-scale", environmentScale, "Factor on the environment's radiance")
+      ->check(CLI::Range(0.0, 1e9));
+  command.add_option("--time", time, "Animation time, seconds")->check(CLI::Range(-1e6, 1e6));
+  command.add_option("--animation", animation, "Animation by name or #index (default: the first)");
+  command.add_option("--size", size, "Picture size WxH, pixels")->capture_default_str();
+  command.add_option("--light", light, "Only this light, by name or #index");
+}
+
+fs::path findScene(const fs::path& nameOrFile) {
+  std::error_code ignored;
+  if (fs::exists(nameOrFile, ignored)) return nameOrFile;
+  const fs::path prefix = fs::read_symlink("/proc/self/exe", ignored).parent_path().parent_path();
+  const std::string name = nameOrFile.string();
+  if (name.find('/') == std::string::npos)
+    for (const fs::path& folder : {prefix / "assets", prefix / "share/limn/assets"})
+      if (const fs::path file = folder / name / (name + ".glb"); fs::exists(file, ignored)) return file;
+  throw Error(fmt::format("scene '{}' does not exist; expected a .gltf or .glb file, or the name of one of limn's scenes",
+                          name));
+}
+
+glm::ivec2 parseSize(const std::string& text) {
+  const size_t x = text.find('x');
+  const auto width = x == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(0, x));
+  const auto height = x == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(x + 1));
+  const auto fits = [](const std::optional<double>& v) { return v && *v >= 1 && *v <= 16384 && *v == std::floor(*v); };
+  if (!fits(width) || !fits(height))
+    throw UsageError(fmt::format("--size '{}' is not accepted; expected WxH, each from 1 to 16384 pixels", text));
+  return {static_cast<int>(*width), static_cast<int>(*height)};
+}
+
+int findNamed(const std::string& what, const std::string& text, const std::vector<std::string>& names) {
+  for (size_t i = 0; i < names.size(); ++i)
+    if (names[i] == text) return static_cast<int>(i);
+  if (text.starts_with('#'))
+    if (const auto index = parseNumber(std::string_view(text).substr(1));
+        index && *index >= 0 && *index < static_cast<double>(names.size()) && *index == std::floor(*index))
+      return static_cast<int>(*index);
+  constexpr size_t listed = 20;
+  std::vector<std::string> shown(names.begin(), names.begin() + static_cast<long>(std::min(names.size(), listed)));
+  throw UsageError(fmt::format("{} '{}' is not in the scene{}; it has {}{}", what, text, didYouMean(text, names),
+                               names.empty() ? "none" : joined(shown),
+                               names.size() > listed ? fmt::format(" and {} more", names.size() - listed) : ""));
+}
+
+scene::CameraPose chooseCamera(const SceneOptions& options, const scene::Pose& pose) {
+  scene::CameraPose camera = pose.cameras.empty() ? scene::frameBounds(pose.bounds) : pose.cameras.front();
+  if (!options.camera.empty()) camera = pose.cameras[static_cast<size_t>(findNamed("camera", options.camera, cameraNames(pose)))];
+  if (!options.eye.empty() || !options.target.empty()) {
+    if (options.eye.empty() || options.target.empty()) throw UsageError("--eye and --target belong together; one is missing");
+    camera = scene::lookAt(parseVector("--eye", options.eye), parseVector("--target", options.target), camera.yfov);
+  }
+  if (options.fov > 0) camera.yfov = static_cast<float>(options.fov * degrees);
+  return camera;
+}
+
+View open(const SceneOptions& options) {
+  View view;
+  view.size = parseSize(options.size);
+  view.scene = scene::load(findScene(options.scene));
+  if (!options.environment.empty()) view.scene.environment = scene::loadEnvironment(options.environment);
+  view.scene.environment.rotation += static_cast<float>(options.environmentRotation * degrees);
+  view.scene.environment.scale *= static_cast<float>(options.environmentScale);
+  for (const std::string& warning : view.scene.warnings) fmt::print(stderr, "limn: warning: {}\n", warning);
+  if (!options.animation.empty()) {
+    std::vector<std::string> names;
+    for (const auto& animation : view.scene.animations) names.push_back(animation.name);
+    view.animation = findNamed("animation", options.animation, names);
+  }
+  view.time = options.time;
+  view.pose = scene::evaluate(view.scene, view.time, view.animation);
+  view.camera = chooseCamera(options, view.pose);
+  if (!options.light.empty()) view.light = findNamed("light", options.light, view.pose.lightNames);
+  return view;
+}
+
+void TechniqueOptions::addTo(CLI::App& command) {
+  command.add_option("--technique", techniques, "Techniques, comma-separated (see limn list); none: unshadowed");
+  command.add_option("--set", settings, "TECHNIQUE.PARAMETER=VALUE, repeatable")->take_all();
+}
+
+std::vector<render::TechniqueUse> TechniqueOptions::resolve(const TechniqueRegistry& registry) const {
+  std::vector<render::TechniqueUse> uses;
+  std::string_view rest = techniques;
+  while (!rest.empty()) {
+    const size_t comma = rest.find(',');
+    const std::string_view name = rest.substr(0, comma);
+    const TechniquePlugin& plugin = registry.find(name);
+    for (const auto& use : uses)
+      if (use.plugin == &plugin) throw UsageError(fmt::format("technique {} is named twice; once is enough", name));
+    uses.push_back({&plugin, ParameterValues(std::string(name), plugin.info->parameters)});
+    rest = comma == std::string_view::npos ? std::string_view() : rest.substr(comma + 1);
+  }
+  for (const std::string& setting : settings) {
+    const size_t dot = setting.find('.'), equals = setting.find('=');
+    if (dot == std::string::npos || equals == std::string::npos || equals < dot)
+      throw UsageError(fmt::format("--set '{}' is not accepted; expected TECHNIQUE.PARAMETER=VALUE", setting));
+    const std::string technique = setting.substr(0, dot);
+    bool found = false;
+    for (auto& use : uses) {
+      if (technique != use.plugin->info->name) continue;
+      use.parameters.set(setting.substr(dot + 1, equals - dot - 1), setting.substr(equals + 1));
+      found = true;
+    }
+    if (!found)
+      throw UsageError(fmt::format("--set '{}' names technique {}, which --technique does not", setting, technique));
+  }
+  return uses;
+}
+
+void BackendOptions::addTo(CLI::App& command) {
+  command.add_option("--backend", backend, "egl or osmesa")->capture_default_str();
+  command.add_option("--device", device, "EGL device index, see limn info")->check(CLI::Range(0, 255));
+  command.add_flag("--gl-debug", debug, "Debug context: driver errors end the run");
+}
+
+ContextOptions BackendOptions::contextOptions() const {
+  ContextOptions options;
+  options.backend = parseBackend(backend);
+  options.device = device;
+  options.debug = debug;
+  options.visible = false;
+  return options;
+}
+
+int guarded(const std::function<int()>& work) {
+  try {
+    return work();
+  } catch (const UsageError& error) {
+    fmt::print(stderr, "limn: {}\n", error.what());
+    return 2;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "limn: out of memory\n");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "limn: {}\n", error.what());
+  }
+  return 1;
+}
+
+Progress::Progress(std::string label) : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+  if (terminal_ && lastShown_ >= 0) fmt::print(stderr, "\r\033[K");
+}
+
+void Progress::update(double fraction, const std::string& note) {
+  const int percent = static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0));
+  if (terminal_) {
+    constexpr int width = 30;
+    fmt::print(stderr, "\r{} [{:<{}}] {:3}% {}\033[K", label_, std::string(static_cast<size_t>(percent * width / 100), '#'),
+               width, percent, note);
+  } else if (percent / 10 > lastShown_ / 10 || lastShown_ < 0) {
+    fmt::print(stderr, "{}: {}% {}\n", label_, percent, note);
+  } else {
+    return;
+  }
+  lastShown_ = percent;
+}
+
+}  // namespace limn::app
