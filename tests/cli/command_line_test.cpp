@@ -1,0 +1,138 @@
+// The command line as a person meets it: what is wrong is said in one line, and the exit status tells whose fault it is.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/process.h"
+
+namespace limn::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string limn_binary = LIMN_BINARY_DIR "/bin/limn";
+const std::string cornell_box = LIMN_BINARY_DIR "/assets/cornell_box/cornell_box.glb";
+
+Outcome limn(std::vector<std::string> arguments, const std::map<std::string, std::string>& environment = {}) {
+  arguments.insert(arguments.begin(), limn_binary);
+  return run(arguments, environment);
+}
+
+/// One line on stderr that contains all of `parts`, the exit status, and nothing written to `out`.
+void expectRefused(const Outcome& outcome, int status, const std::vector<std::string>& parts) {
+  EXPECT_EQ(outcome.status, status) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  for (const std::string& part : parts) EXPECT_THAT(outcome.err, HasSubstr(part));
+}
+
+class Render : public testing::Test {
+ protected:
+  std::vector<std::string> command(std::vector<std::string> more) {
+    std::vector<std::string> all{"render", cornell_box, "--size", "32x24", "--out", out_.string()};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  TemporaryFolder folder_;
+  std::filesystem::path out_ = folder_ / "picture.exr";
+};
+
+TEST(CommandLine, WithoutCommandIsWrongUsage) { EXPECT_EQ(limn({}).status, 2); }
+TEST(CommandLine, UnknownCommandIsWrongUsage) { EXPECT_EQ(limn({"paint"}).status, 2); }
+
+TEST(CommandLine, HelpOfEveryCommandIsComplete) {
+  for (const char* command : {"list", "info", "render", "reference", "compare", "bench"}) {
+    const Outcome outcome = limn({command, "--help"});
+    EXPECT_EQ(outcome.status, 0) << command;
+    EXPECT_THAT(outcome.out, HasSubstr("--help")) << command;
+  }
+}
+
+TEST(CommandLine, ListNamesEveryTechniqueWithItsParameters) {
+  const Outcome outcome = limn({"list", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_TRUE(json["refused"].empty()) << json["refused"].dump();
+  EXPECT_FALSE(json["techniques"].empty());
+  for (const auto& technique : json["techniques"]) {
+    EXPECT_FALSE(technique["terms"].empty()) << technique["name"];
+    for (const auto& parameter : technique["parameters"]) EXPECT_FALSE(parameter["doc"].get<std::string>().empty());
+  }
+}
+
+TEST(CommandLine, InfoTellsARendererOrWhyThereIsNone) {
+  const Outcome outcome = limn({"info", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  for (const auto& device : json["devices"]) EXPECT_TRUE(device.contains("renderer") || device.contains("problem"));
+}
+
+TEST_F(Render, WritesAPictureWithChannelsAndStatistics) {
+  const auto stats = folder_ / "stats.json";
+  const Outcome outcome = limn(command({"--stats", stats.string(), "--repeat", "2", "--explain"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(out_));
+  const auto json = nlohmann::json::parse(contents(stats));
+  EXPECT_EQ(json["size"], nlohmann::json::array({32, 24}));
+  EXPECT_EQ(json["frame_ms"]["n"], 2);
+  EXPECT_FALSE(json["passes"].empty());
+}
+
+TEST_F(Render, RefusesWhatItDoesNotUnderstand) {
+  expectRefused(limn(command({"--technique", "hard_shadow_mop"})), 2, {"hard_shadow_mop", "hard_shadow_map"});
+  expectRefused(limn(command({"--technique", "pcss", "--set", "pcss.blocker_sample=4"})), 2, {"blocker_samples"});
+  expectRefused(limn(command({"--technique", "pcss", "--set", "pcss.shadow_map_size=1"})), 2, {"shadow_map_size", "'1'"});
+  expectRefused(limn(command({"--technique", "pcss,hard_shadow_map"})), 2, {"pcss", "hard_shadow_map"});
+  expectRefused(limn(command({"--camera", "nowhere"})), 2, {"nowhere"});
+  expectRefused(limn(command({"--light", "nowhere"})), 2, {"nowhere"});
+  expectRefused(limn(command({"--output-term", "colour"})), 2, {"colour", "visibility"});
+  expectRefused(limn(command({"--size", "0x5"})), 2, {"0x5", "WxH"});
+  expectRefused(limn(command({"--backend", "metal"})), 2, {"metal", "egl"});
+  expectRefused(limn(command({"--environment", "missing.hdr"})), 1, {"missing.hdr"});
+  EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
+TEST_F(Render, RefusesFilesThatAreMissingOrBroken) {
+  const auto broken = folder_ / "broken.glb";
+  const std::string whole = contents(cornell_box);
+  std::ofstream(broken, std::ios::binary) << whole.substr(0, whole.size() / 2);
+  expectRefused(limn({"render", (folder_ / "none.glb").string(), "--out", out_.string()}), 1, {"none.glb"});
+  expectRefused(limn({"render", broken.string(), "--out", out_.string()}), 1, {"broken.glb"});
+  EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
+TEST_F(Render, RefusesAnOutputItCannotWrite) {
+  expectRefused(limn({"render", cornell_box, "--size", "8x8", "--out", "/nonexistent/a.png"}), 1, {"/nonexistent"});
+  expectRefused(limn({"render", cornell_box, "--size", "8x8", "--out", "a.bmp"}), 2, {"a.bmp", ".png"});
+  expectRefused(limn({"render", cornell_box, "--size", "64x64", "--out", "/dev/full.exr"}), 1, {"/dev/full.exr"});
+}
+
+TEST_F(Render, SaysSoWhenThereIsNoDriver) {
+  expectRefused(limn(command({}), {{"__EGL_VENDOR_LIBRARY_DIRS", "/nonexistent"}}), 1, {"EGL"});
+}
+
+TEST_F(Render, BackEndsAgreeBitForBit) {
+  const auto other = folder_ / "osmesa.exr";
+  ASSERT_EQ(limn(command({})).status, 0);
+  ASSERT_EQ(limn({"render", cornell_box, "--size", "32x24", "--backend", "osmesa", "--out", other.string()}).status, 0);
+  const Outcome outcome = limn({"compare", out_.string(), other.string(), "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["rmse"], 0.0);
+}
+
+TEST(Compare, RefusesWhatCannotBeCompared) {
+  const TemporaryFolder folder;
+  expectRefused(limn({"compare", (folder / "a.exr").string(), (folder / "b.exr").string()}), 1, {"a.exr"});
+  expectRefused(limn({"compare", cornell_box, cornell_box}), 1, {"cornell_box.glb"});
+}
+
+TEST(Plugins, AModuleOfAnotherVersionIsRefusedWhenAskedFor) {
+  const Outcome outcome = limn({"render", cornell_box, "--technique", "misfit", "--size", "8x8", "--out", "/tmp/x.exr"},
+                               {{"LIMN_TECHNIQUE_PATH", LIMN_BINARY_DIR "/tests/misfit"}});
+  expectRefused(outcome, 1, {"misfit", "interface 99"});
+}
+
+}  // namespace
+}  // namespace limn::test

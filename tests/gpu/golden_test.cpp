@@ -1,0 +1,72 @@
+// Each technique's picture against the one committed in its folder (techniques/NAME/golden.png; the core's own in
+// tests/golden/unshadowed.png). llvmpipe renders the same bits everywhere, so the bound is one 8-bit step for
+// differences between compilers. LIMN_UPDATE_GOLDEN=1 writes new ones: look at them before committing.
+#include <cstdlib>
+
+#include "core/image/metrics.h"
+#include "tests/gpu/render_test.h"
+
+namespace limn {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int width = 128, height = 96;
+constexpr float allowed = 1.01f / 255;  // of the sRGB-encoded value
+
+class GoldenTest : public RenderTest {
+ protected:
+  /// Scenes side by side in one picture.
+  Image strip(const std::vector<render::TechniqueUse>& techniques) {
+    const std::vector<std::string> scenes{"cornell_box", "balls", "lights"};
+    Image whole(width * int(scenes.size()), height, {"R", "G", "B"});
+    for (size_t s = 0; s < scenes.size(); ++s) {
+      const scene::Scene scene = asset(scenes[s]);
+      render::Renderer renderer(device(), scene);
+      const Image part = picture(renderer, settings(width, height, render::Output::final, techniques));
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+          for (int c = 0; c < 3; ++c) whole.at(x + int(s) * width, y, c) = part.at(x, y, c);
+    }
+    return whole;
+  }
+
+  void check(const std::string& name, const Image& actual, const fs::path& golden) {
+    SCOPED_TRACE(name);
+    if (std::getenv("LIMN_UPDATE_GOLDEN")) {
+      fs::create_directories(golden.parent_path());
+      writePng(golden, actual);
+      return;
+    }
+    const fs::path failed = fs::path(LIMN_BINARY_DIR) / "failed";
+    fs::create_directories(failed);
+    const fs::path actualFile = failed / (name + ".actual.png");
+    writePng(actualFile, actual);
+    ASSERT_TRUE(fs::exists(golden)) << "no " << golden << "; look at " << actualFile
+                                    << " and accept it with LIMN_UPDATE_GOLDEN=1 ctest -R golden";
+    const Image8 a = readImage8(actualFile), b = readImage8(golden);
+    ASSERT_EQ(a.data.size(), b.data.size());
+    float worst = 0;
+    for (size_t i = 0; i < a.data.size(); ++i) worst = std::max(worst, std::abs(a.data[i] - b.data[i]) / 255.f);
+    EXPECT_LE(worst, allowed) << "see " << failed << "/" << name << ".{actual,expected,difference}.png";
+    if (worst <= allowed) {
+      fs::remove(actualFile);
+      return;
+    }
+    fs::copy_file(golden, failed / (name + ".expected.png"), fs::copy_options::overwrite_existing);
+    writePng(failed / (name + ".difference.png"), differenceImage(readImage(actualFile), readImage(golden)));
+  }
+};
+
+TEST_F(GoldenTest, Unshadowed) {
+  check("unshadowed", strip({}), fs::path(LIMN_SOURCE_DIR) / "tests/golden/unshadowed.png");
+}
+
+TEST_F(GoldenTest, EveryTechnique) {
+  for (const TechniquePlugin* plugin : registry().all())
+    check(plugin->info->name, strip({technique(plugin->info->name)}),
+          fs::path(LIMN_SOURCE_DIR) / "techniques" / plugin->info->name / "golden.png");
+}
+
+}  // namespace
+}  // namespace limn

@@ -1,0 +1,82 @@
+// Fixture for tests that render whole frames with technique plug-ins.
+#pragma once
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/render/renderer.h"
+#include "core/scene/load.h"
+#include "core/technique/registry.h"
+#include "tests/gpu/gl_test.h"
+
+namespace limn {
+
+class RenderTest : public GlTest {
+ protected:
+  /// A scene of assets/, as built.
+  static scene::Scene asset(const std::string& name) {
+    return scene::load(std::filesystem::path(LIMN_BINARY_DIR) / "assets" / name / (name + ".glb"));
+  }
+
+  static const TechniqueRegistry& registry() {
+    static const std::vector<std::filesystem::path> folders = TechniqueRegistry::defaultFolders();
+    static const TechniqueRegistry instance(folders);
+    return instance;
+  }
+
+  /// A technique with some parameters set.
+  static render::TechniqueUse technique(const std::string& name,
+                                        const std::vector<std::pair<std::string, std::string>>& values = {}) {
+    const TechniquePlugin& plugin = registry().find(name);
+    render::TechniqueUse use{&plugin, ParameterValues(name, plugin.info->parameters)};
+    for (const auto& [parameter, value] : values) use.parameters.set(parameter, value);
+    return use;
+  }
+
+  static std::vector<std::string> techniquesAnswering(Term term) {
+    std::vector<std::string> names;
+    for (const TechniquePlugin* plugin : registry().all())
+      if (contains(plugin->info->terms, term)) names.emplace_back(plugin->info->name);
+    return names;
+  }
+
+  static render::Settings settings(int width, int height, render::Output output,
+                                   std::vector<render::TechniqueUse> techniques = {}, int light = -1) {
+    render::Settings s;
+    s.size = {width, height};
+    s.output = output;
+    s.techniques = std::move(techniques);
+    s.light = light;
+    return s;
+  }
+
+  /// One frame from the scene's first camera.
+  static Image picture(render::Renderer& renderer, render::Settings s) {
+    renderer.configure(std::move(s));
+    renderer.setCamera(renderer.pose().cameras.at(0));
+    renderer.render();
+    return renderer.read();
+  }
+
+  static double rmse(const Image& a, const Image& b) {
+    double sum = 0;
+    for (size_t i = 0; i < a.data().size(); ++i) sum += std::pow(double(a.data()[i]) - b.data()[i], 2);
+    return std::sqrt(sum / static_cast<double>(a.data().size()));
+  }
+
+  static double mean(const Image& image) {
+    double sum = 0;
+    for (float v : image.data()) sum += v;
+    return sum / static_cast<double>(image.data().size());
+  }
+
+  static void expectWithin(const Image& image, float low, float high) {
+    int bad = 0;
+    for (float v : image.data()) bad += !(v >= low && v <= high);  // NaN counts
+    EXPECT_EQ(bad, 0) << "values outside [" << low << ", " << high << "] or NaN";
+  }
+};
+
+}  // namespace limn

@@ -1,0 +1,191 @@
+// Laws that every technique obeys, whichever are installed: adding a folder adds it here.
+#include <gmock/gmock.h>
+
+#include "core/base/error.h"
+#include "tests/gpu/render_test.h"
+
+namespace limn {
+namespace {
+
+using render::Output;
+
+class TechniqueTest : public RenderTest {
+ protected:
+  /// The same scene `factor` times as large: positions s, intensities s^2 (directional lights keep their irradiance).
+  static scene::Scene scaled(scene::Scene scene, float factor) {
+    const int root = static_cast<int>(scene.nodes.size());
+    for (scene::Node& node : scene.nodes) {
+      if (node.parent == scene::none) node.parent = root;
+      node.limnArea *= factor;
+    }
+    scene::Node scaling;
+    scaling.transform.scale = glm::vec3(factor);
+    scene.nodes.push_back(scaling);
+    std::rotate(scene.nodes.begin(), scene.nodes.end() - 1, scene.nodes.end());  // parents come before children
+    for (size_t i = 1; i < scene.nodes.size(); ++i) {
+      scene::Node& node = scene.nodes[i];
+      node.parent = node.parent == root ? 0 : node.parent + 1;
+    }
+    for (scene::Skin& skin : scene.skins)
+      for (int& joint : skin.joints) ++joint;
+    for (scene::Animation& animation : scene.animations)
+      for (scene::AnimationChannel& channel : animation.channels) ++channel.node;
+    for (scene::LightSource& light : scene.lights) {
+      if (light.type != glsl::light_directional) light.intensity *= factor * factor;
+      light.range *= factor;
+    }
+    for (scene::CameraLens& camera : scene.cameras) camera.near *= factor;
+    return scene;
+  }
+};
+
+TEST_F(TechniqueTest, EveryTechniqueAnswersEveryLightAlone) {
+  const scene::Scene scene = asset("lights");
+  render::Renderer renderer(device(), scene);
+  for (const std::string& name : techniquesAnswering(Term::visibility)) {
+    for (size_t light = 0; light < renderer.pose().lights.size(); ++light) {
+      SCOPED_TRACE(name + ", light " + renderer.pose().lightNames[light]);
+      const Image v = picture(renderer, settings(96, 64, Output::visibility, {technique(name)}, int(light)));
+      expectWithin(v, 0, 1);
+      EXPECT_GT(mean(v), 0.3) << "mostly lit";
+      EXPECT_LT(mean(v), 0.9999) << "something casts a shadow";
+    }
+  }
+}
+
+TEST_F(TechniqueTest, LightsTogetherAreTheSumOfTheLightsAlone) {
+  const scene::Scene scene = asset("lights");
+  render::Renderer renderer(device(), scene);
+  std::vector<std::string> names = techniquesAnswering(Term::visibility);
+  for (const std::string& name : techniquesAnswering(Term::direct))
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  for (const std::string& name : names) {
+    SCOPED_TRACE(name);
+    const Image together = picture(renderer, settings(64, 48, Output::direct, {technique(name)}));
+    Image sum(64, 48, {"R", "G", "B"});
+    for (size_t light = 0; light < renderer.pose().lights.size(); ++light) {
+      const Image alone = picture(renderer, settings(64, 48, Output::direct, {technique(name)}, int(light)));
+      for (size_t i = 0; i < sum.data().size(); ++i) sum.data()[i] += alone.data()[i];
+    }
+    expectWithin(together, 0, 1e6f);
+    EXPECT_GT(mean(together), 0);
+    EXPECT_LT(rmse(together, sum), 1e-3 * mean(sum));
+  }
+}
+
+TEST_F(TechniqueTest, ShadowsOnlyTakeLightAway) {
+  const scene::Scene scene = asset("lights");
+  render::Renderer renderer(device(), scene);
+  const Image unshadowed = picture(renderer, settings(64, 48, Output::direct));
+  for (const std::string& name : techniquesAnswering(Term::visibility)) {
+    if (contains(registry().find(name).info->terms, Term::direct)) continue;  // does not use core's L_u
+    const Image shadowed = picture(renderer, settings(64, 48, Output::direct, {technique(name)}));
+    int brighter = 0;
+    for (size_t i = 0; i < shadowed.data().size(); ++i)
+      brighter += shadowed.data()[i] > unshadowed.data()[i] * (1 + 1e-5f);
+    EXPECT_EQ(brighter, 0) << name;
+  }
+}
+
+TEST_F(TechniqueTest, ScaleOfTheSceneDoesNotMatter) {
+  const scene::Scene scene = asset("balls");
+  for (const float factor : {1e-4f, 1e4f}) {
+    const scene::Scene other = scaled(scene, factor);
+    render::Renderer renderer(device(), scene), scaledRenderer(device(), other);
+    for (const std::string& name : techniquesAnswering(Term::visibility)) {
+      SCOPED_TRACE(name + " at scale " + std::to_string(factor));
+      const Image a = picture(renderer, settings(128, 96, Output::visibility, {technique(name)}, 0));
+      const Image b = picture(scaledRenderer, settings(128, 96, Output::visibility, {technique(name)}, 0));
+      EXPECT_LT(rmse(a, b), 1e-3);
+      const Image c = picture(renderer, settings(128, 96, Output::final, {technique(name)}));
+      const Image d = picture(scaledRenderer, settings(128, 96, Output::final, {technique(name)}));
+      EXPECT_LT(rmse(c, d), 1e-3);
+    }
+  }
+}
+
+TEST_F(TechniqueTest, ExtremeResolutionsGiveFinitePictures) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  for (const auto& [width, height] : {std::pair(1, 1), std::pair(4096, 1), std::pair(1, 4096), std::pair(17, 3)})
+    for (const std::string& name : techniquesAnswering(Term::visibility)) {
+      SCOPED_TRACE(name);
+      expectWithin(picture(renderer, settings(width, height, Output::final, {technique(name)})), 0, 1e6f);
+    }
+}
+
+TEST_F(TechniqueTest, RadianceScalesLinearlyOverTwelveDecades) {
+  for (const float factor : {1e-6f, 1e6f}) {
+    const scene::Scene scene = asset("balls");
+    scene::Scene other = scene;
+    for (scene::LightSource& light : other.lights) light.intensity *= factor;
+    render::Renderer renderer(device(), scene), brighter(device(), other);
+    for (const std::string& name : techniquesAnswering(Term::visibility)) {
+      SCOPED_TRACE(name);
+      const Image a = picture(renderer, settings(64, 48, Output::direct, {technique(name)}));
+      const Image b = picture(brighter, settings(64, 48, Output::direct, {technique(name)}));
+      EXPECT_NEAR(mean(b) / mean(a) / factor, 1.0, 1e-4);
+    }
+  }
+}
+
+TEST_F(TechniqueTest, CameraInsideAnObjectGivesAFinitePicture) {
+  const scene::Scene scene = asset("balls");
+  render::Renderer renderer(device(), scene);
+  scene::CameraPose camera = renderer.pose().cameras.at(0);
+  for (const std::string& name : techniquesAnswering(Term::visibility)) {
+    renderer.configure(settings(64, 48, Output::final, {technique(name)}));
+    camera.worldToView = glm::mat4(1);
+    camera.worldToView[3] = glm::vec4(-renderer.pose().bounds.centre(), 1);
+    renderer.setCamera(camera);
+    renderer.render();
+    expectWithin(renderer.read(), 0, 1e6f);
+  }
+}
+
+TEST_F(TechniqueTest, PcssOfAPointIsTheHardShadowBitForBit) {
+  for (const char* name : {"balls", "lights"}) {
+    const scene::Scene scene = asset(name);
+    render::Renderer renderer(device(), scene);
+    const Image hard = picture(renderer, settings(128, 96, Output::visibility, {technique("hard_shadow_map")}, 0));
+    const Image soft =
+        picture(renderer, settings(128, 96, Output::visibility, {technique("pcss", {{"light_size", "0"}})}, 0));
+    EXPECT_TRUE(std::equal(hard.data().begin(), hard.data().end(), soft.data().begin())) << name;
+  }
+}
+
+TEST_F(TechniqueTest, TwoAnswersToDirectLightAreRefused) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  EXPECT_THROW(renderer.configure(settings(8, 8, Output::final, {technique("pcss"), technique("hard_shadow_map")})),
+               UsageError);
+}
+
+TEST_F(TechniqueTest, AnEmptySceneCompilesNothingAndAllocatesOnlyTheOutput) {
+  const scene::Scene scene;
+  render::Renderer renderer(device(), scene);
+  renderer.configure(settings(64, 48, Output::final, {technique("pcss")}));
+  const gpu::Counters before = device().counters();
+  renderer.render();
+  EXPECT_EQ(device().counters().programsCompiled, before.programsCompiled);
+  EXPECT_EQ(device().counters().textures, before.textures + 1);
+  EXPECT_EQ(device().counters().textureBytes - before.textureBytes, 64 * 48 * 16);
+  expectWithin(renderer.read(), 0, 0);
+}
+
+TEST_F(TechniqueTest, StaticShadowMapsAreNotRedrawn) {
+  const scene::Scene scene = asset("balls");
+  render::Renderer renderer(device(), scene);
+  for (const bool dynamic : {false, true}) {
+    render::Settings s = settings(64, 48, Output::final, {technique("hard_shadow_map")});
+    s.dynamic = dynamic;
+    picture(renderer, s);
+    renderer.render();
+    int cached = 0;
+    for (const auto& pass : renderer.explain()) cached += pass.state == frame::PassState::cached;
+    EXPECT_EQ(cached > 0, !dynamic);
+  }
+}
+
+}  // namespace
+}  // namespace limn
