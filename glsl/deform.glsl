@@ -1,5 +1,5 @@
-// Morphing and skinning of vertices: the compute shader and the CPU use these formulas (glTF 2.0, sections 3.7.2.2
-// and 3.7.3). Order: all morph targets, then the skin.
+// Morphing and skinning of vertices: the compute shader and the CPU use these formulas (glTF 2.0, sections
+// 3.7.2.2 and 3.7.3). Order: all morph targets, then the skin.
 #ifndef LIMN_DEFORM_GLSL
 #define LIMN_DEFORM_GLSL
 #include "glsl/language.glsl"

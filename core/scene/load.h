@@ -10,14 +10,14 @@
 namespace limn::scene {
 
 struct LoadLimits {
-  uint64_t vertices = 200'000'000;  ///< vertices, indices / 3, morph deltas and animation keys, all together
+  uint64_t vertices = 200'000'000;  ///< elements of all attributes, indices, morph targets and animations
   uint64_t imageTexels = 1ull << 28;
   int nodes = 1'000'000;
   uint64_t instances = 10'000'000;  ///< drawn primitives, and joint matrices
 };
 
-/// Loads glTF 2.0 (.gltf, .glb). Throws Error of one line naming file, place, value and what would be accepted.
-/// Files named by the scene are read from its folder or below, nowhere else.
+/// Loads glTF 2.0 (.gltf, .glb). Throws Error of one line naming file, place, value and what would be
+/// accepted. Files named by the scene are read from its folder or below, nowhere else.
 LIMN_API Scene load(const std::filesystem::path& file, const LoadLimits& limits = {});
 /// The same from memory (GLB or JSON), without access to any file: the fuzzer's entry.
 LIMN_API Scene loadMemory(std::span<const std::byte> bytes, const LoadLimits& limits = {});
