@@ -88,6 +88,12 @@ LIMN_FN vec3 light_view_slope(LightView v, vec2 u) {
   return rectangle_point(v.rectangle, ab) / v.depth;
 }
 
+// The same for a point of the whole light, above the tangent plane or below it.
+LIMN_FN vec3 light_view_whole_slope(LightView v, vec2 u) {
+  if (v.cone) return light_view_slope(v, u);
+  return rectangle_point(v.rectangle, u - vec2(0.5f)) / v.depth;
+}
+
 // Whether the ray with this slope meets the light (rectangle: all of it, not only the part), give or take `tolerance`
 // metres per metre of depth.
 LIMN_FN bool light_view_contains(LightView v, vec3 slope, float tolerance) {

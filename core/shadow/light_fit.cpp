@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "glsl/geometry.glsl"
+#include "glsl/light_view.glsl"
 
 namespace limn::shadow {
 namespace {
@@ -196,20 +197,15 @@ void appendOrthographic(const glsl::Light& light, const vec3& direction, std::sp
 }
 
 vec3 samplePoint(const glsl::Light& light, const glm::vec2& sample) {
-  return vec3(light.position) + sample.x * light.axis_u.w * vec3(light.axis_u) +
-         sample.y * light.axis_v.w * vec3(light.axis_v);
+  const glm::vec2 ab = sample - 0.5f;
+  return vec3(light.position) + ab.x * light.axis_u.w * vec3(light.axis_u) +
+         ab.y * light.axis_v.w * vec3(light.axis_v);
 }
 
-/// The unit direction that the point `disc` (|disc| <= 1/2) of a directional light's disc shines along:
-/// uniform in the cone's solid angle.
-vec3 sampleDirection(const glsl::Light& light, const glm::vec2& disc) {
-  const Axes axes = axesOf(light);
-  const float sineHalf = std::sin(0.25f * light.cone.w);
-  const float oneMinusCosine = 2 * sineHalf * sineHalf;
-  const float cap = 4 * glm::dot(disc, disc) * oneMinusCosine;
-  const float lateral = 2 * std::sqrt(oneMinusCosine * (2 - cap));
-  if (lateral == 0) return axes.z;
-  return glm::normalize((1 - cap) * axes.z + lateral * (disc.x * axes.x + disc.y * axes.y));
+/// The unit direction that a directional light's sample shines along.
+vec3 sampleDirection(const glsl::Light& light, const glm::vec2& sample) {
+  const glsl::LightView view = glsl::light_view(light, vec3(0), -vec3(light.direction), -1);
+  return -glm::normalize(glsl::light_view_slope(view, sample));
 }
 
 float spotTangent(const glsl::Light& light, int size) {
@@ -235,10 +231,10 @@ LightLayout paraboloidLayout(const glsl::Light& light) {
 }  // namespace
 
 std::vector<glm::vec2> samplesOf(const glsl::Light& light, const ShadowMapDesc& desc) {
-  if (desc.samples.empty()) return {glm::vec2(0)};
+  if (desc.samples.empty()) return {glm::vec2(0.5f)};
   const bool extended =
       light.info.x == glsl::light_rectangle || (light.info.x == glsl::light_directional && light.cone.w > 0);
-  return extended ? desc.samples : std::vector<glm::vec2>{glm::vec2(0)};
+  return extended ? desc.samples : std::vector<glm::vec2>{glm::vec2(0.5f)};
 }
 
 LightLayout fitLayout(const glsl::Light& light, std::span<const Bounds> boxes, const ShadowMapDesc& desc) {
@@ -268,7 +264,8 @@ void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayou
   Writer out{lightIndex, desc.size, views, lights};
   const Axes axes = axesOf(light);
   const uint32_t count = glsl::shadow_face_count(layout.faces);
-  for (const glm::vec2& sample : samplesOf(light, desc)) {
+  const std::vector<glm::vec2> samples = samplesOf(light, desc);
+  for (const glm::vec2& sample : samples) {
     if (layout.projection == glsl::shadow_orthographic) {
       appendOrthographic(light, sampleDirection(light, sample), boxes, out);
       continue;
@@ -297,6 +294,8 @@ void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayou
     for (uint32_t face = 0; face < count; ++face)
       out.view(glsl::shadow_perspective, origin, faceAxes(axes, face * step), 0.5f / tangent, range);
   }
+  for (size_t shared = samples.size(); shared < desc.samples.size(); ++shared)
+    lights.push_back(lights.back());
 }
 
 scene::CullVolume cullVolume(const glsl::ShadowView& view) {

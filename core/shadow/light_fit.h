@@ -34,7 +34,7 @@ LIMN_API void appendViews(const glsl::Light& light, uint32_t lightIndex, const L
                           std::span<const scene::Bounds> boxes, const ShadowMapDesc& desc,
                           std::vector<glsl::ShadowView>& views, std::vector<glsl::ShadowLight>& lights);
 
-/// Samples that apply to the light: all of `desc`, or one for lights without extent.
+/// Samples that need maps of their own: all of `desc`, or the centre for lights without extent.
 LIMN_API std::vector<glm::vec2> samplesOf(const glsl::Light& light, const ShadowMapDesc& desc);
 
 /// World planes of a view, for culling.

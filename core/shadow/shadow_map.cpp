@@ -267,15 +267,15 @@ uint32_t ShadowMapService::uncoveredPixels() const {
 std::vector<ShadowMapStats> ShadowMapService::stats() const {
   std::vector<ShadowMapStats> all;
   for (const auto& request : implementation_->requests) {
-    size_t first = 0;
-    for (const glsl::ShadowLight& l : request->shadowLights) {
-      if (l.info.z != request->lights[first] && first + 1 < request->lights.size()) ++first;
-      const LightLayout& layout = request->layouts[first];
-      const glsl::ShadowView& view = request->views[l.info.x];
+    const size_t samples = std::max<size_t>(request->desc.samples.size(), 1);
+    for (size_t i = 0; i < request->lights.size(); ++i) {
+      const LightLayout& layout = request->layouts[i];
+      const glsl::ShadowView& view = request->views[request->shadowLights[i * samples].info.x];
       const bool perspective = layout.projection == glsl::shadow_perspective;
-      all.push_back({.light = implementation_->lightNames[l.info.z],
+      const auto maps = samplesOf(implementation_->light(request->lights[i]), request->desc).size();
+      all.push_back({.light = implementation_->lightNames[request->lights[i]],
                      .projection = std::string(projectionName(layout)),
-                     .layers = static_cast<int>(glsl::shadow_face_count(layout.faces)),
+                     .layers = static_cast<int>(glsl::shadow_face_count(layout.faces) * maps),
                      .near = view.origin.w,
                      .far = view.axis_z.w,
                      .halfAngle = perspective ? std::atan(0.5f / view.axis_x.w) : 0.f});

@@ -31,9 +31,8 @@ enum class Projection {
 struct ShadowMapDesc {
   int size = 1024;  ///< texels per side of each layer
   Projection projection = Projection::automatic;
-  /// Points on each light from which maps are rendered: x, y in [-1/2, 1/2] along axis_u and axis_v of a
-  /// rectangle, or inside the circle of radius 1/2 for a directional light's disc. Empty: the centre alone.
-  /// Lights without extent ignore all but the first.
+  /// Points on each light from which maps are rendered, in the unit square as light_view_slope() takes them; (1/2, 1/2) is
+  /// the centre. Empty: the centre alone. Lights without extent have one map, which all samples share.
   std::vector<glm::vec2> samples = {};
   /// Keep the maps while nothing changed. False where many batches of maps are to share one piece of memory.
   bool cacheable = true;

@@ -32,11 +32,9 @@ int sample_count(int count) {
 
 // Steps 1 and 2: mean distance from the blockers to the receiver along the light's axis, metres; 0: there are none.
 float blocker_gap(inout ShadowCursor cursor, VisibilityQuery q, vec3 shift) {
-  // Where the first blockers may be: the near plane of a single map; the light itself where maps look around it.
-  float reach = q.light.depth;
-  if (q.maps.info.y == shadow_faces_single) {
-    reach = dot(q.light.axis, q.position - cursor.view.origin.xyz) - cursor.view.origin.w;
-  }
+  // The near plane: from the view's origin for directional lights, from the light for all others.
+  float depth = q.light.cone ? dot(q.light.axis, q.position - cursor.view.origin.xyz) : q.light.depth;
+  float reach = max(depth - cursor.view.origin.w, 0.0);
   float sum = 0.0;
   int blockers = 0;
   int count = sample_count(blocker_samples);

@@ -218,8 +218,9 @@ TEST_F(ShadowMapTest, SamplesOfALightGetMapsOfTheirOwn) {
   addInstance(scene, pose, 0);
   addLight(pose, rectangleLight({0, 4, 0}, {0, -1, 0}, 2, 1));
   addLight(pose, pointLight({0, 4, 0}));
-  const Maps maps = draw(scene, pose, {0, 1}, {.size = 16, .samples = {{-0.5f, 0}, {0, 0.5f}, {0.5f, 0}}});
-  ASSERT_EQ(maps.lights.size(), 4u);  // three on the rectangle, one on the point
+  const Maps maps = draw(scene, pose, {0, 1}, {.size = 16, .samples = {{0, 0.5f}, {0.5f, 1}, {1, 0.5f}}});
+  ASSERT_EQ(maps.lights.size(), 6u);
+  for (size_t i = 3; i < 6; ++i) EXPECT_EQ(maps.lights[i].info.x, 3u) << "samples of a point share its maps";
   const vec3 u(pose.lights[0].axis_u), v(pose.lights[0].axis_v);
   EXPECT_LT(glm::distance(vec3(maps.lights[0].origin), vec3(0, 4, 0) - u), 1e-6f);
   EXPECT_LT(glm::distance(vec3(maps.lights[1].origin), vec3(0, 4, 0) + 0.5f * v), 1e-6f);

@@ -1,0 +1,65 @@
+// Reflected direct light, each sample of a light shadowed by its own map and reflected by the whole BRDF. Each batch adds
+// its part.
+#include "glsl/brdf.glsl"
+#include "samples.glsl"
+
+layout(binding = 0, rgba32f) uniform image2D radiance;
+layout(binding = 1) uniform sampler2D gbuffer_normal;
+layout(binding = 3) uniform sampler2D gbuffer_albedo;
+layout(binding = 4) uniform sampler2D gbuffer_material;
+layout(binding = 5) uniform sampler2D gbuffer_emission;
+uniform int light_count;
+
+GBufferSurface surface_at(ivec2 pixel) {
+  GBufferTexels texels;
+  texels.normal = texelFetch(gbuffer_normal, pixel, 0).rg;
+  texels.geometric_normal = texelFetch(gbuffer_geometric_normal, pixel, 0).rg;
+  texels.albedo = texelFetch(gbuffer_albedo, pixel, 0);
+  texels.material = texelFetch(gbuffer_material, pixel, 0);
+  texels.emission = texelFetch(gbuffer_emission, pixel, 0);
+  return gbuffer_unpack(texels);
+}
+
+// Irradiance of one sample on a surface that faces it, were it all of the light.
+vec3 sample_irradiance(Light light, LightView view, vec3 receiver, vec3 offset) {
+  if (!view.extended) return punctual_irradiance(light, receiver);
+  if (view.cone) {
+    // Uniform radiance E / (pi sin^2) over the solid angle 2 pi (1 - cos), with sin^2 = (1 - cos) (1 + cos).
+    return light.emission.rgb * (2.0 / (2.0 - view.cap));
+  }
+  float distance2 = dot(offset, offset);
+  float cosine = abs(dot(light.direction.xyz, offset)) * inversesqrt(distance2);
+  return light.emission.rgb * (receiver_factor(light, receiver) * light.axis_u.w * light.axis_v.w * cosine / distance2);
+}
+
+vec3 light_from(VisibilityQuery q, Light light, int l, SurfaceBrdf surface, vec3 normal, vec3 to_viewer) {
+  vec3 sum = vec3(0.0);
+  int samples = q.light.extended ? batch_samples : first_sample == 0 ? 1 : 0;
+  for (int s = 0; s < samples; ++s) {
+    ShadowLight maps = shadow_lights[l * batch_samples + s];
+    vec3 offset = sample_offset(q, maps);
+    vec3 direction = normalize(offset);
+    if (dot(offset, q.normal) <= 0.0 || dot(offset, normal) <= 0.0 || !sample_visible(q, maps)) continue;
+    sum += brdf(surface, normal, to_viewer, direction) * dot(normal, direction) *
+           sample_irradiance(light, q.light, q.position, offset);
+  }
+  return q.light.extended ? sum / float(total_samples) : sum;
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, imageSize(radiance)))) return;
+  if (texelFetch(gbuffer_depth, pixel, 0).r == 0.0) return;
+  GBufferSurface s = surface_at(pixel);
+  if ((s.flags & gbuffer_flag_specular) != 0u) return;
+  SurfaceBrdf surface =
+      surface_brdf(s.base_colour, s.metallic, s.roughness, s.specular_factor, s.specular_colour, s.ior);
+  vec3 sum = vec3(0.0);
+  for (int l = 0; l < light_count; ++l) {
+    VisibilityQuery q = visibility_query(ivec3(pixel, l), batch_samples, 0);
+    if (q.masked) continue;
+    vec3 to_viewer = normalize(frame.camera_position.xyz - q.position);
+    sum += light_from(q, lights[q.maps.info.z], l, surface, s.normal, to_viewer);
+  }
+  imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(sum, 0.0));
+}
