@@ -28,7 +28,7 @@ struct BallScene {
     if (ball) addInstance(scene, pose, 1, at(0, s, 0));
     addLight(pose, pointLight(s * vec3(1, 3, 0.5f)));
     addLight(pose, spotLight(s * vec3(-1, 3, 0.5f), {1, -2.2f, -0.2f}, 0.9f));
-    addLight(pose, directionalLight({0.3f, -1, 0.2f}, 0.1f));
+    addLight(pose, directionalLight({0.3f, -1, 0.2f}, 0.2f));
     addLight(pose, rectangleLight(s * vec3(0, 4, 0), {0, -1, 0}, 0.8f * s, 0.6f * s));
     addLight(pose,
              rectangleLight(s * vec3(1.5f, 1.5f, 1), {-1, -0.7f, -0.6f}, 0.5f * s, 0.5f * s));  // hemicube
@@ -37,7 +37,7 @@ struct BallScene {
     camera = scene::lookAt(s * vec3(0, 6, 3), s * vec3(0, 0.2f, 0), 0.8f);
   }
 
-  vec3 position(const Visibility& v, int x, int y) const {
+  vec3 position(const Answer& v, int x, int y) const {
     glsl::FrameBlock frame{};
     scene::setCamera(frame, camera, pose.bounds, v.width, v.height);
     return vec3(frame.camera_position) +
@@ -48,7 +48,7 @@ struct BallScene {
 };
 
 /// Saves a picture for people, where LIMN_TEST_PICTURES names a folder.
-void keep(const Visibility& v, const std::string& name) {
+void keep(const Answer& v, const std::string& name) {
   const char* folder = std::getenv("LIMN_TEST_PICTURES");
   if (folder == nullptr) return;
   for (size_t l = 0; l < v.lights.size(); ++l) {
@@ -122,7 +122,7 @@ class ShadowTechniqueTest : public TechniqueTest {
 
   /// Of V on the floor against the exact one, over the pixels of the penumbra.
   template <class Hides>
-  static Errors floorErrors(const BallScene& s, const Visibility& v, size_t light, const Hides& hides) {
+  static Errors floorErrors(const BallScene& s, const Answer& v, size_t light, const Hides& hides) {
     Errors e;
     double squares = 0;
     for (int y = 0; y < side; y += 2) {
@@ -145,8 +145,8 @@ class ShadowTechniqueTest : public TechniqueTest {
 TEST_F(ShadowTechniqueTest, HardShadowOfABallUnderEveryLight) {
   for (const char* filter : {"nearest", "2x2"}) {
     const BallScene s;
-    const Visibility v = visibility("hard_shadow_map", {{"filter", filter}, {"shadow_map_size", "512"}},
-                                    s.scene, s.pose, s.camera);
+    const Answer v = visibility("hard_shadow_map", {{"filter", filter}, {"shadow_map_size", "512"}}, s.scene,
+                                s.pose, s.camera);
     keep(v, std::string("hard_") + filter);
     for (size_t l = 0; l < s.pose.lights.size(); ++l) {
       int shadowed = 0, lit = 0, wrong = 0;
@@ -178,9 +178,9 @@ TEST_F(ShadowTechniqueTest, LightsGiveTheSameAloneAndTogether) {
   const BallScene s;
   for (const TechniquePlugin* plugin : techniques()) {
     const std::string name = plugin->info->name;
-    const Visibility together = visibility(name, quick(*plugin), s.scene, s.pose, s.camera);
+    const Answer together = visibility(name, quick(*plugin), s.scene, s.pose, s.camera);
     for (uint32_t l = 0; l < s.pose.lights.size(); ++l) {
-      const Visibility alone = visibility(name, quick(*plugin), s.scene, s.pose, s.camera, {l});
+      const Answer alone = visibility(name, quick(*plugin), s.scene, s.pose, s.camera, {l});
       EXPECT_EQ(alone.lights[0], together.lights[l]) << name << " light " << l;
     }
   }
@@ -193,7 +193,7 @@ TEST_F(ShadowTechniqueTest, PlanesDoNotShadowThemselvesAtAnySlopeAndLightSize) {
       for (const char* size : {"-1", "0.3", "2"}) {
         auto settings = quick(*plugin);
         if (has(*plugin, "light_size")) settings["light_size"] = size;
-        const Visibility v = visibility(plugin->info->name, settings, s.scene, s.pose, s.camera);
+        const Answer v = visibility(plugin->info->name, settings, s.scene, s.pose, s.camera);
         for (size_t l = 0; l < v.lights.size(); ++l) {
           EXPECT_EQ(*std::ranges::min_element(v.lights[l]), 1.f)
               << plugin->info->name << " tilt " << tilt << " light " << l << " size " << size;
@@ -207,11 +207,10 @@ TEST_F(ShadowTechniqueTest, PlanesDoNotShadowThemselvesAtAnySlopeAndLightSize) {
 TEST_F(ShadowTechniqueTest, ScaleChangesNothing) {
   for (const TechniquePlugin* plugin : techniques()) {
     const BallScene one(1);
-    const Visibility expected =
-        visibility(plugin->info->name, quick(*plugin), one.scene, one.pose, one.camera);
+    const Answer expected = visibility(plugin->info->name, quick(*plugin), one.scene, one.pose, one.camera);
     for (const float scale : {1e-4f, 1e4f}) {
       const BallScene s(scale);
-      const Visibility v = visibility(plugin->info->name, quick(*plugin), s.scene, s.pose, s.camera);
+      const Answer v = visibility(plugin->info->name, quick(*plugin), s.scene, s.pose, s.camera);
       for (size_t l = 0; l < v.lights.size(); ++l) {
         double squares = 0;
         for (size_t i = 0; i < v.lights[l].size(); ++i)
@@ -225,12 +224,11 @@ TEST_F(ShadowTechniqueTest, ScaleChangesNothing) {
 
 TEST_F(ShadowTechniqueTest, LightsWithoutSizeGiveHardShadows) {
   const BallScene s;
-  const Visibility hard =
-      visibility("hard_shadow_map", {{"shadow_map_size", "256"}}, s.scene, s.pose, s.camera);
-  const Visibility soft =
+  const Answer hard = visibility("hard_shadow_map", {{"shadow_map_size", "256"}}, s.scene, s.pose, s.camera);
+  const Answer soft =
       visibility("pcss", {{"light_size", "0"}, {"shadow_map_size", "256"}}, s.scene, s.pose, s.camera);
   EXPECT_EQ(soft.lights, hard.lights);
-  const Visibility own = visibility("pcss", quick(registry().find("pcss")), s.scene, s.pose, s.camera);
+  const Answer own = visibility("pcss", quick(registry().find("pcss")), s.scene, s.pose, s.camera);
   EXPECT_EQ(own.lights[0], hard.lights[0]) << "point";
   EXPECT_EQ(own.lights[1], hard.lights[1]) << "spot";
 }
@@ -245,11 +243,11 @@ TEST_F(ShadowTechniqueTest, ParallelPlanesAreExactWithPcss) {
     return std::max(std::abs(p.x), std::abs(p.z)) < 0.5f;
   };
   for (const char* pattern : {"grid", "r2"}) {
-    const Visibility v = visibility(
+    const Answer v = visibility(
         "pcss",
         {{"pattern", pattern}, {"blocker_samples", "256"}, {"filter_samples", "576"}, {"search", "near"}},
         s.scene, s.pose, s.camera, {3});
-    Visibility four = v;
+    Answer four = v;
     four.lights.insert(four.lights.begin(), 3, {});
     const Errors e = floorErrors(s, four, 3, hides);
     EXPECT_GT(e.penumbra, 150);
@@ -265,13 +263,91 @@ TEST_F(ShadowTechniqueTest, PcssOfABallIsCloseToTheTruth) {
     const float along = glm::dot(ball - from, d);
     return along > 0 && along < glm::length(to) && glm::distance(ball, from + along * d) < 0.5f;
   };
-  const Visibility v = visibility("pcss", {{"shadow_map_size", "512"}}, s.scene, s.pose, s.camera);
+  const Answer v = visibility("pcss", {{"shadow_map_size", "512"}}, s.scene, s.pose, s.camera);
   keep(v, "pcss");
   keep(visibility("pcss", {{"search", "near"}, {"pattern", "grid"}}, s.scene, s.pose, s.camera), "pcss_near");
   for (size_t light = 2; light < v.lights.size(); ++light) {
     const Errors e = floorErrors(s, v, light, hides);
     EXPECT_GT(e.penumbra, 50) << light;
     EXPECT_LT(e.rms, 0.1) << light;
+  }
+}
+
+TEST_F(ShadowTechniqueTest, SamplesOfAnAreaLightConverge) {
+  const BallScene s;
+  const auto hides = [](const vec3& from, const vec3& to) {
+    const vec3 d = glm::normalize(to), ball(0, 1, 0);
+    const float along = glm::dot(ball - from, d);
+    return along > 0 && along < glm::length(to) && glm::distance(ball, from + along * d) < 0.5f;
+  };
+  const std::vector<uint32_t> extended{2, 3, 4, 5};
+  std::vector<double> previous(s.pose.lights.size(), 1);
+  for (const char* samples : {"4", "16", "64"}) {
+    Answer v = visibility("sampled_area_light", {{"samples", samples}, {"shadow_map_size", "256"}}, s.scene,
+                          s.pose, s.camera, extended);
+    keep(v, std::string("sampled_") + samples);
+    v.lights.insert(v.lights.begin(), 2, {});
+    for (const uint32_t light : extended) {
+      const Errors e = floorErrors(s, v, light, hides);
+      EXPECT_LT(e.rms, 0.75 * previous[light]) << samples << " samples, light " << light;
+      previous[light] = e.rms;
+    }
+  }
+  for (size_t light = 2; light < previous.size(); ++light)
+    EXPECT_LT(previous[light], 0.04) << "light " << light;
+}
+
+TEST_F(ShadowTechniqueTest, BatchesOfSamplesAddUp) {
+  const BallScene s;
+  for (const Term term : {Term::visibility, Term::direct}) {
+    const auto draw = [&](const char* memory) {
+      return visibility("sampled_area_light",
+                        {{"samples", "8"}, {"shadow_map_size", "128"}, {"memory", memory}}, s.scene, s.pose,
+                        s.camera, {}, term);
+    };
+    const Answer whole = draw("256"), batches = draw("4");
+    for (size_t l = 0; l < whole.lights.size(); ++l) {
+      for (size_t i = 0; i < whole.lights[l].size(); ++i)
+        EXPECT_NEAR(batches.lights[l][i], whole.lights[l][i], 1e-4f);
+    }
+  }
+}
+
+TEST_F(ShadowTechniqueTest, OneSampleIsAHardShadow) {
+  const BallScene s;
+  const Answer hard = visibility("hard_shadow_map", {{"shadow_map_size", "256"}}, s.scene, s.pose, s.camera);
+  const Answer one = visibility("sampled_area_light", {{"samples", "1"}, {"shadow_map_size", "256"}}, s.scene,
+                                s.pose, s.camera);
+  for (size_t l = 0; l < 3; ++l) EXPECT_EQ(one.lights[l], hard.lights[l]) << l;
+}
+
+TEST_F(ShadowTechniqueTest, SampledDirectLightEqualsClosedForms) {
+  BallScene s(1, false);
+  scene::Material& lambert = s.scene.materials[0];
+  lambert.metallic = 0;
+  lambert.specularFactor = 0;
+  for (const uint32_t light : {0u, 2u, 3u, 4u}) {
+    const Answer v = visibility("sampled_area_light", {{"samples", "256"}, {"shadow_map_size", "64"}},
+                                s.scene, s.pose, s.camera, {light}, Term::direct);
+    const glsl::Light& l = s.pose.lights[light];
+    double sum = 0, difference = 0;
+    for (int y = 0; y < side; y += 3) {
+      for (int x = 0; x < side; x += 3) {
+        const size_t i = static_cast<size_t>(y * side + x);
+        if (v.instance[i] != 0) continue;
+        const vec3 p = s.position(v, x, y), n(0, 1, 0);
+        float irradiance = 0;
+        if (l.info.x != glsl::light_rectangle) {
+          const vec3 to = light == 2 ? -vec3(l.direction) : vec3(l.position) - p;
+          irradiance = glsl::punctual_irradiance(l, p).x * glm::normalize(to).y;
+        } else if (glsl::rectangle_emits_towards(l, p)) {
+          irradiance = glsl::rectangle_irradiance(glsl::rectangle_from(l, p), n);
+        }
+        sum += irradiance / glsl::pi;
+        difference += std::abs(v.lights[0][i] - irradiance / glsl::pi);
+      }
+    }
+    EXPECT_LT(difference, 0.005 * sum) << "light " << light;
   }
 }
 
@@ -288,7 +364,7 @@ TEST_F(ShadowTechniqueTest, ContactShadowsDoNotDetach) {
   addLight(pose, directionalLight({0.3f, -1, 0}, 0));
   const auto camera = scene::lookAt({0.3f, 0.6f, 2.5f}, {0.1f, 0, 0}, 0.5f);  // from the side, under the wall
   constexpr float texel = 4 / 256.f;                                          // of the map on the floor
-  const Visibility v = visibility("hard_shadow_map", {{"shadow_map_size", "256"}}, scene, pose, camera);
+  const Answer v = visibility("hard_shadow_map", {{"shadow_map_size", "256"}}, scene, pose, camera);
   keep(v, "contact");
   glsl::FrameBlock frame{};
   scene::setCamera(frame, camera, pose.bounds, side, side);

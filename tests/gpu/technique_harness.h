@@ -13,11 +13,11 @@
 
 namespace limn::test {
 
-struct Visibility {
+struct Answer {
   int width = 0, height = 0;
   std::vector<float> depth;  ///< linear view depth, row 0 at the bottom
   std::vector<uint32_t> instance;
-  std::vector<std::vector<float>> lights;  ///< V per light
+  std::vector<std::vector<float>> lights;  ///< V per light, or one layer of radiance
   uint32_t uncovered = 0;
   float at(size_t light, int x, int y) const {
     return lights[light][static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
@@ -35,9 +35,10 @@ class TechniqueTest : public GlTest {
     return instance;
   }
 
-  Visibility visibility(const std::string& technique, const std::map<std::string, std::string>& settings,
-                        const scene::Scene& scene, const scene::Pose& pose, const scene::CameraPose& camera,
-                        std::vector<uint32_t> lights = {}) {
+  /// V of the lights (all of the pose's if none are named), or the red channel of their reflected radiance.
+  Answer visibility(const std::string& technique, const std::map<std::string, std::string>& settings,
+                    const scene::Scene& scene, const scene::Pose& pose, const scene::CameraPose& camera,
+                    std::vector<uint32_t> lights = {}, Term term = Term::visibility) {
     const TechniquePlugin& plugin = registry().find(technique);
     ParameterValues parameters(technique, plugin.info->parameters);
     for (const auto& [name, value] : settings) parameters.set(name, value);
@@ -59,35 +60,53 @@ class TechniqueTest : public GlTest {
     const TechniqueInputs inputs{scene,      pose,    gpuScene, shadowMaps,
                                  parameters, handles, gbuffer,  {side, side}};
     const frame::TextureHandle target =
-        graph.createTexture("visibility", {.target = GL_TEXTURE_2D_ARRAY,
-                                           .format = GL_R16,
-                                           .width = side,
-                                           .height = side,
-                                           .layers = static_cast<int>(lights.size())});
-    const frame::TextureHandle answer =
-        instance->addPasses(graph, inputs, {.term = Term::visibility, .lights = lights, .target = target});
-    graph.output(answer);
+        term == Term::visibility ? visibilityTarget(graph, lights.size()) : black(graph);
+    const frame::TextureHandle written =
+        instance->addPasses(graph, inputs, {.term = term, .lights = lights, .target = target});
+    graph.output(written);
     graph.output(gbuffer.depth);
     graph.output(gbuffer.instance);
     graph.prepare(device(), shaders(), pool);
     shadowMaps.update(pose);
     graph.execute();
 
-    Visibility result{.width = side, .height = side};
+    Answer result{.width = side, .height = side};
     result.depth.resize(side * side);
     result.instance.resize(side * side);
-    std::vector<float> layers(lights.size() * side * side);
+    const size_t layerCount = term == Term::visibility ? lights.size() : 1;
+    std::vector<float> layers(layerCount * side * side);
     graph.texture(gbuffer.depth).read(0, GL_RED, GL_FLOAT, result.depth.data(), result.depth.size() * 4);
     graph.texture(gbuffer.instance)
         .read(0, GL_RED_INTEGER, GL_UNSIGNED_INT, result.instance.data(), result.instance.size() * 4);
-    graph.texture(answer).read(0, GL_RED, GL_FLOAT, layers.data(), layers.size() * 4);
-    for (size_t l = 0; l < lights.size(); ++l) {
+    graph.texture(written).read(0, GL_RED, GL_FLOAT, layers.data(), layers.size() * 4);
+    for (size_t l = 0; l < layerCount; ++l) {
       const auto first = layers.begin() + static_cast<std::ptrdiff_t>(l * side * side);
       result.lights.emplace_back(first, first + side * side);
     }
     result.uncovered = shadowMaps.uncoveredPixels();
     gpuScene.forget();
     return result;
+  }
+
+ private:
+  static frame::TextureHandle visibilityTarget(frame::FrameGraph& graph, size_t lights) {
+    return graph.createTexture("visibility", {.target = GL_TEXTURE_2D_ARRAY,
+                                              .format = GL_R16,
+                                              .width = side,
+                                              .height = side,
+                                              .layers = static_cast<int>(lights)});
+  }
+
+  /// A radiance to add to.
+  static frame::TextureHandle black(frame::FrameGraph& graph) {
+    frame::PassBuilder clear = graph.addPass("clear", "test");
+    const frame::TextureHandle target =
+        clear.write(graph.createTexture("radiance", {.format = GL_RGBA32F, .width = side, .height = side}),
+                    frame::Access::copyTarget, "black");
+    clear.execute([target](frame::PassContext& context) {
+      context.gl().ClearTexImage(context.texture(target).id(), 0, GL_RGBA, GL_FLOAT, nullptr);
+    });
+    return target;
   }
 };
 
