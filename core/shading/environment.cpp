@@ -1,0 +1,217 @@
+#include "core/shading/environment.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/base/error.h"
+#include "glsl/environment.glsl"
+
+namespace limn::shading {
+namespace {
+
+using glm::dvec3;
+using glm::vec2;
+using glm::vec3;
+
+constexpr int kGlossySamples =
+    64;  // at level 1; doubled from level to level, which have a quarter of the texels each
+constexpr int kIrradianceSourceWidth = 128;
+
+/// Where the first and last rows of a map lie: half a step inside the poles, as in a file, or on them, as in
+/// the result.
+enum class Rows { inside, onPoles };
+
+const vec3& texel(const FilteredMap& map, int x, int y) {
+  const int wrapped = (x % map.width + map.width) % map.width;
+  return map.texels[static_cast<size_t>(std::clamp(y, 0, map.height - 1)) * static_cast<size_t>(map.width) +
+                    static_cast<size_t>(wrapped)];
+}
+
+vec3 bilinear(const FilteredMap& map, vec2 uv) {
+  const float x = uv.x * static_cast<float>(map.width) - 0.5f,
+              y = uv.y * static_cast<float>(map.height) - 0.5f;
+  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
+  const float s = x - static_cast<float>(x0), t = y - static_cast<float>(y0);
+  return glm::mix(glm::mix(texel(map, x0, y0), texel(map, x0 + 1, y0), s),
+                  glm::mix(texel(map, x0, y0 + 1), texel(map, x0 + 1, y0 + 1), s), t);
+}
+
+vec2 texelCentre(int x, int y, int width, int height) {
+  return {(static_cast<float>(x) + 0.5f) / static_cast<float>(width),
+          (static_cast<float>(y) + 0.5f) / static_cast<float>(height)};
+}
+
+/// A map of width x width / 2, every texel a function of its centre's (u, v); rows in parallel.
+template <class Function>
+FilteredMap makeMap(int width, Rows rows, const Function& function) {
+  FilteredMap map{width, width / 2, {}};
+  map.texels.resize(static_cast<size_t>(width) * static_cast<size_t>(map.height));
+  tbb::parallel_for(0, map.height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      vec2 uv = texelCentre(x, y, width, map.height);
+      if (rows == Rows::onPoles) uv.y = static_cast<float>(y) / static_cast<float>(map.height - 1);
+      map.texels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)] = function(uv);
+    }
+  });
+  return map;
+}
+
+/// Mean radiance over each texel, weighted by solid angle.
+FilteredMap resampled(const FilteredMap& source, int width, Rows rows) {
+  const int n = std::max(1, (source.width + width - 1) / width);
+  const float cell = 1.0f / static_cast<float>(width);
+  return makeMap(width, rows, [&](vec2 centre) {
+    dvec3 sum(0);
+    double weights = 0;
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        const vec2 offset = texelCentre(i, j, n, n) - vec2(0.5f);
+        const vec2 uv = centre + offset * vec2(cell, 2 * cell);
+        const double weight =
+            std::abs(std::sin(std::numbers::pi * static_cast<double>(uv.y))) + 1e-6;  // on the poles
+        sum += weight * dvec3(bilinear(source, uv));
+        weights += weight;
+      }
+    }
+    return vec3(sum / weights);
+  });
+}
+
+FilteredMap convolvedWithCosine(const FilteredMap& source) {
+  struct Patch {
+    vec3 direction;
+    vec3 flux;  // radiance times solid angle
+  };
+  std::vector<Patch> patches;
+  for (int y = 0; y < source.height; ++y) {
+    const float solidAngle = glsl::equirectangular_pixel_solid_angle(y, source.width, source.height);
+    for (int x = 0; x < source.width; ++x) {
+      patches.push_back({glsl::equirectangular_direction(texelCentre(x, y, source.width, source.height)),
+                         solidAngle * texel(source, x, y)});
+    }
+  }
+  return makeMap(glsl::environment_irradiance_width, Rows::onPoles, [&](vec2 uv) {
+    const vec3 n = glsl::equirectangular_direction(uv);
+    dvec3 sum(0);
+    for (const Patch& patch : patches) {
+      const float cosine = glm::dot(n, patch.direction);
+      if (cosine > 0) sum += dvec3(cosine * patch.flux);
+    }
+    return vec3(sum);
+  });
+}
+
+/// One direction of the lobe at normal incidence, in its own frame.
+struct LobeSample {
+  vec3 direction;
+  float weight;
+  float level;  ///< of the source's mip chain
+};
+
+std::vector<LobeSample> lobeSamples(float alpha, int count, int sourceWidth) {
+  const float texelSolidAngle = 8 * glsl::pi / static_cast<float>(sourceWidth * sourceWidth);
+  std::vector<LobeSample> samples;
+  float total = 0;
+  for (int i = 0; i < count; ++i) {
+    // Rank-1 lattice of the golden ratio.
+    const vec2 u((static_cast<float>(i) + 0.5f) / static_cast<float>(count),
+                 std::fmod(0.61803399f * static_cast<float>(i), 1.0f));
+    const vec3 h = glsl::ggx_sample_visible_normal(vec3(0, 0, 1), alpha, vec2(u.y, u.x));
+    const vec3 l = 2 * h.z * h - vec3(0, 0, 1);
+    if (l.z <= 0) continue;
+    const float pdf = 0.25f * glsl::ggx_distribution(h.z, h.x * h.x + h.y * h.y, alpha);
+    const float spread = 1 / (static_cast<float>(count) * std::max(pdf, 1e-12f));
+    const float level = std::max(0.0f, 0.5f * std::log2(spread / texelSolidAngle) + 0.5f);
+    samples.push_back({l, glsl::ggx_visibility(1, l.z, alpha) * l.z, level});
+    total += samples.back().weight;
+  }
+  for (LobeSample& sample : samples) sample.weight /= total;
+  return samples;
+}
+
+vec3 trilinear(const std::vector<FilteredMap>& chain, vec2 uv, float level) {
+  const float last = static_cast<float>(chain.size() - 1);
+  const float clamped = std::clamp(level, 0.0f, last);
+  const size_t low = static_cast<size_t>(clamped), high = std::min(low + 1, chain.size() - 1);
+  const float t = clamped - static_cast<float>(low);
+  const vec3 sharp = bilinear(chain[low], uv);
+  return t == 0 ? sharp : glm::mix(sharp, bilinear(chain[high], uv), t);
+}
+
+FilteredMap convolvedWithLobe(const std::vector<FilteredMap>& chain, int level) {
+  const float alpha = glsl::environment_alpha(static_cast<float>(level));
+  const int width = glsl::environment_filtered_width >> level;
+  const std::vector<LobeSample> samples =
+      lobeSamples(alpha, kGlossySamples << (level - 1), chain.front().width);
+  return makeMap(width, Rows::onPoles, [&](vec2 uv) {
+    const glsl::Frame frame = glsl::frame_around(glsl::equirectangular_direction(uv));
+    dvec3 sum(0);
+    for (const LobeSample& sample : samples) {
+      const vec2 place = glsl::equirectangular_uv(glsl::from_local(frame, sample.direction));
+      sum += dvec3(sample.weight * trilinear(chain, place, sample.level));
+    }
+    return vec3(sum);
+  });
+}
+
+gpu::Texture upload(gpu::Device& device, std::string_view label, GLenum format,
+                    std::span<const FilteredMap> levels) {
+  gpu::Texture texture(device, label,
+                       {.format = format,
+                        .width = levels.front().width,
+                        .height = levels.front().height,
+                        .levels = static_cast<int>(levels.size())});
+  texture.setSampling(levels.size() > 1 ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR, GL_LINEAR, GL_REPEAT,
+                      GL_CLAMP_TO_EDGE);
+  for (size_t i = 0; i < levels.size(); ++i) {
+    std::vector<vec3> texels = levels[i].texels;
+    if (format == GL_RGBA16F) {
+      for (vec3& t : texels) t = glm::min(t, vec3(65504.0f));
+    }
+    texture.upload(static_cast<int>(i), 0, GL_RGB, GL_FLOAT, texels.data());
+  }
+  return texture;
+}
+
+}  // namespace
+
+vec3 FilteredMap::sample(const vec3& direction) const {
+  return bilinear(*this, glsl::environment_place(direction, height));
+}
+
+vec3 FilteredEnvironment::filtered(const vec3& direction, float alpha) const {
+  const float level = glsl::environment_level(alpha);
+  const size_t low = std::min(static_cast<size_t>(level), radiance.size() - 2);
+  return glm::mix(radiance[low].sample(direction), radiance[low + 1].sample(direction),
+                  level - static_cast<float>(low));
+}
+
+FilteredEnvironment filterEnvironment(const scene::Environment& environment) {
+  if (!environment) throw Error("environment: there is no map to filter");
+  const FilteredMap source{environment.width, environment.height, environment.texels};
+  std::vector<FilteredMap> chain{resampled(source, glsl::environment_filtered_width, Rows::inside)};
+  while (chain.back().width > 8) {
+    chain.push_back(resampled(chain.back(), chain.back().width / 2, Rows::inside));
+  }
+
+  FilteredEnvironment result;
+  result.irradiance = convolvedWithCosine(resampled(source, kIrradianceSourceWidth, Rows::inside));
+  result.radiance.push_back(resampled(source, glsl::environment_filtered_width, Rows::onPoles));
+  for (int level = 1; level < glsl::environment_levels; ++level) {
+    result.radiance.push_back(convolvedWithLobe(chain, level));
+  }
+  return result;
+}
+
+gpu::Texture makeIrradianceTexture(gpu::Device& device, const FilteredEnvironment& environment) {
+  return upload(device, "environment irradiance", GL_RGBA32F, {&environment.irradiance, 1});
+}
+
+gpu::Texture makeFilteredTexture(gpu::Device& device, const FilteredEnvironment& environment) {
+  return upload(device, "filtered environment", GL_RGBA16F, environment.radiance);
+}
+
+}  // namespace limn::shading

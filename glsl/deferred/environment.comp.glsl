@@ -1,0 +1,20 @@
+// Adds the light of the environment on every surface to the radiance, unoccluded (V = 1).
+#include "glsl/deferred/gbuffer_input.glsl"
+#include "glsl/environment.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(rgba32f, binding = 0) uniform image2D radiance;
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  float depth = pixel_depth(pixel);
+  if (depth == 0.0) return;
+  GBufferSurface surface = pixel_surface(pixel);
+  if ((surface.flags & gbuffer_flag_specular) != 0u) return;
+  vec3 v = -normalize(pixel_ray(pixel));
+  SurfaceBrdf material = surface_brdf(surface.base_colour, surface.metallic, surface.roughness,
+                                      surface.specular_factor, surface.specular_colour, surface.ior);
+  vec3 light = environment_light(material, surface.normal, v, frame.environment.x, frame.environment.y);
+  imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(light, 0.0));
+}

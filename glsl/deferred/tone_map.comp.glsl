@@ -1,0 +1,13 @@
+// Radiance to what a display shows: clamp(2^exposure L), then sRGB (glsl/srgb.glsl).
+#include "glsl/srgb.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 0) uniform sampler2D radiance;
+layout(rgba8, binding = 0) writeonly uniform image2D display;
+uniform float exposure_ev;
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, imageSize(display)))) return;
+  imageStore(display, pixel, vec4(tone_map(texelFetch(radiance, pixel, 0).rgb, exposure_ev), 1.0));
+}
