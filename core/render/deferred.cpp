@@ -4,8 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "core/shading/environment.h"
 #include "core/shading/ltc_table.h"
 #include "glsl/blocks.glsl"
+#include "glsl/environment.glsl"
 #include "glsl/gbuffer.glsl"
 
 namespace limn::render {
@@ -43,7 +45,7 @@ std::array<GBufferInput, 6> gbufferInputs(const GBuffer& g) {
 struct Deferred::Implementation {
   gpu::Device& device;
   const scene::Scene& scene;
-  gpu::Texture environmentMap, ltcTable;
+  gpu::Texture environmentMap, ltcTable, irradianceMap, filteredMap;
   // Imports of the graph that start() was last called for.
   TextureHandle environmentHandle, ltcHandle;
 
@@ -65,10 +67,21 @@ struct Deferred::Implementation {
     if (!ltcHandle) ltcHandle = graph.importTexture("table of linearly transformed cosines", ltcTable);
     return ltcHandle;
   }
+
+  /// Irradiance and radiance filtered by roughness, made at the first call.
+  std::array<TextureHandle, 2> environmentLight(frame::FrameGraph& graph) {
+    if (!irradianceMap) {
+      const shading::FilteredEnvironment filtered = shading::filterEnvironment(scene.environment);
+      irradianceMap = shading::makeIrradianceTexture(device, filtered);
+      filteredMap = shading::makeFilteredTexture(device, filtered);
+    }
+    return {graph.importTexture("environment irradiance", irradianceMap),
+            graph.importTexture("filtered environment", filteredMap)};
+  }
 };
 
 Deferred::Deferred(gpu::Device& device, const scene::Scene& scene)
-    : implementation_(new Implementation{device, scene, {}, {}, {}, {}}) {}
+    : implementation_(new Implementation{device, scene, {}, {}, {}, {}, {}, {}}) {}
 Deferred::~Deferred() = default;
 
 TextureHandle Deferred::start(const Frame& frame, bool emission) {
@@ -146,6 +159,35 @@ TextureHandle Deferred::addLights(const Frame& frame, TextureHandle before, std:
   return radiance;
 }
 
-TextureHandle Deferred::addEnvironment(const Frame&, TextureHandle before) { return before; }
+TextureHandle Deferred::addEnvironment(const Frame& frame, TextureHandle before) {
+  if (!frame.gbuffer.depth) {
+    frame.graph.leaveOut("environment light", "core", "no geometry");
+    return before;
+  }
+  const std::array<TextureHandle, 2> maps = implementation_->environmentLight(frame.graph);
+  const TextureHandle ltc = implementation_->ltc(frame.graph);
+  frame::PassBuilder builder = frame.graph.addPass("environment light");
+  builder.read(frame.handles.frame, Access::uniformBuffer, "camera, rotation, scale");
+  for (const GBufferInput& input : gbufferInputs(frame.gbuffer))
+    builder.read(input.texture, Access::sampled, input.why);
+  builder.read(maps[0], Access::sampled, "diffuse light");
+  builder.read(maps[1], Access::sampled, "glossy light");
+  builder.read(ltc, Access::sampled, "glossy reflectance");
+  const TextureHandle radiance =
+      builder.write(before, Access::imageLoadStore, "light of the environment, V = 1");
+  const auto program = builder.program({.files = {"glsl/deferred/environment.comp.glsl"}, .defines = {}});
+  builder.execute(
+      [=, handles = frame.handles, g = frame.gbuffer, size = frame.size](frame::PassContext& context) {
+        context.program(program).use();
+        context.bindUniform(glsl::FrameBlock::binding, handles.frame);
+        for (const GBufferInput& input : gbufferInputs(g)) context.bindSampled(input.unit, input.texture);
+        context.bindSampled(glsl::environment_unit_irradiance, maps[0]);
+        context.bindSampled(glsl::environment_unit_filtered, maps[1]);
+        context.bindSampled(glsl::ltc_unit, ltc);
+        context.bindImage(0, radiance, GL_READ_WRITE);
+        context.dispatch(size.x, size.y, 1, group_size, group_size);
+      });
+  return radiance;
+}
 
 }  // namespace limn::render
