@@ -1,5 +1,6 @@
 #include "core/render/deferred.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -38,6 +39,10 @@ std::array<GBufferInput, 6> gbufferInputs(const GBuffer& g) {
            {glsl::gbuffer_unit_albedo, g.albedo, "base colour, metallic"},
            {glsl::gbuffer_unit_material, g.material, "roughness, specular"},
            {glsl::gbuffer_unit_emission, g.emission, "emission"}}};
+}
+
+bool hasSpecularSurface(const scene::Scene& scene) {
+  return std::ranges::any_of(scene.materials, &scene::Material::specularSurface);
 }
 
 }  // namespace
@@ -108,18 +113,30 @@ TextureHandle Deferred::start(const Frame& frame, bool emission) {
     map = implementation_->environment(graph);
     builder.read(map, Access::sampled, "background");
   }
-  if (geometry) {
+  const bool specular = geometry && environment && hasSpecularSurface(implementation_->scene);
+  if (specular) {
+    for (const GBufferInput& input : gbufferInputs(frame.gbuffer)) builder.read(input.texture, Access::sampled, input.why);
+    builder.read(frame.gbuffer.instance, Access::sampled, "material of specular surfaces");
+    builder.read(frame.handles.instances, Access::storageLoad, "material of specular surfaces");
+    builder.read(frame.handles.materials, Access::storageLoad, "transmission");
+  } else if (geometry) {
     builder.read(frame.gbuffer.depth, Access::sampled, "coverage");
     builder.read(frame.gbuffer.emission, Access::sampled, "emitted radiance");
   }
   const TextureHandle radiance = builder.write(target, Access::imageStore, "light the camera sees without reflection");
   const auto program = builder.program({.files = {"glsl/deferred/background.comp.glsl"},
                                         .defines = {{"GEOMETRY", geometry ? "1" : "0"},
-                                                    {"ENVIRONMENT", environment ? "1" : "0"}}});
+                                                    {"ENVIRONMENT", environment ? "1" : "0"},
+                                                    {"SPECULAR", specular ? "1" : "0"}}});
   builder.execute([=, handles = frame.handles, g = frame.gbuffer, size = frame.size](frame::PassContext& context) {
     context.program(program).use();
     context.bindUniform(glsl::FrameBlock::binding, handles.frame);
-    if (geometry) {
+    if (specular) {
+      for (const GBufferInput& input : gbufferInputs(g)) context.bindSampled(input.unit, input.texture);
+      context.bindSampled(glsl::gbuffer_unit_instance, g.instance);
+      context.bindStorage(0, handles.instances);
+      context.bindStorage(1, handles.materials);
+    } else if (geometry) {
       context.bindSampled(glsl::gbuffer_unit_depth, g.depth);
       context.bindSampled(glsl::gbuffer_unit_emission, g.emission);
     }

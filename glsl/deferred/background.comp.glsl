@@ -1,30 +1,60 @@
-// What the camera sees before any light is added: emission of surfaces, the environment behind them.
+// What the camera sees before any light is added: emission of surfaces, the environment behind them and, where there
+// are specular surfaces (SPECULAR), in them.
 #include "glsl/deferred/gbuffer_input.glsl"
 #include "glsl/equirectangular.glsl"
+#include "glsl/specular_view.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f, binding = 0) writeonly uniform image2D radiance;
 #if ENVIRONMENT
 layout(binding = 7) uniform sampler2D environment_map;
 #endif
+#if SPECULAR
+layout(binding = 6) uniform usampler2D gbuffer_instance;
+layout(std430, binding = 0) readonly buffer Instances { Instance instances[]; };
+layout(std430, binding = 1) readonly buffer Materials { Material materials[]; };
+#endif
 
-vec3 background(ivec2 pixel) {
+// direction: unit.
+vec3 environment_radiance(vec3 direction) {
 #if ENVIRONMENT
-  vec3 direction = environment_lookup_direction(normalize(pixel_ray(pixel)), frame.environment.x);
-  return frame.environment.y * textureLod(environment_map, equirectangular_uv(direction), 0.0).rgb;
+  vec2 uv = equirectangular_uv(environment_lookup_direction(direction, frame.environment.x));
+  return frame.environment.y * textureLod(environment_map, uv, 0.0).rgb;
 #else
   return vec3(0.0);
 #endif
 }
 
+#if SPECULAR
+vec3 seen_in_surface(ivec2 pixel) {
+  GBufferSurface s = pixel_surface(pixel);
+  if ((s.flags & gbuffer_flag_specular) == 0u) return vec3(0.0);
+  Material material = materials[instances[texelFetch(gbuffer_instance, pixel, 0).x].info.x];
+  SurfaceBrdf surface =
+      surface_brdf(s.base_colour, s.metallic, s.roughness, s.specular_factor, s.specular_colour, s.ior);
+  SpecularView seen = specular_view(surface, s.base_colour, s.metallic, material.transmission.x, s.ior,
+                                    material.transmission.y, material.attenuation.rgb, material.transmission.z,
+                                    s.normal, -normalize(pixel_ray(pixel)));
+  return seen.reflected * environment_radiance(seen.reflection) +
+         seen.transmitted * environment_radiance(seen.refraction);
+}
+#endif
+
+vec3 light_seen(ivec2 pixel) {
+#if GEOMETRY
+  if (pixel_depth(pixel) > 0.0) {
+    vec3 light = texelFetch(gbuffer_emission, pixel, 0).rgb;
+#if SPECULAR
+    light += seen_in_surface(pixel);
+#endif
+    return light;
+  }
+#endif
+  return environment_radiance(normalize(pixel_ray(pixel)));
+}
+
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
-#if GEOMETRY
-  bool covered = pixel_depth(pixel) > 0.0;
-  vec3 light = covered ? texelFetch(gbuffer_emission, pixel, 0).rgb : background(pixel);
-#else
-  vec3 light = background(pixel);
-#endif
-  imageStore(radiance, pixel, vec4(light, 1.0));
+  imageStore(radiance, pixel, vec4(light_seen(pixel), 1.0));
 }
