@@ -115,6 +115,12 @@ LIMN_FN float shadow_depth_of(ShadowView view, vec3 r) {
   return view.info.x == shadow_paraboloid ? sqrt(dot(r, r)) : r.z;
 }
 
+// Depth of a point, metres: what shadow_project gives for points the view sees.
+LIMN_FN float shadow_view_depth(ShadowView view, vec3 p) {
+  vec3 r = shadow_local(view, p);
+  return view.info.x == shadow_paraboloid ? sqrt(dot(r, r)) : r.z;
+}
+
 // Metres to what the map stores, and back.
 LIMN_FN float shadow_normalise(ShadowView view, float depth) {
   return (depth - view.origin.w) / (view.axis_z.w - view.origin.w);
@@ -137,17 +143,6 @@ LIMN_FN vec4 shadow_clip(ShadowView view, vec3 p) {
   float depth = sqrt(dot(r, r));
   float divisor = max(depth + r.z, 1e-6f * depth);
   return vec4(s * r.x / divisor, s * r.y / divisor, (far - depth) / (far - near), 1.0f);
-}
-
-// The stored value of a rasterised depth z in [0, 1] (0: nothing there, or beyond far). Always finite, in [0, 1].
-LIMN_FN float shadow_stored_from_clip(ShadowView view, float z) {
-  if (!(z > 0.0f)) return 1.0f;
-  float t = min(z, 1.0f);
-  if (view.info.x != shadow_perspective) return 1.0f - t;
-  float near = view.origin.w;
-  float far = view.axis_z.w;
-  // z = n (f - d) / (d (f - n))  =>  (d - n) / (f - n) = n (1 - z) / (n + z (f - n)).
-  return clamp(near * (1.0f - t) / (near + t * (far - near)), 0.0f, 1.0f);
 }
 
 // Side of a texel, metres, at `depth` (on a surface that faces the view).

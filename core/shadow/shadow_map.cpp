@@ -128,60 +128,46 @@ void ShadowMapService::Implementation::addPasses(Request& request) {
   request.importedViews = maps.views = graph->importBuffer("shadow views", request.viewBuffer);
   request.importedLights = maps.lights = graph->importBuffer("shadow lights", request.lightBuffer);
   const gpu::TextureDesc desc{.target = GL_TEXTURE_2D_ARRAY,
-                              .format = GL_DEPTH_COMPONENT32F,
+                              .format = GL_R32F,
                               .width = maps.size,
                               .height = maps.size,
                               .layers = maps.layers};
-  gpu::TextureDesc linearDesc = desc;
-  linearDesc.format = GL_R32F;
+  gpu::TextureDesc zDesc = desc;
+  zDesc.format = GL_DEPTH_COMPONENT32F;
 
   frame::PassBuilder raster = graph->addPass("shadow maps");
   scene::GpuScene::declareReads(raster, handles);
   raster.read(maps.views, Access::storageLoad, "projections");
-  const frame::TextureHandle rasterised = raster.write(graph->createTexture("rasterised shadow depth", desc),
-                                                       Access::depthAttachment, "depth per view");
+  maps.depth = raster.write(graph->createTexture("shadow maps", desc), Access::colourAttachment, "linear depth");
+  const frame::TextureHandle zbuffer = raster.write(graph->createTexture("shadow map z", zDesc),
+                                                    Access::depthAttachment, "hidden-surface removal");
   const bool layered = !device.software() && device.limits().layerFromVertexShader;
   const bool paraboloid = request.desc.projection == Projection::paraboloid;
   const auto program = [&](bool masked) {
-    gpu::ProgramDesc d{.files = {"glsl/shadow/depth.vert.glsl"},
+    gpu::ProgramDesc d{.files = {"glsl/shadow/depth.vert.glsl", "glsl/shadow/depth.frag.glsl"},
                        .defines = {{"LAYERED", layered ? "1" : "0"},
                                    {"MASKED", masked ? "1" : "0"},
                                    {"PARABOLOID", paraboloid ? "1" : "0"}}};
-    if (masked) d.files.push_back("glsl/shadow/masked.frag.glsl");
     return raster.program(d);
   };
   scene::DrawPrograms programs;
   programs.opaque = program(false);
   programs.masked = scene.hasMasked() ? program(true) : programs.opaque;
   if (request.desc.cacheable) raster.cacheable();
-  raster.execute([this, &request, rasterised, layered, paraboloid, programs](frame::PassContext& context) {
+  raster.execute([this, &request, zbuffer, layered, paraboloid, programs](frame::PassContext& context) {
     const gl::Functions& gl = context.gl();
-    constexpr GLfloat nothing = 0;
-    context.bindFramebuffer({}, {rasterised});
-    gl.ClearBufferfv(GL_DEPTH, 0, &nothing);
+    const frame::TextureHandle depth = request.maps.depth;
+    constexpr GLfloat nothing[4] = {1, 1, 1, 1}, farthest = 0;
+    context.bindFramebuffer({{depth}}, {zbuffer});
+    gl.ClearBufferfv(GL_COLOR, 0, nothing);
+    gl.ClearBufferfv(GL_DEPTH, 0, &farthest);
     context.bindStorage(2, request.maps.views);
     if (paraboloid) gl.Enable(GL_CLIP_DISTANCE0);
     scene.drawDepth(context, handles, programs, request.depthViews, request.drawList, layered,
                     [&](const scene::DepthView& view) {
-                      context.bindFramebuffer({}, {rasterised, 0, view.layer});
+                      context.bindFramebuffer({{depth, 0, view.layer}}, {zbuffer, 0, view.layer});
                     });
     if (paraboloid) gl.Disable(GL_CLIP_DISTANCE0);
-  });
-
-  frame::PassBuilder linearise = graph->addPass("linear shadow depth");
-  linearise.read(rasterised, Access::sampled, "depth per view")
-      .read(maps.views, Access::storageLoad, "near and far");
-  maps.depth =
-      linearise.write(graph->createTexture("shadow maps", linearDesc), Access::imageStore, "linear depth");
-  const frame::ProgramHandle kernel =
-      linearise.program({.files = {"glsl/shadow/linearise.comp.glsl"}, .defines = {}});
-  if (request.desc.cacheable) linearise.cacheable();
-  linearise.execute([maps, rasterised, kernel](frame::PassContext& context) {
-    context.program(kernel).use();
-    context.bindSampled(0, rasterised);
-    context.bindImage(0, maps.depth, GL_WRITE_ONLY);
-    context.bindStorage(0, maps.views);
-    context.dispatch(maps.size, maps.size, maps.layers, 16, 16);
   });
 }
 

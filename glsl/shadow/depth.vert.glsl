@@ -16,10 +16,11 @@ layout(location = 1) in uvec2 entry;  // x: draw instance, y: view
 #if MASKED
 layout(location = 3) in vec2 uv;
 layout(location = 4) in vec4 colour;
-layout(location = 0) out vec2 surface_uv;
-layout(location = 1) out float surface_alpha;
-layout(location = 2) flat out uint material_index;
+layout(location = 1) out vec2 surface_uv;
+layout(location = 2) out float surface_alpha;
+layout(location = 3) flat out uint material_index;
 #endif
+layout(location = 0) out float linear_depth;  // linear in the view's depth, so interpolated exactly
 
 layout(std430, binding = 0) readonly buffer Instances { Instance instances[]; };
 layout(std430, binding = 2) readonly buffer Views { ShadowView views[]; };
@@ -28,6 +29,7 @@ void main() {
   ShadowView view = views[entry.y];
   vec3 world = (instances[entry.x].object_to_world * vec4(position, 1.0)).xyz;
   gl_Position = shadow_clip(view, world);
+  linear_depth = shadow_normalise(view, shadow_view_depth(view, world));
 #if PARABOLOID
   vec3 local = shadow_local(view, world);
   gl_ClipDistance[0] = view.info.x == shadow_paraboloid ? local.z + 0.1 * length(local) : 1.0;
