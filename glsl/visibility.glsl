@@ -2,16 +2,12 @@
 // receiver of a pixel and the light of a layer.
 #ifndef LIMN_VISIBILITY_GLSL
 #define LIMN_VISIBILITY_GLSL
-#include "glsl/blocks.glsl"
-#include "glsl/gbuffer.glsl"
+#include "glsl/gbuffer_input.glsl"
 #include "glsl/light_view.glsl"
 #include "glsl/shadow_view.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 0) uniform sampler2D gbuffer_depth;
-layout(binding = 2) uniform sampler2D gbuffer_geometric_normal;
-layout(binding = 6) uniform usampler2D gbuffer_instance;
 layout(binding = 8) uniform sampler2DArray shadow_depth;
 layout(std430, binding = 0) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = 1) readonly buffer ShadowViews { ShadowView shadow_views[]; };
@@ -33,13 +29,12 @@ struct VisibilityQuery {
 VisibilityQuery visibility_query(ivec3 at, int samples, int shadow_sample) {
   VisibilityQuery q;
   q.maps = shadow_lights[at.z * samples + shadow_sample];
-  float depth = texelFetch(gbuffer_depth, at.xy, 0).r;
-  vec3 ray = frame.view_ray_origin.xyz + float(at.x) * frame.view_ray_dx.xyz + float(at.y) * frame.view_ray_dy.xyz;
-  q.position = frame.camera_position.xyz + depth * ray;
-  q.normal = octahedral_decode(texelFetch(gbuffer_geometric_normal, at.xy, 0).rg);
+  float depth = pixel_depth(at.xy);
+  q.position = pixel_position(at.xy, depth);
+  q.normal = pixel_geometric_normal(at.xy);
   Light light = lights[q.maps.info.z];
   q.light = light_view(light, q.position, q.normal, light_size);
-  bool itself = light.info.z != no_instance && texelFetch(gbuffer_instance, at.xy, 0).r == light.info.z;
+  bool itself = light.info.z != no_instance && pixel_instance(at.xy) == light.info.z;
   q.masked = depth == 0.0 || itself || q.light.masked;
   return q;
 }

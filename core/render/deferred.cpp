@@ -31,7 +31,7 @@ struct GBufferInput {
   const char* why;
 };
 
-/// What glsl/deferred/gbuffer_input.glsl samples.
+/// What glsl/gbuffer_input.glsl samples.
 std::array<GBufferInput, 6> gbufferInputs(const GBuffer& g) {
   return {{{glsl::gbuffer_unit_depth, g.depth, "position"},
            {glsl::gbuffer_unit_normal, g.normal, "shading normal"},

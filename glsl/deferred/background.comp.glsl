@@ -1,6 +1,6 @@
 // What the camera sees before any light is added: emission of surfaces, the environment behind them and, where there
 // are specular surfaces (SPECULAR), in them.
-#include "glsl/deferred/gbuffer_input.glsl"
+#include "glsl/gbuffer_input.glsl"
 #include "glsl/equirectangular.glsl"
 #include "glsl/specular_view.glsl"
 
@@ -10,7 +10,6 @@ layout(rgba32f, binding = 0) writeonly uniform image2D radiance;
 layout(binding = 7) uniform sampler2D environment_map;
 #endif
 #if SPECULAR
-layout(binding = 6) uniform usampler2D gbuffer_instance;
 layout(std430, binding = 0) readonly buffer Instances { Instance instances[]; };
 layout(std430, binding = 1) readonly buffer Materials { Material materials[]; };
 #endif
@@ -29,7 +28,7 @@ vec3 environment_radiance(vec3 direction) {
 vec3 seen_in_surface(ivec2 pixel) {
   GBufferSurface s = pixel_surface(pixel);
   if ((s.flags & gbuffer_flag_specular) == 0u) return vec3(0.0);
-  Material material = materials[instances[texelFetch(gbuffer_instance, pixel, 0).x].info.x];
+  Material material = materials[instances[pixel_instance(pixel)].info.x];
   SurfaceBrdf surface =
       surface_brdf(s.base_colour, s.metallic, s.roughness, s.specular_factor, s.specular_colour, s.ior);
   SpecularView seen = specular_view(surface, s.base_colour, s.metallic, material.transmission.x, s.ior,

@@ -1,5 +1,5 @@
 // Adds the light of the environment on every surface to the radiance, unoccluded (V = 1).
-#include "glsl/deferred/gbuffer_input.glsl"
+#include "glsl/gbuffer_input.glsl"
 #include "glsl/environment.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,6 +1,6 @@
 // Adds sum of L_u V over a batch of lights to the radiance: unshadowed reflected light, exact for diffuse surfaces, times
 // visibility (layer per light; V = 1 where nobody was asked).
-#include "glsl/deferred/gbuffer_input.glsl"
+#include "glsl/gbuffer_input.glsl"
 #include "glsl/unshadowed_light.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

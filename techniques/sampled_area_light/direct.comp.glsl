@@ -4,21 +4,7 @@
 #include "samples.glsl"
 
 layout(binding = 0, rgba32f) uniform image2D radiance;
-layout(binding = 1) uniform sampler2D gbuffer_normal;
-layout(binding = 3) uniform sampler2D gbuffer_albedo;
-layout(binding = 4) uniform sampler2D gbuffer_material;
-layout(binding = 5) uniform sampler2D gbuffer_emission;
 uniform int light_count;
-
-GBufferSurface surface_at(ivec2 pixel) {
-  GBufferTexels texels;
-  texels.normal = texelFetch(gbuffer_normal, pixel, 0).rg;
-  texels.geometric_normal = texelFetch(gbuffer_geometric_normal, pixel, 0).rg;
-  texels.albedo = texelFetch(gbuffer_albedo, pixel, 0);
-  texels.material = texelFetch(gbuffer_material, pixel, 0);
-  texels.emission = texelFetch(gbuffer_emission, pixel, 0);
-  return gbuffer_unpack(texels);
-}
 
 // Irradiance of one sample on a surface that faces it, were it all of the light.
 vec3 sample_irradiance(Light light, LightView view, vec3 receiver, vec3 offset) {
@@ -49,8 +35,8 @@ vec3 light_from(VisibilityQuery q, Light light, int l, SurfaceBrdf surface, vec3
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, imageSize(radiance)))) return;
-  if (texelFetch(gbuffer_depth, pixel, 0).r == 0.0) return;
-  GBufferSurface s = surface_at(pixel);
+  if (pixel_depth(pixel) == 0.0) return;
+  GBufferSurface s = pixel_surface(pixel);
   if ((s.flags & gbuffer_flag_specular) != 0u) return;
   SurfaceBrdf surface =
       surface_brdf(s.base_colour, s.metallic, s.roughness, s.specular_factor, s.specular_colour, s.ior);

@@ -10,6 +10,7 @@ layout(binding = 2) uniform sampler2D gbuffer_geometric_normal;
 layout(binding = 3) uniform sampler2D gbuffer_albedo;
 layout(binding = 4) uniform sampler2D gbuffer_material;
 layout(binding = 5) uniform sampler2D gbuffer_emission;
+layout(binding = 6) uniform usampler2D gbuffer_instance;
 
 // Metres along the view axis; 0: no coverage.
 float pixel_depth(ivec2 pixel) { return texelFetch(gbuffer_depth, pixel, 0).x; }
@@ -23,6 +24,9 @@ GBufferSurface pixel_surface(ivec2 pixel) {
   t.emission = texelFetch(gbuffer_emission, pixel, 0);
   return gbuffer_unpack(t);
 }
+
+// Index of the draw instance, no_instance where there is none.
+uint pixel_instance(ivec2 pixel) { return texelFetch(gbuffer_instance, pixel, 0).x; }
 
 vec3 pixel_geometric_normal(ivec2 pixel) {
   return octahedral_decode(texelFetch(gbuffer_geometric_normal, pixel, 0).xy);
