@@ -61,6 +61,19 @@ void printExplanation(const std::vector<frame::PassReport>& passes, const render
   }
 }
 
+void printStats(const render::FrameStats& stats) {
+  fmt::print("{}: {:.3f} ms a frame (quartiles {:.3f} to {:.3f}, {} frames, {}), passes {:.3f} ms, {:.1f} MiB\n",
+             stats.renderer, stats.frameMs.median, stats.frameMs.q1, stats.frameMs.q3, stats.frameMs.n,
+             stats.dynamic ? "dynamic" : "static", stats.passSumMs,
+             static_cast<double>(stats.memoryBytes) / (1 << 20));
+  constexpr double allowed = 0.15;  // else the passes' times do not explain the frame's
+  if (std::abs(stats.passSumMs - stats.frameMs.median) > allowed * stats.frameMs.median)
+    fmt::print(stderr,
+               "limn: warning: the passes sum to {:.3f} ms, the frame takes {:.3f} ms: the machine was busy, or work "
+               "happens outside the passes\n",
+               stats.passSumMs, stats.frameMs.median);
+}
+
 int run(const Options& options) {
   checkOutputName(options.out);
   const auto frames = parseFrames(options.frames);
@@ -102,9 +115,7 @@ int run(const Options& options) {
   if (repeat > 0) {
     stats = render::measure(renderer, repeat);
     stats->scene = options.scene.scene.string();
-    fmt::print("{}: {:.3f} ms a frame (quartiles {:.3f} to {:.3f}, {} frames, {}), {:.1f} MiB\n", stats->renderer,
-               stats->frameMs.median, stats->frameMs.q1, stats->frameMs.q3, stats->frameMs.n,
-               stats->dynamic ? "dynamic" : "static", static_cast<double>(stats->memoryBytes) / (1 << 20));
+    printStats(*stats);
   }
   if (options.explain) printExplanation(renderer.explain(), stats ? &*stats : nullptr);
   if (!options.stats.empty()) writeTextFile(options.stats, render::toJson(*stats) + "\n");
