@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "apps/limn/commands.h"
+#include "apps/limn/options.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/image/compare_report.h"
@@ -32,6 +33,7 @@ int run(const Options& options) {
   compare.exposureEv = static_cast<float>(options.exposure);
   compare.maxMaskedShare = options.maxMasked / 100;
   compare.maskTermRange = parseTermRange(options.maskTermRange);
+  if (!options.diff.empty()) checkWritable(options.diff);
   const Image image = readImage(options.image), reference = readImage(options.reference);
   const Metrics metrics = compareImages(image, reference, compare);
   if (!options.diff.empty()) writePng(options.diff, differenceImage(image, reference, compare));

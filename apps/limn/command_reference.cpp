@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "apps/limn/commands.h"
+#include "apps/limn/interruption.h"
 #include "apps/limn/options.h"
 #include "core/base/error.h"
 #include "core/reference/reference.h"
@@ -37,13 +38,15 @@ reference::Request makeRequest(const Options& options, const View& view) {
 int run(const Options& options) {
   if (options.out.extension() != ".exr" && options.out.extension() != ".png")
     throw UsageError(fmt::format("--out '{}' is not accepted; expected a name ending in .exr or .png", options.out.string()));
+  checkWritable(options.out);
   const View view = open(options.scene);
   reference::Request request = makeRequest(options, view);
   Progress progress("reference");
-  request.progress = [&progress](const reference::Progress& state) {
+  const Interruption interruption;
+  request.progress = [&](const reference::Progress& state) {
     progress.update(state.fraction, fmt::format("{} spp, noise {:.4f}, {:.0f} s left", state.spp, state.noise,
                                                 state.secondsLeft));
-    return true;
+    return !interruption.asked();
   };
   reference::Result result;
   if (options.cache.empty()) {

@@ -76,6 +76,8 @@ void printStats(const render::FrameStats& stats) {
 
 int run(const Options& options) {
   checkOutputName(options.out);
+  for (const fs::path& file : {options.out, options.stats, options.graph})
+    if (!file.empty()) checkWritable(file);
   const auto frames = parseFrames(options.frames);
   const auto folders = TechniqueRegistry::defaultFolders();
   const TechniqueRegistry registry(folders);

@@ -1,14 +1,37 @@
 // limn: the command line.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
 
 #include "apps/limn/commands.h"
 #include "apps/limn/options.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
+
+namespace {
+
+/// CLI11 would call an unknown command a missing one.
+void checkCommand(const CLI::App& limn, const std::string& name) {
+  std::vector<std::string> known;
+  for (const CLI::App* command : limn.get_subcommands({})) known.push_back(command->get_name());
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+  throw limn::UsageError("unknown command '" + name + "'" + limn::didYouMean(name, known) + "; known are " +
+                         limn::joined(known));
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is that file's error, not the program's end
   CLI::App limn("limn: real-time shadows and global illumination, with their error and their cost", "limn");
   limn.set_version_flag("--version", LIMN_VERSION);
   limn.require_subcommand(1);
-  limn.failure_message(CLI::FailureMessage::simple);
+  limn.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return std::string("limn: ") + error.what() + "; see limn --help\n";
+  });
 
   limn::app::Action action;
   const auto add = [&](const char* name, const char* description, limn::app::Action (*build)(CLI::App&)) {
@@ -23,10 +46,16 @@ int main(int argc, char** argv) {
   add("compare", "Measure how far an image is from its reference", addCompareCommand);
   add("bench", "Run a suite: error and time of many settings, as tables", addBenchCommand);
 
-  try {
-    limn.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return limn.exit(error) == 0 ? 0 : 2;
-  }
-  return guarded(action);
+  return guarded([&] {
+    if (argc > 1 && argv[1][0] != '-') checkCommand(limn, argv[1]);
+    try {
+      limn.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return limn.exit(error) == 0 ? 0 : 2;
+    }
+    const int status = action();
+    if (std::fflush(stdout) != 0)
+      throw limn::Error(std::string("standard output cannot be written: ") + std::strerror(errno));
+    return status;
+  });
 }

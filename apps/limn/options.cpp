@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <new>
 
 #include "core/base/error.h"
@@ -69,6 +71,14 @@ fs::path findScene(const fs::path& nameOrFile) {
       if (const fs::path file = folder / name / (name + ".glb"); fs::exists(file, ignored)) return file;
   throw Error(fmt::format("scene '{}' does not exist; expected a .gltf or .glb file, or the name of one of limn's scenes",
                           name));
+}
+
+void checkWritable(const fs::path& file) {
+  std::error_code ignored;
+  if (fs::is_directory(file, ignored)) throw Error(fmt::format("{}: cannot be written: it is a folder", file.string()));
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    throw Error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
 }
 
 glm::ivec2 parseSize(const std::string& text) {
@@ -176,15 +186,16 @@ ContextOptions BackendOptions::contextOptions() const {
 }
 
 int guarded(const std::function<int()>& work) {
+  const auto say = [](const std::string& message) { std::fputs(("limn: " + message + "\n").c_str(), stderr); };
   try {
     return work();
   } catch (const UsageError& error) {
-    fmt::print(stderr, "limn: {}\n", error.what());
+    say(error.what());
     return 2;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "limn: out of memory\n");
+    say("out of memory");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "limn: {}\n", error.what());
+    say(error.what());
   }
   return 1;
 }
@@ -192,17 +203,17 @@ int guarded(const std::function<int()>& work) {
 Progress::Progress(std::string label) : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
-  if (terminal_ && lastShown_ >= 0) fmt::print(stderr, "\r\033[K");
+  if (terminal_ && lastShown_ >= 0) std::fputs("\r\033[K", stderr);
 }
 
 void Progress::update(double fraction, const std::string& note) {
   const int percent = static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0));
   if (terminal_) {
     constexpr int width = 30;
-    fmt::print(stderr, "\r{} [{:<{}}] {:3}% {}\033[K", label_, std::string(static_cast<size_t>(percent * width / 100), '#'),
-               width, percent, note);
+    const std::string bar(static_cast<size_t>(percent * width / 100), '#');
+    std::fputs(fmt::format("\r{} [{:<{}}] {:3}% {}\033[K", label_, bar, width, percent, note).c_str(), stderr);
   } else if (percent / 10 > lastShown_ / 10 || lastShown_ < 0) {
-    fmt::print(stderr, "{}: {}% {}\n", label_, percent, note);
+    std::fputs(fmt::format("{}: {}% {}\n", label_, percent, note).c_str(), stderr);
   } else {
     return;
   }

@@ -50,6 +50,9 @@ View open(const SceneOptions& options);
 /// The file itself, or the scene of that name that was built with limn. Throws Error when there is neither.
 std::filesystem::path findScene(const std::filesystem::path& nameOrFile);
 
+/// Throws Error unless files can be written beside `file`: asked before long work, which would be lost.
+void checkWritable(const std::filesystem::path& file);
+
 glm::ivec2 parseSize(const std::string& text);
 /// Index of a name or "#index" among `names`; throws UsageError listing them.
 int findNamed(const std::string& what, const std::string& text, const std::vector<std::string>& names);

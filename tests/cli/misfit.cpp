@@ -1,4 +1,5 @@
-// A plug-in from another interface version: core must refuse it before it reads anything beyond the handshake.
+// A plug-in from another interface version: core must refuse it before it reads anything beyond the
+// handshake.
 #include "core/technique/technique.h"
 
 extern "C" __attribute__((visibility("default"))) const limn::TechniquePlugin* limnTechniquePlugin() {

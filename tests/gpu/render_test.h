@@ -26,6 +26,17 @@ class RenderTest : public GlTest {
     return instance;
   }
 
+  /// A technique whose quality parameters are kept small, so that laws that hold at any quality are tested quickly.
+  static render::TechniqueUse quick(const std::string& name) {
+    render::TechniqueUse use = technique(name);
+    for (const Parameter& p : use.parameters.declared()) {
+      if (!p.tradesErrorForTime || p.type != ParameterType::integer) continue;
+      const double most = std::string_view(p.unit) == "texels" ? 512 : 16;
+      if (p.defaultValue > most && p.range.low <= most) use.parameters.set(p.name, std::to_string(int(most)));
+    }
+    return use;
+  }
+
   /// A technique with some parameters set.
   static render::TechniqueUse technique(const std::string& name,
                                         const std::vector<std::pair<std::string, std::string>>& values = {}) {

@@ -45,7 +45,7 @@ TEST_F(TechniqueTest, EveryTechniqueAnswersEveryLightAlone) {
   for (const std::string& name : techniquesAnswering(Term::visibility)) {
     for (size_t light = 0; light < renderer.pose().lights.size(); ++light) {
       SCOPED_TRACE(name + ", light " + renderer.pose().lightNames[light]);
-      const Image v = picture(renderer, settings(96, 64, Output::visibility, {technique(name)}, int(light)));
+      const Image v = picture(renderer, settings(96, 64, Output::visibility, {quick(name)}, int(light)));
       expectWithin(v, 0, 1);
       EXPECT_GT(mean(v), 0.3) << "mostly lit";
       EXPECT_LT(mean(v), 0.9999) << "something casts a shadow";
@@ -61,10 +61,10 @@ TEST_F(TechniqueTest, LightsTogetherAreTheSumOfTheLightsAlone) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   for (const std::string& name : names) {
     SCOPED_TRACE(name);
-    const Image together = picture(renderer, settings(64, 48, Output::direct, {technique(name)}));
+    const Image together = picture(renderer, settings(64, 48, Output::direct, {quick(name)}));
     Image sum(64, 48, {"R", "G", "B"});
     for (size_t light = 0; light < renderer.pose().lights.size(); ++light) {
-      const Image alone = picture(renderer, settings(64, 48, Output::direct, {technique(name)}, int(light)));
+      const Image alone = picture(renderer, settings(64, 48, Output::direct, {quick(name)}, int(light)));
       for (size_t i = 0; i < sum.data().size(); ++i) sum.data()[i] += alone.data()[i];
     }
     expectWithin(together, 0, 1e6f);
@@ -79,7 +79,7 @@ TEST_F(TechniqueTest, ShadowsOnlyTakeLightAway) {
   const Image unshadowed = picture(renderer, settings(64, 48, Output::direct));
   for (const std::string& name : techniquesAnswering(Term::visibility)) {
     if (contains(registry().find(name).info->terms, Term::direct)) continue;  // does not use core's L_u
-    const Image shadowed = picture(renderer, settings(64, 48, Output::direct, {technique(name)}));
+    const Image shadowed = picture(renderer, settings(64, 48, Output::direct, {quick(name)}));
     int brighter = 0;
     for (size_t i = 0; i < shadowed.data().size(); ++i)
       brighter += shadowed.data()[i] > unshadowed.data()[i] * (1 + 1e-5f);
@@ -94,11 +94,11 @@ TEST_F(TechniqueTest, ScaleOfTheSceneDoesNotMatter) {
     render::Renderer renderer(device(), scene), scaledRenderer(device(), other);
     for (const std::string& name : techniquesAnswering(Term::visibility)) {
       SCOPED_TRACE(name + " at scale " + std::to_string(factor));
-      const Image a = picture(renderer, settings(128, 96, Output::visibility, {technique(name)}, 0));
-      const Image b = picture(scaledRenderer, settings(128, 96, Output::visibility, {technique(name)}, 0));
+      const Image a = picture(renderer, settings(128, 96, Output::visibility, {quick(name)}, 0));
+      const Image b = picture(scaledRenderer, settings(128, 96, Output::visibility, {quick(name)}, 0));
       EXPECT_LT(rmse(a, b), 1e-3);
-      const Image c = picture(renderer, settings(128, 96, Output::final, {technique(name)}));
-      const Image d = picture(scaledRenderer, settings(128, 96, Output::final, {technique(name)}));
+      const Image c = picture(renderer, settings(128, 96, Output::final, {quick(name)}));
+      const Image d = picture(scaledRenderer, settings(128, 96, Output::final, {quick(name)}));
       EXPECT_LT(rmse(c, d), 1e-3);
     }
   }
@@ -110,7 +110,7 @@ TEST_F(TechniqueTest, ExtremeResolutionsGiveFinitePictures) {
   for (const auto& [width, height] : {std::pair(1, 1), std::pair(4096, 1), std::pair(1, 4096), std::pair(17, 3)})
     for (const std::string& name : techniquesAnswering(Term::visibility)) {
       SCOPED_TRACE(name);
-      expectWithin(picture(renderer, settings(width, height, Output::final, {technique(name)})), 0, 1e6f);
+      expectWithin(picture(renderer, settings(width, height, Output::final, {quick(name)})), 0, 1e6f);
     }
 }
 
@@ -122,8 +122,8 @@ TEST_F(TechniqueTest, RadianceScalesLinearlyOverTwelveDecades) {
     render::Renderer renderer(device(), scene), brighter(device(), other);
     for (const std::string& name : techniquesAnswering(Term::visibility)) {
       SCOPED_TRACE(name);
-      const Image a = picture(renderer, settings(64, 48, Output::direct, {technique(name)}));
-      const Image b = picture(brighter, settings(64, 48, Output::direct, {technique(name)}));
+      const Image a = picture(renderer, settings(64, 48, Output::direct, {quick(name)}));
+      const Image b = picture(brighter, settings(64, 48, Output::direct, {quick(name)}));
       EXPECT_NEAR(mean(b) / mean(a) / factor, 1.0, 1e-4);
     }
   }
@@ -134,7 +134,7 @@ TEST_F(TechniqueTest, CameraInsideAnObjectGivesAFinitePicture) {
   render::Renderer renderer(device(), scene);
   scene::CameraPose camera = renderer.pose().cameras.at(0);
   for (const std::string& name : techniquesAnswering(Term::visibility)) {
-    renderer.configure(settings(64, 48, Output::final, {technique(name)}));
+    renderer.configure(settings(64, 48, Output::final, {quick(name)}));
     camera.worldToView = glm::mat4(1);
     camera.worldToView[3] = glm::vec4(-renderer.pose().bounds.centre(), 1);
     renderer.setCamera(camera);

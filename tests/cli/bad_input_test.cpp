@@ -1,0 +1,156 @@
+// Files that are broken and places that cannot be written: one line, the exit status, and nothing left
+// behind.
+#include <limits>
+
+#include "tests/cli/limn_program.h"
+#include "tests/support/gltf_builder.h"
+#include "tests/support/png.h"
+
+namespace limn::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class BadScene : public testing::Test {
+ protected:
+  BadScene() {
+    fs::create_directory(scenes_);
+    fs::create_directory(pictures_);
+  }
+
+  void write(const std::string& name, const std::vector<std::byte>& bytes) const {
+    std::ofstream(scenes_ / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  }
+
+  /// Both renderers refuse the file, naming it and `parts`.
+  void expectScene(const std::string& name, std::vector<std::string> parts) const {
+    SCOPED_TRACE(name);
+    parts.push_back(name);
+    for (const char* command : {"render", "reference"}) {
+      expectRefused(limn({command, scenes_ / name, "--size", "8x8", "--out", pictures_ / "a.exr"}), 1, parts);
+      EXPECT_TRUE(listing(pictures_).empty()) << command;
+    }
+  }
+
+  void expectScene(const std::string& name, const GltfBuilder& builder,
+                   const std::vector<std::string>& parts) const {
+    write(name, builder.glb());
+    expectScene(name, parts);
+  }
+
+  const TemporaryFolder folder_;
+  const fs::path scenes_ = folder_ / "scenes", pictures_ = folder_ / "pictures";
+};
+
+GltfBuilder triangle() {
+  GltfBuilder builder;
+  builder.triangle();
+  return builder;
+}
+
+GltfBuilder trianglePositions(float value) {
+  GltfBuilder builder = triangle();
+  builder.root["meshes"][0]["primitives"][0]["attributes"]["POSITION"] =
+      builder.vec3({{0, 0, 0}, {1, value, 0}, {0, 1, 0}});
+  return builder;
+}
+
+TEST_F(BadScene, MissingOrCutOff) {
+  expectScene("none.glb", {"does not exist"});
+  const std::string whole = contents(cornell_box);
+  const std::string half = whole.substr(0, whole.size() / 2);
+  write("cut.glb", GltfBuilder::toBytes(half));
+  expectScene("cut.glb", {});
+  write("empty.glb", {});
+  expectScene("empty.glb", {"not a glTF 2.0 file"});
+}
+
+TEST_F(BadScene, Accessors) {
+  GltfBuilder builder = triangle();
+  builder.root["accessors"][0]["byteOffset"] = 4;
+  expectScene("accessor.glb", builder, {"accessor 0", "do not fit"});
+  builder = triangle();
+  builder.root["accessors"][0]["count"] = 1'000'000'000;
+  expectScene("billion.glb", builder, {"1000000000"});
+  builder = triangle();
+  builder.root["meshes"][0]["primitives"][0]["indices"] = builder.indices({0, 1, 3});
+  expectScene("index.glb", builder, {"index 3", "there are 3"});
+}
+
+TEST_F(BadScene, PositionsThatAreNoNumbers) {
+  expectScene("nan.glb", trianglePositions(std::numeric_limits<float>::quiet_NaN()), {"POSITION", "finite"});
+  expectScene("infinite.glb", trianglePositions(std::numeric_limits<float>::infinity()),
+              {"POSITION", "finite"});
+}
+
+TEST_F(BadScene, NodesInACircle) {
+  GltfBuilder builder;
+  builder.node({{"name", "a"}, {"children", {1}}});
+  builder.node({{"name", "b"}, {"children", {0}}});
+  expectScene("cycle.glb", builder, {"cycle", "node 0 'a'"});
+}
+
+TEST_F(BadScene, TextureOutsideTheSceneFolder) {
+  write("../secret.png", png(1, 1, {1, 2, 3, 4}));
+  GltfBuilder builder;
+  builder.append("images", {{"uri", "../secret.png"}});
+  builder.append("textures", {{"source", 0}});
+  builder.append("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  expectScene("escape.glb", builder, {"../secret.png", "outside the scene's folder"});
+}
+
+class BadOutput : public testing::Test {
+ protected:
+  /// `limn render` and `limn reference` of a small picture.
+  static Outcome write(const std::string& command, const std::string& out, rlim_t fileSizeLimit = 0) {
+    return limn({command, cornell_box, "--size", "64x64", "--out", out}, {}, fileSizeLimit);
+  }
+  const TemporaryFolder folder_;
+};
+
+TEST_F(BadOutput, PlacesThatCannotBeWritten) {
+  fs::create_directory(folder_ / "folder.exr");
+  std::ofstream(folder_ / "file") << "no folder";
+  for (const char* command : {"render", "reference"}) {
+    expectRefused(write(command, folder_ / "none/a.exr"), 1, {"none/a.exr", "cannot be written"});
+    expectRefused(write(command, folder_ / "file/a.exr"), 1, {"file/a.exr", "cannot be written"});
+    expectRefused(write(command, folder_ / "folder.exr"), 1, {"folder.exr", "cannot be written"});
+    expectRefused(write(command, folder_ / "a.bmp"), 2, {"a.bmp", ".png"});
+  }
+  EXPECT_EQ(listing(folder_.path()), (std::vector<std::string>{"file", "folder.exr"}));
+}
+
+TEST_F(BadOutput, FullDisk) {
+  for (const char* name : {"a.exr", "a.png"}) {
+    expectRefused(write("render", folder_ / name, 100), 1, {name, "cannot be written"});
+    EXPECT_TRUE(listing(folder_.path()).empty());
+  }
+  std::ofstream(folder_ / "a.exr") << "former";  // what was there stays
+  expectRefused(write("render", folder_ / "a.exr", 100), 1, {"a.exr"});
+  EXPECT_EQ(contents(folder_ / "a.exr"), "former");
+  EXPECT_EQ(listing(folder_.path()).size(), 1u);
+}
+
+TEST_F(BadOutput, FullStandardOutput) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  const Outcome outcome = run({"/bin/sh", "-c", "exec " + limn_binary + " list > /dev/full"});
+  expectRefused(outcome, 1, {"standard output"});
+}
+
+TEST_F(BadOutput, FullDiskDuringABench) {
+  std::ofstream(folder_ / "suite.toml")
+      << "name = 'full'\nsizes = ['32x20']\nframes = 1\nwarmup = 0\nreference = {spp = 2}\n"
+         "[[scenes]]\nscene = '"
+      << cornell_box
+      << "'\n"
+         "max_masked_share = 0.05\n[[techniques]]\ntechnique = 'hard_shadow_map'\n";
+  const Outcome outcome = limn({"bench", folder_ / "suite.toml", "--out", folder_ / "out"}, {}, 2000);
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, testing::HasSubstr("cannot be written"));
+  const std::string rows = contents(folder_ / "out/results.jsonl");
+  EXPECT_TRUE(rows.empty() || rows.back() == '\n') << "half a row: " << rows;
+}
+
+}  // namespace
+}  // namespace limn::test

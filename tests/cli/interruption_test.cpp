@@ -1,0 +1,85 @@
+// Long work that is stopped halfway is not lost.
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tests/cli/limn_program.h"
+
+namespace limn::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Finished lines of a file.
+std::vector<std::string> lines(const fs::path& file) {
+  std::vector<std::string> result;
+  std::istringstream text(contents(file));
+  for (std::string line; std::getline(text, line) && !text.eof();) result.push_back(line);
+  return result;
+}
+
+TEST(Interruption, ReferenceLeavesACheckpointAndResumes) {
+  const TemporaryFolder folder;
+  const auto command = [&](const std::string& name) {
+    return std::vector<std::string>{limn_binary, "reference", cornell_box,   "--size",    "48x48", "--spp",
+                                    "4096",      "--out",     folder / name, "--threads", "1"};
+  };
+  ASSERT_EQ(run(command("whole.exr")).status, 0);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const fs::path checkpoint = folder / "a.exr.checkpoint";
+    Process process(command("a.exr"));
+    ASSERT_TRUE(process.waitUntil([&] { return process.err().find("%") != std::string::npos; }))
+        << process.err();
+    process.signal(signal);
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_THAT(outcome.err,
+                testing::AllOf(testing::HasSubstr("stopped after"), testing::HasSubstr(checkpoint.string())));
+    EXPECT_EQ(listing(folder.path()), (std::vector<std::string>{"a.exr.checkpoint", "whole.exr"}));
+
+    ASSERT_EQ(run(command("a.exr")).status, 0);
+    EXPECT_EQ(listing(folder.path()), (std::vector<std::string>{"a.exr", "whole.exr"}));
+    const Outcome compared = limn({"compare", folder / "a.exr", folder / "whole.exr", "--json"});
+    ASSERT_EQ(compared.status, 0) << compared.err;
+    EXPECT_EQ(nlohmann::json::parse(compared.out)["rmse"], 0.0)
+        << "the same bits as without the interruption";
+    fs::remove(folder / "a.exr");
+  }
+}
+
+TEST(Interruption, KilledBenchLosesNoRow) {
+  const TemporaryFolder folder;
+  constexpr size_t cases = 16;
+  // The box's edges run along diagonals of pixels, where the renderers may name either wall: many of so few
+  // pixels.
+  std::ofstream(folder / "suite.toml")
+      << "name = 'killed'\nsizes = ['32x20', '48x30']\nframes = 2\nwarmup = 0\nreference = {spp = 2}\n"
+         "modes = ['dynamic', 'static']\n[[scenes]]\nscene = '"
+      << cornell_box
+      << "'\n"
+         "max_masked_share = 0.05\n[[techniques]]\ntechnique = 'hard_shadow_map'\n"
+         "parameters = {shadow_map_size = [16, 32], filter = ['nearest', '2x2']}\n";
+  const std::vector<std::string> command{limn_binary, "bench", folder / "suite.toml", "--out",
+                                         folder / "out"};
+  const fs::path results = folder / "out/results.jsonl";
+
+  Process process(command);
+  ASSERT_TRUE(process.waitUntil([&] { return lines(results).size() >= 3; })) << process.err();
+  process.signal(SIGKILL);
+  process.wait();
+  const std::vector<std::string> before = lines(results);
+  std::ofstream(results, std::ios::app) << R"({"key": "torn)";  // as a power failure leaves it
+
+  const Outcome resumed = run(command);
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  const std::vector<std::string> after = lines(results);
+  ASSERT_EQ(after.size(), cases);
+  EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin()))
+      << "rows measured before the kill stay";
+  std::set<std::string> keys;
+  for (const std::string& row : after) keys.insert(nlohmann::json::parse(row)["key"]);
+  EXPECT_EQ(keys.size(), cases);
+  EXPECT_THAT(resumed.out, testing::HasSubstr(std::to_string(before.size()) + " were there already"));
+}
+
+}  // namespace
+}  // namespace limn::test
