@@ -13,6 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/scene/camera.h"
+#include "core/scene/default_lights.h"
 #include "core/scene/load.h"
 
 namespace limn::app {
@@ -59,6 +60,11 @@ void SceneOptions::addTo(CLI::App& command) {
   command.add_option("--animation", animation, "Animation by name or #index (default: the first)");
   command.add_option("--size", size, "Picture size WxH, pixels")->capture_default_str();
   command.add_option("--light", light, "Only this light, by name or #index");
+  command.add_option("--default-lights", defaultLights,
+                     "auto: a scene with neither lights nor --environment gets a key light from above the camera's left\n"
+                     "shoulder and a headlight in the camera (--light key, --light headlight); on: every scene; off: none")
+      ->check(CLI::IsMember({"auto", "on", "off"}))
+      ->capture_default_str();
 }
 
 fs::path findScene(const fs::path& nameOrFile) {
@@ -116,6 +122,25 @@ scene::CameraPose chooseCamera(const SceneOptions& options, const scene::Pose& p
   return camera;
 }
 
+/// Adds the default lights where they are wanted; says so.
+static void lightUp(const SceneOptions& options, View& view) {
+  const bool dark = view.pose.lights.empty() && !view.scene.environment;
+  const std::string file = options.scene.string();
+  if (options.defaultLights == "off" || view.pose.bounds.empty()) {
+    if (dark && !view.pose.bounds.empty())
+      fmt::print(stderr, "limn: warning: {}: neither lights nor an environment; only emission can be seen\n", file);
+    return;
+  }
+  if (options.defaultLights == "auto" && !dark) return;
+  if (dark)
+    fmt::print(stderr,
+               "limn: warning: {}: neither lights nor an environment; lit by default lights (key, headlight), see "
+               "--environment and --default-lights\n",
+               file);
+  scene::addDefaultLights(view.scene, view.camera, view.pose.bounds);
+  scene::evaluate(view.scene, view.time, view.animation, view.pose);
+}
+
 View open(const SceneOptions& options) {
   View view;
   view.size = parseSize(options.size);
@@ -132,6 +157,7 @@ View open(const SceneOptions& options) {
   view.time = options.time;
   view.pose = scene::evaluate(view.scene, view.time, view.animation);
   view.camera = chooseCamera(options, view.pose);
+  lightUp(options, view);
   if (!options.light.empty()) view.light = findNamed("light", options.light, view.pose.lightNames);
   return view;
 }

@@ -1,8 +1,8 @@
 // Pictures in memory and on disk: any number of named float channels, linear values.
 //
 // Channel names are the EXR ones. limn writes: R, G, B (linear radiance, or the term asked for), A, Z
-// (distance from the camera plane, metres), coverage (0 or 1), id (instance index; exact in float up to
-// 2^24), albedo.R/G/B, N.X/Y/Z (world space shading normal).
+// (distance from the camera plane, metres), coverage (0 or 1), id (instance index, -1 where there is none;
+// exact in float up to 2^24), albedo.R/G/B, N.X/Y/Z (world space shading normal).
 #pragma once
 
 #include <array>

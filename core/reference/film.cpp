@@ -73,7 +73,10 @@ Image renderFeatures(const View& view, Term term, std::vector<unsigned char>& co
   covered.assign(view.pixelCount(), 0);
   tbb::parallel_for(size_t{0}, view.pixelCount(), [&](size_t pixel) {
     Surface surface;
-    if (!view.surface(pixel, surface)) return;
+    if (!view.surface(pixel, surface)) {
+      imagePixel(view, image, pixel)[6] = -1.f;  // id: nobody
+      return;
+    }
     covered[pixel] = 1;
     const glsl::GBufferSurface& values = surface.values;
     const std::array<float, 9> features{surface.depth,

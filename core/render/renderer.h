@@ -60,8 +60,8 @@ class LIMN_API Renderer {
   /// Renders one frame. Throws Error (shader errors, memory, sizes).
   void render(frame::Timing timing = frame::Timing::off);
 
-  /// The last frame: R, G, B (visibility: three equal channels), and with Settings::channels Z, coverage, id, albedo.*,
-  /// N.*. Blocks.
+  /// The last frame: R, G, B (visibility: three equal channels), and with Settings::channels Z, coverage, id (-1: nothing
+  /// seen), albedo.*, N.*. Blocks.
   Image read() const;
 
   /// Blocks until the GPU has done everything asked of it (glFinish).
