@@ -26,8 +26,8 @@ glsl::Material packConstants(const Material& m) {
   return out;
 }
 
-/// `fine`: filtered with more than 8 bits. Software renderers filter RGBA8 in 8-bit fixed point, which turns a normal map
-/// by 0.2 degrees in the mean; hardware does not.
+/// `fine`: filtered with more than 8 bits. Software renderers filter RGBA8 in 8-bit fixed point, which turns
+/// a normal map by 0.2 degrees in the mean; hardware does not.
 gpu::Texture upload(gpu::Device& device, const TextureImage& image, bool fine) {
   const GLenum linear = fine && device.software() ? GL_RGBA16 : GL_RGBA8;
   gpu::Texture texture(device, image.name,
@@ -71,7 +71,8 @@ GpuMaterials::GpuMaterials(gpu::Device& device, const Scene& scene) : device_(de
   constants_ = gpu::Buffer::of<glsl::Material>(device, "materials", all);
   std::vector<bool> isNormalMap(scene.images.size());
   for (const Material& material : scene.materials)
-    if (material.normalTexture.image != none) isNormalMap[static_cast<size_t>(material.normalTexture.image)] = true;
+    if (material.normalTexture.image != none)
+      isNormalMap[static_cast<size_t>(material.normalTexture.image)] = true;
   for (size_t i = 0; i < scene.images.size(); ++i)
     textures_.push_back(upload(device, scene.images[i], isNormalMap[i]));
   if (textures_.empty()) return;

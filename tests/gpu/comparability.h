@@ -14,20 +14,23 @@
 namespace limn::test {
 
 struct Agreement {
-  size_t covered = 0;         ///< pixels covered in either picture
-  double maskedShare = 0;     ///< of these: coverage, id, or depth by more than 1e-3, differ
-  double albedo = 0;          ///< mean absolute difference of a channel over the others
-  double normalMedian = 0;    ///< degrees
-  double normalTail = 0;      ///< degrees, 99th percentile
-  double backgroundShare = 0; ///< uncovered pixels whose channels other than R, G, B differ
+  size_t covered = 0;          ///< pixels covered in either picture
+  double maskedShare = 0;      ///< of these: coverage, id, or depth by more than 1e-3, differ
+  double albedo = 0;           ///< mean absolute difference of a channel over the others
+  double normalMedian = 0;     ///< degrees
+  double normalTail = 0;       ///< degrees, 99th percentile
+  double backgroundShare = 0;  ///< uncovered pixels whose channels other than R, G, B differ
 };
 
 inline Agreement agreement(const Image& image, const Image& reference) {
-  const auto value = [](const Image& i, int x, int y, const char* name) { return i.at(x, y, i.channel(name)); };
+  const auto value = [](const Image& i, int x, int y, const char* name) {
+    return i.at(x, y, i.channel(name));
+  };
   const auto vector = [&](const Image& i, int x, int y, const std::array<const char*, 3>& names) {
     return glm::dvec3(value(i, x, y, names[0]), value(i, x, y, names[1]), value(i, x, y, names[2]));
   };
-  constexpr std::array<const char*, 3> albedo{"albedo.R", "albedo.G", "albedo.B"}, normal{"N.X", "N.Y", "N.Z"};
+  constexpr std::array<const char*, 3> albedo{"albedo.R", "albedo.G", "albedo.B"},
+      normal{"N.X", "N.Y", "N.Z"};
   Agreement result;
   std::vector<double> angles;
   size_t different = 0, background = 0;
@@ -44,7 +47,8 @@ inline Agreement agreement(const Image& image, const Image& reference) {
       }
       ++result.covered;
       const double z = value(image, x, y, "Z"), r = value(reference, x, y, "Z");
-      if (a != b || value(image, x, y, "id") != value(reference, x, y, "id") || !(std::abs(z - r) <= 1e-3 * r)) {
+      if (a != b || value(image, x, y, "id") != value(reference, x, y, "id") ||
+          !(std::abs(z - r) <= 1e-3 * r)) {
         ++different;
         continue;
       }
@@ -82,7 +86,8 @@ inline Pair renderBoth(gpu::Device& device, const scene::Scene& scene, const sce
   renderer.setTime(time, animation);
   renderer.setCamera(camera);
   renderer.render();
-  reference::Request request{.scene = scene, .pose = pose, .camera = camera, .progress = {}, .checkpoint = {}};
+  reference::Request request{
+      .scene = scene, .pose = pose, .camera = camera, .progress = {}, .checkpoint = {}};
   request.width = size.x;
   request.height = size.y;
   request.term = output == render::Output::final ? reference::Term::final : reference::Term::direct;
