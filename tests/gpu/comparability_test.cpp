@@ -80,14 +80,26 @@ int addNode(scene::Scene& scene, int mesh, const scene::Transform& transform) {
   return static_cast<int>(scene.nodes.size()) - 1;
 }
 
-void addLight(scene::Scene& scene, const scene::LightSource& light, const glm::vec3& position,
+/// Spots: cone from 0.2 to 0.6 rad.
+scene::LightSource light(uint32_t type, float intensity, float range = 0, float angle = 0) {
+  scene::LightSource source;
+  source.type = type;
+  source.intensity = intensity;
+  source.range = range;
+  source.innerCone = 0.2f;
+  source.outerCone = 0.6f;
+  source.angle = angle;
+  return source;
+}
+
+void addLight(scene::Scene& scene, const scene::LightSource& source, const glm::vec3& position,
               const glm::vec3& direction, glm::vec2 area = {0, 0}) {
   const int node = addNode(
       scene, scene::none,
       {.translation = position, .rotation = glm::quatLookAt(glm::normalize(direction), glm::vec3(0, 0, 1))});
   scene.nodes[static_cast<size_t>(node)].light = static_cast<int>(scene.lights.size());
   scene.nodes[static_cast<size_t>(node)].limnArea = area;
-  scene.lights.push_back(light);
+  scene.lights.push_back(source);
 }
 
 /// Sheets and spheres with every kind of texture, wrap mode, mirroring, cut-out and vertex colour, none
@@ -164,7 +176,7 @@ class ComparabilityTest : public RenderTest {
   }
 
   /// Direct light on one plane and nothing else: there is no shadow to differ in.
-  double planeDifference(const scene::LightSource& light, const glm::vec3& position, glm::vec2 area, int spp,
+  double planeDifference(const scene::LightSource& source, const glm::vec3& position, glm::vec2 area, int spp,
                          scene::Material material = {}) {
     scene::Scene scene;
     if (material.specularFactor == 1 && material.roughness == 1) {
@@ -173,7 +185,7 @@ class ComparabilityTest : public RenderTest {
       material.baseColour = {0.7f, 0.5f, 0.3f, 1};
     }
     addNode(scene, test::addMesh(scene, test::floorPrimitive(3, test::addMaterial(scene, material))), {});
-    addLight(scene, light, position, -position, area);
+    addLight(scene, source, position, -position, area);
     const auto camera = scene::lookAt({0.5f, 2.5f, 4}, {0, 0, 0}, 0.7f);
     return lightDifference(both(scene, camera, {48, 36}, render::Output::direct, spp), true);
   }
@@ -210,27 +222,16 @@ TEST_F(ComparabilityTest, BackgroundAgrees) {
 }
 
 TEST_F(ComparabilityTest, PunctualLightsOnAPlaneAgree) {
-  using scene::LightSource;
-  EXPECT_LT(planeDifference({.type = glsl::light_point, .intensity = 20}, {0.5f, 2, 0.3f}, {}, 2), 0.01);
-  EXPECT_LT(planeDifference({.type = glsl::light_point, .intensity = 20, .range = 4}, {0.5f, 2, 0.3f}, {}, 2),
-            0.01);
-  EXPECT_LT(planeDifference({.type = glsl::light_spot, .intensity = 20, .innerCone = 0.2f, .outerCone = 0.6f},
-                            {1, 2, 0.3f}, {}, 2),
-            0.01);
-  EXPECT_LT(planeDifference({.type = glsl::light_directional, .intensity = 3}, {1, 2, 1}, {}, 2), 0.01);
-  EXPECT_LT(
-      planeDifference({.type = glsl::light_directional, .intensity = 3, .angle = 0.03f}, {1, 2, 1}, {}, 256),
-      0.01);
+  EXPECT_LT(planeDifference(light(glsl::light_point, 20), {0.5f, 2, 0.3f}, {}, 2), 0.01);
+  EXPECT_LT(planeDifference(light(glsl::light_point, 20, 4), {0.5f, 2, 0.3f}, {}, 2), 0.01);
+  EXPECT_LT(planeDifference(light(glsl::light_spot, 20), {1, 2, 0.3f}, {}, 2), 0.01);
+  EXPECT_LT(planeDifference(light(glsl::light_directional, 3), {1, 2, 1}, {}, 2), 0.01);
+  EXPECT_LT(planeDifference(light(glsl::light_directional, 3, 0, 0.03f), {1, 2, 1}, {}, 256), 0.01);
 }
 
 TEST_F(ComparabilityTest, RectanglesOnAPlaneAgree) {
-  using scene::LightSource;
-  EXPECT_LT(
-      planeDifference({.type = glsl::light_point, .intensity = 20}, {0.5f, 2, 0.3f}, {1.5f, 0.8f}, 1024),
-      0.01);
-  EXPECT_LT(planeDifference({.type = glsl::light_spot, .intensity = 20, .innerCone = 0.2f, .outerCone = 0.6f},
-                            {1, 2, 0.3f}, {0.5f, 0.8f}, 1024),
-            0.01);
+  EXPECT_LT(planeDifference(light(glsl::light_point, 20), {0.5f, 2, 0.3f}, {1.5f, 0.8f}, 1024), 0.01);
+  EXPECT_LT(planeDifference(light(glsl::light_spot, 20), {1, 2, 0.3f}, {0.5f, 0.8f}, 1024), 0.01);
 }
 
 TEST_F(ComparabilityTest, GlossyPlanesAgree) {
@@ -238,11 +239,9 @@ TEST_F(ComparabilityTest, GlossyPlanesAgree) {
   material.baseColour = {0.7f, 0.5f, 0.3f, 1};
   material.metallic = 0.3f;
   material.roughness = 0.4f;
-  EXPECT_LT(planeDifference({.type = glsl::light_point, .intensity = 20}, {0.5f, 2, 0.3f}, {}, 2, material),
-            0.01);
+  EXPECT_LT(planeDifference(light(glsl::light_point, 20), {0.5f, 2, 0.3f}, {}, 2, material), 0.01);
   // Linearly transformed cosines: their fit, not the geometry, is what differs.
-  EXPECT_LT(planeDifference({.type = glsl::light_point, .intensity = 20}, {0.5f, 2, 0.3f}, {1.5f, 0.8f}, 1024,
-                            material),
+  EXPECT_LT(planeDifference(light(glsl::light_point, 20), {0.5f, 2, 0.3f}, {1.5f, 0.8f}, 1024, material),
             0.03);
 }
 
