@@ -45,7 +45,10 @@ struct Request {
 
 struct ShadowMapService::Implementation {
   Implementation(gpu::Device& onDevice, scene::GpuScene& ofScene)
-      : device(onDevice), scene(ofScene), coverage(onDevice, "uncovered pixels", sizeof(uint32_t)) {
+      : device(onDevice),
+        scene(ofScene),
+        derived(onDevice),
+        coverage(onDevice, "uncovered pixels", sizeof(uint32_t)) {
     coverage.clear();
   }
 
@@ -57,6 +60,7 @@ struct ShadowMapService::Implementation {
   std::vector<std::string> lightNames;
   std::vector<scene::Bounds> boxes;
   std::vector<std::unique_ptr<Request>> requests;
+  DerivedMaps derived;
   gpu::Buffer coverage;
 
   void take(const scene::Pose& pose) {
@@ -81,6 +85,7 @@ struct ShadowMapService::Implementation {
       layouts.push_back(fitLayout(light(l), boxesFor(light(l)), request.desc));
     return layouts;
   }
+  bool cacheable(const ShadowMaps& maps) const { return requests.at(maps.index)->desc.cacheable; }
   bool fit(Request& request) const;
   void check(const Request& request, size_t layers) const;
   void addPasses(Request& request);
@@ -138,7 +143,8 @@ void ShadowMapService::Implementation::addPasses(Request& request) {
   frame::PassBuilder raster = graph->addPass("shadow maps");
   scene::GpuScene::declareReads(raster, handles);
   raster.read(maps.views, Access::storageLoad, "projections");
-  maps.depth = raster.write(graph->createTexture("shadow maps", desc), Access::colourAttachment, "linear depth");
+  maps.depth =
+      raster.write(graph->createTexture("shadow maps", desc), Access::colourAttachment, "linear depth");
   const frame::TextureHandle zbuffer = raster.write(graph->createTexture("shadow map z", zDesc),
                                                     Access::depthAttachment, "hidden-surface removal");
   const bool layered = !device.software() && device.limits().layerFromVertexShader;
@@ -179,6 +185,7 @@ void ShadowMapService::begin(frame::FrameGraph& graph, const SceneHandles& handl
   implementation_->requests.clear();
   implementation_->graph = &graph;
   implementation_->handles = handles;
+  implementation_->derived.begin(graph);
   implementation_->take(pose);
 }
 
@@ -211,6 +218,14 @@ ShadowMaps ShadowMapService::request(std::span<const uint32_t> lights, const Sha
   s.addPasses(*made);
   s.requests.push_back(std::move(made));
   return s.requests.back()->maps;
+}
+
+MinMaxPyramid ShadowMapService::minMaxPyramid(const ShadowMaps& maps) {
+  return implementation_->derived.minMaxPyramid(maps.depth, implementation_->cacheable(maps));
+}
+
+frame::TextureHandle ShadowMapService::momentMips(const ShadowMaps& maps) {
+  return implementation_->derived.momentMips(maps.depth, implementation_->cacheable(maps));
 }
 
 bool ShadowMapService::update(const scene::Pose& pose) {

@@ -17,6 +17,7 @@
 
 #include "core/frame/frame_graph.h"
 #include "core/scene/gpu_scene.h"
+#include "core/shadow/derived_maps.h"
 #include "core/technique/technique.h"
 #include "glsl/shadow_view.glsl"
 
@@ -31,8 +32,9 @@ enum class Projection {
 struct ShadowMapDesc {
   int size = 1024;  ///< texels per side of each layer
   Projection projection = Projection::automatic;
-  /// Points on each light from which maps are rendered, in the unit square as light_view_slope() takes them; (1/2, 1/2) is
-  /// the centre. Empty: the centre alone. Lights without extent have one map, which all samples share.
+  /// Points on each light from which maps are rendered, in the unit square as light_view_slope() takes them;
+  /// (1/2, 1/2) is the centre. Empty: the centre alone. Lights without extent have one map, which all samples
+  /// share.
   std::vector<glm::vec2> samples = {};
   /// Keep the maps while nothing changed. False where many batches of maps are to share one piece of memory.
   bool cacheable = true;
@@ -77,6 +79,10 @@ class LIMN_API ShadowMapService {
   /// Maps for `lights` (indices into Pose::lights), declared in the graph at the first request; equal
   /// requests share them. Throws UsageError if the maps would take more memory or layers than the device has.
   ShadowMaps request(std::span<const uint32_t> lights, const ShadowMapDesc& desc);
+
+  /// Resources derived from the maps of a request, built once per graph whoever asks.
+  MinMaxPyramid minMaxPyramid(const ShadowMaps& maps);
+  frame::TextureHandle momentMips(const ShadowMaps& maps);
 
   /// Refits near, far and half angles to the pose (after GpuScene::update) and touches the view buffers that
   /// changed. True: some light needs another number of layers now, so the graph must be rebuilt.

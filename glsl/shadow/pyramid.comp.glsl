@@ -1,0 +1,64 @@
+// One level of a pyramid over shadow maps: (min, max) of depth, or the means of depth and its square (MOMENTS).
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(rg32f, binding = 0) writeonly uniform image2DArray coarser;
+
+#if BASE
+layout(binding = 0) uniform sampler2DArray depth;
+
+vec2 value(ivec3 at) {
+  float z = texelFetch(depth, at, 0).r;
+#if MOMENTS
+  return vec2(z, z * z);
+#else
+  return vec2(z);
+#endif
+}
+
+#else
+layout(rg32f, binding = 1) readonly uniform image2DArray finer;
+
+#if MOMENTS
+// Weights of texels 2 i .. 2 i + 2 of the finer level in texel i. Where its size is odd, a texel is as wide as
+// 2 + 1 / coarse finer ones, so that the mean of the whole map is the same on every level.
+vec3 weights(int i, int fine, int coarse) {
+  if (fine == 1) return vec3(1.0, 0.0, 0.0);
+  if (fine == 2 * coarse) return vec3(0.5, 0.5, 0.0);
+  return vec3(float(coarse - i), float(coarse), float(i + 1)) / float(fine);
+}
+#endif
+
+vec2 value(ivec3 at) {
+  ivec2 fine = imageSize(finer).xy;
+  ivec2 coarse = imageSize(coarser).xy;
+#if MOMENTS
+  vec3 wx = weights(at.x, fine.x, coarse.x);
+  vec3 wy = weights(at.y, fine.y, coarse.y);
+  vec2 sum = vec2(0.0);
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      float w = wx[i] * wy[j];
+      if (w > 0.0) sum += w * imageLoad(finer, ivec3(2 * at.xy + ivec2(i, j), at.z)).xy;
+    }
+  }
+  return sum;
+#else
+  // The last texel takes an odd one out along with its own.
+  ivec2 first = min(2 * at.xy, fine - 1);
+  ivec2 last = ivec2(at.x == coarse.x - 1 ? fine.x - 1 : first.x + 1, at.y == coarse.y - 1 ? fine.y - 1 : first.y + 1);
+  vec2 bounds = imageLoad(finer, ivec3(first, at.z)).xy;
+  for (int y = first.y; y <= last.y; ++y) {
+    for (int x = first.x; x <= last.x; ++x) {
+      vec2 t = imageLoad(finer, ivec3(x, y, at.z)).xy;
+      bounds = vec2(min(bounds.x, t.x), max(bounds.y, t.y));
+    }
+  }
+  return bounds;
+#endif
+}
+#endif
+
+void main() {
+  ivec3 at = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(at, imageSize(coarser)))) return;
+  imageStore(coarser, at, vec4(value(at), 0.0, 0.0));
+}
