@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "glsl/summed_area_table.glsl"
 
 namespace limn::shadow {
 namespace {
@@ -17,6 +18,12 @@ using frame::TextureHandle;
 constexpr int64_t memoryLimit = int64_t{4} << 30;  // bytes of one derived map
 
 enum class PyramidKind { minMax, moments };
+
+struct KnownTable {
+  TextureHandle source;
+  SatDesc desc;
+  SummedAreaTable table;
+};
 
 struct KnownPyramid {
   TextureHandle source;
@@ -80,12 +87,75 @@ TextureHandle addPyramid(frame::FrameGraph& graph, TextureHandle source, Pyramid
   return pyramid;
 }
 
+/// Fills in what the description leaves to us.
+SatDesc resolved(SatDesc desc, bool software) {
+  if (desc.bits < 8 || desc.bits > 24)
+    throw UsageError(fmt::format("summed-area table of {} bits: accepted are 8 to 24", desc.bits));
+  if (desc.words < 0 || desc.words > 2)
+    throw UsageError(fmt::format(
+        "summed-area table with {} words per moment: accepted are 1, 2 and 0 (by moments)", desc.words));
+  if (desc.words == 0) desc.words = desc.moments == SatMoments::z ? 1 : 2;
+  if (desc.method == SatMethod::automatic)
+    desc.method = software ? SatMethod::rowParallel : SatMethod::sharedMemory;
+  return desc;
+}
+
+struct TableFormat {
+  GLenum gl;
+  const char* glsl;
+};
+
+TableFormat tableFormat(const SatDesc& desc) {
+  const int words = desc.words * (desc.moments == SatMoments::z ? 1 : 2);
+  if (words == 1) return {GL_R32UI, "r32ui"};
+  return words == 2 ? TableFormat{GL_RG32UI, "rg32ui"} : TableFormat{GL_RGBA32UI, "rgba32ui"};
+}
+
+/// Work groups needed for `lines` lines; the shader has the same numbers.
+int lineGroups(int lines, bool shared, bool vertical) {
+  const int perGroup = shared && !vertical ? 4 : 16;
+  return (lines + perGroup - 1) / perGroup;
+}
+
+SummedAreaTable addTable(frame::FrameGraph& graph, TextureHandle source, const SatDesc& desc,
+                         bool cacheable) {
+  const TableFormat format = tableFormat(desc);
+  const bool shared = desc.method == SatMethod::sharedMemory;
+  const gpu::TextureDesc texture = derivedDesc(graph, source, "summed-area table", format.gl, 1);
+  SummedAreaTable table{graph.createTexture("summed-area table", texture),
+                        glsl::sat_format(static_cast<uint32_t>(desc.bits), static_cast<uint32_t>(desc.words),
+                                         desc.moments == SatMoments::zAndSquare ? 1 : 0)};
+  for (const bool vertical : {false, true}) {
+    frame::PassBuilder pass =
+        graph.addPass(vertical ? "summed-area table columns" : "summed-area table rows");
+    if (!vertical) pass.read(source, Access::sampled, "shadow maps");
+    table.texture = pass.write(table.texture, vertical ? Access::imageLoadStore : Access::imageStore,
+                               vertical ? "sums along columns, in place" : "sums along rows");
+    const frame::ProgramHandle program = pass.program({.files = {"glsl/shadow/summed_area_table.comp.glsl"},
+                                                       .defines = {{"SHARED", shared ? "1" : "0"},
+                                                                   {"TABLE_FORMAT", format.glsl},
+                                                                   {"VERTICAL", vertical ? "1" : "0"}}});
+    if (cacheable) pass.cacheable();
+    pass.execute([source, table, program, vertical, shared, texture](frame::PassContext& context) {
+      gpu::Program& p = context.program(program);
+      p.use();
+      p.set("table_format", table.format);
+      if (!vertical) context.bindSampled(0, source);
+      context.bindImage(0, table.texture, vertical ? GL_READ_WRITE : GL_WRITE_ONLY);
+      const int groups = lineGroups(vertical ? texture.width : texture.height, shared, vertical);
+      context.dispatch(groups, 1, texture.layers, 1, 1);
+    });
+  }
+  return table;
+}
+
 }  // namespace
 
 struct DerivedMaps::Implementation {
   const gpu::Device& device;
   frame::FrameGraph* graph = nullptr;
   std::vector<KnownPyramid> pyramids = {};
+  std::vector<KnownTable> tables = {};
 
   TextureHandle pyramid(TextureHandle source, PyramidKind kind, bool cacheable) {
     for (const KnownPyramid& known : pyramids) {
@@ -102,11 +172,22 @@ DerivedMaps::~DerivedMaps() = default;
 void DerivedMaps::begin(frame::FrameGraph& graph) {
   implementation_->graph = &graph;
   implementation_->pyramids.clear();
+  implementation_->tables.clear();
 }
 
 MinMaxPyramid DerivedMaps::minMaxPyramid(TextureHandle depth, bool cacheable) {
   const TextureHandle texture = implementation_->pyramid(depth, PyramidKind::minMax, cacheable);
   return {texture, implementation_->graph->desc(texture).levels};
+}
+
+SummedAreaTable DerivedMaps::summedAreaTable(TextureHandle depth, bool cacheable, const SatDesc& desc) {
+  Implementation& d = *implementation_;
+  const SatDesc full = resolved(desc, d.device.software());
+  for (const KnownTable& known : d.tables) {
+    if (known.source == depth && known.desc == full) return known.table;
+  }
+  d.tables.push_back({depth, full, addTable(*d.graph, depth, full, cacheable)});
+  return d.tables.back().table;
 }
 
 TextureHandle DerivedMaps::momentMips(TextureHandle depth, bool cacheable) {

@@ -1,8 +1,9 @@
-// What shadow techniques look up instead of single texels of a shadow map: min-max pyramids, mip chains of
-// moments. Each is built when the first technique asks, by passes of the frame graph, and shared by all that
-// ask.
+// What shadow techniques look up instead of single texels of a shadow map: min-max pyramids, summed-area
+// tables, mip chains of moments. Each is built when the first technique asks, by passes of the frame graph,
+// and shared by all that ask.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "core/frame/frame_graph.h"
@@ -13,6 +14,36 @@ namespace limn::shadow {
 struct MinMaxPyramid {
   frame::TextureHandle texture;
   int levels = 0;
+};
+
+/// What a summed-area table sums.
+enum class SatMoments {
+  z,
+  zAndSquare,  ///< z and z^2
+};
+
+/// How a summed-area table is built; the result is the same to the bit.
+enum class SatMethod {
+  automatic,     ///< rowParallel on software renderers, sharedMemory elsewhere
+  rowParallel,   ///< one thread per row, then one per column
+  sharedMemory,  ///< a work group scans part of a row (column) at a time and carries its sum on
+};
+
+struct SatDesc {
+  int bits = 16;  ///< of a quantised depth, 8 to 24
+  /// 32-bit words per moment. 1: z exact up to glsl::sat_largest_box() texels, 65537 at 16 bits; z^2 rounded
+  /// to `bits` bits, which leaves an error of the order 2^-bits in the variance. 2: both exact as 64-bit
+  /// sums. 0: 1 for z alone, else 2.
+  int words = 0;
+  SatMoments moments = SatMoments::zAndSquare;
+  SatMethod method = SatMethod::automatic;
+  bool operator==(const SatDesc&) const = default;
+};
+
+/// Lookups: glsl/summed_area_table.glsl.
+struct SummedAreaTable {
+  frame::TextureHandle texture;  ///< integer array of one level: R32UI, RG32UI or RGBA32UI
+  uint32_t format = 0;  ///< what the lookups need to know of it, for a uniform: see glsl::sat_format()
 };
 
 /// The derived maps of one graph. A source is an R32F array with values in [0, 1]; `cacheable` says whether
@@ -28,6 +59,8 @@ class LIMN_API DerivedMaps {
   void begin(frame::FrameGraph& graph);
 
   MinMaxPyramid minMaxPyramid(frame::TextureHandle depth, bool cacheable);
+  /// Throws UsageError for a description out of range and for tables beyond 4 GiB.
+  SummedAreaTable summedAreaTable(frame::TextureHandle depth, bool cacheable, const SatDesc& desc);
   /// RG32F array with a full mip chain: means of z and of z^2 over equal parts of the map; also where a size
   /// is odd the mean over each level is that of the map.
   frame::TextureHandle momentMips(frame::TextureHandle depth, bool cacheable);

@@ -224,6 +224,10 @@ MinMaxPyramid ShadowMapService::minMaxPyramid(const ShadowMaps& maps) {
   return implementation_->derived.minMaxPyramid(maps.depth, implementation_->cacheable(maps));
 }
 
+SummedAreaTable ShadowMapService::summedAreaTable(const ShadowMaps& maps, const SatDesc& desc) {
+  return implementation_->derived.summedAreaTable(maps.depth, implementation_->cacheable(maps), desc);
+}
+
 frame::TextureHandle ShadowMapService::momentMips(const ShadowMaps& maps) {
   return implementation_->derived.momentMips(maps.depth, implementation_->cacheable(maps));
 }

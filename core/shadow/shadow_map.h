@@ -82,6 +82,7 @@ class LIMN_API ShadowMapService {
 
   /// Resources derived from the maps of a request, built once per graph whoever asks.
   MinMaxPyramid minMaxPyramid(const ShadowMaps& maps);
+  SummedAreaTable summedAreaTable(const ShadowMaps& maps, const SatDesc& desc);
   frame::TextureHandle momentMips(const ShadowMaps& maps);
 
   /// Refits near, far and half angles to the pose (after GpuScene::update) and touches the view buffers that

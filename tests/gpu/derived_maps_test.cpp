@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "glsl/min_max_pyramid.glsl"
+#include "glsl/summed_area_table.glsl"
 #include "tests/gpu/gl_test.h"
 
 namespace limn::shadow {
@@ -146,6 +147,209 @@ TEST_F(DerivedMapsTest, MomentMipsKeepTheMeansOfTheMapOnEveryLevel) {
   }
 }
 
+/// The words that a table must hold, from sums in 64 bits.
+std::vector<uint32_t> expectedTable(const Size& size, const std::vector<float>& depths, uint32_t format) {
+  const uint64_t scale = glsl::sat_scale(format);
+  const bool two = glsl::sat_two_words(format), squares = glsl::sat_has_squares(format);
+  const auto w = static_cast<size_t>(size.width), h = static_cast<size_t>(size.height);
+  std::vector<uint32_t> words;
+  for (size_t layer = 0; layer < static_cast<size_t>(size.layers); ++layer) {
+    std::vector<uint64_t> above(w, 0), aboveSquares(w, 0);
+    for (size_t y = 0; y < h; ++y) {
+      uint64_t row = 0, rowSquares = 0;
+      for (size_t x = 0; x < w; ++x) {
+        const uint64_t z = glsl::sat_quantise(depths[(layer * h + y) * w + x], format);
+        row += z;
+        rowSquares += two ? z * z : (z * z + scale / 2) / scale;
+        const uint64_t a = above[x] += row, b = aboveSquares[x] += rowSquares;
+        words.push_back(static_cast<uint32_t>(a));
+        if (squares) words.push_back(static_cast<uint32_t>(b));
+        if (squares && two) words.push_back(static_cast<uint32_t>(b >> 32));
+        if (two) words.push_back(static_cast<uint32_t>(a >> 32));
+      }
+    }
+  }
+  return words;
+}
+
+TEST_F(DerivedMapsTest, SummedAreaTablesAreExactToTheBitByBothMethods) {
+  constexpr SatDesc descs[] = {
+      {.moments = SatMoments::z}, {.words = 2, .moments = SatMoments::z}, {.words = 1}, {}, {.bits = 24},
+      {.bits = 8, .words = 1}};
+  for (const Size& size : sizes) {
+    makeSource(size);
+    for (SatDesc desc : descs) {
+      for (const SatMethod method : {SatMethod::rowParallel, SatMethod::sharedMemory}) {
+        desc.method = method;
+        frame::FrameGraph graph;
+        DerivedMaps maps(device());
+        maps.begin(graph);
+        const SummedAreaTable table =
+            maps.summedAreaTable(graph.importTexture("source", source_), false, desc);
+        graph.output(table.texture);
+        graph.prepare(device(), shaders(), *pool_);
+        graph.execute();
+        const gpu::Texture& texture = graph.texture(table.texture);
+        const GLenum format = texture.desc().format;
+        const size_t words = format == GL_R32UI ? 1 : format == GL_RG32UI ? 2 : 4;
+        const GLenum client = words == 1 ? GL_RED_INTEGER : words == 2 ? GL_RG_INTEGER : GL_RGBA_INTEGER;
+        EXPECT_TRUE(read<uint32_t>(texture, 0, client, GL_UNSIGNED_INT, words) ==
+                    expectedTable(size, depth_, table.format))
+            << size.width << " x " << size.height << ", " << desc.bits << " bits, " << words
+            << " words, method " << static_cast<int>(method);
+      }
+    }
+  }
+}
+
+/// Random kernels over a map, some of whose parts lie outside: (lo, hi) in texels and (layer, receiver
+/// depth).
+struct Kernel {
+  glm::vec4 box, receiver;
+};
+
+std::vector<Kernel> randomKernels(const Size& size, bool whole) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(0.f, 1.f);
+  std::vector<Kernel> kernels(500);
+  for (Kernel& k : kernels) {
+    const glm::vec2 extent(size.width, size.height),
+        lo = (1.2f * glm::vec2(unit(random), unit(random)) - 0.1f) * extent,
+        hi = lo + 0.01f + 0.5f * unit(random) * glm::vec2(unit(random), unit(random)) * extent;
+    k.box = {lo, hi};
+    if (whole) k.box = {glm::floor(lo), glm::floor(hi)};
+    k.receiver = {std::floor(unit(random) * static_cast<float>(size.layers)), unit(random), 0, 0};
+  }
+  return kernels;
+}
+
+constexpr const char* lookup_shader = R"(
+#include "glsl/min_max_pyramid.glsl"
+#include "glsl/summed_area_table.glsl"
+layout(local_size_x = 64) in;
+struct Kernel { vec4 box; vec4 receiver; };
+layout(std430, binding = 0) readonly buffer Kernels { Kernel kernels[]; };
+layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
+#if MIN_MAX
+layout(binding = 0) uniform sampler2DArray pyramid;
+#else
+layout(binding = 0) uniform usampler2DArray table;
+uniform uint table_format;
+#endif
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= uint(kernels.length())) return;
+  Kernel k = kernels[i];
+  int layer = int(k.receiver.x);
+#if MIN_MAX
+  results[i] = vec4(min_max_depth(pyramid, ivec2(k.box.xy), ivec2(k.box.zw), layer), 0.0, 0.0);
+#else
+  SatBox box = sat_lookup_box(table, ivec2(floor(k.box.xy)), ivec2(floor(k.box.zw)), layer, table_format);
+  results[i] = vec4(sat_lookup_moments(table, k.box.xy, k.box.zw, layer, k.receiver.y, table_format),
+                    wide_unsigned_float(box.z), float(box.texels));
+#endif
+}
+)";
+
+/// What the lookups of `lookup_shader` give for every kernel.
+std::vector<glm::vec4> lookup(gpu::Device& device, gpu::Program& program, const gpu::Texture& texture,
+                              const std::vector<Kernel>& kernels) {
+  const gpu::Buffer in = gpu::Buffer::of<Kernel>(device, "kernels", kernels);
+  const gpu::Buffer out(device, "results", kernels.size() * sizeof(glm::vec4));
+  const gl::Functions& gl = device.gl();
+  program.use();
+  gl.BindTextureUnit(0, texture.id());
+  gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, in.id());
+  gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, out.id());
+  gl.DispatchCompute(static_cast<GLuint>((kernels.size() + 63) / 64), 1, 1);
+  gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  std::vector<glm::vec4> results(kernels.size());
+  out.read(0, results.data(), results.size() * sizeof(glm::vec4));
+  return results;
+}
+
+TEST_F(DerivedMapsTest, MomentsLookedUpAgreeWithDouble) {
+  const gpu::EmbeddedSource sources[] = {{"lookup.comp.glsl", lookup_shader}};
+  shaders().mount("test/", sources);
+  const Size size{100, 77, 3};
+  makeSource(size);
+  frame::FrameGraph graph;
+  DerivedMaps maps(device());
+  maps.begin(graph);
+  const SummedAreaTable table = maps.summedAreaTable(graph.importTexture("source", source_), false, {});
+  graph.output(table.texture);
+  graph.prepare(device(), shaders(), *pool_);
+  graph.execute();
+  gpu::Program& program =
+      shaders().program({.files = {"test/lookup.comp.glsl"}, .defines = {{"MIN_MAX", "0"}}});
+  program.set("table_format", table.format);
+  const std::vector<Kernel> kernels = randomKernels(size, false);
+  const auto results = lookup(device(), program, graph.texture(table.texture), kernels);
+  for (size_t i = 0; i < kernels.size(); ++i) {
+    const auto& [box, receiver] = kernels[i];
+    const auto overlap = [](float a, float b, int texel) {
+      return std::max(0.0, std::min<double>(b, texel + 1) - std::max<double>(a, texel));
+    };
+    glm::dvec2 moments(0);
+    double weights = 0;
+    uint64_t sum = 0, texels = 0;
+    for (int y = static_cast<int>(std::floor(box.y)); y <= static_cast<int>(std::floor(box.w)); ++y) {
+      for (int x = static_cast<int>(std::floor(box.x)); x <= static_cast<int>(std::floor(box.z)); ++x) {
+        const bool inside = x >= 0 && y >= 0 && x < size.width && y < size.height;
+        const uint32_t z =
+            inside ? glsl::sat_quantise(depth(x, y, static_cast<int>(receiver.x)), table.format) : 65535u;
+        const double w = overlap(box.x, box.z, x) * overlap(box.y, box.w, y), m = receiver.y - z / 65535.0;
+        moments += w * glm::dvec2(m, m * m);
+        weights += w;
+        if (static_cast<float>(x) >= std::floor(box.z) || static_cast<float>(y) >= std::floor(box.w))
+          continue;
+        sum += z;
+        ++texels;
+      }
+    }
+    moments /= weights;
+    const double root = std::sqrt(moments.y);
+    ASSERT_NEAR(results[i].x, moments.x, 2e-5 * root + 1.2e-7) << i;
+    ASSERT_NEAR(results[i].y, moments.y, 4e-5 * moments.y + 2.4e-7 * root) << i;
+    ASSERT_NEAR(results[i].z, static_cast<double>(sum), 1.2e-7 * static_cast<double>(sum)) << i;
+    ASSERT_EQ(results[i].w, static_cast<float>(texels)) << i;
+  }
+}
+
+TEST_F(DerivedMapsTest, MinMaxLookupsAreConservativeAndTightForSingleTexels) {
+  const gpu::EmbeddedSource sources[] = {{"lookup.comp.glsl", lookup_shader}};
+  shaders().mount("test/", sources);
+  const Size size{100, 77, 3};
+  makeSource(size);
+  frame::FrameGraph graph;
+  DerivedMaps maps(device());
+  maps.begin(graph);
+  const MinMaxPyramid pyramid = maps.minMaxPyramid(graph.importTexture("source", source_), false);
+  graph.output(pyramid.texture);
+  graph.prepare(device(), shaders(), *pool_);
+  graph.execute();
+  gpu::Program& program =
+      shaders().program({.files = {"test/lookup.comp.glsl"}, .defines = {{"MIN_MAX", "1"}}});
+  const std::vector<Kernel> kernels = randomKernels(size, true);
+  const auto results = lookup(device(), program, graph.texture(pyramid.texture), kernels);
+  for (size_t i = 0; i < kernels.size(); ++i) {
+    const glm::ivec4 box(kernels[i].box);
+    glm::vec2 bounds(2, -1);
+    for (int y = box.y; y <= box.w; ++y) {
+      for (int x = box.x; x <= box.z; ++x) {
+        const bool inside = x >= 0 && y >= 0 && x < size.width && y < size.height;
+        const float z = inside ? depth(x, y, static_cast<int>(kernels[i].receiver.x)) : 1;
+        bounds = {std::min(bounds.x, z), std::max(bounds.y, z)};
+      }
+    }
+    ASSERT_LE(results[i].x, bounds.x) << i;
+    ASSERT_GE(results[i].y, bounds.y) << i;
+    if (box.x == box.z && box.y == box.w) {
+      ASSERT_EQ(glm::vec2(results[i]), bounds) << i;
+    }
+  }
+}
+
 TEST_F(DerivedMapsTest, EachIsBuiltOnceLeftOutUnusedAndKeptWhileNothingChanges) {
   makeSource({64, 64, 2});
   frame::FrameGraph graph;
@@ -155,18 +359,27 @@ TEST_F(DerivedMapsTest, EachIsBuiltOnceLeftOutUnusedAndKeptWhileNothingChanges) 
   const MinMaxPyramid pyramid = maps.minMaxPyramid(source, true);
   EXPECT_EQ(pyramid.texture, maps.minMaxPyramid(source, true).texture);
   EXPECT_FALSE(maps.momentMips(source, true) == pyramid.texture);
+  const SummedAreaTable table = maps.summedAreaTable(source, true, {.moments = SatMoments::z});
+  EXPECT_EQ(table.texture,
+            maps.summedAreaTable(source, true, {.words = 1, .moments = SatMoments::z}).texture);
+  EXPECT_FALSE(table.texture == maps.summedAreaTable(source, true, {}).texture);
   graph.output(pyramid.texture);
+  graph.output(table.texture);
   graph.prepare(device(), shaders(), *pool_);
   const auto states = [&] {
     std::vector<std::pair<std::string, frame::PassState>> list;
     for (const frame::PassReport& row : graph.explain()) list.emplace_back(row.name, row.state);
     return list;
   };
+  // Two pyramids of seven levels and two tables of two passes, of which the first each is wanted.
   const auto expectStates = [&](frame::PassState used) {
     const auto list = states();
-    EXPECT_EQ(list.size(), 14u);
-    for (const auto& [name, state] : list)
-      EXPECT_EQ(state, name.starts_with("min-max") ? used : frame::PassState::leftOut) << name;
+    EXPECT_EQ(list.size(), 18u);
+    for (const auto& [name, state] : list) {
+      const bool wanted =
+          name.starts_with("min-max") || (name.starts_with("summed") && !name.ends_with(" 2"));
+      EXPECT_EQ(state, wanted ? used : frame::PassState::leftOut) << name;
+    }
   };
   graph.execute();
   expectStates(frame::PassState::run);
@@ -176,20 +389,28 @@ TEST_F(DerivedMapsTest, EachIsBuiltOnceLeftOutUnusedAndKeptWhileNothingChanges) 
   graph.execute();
   expectStates(frame::PassState::run);
 
-  // Every level reads what the pass before stored.
+  // Every further level, and the columns, read what the pass before stored.
   for (const frame::PassReport& row : graph.explain()) {
-    if (row.state == frame::PassState::leftOut || row.name.ends_with("level 0")) continue;
+    if (row.state == frame::PassState::leftOut || row.name.ends_with("level 0") || row.name.ends_with("rows"))
+      continue;
     EXPECT_TRUE(row.barriers & GL_SHADER_IMAGE_ACCESS_BARRIER_BIT) << row.name;
   }
 }
 
-TEST_F(DerivedMapsTest, RefusesOtherSources) {
+TEST_F(DerivedMapsTest, RefusesOtherSourcesAndDescriptionsOutOfRange) {
   frame::FrameGraph graph;
   DerivedMaps maps(device());
   maps.begin(graph);
   const frame::TextureHandle wrong =
       graph.createTexture("wrong", {.format = GL_R32F, .width = 4, .height = 4});
   EXPECT_THROW(maps.minMaxPyramid(wrong, false), Error);
+  const frame::TextureHandle large = graph.createTexture(
+      "large",
+      {.target = GL_TEXTURE_2D_ARRAY, .format = GL_R32F, .width = 8192, .height = 8192, .layers = 5});
+  EXPECT_THROW(maps.summedAreaTable(large, false, {}), UsageError);
+  EXPECT_THROW(maps.summedAreaTable(large, false, {.bits = 7}), UsageError);
+  EXPECT_THROW(maps.summedAreaTable(large, false, {.bits = 25}), UsageError);
+  EXPECT_THROW(maps.summedAreaTable(large, false, {.words = 3}), UsageError);
 }
 
 }  // namespace

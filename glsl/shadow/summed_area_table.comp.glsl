@@ -1,0 +1,86 @@
+// One direction of an integer summed-area table of shadow maps: sums along the rows of the maps (VERTICAL 0), then of
+// those along the columns, in place. Either one thread follows a whole line (SHARED 0: quickest where threads are few,
+// on software renderers), or a work group scans LENGTH texels of each of its LINES lines at a time in shared memory and
+// carries the last sums on. Integer sums are the same in any order.
+#include "glsl/summed_area_table.glsl"
+
+#if SHARED
+#if VERTICAL
+#define LINES 16  // neighbouring columns, so that neighbouring threads meet neighbouring texels
+#define LENGTH 16
+layout(local_size_x = LINES, local_size_y = LENGTH) in;
+#define LOCAL_LINE int(gl_LocalInvocationID.x)
+#define LOCAL_POSITION int(gl_LocalInvocationID.y)
+#else
+#define LINES 4
+#define LENGTH 64
+layout(local_size_x = LENGTH, local_size_y = LINES) in;
+#define LOCAL_LINE int(gl_LocalInvocationID.y)
+#define LOCAL_POSITION int(gl_LocalInvocationID.x)
+#endif
+shared uvec4 partial_sums[LINES][LENGTH];
+#else
+layout(local_size_x = 16) in;
+#endif
+
+layout(TABLE_FORMAT, binding = 0) uniform uimage2DArray table;
+#if !VERTICAL
+layout(binding = 0) uniform sampler2DArray depth;
+#endif
+uniform uint table_format;
+
+ivec3 texel_at(int line, int position) {
+#if VERTICAL
+  return ivec3(line, position, gl_WorkGroupID.z);
+#else
+  return ivec3(position, line, gl_WorkGroupID.z);
+#endif
+}
+
+uvec4 value_at(ivec3 at) {
+#if VERTICAL
+  return sat_unpack(imageLoad(table, at), table_format);
+#else
+  return sat_texel(texelFetch(depth, at, 0).r, table_format);
+#endif
+}
+
+void main() {
+  ivec2 size = imageSize(table).xy;
+#if VERTICAL
+  int lines = size.x;
+  int positions = size.y;
+#else
+  int lines = size.y;
+  int positions = size.x;
+#endif
+  uvec4 carried = uvec4(0u);
+#if SHARED
+  int line = int(gl_WorkGroupID.x) * LINES + LOCAL_LINE;
+  for (int start = 0; start < positions; start += LENGTH) {
+    bool inside = line < lines && start + LOCAL_POSITION < positions;
+    ivec3 at = texel_at(line, start + LOCAL_POSITION);
+    uvec4 sum = inside ? value_at(at) : uvec4(0u);
+    // Hillis and Steele 1986, Data parallel algorithms: the reach of every sum doubles with each step.
+    partial_sums[LOCAL_LINE][LOCAL_POSITION] = sum;
+    barrier();
+    for (int reach = 1; reach < LENGTH; reach *= 2) {
+      if (LOCAL_POSITION >= reach) sum = sat_add(sum, partial_sums[LOCAL_LINE][LOCAL_POSITION - reach]);
+      barrier();
+      partial_sums[LOCAL_LINE][LOCAL_POSITION] = sum;
+      barrier();
+    }
+    if (inside) imageStore(table, at, sat_pack(sat_add(carried, sum), table_format));
+    carried = sat_add(carried, partial_sums[LOCAL_LINE][LENGTH - 1]);
+    barrier();
+  }
+#else
+  int line = int(gl_GlobalInvocationID.x);
+  if (line >= lines) return;
+  for (int i = 0; i < positions; ++i) {
+    ivec3 at = texel_at(line, i);
+    carried = sat_add(carried, value_at(at));
+    imageStore(table, at, sat_pack(carried, table_format));
+  }
+#endif
+}
