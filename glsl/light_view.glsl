@@ -1,5 +1,8 @@
 // A light as one receiver sees it: which part of it counts, points on that part, and the axis that depths are measured
-// along. For shadow techniques; the reference draws its samples from the same definitions.
+// along. For shadow techniques; the reference answers by the same definitions.
+//
+// A point of the light is given by its slope: the change of position per metre of depth towards the light. With the
+// receiver x at depth d, x + slope (d - z) is where the ray to that point crosses the plane at depth z.
 #ifndef LIMN_LIGHT_VIEW_GLSL
 #define LIMN_LIGHT_VIEW_GLSL
 #include "glsl/geometry.glsl"
@@ -9,18 +12,32 @@
 LIMN_BEGIN
 
 struct LightView {
-  bool masked;          // no part of the light lies above the tangent plane and in front of the light: V = 1
-  bool cone;            // directional: points are unit directions
-  bool extended;        // false: a single point or direction
-  vec3 centre;          // world position of the centre; directional: the world's origin
-  vec3 axis;            // unit, from the light towards the receiver's side; directional: the direction of propagation
-  float depth;          // of the receiver from the centre along the axis, metres
-  Rectangle rectangle;  // relative to the receiver
-  RectanglePart part;
-  bool whole;           // the part is all of the rectangle
-  Frame frame;          // directional: n points to the light
-  float cap;            // directional: 1 - cos(half the angular diameter)
+  bool masked;    // no part of the light lies above the tangent plane and in front of the light: V = 1
+  bool cone;      // directional: samples are directions
+  bool extended;  // false: a single point or direction
+  bool whole;     // all of the light lies above the tangent plane
+  vec3 normal;    // of that plane
+  vec3 axis;      // unit, from the light towards the receiver's side; directional: the direction of propagation
+  float depth;    // of the receiver along the axis, from the light (directional: from the world's origin), metres
+  vec3 centre;    // slope of the light's centre
+  vec3 side_u;    // and of its sides
+  vec3 side_v;
+  float cap;      // directional: 1 - cos(half the angular diameter)
+  vec2 low;       // box around the part above the tangent plane, in [-1/2, 1/2]^2 along the sides
+  vec2 high;
 };
+
+// Bounds the part of the square [-1/2, 1/2]^2 where height + dot(slope, p) >= 0. At least half of the box belongs to it.
+LIMN_FN void light_view_clip(LIMN_INOUT(LightView) v, float height, vec2 slope) {
+  vec2 reach = 0.5f * abs(slope);
+  v.whole = height >= reach.x + reach.y;
+  v.masked = v.masked || height <= -reach.x - reach.y;
+  vec2 limit = vec2(-(height + reach.y), -(height + reach.x));
+  if (slope.x > 0.0f) v.low.x = clamp(limit.x / slope.x, -0.5f, 0.5f);
+  if (slope.x < 0.0f) v.high.x = clamp(limit.x / slope.x, -0.5f, 0.5f);
+  if (slope.y > 0.0f) v.low.y = clamp(limit.y / slope.y, -0.5f, 0.5f);
+  if (slope.y < 0.0f) v.high.y = clamp(limit.y / slope.y, -0.5f, 0.5f);
+}
 
 // ng: the receiver's geometric normal. size < 0: the light as the scene has it; else the side of every rectangle, of a
 // square that stands for a point or spot light and faces the receiver (metres), and the angular diameter of a
@@ -28,86 +45,90 @@ struct LightView {
 LIMN_FN LightView light_view(Light light, vec3 receiver, vec3 ng, float size) {
   LightView v;
   v.cone = light.info.x == light_directional;
-  v.centre = vec3(light.position);
+  v.masked = false;
+  v.normal = ng;
+  v.low = vec2(-0.5f);
+  v.high = vec2(0.5f);
   v.axis = vec3(light.direction);
-  v.part = rectangle_whole();
-  v.whole = true;
-  v.frame = frame_around(-v.axis);
   v.cap = 0.0f;
+  vec3 to_centre = vec3(light.position) - receiver;
+  vec3 u = vec3(light.axis_u) * (size < 0.0f ? light.axis_u.w : size);
+  vec3 w = vec3(light.axis_v) * (size < 0.0f ? light.axis_v.w : size);
+  if (light.info.x == light_rectangle) {
+    v.axis = v.axis * rectangle_side(light, receiver);
+    v.masked = !rectangle_emits_towards(light, receiver);
+  } else {
+    float distance = length(to_centre);
+    if (!v.cone && distance > 0.0f) v.axis = -to_centre / distance;
+    Frame facing = frame_around(-v.axis);
+    u = facing.t * max(size, 0.0f);
+    w = facing.b * max(size, 0.0f);
+  }
+  v.extended = dot(u, u) + dot(w, w) > 0.0f;
+  v.depth = -dot(v.axis, to_centre);
+  v.centre = to_centre / v.depth;
+  v.side_u = u / v.depth;
+  v.side_v = w / v.depth;
   if (v.cone) {
     float half_angle = min(0.5f * (size < 0.0f ? light.cone.w : size), 1.55f);
     float sine_half = sin(0.5f * half_angle);
+    Frame facing = frame_around(-v.axis);
     v.cap = 2.0f * sine_half * sine_half;
     v.extended = half_angle > 0.0f;
-    v.masked = !(dot(v.frame.n, ng) > -sin(half_angle));
-    v.centre = vec3(0.0f);
-    v.rectangle = rectangle_from(light, receiver);
     v.depth = dot(v.axis, receiver);
+    v.centre = -v.axis;
+    v.side_u = facing.t;  // scaled by light_view_cone_scale
+    v.side_v = facing.b;
+    float height = dot(ng, v.centre);
+    v.masked = !(height > -sin(half_angle));
+    v.whole = height >= sin(half_angle);
     return v;
   }
-  Light sized = light;
-  if (size >= 0.0f) {
-    sized.axis_u.w = size;
-    sized.axis_v.w = size;
-  }
-  if (light.info.x != light_rectangle) {
-    vec3 offset = receiver - v.centre;
-    float distance = length(offset);
-    v.axis = distance > 0.0f ? offset / distance : v.axis;
-    Frame facing = frame_around(-v.axis);
-    sized.axis_u = vec4(facing.t, max(size, 0.0f));
-    sized.axis_v = vec4(facing.b, max(size, 0.0f));
-    v.rectangle = rectangle_from(sized, receiver);
-    v.part = rectangle_above(v.rectangle, ng);
-    // A point on the tangent plane lights nothing; a square of size 0 is that point.
-    if (!(size > 0.0f) && !(dot(ng, offset) < 0.0f)) v.part.count = 0;
-  } else {
-    v.rectangle = rectangle_from(sized, receiver);
-    v.part = rectangle_visible_part(sized, receiver, ng);
-    v.axis = v.axis * rectangle_side(light, receiver);
-  }
-  v.whole = v.part.count == 4 && rectangle_part_share(v.part) == 1.0f;
-  v.extended = max(sized.axis_u.w, sized.axis_v.w) > 0.0f;
-  v.masked = v.part.count == 0;
-  v.depth = dot(v.axis, receiver - v.centre);
+  light_view_clip(v, dot(ng, to_centre), vec2(dot(ng, u), dot(ng, w)));
+  // What lies in the tangent plane lights nothing.
+  if (!v.extended) v.masked = v.masked || !(dot(ng, to_centre) > 0.0f);
   return v;
 }
 
-// A point of the part, uniform in area (directional: in solid angle), for u in [0, 1)^2, as the change of position per
-// metre of depth towards the light: receiver + slope (depth - z) is where the ray to that point crosses the plane at
-// depth z.
-LIMN_FN vec3 light_view_slope(LightView v, vec2 u) {
+// Maps the disc of diameter 1 to slopes, uniformly in solid angle: factor of the sides at squared radius r2 (of a disc
+// of radius 1).
+LIMN_FN float light_view_cone_scale(LightView v, float r2) {
+  float cap = r2 * v.cap;
+  return 2.0f * sqrt(v.cap * (2.0f - cap)) / (1.0f - cap);
+}
+
+// A point of the part of the light that counts, for u in [0, 1)^2; uniform in area (directional: in solid angle) among
+// the u for which the result is true. At least a third of them are.
+LIMN_FN bool light_view_sample(LightView v, vec2 u, LIMN_OUT(vec3) slope) {
+  vec2 p = v.low + u * (v.high - v.low);
+  float r2 = 4.0f * dot(p, p);
+  float scale = v.cone ? light_view_cone_scale(v, min(r2, 1.0f)) : 1.0f;
+  slope = v.centre + scale * (p.x * v.side_u + p.y * v.side_v);
+  return (!v.cone || r2 <= 1.0f) && dot(slope, v.normal) > 0.0f;
+}
+
+// A point of the whole light, above the tangent plane or below it, for every u.
+LIMN_FN vec3 light_view_point(LightView v, vec2 u) {
+  vec2 p = u - vec2(0.5f);
   if (v.cone) {
     vec2 disc = sample_disc(u);
-    float cap = min(dot(disc, disc), 1.0f) * v.cap;
-    float lateral = sqrt(v.cap * (2.0f - cap));
-    vec3 direction = from_local(v.frame, vec3(lateral * disc.x, lateral * disc.y, 1.0f - cap));
-    return direction / (1.0f - cap);
+    p = 0.5f * light_view_cone_scale(v, min(dot(disc, disc), 1.0f)) * disc;
   }
-  vec2 ab = v.whole ? u - vec2(0.5f) : rectangle_part_sample(v.part, u);
-  return rectangle_point(v.rectangle, ab) / v.depth;
+  return v.centre + p.x * v.side_u + p.y * v.side_v;
 }
 
-// The same for a point of the whole light, above the tangent plane or below it.
-LIMN_FN vec3 light_view_whole_slope(LightView v, vec2 u) {
-  if (v.cone) return light_view_slope(v, u);
-  return rectangle_point(v.rectangle, u - vec2(0.5f)) / v.depth;
-}
-
-// Whether the ray with this slope meets the light (rectangle: all of it, not only the part), give or take `tolerance`
-// metres per metre of depth.
+// Whether the ray with this slope meets the light, give or take `tolerance` metres per metre of depth.
 LIMN_FN bool light_view_contains(LightView v, vec3 slope, float tolerance) {
+  vec3 offset = slope - v.centre;
+  float along_u = abs(dot(offset, v.side_u));
+  float along_v = abs(dot(offset, v.side_v));
   if (v.cone) {
-    float cosine = 1.0f - v.cap;
-    vec3 lateral = slope - v.frame.n * dot(slope, v.frame.n);
-    return length(lateral) <= sqrt(v.cap * (2.0f - v.cap)) / cosine + tolerance;
+    float reach = 0.5f * light_view_cone_scale(v, 1.0f) + tolerance;
+    return along_u * along_u + along_v * along_v <= reach * reach;
   }
-  vec3 offset = slope * v.depth - v.rectangle.centre;
-  float u = dot(v.rectangle.u, v.rectangle.u);
-  float w = dot(v.rectangle.v, v.rectangle.v);
-  float reach = tolerance * v.depth;
-  return abs(dot(offset, v.rectangle.u)) <= 0.5f * u + reach * sqrt(u) &&
-         abs(dot(offset, v.rectangle.v)) <= 0.5f * w + reach * sqrt(w);
+  float uu = dot(v.side_u, v.side_u);
+  float vv = dot(v.side_v, v.side_v);
+  return along_u <= 0.5f * uu + tolerance * sqrt(uu) && along_v <= 0.5f * vv + tolerance * sqrt(vv);
 }
 
 LIMN_END

@@ -22,45 +22,47 @@ struct VisibilityQuery {
   vec3 normal;  // geometric, unit, towards the camera
   LightView light;
   ShadowLight maps;
+  ShadowView first;  // of those maps
   bool masked;  // V = 1: nothing there, or the light is wholly behind the surface
 };
 
-// at: pixel and layer. The maps of layer l are shadow_lights[l * samples + sample].
-VisibilityQuery visibility_query(ivec3 at, int samples, int shadow_sample) {
+// maps: an index into shadow_lights, the same for the whole work group; called before invocations part ways, because
+// software renderers load what is uniform once for all of them.
+VisibilityQuery visibility_query(ivec2 at, uint maps) {
   VisibilityQuery q;
-  q.maps = shadow_lights[at.z * samples + shadow_sample];
-  float depth = pixel_depth(at.xy);
-  q.position = pixel_position(at.xy, depth);
-  q.normal = pixel_geometric_normal(at.xy);
+  q.maps = shadow_lights[maps];
+  q.first = shadow_views[q.maps.info.x];
+  float depth = pixel_depth(at);
+  q.position = pixel_position(at, depth);
+  q.normal = pixel_geometric_normal(at);
   Light light = lights[q.maps.info.z];
   q.light = light_view(light, q.position, q.normal, light_size);
-  bool itself = light.info.z != no_instance && pixel_instance(at.xy) == light.info.z;
+  bool itself = light.info.z != no_instance && pixel_instance(at) == light.info.z;
   q.masked = depth == 0.0 || itself || q.light.masked;
   return q;
 }
 
 // The view that taps of a query land in; kept between taps, most of which land in the same one.
 struct ShadowCursor {
-  ShadowView first;
   uint face;
   uint layer;
   ShadowView view;
   ShadowReceiver receiver;
 };
 
-void shadow_enter(inout ShadowCursor cursor, VisibilityQuery q, uint face) {
+ShadowCursor shadow_cursor_at(VisibilityQuery q, uint face) {
+  ShadowCursor cursor;
   cursor.face = face;
   cursor.layer = q.maps.info.x + face;
-  cursor.view = shadow_views[cursor.layer];
+  cursor.view = q.first;
+  if (face != 0u) cursor.view = shadow_views[cursor.layer];
   cursor.receiver = shadow_receiver(cursor.view, q.position, q.normal, q.light.axis, bias);
+  return cursor;
 }
 
 // Starts in the view that sees the receiver.
 ShadowCursor shadow_cursor(VisibilityQuery q) {
-  ShadowCursor cursor;
-  cursor.first = shadow_views[q.maps.info.x];
-  shadow_enter(cursor, q, shadow_face(q.maps.info.y, cursor.first, q.position));
-  return cursor;
+  return shadow_cursor_at(q, shadow_face(q.maps.info.y, q.first, q.position));
 }
 
 // One texel of a shadow map against the receiver.
@@ -72,8 +74,9 @@ struct ShadowTap {
 // The texel that holds the direction of world point p.
 ShadowTap shadow_tap(inout ShadowCursor cursor, VisibilityQuery q, vec3 p) {
   if (q.maps.info.y != shadow_faces_single) {
-    uint face = shadow_face(q.maps.info.y, cursor.first, p);
-    if (face != cursor.face) shadow_enter(cursor, q, face);
+    uint face = shadow_face(q.maps.info.y, q.first, p);
+    // A loop of at most one round: software renderers run both sides of an `if`, but leave a loop that nobody is in.
+    while (face != cursor.face) cursor = shadow_cursor_at(q, face);
   }
   ShadowTap tap;
   tap.blocked = false;

@@ -205,7 +205,7 @@ vec3 samplePoint(const glsl::Light& light, const glm::vec2& sample) {
 /// The unit direction that a directional light's sample shines along.
 vec3 sampleDirection(const glsl::Light& light, const glm::vec2& sample) {
   const glsl::LightView view = glsl::light_view(light, vec3(0), -vec3(light.direction), -1);
-  return -glm::normalize(glsl::light_view_slope(view, sample));
+  return -glm::normalize(glsl::light_view_point(view, sample));
 }
 
 float spotTangent(const glsl::Light& light, int size) {

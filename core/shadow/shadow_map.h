@@ -32,7 +32,7 @@ enum class Projection {
 struct ShadowMapDesc {
   int size = 1024;  ///< texels per side of each layer
   Projection projection = Projection::automatic;
-  /// Points on each light from which maps are rendered, in the unit square as light_view_slope() takes them;
+  /// Points on each light from which maps are rendered, in the unit square as light_view_point() takes them;
   /// (1/2, 1/2) is the centre. Empty: the centre alone. Lights without extent have one map, which all samples
   /// share.
   std::vector<glm::vec2> samples = {};

@@ -4,9 +4,9 @@
 layout(binding = 0, r16) writeonly uniform image2DArray visibility;
 
 void main() {
-  ivec3 at = ivec3(gl_GlobalInvocationID);
+  ivec3 at = ivec3(gl_GlobalInvocationID.xy, gl_WorkGroupID.z);
+  VisibilityQuery q = visibility_query(at.xy, gl_WorkGroupID.z);
   if (any(greaterThanEqual(at, imageSize(visibility)))) return;
-  VisibilityQuery q = visibility_query(at, 1, 0);
   float v = 1.0;
   if (!q.masked) {
     ShadowCursor cursor = shadow_cursor(q);

@@ -43,7 +43,8 @@ float blocker_gap(inout ShadowCursor cursor, VisibilityQuery q, vec3 shift) {
 #if SEARCH == 1
     gap *= fract(r3_sequence(uint(i)).z + shift.z);
 #endif
-    vec3 slope = light_view_slope(q.light, sample_point(i, blocker_samples, shift.xy));
+    vec3 slope;
+    if (!light_view_sample(q.light, sample_point(i, blocker_samples, shift.xy), slope)) continue;
     ShadowTap tap = shadow_tap(cursor, q, q.position + gap * slope);
     if (!tap.blocked) continue;
     float found = cursor.receiver.axis.w - dot(cursor.receiver.axis.xyz, tap.offset);
@@ -65,8 +66,8 @@ float filtered(inout ShadowCursor cursor, VisibilityQuery q, float gap, vec2 shi
   float total = 0.0;
   int count = sample_count(filter_samples);
   for (int i = 0; i < count; ++i) {
-    vec3 slope = light_view_slope(q.light, sample_point(i, filter_samples, shift));
-    if (dot(slope, q.normal) <= 0.0) continue;  // a part of a directional light's disc that has set
+    vec3 slope;
+    if (!light_view_sample(q.light, sample_point(i, filter_samples, shift), slope)) continue;
     total += 1.0;
     if (!shadow_tap(cursor, q, q.position + gap * slope).blocked) lit += 1.0;
   }
@@ -74,9 +75,9 @@ float filtered(inout ShadowCursor cursor, VisibilityQuery q, float gap, vec2 shi
 }
 
 void main() {
-  ivec3 at = ivec3(gl_GlobalInvocationID);
+  ivec3 at = ivec3(gl_GlobalInvocationID.xy, gl_WorkGroupID.z);
+  VisibilityQuery q = visibility_query(at.xy, gl_WorkGroupID.z);
   if (any(greaterThanEqual(at, imageSize(visibility)))) return;
-  VisibilityQuery q = visibility_query(at, 1, 0);
   float v = 1.0;
   if (!q.masked) {
     ShadowCursor cursor = shadow_cursor(q);

@@ -42,7 +42,7 @@ void main() {
       surface_brdf(s.base_colour, s.metallic, s.roughness, s.specular_factor, s.specular_colour, s.ior);
   vec3 sum = vec3(0.0);
   for (int l = 0; l < light_count; ++l) {
-    VisibilityQuery q = visibility_query(ivec3(pixel, l), batch_samples, 0);
+    VisibilityQuery q = visibility_query(pixel, uint(l * batch_samples));
     if (q.masked) continue;
     vec3 to_viewer = normalize(frame.camera_position.xyz - q.position);
     sum += light_from(q, lights[q.maps.info.z], l, surface, s.normal, to_viewer);

@@ -14,6 +14,7 @@ vec3 sample_offset(VisibilityQuery q, ShadowLight maps) {
 // Whether the map of one sample shows the receiver.
 bool sample_visible(inout VisibilityQuery q, ShadowLight maps) {
   q.maps = maps;
+  q.first = shadow_views[maps.info.x];
   ShadowCursor cursor = shadow_cursor(q);
   return !shadow_covers_receiver(cursor, q) || !shadow_tap(cursor, q, q.position).blocked;
 }

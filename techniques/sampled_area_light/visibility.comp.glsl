@@ -9,11 +9,11 @@ layout(binding = 0, r16) writeonly uniform image2DArray visibility;
 
 // How many of all samples count: every batch needs the same number.
 int samples_above(VisibilityQuery q) {
-  if (!q.light.cone && q.light.whole) return total_samples;
+  if (q.light.whole) return total_samples;
   int above = 0;
   for (int i = 0; i < total_samples; ++i) {
     vec2 u = fract(r2_sequence(uint(i)) + 0.5);
-    vec3 offset = light_view_whole_slope(q.light, u);
+    vec3 offset = light_view_point(q.light, u);
     if (dot(offset, q.normal) > 0.0) ++above;
   }
   return above;
@@ -32,9 +32,9 @@ float batch_share(VisibilityQuery q, int layer) {
 }
 
 void main() {
-  ivec3 at = ivec3(gl_GlobalInvocationID);
+  ivec3 at = ivec3(gl_GlobalInvocationID.xy, gl_WorkGroupID.z);
+  VisibilityQuery q = visibility_query(at.xy, gl_WorkGroupID.z * uint(batch_samples));
   if (any(greaterThanEqual(at, imageSize(visibility)))) return;
-  VisibilityQuery q = visibility_query(at, batch_samples, 0);
   float v = first_sample == 0 ? 1.0 : 0.0;
   if (!q.masked) v = batch_share(q, at.z);
 #if ACCUMULATE

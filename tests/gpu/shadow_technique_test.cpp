@@ -96,13 +96,16 @@ float exactVisibility(const glsl::Light& light, const vec3& p, const Hides& hide
   constexpr int cells = 24;
   const glsl::LightView view = glsl::light_view(light, p, {0, 1, 0}, -1);
   if (view.masked) return 1;
-  int lit = 0;
+  int lit = 0, above = 0;
   for (int i = 0; i < cells * cells; ++i) {
     const glm::vec2 u((static_cast<float>(i % cells) + 0.5f) / cells,
                       (static_cast<float>(i / cells) + 0.5f) / cells);
-    if (!hides(p, glsl::light_view_slope(view, u) * (view.cone ? 1e3f : view.depth))) ++lit;
+    const vec3 slope = glsl::light_view_point(view, u);
+    if (slope.y <= 0) continue;
+    ++above;
+    if (!hides(p, slope * (view.cone ? 1e3f : view.depth))) ++lit;
   }
-  return static_cast<float>(lit) / (cells * cells);
+  return static_cast<float>(lit) / static_cast<float>(std::max(above, 1));
 }
 
 struct Errors {
