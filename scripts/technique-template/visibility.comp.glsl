@@ -19,8 +19,8 @@ float filtered(VisibilityQuery q) {
 }
 
 void main() {
-  ivec3 at = ivec3(gl_GlobalInvocationID);  // pixel, and light of the batch
+  ivec3 at = ivec3(gl_GlobalInvocationID.xy, gl_WorkGroupID.z);  // pixel, and light of the batch
+  VisibilityQuery q = visibility_query(at.xy, gl_WorkGroupID.z);
   if (any(greaterThanEqual(at, imageSize(visibility)))) return;
-  VisibilityQuery q = visibility_query(at, 1, 0);
   imageStore(visibility, at, vec4(q.masked ? 1.0 : filtered(q)));
 }
