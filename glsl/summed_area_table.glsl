@@ -8,6 +8,12 @@
 #ifndef LIMN_SUMMED_AREA_TABLE_GLSL
 #define LIMN_SUMMED_AREA_TABLE_GLSL
 #include "glsl/language.glsl"
+// Every compiler is to quantise alike: no fused multiply and add.
+#ifdef __cplusplus
+#define SAT_PRECISE
+#else
+#define SAT_PRECISE precise
+#endif
 LIMN_BEGIN
 
 // --- 64-bit integers: (low word, high word), two's complement, modulo 2^64 ---
@@ -37,7 +43,7 @@ LIMN_FN float wide_signed_float(uvec2 a) {
   return negative ? -magnitude : magnitude;
 }
 
-// --- Layout of a table: what its texels hold, as one number for a uniform ---
+// --- Format of a table: what its texels hold, as one number for a uniform, or a constant that spares the branches ---
 
 // bits: of Z, 8 to 24. words: 32-bit words per moment, 1 or 2. squares: 1 if z^2 is there as well, else 0.
 // Texels: z in 1 word: R32UI. z in 2: RG32UI (low, high). z and z^2 in 1: RG32UI, with z^2 rounded to `bits` bits. Both
@@ -65,7 +71,8 @@ LIMN_FN uint sat_quantise(float z, uint format) {
   float limited = z < 1.0f ? max(z, 0.0f) : 1.0f;
   float scaled = limited * float(sat_scale(format));
   uint whole = uint(scaled);  // adding 1/2 first would round twice
-  return min(whole + uint(scaled - float(whole) >= 0.5f), sat_scale(format));
+  SAT_PRECISE float rest = scaled - float(whole);
+  return min(whole + uint(rest >= 0.5f), sat_scale(format));
 }
 
 // --- Sums: (z low, z^2 low, z^2 high, z high) while they are computed, packed as `format` says when stored ---
@@ -92,9 +99,10 @@ LIMN_FN uvec4 sat_add(uvec4 a, uvec4 b) {
   return uvec4(z.x, zz.x, zz.y, z.y);
 }
 
-// Sums to the components of a texel, and back; words that are not stored come back as 0.
+// Sums to the components of a texel, and back; words that are not stored are 0.
 LIMN_FN uvec4 sat_pack(uvec4 sums, uint format) {
-  return sat_two_words(format) && !sat_has_squares(format) ? uvec4(sums.x, sums.w, 0u, 0u) : sums;
+  if (!sat_two_words(format)) return uvec4(sums.x, sat_has_squares(format) ? sums.y : 0u, 0u, 0u);
+  return sat_has_squares(format) ? sums : uvec4(sums.x, sums.w, 0u, 0u);
 }
 LIMN_FN uvec4 sat_unpack(uvec4 texel, uint format) {
   if (!sat_two_words(format)) return uvec4(texel.x, sat_has_squares(format) ? texel.y : 0u, 0u, 0u);
@@ -109,8 +117,8 @@ struct SatBox {
   uvec2 zz;  // sum of Z^2, 64 bit
 };
 
-// The box [x0, x1) x [y0, y1) of `texels` texels, from the unpacked sums at (x1, y1), (x0, y1), (x1, y0) and (x0, y0), where
-// (x, y) stands for all texels left of x and above y.
+// The box [x0, x1) x [y0, y1) of `texels` texels, from the unpacked sums at (x1, y1), (x0, y1), (x1, y0) and (x0, y0),
+// where (x, y) stands for all texels left of x and above y.
 LIMN_FN SatBox sat_box(uvec4 s11, uvec4 s01, uvec4 s10, uvec4 s00, uint texels, uint format) {
   SatBox box;
   box.texels = texels;
@@ -169,8 +177,8 @@ LIMN_FN vec2 sat_moments(SatMoments moments, float d, uint receiver, uint format
 
 // --- Kernels with fractional edges ---
 
-// One axis of a kernel [lo, hi) in texels: boxes [edges[i], edges[i + 1]) of weights[i]: the two texels that an edge cuts,
-// and all between them.
+// One axis of a kernel [lo, hi) in texels: boxes [edges[i], edges[i + 1]) of weights[i]: the two texels that an edge
+// cuts, and all between them.
 struct SatAxis {
   ivec4 edges;
   vec3 weights;

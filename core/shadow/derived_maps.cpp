@@ -111,7 +111,7 @@ TableFormat tableFormat(const SatDesc& desc) {
   return words == 2 ? TableFormat{GL_RG32UI, "rg32ui"} : TableFormat{GL_RGBA32UI, "rgba32ui"};
 }
 
-/// Work groups needed for `lines` lines; the shader has the same numbers.
+/// Work groups for so many rows or columns; how many one takes is as in the shader.
 int lineGroups(int lines, bool shared, bool vertical) {
   const int perGroup = shared && !vertical ? 4 : 16;
   return (lines + perGroup - 1) / perGroup;
@@ -131,15 +131,15 @@ SummedAreaTable addTable(frame::FrameGraph& graph, TextureHandle source, const S
     if (!vertical) pass.read(source, Access::sampled, "shadow maps");
     table.texture = pass.write(table.texture, vertical ? Access::imageLoadStore : Access::imageStore,
                                vertical ? "sums along columns, in place" : "sums along rows");
-    const frame::ProgramHandle program = pass.program({.files = {"glsl/shadow/summed_area_table.comp.glsl"},
-                                                       .defines = {{"SHARED", shared ? "1" : "0"},
-                                                                   {"TABLE_FORMAT", format.glsl},
-                                                                   {"VERTICAL", vertical ? "1" : "0"}}});
+    const frame::ProgramHandle program =
+        pass.program({.files = {"glsl/shadow/summed_area_table.comp.glsl"},
+                      .defines = {{"SHARED", shared ? "1" : "0"},
+                                  {"IMAGE_FORMAT", format.glsl},
+                                  {"TABLE_FORMAT", fmt::format("{}u", table.format)},
+                                  {"VERTICAL", vertical ? "1" : "0"}}});
     if (cacheable) pass.cacheable();
     pass.execute([source, table, program, vertical, shared, texture](frame::PassContext& context) {
-      gpu::Program& p = context.program(program);
-      p.use();
-      p.set("table_format", table.format);
+      context.program(program).use();
       if (!vertical) context.bindSampled(0, source);
       context.bindImage(0, table.texture, vertical ? GL_READ_WRITE : GL_WRITE_ONLY);
       const int groups = lineGroups(vertical ? texture.width : texture.height, shared, vertical);

@@ -1,7 +1,7 @@
 // One direction of an integer summed-area table of shadow maps: sums along the rows of the maps (VERTICAL 0), then of
 // those along the columns, in place. Either one thread follows a whole line (SHARED 0: quickest where threads are few,
-// on software renderers), or a work group scans LENGTH texels of each of its LINES lines at a time in shared memory and
-// carries the last sums on. Integer sums are the same in any order.
+// on software renderers), or each thread of a work group sums PER_THREAD texels, LENGTH of them per line scan these
+// sums in shared memory, and the last is carried on to the next part of the line. Integer sums are the same in any order.
 #include "glsl/summed_area_table.glsl"
 
 #if SHARED
@@ -18,16 +18,17 @@ layout(local_size_x = LENGTH, local_size_y = LINES) in;
 #define LOCAL_LINE int(gl_LocalInvocationID.y)
 #define LOCAL_POSITION int(gl_LocalInvocationID.x)
 #endif
-shared uvec4 partial_sums[LINES][LENGTH];
+#define PER_THREAD 4
+shared uvec4 partial_sums[2][LINES][LENGTH];
 #else
 layout(local_size_x = 16) in;
 #endif
 
-layout(TABLE_FORMAT, binding = 0) uniform uimage2DArray table;
+layout(IMAGE_FORMAT, binding = 0) uniform uimage2DArray table;
 #if !VERTICAL
 layout(binding = 0) uniform sampler2DArray depth;
 #endif
-uniform uint table_format;
+const uint table_format = TABLE_FORMAT;
 
 ivec3 texel_at(int line, int position) {
 #if VERTICAL
@@ -57,21 +58,31 @@ void main() {
   uvec4 carried = uvec4(0u);
 #if SHARED
   int line = int(gl_WorkGroupID.x) * LINES + LOCAL_LINE;
-  for (int start = 0; start < positions; start += LENGTH) {
-    bool inside = line < lines && start + LOCAL_POSITION < positions;
-    ivec3 at = texel_at(line, start + LOCAL_POSITION);
-    uvec4 sum = inside ? value_at(at) : uvec4(0u);
+  for (int start = 0; start < positions; start += LENGTH * PER_THREAD) {
+    int first = start + LOCAL_POSITION * PER_THREAD;
+    uvec4 sums[PER_THREAD];
+    uvec4 sum = uvec4(0u);
+    for (int i = 0; i < PER_THREAD; ++i) {
+      if (line < lines && first + i < positions) sum = sat_add(sum, value_at(texel_at(line, first + i)));
+      sums[i] = sum;
+    }
     // Hillis and Steele 1986, Data parallel algorithms: the reach of every sum doubles with each step.
-    partial_sums[LOCAL_LINE][LOCAL_POSITION] = sum;
+    int side = 0;
+    partial_sums[side][LOCAL_LINE][LOCAL_POSITION] = sum;
     barrier();
     for (int reach = 1; reach < LENGTH; reach *= 2) {
-      if (LOCAL_POSITION >= reach) sum = sat_add(sum, partial_sums[LOCAL_LINE][LOCAL_POSITION - reach]);
-      barrier();
-      partial_sums[LOCAL_LINE][LOCAL_POSITION] = sum;
+      if (LOCAL_POSITION >= reach) sum = sat_add(sum, partial_sums[side][LOCAL_LINE][LOCAL_POSITION - reach]);
+      side = 1 - side;
+      partial_sums[side][LOCAL_LINE][LOCAL_POSITION] = sum;
       barrier();
     }
-    if (inside) imageStore(table, at, sat_pack(sat_add(carried, sum), table_format));
-    carried = sat_add(carried, partial_sums[LOCAL_LINE][LENGTH - 1]);
+    uvec4 before = carried;
+    if (LOCAL_POSITION > 0) before = sat_add(carried, partial_sums[side][LOCAL_LINE][LOCAL_POSITION - 1]);
+    for (int i = 0; i < PER_THREAD; ++i) {
+      if (line < lines && first + i < positions)
+        imageStore(table, texel_at(line, first + i), sat_pack(sat_add(before, sums[i]), table_format));
+    }
+    carried = sat_add(carried, partial_sums[side][LOCAL_LINE][LENGTH - 1]);
     barrier();
   }
 #else

@@ -173,31 +173,34 @@ std::vector<uint32_t> expectedTable(const Size& size, const std::vector<float>& 
 }
 
 TEST_F(DerivedMapsTest, SummedAreaTablesAreExactToTheBitByBothMethods) {
-  constexpr SatDesc descs[] = {
-      {.moments = SatMoments::z}, {.words = 2, .moments = SatMoments::z}, {.words = 1}, {}, {.bits = 24},
-      {.bits = 8, .words = 1}};
+  constexpr SatMethod rows = SatMethod::rowParallel, shared = SatMethod::sharedMemory;
+  constexpr SatDesc descs[] = {{.moments = SatMoments::z, .method = rows},
+                               {.moments = SatMoments::z, .method = shared},
+                               {.words = 2, .moments = SatMoments::z, .method = rows},
+                               {.words = 1, .method = rows},
+                               {.words = 1, .method = shared},
+                               {.method = rows},
+                               {.method = shared},
+                               {.bits = 24, .method = rows},
+                               {.bits = 8, .words = 1, .method = rows}};
   for (const Size& size : sizes) {
     makeSource(size);
-    for (SatDesc desc : descs) {
-      for (const SatMethod method : {SatMethod::rowParallel, SatMethod::sharedMemory}) {
-        desc.method = method;
-        frame::FrameGraph graph;
-        DerivedMaps maps(device());
-        maps.begin(graph);
-        const SummedAreaTable table =
-            maps.summedAreaTable(graph.importTexture("source", source_), false, desc);
-        graph.output(table.texture);
-        graph.prepare(device(), shaders(), *pool_);
-        graph.execute();
-        const gpu::Texture& texture = graph.texture(table.texture);
-        const GLenum format = texture.desc().format;
-        const size_t words = format == GL_R32UI ? 1 : format == GL_RG32UI ? 2 : 4;
-        const GLenum client = words == 1 ? GL_RED_INTEGER : words == 2 ? GL_RG_INTEGER : GL_RGBA_INTEGER;
-        EXPECT_TRUE(read<uint32_t>(texture, 0, client, GL_UNSIGNED_INT, words) ==
-                    expectedTable(size, depth_, table.format))
-            << size.width << " x " << size.height << ", " << desc.bits << " bits, " << words
-            << " words, method " << static_cast<int>(method);
-      }
+    for (const SatDesc& desc : descs) {
+      frame::FrameGraph graph;
+      DerivedMaps maps(device());
+      maps.begin(graph);
+      const SummedAreaTable table = maps.summedAreaTable(graph.importTexture("source", source_), false, desc);
+      graph.output(table.texture);
+      graph.prepare(device(), shaders(), *pool_);
+      graph.execute();
+      const gpu::Texture& texture = graph.texture(table.texture);
+      const GLenum format = texture.desc().format;
+      const size_t words = format == GL_R32UI ? 1 : format == GL_RG32UI ? 2 : 4;
+      const GLenum client = words == 1 ? GL_RED_INTEGER : words == 2 ? GL_RG_INTEGER : GL_RGBA_INTEGER;
+      EXPECT_TRUE(read<uint32_t>(texture, 0, client, GL_UNSIGNED_INT, words) ==
+                  expectedTable(size, depth_, table.format))
+          << size.width << " x " << size.height << ", " << desc.bits << " bits, " << words
+          << " words, method " << static_cast<int>(desc.method);
     }
   }
 }

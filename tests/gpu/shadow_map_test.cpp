@@ -268,6 +268,39 @@ TEST_F(ShadowMapTest, StaticMapsAreCachedAndSharedAndFollowWhatMoves) {
   gpuScene.forget();
 }
 
+TEST_F(ShadowMapTest, DerivedMapsAreKeptWhereTheMapsAre) {
+  scene::Scene scene;
+  addMesh(scene, floorPrimitive(2, addMaterial(scene)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addLight(pose, pointLight({0, 4, 0}));
+  scene::GpuScene gpuScene(device(), scene);
+  gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
+  shadow::ShadowMapService service(device(), gpuScene);
+  frame::ResourcePool pool(device());
+  for (const bool cacheable : {true, false}) {
+    frame::FrameGraph graph;
+    service.begin(graph, gpuScene.import(graph), pose);
+    const std::vector<uint32_t> light{0};
+    const shadow::ShadowMaps maps = service.request(light, {.size = 16, .cacheable = cacheable});
+    const shadow::MinMaxPyramid pyramid = service.minMaxPyramid(maps);
+    EXPECT_EQ(service.minMaxPyramid(maps).texture, pyramid.texture);
+    EXPECT_EQ(pyramid.levels, 5);
+    EXPECT_EQ(graph.desc(pyramid.texture).layers, maps.layers);
+    graph.output(pyramid.texture);
+    graph.output(service.summedAreaTable(maps, {}).texture);
+    graph.output(service.momentMips(maps));
+    graph.prepare(device(), shaders(), pool);
+    graph.execute();
+    graph.execute();
+    for (const frame::PassReport& row : graph.explain()) {
+      if (row.state == frame::PassState::leftOut) continue;
+      EXPECT_EQ(row.state, cacheable ? frame::PassState::cached : frame::PassState::run) << row.name;
+    }
+  }
+  gpuScene.forget();
+}
+
 TEST_F(ShadowMapTest, ImpossibleRequestsAreRefused) {
   scene::Scene scene;
   addMesh(scene, floorPrimitive(2, addMaterial(scene)));
