@@ -49,7 +49,7 @@ TEST(Interruption, ReferenceLeavesACheckpointAndResumes) {
 TEST(Interruption, KilledBenchLosesNoRow) {
   const TemporaryFolder folder;
   constexpr size_t cases = 16;
-  // The box's edges run along diagonals of pixels, where the renderers may name either wall: many of so few
+  // Edges of the box pass through pixel centres, where the renderers may name either wall: many of so few
   // pixels.
   std::ofstream(folder / "suite.toml")
       << "name = 'killed'\nsizes = ['32x20', '48x30']\nframes = 2\nwarmup = 0\nreference = {spp = 2}\n"
