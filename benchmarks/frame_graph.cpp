@@ -1,8 +1,10 @@
-// What the frame graph itself costs on the CPU: a frame of passes that do nothing, and planning one from scratch.
+// What the frame graph itself costs on the CPU: a frame of passes that do nothing, and planning one from
+// scratch.
+#include "core/frame/frame_graph.h"
+
 #include <benchmark/benchmark.h>
 
 #include "core/context/context.h"
-#include "core/frame/frame_graph.h"
 
 namespace {
 

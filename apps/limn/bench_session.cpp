@@ -29,7 +29,9 @@ SceneOptions sceneOptions(const bench::Case& c) {
   return options;
 }
 
-bool sameScene(const SceneOptions& a, const SceneOptions& b) { return a.scene == b.scene && a.time == b.time; }
+bool sameScene(const SceneOptions& a, const SceneOptions& b) {
+  return a.scene == b.scene && a.time == b.time;
+}
 
 render::Settings baseSettings(const View& view, render::Output output, int light) {
   render::Settings settings;
@@ -127,7 +129,8 @@ bench::Measurement BenchSession::measure(const bench::Case& c) {
   Loaded& loaded = load(c);
   TechniqueOptions techniques;
   techniques.techniques = c.technique;
-  for (const auto& [name, value] : c.parameters) techniques.settings.push_back(fmt::format("{}={}", name, value));
+  for (const auto& [name, value] : c.parameters)
+    techniques.settings.push_back(fmt::format("{}={}", name, value));
   render::Settings settings = baseSettings(loaded.view, render::parseOutput(c.term), loaded.view.light);
   settings.techniques = techniques.resolve(registry_);
   settings.dynamic = c.dynamic;

@@ -25,9 +25,11 @@ void createFolder(const fs::path& folder) {
 
 int run(const Options& options) {
   const bench::Suite suite = bench::readSuite(options.suite);
-  const auto cases = bench::selectCases(suite.cases, options.filters,
-                                        options.shard.empty() ? bench::Shard{} : bench::parseShard(options.shard));
-  if (cases.empty()) throw UsageError(fmt::format("suite {} has no case that fits the filter", options.suite.string()));
+  const auto cases =
+      bench::selectCases(suite.cases, options.filters,
+                         options.shard.empty() ? bench::Shard{} : bench::parseShard(options.shard));
+  if (cases.empty())
+    throw UsageError(fmt::format("suite {} has no case that fits the filter", options.suite.string()));
   createFolder(options.out);
   bench::ResultsFile results(options.out / "results.jsonl");
   BenchSession session(options.backend, options.out);
@@ -43,8 +45,8 @@ int run(const Options& options) {
   };
   const bench::Summary summary = bench::runCases(cases, session.rendererName(), results, callbacks);
   bench::writeTables(results.rows(), options.out);
-  fmt::print("{} rows measured, {} were there already, {} failed; tables are in {}\n", summary.done, summary.skipped,
-             summary.failed, (options.out / "tables.md").string());
+  fmt::print("{} rows measured, {} were there already, {} failed; tables are in {}\n", summary.done,
+             summary.skipped, summary.failed, (options.out / "tables.md").string());
   return summary.failed > 0 ? 1 : 0;
 }
 
@@ -53,9 +55,12 @@ int run(const Options& options) {
 Action addBenchCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
   command.add_option("suite", options->suite, "TOML file, see benchmarks/")->required();
-  command.add_option("--out", options->out, "Folder for results.jsonl, tables and references; resumed if it exists")
+  command
+      .add_option("--out", options->out,
+                  "Folder for results.jsonl, tables and references; resumed if it exists")
       ->required();
-  command.add_option("--filter", options->filters, "Only cases whose label contains this text; repeatable")->take_all();
+  command.add_option("--filter", options->filters, "Only cases whose label contains this text; repeatable")
+      ->take_all();
   command.add_option("--shard", options->shard, "i/n: the i-th of n parts");
   options->backend.addTo(command);
   return [options] { return run(*options); };

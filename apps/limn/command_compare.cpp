@@ -21,8 +21,10 @@ struct Options {
 std::optional<std::pair<float, float>> parseTermRange(const std::string& text) {
   if (text.empty()) return std::nullopt;
   const size_t comma = text.find(',');
-  const auto low = comma == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(0, comma));
-  const auto high = comma == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(comma + 1));
+  const auto low =
+      comma == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(0, comma));
+  const auto high =
+      comma == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(comma + 1));
   if (!low || !high || *low >= *high)
     throw UsageError(fmt::format("--mask-term-range '{}' is not accepted; expected a,b with a < b", text));
   return std::pair(static_cast<float>(*low), static_cast<float>(*high));
@@ -49,11 +51,13 @@ Action addCompareCommand(CLI::App& command) {
   command.add_option("reference", options->reference, "What it should be")->required();
   command.add_flag("--json", options->json, "Print JSON");
   command.add_option("--diff", options->diff, "Write the FLIP map as a PNG in false colour");
-  command.add_option("--mask-term-range", options->maskTermRange,
-                     "Only pixels whose reference lies in the open interval (a,b), e.g. 0.02,0.98 for penumbrae");
+  command.add_option(
+      "--mask-term-range", options->maskTermRange,
+      "Only pixels whose reference lies in the open interval (a,b), e.g. 0.02,0.98 for penumbrae");
   command.add_option("--exposure", options->exposure, "Exposure of the tone mapping for FLIP, EV");
-  command.add_option("--max-masked", options->maxMasked,
-                     "Fail above this share of pixels whose coverage, instance or depth differ, percent")
+  command
+      .add_option("--max-masked", options->maxMasked,
+                  "Fail above this share of pixels whose coverage, instance or depth differ, percent")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 100.0));
   return [options] { return run(*options); };

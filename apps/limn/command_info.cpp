@@ -12,8 +12,8 @@ namespace limn::app {
 namespace {
 
 nlohmann::ordered_json describe(const DeviceDescription& device) {
-  nlohmann::ordered_json json{{"backend", name(device.backend)}, {"device", device.device},
-                              {"description", device.description}};
+  nlohmann::ordered_json json{
+      {"backend", name(device.backend)}, {"device", device.device}, {"description", device.description}};
   if (!device.problem.empty()) {
     json["problem"] = device.problem;
     return json;
@@ -51,7 +51,8 @@ void printText(const nlohmann::ordered_json& device) {
     fmt::print("  not usable: {}\n", device["problem"].get<std::string>());
     return;
   }
-  fmt::print("  {} | OpenGL {}{}\n", device["renderer"].get<std::string>(), device["version"].get<std::string>(),
+  fmt::print("  {} | OpenGL {}{}\n", device["renderer"].get<std::string>(),
+             device["version"].get<std::string>(),
              device["software"].get<bool>() ? " | software: passes are timed with glFinish and a clock" : "");
   for (const auto& [key, value] : device["limits"].items()) fmt::print("  {}: {}\n", key, value.dump());
 }

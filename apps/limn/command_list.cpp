@@ -13,10 +13,14 @@ constexpr Term all_terms[] = {Term::visibility, Term::direct, Term::indirect, Te
 
 const char* typeName(ParameterType type) {
   switch (type) {
-    case ParameterType::boolean: return "boolean";
-    case ParameterType::integer: return "integer";
-    case ParameterType::real: return "real";
-    case ParameterType::choice: return "choice";
+    case ParameterType::boolean:
+      return "boolean";
+    case ParameterType::integer:
+      return "integer";
+    case ParameterType::real:
+      return "real";
+    case ParameterType::choice:
+      return "choice";
   }
   return "";
 }
@@ -57,7 +61,8 @@ void printJson(const TechniqueRegistry& registry) {
                           {"parameters", parameters}});
   }
   nlohmann::ordered_json refused = nlohmann::ordered_json::array();
-  for (const auto& refusal : registry.refused()) refused.push_back({{"name", refusal.name}, {"reason", refusal.reason}});
+  for (const auto& refusal : registry.refused())
+    refused.push_back({{"name", refusal.name}, {"reason", refusal.reason}});
   fmt::print("{}\n", nlohmann::ordered_json{{"techniques", techniques}, {"refused", refused}}.dump(2));
 }
 

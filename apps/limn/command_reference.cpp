@@ -37,7 +37,8 @@ reference::Request makeRequest(const Options& options, const View& view) {
 
 int run(const Options& options) {
   if (options.out.extension() != ".exr" && options.out.extension() != ".png")
-    throw UsageError(fmt::format("--out '{}' is not accepted; expected a name ending in .exr or .png", options.out.string()));
+    throw UsageError(fmt::format("--out '{}' is not accepted; expected a name ending in .exr or .png",
+                                 options.out.string()));
   checkWritable(options.out);
   const View view = open(options.scene);
   reference::Request request = makeRequest(options, view);
@@ -56,7 +57,8 @@ int run(const Options& options) {
     result = reference::Cache(options.cache).render(request);
   }
   writeImage(options.out, result.image, static_cast<float>(options.exposure));
-  fmt::print("{}: {} samples per pixel, noise {:.5f} of the mean\n", options.out.string(), result.spp, result.noiseRms);
+  fmt::print("{}: {} samples per pixel, noise {:.5f} of the mean\n", options.out.string(), result.spp,
+             result.noiseRms);
   return 0;
 }
 
@@ -65,17 +67,24 @@ int run(const Options& options) {
 Action addReferenceCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
   options->scene.addTo(command);
-  command.add_option("--term", options->term, "direct, visibility (with --light) or final")->capture_default_str();
-  command.add_option("--spp", options->spp, "Samples per pixel and light; with --noise the most that are taken")
-                  ->capture_default_str()
-                  ->check(CLI::Range(1, 1 << 22));
-  command.add_option("--noise", options->noise, "Stop at this noise: RMS relative to the mean")->check(CLI::Range(0.0, 1.0));
-  command.add_option("--aa", options->aa, "N x N samples in each pixel (both renderers or neither)")->check(CLI::Range(1, 16));
+  command.add_option("--term", options->term, "direct, visibility (with --light) or final")
+      ->capture_default_str();
+  command
+      .add_option("--spp", options->spp, "Samples per pixel and light; with --noise the most that are taken")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1 << 22));
+  command.add_option("--noise", options->noise, "Stop at this noise: RMS relative to the mean")
+      ->check(CLI::Range(0.0, 1.0));
+  command.add_option("--aa", options->aa, "N x N samples in each pixel (both renderers or neither)")
+      ->check(CLI::Range(1, 16));
   command.add_option("--seed", options->seed, "Of the random numbers");
   command.add_option("--threads", options->threads, "0: all cores")->check(CLI::Range(0, 1024));
   command.add_option("--exposure", options->exposure, "EV, for .png only")->check(CLI::Range(-60.0, 60.0));
-  command.add_option("--cache", options->cache, "Folder of finished references, found again by their content");
-  command.add_option("--out", options->out, "Picture (.exr with all channels, or .png); interrupted work is kept beside it")
+  command.add_option("--cache", options->cache,
+                     "Folder of finished references, found again by their content");
+  command
+      .add_option("--out", options->out,
+                  "Picture (.exr with all channels, or .png); interrupted work is kept beside it")
       ->required();
   return [options] { return run(*options); };
 }

@@ -32,17 +32,21 @@ struct FrameRange {
 std::optional<FrameRange> parseFrames(const std::string& text) {
   if (text.empty()) return std::nullopt;
   const size_t colon = text.find(':');
-  const auto first = colon == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(0, colon));
-  const auto last = colon == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(colon + 1));
+  const auto first =
+      colon == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(0, colon));
+  const auto last =
+      colon == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(colon + 1));
   const auto whole = [](double v) { return v == std::floor(v) && v >= 0 && v <= 1e6; };
   if (!first || !last || !whole(*first) || !whole(*last) || *first > *last)
-    throw UsageError(fmt::format("--frames '{}' is not accepted; expected a:b with 0 <= a <= b <= 1000000", text));
+    throw UsageError(
+        fmt::format("--frames '{}' is not accepted; expected a:b with 0 <= a <= b <= 1000000", text));
   return FrameRange{static_cast<int>(*first), static_cast<int>(*last)};
 }
 
 void checkOutputName(const fs::path& out) {
   if (out.extension() != ".png" && out.extension() != ".exr")
-    throw UsageError(fmt::format("--out '{}' is not accepted; expected a name ending in .exr or .png", out.string()));
+    throw UsageError(
+        fmt::format("--out '{}' is not accepted; expected a name ending in .exr or .png", out.string()));
 }
 
 /// picture.png, frame 7 -> picture.0007.png
@@ -55,21 +59,23 @@ void printExplanation(const std::vector<frame::PassReport>& passes, const render
   for (size_t i = 0; i < passes.size(); ++i) {
     const auto& pass = passes[i];
     const bool timed = stats && stats->passes[i].ms.n > 0;
-    fmt::print("{:<9} {:<24} {:<34} {:>10.1f} {:>9}  {}\n", frame::name(pass.state), pass.technique, pass.name,
-               static_cast<double>(pass.bytes) / 1024, timed ? fmt::format("{:.3f}", stats->passes[i].ms.median) : "",
-               pass.reason);
+    fmt::print("{:<9} {:<24} {:<34} {:>10.1f} {:>9}  {}\n", frame::name(pass.state), pass.technique,
+               pass.name, static_cast<double>(pass.bytes) / 1024,
+               timed ? fmt::format("{:.3f}", stats->passes[i].ms.median) : "", pass.reason);
   }
 }
 
 void printStats(const render::FrameStats& stats) {
-  fmt::print("{}: {:.3f} ms a frame (quartiles {:.3f} to {:.3f}, {} frames, {}), passes {:.3f} ms, {:.1f} MiB\n",
-             stats.renderer, stats.frameMs.median, stats.frameMs.q1, stats.frameMs.q3, stats.frameMs.n,
-             stats.dynamic ? "dynamic" : "static", stats.passSumMs,
-             static_cast<double>(stats.memoryBytes) / (1 << 20));
+  fmt::print(
+      "{}: {:.3f} ms a frame (quartiles {:.3f} to {:.3f}, {} frames, {}), passes {:.3f} ms, {:.1f} MiB\n",
+      stats.renderer, stats.frameMs.median, stats.frameMs.q1, stats.frameMs.q3, stats.frameMs.n,
+      stats.dynamic ? "dynamic" : "static", stats.passSumMs,
+      static_cast<double>(stats.memoryBytes) / (1 << 20));
   constexpr double allowed = 0.15;  // else the passes' times do not explain the frame's
   if (std::abs(stats.passSumMs - stats.frameMs.median) > allowed * stats.frameMs.median)
     fmt::print(stderr,
-               "limn: warning: the passes sum to {:.3f} ms, the frame takes {:.3f} ms: the machine was busy, or work "
+               "limn: warning: the passes sum to {:.3f} ms, the frame takes {:.3f} ms: the machine was busy, "
+               "or work "
                "happens outside the passes\n",
                stats.passSumMs, stats.frameMs.median);
 }
@@ -133,19 +139,26 @@ Action addRenderCommand(CLI::App& command) {
   options->scene.addTo(command);
   options->technique.addTo(command);
   options->backend.addTo(command);
-  command.add_option("--output-term", options->outputTerm, "final, visibility, direct, indirect, caustic or media")
+  command
+      .add_option("--output-term", options->outputTerm,
+                  "final, visibility, direct, indirect, caustic or media")
       ->capture_default_str();
-  command.add_option("--frames", options->frames, "Render the frames a to b (inclusive) of the animation, as NAME.0000.png");
+  command.add_option("--frames", options->frames,
+                     "Render the frames a to b (inclusive) of the animation, as NAME.0000.png");
   command.add_option("--fps", options->fps, "Frames per second of the animation")
       ->capture_default_str()
       ->check(CLI::Range(0.001, 1e5));
   command.add_option("--exposure", options->exposure, "EV, for .png only")->check(CLI::Range(-60.0, 60.0));
-  command.add_option("--repeat", options->repeat, "Time this many frames after the picture")->check(CLI::Range(1, 100000));
-  auto* dynamicFlag = command.add_flag("--dynamic", options->dynamicFrames,
-                                       "Timed frames compute everything anew (default)");
-  command.add_flag("--static", options->staticFrames, "Timed frames keep what did not change")->excludes(dynamicFlag);
-  command.add_option("--out", options->out, "Picture: .exr (linear, with depth, id, albedo, normal) or .png")->required();
-  command.add_flag("--explain", options->explain, "Print every pass: run, cached or left out, why, memory and time");
+  command.add_option("--repeat", options->repeat, "Time this many frames after the picture")
+      ->check(CLI::Range(1, 100000));
+  auto* dynamicFlag =
+      command.add_flag("--dynamic", options->dynamicFrames, "Timed frames compute everything anew (default)");
+  command.add_flag("--static", options->staticFrames, "Timed frames keep what did not change")
+      ->excludes(dynamicFlag);
+  command.add_option("--out", options->out, "Picture: .exr (linear, with depth, id, albedo, normal) or .png")
+      ->required();
+  command.add_flag("--explain", options->explain,
+                   "Print every pass: run, cached or left out, why, memory and time");
   command.add_option("--stats", options->stats, "Write times and memory as JSON");
   command.add_option("--graph", options->graph, "Write the frame graph for Graphviz");
   command.add_option("--shaders", options->shaders,

@@ -29,7 +29,8 @@ glm::vec3 parseVector(const char* option, const std::string& text) {
     const size_t comma = i < 2 ? rest.find(',') : rest.size();
     const auto number = comma == std::string_view::npos ? std::nullopt : parseNumber(rest.substr(0, comma));
     if (!number || std::abs(*number) > 1e30)
-      throw UsageError(fmt::format("{} '{}' is not accepted; expected three numbers x,y,z in metres", option, text));
+      throw UsageError(
+          fmt::format("{} '{}' is not accepted; expected three numbers x,y,z in metres", option, text));
     v[i] = static_cast<float>(*number);
     rest = i < 2 ? rest.substr(comma + 1) : rest;
   }
@@ -45,8 +46,10 @@ std::vector<std::string> cameraNames(const scene::Pose& pose) {
 }  // namespace
 
 void SceneOptions::addTo(CLI::App& command) {
-  command.add_option("scene", scene, "glTF 2.0 scene (.gltf, .glb), or the name of one of limn's own; convert other formats\n"
-                                     "beforehand, e.g. with assimp")
+  command
+      .add_option("scene", scene,
+                  "glTF 2.0 scene (.gltf, .glb), or the name of one of limn's own; convert other formats\n"
+                  "beforehand, e.g. with assimp")
       ->required();
   command.add_option("--camera", camera, "Camera by name or #index");
   command.add_option("--eye", eye, "Camera position x,y,z in metres (with --target)");
@@ -60,9 +63,12 @@ void SceneOptions::addTo(CLI::App& command) {
   command.add_option("--animation", animation, "Animation by name or #index (default: the first)");
   command.add_option("--size", size, "Picture size WxH, pixels")->capture_default_str();
   command.add_option("--light", light, "Only this light, by name or #index");
-  command.add_option("--default-lights", defaultLights,
-                     "auto: a scene with neither lights nor --environment gets a key light from above the camera's left\n"
-                     "shoulder and a headlight in the camera (--light key, --light headlight); on: every scene; off: none")
+  command
+      .add_option("--default-lights", defaultLights,
+                  "auto: a scene with neither lights nor --environment gets a key light from above the "
+                  "camera's left\n"
+                  "shoulder and a headlight in the camera (--light key, --light headlight); on: every scene; "
+                  "off: none")
       ->check(CLI::IsMember({"auto", "on", "off"}))
       ->capture_default_str();
 }
@@ -75,13 +81,14 @@ fs::path findScene(const fs::path& nameOrFile) {
   if (name.find('/') == std::string::npos)
     for (const fs::path& folder : {prefix / "assets", prefix / "share/limn/assets"})
       if (const fs::path file = folder / name / (name + ".glb"); fs::exists(file, ignored)) return file;
-  throw Error(fmt::format("scene '{}' does not exist; expected a .gltf or .glb file, or the name of one of limn's scenes",
-                          name));
+  throw Error(fmt::format(
+      "scene '{}' does not exist; expected a .gltf or .glb file, or the name of one of limn's scenes", name));
 }
 
 void checkWritable(const fs::path& file) {
   std::error_code ignored;
-  if (fs::is_directory(file, ignored)) throw Error(fmt::format("{}: cannot be written: it is a folder", file.string()));
+  if (fs::is_directory(file, ignored))
+    throw Error(fmt::format("{}: cannot be written: it is a folder", file.string()));
   const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
   if (access(folder.c_str(), W_OK | X_OK) != 0)
     throw Error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
@@ -90,10 +97,14 @@ void checkWritable(const fs::path& file) {
 glm::ivec2 parseSize(const std::string& text) {
   const size_t x = text.find('x');
   const auto width = x == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(0, x));
-  const auto height = x == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(x + 1));
-  const auto fits = [](const std::optional<double>& v) { return v && *v >= 1 && *v <= 16384 && *v == std::floor(*v); };
+  const auto height =
+      x == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(x + 1));
+  const auto fits = [](const std::optional<double>& v) {
+    return v && *v >= 1 && *v <= 16384 && *v == std::floor(*v);
+  };
   if (!fits(width) || !fits(height))
-    throw UsageError(fmt::format("--size '{}' is not accepted; expected WxH, each from 1 to 16384 pixels", text));
+    throw UsageError(
+        fmt::format("--size '{}' is not accepted; expected WxH, each from 1 to 16384 pixels", text));
   return {static_cast<int>(*width), static_cast<int>(*height)};
 }
 
@@ -105,18 +116,23 @@ int findNamed(const std::string& what, const std::string& text, const std::vecto
         index && *index >= 0 && *index < static_cast<double>(names.size()) && *index == std::floor(*index))
       return static_cast<int>(*index);
   constexpr size_t listed = 20;
-  std::vector<std::string> shown(names.begin(), names.begin() + static_cast<long>(std::min(names.size(), listed)));
-  throw UsageError(fmt::format("{} '{}' is not in the scene{}; it has {}{}", what, text, didYouMean(text, names),
-                               names.empty() ? "none" : joined(shown),
-                               names.size() > listed ? fmt::format(" and {} more", names.size() - listed) : ""));
+  std::vector<std::string> shown(names.begin(),
+                                 names.begin() + static_cast<long>(std::min(names.size(), listed)));
+  throw UsageError(
+      fmt::format("{} '{}' is not in the scene{}; it has {}{}", what, text, didYouMean(text, names),
+                  names.empty() ? "none" : joined(shown),
+                  names.size() > listed ? fmt::format(" and {} more", names.size() - listed) : ""));
 }
 
 scene::CameraPose chooseCamera(const SceneOptions& options, const scene::Pose& pose) {
   scene::CameraPose camera = pose.cameras.empty() ? scene::frameBounds(pose.bounds) : pose.cameras.front();
-  if (!options.camera.empty()) camera = pose.cameras[static_cast<size_t>(findNamed("camera", options.camera, cameraNames(pose)))];
+  if (!options.camera.empty())
+    camera = pose.cameras[static_cast<size_t>(findNamed("camera", options.camera, cameraNames(pose)))];
   if (!options.eye.empty() || !options.target.empty()) {
-    if (options.eye.empty() || options.target.empty()) throw UsageError("--eye and --target belong together; one is missing");
-    camera = scene::lookAt(parseVector("--eye", options.eye), parseVector("--target", options.target), camera.yfov);
+    if (options.eye.empty() || options.target.empty())
+      throw UsageError("--eye and --target belong together; one is missing");
+    camera = scene::lookAt(parseVector("--eye", options.eye), parseVector("--target", options.target),
+                           camera.yfov);
   }
   if (options.fov > 0) camera.yfov = static_cast<float>(options.fov * degrees);
   return camera;
@@ -128,15 +144,17 @@ static void lightUp(const SceneOptions& options, View& view) {
   const std::string file = options.scene.string();
   if (options.defaultLights == "off" || view.pose.bounds.empty()) {
     if (dark && !view.pose.bounds.empty())
-      fmt::print(stderr, "limn: warning: {}: neither lights nor an environment; only emission can be seen\n", file);
+      fmt::print(stderr, "limn: warning: {}: neither lights nor an environment; only emission can be seen\n",
+                 file);
     return;
   }
   if (options.defaultLights == "auto" && !dark) return;
   if (dark)
-    fmt::print(stderr,
-               "limn: warning: {}: neither lights nor an environment; lit by default lights (key, headlight), see "
-               "--environment and --default-lights\n",
-               file);
+    fmt::print(
+        stderr,
+        "limn: warning: {}: neither lights nor an environment; lit by default lights (key, headlight), see "
+        "--environment and --default-lights\n",
+        file);
   scene::addDefaultLights(view.scene, view.camera, view.pose.bounds);
   scene::evaluate(view.scene, view.time, view.animation, view.pose);
 }
@@ -163,7 +181,8 @@ View open(const SceneOptions& options) {
 }
 
 void TechniqueOptions::addTo(CLI::App& command) {
-  command.add_option("--technique", techniques, "Techniques, comma-separated (see limn list); none: unshadowed");
+  command.add_option("--technique", techniques,
+                     "Techniques, comma-separated (see limn list); none: unshadowed");
   command.add_option("--set", settings, "TECHNIQUE.PARAMETER=VALUE, repeatable")->take_all();
 }
 
@@ -175,14 +194,16 @@ std::vector<render::TechniqueUse> TechniqueOptions::resolve(const TechniqueRegis
     const std::string_view name = rest.substr(0, comma);
     const TechniquePlugin& plugin = registry.find(name);
     for (const auto& use : uses)
-      if (use.plugin == &plugin) throw UsageError(fmt::format("technique {} is named twice; once is enough", name));
+      if (use.plugin == &plugin)
+        throw UsageError(fmt::format("technique {} is named twice; once is enough", name));
     uses.push_back({&plugin, ParameterValues(std::string(name), plugin.info->parameters)});
     rest = comma == std::string_view::npos ? std::string_view() : rest.substr(comma + 1);
   }
   for (const std::string& setting : settings) {
     const size_t dot = setting.find('.'), equals = setting.find('=');
     if (dot == std::string::npos || equals == std::string::npos || equals < dot)
-      throw UsageError(fmt::format("--set '{}' is not accepted; expected TECHNIQUE.PARAMETER=VALUE", setting));
+      throw UsageError(
+          fmt::format("--set '{}' is not accepted; expected TECHNIQUE.PARAMETER=VALUE", setting));
     const std::string technique = setting.substr(0, dot);
     bool found = false;
     for (auto& use : uses) {
@@ -191,7 +212,8 @@ std::vector<render::TechniqueUse> TechniqueOptions::resolve(const TechniqueRegis
       found = true;
     }
     if (!found)
-      throw UsageError(fmt::format("--set '{}' names technique {}, which --technique does not", setting, technique));
+      throw UsageError(
+          fmt::format("--set '{}' names technique {}, which --technique does not", setting, technique));
   }
   return uses;
 }
@@ -212,7 +234,9 @@ ContextOptions BackendOptions::contextOptions() const {
 }
 
 int guarded(const std::function<int()>& work) {
-  const auto say = [](const std::string& message) { std::fputs(("limn: " + message + "\n").c_str(), stderr); };
+  const auto say = [](const std::string& message) {
+    std::fputs(("limn: " + message + "\n").c_str(), stderr);
+  };
   try {
     return work();
   } catch (const UsageError& error) {
@@ -237,7 +261,8 @@ void Progress::update(double fraction, const std::string& note) {
   if (terminal_) {
     constexpr int width = 30;
     const std::string bar(static_cast<size_t>(percent * width / 100), '#');
-    std::fputs(fmt::format("\r{} [{:<{}}] {:3}% {}\033[K", label_, bar, width, percent, note).c_str(), stderr);
+    std::fputs(fmt::format("\r{} [{:<{}}] {:3}% {}\033[K", label_, bar, width, percent, note).c_str(),
+               stderr);
   } else if (percent / 10 > lastShown_ / 10 || lastShown_ < 0) {
     std::fputs(fmt::format("{}: {}% {}\n", label_, percent, note).c_str(), stderr);
   } else {

@@ -28,7 +28,7 @@ struct SceneOptions {
   double time = 0;
   std::string animation;  ///< name or #index; empty: the first
   std::string size = "1280x720";
-  std::string light;  ///< name or #index; empty: all
+  std::string light;                   ///< name or #index; empty: all
   std::string defaultLights = "auto";  ///< auto: where the scene has neither light nor environment; on; off
 
   void addTo(CLI::App& command);

@@ -33,7 +33,8 @@ Scene makeCornellBox() {
   scene.add("short_block", block({0.3f, 0.3f, 0.3f}, -17, {0.33f, 0.35f}), white);
   scene.add("key", quad({0, 1.98f, 0}, {0.24f, 0, 0}, {0, 0, 0.19f}), scene.addMaterial(lamp));
 
-  // A little off the axis: on it, edges of the walls pass exactly through pixel centres, where coverage is a tie.
+  // A little off the axis: on it, edges of the walls pass exactly through pixel centres, where coverage is a
+  // tie.
   scene.addCamera("main", {0.0043f, 1.0031f, 3.9f}, {0, 1, 0}, 39);
   scene.addCamera("close", {0.55f, 0.9f, 1.6f}, {0, 0.35f, -0.1f}, 45);
   return scene;

@@ -1,4 +1,5 @@
-// The two failures a command can end in. A message is one line: what failed, where, and what would be accepted.
+// The two failures a command can end in. A message is one line: what failed, where, and what would be
+// accepted.
 #pragma once
 
 #include <stdexcept>

@@ -51,7 +51,8 @@ std::string didYouMean(std::string_view name, std::span<const std::string> known
     const bool contained = name.size() >= 3 && candidate.find(name) != std::string::npos;
     if (distance <= 2 + candidate.size() / 5 || contained) close.emplace_back(distance, candidate);
   }
-  std::stable_sort(close.begin(), close.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::stable_sort(close.begin(), close.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   if (close.size() > 3) close.resize(3);
   std::vector<std::string> names;
   for (auto& [distance, candidate] : close) names.push_back(std::move(candidate));

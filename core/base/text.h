@@ -17,7 +17,8 @@ LIMN_API std::optional<double> parseNumber(std::string_view text);
 /// "a, b and c".
 LIMN_API std::string joined(std::span<const std::string> names, std::string_view last = "and");
 
-/// Up to three of `known` that are close to `name` in spelling, as " (did you mean a or b?)"; empty if none is close.
+/// Up to three of `known` that are close to `name` in spelling, as " (did you mean a or b?)"; empty if none
+/// is close.
 LIMN_API std::string didYouMean(std::string_view name, std::span<const std::string> known);
 
 }  // namespace limn

@@ -61,9 +61,9 @@ struct Request {
 };
 
 /// Channels R, G, B (radiance in W/(sr m^2); V three times for visibility), variance (of the mean of R, G, B,
-/// estimated), Z, coverage, id (-1: nothing seen), albedo.R/G/B, N.X/Y/Z; for visibility also V, Vw (V weighted by irradiance)
-/// and masked (1 where no part of the light lies above the geometric tangent plane: V = 1). Metadata:
-/// noise_rms, spp, seed, term, light.
+/// estimated), Z, coverage, id (-1: nothing seen), albedo.R/G/B, N.X/Y/Z; for visibility also V, Vw (V
+/// weighted by irradiance) and masked (1 where no part of the light lies above the geometric tangent plane: V
+/// = 1). Metadata: noise_rms, spp, seed, term, light.
 struct Result {
   Image image;
   double noiseRms =

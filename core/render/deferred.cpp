@@ -58,8 +58,8 @@ struct Deferred::Implementation {
   TextureHandle environment(frame::FrameGraph& graph) {
     if (!environmentMap) {
       const scene::Environment& e = scene.environment;
-      environmentMap =
-          gpu::Texture(device, "environment map", {.format = GL_RGB32F, .width = e.width, .height = e.height});
+      environmentMap = gpu::Texture(device, "environment map",
+                                    {.format = GL_RGB32F, .width = e.width, .height = e.height});
       environmentMap.setSampling(GL_LINEAR, GL_LINEAR, GL_REPEAT, GL_CLAMP_TO_EDGE);
       environmentMap.upload(0, 0, GL_RGB, GL_FLOAT, e.texels.data());
     }
@@ -115,7 +115,8 @@ TextureHandle Deferred::start(const Frame& frame, bool emission) {
   }
   const bool specular = geometry && environment && hasSpecularSurface(implementation_->scene);
   if (specular) {
-    for (const GBufferInput& input : gbufferInputs(frame.gbuffer)) builder.read(input.texture, Access::sampled, input.why);
+    for (const GBufferInput& input : gbufferInputs(frame.gbuffer))
+      builder.read(input.texture, Access::sampled, input.why);
     builder.read(frame.gbuffer.instance, Access::sampled, "material of specular surfaces");
     builder.read(frame.handles.instances, Access::storageLoad, "material of specular surfaces");
     builder.read(frame.handles.materials, Access::storageLoad, "transmission");
@@ -123,27 +124,29 @@ TextureHandle Deferred::start(const Frame& frame, bool emission) {
     builder.read(frame.gbuffer.depth, Access::sampled, "coverage");
     builder.read(frame.gbuffer.emission, Access::sampled, "emitted radiance");
   }
-  const TextureHandle radiance = builder.write(target, Access::imageStore, "light the camera sees without reflection");
+  const TextureHandle radiance =
+      builder.write(target, Access::imageStore, "light the camera sees without reflection");
   const auto program = builder.program({.files = {"glsl/deferred/background.comp.glsl"},
                                         .defines = {{"GEOMETRY", geometry ? "1" : "0"},
                                                     {"ENVIRONMENT", environment ? "1" : "0"},
                                                     {"SPECULAR", specular ? "1" : "0"}}});
-  builder.execute([=, handles = frame.handles, g = frame.gbuffer, size = frame.size](frame::PassContext& context) {
-    context.program(program).use();
-    context.bindUniform(glsl::FrameBlock::binding, handles.frame);
-    if (specular) {
-      for (const GBufferInput& input : gbufferInputs(g)) context.bindSampled(input.unit, input.texture);
-      context.bindSampled(glsl::gbuffer_unit_instance, g.instance);
-      context.bindStorage(0, handles.instances);
-      context.bindStorage(1, handles.materials);
-    } else if (geometry) {
-      context.bindSampled(glsl::gbuffer_unit_depth, g.depth);
-      context.bindSampled(glsl::gbuffer_unit_emission, g.emission);
-    }
-    if (environment) context.bindSampled(environment_unit, map);
-    context.bindImage(0, radiance, GL_WRITE_ONLY);
-    context.dispatch(size.x, size.y, 1, group_size, group_size);
-  });
+  builder.execute(
+      [=, handles = frame.handles, g = frame.gbuffer, size = frame.size](frame::PassContext& context) {
+        context.program(program).use();
+        context.bindUniform(glsl::FrameBlock::binding, handles.frame);
+        if (specular) {
+          for (const GBufferInput& input : gbufferInputs(g)) context.bindSampled(input.unit, input.texture);
+          context.bindSampled(glsl::gbuffer_unit_instance, g.instance);
+          context.bindStorage(0, handles.instances);
+          context.bindStorage(1, handles.materials);
+        } else if (geometry) {
+          context.bindSampled(glsl::gbuffer_unit_depth, g.depth);
+          context.bindSampled(glsl::gbuffer_unit_emission, g.emission);
+        }
+        if (environment) context.bindSampled(environment_unit, map);
+        context.bindImage(0, radiance, GL_WRITE_ONLY);
+        context.dispatch(size.x, size.y, 1, group_size, group_size);
+      });
   return radiance;
 }
 
@@ -152,27 +155,29 @@ TextureHandle Deferred::addLights(const Frame& frame, TextureHandle before, std:
   frame::PassBuilder builder = frame.graph.addPass("accumulate lights");
   builder.read(frame.handles.frame, Access::uniformBuffer, "camera");
   builder.read(frame.handles.lights, Access::storageLoad, "lights");
-  for (const GBufferInput& input : gbufferInputs(frame.gbuffer)) builder.read(input.texture, Access::sampled, input.why);
+  for (const GBufferInput& input : gbufferInputs(frame.gbuffer))
+    builder.read(input.texture, Access::sampled, input.why);
   if (visibility) builder.read(visibility, Access::sampled, "V of each light");
   const TextureHandle ltc = implementation_->ltc(frame.graph);
   builder.read(ltc, Access::sampled, "glossy light of rectangles");
   const TextureHandle radiance = builder.write(before, Access::imageLoadStore, "sum of L_u V");
-  const auto program = builder.program({.files = {"glsl/deferred/light_accumulate.comp.glsl"},
-                                        .defines = {{"VISIBILITY", visibility ? "1" : "0"},
-                                                    {"LIGHT_COUNT", std::to_string(lights.size())}}});
-  builder.execute([=, handles = frame.handles, g = frame.gbuffer, size = frame.size,
-                   indices = std::vector<uint32_t>(lights.begin(), lights.end())](frame::PassContext& context) {
-    gpu::Program& accumulate = context.program(program);
-    accumulate.use();
-    for (size_t i = 0; i < indices.size(); ++i) accumulate.set(light_index_names[i], indices[i]);
-    context.bindUniform(glsl::FrameBlock::binding, handles.frame);
-    context.bindStorage(0, handles.lights);
-    for (const GBufferInput& input : gbufferInputs(g)) context.bindSampled(input.unit, input.texture);
-    if (visibility) context.bindSampled(visibility_unit, visibility);
-    context.bindSampled(glsl::ltc_unit, ltc);
-    context.bindImage(0, radiance, GL_READ_WRITE);
-    context.dispatch(size.x, size.y, 1, group_size, group_size);
-  });
+  const auto program = builder.program(
+      {.files = {"glsl/deferred/light_accumulate.comp.glsl"},
+       .defines = {{"VISIBILITY", visibility ? "1" : "0"}, {"LIGHT_COUNT", std::to_string(lights.size())}}});
+  builder.execute(
+      [=, handles = frame.handles, g = frame.gbuffer, size = frame.size,
+       indices = std::vector<uint32_t>(lights.begin(), lights.end())](frame::PassContext& context) {
+        gpu::Program& accumulate = context.program(program);
+        accumulate.use();
+        for (size_t i = 0; i < indices.size(); ++i) accumulate.set(light_index_names[i], indices[i]);
+        context.bindUniform(glsl::FrameBlock::binding, handles.frame);
+        context.bindStorage(0, handles.lights);
+        for (const GBufferInput& input : gbufferInputs(g)) context.bindSampled(input.unit, input.texture);
+        if (visibility) context.bindSampled(visibility_unit, visibility);
+        context.bindSampled(glsl::ltc_unit, ltc);
+        context.bindImage(0, radiance, GL_READ_WRITE);
+        context.dispatch(size.x, size.y, 1, group_size, group_size);
+      });
   return radiance;
 }
 

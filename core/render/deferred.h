@@ -1,4 +1,5 @@
-// Core's own passes of the frame: emission and background, unshadowed light times visibility, environment light.
+// Core's own passes of the frame: emission and background, unshadowed light times visibility, environment
+// light.
 #pragma once
 
 #include <cstdint>
@@ -29,9 +30,10 @@ class Deferred {
 
   /// Black, or with `emission` what the camera sees without any light: emission and background.
   frame::TextureHandle start(const Frame& frame, bool emission);
-  /// Adds sum of L_u V over `lights` (at most light_batch). `visibility`: R16 array, layer per light; empty handle: V = 1.
-  frame::TextureHandle addLights(const Frame& frame, frame::TextureHandle radiance, std::span<const uint32_t> lights,
-                                 frame::TextureHandle visibility);
+  /// Adds sum of L_u V over `lights` (at most light_batch). `visibility`: R16 array, layer per light; empty
+  /// handle: V = 1.
+  frame::TextureHandle addLights(const Frame& frame, frame::TextureHandle radiance,
+                                 std::span<const uint32_t> lights, frame::TextureHandle visibility);
   /// Adds the light of the environment, V = 1.
   frame::TextureHandle addEnvironment(const Frame& frame, frame::TextureHandle radiance);
 

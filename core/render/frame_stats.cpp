@@ -16,7 +16,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json toJsonValue(const Quartiles& q) { return {{"median", q.median}, {"q1", q.q1}, {"q3", q.q3}, {"n", q.n}}; }
+Json toJsonValue(const Quartiles& q) {
+  return {{"median", q.median}, {"q1", q.q1}, {"q3", q.q3}, {"n", q.n}};
+}
 
 Quartiles quartilesFrom(const Json& json) {
   return {json.at("median"), json.at("q1"), json.at("q3"), json.at("n")};
@@ -140,13 +142,14 @@ FrameStats frameStatsFromJson(const std::string& text) {
     stats.height = json.at("size").at(1);
     stats.scene = json.at("scene");
     stats.technique = json.at("technique");
-    for (const auto& [name, value] : json.at("parameters").items()) stats.parameters.emplace_back(name, value);
+    for (const auto& [name, value] : json.at("parameters").items())
+      stats.parameters.emplace_back(name, value);
     stats.frameMs = quartilesFrom(json.at("frame_ms"));
     stats.passSumMs = json.at("pass_sum_ms");
     stats.memoryBytes = json.at("memory_bytes");
     for (const Json& pass : json.at("passes"))
-      stats.passes.push_back({pass.at("name"), pass.at("technique"), stateFrom(pass.at("state")), pass.at("reason"),
-                              quartilesFrom(pass.at("ms")), pass.at("bytes")});
+      stats.passes.push_back({pass.at("name"), pass.at("technique"), stateFrom(pass.at("state")),
+                              pass.at("reason"), quartilesFrom(pass.at("ms")), pass.at("bytes")});
     return stats;
   } catch (const nlohmann::json::exception& error) {
     throw Error(fmt::format("frame statistics are not as expected: {}", error.what()));

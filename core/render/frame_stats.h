@@ -35,14 +35,14 @@ struct FrameStats {
   int width = 0, height = 0;
   std::string scene, technique;
   std::vector<std::pair<std::string, std::string>> parameters;  ///< "technique.parameter", value
-  Quartiles frameMs;  ///< wall clock between two glFinish, in a run of its own without pass timing
+  Quartiles frameMs;     ///< wall clock between two glFinish, in a run of its own without pass timing
   double passSumMs = 0;  ///< median over frames of the passes' sum, in the run with pass timing
   int64_t memoryBytes = 0;
   std::vector<PassStats> passes;
 };
 
-/// Renders `warmup` frames, then `frames` timed ones as a whole, then as many with pass timing. The camera counts as moved
-/// in every frame; geometry and lights too unless the renderer is configured static.
+/// Renders `warmup` frames, then `frames` timed ones as a whole, then as many with pass timing. The camera
+/// counts as moved in every frame; geometry and lights too unless the renderer is configured static.
 LIMN_API FrameStats measure(Renderer& renderer, int frames, int warmup = 3);
 
 LIMN_API std::string toJson(const FrameStats& stats);

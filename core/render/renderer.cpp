@@ -23,7 +23,9 @@ constexpr std::array<std::pair<Output, std::string_view>, 6> output_names{{{Outp
                                                                            {Output::caustic, "caustic"},
                                                                            {Output::media, "media"}}};
 
-TermSet termsOf(const TechniqueUse& use) { return use.plugin->info->terms; }
+TermSet termsOf(const TechniqueUse& use) {
+  return use.plugin->info->terms;
+}
 
 /// The techniques that answer the direct light of this output, whichever way.
 bool claimsDirect(const TechniqueUse& use) {
@@ -32,11 +34,16 @@ bool claimsDirect(const TechniqueUse& use) {
 
 Term termOf(Output output) {
   switch (output) {
-    case Output::visibility: return Term::visibility;
-    case Output::indirect: return Term::indirect;
-    case Output::caustic: return Term::caustic;
-    case Output::media: return Term::media;
-    default: return Term::direct;
+    case Output::visibility:
+      return Term::visibility;
+    case Output::indirect:
+      return Term::indirect;
+    case Output::caustic:
+      return Term::caustic;
+    case Output::media:
+      return Term::media;
+    default:
+      return Term::direct;
   }
 }
 
@@ -68,10 +75,12 @@ void checkTechniques(const std::vector<TechniqueUse>& techniques, Output output)
     first = &use;
   }
   if (output == Output::final || output == Output::direct) return;
-  const bool answered = std::any_of(techniques.begin(), techniques.end(),
-                                    [&](const TechniqueUse& use) { return contains(termsOf(use), termOf(output)); });
+  const bool answered = std::any_of(techniques.begin(), techniques.end(), [&](const TechniqueUse& use) {
+    return contains(termsOf(use), termOf(output));
+  });
   if (!answered)
-    throw UsageError(fmt::format("no technique given answers the output term {}; limn list says which do", name(output)));
+    throw UsageError(
+        fmt::format("no technique given answers the output term {}; limn list says which do", name(output)));
 }
 
 struct Renderer::Implementation {
@@ -129,13 +138,15 @@ struct Renderer::Implementation {
   void mountTechnique(const TechniquePlugin& plugin) {
     const std::string prefix = fmt::format("techniques/{}/", plugin.info->name);
     if (std::find(mounted.begin(), mounted.end(), prefix) != mounted.end()) return;
-    shaders.mount(prefix, plugin.sources(), shaderOverride.empty() ? shaderOverride : shaderOverride / prefix);
+    shaders.mount(prefix, plugin.sources(),
+                  shaderOverride.empty() ? shaderOverride : shaderOverride / prefix);
     mounted.push_back(prefix);
   }
 
-  frame::TextureHandle ask(Use& use, Term term, std::span<const uint32_t> lights, frame::TextureHandle target) {
-    const TechniqueInputs inputs{scene,    pose,    gpuScene, shadowMaps, use.settings->parameters,
-                                 handles,  gbuffer, settings.size};
+  frame::TextureHandle ask(Use& use, Term term, std::span<const uint32_t> lights,
+                           frame::TextureHandle target) {
+    const TechniqueInputs inputs{scene,   pose,    gpuScene,     shadowMaps, use.settings->parameters,
+                                 handles, gbuffer, settings.size};
     return use.technique->addPasses(*graph, inputs, {term, lights, target});
   }
 
@@ -172,7 +183,8 @@ struct Renderer::Implementation {
       const auto batch = lights.subspan(first, std::min<size_t>(light_batch, lights.size() - first));
       frame::TextureHandle visibility;
       if (shadowing)
-        visibility = ask(*shadowing, Term::visibility, batch, visibilityTarget(static_cast<int>(batch.size())));
+        visibility =
+            ask(*shadowing, Term::visibility, batch, visibilityTarget(static_cast<int>(batch.size())));
       radiance = deferred.addLights(frame, radiance, batch, visibility);
     }
     return radiance;
@@ -188,14 +200,20 @@ struct Renderer::Implementation {
     }
     if (all || settings.output == Output::direct) {
       const std::vector<uint32_t> lights = activeLights();
-      if (!lights.empty()) radiance = addDirect(frame, radiance, lights);
-      else graph->leaveOut("lights", "core", "the scene has no light");
-      if (scene.environment && settings.light < 0) radiance = deferred.addEnvironment(frame, radiance);
-      else graph->leaveOut("environment light", "core", scene.environment ? "another light was chosen" : "no environment");
+      if (!lights.empty())
+        radiance = addDirect(frame, radiance, lights);
+      else
+        graph->leaveOut("lights", "core", "the scene has no light");
+      if (scene.environment && settings.light < 0)
+        radiance = deferred.addEnvironment(frame, radiance);
+      else
+        graph->leaveOut("environment light", "core",
+                        scene.environment ? "another light was chosen" : "no environment");
     }
     const std::vector<uint32_t> lights = activeLights();
-    for (const auto& [term, wanted] : {std::pair(Term::indirect, Output::indirect),
-                                       std::pair(Term::caustic, Output::caustic), std::pair(Term::media, Output::media)})
+    for (const auto& [term, wanted] :
+         {std::pair(Term::indirect, Output::indirect), std::pair(Term::caustic, Output::caustic),
+          std::pair(Term::media, Output::media)})
       if (all || settings.output == wanted)
         for (Use& use : uses)
           if (contains(termsOf(*use.settings), term)) radiance = ask(use, term, lights, radiance);
@@ -204,7 +222,8 @@ struct Renderer::Implementation {
 
   frame::TextureHandle addVisibility() {
     const std::vector<uint32_t> lights = activeLights();
-    if (lights.size() != 1) throw UsageError("--output-term visibility shows one light; choose it with --light");
+    if (lights.size() != 1)
+      throw UsageError("--output-term visibility shows one light; choose it with --light");
     if (!gbuffer.depth) throw Error("visibility has no surface to show: the scene has no geometry");
     return ask(*answering(Term::visibility), Term::visibility, lights, visibilityTarget(1));
   }
@@ -218,8 +237,10 @@ struct Renderer::Implementation {
     }
     handles = gpuScene.import(*graph);
     gbuffer = {};
-    if (gpuScene.instanceCount() > 0) gbuffer = gbufferPass.add(*graph, gpuScene, handles, settings.size);
-    else graph->leaveOut("gbuffer", "core", "the scene has no geometry");
+    if (gpuScene.instanceCount() > 0)
+      gbuffer = gbufferPass.add(*graph, gpuScene, handles, settings.size);
+    else
+      graph->leaveOut("gbuffer", "core", "the scene has no geometry");
     shadowMaps.begin(*graph, handles, pose);
     output = settings.output == Output::visibility ? addVisibility() : addRadiance();
     graph->output(output);
@@ -250,7 +271,8 @@ struct Renderer::Implementation {
   template <class T>
   std::vector<T> readTexture(frame::TextureHandle handle, GLenum format, GLenum type, int components) const {
     const gpu::Texture& texture = graph->texture(handle);
-    std::vector<T> data(static_cast<size_t>(settings.size.x) * settings.size.y * components * texture.desc().layers);
+    std::vector<T> data(static_cast<size_t>(settings.size.x) * settings.size.y * components *
+                        texture.desc().layers);
     texture.read(0, format, type, data.data(), data.size() * sizeof(T));
     return data;
   }
@@ -277,7 +299,8 @@ void Renderer::Implementation::readChannels(Image& image) const {
     pixel[4] = covered ? 1.f : 0.f;
     pixel[5] = covered ? static_cast<float>(instance[i]) : -1.f;
     if (!covered) return;
-    const glm::vec3 colour = glsl::srgb_decode(glm::vec3(albedo[4 * i], albedo[4 * i + 1], albedo[4 * i + 2]));
+    const glm::vec3 colour =
+        glsl::srgb_decode(glm::vec3(albedo[4 * i], albedo[4 * i + 1], albedo[4 * i + 2]));
     const glm::vec3 n = glsl::octahedral_decode(glm::vec2(normal[2 * i], normal[2 * i + 1]));
     for (int c = 0; c < 3; ++c) {
       pixel[static_cast<size_t>(6 + c)] = colour[c];
@@ -297,7 +320,9 @@ void Renderer::configure(Settings settings) {
   self.settings = std::move(settings);
 }
 
-void Renderer::setCamera(const scene::CameraPose& camera) { implementation_->camera = camera; }
+void Renderer::setCamera(const scene::CameraPose& camera) {
+  implementation_->camera = camera;
+}
 
 void Renderer::setTime(double seconds, int animation) {
   implementation_->time = seconds;
@@ -305,8 +330,12 @@ void Renderer::setTime(double seconds, int animation) {
   implementation_->poseDirty = true;
 }
 
-void Renderer::render(frame::Timing timing) { implementation_->render(timing); }
-void Renderer::finish() { implementation_->device.gl().Finish(); }
+void Renderer::render(frame::Timing timing) {
+  implementation_->render(timing);
+}
+void Renderer::finish() {
+  implementation_->device.gl().Finish();
+}
 
 const scene::Pose& Renderer::pose() {
   Implementation& self = *implementation_;
@@ -325,7 +354,8 @@ Image Renderer::read() const {
   Image image(size.x, size.y, names);
   if (self.settings.output == Output::visibility) {
     const auto v = self.readTexture<float>(self.output, GL_RED, GL_FLOAT, 1);
-    self.forEachPixel(image, [&](std::span<float> pixel, size_t i) { pixel[0] = pixel[1] = pixel[2] = v[i]; });
+    self.forEachPixel(image,
+                      [&](std::span<float> pixel, size_t i) { pixel[0] = pixel[1] = pixel[2] = v[i]; });
   } else {
     const auto rgba = self.readTexture<float>(self.output, GL_RGBA, GL_FLOAT, 4);
     self.forEachPixel(image, [&](std::span<float> pixel, size_t i) {
@@ -336,8 +366,12 @@ Image Renderer::read() const {
   return image;
 }
 
-frame::FrameGraph& Renderer::graph() { return *implementation_->graph; }
-std::vector<frame::PassReport> Renderer::explain() const { return implementation_->graph->explain(); }
+frame::FrameGraph& Renderer::graph() {
+  return *implementation_->graph;
+}
+std::vector<frame::PassReport> Renderer::explain() const {
+  return implementation_->graph->explain();
+}
 
 int64_t Renderer::memoryBytes() const {
   const gpu::Counters& counters = implementation_->device.counters();

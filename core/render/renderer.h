@@ -1,5 +1,5 @@
-// Puts a frame together: scene data, G-buffer, the techniques that were asked for, and core's answers to the terms nobody
-// claims (V = 1, the other terms 0), all as one frame graph.
+// Puts a frame together: scene data, G-buffer, the techniques that were asked for, and core's answers to the
+// terms nobody claims (V = 1, the other terms 0), all as one frame graph.
 //
 //     L = L_e + sum over lights of L_u V  (or a technique's `direct`)  + indirect + caustic + background
 #pragma once
@@ -35,13 +35,15 @@ struct Settings {
   std::vector<TechniqueUse> techniques;
   /// Index into Pose::lights: the light whose visibility is wanted, or the only one that shines; -1: all.
   int light = -1;
-  /// Everything that depends on geometry or lights is computed anew in each frame; otherwise unchanged results are kept.
+  /// Everything that depends on geometry or lights is computed anew in each frame; otherwise unchanged
+  /// results are kept.
   bool dynamic = true;
   /// Keep depth, coverage, instance id, albedo and normal for read().
   bool channels = false;
 };
 
-/// Throws UsageError when two techniques claim the same exclusive term, or nobody answers the output asked for.
+/// Throws UsageError when two techniques claim the same exclusive term, or nobody answers the output asked
+/// for.
 LIMN_API void checkTechniques(const std::vector<TechniqueUse>& techniques, Output output);
 
 class LIMN_API Renderer {
@@ -60,8 +62,8 @@ class LIMN_API Renderer {
   /// Renders one frame. Throws Error (shader errors, memory, sizes).
   void render(frame::Timing timing = frame::Timing::off);
 
-  /// The last frame: R, G, B (visibility: three equal channels), and with Settings::channels Z, coverage, id (-1: nothing
-  /// seen), albedo.*, N.*. Blocks.
+  /// The last frame: R, G, B (visibility: three equal channels), and with Settings::channels Z, coverage, id
+  /// (-1: nothing seen), albedo.*, N.*. Blocks.
   Image read() const;
 
   /// Blocks until the GPU has done everything asked of it (glFinish).

@@ -14,10 +14,12 @@ namespace {
 std::string accepted(const Parameter& p) {
   const std::string unit = *p.unit ? fmt::format(" {}", p.unit) : "";
   switch (p.type) {
-    case ParameterType::boolean: return "true or false";
+    case ParameterType::boolean:
+      return "true or false";
     case ParameterType::integer:
       return fmt::format("a whole number from {:.0f} to {:.0f}{}", p.range.low, p.range.high, unit);
-    case ParameterType::real: return fmt::format("a number from {} to {}{}", p.range.low, p.range.high, unit);
+    case ParameterType::real:
+      return fmt::format("a number from {} to {}{}", p.range.low, p.range.high, unit);
     case ParameterType::choice: {
       std::vector<std::string> names(p.choices, p.choices + p.choiceCount);
       return joined(names, "or");
@@ -46,10 +48,14 @@ bool parseValue(const Parameter& p, std::string_view text, double& value) {
 
 std::string print(const Parameter& p, double value) {
   switch (p.type) {
-    case ParameterType::boolean: return value != 0 ? "true" : "false";
-    case ParameterType::choice: return p.choices[static_cast<int>(value)];
-    case ParameterType::integer: return fmt::format("{:.0f}", value);
-    case ParameterType::real: return fmt::format("{}", value);
+    case ParameterType::boolean:
+      return value != 0 ? "true" : "false";
+    case ParameterType::choice:
+      return p.choices[static_cast<int>(value)];
+    case ParameterType::integer:
+      return fmt::format("{:.0f}", value);
+    case ParameterType::real:
+      return fmt::format("{}", value);
   }
   return {};
 }
@@ -70,11 +76,14 @@ size_t ParameterValues::find(std::string_view name) const {
 double ParameterValues::value(std::string_view name, ParameterType type) const {
   const size_t i = find(name);
   if (i == declared_.size() || declared_[i].type != type)
-    throw std::logic_error(fmt::format("technique {} asks for parameter {} as it was not declared", technique_, name));
+    throw std::logic_error(
+        fmt::format("technique {} asks for parameter {} as it was not declared", technique_, name));
   return values_[i];
 }
 
-bool ParameterValues::boolean(std::string_view name) const { return value(name, ParameterType::boolean) != 0; }
+bool ParameterValues::boolean(std::string_view name) const {
+  return value(name, ParameterType::boolean) != 0;
+}
 int ParameterValues::integer(std::string_view name) const {
   return static_cast<int>(value(name, ParameterType::integer));
 }
@@ -95,8 +104,8 @@ void ParameterValues::set(std::string_view name, std::string_view text) {
   }
   double parsed = 0;
   if (!parseValue(declared_[i], text, parsed))
-    throw UsageError(
-        fmt::format("{}.{}: '{}' is not accepted; expected {}", technique_, name, text, accepted(declared_[i])));
+    throw UsageError(fmt::format("{}.{}: '{}' is not accepted; expected {}", technique_, name, text,
+                                 accepted(declared_[i])));
   values_[i] = parsed;
 }
 

@@ -1,5 +1,6 @@
-// A parameter is declared once. From the declaration come the command-line flag (--set technique.name=value), the TOML
-// key of a bench suite, the sweep axis, the widget, the `limn list` entry and the generated documentation.
+// A parameter is declared once. From the declaration come the command-line flag (--set technique.name=value),
+// the TOML key of a bench suite, the sweep axis, the widget, the `limn list` entry and the generated
+// documentation.
 //
 //     constexpr limn::Parameter parameters[] = {
 //         limn::integer("shadow_map_size", 1024, {16, 16384}, "texels", "Width and height of the shadow map")
@@ -54,20 +55,22 @@ struct Parameter {
 constexpr Parameter boolean(const char* name, bool value, const char* doc) {
   return {name, ParameterType::boolean, value ? 1.0 : 0.0, {0, 1}, "", doc};
 }
-constexpr Parameter integer(const char* name, int value, ParameterRange range, const char* unit, const char* doc) {
+constexpr Parameter integer(const char* name, int value, ParameterRange range, const char* unit,
+                            const char* doc) {
   return {name, ParameterType::integer, static_cast<double>(value), range, unit, doc};
 }
-constexpr Parameter real(const char* name, double value, ParameterRange range, const char* unit, const char* doc) {
+constexpr Parameter real(const char* name, double value, ParameterRange range, const char* unit,
+                         const char* doc) {
   return {name, ParameterType::real, value, range, unit, doc};
 }
 template <size_t N>
 constexpr Parameter choice(const char* name, int value, const char* const (&names)[N], const char* doc) {
-  return {name, ParameterType::choice, static_cast<double>(value), {0, static_cast<double>(N - 1)}, "", doc, names,
-          static_cast<int>(N)};
+  return {name,  ParameterType::choice, static_cast<double>(value), {0, static_cast<double>(N - 1)}, "", doc,
+          names, static_cast<int>(N)};
 }
 
-/// Values for one technique's parameters: defaults until set. Asking for an undeclared name or another type is a bug and
-/// throws std::logic_error.
+/// Values for one technique's parameters: defaults until set. Asking for an undeclared name or another type
+/// is a bug and throws std::logic_error.
 class LIMN_API ParameterValues {
  public:
   ParameterValues() = default;
@@ -78,8 +81,8 @@ class LIMN_API ParameterValues {
   float real(std::string_view name) const;
   int choice(std::string_view name) const;
 
-  /// Parses and checks. Throws UsageError naming technique, parameter, value and what is accepted; an unknown name is
-  /// answered with the nearest known ones.
+  /// Parses and checks. Throws UsageError naming technique, parameter, value and what is accepted; an unknown
+  /// name is answered with the nearest known ones.
   void set(std::string_view name, std::string_view text);
 
   std::span<const Parameter> declared() const { return declared_; }

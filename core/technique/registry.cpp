@@ -21,10 +21,11 @@ std::string mismatch(const Handshake& theirs) {
     return fmt::format("it was built for interface {}, this limn has interface {}", theirs.interfaceNumber,
                        ours.interfaceNumber);
   if (std::strncmp(theirs.compiler, ours.compiler, sizeof ours.compiler) != 0)
-    return fmt::format("it was built with compiler {:.63}, this limn with {:.63}", theirs.compiler, ours.compiler);
+    return fmt::format("it was built with compiler {:.63}, this limn with {:.63}", theirs.compiler,
+                       ours.compiler);
   if (std::strncmp(theirs.headers, ours.headers, sizeof ours.headers) != 0)
-    return fmt::format("it was built against headers {:.32}, this limn has {:.32}; rebuild it", theirs.headers,
-                       ours.headers);
+    return fmt::format("it was built against headers {:.32}, this limn has {:.32}; rebuild it",
+                       theirs.headers, ours.headers);
   return {};
 }
 
@@ -32,11 +33,16 @@ std::string mismatch(const Handshake& theirs) {
 
 const char* name(Term term) {
   switch (term) {
-    case Term::visibility: return "visibility";
-    case Term::direct: return "direct";
-    case Term::indirect: return "indirect";
-    case Term::caustic: return "caustic";
-    case Term::media: return "media";
+    case Term::visibility:
+      return "visibility";
+    case Term::direct:
+      return "direct";
+    case Term::indirect:
+      return "indirect";
+    case Term::caustic:
+      return "caustic";
+    case Term::media:
+      return "media";
   }
   return "";
 }

@@ -14,8 +14,8 @@ namespace limn {
 
 class LIMN_API TechniqueRegistry {
  public:
-  /// Loads every *.so in `folders`, the first of a name wins. A module that does not fit is not an error until it is
-  /// asked for by name.
+  /// Loads every *.so in `folders`, the first of a name wins. A module that does not fit is not an error
+  /// until it is asked for by name.
   explicit TechniqueRegistry(std::span<const std::filesystem::path> folders);
   ~TechniqueRegistry();
   TechniqueRegistry(const TechniqueRegistry&) = delete;
@@ -26,7 +26,8 @@ class LIMN_API TechniqueRegistry {
 
   /// Sorted by name.
   std::span<const TechniquePlugin* const> all() const { return plugins_; }
-  /// Throws UsageError for an unknown name (with the nearest known ones), Error for a module that was refused.
+  /// Throws UsageError for an unknown name (with the nearest known ones), Error for a module that was
+  /// refused.
   const TechniquePlugin& find(std::string_view name) const;
 
   struct Refusal {

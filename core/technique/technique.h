@@ -5,15 +5,16 @@
 //     namespace {
 //     constexpr limn::Parameter parameters[] = {...};
 //     class Example : public limn::Technique {
-//       limn::frame::TextureHandle addPasses(limn::frame::FrameGraph& graph, const limn::TechniqueInputs& inputs,
+//       limn::frame::TextureHandle addPasses(limn::frame::FrameGraph& graph, const limn::TechniqueInputs&
+//       inputs,
 //                                            const limn::TermRequest& request) override { ... }
 //     };
 //     constexpr limn::TechniqueInfo info{.name = "example", ...};
 //     }  // namespace
 //     LIMN_TECHNIQUE(info, Example)
 //
-// The core loads the module, compares the handshake (interface number, compiler, hash of the public headers) and refuses
-// a mismatch with a message that names both sides.
+// The core loads the module, compares the handshake (interface number, compiler, hash of the public headers)
+// and refuses a mismatch with a message that names both sides.
 #pragma once
 
 #include <cstdint>
@@ -48,10 +49,18 @@ enum class Term : uint32_t {
   media = 16,
 };
 using TermSet = uint32_t;
-constexpr TermSet operator|(Term a, Term b) { return static_cast<TermSet>(a) | static_cast<TermSet>(b); }
-constexpr TermSet operator|(TermSet a, Term b) { return a | static_cast<TermSet>(b); }
-constexpr TermSet termSet(Term term) { return static_cast<TermSet>(term); }
-constexpr bool contains(TermSet set, Term term) { return (set & static_cast<TermSet>(term)) != 0; }
+constexpr TermSet operator|(Term a, Term b) {
+  return static_cast<TermSet>(a) | static_cast<TermSet>(b);
+}
+constexpr TermSet operator|(TermSet a, Term b) {
+  return a | static_cast<TermSet>(b);
+}
+constexpr TermSet termSet(Term term) {
+  return static_cast<TermSet>(term);
+}
+constexpr bool contains(TermSet set, Term term) {
+  return (set & static_cast<TermSet>(term)) != 0;
+}
 LIMN_API const char* name(Term term);
 
 struct TechniqueInfo {
@@ -86,7 +95,8 @@ struct SceneHandles {
 /// What every technique is given.
 struct TechniqueInputs {
   const scene::Scene& scene;
-  const scene::Pose& pose;    ///< state at the time of building; moves afterwards, so read it only for its structure
+  const scene::Pose&
+      pose;  ///< state at the time of building; moves afterwards, so read it only for its structure
   scene::GpuScene& gpuScene;  ///< draws geometry
   shadow::ShadowMapService& shadowMaps;
   const ParameterValues& parameters;
@@ -100,9 +110,9 @@ struct TermRequest {
   Term term;
   /// The lights asked about (indices into Pose::lights). For visibility: one batch, answered layer by layer.
   std::span<const uint32_t> lights;
-  /// visibility: R16 array with one layer per entry of `lights`; the pass writes every pixel, and 1 where the pixel has
-  /// no coverage or the light lies wholly behind the surface.
-  /// Other terms: RGBA32F radiance to add to.
+  /// visibility: R16 array with one layer per entry of `lights`; the pass writes every pixel, and 1 where the
+  /// pixel has no coverage or the light lies wholly behind the surface. Other terms: RGBA32F radiance to add
+  /// to.
   frame::TextureHandle target;
 };
 
@@ -110,8 +120,8 @@ struct TermRequest {
 class Technique {
  public:
   virtual ~Technique() = default;
-  /// Declares the passes that answer `request` and returns the target after them. Called once per batch of lights.
-  /// Passes that the scene does not need are not declared but reported with graph.leaveOut().
+  /// Declares the passes that answer `request` and returns the target after them. Called once per batch of
+  /// lights. Passes that the scene does not need are not declared but reported with graph.leaveOut().
   virtual frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                          const TermRequest& request) = 0;
   /// Called before each frame when lights or geometry may have moved. True asks for the graph to be rebuilt.
@@ -131,13 +141,13 @@ struct TechniquePlugin {
 /// Defines the module's entry point. LIMN_TECHNIQUE_ID comes from limn_add_technique().
 #define LIMN_TECHNIQUE(INFO, CLASS) LIMN_TECHNIQUE_EXPANDED(INFO, CLASS, LIMN_TECHNIQUE_ID)
 #define LIMN_TECHNIQUE_EXPANDED(INFO, CLASS, ID) LIMN_TECHNIQUE_ENTRY(INFO, CLASS, ID)
-#define LIMN_TECHNIQUE_ENTRY(INFO, CLASS, ID)                                                                  \
-  namespace limn_technique_##ID {                                                                              \
-  std::span<const limn::gpu::EmbeddedSource> embeddedSources();                                                \
-  }                                                                                                            \
-  extern "C" __attribute__((visibility("default"))) const limn::TechniquePlugin* limnTechniquePlugin() {       \
-    static const limn::TechniquePlugin plugin{                                                                 \
-        limn::handshake(), &INFO, &limn_technique_##ID::embeddedSources,                                       \
-        []() -> std::unique_ptr<limn::Technique> { return std::make_unique<CLASS>(); }};                       \
-    return &plugin;                                                                                            \
+#define LIMN_TECHNIQUE_ENTRY(INFO, CLASS, ID)                                                            \
+  namespace limn_technique_##ID {                                                                        \
+    std::span<const limn::gpu::EmbeddedSource> embeddedSources();                                        \
+  }                                                                                                      \
+  extern "C" __attribute__((visibility("default"))) const limn::TechniquePlugin* limnTechniquePlugin() { \
+    static const limn::TechniquePlugin plugin{                                                           \
+        limn::handshake(), &INFO, &limn_technique_##ID::embeddedSources,                                 \
+        []() -> std::unique_ptr<limn::Technique> { return std::make_unique<CLASS>(); }};                 \
+    return &plugin;                                                                                      \
   }

@@ -1,6 +1,7 @@
-// Each technique's picture against the one committed in its folder (techniques/NAME/golden.png; the core's own in
-// tests/golden/unshadowed.png). llvmpipe renders the same bits everywhere, so the bound is one 8-bit step for
-// differences between compilers. LIMN_UPDATE_GOLDEN=1 writes new ones: look at them before committing.
+// Each technique's picture against the one committed in its folder (techniques/NAME/golden.png; the core's
+// own in tests/golden/unshadowed.png). llvmpipe renders the same bits everywhere, so the bound is one 8-bit
+// step for differences between compilers. LIMN_UPDATE_GOLDEN=1 writes new ones: look at them before
+// committing.
 #include <cstdlib>
 
 #include "core/image/metrics.h"
@@ -47,7 +48,8 @@ class GoldenTest : public RenderTest {
     const Image8 a = readImage8(actualFile), b = readImage8(golden);
     ASSERT_EQ(a.data.size(), b.data.size());
     float worst = 0;
-    for (size_t i = 0; i < a.data.size(); ++i) worst = std::max(worst, std::abs(a.data[i] - b.data[i]) / 255.f);
+    for (size_t i = 0; i < a.data.size(); ++i)
+      worst = std::max(worst, std::abs(a.data[i] - b.data[i]) / 255.f);
     EXPECT_LE(worst, allowed) << "see " << failed << "/" << name << ".{actual,expected,difference}.png";
     if (worst <= allowed) {
       fs::remove(actualFile);

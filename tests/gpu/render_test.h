@@ -26,7 +26,8 @@ class RenderTest : public GlTest {
     return instance;
   }
 
-  /// A technique whose quality parameters are kept small, so that laws that hold at any quality are tested quickly.
+  /// A technique whose quality parameters are kept small, so that laws that hold at any quality are tested
+  /// quickly.
   static render::TechniqueUse quick(const std::string& name) {
     render::TechniqueUse use = technique(name);
     for (const Parameter& p : use.parameters.declared()) {

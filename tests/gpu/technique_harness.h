@@ -70,7 +70,8 @@ class TechniqueTest : public GlTest {
     shadowMaps.update(pose);
     graph.execute();
 
-    Answer result{.width = side, .height = side};
+    Answer result;
+    result.width = result.height = side;
     result.depth.resize(side * side);
     result.instance.resize(side * side);
     const size_t layerCount = term == Term::visibility ? lights.size() : 1;

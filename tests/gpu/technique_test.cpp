@@ -11,7 +11,8 @@ using render::Output;
 
 class TechniqueTest : public RenderTest {
  protected:
-  /// The same scene `factor` times as large: positions s, intensities s^2 (directional lights keep their irradiance).
+  /// The same scene `factor` times as large: positions s, intensities s^2 (directional lights keep their
+  /// irradiance).
   static scene::Scene scaled(scene::Scene scene, float factor) {
     const int root = static_cast<int>(scene.nodes.size());
     for (scene::Node& node : scene.nodes) {
@@ -21,7 +22,8 @@ class TechniqueTest : public RenderTest {
     scene::Node scaling;
     scaling.transform.scale = glm::vec3(factor);
     scene.nodes.push_back(scaling);
-    std::rotate(scene.nodes.begin(), scene.nodes.end() - 1, scene.nodes.end());  // parents come before children
+    std::rotate(scene.nodes.begin(), scene.nodes.end() - 1,
+                scene.nodes.end());  // parents come before children
     for (size_t i = 1; i < scene.nodes.size(); ++i) {
       scene::Node& node = scene.nodes[i];
       node.parent = node.parent == root ? 0 : node.parent + 1;
@@ -107,7 +109,8 @@ TEST_F(TechniqueTest, ScaleOfTheSceneDoesNotMatter) {
 TEST_F(TechniqueTest, ExtremeResolutionsGiveFinitePictures) {
   const scene::Scene scene = asset("cornell_box");
   render::Renderer renderer(device(), scene);
-  for (const auto& [width, height] : {std::pair(1, 1), std::pair(4096, 1), std::pair(1, 4096), std::pair(17, 3)})
+  for (const auto& [width, height] :
+       {std::pair(1, 1), std::pair(4096, 1), std::pair(1, 4096), std::pair(17, 3)})
     for (const std::string& name : techniquesAnswering(Term::visibility)) {
       SCOPED_TRACE(name);
       expectWithin(picture(renderer, settings(width, height, Output::final, {quick(name)})), 0, 1e6f);
@@ -147,9 +150,10 @@ TEST_F(TechniqueTest, PcssOfAPointIsTheHardShadowBitForBit) {
   for (const char* name : {"balls", "lights"}) {
     const scene::Scene scene = asset(name);
     render::Renderer renderer(device(), scene);
-    const Image hard = picture(renderer, settings(128, 96, Output::visibility, {technique("hard_shadow_map")}, 0));
-    const Image soft =
-        picture(renderer, settings(128, 96, Output::visibility, {technique("pcss", {{"light_size", "0"}})}, 0));
+    const Image hard =
+        picture(renderer, settings(128, 96, Output::visibility, {technique("hard_shadow_map")}, 0));
+    const Image soft = picture(
+        renderer, settings(128, 96, Output::visibility, {technique("pcss", {{"light_size", "0"}})}, 0));
     EXPECT_TRUE(std::equal(hard.data().begin(), hard.data().end(), soft.data().begin())) << name;
   }
 }
@@ -157,8 +161,9 @@ TEST_F(TechniqueTest, PcssOfAPointIsTheHardShadowBitForBit) {
 TEST_F(TechniqueTest, TwoAnswersToDirectLightAreRefused) {
   const scene::Scene scene = asset("cornell_box");
   render::Renderer renderer(device(), scene);
-  EXPECT_THROW(renderer.configure(settings(8, 8, Output::final, {technique("pcss"), technique("hard_shadow_map")})),
-               UsageError);
+  EXPECT_THROW(
+      renderer.configure(settings(8, 8, Output::final, {technique("pcss"), technique("hard_shadow_map")})),
+      UsageError);
 }
 
 TEST_F(TechniqueTest, AnEmptySceneCompilesNothingAndAllocatesOnlyTheOutput) {

@@ -378,7 +378,11 @@ TEST(ReferenceRequest, EmptySceneIsBackground) {
   World world;
   world.camera = scene::lookAt({0, 0, 1}, {0, 0, 0}, 0.8f);
   const Result result = render(world.request(4, Term::final, 4));
-  for (const float value : result.image.data()) EXPECT_EQ(value, 0.f);
+  const size_t channels = result.image.channels().size(),
+               id = static_cast<size_t>(result.image.channel("id"));
+  for (size_t i = 0; i < result.image.data().size(); ++i)
+    EXPECT_EQ(result.image.data()[i], i % channels == id ? -1.f : 0.f)
+        << "no instance is seen, so its id is -1";
   EXPECT_EQ(result.noiseRms, 0);
 }
 
