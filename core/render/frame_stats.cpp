@@ -99,6 +99,7 @@ FrameStats measure(Renderer& renderer, int frames, int warmup) {
     stats.passes.push_back(std::move(pass));
   }
   stats.memoryBytes = renderer.memoryBytes();
+  renderer.describeShadowMaps(stats);
   return stats;
 }
 
@@ -113,6 +114,14 @@ std::string toJson(const FrameStats& stats) {
                       {"reason", pass.reason},
                       {"ms", toJsonValue(pass.ms)},
                       {"bytes", pass.bytes}});
+  Json shadowMaps = Json::array();
+  for (const ShadowMapFit& fit : stats.shadowMaps)
+    shadowMaps.push_back({{"light", fit.light},
+                          {"projection", fit.projection},
+                          {"layers", fit.layers},
+                          {"near", fit.near},
+                          {"far", fit.far},
+                          {"half_angle", fit.halfAngle}});
   return Json{{"renderer", stats.renderer},
               {"backend", stats.backend},
               {"software", stats.software},
@@ -125,7 +134,9 @@ std::string toJson(const FrameStats& stats) {
               {"frame_ms", toJsonValue(stats.frameMs)},
               {"pass_sum_ms", stats.passSumMs},
               {"memory_bytes", stats.memoryBytes},
-              {"passes", passes}}
+              {"passes", passes},
+              {"shadow_maps", shadowMaps},
+              {"uncovered_pixels", stats.uncoveredPixels}}
       .dump();
 }
 
@@ -150,6 +161,10 @@ FrameStats frameStatsFromJson(const std::string& text) {
     for (const Json& pass : json.at("passes"))
       stats.passes.push_back({pass.at("name"), pass.at("technique"), stateFrom(pass.at("state")),
                               pass.at("reason"), quartilesFrom(pass.at("ms")), pass.at("bytes")});
+    for (const Json& fit : json.at("shadow_maps"))
+      stats.shadowMaps.push_back({fit.at("light"), fit.at("projection"), fit.at("layers"), fit.at("near"),
+                                  fit.at("far"), fit.at("half_angle")});
+    stats.uncoveredPixels = json.at("uncovered_pixels");
     return stats;
   } catch (const nlohmann::json::exception& error) {
     throw Error(fmt::format("frame statistics are not as expected: {}", error.what()));

@@ -27,6 +27,15 @@ struct PassStats {
   int64_t bytes = 0;
 };
 
+/// How the shadow maps of one light lay in the last frame.
+struct ShadowMapFit {
+  std::string light;
+  std::string projection;  ///< perspective, orthographic, cube, hemicube or paraboloid
+  int layers = 0;
+  double near = 0, far = 0;  ///< metres, of the first layer
+  double halfAngle = 0;      ///< radians; perspective only
+};
+
 struct FrameStats {
   std::string renderer, backend;
   frame::Timing timer = frame::Timing::finish;  ///< how the passes were timed
@@ -39,6 +48,8 @@ struct FrameStats {
   double passSumMs = 0;  ///< median over frames of the passes' sum, in the run with pass timing
   int64_t memoryBytes = 0;
   std::vector<PassStats> passes;
+  std::vector<ShadowMapFit> shadowMaps;
+  uint32_t uncoveredPixels = 0;  ///< whose receiver no map of a light covers: V = 1 there
 };
 
 /// Renders `warmup` frames, then `frames` timed ones as a whole, then as many with pass timing. The camera

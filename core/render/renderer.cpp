@@ -398,6 +398,13 @@ FrameStats Renderer::describe() const {
   return stats;
 }
 
+void Renderer::describeShadowMaps(FrameStats& stats) const {
+  const shadow::ShadowMapService& maps = implementation_->shadowMaps;
+  for (const shadow::ShadowMapStats& fit : maps.stats())
+    stats.shadowMaps.push_back({fit.light, fit.projection, fit.layers, fit.near, fit.far, fit.halfAngle});
+  if (!stats.shadowMaps.empty()) stats.uncoveredPixels = maps.uncoveredPixels();
+}
+
 Renderer::Reload Renderer::reloadShaders() {
   const auto result = implementation_->shaders.reload();
   return {result.reloaded, result.errors};

@@ -75,6 +75,8 @@ class LIMN_API Renderer {
   std::vector<frame::PassReport> explain() const;
   /// The part of FrameStats that is known without measuring.
   FrameStats describe() const;
+  /// Adds how the shadow maps of the last frame lay. Blocks.
+  void describeShadowMaps(FrameStats& stats) const;
   /// Live buffers and textures of this device, bytes.
   int64_t memoryBytes() const;
 
