@@ -198,8 +198,8 @@ struct Renderer::Implementation {
       graph->leaveOut("lighting", "core", "the scene has no geometry");
       return radiance;
     }
+    const std::vector<uint32_t> lights = activeLights();
     if (all || settings.output == Output::direct) {
-      const std::vector<uint32_t> lights = activeLights();
       if (!lights.empty())
         radiance = addDirect(frame, radiance, lights);
       else
@@ -210,7 +210,6 @@ struct Renderer::Implementation {
         graph->leaveOut("environment light", "core",
                         scene.environment ? "another light was chosen" : "no environment");
     }
-    const std::vector<uint32_t> lights = activeLights();
     for (const auto& [term, wanted] :
          {std::pair(Term::indirect, Output::indirect), std::pair(Term::caustic, Output::caustic),
           std::pair(Term::media, Output::media)})
@@ -252,12 +251,15 @@ struct Renderer::Implementation {
     shadowMaps.update(pose);
   }
 
+  void refreshPose() {
+    if (!poseDirty) return;
+    gpuScene.updateDynamic(time);
+    scene::evaluate(scene, time, animation, pose);
+    poseDirty = false;
+  }
+
   void render(frame::Timing timing) {
-    if (poseDirty) {
-      gpuScene.updateDynamic(time);
-      scene::evaluate(scene, time, animation, pose);
-      poseDirty = false;
-    }
+    refreshPose();
     bool rebuild = gpuScene.update(pose, camera, settings.size, frameIndex++) || !graph;
     if (!rebuild) {
       rebuild = shadowMaps.update(pose);
@@ -338,9 +340,8 @@ void Renderer::finish() {
 }
 
 const scene::Pose& Renderer::pose() {
-  Implementation& self = *implementation_;
-  if (self.poseDirty) scene::evaluate(self.scene, self.time, self.animation, self.pose);
-  return self.pose;
+  implementation_->refreshPose();
+  return implementation_->pose;
 }
 
 Image Renderer::read() const {
