@@ -110,6 +110,11 @@ LIMN_FN vec3 shadow_world_offset(ShadowView view, vec3 r) {
   return r.x * vec3(view.axis_x) + r.y * vec3(view.axis_y) + r.z * vec3(view.axis_z);
 }
 
+// A vector of the world in the view's axes.
+LIMN_FN vec3 shadow_view_axes(ShadowView view, vec3 w) {
+  return vec3(dot(vec3(view.axis_x), w), dot(vec3(view.axis_y), w), dot(vec3(view.axis_z), w));
+}
+
 // The depth of an offset from the origin: what shadow_project_local finds.
 LIMN_FN float shadow_depth_of(ShadowView view, vec3 r) {
   return view.info.x == shadow_paraboloid ? sqrt(dot(r, r)) : r.z;

@@ -4,6 +4,7 @@
 #define LIMN_VISIBILITY_GLSL
 #include "glsl/gbuffer_input.glsl"
 #include "glsl/light_view.glsl"
+#include "glsl/shadow_kernel.glsl"
 #include "glsl/shadow_view.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -116,6 +117,23 @@ bool shadow_covers_receiver(ShadowCursor cursor, VisibilityQuery q) {
   if (shadow_inside(shadow_project(cursor.view, q.position))) return true;
   atomicAdd(uncovered_pixels, 1u);
   return false;
+}
+
+// From the receiver to the near plane along the light's axis, metres: the gap of the initial kernel as published. The
+// near plane lies that far from the view's origin for directional lights, from the light for all others.
+float shadow_near_gap(ShadowCursor cursor, VisibilityQuery q) {
+  float depth = q.light.cone ? dot(q.light.axis, q.position - cursor.view.origin.xyz) : q.light.depth;
+  return max(depth - cursor.view.origin.w, 0.0);
+}
+
+// Techniques that filter boxes go through all views of a light, and weight what they find by ShadowKernel::weight:
+//   for (uint face = 0u; face < shadow_face_count(q.maps.info.y); ++face)
+//     if (shadow_kernel_in_face(cursor, q, face, gap, kernel)) ...
+// which moves the cursor to a view that the kernel lies in.
+bool shadow_kernel_in_face(inout ShadowCursor cursor, VisibilityQuery q, uint face, float gap,
+                           out ShadowKernel kernel) {
+  while (face != cursor.face) cursor = shadow_cursor_at(q, face);
+  return shadow_kernel(cursor.view, q.light, q.position, gap, q.maps.info.y == shadow_faces_single, kernel);
 }
 
 #endif  // LIMN_VISIBILITY_GLSL

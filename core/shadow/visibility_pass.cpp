@@ -1,5 +1,8 @@
 #include "core/shadow/visibility_pass.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <utility>
 
 #include "glsl/gbuffer.glsl"
@@ -7,6 +10,20 @@
 namespace limn::shadow {
 
 using frame::Access;
+
+VisibilityPass visibilityPass(const TechniqueInputs& inputs, const TermRequest& request,
+                              std::string_view technique, std::map<std::string, std::string> defines) {
+  const ParameterValues& p = inputs.parameters;
+  const bool sized = std::ranges::any_of(
+      p.declared(), [](const Parameter& known) { return std::string_view(known.name) == "light_size"; });
+  return {.name = "visibility",
+          .technique = technique,
+          .program = {.files = {fmt::format("techniques/{}/visibility.comp.glsl", technique)},
+                      .defines = std::move(defines)},
+          .maps = inputs.shadowMaps.request(request.lights, {.size = p.integer("shadow_map_size")}),
+          .bias = p.real("bias"),
+          .lightSize = sized ? p.real("light_size") : -1};
+}
 
 frame::TextureHandle addVisibilityPass(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                        frame::TextureHandle target, VisibilityPass pass) {

@@ -1,8 +1,10 @@
-// What every shadow-map technique's visibility pass has in common: declared reads, bindings
+// What every shadow-map technique's visibility pass has in common: parameters, declared reads, bindings
 // (glsl/visibility.glsl) and the dispatch over pixels and lights.
 #pragma once
 
 #include <functional>
+#include <map>
+#include <string>
 #include <string_view>
 
 #include "core/frame/frame_graph.h"
@@ -10,6 +12,22 @@
 #include "core/technique/technique.h"
 
 namespace limn::shadow {
+
+/// The parameters that all techniques with shadow maps share.
+constexpr Parameter shadowMapSizeParameter(int texels = 1024) {
+  return integer("shadow_map_size", texels, {16, 16384}, "texels",
+                 "Width and height of each layer of the shadow maps")
+      .quality()
+      .logScale();
+}
+constexpr Parameter biasParameter() {
+  return real("bias", 1, {0, 64}, "texel footprints",
+              "How far a blocker must lie above the receiver's tangent plane to count");
+}
+constexpr Parameter lightSizeParameter() {
+  return real("light_size", -1, {-1, 1e6}, "m",
+              "Side of every light (directional: angular diameter in radians); negative: the scene's");
+}
 
 struct VisibilityPass {
   std::string_view name;       ///< of the pass
@@ -24,6 +42,12 @@ struct VisibilityPass {
   /// Whether the pass adds to what `target` holds already (sums over batches of samples).
   bool accumulate = false;
 };
+
+/// The pass of a technique that declares the three parameters above (light_size may be missing): maps of the
+/// request's lights, and the program of techniques/NAME/visibility.comp.glsl.
+LIMN_API VisibilityPass visibilityPass(const TechniqueInputs& inputs, const TermRequest& request,
+                                       std::string_view technique,
+                                       std::map<std::string, std::string> defines = {});
 
 /// Declares the pass; it writes one layer of `target` per light of the request. Returns the target after it.
 LIMN_API frame::TextureHandle addVisibilityPass(frame::FrameGraph& graph, const TechniqueInputs& inputs,

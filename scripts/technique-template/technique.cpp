@@ -8,24 +8,19 @@ using namespace limn;
 
 constexpr Parameter parameters[] = {
     integer("taps", 4, {1, 64}, "texels", "Width and height of the filter").quality(),
-    integer("shadow_map_size", 1024, {16, 16384}, "texels", "Width and height of each layer of the shadow maps")
-        .quality()
-        .logScale(),
+    shadow::shadowMapSizeParameter(),
+    shadow::biasParameter(),
+    shadow::lightSizeParameter(),
 };
 
 class @CLASS@ : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
-    const ParameterValues& p = inputs.parameters;
-    return shadow::addVisibilityPass(
-        graph, inputs, request.target,
-        {.name = "visibility",
-         .technique = info.name,
-         .program = {.files = {"techniques/@NAME@/visibility.comp.glsl"}},
-         .maps = inputs.shadowMaps.request(request.lights, {.size = p.integer("shadow_map_size")}),
-         .bind = [taps = p.integer("taps")](frame::PassContext&, gpu::Program& program) {
-           program.set("taps", taps);
-         }});
+    shadow::VisibilityPass pass = shadow::visibilityPass(inputs, request, info.name);
+    pass.bind = [taps = inputs.parameters.integer("taps")](frame::PassContext&, gpu::Program& program) {
+      program.set("taps", taps);
+    };
+    return shadow::addVisibilityPass(graph, inputs, request.target, std::move(pass));
   }
 
  public:

@@ -8,28 +8,18 @@ using namespace limn;
 
 constexpr const char* filters[] = {"nearest", "2x2"};
 constexpr Parameter parameters[] = {
-    integer("shadow_map_size", 1024, {16, 16384}, "texels",
-            "Width and height of each layer of the shadow maps")
-        .quality()
-        .logScale(),
-    real("bias", 1, {0, 64}, "texel footprints",
-         "How far a blocker must lie above the receiver's tangent plane to count"),
+    shadow::shadowMapSizeParameter(),
+    shadow::biasParameter(),
     choice("filter", 0, filters, "One texel, or the four around the receiver weighted bilinearly"),
 };
 
 class HardShadowMap : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
-    const ParameterValues& p = inputs.parameters;
-    const char* filter = p.choice("filter") == 0 ? "0" : "1";
+    const char* filter = inputs.parameters.choice("filter") == 0 ? "0" : "1";
     return shadow::addVisibilityPass(
         graph, inputs, request.target,
-        {.name = "visibility",
-         .technique = info.name,
-         .program = {.files = {"techniques/hard_shadow_map/visibility.comp.glsl"},
-                     .defines = {{"FILTER", filter}}},
-         .maps = inputs.shadowMaps.request(request.lights, {.size = p.integer("shadow_map_size")}),
-         .bias = p.real("bias")});
+        shadow::visibilityPass(inputs, request, info.name, {{"FILTER", filter}}));
   }
 
  public:

@@ -19,35 +19,24 @@ constexpr Parameter parameters[] = {
     choice("search", 1, searches,
            "Search at the near plane, as published, or through the cone from receiver to light, keeping what "
            "lies in it"),
-    integer("shadow_map_size", 1024, {16, 16384}, "texels",
-            "Width and height of each layer of the shadow maps")
-        .quality()
-        .logScale(),
-    real("bias", 1, {0, 64}, "texel footprints",
-         "How far a blocker must lie above the receiver's tangent plane to count"),
-    real("light_size", -1, {-1, 1e6}, "m",
-         "Side of every light (directional: angular diameter in radians); negative: the scene's"),
+    shadow::shadowMapSizeParameter(),
+    shadow::biasParameter(),
+    shadow::lightSizeParameter(),
 };
 
 class Pcss : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
     const ParameterValues& p = inputs.parameters;
-    const int blockerSamples = p.integer("blocker_samples"), filterSamples = p.integer("filter_samples");
-    return shadow::addVisibilityPass(
-        graph, inputs, request.target,
-        {.name = "visibility",
-         .technique = info.name,
-         .program = {.files = {"techniques/pcss/visibility.comp.glsl"},
-                     .defines = {{"PATTERN", std::to_string(p.choice("pattern"))},
-                                 {"SEARCH", std::to_string(p.choice("search"))}}},
-         .maps = inputs.shadowMaps.request(request.lights, {.size = p.integer("shadow_map_size")}),
-         .bias = p.real("bias"),
-         .lightSize = p.real("light_size"),
-         .bind = [=](frame::PassContext&, gpu::Program& program) {
-           program.set("blocker_samples", blockerSamples);
-           program.set("filter_samples", filterSamples);
-         }});
+    shadow::VisibilityPass pass = shadow::visibilityPass(
+        inputs, request, info.name,
+        {{"PATTERN", std::to_string(p.choice("pattern"))}, {"SEARCH", std::to_string(p.choice("search"))}});
+    pass.bind = [blockers = p.integer("blocker_samples"), filters = p.integer("filter_samples")](
+                    frame::PassContext&, gpu::Program& program) {
+      program.set("blocker_samples", blockers);
+      program.set("filter_samples", filters);
+    };
+    return shadow::addVisibilityPass(graph, inputs, request.target, std::move(pass));
   }
 
  public:

@@ -7,9 +7,8 @@
 //
 // PATTERN 0: grid, 1: R2 sequence shifted per pixel. SEARCH 0: at the near plane, 1: through the cone.
 #include "glsl/sampling.glsl"
-#include "glsl/visibility.glsl"
+#include "glsl/visibility_main.glsl"
 
-layout(binding = 0, r16) writeonly uniform image2DArray visibility;
 uniform int blocker_samples;
 uniform int filter_samples;
 
@@ -32,9 +31,7 @@ int sample_count(int count) {
 
 // Steps 1 and 2: mean distance from the blockers to the receiver along the light's axis, metres; 0: there are none.
 float blocker_gap(inout ShadowCursor cursor, VisibilityQuery q, vec3 shift) {
-  // The near plane: from the view's origin for directional lights, from the light for all others.
-  float depth = q.light.cone ? dot(q.light.axis, q.position - cursor.view.origin.xyz) : q.light.depth;
-  float reach = max(depth - cursor.view.origin.w, 0.0);
+  float reach = shadow_near_gap(cursor, q);
   float sum = 0.0;
   int blockers = 0;
   int count = sample_count(blocker_samples);
@@ -74,22 +71,7 @@ float filtered(inout ShadowCursor cursor, VisibilityQuery q, float gap, vec2 shi
   return total > 0.0 ? lit / total : 1.0;
 }
 
-void main() {
-  ivec3 at = ivec3(gl_GlobalInvocationID.xy, gl_WorkGroupID.z);
-  VisibilityQuery q = visibility_query(at.xy, gl_WorkGroupID.z);
-  if (any(greaterThanEqual(at, imageSize(visibility)))) return;
-  float v = 1.0;
-  if (!q.masked) {
-    ShadowCursor cursor = shadow_cursor(q);
-    if (shadow_covers_receiver(cursor, q)) {
-      if (!q.light.extended) {
-        v = shadow_tap(cursor, q, q.position).blocked ? 0.0 : 1.0;
-      } else {
-        vec3 shift = pixel_noise(uint(at.x), uint(at.y), 0u);
-        float gap = blocker_gap(cursor, q, shift);
-        if (gap > 0.0) v = filtered(cursor, q, gap, pixel_noise(uint(at.x), uint(at.y), 1u).xy);
-      }
-    }
-  }
-  imageStore(visibility, at, vec4(v));
+float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
+  float gap = blocker_gap(cursor, q, pixel_noise(uint(pixel.x), uint(pixel.y), 0u));
+  return gap > 0.0 ? filtered(cursor, q, gap, pixel_noise(uint(pixel.x), uint(pixel.y), 1u).xy) : 1.0;
 }

@@ -18,12 +18,8 @@ constexpr Parameter parameters[] = {
     integer("samples", 64, {1, 4096}, "samples", "Points on each light, and maps rendered from them")
         .quality()
         .logScale(),
-    integer("shadow_map_size", 512, {16, 16384}, "texels",
-            "Width and height of each layer of the shadow maps")
-        .quality()
-        .logScale(),
-    real("bias", 1, {0, 64}, "texel footprints",
-         "How far a blocker must lie above the receiver's tangent plane to count"),
+    shadow::shadowMapSizeParameter(512),
+    shadow::biasParameter(),
     integer("memory", 256, {1, 4096}, "MiB",
             "Shadow maps held at once; more samples are rendered in batches"),
 };

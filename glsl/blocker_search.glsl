@@ -1,0 +1,51 @@
+// The blocker search of prefiltered soft shadows: the kernel in which blockers are looked for, and what the min-max
+// pyramid of the maps says about it.
+#ifndef LIMN_BLOCKER_SEARCH_GLSL
+#define LIMN_BLOCKER_SEARCH_GLSL
+#include "glsl/min_max_pyramid.glsl"
+#include "glsl/visibility.glsl"
+
+layout(binding = 9) uniform sampler2DArray shadow_min_max;  // MinMaxPyramid of the maps
+
+LIMN_CONST int search_lit = 0;      // nothing in the kernel blocks: V = 1
+LIMN_CONST int search_umbra = 1;    // everything in it blocks: V = 0
+LIMN_CONST int search_partial = 2;  // neither is certain
+
+struct BlockerSearch {
+  int answer;  // search_*
+  float gap;   // metres from the receiver to the plane of the search kernel; no blocker in the kernel is farther
+};
+
+// Bounds of the depths stored in the texels that a kernel touches.
+vec2 kernel_depth_bounds(ShadowCursor cursor, ShadowKernel kernel) {
+  ivec2 low = ivec2(floor(clamp(kernel.low, vec2(-1.0), vec2(cursor.view.info.z))));
+  ivec2 high = ivec2(ceil(clamp(kernel.high, vec2(0.0), vec2(cursor.view.info.z) + 1.0))) - 1;
+  return min_max_depth(shadow_min_max, low, max(high, low), int(cursor.layer));
+}
+
+// The kernel starts at the near plane, as published; each of `rounds` further rounds moves it to the nearest depth that
+// was found in it, beyond which nothing can block.
+BlockerSearch blocker_search(inout ShadowCursor cursor, VisibilityQuery q, int rounds) {
+  BlockerSearch search;
+  search.gap = shadow_near_gap(cursor, q);
+  for (int round = 0; round <= rounds; ++round) {
+    float widest = 0.0;
+    bool lit = true;
+    bool umbra = true;
+    for (uint face = 0u; face < shadow_face_count(q.maps.info.y); ++face) {
+      ShadowKernel kernel;
+      if (!shadow_kernel_in_face(cursor, q, face, search.gap, kernel)) continue;
+      vec2 depths = kernel_depth_bounds(cursor, kernel);
+      vec2 thresholds = shadow_threshold_range(cursor.view, cursor.receiver, kernel);
+      lit = lit && thresholds.y <= depths.x;
+      umbra = umbra && depths.y < thresholds.x;
+      widest = max(widest, shadow_gap_bound(cursor.view, cursor.receiver, kernel, depths.x));
+    }
+    search.answer = lit ? search_lit : umbra ? search_umbra : search_partial;
+    if (search.answer != search_partial) return search;
+    search.gap = clamp(widest, 0.0, search.gap);
+  }
+  return search;
+}
+
+#endif  // LIMN_BLOCKER_SEARCH_GLSL
