@@ -74,6 +74,7 @@ void addScene(Hasher& h, const scene::Scene& scene) {
     h.add(mesh.primitives.size());
     for (const auto& primitive : mesh.primitives) addPrimitive(h, primitive);
   }
+  for (const auto& dynamic : scene.dynamic) h.add(dynamic.material);
   const scene::Environment& e = scene.environment;
   h.addAll(e.width, e.height, e.texels, e.rotation, e.scale);
 }
@@ -84,6 +85,7 @@ void addPose(Hasher& h, const scene::Pose& pose) {
     h.addAll(i.node == scene::none, i.mesh, i.primitive, i.objectToWorld, i.deformed);
   h.add(pose.deformed.size());
   for (const auto& d : pose.deformed) h.addAll(d.mesh, d.primitive, d.joints, d.morphWeights);
+  for (const auto& d : pose.dynamic) addPrimitive(h, *d.primitive);
   h.add(pose.lights);
 }
 

@@ -247,21 +247,22 @@ RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose)
   Hierarchy& h = *hierarchy_;
   std::map<std::pair<int, int>, int> uses;
   for (const auto& instance : pose.instances)
-    if (instance.deformed == scene::none) ++uses[{instance.mesh, instance.primitive}];
+    if (instance.node != scene::none && instance.deformed == scene::none)
+      ++uses[{instance.mesh, instance.primitive}];
   h.users.reserve(pose.instances.size() + uses.size());
   draws_.reserve(pose.instances.size());
 
   for (const scene::DrawInstance& instance : pose.instances) {
     const auto id = static_cast<unsigned>(draws_.size());
-    if (instance.node == scene::none)
-      throw UsageError(
-          fmt::format("reference: the geometry source '{}' cannot be traced; make it a mesh of the scene",
-                      scene.dynamic[static_cast<size_t>(instance.mesh)].name));
+    const bool dynamic = instance.node == scene::none;
+    const auto mesh = static_cast<size_t>(instance.mesh);
     const scene::Primitive& primitive =
-        scene.meshes[static_cast<size_t>(instance.mesh)].primitives[static_cast<size_t>(instance.primitive)];
+        dynamic ? *pose.dynamic[mesh].primitive
+                : scene.meshes[mesh].primitives[static_cast<size_t>(instance.primitive)];
+    const int material = dynamic ? scene.dynamic[mesh].material : primitive.material;
     Draw& draw = draws_.emplace_back();
     draw.primitive = &primitive;
-    draw.material = &scene.materials[static_cast<size_t>(primitive.material)];
+    draw.material = &scene.materials[static_cast<size_t>(material)];
     draw.normals = primitive.normals.data();
     draw.tangents = primitive.tangents.empty() ? nullptr : primitive.tangents.data();
     const glm::mat4& matrix = instance.objectToWorld;
@@ -270,7 +271,7 @@ RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose)
     draw.orientation = glm::determinant(glm::dmat3(glm::dmat4(matrix))) < 0 ? -1.f : 1.f;
 
     const std::pair<int, int> key{instance.mesh, instance.primitive};
-    if (instance.deformed == scene::none && uses[key] > 1) {
+    if (!dynamic && instance.deformed == scene::none && uses[key] > 1) {
       draw.toWorld = matrix;
       draw.positions =
           h.attachShared(id, key, primitive, matrix, {&primitive, draw.material, scene::none, 1.f});

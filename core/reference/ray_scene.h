@@ -62,7 +62,7 @@ float levelOfDetail(const scene::Scene& scene, const scene::TextureRef& texture,
 class RayScene {
  public:
   /// Builds the hierarchies with the calling thread's TBB arena. Throws Error if Embree fails (out of
-  /// memory), UsageError if the pose draws a geometry source (its triangles are known to its owner alone).
+  /// memory).
   RayScene(const scene::Scene& scene, const scene::Pose& pose);
   ~RayScene();
   RayScene(const RayScene&) = delete;

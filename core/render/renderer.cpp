@@ -253,7 +253,6 @@ struct Renderer::Implementation {
 
   void refreshPose() {
     if (!poseDirty) return;
-    gpuScene.updateDynamic(time);
     scene::evaluate(scene, time, animation, pose);
     poseDirty = false;
   }

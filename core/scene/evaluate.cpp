@@ -175,6 +175,37 @@ void addInstances(const Scene& scene, const Animation* animation, double time, P
   }
 }
 
+/// Throws Error for triangles that would read what is not there.
+void check(const Scene::Dynamic& dynamic, const Primitive& primitive) {
+  const std::size_t vertices = primitive.positions.size();
+  const auto fail = [&](const std::string& what) {
+    throw Error(fmt::format("geometry source '{}': {}", dynamic.name, what));
+  };
+  if (primitive.indices.size() % 3 != 0)
+    fail(fmt::format("{} indices, which is no multiple of 3", primitive.indices.size()));
+  if (primitive.normals.size() != vertices)
+    fail(fmt::format("{} normals for {} positions", primitive.normals.size(), vertices));
+  for (const std::uint32_t index : primitive.indices)
+    if (index >= vertices) fail(fmt::format("index {} of {} positions", index, vertices));
+  for (const glm::vec3& p : primitive.positions)
+    if (!glm::all(glm::lessThan(glm::abs(p), glm::vec3(1e30f)))) fail("a position that is not finite");
+}
+
+void updateDynamic(const Scene& scene, double time, Pose& pose) {
+  static const std::shared_ptr<const Primitive> nothing = std::make_shared<Primitive>();
+  pose.dynamic.resize(scene.dynamic.size());
+  for (std::size_t i = 0; i < scene.dynamic.size(); ++i) {
+    DynamicGeometry& geometry = pose.dynamic[i];
+    std::shared_ptr<const Primitive> now = scene.dynamic[i].source->at(time);
+    if (!now) now = nothing;
+    if (now == geometry.primitive) continue;
+    check(scene.dynamic[i], *now);
+    geometry.bounds = {};
+    for (const glm::vec3& p : now->positions) geometry.bounds.add(p);
+    geometry.primitive = std::move(now);
+  }
+}
+
 void addCameras(const Scene& scene, Pose& pose) {
   Refill<CameraPose> cameras(pose.cameras);
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
@@ -235,7 +266,7 @@ uint64_t Scene::triangles() const {
 }
 
 Bounds instanceBounds(const Scene& scene, const Pose& pose, const DrawInstance& instance) {
-  if (instance.node == none) return {};
+  if (instance.node == none) return pose.dynamic[at(instance.mesh)].bounds;
   const Primitive& primitive = scene.meshes[at(instance.mesh)].primitives[at(instance.primitive)];
   if (instance.deformed == none) return transformed(instance.objectToWorld, primitive.bounds);
   const Deformation& state = pose.deformed[at(instance.deformed)];
@@ -259,11 +290,11 @@ void evaluate(const Scene& scene, double time, int animation, Pose& pose) {
   animate(scene, chosen, local, pose);
   updateWorldMatrices(scene, pose);
   addInstances(scene, chosen, local, pose);
+  updateDynamic(scene, time, pose);
   addCameras(scene, pose);
   addLights(scene, pose);
   pose.bounds = {};
   for (const DrawInstance& instance : pose.instances) pose.bounds.add(instanceBounds(scene, pose, instance));
-  for (const Scene::Dynamic& dynamic : scene.dynamic) pose.bounds.add(dynamic.source->bounds(time));
 }
 
 Pose evaluate(const Scene& scene, double time, int animation) {

@@ -53,8 +53,8 @@ bool GpuScene::Implementation::allocate(const Pose& pose) {
   for (const Deformation& d : pose.deformed) wanted.emplace_back(d.mesh, d.primitive);
   bool fits = wanted == deformedPrimitives;
   for (const DynamicState& d : dynamic) {
-    fits = fits && d.primitive.positions.size() <= d.vertexCapacity &&
-           d.primitive.indices.size() <= d.indexCapacity;
+    fits = fits && d.primitive->positions.size() <= d.vertexCapacity &&
+           d.primitive->indices.size() <= d.indexCapacity;
   }
   if (fits) return false;
 
@@ -67,8 +67,8 @@ bool GpuScene::Implementation::allocate(const Pose& pose) {
     deformedRanges.push_back(range);
   }
   for (DynamicState& d : dynamic) {
-    d.vertexCapacity = std::bit_ceil(static_cast<uint32_t>(d.primitive.positions.size()));
-    d.indexCapacity = std::bit_ceil(static_cast<uint32_t>(d.primitive.indices.size()));
+    d.vertexCapacity = std::bit_ceil(static_cast<uint32_t>(d.primitive->positions.size()));
+    d.indexCapacity = std::bit_ceil(static_cast<uint32_t>(d.primitive->indices.size()));
     d.range.firstVertex = geometry.allocateVertices(d.vertexCapacity);
     d.range.firstIndex = geometry.allocateIndices(d.indexCapacity);
     d.dirty = true;
@@ -83,9 +83,9 @@ bool GpuScene::Implementation::writeDynamic() {
     if (!d.dirty) continue;
     d.dirty = false;
     any = true;
-    d.range.vertexCount = static_cast<uint32_t>(d.primitive.positions.size());
-    d.range.indexCount = static_cast<uint32_t>(d.primitive.indices.size());
-    geometry.write(d.range, d.primitive);
+    d.range.vertexCount = static_cast<uint32_t>(d.primitive->positions.size());
+    d.range.indexCount = static_cast<uint32_t>(d.primitive->indices.size());
+    geometry.write(d.range, *d.primitive);
   }
   return any;
 }
@@ -103,7 +103,7 @@ void GpuScene::Implementation::updateInstances(const Pose& pose) {
       state.range = d.range;
       state.primitive = geometry.primitiveCount() + static_cast<uint32_t>(drawn.mesh);
       state.material = scene.dynamic[static_cast<size_t>(drawn.mesh)].material;
-      local = d.primitive.bounds;
+      local = pose.dynamic[static_cast<size_t>(drawn.mesh)].bounds;
     } else {
       const Primitive& primitive =
           scene.meshes[static_cast<size_t>(drawn.mesh)].primitives[static_cast<size_t>(drawn.primitive)];
@@ -187,22 +187,16 @@ GpuScene::GpuScene(gpu::Device& device, const Scene& scene)
     : implementation_(std::make_unique<Implementation>(device, scene)) {}
 GpuScene::~GpuScene() = default;
 
-void GpuScene::updateDynamic(double time) {
-  Implementation& s = *implementation_;
-  for (size_t i = 0; i < s.dynamic.size(); ++i) {
-    DynamicState& d = s.dynamic[i];
-    if (!s.scene.dynamic[i].source->update(time, d.primitive)) continue;
-    d.primitive.bounds = {};
-    for (const glm::vec3& p : d.primitive.positions) d.primitive.bounds.add(p);
-    d.dirty = true;
-  }
-}
-
 bool GpuScene::update(const Pose& pose, const CameraPose& camera, glm::ivec2 size, uint32_t frameIndex) {
   Implementation& s = *implementation_;
   const bool first = !s.instanceBuffer;
   const size_t deformedBefore = s.deformedPrimitives.size(), lightsBefore = s.lights.size();
 
+  for (size_t i = 0; i < s.dynamic.size(); ++i) {
+    if (s.dynamic[i].primitive == pose.dynamic[i].primitive) continue;
+    s.dynamic[i].primitive = pose.dynamic[i].primitive;
+    s.dynamic[i].dirty = true;
+  }
   bool moved = s.allocate(pose);
   moved = s.writeDynamic() || moved;
   if (moved) s.touch(&SceneHandles::geometry);

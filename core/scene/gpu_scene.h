@@ -71,8 +71,6 @@ class LIMN_API GpuScene {
   /// that still lives: see forget()), what really changed. True: the structure changed (dynamic geometry came
   /// or went, the number of lights or of deformed primitives changed) and the graph must be rebuilt.
   bool update(const Pose& pose, const CameraPose& camera, glm::ivec2 size, uint32_t frameIndex);
-  /// Asks the GeometrySources for `time`. Call before update().
-  void updateDynamic(double time);
 
   /// Imports the buffers and declares the deform pass (left out, with the reason, when nothing is deformed).
   SceneHandles import(frame::FrameGraph& graph);

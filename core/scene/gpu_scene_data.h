@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -47,7 +48,7 @@ struct InstanceState {
 };
 
 struct DynamicState {
-  Primitive primitive;
+  std::shared_ptr<const Primitive> primitive = std::make_shared<Primitive>();
   GeometryRange range;
   uint32_t vertexCapacity = 0, indexCapacity = 0;
   bool dirty = false;

@@ -185,11 +185,10 @@ struct Medium {
 class LIMN_API GeometrySource {
  public:
   virtual ~GeometrySource() = default;
-  /// Fills `out` (positions, normals, indices; anything else optional) for `time` and returns true, or
-  /// returns false when nothing changed since the last call.
-  virtual bool update(double time, Primitive& out) = 0;
-  /// World bounds at `time`, if known without making the triangles; counted in Pose::bounds.
-  virtual Bounds bounds(double /*time*/) const { return {}; }
+  /// The triangles at `time` seconds, in world space: positions, one normal each, indices; anything else is
+  /// optional, material and bounds are not looked at. The pointer that the last call gave says that nothing
+  /// changed; null, that there is nothing. What a pointer leads to stays as it is while somebody holds it.
+  virtual std::shared_ptr<const Primitive> at(double time) = 0;
 };
 
 struct Scene {
@@ -231,6 +230,12 @@ struct Deformation {
   std::vector<float> morphWeights;  ///< empty: not morphed
 };
 
+/// What a GeometrySource gave.
+struct DynamicGeometry {
+  std::shared_ptr<const Primitive> primitive;  ///< never null
+  Bounds bounds;                               ///< world
+};
+
 struct CameraPose {
   std::string name;
   glm::mat4 worldToView{1};
@@ -241,8 +246,9 @@ struct CameraPose {
 struct Pose {
   std::vector<DrawInstance> instances;
   std::vector<Deformation> deformed;
-  std::vector<glsl::Light> lights;      ///< punctual lights in node order, then emissive quads
-  std::vector<std::string> lightNames;  ///< parallel to lights; "#index" where the file gives no name
+  std::vector<DynamicGeometry> dynamic;  ///< parallel to Scene::dynamic
+  std::vector<glsl::Light> lights;       ///< punctual lights in node order, then emissive quads
+  std::vector<std::string> lightNames;   ///< parallel to lights; "#index" where the file gives no name
   std::vector<CameraPose> cameras;
   Bounds bounds;                       ///< world, all instances (skinned ones: conservative)
   std::vector<Transform> nodeLocal;    ///< animated transform of each node
@@ -251,12 +257,13 @@ struct Pose {
 };
 
 /// The state at `time` seconds; `animation` none: the first one. Animations repeat (time modulo duration).
-/// Throws UsageError if `time` is not finite or there is no such animation.
+/// Throws UsageError if `time` is not finite or there is no such animation, Error if a geometry source gives
+/// triangles that make no sense.
 LIMN_API Pose evaluate(const Scene& scene, double time, int animation = none);
 /// The same into `pose`, whose memory is reused: nothing is allocated from the second call for one scene on.
 LIMN_API void evaluate(const Scene& scene, double time, int animation, Pose& pose);
 
-/// World bounds of an instance at `pose`; conservative for deformed ones, empty for dynamic geometry.
+/// World bounds of an instance at `pose`; conservative for deformed ones.
 LIMN_API Bounds instanceBounds(const Scene& scene, const Pose& pose, const DrawInstance& instance);
 
 /// Deformed vertices of one primitive on the CPU: the reference's twin of the compute shader (same formulas,

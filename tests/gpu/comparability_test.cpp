@@ -213,6 +213,41 @@ TEST_F(ComparabilityTest, TexturesNormalMapsMirroringCutOutsAndVertexColoursAgre
   EXPECT_LT(lightDifference(pair, true), 2e-3) << "emission";
 }
 
+/// A sphere that has more and more triangles.
+class Refining : public scene::GeometrySource {
+ public:
+  std::shared_ptr<const scene::Primitive> at(double time) override {
+    const int rings = 6 + static_cast<int>(10 * time);
+    if (rings != rings_) sphere_ = std::make_shared<scene::Primitive>(test::spherePrimitive(1, 0, rings));
+    rings_ = rings;
+    return sphere_;
+  }
+
+ private:
+  int rings_ = 0;
+  std::shared_ptr<const scene::Primitive> sphere_;
+};
+
+TEST_F(ComparabilityTest, GeometryOfASourceIsTheSameForBothWhoeverAsksFirst) {
+  scene::Scene scene;
+  scene::Material material;
+  material.baseColour = {0.7f, 0.5f, 0.3f, 1};
+  const int paint = test::addMaterial(scene, material);
+  addNode(scene, test::addMesh(scene, test::floorPrimitive(3, paint)), {});
+  scene.dynamic.push_back({"refining", std::make_shared<Refining>(), paint});
+  addLight(scene, light(glsl::light_point, 20), {1, 3, 1}, {-1, -3, -1}, {});
+  const auto camera = scene::lookAt({0.5f, 2.5f, 4}, {0, 0, 0}, 0.7f);
+  Image last;
+  for (const double time : {0.0, 2.0, 0.5}) {
+    const test::Pair pair = both(scene, camera, {96, 72}, render::Output::direct, 2, time);
+    expectSameSurfaces(pair);
+    if (last.width() > 0) {
+      EXPECT_FALSE(std::ranges::equal(last.data(), pair.image.data())) << "nothing changed";
+    }
+    last = pair.image;
+  }
+}
+
 TEST_F(ComparabilityTest, BackgroundAgrees) {
   scene::Scene scene = texturedScene();
   scene.environment = sky();

@@ -6,6 +6,7 @@
 #include <limits>
 #include <new>
 
+#include "core/base/error.h"
 #include "core/scene/camera.h"
 #include "tests/support/scene_files.h"
 
@@ -333,23 +334,36 @@ TEST(SceneEvaluate, Cameras) {
 
 class Growing : public scene::GeometrySource {
  public:
-  bool update(double, scene::Primitive&) override { return false; }
-  scene::Bounds bounds(double time) const override {
-    return {glm::vec3(-1), glm::vec3(static_cast<float>(time))};
+  std::shared_ptr<const scene::Primitive> at(double time) override {
+    if (time == 0) return nullptr;
+    auto made = std::make_shared<scene::Primitive>();
+    made->positions = {glm::vec3(-1), glm::vec3(static_cast<float>(time)), glm::vec3(0)};
+    made->normals.assign(normals, glm::vec3(0, 0, 1));
+    made->indices = {0, 1, last};
+    return made;
   }
+  uint32_t last = 2;
+  size_t normals = 3;
 };
 
 TEST(SceneEvaluate, DynamicGeometryComesLast) {
   GltfBuilder b;
   b.triangle();
   Scene scene = loadBuilt(b);
-  scene.dynamic.push_back({"surface", std::make_shared<Growing>(), 0});
+  const auto source = std::make_shared<Growing>();
+  scene.dynamic.push_back({"surface", source, 0});
   const Pose pose = evaluate(scene, 7);
   ASSERT_EQ(pose.instances.size(), 2u);
   EXPECT_EQ(pose.instances[1].node, none);
   EXPECT_EQ(pose.instances[1].mesh, 0);
   expectNear(pose.bounds.low, glm::vec3(-1));
   expectNear(pose.bounds.high, glm::vec3(7));
+  EXPECT_TRUE(evaluate(scene, 0).dynamic.at(0).bounds.empty());
+  source->last = 3;
+  EXPECT_THROW(evaluate(scene, 7), Error);
+  source->last = 2;
+  source->normals = 2;
+  EXPECT_THROW(evaluate(scene, 7), Error);
 }
 
 TEST(SceneEvaluate, ReusesItsMemory) {
