@@ -72,6 +72,16 @@ struct ShadowTap {
   vec3 offset;  // from the view's origin to what the map holds, in the view's axes
 };
 
+// A texel of the cursor's view, which lies in the map.
+ShadowTap shadow_texel(ShadowCursor cursor, ivec2 texel) {
+  float stored = texelFetch(shadow_depth, ivec3(texel, cursor.layer), 0).r;
+  float metres = shadow_metres(cursor.view, stored);
+  ShadowTap tap;
+  tap.offset = shadow_unproject_local(cursor.view, (vec2(texel) + 0.5) / float(cursor.view.info.z), metres);
+  tap.blocked = stored < 1.0 && shadow_blocks(cursor.receiver, tap.offset);
+  return tap;
+}
+
 // The texel that holds the direction of world point p.
 ShadowTap shadow_tap(inout ShadowCursor cursor, VisibilityQuery q, vec3 p) {
   if (q.maps.info.y != shadow_faces_single) {
@@ -83,31 +93,21 @@ ShadowTap shadow_tap(inout ShadowCursor cursor, VisibilityQuery q, vec3 p) {
   tap.blocked = false;
   ShadowPoint at = shadow_project(cursor.view, p);
   if (!shadow_inside(at)) return tap;
-  float size = float(cursor.view.info.z);
-  ivec2 texel = min(ivec2(at.uv * size), ivec2(cursor.view.info.z) - 1);
-  float stored = texelFetch(shadow_depth, ivec3(texel, cursor.layer), 0).r;
-  float metres = shadow_metres(cursor.view, stored);
-  tap.offset = shadow_unproject_local(cursor.view, (vec2(texel) + 0.5) / size, metres);
-  tap.blocked = stored < 1.0 && shadow_blocks(cursor.receiver, tap.offset);
-  return tap;
+  return shadow_texel(cursor, min(ivec2(at.uv * float(cursor.view.info.z)), ivec2(cursor.view.info.z) - 1));
 }
 
 // The four texels of the cursor's view around the direction of p, weighted bilinearly: the lit share.
 float shadow_tap_2x2(ShadowCursor cursor, vec3 p) {
-  ShadowView view = cursor.view;
-  ShadowPoint at = shadow_project(view, p);
+  ShadowPoint at = shadow_project(cursor.view, p);
   if (!shadow_inside(at)) return 1.0;
-  float size = float(view.info.z);
-  vec2 corner = at.uv * size - 0.5;
+  vec2 corner = at.uv * float(cursor.view.info.z) - 0.5;
   vec2 weight = fract(corner);
   float lit = 0.0;
   for (int i = 0; i < 4; ++i) {
     ivec2 step = ivec2(i & 1, i >> 1);
-    ivec2 texel = clamp(ivec2(floor(corner)) + step, ivec2(0), ivec2(view.info.z) - 1);
-    float stored = texelFetch(shadow_depth, ivec3(texel, cursor.layer), 0).r;
-    vec3 b = shadow_unproject_local(view, (vec2(texel) + 0.5) / size, shadow_metres(view, stored));
+    ivec2 texel = clamp(ivec2(floor(corner)) + step, ivec2(0), ivec2(cursor.view.info.z) - 1);
     vec2 w = mix(1.0 - weight, weight, vec2(step));
-    if (stored >= 1.0 || !shadow_blocks(cursor.receiver, b)) lit += w.x * w.y;
+    if (!shadow_texel(cursor, texel).blocked) lit += w.x * w.y;
   }
   return lit;
 }
