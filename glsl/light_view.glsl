@@ -12,7 +12,7 @@
 LIMN_BEGIN
 
 struct LightView {
-  bool masked;    // no part of the light lies above the tangent plane and in front of the light: V = 1
+  bool masked;    // no part of the light lies above the tangent plane, or it does not shine here: V = 1
   bool cone;      // directional: samples are directions
   bool extended;  // false: a single point or direction
   bool whole;     // all of the light lies above the tangent plane
@@ -58,6 +58,7 @@ LIMN_FN LightView light_view(Light light, vec3 receiver, vec3 ng, float size) {
     v.axis = v.axis * rectangle_side(light, receiver);
     v.masked = !rectangle_emits_towards(light, receiver);
   } else {
+    v.masked = !(receiver_factor(light, receiver) > 0.0f);
     float distance = length(to_centre);
     if (!v.cone && distance > 0.0f) v.axis = -to_centre / distance;
     Frame facing = frame_around(-v.axis);
@@ -80,7 +81,7 @@ LIMN_FN LightView light_view(Light light, vec3 receiver, vec3 ng, float size) {
     v.side_u = facing.t;  // scaled by light_view_cone_scale
     v.side_v = facing.b;
     float height = dot(ng, v.centre);
-    v.masked = !(height > -sin(half_angle));
+    v.masked = v.masked || !(height > -sin(half_angle));
     v.whole = height >= sin(half_angle);
     return v;
   }

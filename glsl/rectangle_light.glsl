@@ -48,10 +48,11 @@ LIMN_FN float rectangle_side(Light light, vec3 receiver) {
   return height > 0.0f ? 1.0f : height < 0.0f ? -1.0f : 0.0f;
 }
 
-// Whether the light emits towards the receiver's side at all.
+// Whether the light emits towards the receiver at all: towards its side, inside the cone and within the range.
 LIMN_FN bool rectangle_emits_towards(Light light, vec3 receiver) {
   float side = rectangle_side(light, receiver);
-  return (light.info.y & light_flag_two_sided) != 0u ? side != 0.0f : side > 0.0f;
+  bool facing = (light.info.y & light_flag_two_sided) != 0u ? side != 0.0f : side > 0.0f;
+  return facing && receiver_factor(light, receiver) > 0.0f;
 }
 
 LIMN_FN RectanglePart rectangle_whole() {

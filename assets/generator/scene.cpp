@@ -47,8 +47,14 @@ void Scene::addLight(std::string lightName, const Light& light, glm::vec3 positi
 }
 
 void Scene::addAreaLight(std::string lightName, glm::vec3 position, glm::vec3 target, glm::vec2 size,
-                         float intensity, glm::vec3 colour) {
-  addLight(std::move(lightName), {.colour = colour, .intensity = intensity}, position, target);
+                         float intensity, glm::vec3 colour, float coneDegrees) {
+  Light light{.colour = colour, .intensity = intensity};
+  if (coneDegrees > 0) {
+    light.type = Light::Type::spot;
+    light.outerConeAngle = glm::radians(coneDegrees);
+    light.innerConeAngle = 0.5f * light.outerConeAngle;
+  }
+  addLight(std::move(lightName), light, position, target);
   nodes.back().area = size;
 }
 

@@ -111,8 +111,9 @@ struct Scene {
   void addCamera(std::string cameraName, glm::vec3 eye, glm::vec3 target, float yfovDegrees);
   void addLight(std::string lightName, const Light& light, glm::vec3 position, glm::vec3 target);
   /// A one-sided Lambertian rectangle of `size` metres facing `target`; radiance = colour * intensity / area.
+  /// It shines into a cone of `coneDegrees` half angle that fades from half of it on; 0: everywhere.
   void addAreaLight(std::string lightName, glm::vec3 position, glm::vec3 target, glm::vec2 size,
-                    float intensity, glm::vec3 colour = glm::vec3(1));
+                    float intensity, glm::vec3 colour = glm::vec3(1), float coneDegrees = 0);
 };
 
 /// A material that reflects by Lambert's law alone.

@@ -64,7 +64,7 @@ Scene makeBalls() {
               std::move(byMaterial[m]), materials[m]);
   }
 
-  scene.addAreaLight("key", {-2.8f, 3.6f, 0.9f}, {0, 0.2f, 0}, {1.2f, 1.2f}, 55, {1, 0.96f, 0.9f});
+  scene.addAreaLight("key", {-2.8f, 3.6f, 0.9f}, {0, 0.2f, 0}, {1.2f, 1.2f}, 55, {1, 0.96f, 0.9f}, 52);
   scene.addCamera("main", {0.3f, 2.5f, 5.0f}, {0, 0.35f, 0}, 38);
   scene.addCamera("close", {-0.4f, 0.9f, 2.6f}, {-0.15f, 0.2f, 0.2f}, 36);
   scene.addCamera("top", {0, 6.5f, 0.4f}, {0, 0, 0.1f}, 40);

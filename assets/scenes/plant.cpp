@@ -170,7 +170,7 @@ Scene makePlant() {
     leaf.doubleSided = true;
     scene.add(name, std::move(fig.leaves[i]), scene.addMaterial(leaf));
   }
-  scene.addAreaLight("key", {-1.9f, 3.3f, 1.6f}, {0, 0.9f, 0}, {0.4f, 0.4f}, 34, {1, 0.96f, 0.88f});
+  scene.addAreaLight("key", {-1.9f, 3.3f, 1.6f}, {0, 0.9f, 0}, {0.4f, 0.4f}, 34, {1, 0.96f, 0.88f}, 52);
   scene.addCamera("main", {0.5f, 1.35f, 4.3f}, {0, 0.84f, 0}, 32);
   scene.addCamera("close", {-0.15f, 1.4f, 1.6f}, {0.02f, 1.05f, 0}, 36);
   scene.addCamera("floor", {1.6f, 1.1f, 1.5f}, {0.75f, 0, -0.35f}, 42);

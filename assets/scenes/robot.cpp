@@ -142,7 +142,7 @@ Scene makeRobot() {
   scene.addNode({.name = "robot", .mesh = mesh, .skin = 0});
   scene.animations.push_back(buildDance(first));
 
-  scene.addAreaLight("key", {-2.0f, 3.4f, 2.2f}, {0, 0.9f, 0}, {0.8f, 0.8f}, 48, {1, 0.96f, 0.9f});
+  scene.addAreaLight("key", {-2.0f, 3.4f, 2.2f}, {0, 0.9f, 0}, {0.8f, 0.8f}, 48, {1, 0.96f, 0.9f}, 52);
   scene.addCamera("main", {0.8f, 1.35f, 4.1f}, {0, 0.88f, 0}, 34);
   scene.addCamera("close", {0.5f, 1.6f, 1.7f}, {0, 1.4f, 0}, 36);
   scene.addCamera("low", {-1.6f, 0.35f, 2.6f}, {0, 0.85f, 0}, 40);

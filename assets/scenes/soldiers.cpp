@@ -25,7 +25,7 @@ Scene makeSoldiers() {
   }
   scene.addNode(std::move(phalanx));
 
-  scene.addAreaLight("key", {-11, 13, 12}, {0, 0.8f, 0.5f}, {3, 3}, 2100, {1, 0.93f, 0.82f});
+  scene.addAreaLight("key", {-11, 13, 12}, {0, 0.8f, 0.5f}, {3, 3}, 2100, {1, 0.93f, 0.82f}, 52);
   scene.addCamera("main", {5.2f, 5.4f, 14.2f}, {0.3f, 0.7f, 1.2f}, 40);
   scene.addCamera("close", {-0.5f, 1.75f, 11.6f}, {0.75f, 1.25f, 7.6f}, 38);
   scene.addCamera("above", {0, 17, 10}, {0, 0, 0.5f}, 50);

@@ -186,7 +186,7 @@ Scene makeStatue() {
   const int stone = scene.addMaterial(glossy("stone", {0.72f, 0.68f, 0.61f}, 0.65f));
   const int statue = scene.add("statue", dancer(0.015f), stone);
   scene.nodes[static_cast<std::size_t>(statue)].translation = {0, 0.266f, 0};
-  scene.addAreaLight("key", {-2.2f, 3.6f, 2.2f}, {0, 1.1f, 0}, {0.9f, 0.9f}, 44, {1, 0.95f, 0.88f});
+  scene.addAreaLight("key", {-2.2f, 3.6f, 2.2f}, {0, 1.1f, 0}, {0.9f, 0.9f}, 44, {1, 0.95f, 0.88f}, 52);
   scene.addCamera("main", {0.9f, 1.6f, 4.9f}, {-0.05f, 1.18f, 0}, 34);
   scene.addCamera("close", {0.3f, 1.95f, 2.1f}, {-0.06f, 1.82f, 0}, 38);
   return scene;

@@ -120,7 +120,7 @@ Scene makeTeapot() {
       scene.add("teapot", transformed(teapot(20), scaling(glm::vec3(0.1f))), scene.addMaterial(glaze));
   scene.nodes[static_cast<std::size_t>(pot)].rotation =
       glm::angleAxis(glm::radians(-25.0f), glm::vec3(0, 1, 0));
-  scene.addAreaLight("key", {-0.9f, 1.3f, 0.7f}, {0, 0.1f, 0}, {0.5f, 0.5f}, 12, {1, 0.95f, 0.88f});
+  scene.addAreaLight("key", {-0.9f, 1.3f, 0.7f}, {0, 0.1f, 0}, {0.5f, 0.5f}, 12, {1, 0.95f, 0.88f}, 52);
   scene.addCamera("main", {0.12f, 0.52f, 1.25f}, {0, 0.13f, 0}, 34);
   scene.addCamera("close", {0.45f, 0.38f, 0.55f}, {0.1f, 0.16f, 0}, 36);
   return scene;

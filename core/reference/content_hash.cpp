@@ -11,7 +11,7 @@ namespace limn::reference {
 namespace {
 
 /// Counts the changes of this code that change pictures: old cached results are then not found any more.
-constexpr uint32_t codeVersion = 2;
+constexpr uint32_t codeVersion = 3;
 
 class Hasher {
  public:

@@ -39,7 +39,8 @@ PointView::PointView(const glsl::Light& light, const Surface& receiver) {
     arrival_.target = glm::vec3(light.position);
     arrival_.finite = true;
   }
-  above_ = glm::dot(arrival_.direction, receiver.values.geometric_normal) > 0.f;
+  above_ = glm::dot(arrival_.direction, receiver.values.geometric_normal) > 0.f &&
+           glsl::receiver_factor(light, receiver.position) > 0.f;
   irradiance_ = glsl::punctual_irradiance(light, receiver.position);
 }
 

@@ -28,7 +28,7 @@ bool unblocked(const RayScene& rays, const Surface& receiver, const Arrival& arr
 class PointView {
  public:
   PointView(const glsl::Light& light, const Surface& receiver);
-  /// Above the receiver's geometric tangent plane.
+  /// Above the receiver's geometric tangent plane, and the receiver inside the light's cone and range.
   bool above() const { return above_; }
   const Arrival& arrival() const { return arrival_; }
   const glm::vec3& irradiance() const { return irradiance_; }  ///< on a surface facing the light, W/m^2
