@@ -27,6 +27,7 @@ LIMN_CONST int rectangle_part_vertices = 7;
 // cuts (at most 3).
 struct RectanglePart {
   int count;
+  int most;  // count cannot be greater; a constant wherever the functions below are inlined
   vec2 vertex[rectangle_part_vertices];
 };
 
@@ -58,12 +59,31 @@ LIMN_FN bool rectangle_emits_towards(Light light, vec3 receiver) {
 LIMN_FN RectanglePart rectangle_whole() {
   RectanglePart p;
   p.count = 4;
+  p.most = 4;
   p.vertex[0] = vec2(-0.5f, -0.5f);
   p.vertex[1] = vec2(0.5f, -0.5f);
   p.vertex[2] = vec2(0.5f, 0.5f);
   p.vertex[3] = vec2(-0.5f, 0.5f);
   for (int i = 4; i < rectangle_part_vertices; ++i) p.vertex[i] = p.vertex[3];
   return p;
+}
+
+// What shading calls for every pixel loops over vertices with constant bounds and places them by comparison, so that the
+// array lives in registers: indexed at run time it would live in memory, which software renderers read lane by lane.
+
+// The last vertex.
+LIMN_FN vec2 rectangle_part_last(RectanglePart p) {
+  vec2 last = p.vertex[0];
+  for (int i = 1; i < rectangle_part_vertices; ++i) last = i < p.most && i < p.count ? p.vertex[i] : last;
+  return last;
+}
+
+// Appends a vertex to a part that has fewer than `places` so far.
+LIMN_FN void rectangle_part_add(LIMN_INOUT(RectanglePart) p, int places, vec2 v) {
+  for (int i = 0; i < rectangle_part_vertices; ++i) {
+    if (i < places && i == p.count) p.vertex[i] = v;
+  }
+  ++p.count;
 }
 
 // The points of `part` with dot(normal, point) >= 0 (normal: any length but 0). Height is affine in (a, b),
@@ -73,20 +93,21 @@ LIMN_FN RectanglePart rectangle_part_above(Rectangle r, RectanglePart part, vec3
   float height = dot(normal, r.centre);
   vec2 slope = vec2(dot(normal, r.u), dot(normal, r.v));
   RectanglePart cut = part;
-  int count = 0;
-  vec2 here = part.vertex[max(part.count - 1, 0)];
+  cut.count = 0;
+  cut.most = min(part.most + 1, rectangle_part_vertices);
+  vec2 here = rectangle_part_last(part);
   float h0 = height + dot(slope, here);
-  for (int i = 0; i < part.count; ++i) {
-    vec2 next = part.vertex[i];
-    float h1 = height + dot(slope, next);
-    if ((h0 >= 0.0f) != (h1 >= 0.0f) && count < rectangle_part_vertices) {
-      cut.vertex[count++] = here + h0 / (h0 - h1) * (next - here);
+  for (int i = 0; i < rectangle_part_vertices; ++i) {
+    if (i < part.most && i < part.count) {
+      vec2 next = part.vertex[i];
+      float h1 = height + dot(slope, next);
+      if ((h0 >= 0.0f) != (h1 >= 0.0f)) rectangle_part_add(cut, i + 2, here + h0 / (h0 - h1) * (next - here));
+      if (h1 >= 0.0f) rectangle_part_add(cut, i + 2, next);
+      here = next;
+      h0 = h1;
     }
-    if (h1 >= 0.0f && count < rectangle_part_vertices) cut.vertex[count++] = next;
-    here = next;
-    h0 = h1;
   }
-  cut.count = count < 3 ? 0 : count;
+  cut.count = cut.count < 3 ? 0 : cut.count;
   return cut;
 }
 
@@ -98,10 +119,12 @@ LIMN_FN RectanglePart rectangle_above(Rectangle r, vec3 normal) {
 // Share of the rectangle's area, in [0, 1].
 LIMN_FN float rectangle_part_share(RectanglePart p) {
   float twice = 0.0f;
-  for (int i = 1; i + 1 < p.count; ++i) {
-    vec2 d0 = p.vertex[i] - p.vertex[0];
-    vec2 d1 = p.vertex[i + 1] - p.vertex[0];
-    twice += d0.x * d1.y - d0.y * d1.x;
+  for (int i = 2; i < rectangle_part_vertices; ++i) {
+    if (i < p.most && i < p.count) {
+      vec2 d0 = p.vertex[i - 1] - p.vertex[0];
+      vec2 d1 = p.vertex[i] - p.vertex[0];
+      twice += d0.x * d1.y - d0.y * d1.x;
+    }
   }
   return 0.5f * twice;
 }
@@ -153,6 +176,27 @@ LIMN_FN RectangleVertex rectangle_vertex(Rectangle r, vec2 ab, vec2 far, vec3 fa
   return x;
 }
 
+// Sum over edges while irradiance is summed.
+struct RectangleSum {
+  RectangleVertex here;  // where the next edge starts
+  vec3 edges;            // (w_i - w) P_i x e_i, see rectangle_vector_irradiance
+};
+
+// Adds the edge that ends in vertex i, if there is one.
+LIMN_FN RectangleSum rectangle_sum_edge(RectangleSum sum, Rectangle r, RectanglePart p, int i, vec2 far,
+                                        vec3 farthest) {
+  if (i < p.most && i < p.count) {
+    RectangleVertex next = rectangle_vertex(r, p.vertex[i], far, farthest);
+    vec2 d = next.ab - sum.here.ab;
+    vec3 normal = cross(sum.here.point, d.x * r.u + d.y * r.v);
+    float inverse_rr = sum.here.inverse_r * next.inverse_r;
+    float bend = angle_over_sine_minus_one(length(normal) * inverse_rr, dot(sum.here.point, next.point) * inverse_rr);
+    sum.edges += (bend * inverse_rr + sum.here.excess * next.inverse_r + next.excess) * normal;
+    sum.here = next;
+  }
+  return sum;
+}
+
 // Vector irradiance of the part for radiance 1: dot(n, result) is the irradiance (W/m^2 per W/(sr m^2)) on a
 // surface with normal n for which the part is above the horizon. Positive towards the light where cross(u, v)
 // points away from the receiver, else negated.
@@ -164,11 +208,13 @@ LIMN_FN RectangleVertex rectangle_vertex(Rectangle r, vec2 ab, vec2 far, vec3 fa
 LIMN_FN vec3 rectangle_vector_irradiance(Rectangle r, RectanglePart p) {
   float distance2 = 0.0f;
   vec2 far = vec2(0.0f);
-  for (int i = 0; i < p.count; ++i) {
-    vec3 point = rectangle_point(r, p.vertex[i]);
-    float d2 = dot(point, point);
-    far = d2 > distance2 ? p.vertex[i] : far;
-    distance2 = max(d2, distance2);
+  for (int i = 0; i < rectangle_part_vertices; ++i) {
+    if (i < p.most && i < p.count) {
+      vec3 point = rectangle_point(r, p.vertex[i]);
+      float d2 = dot(point, point);
+      far = d2 > distance2 ? p.vertex[i] : far;
+      distance2 = max(d2, distance2);
+    }
   }
   if (!(distance2 > 0.0f)) return vec3(0.0f);
   // From here on in units of the farthest vertex's distance r_0: r_0 = w = 1.
@@ -178,19 +224,18 @@ LIMN_FN vec3 rectangle_vector_irradiance(Rectangle r, RectanglePart p) {
   scaled.u = r.u * unit;
   scaled.v = r.v * unit;
   vec3 farthest = rectangle_point(scaled, far);
-  vec3 sum = vec3(0.0f);
-  RectangleVertex here = rectangle_vertex(scaled, p.vertex[p.count - 1], far, farthest);
-  for (int i = 0; i < p.count; ++i) {
-    RectangleVertex next = rectangle_vertex(scaled, p.vertex[i], far, farthest);
-    vec2 d = next.ab - here.ab;
-    vec3 normal = cross(here.point, d.x * scaled.u + d.y * scaled.v);
-    float inverse_rr = here.inverse_r * next.inverse_r;
-    float bend =
-        angle_over_sine_minus_one(length(normal) * inverse_rr, dot(here.point, next.point) * inverse_rr);
-    sum += (bend * inverse_rr + here.excess * next.inverse_r + next.excess) * normal;
-    here = next;
-  }
-  return rectangle_part_share(p) * cross(scaled.u, scaled.v) + 0.5f * sum;
+  RectangleSum sum;
+  sum.here = rectangle_vertex(scaled, rectangle_part_last(p), far, farthest);
+  sum.edges = vec3(0.0f);
+  // Not a loop: the body is too large for compilers to unroll one, see above rectangle_part_last.
+  sum = rectangle_sum_edge(sum, scaled, p, 0, far, farthest);
+  sum = rectangle_sum_edge(sum, scaled, p, 1, far, farthest);
+  sum = rectangle_sum_edge(sum, scaled, p, 2, far, farthest);
+  sum = rectangle_sum_edge(sum, scaled, p, 3, far, farthest);
+  sum = rectangle_sum_edge(sum, scaled, p, 4, far, farthest);
+  sum = rectangle_sum_edge(sum, scaled, p, 5, far, farthest);
+  sum = rectangle_sum_edge(sum, scaled, p, 6, far, farthest);
+  return rectangle_part_share(p) * cross(scaled.u, scaled.v) + 0.5f * sum.edges;
 }
 
 // Irradiance (per unit radiance) on a surface with unit normal n from the whole rectangle, clipped by the

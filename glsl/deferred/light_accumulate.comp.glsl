@@ -23,16 +23,18 @@ void main() {
   SurfaceBrdf material = surface_brdf(surface.base_colour, surface.metallic, surface.roughness, surface.specular_factor,
                                       surface.specular_colour, surface.ior);
   vec3 sum = vec3(0.0);
-  for (int i = 0; i < LIGHT_COUNT; ++i) {
+  int i = 0;
+  do {  // the condition comes last: software renderers run a loop's body once more where it comes first
 #if VISIBILITY
     float lit = texelFetch(visibility, ivec3(pixel, i), 0).x;
-    if (lit == 0.0) continue;
 #else
     const float lit = 1.0;
 #endif
-    sum += lit * unshadowed_light(lights[light_indices[i]], material, position, surface.normal,
-                                  surface.geometric_normal, v);
-  }
+    if (lit > 0.0) {
+      sum += lit * unshadowed_light(lights[light_indices[i]], material, position, surface.normal,
+                                    surface.geometric_normal, v);
+    }
+  } while (++i < LIGHT_COUNT);
   if (sum == vec3(0.0)) return;
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(sum, 0.0));
 }
