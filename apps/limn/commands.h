@@ -13,6 +13,7 @@ Action addListCommand(CLI::App& command);
 Action addInfoCommand(CLI::App& command);
 Action addRenderCommand(CLI::App& command);
 Action addReferenceCommand(CLI::App& command);
+Action addEnvironmentCommand(CLI::App& command);
 Action addCompareCommand(CLI::App& command);
 Action addBenchCommand(CLI::App& command);
 

@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
   add("render", "Render a scene with techniques to a file", addRenderCommand);
   add("reference", "Compute the ground truth of a term on the CPU", addReferenceCommand);
   add("compare", "Measure how far an image is from its reference", addCompareCommand);
+  add("environment", "List and show the area lights that stand for an environment", addEnvironmentCommand);
   add("bench", "Run a suite: error and time of many settings, as tables", addBenchCommand);
 
   return guarded([&] {

@@ -45,6 +45,29 @@ std::vector<std::string> cameraNames(const scene::Pose& pose) {
 
 }  // namespace
 
+void EnvironmentLightOptions::addTo(CLI::App& command, const std::string& prefix) {
+  command
+      .add_option(
+          "--" + prefix + "lights", threshold,
+          "Light the scene by area lights that stand for the environment, so that techniques shadow it:\n"
+          "how much of a light's energy a row of texels must add for it to grow; smaller: fewer lights")
+      ->check(CLI::Range(1e-4, 0.5));
+  command
+      .add_option("--" + prefix + "resolution", resolution,
+                  "Texels along each face of the cube map they are found on")
+      ->capture_default_str()
+      ->check(CLI::Range(1, shading::largestFaceResolution));
+  command.add_option("--" + prefix + "shape", shape, "squares or rectangles")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"squares", "rectangles"}));
+}
+
+shading::DecompositionSettings EnvironmentLightOptions::settings() const {
+  return {.threshold = threshold,
+          .resolution = resolution,
+          .shape = shape == "rectangles" ? shading::RegionShape::rectangles : shading::RegionShape::squares};
+}
+
 void SceneOptions::addTo(CLI::App& command) {
   command
       .add_option("scene", scene,

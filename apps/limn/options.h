@@ -12,9 +12,21 @@
 #include "core/context/context.h"
 #include "core/render/renderer.h"
 #include "core/scene/scene.h"
+#include "core/shading/environment_decomposition.h"
 #include "core/technique/registry.h"
 
 namespace limn::app {
+
+/// How an environment becomes area lights at infinity.
+struct EnvironmentLightOptions {
+  double threshold = 0;  ///< 0: not at all
+  int resolution = shading::DecompositionSettings{}.resolution;
+  std::string shape = "squares";
+
+  /// As --lights, --resolution and --shape behind `prefix`.
+  void addTo(CLI::App& command, const std::string& prefix);
+  shading::DecompositionSettings settings() const;
+};
 
 /// What to look at: the scene, the camera, the time.
 struct SceneOptions {

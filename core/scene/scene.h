@@ -164,12 +164,26 @@ struct Animation {
   std::vector<AnimationChannel> channels;
 };
 
+/// A uniform rectangle at infinity: what a receiver sees in the directions centre + a u + b v, |a|, |b| <=
+/// 1/2, with the sides u = sides.x axisU and v = sides.y axisV. Lengths are tangents: the rectangle lies in
+/// the plane at distance 1.
+struct DistantRectangle {
+  glm::vec3 centre{0, 0, 1};  ///< on that plane
+  glm::vec3 axisU{1, 0, 0},
+      axisV{0, 1, 0};  ///< unit; cross(axisU, axisV) is the plane's normal, away from the receiver
+  glm::vec2 sides{1};
+  glm::vec3 irradiance{0};  ///< W/m^2 on a perpendicular surface: radiance times solid angle
+};
+
 /// Equirectangular radiance, RGB float, top row first, >= 0 and finite.
 struct Environment {
   int width = 0, height = 0;
   std::vector<glm::vec3> texels;
   float rotation = 0;  ///< about +Y, radians
   float scale = 1;
+  /// The same light as rectangles at infinity (shading::decomposeEnvironment), in the map's own frame and
+  /// without scale; empty: not decomposed. They are lights of every pose, behind all others.
+  std::vector<DistantRectangle> lights;
   explicit operator bool() const { return width > 0; }
 };
 

@@ -30,15 +30,6 @@ const vec3& texel(const FilteredMap& map, int x, int y) {
                     static_cast<size_t>(wrapped)];
 }
 
-vec3 bilinear(const FilteredMap& map, vec2 uv) {
-  const float x = uv.x * static_cast<float>(map.width) - 0.5f,
-              y = uv.y * static_cast<float>(map.height) - 0.5f;
-  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
-  const float s = x - static_cast<float>(x0), t = y - static_cast<float>(y0);
-  return glm::mix(glm::mix(texel(map, x0, y0), texel(map, x0 + 1, y0), s),
-                  glm::mix(texel(map, x0, y0 + 1), texel(map, x0 + 1, y0 + 1), s), t);
-}
-
 vec2 texelCentre(int x, int y, int width, int height) {
   return {(static_cast<float>(x) + 0.5f) / static_cast<float>(width),
           (static_cast<float>(y) + 0.5f) / static_cast<float>(height)};
@@ -177,6 +168,15 @@ gpu::Texture upload(gpu::Device& device, std::string_view label, GLenum format,
 }
 
 }  // namespace
+
+vec3 bilinear(const FilteredMap& map, vec2 uv) {
+  const float x = uv.x * static_cast<float>(map.width) - 0.5f,
+              y = uv.y * static_cast<float>(map.height) - 0.5f;
+  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
+  const float s = x - static_cast<float>(x0), t = y - static_cast<float>(y0);
+  return glm::mix(glm::mix(texel(map, x0, y0), texel(map, x0 + 1, y0), s),
+                  glm::mix(texel(map, x0, y0 + 1), texel(map, x0 + 1, y0 + 1), s), t);
+}
 
 vec3 FilteredMap::sample(const vec3& direction) const {
   return bilinear(*this, glsl::environment_place(direction, height));

@@ -21,6 +21,10 @@ struct FilteredMap {
   LIMN_API glm::vec3 sample(const glm::vec3& direction) const;
 };
 
+/// The map at (u, v): bilinear between texel centres half a step inside the edges, around the seam, clamped
+/// at the poles.
+LIMN_API glm::vec3 bilinear(const FilteredMap& map, glm::vec2 uv);
+
 /// What glsl/environment.glsl looks up.
 struct FilteredEnvironment {
   FilteredMap irradiance;             ///< W/m^2, glsl::environment_irradiance_width wide

@@ -29,7 +29,7 @@ TEST(CommandLine, WrongUsageIsOneLine) {
 }
 
 TEST(CommandLine, HelpOfEveryCommandIsComplete) {
-  for (const char* command : {"list", "info", "render", "reference", "compare", "bench"}) {
+  for (const char* command : {"list", "info", "render", "reference", "environment", "compare", "bench"}) {
     const Outcome outcome = limn({command, "--help"});
     EXPECT_EQ(outcome.status, 0) << command;
     EXPECT_THAT(outcome.out, HasSubstr("--help")) << command;

@@ -1,0 +1,131 @@
+// limn environment: what the lights of a decomposed environment are, as a list and as a picture.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "apps/limn/commands.h"
+#include "apps/limn/options.h"
+#include "core/base/error.h"
+#include "core/scene/load.h"
+#include "core/shading/environment_decomposition.h"
+#include "glsl/srgb.glsl"
+
+namespace limn::app {
+namespace fs = std::filesystem;
+namespace {
+
+struct Options {
+  fs::path map;
+  EnvironmentLightOptions lights{.threshold = 0.015};
+  fs::path overlay;
+  int width = 1024;
+  double exposure = 0;
+  bool json = false;
+};
+
+constexpr double degrees = 180 / 3.14159265358979323846;
+
+/// One light as people read it.
+struct Row {
+  double azimuth, elevation;  ///< of its centre, degrees; azimuth from -z towards +x
+  glm::vec2 size;             ///< angles across its centre, degrees
+  glm::vec3 irradiance;
+  double share;  ///< of the luminance of all
+};
+
+std::vector<Row> rowsOf(const shading::EnvironmentDecomposition& decomposition) {
+  double total = 0;
+  for (const auto& light : decomposition.lights)
+    total += static_cast<double>(glsl::luminance(light.irradiance));
+  std::vector<Row> rows;
+  for (const scene::DistantRectangle& light : decomposition.lights) {
+    const glm::dvec3 d = glm::normalize(glm::dvec3(light.centre));
+    const auto across = [&](const glm::vec3& axis, float side) {
+      const glm::vec3 half = 0.5f * side * axis;
+      return std::acos(std::min(
+                 1.f, glm::dot(glm::normalize(light.centre - half), glm::normalize(light.centre + half)))) *
+             static_cast<float>(degrees);
+    };
+    rows.push_back({std::atan2(d.x, -d.z) * degrees,
+                    std::asin(d.y) * degrees,
+                    {across(light.axisU, light.sides.x), across(light.axisV, light.sides.y)},
+                    light.irradiance,
+                    total > 0 ? static_cast<double>(glsl::luminance(light.irradiance)) / total : 0});
+  }
+  return rows;
+}
+
+void printTable(const std::vector<Row>& rows) {
+  fmt::print("{:<9} {:>8} {:>9} {:>13} {:>32} {:>8}\n", "light", "azimuth", "elevation", "size",
+             "irradiance RGB, W/m^2", "share");
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const Row& r = rows[i];
+    fmt::print("{:<9} {:>7.1f}° {:>8.1f}° {:>6.1f}x{:<5.1f}° {:>10.4g} {:>10.4g} {:>10.4g} {:>7.2f}%\n",
+               fmt::format("env#{}", i), r.azimuth, r.elevation, r.size.x, r.size.y, r.irradiance.x,
+               r.irradiance.y, r.irradiance.z, 100 * r.share);
+  }
+}
+
+std::string toJson(const std::vector<Row>& rows, const Options& options, double milliseconds) {
+  nlohmann::ordered_json json = {{"map", options.map.string()},
+                                 {"threshold", options.lights.threshold},
+                                 {"resolution", options.lights.resolution},
+                                 {"shape", options.lights.shape},
+                                 {"milliseconds", milliseconds},
+                                 {"lights", nlohmann::ordered_json::array()}};
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const Row& r = rows[i];
+    json["lights"].push_back({{"name", fmt::format("env#{}", i)},
+                              {"azimuth", r.azimuth},
+                              {"elevation", r.elevation},
+                              {"size", {r.size.x, r.size.y}},
+                              {"irradiance", {r.irradiance.x, r.irradiance.y, r.irradiance.z}},
+                              {"share", r.share}});
+  }
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+int run(const Options& options) {
+  if (!options.overlay.empty()) {
+    if (options.overlay.extension() != ".png" && options.overlay.extension() != ".exr")
+      throw UsageError(fmt::format("--overlay '{}' is not accepted; expected a name ending in .png or .exr",
+                                   options.overlay.string()));
+    checkWritable(options.overlay);
+  }
+  const scene::Environment map = scene::loadEnvironment(options.map);
+  const auto start = std::chrono::steady_clock::now();
+  const shading::EnvironmentDecomposition lights =
+      shading::decomposeEnvironment(map, options.lights.settings());
+  const double milliseconds =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  const std::vector<Row> rows = rowsOf(lights);
+  if (options.json) {
+    fmt::print("{}\n", toJson(rows, options, milliseconds));
+  } else {
+    printTable(rows);
+    fmt::print("{}: {} lights in {:.1f} ms\n", options.map.string(), rows.size(), milliseconds);
+  }
+  if (!options.overlay.empty())
+    writeImage(options.overlay, shading::decompositionOverlay(map, lights, options.width,
+                                                              static_cast<float>(options.exposure)));
+  return 0;
+}
+
+}  // namespace
+
+Action addEnvironmentCommand(CLI::App& command) {
+  auto options = std::make_shared<Options>();
+  command.add_option("map", options->map, "Equirectangular .hdr or .exr")->required();
+  options->lights.addTo(command, "");
+  command.add_option("--overlay", options->overlay, "Write the map with the lights' outlines: .png or .exr");
+  command.add_option("--width", options->width, "Of the overlay, pixels")
+      ->capture_default_str()
+      ->check(CLI::Range(16, 16384));
+  command.add_option("--exposure", options->exposure, "EV, of the overlay")->check(CLI::Range(-60.0, 60.0));
+  command.add_flag("--json", options->json, "Print JSON instead of a table");
+  return [options] { return run(*options); };
+}
+
+}  // namespace limn::app

@@ -1,0 +1,50 @@
+// limn environment: the lights that stand for an environment.
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/limn_program.h"
+
+namespace limn::test {
+namespace {
+
+class EnvironmentCommand : public testing::Test {
+ protected:
+  /// A small .hdr file: grey, with one bright pixel.
+  std::string map() {
+    const std::filesystem::path file = folder_ / "sky.hdr";
+    std::ofstream out(file, std::ios::binary);
+    out << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16 +X 32\n";
+    for (int i = 0; i < 16 * 32; ++i) out << "\x80\x80\x80" << (i == 100 ? '\x90' : '\x81');
+    return file.string();
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(EnvironmentCommand, ListsLightsThatHoldTheEnergyOfTheMap) {
+  const Outcome outcome = limn({"environment", map(), "--lights", "0.02", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  ASSERT_GE(json["lights"].size(), 7u);
+  double share = 0, irradiance = 0;
+  for (const auto& light : json["lights"]) {
+    share += light["share"].get<double>();
+    irradiance += light["irradiance"][1].get<double>();
+  }
+  EXPECT_NEAR(share, 1, 1e-6);
+  EXPECT_GT(irradiance, 4 * 3.14159);
+  EXPECT_EQ(json["lights"][0]["name"], "env#0");
+}
+
+TEST_F(EnvironmentCommand, WritesTheOverlayAndRefusesWhatMakesNoSense) {
+  const std::filesystem::path overlay = folder_ / "lights.png";
+  ASSERT_EQ(limn({"environment", map(), "--overlay", overlay.string(), "--width", "64"}).status, 0);
+  EXPECT_GT(std::filesystem::file_size(overlay), 100u);
+  expectRefused(limn({"environment", map(), "--lights", "2"}), 2, {"--lights", "2"});
+  expectRefused(limn({"environment", map(), "--shape", "discs"}), 2, {"discs", "squares", "rectangles"});
+  expectRefused(limn({"environment", map(), "--overlay", "lights.jpg"}), 2, {"lights.jpg", ".png"});
+  expectRefused(limn({"environment", map(), "--lights", "0.5", "--resolution", "256"}), 2, {"0.5", "1024"});
+  expectRefused(limn({"environment", (folder_ / "none.hdr").string()}), 1, {"none.hdr"});
+}
+
+}  // namespace
+}  // namespace limn::test
