@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "core/bench/tables.h"
 #include "core/render/frame_stats.h"
 
 namespace limn::app {
@@ -42,10 +43,29 @@ render::Settings baseSettings(const View& view, render::Output output, int light
   return settings;
 }
 
+void createFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw Error(fmt::format("folder '{}' cannot be created: {}", folder.string(), error.message()));
+}
+
+bench::CostSplit costSplit(const render::FrameStats& stats) {
+  bench::CostSplit split;
+  for (const render::PassStats& pass : stats.passes) {
+    double& part = pass.technique == "core"     ? split.rest
+                   : pass.technique != "shadow" ? split.technique
+                   : pass.name == "shadow maps" ? split.maps
+                                                : split.filters;
+    part += pass.ms.median;
+  }
+  return split;
+}
+
 }  // namespace
 
 BenchSession::BenchSession(const BackendOptions& backend, const fs::path& out)
-    : cache_(out / "references"),
+    : out_(out),
+      cache_(out / "references"),
       context_(Context::create(backend.contextOptions())),
       device_(*context_),
       registry_(TechniqueRegistry::defaultFolders()) {}
@@ -84,7 +104,15 @@ bench::Reference BenchSession::reference(const bench::Case& c) {
   const reference::Request asked = request(c, reference::termFromName(c.term), load(c).view.light);
   reference::Result result = cache_.render(asked);
   const fs::path file = cache_.pathOf(reference::contentHash(asked));
+  if (c.picture) keepPicture(file.stem().string(), result.image);
   return {std::move(result.image), fs::path("references") / file.filename(), result.noiseRms};
+}
+
+std::string BenchSession::keepPicture(const std::string& key, const Image& image) {
+  createFolder(out_ / "pictures");
+  const fs::path file = fs::path("pictures") / (key + ".png");
+  writePng(out_ / file, image);
+  return file.string();
 }
 
 Image BenchSession::unshadowed(const bench::Case& c, int light) {
@@ -140,8 +168,10 @@ bench::Measurement BenchSession::measure(const bench::Case& c) {
   loaded.renderer.render();
   bench::Measurement result{loaded.renderer.read(), {}};
 
+  if (c.timeWidth > 0) settings.size = {c.timeWidth, c.timeHeight};
   settings.channels = false;  // what a frame costs does not include what only the comparison needs
   loaded.renderer.configure(settings);
+  loaded.renderer.setCamera(loaded.view.camera);
   render::FrameStats stats = render::measure(loaded.renderer, c.frames, c.warmup);
   stats.scene = c.scene;
   result.cost.renderer = stats.renderer;
@@ -149,9 +179,47 @@ bench::Measurement BenchSession::measure(const bench::Case& c) {
   result.cost.timer = frame::name(stats.timer);
   result.cost.software = stats.software;
   result.cost.frameMs = {stats.frameMs.median, stats.frameMs.q1, stats.frameMs.q3, stats.frameMs.n};
+  result.cost.split = costSplit(stats);
   result.cost.memoryBytes = stats.memoryBytes;
   result.cost.details = render::toJson(stats);
   return result;
+}
+
+fs::path findSuite(const fs::path& nameOrFile) {
+  std::error_code ignored;
+  if (fs::exists(nameOrFile, ignored)) return nameOrFile;
+  const fs::path file = findShared("benchmarks", fs::path(nameOrFile).concat(".toml"));
+  if (file.empty())
+    throw Error(
+        fmt::format("suite '{}' does not exist; expected a TOML file, or the name of one of limn's suites",
+                    nameOrFile.string()));
+  return file;
+}
+
+bench::Summary runSuite(const fs::path& suite, const fs::path& out, const BackendOptions& backend,
+                        const std::vector<std::string>& filters, bench::Shard shard) {
+  const auto cases = bench::selectCases(bench::readSuite(suite).cases, filters, shard);
+  if (cases.empty())
+    throw UsageError(fmt::format("suite {} has no case that fits the filter", suite.string()));
+  createFolder(out);
+  bench::ResultsFile results(out / "results.jsonl");
+  BenchSession session(backend, out);
+
+  Progress bar("bench");
+  bench::Callbacks callbacks;
+  callbacks.reference = [&](const bench::Case& c) { return session.reference(c); };
+  callbacks.measure = [&](const bench::Case& c) { return session.measure(c); };
+  callbacks.keepPicture = [&](const bench::Case&, const std::string& key, const Image& image) {
+    return session.keepPicture(key, image);
+  };
+  callbacks.progress = [&](const bench::Progress& progress) {
+    bar.update(double(progress.index) / progress.count, bench::label(progress.what));
+    if (progress.state == bench::Progress::State::failed)
+      fmt::print(stderr, "limn: {}: {}\n", bench::label(progress.what), progress.failure);
+  };
+  const bench::Summary summary = bench::runCases(cases, session.rendererName(), results, callbacks);
+  bench::writeTables(results.rows(), out);
+  return summary;
 }
 
 }  // namespace limn::app

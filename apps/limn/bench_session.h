@@ -12,6 +12,15 @@
 
 namespace limn::app {
 
+/// A suite by its file, or by its name if it came with limn. Throws Error when there is neither.
+std::filesystem::path findSuite(const std::filesystem::path& nameOrFile);
+
+/// Runs the cases of a suite that `out` has no row for yet, with a progress bar, and writes the tables.
+/// Returns how many rows were measured, found and failed. `filters` and `shard`: bench::selectCases().
+bench::Summary runSuite(const std::filesystem::path& suite, const std::filesystem::path& out,
+                        const BackendOptions& backend, const std::vector<std::string>& filters = {},
+                        bench::Shard shard = {});
+
 /// One context; the scene of the last case stays loaded.
 class BenchSession {
  public:
@@ -21,6 +30,8 @@ class BenchSession {
   const std::string& rendererName() const { return context_->info().renderer; }
   bench::Reference reference(const bench::Case& c);
   bench::Measurement measure(const bench::Case& c);
+  /// Writes pictures/KEY.png in the folder of the results and returns that name.
+  std::string keepPicture(const std::string& key, const Image& image);
 
  private:
   struct Loaded;
@@ -29,6 +40,7 @@ class BenchSession {
   Image separationFloor(const bench::Case& c);
   Image unshadowed(const bench::Case& c, int light);
 
+  std::filesystem::path out_;
   reference::Cache cache_;
   std::unique_ptr<Context> context_;
   gpu::Device device_;

@@ -96,14 +96,21 @@ void SceneOptions::addTo(CLI::App& command) {
       ->capture_default_str();
 }
 
+fs::path findShared(const fs::path& folder, const fs::path& file) {
+  std::error_code ignored;
+  const fs::path prefix = fs::read_symlink("/proc/self/exe", ignored).parent_path().parent_path();
+  for (const fs::path& share : {prefix, prefix / "share/limn"})
+    if (fs::exists(share / folder / file, ignored)) return share / folder / file;
+  return {};
+}
+
 fs::path findScene(const fs::path& nameOrFile) {
   std::error_code ignored;
   if (fs::exists(nameOrFile, ignored)) return nameOrFile;
-  const fs::path prefix = fs::read_symlink("/proc/self/exe", ignored).parent_path().parent_path();
   const std::string name = nameOrFile.string();
   if (name.find('/') == std::string::npos)
-    for (const fs::path& folder : {prefix / "assets", prefix / "share/limn/assets"})
-      if (const fs::path file = folder / name / (name + ".glb"); fs::exists(file, ignored)) return file;
+    if (const fs::path file = findShared("assets", fs::path(name) / (name + ".glb")); !file.empty())
+      return file;
   throw Error(fmt::format(
       "scene '{}' does not exist; expected a .gltf or .glb file, or the name of one of limn's scenes", name));
 }

@@ -57,6 +57,10 @@ Json costToJson(const Cost& cost) {
                       {"q1", cost.frameMs.q1},
                       {"q3", cost.frameMs.q3},
                       {"n", cost.frameMs.n}};
+  json["split_ms"] = {{"maps", cost.split.maps},
+                      {"filters", cost.split.filters},
+                      {"technique", cost.split.technique},
+                      {"rest", cost.split.rest}};
   json["memory_bytes"] = cost.memoryBytes;
   return json;
 }
@@ -70,6 +74,9 @@ Cost costFromJson(const Json& json) {
   const Json& time = json.at("frame_ms");
   cost.frameMs = {time.at("median").get<double>(), time.at("q1").get<double>(), time.at("q3").get<double>(),
                   time.at("n").get<int>()};
+  const Json& split = json.at("split_ms");
+  cost.split = {split.at("maps").get<double>(), split.at("filters").get<double>(),
+                split.at("technique").get<double>(), split.at("rest").get<double>()};
   cost.memoryBytes = json.at("memory_bytes").get<std::int64_t>();
   cost.details = json.dump();
   return cost;
@@ -89,6 +96,9 @@ Json caseToJson(const Case& c) {
           {"dynamic", c.dynamic},
           {"frames", c.frames},
           {"warmup", c.warmup},
+          {"time_size", {c.timeWidth, c.timeHeight}},
+          {"title", c.title},
+          {"baseline", c.baseline},
           {"max_masked_share", c.maxMaskedShare},
           {"quality",
            {{"spp", c.reference.spp}, {"noise", c.reference.noise}, {"bounces", c.reference.bounces}}}};
@@ -110,6 +120,10 @@ Case caseFromJson(const Json& json) {
   c.dynamic = json.at("dynamic").get<bool>();
   c.frames = json.at("frames").get<int>();
   c.warmup = json.at("warmup").get<int>();
+  c.timeWidth = json.at("time_size").at(0).get<int>();
+  c.timeHeight = json.at("time_size").at(1).get<int>();
+  c.title = json.at("title").get<std::string>();
+  c.baseline = json.at("baseline").get<bool>();
   c.maxMaskedShare = json.at("max_masked_share").get<double>();
   const Json& quality = json.at("quality");
   c.reference = {quality.at("spp").get<int>(), quality.at("noise").get<double>(),
@@ -124,6 +138,7 @@ std::string toJson(const Row& row) {
   json["key"] = row.key;
   json["reference"] = {{"file", row.referenceFile}};
   if (row.referenceNoise) json["reference"]["noise_rms"] = *row.referenceNoise;
+  if (!row.picture.empty()) json["picture"] = row.picture;
   if (row.failure.empty()) {
     json["error"] = metricsToJson(row.error);
     if (row.penumbra) json["penumbra"] = metricsToJson(*row.penumbra);
@@ -145,6 +160,8 @@ Row rowFromJson(const std::string& line) {
     row.referenceFile = json.at("reference").at("file").get<std::string>();
     if (json["reference"].contains("noise_rms"))
       row.referenceNoise = json["reference"]["noise_rms"].get<double>();
+    row.what.picture = json.contains("picture");
+    if (row.what.picture) row.picture = json["picture"].get<std::string>();
     if (json.contains("failure")) {
       row.failure = json["failure"].get<std::string>();
       row.cost.renderer = json.at("renderer").get<std::string>();

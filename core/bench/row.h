@@ -16,11 +16,20 @@ struct FrameTime {
   int n = 0;                          ///< timed frames; 0: not timed
 };
 
+/// Where the time of a frame's passes goes, milliseconds: medians of the passes, summed.
+struct CostSplit {
+  double maps = 0;       ///< drawing shadow maps
+  double filters = 0;    ///< pyramids, summed-area tables and whatever else is derived from them
+  double technique = 0;  ///< the technique's own passes
+  double rest = 0;       ///< G-buffer, shading
+};
+
 struct Cost {
   std::string renderer, backend;
   std::string timer;      ///< "query" or "finish"
   bool software = false;  ///< rows of software and hardware renderers never share a table
   FrameTime frameMs;
+  CostSplit split;  ///< of a run of its own, with pass timing
   std::int64_t memoryBytes = 0;
   /// Everything `limn render --stats` says, as JSON text; "" if there is nothing more.
   std::string details;
@@ -34,6 +43,7 @@ struct Row {
   Metrics error;
   std::optional<Metrics> penumbra;  ///< visibility: over pixels whose reference lies in (0.02, 0.98)
   Cost cost;
+  std::string picture;  ///< file in the folder of the results; "" if it was not kept
   std::string
       failure;  ///< not empty: why there is no picture; error and cost are then void but for the renderer
 };

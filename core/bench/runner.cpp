@@ -22,7 +22,8 @@ std::optional<Metrics> penumbraMetrics(const Image& image, const Reference& refe
   return compareImages(image, reference.image, options);
 }
 
-Row measureRow(const Case& c, const Reference& reference, const Callbacks& callbacks) {
+Row measureRow(const Case& c, const std::string& key, const Reference& reference,
+               const Callbacks& callbacks) {
   Row row;
   row.what = c;
   row.referenceFile = reference.file;
@@ -32,6 +33,7 @@ Row measureRow(const Case& c, const Reference& reference, const Callbacks& callb
   options.maxMaskedShare = c.maxMaskedShare;
   row.error = compareImages(measurement.image, reference.image, options);
   if (c.term == "visibility") row.penumbra = penumbraMetrics(measurement.image, reference, options);
+  if (c.picture && callbacks.keepPicture) row.picture = callbacks.keepPicture(c, key, measurement.image);
   row.cost = std::move(measurement.cost);
   return row;
 }
@@ -65,7 +67,7 @@ Summary runCases(std::span<const Case> cases, const std::string& renderer, Resul
         reference = callbacks.reference(c);
         referenceQuestion = question(c);
       }
-      row = measureRow(c, *reference, callbacks);
+      row = measureRow(c, key, *reference, callbacks);
     } catch (const UsageError&) {
       throw;
     } catch (const Error& error) {

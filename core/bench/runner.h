@@ -34,6 +34,8 @@ struct Progress {
 struct Callbacks {
   /// Called once per question (consecutive cases share it).
   std::function<Reference(const Case&)> reference;
+  /// Keeps a picture and says in which file; asked for cases that want it. May be empty.
+  std::function<std::string(const Case&, const std::string& key, const Image&)> keepPicture;
   /// The technique's picture and what it cost. kSeparationFloor asks for unshadowed light times the
   /// reference's visibility, untimed (n = 0).
   std::function<Measurement(const Case&)> measure;

@@ -35,6 +35,7 @@ std::string rowKey(const Case& c, std::string_view renderer) {
   std::string text = fmt::format("{}\x1f{}\x1f{}\x1f{}\x1f{}\x1f{}", question(c), c.technique, c.dynamic,
                                  c.frames, c.warmup, renderer);
   for (const auto& [name, value] : c.parameters) text += fmt::format("\x1e{}\x1f{}", name, value);
+  if (c.timeWidth > 0) text += fmt::format("\x1d{}x{}", c.timeWidth, c.timeHeight);
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 

@@ -1,12 +1,15 @@
 // A bench suite: which questions are asked of which techniques. Read from TOML:
 //
 //     name = "quick"
-//     sizes = ["256x256"]
+//     sizes = ["256x256"]         # of the pictures whose error is measured
+//     time_size = "1024x768"      # of the timed frames; default: as the pictures
 //     frames = 20                 # timed frames
 //     warmup = 3
 //     modes = ["dynamic"]         # and/or "static"
 //     term = "visibility"
 //     reference = {spp = 256}     # or {noise = 0.005}: RMS relative to the mean; also bounces
+//
+//     pictures = true             # keep every picture as PNG, and the reference's
 //
 //     [[scenes]]
 //     scene = "cornell_box"       # asset name or file
@@ -16,6 +19,8 @@
 //     [[techniques]]
 //     technique = "pcss"          # or a combination, "vssm,airlight"
 //     parameters = {samples = [16, 64]}   # lists are swept, all combinations
+//     label = "PCSS"              # for people; default: the technique and its parameters
+//     baseline = true             # the first such row: tables compare the others with it
 #pragma once
 
 #include <cstdint>
@@ -51,7 +56,11 @@ struct Case {
   std::vector<std::pair<std::string, std::string>> parameters;  ///< "technique.parameter", value
   bool dynamic = true;
   int frames = 0, warmup = 0;
-  double maxMaskedShare = 0.005;  ///< see CompareOptions
+  int timeWidth = 0, timeHeight = 0;  ///< size of the timed frames; 0: as the picture
+  std::string title;                  ///< of the technique with its parameters, for people; may be empty
+  bool baseline = false;              ///< what the other rows of a table are compared with
+  bool picture = false;               ///< keep it
+  double maxMaskedShare = 0.005;      ///< see CompareOptions
   ReferenceSettings reference;
   bool operator==(const Case&) const = default;
 };

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <initializer_list>
 #include <set>
+#include <tuple>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -129,8 +130,8 @@ class Section {
   std::string name_;
 };
 
-std::pair<int, int> parseSize(const Section& section, const toml::node& node) {
-  const std::string text = section.text(node, "sizes");
+std::pair<int, int> parseSize(const Section& section, const toml::node& node, const char* key = "sizes") {
+  const std::string text = section.text(node, key);
   int width = 0, height = 0, used = 0;
   if (std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &used) != 2 ||
       used != static_cast<int>(text.size()) || width < 1 || height < 1 || width > 16384 || height > 16384) {
@@ -184,13 +185,17 @@ std::string valueText(const Section& section, const toml::node& node, const std:
 }
 
 struct SweptTechnique {
-  std::string name;
+  std::string name, title;
+  bool baseline = false;
   std::vector<std::vector<std::pair<std::string, std::string>>> settings;  // all combinations
 };
 
 SweptTechnique parseTechnique(const std::string& file, const toml::table& table) {
-  const Section section(file, table, "[[techniques]]", {"technique", "parameters"});
-  SweptTechnique technique{section.text(section.require("technique"), "technique"), {{}}};
+  const Section section(file, table, "[[techniques]]", {"technique", "parameters", "label", "baseline"});
+  SweptTechnique technique{section.text(section.require("technique"), "technique"),
+                           section.text("label", ""),
+                           section.boolean("baseline", false),
+                           {{}}};
   const toml::node* parameters = section.find("parameters");
   if (parameters == nullptr) return technique;
   if (!parameters->is_table()) section.failAt(*parameters, "'parameters' must be a table");
@@ -240,6 +245,8 @@ void addCases(const Case& base, const std::vector<SweptTechnique>& techniques, c
         cases.push_back(base);
         cases.back().technique = technique.name;
         cases.back().parameters = setting;
+        cases.back().title = technique.title;
+        cases.back().baseline = technique.baseline;
         cases.back().dynamic = dynamic;
       }
     }
@@ -248,12 +255,15 @@ void addCases(const Case& base, const std::vector<SweptTechnique>& techniques, c
 
 Suite buildSuite(const toml::table& root, const std::string& file) {
   const Section suite(file, root, "the suite",
-                      {"name", "sizes", "frames", "warmup", "modes", "term", "reference", "separation_floor",
-                       "scenes", "techniques"});
+                      {"name", "sizes", "time_size", "frames", "warmup", "modes", "term", "reference",
+                       "separation_floor", "pictures", "scenes", "techniques"});
   Case base;
   base.frames = suite.integer("frames", 20, 0, 100000);
   base.warmup = suite.integer("warmup", 3, 0, 100000);
   base.reference = parseReference(suite);
+  base.picture = suite.boolean("pictures", false);
+  if (const toml::node* node = suite.find("time_size"))
+    std::tie(base.timeWidth, base.timeHeight) = parseSize(suite, *node, "time_size");
   const std::string term = suite.term("final");
   const auto sizes = parseSizes(suite);
   const std::vector<bool> modes = parseModes(suite);

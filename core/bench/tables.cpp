@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/base/file.h"
+#include "core/bench/comparison.h"
 
 namespace limn::bench {
 namespace {
@@ -20,19 +21,24 @@ std::string parameterText(const Case& c) {
   return text;
 }
 
+std::string timeSizeText(const Case& c) {
+  return c.timeWidth > 0 ? fmt::format(", times at {}x{}", c.timeWidth, c.timeHeight) : "";
+}
+
 std::string tableTitle(const Row& row) {
   const Case& c = row.what;
   std::string title = c.scene;
   if (!c.camera.empty()) title += ", camera " + c.camera;
   if (!c.light.empty()) title += ", light " + c.light;
   if (c.time != 0) title += fmt::format(", {} s", c.time);
-  return title + fmt::format(": {}, {}x{}, {}, {}", c.term, c.width, c.height,
+  return title + fmt::format(": {}, {}x{}{}, {}, {}", c.term, c.width, c.height, timeSizeText(c),
                              c.dynamic ? "dynamic" : "static", row.cost.renderer);
 }
 
 /// What all rows of one table share. The renderer says whether it is software.
 std::string tableKey(const Row& row) {
-  return fmt::format("{}\x1f{}\x1f{}", question(row.what), row.what.dynamic, row.cost.renderer);
+  return fmt::format("{}\x1f{}\x1f{}\x1f{}", question(row.what), row.what.dynamic, timeSizeText(row.what),
+                     row.cost.renderer);
 }
 
 std::string slug(const std::string& title, std::set<std::string>& used) {
@@ -51,10 +57,6 @@ std::string slug(const std::string& title, std::set<std::string>& used) {
   return unique + ".csv";
 }
 
-bool isTimed(const Row& row) {
-  return row.failure.empty() && row.cost.frameMs.n > 0;
-}
-
 /// Nobody is at least as good in both error and time, and better in one.
 bool onParetoFront(const Row& row, std::span<const Row> rows) {
   if (!isTimed(row)) return false;
@@ -71,13 +73,6 @@ std::string rmseText(const Metrics& m) {
   return fmt::format("{:.4g}", m.rmse);
 }
 
-/// Bars would end a cell.
-std::string cell(std::string text) {
-  for (std::size_t i = 0; (i = text.find('|', i)) != std::string::npos; i += 2) text.insert(i, 1, '\\');
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
 std::string csvField(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -89,16 +84,19 @@ std::string csvField(const std::string& text) {
 }
 
 std::string markdownRow(const Row& row, const Table& table, bool penumbra) {
-  std::string line = fmt::format("| {} | {} |", cell(row.what.technique), cell(parameterText(row.what)));
-  if (!row.failure.empty()) return line + fmt::format(" failed: {} |\n", cell(row.failure));
+  const std::string& name = row.what.title.empty() ? row.what.technique : row.what.title;
+  std::string line = fmt::format("| {} | {} |", markdownCell(name), markdownCell(parameterText(row.what)));
+  if (!row.failure.empty()) return line + fmt::format(" failed: {} |\n", markdownCell(row.failure));
   const Metrics& e = row.error;
   line += fmt::format(" {} | {:.4g} | {:+.3g} | {:.4g} | {:.1f} | {:.4f} | {:.4g} |", rmseText(e), e.rel_mse,
                       e.bias, e.p999, e.psnr, e.flip, e.structured);
   if (penumbra) line += row.penumbra ? fmt::format(" {} |", rmseText(*row.penumbra)) : " - |";
   const FrameTime& t = row.cost.frameMs;
-  if (!isTimed(row)) return line + " - | - | - | 0 | - |  |\n";
-  return line + fmt::format(" {:.3f} | {:.3f} | {:.3f} | {} | {:.1f} | {} |\n", t.median, t.q1, t.q3, t.n,
-                            static_cast<double>(row.cost.memoryBytes) / (1 << 20),
+  if (!isTimed(row)) return line + " - | - | - | 0 | - | - | - | - | - |  |\n";
+  const CostSplit& split = row.cost.split;
+  line += fmt::format(" {:.3f} | {:.3f} | {:.3f} | {} | {:.1f} | {:.2f} | {:.2f} | {:.2f} |", t.median, t.q1,
+                      t.q3, t.n, 1000 / t.median, split.maps, split.filters, split.technique);
+  return line + fmt::format(" {:.1f} | {} |\n", static_cast<double>(row.cost.memoryBytes) / (1 << 20),
                             onParetoFront(row, table.rows) ? "*" : "");
 }
 
@@ -126,21 +124,21 @@ std::string toMarkdown(const Table& table) {
   std::string text = fmt::format("### {}\n\n", table.title);
   text += fmt::format(
       "| technique | parameters | RMSE | rel. MSE | bias | p99.9 | PSNR | FLIP | structured |{} median ms | "
-      "q1 | q3 | n | "
-      "MiB | front |\n",
+      "q1 | q3 | n | fps | maps ms | filters ms | technique ms | MiB | front |\n",
       penumbra ? " penumbra RMSE |" : "");
-  text += fmt::format("|---|---|--:|--:|--:|--:|--:|--:|--:|{}--:|--:|--:|--:|--:|:-:|\n",
+  text += fmt::format("|---|---|--:|--:|--:|--:|--:|--:|--:|{}--:|--:|--:|--:|--:|--:|--:|--:|--:|:-:|\n",
                       penumbra ? "--:|" : "");
   for (const Row& row : table.rows) text += markdownRow(row, table, penumbra);
-  return text;
+  return text + comparisonMarkdown(table.rows);
 }
 
 std::string toCsv(const Table& table) {
   std::string text =
       "scene,camera,light,time_s,term,width,height,mode,renderer,technique,parameters,rmse,rel_mse,bias,p999,"
       "psnr,"
-      "flip,structured,noise_floor,masked_share,pixels,penumbra_rmse,median_ms,q1_ms,q3_ms,n,memory_bytes,"
-      "failure\r\n";
+      "flip,structured,noise_floor,masked_share,pixels,penumbra_rmse,penumbra_structured,time_width,time_"
+      "height,"
+      "median_ms,q1_ms,q3_ms,n,maps_ms,filters_ms,technique_ms,memory_bytes,failure\r\n";
   for (const Row& row : table.rows) {
     const Case& c = row.what;
     text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},", csvField(c.scene), csvField(c.camera),
@@ -148,7 +146,7 @@ std::string toCsv(const Table& table) {
                         c.dynamic ? "dynamic" : "static", csvField(row.cost.renderer), csvField(c.technique),
                         csvField(parameterText(c)));
     if (!row.failure.empty()) {
-      text += fmt::format("{}{}\r\n", std::string(16, ','), csvField(row.failure));
+      text += fmt::format("{}{}\r\n", std::string(22, ','), csvField(row.failure));
       continue;
     }
     const Metrics& e = row.error;
@@ -156,27 +154,66 @@ std::string toCsv(const Table& table) {
       return known ? fmt::format("{}", value) : std::string();
     };
     const FrameTime& t = row.cost.frameMs;
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},", e.rmse, e.rel_mse, e.bias, e.p999, e.psnr,
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},", e.rmse, e.rel_mse, e.bias, e.p999, e.psnr,
                         e.flip, e.structured, optional(e.noise_floor.has_value(), e.noise_floor.value_or(0)),
                         e.masked_share, e.pixels,
-                        optional(row.penumbra.has_value(), row.penumbra ? row.penumbra->rmse : 0));
-    text += fmt::format("{},{},{},{},{},\r\n", optional(t.n > 0, t.median), optional(t.n > 0, t.q1),
-                        optional(t.n > 0, t.q3), t.n, row.cost.memoryBytes);
+                        optional(row.penumbra.has_value(), row.penumbra ? row.penumbra->rmse : 0),
+                        optional(row.penumbra.has_value(), row.penumbra ? row.penumbra->structured : 0));
+    const CostSplit& split = row.cost.split;
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},\r\n", c.timeWidth > 0 ? c.timeWidth : c.width,
+                        c.timeWidth > 0 ? c.timeHeight : c.height, optional(t.n > 0, t.median),
+                        optional(t.n > 0, t.q1), optional(t.n > 0, t.q3), t.n, optional(t.n > 0, split.maps),
+                        optional(t.n > 0, split.filters), optional(t.n > 0, split.technique),
+                        row.cost.memoryBytes);
+  }
+  return text;
+}
+
+std::string picturesMarkdown(const Table& table) {
+  struct Cell {
+    std::string picture, caption;
+  };
+  std::vector<Cell> cells;
+  for (const Row& row : table.rows) {
+    if (row.picture.empty()) continue;
+    if (cells.empty()) {
+      const auto reference = std::filesystem::path(row.picture).parent_path() /
+                             std::filesystem::path(row.referenceFile).stem().concat(".png");
+      cells.push_back({reference.string(), "reference"});
+    }
+    std::string caption = markdownCell(rowName(row)) + ": RMSE " + rmseText(row.error);
+    if (row.penumbra) caption += fmt::format(" ({} in the penumbra)", rmseText(*row.penumbra));
+    if (isTimed(row)) caption += fmt::format(", {:.1f} ms", row.cost.frameMs.median);
+    cells.push_back({row.picture, caption});
+  }
+  if (cells.empty()) return "";
+  constexpr std::size_t columns = 3;
+  std::string text = fmt::format("### {}\n\n| | | |\n|---|---|---|\n", table.title);
+  for (std::size_t line = 0; line < cells.size(); line += columns) {
+    std::string pictures = "|", captions = "|";
+    for (std::size_t i = line; i < line + columns; ++i) {
+      const bool there = i < cells.size();
+      pictures += there ? fmt::format(" ![]({}) |", cells[i].picture) : " |";
+      captions += there ? fmt::format(" {} |", cells[i].caption) : " |";
+    }
+    text += pictures + "\n" + captions + "\n";
   }
   return text;
 }
 
 void writeTables(std::span<const Row> rows, const std::filesystem::path& folder) {
-  std::string markdown;
+  std::string markdown, pictures;
   std::string scene;
   for (const Table& table : makeTables(rows)) {
     const std::string& current = table.rows.front().what.scene;
     if (markdown.empty() || current != scene) markdown += fmt::format("## {}\n\n", current);
     scene = current;
     markdown += toMarkdown(table) + "\n";
+    if (const std::string shown = picturesMarkdown(table); !shown.empty()) pictures += shown + "\n";
     writeTextFile(folder / table.fileName, toCsv(table));
   }
   writeTextFile(folder / "tables.md", markdown);
+  if (!pictures.empty()) writeTextFile(folder / "pictures.md", pictures);
 }
 
 }  // namespace limn::bench

@@ -28,7 +28,11 @@ LIMN_API std::string toMarkdown(const Table& table);
 /// The same numbers in full precision, with a header line (RFC 4180).
 LIMN_API std::string toCsv(const Table& table);
 
-/// Writes tables.md and one CSV per table into `folder`.
+/// The pictures that were kept, the reference's first, three in a line with error and time below; "" if there
+/// are none.
+LIMN_API std::string picturesMarkdown(const Table& table);
+
+/// Writes tables.md, one CSV per table and, where pictures were kept, pictures.md into `folder`.
 LIMN_API void writeTables(std::span<const Row> rows, const std::filesystem::path& folder);
 
 }  // namespace limn::bench

@@ -112,7 +112,8 @@ struct Renderer::Implementation {
   std::unique_ptr<frame::FrameGraph> graph;
   SceneHandles handles;
   GBuffer gbuffer;
-  frame::TextureHandle output;
+  frame::TextureHandle output, display;
+  gpu::Framebuffer displayed;  ///< reads `display`
 
   Implementation(gpu::Device& gpuDevice, const scene::Scene& shown, std::filesystem::path overrideFolder)
       : device(gpuDevice),
@@ -227,6 +228,35 @@ struct Renderer::Implementation {
     return ask(*answering(Term::visibility), Term::visibility, lights, visibilityTarget(1));
   }
 
+  void addToneMapping(float exposureEv) {
+    frame::PassBuilder pass = graph->addPass("tone mapping");
+    pass.read(output, frame::Access::sampled, "linear picture");
+    display =
+        pass.write(graph->createTexture(
+                       "display", {.format = GL_RGBA8, .width = settings.size.x, .height = settings.size.y}),
+                   frame::Access::imageStore, "what the window shows");
+    const bool layered = settings.output == Output::visibility;
+    const auto program = pass.program(
+        {.files = {"glsl/deferred/tone_map.comp.glsl"}, .defines = {{"VISIBILITY", layered ? "1" : "0"}}});
+    pass.execute([this, program, exposureEv, from = output, to = display](frame::PassContext& context) {
+      gpu::Program& kernel = context.program(program);
+      kernel.use();
+      kernel.set("exposure_ev", exposureEv);
+      context.bindSampled(0, from);
+      context.bindImage(0, to, GL_WRITE_ONLY);
+      context.dispatch(settings.size.x, settings.size.y, 1, 8, 8);
+    });
+    graph->output(display);
+  }
+
+  void present() {
+    if (!display || !graph) throw Error("nothing to present: Settings::displayEv was not set");
+    if (!displayed.id()) displayed = gpu::Framebuffer(device, "display", {{{&graph->texture(display)}}});
+    const auto [width, height] = std::pair(settings.size.x, settings.size.y);
+    device.gl().BlitNamedFramebuffer(displayed.id(), 0, 0, 0, width, height, 0, 0, width, height,
+                                     GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  }
+
   void build() {
     dropGraph();
     graph = std::make_unique<frame::FrameGraph>();
@@ -243,6 +273,9 @@ struct Renderer::Implementation {
     shadowMaps.begin(*graph, handles, pose);
     output = settings.output == Output::visibility ? addVisibility() : addRadiance();
     graph->output(output);
+    display = {};
+    displayed = {};
+    if (settings.displayEv) addToneMapping(*settings.displayEv);
     if (settings.channels && gbuffer.depth)
       for (frame::TextureHandle kept : {gbuffer.depth, gbuffer.instance, gbuffer.albedo, gbuffer.normal})
         graph->output(kept);
@@ -334,6 +367,10 @@ void Renderer::setTime(double seconds, int animation) {
 void Renderer::render(frame::Timing timing) {
   implementation_->render(timing);
 }
+void Renderer::present() {
+  implementation_->present();
+}
+
 void Renderer::finish() {
   implementation_->device.gl().Finish();
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,8 @@ struct Settings {
   bool dynamic = true;
   /// Keep depth, coverage, instance id, albedo and normal for read().
   bool channels = false;
+  /// Tone-map the picture for present(): clamp(2^EV * picture), then sRGB, as PNG files are written.
+  std::optional<float> displayEv = {};
 };
 
 /// Throws UsageError when two techniques claim the same exclusive term, or nobody answers the output asked
@@ -65,6 +68,10 @@ class LIMN_API Renderer {
   /// The last frame: R, G, B (visibility: three equal channels), and with Settings::channels Z, coverage, id
   /// (-1: nothing seen), albedo.*, N.*. Blocks.
   Image read() const;
+
+  /// Copies the last frame, tone-mapped (Settings::displayEv), into the window's framebuffer, which is as
+  /// large.
+  void present();
 
   /// Blocks until the GPU has done everything asked of it (glFinish).
   void finish();

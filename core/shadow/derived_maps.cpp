@@ -64,7 +64,7 @@ TextureHandle addPyramid(frame::FrameGraph& graph, TextureHandle source, Pyramid
   TextureHandle pyramid = graph.createTexture(nameOf(kind), desc);
   const std::string moments = kind == PyramidKind::moments ? "1" : "0";
   for (int level = 0; level < desc.levels; ++level) {
-    frame::PassBuilder pass = graph.addPass(fmt::format("{} level {}", nameOf(kind), level));
+    frame::PassBuilder pass = graph.addPass(fmt::format("{} level {}", nameOf(kind), level), "shadow");
     if (level == 0) pass.read(source, Access::sampled, "shadow maps");
     pyramid = pass.write(pyramid, level == 0 ? Access::imageStore : Access::imageLoadStore,
                          level == 0 ? "finest level" : "next level from the one before");
@@ -127,7 +127,7 @@ SummedAreaTable addTable(frame::FrameGraph& graph, TextureHandle source, const S
                                          desc.moments == SatMoments::zAndSquare ? 1 : 0)};
   for (const bool vertical : {false, true}) {
     frame::PassBuilder pass =
-        graph.addPass(vertical ? "summed-area table columns" : "summed-area table rows");
+        graph.addPass(vertical ? "summed-area table columns" : "summed-area table rows", "shadow");
     if (!vertical) pass.read(source, Access::sampled, "shadow maps");
     table.texture = pass.write(table.texture, vertical ? Access::imageLoadStore : Access::imageStore,
                                vertical ? "sums along columns, in place" : "sums along rows");

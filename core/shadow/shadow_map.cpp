@@ -140,7 +140,7 @@ void ShadowMapService::Implementation::addPasses(Request& request) {
   gpu::TextureDesc zDesc = desc;
   zDesc.format = GL_DEPTH_COMPONENT32F;
 
-  frame::PassBuilder raster = graph->addPass("shadow maps");
+  frame::PassBuilder raster = graph->addPass("shadow maps", "shadow");
   scene::GpuScene::declareReads(raster, handles);
   raster.read(maps.views, Access::storageLoad, "projections");
   maps.depth =

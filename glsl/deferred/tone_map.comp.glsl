@@ -2,12 +2,21 @@
 #include "glsl/srgb.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+#if VISIBILITY
+layout(binding = 0) uniform sampler2DArray visibility;
+#else
 layout(binding = 0) uniform sampler2D radiance;
+#endif
 layout(rgba8, binding = 0) writeonly uniform image2D display;
 uniform float exposure_ev;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, imageSize(display)))) return;
-  imageStore(display, pixel, vec4(tone_map(texelFetch(radiance, pixel, 0).rgb, exposure_ev), 1.0));
+#if VISIBILITY
+  vec3 value = texelFetch(visibility, ivec3(pixel, 0), 0).rrr;
+#else
+  vec3 value = texelFetch(radiance, pixel, 0).rgb;
+#endif
+  imageStore(display, pixel, vec4(tone_map(value, exposure_ev), 1.0));
 }

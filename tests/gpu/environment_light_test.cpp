@@ -120,7 +120,7 @@ TEST_F(ToneMap, WritesWhatTheFileWriterWrites) {
   gpu::Texture in(device(), "radiance", {.format = GL_RGBA32F, .width = 4, .height = 1});
   in.upload(0, 0, GL_RGBA, GL_FLOAT, radiance.data());
   const gpu::Texture out(device(), "display", {.format = GL_RGBA8, .width = 4, .height = 1});
-  gpu::Program& program = shaders().program({.files = {"glsl/deferred/tone_map.comp.glsl"}, .defines = {}});
+  gpu::Program& program = shaders().program({.files = {"glsl/deferred/tone_map.comp.glsl"}, .defines = {{"VISIBILITY", "0"}}});
   program.use();
   program.set("exposure_ev", exposure);
   gl().BindTextureUnit(0, in.id());

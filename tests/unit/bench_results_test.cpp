@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/bench/comparison.h"
 #include "core/bench/results_file.h"
 #include "core/bench/row.h"
 #include "core/bench/runner.h"
@@ -52,6 +53,7 @@ Row exampleRow(const Case& c, double rmse = 0.25, double ms = 2.5) {
   row.cost.timer = "finish";
   row.cost.software = true;
   row.cost.frameMs = {ms, ms - 0.25, ms + 0.25, 5};
+  row.cost.split = {ms / 2, ms / 4, ms / 4, ms};
   row.cost.memoryBytes = 3 << 20;
   row.cost.details = R"({"passes":[{"name":"shadow map"}]})";
   return row;
@@ -151,21 +153,25 @@ TEST_F(BenchResults, FailedRowsAreTriedAgain) {
 struct Fakes {
   int references = 0, measurements = 0;
   Callbacks callbacks() {
-    return {[this](const Case& c) {
-              ++references;
-              Reference reference{Image::rgb(c.width, c.height), "reference.exr", 0.001};
-              std::ranges::fill(reference.image.data(), 0.5f);
-              return reference;
-            },
-            [this](const Case& c) {
-              ++measurements;
-              if (c.technique == "bad") throw Error("shader does not compile");
-              Measurement m{Image::rgb(c.width, c.height), {}};
-              std::ranges::fill(m.image.data(), 0.6f);
-              m.cost.frameMs = {1, 1, 1, c.frames};
-              return m;
-            },
-            {}};
+    Callbacks made;
+    made.reference = [this](const Case& c) {
+      ++references;
+      Reference reference{Image::rgb(c.width, c.height), "reference.exr", 0.001};
+      std::ranges::fill(reference.image.data(), 0.5f);
+      return reference;
+    };
+    made.keepPicture = [](const Case&, const std::string& key, const Image&) {
+      return "pictures/" + key + ".png";
+    };
+    made.measure = [this](const Case& c) {
+      ++measurements;
+      if (c.technique == "bad") throw Error("shader does not compile");
+      Measurement m{Image::rgb(c.width, c.height), {}};
+      std::ranges::fill(m.image.data(), 0.6f);
+      m.cost.frameMs = {1, 1, 1, c.frames};
+      return m;
+    };
+    return made;
   }
 };
 
@@ -197,6 +203,23 @@ TEST_F(BenchResults, RunnerSharesReferencesRecordsFailuresAndResumes) {
   EXPECT_NEAR(row.error.rmse, 0.1, 1e-6);
   ASSERT_TRUE(row.penumbra);
   EXPECT_EQ(row.cost.renderer, "llvmpipe");
+  EXPECT_EQ(row.picture, "");
+}
+
+TEST_F(BenchResults, RunnerKeepsPicturesThatAreWanted) {
+  Case wanted = exampleCase();
+  wanted.picture = true;
+  const std::vector<Case> cases = {wanted, exampleCase("pcss", 64)};
+  Fakes fakes;
+  ResultsFile results(path_);
+  runCases(cases, "llvmpipe", results, fakes.callbacks());
+  EXPECT_EQ(results.rows()[0].picture, "pictures/" + rowKey(wanted, "llvmpipe") + ".png");
+  EXPECT_EQ(results.rows()[1].picture, "");
+  EXPECT_EQ(rowFromJson(toJson(results.rows()[0])).picture, results.rows()[0].picture);
+  const std::string shown = picturesMarkdown(makeTables(results.rows()).front());
+  EXPECT_NE(shown.find("| ![](pictures/reference.png) | ![](" + results.rows()[0].picture + ") | |"),
+            std::string::npos)
+      << shown;
 }
 
 TEST_F(BenchResults, RunnerLetsUsageErrorsThrough) {
@@ -237,11 +260,13 @@ TEST(BenchTables, MarkdownShowsErrorTimeNoiseFloorAndFront) {
   const std::string text = toMarkdown(makeTables(rows).front());
   EXPECT_NE(text.find("| fast | fast.samples=16 | 0.25 | 0.1 | -0.01 | 0.7 | inf | 0.1250 | 0.03 | 0.25 | "
                       "1.000 | 0.750 | "
-                      "1.250 | 5 | 3.0 | * |"),
+                      "1.250 | 5 | 1000.0 | 0.50 | 0.25 | 0.25 | 3.0 | * |"),
             std::string::npos)
       << text;
   EXPECT_NE(text.find("| beaten | beaten.samples=16 | 0.3 "), std::string::npos) << text;
-  EXPECT_NE(text.find("| 1.500 | 1.250 | 1.750 | 5 | 3.0 |  |"), std::string::npos) << text;
+  EXPECT_NE(text.find("| 1.500 | 1.250 | 1.750 | 5 | 666.7 | 0.75 | 0.38 | 0.38 | 3.0 |  |"),
+            std::string::npos)
+      << text;
   EXPECT_NE(text.find("| good | good.samples=16 | <0.003 "), std::string::npos) << text;
   // Every line of the table has as many cells.
   std::size_t bars = 0;
@@ -252,6 +277,21 @@ TEST(BenchTables, MarkdownShowsErrorTimeNoiseFloorAndFront) {
     if (bars == 0) bars = count;
     EXPECT_EQ(count, bars) << line;
   }
+}
+
+TEST(BenchTables, RowsAreComparedWithTheBaseline) {
+  std::vector<Row> rows = {
+      exampleRow(exampleCase("pcss", 1024), 0.1, 8), exampleRow(exampleCase("pcss", 16), 0.2, 2),
+      exampleRow(exampleCase("pcss", 64), 0.15, 4), exampleRow(exampleCase("vssm"), 0.16, 1)};
+  EXPECT_EQ(comparisonMarkdown(rows), "");
+  rows[0].what.baseline = true;
+  for (Row& row : rows) row.penumbra->structured = 0.5 * row.penumbra->rmse;
+  rows[3].penumbra->structured = 0.01;
+  rows[3].what.title = "VSSM";
+  const std::string text = comparisonMarkdown(rows);
+  EXPECT_NE(text.find("| VSSM | 8.00 | 8.00 | pcss samples=64 | 4.00 | 4.00 | none | - | - |"),
+            std::string::npos)
+      << text;
 }
 
 TEST(BenchTables, CsvQuotesAndKeepsPrecision) {

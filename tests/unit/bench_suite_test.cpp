@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <set>
+#include <tuple>
 
 #include "core/base/error.h"
 #include "core/bench/suite.h"
@@ -88,6 +89,31 @@ TEST(BenchSuite, KeysAreUniqueAndTellRenderersApart) {
   }
   EXPECT_EQ(keys.size(), 60u);
   EXPECT_EQ(rowKey(suite.cases[3], "x"), rowKey(parseSuite(kSuite, "other.toml").cases[3], "x"));
+}
+
+TEST(BenchSuite, TimesMayHaveAnotherSizeAndRowsTitles) {
+  const Suite suite = parseSuite(R"(
+    name = "a"
+    sizes = ["32x16"]
+    time_size = "64x48"
+    pictures = true
+    [[scenes]]
+    scene = "balls"
+    [[techniques]]
+    technique = "pcss"
+    label = "PCSS"
+    baseline = true
+    [[techniques]]
+    technique = "vssm")",
+                                 "a.toml");
+  ASSERT_EQ(suite.cases.size(), 2u);
+  const Case& c = suite.cases[0];
+  EXPECT_EQ(std::tie(c.timeWidth, c.timeHeight, c.picture), std::make_tuple(64, 48, true));
+  EXPECT_EQ(std::tie(c.title, c.baseline), std::make_tuple(std::string("PCSS"), true));
+  EXPECT_FALSE(suite.cases[1].baseline);
+  Case other = c;
+  other.timeWidth = 65;
+  EXPECT_NE(rowKey(c, ""), rowKey(other, ""));
 }
 
 TEST(BenchSuite, ModesAndSeparationFloorAddCases) {

@@ -1,0 +1,77 @@
+#include "apps/chapters/support/chapter.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+
+#include "apps/chapters/support/window.h"
+#include "apps/limn/bench_session.h"
+#include "apps/limn/options.h"
+
+namespace limn::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool hasDisplay() {
+  const auto set = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    return value != nullptr && *value != 0;
+  };
+  return set("DISPLAY") || set("WAYLAND_DISPLAY");
+}
+
+int writeFiles(const Chapter& chapter, const fs::path& out, const BackendOptions& backend,
+               const std::vector<std::string>& filters) {
+  int failed = 0;
+  for (const char* suite : chapter.suites) {
+    const bench::Summary summary = runSuite(findSuite(suite), out / suite, backend, filters);
+    failed += summary.failed;
+    const bool pictures = fs::exists(out / suite / "pictures.md");
+    fmt::print("{}: {}{}\n", suite, (out / suite / "tables.md").string(),
+               pictures ? ", " + (out / suite / "pictures.md").string() : "");
+  }
+  return failed > 0 ? 1 : 0;
+}
+
+}  // namespace
+
+int runChapter(const Chapter& chapter, int argc, char** argv) {
+  return guarded([&] {
+    CLI::App program(chapter.title, chapter.name);
+    program.set_version_flag("--version", LIMN_VERSION);
+    program.failure_message([&](const CLI::App*, const CLI::Error& error) {
+      return fmt::format("{}: {}; see {} --help\n", chapter.name, error.what(), chapter.name);
+    });
+    fs::path out = fs::path("out") / chapter.name;
+    std::vector<std::string> filters;
+    bool files = false;
+    int frames = 0;
+    SceneOptions scene;
+    scene.scene = chapter.scene;
+    BackendOptions backend;
+    program.add_flag("--files", files,
+                     "Write pictures and tables although there is a display (the default without one)");
+    program.add_option("--out", out, "Folder of the pictures and tables; resumed if it exists")
+        ->capture_default_str();
+    program.add_option("--filter", filters, "Only cases whose label contains this text; repeatable")
+        ->take_all();
+    program.add_option("--scene", scene.scene, "Scene in the window: a file, or the name of one of limn's")
+        ->capture_default_str();
+    program.add_option("--size", scene.size, "Size of the window, WIDTHxHEIGHT")->capture_default_str();
+    program.add_option("--frames", frames, "Close the window after so many frames; 0: stay")
+        ->check(CLI::NonNegativeNumber);
+    backend.addTo(program);
+    try {
+      program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return program.exit(error) == 0 ? 0 : 2;
+    }
+    if (files || !hasDisplay()) return writeFiles(chapter, out, backend, filters);
+    showWindow(chapter, scene, frames);
+    return 0;
+  });
+}
+
+}  // namespace limn::app

@@ -1,0 +1,28 @@
+// A chapter's demo program. Without a display it writes the chapter's pictures and its table of frames per
+// second; with one it opens a window in which the chapter's settings can be compared.
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace limn::app {
+
+/// One setting of the window, chosen by its number key.
+struct ChapterSetting {
+  const char* title;
+  const char* techniques;  ///< as --technique
+  const char* parameters;  ///< as --set, separated by spaces; may be empty
+};
+
+struct Chapter {
+  const char* name;                     ///< of the program
+  const char* title;                    ///< for people
+  const char* scene;                    ///< shown in the window
+  std::span<const char* const> suites;  ///< names of bench suites, in benchmarks/
+  std::span<const ChapterSetting> settings;
+};
+
+/// main() of a chapter's program; returns its exit status.
+int runChapter(const Chapter& chapter, int argc, char** argv);
+
+}  // namespace limn::app

@@ -1,0 +1,85 @@
+#include "core/bench/comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace limn::bench {
+namespace {
+
+double shadowMs(const Row& row) {
+  return row.cost.split.maps + row.cost.split.filters + row.cost.split.technique;
+}
+
+const Metrics& errorOf(const Row& row) {
+  return row.penumbra ? *row.penumbra : row.error;
+}
+
+/// The quickest of the technique's rows that is not above `limit`.
+template <class Error>
+const Row* quickest(std::span<const Row> rows, const std::string& technique, double limit, Error error) {
+  const Row* best = nullptr;
+  for (const Row& row : rows) {
+    if (!isTimed(row) || row.what.technique != technique || error(row) > limit) continue;
+    if (best == nullptr || row.cost.frameMs.median < best->cost.frameMs.median) best = &row;
+  }
+  return best;
+}
+
+std::string ratios(const Row& slow, const Row& fast) {
+  const double shadow = shadowMs(fast);
+  return fmt::format("{:.2f} | {}", slow.cost.frameMs.median / fast.cost.frameMs.median,
+                     shadow > 0 ? fmt::format("{:.2f}", shadowMs(slow) / shadow) : "-");
+}
+
+std::string atEqual(const Row* row, const Row& against) {
+  if (row == nullptr) return "none | - | -";
+  return fmt::format("{} | {}", markdownCell(rowName(*row)), ratios(*row, against));
+}
+
+}  // namespace
+
+std::string rowName(const Row& row) {
+  std::string name = row.what.title.empty() ? row.what.technique : row.what.title;
+  if (!row.what.title.empty()) return name;
+  for (const auto& [parameter, value] : row.what.parameters) {
+    const std::string prefix = row.what.technique + ".";
+    const bool own = parameter.compare(0, prefix.size(), prefix) == 0;
+    name += fmt::format(" {}={}", own ? parameter.substr(prefix.size()) : parameter, value);
+  }
+  return name;
+}
+
+std::string markdownCell(std::string text) {
+  for (std::size_t i = 0; (i = text.find('|', i)) != std::string::npos; i += 2) text.insert(i, 1, '\\');
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+std::string comparisonMarkdown(std::span<const Row> rows) {
+  const auto baseline =
+      std::ranges::find_if(rows, [](const Row& row) { return row.what.baseline && isTimed(row); });
+  if (baseline == rows.end()) return "";
+  const std::string& technique = baseline->what.technique;
+  std::string text = fmt::format(
+      "\nTimes of {0} as multiples of each row's (frame | shadows: maps, filters and the technique's "
+      "passes), and of "
+      "the quickest {1} whose RMSE, and whose structured error, is not above the row's{2}:\n\n"
+      "| technique | frame | shadows | {1} at equal RMSE | frame | shadows | {1} at equal structured error | "
+      "frame | "
+      "shadows |\n|---|--:|--:|---|--:|--:|---|--:|--:|\n",
+      markdownCell(rowName(*baseline)), markdownCell(technique),
+      baseline->penumbra ? " in the penumbra" : "");
+  for (const Row& row : rows) {
+    if (!isTimed(row) || row.what.technique == technique) continue;
+    const Row* equalRmse =
+        quickest(rows, technique, errorOf(row).rmse, [](const Row& r) { return errorOf(r).rmse; });
+    const Row* equalStructured = quickest(rows, technique, errorOf(row).structured,
+                                          [](const Row& r) { return errorOf(r).structured; });
+    text += fmt::format("| {} | {} | {} | {} |\n", markdownCell(rowName(row)), ratios(*baseline, row),
+                        atEqual(equalRmse, row), atEqual(equalStructured, row));
+  }
+  return text;
+}
+
+}  // namespace limn::bench

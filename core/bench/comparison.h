@@ -1,0 +1,31 @@
+// The rows of one table against its baseline: how much faster, and how much faster than the baseline's
+// technique with the fewest samples that are not above the row's error.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "core/base/export.h"
+#include "core/bench/row.h"
+
+namespace limn::bench {
+
+/// Whether the row has a picture and a time.
+inline bool isTimed(const Row& row) {
+  return row.failure.empty() && row.cost.frameMs.n > 0;
+}
+
+/// The row for people: its title, or the technique with its parameters.
+LIMN_API std::string rowName(const Row& row);
+
+/// A text as a cell of a Markdown table.
+LIMN_API std::string markdownCell(std::string text);
+
+/// Markdown with a line for each timed row but those of the baseline's technique: frame time and the time of
+/// its shadows (maps, filters, technique) as multiples in which the baseline is slower (above 1: the row is
+/// faster), and the same for the quickest rows of the baseline's technique whose RMSE and whose structured
+/// error are not above the row's (in the penumbra, where that is known). "" without a timed row of the
+/// baseline.
+LIMN_API std::string comparisonMarkdown(std::span<const Row> rows);
+
+}  // namespace limn::bench
