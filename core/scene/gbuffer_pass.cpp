@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "core/scene/gpu_scene.h"
 
 namespace limn::scene {
@@ -25,10 +27,12 @@ GBuffer GBufferPass::add(frame::FrameGraph& graph, GpuScene& scene, const SceneH
   const frame::TextureHandle zbuffer = builder.write(create("gbuffer z", GL_DEPTH_COMPONENT32F),
                                                      Access::depthAttachment, "hidden-surface removal");
   const std::vector<std::string> files{"glsl/geometry/gbuffer.vert.glsl", "glsl/geometry/gbuffer.frag.glsl"};
-  DrawPrograms programs;
-  programs.opaque = builder.program({.files = files, .defines = {{"MASKED", "0"}}});
-  programs.masked =
-      scene.hasMasked() ? builder.program({.files = files, .defines = {{"MASKED", "1"}}}) : programs.opaque;
+  SurfacePrograms programs;
+  for (const SurfaceVariant& variant : scene.surfaceVariants())
+    programs[variant] = builder.program({.files = files,
+                                         .defines = {{"MASKED", variant.masked ? "1" : "0"},
+                                                     {"TEXTURES", fmt::format("{}u", variant.textures)},
+                                                     {"COLOURS", scene.hasColours() ? "1" : "0"}}});
 
   builder.execute([this, &scene, handles, g, zbuffer, programs](frame::PassContext& context) {
     context.bindFramebuffer(

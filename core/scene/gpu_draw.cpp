@@ -99,7 +99,7 @@ void GpuScene::Implementation::fill(DrawList::Implementation& list, const std::v
         wanted.doubleSided = materials.doubleSided(instance.material);
       }
       const auto key = [&](const DrawRun& run) {
-        if (!depthOnly) return materials.textureKey(run.material);
+        if (!depthOnly) return static_cast<uint32_t>(run.material);
         return run.masked ? materials.baseColourKey(run.material) : 0u;
       };
       const bool sameRun = started && key(wanted) == key(state) && wanted.masked == state.masked &&
@@ -143,7 +143,7 @@ void GpuScene::Implementation::drawRun(const DrawRun& run) const {
 }
 
 void GpuScene::drawGBuffer(const frame::PassContext& context, const SceneHandles& handles,
-                           const DrawPrograms& programs, DrawList& list) {
+                           const SurfacePrograms& programs, DrawList& list) {
   Implementation& scene = *implementation_;
   const gl::Functions& gl = scene.device.gl();
   DrawList::Implementation& draws = *list.implementation_;
@@ -155,7 +155,6 @@ void GpuScene::drawGBuffer(const frame::PassContext& context, const SceneHandles
 
   context.bindUniform(glsl::FrameBlock::binding, handles.frame);
   context.bindStorage(0, handles.instances);
-  context.bindStorage(1, handles.materials);
   context.bindStorage(2, handles.geometry);
   gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, scene.geometry.indices().id());
   scene.bindVertices(draws.entryBuffer);
@@ -163,7 +162,7 @@ void GpuScene::drawGBuffer(const frame::PassContext& context, const SceneHandles
   const ReversedDepth reversed(gl);
   gl.CullFace(GL_BACK);
   for (const DrawRun& run : draws.runs) {
-    gpu::Program& program = context.program(run.masked ? programs.masked : programs.opaque);
+    gpu::Program& program = context.program(programs.at(scene.materials.variant(run.material)));
     program.use();
     program.set("near_plane", scene.nearPlane);
     scene.materials.bind(run.material);

@@ -1,5 +1,8 @@
 #include "core/scene/gpu_materials.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
 #include <map>
 
 #include "glsl/blocks.glsl"
@@ -41,6 +44,10 @@ gpu::Texture upload(gpu::Device& device, const TextureImage& image, bool fine) {
   return texture;
 }
 
+constexpr uint32_t texture_flags = glsl::material_has_base_colour_texture |
+                                   glsl::material_has_metal_rough_texture |
+                                   glsl::material_has_normal_texture | glsl::material_has_emissive_texture;
+
 constexpr std::array<GLint, 3> wraps{GL_REPEAT, GL_CLAMP_TO_EDGE, GL_MIRRORED_REPEAT};
 
 }  // namespace
@@ -64,11 +71,12 @@ GpuMaterials::GpuMaterials(gpu::Device& device, const Scene& scene) : device_(de
     }
     set.key = keyOf(set.textures, set.samplers);
     set.baseColourKey = keyOf({set.textures[0], none, none, none}, {set.samplers[0], 0, 0, 0});
-    set.masked = material.alphaCutoff > 0;
+    set.variant = {all.back().info.x & texture_flags, material.alphaCutoff > 0};
     set.doubleSided = material.doubleSided;
     sets_.push_back(set);
   }
   constants_ = gpu::Buffer::of<glsl::Material>(device, "materials", all);
+  makeBlocks(all);
   std::vector<bool> isNormalMap(scene.images.size());
   for (const Material& material : scene.materials)
     if (material.normalTexture.image != none)
@@ -85,7 +93,21 @@ GpuMaterials::GpuMaterials(gpu::Device& device, const Scene& scene) : device_(de
   }
 }
 
+void GpuMaterials::makeBlocks(std::span<const glsl::Material> materials) {
+  GLint alignment = 1;
+  device_.gl().GetIntegerv(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, &alignment);
+  const auto step = static_cast<size_t>(alignment);
+  blockStride_ = (sizeof(glsl::Material) + step - 1) / step * step;
+  std::vector<std::byte> bytes(std::max<size_t>(materials.size(), 1) * blockStride_);
+  for (size_t i = 0; i < materials.size(); ++i)
+    std::memcpy(bytes.data() + i * blockStride_, &materials[i], sizeof(glsl::Material));
+  blocks_ = gpu::Buffer(device_, "material blocks", bytes.size(), gpu::BufferUse::fixed, bytes.data());
+}
+
 void GpuMaterials::bind(int material) const {
+  device_.gl().BindBufferRange(GL_UNIFORM_BUFFER, 1, blocks_.id(),
+                               static_cast<GLintptr>(static_cast<size_t>(material) * blockStride_),
+                               sizeof(glsl::Material));
   const Set& set = sets_[static_cast<size_t>(material)];
   for (GLuint unit = 0; unit < set.textures.size(); ++unit) {
     if (set.textures[unit] == none) continue;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 #include <numeric>
+#include <set>
 #include <tuple>
 
 #include "core/scene/camera.h"
@@ -157,8 +158,8 @@ void GpuScene::Implementation::sort() {
     return ids;
   };
   cameraOrder = order([&](const InstanceState& s) {
-    return std::tuple(materials.masked(s.material), materials.textureKey(s.material),
-                      materials.doubleSided(s.material), s.mirrored, s.primitive);
+    return std::tuple(materials.masked(s.material), materials.textureKey(s.material), s.material, s.mirrored,
+                      s.primitive);
   });
   depthOrder = order([&](const InstanceState& s) {
     const bool masked = materials.masked(s.material);
@@ -270,6 +271,17 @@ uint64_t GpuScene::triangles() const {
 bool GpuScene::hasMasked() const {
   return std::any_of(implementation_->states.begin(), implementation_->states.end(),
                      [&](const InstanceState& s) { return implementation_->materials.masked(s.material); });
+}
+
+bool GpuScene::hasColours() const {
+  return implementation_->geometry.hasColours();
+}
+
+std::vector<SurfaceVariant> GpuScene::surfaceVariants() const {
+  std::set<SurfaceVariant> variants;
+  for (size_t i = 0; i < implementation_->scene.materials.size(); ++i)
+    variants.insert(implementation_->materials.variant(static_cast<int>(i)));
+  return {variants.begin(), variants.end()};
 }
 
 void GpuScene::declareReads(frame::PassBuilder& builder, const SceneHandles& handles) {

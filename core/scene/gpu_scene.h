@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <map>
 #include <memory>
 #include <span>
 
@@ -58,6 +59,14 @@ struct DrawPrograms {
   frame::ProgramHandle opaque, masked;
 };
 
+/// The permutation of the G-buffer's fragment shader that a material needs.
+struct SurfaceVariant {
+  uint32_t textures = 0;  ///< glsl::material_has_*_texture
+  bool masked = false;    ///< some alpha cutoff
+  auto operator<=>(const SurfaceVariant&) const = default;
+};
+using SurfacePrograms = std::map<SurfaceVariant, frame::ProgramHandle>;
+
 class LIMN_API GpuScene {
  public:
   /// Uploads geometry, materials and textures. `scene` and `device` must outlive it. Throws Error when out of
@@ -88,15 +97,18 @@ class LIMN_API GpuScene {
   uint32_t instanceCount() const;
   uint64_t triangles() const;  ///< instances counted
   bool hasMasked() const;      ///< some material has an alpha cutoff
+  bool hasColours() const;     ///< some vertices have colours
+  /// Those of all materials of the scene, each once.
+  std::vector<SurfaceVariant> surfaceVariants() const;
 
   /// Declares what a pass that draws geometry reads (vertex streams, instances, materials).
   static void declareReads(frame::PassBuilder& builder, const SceneHandles& handles);
 
   /// Draws what the camera sees into the bound framebuffer: back faces of single-sided materials culled,
-  /// depth test reversed (cleared to 0). Uniform block FrameBlock, storage bindings 0 (instances) and 1
-  /// (materials), 2 and 3 (positions, indices) are bound by it.
+  /// depth test reversed (cleared to 0). Uniform blocks FrameBlock and 1 (the draw's material), storage
+  /// bindings 0 (instances), 2 and 3 (positions, indices) are bound by it. `programs`: of all variants.
   void drawGBuffer(const frame::PassContext& context, const SceneHandles& handles,
-                   const DrawPrograms& programs, DrawList& list);
+                   const SurfacePrograms& programs, DrawList& list);
 
   /// Draws depth of all `views`, both sides of every surface. `layered`: one call for all views, whose vertex
   /// shader writes gl_Layer; otherwise `beginView` is called before each view to bind its target. The vertex

@@ -1,4 +1,4 @@
-// Vertices of the G-buffer. Clip depth is reversed and infinite: z = near, w = view depth.
+// Vertices of the G-buffer. Clip depth is reversed and infinite: z = near, w = view depth. COLOURS 1: vertex colours.
 #include "glsl/blocks.glsl"
 #include "glsl/vertex.glsl"
 
@@ -6,7 +6,6 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in uvec2 entry;  // x: draw instance
 layout(location = 2) in uvec2 directions;
 layout(location = 3) in vec2 uv;
-layout(location = 4) in vec4 colour;
 
 layout(std430, binding = 0) readonly buffer Instances { Instance instances[]; };
 uniform float near_plane;  // metres
@@ -14,19 +13,25 @@ uniform float near_plane;  // metres
 layout(location = 0) out vec3 normal_ws;
 layout(location = 1) out vec4 tangent_ws;
 layout(location = 2) out vec2 surface_uv;
+#if COLOURS
+layout(location = 4) in vec4 colour;
 layout(location = 3) out vec4 surface_colour;
-layout(location = 4) flat out uint instance_index;
+#endif
+layout(location = 4) flat out uvec3 surface_instance;  // draw instance, first vertex, first index
 
 void main() {
-  instance_index = entry.x;
+  uvec4 info = instances[entry.x].info;
+  surface_instance = uvec3(entry.x, info.y, info.w);
   mat4 object_to_world = instances[entry.x].object_to_world;
   vec4 clip = frame.world_to_clip * (object_to_world * vec4(position, 1.0));
   gl_Position = vec4(clip.xy, near_plane, clip.w);
 
   vec4 tangent = vertex_unpack_tangent(directions.y);
   normal_ws = mat3(instances[entry.x].normal_to_world) * vertex_unpack_normal(directions.x);
-  bool mirrored = (instances[entry.x].info.z & 2u) != 0u;
+  bool mirrored = (info.z & 2u) != 0u;
   tangent_ws = vec4(mat3(object_to_world) * tangent.xyz, mirrored ? -tangent.w : tangent.w);
   surface_uv = uv;
+#if COLOURS
   surface_colour = colour;
+#endif
 }
