@@ -62,17 +62,20 @@ LIMN_FN float cosine_pdf(float cosine) {
   return inverse_pi * max(cosine, 0.0f);
 }
 
-// angle / sin(angle) - 1 for angle in [0, pi) given its sine and cosine: no cancellation for small angles.
-// Grows without bound towards pi; sine = 0 with a negative cosine gives a large finite number.
+// angle / sin(angle) - 1 for angle in [0, pi) given its sine and cosine, within 7.4e-7 of its value, small angles
+// included. Grows without bound towards pi; sine = 0 with a negative cosine gives a large finite number.
+//
+// With w = tan^2(angle / 2) and cosine >= 0 it is w r(w), r(w) = ((1 + w) atan(sqrt(w)) / sqrt(w) - 1) / w, which a
+// polynomial of degree 7 meets within 2.4e-8 on [0, 1] (interpolated at Chebyshev nodes). The angle of a negative cosine
+// is pi less an acute one. No branch: software renderers execute both sides.
 LIMN_FN float angle_over_sine_minus_one(float sine, float cosine) {
-  if (cosine > 0.9486833f) {  // sine^2 < 0.1: series of asin(x)/x; the first term left out is below 2e-8
-    float x = sine * sine;
-    return x *
-           (1.0f / 6.0f +
-            x * (3.0f / 40.0f + x * (5.0f / 112.0f + x * (35.0f / 1152.0f +
-                                                          x * (63.0f / 2816.0f + x * (231.0f / 13312.0f))))));
-  }
-  return atan(sine, cosine) / max(sine, 1e-12f) - 1.0f;
+  float half_tangent = sine / (1.0f + abs(cosine));
+  float w = half_tangent * half_tangent;
+  float low = 0.666666627f + w * (-0.133331314f + w * (0.0570991673f - w * 0.0313753113f));
+  float high = 0.018591838f + w * (-0.00991543196f + w * (0.00375377084f - w * 0.000693053065f));
+  float w2 = w * w;
+  float acute = w * (low + w2 * w2 * high);
+  return cosine < 0.0f ? pi / max(sine, 1e-12f) - 2.0f - acute : acute;
 }
 
 LIMN_END
