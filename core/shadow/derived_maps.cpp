@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/shadow/summed_area_passes.h"
 #include "glsl/summed_area_table.glsl"
 
 namespace limn::shadow {
@@ -15,14 +16,17 @@ namespace {
 using frame::Access;
 using frame::TextureHandle;
 
-constexpr int64_t memoryLimit = int64_t{4} << 30;  // bytes of one derived map
-
 enum class PyramidKind { minMax, moments };
 
 struct KnownTable {
   TextureHandle source;
   SatDesc desc;
   SummedAreaTable table;
+};
+
+struct KnownMoments {
+  TextureHandle source;
+  MomentTable table;
 };
 
 struct KnownPyramid {
@@ -33,28 +37,6 @@ struct KnownPyramid {
 
 std::string_view nameOf(PyramidKind kind) {
   return kind == PyramidKind::minMax ? "min-max pyramid" : "moment mips";
-}
-
-void checkBytes(std::string_view what, const gpu::TextureDesc& desc) {
-  const int64_t bytes = gpu::textureBytes(desc);
-  if (bytes <= memoryLimit) return;
-  throw UsageError(fmt::format(
-      "{} of {} layers of {} x {} texels takes {} MiB, more than the {} MiB that one may; ask for a smaller "
-      "shadow_map_size or fewer lights at once",
-      what, desc.layers, desc.width, desc.height, bytes >> 20, memoryLimit >> 20));
-}
-
-/// The description of a map derived from `source`.
-gpu::TextureDesc derivedDesc(const frame::FrameGraph& graph, TextureHandle source, std::string_view what,
-                             GLenum format, int levels) {
-  gpu::TextureDesc desc = graph.desc(source);
-  if (desc.target != GL_TEXTURE_2D_ARRAY || desc.format != GL_R32F)
-    throw Error(fmt::format("{}: the source is not an R32F array texture", what));
-  desc.format = format;
-  desc.levels = levels;
-  desc = gpu::resolved(desc);
-  checkBytes(what, desc);
-  return desc;
 }
 
 /// Level 0 from the shadow maps, each further level from the one before: a pass each, so that the graph puts
@@ -111,42 +93,21 @@ TableFormat tableFormat(const SatDesc& desc) {
   return words == 2 ? TableFormat{GL_RG32UI, "rg32ui"} : TableFormat{GL_RGBA32UI, "rgba32ui"};
 }
 
-/// Work groups for so many rows or columns; how many one takes is as in the shader.
-int lineGroups(int lines, bool shared, bool vertical) {
-  const int perGroup = shared && !vertical ? 4 : 16;
-  return (lines + perGroup - 1) / perGroup;
-}
-
 SummedAreaTable addTable(frame::FrameGraph& graph, TextureHandle source, const SatDesc& desc,
                          bool cacheable) {
   const TableFormat format = tableFormat(desc);
-  const bool shared = desc.method == SatMethod::sharedMemory;
-  const gpu::TextureDesc texture = derivedDesc(graph, source, "summed-area table", format.gl, 1);
-  SummedAreaTable table{graph.createTexture("summed-area table", texture),
-                        glsl::sat_format(static_cast<uint32_t>(desc.bits), static_cast<uint32_t>(desc.words),
-                                         desc.moments == SatMoments::zAndSquare ? 1 : 0)};
-  for (const bool vertical : {false, true}) {
-    frame::PassBuilder pass =
-        graph.addPass(vertical ? "summed-area table columns" : "summed-area table rows", "shadow");
-    if (!vertical) pass.read(source, Access::sampled, "shadow maps");
-    table.texture = pass.write(table.texture, vertical ? Access::imageLoadStore : Access::imageStore,
-                               vertical ? "sums along columns, in place" : "sums along rows");
-    const frame::ProgramHandle program =
-        pass.program({.files = {"glsl/shadow/summed_area_table.comp.glsl"},
-                      .defines = {{"SHARED", shared ? "1" : "0"},
-                                  {"IMAGE_FORMAT", format.glsl},
-                                  {"TABLE_FORMAT", fmt::format("{}u", table.format)},
-                                  {"VERTICAL", vertical ? "1" : "0"}}});
-    if (cacheable) pass.cacheable();
-    pass.execute([source, table, program, vertical, shared, texture](frame::PassContext& context) {
-      context.program(program).use();
-      if (!vertical) context.bindSampled(0, source);
-      context.bindImage(0, table.texture, vertical ? GL_READ_WRITE : GL_WRITE_ONLY);
-      const int groups = lineGroups(vertical ? texture.width : texture.height, shared, vertical);
-      context.dispatch(groups, 1, texture.layers, 1, 1);
-    });
-  }
-  return table;
+  const uint32_t layout =
+      glsl::sat_format(static_cast<uint32_t>(desc.bits), static_cast<uint32_t>(desc.words),
+                       desc.moments == SatMoments::zAndSquare ? 1 : 0);
+  return {addSummedAreaPasses(graph, source,
+                              {.name = "summed-area table",
+                               .format = format.gl,
+                               .defines = {{"IMAGE_FORMAT", format.glsl},
+                                           {"TABLE_FORMAT", fmt::format("{}u", layout)},
+                                           {"MOMENT_BITS", "0"}},
+                               .shared = desc.method == SatMethod::sharedMemory,
+                               .cacheable = cacheable}),
+          layout};
 }
 
 }  // namespace
@@ -156,6 +117,7 @@ struct DerivedMaps::Implementation {
   frame::FrameGraph* graph = nullptr;
   std::vector<KnownPyramid> pyramids = {};
   std::vector<KnownTable> tables = {};
+  std::vector<KnownMoments> moments = {};
 
   TextureHandle pyramid(TextureHandle source, PyramidKind kind, bool cacheable) {
     for (const KnownPyramid& known : pyramids) {
@@ -173,6 +135,7 @@ void DerivedMaps::begin(frame::FrameGraph& graph) {
   implementation_->graph = &graph;
   implementation_->pyramids.clear();
   implementation_->tables.clear();
+  implementation_->moments.clear();
 }
 
 MinMaxPyramid DerivedMaps::minMaxPyramid(TextureHandle depth, bool cacheable) {
@@ -188,6 +151,16 @@ SummedAreaTable DerivedMaps::summedAreaTable(TextureHandle depth, bool cacheable
   }
   d.tables.push_back({depth, full, addTable(*d.graph, depth, full, cacheable)});
   return d.tables.back().table;
+}
+
+MomentTable DerivedMaps::momentTable(TextureHandle depth, bool cacheable, int bits) {
+  Implementation& d = *implementation_;
+  const int wanted = bits == 0 ? momentBits(d.graph->desc(depth).width) : bits;
+  for (const KnownMoments& known : d.moments) {
+    if (known.source == depth && known.table.bits == wanted) return known.table;
+  }
+  d.moments.push_back({depth, addMomentTable(*d.graph, depth, cacheable, wanted, !d.device.software())});
+  return d.moments.back().table;
 }
 
 TextureHandle DerivedMaps::momentMips(TextureHandle depth, bool cacheable) {

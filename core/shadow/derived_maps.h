@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core/frame/frame_graph.h"
+#include "core/shadow/moment_table.h"
 
 namespace limn::shadow {
 
@@ -65,6 +66,8 @@ class LIMN_API DerivedMaps {
   MinMaxPyramid minMaxPyramid(frame::TextureHandle depth, bool cacheable);
   /// Throws UsageError for a description out of range and for tables beyond 4 GiB.
   SummedAreaTable summedAreaTable(frame::TextureHandle depth, bool cacheable, const SatDesc& desc);
+  /// bits: of each moment, 10 to 20; 0: by the maps' size (momentBits). Throws UsageError as summedAreaTable.
+  MomentTable momentTable(frame::TextureHandle depth, bool cacheable, int bits);
   /// RG32F array with a full mip chain: means of z and of z^2 over equal parts of the map; also where a size
   /// is odd the mean over each level is that of the map.
   frame::TextureHandle momentMips(frame::TextureHandle depth, bool cacheable);

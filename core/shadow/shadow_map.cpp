@@ -228,6 +228,10 @@ SummedAreaTable ShadowMapService::summedAreaTable(const ShadowMaps& maps, const 
   return implementation_->derived.summedAreaTable(maps.depth, implementation_->cacheable(maps), desc);
 }
 
+MomentTable ShadowMapService::momentTable(const ShadowMaps& maps, int bits) {
+  return implementation_->derived.momentTable(maps.depth, implementation_->cacheable(maps), bits);
+}
+
 frame::TextureHandle ShadowMapService::momentMips(const ShadowMaps& maps) {
   return implementation_->derived.momentMips(maps.depth, implementation_->cacheable(maps));
 }

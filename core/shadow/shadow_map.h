@@ -83,6 +83,7 @@ class LIMN_API ShadowMapService {
   /// Resources derived from the maps of a request, built once per graph whoever asks.
   MinMaxPyramid minMaxPyramid(const ShadowMaps& maps);
   SummedAreaTable summedAreaTable(const ShadowMaps& maps, const SatDesc& desc);
+  MomentTable momentTable(const ShadowMaps& maps, int bits);
   frame::TextureHandle momentMips(const ShadowMaps& maps);
 
   /// Refits near, far and half angles to the pose (after GpuScene::update) and touches the view buffers that

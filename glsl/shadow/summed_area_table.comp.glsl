@@ -2,7 +2,21 @@
 // those along the columns, in place. Either one thread follows a whole line (SHARED 0: quickest where threads are few,
 // on software renderers), or each thread of a work group sums PER_THREAD texels, LENGTH of them per line scan these
 // sums in shared memory, and the last is carried on to the next part of the line. Integer sums are the same in any order.
+//
+// MOMENT_BITS 0: sums of z or of z and z^2 as TABLE_FORMAT says; else four moments of so many bits.
+#if MOMENT_BITS
+#include "glsl/moment_shadow.glsl"
+#define SUM(a, b) ((a) + (b))
+#define PACK(a) (a)
+#define UNPACK(a) (a)
+#define TEXEL(z, at) moment_texel(z, uvec2(at), MOMENT_BITS)
+#else
 #include "glsl/summed_area_table.glsl"
+#define SUM(a, b) sat_add(a, b)
+#define PACK(a) sat_pack(a, TABLE_FORMAT)
+#define UNPACK(a) sat_unpack(a, TABLE_FORMAT)
+#define TEXEL(z, at) sat_texel(z, TABLE_FORMAT)
+#endif
 
 #if SHARED
 #if VERTICAL
@@ -28,7 +42,6 @@ layout(IMAGE_FORMAT, binding = 0) uniform uimage2DArray table;
 #if !VERTICAL
 layout(binding = 0) uniform sampler2DArray depth;
 #endif
-const uint table_format = TABLE_FORMAT;
 
 ivec3 texel_at(int line, int position) {
 #if VERTICAL
@@ -40,9 +53,9 @@ ivec3 texel_at(int line, int position) {
 
 uvec4 value_at(ivec3 at) {
 #if VERTICAL
-  return sat_unpack(imageLoad(table, at), table_format);
+  return UNPACK(imageLoad(table, at));
 #else
-  return sat_texel(texelFetch(depth, at, 0).r, table_format);
+  return TEXEL(texelFetch(depth, at, 0).r, at.xy);
 #endif
 }
 
@@ -63,7 +76,7 @@ void main() {
     uvec4 sums[PER_THREAD];
     uvec4 sum = uvec4(0u);
     for (int i = 0; i < PER_THREAD; ++i) {
-      if (line < lines && first + i < positions) sum = sat_add(sum, value_at(texel_at(line, first + i)));
+      if (line < lines && first + i < positions) sum = SUM(sum, value_at(texel_at(line, first + i)));
       sums[i] = sum;
     }
     // Hillis and Steele 1986, Data parallel algorithms: the reach of every sum doubles with each step.
@@ -71,18 +84,18 @@ void main() {
     partial_sums[side][LOCAL_LINE][LOCAL_POSITION] = sum;
     barrier();
     for (int reach = 1; reach < LENGTH; reach *= 2) {
-      if (LOCAL_POSITION >= reach) sum = sat_add(sum, partial_sums[side][LOCAL_LINE][LOCAL_POSITION - reach]);
+      if (LOCAL_POSITION >= reach) sum = SUM(sum, partial_sums[side][LOCAL_LINE][LOCAL_POSITION - reach]);
       side = 1 - side;
       partial_sums[side][LOCAL_LINE][LOCAL_POSITION] = sum;
       barrier();
     }
     uvec4 before = carried;
-    if (LOCAL_POSITION > 0) before = sat_add(carried, partial_sums[side][LOCAL_LINE][LOCAL_POSITION - 1]);
+    if (LOCAL_POSITION > 0) before = SUM(carried, partial_sums[side][LOCAL_LINE][LOCAL_POSITION - 1]);
     for (int i = 0; i < PER_THREAD; ++i) {
       if (line < lines && first + i < positions)
-        imageStore(table, texel_at(line, first + i), sat_pack(sat_add(before, sums[i]), table_format));
+        imageStore(table, texel_at(line, first + i), PACK(SUM(before, sums[i])));
     }
-    carried = sat_add(carried, partial_sums[side][LOCAL_LINE][LENGTH - 1]);
+    carried = SUM(carried, partial_sums[side][LOCAL_LINE][LENGTH - 1]);
     barrier();
   }
 #else
@@ -90,8 +103,8 @@ void main() {
   if (line >= lines) return;
   for (int i = 0; i < positions; ++i) {
     ivec3 at = texel_at(line, i);
-    carried = sat_add(carried, value_at(at));
-    imageStore(table, at, sat_pack(carried, table_format));
+    carried = SUM(carried, value_at(at));
+    imageStore(table, at, PACK(carried));
   }
 #endif
 }

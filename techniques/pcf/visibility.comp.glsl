@@ -2,14 +2,10 @@
 // receiver, seen from the light's centre. Each texel is tested against the receiver's tangent plane and weighted by
 // what the square covers of it, so that V is continuous in the receiver's position.
 #include "glsl/blocker_search.glsl"
+#include "glsl/texel_kernel.glsl"
 #include "glsl/visibility_main.glsl"
 
 uniform float kernel_width;  // texels
-
-// What the kernel from low to low + kernel_width covers of texel i along each axis.
-vec2 coverage(vec2 low, ivec2 texel) {
-  return max(min(vec2(texel) + 1.0, low + kernel_width) - max(vec2(texel), low), vec2(0.0));
-}
 
 float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   ShadowView view = cursor.view;  // in which the kernel is square
@@ -19,30 +15,21 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   ivec2 first = ivec2(floor(low));
   ivec2 last = ivec2(ceil(low + kernel_width)) - 1;
   bool inside = all(greaterThanEqual(first, ivec2(0))) && all(lessThan(last, ivec2(size)));
-  bool whole = inside || q.maps.info.y == shadow_faces_single;  // lies in no other view
-  if (whole) {
+  if (inside || q.maps.info.y == shadow_faces_single) {  // lies in no other view
     ShadowKernel centres = ShadowKernel(vec2(first) + 0.5, vec2(last) + 0.5, 1.0);
     vec2 thresholds = shadow_threshold_range(view, cursor.receiver, centres);
     vec2 depths = min_max_depth(shadow_min_max, first, last, int(cursor.layer));
     if (thresholds.y <= depths.x) return 1.0;
     if (depths.y < thresholds.x) return 0.0;
-    // What lies outside the only map is unoccluded.
-    first = max(first, ivec2(0));
-    last = min(last, ivec2(size) - 1);
+    return texel_kernel_lit(cursor, low, low + kernel_width);
   }
   float blocked = 0.0;
   for (int y = first.y; y <= last.y; ++y) {
     for (int x = first.x; x <= last.x; ++x) {
-      ShadowTap tap;
-      if (whole) {
-        tap = shadow_texel(cursor, ivec2(x, y));
-      } else {
-        // In another view, the direction of the texel's middle; its depth does not matter.
-        vec3 p = shadow_unproject_local(view, (vec2(x, y) + 0.5) / size, at.depth);
-        tap = shadow_tap(cursor, q, view.origin.xyz + shadow_world_offset(view, p));
-      }
-      vec2 weight = coverage(low, ivec2(x, y));
-      if (tap.blocked) blocked += weight.x * weight.y;
+      // In another view, the direction of the texel's middle; its depth does not matter.
+      vec3 p = shadow_unproject_local(view, (vec2(x, y) + 0.5) / size, at.depth);
+      ShadowTap tap = shadow_tap(cursor, q, view.origin.xyz + shadow_world_offset(view, p));
+      if (tap.blocked) blocked += texel_coverage(low, low + kernel_width, ivec2(x, y));
     }
   }
   return clamp(1.0 - blocked / (kernel_width * kernel_width), 0.0, 1.0);

@@ -1,0 +1,29 @@
+// The two passes that every summed-area table of shadow maps is built by.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "core/frame/frame_graph.h"
+
+namespace limn::shadow {
+
+/// The description of a map derived from `source`; throws UsageError beyond 4 GiB.
+gpu::TextureDesc derivedDesc(const frame::FrameGraph& graph, frame::TextureHandle source,
+                             std::string_view what, GLenum format, int levels);
+
+struct SummedAreaPasses {
+  std::string_view name;  ///< of the table
+  GLenum format;          ///< an integer format
+  /// Of glsl/shadow/summed_area_table.comp.glsl: which quantity is summed, and the image's format.
+  std::map<std::string, std::string> defines;
+  bool shared;     ///< scans in shared memory instead of one thread per line
+  bool cacheable;  ///< kept while nothing changes
+};
+
+/// Declares sums along rows, then along columns, of the R32F array `source`. Returns the table.
+frame::TextureHandle addSummedAreaPasses(frame::FrameGraph& graph, frame::TextureHandle source,
+                                         const SummedAreaPasses& desc);
+
+}  // namespace limn::shadow

@@ -1,0 +1,67 @@
+// Moment soft shadow maps (Peters and Klein 2015, Peters et al. 2017): percentage-closer soft shadows of
+// which both steps are prefiltered from four power moments of depth.
+#include "core/shadow/visibility_pass.h"
+#include "core/technique/technique.h"
+
+namespace {
+
+using namespace limn;
+
+constexpr unsigned minMaxUnit = 9;  // as in glsl/blocker_search.glsl
+constexpr unsigned tableUnit = 10;
+
+constexpr Parameter parameters[] = {
+    real("moment_bias", 1e-6, {1e-7, 0.1}, "",
+         "Share by which moments are pulled towards those of a well-spread distribution")
+        .logScale(),
+    integer("cells", 3, {1, 8}, "cells", "Kernels are divided into so many parts along each axis").quality(),
+    integer("search_rounds", 2, {0, 8}, "rounds",
+            "How often the search kernel is narrowed to the nearest depth in it; 0: at the near plane, as "
+            "published"),
+    integer("direct_texels", 8, {0, 32}, "texels",
+            "Penumbra kernels up to this width are filtered texel by texel"),
+    integer("moment_bits", 0, {0, 20}, "bits",
+            "Of each moment of a texel, 10 to 20; 0: by the size of the shadow map"),
+    shadow::shadowMapSizeParameter(),
+    shadow::biasParameter(),
+    shadow::lightSizeParameter(),
+};
+
+class MomentSoftShadowMap : public Technique {
+  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                 const TermRequest& request) override {
+    const ParameterValues& p = inputs.parameters;
+    shadow::VisibilityPass pass = shadow::visibilityPass(inputs, request, info.name);
+    const frame::TextureHandle bounds = inputs.shadowMaps.minMaxPyramid(pass.maps).texture;
+    const shadow::MomentTable table = inputs.shadowMaps.momentTable(pass.maps, p.integer("moment_bits"));
+    pass.declare = [=](frame::PassBuilder& builder) {
+      builder.read(bounds, frame::Access::sampled, "least and greatest depth in a kernel")
+          .read(table.texture, frame::Access::sampled, "moments of depth in a kernel");
+    };
+    pass.bind = [=, bias = p.real("moment_bias"), rounds = p.integer("search_rounds"),
+                 direct = p.integer("direct_texels"),
+                 cells = p.integer("cells")](frame::PassContext& context, gpu::Program& program) {
+      context.bindSampled(minMaxUnit, bounds);
+      context.bindSampled(tableUnit, table.texture);
+      program.set("moment_bits", table.bits);
+      program.set("moment_bias", bias);
+      program.set("search_rounds", rounds);
+      program.set("direct_texels", direct);
+      program.set("cells", cells);
+    };
+    return shadow::addVisibilityPass(graph, inputs, request.target, std::move(pass));
+  }
+
+ public:
+  static constexpr TechniqueInfo info{
+      .name = "moment_soft_shadow_map",
+      .title = "Moment soft shadow maps",
+      .source =
+          "Peters and Klein 2015, Moment Shadow Mapping; Peters et al. 2017, Improved Moment Shadow Maps",
+      .terms = termSet(Term::visibility),
+      .parameters = parameters};
+};
+
+}  // namespace
+
+LIMN_TECHNIQUE(MomentSoftShadowMap::info, MomentSoftShadowMap)
