@@ -1,0 +1,53 @@
+// Soft shadow mapping by backprojection (Guennebaud, Barthe and Paulin 2006).
+#include "core/shadow/visibility_pass.h"
+#include "core/technique/technique.h"
+
+namespace {
+
+using namespace limn;
+
+constexpr Parameter parameters[] = {
+    integer(
+        "patches", 32, {2, 1024}, "micro-patches",
+        "Micro-patches along each side of a kernel, at most; wider kernels are walked in steps of several "
+        "texels")
+        .quality()
+        .logScale(),
+    integer("search_rounds", 8, {0, 16}, "rounds",
+            "How often the kernel is narrowed by the min-max pyramid, at most; 0: at the near plane")
+        .quality(),
+    shadow::shadowMapSizeParameter(),
+    shadow::biasParameter(),
+    shadow::lightSizeParameter(),
+};
+
+class Backprojection : public Technique {
+  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                 const TermRequest& request) override {
+    const ParameterValues& p = inputs.parameters;
+    shadow::VisibilityPass pass = shadow::visibilityPass(inputs, request, info.name);
+    const shadow::MinMaxPyramid pyramid = inputs.shadowMaps.minMaxPyramid(pass.maps);
+    pass.declare = [pyramid](frame::PassBuilder& builder) {
+      builder.read(pyramid.texture, frame::Access::sampled, "nearest and farthest depths");
+    };
+    pass.bind = [pyramid, patches = p.integer("patches"), rounds = p.integer("search_rounds")](
+                    frame::PassContext& context, gpu::Program& program) {
+      context.bindSampled(9, pyramid.texture);
+      program.set("patches", patches);
+      program.set("search_rounds", rounds);
+    };
+    return shadow::addVisibilityPass(graph, inputs, request.target, std::move(pass));
+  }
+
+ public:
+  static constexpr TechniqueInfo info{
+      .name = "backprojection",
+      .title = "Soft shadow mapping by backprojection",
+      .source = "Guennebaud, Barthe and Paulin 2006, Real-time Soft Shadow Mapping by Backprojection",
+      .terms = termSet(Term::visibility),
+      .parameters = parameters};
+};
+
+}  // namespace
+
+LIMN_TECHNIQUE(Backprojection::info, Backprojection)

@@ -1,0 +1,55 @@
+// Bitmask soft shadows (Schwarz and Stamminger 2007).
+#include "core/shadow/visibility_pass.h"
+#include "core/technique/technique.h"
+
+namespace {
+
+using namespace limn;
+
+constexpr const char* sampleCounts[] = {"64", "128", "256"};
+constexpr Parameter parameters[] = {
+    choice("sample_points", 0, sampleCounts, "Sample points on the light, one bit each").quality(),
+    integer(
+        "patches", 32, {2, 1024}, "micro-patches",
+        "Micro-patches along each side of a kernel, at most; wider kernels are walked in steps of several "
+        "texels")
+        .quality()
+        .logScale(),
+    integer("search_rounds", 8, {0, 16}, "rounds",
+            "How often the kernel is narrowed by the min-max pyramid, at most; 0: at the near plane")
+        .quality(),
+    shadow::shadowMapSizeParameter(),
+    shadow::biasParameter(),
+    shadow::lightSizeParameter(),
+};
+
+class BitmaskSoftShadows : public Technique {
+  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                 const TermRequest& request) override {
+    const ParameterValues& p = inputs.parameters;
+    shadow::VisibilityPass pass = shadow::visibilityPass(
+        inputs, request, info.name, {{"WORDS", std::to_string(2 << p.choice("sample_points"))}});
+    const shadow::MinMaxPyramid pyramid = inputs.shadowMaps.minMaxPyramid(pass.maps);
+    pass.declare = [pyramid](frame::PassBuilder& builder) {
+      builder.read(pyramid.texture, frame::Access::sampled, "nearest and farthest depths");
+    };
+    pass.bind = [pyramid, patches = p.integer("patches"), rounds = p.integer("search_rounds")](
+                    frame::PassContext& context, gpu::Program& program) {
+      context.bindSampled(9, pyramid.texture);
+      program.set("patches", patches);
+      program.set("search_rounds", rounds);
+    };
+    return shadow::addVisibilityPass(graph, inputs, request.target, std::move(pass));
+  }
+
+ public:
+  static constexpr TechniqueInfo info{.name = "bitmask_soft_shadows",
+                                      .title = "Bitmask soft shadows",
+                                      .source = "Schwarz and Stamminger 2007, Bitmask Soft Shadows",
+                                      .terms = termSet(Term::visibility),
+                                      .parameters = parameters};
+};
+
+}  // namespace
+
+LIMN_TECHNIQUE(BitmaskSoftShadows::info, BitmaskSoftShadows)
