@@ -87,6 +87,11 @@ void SceneOptions::addTo(CLI::App& command) {
   command.add_option("--size", size, "Picture size WxH, pixels")->capture_default_str();
   command.add_option("--light", light, "Only this light, by name or #index");
   command
+      .add_option("--light-size", lightSize,
+                  "Side of every area light in metres, angular diameter of directional lights in radians;\n"
+                  "intensities stay as they are")
+      ->check(CLI::Range(1e-9, 1e9));
+  command
       .add_option("--default-lights", defaultLights,
                   "auto: a scene with neither lights nor --environment gets a key light from above the "
                   "camera's left\n"
@@ -168,6 +173,25 @@ scene::CameraPose chooseCamera(const SceneOptions& options, const scene::Pose& p
   return camera;
 }
 
+/// Gives every light that has an extent another one. Throws UsageError where there is none.
+static void resizeLights(scene::Scene& scene, double size) {
+  const auto side = static_cast<float>(size);
+  int resized = 0;
+  for (scene::Node& node : scene.nodes) {
+    if (node.light == scene::none || node.limnArea == glm::vec2(0)) continue;
+    node.limnArea = glm::vec2(side);
+    ++resized;
+  }
+  for (scene::LightSource& light : scene.lights) {
+    if (light.type != glsl::light_directional) continue;
+    light.angle = side;
+    ++resized;
+  }
+  if (resized == 0)
+    throw UsageError(fmt::format(
+        "--light-size {}: the scene has neither lights with limn_area nor directional lights", size));
+}
+
 /// Adds the default lights where they are wanted; says so.
 static void lightUp(const SceneOptions& options, View& view) {
   const bool dark = view.pose.lights.empty() && !view.scene.environment;
@@ -203,6 +227,7 @@ View open(const SceneOptions& options) {
     view.animation = findNamed("animation", options.animation, names);
   }
   view.time = options.time;
+  if (options.lightSize > 0) resizeLights(view.scene, options.lightSize);
   view.pose = scene::evaluate(view.scene, view.time, view.animation);
   view.camera = chooseCamera(options, view.pose);
   lightUp(options, view);

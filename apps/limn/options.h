@@ -41,6 +41,7 @@ struct SceneOptions {
   std::string animation;  ///< name or #index; empty: the first
   std::string size = "1280x720";
   std::string light;                   ///< name or #index; empty: all
+  double lightSize = 0;                ///< metres (radians); 0: as the scene has them
   std::string defaultLights = "auto";  ///< auto: where the scene has neither light nor environment; on; off
 
   void addTo(CLI::App& command);

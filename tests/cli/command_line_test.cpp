@@ -28,6 +28,19 @@ TEST(CommandLine, WrongUsageIsOneLine) {
   expectRefused(limn({"render", cornell_box, "--out", "a.png", "--colour"}), 2, {"--colour"});
 }
 
+TEST(CommandLine, LightSizesNeedLightsThatHaveOne) {
+  TemporaryFolder folder;
+  const std::string out = (folder / "v.exr").string();
+  const std::vector<std::string> view{"--size", "32x24", "--light-size", "0.3", "--out", out};
+  const auto with = [&](std::vector<std::string> command) {
+    command.insert(command.end(), view.begin(), view.end());
+    return limn(command);
+  };
+  expectRefused(with({"render", cornell_box}), 2, {"--light-size 0.3", "limn_area"});
+  EXPECT_EQ(with({"render", "lights"}).status, 0);
+  EXPECT_EQ(with({"reference", "lights", "--term", "visibility", "--light", "key", "--spp", "4"}).status, 0);
+}
+
 TEST(CommandLine, HelpOfEveryCommandIsComplete) {
   for (const char* command : {"list", "info", "render", "reference", "environment", "compare", "bench"}) {
     const Outcome outcome = limn({command, "--help"});

@@ -1,0 +1,60 @@
+// Soft shadows from summed-area variance shadow maps: the baseline of vssm.
+#include <fmt/format.h>
+
+#include "core/shadow/visibility_pass.h"
+#include "core/technique/technique.h"
+
+namespace {
+
+using namespace limn;
+
+constexpr const char* patterns[] = {"grid", "r2"};
+constexpr const char* searches[] = {"near", "cone"};
+
+constexpr Parameter parameters[] = {
+    integer("blocker_samples", 64, {1, 4096}, "samples", "Point samples of the blocker search")
+        .quality()
+        .logScale(),
+    choice("pattern", 1, patterns, "Regular grid, or the R2 sequence shifted in each pixel"),
+    choice("search", 1, searches,
+           "Search at the near plane, as published, or through the cone from receiver to light, keeping what "
+           "lies in it"),
+    integer("sat_bits", 16, {8, 24}, "bits", "Of a depth in the summed-area table"),
+    integer("sat_words", 2, {1, 2}, "32-bit words", "Per moment; 1: squares rounded, as published"),
+    shadow::shadowMapSizeParameter(),
+    shadow::biasParameter(),
+    shadow::lightSizeParameter(),
+};
+
+class Savsm : public Technique {
+  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                 const TermRequest& request) override {
+    const ParameterValues& p = inputs.parameters;
+    shadow::VisibilityPass pass = shadow::visibilityPass(
+        inputs, request, info.name,
+        {{"PATTERN", std::to_string(p.choice("pattern"))}, {"SEARCH", std::to_string(p.choice("search"))}});
+    const shadow::SummedAreaTable table = inputs.shadowMaps.summedAreaTable(
+        pass.maps, {.bits = p.integer("sat_bits"), .words = p.integer("sat_words")});
+    pass.program.defines["TABLE_FORMAT"] = fmt::format("{}u", table.format);
+    pass.declare = [table](frame::PassBuilder& builder) {
+      builder.read(table.texture, frame::Access::sampled, "moments of kernels");
+    };
+    pass.bind = [table, blockers = p.integer("blocker_samples")](frame::PassContext& context,
+                                                                 gpu::Program& program) {
+      context.bindSampled(10, table.texture);
+      program.set("blocker_samples", blockers);
+    };
+    return shadow::addVisibilityPass(graph, inputs, request.target, std::move(pass));
+  }
+
+ public:
+  static constexpr TechniqueInfo info{.name = "savsm",
+                                      .title = "Summed-area variance shadow maps",
+                                      .source = "Lauritzen 2007, Summed-Area Variance Shadow Maps",
+                                      .terms = termSet(Term::visibility),
+                                      .parameters = parameters};
+};
+
+}  // namespace
+
+LIMN_TECHNIQUE(Savsm::info, Savsm)

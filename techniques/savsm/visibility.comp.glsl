@@ -1,0 +1,39 @@
+// Soft shadows from a summed-area variance shadow map (Lauritzen 2007): the mean blocker depth from point samples, the
+// share of light from Chebyshev's inequality over the whole penumbra kernel.
+//
+// PATTERN, SEARCH: see glsl/blocker_samples.glsl. TABLE_FORMAT: sat_format.
+#include "glsl/blocker_samples.glsl"
+#include "glsl/summed_area_table.glsl"
+#include "glsl/visibility_main.glsl"
+
+layout(binding = 10) uniform usampler2DArray shadow_table;
+
+const uint table_format = TABLE_FORMAT;
+
+// P(z >= d) over the kernel, d the receiver's depth at its centre. Kernels with E(z) >= d count as lit, whatever they hold:
+// the "non-planarity" artefact.
+float kernel_light(ShadowCursor cursor, ShadowKernel kernel) {
+  float size = float(cursor.view.info.z);
+  vec2 centre = clamp(0.5 * (kernel.low + kernel.high), vec2(0.0), vec2(size));
+  vec2 half_extent = max(0.5 * (kernel.high - kernel.low), vec2(0.5));  // bilinear at least
+  float d = shadow_threshold(cursor.view, cursor.receiver, centre / size);
+  vec2 m = sat_lookup_moments(shadow_table, centre - half_extent, centre + half_extent, int(cursor.layer), d, table_format);
+  float quantum = 1.0 / float(sat_scale(table_format));
+  return m.x <= quantum ? 1.0 : clamp(1.0 - m.x * m.x / (m.y + quantum * quantum / 12.0), 0.0, 1.0);
+}
+
+float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
+  float gap = blocker_gap(cursor, q, pixel_noise(uint(pixel.x), uint(pixel.y), 0u));
+  if (gap <= 0.0) return 1.0;
+  float lit = 0.0;
+  float weights = 0.0;
+  uint face = 0u;
+  do {
+    ShadowKernel kernel;
+    if (shadow_kernel_in_face(cursor, q, face, gap, kernel)) {
+      lit += kernel.weight * kernel_light(cursor, kernel);
+      weights += kernel.weight;
+    }
+  } while (++face < shadow_face_count(q.maps.info.y));
+  return weights > 0.0 ? lit / weights : 1.0;
+}

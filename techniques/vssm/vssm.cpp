@@ -1,0 +1,94 @@
+// Variance soft shadow maps: percentage-closer soft shadows from a summed-area table of z and z^2.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "core/shadow/visibility_pass.h"
+#include "core/technique/technique.h"
+
+namespace {
+
+using namespace limn;
+
+constexpr const char* subdivisions[] = {"uniform", "adaptive", "mixed"};
+constexpr const char* poolings[] = {"each", "pooled"};
+constexpr const char* contacts[] = {"off", "jittered"};
+
+constexpr Parameter parameters[] = {
+    choice(
+        "subdivision", 0, subdivisions,
+        "Of kernels: equal parts, a quad-tree, or equal parts for blockers and a quad-tree for visibility"),
+    integer("blocker_cells", 4, {1, 32}, "per side", "Equal parts of the blocker search").quality(),
+    integer("passes", 2, {1, 8}, "passes", "Of the blocker search").quality(),
+    integer("visibility_cells", 4, {1, 32}, "per side", "Equal parts of the penumbra kernel, besides its rim")
+        .quality(),
+    integer("tree_height", 3, {1, 5}, "levels", "Of the quad-tree").quality(),
+    choice("chebyshev", 0, poolings, "Evaluate Chebyshev's inequality for each sub-kernel or once for all"),
+    integer("search_rounds", 3, {0, 8}, "rounds",
+            "How often the minimum depth in the search kernel narrows it; 0: as published"),
+    choice("contact", 1, contacts, "Narrow penumbrae: from the table, or 3 x 3 jittered bilinear texels"),
+    real("contact_texels", 3, {1, 64}, "texels", "Width of the kernels that count as narrow"),
+    integer("sat_bits", 16, {8, 24}, "bits", "Of a depth in the summed-area table"),
+    integer("sat_words", 2, {1, 2}, "32-bit words", "Per moment; 1: squares rounded, as published"),
+    shadow::shadowMapSizeParameter(),
+    shadow::biasParameter(),
+    shadow::lightSizeParameter(),
+};
+
+/// Whether the sum of depths over the largest sub-kernel may exceed one word.
+bool needsWideSums(const ParameterValues& p) {
+  const bool uniform = p.choice("subdivision") == 0;
+  const int parts = uniform ? std::min(p.integer("blocker_cells"), p.integer("visibility_cells")) : 1;
+  const int64_t side = (p.integer("shadow_map_size") + parts - 1) / parts;
+  return side * side * ((int64_t{1} << p.integer("sat_bits")) - 1) > 0xffffffffLL;
+}
+
+class Vssm : public Technique {
+  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                 const TermRequest& request) override {
+    const ParameterValues& p = inputs.parameters;
+    const int subdivision = p.choice("subdivision");
+    shadow::VisibilityPass pass =
+        shadow::visibilityPass(inputs, request, info.name,
+                               {{"POOLED", std::to_string(p.choice("chebyshev"))},
+                                {"BLOCKERS_ADAPTIVE", subdivision == 1 ? "1" : "0"},
+                                {"VISIBILITY_ADAPTIVE", subdivision == 0 ? "0" : "1"},
+                                {"WIDE_Z", needsWideSums(p) ? "1" : "0"},
+                                {"CONTACT", std::to_string(p.choice("contact"))}});
+    const shadow::MinMaxPyramid bounds = inputs.shadowMaps.minMaxPyramid(pass.maps);
+    const shadow::SummedAreaTable table = inputs.shadowMaps.summedAreaTable(
+        pass.maps, {.bits = p.integer("sat_bits"), .words = p.integer("sat_words")});
+    pass.program.defines["TABLE_FORMAT"] = fmt::format("{}u", table.format);
+    pass.declare = [=](frame::PassBuilder& builder) {
+      builder.read(bounds.texture, frame::Access::sampled, "what is lit or dark at once");
+      builder.read(table.texture, frame::Access::sampled, "moments of kernels");
+    };
+    pass.bind = [bounds, table, subdivision, passes = p.integer("passes"),
+                 rounds = p.integer("search_rounds"), blockers = p.integer("blocker_cells"),
+                 cells = p.integer("visibility_cells"), height = p.integer("tree_height"),
+                 contact = p.real("contact_texels"),
+                 contacts = p.choice("contact") != 0](frame::PassContext& context, gpu::Program& program) {
+      context.bindSampled(9, bounds.texture);
+      context.bindSampled(10, table.texture);
+      program.set("search_rounds", rounds);
+      if (contacts) program.set("contact_texels", contact);
+      program.set("passes", passes);
+      if (subdivision != 1) program.set("blocker_cells", blockers);
+      if (subdivision == 0) program.set("visibility_cells", cells);
+      if (subdivision != 0) program.set("tree_height", height);
+    };
+    return shadow::addVisibilityPass(graph, inputs, request.target, std::move(pass));
+  }
+
+ public:
+  static constexpr TechniqueInfo info{.name = "vssm",
+                                      .title = "Variance soft shadow maps",
+                                      .source = "Yang et al. 2010, Variance Soft Shadow Mapping",
+                                      .terms = termSet(Term::visibility),
+                                      .parameters = parameters};
+};
+
+}  // namespace
+
+LIMN_TECHNIQUE(Vssm::info, Vssm)

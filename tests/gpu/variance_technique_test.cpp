@@ -1,0 +1,190 @@
+// What soft shadows from variance shadow maps (vssm, savsm) promise beyond what every technique does.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "glsl/light_view.glsl"
+#include "tests/gpu/technique_harness.h"
+#include "tests/gpu/test_scenes.h"
+
+namespace limn {
+namespace {
+
+using namespace limn::test;
+using glm::vec3;
+
+/// A floor under a square light; what hides the light is up to the test.
+struct Planes {
+  scene::Scene scene;
+  scene::Pose pose;
+  scene::CameraPose camera;
+
+  explicit Planes(float light = 0.8f, float height = 4) {
+    addMesh(scene, floorPrimitive(4, addMaterial(scene)));
+    addInstance(scene, pose, 0);
+    addLight(pose, rectangleLight({0, height, 0}, {0, -1, 0}, light, light));
+    camera = scene::lookAt({0, 3, 6}, {0, 0, 0}, 0.8f);
+  }
+  void addPlane(float half, const glm::mat4& place) {
+    addMesh(scene, floorPrimitive(half, 0));
+    addInstance(scene, pose, static_cast<int>(scene.meshes.size()) - 1, place);
+  }
+  vec3 position(const Answer& v, int x, int y) const {
+    glsl::FrameBlock frame{};
+    scene::setCamera(frame, camera, pose.bounds, v.width, v.height);
+    return vec3(frame.camera_position) +
+           v.depth[static_cast<size_t>(y * v.width + x)] *
+               (vec3(frame.view_ray_origin) + static_cast<float>(x) * vec3(frame.view_ray_dx) +
+                static_cast<float>(y) * vec3(frame.view_ray_dy));
+  }
+};
+
+using Settings = std::map<std::string, std::string>;
+
+class VarianceTechniqueTest : public TechniqueTest {
+ protected:
+  Answer answer(const Planes& s, Settings settings = {}, const std::string& name = "vssm") {
+    settings.try_emplace("shadow_map_size", "256");
+    Answer v = visibility(name, settings, s.scene, s.pose, s.camera);
+    int bad = 0;
+    for (const float value : v.lights[0]) bad += !(value >= 0 && value <= 1);
+    EXPECT_EQ(bad, 0) << name << ": outside [0, 1] or NaN";
+    return v;
+  }
+};
+
+const Settings variants[] = {{{"subdivision", "uniform"}}, {{"subdivision", "adaptive"}},
+                             {{"subdivision", "mixed"}},   {{"chebyshev", "pooled"}},
+                             {{"search_rounds", "0"}},     {{"sat_words", "1"}},
+                             {{"sat_bits", "20"}},         {{"contact", "off"}}};
+
+TEST_F(VarianceTechniqueTest, ParallelPlanesAreExact) {
+  // A square of side 1, one metre over the floor, under a light of side 0.8 at 4 metres.
+  Planes s;
+  s.addPlane(0.5f, at(0, 1, 0));
+  const auto share = [](float p) {  // of the light's side that the square's shadow leaves, along one axis
+    const float a = p + 4 * (0.5f - p), b = p + 4 * (-0.5f - p);
+    return std::clamp(std::min(a, 0.4f) - std::max(b, -0.4f), 0.f, 0.8f) / 0.8f;
+  };
+  for (Settings settings : variants) {
+    settings["shadow_map_size"] = "1024";
+    const Answer v = answer(s, settings);
+    double squares = 0;
+    int penumbra = 0;
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) {
+        if (v.instance[static_cast<size_t>(y * side + x)] != 0) continue;
+        const vec3 p = s.position(v, x, y);
+        const float exact = 1 - share(p.x) * share(p.z);
+        if (exact < 0.02f || exact > 0.98f) continue;
+        squares += std::pow(double{v.at(0, x, y)} - exact, 2);
+        EXPECT_NEAR(v.at(0, x, y), exact, 0.06f) << p.x << " " << p.z << " " << settings.begin()->second;
+        ++penumbra;
+      }
+    }
+    EXPECT_GT(penumbra, 100);
+    EXPECT_LT(std::sqrt(squares / penumbra), 0.012) << settings.begin()->second;
+  }
+}
+
+TEST_F(VarianceTechniqueTest, KernelsThatAreAllLitOrAllBlockedAreExact) {
+  for (const char* name : {"vssm", "savsm"}) {
+    const Answer lit = answer(Planes(), {}, name);
+    EXPECT_EQ(*std::ranges::min_element(lit.lights[0]), 1.f) << name;
+    Planes roof;
+    roof.addPlane(3, at(0, 2, 0));
+    roof.camera = scene::lookAt({0, 1, 3}, {0, 0, 0}, 0.8f);
+    const Answer dark = answer(roof, {}, name);
+    for (size_t i = 0; i < dark.instance.size(); ++i) {
+      if (dark.instance[i] == 0) ASSERT_EQ(dark.lights[0][i], 0.f) << name;
+    }
+  }
+}
+
+TEST_F(VarianceTechniqueTest, LightsLargerThanTheSceneGiveFaintShadows) {
+  Planes s(100, 4);
+  s.addPlane(0.5f, at(0, 1, 0));
+  for (const Settings& settings : variants) {
+    const Answer v = answer(s, settings);
+    double sum = 0;
+    for (const float value : v.lights[0]) sum += value;
+    EXPECT_GT(sum / (side * side), 0.9) << settings.begin()->second;
+  }
+}
+
+TEST_F(VarianceTechniqueTest, DepthRangesOfAMillionKeepTheirShadows) {
+  // A leaf just under the light and one just over the floor, at the other end of the range.
+  Planes s(0.2f, 4);
+  s.addPlane(1e-6f, at(0, 4 - 4e-6f, 0));
+  s.addPlane(0.5f, at(0, 0.05f, 0));
+  const Answer v = answer(s, {{"shadow_map_size", "512"}});
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const vec3 p = s.position(v, x, y);
+      if (v.instance[static_cast<size_t>(y * side + x)] != 0) continue;
+      if (std::max(std::abs(p.x), std::abs(p.z)) > 0.6f) EXPECT_GT(v.at(0, x, y), 0.9f) << p.x << " " << p.z;
+      if (std::max(std::abs(p.x), std::abs(p.z)) < 0.4f) EXPECT_LT(v.at(0, x, y), 0.1f) << p.x << " " << p.z;
+    }
+  }
+}
+
+TEST_F(VarianceTechniqueTest, SurfacesInContactDoNotShadowEachOtherOrThemselves) {
+  Planes s;
+  s.addPlane(0.5f, at(0, 4e-6f, 0));  // 1e-6 of the scene's radius
+  for (const Settings& settings : variants)
+    EXPECT_EQ(*std::ranges::min_element(answer(s, settings).lights[0]), 1.f) << settings.begin()->second;
+}
+
+TEST_F(VarianceTechniqueTest, ManyDepthLayersStayBetweenDarkAndLight) {
+  // Leaves at all heights and angles.
+  Planes s(1);
+  for (int i = 0; i < 40; ++i) {
+    const auto f = static_cast<float>(i);
+    s.addPlane(0.15f, at(std::sin(2.4f * f) * 0.6f, 0.3f + 0.05f * f, std::cos(2.4f * f) * 0.6f) *
+                          glm::rotate(glm::mat4(1), 1.3f * f, vec3(0.4f, 1, 0.3f)));
+  }
+  const Answer truth = answer(s, {{"samples", "256"}}, "sampled_area_light");
+  for (const Settings& settings : variants) {
+    const Answer v = answer(s, settings);
+    double squares = 0;
+    int count = 0;
+    for (size_t i = 0; i < v.instance.size(); ++i) {
+      if (v.instance[i] != 0 || truth.lights[0][i] > 0.98f) continue;
+      squares += std::pow(double{v.lights[0][i]} - truth.lights[0][i], 2);
+      ++count;
+    }
+    EXPECT_GT(count, 300);
+    EXPECT_LT(std::sqrt(squares / count), 0.2) << settings.begin()->second;
+  }
+}
+
+TEST_F(VarianceTechniqueTest, ReceiversSeenEdgeOnByTheLightAreFinite) {
+  Planes s;
+  // A wall in the plane x = 0, which holds the light's centre.
+  s.addPlane(1, at(0, 1, 0) * glm::rotate(glm::mat4(1), glsl::pi / 2, {0, 0, 1}));
+  s.camera = scene::lookAt({5, 2, 2}, {0, 1, 0}, 0.6f);
+  for (const Settings& settings : variants) answer(s, settings);
+  answer(s, {}, "savsm");
+}
+
+TEST_F(VarianceTechniqueTest, MapsOfAllSizesWorkOrAreRefusedInOneLine) {
+  Planes s;
+  s.addPlane(0.5f, at(0, 1, 0));
+  for (const char* size : {"64", "513", "2048"}) {
+    const Answer v = answer(s, {{"shadow_map_size", size}});
+    EXPECT_LT(*std::ranges::min_element(v.lights[0]), 0.05f) << size;
+  }
+  Planes many(0.5f, 4);
+  for (int i = 1; i < 6; ++i) addLight(many.pose, many.pose.lights[0]);
+  try {
+    answer(many, {{"shadow_map_size", "8192"}});
+    FAIL() << "six tables of 1 GiB each were not refused";
+  } catch (const UsageError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("smaller shadow_map_size"));
+    EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("\n")));
+  }
+}
+
+}  // namespace
+}  // namespace limn
