@@ -41,6 +41,12 @@ struct Request {
   scene::DrawList drawList;
 };
 
+struct KnownFourierMaps {
+  frame::TextureHandle source;
+  FourierDesc desc;
+  FourierMaps maps;
+};
+
 }  // namespace
 
 struct ShadowMapService::Implementation {
@@ -48,6 +54,7 @@ struct ShadowMapService::Implementation {
       : device(onDevice),
         scene(ofScene),
         derived(onDevice),
+        trilinear(onDevice, GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR),
         coverage(onDevice, "uncovered pixels", sizeof(uint32_t)) {
     coverage.clear();
   }
@@ -61,6 +68,8 @@ struct ShadowMapService::Implementation {
   std::vector<scene::Bounds> boxes;
   std::vector<std::unique_ptr<Request>> requests;
   DerivedMaps derived;
+  std::vector<KnownFourierMaps> fourier = {};
+  gpu::Sampler trilinear;
   gpu::Buffer coverage;
 
   void take(const scene::Pose& pose) {
@@ -186,6 +195,7 @@ void ShadowMapService::begin(frame::FrameGraph& graph, const SceneHandles& handl
   implementation_->graph = &graph;
   implementation_->handles = handles;
   implementation_->derived.begin(graph);
+  implementation_->fourier.clear();
   implementation_->take(pose);
 }
 
@@ -234,6 +244,18 @@ MomentTable ShadowMapService::momentTable(const ShadowMaps& maps, int bits) {
 
 frame::TextureHandle ShadowMapService::momentMips(const ShadowMaps& maps) {
   return implementation_->derived.momentMips(maps.depth, implementation_->cacheable(maps));
+}
+
+FourierMaps ShadowMapService::fourierMaps(const ShadowMaps& maps, const FourierDesc& desc) {
+  Implementation& s = *implementation_;
+  for (const KnownFourierMaps& known : s.fourier) {
+    if (known.source == maps.depth && known.desc == desc) return known.maps;
+  }
+  FourierMaps built =
+      addFourierMaps(*s.graph, s.device, maps.depth, minMaxPyramid(maps), s.cacheable(maps), desc);
+  if (desc.filter == FourierFilter::mip) built.trilinear = &s.trilinear;
+  s.fourier.push_back({maps.depth, desc, built});
+  return built;
 }
 
 bool ShadowMapService::update(const scene::Pose& pose) {

@@ -18,6 +18,7 @@
 #include "core/frame/frame_graph.h"
 #include "core/scene/gpu_scene.h"
 #include "core/shadow/derived_maps.h"
+#include "core/shadow/fourier_maps.h"
 #include "core/technique/technique.h"
 #include "glsl/shadow_view.glsl"
 
@@ -85,6 +86,7 @@ class LIMN_API ShadowMapService {
   SummedAreaTable summedAreaTable(const ShadowMaps& maps, const SatDesc& desc);
   MomentTable momentTable(const ShadowMaps& maps, int bits);
   frame::TextureHandle momentMips(const ShadowMaps& maps);
+  FourierMaps fourierMaps(const ShadowMaps& maps, const FourierDesc& desc);
 
   /// Refits near, far and half angles to the pose (after GpuScene::update) and touches the view buffers that
   /// changed. True: some light needs another number of layers now, so the graph must be rebuilt.

@@ -1,4 +1,6 @@
 // One level of a pyramid over shadow maps: (min, max) of depth, or the means of depth and its square (MOMENTS).
+#include "glsl/mip_weights.glsl"
+
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rg32f, binding = 0) writeonly uniform image2DArray coarser;
 
@@ -17,22 +19,12 @@ vec2 value(ivec3 at) {
 #else
 layout(rg32f, binding = 1) readonly uniform image2DArray finer;
 
-#if MOMENTS
-// Weights of texels 2 i .. 2 i + 2 of the finer level in texel i. Where its size is odd, a texel is as wide as
-// 2 + 1 / coarse finer ones, so that the mean of the whole map is the same on every level.
-vec3 weights(int i, int fine, int coarse) {
-  if (fine == 1) return vec3(1.0, 0.0, 0.0);
-  if (fine == 2 * coarse) return vec3(0.5, 0.5, 0.0);
-  return vec3(float(coarse - i), float(coarse), float(i + 1)) / float(fine);
-}
-#endif
-
 vec2 value(ivec3 at) {
   ivec2 fine = imageSize(finer).xy;
   ivec2 coarse = imageSize(coarser).xy;
 #if MOMENTS
-  vec3 wx = weights(at.x, fine.x, coarse.x);
-  vec3 wy = weights(at.y, fine.y, coarse.y);
+  vec3 wx = mip_weights(at.x, fine.x, coarse.x);
+  vec3 wy = mip_weights(at.y, fine.y, coarse.y);
   vec2 sum = vec2(0.0);
   for (int j = 0; j < 3; ++j) {
     for (int i = 0; i < 3; ++i) {

@@ -1,0 +1,244 @@
+#include "core/shadow/fourier_maps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "core/base/error.h"
+#include "glsl/fourier_shadow.glsl"
+
+namespace limn::shadow {
+namespace {
+
+using frame::Access;
+
+constexpr int64_t memoryLimit = int64_t{4} << 30;  // bytes of all maps of one request
+constexpr int chunk = 2;                           // groups that a thread sums at once
+
+struct Formats {
+  GLenum basis, depthBasis, depth;
+};
+
+Formats formatsOf(FourierFilter filter) {
+  if (filter == FourierFilter::sat) return {GL_RGBA32I, GL_RGBA32I, GL_R32I};
+  return {GL_RGBA8_SNORM, GL_RGBA16_SNORM, GL_R16};
+}
+
+/// The three textures, created in the graph.
+void createTextures(frame::FrameGraph& graph, const gpu::Device& device, frame::TextureHandle source,
+                    FourierMaps& maps) {
+  gpu::TextureDesc desc = graph.desc(source);
+  if (desc.target != GL_TEXTURE_2D_ARRAY || desc.format != GL_R32F)
+    throw Error("Fourier maps: the source is not an R32F array texture");
+  const Formats formats = formatsOf(maps.desc.filter);
+  const int views = desc.layers, most = device.limits().maxArrayLayers;
+  if (views * maps.groups() > most) {
+    throw UsageError(fmt::format(
+        "Fourier maps of order {} of {} shadow maps take {} layers, more than the {} that the device "
+        "has; ask for a smaller order or fewer lights at once",
+        maps.desc.order, views, views * maps.groups(), most));
+  }
+  desc.levels = maps.desc.filter == FourierFilter::sat ? 1 : 0;
+  int64_t bytes = 0;
+  const auto create = [&](std::string_view name, GLenum format, int layers) {
+    desc.format = format;
+    desc.layers = layers;
+    bytes += gpu::textureBytes(desc);
+    return graph.createTexture(name, gpu::resolved(desc));
+  };
+  maps.basis = create("Fourier basis", formats.basis, views * maps.groups());
+  maps.depthBasis = create("Fourier basis times depth", formats.depthBasis, views * maps.groups());
+  maps.depth = create("Fourier depth", formats.depth, views);
+  if (bytes > memoryLimit) {
+    throw UsageError(
+        fmt::format("Fourier maps of order {} of {} shadow maps of {} x {} texels take {} MiB, more than the "
+                    "{} MiB that they may; "
+                    "ask for a smaller shadow_map_size, a smaller order, mip maps or fewer lights at once",
+                    maps.desc.order, views, desc.width, desc.height, bytes >> 20, memoryLimit >> 20));
+  }
+}
+
+/// Which depths each map's series spans.
+frame::BufferHandle addRanges(frame::FrameGraph& graph, const MinMaxPyramid& pyramid, bool cacheable,
+                              const FourierMaps& maps) {
+  const gpu::TextureDesc desc = graph.desc(pyramid.texture);
+  int level = 0;
+  while (level + 1 < pyramid.levels && std::max(desc.width, desc.height) >> level > 128) ++level;
+  frame::BufferHandle ranges =
+      graph.createBuffer("Fourier ranges", {static_cast<size_t>(desc.layers) * sizeof(glsl::FourierRange)});
+  frame::PassBuilder pass = graph.addPass("Fourier ranges", "shadow");
+  pass.read(pyramid.texture, Access::sampled, "depths that are there");
+  ranges = pass.write(ranges, Access::storageStore, "depths that the series spans");
+  const frame::ProgramHandle program =
+      pass.program({.files = {"glsl/shadow/fourier_range.comp.glsl"},
+                    .defines = {{"FIT", std::to_string(static_cast<int>(maps.desc.fit))}}});
+  if (cacheable) pass.cacheable();
+  const bool fitted = maps.desc.fit != FourierFit::map;
+  pass.execute([=, span = static_cast<float>(maps.constants.range)](frame::PassContext& context) {
+    gpu::Program& kernel = context.program(program);
+    kernel.use();
+    kernel.set("span", span);
+    if (fitted) kernel.set("level", level);
+    if (fitted) context.bindSampled(0, pyramid.texture);
+    context.bindStorage(0, ranges);
+    context.dispatch(desc.layers, 1, 1, 1, 1);
+  });
+  return ranges;
+}
+
+void addMips(frame::FrameGraph& graph, frame::TextureHandle source, bool cacheable, FourierMaps& maps) {
+  const gpu::TextureDesc desc = graph.desc(maps.depth);
+  for (int level = 0; level < desc.levels; ++level) {
+    const bool base = level == 0;
+    frame::PassBuilder pass = graph.addPass(fmt::format("Fourier basis level {}", level), "shadow");
+    if (base) {
+      pass.read(source, Access::sampled, "shadow maps")
+          .read(maps.ranges, Access::storageLoad, "depths that the series spans");
+    }
+    const Access access = base ? Access::imageStore : Access::imageLoadStore;
+    const std::string_view why = base ? "finest level" : "next level from the one before";
+    maps.basis = pass.write(maps.basis, access, why);
+    maps.depthBasis = pass.write(maps.depthBasis, access, why);
+    maps.depth = pass.write(maps.depth, access, why);
+    const frame::ProgramHandle program =
+        pass.program({.files = {"glsl/shadow/fourier_mips.comp.glsl"},
+                      .defines = {{"BASE", base ? "1" : "0"}, {"GROUPS", std::to_string(maps.groups())}}});
+    if (cacheable) pass.cacheable();
+    pass.execute([=, maps = maps](frame::PassContext& context) {
+      gpu::Program& kernel = context.program(program);
+      kernel.use();
+      const frame::TextureHandle images[] = {maps.basis, maps.depthBasis, maps.depth};
+      for (unsigned i = 0; i < 3; ++i) {
+        context.bindImage(i, images[i], GL_WRITE_ONLY, level);
+        if (!base) context.bindImage(i + 3, images[i], GL_READ_ONLY, level - 1);
+      }
+      if (base) {
+        kernel.set("span", static_cast<float>(maps.constants.range));
+        context.bindSampled(0, source);
+        context.bindStorage(0, maps.ranges);
+      }
+      context.dispatch(std::max(desc.width >> level, 1), std::max(desc.height >> level, 1), desc.layers, 8,
+                       8);
+    });
+  }
+}
+
+/// Work groups for so many rows or columns; how many one takes is as in the shader.
+int lineGroups(int lines, bool shared, bool vertical) {
+  const int perGroup = shared && !vertical ? 4 : 16;
+  return (lines + perGroup - 1) / perGroup;
+}
+
+void addRows(frame::FrameGraph& graph, frame::TextureHandle source, bool cacheable, bool shared,
+             FourierMaps& maps) {
+  const gpu::TextureDesc desc = graph.desc(maps.depth);
+  frame::PassBuilder pass = graph.addPass("Fourier sums rows", "shadow");
+  pass.read(source, Access::sampled, "shadow maps")
+      .read(maps.ranges, Access::storageLoad, "depths that the series spans");
+  maps.basis = pass.write(maps.basis, Access::imageStore, "sums along rows");
+  maps.depthBasis = pass.write(maps.depthBasis, Access::imageStore, "sums along rows");
+  maps.depth = pass.write(maps.depth, Access::imageStore, "sums along rows");
+  const int groups = maps.groups(), perThread = std::min(groups, chunk);
+  const frame::ProgramHandle program = pass.program({.files = {"glsl/shadow/fourier_sums.comp.glsl"},
+                                                     .defines = {{"VERTICAL", "0"},
+                                                                 {"SHARED", shared ? "1" : "0"},
+                                                                 {"GROUPS", std::to_string(groups)},
+                                                                 {"CHUNK", std::to_string(perThread)}}});
+  if (cacheable) pass.cacheable();
+  pass.execute([=, maps = maps](frame::PassContext& context) {
+    gpu::Program& kernel = context.program(program);
+    kernel.use();
+    kernel.set("span", static_cast<float>(maps.constants.range));
+    context.bindSampled(0, source);
+    context.bindStorage(0, maps.ranges);
+    context.bindImage(0, maps.basis, GL_WRITE_ONLY);
+    context.bindImage(1, maps.depthBasis, GL_WRITE_ONLY);
+    context.bindImage(2, maps.depth, GL_WRITE_ONLY);
+    const int chunks = (groups + perThread - 1) / perThread;
+    context.dispatch(lineGroups(desc.height, shared, false), 1, desc.layers * chunks, 1, 1);
+  });
+}
+
+void addColumns(frame::FrameGraph& graph, bool cacheable, bool shared, FourierMaps& maps) {
+  frame::PassBuilder pass = graph.addPass("Fourier sums columns", "shadow");
+  maps.basis = pass.write(maps.basis, Access::imageLoadStore, "sums along columns, in place");
+  maps.depthBasis = pass.write(maps.depthBasis, Access::imageLoadStore, "sums along columns, in place");
+  maps.depth = pass.write(maps.depth, Access::imageLoadStore, "sums along columns, in place");
+  const auto program = [&](const char* format) {
+    return pass.program(
+        {.files = {"glsl/shadow/fourier_sums.comp.glsl"},
+         .defines = {{"VERTICAL", "1"}, {"SHARED", shared ? "1" : "0"}, {"IMAGE_FORMAT", format}}});
+  };
+  const frame::ProgramHandle four = program("rgba32i"), one = program("r32i");
+  const gpu::TextureDesc basis = graph.desc(maps.basis), depth = graph.desc(maps.depth);
+  if (cacheable) pass.cacheable();
+  pass.execute([=, maps = maps](frame::PassContext& context) {
+    const int columns = lineGroups(basis.width, shared, true);
+    context.program(four).use();
+    for (const frame::TextureHandle image : {maps.basis, maps.depthBasis}) {
+      context.bindImage(0, image, GL_READ_WRITE);
+      context.dispatch(columns, 1, basis.layers, 1, 1);
+    }
+    context.program(one).use();
+    context.bindImage(0, maps.depth, GL_READ_WRITE);
+    context.dispatch(columns, 1, depth.layers, 1, 1);
+  });
+}
+
+}  // namespace
+
+std::map<std::string, std::string> FourierMaps::defines() const {
+  std::string weights;
+  for (int k = 1; k <= 2 * groups(); ++k) {
+    weights += fmt::format("{}{:.9e}", k > 1 ? ", " : "",
+                           glsl::fourier_weight(k, desc.order, static_cast<glsl::uint>(desc.window)));
+  }
+  return {{"FOURIER_GROUPS", std::to_string(groups())},
+          {"FOURIER_WEIGHTS", weights},
+          {"FOURIER_SAT", desc.filter == FourierFilter::sat ? "1" : "0"},
+          {"FOURIER_DELTA", fmt::format("{:.9e}", constants.delta)},
+          {"FOURIER_RANGE", fmt::format("{:.9e}", constants.range)},
+          {"FOURIER_LEVEL", fmt::format("{:.9e}", constants.level)},
+          {"FOURIER_VALLEY", fmt::format("{:.9e}", constants.valley)},
+          {"FOURIER_CURVATURE", fmt::format("{:.9e}", constants.curvature)},
+          {"FOURIER_TOLERANCE", fmt::format("{:.9e}", constants.tolerance)},
+          {"FOURIER_NOISE", fmt::format("{:.9e}", noise)}};
+}
+
+void FourierMaps::declare(frame::PassBuilder& pass) const {
+  pass.read(depthBasis, Access::sampled, "stage 1: mean blocker depth")
+      .read(depth, Access::sampled, "stage 1: its constant term")
+      .read(basis, Access::sampled, "stage 2: its normalisation; stage 3: visibility")
+      .read(ranges, Access::storageLoad, "depths that the series spans");
+}
+
+void FourierMaps::bind(frame::PassContext& context) const {
+  context.bindSampled(10, basis, trilinear);
+  context.bindSampled(11, depthBasis, trilinear);
+  context.bindSampled(12, depth, trilinear);
+  context.bindStorage(4, ranges);
+}
+
+FourierMaps addFourierMaps(frame::FrameGraph& graph, const gpu::Device& device, frame::TextureHandle depth,
+                           const MinMaxPyramid& pyramid, bool cacheable, FourierDesc desc) {
+  if (desc.method == SatMethod::automatic)
+    desc.method = device.software() ? SatMethod::rowParallel : SatMethod::sharedMemory;
+  FourierMaps maps{.desc = desc, .constants = fourierConstants(desc.order, desc.window)};
+  const gpu::TextureDesc source = graph.desc(depth);
+  const bool sums = desc.filter == FourierFilter::sat;
+  maps.noise = fourierNoise(desc.order, desc.window,
+                            sums ? glsl::fourier_sum_scale(source.width * source.height) : 127);
+  createTextures(graph, device, depth, maps);
+  maps.ranges = addRanges(graph, pyramid, cacheable, maps);
+  const bool shared = desc.method == SatMethod::sharedMemory;
+  if (sums) {
+    addRows(graph, depth, cacheable, shared, maps);
+    addColumns(graph, cacheable, shared, maps);
+  } else {
+    addMips(graph, depth, cacheable, maps);
+  }
+  return maps;
+}
+
+}  // namespace limn::shadow

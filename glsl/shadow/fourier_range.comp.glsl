@@ -1,0 +1,117 @@
+// What of each shadow map's depth the Fourier series is to span: one work group per layer, on a coarse level of the
+// min-max pyramid. FIT 0: all of it; 1: from the least depth to the greatest; 2: the same relative to a plane over the
+// map, where that is less. The plane is fitted to the greatest depths, which receivers have, and again with less weight
+// on what lies off it.
+#include "glsl/fourier_shadow.glsl"
+
+#define THREADS 256
+layout(local_size_x = THREADS) in;
+layout(std430, binding = 0) writeonly buffer Ranges { FourierRange ranges[]; };
+#if FIT >= 1
+layout(binding = 0) uniform sampler2DArray pyramid;  // MinMaxPyramid
+uniform int level;
+#endif
+uniform float span;  // of the series' depths: R
+
+const float least_range = 1.0 / 64.0;  // of the map's own, so that rounding is not spread over the whole series
+
+#if FIT >= 1
+shared vec4 partial[THREADS];
+
+vec4 total(vec4 value) {
+  uint i = gl_LocalInvocationID.x;
+  partial[i] = value;
+  barrier();
+  for (uint reach = THREADS / 2u; reach > 0u; reach /= 2u) {
+    if (i < reach) partial[i] += partial[i + reach];
+    barrier();
+  }
+  vec4 sum = partial[0];
+  barrier();
+  return sum;
+}
+
+vec4 least(vec4 value) {
+  uint i = gl_LocalInvocationID.x;
+  partial[i] = value;
+  barrier();
+  for (uint reach = THREADS / 2u; reach > 0u; reach /= 2u) {
+    if (i < reach) partial[i] = min(partial[i], partial[i + reach]);
+    barrier();
+  }
+  vec4 result = partial[0];
+  barrier();
+  return result;
+}
+
+vec2 cell(int i, ivec2 size) { return vec2(i % size.x, i / size.x); }
+vec2 bounds(int i, ivec2 size) {
+  return texelFetch(pyramid, ivec3(i % size.x, i / size.x, int(gl_WorkGroupID.x)), level).xy;
+}
+
+// (depth at the centre, slope): weighted least squares of the cells' greatest depths.
+vec3 fitted(ivec2 size, vec3 before, float scatter) {
+  vec4 a = vec4(0.0);  // sums of w, w x, w y, w z
+  vec4 b = vec4(0.0);  // w x x, w x y, w y y
+  vec4 c = vec4(0.0);  // w x z, w y z
+  for (int i = int(gl_LocalInvocationID.x); i < size.x * size.y; i += THREADS) {
+    float z = bounds(i, size).y;
+    if (z >= 1.0) continue;
+    vec2 p = (cell(i, size) + 0.5) / vec2(size) - 0.5;
+    float off = (z - before.x - dot(before.yz, p)) / scatter;
+    float w = 1.0 / (1.0 + off * off);
+    a += w * vec4(1.0, p, z);
+    b += w * vec4(p.x * p.x, p.x * p.y, p.y * p.y, 0.0);
+    c += w * vec4(p * z, 0.0, 0.0);
+  }
+  a = total(a);
+  b = total(b);
+  c = total(c);
+  if (a.x <= 0.0) return before;
+  vec2 mean = a.yz / a.x;
+  float xx = b.x - a.y * mean.x;
+  float xy = b.y - a.y * mean.y;
+  float yy = b.z - a.z * mean.y;
+  vec2 r = c.xy - a.w * mean;
+  float determinant = xx * yy - xy * xy;
+  if (determinant <= 1e-6 * a.x * a.x) return before;
+  vec2 slope = vec2(yy * r.x - xy * r.y, xx * r.y - xy * r.x) / determinant;
+  return vec3(a.w / a.x - dot(slope, mean), slope);
+}
+
+// Bounds of depth less the plane over all that is there, negated at the upper end; of two planes.
+vec4 range_of(ivec2 size, vec3 first, vec3 second) {
+  vec4 result = vec4(1.0e30);
+  vec2 half_cell = 0.5 / vec2(size);
+  vec2 spread = vec2(dot(abs(first.yz), half_cell), dot(abs(second.yz), half_cell));
+  for (int i = int(gl_LocalInvocationID.x); i < size.x * size.y; i += THREADS) {
+    vec2 z = bounds(i, size);
+    if (z.x >= 1.0) continue;
+    vec2 p = (cell(i, size) + 0.5) / vec2(size) - 0.5;
+    vec2 origin = vec2(first.x + dot(first.yz, p), second.x + dot(second.yz, p));
+    result = min(result, vec4(z.x - origin - spread, origin - min(z.y, 1.0) - spread));
+  }
+  return least(result);
+}
+
+#endif
+
+void main() {
+  vec4 plane = vec4(0.0, 0.0, 0.0, span);
+#if FIT >= 1
+  ivec2 size = textureSize(pyramid, level).xy;
+  vec3 flat_plane = vec3(0.0);
+  vec3 tilted = flat_plane;
+#if FIT == 2
+  tilted = fitted(size, flat_plane, 1.0e6);
+  for (int i = 0; i < 3; ++i) tilted = fitted(size, tilted, 0.02);
+#endif
+  vec4 r = range_of(size, flat_plane, tilted);  // least of both, then the greatest, negated
+  if (r.x < 1.0e30) {
+    vec2 extent = max(-r.zw - r.xy, vec2(least_range));
+    bool tilt = extent.y < extent.x;
+    plane = tilt ? vec4(tilted.x + r.y, tilted.yz, span / extent.y) : vec4(r.x, 0.0, 0.0, span / extent.x);
+  }
+#endif
+  if (gl_LocalInvocationID.x == 0u) ranges[gl_WorkGroupID.x].plane = plane;
+}

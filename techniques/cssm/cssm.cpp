@@ -1,0 +1,80 @@
+// Convolution soft shadow maps: percentage-closer soft shadows with both averages prefiltered in a Fourier
+// basis.
+#include "core/shadow/visibility_pass.h"
+#include "core/technique/technique.h"
+
+namespace {
+
+using namespace limn;
+
+constexpr const char* filters[] = {"mip", "sat"};
+constexpr const char* windows[] = {"none", "lanczos", "fejer"};
+constexpr const char* fits[] = {"map", "range", "plane"};
+constexpr const char* contacts[] = {"plain", "sharpened", "normalised"};
+constexpr Parameter parameters[] = {
+    integer("order", 4, {1, 64}, "terms", "Terms of the Fourier series").quality().logScale(),
+    choice("filter", 1, filters, "Mip maps (cheap) or summed-area tables (kernels are exact boxes)"),
+    choice("window", 0, windows, "Damps the series' higher terms: less ringing, wider transition"),
+    choice("depth_fit", 2, fits,
+           "Depths that the series spans: near to far, those that are there, or those relative to a plane"),
+    choice("contact", 2, contacts,
+           "What is done about blockers close to the receiver, which the series lets leak: nothing, V to a "
+           "power "
+           "(as published), or V normalised by what a blocker at their mean depth gives"),
+    real("sharpening", 30, {0, 1000}, "", "A of the power 1 + A exp(-B (d - z_avg)), contact=sharpened"),
+    real("falloff", 20, {0, 1000}, "1 / range", "B of the same"),
+    integer("search_rounds", 2, {0, 8}, "rounds",
+            "How often the search kernel moves from the near plane to the nearest depth in it"),
+    integer("blocker_passes", 2, {1, 4}, "passes",
+            "Mean blocker depths in turn, each in the kernel of the one before"),
+    integer("splits", 4, {1, 8}, "parts", "Parts of a kernel per axis, each with its own depth threshold")
+        .quality(),
+    shadow::shadowMapSizeParameter(),
+    shadow::biasParameter(),
+    shadow::lightSizeParameter(),
+};
+
+class Cssm : public Technique {
+  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                 const TermRequest& request) override {
+    const ParameterValues& p = inputs.parameters;
+    const shadow::FourierDesc desc{.order = p.integer("order"),
+                                   .filter = static_cast<shadow::FourierFilter>(p.choice("filter")),
+                                   .window = static_cast<shadow::FourierWindow>(p.choice("window")),
+                                   .fit = static_cast<shadow::FourierFit>(p.choice("depth_fit"))};
+    shadow::VisibilityPass pass = shadow::visibilityPass(inputs, request, info.name);
+    const shadow::MinMaxPyramid pyramid = inputs.shadowMaps.minMaxPyramid(pass.maps);
+    const shadow::FourierMaps maps = inputs.shadowMaps.fourierMaps(pass.maps, desc);
+    pass.program.defines = maps.defines();
+    pass.program.defines["CONTACT"] = std::to_string(p.choice("contact"));
+    pass.declare = [=](frame::PassBuilder& builder) {
+      builder.read(pyramid.texture, frame::Access::sampled, "early-outs and nearest depths");
+      maps.declare(builder);
+    };
+    const bool sharpened = p.choice("contact") == 1;
+    pass.bind = [=, rounds = p.integer("search_rounds"), passes = p.integer("blocker_passes"),
+                 splits = p.integer("splits"), sharpening = p.real("sharpening"),
+                 falloff = p.real("falloff")](frame::PassContext& context, gpu::Program& program) {
+      context.bindSampled(9, pyramid.texture);
+      maps.bind(context);
+      program.set("search_rounds", rounds);
+      program.set("blocker_passes", passes);
+      program.set("splits", splits);
+      if (!sharpened) return;
+      program.set("sharpening", sharpening);
+      program.set("falloff", falloff);
+    };
+    return shadow::addVisibilityPass(graph, inputs, request.target, std::move(pass));
+  }
+
+ public:
+  static constexpr TechniqueInfo info{.name = "cssm",
+                                      .title = "Convolution soft shadow maps",
+                                      .source = "Annen et al. 2008; thesis, chapter 5",
+                                      .terms = termSet(Term::visibility),
+                                      .parameters = parameters};
+};
+
+}  // namespace
+
+LIMN_TECHNIQUE(Cssm::info, Cssm)

@@ -1,0 +1,265 @@
+// Fourier basis maps against brute force over the texels of the shadow map.
+#include "core/shadow/fourier_maps.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "glsl/fourier_shadow.glsl"
+#include "tests/gpu/gl_test.h"
+
+namespace limn::shadow {
+namespace {
+
+constexpr int width = 100, height = 77, layers = 3;
+
+constexpr const char* lookup_shader = R"(
+#include "glsl/fourier_lookup.glsl"
+layout(local_size_x = 64) in;
+struct Kernel { vec4 box; vec4 receiver; };
+layout(std430, binding = 0) readonly buffer Kernels { Kernel kernels[]; };
+layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= uint(kernels.length())) return;
+  Kernel k = kernels[i];
+  int layer = int(k.receiver.x);
+  FourierBox box = fourier_box(k.box.xy, k.box.zw, textureSize(fourier_depth_maps, 0).xy);
+  results[i] = vec4(fourier_lit(box, layer, k.receiver.y), fourier_blocked_depth(box, layer, k.receiver.y),
+                    fourier_ranges[layer].plane.x, fourier_ranges[layer].plane.w);
+}
+)";
+
+struct Kernel {
+  glm::vec4 box, receiver;
+};
+
+class FourierMapsTest : public GlTest {
+ protected:
+  void SetUp() override {
+    GlTest::SetUp();
+    pool_.emplace(device());
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> value(-0.1f, 1.1f);
+    depth_.resize(size_t{width} * height * layers);
+    for (float& z : depth_) z = std::clamp(value(random), 0.f, 1.f);
+    source_ = gpu::Texture(device(), "source",
+                           {.target = GL_TEXTURE_2D_ARRAY,
+                            .format = GL_R32F,
+                            .width = width,
+                            .height = height,
+                            .layers = layers});
+    for (int i = 0; i < layers; ++i)
+      source_.upload(0, i, GL_RED, GL_FLOAT, depth_.data() + size_t{width} * height * static_cast<size_t>(i));
+  }
+  void TearDown() override {
+    pool_.reset();
+    source_ = {};
+    GlTest::TearDown();
+  }
+
+  float depth(int x, int y, int layer) const {
+    return depth_[static_cast<size_t>((layer * height + y) * width + x)];
+  }
+
+  /// Builds the maps in `graph` and runs it.
+  FourierMaps build(frame::FrameGraph& graph, const FourierDesc& desc) {
+    DerivedMaps derived(device());
+    derived.begin(graph);
+    const frame::TextureHandle source = graph.importTexture("source", source_);
+    FourierMaps maps =
+        addFourierMaps(graph, device(), source, derived.minMaxPyramid(source, false), false, desc);
+    graph.output(maps.basis);
+    graph.output(maps.depthBasis);
+    graph.output(maps.depth);
+    graph.output(maps.ranges);
+    graph.prepare(device(), shaders(), *pool_);
+    graph.execute();
+    return maps;
+  }
+
+  static std::vector<int> words(const gpu::Texture& texture, size_t components) {
+    const gpu::TextureDesc& d = texture.desc();
+    std::vector<int> values(static_cast<size_t>(d.width * d.height * d.layers) * components);
+    texture.read(0, components == 1 ? GL_RED_INTEGER : GL_RGBA_INTEGER, GL_INT, values.data(),
+                 values.size() * 4);
+    return values;
+  }
+
+  static std::vector<Kernel> randomKernels(float range) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> unit(0.f, 1.f);
+    std::vector<Kernel> kernels(300);
+    for (Kernel& k : kernels) {
+      const glm::vec2 extent(width, height), a = extent * glm::vec2(unit(random), unit(random)),
+                                             b = extent * glm::vec2(unit(random), unit(random));
+      k.box = {glm::min(a, b), glm::max(a, b) + 0.01f};
+      k.box.z = std::min(k.box.z, float(width)), k.box.w = std::min(k.box.w, float(height));
+      k.receiver = {std::floor(unit(random) * layers), unit(random) * range, 0, 0};
+    }
+    kernels[0].box = {0, 0, width, height};
+    kernels[1].receiver.y = 0;
+    kernels[2].receiver.y = range;
+    return kernels;
+  }
+
+  std::vector<glm::vec4> lookUp(frame::FrameGraph& graph, const FourierMaps& maps,
+                                const std::vector<Kernel>& kernels) {
+    const gpu::EmbeddedSource sources[] = {{"lookup.comp.glsl", lookup_shader}};
+    shaders().mount("test/", sources);
+    gpu::Program& program =
+        shaders().program({.files = {"test/lookup.comp.glsl"}, .defines = maps.defines()});
+    const gpu::Sampler trilinear(device(), GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR);
+    const gpu::Buffer in = gpu::Buffer::of<Kernel>(device(), "kernels", kernels);
+    const gpu::Buffer out(device(), "results", kernels.size() * sizeof(glm::vec4));
+    const gl::Functions& gl = device().gl();
+    program.use();
+    unsigned unit = 10;
+    for (const frame::TextureHandle map : {maps.basis, maps.depthBasis, maps.depth}) {
+      gl.BindTextureUnit(unit, graph.texture(map).id());
+      if (maps.desc.filter == FourierFilter::mip) gl.BindSampler(unit, trilinear.id());
+      ++unit;
+    }
+    gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, in.id());
+    gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, out.id());
+    gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, graph.buffer(maps.ranges).id());
+    gl.DispatchCompute(static_cast<GLuint>((kernels.size() + 63) / 64), 1, 1);
+    gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    for (unsigned u = 10; u < 13; ++u) gl.BindSampler(u, 0);
+    std::vector<glm::vec4> results(kernels.size());
+    out.read(0, results.data(), results.size() * sizeof(glm::vec4));
+    return results;
+  }
+
+  std::vector<float> depth_;
+  gpu::Texture source_;
+  std::optional<frame::ResourcePool> pool_;
+};
+
+TEST_F(FourierMapsTest, BothMethodsSumTheSameToTheBit) {
+  for (const int order : {1, 4, 7}) {
+    std::vector<std::vector<int>> tables[2];
+    for (const SatMethod method : {SatMethod::rowParallel, SatMethod::sharedMemory}) {
+      frame::FrameGraph graph;
+      const FourierMaps maps = build(graph, {.order = order, .method = method});
+      auto& t = tables[method == SatMethod::rowParallel ? 0 : 1];
+      for (const frame::TextureHandle map : {maps.basis, maps.depthBasis})
+        t.push_back(words(graph.texture(map), 4));
+      t.push_back(words(graph.texture(maps.depth), 1));
+    }
+    EXPECT_TRUE(tables[0] == tables[1]) << order;
+  }
+}
+
+TEST_F(FourierMapsTest, KernelsOfSumsAreTheMeansOfTheirTexels) {
+  for (const int order : {1, 2, 3, 4, 16}) {
+    for (const FourierWindow window : {FourierWindow::none, FourierWindow::lanczos}) {
+      frame::FrameGraph graph;
+      const FourierMaps maps = build(graph, {.order = order, .window = window, .fit = FourierFit::map});
+      const double range = maps.constants.range, delta = maps.constants.delta;
+      const auto kernels = randomKernels(float(range));
+      const auto results = lookUp(graph, maps, kernels);
+      for (size_t i = 0; i < kernels.size(); ++i) {
+        const auto& [box, receiver] = kernels[i];
+        double lit = 0, blocked = 0, weights = 0;
+        for (int y = int(box.y); y < std::min(int(std::ceil(box.w)), height); ++y) {
+          for (int x = int(box.x); x < std::min(int(std::ceil(box.z)), width); ++x) {
+            const double w = (std::min<double>(box.z, x + 1) - std::max<double>(box.x, x)) *
+                             (std::min<double>(box.w, y + 1) - std::max<double>(box.y, y));
+            const double z = range * depth(x, y, int(receiver.x)),
+                         s = fourierSeries(z - receiver.y + delta, order, window);
+            weights += w;
+            lit += w * s;
+            blocked += w * (1 - s) * z;
+          }
+        }
+        ASSERT_NEAR(results[i].x, lit / weights, maps.noise + 2e-5) << order << " kernel " << i;
+        ASSERT_NEAR(results[i].y, blocked / weights, 2 * maps.noise + 2e-5) << order << " kernel " << i;
+      }
+    }
+  }
+}
+
+TEST_F(FourierMapsTest, TheCoarsestMipLevelIsTheMeanOfTheMap) {
+  for (const int order : {1, 4}) {
+    frame::FrameGraph graph;
+    const FourierMaps maps =
+        build(graph, {.order = order, .filter = FourierFilter::mip, .fit = FourierFit::map});
+    auto kernels = randomKernels(float(maps.constants.range));
+    for (Kernel& k : kernels) k.box = {-1000, -1000, 1000, 1000};
+    const auto results = lookUp(graph, maps, kernels);
+    for (size_t i = 0; i < kernels.size(); ++i) {
+      double lit = 0;
+      for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+          lit += fourierSeries(maps.constants.range * depth(x, y, int(kernels[i].receiver.x)) -
+                                   double{kernels[i].receiver.y} + maps.constants.delta,
+                               order, FourierWindow::none);
+        }
+      }
+      // Each of seven levels rounds to 8 bits once.
+      ASSERT_NEAR(results[i].x, lit / (width * height), 4 * maps.noise) << i;
+    }
+  }
+}
+
+TEST_F(FourierMapsTest, RangesHoldAllThatIsThere) {
+  for (const FourierFit fit : {FourierFit::map, FourierFit::range, FourierFit::plane}) {
+    // A tilted plane with something before it, and nothing in one corner.
+    for (int layer = 0; layer < layers; ++layer) {
+      for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+          float z = 0.4f + 0.3f * float(x) / width + 0.1f * float(y) / height;
+          if (x > 30 && x < 40 && y > 30) z -= 0.1f;
+          depth_[static_cast<size_t>((layer * height + y) * width + x)] = x < 5 && y < 5 ? 1.f : z;
+        }
+      }
+      source_.upload(0, layer, GL_RED, GL_FLOAT,
+                     depth_.data() + size_t{width} * height * static_cast<size_t>(layer));
+    }
+    frame::FrameGraph graph;
+    const FourierMaps maps = build(graph, {.fit = fit});
+    glsl::FourierRange range{};
+    graph.buffer(maps.ranges).read(0, &range, sizeof range);
+    const auto most = float(maps.constants.range);
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        if (depth(x, y, 0) == 1) continue;
+        const glm::vec2 uv((float(x) + 0.5f) / width, (float(y) + 0.5f) / height);
+        const float d = glsl::fourier_depth(range, uv, depth(x, y, 0));
+        ASSERT_GE(d, -1e-5f);
+        ASSERT_LE(d, most + 1e-5f);
+      }
+    }
+    const float extent = most / range.plane.w;
+    if (fit == FourierFit::map) EXPECT_NEAR(extent, 1, 1e-6);
+    if (fit == FourierFit::range) EXPECT_NEAR(extent, 0.4f, 0.02f);
+    if (fit == FourierFit::plane) EXPECT_NEAR(extent, 0.11f, 0.03f);
+  }
+}
+
+TEST_F(FourierMapsTest, WhatDoesNotFitIsRefusedInOneLine) {
+  frame::FrameGraph graph;
+  DerivedMaps derived(device());
+  derived.begin(graph);
+  const frame::TextureHandle source = graph.createTexture(
+      "large", {.target = GL_TEXTURE_2D_ARRAY, .format = GL_R32F, .width = 8192, .height = 8192});
+  try {
+    addFourierMaps(graph, device(), source, {}, false, {.order = 16});
+    FAIL() << "16 GiB were accepted";
+  } catch (const UsageError& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("8192"), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+  EXPECT_THROW(addFourierMaps(graph, device(), source, {}, false, {.order = 65}), UsageError);
+}
+
+}  // namespace
+}  // namespace limn::shadow
