@@ -12,18 +12,32 @@ LIMN_CONST uint light_rectangle = 3u;    // emission: radiance, W/(sr m^2)
 LIMN_CONST uint light_flag_two_sided = 1u;  // rectangle that emits from both faces (doubleSided emissive quad)
 LIMN_CONST uint light_flag_geometry = 2u;   // rectangle that is an emissive quad of the scene: visible, blocks others
 LIMN_CONST uint light_flag_cone = 4u;       // spot cone applies (spot, or rectangle made from a spot)
+LIMN_CONST uint light_flag_environment = 8u;  // stands for a part of the environment
+LIMN_CONST uint light_flag_centre = 16u;      // distant rectangle: reflected as if all of it came from its centre
 LIMN_CONST uint no_instance = 0xffffffffu;
 
+// A directional light with sides is a distant rectangle: the directions to a rectangle in a plane at distance 1 from
+// every receiver. Its position and sides are those of that rectangle.
 struct Light {
   vec4 position;   // xyz: centre
   vec4 direction;  // xyz: unit vector the light looks along (propagation); the rectangle's face normal
   vec4 axis_u;     // xyz: unit vector along the rectangle's first side; w: its length u in metres (0: none)
-  vec4 axis_v;     // xyz: unit vector along the second side; w: its length v; cross(axis_u, axis_v) = -direction
-  vec4 emission;   // rgb, unit by type above
+  vec4 axis_v;     // xyz: unit vector along the second side; w: its length v; cross(axis_u, axis_v) = -direction, or the
+                   // normal of a distant rectangle's plane, away from receivers
+  vec4 emission;   // rgb, unit by type above; w: solid angle of a distant rectangle, sr
   vec4 cone;       // x: cos of the inner, y: of the outer cone angle; z: range in metres (0: unlimited);
                    // w: angular diameter of a directional light, radians
   uvec4 info;      // x: type, y: flags, z: draw instance to skip in its own shadow map (or no_instance), w: index
 };
+
+LIMN_FN bool light_is_distant_rectangle(Light light) {
+  return light.info.x == light_directional && light.axis_u.w > 0.0f;
+}
+
+// Of a rectangle, distant or not, W/(sr m^2).
+LIMN_FN vec3 rectangle_radiance(Light light) {
+  return light.info.x == light_directional ? vec3(light.emission) / light.emission.w : vec3(light.emission);
+}
 
 // Cone factor at a receiver in direction w (unit, from the light's centre): a factor at the receiver, in both
 // renderers (KHR_lights_punctual: squared linear ramp in the cosine between the outer and the inner angle).

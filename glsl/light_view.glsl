@@ -13,11 +13,12 @@ LIMN_BEGIN
 
 struct LightView {
   bool masked;    // no part of the light lies above the tangent plane, or it does not shine here: V = 1
-  bool cone;      // directional: samples are directions
+  bool cone;      // directional light that is a disc: samples are directions
   bool extended;  // false: a single point or direction
   bool whole;     // all of the light lies above the tangent plane
   vec3 normal;    // of that plane
-  vec3 axis;      // unit, from the light towards the receiver's side; directional: the direction of propagation
+  vec3 axis;      // unit, from the light towards the receiver's side; directional: the direction of propagation;
+                  // distant rectangle: across its plane
   float depth;    // of the receiver along the axis, from the light (directional: from the world's origin), metres
   vec3 centre;    // slope of the light's centre
   vec3 side_u;    // and of its sides
@@ -41,22 +42,27 @@ LIMN_FN void light_view_clip(LIMN_INOUT(LightView) v, float height, vec2 slope) 
 
 // ng: the receiver's geometric normal. size < 0: the light as the scene has it; else the side of every rectangle, of a
 // square that stands for a point or spot light and faces the receiver (metres), and the angular diameter of a
-// directional light (radians).
+// directional light (radians; a distant rectangle becomes a square that spans this angle seen head-on).
 LIMN_FN LightView light_view(Light light, vec3 receiver, vec3 ng, float size) {
   LightView v;
-  v.cone = light.info.x == light_directional;
+  bool distant = light_is_distant_rectangle(light);
+  v.cone = light.info.x == light_directional && !distant;
   v.masked = false;
   v.normal = ng;
   v.low = vec2(-0.5f);
   v.high = vec2(0.5f);
   v.axis = vec3(light.direction);
   v.cap = 0.0f;
-  vec3 to_centre = vec3(light.position) - receiver;
-  vec3 u = vec3(light.axis_u) * (size < 0.0f ? light.axis_u.w : size);
-  vec3 w = vec3(light.axis_v) * (size < 0.0f ? light.axis_v.w : size);
+  vec3 to_centre = vec3(light.position);
+  if (!distant) to_centre = to_centre - receiver;
+  float side = distant ? 2.0f * tan(min(0.5f * size, 1.5f)) : size;
+  vec3 u = vec3(light.axis_u) * (size < 0.0f ? light.axis_u.w : side);
+  vec3 w = vec3(light.axis_v) * (size < 0.0f ? light.axis_v.w : side);
   if (light.info.x == light_rectangle) {
     v.axis = v.axis * rectangle_side(light, receiver);
     v.masked = !rectangle_emits_towards(light, receiver);
+  } else if (distant) {
+    v.axis = cross(vec3(light.axis_v), vec3(light.axis_u));
   } else {
     v.masked = !(receiver_factor(light, receiver) > 0.0f);
     float distance = length(to_centre);
@@ -88,6 +94,7 @@ LIMN_FN LightView light_view(Light light, vec3 receiver, vec3 ng, float size) {
   light_view_clip(v, dot(ng, to_centre), vec2(dot(ng, u), dot(ng, w)));
   // What lies in the tangent plane lights nothing.
   if (!v.extended) v.masked = v.masked || !(dot(ng, to_centre) > 0.0f);
+  if (distant) v.depth = dot(v.axis, receiver);
   return v;
 }
 

@@ -31,9 +31,11 @@ struct RectanglePart {
   vec2 vertex[rectangle_part_vertices];
 };
 
+// Of a distant rectangle: in units of its plane's distance.
 LIMN_FN Rectangle rectangle_from(Light light, vec3 receiver) {
   Rectangle r;
-  r.centre = vec3(light.position) - receiver;
+  r.centre = vec3(light.position);
+  if (light.info.x != light_directional) r.centre = r.centre - receiver;
   r.u = vec3(light.axis_u) * light.axis_u.w;
   r.v = vec3(light.axis_v) * light.axis_v.w;
   return r;
@@ -51,6 +53,7 @@ LIMN_FN float rectangle_side(Light light, vec3 receiver) {
 
 // Whether the light emits towards the receiver at all: towards its side, inside the cone and within the range.
 LIMN_FN bool rectangle_emits_towards(Light light, vec3 receiver) {
+  if (light.info.x == light_directional) return true;
   float side = rectangle_side(light, receiver);
   bool facing = (light.info.y & light_flag_two_sided) != 0u ? side != 0.0f : side > 0.0f;
   return facing && receiver_factor(light, receiver) > 0.0f;

@@ -31,6 +31,20 @@ LIMN_FN bool shadow_kernel(ShadowView view, LightView light, vec3 receiver, floa
   kernel.low = vec2(3.0e38f);
   kernel.high = vec2(-3.0e38f);
   kernel.weight = 1.0f;
+  if (view.info.x == shadow_orthographic && !light.cone) {
+    // A distant rectangle that is not seen head-on is a parallelogram in the map: the box of the same second moments.
+    vec2 middle = 0.5f * (light.low + light.high);
+    vec3 r = centre + gap * (direction + middle.x * u + middle.y * v);
+    vec2 texel = size * shadow_project_local(view, r).uv;
+    vec3 reach_u = (light.high.x - light.low.x) * u;
+    vec3 reach_v = (light.high.y - light.low.y) * v;
+    vec2 reach = 0.5f * size * view.axis_x.w * gap *
+                 vec2(sqrt(reach_u.x * reach_u.x + reach_v.x * reach_v.x),
+                      sqrt(reach_u.y * reach_u.y + reach_v.y * reach_v.y));
+    kernel.low = texel - reach;
+    kernel.high = texel + reach;
+    return true;
+  }
   bool seen = false;
   for (int i = 0; i < 4; ++i) {
     vec2 p = vec2((i & 1) == 0 ? light.low.x : light.high.x, (i & 2) == 0 ? light.low.y : light.high.y);

@@ -28,9 +28,11 @@ LIMN_CONST uint shadow_faces_pair = 1u;    // two views, along +z and -z of the 
 LIMN_CONST uint shadow_faces_hemicube = 2u;  // +z, +x, -x, +y, -y
 LIMN_CONST uint shadow_faces_cube = 3u;      // the same and -z
 
+LIMN_CONST uint no_light = 0xffffffffu;  // parallel light that is no light of the scene
+
 struct ShadowLight {
   vec4 origin;  // xyz: the sample's position; directional: unit vector towards the light, w: 0 then, else 1
-  uvec4 info;   // x: first layer, y: shadow_faces_*, z: light, w: unused
+  uvec4 info;   // x: first layer, y: shadow_faces_*, z: light or no_light, w: unused
 };
 
 LIMN_FN uint shadow_face_count(uint faces) {

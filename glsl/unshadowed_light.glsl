@@ -1,7 +1,7 @@
 // L_u: what one unoccluded light adds to the radiance leaving a surface point, for every type of light.
 //
 // Point, spot and directional lights: the BRDF itself (a directional light's angular diameter is left to V).
-// A rectangle: the Lambertian part by the exact irradiance, the glossy part by linearly transformed cosines
+// A rectangle, distant or not: the Lambertian part by the exact irradiance, the glossy part by linearly transformed cosines
 // (glsl/ltc.glsl). Fresnel's term in both is taken at the half vector to the mean direction of the light
 // received and goes over into its mean over all directions as the light fills the lobe. Errors against
 // integration are stated in tests/unit/unshadowed_light_test.cpp.
@@ -48,11 +48,12 @@ LIMN_FN vec3 unshadowed_rectangle(Rectangle r, SurfaceBrdf s, vec3 n, vec3 ng, v
 // p: the point; n: shading normal; ng: geometric normal on the viewer's side; v: unit, to the viewer.
 // Result in W/(sr m^2).
 LIMN_FN vec3 unshadowed_light(Light light, SurfaceBrdf s, vec3 p, vec3 n, vec3 ng, vec3 v) {
-  if (light.info.x == light_rectangle) {
+  bool distant = light_is_distant_rectangle(light) && (light.info.y & light_flag_centre) == 0u;
+  if (light.info.x == light_rectangle || distant) {
     if (!rectangle_emits_towards(light, p)) return vec3(0.0f);
     float factor = receiver_factor(light, p);
     if (factor == 0.0f) return vec3(0.0f);
-    return vec3(light.emission) * (factor * unshadowed_rectangle(rectangle_from(light, p), s, n, ng, v));
+    return rectangle_radiance(light) * (factor * unshadowed_rectangle(rectangle_from(light, p), s, n, ng, v));
   }
   vec3 offset = vec3(light.position) - p;
   if (light.info.x == light_directional) offset = -vec3(light.direction);

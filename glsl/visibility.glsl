@@ -122,6 +122,11 @@ bool shadow_covers_receiver(ShadowCursor cursor, VisibilityQuery q) {
 // From the receiver to the near plane along the light's axis, metres: the gap of the initial kernel as published. The
 // near plane lies that far from the view's origin for directional lights, from the light for all others.
 float shadow_near_gap(ShadowCursor cursor, VisibilityQuery q) {
+  if (cursor.view.info.x == shadow_orthographic && !q.light.cone) {
+    // The map looks along the centre of the distant rectangle, which is not across the rectangle's plane.
+    float gap = shadow_view_depth(cursor.view, q.position) - cursor.view.origin.w;
+    return max(gap, 0.0) / -dot(cursor.view.axis_z.xyz, q.light.centre);
+  }
   float depth = q.light.cone ? dot(q.light.axis, q.position - cursor.view.origin.xyz) : q.light.depth;
   return max(depth - cursor.view.origin.w, 0.0);
 }

@@ -25,13 +25,19 @@ SceneOptions sceneOptions(const bench::Case& c) {
   options.scene = findScene(c.scene);
   options.camera = c.camera;
   options.light = c.light;
+  options.environment = c.environment.map;
+  options.environmentLights = {.threshold = c.environment.lights,
+                               .resolution = c.environment.resolution,
+                               .shape = c.environment.shape};
+  options.environmentReflection = c.environment.reflection;
   options.time = c.time;
   options.size = fmt::format("{}x{}", c.width, c.height);
   return options;
 }
 
 bool sameScene(const SceneOptions& a, const SceneOptions& b) {
-  return a.scene == b.scene && a.time == b.time;
+  return a.scene == b.scene && a.time == b.time && a.environment == b.environment &&
+         a.environmentLights == b.environmentLights && a.environmentReflection == b.environmentReflection;
 }
 
 render::Settings baseSettings(const View& view, render::Output output, int light) {

@@ -82,6 +82,14 @@ void SceneOptions::addTo(CLI::App& command) {
   command.add_option("--environment-rotation", environmentRotation, "About the vertical axis, degrees");
   command.add_option("--environment-scale", environmentScale, "Factor on the environment's radiance")
       ->check(CLI::Range(0.0, 1e9));
+  environmentLights.addTo(command, "environment-");
+  command
+      .add_option("--environment-reflection", environmentReflection,
+                  "area: the lights that stand for the environment are reflected as areas; centre: as if "
+                  "each came from "
+                  "its centre")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"area", "centre"}));
   command.add_option("--time", time, "Animation time, seconds")->check(CLI::Range(-1e6, 1e6));
   command.add_option("--animation", animation, "Animation by name or #index (default: the first)");
   command.add_option("--size", size, "Picture size WxH, pixels")->capture_default_str();
@@ -220,6 +228,13 @@ View open(const SceneOptions& options) {
   if (!options.environment.empty()) view.scene.environment = scene::loadEnvironment(options.environment);
   view.scene.environment.rotation += static_cast<float>(options.environmentRotation * degrees);
   view.scene.environment.scale *= static_cast<float>(options.environmentScale);
+  if (options.environmentLights.threshold > 0) {
+    if (!view.scene.environment)
+      throw UsageError("--environment-lights needs --environment: there is no map to find lights in");
+    view.scene.environment.lights =
+        shading::decomposeEnvironment(view.scene.environment, options.environmentLights.settings()).lights;
+    view.scene.environment.reflectCentres = options.environmentReflection == "centre";
+  }
   for (const std::string& warning : view.scene.warnings) fmt::print(stderr, "limn: warning: {}\n", warning);
   if (!options.animation.empty()) {
     std::vector<std::string> names;

@@ -22,6 +22,7 @@ struct EnvironmentLightOptions {
   double threshold = 0;  ///< 0: not at all
   int resolution = shading::DecompositionSettings{}.resolution;
   std::string shape = "squares";
+  bool operator==(const EnvironmentLightOptions&) const = default;
 
   /// As --lights, --resolution and --shape behind `prefix`.
   void addTo(CLI::App& command, const std::string& prefix);
@@ -37,6 +38,8 @@ struct SceneOptions {
   std::filesystem::path environment;
   double environmentRotation = 0;  ///< degrees
   double environmentScale = 1;
+  EnvironmentLightOptions environmentLights;
+  std::string environmentReflection = "area";  ///< of environmentLights: area or centre
   double time = 0;
   std::string animation;  ///< name or #index; empty: the first
   std::string size = "1280x720";

@@ -85,9 +85,16 @@ Cost costFromJson(const Json& json) {
 Json caseToJson(const Case& c) {
   Json parameters = Json::object();
   for (const auto& [name, value] : c.parameters) parameters[name] = value;
+  const EnvironmentSettings& e = c.environment;
+  Json environment = {{"map", e.map},
+                      {"lights", e.lights},
+                      {"resolution", e.resolution},
+                      {"shape", e.shape},
+                      {"reflection", e.reflection}};
   return {{"scene", c.scene},
           {"camera", c.camera},
           {"light", c.light},
+          {"environment", environment},
           {"time", c.time},
           {"technique", c.technique},
           {"parameters", parameters},
@@ -109,6 +116,12 @@ Case caseFromJson(const Json& json) {
   c.scene = json.at("scene").get<std::string>();
   c.camera = json.at("camera").get<std::string>();
   c.light = json.at("light").get<std::string>();
+  if (json.contains("environment")) {  // rows of earlier versions have none
+    const Json& e = json["environment"];
+    c.environment = {e.at("map").get<std::string>(), e.at("lights").get<double>(),
+                     e.at("resolution").get<int>(), e.at("shape").get<std::string>(),
+                     e.at("reflection").get<std::string>()};
+  }
   c.time = json.at("time").get<double>();
   c.technique = json.at("technique").get<std::string>();
   for (const auto& [name, value] : json.at("parameters").items()) {

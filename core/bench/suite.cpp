@@ -12,9 +12,24 @@
 
 namespace limn::bench {
 
+namespace {
+
+/// The lights that stand for the environment, for people; empty where there are none.
+std::string environmentLights(const EnvironmentSettings& e) {
+  if (!(e.lights > 0)) return {};
+  return fmt::format("{} {} {} {}", e.lights, e.resolution, e.shape, e.reflection);
+}
+
+}  // namespace
+
 std::string question(const Case& c) {
-  return fmt::format("{}/{}/{}/t{}/{}/{}x{}/spp{}/noise{}/bounces{}", c.scene, c.camera, c.light, c.time,
-                     c.term, c.width, c.height, c.reference.spp, c.reference.noise, c.reference.bounces);
+  std::string text =
+      fmt::format("{}/{}/{}/t{}/{}/{}x{}/spp{}/noise{}/bounces{}", c.scene, c.camera, c.light, c.time, c.term,
+                  c.width, c.height, c.reference.spp, c.reference.noise, c.reference.bounces);
+  if (!c.environment.map.empty()) text += "/" + c.environment.map;
+  // All light together is asked of the map itself.
+  if (!c.light.empty()) text += environmentLights(c.environment);
+  return text;
 }
 
 std::string label(const Case& c) {
@@ -22,6 +37,10 @@ std::string label(const Case& c) {
       fmt::format("{}/{}/{}/{}/{}x{}/{}/{}", c.scene, c.camera.empty() ? "first camera" : c.camera,
                   c.light.empty() ? "all lights" : c.light, c.term, c.width, c.height,
                   c.dynamic ? "dynamic" : "static", c.technique);
+  if (!c.environment.map.empty())
+    text = fmt::format("{}/{}", std::filesystem::path(c.environment.map).filename().string(), text);
+  if (c.environment.lights > 0)
+    text = fmt::format("environment lights {}/{}", environmentLights(c.environment), text);
   char separator = '?';
   for (const auto& [name, value] : c.parameters) {
     text += fmt::format("{}{}={}", separator, name, value);
@@ -36,6 +55,7 @@ std::string rowKey(const Case& c, std::string_view renderer) {
                                  c.frames, c.warmup, renderer);
   for (const auto& [name, value] : c.parameters) text += fmt::format("\x1e{}\x1f{}", name, value);
   if (c.timeWidth > 0) text += fmt::format("\x1d{}x{}", c.timeWidth, c.timeHeight);
+  if (c.environment.lights > 0) text += "\x1c" + environmentLights(c.environment);
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 

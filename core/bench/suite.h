@@ -15,6 +15,11 @@
 //     scene = "cornell_box"       # asset name or file
 //     cameras = ["front"]         # default: the first one
 //     lights = ["ceiling"]        # default: all lights together ("")
+//     environment = "sky.exr"     # equirectangular map
+//     environment_lights = [0, 0.015]   # thresholds, as --environment-lights; 0: the map unshadowed
+//     environment_resolution = 48       # and the other --environment options
+//     environment_shape = "squares"
+//     environment_reflection = "area"
 //
 //     [[techniques]]
 //     technique = "pcss"          # or a combination, "vssm,airlight"
@@ -44,13 +49,23 @@ struct ReferenceSettings {
   bool operator==(const ReferenceSettings&) const = default;
 };
 
+/// As the options --environment and --environment-...
+struct EnvironmentSettings {
+  std::string map;    ///< file; "": none but the scene's
+  double lights = 0;  ///< threshold; 0: not decomposed
+  int resolution = 48;
+  std::string shape = "squares", reflection = "area";
+  bool operator==(const EnvironmentSettings&) const = default;
+};
+
 /// One picture of one technique: a row of the results.
 struct Case {
   std::string scene;
   std::string camera;  ///< "": the scene's first
   std::string light;   ///< "": all
-  double time = 0;     ///< seconds of the scene's animation
-  std::string term;    ///< as --output-term
+  EnvironmentSettings environment;
+  double time = 0;   ///< seconds of the scene's animation
+  std::string term;  ///< as --output-term
   int width = 0, height = 0;
   std::string technique;                                        ///< one name, or several joined by ","
   std::vector<std::pair<std::string, std::string>> parameters;  ///< "technique.parameter", value

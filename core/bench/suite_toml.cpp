@@ -83,6 +83,29 @@ class Section {
     return *value;
   }
 
+  /// One number or a list of them.
+  std::vector<double> reals(const char* key, double otherwise, double low, double high) const {
+    const toml::node* node = find(key);
+    if (node == nullptr || !node->is_array()) return {real(key, otherwise, low, high)};
+    if (node->as_array()->empty()) failAt(*node, fmt::format("'{}' is an empty list", key));
+    std::vector<double> values;
+    for (const toml::node& element : *node->as_array()) {
+      const auto value = element.value<double>();
+      if (!value || !element.is_number() || !(*value >= low && *value <= high))
+        failAt(element, fmt::format("'{}' must be numbers in {}..{}", key, low, high));
+      values.push_back(*value);
+    }
+    return values;
+  }
+
+  /// One of `known`, the first where the key is missing.
+  std::string choice(const char* key, std::initializer_list<const char*> known) const {
+    const std::string value = text(key, *known.begin());
+    if (std::find(known.begin(), known.end(), value) == known.end())
+      failAt(*find(key), fmt::format("unknown {} '{}'; known are {}", key, value, fmt::join(known, ", ")));
+    return value;
+  }
+
   bool boolean(const char* key, bool otherwise) const {
     const toml::node* node = find(key);
     if (node == nullptr) return otherwise;
@@ -229,6 +252,19 @@ SweptTechnique parseTechnique(const std::string& file, const toml::table& table)
   return technique;
 }
 
+/// All but the threshold, of which there may be several.
+std::vector<double> parseEnvironment(const Section& scene, EnvironmentSettings& environment) {
+  environment = {};
+  environment.map = scene.text("environment", "");
+  environment.resolution = scene.integer("environment_resolution", environment.resolution, 1, 512);
+  environment.shape = scene.choice("environment_shape", {"squares", "rectangles"});
+  environment.reflection = scene.choice("environment_reflection", {"area", "centre"});
+  std::vector<double> thresholds = scene.reals("environment_lights", 0, 0, 0.5);
+  if (environment.map.empty() && scene.find("environment_lights") != nullptr)
+    scene.failAt(*scene.find("environment_lights"), "'environment_lights' needs an 'environment'");
+  return thresholds;
+}
+
 /// All cases that ask one question of every technique.
 void addCases(const Case& base, const std::vector<SweptTechnique>& techniques, const std::vector<bool>& modes,
               bool separationFloor, std::vector<Case>& cases) {
@@ -274,12 +310,15 @@ Suite buildSuite(const toml::table& root, const std::string& file) {
 
   Suite result{suite.text(suite.require("name"), "name"), {}};
   for (const toml::table* table : suite.tables("scenes")) {
-    const Section scene(file, *table, "[[scenes]]",
-                        {"scene", "cameras", "lights", "time", "term", "max_masked_share"});
+    const Section scene(
+        file, *table, "[[scenes]]",
+        {"scene", "cameras", "lights", "time", "term", "max_masked_share", "environment",
+         "environment_lights", "environment_resolution", "environment_shape", "environment_reflection"});
     base.scene = scene.text(scene.require("scene"), "scene");
     base.time = scene.real("time", 0.0, -1e6, 1e6);
     base.maxMaskedShare = scene.real("max_masked_share", 0.005, 0.0, 1.0);
     base.term = scene.term(term);
+    const std::vector<double> environmentLights = parseEnvironment(scene, base.environment);
     for (const std::string& camera : scene.texts("cameras", {""})) {
       for (const std::string& light : scene.texts("lights", {""})) {
         for (const auto& [width, height] : sizes) {
@@ -287,7 +326,10 @@ Suite buildSuite(const toml::table& root, const std::string& file) {
           base.light = light;
           base.width = width;
           base.height = height;
-          addCases(base, techniques, modes, separationFloor, result.cases);
+          for (const double threshold : environmentLights) {
+            base.environment.lights = threshold;
+            addCases(base, techniques, modes, separationFloor, result.cases);
+          }
           if (result.cases.size() > kMaxCases) {
             fail(file, table->source(), fmt::format("more than {} cases", kMaxCases));
           }

@@ -18,6 +18,10 @@ std::string parameterText(const Case& c) {
   std::string text;
   for (const auto& [name, value] : c.parameters)
     text += fmt::format("{}{}={}", text.empty() ? "" : " ", name, value);
+  const EnvironmentSettings& e = c.environment;
+  if (e.lights > 0)
+    text += fmt::format("{}environment lights {} of {}^2 {} {}", text.empty() ? "" : ", ", e.lights,
+                        e.resolution, e.shape, e.reflection);
   return text;
 }
 
@@ -30,6 +34,8 @@ std::string tableTitle(const Row& row) {
   std::string title = c.scene;
   if (!c.camera.empty()) title += ", camera " + c.camera;
   if (!c.light.empty()) title += ", light " + c.light;
+  if (!c.environment.map.empty())
+    title += ", environment " + std::filesystem::path(c.environment.map).filename().string();
   if (c.time != 0) title += fmt::format(", {} s", c.time);
   return title + fmt::format(": {}, {}x{}{}, {}, {}", c.term, c.width, c.height, timeSizeText(c),
                              c.dynamic ? "dynamic" : "static", row.cost.renderer);

@@ -79,20 +79,21 @@ void addScene(Hasher& h, const scene::Scene& scene) {
   h.addAll(e.width, e.height, e.texels, e.rotation, e.scale);
 }
 
-void addPose(Hasher& h, const scene::Pose& pose) {
+void addPose(Hasher& h, const scene::Pose& pose, int lights) {
   h.add(pose.instances.size());
   for (const auto& i : pose.instances)
     h.addAll(i.node == scene::none, i.mesh, i.primitive, i.objectToWorld, i.deformed);
   h.add(pose.deformed.size());
   for (const auto& d : pose.deformed) h.addAll(d.mesh, d.primitive, d.joints, d.morphWeights);
   for (const auto& d : pose.dynamic) addPrimitive(h, *d.primitive);
-  h.add(pose.lights);
+  h.add(std::vector<glsl::Light>(pose.lights.begin(), pose.lights.begin() + lights));
 }
 
 void addWork(Hasher& h, const Request& r) {
   h.add(codeVersion);
   addScene(h, r.scene);
-  addPose(h, r.pose);
+  // Lights that stand for the environment do not change pictures of all light.
+  addPose(h, r.pose, r.light == allLights ? ownLights(r.pose) : static_cast<int>(r.pose.lights.size()));
   h.addAll(r.camera.worldToView, r.camera.yfov, r.camera.near);
   h.addAll(r.width, r.height, r.term, r.light, r.seed, r.aa);
 }

@@ -19,7 +19,7 @@ class DirectIntegrator final : public Integrator {
       : rays_(rays), lights_(request.pose.lights), environment_(request.scene.environment) {
     const int count = static_cast<int>(lights_.size());
     first_ = request.light == allLights ? 0 : std::min(request.light, count);
-    last_ = request.light == allLights ? count : std::min(request.light + 1, count);
+    last_ = request.light == allLights ? ownLights(request.pose) : std::min(request.light + 1, count);
     withEnvironment_ = request.light == allLights || request.light == count;
   }
 
@@ -31,15 +31,14 @@ class DirectIntegrator final : public Integrator {
       const Samples samples{sampler, 3u * static_cast<uint32_t>(i), first, count};
       if (isPunctual(light))
         addPunctual(PointView(light, surface), surface, count, sums);
-      else if (light.info.x == glsl::light_rectangle)
+      else if (light.info.x == glsl::light_rectangle || glsl::light_is_distant_rectangle(light))
         addRectangle(RectangleView(light, surface), surface, samples, sums);
       else
         addCone(ConeView(light, surface), surface, samples, sums);
     }
     const EnvironmentView environment(environment_);
     if (withEnvironment_ && !environment.dark())
-      addSamples(environment, surface, {sampler, 3u * static_cast<uint32_t>(lights_.size()), first, count},
-                 sums);
+      addSamples(environment, surface, {sampler, 3u * static_cast<uint32_t>(last_), first, count}, sums);
   }
 
   glm::dvec3 estimate(const Sums& sums, double samples) const override {

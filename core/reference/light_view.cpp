@@ -19,7 +19,8 @@ float lightOffset(const glsl::Light& light) {
 
 bool isPunctual(const glsl::Light& light) {
   return light.info.x == glsl::light_point || light.info.x == glsl::light_spot ||
-         (light.info.x == glsl::light_directional && !(light.cone.w > 0.f));
+         (light.info.x == glsl::light_directional && !(light.cone.w > 0.f) &&
+          !glsl::light_is_distant_rectangle(light));
 }
 
 bool unblocked(const RayScene& rays, const Surface& receiver, const Arrival& arrival) {
@@ -52,7 +53,13 @@ RectangleView::RectangleView(const glsl::Light& light, const Surface& receiver)
   if (part_.count == 0) return;
   rectangle_ = glsl::rectangle_from(light, receiver_);
   area_ = glsl::rectangle_part_share(part_) * light.axis_u.w * light.axis_v.w;
-  radiance_ = glm::vec3(light.emission) * glsl::receiver_factor(light, receiver_);
+  radiance_ = glsl::rectangle_radiance(light) * glsl::receiver_factor(light, receiver_);
+  facing_ = glm::vec3(light.direction);
+  if (glsl::light_is_distant_rectangle(light)) {
+    facing_ = glm::cross(glm::vec3(light.axis_v), glm::vec3(light.axis_u));
+    return;
+  }
+  finite_ = true;
   clearance_ = lightOffset(light) * glsl::rectangle_side(light, receiver_) * glm::vec3(light.direction);
 }
 
@@ -62,9 +69,9 @@ Arrival RectangleView::at(glm::vec2 ab) const {
   const float distance2 = glm::dot(offset, offset);
   if (!(distance2 > 0.f)) return arrival;
   arrival.direction = offset / std::sqrt(distance2);
-  arrival.target = receiver_ + offset + clearance_;
-  arrival.finite = true;
-  const float projected = std::abs(glm::dot(glm::vec3(light_.direction), arrival.direction)) * area_;
+  if (finite_) arrival.target = receiver_ + offset + clearance_;
+  arrival.finite = finite_;
+  const float projected = std::abs(glm::dot(facing_, arrival.direction)) * area_;
   if (!(projected > 0.f)) return arrival;
   arrival.pdf = distance2 / projected;
   arrival.radiance = radiance_;
@@ -77,8 +84,7 @@ Arrival RectangleView::sample(glm::vec2 u) const {
 }
 
 Arrival RectangleView::towards(const glm::vec3& direction) const {
-  const glm::vec3 facing(light_.direction);
-  const float distance = glm::dot(facing, rectangle_.centre) / glm::dot(facing, direction);
+  const float distance = glm::dot(facing_, rectangle_.centre) / glm::dot(facing_, direction);
   if (!(distance > 0.f && std::isfinite(distance))) return {};
   const glm::vec3 offset = distance * direction - rectangle_.centre;
   const glm::vec2 ab(glm::dot(offset, glm::vec3(light_.axis_u)) / light_.axis_u.w,

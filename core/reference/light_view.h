@@ -39,8 +39,8 @@ class PointView {
   bool above_ = false;
 };
 
-/// The part of a rectangle that lies above the receiver's geometric tangent plane; samples are uniform in its
-/// area.
+/// The part of a rectangle, distant or not, that lies above the receiver's geometric tangent plane; samples
+/// are uniform in its area.
 class RectangleView {
  public:
   RectangleView(const glsl::Light& light, const Surface& receiver);
@@ -56,7 +56,9 @@ class RectangleView {
   glsl::Rectangle rectangle_{};
   glsl::RectanglePart part_{};
   glm::vec3 receiver_, normal_, radiance_{0}, clearance_{0};
-  float area_ = 0;  ///< of the part, m^2
+  glm::vec3 facing_{0};  ///< across the rectangle, towards the receiver or away from it
+  bool finite_ = false;  ///< else lengths are in units of the distant plane's distance
+  float area_ = 0;       ///< of the part, m^2
 };
 
 /// A directional light with an angular diameter: a cone of uniform radiance; samples are uniform in its solid

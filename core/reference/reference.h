@@ -25,7 +25,12 @@ LIMN_API const char* name(Term term);
 /// Throws UsageError naming the terms there are.
 LIMN_API Term termFromName(const std::string& name);
 
+/// All of the scene and the environment's map, not the lights that stand for it.
 constexpr int allLights = -1;
+
+/// How many lights of the pose are the scene's own: those that stand for parts of the environment come
+/// behind.
+LIMN_API int ownLights(const scene::Pose& pose);
 
 struct Progress {
   double fraction = 0;     ///< of the work, in [0, 1]; with a noise target an estimate

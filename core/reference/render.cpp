@@ -176,6 +176,14 @@ class Work {
 
 }  // namespace
 
+int ownLights(const scene::Pose& pose) {
+  const auto environment = [](const glsl::Light& light) {
+    return (light.info.y & glsl::light_flag_environment) != 0;
+  };
+  return static_cast<int>(std::find_if(pose.lights.begin(), pose.lights.end(), environment) -
+                          pose.lights.begin());
+}
+
 const char* name(Term term) {
   switch (term) {
     case Term::direct:

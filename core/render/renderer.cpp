@@ -74,6 +74,15 @@ void checkTechniques(const std::vector<TechniqueUse>& techniques, Output output)
                                    first->plugin->info->name, use.plugin->info->name));
     first = &use;
   }
+  first = nullptr;
+  for (const TechniqueUse& use : techniques) {
+    if (!contains(termsOf(use), Term::environment)) continue;
+    if (first)
+      throw UsageError(
+          fmt::format("techniques {} and {} both answer the environment's light; name one of them",
+                      first->plugin->info->name, use.plugin->info->name));
+    first = &use;
+  }
   if (output == Output::final || output == Output::direct) return;
   const bool answered = std::any_of(techniques.begin(), techniques.end(), [&](const TechniqueUse& use) {
     return contains(termsOf(use), termOf(output));
@@ -157,11 +166,16 @@ struct Renderer::Implementation {
     return nullptr;
   }
 
-  /// The lights that can contribute: the one asked for, or all that emit.
-  std::vector<uint32_t> activeLights() const {
+  /// The lights that can contribute: the one asked for, or all that emit, without those whose place a
+  /// technique takes.
+  std::vector<uint32_t> activeLights() {
     std::vector<uint32_t> lights;
+    const bool replaced = settings.light < 0 && answering(Term::environment) != nullptr;
+    if (replaced && !scene.environment.lights.empty())
+      graph->leaveOut("lights of the environment", "core", "a technique answers the environment's light");
     for (uint32_t i = 0; i < pose.lights.size(); ++i) {
       if (settings.light >= 0 && static_cast<uint32_t>(settings.light) != i) continue;
+      if (replaced && (pose.lights[i].info.y & glsl::light_flag_environment) != 0) continue;
       if (glm::vec3(pose.lights[i].emission) == glm::vec3(0) && settings.output != Output::visibility) {
         graph->leaveOut(fmt::format("light {}", pose.lightNames[i]), "core", "it emits nothing");
         continue;
@@ -191,6 +205,18 @@ struct Renderer::Implementation {
     return radiance;
   }
 
+  frame::TextureHandle addEnvironment(const Deferred::Frame& frame, frame::TextureHandle radiance) {
+    const char* why = nullptr;
+    if (!scene.environment) why = "no environment";
+    if (scene.environment && settings.light >= 0) why = "another light was chosen";
+    Use* use = answering(Term::environment);
+    if (!why && use) return ask(*use, Term::environment, {}, radiance);
+    if (!why && !scene.environment.lights.empty()) why = "lights stand for it";
+    if (!why) return deferred.addEnvironment(frame, radiance);
+    graph->leaveOut("environment light", "core", why);
+    return radiance;
+  }
+
   frame::TextureHandle addRadiance() {
     const Deferred::Frame frame{*graph, handles, gbuffer, settings.size};
     const bool all = settings.output == Output::final;
@@ -205,11 +231,7 @@ struct Renderer::Implementation {
         radiance = addDirect(frame, radiance, lights);
       else
         graph->leaveOut("lights", "core", "the scene has no light");
-      if (scene.environment && settings.light < 0)
-        radiance = deferred.addEnvironment(frame, radiance);
-      else
-        graph->leaveOut("environment light", "core",
-                        scene.environment ? "another light was chosen" : "no environment");
+      radiance = addEnvironment(frame, radiance);
     }
     for (const auto& [term, wanted] :
          {std::pair(Term::indirect, Output::indirect), std::pair(Term::caustic, Output::caustic),

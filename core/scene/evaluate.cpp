@@ -243,6 +243,12 @@ void addLights(const Scene& scene, Pose& pose) {
                                  instance.objectToWorld, static_cast<uint32_t>(i));
     if (light) add(*light, scene.nodes[at(instance.node)].name, mesh.name);
   }
+  std::string name;
+  for (std::size_t i = 0; i < scene.environment.lights.size(); ++i) {
+    name.clear();
+    fmt::format_to(std::back_inserter(name), "env#{}", i);
+    add(distantLight(scene.environment.lights[i], scene.environment), name, {});
+  }
 }
 
 }  // namespace

@@ -184,6 +184,8 @@ struct Environment {
   /// The same light as rectangles at infinity (shading::decomposeEnvironment), in the map's own frame and
   /// without scale; empty: not decomposed. They are lights of every pose, behind all others.
   std::vector<DistantRectangle> lights;
+  /// They are reflected as if each came from its centre (as published) instead of from its area.
+  bool reflectCentres = false;
   explicit operator bool() const { return width > 0; }
 };
 
@@ -261,7 +263,7 @@ struct Pose {
   std::vector<DrawInstance> instances;
   std::vector<Deformation> deformed;
   std::vector<DynamicGeometry> dynamic;  ///< parallel to Scene::dynamic
-  std::vector<glsl::Light> lights;       ///< punctual lights in node order, then emissive quads
+  std::vector<glsl::Light> lights;       ///< punctual lights in node order, then emissive quads, then the environment's
   std::vector<std::string> lightNames;   ///< parallel to lights; "#index" where the file gives no name
   std::vector<CameraPose> cameras;
   Bounds bounds;                       ///< world, all instances (skinned ones: conservative)

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <iterator>
 
+#include "glsl/equirectangular.glsl"
+#include "glsl/rectangle_light.glsl"
+
 namespace limn::scene {
 namespace {
 
@@ -63,6 +66,27 @@ std::optional<glsl::Light> quadLight(const Quad& quad, const Material& material,
   light.cone = glm::vec4(-1, -1, 0, 0);
   const uint32_t sides = material.doubleSided ? glsl::light_flag_two_sided : 0u;
   light.info = glm::uvec4(glsl::light_rectangle, glsl::light_flag_geometry | sides, instance, 0u);
+  return light;
+}
+
+glsl::Light distantLight(const DistantRectangle& rectangle, const Environment& environment) {
+  const auto turned = [&](const glm::vec3& d) {
+    return glsl::environment_world_direction(d, environment.rotation);
+  };
+  glsl::Light light{};
+  const glm::vec3 centre = turned(rectangle.centre);
+  light.position = glm::vec4(centre, 1);
+  light.direction = glm::vec4(-glm::normalize(centre), 0);
+  light.axis_u = glm::vec4(turned(rectangle.axisU), rectangle.sides.x);
+  light.axis_v = glm::vec4(turned(rectangle.axisV), rectangle.sides.y);
+  light.cone = glm::vec4(-1, -1, 0, 0);
+  light.info =
+      glm::uvec4(glsl::light_directional,
+                 glsl::light_flag_environment | (environment.reflectCentres ? glsl::light_flag_centre : 0u),
+                 glsl::no_instance, 0u);
+  const glsl::Rectangle seen = glsl::rectangle_from(light, glm::vec3(0));
+  light.emission = glm::vec4(rectangle.irradiance * environment.scale,
+                             glsl::rectangle_solid_angle(seen, glsl::rectangle_whole()));
   return light;
 }
 

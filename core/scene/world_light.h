@@ -13,6 +13,9 @@ glsl::Light punctualLight(const LightSource& source, const glm::vec2& area, cons
 std::optional<glsl::Light> quadLight(const Quad& quad, const Material& material,
                                      const glm::mat4& objectToWorld, uint32_t instance);
 
+/// A part of the environment, in the world.
+LIMN_API glsl::Light distantLight(const DistantRectangle& rectangle, const Environment& environment);
+
 glm::mat4 worldToView(const glm::mat4& nodeToWorld);
 
 /// `first`, else `second`, else "#index"; reuses the memory of `out`.

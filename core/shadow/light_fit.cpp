@@ -19,6 +19,10 @@ struct Axes {
 
 Axes axesOf(const glsl::Light& light) {
   const vec3 z(light.direction), u(light.axis_u), v(light.axis_v);
+  if (glsl::light_is_distant_rectangle(light)) {
+    const vec3 x = glm::normalize(u - glm::dot(u, z) * z);
+    return {x, glm::cross(x, z), z};
+  }
   const vec3 other = glm::cross(u, v);
   if (glm::dot(u, u) > 0.5f && glm::dot(v, v) > 0.5f && glm::dot(other, z) < -0.5f) return {u, v, z};
   const glsl::Frame frame = glsl::frame_around(-z);
@@ -232,8 +236,8 @@ LightLayout paraboloidLayout(const glsl::Light& light) {
 
 std::vector<glm::vec2> samplesOf(const glsl::Light& light, const ShadowMapDesc& desc) {
   if (desc.samples.empty()) return {glm::vec2(0.5f)};
-  const bool extended =
-      light.info.x == glsl::light_rectangle || (light.info.x == glsl::light_directional && light.cone.w > 0);
+  const bool extended = light.info.x == glsl::light_rectangle || glsl::light_is_distant_rectangle(light) ||
+                        (light.info.x == glsl::light_directional && light.cone.w > 0);
   return extended ? desc.samples : std::vector<glm::vec2>{glm::vec2(0.5f)};
 }
 

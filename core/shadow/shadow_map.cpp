@@ -14,6 +14,9 @@ namespace {
 using frame::Access;
 
 constexpr int64_t memoryLimit = int64_t{4} << 30;  // bytes of one request
+constexpr int64_t keptBytesPerTexel = 8;           // linear depth, and rasterised depth beside it
+constexpr int64_t keptLimit = int64_t{256}
+                              << 20;  // bytes of all maps that are kept; what is derived comes on top
 
 template <class T>
 bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
@@ -30,8 +33,10 @@ std::string_view projectionName(const LightLayout& layout) {
 /// One set of maps and what draws it.
 struct Request {
   std::vector<uint32_t> lights;
+  std::vector<glm::vec3> directions;  ///< of parallel light, instead of lights
   ShadowMapDesc desc;
   ShadowMaps maps;
+  bool kept = false;
   std::vector<LightLayout> layouts;
   std::vector<glsl::ShadowView> views;
   std::vector<glsl::ShadowLight> shadowLights;
@@ -88,13 +93,34 @@ struct ShadowMapService::Implementation {
     if (light.info.z < result.size()) result[light.info.z] = {};  // its own quad is not in its map
     return result;
   }
+  size_t countOf(const Request& request) const {
+    return request.directions.empty() ? request.lights.size() : request.directions.size();
+  }
+  /// The i-th light of a request.
+  glsl::Light lightOf(const Request& request, size_t i) const {
+    if (request.directions.empty()) return light(request.lights[i]);
+    glsl::Light parallel{};
+    parallel.direction = glm::vec4(request.directions[i], 0);
+    parallel.info = {glsl::light_directional, 0, glsl::no_instance, 0};
+    return parallel;
+  }
   std::vector<LightLayout> layoutsOf(const Request& request) const {
     std::vector<LightLayout> layouts;
-    for (const uint32_t l : request.lights)
-      layouts.push_back(fitLayout(light(l), boxesFor(light(l)), request.desc));
+    for (size_t i = 0; i < countOf(request); ++i) {
+      const glsl::Light l = lightOf(request, i);
+      layouts.push_back(fitLayout(l, boxesFor(l), request.desc));
+    }
     return layouts;
   }
-  bool cacheable(const ShadowMaps& maps) const { return requests.at(maps.index)->desc.cacheable; }
+  bool cacheable(const ShadowMaps& maps) const { return requests.at(maps.index)->kept; }
+  int64_t keptBytes() const {
+    int64_t bytes = 0;
+    for (const auto& request : requests)
+      if (request->kept)
+        bytes += int64_t{request->maps.size} * request->maps.size * keptBytesPerTexel * request->maps.layers;
+    return bytes;
+  }
+  ShadowMaps add(std::unique_ptr<Request> made);
   bool fit(Request& request) const;
   void check(const Request& request, size_t layers) const;
   void addPasses(Request& request);
@@ -104,16 +130,18 @@ struct ShadowMapService::Implementation {
 bool ShadowMapService::Implementation::fit(Request& request) const {
   std::vector<glsl::ShadowView> views;
   std::vector<glsl::ShadowLight> shadowLights;
-  for (size_t i = 0; i < request.lights.size(); ++i) {
-    const glsl::Light& l = light(request.lights[i]);
-    appendViews(l, request.lights[i], request.layouts[i], boxesFor(l), request.desc, views, shadowLights);
+  for (size_t i = 0; i < countOf(request); ++i) {
+    const glsl::Light l = lightOf(request, i);
+    appendViews(l, request.directions.empty() ? request.lights[i] : glsl::no_light, request.layouts[i],
+                boxesFor(l), request.desc, views, shadowLights);
   }
   request.depthViews.clear();
   for (const glsl::ShadowView& view : views) {
-    request.depthViews.push_back({.volume = cullVolume(view),
-                                  .skipInstance = lights[view.info.w].info.z,
-                                  .view = view.info.y,
-                                  .layer = static_cast<int>(view.info.y)});
+    request.depthViews.push_back(
+        {.volume = cullVolume(view),
+         .skipInstance = view.info.w == glsl::no_light ? glsl::no_instance : lights[view.info.w].info.z,
+         .view = view.info.y,
+         .layer = static_cast<int>(view.info.y)});
   }
   const bool changed = !sameBytes(views, request.views) || !sameBytes(shadowLights, request.shadowLights);
   request.views = std::move(views);
@@ -168,7 +196,7 @@ void ShadowMapService::Implementation::addPasses(Request& request) {
   scene::DrawPrograms programs;
   programs.opaque = program(false);
   programs.masked = scene.hasMasked() ? program(true) : programs.opaque;
-  if (request.desc.cacheable) raster.cacheable();
+  if (request.kept) raster.cacheable();
   raster.execute([this, &request, zbuffer, layered, paraboloid, programs](frame::PassContext& context) {
     const gl::Functions& gl = context.gl();
     const frame::TextureHandle depth = request.maps.depth;
@@ -206,28 +234,49 @@ void ShadowMapService::forget() {
 ShadowMaps ShadowMapService::request(std::span<const uint32_t> lights, const ShadowMapDesc& desc) {
   Implementation& s = *implementation_;
   for (const auto& known : s.requests) {
-    if (known->desc == desc && std::ranges::equal(known->lights, lights)) return known->maps;
+    if (known->desc == desc && known->directions.empty() && std::ranges::equal(known->lights, lights))
+      return known->maps;
   }
   auto made = std::make_unique<Request>();
   made->lights.assign(lights.begin(), lights.end());
   made->desc = desc;
-  made->layouts = s.layoutsOf(*made);
+  return s.add(std::move(made));
+}
+
+ShadowMaps ShadowMapService::request(std::span<const glm::vec3> directions, const ShadowMapDesc& desc) {
+  Implementation& s = *implementation_;
+  for (const auto& known : s.requests) {
+    if (known->desc == desc && !directions.empty() && std::ranges::equal(known->directions, directions))
+      return known->maps;
+  }
+  auto made = std::make_unique<Request>();
+  made->directions.assign(directions.begin(), directions.end());
+  made->desc = desc;
+  made->desc.samples.clear();
+  return s.add(std::move(made));
+}
+
+ShadowMaps ShadowMapService::Implementation::add(std::unique_ptr<Request> made) {
+  made->layouts = layoutsOf(*made);
   size_t layers = 0;
-  for (size_t i = 0; i < made->lights.size(); ++i)
+  for (size_t i = 0; i < countOf(*made); ++i)
     layers +=
-        glsl::shadow_face_count(made->layouts[i].faces) * samplesOf(s.light(made->lights[i]), desc).size();
-  s.check(*made, layers);
-  s.fit(*made);
+        glsl::shadow_face_count(made->layouts[i].faces) * samplesOf(lightOf(*made, i), made->desc).size();
+  check(*made, layers);
+  fit(*made);
   made->viewBuffer =
-      gpu::Buffer::of<glsl::ShadowView>(s.device, "shadow views", made->views, gpu::BufferUse::updated);
-  made->lightBuffer = gpu::Buffer::of<glsl::ShadowLight>(s.device, "shadow lights", made->shadowLights,
+      gpu::Buffer::of<glsl::ShadowView>(device, "shadow views", made->views, gpu::BufferUse::updated);
+  made->lightBuffer = gpu::Buffer::of<glsl::ShadowLight>(device, "shadow lights", made->shadowLights,
                                                          gpu::BufferUse::updated);
   made->maps.layers = static_cast<int>(made->views.size());
-  made->maps.size = desc.size;
-  made->maps.index = static_cast<uint32_t>(s.requests.size());
-  s.addPasses(*made);
-  s.requests.push_back(std::move(made));
-  return s.requests.back()->maps;
+  made->maps.size = made->desc.size;
+  made->maps.index = static_cast<uint32_t>(requests.size());
+  const int64_t before = keptBytes(),
+                bytes = int64_t{made->maps.size} * made->maps.size * keptBytesPerTexel * made->maps.layers;
+  made->kept = made->desc.cacheable && (before == 0 || before + bytes <= keptLimit);
+  addPasses(*made);
+  requests.push_back(std::move(made));
+  return requests.back()->maps;
 }
 
 MinMaxPyramid ShadowMapService::minMaxPyramid(const ShadowMaps& maps) {
@@ -298,6 +347,12 @@ uint32_t ShadowMapService::uncoveredPixels() const {
 std::vector<ShadowMapStats> ShadowMapService::stats() const {
   std::vector<ShadowMapStats> all;
   for (const auto& request : implementation_->requests) {
+    if (!request->directions.empty() && !request->views.empty())
+      all.push_back({.light = "parallel light",
+                     .projection = "orthographic",
+                     .layers = request->maps.layers,
+                     .near = request->views.front().origin.w,
+                     .far = request->views.front().axis_z.w});
     const size_t samples = std::max<size_t>(request->desc.samples.size(), 1);
     for (size_t i = 0; i < request->lights.size(); ++i) {
       const LightLayout& layout = request->layouts[i];

@@ -37,7 +37,8 @@ struct ShadowMapDesc {
   /// (1/2, 1/2) is the centre. Empty: the centre alone. Lights without extent have one map, which all samples
   /// share.
   std::vector<glm::vec2> samples = {};
-  /// Keep the maps while nothing changed. False where many batches of maps are to share one piece of memory.
+  /// Keep the maps while nothing changed, as long as all that are kept take no more than some memory. False
+  /// where many batches of maps are to share one piece of memory.
   bool cacheable = true;
   bool operator==(const ShadowMapDesc&) const = default;
 };
@@ -80,6 +81,10 @@ class LIMN_API ShadowMapService {
   /// Maps for `lights` (indices into Pose::lights), declared in the graph at the first request; equal
   /// requests share them. Throws UsageError if the maps would take more memory or layers than the device has.
   ShadowMaps request(std::span<const uint32_t> lights, const ShadowMapDesc& desc);
+  /// Maps for parallel light along `directions` (unit, of propagation) that belongs to no light of the pose:
+  /// one orthographic map around the scene for each, and a ShadowLight whose light is glsl::no_light. Samples
+  /// of `desc` are not used.
+  ShadowMaps request(std::span<const glm::vec3> directions, const ShadowMapDesc& desc);
 
   /// Resources derived from the maps of a request, built once per graph whoever asks.
   MinMaxPyramid minMaxPyramid(const ShadowMaps& maps);

@@ -25,6 +25,23 @@ VisibilityPass visibilityPass(const TechniqueInputs& inputs, const TermRequest& 
           .lightSize = sized ? p.real("light_size") : -1};
 }
 
+void readSurfaces(VisibilityPass& pass, const GBuffer& g) {
+  pass.declare = [before = pass.declare, g](frame::PassBuilder& builder) {
+    if (before) before(builder);
+    builder.read(g.normal, Access::sampled, "shading normals")
+        .read(g.albedo, Access::sampled, "base colour, metallic")
+        .read(g.material, Access::sampled, "roughness, specular")
+        .read(g.emission, Access::sampled, "specular colour");
+  };
+  pass.bind = [before = pass.bind, g](frame::PassContext& context, gpu::Program& program) {
+    if (before) before(context, program);
+    context.bindSampled(glsl::gbuffer_unit_normal, g.normal);
+    context.bindSampled(glsl::gbuffer_unit_albedo, g.albedo);
+    context.bindSampled(glsl::gbuffer_unit_material, g.material);
+    context.bindSampled(glsl::gbuffer_unit_emission, g.emission);
+  };
+}
+
 frame::TextureHandle addVisibilityPass(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                        frame::TextureHandle target, VisibilityPass pass) {
   const GBuffer& g = inputs.gbuffer;
@@ -49,7 +66,7 @@ frame::TextureHandle addVisibilityPass(frame::FrameGraph& graph, const Technique
     gpu::Program& kernel = context.program(program);
     kernel.use();
     kernel.set("bias", pass.bias);
-    kernel.set("light_size", pass.lightSize);
+    if (pass.lightSize) kernel.set("light_size", *pass.lightSize);
     context.bindUniform(glsl::FrameBlock::binding, scene.frame);
     context.bindSampled(glsl::gbuffer_unit_depth, g.depth);
     context.bindSampled(glsl::gbuffer_unit_geometric_normal, g.geometricNormal);

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -34,8 +35,8 @@ struct VisibilityPass {
   std::string_view technique;  ///< whose it is
   gpu::ProgramDesc program;    ///< a compute shader that includes glsl/visibility.glsl and writes image 0
   ShadowMaps maps;
-  float bias = 1;        ///< texel footprints
-  float lightSize = -1;  ///< < 0: the scene's
+  float bias = 1;                       ///< texel footprints
+  std::optional<float> lightSize = -1;  ///< < 0: the scene's; nullopt: the program asks for no light
   /// Sets further uniforms and binds what `declare` declared; may be empty.
   std::function<void(frame::PassContext&, gpu::Program&)> bind = {};
   std::function<void(frame::PassBuilder&)> declare = {};
@@ -48,6 +49,9 @@ struct VisibilityPass {
 LIMN_API VisibilityPass visibilityPass(const TechniqueInputs& inputs, const TermRequest& request,
                                        std::string_view technique,
                                        std::map<std::string, std::string> defines = {});
+
+/// Adds what glsl/gbuffer_input.glsl needs for pixel_surface(): to a pass that reflects light.
+LIMN_API void readSurfaces(VisibilityPass& pass, const GBuffer& gbuffer);
 
 /// Declares the pass; it writes one layer of `target` per light of the request. Returns the target after it.
 LIMN_API frame::TextureHandle addVisibilityPass(frame::FrameGraph& graph, const TechniqueInputs& inputs,

@@ -43,6 +43,8 @@ const char* name(Term term) {
       return "caustic";
     case Term::media:
       return "media";
+    case Term::environment:
+      return "environment";
   }
   return "";
 }

@@ -47,6 +47,9 @@ enum class Term : uint32_t {
   indirect = 4,
   caustic = 8,
   media = 16,
+  environment =
+      32,  ///< reflected light of the environment's map, shadows included; instead of all lights that stand
+           ///< for parts of it. One technique at most, beside one that answers visibility or direct
 };
 using TermSet = uint32_t;
 constexpr TermSet operator|(Term a, Term b) {
@@ -108,7 +111,8 @@ struct TechniqueInputs {
 /// One question to a technique.
 struct TermRequest {
   Term term;
-  /// The lights asked about (indices into Pose::lights). For visibility: one batch, answered layer by layer.
+  /// The lights asked about (indices into Pose::lights); none for environment. For visibility: one batch,
+  /// answered layer by layer.
   std::span<const uint32_t> lights;
   /// visibility: R16 array with one layer per entry of `lights`; the pass writes every pixel, and 1 where the
   /// pixel has no coverage or the light lies wholly behind the surface. Other terms: RGBA32F radiance to add

@@ -1,7 +1,7 @@
 // Reflected direct light, each sample of a light shadowed by its own map and reflected by the whole BRDF. Each batch adds
 // its part.
 #include "glsl/brdf.glsl"
-#include "samples.glsl"
+#include "glsl/shadow_samples.glsl"
 
 layout(binding = 0, rgba32f) uniform image2D radiance;
 uniform int light_count;
@@ -12,6 +12,11 @@ vec3 sample_irradiance(Light light, LightView view, vec3 receiver, vec3 offset) 
   if (view.cone) {
     // Uniform radiance E / (pi sin^2) over the solid angle 2 pi (1 - cos), with sin^2 = (1 - cos) (1 + cos).
     return light.emission.rgb * (2.0 / (2.0 - view.cap));
+  }
+  if (light_is_distant_rectangle(light)) {
+    // Uniform in the rectangle's plane: solid angle of a piece of its area, by the cube of the cosine.
+    float cosine = -dot(view.axis, offset);
+    return rectangle_radiance(light) * (light.axis_u.w * light.axis_v.w * cosine * cosine * cosine);
   }
   float distance2 = dot(offset, offset);
   float cosine = abs(dot(light.direction.xyz, offset)) * inversesqrt(distance2);

@@ -1,5 +1,5 @@
 // V as the lit share of the samples above the receiver's tangent plane. Each batch adds its part.
-#include "samples.glsl"
+#include "glsl/shadow_samples.glsl"
 
 #if ACCUMULATE
 layout(binding = 0, r16) uniform image2DArray visibility;

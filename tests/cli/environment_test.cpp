@@ -43,7 +43,26 @@ TEST_F(EnvironmentCommand, WritesTheOverlayAndRefusesWhatMakesNoSense) {
   expectRefused(limn({"environment", map(), "--shape", "discs"}), 2, {"discs", "squares", "rectangles"});
   expectRefused(limn({"environment", map(), "--overlay", "lights.jpg"}), 2, {"lights.jpg", ".png"});
   expectRefused(limn({"environment", map(), "--lights", "0.5", "--resolution", "256"}), 2, {"0.5", "1024"});
+  expectRefused(limn({"render", cornell_box, "--environment-lights", "0.02", "--out", "a.png"}), 2,
+                {"--environment-lights", "--environment"});
   expectRefused(limn({"environment", (folder_ / "none.hdr").string()}), 1, {"none.hdr"});
+}
+
+TEST_F(EnvironmentCommand, LightsOfTheEnvironmentShadowAndAreReferredToByName) {
+  const std::string environment = map();
+  const std::vector<std::string> scene{cornell_box, "--environment", environment, "--environment-lights",
+                                       "0.05",      "--size",        "32x24",     "--light",
+                                       "env#1",     "--out"};
+  const auto with = [&](std::vector<std::string> command, const char* out, std::vector<std::string> more) {
+    command.insert(command.end(), scene.begin(), scene.end());
+    command.push_back((folder_ / out).string());
+    command.insert(command.end(), more.begin(), more.end());
+    return limn(command);
+  };
+  const Outcome rendered = with({"render"}, "v.exr", {"--technique", "pcss", "--output-term", "visibility"});
+  EXPECT_EQ(rendered.status, 0) << rendered.err;
+  const Outcome traced = with({"reference"}, "r.exr", {"--term", "visibility", "--spp", "16"});
+  EXPECT_EQ(traced.status, 0) << traced.err;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // own in tests/golden/unshadowed.png). llvmpipe renders the same bits everywhere, so the bound is one 8-bit
 // step for differences between compilers. LIMN_UPDATE_GOLDEN=1 writes new ones: look at them before
 // committing.
+#include <algorithm>
 #include <cstdlib>
 
 #include "core/image/metrics.h"
@@ -17,12 +18,30 @@ constexpr float allowed = 1.01f / 255;  // of the sRGB-encoded value
 
 class GoldenTest : public RenderTest {
  protected:
-  /// Scenes side by side in one picture.
+  /// A grey sky with a window of light in it.
+  static scene::Environment sky() {
+    scene::Environment e;
+    e.width = 64;
+    e.height = 32;
+    for (int y = 0; y < e.height; ++y)
+      for (int x = 0; x < e.width; ++x)
+        e.texels.emplace_back(x >= 12 && x < 20 && y >= 6 && y < 12 ? 8.f : y < 16 ? 0.3f : 0.1f);
+    return e;
+  }
+
+  /// Scenes side by side in one picture; those that answer the environment's light are lit by a sky alone.
   Image strip(const std::vector<render::TechniqueUse>& techniques) {
+    const bool outdoors = std::ranges::any_of(techniques, [](const render::TechniqueUse& use) {
+      return contains(use.plugin->info->terms, Term::environment);
+    });
     const std::vector<std::string> scenes{"cornell_box", "balls", "lights"};
     Image whole(width * int(scenes.size()), height, {"R", "G", "B"});
     for (size_t s = 0; s < scenes.size(); ++s) {
-      const scene::Scene scene = asset(scenes[s]);
+      scene::Scene scene = asset(scenes[s]);
+      if (outdoors) {
+        for (scene::Node& node : scene.nodes) node.light = scene::none;
+        scene.environment = sky();
+      }
       render::Renderer renderer(device(), scene);
       const Image part = picture(renderer, settings(width, height, render::Output::final, techniques));
       for (int y = 0; y < height; ++y)

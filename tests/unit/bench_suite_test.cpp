@@ -49,6 +49,30 @@ void expectUsageError(const std::string& text, const std::string& message) {
   }
 }
 
+TEST(BenchSuite, EnvironmentsAreSweptByThreshold) {
+  const std::string start =
+      "name = \"e\"\nsizes = \"8x8\"\nterm = \"direct\"\n[[techniques]]\ntechnique = \"pcss\"\n"
+      "[[scenes]]\nscene = \"balls\"\n";
+  const Suite suite = parseSuite(start +
+                                     "environment = \"sky.exr\"\nenvironment_lights = [0, 0.015, 0.025]\n"
+                                     "environment_shape = \"rectangles\"\n",
+                                 "s.toml");
+  ASSERT_EQ(suite.cases.size(), 3u);
+  EXPECT_EQ(suite.cases[1].environment.lights, 0.015);
+  EXPECT_EQ(suite.cases[1].environment.shape, "rectangles");
+  EXPECT_EQ(suite.cases[1].environment.resolution, 48);
+  EXPECT_EQ(question(suite.cases[0]), question(suite.cases[2])) << "all of them approximate the map";
+  EXPECT_NE(rowKey(suite.cases[0], ""), rowKey(suite.cases[1], ""));
+  Case one = suite.cases[1], other = suite.cases[2];
+  one.light = other.light = "env#0";
+  EXPECT_NE(question(one), question(other)) << "env#0 is not the same light";
+  expectUsageError(start + "environment_lights = 0.015\n", "needs an 'environment'");
+  expectUsageError(start + "environment = \"sky.exr\"\nenvironment_lights = [0.015, 2]\n",
+                   "'environment_lights'");
+  expectUsageError(start + "environment = \"sky.exr\"\nenvironment_shape = \"discs\"\n",
+                   "squares, rectangles");
+}
+
 TEST(BenchSuite, ExpandsAllCombinations) {
   const Suite suite = parseSuite(kSuite, "s.toml");
   EXPECT_EQ(suite.name, "test");

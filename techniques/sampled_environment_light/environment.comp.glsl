@@ -1,0 +1,33 @@
+// Reflected light of the environment as a sum over directions, each shadowed by its own map and reflected by the whole
+// BRDF. Each batch adds its part.
+#include "glsl/brdf.glsl"
+#include "glsl/shadow_samples.glsl"
+
+layout(binding = 0, rgba32f) uniform image2D radiance;
+layout(std430, binding = 4) readonly buffer Irradiance { vec4 irradiance[]; };  // on surfaces that face the sample, were it all
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, imageSize(radiance)))) return;
+  float depth = pixel_depth(pixel);
+  if (depth == 0.0) return;
+  GBufferSurface s = pixel_surface(pixel);
+  if ((s.flags & gbuffer_flag_specular) != 0u) return;
+  SurfaceBrdf surface =
+      surface_brdf(s.base_colour, s.metallic, s.roughness, s.specular_factor, s.specular_colour, s.ior);
+  VisibilityQuery q;
+  q.position = pixel_position(pixel, depth);
+  q.normal = s.geometric_normal;
+  vec3 to_viewer = normalize(frame.camera_position.xyz - q.position);
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < batch_samples; ++i) {
+    ShadowLight maps = shadow_lights[i];
+    vec3 direction = maps.origin.xyz;
+    float cosine = dot(s.normal, direction);
+    if (cosine <= 0.0 || dot(q.normal, direction) <= 0.0) continue;
+    q.light.axis = -direction;
+    if (!sample_visible(q, maps)) continue;
+    sum += brdf(surface, s.normal, to_viewer, direction) * cosine * irradiance[first_sample + i].rgb;
+  }
+  imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(sum / float(total_samples), 0.0));
+}

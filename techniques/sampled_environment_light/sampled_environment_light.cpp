@@ -1,0 +1,99 @@
+// The environment as many directions, each with a hard shadow map of its own: what its decomposition into
+// area lights is compared with on the GPU.
+#include <vector>
+
+#include "core/reference/environment.h"
+#include "core/scene/gpu_scene.h"
+#include "core/shadow/sample_batches.h"
+#include "core/shadow/visibility_pass.h"
+#include "core/technique/technique.h"
+
+namespace {
+
+using namespace limn;
+using frame::Access;
+
+constexpr Parameter parameters[] = {
+    integer("samples", 64, {1, 4096}, "samples", "Directions, and shadow maps rendered along them")
+        .quality()
+        .logScale(),
+    shadow::shadowMapSizeParameter(512),
+    shadow::biasParameter(),
+    shadow::memoryParameter(),
+};
+
+class SampledEnvironmentLight : public Technique {
+  std::vector<glm::vec3> directions_;  ///< of propagation
+  gpu::Buffer irradiance_;             ///< of each sample on a surface that faces it, were it all: vec4
+
+  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                 const TermRequest& request) override {
+    const reference::EnvironmentLight environment(inputs.scene.environment);
+    if (!environment.present()) {
+      graph.leaveOut("environment", info.name, "the environment is black");
+      return request.target;
+    }
+    takeSamples(environment, inputs);
+    const frame::BufferHandle irradiance = graph.importBuffer("irradiance of the samples", irradiance_);
+    frame::TextureHandle target = request.target;
+    for (const shadow::SampleBatch& batch : shadow::sampleBatches(
+             inputs.parameters.integer("samples"), 1, inputs.parameters.integer("shadow_map_size"),
+             inputs.parameters.integer("memory")))
+      target = addBatch(graph, inputs, target, irradiance, batch);
+    return target;
+  }
+
+  /// Directions by the map's own density, so that all samples are about equally bright.
+  void takeSamples(const reference::EnvironmentLight& environment, const TechniqueInputs& inputs) {
+    const int count = inputs.parameters.integer("samples");
+    std::vector<glm::vec4> irradiance;
+    directions_.clear();
+    for (int i = 0; i < count; ++i) {
+      const glm::vec3 towards = environment.sample(shadow::samplePlace(i));
+      const float density = environment.pdf(towards);
+      directions_.push_back(-glm::normalize(towards));
+      irradiance.emplace_back(density > 0 ? environment.radiance(towards) / density : glm::vec3(0), 0);
+    }
+    irradiance_ =
+        gpu::Buffer::of<glm::vec4>(inputs.gpuScene.device(), "irradiance of the samples", irradiance);
+  }
+
+  frame::TextureHandle addBatch(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                frame::TextureHandle target, frame::BufferHandle irradiance,
+                                const shadow::SampleBatch& batch) {
+    const std::span<const glm::vec3> directions =
+        std::span(directions_).subspan(static_cast<size_t>(batch.first), static_cast<size_t>(batch.count));
+    shadow::VisibilityPass pass{
+        .name = "environment",
+        .technique = info.name,
+        .program = {.files = {"techniques/sampled_environment_light/environment.comp.glsl"}, .defines = {}},
+        .maps = inputs.shadowMaps.request(directions, {.size = inputs.parameters.integer("shadow_map_size"),
+                                                       .cacheable = batch.count == batch.total}),
+        .bias = inputs.parameters.real("bias"),
+        .lightSize = std::nullopt,
+        .bind =
+            [batch, irradiance](frame::PassContext& context, gpu::Program& program) {
+              shadow::setBatch(program, batch);
+              context.bindStorage(4, irradiance);
+            },
+        .declare =
+            [irradiance](frame::PassBuilder& builder) {
+              builder.read(irradiance, Access::storageLoad, "what each direction brings");
+            },
+        .accumulate = true};
+    shadow::readSurfaces(pass, inputs.gbuffer);
+    return shadow::addVisibilityPass(graph, inputs, target, std::move(pass));
+  }
+
+ public:
+  static constexpr TechniqueInfo info{
+      .name = "sampled_environment_light",
+      .title = "Sampled environment light",
+      .source = "the thesis, figures 5.10 and 5.11 (shadow maps of many samples)",
+      .terms = termSet(Term::environment),
+      .parameters = parameters};
+};
+
+}  // namespace
+
+LIMN_TECHNIQUE(SampledEnvironmentLight::info, SampledEnvironmentLight)

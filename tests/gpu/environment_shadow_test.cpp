@@ -1,0 +1,274 @@
+// The environment with shadows: area lights that stand for it, and techniques that answer it as a whole.
+#include <glm/gtc/quaternion.hpp>
+
+#include "core/base/error.h"
+#include "core/reference/reference.h"
+#include "core/shading/environment_decomposition.h"
+#include "glsl/equirectangular.glsl"
+#include "tests/gpu/render_test.h"
+
+namespace limn {
+namespace {
+
+using glm::vec2;
+using glm::vec3;
+using render::Output;
+
+class EnvironmentShadowTest : public RenderTest {
+ protected:
+  /// A bluish sky with a soft sun, a window's worth of light from one side, and a dark ground.
+  static scene::Environment sky() {
+    scene::Environment e;
+    e.width = 128;
+    e.height = 64;
+    const vec3 sun = glm::normalize(vec3(0.5f, 0.8f, 0.4f));
+    for (int y = 0; y < e.height; ++y) {
+      for (int x = 0; x < e.width; ++x) {
+        const vec3 d = glsl::equirectangular_direction(
+            vec2((static_cast<float>(x) + 0.5f) / 128, (static_cast<float>(y) + 0.5f) / 64));
+        vec3 radiance = d.y > 0 ? vec3(0.3f, 0.4f, 0.6f) : vec3(0.1f);
+        if (glm::dot(d, sun) > 0.98f) radiance += vec3(20, 18, 15);
+        if (d.x < -0.8f && std::abs(d.y) < 0.3f) radiance += vec3(3);
+        e.texels.push_back(radiance);
+      }
+    }
+    return e;
+  }
+
+  static scene::Environment uniform(float radiance) {
+    scene::Environment e;
+    e.width = 32;
+    e.height = 16;
+    e.texels.assign(32 * 16, vec3(radiance));
+    return e;
+  }
+
+  /// Without lights of its own, and with an environment in up to about `threshold` lights (0: not
+  /// decomposed).
+  static scene::Scene lit(scene::Scene scene, scene::Environment environment, double threshold) {
+    for (scene::Node& node : scene.nodes) node.light = scene::none;
+    scene.environment = std::move(environment);
+    if (threshold > 0)
+      scene.environment.lights =
+          shading::decomposeEnvironment(scene.environment, {.threshold = threshold, .resolution = 24}).lights;
+    return scene;
+  }
+
+  /// A white Lambertian floor that fills the picture.
+  static scene::Scene floor() {
+    scene::Scene scene;
+    scene::Material material;
+    material.metallic = 0;
+    material.specularFactor = 0;
+    scene.materials.push_back(material);
+    scene::Primitive p;
+    p.positions = {{-50, 0, 50}, {50, 0, 50}, {50, 0, -50}, {-50, 0, -50}};
+    p.normals.assign(4, {0, 1, 0});
+    p.indices = {0, 1, 2, 0, 2, 3};
+    p.material = 0;
+    for (const vec3& v : p.positions) p.bounds.add(v);
+    scene.meshes.push_back({"floor", {p}, {}});
+    scene::Node node;
+    node.mesh = 0;
+    scene.nodes.push_back(node);
+    scene::Node camera;
+    camera.camera = 0;
+    camera.transform.translation = {0, 4, 0};
+    camera.transform.rotation = glm::angleAxis(-0.5f * glsl::pi, vec3(1, 0, 0));
+    scene.cameras.emplace_back();
+    scene.nodes.push_back(camera);
+    return scene;
+  }
+
+  static Image reference(const scene::Scene& scene, const render::Settings& s, int spp) {
+    const scene::Pose pose = scene::evaluate(scene, 0);
+    reference::Request request{
+        .scene = scene, .pose = pose, .camera = pose.cameras.at(0), .progress = {}, .checkpoint = {}};
+    request.width = s.size.x;
+    request.height = s.size.y;
+    request.term = s.output == Output::visibility ? reference::Term::visibility : reference::Term::direct;
+    request.light = s.light < 0 ? reference::allLights : s.light;
+    request.spp = spp;
+    return reference::render(request).image.select({"R", "G", "B"});
+  }
+};
+
+TEST_F(EnvironmentShadowTest, PosesHoldTheLightsOfTheEnvironmentBehindTheirOwn) {
+  scene::Scene scene = asset("balls");
+  const size_t own = scene::evaluate(scene, 0).lights.size();
+  scene.environment = sky();
+  scene.environment.rotation = 0.5f;
+  scene.environment.scale = 2;
+  scene.environment.lights = shading::decomposeEnvironment(scene.environment, {}).lights;
+  const scene::Pose pose = scene::evaluate(scene, 0);
+  ASSERT_EQ(pose.lights.size(), own + scene.environment.lights.size());
+  EXPECT_EQ(reference::ownLights(pose), static_cast<int>(own));
+  EXPECT_EQ(pose.lightNames[own + 1], "env#1");
+  const glsl::Light& sun = pose.lights[own];
+  const vec3 expected = glsl::environment_world_direction(glm::normalize(vec3(0.5f, 0.8f, 0.4f)), 0.5f);
+  EXPECT_GT(glm::dot(-vec3(sun.direction), expected), 0.97f);
+  EXPECT_FLOAT_EQ(sun.emission.y, 2 * scene.environment.lights[0].irradiance.y);
+  double solidAngle = 0;
+  for (size_t i = own; i < pose.lights.size(); ++i) solidAngle += double(pose.lights[i].emission.w);
+  EXPECT_GT(solidAngle, 4 * 3.14159) << "they cover the sphere, overlapping";
+}
+
+TEST_F(EnvironmentShadowTest, VisibilityOfEachLightConvergesToTheReference) {
+  const scene::Scene scene = lit(asset("balls"), sky(), 0.05);
+  render::Renderer renderer(device(), scene);
+  const int lights = static_cast<int>(renderer.pose().lights.size());
+  ASSERT_GT(lights, 5);
+  int tested = 0;
+  for (int light = 0; light < lights && tested < 3; ++light) {
+    // What shines along a floor is shadowed by parts of it that rise less than a texel above the tangent
+    // plane.
+    const vec3 from = -vec3(renderer.pose().lights[static_cast<size_t>(light)].direction);
+    if (from.y < 0.6f) continue;
+    ++tested;
+    SCOPED_TRACE(renderer.pose().lightNames[static_cast<size_t>(light)]);
+    render::Settings s = settings(96, 72, Output::visibility, {}, light);
+    const Image truth = reference(scene, s, 256);
+    s.techniques = {technique("sampled_area_light", {{"samples", "256"}, {"shadow_map_size", "512"}})};
+    const double sampled = rmse(picture(renderer, s), truth);
+    s.techniques = {technique("pcss", {{"shadow_map_size", "512"}})};
+    const double soft = rmse(picture(renderer, s), truth);
+    s.techniques = {technique("hard_shadow_map", {{"shadow_map_size", "512"}})};
+    const double hard = rmse(picture(renderer, s), truth);
+    RecordProperty("light " + std::to_string(light),
+                   std::to_string(sampled) + " " + std::to_string(soft) + " " + std::to_string(hard));
+    EXPECT_LT(sampled, 0.04);
+    EXPECT_LT(soft, 0.2);
+    EXPECT_LT(soft, hard);
+  }
+}
+
+TEST_F(EnvironmentShadowTest, AUniformSkyOverAPlaneGivesPiTimesItsRadiance) {
+  // Overlapping lights share the sky unevenly; six whole faces do not.
+  for (const auto& [threshold, error] : {std::pair(0.02, 2e-3f), std::pair(0.1, 0.02f)}) {
+    const scene::Scene scene = lit(floor(), uniform(0.7f), threshold);
+    render::Renderer renderer(device(), scene);
+    const Image picture = this->picture(renderer, settings(16, 12, Output::direct));
+    for (const float v : picture.data()) EXPECT_NEAR(v, 0.7f, 0.7f * error);
+  }
+}
+
+TEST_F(EnvironmentShadowTest, LightsReflectedFromTheirCentresAreThePublishedApproximation) {
+  scene::Scene scene = lit(floor(), uniform(1), 0.02);
+  scene.environment.reflectCentres = true;
+  double expected = 0;
+  for (const scene::DistantRectangle& light : scene.environment.lights)
+    expected +=
+        std::max(0.0, double(light.irradiance.x) * double(glm::normalize(light.centre).y)) / 3.14159265;
+  render::Renderer renderer(device(), scene);
+  const Image picture = this->picture(renderer, settings(16, 12, Output::direct));
+  EXPECT_NEAR(picture.at(8, 6, 0), expected, 1e-3);
+}
+
+TEST_F(EnvironmentShadowTest, ALightAloneIsWhatTheReferenceSays) {
+  const scene::Scene scene = lit(asset("balls"), sky(), 0.05);
+  render::Renderer renderer(device(), scene);
+  render::Settings s =
+      settings(96, 72, Output::direct, {technique("sampled_area_light", {{"samples", "256"}})}, 0);
+  const Image truth = reference(scene, s, 256);
+  EXPECT_LT(rmse(picture(renderer, s), truth), 0.05 * mean(truth));
+}
+
+TEST_F(EnvironmentShadowTest, ManyLightsAreMoreExactThanNoShadows) {
+  const scene::Scene scene = lit(asset("balls"), sky(), 0.05), unshadowed = lit(asset("balls"), sky(), 0);
+  render::Renderer renderer(device(), scene), plain(device(), unshadowed);
+  const render::Settings bare = settings(96, 72, Output::direct);
+  const Image truth = reference(scene, bare, 256);
+  EXPECT_LT(rmse(truth, reference(unshadowed, bare, 256)), 1e-6) << "the reference integrates the map itself";
+  render::Settings s = settings(96, 72, Output::direct, {technique("pcss", {{"shadow_map_size", "512"}})});
+  const double shadowed = rmse(picture(renderer, s), truth), without = rmse(picture(plain, bare), truth);
+  EXPECT_LT(shadowed, 0.5 * without);
+  EXPECT_LT(shadowed, 0.15 * mean(truth));
+}
+
+TEST_F(EnvironmentShadowTest, MemoryIsBoundedByBatches) {
+  const auto bytes = [&](size_t lights, bool dynamic) {
+    scene::Scene scene = lit(asset("balls"), sky(), 0.2);
+    EXPECT_GE(scene.environment.lights.size(), lights);
+    scene.environment.lights.resize(lights);
+    render::Renderer renderer(device(), scene);
+    render::Settings s = settings(64, 48, Output::direct, {technique("pcss", {{"shadow_map_size", "2048"}})});
+    s.dynamic = dynamic;
+    picture(renderer, s);
+    return static_cast<double>(renderer.memoryBytes());
+  };
+  const double eight = bytes(8, true);
+  EXPECT_LT(bytes(64, true) - eight, 300 << 20) << "maps of the other lights alone are 900 MiB";
+  EXPECT_LT(bytes(64, false) - eight, 300 << 20);
+}
+
+TEST_F(EnvironmentShadowTest, ATechniqueTakesThePlaceOfTheLights) {
+  for (const std::string& name : techniquesAnswering(Term::environment)) {
+    SCOPED_TRACE(name);
+    const scene::Scene whole = lit(asset("balls"), sky(), 0), parts = lit(asset("balls"), sky(), 0.05);
+    render::Renderer a(device(), whole), b(device(), parts);
+    const render::Settings s = settings(64, 48, Output::direct, {quick(name), technique("hard_shadow_map")});
+    const Image first = picture(a, s), second = picture(b, s);
+    EXPECT_EQ(rmse(first, second), 0);
+    EXPECT_GT(mean(first), 0);
+    EXPECT_THROW(a.configure(settings(8, 8, Output::direct, {quick(name), quick(name)})), UsageError);
+    EXPECT_THROW(a.configure(settings(8, 8, Output::visibility, {quick(name)})), UsageError);
+  }
+}
+
+TEST_F(EnvironmentShadowTest, EveryTechniqueConvergesToTheReference) {
+  const scene::Scene scene = lit(asset("balls"), sky(), 0);
+  render::Renderer renderer(device(), scene);
+  const Image truth = reference(scene, settings(96, 72, Output::direct), 1024);
+  for (const std::string& name : techniquesAnswering(Term::environment)) {
+    SCOPED_TRACE(name);
+    std::vector<double> errors;
+    for (const char* samples : {"16", "64", "256"})
+      errors.push_back(
+          rmse(picture(renderer, settings(96, 72, Output::direct, {technique(name, {{"samples", samples}})})),
+               truth));
+    RecordProperty(
+        name, std::to_string(errors[0]) + " " + std::to_string(errors[1]) + " " + std::to_string(errors[2]));
+    // At least the slope of independent samples.
+    EXPECT_LT(errors[1], 0.6 * errors[0]);
+    EXPECT_LT(errors[2], 0.6 * errors[1]);
+    EXPECT_LT(errors[2], 0.06 * mean(truth));
+  }
+}
+
+TEST_F(EnvironmentShadowTest, EveryTechniqueGivesTheClosedFormOverAPlane) {
+  for (const std::string& name : techniquesAnswering(Term::environment)) {
+    SCOPED_TRACE(name);
+    const scene::Scene scene = lit(floor(), uniform(0.7f), 0);
+    render::Renderer renderer(device(), scene);
+    const Image picture =
+        this->picture(renderer, settings(16, 12, Output::direct, {technique(name, {{"samples", "500"}})}));
+    for (const float v : picture.data()) EXPECT_NEAR(v, 0.7f, 0.7f * 0.01f);
+  }
+}
+
+TEST_F(EnvironmentShadowTest, TechniquesLeaveScenesWithoutEnvironmentAlone) {
+  for (const std::string& name : techniquesAnswering(Term::environment)) {
+    SCOPED_TRACE(name);
+    const scene::Scene scene = asset("balls"), black = lit(asset("balls"), uniform(0), 0);
+    render::Renderer renderer(device(), scene), dark(device(), black);
+    EXPECT_EQ(rmse(picture(renderer, settings(64, 48, Output::direct, {quick(name)})),
+                   picture(renderer, settings(64, 48, Output::direct))),
+              0);
+    expectWithin(picture(dark, settings(64, 48, Output::direct, {quick(name)})), 0, 0);
+  }
+}
+
+TEST_F(EnvironmentShadowTest, BatchesOfAnySizeGiveTheSamePicture) {
+  const scene::Scene scene = lit(asset("balls"), sky(), 0);
+  render::Renderer renderer(device(), scene);
+  const auto with = [&](const char* memory) {
+    return picture(
+        renderer, settings(64, 48, Output::direct,
+                           {technique("sampled_environment_light",
+                                      {{"samples", "40"}, {"shadow_map_size", "256"}, {"memory", memory}})}));
+  };
+  EXPECT_LT(rmse(with("1"), with("256")), 1e-6);
+}
+
+}  // namespace
+}  // namespace limn
