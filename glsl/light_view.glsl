@@ -19,7 +19,8 @@ struct LightView {
   vec3 normal;    // of that plane
   vec3 axis;      // unit, from the light towards the receiver's side; directional: the direction of propagation;
                   // distant rectangle: across its plane
-  float depth;    // of the receiver along the axis, from the light (directional: from the world's origin), metres
+  float depth;    // of the receiver along the axis, from the light (disc: from the world's origin; distant rectangle:
+                  // beyond all), metres
   vec3 centre;    // slope of the light's centre
   vec3 side_u;    // and of its sides
   vec3 side_v;
@@ -94,7 +95,7 @@ LIMN_FN LightView light_view(Light light, vec3 receiver, vec3 ng, float size) {
   light_view_clip(v, dot(ng, to_centre), vec2(dot(ng, u), dot(ng, w)));
   // What lies in the tangent plane lights nothing.
   if (!v.extended) v.masked = v.masked || !(dot(ng, to_centre) > 0.0f);
-  if (distant) v.depth = dot(v.axis, receiver);
+  if (distant) v.depth = 3.0e38f;
   return v;
 }
 
