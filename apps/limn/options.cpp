@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <system_error>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -314,6 +315,10 @@ int guarded(const std::function<int()>& work) {
     return 2;
   } catch (const std::bad_alloc&) {
     say("out of memory");
+  } catch (const fs::filesystem_error& error) {
+    say(error.what());
+  } catch (const std::system_error& error) {  // of fmt::print: the buffer was full before the end
+    say("standard output cannot be written: " + error.code().message());
   } catch (const std::exception& error) {
     say(error.what());
   }

@@ -85,9 +85,11 @@ float filtered(inout ShadowCursor cursor, VisibilityQuery q, float gap) {
     kernel.low -= widen;
     kernel.high += widen;
     vec2 extent = kernel.high - kernel.low;
-    float share = max(extent.x, extent.y) <= float(direct_texels)
-                      ? 1.0 - texel_kernel_lit(cursor, kernel.low, kernel.high)
-                      : kernel_blockers(cursor, kernel).texels / (extent.x * extent.y);
+    // From texels to moments by degrees, between direct_texels and a quarter more: the two answers differ.
+    float direct = direct_texels > 0 ? clamp(5.0 - 4.0 * max(extent.x, extent.y) / float(direct_texels), 0.0, 1.0) : 0.0;
+    float share = 0.0;
+    if (direct > 0.0) share += direct * (1.0 - texel_kernel_lit(cursor, kernel.low, kernel.high));
+    if (direct < 1.0) share += (1.0 - direct) * kernel_blockers(cursor, kernel).texels / (extent.x * extent.y);
     blocked += kernel.weight * share;
     total += kernel.weight;
   }
