@@ -26,20 +26,10 @@ VisibilityPass visibilityPass(const TechniqueInputs& inputs, const TermRequest& 
 }
 
 void readSurfaces(VisibilityPass& pass, const GBuffer& g) {
-  pass.declare = [before = pass.declare, g](frame::PassBuilder& builder) {
-    if (before) before(builder);
-    builder.read(g.normal, Access::sampled, "shading normals")
-        .read(g.albedo, Access::sampled, "base colour, metallic")
-        .read(g.material, Access::sampled, "roughness, specular")
-        .read(g.emission, Access::sampled, "specular colour");
-  };
-  pass.bind = [before = pass.bind, g](frame::PassContext& context, gpu::Program& program) {
-    if (before) before(context, program);
-    context.bindSampled(glsl::gbuffer_unit_normal, g.normal);
-    context.bindSampled(glsl::gbuffer_unit_albedo, g.albedo);
-    context.bindSampled(glsl::gbuffer_unit_material, g.material);
-    context.bindSampled(glsl::gbuffer_unit_emission, g.emission);
-  };
+  pass.sampled.insert(pass.sampled.end(), {{glsl::gbuffer_unit_normal, g.normal, "shading normals"},
+                                           {glsl::gbuffer_unit_albedo, g.albedo, "base colour, metallic"},
+                                           {glsl::gbuffer_unit_material, g.material, "roughness, specular"},
+                                           {glsl::gbuffer_unit_emission, g.emission, "specular colour"}});
 }
 
 frame::TextureHandle addVisibilityPass(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -56,6 +46,7 @@ frame::TextureHandle addVisibilityPass(frame::FrameGraph& graph, const Technique
       .read(pass.maps.depth, Access::sampled, "shadow maps")
       .read(pass.maps.views, Access::storageLoad, "projections")
       .read(pass.maps.lights, Access::storageLoad, "layers of each light");
+  for (const SampledTexture& s : pass.sampled) builder.read(s.texture, Access::sampled, s.why);
   if (pass.declare) pass.declare(builder);
   const frame::TextureHandle result =
       builder.write(target, pass.accumulate ? Access::imageLoadStore : Access::imageStore,
@@ -77,6 +68,7 @@ frame::TextureHandle addVisibilityPass(frame::FrameGraph& graph, const Technique
     context.bindStorage(2, pass.maps.lights);
     service.bindCoverage(3);
     context.bindImage(0, result, pass.accumulate ? GL_READ_WRITE : GL_WRITE_ONLY);
+    for (const SampledTexture& s : pass.sampled) context.bindSampled(s.unit, s.texture);
     if (pass.bind) pass.bind(context, kernel);
     context.dispatch(size.x, size.y, layers, 8, 8);
   });

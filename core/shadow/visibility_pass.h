@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/frame/frame_graph.h"
 #include "core/shadow/shadow_map.h"
@@ -30,13 +31,24 @@ constexpr Parameter lightSizeParameter() {
               "Side of every light (directional: angular diameter in radians); negative: the scene's");
 }
 
+/// A texture that a pass samples besides its maps.
+struct SampledTexture {
+  unsigned unit;
+  frame::TextureHandle texture;
+  const char* why;  ///< as for PassBuilder::read()
+};
+
+/// Units of glsl/blocker_search.glsl and of the table or maps that a technique derives.
+constexpr unsigned minMaxUnit = 9, tableUnit = 10;
+
 struct VisibilityPass {
   std::string_view name;       ///< of the pass
   std::string_view technique;  ///< whose it is
   gpu::ProgramDesc program;    ///< a compute shader that includes glsl/visibility.glsl and writes image 0
   ShadowMaps maps;
-  float bias = 1;                       ///< texel footprints
-  std::optional<float> lightSize = -1;  ///< < 0: the scene's; nullopt: the program asks for no light
+  float bias = 1;                            ///< texel footprints
+  std::optional<float> lightSize = -1;       ///< < 0: the scene's; nullopt: the program asks for no light
+  std::vector<SampledTexture> sampled = {};  ///< declared and bound
   /// Sets further uniforms and binds what `declare` declared; may be empty.
   std::function<void(frame::PassContext&, gpu::Program&)> bind = {};
   std::function<void(frame::PassBuilder&)> declare = {};

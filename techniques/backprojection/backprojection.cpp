@@ -26,13 +26,10 @@ class Backprojection : public Technique {
                                  const TermRequest& request) override {
     const ParameterValues& p = inputs.parameters;
     shadow::VisibilityPass pass = shadow::visibilityPass(inputs, request, info.name);
-    const shadow::MinMaxPyramid pyramid = inputs.shadowMaps.minMaxPyramid(pass.maps);
-    pass.declare = [pyramid](frame::PassBuilder& builder) {
-      builder.read(pyramid.texture, frame::Access::sampled, "nearest and farthest depths");
-    };
-    pass.bind = [pyramid, patches = p.integer("patches"), rounds = p.integer("search_rounds")](
-                    frame::PassContext& context, gpu::Program& program) {
-      context.bindSampled(9, pyramid.texture);
+    pass.sampled = {{shadow::minMaxUnit, inputs.shadowMaps.minMaxPyramid(pass.maps).texture,
+                     "nearest and farthest depths"}};
+    pass.bind = [patches = p.integer("patches"), rounds = p.integer("search_rounds")](frame::PassContext&,
+                                                                                      gpu::Program& program) {
       program.set("patches", patches);
       program.set("search_rounds", rounds);
     };

@@ -47,15 +47,12 @@ class Cssm : public Technique {
     const shadow::FourierMaps maps = inputs.shadowMaps.fourierMaps(pass.maps, desc);
     pass.program.defines = maps.defines();
     pass.program.defines["CONTACT"] = std::to_string(p.choice("contact"));
-    pass.declare = [=](frame::PassBuilder& builder) {
-      builder.read(pyramid.texture, frame::Access::sampled, "early-outs and nearest depths");
-      maps.declare(builder);
-    };
+    pass.sampled = {{shadow::minMaxUnit, pyramid.texture, "early-outs and nearest depths"}};
+    pass.declare = [maps](frame::PassBuilder& builder) { maps.declare(builder); };
     const bool sharpened = p.choice("contact") == 1;
-    pass.bind = [=, rounds = p.integer("search_rounds"), passes = p.integer("blocker_passes"),
+    pass.bind = [maps, sharpened, rounds = p.integer("search_rounds"), passes = p.integer("blocker_passes"),
                  splits = p.integer("splits"), sharpening = p.real("sharpening"),
                  falloff = p.real("falloff")](frame::PassContext& context, gpu::Program& program) {
-      context.bindSampled(9, pyramid.texture);
       maps.bind(context);
       program.set("search_rounds", rounds);
       program.set("blocker_passes", passes);

@@ -7,9 +7,6 @@ namespace {
 
 using namespace limn;
 
-constexpr unsigned minMaxUnit = 9;  // as in glsl/blocker_search.glsl
-constexpr unsigned tableUnit = 10;
-
 constexpr Parameter parameters[] = {
     real("moment_bias", 1e-6, {1e-7, 0.1}, "",
          "Share by which moments are pulled towards those of a well-spread distribution")
@@ -32,18 +29,14 @@ class MomentSoftShadowMap : public Technique {
                                  const TermRequest& request) override {
     const ParameterValues& p = inputs.parameters;
     shadow::VisibilityPass pass = shadow::visibilityPass(inputs, request, info.name);
-    const frame::TextureHandle bounds = inputs.shadowMaps.minMaxPyramid(pass.maps).texture;
     const shadow::MomentTable table = inputs.shadowMaps.momentTable(pass.maps, p.integer("moment_bits"));
-    pass.declare = [=](frame::PassBuilder& builder) {
-      builder.read(bounds, frame::Access::sampled, "least and greatest depth in a kernel")
-          .read(table.texture, frame::Access::sampled, "moments of depth in a kernel");
-    };
-    pass.bind = [=, bias = p.real("moment_bias"), rounds = p.integer("search_rounds"),
+    pass.sampled = {{shadow::minMaxUnit, inputs.shadowMaps.minMaxPyramid(pass.maps).texture,
+                     "least and greatest depth in a kernel"},
+                    {shadow::tableUnit, table.texture, "moments of depth in a kernel"}};
+    pass.bind = [bits = table.bits, bias = p.real("moment_bias"), rounds = p.integer("search_rounds"),
                  direct = p.integer("direct_texels"),
-                 cells = p.integer("cells")](frame::PassContext& context, gpu::Program& program) {
-      context.bindSampled(minMaxUnit, bounds);
-      context.bindSampled(tableUnit, table.texture);
-      program.set("moment_bits", table.bits);
+                 cells = p.integer("cells")](frame::PassContext&, gpu::Program& program) {
+      program.set("moment_bits", bits);
       program.set("moment_bias", bias);
       program.set("search_rounds", rounds);
       program.set("direct_texels", direct);

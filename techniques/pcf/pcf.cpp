@@ -6,8 +6,6 @@ namespace {
 
 using namespace limn;
 
-constexpr unsigned minMaxUnit = 9;  // as in glsl/blocker_search.glsl
-
 constexpr Parameter parameters[] = {
     real("kernel", 5, {1, 64}, "texels", "Width and height of the filter").quality().logScale(),
     shadow::shadowMapSizeParameter(),
@@ -19,13 +17,9 @@ class Pcf : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
     shadow::VisibilityPass pass = shadow::visibilityPass(inputs, request, info.name);
-    const frame::TextureHandle bounds = inputs.shadowMaps.minMaxPyramid(pass.maps).texture;
-    pass.declare = [bounds](frame::PassBuilder& builder) {
-      builder.read(bounds, frame::Access::sampled, "least and greatest depth in a kernel");
-    };
-    pass.bind = [bounds, kernel = inputs.parameters.real("kernel")](frame::PassContext& context,
-                                                                    gpu::Program& program) {
-      context.bindSampled(minMaxUnit, bounds);
+    pass.sampled = {{shadow::minMaxUnit, inputs.shadowMaps.minMaxPyramid(pass.maps).texture,
+                     "least and greatest depth in a kernel"}};
+    pass.bind = [kernel = inputs.parameters.real("kernel")](frame::PassContext&, gpu::Program& program) {
       program.set("kernel_width", kernel);
     };
     return shadow::addVisibilityPass(graph, inputs, request.target, std::move(pass));

@@ -36,12 +36,8 @@ class Savsm : public Technique {
     const shadow::SummedAreaTable table = inputs.shadowMaps.summedAreaTable(
         pass.maps, {.bits = p.integer("sat_bits"), .words = p.integer("sat_words")});
     pass.program.defines["TABLE_FORMAT"] = fmt::format("{}u", table.format);
-    pass.declare = [table](frame::PassBuilder& builder) {
-      builder.read(table.texture, frame::Access::sampled, "moments of kernels");
-    };
-    pass.bind = [table, blockers = p.integer("blocker_samples")](frame::PassContext& context,
-                                                                 gpu::Program& program) {
-      context.bindSampled(10, table.texture);
+    pass.sampled = {{shadow::tableUnit, table.texture, "moments of kernels"}};
+    pass.bind = [blockers = p.integer("blocker_samples")](frame::PassContext&, gpu::Program& program) {
       program.set("blocker_samples", blockers);
     };
     return shadow::addVisibilityPass(graph, inputs, request.target, std::move(pass));

@@ -56,21 +56,16 @@ class Vssm : public Technique {
                                 {"VISIBILITY_ADAPTIVE", subdivision == 0 ? "0" : "1"},
                                 {"WIDE_Z", needsWideSums(p) ? "1" : "0"},
                                 {"CONTACT", std::to_string(p.choice("contact"))}});
-    const shadow::MinMaxPyramid bounds = inputs.shadowMaps.minMaxPyramid(pass.maps);
     const shadow::SummedAreaTable table = inputs.shadowMaps.summedAreaTable(
         pass.maps, {.bits = p.integer("sat_bits"), .words = p.integer("sat_words")});
     pass.program.defines["TABLE_FORMAT"] = fmt::format("{}u", table.format);
-    pass.declare = [=](frame::PassBuilder& builder) {
-      builder.read(bounds.texture, frame::Access::sampled, "what is lit or dark at once");
-      builder.read(table.texture, frame::Access::sampled, "moments of kernels");
-    };
-    pass.bind = [bounds, table, subdivision, passes = p.integer("passes"),
-                 rounds = p.integer("search_rounds"), blockers = p.integer("blocker_cells"),
-                 cells = p.integer("visibility_cells"), height = p.integer("tree_height"),
-                 contact = p.real("contact_texels"),
-                 contacts = p.choice("contact") != 0](frame::PassContext& context, gpu::Program& program) {
-      context.bindSampled(9, bounds.texture);
-      context.bindSampled(10, table.texture);
+    pass.sampled = {{shadow::minMaxUnit, inputs.shadowMaps.minMaxPyramid(pass.maps).texture,
+                     "what is lit or dark at once"},
+                    {shadow::tableUnit, table.texture, "moments of kernels"}};
+    pass.bind = [subdivision, passes = p.integer("passes"), rounds = p.integer("search_rounds"),
+                 blockers = p.integer("blocker_cells"), cells = p.integer("visibility_cells"),
+                 height = p.integer("tree_height"), contact = p.real("contact_texels"),
+                 contacts = p.choice("contact") != 0](frame::PassContext&, gpu::Program& program) {
       program.set("search_rounds", rounds);
       if (contacts) program.set("contact_texels", contact);
       program.set("passes", passes);
