@@ -121,7 +121,7 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
 TEST(Plugins, AModuleOfAnotherVersionIsRefusedWhenAskedFor) {
   const Outcome outcome =
       limn({"render", cornell_box, "--technique", "misfit", "--size", "8x8", "--out", "x.exr"},
-           {{"LIMN_TECHNIQUE_PATH", LIMN_BINARY_DIR "/tests/misfit"}});
+           {{"LIMN_TECHNIQUE_PATH", std::string(binaryDir) + "/tests/misfit"}});
   expectRefused(outcome, 1, {"misfit", "interface 99"});
 }
 

@@ -7,11 +7,12 @@
 #include <algorithm>
 
 #include "tests/cli/process.h"
+#include "tests/support/paths.h"
 
 namespace limn::test {
 
-inline const std::string limn_binary = LIMN_BINARY_DIR "/bin/limn";
-inline const std::string cornell_box = LIMN_BINARY_DIR "/assets/cornell_box/cornell_box.glb";
+inline const std::string limn_binary = std::string(binaryDir) + "/bin/limn";
+inline const std::string cornell_box = std::string(binaryDir) + "/assets/cornell_box/cornell_box.glb";
 
 inline Outcome limn(std::vector<std::string> arguments,
                     const std::map<std::string, std::string>& environment = {}, rlim_t fileSizeLimit = 0) {

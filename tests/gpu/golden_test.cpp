@@ -7,6 +7,7 @@
 
 #include "core/image/metrics.h"
 #include "tests/gpu/render_test.h"
+#include "tests/support/paths.h"
 
 namespace limn {
 namespace {
@@ -58,7 +59,7 @@ class GoldenTest : public RenderTest {
       writePng(golden, actual);
       return;
     }
-    const fs::path failed = fs::path(LIMN_BINARY_DIR) / "failed";
+    const fs::path failed = fs::path(test::binaryDir) / "failed";
     fs::create_directories(failed);
     const fs::path actualFile = failed / (name + ".actual.png");
     writePng(actualFile, actual);
@@ -80,13 +81,13 @@ class GoldenTest : public RenderTest {
 };
 
 TEST_F(GoldenTest, Unshadowed) {
-  check("unshadowed", strip({}), fs::path(LIMN_SOURCE_DIR) / "tests/golden/unshadowed.png");
+  check("unshadowed", strip({}), fs::path(test::sourceDir) / "tests/golden/unshadowed.png");
 }
 
 TEST_F(GoldenTest, EveryTechnique) {
   for (const TechniquePlugin* plugin : registry().all())
     check(plugin->info->name, strip({technique(plugin->info->name)}),
-          fs::path(LIMN_SOURCE_DIR) / "techniques" / plugin->info->name / "golden.png");
+          fs::path(test::sourceDir) / "techniques" / plugin->info->name / "golden.png");
 }
 
 }  // namespace

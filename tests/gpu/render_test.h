@@ -10,6 +10,7 @@
 #include "core/scene/load.h"
 #include "core/technique/registry.h"
 #include "tests/gpu/gl_test.h"
+#include "tests/support/paths.h"
 
 namespace limn {
 
@@ -17,7 +18,7 @@ class RenderTest : public GlTest {
  protected:
   /// A scene of assets/, as built.
   static scene::Scene asset(const std::string& name) {
-    return scene::load(std::filesystem::path(LIMN_BINARY_DIR) / "assets" / name / (name + ".glb"));
+    return scene::load(std::filesystem::path(test::binaryDir) / "assets" / name / (name + ".glb"));
   }
 
   static const TechniqueRegistry& registry() {

@@ -14,6 +14,7 @@
 #include "core/base/file.h"
 #include "core/shading/ltc_table.h"
 #include "tests/gpu/gl_test.h"
+#include "tests/support/paths.h"
 
 namespace limn {
 namespace {
@@ -52,7 +53,7 @@ glsl::NumericsInput randomInput(std::mt19937& random) {
 }
 
 std::string source(const char* name) {
-  return readTextFile(std::string(LIMN_SOURCE_DIR) + "/tests/gpu/" + name);
+  return readTextFile(std::string(test::sourceDir) + "/tests/gpu/" + name);
 }
 
 TEST_F(ShadingNumerics, GpuAgreesWithCpu) {

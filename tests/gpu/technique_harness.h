@@ -10,6 +10,7 @@
 #include "core/technique/registry.h"
 #include "core/technique/technique.h"
 #include "tests/gpu/gl_test.h"
+#include "tests/support/paths.h"
 
 namespace limn::test {
 
@@ -29,8 +30,7 @@ class TechniqueTest : public GlTest {
   static constexpr int side = 128;
 
   static TechniqueRegistry& registry() {
-    static const std::filesystem::path folder =
-        std::filesystem::path(LIMN_BINARY_DIR) / "lib/limn/techniques";
+    static const std::filesystem::path folder = std::filesystem::path(binaryDir) / "lib/limn/techniques";
     static TechniqueRegistry instance(std::span(&folder, 1));
     return instance;
   }

@@ -19,13 +19,14 @@
 #include <vector>
 
 #include "core/scene/load.h"
+#include "tests/support/paths.h"
 
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const fs::path kAssets = fs::path(LIMN_BINARY_DIR) / "assets";
+const fs::path kAssets = fs::path(limn::test::binaryDir) / "assets";
 const char* const kScenes[] = {"atrium", "balls",    "cornell_box", "foliage_card", "lights",       "plant",
                                "robot",  "soldiers", "statue",      "teapot",       "white_furnace"};
 
@@ -286,7 +287,7 @@ TEST(Assets, StatueIsWatertight) {
 TEST(Assets, TheGeneratorIsDeterministicAndRefusesUnknownNames) {
   const fs::path folder = fs::path(testing::TempDir()) / "limn_assets_test";
   fs::remove_all(folder);
-  const std::string program = std::string(LIMN_BINARY_DIR) + "/bin/limn-make-scenes ";
+  const std::string program = std::string(limn::test::binaryDir) + "/bin/limn-make-scenes ";
   ASSERT_EQ(
       std::system(
           (program + folder.string() + " atrium cornell_box robot teapot white_furnace > /dev/null").c_str()),

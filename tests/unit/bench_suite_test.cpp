@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/bench/suite.h"
+#include "tests/support/paths.h"
 
 namespace limn::bench {
 namespace {
@@ -222,7 +223,7 @@ TEST(BenchSuite, ParsesShards) {
 }
 
 TEST(BenchSuite, ReadsEverySuiteOfTheRepository) {
-  const std::filesystem::path folder = std::filesystem::path(LIMN_SOURCE_DIR) / "benchmarks";
+  const std::filesystem::path folder = std::filesystem::path(test::sourceDir) / "benchmarks";
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".toml") continue;
