@@ -25,6 +25,7 @@ SceneOptions sceneOptions(const bench::Case& c) {
   options.scene = findScene(c.scene);
   options.camera = c.camera;
   options.light = c.light;
+  options.lightSize = c.lightSize;
   options.environment = c.environment.map;
   options.environmentLights = {.threshold = c.environment.lights,
                                .resolution = c.environment.resolution,
@@ -36,7 +37,7 @@ SceneOptions sceneOptions(const bench::Case& c) {
 }
 
 bool sameScene(const SceneOptions& a, const SceneOptions& b) {
-  return a.scene == b.scene && a.time == b.time && a.environment == b.environment &&
+  return a.scene == b.scene && a.time == b.time && a.lightSize == b.lightSize && a.environment == b.environment &&
          a.environmentLights == b.environmentLights && a.environmentReflection == b.environmentReflection;
 }
 
@@ -184,7 +185,8 @@ bench::Measurement BenchSession::measure(const bench::Case& c) {
   result.cost.backend = stats.backend;
   result.cost.timer = frame::name(stats.timer);
   result.cost.software = stats.software;
-  result.cost.frameMs = {stats.frameMs.median, stats.frameMs.q1, stats.frameMs.q3, stats.frameMs.n};
+  result.cost.frameMs = {stats.frameMs.median, stats.frameMs.q1, stats.frameMs.q3, stats.frameMs.n,
+                         stats.frameSamplesMs};
   result.cost.split = costSplit(stats);
   result.cost.memoryBytes = stats.memoryBytes;
   result.cost.details = render::toJson(stats);

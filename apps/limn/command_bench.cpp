@@ -3,25 +3,47 @@
 
 #include "apps/limn/bench_session.h"
 #include "apps/limn/commands.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/bench/regression.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
 
 struct Options {
-  fs::path suite, out;
+  fs::path suite, out, against;
   std::vector<std::string> filters;
   std::string shard;
   BackendOptions backend;
 };
 
+/// Rows of an earlier result, read before anything is measured.
+std::vector<bench::Row> earlierRows(const fs::path& folder) {
+  const fs::path file = folder / "results.jsonl";
+  if (!fs::exists(file)) throw Error(fmt::format("--against: '{}' does not exist", file.string()));
+  return bench::readRows(file);
+}
+
+/// Whether something got slower or worse.
+bool reportRegressions(const std::vector<bench::Row>& before, const fs::path& out) {
+  const bench::Regression regression = bench::compareResults(before, bench::readRows(out / "results.jsonl"));
+  const std::string text = toMarkdown(regression);
+  writeTextFile(out / "against.md", text);
+  fmt::print("{}", text);
+  return regression.found();
+}
+
 int run(const Options& options) {
+  std::optional<std::vector<bench::Row>> before;
+  if (!options.against.empty()) before = earlierRows(options.against);
   const bench::Summary summary =
       runSuite(findSuite(options.suite), options.out, options.backend, options.filters,
                options.shard.empty() ? bench::Shard{} : bench::parseShard(options.shard));
   fmt::print("{} rows measured, {} were there already, {} failed; tables are in {}\n", summary.done,
              summary.skipped, summary.failed, (options.out / "tables.md").string());
-  return summary.failed > 0 ? 1 : 0;
+  const bool regressed = before && reportRegressions(*before, options.out);
+  return summary.failed > 0 || regressed ? 1 : 0;
 }
 
 }  // namespace
@@ -35,6 +57,10 @@ Action addBenchCommand(CLI::App& command) {
       ->required();
   command.add_option("--filter", options->filters, "Only cases whose label contains this text; repeatable")
       ->take_all();
+  command.add_option(
+      "--against", options->against,
+      "Folder of an earlier result: says what got slower or worse beyond noise, exit status 1 if "
+      "anything did");
   command.add_option("--shard", options->shard, "i/n: the i-th of n parts");
   options->backend.addTo(command);
   return [options] { return run(*options); };

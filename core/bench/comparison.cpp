@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/bench/ratio.h"
+
 namespace limn::bench {
 namespace {
 
@@ -26,9 +28,17 @@ const Row* quickest(std::span<const Row> rows, const std::string& technique, dou
   return best;
 }
 
+/// The ratio of the frames' times, with its interval where the single times are known.
+std::string frameRatio(const Row& slow, const Row& fast) {
+  const FrameTime &a = slow.cost.frameMs, &b = fast.cost.frameMs;
+  if (a.samples.empty() || b.samples.empty()) return fmt::format("{:.2f}", a.median / b.median);
+  const Ratio ratio = ratioOfMedians(a.samples, b.samples);
+  return fmt::format("{:.2f} ({:.2f} to {:.2f})", ratio.value, ratio.low, ratio.high);
+}
+
 std::string ratios(const Row& slow, const Row& fast) {
   const double shadow = shadowMs(fast);
-  return fmt::format("{:.2f} | {}", slow.cost.frameMs.median / fast.cost.frameMs.median,
+  return fmt::format("{} | {}", frameRatio(slow, fast),
                      shadow > 0 ? fmt::format("{:.2f}", shadowMs(slow) / shadow) : "-");
 }
 
@@ -62,8 +72,8 @@ std::string comparisonMarkdown(std::span<const Row> rows) {
   if (baseline == rows.end()) return "";
   const std::string& technique = baseline->what.technique;
   std::string text = fmt::format(
-      "\nTimes of {0} as multiples of each row's (frame | shadows: maps, filters and the technique's "
-      "passes), and of "
+      "\nTimes of {0} as multiples of each row's (frame, with the 95 % interval of the "
+      "samples | shadows: maps, filters and the technique's passes), and of "
       "the quickest {1} whose RMSE, and whose structured error, is not above the row's{2}:\n\n"
       "| technique | frame | shadows | {1} at equal RMSE | frame | shadows | {1} at equal structured error | "
       "frame | "

@@ -13,6 +13,45 @@
 
 namespace limn::bench {
 
+namespace {
+
+/// For each key the last row, in the order of their first appearance.
+void remember(std::vector<Row>& rows, std::map<std::string, std::size_t>& position, Row row) {
+  const auto [known, isNew] = position.emplace(row.key, rows.size());
+  if (isNew) {
+    rows.push_back(std::move(row));
+  } else {
+    rows[known->second] = std::move(row);
+  }
+}
+
+/// Hands every whole line's row to `take`; gives the bytes of whole lines. What follows them is torn: every
+/// finished row ends in a line's end.
+template <class Take>
+std::size_t parseRows(const std::string& text, const std::filesystem::path& path, Take take) {
+  std::size_t begin = 0;
+  for (int line = 1; begin < text.size(); ++line) {
+    const std::size_t end = text.find('\n', begin);
+    if (end == std::string::npos) break;
+    try {
+      take(rowFromJson(text.substr(begin, end - begin)));
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}:{}: {}", path.string(), line, error.what()));
+    }
+    begin = end + 1;
+  }
+  return begin;
+}
+
+}  // namespace
+
+std::vector<Row> readRows(const std::filesystem::path& path) {
+  std::vector<Row> rows;
+  std::map<std::string, std::size_t> position;
+  parseRows(readTextFile(path), path, [&](Row row) { remember(rows, position, std::move(row)); });
+  return rows;
+}
+
 ResultsFile::ResultsFile(std::filesystem::path path) : path_(std::move(path)) {
   readExisting();
   file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
@@ -26,18 +65,8 @@ ResultsFile::~ResultsFile() {
 void ResultsFile::readExisting() {
   if (!std::filesystem::exists(path_)) return;
   const std::string text = readTextFile(path_);
-  std::size_t begin = 0;
-  for (int line = 1; begin < text.size(); ++line) {
-    const std::size_t end = text.find('\n', begin);
-    if (end == std::string::npos) break;  // torn: every finished row ends in a line's end
-    try {
-      remember(rowFromJson(text.substr(begin, end - begin)));
-    } catch (const Error& error) {
-      throw Error(fmt::format("{}:{}: {}", path_.string(), line, error.what()));
-    }
-    begin = end + 1;
-  }
-  if (begin < text.size()) std::filesystem::resize_file(path_, begin);
+  const std::size_t whole = parseRows(text, path_, [this](Row row) { add(std::move(row)); });
+  if (whole < text.size()) std::filesystem::resize_file(path_, whole);
 }
 
 void ResultsFile::append(const Row& row) {
@@ -59,17 +88,12 @@ void ResultsFile::append(const Row& row) {
     throw Error(fmt::format("{}: cannot be written: {}{}", path_.string(), std::strerror(error),
                             restored ? "" : " (its last line is torn)"));
   }
-  remember(row);
+  add(row);
 }
 
-void ResultsFile::remember(Row row) {
+void ResultsFile::add(Row row) {
   if (row.failure.empty()) finished_.insert(row.key);
-  const auto [known, isNew] = position_.emplace(row.key, rows_.size());
-  if (isNew) {
-    rows_.push_back(std::move(row));
-  } else {
-    rows_[known->second] = std::move(row);
-  }
+  remember(rows_, position_, std::move(row));
 }
 
 std::vector<Row> ResultsFile::rows() const {

@@ -13,6 +13,10 @@
 
 namespace limn::bench {
 
+/// The rows of a file, for each key the last one, in the order of their first appearance; the file is left as
+/// it is. A torn last line is skipped; a broken line elsewhere is an Error naming file and line.
+LIMN_API std::vector<Row> readRows(const std::filesystem::path& path);
+
 class LIMN_API ResultsFile {
  public:
   /// Opens or creates; reads the rows there are. A torn last line (the writer was interrupted) is cut off; a
@@ -32,7 +36,7 @@ class LIMN_API ResultsFile {
 
  private:
   void readExisting();
-  void remember(Row row);
+  void add(Row row);
 
   std::filesystem::path path_;
   int file_ = -1;

@@ -46,6 +46,16 @@ Metrics metricsFromJson(const Json& json) {
   return m;
 }
 
+Json misjudgedToJson(const Misjudged& m) {
+  return {
+      {"umbra", m.umbra}, {"lit_in_umbra", m.litInUmbra}, {"lit", m.lit}, {"dark_in_light", m.darkInLight}};
+}
+
+Misjudged misjudgedFromJson(const Json& json) {
+  return {json.at("umbra").get<std::size_t>(), json.at("lit_in_umbra").get<std::size_t>(),
+          json.at("lit").get<std::size_t>(), json.at("dark_in_light").get<std::size_t>()};
+}
+
 /// The keys of `limn render --stats` that tables need; the rest of the statistics beside them.
 Json costToJson(const Cost& cost) {
   Json json = cost.details.empty() ? Json::object() : Json::parse(cost.details);
@@ -57,6 +67,7 @@ Json costToJson(const Cost& cost) {
                       {"q1", cost.frameMs.q1},
                       {"q3", cost.frameMs.q3},
                       {"n", cost.frameMs.n}};
+  if (!cost.frameMs.samples.empty()) json["frame_samples_ms"] = cost.frameMs.samples;
   json["split_ms"] = {{"maps", cost.split.maps},
                       {"filters", cost.split.filters},
                       {"technique", cost.split.technique},
@@ -72,8 +83,13 @@ Cost costFromJson(const Json& json) {
   cost.timer = json.at("timer").get<std::string>();
   cost.software = json.at("software").get<bool>();
   const Json& time = json.at("frame_ms");
-  cost.frameMs = {time.at("median").get<double>(), time.at("q1").get<double>(), time.at("q3").get<double>(),
-                  time.at("n").get<int>()};
+  cost.frameMs = {time.at("median").get<double>(),
+                  time.at("q1").get<double>(),
+                  time.at("q3").get<double>(),
+                  time.at("n").get<int>(),
+                  {}};
+  if (json.contains("frame_samples_ms"))
+    cost.frameMs.samples = json["frame_samples_ms"].get<std::vector<double>>();
   const Json& split = json.at("split_ms");
   cost.split = {split.at("maps").get<double>(), split.at("filters").get<double>(),
                 split.at("technique").get<double>(), split.at("rest").get<double>()};
@@ -96,6 +112,7 @@ Json caseToJson(const Case& c) {
           {"light", c.light},
           {"environment", environment},
           {"time", c.time},
+          {"light_size", c.lightSize},
           {"technique", c.technique},
           {"parameters", parameters},
           {"term", c.term},
@@ -123,6 +140,7 @@ Case caseFromJson(const Json& json) {
                      e.at("reflection").get<std::string>()};
   }
   c.time = json.at("time").get<double>();
+  c.lightSize = json.value("light_size", 0.0);
   c.technique = json.at("technique").get<std::string>();
   for (const auto& [name, value] : json.at("parameters").items()) {
     c.parameters.emplace_back(name, value.get<std::string>());
@@ -155,6 +173,7 @@ std::string toJson(const Row& row) {
   if (row.failure.empty()) {
     json["error"] = metricsToJson(row.error);
     if (row.penumbra) json["penumbra"] = metricsToJson(*row.penumbra);
+    if (row.misjudged) json["misjudged"] = misjudgedToJson(*row.misjudged);
     json["stats"] = costToJson(row.cost);
   } else {
     json["failure"] = row.failure;
@@ -182,6 +201,7 @@ Row rowFromJson(const std::string& line) {
     }
     row.error = metricsFromJson(json.at("error"));
     if (json.contains("penumbra")) row.penumbra = metricsFromJson(json["penumbra"]);
+    if (json.contains("misjudged")) row.misjudged = misjudgedFromJson(json["misjudged"]);
     row.cost = costFromJson(json.at("stats"));
     return row;
   } catch (const nlohmann::json::exception& error) {

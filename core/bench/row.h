@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/base/export.h"
 #include "core/bench/suite.h"
@@ -14,6 +15,7 @@ namespace limn::bench {
 struct FrameTime {
   double median = 0, q1 = 0, q3 = 0;  ///< milliseconds
   int n = 0;                          ///< timed frames; 0: not timed
+  std::vector<double> samples;        ///< each of them; empty in rows of earlier versions
 };
 
 /// Where the time of a frame's passes goes, milliseconds: medians of the passes, summed.
@@ -35,13 +37,23 @@ struct Cost {
   std::string details;
 };
 
+/// Visibility whose error is not one of degree: pixels in the umbra that are lit, and pixels in full light
+/// that are not. Both show as leaks and blotches however small the RMSE is.
+struct Misjudged {
+  static constexpr float kUmbra = 0.02f, kLit = 0.98f;  ///< reference below, above
+  static constexpr float kTolerance = 0.1f;             ///< of the error
+  std::size_t umbra = 0, litInUmbra = 0;                ///< pixels; the second: V > kTolerance
+  std::size_t lit = 0, darkInLight = 0;                 ///< pixels; the second: V < 1 - kTolerance
+};
+
 struct Row {
   std::string key;  ///< rowKey of the case and cost.renderer
   Case what;
   std::string referenceFile;
   std::optional<double> referenceNoise;  ///< RMS relative to the mean
   Metrics error;
-  std::optional<Metrics> penumbra;  ///< visibility: over pixels whose reference lies in (0.02, 0.98)
+  std::optional<Metrics> penumbra;     ///< visibility: over pixels whose reference lies in (0.02, 0.98)
+  std::optional<Misjudged> misjudged;  ///< visibility
   Cost cost;
   std::string picture;  ///< file in the folder of the results; "" if it was not kept
   std::string

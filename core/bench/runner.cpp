@@ -9,7 +9,7 @@ namespace {
 /// reference has none.
 std::optional<Metrics> penumbraMetrics(const Image& image, const Reference& reference,
                                        CompareOptions options) {
-  constexpr float kLow = 0.02f, kHigh = 0.98f;
+  constexpr float kLow = Misjudged::kUmbra, kHigh = Misjudged::kLit;
   const int red = reference.image.rgbChannels()[0];
   bool any = false;
   for (std::size_t i = 0; i < reference.image.pixelCount() && !any; ++i) {
@@ -22,6 +22,24 @@ std::optional<Metrics> penumbraMetrics(const Image& image, const Reference& refe
   return compareImages(image, reference.image, options);
 }
 
+Misjudged misjudged(const Image& image, const Reference& reference, const std::vector<unsigned char>& mask) {
+  Misjudged count;
+  const int v = image.rgbChannels()[0], r = reference.image.rgbChannels()[0];
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (mask[i] == 0) continue;
+    const float truth = reference.image.data()[i * static_cast<std::size_t>(reference.image.channelCount()) +
+                                               static_cast<std::size_t>(r)];
+    const float value =
+        image.data()[i * static_cast<std::size_t>(image.channelCount()) + static_cast<std::size_t>(v)];
+    const bool umbra = truth<Misjudged::kUmbra, lit = truth> Misjudged::kLit;
+    count.umbra += umbra;
+    count.litInUmbra += umbra && value > Misjudged::kTolerance;
+    count.lit += lit;
+    count.darkInLight += lit && value < 1 - Misjudged::kTolerance;
+  }
+  return count;
+}
+
 Row measureRow(const Case& c, const std::string& key, const Reference& reference,
                const Callbacks& callbacks) {
   Row row;
@@ -31,8 +49,12 @@ Row measureRow(const Case& c, const std::string& key, const Reference& reference
   Measurement measurement = callbacks.measure(c);
   CompareOptions options;
   options.maxMaskedShare = c.maxMaskedShare;
-  row.error = compareImages(measurement.image, reference.image, options);
-  if (c.term == "visibility") row.penumbra = penumbraMetrics(measurement.image, reference, options);
+  const Comparison comparison = compareImagesDetailed(measurement.image, reference.image, options);
+  row.error = comparison.metrics;
+  if (c.term == "visibility") {
+    row.penumbra = penumbraMetrics(measurement.image, reference, options);
+    row.misjudged = misjudged(measurement.image, reference, comparison.mask);
+  }
   if (c.picture && callbacks.keepPicture) row.picture = callbacks.keepPicture(c, key, measurement.image);
   row.cost = std::move(measurement.cost);
   return row;

@@ -27,6 +27,7 @@ std::string question(const Case& c) {
       fmt::format("{}/{}/{}/t{}/{}/{}x{}/spp{}/noise{}/bounces{}", c.scene, c.camera, c.light, c.time, c.term,
                   c.width, c.height, c.reference.spp, c.reference.noise, c.reference.bounces);
   if (!c.environment.map.empty()) text += "/" + c.environment.map;
+  if (c.lightSize > 0) text += fmt::format("/light size {}", c.lightSize);
   // All light together is asked of the map itself.
   if (!c.light.empty()) text += environmentLights(c.environment);
   return text;
@@ -39,6 +40,7 @@ std::string label(const Case& c) {
                   c.dynamic ? "dynamic" : "static", c.technique);
   if (!c.environment.map.empty())
     text = fmt::format("{}/{}", std::filesystem::path(c.environment.map).filename().string(), text);
+  if (c.lightSize > 0) text = fmt::format("light size {}/{}", c.lightSize, text);
   if (c.environment.lights > 0)
     text = fmt::format("environment lights {}/{}", environmentLights(c.environment), text);
   char separator = '?';

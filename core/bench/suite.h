@@ -15,6 +15,7 @@
 //     scene = "cornell_box"       # asset name or file
 //     cameras = ["front"]         # default: the first one
 //     lights = ["ceiling"]        # default: all lights together ("")
+//     light_sizes = [0.3, 1.2]    # as --light-size; default: as the scene has them
 //     environment = "sky.exr"     # equirectangular map
 //     environment_lights = [0, 0.015]   # thresholds, as --environment-lights; 0: the map unshadowed
 //     environment_resolution = 48       # and the other --environment options
@@ -64,8 +65,9 @@ struct Case {
   std::string camera;  ///< "": the scene's first
   std::string light;   ///< "": all
   EnvironmentSettings environment;
-  double time = 0;   ///< seconds of the scene's animation
-  std::string term;  ///< as --output-term
+  double lightSize = 0;  ///< as --light-size; 0: as the scene has them
+  double time = 0;       ///< seconds of the scene's animation
+  std::string term;      ///< as --output-term
   int width = 0, height = 0;
   std::string technique;                                        ///< one name, or several joined by ","
   std::vector<std::pair<std::string, std::string>> parameters;  ///< "technique.parameter", value

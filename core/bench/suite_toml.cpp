@@ -312,12 +312,13 @@ Suite buildSuite(const toml::table& root, const std::string& file) {
   for (const toml::table* table : suite.tables("scenes")) {
     const Section scene(
         file, *table, "[[scenes]]",
-        {"scene", "cameras", "lights", "time", "term", "max_masked_share", "environment",
+        {"scene", "cameras", "lights", "light_sizes", "time", "term", "max_masked_share", "environment",
          "environment_lights", "environment_resolution", "environment_shape", "environment_reflection"});
     base.scene = scene.text(scene.require("scene"), "scene");
     base.time = scene.real("time", 0.0, -1e6, 1e6);
     base.maxMaskedShare = scene.real("max_masked_share", 0.005, 0.0, 1.0);
     base.term = scene.term(term);
+    const std::vector<double> lightSizes = scene.reals("light_sizes", 0, 1e-6, 1e6);
     const std::vector<double> environmentLights = parseEnvironment(scene, base.environment);
     for (const std::string& camera : scene.texts("cameras", {""})) {
       for (const std::string& light : scene.texts("lights", {""})) {
@@ -326,9 +327,12 @@ Suite buildSuite(const toml::table& root, const std::string& file) {
           base.light = light;
           base.width = width;
           base.height = height;
-          for (const double threshold : environmentLights) {
-            base.environment.lights = threshold;
-            addCases(base, techniques, modes, separationFloor, result.cases);
+          for (const double lightSize : lightSizes) {
+            base.lightSize = lightSize;
+            for (const double threshold : environmentLights) {
+              base.environment.lights = threshold;
+              addCases(base, techniques, modes, separationFloor, result.cases);
+            }
           }
           if (result.cases.size() > kMaxCases) {
             fail(file, table->source(), fmt::format("more than {} cases", kMaxCases));

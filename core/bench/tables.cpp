@@ -34,6 +34,7 @@ std::string tableTitle(const Row& row) {
   std::string title = c.scene;
   if (!c.camera.empty()) title += ", camera " + c.camera;
   if (!c.light.empty()) title += ", light " + c.light;
+  if (c.lightSize > 0) title += fmt::format(", light size {}", c.lightSize);
   if (!c.environment.map.empty())
     title += ", environment " + std::filesystem::path(c.environment.map).filename().string();
   if (c.time != 0) title += fmt::format(", {} s", c.time);
@@ -89,14 +90,26 @@ std::string csvField(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string markdownRow(const Row& row, const Table& table, bool penumbra) {
+std::string share(std::size_t part, std::size_t whole) {
+  return whole == 0 ? "-"
+                    : fmt::format("{:.2f}", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
+}
+
+/// Columns of visibility alone.
+std::string visibilityCells(const Row& row) {
+  std::string cells = row.penumbra ? fmt::format(" {} |", rmseText(*row.penumbra)) : " - |";
+  const Misjudged m = row.misjudged.value_or(Misjudged{});
+  return cells + fmt::format(" {} | {} |", share(m.litInUmbra, m.umbra), share(m.darkInLight, m.lit));
+}
+
+std::string markdownRow(const Row& row, const Table& table, bool visibility) {
   const std::string& name = row.what.title.empty() ? row.what.technique : row.what.title;
   std::string line = fmt::format("| {} | {} |", markdownCell(name), markdownCell(parameterText(row.what)));
   if (!row.failure.empty()) return line + fmt::format(" failed: {} |\n", markdownCell(row.failure));
   const Metrics& e = row.error;
   line += fmt::format(" {} | {:.4g} | {:+.3g} | {:.4g} | {:.1f} | {:.4f} | {:.4g} |", rmseText(e), e.rel_mse,
                       e.bias, e.p999, e.psnr, e.flip, e.structured);
-  if (penumbra) line += row.penumbra ? fmt::format(" {} |", rmseText(*row.penumbra)) : " - |";
+  if (visibility) line += visibilityCells(row);
   const FrameTime& t = row.cost.frameMs;
   if (!isTimed(row)) return line + " - | - | - | 0 | - | - | - | - | - |  |\n";
   const CostSplit& split = row.cost.split;
@@ -125,46 +138,52 @@ std::vector<Table> makeTables(std::span<const Row> rows) {
 }
 
 std::string toMarkdown(const Table& table) {
-  const bool penumbra = std::any_of(table.rows.begin(), table.rows.end(),
-                                    [](const Row& row) { return row.penumbra.has_value(); });
+  const bool visibility = std::any_of(table.rows.begin(), table.rows.end(),
+                                      [](const Row& row) { return row.penumbra || row.misjudged; });
   std::string text = fmt::format("### {}\n\n", table.title);
   text += fmt::format(
       "| technique | parameters | RMSE | rel. MSE | bias | p99.9 | PSNR | FLIP | structured |{} median ms | "
       "q1 | q3 | n | fps | maps ms | filters ms | technique ms | MiB | front |\n",
-      penumbra ? " penumbra RMSE |" : "");
+      visibility ? " penumbra RMSE | lit in umbra % | dark in light % |" : "");
   text += fmt::format("|---|---|--:|--:|--:|--:|--:|--:|--:|{}--:|--:|--:|--:|--:|--:|--:|--:|--:|:-:|\n",
-                      penumbra ? "--:|" : "");
-  for (const Row& row : table.rows) text += markdownRow(row, table, penumbra);
+                      visibility ? "--:|--:|--:|" : "");
+  for (const Row& row : table.rows) text += markdownRow(row, table, visibility);
   return text + comparisonMarkdown(table.rows);
 }
 
 std::string toCsv(const Table& table) {
   std::string text =
-      "scene,camera,light,time_s,term,width,height,mode,renderer,technique,parameters,rmse,rel_mse,bias,p999,"
+      "scene,camera,light,light_size,time_s,term,width,height,mode,renderer,technique,parameters,rmse,rel_"
+      "mse,bias,p999,"
       "psnr,"
-      "flip,structured,noise_floor,masked_share,pixels,penumbra_rmse,penumbra_structured,time_width,time_"
+      "flip,structured,noise_floor,masked_share,pixels,penumbra_rmse,penumbra_structured,umbra,lit_in_umbra,"
+      "lit,dark_in_light,time_width,time_"
       "height,"
       "median_ms,q1_ms,q3_ms,n,maps_ms,filters_ms,technique_ms,memory_bytes,failure\r\n";
+  const auto optional = [](bool known, auto value) {
+    return known ? fmt::format("{}", value) : std::string();
+  };
   for (const Row& row : table.rows) {
     const Case& c = row.what;
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},", csvField(c.scene), csvField(c.camera),
-                        csvField(c.light), c.time, csvField(c.term), c.width, c.height,
-                        c.dynamic ? "dynamic" : "static", csvField(row.cost.renderer), csvField(c.technique),
-                        csvField(parameterText(c)));
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},", csvField(c.scene), csvField(c.camera),
+                        csvField(c.light), optional(c.lightSize > 0, c.lightSize), c.time, csvField(c.term),
+                        c.width, c.height, c.dynamic ? "dynamic" : "static", csvField(row.cost.renderer),
+                        csvField(c.technique), csvField(parameterText(c)));
     if (!row.failure.empty()) {
-      text += fmt::format("{}{}\r\n", std::string(22, ','), csvField(row.failure));
+      text += fmt::format("{}{}\r\n", std::string(26, ','), csvField(row.failure));
       continue;
     }
     const Metrics& e = row.error;
-    const auto optional = [](bool known, double value) {
-      return known ? fmt::format("{}", value) : std::string();
-    };
     const FrameTime& t = row.cost.frameMs;
     text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},", e.rmse, e.rel_mse, e.bias, e.p999, e.psnr,
                         e.flip, e.structured, optional(e.noise_floor.has_value(), e.noise_floor.value_or(0)),
                         e.masked_share, e.pixels,
                         optional(row.penumbra.has_value(), row.penumbra ? row.penumbra->rmse : 0),
                         optional(row.penumbra.has_value(), row.penumbra ? row.penumbra->structured : 0));
+    const Misjudged m = row.misjudged.value_or(Misjudged{});
+    const bool judged = row.misjudged.has_value();
+    text += fmt::format("{},{},{},{},", optional(judged, m.umbra), optional(judged, m.litInUmbra),
+                        optional(judged, m.lit), optional(judged, m.darkInLight));
     const CostSplit& split = row.cost.split;
     text += fmt::format("{},{},{},{},{},{},{},{},{},{},\r\n", c.timeWidth > 0 ? c.timeWidth : c.width,
                         c.timeWidth > 0 ? c.timeHeight : c.height, optional(t.n > 0, t.median),

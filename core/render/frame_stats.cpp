@@ -80,6 +80,7 @@ FrameStats measure(Renderer& renderer, int frames, int warmup) {
   std::vector<double> wall;
   for (int i = 0; i < frames; ++i) wall.push_back(frameMilliseconds(renderer, frame::Timing::off));
   stats.frameMs = quartiles(wall);
+  stats.frameSamplesMs = wall;
 
   PassSamples samples;
   std::map<std::pair<std::string, std::string>, size_t> position;
@@ -132,6 +133,7 @@ std::string toJson(const FrameStats& stats) {
               {"technique", stats.technique},
               {"parameters", parameters},
               {"frame_ms", toJsonValue(stats.frameMs)},
+              {"frame_samples_ms", stats.frameSamplesMs},
               {"pass_sum_ms", stats.passSumMs},
               {"memory_bytes", stats.memoryBytes},
               {"passes", passes},
@@ -156,6 +158,7 @@ FrameStats frameStatsFromJson(const std::string& text) {
     for (const auto& [name, value] : json.at("parameters").items())
       stats.parameters.emplace_back(name, value);
     stats.frameMs = quartilesFrom(json.at("frame_ms"));
+    stats.frameSamplesMs = json.at("frame_samples_ms").get<std::vector<double>>();
     stats.passSumMs = json.at("pass_sum_ms");
     stats.memoryBytes = json.at("memory_bytes");
     for (const Json& pass : json.at("passes"))

@@ -44,8 +44,9 @@ struct FrameStats {
   int width = 0, height = 0;
   std::string scene, technique;
   std::vector<std::pair<std::string, std::string>> parameters;  ///< "technique.parameter", value
-  Quartiles frameMs;     ///< wall clock between two glFinish, in a run of its own without pass timing
-  double passSumMs = 0;  ///< median over frames of the passes' sum, in the run with pass timing
+  Quartiles frameMs;  ///< wall clock between two glFinish, in a run of its own without pass timing
+  std::vector<double> frameSamplesMs;  ///< what frameMs comes from, in the order measured
+  double passSumMs = 0;                ///< median over frames of the passes' sum, in the run with pass timing
   int64_t memoryBytes = 0;
   std::vector<PassStats> passes;
   std::vector<ShadowMapFit> shadowMaps;

@@ -48,11 +48,12 @@ Row exampleRow(const Case& c, double rmse = 0.25, double ms = 2.5) {
   row.error.pixels = 512;
   row.error.noise_floor = 0.003;
   row.penumbra = row.error;
+  row.misjudged = {200, 10, 100, 1};
   row.cost.renderer = "llvmpipe";
   row.cost.backend = "egl";
   row.cost.timer = "finish";
   row.cost.software = true;
-  row.cost.frameMs = {ms, ms - 0.25, ms + 0.25, 5};
+  row.cost.frameMs = {ms, ms - 0.25, ms + 0.25, 5, {ms - 0.5, ms - 0.25, ms, ms + 0.25, ms + 0.5}};
   row.cost.split = {ms / 2, ms / 4, ms / 4, ms};
   row.cost.memoryBytes = 3 << 20;
   row.cost.details = R"({"passes":[{"name":"shadow map"}]})";
@@ -86,7 +87,10 @@ TEST_F(BenchResults, RowsSurviveJson) {
   EXPECT_EQ(back.error.noise_floor, row.error.noise_floor);
   EXPECT_EQ(back.error.pixels, row.error.pixels);
   ASSERT_TRUE(back.penumbra);
+  ASSERT_TRUE(back.misjudged);
+  EXPECT_EQ(back.misjudged->litInUmbra, row.misjudged->litInUmbra);
   EXPECT_EQ(back.cost.frameMs.q3, row.cost.frameMs.q3);
+  EXPECT_EQ(back.cost.frameMs.samples, row.cost.frameMs.samples);
   EXPECT_EQ(back.cost.memoryBytes, row.cost.memoryBytes);
   EXPECT_NE(back.cost.details.find("shadow map"), std::string::npos);
   EXPECT_EQ(toJson(back), line);
@@ -95,6 +99,16 @@ TEST_F(BenchResults, RowsSurviveJson) {
 TEST_F(BenchResults, BrokenRowsAreRefused) {
   for (const char* text : {"", "{", "[]", "{}", R"({"key":1})", "null"})
     EXPECT_THROW(rowFromJson(text), Error) << text;
+}
+
+TEST_F(BenchResults, ReadingLeavesATornFileAsItIs) {
+  const Row first = exampleRow(exampleCase()), again = exampleRow(exampleCase(), 0.5);
+  const std::string text = toJson(first) + "\n" + toJson(again) + "\n{";
+  writeTextFile(path_, text);
+  const std::vector<Row> rows = readRows(path_);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].error.rmse, 0.5);
+  EXPECT_EQ(readTextFile(path_), text);
 }
 
 TEST_F(BenchResults, AppendedRowsAreThereAfterReopening) {
@@ -168,7 +182,7 @@ struct Fakes {
       if (c.technique == "bad") throw Error("shader does not compile");
       Measurement m{Image::rgb(c.width, c.height), {}};
       std::ranges::fill(m.image.data(), 0.6f);
-      m.cost.frameMs = {1, 1, 1, c.frames};
+      m.cost.frameMs = {1, 1, 1, c.frames, {}};
       return m;
     };
     return made;
@@ -259,7 +273,7 @@ TEST(BenchTables, MarkdownShowsErrorTimeNoiseFloorAndFront) {
                                  exampleRow(exampleCase("good"), 0.002, 9.0)};
   const std::string text = toMarkdown(makeTables(rows).front());
   EXPECT_NE(text.find("| fast | fast.samples=16 | 0.25 | 0.1 | -0.01 | 0.7 | inf | 0.1250 | 0.03 | 0.25 | "
-                      "1.000 | 0.750 | "
+                      "5.00 | 1.00 | 1.000 | 0.750 | "
                       "1.250 | 5 | 1000.0 | 0.50 | 0.25 | 0.25 | 3.0 | * |"),
             std::string::npos)
       << text;
@@ -289,7 +303,8 @@ TEST(BenchTables, RowsAreComparedWithTheBaseline) {
   rows[3].penumbra->structured = 0.01;
   rows[3].what.title = "VSSM";
   const std::string text = comparisonMarkdown(rows);
-  EXPECT_NE(text.find("| VSSM | 8.00 | 8.00 | pcss samples=64 | 4.00 | 4.00 | none | - | - |"),
+  EXPECT_NE(text.find("| VSSM | 8.00 (5.33 to 16.00) | 8.00 | pcss samples=64 | 4.00 (2.67 to 8.00) | 4.00 | "
+                      "none | - | - |"),
             std::string::npos)
       << text;
 }

@@ -50,6 +50,17 @@ void expectUsageError(const std::string& text, const std::string& message) {
   }
 }
 
+TEST(BenchSuite, LightSizesAreQuestionsOfTheirOwn) {
+  const Suite suite = parseSuite(
+      "name = \"l\"\nsizes = \"8x8\"\n[[techniques]]\ntechnique = \"pcss\"\n"
+      "[[scenes]]\nscene = \"balls\"\nlight_sizes = [0.3, 1.2]\n",
+      "s.toml");
+  ASSERT_EQ(suite.cases.size(), 2u);
+  EXPECT_EQ(suite.cases[0].lightSize, 0.3);
+  EXPECT_NE(question(suite.cases[0]), question(suite.cases[1]));
+  EXPECT_NE(label(suite.cases[0]), label(suite.cases[1]));
+}
+
 TEST(BenchSuite, EnvironmentsAreSweptByThreshold) {
   const std::string start =
       "name = \"e\"\nsizes = \"8x8\"\nterm = \"direct\"\n[[techniques]]\ntechnique = \"pcss\"\n"

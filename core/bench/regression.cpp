@@ -1,0 +1,110 @@
+#include "core/bench/regression.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/bench/comparison.h"
+
+namespace limn::bench {
+namespace {
+
+const Metrics& errorOf(const Row& row) {
+  return row.penumbra ? *row.penumbra : row.error;
+}
+
+/// By how much the mean squared errors may differ by chance.
+double noiseOfDifference(const Metrics& a, const Metrics& b) {
+  const double sigma = std::max(a.noise_floor.value_or(0), b.noise_floor.value_or(0)) / 3;
+  const auto pixels = static_cast<double>(std::max<std::size_t>(1, std::min(a.pixels, b.pixels)));
+  const double rounding = 1e-6 * (a.rmse * a.rmse + b.rmse * b.rmse);
+  return 3 * 2 * sigma * (a.rmse + b.rmse + sigma) / std::sqrt(pixels) + rounding;
+}
+
+Change compareRows(const Row& before, const Row& now, const RegressionOptions& options) {
+  Change change;
+  change.label = label(now.what);
+  change.failure = now.failure;
+  if (!now.failure.empty()) return change;
+  const Metrics &a = errorOf(before), &b = errorOf(now);
+  change.errorBefore = a.rmse;
+  change.error = b.rmse;
+  const double growth = b.rmse * b.rmse - a.rmse * a.rmse, noise = noiseOfDifference(a, b);
+  change.worse = growth > noise;
+  change.better = -growth > noise;
+  const std::vector<double>&earlier = before.cost.frameMs.samples, &later = now.cost.frameMs.samples;
+  if (earlier.empty() || later.empty()) return change;
+  change.time = ratioOfMedians(later, earlier);
+  change.slower = change.time.low > 1 + options.drift;
+  change.faster = change.time.high < 1 / (1 + options.drift);
+  return change;
+}
+
+std::string verdict(const Change& change) {
+  if (!change.failure.empty()) return "failed: " + markdownCell(change.failure);
+  std::string text;
+  const auto add = [&](bool holds, const char* word) {
+    if (holds) text += fmt::format("{}{}", text.empty() ? "" : ", ", word);
+  };
+  add(change.slower, "slower");
+  add(change.worse, "worse");
+  add(change.faster, "faster");
+  add(change.better, "better");
+  return text;
+}
+
+bool regressed(const Change& change) {
+  return change.slower || change.worse || !change.failure.empty();
+}
+
+}  // namespace
+
+bool Regression::found() const {
+  return std::ranges::any_of(changes, regressed);
+}
+
+Regression compareResults(std::span<const Row> before, std::span<const Row> now,
+                          const RegressionOptions& options) {
+  std::map<std::string, const Row*> known;
+  for (const Row& row : before)
+    if (row.failure.empty()) known.emplace(row.key, &row);
+  Regression result;
+  for (const Row& row : now) {
+    const auto partner = known.find(row.key);
+    if (partner == known.end()) {
+      ++result.onlyNow;
+    } else {
+      result.changes.push_back(compareRows(*partner->second, row, options));
+    }
+  }
+  result.onlyBefore = known.size() - result.changes.size();
+  return result;
+}
+
+std::string toMarkdown(const Regression& regression) {
+  const auto count = [&](bool Change::*flag) { return std::ranges::count(regression.changes, true, flag); };
+  const auto failed =
+      std::ranges::count_if(regression.changes, [](const Change& c) { return !c.failure.empty(); });
+  std::string text = fmt::format(
+      "{} rows compared: {} slower, {} worse, {} failed, {} faster, {} better; {} only before, {} only now\n",
+      regression.changes.size(), count(&Change::slower), count(&Change::worse), failed,
+      count(&Change::faster), count(&Change::better), regression.onlyBefore, regression.onlyNow);
+  std::string rows;
+  for (const Change& change : regression.changes) {
+    const std::string verdictText = verdict(change);
+    if (verdictText.empty()) continue;
+    const std::string time =
+        change.time.value > 0
+            ? fmt::format("{:.3f} ({:.3f} to {:.3f})", change.time.value, change.time.low, change.time.high)
+            : "-";
+    rows += fmt::format("| {} | {} | {:.4g} | {:.4g} | {} |\n", markdownCell(change.label), time,
+                        change.errorBefore, change.error, verdictText);
+  }
+  if (rows.empty()) return text;
+  return text + "\n| case | time, now / before (95 %) | RMSE before | now | |\n|---|--:|--:|--:|---|\n" +
+         rows;
+}
+
+}  // namespace limn::bench

@@ -1,0 +1,45 @@
+// Two results of the same suites, the later one against the earlier: what got slower or worse beyond noise.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/export.h"
+#include "core/bench/ratio.h"
+#include "core/bench/row.h"
+
+namespace limn::bench {
+
+struct RegressionOptions {
+  /// Share by which the whole interval of a ratio has to lie above 1 before a row counts as slower: what a
+  /// machine drifts by between two runs is in no sample.
+  double drift = 0.05;
+};
+
+/// A row that both results have: the same case on the same renderer.
+struct Change {
+  std::string label;
+  Ratio time;                         ///< later / earlier, frame; value 0: not timed in both
+  double errorBefore = 0, error = 0;  ///< RMSE, in the penumbra where that is known
+  bool slower = false, faster = false;
+  bool worse = false, better = false;
+  std::string failure;  ///< not empty: the later one failed, and the rest is void
+};
+
+struct Regression {
+  std::vector<Change> changes;              ///< in the order of the later rows
+  std::size_t onlyBefore = 0, onlyNow = 0;  ///< rows without a partner
+  LIMN_API bool found() const;              ///< any row slower, worse or failed
+};
+
+/// The error's difference counts where it is larger than three standard deviations of what the noise of two
+/// independent references does to it: MSE_a - MSE_b has the standard deviation 2 sigma (RMSE_a + RMSE_b +
+/// sigma) / sqrt(pixels) at most, sigma the references' noise.
+LIMN_API Regression compareResults(std::span<const Row> before, std::span<const Row> now,
+                                   const RegressionOptions& options = {});
+
+/// A line of totals, and a table of the rows that changed.
+LIMN_API std::string toMarkdown(const Regression& regression);
+
+}  // namespace limn::bench

@@ -1,0 +1,102 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/bench/ratio.h"
+#include "core/bench/regression.h"
+
+namespace limn::bench {
+namespace {
+
+std::vector<double> normal(double mean, double deviation, int count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> distribution(mean, deviation);
+  std::vector<double> samples;
+  for (int i = 0; i < count; ++i) samples.push_back(distribution(random));
+  return samples;
+}
+
+TEST(RatioOfMedians, IntervalHoldsTheTruthAsOftenAsItSays) {
+  int inside = 0;
+  constexpr unsigned kTrials = 200;
+  for (unsigned trial = 0; trial < kTrials; ++trial) {
+    const Ratio ratio = ratioOfMedians(normal(20, 1, 21, 2 * trial), normal(10, 0.5, 21, 2 * trial + 1));
+    inside += ratio.low <= 2 && 2 <= ratio.high;
+    EXPECT_TRUE(ratio.low <= ratio.value && ratio.value <= ratio.high);
+  }
+  // Percentile intervals of medians are a little wide: between 95 % and all of them, less three standard
+  // deviations.
+  EXPECT_GE(inside, 0.95 * kTrials - 3 * std::sqrt(0.95 * 0.05 * kTrials));
+}
+
+TEST(RatioOfMedians, OneSampleHasNoInterval) {
+  const double four[] = {4}, two[] = {2};
+  const Ratio ratio = ratioOfMedians(four, two);
+  EXPECT_EQ(ratio.value, 2);
+  EXPECT_EQ(ratio.low, 2);
+  EXPECT_EQ(ratio.high, 2);
+}
+
+Row row(const std::string& technique, double rmse, double ms) {
+  Row row;
+  row.what.scene = "balls";
+  row.what.term = "visibility";
+  row.what.technique = technique;
+  row.key = technique;
+  row.error.rmse = rmse;
+  row.error.noise_floor = 0.003;
+  row.error.pixels = 10000;
+  row.cost.frameMs.samples = normal(ms, 0.01 * ms, 9, 7);
+  row.cost.frameMs.n = 9;
+  return row;
+}
+
+TEST(Regression, NothingChangesBetweenEqualResults) {
+  const std::vector<Row> rows = {row("a", 0.1, 5), row("b", 0, 1)};
+  const Regression same = compareResults(rows, rows);
+  EXPECT_FALSE(same.found());
+  EXPECT_EQ(toMarkdown(same),
+            "2 rows compared: 0 slower, 0 worse, 0 failed, 0 faster, 0 better; 0 only before, 0 only now\n");
+}
+
+TEST(Regression, NoiseAndDriftAreNoRegression) {
+  const std::vector<Row> before = {row("a", 0.1, 5)}, now = {row("a", 0.10003, 5.2)};
+  EXPECT_FALSE(compareResults(before, now).found());
+}
+
+TEST(Regression, SlowerAndWorseAreFound) {
+  const std::vector<Row> before = {row("slower", 0.1, 5), row("worse", 0.1, 5), row("better", 0.1, 5)};
+  const std::vector<Row> now = {row("slower", 0.1, 6), row("worse", 0.103, 5), row("better", 0.09, 4)};
+  const Regression regression = compareResults(before, now);
+  ASSERT_EQ(regression.changes.size(), 3u);
+  EXPECT_TRUE(regression.found());
+  EXPECT_TRUE(regression.changes[0].slower && !regression.changes[0].worse);
+  EXPECT_TRUE(regression.changes[1].worse && !regression.changes[1].slower);
+  EXPECT_TRUE(regression.changes[2].better && regression.changes[2].faster);
+  EXPECT_NE(toMarkdown(regression).find("| 1.200 (1.1"), std::string::npos) << toMarkdown(regression);
+  EXPECT_FALSE(compareResults(std::span(before).last(1), std::span(now).last(1)).found());
+}
+
+TEST(Regression, PenumbraDecidesWhereItIsKnown) {
+  std::vector<Row> before = {row("a", 0.1, 5)}, now = before;
+  before[0].penumbra = before[0].error;
+  now[0].penumbra = now[0].error;
+  now[0].penumbra->rmse = 0.2;
+  EXPECT_TRUE(compareResults(before, now).changes[0].worse);
+}
+
+TEST(Regression, FailuresCountAndStrangersDoNot) {
+  std::vector<Row> before = {row("a", 0.1, 5), row("gone", 0.1, 5)},
+                   now = {row("a", 0.1, 5), row("new", 0.1, 5)};
+  now[0].failure = "lost | context";
+  const Regression regression = compareResults(before, now);
+  EXPECT_TRUE(regression.found());
+  EXPECT_EQ(regression.onlyBefore, 1u);
+  EXPECT_EQ(regression.onlyNow, 1u);
+  EXPECT_NE(toMarkdown(regression).find("failed: lost \\| context"), std::string::npos)
+      << toMarkdown(regression);
+}
+
+}  // namespace
+}  // namespace limn::bench
