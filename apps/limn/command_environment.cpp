@@ -94,7 +94,7 @@ int run(const Options& options) {
                                    options.overlay.string()));
     checkWritable(options.overlay);
   }
-  const scene::Environment map = scene::loadEnvironment(options.map);
+  const scene::Environment map = scene::loadEnvironment(findEnvironment(options.map));
   const auto start = std::chrono::steady_clock::now();
   const shading::EnvironmentDecomposition lights =
       shading::decomposeEnvironment(map, options.lights.settings());
@@ -117,7 +117,9 @@ int run(const Options& options) {
 
 Action addEnvironmentCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
-  command.add_option("map", options->map, "Equirectangular .hdr or .exr")->required();
+  command
+      .add_option("map", options->map, "Equirectangular .hdr or .exr, or the name of one of limn's own: sky")
+      ->required();
   options->lights.addTo(command, "");
   command.add_option("--overlay", options->overlay, "Write the map with the lights' outlines: .png or .exr");
   command.add_option("--width", options->width, "Of the overlay, pixels")

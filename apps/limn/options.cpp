@@ -79,7 +79,8 @@ void SceneOptions::addTo(CLI::App& command) {
   command.add_option("--eye", eye, "Camera position x,y,z in metres (with --target)");
   command.add_option("--target", target, "Point looked at x,y,z in metres");
   command.add_option("--fov", fov, "Vertical field of view, degrees")->check(CLI::Range(0.1, 179.0));
-  command.add_option("--environment", environment, "Equirectangular .hdr or .exr");
+  command.add_option("--environment", environment,
+                     "Equirectangular .hdr or .exr, or the name of one of limn's own: sky");
   command.add_option("--environment-rotation", environmentRotation, "About the vertical axis, degrees");
   command.add_option("--environment-scale", environmentScale, "Factor on the environment's radiance")
       ->check(CLI::Range(0.0, 1e9));
@@ -127,6 +128,19 @@ fs::path findScene(const fs::path& nameOrFile) {
       return file;
   throw Error(fmt::format(
       "scene '{}' does not exist; expected a .gltf or .glb file, or the name of one of limn's scenes", name));
+}
+
+fs::path findEnvironment(const fs::path& nameOrFile) {
+  std::error_code ignored;
+  if (fs::exists(nameOrFile, ignored)) return nameOrFile;
+  const fs::path name = nameOrFile.filename();
+  if (name == nameOrFile)
+    if (const fs::path file = findShared("assets/environments", name.string() + ".exr"); !file.empty())
+      return file;
+  throw Error(fmt::format(
+      "environment '{}' does not exist; expected an equirectangular .exr or .hdr file, or the name of one of "
+      "limn's maps",
+      nameOrFile.string()));
 }
 
 void checkWritable(const fs::path& file) {
@@ -226,7 +240,8 @@ View open(const SceneOptions& options) {
   View view;
   view.size = parseSize(options.size);
   view.scene = scene::load(findScene(options.scene));
-  if (!options.environment.empty()) view.scene.environment = scene::loadEnvironment(options.environment);
+  if (!options.environment.empty())
+    view.scene.environment = scene::loadEnvironment(findEnvironment(options.environment));
   view.scene.environment.rotation += static_cast<float>(options.environmentRotation * degrees);
   view.scene.environment.scale *= static_cast<float>(options.environmentScale);
   if (options.environmentLights.threshold > 0) {

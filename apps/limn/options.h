@@ -67,6 +67,10 @@ View open(const SceneOptions& options);
 /// The file itself, or the scene of that name that was built with limn. Throws Error when there is neither.
 std::filesystem::path findScene(const std::filesystem::path& nameOrFile);
 
+/// The file itself, or the environment map of that name that was built with limn. Throws Error when there is
+/// neither.
+std::filesystem::path findEnvironment(const std::filesystem::path& nameOrFile);
+
 /// `file` in `folder` of what was built or installed with limn; empty when it is not there.
 std::filesystem::path findShared(const std::filesystem::path& folder, const std::filesystem::path& file);
 

@@ -1,4 +1,4 @@
-// limn-make-scenes: writes the scene library as glTF 2.0.
+// limn-make-scenes: writes the scene library as glTF 2.0, and, unless scenes are named, the environment maps.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +9,9 @@
 
 namespace {
 
+using limn::assets::allEnvironments;
 using limn::assets::allScenes;
+using limn::assets::EnvironmentEntry;
 using limn::assets::SceneEntry;
 
 int usage(const std::string& problem) {
@@ -34,6 +36,15 @@ void report(const limn::assets::Scene& scene) {
   fmt::print("{}: {} triangles stored, {} shown\n", scene.name, stored, shown);
 }
 
+void writeEnvironments(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder / "environments");
+  for (const EnvironmentEntry& entry : allEnvironments()) {
+    const limn::assets::Image map = entry.make();
+    limn::assets::writeExr(map, folder / "environments" / (std::string(entry.name) + ".exr"));
+    fmt::print("environment {}: {} x {}\n", entry.name, map.width, map.height);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -52,6 +63,7 @@ int main(int argc, char** argv) {
   }
   if (chosen.empty()) chosen = allScenes();
   try {
+    if (arguments.size() == 1) writeEnvironments(arguments[0]);
     for (const SceneEntry& entry : chosen) {
       limn::assets::Scene scene = entry.make();
       scene.name = entry.name;

@@ -6,9 +6,11 @@ const std::vector<SceneEntry>& allScenes() {
   static const std::vector<SceneEntry> scenes = {
       {"atrium", makeAtrium},
       {"balls", makeBalls},
+      {"balls_sky", makeBallsSky},
       {"cornell_box", makeCornellBox},
       {"foliage_card", makeFoliageCard},
       {"lights", makeLights},
+      {"patrol", makePatrol},
       {"plant", makePlant},
       {"robot", makeRobot},
       {"soldiers", makeSoldiers},
@@ -17,6 +19,11 @@ const std::vector<SceneEntry>& allScenes() {
       {"white_furnace", makeWhiteFurnace},
   };
   return scenes;
+}
+
+const std::vector<EnvironmentEntry>& allEnvironments() {
+  static const std::vector<EnvironmentEntry> environments = {{"sky", makeSky}};
+  return environments;
 }
 
 }  // namespace limn::assets

@@ -10,9 +10,11 @@ namespace limn::assets {
 
 Scene makeAtrium();
 Scene makeBalls();
+Scene makeBallsSky();
 Scene makeCornellBox();
 Scene makeFoliageCard();
 Scene makeLights();
+Scene makePatrol();
 Scene makePlant();
 Scene makeRobot();
 Scene makeSoldiers();
@@ -27,5 +29,16 @@ struct SceneEntry {
 
 /// Every scene of the library.
 const std::vector<SceneEntry>& allScenes();
+
+/// 512 x 256 pixels: a low sun, a glowing horizon, two windows.
+Image makeSky();
+
+struct EnvironmentEntry {
+  std::string_view name;
+  Image (*make)();
+};
+
+/// Every environment map of the library.
+const std::vector<EnvironmentEntry>& allEnvironments();
 
 }  // namespace limn::assets

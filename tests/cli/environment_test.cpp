@@ -46,6 +46,8 @@ TEST_F(EnvironmentCommand, WritesTheOverlayAndRefusesWhatMakesNoSense) {
   expectRefused(limn({"render", cornell_box, "--environment-lights", "0.02", "--out", "a.png"}), 2,
                 {"--environment-lights", "--environment"});
   expectRefused(limn({"environment", (folder_ / "none.hdr").string()}), 1, {"none.hdr"});
+  expectRefused(limn({"environment", "ski"}), 1, {"'ski'", ".exr"});
+  EXPECT_EQ(limn({"environment", "sky", "--lights", "0.02"}).status, 0) << "limn's own, by its name";
 }
 
 TEST_F(EnvironmentCommand, LightsOfTheEnvironmentShadowAndAreReferredToByName) {

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "core/scene/load.h"
+#include "core/shading/environment_decomposition.h"
 #include "tests/support/paths.h"
 
 namespace {
@@ -27,8 +28,10 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 const fs::path kAssets = fs::path(limn::test::binaryDir) / "assets";
-const char* const kScenes[] = {"atrium", "balls",    "cornell_box", "foliage_card", "lights",       "plant",
-                               "robot",  "soldiers", "statue",      "teapot",       "white_furnace"};
+const char* const kScenes[] = {"atrium", "balls",  "balls_sky",    "cornell_box", "foliage_card",
+                               "lights", "patrol", "plant",        "robot",       "soldiers",
+                               "statue", "teapot", "white_furnace"};
+const std::set<std::string> kUnderEnvironments = {"balls_sky", "patrol", "white_furnace"};
 
 std::string bytesOf(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -161,6 +164,7 @@ TEST(Assets, TriangleCountsAreAsPromised) {
   EXPECT_GE(Glb("plant").trianglesShown(), 100'000u);
   EXPECT_GE(Glb("atrium").trianglesShown(), 70'000u);
   EXPECT_GE(Glb("statue").trianglesShown(), 70'000u);
+  EXPECT_GE(Glb("patrol").trianglesShown(), 1'000'000u);
   EXPECT_GE(Glb("soldiers").trianglesShown(), 9'000'000u);
   EXPECT_LE(Glb("soldiers").trianglesShown(), 13'000'000u);
 }
@@ -184,9 +188,21 @@ TEST(Assets, EverySceneHasNamedCamerasAndTheLightsItNames) {
       EXPECT_TRUE(fs::exists(kAssets / scene / image["uri"].get<std::string>())) << scene << " " << image;
     }
   }
-  EXPECT_TRUE(
-      fs::exists(kAssets / "white_furnace" /
-                 Glb("white_furnace").root["scenes"][0]["extras"]["limn_environment"].get<std::string>()));
+  for (const std::string& scene : kUnderEnvironments) {
+    const json extras = Glb(scene).root["scenes"][0]["extras"];
+    EXPECT_TRUE(fs::exists(kAssets / scene / extras["limn_environment"].get<std::string>())) << scene;
+  }
+}
+
+TEST(Assets, TheSkyIsBrightInFewPlacesAndTakesAboutThirtyLights) {
+  const limn::scene::Environment sky = limn::scene::loadEnvironment(kAssets / "environments" / "sky.exr");
+  EXPECT_EQ(sky.width, 512);
+  EXPECT_EQ(sky.height, 256);
+  EXPECT_EQ(bytesOf(kAssets / "environments" / "sky.exr"),
+            bytesOf(kAssets / "balls_sky" / "environment.exr"));
+  const auto lights = limn::shading::decomposeEnvironment(sky, {.threshold = 0.015}).lights;
+  EXPECT_GE(lights.size(), 25u);
+  EXPECT_LE(lights.size(), 40u);
 }
 
 TEST(Assets, LightsHoldsOneOfEveryType) {
@@ -249,18 +265,18 @@ TEST(Assets, RobotIsSkinnedAndItsDanceLoops) {
 }
 
 TEST(Assets, TheLoaderTakesEverySceneWithoutAWarning) {
-  const std::map<std::string, std::size_t> lights = {{"lights", 5}, {"white_furnace", 0}};
   for (const char* name : kScenes) {
     SCOPED_TRACE(name);
     const limn::scene::Scene scene = limn::scene::load(kAssets / name / (std::string(name) + ".glb"));
     EXPECT_THAT(scene.warnings, testing::IsEmpty());
     EXPECT_EQ(scene.triangles(), Glb(name).trianglesShown());
     const limn::scene::Pose pose = limn::scene::evaluate(scene, 0.5);
-    EXPECT_EQ(pose.lights.size(), lights.count(name) ? lights.at(name) : 1u);
+    const bool sky = kUnderEnvironments.count(name) > 0;
+    EXPECT_EQ(pose.lights.size(), sky ? 0u : std::string(name) == "lights" ? 5u : 1u);
     if (!pose.lights.empty()) {
       EXPECT_THAT(pose.lightNames, testing::Contains("key"));
     }
-    EXPECT_EQ(static_cast<bool>(scene.environment), std::string(name) == "white_furnace");
+    EXPECT_EQ(static_cast<bool>(scene.environment), sky);
   }
 }
 
