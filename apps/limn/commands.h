@@ -16,5 +16,6 @@ Action addReferenceCommand(CLI::App& command);
 Action addEnvironmentCommand(CLI::App& command);
 Action addCompareCommand(CLI::App& command);
 Action addBenchCommand(CLI::App& command);
+Action addStressCommand(CLI::App& command);
 
 }  // namespace limn::app

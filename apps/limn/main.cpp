@@ -46,6 +46,7 @@ int main(int argc, char** argv) {
   add("compare", "Measure how far an image is from its reference", addCompareCommand);
   add("environment", "List and show the area lights that stand for an environment", addEnvironmentCommand);
   add("bench", "Run a suite: error and time of many settings, as tables", addBenchCommand);
+  add("stress", "Run every technique on its stability cases: pass, degraded or refused", addStressCommand);
 
   return guarded([&] {
     if (argc > 1 && argv[1][0] != '-') checkCommand(limn, argv[1]);

@@ -27,6 +27,7 @@
 #include "core/gpu/shader_source.h"
 #include "core/technique/handshake.h"
 #include "core/technique/parameters.h"
+#include "core/technique/stress_case.h"
 
 namespace limn {
 
@@ -72,6 +73,8 @@ struct TechniqueInfo {
   const char* source;  ///< paper, year, or the thesis's chapter
   TermSet terms = 0;
   std::span<const Parameter> parameters;
+  /// Extremes of the method itself; those that every technique meets are core's (core/bench/stress.h).
+  std::span<const StressCase> stress;
 };
 
 /// The G-buffer (layout: glsl/gbuffer.glsl). Screen-sized, one sample at the pixel centre.

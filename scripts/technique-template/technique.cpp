@@ -12,6 +12,9 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
+constexpr StressCase stress[] = {
+    {.name = "map of 16 texels", .settings = "shadow_map_size=16", .factor = 4},
+};
 
 class @CLASS@ : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -28,7 +31,8 @@ class @CLASS@ : public Technique {
                                       .title = "@NAME@",
                                       .source = "Reeves, Salesin, Cook 1987",
                                       .terms = termSet(Term::visibility),
-                                      .parameters = parameters};
+                                      .parameters = parameters,
+                                      .stress = stress};
 };
 
 }  // namespace

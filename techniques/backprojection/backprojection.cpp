@@ -20,6 +20,10 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
+constexpr StressCase stress[] = {
+    {.name = "map of 64 texels", .settings = "shadow_map_size=64", .factor = 4},
+    {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
+};
 
 class Backprojection : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -42,7 +46,8 @@ class Backprojection : public Technique {
       .title = "Soft shadow mapping by backprojection",
       .source = "Guennebaud, Barthe and Paulin 2006, Real-time Soft Shadow Mapping by Backprojection",
       .terms = termSet(Term::visibility),
-      .parameters = parameters};
+      .parameters = parameters,
+      .stress = stress};
 };
 
 }  // namespace

@@ -22,6 +22,10 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
+constexpr StressCase stress[] = {
+    {.name = "map of 64 texels", .settings = "shadow_map_size=64", .factor = 4},
+    {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
+};
 
 class BitmaskSoftShadows : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -44,7 +48,8 @@ class BitmaskSoftShadows : public Technique {
                                       .title = "Bitmask soft shadows",
                                       .source = "Schwarz and Stamminger 2007, Bitmask Soft Shadows",
                                       .terms = termSet(Term::visibility),
-                                      .parameters = parameters};
+                                      .parameters = parameters,
+                                      .stress = stress};
 };
 
 }  // namespace

@@ -33,6 +33,14 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
+constexpr StressCase stress[] = {
+    {.name = "one term", .settings = "order=1", .factor = 4},
+    {.name = "64 terms", .settings = "order=64 shadow_map_size=256"},
+    {.name = "8-bit basis", .settings = "filter=mip"},
+    {.name = "published kernel in foliage", .scene = "plant", .settings = "splits=1 contact=sharpened"},
+    {.name = "map of 64 texels", .settings = "shadow_map_size=64", .factor = 4},
+    {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
+};
 
 class Cssm : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -69,7 +77,8 @@ class Cssm : public Technique {
                                       .title = "Convolution soft shadow maps",
                                       .source = "Annen et al. 2008; thesis, chapter 5",
                                       .terms = termSet(Term::visibility),
-                                      .parameters = parameters};
+                                      .parameters = parameters,
+                                      .stress = stress};
 };
 
 }  // namespace

@@ -12,6 +12,11 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     choice("filter", 0, filters, "One texel, or the four around the receiver weighted bilinearly"),
 };
+constexpr StressCase stress[] = {
+    {.name = "map of 16 texels", .settings = "shadow_map_size=16", .factor = 4},
+    {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
+    {.name = "no bias", .settings = "bias=0", .factor = 4},
+};
 
 class HardShadowMap : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -27,7 +32,8 @@ class HardShadowMap : public Technique {
                                       .title = "Hard shadow mapping",
                                       .source = "Williams 1978, Casting Curved Shadows on Curved Surfaces",
                                       .terms = termSet(Term::visibility),
-                                      .parameters = parameters};
+                                      .parameters = parameters,
+                                      .stress = stress};
 };
 
 }  // namespace

@@ -23,6 +23,10 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
+constexpr StressCase stress[] = {
+    {.name = "map of 64 texels", .settings = "shadow_map_size=64", .factor = 4},
+    {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
+};
 
 class MomentSoftShadowMap : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -52,7 +56,8 @@ class MomentSoftShadowMap : public Technique {
       .source =
           "Peters and Klein 2015, Moment Shadow Mapping; Peters et al. 2017, Improved Moment Shadow Maps",
       .terms = termSet(Term::visibility),
-      .parameters = parameters};
+      .parameters = parameters,
+      .stress = stress};
 };
 
 }  // namespace

@@ -12,6 +12,10 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
+constexpr StressCase stress[] = {
+    {.name = "map of 16 texels", .settings = "shadow_map_size=16", .factor = 4},
+    {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
+};
 
 class Pcf : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -31,7 +35,8 @@ class Pcf : public Technique {
       .title = "Percentage-closer filtering",
       .source = "Reeves, Salesin, Cook 1987, Rendering Antialiased Shadows with Depth Maps",
       .terms = termSet(Term::visibility),
-      .parameters = parameters};
+      .parameters = parameters,
+      .stress = stress};
 };
 
 }  // namespace

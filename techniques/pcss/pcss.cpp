@@ -23,6 +23,15 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
+constexpr StressCase stress[] = {
+    {.name = "one sample each", .settings = "blocker_samples=1 filter_samples=1", .factor = 4},
+    {.name = "map of 64 texels", .settings = "shadow_map_size=64", .factor = 4},
+    {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
+    {.name = "published search, light of 3 scene radii",
+     .change = StressChange::lightSize,
+     .amount = 3,
+     .settings = "search=near"},
+};
 
 class Pcss : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -44,7 +53,8 @@ class Pcss : public Technique {
                                       .title = "Percentage-closer soft shadows",
                                       .source = "Fernando 2005, Percentage-Closer Soft Shadows",
                                       .terms = termSet(Term::visibility),
-                                      .parameters = parameters};
+                                      .parameters = parameters,
+                                      .stress = stress};
 };
 
 }  // namespace

@@ -16,6 +16,10 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::memoryParameter(),
 };
+constexpr StressCase stress[] = {
+    {.name = "one sample", .settings = "samples=1", .factor = 8},
+    {.name = "maps of 16 texels", .settings = "shadow_map_size=16", .factor = 8},
+};
 
 class SampledAreaLight : public Technique {
   using Batch = shadow::SampleBatch;
@@ -79,7 +83,8 @@ class SampledAreaLight : public Technique {
                                       .title = "Sampled area lights",
                                       .source = "Haeberli and Akeley 1990, The Accumulation Buffer",
                                       .terms = Term::visibility | Term::direct,
-                                      .parameters = parameters};
+                                      .parameters = parameters,
+                                      .stress = stress};
 };
 
 }  // namespace

@@ -21,6 +21,10 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::memoryParameter(),
 };
+constexpr StressCase stress[] = {
+    {.name = "one sample", .settings = "samples=1", .factor = 8},
+    {.name = "maps of 16 texels", .settings = "shadow_map_size=16", .factor = 8},
+};
 
 class SampledEnvironmentLight : public Technique {
   std::vector<glm::vec3> directions_;  ///< of propagation
@@ -91,7 +95,8 @@ class SampledEnvironmentLight : public Technique {
       .title = "Sampled environment light",
       .source = "the thesis, figures 5.10 and 5.11 (shadow maps of many samples)",
       .terms = termSet(Term::environment),
-      .parameters = parameters};
+      .parameters = parameters,
+      .stress = stress};
 };
 
 }  // namespace

@@ -25,6 +25,11 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
+constexpr StressCase stress[] = {
+    {.name = "one blocker sample", .settings = "blocker_samples=1", .factor = 4},
+    {.name = "map of 64 texels", .settings = "shadow_map_size=64", .factor = 4},
+    {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
+};
 
 class Savsm : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -48,7 +53,8 @@ class Savsm : public Technique {
                                       .title = "Summed-area variance shadow maps",
                                       .source = "Lauritzen 2007, Summed-Area Variance Shadow Maps",
                                       .terms = termSet(Term::visibility),
-                                      .parameters = parameters};
+                                      .parameters = parameters,
+                                      .stress = stress};
 };
 
 }  // namespace

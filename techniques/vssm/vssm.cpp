@@ -35,6 +35,14 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
+constexpr StressCase stress[] = {
+    {.name = "map of 64 texels", .settings = "shadow_map_size=64", .factor = 4},
+    {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
+    {.name = "adaptive subdivision in foliage", .scene = "plant", .settings = "subdivision=adaptive"},
+    {.name = "published subdivision in foliage",
+     .scene = "plant",
+     .settings = "subdivision=mixed chebyshev=pooled"},
+};
 
 /// Whether the sum of depths over the largest sub-kernel may exceed one word.
 bool needsWideSums(const ParameterValues& p) {
@@ -81,7 +89,8 @@ class Vssm : public Technique {
                                       .title = "Variance soft shadow maps",
                                       .source = "Yang et al. 2010, Variance Soft Shadow Mapping",
                                       .terms = termSet(Term::visibility),
-                                      .parameters = parameters};
+                                      .parameters = parameters,
+                                      .stress = stress};
 };
 
 }  // namespace

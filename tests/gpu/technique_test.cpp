@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/bench/stress_scene.h"
 #include "tests/gpu/render_test.h"
 
 namespace limn {
@@ -11,37 +12,7 @@ namespace {
 
 using render::Output;
 
-class TechniqueTest : public RenderTest {
- protected:
-  /// The same scene `factor` times as large: positions s, intensities s^2 (directional lights keep their
-  /// irradiance).
-  static scene::Scene scaled(scene::Scene scene, float factor) {
-    const int root = static_cast<int>(scene.nodes.size());
-    for (scene::Node& node : scene.nodes) {
-      if (node.parent == scene::none) node.parent = root;
-      node.limnArea *= factor;
-    }
-    scene::Node scaling;
-    scaling.transform.scale = glm::vec3(factor);
-    scene.nodes.push_back(scaling);
-    std::rotate(scene.nodes.begin(), scene.nodes.end() - 1,
-                scene.nodes.end());  // parents come before children
-    for (size_t i = 1; i < scene.nodes.size(); ++i) {
-      scene::Node& node = scene.nodes[i];
-      node.parent = node.parent == root ? 0 : node.parent + 1;
-    }
-    for (scene::Skin& skin : scene.skins)
-      for (int& joint : skin.joints) ++joint;
-    for (scene::Animation& animation : scene.animations)
-      for (scene::AnimationChannel& channel : animation.channels) ++channel.node;
-    for (scene::LightSource& light : scene.lights) {
-      if (light.type != glsl::light_directional) light.intensity *= factor * factor;
-      light.range *= factor;
-    }
-    for (scene::CameraLens& camera : scene.cameras) camera.near *= factor;
-    return scene;
-  }
-};
+using TechniqueTest = RenderTest;
 
 TEST_F(TechniqueTest, EveryTechniqueAnswersEveryLightAlone) {
   const scene::Scene scene = asset("lights");
@@ -94,7 +65,7 @@ TEST_F(TechniqueTest, ShadowsOnlyTakeLightAway) {
 TEST_F(TechniqueTest, ScaleOfTheSceneDoesNotMatter) {
   const scene::Scene scene = asset("balls");
   for (const float factor : {1e-4f, 1e4f}) {
-    const scene::Scene other = scaled(scene, factor);
+    const scene::Scene other = bench::stressed(scene, StressChange::sceneScale, factor);
     render::Renderer renderer(device(), scene), scaledRenderer(device(), other);
     for (const std::string& name : techniquesAnswering(Term::visibility)) {
       SCOPED_TRACE(name + " at scale " + std::to_string(factor));

@@ -9,6 +9,10 @@ constexpr limn::Parameter parameters[] = {
     limn::real("value", 1.0, {0, 1}, "", "Visibility of every light at every pixel"),
 };
 
+constexpr limn::StressCase stress[] = {
+    {.name = "all dark", .settings = "value=0", .factor = 100},
+};
+
 class ExampleTechnique : public limn::Technique {
   limn::frame::TextureHandle addPasses(limn::frame::FrameGraph& graph, const limn::TechniqueInputs& inputs,
                                        const limn::TermRequest& request) override {
@@ -32,7 +36,8 @@ constexpr limn::TechniqueInfo info{.name = "example_technique",
                                    .title = "Constant visibility",
                                    .source = "an example",
                                    .terms = limn::termSet(limn::Term::visibility),
-                                   .parameters = parameters};
+                                   .parameters = parameters,
+                                   .stress = stress};
 
 }  // namespace
 

@@ -1,0 +1,194 @@
+#include "core/bench/stress_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace limn::bench {
+namespace {
+
+/// Triangles in world space that never change.
+class FixedGeometry : public scene::GeometrySource {
+ public:
+  explicit FixedGeometry(const std::vector<glm::vec3>& corners) {
+    primitive_->positions = corners;
+    for (uint32_t i = 0; i < corners.size(); ++i) primitive_->indices.push_back(i);
+    for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+      const glm::vec3 n = glm::cross(corners[i + 1] - corners[i], corners[i + 2] - corners[i]);
+      const float length = glm::length(n);
+      // Triangles without area get some unit normal: it is their area that is the difficulty.
+      primitive_->normals.insert(primitive_->normals.end(), 3, length > 0 ? n / length : glm::vec3(0, 1, 0));
+    }
+  }
+  std::shared_ptr<const scene::Primitive> at(double) override { return primitive_; }
+
+ private:
+  std::shared_ptr<scene::Primitive> primitive_ = std::make_shared<scene::Primitive>();
+};
+
+void addTriangles(scene::Scene& scene, const std::vector<glm::vec3>& corners) {
+  scene::Material material;
+  material.baseColour = glm::vec4(0.5f, 0.5f, 0.5f, 1);
+  material.metallic = 0;
+  material.doubleSided = true;
+  scene.dynamic.push_back(
+      {"stress", std::make_shared<FixedGeometry>(corners), static_cast<int>(scene.materials.size())});
+  scene.materials.push_back(material);
+}
+
+/// Positions and sizes by `factor`, intensities by its square (directional lights keep their irradiance), so
+/// that the picture stays the same.
+void scale(scene::Scene& scene, float factor) {
+  for (scene::Node& node : scene.nodes) {
+    node.limnArea *= factor;
+    if (node.parent == scene::none) node.parent = -2;
+  }
+  scene::Node root;
+  root.transform.scale = glm::vec3(factor);
+  scene.nodes.insert(scene.nodes.begin(), root);  // parents come before children
+  for (std::size_t i = 1; i < scene.nodes.size(); ++i)
+    scene.nodes[i].parent = scene.nodes[i].parent == -2 ? 0 : scene.nodes[i].parent + 1;
+  for (scene::Skin& skin : scene.skins)
+    for (int& joint : skin.joints) ++joint;
+  for (scene::Animation& animation : scene.animations)
+    for (scene::AnimationChannel& channel : animation.channels) ++channel.node;
+  for (scene::LightSource& light : scene.lights) {
+    if (light.type != glsl::light_directional) light.intensity *= factor * factor;
+    light.range *= factor;
+  }
+  for (scene::CameraLens& camera : scene.cameras) camera.near *= factor;
+}
+
+/// Position and direction of the first light.
+struct LightRay {
+  glm::vec3 from{0, 1, 0}, direction{0, -1, 0};
+};
+
+LightRay firstLight(const scene::Scene& scene, const scene::Pose& pose) {
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    if (scene.nodes[i].light == scene::none) continue;
+    const glm::mat4& m = pose.nodeToWorld[i];
+    return {glm::vec3(m[3]), -glm::normalize(glm::vec3(m[2]))};
+  }
+  return {};
+}
+
+/// A square of side 2 half about `centre`, perpendicular to `normal`.
+std::vector<glm::vec3> square(glm::vec3 centre, glm::vec3 normal, float half) {
+  const glm::vec3 u =
+      glm::normalize(glm::cross(normal, std::abs(normal.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0)));
+  const glm::vec3 v = glm::cross(normal, u);
+  const auto at = [&](float a, float b) { return centre + half * (a * u + b * v); };
+  return {at(-1, -1), at(1, -1), at(1, 1), at(-1, -1), at(1, 1), at(-1, 1)};
+}
+
+void moveLightToTheFloor(scene::Scene& scene, const scene::Pose& pose) {
+  const auto node =
+      std::ranges::find_if(scene.nodes, [](const scene::Node& n) { return n.light != scene::none; });
+  if (node == scene.nodes.end()) return;
+  glm::vec3 from = firstLight(scene, pose).from, to = pose.bounds.centre();
+  from.y = to.y = pose.bounds.low.y;
+  if (glm::length(to - from) < 1e-3f * pose.bounds.radius()) from.x += pose.bounds.radius();
+  node->parent = scene::none;
+  node->matrix.reset();
+  node->transform = {from, glm::quatLookAt(glm::normalize(to - from), glm::vec3(0, 1, 0)), glm::vec3(1)};
+}
+
+}  // namespace
+
+scene::Scene stressed(scene::Scene scene, StressChange change, double amount) {
+  const auto value = static_cast<float>(amount);
+  const scene::Pose pose = scene::evaluate(scene, 0);
+  const float radius = pose.bounds.radius();
+  const glm::vec3 centre = pose.bounds.centre();
+  switch (change) {
+    case StressChange::none:
+    case StressChange::imageWidth:
+    case StressChange::cameraInside:
+      break;
+    case StressChange::sceneScale:
+      scale(scene, value);
+      break;
+    case StressChange::lightSize:
+      for (scene::Node& node : scene.nodes)
+        if (node.limnArea != glm::vec2(0)) node.limnArea = glm::vec2(value * radius);
+      break;
+    case StressChange::depthRange: {
+      const LightRay ray = firstLight(scene, pose);
+      addTriangles(scene,
+                   square(centre + value * radius * ray.direction, ray.direction, 0.1f * value * radius));
+      break;
+    }
+    case StressChange::contact:
+      addTriangles(
+          scene, square({centre.x, pose.bounds.low.y + value * radius, centre.z}, {0, 1, 0}, 0.3f * radius));
+      break;
+    case StressChange::edgeOn:
+      moveLightToTheFloor(scene, pose);
+      break;
+    case StressChange::radiance:
+      for (scene::LightSource& light : scene.lights) light.intensity *= value;
+      for (scene::Material& material : scene.materials) material.emission *= value;
+      scene.environment.scale *= value;
+      break;
+    case StressChange::albedo:
+      for (scene::Material& material : scene.materials) {
+        material.baseColour = glm::vec4(glm::vec3(value), material.baseColour.a);
+        material.baseColourTexture = {};
+      }
+      break;
+    case StressChange::noLight:
+      for (scene::Node& node : scene.nodes) node.light = scene::none;
+      for (scene::Material& material : scene.materials) material.emission = glm::vec3(0);
+      scene.environment = {};
+      break;
+    case StressChange::oneTriangle:
+      for (scene::Node& node : scene.nodes) node.mesh = scene::none;
+      addTriangles(scene, {centre + glm::vec3(-radius, 0, -radius), centre + glm::vec3(radius, 0, -radius),
+                           centre + glm::vec3(0, 0, radius)});
+      break;
+    case StressChange::degenerate: {
+      const glm::vec3 x(0.5f * radius, 0, 0), up(0, 0.2f * radius, 0);
+      addTriangles(scene,
+                   {centre + up, centre + up, centre + up,                                          // a point
+                    centre + up - x, centre + up, centre + up + x,                                  // a line
+                    centre + up - x, centre + up + x, centre + up + 1e-30f * glm::vec3(0, 0, 1)});  // no area
+      break;
+    }
+    case StressChange::invalidVertices:
+      addTriangles(scene, {centre, centre + glm::vec3(radius, 0, 0),
+                           glm::vec3(std::numeric_limits<float>::quiet_NaN())});
+      break;
+  }
+  return scene;
+}
+
+scene::Environment stressSky() {
+  scene::Environment sky;
+  sky.width = 64;
+  sky.height = 32;
+  sky.texels.resize(64 * 32);
+  for (int y = 0; y < sky.height; ++y)
+    for (int x = 0; x < sky.width; ++x) {
+      const bool sun = y >= 6 && y < 8 && x >= 20 && x < 22;
+      const float up = 1 - static_cast<float>(y) / 31.f;
+      sky.texels[static_cast<std::size_t>(y * sky.width + x)] =
+          sun ? glm::vec3(40) : glm::vec3(0.1f) + up * glm::vec3(0.3f, 0.4f, 0.6f);
+    }
+  return sky;
+}
+
+scene::CameraPose cameraInside(const scene::Scene& scene, const scene::Pose& pose, scene::CameraPose camera) {
+  scene::Bounds smallest = pose.bounds;
+  for (const scene::DrawInstance& instance : pose.instances) {
+    const scene::Bounds bounds = scene::instanceBounds(scene, pose, instance);
+    const glm::vec3 extent = bounds.high - bounds.low;
+    const bool solid = std::min({extent.x, extent.y, extent.z}) > 0;  // in a plane nothing is inside
+    if (solid && bounds.radius() < smallest.radius()) smallest = bounds;
+  }
+  camera.worldToView[3] = glm::vec4(0, 0, 0, 1);
+  camera.worldToView[3] = camera.worldToView * glm::vec4(-smallest.centre(), 1);
+  return camera;
+}
+
+}  // namespace limn::bench

@@ -1,0 +1,21 @@
+// Scenes made difficult.
+#pragma once
+
+#include "core/base/export.h"
+#include "core/scene/scene.h"
+#include "core/technique/stress_case.h"
+
+namespace limn::bench {
+
+/// The scene after `change`. Changes of the camera or the picture (cameraInside, imageWidth) leave it as it
+/// is. Scenes without lights, floor or rectangle lights keep what the change would have moved.
+LIMN_API scene::Scene stressed(scene::Scene scene, StressChange change, double amount);
+
+/// A small procedural sky for scenes without environment: brighter above, with a sun of a few texels.
+LIMN_API scene::Environment stressSky();
+
+/// The camera in the middle of the smallest object, looking as before.
+LIMN_API scene::CameraPose cameraInside(const scene::Scene& scene, const scene::Pose& pose,
+                                        scene::CameraPose camera);
+
+}  // namespace limn::bench

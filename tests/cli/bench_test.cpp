@@ -1,0 +1,69 @@
+// The bench and the stress table from outside.
+#include <regex>
+
+#include "tests/cli/limn_program.h"
+
+namespace limn::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class BenchCommand : public testing::Test {
+ protected:
+  BenchCommand() {
+    std::ofstream(folder_ / "suite.toml")
+        << "name = \"tiny\"\nsizes = \"32x24\"\nframes = 5\nwarmup = 1\nterm = \"visibility\"\n"
+           "reference = {spp = 4}\n[[scenes]]\nscene = \"cornell_box\"\nlights = [\"#0\"]\n"
+           "max_masked_share = 0.2\n[[techniques]]\ntechnique = \"hard_shadow_map\"\n"
+           "parameters = {shadow_map_size = 64}\n";
+  }
+
+  Outcome bench(const std::string& out, std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments = {"bench", folder_ / "suite.toml", "--out", folder_ / out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return limn(arguments);
+  }
+
+  /// Replaces what `pattern` matches in the results.
+  void rewrite(const std::string& out, const std::string& pattern, const std::string& by) {
+    const fs::path file = folder_ / out / "results.jsonl";
+    const std::string text = std::regex_replace(contents(file), std::regex(pattern), by);
+    std::ofstream(file) << text;
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(BenchCommand, AgainstAnEarlierResultFindsWhatGotSlower) {
+  ASSERT_EQ(bench("before").status, 0);
+  ASSERT_EQ(bench("now").status, 0);
+  // As if it had taken a thousandth, and then a thousand times as long: no machine is that noisy.
+  rewrite("before", "\"frame_samples_ms\":\\[[^\\]]*\\]", "\"frame_samples_ms\":[0.001,0.001,0.001]");
+  const Outcome slower = bench("now", {"--against", folder_ / "before"});
+  EXPECT_EQ(slower.status, 1) << slower.err;
+  EXPECT_THAT(slower.out, testing::HasSubstr("1 rows compared: 1 slower, 0 worse"));
+  EXPECT_THAT(contents(folder_ / "now" / "against.md"), testing::HasSubstr("slower |"));
+  rewrite("before", "\"frame_samples_ms\":\\[[^\\]]*\\]", "\"frame_samples_ms\":[9e6,9e6,9e6]");
+  const Outcome faster = bench("now", {"--against", folder_ / "before"});
+  EXPECT_EQ(faster.status, 0) << faster.out;
+  EXPECT_THAT(faster.out, testing::HasSubstr("1 faster"));
+}
+
+TEST_F(BenchCommand, AgainstNothingIsRefusedBeforeAnythingIsMeasured) {
+  expectRefused(bench("now", {"--against", folder_ / "missing"}), 1, {"--against", "results.jsonl"});
+  EXPECT_FALSE(fs::exists(folder_ / "now" / "results.jsonl"));
+}
+
+TEST_F(BenchCommand, StressWritesATable) {
+  const Outcome stress =
+      limn({"stress", "--technique", "hard_shadow_map", "--filter", "scale", "--out", folder_ / "stress"});
+  EXPECT_EQ(stress.status, 0) << stress.err;
+  EXPECT_THAT(stress.out, testing::HasSubstr("| hard_shadow_map | scale 1e4 | balls | pass |"));
+  EXPECT_EQ(contents(folder_ / "stress" / "stress.md"), stress.out);
+  EXPECT_TRUE(fs::exists(folder_ / "stress" / "stress.json"));
+  expectRefused(limn({"stress", "--filter", "no such case"}), 2, {"no such case"});
+  expectRefused(limn({"stress", "--technique", "pcs"}), 2, {"pcs"});
+}
+
+}  // namespace
+}  // namespace limn::test

@@ -1,0 +1,80 @@
+// Stability cases as techniques declare them. `limn stress` runs them at a size that says something about
+// error; here they must end in a picture or in a message.
+#include "core/bench/stress.h"
+
+#include <gmock/gmock.h>
+
+#include "core/bench/stress_scene.h"
+#include "tests/gpu/render_test.h"
+
+namespace limn {
+namespace {
+
+using bench::StressResult;
+using bench::Verdict;
+
+class StressTest : public RenderTest {
+ protected:
+  bench::StressRun stressRun() {
+    return bench::StressRun(device(), asset, {.width = 48, .height = 36, .spp = 4});
+  }
+};
+
+TEST_F(StressTest, EveryTechniqueDeclaresCases) {
+  for (const TechniquePlugin* plugin : registry().all())
+    EXPECT_FALSE(plugin->info->stress.empty())
+        << plugin->info->name
+        << ": declare its stability cases beside its parameters (TechniqueInfo::stress)";
+}
+
+TEST_F(StressTest, DeclaredCasesEndInAPictureOrAMessage) {
+  bench::StressRun run = stressRun();
+  for (const TechniquePlugin* plugin : registry().all())
+    for (const StressCase& c : plugin->info->stress) {
+      if (std::string_view(c.name).find("8192") != std::string_view::npos) continue;  // minutes in software
+      const StressResult result = run.run(*plugin, c, true);
+      EXPECT_TRUE(result.verdict == Verdict::pass || result.verdict == Verdict::degraded)
+          << result.technique << ", " << result.name << ": " << result.message;
+    }
+}
+
+TEST_F(StressTest, VerdictsFollowWhatHappened) {
+  bench::StressRun run = stressRun();
+  const TechniquePlugin& hard = registry().find("hard_shadow_map");
+  const StressResult plain = run.run(hard, {.name = "plain"}, false);
+  EXPECT_EQ(plain.verdict, Verdict::pass);
+  EXPECT_EQ(plain.factor, 1);
+  EXPECT_GT(plain.error, 0);
+  const StressResult strict = run.run(hard, {.name = "strict", .factor = 0.5}, false);
+  EXPECT_EQ(strict.verdict, Verdict::degraded);
+  const StressResult invalid =
+      run.run(hard, {.name = "invalid", .change = StressChange::invalidVertices}, false);
+  EXPECT_EQ(invalid.verdict, Verdict::refused);
+  EXPECT_THAT(invalid.message, testing::HasSubstr("not finite"));
+  EXPECT_THAT(run.run(hard, {.name = "typo", .settings = "biass=1"}, false).message,
+              testing::HasSubstr("bias"));
+  const StressResult results[] = {plain, strict, invalid};
+  EXPECT_THAT(bench::toMarkdown(results), testing::HasSubstr("refused: "));
+}
+
+TEST_F(StressTest, ChangesDoWhatTheySay) {
+  const scene::Scene balls = asset("balls");
+  const scene::Bounds bounds = scene::evaluate(balls, 0).bounds;
+  const auto after = [&](StressChange change, double amount) {
+    return scene::evaluate(bench::stressed(balls, change, amount), 0);
+  };
+  EXPECT_NEAR(after(StressChange::sceneScale, 100).bounds.radius(), 100 * bounds.radius(), 1e-2);
+  EXPECT_GT(after(StressChange::depthRange, 1e6).bounds.radius(), 1e5 * bounds.radius());
+  EXPECT_TRUE(after(StressChange::noLight, 0).lights.empty());
+  EXPECT_EQ(after(StressChange::oneTriangle, 0).instances.size(), 1u);
+  EXPECT_EQ(after(StressChange::contact, 1e-6).instances.size(),
+            scene::evaluate(balls, 0).instances.size() + 1);
+  EXPECT_EQ(after(StressChange::lightSize, 0).lights.at(0).info.x, glsl::light_spot);
+  EXPECT_NEAR(after(StressChange::edgeOn, 0).lights.at(0).position.y, bounds.low.y, 1e-4);
+  const scene::Pose pose = scene::evaluate(balls, 0);
+  const glm::vec3 eye(glm::inverse(bench::cameraInside(balls, pose, pose.cameras.at(0)).worldToView)[3]);
+  EXPECT_TRUE(glm::all(glm::greaterThan(eye, bounds.low)) && glm::all(glm::lessThan(eye, bounds.high)));
+}
+
+}  // namespace
+}  // namespace limn
