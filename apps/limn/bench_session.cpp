@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
+#include "apps/limn/worker.h"
 #include "core/base/error.h"
 #include "core/bench/tables.h"
 #include "core/render/frame_stats.h"
@@ -37,8 +40,9 @@ SceneOptions sceneOptions(const bench::Case& c) {
 }
 
 bool sameScene(const SceneOptions& a, const SceneOptions& b) {
-  return a.scene == b.scene && a.time == b.time && a.lightSize == b.lightSize && a.environment == b.environment &&
-         a.environmentLights == b.environmentLights && a.environmentReflection == b.environmentReflection;
+  return a.scene == b.scene && a.time == b.time && a.lightSize == b.lightSize &&
+         a.environment == b.environment && a.environmentLights == b.environmentLights &&
+         a.environmentReflection == b.environmentReflection;
 }
 
 render::Settings baseSettings(const View& view, render::Output output, int light) {
@@ -204,15 +208,14 @@ fs::path findSuite(const fs::path& nameOrFile) {
   return file;
 }
 
-bench::Summary runSuite(const fs::path& suite, const fs::path& out, const BackendOptions& backend,
-                        const std::vector<std::string>& filters, bench::Shard shard) {
-  const auto cases = bench::selectCases(bench::readSuite(suite).cases, filters, shard);
-  if (cases.empty())
-    throw UsageError(fmt::format("suite {} has no case that fits the filter", suite.string()));
-  createFolder(out);
+namespace {
+
+/// In the worker: measures what `out` has no row for.
+void measureCases(const std::vector<bench::Case>& cases, const fs::path& out, const BackendOptions& backend,
+                  WorkerReport& report) {
   bench::ResultsFile results(out / "results.jsonl");
   BenchSession session(backend, out);
-
+  report.renderer(session.rendererName());
   Progress bar("bench");
   bench::Callbacks callbacks;
   callbacks.reference = [&](const bench::Case& c) { return session.reference(c); };
@@ -221,12 +224,62 @@ bench::Summary runSuite(const fs::path& suite, const fs::path& out, const Backen
     return session.keepPicture(key, image);
   };
   callbacks.progress = [&](const bench::Progress& progress) {
+    if (progress.state == bench::Progress::State::started) report.started(progress.index);
     bar.update(double(progress.index) / progress.count, bench::label(progress.what));
     if (progress.state == bench::Progress::State::failed)
       fmt::print(stderr, "limn: {}: {}\n", bench::label(progress.what), progress.failure);
   };
-  const bench::Summary summary = bench::runCases(cases, session.rendererName(), results, callbacks);
-  bench::writeTables(results.rows(), out);
+  bench::runCases(cases, session.rendererName(), results, callbacks);
+}
+
+/// A row that says that measuring it ended the worker.
+bench::Row crashRow(const bench::Case& c, const std::string& renderer, const std::string& failure) {
+  bench::Row row;
+  row.what = c;
+  row.key = bench::rowKey(c, renderer);
+  row.failure = failure;
+  row.cost.renderer = renderer;
+  return row;
+}
+
+/// Keys of the rows that need not be measured.
+std::set<std::string> finishedRows(const fs::path& file) {
+  std::set<std::string> keys;
+  if (!fs::exists(file)) return keys;
+  for (const bench::Row& row : bench::readRows(file))
+    if (row.failure.empty()) keys.insert(row.key);
+  return keys;
+}
+
+}  // namespace
+
+bench::Summary runSuite(const fs::path& suite, const fs::path& out, const BackendOptions& backend,
+                        const std::vector<std::string>& filters, bench::Shard shard) {
+  const auto cases = bench::selectCases(bench::readSuite(suite).cases, filters, shard);
+  if (cases.empty())
+    throw UsageError(fmt::format("suite {} has no case that fits the filter", suite.string()));
+  createFolder(out);
+  const fs::path file = out / "results.jsonl";
+  const std::set<std::string> before = finishedRows(file);
+  WorkerReport report;
+  std::vector<bench::Case> left = cases;
+  while (!left.empty()) {
+    const auto crash = runInWorker(report, [&] { measureCases(left, out, backend, report); });
+    if (!crash) break;
+    const int index = report.caseIndex();
+    if (index < 0) throw Error("no case could be started: the process that measures " + crash->what);
+    const auto crashed = left.begin() + index;
+    fmt::print(stderr, "limn: {}: {}\n", bench::label(*crashed), crash->what);
+    bench::ResultsFile(file).append(crashRow(*crashed, report.renderer(), crash->what));
+    left.erase(crashed);
+  }
+  const std::set<std::string> after = finishedRows(file);
+  bench::Summary summary;
+  for (const bench::Case& c : cases) {
+    const std::string key = bench::rowKey(c, report.renderer());
+    ++(before.contains(key) ? summary.skipped : after.contains(key) ? summary.done : summary.failed);
+  }
+  bench::writeTables(bench::readRows(file), out);
   return summary;
 }
 
