@@ -13,7 +13,11 @@ find_package(TBB REQUIRED)
 find_package(glfw3 3.3 REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(KISSFFT REQUIRED IMPORTED_TARGET kissfft-float)
 find_library(LIMN_EGL_LIBRARY EGL REQUIRED)
+# The report page: D3's modules, and the bundler that joins them.
+find_program(LIMN_ESBUILD esbuild REQUIRED)
+find_path(LIMN_NODE_MODULES d3-scale/package.json PATHS /usr/share/nodejs REQUIRED)
 
 # Debian's OpenImageIO target names opencv's include folder, which limn does not need and may not exist.
 set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "")

@@ -6,6 +6,8 @@
 
 #include "apps/limn/worker.h"
 #include "core/base/error.h"
+#include "core/bench/machine.h"
+#include "core/bench/report.h"
 #include "core/bench/tables.h"
 #include "core/render/frame_stats.h"
 
@@ -119,9 +121,9 @@ bench::Reference BenchSession::reference(const bench::Case& c) {
   return {std::move(result.image), fs::path("references") / file.filename(), result.noiseRms};
 }
 
-std::string BenchSession::keepPicture(const std::string& key, const Image& image) {
+std::string BenchSession::keepPicture(const std::string& name, const Image& image) {
   createFolder(out_ / "pictures");
-  const fs::path file = fs::path("pictures") / (key + ".png");
+  const fs::path file = fs::path("pictures") / (name + ".png");
   writePng(out_ / file, image);
   return file.string();
 }
@@ -194,6 +196,14 @@ bench::Measurement BenchSession::measure(const bench::Case& c) {
   result.cost.split = costSplit(stats);
   result.cost.memoryBytes = stats.memoryBytes;
   result.cost.details = render::toJson(stats);
+  result.cost.driver = context_->info().vendor + ", " + context_->info().version;
+  result.cost.machine = bench::machineName();
+  result.cost.lights =
+      loaded.view.light == scene::none ? static_cast<int>(loaded.view.pose.lights.size()) : 1;
+  for (const render::TechniqueUse& use : settings.techniques)
+    for (const Parameter& parameter : use.plugin->info->parameters)
+      if (parameter.tradesErrorForTime)
+        result.cost.qualityParameters.push_back(fmt::format("{}.{}", use.plugin->info->name, parameter.name));
   return result;
 }
 
@@ -220,8 +230,8 @@ void measureCases(const std::vector<bench::Case>& cases, const fs::path& out, co
   bench::Callbacks callbacks;
   callbacks.reference = [&](const bench::Case& c) { return session.reference(c); };
   callbacks.measure = [&](const bench::Case& c) { return session.measure(c); };
-  callbacks.keepPicture = [&](const bench::Case&, const std::string& key, const Image& image) {
-    return session.keepPicture(key, image);
+  callbacks.keepPicture = [&](const std::string& name, const Image& image) {
+    return session.keepPicture(name, image);
   };
   callbacks.progress = [&](const bench::Progress& progress) {
     if (progress.state == bench::Progress::State::started) report.started(progress.index);
@@ -279,7 +289,9 @@ bench::Summary runSuite(const fs::path& suite, const fs::path& out, const Backen
     const std::string key = bench::rowKey(c, report.renderer());
     ++(before.contains(key) ? summary.skipped : after.contains(key) ? summary.done : summary.failed);
   }
-  bench::writeTables(bench::readRows(file), out);
+  const std::vector<bench::Row> rows = bench::readRows(file);
+  bench::writeTables(rows, out);
+  bench::writeReport(rows, out);
   return summary;
 }
 

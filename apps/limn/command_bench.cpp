@@ -40,8 +40,9 @@ int run(const Options& options) {
   const bench::Summary summary =
       runSuite(findSuite(options.suite), options.out, options.backend, options.filters,
                options.shard.empty() ? bench::Shard{} : bench::parseShard(options.shard));
-  fmt::print("{} rows measured, {} were there already, {} failed; tables are in {}\n", summary.done,
-             summary.skipped, summary.failed, (options.out / "tables.md").string());
+  fmt::print("{} rows measured, {} were there already, {} failed; the report is {}, tables are in {}\n",
+             summary.done, summary.skipped, summary.failed, (options.out / "index.html").string(),
+             (options.out / "tables.md").string());
   const bool regressed = before && reportRegressions(*before, options.out);
   return summary.failed > 0 || regressed ? 1 : 0;
 }
@@ -53,7 +54,7 @@ Action addBenchCommand(CLI::App& command) {
   command.add_option("suite", options->suite, "TOML file, or the name of one of limn's suites")->required();
   command
       .add_option("--out", options->out,
-                  "Folder for results.jsonl, tables and references; resumed if it exists")
+                  "Folder for results.jsonl, index.html, tables and references; resumed if it exists")
       ->required();
   command.add_option("--filter", options->filters, "Only cases whose label contains this text; repeatable")
       ->take_all();

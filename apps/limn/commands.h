@@ -17,5 +17,6 @@ Action addEnvironmentCommand(CLI::App& command);
 Action addCompareCommand(CLI::App& command);
 Action addBenchCommand(CLI::App& command);
 Action addStressCommand(CLI::App& command);
+Action addReportCommand(CLI::App& command);
 
 }  // namespace limn::app

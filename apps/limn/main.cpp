@@ -45,8 +45,9 @@ int main(int argc, char** argv) {
   add("reference", "Compute the ground truth of a term on the CPU", addReferenceCommand);
   add("compare", "Measure how far an image is from its reference", addCompareCommand);
   add("environment", "List and show the area lights that stand for an environment", addEnvironmentCommand);
-  add("bench", "Run a suite: error and time of many settings, as tables", addBenchCommand);
+  add("bench", "Run a suite: error and time of many settings, as tables and a report", addBenchCommand);
   add("stress", "Run every technique on its stability cases: pass, degraded or refused", addStressCommand);
+  add("report", "Write the tables and the report of finished benches anew", addReportCommand);
 
   return guarded([&] {
     if (argc > 1 && argv[1][0] != '-') checkCommand(limn, argv[1]);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -73,6 +74,10 @@ Json costToJson(const Cost& cost) {
                       {"technique", cost.split.technique},
                       {"rest", cost.split.rest}};
   json["memory_bytes"] = cost.memoryBytes;
+  if (!cost.driver.empty()) json["driver"] = cost.driver;
+  if (!cost.machine.empty()) json["machine"] = cost.machine;
+  if (cost.lights > 0) json["lights"] = cost.lights;
+  json["quality_parameters"] = cost.qualityParameters;
   return json;
 }
 
@@ -94,6 +99,10 @@ Cost costFromJson(const Json& json) {
   cost.split = {split.at("maps").get<double>(), split.at("filters").get<double>(),
                 split.at("technique").get<double>(), split.at("rest").get<double>()};
   cost.memoryBytes = json.at("memory_bytes").get<std::int64_t>();
+  cost.driver = json.value("driver", "");
+  cost.machine = json.value("machine", "");
+  cost.lights = json.value("lights", 0);
+  cost.qualityParameters = json.value("quality_parameters", std::vector<std::string>{});
   cost.details = json.dump();
   return cost;
 }
@@ -170,10 +179,12 @@ std::string toJson(const Row& row) {
   json["reference"] = {{"file", row.referenceFile}};
   if (row.referenceNoise) json["reference"]["noise_rms"] = *row.referenceNoise;
   if (!row.picture.empty()) json["picture"] = row.picture;
+  if (!row.difference.empty()) json["difference"] = row.difference;
   if (row.failure.empty()) {
     json["error"] = metricsToJson(row.error);
     if (row.penumbra) json["penumbra"] = metricsToJson(*row.penumbra);
     if (row.misjudged) json["misjudged"] = misjudgedToJson(*row.misjudged);
+    if (!row.spectrum.empty()) json["spectrum"] = row.spectrum;
     json["stats"] = costToJson(row.cost);
   } else {
     json["failure"] = row.failure;
@@ -194,6 +205,7 @@ Row rowFromJson(const std::string& line) {
       row.referenceNoise = json["reference"]["noise_rms"].get<double>();
     row.what.picture = json.contains("picture");
     if (row.what.picture) row.picture = json["picture"].get<std::string>();
+    row.difference = json.value("difference", "");
     if (json.contains("failure")) {
       row.failure = json["failure"].get<std::string>();
       row.cost.renderer = json.at("renderer").get<std::string>();
@@ -202,11 +214,18 @@ Row rowFromJson(const std::string& line) {
     row.error = metricsFromJson(json.at("error"));
     if (json.contains("penumbra")) row.penumbra = metricsFromJson(json["penumbra"]);
     if (json.contains("misjudged")) row.misjudged = misjudgedFromJson(json["misjudged"]);
+    row.spectrum = json.value("spectrum", std::vector<double>{});
     row.cost = costFromJson(json.at("stats"));
     return row;
   } catch (const nlohmann::json::exception& error) {
     throw Error(fmt::format("not a row of results: {}", error.what()));
   }
+}
+
+std::string referencePicture(const Row& row) {
+  if (row.picture.empty()) return {};
+  const std::filesystem::path name = std::filesystem::path(row.referenceFile).stem().concat(".png");
+  return (std::filesystem::path(row.picture).parent_path() / name).string();
 }
 
 }  // namespace limn::bench

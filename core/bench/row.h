@@ -33,6 +33,10 @@ struct Cost {
   FrameTime frameMs;
   CostSplit split;  ///< of a run of its own, with pass timing
   std::int64_t memoryBytes = 0;
+  std::string driver;   ///< vendor and version, as OpenGL says; "" in rows of earlier versions
+  std::string machine;  ///< machineName(); "" in rows of earlier versions
+  int lights = 0;       ///< that the picture asks for; 0: not recorded
+  std::vector<std::string> qualityParameters;  ///< "technique.parameter" that trade error for time
   /// Everything `limn render --stats` says, as JSON text; "" if there is nothing more.
   std::string details;
 };
@@ -54,15 +58,20 @@ struct Row {
   Metrics error;
   std::optional<Metrics> penumbra;     ///< visibility: over pixels whose reference lies in (0.02, 0.98)
   std::optional<Misjudged> misjudged;  ///< visibility
+  std::vector<double> spectrum;        ///< errorSpectrum(); empty in rows of earlier versions
   Cost cost;
-  std::string picture;  ///< file in the folder of the results; "" if it was not kept
+  std::string picture;     ///< file in the folder of the results; "" if it was not kept
+  std::string difference;  ///< the same for the difference image
   std::string
       failure;  ///< not empty: why there is no picture; error and cost are then void but for the renderer
 };
 
 /// One line of JSON, without the line's end.
 LIMN_API std::string toJson(const Row& row);
-/// Throws Error saying what is wrong.
+/// Throws Error saying what is wrong. What rows of earlier versions lack stays empty.
 LIMN_API Row rowFromJson(const std::string& line);
+
+/// The file of the reference's picture beside the row's; "" if pictures were not kept.
+LIMN_API std::string referencePicture(const Row& row);
 
 }  // namespace limn::bench

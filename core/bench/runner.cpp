@@ -1,6 +1,7 @@
 #include "core/bench/runner.h"
 
 #include "core/base/error.h"
+#include "core/image/error_spectrum.h"
 
 namespace limn::bench {
 namespace {
@@ -51,11 +52,16 @@ Row measureRow(const Case& c, const std::string& key, const Reference& reference
   options.maxMaskedShare = c.maxMaskedShare;
   const Comparison comparison = compareImagesDetailed(measurement.image, reference.image, options);
   row.error = comparison.metrics;
+  row.spectrum = errorSpectrum(measurement.image, reference.image, comparison.mask);
   if (c.term == "visibility") {
     row.penumbra = penumbraMetrics(measurement.image, reference, options);
     row.misjudged = misjudged(measurement.image, reference, comparison.mask);
   }
-  if (c.picture && callbacks.keepPicture) row.picture = callbacks.keepPicture(c, key, measurement.image);
+  if (c.picture && callbacks.keepPicture) {
+    row.picture = callbacks.keepPicture(key, measurement.image);
+    row.difference = callbacks.keepPicture(key + ".difference",
+                                           differenceImage(measurement.image, reference.image, options));
+  }
   row.cost = std::move(measurement.cost);
   return row;
 }

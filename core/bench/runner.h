@@ -34,8 +34,9 @@ struct Progress {
 struct Callbacks {
   /// Called once per question (consecutive cases share it).
   std::function<Reference(const Case&)> reference;
-  /// Keeps a picture and says in which file; asked for cases that want it. May be empty.
-  std::function<std::string(const Case&, const std::string& key, const Image&)> keepPicture;
+  /// Keeps a picture under a name and says in which file; asked for cases that want it, with the row's key,
+  /// and with KEY.difference for differenceImage(). May be empty.
+  std::function<std::string(const std::string& name, const Image&)> keepPicture;
   /// The technique's picture and what it cost. kSeparationFloor asks for unshadowed light times the
   /// reference's visibility, untimed (n = 0).
   std::function<Measurement(const Case&)> measure;

@@ -201,11 +201,7 @@ std::string picturesMarkdown(const Table& table) {
   std::vector<Cell> cells;
   for (const Row& row : table.rows) {
     if (row.picture.empty()) continue;
-    if (cells.empty()) {
-      const auto reference = std::filesystem::path(row.picture).parent_path() /
-                             std::filesystem::path(row.referenceFile).stem().concat(".png");
-      cells.push_back({reference.string(), "reference"});
-    }
+    if (cells.empty()) cells.push_back({referencePicture(row), "reference"});
     std::string caption = markdownCell(rowName(row)) + ": RMSE " + rmseText(row.error);
     if (row.penumbra) caption += fmt::format(" ({} in the penumbra)", rmseText(*row.penumbra));
     if (isTimed(row)) caption += fmt::format(", {:.1f} ms", row.cost.frameMs.median);

@@ -113,7 +113,11 @@ LIMN_API Image8 readImage8(const std::filesystem::path& path);
 /// throws Error naming it otherwise (missing folder, full disk, no permission).
 LIMN_API void writeExr(const std::filesystem::path& path, const Image& image);
 
-/// Writes R, G, B as 8-bit sRGB of clamp(2^exposureEv * value, 0, 1); NaN becomes 0. Whole or not at all.
+/// A PNG in memory: R, G, B as 8-bit sRGB of clamp(2^exposureEv * value, 0, 1); NaN becomes 0. `name` is used
+/// in messages.
+LIMN_API std::vector<std::uint8_t> encodePng(const Image& image, const std::string& name,
+                                             float exposureEv = 0.0f);
+/// The same as a file. Whole or not at all.
 LIMN_API void writePng(const std::filesystem::path& path, const Image& image, float exposureEv = 0.0f);
 
 /// Writes by extension: .exr as writeExr, .png as writePng. Throws UsageError for any other.

@@ -243,17 +243,18 @@ Image8 decode8(std::span<const std::byte> bytes, const std::string& name) {
   return image;
 }
 
-/// Encodes in memory, then writes the file whole: the encoder never sees the disk, so a full one is noticed.
-void encode(const std::filesystem::path& path, const char* encoder, const OIIO::ImageSpec& spec,
-            OIIO::TypeDesc type, const void* pixels) {
+/// Encodes in memory: the encoder never sees the disk, so a full one is noticed when the file is written
+/// whole.
+std::vector<std::uint8_t> encode(const std::string& name, const char* encoder, const OIIO::ImageSpec& spec,
+                                 OIIO::TypeDesc type, const void* pixels) {
   OIIO::Filesystem::IOVecOutput memory;
   std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(encoder);
-  if (!output) throw Error(fmt::format("{}: {}", path.string(), oneLine(OIIO::geterror())));
+  if (!output) throw Error(fmt::format("{}: {}", name, oneLine(OIIO::geterror())));
   output->set_ioproxy(&memory);
-  if (!output->open(path.string(), spec) || !output->write_image(type, pixels) || !output->close()) {
-    throw Error(fmt::format("{}: {}", path.string(), oneLine(output->geterror())));
+  if (!output->open(name, spec) || !output->write_image(type, pixels) || !output->close()) {
+    throw Error(fmt::format("{}: {}", name, oneLine(output->geterror())));
   }
-  writeFile(path, std::as_bytes(std::span(memory.buffer())));
+  return memory.buffer();
 }
 
 }  // namespace
@@ -280,11 +281,14 @@ void writeExr(const std::filesystem::path& path, const Image& image) {
   spec.channelnames = image.channels();
   spec.attribute("compression", "zip");
   for (const auto& [key, value] : image.metadata()) spec.attribute(kMetadataPrefix + key, value);
-  guarded(path.string(), [&] { encode(path, "openexr", spec, OIIO::TypeDesc::FLOAT, image.data().data()); });
+  const std::vector<std::uint8_t> file = guarded(path.string(), [&] {
+    return encode(path.string(), "openexr", spec, OIIO::TypeDesc::FLOAT, image.data().data());
+  });
+  writeFile(path, std::as_bytes(std::span(file)));
 }
 
-void writePng(const std::filesystem::path& path, const Image& image, float exposureEv) {
-  if (image.empty()) throw Error(fmt::format("{}: cannot write an empty image", path.string()));
+std::vector<std::uint8_t> encodePng(const Image& image, const std::string& name, float exposureEv) {
+  if (image.empty()) throw Error(fmt::format("{}: cannot write an empty image", name));
   const std::array<int, 3> rgb = image.rgbChannels();
   std::vector<std::uint8_t> pixels;
   pixels.reserve(image.pixelCount() * 3);
@@ -297,7 +301,12 @@ void writePng(const std::filesystem::path& path, const Image& image, float expos
   }
   OIIO::ImageSpec spec(image.width(), image.height(), 3, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  guarded(path.string(), [&] { encode(path, "png", spec, OIIO::TypeDesc::UINT8, pixels.data()); });
+  return guarded(name, [&] { return encode(name, "png", spec, OIIO::TypeDesc::UINT8, pixels.data()); });
+}
+
+void writePng(const std::filesystem::path& path, const Image& image, float exposureEv) {
+  const std::vector<std::uint8_t> file = encodePng(image, path.string(), exposureEv);
+  writeFile(path, std::as_bytes(std::span(file)));
 }
 
 void writeImage(const std::filesystem::path& path, const Image& image, float exposureEv) {

@@ -42,7 +42,7 @@ TEST(CommandLine, LightSizesNeedLightsThatHaveOne) {
 }
 
 TEST(CommandLine, HelpOfEveryCommandIsComplete) {
-  for (const char* command : {"list", "info", "render", "reference", "environment", "compare", "bench"}) {
+  for (const char* command : {"list", "info", "render", "reference", "environment", "compare", "bench", "report"}) {
     const Outcome outcome = limn({command, "--help"});
     EXPECT_EQ(outcome.status, 0) << command;
     EXPECT_THAT(outcome.out, HasSubstr("--help")) << command;

@@ -79,6 +79,12 @@ TEST(Interruption, KilledBenchLosesNoRow) {
   for (const std::string& row : after) keys.insert(nlohmann::json::parse(row)["key"]);
   EXPECT_EQ(keys.size(), cases);
   EXPECT_THAT(resumed.out, testing::HasSubstr(std::to_string(before.size()) + " were there already"));
+
+  const std::string report = contents(folder / "out/index.html");
+  for (const std::string& key : keys) EXPECT_THAT(report, testing::HasSubstr(key));
+  fs::remove(folder / "out/index.html");
+  ASSERT_EQ(limn({"report", folder / "out"}).status, 0);
+  EXPECT_EQ(contents(folder / "out/index.html"), report) << "written anew from the rows alone";
 }
 
 }  // namespace

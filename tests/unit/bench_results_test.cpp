@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -96,6 +97,27 @@ TEST_F(BenchResults, RowsSurviveJson) {
   EXPECT_EQ(toJson(back), line);
 }
 
+TEST_F(BenchResults, WhatEarlierVersionsLackedIsOptional) {
+  Row row = exampleRow(exampleCase());
+  row.what.picture = true;
+  row.picture = "pictures/a.png";
+  row.difference = "pictures/a.difference.png";
+  row.spectrum = {0.5, 0.25};
+  row.cost.driver = "Mesa 22.3.6";
+  row.cost.machine = "a processor";
+  row.cost.lights = 2;
+  row.cost.qualityParameters = {"pcss.samples"};
+  auto json = nlohmann::json::parse(toJson(row));
+  EXPECT_EQ(nlohmann::json::parse(toJson(rowFromJson(json.dump()))), json);
+  for (const char* key : {"spectrum", "difference", "penumbra"}) json.erase(key);
+  for (const char* key : {"driver", "machine", "lights", "quality_parameters"}) json["stats"].erase(key);
+  const Row old = rowFromJson(json.dump());
+  EXPECT_TRUE(old.spectrum.empty() && old.difference.empty() && !old.penumbra);
+  EXPECT_TRUE(old.cost.driver.empty() && old.cost.machine.empty() && old.cost.qualityParameters.empty());
+  EXPECT_EQ(old.cost.lights, 0);
+  EXPECT_EQ(referencePicture(old), "pictures/a.png");
+}
+
 TEST_F(BenchResults, BrokenRowsAreRefused) {
   for (const char* text : {"", "{", "[]", "{}", R"({"key":1})", "null"})
     EXPECT_THROW(rowFromJson(text), Error) << text;
@@ -174,9 +196,7 @@ struct Fakes {
       std::ranges::fill(reference.image.data(), 0.5f);
       return reference;
     };
-    made.keepPicture = [](const Case&, const std::string& key, const Image&) {
-      return "pictures/" + key + ".png";
-    };
+    made.keepPicture = [](const std::string& name, const Image&) { return "pictures/" + name + ".png"; };
     made.measure = [this](const Case& c) {
       ++measurements;
       if (c.technique == "bad") throw Error("shader does not compile");
@@ -218,6 +238,8 @@ TEST_F(BenchResults, RunnerSharesReferencesRecordsFailuresAndResumes) {
   ASSERT_TRUE(row.penumbra);
   EXPECT_EQ(row.cost.renderer, "llvmpipe");
   EXPECT_EQ(row.picture, "");
+  ASSERT_FALSE(row.spectrum.empty());
+  EXPECT_GT(row.spectrum[0], 10 * row.spectrum[5]) << "the error is the same everywhere";
 }
 
 TEST_F(BenchResults, RunnerKeepsPicturesThatAreWanted) {
@@ -228,6 +250,7 @@ TEST_F(BenchResults, RunnerKeepsPicturesThatAreWanted) {
   ResultsFile results(path_);
   runCases(cases, "llvmpipe", results, fakes.callbacks());
   EXPECT_EQ(results.rows()[0].picture, "pictures/" + rowKey(wanted, "llvmpipe") + ".png");
+  EXPECT_EQ(results.rows()[0].difference, "pictures/" + rowKey(wanted, "llvmpipe") + ".difference.png");
   EXPECT_EQ(results.rows()[1].picture, "");
   EXPECT_EQ(rowFromJson(toJson(results.rows()[0])).picture, results.rows()[0].picture);
   const std::string shown = picturesMarkdown(makeTables(results.rows()).front());

@@ -1,0 +1,95 @@
+// Pictures at equal time and at equal error, as comparisons are printed: the same magnified windows of each technique.
+import {el, milliseconds, number} from "./dom.js";
+import {framed} from "./detail.js";
+import {measured} from "./metrics.js";
+import {ownName, settings} from "./series.js";
+import {swatch} from "./marks.js";
+
+const NEAR = 1.5;  // times or errors within this factor of the target count as equal
+
+const distance = (value, target) => Math.abs(Math.log(value / target));
+
+/** Of every curve the point nearest to the target, if it is near: [{curve, row, ms, error}]. */
+export function nearest(curves, metric, time, key, target) {
+  const found = [], missing = [];
+  for (const curve of curves) {
+    const points = measured(curve.rows, metric, time).filter((point) => point[key] > 0);
+    if (points.length === 0) continue;
+    const best = points.reduce((a, b) => (distance(b[key], target) < distance(a[key], target) ? b : a));
+    if (distance(best[key], target) <= Math.log(NEAR)) found.push({...best, curve});
+    else missing.push(curve.name);
+  }
+  return {found, missing};
+}
+
+/** The target that most techniques come near to, and of several the one they come nearest to. */
+export function commonTarget(curves, metric, time, key) {
+  const values = curves.flatMap((curve) => measured(curve.rows, metric, time).map((point) => point[key]))
+    .filter((value) => value > 0);
+  let best = null;
+  for (const value of values) {
+    const {found} = nearest(curves, metric, time, key, value);
+    const away = found.reduce((sum, point) => sum + distance(point[key], value), 0);
+    if (!best || found.length > best.count || (found.length === best.count && away < best.away))
+      best = {value, count: found.length, away};
+  }
+  return best?.value ?? null;
+}
+
+function magnified(page, uris, text) {
+  return uris.map((index, i) => index < 0 ? null : el("img", {class: `magnified window-${i}`, src: page.pictures[index],
+    alt: `${text}, window ${i + 1}`}));
+}
+
+function strip(page, table, points) {
+  const reference = table.reference.windows.some((index) => index >= 0)
+    ? el("figure", {}, magnified(page, table.reference.windows, "Reference"),
+        el("figcaption", {}, el("strong", {}, "reference"))) : null;
+  const shown = points.map(({curve, row, ms, error}) => el("figure", {}, magnified(page, row.windows, row.name),
+    el("figcaption", {}, el("strong", {}, swatch(curve), curve.name), Object.entries(settings(row)).map(([name, value]) =>
+      el("span", {}, `${ownName(row, name)} ${value}`)), el("span", {}, `${milliseconds(ms)}, error ${number(error)}`))));
+  return el("div", {class: "strip"}, reference, shown);
+}
+
+/** A slider over the logarithm of the values that `key` takes. */
+function slider(label, values, target, onTarget) {
+  const low = Math.log(Math.min(...values)), high = Math.log(Math.max(...values));
+  const input = el("input", {type: "range", min: 0, max: 100, step: 1,
+    value: high > low ? Math.round(100 * (Math.log(target) - low) / (high - low)) : 0,
+    input: () => onTarget(Math.exp(low + (high - low) * input.value / 100), input)});
+  return el("label", {class: "chooser"}, el("span", {}, label), input);
+}
+
+/** One row of pictures with the slider that chooses its target. */
+function equalRow(page, table, curves, metric, time, kind) {
+  const key = kind.key;
+  const values = curves.flatMap((curve) => measured(curve.rows, metric, time).map((point) => point[key]))
+    .filter((value) => value > 0);
+  if (values.length === 0) return null;
+  const body = el("div");
+  const show = (target, input = null) => {
+    const {found, missing} = nearest(curves, metric, time, key, target);
+    found.sort((a, b) => (key === "ms" ? a.error - b.error : a.ms - b.ms));
+    const text = `${kind.name(metric, time)} ${kind.text(target)}`;
+    if (input) input.setAttribute("aria-valuetext", kind.text(target));
+    body.replaceChildren(el("p", {class: "note", "aria-live": "polite"},
+      `${text}, within a factor of ${NEAR}, ${key === "ms" ? "least error" : "quickest"} first.` +
+      (missing.length ? ` Not near it: ${missing.join(", ")}.` : "")), strip(page, table, found));
+  };
+  const target = commonTarget(curves, metric, time, key);
+  show(target);
+  return el("div", {class: `equal equal-${key}`}, el("h3", {}, kind.title), slider(kind.title, values, target, show), body);
+}
+
+const KINDS = [
+  {key: "ms", title: "Equal time", name: (metric, time) => `Time, ${time.label}:`, text: milliseconds},
+  {key: "error", title: "Equal error", name: (metric) => `${metric.label}:`, text: number},
+];
+
+export function equalRows(page, table, curves, metric, time) {
+  const rows = KINDS.map((kind) => equalRow(page, table, curves, metric, time, kind)).filter(Boolean);
+  const whole = table.reference.picture >= 0 && rows.length
+    ? el("figure", {class: "overview"}, framed(page.pictures[table.reference.picture], "Reference", table),
+        el("figcaption", {}, "The reference; the frames are where the techniques' errors differ most.")) : null;
+  return [whole, ...rows].filter(Boolean);
+}

@@ -1,0 +1,42 @@
+// The report of a bench: reads what `limn bench` put into the page and shows it, a section per subject.
+import "./licence.js";
+import {Section, subjectName} from "./section.js";
+import {el} from "./dom.js";
+
+const page = JSON.parse(document.getElementById("data").textContent);
+const main = document.getElementById("results");
+
+function summary(tables) {
+  const renderers = [...new Set(tables.map((table) => table.renderer))];
+  return renderers.map((renderer) => {
+    const own = tables.filter((table) => table.renderer === renderer);
+    const all = (key) => [...new Set(own.flatMap((table) => table[key]))];
+    const failed = own.flatMap((table) => table.rows).filter((row) => row.failure).length;
+    const rows = own.flatMap((table) => table.rows).length;
+    const software = own.some((table) => table.software);
+    const machines = all("machines");
+    return el("div", {class: "machine"},
+      el("p", {}, el("strong", {}, renderer), ` – ${software ? "software" : "hardware"} rendering. `,
+        all("drivers").map((driver) => `Driver: ${driver}. `), machines.map((machine) => `Machine: ${machine}. `),
+        `${rows} row${rows === 1 ? "" : "s"}${failed ? `, ${failed} failed` : ""}; `,
+        `medians of ${all("frames").join(", ")} frames after ${all("warmup").join(", ")} to warm up.`),
+      machines.length > 1 ? el("p", {class: "note"}, "Rows of several machines: compare times only within one.") : null,
+      software ? el("p", {class: "note"}, "Software rendering says nothing about the times of a GPU.") : null);
+  });
+}
+
+const bySubject = new Map();
+for (const table of page.tables) {
+  const key = JSON.stringify(table.subject);
+  bySubject.set(key, [...(bySubject.get(key) ?? []), table]);
+}
+const sections = [...bySubject.values()].map((tables, i) => new Section(page, tables, `subject-${i}`));
+main.replaceChildren(
+  ...summary(page.tables),
+  ...(page.reduction > 1 ? [el("p", {class: "note"}, `Whole pictures are reduced ${page.reduction} times in both directions ` +
+    "to keep this file small; magnified windows are not, and pictures/ beside it has them all.")] : []),
+  ...(sections.length > 1 ? [el("nav", {"aria-label": "Scenes"}, el("ul", {class: "contents"}, sections.map((section, i) =>
+    el("li", {}, el("a", {href: `#subject-${i}`}, subjectName([...bySubject.values()][i][0].subject))))))] : []),
+  ...(sections.length ? sections.map((section) => section.element) : [el("p", {}, "No rows yet.")]));
+for (const section of sections) section.drawCharts();
+document.documentElement.dataset.ready = "yes";

@@ -1,0 +1,130 @@
+// The chart of error against time, both logarithmic.
+import {axisBottom, axisLeft} from "d3-axis";
+import {scaleLog} from "d3-scale";
+import {create, select} from "d3-selection";
+import {line as polyline} from "d3-shape";
+
+import {milliseconds, number} from "./dom.js";
+import {measured, paretoFront} from "./metrics.js";
+import {colour, dashes, marker} from "./marks.js";
+import {settingsText} from "./series.js";
+
+const MARGIN = {top: 12, right: 16, bottom: 44, left: 58};
+
+/** From a little below the smallest to a little above the largest; at least a factor of two. */
+export function logDomain(values) {
+  const low = Math.min(...values), high = Math.max(...values);
+  const middle = Math.sqrt(low * high), reach = Math.max(Math.sqrt(high / low) * 1.15, 1.5);
+  return [middle / reach, middle * reach];
+}
+
+export function logAxes(svg, x, y, width, height, labels) {
+  const ticks = (scale, pixels) => [Math.max(2, Math.min(8, pixels / 70)), "~g"];
+  const grid = svg.append("g").attr("class", "grid").attr("aria-hidden", "true");
+  grid.append("g").attr("transform", `translate(0,${height - MARGIN.bottom})`)
+    .call(axisBottom(x).ticks(...ticks(x, width)).tickSize(-(height - MARGIN.top - MARGIN.bottom)));
+  grid.append("g").attr("transform", `translate(${MARGIN.left},0)`)
+    .call(axisLeft(y).ticks(...ticks(y, height)).tickSize(-(width - MARGIN.left - MARGIN.right)));
+  grid.append("text").attr("class", "axis").attr("x", (MARGIN.left + width - MARGIN.right) / 2).attr("y", height - 6)
+    .attr("text-anchor", "middle").text(labels[0]);
+  grid.append("text").attr("class", "axis").attr("transform", `translate(13,${(height - MARGIN.bottom) / 2}) rotate(-90)`)
+    .attr("text-anchor", "middle").text(labels[1]);
+}
+
+function levelLine(svg, y, value, width, name, label) {
+  const group = svg.append("g").attr("class", `level ${name}`);
+  group.append("line").attr("x1", MARGIN.left).attr("x2", width - MARGIN.right).attr("y1", y(value)).attr("y2", y(value));
+  group.append("text").attr("x", width - MARGIN.right - 4).attr("y", y(value) - 4).attr("text-anchor", "end").text(label);
+}
+
+function frontLine(front, x, y) {
+  return front.map((point, i) =>
+    i === 0 ? `M${x(point.ms)},${y(point.error)}` : `H${x(point.ms)}V${y(point.error)}`).join("");
+}
+
+/** Arrow keys walk through the points: left and right by time, up and down from curve to curve. */
+function neighbour(points, current, key) {
+  const byTime = [...points].sort((a, b) => a.ms - b.ms);
+  const at = byTime.indexOf(current);
+  if (key === "Home") return byTime[0];
+  if (key === "End") return byTime.at(-1);
+  if (key === "ArrowRight") return byTime[at + 1];
+  if (key === "ArrowLeft") return byTime[at - 1];
+  const step = key === "ArrowDown" ? 1 : key === "ArrowUp" ? -1 : 0;
+  const curves = [...new Set(points.map((point) => point.curve))];
+  const next = curves[curves.indexOf(current.curve) + step];
+  return step === 0 ? undefined : points.find((point) => point.curve === next);
+}
+
+/**
+ * Draws the chart into `container` and returns {mark(row)}, which shows a row as the current one.
+ * `onCurrent(row)` is told when a point is hovered, touched or focused.
+ */
+export function drawPlot(container, {curves, rows, metric, time, level, onCurrent}) {
+  const points = curves.flatMap((curve) => measured(curve.rows, metric, time).map((point) => ({...point, curve})));
+  if (points.length === 0) {
+    container.replaceChildren("No row has both a time and this error.");
+    return {mark() {}};
+  }
+  const width = Math.max(280, container.clientWidth), height = Math.min(460, Math.max(300, width * 0.62));
+  const front = paretoFront(points);
+  const floors = rows.map((row) => metric.floor?.(row)).filter((value) => value > 0);
+  const floor = floors.length ? Math.max(...floors) : null;
+  const levels = [floor, level].filter((value) => value > 0);
+  const positive = points.map((point) => point.error).filter((error) => error > 0);
+  const x = scaleLog(logDomain(points.map((point) => point.ms)), [MARGIN.left, width - MARGIN.right]);
+  const y = scaleLog(logDomain([...positive, ...levels, ...(positive.length ? [] : [1])]),
+    [height - MARGIN.bottom, MARGIN.top]);
+  const place = (error) => y(error > 0 ? error : y.domain()[0]);  // no error at all: the lower edge
+
+  const svg = create("svg").attr("class", "plot").attr("viewBox", `0 0 ${width} ${height}`).attr("width", width)
+    .attr("height", height).attr("role", "group")
+    .attr("aria-label", `${metric.label} against milliseconds, ${points.length} points; arrow keys walk through them`);
+  logAxes(svg, x, y, width, height, [`milliseconds, ${time.label}`, metric.label]);
+  if (floor) levelLine(svg, y, floor, width, "noise", "noise of the reference (3 sigma)");
+  if (level > 0) levelLine(svg, y, level, width, "separation", "separation floor");
+  svg.append("path").attr("class", "front").attr("d", frontLine(front, x, place));
+
+  for (const curve of curves) {
+    const path = polyline().x((point) => x(point.ms)).y((point) => place(point.error));
+    for (const line of curve.lines) {
+      svg.append("path").attr("class", "curve").attr("d", path(measured(line, metric, time)) ?? "")
+        .attr("stroke", colour(curve)).attr("stroke-dasharray", dashes(curve));
+    }
+  }
+  const marks = svg.selectAll("g.point").data(points).enter().append("g").attr("class", "point")
+    .classed("pareto", (point) => front.includes(point))
+    .attr("transform", (point) => `translate(${x(point.ms)},${place(point.error)})`)
+    .attr("role", "button").attr("tabindex", -1)
+    .attr("aria-label", (point) => `${point.curve.name} ${settingsText(point.row)}: ${milliseconds(point.ms)}, ` +
+      `${metric.label} ${number(point.error)}${front.includes(point) ? ", on the Pareto front" : ""}`);
+  marks.each(function (point) {
+    const spread = time.spread(point.row);
+    if (spread?.[0] > 0)
+      select(this).append("path").attr("class", "spread").attr("stroke", colour(point.curve))
+        .attr("d", `M${x(spread[0]) - x(point.ms)},0H${x(spread[1]) - x(point.ms)}`);
+  });
+  marks.append("circle").attr("class", "reach").attr("r", 13);
+  marks.filter((point) => front.includes(point)).append("circle").attr("class", "ring").attr("r", 9);
+  marks.append("path").attr("class", "marker").attr("d", (point) => marker(point.curve))
+    .attr("fill", (point) => colour(point.curve));
+  const focusOn = (point) => marks.filter((other) => other === point).node()?.focus();
+  marks.on("pointerenter focus click", (point) => onCurrent(point.row));
+  svg.node().addEventListener("keydown", (event) => {
+    const current = select(event.target.closest("g.point")).datum();
+    const next = current && neighbour(points, current, event.key);
+    if (!next) return;
+    event.preventDefault();
+    focusOn(next);
+  });
+  container.replaceChildren(svg.node());
+
+  return {
+    mark(row) {
+      const any = points.some((point) => point.row === row);
+      marks.classed("current", (point) => point.row === row)
+        .attr("aria-pressed", (point) => String(point.row === row))
+        .attr("tabindex", (point, i) => (any ? point.row === row : i === 0) ? 0 : -1);
+    },
+  };
+}

@@ -1,0 +1,128 @@
+// One subject (scene, camera, light, environment): its chart, its pictures and its tables. A table of the bench is
+// shown at a time, so that terms, sizes, modes and renderers never mix.
+import {chooser, el} from "./dom.js";
+import {METRICS, TIMES, isNumber, knownMetrics} from "./metrics.js";
+import {SEPARATION_FLOOR, curveOf, curves as curvesOf} from "./series.js";
+import {commonTarget, equalRows, nearest} from "./equal.js";
+import {errorTable, framesPerSecond, passTable} from "./tables.js";
+import {detail} from "./detail.js";
+import {drawPlot} from "./plot.js";
+import {drawSpectrum} from "./spectrum.js";
+import {swatch} from "./marks.js";
+
+export function subjectName({scene, camera, light, light_size: size, environment, time}) {
+  return [scene, camera && `camera ${camera}`, light && `light ${light}`, size && `light size ${size}`, environment && `environment ${environment}`,
+    time && `${time} s`].filter(Boolean).join(", ");
+}
+
+/** Size, mode and renderer: what a table is measured under. */
+function conditions(table) {
+  const timed = table.time_size.join("x") === table.size.join("x") ? "" : `, times at ${table.time_size.join(" x ")}`;
+  return `${table.size.join(" x ")}${timed}, ${table.dynamic ? "dynamic" : "static"}, ${table.renderer} ` +
+    `(${table.software ? "software" : "hardware"})`;
+}
+
+const unique = (values) => [...new Set(values)];
+
+export class Section {
+  constructor(page, tables, id) {
+    this.page = page;
+    this.tables = tables;
+    this.tools = el("div", {class: "tools"});
+    this.body = el("div");
+    this.element = el("section", {id, "aria-labelledby": `${id}-name`},
+      el("h2", {id: `${id}-name`}, subjectName(tables[0].subject)), this.tools, this.body);
+    this.time = TIMES[0];
+    this.choose(tables[0]);
+    let width = 0;  // charts are drawn for a width: anew when it changes
+    new ResizeObserver(([entry]) => {
+      if (entry.contentRect.width === width) return;
+      width = entry.contentRect.width;
+      this.drawCharts();
+    }).observe(this.body);
+  }
+
+  choose(table) {
+    this.table = table;
+    const metrics = knownMetrics(table.rows);
+    this.metric = metrics.find((metric) => metric.key === this.metric?.key) ?? metrics[0] ?? METRICS[0];
+    this.curves = curvesOf(table.rows);
+    this.current = table.rows.find((row) => !row.failure && row.technique !== SEPARATION_FLOOR) ?? table.rows[0];
+    this.show();
+  }
+
+  /** Keeps the focus in the drop-down that was used. */
+  rebuild(change) {
+    const label = document.activeElement?.closest?.(".chooser")?.firstChild.textContent;
+    change();
+    for (const other of this.tools.querySelectorAll(".chooser"))
+      if (other.firstChild.textContent === label) other.querySelector("select").focus();
+  }
+
+  showTools() {
+    const {table, tables, metric} = this;
+    const sameTerm = tables.filter((other) => other.term === table.term);
+    const pick = (list, index) => this.rebuild(() => this.choose(list[Number(index)]));
+    const options = (items) => items.map(({key, label}) => ({value: key, label}));
+    const terms = unique(tables.map((other) => other.term));
+    this.tools.replaceChildren(...[
+      chooser("Term", terms.map((term) => ({value: term, label: term})), table.term,
+        (term) => this.rebuild(() => this.choose(tables.find((other) => other.term === term)))),
+      chooser("Measured", sameTerm.map((other, i) => ({value: String(i), label: conditions(other)})),
+        String(sameTerm.indexOf(table)), (i) => pick(sameTerm, i)),
+      chooser("Error", options(knownMetrics(table.rows)), metric.key,
+        (key) => this.rebuild(() => { this.metric = METRICS.find((other) => other.key === key); this.show(); })),
+      chooser("Time", options(TIMES), this.time.key,
+        (key) => this.rebuild(() => { this.time = TIMES.find((other) => other.key === key); this.show(); })),
+    ].filter(Boolean));
+  }
+
+  show() {
+    const {page, table, curves, metric, time} = this;
+    this.showTools();
+    this.chart = el("div", {class: "chart"});
+    this.detail = el("div", {class: "detail", "aria-live": "polite"});
+    this.spectrum = el("div", {class: "chart"});
+    const legend = el("ul", {class: "legend"}, curves.map((curve) => el("li", {}, swatch(curve), curve.name)));
+    const spp = table.reference.noise > 0 ? `to ${100 * table.reference.noise} % noise` : `${table.reference.spp} samples per pixel`;
+    const noise = isNumber(table.reference.noise_rms) ? `, noise ${(100 * table.reference.noise_rms).toPrecision(2)} % of the mean` : "";
+    const others = this.tables.filter((other) => other.term === table.term && other.renderer === table.renderer &&
+      other.dynamic === table.dynamic);
+    this.body.replaceChildren(...[
+      el("p", {class: "note"}, `Term: ${table.term}. ${conditions(table)}. Reference: ${spp}${noise}. ${metric.label}: ${metric.help}.`),
+      el("div", {class: "columns"},
+        el("div", {}, this.chart, legend,
+          el("p", {class: "note"}, "Ringed points lie on the Pareto front. Hover, touch or focus a point to see it; bars are quartiles of the time.")),
+        this.detail,
+        el("div", {}, el("h3", {}, "Frequency content of the error"), this.spectrum,
+          el("p", {class: "note"}, "Strong: the setting shown; the others at equal time. Noise is level, banding stands at the left."))),
+      ...equalRows(page, table, curves, metric, time),
+      el("h3", {}, "Tables"), errorTable(table, metric, time, (row) => { this.select(row); this.detail.scrollIntoView({block: "nearest"}); }),
+      framesPerSecond(others), ...(passTable(table) ?? []),
+    ].filter(Boolean));
+    this.drawCharts();
+  }
+
+  drawCharts() {
+    if (!this.body.isConnected) return;  // the observer calls again once there is a width
+    const {table, curves, metric, time} = this;
+    const floor = table.rows.find((row) => row.technique === SEPARATION_FLOOR && !row.failure);
+    const focused = this.chart.contains(document.activeElement);
+    this.plot = drawPlot(this.chart, {curves, rows: table.rows, metric, time, level: floor && metric.read(floor),
+      onCurrent: (row) => { if (row !== this.current) this.select(row); }});
+    this.select(this.current);
+    if (focused) this.chart.querySelector(".current")?.focus();
+  }
+
+  select(row) {
+    this.current = row;
+    this.plot.mark(row);
+    this.detail.replaceChildren(...detail(this.page, this.table, row));
+    for (const line of this.body.querySelectorAll("tr[data-key]")) line.classList.toggle("current", line.dataset.key === row.key);
+    const {curves, metric, time} = this;
+    const own = curveOf(curves, row);
+    const target = time.read(row) ?? commonTarget(curves, metric, time, "ms");
+    const others = target ? nearest(curves, metric, time, "ms", target).found.filter((point) => point.curve !== own) : [];
+    drawSpectrum(this.spectrum, own ? [{curve: own, row}, ...others] : others);
+  }
+}

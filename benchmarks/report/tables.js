@@ -1,0 +1,94 @@
+// The same numbers as tables: errors, frames per second, milliseconds per pass.
+import {el, number} from "./dom.js";
+import {TIMES, isNumber, knownMetrics, lowFrequencyShare, measured, paretoFront} from "./metrics.js";
+import {settingsText} from "./series.js";
+import {percent, sparkline} from "./spectrum.js";
+
+const FRAME = TIMES[0];
+
+function tableElement(caption, head, rows) {
+  const header = (cell) => el("th", {scope: "col", class: cell.text ? "text" : null, title: cell.help}, cell.label);
+  return el("div", {class: "scroll", role: "region", tabindex: 0, "aria-label": caption},
+    el("table", {}, el("caption", {}, caption), el("thead", {}, el("tr", {}, head.map(header))), el("tbody", {}, rows)));
+}
+
+const cell = (value) => el("td", {}, value);
+const text = (value) => el("td", {class: "text"}, value);
+
+function nameCell(row, onCurrent) {
+  const name = row.title || row.technique;
+  return el("th", {scope: "row"}, onCurrent ? el("button", {type: "button", click: () => onCurrent(row)}, name) : name);
+}
+
+/** An error, or the bound that the reference's noise sets. */
+function errorText(metric, row) {
+  const value = metric.read(row), floor = metric.floor?.(row);
+  return isNumber(value) && floor > value ? `<${number(floor)}` : number(value);
+}
+
+export function errorTable(table, metric, time, onCurrent) {
+  const metrics = knownMetrics(table.rows);
+  const front = paretoFront(measured(table.rows, metric, time)).map((point) => point.row);
+  const head = [{label: "technique", text: true}, {label: "settings", text: true},
+    ...metrics.map((known) => ({label: known.label, help: known.help})),
+    {label: "spectrum", help: "power of the error over frequency, both logarithmic"},
+    {label: "above 16 px", help: "share of the error's power at wavelengths above 16 pixels"},
+    {label: "ms"}, {label: "quartiles"}, {label: "frames"}, {label: "MiB"}, {label: "Pareto front"}];
+  const rows = table.rows.map((row) => {
+    const start = [nameCell(row, onCurrent), text(settingsText(row))];
+    if (row.failure)
+      return el("tr", {"data-key": row.key}, start, el("td", {class: "failure", colspan: head.length - 2}, `failed: ${row.failure}`));
+    const time = row.frame_ms?.n > 0 ? row.frame_ms : null;
+    return el("tr", {"data-key": row.key}, start, metrics.map((known) => cell(errorText(known, row))),
+      cell(sparkline(row.spectrum)), cell(percent(lowFrequencyShare(row.spectrum))), cell(time ? number(time.median) : "–"),
+      cell(time ? `${number(time.q1)}–${number(time.q3)}` : "–"), cell(time ? String(time.n) : "–"),
+      cell(isNumber(row.memory_bytes) ? number(row.memory_bytes / 2 ** 20) : "–"), cell(front.includes(row) ? "*" : ""));
+  });
+  return tableElement(`Errors and times. * on the Pareto front of ${metric.label} and time (${time.label}); < below three ` +
+    "times the reference's noise", head, rows);
+}
+
+/** The thesis's form: a line per setting, a column per resolution and number of lights. One renderer and mode. */
+export function framesPerSecond(tables) {
+  const columns = new Map(), lines = new Map();
+  for (const table of tables) {
+    for (const row of table.rows) {
+      const ms = FRAME.read(row);
+      if (!isNumber(ms)) continue;
+      const lights = row.lights ? `, ${row.lights} light${row.lights > 1 ? "s" : ""}` : "";
+      const column = `${table.time_size.join(" x ")}${lights}`;
+      const {["environment lights"]: _, ...own} = row.parameters ?? {};
+      const settings = settingsText({...row, parameters: own, environment_lights: 0});
+      const key = `${row.title || row.technique}\n${settings}`;
+      columns.set(column, table.time_size[0] * table.time_size[1] * 1e4 + (row.lights ?? 0));
+      if (!lines.has(key)) lines.set(key, {row, settings, values: new Map()});
+      lines.get(key).values.set(column, ms);
+    }
+  }
+  if (lines.size === 0) return null;
+  const ordered = [...columns].sort((a, b) => a[1] - b[1]).map(([name]) => name);
+  const rows = [...lines.values()].map(({row, settings, values}) => el("tr", {}, nameCell(row, null), text(settings),
+    ordered.map((column) => cell(values.has(column) ? `${number(1000 / values.get(column))} (${number(values.get(column))} ms)` : "–"))));
+  return tableElement("Frames per second (milliseconds per frame), by resolution and number of lights",
+    [{label: "technique", text: true}, {label: "settings", text: true}, ...ordered.map((label) => ({label}))], rows);
+}
+
+export function passTable(table) {
+  const timed = table.rows.filter((row) => isNumber(FRAME.read(row)));
+  if (timed.length === 0) return null;
+  const parts = ["maps", "filters", "technique", "rest"];
+  const summary = timed.map((row) => el("tr", {}, nameCell(row, null), text(settingsText(row)),
+    parts.map((part) => cell(number(row.split_ms?.[part]))), cell(number(FRAME.read(row)))));
+  const every = timed.flatMap((row) => (row.passes ?? []).filter((pass) => pass.state !== "left_out").map((pass) =>
+    el("tr", {}, nameCell(row, null), text(settingsText(row)), text(String(pass.technique)), text(String(pass.name)),
+      cell(number(pass.ms)))));
+  const names = [{label: "technique", text: true}, {label: "settings", text: true}];
+  return [
+    tableElement("Milliseconds per frame and where they go; passes are timed in a run of their own", [...names,
+      {label: "shadow maps"}, {label: "filters"}, {label: "technique's passes"}, {label: "G-buffer, shading"}, {label: "frame"}],
+      summary),
+    every.length ? el("details", {}, el("summary", {}, "Every pass"), tableElement("Milliseconds per pass", [...names,
+      {label: "of", text: true}, {label: "pass", text: true}, {label: "ms"}], every)) : null,
+  ];
+}
+

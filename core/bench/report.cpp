@@ -1,0 +1,176 @@
+#include "core/bench/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/bench/comparison.h"
+#include "core/bench/report_pictures.h"
+#include "core/bench/tables.h"
+#include "core/gpu/shader_source.h"
+
+namespace limn::bench {
+
+/// benchmarks/report/ and the bundle of its scripts, compiled in.
+std::span<const gpu::EmbeddedSource> reportSources();
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kWindows = 2;
+
+/// The part of a row's JSON that the page reads as it is.
+Json known(const Json& json, const char* key) {
+  return json.contains(key) ? json[key] : Json();
+}
+
+Json passes(const Json& stats) {
+  Json list = Json::array();
+  for (const Json& pass : stats.value("passes", Json::array())) {
+    if (!pass.is_object()) continue;
+    list.push_back(
+        {{"name", known(pass, "name")},
+         {"technique", known(pass, "technique")},
+         {"state", known(pass, "state")},
+         {"ms", pass.contains("ms") && pass["ms"].is_object() ? known(pass["ms"], "median") : Json()}});
+  }
+  return list;
+}
+
+/// A row as the page gets it: its line of results.jsonl less what the table says, and its pictures.
+Json rowJson(const Row& row, const std::vector<Window>& windows, EmbeddedPictures& pictures) {
+  const Json line = Json::parse(toJson(row));
+  Json json = {{"name", rowName(row)}};
+  for (const char* key : {"key", "technique", "title", "parameters", "baseline", "error", "penumbra",
+                          "misjudged", "spectrum", "failure"})
+    json[key] = known(line, key);
+  if (row.what.environment.lights > 0) json["environment_lights"] = row.what.environment.lights;
+  if (line.contains("stats")) {
+    const Json& stats = line["stats"];
+    for (const char* key : {"frame_ms", "split_ms", "memory_bytes", "lights", "quality_parameters", "timer"})
+      json[key] = known(stats, key);
+    json["passes"] = passes(stats);
+  }
+  json["picture"] = pictures.whole(row.picture);
+  json["difference"] = pictures.whole(row.difference);
+  json["windows"] = Json::array();
+  for (const Window& window : windows) json["windows"].push_back(pictures.window(row.picture, window));
+  return json;
+}
+
+std::vector<Window> chooseWindows(const Table& table, const std::string& referenceFile,
+                                  const EmbeddedPictures& pictures) {
+  const Image reference = pictures.read(referenceFile);
+  if (reference.empty()) return {};
+  WindowChooser chooser(reference);
+  for (const Row& row : table.rows) {
+    if (const Image picture = pictures.read(row.picture); !picture.empty()) chooser.add(picture);
+  }
+  return chooser.choose(kWindows);
+}
+
+Json referenceJson(const Table& table, const std::string& file, const std::vector<Window>& windows,
+                   EmbeddedPictures& pictures) {
+  const ReferenceSettings& settings = table.rows.front().what.reference;
+  Json json = {{"spp", settings.spp},
+               {"noise", settings.noise},
+               {"bounces", settings.bounces},
+               {"picture", pictures.whole(file)},
+               {"windows", Json::array()}};
+  for (const Window& window : windows) json["windows"].push_back(pictures.window(file, window));
+  for (const Row& row : table.rows)
+    if (row.referenceNoise) json["noise_rms"] = *row.referenceNoise;
+  return json;
+}
+
+Json tableJson(const Table& table, EmbeddedPictures& pictures) {
+  const Case& c = table.rows.front().what;
+  const bool own = c.timeWidth > 0;
+  Json json = {{"title", table.title},
+               {"subject",
+                {{"scene", c.scene},
+                 {"camera", c.camera},
+                 {"light", c.light},
+                 {"light_size", c.lightSize},
+                 {"environment", std::filesystem::path(c.environment.map).filename().string()},
+                 {"time", c.time}}},
+               {"term", c.term},
+               {"size", {c.width, c.height}},
+               {"time_size", {own ? c.timeWidth : c.width, own ? c.timeHeight : c.height}},
+               {"dynamic", c.dynamic},
+               {"frames", c.frames},
+               {"warmup", c.warmup},
+               {"renderer", table.rows.front().cost.renderer}};
+  std::set<std::string> machines, drivers;
+  bool software = false;
+  std::string reference;
+  for (const Row& row : table.rows) {
+    if (!row.cost.machine.empty()) machines.insert(row.cost.machine);
+    if (!row.cost.driver.empty()) drivers.insert(row.cost.driver);
+    software = software || row.cost.software;
+    if (reference.empty()) reference = referencePicture(row);
+  }
+  json["software"] = software;
+  json["machines"] = machines;
+  json["drivers"] = drivers;
+  const std::vector<Window> windows = chooseWindows(table, reference, pictures);
+  json["windows"] = Json::array();
+  for (const Window& w : windows) json["windows"].push_back({w.x, w.y, w.width, w.height});
+  json["reference"] = referenceJson(table, reference, windows, pictures);
+  json["rows"] = Json::array();
+  for (const Row& row : table.rows) json["rows"].push_back(rowJson(row, windows, pictures));
+  return json;
+}
+
+std::string_view source(std::string_view name) {
+  for (const gpu::EmbeddedSource& file : reportSources())
+    if (name == file.path) return file.text;
+  throw Error(fmt::format("report: '{}' is not compiled in", name));
+}
+
+/// Puts `text` in the place of `{{name}}`, which the page has once.
+void fill(std::string& page, std::string_view name, std::string_view text) {
+  const std::string mark = fmt::format("{{{{{}}}}}", name);
+  page.replace(page.find(mark), mark.size(), text);
+}
+
+}  // namespace
+
+std::string reportData(std::span<const Row> rows, const std::filesystem::path& folder) {
+  std::vector<std::string> files;
+  for (const Row& row : rows)
+    for (const std::string& file : {row.picture, row.difference, referencePicture(row)})
+      if (!file.empty()) files.push_back(file);
+  EmbeddedPictures pictures(folder, files);
+  Json json = {{"tables", Json::array()}};
+  for (const Table& table : makeTables(rows)) json["tables"].push_back(tableJson(table, pictures));
+  json["pictures"] = pictures.uris();
+  json["reduction"] = pictures.reduction();
+  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string safe;  // "</script>" and "<!--" would end or change the element
+  safe.reserve(text.size());
+  for (const char c : text) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+void writeReport(std::span<const Row> rows, const std::filesystem::path& folder) {
+  std::string page(source("page.html"));
+  fill(page, "style", source("page.css"));
+  fill(page, "script", source("page.js"));
+  fill(page, "data", reportData(rows, folder));
+  writeTextFile(folder / "index.html", page);
+}
+
+}  // namespace limn::bench

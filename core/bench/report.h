@@ -1,0 +1,21 @@
+// index.html: the rows as a page for people, error against run time. The page itself (HTML, CSS and
+// JavaScript) lies in benchmarks/report/ and is compiled in; here is only what it is given.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "core/base/export.h"
+#include "core/bench/row.h"
+
+namespace limn::bench {
+
+/// What the page shows, as JSON that is safe inside a <script> element whatever the rows contain: tables as
+/// makeTables() groups them, and the pictures of pictures.h.
+LIMN_API std::string reportData(std::span<const Row> rows, const std::filesystem::path& folder);
+
+/// Writes index.html into `folder`, in which the rows' pictures are looked for: one file that loads nothing.
+LIMN_API void writeReport(std::span<const Row> rows, const std::filesystem::path& folder);
+
+}  // namespace limn::bench

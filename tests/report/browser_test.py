@@ -1,0 +1,213 @@
+"""The report page of a real, small bench in a real browser: what it shows, and what foreign texts cannot do to it."""
+import argparse
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+
+from chromium import Browser
+from png import decode
+
+SKIPPED = 77
+
+SUITE = """
+name = "report"
+sizes = ["64x48"]
+time_size = "96x72"
+frames = 2
+warmup = 0
+term = "visibility"
+reference = {spp = 16}
+pictures = true
+[[scenes]]
+scene = "balls"
+lights = ["key"]
+max_masked_share = 0.05
+[[techniques]]
+technique = "hard_shadow_map"
+label = "Hard shadows"
+[[techniques]]
+technique = "pcss"
+parameters = {blocker_samples = 4, filter_samples = [4, 64]}
+[[techniques]]
+technique = "sampled_area_light"
+parameters = {samples = [1, 4], shadow_map_size = 128}
+"""
+POINTS = 5
+HOSTILE = "</script><img src=x onerror=\"window.harmed = true\"><script>window.harmed = true</script>{{data}}"
+
+parser = argparse.ArgumentParser()
+for option in ("limn", "chromium", "scratch"):
+    parser.add_argument("--" + option, required=True)
+options = parser.parse_args()
+if not pathlib.Path(options.chromium).is_file():
+    print("skipped: no chromium (Debian package chromium)")
+    sys.exit(SKIPPED)
+
+out = pathlib.Path(options.scratch).resolve() / "out"
+page = out / "index.html"
+results = out / "results.jsonl"
+
+
+def limn(*arguments):
+    subprocess.run([options.limn, *map(str, arguments)], check=True, stdout=subprocess.DEVNULL)
+
+
+def check(condition, message):
+    if not condition:
+        sys.exit(f"FAILED: {message}")
+
+
+def bench():
+    shutil.rmtree(out, ignore_errors=True)
+    out.mkdir(parents=True)
+    (out / "suite.toml").write_text(SUITE)
+    limn("bench", out / "suite.toml", "--out", out)
+
+
+def shows_points_and_pictures(browser):
+    browser.open(page)
+    check(browser.evaluate("document.querySelectorAll('g.point').length") == POINTS, "not every row is a point")
+    check(browser.evaluate("document.querySelectorAll('g.point.pareto').length") >= 1, "no Pareto front")
+    check(browser.evaluate("document.querySelectorAll('.level.noise').length") == 1, "no noise of the reference")
+    check(browser.evaluate("[...document.images].every(i => i.complete && i.naturalWidth > 0)"), "a picture is missing")
+    check(browser.evaluate("document.querySelectorAll('.detail img').length") == 3, "not picture, difference, reference")
+    check(browser.evaluate("document.querySelectorAll('.equal-ms img.magnified').length") >= 4, "no pictures at equal time")
+    check(browser.evaluate("document.querySelectorAll('.spectrum .curve.current').length") == 1, "no spectrum")
+    check(browser.evaluate("document.querySelectorAll('table').length") == 4, "not four tables")
+    check("96 x 72, 1 light" in browser.evaluate("document.body.textContent"), "no frames per second by resolution and lights")
+
+
+def reacts(browser):
+    """Hovering, arrow keys, drop-downs, sliders and the tables' buttons."""
+    heading = "document.querySelector('.detail h3').textContent"
+    centres = browser.evaluate("""[...document.querySelectorAll('g.point')].map(p => {
+        p.scrollIntoView({block: 'center'}); const box = p.querySelector('.marker').getBoundingClientRect();
+        return {x: box.x + box.width / 2, y: box.y + box.height / 2 + scrollY}; })""")
+    seen = set()
+    for centre in centres:
+        browser.evaluate(f"scrollTo(0, {centre['y'] - 300})")
+        browser.point(centre["x"], centre["y"] - browser.evaluate("scrollY"))
+        seen.add(browser.evaluate(heading))
+    check(len(seen) >= POINTS - 1, f"hovering shows only {seen}")  # two points may cover each other
+
+    browser.evaluate("document.querySelector('g.point[tabindex=\"0\"]').focus()")
+    browser.press("Home")
+    walked = [browser.evaluate(heading)]
+    for _ in range(POINTS - 1):
+        browser.press("ArrowRight")
+        walked.append(browser.evaluate(heading))
+    check(len(set(walked)) == POINTS, f"the arrow keys reach only {walked}")
+    check(browser.evaluate("document.querySelectorAll('g.point[aria-pressed=true]').length") == 1, "not one current point")
+
+    choose = """(label, value) => { const select = [...document.querySelectorAll('.chooser')]
+        .find(c => c.firstChild.textContent === label).querySelector('select');
+        select.value = value; select.dispatchEvent(new Event('change')); }"""
+    plot = "document.querySelector('svg.plot')"
+    before = browser.evaluate(f"{plot}.outerHTML")
+    browser.evaluate(f"({choose})('Error', 'flip')")
+    check("FLIP" in browser.evaluate(f"{plot}.getAttribute('aria-label')"), "the error cannot be chosen")
+    check(browser.evaluate(f"{plot}.outerHTML") != before, "another error, the same chart")
+    browser.evaluate(f"({choose})('Time', 'shadows')")
+    check("technique" in browser.evaluate(f"{plot}.querySelector('.axis').textContent"), "the time cannot be chosen")
+
+    text = "document.querySelector('.equal-ms .note').textContent"
+    before = browser.evaluate(text)
+    browser.evaluate("""(s => { s.value = s.value > 50 ? 0 : 100; s.dispatchEvent(new Event('input')); })(
+        document.querySelector('.equal-ms input'))""")
+    check(browser.evaluate(text) != before, "the slider does nothing")
+    browser.evaluate("[...document.querySelectorAll('th button')].at(-1).click()")
+    check("sampled_area_light" in browser.evaluate(heading), "the table's button shows nothing")
+
+
+def is_painted(browser):
+    """Every marker has its curve's colour on the screen, and stands off the ground by 3:1, in both schemes."""
+    contrast = """(a, b) => { const level = c => { const [r, g, b] = c.map(v => v / 255)
+        .map(v => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
+        const [dark, light] = [level(a), level(b)].sort((x, y) => x - y); return (light + 0.05) / (dark + 0.05); }"""
+    grounds = []
+    for scheme in ("light", "dark"):
+        browser.open(page, height=1600, scheme=scheme)
+        rgb = "c => c.match(/\\d+/g).slice(0, 3).map(Number)"
+        marks = browser.evaluate(f"""[...document.querySelectorAll('g.point')].map(p => {{
+            const m = p.querySelector('.marker'), box = m.getBoundingClientRect();
+            return {{x: Math.round(box.x + box.width / 2), y: Math.round(box.y + box.height / 2),
+                     colour: ({rgb})(getComputedStyle(m).fill)}}; }})""")
+        ground = browser.evaluate(f"({rgb})(getComputedStyle(document.body).backgroundColor)")
+        grounds.append(ground)
+        pixels = decode(browser.screenshot())
+        for mark in marks:
+            painted = [pixel for row in pixels[mark["y"] - 3:mark["y"] + 4] for pixel in row[mark["x"] - 3:mark["x"] + 4]]
+            others = [other["colour"] for other in marks]  # a later marker may cover this one
+            check(any(max(abs(a - b) for a, b in zip(pixel, other)) < 12 for pixel in painted for other in others),
+                  f"{scheme}: the marker at {mark} is not painted")
+        check(len({tuple(mark["colour"]) for mark in marks}) == 3, f"{scheme}: curves share a colour")
+        for i in range(6):
+            colour = browser.evaluate(f"""(() => {{ const probe = document.body.appendChild(document.createElement('i'));
+                probe.style.color = 'var(--curve-{i})'; return ({rgb})(getComputedStyle(probe).color); }})()""")
+            ratio = browser.evaluate(f"({contrast})({colour}, {ground})")
+            check(ratio >= 3, f"{scheme}: curve {i} has a contrast of {ratio:.2f}")
+    check(grounds[0] != grounds[1], "dark and light look the same")
+
+
+def is_accessible(browser):
+    browser.open(page, width=360, height=740)
+    check(browser.evaluate("document.documentElement.scrollWidth") <= 360, "wider than a phone")
+    check(browser.evaluate("document.querySelectorAll('g.point').length") == POINTS, "points are missing on a phone")
+    for what, expression in {
+            "picture without a text": "[...document.images].filter(i => !i.alt).length",
+            "chart without a name": "[...document.querySelectorAll('svg.plot, svg.spectrum, .sparkline')]"
+                                    ".filter(s => !s.getAttribute('aria-label')).length",
+            "point without a name": "document.querySelectorAll('g.point:not([aria-label])').length",
+            "field without a label": "[...document.querySelectorAll('select, input')].filter(f => !f.labels.length).length",
+            "table without a caption": "[...document.querySelectorAll('table')].filter(t => !t.caption).length",
+            "element identifier used twice": "(i => i.length - new Set(i).size)([...document.querySelectorAll('[id]')].map(e => e.id))",
+    }.items():
+        check(browser.evaluate(expression) == 0, what)
+
+
+def withstands_foreign_rows(browser):
+    """Texts from elsewhere stay texts, failed rows and rows of earlier versions are shown, renderers never mix."""
+    rows = [json.loads(line) for line in results.read_text().splitlines()]
+    hostile, failed, old, gpu = (json.loads(json.dumps(rows[0])) for _ in range(4))
+    hostile.update(key="1", technique=HOSTILE, title=HOSTILE, light=HOSTILE, parameters={HOSTILE: HOSTILE},
+                   picture=HOSTILE + ".png")
+    hostile["stats"].update(renderer=HOSTILE, machine=HOSTILE, driver=HOSTILE, passes=[{"name": HOSTILE, "technique": HOSTILE}])
+    failed.update(key="2", failure=HOSTILE, renderer=rows[0]["stats"]["renderer"])
+    for key in ("spectrum", "penumbra", "picture", "difference"):
+        old.pop(key)
+    for key in ("passes", "shadow_maps", "driver", "machine", "lights", "quality_parameters"):
+        old["stats"].pop(key, None)
+    old["reference"].pop("noise_rms")
+    old["error"].pop("noise_floor")
+    old.update(key="3", technique="old", scene="of_an_earlier_version")
+    gpu.update(key="4")
+    gpu["stats"].update(renderer="A GPU", software=False)
+    with results.open("a") as file:
+        for row in (hostile, failed, old, gpu):
+            file.write(json.dumps(row) + "\n")
+    limn("report", out)
+    browser.open(page)
+    check(browser.evaluate("window.harmed === undefined"), "a row's text ran")
+    check(browser.evaluate("document.querySelectorAll('img[src=x], main script').length") == 0, "a row's text became markup")
+    text = browser.evaluate("document.getElementById('results').innerText")
+    for part in (HOSTILE, "failed: " + HOSTILE, "of_an_earlier_version", "hardware rendering", "software rendering"):
+        check(part in text, f"{part!r} is not shown")
+    measured = "[...document.querySelectorAll('.chooser')].filter(c => c.firstChild.textContent === 'Measured').length"
+    check(browser.evaluate(measured) == 1, "software and hardware are not told apart")
+    check(browser.evaluate("document.querySelectorAll('section')[0].querySelectorAll('g.point').length") == POINTS,
+          "software and hardware share a chart")
+
+    results.write_text("")
+    limn("report", out)
+    browser.open(page)
+    check("No rows yet" in browser.evaluate("document.body.textContent"), "a report without rows")
+
+
+bench()
+with Browser(options.chromium) as browser:
+    for step in (shows_points_and_pictures, reacts, is_painted, is_accessible, withstands_foreign_rows):
+        step(browser)
+        check(not browser.problems, f"{step.__name__}: {browser.problems}")
+print("the report page shows and does what it should")
