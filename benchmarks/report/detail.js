@@ -1,5 +1,5 @@
 // The setting that is looked at: what it is, what it costs, how wrong it is, and its pictures.
-import {el, milliseconds, number} from "./dom.js";
+import {breakable, el, milliseconds, number} from "./dom.js";
 import {METRICS, TIMES, isNumber} from "./metrics.js";
 import {ownName, settings} from "./series.js";
 
@@ -27,7 +27,7 @@ function facts(row) {
     if (isNumber(error)) entries.push([metric.label, number(error)]);
   }
   if (isNumber(row.memory_bytes)) entries.push(["memory", `${number(row.memory_bytes / 2 ** 20)} MiB`]);
-  return el("dl", {}, entries.map(([name, value]) => el("div", {}, el("dt", {}, name), el("dd", {}, value))));
+  return el("dl", {}, entries.map(([name, value]) => el("div", {}, el("dt", {}, breakable(name)), el("dd", {}, value))));
 }
 
 export function detail(page, table, row) {
@@ -38,7 +38,7 @@ export function detail(page, table, row) {
     picture(page, table.reference.picture, table, "reference", "Picture of the reference"),
   ].filter(Boolean);
   return [
-    el("h3", {}, row.name),
+    el("h3", {}, breakable(row.name)),
     pictures.length ? el("div", {class: "pictures"}, pictures)
       : el("p", {class: "note"}, "No pictures were kept; a suite with pictures = true keeps them."),
     row.failure ? el("p", {}, `Failed: ${row.failure}`) : facts(row),

@@ -20,6 +20,11 @@ export function chooser(label, options, value, onChange) {
   return el("label", {class: "chooser"}, el("span", {}, label), select);
 }
 
+/** A name that may be broken after its underscores. */
+export function breakable(name) {
+  return String(name).split(/(?<=_)/).flatMap((part, i) => (i ? [el("wbr"), part] : [part]));
+}
+
 /** Three significant digits. */
 export function number(value) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";

@@ -1,5 +1,5 @@
 // Pictures at equal time and at equal error, as comparisons are printed: the same magnified windows of each technique.
-import {el, milliseconds, number} from "./dom.js";
+import {breakable, el, milliseconds, number} from "./dom.js";
 import {framed} from "./detail.js";
 import {measured} from "./metrics.js";
 import {ownName, settings} from "./series.js";
@@ -46,8 +46,8 @@ function strip(page, table, points) {
     ? el("figure", {}, magnified(page, table.reference.windows, "Reference"),
         el("figcaption", {}, el("strong", {}, "reference"))) : null;
   const shown = points.map(({curve, row, ms, error}) => el("figure", {}, magnified(page, row.windows, row.name),
-    el("figcaption", {}, el("strong", {}, swatch(curve), curve.name), Object.entries(settings(row)).map(([name, value]) =>
-      el("span", {}, `${ownName(row, name)} ${value}`)), el("span", {}, `${milliseconds(ms)}, error ${number(error)}`))));
+    el("figcaption", {}, el("strong", {}, swatch(curve), breakable(curve.name)), Object.entries(settings(row)).map(([name, value]) =>
+      el("span", {}, breakable(`${ownName(row, name)} ${value}`))), el("span", {}, `${milliseconds(ms)}, error ${number(error)}`))));
   return el("div", {class: "strip"}, reference, shown);
 }
 
@@ -78,17 +78,24 @@ function equalRow(page, table, curves, metric, time, kind) {
   };
   const target = commonTarget(curves, metric, time, key);
   show(target);
-  return el("div", {class: `equal equal-${key}`}, el("h3", {}, kind.title), slider(kind.title, values, target, show), body);
+  return el("div", {class: `equal equal-${key}`}, el("h3", {}, kind.title), slider(kind.label, values, target, show), body);
 }
 
 const KINDS = [
-  {key: "ms", title: "Equal time", name: (metric, time) => `Time, ${time.label}:`, text: milliseconds},
-  {key: "error", title: "Equal error", name: (metric) => `${metric.label}:`, text: number},
+  {key: "ms", title: "Equal time", label: "Target time", name: (metric, time) => `Time, ${time.label}:`, text: milliseconds},
+  {key: "error", title: "Equal error", label: "Target error", name: (metric) => `${metric.label}:`, text: number},
 ];
+
+/** Every setting, for tables that time nothing. */
+function allRows(page, table, curves, metric) {
+  const points = curves.flatMap((curve) => curve.rows.map((row) => ({curve, row, ms: null, error: metric.read(row)})));
+  return el("div", {}, el("h3", {}, "Every setting"), strip(page, table, points));
+}
 
 export function equalRows(page, table, curves, metric, time) {
   const rows = KINDS.map((kind) => equalRow(page, table, curves, metric, time, kind)).filter(Boolean);
-  const whole = table.reference.picture >= 0 && rows.length
+  if (rows.length === 0) rows.push(allRows(page, table, curves, metric));
+  const whole = table.reference.picture >= 0
     ? el("figure", {class: "overview"}, framed(page.pictures[table.reference.picture], "Reference", table),
         el("figcaption", {}, "The reference; the frames are where the techniques' errors differ most.")) : null;
   return [whole, ...rows].filter(Boolean);

@@ -2,6 +2,7 @@
 import "./licence.js";
 import {Section, subjectName} from "./section.js";
 import {el} from "./dom.js";
+import {stability} from "./stability.js";
 
 const page = JSON.parse(document.getElementById("data").textContent);
 const main = document.getElementById("results");
@@ -37,6 +38,7 @@ main.replaceChildren(
     "to keep this file small; magnified windows are not, and pictures/ beside it has them all.")] : []),
   ...(sections.length > 1 ? [el("nav", {"aria-label": "Scenes"}, el("ul", {class: "contents"}, sections.map((section, i) =>
     el("li", {}, el("a", {href: `#subject-${i}`}, subjectName([...bySubject.values()][i][0].subject))))))] : []),
-  ...(sections.length ? sections.map((section) => section.element) : [el("p", {}, "No rows yet.")]));
+  ...(sections.length ? sections.map((section) => section.element) : [el("p", {}, "No rows yet.")]),
+  ...stability(page.stability));
 for (const section of sections) section.drawCharts();
 document.documentElement.dataset.ready = "yes";

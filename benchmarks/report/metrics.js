@@ -1,5 +1,6 @@
 // What is measured of a row, on which axis it goes, and who is on the Pareto front.
 
+const share = (part, whole) => (whole > 0 ? part / whole : null);
 const floorOf = (metrics) => metrics?.noise_floor ?? null;
 
 /** `floor`: below which an error is no difference, where the reference's noise says so. */
@@ -20,6 +21,10 @@ export const METRICS = [
    help: "RMS of the error after a 9 x 9 Gaussian: banding survives it, noise does not"},
   {key: "penumbra_structured", label: "structured error in the penumbra", read: (row) => row.penumbra?.structured,
    help: "the same over penumbra pixels"},
+  {key: "lit_in_umbra", label: "lit in the umbra", read: (row) => share(row.misjudged?.lit_in_umbra, row.misjudged?.umbra),
+   help: "share of the umbra's pixels with a visibility above 0.1: light leaks"},
+  {key: "dark_in_light", label: "dark in full light", read: (row) => share(row.misjudged?.dark_in_light, row.misjudged?.lit),
+   help: "share of the fully lit pixels with a visibility below 0.9"},
 ];
 
 export const TIMES = [

@@ -19,12 +19,13 @@ export function logDomain(values) {
 }
 
 export function logAxes(svg, x, y, width, height, labels) {
-  const ticks = (scale, pixels) => [Math.max(2, Math.min(8, pixels / 70)), "~g"];
+  const short = (value) => (value < 1e-3 || value >= 1e5 ? value.toExponential(0) : String(Number(value.toPrecision(3))));
+  const ticks = (pixels) => [Math.max(2, Math.min(8, pixels / 70)), short];
   const grid = svg.append("g").attr("class", "grid").attr("aria-hidden", "true");
   grid.append("g").attr("transform", `translate(0,${height - MARGIN.bottom})`)
-    .call(axisBottom(x).ticks(...ticks(x, width)).tickSize(-(height - MARGIN.top - MARGIN.bottom)));
+    .call(axisBottom(x).ticks(...ticks(width)).tickSize(-(height - MARGIN.top - MARGIN.bottom)));
   grid.append("g").attr("transform", `translate(${MARGIN.left},0)`)
-    .call(axisLeft(y).ticks(...ticks(y, height)).tickSize(-(width - MARGIN.left - MARGIN.right)));
+    .call(axisLeft(y).ticks(...ticks(height)).tickSize(-(width - MARGIN.left - MARGIN.right)));
   grid.append("text").attr("class", "axis").attr("x", (MARGIN.left + width - MARGIN.right) / 2).attr("y", height - 6)
     .attr("text-anchor", "middle").text(labels[0]);
   grid.append("text").attr("class", "axis").attr("transform", `translate(13,${(height - MARGIN.bottom) / 2}) rotate(-90)`)

@@ -6,10 +6,10 @@ import {percent, sparkline} from "./spectrum.js";
 
 const FRAME = TIMES[0];
 
-function tableElement(caption, head, rows) {
+export function tableElement(caption, head, rows) {
   const header = (cell) => el("th", {scope: "col", class: cell.text ? "text" : null, title: cell.help}, cell.label);
   return el("div", {class: "scroll", role: "region", tabindex: 0, "aria-label": caption},
-    el("table", {}, el("caption", {}, caption), el("thead", {}, el("tr", {}, head.map(header))), el("tbody", {}, rows)));
+    el("table", {}, el("caption", {}, el("span", {}, caption)), el("thead", {}, el("tr", {}, head.map(header))), el("tbody", {}, rows)));
 }
 
 const cell = (value) => el("td", {}, value);
@@ -26,6 +26,11 @@ function errorText(metric, row) {
   return isNumber(value) && floor > value ? `<${number(floor)}` : number(value);
 }
 
+function ratioText(ratio) {
+  if (!ratio) return "–";
+  return ratio.high > ratio.low ? `${number(ratio.value)} (${number(ratio.low)}–${number(ratio.high)})` : number(ratio.value);
+}
+
 export function errorTable(table, metric, time, onCurrent) {
   const metrics = knownMetrics(table.rows);
   const front = paretoFront(measured(table.rows, metric, time)).map((point) => point.row);
@@ -33,6 +38,7 @@ export function errorTable(table, metric, time, onCurrent) {
     ...metrics.map((known) => ({label: known.label, help: known.help})),
     {label: "spectrum", help: "power of the error over frequency, both logarithmic"},
     {label: "above 16 px", help: "share of the error's power at wavelengths above 16 pixels"},
+    ...(table.baseline ? [{label: "times as fast", help: `as ${table.baseline}, with the interval of 95 %`}] : []),
     {label: "ms"}, {label: "quartiles"}, {label: "frames"}, {label: "MiB"}, {label: "Pareto front"}];
   const rows = table.rows.map((row) => {
     const start = [nameCell(row, onCurrent), text(settingsText(row))];
@@ -40,11 +46,13 @@ export function errorTable(table, metric, time, onCurrent) {
       return el("tr", {"data-key": row.key}, start, el("td", {class: "failure", colspan: head.length - 2}, `failed: ${row.failure}`));
     const time = row.frame_ms?.n > 0 ? row.frame_ms : null;
     return el("tr", {"data-key": row.key}, start, metrics.map((known) => cell(errorText(known, row))),
-      cell(sparkline(row.spectrum)), cell(percent(lowFrequencyShare(row.spectrum))), cell(time ? number(time.median) : "–"),
+      cell(sparkline(row.spectrum)), cell(percent(lowFrequencyShare(row.spectrum))),
+      table.baseline ? cell(ratioText(row.times_as_fast)) : null, cell(time ? number(time.median) : "–"),
       cell(time ? `${number(time.q1)}–${number(time.q3)}` : "–"), cell(time ? String(time.n) : "–"),
       cell(isNumber(row.memory_bytes) ? number(row.memory_bytes / 2 ** 20) : "–"), cell(front.includes(row) ? "*" : ""));
   });
-  return tableElement(`Errors and times. * on the Pareto front of ${metric.label} and time (${time.label}); < below three ` +
+  const compared = table.baseline ? `Times as fast: against ${table.baseline}, with the interval of 95 %. ` : "";
+  return tableElement(`Errors and times. ${compared}* on the Pareto front of ${metric.label} and time (${time.label}); < below three ` +
     "times the reference's noise", head, rows);
 }
 

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/bench/comparison.h"
+#include "core/bench/ratio.h"
 #include "core/bench/report_pictures.h"
 #include "core/bench/tables.h"
 #include "core/gpu/shader_source.h"
@@ -41,6 +42,16 @@ Json passes(const Json& stats) {
          {"ms", pass.contains("ms") && pass["ms"].is_object() ? known(pass["ms"], "median") : Json()}});
   }
   return list;
+}
+
+/// How many times as long the baseline's frame takes as the row's, with its interval where there are samples.
+Json timesAsFast(const Row* baseline, const Row& row) {
+  if (baseline == nullptr || !isTimed(row)) return {};
+  const auto samples = [](const FrameTime& time) {
+    return time.samples.empty() ? std::vector<double>{time.median} : time.samples;
+  };
+  const Ratio ratio = ratioOfMedians(samples(baseline->cost.frameMs), samples(row.cost.frameMs));
+  return {{"value", ratio.value}, {"low", ratio.low}, {"high", ratio.high}};
 }
 
 /// A row as the page gets it: its line of results.jsonl less what the table says, and its pictures.
@@ -123,8 +134,25 @@ Json tableJson(const Table& table, EmbeddedPictures& pictures) {
   json["windows"] = Json::array();
   for (const Window& w : windows) json["windows"].push_back({w.x, w.y, w.width, w.height});
   json["reference"] = referenceJson(table, reference, windows, pictures);
+  const auto first =
+      std::ranges::find_if(table.rows, [](const Row& r) { return r.what.baseline && isTimed(r); });
+  const Row* baseline = first == table.rows.end() ? nullptr : &*first;
+  if (baseline != nullptr) json["baseline"] = rowName(*baseline);
   json["rows"] = Json::array();
-  for (const Row& row : table.rows) json["rows"].push_back(rowJson(row, windows, pictures));
+  for (const Row& row : table.rows) {
+    json["rows"].push_back(rowJson(row, windows, pictures));
+    json["rows"].back()["times_as_fast"] = timesAsFast(baseline, row);
+  }
+  return json;
+}
+
+/// What `limn stress` left in the folder; null if it was not run there.
+Json stability(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "stress.json";
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return {};
+  Json json = Json::parse(readTextFile(file), nullptr, false);
+  if (json.is_discarded()) throw Error(fmt::format("{}: not what limn stress writes", file.string()));
   return json;
 }
 
@@ -152,6 +180,7 @@ std::string reportData(std::span<const Row> rows, const std::filesystem::path& f
   for (const Table& table : makeTables(rows)) json["tables"].push_back(tableJson(table, pictures));
   json["pictures"] = pictures.uris();
   json["reduction"] = pictures.reduction();
+  json["stability"] = stability(folder);
   const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string safe;  // "</script>" and "<!--" would end or change the element
   safe.reserve(text.size());

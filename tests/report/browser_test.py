@@ -30,6 +30,7 @@ label = "Hard shadows"
 [[techniques]]
 technique = "pcss"
 parameters = {blocker_samples = 4, filter_samples = [4, 64]}
+baseline = true
 [[techniques]]
 technique = "sampled_area_light"
 parameters = {samples = [1, 4], shadow_map_size = 128}
@@ -76,6 +77,7 @@ def shows_points_and_pictures(browser):
     check(browser.evaluate("document.querySelectorAll('.equal-ms img.magnified').length") >= 4, "no pictures at equal time")
     check(browser.evaluate("document.querySelectorAll('.spectrum .curve.current').length") == 1, "no spectrum")
     check(browser.evaluate("document.querySelectorAll('table').length") == 4, "not four tables")
+    check("times as fast" in browser.evaluate("document.querySelector('table').textContent"), "no ratios to the baseline")
     check("96 x 72, 1 light" in browser.evaluate("document.body.textContent"), "no frames per second by resolution and lights")
 
 
@@ -187,8 +189,12 @@ def withstands_foreign_rows(browser):
     with results.open("a") as file:
         for row in (hostile, failed, old, gpu):
             file.write(json.dumps(row) + "\n")
+    (out / "stress.json").write_text(json.dumps({"renderer": HOSTILE, "results": [
+        {"technique": "pcss", "case": "one pixel", "verdict": "pass", "error": 0.1, "factor": 1.5},
+        {"technique": HOSTILE, "case": HOSTILE, "scene": HOSTILE, "verdict": "refused", "message": HOSTILE}]}))
     limn("report", out)
     browser.open(page)
+    check(browser.evaluate("document.querySelectorAll('#stability table').length") == 3, "no stability")
     check(browser.evaluate("window.harmed === undefined"), "a row's text ran")
     check(browser.evaluate("document.querySelectorAll('img[src=x], main script').length") == 0, "a row's text became markup")
     text = browser.evaluate("document.getElementById('results').innerText")
@@ -200,6 +206,7 @@ def withstands_foreign_rows(browser):
           "software and hardware share a chart")
 
     results.write_text("")
+    (out / "stress.json").unlink()
     limn("report", out)
     browser.open(page)
     check("No rows yet" in browser.evaluate("document.body.textContent"), "a report without rows")
