@@ -1,6 +1,8 @@
 // Convolution soft shadow maps (thesis, chapter 5): percentage-closer soft shadows whose two averages come from
 // prefiltered Fourier basis images. CONTACT: of blockers close to the receiver, to which the series answers only in part.
 // 0: V as it is; 1: sharpened, as published; 2: normalised by what a blocker at the mean depth of the part gives.
+//
+// Loops end in their condition: software renderers run a body once more where it comes first.
 #include "glsl/blocker_search.glsl"
 #include "glsl/fourier_lookup.glsl"
 #include "glsl/visibility_main.glsl"
@@ -16,122 +18,175 @@ uniform float falloff;
 // Blockers so close to the receiver that the series answers them with less are not made up for.
 const float least_response = max(0.02, 8.0 * FOURIER_NOISE);
 
-// Part (i, j) of a kernel, cut to the map; what lies outside is lit.
-struct KernelPart {
-  bool inside;       // some of it lies in the map
-  float share;       // of the part that does
-  float threshold;   // series depth below which texels block
-  float least;       // bound of the depths in it, at most the threshold
-  float dip;         // least s that it has where nothing in it blocks
+// What all parts of a kernel share.
+struct KernelView {
+  ShadowThresholds thresholds;
   FourierRange range;
-  vec2 uv;           // its centre
-  FourierBox box;
-  ShadowKernel kernel;
+  int layer;
+  float size;        // texels per side of the map
+  float sharpening;  // exponent of V, CONTACT 1
 };
 
-KernelPart kernel_part(ShadowCursor cursor, ShadowKernel kernel, ivec2 index) {
-  KernelPart part;
-  vec2 extent = (kernel.high - kernel.low) / float(splits);
-  vec2 low = kernel.low + vec2(index) * extent;
-  vec2 high = low + extent;
-  float size = float(cursor.view.info.z);
-  part.kernel.low = clamp(low, vec2(0.0), vec2(size));
-  part.kernel.high = clamp(high, vec2(0.0), vec2(size));
-  vec2 cut = part.kernel.high - part.kernel.low;
-  part.share = clamp(cut.x * cut.y / max(extent.x * extent.y, 1e-20), 0.0, 1.0);
-  part.inside = part.share > 0.0;
-  if (!part.inside) return part;
-  part.uv = 0.5 * (part.kernel.low + part.kernel.high) / size;
-  part.range = fourier_ranges[cursor.layer];
-  // The threshold varies over the kernel, which takes but one: the middle one, unless a lit plane would then span more
-  // depth within the kernel than ringing suppression absorbs. least bounds convex thresholds as well: tangent planes in
+// What a kernel holds: texels blocked as the series sees them, times the gap of the blockers in metres; texels blocked
+// after ringing suppression and contact.
+struct Contents {
+  float blocked;
+  float gap;
+  float shadowed;
+};
+
+KernelView kernel_view(ShadowCursor cursor, VisibilityQuery q, float gap) {
+  KernelView k;
+  vec3 local = shadow_local(cursor.view, q.position);
+  k.thresholds = shadow_thresholds(cursor.view, cursor.receiver, dot(cursor.receiver.plane.xyz, local),
+                                   cursor.view.axis_z.w, 1.0);
+  k.range = fourier_ranges[cursor.layer];
+  k.layer = int(cursor.layer);
+  k.size = float(cursor.view.info.z);
+#if CONTACT == 1
+  // From the blockers to the receiver along the map's depth.
+  float distance = shadow_normalise(cursor.view, gap) - shadow_normalise(cursor.view, 0.0);
+  k.sharpening = fourier_sharpening(distance * k.range.plane.w / FOURIER_RANGE, sharpening, falloff);
+#endif
+  return k;
+}
+
+// Series depth below which what lies at a place blocks.
+float series_threshold(KernelView k, vec2 texel) {
+  ShadowThresholds t = k.thresholds;
+  float depth = threshold_depth(t, max(threshold_value(t.biased, texel), threshold_value(t.axis, texel)));
+  return fourier_depth(k.range, texel / k.size, min((depth - t.near) * t.quanta, 1.0));
+}
+
+// How the series takes a box of texels.
+struct PartDepths {
+  float threshold;  // series depth below which texels block
+  float least;      // bound of the depths in it, at most the threshold
+  float dip;        // least s that it has where nothing in it blocks
+};
+
+PartDepths part_depths(ShadowCursor cursor, KernelView k, vec2 low, vec2 high) {
+  PartDepths part;
+  // The threshold varies over the part, which takes but one: the middle one, unless a lit plane would then span more
+  // depth within the part than ringing suppression absorbs. least bounds convex thresholds as well: tangent planes in
   // perspective.
-  float middle = fourier_depth(part.range, part.uv, shadow_threshold(cursor.view, cursor.receiver, part.uv));
-  float least = middle;
-  float most = middle;
-  for (int i = 0; i < 4; ++i) {
-    vec2 at = vec2((i & 1) == 0 ? part.kernel.low.x : part.kernel.high.x,
-                   (i & 2) == 0 ? part.kernel.low.y : part.kernel.high.y) / size;
-    float t = fourier_depth(part.range, at, shadow_threshold(cursor.view, cursor.receiver, at));
-    least = min(least, t);
-    most = max(most, t);
-  }
-  least = min(least, 2.0 * middle - most);
+  vec2 centre = 0.5 * (low + high);
+  float middle = series_threshold(k, centre);
+  float t00 = series_threshold(k, low);
+  float t10 = series_threshold(k, vec2(high.x, low.y));
+  float t01 = series_threshold(k, vec2(low.x, high.y));
+  float t11 = series_threshold(k, high);
+  float most = max(max(max(t00, t10), max(t01, t11)), middle);
+  float least = min(min(min(t00, t10), min(t01, t11)), 2.0 * middle - most);
   float before = min(middle - least, FOURIER_TOLERANCE);
   part.threshold = clamp(least + before, 0.0, FOURIER_RANGE);
-  vec2 bounds = kernel_depth_bounds(cursor, part.kernel);
-  float tilt = part.range.plane.w * 0.5 * dot(abs(part.range.plane.yz), cut / size);
-  part.least = min(fourier_depth(part.range, part.uv, bounds.x) - tilt, part.threshold);
-  float behind = max(fourier_depth(part.range, part.uv, bounds.y) + tilt - part.threshold, 0.0);
+  vec2 bounds = kernel_depth_bounds(cursor, ShadowKernel(low, high, 1.0));
+  vec2 uv = centre / k.size;
+  float tilt = k.range.plane.w * 0.5 * dot(abs(k.range.plane.yz), (high - low) / k.size);
+  part.least = min(fourier_depth(k.range, uv, bounds.x) - tilt, part.threshold);
+  float behind = max(fourier_depth(k.range, uv, bounds.y) + tilt - part.threshold, 0.0);
   part.dip = min(FOURIER_LEVEL - FOURIER_CURVATURE * before * before,
                  fourier_step(min(behind, FOURIER_VALLEY - FOURIER_DELTA))) -
              FOURIER_NOISE;
-  part.box = fourier_box(part.kernel.low, part.kernel.high, ivec2(cursor.view.info.z));
   return part;
 }
 
-// Stages 1 and 2 for one face: (1 - s, times the mean gap of the blockers in metres).
-vec2 blockers(ShadowCursor cursor, ShadowKernel kernel) {
-  vec2 sum = vec2(0.0);
-  for (int i = 0; i < splits * splits; ++i) {
-    KernelPart part = kernel_part(cursor, kernel, ivec2(i % splits, i / splits));
-    if (!part.inside) continue;
-    float blocked = 1.0 - fourier_lit(part.box, int(cursor.layer), part.threshold);
-    if (blocked <= 1.0 - part.dip) continue;  // as a lit kernel may give
-    float depth = fourier_blocked_depth(part.box, int(cursor.layer), part.threshold) / blocked;
-    depth = clamp(depth, part.least, part.threshold);
-    float gap = shadow_gap(cursor.view, cursor.receiver, part.uv, fourier_stored(part.range, part.uv, depth));
-    sum += part.share * blocked * vec2(1.0, max(gap, 0.0));
-  }
-  return sum / float(splits * splits);
+// Adds `texels` texels about `centre`.
+void add_part(inout Contents contents, KernelView k, PartDepths part, FourierMeans means, vec2 centre, float texels) {
+  vec2 sums = fourier_shadow(means, part.threshold);
+  float blocked = 1.0 - sums.x;
+  float depth = clamp(sums.y / max(blocked, 1e-6), part.least, part.threshold);
+  // Stages 1 and 2, unless a lit part may give as much.
+  float counted = blocked > 1.0 - part.dip ? texels * blocked : 0.0;
+  float stored = fourier_stored(k.range, centre / k.size, depth);
+  float gap = threshold_gap(k.thresholds, centre, k.thresholds.near + stored / k.thresholds.quanta);
+  contents.blocked += counted;
+  contents.gap += counted * max(gap, 0.0);
+  // Stage 3.
+  float gain = 0.5 / (part.dip - 0.5);
+  float v = fourier_visibility(sums.x, gain);
+#if CONTACT == 1
+  v = pow(v, k.sharpening);
+#elif CONTACT == 2
+  v = fourier_normalised(v, fourier_visibility(fourier_step(depth - part.threshold), gain), least_response);
+#endif
+  contents.shadowed += texels * (1.0 - v);
 }
 
-// Stage 3 for one face: the lit share of the penumbra kernel, whose blockers lie `gap` metres before the receiver.
-float filtered(ShadowCursor cursor, ShadowKernel kernel, float gap) {
-  float sum = 0.0;
-  for (int i = 0; i < splits * splits; ++i) {
-    KernelPart part = kernel_part(cursor, kernel, ivec2(i % splits, i / splits));
-    float v = 1.0;
-    if (part.inside) {
-      float s = fourier_lit(part.box, int(cursor.layer), part.threshold);
-      float gain = 0.5 / (part.dip - 0.5);
-      v = fourier_visibility(s, gain);
-      // From the blockers to the receiver along the map's depth.
-#if CONTACT == 1
-      float distance = shadow_normalise(cursor.view, gap) - shadow_normalise(cursor.view, 0.0);
-      v = pow(v, fourier_sharpening(distance * part.range.plane.w / FOURIER_RANGE, sharpening, falloff));
-#elif CONTACT == 2
-      float depth = fourier_blocked_depth(part.box, int(cursor.layer), part.threshold) / max(1.0 - s, 1e-6);
-      float distance = part.threshold - clamp(depth, part.least, part.threshold);
-      v = fourier_normalised(v, fourier_visibility(fourier_step(-distance), gain), least_response);
+// The parts of a kernel in one view. whole: what it holds is wanted, not how much of it.
+Contents kernel_contents(ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap, bool whole) {
+  Contents contents = Contents(0.0, 0.0, 0.0);
+  KernelView k = kernel_view(cursor, q, gap);
+  ivec2 size = ivec2(cursor.view.info.z);
+  FourierAxis x = fourier_axis(kernel.low.x, kernel.high.x, size.x, splits, whole);
+  FourierAxis y = fourier_axis(kernel.low.y, kernel.high.y, size.y, splits, whole);
+  int cut = whole ? 0 : fourier_cut;
+  int i = -cut;
+  do {
+    vec2 low;
+    vec2 high;
+    low.x = clamp(fourier_part(x, i), 0.0, k.size);
+    high.x = clamp(fourier_part(x, i + 1), 0.0, k.size);
+    float weight = fourier_part_weight(x, i);
+    int j = -cut;
+    high.y = clamp(fourier_part(y, j), 0.0, k.size);
+#if FOURIER_SAT
+    float scale = float(fourier_sum_scale(size.x * size.y));
+    FourierEdge below = fourier_edge(ivec2(low.x, high.x), int(high.y), k.layer);
 #endif
-      v = mix(1.0, v, part.share);
+    do {
+      low.y = high.y;
+      high.y = clamp(fourier_part(y, j + 1), 0.0, k.size);
+      float texels = (high.x - low.x) * (high.y - low.y);
+#if FOURIER_SAT
+      FourierEdge above = below;
+      below = fourier_edge(ivec2(low.x, high.x), int(high.y), k.layer);
+      FourierMeans means = fourier_means(above, below, texels, scale);
+#else
+      FourierMeans means = fourier_means(low, high, size, k.layer);
+#endif
+      add_part(contents, k, part_depths(cursor, k, low, high), means, 0.5 * (low + high),
+               texels * weight * fourier_part_weight(y, j));
+    } while (++j < y.parts + cut);
+  } while (++i < x.parts + cut);
+  return contents;
+}
+
+// Over all faces, per area of the kernel.
+Contents contents_at(inout ShadowCursor cursor, VisibilityQuery q, float gap, bool whole, bool wanted) {
+  Contents sum = Contents(0.0, 0.0, 0.0);
+  float weights = 0.0;
+  uint faces = wanted ? shadow_face_count(q.maps.info.y) : 0u;
+  uint face = 0u;
+  do {
+    ShadowKernel kernel;
+    bool seen = shadow_kernel_in_face(cursor, q, face, gap, kernel) && wanted;
+    if (seen) {
+      Contents contents = kernel_contents(cursor, q, kernel, gap, whole);
+      vec2 extent = kernel.high - kernel.low;
+      float share = kernel.weight / max(extent.x * extent.y, 1e-20);
+      sum.blocked += share * contents.blocked;
+      sum.gap += share * contents.gap;
+      sum.shadowed += share * contents.shadowed;
+      weights += kernel.weight;
     }
-    sum += v;
-  }
-  return sum / float(splits * splits);
+  } while (++face < faces);
+  sum.shadowed = weights > 0.0 ? sum.shadowed / weights : 0.0;
+  return sum;
 }
 
 float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   BlockerSearch search = blocker_search(cursor, q, search_rounds);
-  if (search.answer != search_partial) return search.answer == search_lit ? 1.0 : 0.0;
+  bool open = search.answer == search_partial;
+  float v = search.answer == search_umbra ? 0.0 : 1.0;
   float gap = search.gap;
-  for (int i = 0; i < blocker_passes; ++i) {
-    vec2 found = vec2(0.0);
-    for (uint face = 0u; face < shadow_face_count(q.maps.info.y); ++face) {
-      ShadowKernel kernel;
-      if (shadow_kernel_in_face(cursor, q, face, gap, kernel)) found += kernel.weight * blockers(cursor, kernel);
-    }
-    if (!(found.x > 0.0)) return 1.0;
-    gap = clamp(found.y / found.x, 0.0, gap);
-  }
-  float lit = 0.0;
-  float weight = 0.0;
-  for (uint face = 0u; face < shadow_face_count(q.maps.info.y); ++face) {
-    ShadowKernel kernel;
-    if (!shadow_kernel_in_face(cursor, q, face, gap, kernel)) continue;
-    lit += kernel.weight * filtered(cursor, kernel, gap);
-    weight += kernel.weight;
-  }
-  return weight > 0.0 ? lit / weight : 1.0;
+  int pass = 0;
+  do {
+    bool last = pass == blocker_passes;
+    Contents contents = contents_at(cursor, q, gap, !last, open);
+    if (open && last) v = clamp(1.0 - contents.shadowed, 0.0, 1.0);
+    open = open && contents.blocked > 0.0 && !last;
+    gap = open ? clamp(contents.gap / contents.blocked, 0.0, gap) : gap;
+  } while (open && ++pass <= blocker_passes);
+  return v;
 }

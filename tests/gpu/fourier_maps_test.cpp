@@ -26,13 +26,30 @@ struct Kernel { vec4 box; vec4 receiver; };
 layout(std430, binding = 0) readonly buffer Kernels { Kernel kernels[]; };
 layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
 void main() {
-  uint i = gl_GlobalInvocationID.x;
-  if (i >= uint(kernels.length())) return;
-  Kernel k = kernels[i];
+  uint at = gl_GlobalInvocationID.x;
+  if (at >= uint(kernels.length())) return;
+  Kernel k = kernels[at];
   int layer = int(k.receiver.x);
-  FourierBox box = fourier_box(k.box.xy, k.box.zw, textureSize(fourier_depth_maps, 0).xy);
-  results[i] = vec4(fourier_lit(box, layer, k.receiver.y), fourier_blocked_depth(box, layer, k.receiver.y),
-                    fourier_ranges[layer].plane.x, fourier_ranges[layer].plane.w);
+  ivec2 size = textureSize(fourier_depth_maps, 0).xy;
+  vec3 sum = vec3(0.0);  // of s, n and 1
+#if FOURIER_SAT
+  FourierAxis x = fourier_axis(k.box.x, k.box.z, size.x, 3, false);
+  FourierAxis y = fourier_axis(k.box.y, k.box.w, size.y, 2, false);
+  for (int i = -fourier_cut; i < x.parts + fourier_cut; ++i) {
+    ivec2 columns = clamp(ivec2(fourier_part(x, i), fourier_part(x, i + 1)), ivec2(0), size.xx);
+    for (int j = -fourier_cut; j < y.parts + fourier_cut; ++j) {
+      ivec2 rows = clamp(ivec2(fourier_part(y, j), fourier_part(y, j + 1)), ivec2(0), size.yy);
+      float texels = float((columns.y - columns.x) * (rows.y - rows.x));
+      FourierMeans means = fourier_means(fourier_edge(columns, rows.x, layer), fourier_edge(columns, rows.y, layer),
+                                         texels, float(fourier_sum_scale(size.x * size.y)));
+      float weight = texels * fourier_part_weight(x, i) * fourier_part_weight(y, j);
+      sum += weight * vec3(fourier_shadow(means, k.receiver.y), 1.0);
+    }
+  }
+#else
+  sum = vec3(fourier_shadow(fourier_means(k.box.xy, k.box.zw, size, layer), k.receiver.y), 1.0);
+#endif
+  results[at] = vec4(sum.xy / sum.z, fourier_ranges[layer].plane.x, fourier_ranges[layer].plane.w);
 }
 )";
 
