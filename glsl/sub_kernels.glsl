@@ -1,49 +1,103 @@
-// What a summed-area table of shadow maps and a few of their texels tell about kernels cut into sub-kernels: how many
-// texels block, and how far they lie from the receiver. For techniques that answer `visibility`.
+// What a summed-area table of shadow maps and a few of their texels tell about kernels cut into sub-kernels: which share of
+// the light is hidden, and how far what hides it lies from the receiver. For techniques that answer `visibility`.
 //
-// Define TABLE_FORMAT (sat_format), WIDE_Z 1: sums of z over a sub-kernel may need two words, POOLED 1:
-// Chebyshev's inequality once for all sub-kernels with E(z) < d, 0: for each.
+// Define TABLE_FORMAT (sat_format), WIDE_Z 1: sums of z over a sub-kernel may need two words, POOLED 1: Chebyshev's
+// inequality once for all sub-kernels with E(z) < d, 0: for each, SIMILAR_KERNELS 1: every light has one view, in which its
+// kernels are scaled copies of each other; 0: some do not.
 //
-// Loops end in their condition: software renderers run a body once more where it comes first.
+// Loops end in their condition: software renderers run a body once more where it comes first. They run what nobody wants,
+// too, so loops of lanes without work take one round.
 #ifndef LIMN_SUB_KERNELS_GLSL
 #define LIMN_SUB_KERNELS_GLSL
+#include "glsl/blocker_search.glsl"
 #include "glsl/variance_kernel.glsl"
 #include "glsl/visibility.glsl"
 
 layout(binding = 10) uniform usampler2DArray shadow_table;
 
 const uint table_format = TABLE_FORMAT;
+const float least_gap = 0.05;  // of the kernel's: nearer blockers hide no more than at that
+const float edge_blur = 0.5;   // texels: how far kernels reach into texels that their edges cut
+
+// One pixel's kernels in one view.
+struct KernelFamily {
+  ShadowThresholds thresholds;
+  KernelCone cone;
+  bool similar;  // its kernels are those of the cone
+#if !SIMILAR_KERNELS
+  ShadowView view;
+  LightView light;
+  vec3 receiver;
+  bool whole;  // the view is the light's only one
+#endif
+  int size;   // texels per side of the map
+  int layer;
+  bool unblocked;  // nothing blocks: the light's centre lies below the tangent plane of a receiver that a perspective map sees
+};
+
+KernelFamily kernel_family(ShadowCursor cursor, VisibilityQuery q) {
+  KernelFamily f;
+  vec3 local = shadow_local(cursor.view, q.position);
+  f.thresholds = shadow_thresholds(cursor.view, cursor.receiver, dot(cursor.receiver.plane.xyz, local),
+                                   cursor.view.axis_z.w, float(sat_scale(table_format)));
+  float towards = shadow_view_axes(cursor.view, q.light.centre).z;
+  bool perspective = cursor.view.info.x == shadow_perspective;
+  float gap = perspective ? 0.5 * q.light.depth : cursor.view.axis_z.w - cursor.view.origin.w;
+  ShadowKernel kernel;
+  shadow_kernel(cursor.view, q.light, q.position, gap, true, kernel);
+  f.cone = kernel_cone(cursor.view, local, towards, kernel.low, kernel.high, gap);
+  f.similar = true;
+#if !SIMILAR_KERNELS
+  uint type = lights[q.maps.info.z].info.x;
+  f.similar = q.maps.info.y == shadow_faces_single && (type == light_rectangle || type == light_directional);
+  f.view = cursor.view;
+  f.light = q.light;
+  f.receiver = q.position;
+  f.whole = q.maps.info.y == shadow_faces_single;
+#endif
+  f.size = int(cursor.view.info.z);
+  f.layer = int(cursor.layer);
+  f.unblocked = cursor.view.info.x == shadow_perspective && cursor.receiver.plane.w >= 0.0;
+  return f;
+}
+
+// The kernel at `gap`. False: nothing of it lies in this view.
+bool family_kernel(KernelFamily f, float gap, out ShadowKernel kernel) {
+  float scale = kernel_cone_scale(f.cone, gap);
+  ShadowKernel scaled = ShadowKernel(f.cone.apex + scale * f.cone.low, f.cone.apex + scale * f.cone.high, 1.0);
+  kernel = scaled;
+#if !SIMILAR_KERNELS
+  bool seen = shadow_kernel(f.view, f.light, f.receiver, gap, f.whole, kernel);
+  if (!f.similar) return seen;
+  kernel = scaled;
+#endif
+  return true;
+}
+
+#if !SIMILAR_KERNELS
+// Solid angle, or area, of all of the kernel at `gap`, relative to those at other gaps.
+float family_measure(KernelFamily f, float gap) {
+  if (f.view.info.x != shadow_perspective) return gap * gap;
+  vec3 r = f.receiver - f.view.origin.xyz;
+  vec3 middle = r + gap * f.light.centre;
+  float inverse = inversesqrt(max(dot(middle, middle), 1e-30));
+  return gap * gap * max(dot(f.light.axis, r) - gap, 0.0) * inverse * inverse * inverse;
+}
+#endif
 
 // A kernel in one view, and what was found in it.
 struct KernelTally {
-  ShadowThresholds thresholds;
-  KernelCone cone;
-  int size;       // texels per side of the map
-  int layer;
+  float gap;      // the kernel's
+  vec2 low;       // what counts of it, texels
+  vec2 high;
   float blocked;  // texels
-  float gap;      // metres to the receiver along the light's axis, summed over those texels
+  float reach;    // metres to the receiver along the light's axis, summed over those texels
   vec4 pooled;    // sums over sub-kernels with E(z) < d: texels, first, second, first times the gap of its blockers
 };
 
-// gap: the kernel's. deepest: stored in any texel of it.
-KernelTally kernel_tally(ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap, float deepest) {
-  KernelTally tally;
-  vec3 local = shadow_local(cursor.view, q.position);
-  float towards = shadow_view_axes(cursor.view, q.light.centre).z;
-  tally.cone = kernel_cone(cursor.view, local, towards, kernel.low, kernel.high, gap);
-  tally.thresholds = shadow_thresholds(cursor.view, cursor.receiver, dot(cursor.receiver.plane.xyz, local),
-                                       shadow_metres(cursor.view, deepest), float(sat_scale(table_format)));
-  tally.size = int(cursor.view.info.z);
-  tally.layer = int(cursor.layer);
-  tally.blocked = 0.0;
-  tally.gap = 0.0;
-  tally.pooled = vec4(0.0);
-  return tally;
-}
-
 // Sums over the texels left of and above `at`, 0 <= at <= size.
-uvec4 table_sums(KernelTally tally, ivec2 at) {
-  uvec4 sums = texelFetch(shadow_table, ivec3(max(at - 1, 0), tally.layer), 0);
+uvec4 table_sums(KernelFamily f, ivec2 at) {
+  uvec4 sums = texelFetch(shadow_table, ivec3(max(at - 1, 0), f.layer), 0);
   return at.x > 0 && at.y > 0 ? sums : uvec4(0u);
 }
 
@@ -77,53 +131,75 @@ vec2 box_moments(uvec4 s11, uvec4 s01, uvec4 s10, uvec4 s00, uint texels, float 
   return vec2(m.first + n * rest, m.second + rest * (2.0 * m.first + n * rest));
 }
 
+// Share of the light that what lies in low..high, texels, `gap` metres from the receiver hides, as the number of texels of
+// the kernel that would hide as much: it is compared to the kernel at its own gap, the cone to the light cut there.
+float hidden_texels(KernelFamily f, KernelTally tally, vec2 low, vec2 high, float gap) {
+  ShadowKernel kernel;
+  gap = clamp(gap, least_gap * tally.gap, tally.gap);
+  bool seen = family_kernel(f, gap, kernel);
+  vec2 first = max(tally.low, kernel.low - vec2(edge_blur));
+  vec2 last = min(tally.high, kernel.high + vec2(edge_blur));
+  vec2 extent = max(last - first, vec2(1e-6));
+  vec2 inside = max(min(high, last) - max(low, first), vec2(0.0));
+  vec2 whole = tally.high - tally.low;
+  float magnified = whole.x * whole.y / (extent.x * extent.y);
+#if !SIMILAR_KERNELS
+  // Another view may hold more of the kernel at the one distance than at the other.
+  float most = family_measure(f, tally.gap) / max(family_measure(f, gap), 1e-30);
+  magnified = f.similar ? magnified : min(magnified, most);
+#endif
+  return seen ? inside.x * inside.y * magnified : 0.0;
+}
+
 // Adds a box in which Chebyshev's inequality holds, about `d`.
-void tally_moments(inout KernelTally tally, TexelBox box, SubKernel s, float d) {
-  ShadowThresholds t = tally.thresholds;
+void tally_moments(inout KernelTally tally, KernelFamily f, TexelBox box, SubKernel s, float d) {
+  ShadowThresholds t = f.thresholds;
   vec2 centre = 0.5 * vec2(box.low + box.high);
   float second = sub_kernel_second(s);
   float gap = threshold_gap(t, centre, t.near + (d - blocker_distance(s.first, second)) / t.quanta);
 #if POOLED
   tally.pooled += box.weight * vec4(s.texels, s.first, second, s.first * gap);
 #else
-  float inside = kernel_cone_share(tally.cone, vec2(box.low), vec2(box.high), gap);
-  float blocked = inside * box.weight * chebyshev_blocked(s.texels, s.first, second);
+  float share = min(s.first * s.first / (s.texels * second), 1.0);
+  float blocked = share * hidden_texels(f, tally, vec2(box.low), vec2(box.high), gap);
   tally.blocked += blocked;
-  tally.gap += blocked * gap;
+  tally.reach += blocked * gap;
 #endif
 }
 
-// Adds a box from four of its texels: 2 x 2, or 4 in a line.
-void tally_texels(inout KernelTally tally, TexelBox box, bool wanted) {
-  ShadowThresholds t = tally.thresholds;
+// Texels that stand for a box: up to 2 x 2, or 4 in a line.
+ivec2 box_taps(ivec2 extent) { return min(extent, extent.x == 1 ? ivec2(1, 4) : extent.y == 1 ? ivec2(4, 1) : ivec2(2)); }
+
+// Adds texel `tap` of those.
+void tally_texel(inout KernelTally tally, KernelFamily f, TexelBox box, int tap, bool wanted) {
+  ShadowThresholds t = f.thresholds;
   ivec2 extent = box.high - box.low;
-  ivec2 taps = extent.x == 1 ? ivec2(1, 4) : extent.y == 1 ? ivec2(4, 1) : ivec2(2);
-  float share = 0.25 * box.weight * float(extent.x * extent.y);
-  float metres = float(sat_scale(table_format)) / t.quanta;
-  int i = wanted ? 0 : 3;
-  do {
-    ivec2 place = taps.x == 2 ? ivec2(i & 1, i >> 1) : min(ivec2(i), taps - 1);
-    ivec2 texel = box.low + (extent * (2 * place + 1)) / (2 * taps);
-    float stored = texelFetch(shadow_depth, ivec3(texel, tally.layer), 0).r;
-    float depth = t.near + stored * metres;
-    vec2 centre = vec2(texel) + 0.5;
-    if (wanted && stored < 1.0 && threshold_blocks(t, centre, depth)) {
-      float gap = threshold_gap(t, centre, depth);
+  ivec2 taps = box_taps(extent);
+  ivec2 place = taps == ivec2(2) ? ivec2(tap & 1, tap >> 1) : min(ivec2(tap), taps - 1);
+  ivec2 step = extent * (2 * place + 1);
+  ivec2 texel = box.low + ivec2(whole_quotient(step.x, 2 * taps.x), whole_quotient(step.y, 2 * taps.y));
+  float stored = texelFetch(shadow_depth, ivec3(texel, f.layer), 0).r;
+  float depth = t.near + stored * float(sat_scale(table_format)) / t.quanta;
+  vec2 centre = vec2(texel) + 0.5;
+  if (wanted && stored < 1.0 && threshold_blocks(t, centre, depth)) {
+    float gap = threshold_gap(t, centre, depth);
+    vec2 part = vec2(extent) / vec2(taps);
 #if POOLED
-      float blocked = share;
+    float blocked = box.weight * part.x * part.y;
 #else
-      float blocked = share * kernel_cone_share(tally.cone, vec2(texel), vec2(texel + 1), gap);
+    vec2 corner = vec2(box.low) + part * vec2(place);
+    float blocked = hidden_texels(f, tally, corner, corner + part, gap);
 #endif
-      tally.blocked += blocked;
-      tally.gap += blocked * gap;
-    }
-  } while (++i < 4);
+    tally.blocked += blocked;
+    tally.reach += blocked * gap;
+  }
 }
 
 // Adds one box; true: its mean lies behind the threshold though something in it may block, and nothing was added.
-bool tally_box(inout KernelTally tally, TexelBox box, uvec4 s11, uvec4 s01, uvec4 s10, uvec4 s00) {
+bool tally_box(inout KernelTally tally, KernelFamily f, TexelBox box, uvec4 s11, uvec4 s01, uvec4 s10, uvec4 s00) {
   ivec2 extent = box.high - box.low;
-  PlaceThresholds at = thresholds_at(tally.thresholds, 0.5 * vec2(box.low + box.high));
+  vec2 centre = 0.5 * vec2(box.low + box.high);
+  PlaceThresholds at = thresholds_at(f.thresholds, centre);
   float d = min(at.unoccluded, float(sat_scale(table_format)));
   vec2 moments = box_moments(s11, s01, s10, s00, uint(extent.x * extent.y), d);
   at.blocking = min(at.blocking, d);
@@ -131,9 +207,9 @@ bool tally_box(inout KernelTally tally, TexelBox box, uvec4 s11, uvec4 s01, uvec
   SubKernel s = sub_kernel(at, vec2(extent), moments.x, moments.y);
   bool some = min(extent.x, extent.y) > 0 && box.weight > 0.0;
   int kind = some ? sub_kernel_kind(s) : sub_kernel_lit;
-  bool in_range = plane_in_range(tally.thresholds, 0.5 * vec2(box.low + box.high), vec2(extent));
+  bool in_range = plane_in_range(f.thresholds, centre, vec2(extent));
   if (kind == sub_kernel_blocked && !in_range) kind = sub_kernel_mixed;
-  if (kind == sub_kernel_blocked) tally_moments(tally, box, s, d);
+  if (kind == sub_kernel_blocked) tally_moments(tally, f, box, s, d);
   return kind == sub_kernel_mixed;
 }
 
@@ -142,7 +218,7 @@ void tally_pooled(inout KernelTally tally) {
 #if POOLED
   float blocked = chebyshev_blocked(tally.pooled.x, tally.pooled.y, tally.pooled.z);
   tally.blocked += blocked;
-  if (blocked > 0.0) tally.gap += blocked * tally.pooled.w / tally.pooled.y;
+  if (blocked > 0.0) tally.reach += blocked * tally.pooled.w / tally.pooled.y;
 #endif
 }
 
@@ -170,39 +246,55 @@ float axis_weight(KernelAxis axis, int i, int parts) { return i < 0 ? axis.befor
 
 // Uniform subdivision (VSSM, section 7.4.2): parts x parts sub-kernels of whole texels and, where rim is 1, those that the
 // kernel's edges cut. True: `open`, which is the only whole sub-kernel (parts = 1), needs subdivision and was left out.
-bool tally_uniform(inout KernelTally tally, KernelAxes axes, int parts, int rim, bool leave_whole) {
+bool tally_uniform(inout KernelTally tally, KernelFamily f, KernelAxes axes, int parts, int rim, bool leave_whole,
+                   bool wanted) {
   bool open = false;
   ivec2 count = max(min(ivec2(parts), ivec2(axes.x.last - axes.x.first, axes.y.last - axes.y.first)), ivec2(1));
+  ivec2 end = wanted ? count + rim : ivec2(1 - rim);
   int i = -rim;
   do {
     TexelBox box;
-    box.low.x = clamp(axis_edge(axes.x, i, count.x), 0, tally.size);
-    box.high.x = clamp(axis_edge(axes.x, i + 1, count.x), 0, tally.size);
-    float weight = axis_weight(axes.x, i, count.x);
-    box.high.y = clamp(axis_edge(axes.y, -rim, count.y), 0, tally.size);
-    uvec4 left = table_sums(tally, ivec2(box.low.x, box.high.y));
-    uvec4 right = table_sums(tally, box.high);
+    box.low.x = clamp(axis_edge(axes.x, i, count.x), 0, f.size);
+    box.high.x = clamp(axis_edge(axes.x, i + 1, count.x), 0, f.size);
+    float weight = wanted ? axis_weight(axes.x, i, count.x) : 0.0;
+    box.high.y = clamp(axis_edge(axes.y, -rim, count.y), 0, f.size);
+    uvec4 left = table_sums(f, ivec2(box.low.x, box.high.y));
+    uvec4 right = table_sums(f, box.high);
+    uint mixed = 0u;  // sub-kernels of this column
     int j = -rim;
     do {
       uvec4 s00 = left;
       uvec4 s10 = right;
       box.low.y = box.high.y;
-      box.high.y = clamp(axis_edge(axes.y, j + 1, count.y), 0, tally.size);
+      box.high.y = clamp(axis_edge(axes.y, j + 1, count.y), 0, f.size);
       box.weight = weight * axis_weight(axes.y, j, count.y);
-      left = table_sums(tally, ivec2(box.low.x, box.high.y));
-      right = table_sums(tally, box.high);
-      bool mixed = tally_box(tally, box, right, left, s10, s00);
+      left = table_sums(f, ivec2(box.low.x, box.high.y));
+      right = table_sums(f, box.high);
+      bool undecided = tally_box(tally, f, box, right, left, s10, s00);
       bool whole = leave_whole && i == 0 && j == 0;
-      open = open || (mixed && whole);
-      tally_texels(tally, box, mixed && !whole);
-    } while (++j < count.y + rim);
-  } while (++i < count.x + rim);
+      open = open || (undecided && whole);
+      mixed |= undecided && !whole ? 1u << uint(j + rim) : 0u;
+    } while (++j < end.y);
+    int tap = 0;
+    do {
+      int row = findLSB(mixed | 0x80000000u) - rim;
+      box.low.y = clamp(axis_edge(axes.y, row, count.y), 0, f.size);
+      box.high.y = clamp(axis_edge(axes.y, row + 1, count.y), 0, f.size);
+      box.weight = weight * axis_weight(axes.y, row, count.y);
+      tally_texel(tally, f, box, tap, mixed != 0u);
+      ivec2 taps = box_taps(box.high - box.low);
+      if (++tap >= taps.x * taps.y) {
+        tap = 0;
+        mixed &= mixed - 1u;
+      }
+    } while (mixed != 0u);
+  } while (++i < end.x);
   return open;
 }
 
 // Adaptive subdivision (VSSM, section 7.4.3) of the whole texels: down the quad-tree where neither Chebyshev's inequality
 // nor the variance tells, to leaves of 4^-height of the kernel or of 2 x 2 texels.
-void tally_adaptive(inout KernelTally tally, KernelAxes axes, int height, bool wanted) {
+void tally_adaptive(inout KernelTally tally, KernelFamily f, KernelAxes axes, int height, bool wanted) {
   uvec2 node = wanted ? quadtree_child(uvec2(0u)) : uvec2(0u, 1u);
   do {
     ivec2 place = quadtree_place(node);
@@ -211,13 +303,42 @@ void tally_adaptive(inout KernelTally tally, KernelAxes axes, int height, bool w
     box.low = ivec2(kernel_part(axes.x, place.x, parts), kernel_part(axes.y, place.y, parts));
     box.high = ivec2(kernel_part(axes.x, place.x + 1, parts), kernel_part(axes.y, place.y + 1, parts));
     box.weight = wanted ? 1.0 : 0.0;
-    bool mixed = tally_box(tally, box, table_sums(tally, box.high), table_sums(tally, ivec2(box.low.x, box.high.y)),
-                           table_sums(tally, ivec2(box.high.x, box.low.y)), table_sums(tally, box.low));
+    bool mixed = tally_box(tally, f, box, table_sums(f, box.high), table_sums(f, ivec2(box.low.x, box.high.y)),
+                           table_sums(f, ivec2(box.high.x, box.low.y)), table_sums(f, box.low));
     ivec2 extent = box.high - box.low;
     bool leaf = int(node.x) >= height || max(extent.x, extent.y) <= 2;
-    tally_texels(tally, box, mixed && leaf);
+    ivec2 taps = box_taps(extent);
+    int tap = mixed && leaf ? 0 : taps.x * taps.y - 1;
+    do {
+      tally_texel(tally, f, box, tap, mixed && leaf);
+    } while (++tap < taps.x * taps.y);
     node = mixed && !leaf ? quadtree_child(node) : quadtree_next(node);
   } while (wanted && !quadtree_done(node));
+}
+
+// --- The blocker search ---
+
+// What the bounds of the depths in a kernel tell (glsl/blocker_search.glsl), from the prepared thresholds.
+struct KernelBounds {
+  bool lit;
+  bool umbra;
+  float gap;      // no blocker in the kernel is farther from the receiver, metres
+  float deepest;  // stored in the kernel, metres
+};
+
+KernelBounds family_bounds(KernelFamily f, ShadowCursor cursor, ShadowKernel kernel) {
+  ShadowThresholds t = f.thresholds;
+  vec2 stored = kernel_depth_bounds(cursor, kernel);
+  float least = shadow_metres(cursor.view, stored.x);
+  float greatest = shadow_metres(cursor.view, stored.y);
+  vec2 plane = threshold_range(t.biased, kernel.low, kernel.high);
+  vec2 axis = threshold_range(t.axis, kernel.low, kernel.high);
+  KernelBounds bounds;
+  bounds.lit = f.unblocked || stored.x >= 1.0 || !threshold_nearer(t, least, max(plane.x, axis.x));
+  bounds.umbra = !f.unblocked && stored.y < 1.0 && threshold_nearer(t, greatest, max(plane.y, axis.y));
+  bounds.gap = t.gap.x + t.gap.y * (t.inverse ? least * axis.x : least + axis.x);
+  bounds.deepest = greatest;
+  return bounds;
 }
 
 #endif  // LIMN_SUB_KERNELS_GLSL

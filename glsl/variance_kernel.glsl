@@ -77,10 +77,22 @@ LIMN_FN float threshold_depth(ShadowThresholds t, float value) {
 
 LIMN_FN float threshold_quanta(ShadowThresholds t, float depth) { return max(depth - t.near, 0.0f) * t.quanta; }
 
+// Least and greatest value over a box of texels.
+LIMN_FN vec2 threshold_range(vec3 affine, vec2 low, vec2 high) {
+  vec2 reach = 0.5f * (high - low);
+  float middle = threshold_value(affine, 0.5f * (low + high));
+  float change = abs(affine.y) * reach.x + abs(affine.z) * reach.y;
+  return vec2(middle - change, middle + change);
+}
+
+// Whether `depth` metres are nearer than what a value stands for.
+LIMN_FN bool threshold_nearer(ShadowThresholds t, float depth, float value) {
+  return t.inverse ? depth * value < 1.0f : depth + value < 0.0f;
+}
+
 // Whether what is stored at a place, `depth` metres, blocks.
 LIMN_FN bool threshold_blocks(ShadowThresholds t, vec2 texel, float depth) {
-  float v = max(threshold_value(t.biased, texel), threshold_value(t.axis, texel));
-  return t.inverse ? depth * v < 1.0f : depth + v < 0.0f;
+  return threshold_nearer(t, depth, max(threshold_value(t.biased, texel), threshold_value(t.axis, texel)));
 }
 
 // Metres along the light's axis from what lies at a place and `depth` to the receiver.
@@ -185,24 +197,20 @@ struct KernelCone {
   float towards;  // its change per metre of gap; orthographic: 0
 };
 
+// Kernel at `gap` relative to the one at unit scale: its edges are apex + scale low and apex + scale high.
+LIMN_FN float kernel_cone_scale(KernelCone c, float gap) {
+  return gap / max(c.depth + gap * c.towards, 1e-6f * c.depth);
+}
+
 LIMN_FN KernelCone kernel_cone(ShadowView view, vec3 local, float towards, vec2 low, vec2 high, float gap) {
   KernelCone c;
   c.apex = float(view.info.z) * shadow_project_local(view, local).uv;
   c.depth = view.info.x == shadow_perspective ? local.z : 1.0f;
   c.towards = view.info.x == shadow_perspective ? towards : 0.0f;
-  float scale = gap / max(c.depth + gap * c.towards, 1e-6f * c.depth);
+  float scale = kernel_cone_scale(c, gap);
   c.low = (low - c.apex) / scale;
   c.high = (high - c.apex) / scale;
   return c;
-}
-
-// Share of a box of texels that lies in the kernel at `gap`.
-LIMN_FN float kernel_cone_share(KernelCone c, vec2 low, vec2 high, float gap) {
-  float scale = gap / max(c.depth + gap * c.towards, 1e-6f * c.depth);
-  vec2 a = max(low, c.apex + scale * c.low - vec2(0.5f));
-  vec2 b = min(high, c.apex + scale * c.high + vec2(0.5f));
-  vec2 inside = max(b - a, vec2(0.0f)) / (high - low);
-  return inside.x * inside.y;
 }
 
 // --- Quad-tree over a square of 2^height cells per side, walked without a stack (VSSM, algorithm 3) ---
@@ -260,8 +268,14 @@ LIMN_FN KernelAxis kernel_axis_whole(float low, float high, int size) {
   return axis;
 }
 
+// floor(a / b) for 0 <= a < 2^22, 0 < b < 2^10: exact, and unlike the division of integers it is one instruction for many
+// lanes.
+LIMN_FN int whole_quotient(int a, int b) { return int((float(a) + 0.5f) / float(b)); }
+
 // Where part i of `parts` nearly equal ones of the whole texels begins.
-LIMN_FN int kernel_part(KernelAxis axis, int i, int parts) { return axis.first + ((axis.last - axis.first) * i) / parts; }
+LIMN_FN int kernel_part(KernelAxis axis, int i, int parts) {
+  return axis.first + whole_quotient((axis.last - axis.first) * i, parts);
+}
 
 LIMN_END
 #endif  // LIMN_VARIANCE_KERNEL_GLSL

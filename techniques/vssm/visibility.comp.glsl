@@ -1,9 +1,8 @@
 // Variance soft shadow maps (Yang et al. 2010): percentage-closer soft shadows of which both steps, the mean blocker depth
 // and the share of light, come from a summed-area table of z and z^2.
 //
-// EARLY_OUT 0: none, 1: min-max pyramid. BLOCKERS_ADAPTIVE and VISIBILITY_ADAPTIVE: which subdivision. CONTACT 1: narrow
+// EARLY_OUT 1: what the bounds of the search kernel decide ends there. BLOCKERS_ADAPTIVE and VISIBILITY_ADAPTIVE: which subdivision. CONTACT 1: narrow
 // penumbrae from jittered bilinear texels.
-#include "glsl/blocker_search.glsl"
 #include "glsl/sampling.glsl"
 #include "glsl/sub_kernels.glsl"
 #include "glsl/visibility_main.glsl"
@@ -22,43 +21,110 @@ struct Contents {
   float texels;
 };
 
-void add_contents(inout Contents contents, ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap,
-                  bool blockers) {
-  KernelTally tally = kernel_tally(cursor, q, kernel, gap, kernel_depth_bounds(cursor, kernel).y);
-  KernelAxes axes = kernel_axes(kernel, tally.size, blockers);
+// Adds those of one view; the weight of its kernel goes to `weights`.
+void add_contents(inout Contents contents, inout float weights, KernelFamily f, float gap, float deepest, bool blockers,
+                  bool wanted) {
+  ShadowKernel kernel;
+  bool seen = family_kernel(f, gap, kernel) && wanted;
+  KernelTally tally = KernelTally(gap, kernel.low, kernel.high, 0.0, 0.0, vec4(0.0));
+  if (blockers) {
+    tally.low = floor(kernel.low);
+    tally.high = ceil(kernel.high);
+  }
+  f.thresholds.deepest = f.thresholds.inverse ? 1.0 / deepest : -deepest;
+  KernelAxes axes = kernel_axes(kernel, f.size, blockers);
   bool adaptive = blockers ? BLOCKERS_ADAPTIVE == 1 : VISIBILITY_ADAPTIVE == 1;
 #if VISIBILITY_ADAPTIVE
   int parts = adaptive ? 1 : blocker_cells;
 #else
   int parts = blockers ? blocker_cells : visibility_cells;
 #endif
-  bool open = tally_uniform(tally, axes, parts, blockers ? 0 : 1, adaptive);
+  bool open = tally_uniform(tally, f, axes, parts, blockers ? 0 : 1, adaptive, seen);
 #if VISIBILITY_ADAPTIVE
-  tally_adaptive(tally, axes, tree_height, open);
+  tally_adaptive(tally, f, axes, tree_height, open);
 #endif
   tally_pooled(tally);
   vec2 extent = kernel.high - kernel.low;
   float share = kernel.weight / (extent.x * extent.y);
-  contents.blocked += share * tally.blocked;
-  contents.gap += share * tally.gap;
-  contents.texels += tally.blocked;
+  weights += seen ? kernel.weight : 0.0;
+  contents.blocked += seen ? share * tally.blocked : 0.0;
+  contents.gap += seen ? share * tally.reach : 0.0;
+  contents.texels += seen ? tally.blocked : 0.0;
 }
 
-Contents kernel_contents(inout ShadowCursor cursor, VisibilityQuery q, float gap, bool blockers, bool wanted) {
+// The light's views in turn.
+Contents kernel_contents(inout ShadowCursor cursor, VisibilityQuery q, inout KernelFamily f, float gap, float deepest,
+                         bool blockers, bool wanted) {
   Contents contents = Contents(0.0, 0.0, 0.0);
   float weights = 0.0;
+#if SIMILAR_KERNELS
+  add_contents(contents, weights, f, gap, deepest, blockers, wanted);
+#else
   uint faces = wanted ? shadow_face_count(q.maps.info.y) : 0u;
   uint face = 0u;
   do {
-    ShadowKernel kernel;
-    bool seen = shadow_kernel_in_face(cursor, q, face, gap, kernel) && wanted;
-    weights += seen ? kernel.weight : 0.0;
-    if (seen) add_contents(contents, cursor, q, kernel, gap, blockers);
+    if (face != cursor.face) {
+      cursor = shadow_cursor_at(q, face);
+      f = kernel_family(cursor, q);
+    }
+    add_contents(contents, weights, f, gap, deepest, blockers, wanted);
   } while (++face < faces);
+#endif
   float inverse = weights > 0.0 ? 1.0 / weights : 0.0;
   contents.blocked *= inverse;
   contents.gap *= inverse;
   return contents;
+}
+
+struct Search {
+  bool lit;
+  bool umbra;
+  float gap;      // of the search kernel, metres
+  float deepest;  // stored in it
+};
+
+// The search kernel starts at the near plane; `search_rounds` times it moves to the nearest depth that was found in it.
+Search search_kernel(inout ShadowCursor cursor, VisibilityQuery q, inout KernelFamily f) {
+  Search search;
+  search.gap = shadow_near_gap(cursor, q);
+  int round = 0;
+  bool open;
+  do {
+    search.lit = true;
+    search.umbra = true;
+    search.deepest = 0.0;
+    float widest = 0.0;
+    ShadowKernel kernel;
+#if SIMILAR_KERNELS
+    family_kernel(f, search.gap, kernel);
+    KernelBounds bounds = family_bounds(f, cursor, kernel);
+    search.lit = bounds.lit;
+    search.umbra = bounds.umbra;
+    search.deepest = bounds.deepest;
+    widest = bounds.gap;
+#else
+    uint face = 0u;
+    do {
+      if (face != cursor.face) {
+        cursor = shadow_cursor_at(q, face);
+        f = kernel_family(cursor, q);
+      }
+      bool seen = family_kernel(f, search.gap, kernel);
+      KernelBounds bounds = family_bounds(f, cursor, kernel);
+      search.lit = search.lit && (bounds.lit || !seen);
+      search.umbra = search.umbra && (bounds.umbra || !seen);
+      search.deepest = max(search.deepest, seen ? bounds.deepest : 0.0);
+      widest = max(widest, seen ? bounds.gap : 0.0);
+    } while (++face < shadow_face_count(q.maps.info.y));
+#endif
+#if !EARLY_OUT
+    search.lit = f.unblocked;
+    search.umbra = false;
+#endif
+    open = !(search.lit || search.umbra);
+    search.gap = open ? clamp(widest, 0.0, search.gap) : search.gap;
+  } while (open && ++round <= search_rounds);
+  return search;
 }
 
 // Where SATs are imprecise and a few texels are all there is: 3 x 3 of them, bilinear and jittered.
@@ -77,33 +143,43 @@ float contact_visibility(ShadowCursor cursor, VisibilityQuery q, float gap, vec2
 }
 
 // Whether the kernel at `gap` is too narrow for the table.
-bool contact(ShadowCursor cursor, VisibilityQuery q, float gap) {
+bool contact(KernelFamily f, float gap) {
   ShadowKernel kernel;
-  bool seen = shadow_kernel(cursor.view, q.light, q.position, gap, true, kernel);
+  bool seen = family_kernel(f, gap, kernel);
   return seen && max(kernel.high.x - kernel.low.x, kernel.high.y - kernel.low.y) < contact_texels;
 }
 
 float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
+  KernelFamily f = kernel_family(cursor, q);
+#if CONTACT
   ShadowCursor home = cursor;
+#if !SIMILAR_KERNELS
+  KernelFamily home_kernels = f;
+#endif
+#endif
   // Step 1: the search kernel, and what its bounds decide.
-  BlockerSearch search = blocker_search(cursor, q, search_rounds);
-  bool open = search.answer == search_partial;
+  Search search = search_kernel(cursor, q, f);
+  bool open = !(search.lit || search.umbra);
   bool narrow = false;
-  float v = search.answer == search_umbra ? 0.0 : 1.0;
+  float v = search.umbra && !search.lit ? 0.0 : 1.0;
   float gap = search.gap;
   // Steps 2 to 4: first the distance of the blockers, then their share of the penumbra kernel, which is taken anew where
   // the blockers in it turn out to be much nearer than those that gave its size.
   int pass = 0;
   do {
     bool searching = pass == 0;
-    Contents contents = kernel_contents(cursor, q, gap, searching, open);
+    Contents contents = kernel_contents(cursor, q, f, gap, search.deepest, searching, open);
     float found = clamp(contents.gap / max(contents.blocked, 1e-30), 0.0, gap);
     if (open && !searching) v = clamp(1.0 - contents.blocked, 0.0, 1.0);
     bool none = contents.texels < (searching ? 0.5 : 1e-3);
     open = open && !none && (searching || found < 0.8 * gap);
     gap = open ? found : gap;
 #if CONTACT
-    narrow = narrow || (open && contact(home, q, gap));
+#if SIMILAR_KERNELS
+    narrow = narrow || (open && contact(f, gap));
+#else
+    narrow = narrow || (open && contact(home_kernels, gap));
+#endif
     open = open && !narrow;
 #endif
   } while (open && ++pass <= passes);

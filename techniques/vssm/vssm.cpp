@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "core/scene/scene.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
 
@@ -13,21 +14,23 @@ using namespace limn;
 
 constexpr const char* subdivisions[] = {"uniform", "adaptive", "mixed"};
 constexpr const char* poolings[] = {"each", "pooled"};
+constexpr const char* switches[] = {"off", "on"};
 constexpr const char* contacts[] = {"off", "jittered"};
 
 constexpr Parameter parameters[] = {
     choice(
         "subdivision", 0, subdivisions,
         "Of kernels: equal parts, a quad-tree, or equal parts for blockers and a quad-tree for visibility"),
-    integer("blocker_cells", 4, {1, 32}, "per side", "Equal parts of the blocker search").quality(),
-    integer("passes", 2, {1, 8}, "passes", "Of the blocker search").quality(),
-    integer("visibility_cells", 4, {1, 32}, "per side", "Equal parts of the penumbra kernel, besides its rim")
+    integer("blocker_cells", 3, {1, 30}, "per side", "Equal parts of the blocker search").quality(),
+    integer("passes", 1, {1, 8}, "passes", "Of the blocker search").quality(),
+    integer("visibility_cells", 3, {1, 30}, "per side", "Equal parts of the penumbra kernel, besides its rim")
         .quality(),
     integer("tree_height", 3, {1, 5}, "levels", "Of the quad-tree").quality(),
     choice("chebyshev", 0, poolings, "Evaluate Chebyshev's inequality for each sub-kernel or once for all"),
     integer("search_rounds", 3, {0, 8}, "rounds",
             "How often the minimum depth in the search kernel narrows it; 0: as published"),
-    choice("contact", 1, contacts, "Narrow penumbrae: from the table, or 3 x 3 jittered bilinear texels"),
+    choice("early_out", 1, switches, "Answer at once where bounds of the depths in the search kernel decide"),
+    choice("contact", 0, contacts, "Narrow penumbrae: from the table, or 3 x 3 jittered bilinear texels"),
     real("contact_texels", 3, {1, 64}, "texels", "Width of the kernels that count as narrow"),
     integer("sat_bits", 16, {8, 24}, "bits", "Of a depth in the summed-area table"),
     integer("sat_words", 2, {1, 2}, "32-bit words", "Per moment; 1: squares rounded, as published"),
@@ -52,6 +55,16 @@ bool needsWideSums(const ParameterValues& p) {
   return side * side * ((int64_t{1} << p.integer("sat_bits")) - 1) > 0xffffffffLL;
 }
 
+/// Whether every light has one view, in which its kernels at all distances are scaled copies of each other:
+/// not so where several faces cut them, nor where a square that faces the receiver is seen at an angle.
+bool similarKernels(const TechniqueInputs& inputs, const TermRequest& request) {
+  return std::ranges::all_of(request.lights, [&](uint32_t light) {
+    const uint32_t type = inputs.pose.lights[light].info.x;
+    return inputs.shadowMaps.layersOf(light, {.size = inputs.parameters.integer("shadow_map_size")}) == 1 &&
+           (type == glsl::light_rectangle || type == glsl::light_directional);
+  });
+}
+
 class Vssm : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
@@ -62,7 +75,9 @@ class Vssm : public Technique {
                                {{"POOLED", std::to_string(p.choice("chebyshev"))},
                                 {"BLOCKERS_ADAPTIVE", subdivision == 1 ? "1" : "0"},
                                 {"VISIBILITY_ADAPTIVE", subdivision == 0 ? "0" : "1"},
+                                {"SIMILAR_KERNELS", similarKernels(inputs, request) ? "1" : "0"},
                                 {"WIDE_Z", needsWideSums(p) ? "1" : "0"},
+                                {"EARLY_OUT", std::to_string(p.choice("early_out"))},
                                 {"CONTACT", std::to_string(p.choice("contact"))}});
     const shadow::SummedAreaTable table = inputs.shadowMaps.summedAreaTable(
         pass.maps, {.bits = p.integer("sat_bits"), .words = p.integer("sat_words")});

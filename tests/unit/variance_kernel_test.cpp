@@ -90,6 +90,62 @@ TEST(VarianceKernel, ThresholdsAreThoseOfShadowKernels) {
   }
 }
 
+TEST(VarianceKernel, ConesGiveTheKernelsOfEveryGap) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  for (int i = 0; i < 20000; ++i) {
+    ShadowView view{};
+    const bool perspective = i % 2 == 0;
+    view.origin = vec4(0, 0, 0, 0.5f);
+    view.axis_x = vec4(1, 0, 0, perspective ? 0.625f : 0.1f);
+    view.axis_y = vec4(0, 1, 0, 0);
+    view.axis_z = vec4(0, 0, 1, 20);
+    view.info = uvec4(perspective ? shadow_perspective : shadow_orthographic, 0, 256, 0);
+    const vec3 receiver(4 * uniform(random) - 2, 4 * uniform(random) - 2, 8 + uniform(random));
+    LightView light{};
+    light.centre = vec3(-receiver.x, -receiver.y, -receiver.z) / receiver.z;
+    if (!perspective) light.centre = vec3(0, 0, -1);
+    light.cone = !perspective;
+    light.cap = 0.02f * uniform(random);
+    light.side_u = vec3(perspective ? 0.1f : 1, 0, 0);
+    light.side_v = vec3(0, perspective ? 0.2f : 1, 0);
+    light.low = vec2(-0.5f, -0.5f * uniform(random));
+    light.high = vec2(0.5f);
+    const auto kernelAt = [&](float gap) {
+      ShadowKernel kernel{};
+      EXPECT_TRUE(shadow_kernel(view, light, receiver, gap, true, kernel));
+      return kernel;
+    };
+    const ShadowKernel nominal = kernelAt(4);
+    const KernelCone cone = kernel_cone(view, receiver, light.centre.z, nominal.low, nominal.high, 4);
+    const float gap = 7 * uniform(random), scale = kernel_cone_scale(cone, gap);
+    const ShadowKernel expected = kernelAt(gap);
+    const float near = 1e-4f * (1 + expected.high.x - expected.low.x) + 1e-3f;
+    for (int axis = 0; axis < 2; ++axis) {
+      EXPECT_NEAR(cone.apex[axis] + scale * cone.low[axis], expected.low[axis], near);
+      EXPECT_NEAR(cone.apex[axis] + scale * cone.high[axis], expected.high[axis], near);
+    }
+  }
+}
+
+TEST(VarianceKernel, RangesBoundTheThresholdsOfABox) {
+  const vec3 affine(0.3f, -0.02f, 0.05f);
+  const vec2 range = threshold_range(affine, vec2(10, 20), vec2(14, 30));
+  EXPECT_NEAR(range.x, threshold_value(affine, vec2(14, 20)), 1e-6f);
+  EXPECT_NEAR(range.y, threshold_value(affine, vec2(10, 30)), 1e-6f);
+}
+
+TEST(VarianceKernel, QuotientsOfWholeNumbersAreExact) {
+  std::mt19937 random(13);
+  for (int i = 0; i < 200000; ++i) {
+    const int a = static_cast<int>(random() % (1U << 22)), b = 1 + static_cast<int>(random() % 1023);
+    ASSERT_EQ(whole_quotient(a, b), a / b);
+  }
+  for (int b = 1; b < 40; ++b) {
+    for (int a = 0; a < 2000; ++a) ASSERT_EQ(whole_quotient(a, b), a / b);
+  }
+}
+
 /// Bunnell's array: preorder, `child` is the next entry, `next` skips what lies below.
 void listTree(uvec2 node, unsigned height, std::vector<uvec2>& nodes) {
   nodes.push_back(node);
