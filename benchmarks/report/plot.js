@@ -73,7 +73,8 @@ export function drawPlot(container, {curves, rows, metric, time, level, onCurren
   const floor = floors.length ? Math.max(...floors) : null;
   const levels = [floor, level].filter((value) => value > 0);
   const positive = points.map((point) => point.error).filter((error) => error > 0);
-  const x = scaleLog(logDomain(points.map((point) => point.ms)), [MARGIN.left, width - MARGIN.right]);
+  const spreads = points.flatMap((point) => time.spread(point.row) ?? []).filter((ms) => ms > 0);
+  const x = scaleLog(logDomain([...points.map((point) => point.ms), ...spreads]), [MARGIN.left, width - MARGIN.right]);
   const y = scaleLog(logDomain([...positive, ...levels, ...(positive.length ? [] : [1])]),
     [height - MARGIN.bottom, MARGIN.top]);
   const place = (error) => y(error > 0 ? error : y.domain()[0]);  // no error at all: the lower edge
