@@ -1,6 +1,6 @@
 // The setting that is looked at: what it is, what it costs, how wrong it is, and its pictures.
 import {breakable, el, milliseconds, number} from "./dom.js";
-import {METRICS, TIMES, isNumber} from "./metrics.js";
+import {METRICS, TIMES, errorText, isNumber} from "./metrics.js";
 import {ownName, settings} from "./series.js";
 
 /** The picture with the magnified windows drawn on it. */
@@ -23,13 +23,13 @@ function facts(row) {
     if (isNumber(ms)) entries.push([`time, ${time.label}`, milliseconds(ms)]);
   }
   for (const metric of METRICS) {
-    const error = metric.read(row);
-    if (isNumber(error)) entries.push([metric.label, number(error)]);
+    if (isNumber(metric.read(row))) entries.push([metric.label, errorText(metric, row)]);
   }
   if (isNumber(row.memory_bytes)) entries.push(["memory", `${number(row.memory_bytes / 2 ** 20)} MiB`]);
   return el("dl", {}, entries.map(([name, value]) => el("div", {}, el("dt", {}, breakable(name)), el("dd", {}, value))));
 }
 
+/** All but its name. */
 export function detail(page, table, row) {
   const pictures = [
     picture(page, row.picture, table, row.name, `Picture by ${row.name}`),
@@ -38,7 +38,6 @@ export function detail(page, table, row) {
     picture(page, table.reference.picture, table, "reference", "Picture of the reference"),
   ].filter(Boolean);
   return [
-    el("h3", {}, breakable(row.name)),
     pictures.length ? el("div", {class: "pictures"}, pictures)
       : el("p", {class: "note"}, "No pictures were kept; a suite with pictures = true keeps them."),
     row.failure ? el("p", {}, `Failed: ${row.failure}`) : facts(row),

@@ -1,7 +1,7 @@
 // Pictures at equal time and at equal error, as comparisons are printed: the same magnified windows of each technique.
 import {breakable, el, milliseconds, number} from "./dom.js";
 import {framed} from "./detail.js";
-import {measured} from "./metrics.js";
+import {errorText, measured} from "./metrics.js";
 import {ownName, settings} from "./series.js";
 import {swatch} from "./marks.js";
 
@@ -41,13 +41,14 @@ function magnified(page, uris, text) {
     alt: `${text}, window ${i + 1}`}));
 }
 
-function strip(page, table, points) {
+function strip(page, table, points, metric) {
   const reference = table.reference.windows.some((index) => index >= 0)
     ? el("figure", {}, magnified(page, table.reference.windows, "Reference"),
         el("figcaption", {}, el("strong", {}, "reference"))) : null;
-  const shown = points.map(({curve, row, ms, error}) => el("figure", {}, magnified(page, row.windows, row.name),
-    el("figcaption", {}, el("strong", {}, swatch(curve), breakable(curve.name)), Object.entries(settings(row)).map(([name, value]) =>
-      el("span", {}, breakable(`${ownName(row, name)} ${value}`))), el("span", {}, `${milliseconds(ms)}, error ${number(error)}`))));
+  const shown = points.map(({curve, row, ms}) => el("figure", {}, magnified(page, row.windows, row.name),
+    el("figcaption", {}, el("strong", {}, swatch(curve), breakable(curve.name)),
+      Object.entries(settings(row)).map(([name, value]) => el("span", {}, breakable(`${ownName(row, name)} ${value}`))),
+      el("span", {}, `${milliseconds(ms)}, error ${errorText(metric, row)}`))));
   return el("div", {class: "strip"}, reference, shown);
 }
 
@@ -69,12 +70,12 @@ function equalRow(page, table, curves, metric, time, kind) {
   const body = el("div");
   const show = (target, input = null) => {
     const {found, missing} = nearest(curves, metric, time, key, target);
-    found.sort((a, b) => (key === "ms" ? a.error - b.error : a.ms - b.ms));
+    found.sort((a, b) => (key === "ms" ? a.bound - b.bound : a.ms - b.ms));
     const text = `${kind.name(metric, time)} ${kind.text(target)}`;
     if (input) input.setAttribute("aria-valuetext", kind.text(target));
     body.replaceChildren(el("p", {class: "note", "aria-live": "polite"},
       `${text}, within a factor of ${NEAR}, ${key === "ms" ? "least error" : "quickest"} first.` +
-      (missing.length ? ` Not near it: ${missing.join(", ")}.` : "")), strip(page, table, found));
+      (missing.length ? ` Not near it: ${missing.join(", ")}.` : "")), strip(page, table, found, metric));
   };
   const target = commonTarget(curves, metric, time, key);
   show(target);
@@ -88,8 +89,8 @@ const KINDS = [
 
 /** Every setting, for tables that time nothing. */
 function allRows(page, table, curves, metric) {
-  const points = curves.flatMap((curve) => curve.rows.map((row) => ({curve, row, ms: null, error: metric.read(row)})));
-  return el("div", {}, el("h3", {}, "Every setting"), strip(page, table, points));
+  const points = curves.flatMap((curve) => curve.rows.map((row) => ({curve, row, ms: null})));
+  return el("div", {}, el("h3", {}, "Every setting"), strip(page, table, points, metric));
 }
 
 export function equalRows(page, table, curves, metric, time) {

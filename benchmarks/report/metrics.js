@@ -1,4 +1,5 @@
 // What is measured of a row, on which axis it goes, and who is on the Pareto front.
+import {number} from "./dom.js";
 
 const share = (part, whole) => (whole > 0 ? part / whole : null);
 const floorOf = (metrics) => metrics?.noise_floor ?? null;
@@ -45,18 +46,25 @@ export function knownMetrics(rows) {
   return METRICS.filter((metric) => rows.some((row) => isNumber(metric.read(row))));
 }
 
-/** Rows with an error and a time, as {row, error, ms}. */
+/** An error, or the bound that the reference's noise sets. */
+export function errorText(metric, row) {
+  const value = metric.read(row), floor = metric.floor?.(row);
+  return isNumber(value) && floor > value ? `<${number(floor)}` : number(value);
+}
+
+/** Rows with an error and a time, as {row, error, ms, bound}; the bound is the error, or the noise where that is larger. */
 export function measured(rows, metric, time) {
-  return rows.map((row) => ({row, error: metric.read(row), ms: time.read(row)}))
+  return rows.map((row) => ({row, error: metric.read(row), ms: time.read(row),
+                             bound: Math.max(metric.read(row) ?? NaN, metric.floor?.(row) ?? 0)}))
     .filter((point) => isNumber(point.error) && isNumber(point.ms) && point.ms > 0);
 }
 
-/** The rows that nobody beats in both error and time, quickest first. */
+/** The rows that nobody beats in both error and time, quickest first; errors below the noise are no difference. */
 export function paretoFront(points) {
   const front = [];
-  for (const point of [...points].sort((a, b) => a.ms - b.ms || a.error - b.error)) {
+  for (const point of [...points].sort((a, b) => a.ms - b.ms || a.bound - b.bound)) {
     const last = front.at(-1);
-    if (!last || point.error < last.error || (point.error === last.error && point.ms === last.ms)) front.push(point);
+    if (!last || point.bound < last.bound || (point.bound === last.bound && point.ms === last.ms)) front.push(point);
   }
   return front;
 }

@@ -4,8 +4,8 @@ import {scaleLog} from "d3-scale";
 import {create, select} from "d3-selection";
 import {line as polyline} from "d3-shape";
 
-import {milliseconds, number} from "./dom.js";
-import {measured, paretoFront} from "./metrics.js";
+import {milliseconds} from "./dom.js";
+import {errorText, measured, paretoFront} from "./metrics.js";
 import {colour, dashes, marker} from "./marks.js";
 import {settingsText} from "./series.js";
 
@@ -99,7 +99,7 @@ export function drawPlot(container, {curves, rows, metric, time, level, onCurren
     .attr("transform", (point) => `translate(${x(point.ms)},${place(point.error)})`)
     .attr("role", "button").attr("tabindex", -1)
     .attr("aria-label", (point) => `${point.curve.name} ${settingsText(point.row)}: ${milliseconds(point.ms)}, ` +
-      `${metric.label} ${number(point.error)}${front.includes(point) ? ", on the Pareto front" : ""}`);
+      `${metric.label} ${errorText(metric, point.row)}${front.includes(point) ? ", on the Pareto front" : ""}`);
   marks.each(function (point) {
     const spread = time.spread(point.row);
     if (spread?.[0] > 0)

@@ -1,6 +1,6 @@
 // One subject (scene, camera, light, environment): its chart, its pictures and its tables. A table of the bench is
 // shown at a time, so that terms, sizes, modes and renderers never mix.
-import {chooser, el} from "./dom.js";
+import {breakable, chooser, el} from "./dom.js";
 import {METRICS, TIMES, isNumber, knownMetrics} from "./metrics.js";
 import {SEPARATION_FLOOR, curveOf, curves as curvesOf} from "./series.js";
 import {commonTarget, equalRows, nearest} from "./equal.js";
@@ -11,8 +11,8 @@ import {drawSpectrum} from "./spectrum.js";
 import {swatch} from "./marks.js";
 
 export function subjectName({scene, camera, light, light_size: size, environment, time}) {
-  return [scene, camera && `camera ${camera}`, light && `light ${light}`, size && `light size ${size}`, environment && `environment ${environment}`,
-    time && `${time} s`].filter(Boolean).join(", ");
+  return [scene, camera && `camera ${camera}`, light && `light ${light}`, size && `light size ${size}`,
+    environment && `environment ${environment}`, time && `${time} s`].filter(Boolean).join(", ");
 }
 
 /** Size, mode and renderer: what a table is measured under. */
@@ -81,7 +81,9 @@ export class Section {
     const {page, table, curves, metric, time} = this;
     this.showTools();
     this.chart = el("div", {class: "chart"});
-    this.detail = el("div", {class: "detail", "aria-live": "polite"});
+    this.name = el("h3", {"aria-live": "polite"});
+    this.facts = el("div");
+    this.detail = el("div", {class: "detail"}, this.name, this.facts);
     this.spectrum = el("div", {class: "chart"});
     const legend = el("ul", {class: "legend"}, curves.map((curve) => el("li", {}, swatch(curve), curve.name)));
     const spp = table.reference.noise > 0 ? `to ${100 * table.reference.noise} % noise` : `${table.reference.spp} samples per pixel`;
@@ -92,12 +94,14 @@ export class Section {
       el("p", {class: "note"}, `Term: ${table.term}. ${conditions(table)}. Reference: ${spp}${noise}. ${metric.label}: ${metric.help}.`),
       el("div", {class: "columns"},
         el("div", {}, this.chart, legend,
-          el("p", {class: "note"}, "Ringed points lie on the Pareto front. Hover, touch or focus a point to see it; bars are quartiles of the time.")),
+          el("p", {class: "note"}, "Ringed points lie on the Pareto front; errors below the reference's noise count as equal. " +
+            "Hover, touch or focus a point to see it; bars are quartiles of the time.")),
         this.detail,
         el("div", {}, el("h3", {}, "Frequency content of the error"), this.spectrum,
-          el("p", {class: "note"}, "Strong: the setting shown; the others at equal time. Noise is level, banding stands at the left."))),
+          el("p", {class: "note"},
+            "Strong: the setting shown; the others at equal time. Noise is level, banding stands at the left."))),
       ...equalRows(page, table, curves, metric, time),
-      el("h3", {}, "Tables"), errorTable(table, metric, time, (row) => { this.select(row); this.detail.scrollIntoView({block: "nearest"}); }),
+      el("h3", {}, "Tables"), errorTable(table, metric, time, (row) => this.visit(row)),
       framesPerSecond(others), ...(passTable(table) ?? []),
     ].filter(Boolean));
     this.drawCharts();
@@ -114,10 +118,17 @@ export class Section {
     if (focused) this.chart.querySelector(".current")?.focus();
   }
 
+  /** From a table: the setting may be out of sight. */
+  visit(row) {
+    this.select(row);
+    this.detail.scrollIntoView({block: "nearest"});
+  }
+
   select(row) {
     this.current = row;
     this.plot.mark(row);
-    this.detail.replaceChildren(...detail(this.page, this.table, row));
+    this.name.replaceChildren(...breakable(row.name));
+    this.facts.replaceChildren(...detail(this.page, this.table, row));
     for (const line of this.body.querySelectorAll("tr[data-key]")) line.classList.toggle("current", line.dataset.key === row.key);
     const {curves, metric, time} = this;
     const own = curveOf(curves, row);

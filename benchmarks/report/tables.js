@@ -1,6 +1,6 @@
 // The same numbers as tables: errors, frames per second, milliseconds per pass.
 import {el, number} from "./dom.js";
-import {TIMES, isNumber, knownMetrics, lowFrequencyShare, measured, paretoFront} from "./metrics.js";
+import {TIMES, errorText, isNumber, knownMetrics, lowFrequencyShare, measured, paretoFront} from "./metrics.js";
 import {settingsText} from "./series.js";
 import {percent, sparkline} from "./spectrum.js";
 
@@ -18,12 +18,6 @@ const text = (value) => el("td", {class: "text"}, value);
 function nameCell(row, onCurrent) {
   const name = row.title || row.technique;
   return el("th", {scope: "row"}, onCurrent ? el("button", {type: "button", click: () => onCurrent(row)}, name) : name);
-}
-
-/** An error, or the bound that the reference's noise sets. */
-function errorText(metric, row) {
-  const value = metric.read(row), floor = metric.floor?.(row);
-  return isNumber(value) && floor > value ? `<${number(floor)}` : number(value);
 }
 
 function ratioText(ratio) {
