@@ -168,6 +168,40 @@ TEST_F(VarianceTechniqueTest, ReceiversSeenEdgeOnByTheLightAreFinite) {
   answer(s, {}, "savsm");
 }
 
+TEST_F(VarianceTechniqueTest, FacesOfAHemicubeCutNoHolesOrPatchesIntoShadows) {
+  // A box of walls so near the light that its maps are a hemicube, and a panel whose shadow falls across
+  // their edges.
+  Planes s(0.5f, 1.8f);
+  s.addPlane(2, at(1.5f, 1, 0) * glm::rotate(glm::mat4(1), glsl::pi / 2, {0, 0, 1}));
+  s.addPlane(0.3f, at(0.7f, 1.1f, 0));
+  s.camera = scene::lookAt({-3, 2, 4}, {0.7f, 0.7f, 0}, 0.8f);
+  const Answer truth = answer(s, {{"samples", "256"}}, "sampled_area_light");
+  for (const Settings& settings : variants) {
+    const Answer v = answer(s, settings);
+    double squares = 0;
+    int shadowed = 0, patches = 0;
+    for (size_t i = 0; i < v.instance.size(); ++i) {
+      if (v.instance[i] != 0 && v.instance[i] != 1) continue;
+      const float expected = truth.lights[0][i], error = v.lights[0][i] - expected;
+      patches += std::abs(error) > 0.7f;
+      if (expected > 0.98f) continue;
+      squares += double{error} * error;
+      ++shadowed;
+    }
+    EXPECT_GT(shadowed, 200);
+    EXPECT_LT(std::sqrt(squares / shadowed), 0.1) << settings.begin()->second;
+    EXPECT_LT(patches, 10) << settings.begin()->second;
+  }
+}
+
+TEST_F(VarianceTechniqueTest, EarlyOutsChangeNextToNothing) {
+  Planes s;
+  s.addPlane(0.5f, at(0, 1, 0));
+  const Answer with = answer(s, {{"early_out", "on"}}), without = answer(s, {{"early_out", "off"}});
+  for (size_t i = 0; i < with.instance.size(); ++i)
+    ASSERT_NEAR(with.lights[0][i], without.lights[0][i], 1.f / 255) << i;
+}
+
 TEST_F(VarianceTechniqueTest, MapsOfAllSizesWorkOrAreRefusedInOneLine) {
   Planes s;
   s.addPlane(0.5f, at(0, 1, 0));
