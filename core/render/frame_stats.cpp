@@ -75,7 +75,8 @@ Quartiles quartiles(std::vector<double> samples) {
 
 FrameStats measure(Renderer& renderer, int frames, int warmup) {
   FrameStats stats = renderer.describe();
-  for (int i = 0; i < warmup; ++i) renderer.render();
+  // Without any frame there would be no graph to describe.
+  for (int i = 0; i < std::max(warmup, frames > 0 ? 0 : 1); ++i) renderer.render();
   renderer.finish();
   std::vector<double> wall;
   for (int i = 0; i < frames; ++i) wall.push_back(frameMilliseconds(renderer, frame::Timing::off));
