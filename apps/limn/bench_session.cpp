@@ -67,8 +67,9 @@ bench::CostSplit costSplit(const render::FrameStats& stats) {
   for (const render::PassStats& pass : stats.passes) {
     double& part = pass.technique == "core"     ? split.rest
                    : pass.technique != "shadow" ? split.technique
-                   : pass.name == "shadow maps" ? split.maps
-                                                : split.filters;
+                   : pass.name.starts_with("shadow maps")  // of every batch
+                       ? split.maps
+                       : split.filters;
     part += pass.ms.median;
   }
   return split;
