@@ -266,12 +266,19 @@ std::set<std::string> finishedRows(const fs::path& file) {
 
 bench::Summary runSuite(const fs::path& suite, const fs::path& out, const BackendOptions& backend,
                         const std::vector<std::string>& filters, bench::Shard shard) {
-  const auto cases = bench::selectCases(bench::readSuite(suite).cases, filters, shard);
+  const bench::Suite asked = bench::readSuite(suite);
+  const auto cases = bench::selectCases(asked.cases, filters, shard);
   if (cases.empty())
     throw UsageError(fmt::format("suite {} has no case that fits the filter", suite.string()));
   createFolder(out);
   const fs::path file = out / "results.jsonl";
   const std::set<std::string> before = finishedRows(file);
+  if (asked.minutes > 0)
+    fmt::print(
+        stderr,
+        "limn: suite {} takes about {} minutes in all on 2 cores without a GPU; {} of its {} cases are asked "
+        "for, the folder holds {} rows\n",
+        asked.name, asked.minutes, cases.size(), asked.cases.size(), before.size());
   WorkerReport report;
   std::vector<bench::Case> left = cases;
   while (!left.empty()) {

@@ -18,5 +18,6 @@ Action addCompareCommand(CLI::App& command);
 Action addBenchCommand(CLI::App& command);
 Action addStressCommand(CLI::App& command);
 Action addReportCommand(CLI::App& command);
+Action addReproductionCommand(CLI::App& command);
 
 }  // namespace limn::app

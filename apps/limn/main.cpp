@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
   add("bench", "Run a suite: error and time of many settings, as tables and a report", addBenchCommand);
   add("stress", "Run every technique on its stability cases: pass, degraded or refused", addStressCommand);
   add("report", "Write the tables and the report of finished benches anew", addReportCommand);
+  add("reproduction", "The thesis's ratios beside those of bench results, as a page", addReproductionCommand);
 
   return guarded([&] {
     if (argc > 1 && argv[1][0] != '-') checkCommand(limn, argv[1]);

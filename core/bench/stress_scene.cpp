@@ -115,8 +115,9 @@ scene::Scene stressed(scene::Scene scene, StressChange change, double amount) {
       break;
     case StressChange::depthRange: {
       const LightRay ray = firstLight(scene, pose);
-      addTriangles(scene,
-                   square(centre + value * radius * ray.direction, ray.direction, 0.1f * value * radius));
+      // A thousandth wide as the light sees them, less than a texel: it is the range alone that is difficult.
+      for (const float distance : {radius / std::sqrt(value), radius * std::sqrt(value)})
+        addTriangles(scene, square(ray.from + distance * ray.direction, ray.direction, 5e-4f * distance));
       break;
     }
     case StressChange::contact:

@@ -1,6 +1,10 @@
 // A bench suite: which questions are asked of which techniques. Read from TOML:
 //
 //     name = "quick"
+//     minutes = 2                 # what the whole suite takes on 2 cores without a GPU; said before it
+//     starts include = ["ch5.toml"]      # the cases of other suites, files beside this one; then scenes and
+//     techniques may be
+//                                 # missing
 //     sizes = ["256x256"]         # of the pictures whose error is measured
 //     time_size = "1024x768"      # of the timed frames; default: as the pictures
 //     frames = 20                 # timed frames
@@ -94,7 +98,9 @@ LIMN_API std::string rowKey(const Case& c, std::string_view renderer);
 
 struct Suite {
   std::string name;
-  std::vector<Case> cases;  ///< in the order of the file, cases of one question side by side
+  double minutes = 0;  ///< 0: not said
+  std::vector<Case>
+      cases;  ///< included ones first, each once; then in the order of the file, one question side by side
 };
 
 /// Throws UsageError "FILE:LINE:COLUMN: ..." for syntax, unknown keys, wrong types and values.

@@ -289,10 +289,29 @@ void addCases(const Case& base, const std::vector<SweptTechnique>& techniques, c
   }
 }
 
-Suite buildSuite(const toml::table& root, const std::string& file) {
-  const Section suite(file, root, "the suite",
-                      {"name", "sizes", "time_size", "frames", "warmup", "modes", "term", "reference",
-                       "separation_floor", "pictures", "scenes", "techniques"});
+Suite parse(std::string_view text, const std::string& file, bool mayInclude);
+
+/// The cases of other suites, files beside this one that include none themselves.
+std::vector<Case> includedCases(const Section& suite, bool mayInclude) {
+  std::vector<Case> cases;
+  if (!mayInclude && suite.find("include") != nullptr)
+    suite.failAt(*suite.find("include"), "an included suite includes others; one level is enough");
+  for (const std::string& name : suite.texts("include", {})) {
+    const std::filesystem::path path = std::filesystem::path(suite.file()).parent_path() / name;
+    if (std::filesystem::path(name).filename() != name)
+      suite.failAt(*suite.find("include"),
+                   fmt::format("'{}' is not the name of a file beside the suite", name));
+    const Suite included = parse(readTextFile(path, 1 << 24), path.string(), false);
+    cases.insert(cases.end(), included.cases.begin(), included.cases.end());
+  }
+  std::set<std::string> keys;
+  std::erase_if(cases, [&](const Case& c) { return !keys.insert(rowKey(c, "")).second; });
+  return cases;
+}
+
+/// The scenes and techniques of the file itself.
+void addOwnCases(const Section& suite, std::vector<Case>& cases) {
+  const std::string& file = suite.file();
   Case base;
   base.frames = suite.integer("frames", 20, 0, 100000);
   base.warmup = suite.integer("warmup", 3, 0, 100000);
@@ -308,7 +327,6 @@ Suite buildSuite(const toml::table& root, const std::string& file) {
   for (const toml::table* table : suite.tables("techniques"))
     techniques.push_back(parseTechnique(file, *table));
 
-  Suite result{suite.text(suite.require("name"), "name"), {}};
   for (const toml::table* table : suite.tables("scenes")) {
     const Section scene(
         file, *table, "[[scenes]]",
@@ -331,16 +349,25 @@ Suite buildSuite(const toml::table& root, const std::string& file) {
             base.lightSize = lightSize;
             for (const double threshold : environmentLights) {
               base.environment.lights = threshold;
-              addCases(base, techniques, modes, separationFloor, result.cases);
+              addCases(base, techniques, modes, separationFloor, cases);
             }
           }
-          if (result.cases.size() > kMaxCases) {
+          if (cases.size() > kMaxCases) {
             fail(file, table->source(), fmt::format("more than {} cases", kMaxCases));
           }
         }
       }
     }
   }
+}
+
+Suite buildSuite(const toml::table& root, const std::string& file, bool mayInclude) {
+  const Section suite(file, root, "the suite",
+                      {"name", "minutes", "include", "sizes", "time_size", "frames", "warmup", "modes",
+                       "term", "reference", "separation_floor", "pictures", "scenes", "techniques"});
+  Suite result{suite.text(suite.require("name"), "name"), suite.real("minutes", 0, 0, 1e6),
+               includedCases(suite, mayInclude)};
+  if (suite.find("include") == nullptr || suite.find("scenes") != nullptr) addOwnCases(suite, result.cases);
   std::set<std::string> keys;
   for (const Case& c : result.cases) {
     if (!keys.insert(rowKey(c, "")).second) {
@@ -350,14 +377,18 @@ Suite buildSuite(const toml::table& root, const std::string& file) {
   return result;
 }
 
+Suite parse(std::string_view text, const std::string& file, bool mayInclude) {
+  try {
+    return buildSuite(toml::parse(text), file, mayInclude);
+  } catch (const toml::parse_error& error) {
+    fail(file, error.source(), std::string(error.description()));
+  }
+}
+
 }  // namespace
 
 Suite parseSuite(std::string_view text, const std::string& fileName) {
-  try {
-    return buildSuite(toml::parse(text), fileName);
-  } catch (const toml::parse_error& error) {
-    fail(fileName, error.source(), std::string(error.description()));
-  }
+  return parse(text, fileName, true);
 }
 
 Suite readSuite(const std::filesystem::path& path) {

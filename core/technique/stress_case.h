@@ -15,8 +15,8 @@ enum class StressChange : uint8_t {
   none,
   sceneScale,    ///< every length times amount
   lightSize,     ///< sides of rectangle lights: amount times the scene's radius
-  depthRange,    ///< a triangle behind the scene, as the first light sees it, amount times the scene's radius
-                 ///< away
+  depthRange,    ///< specks before and behind the scene, as the first light sees it, their distances amount
+                 ///< apart
   contact,       ///< a plate over the floor at amount times the scene's radius
   edgeOn,        ///< the first light in the plane of the floor; amount is not looked at
   imageWidth,    ///< a picture of amount pixels in one row
@@ -36,7 +36,8 @@ struct StressCase {
   const char* scene = "balls";  ///< asset
   const char* settings = "";    ///< "NAME=VALUE NAME=VALUE" of the technique's parameters
   /// The error may be this many times that of the unchanged scene with default parameters (or of 0.01, if
-  /// that is more); beyond it the case counts as degraded.
+  /// that is more); beyond it the case counts as degraded. 0: the picture is too unlike
+  /// that scene's for its error to say anything; only its values are looked at.
   double factor = 1.5;
 };
 

@@ -1,10 +1,13 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <set>
 #include <tuple>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/bench/suite.h"
 #include "tests/support/paths.h"
 
@@ -48,6 +51,28 @@ void expectUsageError(const std::string& text, const std::string& message) {
     EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
     EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
   }
+}
+
+TEST(BenchSuite, IncludedSuitesGiveTheirCasesOnce) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / fmt::format("limn_include_{}", ::getpid());
+  std::filesystem::create_directories(folder);
+  const std::string body =
+      "sizes = \"8x8\"\n[[scenes]]\nscene = \"balls\"\n[[techniques]]\ntechnique = \"pcss\"\n";
+  writeTextFile(folder / "a.toml", "name = \"a\"\n" + body);
+  writeTextFile(folder / "b.toml", "name = \"b\"\n" + body + "[[techniques]]\ntechnique = \"vssm\"\n");
+  writeTextFile(folder / "all.toml", "name = \"all\"\nminutes = 3\ninclude = [\"a.toml\", \"b.toml\"]\n");
+  const Suite all = readSuite(folder / "all.toml");
+  EXPECT_EQ(all.minutes, 3);
+  ASSERT_EQ(all.cases.size(), 2u);
+  EXPECT_EQ(all.cases[1].technique, "vssm");
+  writeTextFile(folder / "self.toml", "name = \"s\"\ninclude = \"self.toml\"\n");
+  EXPECT_THROW(readSuite(folder / "self.toml"), UsageError);
+  writeTextFile(folder / "out.toml", "name = \"o\"\ninclude = \"../a.toml\"\n");
+  EXPECT_THROW(readSuite(folder / "out.toml"), UsageError);
+  writeTextFile(folder / "missing.toml", "name = \"m\"\ninclude = \"nothing.toml\"\n");
+  EXPECT_THROW(readSuite(folder / "missing.toml"), Error);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(BenchSuite, LightSizesAreQuestionsOfTheirOwn) {
@@ -168,7 +193,7 @@ TEST(BenchSuite, ErrorsNameFileLineAndColumn) {
   const std::string good = "name='a'\nsizes='8x8'\n[[scenes]]\nscene='b'\n[[techniques]]\ntechnique='c'\n";
   EXPECT_EQ(parseSuite(good, "s.toml").cases.size(), 1u);
   expectUsageError("name='a'\nsize='8x8'\n",
-                   "s.toml:2:1: unknown key 'size' in the suite; known are name, sizes");
+                   "s.toml:2:1: unknown key 'size' in the suite; known are name, minutes");
   expectUsageError("name = \n", "s.toml:1:");
   expectUsageError("name='a'\nsizes='8by8'\n", "s.toml:2:7: size '8by8'");
   expectUsageError("name='a'\nsizes='8x0'\n", "s.toml:2:7: size '8x0'");

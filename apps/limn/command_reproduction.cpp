@@ -1,0 +1,50 @@
+// limn reproduction: what the thesis found, beside what bench results say.
+#include <fmt/format.h>
+
+#include "apps/limn/bench_session.h"
+#include "apps/limn/commands.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/bench/reproduction.h"
+#include "core/bench/results_file.h"
+
+namespace limn::app {
+namespace fs = std::filesystem;
+namespace {
+
+struct Options {
+  std::vector<fs::path> results;
+  fs::path claims, out;
+};
+
+int run(const Options& options) {
+  fs::path claims = options.claims;
+  if (claims.empty()) claims = findShared("benchmarks", "reproduction.claims");
+  if (claims.empty())
+    throw Error("reproduction.claims was not built or installed with limn; name a file with --claims");
+  std::vector<bench::Row> rows;
+  for (const fs::path& folder : options.results)
+    for (bench::Row& row : bench::readRows(folder / "results.jsonl")) rows.push_back(std::move(row));
+  const std::string page =
+      "# What the thesis found, and what is measured here\n\n"
+      "Ratios between settings that one run measured side by side: times of the frame unless another column "
+      "says so, above 1\n"
+      "where the second is faster. The thesis measured on GPUs of 2006 and 2009; its frame rates beside "
+      "those of another\n"
+      "renderer would say nothing, its ratios may. Made by `limn reproduction`.\n\n" +
+      bench::reproductionMarkdown(bench::readClaims(claims), rows);
+  writeTextFile(options.out, page);
+  return 0;
+}
+
+}  // namespace
+
+Action addReproductionCommand(CLI::App& command) {
+  auto options = std::make_shared<Options>();
+  command.add_option("results", options->results, "Folders of `limn bench`")->required();
+  command.add_option("--out", options->out, "Markdown file")->required();
+  command.add_option("--claims", options->claims, "TOML file; default: the thesis's");
+  return [options] { return run(*options); };
+}
+
+}  // namespace limn::app
