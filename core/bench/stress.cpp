@@ -151,7 +151,7 @@ StressRun::Question& StressRun::question(const TechniquePlugin& technique, const
   if (question_ && question_->key == key) return *question_;
   question_.reset();
   scene::Scene scene = scene_(c.scene);
-  if (sky && !scene.environment) scene.environment = stressSky();
+  if (sky) scene = litBySkyAlone(std::move(scene));
   auto question =
       std::make_unique<Question>(device_, key, stressed(std::move(scene), c.change, c.amount), output);
   const scene::Pose& pose = question->renderer.pose();

@@ -82,6 +82,11 @@ std::vector<glm::vec3> square(glm::vec3 centre, glm::vec3 normal, float half) {
   return {at(-1, -1), at(1, -1), at(1, 1), at(-1, -1), at(1, 1), at(-1, 1)};
 }
 
+void removeLights(scene::Scene& scene) {
+  for (scene::Node& node : scene.nodes) node.light = scene::none;
+  for (scene::Material& material : scene.materials) material.emission = glm::vec3(0);
+}
+
 void moveLightToTheFloor(scene::Scene& scene, const scene::Pose& pose) {
   const auto node =
       std::ranges::find_if(scene.nodes, [](const scene::Node& n) { return n.light != scene::none; });
@@ -139,8 +144,7 @@ scene::Scene stressed(scene::Scene scene, StressChange change, double amount) {
       }
       break;
     case StressChange::noLight:
-      for (scene::Node& node : scene.nodes) node.light = scene::none;
-      for (scene::Material& material : scene.materials) material.emission = glm::vec3(0);
+      removeLights(scene);
       scene.environment = {};
       break;
     case StressChange::oneTriangle:
@@ -164,19 +168,18 @@ scene::Scene stressed(scene::Scene scene, StressChange change, double amount) {
   return scene;
 }
 
-scene::Environment stressSky() {
-  scene::Environment sky;
+scene::Scene litBySkyAlone(scene::Scene scene) {
+  removeLights(scene);
+  scene::Environment& sky = scene.environment = {};
   sky.width = 64;
   sky.height = 32;
-  sky.texels.resize(64 * 32);
   for (int y = 0; y < sky.height; ++y)
     for (int x = 0; x < sky.width; ++x) {
       const bool sun = y >= 6 && y < 8 && x >= 20 && x < 22;
       const float up = 1 - static_cast<float>(y) / 31.f;
-      sky.texels[static_cast<std::size_t>(y * sky.width + x)] =
-          sun ? glm::vec3(40) : glm::vec3(0.1f) + up * glm::vec3(0.3f, 0.4f, 0.6f);
+      sky.texels.push_back(sun ? glm::vec3(40) : glm::vec3(0.1f) + up * glm::vec3(0.3f, 0.4f, 0.6f));
     }
-  return sky;
+  return scene;
 }
 
 scene::CameraPose cameraInside(const scene::Scene& scene, const scene::Pose& pose, scene::CameraPose camera) {

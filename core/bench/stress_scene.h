@@ -11,8 +11,9 @@ namespace limn::bench {
 /// is. Scenes without lights, floor or rectangle lights keep what the change would have moved.
 LIMN_API scene::Scene stressed(scene::Scene scene, StressChange change, double amount);
 
-/// A small procedural sky for scenes without environment: brighter above, with a sun of a few texels.
-LIMN_API scene::Environment stressSky();
+/// The scene without its lights, under a small procedural sky: brighter above, with a sun of a few texels.
+/// For techniques that answer the environment's light and no other.
+LIMN_API scene::Scene litBySkyAlone(scene::Scene scene);
 
 /// The camera in the middle of the smallest object, looking as before.
 LIMN_API scene::CameraPose cameraInside(const scene::Scene& scene, const scene::Pose& pose,
