@@ -8,6 +8,7 @@
 #include "apps/chapters/support/window.h"
 #include "apps/limn/bench_session.h"
 #include "apps/limn/options.h"
+#include "core/base/error.h"
 
 namespace limn::app {
 namespace {
@@ -25,13 +26,17 @@ bool hasDisplay() {
 int writeFiles(const Chapter& chapter, const fs::path& out, const BackendOptions& backend,
                const std::vector<std::string>& filters) {
   int failed = 0;
+  bool any = false;
   for (const char* suite : chapter.suites) {
+    if (bench::selectCases(bench::readSuite(findSuite(suite)).cases, filters, {}).empty()) continue;
+    any = true;
     const bench::Summary summary = runSuite(findSuite(suite), out / suite, backend, filters);
     failed += summary.failed;
     const bool pictures = fs::exists(out / suite / "pictures.md");
     fmt::print("{}: {}{}\n", suite, (out / suite / "tables.md").string(),
                pictures ? ", " + (out / suite / "pictures.md").string() : "");
   }
+  if (!any) throw UsageError(fmt::format("{}: no case of its suites fits the filter", chapter.name));
   return failed > 0 ? 1 : 0;
 }
 

@@ -1,0 +1,37 @@
+// The chapters' demo programs without a display: pictures and tables as files.
+#include "tests/cli/limn_program.h"
+
+namespace limn::test {
+namespace {
+
+/// Without a display, whatever the machine has.
+Outcome chapter(const std::string& name, const std::vector<std::string>& arguments) {
+  std::vector<std::string> command = {std::string(binaryDir) + "/bin/" + name, "--files"};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return run(command);
+}
+
+TEST(Chapters, FiguresAreWrittenAsFiles) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      chapter("ch7-variance-soft-shadows",
+              {"--out", folder / "out", "--filter", "512x384", "--filter", "balls", "--filter", "savsm"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(listing(folder / "out"), std::vector<std::string>{"ch7_figures"})
+      << "no other suite has that case";
+  EXPECT_THAT(contents(folder / "out/ch7_figures/pictures.md"), testing::HasSubstr("![](pictures/"));
+  EXPECT_THAT(contents(folder / "out/ch7_figures/tables.md"),
+              testing::HasSubstr("| VSM from a summed-area table"));
+}
+
+TEST(Chapters, FiltersThatNothingFitsAreRefused) {
+  const TemporaryFolder folder;
+  for (const char* name : {"ch5-convolution-soft-shadows", "ch7-variance-soft-shadows"}) {
+    const Outcome outcome = chapter(name, {"--out", folder / "out", "--filter", "no such case"});
+    expectRefused(outcome, 2, {name, "fits the filter"});
+    EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+  }
+}
+
+}  // namespace
+}  // namespace limn::test
