@@ -16,11 +16,17 @@ struct BlockerSearch {
   float gap;   // metres from the receiver to the plane of the search kernel; no blocker in the kernel is farther
 };
 
-// Bounds of the depths stored in the texels that a kernel touches.
-vec2 kernel_depth_bounds(ShadowCursor cursor, ShadowKernel kernel) {
+// The texels that a kernel touches, with a margin of one where it reaches out of the map: (low, high), both included.
+ivec4 kernel_texels(ShadowCursor cursor, ShadowKernel kernel) {
   ivec2 low = ivec2(floor(clamp(kernel.low, vec2(-1.0), vec2(cursor.view.info.z))));
   ivec2 high = ivec2(ceil(clamp(kernel.high, vec2(0.0), vec2(cursor.view.info.z) + 1.0))) - 1;
-  return min_max_depth(shadow_min_max, low, max(high, low), int(cursor.layer));
+  return ivec4(low, max(high, low));
+}
+
+// Bounds of the depths stored in them.
+vec2 kernel_depth_bounds(ShadowCursor cursor, ShadowKernel kernel) {
+  ivec4 texels = kernel_texels(cursor, kernel);
+  return min_max_depth(shadow_min_max, texels.xy, texels.zw, int(cursor.layer));
 }
 
 // The kernel starts at the near plane, as published; each of `rounds` further rounds moves it to the nearest depth that

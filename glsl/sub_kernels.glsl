@@ -3,13 +3,14 @@
 //
 // Define TABLE_FORMAT (sat_format), WIDE_Z 1: sums of z over a sub-kernel may need two words, POOLED 1: Chebyshev's
 // inequality once for all sub-kernels with E(z) < d, 0: for each, SIMILAR_KERNELS 1: every light has one view, in which its
-// kernels are scaled copies of each other; 0: some do not.
+// kernels are scaled copies of each other; 0: some do not, N_BUFFER 1: shadow_min_max is an N-buffer, 0: a min-max pyramid.
 //
 // Loops end in their condition: software renderers run a body once more where it comes first. They run what nobody wants,
 // too, so loops of lanes without work take one round.
 #ifndef LIMN_SUB_KERNELS_GLSL
 #define LIMN_SUB_KERNELS_GLSL
 #include "glsl/blocker_search.glsl"
+#include "glsl/n_buffer.glsl"
 #include "glsl/variance_kernel.glsl"
 #include "glsl/visibility.glsl"
 
@@ -328,7 +329,12 @@ struct KernelBounds {
 
 KernelBounds family_bounds(KernelFamily f, ShadowCursor cursor, ShadowKernel kernel) {
   ShadowThresholds t = f.thresholds;
+#if N_BUFFER
+  ivec4 texels = kernel_texels(cursor, kernel);
+  vec2 stored = n_buffer_depth(shadow_min_max, texels.xy, texels.zw, int(cursor.layer));
+#else
   vec2 stored = kernel_depth_bounds(cursor, kernel);
+#endif
   float least = shadow_metres(cursor.view, stored.x);
   float greatest = shadow_metres(cursor.view, stored.y);
   vec2 plane = threshold_range(t.biased, kernel.low, kernel.high);

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/shadow/summed_area_passes.h"
+#include "glsl/n_buffer.glsl"
 #include "glsl/summed_area_table.glsl"
 
 namespace limn::shadow {
@@ -33,6 +34,10 @@ struct KnownPyramid {
   TextureHandle source;
   PyramidKind kind;
   TextureHandle texture;
+};
+
+struct KnownNBuffer {
+  TextureHandle source, texture;
 };
 
 std::string_view nameOf(PyramidKind kind) {
@@ -67,6 +72,42 @@ TextureHandle addPyramid(frame::FrameGraph& graph, TextureHandle source, Pyramid
     });
   }
   return pyramid;
+}
+
+/// As addPyramid(), but the levels are layers, since each is as large as the source.
+TextureHandle addNBuffer(frame::FrameGraph& graph, TextureHandle source, bool cacheable, int mostLayers) {
+  constexpr std::string_view name = "N-buffer";
+  const gpu::TextureDesc& maps = graph.desc(source);
+  const int levels = glsl::n_buffer_levels(std::max(maps.width, maps.height));
+  const gpu::TextureDesc desc = derivedDesc(graph, source, name, GL_RG32F, 1, levels);
+  if (desc.layers > mostLayers)
+    throw UsageError(
+        fmt::format("{} of {} layers: the device has at most {} in one array; ask for fewer "
+                    "lights at once",
+                    name, desc.layers, mostLayers));
+  TextureHandle windows = graph.createTexture(name, desc);
+  for (int level = 0; level < levels; ++level) {
+    frame::PassBuilder pass = graph.addPass(fmt::format("{} level {}", name, level), "shadow");
+    if (level == 0) pass.read(source, Access::sampled, "shadow maps");
+    windows = pass.write(windows, level == 0 ? Access::imageStore : Access::imageLoadStore,
+                         level == 0 ? "windows of one texel" : "windows twice as wide as before");
+    const frame::ProgramHandle program = pass.program(
+        {.files = {"glsl/shadow/n_buffer.comp.glsl"}, .defines = {{"BASE", level == 0 ? "1" : "0"}}});
+    if (cacheable) pass.cacheable();
+    pass.execute(
+        [source, windows, program, level, desc, layers = desc.layers / levels](frame::PassContext& context) {
+          gpu::Program& kernel = context.program(program);
+          kernel.use();
+          if (level == 0) {
+            context.bindSampled(0, source);
+          } else {
+            kernel.set("level", level);
+          }
+          context.bindImage(0, windows, level == 0 ? GL_WRITE_ONLY : GL_READ_WRITE);
+          context.dispatch(desc.width, desc.height, layers, 8, 8);
+        });
+  }
+  return windows;
 }
 
 /// Fills in what the description leaves to us.
@@ -116,6 +157,7 @@ struct DerivedMaps::Implementation {
   const gpu::Device& device;
   frame::FrameGraph* graph = nullptr;
   std::vector<KnownPyramid> pyramids = {};
+  std::vector<KnownNBuffer> nBuffers = {};
   std::vector<KnownTable> tables = {};
   std::vector<KnownMoments> moments = {};
 
@@ -134,6 +176,7 @@ DerivedMaps::~DerivedMaps() = default;
 void DerivedMaps::begin(frame::FrameGraph& graph) {
   implementation_->graph = &graph;
   implementation_->pyramids.clear();
+  implementation_->nBuffers.clear();
   implementation_->tables.clear();
   implementation_->moments.clear();
 }
@@ -141,6 +184,15 @@ void DerivedMaps::begin(frame::FrameGraph& graph) {
 MinMaxPyramid DerivedMaps::minMaxPyramid(TextureHandle depth, bool cacheable) {
   const TextureHandle texture = implementation_->pyramid(depth, PyramidKind::minMax, cacheable);
   return {texture, implementation_->graph->desc(texture).levels};
+}
+
+TextureHandle DerivedMaps::nBuffer(TextureHandle depth, bool cacheable) {
+  Implementation& d = *implementation_;
+  for (const KnownNBuffer& known : d.nBuffers) {
+    if (known.source == depth) return known.texture;
+  }
+  d.nBuffers.push_back({depth, addNBuffer(*d.graph, depth, cacheable, d.device.limits().maxArrayLayers)});
+  return d.nBuffers.back().texture;
 }
 
 SummedAreaTable DerivedMaps::summedAreaTable(TextureHandle depth, bool cacheable, const SatDesc& desc) {

@@ -1,6 +1,6 @@
-// What shadow techniques look up instead of single texels of a shadow map: min-max pyramids, summed-area
-// tables, mip chains of moments. Each is built when the first technique asks, by passes of the frame graph,
-// and shared by all that ask.
+// What shadow techniques look up instead of single texels of a shadow map: min-max pyramids, N-buffers,
+// summed-area tables, mip chains of moments. Each is built when the first technique asks, by passes of the
+// frame graph, and shared by all that ask.
 #pragma once
 
 #include <cstdint>
@@ -64,6 +64,10 @@ class LIMN_API DerivedMaps {
   void begin(frame::FrameGraph& graph);
 
   MinMaxPyramid minMaxPyramid(frame::TextureHandle depth, bool cacheable);
+  /// RG32F array of one level: (least, greatest) depth of overlapping windows, which bound boxes more tightly
+  /// than a pyramid for 2 log2(size) times a map's memory. Lookups: glsl/n_buffer.glsl. Throws
+  /// UsageError beyond 4 GiB and beyond the layers that the device has in one array.
+  frame::TextureHandle nBuffer(frame::TextureHandle depth, bool cacheable);
   /// Throws UsageError for a description out of range and for tables beyond 4 GiB.
   SummedAreaTable summedAreaTable(frame::TextureHandle depth, bool cacheable, const SatDesc& desc);
   /// bits: of each moment, 10 to 20; 0: by the maps' size (momentBits). Throws UsageError as summedAreaTable.

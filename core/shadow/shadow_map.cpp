@@ -283,6 +283,10 @@ MinMaxPyramid ShadowMapService::minMaxPyramid(const ShadowMaps& maps) {
   return implementation_->derived.minMaxPyramid(maps.depth, implementation_->cacheable(maps));
 }
 
+frame::TextureHandle ShadowMapService::nBuffer(const ShadowMaps& maps) {
+  return implementation_->derived.nBuffer(maps.depth, implementation_->cacheable(maps));
+}
+
 SummedAreaTable ShadowMapService::summedAreaTable(const ShadowMaps& maps, const SatDesc& desc) {
   return implementation_->derived.summedAreaTable(maps.depth, implementation_->cacheable(maps), desc);
 }

@@ -88,6 +88,7 @@ class LIMN_API ShadowMapService {
 
   /// Resources derived from the maps of a request, built once per graph whoever asks.
   MinMaxPyramid minMaxPyramid(const ShadowMaps& maps);
+  frame::TextureHandle nBuffer(const ShadowMaps& maps);
   SummedAreaTable summedAreaTable(const ShadowMaps& maps, const SatDesc& desc);
   MomentTable momentTable(const ShadowMaps& maps, int bits);
   frame::TextureHandle momentMips(const ShadowMaps& maps);

@@ -30,12 +30,13 @@ int lineGroups(int lines, bool shared, bool vertical) {
 }  // namespace
 
 gpu::TextureDesc derivedDesc(const frame::FrameGraph& graph, TextureHandle source, std::string_view what,
-                             GLenum format, int levels) {
+                             GLenum format, int levels, int slices) {
   gpu::TextureDesc desc = graph.desc(source);
   if (desc.target != GL_TEXTURE_2D_ARRAY || desc.format != GL_R32F)
     throw Error(fmt::format("{}: the source is not an R32F array texture", what));
   desc.format = format;
   desc.levels = levels;
+  desc.layers *= slices;
   desc = gpu::resolved(desc);
   checkBytes(what, desc);
   return desc;

@@ -9,9 +9,10 @@
 
 namespace limn::shadow {
 
-/// The description of a map derived from `source`; throws UsageError beyond 4 GiB.
+/// The description of a map derived from `source`, with `slices` layers for each of its layers; throws
+/// UsageError beyond 4 GiB.
 gpu::TextureDesc derivedDesc(const frame::FrameGraph& graph, frame::TextureHandle source,
-                             std::string_view what, GLenum format, int levels);
+                             std::string_view what, GLenum format, int levels, int slices = 1);
 
 struct SummedAreaPasses {
   std::string_view name;  ///< of the table

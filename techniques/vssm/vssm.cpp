@@ -14,6 +14,7 @@ using namespace limn;
 
 constexpr const char* subdivisions[] = {"uniform", "adaptive", "mixed"};
 constexpr const char* poolings[] = {"each", "pooled"};
+constexpr const char* boundings[] = {"mip", "nbuffer"};
 constexpr const char* switches[] = {"off", "on"};
 constexpr const char* contacts[] = {"off", "jittered"};
 
@@ -29,6 +30,8 @@ constexpr Parameter parameters[] = {
     choice("chebyshev", 0, poolings, "Evaluate Chebyshev's inequality for each sub-kernel or once for all"),
     integer("search_rounds", 3, {0, 8}, "rounds",
             "How often the minimum depth in the search kernel narrows it; 0: as published"),
+    choice("bounds", 0, boundings,
+           "Of the depths in the search kernel: from a min-max pyramid or, tighter and dearer, an N-buffer"),
     choice("early_out", 1, switches, "Answer at once where bounds of the depths in the search kernel decide"),
     choice("contact", 0, contacts, "Narrow penumbrae: from the table, or 3 x 3 jittered bilinear texels"),
     real("contact_texels", 3, {1, 64}, "texels", "Width of the kernels that count as narrow"),
@@ -70,6 +73,7 @@ class Vssm : public Technique {
                                  const TermRequest& request) override {
     const ParameterValues& p = inputs.parameters;
     const int subdivision = p.choice("subdivision");
+    const bool nBuffer = p.choice("bounds") == 1;
     shadow::VisibilityPass pass =
         shadow::visibilityPass(inputs, request, info.name,
                                {{"POOLED", std::to_string(p.choice("chebyshev"))},
@@ -77,14 +81,17 @@ class Vssm : public Technique {
                                 {"VISIBILITY_ADAPTIVE", subdivision == 0 ? "0" : "1"},
                                 {"SIMILAR_KERNELS", similarKernels(inputs, request) ? "1" : "0"},
                                 {"WIDE_Z", needsWideSums(p) ? "1" : "0"},
+                                {"N_BUFFER", nBuffer ? "1" : "0"},
                                 {"EARLY_OUT", std::to_string(p.choice("early_out"))},
                                 {"CONTACT", std::to_string(p.choice("contact"))}});
     const shadow::SummedAreaTable table = inputs.shadowMaps.summedAreaTable(
         pass.maps, {.bits = p.integer("sat_bits"), .words = p.integer("sat_words")});
     pass.program.defines["TABLE_FORMAT"] = fmt::format("{}u", table.format);
-    pass.sampled = {{shadow::minMaxUnit, inputs.shadowMaps.minMaxPyramid(pass.maps).texture,
-                     "what is lit or dark at once"},
-                    {shadow::tableUnit, table.texture, "moments of kernels"}};
+    pass.sampled = {
+        {shadow::minMaxUnit,
+         nBuffer ? inputs.shadowMaps.nBuffer(pass.maps) : inputs.shadowMaps.minMaxPyramid(pass.maps).texture,
+         "what is lit or dark at once"},
+        {shadow::tableUnit, table.texture, "moments of kernels"}};
     pass.bind = [subdivision, passes = p.integer("passes"), rounds = p.integer("search_rounds"),
                  blockers = p.integer("blocker_cells"), cells = p.integer("visibility_cells"),
                  height = p.integer("tree_height"), contact = p.real("contact_texels"),

@@ -4,77 +4,16 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <optional>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "core/base/error.h"
 #include "glsl/min_max_pyramid.glsl"
 #include "glsl/summed_area_table.glsl"
-#include "tests/gpu/gl_test.h"
+#include "tests/gpu/derived_maps_harness.h"
 
 namespace limn::shadow {
 namespace {
-
-struct Size {
-  int width, height, layers;
-};
-constexpr Size sizes[] = {{64, 64, 3}, {100, 100, 3}, {257, 257, 3}, {100, 33, 1}, {1, 1, 1}};
-
-class DerivedMapsTest : public GlTest {
- protected:
-  void SetUp() override {
-    GlTest::SetUp();
-    pool_.emplace(device());
-  }
-  void TearDown() override {
-    pool_.reset();
-    source_ = {};
-    GlTest::TearDown();
-  }
-
-  /// A new random source map; 0 and 1 are frequent.
-  void makeSource(const Size& size, unsigned seed = 1) {
-    size_ = size;
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<float> value(-0.1f, 1.1f);
-    depth_.resize(static_cast<size_t>(size.width) * static_cast<size_t>(size.height) *
-                  static_cast<size_t>(size.layers));
-    for (float& z : depth_) z = std::clamp(value(random), 0.f, 1.f);
-    source_ = gpu::Texture(device(), "source",
-                           {.target = GL_TEXTURE_2D_ARRAY,
-                            .format = GL_R32F,
-                            .width = size.width,
-                            .height = size.height,
-                            .layers = size.layers});
-    const size_t layer = depth_.size() / static_cast<size_t>(size.layers);
-    for (int i = 0; i < size.layers; ++i)
-      source_.upload(0, i, GL_RED, GL_FLOAT, depth_.data() + static_cast<size_t>(i) * layer);
-  }
-
-  float depth(int x, int y, int layer) const {
-    return depth_[(static_cast<size_t>(layer) * static_cast<size_t>(size_.height) + static_cast<size_t>(y)) *
-                      static_cast<size_t>(size_.width) +
-                  static_cast<size_t>(x)];
-  }
-
-  template <class T>
-  static std::vector<T> read(const gpu::Texture& texture, int level, GLenum format, GLenum type,
-                             size_t components) {
-    const gpu::TextureDesc& d = texture.desc();
-    std::vector<T> values(static_cast<size_t>(std::max(d.width >> level, 1)) *
-                          static_cast<size_t>(std::max(d.height >> level, 1)) *
-                          static_cast<size_t>(d.layers) * components);
-    texture.read(level, format, type, values.data(), values.size() * sizeof(T));
-    return values;
-  }
-
-  Size size_{};
-  std::vector<float> depth_;
-  gpu::Texture source_;
-  std::optional<frame::ResourcePool> pool_;
-};
 
 TEST_F(DerivedMapsTest, MinMaxPyramidIsTheBoundsOfEveryFootprint) {
   for (const Size& size : sizes) {
@@ -205,72 +144,6 @@ TEST_F(DerivedMapsTest, SummedAreaTablesAreExactToTheBitByBothMethods) {
   }
 }
 
-/// Random kernels over a map, some of whose parts lie outside: (lo, hi) in texels and (layer, receiver
-/// depth).
-struct Kernel {
-  glm::vec4 box, receiver;
-};
-
-std::vector<Kernel> randomKernels(const Size& size, bool whole) {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<float> unit(0.f, 1.f);
-  std::vector<Kernel> kernels(500);
-  for (Kernel& k : kernels) {
-    const glm::vec2 extent(size.width, size.height),
-        lo = (1.2f * glm::vec2(unit(random), unit(random)) - 0.1f) * extent,
-        hi = lo + 0.01f + 0.5f * unit(random) * glm::vec2(unit(random), unit(random)) * extent;
-    k.box = {lo, hi};
-    if (whole) k.box = {glm::floor(lo), glm::floor(hi)};
-    k.receiver = {std::floor(unit(random) * static_cast<float>(size.layers)), unit(random), 0, 0};
-  }
-  return kernels;
-}
-
-constexpr const char* lookup_shader = R"(
-#include "glsl/min_max_pyramid.glsl"
-#include "glsl/summed_area_table.glsl"
-layout(local_size_x = 64) in;
-struct Kernel { vec4 box; vec4 receiver; };
-layout(std430, binding = 0) readonly buffer Kernels { Kernel kernels[]; };
-layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
-#if MIN_MAX
-layout(binding = 0) uniform sampler2DArray pyramid;
-#else
-layout(binding = 0) uniform usampler2DArray table;
-uniform uint table_format;
-#endif
-void main() {
-  uint i = gl_GlobalInvocationID.x;
-  if (i >= uint(kernels.length())) return;
-  Kernel k = kernels[i];
-  int layer = int(k.receiver.x);
-#if MIN_MAX
-  results[i] = vec4(min_max_depth(pyramid, ivec2(k.box.xy), ivec2(k.box.zw), layer), 0.0, 0.0);
-#else
-  SatBox box = sat_lookup_box(table, ivec2(floor(k.box.xy)), ivec2(floor(k.box.zw)), layer, table_format);
-  results[i] = vec4(sat_lookup_moments(table, k.box.xy, k.box.zw, layer, k.receiver.y, table_format),
-                    wide_unsigned_float(box.z), float(box.texels));
-#endif
-}
-)";
-
-/// What the lookups of `lookup_shader` give for every kernel.
-std::vector<glm::vec4> lookup(gpu::Device& device, gpu::Program& program, const gpu::Texture& texture,
-                              const std::vector<Kernel>& kernels) {
-  const gpu::Buffer in = gpu::Buffer::of<Kernel>(device, "kernels", kernels);
-  const gpu::Buffer out(device, "results", kernels.size() * sizeof(glm::vec4));
-  const gl::Functions& gl = device.gl();
-  program.use();
-  gl.BindTextureUnit(0, texture.id());
-  gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, in.id());
-  gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, out.id());
-  gl.DispatchCompute(static_cast<GLuint>((kernels.size() + 63) / 64), 1, 1);
-  gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  std::vector<glm::vec4> results(kernels.size());
-  out.read(0, results.data(), results.size() * sizeof(glm::vec4));
-  return results;
-}
-
 TEST_F(DerivedMapsTest, MomentsLookedUpAgreeWithDouble) {
   const gpu::EmbeddedSource sources[] = {{"lookup.comp.glsl", lookup_shader}};
   shaders().mount("test/", sources);
@@ -283,8 +156,7 @@ TEST_F(DerivedMapsTest, MomentsLookedUpAgreeWithDouble) {
   graph.output(table.texture);
   graph.prepare(device(), shaders(), *pool_);
   graph.execute();
-  gpu::Program& program =
-      shaders().program({.files = {"test/lookup.comp.glsl"}, .defines = {{"MIN_MAX", "0"}}});
+  gpu::Program& program = shaders().program({.files = {"test/lookup.comp.glsl"}, .defines = {}});
   program.set("table_format", table.format);
   const std::vector<Kernel> kernels = randomKernels(size, false);
   const auto results = lookup(device(), program, graph.texture(table.texture), kernels);
@@ -332,23 +204,16 @@ TEST_F(DerivedMapsTest, MinMaxLookupsAreConservativeAndTightForSingleTexels) {
   graph.prepare(device(), shaders(), *pool_);
   graph.execute();
   gpu::Program& program =
-      shaders().program({.files = {"test/lookup.comp.glsl"}, .defines = {{"MIN_MAX", "1"}}});
+      shaders().program({.files = {"test/lookup.comp.glsl"}, .defines = {{"BOUNDS", "min_max_depth"}}});
   const std::vector<Kernel> kernels = randomKernels(size, true);
   const auto results = lookup(device(), program, graph.texture(pyramid.texture), kernels);
   for (size_t i = 0; i < kernels.size(); ++i) {
     const glm::ivec4 box(kernels[i].box);
-    glm::vec2 bounds(2, -1);
-    for (int y = box.y; y <= box.w; ++y) {
-      for (int x = box.x; x <= box.z; ++x) {
-        const bool inside = x >= 0 && y >= 0 && x < size.width && y < size.height;
-        const float z = inside ? depth(x, y, static_cast<int>(kernels[i].receiver.x)) : 1;
-        bounds = {std::min(bounds.x, z), std::max(bounds.y, z)};
-      }
-    }
-    ASSERT_LE(results[i].x, bounds.x) << i;
-    ASSERT_GE(results[i].y, bounds.y) << i;
+    const glm::vec2 truth = bounds(box, static_cast<int>(kernels[i].receiver.x));
+    ASSERT_LE(results[i].x, truth.x) << i;
+    ASSERT_GE(results[i].y, truth.y) << i;
     if (box.x == box.z && box.y == box.w) {
-      ASSERT_EQ(glm::vec2(results[i]), bounds) << i;
+      ASSERT_EQ(glm::vec2(results[i]), truth) << i;
     }
   }
 }
@@ -362,11 +227,14 @@ TEST_F(DerivedMapsTest, EachIsBuiltOnceLeftOutUnusedAndKeptWhileNothingChanges) 
   const MinMaxPyramid pyramid = maps.minMaxPyramid(source, true);
   EXPECT_EQ(pyramid.texture, maps.minMaxPyramid(source, true).texture);
   EXPECT_FALSE(maps.momentMips(source, true) == pyramid.texture);
+  const frame::TextureHandle windows = maps.nBuffer(source, true);
+  EXPECT_EQ(windows, maps.nBuffer(source, true));
   const SummedAreaTable table = maps.summedAreaTable(source, true, {.moments = SatMoments::z});
   EXPECT_EQ(table.texture,
             maps.summedAreaTable(source, true, {.words = 1, .moments = SatMoments::z}).texture);
   EXPECT_FALSE(table.texture == maps.summedAreaTable(source, true, {}).texture);
   graph.output(pyramid.texture);
+  graph.output(windows);
   graph.output(table.texture);
   graph.prepare(device(), shaders(), *pool_);
   const auto states = [&] {
@@ -374,13 +242,14 @@ TEST_F(DerivedMapsTest, EachIsBuiltOnceLeftOutUnusedAndKeptWhileNothingChanges) 
     for (const frame::PassReport& row : graph.explain()) list.emplace_back(row.name, row.state);
     return list;
   };
-  // Two pyramids of seven levels and two tables of two passes, of which the first each is wanted.
+  // Two pyramids of seven levels and two tables of two passes, of which the first each is wanted, and an
+  // N-buffer of six levels.
   const auto expectStates = [&](frame::PassState used) {
     const auto list = states();
-    EXPECT_EQ(list.size(), 18u);
+    EXPECT_EQ(list.size(), 24u);
     for (const auto& [name, state] : list) {
-      const bool wanted =
-          name.starts_with("min-max") || (name.starts_with("summed") && !name.ends_with(" 2"));
+      const bool wanted = name.starts_with("min-max") || name.starts_with("N-buffer") ||
+                          (name.starts_with("summed") && !name.ends_with(" 2"));
       EXPECT_EQ(state, wanted ? used : frame::PassState::leftOut) << name;
     }
   };
@@ -411,6 +280,13 @@ TEST_F(DerivedMapsTest, RefusesOtherSourcesAndDescriptionsOutOfRange) {
       "large",
       {.target = GL_TEXTURE_2D_ARRAY, .format = GL_R32F, .width = 8192, .height = 8192, .layers = 5});
   EXPECT_THROW(maps.summedAreaTable(large, false, {}), UsageError);
+  EXPECT_THROW(maps.nBuffer(large, false), UsageError);
+  const frame::TextureHandle many = graph.createTexture("many", {.target = GL_TEXTURE_2D_ARRAY,
+                                                                 .format = GL_R32F,
+                                                                 .width = 4,
+                                                                 .height = 4,
+                                                                 .layers = device().limits().maxArrayLayers});
+  EXPECT_THROW(maps.nBuffer(many, false), UsageError);
   EXPECT_THROW(maps.summedAreaTable(large, false, {.bits = 7}), UsageError);
   EXPECT_THROW(maps.summedAreaTable(large, false, {.bits = 25}), UsageError);
   EXPECT_THROW(maps.summedAreaTable(large, false, {.words = 3}), UsageError);

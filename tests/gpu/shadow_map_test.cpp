@@ -290,6 +290,7 @@ TEST_F(ShadowMapTest, DerivedMapsAreKeptWhereTheMapsAre) {
     graph.output(pyramid.texture);
     graph.output(service.summedAreaTable(maps, {}).texture);
     graph.output(service.momentMips(maps));
+    graph.output(service.nBuffer(maps));
     graph.prepare(device(), shaders(), pool);
     graph.execute();
     graph.execute();

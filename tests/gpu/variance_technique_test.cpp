@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "glsl/light_view.glsl"
+#include "tests/gpu/render_test.h"
 #include "tests/gpu/technique_harness.h"
 #include "tests/gpu/test_scenes.h"
 
@@ -54,10 +55,10 @@ class VarianceTechniqueTest : public TechniqueTest {
   }
 };
 
-const Settings variants[] = {{{"subdivision", "uniform"}}, {{"subdivision", "adaptive"}},
-                             {{"subdivision", "mixed"}},   {{"chebyshev", "pooled"}},
-                             {{"search_rounds", "0"}},     {{"sat_words", "1"}},
-                             {{"sat_bits", "20"}},         {{"contact", "off"}}};
+const Settings variants[] = {
+    {{"subdivision", "uniform"}}, {{"subdivision", "adaptive"}}, {{"subdivision", "mixed"}},
+    {{"chebyshev", "pooled"}},    {{"search_rounds", "0"}},      {{"sat_words", "1"}},
+    {{"sat_bits", "20"}},         {{"contact", "off"}},          {{"bounds", "nbuffer"}}};
 
 TEST_F(VarianceTechniqueTest, ParallelPlanesAreExact) {
   // A square of side 1, one metre over the floor, under a light of side 0.8 at 4 metres.
@@ -202,6 +203,17 @@ TEST_F(VarianceTechniqueTest, EarlyOutsChangeNextToNothing) {
     ASSERT_NEAR(with.lights[0][i], without.lights[0][i], 1.f / 255) << i;
 }
 
+TEST_F(VarianceTechniqueTest, BoundsFromNBuffersChangeNextToNothing) {
+  Planes s;
+  s.addPlane(0.5f, at(0, 1, 0));
+  for (const char* rounds : {"0", "3"}) {
+    const Answer mip = answer(s, {{"search_rounds", rounds}}),
+                 windows = answer(s, {{"bounds", "nbuffer"}, {"search_rounds", rounds}});
+    for (size_t i = 0; i < mip.instance.size(); ++i)
+      ASSERT_NEAR(mip.lights[0][i], windows.lights[0][i], 1.f / 255) << i;
+  }
+}
+
 TEST_F(VarianceTechniqueTest, MapsOfAllSizesWorkOrAreRefusedInOneLine) {
   Planes s;
   s.addPlane(0.5f, at(0, 1, 0));
@@ -218,6 +230,21 @@ TEST_F(VarianceTechniqueTest, MapsOfAllSizesWorkOrAreRefusedInOneLine) {
     EXPECT_THAT(error.what(), testing::HasSubstr("smaller shadow_map_size"));
     EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("\n")));
   }
+}
+
+using VarianceOnScenesTest = RenderTest;
+
+TEST_F(VarianceOnScenesTest, BoundsFromNBuffersAreNoWorseOnBalls) {
+  const scene::Scene scene = asset("balls");
+  render::Renderer renderer(device(), scene);
+  const auto shadow = [&](const render::TechniqueUse& use) {
+    return picture(renderer, settings(128, 96, render::Output::visibility, {use}, 0));
+  };
+  const Image truth =
+                  shadow(technique("sampled_area_light", {{"samples", "256"}, {"shadow_map_size", "512"}})),
+              mip = shadow(technique("vssm", {{"bounds", "mip"}})),
+              windows = shadow(technique("vssm", {{"bounds", "nbuffer"}}));
+  EXPECT_LE(rmse(windows, truth), rmse(mip, truth));
 }
 
 }  // namespace
