@@ -56,12 +56,6 @@ render::Settings baseSettings(const View& view, render::Output output, int light
   return settings;
 }
 
-void createFolder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw Error(fmt::format("folder '{}' cannot be created: {}", folder.string(), error.message()));
-}
-
 bench::CostSplit costSplit(const render::FrameStats& stats) {
   bench::CostSplit split;
   for (const render::PassStats& pass : stats.passes) {

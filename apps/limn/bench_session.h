@@ -15,9 +15,9 @@ namespace limn::app {
 /// A suite by its file, or by its name if it came with limn. Throws Error when there is neither.
 std::filesystem::path findSuite(const std::filesystem::path& nameOrFile);
 
-/// Runs the cases of a suite that `out` has no row for yet, with a progress bar, and writes tables and report.
-/// Measures in a process of its own: a case that crashes loses its own row only. No thread and no OpenGL
-/// context may exist. Returns how many rows were measured, found and failed. `filters` and `shard`:
+/// Runs the cases of a suite that `out` has no row for yet, with a progress bar, and writes tables and
+/// report. Measures in a process of its own: a case that crashes loses its own row only. No thread and no
+/// OpenGL context may exist. Returns how many rows were measured, found and failed. `filters` and `shard`:
 /// bench::selectCases().
 bench::Summary runSuite(const std::filesystem::path& suite, const std::filesystem::path& out,
                         const BackendOptions& backend, const std::vector<std::string>& filters = {},

@@ -50,8 +50,7 @@ std::vector<Case> chosenCases(const TechniqueRegistry& registry, const Options& 
 
 int run(const Options& options) {
   if (!options.out.empty()) {
-    std::error_code error;
-    fs::create_directories(options.out, error);
+    createFolder(options.out);
     checkWritable(options.out / "stress.md");
   }
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());

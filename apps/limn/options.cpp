@@ -143,6 +143,12 @@ fs::path findEnvironment(const fs::path& nameOrFile) {
       nameOrFile.string()));
 }
 
+void createFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw Error(fmt::format("folder '{}' cannot be created: {}", folder.string(), error.message()));
+}
+
 void checkWritable(const fs::path& file) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored))

@@ -74,6 +74,9 @@ std::filesystem::path findEnvironment(const std::filesystem::path& nameOrFile);
 /// `file` in `folder` of what was built or installed with limn; empty when it is not there.
 std::filesystem::path findShared(const std::filesystem::path& folder, const std::filesystem::path& file);
 
+/// With all folders above it. Throws Error.
+void createFolder(const std::filesystem::path& folder);
+
 /// Throws Error unless files can be written beside `file`: asked before long work, which would be lost.
 void checkWritable(const std::filesystem::path& file);
 

@@ -9,14 +9,6 @@
 namespace limn::bench {
 namespace {
 
-double shadowMs(const Row& row) {
-  return row.cost.split.maps + row.cost.split.filters + row.cost.split.technique;
-}
-
-const Metrics& errorOf(const Row& row) {
-  return row.penumbra ? *row.penumbra : row.error;
-}
-
 /// The quickest of the technique's rows that is not above `limit`.
 template <class Error>
 const Row* quickest(std::span<const Row> rows, const std::string& technique, double limit, Error error) {
@@ -26,14 +18,6 @@ const Row* quickest(std::span<const Row> rows, const std::string& technique, dou
     if (best == nullptr || row.cost.frameMs.median < best->cost.frameMs.median) best = &row;
   }
   return best;
-}
-
-/// The ratio of the frames' times, with its interval where the single times are known.
-std::string frameRatio(const Row& slow, const Row& fast) {
-  const FrameTime &a = slow.cost.frameMs, &b = fast.cost.frameMs;
-  if (a.samples.empty() || b.samples.empty()) return fmt::format("{:.2f}", a.median / b.median);
-  const Ratio ratio = ratioOfMedians(a.samples, b.samples);
-  return fmt::format("{:.2f} ({:.2f} to {:.2f})", ratio.value, ratio.low, ratio.high);
 }
 
 std::string ratios(const Row& slow, const Row& fast) {
@@ -48,6 +32,21 @@ std::string atEqual(const Row* row, const Row& against) {
 }
 
 }  // namespace
+
+double shadowMs(const Row& row) {
+  return row.cost.split.maps + row.cost.split.filters + row.cost.split.technique;
+}
+
+const Metrics& errorOf(const Row& row) {
+  return row.penumbra ? *row.penumbra : row.error;
+}
+
+std::string frameRatio(const Row& slow, const Row& fast) {
+  const FrameTime &a = slow.cost.frameMs, &b = fast.cost.frameMs;
+  if (a.samples.empty() || b.samples.empty()) return fmt::format("{:.2f}", a.median / b.median);
+  const Ratio ratio = ratioOfMedians(a.samples, b.samples);
+  return fmt::format("{:.2f} ({:.2f} to {:.2f})", ratio.value, ratio.low, ratio.high);
+}
 
 std::string rowName(const Row& row) {
   std::string name = row.what.title.empty() ? row.what.technique : row.what.title;

@@ -15,6 +15,16 @@ inline bool isTimed(const Row& row) {
   return row.failure.empty() && row.cost.frameMs.n > 0;
 }
 
+/// Milliseconds of maps, filters and the technique's passes.
+LIMN_API double shadowMs(const Row& row);
+
+/// In the penumbra where that is known, else of the whole picture.
+LIMN_API const Metrics& errorOf(const Row& row);
+
+/// How many times as long the first row's frame takes, with the interval where the single times are known;
+/// both timed.
+LIMN_API std::string frameRatio(const Row& slow, const Row& fast);
+
 /// The row for people: its title, or the technique with its parameters.
 LIMN_API std::string rowName(const Row& row);
 

@@ -11,10 +11,6 @@
 namespace limn::bench {
 namespace {
 
-const Metrics& errorOf(const Row& row) {
-  return row.penumbra ? *row.penumbra : row.error;
-}
-
 /// By how much the mean squared errors may differ by chance.
 double noiseOfDifference(const Metrics& a, const Metrics& b) {
   const double sigma = std::max(a.noise_floor.value_or(0), b.noise_floor.value_or(0)) / 3;

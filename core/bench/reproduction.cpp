@@ -10,7 +10,6 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/bench/comparison.h"
-#include "core/bench/ratio.h"
 
 namespace limn::bench {
 namespace {
@@ -78,10 +77,6 @@ const Row* find(std::span<const Row> rows, const std::vector<std::string>& parts
   return found;
 }
 
-double shadowMs(const Row& row) {
-  return row.cost.split.maps + row.cost.split.filters + row.cost.split.technique;
-}
-
 std::string ratioText(const Claim& claim, const Row& slow, const Row& fast) {
   switch (claim.measure) {
     case ClaimMeasure::memory:
@@ -92,11 +87,7 @@ std::string ratioText(const Claim& claim, const Row& slow, const Row& fast) {
     case ClaimMeasure::frame:
       break;
   }
-  const FrameTime &a = slow.cost.frameMs, &b = fast.cost.frameMs;
-  if (a.samples.empty() || b.samples.empty())
-    return b.median > 0 ? fmt::format("{:.2f}", a.median / b.median) : "-";
-  const Ratio ratio = ratioOfMedians(a.samples, b.samples);
-  return fmt::format("{:.2f} ({:.2f} to {:.2f})", ratio.value, ratio.low, ratio.high);
+  return fast.cost.frameMs.median > 0 ? frameRatio(slow, fast) : "-";
 }
 
 const char* name(ClaimMeasure measure) {

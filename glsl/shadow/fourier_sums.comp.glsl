@@ -6,23 +6,10 @@
 // VERTICAL 1: the images of one texture, `integer image4` or of one component.
 #include "glsl/fourier_shadow.glsl"
 
+#include "glsl/shadow/scan_layout.glsl"
+
 #if SHARED
-#if VERTICAL
-#define LINES 16  // neighbouring columns, so that neighbouring threads meet neighbouring texels
-#define LENGTH 16
-layout(local_size_x = LINES, local_size_y = LENGTH) in;
-#define LOCAL_LINE int(gl_LocalInvocationID.x)
-#define LOCAL_POSITION int(gl_LocalInvocationID.y)
-#else
-#define LINES 4
-#define LENGTH 64
-layout(local_size_x = LENGTH, local_size_y = LINES) in;
-#define LOCAL_LINE int(gl_LocalInvocationID.y)
-#define LOCAL_POSITION int(gl_LocalInvocationID.x)
-#endif
 shared ivec4 partial_sums[2][LINES][LENGTH];
-#else
-layout(local_size_x = 16) in;
 #endif
 
 #if VERTICAL
