@@ -32,6 +32,7 @@
 #define LIMN_CONST constexpr
 #define LIMN_OUT(T) T&
 #define LIMN_INOUT(T) T&
+#define LIMN_PRECISE
 
 // A std140 uniform block or an std430 buffer element. Members are float, int, uint, vec4, uvec4, ivec4, mat4 and
 // arrays of the 16-byte ones only, so that both layouts agree with C++.
@@ -50,6 +51,7 @@
 #define LIMN_CONST const
 #define LIMN_OUT(T) out T
 #define LIMN_INOUT(T) inout T
+#define LIMN_PRECISE precise
 #define LIMN_UNIFORM_BLOCK(NAME, BINDING) layout(std140, binding = BINDING) uniform NAME {
 #define LIMN_END_UNIFORM_BLOCK(INSTANCE) \
   }                                      \

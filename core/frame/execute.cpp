@@ -87,6 +87,7 @@ void executePasses(Graph& graph, Timing timing, PassContext& context) {
   graph.firstFrame = false;
   for (uint32_t p : graph.order) {
     Pass& pass = graph.passes[p];
+    pass.triangles = 0;
     barriers |= pass.barriers;  // those of a pass that is skipped are left to the next that runs
     if (!pass.run) continue;
     runPass(graph, p, barriers, timing, context);

@@ -107,6 +107,8 @@ class LIMN_API PassContext {
   };
   void bindFramebuffer(std::initializer_list<Target> colours, Target depth) const;
   void bindFramebuffer(std::initializer_list<Target> colours) const { bindFramebuffer(colours, Target{}); }
+  /// For --stats: the pass draws so many triangles (on top of what it said before), views counted.
+  void countTriangles(uint64_t triangles) const;
   /// glDispatchCompute over ceil(size / group).
   void dispatch(int width, int height, int depth, int groupX, int groupY, int groupZ = 1) const;
 
@@ -149,8 +151,9 @@ LIMN_API std::string_view name(PassState state);
 struct PassReport {
   std::string name, technique;
   PassState state = PassState::run;
-  std::string reason;  ///< why it was left out or cached; empty for run
-  int64_t bytes = 0;   ///< of the resources the pass is the first to write
+  std::string reason;      ///< why it was left out or cached; empty for run
+  int64_t bytes = 0;       ///< of the resources the pass is the first to write
+  uint64_t triangles = 0;  ///< drawn in the last frame
   std::vector<std::string> reads, writes;
   GLbitfield barriers = 0;  ///< glMemoryBarrier bits issued before the pass
 };

@@ -80,9 +80,10 @@ struct Pass {
   bool alwaysRun = false;           ///< cacheable in vain: its inputs change within the frame
 
   // Running.
-  bool valid = false;  ///< the outputs of an earlier frame are still there
-  bool run = true;     ///< in the last frame
-  bool timed = false;  ///< ran in the last frame with timing
+  bool valid = false;      ///< the outputs of an earlier frame are still there
+  bool run = true;         ///< in the last frame
+  bool timed = false;      ///< ran in the last frame with timing
+  uint64_t triangles = 0;  ///< drawn in the last frame
   std::array<gpu::Query, 2> queries;
   double milliseconds = 0;
 };

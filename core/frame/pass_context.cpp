@@ -166,6 +166,11 @@ void PassContext::bindFramebuffer(std::initializer_list<Target> colours, Target 
   gl().Viewport(0, 0, entry.width, entry.height);
 }
 
+void PassContext::countTriangles(uint64_t triangles) const {
+  Graph& graph = *graph_.implementation_;
+  graph.passes[graph.current].triangles += triangles;
+}
+
 void PassContext::dispatch(int width, int height, int depth, int groupX, int groupY, int groupZ) const {
   const auto groups = [](int size, int group) { return static_cast<GLuint>((size + group - 1) / group); };
   gl().DispatchCompute(groups(width, groupX), groups(height, groupY), groups(depth, groupZ));

@@ -23,6 +23,7 @@ PassReport report(const Graph& graph, uint32_t index) {
   row.state = !pass.kept ? PassState::leftOut : pass.run ? PassState::run : PassState::cached;
   row.reason = !pass.kept ? pass.reason : pass.run ? "" : "inputs unchanged";
   row.barriers = pass.barriers;
+  row.triangles = pass.triangles;
   std::vector<uint32_t> counted;
   for (const ResourceAccess& a : pass.accesses) {
     (a.write() ? row.writes : row.reads).push_back(described(graph, a));

@@ -94,7 +94,8 @@ FrameStats measure(Renderer& renderer, int frames, int warmup) {
   }
   stats.passSumMs = quartiles(samples.sums).median;
   for (const frame::PassReport& report : renderer.explain()) {
-    PassStats pass{report.name, report.technique, report.state, report.reason, {}, report.bytes};
+    PassStats pass{report.name, report.technique, report.state,    report.reason,
+                   {},          report.bytes,     report.triangles};
     const auto found = position.find({report.technique, report.name});
     if (report.state == frame::PassState::run && found != position.end())
       pass.ms = quartiles(samples.ms[found->second]);
@@ -115,7 +116,8 @@ std::string toJson(const FrameStats& stats) {
                       {"state", frame::name(pass.state)},
                       {"reason", pass.reason},
                       {"ms", toJsonValue(pass.ms)},
-                      {"bytes", pass.bytes}});
+                      {"bytes", pass.bytes},
+                      {"triangles", pass.triangles}});
   Json shadowMaps = Json::array();
   for (const ShadowMapFit& fit : stats.shadowMaps)
     shadowMaps.push_back({{"light", fit.light},
@@ -164,7 +166,8 @@ FrameStats frameStatsFromJson(const std::string& text) {
     stats.memoryBytes = json.at("memory_bytes");
     for (const Json& pass : json.at("passes"))
       stats.passes.push_back({pass.at("name"), pass.at("technique"), stateFrom(pass.at("state")),
-                              pass.at("reason"), quartilesFrom(pass.at("ms")), pass.at("bytes")});
+                              pass.at("reason"), quartilesFrom(pass.at("ms")), pass.at("bytes"),
+                              pass.value("triangles", uint64_t{0})});
     for (const Json& fit : json.at("shadow_maps"))
       stats.shadowMaps.push_back({fit.at("light"), fit.at("projection"), fit.at("layers"), fit.at("near"),
                                   fit.at("far"), fit.at("half_angle")});

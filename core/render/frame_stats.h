@@ -25,6 +25,7 @@ struct PassStats {
   std::string reason;
   Quartiles ms;
   int64_t bytes = 0;
+  uint64_t triangles = 0;  ///< drawn in a frame, views counted
 };
 
 /// How the shadow maps of one light lay in the last frame.

@@ -153,6 +153,7 @@ void GpuScene::drawGBuffer(const frame::PassContext& context, const SceneHandles
   draws.upload(scene.device);
   if (draws.runs.empty()) return;
 
+  context.countTriangles(draws.triangles);
   context.bindUniform(glsl::FrameBlock::binding, handles.frame);
   context.bindStorage(0, handles.instances);
   context.bindStorage(2, handles.geometry);
@@ -190,6 +191,7 @@ void GpuScene::drawDepth(const frame::PassContext& context, const SceneHandles& 
 
   context.bindStorage(0, handles.instances);
   context.bindStorage(1, handles.materials);
+  context.countTriangles(draws.triangles);
   scene.bindVertices(draws.entryBuffer);
   gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, draws.commandBuffer.id());
   const ReversedDepth reversed(gl);

@@ -1,0 +1,189 @@
+#include "core/indirect/paraboloid_maps.h"
+
+#include <gmock/gmock.h>
+
+#include "core/base/error.h"
+#include "tests/gpu/gl_test.h"
+#include "tests/gpu/test_scenes.h"
+
+namespace limn {
+namespace {
+
+using namespace limn::test;
+using glm::vec3;
+
+struct Drawn {
+  std::vector<glsl::ShadowView> views;
+  std::vector<float> depth;
+  int size = 0;
+  uint64_t triangles = 0;
+
+  float stored(int map, int x, int y) const {
+    return depth[static_cast<size_t>((map * size + y) * size + x)];
+  }
+  glm::vec2 place(int x, int y) const {
+    return (glm::vec2(x, y) + 0.5f) / (0.5f * static_cast<float>(size)) - 1.f;
+  }
+  vec3 direction(int map, int x, int y) const {
+    return glsl::shadow_world_offset(views[static_cast<size_t>(map)],
+                                     glsl::paraboloid_direction(place(x, y)));
+  }
+};
+
+class ParaboloidMapsTest : public GlTest {
+ protected:
+  Drawn draw(const scene::Scene& scene, const scene::Pose& pose, std::vector<glsl::ShadowView> views,
+             indirect::ParaboloidDesc desc) {
+    scene::GpuScene gpuScene(device(), scene);
+    gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
+    frame::ResourcePool pool(device());
+    frame::FrameGraph graph;
+    const gpu::Buffer buffer = gpu::Buffer::of<glsl::ShadowView>(device(), "views", views);
+    indirect::ParaboloidMapPass pass;
+    const SceneHandles handles = gpuScene.import(graph);
+    const indirect::ParaboloidMaps maps =
+        pass.add(graph, gpuScene, handles, graph.importBuffer("views", buffer), desc);
+    graph.output(maps.depth);
+    graph.prepare(device(), shaders(), pool);
+    graph.execute();
+    Drawn out{.views = {views.begin() + desc.first, views.begin() + desc.first + desc.count},
+              .size = desc.size};
+    out.depth.resize(static_cast<size_t>(desc.count * desc.size * desc.size));
+    graph.texture(maps.depth).read(0, GL_RED, GL_FLOAT, out.depth.data(), out.depth.size() * sizeof(float));
+    for (const frame::PassReport& row : graph.explain()) out.triangles += row.triangles;
+    gpuScene.forget();
+    return out;
+  }
+};
+
+/// A box of twelve large triangles, seen from inside.
+scene::Primitive boxPrimitive(vec3 half, int material) {
+  scene::Primitive p;
+  for (int i = 0; i < 8; ++i)
+    p.positions.push_back(half * vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+  p.normals.assign(8, {0, 1, 0});
+  p.tangents.assign(8, {1, 0, 0, 1});
+  p.uvs.assign(8, {0, 0});
+  p.indices = {0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1,
+               2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3};
+  p.material = material;
+  return finish(p);
+}
+
+/// Where a ray from inside the box leaves it.
+float leaves(vec3 from, vec3 along, vec3 half) {
+  float t = 1e30f;
+  for (int i = 0; i < 3; ++i)
+    if (along[i] != 0) t = std::min(t, ((along[i] > 0 ? half[i] : -half[i]) - from[i]) / along[i]);
+  return t;
+}
+
+/// Twelve triangles as large as the room: exact for every texel, without cracks, at every scale.
+TEST_F(ParaboloidMapsTest, ARoomOfLargeTrianglesIsExactFromEveryView) {
+  for (const float scale : {1.f, 1e-4f, 1e4f}) {
+    const vec3 half = scale * vec3(2, 1.5f, 1);
+    scene::Scene scene;
+    addMesh(scene, boxPrimitive(half, addMaterial(scene)));
+    scene::Pose pose;
+    addInstance(scene, pose, 0);
+    const float far = 10 * scale;
+    std::vector<glsl::ShadowView> views;
+    const vec3 origins[] = {{0, 0, 0}, {1.9f, -1.4f, 0.9f}, {-1.2f, -1.499f, 0.3f}, {0.4f, 1.2f, -0.99f}};
+    const vec3 axes[] = {{0, 1, 0}, {-1, 0.2f, -0.4f}, {0, 1, 0}, {0.3f, 0.1f, 1}};
+    for (uint32_t i = 0; i < 4; ++i)
+      views.push_back(
+          glsl::paraboloid_view(scale * origins[i], glm::normalize(axes[i]), 1e-4f * scale, far, i, 96));
+    const Drawn drawn = draw(scene, pose, views, {.count = 4, .size = 96});
+    EXPECT_EQ(drawn.triangles, 48u);
+    for (int map = 0; map < 4; ++map)
+      for (int y = 0; y < 96; ++y)
+        for (int x = 0; x < 96; ++x) {
+          const glm::vec2 p = drawn.place(x, y);
+          const glsl::ShadowView& view = drawn.views[static_cast<size_t>(map)];
+          const float expected =
+              glm::dot(p, p) > 1
+                  ? 1
+                  : glsl::shadow_normalise(view, leaves(vec3(view.origin), drawn.direction(map, x, y), half));
+          ASSERT_NEAR(drawn.stored(map, x, y), expected, 2e-5f)
+              << "map " << map << " texel " << x << "," << y;
+        }
+  }
+}
+
+TEST_F(ParaboloidMapsTest, ASphereOfSmallTriangles) {
+  scene::Scene scene;
+  addMesh(scene, spherePrimitive(1, addMaterial(scene), 96));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  const std::vector<glsl::ShadowView> views = {
+      glsl::paraboloid_view({0.5f, 0, 3}, {0, 0, -1}, 0.01f, 8, 0, 128),
+      glsl::paraboloid_view({0, 0, -3}, {0, 0, -1}, 0.01f, 8, 1, 128)};
+  const Drawn drawn = draw(scene, pose, views, {.count = 2, .size = 128});
+  int covered = 0;
+  for (int y = 0; y < 128; ++y)
+    for (int x = 0; x < 128; ++x) {
+      EXPECT_EQ(drawn.stored(1, x, y), 1) << "behind the hemisphere";
+      if (drawn.stored(0, x, y) >= 1) continue;
+      ++covered;
+      const vec3 p = vec3(views[0].origin) +
+                     glsl::shadow_metres(views[0], drawn.stored(0, x, y)) * drawn.direction(0, x, y);
+      EXPECT_NEAR(glm::length(p), 1, 1e-3f);
+    }
+  // The sphere is a circle of half angle asin(1 / |origin|), which covers the share sin^2 / (cos theta + cos
+  // a)^2.
+  const vec3 towards = glm::normalize(vec3(-0.5f, 0, -3));
+  const float a = std::asin(1 / std::sqrt(9.25f));
+  const float width = glsl::paraboloid_kernel(glsl::shadow_view_axes(views[0], towards), 2 * a).width;
+  EXPECT_NEAR(covered, 0.25f * glsl::pi * width * width * 128 * 128, 12);
+}
+
+TEST_F(ParaboloidMapsTest, WhatIsNearerThanNearIsNotSeen) {
+  scene::Scene scene;
+  addMesh(scene, spherePrimitive(1, addMaterial(scene), 24));
+  addMesh(scene, spherePrimitive(3, addMaterial(scene), 24));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addInstance(scene, pose, 1);
+  const vec3 origin(0.2f, 0.1f, 0), axis(0, 0, 1);
+  const std::vector<glsl::ShadowView> views = {glsl::paraboloid_view(origin, axis, 0.1f, 8, 0, 64),
+                                               glsl::paraboloid_view(origin, axis, 1.5f, 8, 1, 64)};
+  const Drawn drawn = draw(scene, pose, views, {.count = 2, .size = 64});
+  EXPECT_LT(glsl::shadow_metres(views[0], drawn.stored(0, 32, 32)), 1.1f);
+  EXPECT_GT(glsl::shadow_metres(views[1], drawn.stored(1, 32, 32)), 2.7f);
+}
+
+/// Batches: part of the views to an array of their own; 16 bits are as good to half a step.
+TEST_F(ParaboloidMapsTest, ABatchOfManyViewsInSixteenBits) {
+  scene::Scene scene;
+  addMesh(scene, spherePrimitive(3, addMaterial(scene), 12));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  std::vector<glsl::ShadowView> views;
+  constexpr uint32_t batch = 50;
+  for (uint32_t i = 0; i < 2 * batch; ++i) {
+    const vec3 origin(0.01f * static_cast<float>(i), 0, 0.1f);
+    views.push_back(glsl::paraboloid_view(origin, {0, 0, 1}, 0.1f, 10, i % batch, 16));
+  }
+  const Drawn fine = draw(scene, pose, views, {.count = batch, .first = batch, .size = 16});
+  const Drawn coarse =
+      draw(scene, pose, views, {.count = batch, .first = batch, .size = 16, .format = GL_R16});
+  const Drawn first = draw(scene, pose, views, {.count = batch, .size = 16});
+  EXPECT_NE(fine.depth, first.depth);
+  for (size_t i = 0; i < fine.depth.size(); ++i) ASSERT_NEAR(fine.depth[i], coarse.depth[i], 0.51f / 65535);
+}
+
+TEST_F(ParaboloidMapsTest, BatchesFitTheDevice) {
+  EXPECT_GE(indirect::paraboloidBatch(device(), 128), 1024);
+  EXPECT_GE(indirect::paraboloidBatch(device(), 256), 1024);
+  EXPECT_LE(indirect::paraboloidBatch(device(), 16), device().limits().maxArrayLayers);
+  scene::Scene scene;
+  addMesh(scene, spherePrimitive(3, addMaterial(scene), 4));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  const std::vector<glsl::ShadowView> views(4);
+  EXPECT_THROW(draw(scene, pose, views, {.count = 0, .size = 16}), UsageError);
+  EXPECT_THROW(draw(scene, pose, views, {.count = 1 << 20, .size = 256}), UsageError);
+}
+
+}  // namespace
+}  // namespace limn
