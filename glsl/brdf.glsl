@@ -105,18 +105,32 @@ LIMN_FN float brdf_diffuse_weight(SurfaceBrdf s, float v_dot_h) {
   return 1.0f - mix(s.dielectric_f0, s.dielectric_f90, schlick_weight(v_dot_h));
 }
 
-// f(v, l) in 1/sr, without the cosine; 0 where n.l <= 0. Reciprocal where both directions are above the
-// surface.
-LIMN_FN vec3 brdf(SurfaceBrdf s, vec3 n, vec3 v, vec3 l) {
+// f(v, l) in 1/sr, in its parts.
+struct BrdfParts {
+  float diffuse;  // per unit of the diffuse albedo
+  vec3 specular;
+};
+
+LIMN_FN BrdfParts brdf_parts(SurfaceBrdf s, vec3 n, vec3 v, vec3 l) {
+  BrdfParts parts;
   float n_dot_l = dot(n, l);
-  if (!(n_dot_l > 0.0f)) return vec3(0.0f);
-  if (brdf_is_lambertian(s)) return s.diffuse * inverse_pi;
   float n_dot_v = max(dot(n, v), brdf_min_cosine);
   HalfVector half_way = half_vector(n, v, l);
   vec3 fresnel = mix(s.f0, vec3(s.f90), schlick_weight(half_way.v_dot_h));
   float lobe =
       ggx_distribution(half_way.n_dot_h, half_way.sine2, s.alpha) * ggx_visibility(n_dot_v, n_dot_l, s.alpha);
-  return s.diffuse * (inverse_pi * brdf_diffuse_weight(s, half_way.v_dot_h)) + fresnel * lobe;
+  parts.diffuse = inverse_pi * brdf_diffuse_weight(s, half_way.v_dot_h);
+  parts.specular = fresnel * lobe;
+  return parts;
+}
+
+// f(v, l) in 1/sr, without the cosine; 0 where n.l <= 0. Reciprocal where both directions are above the
+// surface.
+LIMN_FN vec3 brdf(SurfaceBrdf s, vec3 n, vec3 v, vec3 l) {
+  if (!(dot(n, l) > 0.0f)) return vec3(0.0f);
+  if (brdf_is_lambertian(s)) return s.diffuse * inverse_pi;
+  BrdfParts parts = brdf_parts(s, n, v, l);
+  return s.diffuse * parts.diffuse + parts.specular;
 }
 
 // A normal of the GGX distribution as seen from v (local frame, n = +z, v.z > 0): density ggx_visible_pdf.

@@ -34,6 +34,12 @@ LIMN_FN bool light_is_distant_rectangle(Light light) {
   return light.info.x == light_directional && light.axis_u.w > 0.0f;
 }
 
+// Whether points on the light differ: rectangles, and directional lights with an angular diameter or sides.
+LIMN_FN bool light_has_extent(Light light) {
+  return light.info.x == light_rectangle || light_is_distant_rectangle(light) ||
+         (light.info.x == light_directional && light.cone.w > 0.0f);
+}
+
 // Of a rectangle, distant or not, W/(sr m^2).
 LIMN_FN vec3 rectangle_radiance(Light light) {
   return light.info.x == light_directional ? vec3(light.emission) / light.emission.w : vec3(light.emission);

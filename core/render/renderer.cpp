@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/indirect/virtual_lights.h"
 #include "core/render/deferred.h"
 #include "core/scene/gpu_scene.h"
 #include "core/shadow/shadow_map.h"
@@ -105,6 +106,7 @@ struct Renderer::Implementation {
   frame::ResourcePool pool;
   scene::GpuScene gpuScene;
   shadow::ShadowMapService shadowMaps;
+  indirect::VirtualLightService virtualLights;
   Deferred deferred;
   scene::GBufferPass gbufferPass;
   Settings settings;
@@ -132,6 +134,7 @@ struct Renderer::Implementation {
         pool(gpuDevice),
         gpuScene(gpuDevice, shown),
         shadowMaps(gpuDevice, gpuScene),
+        virtualLights(shadowMaps),
         deferred(gpuDevice, shown) {
     shaders.mount("", embeddedSources(), shaderOverride);
   }
@@ -155,8 +158,9 @@ struct Renderer::Implementation {
 
   frame::TextureHandle ask(Use& use, Term term, std::span<const uint32_t> lights,
                            frame::TextureHandle target) {
-    const TechniqueInputs inputs{scene,   pose,    gpuScene,     shadowMaps, use.settings->parameters,
-                                 handles, gbuffer, settings.size};
+    const TechniqueInputs inputs{scene,      pose,          gpuScene,
+                                 shadowMaps, virtualLights, use.settings->parameters,
+                                 handles,    gbuffer,       settings.size};
     return use.technique->addPasses(*graph, inputs, {term, lights, target});
   }
 
@@ -293,6 +297,7 @@ struct Renderer::Implementation {
     else
       graph->leaveOut("gbuffer", "core", "the scene has no geometry");
     shadowMaps.begin(*graph, handles, pose);
+    virtualLights.begin(*graph, handles);
     output = settings.output == Output::visibility ? addVisibility() : addRadiance();
     graph->output(output);
     display = {};

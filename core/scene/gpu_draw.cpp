@@ -136,6 +136,41 @@ void GpuScene::Implementation::bindVertices(const gpu::Buffer& entries) const {
   if (!geometry.hasColours()) gl.VertexAttrib4f(4, 1, 1, 1, 1);
 }
 
+/// All views together (`layered`) or one after the other, and to the GPU.
+void GpuScene::Implementation::fillViews(DrawList::Implementation& list, const std::vector<uint32_t>& order,
+                                         std::span<const DepthView> views, bool layered,
+                                         bool depthOnly) const {
+  list.clear();
+  if (layered) {
+    fill(list, order, views, depthOnly);
+  } else {
+    for (const DepthView& view : views) fill(list, order, {&view, 1}, depthOnly);
+  }
+  list.viewRuns.push_back(static_cast<uint32_t>(list.runs.size()));
+  list.upload(device);
+}
+
+/// What the shaders of surfaces read, besides the material of each run.
+void GpuScene::Implementation::bindSurfaces(const frame::PassContext& context, const SceneHandles& handles,
+                                            const DrawList::Implementation& list) const {
+  const gl::Functions& gl = device.gl();
+  context.bindStorage(0, handles.instances);
+  context.bindStorage(2, handles.geometry);
+  gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, geometry.indices().id());
+  bindVertices(list.entryBuffer);
+  gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, list.commandBuffer.id());
+}
+
+gpu::Program& GpuScene::Implementation::beginSurfaceRun(const frame::PassContext& context,
+                                                        const SurfacePrograms& programs,
+                                                        const DrawRun& run) const {
+  gpu::Program& program = context.program(programs.at(materials.variant(run.material)));
+  program.use();
+  materials.bind(run.material);
+  device.gl().FrontFace(run.mirrored ? GL_CW : GL_CCW);
+  return program;
+}
+
 void GpuScene::Implementation::drawRun(const DrawRun& run) const {
   const size_t offset = run.firstCommand * sizeof(DrawCommand);
   device.gl().MultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset),
@@ -155,22 +190,34 @@ void GpuScene::drawGBuffer(const frame::PassContext& context, const SceneHandles
 
   context.countTriangles(draws.triangles);
   context.bindUniform(glsl::FrameBlock::binding, handles.frame);
-  context.bindStorage(0, handles.instances);
-  context.bindStorage(2, handles.geometry);
-  gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, scene.geometry.indices().id());
-  scene.bindVertices(draws.entryBuffer);
-  gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, draws.commandBuffer.id());
+  scene.bindSurfaces(context, handles, draws);
   const ReversedDepth reversed(gl);
   gl.CullFace(GL_BACK);
   for (const DrawRun& run : draws.runs) {
-    gpu::Program& program = context.program(programs.at(scene.materials.variant(run.material)));
-    program.use();
+    gpu::Program& program = scene.beginSurfaceRun(context, programs, run);
     program.set("near_plane", scene.nearPlane);
-    scene.materials.bind(run.material);
-    gl.FrontFace(run.mirrored ? GL_CW : GL_CCW);
     (run.doubleSided ? gl.Disable : gl.Enable)(GL_CULL_FACE);
     scene.drawRun(run);
   }
+}
+
+void GpuScene::drawSurfaces(const frame::PassContext& context, const SceneHandles& handles,
+                            const SurfacePrograms& programs, std::span<const DepthView> views, DrawList& list,
+                            bool layered, const std::function<void(const DepthView&)>& beginView) {
+  Implementation& scene = *implementation_;
+  const gl::Functions& gl = scene.device.gl();
+  DrawList::Implementation& draws = *list.implementation_;
+  scene.fillViews(draws, scene.cameraOrder, views, layered, false);
+  if (draws.runs.empty()) return;
+
+  scene.bindSurfaces(context, handles, draws);
+  const ReversedDepth reversed(gl);
+  gl.Disable(GL_CULL_FACE);
+  draws.forEachRun([&](const DrawRun& run, size_t part, bool first) {
+    if (first && !layered) beginView(views[part]);
+    scene.beginSurfaceRun(context, programs, run);
+    scene.drawRun(run);
+  });
 }
 
 void GpuScene::drawDepth(const frame::PassContext& context, const SceneHandles& handles,
@@ -179,14 +226,7 @@ void GpuScene::drawDepth(const frame::PassContext& context, const SceneHandles& 
   Implementation& scene = *implementation_;
   const gl::Functions& gl = scene.device.gl();
   DrawList::Implementation& draws = *list.implementation_;
-  draws.clear();
-  if (layered) {
-    scene.fill(draws, scene.depthOrder, views, true);
-  } else {
-    for (const DepthView& view : views) scene.fill(draws, scene.depthOrder, {&view, 1}, true);
-  }
-  draws.viewRuns.push_back(static_cast<uint32_t>(draws.runs.size()));
-  draws.upload(scene.device);
+  scene.fillViews(draws, scene.depthOrder, views, layered, true);
   if (draws.runs.empty()) return;
 
   context.bindStorage(0, handles.instances);
@@ -196,16 +236,12 @@ void GpuScene::drawDepth(const frame::PassContext& context, const SceneHandles& 
   gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, draws.commandBuffer.id());
   const ReversedDepth reversed(gl);
   gl.Disable(GL_CULL_FACE);
-  for (size_t part = 0; part + 1 < draws.viewRuns.size(); ++part) {
-    if (draws.viewRuns[part] == draws.viewRuns[part + 1]) continue;
-    if (!layered) beginView(views[part]);
-    for (uint32_t r = draws.viewRuns[part]; r < draws.viewRuns[part + 1]; ++r) {
-      const DrawRun& run = draws.runs[r];
-      context.program(run.masked ? programs.masked : programs.opaque).use();
-      if (run.masked) scene.materials.bindBaseColour(run.material);
-      scene.drawRun(run);
-    }
-  }
+  draws.forEachRun([&](const DrawRun& run, size_t part, bool first) {
+    if (first && !layered) beginView(views[part]);
+    context.program(run.masked ? programs.masked : programs.opaque).use();
+    if (run.masked) scene.materials.bindBaseColour(run.material);
+    scene.drawRun(run);
+  });
 }
 
 }  // namespace limn::scene

@@ -110,6 +110,12 @@ class LIMN_API GpuScene {
   void drawGBuffer(const frame::PassContext& context, const SceneHandles& handles,
                    const SurfacePrograms& programs, DrawList& list);
 
+  /// Draws surfaces as all `views` see them, both sides (gl_FrontFacing tells them apart): drawDepth() with
+  /// the materials and bindings of drawGBuffer(), without its frame block. `programs`: of all variants.
+  void drawSurfaces(const frame::PassContext& context, const SceneHandles& handles,
+                    const SurfacePrograms& programs, std::span<const DepthView> views, DrawList& list,
+                    bool layered, const std::function<void(const DepthView&)>& beginView);
+
   /// Draws depth of all `views`, both sides of every surface. `layered`: one call for all views, whose vertex
   /// shader writes gl_Layer; otherwise `beginView` is called before each view to bind its target. The vertex
   /// shader gets the instance and view index in attribute 1 (uvec2), instances in storage binding 0.

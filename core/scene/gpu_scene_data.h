@@ -36,6 +36,12 @@ struct DrawList::Implementation {
 
   void clear();
   void upload(gpu::Device& device);
+  /// Calls f(run, index of the view or 0 where all were drawn together, whether it is the view's first).
+  template <class F>
+  void forEachRun(const F& f) const {
+    for (size_t part = 0; part + 1 < viewRuns.size(); ++part)
+      for (uint32_t r = viewRuns[part]; r < viewRuns[part + 1]; ++r) f(runs[r], part, r == viewRuns[part]);
+  }
 };
 
 /// What drawing needs to know about one draw instance.
@@ -63,7 +69,13 @@ struct GpuScene::Implementation {
   void sort();
   void fill(DrawList::Implementation& list, const std::vector<uint32_t>& order,
             std::span<const DepthView> views, bool depthOnly) const;
+  void fillViews(DrawList::Implementation& list, const std::vector<uint32_t>& order,
+                 std::span<const DepthView> views, bool layered, bool depthOnly) const;
   void bindVertices(const gpu::Buffer& entries) const;
+  void bindSurfaces(const frame::PassContext& context, const SceneHandles& handles,
+                    const DrawList::Implementation& list) const;
+  gpu::Program& beginSurfaceRun(const frame::PassContext& context, const SurfacePrograms& programs,
+                                const DrawRun& run) const;
   void drawRun(const DrawRun& run) const;
   template <class T>
   bool upload(gpu::Buffer& buffer, const char* label, std::vector<T>& current, std::vector<T>& next);

@@ -74,6 +74,8 @@ struct Material {
 
   /// Blocks direct and indirect light in both renderers (transmission > 0, or metallic with roughness below
   /// 0.05).
+  /// No specular part whatever its textures hold (glsl::brdf_is_lambertian).
+  bool lambertian() const { return metallic == 0 && specularFactor == 0; }
   bool specularSurface() const { return transmission > 0 || (metallic >= 0.5f && roughness < 0.05f); }
 };
 
@@ -263,8 +265,9 @@ struct Pose {
   std::vector<DrawInstance> instances;
   std::vector<Deformation> deformed;
   std::vector<DynamicGeometry> dynamic;  ///< parallel to Scene::dynamic
-  std::vector<glsl::Light> lights;       ///< punctual lights in node order, then emissive quads, then the environment's
-  std::vector<std::string> lightNames;   ///< parallel to lights; "#index" where the file gives no name
+  std::vector<glsl::Light>
+      lights;  ///< punctual lights in node order, then emissive quads, then the environment's
+  std::vector<std::string> lightNames;  ///< parallel to lights; "#index" where the file gives no name
   std::vector<CameraPose> cameras;
   Bounds bounds;                       ///< world, all instances (skinned ones: conservative)
   std::vector<Transform> nodeLocal;    ///< animated transform of each node

@@ -236,9 +236,7 @@ LightLayout paraboloidLayout(const glsl::Light& light) {
 
 std::vector<glm::vec2> samplesOf(const glsl::Light& light, const ShadowMapDesc& desc) {
   if (desc.samples.empty()) return {glm::vec2(0.5f)};
-  const bool extended = light.info.x == glsl::light_rectangle || glsl::light_is_distant_rectangle(light) ||
-                        (light.info.x == glsl::light_directional && light.cone.w > 0);
-  return extended ? desc.samples : std::vector<glm::vec2>{glm::vec2(0.5f)};
+  return glsl::light_has_extent(light) ? desc.samples : std::vector<glm::vec2>{glm::vec2(0.5f)};
 }
 
 LightLayout fitLayout(const glsl::Light& light, std::span<const Bounds> boxes, const ShadowMapDesc& desc) {

@@ -6,15 +6,16 @@
 #include <cstring>
 
 #include "core/base/error.h"
+#include "core/shading/ltc_table.h"
 #include "core/shadow/light_fit.h"
+#include "core/shadow/map_raster.h"
 
 namespace limn::shadow {
 namespace {
 
-using frame::Access;
-
 constexpr int64_t memoryLimit = int64_t{4} << 30;  // bytes of one request
 constexpr int64_t keptBytesPerTexel = 8;           // linear depth, and rasterised depth beside it
+constexpr int64_t reflectiveBytesPerTexel = 8;     // normal and albedo on top
 constexpr int64_t keptLimit = int64_t{256}
                               << 20;  // bytes of all maps that are kept; what is derived comes on top
 
@@ -76,7 +77,12 @@ struct ShadowMapService::Implementation {
   std::vector<KnownFourierMaps> fourier = {};
   gpu::Sampler trilinear;
   gpu::Buffer coverage;
+  gpu::Texture ltcTable = {};  ///< what diffuse albedos depend on; uploaded when reflective maps need it
+  frame::TextureHandle ltcHandle = {};
 
+  bool lambertian() const {
+    return std::ranges::all_of(scene.scene().materials, &scene::Material::lambertian);
+  }
   void take(const scene::Pose& pose) {
     lights = pose.lights;
     lightNames = pose.lightNames;
@@ -113,11 +119,14 @@ struct ShadowMapService::Implementation {
     return layouts;
   }
   bool cacheable(const ShadowMaps& maps) const { return requests.at(maps.index)->kept; }
+  int64_t bytesOf(const Request& request) const {
+    const int64_t texel = keptBytesPerTexel + (request.desc.reflective ? reflectiveBytesPerTexel : 0);
+    return int64_t{request.maps.size} * request.maps.size * request.maps.layers * texel;
+  }
   int64_t keptBytes() const {
     int64_t bytes = 0;
     for (const auto& request : requests)
-      if (request->kept)
-        bytes += int64_t{request->maps.size} * request->maps.size * keptBytesPerTexel * request->maps.layers;
+      if (request->kept) bytes += bytesOf(*request);
     return bytes;
   }
   ShadowMaps add(std::unique_ptr<Request> made);
@@ -169,49 +178,16 @@ void ShadowMapService::Implementation::addPasses(Request& request) {
   ShadowMaps& maps = request.maps;
   request.importedViews = maps.views = graph->importBuffer("shadow views", request.viewBuffer);
   request.importedLights = maps.lights = graph->importBuffer("shadow lights", request.lightBuffer);
-  const gpu::TextureDesc desc{.target = GL_TEXTURE_2D_ARRAY,
-                              .format = GL_R32F,
-                              .width = maps.size,
-                              .height = maps.size,
-                              .layers = maps.layers};
-  gpu::TextureDesc zDesc = desc;
-  zDesc.format = GL_DEPTH_COMPONENT32F;
-
-  frame::PassBuilder raster = graph->addPass("shadow maps", "shadow");
-  scene::GpuScene::declareReads(raster, handles);
-  raster.read(maps.views, Access::storageLoad, "projections");
-  maps.depth =
-      raster.write(graph->createTexture("shadow maps", desc), Access::colourAttachment, "linear depth");
-  const frame::TextureHandle zbuffer = raster.write(graph->createTexture("shadow map z", zDesc),
-                                                    Access::depthAttachment, "hidden-surface removal");
-  const bool layered = !device.software() && device.limits().layerFromVertexShader;
-  const bool paraboloid = request.desc.projection == Projection::paraboloid;
-  const auto program = [&](bool masked) {
-    gpu::ProgramDesc d{.files = {"glsl/shadow/depth.vert.glsl", "glsl/shadow/depth.frag.glsl"},
-                       .defines = {{"LAYERED", layered ? "1" : "0"},
-                                   {"MASKED", masked ? "1" : "0"},
-                                   {"PARABOLOID", paraboloid ? "1" : "0"}}};
-    return raster.program(d);
-  };
-  scene::DrawPrograms programs;
-  programs.opaque = program(false);
-  programs.masked = scene.hasMasked() ? program(true) : programs.opaque;
-  if (request.kept) raster.cacheable();
-  raster.execute([this, &request, zbuffer, layered, paraboloid, programs](frame::PassContext& context) {
-    const gl::Functions& gl = context.gl();
-    const frame::TextureHandle depth = request.maps.depth;
-    constexpr GLfloat nothing[4] = {1, 1, 1, 1}, farthest = 0;
-    context.bindFramebuffer({{depth}}, {zbuffer});
-    gl.ClearBufferfv(GL_COLOR, 0, nothing);
-    gl.ClearBufferfv(GL_DEPTH, 0, &farthest);
-    context.bindStorage(2, request.maps.views);
-    if (paraboloid) gl.Enable(GL_CLIP_DISTANCE0);
-    scene.drawDepth(context, handles, programs, request.depthViews, request.drawList, layered,
-                    [&](const scene::DepthView& view) {
-                      context.bindFramebuffer({{depth, 0, view.layer}}, {zbuffer, 0, view.layer});
-                    });
-    if (paraboloid) gl.Disable(GL_CLIP_DISTANCE0);
-  });
+  const MapRaster raster{*graph, device, scene, handles, request.depthViews, request.drawList, request.kept};
+  if (request.desc.reflective) {
+    if (!lambertian() && !ltcHandle) {
+      if (!ltcTable) ltcTable = shading::makeLtcTexture(device);
+      ltcHandle = graph->importTexture("table of diffuse reflectance", ltcTable);
+    }
+    addReflectivePass(raster, lambertian() ? frame::TextureHandle{} : ltcHandle, maps);
+  } else {
+    addDepthPass(raster, request.desc.projection == Projection::paraboloid, maps);
+  }
 }
 
 ShadowMapService::ShadowMapService(gpu::Device& device, scene::GpuScene& scene)
@@ -224,6 +200,7 @@ void ShadowMapService::begin(frame::FrameGraph& graph, const SceneHandles& handl
   implementation_->handles = handles;
   implementation_->derived.begin(graph);
   implementation_->fourier.clear();
+  implementation_->ltcHandle = {};
   implementation_->take(pose);
 }
 
@@ -271,9 +248,8 @@ ShadowMaps ShadowMapService::Implementation::add(std::unique_ptr<Request> made) 
   made->maps.layers = static_cast<int>(made->views.size());
   made->maps.size = made->desc.size;
   made->maps.index = static_cast<uint32_t>(requests.size());
-  const int64_t before = keptBytes(),
-                bytes = int64_t{made->maps.size} * made->maps.size * keptBytesPerTexel * made->maps.layers;
-  made->kept = made->desc.cacheable && (before == 0 || before + bytes <= keptLimit);
+  const int64_t before = keptBytes();
+  made->kept = made->desc.cacheable && (before == 0 || before + bytesOf(*made) <= keptLimit);
   addPasses(*made);
   requests.push_back(std::move(made));
   return requests.back()->maps;

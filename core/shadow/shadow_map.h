@@ -40,15 +40,19 @@ struct ShadowMapDesc {
   /// Keep the maps while nothing changed, as long as all that are kept take no more than some memory. False
   /// where many batches of maps are to share one piece of memory.
   bool cacheable = true;
+  /// The maps hold what reflects the light, too: glsl/reflective_map.glsl. Not for paraboloids.
+  bool reflective = false;
   bool operator==(const ShadowMapDesc&) const = default;
 };
 
 /// The maps of a request. `lights` holds one glsl::ShadowLight per light and sample, light-major: where its
 /// layers are.
 struct ShadowMaps {
-  frame::TextureHandle depth;  ///< R32F array
-  frame::BufferHandle views;   ///< storage buffer of glsl::ShadowView, index = layer
-  frame::BufferHandle lights;  ///< storage buffer of glsl::ShadowLight
+  frame::TextureHandle depth;   ///< R32F array
+  frame::TextureHandle normal;  ///< reflective: RG16_SNORM array, geometric normal on the light's side
+  frame::TextureHandle albedo;  ///< reflective: RGBA8 array, diffuse albedo, sRGB-encoded
+  frame::BufferHandle views;    ///< storage buffer of glsl::ShadowView, index = layer
+  frame::BufferHandle lights;   ///< storage buffer of glsl::ShadowLight
   int layers = 0;
   int size = 0;
   uint32_t index = 0;  ///< of the request, for the functions below

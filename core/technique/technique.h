@@ -39,6 +39,9 @@ class GpuScene;
 namespace shadow {
 class ShadowMapService;
 }
+namespace indirect {
+class VirtualLightService;
+}
 
 /// The terms of the rendering equation a technique may answer (path classes: direct L D E, indirect L D+ D E,
 /// caustic L S+ D E, media L S* M E).
@@ -105,6 +108,7 @@ struct TechniqueInputs {
       pose;  ///< state at the time of building; moves afterwards, so read it only for its structure
   scene::GpuScene& gpuScene;  ///< draws geometry
   shadow::ShadowMapService& shadowMaps;
+  indirect::VirtualLightService& virtualLights;
   const ParameterValues& parameters;
   SceneHandles handles;
   GBuffer gbuffer;

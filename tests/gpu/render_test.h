@@ -33,7 +33,8 @@ class RenderTest : public GlTest {
     render::TechniqueUse use = technique(name);
     for (const Parameter& p : use.parameters.declared()) {
       if (!p.tradesErrorForTime || p.type != ParameterType::integer) continue;
-      const double most = std::string_view(p.unit) == "texels" ? 512 : 16;
+      const std::string_view unit(p.unit);
+      const double most = unit == "texels" ? 512 : unit == "lights" ? 256 : 16;
       if (p.defaultValue > most && p.range.low <= most) use.parameters.set(p.name, std::to_string(int(most)));
     }
     return use;
@@ -53,6 +54,16 @@ class RenderTest : public GlTest {
     for (const TechniquePlugin* plugin : registry().all())
       if (contains(plugin->info->terms, term)) names.emplace_back(plugin->info->name);
     return names;
+  }
+
+  /// Those with a picture of their own, and what shows it.
+  static std::vector<std::pair<std::string, render::Output>> techniquesAndOutputs() {
+    std::vector<std::pair<std::string, render::Output>> all;
+    for (const std::string& name : techniquesAnswering(Term::visibility))
+      all.emplace_back(name, render::Output::visibility);
+    for (const std::string& name : techniquesAnswering(Term::indirect))
+      all.emplace_back(name, render::Output::indirect);
+    return all;
   }
 
   static render::Settings settings(int width, int height, render::Output output,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/indirect/virtual_lights.h"
 #include "core/scene/gpu_scene.h"
 #include "core/shadow/shadow_map.h"
 #include "core/technique/registry.h"
@@ -50,14 +51,16 @@ class TechniqueTest : public GlTest {
     scene::GpuScene gpuScene(device(), scene);
     gpuScene.update(pose, camera, {side, side}, 0);
     shadow::ShadowMapService shadowMaps(device(), gpuScene);
+    indirect::VirtualLightService virtualLights(shadowMaps);
     frame::ResourcePool pool(device());
     scene::GBufferPass gbufferPass;
     frame::FrameGraph graph;
     const SceneHandles handles = gpuScene.import(graph);
     const GBuffer gbuffer = gbufferPass.add(graph, gpuScene, handles, {side, side});
     shadowMaps.begin(graph, handles, pose);
+    virtualLights.begin(graph, handles);
     const auto instance = plugin.create();
-    const TechniqueInputs inputs{scene,      pose,    gpuScene, shadowMaps,
+    const TechniqueInputs inputs{scene,      pose,    gpuScene, shadowMaps,  virtualLights,
                                  parameters, handles, gbuffer,  {side, side}};
     const frame::TextureHandle target =
         term == Term::visibility ? visibilityTarget(graph, lights.size()) : black(graph);

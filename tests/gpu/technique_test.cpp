@@ -28,6 +28,24 @@ TEST_F(TechniqueTest, EveryTechniqueAnswersEveryLightAlone) {
   }
 }
 
+TEST_F(TechniqueTest, IndirectLightOfEveryLightAloneAndTogether) {
+  const scene::Scene scene = asset("lights");
+  render::Renderer renderer(device(), scene);
+  for (const std::string& name : techniquesAnswering(Term::indirect)) {
+    double sum = 0;
+    for (size_t light = 0; light < renderer.pose().lights.size(); ++light) {
+      SCOPED_TRACE(name + ", light " + renderer.pose().lightNames[light]);
+      const Image alone = picture(renderer, settings(64, 48, Output::indirect, {quick(name)}, int(light)));
+      expectWithin(alone, 0, 1e6f);
+      EXPECT_GT(mean(alone), 0);
+      sum += mean(alone);
+    }
+    // What virtual lights there are depends on how many share them.
+    const Image together = picture(renderer, settings(64, 48, Output::indirect, {quick(name)}));
+    EXPECT_NEAR(mean(together) / sum, 1, 0.1) << name;
+  }
+}
+
 TEST_F(TechniqueTest, LightsTogetherAreTheSumOfTheLightsAlone) {
   const scene::Scene scene = asset("lights");
   render::Renderer renderer(device(), scene);
@@ -67,10 +85,10 @@ TEST_F(TechniqueTest, ScaleOfTheSceneDoesNotMatter) {
   for (const float factor : {1e-4f, 1e4f}) {
     const scene::Scene other = bench::stressed(scene, StressChange::sceneScale, factor);
     render::Renderer renderer(device(), scene), scaledRenderer(device(), other);
-    for (const std::string& name : techniquesAnswering(Term::visibility)) {
+    for (const auto& [name, output] : techniquesAndOutputs()) {
       SCOPED_TRACE(name + " at scale " + std::to_string(factor));
-      const Image a = picture(renderer, settings(128, 96, Output::visibility, {quick(name)}, 0));
-      const Image b = picture(scaledRenderer, settings(128, 96, Output::visibility, {quick(name)}, 0));
+      const Image a = picture(renderer, settings(128, 96, output, {quick(name)}, 0));
+      const Image b = picture(scaledRenderer, settings(128, 96, output, {quick(name)}, 0));
       EXPECT_LT(rmse(a, b), 1e-3);
       const Image c = picture(renderer, settings(128, 96, Output::final, {quick(name)}));
       const Image d = picture(scaledRenderer, settings(128, 96, Output::final, {quick(name)}));
@@ -84,7 +102,7 @@ TEST_F(TechniqueTest, ExtremeResolutionsGiveFinitePictures) {
   render::Renderer renderer(device(), scene);
   for (const auto& [width, height] :
        {std::pair(1, 1), std::pair(4096, 1), std::pair(1, 4096), std::pair(17, 3)})
-    for (const std::string& name : techniquesAnswering(Term::visibility)) {
+    for (const auto& [name, output] : techniquesAndOutputs()) {
       SCOPED_TRACE(name);
       expectWithin(picture(renderer, settings(width, height, Output::final, {quick(name)})), 0, 1e6f);
     }
@@ -96,10 +114,11 @@ TEST_F(TechniqueTest, RadianceScalesLinearlyOverTwelveDecades) {
     scene::Scene other = scene;
     for (scene::LightSource& light : other.lights) light.intensity *= factor;
     render::Renderer renderer(device(), scene), brighter(device(), other);
-    for (const std::string& name : techniquesAnswering(Term::visibility)) {
+    for (const auto& [name, output] : techniquesAndOutputs()) {
       SCOPED_TRACE(name);
-      const Image a = picture(renderer, settings(64, 48, Output::direct, {quick(name)}));
-      const Image b = picture(brighter, settings(64, 48, Output::direct, {quick(name)}));
+      const Output shown = output == Output::visibility ? Output::direct : output;
+      const Image a = picture(renderer, settings(64, 48, shown, {quick(name)}));
+      const Image b = picture(brighter, settings(64, 48, shown, {quick(name)}));
       EXPECT_NEAR(mean(b) / mean(a) / factor, 1.0, 1e-4);
     }
   }
@@ -109,7 +128,7 @@ TEST_F(TechniqueTest, CameraInsideAnObjectGivesAFinitePicture) {
   const scene::Scene scene = asset("balls");
   render::Renderer renderer(device(), scene);
   scene::CameraPose camera = renderer.pose().cameras.at(0);
-  for (const std::string& name : techniquesAnswering(Term::visibility)) {
+  for (const auto& [name, output] : techniquesAndOutputs()) {
     renderer.configure(settings(64, 48, Output::final, {quick(name)}));
     camera.worldToView = glm::mat4(1);
     camera.worldToView[3] = glm::vec4(-renderer.pose().bounds.centre(), 1);
@@ -151,14 +170,30 @@ TEST_F(TechniqueTest, TwoAnswersToDirectLightAreRefused) {
 
 TEST_F(TechniqueTest, AnEmptySceneCompilesNothingAndAllocatesOnlyTheOutput) {
   const scene::Scene scene;
+  for (const auto& [name, output] : techniquesAndOutputs()) {
+    SCOPED_TRACE(name);
+    render::Renderer renderer(device(), scene);
+    renderer.configure(settings(64, 48, Output::final, {technique(name)}));
+    const gpu::Counters before = device().counters();
+    renderer.render();
+    EXPECT_EQ(device().counters().programsCompiled, before.programsCompiled);
+    EXPECT_EQ(device().counters().textures, before.textures + 1);
+    EXPECT_EQ(device().counters().textureBytes - before.textureBytes, 64 * 48 * 16);
+    expectWithin(renderer.read(), 0, 0);
+  }
+}
+
+TEST_F(TechniqueTest, NoLightGivesNoIndirectLightAndNoPassForIt) {
+  const scene::Scene scene = bench::stressed(asset("cornell_box"), StressChange::noLight, 0);
   render::Renderer renderer(device(), scene);
-  renderer.configure(settings(64, 48, Output::final, {technique("pcss")}));
-  const gpu::Counters before = device().counters();
-  renderer.render();
-  EXPECT_EQ(device().counters().programsCompiled, before.programsCompiled);
-  EXPECT_EQ(device().counters().textures, before.textures + 1);
-  EXPECT_EQ(device().counters().textureBytes - before.textureBytes, 64 * 48 * 16);
-  expectWithin(renderer.read(), 0, 0);
+  for (const std::string& name : techniquesAnswering(Term::indirect)) {
+    SCOPED_TRACE(name);
+    expectWithin(picture(renderer, settings(32, 24, Output::indirect, {quick(name)})), 0, 0);
+    for (const auto& pass : renderer.explain())
+      if (pass.technique == name) {
+        EXPECT_EQ(pass.state, frame::PassState::leftOut) << pass.name;
+      }
+  }
 }
 
 TEST_F(TechniqueTest, StaticShadowMapsAreNotRedrawn) {

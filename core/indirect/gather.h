@@ -1,0 +1,127 @@
+// Indirect light gathered from virtual point lights: what every technique with virtual lights has in common.
+//
+// Stages as in Real-time indirect illumination with clustered visibility (thesis, chapter 6.5; Segovia et al.
+// 2006): the G-buffer is split into block x block sub-buffers, each pixel shades N / block^2 virtual lights,
+// the sub-buffers are merged and blurred, and the result is reflected by the surfaces. With
+// Interleaving::addressed the shade pass finds its pixels itself, so that nothing is split or merged; the
+// picture is the same to the bit.
+#pragma once
+
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "core/frame/frame_graph.h"
+#include "core/indirect/virtual_lights.h"
+#include "core/shadow/visibility_pass.h"
+#include "core/technique/technique.h"
+
+namespace limn::indirect {
+
+enum class Interleaving {
+  addressed,  ///< one pass over the screen, in interleaved order
+  split,      ///< as published: split, shade and merge
+};
+inline constexpr const char* interleavingNames[] = {"addressed", "split"};
+
+// --- parameters that techniques with virtual lights share, in the order they are declared in
+constexpr Parameter vplsParameter(int count = 1024) {
+  return integer("vpls", count, {1, 65536}, "lights", "Virtual point lights, all lights together")
+      .quality()
+      .logScale();
+}
+constexpr Parameter mapSizeParameter(int texels = 256) {
+  return integer("rsm_size", texels, {16, 8192}, "texels",
+                 "Width and height of each layer of the reflective shadow maps")
+      .logScale();
+}
+constexpr Parameter lightSamplesParameter() {
+  return integer("light_samples", 1, {1, 256}, "points",
+                 "Points on each area light that reflective shadow maps are drawn from; 1: its centre");
+}
+constexpr Parameter blockParameter(int pixels = 8) {
+  return integer(
+      "block", pixels, {1, 16}, "pixels",
+      "Side of the pattern of interleaved pixels, each of which shades 1 / block^2 of the virtual lights");
+}
+constexpr Parameter interleavingParameter() {
+  return choice("interleaving", 0, interleavingNames,
+                "Pixels found by address, or G-buffer split and result merged");
+}
+constexpr Parameter clampParameter() {
+  return real("clamp", 0.03, {0, 1}, "scene extents",
+              "Virtual lights act as if no nearer than this; 0: as near as they are");
+}
+constexpr Parameter compensationParameter() {
+  return boolean("compensation", true,
+                 "Spread what the clamp takes away over the neighbourhood in the image");
+}
+constexpr Parameter blurParameter() {
+  return boolean("blur", true, "Average over the pattern of interleaved pixels, not across edges");
+}
+constexpr Parameter blurPositionParameter() {
+  return real("blur_position", 0.1, {0, 1}, "scene extents",
+              "Pixels farther apart than this are not averaged");
+}
+constexpr Parameter blurPlaneParameter() {
+  return real("blur_plane", 0.01, {0, 1}, "scene extents",
+              "Nor are those farther than this from each other's tangent planes; 1: as published");
+}
+constexpr Parameter blurNormalParameter() {
+  return real("blur_normal", 0.8, {-1, 1}, "cosine", "Nor are those whose normals differ by more than this");
+}
+
+/// Values of the parameters above.
+struct GatherSettings {
+  int block = 1;
+  Interleaving interleaving = Interleaving::addressed;
+  float clamp = 0;
+  bool compensation = false;
+  bool blur = false;
+  float blurPosition = 0.1f, blurPlane = 0.01f, blurNormal = 0.8f;
+};
+LIMN_API GatherSettings gatherSettings(const ParameterValues& parameters);
+LIMN_API VirtualLightDesc virtualLightDesc(const ParameterValues& parameters);
+
+/// A pass that shades from some of the virtual lights.
+struct ShadePass {
+  gpu::ProgramDesc program;  ///< a compute shader that includes glsl/indirect/gather_main.glsl
+  int first = 0, count = 0;  ///< virtual lights that vpl_visibility() can answer for; count 0: all
+  std::vector<shadow::SampledTexture> sampled = {};  ///< declared and bound, from unit 8 on
+  /// Sets further uniforms and binds what `declare` declared (storage buffers from 1 on); may be empty.
+  std::function<void(frame::PassContext&, gpu::Program&)> bind = {};
+  std::function<void(frame::PassBuilder&)> declare = {};
+};
+
+/// Declares the passes of one technique's answer: shade() once per batch of virtual lights, then finish().
+class LIMN_API Gather {
+ public:
+  Gather(frame::FrameGraph& graph, const TechniqueInputs& inputs, std::string_view technique,
+         const VirtualLights& lights, const GatherSettings& settings);
+  void shade(ShadePass pass);
+  /// Adds the light to `target` and returns it.
+  frame::TextureHandle finish(frame::TextureHandle target);
+
+ private:
+  int parts() const { return 1 + (specular_ ? 1 : 0) + (residual_ ? 1 : 0); }
+  frame::TextureHandle screen(std::string_view name, glm::ivec2 size) const;
+  void defineParts(gpu::ProgramDesc& program) const;
+  GBuffer split();
+  frame::TextureHandle merge(frame::TextureHandle shaded);
+  frame::TextureHandle blur(std::string_view name, frame::TextureHandle from, int width, int stride,
+                            int firstPart, int endPart);
+  frame::TextureHandle blurOnce(std::string_view name, frame::TextureHandle from, int width, int stride,
+                                int firstPart, int endPart, bool vertical);
+
+  frame::FrameGraph& graph_;
+  TechniqueInputs inputs_;
+  std::string_view technique_;
+  VirtualLights lights_;
+  GatherSettings settings_;
+  bool specular_, residual_;
+  GBuffer gbuffer_;  ///< split where settings ask for it
+  glm::ivec2 size_;  ///< of the shaded screen: whole sub-buffers
+  frame::TextureHandle shaded_;
+};
+
+}  // namespace limn::indirect

@@ -1,0 +1,164 @@
+#include "core/indirect/virtual_lights.h"
+
+#include <algorithm>
+#include <string>
+
+#include "glsl/sampling.glsl"
+
+namespace limn::indirect {
+namespace {
+
+using frame::Access;
+using frame::BufferHandle;
+
+constexpr int tile = 64;  // texels
+constexpr int group = 64;
+
+struct Builder {
+  frame::FrameGraph& graph;
+  const SceneHandles& handles;
+  const shadow::ShadowMaps& maps;
+  const VirtualLightDesc& desc;
+
+  BufferHandle buffer(const char* name, size_t elements, size_t bytes) const {
+    return graph.createBuffer(name, {elements * bytes});
+  }
+  BufferHandle perLayer(const char* name) const {
+    return buffer(name, static_cast<size_t>(maps.layers), sizeof(glm::vec4));
+  }
+  void readMaps(frame::PassBuilder& pass) const {
+    pass.read(maps.depth, Access::sampled, "where light arrives")
+        .read(maps.albedo, Access::sampled, "what is reflected")
+        .read(maps.views, Access::storageLoad, "projections")
+        .read(handles.lights, Access::storageLoad, "what lights send")
+        .cacheable();
+  }
+  BufferHandle tileFlux() const;
+  BufferHandle layerFlux(BufferHandle values, bool sampled, uint32_t count) const;
+  BufferHandle sample(BufferHandle reflected) const;
+  BufferHandle conserve(BufferHandle lights, BufferHandle reflected, BufferHandle sampled) const;
+};
+
+int tilesPerSide(int size) {
+  return (size + tile - 1) / tile;
+}
+
+void bindMaps(const frame::PassContext& context, const SceneHandles& handles, const shadow::ShadowMaps& maps,
+              gpu::Program& kernel, int lightSamples) {
+  kernel.set("light_samples", lightSamples);
+  context.bindSampled(0, maps.depth);
+  context.bindSampled(2, maps.albedo);
+  context.bindStorage(0, handles.lights);
+  context.bindStorage(1, maps.views);
+}
+
+BufferHandle Builder::tileFlux() const {
+  const int across = tilesPerSide(maps.size);
+  frame::PassBuilder pass = graph.addPass("reflected flux", "indirect");
+  readMaps(pass);
+  const BufferHandle tiles = pass.write(
+      buffer("flux of tiles", static_cast<size_t>(across) * across * maps.layers, sizeof(glm::vec4)),
+      Access::storageStore, "sums of reflected flux");
+  const auto program = pass.program(
+      {.files = {"glsl/indirect/reflected_flux.comp.glsl"}, .defines = {{"TILE", std::to_string(tile)}}});
+  pass.execute([=, maps = maps, handles = handles, samples = desc.lightSamples](frame::PassContext& context) {
+    gpu::Program& kernel = context.program(program);
+    kernel.use();
+    bindMaps(context, handles, maps, kernel, samples);
+    context.bindStorage(2, tiles);
+    context.dispatch(across, across, maps.layers, 1, 1);
+  });
+  return tiles;
+}
+
+BufferHandle Builder::layerFlux(BufferHandle values, bool sampled, uint32_t count) const {
+  frame::PassBuilder pass = graph.addPass(sampled ? "sampled flux" : "flux of maps", "indirect");
+  pass.read(values, Access::storageLoad, sampled ? "virtual lights" : "tiles").cacheable();
+  const BufferHandle flux = pass.write(perLayer(sampled ? "sampled flux" : "flux of maps"),
+                                       Access::storageStore, "flux of each layer");
+  const auto program = pass.program(
+      {.files = {"glsl/indirect/layer_flux.comp.glsl"}, .defines = {{"SAMPLED", sampled ? "1" : "0"}}});
+  pass.execute([=, layers = maps.layers](frame::PassContext& context) {
+    gpu::Program& kernel = context.program(program);
+    kernel.use();
+    kernel.set("count", count);
+    context.bindStorage(0, values);
+    context.bindStorage(1, flux);
+    context.dispatch(layers, 1, 1, 1, 1);
+  });
+  return flux;
+}
+
+BufferHandle Builder::sample(BufferHandle reflected) const {
+  frame::PassBuilder pass = graph.addPass("virtual lights", "indirect");
+  readMaps(pass);
+  pass.read(maps.normal, Access::sampled, "where light is sent")
+      .read(reflected, Access::storageLoad, "how many samples a map deserves");
+  const BufferHandle lights =
+      pass.write(buffer("virtual lights", static_cast<size_t>(desc.count), sizeof(glsl::VirtualPointLight)),
+                 Access::storageStore, "samples of the maps");
+  const auto program = pass.program({.files = {"glsl/indirect/sample_maps.comp.glsl"}, .defines = {}});
+  pass.execute([=, maps = maps, handles = handles, desc = desc](frame::PassContext& context) {
+    gpu::Program& kernel = context.program(program);
+    kernel.use();
+    kernel.set("count", static_cast<unsigned>(desc.count));
+    kernel.set("layers", static_cast<unsigned>(maps.layers));
+    bindMaps(context, handles, maps, kernel, desc.lightSamples);
+    context.bindSampled(1, maps.normal);
+    context.bindStorage(2, reflected);
+    context.bindStorage(3, lights);
+    context.dispatch(desc.count, 1, 1, group, 1);
+  });
+  return lights;
+}
+
+BufferHandle Builder::conserve(BufferHandle before, BufferHandle reflected, BufferHandle sampled) const {
+  frame::PassBuilder pass = graph.addPass("conserve flux", "indirect");
+  pass.read(reflected, Access::storageLoad, "what the maps reflect")
+      .read(sampled, Access::storageLoad, "what the samples carry")
+      .cacheable();
+  const BufferHandle lights =
+      pass.write(before, Access::storageLoadStore, "scaled so that both sums are the same");
+  const auto program = pass.program({.files = {"glsl/indirect/conserve_flux.comp.glsl"}, .defines = {}});
+  pass.execute([=, layers = maps.layers, count = desc.count](frame::PassContext& context) {
+    gpu::Program& kernel = context.program(program);
+    kernel.use();
+    kernel.set("count", static_cast<unsigned>(count));
+    kernel.set("layers", static_cast<unsigned>(layers));
+    context.bindStorage(0, reflected);
+    context.bindStorage(1, sampled);
+    context.bindStorage(2, lights);
+    context.dispatch(count, 1, 1, group, 1);
+  });
+  return lights;
+}
+
+}  // namespace
+
+void VirtualLightService::begin(frame::FrameGraph& graph, const SceneHandles& handles) {
+  graph_ = &graph;
+  handles_ = handles;
+  known_.clear();
+}
+
+VirtualLights VirtualLightService::request(std::span<const uint32_t> lights, const VirtualLightDesc& desc) {
+  for (const Known& known : known_) {
+    if (known.desc == desc && std::ranges::equal(known.lights, lights)) return known.made;
+  }
+  shadow::ShadowMapDesc mapDesc{.size = desc.mapSize, .reflective = true};
+  for (int i = 0; desc.lightSamples > 1 && i < desc.lightSamples; ++i)
+    mapDesc.samples.push_back(glsl::r2_sequence(static_cast<uint32_t>(i) + 1));
+  VirtualLights made;
+  made.maps = shadowMaps_.request(lights, mapDesc);
+  made.count = desc.count;
+  const Builder build{*graph_, handles_, made.maps, desc};
+  const int across = tilesPerSide(desc.mapSize);
+  made.reflected = build.layerFlux(build.tileFlux(), false, static_cast<uint32_t>(across * across));
+  const BufferHandle sampled = build.sample(made.reflected);
+  made.lights = build.conserve(sampled, made.reflected,
+                               build.layerFlux(sampled, true, static_cast<uint32_t>(desc.count)));
+  known_.push_back({{lights.begin(), lights.end()}, desc, made});
+  return made;
+}
+
+}  // namespace limn::indirect

@@ -1,0 +1,59 @@
+// Virtual point lights as a service: techniques ask for N of them for some lights, they are sampled from
+// reflective shadow maps once per graph whoever asks, and kept while nothing changed.
+//
+// Sampling (glsl/indirect/sample_maps.comp.glsl): point i of the Halton sequence chooses a layer of the maps
+// in proportion to the flux that the layer reflects, and a texel of it. So N is split among the lights by
+// what they contribute; a light that N is too small for gives its flux to the others. The sum over all
+// virtual lights is the flux that the maps reflect, in every channel.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/frame/frame_graph.h"
+#include "core/shadow/shadow_map.h"
+#include "core/technique/technique.h"
+#include "glsl/virtual_light.glsl"
+
+namespace limn::indirect {
+
+struct VirtualLightDesc {
+  int count = 1024;      ///< N
+  int mapSize = 256;     ///< texels per side of each layer of the reflective shadow maps
+  int lightSamples = 1;  ///< points on each light with extent that maps are drawn from; 1: its centre
+  bool operator==(const VirtualLightDesc&) const = default;
+};
+
+struct VirtualLights {
+  frame::BufferHandle lights;  ///< storage buffer of glsl::VirtualPointLight
+  frame::BufferHandle
+      reflected;            ///< storage buffer of vec4: rgb flux that each layer of the maps reflects, W
+  shadow::ShadowMaps maps;  ///< reflective
+  int count = 0;
+};
+
+class LIMN_API VirtualLightService {
+ public:
+  explicit VirtualLightService(shadow::ShadowMapService& shadowMaps) : shadowMaps_(shadowMaps) {}
+
+  /// Forgets the requests of the former graph: call before building a new one, after
+  /// ShadowMapService::begin().
+  void begin(frame::FrameGraph& graph, const SceneHandles& handles);
+  /// Virtual lights of `lights` (indices into Pose::lights, at least one). Throws UsageError where the maps
+  /// would take too much memory.
+  VirtualLights request(std::span<const uint32_t> lights, const VirtualLightDesc& desc);
+
+ private:
+  struct Known {
+    std::vector<uint32_t> lights;
+    VirtualLightDesc desc;
+    VirtualLights made;
+  };
+  shadow::ShadowMapService& shadowMaps_;
+  frame::FrameGraph* graph_ = nullptr;
+  SceneHandles handles_;
+  std::vector<Known> known_;
+};
+
+}  // namespace limn::indirect

@@ -1,0 +1,112 @@
+#include "core/shadow/map_raster.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "glsl/ltc.glsl"
+
+namespace limn::shadow {
+namespace {
+
+using frame::Access;
+using frame::TextureHandle;
+
+constexpr GLfloat nothing[4] = {1, 1, 1, 1}, farthest = 0;
+constexpr unsigned reflectiveViews = 4;  // storage binding in glsl/shadow/reflective.vert.glsl
+
+TextureHandle createMaps(const MapRaster& raster, const ShadowMaps& maps, const char* name, GLenum format) {
+  return raster.graph.createTexture(name, {.target = GL_TEXTURE_2D_ARRAY,
+                                           .format = format,
+                                           .width = maps.size,
+                                           .height = maps.size,
+                                           .layers = maps.layers});
+}
+
+bool layered(const gpu::Device& device) {
+  return !device.software() && device.limits().layerFromVertexShader;
+}
+
+}  // namespace
+
+void addDepthPass(const MapRaster& raster, bool paraboloid, ShadowMaps& maps) {
+  frame::PassBuilder pass = raster.graph.addPass("shadow maps", "shadow");
+  scene::GpuScene::declareReads(pass, raster.handles);
+  pass.read(maps.views, Access::storageLoad, "projections");
+  maps.depth =
+      pass.write(createMaps(raster, maps, "shadow maps", GL_R32F), Access::colourAttachment, "linear depth");
+  const TextureHandle zbuffer = pass.write(createMaps(raster, maps, "shadow map z", GL_DEPTH_COMPONENT32F),
+                                           Access::depthAttachment, "hidden-surface removal");
+  const bool together = layered(raster.device);
+  const auto program = [&](bool masked) {
+    return pass.program({.files = {"glsl/shadow/depth.vert.glsl", "glsl/shadow/depth.frag.glsl"},
+                         .defines = {{"LAYERED", together ? "1" : "0"},
+                                     {"MASKED", masked ? "1" : "0"},
+                                     {"PARABOLOID", paraboloid ? "1" : "0"}}});
+  };
+  scene::DrawPrograms programs;
+  programs.opaque = program(false);
+  programs.masked = raster.scene.hasMasked() ? program(true) : programs.opaque;
+  if (raster.cacheable) pass.cacheable();
+  pass.execute([raster, zbuffer, together, paraboloid, programs, depth = maps.depth,
+                views = maps.views](frame::PassContext& context) {
+    const gl::Functions& gl = context.gl();
+    context.bindFramebuffer({{depth}}, {zbuffer});
+    gl.ClearBufferfv(GL_COLOR, 0, nothing);
+    gl.ClearBufferfv(GL_DEPTH, 0, &farthest);
+    context.bindStorage(2, views);
+    if (paraboloid) gl.Enable(GL_CLIP_DISTANCE0);
+    raster.scene.drawDepth(context, raster.handles, programs, raster.views, raster.list, together,
+                           [&](const scene::DepthView& view) {
+                             context.bindFramebuffer({{depth, 0, view.layer}}, {zbuffer, 0, view.layer});
+                           });
+    if (paraboloid) gl.Disable(GL_CLIP_DISTANCE0);
+  });
+}
+
+void addReflectivePass(const MapRaster& raster, TextureHandle ltc, ShadowMaps& maps) {
+  frame::PassBuilder pass = raster.graph.addPass("reflective shadow maps", "shadow");
+  scene::GpuScene::declareReads(pass, raster.handles);
+  pass.read(raster.handles.geometry, Access::storageLoad, "corners of triangles, for their normals");
+  pass.read(maps.views, Access::storageLoad, "projections");
+  if (ltc) pass.read(ltc, Access::sampled, "diffuse albedo below a specular layer");
+  const auto write = [&](const char* name, GLenum format, const char* why) {
+    return pass.write(createMaps(raster, maps, name, format), Access::colourAttachment, why);
+  };
+  maps.depth = write("reflective depth", GL_R32F, "linear depth");
+  maps.normal = write("reflective normal", GL_RG16_SNORM, "normal of the triangle");
+  maps.albedo = write("reflective albedo", GL_RGBA8, "diffuse albedo");
+  const TextureHandle zbuffer = pass.write(createMaps(raster, maps, "reflective z", GL_DEPTH_COMPONENT32F),
+                                           Access::depthAttachment, "hidden-surface removal");
+  const bool together = layered(raster.device);
+  scene::SurfacePrograms programs;
+  for (const scene::SurfaceVariant& variant : raster.scene.surfaceVariants())
+    programs[variant] =
+        pass.program({.files = {"glsl/shadow/reflective.vert.glsl", "glsl/shadow/reflective.frag.glsl"},
+                      .defines = {{"LAYERED", together ? "1" : "0"},
+                                  {"MASKED", variant.masked ? "1" : "0"},
+                                  {"TEXTURES", fmt::format("{}u", variant.textures)},
+                                  {"COLOURS", raster.scene.hasColours() ? "1" : "0"},
+                                  {"LAMBERTIAN", ltc ? "0" : "1"}}});
+  if (raster.cacheable) pass.cacheable();
+  pass.execute([raster, zbuffer, together, programs, ltc, depth = maps.depth, normal = maps.normal,
+                albedo = maps.albedo, views = maps.views](frame::PassContext& context) {
+    const gl::Functions& gl = context.gl();
+    const auto bind = [&](int layer) {
+      context.bindFramebuffer({{depth, 0, layer}, {normal, 0, layer}, {albedo, 0, layer}},
+                              {zbuffer, 0, layer});
+    };
+    bind(-1);
+    constexpr GLfloat black[4] = {0, 0, 0, 0};
+    gl.ClearBufferfv(GL_COLOR, 0, nothing);
+    gl.ClearBufferfv(GL_COLOR, 1, black);
+    gl.ClearBufferfv(GL_COLOR, 2, black);
+    gl.ClearBufferfv(GL_DEPTH, 0, &farthest);
+    context.bindStorage(reflectiveViews, views);
+    if (ltc) context.bindSampled(glsl::ltc_unit, ltc);
+    raster.scene.drawSurfaces(context, raster.handles, programs, raster.views, raster.list, together,
+                              [&](const scene::DepthView& view) { bind(view.layer); });
+  });
+}
+
+}  // namespace limn::shadow

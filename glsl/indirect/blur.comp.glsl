@@ -1,0 +1,72 @@
+// One direction of the geometry-aware blur: pixels `stride` apart, of which those count that lie near the pixel, near its
+// tangent plane, and face the same way (Laine et al. 2007, Incremental Instant Radiosity for Real-Time Indirect
+// Illumination, without the plane). Sums of values and of weights go on undivided.
+//
+// The weights are a tent of `width` pixels to either side, so that each place in a pattern of `width` interleaved pixels
+// counts once: 1 - t / width at t, and t / width at t - width. Where one of these two does not count, the other does in
+// full.
+//
+// PARTS_FIRST, PARTS_END: the parts blurred. VERTICAL 1: along columns.
+#include "glsl/gbuffer_input.glsl"
+#include "glsl/indirect/gather_parts.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 7) uniform sampler2DArray gathered;
+layout(rgba32f, binding = 0) writeonly uniform image2DArray blurred;
+uniform int width;
+uniform int stride;
+uniform float position_threshold;  // part of the scene's extent
+uniform float plane_threshold;     // the same
+uniform float normal_threshold;    // least cosine
+
+struct Centre {
+  vec3 position;
+  vec3 normal;
+  float reach;      // m
+  float thickness;  // m
+};
+
+vec3 normal_at(ivec2 pixel) { return octahedral_decode(texelFetch(gbuffer_normal, pixel, 0).xy); }
+
+bool counts(Centre c, ivec2 pixel) {
+  if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return false;
+  float depth = pixel_depth(pixel);
+  vec3 offset = pixel_position(pixel, depth) - c.position;
+  return depth > 0.0 && dot(offset, offset) <= c.reach * c.reach && abs(dot(offset, c.normal)) <= c.thickness &&
+         dot(normal_at(pixel), c.normal) >= normal_threshold;
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  float depth = pixel_depth(pixel);
+  Centre centre = Centre(pixel_position(pixel, depth), normal_at(pixel), position_threshold * gather_extent(),
+                         plane_threshold * gather_extent());
+  vec4 sums[PARTS_END - PARTS_FIRST];
+  for (int part = PARTS_FIRST; part < PARTS_END; ++part) sums[part - PARTS_FIRST] = vec4(0.0);
+#if VERTICAL
+  ivec2 axis = ivec2(0, stride);
+#else
+  ivec2 axis = ivec2(stride, 0);
+#endif
+  for (int t = 0; depth > 0.0 && t < width; ++t) {
+    ivec2 after = pixel + t * axis;
+    ivec2 before = after - width * axis;
+    float share = float(t) / float(width);
+    vec2 weight = vec2(1.0 - share, share);
+    if (t > 0) {
+      bool one = counts(centre, after);
+      bool other = counts(centre, before);
+      if (one != other) weight = one ? vec2(1.0, 0.0) : vec2(0.0, 1.0);
+      if (!one && !other) continue;
+    }
+    for (int part = PARTS_FIRST; part < PARTS_END; ++part) {
+      vec4 sum = vec4(0.0);
+      if (weight.x > 0.0) sum = weight.x * texelFetch(gathered, ivec3(after, part), 0);
+      if (weight.y > 0.0) sum += weight.y * texelFetch(gathered, ivec3(before, part), 0);
+      sums[part - PARTS_FIRST] += sum;
+    }
+  }
+  for (int part = PARTS_FIRST; part < PARTS_END; ++part)
+    imageStore(blurred, ivec3(pixel, part), sums[part - PARTS_FIRST] / float(width));
+}

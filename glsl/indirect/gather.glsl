@@ -1,0 +1,29 @@
+// What a receiver gets from a virtual point light, with the inverse square bounded.
+//
+// A virtual light stands for a patch of surface of which a receiver closer than the patch is wide gets too much: a bright
+// spot, whose expectation is right and whose variance is not bounded. Bounding 1/d^2 takes the spots away and darkens what
+// is close to lit surfaces. What the bound cuts off is the residual; it is gathered, too, and spread over the
+// neighbourhood in the image (screen-space compensation after Novak et al. 2011, Screen-Space Bias Compensation for
+// Interactive High-Quality Global Illumination with Virtual Point Lights, by a filter instead of their recursion).
+#ifndef LIMN_GATHER_GLSL
+#define LIMN_GATHER_GLSL
+#include "glsl/language.glsl"
+LIMN_BEGIN
+
+// 1 / m^2 at squared distance d2, as if no nearer than `nearest` metres.
+LIMN_FN float bounded_inverse_square(float d2, float nearest) { return 1.0f / max(d2, nearest * nearest); }
+
+// What the bound cuts off, averaged over a receiver of `footprint` metres: the mean of 1/d^2 over it is no greater than at
+// the distance footprint / sqrt(pi).
+LIMN_FN float residual_inverse_square(float d2, float nearest, float footprint) {
+  float least = footprint * footprint * inverse_pi;
+  return max(1.0f / max(d2, least) - bounded_inverse_square(d2, nearest), 0.0f);
+}
+
+// Virtual lights of a pixel in block x block interleaved pixels (Segovia et al. 2006, Non-interleaved Deferred Shading of
+// Interleaved Sample Patterns): sub-buffer k of block^2 has the consecutive lights [k N / block^2, (k + 1) N / block^2),
+// which a low-discrepancy sequence spreads over all lit surfaces.
+LIMN_FN uint gather_begin(uint sub_buffer, uint count, uint block) { return sub_buffer * count / (block * block); }
+
+LIMN_END
+#endif  // LIMN_GATHER_GLSL

@@ -1,0 +1,29 @@
+// Flux of each layer, W: the sum over its tiles (SAMPLED 0), or over the virtual lights that were sampled from it
+// (SAMPLED 1).
+#define GROUP 64
+#include "glsl/indirect/group_sum.glsl"
+#include "glsl/virtual_light.glsl"
+
+layout(local_size_x = 64) in;
+#if SAMPLED
+layout(std430, binding = 0) readonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
+#else
+layout(std430, binding = 0) readonly buffer Tiles { vec4 tiles[]; };
+#endif
+layout(std430, binding = 1) writeonly buffer LayerFlux { vec4 layer_flux[]; };
+uniform uint count;  // of tiles in a layer, of virtual lights in all
+
+void main() {
+  uint layer = gl_WorkGroupID.x;
+  vec3 sum = vec3(0.0);
+  for (uint i = gl_LocalInvocationIndex; i < count; i += 64u) {
+#if SAMPLED
+    vec4 flux = virtual_lights[i].flux;
+    if (uint(flux.w) == layer) sum += flux.rgb;
+#else
+    sum += tiles[layer * count + i].rgb;
+#endif
+  }
+  vec3 total = group_sum(sum);
+  if (gl_LocalInvocationIndex == 0u) layer_flux[layer] = vec4(total, 0.0);
+}

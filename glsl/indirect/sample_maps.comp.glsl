@@ -1,0 +1,40 @@
+// Virtual point lights at Halton points of reflective shadow maps. The third coordinate chooses the layer, in proportion
+// to the flux it reflects; the other two the texel. Such a light carries the flux of 1 / (N p) of its layer, where p is
+// the layer's share of all flux. Its flux.w is the layer: what conserve_flux needs.
+#include "glsl/halton.glsl"
+#include "glsl/indirect/reflective_texel.glsl"
+#include "glsl/virtual_light.glsl"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 2) readonly buffer LayerFlux { vec4 layer_flux[]; };
+layout(std430, binding = 3) writeonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
+uniform uint count;   // of virtual lights
+uniform uint layers;  // of the maps
+
+void main() {
+  uint index = gl_GlobalInvocationID.x;
+  if (index >= count) return;
+  vec3 at = halton_point(index + 1u);
+  float total = 0.0;
+  for (uint l = 0u; l < layers; ++l) total += flux_weight(layer_flux[l].rgb);
+  float wanted = at.z * total;
+  float before = 0.0;
+  uint layer = 0u;
+  float weight = 0.0;
+  for (uint l = 0u; l < layers; ++l) {  // the last layer with flux that begins at or before what is wanted
+    float own = flux_weight(layer_flux[l].rgb);
+    if (own > 0.0 && before <= wanted) {
+      layer = l;
+      weight = own;
+    }
+    before += own;
+  }
+  ShadowView view = views[layer];
+  ivec2 texel = ivec2(at.xy * float(view.info.z));
+  ReflectiveTexel t = reflective_texel(view, texel);
+  VirtualPointLight light;
+  light.position = vec4(t.position, 1.0);
+  light.normal = vec4(octahedral_decode(texelFetch(reflective_normal, ivec3(texel, layer), 0).xy), 0.0);
+  light.flux = vec4(weight > 0.0 ? t.flux * (total / (weight * float(count))) : vec3(0.0), float(layer));
+  virtual_lights[index] = light;
+}

@@ -1,0 +1,57 @@
+// A texel of a reflective shadow map (glsl/reflective_map.glsl): depth as in shadow maps, geometric normal on the light's
+// side, diffuse albedo. LAMBERTIAN 1: no material of the scene has a specular part.
+// MASKED, TEXTURES, COLOURS: see surface_input.glsl.
+#include "glsl/gbuffer.glsl"
+#include "glsl/geometry/surface_input.glsl"
+#if !LAMBERTIAN
+#include "glsl/ltc.glsl"
+#endif
+
+layout(location = 0) in float linear_depth;
+layout(location = 1) in vec3 from_light;
+
+layout(location = 0) out float stored_depth;
+layout(location = 1) out vec2 stored_normal;
+layout(location = 2) out vec4 stored_albedo;
+
+#if MASKED
+// At texture level 0, as in shadow maps.
+void alpha_test() {
+  float alpha = material.base_colour.a;
+#if COLOURS
+  alpha *= surface_colour.a;
+#endif
+  if ((textures & material_has_base_colour_texture) != 0u) {
+    alpha *= textureLod(base_colour_texture, surface_uv, 0.0).a;
+  }
+  if (alpha < material.emission.w) discard;
+}
+#endif
+
+// Share of light from angle acos(cosine) to the normal that the diffuse part of the BRDF sends back, all directions
+// together (the table's mean of Fresnel's weight; the diffuse part is the same with its directions exchanged).
+vec3 diffuse_albedo(vec3 base, vec2 metal_rough, float cosine) {
+#if LAMBERTIAN
+  return base;
+#else
+  vec3 colour = material.specular.w > 0.0 ? material.specular.rgb / material.specular.w : vec3(1.0);
+  SurfaceBrdf s = surface_brdf(base, metal_rough.x, metal_rough.y, material.specular.w, colour, material.metal_rough.w);
+  return brdf_is_lambertian(s) ? s.diffuse : s.diffuse * ltc_diffuse_weight(s, ltc_lookup(cosine, s.alpha));
+#endif
+}
+
+void main() {
+  vec2 uv_dx = dFdxFine(surface_uv);
+  vec2 uv_dy = dFdyFine(surface_uv);
+#if MASKED
+  alpha_test();
+#endif
+  vec3 along = normalize(from_light);
+  vec3 normal = triangle_normal(along);
+  vec3 albedo = diffuse_albedo(surface_base(uv_dx, uv_dy).rgb, surface_metal_rough(uv_dx, uv_dy), -dot(normal, along));
+  bool back = !gl_FrontFacing && (material.info.x & material_double_sided) == 0u;
+  if (back || (material.info.x & material_specular_surface) != 0u) albedo = vec3(0.0);  // blocks light, sends none on
+  stored_depth = linear_depth < 1.0 ? max(linear_depth, 0.0) : 1.0;  // NaN: nothing there
+  stored_normal = octahedral_encode(normal);
+  stored_albedo = vec4(srgb_encode(clamp(albedo, vec3(0.0), vec3(1.0))), 1.0);
+}

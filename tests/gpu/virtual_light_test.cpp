@@ -1,0 +1,215 @@
+// Virtual point lights carry the flux that the scene reflects.
+#include <gmock/gmock.h>
+
+#include <numeric>
+
+#include "core/indirect/virtual_lights.h"
+#include "glsl/brdf.glsl"
+#include "tests/gpu/gl_test.h"
+#include "tests/gpu/test_scenes.h"
+
+namespace limn {
+namespace {
+
+using namespace limn::test;
+using glm::vec3;
+
+constexpr float pi = glsl::pi;
+
+struct Sampled {
+  std::vector<glsl::VirtualPointLight> lights;
+  vec3 flux{0};       ///< of the lights together
+  vec3 reflected{0};  ///< by the maps
+};
+
+scene::Material lambert(vec3 albedo) {
+  scene::Material m;
+  m.baseColour = glm::vec4(albedo, 1);
+  m.metallic = 0;
+  m.specularFactor = 0;
+  return m;
+}
+
+class VirtualLightTest : public GlTest {
+ protected:
+  Sampled sample(const scene::Scene& scene, const scene::Pose& pose, const indirect::VirtualLightDesc& desc) {
+    std::vector<uint32_t> all(pose.lights.size());
+    std::iota(all.begin(), all.end(), 0u);
+    scene::GpuScene gpuScene(device(), scene);
+    gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
+    shadow::ShadowMapService maps(device(), gpuScene);
+    indirect::VirtualLightService service(maps);
+    frame::ResourcePool pool(device());
+    frame::FrameGraph graph;
+    const SceneHandles handles = gpuScene.import(graph);
+    maps.begin(graph, handles, pose);
+    service.begin(graph, handles);
+    const indirect::VirtualLights made = service.request(all, desc);
+    EXPECT_EQ(service.request(all, desc).lights, made.lights) << "made once whoever asks";
+    graph.output(made.lights);
+    graph.output(made.reflected);
+    graph.prepare(device(), shaders(), pool);
+    graph.execute();
+    Sampled out;
+    out.lights.resize(static_cast<size_t>(desc.count));
+    graph.buffer(made.lights).read(0, out.lights.data(), out.lights.size() * sizeof(out.lights[0]));
+    std::vector<glm::vec4> layers(static_cast<size_t>(made.maps.layers));
+    graph.buffer(made.reflected).read(0, layers.data(), layers.size() * sizeof(layers[0]));
+    for (const glm::vec4& layer : layers) out.reflected += vec3(layer);
+    for (const glsl::VirtualPointLight& light : out.lights) {
+      out.flux += vec3(light.flux);
+      EXPECT_TRUE(glm::all(glm::greaterThanEqual(vec3(light.flux), vec3(0))));
+      EXPECT_NEAR(glm::length(vec3(light.normal)), 1, 1e-4f);
+      EXPECT_FALSE(glm::any(glm::isnan(light.position)));
+    }
+    gpuScene.forget();
+    return out;
+  }
+
+  static void expectFlux(const Sampled& s, vec3 expected, float tolerance) {
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(s.reflected[c], expected[c], tolerance * expected[c]) << "maps, channel " << c;
+      EXPECT_NEAR(s.flux[c], s.reflected[c], 1e-4f * s.reflected[c]) << "virtual lights, channel " << c;
+    }
+  }
+
+  /// A box of side 2 that faces inwards.
+  static void addBox(scene::Scene& scene, scene::Pose& pose, int material) {
+    const int mesh = addMesh(scene, floorPrimitive(1, material));
+    for (const auto& [angle, axis] :
+         {std::pair(0.f, vec3(1, 0, 0)), std::pair(pi, vec3(1, 0, 0)), std::pair(0.5f * pi, vec3(1, 0, 0)),
+          std::pair(-0.5f * pi, vec3(1, 0, 0)), std::pair(0.5f * pi, vec3(0, 0, 1)),
+          std::pair(-0.5f * pi, vec3(0, 0, 1))}) {
+      const glm::mat4 turn = glm::rotate(glm::mat4(1), angle, axis);
+      addInstance(scene, pose, mesh, turn * glm::translate(glm::mat4(1), {0, -1, 0}));
+    }
+  }
+};
+
+constexpr vec3 colour(0.2f, 0.5f, 0.8f);
+
+TEST_F(VirtualLightTest, SpotOverAPlane) {
+  for (const float scale : {1.f, 1e-4f, 1e4f}) {
+    scene::Scene scene;
+    addMesh(scene, floorPrimitive(20 * scale, addMaterial(scene, lambert(colour))));
+    scene::Pose pose;
+    addInstance(scene, pose, 0);
+    glsl::Light light = spotLight(vec3(1, 3, 0.5f) * scale, {0.2f, -1, 0.1f}, 0.7f);
+    light.emission = {5, 5, 5, 0};
+    addLight(pose, light);
+    const float inner = light.cone.x, outer = light.cone.y;
+    const float solid = 2 * pi * (1 - inner + (inner - outer) / 3);
+    const Sampled s = sample(scene, pose, {.count = 1000});
+    expectFlux(s, colour * 5.f * solid, 0.01f);
+    for (const glsl::VirtualPointLight& v : s.lights) {
+      if (v.flux.x == 0) continue;
+      EXPECT_NEAR(v.position.y / scale, 0, 1e-4f);
+      EXPECT_NEAR(v.normal.y, 1, 1e-3f);
+    }
+  }
+}
+
+TEST_F(VirtualLightTest, PointLightInABox) {
+  scene::Scene scene;
+  scene::Pose pose;
+  addBox(scene, pose, addMaterial(scene, lambert(colour)));
+  addLight(pose, pointLight({0.3f, -0.2f, 0.5f}));
+  // A power of two, odd, fewer than the layers, and one.
+  for (const int count : {1024, 777, 3, 1}) {
+    SCOPED_TRACE(count);
+    expectFlux(sample(scene, pose, {.count = count}), colour * 4.f * pi, 0.01f);
+  }
+}
+
+TEST_F(VirtualLightTest, LightsThatSeeOnlyBackFacesReflectNothing) {
+  scene::Scene scene;
+  scene::Pose pose;
+  addMesh(scene, spherePrimitive(1, addMaterial(scene, lambert(colour))));
+  addInstance(scene, pose, 0);
+  addLight(pose, pointLight({0, 0, 0}));
+  EXPECT_EQ(sample(scene, pose, {.count = 100}).flux, vec3(0));
+  scene.materials[0].doubleSided = true;
+  expectFlux(sample(scene, pose, {.count = 100}), colour * 4.f * pi, 0.01f);
+}
+
+TEST_F(VirtualLightTest, ParallelLightOnAPlane) {
+  scene::Scene scene;
+  addMesh(scene, floorPrimitive(2, addMaterial(scene, lambert(colour))));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addLight(pose, directionalLight({0.3f, -1, 0.2f}, 0.02f));
+  const float cosine = 1 / glm::length(vec3(0.3f, -1, 0.2f));
+  expectFlux(sample(scene, pose, {.count = 500}), colour * 16.f * cosine, 0.01f);
+  expectFlux(sample(scene, pose, {.count = 500, .lightSamples = 4}), colour * 16.f * cosine, 0.01f);
+}
+
+TEST_F(VirtualLightTest, RectanglesOneAndTwoSided) {
+  for (const bool twoSided : {false, true}) {
+    scene::Scene scene;
+    scene::Pose pose;
+    addBox(scene, pose, addMaterial(scene, lambert(colour)));
+    addLight(pose, rectangleLight({0, 0.5f, 0}, {0, -1, 0}, 0.5f, 0.25f, twoSided));
+    const vec3 expected = colour * (pi * 0.125f * (twoSided ? 2.f : 1.f));
+    for (const int samples : {1, 5})
+      expectFlux(sample(scene, pose, {.count = 300, .lightSamples = samples}), expected, 0.01f);
+  }
+}
+
+TEST_F(VirtualLightTest, SeveralLightsShareThemByFlux) {
+  scene::Scene scene;
+  scene::Pose pose;
+  addBox(scene, pose, addMaterial(scene, lambert(colour)));
+  addLight(pose, pointLight({0.3f, -0.2f, 0.5f}));
+  glsl::Light strong = spotLight({0, 0.5f, 0}, {0, -1, 0}, 0.5f);
+  strong.emission = {0, 100, 0, 0};
+  addLight(pose, strong);
+  glsl::Light dark = pointLight({0, 0, 0});
+  dark.emission = glm::vec4(0);
+  addLight(pose, dark);
+  const float solid = 2 * pi * (1 - strong.cone.x + (strong.cone.x - strong.cone.y) / 3);
+  const vec3 fromStrong = colour * vec3(0, 100, 0) * solid, fromPoint = colour * 4.f * pi;
+  const Sampled s = sample(scene, pose, {.count = 900});
+  expectFlux(s, fromPoint + fromStrong, 0.01f);
+  int green = 0;
+  for (const glsl::VirtualPointLight& v : s.lights) green += v.flux.x == 0 && v.flux.y >= 0;
+  const float share = (fromStrong.y) / (fromStrong.y + fromPoint.x + fromPoint.y + fromPoint.z);
+  EXPECT_NEAR(static_cast<float>(green) / 900, share, 0.03f);
+  expectFlux(sample(scene, pose, {.count = 2}), fromPoint + fromStrong, 0.01f);
+}
+
+TEST_F(VirtualLightTest, NothingToLightIsHarmless) {
+  scene::Scene scene;
+  scene::Pose pose;
+  addMesh(scene, floorPrimitive(1, addMaterial(scene, lambert(colour))));
+  addInstance(scene, pose, 0);
+  addLight(pose, spotLight({0, 2, 0}, {0, 1, 0}, 0.5f));
+  EXPECT_EQ(sample(scene, pose, {.count = 64}).flux, vec3(0));
+}
+
+/// Fresnel's layer takes its part: the diffuse reflectance of the BRDF itself, integrated.
+TEST_F(VirtualLightTest, AlbedoIsTheDiffusePartOfTheBrdf) {
+  scene::Scene scene;
+  scene::Material material = lambert(colour);
+  material.specularFactor = 1;
+  material.metallic = 0.25f;
+  material.roughness = 0.4f;
+  addMesh(scene, floorPrimitive(2, addMaterial(scene, material)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  const vec3 towards = glm::normalize(vec3(-0.8f, 1, 0.3f));
+  addLight(pose, directionalLight(-towards, 0));
+  const glsl::SurfaceBrdf s = glsl::surface_brdf(colour, 0.25f, 0.4f, 1, vec3(1), 1.5f);
+  double weight = 0;
+  constexpr int side = 300;
+  const vec3 up(0, 0, 1), l(std::sqrt(1 - towards.y * towards.y), 0, towards.y);
+  for (int i = 0; i < side * side; ++i) {
+    const vec3 v = glsl::sample_cosine({(i % side + 0.5f) / side, (i / side + 0.5f) / side});
+    weight += glsl::brdf_diffuse_weight(s, glsl::half_vector(up, v, l).v_dot_h);
+  }
+  weight /= side * side;
+  expectFlux(sample(scene, pose, {.count = 128}), s.diffuse * 16.f * towards.y * static_cast<float>(weight),
+             0.01f);
+}
+
+}  // namespace
+}  // namespace limn
