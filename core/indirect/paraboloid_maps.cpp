@@ -16,8 +16,12 @@ constexpr int64_t bytesPerTexel = 8;  // depth and rasterised depth
 
 }  // namespace
 
+int64_t paraboloidBytes(int size) {
+  return bytesPerTexel * size * size;
+}
+
 int paraboloidBatch(const gpu::Device& device, int size) {
-  const int64_t fitting = batchBytes / (bytesPerTexel * size * size);
+  const int64_t fitting = batchBytes / paraboloidBytes(size);
   return static_cast<int>(std::clamp<int64_t>(fitting, 1, device.limits().maxArrayLayers));
 }
 
@@ -54,7 +58,7 @@ ParaboloidMaps ParaboloidMapPass::add(frame::FrameGraph& graph, scene::GpuScene&
   scene::DrawPrograms programs;
   programs.opaque = program(false);
   programs.masked = scene.hasMasked() ? program(true) : programs.opaque;
-  pass.cacheable();
+  if (desc.cacheable) pass.cacheable();
   pass.execute([this, &scene, handles, programs, zbuffer, maps](frame::PassContext& context) {
     const gl::Functions& gl = context.gl();
     constexpr GLfloat nothing[4] = {1, 1, 1, 1}, farthest = 0;

@@ -5,6 +5,7 @@
 // far, 1 where nothing is. Projection, views and kernels: glsl/paraboloid.glsl.
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct ParaboloidDesc {
   /// hundredth of a texel's footprint at a depth of far / 10.
   GLenum format = GL_R32F;
   std::string_view technique = "indirect";  ///< whose pass it is
+  /// Keep the maps while nothing changed. False where batches of maps are to share one piece of memory.
+  bool cacheable = true;
 };
 
 struct ParaboloidMaps {
@@ -31,6 +34,8 @@ struct ParaboloidMaps {
   int count = 0, first = 0, size = 0;
 };
 
+/// Memory of one map of `size` texels and of what draws it.
+LIMN_API int64_t paraboloidBytes(int size);
 /// How many maps of `size` texels fit the layers of one array and 1 GiB together with what draws them.
 LIMN_API int paraboloidBatch(const gpu::Device& device, int size);
 

@@ -210,6 +210,7 @@ void GpuScene::drawSurfaces(const frame::PassContext& context, const SceneHandle
   scene.fillViews(draws, scene.cameraOrder, views, layered, false);
   if (draws.runs.empty()) return;
 
+  context.countTriangles(draws.triangles);
   scene.bindSurfaces(context, handles, draws);
   const ReversedDepth reversed(gl);
   gl.Disable(GL_CULL_FACE);

@@ -112,6 +112,37 @@ TEST_F(IndirectTest, ReceiversReflectWithTheirWholeBrdf) {
   EXPECT_GT(seen, 30);
 }
 
+/// A plate between the speck and the wall: what it hides is dark, what it does not is as without shadows.
+TEST_F(IndirectTest, APlateHidesTheSpeckFromTheWall) {
+  Corner s;
+  const int mesh = addMesh(s.scene, floorPrimitive(0.15f, 0));
+  addInstance(s.scene, s.pose, mesh,
+              glm::translate(glm::mat4(1), {0.5f, 0.4f, 0}) *
+                  glm::rotate(glm::mat4(1), 0.5f * glsl::pi, vec3(0, 0, 1)));
+  const Settings open{{"vpls", "64"}, {"block", "1"}, {"clamp", "0"}};
+  Settings mapped = open;
+  mapped["map_size"] = "256";
+  const Answer all = answer("reflective_shadow_map", s, open), seen = answer("instant_radiosity", s, mapped);
+  int hidden = 0, lit = 0;
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      if (all.instance[static_cast<size_t>(y * side + x)] != 1) continue;
+      const vec3 p = s.position(all, x, y);
+      // On the plate's plane, x = 1/2, the ray from the origin is at half of p; the speck is 0.1 m wide.
+      const float outside = std::max(std::abs(0.5f * p.y - 0.4f), std::abs(0.5f * p.z)) - 0.15f;
+      if (outside < -0.05f) {
+        EXPECT_NEAR(seen.at(0, x, y), 0, 0.02f * all.at(0, x, y)) << x << "," << y;
+        ++hidden;
+      } else if (outside > 0.05f) {
+        EXPECT_NEAR(seen.at(0, x, y), all.at(0, x, y), 0.01f * all.at(0, x, y) + 1e-4f) << x << "," << y;
+        ++lit;
+      }
+    }
+  }
+  EXPECT_GT(hidden, 50);
+  EXPECT_GT(lit, 500);
+}
+
 class IndirectPictureTest : public RenderTest {
  protected:
   Image indirect(render::Renderer& renderer, const std::string& name,
@@ -163,6 +194,47 @@ TEST_F(IndirectPictureTest, CompensationGivesBackWhatTheClampTakes) {
     EXPECT_LT(mean(clamp, "false"), 0.995 * all) << clamp;
     EXPECT_NEAR(mean(clamp, "true") / all, 1, 0.05) << clamp;
   }
+}
+
+TEST_F(IndirectPictureTest, ShadowsOfVirtualLightsOnlyTakeLightAway) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  const std::vector<std::pair<std::string, std::string>> values{
+      {"vpls", "128"}, {"block", "1"}, {"compensation", "false"}};
+  const Image open = indirect(renderer, "reflective_shadow_map", values);
+  const Image shadowed = indirect(renderer, "instant_radiosity", values);
+  int brighter = 0;
+  for (size_t i = 0; i < open.data().size(); ++i)
+    brighter += shadowed.data()[i] > open.data()[i] * (1 + 1e-5f);
+  EXPECT_EQ(brighter, 0);
+  EXPECT_LT(mean(shadowed), 0.95 * mean(open));
+  EXPECT_GT(mean(shadowed), 0.5 * mean(open));
+}
+
+TEST_F(IndirectPictureTest, BatchesOfMapsGiveTheSamePicture) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  for (const char* block : {"1", "4"}) {
+    const Image once = indirect(renderer, "instant_radiosity",
+                                {{"vpls", "90"}, {"map_size", "256"}, {"memory", "512"}, {"block", block}});
+    const Image batches = indirect(renderer, "instant_radiosity",
+                                   {{"vpls", "90"}, {"map_size", "256"}, {"memory", "16"}, {"block", block}});
+    EXPECT_LT(rmse(once, batches), 1e-5 * mean(once)) << block;
+  }
+}
+
+TEST_F(IndirectPictureTest, NothingIsRedrawnWhileOnlyTheCameraMoves) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  render::Settings s = settings(64, 48, Output::indirect, {technique("instant_radiosity", {{"vpls", "16"}})});
+  s.dynamic = false;
+  picture(renderer, s);
+  renderer.setCamera(renderer.pose().cameras.at(1));
+  renderer.render();
+  for (const auto& pass : renderer.explain())
+    if (pass.technique == "indirect" || pass.technique == "shadow" || pass.name == "paraboloid maps") {
+      EXPECT_EQ(pass.state, frame::PassState::cached) << pass.name;
+    }
 }
 
 }  // namespace

@@ -1,0 +1,126 @@
+// Instant radiosity (Keller 1997) with a shadow map for every virtual light: the brute-force answer.
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "core/indirect/gather.h"
+#include "core/indirect/paraboloid_maps.h"
+#include "core/scene/gpu_scene.h"
+#include "core/technique/technique.h"
+
+namespace {
+
+using namespace limn;
+using frame::Access;
+
+constexpr Parameter parameters[] = {
+    indirect::vplsParameter(),
+    integer("map_size", 128, {16, 2048}, "texels", "Width and height of each virtual light's map")
+        .quality()
+        .logScale(),
+    real("bias", 0.25, {0, 64}, "texel footprints",
+         "How far a blocker must lie above the receiver's tangent plane to count"),
+    integer("memory", 512, {16, 1024}, "MiB", "Maps drawn at once take no more than this"),
+    indirect::mapSizeParameter(),
+    indirect::lightSamplesParameter(),
+    indirect::blockParameter(1),
+    indirect::interleavingParameter(),
+    indirect::clampParameter(),
+    indirect::compensationParameter(),
+    indirect::blurParameter(),
+    indirect::blurPositionParameter(),
+    indirect::blurPlaneParameter(),
+    indirect::blurNormalParameter(),
+};
+constexpr StressCase stress[] = {
+    {.name = "one virtual light", .scene = "cornell_box", .settings = "vpls=1", .factor = 8},
+    {.name = "N not divisible", .scene = "cornell_box", .settings = "vpls=1021"},
+    {.name = "many batches", .scene = "cornell_box", .settings = "vpls=300 map_size=256 memory=16"},
+    {.name = "maps of 16 texels", .scene = "cornell_box", .settings = "map_size=16", .factor = 2},
+    {.name = "no bias", .scene = "cornell_box", .settings = "bias=0"},
+    {.name = "interleaved", .scene = "cornell_box", .settings = "block=8"},
+};
+
+class InstantRadiosity : public Technique {
+ public:
+  static constexpr TechniqueInfo info{.name = "instant_radiosity",
+                                      .title = "Instant radiosity, one shadow map per virtual light",
+                                      .source = "Keller 1997, Instant Radiosity",
+                                      .terms = termSet(Term::indirect),
+                                      .parameters = parameters,
+                                      .stress = stress};
+
+ private:
+  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                 const TermRequest& request) override {
+    if (request.lights.empty()) {
+      graph.leaveOut("indirect light", info.name, "the scene has no light");
+      return request.target;
+    }
+    const ParameterValues& p = inputs.parameters;
+    const indirect::VirtualLights lights =
+        inputs.virtualLights.request(request.lights, indirect::virtualLightDesc(p));
+    const int size = p.integer("map_size");
+    const int64_t fitting = (int64_t{p.integer("memory")} << 20) / indirect::paraboloidBytes(size);
+    const int batch = static_cast<int>(std::clamp<int64_t>(
+        fitting, 1, std::min(lights.count, indirect::paraboloidBatch(inputs.gpuScene.device(), size))));
+    const frame::BufferHandle views = addViews(graph, inputs, lights, batch, size);
+    indirect::Gather gather(graph, inputs, info.name, lights, indirect::gatherSettings(p));
+    for (int first = 0; first < lights.count; first += batch) {
+      const int count = std::min(batch, lights.count - first);
+      maps_.push_back(std::make_unique<indirect::ParaboloidMapPass>());
+      const indirect::ParaboloidMaps maps = maps_.back()->add(graph, inputs.gpuScene, inputs.handles, views,
+                                                              {.count = count,
+                                                               .first = first,
+                                                               .size = size,
+                                                               .technique = info.name,
+                                                               .cacheable = count == lights.count});
+      gather.shade({.program = {.files = {"techniques/instant_radiosity/shade.comp.glsl"}, .defines = {}},
+                    .first = first,
+                    .count = count,
+                    .sampled = {{8, maps.depth, "what virtual lights see"}},
+                    .bind =
+                        [views, bias = p.real("bias")](frame::PassContext& context, gpu::Program& kernel) {
+                          kernel.set("bias", bias);
+                          context.bindStorage(1, views);
+                        },
+                    .declare =
+                        [views](frame::PassBuilder& pass) {
+                          pass.read(views, Access::storageLoad, "projections of the maps");
+                        }});
+    }
+    return gather.finish(request.target);
+  }
+
+  static frame::BufferHandle addViews(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                      const indirect::VirtualLights& lights, int batch, int size) {
+    frame::PassBuilder pass = graph.addPass("views", info.name);
+    pass.read(inputs.handles.geometry, Access::storageLoad, "extent of the scene")
+        .read(lights.lights, Access::storageLoad, "virtual lights")
+        .cacheable();
+    const frame::BufferHandle views =
+        pass.write(graph.createBuffer("paraboloid views",
+                                      {static_cast<size_t>(lights.count) * sizeof(glsl::ShadowView)}),
+                   Access::storageStore, "a hemisphere for each virtual light");
+    const auto program =
+        pass.program({.files = {"techniques/instant_radiosity/views.comp.glsl"}, .defines = {}});
+    pass.execute([=, &scene = inputs.gpuScene](frame::PassContext& context) {
+      gpu::Program& kernel = context.program(program);
+      kernel.use();
+      kernel.set("count", static_cast<unsigned>(lights.count));
+      kernel.set("batch", static_cast<unsigned>(batch));
+      kernel.set("texels", static_cast<unsigned>(size));
+      kernel.set("extent", 2 * scene.bounds().radius());
+      context.bindStorage(0, lights.lights);
+      context.bindStorage(1, views);
+      context.dispatch(lights.count, 1, 1, 64, 1);
+    });
+    return views;
+  }
+
+  std::vector<std::unique_ptr<indirect::ParaboloidMapPass>> maps_;
+};
+
+}  // namespace
+
+LIMN_TECHNIQUE(InstantRadiosity::info, InstantRadiosity)
