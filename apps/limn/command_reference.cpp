@@ -1,6 +1,8 @@
 // limn reference: the ground truth of one term, on the CPU.
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "apps/limn/commands.h"
 #include "apps/limn/interruption.h"
 #include "apps/limn/options.h"
@@ -17,6 +19,7 @@ struct Options {
   int spp = 256, threads = 0, aa = 1;
   double noise = 0, exposure = 0;
   uint64_t seed = 0;
+  std::optional<int> bounces;
   fs::path out, cache;
 };
 
@@ -29,6 +32,7 @@ reference::Request makeRequest(const Options& options, const View& view) {
   request.light = view.light == scene::none ? reference::allLights : view.light;
   request.spp = options.spp;
   request.noise = options.noise;
+  request.bounces = options.bounces.value_or(request.term == reference::Term::indirect ? 1 : 0);
   request.seed = options.seed;
   request.aa = options.aa;
   request.threads = options.threads;
@@ -67,12 +71,18 @@ int run(const Options& options) {
 Action addReferenceCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
   options->scene.addTo(command);
-  command.add_option("--term", options->term, "direct, visibility (with --light) or final")
+  command.add_option("--term", options->term, "direct, indirect, visibility (with --light) or final")
       ->capture_default_str();
   command
       .add_option("--spp", options->spp, "Samples per pixel and light; with --noise the most that are taken")
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 22));
+  command
+      .add_option(
+          "--bounces", options->bounces,
+          "Most surfaces that reflect light before the one that is seen does: indirect is the light that\n"
+          "came over 1 to N of them (default 1), final adds it to direct light (default 0: direct alone)")
+      ->check(CLI::Range(0, reference::maxBounces));
   command.add_option("--noise", options->noise, "Stop at this noise: RMS relative to the mean")
       ->check(CLI::Range(0.0, 1.0));
   command.add_option("--aa", options->aa, "N x N samples in each pixel (both renderers or neither)")

@@ -96,6 +96,7 @@ void addWork(Hasher& h, const Request& r) {
   addPose(h, r.pose, r.light == allLights ? ownLights(r.pose) : static_cast<int>(r.pose.lights.size()));
   h.addAll(r.camera.worldToView, r.camera.yfov, r.camera.near);
   h.addAll(r.width, r.height, r.term, r.light, r.seed, r.aa);
+  if (r.bounces > 0) h.add(r.bounces);
 }
 
 }  // namespace

@@ -23,9 +23,11 @@ class Integrator {
   virtual glm::dvec3 estimate(const Sums& sums, double samples) const = 0;
 };
 
-/// Reflected direct light; sums: R, G, B. Next-event estimation with one light sample and one BRDF sample per
-/// light, weighted by the power heuristic (Veach 1997, section 9.2.4); punctual lights are evaluated once.
-std::unique_ptr<Integrator> makeDirectIntegrator(const RayScene& rays, const Request& request);
+/// Reflected light: direct (unless the term is indirect), and what came to the seen surface over 1 to
+/// Request::bounces others; sums: R, G, B. Path tracing with next-event estimation (DirectLight) at every
+/// surface, directions chosen with the BRDF's density, and Russian roulette from the fourth bounce on.
+/// Surfaces that are specular end a path, as do backs of single-sided ones.
+std::unique_ptr<Integrator> makePathIntegrator(const RayScene& rays, const Request& request);
 
 /// V of one light; sums: visible samples, samples above the tangent plane, and both weighted by irradiance.
 std::unique_ptr<Integrator> makeVisibilityIntegrator(const RayScene& rays, const Request& request);

@@ -16,13 +16,30 @@
 namespace limn::reference {
 namespace {
 
-/// Ray query that knows which pixel asks (for the camera's filter).
+/// Ray query that knows which pixel asks (for the filter of view rays).
 struct Context {
   RTCIntersectContext embree;
   const RayScene* scene;
-  const glsl::FrameBlock* frame;
-  int x, y;
+  const glsl::FrameBlock* frame = nullptr;  ///< null: not a view ray
+  int x = 0, y = 0;
+
+  explicit Context(const RayScene* of) : scene(of) { rtcInitIntersectContext(&embree); }
 };
+
+/// A ray from `origin` that has met nothing yet.
+RTCRay rayFrom(const glm::vec3& origin, const glm::vec3& direction, float near, float far) {
+  RTCRay ray{};
+  ray.org_x = origin.x;
+  ray.org_y = origin.y;
+  ray.org_z = origin.z;
+  ray.dir_x = direction.x;
+  ray.dir_y = direction.y;
+  ray.dir_z = direction.z;
+  ray.tnear = near;
+  ray.tfar = far;
+  ray.mask = ~0u;
+  return ray;
+}
 
 /// What a filter needs of the geometry that was hit. For instanced geometry `draw` is none: the context names
 /// it.
@@ -59,13 +76,14 @@ bool isMasked(const scene::Material& material) {
   return material.alphaCutoff > 0.f;
 }
 
-void cameraFilter(const RTCFilterFunctionNArguments* args) {
+void surfaceFilter(const RTCFilterFunctionNArguments* args) {
   const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
   const auto& context = *reinterpret_cast<const Context*>(args->context);
   const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);
   const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
-  if (!user.material->doubleSided) {
-    // Embree gives ray and normal in the geometry's own space, where the winding is the file's.
+  if (context.frame && !user.material->doubleSided) {
+    // The camera sees no back faces. Embree gives ray and normal in the geometry's own space, where the
+    // winding is the file's.
     const float facing = hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z;
     if (facing * user.orientation >= 0.f) {
       args->valid[0] = 0;
@@ -76,7 +94,7 @@ void cameraFilter(const RTCFilterFunctionNArguments* args) {
   const scene::Scene& scene = context.scene->scene();
   const Draw& draw = context.scene->draws()[drawOf(user, context.embree)];
   float lod = 0.f;
-  if (user.material->baseColourTexture.image != scene::none && !user.primitive->uvs.empty())
+  if (context.frame && user.material->baseColourTexture.image != scene::none && !user.primitive->uvs.empty())
     lod = levelOfDetail(scene, user.material->baseColourTexture,
                         textureFootprint(draw, hit.primID, *context.frame, context.x, context.y));
   if (coverageAt(scene, *user.primitive, *user.material, hit.primID, hit.u, hit.v, lod) <
@@ -210,7 +228,7 @@ struct RayScene::Hierarchy {
     users.push_back(user);
     rtcSetGeometryUserData(geometry, &users.back());
     if (!user.material->doubleSided || isMasked(*user.material))
-      rtcSetGeometryIntersectFilterFunction(geometry, cameraFilter);
+      rtcSetGeometryIntersectFilterFunction(geometry, surfaceFilter);
     if (isMasked(*user.material)) rtcSetGeometryOccludedFilterFunction(geometry, shadowFilter);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, id);
@@ -298,27 +316,15 @@ RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose)
 
 RayScene::~RayScene() = default;
 
-bool RayScene::see(const glsl::FrameBlock& frame, float near, int x, int y, Hit& hit) const {
-  Context context;
-  rtcInitIntersectContext(&context.embree);
-  context.scene = this;
-  context.frame = &frame;
-  context.x = x;
-  context.y = y;
-  const glm::vec3 direction = viewRay(frame, static_cast<float>(x), static_cast<float>(y));
+namespace {
+
+/// The nearest surface that the query's filter lets pass.
+bool intersect(RTCScene top, Context& context, const RTCRay& ray, Hit& hit) {
   RTCRayHit query{};
-  query.ray.org_x = frame.camera_position.x;
-  query.ray.org_y = frame.camera_position.y;
-  query.ray.org_z = frame.camera_position.z;
-  query.ray.dir_x = direction.x;
-  query.ray.dir_y = direction.y;
-  query.ray.dir_z = direction.z;
-  query.ray.tnear = near;
-  query.ray.tfar = std::numeric_limits<float>::infinity();
-  query.ray.mask = ~0u;
+  query.ray = ray;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(hierarchy_->top, &context.embree, &query);
+  rtcIntersect1(top, &context.embree, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   hit.draw = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID ? query.hit.instID[0] : query.hit.geomID;
   hit.triangle = query.hit.primID;
@@ -328,19 +334,29 @@ bool RayScene::see(const glsl::FrameBlock& frame, float near, int x, int y, Hit&
   return true;
 }
 
+}  // namespace
+
+bool RayScene::see(const glsl::FrameBlock& frame, float near, int x, int y, Hit& hit) const {
+  Context context(this);
+  context.frame = &frame;
+  context.x = x;
+  context.y = y;
+  const glm::vec3 direction = viewRay(frame, static_cast<float>(x), static_cast<float>(y));
+  return intersect(
+      hierarchy_->top, context,
+      rayFrom(glm::vec3(frame.camera_position), direction, near, std::numeric_limits<float>::infinity()),
+      hit);
+}
+
+bool RayScene::nearest(const glm::vec3& origin, const glm::vec3& direction, Hit& hit) const {
+  Context context(this);
+  return intersect(hierarchy_->top, context,
+                   rayFrom(origin, direction, 0.f, std::numeric_limits<float>::infinity()), hit);
+}
+
 bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, float end) const {
-  Context context;
-  rtcInitIntersectContext(&context.embree);
-  context.scene = this;
-  RTCRay ray{};
-  ray.org_x = origin.x;
-  ray.org_y = origin.y;
-  ray.org_z = origin.z;
-  ray.dir_x = direction.x;
-  ray.dir_y = direction.y;
-  ray.dir_z = direction.z;
-  ray.tfar = end;
-  ray.mask = ~0u;
+  Context context(this);
+  RTCRay ray = rayFrom(origin, direction, 0.f, end);
   rtcOccluded1(hierarchy_->top, &context.embree, &ray);
   return ray.tfar < 0.f;
 }

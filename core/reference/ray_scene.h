@@ -33,7 +33,7 @@ struct Draw {
 struct Hit {
   uint32_t draw = 0, triangle = 0;
   float u = 0, v = 0;  ///< barycentric coordinates of the triangle's second and third vertex
-  float depth = 0;     ///< along the camera's axis, metres
+  float depth = 0;     ///< along the camera's axis, metres; of nearest(): in lengths of its direction
 };
 
 /// Barycentric coordinates (u, v) at which the line through `origin` along `direction` meets the plane of the
@@ -74,6 +74,10 @@ class RayScene {
   /// Nearest surface that the camera sees at the centre of pixel (x, y), beyond `near`: cut-out texels and
   /// back faces of single-sided surfaces are passed through.
   bool see(const glsl::FrameBlock& frame, float near, int x, int y, Hit& hit) const;
+
+  /// Nearest surface on origin + t * direction, t > 0, seen from either side; cut-out texels (of the
+  /// full-size level) are passed through.
+  bool nearest(const glm::vec3& origin, const glm::vec3& direction, Hit& hit) const;
 
   /// Whether anything but cut-out texels lies on origin + t * direction, 0 < t < end.
   bool occluded(const glm::vec3& origin, const glm::vec3& direction, float end) const;

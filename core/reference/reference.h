@@ -19,11 +19,15 @@ namespace limn::reference {
 enum class Term {
   direct,  ///< reflected direct light of all lights and the environment, or of one of them; shadows included
   visibility,  ///< V of one light
-  final,       ///< direct, the emission the camera sees, and the environment as background
+  final,  ///< direct, indirect of up to Request::bounces, emission the camera sees, environment as background
+  indirect,  ///< light that came to the seen surface over 1 to Request::bounces others (L D+ D E)
 };
 LIMN_API const char* name(Term term);
 /// Throws UsageError naming the terms there are.
 LIMN_API Term termFromName(const std::string& name);
+
+/// Most bounces that can be asked for.
+constexpr int maxBounces = 1024;
 
 /// All of the scene and the environment's map, not the lights that stand for it.
 constexpr int allLights = -1;
@@ -52,6 +56,10 @@ struct Request {
   /// Index into Pose::lights, or lights.size() for the environment; allLights for all (not with visibility,
   /// which takes one light of Pose::lights).
   int light = allLights;
+  /// Surfaces that reflect light before the one that the camera sees does: indirect takes paths of 1 to this
+  /// many (at least 1), final adds them to direct light; 0 with the other terms. The pictures of N and of N -
+  /// 1 bounces with the same samples and seed differ by exactly what the Nth bounce brings.
+  int bounces = 0;
   int spp = 64;  ///< samples per pixel and light, rounded up to an even number; the maximum if noise is given
   /// Target noise, RMS relative to the mean; 0: take spp samples. Tested after 16, 32, 64, ... samples.
   double noise = 0;
@@ -68,7 +76,8 @@ struct Request {
 /// Channels R, G, B (radiance in W/(sr m^2); V three times for visibility), variance (of the mean of R, G, B,
 /// estimated), Z, coverage, id (-1: nothing seen), albedo.R/G/B, N.X/Y/Z; for visibility also V, Vw (V
 /// weighted by irradiance) and masked (1 where no part of the light lies above the geometric tangent plane: V
-/// = 1). Metadata: noise_rms, spp, seed, term, light.
+/// = 1). Metadata: noise_rms, spp, seed, term, light,
+/// bounces.
 struct Result {
   Image image;
   double noiseRms =
@@ -81,7 +90,7 @@ struct Result {
 LIMN_API Result render(const Request& request);
 
 /// Hash (32 hexadecimal digits) of everything that determines the result: scene content with textures, pose,
-/// camera, size, term, light, samples or noise, seed, version of this code.
+/// camera, size, term, light, bounces, samples or noise, seed, version of this code.
 LIMN_API std::string contentHash(const Request& request);
 
 /// Finished references on disk: one EXR per content hash.

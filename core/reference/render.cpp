@@ -35,6 +35,14 @@ void validate(const Request& r) {
   if (r.term == Term::visibility && (r.light < 0 || r.light >= lights))
     throw UsageError(
         fmt::format("reference: visibility needs one light; {} is not in 0 .. {}", r.light, lights - 1));
+  const bool bounces = r.term == Term::indirect || r.term == Term::final;
+  const int least = r.term == Term::indirect ? 1 : 0;
+  if (r.bounces < least || r.bounces > (bounces ? maxBounces : 0))
+    throw UsageError(bounces ? fmt::format("reference: bounces {} is not in {} .. {} with the term {}",
+                                           r.bounces, least, maxBounces, name(r.term))
+                             : fmt::format("reference: bounces {} with the term {}; only indirect and final "
+                                           "have bounces",
+                                           r.bounces, name(r.term)));
   if (r.light < allLights || r.light > lights)
     throw UsageError(fmt::format("reference: light {} is not in 0 .. {} ({}: the environment) nor {} (all)",
                                  r.light, lights, lights, allLights));
@@ -42,7 +50,7 @@ void validate(const Request& r) {
 
 std::unique_ptr<Integrator> makeIntegrator(const RayScene& rays, const Request& request) {
   return request.term == Term::visibility ? makeVisibilityIntegrator(rays, request)
-                                          : makeDirectIntegrator(rays, request);
+                                          : makePathIntegrator(rays, request);
 }
 
 /// One picture in the making.
@@ -98,8 +106,8 @@ class Work {
   /// ... at which noise is tested all occur. A power of two that depends on the request and on what is done
   /// alone.
   uint32_t passSize() const {
-    const double work =
-        static_cast<double>(view_.pixelCount()) * static_cast<double>(1 + request_.pose.lights.size());
+    const double work = static_cast<double>(view_.pixelCount()) *
+                        static_cast<double>(1 + request_.pose.lights.size()) * (1.0 + request_.bounces);
     const double wanted = std::clamp(0x1p21 / work, 1.0, 64.0);
     return std::min(std::bit_floor(static_cast<uint32_t>(wanted)), std::max(state_.samples, 8u));
   }
@@ -155,6 +163,7 @@ class Work {
     metadata["seed"] = fmt::format("{}", request_.seed);
     metadata["term"] = name(request_.term);
     metadata["light"] = fmt::format("{}", request_.light);
+    metadata["bounces"] = fmt::format("{}", request_.bounces);
     result.image = downsample(image_, request_.aa);
     if (request_.progress) request_.progress({1, result.noiseRms, 0, result.spp});
     std::error_code ignored;
@@ -192,14 +201,17 @@ const char* name(Term term) {
       return "visibility";
     case Term::final:
       return "final";
+    case Term::indirect:
+      return "indirect";
   }
   return "";
 }
 
 Term termFromName(const std::string& text) {
-  for (const Term term : {Term::direct, Term::visibility, Term::final})
+  for (const Term term : {Term::direct, Term::visibility, Term::final, Term::indirect})
     if (text == name(term)) return term;
-  throw UsageError(fmt::format("reference: unknown term '{}'; there are direct, visibility, final", text));
+  throw UsageError(
+      fmt::format("reference: unknown term '{}'; there are direct, visibility, final, indirect", text));
 }
 
 Result render(const Request& request) {

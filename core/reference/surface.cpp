@@ -17,17 +17,17 @@ struct Corner {
   }
 };
 
-/// Material textures at the pixel's level; white without image or coordinates.
+/// Material textures at the footprint's level; white without image or coordinates.
 struct TextureLookup {
   const scene::Scene& scene;
   bool hasUv;
   glm::vec2 uv;
-  TextureFootprint footprint;
+  std::optional<TextureFootprint> footprint;  ///< nullopt: full size
 
   bool has(const scene::TextureRef& texture) const { return hasUv && texture.image != scene::none; }
   glm::vec4 operator()(const scene::TextureRef& texture) const {
     if (!has(texture)) return glm::vec4(1);
-    return sampleTexture(scene, texture, uv, levelOfDetail(scene, texture, footprint));
+    return sampleTexture(scene, texture, uv, footprint ? levelOfDetail(scene, texture, *footprint) : 0.f);
   }
 };
 
@@ -62,37 +62,45 @@ void fillMaterial(const Draw& draw, const Corner& corner, const TextureLookup& l
   values.flags = material.specularSurface() ? glsl::gbuffer_flag_specular : 0u;
 }
 
-}  // namespace
+/// The corners' positions in world space.
+struct Triangle {
+  glm::dvec3 p[3];
 
-Surface surfaceAt(const RayScene& rays, const Hit& hit, const glsl::FrameBlock& frame, int x, int y) {
+  Triangle(const Draw& draw, const Corner& corner) {
+    for (int k = 0; k < 3; ++k)
+      p[k] = glm::dvec3(glm::vec3(draw.toWorld * glm::vec4(draw.positions[corner.index[k]], 1.f)));
+  }
+  glm::vec3 at(float u, float v) const {
+    return glm::vec3(p[0] + static_cast<double>(u) * (p[1] - p[0]) + static_cast<double>(v) * (p[2] - p[0]));
+  }
+  /// Of the front face; `otherwise` where the triangle has no area.
+  glm::vec3 normal(float orientation, const glm::vec3& otherwise) const {
+    const glm::dvec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
+    const double size = glm::length(across);
+    return size > 0 ? orientation * glm::vec3(across / size) : otherwise;
+  }
+};
+
+/// The surface as seen from the direction `view`. Where it shows its back, both of its normals turn round.
+Surface seenFrom(const RayScene& rays, const Hit& hit, const glm::vec3& view,
+                 const std::optional<TextureFootprint>& footprint, bool& back) {
   const Draw& draw = rays.draws()[hit.draw];
   const scene::Primitive& primitive = *draw.primitive;
   const uint32_t* indices = &primitive.indices[3 * static_cast<size_t>(hit.triangle)];
   const Corner corner{{indices[0], indices[1], indices[2]}, {1.f - hit.u - hit.v, hit.u, hit.v}};
-
-  glm::dvec3 p[3];
-  for (int k = 0; k < 3; ++k)
-    p[k] = glm::dvec3(glm::vec3(draw.toWorld * glm::vec4(draw.positions[corner.index[k]], 1.f)));
+  const Triangle triangle(draw, corner);
   Surface surface;
-  surface.position = glm::vec3(p[0] + static_cast<double>(hit.u) * (p[1] - p[0]) +
-                               static_cast<double>(hit.v) * (p[2] - p[0]));
-  const glm::vec3 direction = viewRay(frame, static_cast<float>(x), static_cast<float>(y));
-  surface.view = -glm::normalize(direction);
-  surface.depth = hit.depth;
+  surface.position = triangle.at(hit.u, hit.v);
+  surface.view = view;
   surface.rayOffset = draw.rayOffset;
   surface.draw = hit.draw;
 
-  const glm::dvec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
-  const double size = glm::length(across);
-  glm::vec3 geometricNormal = size > 0 ? draw.orientation * glm::vec3(across / size) : surface.view;
-  TextureLookup lookup{rays.scene(), !primitive.uvs.empty(), {}, {}};
-  if (lookup.hasUv) {
-    lookup.uv = corner.blend(primitive.uvs.data());
-    lookup.footprint = textureFootprint(draw, hit.triangle, frame, x, y);
-  }
+  glm::vec3 geometricNormal = triangle.normal(draw.orientation, view);
+  TextureLookup lookup{rays.scene(), !primitive.uvs.empty(), {}, footprint};
+  if (lookup.hasUv) lookup.uv = corner.blend(primitive.uvs.data());
   glm::vec3 normal = shadingNormal(draw, corner, lookup, geometricNormal);
-  // Only a double-sided surface shows its back: both of its normals turn towards the camera.
-  if (glm::dot(geometricNormal, surface.view) < 0.f) {
+  back = glm::dot(geometricNormal, view) < 0.f;
+  if (back) {
     geometricNormal = -geometricNormal;
     normal = -normal;
   }
@@ -102,6 +110,32 @@ Surface surfaceAt(const RayScene& rays, const Hit& hit, const glsl::FrameBlock& 
   values.geometric_normal = geometricNormal;
   surface.brdf = glsl::surface_brdf(values.base_colour, values.metallic, values.roughness,
                                     values.specular_factor, values.specular_colour, values.ior);
+  return surface;
+}
+
+}  // namespace
+
+glm::vec3 Surface::reflectance(const glm::vec3& direction) const {
+  if (!(glm::dot(values.geometric_normal, direction) > 0.f)) return glm::vec3(0);
+  const float cosine = glm::dot(values.normal, direction);
+  return cosine > 0.f ? cosine * glsl::brdf(brdf, values.normal, view, direction) : glm::vec3(0);
+}
+
+Surface surfaceAt(const RayScene& rays, const Hit& hit, const glsl::FrameBlock& frame, int x, int y) {
+  const Draw& draw = rays.draws()[hit.draw];
+  const glm::vec3 direction = viewRay(frame, static_cast<float>(x), static_cast<float>(y));
+  std::optional<TextureFootprint> footprint;
+  if (!draw.primitive->uvs.empty()) footprint = textureFootprint(draw, hit.triangle, frame, x, y);
+  bool back = false;
+  Surface surface = seenFrom(rays, hit, -glm::normalize(direction), footprint, back);
+  surface.depth = hit.depth;
+  return surface;
+}
+
+std::optional<Surface> surfaceAlong(const RayScene& rays, const Hit& hit, const glm::vec3& direction) {
+  bool back = false;
+  const Surface surface = seenFrom(rays, hit, -direction, std::nullopt, back);
+  if (back && !rays.draws()[hit.draw].material->doubleSided) return std::nullopt;
   return surface;
 }
 

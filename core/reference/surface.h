@@ -1,5 +1,7 @@
-// What the camera sees in a pixel: the same surface values as the G-buffer, unquantised.
+// What a ray meets, in a pixel or further on: the same surface values as the G-buffer, unquantised.
 #pragma once
+
+#include <optional>
 
 #include "core/reference/ray_scene.h"
 #include "glsl/brdf.glsl"
@@ -9,14 +11,16 @@ namespace limn::reference {
 
 struct Surface {
   glm::vec3 position{0};  ///< world, metres
-  glm::vec3 view{0};      ///< unit, towards the camera
-  float depth = 0;        ///< along the camera's axis, metres
+  glm::vec3 view{0};      ///< unit, towards the camera or the surface that the ray came from
+  float depth = 0;        ///< along the camera's axis, metres; 0 behind the first surface
   float rayOffset = 0;    ///< Draw::rayOffset
   uint32_t draw = 0;
   glsl::GBufferSurface values{};
   glsl::SurfaceBrdf brdf{};
 
   bool specular() const { return (values.flags & glsl::gbuffer_flag_specular) != 0; }
+  /// f cos for light from `direction` (unit), 1/sr; 0 below either horizon.
+  glm::vec3 reflectance(const glm::vec3& direction) const;
   /// Where rays leave from towards `direction`: clear of the surface on that side of it.
   glm::vec3 rayOrigin(const glm::vec3& direction) const {
     const glm::vec3& n = values.geometric_normal;
@@ -27,5 +31,9 @@ struct Surface {
 /// The surface at `hit`, seen in pixel (x, y): textures at the level that the pixel's quad asks for, normals
 /// turned towards the camera where a double-sided surface shows its back.
 Surface surfaceAt(const RayScene& rays, const Hit& hit, const glsl::FrameBlock& frame, int x, int y);
+
+/// The surface at `hit`, met by a ray along `direction` (unit): textures at their full size. nullopt where
+/// the ray met the back of a single-sided surface, which reflects nothing.
+std::optional<Surface> surfaceAlong(const RayScene& rays, const Hit& hit, const glm::vec3& direction);
 
 }  // namespace limn::reference

@@ -1,6 +1,10 @@
 // Small scenes made in memory, for tests of the reference.
 #pragma once
 
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
@@ -139,6 +143,25 @@ inline World floorWorld(float albedo = 0.5f) {
   world.camera = scene::lookAt({0, 4.2f, 0.01f}, {0, 0, 0}, 0.8f);
   return world;
 }
+
+inline bool sameBits(const Image& a, const Image& b) {
+  return a.channels() == b.channels() &&
+         std::equal(a.data().begin(), a.data().end(), b.data().begin(), b.data().end());
+}
+
+/// An empty folder that goes with the test.
+class Folder {
+ public:
+  Folder() : path_(std::filesystem::temp_directory_path() / ("limn_reference_" + std::to_string(getpid()))) {
+    std::filesystem::remove_all(path_);
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
 
 /// World position that a pixel of a result shows: from its Z channel.
 inline glm::dvec3 positionOf(const World& world, const Image& image, int x, int y) {

@@ -1,7 +1,6 @@
 // How the reference does its work: noise estimate, determinism, resuming, cache, geometry variants, bad
 // requests.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -19,11 +18,6 @@ namespace {
 
 using namespace test;
 
-bool sameBits(const Image& a, const Image& b) {
-  return a.channels() == b.channels() &&
-         std::equal(a.data().begin(), a.data().end(), b.data().begin(), b.data().end());
-}
-
 /// Two lights, a box-like blocker, an environment: a bit of everything.
 World busyWorld() {
   World world = floorWorld();
@@ -38,20 +32,6 @@ World busyWorld() {
   world.camera = scene::lookAt({0, 2, 3}, {0, 0.2f, 0}, 0.8f);
   return world;
 }
-
-/// An empty folder that goes with the test.
-class Folder {
- public:
-  Folder() : path_(std::filesystem::temp_directory_path() / ("limn_reference_" + std::to_string(getpid()))) {
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 TEST(ReferenceWork, NoiseEstimateIsTheError) {
   World world = floorWorld();

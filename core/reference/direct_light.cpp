@@ -1,0 +1,104 @@
+#include "core/reference/direct_light.h"
+
+#include <glm/glm.hpp>
+
+#include "core/reference/light_view.h"
+
+namespace limn::reference {
+namespace {
+
+/// Weight of a strategy of density `own` beside one of density `other` (Veach 1997, power heuristic with
+/// exponent 2).
+float powerHeuristic(float own, float other) {
+  const float ratio = other / own;
+  return 1.f / (1.f + ratio * ratio);
+}
+
+/// One light at one surface.
+struct Estimate {
+  const RayScene& rays;
+  const Surface& surface;
+  const SampleRange& samples;
+  uint32_t pair;  ///< the light's first
+  Sums& sums;
+
+  void addPunctual(const PointView& view) const {
+    if (!view.above()) return;
+    const glm::vec3 value = surface.reflectance(view.arrival().direction) * view.irradiance();
+    if (value != glm::vec3(0) && unblocked(rays, surface, view.arrival())) add(value, samples.count);
+  }
+
+  /// A light of which the surface may not see anything.
+  template <class View>
+  void addExtended(const View& view) const {
+    if (view.above() && !view.dark()) addSamples(view);
+  }
+
+  template <class View>
+  void addSamples(const View& view) const {
+    for (uint32_t i = samples.first; i < samples.first + samples.count; ++i) {
+      samples.sampler.startSample(i);
+      addLightSample(view, samples.sampler.pair(pair));
+      const glm::vec2 lobe = samples.sampler.pair(pair + 2);
+      addBrdfSample(view, glm::vec3(samples.sampler.pair(pair + 1), lobe.x));
+    }
+  }
+
+ private:
+  void add(const glm::vec3& value, double weight) const {
+    for (int c = 0; c < 3; ++c) sums[static_cast<size_t>(c)] += weight * static_cast<double>(value[c]);
+  }
+
+  template <class View>
+  void addLightSample(const View& view, glm::vec2 u) const {
+    const Arrival arrival = view.sample(u);
+    if (!(arrival.pdf > 0.f)) return;
+    const glm::vec3 value = surface.reflectance(arrival.direction) * arrival.radiance;
+    if (value == glm::vec3(0)) return;
+    const float brdfPdf =
+        glsl::brdf_pdf(surface.brdf, surface.values.normal, surface.view, arrival.direction);
+    if (unblocked(rays, surface, arrival))
+      add(value * (powerHeuristic(arrival.pdf, brdfPdf) / arrival.pdf), 1);
+  }
+
+  template <class View>
+  void addBrdfSample(const View& view, const glm::vec3& u) const {
+    const glm::vec3 direction = glsl::brdf_sample(surface.brdf, surface.values.normal, surface.view, u);
+    const float pdf = glsl::brdf_pdf(surface.brdf, surface.values.normal, surface.view, direction);
+    if (!(pdf > 0.f)) return;
+    const Arrival arrival = view.towards(direction);
+    if (!(arrival.pdf > 0.f)) return;
+    const glm::vec3 value = surface.reflectance(direction) * arrival.radiance;
+    if (value != glm::vec3(0) && unblocked(rays, surface, arrival))
+      add(value * (powerHeuristic(pdf, arrival.pdf) / pdf), 1);
+  }
+};
+
+}  // namespace
+
+DirectLight::DirectLight(const RayScene& rays, const Request& request)
+    : rays_(rays), lights_(request.pose.lights), environment_(request.scene.environment) {
+  const int count = static_cast<int>(lights_.size());
+  first_ = request.light == allLights ? 0 : std::min(request.light, count);
+  last_ = request.light == allLights ? ownLights(request.pose) : std::min(request.light + 1, count);
+  withEnvironment_ = request.light == allLights || request.light == count;
+}
+
+void DirectLight::add(const Surface& surface, const SampleRange& samples, Sums& sums) const {
+  for (int i = first_; i < last_; ++i) {
+    const glsl::Light& light = lights_[static_cast<size_t>(i)];
+    const Estimate estimate{rays_, surface, samples, samples.pair + 3u * static_cast<uint32_t>(i), sums};
+    if (isPunctual(light))
+      estimate.addPunctual(PointView(light, surface));
+    else if (light.info.x == glsl::light_rectangle || glsl::light_is_distant_rectangle(light))
+      estimate.addExtended(RectangleView(light, surface));
+    else
+      estimate.addExtended(ConeView(light, surface));
+  }
+  const EnvironmentView environment(environment_);
+  if (withEnvironment_ && !environment.dark())
+    Estimate{rays_, surface, samples, samples.pair + 3u * static_cast<uint32_t>(last_), sums}.addSamples(
+        environment);
+}
+
+}  // namespace limn::reference

@@ -1,0 +1,87 @@
+// Path tracing from the camera: direct light at every surface that a path meets.
+#include <algorithm>
+#include <glm/glm.hpp>
+
+#include "core/reference/direct_light.h"
+
+namespace limn::reference {
+namespace {
+
+/// From this bounce on a path goes on with a probability alone (Arvo and Kirk 1990, Russian roulette).
+constexpr int firstRoulette = 4;
+
+class PathIntegrator final : public Integrator {
+ public:
+  PathIntegrator(const RayScene& rays, const Request& request)
+      : rays_(rays),
+        light_(rays, request),
+        withDirect_(request.term != Term::indirect),
+        bounces_(request.bounces) {}
+
+  void sample(const Surface& surface, Sampler& sampler, uint32_t first, uint32_t count,
+              Sums& sums) const override {
+    if (surface.specular()) return;  // takes no such light: what it reflects belongs to other terms
+    if (withDirect_) light_.add(surface, {sampler, 0, first, count}, sums);
+    if (bounces_ == 0) return;
+    for (uint32_t i = first; i < first + count; ++i) follow(surface, sampler, i, sums);
+  }
+
+  glm::dvec3 estimate(const Sums& sums, double samples) const override {
+    return glm::dvec3(sums[0], sums[1], sums[2]) / samples;
+  }
+
+ private:
+  /// One path. The random numbers of a bounce do not depend on how many there may be: one bounce more adds
+  /// its own light and changes nothing else.
+  void follow(Surface surface, Sampler& sampler, uint32_t sample, Sums& sums) const {
+    glm::dvec3 throughput(1);
+    uint32_t pair = light_.pairs();
+    for (int bounce = 1; bounce <= bounces_; ++bounce) {
+      sampler.startSample(sample);
+      const glm::vec2 lobe = sampler.pair(pair + 1);
+      if (!step(surface, glm::vec3(sampler.pair(pair), lobe.x), throughput)) return;
+      if (bounce >= firstRoulette && !survives(lobe.y, throughput)) return;
+      Sums reflected{};
+      light_.add(surface, {sampler, pair + 2, sample, 1}, reflected);
+      for (int c = 0; c < 3; ++c)
+        sums[static_cast<size_t>(c)] += throughput[c] * reflected[static_cast<size_t>(c)];
+      pair += 2 + light_.pairs();
+    }
+  }
+
+  /// On to the next surface, in a direction of the BRDF's density; false: nothing comes from there.
+  bool step(Surface& surface, const glm::vec3& u, glm::dvec3& throughput) const {
+    const glm::vec3 direction = glsl::brdf_sample(surface.brdf, surface.values.normal, surface.view, u);
+    const float pdf = glsl::brdf_pdf(surface.brdf, surface.values.normal, surface.view, direction);
+    if (!(pdf > 0.f)) return false;
+    throughput *= glm::dvec3(surface.reflectance(direction)) / static_cast<double>(pdf);
+    Hit hit;
+    if (throughput == glm::dvec3(0) || !rays_.nearest(surface.rayOrigin(direction), direction, hit))
+      return false;
+    const std::optional<Surface> met = surfaceAlong(rays_, hit, direction);
+    if (!met || met->specular()) return false;
+    surface = *met;
+    return true;
+  }
+
+  /// Ends paths that carry little; those that go on carry the others' share.
+  static bool survives(float u, glm::dvec3& throughput) {
+    const double probability = std::min(std::max({throughput.x, throughput.y, throughput.z}), 1.0);
+    if (static_cast<double>(u) >= probability) return false;
+    throughput /= probability;
+    return true;
+  }
+
+  const RayScene& rays_;
+  DirectLight light_;
+  bool withDirect_;
+  int bounces_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> makePathIntegrator(const RayScene& rays, const Request& request) {
+  return std::make_unique<PathIntegrator>(rays, request);
+}
+
+}  // namespace limn::reference
