@@ -105,6 +105,8 @@ reference::Request BenchSession::request(const bench::Case& c, reference::Term t
   request.light = light == scene::none ? reference::allLights : light;
   request.spp = c.reference.spp;
   request.noise = c.reference.noise;
+  if (term == reference::Term::indirect || term == reference::Term::final)
+    request.bounces = c.reference.bounces;
   return request;
 }
 

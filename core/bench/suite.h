@@ -11,7 +11,8 @@
 //     warmup = 3
 //     modes = ["dynamic"]         # and/or "static"
 //     term = "visibility"
-//     reference = {spp = 256}     # or {noise = 0.005}: RMS relative to the mean; also bounces
+//     reference = {spp = 256}     # or {noise = 0.005}: RMS relative to the mean; also bounces, for
+//                                 # the terms indirect and final
 //
 //     pictures = true             # keep every picture as PNG, and the reference's
 //
@@ -50,7 +51,7 @@ namespace limn::bench {
 struct ReferenceSettings {
   int spp = 256;       ///< samples per pixel; the maximum if noise is given
   double noise = 0.0;  ///< RMS relative to the mean; 0: take spp samples
-  int bounces = 1;     ///< for indirect light
+  int bounces = 1;     ///< of indirect light, 1 unless given, and of final pictures, 0 unless given
   bool operator==(const ReferenceSettings&) const = default;
 };
 

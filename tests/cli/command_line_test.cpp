@@ -41,8 +41,27 @@ TEST(CommandLine, LightSizesNeedLightsThatHaveOne) {
   EXPECT_EQ(with({"reference", "lights", "--term", "visibility", "--light", "key", "--spp", "4"}).status, 0);
 }
 
+TEST(CommandLine, BouncesBelongToIndirectAndFinalLight) {
+  TemporaryFolder folder;
+  const auto with = [&](std::vector<std::string> more) {
+    std::vector<std::string> all{"reference", cornell_box, "--size", "16x12",
+                                 "--spp",     "2",         "--out",  (folder / "r.exr").string()};
+    all.insert(all.end(), more.begin(), more.end());
+    return limn(all);
+  };
+  expectRefused(with({"--term", "direct", "--bounces", "2"}), 2,
+                {"bounces 2", "direct", "indirect and final"});
+  expectRefused(with({"--term", "indirect", "--bounces", "0"}), 2, {"bounces 0", "1 .. 1024"});
+  expectRefused(with({"--term", "indirect", "--bounces", "-1"}), 2, {"--bounces", "-1", "1024"});
+  expectRefused(with({"--term", "indirekt"}), 2, {"indirekt", "direct, visibility, final, indirect"});
+  EXPECT_EQ(with({"--term", "indirect"}).status, 0);
+  EXPECT_EQ(with({"--term", "indirect", "--bounces", "3"}).status, 0);
+  EXPECT_EQ(with({"--term", "final", "--bounces", "1", "--light", "key"}).status, 0);
+}
+
 TEST(CommandLine, HelpOfEveryCommandIsComplete) {
-  for (const char* command : {"list", "info", "render", "reference", "environment", "compare", "bench", "report"}) {
+  for (const char* command :
+       {"list", "info", "render", "reference", "environment", "compare", "bench", "report"}) {
     const Outcome outcome = limn({command, "--help"});
     EXPECT_EQ(outcome.status, 0) << command;
     EXPECT_THAT(outcome.out, HasSubstr("--help")) << command;

@@ -204,6 +204,9 @@ TEST(BenchSuite, ErrorsNameFileLineAndColumn) {
   expectUsageError("term='shadow'\n" + good,
                    "s.toml:1:6: unknown term 'shadow'; known are final, visibility");
   expectUsageError("reference={sp=1}\n" + good, "s.toml:1:12: unknown key 'sp' in reference; known are spp");
+  expectUsageError("reference={bounces=0}\n" + good, "'bounces' must be a whole number in 1..1024");
+  expectUsageError("term='direct'\nreference={bounces=2}\n" + good,
+                   "s.toml:2:20: no scene asks for a term that has 'bounces': indirect, final");
   expectUsageError("reference={noise='low'}\n" + good, "'noise' must be a number in 0..1");
   expectUsageError(good + "camera='x'\n", "s.toml:7:1: unknown key 'camera' in [[techniques]]");
   expectUsageError(good + "parameters={a=[]}\n", "'c.a' has an empty list");
@@ -256,6 +259,22 @@ TEST(BenchSuite, ParsesShards) {
   for (const char* text : {"", "2", "0/4", "5/4", "1/0", "a/b", "1/2x", "-1/2", "1/"}) {
     EXPECT_THROW(parseShard(text), UsageError) << text;
   }
+}
+
+TEST(BenchSuite, BouncesAreOneForIndirectLightAndNoneForFinalPicturesUnlessGiven) {
+  const auto bounces = [](const std::string& reference, const std::string& term) {
+    return parseSuite("name='a'\nsizes='8x8'\n" + reference + "[[scenes]]\nscene='b'\nterm='" + term +
+                          "'\n[[techniques]]\ntechnique='c'\n",
+                      "s.toml")
+        .cases.at(0)
+        .reference.bounces;
+  };
+  EXPECT_EQ(bounces("", "indirect"), 1);
+  EXPECT_EQ(bounces("", "final"), 0);
+  EXPECT_EQ(bounces("reference={spp=4}\n", "indirect"), 1);
+  EXPECT_EQ(bounces("reference={spp=4}\n", "final"), 0);
+  EXPECT_EQ(bounces("reference={bounces=3}\n", "indirect"), 3);
+  EXPECT_EQ(bounces("reference={bounces=3}\n", "final"), 3);
 }
 
 TEST(BenchSuite, ReadsEverySuiteOfTheRepository) {

@@ -1,0 +1,119 @@
+#include "core/bench/toml_section.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+
+namespace limn::bench {
+
+void failAt(const std::string& file, const toml::source_region& where, const std::string& message) {
+  throw UsageError(fmt::format("{}:{}:{}: {}", file, where.begin.line, where.begin.column, message));
+}
+
+TomlSection::TomlSection(const std::string& file, const toml::table& table, std::string name,
+                         std::initializer_list<const char*> keys)
+    : file_(file), table_(table), name_(std::move(name)) {
+  for (const auto& [key, node] : table) {
+    if (std::find(keys.begin(), keys.end(), key.str()) == keys.end()) {
+      failAt(file_, key.source(),
+             fmt::format("unknown key '{}' in {}; known are {}", key.str(), name_, fmt::join(keys, ", ")));
+    }
+  }
+}
+
+const toml::node& TomlSection::require(const char* key) const {
+  const toml::node* node = find(key);
+  if (node == nullptr) failAt(file_, table_.source(), fmt::format("{} lacks the key '{}'", name_, key));
+  return *node;
+}
+
+void TomlSection::fail(const toml::node& node, const std::string& message) const {
+  failAt(file_, node.source(), message);
+}
+
+std::string TomlSection::text(const toml::node& node, const char* key) const {
+  const auto value = node.value_exact<std::string>();
+  if (!value || value->empty()) fail(node, fmt::format("'{}' must be a text that is not empty", key));
+  return *value;
+}
+
+std::string TomlSection::text(const char* key, const std::string& otherwise) const {
+  const toml::node* node = find(key);
+  return node == nullptr ? otherwise : text(*node, key);
+}
+
+int TomlSection::integer(const char* key, int otherwise, int low, int high) const {
+  const toml::node* node = find(key);
+  if (node == nullptr) return otherwise;
+  const auto value = node->value_exact<std::int64_t>();
+  if (!value || *value < low || *value > high) {
+    fail(*node, fmt::format("'{}' must be a whole number in {}..{}", key, low, high));
+  }
+  return static_cast<int>(*value);
+}
+
+double TomlSection::real(const char* key, double otherwise, double low, double high) const {
+  const toml::node* node = find(key);
+  if (node == nullptr) return otherwise;
+  const auto value = node->value<double>();
+  if (!value || !node->is_number() || !(*value >= low && *value <= high)) {
+    fail(*node, fmt::format("'{}' must be a number in {}..{}", key, low, high));
+  }
+  return *value;
+}
+
+bool TomlSection::boolean(const char* key, bool otherwise) const {
+  const toml::node* node = find(key);
+  if (node == nullptr) return otherwise;
+  const auto value = node->value_exact<bool>();
+  if (!value) fail(*node, fmt::format("'{}' must be true or false", key));
+  return *value;
+}
+
+std::vector<double> TomlSection::reals(const char* key, double otherwise, double low, double high) const {
+  const toml::node* node = find(key);
+  if (node == nullptr || !node->is_array()) return {real(key, otherwise, low, high)};
+  if (node->as_array()->empty()) fail(*node, fmt::format("'{}' is an empty list", key));
+  std::vector<double> values;
+  for (const toml::node& element : *node->as_array()) {
+    const auto value = element.value<double>();
+    if (!value || !element.is_number() || !(*value >= low && *value <= high))
+      fail(element, fmt::format("'{}' must be numbers in {}..{}", key, low, high));
+    values.push_back(*value);
+  }
+  return values;
+}
+
+std::vector<std::string> TomlSection::texts(const char* key, std::vector<std::string> otherwise) const {
+  const toml::node* node = find(key);
+  if (node == nullptr) return otherwise;
+  if (!node->is_array()) return {text(*node, key)};
+  if (node->as_array()->empty()) fail(*node, fmt::format("'{}' is an empty list", key));
+  std::vector<std::string> values;
+  for (const toml::node& element : *node->as_array()) values.push_back(text(element, key));
+  return values;
+}
+
+std::string TomlSection::choice(const char* key, std::initializer_list<const char*> known) const {
+  const std::string value = text(key, *known.begin());
+  if (std::find(known.begin(), known.end(), value) == known.end())
+    fail(*find(key), fmt::format("unknown {} '{}'; known are {}", key, value, fmt::join(known, ", ")));
+  return value;
+}
+
+std::vector<const toml::table*> TomlSection::tables(const char* key) const {
+  const toml::node& node = require(key);
+  const toml::array* array = node.as_array();
+  if (array == nullptr || array->empty()) fail(node, fmt::format("'{}' must be tables: [[{}]]", key, key));
+  std::vector<const toml::table*> result;
+  for (const toml::node& element : *array) {
+    if (!element.is_table()) fail(element, fmt::format("'{}' must be tables: [[{}]]", key, key));
+    result.push_back(element.as_table());
+  }
+  return result;
+}
+
+}  // namespace limn::bench
