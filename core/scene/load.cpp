@@ -127,6 +127,7 @@ Scene Loader::load(std::span<const std::byte> bytes) {
   readLights();
   readCameras();
   readNodes();
+  readMetaballs();
   readSkins();
   checkNodeUses();
   readAnimations();

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/scene/load.h"
+#include "core/scene/metaballs.h"
 #include "core/scene/scene.h"
 
 namespace tinygltf {
@@ -118,6 +119,7 @@ class Loader {
   void readSkinAttributes(const tinygltf::Primitive& source, Primitive& out, const std::string& what);
   void readMorphTargets(const tinygltf::Primitive& source, Primitive& out, const std::string& what);
   void readTriangles(const tinygltf::Primitive& source, Primitive& out, const std::string& what);
+  int defaultMaterial();
   void completePrimitive(Primitive& out, const std::string& what);
   void completeNormals(Primitive& out, const std::string& what);
 
@@ -131,6 +133,11 @@ class Loader {
   void readSkins();
   void checkNodeUses();
   glm::quat unitRotation(const glm::dquat& q, const std::string& what) const;
+
+  // loader_metaballs.cpp
+  void readMetaballs();
+  Metaballs readMetaballs(const tinygltf::Value& extras, const std::string& what) const;
+  int metaballMaterial(const tinygltf::Value& extras, const std::string& what);
 
   // loader_animation.cpp
   void readAnimations();

@@ -78,6 +78,15 @@ void Loader::readMeshes() {
   }
 }
 
+int Loader::defaultMaterial() {
+  if (defaultMaterial_ == none) {
+    defaultMaterial_ = static_cast<int>(scene_.materials.size());
+    scene_.materials.push_back({});
+    uvUses_.push_back({});
+  }
+  return defaultMaterial_;
+}
+
 bool Loader::readPrimitive(const tinygltf::Primitive& source, Primitive& out, const std::string& what) {
   if (source.mode < TINYGLTF_MODE_POINTS || source.mode > TINYGLTF_MODE_TRIANGLE_FAN)
     fail(fmt::format("{}: mode {} is not one of glTF 2.0", what, source.mode));
@@ -91,12 +100,7 @@ bool Loader::readPrimitive(const tinygltf::Primitive& source, Primitive& out, co
   }
   out.material = source.material;
   if (source.material == none) {
-    if (defaultMaterial_ == none) {
-      defaultMaterial_ = static_cast<int>(scene_.materials.size());
-      scene_.materials.push_back({});
-      uvUses_.push_back({});
-    }
-    out.material = defaultMaterial_;
+    out.material = defaultMaterial();
   } else if (source.material < 0 || static_cast<std::size_t>(source.material) >= model_->materials.size()) {
     fail(fmt::format("{}: material {} does not exist; there are {}", what, source.material,
                      model_->materials.size()));
