@@ -160,12 +160,20 @@ class Writer {
     json entry = {{"name", n.name}};
     if (n.translation != glm::vec3(0)) entry["translation"] = array(n.translation);
     if (n.rotation != glm::quat(1, 0, 0, 0)) entry["rotation"] = array(n.rotation);
+    if (n.scale != glm::vec3(1)) entry["scale"] = array(n.scale);
     if (n.mesh >= 0) entry["mesh"] = n.mesh;
     if (n.camera >= 0) entry["camera"] = n.camera;
     if (n.skin >= 0) entry["skin"] = n.skin;
     if (!n.children.empty()) entry["children"] = n.children;
     if (n.area) entry["extras"]["limn_area"] = array(*n.area);
     if (n.angle) entry["extras"]["limn_angle"] = *n.angle;
+    if (n.metaballs) {
+      entry["extras"]["limn_metaballs"] = {{"count", n.metaballs->count},
+                                           {"resolution", n.metaballs->resolution},
+                                           {"radius", n.metaballs->radius},
+                                           {"seed", n.metaballs->seed},
+                                           {"material", n.metaballs->material}};
+    }
     if (n.light >= 0) {
       entry["extensions"]["KHR_lights_punctual"]["light"] = n.light;
       extensions_.insert("KHR_lights_punctual");

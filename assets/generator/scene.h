@@ -62,6 +62,14 @@ struct Instance {
   glm::vec3 scale{1};
 };
 
+/// extras.limn_metaballs: balls that melt into each other, in the cube [-1, 1]^3 of their node.
+struct Metaballs {
+  int count = 8, resolution = 32;
+  float radius = 0.2f;
+  std::uint32_t seed = 0;
+  int material = -1;
+};
+
 struct Node {
   std::string name;
   glm::vec3 translation{0};
@@ -71,6 +79,8 @@ struct Node {
   std::vector<Instance> instances{};  ///< EXT_mesh_gpu_instancing where not empty
   std::optional<glm::vec2> area{};    ///< extras.limn_area, metres
   std::optional<float> angle{};       ///< extras.limn_angle, radians
+  std::optional<Metaballs> metaballs{};
+  glm::vec3 scale{1};
 };
 
 struct Skin {

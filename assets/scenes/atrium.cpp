@@ -1,8 +1,11 @@
 // A courtyard of two storeys: a colonnade of fluted columns, arches, a balustrade above, a fountain, banners.
+#include "assets/scenes/atrium.h"
+
 #include <cmath>
 #include <tuple>
 
 #include "assets/generator/shapes.h"
+#include "assets/generator/simplify.h"
 #include "assets/scenes/atrium_parts.h"
 #include "assets/scenes/scenes.h"
 
@@ -134,7 +137,8 @@ Mesh courtMouldings() {
   return mesh;
 }
 
-void addBanners(Scene& scene) {
+template <class Reduced>
+void addBanners(Scene& scene, const Reduced& reduced) {
   const std::pair<const char*, glm::vec3> colours[] = {
       {"red", {0.5f, 0.05f, 0.04f}}, {"green", {0.06f, 0.25f, 0.1f}}, {"blue", {0.06f, 0.12f, 0.38f}}};
   for (int i = 0; i < 3; ++i) {
@@ -143,15 +147,19 @@ void addBanners(Scene& scene) {
     const float x = 4.0f * static_cast<float>(i - 1) - 1;
     std::vector<Place> places = {{{x, kFloor2 - 0.1f, -(kHalfZ - 0.62f)}, 0},
                                  {{x + 2, kFloor2 - 0.1f, kHalfZ - 0.62f}, 180}};
-    place(scene, std::string("banner_") + colours[i].first, banner(1.2f, 2.2f), scene.addMaterial(cloth),
-          places);
+    place(scene, std::string("banner_") + colours[i].first, reduced(banner(1.2f, 2.2f)),
+          scene.addMaterial(cloth), places);
   }
 }
 
 }  // namespace
 
-Scene makeAtrium() {
-  Scene scene;
+void addAtrium(Scene& scene, float share) {
+  const auto reduced = [share](Mesh mesh) {
+    return share < 1
+               ? simplified(mesh, static_cast<std::size_t>(share * static_cast<float>(mesh.triangleCount())))
+               : std::move(mesh);
+  };
   Material stone = glossy("stone", {1, 1, 1}, 0.85f);
   stone.baseColourTexture = scene.addTexture("stone", plasterImage(512, {0.62f, 0.55f, 0.45f}, 0.3f));
   Material floor = glossy("floor", {1, 1, 1}, 0.6f);
@@ -163,23 +171,29 @@ Scene makeAtrium() {
   Mesh ground0 = ground(kWallX, kWallZ, 2);
   computeTangents(ground0);
   scene.add("floor", std::move(ground0), floorId);
-  scene.add("walls", outerWalls(), stoneId);
+  scene.add("walls", reduced(outerWalls()), stoneId);
   Mesh slabs = gallerySlab(4.4f, kFloor2);
   append(slabs, gallerySlab(8.0f, kTop));
   scene.add("slabs", std::move(slabs), stoneId);
-  scene.add("mouldings", courtMouldings(), stoneId);
-  scene.add("fountain", fountain(), stoneId);
+  scene.add("mouldings", reduced(courtMouldings()), stoneId);
+  scene.add("fountain", reduced(fountain()), stoneId);
 
   std::vector<Place> columns;
   for (const glm::vec3& axis : columnAxes()) columns.push_back({axis, 0});
-  place(scene, "column", flutedColumn(kSpring, 0.2f), stoneId, columns);
-  place(scene, "upper_column", plainColumn(kSpring2 - kFloor2, 0.13f), stoneId, raised(columns, kFloor2));
-  place(scene, "arch", archedWall(kBay, kFloor2 - kSpring, kDepth, 0.72f), stoneId, raised(bays(), kSpring));
-  place(scene, "upper_arch", archedWall(kBay, kTop - kSpring2, kDepth, 0.82f), stoneId,
+  place(scene, "column", reduced(flutedColumn(kSpring, 0.2f)), stoneId, columns);
+  place(scene, "upper_column", reduced(plainColumn(kSpring2 - kFloor2, 0.13f)), stoneId,
+        raised(columns, kFloor2));
+  place(scene, "arch", reduced(archedWall(kBay, kFloor2 - kSpring, kDepth, 0.72f)), stoneId,
+        raised(bays(), kSpring));
+  place(scene, "upper_arch", reduced(archedWall(kBay, kTop - kSpring2, kDepth, 0.82f)), stoneId,
         raised(bays(), kSpring2));
-  place(scene, "balustrade", balustrade(kBay - 0.3f, 0.9f, 7), stoneId, raised(bays(), kFloor2));
-  addBanners(scene);
+  place(scene, "balustrade", reduced(balustrade(kBay - 0.3f, 0.9f, 7)), stoneId, raised(bays(), kFloor2));
+  addBanners(scene, reduced);
+}
 
+Scene makeAtrium() {
+  Scene scene;
+  addAtrium(scene, 1);
   scene.addAreaLight("key", {-4.2f, 16, 4.2f}, {0.8f, 0, -1}, {2.4f, 2.4f}, 1300, {1, 0.93f, 0.82f});
   scene.addCamera("main", {-5.3f, 2.1f, 2.1f}, {2.2f, 3.1f, -2.0f}, 60);
   scene.addCamera("close", {-0.2f, 2.3f, 0.4f}, {1.0f, 2.7f, -3.0f}, 55);

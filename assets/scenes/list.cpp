@@ -5,11 +5,14 @@ namespace limn::assets {
 const std::vector<SceneEntry>& allScenes() {
   static const std::vector<SceneEntry> scenes = {
       {"atrium", makeAtrium},
+      {"atrium_robots", makeAtriumRobots},
       {"balls", makeBalls},
       {"balls_sky", makeBallsSky},
       {"cornell_box", makeCornellBox},
+      {"cornell_horse", makeCornellHorse},
       {"foliage_card", makeFoliageCard},
       {"lights", makeLights},
+      {"metaballs", makeMetaballs},
       {"patrol", makePatrol},
       {"plant", makePlant},
       {"robot", makeRobot},

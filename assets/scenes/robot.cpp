@@ -113,6 +113,23 @@ Animation buildDance(int firstNode) {
   return animation;
 }
 
+int addRobot(Scene& scene, int mesh) {
+  const int first = static_cast<int>(scene.nodes.size());
+  Skin skin;
+  for (const JointInfo& joint : kSkeleton) {
+    const glm::vec3 parent =
+        joint.parent < 0 ? glm::vec3(0) : kSkeleton[static_cast<std::size_t>(joint.parent)].position;
+    const int node = scene.addNode({.name = std::string(joint.name), .translation = joint.position - parent});
+    if (joint.parent >= 0)
+      scene.nodes[static_cast<std::size_t>(first + joint.parent)].children.push_back(node);
+    skin.joints.push_back(node);
+    skin.inverseBind.push_back(translation(-joint.position));
+  }
+  scene.skins.push_back(std::move(skin));
+  scene.addNode({.name = "robot", .mesh = mesh, .skin = static_cast<int>(scene.skins.size()) - 1});
+  return first;
+}
+
 }  // namespace robot
 
 Scene makeRobot() {
@@ -126,20 +143,7 @@ Scene makeRobot() {
   computeTangents(stage);
   scene.add("floor", std::move(stage), scene.addMaterial(floor));
 
-  const int mesh = scene.addMesh("robot", buildBody(scene));
-  const int first = static_cast<int>(scene.nodes.size());
-  Skin skin;
-  for (const JointInfo& joint : kSkeleton) {
-    const glm::vec3 parent =
-        joint.parent < 0 ? glm::vec3(0) : kSkeleton[static_cast<std::size_t>(joint.parent)].position;
-    const int node = scene.addNode({.name = std::string(joint.name), .translation = joint.position - parent});
-    if (joint.parent >= 0)
-      scene.nodes[static_cast<std::size_t>(first + joint.parent)].children.push_back(node);
-    skin.joints.push_back(node);
-    skin.inverseBind.push_back(translation(-joint.position));
-  }
-  scene.skins.push_back(std::move(skin));
-  scene.addNode({.name = "robot", .mesh = mesh, .skin = 0});
+  const int first = addRobot(scene, scene.addMesh("robot", buildBody(scene)));
   scene.animations.push_back(buildDance(first));
 
   scene.addAreaLight("key", {-2.0f, 3.4f, 2.2f}, {0, 0.9f, 0}, {0.8f, 0.8f}, 48, {1, 0.96f, 0.9f}, 52);

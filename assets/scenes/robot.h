@@ -49,4 +49,8 @@ std::vector<Primitive> buildBody(Scene& scene);
 /// A four-second loop. `firstNode` is the node of joint 0; joint i is node firstNode + i.
 Animation buildDance(int firstNode);
 
+/// A skeleton at rest, and the node "robot" that shows `mesh` on it. Returns the node of joint 0, which has
+/// no parent.
+int addRobot(Scene& scene, int mesh);
+
 }  // namespace limn::assets::robot

@@ -9,11 +9,14 @@
 namespace limn::assets {
 
 Scene makeAtrium();
+Scene makeAtriumRobots();
 Scene makeBalls();
 Scene makeBallsSky();
 Scene makeCornellBox();
+Scene makeCornellHorse();
 Scene makeFoliageCard();
 Scene makeLights();
+Scene makeMetaballs();
 Scene makePatrol();
 Scene makePlant();
 Scene makeRobot();

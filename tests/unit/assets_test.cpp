@@ -28,9 +28,10 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 const fs::path kAssets = fs::path(limn::test::binaryDir) / "assets";
-const char* const kScenes[] = {"atrium", "balls",  "balls_sky",    "cornell_box", "foliage_card",
-                               "lights", "patrol", "plant",        "robot",       "soldiers",
-                               "statue", "teapot", "white_furnace"};
+const char* const kScenes[] = {"atrium",      "atrium_robots", "balls",        "balls_sky",
+                               "cornell_box", "cornell_horse", "foliage_card", "lights",
+                               "metaballs",   "patrol",        "plant",        "robot",
+                               "statue",      "soldiers",      "teapot",       "white_furnace"};
 const std::set<std::string> kUnderEnvironments = {"balls_sky", "patrol", "white_furnace"};
 
 std::string bytesOf(const fs::path& file) {
@@ -164,6 +165,10 @@ TEST(Assets, TriangleCountsAreAsPromised) {
   EXPECT_GE(Glb("plant").trianglesShown(), 100'000u);
   EXPECT_GE(Glb("atrium").trianglesShown(), 70'000u);
   EXPECT_GE(Glb("statue").trianglesShown(), 70'000u);
+  EXPECT_GE(Glb("cornell_horse").trianglesShown(), 15'000u);
+  EXPECT_LE(Glb("cornell_horse").trianglesShown(), 18'000u);
+  EXPECT_GE(Glb("atrium_robots").trianglesShown(), 85'000u);
+  EXPECT_LE(Glb("atrium_robots").trianglesShown(), 115'000u);
   EXPECT_GE(Glb("patrol").trianglesShown(), 1'000'000u);
   EXPECT_GE(Glb("soldiers").trianglesShown(), 9'000'000u);
   EXPECT_LE(Glb("soldiers").trianglesShown(), 13'000'000u);
@@ -224,6 +229,28 @@ TEST(Assets, LightsHoldsOneOfEveryType) {
   EXPECT_EQ(emissive, 1);
 }
 
+/// After `seconds` every node is where it was.
+void expectLoops(const Glb& glb, float seconds) {
+  for (const json& channel : glb.root["animations"][0]["channels"]) {
+    const json& sampler = glb.root["animations"][0]["samplers"][channel["sampler"].get<std::size_t>()];
+    const auto times = glb.read<float>(sampler["input"]);
+    EXPECT_NEAR(times.back() - times.front(), seconds, 1e-5);
+    EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
+    if (channel["target"]["path"] == "translation") {
+      const auto values = glb.read<Vec3>(sampler["output"]);
+      EXPECT_EQ(values.front(), values.back());
+      continue;
+    }
+    const auto values = glb.read<Vec4>(sampler["output"]);
+    const auto cosine = [](const Vec4& p, const Vec4& q) {
+      return p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3];
+    };
+    // q and -q are the same rotation
+    EXPECT_NEAR(std::abs(cosine(values.front(), values.back())), 1, 1e-5);
+    for (std::size_t k = 1; k < values.size(); ++k) EXPECT_GT(cosine(values[k - 1], values[k]), 0.9f);
+  }
+}
+
 TEST(Assets, RobotIsSkinnedAndItsDanceLoops) {
   const Glb glb("robot");
   const json& skin = glb.root["skins"][0];
@@ -247,20 +274,36 @@ TEST(Assets, RobotIsSkinnedAndItsDanceLoops) {
     }
   }
   EXPECT_GT(blended, 1000u);
-  for (const json& channel : glb.root["animations"][0]["channels"]) {
-    const json& sampler = glb.root["animations"][0]["samplers"][channel["sampler"].get<std::size_t>()];
-    const auto times = glb.read<float>(sampler["input"]);
-    EXPECT_NEAR(times.back() - times.front(), 4, 1e-5);
-    EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
-    if (channel["target"]["path"] == "translation") {
-      const auto values = glb.read<Vec3>(sampler["output"]);
-      EXPECT_EQ(values.front(), values.back());
-      continue;
-    }
-    const auto values = glb.read<Vec4>(sampler["output"]);
-    float dot = 0;  // q and -q are the same rotation
-    for (std::size_t k = 0; k < 4; ++k) dot += values.front()[k] * values.back()[k];
-    EXPECT_NEAR(std::abs(dot), 1, 1e-5);
+  expectLoops(glb, 4);
+}
+
+/// Whether an animation moves a light.
+bool lightMoves(const Glb& glb) {
+  return std::ranges::any_of(glb.root["animations"][0]["channels"], [&](const json& channel) {
+    return glb.root["nodes"][channel["target"]["node"].get<std::size_t>()]["name"] == "key";
+  });
+}
+
+TEST(Assets, ScenesOfIndirectLightMoveTheirSpotAndLoop) {
+  for (const auto& [scene, seconds] : {std::pair{"cornell_horse", 8.f}, {"atrium_robots", 4.f}}) {
+    const Glb glb(scene);
+    expectLoops(glb, seconds);
+    EXPECT_TRUE(lightMoves(glb)) << scene;
+  }
+  EXPECT_EQ(Glb("atrium_robots").root["skins"].size(), 5u);
+}
+
+TEST(Assets, MetaballsHaveAboutFiveThousandTrianglesInEveryFrame) {
+  const limn::scene::Scene scene = limn::scene::load(kAssets / "metaballs" / "metaballs.glb");
+  ASSERT_EQ(scene.dynamic.size(), 1u);
+  for (int second = 0; second < 12; ++second) {
+    const limn::scene::Pose pose = limn::scene::evaluate(scene, second);
+    const std::size_t triangles = pose.dynamic[0].primitive->indices.size() / 3;
+    EXPECT_GE(triangles, 3500u) << second;
+    EXPECT_LE(triangles, 6500u) << second;
+    const auto& [low, high] = pose.dynamic[0].bounds;
+    EXPECT_GT(low.y, 0.02f) << "above the floor";
+    EXPECT_LT(std::max({std::abs(low.x), high.x, high.z}), 0.98f) << "inside the walls";
   }
 }
 
@@ -280,24 +323,26 @@ TEST(Assets, TheLoaderTakesEverySceneWithoutAWarning) {
   }
 }
 
-TEST(Assets, StatueIsWatertight) {
-  const Glb glb("statue");
-  for (const json& mesh : glb.root["meshes"]) {
-    if (mesh["name"] != "statue") continue;
-    const auto indices = glb.indices(mesh["primitives"][0]);
-    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;  // directed
-    for (std::size_t i = 0; i < indices.size(); i += 3) {
-      for (std::size_t k = 0; k < 3; ++k) ++edges[{indices[i + k], indices[i + (k + 1) % 3]}];
-    }
-    std::size_t open = 0;
-    for (const auto& [edge, count] : edges) {
-      const auto back = edges.find({edge.second, edge.first});
-      open += count != 1 || back == edges.end();
-    }
-    EXPECT_EQ(open, 0u) << "of " << edges.size();
-    return;
+/// Every edge belongs to two triangles, in opposite directions.
+void expectClosed(const Glb& glb, const json& mesh) {
+  const auto indices = glb.indices(mesh["primitives"][0]);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;  // directed
+  for (std::size_t i = 0; i < indices.size(); i += 3) {
+    for (std::size_t k = 0; k < 3; ++k) ++edges[{indices[i + k], indices[i + (k + 1) % 3]}];
   }
-  FAIL() << "no mesh is called statue";
+  std::size_t open = 0;
+  for (const auto& [edge, count] : edges) open += count != 1 || !edges.contains({edge.second, edge.first});
+  EXPECT_EQ(open, 0u) << "of " << edges.size() << " of " << mesh["name"];
+}
+
+TEST(Assets, StatueAndHorseAreWatertight) {
+  for (const auto& [scene, name] : {std::pair{"statue", "statue"}, {"cornell_horse", "horse"}}) {
+    const Glb glb(scene);
+    const auto mesh =
+        std::ranges::find_if(glb.root["meshes"], [&](const json& m) { return m["name"] == name; });
+    ASSERT_NE(mesh, glb.root["meshes"].end()) << name;
+    expectClosed(glb, *mesh);
+  }
 }
 
 TEST(Assets, TheGeneratorIsDeterministicAndRefusesUnknownNames) {
