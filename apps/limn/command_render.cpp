@@ -25,24 +25,6 @@ struct Options {
   fs::path out, stats, graph, shaders;
 };
 
-struct FrameRange {
-  int first, last;  // inclusive
-};
-
-std::optional<FrameRange> parseFrames(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  const size_t colon = text.find(':');
-  const auto first =
-      colon == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(0, colon));
-  const auto last =
-      colon == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(colon + 1));
-  const auto whole = [](double v) { return v == std::floor(v) && v >= 0 && v <= 1e6; };
-  if (!first || !last || !whole(*first) || !whole(*last) || *first > *last)
-    throw UsageError(
-        fmt::format("--frames '{}' is not accepted; expected a:b with 0 <= a <= b <= 1000000", text));
-  return FrameRange{static_cast<int>(*first), static_cast<int>(*last)};
-}
-
 void checkOutputName(const fs::path& out) {
   if (out.extension() != ".png" && out.extension() != ".exr")
     throw UsageError(

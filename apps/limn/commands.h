@@ -17,6 +17,7 @@ Action addEnvironmentCommand(CLI::App& command);
 Action addCompareCommand(CLI::App& command);
 Action addBenchCommand(CLI::App& command);
 Action addStressCommand(CLI::App& command);
+Action addFlickerCommand(CLI::App& command);
 Action addReportCommand(CLI::App& command);
 Action addReproductionCommand(CLI::App& command);
 

@@ -47,6 +47,8 @@ int main(int argc, char** argv) {
   add("environment", "List and show the area lights that stand for an environment", addEnvironmentCommand);
   add("bench", "Run a suite: error and time of many settings, as tables and a report", addBenchCommand);
   add("stress", "Run every technique on its stability cases: pass, degraded or refused", addStressCommand);
+  add("flicker", "Measure how much more a technique changes from frame to frame than the truth",
+      addFlickerCommand);
   add("report", "Write the tables and the report of finished benches anew", addReportCommand);
   add("reproduction", "The thesis's ratios beside those of bench results, as a page", addReproductionCommand);
 

@@ -81,6 +81,13 @@ void createFolder(const std::filesystem::path& folder);
 void checkWritable(const std::filesystem::path& file);
 
 glm::ivec2 parseSize(const std::string& text);
+
+struct FrameRange {
+  int first, last;  // inclusive
+};
+/// "a:b"; nullopt for an empty text. Throws UsageError.
+std::optional<FrameRange> parseFrames(const std::string& text);
+
 /// Index of a name or "#index" among `names`; throws UsageError listing them.
 int findNamed(const std::string& what, const std::string& text, const std::vector<std::string>& names);
 scene::CameraPose chooseCamera(const SceneOptions& options, const scene::Pose& pose);

@@ -61,7 +61,7 @@ TEST(CommandLine, BouncesBelongToIndirectAndFinalLight) {
 
 TEST(CommandLine, HelpOfEveryCommandIsComplete) {
   for (const char* command :
-       {"list", "info", "render", "reference", "environment", "compare", "bench", "report"}) {
+       {"list", "info", "render", "reference", "environment", "compare", "flicker", "bench", "report"}) {
     const Outcome outcome = limn({command, "--help"});
     EXPECT_EQ(outcome.status, 0) << command;
     EXPECT_THAT(outcome.out, HasSubstr("--help")) << command;

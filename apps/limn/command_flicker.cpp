@@ -1,0 +1,183 @@
+// limn flicker: how much more a technique's pictures change from frame to frame than the truth does.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "apps/limn/commands.h"
+#include "apps/limn/interruption.h"
+#include "apps/limn/options.h"
+#include "core/base/error.h"
+#include "core/gpu/device.h"
+#include "core/image/flicker.h"
+#include "core/reference/reference.h"
+
+namespace limn::app {
+namespace {
+
+struct Options {
+  SceneOptions scene;
+  TechniqueOptions technique;
+  BackendOptions backend;
+  std::string outputTerm = "indirect", frames = "0:59";
+  double fps = 30, atMost = 0;
+  int spp = 128, bounces = 1;
+  bool json = false;
+};
+
+/// One frame: the technique's picture and the truth with two seeds. The seeds are those of every frame, so
+/// that what is noise changes little; what it does change, the two tell.
+struct Frame {
+  Image picture, truth, twin;
+};
+
+/// Sums over the sequence.
+struct Sums {
+  Change picture, truth, noise;
+
+  void add(const Frame& before, const Frame& after) {
+    const std::vector<bool> still = stillPixels(before.truth, after.truth);
+    picture.add(before.picture, after.picture, still);
+    truth.add(before.truth, after.truth, still);
+    noise.add(difference(before.truth, before.twin), difference(after.truth, after.twin), still);
+  }
+  /// Of one of the two: their difference has twice its variance.
+  double noiseOfTruth() const { return noise.mean() / std::sqrt(2.0); }
+  double trueChange() const { return withoutNoise(truth.mean(), noiseOfTruth()); }
+
+ private:
+  static Image difference(const Image& a, const Image& b) {
+    Image result = Image::rgb(a.width(), a.height());
+    for (int y = 0; y < a.height(); ++y)
+      for (int x = 0; x < a.width(); ++x)
+        for (int c = 0; c < 3; ++c) result.at(x, y, c) = a.at(x, y, c) - b.at(x, y, c);
+    return result;
+  }
+};
+
+class Sequence {
+ public:
+  Sequence(const Options& options, const std::vector<render::TechniqueUse>& techniques)
+      : options_(options),
+        view_(open(options.scene)),
+        context_(Context::create(options.backend.contextOptions())),
+        device_(*context_),
+        renderer_(device_, view_.scene) {
+    render::Settings settings;
+    settings.techniques = techniques;
+    settings.output = render::parseOutput(options.outputTerm);
+    settings.size = view_.size;
+    settings.light = view_.light;
+    settings.channels = true;
+    renderer_.configure(settings);
+  }
+
+  Frame at(double time) {
+    renderer_.setTime(time, view_.animation);
+    const scene::CameraPose camera = chooseCamera(options_.scene, renderer_.pose());
+    renderer_.setCamera(camera);
+    renderer_.render();
+    return {renderer_.read(), truth(camera, 0), truth(camera, 1)};
+  }
+
+ private:
+  Image truth(const scene::CameraPose& camera, uint64_t seed) {
+    reference::Request request{
+        .scene = view_.scene, .pose = renderer_.pose(), .camera = camera, .progress = {}, .checkpoint = {}};
+    request.width = view_.size.x;
+    request.height = view_.size.y;
+    request.term = reference::termFromName(options_.outputTerm);
+    request.light = view_.light == scene::none ? reference::allLights : view_.light;
+    request.bounces = request.term == reference::Term::indirect || request.term == reference::Term::final
+                          ? options_.bounces
+                          : 0;
+    request.spp = options_.spp;
+    request.seed = seed;
+    return reference::render(request).image;
+  }
+
+  const Options& options_;
+  View view_;
+  std::unique_ptr<Context> context_;
+  gpu::Device device_;
+  render::Renderer renderer_;
+};
+
+void print(const Options& options, int frames, const Sums& sums, double ratio) {
+  if (options.json) {
+    fmt::print("{}\n", nlohmann::json{{"frames", frames},
+                                      {"change", sums.picture.mean()},
+                                      {"reference_change", sums.trueChange()},
+                                      {"reference_noise", sums.noiseOfTruth()},
+                                      {"ratio", ratio}}
+                           .dump());
+    return;
+  }
+  fmt::print(
+      "{} frames: mean absolute change of still surfaces {:.3e} a frame, of the reference {:.3e} (its noise "
+      "{:.3e} subtracted): {:.2f} times as much\n",
+      frames, sums.picture.mean(), sums.trueChange(), sums.noiseOfTruth(), ratio);
+}
+
+int run(const Options& options) {
+  const auto range = parseFrames(options.frames);
+  if (!range || range->first == range->last)
+    throw UsageError(fmt::format("--frames '{}' is not accepted; expected a:b with a < b", options.frames));
+  const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
+  const auto techniques = options.technique.resolve(registry);
+  render::checkTechniques(techniques, render::parseOutput(options.outputTerm));
+  reference::termFromName(options.outputTerm);
+  Sequence sequence(options, techniques);
+  Sums sums;
+  std::optional<Frame> before;
+  const int frames = range->last - range->first + 1;
+  {
+    Progress progress("flicker");
+    const Interruption interruption;
+    for (int frame = range->first; frame <= range->last; ++frame) {
+      Frame now = sequence.at(frame / options.fps);
+      if (before) sums.add(*before, now);
+      before = std::move(now);
+      progress.update(double(frame - range->first + 1) / frames);
+      if (interruption.asked()) throw Error("flicker: stopped before the last frame");
+    }
+  }
+  if (!(sums.trueChange() > 0))
+    throw Error("flicker: the reference does not change beyond its noise; let the light move or raise --spp");
+  const double ratio = sums.picture.mean() / sums.trueChange();
+  print(options, frames, sums, ratio);
+  if (options.atMost > 0 && ratio > options.atMost)
+    throw Error(fmt::format("flicker: {:.2f} times the reference's change; at most {} is asked for", ratio,
+                            options.atMost));
+  return 0;
+}
+
+}  // namespace
+
+Action addFlickerCommand(CLI::App& command) {
+  auto options = std::make_shared<Options>();
+  options->scene.addTo(command);
+  options->technique.addTo(command);
+  options->backend.addTo(command);
+  command
+      .add_option("--output-term", options->outputTerm,
+                  "indirect, direct, visibility (with --light) or final")
+      ->capture_default_str();
+  command.add_option("--frames", options->frames, "The frames a to b (inclusive) of the animation")
+      ->capture_default_str();
+  command.add_option("--fps", options->fps, "Frames per second of the animation")
+      ->capture_default_str()
+      ->check(CLI::Range(0.001, 1e5));
+  command.add_option("--spp", options->spp, "Samples per pixel of the reference, which is rendered twice")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 1 << 22));
+  command.add_option("--bounces", options->bounces, "Of the reference, as limn reference --bounces")
+      ->capture_default_str()
+      ->check(CLI::Range(1, reference::maxBounces));
+  command.add_option("--at-most", options->atMost, "Fail (exit status 1) above this ratio")
+      ->check(CLI::Range(0.0, 1e9));
+  command.add_flag("--json", options->json, "Print JSON");
+  return [options] { return run(*options); };
+}
+
+}  // namespace limn::app
