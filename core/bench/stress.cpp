@@ -44,17 +44,19 @@ constexpr StressCase kCommon[] = {
     {.name = "foliage", .scene = "plant"},
 };
 
-/// V where the technique has one and light has no part in the case; else radiance.
+/// V where the technique has one and light has no part in the case; else the radiance it answers for.
 render::Output outputOf(const TechniquePlugin& technique, StressChange change) {
-  const bool visibility = contains(technique.info->terms, Term::visibility);
+  const TermSet terms = technique.info->terms;
+  const bool indirect = terms == termSet(Term::indirect);
   switch (change) {
     case StressChange::radiance:
     case StressChange::albedo:
-      return render::Output::direct;
+      return indirect ? render::Output::indirect : render::Output::direct;
     case StressChange::noLight:
       return render::Output::final;
     default:
-      return visibility ? render::Output::visibility : render::Output::direct;
+      if (indirect) return render::Output::indirect;
+      return contains(terms, Term::visibility) ? render::Output::visibility : render::Output::direct;
   }
 }
 
@@ -190,6 +192,7 @@ double StressRun::error(const TechniquePlugin& technique, const StressCase& c, r
     request.term = reference::termFromName(std::string(render::name(q.output)));
     request.light = q.light == scene::none ? reference::allLights : q.light;
     request.spp = options_.spp;
+    request.bounces = q.output == render::Output::indirect ? 1 : 0;
     try {
       known->second = reference::render(request).image;
     } catch (...) {

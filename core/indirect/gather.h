@@ -53,7 +53,7 @@ constexpr Parameter clampParameter() {
               "Virtual lights act as if no nearer than this; 0: as near as they are");
 }
 constexpr Parameter compensationParameter() {
-  return boolean("compensation", true,
+  return boolean("compensation", false,
                  "Spread what the clamp takes away over the neighbourhood in the image");
 }
 constexpr Parameter blurParameter() {
