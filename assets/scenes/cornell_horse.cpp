@@ -33,7 +33,7 @@ Channel swaying(int node) {
   Channel channel{node, {}, {}, {}};
   for (int k = 0; k <= kKeys; ++k) {
     channel.times.push_back(keyTime(k));
-    const float phase = 4 * glm::pi<float>() * static_cast<float>(k % kKeys) / kKeys;
+    const float phase = 4 * glm::pi<float>() * static_cast<float>(k % kKeys) / kKeys + 0.9f;
     const float azimuth = 0.8f * std::cos(phase);  // from -z, positive to the left
     channel.rotations.push_back(
         facing({-std::sin(azimuth), -0.5f - 0.1f * std::cos(2 * phase), -std::cos(azimuth)}));
@@ -52,7 +52,7 @@ Scene makeCornellHorse() {
       "horse", transformed(horse(17000), scaling(glm::vec3(0.56f)) * translation({-0.1f, 0, 0})), plaster);
   const Light spot{.type = Light::Type::spot,
                    .colour = {1, 0.9f, 0.75f},
-                   .intensity = 20,
+                   .intensity = 28,
                    .innerConeAngle = glm::radians(20.0f),
                    .outerConeAngle = glm::radians(32.0f)};
   scene.addLight("key", spot, {0, 1.9f, 0.35f}, {-1, 1.2f, 0});
