@@ -59,6 +59,28 @@ TEST(CommandLine, BouncesBelongToIndirectAndFinalLight) {
   EXPECT_EQ(with({"--term", "final", "--bounces", "1", "--light", "key"}).status, 0);
 }
 
+TEST(CommandLine, FlickerComparesAnimationsWithTheTruth) {
+  const auto flicker = [](const std::string& scene, std::vector<std::string> more) {
+    std::vector<std::string> all{"flicker", scene,   "--technique", "reflective_shadow_map",
+                                 "--size",  "32x24", "--spp",       "64"};
+    all.insert(all.end(), more.begin(), more.end());
+    return limn(all);
+  };
+  expectRefused(flicker("cornell_horse", {"--frames", "3:3"}), 2, {"--frames", "a < b"});
+  expectRefused(flicker("cornell_horse", {"--output-term", "caustic"}), 2, {"caustic"});
+  const Outcome still = flicker("cornell_box", {"--frames", "0:1"});
+  EXPECT_EQ(still.status, 1);
+  EXPECT_THAT(still.err, HasSubstr("does not change beyond its noise"));
+  const Outcome moving = flicker("cornell_horse", {"--frames", "0:2", "--fps", "5", "--json"});
+  ASSERT_EQ(moving.status, 0) << moving.err;
+  const auto json = nlohmann::json::parse(moving.out);
+  EXPECT_EQ(json["frames"], 3);
+  EXPECT_GT(json["ratio"].get<double>(), 0);
+  const Outcome strict = flicker("cornell_horse", {"--frames", "0:1", "--fps", "5", "--at-most", "0.001"});
+  EXPECT_EQ(strict.status, 1);
+  EXPECT_THAT(strict.err, HasSubstr("at most 0.001"));
+}
+
 TEST(CommandLine, HelpOfEveryCommandIsComplete) {
   for (const char* command :
        {"list", "info", "render", "reference", "environment", "compare", "flicker", "bench", "report"}) {
