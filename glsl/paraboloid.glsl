@@ -164,5 +164,29 @@ LIMN_FN ParaboloidKernel paraboloid_kernel_thesis(vec3 direction, float alpha) {
   return k;
 }
 
+// The box on the map with the second moments of the penumbra of a rectangular sender in the plane of the view's axes:
+// receiver in `direction` at radial distance d, blockers at z, m. xy: centre on the disc of radius 1; zw: widths, of the
+// map's side. The sender is foreshortened towards the receiver: by cos(theta) along the meridian.
+LIMN_FN vec4 paraboloid_rectangle_kernel(vec3 direction, vec2 sides, float d, float z) {
+  vec3 w = direction;
+  float k = max(d - z, 0.0f) / (d * z);
+  float scale = 1.0f / (1.0f + w.z);
+  vec2 p = paraboloid_map(w);
+  // What the map's differential makes of the sides; over the scale: radians.
+  vec2 side_x = sides.x * (vec2(1.0f - w.x * w.x, -w.x * w.y) + w.x * w.z * p);
+  vec2 side_y = sides.y * (vec2(-w.y * w.x, 1.0f - w.y * w.y) + w.y * w.z * p);
+  float half_x = atan(0.5f * k * sqrt(side_x.x * side_x.x + side_y.x * side_y.x));
+  float half_y = atan(0.5f * k * sqrt(side_x.y * side_x.y + side_y.y * side_y.y));
+  float divisor = w.z + cos(max(half_x, half_y));
+  return vec4(w.x / divisor, w.y / divisor, sin(half_x) / divisor, sin(half_y) / divisor);
+}
+
+// The same as published: the sender always seen head-on, angles as if spread evenly over the map.
+LIMN_FN vec4 paraboloid_rectangle_kernel_thesis(vec3 direction, vec2 sides, float d, float z) {
+  vec2 p = paraboloid_map(direction);
+  return vec4(p.x, p.y, inverse_pi * paraboloid_penumbra_angle(sides.x, d, z),
+              inverse_pi * paraboloid_penumbra_angle(sides.y, d, z));
+}
+
 LIMN_END
 #endif  // LIMN_PARABOLOID_GLSL

@@ -44,12 +44,11 @@ void bindSurfaces(const frame::PassContext& context, const GBuffer& g) {
   for (const Input& input : surfaceInputs(g)) context.bindSampled(input.unit, input.texture);
 }
 
-/// Sub-buffers are no more than virtual lights, so that every pixel has one.
+}  // namespace
+
 int usableBlock(int block, int lights) {
   return std::clamp(block, 1, std::max(1, static_cast<int>(std::sqrt(static_cast<float>(lights)))));
 }
-
-}  // namespace
 
 GatherSettings gatherSettings(const ParameterValues& p) {
   return {.block = p.integer("block"),

@@ -83,6 +83,10 @@ struct GatherSettings {
 LIMN_API GatherSettings gatherSettings(const ParameterValues& parameters);
 LIMN_API VirtualLightDesc virtualLightDesc(const ParameterValues& parameters);
 
+/// Side of the pattern of interleaved pixels: at most `block`, and no more sub-buffers than virtual lights, so
+/// that every pixel has one.
+LIMN_API int usableBlock(int block, int lights);
+
 /// A pass that shades from some of the virtual lights.
 struct ShadePass {
   gpu::ProgramDesc program;  ///< a compute shader that includes glsl/indirect/gather_main.glsl

@@ -68,13 +68,13 @@ frame::BufferHandle addRanges(frame::FrameGraph& graph, const MinMaxPyramid& pyr
   frame::BufferHandle ranges =
       graph.createBuffer("Fourier ranges", {static_cast<size_t>(desc.layers) * sizeof(glsl::FourierRange)});
   frame::PassBuilder pass = graph.addPass("Fourier ranges", "shadow");
-  pass.read(pyramid.texture, Access::sampled, "depths that are there");
+  const bool fitted = maps.desc.fit != FourierFit::map;
+  if (fitted) pass.read(pyramid.texture, Access::sampled, "depths that are there");
   ranges = pass.write(ranges, Access::storageStore, "depths that the series spans");
   const frame::ProgramHandle program =
       pass.program({.files = {"glsl/shadow/fourier_range.comp.glsl"},
                     .defines = {{"FIT", std::to_string(static_cast<int>(maps.desc.fit))}}});
   if (cacheable) pass.cacheable();
-  const bool fitted = maps.desc.fit != FourierFit::map;
   pass.execute([=, span = static_cast<float>(maps.constants.range)](frame::PassContext& context) {
     gpu::Program& kernel = context.program(program);
     kernel.use();

@@ -111,6 +111,43 @@ TEST(Paraboloid, PenumbraAngleByConstruction) {
   EXPECT_EQ(paraboloid_penumbra_angle(1, 2, 3), 0) << "a blocker behind the receiver";
 }
 
+/// Where the lines from a receiver to points of a rectangle pass at the blockers' distance.
+TEST(Paraboloid, RectangleKernelHasTheMomentsOfThePenumbra) {
+  Random random;
+  for (int i = 0; i < 200; ++i) {
+    const float theta = random(0, 1.3f), d = random(2, 5), z = random(0.5f, 0.9f) * d;
+    const vec3 w = inclined(theta, random(0, 2 * pi));
+    const vec2 sides(random(0.02f, 0.8f), random(0.02f, 0.8f));
+    dvec2 sum(0), squares(0);
+    constexpr int n = 24;
+    for (int a = 0; a < n * n; ++a) {
+      const vec2 at = (vec2(a % n, a / n) + 0.5f) / static_cast<float>(n) - 0.5f;
+      const vec3 from = d * w, line = vec3(sides * at, 0) - from;
+      float low = 0, high = 1;  // of the line, where its distance from the centre is z
+      for (int k = 0; k < 40; ++k) {
+        const float middle = 0.5f * (low + high);
+        (length(from + middle * line) > z ? low : high) = middle;
+      }
+      const dvec2 p = paraboloid_map(normalize(from + low * line));
+      sum += p;
+      squares += p * p;
+    }
+    const dvec2 mean = sum / double(n * n), variance = squares / double(n * n) - mean * mean;
+    const vec4 kernel = paraboloid_rectangle_kernel(w, sides, d, z);
+    // The variance of a box of width b is b^2 / 12; the map's side is 2.
+    for (int axis = 0; axis < 2; ++axis) {
+      const double width = std::sqrt(12 * variance[axis]) / 2;
+      EXPECT_NEAR(kernel[2 + axis], width, 0.06 * width + 2e-4) << theta << " " << z / d;
+      EXPECT_NEAR(kernel[axis], mean[axis], 0.03 * std::max(kernel.z, kernel.w) + 0.01);
+    }
+  }
+  // A square seen head-on is a disc's equal.
+  EXPECT_NEAR(paraboloid_rectangle_kernel(vec3(0, 0, 1), vec2(0.3f), 3, 2).z,
+              paraboloid_kernel(vec3(0, 0, 1), paraboloid_penumbra_angle(0.3f, 3, 2)).width, 1e-6f);
+  EXPECT_NEAR(paraboloid_rectangle_kernel_thesis(vec3(0, 0, 1), vec2(0.3f), 3, 2).z,
+              paraboloid_kernel_thesis(vec3(0, 0, 1), paraboloid_penumbra_angle(0.3f, 3, 2)).width, 1e-6f);
+}
+
 TEST(Paraboloid, BoundsHoldWhatTheHemisphereSees) {
   Random random;
   double covered = 0, boxes = 0;

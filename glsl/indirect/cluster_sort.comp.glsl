@@ -1,0 +1,29 @@
+// Virtual lights of each sub-buffer in the order of their clusters, so that a pixel asks for the visibility of a cluster
+// once. position.w of the result is the cluster.
+#include "glsl/indirect/gather.glsl"
+#include "glsl/virtual_area_light.glsl"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
+layout(std430, binding = 1) writeonly buffer Sorted { VirtualPointLight sorted[]; };
+layout(std430, binding = 2) readonly buffer Mapping { uint mapping[]; };
+uniform uint light_count;
+uniform uint block;  // side of the pattern of sub-buffers
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= light_count) return;
+  uint sub_buffer = i * block * block / light_count;
+  while (gather_begin(sub_buffer + 1u, light_count, block) <= i) ++sub_buffer;
+  uint first = gather_begin(sub_buffer, light_count, block);
+  uint end = gather_begin(sub_buffer + 1u, light_count, block);
+  uint cluster = mapping[i];
+  uint rank = 0u;
+  for (uint j = first; j < end; ++j) {
+    uint other = mapping[j];
+    if (other < cluster || (other == cluster && j < i)) ++rank;
+  }
+  VirtualPointLight light = virtual_lights[i];
+  light.position.w = float(cluster);
+  sorted[first + rank] = light;
+}

@@ -1,0 +1,160 @@
+// Soft shadows of virtual area lights from the Fourier basis maps of their paraboloid maps (thesis, section 6.3.2): mean
+// blocker depth in a first kernel, penumbra, visibility in the penumbra's kernel. Depths are radial.
+//
+// KERNEL_THESIS 1: widths as published. SEARCH_NEAREST 1: the first kernel starts from the nearest depth there is; 0: it is
+// the light's own solid angle, as published. AREA_DIP: least s of what is lit. SPLITS: parts of a kernel per axis, each with
+// a threshold of its own.
+#ifndef LIMN_AREA_VISIBILITY_GLSL
+#define LIMN_AREA_VISIBILITY_GLSL
+#include "glsl/fourier_lookup.glsl"
+#include "glsl/min_max_pyramid.glsl"
+#include "glsl/paraboloid.glsl"
+#include "glsl/virtual_area_light.glsl"
+
+layout(binding = 9) uniform sampler2DArray area_depth_bounds;  // MinMaxPyramid
+layout(std430, binding = 1) readonly buffer AreaViews { ShadowView area_views[]; };
+layout(std430, binding = 2) readonly buffer AreaLights { VirtualAreaLight area_lights[]; };
+uniform float bias;    // texel footprints
+uniform float behind;  // visibility of what lies behind an area light, where its map knows nothing
+
+// Blockers so close to the receiver that the series answers them with less are not made up for.
+const float least_response = max(0.02, 8.0 * FOURIER_NOISE);
+
+// A receiver as one map sees it.
+struct AreaReceiver {
+  ShadowView view;
+  FourierRange range;
+  vec3 direction;  // unit, in the view's axes
+  vec3 normal;
+  float height;    // of the tangent plane over the view's origin, raised by the bias, m; < 0: the origin lies above it
+  float limit;     // radial distance beyond which nothing blocks, m
+  float d;         // radial distance, m
+  vec2 sides;      // of the light
+};
+
+// Series depth below which what lies at a texel blocks: what is nearer to the light than the receiver, and above its
+// tangent plane.
+float series_threshold(AreaReceiver r, vec2 texel) {
+  vec2 uv = texel / float(r.view.info.z);
+  float facing = dot(r.normal, paraboloid_direction(2.0 * uv - 1.0));
+  bool bounded = r.height < 0.0 && facing < 0.0;
+  float depth = bounded ? min(r.height / facing, r.limit) : r.limit;
+  return fourier_depth(r.range, uv, shadow_normalise(r.view, depth));
+}
+
+struct SeriesPart {
+  float threshold;
+  float dip;  // least s that the part has where nothing in it blocks
+};
+
+// The threshold of a box of texels is the middle one, unless a lit plane would then span more depth within the box than
+// ringing suppression absorbs.
+SeriesPart series_part(AreaReceiver r, vec2 low, vec2 high) {
+  float middle = series_threshold(r, 0.5 * (low + high));
+  float t00 = series_threshold(r, low);
+  float t10 = series_threshold(r, vec2(high.x, low.y));
+  float t01 = series_threshold(r, vec2(low.x, high.y));
+  float t11 = series_threshold(r, high);
+  float least = min(min(min(t00, t10), min(t01, t11)), middle);
+  float before = min(middle - least, FOURIER_TOLERANCE);
+  SeriesPart part;
+  part.threshold = clamp(least + before, 0.0, FOURIER_RANGE);
+  part.dip = min(FOURIER_LEVEL - FOURIER_CURVATURE * before * before, AREA_DIP) - FOURIER_NOISE;
+  return part;
+}
+
+// Texels (low, high) of the penumbra's kernel for blockers at radial distance z.
+vec4 kernel_texels(AreaReceiver r, float z) {
+#if KERNEL_THESIS
+  vec4 kernel = paraboloid_rectangle_kernel_thesis(r.direction, r.sides, r.d, z);
+#else
+  vec4 kernel = paraboloid_rectangle_kernel(r.direction, r.sides, r.d, z);
+#endif
+  float size = float(r.view.info.z);
+  vec2 centre = (0.5 * kernel.xy + 0.5) * size;
+  vec2 reach = 0.5 * max(kernel.zw * size, vec2(1.0));
+  return clamp(vec4(centre - reach, centre + reach), vec4(0.0), vec4(size));
+}
+
+float stored_metres(AreaReceiver r, float series) {
+  return shadow_metres(r.view, fourier_stored(r.range, vec2(0.5), series));
+}
+
+vec4 search_kernel(AreaReceiver r) {
+#if SEARCH_NEAREST
+  float z = clamp(stored_metres(r, 0.0), 0.02 * r.d, r.d);
+  vec4 kernel = kernel_texels(r, z);
+  float nearest = min_max_depth(area_depth_bounds, ivec2(kernel.xy), ivec2(ceil(kernel.zw)) - 1, int(r.view.info.y)).x;
+  return kernel_texels(r, clamp(shadow_metres(r.view, nearest), z, r.d));
+#else
+  return kernel_texels(r, 0.5 * r.d);
+#endif
+}
+
+// Stages 1 and 2: mean radial distance of the blockers in the kernel; as far as the receiver where there are none.
+float mean_blocker(AreaReceiver r, vec4 kernel) {
+  int layer = int(r.view.info.y);
+  vec2 part_size = (kernel.zw - kernel.xy) / float(SPLITS);
+  float blocked = 0.0;
+  float depths = 0.0;
+  int i = 0;
+  do {
+    vec2 low = kernel.xy + vec2(i % SPLITS, i / SPLITS) * part_size;
+    SeriesPart part = series_part(r, low, low + part_size);
+    FourierMeans means = fourier_means(low, low + part_size, ivec2(r.view.info.z), layer);
+    vec2 sums = fourier_shadow(means, part.threshold);
+    float share = 1.0 - sums.x;
+    if (share > 1.0 - part.dip) {
+      blocked += share;
+      depths += share * clamp(sums.y / share, 0.0, part.threshold);
+    }
+  } while (++i < SPLITS * SPLITS);
+  return blocked > 0.0 ? min(stored_metres(r, depths / blocked), r.d) : r.d;
+}
+
+// Stage 3: visibility in the penumbra's kernel, normalised by what a blocker at their mean depth gives.
+float penumbra_visibility(AreaReceiver r, vec4 kernel, float z) {
+  int layer = int(r.view.info.y);
+  vec2 part_size = (kernel.zw - kernel.xy) / float(SPLITS);
+  float depth = fourier_depth(r.range, vec2(0.5), shadow_normalise(r.view, z));
+  float sum = 0.0;
+  int i = 0;
+  do {
+    vec2 low = kernel.xy + vec2(i % SPLITS, i / SPLITS) * part_size;
+    SeriesPart part = series_part(r, low, low + part_size);
+    FourierMeans means = fourier_means(low, low + part_size, ivec2(r.view.info.z), layer);
+    float gain = 0.5 / (part.dip - 0.5);
+    float v = fourier_visibility(fourier_shadow(means, part.threshold).x, gain);
+    float blocked = fourier_visibility(fourier_step(min(depth - part.threshold, 0.0)), gain);
+    sum += fourier_normalised(v, blocked, least_response);
+  } while (++i < SPLITS * SPLITS);
+  return sum / float(SPLITS * SPLITS);
+}
+
+AreaReceiver area_receiver(uint area, vec3 p, vec3 normal) {
+  AreaReceiver r;
+  r.view = area_views[area];
+  vec3 local = shadow_local(r.view, p);
+  r.d = max(length(local), 1e-30);
+  r.direction = local / r.d;
+  r.direction.z = max(r.direction.z, 0.0);
+  r.normal = shadow_view_axes(r.view, normal);
+  float raised = bias * r.view.axis_y.w * r.d;
+  r.height = dot(r.normal, local) + raised;
+  r.limit = max(r.d - raised, 0.0);
+  r.range = fourier_ranges[area];
+  r.sides = area_lights[area].extent.xy;
+  return r;
+}
+
+// Share of area light `area` that the point p with the geometric normal sees.
+float area_visibility(uint area, vec3 p, vec3 normal) {
+  AreaReceiver r = area_receiver(area, p, normal);
+  float above = dot(r.view.axis_z.xyz, p - r.view.origin.xyz);
+  float z = mean_blocker(r, search_kernel(r));
+  float v = z < r.d ? penumbra_visibility(r, kernel_texels(r, z), z) : 1.0;
+  if (r.d <= r.view.origin.w) v = 1.0;
+  return above > 0.0 ? v : behind;
+}
+
+#endif  // LIMN_AREA_VISIBILITY_GLSL

@@ -1,0 +1,196 @@
+// Indirect light with clustered visibility: N virtual point lights, each with its own light, share the soft
+// shadows of M area lights.
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "core/indirect/gather.h"
+#include "core/indirect/paraboloid_maps.h"
+#include "core/indirect/virtual_areas.h"
+#include "core/shadow/derived_maps.h"
+#include "core/shadow/fourier_maps.h"
+#include "core/technique/technique.h"
+
+namespace {
+
+using namespace limn;
+using frame::Access;
+
+constexpr const char* kernels[] = {"exact", "thesis"};
+constexpr const char* searches[] = {"solid_angle", "nearest"};
+constexpr const char* fits[] = {"map", "range"};
+constexpr const char* shows[] = {"light", "clusters"};
+constexpr Parameter parameters[] = {
+    indirect::vplsParameter(),
+    integer("vals", 30, {1, 1024}, "lights", "Virtual area lights, which the virtual point lights share")
+        .quality()
+        .logScale(),
+    real("weight_position", 0.7, {0, 1}, "", "w_x of the clusters' distance: position, in scene extents"),
+    real("weight_angle", 0.3, {0, 1}, "", "w_a of the same: angle between normals, in units of pi"),
+    integer("iterations", 5, {0, 64}, "rounds", "Of k-means, from the same start in every frame").quality(),
+    integer("map_size", 256, {16, 2048}, "texels", "Width and height of each area light's paraboloid map")
+        .quality()
+        .logScale(),
+    integer("terms", 4, {1, 16}, "terms", "Of the Fourier series").quality().logScale(),
+    choice("depth_fit", 1, fits,
+           "Depths that the series spans: the scene's extent, or those that are in the map"),
+    choice("kernel", 0, kernels, "Size of a penumbra in the map: exact, or as published"),
+    choice(
+        "search", 0, searches,
+        "Where blockers are sought: in the light's solid angle, as published, or from the nearest depth on"),
+    integer("splits", 1, {1, 4}, "parts", "Parts of a kernel per axis, each with its own depth threshold")
+        .quality(),
+    real("bias", 1, {0, 64}, "texel footprints",
+         "How far a blocker must lie above the receiver's tangent plane to count"),
+    real("near", 0.02, {0, 0.5}, "scene extents",
+         "Geometry nearer to the centre of an area light than this is ignored"),
+    real("behind", 1, {0, 1}, "",
+         "Visibility behind an area light, where its map knows nothing; 1: as published"),
+    indirect::mapSizeParameter(),
+    indirect::lightSamplesParameter(),
+    indirect::blockParameter(),
+    indirect::interleavingParameter(),
+    indirect::clampParameter(),
+    indirect::compensationParameter(),
+    indirect::blurParameter(),
+    indirect::blurPositionParameter(),
+    indirect::blurPlaneParameter(),
+    indirect::blurNormalParameter(),
+    choice("show", 0, shows, "The light, or the clusters in colours"),
+};
+constexpr StressCase stress[] = {
+    {.name = "one area light", .scene = "cornell_box", .settings = "vals=1", .factor = 2},
+    {.name = "as many area lights as point lights",
+     .scene = "cornell_box",
+     .settings = "vpls=64 vals=64 block=1",
+     .factor = 4},
+    {.name = "N not divisible", .scene = "cornell_box", .settings = "vpls=1021 vals=29"},
+    {.name = "positions alone", .scene = "cornell_box", .settings = "weight_angle=0", .factor = 2},
+    {.name = "normals alone", .scene = "cornell_box", .settings = "weight_position=0", .factor = 2},
+    {.name = "clusters around the same points",
+     .scene = "cornell_box",
+     .settings = "vpls=8 vals=8 rsm_size=16",
+     .factor = 20},
+    {.name = "map of 16 texels", .scene = "cornell_box", .settings = "map_size=16", .factor = 2},
+    {.name = "thin occluders", .scene = "plant", .settings = "vals=10"},
+};
+
+class ClusteredVisibility : public Technique {
+  std::optional<shadow::DerivedMaps> derived_;
+  gpu::Sampler trilinear_;
+  indirect::ParaboloidMapPass mapPass_;
+
+  /// The picture of the clusters, instead of light.
+  static frame::TextureHandle showClusters(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                           const indirect::VirtualAreas& areas, frame::TextureHandle target) {
+    frame::PassBuilder pass = graph.addPass("show clusters", info.name);
+    pass.read(inputs.handles.frame, Access::uniformBuffer, "camera, scene extent")
+        .read(inputs.gbuffer.depth, Access::sampled, "positions")
+        .read(inputs.gbuffer.geometricNormal, Access::sampled, "normals")
+        .read(areas.lights, Access::storageLoad, "virtual point lights")
+        .read(areas.areas, Access::storageLoad, "clusters");
+    const frame::TextureHandle shown = pass.write(target, Access::imageLoadStore, "colours of the clusters");
+    const auto program =
+        pass.program({.files = {"techniques/clustered_visibility/show_clusters.comp.glsl"}, .defines = {}});
+    pass.execute([=, frame = inputs.handles.frame, gbuffer = inputs.gbuffer, size = inputs.size,
+                  x = inputs.parameters.real("weight_position"),
+                  a = inputs.parameters.real("weight_angle")](frame::PassContext& context) {
+      gpu::Program& kernel = context.program(program);
+      kernel.use();
+      kernel.set("weight_position", x);
+      kernel.set("weight_angle", a);
+      context.bindUniform(glsl::FrameBlock::binding, frame);
+      context.bindSampled(0, gbuffer.depth);
+      context.bindSampled(2, gbuffer.geometricNormal);
+      context.bindStorage(0, areas.lights);
+      context.bindStorage(1, areas.areas);
+      context.bindImage(0, shown, GL_READ_WRITE);
+      context.dispatch(size.x, size.y, 1, 8, 8);
+    });
+    return shown;
+  }
+
+  shadow::FourierMaps fourierMaps(frame::FrameGraph& graph, gpu::Device& device, frame::TextureHandle depth,
+                                  const shadow::MinMaxPyramid& pyramid, const ParameterValues& p) {
+    const auto fit = p.choice("depth_fit") == 0 ? shadow::FourierFit::map : shadow::FourierFit::range;
+    shadow::FourierMaps maps = shadow::addFourierMaps(
+        graph, device, depth, pyramid, true,
+        {.order = p.integer("terms"), .filter = shadow::FourierFilter::mip, .fit = fit});
+    if (!trilinear_) trilinear_ = gpu::Sampler(device, GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR);
+    maps.trilinear = &trilinear_;
+    return maps;
+  }
+
+  indirect::ShadePass shadePass(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                const indirect::VirtualAreas& areas) {
+    const ParameterValues& p = inputs.parameters;
+    gpu::Device& device = inputs.gpuScene.device();
+    const indirect::ParaboloidMaps maps =
+        mapPass_.add(graph, inputs.gpuScene, inputs.handles, areas.views,
+                     {.count = areas.count, .size = p.integer("map_size"), .technique = info.name});
+    derived_.emplace(device);
+    derived_->begin(graph);
+    const shadow::MinMaxPyramid pyramid = derived_->minMaxPyramid(maps.depth, true);
+    const shadow::FourierMaps fourier = fourierMaps(graph, device, maps.depth, pyramid, p);
+    indirect::ShadePass pass{.program = {.files = {"techniques/clustered_visibility/shade.comp.glsl"},
+                                         .defines = fourier.defines()}};
+    pass.program.defines["KERNEL_THESIS"] = std::to_string(p.choice("kernel"));
+    pass.program.defines["SEARCH_NEAREST"] = std::to_string(p.choice("search"));
+    pass.program.defines["SPLITS"] = std::to_string(p.integer("splits"));
+    pass.program.defines["AREA_DIP"] = fmt::format("{:.9e}", fourier.constants.dip);
+    if (p.choice("search") == 1) pass.sampled = {{9, pyramid.texture, "nearest depths"}};
+    pass.declare = [fourier, areas](frame::PassBuilder& builder) {
+      fourier.declare(builder);
+      builder.read(areas.views, Access::storageLoad, "hemispheres of the maps")
+          .read(areas.areas, Access::storageLoad, "sizes of the area lights");
+    };
+    pass.bind = [fourier, areas, bias = p.real("bias"), behind = p.real("behind")](
+                    frame::PassContext& context, gpu::Program& program) {
+      fourier.bind(context);
+      context.bindStorage(1, areas.views);
+      context.bindStorage(2, areas.areas);
+      program.set("bias", bias);
+      program.set("behind", behind);
+    };
+    return pass;
+  }
+
+  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                 const TermRequest& request) override {
+    if (request.lights.empty()) {
+      graph.leaveOut("indirect light", info.name, "the scene has no light");
+      return request.target;
+    }
+    const ParameterValues& p = inputs.parameters;
+    const indirect::GatherSettings settings = indirect::gatherSettings(p);
+    indirect::VirtualLights lights =
+        inputs.virtualLights.request(request.lights, indirect::virtualLightDesc(p));
+    const indirect::VirtualAreas areas =
+        indirect::addVirtualAreas(graph, inputs.gpuScene, lights.lights, lights.count,
+                                  {.count = p.integer("vals"),
+                                   .iterations = p.integer("iterations"),
+                                   .weightPosition = p.real("weight_position"),
+                                   .weightAngle = p.real("weight_angle"),
+                                   .near = p.real("near"),
+                                   .mapSize = p.integer("map_size"),
+                                   .block = indirect::usableBlock(settings.block, lights.count),
+                                   .technique = info.name});
+    if (p.choice("show") == 1) return showClusters(graph, inputs, areas, request.target);
+    lights.lights = areas.lights;
+    indirect::Gather gather(graph, inputs, info.name, lights, settings);
+    gather.shade(shadePass(graph, inputs, areas));
+    return gather.finish(request.target);
+  }
+
+ public:
+  static constexpr TechniqueInfo info{.name = "clustered_visibility",
+                                      .title = "Clustered visibility",
+                                      .source = "Dong et al. 2009; thesis, chapter 6",
+                                      .terms = termSet(Term::indirect),
+                                      .parameters = parameters,
+                                      .stress = stress};
+};
+
+}  // namespace
+
+LIMN_TECHNIQUE(ClusteredVisibility::info, ClusteredVisibility)
