@@ -101,9 +101,13 @@ void addMips(frame::FrameGraph& graph, frame::TextureHandle source, bool cacheab
     maps.basis = pass.write(maps.basis, access, why);
     maps.depthBasis = pass.write(maps.depthBasis, access, why);
     maps.depth = pass.write(maps.depth, access, why);
+    const auto even = [&](int size) { return size >> level > 0 && ((size >> (level - 1)) & 1) == 0; };
+    const bool halved = !base && even(desc.width) && even(desc.height);
     const frame::ProgramHandle program =
         pass.program({.files = {"glsl/shadow/fourier_mips.comp.glsl"},
-                      .defines = {{"BASE", base ? "1" : "0"}, {"GROUPS", std::to_string(maps.groups())}}});
+                      .defines = {{"BASE", base ? "1" : "0"},
+                                  {"HALVED", halved ? "1" : "0"},
+                                  {"GROUPS", std::to_string(maps.groups())}}});
     if (cacheable) pass.cacheable();
     pass.execute([=, maps = maps](frame::PassContext& context) {
       gpu::Program& kernel = context.program(program);

@@ -1,5 +1,6 @@
 // One level of the mip chains of all Fourier basis images of a shadow map. BASE 1: the finest, from depth; else from the
-// level before. GROUPS: texels of four values that hold the ORDER terms.
+// level before. HALVED 1: whose sizes are twice this level's, so that four texels count alike: software renderers take every
+// turn of a loop whose length varies. GROUPS: texels of four values that hold the ORDER terms.
 #include "glsl/fourier_shadow.glsl"
 #include "glsl/mip_weights.glsl"
 
@@ -38,7 +39,11 @@ void write_level(ivec3 at, ivec2 size) {
   ivec2 fine = imageSize(finer_depth).xy;
   vec3 wx = mip_weights(at.x, fine.x, size.x);
   vec3 wy = mip_weights(at.y, fine.y, size.y);
+#if HALVED
+  const ivec2 count = ivec2(2);
+#else
   ivec2 count = ivec2(wx.z > 0.0 ? 3 : wx.y > 0.0 ? 2 : 1, wy.z > 0.0 ? 3 : wy.y > 0.0 ? 2 : 1);
+#endif
   for (int g = 0; g < GROUPS; ++g) {
     vec4 basis = vec4(0.0);
     vec4 depth_basis = vec4(0.0);
