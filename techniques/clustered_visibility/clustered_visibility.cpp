@@ -32,7 +32,7 @@ constexpr Parameter parameters[] = {
         .quality()
         .logScale(),
     integer("terms", 4, {1, 16}, "terms", "Of the Fourier series").quality().logScale(),
-    choice("depth_fit", 1, fits,
+    choice("depth_fit", 0, fits,
            "Depths that the series spans: the scene's extent, or those that are in the map"),
     choice("kernel", 0, kernels, "Size of a penumbra in the map: exact, or as published"),
     choice(
