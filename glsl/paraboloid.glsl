@@ -170,7 +170,6 @@ LIMN_FN ParaboloidKernel paraboloid_kernel_thesis(vec3 direction, float alpha) {
 LIMN_FN vec4 paraboloid_rectangle_kernel(vec3 direction, vec2 sides, float d, float z) {
   vec3 w = direction;
   float k = max(d - z, 0.0f) / (d * z);
-  float scale = 1.0f / (1.0f + w.z);
   vec2 p = paraboloid_map(w);
   // What the map's differential makes of the sides; over the scale: radians.
   vec2 side_x = sides.x * (vec2(1.0f - w.x * w.x, -w.x * w.y) + w.x * w.z * p);

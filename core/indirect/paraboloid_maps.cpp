@@ -36,7 +36,8 @@ ParaboloidMaps ParaboloidMapPass::add(frame::FrameGraph& graph, scene::GpuScene&
   for (int i = 0; i < desc.count; ++i)
     views_.push_back({.volume = {}, .view = static_cast<uint32_t>(desc.first + i), .layer = i});
 
-  ParaboloidMaps maps{.views = views, .count = desc.count, .first = desc.first, .size = desc.size};
+  ParaboloidMaps maps{
+      .depth = {}, .views = views, .count = desc.count, .first = desc.first, .size = desc.size};
   gpu::TextureDesc texture{.target = GL_TEXTURE_2D_ARRAY,
                            .format = desc.format,
                            .width = desc.size,
