@@ -157,13 +157,7 @@ Image BenchSession::separationFloor(const bench::Case& c) {
   return sum;
 }
 
-bench::Measurement BenchSession::measure(const bench::Case& c) {
-  if (c.technique == bench::kSeparationFloor) {
-    bench::Measurement floor{separationFloor(c), {}};
-    floor.cost.renderer = rendererName();
-    floor.cost.software = context_->info().software;
-    return floor;
-  }
+render::Settings BenchSession::settingsOf(const bench::Case& c) {
   Loaded& loaded = load(c);
   TechniqueOptions techniques;
   techniques.techniques = c.technique;
@@ -172,16 +166,39 @@ bench::Measurement BenchSession::measure(const bench::Case& c) {
   render::Settings settings = baseSettings(loaded.view, render::parseOutput(c.term), loaded.view.light);
   settings.techniques = techniques.resolve(registry_);
   settings.dynamic = c.dynamic;
+  return settings;
+}
+
+void BenchSession::configureTimed(Loaded& loaded, const bench::Case& c, render::Settings settings) {
+  if (c.timeWidth > 0) settings.size = {c.timeWidth, c.timeHeight};
+  settings.channels = false;  // what a frame costs does not include what only the comparison needs
+  loaded.renderer.configure(settings);
+  loaded.renderer.setCamera(loaded.view.camera);
+}
+
+std::vector<double> BenchSession::time(const bench::Case& c) {
+  const render::Settings settings = settingsOf(c);
+  Loaded& loaded = load(c);
+  configureTimed(loaded, c, settings);
+  return render::timeFrames(loaded.renderer, c.frames, c.warmup);
+}
+
+bench::Measurement BenchSession::measure(const bench::Case& c) {
+  if (c.technique == bench::kSeparationFloor) {
+    bench::Measurement floor{separationFloor(c), {}};
+    floor.cost.renderer = rendererName();
+    floor.cost.software = context_->info().software;
+    return floor;
+  }
+  Loaded& loaded = load(c);
+  render::Settings settings = settingsOf(c);
   settings.channels = true;
   loaded.renderer.configure(settings);
   loaded.renderer.setCamera(loaded.view.camera);
   loaded.renderer.render();
   bench::Measurement result{loaded.renderer.read(), {}};
 
-  if (c.timeWidth > 0) settings.size = {c.timeWidth, c.timeHeight};
-  settings.channels = false;  // what a frame costs does not include what only the comparison needs
-  loaded.renderer.configure(settings);
-  loaded.renderer.setCamera(loaded.view.camera);
+  configureTimed(loaded, c, settings);
   render::FrameStats stats = render::measure(loaded.renderer, c.frames, c.warmup);
   stats.scene = c.scene;
   result.cost.renderer = stats.renderer;
@@ -227,12 +244,14 @@ void measureCases(const std::vector<bench::Case>& cases, const fs::path& out, co
   bench::Callbacks callbacks;
   callbacks.reference = [&](const bench::Case& c) { return session.reference(c); };
   callbacks.measure = [&](const bench::Case& c) { return session.measure(c); };
+  callbacks.time = [&](const bench::Case& c) { return session.time(c); };
   callbacks.keepPicture = [&](const std::string& name, const Image& image) {
     return session.keepPicture(name, image);
   };
   callbacks.progress = [&](const bench::Progress& progress) {
     if (progress.state == bench::Progress::State::started) report.started(progress.index);
-    bar.update(double(progress.index) / progress.count, bench::label(progress.what));
+    bar.update((progress.turn - 1 + double(progress.index) / progress.count) / progress.turns,
+               bench::label(progress.what));
     if (progress.state == bench::Progress::State::failed)
       fmt::print(stderr, "limn: {}: {}\n", bench::label(progress.what), progress.failure);
   };

@@ -32,12 +32,18 @@ class BenchSession {
   const std::string& rendererName() const { return context_->info().renderer; }
   bench::Reference reference(const bench::Case& c);
   bench::Measurement measure(const bench::Case& c);
+  /// Milliseconds of the case's timed frames alone.
+  std::vector<double> time(const bench::Case& c);
   /// Writes pictures/NAME.png in the folder of the results and returns that path.
   std::string keepPicture(const std::string& name, const Image& image);
 
  private:
   struct Loaded;
   Loaded& load(const bench::Case& c);
+  /// Of the picture that is compared.
+  render::Settings settingsOf(const bench::Case& c);
+  /// Prepares the frames that are timed.
+  static void configureTimed(Loaded& loaded, const bench::Case& c, render::Settings settings);
   reference::Request request(const bench::Case& c, reference::Term term, int light);
   Image separationFloor(const bench::Case& c);
   Image unshadowed(const bench::Case& c, int light);

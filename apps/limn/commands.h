@@ -18,6 +18,7 @@ Action addCompareCommand(CLI::App& command);
 Action addBenchCommand(CLI::App& command);
 Action addStressCommand(CLI::App& command);
 Action addFlickerCommand(CLI::App& command);
+Action addExplainCostCommand(CLI::App& command);
 Action addReportCommand(CLI::App& command);
 Action addReproductionCommand(CLI::App& command);
 

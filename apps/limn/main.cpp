@@ -49,6 +49,8 @@ int main(int argc, char** argv) {
   add("stress", "Run every technique on its stability cases: pass, degraded or refused", addStressCommand);
   add("flicker", "Measure how much more a technique changes from frame to frame than the truth",
       addFlickerCommand);
+  add("explain-cost", "What a scene lets limn leave out, forced in: pictures, time and memory compared",
+      addExplainCostCommand);
   add("report", "Write the tables and the report of finished benches anew", addReportCommand);
   add("reproduction", "The thesis's ratios beside those of bench results, as a page", addReproductionCommand);
 

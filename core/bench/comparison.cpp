@@ -44,7 +44,7 @@ const Metrics& errorOf(const Row& row) {
 std::string frameRatio(const Row& slow, const Row& fast) {
   const FrameTime &a = slow.cost.frameMs, &b = fast.cost.frameMs;
   if (a.samples.empty() || b.samples.empty()) return fmt::format("{:.2f}", a.median / b.median);
-  const Ratio ratio = ratioOfMedians(a.samples, b.samples);
+  const Ratio ratio = ratioOfMedians({a.samples, a.turns}, {b.samples, b.turns});
   return fmt::format("{:.2f} ({:.2f} to {:.2f})", ratio.value, ratio.low, ratio.high);
 }
 

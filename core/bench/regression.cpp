@@ -30,9 +30,9 @@ Change compareRows(const Row& before, const Row& now, const RegressionOptions& o
   const double growth = b.rmse * b.rmse - a.rmse * a.rmse, noise = noiseOfDifference(a, b);
   change.worse = growth > noise;
   change.better = -growth > noise;
-  const std::vector<double>&earlier = before.cost.frameMs.samples, &later = now.cost.frameMs.samples;
-  if (earlier.empty() || later.empty()) return change;
-  change.time = ratioOfMedians(later, earlier);
+  const FrameTime &earlier = before.cost.frameMs, &later = now.cost.frameMs;
+  if (earlier.samples.empty() || later.samples.empty()) return change;
+  change.time = ratioOfMedians({later.samples, later.turns}, {earlier.samples, earlier.turns});
   change.slower = change.time.low > 1 + options.drift;
   change.faster = change.time.high < 1 / (1 + options.drift);
   return change;

@@ -50,7 +50,9 @@ Json timesAsFast(const Row* baseline, const Row& row) {
   const auto samples = [](const FrameTime& time) {
     return time.samples.empty() ? std::vector<double>{time.median} : time.samples;
   };
-  const Ratio ratio = ratioOfMedians(samples(baseline->cost.frameMs), samples(row.cost.frameMs));
+  const FrameTime &slow = baseline->cost.frameMs, &fast = row.cost.frameMs;
+  const std::vector<double> above = samples(slow), below = samples(fast);
+  const Ratio ratio = ratioOfMedians({above, slow.turns}, {below, fast.turns});
   return {{"value", ratio.value}, {"low", ratio.low}, {"high", ratio.high}};
 }
 

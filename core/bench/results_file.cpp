@@ -91,6 +91,11 @@ void ResultsFile::append(const Row& row) {
   add(row);
 }
 
+const Row* ResultsFile::find(const std::string& key) const {
+  const auto found = position_.find(key);
+  return found == position_.end() ? nullptr : &rows_[found->second];
+}
+
 void ResultsFile::add(Row row) {
   if (row.failure.empty()) finished_.insert(row.key);
   remember(rows_, position_, std::move(row));

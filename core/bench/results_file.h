@@ -28,6 +28,8 @@ class LIMN_API ResultsFile {
 
   /// Whether there is a successful row of that key; failed ones are to be tried again.
   bool contains(const std::string& key) const { return finished_.contains(key); }
+  /// The last row of that key, null if there is none.
+  const Row* find(const std::string& key) const;
   /// Writes one whole line and hands it to the disk. Throws Error if that fails; the file then still ends in
   /// a whole line.
   void append(const Row& row);

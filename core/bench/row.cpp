@@ -69,6 +69,7 @@ Json costToJson(const Cost& cost) {
                       {"q3", cost.frameMs.q3},
                       {"n", cost.frameMs.n}};
   if (!cost.frameMs.samples.empty()) json["frame_samples_ms"] = cost.frameMs.samples;
+  json["turns"] = cost.frameMs.turns;
   json["split_ms"] = {{"maps", cost.split.maps},
                       {"filters", cost.split.filters},
                       {"technique", cost.split.technique},
@@ -92,7 +93,8 @@ Cost costFromJson(const Json& json) {
                   time.at("q1").get<double>(),
                   time.at("q3").get<double>(),
                   time.at("n").get<int>(),
-                  {}};
+                  {},
+                  json.value("turns", 1)};
   if (json.contains("frame_samples_ms"))
     cost.frameMs.samples = json["frame_samples_ms"].get<std::vector<double>>();
   const Json& split = json.at("split_ms");
@@ -129,6 +131,7 @@ Json caseToJson(const Case& c) {
           {"dynamic", c.dynamic},
           {"frames", c.frames},
           {"warmup", c.warmup},
+          {"turns", c.turns},
           {"time_size", {c.timeWidth, c.timeHeight}},
           {"title", c.title},
           {"baseline", c.baseline},
@@ -160,6 +163,7 @@ Case caseFromJson(const Json& json) {
   c.dynamic = json.at("dynamic").get<bool>();
   c.frames = json.at("frames").get<int>();
   c.warmup = json.at("warmup").get<int>();
+  c.turns = json.value("turns", 1);
   c.timeWidth = json.at("time_size").at(0).get<int>();
   c.timeHeight = json.at("time_size").at(1).get<int>();
   c.title = json.at("title").get<std::string>();

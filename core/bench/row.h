@@ -16,6 +16,7 @@ struct FrameTime {
   double median = 0, q1 = 0, q3 = 0;  ///< milliseconds
   int n = 0;                          ///< timed frames; 0: not timed
   std::vector<double> samples;        ///< each of them; empty in rows of earlier versions
+  int turns = 1;                      ///< in which they were taken, with other rows' in between
 };
 
 /// Where the time of a frame's passes goes, milliseconds: medians of the passes, summed.

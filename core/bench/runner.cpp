@@ -1,7 +1,10 @@
 #include "core/bench/runner.h"
 
+#include <algorithm>
+
 #include "core/base/error.h"
 #include "core/image/error_spectrum.h"
+#include "core/render/frame_stats.h"
 
 namespace limn::bench {
 namespace {
@@ -66,36 +69,59 @@ Row measureRow(const Case& c, const std::string& key, const Reference& reference
   return row;
 }
 
-}  // namespace
+/// The row with the frames of a further turn.
+Row withTurn(Row row, const std::vector<double>& ms) {
+  FrameTime& time = row.cost.frameMs;
+  time.samples.insert(time.samples.end(), ms.begin(), ms.end());
+  const render::Quartiles all = render::quartiles(time.samples);
+  time = {all.median, all.q1, all.q3, all.n, std::move(time.samples), time.turns + 1};
+  return row;
+}
 
-Summary runCases(std::span<const Case> cases, const std::string& renderer, ResultsFile& results,
-                 const Callbacks& callbacks) {
-  Summary summary;
-  std::optional<Reference> reference;
-  std::string referenceQuestion;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    const Case& c = cases[i];
-    const auto report = [&](Progress::State state, std::string failure = "") {
-      if (callbacks.progress) {
-        callbacks.progress(
-            {static_cast<int>(i), static_cast<int>(cases.size()), c, state, std::move(failure)});
-      }
-    };
-    const std::string key = rowKey(c, renderer);
-    if (results.contains(key)) {
-      ++summary.skipped;
-      report(Progress::State::skipped);
-      continue;
+class Run {
+ public:
+  Run(std::span<const Case> cases, const std::string& renderer, ResultsFile& results,
+      const Callbacks& callbacks)
+      : cases_(cases), renderer_(renderer), results_(results), callbacks_(callbacks) {
+    for (const Case& c : cases) turns_ = std::max(turns_, c.turns);
+  }
+
+  Summary all() {
+    for (std::size_t i = 0; i < cases_.size(); ++i) measure(i);
+    for (int turn = 2; turn <= turns_; ++turn)
+      for (std::size_t i = 0; i < cases_.size(); ++i) retime(i, turn);
+    return summary_;
+  }
+
+ private:
+  void report(std::size_t i, int turn, Progress::State state, const std::string& failure = "") const {
+    if (!callbacks_.progress) return;
+    callbacks_.progress(
+        {static_cast<int>(i), static_cast<int>(cases_.size()), turn, turns_, cases_[i], state, failure});
+  }
+
+  void append(Row row, const std::string& key) {
+    row.key = key;
+    row.cost.renderer = renderer_;
+    results_.append(row);
+  }
+
+  void measure(std::size_t i) {
+    const Case& c = cases_[i];
+    const std::string key = rowKey(c, renderer_);
+    if (results_.contains(key)) {
+      ++summary_.skipped;
+      return report(i, 1, Progress::State::skipped);
     }
-    report(Progress::State::started);
+    report(i, 1, Progress::State::started);
     Row row;
     try {
-      if (!reference || referenceQuestion != question(c)) {
-        reference.reset();
-        reference = callbacks.reference(c);
-        referenceQuestion = question(c);
+      if (!reference_ || referenceQuestion_ != question(c)) {
+        reference_.reset();
+        reference_ = callbacks_.reference(c);
+        referenceQuestion_ = question(c);
       }
-      row = measureRow(c, key, *reference, callbacks);
+      row = measureRow(c, key, *reference_, callbacks_);
     } catch (const UsageError&) {
       throw;
     } catch (const Error& error) {
@@ -103,13 +129,43 @@ Summary runCases(std::span<const Case> cases, const std::string& renderer, Resul
       row.what = c;
       row.failure = error.what();
     }
-    row.key = key;
-    row.cost.renderer = renderer;
-    results.append(row);
-    ++(row.failure.empty() ? summary.done : summary.failed);
-    report(row.failure.empty() ? Progress::State::done : Progress::State::failed, row.failure);
+    append(row, key);
+    ++(row.failure.empty() ? summary_.done : summary_.failed);
+    report(i, 1, row.failure.empty() ? Progress::State::done : Progress::State::failed, row.failure);
   }
-  return summary;
+
+  void retime(std::size_t i, int turn) {
+    const Case& c = cases_[i];
+    const std::string key = rowKey(c, renderer_);
+    const Row* row = results_.find(key);
+    if (!row || !row->failure.empty() || row->cost.frameMs.n == 0 || turn > c.turns) return;
+    if (row->cost.frameMs.turns >= turn) return;
+    report(i, turn, Progress::State::started);
+    std::vector<double> ms;
+    try {
+      ms = callbacks_.time(c);
+    } catch (const Error& error) {  // the row stays as it is
+      return report(i, turn, Progress::State::failed, error.what());
+    }
+    append(withTurn(*row, ms), key);
+    report(i, turn, Progress::State::done);
+  }
+
+  std::span<const Case> cases_;
+  const std::string& renderer_;
+  ResultsFile& results_;
+  const Callbacks& callbacks_;
+  int turns_ = 1;
+  Summary summary_;
+  std::optional<Reference> reference_;
+  std::string referenceQuestion_;
+};
+
+}  // namespace
+
+Summary runCases(std::span<const Case> cases, const std::string& renderer, ResultsFile& results,
+                 const Callbacks& callbacks) {
+  return Run(cases, renderer, results, callbacks).all();
 }
 
 }  // namespace limn::bench

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/base/export.h"
 #include "core/bench/results_file.h"
@@ -26,6 +27,7 @@ struct Measurement {
 
 struct Progress {
   int index = 0, count = 0;  ///< case number from 0
+  int turn = 1, turns = 1;   ///< from 1
   const Case& what;
   enum class State { skipped, started, done, failed } state;
   std::string failure;
@@ -40,6 +42,8 @@ struct Callbacks {
   /// The technique's picture and what it cost. kSeparationFloor asks for unshadowed light times the
   /// reference's visibility, untimed (n = 0).
   std::function<Measurement(const Case&)> measure;
+  /// Milliseconds of the frames of a further turn; asked for cases with several.
+  std::function<std::vector<double>(const Case&)> time;
   std::function<void(const Progress&)> progress;  ///< may be empty
 };
 
@@ -47,6 +51,7 @@ struct Summary {
   int done = 0, skipped = 0, failed = 0;
 };
 
+/// All cases first, then further turns of timing, each of which replaces the rows by longer ones.
 /// `renderer` is recorded in the rows and part of their keys: results of another renderer are measured anew.
 /// An Error in a case is recorded in its row and the next case is run; a UsageError ends the run, as does an
 /// Error of the results file.

@@ -7,8 +7,10 @@
 //                                 # missing
 //     sizes = ["256x256"]         # of the pictures whose error is measured
 //     time_size = "1024x768"      # of the timed frames; default: as the pictures
-//     frames = 20                 # timed frames
-//     warmup = 3
+//     frames = 20                 # timed frames of a turn
+//     warmup = 3                  # frames before them
+//     turns = 1                   # how often all rows are timed, one after the other: a machine's drift then
+//                                 # shows in the intervals of ratios instead of in the ratios
 //     modes = ["dynamic"]         # and/or "static"
 //     term = "visibility"
 //     reference = {spp = 256}     # or {noise = 0.005}: RMS relative to the mean; also bounces, for
@@ -77,7 +79,8 @@ struct Case {
   std::string technique;                                        ///< one name, or several joined by ","
   std::vector<std::pair<std::string, std::string>> parameters;  ///< "technique.parameter", value
   bool dynamic = true;
-  int frames = 0, warmup = 0;
+  int frames = 0, warmup = 0;  ///< of a turn
+  int turns = 1;
   int timeWidth = 0, timeHeight = 0;  ///< size of the timed frames; 0: as the picture
   std::string title;                  ///< of the technique with its parameters, for people; may be empty
   bool baseline = false;              ///< what the other rows of a table are compared with

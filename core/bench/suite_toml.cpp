@@ -204,6 +204,7 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
   Case base;
   base.frames = suite.integer("frames", 20, 0, 100000);
   base.warmup = suite.integer("warmup", 3, 0, 100000);
+  base.turns = suite.integer("turns", 1, 1, 1000);
   base.reference = parseReference(suite);
   const int bounces = base.reference.bounces;
   const std::size_t before = cases.size();
@@ -255,9 +256,10 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
 }
 
 Suite buildSuite(const toml::table& root, const std::string& file, bool mayInclude) {
-  const TomlSection suite(file, root, "the suite",
-                          {"name", "minutes", "include", "sizes", "time_size", "frames", "warmup", "modes",
-                           "term", "reference", "separation_floor", "pictures", "scenes", "techniques"});
+  const TomlSection suite(
+      file, root, "the suite",
+      {"name", "minutes", "include", "sizes", "time_size", "frames", "warmup", "turns", "modes", "term",
+       "reference", "separation_floor", "pictures", "scenes", "techniques"});
   Suite result{suite.text(suite.require("name"), "name"), suite.real("minutes", 0, 0, 1e6),
                includedCases(suite, mayInclude)};
   if (suite.find("include") == nullptr || suite.find("scenes") != nullptr) addOwnCases(suite, result.cases);

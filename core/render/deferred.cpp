@@ -73,10 +73,14 @@ struct Deferred::Implementation {
     return ltcHandle;
   }
 
-  /// Irradiance and radiance filtered by roughness, made at the first call.
+  /// Irradiance and radiance filtered by roughness, black without an environment; made at the first call.
   std::array<TextureHandle, 2> environmentLight(frame::FrameGraph& graph) {
     if (!irradianceMap) {
-      const shading::FilteredEnvironment filtered = shading::filterEnvironment(scene.environment);
+      scene::Environment black;
+      black.width = black.height = 2;
+      black.texels.assign(4, glm::vec3(0));
+      const shading::FilteredEnvironment filtered =
+          shading::filterEnvironment(scene.environment ? scene.environment : black);
       irradianceMap = shading::makeIrradianceTexture(device, filtered);
       filteredMap = shading::makeFilteredTexture(device, filtered);
     }

@@ -73,13 +73,18 @@ Quartiles quartiles(std::vector<double> samples) {
   return {at(0.5), at(0.25), at(0.75), static_cast<int>(samples.size())};
 }
 
+std::vector<double> timeFrames(Renderer& renderer, int frames, int warmup) {
+  for (int i = 0; i < warmup; ++i) renderer.render();
+  renderer.finish();
+  std::vector<double> samples;
+  for (int i = 0; i < frames; ++i) samples.push_back(frameMilliseconds(renderer, frame::Timing::off));
+  return samples;
+}
+
 FrameStats measure(Renderer& renderer, int frames, int warmup) {
   FrameStats stats = renderer.describe();
   // Without any frame there would be no graph to describe.
-  for (int i = 0; i < std::max(warmup, frames > 0 ? 0 : 1); ++i) renderer.render();
-  renderer.finish();
-  std::vector<double> wall;
-  for (int i = 0; i < frames; ++i) wall.push_back(frameMilliseconds(renderer, frame::Timing::off));
+  const std::vector<double> wall = timeFrames(renderer, frames, std::max(warmup, frames > 0 ? 0 : 1));
   stats.frameMs = quartiles(wall);
   stats.frameSamplesMs = wall;
 

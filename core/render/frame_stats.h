@@ -54,6 +54,9 @@ struct FrameStats {
   uint32_t uncoveredPixels = 0;  ///< whose receiver no map of a light covers: V = 1 there
 };
 
+/// Wall-clock milliseconds of each of `frames` frames between two glFinish, after `warmup` others.
+LIMN_API std::vector<double> timeFrames(Renderer& renderer, int frames, int warmup);
+
 /// Renders `warmup` frames, then `frames` timed ones as a whole, then as many with pass timing. The camera
 /// counts as moved in every frame; geometry and lights too unless the renderer is configured static.
 LIMN_API FrameStats measure(Renderer& renderer, int frames, int warmup = 3);

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "core/base/error.h"
-#include "core/base/text.h"
 #include "core/indirect/virtual_lights.h"
 #include "core/render/deferred.h"
 #include "core/scene/gpu_scene.h"
@@ -17,81 +15,11 @@
 namespace limn::render {
 namespace {
 
-constexpr std::array<std::pair<Output, std::string_view>, 6> output_names{{{Output::final, "final"},
-                                                                           {Output::visibility, "visibility"},
-                                                                           {Output::direct, "direct"},
-                                                                           {Output::indirect, "indirect"},
-                                                                           {Output::caustic, "caustic"},
-                                                                           {Output::media, "media"}}};
-
 TermSet termsOf(const TechniqueUse& use) {
   return use.plugin->info->terms;
 }
 
-/// The techniques that answer the direct light of this output, whichever way.
-bool claimsDirect(const TechniqueUse& use) {
-  return contains(termsOf(use), Term::visibility) || contains(termsOf(use), Term::direct);
-}
-
-Term termOf(Output output) {
-  switch (output) {
-    case Output::visibility:
-      return Term::visibility;
-    case Output::indirect:
-      return Term::indirect;
-    case Output::caustic:
-      return Term::caustic;
-    case Output::media:
-      return Term::media;
-    default:
-      return Term::direct;
-  }
-}
-
 }  // namespace
-
-std::string_view name(Output output) {
-  for (const auto& [value, text] : output_names)
-    if (value == output) return text;
-  return {};
-}
-
-Output parseOutput(std::string_view text) {
-  std::vector<std::string> names;
-  for (const auto& [value, known] : output_names) {
-    if (text == known) return value;
-    names.emplace_back(known);
-  }
-  throw UsageError(fmt::format("output term '{}' is unknown{}; expected {}", text, didYouMean(text, names),
-                               joined(names, "or")));
-}
-
-void checkTechniques(const std::vector<TechniqueUse>& techniques, Output output) {
-  const TechniqueUse* first = nullptr;
-  for (const TechniqueUse& use : techniques) {
-    if (!claimsDirect(use)) continue;
-    if (first)
-      throw UsageError(fmt::format("techniques {} and {} both answer direct light; name one of them",
-                                   first->plugin->info->name, use.plugin->info->name));
-    first = &use;
-  }
-  first = nullptr;
-  for (const TechniqueUse& use : techniques) {
-    if (!contains(termsOf(use), Term::environment)) continue;
-    if (first)
-      throw UsageError(
-          fmt::format("techniques {} and {} both answer the environment's light; name one of them",
-                      first->plugin->info->name, use.plugin->info->name));
-    first = &use;
-  }
-  if (output == Output::final || output == Output::direct) return;
-  const bool answered = std::any_of(techniques.begin(), techniques.end(), [&](const TechniqueUse& use) {
-    return contains(termsOf(use), termOf(output));
-  });
-  if (!answered)
-    throw UsageError(
-        fmt::format("no technique given answers the output term {}; limn list says which do", name(output)));
-}
 
 struct Renderer::Implementation {
   struct Use {
@@ -170,6 +98,10 @@ struct Renderer::Implementation {
     return nullptr;
   }
 
+  bool forced(Saving saving) const {
+    return std::ranges::find(settings.forced, saving) != settings.forced.end();
+  }
+
   /// The lights that can contribute: the one asked for, or all that emit, without those whose place a
   /// technique takes.
   std::vector<uint32_t> activeLights() {
@@ -180,7 +112,8 @@ struct Renderer::Implementation {
     for (uint32_t i = 0; i < pose.lights.size(); ++i) {
       if (settings.light >= 0 && static_cast<uint32_t>(settings.light) != i) continue;
       if (replaced && (pose.lights[i].info.y & glsl::light_flag_environment) != 0) continue;
-      if (glm::vec3(pose.lights[i].emission) == glm::vec3(0) && settings.output != Output::visibility) {
+      if (glm::vec3(pose.lights[i].emission) == glm::vec3(0) && settings.output != Output::visibility &&
+          !forced(Saving::darkLights)) {
         graph->leaveOut(fmt::format("light {}", pose.lightNames[i]), "core", "it emits nothing");
         continue;
       }
@@ -211,7 +144,7 @@ struct Renderer::Implementation {
 
   frame::TextureHandle addEnvironment(const Deferred::Frame& frame, frame::TextureHandle radiance) {
     const char* why = nullptr;
-    if (!scene.environment) why = "no environment";
+    if (!scene.environment && !forced(Saving::environment)) why = "no environment";
     if (scene.environment && settings.light >= 0) why = "another light was chosen";
     Use* use = answering(Term::environment);
     if (!why && use) return ask(*use, Term::environment, {}, radiance);
@@ -290,6 +223,7 @@ struct Renderer::Implementation {
       mountTechnique(*use.plugin);
       uses.push_back({&use, use.plugin->create()});
     }
+    gpuScene.setCulling(!forced(Saving::culling));
     handles = gpuScene.import(*graph);
     gbuffer = {};
     if (gpuScene.instanceCount() > 0)

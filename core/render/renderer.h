@@ -30,6 +30,13 @@ LIMN_API std::string_view name(Output output);
 /// Throws UsageError naming the accepted values.
 LIMN_API Output parseOutput(std::string_view text);
 
+/// Work that core leaves out of a frame because it would not change the picture.
+enum class Saving : uint8_t {
+  darkLights,   ///< maps, visibility and shading of lights that emit nothing
+  environment,  ///< the light of a black environment
+  culling,      ///< instances outside what a view sees
+};
+
 struct Settings {
   glm::ivec2 size{1280, 720};
   Output output = Output::final;
@@ -43,6 +50,8 @@ struct Settings {
   bool channels = false;
   /// Tone-map the picture for present(): clamp(2^EV * picture), then sRGB, as PNG files are written.
   std::optional<float> displayEv = {};
+  /// Done all the same, to learn what leaving it out is worth (core/bench/savings.h).
+  std::vector<Saving> forced = {};
 };
 
 /// Throws UsageError when two techniques claim the same exclusive term, or nobody answers the output asked

@@ -90,7 +90,8 @@ void GpuScene::Implementation::fill(DrawList::Implementation& list, const std::v
   for (const uint32_t id : order) {
     const InstanceState& instance = states[id];
     for (const DepthView& view : views) {
-      if (id == view.skipInstance || !view.volume.mayContain(instance.bounds)) continue;
+      if (id == view.skipInstance || instance.bounds.empty()) continue;
+      if (culling && !view.volume.mayContain(instance.bounds)) continue;
       DrawRun wanted;
       wanted.material = instance.material;
       wanted.masked = materials.masked(instance.material);

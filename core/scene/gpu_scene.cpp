@@ -268,6 +268,10 @@ uint64_t GpuScene::triangles() const {
   return sum;
 }
 
+void GpuScene::setCulling(bool culling) {
+  implementation_->culling = culling;
+}
+
 bool GpuScene::hasMasked() const {
   return std::any_of(implementation_->states.begin(), implementation_->states.end(),
                      [&](const InstanceState& s) { return implementation_->materials.masked(s.material); });

@@ -101,6 +101,9 @@ class LIMN_API GpuScene {
   /// Those of all materials of the scene, each once.
   std::vector<SurfaceVariant> surfaceVariants() const;
 
+  /// Whether instances outside a view's volume are left out of its draw calls; true at first.
+  void setCulling(bool culling);
+
   /// Declares what a pass that draws geometry reads (vertex streams, instances, materials).
   static void declareReads(frame::PassBuilder& builder, const SceneHandles& handles);
 

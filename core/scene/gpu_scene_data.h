@@ -95,6 +95,7 @@ struct GpuScene::Implementation {
   std::vector<InstanceState> states;
   std::vector<uint64_t> sortKeys;
   std::vector<uint32_t> cameraOrder, depthOrder;
+  bool culling = true;
   std::vector<glsl::Instance> instances, nextInstances;
   std::vector<glsl::Light> lights, nextLights;
   glsl::FrameBlock frame{};

@@ -39,6 +39,9 @@ struct Parameter {
   int choiceCount = 0;
   bool tradesErrorForTime = false;  ///< a sweep axis of the bench
   bool logarithmic = false;         ///< sweeps and sliders step by factors
+  /// Not null: the parameter lets the technique leave out work that decides nothing, and this value has it
+  /// done all the same (core/bench/savings.h).
+  const char* forcing = nullptr;
 
   constexpr Parameter quality() const {
     Parameter p = *this;
@@ -48,6 +51,11 @@ struct Parameter {
   constexpr Parameter logScale() const {
     Parameter p = *this;
     p.logarithmic = true;
+    return p;
+  }
+  constexpr Parameter savesWork(const char* forcingValue) const {
+    Parameter p = *this;
+    p.forcing = forcingValue;
     return p;
   }
 };

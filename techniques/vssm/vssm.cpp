@@ -15,7 +15,6 @@ using namespace limn;
 constexpr const char* subdivisions[] = {"uniform", "adaptive", "mixed"};
 constexpr const char* poolings[] = {"each", "pooled"};
 constexpr const char* boundings[] = {"mip", "nbuffer"};
-constexpr const char* switches[] = {"off", "on"};
 constexpr const char* contacts[] = {"off", "jittered"};
 
 constexpr Parameter parameters[] = {
@@ -32,7 +31,8 @@ constexpr Parameter parameters[] = {
             "How often the minimum depth in the search kernel narrows it; 0: as published"),
     choice("bounds", 0, boundings,
            "Of the depths in the search kernel: from a min-max pyramid or, tighter and dearer, an N-buffer"),
-    choice("early_out", 1, switches, "Answer at once where bounds of the depths in the search kernel decide"),
+    boolean("early_out", true, "Answer at once where bounds of the depths in the search kernel decide")
+        .savesWork("false"),
     choice("contact", 0, contacts, "Narrow penumbrae: from the table, or 3 x 3 jittered bilinear texels"),
     real("contact_texels", 3, {1, 64}, "texels", "Width of the kernels that count as narrow"),
     integer("sat_bits", 16, {8, 24}, "bits", "Of a depth in the summed-area table"),
@@ -82,7 +82,7 @@ class Vssm : public Technique {
                                 {"SIMILAR_KERNELS", similarKernels(inputs, request) ? "1" : "0"},
                                 {"WIDE_Z", needsWideSums(p) ? "1" : "0"},
                                 {"N_BUFFER", nBuffer ? "1" : "0"},
-                                {"EARLY_OUT", std::to_string(p.choice("early_out"))},
+                                {"EARLY_OUT", p.boolean("early_out") ? "1" : "0"},
                                 {"CONTACT", std::to_string(p.choice("contact"))}});
     const shadow::SummedAreaTable table = inputs.shadowMaps.summedAreaTable(
         pass.maps, {.bits = p.integer("sat_bits"), .words = p.integer("sat_words")});

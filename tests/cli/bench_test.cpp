@@ -72,6 +72,37 @@ TEST_F(BenchCommand, ACrashLosesItsOwnRowOnly) {
               testing::HasSubstr("0 rows measured, 3 were there already, 1 failed"));
 }
 
+TEST_F(BenchCommand, AFullDiskLosesOnlyWhatDidNotFit) {
+  // References and one row first, while there is room.
+  const auto suite = [&](const char* pictures) {
+    std::ofstream(folder_ / "suite.toml")
+        << "name = \"disk\"\nsizes = \"256x192\"\nframes = 1\nwarmup = 0\nterm = \"direct\"\npictures = "
+        << pictures
+        << "\nreference = {spp = 4}\n[[scenes]]\nscene = \"cornell_box\"\nmax_masked_share = 0.2\n"
+           "[[techniques]]\ntechnique = \"hard_shadow_map\"\nparameters = {shadow_map_size = "
+        << (pictures == std::string("true") ? "[64, 128]" : "64") << "}\n";
+  };
+  suite("false");
+  ASSERT_EQ(bench("out").status, 0);
+  const std::string before = contents(folder_ / "out" / "results.jsonl");
+  // The disk is played by a limit on the size of files: no picture and no page fits, rows do.
+  suite("true");
+  constexpr rlim_t room = 24 * 1024;
+  ASSERT_LT(before.size(), room / 2);
+  const Outcome full = limn({"bench", folder_ / "suite.toml", "--out", folder_ / "out"}, {}, room);
+  EXPECT_EQ(full.status, 1);
+  EXPECT_THAT(full.err, testing::HasSubstr(".png"));
+  EXPECT_THAT(full.err, testing::HasSubstr("index.html"));
+  EXPECT_EQ(contents(folder_ / "out" / "results.jsonl").substr(0, before.size()), before);
+  // With room again only what is missing is measured.
+  const Outcome after = bench("out");
+  EXPECT_EQ(after.status, 0) << after.err;
+  EXPECT_THAT(after.out, testing::HasSubstr("1 rows measured, 1 were there already, 0 failed"));
+  EXPECT_THAT(contents(folder_ / "out" / "index.html"), testing::HasSubstr("</html>"));
+  for (const auto& file : fs::recursive_directory_iterator(folder_ / "out"))
+    EXPECT_THAT(file.path().string(), testing::Not(testing::EndsWith(".part")));
+}
+
 TEST_F(BenchCommand, StressWritesATable) {
   const Outcome stress =
       limn({"stress", "--technique", "hard_shadow_map", "--filter", "scale", "--out", folder_ / "stress"});

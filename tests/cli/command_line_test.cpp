@@ -1,5 +1,6 @@
 // The command line as a person meets it: what is wrong is said in one line, and the exit status tells whose
 // fault it is.
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/limn_program.h"
@@ -82,12 +83,29 @@ TEST(CommandLine, FlickerComparesAnimationsWithTheTruth) {
 }
 
 TEST(CommandLine, HelpOfEveryCommandIsComplete) {
-  for (const char* command :
-       {"list", "info", "render", "reference", "environment", "compare", "flicker", "bench", "report"}) {
+  for (const char* command : {"list", "info", "render", "reference", "environment", "compare", "flicker",
+                              "bench", "stress", "explain-cost", "report"}) {
     const Outcome outcome = limn({command, "--help"});
     EXPECT_EQ(outcome.status, 0) << command;
     EXPECT_THAT(outcome.out, HasSubstr("--help")) << command;
   }
+}
+
+TEST(CommandLine, ExplainCostComparesWithAndWithout) {
+  TemporaryFolder folder;
+  const std::filesystem::path table = folder / "cost.md", json = folder / "cost.json";
+  const Outcome outcome =
+      limn({"explain-cost", cornell_box, "--technique", "vssm", "--set", "vssm.shadow_map_size=128", "--size",
+            "32x24", "--repeat", "3", "--output-term", "direct", "--spp", "4", "--out", table.string(),
+            "--json", json.string()});
+  EXPECT_EQ(outcome.status, 0) << outcome.err << outcome.out;
+  EXPECT_THAT(outcome.out, HasSubstr("| vssm.early_out |"));
+  EXPECT_TRUE(std::filesystem::exists(table));
+  std::ifstream file(json);
+  for (const auto& saving : nlohmann::json::parse(file).at("savings"))
+    if (saving.at("applies")) EXPECT_EQ(saving.at("forced").at("frame_ms").size(), 3u) << saving.at("name");
+  expectRefused(limn({"explain-cost", cornell_box, "--out", "/nowhere/cost.md"}), 1, {"/nowhere"});
+  expectRefused(limn({"explain-cost", cornell_box, "--output-term", "indirect"}), 2, {"indirect"});
 }
 
 TEST(CommandLine, ListNamesEveryTechniqueWithItsParameters) {

@@ -187,7 +187,7 @@ TEST_F(BenchResults, FailedRowsAreTriedAgain) {
 
 /// Callbacks that count their calls; the picture of technique "bad" fails.
 struct Fakes {
-  int references = 0, measurements = 0;
+  int references = 0, measurements = 0, timings = 0;
   Callbacks callbacks() {
     Callbacks made;
     made.reference = [this](const Case& c) {
@@ -202,8 +202,12 @@ struct Fakes {
       if (c.technique == "bad") throw Error("shader does not compile");
       Measurement m{Image::rgb(c.width, c.height), {}};
       std::ranges::fill(m.image.data(), 0.6f);
-      m.cost.frameMs = {1, 1, 1, c.frames, {}};
+      m.cost.frameMs = {1, 1, 1, c.frames, std::vector<double>(static_cast<std::size_t>(c.frames), 1)};
       return m;
+    };
+    made.time = [this](const Case& c) {
+      if (c.technique == "lost") throw Error("out of memory");
+      return std::vector<double>(static_cast<std::size_t>(c.frames), ++timings);
     };
     return made;
   }
@@ -240,6 +244,40 @@ TEST_F(BenchResults, RunnerSharesReferencesRecordsFailuresAndResumes) {
   EXPECT_EQ(row.picture, "");
   ASSERT_FALSE(row.spectrum.empty());
   EXPECT_GT(row.spectrum[0], 10 * row.spectrum[5]) << "the error is the same everywhere";
+}
+
+TEST_F(BenchResults, FurtherTurnsLengthenTheRowsAndResume) {
+  std::vector<Case> cases = {exampleCase("pcss", 16), exampleCase("bad"), exampleCase("lost"),
+                             exampleCase("pcss", 64)};
+  for (Case& c : cases) {
+    c.frames = 2;
+    c.turns = 3;
+  }
+  Fakes fakes;
+  {
+    // Interrupted in the second turn, after its first row.
+    ResultsFile results(path_);
+    Callbacks callbacks = fakes.callbacks();
+    callbacks.time = [&, time = callbacks.time](const Case& c) {
+      if (fakes.timings == 1) throw std::runtime_error("interrupted");
+      return time(c);
+    };
+    EXPECT_THROW(runCases(cases, "llvmpipe", results, callbacks), std::runtime_error);
+  }
+  EXPECT_EQ(fakes.timings, 1);
+  ResultsFile results(path_);
+  const Summary summary = runCases(cases, "llvmpipe", results, fakes.callbacks());
+  EXPECT_EQ(summary.skipped, 3);
+  EXPECT_EQ(fakes.timings, 4) << "two rows, two further turns each";
+  const FrameTime& first = results.find(rowKey(cases[0], "llvmpipe"))->cost.frameMs;
+  EXPECT_EQ(first.turns, 3);
+  EXPECT_EQ(first.n, 6);
+  EXPECT_EQ(first.samples.size(), 6u);
+  EXPECT_EQ(first.median, 1);
+  EXPECT_EQ(first.samples.back(), 3);
+  const FrameTime& lost = results.find(rowKey(cases[2], "llvmpipe"))->cost.frameMs;
+  EXPECT_EQ(lost.turns, 1) << "a turn that fails leaves the row as it was";
+  EXPECT_EQ(rowFromJson(toJson(results.rows()[0])).cost.frameMs.turns, 3);
 }
 
 TEST_F(BenchResults, RunnerKeepsPicturesThatAreWanted) {

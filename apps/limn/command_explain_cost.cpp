@@ -1,0 +1,92 @@
+// limn explain-cost: what a scene lets limn leave out, and what that is worth.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/limn/commands.h"
+#include "apps/limn/options.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/bench/savings.h"
+#include "core/gpu/device.h"
+#include "core/reference/reference.h"
+
+namespace limn::app {
+namespace fs = std::filesystem;
+namespace {
+
+struct Options {
+  SceneOptions scene;
+  TechniqueOptions technique;
+  BackendOptions backend;
+  std::string outputTerm = "final";
+  bench::SavingOptions savings;
+  int spp = 0;
+  fs::path out, json;
+};
+
+Image referenceImage(const Options& options, const View& view) {
+  reference::Request request{
+      .scene = view.scene, .pose = view.pose, .camera = view.camera, .progress = {}, .checkpoint = {}};
+  request.width = view.size.x;
+  request.height = view.size.y;
+  request.term = reference::termFromName(options.outputTerm);
+  request.light = view.light == scene::none ? reference::allLights : view.light;
+  request.spp = options.spp;
+  return reference::render(request).image;
+}
+
+int run(const Options& options) {
+  for (const fs::path& file : {options.out, options.json})
+    if (!file.empty()) checkWritable(file);
+  const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
+  render::Settings settings;
+  settings.techniques = options.technique.resolve(registry);
+  settings.output = render::parseOutput(options.outputTerm);
+  render::checkTechniques(settings.techniques, settings.output);
+  const View view = open(options.scene);
+  settings.size = view.size;
+  settings.light = view.light;
+  Image reference;
+  if (options.spp > 0) reference = referenceImage(options, view);
+
+  const auto context = Context::create(options.backend.contextOptions());
+  gpu::Device device(*context);
+  render::Renderer renderer(device, view.scene);
+  renderer.setTime(view.time, view.animation);
+  const auto results = bench::measureSavings(renderer, view.camera, settings,
+                                             options.spp > 0 ? &reference : nullptr, options.savings);
+  const std::string text = fmt::format(
+      "{}, {}, {}, {}x{}, {}\n\n{}", options.scene.scene.filename().string(),
+      options.technique.techniques.empty() ? "no technique" : options.technique.techniques,
+      options.outputTerm, view.size.x, view.size.y, context->info().renderer, toMarkdown(results));
+  fmt::print("{}", text);
+  if (!options.out.empty()) writeTextFile(options.out, text);
+  if (!options.json.empty()) writeTextFile(options.json, toJson(results) + "\n");
+  return std::ranges::all_of(results, &bench::SavingResult::holds) ? 0 : 1;
+}
+
+}  // namespace
+
+Action addExplainCostCommand(CLI::App& command) {
+  auto options = std::make_shared<Options>();
+  options->scene.addTo(command);
+  options->technique.addTo(command);
+  options->backend.addTo(command);
+  command
+      .add_option("--output-term", options->outputTerm,
+                  "final, visibility, direct, indirect, caustic or media")
+      ->capture_default_str();
+  command.add_option("--repeat", options->savings.frames, "Frames timed with and without each kind of work")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  command
+      .add_option("--spp", options->spp,
+                  "Also tell the errors against a reference of this many samples per pixel")
+      ->check(CLI::Range(1, 1 << 22));
+  command.add_option("--out", options->out, "Write the table to a file, too (Markdown)");
+  command.add_option("--json", options->json, "Write all samples as JSON");
+  return [options] { return run(*options); };
+}
+
+}  // namespace limn::app

@@ -1,0 +1,59 @@
+// What it is worth to leave out what a scene does not need: each kind of work that limn leaves out is forced
+// in, and pictures, times and memory are compared.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/export.h"
+#include "core/bench/ratio.h"
+#include "core/image/image.h"
+#include "core/render/renderer.h"
+
+namespace limn::bench {
+
+/// One side of a comparison.
+struct SavingSide {
+  std::vector<double> ms;        ///< of each timed frame
+  std::int64_t memoryBytes = 0;  ///< buffers and textures
+  std::optional<double> rmse;    ///< against the reference, where there is one
+  double squaresApart = 0;       ///< squared error summed over the pixels that are more than 1/255 apart
+};
+
+struct SavingResult {
+  std::string name;                      ///< what is left out
+  std::string how;                       ///< what tells that it is not needed
+  bool exact = false;                    ///< the pictures must be equal to the bit; else at most 1/255 apart
+  bool applies = false;                  ///< there is such work; the rest is void if not
+  std::vector<std::string> passes = {};  ///< that are missing unless forced
+  SavingSide forced = {}, without = {};
+  Ratio ratio = {};              ///< frame time forced in / left out
+  double largestDifference = 0;  ///< between the two pictures, in any channel
+  double shareApart = 0;         ///< of the pixels that are more than 1/255 apart
+  /// The pictures agree as they must. Where an early-out is more than 1/255 apart, it must be nearer the
+  /// reference: bounds know an umbra in which an estimator may leave some light.
+  LIMN_API bool holds() const;
+};
+
+struct SavingOptions {
+  int frames = 9;  ///< timed, of each side, in three turns
+  int warmup = 1;  ///< before each turn
+};
+
+/// `settings` says what is rendered; its `dynamic` and `forced` are not looked at. `reference` may be null:
+/// errors are not told then. Throws what rendering throws.
+LIMN_API std::vector<SavingResult> measureSavings(render::Renderer& renderer, const scene::CameraPose& camera,
+                                                  const render::Settings& settings, const Image* reference,
+                                                  const SavingOptions& options = {});
+
+/// A table with a line for each result.
+LIMN_API std::string toMarkdown(std::span<const SavingResult> results);
+/// {"savings": [{"name", "how", "exact", "applies", "passes", "forced": {"frame_ms", "memory_bytes", "rmse"},
+/// "without": ..., "ratio": [value, low, high], "largest_difference", "share_apart", "holds"}]}
+LIMN_API std::string toJson(std::span<const SavingResult> results);
+
+}  // namespace limn::bench
