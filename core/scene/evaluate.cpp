@@ -222,6 +222,7 @@ void addCameras(const Scene& scene, Pose& pose) {
 void addLights(const Scene& scene, Pose& pose) {
   Refill<std::string> names(pose.lightNames);
   pose.lights.clear();
+  std::string name;
   const auto add = [&](glsl::Light light, const std::string& first, const std::string& second) {
     light.info.w = static_cast<uint32_t>(pose.lights.size());
     setName(names.next(), first, second, static_cast<int>(pose.lights.size()));
@@ -238,12 +239,20 @@ void addLights(const Scene& scene, Pose& pose) {
     if (instance.node == none) continue;
     const Mesh& mesh = scene.meshes[at(instance.mesh)];
     const Primitive& primitive = mesh.primitives[at(instance.primitive)];
-    if (!primitive.emissiveQuad) continue;
-    const auto light = quadLight(*primitive.emissiveQuad, scene.materials[at(primitive.material)],
-                                 instance.objectToWorld, static_cast<uint32_t>(i));
-    if (light) add(*light, scene.nodes[at(instance.node)].name, mesh.name);
+    for (std::size_t k = 0; k < primitive.emissiveParts.size(); ++k) {
+      const auto light = quadLight(primitive.emissiveParts[k], scene.materials[at(primitive.material)],
+                                   instance.objectToWorld, static_cast<uint32_t>(i));
+      if (!light) continue;
+      const std::string& given = scene.nodes[at(instance.node)].name;
+      if (primitive.emissiveParts.size() == 1) {
+        add(*light, given, mesh.name);
+        continue;
+      }
+      name.clear();
+      fmt::format_to(std::back_inserter(name), "{}#{}", given.empty() ? mesh.name : given, k);
+      add(*light, name, {});
+    }
   }
-  std::string name;
   for (std::size_t i = 0; i < scene.environment.lights.size(); ++i) {
     name.clear();
     fmt::format_to(std::back_inserter(name), "env#{}", i);

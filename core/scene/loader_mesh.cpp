@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/scene/emissive_quad.h"
 #include "core/scene/loader.h"
 #include "core/scene/primitive_tools.h"
 #include "core/scene/tangents.h"
@@ -267,10 +268,10 @@ void Loader::completePrimitive(Primitive& out, const std::string& what) {
   }
   computeBounds(out);
   if (material.emission == glm::vec3(0)) return;
-  const bool cutOut = material.alphaCutoff > 0;
-  if (material.emissiveTexture.image == none && !cutOut) out.emissiveQuad = findRectangle(out);
-  if (!out.emissiveQuad)
-    warn("emissive meshes other than rectangles of constant emission are displayed but light nothing");
+  if (const auto quad = material.alphaCutoff > 0 ? std::nullopt : findRectangle(out))
+    out.emissiveParts = emissiveParts(scene_, out, *quad);
+  if (out.emissiveParts.empty())
+    warn("emissive meshes other than rectangles are displayed but light nothing");
 }
 
 }  // namespace limn::scene

@@ -90,6 +90,12 @@ struct Quad {
   glm::vec3 sideU{0}, sideV{0};  ///< whole sides; cross(sideU, sideV) points to the front face
 };
 
+/// A rectangle light as well as geometry: a part of an emissive quad that emits uniformly.
+struct EmissivePart {
+  Quad quad;
+  glm::vec3 radiance{0};  ///< W/(sr m^2)
+};
+
 /// Triangles with one material. All vertex arrays have positions.size() elements or are empty.
 struct Primitive {
   std::vector<glm::vec3> positions;
@@ -103,8 +109,9 @@ struct Primitive {
   std::vector<MorphTarget> morphTargets;
   int material = none;  ///< always valid after loading
   Bounds bounds;
-  std::vector<Bounds> jointBounds;   ///< skinned: of the vertices that each joint moves
-  std::optional<Quad> emissiveQuad;  ///< a rectangle light as well as geometry
+  std::vector<Bounds> jointBounds;  ///< skinned: of the vertices that each joint moves
+  std::vector<EmissivePart>
+      emissiveParts;  ///< one, or several where the emission is textured; they may overlap
 };
 
 struct Mesh {

@@ -45,8 +45,9 @@ glsl::Light punctualLight(const LightSource& source, const glm::vec2& area, cons
   return light;
 }
 
-std::optional<glsl::Light> quadLight(const Quad& quad, const Material& material,
+std::optional<glsl::Light> quadLight(const EmissivePart& part, const Material& material,
                                      const glm::mat4& objectToWorld, uint32_t instance) {
+  const Quad& quad = part.quad;
   const glm::dmat3 m(objectToWorld);
   glm::dvec3 u = m * glm::dvec3(quad.sideU), v = m * glm::dvec3(quad.sideV);
   const double lengthU = glm::length(u), lengthV = glm::length(v);
@@ -62,7 +63,7 @@ std::optional<glsl::Light> quadLight(const Quad& quad, const Material& material,
   light.direction = glm::vec4(glm::vec3(front), 0);
   light.axis_u = glm::vec4(glm::vec3(u), static_cast<float>(lengthU));
   light.axis_v = glm::vec4(glm::vec3(v), static_cast<float>(lengthV));
-  light.emission = glm::vec4(material.emission, 0);
+  light.emission = glm::vec4(part.radiance, 0);
   light.cone = glm::vec4(-1, -1, 0, 0);
   const uint32_t sides = material.doubleSided ? glsl::light_flag_two_sided : 0u;
   light.info = glm::uvec4(glsl::light_rectangle, glsl::light_flag_geometry | sides, instance, 0u);

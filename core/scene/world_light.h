@@ -9,8 +9,8 @@ namespace limn::scene {
 
 glsl::Light punctualLight(const LightSource& source, const glm::vec2& area, const glm::mat4& nodeToWorld);
 
-/// The light that an emissive quad is; nothing if the transform makes it no rectangle any more.
-std::optional<glsl::Light> quadLight(const Quad& quad, const Material& material,
+/// The light that a part of an emissive quad is; nothing if the transform makes it no rectangle any more.
+std::optional<glsl::Light> quadLight(const EmissivePart& part, const Material& material,
                                      const glm::mat4& objectToWorld, uint32_t instance);
 
 /// A part of the environment, in the world.

@@ -24,9 +24,10 @@ World closedCornellBox() {
     material.baseColour = glm::max(material.baseColour, glm::vec4(albedoOfBlack));
   for (auto& mesh : world.scene.meshes) {
     scene::Primitive& lamp = mesh.primitives[0];
-    if (!lamp.emissiveQuad) continue;
-    const float up = 2 - 1e-3f - lamp.emissiveQuad->centre.y;
-    lamp.emissiveQuad->centre.y += up;
+    if (lamp.emissiveParts.empty()) continue;
+    scene::Quad& quad = lamp.emissiveParts[0].quad;
+    const float up = 2 - 1e-3f - quad.centre.y;
+    quad.centre.y += up;
     for (auto& p : lamp.positions) p.y += up;
   }
   const int mesh = world.addMesh(
