@@ -200,7 +200,7 @@ std::vector<SavingResult> measureSavings(render::Renderer& renderer, const scene
   for (Comparison& c : comparisons(settings)) {
     look(c, renderer, camera, reference);
     c.result.applies = applies(c.result, c.forced);
-    if (c.result.applies) time(c, renderer, camera, options);
+    if (c.result.applies && options.frames > 0) time(c, renderer, camera, options);
     results.push_back(std::move(c.result));
   }
   return results;

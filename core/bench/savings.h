@@ -40,7 +40,7 @@ struct SavingResult {
 };
 
 struct SavingOptions {
-  int frames = 9;  ///< timed, of each side, in three turns
+  int frames = 9;  ///< timed, of each side, in three turns; 0: only pictures and memory are compared
   int warmup = 1;  ///< before each turn
 };
 
