@@ -78,7 +78,7 @@ std::vector<shading::Region> regions(const shading::TexelGrid& grid) {
 
 std::vector<EmissivePart> emissiveParts(const Scene& scene, const Primitive& primitive, const Quad& quad) {
   const Material& material = scene.materials[static_cast<std::size_t>(primitive.material)];
-  if (material.emissiveTexture.image == none) return {{quad, material.emission}};
+  if (material.emissiveTexture.image == none) return {{quad}};
   const std::optional<AffineUv> uv = affineUv(primitive, quad);
   if (!uv) return {};
   std::vector<EmissivePart> parts;
@@ -86,9 +86,13 @@ std::vector<EmissivePart> emissiveParts(const Scene& scene, const Primitive& pri
     const glm::vec2 size(r.x1 - r.x0, r.y1 - r.y0);
     const glm::vec2 middle = (glm::vec2(r.x0, r.y0) + 0.5f * size) / float{texturedLightCells} - 0.5f;
     const glm::vec2 sides = size / float{texturedLightCells};
-    parts.push_back({{quad.centre + middle.x * quad.sideU + middle.y * quad.sideV, sides.x * quad.sideU,
-                      sides.y * quad.sideV},
-                     glm::vec3(r.energy / double(size.x * size.y))});
+    const glm::dvec3 radiance = r.energy / double(size.x * size.y);
+    EmissivePart& part = parts.emplace_back();
+    part.quad = {quad.centre + middle.x * quad.sideU + middle.y * quad.sideV, sides.x * quad.sideU,
+                 sides.y * quad.sideV};
+    for (int c = 0; c < 3; ++c)
+      part.texture[c] =
+          material.emission[c] > 0 ? static_cast<float>(radiance[c] / material.emission[c]) : 1.f;
   }
   return parts;
 }

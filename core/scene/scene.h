@@ -93,7 +93,7 @@ struct Quad {
 /// A rectangle light as well as geometry: a part of an emissive quad that emits uniformly.
 struct EmissivePart {
   Quad quad;
-  glm::vec3 radiance{0};  ///< W/(sr m^2)
+  glm::vec3 texture{1};  ///< factor on the material's emission
 };
 
 /// Triangles with one material. All vertex arrays have positions.size() elements or are empty.

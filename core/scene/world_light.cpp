@@ -63,7 +63,7 @@ std::optional<glsl::Light> quadLight(const EmissivePart& part, const Material& m
   light.direction = glm::vec4(glm::vec3(front), 0);
   light.axis_u = glm::vec4(glm::vec3(u), static_cast<float>(lengthU));
   light.axis_v = glm::vec4(glm::vec3(v), static_cast<float>(lengthV));
-  light.emission = glm::vec4(part.radiance, 0);
+  light.emission = glm::vec4(material.emission * part.texture, 0);
   light.cone = glm::vec4(-1, -1, 0, 0);
   const uint32_t sides = material.doubleSided ? glsl::light_flag_two_sided : 0u;
   light.info = glm::uvec4(glsl::light_rectangle, glsl::light_flag_geometry | sides, instance, 0u);
