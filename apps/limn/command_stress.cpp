@@ -1,7 +1,7 @@
 // limn stress: every technique on the extremes it declares and on those that all techniques meet.
 #include <fmt/format.h>
 
-#include <set>
+#include <algorithm>
 
 #include "apps/limn/commands.h"
 #include "apps/limn/options.h"
@@ -34,6 +34,11 @@ std::vector<const TechniquePlugin*> chosen(const TechniqueRegistry& registry, co
   return plugins;
 }
 
+/// A technique may declare a common case with settings of its own, where its defaults would take hours.
+bool declares(const TechniquePlugin& technique, std::string_view name) {
+  return std::ranges::any_of(technique.info->stress, [&](const StressCase& c) { return name == c.name; });
+}
+
 std::vector<Case> chosenCases(const TechniqueRegistry& registry, const Options& options) {
   std::vector<Case> cases;
   const auto add = [&](const TechniquePlugin* technique, const StressCase& c, bool own) {
@@ -41,7 +46,8 @@ std::vector<Case> chosenCases(const TechniqueRegistry& registry, const Options& 
       cases.push_back({technique, &c, own});
   };
   for (const TechniquePlugin* technique : chosen(registry, options.techniques)) {
-    for (const StressCase& c : bench::commonStressCases()) add(technique, c, false);
+    for (const StressCase& c : bench::commonStressCases())
+      if (!declares(*technique, c.name)) add(technique, c, false);
     for (const StressCase& c : technique->info->stress) add(technique, c, true);
   }
   if (cases.empty()) throw UsageError(fmt::format("no stability case has '{}' in its name", options.filter));

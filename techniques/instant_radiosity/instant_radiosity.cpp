@@ -39,6 +39,7 @@ constexpr StressCase stress[] = {
     {.name = "maps of 16 texels", .scene = "cornell_box", .settings = "map_size=16", .factor = 2},
     {.name = "no bias", .scene = "cornell_box", .settings = "bias=0"},
     {.name = "interleaved", .scene = "cornell_box", .settings = "block=8"},
+    {.name = "11.5 million triangles", .scene = "soldiers", .settings = "vpls=8"},
 };
 
 class InstantRadiosity : public Technique {

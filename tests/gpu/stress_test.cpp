@@ -31,7 +31,9 @@ TEST_F(StressTest, DeclaredCasesEndInAPictureOrAMessage) {
   bench::StressRun run = stressRun();
   for (const TechniquePlugin* plugin : registry().all())
     for (const StressCase& c : plugin->info->stress) {
-      if (std::string_view(c.name).find("8192") != std::string_view::npos) continue;  // minutes in software
+      const std::string_view name = c.name;
+      if (name.find("8192") != name.npos || name.find("million") != name.npos)
+        continue;  // minutes in software
       const StressResult result = run.run(*plugin, c, true);
       EXPECT_TRUE(result.verdict == Verdict::pass || result.verdict == Verdict::degraded)
           << result.technique << ", " << result.name << ": " << result.message;
