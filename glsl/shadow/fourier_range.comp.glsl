@@ -16,33 +16,7 @@ uniform float span;  // of the series' depths: R
 const float least_range = 1.0 / 64.0;  // of the map's own, so that rounding is not spread over the whole series
 
 #if FIT >= 1
-shared vec4 partial[THREADS];
-
-vec4 total(vec4 value) {
-  uint i = gl_LocalInvocationID.x;
-  partial[i] = value;
-  barrier();
-  for (uint reach = THREADS / 2u; reach > 0u; reach /= 2u) {
-    if (i < reach) partial[i] += partial[i + reach];
-    barrier();
-  }
-  vec4 sum = partial[0];
-  barrier();
-  return sum;
-}
-
-vec4 least(vec4 value) {
-  uint i = gl_LocalInvocationID.x;
-  partial[i] = value;
-  barrier();
-  for (uint reach = THREADS / 2u; reach > 0u; reach /= 2u) {
-    if (i < reach) partial[i] = min(partial[i], partial[i + reach]);
-    barrier();
-  }
-  vec4 result = partial[0];
-  barrier();
-  return result;
-}
+#include "glsl/work_group.glsl"
 
 vec2 cell(int i, ivec2 size) { return vec2(i % size.x, i / size.x); }
 vec2 bounds(int i, ivec2 size) {
