@@ -97,16 +97,11 @@ BenchSession::Loaded& BenchSession::load(const bench::Case& c) {
 
 reference::Request BenchSession::request(const bench::Case& c, reference::Term term, int light) {
   const View& view = load(c).view;
-  reference::Request request{
-      .scene = view.scene, .pose = view.pose, .camera = view.camera, .progress = {}, .checkpoint = {}};
-  request.width = c.width;
-  request.height = c.height;
-  request.term = term;
+  reference::Request request = referenceRequest(view, view.pose, view.camera, term);
   request.light = light == scene::none ? reference::allLights : light;
   request.spp = c.reference.spp;
   request.noise = c.reference.noise;
-  if (term == reference::Term::indirect || term == reference::Term::final)
-    request.bounces = c.reference.bounces;
+  if (reference::hasBounces(term)) request.bounces = c.reference.bounces;
   return request;
 }
 

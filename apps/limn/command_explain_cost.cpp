@@ -26,12 +26,8 @@ struct Options {
 };
 
 Image referenceImage(const Options& options, const View& view) {
-  reference::Request request{
-      .scene = view.scene, .pose = view.pose, .camera = view.camera, .progress = {}, .checkpoint = {}};
-  request.width = view.size.x;
-  request.height = view.size.y;
-  request.term = reference::termFromName(options.outputTerm);
-  request.light = view.light == scene::none ? reference::allLights : view.light;
+  reference::Request request =
+      referenceRequest(view, view.pose, view.camera, reference::termFromName(options.outputTerm));
   request.spp = options.spp;
   return reference::render(request).image;
 }

@@ -82,15 +82,9 @@ class Sequence {
 
  private:
   Image truth(const scene::CameraPose& camera, uint64_t seed) {
-    reference::Request request{
-        .scene = view_.scene, .pose = renderer_.pose(), .camera = camera, .progress = {}, .checkpoint = {}};
-    request.width = view_.size.x;
-    request.height = view_.size.y;
-    request.term = reference::termFromName(options_.outputTerm);
-    request.light = view_.light == scene::none ? reference::allLights : view_.light;
-    request.bounces = request.term == reference::Term::indirect || request.term == reference::Term::final
-                          ? options_.bounces
-                          : 0;
+    reference::Request request =
+        referenceRequest(view_, renderer_.pose(), camera, reference::termFromName(options_.outputTerm));
+    if (reference::hasBounces(request.term)) request.bounces = options_.bounces;
     request.spp = options_.spp;
     request.seed = seed;
     return reference::render(request).image;

@@ -24,15 +24,11 @@ struct Options {
 };
 
 reference::Request makeRequest(const Options& options, const View& view) {
-  reference::Request request{
-      .scene = view.scene, .pose = view.pose, .camera = view.camera, .progress = {}, .checkpoint = {}};
-  request.width = view.size.x;
-  request.height = view.size.y;
-  request.term = reference::termFromName(options.term);
-  request.light = view.light == scene::none ? reference::allLights : view.light;
+  reference::Request request =
+      referenceRequest(view, view.pose, view.camera, reference::termFromName(options.term));
   request.spp = options.spp;
   request.noise = options.noise;
-  request.bounces = options.bounces.value_or(request.term == reference::Term::indirect ? 1 : 0);
+  request.bounces = options.bounces.value_or(request.bounces);
   request.seed = options.seed;
   request.aa = options.aa;
   request.threads = options.threads;

@@ -286,6 +286,18 @@ View open(const SceneOptions& options) {
   return view;
 }
 
+reference::Request referenceRequest(const View& view, const scene::Pose& pose,
+                                    const scene::CameraPose& camera, reference::Term term) {
+  reference::Request request{
+      .scene = view.scene, .pose = pose, .camera = camera, .progress = {}, .checkpoint = {}};
+  request.width = view.size.x;
+  request.height = view.size.y;
+  request.term = term;
+  request.light = view.light == scene::none ? reference::allLights : view.light;
+  request.bounces = term == reference::Term::indirect ? 1 : 0;
+  return request;
+}
+
 void TechniqueOptions::addTo(CLI::App& command) {
   command.add_option("--technique", techniques,
                      "Techniques, comma-separated (see limn list); none: unshadowed");

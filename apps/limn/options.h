@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/context/context.h"
+#include "core/reference/reference.h"
 #include "core/render/renderer.h"
 #include "core/scene/scene.h"
 #include "core/shading/environment_decomposition.h"
@@ -63,6 +64,12 @@ struct View {
 
 /// Loads everything SceneOptions names; prints the scene's warnings to stderr. Throws UsageError or Error.
 View open(const SceneOptions& options);
+
+/// What the CPU is asked for the same picture: the view's scene, size and light. The caller sets samples, and
+/// bounces where they are not the one of indirect light and none of the other terms. `view` and `pose` must
+/// outlive the request.
+reference::Request referenceRequest(const View& view, const scene::Pose& pose,
+                                    const scene::CameraPose& camera, reference::Term term);
 
 /// The file itself, or the scene of that name that was built with limn. Throws Error when there is neither.
 std::filesystem::path findScene(const std::filesystem::path& nameOrFile);

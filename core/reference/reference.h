@@ -26,6 +26,8 @@ LIMN_API const char* name(Term term);
 /// Throws UsageError naming the terms there are.
 LIMN_API Term termFromName(const std::string& name);
 
+/// Whether Request::bounces counts: with indirect and final.
+LIMN_API bool hasBounces(Term term);
 /// Most bounces that can be asked for.
 constexpr int maxBounces = 1024;
 

@@ -35,7 +35,7 @@ void validate(const Request& r) {
   if (r.term == Term::visibility && (r.light < 0 || r.light >= lights))
     throw UsageError(
         fmt::format("reference: visibility needs one light; {} is not in 0 .. {}", r.light, lights - 1));
-  const bool bounces = r.term == Term::indirect || r.term == Term::final;
+  const bool bounces = hasBounces(r.term);
   const int least = r.term == Term::indirect ? 1 : 0;
   if (r.bounces < least || r.bounces > (bounces ? maxBounces : 0))
     throw UsageError(bounces ? fmt::format("reference: bounces {} is not in {} .. {} with the term {}",
@@ -191,6 +191,10 @@ int ownLights(const scene::Pose& pose) {
   };
   return static_cast<int>(std::find_if(pose.lights.begin(), pose.lights.end(), environment) -
                           pose.lights.begin());
+}
+
+bool hasBounces(Term term) {
+  return term == Term::indirect || term == Term::final;
 }
 
 const char* name(Term term) {
