@@ -3,15 +3,13 @@
 #include <memory>
 #include <vector>
 
-#include "core/indirect/gather.h"
-#include "core/indirect/paraboloid_maps.h"
+#include "core/indirect/light_maps.h"
 #include "core/scene/gpu_scene.h"
 #include "core/technique/technique.h"
 
 namespace {
 
 using namespace limn;
-using frame::Access;
 
 constexpr Parameter parameters[] = {
     indirect::vplsParameter(),
@@ -65,58 +63,22 @@ class InstantRadiosity : public Technique {
     const int64_t fitting = (int64_t{p.integer("memory")} << 20) / indirect::paraboloidBytes(size);
     const int batch = static_cast<int>(std::clamp<int64_t>(
         fitting, 1, std::min(lights.count, indirect::paraboloidBatch(inputs.gpuScene.device(), size))));
-    const frame::BufferHandle views = addViews(graph, inputs, lights, batch, size);
+    const frame::BufferHandle views = indirect::addLightViews(
+        graph, inputs, lights, {.size = size, .batch = batch, .technique = info.name});
     indirect::Gather gather(graph, inputs, info.name, lights, indirect::gatherSettings(p));
     for (int first = 0; first < lights.count; first += batch) {
       const int count = std::min(batch, lights.count - first);
       maps_.push_back(std::make_unique<indirect::ParaboloidMapPass>());
-      const indirect::ParaboloidMaps maps = maps_.back()->add(graph, inputs.gpuScene, inputs.handles, views,
-                                                              {.count = count,
-                                                               .first = first,
-                                                               .size = size,
-                                                               .technique = info.name,
-                                                               .cacheable = count == lights.count});
-      gather.shade({.program = {.files = {"techniques/instant_radiosity/shade.comp.glsl"}, .defines = {}},
-                    .first = first,
-                    .count = count,
-                    .sampled = {{8, maps.depth, "what virtual lights see"}},
-                    .bind =
-                        [views, bias = p.real("bias")](frame::PassContext& context, gpu::Program& kernel) {
-                          kernel.set("bias", bias);
-                          context.bindStorage(1, views);
-                        },
-                    .declare =
-                        [views](frame::PassBuilder& pass) {
-                          pass.read(views, Access::storageLoad, "projections of the maps");
-                        }});
+      gather.shade(
+          indirect::lightMapShadePass(maps_.back()->add(graph, inputs.gpuScene, inputs.handles, views,
+                                                        {.count = count,
+                                                         .first = first,
+                                                         .size = size,
+                                                         .technique = info.name,
+                                                         .cacheable = count == lights.count}),
+                                      p.real("bias")));
     }
     return gather.finish(request.target);
-  }
-
-  static frame::BufferHandle addViews(frame::FrameGraph& graph, const TechniqueInputs& inputs,
-                                      const indirect::VirtualLights& lights, int batch, int size) {
-    frame::PassBuilder pass = graph.addPass("views", info.name);
-    pass.read(inputs.handles.geometry, Access::storageLoad, "extent of the scene")
-        .read(lights.lights, Access::storageLoad, "virtual lights")
-        .cacheable();
-    const frame::BufferHandle views =
-        pass.write(graph.createBuffer("paraboloid views",
-                                      {static_cast<size_t>(lights.count) * sizeof(glsl::ShadowView)}),
-                   Access::storageStore, "a hemisphere for each virtual light");
-    const auto program =
-        pass.program({.files = {"techniques/instant_radiosity/views.comp.glsl"}, .defines = {}});
-    pass.execute([=, &scene = inputs.gpuScene](frame::PassContext& context) {
-      gpu::Program& kernel = context.program(program);
-      kernel.use();
-      kernel.set("count", static_cast<unsigned>(lights.count));
-      kernel.set("batch", static_cast<unsigned>(batch));
-      kernel.set("texels", static_cast<unsigned>(size));
-      kernel.set("extent", 2 * scene.bounds().radius());
-      context.bindStorage(0, lights.lights);
-      context.bindStorage(1, views);
-      context.dispatch(lights.count, 1, 1, 64, 1);
-    });
-    return views;
   }
 
   std::vector<std::unique_ptr<indirect::ParaboloidMapPass>> maps_;

@@ -112,35 +112,52 @@ TEST_F(IndirectTest, ReceiversReflectWithTheirWholeBrdf) {
   EXPECT_GT(seen, 30);
 }
 
-/// A plate between the speck and the wall: what it hides is dark, what it does not is as without shadows.
-TEST_F(IndirectTest, APlateHidesTheSpeckFromTheWall) {
-  Corner s;
-  const int mesh = addMesh(s.scene, floorPrimitive(0.15f, 0));
-  addInstance(s.scene, s.pose, mesh,
-              glm::translate(glm::mat4(1), {0.5f, 0.4f, 0}) *
-                  glm::rotate(glm::mat4(1), 0.5f * glsl::pi, vec3(0, 0, 1)));
-  const Settings open{{"vpls", "64"}, {"block", "1"}, {"clamp", "0"}};
-  Settings mapped = open;
-  mapped["map_size"] = "256";
-  const Answer all = answer("reflective_shadow_map", s, open), seen = answer("instant_radiosity", s, mapped);
-  int hidden = 0, lit = 0;
-  for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) {
-      if (all.instance[static_cast<size_t>(y * side + x)] != 1) continue;
-      const vec3 p = s.position(all, x, y);
-      // On the plate's plane, x = 1/2, the ray from the origin is at half of p; the speck is 0.1 m wide.
-      const float outside = std::max(std::abs(0.5f * p.y - 0.4f), std::abs(0.5f * p.z)) - 0.15f;
-      if (outside < -0.05f) {
-        EXPECT_NEAR(seen.at(0, x, y), 0, 0.02f * all.at(0, x, y)) << x << "," << y;
-        ++hidden;
-      } else if (outside > 0.05f) {
-        EXPECT_NEAR(seen.at(0, x, y), all.at(0, x, y), 0.01f * all.at(0, x, y) + 1e-4f) << x << "," << y;
-        ++lit;
+/// A plate between the speck and the wall, halfway.
+class PlateTest : public IndirectTest {
+ protected:
+  Corner corner_;
+  PlateTest() {
+    const int mesh = addMesh(corner_.scene, floorPrimitive(0.15f, 0));
+    addInstance(corner_.scene, corner_.pose, mesh,
+                glm::translate(glm::mat4(1), {0.5f, 0.4f, 0}) *
+                    glm::rotate(glm::mat4(1), 0.5f * glsl::pi, vec3(0, 0, 1)));
+  }
+  /// What the plate hides is dark but for `leak` of its light, what it does not is as without shadows but for
+  /// `stray`; `blurred`: half width of the edge, m at the plate.
+  void expectHides(const std::string& name, Settings settings, float leak, float stray, float blurred) {
+    settings.merge(Settings{{"vpls", "64"}, {"block", "1"}, {"clamp", "0"}});
+    const Answer all =
+        answer("reflective_shadow_map", corner_, {{"vpls", "64"}, {"block", "1"}, {"clamp", "0"}});
+    const Answer seen = answer(name, corner_, settings);
+    int hidden = 0, lit = 0;
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) {
+        if (all.instance[static_cast<size_t>(y * side + x)] != 1) continue;
+        const vec3 p = corner_.position(all, x, y);
+        // On the plate's plane, x = 1/2, the ray from the origin is at half of p; the speck is 0.1 m wide.
+        const float outside = std::max(std::abs(0.5f * p.y - 0.4f), std::abs(0.5f * p.z)) - 0.15f;
+        if (outside < -blurred) {
+          EXPECT_NEAR(seen.at(0, x, y), 0, leak * all.at(0, x, y)) << x << "," << y;
+          ++hidden;
+        } else if (outside > blurred) {
+          EXPECT_NEAR(seen.at(0, x, y), all.at(0, x, y), stray * all.at(0, x, y) + 1e-4f) << x << "," << y;
+          ++lit;
+        }
       }
     }
+    EXPECT_GT(hidden, 50);
+    EXPECT_GT(lit, 500);
   }
-  EXPECT_GT(hidden, 50);
-  EXPECT_GT(lit, 500);
+};
+
+TEST_F(PlateTest, HidesTheSpeckFromTheWall) {
+  expectHides("instant_radiosity", {{"map_size", "256"}}, 0.02f, 0.01f, 0.05f);
+}
+
+/// A texel of 64 is 2 to 4 degrees wide, 0.04 m on the plate; splats and filling move the edge by up to two,
+/// and the map of one virtual light in 64 may miss there.
+TEST_F(PlateTest, HidesTheSpeckWhenItIsMadeOfPoints) {
+  expectHides("imperfect_shadow_maps", {{"points", "16384"}}, 0.15f, 0.03f, 0.1f);
 }
 
 class IndirectPictureTest : public RenderTest {

@@ -1,0 +1,49 @@
+#include "core/indirect/light_maps.h"
+
+#include "core/scene/gpu_scene.h"
+
+namespace limn::indirect {
+
+using frame::Access;
+
+frame::BufferHandle addLightViews(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                  const VirtualLights& lights, const LightMapDesc& desc) {
+  frame::PassBuilder pass = graph.addPass("views", desc.technique);
+  pass.read(inputs.handles.geometry, Access::storageLoad, "extent of the scene")
+      .read(lights.lights, Access::storageLoad, "virtual lights")
+      .cacheable();
+  const frame::BufferHandle views = pass.write(
+      graph.createBuffer("paraboloid views", {static_cast<size_t>(lights.count) * sizeof(glsl::ShadowView)}),
+      Access::storageStore, "a hemisphere for each virtual light");
+  const auto program = pass.program({.files = {"glsl/indirect/light_map_views.comp.glsl"}, .defines = {}});
+  pass.execute([=, &scene = inputs.gpuScene](frame::PassContext& context) {
+    gpu::Program& kernel = context.program(program);
+    kernel.use();
+    kernel.set("count", static_cast<unsigned>(lights.count));
+    kernel.set("batch", static_cast<unsigned>(desc.batch));
+    kernel.set("texels", static_cast<unsigned>(desc.size));
+    kernel.set("extent", 2 * scene.bounds().radius());
+    context.bindStorage(0, lights.lights);
+    context.bindStorage(1, views);
+    context.dispatch(lights.count, 1, 1, 64, 1);
+  });
+  return views;
+}
+
+ShadePass lightMapShadePass(const ParaboloidMaps& maps, float bias) {
+  return {.program = {.files = {"glsl/indirect/shade_light_maps.comp.glsl"}, .defines = {}},
+          .first = maps.first,
+          .count = maps.count,
+          .sampled = {{8, maps.depth, "what virtual lights see"}},
+          .bind =
+              [views = maps.views, bias](frame::PassContext& context, gpu::Program& kernel) {
+                kernel.set("bias", bias);
+                context.bindStorage(1, views);
+              },
+          .declare =
+              [views = maps.views](frame::PassBuilder& pass) {
+                pass.read(views, Access::storageLoad, "projections of the maps");
+              }};
+}
+
+}  // namespace limn::indirect

@@ -1,0 +1,29 @@
+// One paraboloid map for each virtual point light: where it looks, and the pass that shades by one test per
+// map. How the maps are filled is the techniques' business.
+#pragma once
+
+#include <string_view>
+
+#include "core/indirect/gather.h"
+#include "core/indirect/paraboloid_maps.h"
+
+namespace limn::indirect {
+
+struct LightMapDesc {
+  int size = 128;  ///< texels per side
+  int batch = 1;   ///< maps that exist at once: virtual light i has layer i % batch
+  std::string_view technique = "indirect";
+};
+
+/// Declares the pass "views": a storage buffer of glsl::ShadowView, a hemisphere for each virtual light, 1e-4
+/// of the scene's diagonal off its surface. Those without flux look out of the scene, so that nothing is
+/// drawn for them.
+LIMN_API frame::BufferHandle addLightViews(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                           const VirtualLights& lights, const LightMapDesc& desc);
+
+/// Shades virtual lights maps.first to maps.first + maps.count: a receiver does not see a light whose map
+/// holds, at its texel, something nearer that lies above the receiver's tangent plane by more than `bias`
+/// texel footprints.
+LIMN_API ShadePass lightMapShadePass(const ParaboloidMaps& maps, float bias);
+
+}  // namespace limn::indirect

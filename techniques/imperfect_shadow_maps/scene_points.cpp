@@ -1,0 +1,127 @@
+#include "techniques/imperfect_shadow_maps/scene_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "glsl/sampling.glsl"
+
+namespace limn::imperfect {
+namespace {
+
+/// Index of the first element above `u` times the last one.
+uint32_t choice(std::span<const float> upTo, float u) {
+  auto found = std::upper_bound(upTo.begin(), upTo.end(), u * upTo.back());
+  if (found == upTo.end()) found = std::lower_bound(upTo.begin(), upTo.end(), upTo.back());
+  return static_cast<uint32_t>(found - upTo.begin());
+}
+
+}  // namespace
+
+void AreaTable::fill(std::span<const glm::vec3> positions, std::span<const uint32_t> indices) {
+  upTo.resize(indices.size() / 3);
+  double sum = 0;
+  for (size_t i = 0; i < upTo.size(); ++i) {
+    const glm::dvec3 a(positions[indices[3 * i]]), b(positions[indices[3 * i + 1]]),
+        c(positions[indices[3 * i + 2]]);
+    sum += 0.5 * glm::length(glm::cross(b - a, c - a));
+    upTo[i] = static_cast<float>(sum);
+  }
+}
+
+uint32_t AreaTable::triangle(float u) const {
+  return choice(upTo, u);
+}
+
+ScenePoints::ScenePoints(gpu::Device& device, const scene::Scene& scene, const scene::Pose& pose, int count)
+    : scene_(scene), points_(static_cast<size_t>(count)) {
+  for (const scene::Mesh& mesh : scene.meshes) {
+    firstOfMesh_.push_back(fixed_.size());
+    fixed_.resize(fixed_.size() + mesh.primitives.size());
+  }
+  std::vector<glm::vec3> positions, normals;
+  std::vector<glm::vec4> tangents;
+  for (const scene::Deformation& d : pose.deformed) {
+    const scene::Primitive& p =
+        scene.meshes[static_cast<size_t>(d.mesh)].primitives[static_cast<size_t>(d.primitive)];
+    scene::deform(p, d, positions, normals, tangents);
+    deformed_.emplace_back().fill(positions, p.indices);
+  }
+  dynamic_.resize(scene.dynamic.size());
+  choose(pose);
+  buffer_ =
+      gpu::Buffer::of<glsl::ScenePoint>(device, "points of the scene", points_, gpu::BufferUse::updated);
+}
+
+frame::BufferHandle ScenePoints::import(frame::FrameGraph& graph) {
+  graph_ = &graph;
+  return handle_ = graph.importBuffer("points of the scene", buffer_);
+}
+
+void ScenePoints::update(const scene::Pose& pose) {
+  const auto same = [](const std::shared_ptr<const scene::Primitive>& known,
+                       const scene::DynamicGeometry& now) { return known == now.primitive; };
+  if (std::ranges::equal(known_, pose.dynamic, same)) return;
+  choose(pose);
+  buffer_.update(0, points_.data(), points_.size() * sizeof(points_[0]));
+  graph_->touch(handle_);
+}
+
+const scene::Primitive& ScenePoints::primitive(const scene::Pose& pose,
+                                               const scene::DrawInstance& drawn) const {
+  const auto mesh = static_cast<size_t>(drawn.mesh);
+  if (drawn.node == scene::none) return *pose.dynamic[mesh].primitive;
+  return scene_.meshes[mesh].primitives[static_cast<size_t>(drawn.primitive)];
+}
+
+/// Areas of all instances.
+void ScenePoints::measure(const scene::Pose& pose) {
+  known_.resize(pose.dynamic.size());
+  for (size_t i = 0; i < pose.dynamic.size(); ++i) {
+    if (known_[i] == pose.dynamic[i].primitive) continue;
+    known_[i] = pose.dynamic[i].primitive;
+    dynamic_[i].fill(known_[i]->positions, known_[i]->indices);
+  }
+  tables_.resize(pose.instances.size());
+  upTo_.resize(pose.instances.size());
+  double sum = 0;
+  for (size_t i = 0; i < pose.instances.size(); ++i) {
+    const scene::DrawInstance& drawn = pose.instances[i];
+    const auto mesh = static_cast<size_t>(drawn.mesh);
+    if (drawn.node == scene::none) {
+      tables_[i] = &dynamic_[mesh];
+    } else if (drawn.deformed != scene::none) {
+      tables_[i] = &deformed_[static_cast<size_t>(drawn.deformed)];
+    } else {
+      AreaTable& table = fixed_[firstOfMesh_[mesh] + static_cast<size_t>(drawn.primitive)];
+      const scene::Primitive& p = primitive(pose, drawn);
+      if (table.upTo.empty()) table.fill(p.positions, p.indices);
+      tables_[i] = &table;
+    }
+    const double scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(drawn.objectToWorld))));
+    sum += tables_[i]->total() * scale * scale;
+    upTo_[i] = static_cast<float>(sum);
+  }
+  area_ = static_cast<float>(sum);
+}
+
+void ScenePoints::choose(const scene::Pose& pose) {
+  measure(pose);
+  if (!(area_ > 0) || !std::isfinite(area_)) {
+    area_ = 0;
+    return;
+  }
+  chosen_.assign(pose.instances.size(), 0);
+  for (size_t i = 0; i < points_.size(); ++i) {
+    // Each instance has a sequence of its own: of one sequence for all, a small instance would get a thin
+    // slice, whose points cluster.
+    const uint32_t instance = choice(upTo_, glsl::r2_sequence(static_cast<uint32_t>(i) + 1).x);
+    const glm::vec3 u = glsl::r3_sequence(++chosen_[instance]);
+    const uint32_t triangle = tables_[instance]->triangle(u.x);
+    const scene::Primitive& p = primitive(pose, pose.instances[instance]);
+    const uint32_t* corner = &p.indices[3 * size_t{triangle}];
+    const float root = std::sqrt(u.y);
+    points_[i] = {{corner[0], corner[1], corner[2], instance}, {root * (1 - u.z), root * u.z, 0, 0}};
+  }
+}
+
+}  // namespace limn::imperfect

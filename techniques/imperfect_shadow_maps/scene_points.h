@@ -1,0 +1,56 @@
+// Points spread evenly over all surfaces of a scene, which stick to their triangles.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/frame/frame_graph.h"
+#include "core/scene/scene.h"
+#include "techniques/imperfect_shadow_maps/scene_point.glsl"
+
+namespace limn::imperfect {
+
+/// Areas of a list of triangles, added up.
+struct AreaTable {
+  std::vector<float> upTo;  ///< m^2 of the triangles 0 to i
+  /// Of triangles with more than 0 corners; `indices` holds 3 for each.
+  void fill(std::span<const glm::vec3> positions, std::span<const uint32_t> indices);
+  float total() const { return upTo.empty() ? 0.f : upTo.back(); }
+  /// The triangle in which the part `u` in [0, 1) of the area lies; only of a table with an area above 0.
+  uint32_t triangle(float u) const;
+};
+
+class ScenePoints {
+ public:
+  /// Chooses `count` points in proportion to area at `pose`. Any of them that follow each other are spread
+  /// evenly, too. Where instances are scaled by different factors along their axes, or move so that their
+  /// size changes, the density follows the size at the pose of the choice.
+  ScenePoints(gpu::Device& device, const scene::Scene& scene, const scene::Pose& pose, int count);
+  /// Chooses again if triangles came or went.
+  void update(const scene::Pose& pose);
+  frame::BufferHandle import(frame::FrameGraph& graph);
+  float area() const { return area_; }  ///< of all surfaces, m^2
+  int count() const { return static_cast<int>(points_.size()); }
+
+ private:
+  void measure(const scene::Pose& pose);
+  void choose(const scene::Pose& pose);
+  const scene::Primitive& primitive(const scene::Pose& pose, const scene::DrawInstance& drawn) const;
+
+  const scene::Scene& scene_;
+  std::vector<AreaTable> fixed_, deformed_, dynamic_;
+  std::vector<size_t> firstOfMesh_;       ///< index of each mesh's first table in fixed_
+  std::vector<const AreaTable*> tables_;  ///< of each instance
+  std::vector<float> upTo_;               ///< m^2 of the instances 0 to i
+  std::vector<uint32_t> chosen_;          ///< points on each instance
+  std::vector<std::shared_ptr<const scene::Primitive>> known_;  ///< dynamic ones, at the last choice
+  std::vector<glsl::ScenePoint> points_;
+  gpu::Buffer buffer_;
+  frame::FrameGraph* graph_ = nullptr;
+  frame::BufferHandle handle_;
+  float area_ = 0;
+};
+
+}  // namespace limn::imperfect
