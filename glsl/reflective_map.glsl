@@ -3,12 +3,13 @@
 // (RG16_SNORM, octahedral) and the diffuse albedo for light from there (RGBA8, sRGB-encoded). The flux it reflects follows:
 // albedo times what the light sends (reflective_map_intensity) times the texel's measure (reflective_map_measure).
 //
-// A light with extent counts as `samples` points on it, each with its own maps and its share of the light. The points are
-// seen as from afar: the flux of a texel is exact only where the light is small as seen from the surface.
+// A light with extent counts as `samples` points on it, each with its own maps and its share of the light. What a texel
+// gets from a rectangle is exact however close it is, as long as the whole of it is seen where one of its points is.
 #ifndef LIMN_REFLECTIVE_MAP_GLSL
 #define LIMN_REFLECTIVE_MAP_GLSL
 #include "glsl/language.glsl"
 #include "glsl/light.glsl"
+#include "glsl/rectangle_light.glsl"
 #include "glsl/shadow_view.glsl"
 LIMN_BEGIN
 
@@ -25,17 +26,27 @@ LIMN_FN float reflective_map_measure(ShadowView view, vec2 uv) {
   return area * cosine2 * sqrt(cosine2);
 }
 
-// What a light, or one of `samples` points on it, at `origin` sends towards the surface point p: W/sr, or W/m^2 on a
-// perpendicular surface (directional). A rectangle is a Lambertian sender of intensity radiance * area * cosine.
-LIMN_FN vec3 reflective_map_intensity(Light light, vec3 origin, vec3 p, int samples) {
+// Below this cosine between a surface and the direction to the point its map is drawn from, texels reflect less than they
+// get: their area goes to infinity there.
+LIMN_CONST float reflective_map_least_cosine = 0.02f;
+
+// Intensity, W/sr, that a rectangle, or one of `samples` points on it, at `origin` would need as a point to give the
+// surface at p with unit normal n what it gives.
+LIMN_FN vec3 reflective_map_rectangle_intensity(Light light, vec3 origin, vec3 p, vec3 n, int samples) {
+  if (!rectangle_emits_towards(light, p)) return vec3(0.0f);
+  vec3 towards = origin - p;
+  float d2 = dot(towards, towards);
+  float cosine = dot(n, towards) / max(sqrt(d2), 1e-30f);
+  float irradiance = rectangle_irradiance(rectangle_from(light, p), n);
+  float share = receiver_factor(light, p) / float(samples);
+  return vec3(light.emission) * (share * irradiance * d2 / max(cosine, reflective_map_least_cosine));
+}
+
+// What a light that is no rectangle, or one of `samples` points on it, sends towards the surface point p: W/sr, or W/m^2 on
+// a perpendicular surface (directional).
+LIMN_FN vec3 reflective_map_intensity(Light light, vec3 p, int samples) {
   float share = light_has_extent(light) ? 1.0f / float(samples) : 1.0f;
-  vec3 sent = vec3(light.emission) * (share * receiver_factor(light, p));
-  if (light.info.x != light_rectangle) return sent;
-  vec3 towards = p - origin;
-  float along = dot(vec3(light.direction), towards);
-  if ((light.info.y & light_flag_two_sided) != 0u) along = abs(along);
-  float cosine = max(along, 0.0f) / max(length(towards), 1e-30f);
-  return sent * (light.axis_u.w * light.axis_v.w * cosine);
+  return vec3(light.emission) * (share * receiver_factor(light, p));
 }
 
 LIMN_END

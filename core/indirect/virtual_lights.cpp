@@ -28,6 +28,7 @@ struct Builder {
   }
   void readMaps(frame::PassBuilder& pass) const {
     pass.read(maps.depth, Access::sampled, "where light arrives")
+        .read(maps.normal, Access::sampled, "which way surfaces face")
         .read(maps.albedo, Access::sampled, "what is reflected")
         .read(maps.views, Access::storageLoad, "projections")
         .read(handles.lights, Access::storageLoad, "what lights send")
@@ -47,6 +48,7 @@ void bindMaps(const frame::PassContext& context, const SceneHandles& handles, co
               gpu::Program& kernel, int lightSamples) {
   kernel.set("light_samples", lightSamples);
   context.bindSampled(0, maps.depth);
+  context.bindSampled(1, maps.normal);
   context.bindSampled(2, maps.albedo);
   context.bindStorage(0, handles.lights);
   context.bindStorage(1, maps.views);
@@ -92,8 +94,7 @@ BufferHandle Builder::layerFlux(BufferHandle values, bool sampled, uint32_t coun
 BufferHandle Builder::sample(BufferHandle reflected) const {
   frame::PassBuilder pass = graph.addPass("virtual lights", "indirect");
   readMaps(pass);
-  pass.read(maps.normal, Access::sampled, "where light is sent")
-      .read(reflected, Access::storageLoad, "how many samples a map deserves");
+  pass.read(reflected, Access::storageLoad, "how many samples a map deserves");
   const BufferHandle lights =
       pass.write(buffer("virtual lights", static_cast<size_t>(desc.count), sizeof(glsl::VirtualPointLight)),
                  Access::storageStore, "samples of the maps");
@@ -104,7 +105,6 @@ BufferHandle Builder::sample(BufferHandle reflected) const {
     kernel.set("count", static_cast<unsigned>(desc.count));
     kernel.set("layers", static_cast<unsigned>(maps.layers));
     bindMaps(context, handles, maps, kernel, desc.lightSamples);
-    context.bindSampled(1, maps.normal);
     context.bindStorage(2, reflected);
     context.bindStorage(3, lights);
     context.dispatch(desc.count, 1, 1, group, 1);

@@ -13,21 +13,35 @@ uniform int light_samples;  // points on lights with extent
 
 struct ReflectiveTexel {
   vec3 position;  // world, m; the view's origin where there is nothing
+  vec3 normal;
   vec3 flux;      // reflected, W per unit of map area; 0 where there is nothing
 };
 
+// Intensity that the light has for a texel of its map.
+vec3 texel_intensity(uint index, vec3 origin, ReflectiveTexel t) {
+  Light light = lights[index];
+  vec3 intensity = reflective_map_intensity(light, t.position, light_samples);
+  bool rectangle = light.info.x == light_rectangle;
+  while (rectangle) {  // once: software renderers run both sides of an `if`, but leave a loop that nobody is in
+    intensity = reflective_map_rectangle_intensity(light, origin, t.position, t.normal, light_samples);
+    rectangle = false;
+  }
+  return intensity;
+}
+
 ReflectiveTexel reflective_texel(ShadowView view, ivec2 texel) {
-  float stored = texelFetch(reflective_depth, ivec3(texel, view.info.y), 0).r;
+  ivec3 at = ivec3(texel, view.info.y);
+  float stored = texelFetch(reflective_depth, at, 0).r;
   vec2 uv = (vec2(texel) + 0.5) / float(view.info.z);
   vec3 offset = shadow_unproject_local(view, uv, shadow_metres(view, stored));
   ReflectiveTexel t;
   t.position = view.origin.xyz;
+  t.normal = octahedral_decode(texelFetch(reflective_normal, at, 0).xy);
   t.flux = vec3(0.0);
   if (stored < 1.0) {
     t.position += shadow_world_offset(view, offset);
-    vec3 albedo = srgb_decode(texelFetch(reflective_albedo, ivec3(texel, view.info.y), 0).rgb);
-    t.flux = albedo * reflective_map_intensity(lights[view.info.w], view.origin.xyz, t.position, light_samples) *
-             reflective_map_measure(view, uv);
+    vec3 albedo = srgb_decode(texelFetch(reflective_albedo, at, 0).rgb);
+    t.flux = albedo * texel_intensity(view.info.w, view.origin.xyz, t) * reflective_map_measure(view, uv);
   }
   return t;
 }

@@ -34,7 +34,7 @@ void main() {
   ReflectiveTexel t = reflective_texel(view, texel);
   VirtualPointLight light;
   light.position = vec4(t.position, 1.0);
-  light.normal = vec4(octahedral_decode(texelFetch(reflective_normal, ivec3(texel, layer), 0).xy), 0.0);
+  light.normal = vec4(t.normal, 0.0);
   light.flux = vec4(weight > 0.0 ? t.flux * (total / (weight * float(count))) : vec3(0.0), float(layer));
   virtual_lights[index] = light;
 }

@@ -5,6 +5,8 @@
 
 #include "core/indirect/virtual_lights.h"
 #include "glsl/brdf.glsl"
+#include "glsl/rectangle_light.glsl"
+#include "glsl/sampling.glsl"
 #include "tests/gpu/gl_test.h"
 #include "tests/gpu/test_scenes.h"
 
@@ -152,6 +154,37 @@ TEST_F(VirtualLightTest, RectanglesOneAndTwoSided) {
     const vec3 expected = colour * (pi * 0.125f * (twoSided ? 2.f : 1.f));
     for (const int samples : {1, 5})
       expectFlux(sample(scene, pose, {.count = 300, .lightSamples = samples}), expected, 0.01f);
+  }
+}
+
+/// A square of 2 m, half a metre above the floor: what the square below it gets is exact, which points of the
+/// light's intensity would miss by far.
+TEST_F(VirtualLightTest, ALargeRectangleIsNoPoint) {
+  scene::Scene scene;
+  scene::Pose pose;
+  addMesh(scene, floorPrimitive(20, addMaterial(scene, lambert(colour))));
+  addInstance(scene, pose, 0);
+  const glsl::Light light = rectangleLight({0, 0.5f, 0}, {0, -1, 0}, 2, 2, false);
+  addLight(pose, light);
+  constexpr int side = 200;
+  double below = 0, asPoint = 0;
+  for (int i = 0; i < side * side; ++i) {
+    const glm::vec2 u = 2.f * glsl::grid_point(i, side) - 1.f;
+    const vec3 p(u.x, 0, u.y);
+    below += glsl::rectangle_irradiance(glsl::rectangle_from(light, p), {0, 1, 0});
+    const double d2 = glm::dot(p, p) + 0.25;
+    asPoint += 4 * 0.25 / (d2 * d2);
+  }
+  below *= 4.0 / (side * side);
+  asPoint *= 4.0 / (side * side);
+  ASSERT_GT(asPoint, 1.3 * below);
+  for (const int samples : {1, 4}) {
+    const Sampled s = sample(scene, pose, {.count = 8192, .mapSize = 512, .lightSamples = samples});
+    expectFlux(s, colour * (4 * pi), 0.01f);
+    double found = 0;
+    for (const glsl::VirtualPointLight& v : s.lights)
+      if (std::abs(v.position.x) < 1 && std::abs(v.position.z) < 1) found += v.flux.x;
+    EXPECT_NEAR(found, colour.x * below, 0.02 * colour.x * below) << samples << " samples";
   }
 }
 

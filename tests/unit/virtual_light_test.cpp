@@ -59,23 +59,56 @@ TEST(ReflectiveMap, MeasureOfAMapIsItsSolidAngleOrArea) {
   EXPECT_FLOAT_EQ(reflective_map_measure(view(shadow_orthographic, 0.25f), vec2(0.3f)), 16);
 }
 
-TEST(ReflectiveMap, RectanglesAreLambertianSenders) {
+Light rectangle(float u, float v) {
   Light light{};
   light.direction = vec4(0, 0, -1, 0);
-  light.axis_u = vec4(1, 0, 0, 2);
-  light.axis_v = vec4(0, 1, 0, 0.5f);
+  light.axis_u = vec4(1, 0, 0, u);
+  light.axis_v = vec4(0, 1, 0, v);
   light.emission = vec4(3, 0, 0, 0);
   light.info = uvec4(light_rectangle, 0, no_instance, 0);
-  const vec3 origin(0.5f, 0.1f, 0);
-  const vec3 below = origin + 2.f * vec3(0.6f, 0, -0.8f), above = origin + vec3(0, 0, 1);
-  EXPECT_FLOAT_EQ(reflective_map_intensity(light, origin, below, 1).x, 3 * 0.8f);
-  EXPECT_FLOAT_EQ(reflective_map_intensity(light, origin, below, 4).x, 3 * 0.8f / 4);
-  EXPECT_EQ(reflective_map_intensity(light, origin, above, 1).x, 0);
-  EXPECT_EQ(reflective_map_intensity(light, origin, origin, 1).x, 0);
+  return light;
+}
+
+float fromRectangle(const Light& light, vec3 p, vec3 n, int samples) {
+  return reflective_map_rectangle_intensity(light, vec3(0), p, n, samples).x;
+}
+
+/// Of radiance 3 and 1e-6 square metres.
+TEST(ReflectiveMap, SmallRectanglesAreLambertianSenders) {
+  Light light = rectangle(2e-3f, 0.5e-3f);
+  const vec3 below = 2.f * vec3(0.6f, 0, -0.8f), above(0, 0, 1);
+  const vec3 facing = normalize(vec3(0.2f, 0.3f, 1));
+  EXPECT_NEAR(fromRectangle(light, below, facing, 1), 3e-6 * 0.8, 3e-11);
+  EXPECT_NEAR(fromRectangle(light, below, facing, 4), 3e-6 * 0.8 / 4, 1e-11);
+  EXPECT_EQ(fromRectangle(light, above, -facing, 1), 0);
+  EXPECT_EQ(fromRectangle(light, vec3(0), facing, 1), 0);
   light.info.y = light_flag_two_sided;
-  EXPECT_FLOAT_EQ(reflective_map_intensity(light, origin, above, 1).x, 3);
-  light.info = uvec4(light_point, 0, no_instance, 0);
-  EXPECT_FLOAT_EQ(reflective_map_intensity(light, origin, above, 4).x, 3) << "no extent: no samples";
+  EXPECT_NEAR(fromRectangle(light, above, vec3(0, 0, -1), 1), 3e-6, 3e-11);
+}
+
+/// A surface as close as one likes to a rectangle as wide as one likes gets pi times its radiance.
+TEST(ReflectiveMap, LargeRectanglesGiveNoMoreThanTheirRadiance) {
+  for (const float height : {1.f, 1e-3f}) {
+    const float intensity =
+        fromRectangle(rectangle(2e4f, 2e4f), vec3(0.1f * height, 0, -height), vec3(0, 0, 1), 1);
+    const float d2 = 1.01f * height * height;
+    EXPECT_NEAR(intensity / d2 * height / std::sqrt(d2), 3 * pi, 0.01f) << height;
+  }
+}
+
+TEST(ReflectiveMap, SurfacesSeenEdgeOnStayFinite) {
+  const float edgeOn = fromRectangle(rectangle(2, 2), vec3(0, 0, -1), vec3(1, 0, 1e-7f), 1);
+  EXPECT_TRUE(std::isfinite(edgeOn));
+  EXPECT_GE(edgeOn, 0);
+}
+
+TEST(ReflectiveMap, PointsHaveNoExtentToSample) {
+  Light light = rectangle(0, 0);
+  light.info.x = light_point;
+  EXPECT_FLOAT_EQ(reflective_map_intensity(light, vec3(0, 0, 1), 4).x, 3);
+  light.info.x = light_directional;
+  light.cone.w = 0.1f;
+  EXPECT_FLOAT_EQ(reflective_map_intensity(light, vec3(0, 0, 1), 4).x, 0.75f);
 }
 
 }  // namespace
