@@ -67,7 +67,7 @@ int run(const Options& options) {
 Action addReferenceCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
   options->scene.addTo(command);
-  command.add_option("--term", options->term, "direct, indirect, visibility (with --light) or final")
+  command.add_option("--term", options->term, "direct, indirect, caustic, media, visibility (with --light) or final")
       ->capture_default_str();
   command
       .add_option("--spp", options->spp, "Samples per pixel and light; with --noise the most that are taken")

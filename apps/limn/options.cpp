@@ -38,6 +38,16 @@ glm::vec3 parseVector(const char* option, const std::string& text) {
   return v;
 }
 
+/// One number, or three.
+glm::vec3 parseCoefficient(const char* option, const std::string& text) {
+  const auto number = parseNumber(text);
+  const bool alone = number && *number <= 1e30;
+  const glm::vec3 v = alone ? glm::vec3(static_cast<float>(*number)) : parseVector(option, text);
+  if (v.x < 0 || v.y < 0 || v.z < 0)
+    throw UsageError(fmt::format("{} '{}' is not accepted; coefficients must not be negative", option, text));
+  return v;
+}
+
 std::vector<std::string> cameraNames(const scene::Pose& pose) {
   std::vector<std::string> names;
   for (const auto& camera : pose.cameras) names.push_back(camera.name);
@@ -101,6 +111,12 @@ void SceneOptions::addTo(CLI::App& command) {
                   "Side of every area light in metres, angular diameter of directional lights in radians;\n"
                   "intensities stay as they are")
       ->check(CLI::Range(1e-9, 1e9));
+  command.add_option("--sigma-a", sigmaA,
+                     "Absorption of the participating medium per metre: one number or red,green,blue");
+  command.add_option("--sigma-s", sigmaS, "Scattering of the medium, likewise; 0: it scatters nothing");
+  command
+      .add_option("--g", g, "Mean cosine of the medium's phase function (Henyey-Greenstein); > 0: forward")
+      ->check(CLI::Range(-0.999, 0.999));
   command
       .add_option("--default-lights", defaultLights,
                   "auto: a scene with neither lights nor --environment gets a key light from above the "
@@ -271,6 +287,9 @@ View open(const SceneOptions& options) {
         shading::decomposeEnvironment(view.scene.environment, options.environmentLights.settings()).lights;
     view.scene.environment.reflectCentres = options.environmentReflection == "centre";
   }
+  if (!options.sigmaA.empty()) view.scene.medium.sigmaA = parseCoefficient("--sigma-a", options.sigmaA);
+  if (!options.sigmaS.empty()) view.scene.medium.sigmaS = parseCoefficient("--sigma-s", options.sigmaS);
+  if (options.g) view.scene.medium.g = static_cast<float>(*options.g);
   for (const std::string& warning : view.scene.warnings) fmt::print(stderr, "limn: warning: {}\n", warning);
   if (!options.animation.empty()) {
     std::vector<std::string> names;

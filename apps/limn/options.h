@@ -46,6 +46,8 @@ struct SceneOptions {
   std::string size = "1280x720";
   std::string light;                   ///< name or #index; empty: all
   double lightSize = 0;                ///< metres (radians); 0: as the scene has them
+  std::string sigmaA, sigmaS;  ///< of the medium, per metre: one number or three; empty: the scene's
+  std::optional<double> g;             ///< of its phase function
   std::string defaultLights = "auto";  ///< auto: where the scene has neither light nor environment; on; off
 
   void addTo(CLI::App& command);

@@ -110,6 +110,13 @@ class Writer {
         entry["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = m.emissiveStrength;
         extensions_.insert("KHR_materials_emissive_strength");
       }
+      if (m.transmission > 0) {
+        json& extensions = entry["extensions"];
+        extensions["KHR_materials_transmission"]["transmissionFactor"] = m.transmission;
+        extensions["KHR_materials_ior"]["ior"] = m.ior;
+        extensions["KHR_materials_volume"]["thicknessFactor"] = m.thickness;
+        extensions_.insert({"KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_volume"});
+      }
       root_["materials"].push_back(entry);
     }
   }
@@ -216,6 +223,10 @@ class Writer {
     }
     root_["scene"] = 0;
     root_["scenes"] = json::array({{{"name", scene_.name}, {"nodes", roots}}});
+    if (scene_.medium) {
+      root_["scenes"][0]["extras"]["limn_medium"] = {
+          {"sigma_a", scene_.medium->sigmaA}, {"sigma_s", scene_.medium->sigmaS}, {"g", scene_.medium->g}};
+    }
     if (scene_.environment) root_["scenes"][0]["extras"]["limn_environment"] = "environment.exr";
     for (const Skin& skin : scene_.skins) {
       const int matrices = accessor(skin.inverseBind, kFloat, "MAT4", kNoTarget);

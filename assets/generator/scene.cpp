@@ -62,6 +62,15 @@ Material lambert(std::string name, glm::vec3 albedo) {
   return {.name = std::move(name), .baseColour = glm::vec4(albedo, 1), .roughness = 1, .specularFactor = 0};
 }
 
+Material glass(std::string name, float ior, glm::vec3 tint) {
+  return {.name = std::move(name),
+          .baseColour = glm::vec4(tint, 1),
+          .roughness = 0,
+          .transmission = 1,
+          .ior = ior,
+          .thickness = 1};
+}
+
 Material glossy(std::string name, glm::vec3 baseColour, float roughness, float metallic) {
   return {.name = std::move(name),
           .baseColour = glm::vec4(baseColour, 1),

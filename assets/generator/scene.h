@@ -25,6 +25,9 @@ struct Material {
   float normalScale = 1;
   bool doubleSided = false;
   std::optional<float> alphaCutoff{};  ///< set: alpha mode MASK
+  float transmission = 0;
+  float ior = 1.5f;
+  float thickness = 0;  ///< metres; > 0: bounds a body
 };
 
 struct Texture {
@@ -100,6 +103,11 @@ struct Animation {
   std::vector<Channel> channels;
 };
 
+/// Homogeneous, coefficients per metre.
+struct Medium {
+  float sigmaA = 0, sigmaS = 0, g = 0;
+};
+
 struct Scene {
   std::string name;
   std::vector<Texture> textures;
@@ -111,6 +119,7 @@ struct Scene {
   std::vector<Skin> skins;
   std::vector<Animation> animations;
   std::optional<Image> environment;  ///< linear RGB, written as environment.exr
+  std::optional<Medium> medium;      ///< extras.limn_medium
 
   int addTexture(std::string textureName, Image image, bool linear = false);
   int addMaterial(Material material);
@@ -128,6 +137,9 @@ struct Scene {
 
 /// A material that reflects by Lambert's law alone.
 Material lambert(std::string name, glm::vec3 albedo);
+
+/// A body of clear glass or another transparent material.
+Material glass(std::string name, float ior, glm::vec3 tint = glm::vec3(1));
 
 /// A dielectric or metal.
 Material glossy(std::string name, glm::vec3 baseColour, float roughness, float metallic = 0);

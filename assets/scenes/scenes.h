@@ -15,14 +15,19 @@ Scene makeBallsSky();
 Scene makeCornellBox();
 Scene makeCornellHorse();
 Scene makeFoliageCard();
+Scene makeGem();
+Scene makeGlassSphere();
+Scene makeGlassStatue();
 Scene makeLights();
 Scene makeMetaballs();
 Scene makePatrol();
 Scene makePlant();
+Scene makeRing();
 Scene makeRobot();
 Scene makeSoldiers();
 Scene makeStatue();
 Scene makeTeapot();
+Scene makeWater();
 Scene makeWhiteFurnace();
 
 struct SceneEntry {

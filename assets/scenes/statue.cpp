@@ -192,4 +192,26 @@ Scene makeStatue() {
   return scene;
 }
 
+Scene makeGlassStatue() {
+  Scene scene;
+  scene.add("floor", ground(3, 3, 1), scene.addMaterial(lambert("floor", {0.5f, 0.5f, 0.5f})));
+  const int statue = scene.add("statue", dancer(0.03f), scene.addMaterial(glass("glass", 1.5f)));
+  Node& node = scene.nodes[static_cast<std::size_t>(statue)];
+  node.translation = {0, 0.28f, 0};
+  Animation turn{"turn", {{.node = statue, .times = {}, .rotations = {}, .translations = {}}}};
+  for (int quarter = 0; quarter <= 4; ++quarter) {
+    turn.channels[0].times.push_back(2.0f * static_cast<float>(quarter));
+    turn.channels[0].rotations.push_back(
+        glm::angleAxis(0.5f * glm::pi<float>() * static_cast<float>(quarter), glm::vec3(0, 1, 0)));
+  }
+  scene.animations.push_back(turn);
+  scene.medium = {.sigmaA = 0.01f, .sigmaS = 0.08f, .g = 0};
+  scene.addLight(
+      "key", {.type = Light::Type::spot, .intensity = 260, .innerConeAngle = 0.3f, .outerConeAngle = 0.42f},
+      {-2.6f, 4.4f, 0.8f}, {0, 1.2f, 0});
+  scene.addCamera("main", {0.4f, 1.6f, 5.6f}, {0.1f, 1.15f, 0}, 36);
+  scene.addCamera("close", {0.3f, 1.5f, 2.8f}, {0.1f, 1.1f, 0}, 38);
+  return scene;
+}
+
 }  // namespace limn::assets

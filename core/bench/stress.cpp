@@ -47,6 +47,8 @@ constexpr StressCase kCommon[] = {
 /// V where the technique has one and light has no part in the case; else the radiance it answers for.
 render::Output outputOf(const TechniquePlugin& technique, StressChange change) {
   const TermSet terms = technique.info->terms;
+  if (terms == termSet(Term::media)) return render::Output::media;
+  if (terms == termSet(Term::caustic)) return render::Output::caustic;
   const bool indirect = terms == termSet(Term::indirect);
   switch (change) {
     case StressChange::radiance:
@@ -148,12 +150,15 @@ StressRun::~StressRun() = default;
 StressRun::Question& StressRun::question(const TechniquePlugin& technique, const StressCase& c,
                                          render::Output output) {
   const bool sky = contains(technique.info->terms, Term::environment);
-  const std::string key = fmt::format("{} {} {} {}{}", c.scene, static_cast<int>(c.change), c.amount,
-                                      render::name(output), sky ? " sky" : "");
+  const bool fog =
+      contains(technique.info->terms, Term::media) || contains(technique.info->terms, Term::caustic);
+  const std::string key = fmt::format("{} {} {} {}{}{}", c.scene, static_cast<int>(c.change), c.amount,
+                                      render::name(output), sky ? " sky" : "", fog ? " fog" : "");
   if (question_ && question_->key == key) return *question_;
   question_.reset();
   scene::Scene scene = scene_(c.scene);
   if (sky) scene = litBySkyAlone(std::move(scene));
+  if (fog) scene = inFog(std::move(scene));
   auto question =
       std::make_unique<Question>(device_, key, stressed(std::move(scene), c.change, c.amount), output);
   const scene::Pose& pose = question->renderer.pose();

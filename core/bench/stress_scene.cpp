@@ -57,6 +57,8 @@ void scale(scene::Scene& scene, float factor) {
     light.range *= factor;
   }
   for (scene::CameraLens& camera : scene.cameras) camera.near *= factor;
+  scene.medium.sigmaA /= factor;
+  scene.medium.sigmaS /= factor;
 }
 
 /// Position and direction of the first light.
@@ -179,6 +181,32 @@ scene::Scene litBySkyAlone(scene::Scene scene) {
       const float up = 1 - static_cast<float>(y) / 31.f;
       sky.texels.push_back(sun ? glm::vec3(40) : glm::vec3(0.1f) + up * glm::vec3(0.3f, 0.4f, 0.6f));
     }
+  return scene;
+}
+
+scene::Scene inFog(scene::Scene scene) {
+  const scene::Pose pose = scene::evaluate(scene, 0);
+  if (!scene.medium.present() && pose.bounds.radius() > 0) {
+    scene.medium.sigmaA = glm::vec3(0.05f / pose.bounds.radius());
+    scene.medium.sigmaS = glm::vec3(0.3f / pose.bounds.radius());
+  }
+  if (std::ranges::any_of(scene.materials, &scene::Material::specularSurface)) return scene;
+  const scene::DrawInstance* smallest = nullptr;
+  float radius = std::numeric_limits<float>::max();
+  for (const scene::DrawInstance& instance : pose.instances) {
+    const float size = scene::instanceBounds(scene, pose, instance).radius();
+    if (instance.node == scene::none || !(size < radius)) continue;
+    radius = size;
+    smallest = &instance;
+  }
+  if (!smallest) return scene;
+  const auto& mesh = scene.meshes[static_cast<size_t>(smallest->mesh)];
+  const int material = mesh.primitives[static_cast<size_t>(smallest->primitive)].material;
+  scene::Material& glass = scene.materials[static_cast<size_t>(material)];
+  glass.transmission = glass.thickness = 1;
+  glass.metallic = 0;
+  glass.baseColour = glm::vec4(1);
+  glass.baseColourTexture = {};
   return scene;
 }
 

@@ -15,6 +15,10 @@ LIMN_API scene::Scene stressed(scene::Scene scene, StressChange change, double a
 /// For techniques that answer the environment's light and no other.
 LIMN_API scene::Scene litBySkyAlone(scene::Scene scene);
 
+/// The scene in a thin medium, its smallest object of glass where nothing is specular: for techniques that
+/// answer media or caustics.
+LIMN_API scene::Scene inFog(scene::Scene scene);
+
 /// The camera in the middle of the smallest object, looking as before.
 LIMN_API scene::CameraPose cameraInside(const scene::Scene& scene, const scene::Pose& pose,
                                         scene::CameraPose camera);

@@ -86,7 +86,10 @@ class SurfaceMask {
         undefined_{OptionalChannel{image, "masked"}, OptionalChannel{reference, "masked"}},
         id_{OptionalChannel{image, "id"}, OptionalChannel{reference, "id"}},
         depth_{OptionalChannel{image, "Z"}, OptionalChannel{reference, "Z"}},
-        depthTolerance_(depthTolerance) {}
+        depthTolerance_(depthTolerance) {
+    const auto term = reference.metadata().find("term");
+    background_ = term != reference.metadata().end() && term->second == "media";
+  }
 
   /// True where the pixel is to be compared; adds to `counts`.
   bool keeps(int x, int y, MaskCounts& counts) const {
@@ -95,7 +98,7 @@ class SurfaceMask {
     }
     const bool first = !coverage_[0] || coverage_[0].at(x, y) >= 0.5f;
     const bool second = !coverage_[1] || coverage_[1].at(x, y) >= 0.5f;
-    if (!first && !second) return false;
+    if (!first && !second) return background_;
     if (first != second) {
       if (!coverage_[0] || !coverage_[1]) return false;  // only one picture knows its background
       ++counts.covered;
@@ -118,6 +121,7 @@ class SurfaceMask {
 
   std::array<OptionalChannel, 2> coverage_, undefined_, id_, depth_;
   double depthTolerance_;
+  bool background_ = false;  ///< the term is there without surfaces, too
 };
 
 void applySurfaceMask(const Image& image, const Image& reference, const CompareOptions& options,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <memory>
 #include <type_traits>
 #include <vector>
@@ -75,6 +76,7 @@ void addScene(Hasher& h, const scene::Scene& scene) {
     for (const auto& primitive : mesh.primitives) addPrimitive(h, primitive);
   }
   for (const auto& dynamic : scene.dynamic) h.add(dynamic.material);
+  if (scene.medium.present()) h.addAll(scene.medium.sigmaA, scene.medium.sigmaS, scene.medium.g);
   const scene::Environment& e = scene.environment;
   h.addAll(e.width, e.height, e.texels, e.rotation, e.scale);
 }
@@ -97,6 +99,9 @@ void addWork(Hasher& h, const Request& r) {
   h.addAll(r.camera.worldToView, r.camera.yfov, r.camera.near);
   h.addAll(r.width, r.height, r.term, r.light, r.seed, r.aa);
   if (r.bounces > 0) h.add(r.bounces);
+  constexpr uint32_t causticVersion = 1;
+  if (r.term == Term::final && std::ranges::any_of(r.scene.materials, &scene::Material::specularSurface))
+    h.add(causticVersion);
 }
 
 }  // namespace

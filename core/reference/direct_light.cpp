@@ -21,10 +21,12 @@ struct Estimate {
   const SampleRange& samples;
   uint32_t pair;  ///< the light's first
   Sums& sums;
+  const glsl::Medium& medium;
 
   void addPunctual(const PointView& view) const {
     if (!view.above()) return;
-    const glm::vec3 value = surface.reflectance(view.arrival().direction) * view.irradiance();
+    const glm::vec3 value =
+        surface.reflectance(view.arrival().direction) * view.irradiance() * through(view.arrival());
     if (value != glm::vec3(0) && unblocked(rays, surface, view.arrival())) add(value, samples.count);
   }
 
@@ -45,6 +47,12 @@ struct Estimate {
   }
 
  private:
+  /// What the medium leaves of it.
+  glm::vec3 through(const Arrival& arrival) const {
+    return arrival.finite ? glsl::transmittance_between(medium, surface.position, arrival.target)
+                          : glsl::transmittance_to_infinity(medium, surface.position, arrival.direction);
+  }
+
   void add(const glm::vec3& value, double weight) const {
     for (int c = 0; c < 3; ++c) sums[static_cast<size_t>(c)] += weight * static_cast<double>(value[c]);
   }
@@ -53,7 +61,7 @@ struct Estimate {
   void addLightSample(const View& view, glm::vec2 u) const {
     const Arrival arrival = view.sample(u);
     if (!(arrival.pdf > 0.f)) return;
-    const glm::vec3 value = surface.reflectance(arrival.direction) * arrival.radiance;
+    const glm::vec3 value = surface.reflectance(arrival.direction) * arrival.radiance * through(arrival);
     if (value == glm::vec3(0)) return;
     const float brdfPdf =
         glsl::brdf_pdf(surface.brdf, surface.values.normal, surface.view, arrival.direction);
@@ -68,7 +76,7 @@ struct Estimate {
     if (!(pdf > 0.f)) return;
     const Arrival arrival = view.towards(direction);
     if (!(arrival.pdf > 0.f)) return;
-    const glm::vec3 value = surface.reflectance(direction) * arrival.radiance;
+    const glm::vec3 value = surface.reflectance(direction) * arrival.radiance * through(arrival);
     if (value != glm::vec3(0) && unblocked(rays, surface, arrival))
       add(value * (powerHeuristic(pdf, arrival.pdf) / pdf), 1);
   }
@@ -77,7 +85,10 @@ struct Estimate {
 }  // namespace
 
 DirectLight::DirectLight(const RayScene& rays, const Request& request)
-    : rays_(rays), lights_(request.pose.lights), environment_(request.scene.environment) {
+    : rays_(rays),
+      lights_(request.pose.lights),
+      environment_(request.scene.environment),
+      medium_(mediumOf(request)) {
   const int count = static_cast<int>(lights_.size());
   first_ = request.light == allLights ? 0 : std::min(request.light, count);
   last_ = request.light == allLights ? ownLights(request.pose) : std::min(request.light + 1, count);
@@ -87,7 +98,8 @@ DirectLight::DirectLight(const RayScene& rays, const Request& request)
 void DirectLight::add(const Surface& surface, const SampleRange& samples, Sums& sums) const {
   for (int i = first_; i < last_; ++i) {
     const glsl::Light& light = lights_[static_cast<size_t>(i)];
-    const Estimate estimate{rays_, surface, samples, samples.pair + 3u * static_cast<uint32_t>(i), sums};
+    const Estimate estimate{rays_, surface, samples, samples.pair + 3u * static_cast<uint32_t>(i),
+                            sums,  medium_};
     if (isPunctual(light))
       estimate.addPunctual(PointView(light, surface));
     else if (light.info.x == glsl::light_rectangle || glsl::light_is_distant_rectangle(light))
@@ -97,8 +109,8 @@ void DirectLight::add(const Surface& surface, const SampleRange& samples, Sums& 
   }
   const EnvironmentView environment(environment_);
   if (withEnvironment_ && !environment.dark())
-    Estimate{rays_, surface, samples, samples.pair + 3u * static_cast<uint32_t>(last_), sums}.addSamples(
-        environment);
+    Estimate{rays_, surface, samples, samples.pair + 3u * static_cast<uint32_t>(last_), sums, medium_}
+        .addSamples(environment);
 }
 
 }  // namespace limn::reference

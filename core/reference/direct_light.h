@@ -5,6 +5,7 @@
 
 #include "core/reference/environment.h"
 #include "core/reference/integrator.h"
+#include "core/reference/medium_view.h"
 
 namespace limn::reference {
 
@@ -31,6 +32,7 @@ class DirectLight {
   const RayScene& rays_;
   const std::vector<glsl::Light>& lights_;
   EnvironmentLight environment_;
+  glsl::Medium medium_;
   int first_ = 0, last_ = 0;  ///< of lights_
   bool withEnvironment_ = false;
 };

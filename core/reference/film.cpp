@@ -4,8 +4,10 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/reference/camera_radiance.h"
+#include "core/scene/medium.h"
 
 namespace limn::reference {
 namespace {
@@ -32,12 +34,6 @@ bool isMaskedPixel(const Accumulators& state, size_t pixel) {
   return state.sums[2 * pixel][1] + state.sums[2 * pixel + 1][1] == 0;
 }
 
-glm::vec3 viewDirection(const View& view, size_t pixel) {
-  const int x = static_cast<int>(pixel % static_cast<size_t>(view.width));
-  const int y = static_cast<int>(pixel / static_cast<size_t>(view.width));
-  return glm::normalize(viewRay(view.frame, static_cast<float>(x), static_cast<float>(y)));
-}
-
 /// A pixel of the image, rows from the top.
 std::span<float> imagePixel(const View& view, Image& image, size_t pixel) {
   const int x = static_cast<int>(pixel % static_cast<size_t>(view.width));
@@ -59,6 +55,25 @@ bool View::surface(size_t index, Surface& surface) const {
   if (!rays.see(frame, near, x, y, hit)) return false;
   surface = surfaceAt(rays, hit, frame, x, y);
   return true;
+}
+
+float View::distance(size_t index, float depth) const {
+  if (!(depth > 0)) return std::numeric_limits<float>::max();
+  const int x = static_cast<int>(index % static_cast<size_t>(width));
+  const int y = static_cast<int>(index / static_cast<size_t>(width));
+  return depth * glm::length(viewRay(frame, static_cast<float>(x), static_cast<float>(y)));
+}
+
+glm::vec3 View::transmittance(size_t index, float depth) const {
+  const glsl::Medium medium = scene::mediumOf(frame);
+  return glsl::medium_transmittance(medium, glsl::ball_length(medium.ball, glm::vec3(frame.camera_position),
+                                                              direction(index), distance(index, depth)));
+}
+
+glm::vec3 View::direction(size_t index) const {
+  const int x = static_cast<int>(index % static_cast<size_t>(width));
+  const int y = static_cast<int>(index / static_cast<size_t>(width));
+  return glm::normalize(viewRay(frame, static_cast<float>(x), static_cast<float>(y)));
 }
 
 std::vector<std::string> channelNames(Term term) {
@@ -94,11 +109,11 @@ Image renderFeatures(const View& view, Term term, std::vector<unsigned char>& co
 }
 
 double noiseOf(const Integrator& integrator, Term term, const Accumulators& state,
-               const std::vector<unsigned char>& covered) {
+               const std::vector<unsigned char>& counts) {
   glm::dvec3 sum(0), squares(0);
   size_t count = 0;
-  for (size_t pixel = 0; pixel < covered.size(); ++pixel) {
-    if (!covered[pixel] || (term == Term::visibility && isMaskedPixel(state, pixel))) continue;
+  for (size_t pixel = 0; pixel < counts.size(); ++pixel) {
+    if (!counts[pixel] || (term == Term::visibility && isMaskedPixel(state, pixel))) continue;
     const Mean mean = meanOf(integrator, state, pixel);
     sum += mean.value;
     squares += mean.deviation * mean.deviation;
@@ -124,14 +139,14 @@ void develop(const Integrator& integrator, const View& view, const Request& requ
       out[15] = isMaskedPixel(state, pixel) ? 1.f : 0.f;
       return;
     }
-    Mean mean;
-    if (covered[pixel]) mean = meanOf(integrator, state, pixel);
+    Mean mean = meanOf(integrator, state, pixel);
     if (request.term == Term::final) {
       Surface surface;
-      mean.value +=
+      const glm::vec3 seen =
           covered[pixel] && view.surface(pixel, surface)
-              ? glm::dvec3(cameraRadiance(surface, *view.rays.draws()[surface.draw].material, environment))
-              : glm::dvec3(environment.radiance(viewDirection(view, pixel)));
+              ? cameraRadiance(surface, *view.rays.draws()[surface.draw].material, environment)
+              : environment.radiance(view.direction(pixel));
+      mean.value += glm::dvec3(seen * view.transmittance(pixel, out[4]));
     }
     writeColour(out, mean.value, glm::dot(mean.deviation, mean.deviation) / 3);
   });

@@ -20,6 +20,12 @@ struct View {
   size_t pixelCount() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
   /// The surface that pixel `index` shows; false: none.
   bool surface(size_t index, Surface& surface) const;
+  /// Unit direction of the pixel's view ray.
+  glm::vec3 direction(size_t index) const;
+  /// Along it, metres, to `depth` along the camera's axis; the largest number for depth 0.
+  float distance(size_t index, float depth) const;
+  /// T_cam: of the medium from there to the camera.
+  glm::vec3 transmittance(size_t index, float depth) const;
 };
 
 /// The channels of a result, in their order.
@@ -29,10 +35,10 @@ std::vector<std::string> channelNames(Term term);
 /// from the top, behind empty channels R, G, B and variance.
 Image renderFeatures(const View& view, Term term, std::vector<unsigned char>& covered);
 
-/// RMS of the standard deviation of the mean over covered pixels (of visibility: those not masked) and
+/// RMS of the standard deviation of the mean over the pixels that count (of visibility: those not masked) and
 /// channels, relative to the mean; 0 where the mean is 0.
 double noiseOf(const Integrator& integrator, Term term, const Accumulators& state,
-               const std::vector<unsigned char>& covered);
+               const std::vector<unsigned char>& counts);
 
 /// Writes the channels that the samples determine into the features' image.
 void develop(const Integrator& integrator, const View& view, const Request& request,

@@ -15,12 +15,16 @@
 
 namespace limn::reference {
 
-/// What is asked of every pixel.
+/// What is asked of every pixel. With a medium, light is attenuated on its way to a surface and from there to
+/// the camera; indirect light is not on the way between surfaces.
 enum class Term {
   direct,  ///< reflected direct light of all lights and the environment, or of one of them; shadows included
   visibility,  ///< V of one light
-  final,  ///< direct, indirect of up to Request::bounces, emission the camera sees, environment as background
-  indirect,  ///< light that came to the seen surface over 1 to Request::bounces others (L D+ D E)
+  final,       ///< direct, indirect of up to Request::bounces, caustic, media, emission the camera sees,
+               ///< environment as background
+  indirect,    ///< light that came to the seen surface over 1 to Request::bounces others (L D+ D E)
+  caustic,     ///< light that came to the seen surface off or through one specular object (L S+ D E)
+  media,  ///< light that the medium scattered once, directly or off or through a specular object (L S* M E)
 };
 LIMN_API const char* name(Term term);
 /// Throws UsageError naming the terms there are.

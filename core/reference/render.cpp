@@ -6,12 +6,16 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "core/base/error.h"
+#include "core/reference/airlight.h"
 #include "core/reference/content_hash.h"
 #include "core/reference/film.h"
+#include "core/reference/light_tracer.h"
 #include "core/reference/reference.h"
 #include "core/scene/camera.h"
+#include "core/scene/medium.h"
 
 namespace limn::reference {
 namespace {
@@ -66,8 +70,10 @@ class Work {
         integrator_(makeIntegrator(rays_, request)),
         needed_(static_cast<uint32_t>(request.spp + 1) / 2) {
     scene::setCamera(view_.frame, request.camera, request.pose.bounds, view_.width, view_.height);
+    scene::setMedium(view_.frame, request.scene.medium, request.pose.bounds);
     image_ = renderFeatures(view_, request.term, covered_);
     state_.sums.resize(2 * view_.pixelCount());
+    prepareMedia();
     if (!request.checkpoint.empty()) resume();
   }
 
@@ -94,6 +100,23 @@ class Work {
   }
 
  private:
+  void prepareMedia() {
+    const Term term = request_.term;
+    depths_.resize(view_.pixelCount());
+    const auto width = static_cast<size_t>(view_.width);
+    const int z = image_.channel("Z");
+    for (size_t i = 0; i < depths_.size(); ++i)
+      depths_[i] =
+          image_.at(static_cast<int>(i % width), view_.height - 1 - static_cast<int>(i / width), z);
+    counts_ = covered_;
+    if (term == Term::media || term == Term::final) airlight_.emplace(rays_, request_);
+    if (airlight_ && !airlight_->present()) airlight_.reset();
+    if (airlight_) counts_.assign(counts_.size(), 1);
+    if (term != Term::media && term != Term::caustic && term != Term::final) return;
+    tracer_.emplace(view_, request_, depths_);
+    if (!tracer_->present()) tracer_.reset();
+  }
+
   void resume() {
     hash_ = workHash(request_);
     Accumulators found;
@@ -119,24 +142,47 @@ class Work {
       for (size_t pixel = b * block; pixel < std::min(pixels, (b + 1) * block); ++pixel)
         samplePixel(pixel, count);
     });
+    if (tracer_) tracer_->trace(state_.samples, count, state_.sums);
     state_.samples += count;
     if (std::has_single_bit(state_.samples) || state_.samples == needed_)
-      noise_ = noiseOf(*integrator_, request_.term, state_, covered_);
+      noise_ = noiseOf(*integrator_, request_.term, state_, counts_);
   }
 
   void samplePixel(size_t pixel, uint32_t count) {
     Surface surface;
-    if (!covered_[pixel] || !view_.surface(pixel, surface)) return;
+    const bool reflects = request_.term != Term::media && request_.term != Term::caustic;
+    const bool seen = reflects && covered_[pixel] && view_.surface(pixel, surface);
+    if (!seen && !airlight_) return;
+    const float depth = depths_[pixel];
+    const glm::vec3 passes = view_.transmittance(pixel, depth);
     for (uint32_t half = 0; half < 2; ++half) {
       Sampler sampler(request_.seed, pixel, half);
-      integrator_->sample(surface, sampler, state_.samples, count, state_.sums[2 * pixel + half]);
+      Sums& sums = state_.sums[2 * pixel + half];
+      if (seen && request_.term == Term::visibility) {
+        integrator_->sample(surface, sampler, state_.samples, count, sums);
+        continue;
+      }
+      Sums reflected{};
+      if (seen) integrator_->sample(surface, sampler, state_.samples, count, reflected);
+      for (int c = 0; c < 3; ++c)
+        sums[static_cast<size_t>(c)] += reflected[static_cast<size_t>(c)] * static_cast<double>(passes[c]);
+      if (airlight_) sampleAirlight(pixel, depth, count, sampler, sums);
+    }
+  }
+
+  void sampleAirlight(size_t pixel, float depth, uint32_t count, Sampler& sampler, Sums& sums) const {
+    const glm::vec3 eye(view_.frame.camera_position), direction = view_.direction(pixel);
+    for (uint32_t i = state_.samples; i < state_.samples + count; ++i) {
+      sampler.startSample(i);
+      const glm::dvec3 value = airlight_->sample(eye, direction, view_.distance(pixel, depth), sampler);
+      for (int c = 0; c < 3; ++c) sums[static_cast<size_t>(c)] += value[c];
     }
   }
 
   bool finished() const {
     if (state_.samples >= needed_) return true;
     return request_.noise > 0 && state_.samples >= 8 && std::has_single_bit(state_.samples) &&
-           noiseOf(*integrator_, request_.term, state_, covered_) <= request_.noise;
+           noiseOf(*integrator_, request_.term, state_, counts_) <= request_.noise;
   }
 
   Progress progress(double seconds, uint32_t before) const {
@@ -154,7 +200,7 @@ class Work {
 
   Result finish() {
     Result result;
-    result.noiseRms = noiseOf(*integrator_, request_.term, state_, covered_);
+    result.noiseRms = noiseOf(*integrator_, request_.term, state_, counts_);
     result.spp = static_cast<int>(2 * state_.samples);
     develop(*integrator_, view_, request_, state_, covered_, image_);
     auto& metadata = image_.metadata();
@@ -175,9 +221,12 @@ class Work {
   RayScene rays_;
   View view_;
   std::unique_ptr<Integrator> integrator_;
-  uint32_t needed_;  ///< samples per half
-  std::vector<unsigned char> covered_;
+  uint32_t needed_;                              ///< samples per half
+  std::vector<unsigned char> covered_, counts_;  ///< counts_: for the noise
   Image image_;
+  std::vector<float> depths_;  ///< of what each pixel shows, 0: nothing
+  std::optional<Airlight> airlight_;
+  std::optional<LightTracer> tracer_;
   Accumulators state_;
   std::string hash_;
   double noise_ = 0;
@@ -207,15 +256,20 @@ const char* name(Term term) {
       return "final";
     case Term::indirect:
       return "indirect";
+    case Term::caustic:
+      return "caustic";
+    case Term::media:
+      return "media";
   }
   return "";
 }
 
 Term termFromName(const std::string& text) {
-  for (const Term term : {Term::direct, Term::visibility, Term::final, Term::indirect})
+  for (const Term term :
+       {Term::direct, Term::visibility, Term::final, Term::indirect, Term::caustic, Term::media})
     if (text == name(term)) return term;
-  throw UsageError(
-      fmt::format("reference: unknown term '{}'; there are direct, visibility, final, indirect", text));
+  throw UsageError(fmt::format(
+      "reference: unknown term '{}'; there are direct, visibility, final, indirect, caustic, media", text));
 }
 
 Result render(const Request& request) {

@@ -139,4 +139,11 @@ std::optional<Surface> surfaceAlong(const RayScene& rays, const Hit& hit, const 
   return surface;
 }
 
+Interface interfaceAt(const RayScene& rays, const Hit& hit, const glm::vec3& direction) {
+  bool back = false;
+  const Surface surface = seenFrom(rays, hit, -direction, std::nullopt, back);
+  return {surface.position,  surface.values.normal, surface.values.geometric_normal, back,
+          surface.rayOffset, surface.draw};
+}
+
 }  // namespace limn::reference

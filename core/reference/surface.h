@@ -36,4 +36,14 @@ Surface surfaceAt(const RayScene& rays, const Hit& hit, const glsl::FrameBlock& 
 /// the ray met the back of a single-sided surface, which reflects nothing.
 std::optional<Surface> surfaceAlong(const RayScene& rays, const Hit& hit, const glm::vec3& direction);
 
+/// Where light meets a smooth interface, from either side.
+struct Interface {
+  glm::vec3 position{0};
+  glm::vec3 normal{0}, geometricNormal{0};  ///< unit, both turned to the side that the light comes from
+  bool back = false;                        ///< that side is the surface's back
+  float rayOffset = 0;                      ///< Draw::rayOffset
+  uint32_t draw = 0;
+};
+Interface interfaceAt(const RayScene& rays, const Hit& hit, const glm::vec3& direction);
+
 }  // namespace limn::reference

@@ -165,9 +165,11 @@ TextureHandle Deferred::addLights(const Frame& frame, TextureHandle before, std:
   const TextureHandle ltc = implementation_->ltc(frame.graph);
   builder.read(ltc, Access::sampled, "glossy light of rectangles");
   const TextureHandle radiance = builder.write(before, Access::imageLoadStore, "sum of L_u V");
-  const auto program = builder.program(
-      {.files = {"glsl/deferred/light_accumulate.comp.glsl"},
-       .defines = {{"VISIBILITY", visibility ? "1" : "0"}, {"LIGHT_COUNT", std::to_string(lights.size())}}});
+  const auto program =
+      builder.program({.files = {"glsl/deferred/light_accumulate.comp.glsl"},
+                       .defines = {{"VISIBILITY", visibility ? "1" : "0"},
+                                   {"MEDIUM", implementation_->scene.medium.present() ? "1" : "0"},
+                                   {"LIGHT_COUNT", std::to_string(lights.size())}}});
   builder.execute(
       [=, handles = frame.handles, g = frame.gbuffer, size = frame.size,
        indices = std::vector<uint32_t>(lights.begin(), lights.end())](frame::PassContext& context) {
@@ -201,7 +203,9 @@ TextureHandle Deferred::addEnvironment(const Frame& frame, TextureHandle before)
   builder.read(ltc, Access::sampled, "glossy reflectance");
   const TextureHandle radiance =
       builder.write(before, Access::imageLoadStore, "light of the environment, V = 1");
-  const auto program = builder.program({.files = {"glsl/deferred/environment.comp.glsl"}, .defines = {}});
+  const auto program =
+      builder.program({.files = {"glsl/deferred/environment.comp.glsl"},
+                       .defines = {{"MEDIUM", implementation_->scene.medium.present() ? "1" : "0"}}});
   builder.execute(
       [=, handles = frame.handles, g = frame.gbuffer, size = frame.size](frame::PassContext& context) {
         context.program(program).use();
@@ -213,6 +217,24 @@ TextureHandle Deferred::addEnvironment(const Frame& frame, TextureHandle before)
         context.bindImage(0, radiance, GL_READ_WRITE);
         context.dispatch(size.x, size.y, 1, group_size, group_size);
       });
+  return radiance;
+}
+
+TextureHandle Deferred::addTransmittance(const Frame& frame, TextureHandle before) {
+  frame::PassBuilder builder = frame.graph.addPass("transmittance");
+  builder.read(frame.handles.frame, Access::uniformBuffer, "camera, medium")
+      .read(frame.gbuffer.depth, Access::sampled, "length of the path through the medium");
+  const TextureHandle radiance =
+      builder.write(before, Access::imageLoadStore, "what the medium leaves of it on the way to the camera");
+  const auto program = builder.program({.files = {"glsl/deferred/transmittance.comp.glsl"}, .defines = {}});
+  builder.execute([=, handles = frame.handles, depth = frame.gbuffer.depth,
+                   size = frame.size](frame::PassContext& context) {
+    context.program(program).use();
+    context.bindUniform(glsl::FrameBlock::binding, handles.frame);
+    context.bindSampled(glsl::gbuffer_unit_depth, depth);
+    context.bindImage(0, radiance, GL_READ_WRITE);
+    context.dispatch(size.x, size.y, 1, group_size, group_size);
+  });
   return radiance;
 }
 

@@ -34,6 +34,8 @@ class Deferred {
   /// handle: V = 1.
   frame::TextureHandle addLights(const Frame& frame, frame::TextureHandle radiance,
                                  std::span<const uint32_t> lights, frame::TextureHandle visibility);
+  /// Times the transmittance of the medium from what each pixel shows to the camera.
+  frame::TextureHandle addTransmittance(const Frame& frame, frame::TextureHandle radiance);
   /// Adds the light of the environment, V = 1.
   frame::TextureHandle addEnvironment(const Frame& frame, frame::TextureHandle radiance);
 

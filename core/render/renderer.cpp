@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/caustics/caustic_rays.h"
 #include "core/indirect/virtual_lights.h"
 #include "core/render/deferred.h"
 #include "core/scene/gpu_scene.h"
@@ -35,6 +36,7 @@ struct Renderer::Implementation {
   scene::GpuScene gpuScene;
   shadow::ShadowMapService shadowMaps;
   indirect::VirtualLightService virtualLights;
+  caustics::CausticRayService causticRays;
   Deferred deferred;
   scene::GBufferPass gbufferPass;
   Settings settings;
@@ -63,6 +65,7 @@ struct Renderer::Implementation {
         gpuScene(gpuDevice, shown),
         shadowMaps(gpuDevice, gpuScene),
         virtualLights(shadowMaps),
+        causticRays(gpuDevice, gpuScene, shadowMaps),
         deferred(gpuDevice, shown) {
     shaders.mount("", embeddedSources(), shaderOverride);
   }
@@ -72,6 +75,7 @@ struct Renderer::Implementation {
   void dropGraph() {
     if (!graph) return;
     gpuScene.forget();
+    causticRays.forget();
     graph.reset();
     uses.clear();
   }
@@ -86,9 +90,9 @@ struct Renderer::Implementation {
 
   frame::TextureHandle ask(Use& use, Term term, std::span<const uint32_t> lights,
                            frame::TextureHandle target) {
-    const TechniqueInputs inputs{scene,      pose,          gpuScene,
-                                 shadowMaps, virtualLights, use.settings->parameters,
-                                 handles,    gbuffer,       settings.size};
+    const TechniqueInputs inputs{
+        scene,   pose,    gpuScene,     shadowMaps, virtualLights, causticRays, use.settings->parameters,
+        handles, gbuffer, settings.size};
     return use.technique->addPasses(*graph, inputs, {term, lights, target});
   }
 
@@ -170,12 +174,21 @@ struct Renderer::Implementation {
         graph->leaveOut("lights", "core", "the scene has no light");
       radiance = addEnvironment(frame, radiance);
     }
-    for (const auto& [term, wanted] :
-         {std::pair(Term::indirect, Output::indirect), std::pair(Term::caustic, Output::caustic),
-          std::pair(Term::media, Output::media)})
-      if (all || settings.output == wanted)
-        for (Use& use : uses)
-          if (contains(termsOf(*use.settings), term)) radiance = ask(use, term, lights, radiance);
+    const auto add = [&](Term term, Output wanted) {
+      if (!all && settings.output != wanted) return;
+      for (Use& use : uses)
+        if (contains(termsOf(*use.settings), term)) radiance = ask(use, term, lights, radiance);
+    };
+    add(Term::indirect, Output::indirect);
+    add(Term::caustic, Output::caustic);
+    const char* clear = !scene.medium.present()            ? "the scene has no medium"
+                        : settings.output == Output::media ? "no surface is shown"
+                                                           : nullptr;
+    if (clear)
+      graph->leaveOut("transmittance", "core", clear);
+    else
+      radiance = deferred.addTransmittance(frame, radiance);
+    add(Term::media, Output::media);
     return radiance;
   }
 
@@ -232,6 +245,7 @@ struct Renderer::Implementation {
       graph->leaveOut("gbuffer", "core", "the scene has no geometry");
     shadowMaps.begin(*graph, handles, pose);
     virtualLights.begin(*graph, handles);
+    causticRays.begin(*graph, handles, pose);
     output = settings.output == Output::visibility ? addVisibility() : addRadiance();
     graph->output(output);
     display = {};
@@ -256,6 +270,7 @@ struct Renderer::Implementation {
     bool rebuild = gpuScene.update(pose, camera, settings.size, frameIndex++) || !graph;
     if (!rebuild) {
       rebuild = shadowMaps.update(pose);
+      rebuild = causticRays.update(pose) || rebuild;
       for (Use& use : uses) rebuild = use.technique->update(pose) || rebuild;
     }
     if (rebuild) build();

@@ -91,6 +91,8 @@ void GpuScene::Implementation::fill(DrawList::Implementation& list, const std::v
     const InstanceState& instance = states[id];
     for (const DepthView& view : views) {
       if (id == view.skipInstance || instance.bounds.empty()) continue;
+      const Surfaces kind = materials.specular(instance.material) ? Surfaces::specular : Surfaces::matte;
+      if (view.surfaces != Surfaces::all && view.surfaces != kind) continue;
       if (culling && !view.volume.mayContain(instance.bounds)) continue;
       DrawRun wanted;
       wanted.material = instance.material;

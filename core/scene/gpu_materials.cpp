@@ -73,6 +73,7 @@ GpuMaterials::GpuMaterials(gpu::Device& device, const Scene& scene) : device_(de
     set.baseColourKey = keyOf({set.textures[0], none, none, none}, {set.samplers[0], 0, 0, 0});
     set.variant = {all.back().info.x & texture_flags, material.alphaCutoff > 0};
     set.doubleSided = material.doubleSided;
+    set.specular = material.specularSurface();
     sets_.push_back(set);
   }
   constants_ = gpu::Buffer::of<glsl::Material>(device, "materials", all);

@@ -27,6 +27,7 @@ class GpuMaterials {
   /// Unit 0: base colour.
   void bindBaseColour(int material) const;
   bool masked(int material) const { return variant(material).masked; }
+  bool specular(int material) const { return sets_[static_cast<size_t>(material)].specular; }
   bool doubleSided(int material) const { return sets_[static_cast<size_t>(material)].doubleSided; }
 
  private:
@@ -36,7 +37,7 @@ class GpuMaterials {
     std::array<int, 4> textures{none, none, none, none}, samplers{};
     uint32_t key = 0, baseColourKey = 0;
     SurfaceVariant variant;
-    bool doubleSided = false;
+    bool doubleSided = false, specular = false;
   };
   gpu::Device& device_;
   gpu::Buffer constants_;

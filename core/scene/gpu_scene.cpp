@@ -9,6 +9,7 @@
 
 #include "core/scene/camera.h"
 #include "core/scene/gpu_scene_data.h"
+#include "core/scene/medium.h"
 
 namespace limn::scene {
 namespace {
@@ -217,6 +218,7 @@ bool GpuScene::update(const Pose& pose, const CameraPose& camera, glm::ivec2 siz
   const Environment& environment = s.scene.environment;
   s.frame.environment = {environment.rotation, environment.scale, environment ? 1.f : 0.f, seen.radius()};
   s.frame.frame_size = {size.x, size.y, pose.lights.size(), frameIndex};
+  setMedium(s.frame, s.scene.medium, pose.bounds);
   s.frameBuffer.update(0, &s.frame, sizeof(s.frame));
   s.touch(&SceneHandles::frame);
   return !first && (deformedBefore != s.deformedPrimitives.size() || lightsBefore != s.lights.size());
@@ -270,6 +272,10 @@ uint64_t GpuScene::triangles() const {
 
 void GpuScene::setCulling(bool culling) {
   implementation_->culling = culling;
+}
+
+bool GpuScene::specular(uint32_t instance) const {
+  return implementation_->materials.specular(implementation_->states.at(instance).material);
 }
 
 bool GpuScene::hasMasked() const {

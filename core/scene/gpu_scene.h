@@ -28,6 +28,13 @@ struct LIMN_API CullVolume {
   bool mayContain(const Bounds& box) const;
 };
 
+/// Which surfaces a view shows.
+enum class Surfaces : uint8_t {
+  all,
+  matte,     ///< those that are not specular
+  specular,  ///< Material::specularSurface()
+};
+
 /// One view of drawDepth(): goes to layer `layer` of the target, and reads element `view` of the caller's
 /// view buffer.
 struct DepthView {
@@ -35,6 +42,7 @@ struct DepthView {
   uint32_t skipInstance = glsl::no_instance;  ///< index into Pose::instances
   uint32_t view = 0;
   int layer = 0;
+  Surfaces surfaces = Surfaces::all;
 };
 
 /// Instances that survive culling, ready to be drawn: one per user (a G-buffer, a set of shadow maps), reused
@@ -96,6 +104,8 @@ class LIMN_API GpuScene {
   const Bounds& bounds() const;
   uint32_t instanceCount() const;
   uint64_t triangles() const;  ///< instances counted
+  /// Whether the instance's material is specular.
+  bool specular(uint32_t instance) const;
   bool hasMasked() const;      ///< some material has an alpha cutoff
   bool hasColours() const;     ///< some vertices have colours
   /// Those of all materials of the scene, each once.

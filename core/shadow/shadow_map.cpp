@@ -150,7 +150,8 @@ bool ShadowMapService::Implementation::fit(Request& request) const {
         {.volume = cullVolume(view),
          .skipInstance = view.info.w == glsl::no_light ? glsl::no_instance : lights[view.info.w].info.z,
          .view = view.info.y,
-         .layer = static_cast<int>(view.info.y)});
+         .layer = static_cast<int>(view.info.y),
+         .surfaces = request.desc.specular ? scene::Surfaces::all : scene::Surfaces::matte});
   }
   const bool changed = !sameBytes(views, request.views) || !sameBytes(shadowLights, request.shadowLights);
   request.views = std::move(views);

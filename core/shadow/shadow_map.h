@@ -42,6 +42,8 @@ struct ShadowMapDesc {
   bool cacheable = true;
   /// The maps hold what reflects the light, too: glsl/reflective_map.glsl. Not for paraboloids.
   bool reflective = false;
+  /// Specular surfaces are in the maps.
+  bool specular = true;
   bool operator==(const ShadowMapDesc&) const = default;
 };
 

@@ -42,6 +42,9 @@ class ShadowMapService;
 namespace indirect {
 class VirtualLightService;
 }
+namespace caustics {
+class CausticRayService;
+}
 
 /// The terms of the rendering equation a technique may answer (path classes: direct L D E, indirect L D+ D E,
 /// caustic L S+ D E, media L S* M E).
@@ -109,6 +112,7 @@ struct TechniqueInputs {
   scene::GpuScene& gpuScene;  ///< draws geometry
   shadow::ShadowMapService& shadowMaps;
   indirect::VirtualLightService& virtualLights;
+  caustics::CausticRayService& causticRays;
   const ParameterValues& parameters;
   SceneHandles handles;
   GBuffer gbuffer;

@@ -1,6 +1,8 @@
-// Adds the light of the environment on every surface to the radiance, unoccluded (V = 1).
+// Adds the light of the environment on every surface to the radiance, unoccluded (V = 1). MEDIUM 1: times
+// the medium's transmittance along the normal.
 #include "glsl/gbuffer_input.glsl"
 #include "glsl/environment.glsl"
+#include "glsl/medium_input.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f, binding = 0) uniform image2D radiance;
@@ -16,5 +18,8 @@ void main() {
   SurfaceBrdf material = surface_brdf(surface.base_colour, surface.metallic, surface.roughness,
                                       surface.specular_factor, surface.specular_colour, surface.ior);
   vec3 light = environment_light(material, surface.normal, v, frame.environment.x, frame.environment.y);
+#if MEDIUM
+  light *= transmittance_to_infinity(scene_medium(), pixel_position(pixel, depth), surface.normal);
+#endif
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(light, 0.0));
 }

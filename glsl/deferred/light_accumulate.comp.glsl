@@ -1,6 +1,7 @@
 // Adds sum of L_u V over a batch of lights to the radiance: unshadowed reflected light, exact for diffuse surfaces, times
-// visibility (layer per light; V = 1 where nobody was asked).
+// visibility (layer per light; V = 1 where nobody was asked). MEDIUM 1: and times the transmittance from the light's centre.
 #include "glsl/gbuffer_input.glsl"
+#include "glsl/medium_input.glsl"
 #include "glsl/unshadowed_light.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -10,6 +11,16 @@ layout(std430, binding = 0) readonly buffer LightBuffer { Light lights[]; };
 layout(binding = 7) uniform sampler2DArray visibility;
 #endif
 uniform uint light_indices[LIGHT_COUNT];
+
+#if MEDIUM
+// T_l: of the medium, from a light to a surface point.
+vec3 light_transmittance(Light light, vec3 position) {
+  Medium medium = scene_medium();
+  if (light.info.x == light_directional)
+    return transmittance_to_infinity(medium, position, -light.direction.xyz);
+  return transmittance_between(medium, light.position.xyz, position);
+}
+#endif
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -31,8 +42,12 @@ void main() {
     const float lit = 1.0;
 #endif
     if (lit > 0.0) {
-      sum += lit * unshadowed_light(lights[light_indices[i]], material, position, surface.normal,
-                                    surface.geometric_normal, v);
+      vec3 arriving = unshadowed_light(lights[light_indices[i]], material, position, surface.normal,
+                                       surface.geometric_normal, v);
+#if MEDIUM
+      arriving *= light_transmittance(lights[light_indices[i]], position);
+#endif
+      sum += lit * arriving;
     }
   } while (++i < LIGHT_COUNT);
   if (sum == vec3(0.0)) return;

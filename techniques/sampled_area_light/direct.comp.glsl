@@ -1,6 +1,7 @@
 // Reflected direct light, each sample of a light shadowed by its own map and reflected by the whole BRDF. Each batch adds
-// its part.
+// its part. MEDIUM 1: times the medium's transmittance from the sample.
 #include "glsl/brdf.glsl"
+#include "glsl/medium_input.glsl"
 #include "glsl/shadow_samples.glsl"
 
 layout(binding = 0, rgba32f) uniform image2D radiance;
@@ -31,8 +32,13 @@ vec3 light_from(VisibilityQuery q, Light light, int l, SurfaceBrdf surface, vec3
     vec3 offset = sample_offset(q, maps);
     vec3 direction = normalize(offset);
     if (dot(offset, q.normal) <= 0.0 || dot(offset, normal) <= 0.0 || !sample_visible(q, maps)) continue;
-    sum += brdf(surface, normal, to_viewer, direction) * dot(normal, direction) *
-           sample_irradiance(light, q.light, q.position, offset);
+    vec3 reflected = brdf(surface, normal, to_viewer, direction) * dot(normal, direction) *
+                     sample_irradiance(light, q.light, q.position, offset);
+#if MEDIUM
+    reflected *= maps.origin.w > 0.0 ? transmittance_between(scene_medium(), q.position, maps.origin.xyz)
+                                     : transmittance_to_infinity(scene_medium(), q.position, direction);
+#endif
+    sum += reflected;
   }
   return q.light.extended ? sum / float(total_samples) : sum;
 }

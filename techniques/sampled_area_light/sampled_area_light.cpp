@@ -68,7 +68,8 @@ class SampledAreaLight : public Technique {
     shadow::VisibilityPass pass = commonPass(inputs, request.lights, batch);
     pass.name = "direct";
     pass.accumulate = true;
-    pass.program = {.files = {"techniques/sampled_area_light/direct.comp.glsl"}, .defines = {}};
+    pass.program = {.files = {"techniques/sampled_area_light/direct.comp.glsl"},
+                    .defines = {{"MEDIUM", inputs.scene.medium.present() ? "1" : "0"}}};
     pass.bind = [bindSamples = pass.bind, lights = static_cast<int>(request.lights.size())](
                     frame::PassContext& context, gpu::Program& program) {
       bindSamples(context, program);

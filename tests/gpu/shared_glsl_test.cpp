@@ -84,7 +84,7 @@ TEST_F(SharedGlslTest, everyHeaderCompilesAlone) {
     const std::string path = source.path;
     const bool stage = path.ends_with(".comp.glsl") || path.ends_with(".vert.glsl") ||
                        path.ends_with(".frag.glsl") || path.ends_with(".geom.glsl");
-    if (stage) continue;
+    if (stage || brings(source, "gl_FragCoord")) continue;  // of fragment shaders alone
     SCOPED_TRACE(path);
     const std::string text = "#include \"" + path + "\"\n" +
                              (brings(source, "local_size_x") ? "" : "layout(local_size_x = 1) in;\n") +
@@ -114,11 +114,12 @@ TEST_F(SharedGlslTest, frameBlockHasOneLayout) {
   EXPECT_EQ(unsigned(property(program, GL_UNIFORM_BLOCK, "FrameBlock", GL_BUFFER_BINDING)),
             glsl::FrameBlock::binding);
   const Member members[] = {
-      LIMN_MEMBER(FrameBlock, world_to_clip),   LIMN_MEMBER(FrameBlock, clip_to_world),
-      LIMN_MEMBER(FrameBlock, world_to_view),   LIMN_MEMBER(FrameBlock, camera_position),
-      LIMN_MEMBER(FrameBlock, view_ray_origin), LIMN_MEMBER(FrameBlock, view_ray_dx),
-      LIMN_MEMBER(FrameBlock, view_ray_dy),     LIMN_MEMBER(FrameBlock, environment),
-      LIMN_MEMBER(FrameBlock, frame_size),
+      LIMN_MEMBER(FrameBlock, world_to_clip),     LIMN_MEMBER(FrameBlock, clip_to_world),
+      LIMN_MEMBER(FrameBlock, world_to_view),     LIMN_MEMBER(FrameBlock, camera_position),
+      LIMN_MEMBER(FrameBlock, view_ray_origin),   LIMN_MEMBER(FrameBlock, view_ray_dx),
+      LIMN_MEMBER(FrameBlock, view_ray_dy),       LIMN_MEMBER(FrameBlock, environment),
+      LIMN_MEMBER(FrameBlock, frame_size),        LIMN_MEMBER(FrameBlock, medium_extinction),
+      LIMN_MEMBER(FrameBlock, medium_scattering), LIMN_MEMBER(FrameBlock, medium_ball),
   };
   for (const Member& member : members) {
     EXPECT_EQ(size_t(property(program, GL_UNIFORM, std::string("FrameBlock.") + member.name, GL_OFFSET)),
@@ -159,12 +160,14 @@ TEST_F(SharedGlslTest, uniformBlocksRoundTrip) {
 
   const gpu::Program& program = mounted(
       "layout(std430, binding = 1) buffer Result {\n"
-      "  mat4 a; mat4 b; mat4 c; vec4 d; vec4 e; vec4 f; vec4 g; vec4 h; uvec4 i;\n};\n"
+      "  mat4 a; mat4 b; mat4 c; vec4 d; vec4 e; vec4 f; vec4 g; vec4 h; uvec4 i;\n  vec4 j; vec4 k; vec4 "
+      "l;\n};\n"
       "void main() {\n"
       "  a = frame.world_to_clip; b = frame.clip_to_world; c = frame.world_to_view; d = "
       "frame.camera_position;\n"
       "  e = frame.view_ray_origin; f = frame.view_ray_dx; g = frame.view_ray_dy; h = frame.environment;\n"
-      "  i = frame.frame_size;\n}\n");
+      "  i = frame.frame_size; j = frame.medium_extinction;\n"
+      "  k = frame.medium_scattering; l = frame.medium_ball;\n}\n");
   const gpu::Buffer uniforms(device(), "frame", sizeof block, gpu::BufferUse::fixed, &block);
   const gpu::Buffer result(device(), "result", sizeof block);
   gl().BindBufferBase(GL_UNIFORM_BUFFER, glsl::FrameBlock::binding, uniforms.id());

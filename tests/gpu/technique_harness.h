@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/caustics/caustic_rays.h"
 #include "core/indirect/virtual_lights.h"
 #include "core/scene/gpu_scene.h"
 #include "core/shadow/shadow_map.h"
@@ -52,6 +53,7 @@ class TechniqueTest : public GlTest {
     gpuScene.update(pose, camera, {side, side}, 0);
     shadow::ShadowMapService shadowMaps(device(), gpuScene);
     indirect::VirtualLightService virtualLights(shadowMaps);
+    caustics::CausticRayService causticRays(device(), gpuScene, shadowMaps);
     frame::ResourcePool pool(device());
     scene::GBufferPass gbufferPass;
     frame::FrameGraph graph;
@@ -59,9 +61,10 @@ class TechniqueTest : public GlTest {
     const GBuffer gbuffer = gbufferPass.add(graph, gpuScene, handles, {side, side});
     shadowMaps.begin(graph, handles, pose);
     virtualLights.begin(graph, handles);
+    causticRays.begin(graph, handles, pose);
     const auto instance = plugin.create();
-    const TechniqueInputs inputs{scene,      pose,    gpuScene, shadowMaps,  virtualLights,
-                                 parameters, handles, gbuffer,  {side, side}};
+    const TechniqueInputs inputs{scene,       pose,       gpuScene, shadowMaps, virtualLights,
+                                 causticRays, parameters, handles,  gbuffer,    {side, side}};
     const frame::TextureHandle target =
         term == Term::visibility ? visibilityTarget(graph, lights.size()) : black(graph);
     const frame::TextureHandle written =

@@ -28,10 +28,10 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 const fs::path kAssets = fs::path(limn::test::binaryDir) / "assets";
-const char* const kScenes[] = {"atrium",      "atrium_robots", "balls",        "balls_sky",
-                               "cornell_box", "cornell_horse", "foliage_card", "lights",
-                               "metaballs",   "patrol",        "plant",        "robot",
-                               "statue",      "soldiers",      "teapot",       "white_furnace"};
+const char* const kScenes[] = {
+    "atrium", "atrium_robots", "balls",        "balls_sky", "cornell_box", "cornell_horse", "foliage_card",
+    "gem",    "glass_sphere",  "glass_statue", "lights",    "metaballs",   "patrol",        "plant",
+    "ring",   "robot",         "statue",       "soldiers",  "teapot",      "water",         "white_furnace"};
 const std::set<std::string> kUnderEnvironments = {"balls_sky", "patrol", "white_furnace"};
 
 std::string bytesOf(const fs::path& file) {

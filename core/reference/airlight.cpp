@@ -1,0 +1,41 @@
+#include "core/reference/airlight.h"
+
+#include <limits>
+
+#include "glsl/airlight.glsl"
+
+namespace limn::reference {
+namespace {
+
+/// Random numbers of airlight lie behind those of all other estimators of a pixel.
+constexpr uint32_t firstPair = 1u << 20;
+
+}  // namespace
+
+Airlight::Airlight(const RayScene& rays, const Request& request)
+    : rays_(rays), lights_(mediumLights(request)), medium_(mediumOf(request)) {}
+
+glm::dvec3 Airlight::sample(const glm::vec3& eye, const glm::vec3& direction, float end,
+                            const Sampler& sampler) const {
+  const glm::vec2 range = glsl::ball_range(medium_.ball, eye, direction);
+  const float from = std::max(range.x, 0.f), to = std::min(range.y, end);
+  glm::dvec3 sum(0);
+  if (!(from < to)) return sum;
+  for (uint32_t i = 0; i < lights_.size(); ++i) {
+    const glsl::Light& light = lights_[i];
+    const glm::vec3 source = lightPoint(light, sampler.pair(firstPair + 2 * i));
+    const glsl::AirlightRay ray = glsl::airlight_ray(medium_, light, source, eye, direction);
+    const float low = glsl::airlight_variable(ray, from), high = glsl::airlight_variable(ray, to);
+    const float t = glsl::airlight_metres(ray, low + sampler.pair(firstPair + 2 * i + 1).x * (high - low));
+    const glm::vec3 density = glsl::airlight_density(medium_, light, ray, t, 1);
+    if (density == glm::vec3(0)) continue;
+    const glm::vec3 x = eye + t * direction;
+    const bool blocked =
+        ray.parallel ? rays_.occluded(x, -glm::vec3(light.direction), std::numeric_limits<float>::infinity())
+                     : rays_.occluded(x, source - x, 0.9999f);
+    if (!blocked) sum += glm::dvec3(density) * static_cast<double>(high - low);
+  }
+  return sum;
+}
+
+}  // namespace limn::reference

@@ -1,0 +1,244 @@
+#include "core/reference/light_tracer.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "glsl/caustic_ray.glsl"
+#include "glsl/geometry.glsl"
+#include "glsl/reflective_map.glsl"
+
+namespace limn::reference {
+namespace {
+
+constexpr int scatterPoints = 4;            // on each segment in the medium
+constexpr size_t mostFilmPixels = 1 << 22;  // of all films together, unless two are more
+constexpr float leastCosine = 1e-4f;        // as in trace_rays.comp.glsl
+
+glsl::Optics opticsOf(const scene::Material& m) {
+  return {.base = glm::clamp(glm::vec3(m.baseColour), 0.f, 1.f),
+          .metallic = m.metallic,
+          .transmission = m.transmission,
+          .ior = glm::clamp(m.ior, 1.f, 3.f),
+          .thickness = m.thickness,
+          .attenuation = m.attenuationColour,
+          .attenuation_distance = m.attenuationDistance};
+}
+
+/// Flux that arrives from a light in the direction of the objects, per sample, before the light's own
+/// directional factors.
+struct Aim {
+  glm::vec3 origin, direction;
+  float measure;  ///< solid angle (sr), or area across parallel light (m^2), that the sample stands for
+};
+
+Aim aimAt(const glsl::Light& light, const glm::vec3& centre, float radius, float away, glm::vec2 u,
+          glm::vec2 onLight) {
+  if (light.info.x == glsl::light_directional) {
+    glm::vec3 direction(light.direction);
+    if (light.cone.w > 0) {
+      const float tangent = std::tan(std::min(0.5f * light.cone.w, 1.5f));
+      const glm::vec2 disc = tangent * glsl::sample_disc(onLight);
+      direction = glm::normalize(glsl::from_local(glsl::frame_around(direction), glm::vec3(disc, 1)));
+    }
+    const glm::vec2 disc = radius * glsl::sample_disc(u);
+    const glm::vec3 across = glsl::from_local(glsl::frame_around(direction), glm::vec3(disc, 0));
+    return {centre + across - away * direction, direction, glsl::pi * radius * radius};
+  }
+  const glm::vec3 origin = lightPoint(light, onLight), towards = centre - origin;
+  const float distance = glm::length(towards);
+  const float ratio = distance > 0 ? radius / distance : 2.f;
+  if (!(ratio < 0.999f)) {
+    const float z = 1 - 2 * u.x, r = std::sqrt(std::max(1 - z * z, 0.f)), angle = 2 * glsl::pi * u.y;
+    return {origin, {r * std::cos(angle), r * std::sin(angle), z}, 4 * glsl::pi};
+  }
+  const float cap = ratio * ratio / (1 + std::sqrt(1 - ratio * ratio));  // 1 - cosine of the half angle
+  const float down = cap * u.x, lateral = std::sqrt(down * (2 - down)), angle = 2 * glsl::pi * u.y;
+  const glm::vec3 local(lateral * std::cos(angle), lateral * std::sin(angle), 1 - down);
+  return {origin, glm::normalize(glsl::from_local(glsl::frame_around(towards / distance), local)),
+          2 * glsl::pi * cap};
+}
+
+}  // namespace
+
+struct LightTracer::Film {
+  std::vector<glm::dvec3>& pixels;
+  void add(size_t pixel, const glm::dvec3& value) { pixels[pixel] += value; }
+};
+
+/// Light that meets a specular object.
+struct LightTracer::Path {
+  Interface surface;
+  glm::vec3 direction{0};  ///< unit, of propagation
+  glm::vec3 flux{0};       ///< W
+};
+
+LightTracer::LightTracer(const View& view, const Request& request, const std::vector<float>& depths)
+    : view_(view),
+      request_(request),
+      depths_(depths),
+      lights_(mediumLights(request)),
+      medium_(mediumOf(request)),
+      media_(request.term != Term::caustic && medium_.scattering != glm::vec3(0)),
+      surfaces_(request.term != Term::media) {
+  for (const scene::DrawInstance& instance : request.pose.instances) {
+    const auto& draw = view.rays.draws()[static_cast<size_t>(&instance - request.pose.instances.data())];
+    if (draw.material && draw.material->specularSurface())
+      objects_.add(scene::instanceBounds(request.scene, request.pose, instance));
+  }
+  if (!media_ && !surfaces_) lights_.clear();
+  const size_t pixels = view.pixelCount();
+  const size_t films = std::clamp<size_t>(mostFilmPixels / std::max<size_t>(pixels, 1), 2, 16) / 2 * 2;
+  if (present()) films_.assign(films, std::vector<glm::dvec3>(pixels));
+}
+
+void LightTracer::trace(uint32_t first, uint32_t count, std::vector<Sums>& sums) {
+  const size_t pixels = view_.pixelCount(), perHalf = films_.size() / 2;
+  const uint64_t paths = uint64_t{count} * pixels, start = uint64_t{first} * pixels;
+  tbb::parallel_for(size_t{0}, films_.size(), [&](size_t f) {
+    std::ranges::fill(films_[f], glm::dvec3(0));
+    Film film{films_[f]};
+    const uint32_t half = f % 2;
+    const size_t part = f / 2;
+    Sampler sampler(request_.seed, ~uint64_t{0}, half);
+    for (uint64_t i = start + paths * part / perHalf; i < start + paths * (part + 1) / perHalf; ++i) {
+      sampler.startSample(static_cast<uint32_t>(i));
+      Path path;
+      if (emit(sampler, i, path)) follow(path, sampler, film);
+    }
+  });
+  tbb::parallel_for(size_t{0}, pixels, [&](size_t pixel) {
+    for (size_t f = 0; f < films_.size(); ++f) {
+      const glm::dvec3 value = films_[f][pixel] / static_cast<double>(pixels);
+      for (int c = 0; c < 3; ++c) sums[2 * pixel + f % 2][static_cast<size_t>(c)] += value[c];
+    }
+  });
+}
+
+bool LightTracer::emit(const Sampler& sampler, uint64_t index, Path& path) const {
+  const size_t count = lights_.size();
+  const glsl::Light& light = lights_[index % count];
+  const float scene = medium_.ball.w, offset = 0x1p-18f * scene;
+  const Aim aim = aimAt(light, objects_.centre(), 1.001f * objects_.radius(), 4 * scene, sampler.pair(0),
+                        sampler.pair(1));
+  Hit hit;
+  if (!view_.rays.nearest(aim.origin + offset * aim.direction, aim.direction, hit)) return false;
+  if (!view_.rays.draws()[hit.draw].material->specularSurface()) return false;
+  path.surface = interfaceAt(view_.rays, hit, aim.direction);
+  path.direction = aim.direction;
+  const glm::vec3& p = path.surface.position;
+  path.flux =
+      glsl::reflective_map_intensity(light, aim.origin, p, 1) * (aim.measure * static_cast<float>(count));
+  path.flux *= light.info.x == glsl::light_directional
+                   ? glsl::transmittance_to_infinity(medium_, p, -aim.direction)
+                   : glsl::transmittance_between(medium_, aim.origin, p);
+  return path.flux != glm::vec3(0) && glm::dot(path.surface.normal, -aim.direction) > leastCosine;
+}
+
+void LightTracer::follow(const Path& path, const Sampler& sampler, Film& film) const {
+  const Interface& s = path.surface;
+  const glsl::Optics optics = opticsOf(*view_.rays.draws()[s.draw].material);
+  const glsl::SpecularEvent event = glsl::specular_event(optics, path.direction, s.normal, s.back);
+  const glm::vec3 before = s.position + s.rayOffset * s.geometricNormal;
+  if (!s.back) segment(before, event.reflected, path.flux * event.reflectance, sampler, film);
+  const glm::vec3 passing = path.flux * event.transmittance;
+  if (event.refracted == glm::vec3(0) || passing == glm::vec3(0)) return;
+  if (s.back || !(optics.thickness > 0)) {
+    segment(s.position - s.rayOffset * s.geometricNormal, event.refracted, passing, sampler, film);
+    return;
+  }
+  refract(path, optics, passing, event.refracted, sampler, film);
+}
+
+/// Through the body behind the interface; behind one that bounds no body light stays in the medium.
+void LightTracer::refract(const Path& path, const glsl::Optics& optics, const glm::vec3& flux,
+                          const glm::vec3& direction, const Sampler& sampler, Film& film) const {
+  const Interface& s = path.surface;
+  const glm::vec3 start = s.position - s.rayOffset * s.geometricNormal;
+  Hit hit;
+  if (!view_.rays.nearest(start, direction, hit) || hit.draw != s.draw) {
+    segment(start, direction, flux, sampler, film);
+    return;
+  }
+  const Interface exit = interfaceAt(view_.rays, hit, direction);
+  if (!exit.back || !(glm::dot(exit.normal, -direction) > leastCosine)) return;
+  const glsl::SpecularEvent event = glsl::specular_event(optics, direction, exit.normal, true);
+  if (event.refracted == glm::vec3(0)) return;
+  segment(exit.position - exit.rayOffset * exit.geometricNormal, event.refracted,
+          flux * event.transmittance * glsl::optics_absorption(optics, hit.depth), sampler, film);
+}
+
+/// Through the medium until something is met.
+void LightTracer::segment(const glm::vec3& from, const glm::vec3& direction, const glm::vec3& flux,
+                          const Sampler& sampler, Film& film) const {
+  if (flux == glm::vec3(0)) return;
+  Hit hit;
+  const bool ends = view_.rays.nearest(from, direction, hit);
+  const float reach = std::min(glsl::ball_range(medium_.ball, from, direction).y,
+                               ends ? hit.depth : std::numeric_limits<float>::max());
+  if (media_ && reach > 0) {
+    const float u = sampler.pair(2).x;
+    for (int i = 0; i < scatterPoints; ++i) {
+      const float l = reach * (static_cast<float>(i) + u) / scatterPoints;
+      scatter(from + l * direction, direction,
+              flux * glsl::medium_transmittance(medium_, l) * (reach / scatterPoints), film);
+    }
+  }
+  if (surfaces_ && ends)
+    reflect(hit, direction, flux * glsl::transmittance_between(medium_, from, from + hit.depth * direction),
+            film);
+}
+
+/// The pixel that shows x, its depth, and one over the pixel's solid angle (1/sr).
+bool LightTracer::project(const glm::vec3& x, size_t& pixel, float& depth, double& perSolidAngle) const {
+  const glm::dvec4 v = glm::dmat4(view_.frame.world_to_view) * glm::dvec4(glm::dvec3(x), 1);
+  depth = static_cast<float>(-v.z);
+  if (!(depth > view_.near)) return false;
+  const double dx = glm::length(glm::dvec3(glm::vec3(view_.frame.view_ray_dx)));
+  const double dy = glm::length(glm::dvec3(glm::vec3(view_.frame.view_ray_dy)));
+  const double column = std::floor(v.x / -v.z / dx + 0.5 * view_.width);
+  const double row = std::floor(v.y / -v.z / dy + 0.5 * view_.height);
+  if (!(column >= 0 && column < view_.width && row >= 0 && row < view_.height)) return false;
+  pixel = static_cast<size_t>(row) * static_cast<size_t>(view_.width) + static_cast<size_t>(column);
+  const double cosine = -v.z / glm::length(glm::dvec3(v));
+  perSolidAngle = 1 / (cosine * cosine * cosine * dx * dy);
+  return true;
+}
+
+/// flux: times the length that the point stands for.
+void LightTracer::scatter(const glm::vec3& x, const glm::vec3& direction, const glm::vec3& flux,
+                          Film& film) const {
+  size_t pixel = 0;
+  float depth = 0;
+  double perSolidAngle = 0;
+  if (!project(x, pixel, depth, perSolidAngle)) return;
+  if (depths_[pixel] > 0 && depth > depths_[pixel]) return;
+  const glm::vec3 eye(view_.frame.camera_position), towards = eye - x;
+  const float distance = glm::length(towards);
+  const glm::vec3 leaving = flux * medium_.scattering * glsl::transmittance_between(medium_, x, eye) *
+                            glsl::phase_function(medium_.g, direction, towards / distance);
+  film.add(pixel, glm::dvec3(leaving) * (perSolidAngle / (static_cast<double>(distance) * distance)));
+}
+
+void LightTracer::reflect(const Hit& hit, const glm::vec3& direction, const glm::vec3& flux,
+                          Film& film) const {
+  const std::optional<Surface> met = surfaceAlong(view_.rays, hit, direction);
+  if (!met || met->specular()) return;
+  const glm::vec3 eye(view_.frame.camera_position), towards = eye - met->position;
+  const float distance = glm::length(towards),
+              cosine = glm::dot(met->values.geometric_normal, towards) / distance;
+  size_t pixel = 0;
+  float depth = 0;
+  double perSolidAngle = 0;
+  if (!(cosine > 0) || !project(met->position, pixel, depth, perSolidAngle) || !(depths_[pixel] > 0)) return;
+  const glm::vec3 origin = met->rayOrigin(towards);
+  if (view_.rays.occluded(origin, eye - origin, 1.f)) return;
+  const glm::vec3 reflected =
+      flux * glsl::brdf(met->brdf, met->values.normal, towards / distance, -direction) * cosine;
+  film.add(pixel, glm::dvec3(reflected * glsl::transmittance_between(medium_, met->position, eye)) *
+                      (perSolidAngle / (static_cast<double>(distance) * distance)));
+}
+
+}  // namespace limn::reference

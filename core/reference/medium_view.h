@@ -1,0 +1,33 @@
+// The medium as the reference's estimators see it.
+#pragma once
+
+#include "core/reference/reference.h"
+#include "core/scene/medium.h"
+
+namespace limn::reference {
+
+/// Of the request's scene and pose; without extinction if there is none.
+inline glsl::Medium mediumOf(const Request& request) {
+  glsl::FrameBlock frame{};
+  scene::setMedium(frame, request.scene.medium, request.pose.bounds);
+  return scene::mediumOf(frame);
+}
+
+/// Lights that shine into the medium and through specular objects: the request's, without those that stand
+/// for the environment.
+inline std::vector<glsl::Light> mediumLights(const Request& request) {
+  const int own = ownLights(request.pose);
+  std::vector<glsl::Light> lights;
+  for (int i = 0; i < own; ++i)
+    if (request.light == allLights || request.light == i)
+      lights.push_back(request.pose.lights[static_cast<size_t>(i)]);
+  return lights;
+}
+
+/// Point on a light that u in [0, 1)^2 stands for.
+inline glm::vec3 lightPoint(const glsl::Light& light, glm::vec2 u) {
+  return glm::vec3(light.position) + (u.x - 0.5f) * light.axis_u.w * glm::vec3(light.axis_u) +
+         (u.y - 0.5f) * light.axis_v.w * glm::vec3(light.axis_v);
+}
+
+}  // namespace limn::reference

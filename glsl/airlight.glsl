@@ -1,0 +1,79 @@
+// Airlight: light of one source that is scattered once on its way to the eye, along a stretch of the viewing ray that the
+// source lights.
+//
+// With t = s0 + h tan(angle) (s0, h: closest approach of ray and source) dt / r^2 = d(angle) / h: what is left to integrate
+// is smooth (Kulla and Fajardo 2012, equiangular sampling; Sun et al. 2005 tabulate the same integral). Callers divide the
+// ray evenly in the angle; each stretch is integrated by the Gauss-Legendre rule with two nodes.
+#ifndef LIMN_AIRLIGHT_GLSL
+#define LIMN_AIRLIGHT_GLSL
+#include "glsl/language.glsl"
+#include "glsl/media.glsl"
+#include "glsl/reflective_map.glsl"
+LIMN_BEGIN
+
+// Node of the Gauss-Legendre rule with two points on [-1, 1], whose weights are 1.
+LIMN_CONST float gauss_node = 0.57735026918963f;
+
+// A source has this size, in radii of the medium's ball: nearer to it the radiance grows no further.
+LIMN_CONST float airlight_least_distance = 1e-4f;
+
+// One light, or a point on it, as a viewing ray sees it.
+struct AirlightRay {
+  vec3 eye;
+  vec3 direction;  // unit
+  vec3 source;     // position; directional lights: unused
+  float nearest;   // s0: where the ray passes the source, m
+  float distance;  // h: how far from it, m
+  bool parallel;   // directional light: no inverse square
+};
+
+LIMN_FN AirlightRay airlight_ray(Medium m, Light light, vec3 source, vec3 eye, vec3 direction) {
+  AirlightRay r;
+  r.eye = eye;
+  r.direction = direction;
+  r.source = source;
+  r.parallel = light.info.x == light_directional;
+  r.nearest = dot(source - eye, direction);
+  vec3 across = source - eye - r.nearest * direction;
+  r.distance = max(sqrt(dot(across, across)), airlight_least_distance * m.ball.w);
+  return r;
+}
+
+// The variable that a stretch is divided evenly in, and back to metres along the ray.
+LIMN_FN float airlight_variable(AirlightRay r, float t) {
+  return r.parallel ? t : atan((t - r.nearest) / r.distance);
+}
+LIMN_FN float airlight_metres(AirlightRay r, float variable) {
+  return r.parallel ? variable : r.nearest + r.distance * tan(variable);
+}
+
+// Radiance per unit of the variable that is scattered at t metres towards the eye and arrives there.
+LIMN_FN vec3 airlight_density(Medium m, Light light, AirlightRay r, float t, int samples) {
+  vec3 x = r.eye + t * r.direction;
+  vec3 sent = reflective_map_intensity(light, r.source, x, samples);
+  vec3 from = vec3(light.direction);
+  float measure = 1.0f;
+  float to_light = 0.0f;
+  if (r.parallel) {
+    to_light = ball_length(m.ball, x, -from, 3.0e38f);
+  } else {
+    vec3 offset = x - r.source;
+    from = offset / max(length(offset), 1e-30f);
+    measure = 1.0f / r.distance;
+    to_light = ball_length_between(m.ball, r.source, x);
+  }
+  float to_eye = ball_length(m.ball, r.eye, r.direction, t);
+  return m.scattering * sent * medium_transmittance(m, to_light + to_eye) *
+         (phase_function(m.g, from, -r.direction) * measure);
+}
+
+// Over one stretch, given in the variable.
+LIMN_FN vec3 airlight_stretch(Medium m, Light light, AirlightRay r, float a, float b, int samples) {
+  float middle = 0.5f * (a + b);
+  float step = 0.5f * (b - a) * gauss_node;
+  return (0.5f * (b - a)) * (airlight_density(m, light, r, airlight_metres(r, middle - step), samples) +
+                             airlight_density(m, light, r, airlight_metres(r, middle + step), samples));
+}
+
+LIMN_END
+#endif  // LIMN_AIRLIGHT_GLSL

@@ -1,0 +1,50 @@
+// Light that left a specular object: the elements of the caustic-ray buffer, and the path of one light ray through the
+// object it meets (thesis, section 8.3.2). The reference traces the same path with exact intersections.
+#ifndef LIMN_CAUSTIC_RAY_GLSL
+#define LIMN_CAUSTIC_RAY_GLSL
+#include "glsl/language.glsl"
+#include "glsl/media.glsl"
+LIMN_BEGIN
+
+LIMN_CONST float caustic_ray_none = 0.0f;      // no light goes here
+LIMN_CONST float caustic_ray_open = 1.0f;      // ends where the medium does
+LIMN_CONST float caustic_ray_surface = 2.0f;   // ends on a surface of the scene
+
+// Storage buffer element.
+struct CausticRay {
+  vec4 start;      // xyz: p1, where the light leaves the object; w: length of the segment p1 p2, m
+  vec4 direction;  // xyz: unit, of propagation; w: caustic_ray_*
+  vec4 power;      // rgb: flux at p1, W; w: unused
+};
+
+LIMN_CONST uint caustic_reflection = 1u;
+LIMN_CONST uint caustic_refraction = 2u;
+
+// One event: light along `direction` (unit, of propagation) meets a surface of normal n (unit, either side). `inside`:
+// within the body that the surface bounds.
+struct SpecularEvent {
+  vec3 reflected;     // unit, of propagation
+  vec3 reflectance;
+  vec3 refracted;     // 0: total internal reflection
+  vec3 transmittance;
+};
+
+// The cosine of incidence must be positive: callers turn n against the direction, and drop light that a shading normal
+// says comes from behind.
+LIMN_FN SpecularEvent specular_event(Optics o, vec3 direction, vec3 n, bool inside) {
+  SpecularEvent e;
+  vec3 l = -direction;
+  float cosine = dot(n, l);
+  bool thin = !(o.thickness > 0.0f);
+  float n1 = inside && !thin ? o.ior : 1.0f;
+  float n2 = inside || thin ? 1.0f : o.ior;
+  if (thin) n2 = o.ior;
+  e.reflected = mirrored(l, n);
+  e.reflectance = optics_reflectance(o, cosine, n1, n2);
+  e.refracted = thin ? direction : refracted(l, n, n1 / n2);
+  e.transmittance = optics_transmittance(o, cosine, n1, n2);
+  return e;
+}
+
+LIMN_END
+#endif  // LIMN_CAUSTIC_RAY_GLSL

@@ -1,0 +1,27 @@
+// Specular objects as the views of caustic rays see them. BACK 1: the farthest surface wins instead of the nearest.
+#include "glsl/blocks.glsl"
+#include "glsl/shadow_view.glsl"
+#include "glsl/vertex.glsl"
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in uvec2 entry;  // x: draw instance, y: view
+layout(location = 2) in uvec2 directions;
+
+layout(std430, binding = 0) readonly buffer Instances { Instance instances[]; };
+layout(std430, binding = 4) readonly buffer Views { ShadowView views[]; };
+
+layout(location = 0) out vec3 normal_ws;
+layout(location = 1) out float linear_depth;
+layout(location = 2) flat out uvec2 surface;  // draw instance, layer
+
+void main() {
+  ShadowView view = views[entry.y];
+  vec3 world = (instances[entry.x].object_to_world * vec4(position, 1.0)).xyz;
+  gl_Position = shadow_clip(view, world);
+#if BACK
+  gl_Position.z = gl_Position.w - gl_Position.z;
+#endif
+  normal_ws = mat3(instances[entry.x].normal_to_world) * vertex_unpack_normal(directions.x);
+  linear_depth = shadow_normalise(view, shadow_view_depth(view, world));
+  surface = uvec2(entry.x, view.info.y);
+}

@@ -1,0 +1,164 @@
+// Caustic rays: each texel of the specular buffers is a light ray, which is reflected at the front, or refracted there and
+// again where it leaves the object, and ends where it meets the rest of the scene (thesis, section 8.3.2).
+// PATHS: caustic_reflection | caustic_refraction; PATH_COUNT: how many these are.
+#include "glsl/caustic_ray.glsl"
+#include "glsl/caustics/specular_buffers.glsl"
+#include "glsl/medium_input.glsl"
+#include "glsl/reflective_map.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 4) uniform sampler2DArray scene_depth;  // without specular objects
+layout(std430, binding = 0) readonly buffer Lights { Light lights[]; };
+layout(std430, binding = 1) readonly buffer Views { ShadowView views[]; };
+layout(std430, binding = 2) readonly buffer Layers { vec4 layers[]; };  // x: of shadow_lights; y: diameter of the objects, m
+layout(std430, binding = 3) readonly buffer Instances { Instance instances[]; };
+layout(std430, binding = 4) readonly buffer Materials { Material materials[]; };
+layout(std430, binding = 5) readonly buffer SceneViews { ShadowView scene_views[]; };
+layout(std430, binding = 6) readonly buffer SceneLights { ShadowLight scene_lights[]; };
+layout(std430, binding = 7) writeonly buffer Rays { CausticRay rays[]; };
+uniform int light_samples;
+uniform int steps;
+
+const float least_cosine = 1e-4;
+const int end_refinements = 8;
+const float shadow_bias = 2.0;  // texel footprints
+
+// How far p lies behind what the light sees in the scene without specular objects, metres; < 0: before it, or nothing known.
+float behind_scene(ShadowLight maps, vec3 p) {
+  ShadowView first = scene_views[maps.info.x];
+  uint layer = maps.info.x + shadow_face(maps.info.y, first, p);
+  ShadowView view = scene_views[layer];
+  ShadowPoint q = shadow_project(view, p);
+  if (!shadow_inside(q)) return -1.0;
+  ivec2 texel = min(ivec2(q.uv * float(view.info.z)), ivec2(view.info.z) - 1);
+  float stored = texelFetch(scene_depth, ivec3(texel, layer), 0).x;
+  return stored < 1.0 ? q.depth - shadow_metres(view, stored) : -1.0;
+}
+
+bool light_blocked(ShadowLight maps, vec3 p) {
+  ShadowView view = scene_views[maps.info.x];
+  float bias = shadow_bias * shadow_footprint(view, length(p - view.origin.xyz));
+  return behind_scene(maps, p) > bias;
+}
+
+// Ends the ray where it passes from before the scene to behind it, as the light sees it.
+void find_end(ShadowLight maps, inout CausticRay ray) {
+  vec3 start = ray.start.xyz;
+  vec3 direction = ray.direction.xyz;
+  float before = 0.0;
+  float behind = -1.0;
+  bool last_behind = true;  // the crossing must be seen to happen
+  for (int i = 0; i <= steps; ++i) {
+    float t = ray.start.w * float(i) / float(steps);
+    bool now = behind_scene(maps, start + t * direction) > 0.0;
+    if (now && !last_behind) {
+      behind = t;
+      break;
+    }
+    last_behind = now;
+    before = t;
+  }
+  if (behind < 0.0) return;
+  for (int i = 0; i < end_refinements; ++i) {
+    float t = 0.5 * (before + behind);
+    bool now = behind_scene(maps, start + t * direction) > 0.0;
+    before = now ? before : t;
+    behind = now ? t : behind;
+  }
+  ray.start.w = 0.5 * (before + behind);
+  ray.direction.w = caustic_ray_surface;
+}
+
+CausticRay no_ray() { return CausticRay(vec4(0.0), vec4(0.0, 0.0, 1.0, caustic_ray_none), vec4(0.0)); }
+
+CausticRay ray_from(Medium medium, ShadowLight maps, vec3 start, vec3 direction, vec3 power) {
+  float reach = ball_range(medium.ball, start, direction).y;
+  if (!(reach > 0.0) || all(equal(power, vec3(0.0)))) return no_ray();
+  CausticRay ray = CausticRay(vec4(start, reach), vec4(direction, caustic_ray_open), vec4(power, 0.0));
+  find_end(maps, ray);
+  return ray;
+}
+
+// The light of one texel at the front of a specular object.
+struct Incident {
+  ShadowView view;
+  int layer;
+  vec3 position;
+  vec3 direction;  // unit, of propagation
+  vec3 flux;       // W
+  vec3 normal;     // unit, against the direction
+  float instance;  // + 1
+  bool inside;     // the light comes from within the body
+  Optics optics;
+};
+
+CausticRay reflected_ray(Medium medium, ShadowLight maps, Incident at, SpecularEvent event) {
+  if (at.inside) return no_ray();
+  return ray_from(medium, maps, at.position, event.reflected, at.flux * event.reflectance);
+}
+
+CausticRay refracted_ray(Medium medium, ShadowLight maps, Incident at, SpecularEvent event, float diameter) {
+  vec3 flux = at.flux * event.transmittance;
+  if (event.refracted == vec3(0.0) || flux == vec3(0.0)) return no_ray();
+  ShadowPoint q = shadow_project(at.view, at.position);
+  float near = buffer_depth(front_surface, front_depth, q.uv, at.layer, at.instance);
+  float far = buffer_depth(back_surface, back_depth, q.uv, at.layer, at.instance);
+  bool sheet = !(far - near > 1e-6);  // a surface that bounds no body: light stays in the medium behind it
+  if (at.inside || sheet || !(at.optics.thickness > 0.0))
+    return ray_from(medium, maps, at.position, event.refracted, flux);
+  BodyExit leaves = body_exit(at.view, at.position, event.refracted, diameter, at.layer, at.instance);
+  if (!(dot(leaves.normal, event.refracted) > least_cosine)) return no_ray();
+  SpecularEvent second = specular_event(at.optics, event.refracted, -leaves.normal, true);
+  if (second.refracted == vec3(0.0)) return no_ray();
+  flux *= second.transmittance * optics_absorption(at.optics, leaves.distance);
+  return ray_from(medium, maps, at.position + leaves.distance * event.refracted, second.refracted, flux);
+}
+
+void main() {
+  ivec3 at = ivec3(gl_GlobalInvocationID);
+  ShadowView view = views[at.z];
+  vec4 layer = layers[at.z];
+  ShadowLight maps = scene_lights[uint(layer.x)];
+  Light light = lights[maps.info.z];
+  Medium medium = scene_medium();
+  int side = int(view.info.z);
+  if (any(greaterThanEqual(at.xy, ivec2(side)))) return;
+  vec4 front = texelFetch(front_surface, at, 0);
+  CausticRay reflection = no_ray();
+  CausticRay refraction = no_ray();
+  if (front.w != 0.0) {
+    vec2 uv = (vec2(at.xy) + 0.5) / float(side);
+    vec3 local = shadow_unproject_local(view, uv, shadow_metres(view, texelFetch(front_depth, at, 0).x));
+    Incident incident;
+    incident.view = view;
+    incident.layer = at.z;
+    incident.position = view.origin.xyz + shadow_world_offset(view, local);
+    bool parallel = view.info.x == shadow_orthographic;
+    incident.direction = parallel ? view.axis_z.xyz : normalize(incident.position - view.origin.xyz);
+    incident.instance = abs(front.w);
+    incident.inside = front.w < 0.0;
+    incident.normal = incident.inside ? -front.xyz : front.xyz;
+    incident.optics = material_optics(materials[instances[uint(incident.instance) - 1u].info.x]);
+    incident.flux = reflective_map_intensity(light, view.origin.xyz, incident.position, light_samples) *
+                    (reflective_map_measure(view, uv) / (float(side) * float(side)));
+    incident.flux *= parallel ? transmittance_to_infinity(medium, incident.position, -incident.direction)
+                              : transmittance_between(medium, view.origin.xyz, incident.position);
+    bool dark = incident.flux == vec3(0.0) || !(dot(incident.normal, -incident.direction) > least_cosine);
+    if (!dark && !light_blocked(maps, incident.position)) {
+      SpecularEvent event = specular_event(incident.optics, incident.direction, incident.normal, incident.inside);
+#if PATHS & 1
+      reflection = reflected_ray(medium, maps, incident, event);
+#endif
+#if PATHS & 2
+      refraction = refracted_ray(medium, maps, incident, event, layer.y);
+#endif
+    }
+  }
+  int index = (at.z * side + at.y) * side + at.x;
+#if PATHS & 1
+  rays[index] = reflection;
+#endif
+#if PATHS & 2
+  rays[index + (PATH_COUNT - 1) * int(gl_NumWorkGroups.z) * side * side] = refraction;
+#endif
+}
