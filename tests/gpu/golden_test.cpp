@@ -30,12 +30,19 @@ class GoldenTest : public RenderTest {
     return e;
   }
 
-  /// Scenes side by side in one picture; those that answer the environment's light are lit by a sky alone.
+  /// Scenes side by side in one picture; those that answer the environment's light are lit by a sky alone,
+  /// and those that answer media or caustics have their own scenes.
   Image strip(const std::vector<render::TechniqueUse>& techniques) {
     const bool outdoors = std::ranges::any_of(techniques, [](const render::TechniqueUse& use) {
       return contains(use.plugin->info->terms, Term::environment);
     });
-    const std::vector<std::string> scenes{"cornell_box", "balls", "lights"};
+    const bool optics = std::ranges::any_of(techniques, [](const render::TechniqueUse& use) {
+      const TermSet terms = use.plugin->info->terms;
+      return contains(terms, Term::media) || contains(terms, Term::caustic);
+    });
+    const std::vector<std::string> scenes = optics
+                                                ? std::vector<std::string>{"glass_sphere", "ring", "gem"}
+                                                : std::vector<std::string>{"cornell_box", "balls", "lights"};
     Image whole(width * int(scenes.size()), height, {"R", "G", "B"});
     for (size_t s = 0; s < scenes.size(); ++s) {
       scene::Scene scene = asset(scenes[s]);

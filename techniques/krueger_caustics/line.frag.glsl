@@ -1,0 +1,10 @@
+// A line of light as Krueger et al. draw it: the flux of its ray times a constant.
+#include "glsl/caustics/line_fragment.glsl"
+
+uniform float scale;
+
+void main() {
+  LineFragment f = line_fragment();
+  if (f.hidden) discard;
+  radiance = vec4(rays[ray_index].power.rgb * scale, 0.0);
+}

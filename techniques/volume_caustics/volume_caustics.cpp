@@ -1,0 +1,69 @@
+// Volume caustics: light that specular objects reflect or refract into the medium, as lines.
+#include "core/caustics/ray_lines.h"
+#include "core/technique/technique.h"
+
+namespace {
+
+using namespace limn;
+
+constexpr Parameter parameters[] = {
+    caustics::bufferSizeParameter(),
+    caustics::sceneMapSizeParameter(),
+    caustics::pathsParameter(),
+    caustics::lightSamplesParameter(),
+    boolean("beams", true,
+            "Lines whose beam is wider than a pixel become quads of that width; false: lines alone, as "
+            "published"),
+    integer("steps", 1, {1, 4}, "steps",
+            "Regular points of the viewing ray that share a fragment's light; 1: its place on the light ray"),
+    real("step", 0.02, {1e-4, 1}, "scene radii", "Distance between these points"),
+    real("filter_radius", 1, {0.1, 8}, "steps", "Radius of the Gaussian by which they share"),
+};
+constexpr StressCase stress[] = {
+    {.name = "buffer of 1 texel", .settings = "buffer_size=1", .factor = 0},
+    {.name = "buffer of 16 texels", .settings = "buffer_size=16", .factor = 6},
+    {.name = "lines alone", .settings = "beams=false", .factor = 6},
+    {.name = "reflection alone", .settings = "paths=reflection", .factor = 0},
+    {.name = "four steps", .settings = "steps=4", .factor = 2},
+};
+
+class VolumeCaustics : public Technique {
+  caustics::RayLines lines_;
+
+  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                 const TermRequest& request) override {
+    const ParameterValues& p = inputs.parameters;
+    const char* dark = caustics::whyNoRays(inputs, request, true);
+    caustics::CausticRays rays;
+    if (!dark) rays = inputs.causticRays.request(request.lights, caustics::causticRayDesc(p));
+    if (!dark && !rays.rays) dark = "no light meets a specular surface";
+    if (dark) {
+      graph.leaveOut("caustic lines", info.name, dark);
+      return request.target;
+    }
+    const int steps = p.integer("steps");
+    return lines_.add(
+        graph, inputs, rays, request.target,
+        {.technique = info.name,
+         .fragmentShader = "techniques/volume_caustics/line.frag.glsl",
+         .defines = {{"STEPS", std::to_string(steps)}},
+         .beams = p.boolean("beams"),
+         .bind = [steps, step = p.real("step"), radius = p.real("filter_radius")](gpu::Program& program) {
+           if (steps == 1) return;
+           program.set("step_size", step);
+           program.set("filter_radius", radius);
+         }});
+  }
+
+ public:
+  static constexpr TechniqueInfo info{.name = "volume_caustics",
+                                      .title = "Volume caustics",
+                                      .source = "Hu et al. 2010; thesis, chapter 8",
+                                      .terms = termSet(Term::media),
+                                      .parameters = parameters,
+                                      .stress = stress};
+};
+
+}  // namespace
+
+LIMN_TECHNIQUE(VolumeCaustics::info, VolumeCaustics)

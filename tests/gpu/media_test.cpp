@@ -1,0 +1,247 @@
+// Media, volume caustics and surface caustics against the reference, and what is left out where there are
+// none.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "core/reference/reference.h"
+#include "core/scene/camera.h"
+#include "tests/gpu/render_test.h"
+
+namespace limn {
+namespace {
+
+using render::Output;
+
+constexpr int width = 128, height = 96;
+
+class MediaTest : public RenderTest {
+ protected:
+  static Image reference(render::Renderer& renderer, const scene::Scene& scene, reference::Term term,
+                         int spp) {
+    reference::Request request{.scene = scene,
+                               .pose = renderer.pose(),
+                               .camera = renderer.pose().cameras.at(0),
+                               .progress = {},
+                               .checkpoint = {}};
+    request.width = width;
+    request.height = height;
+    request.term = term;
+    request.spp = spp;
+    return reference::render(request).image;
+  }
+
+  static double mean(const Image& image) {
+    double sum = 0;
+    for (int y = 0; y < image.height(); ++y)
+      for (int x = 0; x < image.width(); ++x)
+        for (int c = 0; c < 3; ++c) sum += image.at(x, y, c);
+    return sum / (3.0 * image.width() * image.height());
+  }
+
+  static bool sameBits(const Image& a, const Image& b) {
+    return std::equal(a.data().begin(), a.data().end(), b.data().begin(), b.data().end());
+  }
+
+  static std::string stateOf(const render::Renderer& renderer, const std::string& technique,
+                             const std::string& pass) {
+    for (const auto& report : renderer.explain())
+      if (report.technique == technique && report.name == pass)
+        return report.state == frame::PassState::leftOut ? report.reason : "run";
+    return "unknown";
+  }
+};
+
+TEST_F(MediaTest, InScatteredLightIsTheReferencesForEveryPhaseFunction) {
+  for (const char* name : {"glass_sphere", "ring", "gem"})
+    for (const float g : {-0.7f, 0.f, 0.7f}) {
+      SCOPED_TRACE(fmt::format("{} g {}", name, g));
+      scene::Scene scene = asset(name);
+      scene.medium.g = g;
+      render::Renderer renderer(device(), scene);
+      const Image airlight =
+          picture(renderer, settings(width, height, Output::media, {technique("airlight")}));
+      const Image lines =
+          picture(renderer, settings(width, height, Output::media, {technique("volume_caustics")}));
+      const Image truth = reference(renderer, scene, reference::Term::media, 32);
+      EXPECT_NEAR((mean(airlight) + mean(lines)) / mean(truth), 1, 0.05);
+      EXPECT_GT(mean(lines), 0);
+    }
+}
+
+TEST_F(MediaTest, BufferAndScreenResolutionDoNotChangeTheMean) {
+  for (const char* name : {"glass_sphere", "ring", "gem"}) {
+    SCOPED_TRACE(name);
+    const scene::Scene scene = asset(name);
+    render::Renderer renderer(device(), scene);
+    const auto brightness = [&](int scale, const char* size, const char* beams) {
+      return mean(picture(
+          renderer, settings(width * scale, height * scale, Output::media,
+                             {technique("volume_caustics", {{"buffer_size", size}, {"beams", beams}})})));
+    };
+    for (const char* beams : {"true", "false"}) {
+      const double usual = brightness(1, "256", beams);
+      EXPECT_NEAR(brightness(1, "512", beams) / usual, 1, 0.02) << "beams " << beams;
+      EXPECT_NEAR(brightness(2, "256", beams) / usual, 1, 0.02) << "beams " << beams;
+    }
+    EXPECT_NEAR(brightness(1, "256", "true") / brightness(1, "256", "false"), 1, 0.02);
+  }
+}
+
+TEST_F(MediaTest, SurfaceCausticsAreAsBrightAsTheReference) {
+  scene::Scene scene = asset("glass_sphere");
+  scene.medium = {};
+  render::Renderer renderer(device(), scene);
+  const Image ours =
+      picture(renderer, settings(width, height, Output::caustic, {technique("surface_caustics")}));
+  const Image truth = reference(renderer, scene, reference::Term::caustic, 64);
+  EXPECT_NEAR(mean(ours) / mean(truth), 1, 0.1);
+}
+
+TEST_F(MediaTest, AMediumThatScattersNothingCostsNothing) {
+  scene::Scene scene = asset("glass_sphere");
+  scene.medium.sigmaS = glm::vec3(0);
+  render::Renderer renderer(device(), scene);
+  const Image with =
+      picture(renderer,
+              settings(width, height, Output::final,
+                       {technique("hard_shadow_map"), technique("volume_caustics"), technique("airlight")}));
+  EXPECT_EQ(stateOf(renderer, "volume_caustics", "caustic lines"), "no medium scatters light");
+  EXPECT_EQ(stateOf(renderer, "airlight", "airlight"), "no medium scatters light");
+  EXPECT_EQ(stateOf(renderer, "core", "transmittance"), "run") << "it absorbs";
+  const Image without =
+      picture(renderer, settings(width, height, Output::final, {technique("hard_shadow_map")}));
+  EXPECT_TRUE(sameBits(with, without));
+}
+
+TEST_F(MediaTest, NoMediumIsTheSamePictureBitForBit) {
+  scene::Scene scene = asset("glass_sphere");
+  scene.medium = {};
+  render::Renderer renderer(device(), scene);
+  const Image with = picture(renderer, settings(width, height, Output::final,
+                                                {technique("volume_caustics"), technique("airlight")}));
+  EXPECT_EQ(stateOf(renderer, "core", "transmittance"), "the scene has no medium");
+  EXPECT_TRUE(sameBits(with, picture(renderer, settings(width, height, Output::final))));
+}
+
+TEST_F(MediaTest, WithoutSpecularSurfacesThereAreNoLines) {
+  scene::Scene scene = asset("balls");
+  scene.medium.sigmaS = glm::vec3(0.1f);
+  render::Renderer renderer(device(), scene);
+  expectWithin(picture(renderer, settings(width, height, Output::media, {technique("volume_caustics")})), 0,
+               0);
+  EXPECT_EQ(stateOf(renderer, "volume_caustics", "caustic lines"), "the scene has no specular surface");
+  EXPECT_EQ(stateOf(renderer, "caustics", "specular front"), "unknown");
+  expectWithin(picture(renderer, settings(width, height, Output::caustic, {technique("surface_caustics")})),
+               0, 0);
+}
+
+TEST_F(MediaTest, TechniquesThatShareRaysTraceThemOnce) {
+  const scene::Scene scene = asset("glass_sphere");
+  render::Renderer renderer(device(), scene);
+  picture(renderer, settings(width, height, Output::final,
+                             {technique("volume_caustics"), technique("surface_caustics")}));
+  int traced = 0;
+  for (const auto& pass : renderer.explain()) traced += pass.name == "caustic rays";
+  EXPECT_EQ(traced, 1);
+}
+
+TEST_F(MediaTest, TermsSumToTheFinalPicture) {
+  const scene::Scene scene = asset("glass_sphere");
+  render::Renderer renderer(device(), scene);
+  const std::vector<render::TechniqueUse> all{technique("hard_shadow_map"), technique("volume_caustics"),
+                                              technique("surface_caustics"), technique("airlight")};
+  const Image whole = picture(renderer, settings(width, height, Output::final, all));
+  double sum = 0;
+  for (const Output part : {Output::direct, Output::caustic, Output::media})
+    sum += mean(picture(renderer, settings(width, height, part, all)));
+  EXPECT_NEAR(sum / mean(whole), 1, 1e-4);
+}
+
+TEST_F(MediaTest, SurfacesAreAttenuatedAsInTheReference) {
+  scene::Scene scene = asset("lights");
+  scene.medium.sigmaA = glm::vec3(0.05f, 0.1f, 0.2f);
+  render::Renderer renderer(device(), scene);
+  for (uint32_t light = 0; light < renderer.pose().lights.size(); ++light) {
+    SCOPED_TRACE(renderer.pose().lightNames[light]);
+    reference::Request request{.scene = scene,
+                               .pose = renderer.pose(),
+                               .camera = renderer.pose().cameras.at(0),
+                               .progress = {},
+                               .checkpoint = {}};
+    request.width = width;
+    request.height = height;
+    request.light = int(light);
+    request.spp = 64;
+    const double truth = mean(reference::render(request).image);
+    for (const char* shadows : {"sampled_area_light", "vssm"}) {
+      const Image lit =
+          picture(renderer, settings(width, height, Output::direct, {technique(shadows)}, int(light)));
+      EXPECT_NEAR(mean(lit) / truth, 1, 0.04) << shadows;
+    }
+  }
+}
+
+TEST_F(MediaTest, ExtremesGiveFinitePictures) {
+  struct Extreme {
+    const char* what;
+    float sigmaS, g, ior;
+  };
+  const Extreme extremes[] = {{"backward", 0.15f, -0.99f, 1.5f},
+                              {"forward", 0.15f, 0.99f, 1.5f},
+                              {"no refraction", 0.15f, 0, 1.0001f},
+                              {"diamond", 0.15f, 0, 2.42f},
+                              {"ior 3", 0.15f, 0, 3},
+                              {"thin", 1e-3f / 6, 0, 1.5f},
+                              {"thick", 10.f / 6, 0, 1.5f},
+                              {"opaque", 1000.f / 6, 0, 1.5f}};
+  for (const char* name : {"glass_sphere", "gem"})
+    for (const Extreme& e : extremes) {
+      SCOPED_TRACE(fmt::format("{} {}", name, e.what));
+      scene::Scene scene = asset(name);
+      scene.medium.sigmaS = glm::vec3(e.sigmaS);
+      scene.medium.g = e.g;
+      for (scene::Material& material : scene.materials)
+        if (material.transmission > 0) material.ior = e.ior;
+      render::Renderer renderer(device(), scene);
+      const Image image = picture(renderer, settings(width, height, Output::media,
+                                                     {technique("airlight"), technique("volume_caustics")}));
+      expectWithin(image, 0, 1e4f);
+      if (e.sigmaS > 100) {
+        EXPECT_LT(mean(image), 1e-3) << "the light is gone before it gets anywhere";
+      }
+    }
+}
+
+TEST_F(MediaTest, CameraOnALightRayAndLightInsideTheGlass) {
+  scene::Scene scene = asset("glass_sphere");
+  render::Renderer renderer(device(), scene);
+  const glm::vec3 light(renderer.pose().lights.at(0).position);
+  renderer.configure(
+      settings(width, height, Output::final, {technique("airlight"), technique("volume_caustics")}));
+  for (const glm::vec3& eye : {glm::vec3(0.2f, 0.75f, 0), glm::vec3(0.45f, 0.1f, 0), glm::vec3(0, 1.5f, 0)}) {
+    renderer.setCamera(scene::lookAt(eye, light, 0.8f));
+    renderer.render();
+    expectWithin(renderer.read(), 0, 1e5f);
+  }
+  for (scene::Node& node : scene.nodes)
+    if (node.light != scene::none) node.transform.translation = {0.1f, 1.6f, 0.05f};
+  render::Renderer inside(device(), scene);
+  const Image lines = picture(inside, settings(width, height, Output::media, {technique("volume_caustics")}));
+  expectWithin(lines, 0, 1e5f);
+  EXPECT_NEAR(mean(lines) / mean(reference(inside, scene, reference::Term::media, 64)), 1, 0.05);
+}
+
+TEST_F(MediaTest, OneTexelOfTheBufferIsOneRay) {
+  const scene::Scene scene = asset("glass_sphere");
+  render::Renderer renderer(device(), scene);
+  for (const char* size : {"1", "2", "3"})
+    expectWithin(picture(renderer, settings(width, height, Output::final,
+                                            {technique("volume_caustics", {{"buffer_size", size}}),
+                                             technique("surface_caustics", {{"buffer_size", size}})})),
+                 0, 1e5f);
+}
+
+}  // namespace
+}  // namespace limn
