@@ -7,8 +7,8 @@
 #ifndef LIMN_AIRLIGHT_GLSL
 #define LIMN_AIRLIGHT_GLSL
 #include "glsl/language.glsl"
+#include "glsl/light_intensity.glsl"
 #include "glsl/media.glsl"
-#include "glsl/reflective_map.glsl"
 LIMN_BEGIN
 
 // Node of the Gauss-Legendre rule with two points on [-1, 1], whose weights are 1.
@@ -50,7 +50,7 @@ LIMN_FN float airlight_metres(AirlightRay r, float variable) {
 // Radiance per unit of the variable that is scattered at t metres towards the eye and arrives there.
 LIMN_FN vec3 airlight_density(Medium m, Light light, AirlightRay r, float t, int samples) {
   vec3 x = r.eye + t * r.direction;
-  vec3 sent = reflective_map_intensity(light, r.source, x, samples);
+  vec3 sent = light_point_intensity(light, r.source, x, samples);
   vec3 from = vec3(light.direction);
   float measure = 1.0f;
   float to_light = 0.0f;

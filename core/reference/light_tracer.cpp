@@ -8,7 +8,7 @@
 
 #include "glsl/caustic_ray.glsl"
 #include "glsl/geometry.glsl"
-#include "glsl/reflective_map.glsl"
+#include "glsl/light_intensity.glsl"
 
 namespace limn::reference {
 namespace {
@@ -130,7 +130,7 @@ bool LightTracer::emit(const Sampler& sampler, uint64_t index, Path& path) const
   path.direction = aim.direction;
   const glm::vec3& p = path.surface.position;
   path.flux =
-      glsl::reflective_map_intensity(light, aim.origin, p, 1) * (aim.measure * static_cast<float>(count));
+      glsl::light_point_intensity(light, aim.origin, p, 1) * (aim.measure * static_cast<float>(count));
   path.flux *= light.info.x == glsl::light_directional
                    ? glsl::transmittance_to_infinity(medium_, p, -aim.direction)
                    : glsl::transmittance_between(medium_, aim.origin, p);

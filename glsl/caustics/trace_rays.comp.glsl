@@ -3,6 +3,7 @@
 // PATHS: caustic_reflection | caustic_refraction; PATH_COUNT: how many these are.
 #include "glsl/caustic_ray.glsl"
 #include "glsl/caustics/specular_buffers.glsl"
+#include "glsl/light_intensity.glsl"
 #include "glsl/medium_input.glsl"
 #include "glsl/reflective_map.glsl"
 
@@ -139,7 +140,7 @@ void main() {
     incident.inside = front.w < 0.0;
     incident.normal = incident.inside ? -front.xyz : front.xyz;
     incident.optics = material_optics(materials[instances[uint(incident.instance) - 1u].info.x]);
-    incident.flux = reflective_map_intensity(light, view.origin.xyz, incident.position, light_samples) *
+    incident.flux = light_point_intensity(light, view.origin.xyz, incident.position, light_samples) *
                     (reflective_map_measure(view, uv) / (float(side) * float(side)));
     incident.flux *= parallel ? transmittance_to_infinity(medium, incident.position, -incident.direction)
                               : transmittance_between(medium, view.origin.xyz, incident.position);
