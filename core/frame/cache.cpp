@@ -19,9 +19,10 @@ GLuint importedId(const Resource& r) {
   return r.importedTexture ? r.importedTexture->id() : r.importedBuffer->id();
 }
 
-bool keptWriterAbove(const Graph& graph, const Resource& r, uint32_t version) {
+/// `but`: a pass that does not count.
+bool keptWriterAbove(const Graph& graph, const Resource& r, uint32_t version, uint32_t but = no_index) {
   for (uint32_t v = r.versions[version].overwriter; v != no_index; v = r.versions[v].overwriter) {
-    if (graph.passes[r.versions[v].producer].kept) return true;
+    if (r.versions[v].producer != but && graph.passes[r.versions[v].producer].kept) return true;
   }
   return false;
 }
@@ -39,8 +40,10 @@ void planPass(const Graph& graph, uint32_t index, Pass& pass) {
     if (producer == index) continue;
     if (producer != no_index) {
       addUnique(pass.inputs, producer);
-    } else if (keptWriterAbove(graph, r, version)) {
-      pass.alwaysRun = true;  // the frame itself changes what this pass reads first
+    } else if (keptWriterAbove(graph, r, version, a.write() ? no_index : index)) {
+      // The frame itself changes what this pass reads first. (A pass that reads one part and writes another
+      // does not.)
+      pass.alwaysRun = true;
     }
   }
 }

@@ -140,11 +140,12 @@ frame::BufferHandle GpuDeform::addPass(frame::FrameGraph& graph, const GpuGeomet
   frame::PassBuilder builder = graph.addPass("deform");
   builder.read(jobHandle_, frame::Access::storageLoad, "which vertices to deform")
       .read(jointHandle_, frame::Access::storageLoad, "skin")
-      .read(weightHandle_, frame::Access::storageLoad, "morph weights");
+      .read(weightHandle_, frame::Access::storageLoad, "morph weights")
+      .read(geometry, frame::Access::storageLoad, "vertices at rest");
   const frame::ProgramHandle program =
       builder.program({.files = {"glsl/geometry/deform.comp.glsl"}, .defines = {}});
   const frame::BufferHandle deformed =
-      builder.write(geometry, frame::Access::storageLoadStore, "deformed vertices, from the ones at rest");
+      builder.write(geometry, frame::Access::storageStore, "deformed vertices, beside those at rest");
   builder.cacheable().execute([this, &streams, deformed, program](frame::PassContext& context) {
     const gl::Functions& gl = context.gl();
     context.bindStorage(0, deformed);

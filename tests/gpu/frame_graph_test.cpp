@@ -240,6 +240,25 @@ TEST_F(FrameGraphGpu, aCacheablePassAfterOneThatAlwaysRunsIsNeverCached) {
   }
 }
 
+TEST_F(FrameGraphGpu, aPassThatReadsOnePartAndWritesAnotherIsCached) {
+  gpu::Texture source(device(), "source", value_desc);
+  source.clear({1, 0, 0, 0});
+  FrameGraph graph;
+  const TextureHandle imported = graph.importTexture("source", source);
+  PassBuilder pass = graph.addPass("complete");
+  pass.cacheable().read(imported, Access::imageLoad, "the first part");
+  const TextureHandle completed = pass.write(imported, Access::imageStore, "the second");
+  pass.execute([](PassContext&) {});
+  graph.output(add(graph, "sum", completed, 10, true));
+  prepare(graph);
+  graph.execute();
+  graph.execute();
+  EXPECT_THAT(states(graph), ElementsAre("complete cached", "sum cached"));
+  graph.touch(imported);
+  graph.execute();
+  EXPECT_THAT(states(graph), ElementsAre("complete run", "sum run"));
+}
+
 // The second contents replace the first in the same memory: whoever needs the first needs its pass to run
 // again.
 TEST_F(FrameGraphGpu, contentsThatAreOverwrittenWithinTheFrameAreNotCached) {

@@ -69,5 +69,14 @@ TEST_F(SavingsTest, FindWhatASceneDoesNotNeed) {
   EXPECT_EQ(nlohmann::json::parse(bench::toJson(lit)).at("savings").size(), lit.size());
 }
 
+TEST_F(SavingsTest, SkinnedSurfacesThatDoNotMoveAreNotDeformedAgain) {
+  const scene::Scene robot = asset("robot");
+  render::Renderer renderer(device(), robot);
+  const auto results = savings(renderer, "hard_shadow_map", 0);
+  const SavingResult& unchanged = named(results, "unchanged results");
+  EXPECT_THAT(unchanged.passes, testing::IsSupersetOf({"core: deform", "shadow: shadow maps"}));
+  EXPECT_TRUE(unchanged.holds());
+}
+
 }  // namespace
 }  // namespace limn
