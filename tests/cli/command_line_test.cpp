@@ -103,7 +103,9 @@ TEST(CommandLine, ExplainCostComparesWithAndWithout) {
   EXPECT_TRUE(std::filesystem::exists(table));
   std::ifstream file(json);
   for (const auto& saving : nlohmann::json::parse(file).at("savings"))
-    if (saving.at("applies")) EXPECT_EQ(saving.at("forced").at("frame_ms").size(), 3u) << saving.at("name");
+    if (saving.at("applies")) {
+      EXPECT_EQ(saving.at("forced").at("frame_ms").size(), 3u) << saving.at("name");
+    }
   EXPECT_EQ(limn({"explain-cost", cornell_box, "--technique", "reflective_shadow_map", "--size", "32x24",
                   "--repeat", "3", "--output-term", "indirect", "--spp", "4"})
                 .status,

@@ -255,9 +255,15 @@ TEST_F(FourierMapsTest, RangesHoldAllThatIsThere) {
       }
     }
     const float extent = most / range.plane.w;
-    if (fit == FourierFit::map) EXPECT_NEAR(extent, 1, 1e-6);
-    if (fit == FourierFit::range) EXPECT_NEAR(extent, 0.4f, 0.02f);
-    if (fit == FourierFit::plane) EXPECT_NEAR(extent, 0.11f, 0.03f);
+    if (fit == FourierFit::map) {
+      EXPECT_NEAR(extent, 1, 1e-6);
+    }
+    if (fit == FourierFit::range) {
+      EXPECT_NEAR(extent, 0.4f, 0.02f);
+    }
+    if (fit == FourierFit::plane) {
+      EXPECT_NEAR(extent, 0.11f, 0.03f);
+    }
   }
 }
 

@@ -119,7 +119,9 @@ TEST_F(MomentSoftShadowMapTest, FloorsAreFullyLitOrFullyBlocked) {
     const PlanesScene blocked(2, 4);
     const Answer v = visibility(technique, {}, blocked.scene, blocked.pose, blocked.camera, {0});
     for (size_t i = 0; i < v.instance.size(); ++i) {
-      if (v.instance[i] == 0) ASSERT_EQ(v.lights[0][i], 0.f) << technique;
+      if (v.instance[i] == 0) {
+        ASSERT_EQ(v.lights[0][i], 0.f) << technique;
+      }
     }
   }
 }

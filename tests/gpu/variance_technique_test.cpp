@@ -98,7 +98,9 @@ TEST_F(VarianceTechniqueTest, KernelsThatAreAllLitOrAllBlockedAreExact) {
     roof.camera = scene::lookAt({0, 1, 3}, {0, 0, 0}, 0.8f);
     const Answer dark = answer(roof, {}, name);
     for (size_t i = 0; i < dark.instance.size(); ++i) {
-      if (dark.instance[i] == 0) ASSERT_EQ(dark.lights[0][i], 0.f) << name;
+      if (dark.instance[i] == 0) {
+        ASSERT_EQ(dark.lights[0][i], 0.f) << name;
+      }
     }
   }
 }
@@ -124,8 +126,12 @@ TEST_F(VarianceTechniqueTest, DepthRangesOfAMillionKeepTheirShadows) {
     for (int x = 0; x < side; ++x) {
       const vec3 p = s.position(v, x, y);
       if (v.instance[static_cast<size_t>(y * side + x)] != 0) continue;
-      if (std::max(std::abs(p.x), std::abs(p.z)) > 0.6f) EXPECT_GT(v.at(0, x, y), 0.9f) << p.x << " " << p.z;
-      if (std::max(std::abs(p.x), std::abs(p.z)) < 0.4f) EXPECT_LT(v.at(0, x, y), 0.1f) << p.x << " " << p.z;
+      if (std::max(std::abs(p.x), std::abs(p.z)) > 0.6f) {
+        EXPECT_GT(v.at(0, x, y), 0.9f) << p.x << " " << p.z;
+      }
+      if (std::max(std::abs(p.x), std::abs(p.z)) < 0.4f) {
+        EXPECT_LT(v.at(0, x, y), 0.1f) << p.x << " " << p.z;
+      }
     }
   }
 }

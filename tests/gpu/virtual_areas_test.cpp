@@ -228,7 +228,9 @@ TEST_F(VirtualAreasTest, SortedByClusterWithinEachSubBuffer) {
   for (uint32_t s = 0; s < block * block; ++s) {
     const uint32_t first = glsl::gather_begin(s, 500, block), end = glsl::gather_begin(s + 1, 500, block);
     for (uint32_t i = first; i < end; ++i) {
-      if (i > first) EXPECT_LE(c.sorted[i - 1].position.w, c.sorted[i].position.w);
+      if (i > first) {
+        EXPECT_LE(c.sorted[i - 1].position.w, c.sorted[i].position.w);
+      }
       const auto found = std::ranges::find_if(lights, [&](const glsl::VirtualPointLight& l) {
         return vec3(l.position) == vec3(c.sorted[i].position);
       });

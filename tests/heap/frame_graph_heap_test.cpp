@@ -1,45 +1,12 @@
-// Executing a frame graph allocates nothing on the heap and costs little. A program of its own, because it
-// replaces operator new.
+// Executing a frame graph allocates nothing on the heap and costs little.
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <new>
 
 #include "core/frame/frame_graph.h"
 #include "tests/gpu/gl_test.h"
-
-namespace {
-/// Heap allocations of this thread while counting is on.
-thread_local bool counting = false;
-thread_local int64_t allocations = 0;
-
-void* allocate(std::size_t bytes) {
-  if (counting) ++allocations;
-  if (void* memory = std::malloc(bytes > 0 ? bytes : 1)) return memory;
-  throw std::bad_alloc();
-}
-}  // namespace
-
-void* operator new(std::size_t bytes) {
-  return allocate(bytes);
-}
-void* operator new[](std::size_t bytes) {
-  return allocate(bytes);
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
+#include "tests/heap/counted_allocations.h"
 
 namespace limn::frame {
 namespace {
@@ -103,14 +70,12 @@ TEST_F(FrameGraphHeap, executingAllocatesNothing) {
       graph.execute(timing);
     }
     gl().Finish();
-    allocations = 0;
-    counting = true;
+    const test::CountedAllocations allocations;
     for (int frame = 0; frame < 10; ++frame) {
       if (frame % 2 == 0) graph.invalidate();
       graph.execute(timing);
     }
-    counting = false;
-    EXPECT_EQ(allocations, 0) << name(timing);
+    EXPECT_EQ(allocations.count(), 0) << name(timing);
   }
 }
 

@@ -40,7 +40,7 @@ class BenchReport : public testing::Test {
     row.referenceFile = "references/truth.exr";
     row.cost.renderer = "llvmpipe";
     row.cost.software = true;
-    row.cost.frameMs = {1, 1, 1, 3};
+    row.cost.frameMs = {1, 1, 1, 3, {}};
     row.spectrum = {1, 2, 3};
     row.picture = "pictures/" + technique + ".png";
     Image image = Image::rgb(48, 32);

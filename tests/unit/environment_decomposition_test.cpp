@@ -148,7 +148,9 @@ TEST(EnvironmentDecomposition, EnergyIsConservedForEveryMapAndSetting) {
           for (const scene::DistantRectangle& light : d.lights) {
             EXPECT_GE(std::min({light.irradiance.x, light.irradiance.y, light.irradiance.z}), 0);
             EXPECT_NEAR(dot(cross(light.axisU, light.axisV), light.centre), 1, 1e-6);
-            if (shape == RegionShape::squares) EXPECT_NEAR(light.sides.x, light.sides.y, 1e-6);
+            if (shape == RegionShape::squares) {
+              EXPECT_NEAR(light.sides.x, light.sides.y, 1e-6);
+            }
           }
         }
       }

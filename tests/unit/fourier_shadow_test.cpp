@@ -84,7 +84,9 @@ TEST(FourierShadow, SeriesStaysWithinItsBoundsForEveryOrderAndWindow) {
         const float v = glsl::fourier_visibility(static_cast<float>(lit), static_cast<float>(c.gain));
         ASSERT_GE(v, 1 - 2e-6f);
         ASSERT_LE(fourierSeries(-c.delta - (1 - 2 * c.delta) * i / 2000, order, window), 1 - c.dip + 1e-6);
-        if (window == FourierWindow::fejer) ASSERT_LE(lit, 1);
+        if (window == FourierWindow::fejer) {
+          ASSERT_LE(lit, 1);
+        }
       }
     }
   }
@@ -166,14 +168,18 @@ TEST(FourierShadow, QuantisationStaysWithinItsBound) {
   std::uniform_real_distribution<float> unit(0, 1);
   for (const int order : {1, 4, 16, 64}) {
     const double bound = fourierNoise(order, FourierWindow::none, 127);
-    if (order == 4) EXPECT_NEAR(bound, 0.006, 1e-3);
+    if (order == 4) {
+      EXPECT_NEAR(bound, 0.006, 1e-3);
+    }
     for (int i = 0; i < 3000; ++i) {
       const float z = unit(random), d = unit(random);
       const Reconstruction exact({{z, 1}}, d, order, FourierWindow::none, 0),
           quantised({{z, 1}}, d, order, FourierWindow::none, 0, 127);
       ASSERT_LE(std::abs(exact.lit - quantised.lit), bound + 1e-5);
       // The same series in both: a single blocker's depth survives the quantisation.
-      if (1 - quantised.lit > 0.05f) ASSERT_NEAR(quantised.blockedDepth / (1 - quantised.lit), z, 1e-3f);
+      if (1 - quantised.lit > 0.05f) {
+        ASSERT_NEAR(quantised.blockedDepth / (1 - quantised.lit), z, 1e-3f);
+      }
     }
   }
 }

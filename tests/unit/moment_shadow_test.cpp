@@ -111,7 +111,9 @@ TEST(MomentShadow, DistributionsOfOneAndTwoDepthsAreExact) {
       if (std::abs(z - d) < 0.04) continue;
       const MomentBlockers b = moment_blockers(moments({{z, 1}}), static_cast<float>(d), 0, bias);
       EXPECT_NEAR(b.share, z < d ? 1 : 0, 2e-3) << z << " " << d;
-      if (z < d) EXPECT_NEAR(b.depth, z, 2e-3) << z << " " << d;
+      if (z < d) {
+        EXPECT_NEAR(b.depth, z, 2e-3) << z << " " << d;
+      }
     }
   }
   for (const double share : {0.02, 0.3, 0.5, 0.95}) {
@@ -161,7 +163,9 @@ TEST(MomentShadow, NothingIsBlockedByWhatLiesBehind) {
     const Distribution points = randomDistribution(random, 1 + i % 5);
     const double nearest = std::ranges::min(points, {}, &Point::depth).depth;
     const auto d = static_cast<float>(nearest - 0.002);
-    if (d > 0) ASSERT_LE(moment_blockers(moments(points), d, 0, bias).share, 2e-3f) << i;
+    if (d > 0) {
+      ASSERT_LE(moment_blockers(moments(points), d, 0, bias).share, 2e-3f) << i;
+    }
     ASSERT_EQ(moment_blockers(moments(points), d, static_cast<float>(nearest), bias).share, 0.f);
   }
 }

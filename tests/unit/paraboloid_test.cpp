@@ -171,7 +171,9 @@ TEST(Paraboloid, BoundsHoldWhatTheHemisphereSees) {
       tight = vec4(std::min(tight.x, q.x), std::min(tight.y, q.y), std::max(tight.z, q.x),
                    std::max(tight.w, q.y));
     }
-    if (a.z < 0 && b.z < 0 && c.z < 0) EXPECT_GT(box.x, box.z) << "behind";
+    if (a.z < 0 && b.z < 0 && c.z < 0) {
+      EXPECT_GT(box.x, box.z) << "behind";
+    }
     if (tight.x > tight.z) continue;
     covered += (tight.z - tight.x) * (tight.w - tight.y);
     boxes += (box.z - box.x) * (box.w - box.y);

@@ -1,31 +1,11 @@
 // Animation, world matrices, skins, lights and cameras against values worked out by hand.
-#include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
-#include <new>
 
 #include "core/base/error.h"
 #include "core/scene/camera.h"
 #include "tests/support/scene_files.h"
-
-namespace {
-std::atomic<long> allocations{0};
-}  // namespace
-
-// Counts what the whole test program allocates, for the test that evaluate() does not.
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
 
 namespace limn::test {
 namespace {
@@ -364,19 +344,6 @@ TEST(SceneEvaluate, DynamicGeometryComesLast) {
   source->last = 2;
   source->normals = 2;
   EXPECT_THROW(evaluate(scene, 7), Error);
-}
-
-TEST(SceneEvaluate, ReusesItsMemory) {
-  GltfBuilder b = skinned();
-  b.light({{"type", "point"}}, {{"name", "a light with a name too long for small strings"}});
-  b.append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.25}}}});
-  b.node({{"name", "a camera with a name too long for small strings"}, {"camera", 0}});
-  const Scene scene = loadBuilt(b);
-  Pose pose;
-  evaluate(scene, 0, none, pose);
-  const long before = allocations;
-  for (int i = 1; i < 20; ++i) evaluate(scene, 0.1 * i, none, pose);
-  EXPECT_EQ(allocations, before);
 }
 
 TEST(SceneEvaluate, PoseFollowsAnotherScene) {
