@@ -36,15 +36,18 @@ SceneOptions sceneOptions(const bench::Case& c) {
                                .resolution = c.environment.resolution,
                                .shape = c.environment.shape};
   options.environmentReflection = c.environment.reflection;
+  if (c.medium.sigmaA) options.sigmaA = fmt::format("{}", *c.medium.sigmaA);
+  if (c.medium.sigmaS) options.sigmaS = fmt::format("{}", *c.medium.sigmaS);
+  options.g = c.medium.g;
   options.time = c.time;
   options.size = fmt::format("{}x{}", c.width, c.height);
   return options;
 }
 
 bool sameScene(const SceneOptions& a, const SceneOptions& b) {
-  return a.scene == b.scene && a.time == b.time && a.lightSize == b.lightSize &&
-         a.environment == b.environment && a.environmentLights == b.environmentLights &&
-         a.environmentReflection == b.environmentReflection;
+  return a.scene == b.scene && a.time == b.time && a.lightSize == b.lightSize && a.sigmaA == b.sigmaA &&
+         a.sigmaS == b.sigmaS && a.g == b.g && a.environment == b.environment &&
+         a.environmentLights == b.environmentLights && a.environmentReflection == b.environmentReflection;
 }
 
 render::Settings baseSettings(const View& view, render::Output output, int light) {

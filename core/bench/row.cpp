@@ -118,10 +118,15 @@ Json caseToJson(const Case& c) {
                       {"resolution", e.resolution},
                       {"shape", e.shape},
                       {"reflection", e.reflection}};
+  Json medium = Json::object();
+  for (const auto& [name, value] :
+       {std::pair("sigma_a", c.medium.sigmaA), {"sigma_s", c.medium.sigmaS}, {"g", c.medium.g}})
+    if (value) medium[name] = *value;
   return {{"scene", c.scene},
           {"camera", c.camera},
           {"light", c.light},
           {"environment", environment},
+          {"medium", medium},
           {"time", c.time},
           {"light_size", c.lightSize},
           {"technique", c.technique},
@@ -150,6 +155,11 @@ Case caseFromJson(const Json& json) {
     c.environment = {e.at("map").get<std::string>(), e.at("lights").get<double>(),
                      e.at("resolution").get<int>(), e.at("shape").get<std::string>(),
                      e.at("reflection").get<std::string>()};
+  }
+  if (const auto medium = json.find("medium"); medium != json.end()) {
+    for (const auto& [name, value] :
+         {std::pair("sigma_a", &c.medium.sigmaA), {"sigma_s", &c.medium.sigmaS}, {"g", &c.medium.g}})
+      if (medium->contains(name)) *value = medium->at(name).get<double>();
   }
   c.time = json.at("time").get<double>();
   c.lightSize = json.value("light_size", 0.0);

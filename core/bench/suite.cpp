@@ -20,6 +20,14 @@ std::string environmentLights(const EnvironmentSettings& e) {
   return fmt::format("{} {} {} {}", e.lights, e.resolution, e.shape, e.reflection);
 }
 
+/// What differs from the scene's medium; empty: nothing.
+std::string mediumText(const MediumSettings& m) {
+  std::string text;
+  for (const auto& [name, value] : {std::pair("sigma_a", m.sigmaA), {"sigma_s", m.sigmaS}, {"g", m.g}})
+    if (value) text += fmt::format("{}{} {}", text.empty() ? "" : " ", name, *value);
+  return text;
+}
+
 }  // namespace
 
 std::string question(const Case& c) {
@@ -28,6 +36,7 @@ std::string question(const Case& c) {
                   c.width, c.height, c.reference.spp, c.reference.noise, c.reference.bounces);
   if (!c.environment.map.empty()) text += "/" + c.environment.map;
   if (c.lightSize > 0) text += fmt::format("/light size {}", c.lightSize);
+  if (const std::string medium = mediumText(c.medium); !medium.empty()) text += "/" + medium;
   // All light together is asked of the map itself.
   if (!c.light.empty()) text += environmentLights(c.environment);
   return text;
@@ -43,6 +52,7 @@ std::string label(const Case& c) {
   if (c.lightSize > 0) text = fmt::format("light size {}/{}", c.lightSize, text);
   if (c.environment.lights > 0)
     text = fmt::format("environment lights {}/{}", environmentLights(c.environment), text);
+  if (const std::string medium = mediumText(c.medium); !medium.empty()) text = medium + "/" + text;
   char separator = '?';
   for (const auto& [name, value] : c.parameters) {
     text += fmt::format("{}{}={}", separator, name, value);

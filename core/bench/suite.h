@@ -28,6 +28,9 @@
 //     environment_resolution = 48       # and the other --environment options
 //     environment_shape = "squares"
 //     environment_reflection = "area"
+//     sigma_a = 0.02              # of the medium, per metre, as --sigma-a; default: the scene's
+//     sigma_s = 0.1               # likewise
+//     g = [-0.7, 0, 0.7]          # as --g
 //
 //     [[techniques]]
 //     technique = "pcss"          # or a combination, "vssm,airlight"
@@ -66,12 +69,19 @@ struct EnvironmentSettings {
   bool operator==(const EnvironmentSettings&) const = default;
 };
 
+/// As the options --sigma-a, --sigma-s and --g; nothing: as the scene has them.
+struct MediumSettings {
+  std::optional<double> sigmaA, sigmaS, g;
+  bool operator==(const MediumSettings&) const = default;
+};
+
 /// One picture of one technique: a row of the results.
 struct Case {
   std::string scene;
   std::string camera;  ///< "": the scene's first
   std::string light;   ///< "": all
   EnvironmentSettings environment;
+  MediumSettings medium;
   double lightSize = 0;  ///< as --light-size; 0: as the scene has them
   double time = 0;       ///< seconds of the scene's animation
   std::string term;      ///< as --output-term

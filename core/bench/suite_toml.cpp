@@ -154,6 +154,16 @@ std::vector<double> parseEnvironment(const TomlSection& scene, EnvironmentSettin
   return thresholds;
 }
 
+/// All but g, of which there may be several.
+std::vector<std::optional<double>> parseMedium(const TomlSection& scene, MediumSettings& medium) {
+  medium = {};
+  if (scene.find("sigma_a")) medium.sigmaA = scene.real("sigma_a", 0, 0, 1e9);
+  if (scene.find("sigma_s")) medium.sigmaS = scene.real("sigma_s", 0, 0, 1e9);
+  if (!scene.find("g")) return {std::nullopt};
+  const std::vector<double> values = scene.reals("g", 0, -0.999, 0.999);
+  return {values.begin(), values.end()};
+}
+
 /// All cases that ask one question of every technique.
 void addCases(const Case& base, const std::vector<SweptTechnique>& techniques, const std::vector<bool>& modes,
               bool separationFloor, std::vector<Case>& cases) {
@@ -220,10 +230,10 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
     techniques.push_back(parseTechnique(file, *table));
 
   for (const toml::table* table : suite.tables("scenes")) {
-    const TomlSection scene(
-        file, *table, "[[scenes]]",
-        {"scene", "cameras", "lights", "light_sizes", "time", "term", "max_masked_share", "environment",
-         "environment_lights", "environment_resolution", "environment_shape", "environment_reflection"});
+    const TomlSection scene(file, *table, "[[scenes]]",
+                            {"scene", "cameras", "lights", "light_sizes", "time", "term", "max_masked_share",
+                             "environment", "environment_lights", "environment_resolution",
+                             "environment_shape", "environment_reflection", "sigma_a", "sigma_s", "g"});
     base.scene = scene.text(scene.require("scene"), "scene");
     base.time = scene.real("time", 0.0, -1e6, 1e6);
     base.maxMaskedShare = scene.real("max_masked_share", 0.005, 0.0, 1.0);
@@ -231,6 +241,7 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
     base.reference.bounces = hasBounces(base.term) && bounces > 0 ? bounces : base.term == "final" ? 0 : 1;
     const std::vector<double> lightSizes = scene.reals("light_sizes", 0, 1e-6, 1e6);
     const std::vector<double> environmentLights = parseEnvironment(scene, base.environment);
+    const std::vector<std::optional<double>> phases = parseMedium(scene, base.medium);
     for (const std::string& camera : scene.texts("cameras", {""})) {
       for (const std::string& light : scene.texts("lights", {""})) {
         for (const auto& [width, height] : sizes) {
@@ -242,7 +253,10 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
             base.lightSize = lightSize;
             for (const double threshold : environmentLights) {
               base.environment.lights = threshold;
-              addCases(base, techniques, modes, separationFloor, cases);
+              for (const std::optional<double>& g : phases) {
+                base.medium.g = g;
+                addCases(base, techniques, modes, separationFloor, cases);
+              }
             }
           }
           if (cases.size() > kMaxCases) {

@@ -66,6 +66,18 @@ int body_side(ShadowView view, vec3 p, int layer, float instance, float toleranc
   return near >= 0.0 && depth < near - tolerance ? body_front : body_inside;
 }
 
+// Whether p lies between the nearest and the farthest surface of an object, by the texel that holds it.
+bool within_object(ShadowView view, vec3 p, int layer) {
+  ShadowPoint q = shadow_project(view, p);
+  if (!shadow_inside(q)) return false;
+  ivec3 texel = ivec3(min(ivec2(q.uv * float(view.info.z)), ivec2(view.info.z) - 1), layer);
+  if (texelFetch(front_surface, texel, 0).w == 0.0) return false;
+  float depth = shadow_normalise(view, q.depth);
+  float tolerance = shadow_footprint(view, q.depth) / (view.axis_z.w - view.origin.w);
+  return depth > texelFetch(front_depth, texel, 0).x + tolerance &&
+         depth < texelFetch(back_depth, texel, 0).x - tolerance;
+}
+
 // Where light inside an object leaves it.
 struct BodyExit {
   float distance;  // metres from the start

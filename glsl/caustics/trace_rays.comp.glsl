@@ -42,43 +42,50 @@ bool light_blocked(ShadowLight maps, vec3 p) {
   return behind_scene(maps, p) > bias;
 }
 
-// Ends the ray where it passes from before the scene to behind it, as the light sees it.
-void find_end(ShadowLight maps, inout CausticRay ray) {
+// What a place on a ray is to the light's views.
+const int place_free = 0;
+const int place_scene = 1;   // behind the scene
+const int place_object = 2;  // within a specular object
+
+int place_of(ShadowLight maps, ShadowView view, int layer, vec3 p) {
+  if (behind_scene(maps, p) > 0.0) return place_scene;
+  return within_object(view, p, layer) ? place_object : place_free;
+}
+
+// Ends the ray where it passes from before the scene to behind it, or into a specular object, as the light sees them.
+void find_end(ShadowLight maps, ShadowView view, int layer, inout CausticRay ray) {
   vec3 start = ray.start.xyz;
   vec3 direction = ray.direction.xyz;
   float before = 0.0;
   float behind = -1.0;
-  bool last_behind = true;  // the crossing must be seen to happen
+  int met = place_free;
+  bool was_free = false;  // the crossing must be seen to happen
   for (int i = 0; i <= steps; ++i) {
     float t = ray.start.w * float(i) / float(steps);
-    bool now = behind_scene(maps, start + t * direction) > 0.0;
-    if (now && !last_behind) {
+    met = place_of(maps, view, layer, start + t * direction);
+    if (met != place_free && was_free) {
       behind = t;
       break;
     }
-    last_behind = now;
+    was_free = met == place_free;
     before = t;
   }
   if (behind < 0.0) return;
   for (int i = 0; i < end_refinements; ++i) {
     float t = 0.5 * (before + behind);
-    bool now = behind_scene(maps, start + t * direction) > 0.0;
-    before = now ? before : t;
-    behind = now ? t : behind;
+    int there = place_of(maps, view, layer, start + t * direction);
+    if (there == place_free) {
+      before = t;
+    } else {
+      behind = t;
+      met = there;
+    }
   }
   ray.start.w = 0.5 * (before + behind);
-  ray.direction.w = caustic_ray_surface;
+  if (met == place_scene) ray.direction.w = caustic_ray_surface;
 }
 
 CausticRay no_ray() { return CausticRay(vec4(0.0), vec4(0.0, 0.0, 1.0, caustic_ray_none), vec4(0.0)); }
-
-CausticRay ray_from(Medium medium, ShadowLight maps, vec3 start, vec3 direction, vec3 power) {
-  float reach = ball_range(medium.ball, start, direction).y;
-  if (!(reach > 0.0) || all(equal(power, vec3(0.0)))) return no_ray();
-  CausticRay ray = CausticRay(vec4(start, reach), vec4(direction, caustic_ray_open), vec4(power, 0.0));
-  find_end(maps, ray);
-  return ray;
-}
 
 // The light of one texel at the front of a specular object.
 struct Incident {
@@ -93,9 +100,17 @@ struct Incident {
   Optics optics;
 };
 
+CausticRay ray_from(Medium medium, ShadowLight maps, Incident at, vec3 start, vec3 direction, vec3 power) {
+  float reach = ball_range(medium.ball, start, direction).y;
+  if (!(reach > 0.0) || all(equal(power, vec3(0.0)))) return no_ray();
+  CausticRay ray = CausticRay(vec4(start, reach), vec4(direction, caustic_ray_open), vec4(power, 0.0));
+  find_end(maps, at.view, at.layer, ray);
+  return ray;
+}
+
 CausticRay reflected_ray(Medium medium, ShadowLight maps, Incident at, SpecularEvent event) {
   if (at.inside) return no_ray();
-  return ray_from(medium, maps, at.position, event.reflected, at.flux * event.reflectance);
+  return ray_from(medium, maps, at, at.position, event.reflected, at.flux * event.reflectance);
 }
 
 CausticRay refracted_ray(Medium medium, ShadowLight maps, Incident at, SpecularEvent event, float diameter) {
@@ -106,13 +121,13 @@ CausticRay refracted_ray(Medium medium, ShadowLight maps, Incident at, SpecularE
   float far = buffer_depth(back_surface, back_depth, q.uv, at.layer, at.instance);
   bool sheet = !(far - near > 1e-6);  // a surface that bounds no body: light stays in the medium behind it
   if (at.inside || sheet || !(at.optics.thickness > 0.0))
-    return ray_from(medium, maps, at.position, event.refracted, flux);
+    return ray_from(medium, maps, at, at.position, event.refracted, flux);
   BodyExit leaves = body_exit(at.view, at.position, event.refracted, diameter, at.layer, at.instance);
   if (!(dot(leaves.normal, event.refracted) > least_cosine)) return no_ray();
   SpecularEvent second = specular_event(at.optics, event.refracted, -leaves.normal, true);
   if (second.refracted == vec3(0.0)) return no_ray();
   flux *= second.transmittance * optics_absorption(at.optics, leaves.distance);
-  return ray_from(medium, maps, at.position + leaves.distance * event.refracted, second.refracted, flux);
+  return ray_from(medium, maps, at, at.position + leaves.distance * event.refracted, second.refracted, flux);
 }
 
 void main() {

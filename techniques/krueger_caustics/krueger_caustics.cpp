@@ -11,7 +11,7 @@ constexpr Parameter parameters[] = {
     caustics::sceneMapSizeParameter(),
     caustics::pathsParameter(),
     caustics::lightSamplesParameter(),
-    real("scale", 0.06, {0, 1e6}, "pixels/(sr m^2)",
+    real("scale", 0.002, {0, 1e6}, "pixels/(sr m^2)",
          "Radiance that a fragment adds per watt of its line, in a picture of one pixel's height; set by "
          "hand for each scene"),
 };

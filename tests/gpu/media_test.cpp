@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/bench/stress_scene.h"
 #include "core/reference/reference.h"
 #include "core/scene/camera.h"
 #include "tests/gpu/render_test.h"
@@ -181,6 +182,79 @@ TEST_F(MediaTest, SurfacesAreAttenuatedAsInTheReference) {
       EXPECT_NEAR(mean(lit) / truth, 1, 0.04) << shadows;
     }
   }
+}
+
+TEST_F(MediaTest, EveryLightShinesIntoTheMedium) {
+  const scene::Scene scene = bench::inFog(asset("lights"));
+  render::Renderer renderer(device(), scene);
+  for (size_t light = 0; light < renderer.pose().lights.size(); ++light) {
+    SCOPED_TRACE(renderer.pose().lightNames[light]);
+    reference::Request request{.scene = scene,
+                               .pose = renderer.pose(),
+                               .camera = renderer.pose().cameras.at(0),
+                               .progress = {},
+                               .checkpoint = {}};
+    request.width = width;
+    request.height = height;
+    request.term = reference::Term::media;
+    request.light = int(light);
+    request.spp = 32;
+    const double truth = mean(reference::render(request).image);
+    const Image ours = picture(
+        renderer, settings(width, height, Output::media,
+                           {technique("airlight", {{"light_samples", "16"}}),
+                            technique("volume_caustics", {{"light_samples", "16"}, {"buffer_size", "64"}})},
+                           int(light)));
+    EXPECT_NEAR(mean(ours) / truth, 1, 0.05);
+  }
+}
+
+TEST_F(MediaTest, ScaleAndRadianceDoNotMatter) {
+  const scene::Scene scene = asset("glass_sphere");
+  render::Renderer renderer(device(), scene);
+  const std::vector<render::TechniqueUse> all{technique("airlight"), technique("surface_caustics"),
+                                              technique("volume_caustics")};
+  const Image usual = picture(renderer, settings(width, height, Output::final, all));
+  for (const float factor : {1e-4f, 1e4f}) {
+    const scene::Scene scaled = bench::stressed(scene, StressChange::sceneScale, double(factor));
+    render::Renderer other(device(), scaled);
+    EXPECT_NEAR(mean(picture(other, settings(width, height, Output::final, all))) / mean(usual), 1, 2e-3)
+        << factor;
+  }
+  for (const float factor : {1e-6f, 1e6f}) {
+    const scene::Scene brighter = bench::stressed(scene, StressChange::radiance, double(factor));
+    render::Renderer other(device(), brighter);
+    EXPECT_NEAR(
+        mean(picture(other, settings(width, height, Output::final, all))) / double(factor) / mean(usual), 1,
+        1e-4)
+        << factor;
+  }
+}
+
+TEST_F(MediaTest, ExtremeResolutionsGiveFinitePictures) {
+  const scene::Scene scene = asset("gem");
+  render::Renderer renderer(device(), scene);
+  for (const auto& [x, y] : {std::pair(1, 1), std::pair(4096, 1), std::pair(1, 4096), std::pair(17, 3)})
+    expectWithin(picture(renderer, settings(x, y, Output::final,
+                                            {technique("airlight"), technique("surface_caustics"),
+                                             technique("volume_caustics")})),
+                 0, 1e6f);
+}
+
+TEST_F(MediaTest, ATurningStoneKeepsItsGraph) {
+  const scene::Scene scene = asset("gem");
+  render::Renderer renderer(device(), scene);
+  picture(renderer, settings(width, height, Output::media, {technique("volume_caustics")}));
+  const int64_t compiled = device().counters().programsCompiled;
+  std::vector<double> means;
+  for (int frame = 0; frame < 8; ++frame) {
+    renderer.setTime(frame / 30.0);
+    renderer.render();
+    means.push_back(mean(renderer.read()));
+    EXPECT_GT(means.back(), 0);
+  }
+  EXPECT_EQ(device().counters().programsCompiled, compiled);
+  EXPECT_NE(means.front(), means.back()) << "it turns";
 }
 
 TEST_F(MediaTest, ExtremesGiveFinitePictures) {

@@ -110,6 +110,21 @@ TEST(BenchSuite, EnvironmentsAreSweptByThreshold) {
                    "squares, rectangles");
 }
 
+TEST(BenchSuite, MediaAreSweptByPhaseFunction) {
+  const std::string start =
+      "name = \"m\"\nsizes = \"8x8\"\nterm = \"media\"\n[[techniques]]\ntechnique = \"airlight\"\n"
+      "[[scenes]]\nscene = \"gem\"\n";
+  const Suite suite = parseSuite(start + "sigma_s = 0.5\ng = [-0.7, 0, 0.7]\n", "s.toml");
+  ASSERT_EQ(suite.cases.size(), 3u);
+  EXPECT_EQ(suite.cases[0].medium.g, -0.7);
+  EXPECT_EQ(suite.cases[2].medium.sigmaS, 0.5);
+  EXPECT_EQ(suite.cases[2].medium.sigmaA, std::nullopt) << "the scene's";
+  EXPECT_NE(question(suite.cases[0]), question(suite.cases[1]));
+  EXPECT_NE(label(suite.cases[1]).find("sigma_s 0.5 g 0/"), std::string::npos);
+  EXPECT_EQ(label(parseSuite(start, "s.toml").cases[0]).find("g "), std::string::npos);
+  expectUsageError(start + "g = 1.5\n", "'g'");
+}
+
 TEST(BenchSuite, ExpandsAllCombinations) {
   const Suite suite = parseSuite(kSuite, "s.toml");
   EXPECT_EQ(suite.name, "test");
