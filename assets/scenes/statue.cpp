@@ -195,7 +195,8 @@ Scene makeStatue() {
 Scene makeGlassStatue() {
   Scene scene;
   scene.add("floor", ground(3, 3, 1), scene.addMaterial(lambert("floor", {0.5f, 0.5f, 0.5f})));
-  const int statue = scene.add("statue", dancer(0.03f), scene.addMaterial(glass("glass", 1.5f)));
+  Mesh figure = dancer(0.018f);
+  const int statue = scene.add("statue", std::move(figure), scene.addMaterial(glass("glass", 1.5f)));
   Node& node = scene.nodes[static_cast<std::size_t>(statue)];
   node.translation = {0, 0.28f, 0};
   Animation turn{"turn", {{.node = statue, .times = {}, .rotations = {}, .translations = {}}}};

@@ -209,6 +209,32 @@ TEST_F(MediaTest, EveryLightShinesIntoTheMedium) {
   }
 }
 
+TEST_F(MediaTest, LightsTogetherAreTheSumOfTheLightsAlone) {
+  const scene::Scene scene = bench::inFog(asset("lights"));
+  render::Renderer renderer(device(), scene);
+  for (const char* name : {"airlight", "volume_caustics", "surface_caustics"}) {
+    SCOPED_TRACE(name);
+    const Output output = std::string(name) == "surface_caustics" ? Output::caustic : Output::media;
+    double sum = 0;
+    for (size_t light = 0; light < renderer.pose().lights.size(); ++light)
+      sum += mean(picture(renderer, settings(width, height, output, {technique(name)}, int(light))));
+    EXPECT_NEAR(mean(picture(renderer, settings(width, height, output, {technique(name)}))) / sum, 1, 1e-3);
+  }
+}
+
+TEST_F(MediaTest, TheWholePictureIsAsBrightAsTheReference) {
+  for (const char* name : {"glass_sphere", "gem"}) {
+    SCOPED_TRACE(name);
+    const scene::Scene scene = asset(name);
+    render::Renderer renderer(device(), scene);
+    const Image ours =
+        picture(renderer, settings(width, height, Output::final,
+                                   {technique("hard_shadow_map"), technique("airlight"),
+                                    technique("surface_caustics"), technique("volume_caustics")}));
+    EXPECT_NEAR(mean(ours) / mean(reference(renderer, scene, reference::Term::final, 32)), 1, 0.02);
+  }
+}
+
 TEST_F(MediaTest, ScaleAndRadianceDoNotMatter) {
   const scene::Scene scene = asset("glass_sphere");
   render::Renderer renderer(device(), scene);
