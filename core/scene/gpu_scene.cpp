@@ -173,8 +173,9 @@ template <class T>
 bool GpuScene::Implementation::upload(gpu::Buffer& buffer, const char* label, std::vector<T>& current,
                                       std::vector<T>& next) {
   const size_t bytes = next.size() * sizeof(T);
-  if (buffer && current.size() == next.size() && std::memcmp(current.data(), next.data(), bytes) == 0)
-    return false;
+  const bool same =
+      current.size() == next.size() && (bytes == 0 || std::memcmp(current.data(), next.data(), bytes) == 0);
+  if (buffer && same) return false;
   if (!buffer || buffer.size() < bytes) buffer = gpu::Buffer(device, label, bytes, gpu::BufferUse::updated);
   buffer.update(0, next.data(), bytes);
   current = next;
