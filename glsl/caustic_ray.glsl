@@ -36,9 +36,9 @@ LIMN_FN SpecularEvent specular_event(Optics o, vec3 direction, vec3 n, bool insi
   vec3 l = -direction;
   float cosine = dot(n, l);
   bool thin = !(o.thickness > 0.0f);
-  float n1 = inside && !thin ? o.ior : 1.0f;
-  float n2 = inside || thin ? 1.0f : o.ior;
-  if (thin) n2 = o.ior;
+  bool leaves = inside && !thin;
+  float n1 = leaves ? o.ior : 1.0f;
+  float n2 = leaves ? 1.0f : o.ior;
   e.reflected = mirrored(l, n);
   e.reflectance = optics_reflectance(o, cosine, n1, n2);
   e.refracted = thin ? direction : refracted(l, n, n1 / n2);

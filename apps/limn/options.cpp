@@ -23,15 +23,15 @@ namespace {
 
 constexpr double degrees = 3.14159265358979323846 / 180;
 
-glm::vec3 parseVector(const char* option, const std::string& text) {
+glm::vec3 parseVector(const char* option, const std::string& text,
+                      const char* expected = "three numbers x,y,z in metres") {
   glm::vec3 v;
   std::string_view rest = text;
   for (int i = 0; i < 3; ++i) {
     const size_t comma = i < 2 ? rest.find(',') : rest.size();
     const auto number = comma == std::string_view::npos ? std::nullopt : parseNumber(rest.substr(0, comma));
     if (!number || std::abs(*number) > 1e30)
-      throw UsageError(
-          fmt::format("{} '{}' is not accepted; expected three numbers x,y,z in metres", option, text));
+      throw UsageError(fmt::format("{} '{}' is not accepted; expected {}", option, text, expected));
     v[i] = static_cast<float>(*number);
     rest = i < 2 ? rest.substr(comma + 1) : rest;
   }
@@ -42,7 +42,8 @@ glm::vec3 parseVector(const char* option, const std::string& text) {
 glm::vec3 parseCoefficient(const char* option, const std::string& text) {
   const auto number = parseNumber(text);
   const bool alone = number && *number <= 1e30;
-  const glm::vec3 v = alone ? glm::vec3(static_cast<float>(*number)) : parseVector(option, text);
+  const glm::vec3 v = alone ? glm::vec3(static_cast<float>(*number))
+                            : parseVector(option, text, "one number or red,green,blue per metre");
   if (v.x < 0 || v.y < 0 || v.z < 0)
     throw UsageError(fmt::format("{} '{}' is not accepted; coefficients must not be negative", option, text));
   return v;

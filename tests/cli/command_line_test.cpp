@@ -42,6 +42,24 @@ TEST(CommandLine, LightSizesNeedLightsThatHaveOne) {
   EXPECT_EQ(with({"reference", "lights", "--term", "visibility", "--light", "key", "--spp", "4"}).status, 0);
 }
 
+TEST(CommandLine, AMediumIsGivenByOneNumberOrThree) {
+  TemporaryFolder folder;
+  const std::string out = (folder / "m.exr").string();
+  const auto with = [&](std::vector<std::string> command, std::vector<std::string> medium) {
+    command.insert(command.end(), medium.begin(), medium.end());
+    command.insert(command.end(), {"--size", "32x24", "--out", out});
+    return limn(command);
+  };
+  const std::vector<std::string> render{"render", cornell_box, "--technique", "airlight"};
+  EXPECT_EQ(with(render, {"--sigma-s", "0.1", "--sigma-a", "0.1,0.2,0.3", "--g", "-0.5"}).status, 0);
+  EXPECT_EQ(with({"reference", cornell_box, "--spp", "2", "--term", "media"}, {"--sigma-s", "0.1"}).status,
+            0);
+  EXPECT_EQ(with({"reference", "gem", "--spp", "2", "--term", "caustic"}, {}).status, 0);
+  expectRefused(with(render, {"--sigma-s", "-1"}), 2, {"--sigma-s", "negative"});
+  expectRefused(with(render, {"--sigma-a", "1,2"}), 2, {"--sigma-a", "red,green,blue"});
+  EXPECT_EQ(with(render, {"--g", "1"}).status, 2);
+}
+
 TEST(CommandLine, BouncesBelongToIndirectAndFinalLight) {
   TemporaryFolder folder;
   const auto with = [&](std::vector<std::string> more) {
