@@ -1,0 +1,99 @@
+// Internal to the construction of links: four elements against one receiver at once.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "core/radiosity/float4.h"
+#include "core/radiosity/links.h"
+#include "glsl/direction_bins.glsl"
+
+namespace limn::radiosity {
+
+inline Float4 lanes(const glm::vec4& v) {
+  return load(&v.x);
+}
+
+/// An element as the near end of links.
+struct Receiver {
+  glm::vec3 position{0}, normal{0};
+  float radius = 0, spread = 0;
+  float extent = 0;  ///< what counts as size when links are opened
+  bool leaf = false;
+
+  static Receiver of(const glsl::ElementGroup& g, uint32_t laneIndex) {
+    const int k = static_cast<int>(laneIndex);
+    return {.position = {g.x[k], g.y[k], g.z[k]},
+            .normal = {g.nx[k], g.ny[k], g.nz[k]},
+            .radius = g.radius[k],
+            .spread = g.spread[k],
+            .extent = std::max(g.area[k], g.radius[k] * g.radius[k]),
+            .leaf = g.info.x == glsl::no_link};
+  }
+};
+
+/// What is to be done with each lane of a group.
+struct Decision {
+  uint32_t link = 0;                  ///< store a link
+  uint32_t open = 0;                  ///< try its children
+  uint32_t defer = 0;                 ///< leave it to the receiver's children
+  Float4 x, y, z, distance2, height;  ///< offset from the receiver; height: along the element's own normal
+};
+
+class LinkTest {
+ public:
+  explicit LinkTest(const LinkSettings& settings) {
+    const float n = static_cast<float>(settings.resolution);
+    const float angle = settings.opening * 4 / (n * n);
+    angle2_ = angle * angle;
+  }
+
+  /// Facing pairs only (thesis: pairs that face away from each other are culled), conservatively for elements
+  /// that stand for many. A grazing angle of 1e-4 counts as facing away.
+  Decision operator()(const Receiver& r, const glsl::ElementGroup& g) const {
+    Decision d;
+    d.x = lanes(g.x) - r.position.x;
+    d.y = lanes(g.y) - r.position.y;
+    d.z = lanes(g.z) - r.position.z;
+    d.distance2 = d.x * d.x + d.y * d.y + d.z * d.z;
+    d.height = d.x * lanes(g.nx) + d.y * lanes(g.ny) + d.z * lanes(g.nz);
+    const Float4 above = d.x * r.normal.x + d.y * r.normal.y + d.z * r.normal.z;
+    const Float4 distance = root(d.distance2);
+    const Float4 reach = lanes(g.radius) + r.radius;
+    constexpr float grazing = 1e-4f;
+    Int4 facing = above + reach + (r.spread - grazing) * distance > 0.f;
+    if (g.info.z == 0) facing &= reach + (lanes(g.spread) - grazing) * distance > d.height;
+    const uint32_t visible = laneMask(facing) & ((1u << g.info.y) - 1);
+    if (visible == 0) return d;
+
+    // Solid angle of the bin: angle major^3 / distance^3; opened while extent / distance^2 is more.
+    const Float4 major = greater(greater(magnitude(d.x), magnitude(d.y)), magnitude(d.z)),
+                 major2 = major * major;
+    const Float4 limit = angle2_ * major2 * major2 * major2;
+    const Float4 radius = lanes(g.radius), extent = greater(lanes(g.area), radius * radius);
+    if (g.info.x != glsl::no_link || !r.leaf) {
+      const Int4 tooLarge = extent * extent * d.distance2 >= limit;
+      const Int4 receiverTooLarge = r.extent * r.extent * d.distance2 >= limit;
+      const uint32_t deferrable = r.leaf ? 0 : laneMask(receiverTooLarge);
+      if (g.info.x != glsl::no_link) {
+        const Int4 larger = extent >= r.extent;
+        d.open = laneMask(tooLarge) & (laneMask(larger) | ~deferrable) & visible;
+      }
+      d.defer = deferrable & ~d.open & visible;
+    }
+    const Int4 apart = d.distance2 > 1e-14f;
+    d.link = visible & ~d.open & ~d.defer & laneMask(apart);
+    if (g.info.z != 0) {
+      // Neighbours on one surface may seem to show their backs where normals bend more than triangles do.
+      const Int4 behind = (d.height > 0.1f * distance) & (d.height > 0.25f * lanes(g.disc));
+      d.link &= laneMask((d.height <= 0.f) | behind);
+    }
+    return d;
+  }
+
+ private:
+  float angle2_;
+};
+
+}  // namespace limn::radiosity

@@ -1,0 +1,208 @@
+#include "core/radiosity/links.h"
+
+#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <bit>
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/radiosity/bin_filler.h"
+#include "core/radiosity/link_test.h"
+
+namespace limn::radiosity {
+namespace {
+
+/// Elements of this level and above are worked off level by level, those below them in tasks, each with a
+/// whole branch: 16 leaves.
+constexpr size_t coarseLevel = 3;
+
+/// Lanes of a group that wait for a receiver: 16 group + mask.
+uint32_t waiting(uint32_t group, uint32_t lanes) {
+  return group << 4 | lanes;
+}
+
+/// A receiver that is not a leaf: its bins, and what waits for its children.
+struct Inner {
+  std::vector<float> distance2;
+  std::vector<uint32_t> links, waiting;
+
+  void reserve(size_t bins) {
+    distance2.resize(bins);
+    links.resize(bins);
+  }
+  Bins bins() { return {distance2.data(), links.data()}; }
+};
+
+/// What one thread needs on its way through a branch.
+struct Branch {
+  std::vector<uint32_t> stack;
+  std::vector<float> distance2;  ///< of the leaf in work
+  Inner inner[coarseLevel];      ///< [level]; [0] unused
+};
+
+}  // namespace
+
+struct Links::Scratch {
+  std::vector<Inner> coarse;  ///< from the first slot of coarseLevel on
+  tbb::enumerable_thread_specific<Branch> branches;
+  Inner nothing;                ///< the parent of the roots
+  std::vector<uint32_t> tasks;  ///< elements below coarseLevel without a parent there
+};
+
+namespace {
+
+/// The traversal of one build.
+class Traversal {
+ public:
+  Traversal(const Forest& forest, const LinkSettings& settings, uint32_t* out)
+      : groups_(forest.groups()), test_(settings), filler_(settings), out_(out) {}
+
+  /// Fills `bins`, which hold the parent's links, with what `slot` need not leave to its children.
+  void visit(uint32_t slot, std::span<const uint32_t> candidates, Bins bins, std::vector<uint32_t>& stack,
+             std::vector<uint32_t>* waitingOut) const {
+    const Receiver receiver = Receiver::of(groups_[slot / 4], slot % 4);
+    stack.assign(candidates.begin(), candidates.end());
+    while (!stack.empty()) {
+      const uint32_t entry = stack.back();
+      stack.pop_back();
+      const uint32_t g = entry >> 4;
+      const glsl::ElementGroup& group = groups_[g];
+      const Decision decision = test_(receiver, group);
+      link(bins, group, g, decision, decision.link & entry);
+      for (uint32_t open = decision.open & entry & 15; open != 0; open &= open - 1)
+        stack.push_back(waiting(group.info.x + static_cast<uint32_t>(std::countr_zero(open)), 15));
+      if (const uint32_t defer = decision.defer & entry & 15; defer != 0)
+        waitingOut->push_back(waiting(g, defer));
+    }
+  }
+
+  void inner(uint32_t slot, const Inner& parent, Inner& own, std::vector<uint32_t>& stack) const {
+    std::copy(parent.distance2.begin(), parent.distance2.end(), own.distance2.begin());
+    std::copy(parent.links.begin(), parent.links.end(), own.links.begin());
+    own.waiting.clear();
+    visit(slot, parent.waiting, own.bins(), stack, &own.waiting);
+  }
+
+  /// An element below coarseLevel and all below it.
+  void branch(uint32_t slot, size_t level, const Inner& parent, Branch& b) const {
+    if (level == 0) {
+      const Bins bins{b.distance2.data(), out_ + static_cast<size_t>(slot) * parent.links.size()};
+      std::copy(parent.distance2.begin(), parent.distance2.end(), bins.distance2);
+      std::copy(parent.links.begin(), parent.links.end(), bins.links);
+      visit(slot, parent.waiting, bins, b.stack, nullptr);
+      filler_.close(bins);
+      return;
+    }
+    inner(slot, parent, b.inner[level], b.stack);
+    const uint32_t children = groups_[slot / 4].info.x + slot % 4;
+    for (uint32_t lane = 0; lane < groups_[children].info.y; ++lane)
+      branch(4 * children + lane, level - 1, b.inner[level], b);
+  }
+
+  /// Every leaf as a candidate for one leaf.
+  void all(uint32_t slot, uint32_t leafGroups, Bins bins) const {
+    const Receiver receiver = Receiver::of(groups_[slot / 4], slot % 4);
+    filler_.clear(bins);
+    for (uint32_t g = 0; g < leafGroups; ++g) {
+      const Decision decision = test_(receiver, groups_[g]);
+      link(bins, groups_[g], g, decision, decision.link);
+    }
+    filler_.close(bins);
+  }
+
+ private:
+  void link(Bins bins, const glsl::ElementGroup& group, uint32_t g, const Decision& d, uint32_t lanes) const {
+    for (lanes &= 15; lanes != 0; lanes &= lanes - 1) {
+      const int k = std::countr_zero(lanes);
+      const uint32_t slot = 4 * g + static_cast<uint32_t>(k);
+      filler_.fill(bins, {.offset = {d.x[k], d.y[k], d.z[k]},
+                          .normal = {group.nx[k], group.ny[k], group.nz[k]},
+                          .distance2 = d.distance2[k],
+                          .disc = group.disc[k],
+                          .link = group.info.z != 0 && d.height[k] > 0 ? slot | glsl::link_back : slot});
+    }
+  }
+
+  std::span<const glsl::ElementGroup> groups_;
+  LinkTest test_;
+  BinFiller filler_;
+  uint32_t* out_;
+};
+
+}  // namespace
+
+Links::Links() : scratch_(std::make_unique<Scratch>()) {}
+Links::~Links() = default;
+Links::Links(Links&&) noexcept = default;
+Links& Links::operator=(Links&&) noexcept = default;
+
+void Links::prepare(const Forest& forest, const LinkSettings& settings) {
+  if (settings.resolution < 4 || settings.resolution > 32)
+    throw UsageError(fmt::format("radiosity: {} bins per side are not in 4 .. 32", settings.resolution));
+  resolution_ = settings.resolution;
+  links_.resize(forest.leafSlots() * binCount());
+}
+
+void Links::buildFlat(const Forest& forest, const LinkSettings& settings) {
+  prepare(forest, settings);
+  const Traversal traversal(forest, settings, links_.data());
+  const uint32_t leafGroups = forest.levels()[0].count;
+  tbb::parallel_for(0u, leafGroups, [&](uint32_t g) {
+    Branch& b = scratch_->branches.local();
+    b.distance2.resize(binCount());
+    for (uint32_t slot = 4 * g; slot < 4 * g + forest.groups()[g].info.y; ++slot)
+      traversal.all(slot, leafGroups, {b.distance2.data(), &links_[slot * binCount()]});
+  });
+}
+
+void Links::build(const Forest& forest, const LinkSettings& settings) {
+  prepare(forest, settings);
+  Scratch& s = *scratch_;
+  const Traversal traversal(forest, settings, links_.data());
+  const auto groups = forest.groups();
+  const auto parents = forest.parents();
+  const auto levels = forest.levels();
+  s.nothing.reserve(binCount());
+  BinFiller(settings).clear(s.nothing.bins());
+  s.nothing.waiting.clear();
+  for (const uint32_t root : forest.roots()) s.nothing.waiting.push_back(waiting(root, 1));
+
+  // Breadth first through the coarse levels.
+  const uint32_t firstCoarse =
+      levels.size() > coarseLevel ? levels[coarseLevel].first : static_cast<uint32_t>(groups.size());
+  s.coarse.resize(4 * (groups.size() - firstCoarse));
+  const auto parentOf = [&](uint32_t group) -> const Inner& {
+    return parents[group] == glsl::no_link ? s.nothing : s.coarse[parents[group] - 4 * firstCoarse];
+  };
+  const auto local = [&]() -> Branch& {
+    Branch& b = s.branches.local();
+    b.distance2.resize(binCount());
+    for (Inner& inner : b.inner) inner.reserve(binCount());
+    return b;
+  };
+  for (size_t level = levels.size(); level-- > coarseLevel;)
+    tbb::parallel_for(4 * levels[level].first, 4 * (levels[level].first + levels[level].count),
+                      [&](uint32_t slot) {
+                        if (slot % 4 >= groups[slot / 4].info.y) return;
+                        Inner& own = s.coarse[slot - 4 * firstCoarse];
+                        own.reserve(binCount());
+                        traversal.inner(slot, parentOf(slot / 4), own, local().stack);
+                      });
+
+  // The branches below: of elements with a coarse parent, and of small clusters.
+  s.tasks.clear();
+  for (uint32_t g = 0; g < firstCoarse; ++g) {
+    if (parents[g] != glsl::no_link && parents[g] < 4 * firstCoarse) continue;
+    for (uint32_t lane = 0; lane < groups[g].info.y; ++lane) s.tasks.push_back(4 * g + lane);
+  }
+  tbb::parallel_for(size_t{0}, s.tasks.size(), [&](size_t i) {
+    const uint32_t slot = s.tasks[i];
+    size_t level = 0;
+    while (level + 1 < levels.size() && slot / 4 >= levels[level + 1].first) ++level;
+    traversal.branch(slot, level, parentOf(slot / 4), local());
+  });
+}
+
+}  // namespace limn::radiosity

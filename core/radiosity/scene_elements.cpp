@@ -1,0 +1,189 @@
+#include "core/radiosity/scene_elements.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/reference/texture.h"
+#include "glsl/reflectance.glsl"
+
+namespace limn::radiosity {
+
+/// One instance's vertices in world space.
+struct SceneElements::Instance {
+  const scene::Primitive* primitive = nullptr;
+  int material = 0;
+  bool mirrored = false;
+  std::vector<glm::vec3> positions, normals;
+  std::vector<glm::vec4> tangents;  ///< nobody looks at them; deform() makes them
+
+  void move(const scene::Pose& pose, const scene::DrawInstance& draw) {
+    if (draw.deformed != scene::none) {
+      scene::deform(*primitive, pose.deformed[static_cast<size_t>(draw.deformed)], positions, normals,
+                    tangents);
+    } else {
+      positions.assign(primitive->positions.begin(), primitive->positions.end());
+      normals.assign(primitive->normals.begin(), primitive->normals.end());
+    }
+    const glm::mat4& matrix = draw.objectToWorld;
+    const glm::dmat3 m{glm::dmat4(matrix)};
+    mirrored = glm::determinant(m) < 0;
+    // The inverse transpose but for its length, which no flat instance can make infinite.
+    const double scale = std::max({glm::length(m[0]), glm::length(m[1]), glm::length(m[2]), 1e-300});
+    const glm::dmat3 unit = m * (1 / scale);
+    const double side = mirrored ? -1 : 1;
+    const glm::mat3 toNormal(glm::dmat3(side * glm::cross(unit[1], unit[2]),
+                                        side * glm::cross(unit[2], unit[0]),
+                                        side * glm::cross(unit[0], unit[1])));
+    tbb::parallel_for(size_t{0}, positions.size(), [&](size_t i) {
+      positions[i] = glm::vec3(matrix * glm::vec4(positions[i], 1.f));
+      const glm::vec3 n = toNormal * normals[i];
+      const float length = glm::length(n);
+      if (length > 0) normals[i] = n / length;
+    });
+  }
+};
+
+namespace {
+
+const scene::Primitive* primitiveOf(const scene::Scene& scene, const scene::Pose& pose,
+                                    const scene::DrawInstance& draw) {
+  const auto mesh = static_cast<size_t>(draw.mesh);
+  if (draw.node == scene::none) return pose.dynamic[mesh].primitive.get();
+  return &scene.meshes[mesh].primitives[static_cast<size_t>(draw.primitive)];
+}
+
+}  // namespace
+
+SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose, float longestEdge,
+                             uint32_t maxElements)
+    : scene_(scene), space_(pose.bounds.centre(), pose.bounds.radius()) {
+  uint64_t triangles = 0;
+  for (const scene::DrawInstance& draw : pose.instances) {
+    Instance& instance = instances_.emplace_back();
+    instance.primitive = primitiveOf(scene, pose, draw);
+    instance.material = draw.node == scene::none ? scene.dynamic[static_cast<size_t>(draw.mesh)].material
+                                                 : instance.primitive->material;
+    triangles += instance.primitive->indices.size() / 3;
+  }
+  const auto refuse = [&](const std::string& what) {
+    throw UsageError(fmt::format(
+        "implicit visibility: {}; at most {} surface elements fit the memory allowed", what, maxElements));
+  };
+  // A closed mesh has half as many vertices as triangles.
+  if (triangles / 4 > maxElements) refuse(fmt::format("the scene has {} triangles", triangles));
+  moveInstances(pose);
+  std::vector<TriangleMesh> meshes(instances_.size());
+  for (size_t i = 0; i < instances_.size(); ++i) {
+    const Instance& instance = instances_[i];
+    TriangleMesh& mesh = meshes[i];
+    for (const glm::vec3& p : instance.positions) mesh.positions.push_back(space_.point(p));
+    for (const glm::vec3& n : instance.normals) mesh.normals.push_back(space_.direction(n));
+    mesh.uvs = instance.primitive->uvs;
+    mesh.indices = instance.primitive->indices;
+    if (instance.mirrored)
+      for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3)
+        std::swap(mesh.indices[t + 1], mesh.indices[t + 2]);
+    mesh.doubleSided = scene.materials[static_cast<size_t>(instance.material)].doubleSided;
+  }
+  surfels_ = createSurfels(meshes, longestEdge);
+  if (surfels_.size() > maxElements)
+    refuse(fmt::format("the scene has {} surface elements", surfels_.size()));
+  forest_ = Forest(surfels_);
+  for (const uint32_t corner : surfels_.triangles) triangles_.push_back(forest_.leafOf()[corner]);
+  leaves_.resize(forest_.leafSlots());
+  setAlbedo();
+  moveSurfels();
+}
+
+SceneElements::~SceneElements() = default;
+
+bool SceneElements::fits(const scene::Pose& pose) const {
+  if (pose.instances.size() != instances_.size()) return false;
+  for (size_t i = 0; i < instances_.size(); ++i)
+    if (primitiveOf(scene_, pose, pose.instances[i]) != instances_[i].primitive) return false;
+  return true;
+}
+
+void SceneElements::update(const scene::Pose& pose) {
+  moveInstances(pose);
+  moveSurfels();
+  forest_.refit(surfels_.positions, surfels_.normals);
+}
+
+void SceneElements::moveInstances(const scene::Pose& pose) {
+  for (size_t i = 0; i < instances_.size(); ++i) instances_[i].move(pose, pose.instances[i]);
+}
+
+void SceneElements::moveSurfels() {
+  tbb::parallel_for(size_t{0}, surfels_.size(), [&](size_t i) {
+    Leaf& leaf = leaves_[forest_.leafOf()[i]];
+    const Instance& instance = instances_[surfels_.objects[i]];
+    const auto blend = [&](const SurfelOrigin& o, const std::vector<glm::vec3>& values) {
+      return o.weights.x * values[o.vertices[0]] + o.weights.y * values[o.vertices[1]] +
+             o.weights.z * values[o.vertices[2]];
+    };
+    glm::vec3 normal(0);
+    for (uint32_t k = surfels_.firstOrigin[i]; k < surfels_.firstOrigin[i + 1]; ++k)
+      normal += surfels_.origins[k].side * blend(surfels_.origins[k], instance.normals);
+    const float length = glm::length(normal);
+    if (length > 0) surfels_.normals[i] = space_.direction(normal / length);
+    const glm::vec3 vertex = blend(surfels_.origins[surfels_.firstOrigin[i]], instance.positions);
+    surfels_.vertices[i] = space_.point(vertex);
+    leaf.vertex = glm::vec4(vertex, 1);
+  });
+  tbb::parallel_for(size_t{0}, surfels_.size(), [&](size_t i) {
+    const glm::vec3& normal = surfels_.normals[i];
+    surfels_.positions[i] = surfels_.centre(i, surfels_.vertices, normal);
+    Leaf& leaf = leaves_[forest_.leafOf()[i]];
+    leaf.position = glm::vec4(space_.worldPoint(surfels_.positions[i]), 1);
+    leaf.normal = glm::vec4(space_.worldDirection(normal), 0);
+  });
+}
+
+void SceneElements::setAlbedo() {
+  for (size_t i = 0; i < surfels_.size(); ++i) {
+    const Instance& instance = instances_[surfels_.objects[i]];
+    const scene::Primitive& primitive = *instance.primitive;
+    const scene::Material& material = scene_.materials[static_cast<size_t>(instance.material)];
+    if (material.specularSurface()) continue;
+    const SurfelOrigin& o = surfels_.origins[surfels_.firstOrigin[i]];
+    const auto blend = [&](const auto& values) {
+      return o.weights.x * values[o.vertices[0]] + o.weights.y * values[o.vertices[1]] +
+             o.weights.z * values[o.vertices[2]];
+    };
+    glm::vec4 base = material.baseColour, metalRough(1);
+    if (!primitive.colours.empty()) base *= blend(primitive.colours);
+    if (!primitive.uvs.empty()) {
+      // The level whose texels are as large as the disc: from the triangle's area in the texture and in
+      // space.
+      const auto areaOf = [&](const auto& a, const auto& b) {
+        return glm::length(glm::cross(glm::vec3(a), glm::vec3(b)));
+      };
+      const auto& p = instance.positions;
+      const auto& uv = primitive.uvs;
+      const float space = areaOf(p[o.vertices[1]] - p[o.vertices[0]], p[o.vertices[2]] - p[o.vertices[0]]);
+      const float plane = areaOf(glm::vec3(uv[o.vertices[1]] - uv[o.vertices[0]], 0),
+                                 glm::vec3(uv[o.vertices[2]] - uv[o.vertices[0]], 0));
+      const float disc = surfels_.areas[i] * space_.radius() * space_.radius();
+      const auto lookup = [&](const scene::TextureRef& texture) {
+        const glm::vec2 size = reference::textureSize(scene_, texture);
+        const float texels = plane / std::max(space, 1e-30f) * disc * size.x * size.y;
+        return reference::sampleTexture(scene_, texture, blend(uv), 0.5f * std::log2(std::max(texels, 1.f)));
+      };
+      base *= lookup(material.baseColourTexture);
+      metalRough = lookup(material.metalRoughTexture);
+    }
+    const glsl::SurfaceBrdf brdf = glsl::surface_brdf(
+        glm::clamp(glm::vec3(base), 0.f, 1.f), glm::clamp(material.metallic * metalRough.b, 0.f, 1.f),
+        glm::clamp(material.roughness * metalRough.g, 0.f, 1.f),
+        glm::clamp(material.specularFactor, 0.f, 1.f), glm::clamp(material.specularColour, 0.f, 1.f),
+        material.ior);
+    leaves_[forest_.leafOf()[i]].albedo = glm::vec4(glsl::hemispherical_reflectance(brdf), 0);
+  }
+}
+
+}  // namespace limn::radiosity
