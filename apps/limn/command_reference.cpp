@@ -8,6 +8,7 @@
 #include "apps/limn/options.h"
 #include "core/base/error.h"
 #include "core/reference/reference.h"
+#include "core/reference/vertices.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
@@ -20,6 +21,8 @@ struct Options {
   double noise = 0, exposure = 0;
   uint64_t seed = 0;
   std::optional<int> bounces;
+  bool atVertices = false;
+  double longestEdge = 0.05;
   fs::path out, cache;
 };
 
@@ -35,6 +38,17 @@ reference::Request makeRequest(const Options& options, const View& view) {
   return request;
 }
 
+/// Irradiance of vertices, as a list in the shape of a picture.
+int runAtVertices(const Options& options, const View& view, reference::Request request) {
+  if (options.out.extension() != ".exr")
+    throw UsageError("--at-vertices writes a list; --out takes a name ending in .exr");
+  const auto points = reference::vertexPoints(view.scene, view.pose, static_cast<float>(options.longestEdge));
+  const auto irradiance = reference::irradianceAt(request, points, 1e-4f * view.pose.bounds.radius());
+  writeImage(options.out, reference::vertexImage(points, irradiance), 0);
+  fmt::print("{}: {} points, {} samples each\n", options.out.string(), points.size(), request.spp);
+  return 0;
+}
+
 int run(const Options& options) {
   if (options.out.extension() != ".exr" && options.out.extension() != ".png")
     throw UsageError(fmt::format("--out '{}' is not accepted; expected a name ending in .exr or .png",
@@ -42,6 +56,7 @@ int run(const Options& options) {
   checkWritable(options.out);
   const View view = open(options.scene);
   reference::Request request = makeRequest(options, view);
+  if (options.atVertices) return runAtVertices(options, view, request);
   Progress progress("reference");
   const Interruption interruption;
   request.progress = [&](const reference::Progress& state) {
@@ -81,6 +96,15 @@ Action addReferenceCommand(CLI::App& command) {
       ->check(CLI::Range(0, reference::maxBounces));
   command.add_option("--noise", options->noise, "Stop at this noise: RMS relative to the mean")
       ->check(CLI::Range(0.0, 1.0));
+  command.add_flag(
+      "--at-vertices", options->atVertices,
+      "Irradiance at the vertices of the scene instead of a picture: rows of 1024 of them, with positions\n"
+      "P and normals N, as implicit_visibility sees them");
+  command
+      .add_option("--longest-edge", options->longestEdge,
+                  "With --at-vertices: longer edges of triangles are halved; scene radii")
+      ->capture_default_str()
+      ->check(CLI::Range(0.005, 1e3));
   command.add_option("--aa", options->aa, "N x N samples in each pixel (both renderers or neither)")
       ->check(CLI::Range(1, 16));
   command.add_option("--seed", options->seed, "Of the random numbers");
