@@ -105,7 +105,30 @@ Mesh teapot(int divisions) {
   return mesh;
 }
 
+/// A teapot of 32 patches of divisions^2 quads on a chequered floor, all Lambertian.
+Scene patternScene(int divisions) {
+  Scene scene;
+  Material floor = lambert("floor", {1, 1, 1});
+  floor.baseColourTexture = scene.addTexture(
+      "tiles", tileImage(512, 4, {0.8f, 0.25f, 0.15f}, {0.2f, 0.4f, 0.75f}, {0.85f, 0.8f, 0.6f}));
+  scene.add("floor", ground(0.9f, 0.9f, 0.9f), scene.addMaterial(floor));
+  scene.add("teapot", transformed(teapot(divisions), rotation(-25, {0, 1, 0}) * scaling(glm::vec3(0.14f))),
+            scene.addMaterial(lambert("glaze", {0.75f, 0.72f, 0.65f})));
+  scene.addAreaLight("key", {-0.6f, 1.2f, 0.7f}, {0, 0.15f, 0}, {0.5f, 0.5f}, 6, {1, 0.97f, 0.92f});
+  scene.addCamera("main", {0.25f, 0.65f, 1.35f}, {0, 0.17f, 0}, 34);
+  scene.addCamera("close", {0.6f, 0.5f, 0.7f}, {0.1f, 0.2f, 0}, 34);
+  return scene;
+}
+
 }  // namespace
+
+Scene makeTeapotPattern() {
+  return patternScene(10);  // 3872 vertices
+}
+
+Scene makeTeapotCoarse() {
+  return patternScene(4);  // 800 vertices
+}
 
 Scene makeTeapot() {
   Scene scene;

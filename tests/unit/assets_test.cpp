@@ -29,9 +29,11 @@ using nlohmann::json;
 
 const fs::path kAssets = fs::path(limn::test::binaryDir) / "assets";
 const char* const kScenes[] = {
-    "atrium", "atrium_robots", "balls",        "balls_sky", "cornell_box", "cornell_horse", "foliage_card",
-    "gem",    "glass_sphere",  "glass_statue", "lights",    "metaballs",   "patrol",        "plant",
-    "ring",   "robot",         "statue",       "soldiers",  "teapot",      "water",         "white_furnace"};
+    "atrium",        "atrium_robots",  "balls",        "balls_sky",    "chess",   "cornell_box",
+    "cornell_horse", "flying_dragon",  "foliage_card", "frog",         "gem",     "glass_sphere",
+    "glass_statue",  "glossy_sphere",  "lights",       "metaballs",    "monster", "patrol",
+    "plant",         "ring",           "robot",        "soldiers",     "statue",  "teapot",
+    "teapot_coarse", "teapot_pattern", "water",        "white_furnace"};
 const std::set<std::string> kUnderEnvironments = {"balls_sky", "patrol", "white_furnace"};
 
 std::string bytesOf(const fs::path& file) {
