@@ -1,0 +1,71 @@
+// The surface elements of a frame on the GPU: buffers, and the passes that bring them to the pose and link
+// them.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/radiosity/links.h"
+#include "core/radiosity/scene_elements.h"
+#include "core/technique/technique.h"
+
+namespace limn::implicit_visibility {
+
+struct ElementSettings {
+  radiosity::LinkSettings links;
+  bool flat = false;          ///< every pair of leaves, without hierarchy
+  float longestEdge = 0.05f;  ///< radii of the scene
+  int64_t memory = 0;         ///< bytes that links may take
+  std::string_view technique;
+};
+
+/// Links of leaves [first, first + count), as many as one storage block holds.
+struct LinkChunk {
+  frame::BufferHandle links;
+  uint32_t first = 0, count = 0;
+};
+
+/// Must outlive the graph.
+class ElementPasses {
+ public:
+  /// Declares "update elements" and "links" (thesis, section 4.3.2): both work on the CPU and upload. Throws
+  /// UsageError for scenes whose links take more memory than allowed.
+  ElementPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs, const ElementSettings& settings);
+
+  bool fits(const scene::Pose& pose) const { return elements_.fits(pose); }
+  const radiosity::SceneElements& elements() const { return elements_; }
+  uint32_t slots() const { return elements_.forest().slots(); }
+  uint32_t leafSlots() const { return elements_.forest().leafSlots(); }
+  size_t binCount() const { return directions_.size() / sizeof(glm::vec4); }
+  std::string bins() const { return std::to_string(settings_.links.resolution) + "u"; }
+
+  frame::BufferHandle groups, leaves, corners, directions;
+  std::vector<LinkChunk> chunks;
+
+  /// A compute program of this folder, with BINS defined.
+  frame::ProgramHandle program(frame::PassBuilder& pass, const char* file,
+                               std::map<std::string, std::string> defines = {}) const;
+  /// Declares that a pass reads links, leaves and directions.
+  void readLinks(frame::PassBuilder& pass) const;
+  /// Binds a chunk's links to binding 2, and says which leaves they belong to.
+  static void bind(const frame::PassContext& context, gpu::Program& kernel, const LinkChunk& chunk);
+  /// Sets the rotation to the bins in a program that includes elements.glsl.
+  void setSpace(gpu::Program& program) const;
+
+ private:
+  void createBuffers(gpu::Device& device);
+  void addUpdate(frame::FrameGraph& graph, const TechniqueInputs& inputs);
+  void addLinks(frame::FrameGraph& graph);
+
+  ElementSettings settings_;
+  const scene::Pose& pose_;
+  radiosity::SceneElements elements_;
+  radiosity::Links links_;
+  gpu::Buffer groupBuffer_, leafBuffer_, cornerBuffer_, directions_;
+  std::deque<gpu::Buffer> linkBuffers_;  ///< the graph keeps their addresses
+};
+
+}  // namespace limn::implicit_visibility

@@ -1,0 +1,50 @@
+// Gathers at a leaf over its bins (limn::radiosity::gather): a work group for each. SKY 1: what empty bins see of the
+// environment; 0: what links bring.
+#define THREADS 64
+#include "glsl/work_group.glsl"
+#include "techniques/implicit_visibility/elements.glsl"
+
+layout(local_size_x = THREADS) in;
+layout(std430, binding = 0) readonly buffer Directions { vec4 directions[]; };  // in the space of the bins; w: sr
+layout(std430, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
+layout(std430, binding = 2) readonly buffer Links { uint links[]; };
+#if SKY
+layout(std430, binding = 3) readonly buffer Environment { vec4 environment[]; };  // radiance of each bin
+#else
+layout(std430, binding = 3) readonly buffer Outgoing { vec4 outgoing[]; };  // of elements of all levels
+layout(std430, binding = 5) readonly buffer Direct { vec4 direct[]; };
+layout(std430, binding = 6) writeonly buffer Next { vec4 next[]; };
+#endif
+layout(std430, binding = 4) writeonly buffer Irradiance { vec4 irradiance[]; };
+uniform uint first_leaf;
+uniform uint leaf_count;
+
+void main() {
+  uint row = gl_WorkGroupID.y * 32768u + gl_WorkGroupID.x;
+  if (row >= leaf_count) return;
+  uint slot = first_leaf + row;
+  Leaf leaf = leaves[slot];
+  vec3 normal = to_bins(leaf.normal.xyz);
+  vec4 sum = vec4(0.0);
+  for (uint bin = gl_LocalInvocationIndex; bin < bin_count; bin += uint(THREADS)) {
+    vec4 direction = directions[bin];
+    float weight = direction.w * dot(normal, direction.xyz);
+    if (weight > 0.0) {
+      vec3 radiance = vec3(0.0);
+      uint link = links[row * bin_count + bin];
+#if SKY
+      if (link == no_link) radiance = environment[bin].rgb;
+#else
+      if (link < link_back) radiance = outgoing[link].rgb;
+#endif
+      sum += weight * vec4(radiance, 1.0);
+    }
+  }
+  sum = total(sum);
+  if (gl_LocalInvocationIndex > 0u) return;
+  vec3 light = leaf.vertex.w > 0.0 && sum.w > 0.0 ? pi / sum.w * sum.rgb : vec3(0.0);
+  irradiance[slot] = vec4(light, 0.0);
+#if !SKY
+  next[slot] = vec4(direct[slot].rgb + leaf.albedo.rgb * light * inverse_pi, 0.0);
+#endif
+}

@@ -1,0 +1,58 @@
+// How much of each light each leaf sees: points of the light are hidden where the link in their bin is shorter. That is the
+// sum of equation 4.4 with the visibility of 4.5, so that lights smaller than a bin keep their size.
+#include "glsl/light_view.glsl"
+#include "glsl/sampling.glsl"
+#include "techniques/implicit_visibility/elements.glsl"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Lights { Light lights[]; };
+layout(std430, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
+layout(std430, binding = 2) readonly buffer Links { uint links[]; };
+layout(std430, binding = 3) readonly buffer Groups { ElementGroup groups[]; };
+layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };
+layout(std430, binding = 5) writeonly buffer Seen { float seen[]; };
+uniform uint first_leaf;  // of those whose links are bound
+uniform uint leaf_count;
+uniform uint slots;
+uniform uint samples;
+uniform float unit;  // metres
+
+// A blocker must be nearer than this part of the way, so that lights at a surface are not hidden by it.
+const float reach = 0.98;
+
+// Whether the light's point is visible; distance: in metres, huge for distant lights.
+bool clear(uint slot, Light light, vec3 direction, float distance) {
+  uint link = links[(slot - first_leaf) * bin_count + bin_of(to_bins(direction), BINS)];
+  if (link == no_link) return true;
+  uint element = link & ~link_back;
+  ElementGroup g = groups[element / 4u];
+  if (g.info.w == light.info.z) return true;  // a light does not hide itself
+  ElementGroup own = groups[slot / 4u];
+  uint k = element % 4u;
+  uint i = slot % 4u;
+  vec3 offset = vec3(g.x[k], g.y[k], g.z[k]) - vec3(own.x[i], own.y[i], own.z[i]);
+  return length(offset) * unit > reach * distance;
+}
+
+void main() {
+  uint slot = first_leaf + gl_GlobalInvocationID.x;
+  if (gl_GlobalInvocationID.x >= leaf_count) return;
+  Leaf leaf = leaves[slot];
+  float lit = 1.0;
+  Light light = lights[indices[gl_WorkGroupID.y]];
+  LightView v = light_view(light, leaf.position.xyz, leaf.normal.xyz, -1.0);
+  if (leaf.vertex.w > 0.0 && !v.masked) {
+    bool distant = light.info.x == light_directional;
+    float total = 0.0;
+    float hits = 0.0;
+    uint count = v.extended ? samples : 1u;
+    for (uint s = 0u; s < count; ++s) {
+      vec3 slope = v.centre;
+      if (v.extended && !light_view_sample(v, r2_sequence(s), slope)) continue;
+      total += 1.0;
+      if (clear(slot, light, slope, distant ? 3.0e38 : length(slope) * v.depth)) hits += 1.0;
+    }
+    lit = total > 0.0 ? hits / total : 1.0;
+  }
+  seen[gl_WorkGroupID.y * slots + slot] = lit;
+}

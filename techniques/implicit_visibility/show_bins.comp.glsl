@@ -1,0 +1,52 @@
+// Per-pixel gathering: the BRDF of the pixel's own normal and view over the bins of the leaves around it. SKY as in
+// gather.comp.glsl. Leaves whose links are not bound are left to the passes that have them.
+#include "glsl/gbuffer_input.glsl"
+#include "glsl/brdf.glsl"
+#include "techniques/implicit_visibility/elements.glsl"
+#include "techniques/implicit_visibility/surface_lookup.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(rgba32f, binding = 0) uniform image2D radiance;
+layout(std430, binding = 0) readonly buffer Directions { vec4 directions[]; };
+layout(std430, binding = 2) readonly buffer Links { uint links[]; };
+layout(std430, binding = 3) readonly buffer Source { vec4 source[]; };  // radiance of elements, or of bins (SKY)
+uniform uint first_leaf;
+uniform uint leaf_count;
+
+vec3 reflected(uint row, SurfaceBrdf material, vec3 n, vec3 v) {
+  vec3 sum = vec3(0.0);
+  float weights = 0.0;
+  for (uint bin = 0u; bin < bin_count; ++bin) {
+    vec4 direction = directions[bin];
+    float weight = direction.w * dot(n, direction.xyz);
+    if (!(weight > 0.0)) continue;
+    weights += weight;
+    uint link = links[row * bin_count + bin];
+#if SKY
+    if (link == no_link) sum += weight * source[bin].rgb * brdf(material, n, v, direction.xyz);
+#else
+    if (link < link_back) sum += weight * source[link].rgb * brdf(material, n, v, direction.xyz);
+#endif
+  }
+  return pi / weights * sum;
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  if (pixel_depth(pixel) == 0.0) return;
+  GBufferSurface surface = pixel_surface(pixel);
+  if ((surface.flags & gbuffer_flag_specular) != 0u) return;
+  Around a = around_pixel(pixel);
+  if (!a.found) return;
+  SurfaceBrdf material = surface_brdf(surface.base_colour, surface.metallic, surface.roughness, surface.specular_factor,
+                                      surface.specular_colour, surface.ior);
+  vec3 n = to_bins(surface.normal);
+  vec3 v = to_bins(-normalize(pixel_ray(pixel)));
+  vec3 sum = vec3(0.0);
+  for (int k = 0; k < 3; ++k) {
+    uint row = a.slots[k] - first_leaf;
+    if (a.weights[k] > 0.0 && row < leaf_count) sum += a.weights[k] * reflected(row, material, n, v);
+  }
+  imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(sum, 0.0));
+}

@@ -1,0 +1,35 @@
+// The leaves around a pixel.
+#ifndef LIMN_IMPLICIT_VISIBILITY_LOOKUP_GLSL
+#define LIMN_IMPLICIT_VISIBILITY_LOOKUP_GLSL
+
+layout(binding = 8) uniform usampler2D surface_lookup;
+
+struct Around {
+  uvec3 slots;
+  vec3 weights;
+  bool found;
+};
+
+Around around_texel(ivec2 pixel) {
+  uvec4 texel = texelFetch(surface_lookup, pixel, 0);
+  Around a;
+  a.slots = texel.xyz;
+  vec2 place = unpackUnorm2x16(texel.w);
+  a.weights = vec3(max(1.0 - place.x - place.y, 0.0), place);
+  a.found = texel.x != 0xffffffffu;
+  return a;
+}
+
+// At outlines the triangles between surfels may miss a pixel that the G-buffer shows: then a neighbour's.
+Around around_pixel(ivec2 pixel) {
+  Around a = around_texel(pixel);
+  ivec2 last = textureSize(surface_lookup, 0) - 1;
+  for (int i = 0; i < 8 && !a.found; ++i) {
+    ivec2 step = ivec2[](ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1), ivec2(1, 1), ivec2(-1, 1), ivec2(1, -1),
+                         ivec2(-1, -1))[i];
+    a = around_texel(clamp(pixel + step, ivec2(0), last));
+  }
+  return a;
+}
+
+#endif
