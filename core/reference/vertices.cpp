@@ -31,8 +31,8 @@ Surface whiteSurface(const SurfacePoint& point, float clearance) {
 
 std::vector<glm::vec3> irradianceAt(const Request& request, std::span<const SurfacePoint> points,
                                     float clearance) {
-  if (request.term == Term::visibility)
-    throw UsageError("reference: visibility is no light; at vertices there are direct, indirect and final");
+  if (request.term != Term::direct && request.term != Term::indirect && request.term != Term::final)
+    throw UsageError("reference: at vertices there are the terms direct, indirect and final");
   const RayScene rays(request.scene, request.pose);
   const auto integrator = makePathIntegrator(rays, request);
   std::vector<glm::vec3> result(points.size());
