@@ -1,0 +1,83 @@
+// How the stages of implicit visibility grow with the number of surface elements, through the hierarchy and
+// for every pair: a wavy body over a floor, 6 x 16 x 16 bins, all cores. Arguments: elements, 1 for the
+// published way to fill bins.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/radiosity/illumination.h"
+#include "tests/support/radiosity_meshes.h"
+
+namespace {
+
+using namespace limn;
+using namespace limn::radiosity;
+
+/// About `count` surfels, three fifths of them on the body.
+Surfels bodyOverFloor(int count) {
+  const int rings = static_cast<int>(std::sqrt(count * 0.3)), side = static_cast<int>(std::sqrt(count * 0.4));
+  const auto body = [](float u, float v) {
+    const float azimuth = 2 * glsl::pi * (u == 1 ? 0 : u), polar = glsl::pi * v;
+    const float r = 0.5f * (1 + 0.25f * std::sin(3 * azimuth) * std::sin(polar) * std::sin(4 * polar));
+    return glm::vec3(r * std::sin(polar) * std::cos(azimuth), 0.75f - r * std::cos(polar),
+                     -r * std::sin(polar) * std::sin(azimuth));
+  };
+  const auto normal = [&](float u, float v) {
+    constexpr float step = 1e-3f;
+    const float w = std::clamp(v, 0.01f, 0.99f);
+    return glm::normalize(
+        glm::cross(body(u + step, w) - body(u - step, w), body(u, w + step) - body(u, w - step)));
+  };
+  return surfelsOf(
+      {gridMesh(2 * rings, rings, body, normal), rectangleMesh({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, side)});
+}
+
+LinkSettings settingsOf(const benchmark::State& state) {
+  return {.fill = state.range(1) == 1 ? Fill::centre : Fill::footprint,
+          .opening = state.range(1) == 1 ? 1.f : 2.f};
+}
+
+void update(benchmark::State& state) {
+  const Surfels surfels = bodyOverFloor(static_cast<int>(state.range(0)));
+  Forest forest(surfels);
+  for (auto _ : state) forest.refit(surfels.positions, surfels.normals);
+}
+
+template <bool flat>
+void links(benchmark::State& state) {
+  const Forest forest(bodyOverFloor(static_cast<int>(state.range(0))));
+  Links made;
+  for (auto _ : state)
+    flat ? made.buildFlat(forest, settingsOf(state)) : made.build(forest, settingsOf(state));
+  state.counters["elements"] = static_cast<double>(forest.leafOf().size());
+}
+
+void illumination(benchmark::State& state) {
+  const Forest forest(bodyOverFloor(static_cast<int>(state.range(0))));
+  Links made;
+  made.build(forest, settingsOf(state));
+  std::vector<glm::vec3> outgoing(forest.slots(), glm::vec3(0.5f)), irradiance(forest.leafSlots());
+  const std::vector<glm::vec4> table = binTable(made.resolution());
+  for (auto _ : state) {
+    gather(forest, made, table, outgoing, {}, irradiance);
+    std::copy(irradiance.begin(), irradiance.end(), outgoing.begin());
+    pullUp(forest, outgoing);
+  }
+}
+
+/// The thesis's 2.5k vertices, and up to 64k.
+void sizes(benchmark::internal::Benchmark* b) {
+  for (const int published : {0, 1})
+    for (const int count : {2500, 8000, 16000, 32000, 64000}) b->Args({count, published});
+  b->Unit(benchmark::kMillisecond)->UseRealTime();
+}
+
+BENCHMARK(update)->Apply(sizes);
+BENCHMARK(links<false>)->Apply(sizes);
+BENCHMARK(links<true>)->Apply(sizes);
+BENCHMARK(illumination)->Apply(sizes);
+
+}  // namespace
+
+BENCHMARK_MAIN();
