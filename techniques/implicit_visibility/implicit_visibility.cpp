@@ -52,7 +52,6 @@ constexpr StressCase stress[] = {
     {.name = "coarse mesh", .scene = "cornell_box", .settings = "longest_edge=10", .factor = 8},
     {.name = "per pixel", .scene = "cornell_box", .settings = "display=pixel bins=8", .factor = 2},
     {.name = "three bounces", .scene = "cornell_box", .settings = "bounces=3", .factor = 4},
-    {.name = "new topology in every frame", .scene = "metaballs"},
 };
 
 class ImplicitVisibility : public Technique {
