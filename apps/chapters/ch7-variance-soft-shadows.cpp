@@ -5,13 +5,17 @@ int main(int argc, char** argv) {
   using limn::app::ChapterSetting;
   constexpr const char* suites[] = {"ch7_figures", "ch7"};
   constexpr ChapterSetting settings[] = {
-      {"VSSM", "vssm", ""},
-      {"VSSM, uniform subdivision", "vssm", "vssm.subdivision=uniform"},
-      {"VSSM, adaptive subdivision", "vssm", "vssm.subdivision=adaptive"},
-      {"PCSS, 32 + 64 samples", "pcss", ""},
-      {"VSM from a summed-area table", "savsm", ""},
-      {"Back-projection", "backprojection", ""},
-      {"16 shadow maps on the light", "sampled_area_light", "sampled_area_light.samples=16"},
+      {"VSSM", "vssm", "",
+       "Blocker depth and visibility from two moments; kernels that are not planar are subdivided."},
+      {"VSSM, uniform subdivision", "vssm", "vssm.subdivision=uniform",
+       "Every kernel is cut into the same parts: compare the time and where light leaks."},
+      {"VSSM, adaptive subdivision", "vssm", "vssm.subdivision=adaptive",
+       "A quad-tree cuts only where the moments cannot answer."},
+      {"PCSS, 32 + 64 samples", "pcss", "", "The same estimate by sampling: noise in wide penumbrae."},
+      {"VSM from a summed-area table", "savsm", "", "Without subdivision non-planar kernels are lit."},
+      {"Back-projection", "backprojection", "", "Each texel of the map hides a part of the light."},
+      {"16 shadow maps on the light", "sampled_area_light", "sampled_area_light.samples=16",
+       "Sixteen hard shadows: raise the number to approach the truth."},
   };
   return limn::app::runChapter({.name = "ch7-variance-soft-shadows",
                                 .title = "Variance soft shadow maps",

@@ -21,5 +21,6 @@ Action addFlickerCommand(CLI::App& command);
 Action addExplainCostCommand(CLI::App& command);
 Action addReportCommand(CLI::App& command);
 Action addReproductionCommand(CLI::App& command);
+Action addViewCommand(CLI::App& command);
 
 }  // namespace limn::app

@@ -53,6 +53,7 @@ int main(int argc, char** argv) {
       addExplainCostCommand);
   add("report", "Write the tables and the report of finished benches anew", addReportCommand);
   add("reproduction", "The thesis's ratios beside those of bench results, as a page", addReproductionCommand);
+  add("view", "Open a window on a scene; takes what limn-view takes", addViewCommand);
 
   return guarded([&] {
     if (argc > 1 && argv[1][0] != '-') checkCommand(limn, argv[1]);

@@ -233,8 +233,7 @@ scene::CameraPose chooseCamera(const SceneOptions& options, const scene::Pose& p
   return camera;
 }
 
-/// Gives every light that has an extent another one. Throws UsageError where there is none.
-static void resizeLights(scene::Scene& scene, double size) {
+void resizeLights(scene::Scene& scene, double size) {
   const auto side = static_cast<float>(size);
   int resized = 0;
   for (scene::Node& node : scene.nodes) {

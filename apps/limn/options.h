@@ -67,6 +67,9 @@ struct View {
 /// Loads everything SceneOptions names; prints the scene's warnings to stderr. Throws UsageError or Error.
 View open(const SceneOptions& options);
 
+/// Gives every light that has an extent another one (--light-size). Throws UsageError where there is none.
+void resizeLights(scene::Scene& scene, double size);
+
 /// What the CPU is asked for the same picture: the view's scene, size and light. The caller sets samples, and
 /// bounces where they are not the one of indirect light and none of the other terms. `view` and `pose` must
 /// outlive the request.

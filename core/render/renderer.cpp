@@ -54,7 +54,6 @@ struct Renderer::Implementation {
   SceneHandles handles;
   GBuffer gbuffer;
   frame::TextureHandle output, display;
-  gpu::Framebuffer displayed;  ///< reads `display`
 
   Implementation(gpu::Device& gpuDevice, const scene::Scene& shown, std::filesystem::path overrideFolder)
       : device(gpuDevice),
@@ -221,14 +220,6 @@ struct Renderer::Implementation {
     graph->output(display);
   }
 
-  void present() {
-    if (!display || !graph) throw Error("nothing to present: Settings::displayEv was not set");
-    if (!displayed.id()) displayed = gpu::Framebuffer(device, "display", {{{&graph->texture(display)}}});
-    const auto [width, height] = std::pair(settings.size.x, settings.size.y);
-    device.gl().BlitNamedFramebuffer(displayed.id(), 0, 0, 0, width, height, 0, 0, width, height,
-                                     GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  }
-
   void build() {
     dropGraph();
     graph = std::make_unique<frame::FrameGraph>();
@@ -249,7 +240,6 @@ struct Renderer::Implementation {
     output = settings.output == Output::visibility ? addVisibility() : addRadiance();
     graph->output(output);
     display = {};
-    displayed = {};
     if (settings.displayEv) addToneMapping(*settings.displayEv);
     if (settings.channels && gbuffer.depth)
       for (frame::TextureHandle kept : {gbuffer.depth, gbuffer.instance, gbuffer.albedo, gbuffer.normal})
@@ -343,8 +333,10 @@ void Renderer::setTime(double seconds, int animation) {
 void Renderer::render(frame::Timing timing) {
   implementation_->render(timing);
 }
-void Renderer::present() {
-  implementation_->present();
+const gpu::Texture& Renderer::display() const {
+  const Implementation& self = *implementation_;
+  if (!self.display || !self.graph) throw Error("nothing to display: Settings::displayEv was not set");
+  return self.graph->texture(self.display);
 }
 
 void Renderer::finish() {

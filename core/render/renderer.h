@@ -52,7 +52,7 @@ struct Settings {
   bool dynamic = true;
   /// Keep depth, coverage, instance id, albedo and normal for read().
   bool channels = false;
-  /// Tone-map the picture for present(): clamp(2^EV * picture), then sRGB, as PNG files are written.
+  /// Tone-map the picture for display(): clamp(2^EV * picture), then sRGB, as PNG files are written.
   std::optional<float> displayEv = {};
   /// Done all the same, to learn what leaving it out is worth (core/bench/savings.h).
   std::vector<Saving> forced = {};
@@ -82,9 +82,8 @@ class LIMN_API Renderer {
   /// (-1: nothing seen), albedo.*, N.*. Blocks.
   Image read() const;
 
-  /// Copies the last frame, tone-mapped (Settings::displayEv), into the window's framebuffer, which is as
-  /// large.
-  void present();
+  /// The last frame, tone-mapped (Settings::displayEv): RGBA8, bottom row first. Throws Error without one.
+  const gpu::Texture& display() const;
 
   /// Blocks until the GPU has done everything asked of it (glFinish).
   void finish();

@@ -6,7 +6,7 @@ namespace {
 
 /// Without a display, whatever the machine has.
 Outcome chapter(const std::string& name, const std::vector<std::string>& arguments) {
-  std::vector<std::string> command = {std::string(binaryDir) + "/bin/" + name, "--files"};
+  std::vector<std::string> command = {std::string(binaryDir) + "/bin/" + name, "--headless"};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return run(command);
 }

@@ -4,10 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdlib>
+#include <sstream>
 
-#include "apps/chapters/support/window.h"
 #include "apps/limn/bench_session.h"
 #include "apps/limn/options.h"
+#include "apps/view/viewer.h"
 #include "core/base/error.h"
 
 namespace limn::app {
@@ -40,6 +41,18 @@ int writeFiles(const Chapter& chapter, const fs::path& out, const BackendOptions
   return failed > 0 ? 1 : 0;
 }
 
+std::vector<ViewerStep> stepsOf(const Chapter& chapter) {
+  std::vector<ViewerStep> steps;
+  for (const ChapterSetting& setting : chapter.settings) {
+    ViewerStep step{.title = setting.title, .sentence = setting.sentence, .techniques = {}};
+    step.techniques.techniques = setting.techniques;
+    std::istringstream words(setting.parameters);
+    for (std::string word; words >> word;) step.techniques.settings.push_back(word);
+    steps.push_back(std::move(step));
+  }
+  return steps;
+}
+
 }  // namespace
 
 int runChapter(const Chapter& chapter, int argc, char** argv) {
@@ -51,12 +64,12 @@ int runChapter(const Chapter& chapter, int argc, char** argv) {
     });
     fs::path out = fs::path("out") / chapter.name;
     std::vector<std::string> filters;
-    bool files = false;
+    bool headless = false;
     int frames = 0;
     SceneOptions scene;
     scene.scene = chapter.scene;
     BackendOptions backend;
-    program.add_flag("--files", files,
+    program.add_flag("--headless", headless,
                      "Write pictures and tables although there is a display (the default without one)");
     program.add_option("--out", out, "Folder of the pictures and tables; resumed if it exists")
         ->capture_default_str();
@@ -73,8 +86,16 @@ int runChapter(const Chapter& chapter, int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
       return program.exit(error) == 0 ? 0 : 2;
     }
-    if (files || !hasDisplay()) return writeFiles(chapter, out, backend, filters);
-    showWindow(chapter, scene, frames);
+    if (headless || !hasDisplay()) return writeFiles(chapter, out, backend, filters);
+    runViewer({.title = chapter.title,
+               .scene = scene,
+               .techniques = {},
+               .steps = stepsOf(chapter),
+               .debug = backend.debug,
+               .shaders = {},
+               .save = out / "view.png",
+               .frames = frames,
+               .screenshot = {}});
     return 0;
   });
 }

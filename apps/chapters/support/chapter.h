@@ -1,5 +1,5 @@
 // A chapter's demo program. Without a display it writes the chapter's pictures and its table of frames per
-// second; with one it opens a window in which the chapter's settings can be compared.
+// second; with one it opens the viewer, with a guide through the chapter's settings.
 #pragma once
 
 #include <span>
@@ -7,11 +7,12 @@
 
 namespace limn::app {
 
-/// One setting of the window, chosen by its number key.
+/// One step of the guide through the chapter that the window offers.
 struct ChapterSetting {
   const char* title;
-  const char* techniques;  ///< as --technique
-  const char* parameters;  ///< as --set, separated by spaces; may be empty
+  const char* techniques;     ///< as --technique
+  const char* parameters;     ///< as --set, separated by spaces; may be empty
+  const char* sentence = "";  ///< what is to be seen
 };
 
 struct Chapter {

@@ -1,0 +1,91 @@
+#include "apps/view/parameter_widgets.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <cmath>
+
+namespace limn::app {
+namespace {
+
+/// As ImGui prints a slider's value, with the unit.
+std::string format(const char* number, const Parameter& p) {
+  return *p.unit ? fmt::format("{} {}", number, p.unit) : number;
+}
+
+std::string rangeText(const Parameter& p) {
+  if (p.type == ParameterType::boolean || p.type == ParameterType::choice) return "";
+  return fmt::format("\n{:g} to {:g}{}{}", p.range.low, p.range.high, *p.unit ? " " : "", p.unit);
+}
+
+/// ImGui's logarithmic sliders take 0 into a range by a dead zone of their own.
+ImGuiSliderFlags sliderFlags(const Parameter& p) {
+  return ImGuiSliderFlags_AlwaysClamp | (p.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+}
+
+/// The new value as the command line would say it; empty: unchanged.
+std::string widget(const Parameter& p, const ParameterValues& values) {
+  ImGui::SetNextItemWidth(-1);
+  switch (p.type) {
+    case ParameterType::boolean: {
+      bool value = values.boolean(p.name);
+      return ImGui::Checkbox("##value", &value) ? (value ? "true" : "false") : "";
+    }
+    case ParameterType::integer: {
+      int value = values.integer(p.name);
+      const int low = static_cast<int>(p.range.low), high = static_cast<int>(p.range.high);
+      return ImGui::SliderInt("##value", &value, low, high, format("%d", p).c_str(), sliderFlags(p))
+                 ? std::to_string(value)
+                 : "";
+    }
+    case ParameterType::real: {
+      float value = values.real(p.name);
+      const auto low = static_cast<float>(p.range.low), high = static_cast<float>(p.range.high);
+      return ImGui::SliderFloat("##value", &value, low, high, format("%.4g", p).c_str(), sliderFlags(p))
+                 ? fmt::format("{}", value)
+                 : "";
+    }
+    case ParameterType::choice: {
+      int value = values.choice(p.name);
+      return ImGui::Combo("##value", &value, p.choices, p.choiceCount) ? p.choices[value] : "";
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+bool parameterWidgets(ParameterValues& values, const ParameterValues& defaults) {
+  const auto now = values.printed(), standard = defaults.printed();
+  bool changed = false;
+  if (!ImGui::BeginTable("parameters", 3, ImGuiTableFlags_SizingStretchProp)) return false;
+  ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 0.45f);
+  ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.55f);
+  ImGui::TableSetupColumn("reset", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFrameHeight());
+  for (size_t i = 0; i < now.size(); ++i) {
+    const Parameter& p = values.declared()[i];
+    ImGui::PushID(p.name);
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(p.name);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s%s", p.doc, rangeText(p).c_str());
+    ImGui::TableNextColumn();
+    std::string text = widget(p, values);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s%s", p.doc, rangeText(p).c_str());
+    ImGui::TableNextColumn();
+    if (now[i].second != standard[i].second) {
+      if (ImGui::Button("x", {-1, 0})) text = standard[i].second;
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("back to %s", standard[i].second.c_str());
+    }
+    if (!text.empty()) {
+      values.set(p.name, text);
+      changed = true;
+    }
+    ImGui::PopID();
+  }
+  ImGui::EndTable();
+  return changed;
+}
+
+}  // namespace limn::app

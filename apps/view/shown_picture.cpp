@@ -1,0 +1,61 @@
+#include "apps/view/shown_picture.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/base/error.h"
+
+namespace limn::app {
+namespace {
+
+bool same(const render::Settings& a, const render::Settings& b) {
+  const auto sameUse = [](const render::TechniqueUse& x, const render::TechniqueUse& y) {
+    return x.plugin == y.plugin && x.parameters.printed() == y.parameters.printed();
+  };
+  return a.size == b.size && a.output == b.output && a.light == b.light && a.displayEv == b.displayEv &&
+         std::ranges::equal(a.techniques, b.techniques, sameUse);
+}
+
+}  // namespace
+
+void ShownPicture::configure(const render::Settings& settings) {
+  if (configured_ && same(settings, settings_)) return;
+  settings_ = settings;
+  settings_.dynamic = false;  // what did not change is not drawn again
+  configured_ = false;
+}
+
+bool ShownPicture::render(const scene::CameraPose& camera, double time, int animation, bool timed) {
+  try {
+    if (!configured_) {
+      shown_ = false;
+      render::checkTechniques(settings_.techniques, settings_.output);
+      renderer_.configure(settings_);
+      configured_ = true;
+    }
+    renderer_.setTime(time, animation);
+    renderer_.setCamera(camera);
+    const auto start = std::chrono::steady_clock::now();
+    renderer_.render(timed ? frame::preferredTiming(device_) : frame::Timing::off);
+    renderer_.finish();
+    frameMs_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    if (timed) {
+      passes_ = renderer_.explain();
+      times_ = renderer_.graph().passTimes();
+    }
+    shown_ = true;
+    problem_.clear();
+    return true;
+  } catch (const Error& error) {
+    problem_ = error.what();
+    configured_ = shown_ = false;
+    return false;
+  }
+}
+
+void ShownPicture::reloadShaders() {
+  const render::Renderer::Reload reload = renderer_.reloadShaders();
+  problem_ = reload.errors.empty() ? "" : reload.errors.front();
+}
+
+}  // namespace limn::app

@@ -1,0 +1,46 @@
+// One picture of the view: a renderer and what the panels tell about its last frame.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/limn/options.h"
+#include "core/gpu/device.h"
+#include "core/render/renderer.h"
+
+namespace limn::app {
+
+class ShownPicture {
+ public:
+  ShownPicture(gpu::Device& device, const View& view, std::filesystem::path shaders)
+      : device_(device), renderer_(device, view.scene, std::move(shaders)) {}
+
+  /// Takes effect with the next render(), if it says something new.
+  void configure(const render::Settings& settings);
+  /// Renders one frame; false, and problem() says why, if that failed: there is no picture then.
+  bool render(const scene::CameraPose& camera, double time, int animation, bool timed);
+  void reloadShaders();
+
+  /// The tone-mapped picture, bottom row first; null before the first one.
+  const gpu::Texture* display() const { return shown_ ? &renderer_.display() : nullptr; }
+  Image read() const { return renderer_.read(); }
+  glm::ivec2 size() const { return settings_.size; }
+  const std::string& problem() const { return problem_; }
+  double frameMs() const { return frameMs_; }
+  const std::vector<frame::PassReport>& passes() const { return passes_; }
+  const std::vector<frame::PassTime>& times() const { return times_; }
+  render::Renderer& renderer() { return renderer_; }
+
+ private:
+  gpu::Device& device_;
+  render::Renderer renderer_;
+  render::Settings settings_;
+  bool configured_ = false, shown_ = false;
+  std::string problem_;
+  double frameMs_ = 0;
+  std::vector<frame::PassReport> passes_;
+  std::vector<frame::PassTime> times_;
+};
+
+}  // namespace limn::app

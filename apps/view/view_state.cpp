@@ -1,0 +1,158 @@
+#include "apps/view/view_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace limn::app {
+namespace {
+
+std::string vector(const glm::vec3& v) {
+  return fmt::format("{},{},{}", v.x, v.y, v.z);  // the shortest text that reads as the same numbers
+}
+
+/// For a POSIX shell.
+std::string quoted(const std::string& text) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string_view("_-./,:=@%+").find(c) != std::string_view::npos;
+  };
+  if (!text.empty() && std::ranges::all_of(text, plain)) return text;
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+/// TOML basic string.
+std::string tomlText(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    if (static_cast<unsigned char>(c) < 0x20)
+      result += fmt::format("\\u{:04x}", static_cast<int>(c));
+    else
+      result += c;
+  }
+  return result + "\"";
+}
+
+/// Parameters that are not at their defaults: name and printed value.
+std::vector<std::pair<std::string, std::string>> changed(const render::TechniqueUse& use) {
+  const auto now = use.parameters.printed();
+  const auto before = ParameterValues(use.plugin->info->name, use.plugin->info->parameters).printed();
+  std::vector<std::pair<std::string, std::string>> result;
+  for (size_t i = 0; i < now.size(); ++i)
+    if (now[i].second != before[i].second) result.push_back(now[i]);
+  return result;
+}
+
+std::string techniqueNames(const std::vector<render::TechniqueUse>& uses) {
+  std::string names;
+  for (const render::TechniqueUse& use : uses)
+    names += (names.empty() ? "" : ",") + std::string(use.plugin->info->name);
+  return names;
+}
+
+class CommandLine {
+ public:
+  explicit CommandLine(const std::string& start) : text_(start) {}
+  /// Left out where `value` is empty.
+  CommandLine& add(const char* option, const std::string& value) {
+    if (!value.empty()) text_ += fmt::format(" {} {}", option, quoted(value));
+    return *this;
+  }
+  /// Left out where `value` is `standard`.
+  template <class T>
+  CommandLine& add(const char* option, const T& value, const T& standard) {
+    if (!(value == standard)) text_ += fmt::format(" {} {}", option, quoted(fmt::format("{}", value)));
+    return *this;
+  }
+  std::string text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+}  // namespace
+
+void setCamera(SceneOptions& options, const Orbit& orbit) {
+  options.eye = vector(orbit.eye());
+  options.target = vector(orbit.target());
+}
+
+void dropRivals(std::vector<render::TechniqueUse>& techniques, const TechniquePlugin& added) {
+  const auto claims = [](const TechniquePlugin& plugin, TermSet terms) {
+    return (plugin.info->terms & terms) != 0;
+  };
+  const auto rivals = [&](const render::TechniqueUse& use) {
+    if (use.plugin == &added) return false;
+    for (const TermSet alone : {Term::visibility | Term::direct, termSet(Term::environment)})
+      if (claims(*use.plugin, alone) && claims(added, alone)) return true;
+    return false;
+  };
+  std::erase_if(techniques, rivals);
+}
+
+std::string renderCommand(const ViewState& state, const std::filesystem::path& out) {
+  const SceneOptions& s = state.scene;
+  const SceneOptions standard;
+  CommandLine line("limn render " + quoted(s.scene.string()));
+  line.add("--technique", techniqueNames(state.techniques));
+  for (const render::TechniqueUse& use : state.techniques)
+    for (const auto& [name, value] : changed(use))
+      line.add("--set", fmt::format("{}.{}={}", use.plugin->info->name, name, value));
+  line.add("--camera", s.camera)
+      .add("--eye", s.eye)
+      .add("--target", s.target)
+      .add("--fov", s.fov, standard.fov);
+  line.add("--environment", s.environment.string())
+      .add("--environment-rotation", s.environmentRotation, standard.environmentRotation)
+      .add("--environment-scale", s.environmentScale, standard.environmentScale)
+      .add("--environment-lights", s.environmentLights.threshold, standard.environmentLights.threshold)
+      .add("--environment-resolution", s.environmentLights.resolution, standard.environmentLights.resolution)
+      .add("--environment-shape", s.environmentLights.shape, standard.environmentLights.shape)
+      .add("--environment-reflection", s.environmentReflection, standard.environmentReflection);
+  line.add("--time", s.time, standard.time).add("--animation", s.animation);
+  line.add("--light", s.light).add("--light-size", s.lightSize, standard.lightSize);
+  line.add("--sigma-a", s.sigmaA).add("--sigma-s", s.sigmaS);
+  if (s.g) line.add("--g", fmt::format("{}", *s.g));
+  line.add("--default-lights", s.defaultLights, standard.defaultLights);
+  line.add("--size", s.size);
+  line.add("--output-term", std::string(render::name(state.output)), std::string("final"));
+  line.add("--exposure", state.exposure, 0.f);
+  return line.add("--out", out.string()).text();
+}
+
+std::string benchSuite(const ViewState& state) {
+  const SceneOptions& s = state.scene;
+  const std::string term(render::name(state.output));
+  std::string text = fmt::format(
+      "# Saved by limn-view: `limn bench` on this file measures what it showed.\nname = \"view\"\nsizes = "
+      "[{}]\nterm = {}\n",
+      tomlText(s.size), tomlText(term));
+  text += "reference = {noise = 0.02, spp = 4096}\npictures = true\n\n[[scenes]]\n";
+  text += fmt::format("scene = {}\n", tomlText(s.scene.string()));
+  if (!s.camera.empty()) text += fmt::format("cameras = [{}]\n", tomlText(s.camera));
+  if (!s.eye.empty())
+    text += fmt::format("# the camera was --eye {} --target {}, which suites do not take\n", s.eye, s.target);
+  if (!s.light.empty()) text += fmt::format("lights = [{}]\n", tomlText(s.light));
+  if (s.lightSize > 0) text += fmt::format("light_sizes = [{}]\n", s.lightSize);
+  if (s.time != 0) text += fmt::format("time = {}\n", s.time);
+  if (!s.environment.empty()) text += fmt::format("environment = {}\n", tomlText(s.environment.string()));
+  if (s.environmentLights.threshold > 0)
+    text += fmt::format("environment_lights = [{}]\n", s.environmentLights.threshold);
+  if (state.techniques.empty()) return text;
+  text += fmt::format("\n[[techniques]]\ntechnique = {}\n", tomlText(techniqueNames(state.techniques)));
+  const bool several = state.techniques.size() > 1;
+  std::string values;
+  for (const render::TechniqueUse& use : state.techniques) {
+    for (const auto& [name, value] : changed(use)) {
+      const std::string key = several ? fmt::format("\"{}.{}\"", use.plugin->info->name, name) : name;
+      values += fmt::format("{}{} = [{}]", values.empty() ? "" : ", ", key, tomlText(value));
+    }
+  }
+  if (!values.empty()) text += fmt::format("parameters = {{{}}}\n", values);
+  return text;
+}
+
+}  // namespace limn::app

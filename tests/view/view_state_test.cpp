@@ -1,0 +1,151 @@
+// What the viewer saves says what it shows.
+#include "apps/view/view_state.h"
+
+#include <gmock/gmock.h>
+
+#include <CLI/CLI.hpp>
+#include <sstream>
+
+#include "apps/view/difference.h"
+#include "apps/view/display_image.h"
+#include "core/bench/suite.h"
+#include "core/scene/camera.h"
+#include "glsl/srgb.glsl"
+
+namespace limn::app {
+namespace {
+
+class ViewStateTest : public ::testing::Test {
+ protected:
+  ViewStateTest() : registry_(TechniqueRegistry::defaultFolders()) { state_.scene.scene = "cornell_box"; }
+  void use(const char* techniques, std::vector<std::string> settings = {}) {
+    TechniqueOptions options;
+    options.techniques = techniques;
+    options.settings = std::move(settings);
+    state_.techniques = options.resolve(registry_);
+  }
+  TechniqueRegistry registry_;
+  ViewState state_;
+};
+
+TEST_F(ViewStateTest, CommandsSayOnlyWhatIsNotTheDefault) {
+  state_.scene.size = "320x200";
+  EXPECT_EQ(renderCommand(state_, "a.png"), "limn render cornell_box --size 320x200 --out a.png");
+  use("pcss,clustered_visibility", {"pcss.filter_samples=16", "clustered_visibility.vals=5"});
+  state_.exposure = -1.5f;
+  state_.output = render::Output::direct;
+  EXPECT_EQ(
+      renderCommand(state_, "a.png"),
+      "limn render cornell_box --technique pcss,clustered_visibility --set pcss.filter_samples=16 --set "
+      "clustered_visibility.vals=5 --size 320x200 --output-term direct --exposure -1.5 --out a.png");
+}
+
+TEST_F(ViewStateTest, NamesAreQuotedForTheShell) {
+  state_.scene.scene = "it's my scene.glb";
+  EXPECT_THAT(renderCommand(state_, "$HOME/a b.png"),
+              testing::AllOf(testing::StartsWith("limn render 'it'\\''s my scene.glb' "),
+                             testing::EndsWith(" --out '$HOME/a b.png'")));
+}
+
+/// The numbers of the command line are read as the same numbers.
+TEST_F(ViewStateTest, CamerasSurviveTheCommandLine) {
+  Orbit orbit(scene::lookAt({0.1f, 1.234567f, 3}, {0, 0.5f, 0}, 0.7f), {glm::vec3(-1), glm::vec3(1)});
+  orbit.turn(0.1234f, 0.0567f);
+  orbit.approach(1.0f / 3);
+  setCamera(state_.scene, orbit);
+  scene::Pose pose;
+  pose.cameras.push_back(scene::lookAt({0, 0, 5}, glm::vec3(0), 0.7f));
+  EXPECT_EQ(chooseCamera(state_.scene, pose).worldToView,
+            scene::lookAt(orbit.eye(), orbit.target(), 0.7f).worldToView);
+}
+
+TEST_F(ViewStateTest, TechniquesThatClaimTheSameReplaceEachOther) {
+  use("pcss,clustered_visibility");
+  const TechniquePlugin& vssm = registry_.find("vssm");
+  state_.techniques.push_back({&vssm, ParameterValues("vssm", vssm.info->parameters)});
+  dropRivals(state_.techniques, vssm);
+  ASSERT_EQ(state_.techniques.size(), 2u);
+  EXPECT_STREQ(state_.techniques[0].plugin->info->name, "clustered_visibility");
+  EXPECT_STREQ(state_.techniques[1].plugin->info->name, "vssm");
+}
+
+TEST_F(ViewStateTest, SuitesAreSuites) {
+  use("vssm,clustered_visibility", {"vssm.shadow_map_size=512"});
+  state_.scene.size = "96x64";
+  state_.scene.time = 0.5;
+  state_.scene.lightSize = 0.25;
+  state_.output = render::Output::direct;
+  const bench::Suite suite = bench::parseSuite(benchSuite(state_), "view.toml");
+  ASSERT_EQ(suite.cases.size(), 1u);
+  EXPECT_EQ(suite.cases[0].technique, "vssm,clustered_visibility");
+  EXPECT_EQ(suite.cases[0].width, 96);
+  EXPECT_EQ(suite.cases[0].lightSize, 0.25);
+  EXPECT_EQ(suite.cases[0].time, 0.5);
+}
+
+TEST(Orbit, StartsWhereTheCameraIs) {
+  const scene::Bounds box{glm::vec3(-1), glm::vec3(1)};
+  const scene::CameraPose camera = scene::lookAt({2, 3, 4}, {0.2f, 0.1f, 0}, 0.8f);
+  const Orbit orbit(camera, box);
+  const glm::mat4 again = scene::lookAt(orbit.eye(), orbit.target(), 0.8f).worldToView;
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 4; ++r) EXPECT_NEAR(again[c][r], camera.worldToView[c][r], 2e-5f);
+}
+
+TEST(Orbit, NeverTurnsOver) {
+  Orbit orbit(scene::lookAt({0, 0, 4}, glm::vec3(0), 0.8f), {glm::vec3(-1), glm::vec3(1)});
+  for (int i = 0; i < 100; ++i) orbit.turn(0, 0.3f);
+  EXPECT_GT(orbit.eye().y, 3.9f);
+  for (int i = 0; i < 1000; ++i) orbit.approach(0.5f);
+  EXPECT_GT(glm::distance(orbit.eye(), orbit.target()), 0);
+}
+
+TEST(Orbit, LookingAroundStaysInPlace) {
+  Orbit orbit(scene::lookAt({1, 2, 4}, glm::vec3(0), 0.8f), {glm::vec3(-1), glm::vec3(1)});
+  const glm::vec3 eye = orbit.eye();
+  orbit.look(0.3f, -0.2f);
+  EXPECT_LT(glm::distance(orbit.eye(), eye), 1e-5f);
+}
+
+TEST(Difference, IsSignedAndLogarithmic) {
+  const DifferenceScale scale{.least = 0.01f, .most = 1};
+  EXPECT_EQ(differencePosition(0.005f, scale), 0);
+  EXPECT_NEAR(differencePosition(0.1f, scale), 0.5f, 1e-6f);
+  EXPECT_NEAR(differencePosition(-0.1f, scale), -0.5f, 1e-6f);
+  EXPECT_EQ(differencePosition(100, scale), 1);
+  EXPECT_EQ(differencePosition(-100, scale), -1);
+  EXPECT_GT(differenceColour(1).x, differenceColour(1).z) << "too bright: red";
+  EXPECT_GT(differenceColour(-1).z, differenceColour(-1).x) << "too dark: blue";
+}
+
+TEST(Difference, ComparesPixelByPixel) {
+  Image a = Image::rgb(2, 1), b = Image::rgb(2, 1);
+  for (int c = 0; c < 3; ++c) a.at(0, 0, c) = 5;
+  const Image8 picture = signedDifference(a, b, {});
+  const glm::vec3 red = differenceColour(1), white = differenceColour(0);
+  EXPECT_EQ(picture.data[0], std::lround(255 * red.x));
+  EXPECT_EQ(picture.data[2], std::lround(255 * red.z));
+  EXPECT_EQ(picture.data[4], std::lround(255 * white.x));
+  EXPECT_THROW(signedDifference(a, Image::rgb(1, 1), {}), std::exception);
+}
+
+TEST(DisplayImage, IsWhatPngFilesHold) {
+  Image image = Image::rgb(1, 1);
+  image.at(0, 0, 0) = 0.25f;
+  image.at(0, 0, 1) = 7;
+  image.at(0, 0, 2) = -1;
+  const Image8 shown = toneMapped(image, 1);
+  EXPECT_EQ(shown.data[0], std::lround(255 * glsl::srgb_encode(0.5f)));
+  EXPECT_EQ(shown.data[1], 255);
+  EXPECT_EQ(shown.data[2], 0);
+}
+
+TEST(DisplayImage, WindowsAreReadFromBelow) {
+  const std::vector<uint8_t> pixels{0, 0, 0, 255, 255, 255};
+  const Image image = fromBottomFirst({1, 2}, pixels);
+  EXPECT_EQ(image.at(0, 0, 0), 1);
+  EXPECT_EQ(image.at(0, 1, 0), 0);
+}
+
+}  // namespace
+}  // namespace limn::app
