@@ -102,7 +102,7 @@ TEST(CommandLine, FlickerComparesAnimationsWithTheTruth) {
 
 TEST(CommandLine, HelpOfEveryCommandIsComplete) {
   for (const char* command : {"list", "info", "render", "reference", "environment", "compare", "flicker",
-                              "bench", "stress", "explain-cost", "report"}) {
+                              "bench", "stress", "explain-cost", "report", "reproduction", "view"}) {
     const Outcome outcome = limn({command, "--help"});
     EXPECT_EQ(outcome.status, 0) << command;
     EXPECT_THAT(outcome.out, HasSubstr("--help")) << command;
@@ -120,7 +120,8 @@ TEST(CommandLine, ExplainCostComparesWithAndWithout) {
   EXPECT_THAT(outcome.out, HasSubstr("| vssm.early_out |"));
   EXPECT_TRUE(std::filesystem::exists(table));
   std::ifstream file(json);
-  for (const auto& saving : nlohmann::json::parse(file).at("savings"))
+  const auto report = nlohmann::json::parse(file);
+  for (const auto& saving : report.at("savings"))
     if (saving.at("applies")) {
       EXPECT_EQ(saving.at("forced").at("frame_ms").size(), 3u) << saving.at("name");
     }
