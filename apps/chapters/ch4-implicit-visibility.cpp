@@ -5,14 +5,20 @@ int main(int argc, char** argv) {
   using limn::app::ChapterSetting;
   constexpr const char* suites[] = {"ch4_figures", "ch4"};
   constexpr ChapterSetting settings[] = {
-      {"6 x 16 x 16 bins", "implicit_visibility", ""},
-      {"6 x 12 x 12 bins", "implicit_visibility", "implicit_visibility.bins=12"},
-      {"6 x 8 x 8 bins", "implicit_visibility", "implicit_visibility.bins=8"},
-      {"Two bounces", "implicit_visibility", "implicit_visibility.bounces=2"},
-      {"Every pair of elements", "implicit_visibility", "implicit_visibility.structure=flat"},
-      {"As published", "implicit_visibility",
-       "implicit_visibility.fill=centre implicit_visibility.opening=1"},
-      {"Per pixel", "implicit_visibility", "implicit_visibility.display=pixel"},
+      {"6 x 16 x 16 bins", "implicit_visibility", "",
+       "Shadows and one bounce from the links alone: nobody asks for visibility."},
+      {"6 x 12 x 12 bins", "implicit_visibility", "implicit_visibility.bins=12",
+       "The published compromise between speed and shadows."},
+      {"6 x 8 x 8 bins", "implicit_visibility", "implicit_visibility.bins=8",
+       "Bins of eleven degrees: watch the shadow lose its shape."},
+      {"Two bounces", "implicit_visibility", "implicit_visibility.bounces=2",
+       "The floor's colours twice reflected."},
+      {"Every pair of elements", "implicit_visibility", "implicit_visibility.structure=flat",
+       "The same picture without the hierarchy, for more time the more elements there are."},
+      {"As published", "implicit_visibility", "implicit_visibility.fill=centre implicit_visibility.opening=1",
+       "An element fills the bin of its centre: holes let light through."},
+      {"Per pixel", "implicit_visibility", "implicit_visibility.display=pixel",
+       "The BRDF of every pixel over the bins around it."},
   };
   return limn::app::runChapter({.name = "ch4-implicit-visibility",
                                 .title = "Global illumination using implicit visibility",
