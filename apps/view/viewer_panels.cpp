@@ -13,7 +13,6 @@
 namespace limn::app {
 namespace {
 
-constexpr float panelWidth = 380;  // pixels
 constexpr const char* outputs[] = {"final", "visibility", "direct", "indirect", "caustic", "media"};
 constexpr const char* besides[] = {"nothing", "other techniques", "the truth"};
 

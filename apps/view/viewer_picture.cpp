@@ -14,7 +14,7 @@
 namespace limn::app {
 namespace {
 
-constexpr float panelWidth = 380, statusHeight = 28, barHeight = 18;  // pixels
+constexpr float statusHeight = 28, barHeight = 18;  // pixels
 
 ImVec2 im(glm::vec2 v) {
   return {v.x, v.y};

@@ -17,6 +17,8 @@ struct GLFWwindow;
 
 namespace limn::app {
 
+inline constexpr float panelWidth = 380;  ///< pixels
+
 /// What the right part of the picture shows.
 enum class Beside { nothing, techniques, reference };
 
