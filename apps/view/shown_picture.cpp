@@ -53,9 +53,11 @@ bool ShownPicture::render(const scene::CameraPose& camera, double time, int anim
   }
 }
 
-void ShownPicture::reloadShaders() {
+bool ShownPicture::reloadShaders() {
   const render::Renderer::Reload reload = renderer_.reloadShaders();
-  problem_ = reload.errors.empty() ? "" : reload.errors.front();
+  if (reload.programs == 0 && reload.errors.empty()) return false;
+  shaderProblem_ = reload.errors.empty() ? "" : reload.errors.front();
+  return true;
 }
 
 }  // namespace limn::app

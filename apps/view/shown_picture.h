@@ -20,13 +20,15 @@ class ShownPicture {
   void configure(const render::Settings& settings);
   /// Renders one frame; false, and problem() says why, if that failed: there is no picture then.
   bool render(const scene::CameraPose& camera, double time, int animation, bool timed);
-  void reloadShaders();
+  /// Compiles the shaders that changed on disk; true if there were any. Those that do not compile are
+  /// problem() until the next change, and their last good version goes on.
+  bool reloadShaders();
 
   /// The tone-mapped picture, bottom row first; null before the first one.
   const gpu::Texture* display() const { return shown_ ? &renderer_.display() : nullptr; }
   Image read() const { return renderer_.read(); }
   glm::ivec2 size() const { return settings_.size; }
-  const std::string& problem() const { return problem_; }
+  const std::string& problem() const { return problem_.empty() ? shaderProblem_ : problem_; }
   double frameMs() const { return frameMs_; }
   const std::vector<frame::PassReport>& passes() const { return passes_; }
   const std::vector<frame::PassTime>& times() const { return times_; }
@@ -37,7 +39,7 @@ class ShownPicture {
   render::Renderer renderer_;
   render::Settings settings_;
   bool configured_ = false, shown_ = false;
-  std::string problem_;
+  std::string problem_, shaderProblem_;
   double frameMs_ = 0;
   std::vector<frame::PassReport> passes_;
   std::vector<frame::PassTime> times_;

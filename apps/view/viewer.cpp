@@ -208,8 +208,7 @@ void ViewerWindow::frame() {
   lastFrame_ = now;
   if (!options_.shaders.empty() && now - lastReload_ > reloadSeconds) {
     lastReload_ = now;
-    picture_->reloadShaders();
-    dirty_ = true;
+    if (picture_->reloadShaders()) dirty_ = true;
   }
   // Before anything is laid out: textures that the layout refers to must live until it is drawn.
   renderPictures();

@@ -80,5 +80,25 @@ TEST_F(ViewerTest, ResizesAndComparesWithTheTruth) {
   EXPECT_THAT(contents(folder_ / "a.toml"), testing::HasSubstr("hard_shadow_map"));
 }
 
+/// Shaders are read again when they change; one that does not compile leaves its last good version running.
+TEST_F(ViewerTest, ReloadsShaders) {
+  for (const char* shaders : {"glsl", "techniques"})
+    std::filesystem::copy(std::filesystem::path(sourceDir) / shaders, folder_ / shaders,
+                          std::filesystem::copy_options::recursive);
+  const std::string shader = "techniques/hard_shadow_map/visibility.comp.glsl";
+  const Outcome outcome =
+      view("cornell_box --technique hard_shadow_map --size 480x120 --shaders . --save a.exr",
+           "save() { xdotool key F5; await a.exr; mv a.exr $1; }\nsave first.exr\n"
+           "cp " +
+               shader + " good; echo 'not a shader' >> " + shader +
+               "; sleep 1.5; save broken.exr\n"
+               "sed 's/? 0.0 : 1.0/? 0.0 : 0.5/' good > " +
+               shader + "; sleep 1.5; save changed.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(colours(picture("broken.exr")), colours(picture("first.exr")));
+  EXPECT_NE(colours(picture("changed.exr")), colours(picture("first.exr")));
+}
+
 }  // namespace
 }  // namespace limn::test
