@@ -94,11 +94,12 @@ void ViewerWindow::nextTechnique() {
   std::vector<const TechniquePlugin*> candidates;
   for (const TechniquePlugin* plugin : registry_.all())
     if ((plugin->info->terms & alone) != 0) candidates.push_back(plugin);
-  if (candidates.empty()) return;
   size_t next = 0;
   for (const render::TechniqueUse& use : state_.techniques)
     for (size_t i = 0; i < candidates.size(); ++i)
       if (use.plugin == candidates[i]) next = (i + 1) % candidates.size();
+  const auto inUse = [&](const render::TechniqueUse& use) { return use.plugin == candidates[next]; };
+  if (candidates.empty() || std::ranges::any_of(state_.techniques, inUse)) return;
   const TechniquePlugin& plugin = *candidates[next];
   state_.techniques.insert(state_.techniques.begin(),
                            {&plugin, ParameterValues(plugin.info->name, plugin.info->parameters)});
