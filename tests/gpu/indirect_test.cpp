@@ -5,9 +5,8 @@
 #include <cmath>
 
 #include "glsl/brdf.glsl"
+#include "tests/gpu/corner_scene.h"
 #include "tests/gpu/render_test.h"
-#include "tests/gpu/technique_harness.h"
-#include "tests/gpu/test_scenes.h"
 
 namespace limn {
 namespace {
@@ -16,54 +15,7 @@ using namespace limn::test;
 using glm::vec3;
 using render::Output;
 
-using Settings = std::map<std::string, std::string>;
-
-scene::Material lambert(float albedo) {
-  scene::Material m;
-  m.baseColour = glm::vec4(albedo, albedo, albedo, 1);
-  m.metallic = 0;
-  m.specularFactor = 0;
-  return m;
-}
-
-/// A floor (y = 0) and a wall (x = 1, facing -x). A narrow spot over the origin lights a speck of the floor.
-struct Corner {
-  static constexpr float albedo = 0.6f, halfAngle = 0.05f;
-  scene::Scene scene;
-  scene::Pose pose;
-  scene::CameraPose camera = scene::lookAt({-2, 1.5f, 2}, {0.8f, 0.4f, 0}, 0.7f);
-  double flux = 0;  ///< reflected by the speck, W
-
-  explicit Corner(const scene::Material& material = lambert(albedo)) {
-    const int mesh = addMesh(scene, floorPrimitive(1, addMaterial(scene, material)));
-    addInstance(scene, pose, mesh);
-    addInstance(
-        scene, pose, mesh,
-        glm::translate(glm::mat4(1), {1, 1, 0}) * glm::rotate(glm::mat4(1), 0.5f * glsl::pi, vec3(0, 0, 1)));
-    glsl::Light light = spotLight({0, 1, 0}, {0, -1, 0}, halfAngle);
-    light.emission = glm::vec4(1000);
-    addLight(pose, light);
-    const double inner = 1 - light.cone.x, outer = 1 - light.cone.y;
-    flux = albedo * 1000 * 2 * glsl::pi * (inner + (outer - inner) / 3);
-  }
-  vec3 position(const Answer& v, int x, int y) const {
-    glsl::FrameBlock frame{};
-    scene::setCamera(frame, camera, pose.bounds, v.width, v.height);
-    return vec3(frame.camera_position) +
-           v.depth[static_cast<size_t>(y * v.width + x)] *
-               (vec3(frame.view_ray_origin) + static_cast<float>(x) * vec3(frame.view_ray_dx) +
-                static_cast<float>(y) * vec3(frame.view_ray_dy));
-  }
-};
-
-class IndirectTest : public TechniqueTest {
- protected:
-  Answer answer(const std::string& name, const Corner& s, const Settings& settings) {
-    Answer v = visibility(name, settings, s.scene, s.pose, s.camera, {}, Term::indirect);
-    for (const float value : v.lights[0]) EXPECT_TRUE(std::isfinite(value) && value >= 0);
-    return v;
-  }
-};
+using IndirectTest = CornerTest;
 
 /// The wall gets flux / pi cos cos / d^2 from the speck; the floor, which lies in its plane, nothing.
 TEST_F(IndirectTest, AWallLitByASpeckOfTheFloor) {
@@ -112,52 +64,25 @@ TEST_F(IndirectTest, ReceiversReflectWithTheirWholeBrdf) {
   EXPECT_GT(seen, 30);
 }
 
-/// A plate between the speck and the wall, halfway.
-class PlateTest : public IndirectTest {
+class PlateTest : public CornerTest {
  protected:
-  Corner corner_;
-  PlateTest() {
-    const int mesh = addMesh(corner_.scene, floorPrimitive(0.15f, 0));
-    addInstance(corner_.scene, corner_.pose, mesh,
-                glm::translate(glm::mat4(1), {0.5f, 0.4f, 0}) *
-                    glm::rotate(glm::mat4(1), 0.5f * glsl::pi, vec3(0, 0, 1)));
-  }
-  /// What the plate hides is dark but for `leak` of its light, what it does not is as without shadows but for
-  /// `stray`; `blurred`: half width of the edge, m at the plate.
-  void expectHides(const std::string& name, Settings settings, float leak, float stray, float blurred) {
-    settings.merge(Settings{{"vpls", "64"}, {"block", "1"}, {"clamp", "0"}});
-    const Answer all =
-        answer("reflective_shadow_map", corner_, {{"vpls", "64"}, {"block", "1"}, {"clamp", "0"}});
-    const Answer seen = answer(name, corner_, settings);
-    int hidden = 0, lit = 0;
-    for (int y = 0; y < side; ++y) {
-      for (int x = 0; x < side; ++x) {
-        if (all.instance[static_cast<size_t>(y * side + x)] != 1) continue;
-        const vec3 p = corner_.position(all, x, y);
-        // On the plate's plane, x = 1/2, the ray from the origin is at half of p; the speck is 0.1 m wide.
-        const float outside = std::max(std::abs(0.5f * p.y - 0.4f), std::abs(0.5f * p.z)) - 0.15f;
-        if (outside < -blurred) {
-          EXPECT_NEAR(seen.at(0, x, y), 0, leak * all.at(0, x, y)) << x << "," << y;
-          ++hidden;
-        } else if (outside > blurred) {
-          EXPECT_NEAR(seen.at(0, x, y), all.at(0, x, y), stray * all.at(0, x, y) + 1e-4f) << x << "," << y;
-          ++lit;
-        }
-      }
-    }
-    EXPECT_GT(hidden, 50);
-    EXPECT_GT(lit, 500);
+  void expectHides(const std::string& name, Settings settings, const Shadow& shadow) {
+    Corner s;
+    s.addPlate();
+    settings.insert({"vpls", "64"});
+    expectPlateHides(s, answer("reflective_shadow_map", s, {{"vpls", "64"}}), answer(name, s, settings),
+                     shadow);
   }
 };
 
 TEST_F(PlateTest, HidesTheSpeckFromTheWall) {
-  expectHides("instant_radiosity", {{"map_size", "256"}}, 0.02f, 0.01f, 0.05f);
+  expectHides("instant_radiosity", {{"map_size", "256"}}, {0.02f, 0.01f, 0.05f, 500});
 }
 
 /// A texel of 64 is 2 to 4 degrees wide, 0.04 m on the plate; splats and filling move the edge by up to two,
 /// and the map of one virtual light in 64 may miss there.
 TEST_F(PlateTest, HidesTheSpeckWhenItIsMadeOfPoints) {
-  expectHides("imperfect_shadow_maps", {{"points", "16384"}}, 0.15f, 0.03f, 0.1f);
+  expectHides("imperfect_shadow_maps", {{"points", "16384"}}, {0.15f, 0.03f, 0.1f, 500});
 }
 
 class IndirectPictureTest : public RenderTest {
