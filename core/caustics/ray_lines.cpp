@@ -12,6 +12,15 @@ using frame::Access;
 
 constexpr int ruleSide = 1024;  // pixels; in line_rule.vert.glsl
 
+/// Why no light goes through specular objects in this scene, as far as the scene tells, or null.
+const char* whyNoRays(const TechniqueInputs& inputs, const TermRequest& request) {
+  if (request.term == Term::media && inputs.scene.medium.sigmaS == glm::vec3(0))
+    return "no medium scatters light";
+  if (std::ranges::none_of(inputs.scene.materials, &scene::Material::specularSurface))
+    return "the scene has no specular surface";
+  return request.lights.empty() ? "the scene has no light" : nullptr;
+}
+
 }  // namespace
 
 CausticRayDesc causticRayDesc(const ParameterValues& p) {
@@ -21,11 +30,14 @@ CausticRayDesc causticRayDesc(const ParameterValues& p) {
           .lightSamples = p.integer("light_samples")};
 }
 
-const char* whyNoRays(const TechniqueInputs& inputs, const TermRequest& request, bool media) {
-  if (media && inputs.scene.medium.sigmaS == glm::vec3(0)) return "no medium scatters light";
-  if (std::ranges::none_of(inputs.scene.materials, &scene::Material::specularSurface))
-    return "the scene has no specular surface";
-  return request.lights.empty() ? "the scene has no light" : nullptr;
+CausticRays requestRays(frame::FrameGraph& graph, const TechniqueInputs& inputs, const TermRequest& request,
+                        std::string_view pass, std::string_view technique) {
+  const char* dark = whyNoRays(inputs, request);
+  CausticRays rays;
+  if (!dark) rays = inputs.causticRays.request(request.lights, causticRayDesc(inputs.parameters));
+  if (!dark && !rays.rays) dark = "no light meets a specular surface";
+  if (dark) graph.leaveOut(pass, technique, dark);
+  return rays;
 }
 
 frame::BufferHandle RayLines::addRule(frame::FrameGraph& graph, std::string_view technique) {

@@ -35,9 +35,11 @@ constexpr Parameter lightSamplesParameter() {
 }
 LIMN_API CausticRayDesc causticRayDesc(const ParameterValues& parameters);
 
-/// Why no light goes through specular objects in this scene, or null: the lights are without, or no material
-/// is specular, or `media` and nothing scatters.
-LIMN_API const char* whyNoRays(const TechniqueInputs& inputs, const TermRequest& request, bool media);
+/// The rays of the request's lights. Without any (no light, no specular material, no light that meets one;
+/// for media nothing that scatters) `rays` is empty, and `pass` is reported as left out.
+LIMN_API CausticRays requestRays(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                 const TermRequest& request, std::string_view pass,
+                                 std::string_view technique);
 
 struct LineDraw {
   std::string_view technique;

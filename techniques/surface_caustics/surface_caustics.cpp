@@ -96,14 +96,8 @@ class SurfaceCaustics : public Technique {
 
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
-    const char* dark = caustics::whyNoRays(inputs, request, false);
-    caustics::CausticRays rays;
-    if (!dark) rays = inputs.causticRays.request(request.lights, caustics::causticRayDesc(inputs.parameters));
-    if (!dark && !rays.rays) dark = "no light meets a specular surface";
-    if (dark) {
-      graph.leaveOut("photons", info.name, dark);
-      return request.target;
-    }
+    const caustics::CausticRays rays = caustics::requestRays(graph, inputs, request, "photons", info.name);
+    if (!rays.rays) return request.target;
     return addReflection(graph, inputs, addPhotons(graph, inputs, rays), request.target);
   }
 

@@ -33,14 +33,9 @@ class VolumeCaustics : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
     const ParameterValues& p = inputs.parameters;
-    const char* dark = caustics::whyNoRays(inputs, request, true);
-    caustics::CausticRays rays;
-    if (!dark) rays = inputs.causticRays.request(request.lights, caustics::causticRayDesc(p));
-    if (!dark && !rays.rays) dark = "no light meets a specular surface";
-    if (dark) {
-      graph.leaveOut("caustic lines", info.name, dark);
-      return request.target;
-    }
+    const caustics::CausticRays rays =
+        caustics::requestRays(graph, inputs, request, "caustic lines", info.name);
+    if (!rays.rays) return request.target;
     const int steps = p.integer("steps");
     return lines_.add(
         graph, inputs, rays, request.target,
