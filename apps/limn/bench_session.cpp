@@ -174,11 +174,17 @@ void BenchSession::configureTimed(Loaded& loaded, const bench::Case& c, render::
   loaded.renderer.setCamera(loaded.view.camera);
 }
 
+render::Playback BenchSession::playback(const Loaded& loaded, const bench::Case& c) {
+  return {loaded.view.time, c.fps, loaded.view.animation};
+}
+
 std::vector<double> BenchSession::time(const bench::Case& c) {
   const render::Settings settings = settingsOf(c);
   Loaded& loaded = load(c);
   configureTimed(loaded, c, settings);
-  return render::timeFrames(loaded.renderer, c.frames, c.warmup);
+  std::vector<double> samples = render::timeFrames(loaded.renderer, c.frames, c.warmup, playback(loaded, c));
+  loaded.renderer.setTime(loaded.view.time, loaded.view.animation);
+  return samples;
 }
 
 bench::Measurement BenchSession::measure(const bench::Case& c) {
@@ -197,7 +203,8 @@ bench::Measurement BenchSession::measure(const bench::Case& c) {
   bench::Measurement result{loaded.renderer.read(), {}};
 
   configureTimed(loaded, c, settings);
-  render::FrameStats stats = render::measure(loaded.renderer, c.frames, c.warmup);
+  render::FrameStats stats = render::measure(loaded.renderer, c.frames, c.warmup, playback(loaded, c));
+  loaded.renderer.setTime(loaded.view.time, loaded.view.animation);
   stats.scene = c.scene;
   result.cost.renderer = stats.renderer;
   result.cost.backend = stats.backend;

@@ -43,6 +43,7 @@ class BenchSession {
   /// Of the picture that is compared.
   render::Settings settingsOf(const bench::Case& c);
   /// Prepares the frames that are timed.
+  static render::Playback playback(const Loaded& loaded, const bench::Case& c);
   static void configureTimed(Loaded& loaded, const bench::Case& c, render::Settings settings);
   reference::Request request(const bench::Case& c, reference::Term term, int light);
   Image separationFloor(const bench::Case& c);

@@ -93,9 +93,9 @@ struct Skin {
 
 struct Channel {
   int node = -1;
-  std::vector<float> times;             ///< seconds, rising
-  std::vector<glm::quat> rotations;     ///< one per time, or
-  std::vector<glm::vec3> translations;  ///< one per time
+  std::vector<float> times = {};             ///< seconds, rising
+  std::vector<glm::quat> rotations = {};     ///< one per time, or
+  std::vector<glm::vec3> translations = {};  ///< one per time
 };
 
 struct Animation {

@@ -10,9 +10,10 @@ import {drawPlot} from "./plot.js";
 import {drawSpectrum} from "./spectrum.js";
 import {swatch} from "./marks.js";
 
-export function subjectName({scene, camera, light, light_size: size, environment, time}) {
+export function subjectName({scene, camera, light, light_size: size, environment, time, fps}) {
   return [scene, camera && `camera ${camera}`, light && `light ${light}`, size && `light size ${size}`,
-    environment && `environment ${environment}`, time && `${time} s`].filter(Boolean).join(", ");
+    environment && `environment ${environment}`, time && `${time} s`, fps && `played at ${fps} fps`]
+    .filter(Boolean).join(", ");
 }
 
 /** Size, mode and renderer: what a table is measured under. */

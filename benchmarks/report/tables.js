@@ -33,7 +33,8 @@ export function errorTable(table, metric, time, onCurrent) {
     {label: "spectrum", help: "power of the error over frequency, both logarithmic"},
     {label: "above 16 px", help: "share of the error's power at wavelengths above 16 pixels"},
     ...(table.baseline ? [{label: "times as fast", help: `as ${table.baseline}, with the interval of 95 %`}] : []),
-    {label: "ms"}, {label: "quartiles"}, {label: "frames"}, {label: "MiB"}, {label: "Pareto front"}];
+    {label: "ms"}, {label: "quartiles"},
+    {label: "p99 / median", help: "how far the slowest frames lie above the others: stalls show here"}, {label: "frames"}, {label: "MiB"}, {label: "Pareto front"}];
   const rows = table.rows.map((row) => {
     const start = [nameCell(row, onCurrent), text(settingsText(row))];
     if (row.failure)
@@ -42,7 +43,8 @@ export function errorTable(table, metric, time, onCurrent) {
     return el("tr", {"data-key": row.key}, start, metrics.map((known) => cell(errorText(known, row))),
       cell(sparkline(row.spectrum)), cell(percent(lowFrequencyShare(row.spectrum))),
       table.baseline ? cell(ratioText(row.times_as_fast)) : null, cell(time ? number(time.median) : "–"),
-      cell(time ? `${number(time.q1)}–${number(time.q3)}` : "–"), cell(time ? String(time.n) : "–"),
+      cell(time ? `${number(time.q1)}–${number(time.q3)}` : "–"),
+      cell(isNumber(time?.p99) ? number(time.p99 / time.median) : "–"), cell(time ? String(time.n) : "–"),
       cell(isNumber(row.memory_bytes) ? number(row.memory_bytes / 2 ** 20) : "–"), cell(front.includes(row) ? "*" : ""));
   });
   const compared = table.baseline ? `Times as fast: against ${table.baseline}, with the interval of 95 %. ` : "";

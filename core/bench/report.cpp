@@ -14,6 +14,7 @@
 #include "core/bench/report_pictures.h"
 #include "core/bench/tables.h"
 #include "core/gpu/shader_source.h"
+#include "core/render/frame_stats.h"
 
 namespace limn::bench {
 
@@ -68,6 +69,8 @@ Json rowJson(const Row& row, const std::vector<Window>& windows, EmbeddedPicture
     const Json& stats = line["stats"];
     for (const char* key : {"frame_ms", "split_ms", "memory_bytes", "lights", "quality_parameters", "timer"})
       json[key] = known(stats, key);
+    if (!row.cost.frameMs.samples.empty())
+      json["frame_ms"]["p99"] = render::quantile(row.cost.frameMs.samples, 0.99);
     json["passes"] = passes(stats);
   }
   json["picture"] = pictures.whole(row.picture);
@@ -112,7 +115,8 @@ Json tableJson(const Table& table, EmbeddedPictures& pictures) {
                  {"light", c.light},
                  {"light_size", c.lightSize},
                  {"environment", std::filesystem::path(c.environment.map).filename().string()},
-                 {"time", c.time}}},
+                 {"time", c.time},
+                 {"fps", c.fps}}},
                {"term", c.term},
                {"size", {c.width, c.height}},
                {"time_size", {own ? c.timeWidth : c.width, own ? c.timeHeight : c.height}},

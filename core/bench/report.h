@@ -11,7 +11,7 @@
 
 namespace limn::bench {
 
-/// What the page shows, as JSON that is safe inside a <script> element whatever the rows contain: tables as
+/// What the page shows, as JSON that is safe inside a script element whatever the rows contain: tables as
 /// makeTables() groups them, the pictures of report_pictures.h, and what `limn stress` left in the folder.
 /// Throws Error if that cannot be read.
 LIMN_API std::string reportData(std::span<const Row> rows, const std::filesystem::path& folder);

@@ -128,6 +128,7 @@ Json caseToJson(const Case& c) {
           {"environment", environment},
           {"medium", medium},
           {"time", c.time},
+          {"fps", c.fps},
           {"light_size", c.lightSize},
           {"technique", c.technique},
           {"parameters", parameters},
@@ -162,6 +163,7 @@ Case caseFromJson(const Json& json) {
       if (medium->contains(name)) *value = medium->at(name).get<double>();
   }
   c.time = json.at("time").get<double>();
+  c.fps = json.value("fps", 0.0);
   c.lightSize = json.value("light_size", 0.0);
   c.technique = json.at("technique").get<std::string>();
   for (const auto& [name, value] : json.at("parameters").items()) {

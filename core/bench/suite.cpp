@@ -50,6 +50,7 @@ std::string label(const Case& c) {
   if (!c.environment.map.empty())
     text = fmt::format("{}/{}", std::filesystem::path(c.environment.map).filename().string(), text);
   if (c.lightSize > 0) text = fmt::format("light size {}/{}", c.lightSize, text);
+  if (c.fps > 0) text = fmt::format("{} fps/{}", c.fps, text);
   if (c.environment.lights > 0)
     text = fmt::format("environment lights {}/{}", environmentLights(c.environment), text);
   if (const std::string medium = mediumText(c.medium); !medium.empty()) text = medium + "/" + text;
@@ -67,6 +68,7 @@ std::string rowKey(const Case& c, std::string_view renderer) {
                                  c.frames, c.warmup, renderer);
   for (const auto& [name, value] : c.parameters) text += fmt::format("\x1e{}\x1f{}", name, value);
   if (c.timeWidth > 0) text += fmt::format("\x1d{}x{}", c.timeWidth, c.timeHeight);
+  if (c.fps > 0) text += fmt::format("\x1b{}", c.fps);
   if (c.environment.lights > 0) text += "\x1c" + environmentLights(c.environment);
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }

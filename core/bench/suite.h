@@ -20,6 +20,8 @@
 //
 //     [[scenes]]
 //     scene = "cornell_box"       # asset name or file
+//     time = 1.5                  # seconds of its animation
+//     fps = 30                    # timed frames play it from there on; default: it stands still
 //     cameras = ["front"]         # default: the first one
 //     lights = ["ceiling"]        # default: all lights together ("")
 //     light_sizes = [0.3, 1.2]    # as --light-size; default: as the scene has them
@@ -84,6 +86,7 @@ struct Case {
   MediumSettings medium;
   double lightSize = 0;  ///< as --light-size; 0: as the scene has them
   double time = 0;       ///< seconds of the scene's animation
+  double fps = 0;        ///< of that time in timed frames; 0: it stands still
   std::string term;      ///< as --output-term
   int width = 0, height = 0;
   std::string technique;                                        ///< one name, or several joined by ","

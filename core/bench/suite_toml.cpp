@@ -230,12 +230,14 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
     techniques.push_back(parseTechnique(file, *table));
 
   for (const toml::table* table : suite.tables("scenes")) {
-    const TomlSection scene(file, *table, "[[scenes]]",
-                            {"scene", "cameras", "lights", "light_sizes", "time", "term", "max_masked_share",
-                             "environment", "environment_lights", "environment_resolution",
-                             "environment_shape", "environment_reflection", "sigma_a", "sigma_s", "g"});
+    const TomlSection scene(
+        file, *table, "[[scenes]]",
+        {"scene", "cameras", "lights", "light_sizes", "time", "fps", "term", "max_masked_share",
+         "environment", "environment_lights", "environment_resolution", "environment_shape",
+         "environment_reflection", "sigma_a", "sigma_s", "g"});
     base.scene = scene.text(scene.require("scene"), "scene");
     base.time = scene.real("time", 0.0, -1e6, 1e6);
+    base.fps = scene.real("fps", 0.0, 0.0, 1e6);
     base.maxMaskedShare = scene.real("max_masked_share", 0.005, 0.0, 1.0);
     base.term = parseTerm(scene, term);
     base.reference.bounces = hasBounces(base.term) && bounces > 0 ? bounces : base.term == "final" ? 0 : 1;

@@ -10,6 +10,7 @@
 
 #include "core/base/file.h"
 #include "core/bench/comparison.h"
+#include "core/render/frame_stats.h"
 
 namespace limn::bench {
 namespace {
@@ -38,14 +39,15 @@ std::string tableTitle(const Row& row) {
   if (!c.environment.map.empty())
     title += ", environment " + std::filesystem::path(c.environment.map).filename().string();
   if (c.time != 0) title += fmt::format(", {} s", c.time);
+  if (c.fps > 0) title += fmt::format(", played at {} fps", c.fps);
   return title + fmt::format(": {}, {}x{}{}, {}, {}", c.term, c.width, c.height, timeSizeText(c),
                              c.dynamic ? "dynamic" : "static", row.cost.renderer);
 }
 
 /// What all rows of one table share. The renderer says whether it is software.
 std::string tableKey(const Row& row) {
-  return fmt::format("{}\x1f{}\x1f{}\x1f{}", question(row.what), row.what.dynamic, timeSizeText(row.what),
-                     row.cost.renderer);
+  return fmt::format("{}\x1f{}\x1f{}\x1f{}\x1f{}", question(row.what), row.what.dynamic,
+                     timeSizeText(row.what), row.what.fps, row.cost.renderer);
 }
 
 std::string slug(const std::string& title, std::set<std::string>& used) {
@@ -102,6 +104,11 @@ std::string visibilityCells(const Row& row) {
   return cells + fmt::format(" {} | {} |", share(m.litInUmbra, m.umbra), share(m.darkInLight, m.lit));
 }
 
+/// How far the slowest frames lie above the others: stalls show here, not in the quartiles.
+std::string tailText(const FrameTime& t) {
+  return t.samples.empty() ? "-" : fmt::format("{:.2f}", render::quantile(t.samples, 0.99) / t.median);
+}
+
 std::string markdownRow(const Row& row, const Table& table, bool visibility) {
   const std::string& name = row.what.title.empty() ? row.what.technique : row.what.title;
   std::string line = fmt::format("| {} | {} |", markdownCell(name), markdownCell(parameterText(row.what)));
@@ -111,10 +118,11 @@ std::string markdownRow(const Row& row, const Table& table, bool visibility) {
                       e.bias, e.p999, e.psnr, e.flip, e.structured);
   if (visibility) line += visibilityCells(row);
   const FrameTime& t = row.cost.frameMs;
-  if (!isTimed(row)) return line + " - | - | - | 0 | - | - | - | - | - |  |\n";
+  if (!isTimed(row)) return line + " - | - | - | - | 0 | - | - | - | - | - |  |\n";
   const CostSplit& split = row.cost.split;
-  line += fmt::format(" {:.3f} | {:.3f} | {:.3f} | {} | {:.1f} | {:.2f} | {:.2f} | {:.2f} |", t.median, t.q1,
-                      t.q3, t.n, 1000 / t.median, split.maps, split.filters, split.technique);
+  line +=
+      fmt::format(" {:.3f} | {:.3f} | {:.3f} | {} | {} | {:.1f} | {:.2f} | {:.2f} | {:.2f} |", t.median, t.q1,
+                  t.q3, tailText(t), t.n, 1000 / t.median, split.maps, split.filters, split.technique);
   return line + fmt::format(" {:.1f} | {} |\n", static_cast<double>(row.cost.memoryBytes) / (1 << 20),
                             onParetoFront(row, table.rows) ? "*" : "");
 }
@@ -143,9 +151,9 @@ std::string toMarkdown(const Table& table) {
   std::string text = fmt::format("### {}\n\n", table.title);
   text += fmt::format(
       "| technique | parameters | RMSE | rel. MSE | bias | p99.9 | PSNR | FLIP | structured |{} median ms | "
-      "q1 | q3 | n | fps | maps ms | filters ms | technique ms | MiB | front |\n",
+      "q1 | q3 | p99 / median | n | fps | maps ms | filters ms | technique ms | MiB | front |\n",
       visibility ? " penumbra RMSE | lit in umbra % | dark in light % |" : "");
-  text += fmt::format("|---|---|--:|--:|--:|--:|--:|--:|--:|{}--:|--:|--:|--:|--:|--:|--:|--:|--:|:-:|\n",
+  text += fmt::format("|---|---|--:|--:|--:|--:|--:|--:|--:|{}--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|:-:|\n",
                       visibility ? "--:|--:|--:|" : "");
   for (const Row& row : table.rows) text += markdownRow(row, table, visibility);
   return text + comparisonMarkdown(table.rows);
@@ -159,7 +167,7 @@ std::string toCsv(const Table& table) {
       "flip,structured,noise_floor,masked_share,pixels,penumbra_rmse,penumbra_structured,umbra,lit_in_umbra,"
       "lit,dark_in_light,time_width,time_"
       "height,"
-      "median_ms,q1_ms,q3_ms,n,maps_ms,filters_ms,technique_ms,memory_bytes,failure\r\n";
+      "median_ms,q1_ms,q3_ms,p99_ms,n,maps_ms,filters_ms,technique_ms,memory_bytes,failure\r\n";
   const auto optional = [](bool known, auto value) {
     return known ? fmt::format("{}", value) : std::string();
   };
@@ -170,7 +178,7 @@ std::string toCsv(const Table& table) {
                         c.width, c.height, c.dynamic ? "dynamic" : "static", csvField(row.cost.renderer),
                         csvField(c.technique), csvField(parameterText(c)));
     if (!row.failure.empty()) {
-      text += fmt::format("{}{}\r\n", std::string(26, ','), csvField(row.failure));
+      text += fmt::format("{}{}\r\n", std::string(27, ','), csvField(row.failure));
       continue;
     }
     const Metrics& e = row.error;
@@ -185,11 +193,12 @@ std::string toCsv(const Table& table) {
     text += fmt::format("{},{},{},{},", optional(judged, m.umbra), optional(judged, m.litInUmbra),
                         optional(judged, m.lit), optional(judged, m.darkInLight));
     const CostSplit& split = row.cost.split;
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},\r\n", c.timeWidth > 0 ? c.timeWidth : c.width,
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},\r\n", c.timeWidth > 0 ? c.timeWidth : c.width,
                         c.timeWidth > 0 ? c.timeHeight : c.height, optional(t.n > 0, t.median),
-                        optional(t.n > 0, t.q1), optional(t.n > 0, t.q3), t.n, optional(t.n > 0, split.maps),
-                        optional(t.n > 0, split.filters), optional(t.n > 0, split.technique),
-                        row.cost.memoryBytes);
+                        optional(t.n > 0, t.q1), optional(t.n > 0, t.q3),
+                        optional(!t.samples.empty(), render::quantile(t.samples, 0.99)), t.n,
+                        optional(t.n > 0, split.maps), optional(t.n > 0, split.filters),
+                        optional(t.n > 0, split.technique), row.cost.memoryBytes);
   }
   return text;
 }

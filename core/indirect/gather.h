@@ -7,7 +7,10 @@
 // picture is the same to the bit.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <functional>
+#include <iterator>
 #include <string_view>
 #include <vector>
 
@@ -24,51 +27,38 @@ enum class Interleaving {
 };
 inline constexpr const char* interleavingNames[] = {"addressed", "split"};
 
-// --- parameters that techniques with virtual lights share, in the order they are declared in
-constexpr Parameter vplsParameter(int count = 1024) {
-  return integer("vpls", count, {1, 65536}, "lights", "Virtual point lights, all lights together")
-      .quality()
-      .logScale();
-}
-constexpr Parameter mapSizeParameter(int texels = 256) {
-  return integer("rsm_size", texels, {16, 8192}, "texels",
-                 "Width and height of each layer of the reflective shadow maps")
-      .logScale();
-}
-constexpr Parameter lightSamplesParameter() {
-  return integer("light_samples", 1, {1, 256}, "points",
-                 "Points on each area light that reflective shadow maps are drawn from; 1: its centre");
-}
-constexpr Parameter blockParameter(int pixels = 8) {
-  return integer(
-      "block", pixels, {1, 16}, "pixels",
-      "Side of the pattern of interleaved pixels, each of which shades 1 / block^2 of the virtual lights");
-}
-constexpr Parameter interleavingParameter() {
-  return choice("interleaving", 0, interleavingNames,
-                "Pixels found by address, or G-buffer split and result merged");
-}
-constexpr Parameter clampParameter() {
-  return real("clamp", 0.03, {0, 1}, "scene extents",
-              "Virtual lights act as if no nearer than this; 0: as near as they are");
-}
-constexpr Parameter compensationParameter() {
-  return boolean("compensation", false,
-                 "Spread what the clamp takes away over the neighbourhood in the image");
-}
-constexpr Parameter blurParameter() {
-  return boolean("blur", true, "Average over the pattern of interleaved pixels, not across edges");
-}
-constexpr Parameter blurPositionParameter() {
-  return real("blur_position", 0.1, {0, 1}, "scene extents",
-              "Pixels farther apart than this are not averaged");
-}
-constexpr Parameter blurPlaneParameter() {
-  return real("blur_plane", 0.01, {0, 1}, "scene extents",
-              "Nor are those farther than this from each other's tangent planes; 1: as published");
-}
-constexpr Parameter blurNormalParameter() {
-  return real("blur_normal", 0.8, {-1, 1}, "cosine", "Nor are those whose normals differ by more than this");
+/// The parameters of a technique with virtual lights: how many, its own, and what all such techniques share.
+/// `block` is the default of the side of the pattern of interleaved pixels.
+template <size_t N = 0>
+constexpr std::array<Parameter, N + 11> gatherParameters(const std::array<Parameter, N>& own = {},
+                                                         int block = 8) {
+  std::array<Parameter, N + 11> all{
+      integer("vpls", 1024, {1, 65536}, "lights", "Virtual point lights, all lights together")
+          .quality()
+          .logScale()};
+  const Parameter shared[] = {
+      integer("rsm_size", 256, {16, 8192}, "texels",
+              "Width and height of each layer of the reflective shadow maps")
+          .logScale(),
+      integer("light_samples", 1, {1, 256}, "points",
+              "Points on each area light that reflective shadow maps are drawn from; 1: its centre"),
+      integer("block", block, {1, 16}, "pixels",
+              "Side of the pattern of interleaved pixels, each of which shades 1 / block^2 of the virtual "
+              "lights"),
+      choice("interleaving", 0, interleavingNames,
+             "Pixels found by address, or G-buffer split and result merged"),
+      real("clamp", 0.03, {0, 1}, "scene extents",
+           "Virtual lights act as if no nearer than this; 0: as near as they are"),
+      boolean("compensation", false, "Spread what the clamp takes away over the neighbourhood in the image"),
+      boolean("blur", true, "Average over the pattern of interleaved pixels, not across edges"),
+      real("blur_position", 0.1, {0, 1}, "scene extents", "Pixels farther apart than this are not averaged"),
+      real("blur_plane", 0.01, {0, 1}, "scene extents",
+           "Nor are those farther than this from each other's tangent planes; 1: as published"),
+      real("blur_normal", 0.8, {-1, 1}, "cosine", "Nor are those whose normals differ by more than this"),
+  };
+  std::copy(own.begin(), own.end(), all.begin() + 1);
+  std::copy(std::begin(shared), std::end(shared), all.begin() + 1 + N);
+  return all;
 }
 
 /// Values of the parameters above.
@@ -83,8 +73,8 @@ struct GatherSettings {
 LIMN_API GatherSettings gatherSettings(const ParameterValues& parameters);
 LIMN_API VirtualLightDesc virtualLightDesc(const ParameterValues& parameters);
 
-/// Side of the pattern of interleaved pixels: at most `block`, and no more sub-buffers than virtual lights, so
-/// that every pixel has one.
+/// Side of the pattern of interleaved pixels: at most `block`, and no more sub-buffers than virtual lights,
+/// so that every pixel has one.
 LIMN_API int usableBlock(int block, int lights);
 
 /// A pass that shades from some of the virtual lights.

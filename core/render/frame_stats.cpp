@@ -43,6 +43,17 @@ double frameMilliseconds(Renderer& renderer, frame::Timing timing) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
+void show(Renderer& renderer, const Playback& playback, int frame) {
+  if (playback.fps > 0) renderer.setTime(playback.start + frame / playback.fps, playback.animation);
+}
+
+double ofSorted(const std::vector<double>& samples, double p) {
+  const double position = p * static_cast<double>(samples.size() - 1);
+  const auto low = static_cast<size_t>(position);
+  const size_t high = std::min(low + 1, samples.size() - 1);
+  return std::lerp(samples[low], samples[high], position - static_cast<double>(low));
+}
+
 /// Samples of each pass by its position in execution order.
 struct PassSamples {
   std::vector<std::vector<double>> ms;
@@ -64,33 +75,42 @@ struct PassSamples {
 Quartiles quartiles(std::vector<double> samples) {
   if (samples.empty()) return {};
   std::sort(samples.begin(), samples.end());
-  const auto at = [&](double p) {
-    const double position = p * static_cast<double>(samples.size() - 1);
-    const auto low = static_cast<size_t>(position);
-    const size_t high = std::min(low + 1, samples.size() - 1);
-    return std::lerp(samples[low], samples[high], position - static_cast<double>(low));
-  };
-  return {at(0.5), at(0.25), at(0.75), static_cast<int>(samples.size())};
+  return {ofSorted(samples, 0.5), ofSorted(samples, 0.25), ofSorted(samples, 0.75),
+          static_cast<int>(samples.size())};
 }
 
-std::vector<double> timeFrames(Renderer& renderer, int frames, int warmup) {
-  for (int i = 0; i < warmup; ++i) renderer.render();
+double quantile(std::vector<double> samples, double p) {
+  if (samples.empty()) return 0;
+  std::sort(samples.begin(), samples.end());
+  return ofSorted(samples, p);
+}
+
+std::vector<double> timeFrames(Renderer& renderer, int frames, int warmup, const Playback& playback) {
+  for (int i = 0; i < warmup; ++i) {
+    show(renderer, playback, i);
+    renderer.render();
+  }
   renderer.finish();
   std::vector<double> samples;
-  for (int i = 0; i < frames; ++i) samples.push_back(frameMilliseconds(renderer, frame::Timing::off));
+  for (int i = 0; i < frames; ++i) {
+    show(renderer, playback, i);
+    samples.push_back(frameMilliseconds(renderer, frame::Timing::off));
+  }
   return samples;
 }
 
-FrameStats measure(Renderer& renderer, int frames, int warmup) {
+FrameStats measure(Renderer& renderer, int frames, int warmup, const Playback& playback) {
   FrameStats stats = renderer.describe();
   // Without any frame there would be no graph to describe.
-  const std::vector<double> wall = timeFrames(renderer, frames, std::max(warmup, frames > 0 ? 0 : 1));
+  const std::vector<double> wall =
+      timeFrames(renderer, frames, std::max(warmup, frames > 0 ? 0 : 1), playback);
   stats.frameMs = quartiles(wall);
   stats.frameSamplesMs = wall;
 
   PassSamples samples;
   std::map<std::pair<std::string, std::string>, size_t> position;
   for (int i = 0; i < frames; ++i) {
+    show(renderer, playback, i);
     frameMilliseconds(renderer, stats.timer);
     const auto times = renderer.graph().passTimes();
     if (i == 0)

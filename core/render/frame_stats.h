@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/frame/frame_graph.h"
+#include "core/scene/scene.h"
 
 namespace limn::render {
 
@@ -18,6 +19,8 @@ struct Quartiles {
 };
 /// Linear interpolation between order statistics; n = 0 for no samples.
 LIMN_API Quartiles quartiles(std::vector<double> samples);
+/// Likewise the value that a share p of the samples, 0 to 1, lies below; 0 for no samples.
+LIMN_API double quantile(std::vector<double> samples, double p);
 
 struct PassStats {
   std::string name, technique;
@@ -54,12 +57,22 @@ struct FrameStats {
   uint32_t uncoveredPixels = 0;  ///< whose receiver no map of a light covers: V = 1 there
 };
 
-/// Wall-clock milliseconds of each of `frames` frames between two glFinish, after `warmup` others.
-LIMN_API std::vector<double> timeFrames(Renderer& renderer, int frames, int warmup);
+/// The scene's time in timed frames.
+struct Playback {
+  double start = 0;             ///< seconds, of the first frame
+  double fps = 0;               ///< frames per second of the scene's time; 0: it stands still, at whatever
+                                ///< Renderer::setTime said
+  int animation = scene::none;  ///< as Renderer::setTime
+};
+
+/// Wall-clock milliseconds of each of `frames` frames between two glFinish, after `warmup` others, which
+/// show the same times as the first timed ones.
+LIMN_API std::vector<double> timeFrames(Renderer& renderer, int frames, int warmup,
+                                        const Playback& playback = {});
 
 /// Renders `warmup` frames, then `frames` timed ones as a whole, then as many with pass timing. The camera
 /// counts as moved in every frame; geometry and lights too unless the renderer is configured static.
-LIMN_API FrameStats measure(Renderer& renderer, int frames, int warmup = 3);
+LIMN_API FrameStats measure(Renderer& renderer, int frames, int warmup = 3, const Playback& playback = {});
 
 LIMN_API std::string toJson(const FrameStats& stats);
 /// The inverse; throws Error for text that is not such an object.

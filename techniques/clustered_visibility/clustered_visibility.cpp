@@ -2,6 +2,7 @@
 // shadows of M area lights.
 #include <fmt/format.h>
 
+#include <array>
 #include <optional>
 
 #include "core/indirect/gather.h"
@@ -20,8 +21,7 @@ constexpr const char* kernels[] = {"exact", "thesis"};
 constexpr const char* searches[] = {"solid_angle", "nearest"};
 constexpr const char* fits[] = {"map", "range"};
 constexpr const char* shows[] = {"light", "clusters"};
-constexpr Parameter parameters[] = {
-    indirect::vplsParameter(),
+constexpr auto parameters = indirect::gatherParameters(std::to_array<Parameter>({
     integer("vals", 30, {1, 1024}, "lights", "Virtual area lights, which the virtual point lights share")
         .quality()
         .logScale(),
@@ -46,18 +46,8 @@ constexpr Parameter parameters[] = {
          "Geometry nearer to the centre of an area light than this is ignored"),
     real("behind", 1, {0, 1}, "",
          "Visibility behind an area light, where its map knows nothing; 1: as published"),
-    indirect::mapSizeParameter(),
-    indirect::lightSamplesParameter(),
-    indirect::blockParameter(),
-    indirect::interleavingParameter(),
-    indirect::clampParameter(),
-    indirect::compensationParameter(),
-    indirect::blurParameter(),
-    indirect::blurPositionParameter(),
-    indirect::blurPlaneParameter(),
-    indirect::blurNormalParameter(),
     choice("show", 0, shows, "The light, or the clusters in colours"),
-};
+}));
 constexpr StressCase stress[] = {
     {.name = "one area light", .scene = "cornell_box", .settings = "vals=1", .factor = 2},
     {.name = "as many area lights as point lights",

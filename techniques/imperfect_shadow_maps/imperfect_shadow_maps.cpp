@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "core/indirect/light_maps.h"
@@ -17,8 +18,7 @@ using frame::Access;
 
 constexpr int windows = 16;  // the pool of points holds as many times what one map takes
 
-constexpr Parameter parameters[] = {
-    indirect::vplsParameter(),
+constexpr auto parameters = indirect::gatherParameters(std::to_array<Parameter>({
     integer("map_size", 64, {8, 64}, "texels", "Width and height of each virtual light's map"),
     integer("points", 2048, {64, 65536}, "points", "Splatted into each map").quality().logScale(),
     real("splat", 4, {0.5, 16}, "texels", "Radius of the largest splat"),
@@ -27,17 +27,7 @@ constexpr Parameter parameters[] = {
          "Depths farther apart than this are not averaged when holes are closed"),
     real("bias", 1, {0, 64}, "texel footprints",
          "How far a blocker must lie above the receiver's tangent plane to count"),
-    indirect::mapSizeParameter(),
-    indirect::lightSamplesParameter(),
-    indirect::blockParameter(),
-    indirect::interleavingParameter(),
-    indirect::clampParameter(),
-    indirect::compensationParameter(),
-    indirect::blurParameter(),
-    indirect::blurPositionParameter(),
-    indirect::blurPlaneParameter(),
-    indirect::blurNormalParameter(),
-};
+}));
 constexpr StressCase stress[] = {
     {.name = "one virtual light", .scene = "cornell_box", .settings = "vpls=1 block=1", .factor = 8},
     {.name = "N not divisible", .scene = "cornell_box", .settings = "vpls=1021"},

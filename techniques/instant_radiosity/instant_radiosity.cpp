@@ -1,5 +1,6 @@
 // Instant radiosity (Keller 1997) with a shadow map for every virtual light: the brute-force answer.
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -11,25 +12,16 @@ namespace {
 
 using namespace limn;
 
-constexpr Parameter parameters[] = {
-    indirect::vplsParameter(),
-    integer("map_size", 128, {16, 2048}, "texels", "Width and height of each virtual light's map")
-        .quality()
-        .logScale(),
-    real("bias", 0.25, {0, 64}, "texel footprints",
-         "How far a blocker must lie above the receiver's tangent plane to count"),
-    integer("memory", 512, {16, 1024}, "MiB", "Maps drawn at once take no more than this"),
-    indirect::mapSizeParameter(),
-    indirect::lightSamplesParameter(),
-    indirect::blockParameter(1),
-    indirect::interleavingParameter(),
-    indirect::clampParameter(),
-    indirect::compensationParameter(),
-    indirect::blurParameter(),
-    indirect::blurPositionParameter(),
-    indirect::blurPlaneParameter(),
-    indirect::blurNormalParameter(),
-};
+constexpr auto parameters = indirect::gatherParameters(
+    std::to_array<Parameter>({
+        integer("map_size", 128, {16, 2048}, "texels", "Width and height of each virtual light's map")
+            .quality()
+            .logScale(),
+        real("bias", 0.25, {0, 64}, "texel footprints",
+             "How far a blocker must lie above the receiver's tangent plane to count"),
+        integer("memory", 512, {16, 1024}, "MiB", "Maps drawn at once take no more than this"),
+    }),
+    1);
 constexpr StressCase stress[] = {
     {.name = "one virtual light", .scene = "cornell_box", .settings = "vpls=1", .factor = 8},
     {.name = "N not divisible", .scene = "cornell_box", .settings = "vpls=1021"},

@@ -7,12 +7,7 @@ namespace {
 
 using namespace limn;
 
-constexpr Parameter parameters[] = {
-    indirect::vplsParameter(),         indirect::mapSizeParameter(),      indirect::lightSamplesParameter(),
-    indirect::blockParameter(),        indirect::interleavingParameter(), indirect::clampParameter(),
-    indirect::compensationParameter(), indirect::blurParameter(),         indirect::blurPositionParameter(),
-    indirect::blurPlaneParameter(),    indirect::blurNormalParameter(),
-};
+constexpr auto parameters = indirect::gatherParameters();
 constexpr StressCase stress[] = {
     {.name = "one virtual light", .scene = "cornell_box", .settings = "vpls=1", .factor = 4},
     {.name = "N not divisible", .scene = "cornell_box", .settings = "vpls=1021"},

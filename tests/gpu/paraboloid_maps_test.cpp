@@ -14,7 +14,7 @@ using glm::vec3;
 
 struct Drawn {
   std::vector<glsl::ShadowView> views;
-  std::vector<float> depth;
+  std::vector<float> depth = {};
   int size = 0;
   uint64_t triangles = 0;
 

@@ -192,6 +192,19 @@ TEST(BenchSuite, TimesMayHaveAnotherSizeAndRowsTitles) {
   EXPECT_NE(rowKey(c, ""), rowKey(other, ""));
 }
 
+TEST(BenchSuite, TimedFramesMayPlayTheScene) {
+  const Suite suite = parseSuite(
+      "name='a'\nsizes='8x8'\n[[scenes]]\nscene='b'\ntime=1\nfps=30\n[[scenes]]\nscene='b'\ntime=1\n"
+      "[[techniques]]\ntechnique='c'\n",
+      "s.toml");
+  ASSERT_EQ(suite.cases.size(), 2u);
+  EXPECT_EQ(suite.cases[0].fps, 30);
+  EXPECT_EQ(suite.cases[1].fps, 0);
+  EXPECT_EQ(question(suite.cases[0]), question(suite.cases[1]));
+  EXPECT_NE(rowKey(suite.cases[0], ""), rowKey(suite.cases[1], ""));
+  EXPECT_EQ(label(suite.cases[0]), "30 fps/" + label(suite.cases[1]));
+}
+
 TEST(BenchSuite, ModesAndSeparationFloorAddCases) {
   const Suite suite = parseSuite(
       "name='a'\nsizes='8x8'\nterm='direct'\nmodes=['dynamic','static']\nseparation_floor=true\n"

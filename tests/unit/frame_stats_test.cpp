@@ -17,6 +17,13 @@ TEST(FrameStats, QuartilesInterpolateBetweenOrderStatistics) {
   EXPECT_EQ(quartiles({}).n, 0);
 }
 
+TEST(FrameStats, QuantilesReachFromTheLeastToTheGreatest) {
+  EXPECT_DOUBLE_EQ(quantile({4, 1, 3, 2}, 0), 1);
+  EXPECT_DOUBLE_EQ(quantile({4, 1, 3, 2}, 1), 4);
+  EXPECT_DOUBLE_EQ(quantile({5, 1, 4, 2, 3}, 0.99), 4.96);
+  EXPECT_EQ(quantile({}, 0.5), 0);
+}
+
 TEST(FrameStats, SurviveTheirJson) {
   FrameStats stats;
   stats.renderer = "a \"renderer\"";
