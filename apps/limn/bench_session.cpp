@@ -63,10 +63,9 @@ bench::CostSplit costSplit(const render::FrameStats& stats) {
   bench::CostSplit split;
   for (const render::PassStats& pass : stats.passes) {
     double& part = pass.technique == "core"     ? split.rest
-                   : pass.technique != "shadow" ? split.technique
-                   : pass.name.starts_with("shadow maps")  // of every batch
-                       ? split.maps
-                       : split.filters;
+                   : pass.triangles > 0         ? split.maps
+                   : pass.technique == "shadow" ? split.filters
+                                                : split.technique;
     part += pass.ms.median;
   }
   return split;

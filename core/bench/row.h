@@ -21,7 +21,7 @@ struct FrameTime {
 
 /// Where the time of a frame's passes goes, milliseconds: medians of the passes, summed.
 struct CostSplit {
-  double maps = 0;       ///< drawing shadow maps
+  double maps = 0;       ///< drawing the scene into maps of shadows, light or surfaces
   double filters = 0;    ///< pyramids, summed-area tables and whatever else is derived from them
   double technique = 0;  ///< the technique's own passes
   double rest = 0;       ///< G-buffer, shading
