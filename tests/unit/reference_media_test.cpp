@@ -40,9 +40,10 @@ TEST(ReferenceMedia, AMediumOfThousandsOfMeanFreePathsIsBlack) {
   World world = floorWorld();
   world.addLight(glsl::light_point, {0, 1, 0}, {0, -1, 0}, vec3(1));
   world.scene.medium.sigmaS = vec3(1000);
-  for (const Term term : {Term::direct, Term::final, Term::media})
+  for (const Term term : {Term::direct, Term::final, Term::media}) {
     const Result black = render(world.request(8, term, 2));
     for (const float v : black.image.data()) EXPECT_TRUE(std::isfinite(v));
+  }
   EXPECT_LT(render(world.request(8, Term::direct, 2)).image.at(4, 4, 0), 1e-30f);
 }
 
