@@ -60,7 +60,7 @@ std::string slug(const std::string& title, std::set<std::string>& used) {
       name += '_';
     }
   }
-  name = name.substr(0, 100);
+  name.resize(std::min<std::size_t>(name.size(), 100));
   std::string unique = name;
   for (int i = 2; !used.insert(unique).second; ++i) unique = fmt::format("{}_{}", name, i);
   return unique + ".csv";
