@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "apps/limn/commands.h"
+#include "apps/limn/interruption.h"
 #include "apps/limn/options.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -54,33 +55,72 @@ std::vector<Case> chosenCases(const TechniqueRegistry& registry, const Options& 
   return cases;
 }
 
-int run(const Options& options) {
-  if (!options.out.empty()) {
-    createFolder(options.out);
-    checkWritable(options.out / "stress.md");
+/// The results in a folder: written after every case, so that a run that was stopped goes on where it was.
+class Table {
+ public:
+  Table(fs::path folder, std::string renderer) : folder_(std::move(folder)), renderer_(std::move(renderer)) {
+    if (folder_.empty()) return;
+    createFolder(folder_);
+    checkWritable(folder_ / "stress.md");
+    std::error_code ignored;
+    const fs::path file = folder_ / "stress.json";
+    if (!fs::is_regular_file(file, ignored)) return;
+    try {
+      results_ = bench::stressFromJson(readTextFile(file), renderer_);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", file.string(), error.what()));
+    }
+    std::erase_if(results_, [](const auto& r) { return r.verdict == bench::Verdict::failed; });
   }
+
+  bool holds(const Case& c) const {
+    return std::ranges::any_of(results_, [&](const bench::StressResult& r) {
+      return r.technique == c.technique->info->name && r.name == c.stressCase->name &&
+             r.scene == c.stressCase->scene && r.settings == c.stressCase->settings &&
+             r.allowed == c.stressCase->factor;
+    });
+  }
+
+  void add(bench::StressResult result) {
+    results_.push_back(std::move(result));
+    if (folder_.empty()) return;
+    writeTextFile(folder_ / "stress.md", text());
+    writeTextFile(folder_ / "stress.json", toJson(results_, renderer_));
+  }
+
+  std::string text() const { return toMarkdown(results_); }
+  bool failed() const {
+    return std::ranges::any_of(results_, [](const auto& r) { return r.verdict == bench::Verdict::failed; });
+  }
+
+ private:
+  fs::path folder_;
+  std::string renderer_;
+  std::vector<bench::StressResult> results_;
+};
+
+int run(const Options& options) {
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
   const std::vector<Case> cases = chosenCases(registry, options);
   const auto context = Context::create(options.backend.contextOptions());
   gpu::Device device(*context);
+  Table table(options.out, context->info().renderer);
   bench::StressRun stress(device, [](const std::string& name) { return scene::load(findScene(name)); });
-
-  std::vector<bench::StressResult> results;
-  int failed = 0;
-  Progress progress("stress");
-  for (const Case& c : cases) {
-    progress.update(double(results.size()) / double(cases.size()),
-                    fmt::format("{}: {}", c.technique->info->name, c.stressCase->name));
-    results.push_back(stress.run(*c.technique, *c.stressCase, c.own));
-    failed += results.back().verdict == bench::Verdict::failed;
+  {
+    Progress progress("stress");
+    const Interruption interruption;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      const Case& c = cases[i];
+      progress.update(double(i) / double(cases.size()),
+                      fmt::format("{}: {}", c.technique->info->name, c.stressCase->name));
+      if (!table.holds(c)) table.add(stress.run(*c.technique, *c.stressCase, c.own));
+      if (interruption.asked())
+        throw Error(fmt::format("stress: stopped after {} of {} cases; the same command goes on", i + 1,
+                                cases.size()));
+    }
   }
-  const std::string table = toMarkdown(results);
-  fmt::print("{}", table);
-  if (!options.out.empty()) {
-    writeTextFile(options.out / "stress.md", table);
-    writeTextFile(options.out / "stress.json", toJson(results, context->info().renderer));
-  }
-  return failed > 0 ? 1 : 0;
+  fmt::print("{}", table.text());
+  return table.failed() ? 1 : 0;
 }
 
 }  // namespace
@@ -89,7 +129,8 @@ Action addStressCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
   command.add_option("--technique", options->techniques, "Techniques, comma-separated; default: all");
   command.add_option("--filter", options->filter, "Only cases whose name contains this text");
-  command.add_option("--out", options->out, "Folder for stress.md and stress.json");
+  command.add_option("--out", options->out,
+                     "Folder for stress.md and stress.json; cases that it holds are not run again");
   options->backend.addTo(command);
   return [options] { return run(*options); };
 }

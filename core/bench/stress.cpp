@@ -138,6 +138,16 @@ const char* name(Verdict verdict) {
   return "failed";
 }
 
+namespace {
+
+Verdict verdictFrom(const std::string& text) {
+  for (const Verdict verdict : {Verdict::pass, Verdict::degraded, Verdict::refused, Verdict::failed})
+    if (text == name(verdict)) return verdict;
+  throw Error(fmt::format("verdict '{}' is unknown; expected pass, degraded, refused or failed", text));
+}
+
+}  // namespace
+
 std::span<const StressCase> commonStressCases() {
   return kCommon;
 }
@@ -285,6 +295,29 @@ std::string toJson(std::span<const StressResult> results, const std::string& ren
                     {"message", r.message}});
   return Json{{"renderer", renderer}, {"results", list}}.dump(1, ' ', false, Json::error_handler_t::replace) +
          "\n";
+}
+
+std::vector<StressResult> stressFromJson(const std::string& text, const std::string& renderer) {
+  try {
+    const auto json = nlohmann::json::parse(text);
+    std::vector<StressResult> results;
+    if (json.at("renderer") != renderer) return results;
+    for (const auto& r : json.at("results"))
+      results.push_back({.technique = r.at("technique"),
+                         .name = r.at("case"),
+                         .scene = r.at("scene"),
+                         .settings = r.at("settings"),
+                         .own = r.at("own"),
+                         .verdict = verdictFrom(r.at("verdict")),
+                         .error = r.at("error"),
+                         .benign = r.at("benign"),
+                         .factor = r.at("factor"),
+                         .allowed = r.at("allowed"),
+                         .message = r.at("message")});
+    return results;
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(fmt::format("not what limn stress writes: {}", error.what()));
+  }
 }
 
 }  // namespace limn::bench

@@ -81,5 +81,7 @@ LIMN_API std::string toMarkdown(std::span<const StressResult> results);
 /// {"renderer": ..., "results": [{"technique", "case", "scene", "settings", "own", "verdict", "error",
 /// "benign", "factor", "allowed", "message"}]}
 LIMN_API std::string toJson(std::span<const StressResult> results, const std::string& renderer);
+/// The inverse; none if they are of another renderer. Throws Error for text that is not such a table.
+LIMN_API std::vector<StressResult> stressFromJson(const std::string& text, const std::string& renderer);
 
 }  // namespace limn::bench

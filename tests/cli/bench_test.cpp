@@ -1,4 +1,5 @@
 // The bench and the stress table from outside.
+#include <fstream>
 #include <regex>
 
 #include "tests/cli/limn_program.h"
@@ -109,7 +110,19 @@ TEST_F(BenchCommand, StressWritesATable) {
   EXPECT_EQ(stress.status, 0) << stress.err;
   EXPECT_THAT(stress.out, testing::HasSubstr("| hard_shadow_map | scale 1e4 | balls | pass |"));
   EXPECT_EQ(contents(folder_ / "stress" / "stress.md"), stress.out);
-  EXPECT_TRUE(fs::exists(folder_ / "stress" / "stress.json"));
+  // A folder keeps what it holds, but for cases that failed, and takes more.
+  std::string json = contents(folder_ / "stress" / "stress.json");
+  const std::size_t verdict = json.rfind("\"pass\"");
+  ASSERT_NE(verdict, std::string::npos);
+  std::ofstream(folder_ / "stress" / "stress.json") << json.replace(verdict, 6, "\"failed\"");
+  const Outcome more = limn(
+      {"stress", "--technique", "hard_shadow_map", "--filter", "one triangle", "--out", folder_ / "stress"});
+  EXPECT_EQ(more.status, 0) << more.err;
+  EXPECT_THAT(more.out, testing::AllOf(testing::HasSubstr("one triangle"), testing::HasSubstr("scale 1e-4"),
+                                       testing::Not(testing::HasSubstr("scale 1e4"))));
+  std::ofstream(folder_ / "stress" / "stress.json") << "{}";
+  expectRefused(limn({"stress", "--technique", "hard_shadow_map", "--out", folder_ / "stress"}), 1,
+                {"stress.json"});
   expectRefused(limn({"stress", "--filter", "no such case"}), 2, {"no such case"});
   expectRefused(limn({"stress", "--technique", "pcs"}), 2, {"pcs"});
 }
