@@ -83,10 +83,12 @@ std::vector<std::string> channelNames(Term term) {
   return names;
 }
 
-Image renderFeatures(const View& view, Term term, std::vector<unsigned char>& covered) {
+Image renderFeatures(const View& view, Term term, const std::stop_token& stop,
+                     std::vector<unsigned char>& covered) {
   Image image(view.width, view.height, channelNames(term));
   covered.assign(view.pixelCount(), 0);
   tbb::parallel_for(size_t{0}, view.pixelCount(), [&](size_t pixel) {
+    if (stop.stop_requested()) return;
     Surface surface;
     if (!view.surface(pixel, surface)) {
       imagePixel(view, image, pixel)[6] = -1.f;  // id: nobody

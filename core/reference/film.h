@@ -1,6 +1,7 @@
 // From accumulated samples to pictures.
 #pragma once
 
+#include <stop_token>
 #include <vector>
 
 #include "core/reference/checkpoint.h"
@@ -32,8 +33,9 @@ struct View {
 std::vector<std::string> channelNames(Term term);
 
 /// Which pixels show a surface, and what the G-buffer would say of it: Z, coverage, id, albedo, normal, rows
-/// from the top, behind empty channels R, G, B and variance.
-Image renderFeatures(const View& view, Term term, std::vector<unsigned char>& covered);
+/// from the top, behind empty channels R, G, B and variance. Asked to stop, it returns what there is.
+Image renderFeatures(const View& view, Term term, const std::stop_token& stop,
+                     std::vector<unsigned char>& covered);
 
 /// RMS of the standard deviation of the mean over the pixels that count (of visibility: those not masked) and
 /// channels, relative to the mean; 0 where the mean is 0.

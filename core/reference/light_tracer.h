@@ -21,7 +21,7 @@ class LightTracer {
   /// Whether any light may reach the camera this way.
   bool present() const { return !lights_.empty() && objects_.radius() > 0; }
   /// Adds samples first .. first + count - 1 of each half to `sums` (2 * pixel + half): as many light paths
-  /// each as there are pixels.
+  /// each as there are pixels. Asked to stop (Request::stop), it adds anything.
   void trace(uint32_t first, uint32_t count, std::vector<Sums>& sums);
 
  private:

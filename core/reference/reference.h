@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include "core/base/export.h"
@@ -77,6 +78,9 @@ struct Request {
   /// State of unfinished work, resumed if it fits the request; empty: none.
   std::filesystem::path checkpoint{};
   double checkpointSeconds = 30;  ///< between two writes of it
+  /// Asked to stop, render() throws Error within a few blocks of pixels; the pass it is in is lost, a
+  /// checkpoint is as old as its last write.
+  std::stop_token stop{};
 };
 
 /// Channels R, G, B (radiance in W/(sr m^2); V three times for visibility), variance (of the mean of R, G, B,

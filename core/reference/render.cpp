@@ -71,7 +71,8 @@ class Work {
         needed_(static_cast<uint32_t>(request.spp + 1) / 2) {
     scene::setCamera(view_.frame, request.camera, request.pose.bounds, view_.width, view_.height);
     scene::setMedium(view_.frame, request.scene.medium, request.pose.bounds);
-    image_ = renderFeatures(view_, request.term, covered_);
+    image_ = renderFeatures(view_, request.term, request.stop, covered_);
+    checkStop();
     state_.sums.resize(2 * view_.pixelCount());
     prepareMedia();
     if (!request.checkpoint.empty()) resume();
@@ -106,8 +107,7 @@ class Work {
     const auto width = static_cast<size_t>(view_.width);
     const int z = image_.channel("Z");
     for (size_t i = 0; i < depths_.size(); ++i)
-      depths_[i] =
-          image_.at(static_cast<int>(i % width), view_.height - 1 - static_cast<int>(i / width), z);
+      depths_[i] = image_.at(static_cast<int>(i % width), view_.height - 1 - static_cast<int>(i / width), z);
     counts_ = covered_;
     if (term == Term::media || term == Term::final) airlight_.emplace(rays_, request_);
     if (airlight_ && !airlight_->present()) airlight_.reset();
@@ -139,13 +139,20 @@ class Work {
     constexpr size_t block = 64;
     const size_t pixels = view_.pixelCount();
     tbb::parallel_for(size_t{0}, (pixels + block - 1) / block, [&](size_t b) {
-      for (size_t pixel = b * block; pixel < std::min(pixels, (b + 1) * block); ++pixel)
+      for (size_t pixel = b * block; pixel < std::min(pixels, (b + 1) * block); ++pixel) {
+        if (request_.stop.stop_requested()) return;
         samplePixel(pixel, count);
+      }
     });
     if (tracer_) tracer_->trace(state_.samples, count, state_.sums);
+    checkStop();
     state_.samples += count;
     if (std::has_single_bit(state_.samples) || state_.samples == needed_)
       noise_ = noiseOf(*integrator_, request_.term, state_, counts_);
+  }
+
+  void checkStop() const {
+    if (request_.stop.stop_requested()) throw Error("reference: stopped");
   }
 
   void samplePixel(size_t pixel, uint32_t count) {

@@ -2,9 +2,12 @@
 // requests.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <stop_token>
+#include <thread>
 
 #include "core/base/error.h"
 #include "core/reference/environment.h"
@@ -94,6 +97,29 @@ TEST(ReferenceWork, ResumedEqualsUninterrupted) {
   EXPECT_TRUE(sameBits(whole.image, resumed.image));
   EXPECT_EQ(whole.noiseRms, resumed.noiseRms);
   EXPECT_FALSE(std::filesystem::exists(request.checkpoint));
+}
+
+/// Within a pass over the picture, which here would take minutes.
+TEST(ReferenceWork, StopsWithinAPass) {
+  using Clock = std::chrono::steady_clock;
+  const World world = busyWorld();
+  Request request = world.request(2048, Term::indirect, 1 << 16);
+  request.bounces = 64;
+  std::stop_source stop;
+  request.stop = stop.get_token();
+  int passes = 0;
+  request.progress = [&](const Progress&) { return ++passes, true; };
+  Clock::time_point asked;
+  std::jthread stopper([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    asked = Clock::now();
+    stop.request_stop();
+  });
+  EXPECT_THROW(render(request), Error);
+  const Clock::time_point ended = Clock::now();
+  stopper.join();
+  EXPECT_EQ(passes, 0);
+  EXPECT_LT(std::chrono::duration<double>(ended - asked).count(), 1.0);
 }
 
 TEST(ReferenceWork, ABrokenOrForeignCheckpointIsIgnored) {
