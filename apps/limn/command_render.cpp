@@ -31,11 +31,6 @@ void checkOutputName(const fs::path& out) {
         fmt::format("--out '{}' is not accepted; expected a name ending in .exr or .png", out.string()));
 }
 
-/// picture.png, frame 7 -> picture.0007.png
-fs::path numbered(const fs::path& out, int frame) {
-  return out.parent_path() / fmt::format("{}.{:04}{}", out.stem().string(), frame, out.extension().string());
-}
-
 void printExplanation(const std::vector<frame::PassReport>& passes, const render::FrameStats* stats) {
   fmt::print("{:<9} {:<24} {:<34} {:>10} {:>9}  {}\n", "state", "technique", "pass", "KiB", "ms", "why");
   for (size_t i = 0; i < passes.size(); ++i) {
@@ -89,8 +84,9 @@ int run(const Options& options) {
   if (frames) {
     Progress progress("rendering");
     for (int frame = frames->first; frame <= frames->last; ++frame) {
-      renderer.setTime(frame / options.fps, view.animation);
-      renderer.setCamera(chooseCamera(options.scene, renderer.pose()));
+      moveTo(view, options.scene, frame / options.fps);
+      renderer.setTime(view.time, view.animation);
+      renderer.setCamera(view.camera);
       renderer.render();
       writeImage(numbered(options.out, frame), renderer.read(), static_cast<float>(options.exposure));
       progress.update(double(frame - frames->first + 1) / (frames->last - frames->first + 1));

@@ -44,13 +44,22 @@ struct SceneOptions {
   double time = 0;
   std::string animation;  ///< name or #index; empty: the first
   std::string size = "1280x720";
-  std::string light;                   ///< name or #index; empty: all
-  double lightSize = 0;                ///< metres (radians); 0: as the scene has them
-  std::string sigmaA, sigmaS;  ///< of the medium, per metre: one number or three; empty: the scene's
+  std::string light;                       ///< name or #index; empty: all
+  double lightSize = 0;                    ///< metres (radians); 0: as the scene has them
+  std::vector<std::string> lightSettings;  ///< NAME.PROPERTY=VALUE, see light_edits.h
+  std::string sigmaA, sigmaS;          ///< of the medium, per metre: one number or three; empty: the scene's
   std::optional<double> g;             ///< of its phase function
   std::string defaultLights = "auto";  ///< auto: where the scene has neither light nor environment; on; off
 
   void addTo(CLI::App& command);
+  bool operator==(const SceneOptions&) const = default;
+};
+
+/// What relight() begins from.
+struct FileLights {
+  std::vector<scene::Node> nodes;
+  std::vector<scene::LightSource> lights;
+  float environmentRotation = 0, environmentScale = 1;
 };
 
 /// The command line's answer to SceneOptions.
@@ -62,10 +71,20 @@ struct View {
   scene::Pose pose;
   glm::ivec2 size;
   int light = scene::none;
+  FileLights file;
+  bool defaultLights = false;  ///< the scene is lit by them: they go where the camera goes
 };
 
 /// Loads everything SceneOptions names; prints the scene's warnings to stderr. Throws UsageError or Error.
 View open(const SceneOptions& options);
+
+/// Gives the scene the lights that the options ask for (--light-size, --default-lights, --set-light and the
+/// environment's rotation and scale), beginning from those of its file; sets pose and camera at view.time.
+/// Throws UsageError for lights that are not there.
+void relight(View& view, const SceneOptions& options);
+
+/// Sets time, pose and camera, and the default lights, which follow the camera.
+void moveTo(View& view, const SceneOptions& options, double time);
 
 /// Gives every light that has an extent another one (--light-size). Throws UsageError where there is none.
 void resizeLights(scene::Scene& scene, double size);
@@ -99,6 +118,8 @@ struct FrameRange {
 };
 /// "a:b"; nullopt for an empty text. Throws UsageError.
 std::optional<FrameRange> parseFrames(const std::string& text);
+/// picture.png, frame 7 -> picture.0007.png
+std::filesystem::path numbered(const std::filesystem::path& out, int frame);
 
 /// Index of a name or "#index" among `names`; throws UsageError listing them.
 int findNamed(const std::string& what, const std::string& text, const std::vector<std::string>& names);

@@ -82,6 +82,10 @@ void updateWorldMatrices(const Scene& scene, Pose& pose) {
   pose.nodeToWorld.resize(scene.nodes.size());
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
     const Node& node = scene.nodes[i];
+    if (node.placed) {
+      pose.nodeToWorld[i] = *node.placed;
+      continue;
+    }
     const glm::mat4 local = node.matrix ? *node.matrix : pose.nodeLocal[i].matrix();
     pose.nodeToWorld[i] = node.parent == none ? local : pose.nodeToWorld[at(node.parent)] * local;
   }

@@ -149,6 +149,7 @@ struct Node {
   int parent = none;
   Transform transform;
   std::optional<glm::mat4> matrix;  ///< replaces transform when the file gives a matrix
+  std::optional<glm::mat4> placed;  ///< node to world, whatever parents and animations say: put there by hand
   int mesh = none, skin = none, camera = none, light = none;
   std::vector<float> morphWeights;   ///< overrides the mesh's
   std::vector<Transform> instances;  ///< EXT_mesh_gpu_instancing; empty: the node itself
