@@ -27,9 +27,28 @@ int main(int argc, char** argv) {
     program.add_flag("--debug", options.debug, "OpenGL errors end the program");
     program.add_option("--save", options.save, "Where F5 saves the picture (.exr, .png)")
         ->capture_default_str();
-    program.add_option("--frames", options.frames, "Close the window after so many frames; 0: stay")
+    program
+        .add_option("--cache", options.cache,
+                    "Folder of the truth's pictures, as limn reference --cache keeps them; empty: none")
+        ->capture_default_str();
+    program
+        .add_option("--open", options.panels,
+                    "Panels open at first, comma-separated: scene, techniques, lights, environment, compare, "
+                    "frame, save, keys")
+        ->delimiter(',')
+        ->check(CLI::IsMember(
+            {"scene", "techniques", "lights", "environment", "compare", "frame", "save", "keys"}))
+        ->capture_default_str();
+    program
+        .add_option("--compare", options.compareWith, "Show beside the picture at first: techniques or truth")
+        ->check(CLI::IsMember({"techniques", "truth"}));
+    program
+        .add_option("--frames", options.frames,
+                    "Close the window after so many frames with the whole picture; 0: stay")
         ->check(CLI::NonNegativeNumber);
     program.add_option("--screenshot", options.screenshot, "Write the window to this .png when it closes");
+    program.add_option("--stats", options.stats,
+                       "Write to this .json how long the window's frames took, when it closes");
     try {
       program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

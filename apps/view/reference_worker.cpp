@@ -1,6 +1,7 @@
 #include "apps/view/reference_worker.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "core/base/error.h"
 
@@ -8,59 +9,101 @@ namespace limn::app {
 namespace {
 
 constexpr int firstSpp = 4, lastSpp = 1 << 14;
+constexpr int firstKeptSpp = 64;  // coarser ones are there again in no time
 constexpr double finest = 0.002;  // noise at which nothing more is to be seen
 
 }  // namespace
 
-void ReferenceWorker::start(std::shared_ptr<const View> view, const scene::CameraPose& camera,
-                            glm::ivec2 size, reference::Term term, int bounces) {
-  forget();
-  stop_ = false;
-  running_ = true;
-  thread_ = std::thread([this, view = std::move(view), camera, size, term, bounces] {
-    work(view, camera, size, term, bounces);
+void ReferenceWorker::start(Task task) {
+  stop();
+  busy_ = true;
+  state_.running = true;
+  thread_ = std::jthread([this, task = std::move(task)](const std::stop_token& stop) {
+    try {
+      work(stop, task);
+    } catch (const std::exception& error) {
+      change(stop, [&] { state_.problem = error.what(); });
+    }
+    change(stop, [&] { state_.running = false; });
+    busy_ = false;
+    news_();
   });
 }
 
-void ReferenceWorker::stop() {
-  stop_ = true;
-  if (thread_.joinable()) thread_.join();
-}
-
-void ReferenceWorker::forget() {
-  stop();
+void ReferenceWorker::cancel() {
+  thread_.request_stop();
   const std::scoped_lock lock(mutex_);
   state_ = {};
   picture_.reset();
 }
 
-void ReferenceWorker::work(const std::shared_ptr<const View>& view, const scene::CameraPose& camera,
-                           glm::ivec2 size, reference::Term term, int bounces) {
-  try {
-    for (int spp = firstSpp; spp <= lastSpp && !stop_; spp *= 4) {
-      reference::Request request = referenceRequest(*view, view->pose, camera, term);
-      request.width = size.x;
-      request.height = size.y;
-      request.bounces = bounces;
-      request.spp = spp;
-      request.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
-      request.progress = [this](const reference::Progress& progress) {
-        const std::scoped_lock lock(mutex_);
-        state_.fraction = progress.fraction;
-        return !stop_;
-      };
-      reference::Result result = reference::render(request);
-      const std::scoped_lock lock(mutex_);
-      state_.spp = result.spp;
-      state_.noise = result.noiseRms;
-      picture_ = std::move(result.image);
-      if (result.noiseRms < finest) break;
-    }
-  } catch (const Error& error) {
+void ReferenceWorker::stop() {
+  cancel();
+  if (thread_.joinable()) thread_.join();
+}
+
+/// What is cancelled says nothing any more.
+template <class F>
+void ReferenceWorker::change(const std::stop_token& stop, const F& f) {
+  {
     const std::scoped_lock lock(mutex_);
-    if (!stop_) state_.problem = error.what();
+    if (stop.stop_requested()) return;
+    f();
   }
-  running_ = false;
+  news_();
+}
+
+void ReferenceWorker::deliver(const std::stop_token& stop, reference::Result result, bool fromDisk) {
+  change(stop, [&] {
+    state_.spp = result.spp;
+    state_.noise = result.noiseRms;
+    state_.fraction = 0;
+    state_.fromDisk = fromDisk;
+    picture_ = std::move(result.image);
+  });
+}
+
+int ReferenceWorker::resume(const std::stop_token& stop, const reference::Request& wanted) {
+  if (cache_.empty()) return 0;
+  const reference::Cache cache(cache_);
+  for (int spp = lastSpp; spp >= firstKeptSpp && !stop.stop_requested(); spp /= 4) {
+    reference::Request request = wanted;
+    request.spp = spp;
+    if (auto found = cache.get(reference::contentHash(request))) {
+      deliver(stop, *std::move(found), true);
+      return spp;
+    }
+  }
+  return 0;
+}
+
+void ReferenceWorker::work(const std::stop_token& stop, const Task& task) {
+  reference::Request request = referenceRequest(*task.view, task.pose, task.camera, task.term);
+  request.width = task.size.x;
+  request.height = task.size.y;
+  request.light = task.light == scene::none ? reference::allLights : task.light;
+  request.bounces = task.bounces;
+  request.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
+  request.stop = stop;
+  auto told = std::chrono::steady_clock::now();
+  request.progress = [&](const reference::Progress& progress) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - told > std::chrono::milliseconds(100)) {
+      told = now;
+      change(stop, [&] { state_.fraction = progress.fraction; });
+    }
+    return true;
+  };
+  const int found = resume(stop, request);
+  for (request.spp = found > 0 ? 4 * found : firstSpp; request.spp <= lastSpp; request.spp *= 4) {
+    if (stop.stop_requested() || (found > 0 && state().noise < finest)) return;
+    reference::Result result = reference::render(request);
+    const double noise = result.noiseRms;
+    if (!cache_.empty() && request.spp >= firstKeptSpp)
+      reference::Cache(cache_).put(reference::contentHash(request), result);
+    deliver(stop, std::move(result), false);
+    if (noise < finest) return;
+  }
 }
 
 ReferenceWorker::State ReferenceWorker::state() const {

@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <chrono>
 
+#include "apps/view/picture_order.h"
 #include "core/base/error.h"
 
 namespace limn::app {
 namespace {
 
 bool same(const render::Settings& a, const render::Settings& b) {
-  const auto sameUse = [](const render::TechniqueUse& x, const render::TechniqueUse& y) {
-    return x.plugin == y.plugin && x.parameters.printed() == y.parameters.printed();
-  };
   return a.size == b.size && a.output == b.output && a.light == b.light && a.displayEv == b.displayEv &&
-         std::ranges::equal(a.techniques, b.techniques, sameUse);
+         a.inspect == b.inspect && app::same(a.techniques, b.techniques);
 }
 
 }  // namespace
@@ -39,10 +37,9 @@ bool ShownPicture::render(const scene::CameraPose& camera, double time, int anim
     renderer_.render(timed ? frame::preferredTiming(device_) : frame::Timing::off);
     renderer_.finish();
     frameMs_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    if (timed) {
-      passes_ = renderer_.explain();
-      times_ = renderer_.graph().passTimes();
-    }
+    passes_ = renderer_.explain();
+    times_.clear();
+    if (timed) times_ = renderer_.graph().passTimes();
     shown_ = true;
     problem_.clear();
     return true;
@@ -55,9 +52,8 @@ bool ShownPicture::render(const scene::CameraPose& camera, double time, int anim
 
 bool ShownPicture::reloadShaders() {
   const render::Renderer::Reload reload = renderer_.reloadShaders();
-  if (reload.programs == 0 && reload.errors.empty()) return false;
   shaderProblem_ = reload.errors.empty() ? "" : reload.errors.front();
-  return true;
+  return reload.changed;
 }
 
 }  // namespace limn::app

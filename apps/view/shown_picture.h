@@ -20,19 +20,23 @@ class ShownPicture {
   void configure(const render::Settings& settings);
   /// Renders one frame; false, and problem() says why, if that failed: there is no picture then.
   bool render(const scene::CameraPose& camera, double time, int animation, bool timed);
-  /// Compiles the shaders that changed on disk; true if there were any. Those that do not compile are
-  /// problem() until the next change, and their last good version goes on.
+  /// Compiles the shaders that changed on disk; true if any file did. Of those that do not compile the last
+  /// good version goes on, and shaderProblem() says why.
   bool reloadShaders();
+  /// What the scene's environment or anything else that the renderer keeps may have changed.
+  void forget() { configured_ = false; }
 
   /// The tone-mapped picture, bottom row first; null before the first one.
   const gpu::Texture* display() const { return shown_ ? &renderer_.display() : nullptr; }
   Image read() const { return renderer_.read(); }
   glm::ivec2 size() const { return settings_.size; }
-  const std::string& problem() const { return problem_.empty() ? shaderProblem_ : problem_; }
+  const std::string& problem() const { return problem_; }
+  const std::string& shaderProblem() const { return shaderProblem_; }
   double frameMs() const { return frameMs_; }
   const std::vector<frame::PassReport>& passes() const { return passes_; }
   const std::vector<frame::PassTime>& times() const { return times_; }
   render::Renderer& renderer() { return renderer_; }
+  const render::Renderer& renderer() const { return renderer_; }
 
  private:
   gpu::Device& device_;

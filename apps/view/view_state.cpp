@@ -114,6 +114,7 @@ std::string renderCommand(const ViewState& state, const std::filesystem::path& o
       .add("--environment-reflection", s.environmentReflection, standard.environmentReflection);
   line.add("--time", s.time, standard.time).add("--animation", s.animation);
   line.add("--light", s.light).add("--light-size", s.lightSize, standard.lightSize);
+  for (const std::string& setting : s.lightSettings) line.add("--set-light", setting);
   line.add("--sigma-a", s.sigmaA).add("--sigma-s", s.sigmaS);
   if (s.g) line.add("--g", fmt::format("{}", *s.g));
   line.add("--default-lights", s.defaultLights, standard.defaultLights);
@@ -135,6 +136,8 @@ std::string benchSuite(const ViewState& state) {
   if (!s.camera.empty()) text += fmt::format("cameras = [{}]\n", tomlText(s.camera));
   if (!s.eye.empty())
     text += fmt::format("# the camera was --eye {} --target {}, which suites do not take\n", s.eye, s.target);
+  for (const std::string& setting : s.lightSettings)
+    text += fmt::format("# a light was changed by --set-light {}, which suites do not take\n", setting);
   if (!s.light.empty()) text += fmt::format("lights = [{}]\n", tomlText(s.light));
   if (s.lightSize > 0) text += fmt::format("light_sizes = [{}]\n", s.lightSize);
   if (s.time != 0) text += fmt::format("time = {}\n", s.time);

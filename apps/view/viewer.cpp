@@ -8,220 +8,180 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
+#include <fstream>
 
-#include "apps/view/difference.h"
 #include "apps/view/display_image.h"
+#include "apps/view/viewer_style.h"
 #include "apps/view/viewer_window.h"
 #include "core/base/error.h"
-#include "core/base/text.h"
+#include "core/base/file.h"
 
 namespace limn::app {
 namespace {
 
-constexpr double restAfter = 0.25;    // seconds without a change
-constexpr double fluentMs = 60;       // a frame while things move
-constexpr double idleSeconds = 0.05;  // between looks at the reference's progress
-constexpr double reloadSeconds = 0.5;
-constexpr int largestReduction = 4;
+constexpr double restAfter = 0.25;        // seconds without a change
+constexpr double frameSeconds = 1. / 60;  // of the window, while something moves
+constexpr double idleSeconds = 0.25;      // while nothing does
 
-void setText(char (&target)[1024], const std::string& text) {
-  target[text.copy(target, sizeof target - 1)] = 0;
+/// Resident memory of the process, MiB.
+double residentMiB() {
+  long total = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> total >> resident;
+  return static_cast<double>(resident) * 4096 / (1 << 20);
 }
 
-/// What the reference is asked for where the picture shows `output`.
-reference::Term termOf(render::Output output) {
-  return reference::termFromName(std::string(render::name(output)));
-}
-
-/// One where the picture has indirect light in it.
-int bouncesOf(const ViewState& state) {
-  const auto indirect = [](const render::TechniqueUse& use) {
-    return contains(use.plugin->info->terms, Term::indirect);
-  };
-  if (!reference::hasBounces(termOf(state.output))) return 0;
-  return state.output == render::Output::indirect || std::ranges::any_of(state.techniques, indirect) ? 1 : 0;
+Beside besideNamed(const std::string& name) {
+  return name == "techniques" ? Beside::techniques : name == "truth" ? Beside::reference : Beside::nothing;
 }
 
 }  // namespace
+
+void setText(TextField& target, const std::string& text) {
+  target[text.copy(target, sizeof target - 1)] = 0;
+}
 
 ViewerWindow::ViewerWindow(const ViewerOptions& options)
     : options_(options), registry_(TechniqueRegistry::defaultFolders()) {
   state_.scene = options.scene;
   state_.output = render::parseOutput(options.outputTerm);
   state_.exposure = static_cast<float>(options.exposure);
-  state_.techniques = resolve(options.techniques);
+  state_.techniques = options.techniques.resolve(registry_);
   const glm::ivec2 size = parseSize(options.scene.size);
   context_ = Context::create({.backend = Backend::glfw,
                               .debug = options.debug,
                               .width = size.x,
                               .height = size.y,
                               .title = options.title});
-  device_ = std::make_unique<gpu::Device>(*context_);
-  openScene(state_.scene);
+  thread_ = std::make_unique<PictureThread>(
+      *context_, PictureThreadOptions{options.debug, options.shaders, options.cache});
+  thread_->open(state_.scene);
   if (!options_.steps.empty()) chooseStep(0);
-  setText(saveText_, options_.save.string());
+  compareWith(besideNamed(options.compareWith));
+  setText(sceneText_, options.scene.scene.string());
+  setText(saveText_, options.save.string());
+  listen();
+  IMGUI_CHECKVERSION();
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr;  // the layout is fixed: nothing to remember
+  setStyle();
+  ImGui_ImplGlfw_InitForOpenGL(context_->window(), true);
+  ImGui_ImplOpenGL3_Init("#version 450 core");
+}
 
+ViewerWindow::~ViewerWindow() {
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+  facts_.reset();
+  before_.reset();
+}
+
+void ViewerWindow::listen() {
   GLFWwindow* window = context_->window();
   glfwSetWindowUserPointer(window, this);
-  // ImGui knows only whether a key is down when a frame begins; software renderers' frames are longer than
-  // taps.
+  // ImGui knows only whether a key is down when a frame begins; taps may be shorter than a frame.
   glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int modifiers) {
     auto& self = *static_cast<ViewerWindow*>(glfwGetWindowUserPointer(w));
     if (action == GLFW_PRESS) self.pressed_.emplace_back(key, (modifiers & GLFW_MOD_CONTROL) != 0);
   });
   glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** files) {
     auto& self = *static_cast<ViewerWindow*>(glfwGetWindowUserPointer(w));
-    if (count < 1) return;
-    SceneOptions wanted;
-    wanted.scene = files[0];
-    wanted.size = self.state_.scene.size;
-    self.tryOpen(wanted);
+    if (count > 0) self.openFile(files[0]);
   });
-  IMGUI_CHECKVERSION();
-  ImGui::CreateContext();
-  ImGui::GetIO().IniFilename = nullptr;  // the layout is fixed: nothing to remember
-  ImGui::StyleColorsDark();
-  ImGui_ImplGlfw_InitForOpenGL(window, true);
-  ImGui_ImplOpenGL3_Init("#version 450 core");
 }
 
-ViewerWindow::~ViewerWindow() {
-  reference_.stop();
-  ImGui_ImplOpenGL3_Shutdown();
-  ImGui_ImplGlfw_Shutdown();
-  ImGui::DestroyContext();
+/// A scene, or an environment for the one that is shown.
+void ViewerWindow::openFile(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  SceneOptions wanted = state_.scene;
+  if (extension == ".hdr" || extension == ".exr") {
+    wanted.environment = file;
+  } else {
+    wanted = SceneOptions();
+    wanted.scene = file;
+    wanted.size = state_.scene.size;
+  }
+  open(wanted);
 }
 
-std::vector<render::TechniqueUse> ViewerWindow::resolve(const TechniqueOptions& options) const {
-  return options.resolve(registry_);
-}
-
-/// Replaces what is shown; leaves everything as it is when that throws.
-void ViewerWindow::openScene(const SceneOptions& wanted) {
-  auto view = std::make_shared<View>(open(wanted));
-  auto picture = std::make_unique<ShownPicture>(*device_, *view, options_.shaders);
-  reference_.stop();
-  other_.reset();
-  picture_ = std::move(picture);
-  view_ = std::move(view);
-  state_.scene = wanted;
-  orbit_ = Orbit(view_->camera, view_->pose.bounds);
-  camera_ = view_->camera;
-  setText(sceneText_, wanted.scene.string());
-  setText(environmentText_, wanted.environment.string());
+void ViewerWindow::open(const SceneOptions& wanted) {
+  thread_->open(wanted);
   moved();
 }
 
-void ViewerWindow::tryOpen(const SceneOptions& wanted) {
-  try {
-    openScene(wanted);
-    message_ = "opened " + wanted.scene.string();
-  } catch (const Error& error) {
-    message_ = error.what();
-  }
+/// What follows from another scene being shown.
+void ViewerWindow::adopt(const SceneFacts& scene) {
+  const std::string size = state_.scene.size;
+  state_.scene = scene.options;
+  state_.scene.size = size;
+  orbit_ = Orbit(scene.camera, scene.bounds);
+  lightEdits_ = parseLightEdits(scene.options.lightSettings);
+  chosenLight_ = scene::none;
+  lightsNew_ = true;
+  drag_.reset();
+  setText(sceneText_, scene.options.scene.string());
+  moved();
+}
+
+void ViewerWindow::takeFacts() {
+  std::shared_ptr<const PictureFacts> newest = thread_->facts();
+  if (newest == facts_) return;
+  const SceneFacts* shown = facts_ ? facts_->scene.get() : nullptr;
+  before_ = std::exchange(facts_, std::move(newest));
+  if (facts_->fatal) std::rethrow_exception(facts_->fatal);
+  if (facts_->scene && facts_->scene.get() != shown) adopt(*facts_->scene);
+  if (facts_->messages != messagesSeen_) message_ = facts_->message;
+  messagesSeen_ = facts_->messages;
 }
 
 void ViewerWindow::moved() {
-  dirty_ = true;
-  compared_ = false;
-  metrics_.reset();
-  truth_.reset();
-  reference_.forget();
   lastChange_ = glfwGetTime();
 }
 
-bool ViewerWindow::atRest() const {
-  return !playing_ && !dirty_ && reduction_ == 1;
+bool ViewerWindow::moving() const {
+  return playing_ || glfwGetTime() - lastChange_ < restAfter;
 }
 
-glm::ivec2 ViewerWindow::renderSize() const {
-  return glm::max(area_ / reduction_, glm::ivec2(1));
+PictureOrder ViewerWindow::order() const {
+  PictureOrder order;
+  order.scene = state_.scene;
+  order.techniques = state_.techniques;
+  order.others = otherTechniques_;
+  order.output = state_.output;
+  order.exposure = state_.exposure;
+  order.size = area_;
+  order.beside = beside_;
+  order.moving = moving();
+  order.timed = framePanelOpen_;
+  order.inspect = inspection_;
+  return order;
 }
 
-void ViewerWindow::renderPictures() {
-  if (area_.x < 1 || area_.y < 1) return;  // minimised
-  const double now = glfwGetTime();
-  const bool moving = playing_ || now - lastChange_ < restAfter;
-  int wanted = 1;
-  if (moving)
-    while (wanted < largestReduction && fullMs_ / (wanted * wanted) > fluentMs) wanted *= 2;
-  if (wanted != reduction_ || renderSize() != picture_->size()) dirty_ = true;
-  reduction_ = wanted;
-  if (!dirty_ && !playing_) return;
-  dirty_ = false;
-
-  render::Settings settings;
-  settings.size = renderSize();
-  settings.output = state_.output;
-  settings.light = view_->light;
-  settings.displayEv = state_.exposure;
-  settings.techniques = state_.techniques;
-  picture_->configure(settings);
-  double ms = 0;
-  if (picture_->render(camera_, state_.scene.time, view_->animation, framesPanelOpen_))
-    ms = picture_->frameMs();
-  if (beside_ == Beside::techniques) {
-    if (!other_) other_ = std::make_unique<ShownPicture>(*device_, *view_, options_.shaders);
-    settings.techniques = otherTechniques_;
-    other_->configure(settings);
-    if (other_->render(camera_, state_.scene.time, view_->animation, false)) ms += other_->frameMs();
-  }
-  fullMs_ = ms * reduction_ * reduction_;
-}
-
-/// Errors are measured only when nothing moves: reading a picture back waits for the GPU.
-void ViewerWindow::compareAtRest() {
-  if (beside_ == Beside::reference && picture_->display() != nullptr) {
-    if (!reference_.running() && !truth_ && reference_.state().spp == 0 &&
-        reference_.state().problem.empty()) {
-      view_->pose = picture_->renderer().pose();
-      reference_.start(view_, camera_, picture_->size(), termOf(state_.output), bouncesOf(state_));
-    }
-    if (std::optional<Image> finer = reference_.take()) {
-      truth_ = std::move(finer);
-      truthTexture_ = toTexture(*device_, toneMapped(*truth_, state_.exposure));
-      compared_ = false;
-    }
-  }
-  if (compared_) return;
-  std::optional<Image> against;
-  if (beside_ == Beside::reference) against = truth_;
-  if (beside_ == Beside::techniques && other_ && other_->display() != nullptr) against = other_->read();
-  if (!against || picture_->display() == nullptr) return;
-  compared_ = true;
-  try {
-    const Image image = picture_->read();
-    metrics_ = compareImages(image, *against,
-                             {.exposureEv = state_.exposure, .useMask = false, .maskTermRange = {}});
-    differenceTexture_ = toTexture(*device_, signedDifference(image, *against, {}));
-  } catch (const Error& error) {
-    message_ = error.what();
-  }
+void ViewerWindow::postOrder() {
+  PictureOrder wanted = order();
+  if (posted_ && same(*posted_, wanted)) return;
+  posted_ = wanted;
+  thread_->show(std::move(wanted));
 }
 
 void ViewerWindow::frame() {
+  takeFacts();
   const double now = glfwGetTime();
   if (playing_) {
     state_.scene.time += now - lastFrame_;
-    compared_ = false;
+    const double seconds = facts_->scene ? facts_->scene->seconds : 0;
+    if (seconds > 0) state_.scene.time = std::fmod(state_.scene.time, seconds);
   }
   lastFrame_ = now;
-  if (!options_.shaders.empty() && now - lastReload_ > reloadSeconds) {
-    lastReload_ = now;
-    if (picture_->reloadShaders()) dirty_ = true;
-  }
-  // Before anything is laid out: textures that the layout refers to must live until it is drawn.
-  renderPictures();
-  if (atRest()) {
-    compareAtRest();
-    if (savePending_) save();
-  }
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
   panels();
   pictureArea();
+  if (inspection_) inspectorWindow();
   ImGui::Render();
+  postOrder();
   glm::ivec2 size(0);
   glfwGetFramebufferSize(context_->window(), &size.x, &size.y);
   const gl::Functions& gl = context_->gl();
@@ -243,22 +203,42 @@ void ViewerWindow::saveScreenshot(const std::filesystem::path& file) const {
   writePng(file, fromBottomFirst(size, pixels));
 }
 
+void ViewerWindow::writeStats() const {
+  writeTextFile(
+      options_.stats,
+      fmt::format("{{\"frames\": {}, \"longest_ms\": {:.1f}, \"mean_ms\": {:.2f}, \"pictures\": {}, "
+                  "\"resident_mib\": {:.1f}}}\n",
+                  frameTimes_.frames, frameTimes_.longestMs,
+                  frameTimes_.sumMs / std::max(frameTimes_.frames, 1), facts_ ? facts_->pictures : 0,
+                  residentMiB()));
+}
+
+/// `shown`: frames of the window since the picture was whole.
+bool ViewerWindow::finished(int shown) const {
+  return (options_.frames > 0 && shown >= options_.frames) || glfwWindowShouldClose(context_->window()) != 0;
+}
+
 void ViewerWindow::run() {
   GLFWwindow* window = context_->window();
-  for (int i = 0; (options_.frames == 0 || i < options_.frames) && glfwWindowShouldClose(window) == 0; ++i) {
-    // Nothing moves: wait for a hand, or for the reference.
-    const bool busy = playing_ || dirty_ || glfwGetTime() - lastChange_ < 2 * restAfter;
-    if (busy)
-      glfwPollEvents();
-    else
-      glfwWaitEventsTimeout(idleSeconds);
+  constexpr int settling = 3;  // frames that ImGui takes to answer an event
+  int lively = settling, shown = 0;
+  for (bool last = false; !last;) {
+    const bool busy = lively > 0 || moving() || drag_ || options_.frames > 0;
+    const double start = glfwGetTime();
+    glfwWaitEventsTimeout(busy ? frameSeconds : idleSeconds);
+    const double woken = glfwGetTime();
+    lively = woken - start < idleSeconds ? settling : lively - 1;
     frame();
-    const bool last = i + 1 == options_.frames || glfwWindowShouldClose(window) != 0;
+    if (facts_->settled && posted_ && !posted_->moving) ++shown;
+    last = finished(shown);
     if (last && !options_.screenshot.empty()) saveScreenshot(options_.screenshot);
     glfwSwapBuffers(window);
+    const double ms = 1000 * (glfwGetTime() - woken);
+    if (!last) frameTimes_.add(ms);  // the last one may write the screenshot
     const std::vector<std::string> errors = context_->takeErrors();
     if (!errors.empty()) throw Error("OpenGL: " + errors.front());
   }
+  if (!options_.stats.empty()) writeStats();
 }
 
 void runViewer(const ViewerOptions& options) {

@@ -9,34 +9,50 @@
 #include <cmath>
 
 #include "apps/view/difference.h"
+#include "apps/view/viewer_style.h"
 #include "apps/view/viewer_window.h"
 
 namespace limn::app {
 namespace {
 
 constexpr float statusHeight = 28, barHeight = 18;  // pixels
+constexpr float grabPixels = 6;                     // of the line between two pictures
 
 ImVec2 im(glm::vec2 v) {
   return {v.x, v.y};
 }
 
-ImTextureID id(const gpu::Texture& texture) {
-  return reinterpret_cast<ImTextureID>(static_cast<intptr_t>(texture.id()));
+/// The columns from `from` to `to` (parts of the width) of a picture that fills the area.
+void drawColumns(const gpu::Texture& texture, glm::vec2 corner, glm::vec2 size, float from, float to,
+                 bool bottomFirst) {
+  const float top = bottomFirst ? 1.f : 0.f;
+  ImGui::GetWindowDrawList()->AddImage(textureId(texture), im(corner + size * glm::vec2(from, 0)),
+                                       im(corner + size * glm::vec2(to, 1)), {from, top}, {to, 1 - top});
+}
+
+/// White text that is readable on any picture.
+void label(glm::vec2 place, const std::string& text) {
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.AddRectFilled(im(place - glm::vec2(5, 2)), im(place + glm::vec2(size.x + 5, size.y + 2)), 0xa0000000,
+                     3);
+  draw.AddText(im(place), 0xffffffff, text.c_str());
+}
+
+std::string namesOf(const std::vector<render::TechniqueUse>& uses) {
+  std::string names;
+  for (const render::TechniqueUse& use : uses)
+    names += (names.empty() ? "" : ", ") + std::string(use.plugin->info->name);
+  return names.empty() ? "unshadowed" : names;
 }
 
 }  // namespace
 
-/// The columns from `from` to `to` (parts of the width) of a picture that fills the area.
-void ViewerWindow::drawPicture(const gpu::Texture& texture, glm::vec2 corner, glm::vec2 size, float from,
-                               float to, bool bottomFirst) const {
-  const float top = bottomFirst ? 1.f : 0.f;
-  ImGui::GetWindowDrawList()->AddImage(id(texture), im(corner + size * glm::vec2(from, 0)),
-                                       im(corner + size * glm::vec2(to, 1)), {from, top}, {to, 1 - top});
-}
-
 void ViewerWindow::drawColourBar(glm::vec2 corner, float width) const {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   constexpr int cells = 64;
+  draw.AddRectFilled(im(corner - glm::vec2(6, 6)), im(corner + glm::vec2(width + 6, 2 * barHeight + 2)),
+                     0xa0000000, 3);
   for (int i = 0; i < cells; ++i) {
     const glm::vec3 c = differenceColour(2 * (static_cast<float>(i) + 0.5f) / cells - 1);
     const float left = width * static_cast<float>(i) / cells,
@@ -45,14 +61,14 @@ void ViewerWindow::drawColourBar(glm::vec2 corner, float width) const {
                        ImGui::ColorConvertFloat4ToU32({c.x, c.y, c.z, 1}));
   }
   const DifferenceScale scale;
-  const auto label = [&](float part, const std::string& text) {
+  const auto number = [&](float part, const std::string& text) {
     const float wide = ImGui::CalcTextSize(text.c_str()).x;
     draw.AddText(im(corner + glm::vec2(std::clamp(part * width - wide / 2, 0.f, width - wide), barHeight)),
                  0xffffffff, text.c_str());
   };
-  label(0, fmt::format("-{:g} too dark", scale.most));
-  label(0.5f, fmt::format("within {:g}", scale.least));
-  label(1, fmt::format("too bright {:g}", scale.most));
+  number(0, fmt::format("-{:g} too dark", scale.most));
+  number(0.5f, fmt::format("within {:g}", scale.least));
+  number(1, fmt::format("too bright {:g}", scale.most));
 }
 
 void ViewerWindow::handleMouse() {
@@ -74,7 +90,7 @@ void ViewerWindow::handleMouse() {
     changed = true;
   }
   if (!io.WantTextInput && !io.KeyCtrl) {
-    const float step = 0.6f * io.DeltaTime;
+    const float step = 0.6f * std::min(io.DeltaTime, 0.1f);
     const auto held = [&](char key) { return ImGui::IsKeyDown(key) ? step : 0.f; };
     const glm::vec3 flight(held('D') - held('A'), held('E') - held('Q'), held('W') - held('S'));
     if (flight != glm::vec3(0)) {
@@ -84,7 +100,6 @@ void ViewerWindow::handleMouse() {
   }
   if (!changed) return;
   setCamera(state_.scene, orbit_);
-  camera_ = chooseCamera(state_.scene, picture_->renderer().pose());
   moved();
 }
 
@@ -108,16 +123,20 @@ void ViewerWindow::nextTechnique() {
 }
 
 void ViewerWindow::press(int key, bool control) {
-  if (key == GLFW_KEY_SPACE) {
+  if (key == GLFW_KEY_SPACE && facts_->scene && facts_->scene->animated) {
     playing_ = !playing_;
     moved();
   }
   if (key == GLFW_KEY_F2) nextTechnique();
   if (key == GLFW_KEY_F3) compareWith(static_cast<Beside>((static_cast<int>(beside_) + 1) % 3));
-  if (key == GLFW_KEY_F4) tryOpen(state_.scene);
-  if (key == GLFW_KEY_F5) savePending_ = true;
+  if (key == GLFW_KEY_F4) open(state_.scene);
+  if (key == GLFW_KEY_F5) save();
   if (key == GLFW_KEY_F6) saveSuite();
   if (key == GLFW_KEY_F7) copyCommand();
+  if (key == GLFW_KEY_F8) inspectNext();
+  if (key == GLFW_KEY_F9) showDifference_ = !showDifference_;
+  if (key == GLFW_KEY_F10) saveSequence();
+  if (key == GLFW_KEY_ESCAPE) inspection_.reset();
   if (key == GLFW_KEY_PAGE_DOWN && step_ + 1 < options_.steps.size()) chooseStep(step_ + 1);
   if (key == GLFW_KEY_PAGE_UP && step_ > 0) chooseStep(step_ - 1);
   if (key == GLFW_KEY_Q && control) glfwSetWindowShouldClose(context_->window(), GLFW_TRUE);
@@ -129,63 +148,99 @@ void ViewerWindow::handleKeys() {
   pressed_.clear();
 }
 
+void ViewerWindow::drawPictures(glm::vec2 corner, glm::vec2 size) {
+  const PictureFacts& facts = *facts_;
+  const gpu::Texture* left = facts.picture.texture.get();
+  const gpu::Texture* right = nullptr;
+  if (beside_ == Beside::techniques) right = facts.other.texture.get();
+  if (beside_ == Beside::reference) right = facts.truth.get();
+  const bool difference = showDifference_ && facts.metrics && facts.difference && beside_ != Beside::nothing;
+  if (difference) right = facts.difference.get();
+  const float line = right != nullptr ? split_ : 1;
+  if (left != nullptr) drawColumns(*left, corner, size, 0, line, true);
+  if (right == nullptr) return;
+  drawColumns(*right, corner, size, line, 1, beside_ == Beside::techniques && !difference);
+  const float x = corner.x + line * size.x;
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.AddLine({x - 1, corner.y}, {x - 1, corner.y + size.y}, 0x80000000, 3);
+  draw.AddLine({x, corner.y}, {x, corner.y + size.y}, 0xffffffff);
+  const std::string other = difference                      ? "difference"
+                            : beside_ == Beside::techniques ? namesOf(otherTechniques_)
+                                                            : "truth";
+  const std::string mine = namesOf(state_.techniques);
+  label({x - ImGui::CalcTextSize(mine.c_str()).x - 12, corner.y + 8}, mine);
+  label({x + 12, corner.y + 8}, other);
+  if (difference) drawColourBar(corner + glm::vec2(14, size.y - 46), std::min(size.x - 28, 420.f));
+}
+
+void ViewerWindow::statusLine(glm::vec2 corner, float width) const {
+  const PictureFacts& facts = *facts_;
+  std::string text;
+  if (facts.picture.texture)
+    text = fmt::format("{} x {}{}   {:.1f} ms", facts.picture.size.x, facts.picture.size.y,
+                       facts.picture.whole ? "" : " (reduced)", facts.picture.ms);
+  if (facts.metrics)
+    text += fmt::format("   RMSE {:.4g}   bias {:+.3g}   FLIP {:.3g}", facts.metrics->rmse,
+                        facts.metrics->bias, facts.metrics->flip);
+  if (facts.toCompile > 0) text += fmt::format("   compiling {} of {}", facts.compiled + 1, facts.toCompile);
+  if (!facts.job.empty()) text += "   " + facts.job;
+  if (!message_.empty()) text += "   " + message_;
+  ImGui::SetCursorScreenPos(im(corner));
+  ImGui::PushClipRect(im(corner), im(corner + glm::vec2(width, statusHeight)), true);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopClipRect();
+  tip(message_);
+}
+
 void ViewerWindow::pictureArea() {
-  handleKeys();
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({panelWidth, 0});
-  ImGui::SetNextWindowSize({std::max(window.x - panelWidth, 1.f), window.y});
+  ImGui::SetNextWindowSize({std::max(window.x - panelWidth, 1.f), std::max(window.y, 1.f)});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
   ImGui::Begin("picture", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
   ImGui::PopStyleVar();
   const ImVec2 place = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
-  const glm::vec2 corner(place.x, place.y), size(room.x, room.y - statusHeight);
-  area_ = glm::max(glm::ivec2(size), glm::ivec2(0));
+  const glm::vec2 size(room.x, room.y - statusHeight);
+  corner_ = {place.x, place.y};
+  const glm::ivec2 area = glm::max(glm::ivec2(size), glm::ivec2(0));
+  if (area != area_) moved();
+  area_ = area;
   if (area_.x > 0 && area_.y > 0) state_.scene.size = fmt::format("{}x{}", area_.x, area_.y);
+  handleKeys();
   if (area_.x > 0 && area_.y > 0) {
     ImGui::InvisibleButton("hands", im(size),
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
-    handleMouse();
-    const gpu::Texture* left = picture_->display();
-    const gpu::Texture* right = nullptr;
-    bool bottomFirst = true;
-    if (beside_ == Beside::techniques && other_) right = other_->display();
-    if (beside_ == Beside::reference && truth_ && truthTexture_.id() != 0) {
-      right = &truthTexture_;
-      bottomFirst = false;
-    }
-    if (showDifference_ && metrics_ && right != nullptr) {
-      right = &differenceTexture_;
-      bottomFirst = false;
-    }
-    const float line = right != nullptr ? split_ : 1;
-    if (left != nullptr) drawPicture(*left, corner, size, 0, line, true);
-    if (right != nullptr) {
-      drawPicture(*right, corner, size, line, 1, bottomFirst);
-      const float x = corner.x + line * size.x;
-      ImGui::GetWindowDrawList()->AddLine({x, corner.y}, {x, corner.y + size.y}, 0xffffffff);
-      if (showDifference_ && metrics_)
-        drawColourBar(corner + glm::vec2(8, size.y - 44), std::min(size.x - 16, 420.f));
-    }
-    const std::string& problem =
-        !picture_->problem().empty() || !other_ ? picture_->problem() : other_->problem();
+    if (!dragLight() && !dragSplit()) handleMouse();
+    drawPictures(corner_, size);
+    if (lightPanelOpen_) drawLights();
+    const PictureFacts& facts = *facts_;
+    std::string problem = facts.picture.problem;
+    for (const std::string& other : {facts.other.problem, facts.shaderProblem})
+      if (!other.empty()) problem += (problem.empty() ? "" : "\n") + other;
     if (!problem.empty()) {
-      ImGui::SetCursorScreenPos(im(corner + glm::vec2(8)));
-      ImGui::PushTextWrapPos(size.x - 8);
-      ImGui::TextColored({1, 0.5f, 0.4f, 1}, "%s", problem.c_str());
+      ImGui::SetCursorScreenPos(im(corner_ + glm::vec2(12)));
+      ImGui::PushTextWrapPos(size.x - 12);
+      ImGui::TextColored({1, 0.55f, 0.45f, 1}, "%s", problem.c_str());
       ImGui::PopTextWrapPos();
     }
   }
-  ImGui::SetCursorScreenPos({place.x + 8, place.y + room.y - statusHeight + 6});
-  std::string status =
-      fmt::format("{} x {}  {:.1f} ms", picture_->size().x, picture_->size().y, picture_->frameMs());
-  if (metrics_)
-    status += fmt::format("   RMSE {:.4g}  bias {:+.3g}  FLIP {:.3g}", metrics_->rmse, metrics_->bias,
-                          metrics_->flip);
-  if (!message_.empty()) status += "   " + message_;
-  ImGui::TextUnformatted(status.c_str());
+  statusLine({place.x + 10, place.y + room.y - statusHeight + 7}, size.x - 20);
   ImGui::End();
+}
+
+/// The line between two pictures; true while the mouse has it.
+bool ViewerWindow::dragSplit() {
+  if (beside_ == Beside::nothing || area_.x < 1) return false;
+  const ImGuiIO& io = ImGui::GetIO();
+  const float x = corner_.x + split_ * static_cast<float>(area_.x);
+  const bool near = ImGui::IsItemHovered() && std::abs(io.MousePos.x - x) < grabPixels;
+  if (near || splitDragged_) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+  if (near && ImGui::IsMouseClicked(0)) splitDragged_ = true;
+  if (!io.MouseDown[0]) splitDragged_ = false;
+  if (splitDragged_) split_ = std::clamp((io.MousePos.x - corner_.x) / static_cast<float>(area_.x), 0.f, 1.f);
+  return splitDragged_;
 }
 
 }  // namespace limn::app

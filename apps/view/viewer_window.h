@@ -1,26 +1,29 @@
-// Internal to the viewer: the window, what it shows, and its panels.
+// Internal to the viewer: the window, what it shows, and its panels. Everything here is of the main thread
+// and waits for nothing: pictures come from a PictureThread.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/view/gizmo.h"
 #include "apps/view/orbit.h"
-#include "apps/view/reference_worker.h"
-#include "apps/view/shown_picture.h"
+#include "apps/view/picture_thread.h"
 #include "apps/view/view_state.h"
 #include "apps/view/viewer.h"
-#include "core/image/metrics.h"
 
 struct GLFWwindow;
+struct ImDrawList;
 
 namespace limn::app {
 
-inline constexpr float panelWidth = 380;  ///< pixels
+inline constexpr float panelWidth = 400;  ///< pixels
 
-/// What the right part of the picture shows.
-enum class Beside { nothing, techniques, reference };
+/// What a text field holds.
+using TextField = char[1024];
+void setText(TextField& target, const std::string& text);
 
 class ViewerWindow {
  public:
@@ -31,17 +34,20 @@ class ViewerWindow {
   void run();
 
  private:
-  // --- viewer.cpp: the scene, the pictures, the loop
-  void openScene(const SceneOptions& wanted);
-  void tryOpen(const SceneOptions& wanted);
+  // --- viewer.cpp: the loop
+  void listen();
   void frame();
-  void renderPictures();
-  void compareAtRest();
-  void moved();         ///< something changed what is seen
-  bool atRest() const;  ///< the picture is whole and nothing moves
-  glm::ivec2 renderSize() const;
-  std::vector<render::TechniqueUse> resolve(const TechniqueOptions& options) const;
+  void takeFacts();
+  void adopt(const SceneFacts& scene);
+  void openFile(const std::filesystem::path& file);
+  void open(const SceneOptions& wanted);
+  void moved();  ///< something changed what is seen
+  bool moving() const;
+  PictureOrder order() const;
+  void postOrder();
+  bool finished(int shown) const;
   void saveScreenshot(const std::filesystem::path& file) const;
+  void writeStats() const;
 
   // --- viewer_picture.cpp: the picture and the hands on it
   void pictureArea();
@@ -49,21 +55,39 @@ class ViewerWindow {
   void handleKeys();
   void press(int key, bool control);
   void nextTechnique();
-  void drawPicture(const gpu::Texture& texture, glm::vec2 corner, glm::vec2 size, float from, float to,
-                   bool bottomFirst) const;
+  void drawPictures(glm::vec2 corner, glm::vec2 size);
+  bool dragSplit();
   void drawColourBar(glm::vec2 corner, float width) const;
+  void statusLine(glm::vec2 corner, float width) const;
 
-  // --- viewer_panels.cpp: the panels
+  // --- light_gizmo.cpp: lights in the picture
+  ScreenCamera screen() const;
+  void drawLights();
+  bool dragLight();  ///< true while the mouse is the gizmo's
+  void chooseLight(int light);
+  void editLight(const LightFacts& light, const LightEdit& edit);
+
+  // --- panels
   void panels();
   void scenePanel();
-  std::string cameraTitle() const;
+  void cameraChooser();
+  void environmentPanel();
+  void timePanel();
   void techniquePanel(std::vector<render::TechniqueUse>& uses);
   void lightPanel();
+  void lightEditor(const LightFacts& light);
   void comparePanel();
   void compareWith(Beside what);
   void framePanel();
+  void passRow(const frame::PassReport& pass, const frame::PassTime* time, double longest);
+  void inspectorWindow();
+  void inspectorChoices(const frame::PassReport& pass);
+  void inspectedPicture(const InspectedFacts& facts);
+  void inspect(const frame::PassReport& pass, size_t access);
+  void inspectNext();
   void savePanel();
-  void save();  ///< the picture, when it is whole
+  void save();
+  void saveSequence();
   void saveSuite();
   void copyCommand();
   void guidePanel();
@@ -72,33 +96,46 @@ class ViewerWindow {
   ViewerOptions options_;
   ViewState state_;
   std::unique_ptr<Context> context_;
-  std::unique_ptr<gpu::Device> device_;
   TechniqueRegistry registry_;
-  std::shared_ptr<View> view_;
-  std::unique_ptr<ShownPicture> picture_, other_;
+  std::unique_ptr<PictureThread> thread_;
+  /// What is drawn, and what was drawn before, which the GPU may still be at.
+  std::shared_ptr<const PictureFacts> facts_, before_;
+  std::optional<PictureOrder> posted_;
+  uint64_t messagesSeen_ = 0;
+
   std::vector<render::TechniqueUse> otherTechniques_;
   Orbit orbit_;
-  scene::CameraPose camera_;
-
   Beside beside_ = Beside::nothing;
-  float split_ = 0.5f;           ///< of the picture's width
+  float split_ = 0.5f;  ///< of the picture's width
+  bool splitDragged_ = false;
   bool showDifference_ = false;  ///< instead of the right part
-  ReferenceWorker reference_;
-  std::optional<Image> truth_;
-  gpu::Texture truthTexture_, differenceTexture_;
-  std::optional<Metrics> metrics_;
-  bool compared_ = false;  ///< metrics_ are of what is shown
+  std::optional<InspectionOrder> inspection_;
+  LightEdits lightEdits_;
+  int chosenLight_ = scene::none;
+  bool lightsNew_ = true;  ///< of a scene whose changed light, if there is one, is chosen at first
+  GizmoMode gizmoMode_ = GizmoMode::move;
+  std::optional<GizmoDrag> drag_;
 
-  glm::ivec2 area_{0};  ///< pixels of the picture's place in the window
-  int reduction_ = 1;   ///< the picture is rendered this much smaller while things move
-  double fullMs_ = 0;   ///< of a frame at full size
-  double lastChange_ = 0, lastReload_ = 0;
-  bool dirty_ = true, playing_ = false, framesPanelOpen_ = false, savePending_ = false;
-  double lastFrame_ = 0;
+  glm::vec2 corner_{0};  ///< of the picture's place in the window, pixels
+  glm::ivec2 area_{0};   ///< its size
+  double lastChange_ = 0, lastFrame_ = 0;
+  bool playing_ = false, framePanelOpen_ = false, lightPanelOpen_ = false;
   std::vector<std::pair<int, bool>> pressed_;  ///< GLFW keys since the last frame; true: with control
   size_t step_ = 0;
   std::string message_;  ///< what went wrong last, or was done
-  char sceneText_[1024] = "", environmentText_[1024] = "", saveText_[1024] = "";
+  /// Of the window's frames, without the time in which it waits for events.
+  struct FrameTimes {
+    int frames = 0;
+    double longestMs = 0, sumMs = 0;
+    void add(double ms) {
+      ++frames;
+      sumMs += ms;
+      longestMs = std::max(longestMs, ms);
+    }
+  } frameTimes_;
+  TextField sceneText_ = "", saveText_ = "", framesText_ = "0:29";
+  float fps_ = 30;
+  float environmentThreshold_ = 0;  ///< while its slider is held
 };
 
 }  // namespace limn::app

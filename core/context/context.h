@@ -18,6 +18,8 @@ struct GLFWwindow;
 
 namespace limn {
 
+class Context;
+
 enum class Backend { egl, osmesa, glfw };
 
 LIMN_API std::string_view name(Backend backend);
@@ -33,6 +35,7 @@ struct ContextOptions {
   int height = 720;  ///< window only, pixels
   bool visible = true;  ///< window only
   std::string title = "limn";
+  const Context* share = nullptr;  ///< window only: another window whose textures and buffers both see
 };
 
 struct ContextInfo {
@@ -52,7 +55,8 @@ class LIMN_API Context {
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
-  /// A context is current on at most one thread; a GLFW context belongs to the main thread. Throws Error.
+  /// A context is current on at most one thread. GLFW windows are made and destroyed on the main thread, but
+  /// their contexts may be current on others. Throws Error.
   void makeCurrent();
   /// Nothing is current afterwards, whichever context was.
   static void release();

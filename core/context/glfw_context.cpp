@@ -37,7 +37,8 @@ class GlfwContext final : public Context {
     glfwWindowHint(GLFW_VISIBLE, options.visible ? GLFW_TRUE : GLFW_FALSE);
     glfwWindowHint(GLFW_DEPTH_BITS, 0);
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
-    window_ = glfwCreateWindow(options.width, options.height, options.title.c_str(), nullptr, nullptr);
+    GLFWwindow* const shared = options.share != nullptr ? options.share->window() : nullptr;
+    window_ = glfwCreateWindow(options.width, options.height, options.title.c_str(), nullptr, shared);
     if (window_ == nullptr) {
       throw Error(fmt::format("no window of {} x {} pixels with OpenGL 4.5 core can be opened ({})",
                               options.width, options.height, lastProblem()));

@@ -198,6 +198,17 @@ const gpu::TextureDesc& FrameGraph::desc(TextureHandle handle) const {
   return resource.importedTexture ? resource.importedTexture->desc() : resource.textureDesc;
 }
 
+TextureHandle FrameGraph::find(std::string_view technique, std::string_view pass, size_t access) const {
+  const Graph& graph = *implementation_;
+  for (const Pass& p : graph.passes) {
+    if (p.technique != technique || p.name != pass || access >= p.accesses.size()) continue;
+    const ResourceAccess& found = p.accesses[access];
+    if (!graph.resources[found.resource].texture) return {};
+    return {found.resource, found.version, graph.tag};
+  }
+  return {};
+}
+
 void FrameGraph::touch(TextureHandle imported) {
   ++importedResource(*implementation_, imported).revision;
   // The object may have been made anew, even under the same name.

@@ -19,6 +19,7 @@
 #include <functional>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -147,15 +148,26 @@ class LIMN_API PassBuilder {
 enum class PassState { run, cached, leftOut };
 LIMN_API std::string_view name(PassState state);
 
+/// One use of a resource by a pass.
+struct AccessReport {
+  std::string resource;
+  Access access = Access::sampled;
+  bool write = false;
+  std::string why;
+  std::optional<gpu::TextureDesc> texture;  ///< nothing: a buffer
+  /// "name (access): why"
+  LIMN_API std::string text() const;
+};
+
 /// One row of `--explain`.
 struct PassReport {
   std::string name, technique;
   PassState state = PassState::run;
-  std::string reason;      ///< why it was left out or cached; empty for run
-  int64_t bytes = 0;       ///< of the resources the pass is the first to write
-  uint64_t triangles = 0;  ///< drawn in the last frame
-  std::vector<std::string> reads, writes;
-  GLbitfield barriers = 0;  ///< glMemoryBarrier bits issued before the pass
+  std::string reason;                  ///< why it was left out or cached; empty for run
+  int64_t bytes = 0;                   ///< of the resources the pass is the first to write
+  uint64_t triangles = 0;              ///< drawn in the last frame
+  std::vector<AccessReport> accesses;  ///< as they were declared
+  GLbitfield barriers = 0;             ///< glMemoryBarrier bits issued before the pass
 };
 
 /// How the passes of a frame are timed.
@@ -219,6 +231,9 @@ class LIMN_API FrameGraph {
   void output(BufferHandle handle);
 
   const gpu::TextureDesc& desc(TextureHandle handle) const;
+  /// What a declared pass reads or leaves behind in one of its textures: `access` counts as
+  /// PassReport::accesses does. Null where there is no such pass or access, or the access is to a buffer.
+  TextureHandle find(std::string_view technique, std::string_view pass, size_t access) const;
 
   // --- planning (no OpenGL)
   // --------------------------------------------------------------------------------------
@@ -236,8 +251,11 @@ class LIMN_API FrameGraph {
 
   // --- running
   // ---------------------------------------------------------------------------------------------------
+  /// Called before each program that is compiled: how many were, of how many.
+  using CompileProgress = std::function<void(int compiled, int wanted)>;
   /// plan(), then compiles the programs and allocates the resources of the passes that are kept.
-  void prepare(gpu::Device& device, gpu::ShaderLibrary& shaders, ResourcePool& pool);
+  void prepare(gpu::Device& device, gpu::ShaderLibrary& shaders, ResourcePool& pool,
+               const CompileProgress& progress = {});
   /// The contents of an imported resource, or the object behind it, changed.
   void touch(TextureHandle imported);
   void touch(BufferHandle imported);

@@ -1,6 +1,8 @@
 // Programs and memory for the passes that are kept.
 #include <fmt/format.h>
 
+#include <set>
+
 #include "core/base/error.h"
 #include "core/frame/graph_data.h"
 #include "core/frame/resource_pool.h"
@@ -15,13 +17,27 @@ bool isDebugContext(const gl::Functions& gl) {
   return (flags & GL_CONTEXT_FLAG_DEBUG_BIT) != 0 || gl.IsEnabled(GL_DEBUG_OUTPUT) == GL_TRUE;
 }
 
-void compilePrograms(Graph& graph, gpu::ShaderLibrary& shaders) {
+std::set<gpu::ProgramDesc> missingPrograms(const Graph& graph, const gpu::ShaderLibrary& shaders) {
+  std::set<gpu::ProgramDesc> missing;
+  for (uint32_t p : graph.order) {
+    for (uint32_t index : graph.passes[p].programs) {
+      if (!shaders.has(graph.programs[index].desc)) missing.insert(graph.programs[index].desc);
+    }
+  }
+  return missing;
+}
+
+void compilePrograms(Graph& graph, gpu::ShaderLibrary& shaders, const FrameGraph::CompileProgress& progress) {
+  const int wanted = progress ? static_cast<int>(missingPrograms(graph, shaders).size()) : 0;
+  int compiled = 0;
   for (uint32_t p : graph.order) {
     if (!graph.passes[p].function) {
       throw Error(fmt::format("frame graph: pass '{}' has no function to execute", graph.title(p)));
     }
     for (uint32_t index : graph.passes[p].programs) {
-      graph.programs[index].program = &shaders.program(graph.programs[index].desc);
+      const gpu::ProgramDesc& desc = graph.programs[index].desc;
+      if (progress && !shaders.has(desc)) progress(compiled++, wanted);
+      graph.programs[index].program = &shaders.program(desc);
     }
   }
 }
@@ -57,11 +73,12 @@ void Graph::release() {
   lastTiming = Timing::off;
 }
 
-void FrameGraph::prepare(gpu::Device& device, gpu::ShaderLibrary& shaders, ResourcePool& pool) {
+void FrameGraph::prepare(gpu::Device& device, gpu::ShaderLibrary& shaders, ResourcePool& pool,
+                         const CompileProgress& progress) {
   Graph& graph = *implementation_;
   graph.release();
   plan();
-  compilePrograms(graph, shaders);
+  compilePrograms(graph, shaders, progress);
   for (const Physical& physical : graph.physicals) {
     const std::string label = labelOf(graph, physical);
     if (physical.texture) {

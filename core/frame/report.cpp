@@ -9,10 +9,11 @@
 namespace limn::frame {
 namespace {
 
-std::string described(const Graph& graph, const ResourceAccess& a) {
-  const std::string& resource = graph.resources[a.resource].name;
-  return a.why.empty() ? fmt::format("{} ({})", resource, name(a.access))
-                       : fmt::format("{} ({}): {}", resource, name(a.access), a.why);
+AccessReport described(const Graph& graph, const ResourceAccess& a) {
+  const Resource& r = graph.resources[a.resource];
+  AccessReport report{r.name, a.access, a.write(), a.why, {}};
+  if (r.texture) report.texture = r.importedTexture ? r.importedTexture->desc() : r.textureDesc;
+  return report;
 }
 
 PassReport report(const Graph& graph, uint32_t index) {
@@ -26,7 +27,7 @@ PassReport report(const Graph& graph, uint32_t index) {
   row.triangles = pass.triangles;
   std::vector<uint32_t> counted;
   for (const ResourceAccess& a : pass.accesses) {
-    (a.write() ? row.writes : row.reads).push_back(described(graph, a));
+    row.accesses.push_back(described(graph, a));
     const Resource& r = graph.resources[a.resource];
     const bool firstWriter = a.write() && r.first != no_index && graph.order[r.first] == index;
     if (firstWriter && std::find(counted.begin(), counted.end(), a.resource) == counted.end()) {
@@ -105,6 +106,11 @@ void requirePlan(const Graph& graph) {
 }
 
 }  // namespace
+
+std::string AccessReport::text() const {
+  return why.empty() ? fmt::format("{} ({})", resource, name(access))
+                     : fmt::format("{} ({}): {}", resource, name(access), why);
+}
 
 std::string_view name(PassState state) {
   switch (state) {

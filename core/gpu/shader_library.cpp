@@ -56,6 +56,7 @@ struct ShaderLibrary::Implementation {
     Program program;
     std::vector<std::string> texts;  // what the program was compiled from, one per stage
     std::set<fs::path> files;        // on disk, whether or not they exist
+    std::string problem;             // why they do not make a program any more; empty: they do
   };
 
   explicit Implementation(Device& libraryDevice) : device(libraryDevice) {}
@@ -146,6 +147,10 @@ Program& ShaderLibrary::program(const ProgramDesc& desc) {
   return entries.emplace(desc, std::move(entry)).first->second.program;
 }
 
+bool ShaderLibrary::has(const ProgramDesc& desc) const {
+  return implementation_->entries.contains(desc);
+}
+
 ShaderLibrary::ReloadResult ShaderLibrary::reload() {
   std::set<fs::path> changed;
   for (auto& [file, stamp] : implementation_->stamps) {
@@ -154,16 +159,18 @@ ShaderLibrary::ReloadResult ShaderLibrary::reload() {
     stamp = now;
     changed.insert(file);
   }
-  ReloadResult result;
-  if (changed.empty()) return result;
+  ReloadResult result{.changed = !changed.empty(), .reloaded = 0, .errors = {}};
   const auto isChanged = [&](const fs::path& file) { return changed.contains(file); };
   for (auto& [desc, entry] : implementation_->entries) {
-    if (std::none_of(entry.files.begin(), entry.files.end(), isChanged)) continue;
-    try {
-      if (implementation_->build(desc, entry)) ++result.reloaded;
-    } catch (const Error& error) {
-      result.errors.emplace_back(error.what());
+    if (result.changed && std::any_of(entry.files.begin(), entry.files.end(), isChanged)) {
+      entry.problem.clear();
+      try {
+        if (implementation_->build(desc, entry)) ++result.reloaded;
+      } catch (const Error& error) {
+        entry.problem = error.what();
+      }
     }
+    if (!entry.problem.empty()) result.errors.push_back(entry.problem);
   }
   return result;
 }

@@ -49,12 +49,15 @@ class LIMN_API ShaderLibrary {
   /// the program behind it. Throws Error.
   Program& program(const ProgramDesc& desc);
 
+  /// Whether program() would find it compiled.
+  bool has(const ProgramDesc& desc) const;
+
   /// Recompiles the programs whose files changed on disk since they were compiled. A program that fails keeps
-  /// its last good version; the messages are returned, one per failed program. Returns in microseconds when
-  /// nothing changed.
+  /// its last good version. Returns in microseconds when nothing changed.
   struct ReloadResult {
-    int reloaded = 0;
-    std::vector<std::string> errors;
+    bool changed = false;             ///< a file did, be it to the text it had
+    int reloaded = 0;                 ///< programs
+    std::vector<std::string> errors;  ///< one per program whose files, as they are now, make none
   };
   ReloadResult reload();
 

@@ -8,10 +8,9 @@
 #include "core/caustics/caustic_rays.h"
 #include "core/indirect/virtual_lights.h"
 #include "core/render/deferred.h"
+#include "core/render/read_picture.h"
 #include "core/scene/gpu_scene.h"
 #include "core/shadow/shadow_map.h"
-#include "glsl/gbuffer.glsl"
-#include "glsl/srgb.glsl"
 
 namespace limn::render {
 namespace {
@@ -54,6 +53,9 @@ struct Renderer::Implementation {
   SceneHandles handles;
   GBuffer gbuffer;
   frame::TextureHandle output, display;
+  InspectionView inspectionView;
+  std::unique_ptr<TextureInspector> inspector;
+  frame::FrameGraph::CompileProgress compileProgress;
 
   Implementation(gpu::Device& gpuDevice, const scene::Scene& shown, std::filesystem::path overrideFolder)
       : device(gpuDevice),
@@ -75,6 +77,7 @@ struct Renderer::Implementation {
     if (!graph) return;
     gpuScene.forget();
     causticRays.forget();
+    inspector.reset();
     graph.reset();
     uses.clear();
   }
@@ -220,6 +223,14 @@ struct Renderer::Implementation {
     graph->output(display);
   }
 
+  /// Behind everything else: the pass looked at may be any.
+  void addInspector() {
+    if (!settings.inspect) return;
+    const Inspection& wanted = *settings.inspect;
+    const frame::TextureHandle texture = graph->find(wanted.technique, wanted.pass, wanted.access);
+    if (texture) inspector = std::make_unique<TextureInspector>(*graph, texture, inspectionView);
+  }
+
   void build() {
     dropGraph();
     graph = std::make_unique<frame::FrameGraph>();
@@ -244,7 +255,8 @@ struct Renderer::Implementation {
     if (settings.channels && gbuffer.depth)
       for (frame::TextureHandle kept : {gbuffer.depth, gbuffer.instance, gbuffer.albedo, gbuffer.normal})
         graph->output(kept);
-    graph->prepare(device, shaders, pool);
+    addInspector();
+    graph->prepare(device, shaders, pool, compileProgress);
     pool.trim();
     shadowMaps.update(pose);
   }
@@ -267,48 +279,7 @@ struct Renderer::Implementation {
     if (settings.dynamic) graph->invalidate();
     graph->execute(timing);
   }
-
-  template <class T>
-  std::vector<T> readTexture(frame::TextureHandle handle, GLenum format, GLenum type, int components) const {
-    const gpu::Texture& texture = graph->texture(handle);
-    std::vector<T> data(static_cast<size_t>(settings.size.x) * settings.size.y * components *
-                        texture.desc().layers);
-    texture.read(0, format, type, data.data(), data.size() * sizeof(T));
-    return data;
-  }
-
-  /// Calls f(pixel of the image, index of the texel): texture rows count from below.
-  template <class F>
-  void forEachPixel(Image& image, const F& f) const {
-    for (int y = 0; y < settings.size.y; ++y)
-      for (int x = 0; x < settings.size.x; ++x)
-        f(image.pixel(x, settings.size.y - 1 - y), static_cast<size_t>(y) * settings.size.x + x);
-  }
-
-  void readChannels(Image& image) const;
 };
-
-void Renderer::Implementation::readChannels(Image& image) const {
-  const auto depth = readTexture<float>(gbuffer.depth, GL_RED, GL_FLOAT, 1);
-  const auto instance = readTexture<uint32_t>(gbuffer.instance, GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
-  const auto albedo = readTexture<float>(gbuffer.albedo, GL_RGBA, GL_FLOAT, 4);
-  const auto normal = readTexture<float>(gbuffer.normal, GL_RG, GL_FLOAT, 2);
-  forEachPixel(image, [&](std::span<float> pixel, size_t i) {
-    const bool covered = depth[i] > 0;
-    pixel[3] = depth[i];
-    pixel[4] = covered ? 1.f : 0.f;
-    pixel[5] = covered ? static_cast<float>(instance[i]) : -1.f;
-    if (!covered) return;
-    const glm::vec3 colour =
-        glsl::srgb_decode(glm::vec3(albedo[4 * i], albedo[4 * i + 1], albedo[4 * i + 2]));
-    const glm::vec3 n = glsl::octahedral_decode(glm::vec2(normal[2 * i], normal[2 * i + 1]));
-    for (int c = 0; c < 3; ++c) {
-      pixel[static_cast<size_t>(6 + c)] = colour[c];
-      pixel[static_cast<size_t>(9 + c)] = n[c];
-    }
-  });
-}
-
 Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, std::filesystem::path shaderOverride)
     : implementation_(std::make_unique<Implementation>(device, scene, std::move(shaderOverride))) {}
 Renderer::~Renderer() = default;
@@ -333,10 +304,23 @@ void Renderer::setTime(double seconds, int animation) {
 void Renderer::render(frame::Timing timing) {
   implementation_->render(timing);
 }
+
 const gpu::Texture& Renderer::display() const {
   const Implementation& self = *implementation_;
   if (!self.display || !self.graph) throw Error("nothing to display: Settings::displayEv was not set");
   return self.graph->texture(self.display);
+}
+
+const TextureInspector* Renderer::inspector() const {
+  return implementation_->inspector.get();
+}
+
+void Renderer::setInspectionView(const InspectionView& view) {
+  implementation_->inspectionView = view;
+}
+
+void Renderer::setCompileProgress(frame::FrameGraph::CompileProgress progress) {
+  implementation_->compileProgress = std::move(progress);
 }
 
 void Renderer::finish() {
@@ -350,25 +334,8 @@ const scene::Pose& Renderer::pose() {
 
 Image Renderer::read() const {
   const Implementation& self = *implementation_;
-  const glm::ivec2 size = self.settings.size;
   const bool channels = self.settings.channels && self.gbuffer.depth;
-  std::vector<std::string> names{"R", "G", "B"};
-  if (channels)
-    names.insert(names.end(),
-                 {"Z", "coverage", "id", "albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z"});
-  Image image(size.x, size.y, names);
-  if (self.settings.output == Output::visibility) {
-    const auto v = self.readTexture<float>(self.output, GL_RED, GL_FLOAT, 1);
-    self.forEachPixel(image,
-                      [&](std::span<float> pixel, size_t i) { pixel[0] = pixel[1] = pixel[2] = v[i]; });
-  } else {
-    const auto rgba = self.readTexture<float>(self.output, GL_RGBA, GL_FLOAT, 4);
-    self.forEachPixel(image, [&](std::span<float> pixel, size_t i) {
-      for (size_t c = 0; c < 3; ++c) pixel[c] = rgba[4 * i + c];
-    });
-  }
-  if (channels) self.readChannels(image);
-  return image;
+  return readPicture(*self.graph, self.settings, self.output, channels ? &self.gbuffer : nullptr);
 }
 
 frame::FrameGraph& Renderer::graph() {
@@ -411,8 +378,8 @@ void Renderer::describeShadowMaps(FrameStats& stats) const {
 }
 
 Renderer::Reload Renderer::reloadShaders() {
-  const auto result = implementation_->shaders.reload();
-  return {result.reloaded, result.errors};
+  gpu::ShaderLibrary::ReloadResult result = implementation_->shaders.reload();
+  return {result.changed, result.reloaded, std::move(result.errors)};
 }
 
 }  // namespace limn::render

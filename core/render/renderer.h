@@ -18,6 +18,7 @@
 #include "core/frame/frame_graph.h"
 #include "core/image/image.h"
 #include "core/render/frame_stats.h"
+#include "core/render/inspector.h"
 #include "core/scene/scene.h"
 #include "core/technique/technique.h"
 
@@ -54,6 +55,8 @@ struct Settings {
   bool channels = false;
   /// Tone-map the picture for display(): clamp(2^EV * picture), then sRGB, as PNG files are written.
   std::optional<float> displayEv = {};
+  /// A texture to look at, if the frame has it: see inspector(). A pass that would be left out runs for it.
+  std::optional<Inspection> inspect = {};
   /// Done all the same, to learn what leaving it out is worth (core/bench/savings.h).
   std::vector<Saving> forced = {};
 };
@@ -85,6 +88,14 @@ class LIMN_API Renderer {
   /// The last frame, tone-mapped (Settings::displayEv): RGBA8, bottom row first. Throws Error without one.
   const gpu::Texture& display() const;
 
+  /// Of the last frame; null without Settings::inspect or where the frame does not have that texture.
+  const TextureInspector* inspector() const;
+  /// What the following frames show of it.
+  void setInspectionView(const InspectionView& view);
+
+  /// Called, by render(), before each program that it compiles.
+  void setCompileProgress(frame::FrameGraph::CompileProgress progress);
+
   /// Blocks until the GPU has done everything asked of it (glFinish).
   void finish();
 
@@ -100,8 +111,9 @@ class LIMN_API Renderer {
   int64_t memoryBytes() const;
 
   struct Reload {
-    int programs = 0;
-    std::vector<std::string> errors;
+    bool changed = false;             ///< a file did
+    int programs = 0;                 ///< that are new
+    std::vector<std::string> errors;  ///< of all files that make no program as they are now
   };
   /// Recompiles shaders that changed on disk.
   Reload reloadShaders();

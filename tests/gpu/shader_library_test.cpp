@@ -158,7 +158,15 @@ TEST_F(ShaderLibraryTest, filesOnDiskTakePrecedenceAndAreReloaded) {
   ASSERT_EQ(result.errors.size(), 1u);
   EXPECT_THAT(result.errors[0], HasSubstr("techniques/test/value.glsl:1: "));
   EXPECT_EQ(run(program), 15u) << "the last good version";
-  EXPECT_THAT(shaders().reload().errors, IsEmpty()) << "a failure is reported once";
+  result = shaders().reload();
+  EXPECT_FALSE(result.changed);
+  EXPECT_EQ(result.errors.size(), 1u) << "it is still broken";
+
+  write("value.glsl", "uint value() { return 5u; }\n");
+  result = shaders().reload();
+  EXPECT_TRUE(result.changed);
+  EXPECT_EQ(result.reloaded, 0) << "the text of the last good version again";
+  EXPECT_THAT(result.errors, IsEmpty());
 
   write("value.glsl", "#include \"none.glsl\"\n");
   EXPECT_THAT(shaders().reload().errors[0], HasSubstr("include 'none.glsl' not found"));

@@ -304,7 +304,10 @@ TEST(FrameGraphReport, BytesCountWithTheFirstWriter) {
   const std::vector<PassReport> rows = graph.explain();
   EXPECT_EQ(rows[0].bytes, colour_bytes);
   EXPECT_EQ(rows[1].bytes, 0);
-  EXPECT_THAT(rows[1].writes, ElementsAre("sum (colourBlend): more light"));
+  ASSERT_EQ(rows[1].accesses.size(), 1u);
+  EXPECT_EQ(rows[1].accesses[0].text(), "sum (colourBlend): more light");
+  EXPECT_TRUE(rows[1].accesses[0].write);
+  EXPECT_EQ(rows[1].accesses[0].texture, colour);
 }
 
 TEST(FrameGraphReport, GraphvizQuotesNamesAndDashesWhatIsLeftOut) {

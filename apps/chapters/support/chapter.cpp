@@ -87,15 +87,15 @@ int runChapter(const Chapter& chapter, int argc, char** argv) {
       return program.exit(error) == 0 ? 0 : 2;
     }
     if (headless || !hasDisplay()) return writeFiles(chapter, out, backend, filters);
-    runViewer({.title = chapter.title,
-               .scene = scene,
-               .techniques = {},
-               .steps = stepsOf(chapter),
-               .debug = backend.debug,
-               .shaders = {},
-               .save = out / "view.png",
-               .frames = frames,
-               .screenshot = {}});
+    ViewerOptions viewer;
+    viewer.title = chapter.title;
+    viewer.scene = scene;
+    viewer.steps = stepsOf(chapter);
+    viewer.debug = backend.debug;
+    viewer.save = out / "view.png";
+    viewer.cache = out / "references";
+    viewer.frames = frames;
+    runViewer(viewer);
     return 0;
   });
 }

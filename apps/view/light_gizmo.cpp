@@ -1,0 +1,152 @@
+// Lights in the picture: marks to choose one by, and the chosen one's handles.
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/view/viewer_window.h"
+
+namespace limn::app {
+namespace {
+
+constexpr float markPixels = 7;
+constexpr ImU32 axisColours[3] = {0xff5a5af0, 0xff5ad05a, 0xfff0965a};  // red, green, blue
+constexpr ImU32 heldColour = 0xff40e0ff, markColour = 0xff80e8ff;
+
+ImVec2 im(glm::vec2 v) {
+  return {v.x, v.y};
+}
+
+bool isDirectional(const LightFacts& light) {
+  return light.light.info.x == glsl::light_directional;
+}
+
+/// Where a light's handles are: directional ones have no place, theirs is the scene's middle.
+glm::vec3 placeOf(const LightFacts& light, const SceneFacts& scene) {
+  return isDirectional(light) ? scene.bounds.centre() : glm::vec3(light.light.position);
+}
+
+/// To four digits of the scene's size: what a hand can aim at.
+glm::vec3 rounded(const glm::vec3& position, float radius) {
+  const float step = std::pow(10.f, std::floor(std::log10(std::max(radius, 1e-6f))) - 3);
+  return glm::round(position / step) * step;
+}
+
+void drawOutline(const ScreenCamera& screen, const glm::vec3& centre, const GizmoHandle& handle, bool held) {
+  std::vector<ImVec2> pixels;
+  for (const glm::vec3& corner : outlineOf(screen, centre, handle)) {
+    const auto pixel = screen.pixel(corner);
+    if (!pixel) return;
+    pixels.push_back(im(*pixel));
+  }
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const ImU32 colour = held ? heldColour : axisColours[handle.axis];
+  const int count = static_cast<int>(pixels.size());
+  if (handle.kind == GizmoHandle::Kind::plane) {
+    draw.AddConvexPolyFilled(pixels.data(), count, (colour & 0x00ffffff) | 0x60000000);
+    draw.AddPolyline(pixels.data(), count, colour, ImDrawFlags_Closed, 1);
+  } else if (handle.kind == GizmoHandle::Kind::ring) {
+    draw.AddPolyline(pixels.data(), count, colour, ImDrawFlags_Closed, 2.5f);
+  } else {
+    draw.AddLine(pixels[0], pixels[1], colour, 2.5f);
+    draw.AddCircleFilled(pixels[1], 4.5f, colour);
+  }
+}
+
+/// The rectangle that a light is, and which way it shines.
+void drawShape(const ScreenCamera& screen, const LightFacts& light, const glm::vec3& centre) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const auto line = [&](const glm::vec3& a, const glm::vec3& b) {
+    const auto from = screen.pixel(a), to = screen.pixel(b);
+    if (from && to) draw.AddLine(im(*from), im(*to), markColour, 1.5f);
+  };
+  const glsl::Light& l = light.light;
+  if (l.info.x == glsl::light_rectangle) {
+    const glm::vec3 u = 0.5f * l.axis_u.w * glm::vec3(l.axis_u), v = 0.5f * l.axis_v.w * glm::vec3(l.axis_v);
+    const glm::vec3 corners[4] = {centre - u - v, centre + u - v, centre + u + v, centre - u + v};
+    for (int i = 0; i < 4; ++i) line(corners[i], corners[(i + 1) % 4]);
+  }
+  if (l.info.x != glsl::light_point)
+    line(centre, centre + screen.metres(45, centre) * glm::vec3(l.direction));
+}
+
+}  // namespace
+
+ScreenCamera ViewerWindow::screen() const {
+  return {facts_->camera, corner_, glm::vec2(area_)};
+}
+
+void ViewerWindow::chooseLight(int light) {
+  chosenLight_ = light;
+  drag_.reset();
+}
+
+void ViewerWindow::editLight(const LightFacts& light, const LightEdit& edit) {
+  lightEdits_[light.name] = edit;
+  if (edit == LightEdit{}) lightEdits_.erase(light.name);
+  state_.scene.lightSettings = printed(lightEdits_);
+  moved();
+}
+
+void ViewerWindow::drawLights() {
+  if (!facts_->scene || !facts_->picture.texture) return;
+  const ScreenCamera camera = screen();
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.PushClipRect(im(corner_), im(corner_ + glm::vec2(area_)), true);
+  for (int i = 0; i < static_cast<int>(facts_->lights.size()); ++i) {
+    const LightFacts& light = facts_->lights[static_cast<size_t>(i)];
+    const bool chosen = i == chosenLight_;
+    if (!light.editable || (isDirectional(light) && !chosen)) continue;
+    const glm::vec3 centre = placeOf(light, *facts_->scene);
+    const auto pixel = camera.pixel(centre);
+    if (!pixel) continue;
+    draw.AddCircle(im(*pixel), markPixels, markColour, 0, chosen ? 3.f : 1.5f);
+    if (!chosen) continue;
+    drawShape(camera, light, centre);
+    const GizmoMode mode = isDirectional(light) ? GizmoMode::turn : gizmoMode_;
+    for (const GizmoHandle& handle : handlesOf(mode))
+      drawOutline(camera, centre, handle, drag_ && drag_->handle == handle);
+  }
+  draw.PopClipRect();
+}
+
+bool ViewerWindow::dragLight() {
+  const ImGuiIO& io = ImGui::GetIO();
+  const glm::vec2 mouse(io.MousePos.x, io.MousePos.y);
+  const auto count = static_cast<int>(facts_->lights.size());
+  if (!lightPanelOpen_ || !facts_->scene || chosenLight_ >= count) return false;
+  if (!io.MouseDown[0]) drag_.reset();
+  const ScreenCamera camera = screen();
+  if (drag_) {
+    const LightFacts& light = facts_->lights[static_cast<size_t>(chosenLight_)];
+    const GizmoPose pose = dragged(camera, *drag_, mouse);
+    LightEdit edit = lightEdits_[light.name];
+    if (!isDirectional(light)) edit.position = rounded(pose.position, facts_->scene->bounds.radius());
+    const glm::vec3 angles = glm::round(anglesOf(pose.rotation) * 10.f) / 10.f;
+    const bool turned = drag_->handle.kind == GizmoHandle::Kind::ring;
+    if (light.light.info.x != glsl::light_point && (turned || !edit.rotation)) edit.rotation = angles;
+    if (io.MouseDelta.x != 0 || io.MouseDelta.y != 0) editLight(light, edit);
+    return true;
+  }
+  if (!ImGui::IsItemHovered() || !ImGui::IsMouseClicked(0)) return false;
+  if (chosenLight_ >= 0) {
+    const LightFacts& light = facts_->lights[static_cast<size_t>(chosenLight_)];
+    const GizmoMode mode = isDirectional(light) ? GizmoMode::turn : gizmoMode_;
+    const glm::vec3 centre = placeOf(light, *facts_->scene);
+    if (const auto handle = light.editable ? handleAt(camera, centre, mode, mouse) : std::nullopt) {
+      drag_ = GizmoDrag{*handle, {centre, rotationOf(light.now.rotation.value_or(glm::vec3(0)))}, mouse};
+      return true;
+    }
+  }
+  for (int i = 0; i < count; ++i) {
+    const LightFacts& light = facts_->lights[static_cast<size_t>(i)];
+    const auto pixel = camera.pixel(glm::vec3(light.light.position));
+    if (!light.editable || isDirectional(light) || !pixel || glm::distance(*pixel, mouse) > markPixels)
+      continue;
+    chooseLight(i);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace limn::app

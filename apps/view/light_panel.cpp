@@ -1,0 +1,147 @@
+// Lights: which shine, where, how large and how bright.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "apps/view/viewer_style.h"
+#include "apps/view/viewer_window.h"
+
+namespace limn::app {
+namespace {
+
+const char* kindOf(const LightFacts& light) {
+  switch (light.light.info.x) {
+    case glsl::light_point:
+      return "point";
+    case glsl::light_spot:
+      return "spot";
+    case glsl::light_directional:
+      return (light.light.info.y & glsl::light_flag_environment) != 0 ? "environment" : "directional";
+    default:
+      return "rectangle";
+  }
+}
+
+}  // namespace
+
+void ViewerWindow::lightPanel() {
+  const std::vector<LightFacts>& lights = facts_->lights;
+  if (beginRows("lights")) {
+    nameCell("shining", "All lights, or only one; visibility shows one");
+    const std::string shown = state_.scene.light.empty() ? "all" : state_.scene.light;
+    if (ImGui::BeginCombo("##shining", shown.c_str())) {
+      if (ImGui::Selectable("all")) state_.scene.light.clear(), moved();
+      for (const LightFacts& light : lights)
+        if (ImGui::Selectable(light.name.c_str())) state_.scene.light = light.name, moved();
+      ImGui::EndCombo();
+    }
+    nameCell("all sizes",
+             "Side of every area light, metres; angular diameter of directional lights, radians. 0: "
+             "as in the scene");
+    auto size = static_cast<float>(state_.scene.lightSize);
+    if (ImGui::SliderFloat("##size", &size, 0, 10, size > 0 ? "%.3f m" : "as in the scene",
+                           ImGuiSliderFlags_Logarithmic)) {
+      state_.scene.lightSize = size;
+      moved();
+    }
+    endRows();
+  }
+  if (lights.empty()) {
+    ImGui::TextDisabled("the scene has no light");
+    return;
+  }
+  if (std::exchange(lightsNew_, false)) {
+    const auto edited = [&](const LightFacts& light) { return lightEdits_.contains(light.name); };
+    const auto found = std::ranges::find_if(lights, edited);
+    if (found != lights.end()) chooseLight(static_cast<int>(found - lights.begin()));
+  }
+  const float row = ImGui::GetTextLineHeightWithSpacing();
+  const auto rows = static_cast<float>(std::min<size_t>(lights.size(), 6));
+  ImGui::BeginChild("list", {0, rows * row + 8}, true);
+  for (int i = 0; i < static_cast<int>(lights.size()); ++i) {
+    const LightFacts& light = lights[static_cast<size_t>(i)];
+    ImGui::PushID(i);
+    const std::string title = light.name + (lightEdits_.contains(light.name) ? " *" : "");
+    if (ImGui::Selectable(title.c_str(), i == chosenLight_)) chooseLight(i == chosenLight_ ? scene::none : i);
+    tip("Choose it to move, turn and change it; its handles are in the picture. *: changed");
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - 90);
+    ImGui::TextDisabled("%s", kindOf(light));
+    ImGui::PopID();
+  }
+  ImGui::EndChild();
+  if (chosenLight_ >= 0 && chosenLight_ < static_cast<int>(lights.size()))
+    lightEditor(lights[static_cast<size_t>(chosenLight_)]);
+}
+
+void ViewerWindow::lightEditor(const LightFacts& light) {
+  if (!light.editable) {
+    wrapped("This light is part of a mesh or of the environment: it changes with them.");
+    return;
+  }
+  const bool directional = light.light.info.x == glsl::light_directional;
+  const float radius = facts_->scene ? facts_->scene->bounds.radius() : 1;
+  const auto found = lightEdits_.find(light.name);
+  LightEdit edit = found == lightEdits_.end() ? LightEdit{} : found->second;
+  const LightEdit& now = light.now;
+  bool changed = false;
+  if (!beginRows("editor")) return;
+  if (!directional) {
+    nameCell("handles", "In the picture: drag an axis or a plane to move the light, a ring to turn it");
+    if (ImGui::RadioButton("move", gizmoMode_ == GizmoMode::move)) gizmoMode_ = GizmoMode::move;
+    ImGui::SameLine();
+    if (ImGui::RadioButton("turn", gizmoMode_ == GizmoMode::turn)) gizmoMode_ = GizmoMode::turn;
+    nameCell("position, m", "In the world; drag the numbers, or double-click to type");
+    glm::vec3 position = edit.position.value_or(*now.position);
+    if (ImGui::DragFloat3("##position", &position.x, 0.003f * radius, 0, 0, "%.3f")) {
+      edit.position = position;
+      changed = true;
+    }
+  }
+  if (light.light.info.x != glsl::light_point) {
+    nameCell("rotation",
+             "Pitch, yaw and roll in degrees of a light that shines along -z: rolled about z, "
+             "pitched about x, turned about y");
+    glm::vec3 rotation = edit.rotation.value_or(*now.rotation);
+    if (ImGui::DragFloat3("##rotation", &rotation.x, 0.5f, -360, 360, "%.1f")) {
+      edit.rotation = rotation;
+      changed = true;
+    }
+  }
+  nameCell(
+      directional ? "angle, rad" : "size, m",
+      directional ? "Angular diameter" : "Sides; a light that had none becomes a rectangle that faces -z");
+  glm::vec2 size = edit.size.value_or(*now.size);
+  const bool resized = directional
+                           ? ImGui::DragFloat("##size", &size.x, 0.001f, 1e-4f, 1, "%.4f")
+                           : ImGui::DragFloat2("##size", &size.x, 0.002f * radius, 1e-4f, 1e4f, "%.3f");
+  if (resized) {
+    const bool square = directional || (!edit.size && *now.size == glm::vec2(0));
+    edit.size =
+        glm::max(square ? glm::vec2(std::max(size.x, directional ? 0.f : size.y)) : size, glm::vec2(1e-4f));
+    changed = true;
+  }
+  nameCell("colour", "Linear Rec. 709");
+  glm::vec3 colour = edit.colour.value_or(*now.colour);
+  if (ImGui::ColorEdit3("##colour", &colour.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR)) {
+    edit.colour = glm::max(colour, glm::vec3(0));
+    changed = true;
+  }
+  nameCell("intensity", directional ? "Irradiance of a surface that faces the light" : "Radiant intensity");
+  float intensity = edit.intensity.value_or(*now.intensity);
+  if (ImGui::DragFloat("##intensity", &intensity, std::max(0.01f * intensity, 1e-3f), 0, 1e6f,
+                       directional ? "%.4g W/m2" : "%.4g W/sr")) {
+    edit.intensity = std::max(intensity, 0.f);
+    changed = true;
+  }
+  endRows();
+  // A light that was moved keeps both, so that the command places it the same whatever animations do.
+  if (changed && edit.rotation && !directional && !edit.position) edit.position = now.position;
+  if (changed && edit.position && light.light.info.x != glsl::light_point && !edit.rotation)
+    edit.rotation = now.rotation;
+  if (changed) editLight(light, edit);
+  if (found != lightEdits_.end() && !changed && ImGui::Button("As in the scene")) editLight(light, {});
+}
+
+}  // namespace limn::app

@@ -1,0 +1,19 @@
+#include "apps/view/picture_order.h"
+
+#include <algorithm>
+
+namespace limn::app {
+
+bool same(const std::vector<render::TechniqueUse>& a, const std::vector<render::TechniqueUse>& b) {
+  return std::ranges::equal(a, b, [](const render::TechniqueUse& x, const render::TechniqueUse& y) {
+    return x.plugin == y.plugin && x.parameters.printed() == y.parameters.printed();
+  });
+}
+
+bool same(const PictureOrder& a, const PictureOrder& b) {
+  return a.scene == b.scene && a.output == b.output && a.exposure == b.exposure && a.size == b.size &&
+         a.beside == b.beside && a.moving == b.moving && a.timed == b.timed && a.inspect == b.inspect &&
+         same(a.techniques, b.techniques) && same(a.others, b.others);
+}
+
+}  // namespace limn::app

@@ -1,0 +1,213 @@
+// What is done with a picture when nothing moves: the truth beside it, the error, the values of its textures,
+// files. All of it reads from the GPU and may wait for it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "apps/view/difference.h"
+#include "apps/view/display_image.h"
+#include "apps/view/picture_studio.h"
+#include "core/base/error.h"
+
+namespace limn::app {
+namespace {
+
+/// What the reference is asked for where the picture shows `output`.
+reference::Term termOf(render::Output output) {
+  return reference::termFromName(std::string(render::name(output)));
+}
+
+/// One where the picture has indirect light in it.
+int bouncesOf(const PictureOrder& order) {
+  const auto indirect = [](const render::TechniqueUse& use) {
+    return contains(use.plugin->info->terms, Term::indirect);
+  };
+  if (!reference::hasBounces(termOf(order.output))) return 0;
+  return order.output == render::Output::indirect || std::ranges::any_of(order.techniques, indirect) ? 1 : 0;
+}
+
+/// Everything that determines the reference's picture.
+std::string truthKeyOf(const PictureOrder& order) {
+  const SceneOptions& s = order.scene;
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{} x {}|{}|{}", s.camera, s.eye, s.target, s.fov, s.time,
+                     s.light, s.lightSize, fmt::join(s.lightSettings, ";"), s.environmentRotation,
+                     s.environmentScale, order.size.x, order.size.y, render::name(order.output),
+                     bouncesOf(order));
+}
+
+/// Of one channel, or of the first three; black and white where all values are equal.
+std::pair<float, float> displayRange(const render::InspectedValues& values, int channel) {
+  double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+  const int first = channel < 4 ? channel : 0, last = channel < 4 ? channel : 2;
+  for (int c = first; c <= last; ++c) {
+    if (c >= values.components) continue;
+    const render::InspectedValues::Range range = values.range(c);
+    low = std::min(low, range.low);
+    high = std::max(high, range.high);
+  }
+  if (!(low < high)) high = low + 1;
+  return {static_cast<float>(low), static_cast<float>(high)};
+}
+
+}  // namespace
+
+bool PictureStudio::followReference(const PictureOrder& order) {
+  const std::string key = order.beside == Beside::reference ? truthKeyOf(order) : "";
+  if (key != truthKey_) {
+    truthKey_.clear();
+    reference_.cancel();
+    truth_.reset();
+    facts_.truth.reset();
+    facts_.difference.reset();
+    facts_.metrics.reset();
+    compared_ = false;
+  }
+  const bool wanted = !key.empty() && !order.moving && facts_.picture.problem.empty();
+  if (wanted && truthKey_.empty() && !reference_.busy()) {
+    truthKey_ = key;
+    reference_.start({view_, view_->pose, view_->camera, order.size, termOf(order.output), view_->light,
+                      bouncesOf(order)});
+  }
+  std::optional<Image> finer = reference_.take();
+  const bool fresh = finer && !truthKey_.empty();
+  if (fresh) truth_ = std::move(finer);
+  if (truth_ && (fresh || truthExposure_ != order.exposure)) {
+    truthExposure_ = order.exposure;
+    facts_.truth = pool_.of(toneMapped(*truth_, order.exposure));
+    compared_ = false;
+  }
+  const ReferenceWorker::State before = std::exchange(facts_.reference, reference_.state());
+  return fresh || !(before == facts_.reference);
+}
+
+/// Sets why there are no figures; true if that is news.
+bool PictureStudio::noMetrics(const char* why) {
+  const bool news = facts_.whyNoMetrics != why || facts_.metrics;
+  facts_.whyNoMetrics = why;
+  facts_.metrics.reset();
+  return news;
+}
+
+bool PictureStudio::compare(const PictureOrder& order) {
+  if (order.beside == Beside::nothing) return noMetrics("");
+  if (order.moving) return noMetrics("measured when the picture stands still");
+  if (!facts_.picture.problem.empty() || !facts_.other.problem.empty())
+    return noMetrics("there is no picture to compare");
+  if (order.beside == Beside::reference && !truth_)
+    return noMetrics("the first picture of the truth is on its way");
+  if (compared_) return false;
+  compared_ = true;
+  try {
+    const Image image = picture_->read();
+    const Image against = order.beside == Beside::reference ? *truth_ : other_->read();
+    facts_.metrics =
+        compareImages(image, against, {.exposureEv = order.exposure, .useMask = false, .maskTermRange = {}});
+    facts_.difference = pool_.of(signedDifference(image, against, {}));
+    facts_.whyNoMetrics.clear();
+  } catch (const Error& error) {
+    noMetrics(error.what());
+  }
+  return true;
+}
+
+/// Tells of the texture that the frame just rendered was asked to show.
+void PictureStudio::inspect(const PictureOrder& order) {
+  const std::optional<InspectedFacts> before = std::exchange(facts_.inspected, std::nullopt);
+  if (!order.inspect) return;
+  InspectedFacts& facts = facts_.inspected.emplace();
+  facts.view = order.inspect->view;
+  const render::TextureInspector* inspector = picture_->renderer().inspector();
+  if (!facts_.picture.problem.empty() || inspector == nullptr) {
+    facts.problem = "the frame has no such texture now";
+    return;
+  }
+  if (order.inspect->automatic && before) {
+    facts.view.low = before->view.low;
+    facts.view.high = before->view.high;
+  }
+  facts.desc = inspector->desc();
+  facts.view.level = std::clamp(facts.view.level, 0, facts.desc.levels - 1);
+  facts.layers = inspector->layersOf(facts.view.level);
+  facts.view.layer = std::clamp(facts.view.layer, 0, facts.layers - 1);
+  facts.size = inspector->sizeOf(facts.view.level);
+  facts.texture = pool_.copyOf(inspector->display(), GL_NEAREST);
+}
+
+bool PictureStudio::inspectAtRest(const PictureOrder& order) {
+  if (order.moving || !facts_.inspected || facts_.inspected->values || !facts_.inspected->problem.empty())
+    return false;
+  auto values = std::make_shared<render::InspectedValues>(picture_->renderer().inspector()->read());
+  if (order.inspect->automatic) {
+    const auto [low, high] = displayRange(*values, order.inspect->view.channel);
+    if (low != facts_.inspected->view.low || high != facts_.inspected->view.high) {
+      facts_.inspected->view.low = low;
+      facts_.inspected->view.high = high;
+      if (!render(order)) return true;
+    }
+  }
+  facts_.inspected->values = std::move(values);
+  return true;
+}
+
+void PictureStudio::save(const SaveOrder& order) {
+  if (!view_) return;
+  if (order.frames) {
+    finishSaving("");
+    sequence_ = {order, order.frames->first};
+    return;
+  }
+  try {
+    write(order, order.file);
+    finishSaving("wrote " + order.file.string());
+  } catch (const std::exception& error) {
+    finishSaving(error.what());
+  }
+}
+
+void PictureStudio::write(const SaveOrder& order, const std::filesystem::path& file) {
+  if (!rendered_ || !same(*rendered_, order.picture) || !facts_.picture.whole ||
+      !facts_.picture.problem.empty()) {
+    reduction_ = 1;
+    rendered_.reset();
+    if (!render(order.picture)) throw Error(facts_.picture.problem);
+  }
+  Image image = picture_->read();
+  if (!order.command.empty()) image.metadata()["command"] = order.command;
+  if (file.has_parent_path()) createFolder(file.parent_path());
+  writeImage(file, image, order.picture.exposure);
+}
+
+void PictureStudio::saveNext() {
+  const FrameRange range = *sequence_->order.frames;
+  const int frame = sequence_->frame++;
+  try {
+    sequence_->order.picture.scene.time = frame / sequence_->order.fps;
+    write(sequence_->order, numbered(sequence_->order.file, frame));
+  } catch (const std::exception& error) {
+    finishSaving(fmt::format("frame {}: {}", frame, error.what()));
+    publish();
+    return;
+  }
+  const int done = frame - range.first + 1, all = range.last - range.first + 1;
+  facts_.job = fmt::format("frame {} of {}", done, all);
+  facts_.jobFraction = static_cast<double>(done) / all;
+  if (frame == range.last)
+    finishSaving(
+        fmt::format("wrote {} frames, the last to {}", all, numbered(sequence_->order.file, frame).string()));
+  publish();
+}
+
+void PictureStudio::cancelSaving() {
+  if (!sequence_) return;
+  finishSaving(fmt::format("stopped before frame {} of {}", sequence_->frame, sequence_->order.frames->last));
+  publish();
+}
+
+void PictureStudio::finishSaving(std::string message) {
+  sequence_.reset();
+  facts_.job.clear();
+  if (!message.empty()) say(std::move(message));
+}
+
+}  // namespace limn::app

@@ -1,0 +1,139 @@
+#include "apps/view/picture_thread.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <chrono>
+
+#include "apps/view/picture_studio.h"
+#include "core/base/error.h"
+
+namespace limn::app {
+namespace {
+
+constexpr std::chrono::milliseconds idle{250};  // between looks at the shaders on disk
+
+}  // namespace
+
+struct PictureThread::Mailbox {
+  struct Cancel {};
+  using Job = std::variant<SceneOptions, SaveOrder, Cancel>;
+
+  std::mutex mutex;
+  std::condition_variable_any wake;
+  std::optional<PictureOrder> order;
+  std::deque<Job> jobs;
+  bool news = false;  ///< from another thread that works for this one
+  std::shared_ptr<const PictureFacts> facts = std::make_shared<PictureFacts>();
+
+  void publish(const PictureFacts& newest) {
+    auto next = std::make_shared<const PictureFacts>(newest);
+    {
+      const std::scoped_lock lock(mutex);
+      facts.swap(next);
+    }
+    next.reset();  // its textures may be used again
+    glfwPostEmptyEvent();
+  }
+  void notify() {
+    {
+      const std::scoped_lock lock(mutex);
+      news = true;
+    }
+    wake.notify_one();
+  }
+  template <class T>
+  void push(T job) {
+    {
+      const std::scoped_lock lock(mutex);
+      jobs.emplace_back(std::move(job));
+    }
+    wake.notify_one();
+  }
+};
+
+PictureThread::PictureThread(Context& window, const PictureThreadOptions& options)
+    : options_(options), mailbox_(std::make_unique<Mailbox>()) {
+  context_ = Context::create({.backend = Backend::glfw,
+                              .debug = options.debug,
+                              .width = 16,
+                              .height = 16,
+                              .visible = false,
+                              .title = "",
+                              .share = &window});
+  device_ = std::make_unique<gpu::Device>(*context_);
+  window.makeCurrent();  // which releases the new one, for the thread
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+PictureThread::~PictureThread() {
+  thread_.request_stop();
+  thread_.join();
+}
+
+void PictureThread::run(const std::stop_token& stop) {
+  Mailbox& box = *mailbox_;
+  try {
+    context_->makeCurrent();
+    PictureStudio studio(
+        *device_, options_.shaders, options_.cache, [&box](const PictureFacts& facts) { box.publish(facts); },
+        [&box] { box.notify(); });
+    PictureOrder order;
+    while (!stop.stop_requested()) {
+      std::deque<Mailbox::Job> jobs;
+      {
+        std::unique_lock lock(box.mutex);
+        if (!studio.saving())
+          box.wake.wait_for(lock, stop, idle, [&] { return box.order || !box.jobs.empty() || box.news; });
+        if (box.order) order = std::move(*box.order);
+        box.order.reset();
+        box.news = false;
+        jobs.swap(box.jobs);
+      }
+      for (const Mailbox::Job& job : jobs) {
+        if (const auto* scene = std::get_if<SceneOptions>(&job)) studio.open(*scene);
+        if (const auto* save = std::get_if<SaveOrder>(&job)) studio.save(*save);
+        if (std::holds_alternative<Mailbox::Cancel>(job)) studio.cancelSaving();
+      }
+      studio.saving() ? studio.saveNext() : studio.step(order);
+      const std::vector<std::string> errors = context_->takeErrors();
+      if (!errors.empty()) throw Error("OpenGL: " + errors.front());
+    }
+  } catch (...) {
+    PictureFacts failed;
+    failed.fatal = std::current_exception();
+    box.publish(failed);
+  }
+  {
+    const std::scoped_lock lock(box.mutex);
+    if (!box.facts->fatal) box.facts = std::make_shared<PictureFacts>();
+  }
+  Context::release();
+}
+
+void PictureThread::show(PictureOrder order) {
+  {
+    const std::scoped_lock lock(mailbox_->mutex);
+    mailbox_->order = std::move(order);
+  }
+  mailbox_->wake.notify_one();
+}
+
+void PictureThread::open(SceneOptions scene) {
+  mailbox_->push(std::move(scene));
+}
+
+void PictureThread::save(SaveOrder order) {
+  mailbox_->push(std::move(order));
+}
+
+void PictureThread::cancelSaving() {
+  mailbox_->push(Mailbox::Cancel{});
+}
+
+std::shared_ptr<const PictureFacts> PictureThread::facts() const {
+  const std::scoped_lock lock(mailbox_->mutex);
+  return mailbox_->facts;
+}
+
+}  // namespace limn::app

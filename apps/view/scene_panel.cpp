@@ -1,0 +1,140 @@
+// Scene, camera, time and environment.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "apps/view/viewer_style.h"
+#include "apps/view/viewer_window.h"
+
+namespace limn::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* outputs[] = {"final", "visibility", "direct", "indirect", "caustic", "media"};
+
+bool isEnvironment(const fs::path& file) {
+  return file.extension() == ".hdr" || file.extension() == ".exr";
+}
+
+/// The maps in a folder, by name.
+std::vector<fs::path> environmentsIn(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
+    if (isEnvironment(entry.path())) files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
+}
+
+}  // namespace
+
+void ViewerWindow::cameraChooser() {
+  const std::vector<scene::CameraPose>& cameras = facts_->scene->cameras;
+  std::string title = state_.scene.camera;
+  if (title.empty()) title = facts_->scene->camera.name;
+  if (!state_.scene.eye.empty()) title = "free";
+  if (title.empty()) title = "frames the scene";
+  if (!ImGui::BeginCombo("##camera", title.c_str())) return;
+  const auto choose = [&](const std::string& name, const scene::CameraPose& camera) {
+    state_.scene.camera = name;
+    state_.scene.eye.clear();
+    state_.scene.target.clear();
+    orbit_ = Orbit(camera, facts_->scene->bounds);
+    moved();
+  };
+  if (ImGui::Selectable("as opened")) choose(facts_->scene->options.camera, facts_->scene->camera);
+  for (const scene::CameraPose& camera : cameras)
+    if (ImGui::Selectable(camera.name.c_str())) choose(camera.name, camera);
+  ImGui::EndCombo();
+}
+
+void ViewerWindow::timePanel() {
+  nameCell("time", "Of the animation, seconds; space plays and pauses");
+  if (ImGui::Button(playing_ ? "Pause" : "Play", {56, 0})) {
+    playing_ = !playing_;
+    moved();
+  }
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(-1);
+  const double seconds = facts_->scene->seconds > 0 ? facts_->scene->seconds : 10;
+  auto time = static_cast<float>(state_.scene.time);
+  if (ImGui::SliderFloat("##time", &time, 0, static_cast<float>(seconds), "%.2f s")) {
+    state_.scene.time = time;
+    moved();
+  }
+}
+
+void ViewerWindow::scenePanel() {
+  if (!beginRows("scene")) return;
+  nameCell("file",
+           "A glTF file or one of limn's scenes by name; enter opens it, and so does a file dropped on "
+           "the window. F4 reads it again");
+  if (ImGui::InputText("##file", sceneText_, sizeof sceneText_, ImGuiInputTextFlags_EnterReturnsTrue) &&
+      *sceneText_ != 0)
+    openFile(sceneText_);
+  if (facts_->scene) {
+    nameCell("camera", "Of the scene; turning and flying makes it free");
+    cameraChooser();
+    nameCell("shows", "The whole light, or one part of it; visibility is that of one light");
+    int output = static_cast<int>(state_.output);
+    if (ImGui::Combo("##shows", &output, outputs, IM_ARRAYSIZE(outputs))) {
+      state_.output = static_cast<render::Output>(output);
+      moved();
+    }
+    nameCell("exposure", "The picture is shown as clamp(2^EV L), sRGB-encoded");
+    if (ImGui::SliderFloat("##exposure", &state_.exposure, -10, 10, "%.2f EV")) moved();
+    if (facts_->scene->animated) timePanel();
+  }
+  endRows();
+}
+
+void ViewerWindow::environmentPanel() {
+  SceneOptions wanted = state_.scene;
+  if (!beginRows("environment")) return;
+  nameCell("map",
+           "Equirectangular .hdr or .exr: those beside the present one, and limn's own. One that is "
+           "dropped on the window is taken, too");
+  const fs::path& now = state_.scene.environment;
+  if (ImGui::BeginCombo("##map", now.empty() ? "none" : now.filename().string().c_str())) {
+    const auto offer = [&](const std::string& title, const fs::path& file) {
+      if (ImGui::Selectable(title.c_str(), file == now)) wanted.environment = file;
+    };
+    offer("none", {});
+    offer("sky", "sky");
+    const fs::path folder = now.has_parent_path() ? now.parent_path() : fs::path(".");
+    for (const fs::path& file : environmentsIn(folder)) offer(file.filename().string(), file);
+    ImGui::EndCombo();
+  }
+  bool turned = false;
+  if (!now.empty()) {
+    nameCell("rotation", "About the vertical axis");
+    auto rotation = static_cast<float>(state_.scene.environmentRotation);
+    turned |= ImGui::SliderFloat("##rotation", &rotation, -180, 180, "%.0f degrees");
+    nameCell("scale", "Factor on its radiance");
+    auto scale = static_cast<float>(state_.scene.environmentScale);
+    turned |= ImGui::SliderFloat("##scale", &scale, 0, 16, "%.3g", ImGuiSliderFlags_Logarithmic);
+    if (turned) {
+      state_.scene.environmentRotation = rotation;
+      state_.scene.environmentScale = scale;
+      moved();
+    }
+    nameCell("as lights",
+             "Area lights at infinity stand for it, so that every technique shadows it: how much "
+             "of a light's energy a row of texels must add for it to grow; smaller: more lights");
+    auto threshold = static_cast<float>(state_.scene.environmentLights.threshold);
+    ImGui::SliderFloat("##threshold", &threshold, 0, 0.1f, threshold > 0 ? "%.3f" : "no",
+                       ImGuiSliderFlags_AlwaysClamp);
+    environmentThreshold_ = ImGui::IsItemActive() ? threshold : environmentThreshold_;
+    if (ImGui::IsItemDeactivatedAfterEdit())
+      wanted.environmentLights.threshold = environmentThreshold_ < 1e-3f ? 0 : environmentThreshold_;
+  }
+  endRows();
+  if (!(wanted.environment == now) || !(wanted.environmentLights == state_.scene.environmentLights)) {
+    if (wanted.environment.empty()) wanted.environmentLights.threshold = 0;
+    open(wanted);
+  }
+}
+
+}  // namespace limn::app

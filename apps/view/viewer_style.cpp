@@ -1,0 +1,84 @@
+#include "apps/view/viewer_style.h"
+
+#include <imgui.h>
+
+namespace limn::app {
+
+void setStyle() {
+  ImGui::StyleColorsDark();
+  ImGuiStyle& style = ImGui::GetStyle();
+  style.WindowPadding = {10, 8};
+  style.FramePadding = {6, 3};
+  style.ItemSpacing = {6, 5};
+  style.CellPadding = {4, 2};
+  style.IndentSpacing = 12;
+  style.ScrollbarSize = 11;
+  style.FrameRounding = style.GrabRounding = style.PopupRounding = style.ScrollbarRounding = 3;
+  style.WindowBorderSize = 0;
+  style.GrabMinSize = 8;
+  const ImVec4 quiet(0.20f, 0.23f, 0.27f, 1), livelier(0.26f, 0.33f, 0.42f, 1),
+      active(0.29f, 0.47f, 0.68f, 1);
+  for (const auto& [colour, value] : {std::pair{ImGuiCol_WindowBg, ImVec4(0.11f, 0.12f, 0.13f, 1)},
+                                      {ImGuiCol_FrameBg, quiet},
+                                      {ImGuiCol_FrameBgHovered, livelier},
+                                      {ImGuiCol_FrameBgActive, livelier},
+                                      {ImGuiCol_Button, quiet},
+                                      {ImGuiCol_ButtonHovered, livelier},
+                                      {ImGuiCol_ButtonActive, active},
+                                      {ImGuiCol_Header, quiet},
+                                      {ImGuiCol_HeaderHovered, livelier},
+                                      {ImGuiCol_HeaderActive, active},
+                                      {ImGuiCol_SliderGrab, ImVec4(0.45f, 0.62f, 0.82f, 1)},
+                                      {ImGuiCol_SliderGrabActive, active},
+                                      {ImGuiCol_TitleBgActive, ImVec4(0.16f, 0.20f, 0.26f, 1)},
+                                      {ImGuiCol_PopupBg, ImVec4(0.13f, 0.14f, 0.16f, 1)}})
+    style.Colors[colour] = value;
+}
+
+void wrapped(const std::string& text) {
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+void complaint(const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1, 0.55f, 0.45f, 1));
+  wrapped(text);
+  ImGui::PopStyleColor();
+}
+
+void tip(const std::string& text) {
+  if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(30 * ImGui::GetFontSize());
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+bool beginRows(const char* name) {
+  if (!ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingStretchProp)) return false;
+  ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, 90);
+  ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);
+  return true;
+}
+
+void endRows() {
+  ImGui::EndTable();
+}
+
+void nameCell(const char* name, const std::string& explanation) {
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(name);
+  tip(explanation);
+  ImGui::TableNextColumn();
+  ImGui::SetNextItemWidth(-1);
+}
+
+void* textureId(const gpu::Texture& texture) {
+  return reinterpret_cast<void*>(static_cast<intptr_t>(texture.id()));
+}
+
+}  // namespace limn::app

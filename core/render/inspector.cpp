@@ -1,0 +1,156 @@
+#include "core/render/inspector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace limn::render {
+namespace {
+
+using frame::Access;
+
+const char* samplerFor(gpu::FormatClass kind) {
+  switch (kind) {
+    case gpu::FormatClass::unsignedInteger:
+      return "usampler2D";
+    case gpu::FormatClass::signedInteger:
+      return "isampler2D";
+    default:
+      return "sampler2D";
+  }
+}
+
+bool isInteger(gpu::FormatClass kind) {
+  return kind == gpu::FormatClass::unsignedInteger || kind == gpu::FormatClass::signedInteger;
+}
+
+bool isDepth(gpu::FormatClass kind) {
+  return kind == gpu::FormatClass::depth || kind == gpu::FormatClass::depthStencil;
+}
+
+/// The lower left corner of one channel's texels as four components each.
+template <class T>
+std::vector<T> cropped(const std::vector<T>& all, int width, glm::ivec2 size, size_t components) {
+  std::vector<T> part(4 * static_cast<size_t>(size.x) * static_cast<size_t>(size.y));
+  for (int y = 0; y < size.y; ++y) {
+    for (int x = 0; x < size.x; ++x) {
+      const auto from = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+      const auto to = static_cast<size_t>(y) * static_cast<size_t>(size.x) + static_cast<size_t>(x);
+      std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(components * from), components,
+                  part.begin() + static_cast<std::ptrdiff_t>(4 * to));
+    }
+  }
+  return part;
+}
+
+}  // namespace
+
+double InspectedValues::at(int x, int y, int component) const {
+  if (component >= components) return 0;
+  const auto i = 4 * (static_cast<size_t>(y) * static_cast<size_t>(size.x) + static_cast<size_t>(x)) +
+                 static_cast<size_t>(component);
+  if (kind == gpu::FormatClass::unsignedInteger) return integers[i];
+  if (kind == gpu::FormatClass::signedInteger) return static_cast<int32_t>(integers[i]);
+  return static_cast<double>(reals[i]);
+}
+
+InspectedValues::Range InspectedValues::range(int component) const {
+  Range range{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest(), 0, 0};
+  size_t count = 0;
+  for (int y = 0; y < size.y; ++y) {
+    for (int x = 0; x < size.x; ++x) {
+      const double value = at(x, y, component);
+      if (!std::isfinite(value)) {
+        ++range.notFinite;
+        continue;
+      }
+      range.low = std::min(range.low, value);
+      range.high = std::max(range.high, value);
+      range.mean += value;
+      ++count;
+    }
+  }
+  if (count == 0) return {.low = 0, .high = 0, .mean = 0, .notFinite = range.notFinite};
+  range.mean /= static_cast<double>(count);
+  return range;
+}
+
+TextureInspector::TextureInspector(frame::FrameGraph& graph, frame::TextureHandle texture,
+                                   const InspectionView& view)
+    : graph_(graph), desc_(gpu::resolved(graph.desc(texture))), view_(view) {
+  const gpu::TextureDesc flat{.format = desc_.format, .width = desc_.width, .height = desc_.height};
+  frame::PassBuilder copying = graph.addPass("copy", "inspector");
+  copying.read(texture, Access::copySource, "the texture looked at");
+  copy_ = copying.write(graph.createTexture("values", flat), Access::copyTarget, "one level of one layer");
+  copying.execute(
+      [this, handles = Copy{texture, copy_}](frame::PassContext& context) { copy(context, handles); });
+  graph.output(copy_);
+
+  frame::PassBuilder showing = graph.addPass("show", "inspector");
+  showing.read(copy_, Access::sampled, "values");
+  display_ = showing.write(
+      graph.createTexture("colours", {.format = GL_RGBA8, .width = desc_.width, .height = desc_.height}),
+      Access::imageStore, "what people see of them");
+  const auto program =
+      showing.program({.files = {"glsl/inspect/show.comp.glsl"},
+                       .defines = {{"SAMPLER", samplerFor(gpu::formatInfo(desc_.format).kind)}}});
+  showing.execute([this, program, from = copy_, to = display_](frame::PassContext& context) {
+    gpu::Program& kernel = context.program(program);
+    kernel.use();
+    kernel.set("channel", view_.channel);
+    kernel.set("low", view_.low);
+    kernel.set("high", view_.high);
+    context.bindSampled(0, from);
+    context.bindImage(0, to, GL_WRITE_ONLY);
+    context.dispatch(desc_.width, desc_.height, 1, 8, 8);
+  });
+  graph.output(display_);
+}
+
+void TextureInspector::copy(const frame::PassContext& context, const Copy& handles) const {
+  const gpu::Texture& source = context.texture(handles.source);
+  const int level = std::clamp(view_.level, 0, desc_.levels - 1);
+  const int layer = std::clamp(view_.layer, 0, layersOf(level) - 1);
+  const glm::ivec2 size = sizeOf(level);
+  context.gl().CopyImageSubData(source.id(), desc_.target, level, 0, 0, layer,
+                                context.texture(handles.copy).id(), GL_TEXTURE_2D, 0, 0, 0, 0, size.x, size.y,
+                                1);
+}
+
+glm::ivec2 TextureInspector::sizeOf(int level) const {
+  return {std::max(1, desc_.width >> level), std::max(1, desc_.height >> level)};
+}
+
+int TextureInspector::layersOf(int level) const {
+  return desc_.target == GL_TEXTURE_3D ? std::max(1, desc_.layers >> level) : desc_.layers;
+}
+
+const gpu::Texture& TextureInspector::display() const {
+  return graph_.texture(display_);
+}
+
+InspectedValues TextureInspector::read() const {
+  const gpu::FormatInfo info = gpu::formatInfo(desc_.format);
+  InspectedValues values{.size = sizeOf(std::clamp(view_.level, 0, desc_.levels - 1)),
+                         .components = isDepth(info.kind) ? 1 : info.components,
+                         .kind = info.kind,
+                         .reals = {},
+                         .integers = {}};
+  const size_t components = isDepth(info.kind) ? 1 : 4;
+  const size_t count = components * static_cast<size_t>(desc_.width) * static_cast<size_t>(desc_.height);
+  const gpu::Texture& texture = graph_.texture(copy_);
+  if (isInteger(info.kind)) {
+    std::vector<uint32_t> all(count);
+    texture.read(0, GL_RGBA_INTEGER, info.kind == gpu::FormatClass::signedInteger ? GL_INT : GL_UNSIGNED_INT,
+                 all.data(), count * sizeof(uint32_t));
+    values.integers = cropped(all, desc_.width, values.size, components);
+  } else {
+    std::vector<float> all(count);
+    texture.read(0, isDepth(info.kind) ? GL_DEPTH_COMPONENT : GL_RGBA, GL_FLOAT, all.data(),
+                 count * sizeof(float));
+    values.reals = cropped(all, desc_.width, values.size, components);
+  }
+  return values;
+}
+
+}  // namespace limn::render

@@ -1,0 +1,78 @@
+// Handles in the picture: where they are, and where they take a thing.
+#include "apps/view/gizmo.h"
+
+#include <gtest/gtest.h>
+
+#include "core/scene/camera.h"
+
+namespace limn::app {
+namespace {
+
+using Kind = GizmoHandle::Kind;
+
+ScreenCamera screen() {
+  return {scene::lookAt({3, 2, 5}, {0.5f, 0.25f, 0}, 0.8f), {400, 0}, {640, 480}};
+}
+
+void expectNear(const glm::vec3& a, const glm::vec3& b, float tolerance) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], tolerance) << "component " << c;
+}
+
+TEST(Gizmo, PixelsAndDirectionsAreInverse) {
+  const ScreenCamera camera = screen();
+  const glm::vec3 point(0.3f, -0.4f, 0.7f);
+  const glm::vec2 pixel = *camera.pixel(point);
+  expectNear(camera.direction(pixel), glm::normalize(point - camera.eye()), 1e-5f);
+  EXPECT_NEAR(camera.pixel({0.5f, 0.25f, 0})->x, 400 + 320, 1e-2f) << "what is looked at is in the middle";
+  EXPECT_FALSE(camera.pixel({6, 4, 10})) << "behind the camera";
+}
+
+/// A handle follows the mouse: held by its end and dragged to where the end would be, it takes the thing
+/// there.
+TEST(Gizmo, AxesAndPlanesFollowTheMouse) {
+  const ScreenCamera camera = screen();
+  const GizmoPose start{{0.2f, 0.1f, -0.3f}, glm::mat3(1)};
+  for (int axis = 0; axis < 3; ++axis) {
+    const GizmoHandle arm{Kind::axis, axis};
+    const glm::vec3 tip = outlineOf(camera, start.position, arm)[1];
+    ASSERT_EQ(handleAt(camera, start.position, GizmoMode::move, *camera.pixel(tip)), arm);
+    glm::vec3 along(0), across(0.3f, -0.2f, 0.25f);
+    along[axis] = 0.35f;
+    across[axis] = 0;
+    expectNear(dragged(camera, {arm, start, *camera.pixel(tip)}, *camera.pixel(tip + along)).position,
+               start.position + along, 1e-3f);
+    const GizmoHandle plane{Kind::plane, axis};
+    const std::vector<glm::vec3> corners = outlineOf(camera, start.position, plane);
+    const glm::vec3 middle = 0.5f * (corners[0] + corners[2]);
+    EXPECT_EQ(handleAt(camera, start.position, GizmoMode::move, *camera.pixel(middle)), plane);
+    expectNear(
+        dragged(camera, {plane, start, *camera.pixel(middle)}, *camera.pixel(middle + across)).position,
+        start.position + across, 1e-3f);
+  }
+}
+
+TEST(Gizmo, RingsTurnByTheAngleTheyAreDragged) {
+  const ScreenCamera camera = screen();
+  const GizmoPose start{{0, 0, 0}, glm::mat3(1)};
+  for (int axis = 0; axis < 3; ++axis) {
+    const GizmoHandle ring{Kind::ring, axis};
+    const std::vector<glm::vec3> corners = outlineOf(camera, start.position, ring);
+    const GizmoPose turned =
+        dragged(camera, {ring, start, *camera.pixel(corners[0])}, *camera.pixel(corners[corners.size() / 4]));
+    const glm::vec3 from = glm::normalize(corners[0]), to = glm::normalize(corners[corners.size() / 4]);
+    expectNear(turned.rotation * from, to, 1e-3f);
+    expectNear(turned.position, start.position, 0);
+  }
+}
+
+TEST(Gizmo, NothingIsHeldElsewhere) {
+  const ScreenCamera camera = screen();
+  EXPECT_FALSE(handleAt(camera, {0, 0, 0}, GizmoMode::move, {410, 10}));
+  // Along its own axis nothing can be said of a movement.
+  const GizmoPose start{{0, 0, 0}, glm::mat3(1)};
+  const ScreenCamera above{scene::lookAt({0.001f, 5, 0}, {0, 0, 0}, 0.8f), {0, 0}, {100, 100}};
+  expectNear(dragged(above, {{Kind::axis, 1}, start, {50, 50}}, {60, 50}).position, start.position, 0.05f);
+}
+
+}  // namespace
+}  // namespace limn::app
