@@ -137,8 +137,9 @@ void ViewerWindow::inspectedPicture(const InspectedFacts& facts) {
   } else if (facts.values) {
     const int channel = facts.view.channel < 4 ? facts.view.channel : 0;
     const render::InspectedValues::Range range = facts.values->range(channel);
-    text = fmt::format("{}: {:.5g} to {:.5g}, mean {:.5g}{}", channels[channel], range.low, range.high,
-                       range.mean,
+    text = fmt::format("{}{:.5g} to {:.5g}, mean {:.5g}{}",
+                       facts.values->components > 1 ? channels[channel] + std::string(": ") : "", range.low,
+                       range.high, range.mean,
                        range.notFinite > 0 ? fmt::format("; {} not finite (magenta)", range.notFinite) : "");
   }
   ImGui::TextUnformatted(text.c_str());

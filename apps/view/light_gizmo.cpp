@@ -28,8 +28,8 @@ glm::vec3 placeOf(const LightFacts& light, const SceneFacts& scene) {
 
 /// To four digits of the scene's size: what a hand can aim at.
 glm::vec3 rounded(const glm::vec3& position, float radius) {
-  const float step = std::pow(10.f, std::floor(std::log10(std::max(radius, 1e-6f))) - 3);
-  return glm::round(position / step) * step;
+  const float perMetre = std::pow(10.f, 3 - std::floor(std::log10(std::max(radius, 1e-6f))));
+  return glm::round(position * perMetre) / perMetre;
 }
 
 void drawOutline(const ScreenCamera& screen, const glm::vec3& centre, const GizmoHandle& handle, bool held) {
@@ -115,7 +115,6 @@ bool ViewerWindow::dragLight() {
   const glm::vec2 mouse(io.MousePos.x, io.MousePos.y);
   const auto count = static_cast<int>(facts_->lights.size());
   if (!lightPanelOpen_ || !facts_->scene || chosenLight_ >= count) return false;
-  if (!io.MouseDown[0]) drag_.reset();
   const ScreenCamera camera = screen();
   if (drag_) {
     const LightFacts& light = facts_->lights[static_cast<size_t>(chosenLight_)];
@@ -126,6 +125,7 @@ bool ViewerWindow::dragLight() {
     const bool turned = drag_->handle.kind == GizmoHandle::Kind::ring;
     if (light.light.info.x != glsl::light_point && (turned || !edit.rotation)) edit.rotation = angles;
     if (io.MouseDelta.x != 0 || io.MouseDelta.y != 0) editLight(light, edit);
+    if (!io.MouseDown[0]) drag_.reset();  // the last movement may come with the release
     return true;
   }
   if (!ImGui::IsItemHovered() || !ImGui::IsMouseClicked(0)) return false;

@@ -49,7 +49,7 @@ void ViewerWindow::lightPanel() {
     endRows();
   }
   if (lights.empty()) {
-    ImGui::TextDisabled("the scene has no light");
+    ImGui::TextDisabled(facts_->pictures > 0 ? "the scene has no light" : "known with the first picture");
     return;
   }
   if (std::exchange(lightsNew_, false)) {
@@ -59,7 +59,7 @@ void ViewerWindow::lightPanel() {
   }
   const float row = ImGui::GetTextLineHeightWithSpacing();
   const auto rows = static_cast<float>(std::min<size_t>(lights.size(), 6));
-  ImGui::BeginChild("list", {0, rows * row + 8}, true);
+  ImGui::BeginChild("list", {0, rows * row + 14}, true);
   for (int i = 0; i < static_cast<int>(lights.size()); ++i) {
     const LightFacts& light = lights[static_cast<size_t>(i)];
     ImGui::PushID(i);

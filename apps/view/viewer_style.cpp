@@ -29,6 +29,7 @@ void setStyle() {
                                       {ImGuiCol_HeaderHovered, livelier},
                                       {ImGuiCol_HeaderActive, active},
                                       {ImGuiCol_SliderGrab, ImVec4(0.45f, 0.62f, 0.82f, 1)},
+                                      {ImGuiCol_PlotHistogram, active},
                                       {ImGuiCol_SliderGrabActive, active},
                                       {ImGuiCol_TitleBgActive, ImVec4(0.16f, 0.20f, 0.26f, 1)},
                                       {ImGuiCol_PopupBg, ImVec4(0.13f, 0.14f, 0.16f, 1)}})
