@@ -15,6 +15,11 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(KISSFFT REQUIRED IMPORTED_TARGET kissfft-float)
 find_library(LIMN_EGL_LIBRARY EGL REQUIRED)
+# Debian's OpenVDB has no CMake package of its own.
+find_path(LIMN_OPENVDB_INCLUDE openvdb/openvdb.h REQUIRED)
+find_library(LIMN_OPENVDB_LIBRARY openvdb REQUIRED)
+# Its templates' static members must be one with the library's own: hidden, they crash it.
+set(LIMN_OPENVDB_OPTIONS -fvisibility=default -fno-visibility-inlines-hidden)
 # The report page: D3's modules, and the bundler that joins them.
 find_program(LIMN_ESBUILD esbuild REQUIRED)
 find_path(LIMN_NODE_MODULES d3-scale/package.json PATHS /usr/share/nodejs REQUIRED)

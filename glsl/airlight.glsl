@@ -47,24 +47,41 @@ LIMN_FN float airlight_metres(AirlightRay r, float variable) {
   return r.parallel ? variable : r.nearest + r.distance * tan(variable);
 }
 
-// Radiance per unit of the variable that is scattered at t metres towards the eye and arrives there.
+// A place on the ray, and the light that comes there.
+struct AirlightPoint {
+  vec3 place;
+  vec3 from;      // unit, of the light's propagation
+  vec3 sent;      // W/sr; directional: W/m^2
+  float measure;  // of the variable, per metre of ray and inverse square; directional: 1
+};
+
+LIMN_FN AirlightPoint airlight_point(Light light, AirlightRay r, float t, int samples) {
+  AirlightPoint p;
+  p.place = r.eye + t * r.direction;
+  p.from = vec3(light.direction);
+  p.sent = light_point_intensity(light, r.source, p.place, samples);
+  p.measure = 1.0f;
+  if (r.parallel) return p;
+  vec3 offset = p.place - r.source;
+  p.from = offset / max(length(offset), 1e-30f);
+  p.measure = 1.0f / r.distance;
+  return p;
+}
+
+// Radiance per unit of the variable that is scattered there towards the eye and arrives; length_inside: of the medium
+// between light, place and eye. Times the density at the place where it is not 1.
+LIMN_FN vec3 airlight_scattered(Medium m, AirlightRay r, AirlightPoint p, float length_inside) {
+  return m.scattering * p.sent * medium_transmittance(m, length_inside) *
+         (phase_function(m.g, p.from, -r.direction) * p.measure);
+}
+
+// The same in a homogeneous medium, at t metres.
 LIMN_FN vec3 airlight_density(Medium m, Light light, AirlightRay r, float t, int samples) {
-  vec3 x = r.eye + t * r.direction;
-  vec3 sent = light_point_intensity(light, r.source, x, samples);
-  vec3 from = vec3(light.direction);
-  float measure = 1.0f;
-  float to_light = 0.0f;
-  if (r.parallel) {
-    to_light = ball_length(m.ball, x, -from, 3.0e38f);
-  } else {
-    vec3 offset = x - r.source;
-    from = offset / max(length(offset), 1e-30f);
-    measure = 1.0f / r.distance;
-    to_light = ball_length_between(m.ball, r.source, x);
-  }
+  AirlightPoint p = airlight_point(light, r, t, samples);
+  float to_light = r.parallel ? ball_length(m.ball, p.place, -p.from, 3.0e38f)
+                              : ball_length_between(m.ball, r.source, p.place);
   float to_eye = ball_length(m.ball, r.eye, r.direction, t);
-  return m.scattering * sent * medium_transmittance(m, to_light + to_eye) *
-         (phase_function(m.g, from, -r.direction) * measure);
+  return airlight_scattered(m, r, p, to_light + to_eye);
 }
 
 // Over one stretch, given in the variable.

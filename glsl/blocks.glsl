@@ -20,6 +20,7 @@ uvec4 frame_size;      // x, y: pixels; z: number of lights; w: frame index
 vec4 medium_extinction;  // rgb: sigma_a + sigma_s per metre; w: 1 if there is a medium
 vec4 medium_scattering;  // rgb: sigma_s per metre; w: g
 vec4 medium_ball;        // xyz: centre of the ball that the medium fills; w: its radius, m
+mat4 medium_to_box;      // from world space to the unit cube in which a medium with a grid has density
 LIMN_END_UNIFORM_BLOCK(frame)
 
 LIMN_FN Medium frame_medium(vec4 extinction, vec4 scattering, vec4 ball) {

@@ -20,7 +20,8 @@ LIMN_CONST uint no_instance = 0xffffffffu;
 // every receiver. Its position and sides are those of that rectangle.
 struct Light {
   vec4 position;   // xyz: centre
-  vec4 direction;  // xyz: unit vector the light looks along (propagation); the rectangle's face normal
+  vec4 direction;  // xyz: unit vector the light looks along (propagation); the rectangle's face normal; w: number of the
+                   // texture that a spot shines through, from 1 on, or 0
   vec4 axis_u;     // xyz: unit vector along the rectangle's first side; w: its length u in metres (0: none)
   vec4 axis_v;     // xyz: unit vector along the second side; w: its length v; cross(axis_u, axis_v) = -direction, or the
                    // normal of a distant rectangle's plane, away from receivers
@@ -52,6 +53,16 @@ LIMN_FN float spot_cone_factor(Light light, vec3 w) {
   float range = max(light.cone.x - light.cone.y, 1e-4f);
   float t = clamp((dot(vec3(light.direction), w) - light.cone.y) / range, 0.0f, 1.0f);
   return t * t;
+}
+
+// Where on a spot's texture the light passes that goes to p: (0, 0) is its lower left and (1, 1) its upper right corner as
+// the light sees it. It fills the square around the outer cone (of up to 89 degrees); outside is outside the cone.
+LIMN_FN vec2 light_texture_place(Light light, vec3 p) {
+  vec3 offset = p - vec3(light.position);
+  float cosine = max(light.cone.y, 0.0175f);
+  float tangent = sqrt(max(1.0f - cosine * cosine, 1e-12f)) / cosine;
+  float side = 2.0f * tangent * max(dot(vec3(light.direction), offset), 1e-30f);
+  return vec2(dot(vec3(light.axis_u), offset), dot(vec3(light.axis_v), offset)) / side + 0.5f;
 }
 
 // Range window at `distance` metres from the light's centre (KHR_lights_punctual; 1 without a range). The inverse

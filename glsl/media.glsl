@@ -1,8 +1,9 @@
 // Participating media and the optics of smooth surfaces: transmittance, phase function, Fresnel, reflection and refraction
 // (thesis, section 8.2). Directions are unit vectors. Lengths in metres, coefficients per metre.
 //
-// A homogeneous medium fills a ball, the bounding sphere of the scene: outside it light travels freely, so that light from
-// infinity and views of the background have an optical thickness.
+// A medium fills a ball, the bounding sphere of the scene: outside it light travels freely, so that light from infinity and
+// views of the background have an optical thickness. Where it is not homogeneous, a density multiplies its coefficients,
+// and what is called a length here counts every metre times the density there.
 #ifndef LIMN_MEDIA_GLSL
 #define LIMN_MEDIA_GLSL
 #include "glsl/language.glsl"
@@ -26,6 +27,21 @@ LIMN_FN vec2 ball_range(vec4 ball, vec3 origin, vec3 direction) {
   return vec2(nearest - half_chord, nearest + half_chord);
 }
 
+// Where it is in the unit cube, likewise; origin and direction in the cube's space.
+LIMN_FN vec2 unit_box_range(vec3 origin, vec3 direction) {
+  vec2 range = vec2(-3.0e38f, 3.0e38f);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (direction[axis] == 0.0f) {
+      if (!(origin[axis] > 0.0f && origin[axis] < 1.0f)) return vec2(1.0f, -1.0f);
+      continue;
+    }
+    float a = -origin[axis] / direction[axis];
+    float b = (1.0f - origin[axis]) / direction[axis];
+    range = vec2(max(range.x, min(a, b)), min(range.y, max(a, b)));
+  }
+  return range;
+}
+
 // Length of the piece of the ray with 0 < t < end that lies in the ball.
 LIMN_FN float ball_length(vec4 ball, vec3 origin, vec3 direction, float end) {
   vec2 range = ball_range(ball, origin, direction);
@@ -43,13 +59,6 @@ LIMN_FN float ball_length_between(vec4 ball, vec3 a, vec3 b) {
 LIMN_FN vec3 medium_transmittance(Medium m, float length_inside) {
   return vec3(exp(-m.extinction.x * length_inside), exp(-m.extinction.y * length_inside),
               exp(-m.extinction.z * length_inside));
-}
-LIMN_FN vec3 transmittance_between(Medium m, vec3 a, vec3 b) {
-  return medium_transmittance(m, ball_length_between(m.ball, a, b));
-}
-// From `origin` along `direction` to infinity.
-LIMN_FN vec3 transmittance_to_infinity(Medium m, vec3 origin, vec3 direction) {
-  return medium_transmittance(m, ball_length(m.ball, origin, direction, 3.0e38f));
 }
 
 // Henyey and Greenstein 1941, 1/sr; `from`: direction in which the light travels, `to`: in which it goes on. The textbook

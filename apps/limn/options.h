@@ -49,6 +49,7 @@ struct SceneOptions {
   std::vector<std::string> lightSettings;  ///< NAME.PROPERTY=VALUE, see light_edits.h
   std::string sigmaA, sigmaS;          ///< of the medium, per metre: one number or three; empty: the scene's
   std::optional<double> g;             ///< of its phase function
+  std::string grid;                    ///< of densities: a file, smoke or none; empty: the scene's
   std::string defaultLights = "auto";  ///< auto: where the scene has neither light nor environment; on; off
 
   void addTo(CLI::App& command);

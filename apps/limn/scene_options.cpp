@@ -10,6 +10,7 @@
 #include "core/base/text.h"
 #include "core/scene/camera.h"
 #include "core/scene/default_lights.h"
+#include "core/scene/density_grid.h"
 #include "core/scene/load.h"
 
 namespace limn::app {
@@ -119,6 +120,10 @@ void SceneOptions::addTo(CLI::App& command) {
   command
       .add_option("--g", g, "Mean cosine of the medium's phase function (Henyey-Greenstein); > 0: forward")
       ->check(CLI::Range(-0.999, 0.999));
+  command.add_option(
+      "--grid", grid,
+      "Where the medium is how dense: an OpenVDB file with a grid 'density' (its factors), smoke\n"
+      "(procedural, animated), or none (homogeneous)");
   command
       .add_option("--default-lights", defaultLights,
                   "auto: a scene with neither lights nor --environment gets a key light from above the "
@@ -226,6 +231,20 @@ void moveTo(View& view, const SceneOptions& options, double time) {
   view.camera = chooseCamera(options, view.pose);
 }
 
+/// --grid.
+static void chooseGrid(const std::string& grid, scene::Scene& scene) {
+  if (!scene.medium.present())
+    throw UsageError(
+        fmt::format("--grid {}: the scene has no medium; give it --sigma-s or --sigma-a, too", grid));
+  scene.medium.grid.reset();
+  scene.medium.smoke.reset();
+  if (grid == "none") return;
+  if (grid == "smoke")
+    scene.medium.smoke = scene::smokeIn(scene::evaluate(scene, 0).bounds);
+  else
+    scene::setGrid(scene.medium, scene::readDensityGrid(grid));
+}
+
 View open(const SceneOptions& options) {
   View view;
   view.size = parseSize(options.size);
@@ -236,6 +255,7 @@ View open(const SceneOptions& options) {
   if (!options.sigmaA.empty()) view.scene.medium.sigmaA = parseCoefficient("--sigma-a", options.sigmaA);
   if (!options.sigmaS.empty()) view.scene.medium.sigmaS = parseCoefficient("--sigma-s", options.sigmaS);
   if (options.g) view.scene.medium.g = static_cast<float>(*options.g);
+  if (!options.grid.empty()) chooseGrid(options.grid, view.scene);
   for (const std::string& warning : view.scene.warnings) fmt::print(stderr, "limn: warning: {}\n", warning);
   if (!options.animation.empty()) {
     std::vector<std::string> names;

@@ -41,8 +41,9 @@ std::shared_ptr<const SceneFacts> factsOf(const View& view, const SceneOptions& 
   facts->cameras = view.pose.cameras;
   facts->camera = view.camera;
   const auto& animations = view.scene.animations;
-  facts->animated = !animations.empty() || !view.scene.dynamic.empty();
-  if (!animations.empty() && view.scene.dynamic.empty())
+  const bool endless = !view.scene.dynamic.empty() || view.scene.medium.smoke;
+  facts->animated = !animations.empty() || endless;
+  if (!animations.empty() && !endless)
     facts->seconds =
         static_cast<double>(animations[static_cast<size_t>(std::max(view.animation, 0))].duration);
   return facts;

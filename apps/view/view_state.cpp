@@ -115,7 +115,7 @@ std::string renderCommand(const ViewState& state, const std::filesystem::path& o
   line.add("--time", s.time, standard.time).add("--animation", s.animation);
   line.add("--light", s.light).add("--light-size", s.lightSize, standard.lightSize);
   for (const std::string& setting : s.lightSettings) line.add("--set-light", setting);
-  line.add("--sigma-a", s.sigmaA).add("--sigma-s", s.sigmaS);
+  line.add("--sigma-a", s.sigmaA).add("--sigma-s", s.sigmaS).add("--grid", s.grid);
   if (s.g) line.add("--g", fmt::format("{}", *s.g));
   line.add("--default-lights", s.defaultLights, standard.defaultLights);
   line.add("--size", s.size);

@@ -197,6 +197,7 @@ class Writer {
                   {"intensity", l.intensity}};
     if (l.type == Light::Type::spot) {
       entry["spot"] = {{"innerConeAngle", l.innerConeAngle}, {"outerConeAngle", l.outerConeAngle}};
+      if (l.texture >= 0) entry["extras"]["limn_texture"] = l.texture;
     }
     return entry;
   }
@@ -226,6 +227,13 @@ class Writer {
     if (scene_.medium) {
       root_["scenes"][0]["extras"]["limn_medium"] = {
           {"sigma_a", scene_.medium->sigmaA}, {"sigma_s", scene_.medium->sigmaS}, {"g", scene_.medium->g}};
+      if (const std::optional<Smoke>& s = scene_.medium->smoke)
+        root_["scenes"][0]["extras"]["limn_medium"]["smoke"] = {{"low", {s->low.x, s->low.y, s->low.z}},
+                                                                {"high", {s->high.x, s->high.y, s->high.z}},
+                                                                {"whirl", s->whirl},
+                                                                {"rise", s->rise},
+                                                                {"seed", s->seed},
+                                                                {"resolution", s->resolution}};
     }
     if (scene_.environment) root_["scenes"][0]["extras"]["limn_environment"] = "environment.exr";
     for (const Skin& skin : scene_.skins) {

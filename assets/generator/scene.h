@@ -57,6 +57,7 @@ struct Light {
   glm::vec3 colour{1};
   float intensity = 1;                                   ///< W/sr, directional: W/m^2
   float innerConeAngle = 0, outerConeAngle = 0.785398f;  ///< half angles of a spot, radians
+  int texture = -1;                                      ///< extras.limn_texture: that a spot shines through
 };
 
 struct Instance {
@@ -103,9 +104,18 @@ struct Animation {
   std::vector<Channel> channels;
 };
 
-/// Homogeneous, coefficients per metre.
+/// Procedural smoke in a box; see scene::Smoke.
+struct Smoke {
+  glm::vec3 low{0}, high{0};
+  float whirl = 1, rise = 0;
+  std::uint32_t seed = 0;
+  int resolution = 64;
+};
+
+/// Coefficients per metre; of smoke those at density 1.
 struct Medium {
   float sigmaA = 0, sigmaS = 0, g = 0;
+  std::optional<Smoke> smoke{};
 };
 
 struct Scene {

@@ -1,6 +1,7 @@
 // Scenes in which metal and glass send light into a thin fog: all of it scattered only once.
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <string>
 
 #include "assets/generator/shapes.h"
 #include "assets/scenes/scenes.h"
@@ -63,6 +64,46 @@ Mesh gemstone(int sides) {
   return mesh;
 }
 
+/// A stone under one to four spots.
+Scene gemUnder(int lights) {
+  Scene scene;
+  addFloor(scene, 2.5f);
+  const int gem = scene.add("gem", transformed(gemstone(8), scaling(glm::vec3(0.55f))),
+                            scene.addMaterial(glass("gem", 1.7f, {0.97f, 0.99f, 1.0f})));
+  scene.nodes[static_cast<std::size_t>(gem)].translation = {0, 1.3f, 0};
+  scene.animations.push_back(turning(gem, {0, 1, 0}, 8));
+  scene.medium = {.sigmaA = 0.02f, .sigmaS = 0.15f, .g = 0};
+  scene.addLight("key", spot(120, 18), {-1.2f, 4.0f, 0.5f}, {0, 1.25f, 0});
+  const glm::vec3 others[] = {{1.4f, 3.8f, 0.3f}, {0.2f, 4.1f, -1.3f}, {0.1f, 3.9f, 1.5f}};
+  for (int i = 1; i < lights; ++i)
+    scene.addLight("spot" + std::to_string(i + 1), spot(120, 18), others[i - 1], {0, 1.25f, 0});
+  scene.addCamera("main", {0.3f, 1.5f, 4.4f}, {0.1f, 1.0f, 0}, 38);
+  scene.addCamera("close", {0.2f, 1.2f, 2.4f}, {0.1f, 0.95f, 0}, 38);
+  scene.addCamera("above", {0.2f, 3.6f, 2.4f}, {0, 0.6f, 0}, 38);
+  return scene;
+}
+
+/// A round window of coloured glass in lead.
+Image roseWindow() {
+  constexpr int petals = 8;
+  return makeImage(256, 256, [](glm::vec2 uv) {
+    const glm::vec2 p = 2.f * uv - 1.f;
+    const float radius = glm::length(p), sector = (std::atan2(p.y, p.x) / turn + 0.5f) * petals;
+    const float across = std::abs(sector - std::floor(sector) - 0.5f) / petals * turn * radius;
+    const float half = turn * radius / (2 * petals);
+    const int petal = static_cast<int>(sector) % petals;
+    constexpr float rings[] = {0.16f, 0.5f, 0.86f};
+    float lead = half - across;  // to the nearest bar, where the unit is half the window's side
+    if (radius < rings[0]) lead = 1;
+    for (const float ring : rings) lead = std::min(lead, std::abs(radius - ring));
+    if (radius > rings[2] || lead < 0.02f) return glm::vec4(0, 0, 0, 1);
+    if (radius < rings[0]) return glm::vec4(1, 0.85f, 0.4f, 1);
+    constexpr glm::vec3 inner[] = {{1, 0.15f, 0.08f}, {1, 0.6f, 0.05f}},
+                        outer[] = {{0.08f, 0.2f, 1}, {0.1f, 0.8f, 0.25f}};
+    return glm::vec4(radius < rings[1] ? inner[petal % 2] : outer[petal % 2], 1);
+  });
+}
+
 }  // namespace
 
 Scene makeGlassSphere() {
@@ -101,17 +142,41 @@ Scene makeRing() {
 }
 
 Scene makeGem() {
+  return gemUnder(1);
+}
+Scene makeGem2Lights() {
+  return gemUnder(2);
+}
+Scene makeGem4Lights() {
+  return gemUnder(4);
+}
+
+Scene makeStainedLight() {
   Scene scene;
   addFloor(scene, 2.5f);
-  const int gem = scene.add("gem", transformed(gemstone(8), scaling(glm::vec3(0.55f))),
-                            scene.addMaterial(glass("gem", 1.7f, {0.97f, 0.99f, 1.0f})));
-  scene.nodes[static_cast<std::size_t>(gem)].translation = {0, 1.3f, 0};
-  scene.animations.push_back(turning(gem, {0, 1, 0}, 8));
-  scene.medium = {.sigmaA = 0.02f, .sigmaS = 0.15f, .g = 0};
-  scene.addLight("key", spot(120, 18), {-1.2f, 4.0f, 0.5f}, {0, 1.25f, 0});
-  scene.addCamera("main", {0.3f, 1.5f, 4.4f}, {0.1f, 1.0f, 0}, 38);
-  scene.addCamera("close", {0.2f, 1.2f, 2.4f}, {0.1f, 0.95f, 0}, 38);
-  scene.addCamera("above", {0.2f, 3.6f, 2.4f}, {0, 0.6f, 0}, 38);
+  const int ball = scene.add("ball", sphere(0.3f, 96), scene.addMaterial(glass("glass", 1.5f)));
+  scene.nodes[static_cast<std::size_t>(ball)].translation = {0.05f, 1.15f, 0.1f};
+  scene.medium = {.sigmaA = 0.02f, .sigmaS = 0.12f, .g = 0.2f};
+  Light key = spot(260, 17);
+  key.texture = scene.addTexture("window", roseWindow());
+  scene.addLight("key", key, {-1.5f, 4.0f, 0.6f}, {0.05f, 1.15f, 0.1f});
+  scene.addCamera("main", {0.3f, 1.9f, 5.0f}, {0.05f, 1.15f, 0}, 38);
+  scene.addCamera("close", {0.4f, 1.2f, 2.2f}, {0.2f, 0.8f, 0}, 38);
+  return scene;
+}
+
+Scene makeSmoke() {
+  Scene scene;
+  addFloor(scene, 2.5f);
+  const int ball = scene.add("ball", sphere(0.45f, 96), scene.addMaterial(glass("glass", 1.5f)));
+  scene.nodes[static_cast<std::size_t>(ball)].translation = {-0.1f, 1.35f, 0};
+  scene.medium = {.sigmaA = 0.05f, .sigmaS = 0.9f, .g = 0.2f};
+  scene.medium->smoke = {
+      .low = {-1.8f, -0.05f, -1.2f}, .high = {1.9f, 2.9f, 1.2f}, .whirl = 0.8f, .rise = 0.3f, .seed = 3};
+  scene.addLight("key", spot(160, 16), {-2.2f, 3.6f, 0.5f}, {-0.1f, 1.35f, 0});
+  scene.addCamera("main", {0.3f, 1.6f, 5.2f}, {0.1f, 1.15f, 0}, 38);
+  scene.addCamera("close", {0.5f, 1.2f, 2.4f}, {0.3f, 0.95f, 0}, 38);
+  scene.addCamera("above", {0.2f, 4.4f, 3.2f}, {0.2f, 0.6f, 0}, 38);
   return scene;
 }
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "core/scene/density_grid.h"
 
 namespace limn::bench {
 namespace {
@@ -59,6 +62,15 @@ void scale(scene::Scene& scene, float factor) {
   for (scene::CameraLens& camera : scene.cameras) camera.near *= factor;
   scene.medium.sigmaA /= factor;
   scene.medium.sigmaS /= factor;
+  if (scene.medium.grid) {
+    scene::DensityGrid grid = *scene.medium.grid;
+    for (int column = 0; column < 3; ++column) grid.worldToBox[column] /= factor;
+    scene::setGrid(scene.medium, std::move(grid));
+  }
+  if (scene::Smoke* smoke = scene.medium.smoke ? &*scene.medium.smoke : nullptr)
+    for (float* length : {&smoke->low.x, &smoke->low.y, &smoke->low.z, &smoke->high.x, &smoke->high.y,
+                          &smoke->high.z, &smoke->whirl, &smoke->rise})
+      *length *= factor;
 }
 
 /// Position and direction of the first light.

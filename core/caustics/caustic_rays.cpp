@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/scene/gpu_medium.h"
+#include "core/scene/light_textures.h"
 #include "core/shadow/light_fit.h"
 #include "glsl/blocks.glsl"
 #include "glsl/sampling.glsl"
@@ -190,9 +192,16 @@ frame::BufferHandle CausticRayService::Implementation::trace(const Request& requ
       pass.write(graph->createBuffer("caustic rays",
                                      {static_cast<size_t>(request.made.count()) * sizeof(glsl::CausticRay)}),
                  Access::storageStore, "light behind specular objects");
-  const auto program = pass.program({.files = {"glsl/caustics/trace_rays.comp.glsl"},
-                                     .defines = {{"PATHS", std::to_string(request.desc.paths)},
-                                                 {"PATH_COUNT", std::to_string(request.made.paths)}}});
+  gpu::ProgramDesc source{.files = {"glsl/caustics/trace_rays.comp.glsl"},
+                          .defines = {{"PATHS", std::to_string(request.desc.paths)},
+                                      {"PATH_COUNT", std::to_string(request.made.paths)}}};
+  const scene::MediumInput medium(handles);
+  medium.define(source.defines);
+  medium.declare(pass);
+  const scene::LightTextureInput textures(handles);
+  textures.define(source.defines);
+  textures.declare(pass);
+  const auto program = pass.program(std::move(source));
   pass.execute([=, handles = handles, desc = request.desc, layers = request.made.layers,
                 views = request.importedViews,
                 indices = request.importedLayers](frame::PassContext& context) {
@@ -201,6 +210,8 @@ frame::BufferHandle CausticRayService::Implementation::trace(const Request& requ
     kernel.set("light_samples", desc.lightSamples);
     kernel.set("steps", desc.steps);
     context.bindUniform(glsl::FrameBlock::binding, handles.frame);
+    medium.bind(context);
+    textures.bind(context);
     unsigned unit = 0;
     for (const TextureHandle texture : {front.surface, front.depth, back.surface, back.depth, maps.depth})
       context.bindSampled(unit++, texture);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/scene/gpu_medium.h"
 #include "glsl/gbuffer.glsl"
 
 namespace limn::caustics {
@@ -72,6 +73,8 @@ frame::TextureHandle RayLines::add(frame::FrameGraph& graph, const TechniqueInpu
       .read(rays.rays, Access::storageLoad, "lines")
       .read(rule, Access::storageLoad, "what a fragment stands for")
       .read(inputs.gbuffer.depth, Access::sampled, "what hides lines");
+  const scene::MediumInput medium(inputs.handles, draw.mediumSteps);
+  medium.declare(pass);
   const frame::TextureHandle result = pass.write(target, Access::colourBlend, "light of the lines");
   struct Kind {
     frame::ProgramHandle program;
@@ -84,6 +87,7 @@ frame::TextureHandle RayLines::add(frame::FrameGraph& graph, const TechniqueInpu
     std::map<std::string, std::string> defines = draw.defines;
     defines["KIND"] = std::to_string(k);
     defines["BEAMS"] = draw.beams ? "1" : "0";
+    medium.define(defines);
     kinds[k].program = pass.program(
         {.files = {"glsl/caustics/lines.vert.glsl", draw.fragmentShader}, .defines = std::move(defines)});
   }
@@ -99,6 +103,7 @@ frame::TextureHandle RayLines::add(frame::FrameGraph& graph, const TechniqueInpu
     context.bindStorage(0, rays.rays);
     context.bindStorage(1, rule);
     context.bindSampled(glsl::gbuffer_unit_depth, depth);
+    medium.bind(context);
     for (const Kind& kind : kinds) {
       gpu::Program& program = context.program(kind.program);
       program.use();

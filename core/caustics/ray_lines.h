@@ -45,7 +45,8 @@ struct LineDraw {
   std::string_view technique;
   std::string fragmentShader;  ///< includes glsl/caustics/line_fragment.glsl
   std::map<std::string, std::string> defines = {};
-  bool beams = true;  ///< lines whose beam is wider than a pixel become quads of that width
+  int mediumSteps = 1;  ///< as scene::MediumInput has them
+  bool beams = true;    ///< lines whose beam is wider than a pixel become quads of that width
   std::function<void(gpu::Program&)> bind = {};  ///< sets the fragment shader's uniforms
 };
 

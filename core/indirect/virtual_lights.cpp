@@ -1,8 +1,11 @@
 #include "core/indirect/virtual_lights.h"
 
 #include <algorithm>
+#include <map>
 #include <string>
+#include <utility>
 
+#include "core/scene/light_textures.h"
 #include "glsl/sampling.glsl"
 
 namespace limn::indirect {
@@ -33,6 +36,12 @@ struct Builder {
         .read(maps.views, Access::storageLoad, "projections")
         .read(handles.lights, Access::storageLoad, "what lights send")
         .cacheable();
+    scene::LightTextureInput(handles).declare(pass);
+  }
+  /// Of the shaders that read the maps' texels.
+  gpu::ProgramDesc texelProgram(const char* file, std::map<std::string, std::string> defines) const {
+    scene::LightTextureInput(handles).define(defines);
+    return {.files = {file}, .defines = std::move(defines)};
   }
   BufferHandle tileFlux() const;
   BufferHandle layerFlux(BufferHandle values, bool sampled, uint32_t count) const;
@@ -52,6 +61,7 @@ void bindMaps(const frame::PassContext& context, const SceneHandles& handles, co
   context.bindSampled(2, maps.albedo);
   context.bindStorage(0, handles.lights);
   context.bindStorage(1, maps.views);
+  scene::LightTextureInput(handles).bind(context);
 }
 
 BufferHandle Builder::tileFlux() const {
@@ -61,8 +71,8 @@ BufferHandle Builder::tileFlux() const {
   const BufferHandle tiles = pass.write(
       buffer("flux of tiles", static_cast<size_t>(across) * across * maps.layers, sizeof(glm::vec4)),
       Access::storageStore, "sums of reflected flux");
-  const auto program = pass.program(
-      {.files = {"glsl/indirect/reflected_flux.comp.glsl"}, .defines = {{"TILE", std::to_string(tile)}}});
+  const auto program =
+      pass.program(texelProgram("glsl/indirect/reflected_flux.comp.glsl", {{"TILE", std::to_string(tile)}}));
   pass.execute([=, maps = maps, handles = handles, samples = desc.lightSamples](frame::PassContext& context) {
     gpu::Program& kernel = context.program(program);
     kernel.use();
@@ -98,7 +108,7 @@ BufferHandle Builder::sample(BufferHandle reflected) const {
   const BufferHandle lights =
       pass.write(buffer("virtual lights", static_cast<size_t>(desc.count), sizeof(glsl::VirtualPointLight)),
                  Access::storageStore, "samples of the maps");
-  const auto program = pass.program({.files = {"glsl/indirect/sample_maps.comp.glsl"}, .defines = {}});
+  const auto program = pass.program(texelProgram("glsl/indirect/sample_maps.comp.glsl", {}));
   pass.execute([=, maps = maps, handles = handles, desc = desc](frame::PassContext& context) {
     gpu::Program& kernel = context.program(program);
     kernel.use();

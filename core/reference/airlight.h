@@ -14,7 +14,7 @@ class Airlight {
   Airlight(const RayScene& rays, const Request& request);
 
   /// Whether there is anything to sample.
-  bool present() const { return !lights_.empty() && medium_.scattering != glm::vec3(0); }
+  bool present() const { return !lights_.empty() && rays_.medium().medium().scattering != glm::vec3(0); }
   /// One sample of the radiance that the medium sends along the ray from `eye` in `direction` (unit) up to
   /// `end` metres. Distances are sampled evenly in the angle from the light (Kulla and Fajardo 2012).
   glm::dvec3 sample(const glm::vec3& eye, const glm::vec3& direction, float end,
@@ -23,7 +23,6 @@ class Airlight {
  private:
   const RayScene& rays_;
   std::vector<glsl::Light> lights_;
-  glsl::Medium medium_;
 };
 
 }  // namespace limn::reference

@@ -76,6 +76,7 @@ void addScene(Hasher& h, const scene::Scene& scene) {
     for (const auto& primitive : mesh.primitives) addPrimitive(h, primitive);
   }
   for (const auto& dynamic : scene.dynamic) h.add(dynamic.material);
+  for (const auto& texture : scene.lightTextures) h.add(texture.texels);
   if (scene.medium.present()) h.addAll(scene.medium.sigmaA, scene.medium.sigmaS, scene.medium.g);
   const scene::Environment& e = scene.environment;
   h.addAll(e.width, e.height, e.texels, e.rotation, e.scale);
@@ -91,9 +92,19 @@ void addPose(Hasher& h, const scene::Pose& pose, int lights) {
   h.add(std::vector<glsl::Light>(pose.lights.begin(), pose.lights.begin() + lights));
 }
 
+/// Where the medium is not homogeneous.
+void addDensity(Hasher& h, const scene::Medium& medium, double time) {
+  if (!medium.inhomogeneous()) return;
+  if (medium.grid) h.addAll(medium.grid->size, medium.grid->values, medium.grid->worldToBox);
+  if (!medium.smoke) return;
+  const scene::Smoke& s = *medium.smoke;
+  h.addAll(s.low, s.high, s.whirl, s.rise, s.seed, s.resolution, time);
+}
+
 void addWork(Hasher& h, const Request& r) {
   h.add(codeVersion);
   addScene(h, r.scene);
+  addDensity(h, r.scene.medium, r.pose.time);
   // Lights that stand for the environment do not change pictures of all light.
   addPose(h, r.pose, r.light == allLights ? ownLights(r.pose) : static_cast<int>(r.pose.lights.size()));
   h.addAll(r.camera.worldToView, r.camera.yfov, r.camera.near);

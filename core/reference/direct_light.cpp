@@ -3,6 +3,7 @@
 #include <glm/glm.hpp>
 
 #include "core/reference/light_view.h"
+#include "core/scene/light_textures.h"
 
 namespace limn::reference {
 namespace {
@@ -21,7 +22,8 @@ struct Estimate {
   const SampleRange& samples;
   uint32_t pair;  ///< the light's first
   Sums& sums;
-  const glsl::Medium& medium;
+  const RayMedium& medium;
+  glm::vec3 tint{1};  ///< of the light's texture
 
   void addPunctual(const PointView& view) const {
     if (!view.above()) return;
@@ -47,10 +49,10 @@ struct Estimate {
   }
 
  private:
-  /// What the medium leaves of it.
+  /// What the light's texture and the medium leave of it.
   glm::vec3 through(const Arrival& arrival) const {
-    return arrival.finite ? glsl::transmittance_between(medium, surface.position, arrival.target)
-                          : glsl::transmittance_to_infinity(medium, surface.position, arrival.direction);
+    return tint * (arrival.finite ? medium.transmittanceBetween(surface.position, arrival.target)
+                                  : medium.transmittanceToInfinity(surface.position, arrival.direction));
   }
 
   void add(const glm::vec3& value, double weight) const {
@@ -85,10 +87,7 @@ struct Estimate {
 }  // namespace
 
 DirectLight::DirectLight(const RayScene& rays, const Request& request)
-    : rays_(rays),
-      lights_(request.pose.lights),
-      environment_(request.scene.environment),
-      medium_(mediumOf(request)) {
+    : rays_(rays), lights_(request.pose.lights), environment_(request.scene.environment) {
   const int count = static_cast<int>(lights_.size());
   first_ = request.light == allLights ? 0 : std::min(request.light, count);
   last_ = request.light == allLights ? ownLights(request.pose) : std::min(request.light + 1, count);
@@ -98,8 +97,13 @@ DirectLight::DirectLight(const RayScene& rays, const Request& request)
 void DirectLight::add(const Surface& surface, const SampleRange& samples, Sums& sums) const {
   for (int i = first_; i < last_; ++i) {
     const glsl::Light& light = lights_[static_cast<size_t>(i)];
-    const Estimate estimate{rays_, surface, samples, samples.pair + 3u * static_cast<uint32_t>(i),
-                            sums,  medium_};
+    const Estimate estimate{.rays = rays_,
+                            .surface = surface,
+                            .samples = samples,
+                            .pair = samples.pair + 3u * static_cast<uint32_t>(i),
+                            .sums = sums,
+                            .medium = rays_.medium(),
+                            .tint = scene::lightTextureAt(rays_.scene(), light, surface.position)};
     if (isPunctual(light))
       estimate.addPunctual(PointView(light, surface));
     else if (light.info.x == glsl::light_rectangle || glsl::light_is_distant_rectangle(light))
@@ -109,7 +113,7 @@ void DirectLight::add(const Surface& surface, const SampleRange& samples, Sums& 
   }
   const EnvironmentView environment(environment_);
   if (withEnvironment_ && !environment.dark())
-    Estimate{rays_, surface, samples, samples.pair + 3u * static_cast<uint32_t>(last_), sums, medium_}
+    Estimate{rays_, surface, samples, samples.pair + 3u * static_cast<uint32_t>(last_), sums, rays_.medium()}
         .addSamples(environment);
 }
 

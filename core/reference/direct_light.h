@@ -32,7 +32,6 @@ class DirectLight {
   const RayScene& rays_;
   const std::vector<glsl::Light>& lights_;
   EnvironmentLight environment_;
-  glsl::Medium medium_;
   int first_ = 0, last_ = 0;  ///< of lights_
   bool withEnvironment_ = false;
 };

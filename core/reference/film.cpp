@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "core/reference/camera_radiance.h"
-#include "core/scene/medium.h"
 
 namespace limn::reference {
 namespace {
@@ -65,9 +64,8 @@ float View::distance(size_t index, float depth) const {
 }
 
 glm::vec3 View::transmittance(size_t index, float depth) const {
-  const glsl::Medium medium = scene::mediumOf(frame);
-  return glsl::medium_transmittance(medium, glsl::ball_length(medium.ball, glm::vec3(frame.camera_position),
-                                                              direction(index), distance(index, depth)));
+  return rays.medium().transmittance(glm::vec3(frame.camera_position), direction(index),
+                                     distance(index, depth));
 }
 
 glm::vec3 View::direction(size_t index) const {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/scene/light_textures.h"
 #include "glsl/caustic_ray.glsl"
 #include "glsl/geometry.glsl"
 #include "glsl/light_intensity.glsl"
@@ -80,7 +81,7 @@ LightTracer::LightTracer(const View& view, const Request& request, const std::ve
       request_(request),
       depths_(depths),
       lights_(mediumLights(request)),
-      medium_(mediumOf(request)),
+      medium_(view.rays.medium().medium()),
       media_(request.term != Term::caustic && medium_.scattering != glm::vec3(0)),
       surfaces_(request.term != Term::media) {
   for (const scene::DrawInstance& instance : request.pose.instances) {
@@ -132,9 +133,10 @@ bool LightTracer::emit(const Sampler& sampler, uint64_t index, Path& path) const
   const glm::vec3& p = path.surface.position;
   path.flux =
       glsl::light_point_intensity(light, aim.origin, p, 1) * (aim.measure * static_cast<float>(count));
+  path.flux *= scene::lightTextureAt(view_.rays.scene(), light, p);
   path.flux *= light.info.x == glsl::light_directional
-                   ? glsl::transmittance_to_infinity(medium_, p, -aim.direction)
-                   : glsl::transmittance_between(medium_, aim.origin, p);
+                   ? view_.rays.medium().transmittanceToInfinity(p, -aim.direction)
+                   : view_.rays.medium().transmittanceBetween(aim.origin, p);
   return path.flux != glm::vec3(0) && glm::dot(path.surface.normal, -aim.direction) > leastCosine;
 }
 
@@ -177,19 +179,20 @@ void LightTracer::segment(const glm::vec3& from, const glm::vec3& direction, con
   if (flux == glm::vec3(0)) return;
   Hit hit;
   const bool ends = view_.rays.nearest(from, direction, hit);
-  const float reach = std::min(glsl::ball_range(medium_.ball, from, direction).y,
-                               ends ? hit.depth : std::numeric_limits<float>::max());
+  const RayMedium& medium = view_.rays.medium();
+  const glm::vec2 range = medium.range(from, direction);
+  const float begin = std::max(range.x, 0.f);
+  const float reach = std::min(range.y, ends ? hit.depth : std::numeric_limits<float>::max()) - begin;
   if (media_ && reach > 0) {
     const float u = sampler.pair(2).x;
     for (int i = 0; i < scatterPoints; ++i) {
-      const float l = reach * (static_cast<float>(i) + u) / scatterPoints;
+      const float l = begin + reach * (static_cast<float>(i) + u) / scatterPoints;
       scatter(from + l * direction, direction,
-              flux * glsl::medium_transmittance(medium_, l) * (reach / scatterPoints), film);
+              flux * medium.transmittance(from, direction, l) * (reach / scatterPoints), film);
     }
   }
   if (surfaces_ && ends)
-    reflect(hit, direction, flux * glsl::transmittance_between(medium_, from, from + hit.depth * direction),
-            film);
+    reflect(hit, direction, flux * medium.transmittance(from, direction, hit.depth), film);
 }
 
 /// The pixel that shows x, its depth, and one over the pixel's solid angle (1/sr).
@@ -218,7 +221,10 @@ void LightTracer::scatter(const glm::vec3& x, const glm::vec3& direction, const 
   if (depths_[pixel] > 0 && depth > depths_[pixel]) return;
   const glm::vec3 eye(view_.frame.camera_position), towards = eye - x;
   const float distance = glm::length(towards);
-  const glm::vec3 leaving = flux * medium_.scattering * glsl::transmittance_between(medium_, x, eye) *
+  const float density = view_.rays.medium().density(x);
+  if (density == 0.f) return;
+  const glm::vec3 leaving = flux * (density * medium_.scattering) *
+                            view_.rays.medium().transmittanceBetween(x, eye) *
                             glsl::phase_function(medium_.g, direction, towards / distance);
   film.add(pixel, glm::dvec3(leaving) * (perSolidAngle / (static_cast<double>(distance) * distance)));
 }
@@ -238,7 +244,7 @@ void LightTracer::reflect(const Hit& hit, const glm::vec3& direction, const glm:
   if (view_.rays.occluded(origin, eye - origin, 1.f)) return;
   const glm::vec3 reflected =
       flux * glsl::brdf(met->brdf, met->values.normal, towards / distance, -direction) * cosine;
-  film.add(pixel, glm::dvec3(reflected * glsl::transmittance_between(medium_, met->position, eye)) *
+  film.add(pixel, glm::dvec3(reflected * view_.rays.medium().transmittanceBetween(met->position, eye)) *
                       (perSolidAngle / (static_cast<double>(distance) * distance)));
 }
 

@@ -1,17 +1,11 @@
-// The medium as the reference's estimators see it.
+// What the estimators of light in media share.
 #pragma once
 
+#include <vector>
+
 #include "core/reference/reference.h"
-#include "core/scene/medium.h"
 
 namespace limn::reference {
-
-/// Of the request's scene and pose; without extinction if there is none.
-inline glsl::Medium mediumOf(const Request& request) {
-  glsl::FrameBlock frame{};
-  scene::setMedium(frame, request.scene.medium, request.pose.bounds);
-  return scene::mediumOf(frame);
-}
 
 /// Lights that shine into the medium and through specular objects: the request's, without those that stand
 /// for the environment.

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/reference/ray_medium.h"
 #include "core/scene/scene.h"
 #include "glsl/blocks.glsl"
 
@@ -70,6 +71,7 @@ class RayScene {
 
   const scene::Scene& scene() const { return scene_; }
   const std::vector<Draw>& draws() const { return draws_; }
+  const RayMedium& medium() const { return medium_; }
 
   /// Nearest surface that the camera sees at the centre of pixel (x, y), beyond `near`: cut-out texels and
   /// back faces of single-sided surfaces are passed through.
@@ -86,6 +88,7 @@ class RayScene {
   struct Hierarchy;
   const scene::Scene& scene_;
   std::vector<Draw> draws_;
+  RayMedium medium_;
   std::unique_ptr<Hierarchy> hierarchy_;
 };
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/scene/gpu_medium.h"
+#include "core/scene/light_textures.h"
 #include "core/shading/environment.h"
 #include "core/shading/ltc_table.h"
 #include "glsl/blocks.glsl"
@@ -165,11 +167,17 @@ TextureHandle Deferred::addLights(const Frame& frame, TextureHandle before, std:
   const TextureHandle ltc = implementation_->ltc(frame.graph);
   builder.read(ltc, Access::sampled, "glossy light of rectangles");
   const TextureHandle radiance = builder.write(before, Access::imageLoadStore, "sum of L_u V");
-  const auto program =
-      builder.program({.files = {"glsl/deferred/light_accumulate.comp.glsl"},
-                       .defines = {{"VISIBILITY", visibility ? "1" : "0"},
-                                   {"MEDIUM", implementation_->scene.medium.present() ? "1" : "0"},
-                                   {"LIGHT_COUNT", std::to_string(lights.size())}}});
+  gpu::ProgramDesc desc{.files = {"glsl/deferred/light_accumulate.comp.glsl"},
+                        .defines = {{"VISIBILITY", visibility ? "1" : "0"},
+                                    {"MEDIUM", implementation_->scene.medium.present() ? "1" : "0"},
+                                    {"LIGHT_COUNT", std::to_string(lights.size())}}};
+  const scene::MediumInput medium(frame.handles);
+  medium.define(desc.defines);
+  medium.declare(builder);
+  const scene::LightTextureInput textures(frame.handles);
+  textures.define(desc.defines);
+  textures.declare(builder);
+  const auto program = builder.program(std::move(desc));
   builder.execute(
       [=, handles = frame.handles, g = frame.gbuffer, size = frame.size,
        indices = std::vector<uint32_t>(lights.begin(), lights.end())](frame::PassContext& context) {
@@ -181,6 +189,8 @@ TextureHandle Deferred::addLights(const Frame& frame, TextureHandle before, std:
         for (const GBufferInput& input : gbufferInputs(g)) context.bindSampled(input.unit, input.texture);
         if (visibility) context.bindSampled(visibility_unit, visibility);
         context.bindSampled(glsl::ltc_unit, ltc);
+        medium.bind(context);
+        textures.bind(context);
         context.bindImage(0, radiance, GL_READ_WRITE);
         context.dispatch(size.x, size.y, 1, group_size, group_size);
       });
@@ -203,9 +213,12 @@ TextureHandle Deferred::addEnvironment(const Frame& frame, TextureHandle before)
   builder.read(ltc, Access::sampled, "glossy reflectance");
   const TextureHandle radiance =
       builder.write(before, Access::imageLoadStore, "light of the environment, V = 1");
-  const auto program =
-      builder.program({.files = {"glsl/deferred/environment.comp.glsl"},
-                       .defines = {{"MEDIUM", implementation_->scene.medium.present() ? "1" : "0"}}});
+  gpu::ProgramDesc desc{.files = {"glsl/deferred/environment.comp.glsl"},
+                        .defines = {{"MEDIUM", implementation_->scene.medium.present() ? "1" : "0"}}};
+  const scene::MediumInput medium(frame.handles);
+  medium.define(desc.defines);
+  medium.declare(builder);
+  const auto program = builder.program(std::move(desc));
   builder.execute(
       [=, handles = frame.handles, g = frame.gbuffer, size = frame.size](frame::PassContext& context) {
         context.program(program).use();
@@ -214,6 +227,7 @@ TextureHandle Deferred::addEnvironment(const Frame& frame, TextureHandle before)
         context.bindSampled(glsl::environment_unit_irradiance, maps[0]);
         context.bindSampled(glsl::environment_unit_filtered, maps[1]);
         context.bindSampled(glsl::ltc_unit, ltc);
+        medium.bind(context);
         context.bindImage(0, radiance, GL_READ_WRITE);
         context.dispatch(size.x, size.y, 1, group_size, group_size);
       });
@@ -226,12 +240,17 @@ TextureHandle Deferred::addTransmittance(const Frame& frame, TextureHandle befor
       .read(frame.gbuffer.depth, Access::sampled, "length of the path through the medium");
   const TextureHandle radiance =
       builder.write(before, Access::imageLoadStore, "what the medium leaves of it on the way to the camera");
-  const auto program = builder.program({.files = {"glsl/deferred/transmittance.comp.glsl"}, .defines = {}});
+  gpu::ProgramDesc desc{.files = {"glsl/deferred/transmittance.comp.glsl"}, .defines = {}};
+  const scene::MediumInput medium(frame.handles);
+  medium.define(desc.defines);
+  medium.declare(builder);
+  const auto program = builder.program(std::move(desc));
   builder.execute([=, handles = frame.handles, depth = frame.gbuffer.depth,
                    size = frame.size](frame::PassContext& context) {
     context.program(program).use();
     context.bindUniform(glsl::FrameBlock::binding, handles.frame);
     context.bindSampled(glsl::gbuffer_unit_depth, depth);
+    medium.bind(context);
     context.bindImage(0, radiance, GL_READ_WRITE);
     context.dispatch(size.x, size.y, 1, group_size, group_size);
   });

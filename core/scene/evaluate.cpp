@@ -306,6 +306,7 @@ Bounds instanceBounds(const Scene& scene, const Pose& pose, const DrawInstance& 
 void evaluate(const Scene& scene, double time, int animation, Pose& pose) {
   const Animation* chosen = chooseAnimation(scene, time, animation);
   const double local = chosen ? wrapped(time, chosen->duration) : 0;
+  pose.time = time;
   animate(scene, chosen, local, pose);
   updateWorldMatrices(scene, pose);
   addInstances(scene, chosen, local, pose);

@@ -9,6 +9,7 @@
 
 #include "core/scene/camera.h"
 #include "core/scene/gpu_scene_data.h"
+#include "core/scene/light_textures.h"
 #include "core/scene/medium.h"
 
 namespace limn::scene {
@@ -45,6 +46,8 @@ GpuScene::Implementation::Implementation(gpu::Device& onDevice, const Scene& ofS
       geometry(onDevice, ofScene),
       materials(onDevice, ofScene),
       deform(onDevice, ofScene),
+      medium(onDevice, ofScene.medium),
+      lightTextures(makeLightTextures(onDevice, ofScene)),
       vertexArray(makeVertexArray(onDevice, geometry.hasColours())),
       dynamic(ofScene.dynamic.size()),
       frameBuffer(onDevice, "frame", sizeof(glsl::FrameBlock), gpu::BufferUse::updated) {}
@@ -208,6 +211,7 @@ bool GpuScene::update(const Pose& pose, const CameraPose& camera, glm::ivec2 siz
   if (deformed && s.graph != nullptr) s.deform.touch(*s.graph);
   if (s.upload(s.instanceBuffer, "instances", s.instances, s.nextInstances))
     s.touch(&SceneHandles::instances);
+  if (s.medium.update(pose.time) && s.graph != nullptr) s.medium.touch(*s.graph);
   s.nextLights = pose.lights;
   if (s.upload(s.lightBuffer, "lights", s.lights, s.nextLights)) s.touch(&SceneHandles::lights);
 
@@ -232,8 +236,12 @@ SceneHandles GpuScene::import(frame::FrameGraph& graph) {
                 .geometry = graph.importBuffer("geometry", s.geometry.positions()),
                 .instances = graph.importBuffer("instances", s.instanceBuffer),
                 .materials = graph.importBuffer("materials", s.materials.constants()),
-                .lights = graph.importBuffer("lights", s.lightBuffer)};
+                .lights = graph.importBuffer("lights", s.lightBuffer),
+                .lightTextures = {},
+                .density = {}};
   SceneHandles handles = s.imported;
+  if (s.lightTextures) handles.lightTextures = graph.importTexture("light textures", s.lightTextures);
+  handles.density = s.medium.addPass(graph);
   handles.geometry = s.deform.addPass(graph, s.geometry, handles.geometry);
   return handles;
 }
@@ -241,6 +249,7 @@ SceneHandles GpuScene::import(frame::FrameGraph& graph) {
 void GpuScene::forget() {
   implementation_->graph = nullptr;
   implementation_->deform.forget();
+  implementation_->medium.forget();
 }
 
 const Scene& GpuScene::scene() const {

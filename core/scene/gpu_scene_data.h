@@ -9,6 +9,7 @@
 #include "core/scene/gpu_deform.h"
 #include "core/scene/gpu_geometry.h"
 #include "core/scene/gpu_materials.h"
+#include "core/scene/gpu_medium.h"
 #include "core/scene/gpu_scene.h"
 
 namespace limn::scene {
@@ -86,6 +87,8 @@ struct GpuScene::Implementation {
   GpuGeometry geometry;
   GpuMaterials materials;
   GpuDeform deform;
+  GpuMedium medium;
+  gpu::Texture lightTextures;
   gpu::VertexArray vertexArray;
 
   std::vector<DynamicState> dynamic;

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/scene/density_grid.h"
 #include "core/scene/loader.h"
 
 namespace limn::scene {
@@ -74,7 +75,7 @@ std::vector<float> Loader::numbers(const tinygltf::Value& value, std::size_t cou
 
 void Loader::readMedium(const tinygltf::Value& medium) {
   const std::string what = "limn_medium";
-  if (!medium.IsObject()) fail(what + ": an object {sigma_a, sigma_s, g, grid} is accepted");
+  if (!medium.IsObject()) fail(what + ": an object {sigma_a, sigma_s, g, grid, smoke} is accepted");
   const auto coefficient = [&](const char* key) {
     const tinygltf::Value& value = medium.Get(key);
     const std::string place = fmt::format("{} {}", what, key);
@@ -95,8 +96,46 @@ void Loader::readMedium(const tinygltf::Value& medium) {
   scene_.medium.g = g.IsNumber() ? number(g.GetNumberAsDouble(), what + " g") : 0.f;
   if (!(std::abs(scene_.medium.g) < 1))
     fail(fmt::format("{} g: {}; more than -1 and less than 1 is accepted", what, scene_.medium.g));
-  if (const tinygltf::Value& grid = medium.Get("grid"); grid.IsString())
-    scene_.medium.grid = resolve(grid.Get<std::string>(), what + " grid").string();
+  if (medium.Has("grid") && medium.Has("smoke"))
+    fail(what + ": both a grid and smoke; one of them is accepted");
+  if (medium.Has("smoke")) readSmoke(medium.Get("smoke"), what + " smoke");
+  if (!medium.Has("grid")) return;
+  const tinygltf::Value& grid = medium.Get("grid");
+  if (!grid.IsString()) fail(what + " grid: the name of an OpenVDB file is accepted");
+  const std::filesystem::path file = resolve(grid.Get<std::string>(), what + " grid");
+  if (!scene_.medium.present()) return;
+  try {
+    setGrid(scene_.medium, readDensityGrid(file));
+  } catch (const Error& error) {
+    fail(fmt::format("{} grid: {}", what, error.what()));
+  }
+  if (!scene_.medium.present()) warn(what + " grid: it is 0 everywhere; there is no medium");
+}
+
+void Loader::readSmoke(const tinygltf::Value& smoke, const std::string& what) {
+  if (!smoke.IsObject()) fail(what + ": an object {low, high, whirl, rise, seed, resolution} is accepted");
+  Smoke& s = scene_.medium.smoke.emplace();
+  const auto corner = [&](const char* key) {
+    const std::vector<float> xyz = numbers(smoke.Get(key), 3, fmt::format("{} {}", what, key));
+    return glm::vec3(xyz[0], xyz[1], xyz[2]);
+  };
+  s.low = corner("low");
+  s.high = corner("high");
+  const glm::vec3 extent = s.high - s.low;
+  if (!glm::all(glm::greaterThan(extent, glm::vec3(0))) || !(glm::length(extent) < 1e18f))
+    fail(what + ": low and high are corners of a box; each number of high is larger than that of low");
+  const auto real = [&](const char* key, double low, double high, double otherwise) {
+    if (!smoke.Has(key)) return static_cast<float>(otherwise);
+    const tinygltf::Value& value = smoke.Get(key);
+    const std::string place = fmt::format("{} {}", what, key);
+    if (!value.IsNumber()) fail(place + ": a number is accepted");
+    return ranged(value.GetNumberAsDouble(), low, high, place);
+  };
+  const double size = glm::length(extent);
+  s.whirl = real("whirl", 1e-3 * size, 1e3 * size, 0.15 * size);
+  s.rise = real("rise", -1e3 * size, 1e3 * size, 0);
+  s.seed = static_cast<uint32_t>(real("seed", 0, 1e6, 0));
+  s.resolution = static_cast<int>(real("resolution", 2, 256, s.resolution));
 }
 
 void Loader::readSceneExtras() {

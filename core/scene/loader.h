@@ -70,6 +70,7 @@ class Loader {
   // load.cpp
   void readSceneExtras();
   void readMedium(const tinygltf::Value& medium);
+  void readSmoke(const tinygltf::Value& smoke, const std::string& what);
   void checkResult() const;
 
   // loader_files.cpp
@@ -146,6 +147,7 @@ class Loader {
 
   // loader_light.cpp
   void readLights();
+  int readLightTexture(const tinygltf::Value& index, uint32_t type, const std::string& what);
   void readCameras();
 
   [[noreturn]] void fail(const std::string& what) const;
@@ -170,6 +172,8 @@ class Loader {
   std::vector<std::span<const std::byte>> buffers_;
   std::vector<std::vector<std::byte>> bufferStorage_;
   std::map<std::pair<int, bool>, int> imageIndex_;  ///< (image, sRGB) to Scene::images
+
+  std::map<int, int> lightTextureIndex_;  ///< Scene::images to Scene::lightTextures
 
   int defaultMaterial_ = none;  ///< for primitives that name none
   std::vector<UvUse> uvUses_;   ///< parallel to Scene::materials

@@ -1,6 +1,7 @@
 // Lights and cameras.
 #include <tiny_gltf.h>
 
+#include "core/scene/light_textures.h"
 #include "core/scene/loader.h"
 
 namespace limn::scene {
@@ -29,6 +30,8 @@ void Loader::readLights() {
     }
     light.intensity = ranged(source.intensity, 0, 1e30, what + " intensity");
     light.range = ranged(source.range, 0, 1e30, what + " range");
+    if (source.extras.IsObject() && source.extras.Has("limn_texture"))
+      light.texture = readLightTexture(source.extras.Get("limn_texture"), light.type, what + " limn_texture");
     if (source.extras.IsObject() && source.extras.Has("limn_angle")) {
       const tinygltf::Value& angle = source.extras.Get("limn_angle");
       if (!angle.IsNumber()) fail(what + " limn_angle: one number (radians) is accepted");
@@ -36,6 +39,24 @@ void Loader::readLights() {
     }
     scene_.lights.push_back(std::move(light));
   }
+}
+
+int Loader::readLightTexture(const tinygltf::Value& index, uint32_t type, const std::string& what) {
+  constexpr std::size_t most = 64;
+  if (type != glsl::light_spot) {
+    warn(what + ": only spots shine through a texture; it is ignored");
+    return none;
+  }
+  const double given = index.IsNumber() ? index.GetNumberAsDouble() : -1;
+  if (!(given >= 0 && given < static_cast<double>(model_->textures.size())))
+    fail(fmt::format("{}: the index of one of the {} textures is accepted", what, model_->textures.size()));
+  const int image = readImage(model_->textures[static_cast<std::size_t>(given)].source, true, what);
+  const auto known = lightTextureIndex_.find(image);
+  if (known != lightTextureIndex_.end()) return known->second;
+  if (scene_.lightTextures.size() == most) fail(fmt::format("{}: more than {} of them", what, most));
+  const int texture = static_cast<int>(scene_.lightTextures.size());
+  scene_.lightTextures.push_back(makeLightTexture(scene_.images[static_cast<std::size_t>(image)]));
+  return lightTextureIndex_[image] = texture;
 }
 
 void Loader::readCameras() {

@@ -7,8 +7,8 @@
 
 namespace limn::scene {
 
-/// Writes the medium's members of `frame`. The medium fills the bounding sphere of `bounds` (Pose::bounds);
-/// without geometry there is none.
+/// Writes the medium's members of `frame`. The medium fills the bounding sphere of `bounds` (Pose::bounds),
+/// of a grid or smoke the part in it; without geometry there is none.
 LIMN_API void setMedium(glsl::FrameBlock& frame, const Medium& medium, const Bounds& bounds);
 
 /// What the block says.

@@ -136,6 +136,7 @@ struct LightSource {
   float range = 0;                              ///< metres, 0: unlimited
   float innerCone = 0, outerCone = 0.7853982f;  ///< half angles, radians (spot)
   float angle = 0;                              ///< angular diameter of a directional light, radians
+  int texture = none;  ///< that a spot shines through: index into Scene::lightTextures
 };
 
 struct CameraLens {
@@ -199,12 +200,39 @@ struct Environment {
   explicit operator bool() const { return width > 0; }
 };
 
-/// Homogeneous participating medium from extras.limn_medium or flags; per metre.
+/// Factors on what a spot sends, by direction (glsl::light_texture_place).
+struct LightTexture {
+  static constexpr int side = 256;
+  std::vector<glm::vec3> texels;  ///< side * side, linear, 0 to 1, bottom row first
+};
+
+/// How dense a medium is: factors on its coefficients at the centres of voxels that fill a box, x fastest.
+/// Between them they are interpolated linearly, within the outer half voxels they go on as they are, and
+/// outside the box there is no medium.
+struct DensityGrid {
+  glm::ivec3 size{0};         ///< voxels
+  std::vector<float> values;  ///< size.x * size.y * size.z, >= 0 and finite
+  glm::mat4 worldToBox{1};    ///< affine, from world space to the unit cube
+};
+
+/// Smoke: a density that is a function of place and time (glsl/smoke.glsl), looked up in a grid.
+struct Smoke {
+  glm::vec3 low{0}, high{0};  ///< corners of the box that it fills, world, metres
+  float whirl = 1;            ///< size of its largest whirls, metres
+  float rise = 0;             ///< metres per second, along +Y
+  uint32_t seed = 0;
+  int resolution = 64;  ///< voxels along the box's longest side, 2 to 256
+};
+
+/// Participating medium from extras.limn_medium or flags; coefficients per metre, where there is a grid or
+/// smoke those at density 1.
 struct Medium {
   glm::vec3 sigmaA{0}, sigmaS{0};
   float g = 0;
-  std::string grid;  ///< OpenVDB file, empty: homogeneous
+  std::shared_ptr<const DensityGrid> grid;  ///< null: homogeneous, or smoke; not all 0
+  std::optional<Smoke> smoke;               ///< instead of a grid
   bool present() const { return sigmaA != glm::vec3(0) || sigmaS != glm::vec3(0); }
+  bool inhomogeneous() const { return present() && (grid || smoke); }
 };
 
 /// Triangles that an outside source rewrites, in count and topology too (iso-surfaces, cloth, particles).
@@ -227,6 +255,7 @@ struct Scene {
   std::vector<Animation> animations;
   std::vector<CameraLens> cameras;
   std::vector<LightSource> lights;
+  std::vector<LightTexture> lightTextures;
   Environment environment;
   Medium medium;
   struct Dynamic {
@@ -270,6 +299,7 @@ struct CameraPose {
 };
 
 struct Pose {
+  double time = 0;  ///< seconds, as evaluate() was asked
   std::vector<DrawInstance> instances;
   std::vector<Deformation> deformed;
   std::vector<DynamicGeometry> dynamic;  ///< parallel to Scene::dynamic

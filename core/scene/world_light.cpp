@@ -32,7 +32,7 @@ glsl::Light punctualLight(const LightSource& source, const glm::vec2& area, cons
   const bool rectangle = area.x > 0 && area.y > 0 && source.type != glsl::light_directional;
   glsl::Light light{};
   light.position = glm::vec4(glm::vec3(nodeToWorld[3]), 1);
-  light.direction = glm::vec4(-axis[2], 0);
+  light.direction = glm::vec4(-axis[2], static_cast<float>(source.texture + 1));
   light.axis_u = glm::vec4(axis[0], rectangle ? area.x : 0.f);
   light.axis_v = glm::vec4(axis[1], rectangle ? area.y : 0.f);
   const float scale = rectangle ? source.intensity / (area.x * area.y) : source.intensity;

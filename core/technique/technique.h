@@ -97,11 +97,13 @@ struct GBuffer {
 /// Scene data as graph resources. Their versions change with what they hold, so a cacheable pass that reads
 /// `geometry` and `lights` (and not `frame`) survives a moving camera.
 struct SceneHandles {
-  frame::BufferHandle frame;      ///< uniform block FrameBlock
-  frame::BufferHandle geometry;   ///< stands for all vertex, index and instance data after deformation
-  frame::BufferHandle instances;  ///< storage buffer of glsl::Instance
-  frame::BufferHandle materials;  ///< storage buffer of glsl::Material
-  frame::BufferHandle lights;     ///< storage buffer of glsl::Light, index = light index
+  frame::BufferHandle frame;           ///< uniform block FrameBlock
+  frame::BufferHandle geometry;        ///< stands for all vertex, index and instance data after deformation
+  frame::BufferHandle instances;       ///< storage buffer of glsl::Instance
+  frame::BufferHandle materials;       ///< storage buffer of glsl::Material
+  frame::BufferHandle lights;          ///< storage buffer of glsl::Light, index = light index
+  frame::TextureHandle lightTextures;  ///< RGBA32F array that spots shine through; empty: none does
+  frame::TextureHandle density;        ///< R32F volume (scene::DensityGrid); empty: the medium is homogeneous
 };
 
 /// What every technique is given.

@@ -77,6 +77,10 @@ void main() {
   if (line_direction.z > 0.0) line_range.x = max(line_range.x, to_near);
   if (line_direction.z < 0.0) line_range.y = min(line_range.y, to_near);
   if (line_direction.z == 0.0 && line_origin.z < near_plane) return;
+#if MEDIUM_STEPS > 0
+  vec2 medium = medium_range(scene_medium(), ray.start.xyz, ray.direction.xyz);
+  line_range.xy = vec2(max(line_range.x, medium.x), min(line_range.y, medium.y));
+#endif
   if (!(line_range.x < line_range.y)) return;
   vec3 a = line_origin + line_range.x * line_direction;
   vec3 b = line_origin + line_range.y * line_direction;

@@ -4,6 +4,7 @@
 #include "glsl/caustic_ray.glsl"
 #include "glsl/caustics/specular_buffers.glsl"
 #include "glsl/light_intensity.glsl"
+#include "glsl/light_texture.glsl"
 #include "glsl/medium_input.glsl"
 #include "glsl/reflective_map.glsl"
 
@@ -157,8 +158,10 @@ void main() {
     incident.optics = material_optics(materials[instances[uint(incident.instance) - 1u].info.x]);
     incident.flux = light_point_intensity(light, view.origin.xyz, incident.position, light_samples) *
                     (reflective_map_measure(view, uv) / (float(side) * float(side)));
-    incident.flux *= parallel ? transmittance_to_infinity(medium, incident.position, -incident.direction)
-                              : transmittance_between(medium, view.origin.xyz, incident.position);
+    incident.flux *= light_texture(light, incident.position);
+    float inside = parallel ? medium_length(medium, incident.position, -incident.direction, 3.0e38)
+                            : medium_length_between(medium, view.origin.xyz, incident.position);
+    incident.flux *= medium_transmittance(medium, inside);
     bool dark = incident.flux == vec3(0.0) || !(dot(incident.normal, -incident.direction) > least_cosine);
     if (!dark && !light_blocked(maps, incident.position)) {
       SpecularEvent event = specular_event(incident.optics, incident.direction, incident.normal, incident.inside);

@@ -19,7 +19,8 @@ void main() {
                                       surface.specular_factor, surface.specular_colour, surface.ior);
   vec3 light = environment_light(material, surface.normal, v, frame.environment.x, frame.environment.y);
 #if MEDIUM
-  light *= transmittance_to_infinity(scene_medium(), pixel_position(pixel, depth), surface.normal);
+  Medium medium = scene_medium();
+  light *= medium_transmittance(medium, medium_length(medium, pixel_position(pixel, depth), surface.normal, 3.0e38));
 #endif
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(light, 0.0));
 }

@@ -1,6 +1,7 @@
 // Adds sum of L_u V over a batch of lights to the radiance: unshadowed reflected light, exact for diffuse surfaces, times
 // visibility (layer per light; V = 1 where nobody was asked). MEDIUM 1: and times the transmittance from the light's centre.
 #include "glsl/gbuffer_input.glsl"
+#include "glsl/light_texture.glsl"
 #include "glsl/medium_input.glsl"
 #include "glsl/unshadowed_light.glsl"
 
@@ -16,9 +17,10 @@ uniform uint light_indices[LIGHT_COUNT];
 // T_l: of the medium, from a light to a surface point.
 vec3 light_transmittance(Light light, vec3 position) {
   Medium medium = scene_medium();
-  if (light.info.x == light_directional)
-    return transmittance_to_infinity(medium, position, -light.direction.xyz);
-  return transmittance_between(medium, light.position.xyz, position);
+  float inside = light.info.x == light_directional
+                     ? medium_length(medium, position, -light.direction.xyz, 3.0e38)
+                     : medium_length_between(medium, light.position.xyz, position);
+  return medium_transmittance(medium, inside);
 }
 #endif
 
@@ -43,7 +45,8 @@ void main() {
 #endif
     if (lit > 0.0) {
       vec3 arriving = unshadowed_light(lights[light_indices[i]], material, position, surface.normal,
-                                       surface.geometric_normal, v);
+                                       surface.geometric_normal, v) *
+                      light_texture(lights[light_indices[i]], position);
 #if MEDIUM
       arriving *= light_transmittance(lights[light_indices[i]], position);
 #endif

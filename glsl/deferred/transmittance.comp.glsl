@@ -13,7 +13,7 @@ void main() {
   float depth = pixel_depth(pixel);
   float end = depth > 0.0 ? depth * metres_per_depth : 3.0e38;
   Medium medium = scene_medium();
-  float inside = ball_length(medium.ball, frame.camera_position.xyz, ray / metres_per_depth, end);
+  float inside = medium_length(medium, frame.camera_position.xyz, ray / metres_per_depth, end);
   vec4 seen = imageLoad(radiance, pixel);
   imageStore(radiance, pixel, vec4(seen.rgb * medium_transmittance(medium, inside), seen.a));
 }

@@ -2,6 +2,7 @@
 #ifndef LIMN_REFLECTIVE_TEXEL_GLSL
 #define LIMN_REFLECTIVE_TEXEL_GLSL
 #include "glsl/gbuffer.glsl"
+#include "glsl/light_texture.glsl"
 #include "glsl/reflective_map.glsl"
 
 layout(binding = 0) uniform sampler2DArray reflective_depth;
@@ -26,7 +27,7 @@ vec3 texel_intensity(uint index, vec3 origin, ReflectiveTexel t) {
     intensity = reflective_map_rectangle_intensity(light, origin, t.position, t.normal, light_samples);
     rectangle = false;
   }
-  return intensity;
+  return intensity * light_texture(light, t.position);
 }
 
 ReflectiveTexel reflective_texel(ShadowView view, ivec2 texel) {

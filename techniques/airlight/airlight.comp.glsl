@@ -1,9 +1,13 @@
 // Airlight: each viewing ray is cut into stretches that are even in the angle from the light; of each, the part that the
-// light reaches is integrated (glsl/airlight.glsl).
+// light reaches is integrated (glsl/airlight.glsl). MARCH: where the medium or the light is not that simple, what the medium
+// takes on the way to the eye is summed along the stretches, what it takes on the way from the light is looked up at each node.
 #include "glsl/airlight.glsl"
 #include "glsl/gbuffer_input.glsl"
+#include "glsl/light_texture.glsl"
 #include "glsl/medium_input.glsl"
 #include "glsl/shadow_view.glsl"
+
+#define MARCH (MEDIUM_STEPS > 0 || LIGHT_TEXTURES)
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f, binding = 0) uniform image2D radiance;
@@ -35,6 +39,40 @@ bool lit_at(ShadowLight maps, ShadowView first, AirlightRay ray, float variable)
   return lit(maps, first, ray.eye + airlight_metres(ray, variable) * ray.direction);
 }
 
+#if MARCH
+
+// Metres of medium of density 1 in the stretch from a to b metres along the ray (Gauss-Legendre, two nodes).
+float stretch_length(AirlightRay ray, float a, float b) {
+  float middle = 0.5 * (a + b);
+  float step = 0.5 * (b - a) * gauss_node;
+  return 0.5 * (b - a) * (medium_density(ray.eye + (middle - step) * ray.direction) +
+                          medium_density(ray.eye + (middle + step) * ray.direction));
+}
+
+// Radiance per unit of the variable from one node; before: metres of medium of density 1 between eye and node.
+vec3 airlight_node(Medium medium, Light light, AirlightRay ray, float t, float before) {
+  AirlightPoint p = airlight_point(light, ray, t, light_samples);
+  p.sent *= light_texture(light, p.place);
+  float density = medium_density(p.place);
+  if (density == 0.0 || p.sent == vec3(0.0)) return vec3(0.0);
+  float to_light = ray.parallel ? medium_length(medium, p.place, -p.from, 3.0e38)
+                                : medium_length_between(medium, ray.source, p.place);
+  return density * airlight_scattered(medium, ray, p, before + to_light);
+}
+
+// The lit part [a, b] of a stretch that begins at `start` metres, behind `before` metres of medium of density 1.
+vec3 airlight_lit(Medium medium, Light light, AirlightRay ray, float a, float b, float start, float before) {
+  vec3 sum = vec3(0.0);
+  for (int i = -1; i <= 1; i += 2) {
+    float t = airlight_metres(ray, 0.5 * (a + b) + float(i) * 0.5 * (b - a) * gauss_node);
+    float within = (t - start) * medium_density(ray.eye + 0.5 * (start + t) * ray.direction);
+    sum += airlight_node(medium, light, ray, t, before + within);
+  }
+  return 0.5 * (b - a) * sum;
+}
+
+#endif
+
 // From one light or a point on it, between a and b metres along the ray.
 vec3 airlight(Medium medium, Light light, ShadowLight maps, vec3 direction, float a, float b) {
   ShadowView first = shadow_views[maps.info.x];
@@ -44,6 +82,9 @@ vec3 airlight(Medium medium, Light light, ShadowLight maps, vec3 direction, floa
   vec3 sum = vec3(0.0);
   float start = from;
   bool start_lit = lit_at(maps, first, ray, from);
+#if MARCH
+  float before = 0.0;  // metres of medium of density 1 between the eye and the stretch
+#endif
   for (int i = 1; i <= steps; ++i) {
     float end = mix(from, to, float(i) / float(steps));
     bool end_lit = lit_at(maps, first, ray, end);
@@ -61,7 +102,13 @@ vec3 airlight(Medium medium, Light light, ShadowLight maps, vec3 direction, floa
     float lit_from = start_lit ? start : border;
     float lit_to = end_lit ? end : border;
     int lit_stretch = start_lit || end_lit ? 1 : 0;
+#if MARCH
+    float metres = airlight_metres(ray, start);
+    while (lit_stretch-- > 0) sum += airlight_lit(medium, light, ray, lit_from, lit_to, metres, before);
+    before += stretch_length(ray, metres, airlight_metres(ray, end));
+#else
     while (lit_stretch-- > 0) sum += airlight_stretch(medium, light, ray, lit_from, lit_to, light_samples);
+#endif
     start = end;
     start_lit = end_lit;
   }
@@ -75,7 +122,7 @@ void main() {
   vec3 ray = pixel_ray(pixel);
   float metres_per_depth = length(ray);
   vec3 direction = ray / metres_per_depth;
-  vec2 range = ball_range(medium.ball, frame.camera_position.xyz, direction);
+  vec2 range = medium_range(medium, frame.camera_position.xyz, direction);
   float depth = pixel_depth(pixel);
   if (depth > 0.0) range.y = min(range.y, depth * metres_per_depth);
   range.x = max(range.x, 0.0);

@@ -1,6 +1,8 @@
 // Airlight: what the medium scatters of the lights' direct light, with its shadows.
 #include <algorithm>
 
+#include "core/scene/gpu_medium.h"
+#include "core/scene/light_textures.h"
 #include "core/shadow/shadow_map.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
@@ -18,6 +20,7 @@ constexpr Parameter parameters[] = {
             "Stretches of each viewing ray, even in the angle from the light")
         .quality()
         .logScale(),
+    scene::mediumStepsParameter(),
     integer("light_samples", 1, {1, 64}, "points",
             "Points on each light with extent, each with its own maps; 1: its centre")
         .quality(),
@@ -56,7 +59,14 @@ class Airlight : public Technique {
         .read(maps.lights, Access::storageLoad, "layers of each light");
     const frame::TextureHandle result =
         pass.write(request.target, Access::imageLoadStore, "light scattered towards the camera");
-    const auto program = pass.program({.files = {"techniques/airlight/airlight.comp.glsl"}, .defines = {}});
+    gpu::ProgramDesc source{.files = {"techniques/airlight/airlight.comp.glsl"}, .defines = {}};
+    const scene::MediumInput medium(inputs.handles, p.integer("medium_steps"));
+    medium.define(source.defines);
+    medium.declare(pass);
+    const scene::LightTextureInput textures(inputs.handles);
+    textures.define(source.defines);
+    textures.declare(pass);
+    const auto program = pass.program(std::move(source));
     pass.execute([=, handles = inputs.handles, depth = inputs.gbuffer.depth, size = inputs.size,
                   steps = p.integer("steps"),
                   count = static_cast<int>(lights.size())](frame::PassContext& context) {
@@ -71,6 +81,8 @@ class Airlight : public Technique {
       context.bindStorage(2, maps.lights);
       context.bindSampled(glsl::gbuffer_unit_depth, depth);
       context.bindSampled(8, maps.depth);
+      medium.bind(context);
+      textures.bind(context);
       context.bindImage(0, result, GL_READ_WRITE);
       context.dispatch(size.x, size.y, 1, 8, 8);
     });

@@ -1,6 +1,7 @@
 // Reflected direct light, each sample of a light shadowed by its own map and reflected by the whole BRDF. Each batch adds
 // its part. MEDIUM 1: times the medium's transmittance from the sample.
 #include "glsl/brdf.glsl"
+#include "glsl/light_texture.glsl"
 #include "glsl/medium_input.glsl"
 #include "glsl/shadow_samples.glsl"
 
@@ -35,11 +36,14 @@ vec3 light_from(VisibilityQuery q, Light light, int l, SurfaceBrdf surface, vec3
     vec3 reflected = brdf(surface, normal, to_viewer, direction) * dot(normal, direction) *
                      sample_irradiance(light, q.light, q.position, offset);
 #if MEDIUM
-    reflected *= maps.origin.w > 0.0 ? transmittance_between(scene_medium(), q.position, maps.origin.xyz)
-                                     : transmittance_to_infinity(scene_medium(), q.position, direction);
+    Medium medium = scene_medium();
+    float inside = maps.origin.w > 0.0 ? medium_length_between(medium, q.position, maps.origin.xyz)
+                                       : medium_length(medium, q.position, direction, 3.0e38);
+    reflected *= medium_transmittance(medium, inside);
 #endif
     sum += reflected;
   }
+  sum *= light_texture(light, q.position);
   return q.light.extended ? sum / float(total_samples) : sum;
 }
 

@@ -1,5 +1,7 @@
 // Area lights as many point samples, each with a shadow map of its own (Brotman and Badler 1984; Haeberli and
 // Akeley 1990): converges to the truth, and is what the soft-shadow techniques are compared with on the GPU.
+#include "core/scene/gpu_medium.h"
+#include "core/scene/light_textures.h"
 #include "core/shadow/sample_batches.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
@@ -70,9 +72,19 @@ class SampledAreaLight : public Technique {
     pass.accumulate = true;
     pass.program = {.files = {"techniques/sampled_area_light/direct.comp.glsl"},
                     .defines = {{"MEDIUM", inputs.scene.medium.present() ? "1" : "0"}}};
-    pass.bind = [bindSamples = pass.bind, lights = static_cast<int>(request.lights.size())](
+    const scene::MediumInput medium(inputs.handles);
+    medium.define(pass.program.defines);
+    const scene::LightTextureInput textures(inputs.handles);
+    textures.define(pass.program.defines);
+    pass.declare = [medium, textures](frame::PassBuilder& builder) {
+      medium.declare(builder);
+      textures.declare(builder);
+    };
+    pass.bind = [medium, textures, bindSamples = pass.bind, lights = static_cast<int>(request.lights.size())](
                     frame::PassContext& context, gpu::Program& program) {
       bindSamples(context, program);
+      medium.bind(context);
+      textures.bind(context);
       program.set("light_count", lights);
     };
     shadow::readSurfaces(pass, inputs.gbuffer);

@@ -23,7 +23,8 @@ void main() {
   vec3 place = ray.start.xyz + ray.start.w * ray.direction.xyz;
   float depth = -(frame.world_to_view * vec4(place, 1.0)).z;
   if (!(depth > 0.0)) return;
-  flux = ray.power.rgb * medium_transmittance(scene_medium(), ray.start.w);
+  Medium medium = scene_medium();
+  flux = ray.power.rgb * medium_transmittance(medium, medium_length(medium, ray.start.xyz, ray.direction.xyz, ray.start.w));
 
   int x = index % buffer_size;
   int y = index / buffer_size % buffer_size;

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/caustics/ray_lines.h"
+#include "core/scene/gpu_medium.h"
 #include "core/technique/technique.h"
 #include "glsl/gbuffer.glsl"
 
@@ -16,6 +17,7 @@ constexpr Parameter parameters[] = {
     caustics::sceneMapSizeParameter(),
     caustics::pathsParameter(),
     caustics::lightSamplesParameter(),
+    scene::mediumStepsParameter(),
     real("kernel", 2, {0.25, 16}, "photon distances", "Radius of a photon's kernel"),
 };
 constexpr StressCase stress[] = {
@@ -40,9 +42,13 @@ class SurfaceCaustics : public Technique {
         graph.createTexture("caustic irradiance",
                             {.format = GL_RGBA32F, .width = inputs.size.x, .height = inputs.size.y}),
         Access::colourAttachment, "flux per area");
-    const auto program = pass.program({.files = {"techniques/surface_caustics/photon.vert.glsl",
-                                                 "techniques/surface_caustics/photon.frag.glsl"},
-                                       .defines = {}});
+    gpu::ProgramDesc desc{.files = {"techniques/surface_caustics/photon.vert.glsl",
+                                    "techniques/surface_caustics/photon.frag.glsl"},
+                          .defines = {}};
+    const scene::MediumInput medium(inputs.handles, inputs.parameters.integer("medium_steps"));
+    medium.define(desc.defines);
+    medium.declare(pass);
+    const auto program = pass.program(std::move(desc));
     pass.execute([=, this, frame = inputs.handles.frame, gbuffer = inputs.gbuffer,
                   kernel = inputs.parameters.real("kernel")](frame::PassContext& context) {
       const gl::Functions& gl = context.gl();
@@ -59,6 +65,7 @@ class SurfaceCaustics : public Technique {
       photons.set("kernel", kernel);
       context.bindUniform(glsl::FrameBlock::binding, frame);
       context.bindStorage(0, rays.rays);
+      medium.bind(context);
       context.bindSampled(glsl::gbuffer_unit_depth, gbuffer.depth);
       context.bindSampled(glsl::gbuffer_unit_geometric_normal, gbuffer.geometricNormal);
       gl.DrawArrays(GL_POINTS, 0, rays.count());

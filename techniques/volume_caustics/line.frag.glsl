@@ -2,13 +2,21 @@
 // it (thesis, section 8.3.3); 1: the light ray's own point.
 #include "glsl/caustics/line_fragment.glsl"
 
+// Density at `distance` on the viewing ray, times the transmittance from there to the camera.
+vec3 scattering_seen(Medium medium, vec3 direction, float distance) {
+  vec3 eye = frame.camera_position.xyz;
+  float density = medium_density(eye + distance * direction);
+  if (density == 0.0) return vec3(0.0);
+  return density * medium_transmittance(medium, medium_length(medium, eye, direction, distance));
+}
+
 #if STEPS > 1
 uniform float step_size;      // scene radii
 uniform float filter_radius;  // steps
 
-// Mean transmittance to the camera over the STEPS regular points of the viewing ray around `distance`, by a Gaussian of
-// standard deviation filter_radius / 2 that is divided by the sum of its weights.
-vec3 shared_transmittance(Medium medium, vec3 direction, float distance) {
+// Mean of density and transmittance to the camera over the STEPS regular points of the viewing ray around `distance`, by a
+// Gaussian of standard deviation filter_radius / 2 that is divided by the sum of its weights.
+vec3 shared_scattering(Medium medium, vec3 direction, float distance) {
   float size = step_size * frame.environment.w;
   float first = floor(distance / size - 0.5 * float(STEPS) + 1.0);
   vec3 sum = vec3(0.0);
@@ -20,7 +28,7 @@ vec3 shared_transmittance(Medium medium, vec3 direction, float distance) {
     float away = (at - distance / size) / filter_radius;
     float closest = nearest / filter_radius;
     float weight = exp(-2.0 * (away * away - closest * closest));
-    sum += weight * medium_transmittance(medium, ball_length(medium.ball, frame.camera_position.xyz, direction, at * size));
+    sum += weight * scattering_seen(medium, direction, at * size);
     total += weight;
   }
   return sum / total;
@@ -37,11 +45,17 @@ void main() {
   float distance = length(from_eye);
   vec3 direction = from_eye / distance;
 #if STEPS > 1
-  vec3 to_eye = shared_transmittance(medium, direction, distance);
+  vec3 seen = shared_scattering(medium, direction, distance);
 #else
-  vec3 to_eye = medium_transmittance(medium, ball_length(medium.ball, frame.camera_position.xyz, direction, distance));
+  vec3 seen = scattering_seen(medium, direction, distance);
 #endif
-  vec3 arriving = ray.power.rgb * medium_transmittance(medium, f.along);
+  if (seen == vec3(0.0)) discard;
+#if MEDIUM_STEPS > 0
+  float along = medium_length(medium, ray.start.xyz, ray.direction.xyz, f.along);
+#else
+  float along = f.along;
+#endif
+  vec3 arriving = ray.power.rgb * medium_transmittance(medium, along);
   float phase = phase_function(medium.g, ray.direction.xyz, -direction);
-  radiance = vec4(arriving * medium.scattering * to_eye * (phase * line_weight(f)), 0.0);
+  radiance = vec4(arriving * medium.scattering * seen * (phase * line_weight(f)), 0.0);
 }

@@ -1,5 +1,6 @@
 // Volume caustics: light that specular objects reflect or refract into the medium, as lines.
 #include "core/caustics/ray_lines.h"
+#include "core/scene/gpu_medium.h"
 #include "core/technique/technique.h"
 
 namespace {
@@ -17,6 +18,7 @@ constexpr Parameter parameters[] = {
     integer("steps", 1, {1, 4}, "steps",
             "Regular points of the viewing ray that share a fragment's light; 1: its place on the light ray"),
     real("step", 0.02, {1e-4, 1}, "scene radii", "Distance between these points"),
+    scene::mediumStepsParameter(),
     real("filter_radius", 1, {0.1, 8}, "steps", "Radius of the Gaussian by which they share"),
 };
 constexpr StressCase stress[] = {
@@ -42,6 +44,7 @@ class VolumeCaustics : public Technique {
         {.technique = info.name,
          .fragmentShader = "techniques/volume_caustics/line.frag.glsl",
          .defines = {{"STEPS", std::to_string(steps)}},
+         .mediumSteps = p.integer("medium_steps"),
          .beams = p.boolean("beams"),
          .bind = [steps, step = p.real("step"), radius = p.real("filter_radius")](gpu::Program& program) {
            if (steps == 1) return;

@@ -54,9 +54,13 @@ void lights(GltfBuilder& b) {
   b.light({{"type", "directional"}}, {{"extras", {{"limn_angle", 0.01}}}});
   b.append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}});
   b.node({{"camera", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1}}});
-  b.append("scenes",
-           {{"nodes", {0, 1, 2, 3}},
-            {"extras", {{"limn_medium", {{"sigma_a", 0.1}, {"sigma_s", {0.1, 0.2, 0.3}}, {"g", 0.5}}}}}});
+  b.append("scenes", {{"nodes", {0, 1, 2, 3}},
+                      {"extras",
+                       {{"limn_medium",
+                         {{"sigma_a", 0.1},
+                          {"sigma_s", {0.1, 0.2, 0.3}},
+                          {"g", 0.5},
+                          {"smoke", {{"low", {-1, 0, -1}}, {"high", {1, 2, 1}}, {"rise", 0.1}}}}}}}});
 }
 
 void materials(GltfBuilder& b) {

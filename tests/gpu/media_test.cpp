@@ -3,56 +3,16 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <algorithm>
-
 #include "core/bench/stress_scene.h"
-#include "core/reference/reference.h"
 #include "core/scene/camera.h"
-#include "tests/gpu/render_test.h"
+#include "tests/gpu/media_harness.h"
 
 namespace limn {
 namespace {
 
 using render::Output;
 
-constexpr int width = 128, height = 96;
-
-class MediaTest : public RenderTest {
- protected:
-  static Image reference(render::Renderer& renderer, const scene::Scene& scene, reference::Term term,
-                         int spp) {
-    reference::Request request{.scene = scene,
-                               .pose = renderer.pose(),
-                               .camera = renderer.pose().cameras.at(0),
-                               .progress = {},
-                               .checkpoint = {}};
-    request.width = width;
-    request.height = height;
-    request.term = term;
-    request.spp = spp;
-    return reference::render(request).image;
-  }
-
-  static double mean(const Image& image) {
-    double sum = 0;
-    for (int y = 0; y < image.height(); ++y)
-      for (int x = 0; x < image.width(); ++x)
-        for (int c = 0; c < 3; ++c) sum += image.at(x, y, c);
-    return sum / (3.0 * image.width() * image.height());
-  }
-
-  static bool sameBits(const Image& a, const Image& b) {
-    return std::equal(a.data().begin(), a.data().end(), b.data().begin(), b.data().end());
-  }
-
-  static std::string stateOf(const render::Renderer& renderer, const std::string& technique,
-                             const std::string& pass) {
-    for (const auto& report : renderer.explain())
-      if (report.technique == technique && report.name == pass)
-        return report.state == frame::PassState::leftOut ? report.reason : "run";
-    return "unknown";
-  }
-};
+class MediaTest : public MediaHarness {};
 
 TEST_F(MediaTest, InScatteredLightIsTheReferencesForEveryPhaseFunction) {
   for (const char* name : {"glass_sphere", "ring", "gem"})

@@ -120,6 +120,7 @@ TEST_F(SharedGlslTest, frameBlockHasOneLayout) {
       LIMN_MEMBER(FrameBlock, view_ray_dy),       LIMN_MEMBER(FrameBlock, environment),
       LIMN_MEMBER(FrameBlock, frame_size),        LIMN_MEMBER(FrameBlock, medium_extinction),
       LIMN_MEMBER(FrameBlock, medium_scattering), LIMN_MEMBER(FrameBlock, medium_ball),
+      LIMN_MEMBER(FrameBlock, medium_to_box),
   };
   for (const Member& member : members) {
     EXPECT_EQ(size_t(property(program, GL_UNIFORM, std::string("FrameBlock.") + member.name, GL_OFFSET)),
@@ -161,13 +162,13 @@ TEST_F(SharedGlslTest, uniformBlocksRoundTrip) {
   const gpu::Program& program = mounted(
       "layout(std430, binding = 1) buffer Result {\n"
       "  mat4 a; mat4 b; mat4 c; vec4 d; vec4 e; vec4 f; vec4 g; vec4 h; uvec4 i;\n  vec4 j; vec4 k; vec4 "
-      "l;\n};\n"
+      "l; mat4 m;\n};\n"
       "void main() {\n"
       "  a = frame.world_to_clip; b = frame.clip_to_world; c = frame.world_to_view; d = "
       "frame.camera_position;\n"
       "  e = frame.view_ray_origin; f = frame.view_ray_dx; g = frame.view_ray_dy; h = frame.environment;\n"
       "  i = frame.frame_size; j = frame.medium_extinction;\n"
-      "  k = frame.medium_scattering; l = frame.medium_ball;\n}\n");
+      "  k = frame.medium_scattering; l = frame.medium_ball; m = frame.medium_to_box;\n}\n");
   const gpu::Buffer uniforms(device(), "frame", sizeof block, gpu::BufferUse::fixed, &block);
   const gpu::Buffer result(device(), "result", sizeof block);
   gl().BindBufferBase(GL_UNIFORM_BUFFER, glsl::FrameBlock::binding, uniforms.id());

@@ -29,12 +29,21 @@ using nlohmann::json;
 
 const fs::path kAssets = fs::path(limn::test::binaryDir) / "assets";
 const char* const kScenes[] = {
-    "atrium",        "atrium_robots",  "balls",        "balls_sky",    "chess",   "cornell_box",
-    "cornell_horse", "flying_dragon",  "foliage_card", "frog",         "gem",     "glass_sphere",
-    "glass_statue",  "glossy_sphere",  "lights",       "metaballs",    "monster", "patrol",
-    "plant",         "ring",           "robot",        "soldiers",     "statue",  "teapot",
-    "teapot_coarse", "teapot_pattern", "water",        "white_furnace"};
+    "atrium",        "atrium_robots", "balls",        "balls_sky",     "chess",         "cornell_box",
+    "cornell_horse", "flying_dragon", "foliage_card", "frog",          "gem",           "gem_2_lights",
+    "gem_4_lights",  "glass_sphere",  "glass_statue", "glossy_sphere", "lights",        "metaballs",
+    "monster",       "patrol",        "plant",        "ring",          "robot",         "smoke",
+    "soldiers",      "stained_light", "statue",       "teapot",        "teapot_coarse", "teapot_pattern",
+    "water",         "white_furnace"};
 const std::set<std::string> kUnderEnvironments = {"balls_sky", "patrol", "white_furnace"};
+
+/// Of the scenes that are not lit by an environment.
+std::size_t lightsOf(const std::string& scene) {
+  const std::map<std::string, std::size_t> several = {
+      {"gem_2_lights", 2}, {"gem_4_lights", 4}, {"lights", 5}};
+  const auto found = several.find(scene);
+  return found == several.end() ? 1 : found->second;
+}
 
 std::string bytesOf(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -317,7 +326,7 @@ TEST(Assets, TheLoaderTakesEverySceneWithoutAWarning) {
     EXPECT_EQ(scene.triangles(), Glb(name).trianglesShown());
     const limn::scene::Pose pose = limn::scene::evaluate(scene, 0.5);
     const bool sky = kUnderEnvironments.count(name) > 0;
-    EXPECT_EQ(pose.lights.size(), sky ? 0u : std::string(name) == "lights" ? 5u : 1u);
+    EXPECT_EQ(pose.lights.size(), sky ? 0u : lightsOf(name));
     if (!pose.lights.empty()) {
       EXPECT_THAT(pose.lightNames, testing::Contains("key"));
     }

@@ -112,7 +112,7 @@ TEST(Ball, LengthOfARayInside) {
 
 TEST(Ball, TransmittanceOfASlabIsExponentialAndNeverOverflows) {
   const Medium m{vec3(0.5f, 1, 1000), vec3(0), 0, vec4(0, 0, 0, 1)};
-  const vec3 t = transmittance_between(m, vec3(-3, 0, 0), vec3(3, 0, 0));
+  const vec3 t = medium_transmittance(m, ball_length_between(m.ball, vec3(-3, 0, 0), vec3(3, 0, 0)));
   EXPECT_NEAR(t.x, std::exp(-1.0), 1e-6);
   EXPECT_NEAR(t.y, std::exp(-2.0), 1e-6);
   EXPECT_EQ(t.z, 0);

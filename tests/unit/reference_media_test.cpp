@@ -3,7 +3,9 @@
 
 #include <cmath>
 
+#include "core/reference/ray_scene.h"
 #include "glsl/airlight.glsl"
+#include "tests/support/density_grids.h"
 #include "tests/unit/reference_scene.h"
 
 namespace limn::reference {
@@ -34,6 +36,103 @@ TEST(ReferenceMedia, ASlabAttenuatesExponentiallyOnBothWays) {
     EXPECT_NEAR(double(dim.at(7, 7, c)) / double(clear.at(7, 7, c)),
                 std::exp(-double(world.scene.medium.sigmaA[c]) * path), 1e-3)
         << c;
+}
+
+/// Density y + 1/2, where that is not negative.
+scene::DensityGrid ramp() {
+  return limn::test::gridOf({2, 48, 2}, vec3(-3), vec3(3),
+                            [](const vec3& p) { return std::max(p.y + 0.5f, 0.f); });
+}
+
+TEST(ReferenceMedia, ARampAttenuatesByItsIntegral) {
+  World world = floorWorld();
+  world.addLight(glsl::light_point, {0, 1, 0}, {0, -1, 0}, vec3(1));
+  const Image clear = render(world.request(15, Term::direct, 2)).image;
+  world.scene.medium.sigmaA = vec3(0.05f, 0.3f, 1);
+  scene::setGrid(world.scene.medium, ramp());
+  const Image dim = render(world.request(15, Term::direct, 2)).image;
+  const double border = std::sqrt(8.0), length = 1 + 0.5 * border * border + 0.5 * border;
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(double(dim.at(7, 7, c)) / double(clear.at(7, 7, c)),
+                std::exp(-double(world.scene.medium.sigmaA[c]) * length), 1e-3)
+        << c;
+}
+
+TEST(ReferenceMedia, AGridOfOneDensityIsHomogeneous) {
+  World world = floorWorld();
+  world.addInstance(world.addMesh(World::sphere(64, addGlass(world, 1.5f))),
+                    glm::translate(glm::mat4(1), vec3(0, 1, 0)) * glm::scale(glm::mat4(1), vec3(0.3f)));
+  world.addLight(glsl::light_point, {0.3f, 2.2f, 0.1f}, {0, -1, 0}, vec3(3));
+  world.scene.medium.g = 0.4f;
+  for (const Term term : {Term::media, Term::caustic, Term::direct, Term::final}) {
+    world.scene.medium.sigmaA = vec3(0.2f);
+    world.scene.medium.sigmaS = vec3(0.4f);
+    world.scene.medium.grid.reset();
+    const Image homogeneous = render(world.request(16, term, 16)).image;
+    world.scene.medium.sigmaA = vec3(0.1f);
+    world.scene.medium.sigmaS = vec3(0.2f);
+    scene::setGrid(world.scene.medium, limn::test::constantGrid(world.pose.bounds, 2));
+    EXPECT_LT(largestDifference(homogeneous, render(world.request(16, term, 16)).image, "R"), 2e-3)
+        << name(term);
+  }
+}
+
+TEST(ReferenceMedia, AirlightInARampMeetsQuadrature) {
+  World world = floorWorld();
+  world.scene.medium.sigmaA = vec3(0.1f);
+  world.scene.medium.sigmaS = vec3(0.3f);
+  scene::setGrid(world.scene.medium, ramp());
+  const vec3 light(world.addLight(glsl::light_point, {0.3f, 1.2f, 0.1f}, {0, -1, 0}, vec3(3)).position);
+  world.camera = scene::lookAt({0, 1, 2.5f}, {0, 1, 0}, 0.6f);
+  constexpr int size = 4;
+  const Image image = render(world.request(size, Term::media, 2048)).image;
+  glsl::FrameBlock frame{};
+  scene::setCamera(frame, world.camera, world.pose.bounds, size, size);
+  const vec3 eye(frame.camera_position);
+  // Of the density along a line whose height goes from a to b (both above the ramp's foot).
+  const auto inside = [](double a, double b, double length) { return (0.5 * (a + b) + 0.5) * length; };
+  for (int y = 0; y < size / 2; ++y)  // above the horizon: nothing ends the view
+    for (int x = 0; x < size; ++x) {
+      const vec3 w = glm::normalize(viewRay(frame, float(x), float(size - 1 - y)));
+      const double end = double(glsl::ball_range(glm::vec4(0, 0, 0, std::sqrt(8.f)), eye, w).y);
+      double expected = 0;
+      constexpr int steps = 20000;
+      for (int i = 0; i < steps; ++i) {
+        const double t = (i + 0.5) * end / steps;
+        const vec3 p = eye + float(t) * w, d = p - light;
+        const double r = double(glm::length(d)), height = double(p.y);
+        const double path = inside(double(eye.y), height, t) + inside(double(light.y), height, r);
+        expected += end / steps * 0.3 * (height + 0.5) * 3 / (4 * M_PI) * std::exp(-0.4 * path) / (r * r);
+      }
+      EXPECT_NEAR(double(image.at(x, y, 0)) / expected, 1, 0.02) << x << " " << y;
+    }
+}
+
+TEST(ReferenceMedia, ASpotShinesThroughItsTexture) {
+  World world = floorWorld();
+  glsl::Light& light = world.addLight(glsl::light_spot, {0, 1, 0}, {0, -1, 0}, vec3(1));
+  light.info.y = glsl::light_flag_cone;
+  light.cone = glm::vec4(0.8f, 0.6f, 0, 0);
+  light.axis_u = glm::vec4(1, 0, 0, 0);
+  light.axis_v = glm::vec4(0, 0, -1, 0);
+  world.camera = scene::lookAt({0, 2, 0}, {0, 0, 0}, 0.6f);  // up the picture is -z, as up the texture
+  const Image clear = render(world.request(16, Term::direct, 2)).image;
+  scene::LightTexture texture;
+  constexpr int side = scene::LightTexture::side;
+  for (int i = 0; i < side * side; ++i)
+    texture.texels.emplace_back((float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side, 1);
+  world.scene.lightTextures = {texture};
+  light.direction.w = 1;
+  const Image tinted = render(world.request(16, Term::direct, 2)).image;
+  const double tangent = 0.8 / 0.6;
+  for (int y = 0; y < 16; y += 3)
+    for (int x = 0; x < 16; x += 3) {
+      const glm::dvec3 p = positionOf(world, clear, x, y);
+      const auto factor = [&](int c) { return double(tinted.at(x, y, c)) / double(clear.at(x, y, c)); };
+      EXPECT_NEAR(factor(0), 0.5 + 0.5 * p.x / tangent, 3e-3);
+      EXPECT_NEAR(factor(1), 0.5 - 0.5 * p.z / tangent, 3e-3);
+      EXPECT_NEAR(factor(2), 1, 1e-5);
+    }
 }
 
 TEST(ReferenceMedia, AMediumOfThousandsOfMeanFreePathsIsBlack) {

@@ -297,6 +297,41 @@ TEST(SceneLoad, Medium) {
   EXPECT_EQ(scene.medium.sigmaS, glm::vec3(1, 2, 3));
   EXPECT_EQ(scene.medium.g, 0.5f);
   EXPECT_TRUE(scene.medium.present());
+  EXPECT_FALSE(scene.medium.inhomogeneous());
+}
+
+TEST(SceneLoad, Smoke) {
+  GltfBuilder b;
+  const json smoke = {{"low", {-1, 0, -2}}, {"high", {1, 3, 2}}, {"whirl", 0.5},
+                      {"rise", 0.25},       {"seed", 7},         {"resolution", 40}};
+  b.append("scenes", {{"extras", {{"limn_medium", {{"sigma_s", 1}, {"smoke", smoke}}}}}});
+  const Scene scene = loadBuilt(b);
+  ASSERT_TRUE(scene.medium.inhomogeneous());
+  EXPECT_EQ(scene.medium.smoke->low, glm::vec3(-1, 0, -2));
+  EXPECT_EQ(scene.medium.smoke->high, glm::vec3(1, 3, 2));
+  EXPECT_EQ(scene.medium.smoke->whirl, 0.5f);
+  EXPECT_EQ(scene.medium.smoke->rise, 0.25f);
+  EXPECT_EQ(scene.medium.smoke->seed, 7u);
+  EXPECT_EQ(scene.medium.smoke->resolution, 40);
+}
+
+TEST(SceneLoad, SpotsShineThroughTextures) {
+  GltfBuilder b;
+  b.texturedMaterial(png(2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255}));
+  b.light({{"type", "spot"}, {"spot", {{"outerConeAngle", 0.5}}}, {"extras", {{"limn_texture", 0}}}});
+  b.light({{"type", "spot"}, {"spot", {{"outerConeAngle", 0.5}}}, {"extras", {{"limn_texture", 0}}}});
+  b.light({{"type", "point"}, {"extras", {{"limn_texture", 0}}}});
+  const Scene scene = loadBuilt(b);
+  ASSERT_EQ(scene.lightTextures.size(), 1u) << "one image is one texture";
+  EXPECT_EQ(scene.lights[0].texture, 0);
+  EXPECT_EQ(scene.lights[1].texture, 0);
+  EXPECT_EQ(scene.lights[2].texture, none);
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("only spots")));
+  const auto& texels = scene.lightTextures[0].texels;
+  constexpr int side = scene::LightTexture::side;
+  EXPECT_EQ(texels[0], glm::vec3(0, 0, 1)) << "lower left";
+  EXPECT_EQ(texels[side - 1], glm::vec3(1));
+  EXPECT_EQ(texels[size_t{side} * (side - 1)], glm::vec3(1, 0, 0)) << "upper left";
 }
 
 TEST_F(SceneFile, EnvironmentBesideTheScene) {
