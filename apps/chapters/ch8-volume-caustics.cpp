@@ -3,7 +3,7 @@
 
 int main(int argc, char** argv) {
   using limn::app::ChapterSetting;
-  constexpr const char* suites[] = {"ch8_figures", "ch8"};
+  constexpr const char* suites[] = {"ch8_figures", "ch8", "ch8_smoke"};
   constexpr const char* whole = "hard_shadow_map,airlight,surface_caustics,volume_caustics";
   constexpr ChapterSetting settings[] = {
       {"All parts", whole, "", "Airlight, volume caustics and surface caustics add up."},
