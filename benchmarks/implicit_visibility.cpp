@@ -1,12 +1,16 @@
 // How the stages of implicit visibility grow with the number of surface elements, through the hierarchy and
 // for every pair: a wavy body over a floor, 6 x 16 x 16 bins, all cores. Arguments: elements, 1 for the
-// published way to fill bins.
+// published way to fill bins. And table 4.1: the stages of the monster's links, by bins.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <filesystem>
 
 #include "core/radiosity/illumination.h"
+#include "core/radiosity/scene_elements.h"
+#include "core/scene/load.h"
 #include "tests/support/radiosity_meshes.h"
 
 namespace {
@@ -66,6 +70,35 @@ void illumination(benchmark::State& state) {
   }
 }
 
+/// Table 4.1 but for the illumination, which is the GPU's. Links told apart by their share of the cores'
+/// time.
+void monster(benchmark::State& state) {
+  const scene::Scene scene = scene::load(std::filesystem::path(LIMN_ASSETS) / "monster" / "monster.glb");
+  const scene::Pose pose = scene::evaluate(scene, 0);
+  SceneElements elements(scene, pose, 0.05f, 1u << 20);
+  Links made;
+  LinkTimes all;
+  double updating = 0, linking = 0;
+  for (auto _ : state) {
+    const auto begin = std::chrono::steady_clock::now();
+    elements.update(pose);
+    const auto updated = std::chrono::steady_clock::now();
+    made.build(elements.forest(), {.resolution = static_cast<int>(state.range(0))});
+    const auto linked = std::chrono::steady_clock::now();
+    updating += std::chrono::duration<double, std::milli>(updated - begin).count();
+    linking += std::chrono::duration<double, std::milli>(linked - updated).count();
+    all += made.times();
+  }
+  const auto frames = static_cast<double>(state.iterations());
+  const double share = linking / frames / (all.create + all.inherit + all.refine + all.close);
+  state.counters["elements"] = static_cast<double>(elements.forest().leafOf().size());
+  state.counters["update_ms"] = updating / frames;
+  state.counters["create_ms"] = share * all.create;
+  state.counters["push_down_ms"] = share * all.inherit;
+  state.counters["refine_ms"] = share * all.refine;
+  state.counters["close_ms"] = share * all.close;
+}
+
 /// The thesis's 2.5k vertices, and up to 64k.
 void sizes(benchmark::internal::Benchmark* b) {
   for (const int published : {0, 1})
@@ -77,6 +110,7 @@ BENCHMARK(update)->Apply(sizes);
 BENCHMARK(links<false>)->Apply(sizes);
 BENCHMARK(links<true>)->Apply(sizes);
 BENCHMARK(illumination)->Apply(sizes);
+BENCHMARK(monster)->Arg(8)->Arg(12)->Arg(16)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 

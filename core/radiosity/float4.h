@@ -16,6 +16,14 @@ inline Float4 load(const float* values) {
   std::memcpy(&r, values, sizeof r);
   return r;
 }
+inline Int4 loadInts(const uint32_t* values) {
+  Int4 r;
+  std::memcpy(&r, values, sizeof r);
+  return r;
+}
+inline Float4 splat(float value) {
+  return Float4{value, value, value, value};
+}
 inline Float4 root(Float4 v) {
 #ifdef __SSE__
   return __builtin_ia32_sqrtps(v);

@@ -15,6 +15,10 @@ inline Float4 lanes(const glm::vec4& v) {
   return load(&v.x);
 }
 
+inline Float4 lesser(Float4 a, Float4 b) {
+  return a < b ? a : b;
+}
+
 /// An element as the near end of links.
 struct Receiver {
   glm::vec3 position{0}, normal{0};
@@ -67,13 +71,15 @@ class LinkTest {
     const uint32_t visible = laneMask(facing) & ((1u << g.info.y) - 1);
     if (visible == 0) return d;
 
-    // Solid angle of the bin: angle major^3 / distance^3; opened while extent / distance^2 is more.
+    // Solid angle of the bin: angle major^3 / distance^3; opened while that of the element, extent cosine /
+    // distance^2, is more. Receivers' own tilt does not count: across it directions differ all the same.
     const Float4 major = greater(greater(magnitude(d.x), magnitude(d.y)), magnitude(d.z)),
                  major2 = major * major;
     const Float4 limit = angle2_ * major2 * major2 * major2;
     const Float4 radius = lanes(g.radius), extent = greater(lanes(g.area), radius * radius);
     if (g.info.x != glsl::no_link || !r.leaf) {
-      const Int4 tooLarge = extent * extent * d.distance2 >= limit;
+      const Float4 shown = lesser(magnitude(d.height) + lanes(g.spread) * distance, distance);
+      const Int4 tooLarge = extent * extent * shown * shown >= limit;
       const Int4 receiverTooLarge = r.extent * r.extent * d.distance2 >= limit;
       const uint32_t deferrable = r.leaf ? 0 : laneMask(receiverTooLarge);
       if (g.info.x != glsl::no_link) {

@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <bit>
+#include <chrono>
 #include <limits>
 
 #include "core/base/error.h"
@@ -23,6 +24,19 @@ uint32_t waiting(uint32_t group, uint32_t lanes) {
   return group << 4 | lanes;
 }
 
+/// Adds the time from one call to the next to what the work between them counts as, ms.
+class Stopwatch {
+ public:
+  void add(double& to) {
+    const auto now = std::chrono::steady_clock::now();
+    to += std::chrono::duration<double, std::milli>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
 /// A receiver that is not a leaf: its bins, and what waits for its children.
 struct Inner {
   std::vector<float> distance2;
@@ -40,6 +54,7 @@ struct Branch {
   std::vector<uint32_t> stack;
   std::vector<float> distance2;  ///< of the leaf in work
   Inner inner[coarseLevel];      ///< [level]; [0] unused
+  LinkTimes times;
 };
 
 }  // namespace
@@ -78,24 +93,31 @@ class Traversal {
     }
   }
 
-  void inner(uint32_t slot, const Inner& parent, Inner& own, std::vector<uint32_t>& stack) const {
+  void inner(uint32_t slot, const Inner& parent, Inner& own, Branch& b) const {
+    Stopwatch watch;
     std::copy(parent.distance2.begin(), parent.distance2.end(), own.distance2.begin());
     std::copy(parent.links.begin(), parent.links.end(), own.links.begin());
+    watch.add(b.times.inherit);
     own.waiting.clear();
-    visit(slot, parent.waiting, own.bins(), stack, &own.waiting);
+    visit(slot, parent.waiting, own.bins(), b.stack, &own.waiting);
+    watch.add(b.times.create);
   }
 
   /// An element below coarseLevel and all below it.
   void branch(uint32_t slot, size_t level, const Inner& parent, Branch& b) const {
     if (level == 0) {
+      Stopwatch watch;
       const Bins bins{b.distance2.data(), out_ + static_cast<size_t>(slot) * parent.links.size()};
       std::copy(parent.distance2.begin(), parent.distance2.end(), bins.distance2);
       std::copy(parent.links.begin(), parent.links.end(), bins.links);
+      watch.add(b.times.inherit);
       visit(slot, parent.waiting, bins, b.stack, nullptr);
+      watch.add(b.times.refine);
       filler_.close(bins);
+      watch.add(b.times.close);
       return;
     }
-    inner(slot, parent, b.inner[level], b.stack);
+    inner(slot, parent, b.inner[level], b);
     const uint32_t children = groups_[slot / 4].info.x + slot % 4;
     for (uint32_t lane = 0; lane < groups_[children].info.y; ++lane)
       branch(4 * children + lane, level - 1, b.inner[level], b);
@@ -114,15 +136,21 @@ class Traversal {
 
  private:
   void link(Bins bins, const glsl::ElementGroup& group, uint32_t g, const Decision& d, uint32_t lanes) const {
-    for (lanes &= 15; lanes != 0; lanes &= lanes - 1) {
-      const int k = std::countr_zero(lanes);
-      const uint32_t slot = 4 * g + static_cast<uint32_t>(k);
-      filler_.fill(bins, {.offset = {d.x[k], d.y[k], d.z[k]},
-                          .normal = {group.nx[k], group.ny[k], group.nz[k]},
-                          .distance2 = d.distance2[k],
-                          .disc = group.disc[k],
-                          .link = group.info.z != 0 && d.height[k] > 0 ? slot | glsl::link_back : slot});
-    }
+    lanes &= 15;
+    if (lanes == 0) return;
+    Candidates c{.x = d.x,
+                 .y = d.y,
+                 .z = d.z,
+                 .nx = radiosity::lanes(group.nx),
+                 .ny = radiosity::lanes(group.ny),
+                 .nz = radiosity::lanes(group.nz),
+                 .distance2 = d.distance2,
+                 .height = d.height,
+                 .disc = radiosity::lanes(group.disc),
+                 .links = {}};
+    const uint32_t backs = group.info.z != 0 ? laneMask(d.height > 0.f) : 0;
+    for (uint32_t k = 0; k < 4; ++k) c.links[k] = (4 * g + k) | ((backs >> k & 1) != 0 ? glsl::link_back : 0);
+    filler_.fill(bins, c, lanes);
   }
 
   std::span<const glsl::ElementGroup> groups_;
@@ -164,6 +192,7 @@ void Links::build(const Forest& forest, const LinkSettings& settings) {
   const auto groups = forest.groups();
   const auto parents = forest.parents();
   const auto levels = forest.levels();
+  for (Branch& b : s.branches) b.times = {};
   s.nothing.reserve(binCount());
   BinFiller(settings).clear(s.nothing.bins());
   s.nothing.waiting.clear();
@@ -188,7 +217,7 @@ void Links::build(const Forest& forest, const LinkSettings& settings) {
                         if (slot % 4 >= groups[slot / 4].info.y) return;
                         Inner& own = s.coarse[slot - 4 * firstCoarse];
                         own.reserve(binCount());
-                        traversal.inner(slot, parentOf(slot / 4), own, local().stack);
+                        traversal.inner(slot, parentOf(slot / 4), own, local());
                       });
 
   // The branches below: of elements with a coarse parent, and of small clusters.
@@ -203,6 +232,8 @@ void Links::build(const Forest& forest, const LinkSettings& settings) {
     while (level + 1 < levels.size() && slot / 4 >= levels[level + 1].first) ++level;
     traversal.branch(slot, level, parentOf(slot / 4), local());
   });
+  times_ = {};
+  for (const Branch& b : s.branches) times_ += b.times;
 }
 
 }  // namespace limn::radiosity

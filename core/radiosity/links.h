@@ -22,8 +22,21 @@ struct LinkSettings {
   int resolution = 16;  ///< N of the 6 x N x N bins, 4 to 32
   Fill fill = Fill::footprint;
   /// Elements are opened while their solid angle exceeds this many times the bin's; 1: as published.
-  float opening = 1;
+  float opening = 2;
   bool operator==(const LinkSettings&) const = default;
+};
+
+/// What a build took, ms of one core: that of all cores together.
+struct LinkTimes {
+  double create = 0;   ///< links of elements above the leaves (thesis: create links)
+  double inherit = 0;  ///< their parents' links, copied to them and to leaves (push down)
+  double refine = 0;   ///< shorter links of leaves (refine)
+  double close = 0;    ///< single empty bins filled
+
+  LinkTimes& operator+=(const LinkTimes& other) {
+    create += other.create, inherit += other.inherit, refine += other.refine, close += other.close;
+    return *this;
+  }
 };
 
 /// For every leaf and bin the element that the leaf sees there: its slot in the forest, with glsl::link_back
@@ -44,6 +57,9 @@ class LIMN_API Links {
   /// Every pair of leaves is tried.
   void buildFlat(const Forest& forest, const LinkSettings& settings);
 
+  /// Of the last build through the hierarchy.
+  const LinkTimes& times() const { return times_; }
+
   int resolution() const { return resolution_; }
   size_t binCount() const { return 6 * static_cast<size_t>(resolution_) * static_cast<size_t>(resolution_); }
   /// leafSlots * binCount(), leaf after leaf. Rows of unused leaves hold nothing of meaning.
@@ -58,6 +74,7 @@ class LIMN_API Links {
 
   int resolution_ = 0;
   std::vector<uint32_t> links_;
+  LinkTimes times_;
   std::unique_ptr<Scratch> scratch_;
 };
 

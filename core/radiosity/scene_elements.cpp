@@ -95,7 +95,8 @@ SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose,
   forest_ = Forest(surfels_);
   for (const uint32_t corner : surfels_.triangles) triangles_.push_back(forest_.leafOf()[corner]);
   leaves_.resize(forest_.leafSlots());
-  setAlbedo();
+  materials_.resize(forest_.leafSlots());
+  setMaterials();
   moveSurfels();
 }
 
@@ -144,7 +145,7 @@ void SceneElements::moveSurfels() {
   });
 }
 
-void SceneElements::setAlbedo() {
+void SceneElements::setMaterials() {
   for (size_t i = 0; i < surfels_.size(); ++i) {
     const Instance& instance = instances_[surfels_.objects[i]];
     const scene::Primitive& primitive = *instance.primitive;
@@ -182,7 +183,10 @@ void SceneElements::setAlbedo() {
         glm::clamp(material.roughness * metalRough.g, 0.f, 1.f),
         glm::clamp(material.specularFactor, 0.f, 1.f), glm::clamp(material.specularColour, 0.f, 1.f),
         material.ior);
-    leaves_[forest_.leafOf()[i]].albedo = glm::vec4(glsl::hemispherical_reflectance(brdf), 0);
+    const uint32_t leaf = forest_.leafOf()[i];
+    leaves_[leaf].albedo = glm::vec4(glsl::hemispherical_reflectance(brdf), 0);
+    materials_[leaf] = {glm::vec4(brdf.diffuse, brdf.alpha), glm::vec4(brdf.f0, brdf.f90),
+                        glm::vec4(brdf.dielectric_f0, brdf.dielectric_f90, 0, 0)};
   }
 }
 

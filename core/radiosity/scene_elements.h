@@ -22,6 +22,14 @@ struct Leaf {
   glm::vec4 albedo{0};    ///< rgb: hemispherical reflectance; textures averaged over the disc
 };
 
+/// What a leaf's surface reflects with, textures averaged over the disc (storage buffer element): a
+/// glsl::SurfaceBrdf. Specular surfaces reflect nothing.
+struct LeafMaterial {
+  glm::vec4 diffuse{0};     ///< rgb; w: alpha, 0..1
+  glm::vec4 f0{0};          ///< rgb; w: f90
+  glm::vec4 dielectric{0};  ///< x: dielectric_f0, y: dielectric_f90
+};
+
 class LIMN_API SceneElements {
  public:
   /// `longestEdge`: longer edges of triangles are halved; in radii of the scene. All lengths are in units of
@@ -39,6 +47,8 @@ class LIMN_API SceneElements {
   const Surfels& surfels() const { return surfels_; }
   const Forest& forest() const { return forest_; }
   std::span<const Leaf> leaves() const { return leaves_; }
+  /// Of each leaf slot.
+  std::span<const LeafMaterial> materials() const { return materials_; }
   /// Of the mesh between the surfels: 3 leaf slots per triangle, front faces counter-clockwise; double-sided
   /// surfaces have one for each side.
   std::span<const uint32_t> triangles() const { return triangles_; }
@@ -47,7 +57,7 @@ class LIMN_API SceneElements {
   struct Instance;
   void moveInstances(const scene::Pose& pose);
   void moveSurfels();
-  void setAlbedo();
+  void setMaterials();
 
   const scene::Scene& scene_;
   ElementSpace space_;
@@ -55,6 +65,7 @@ class LIMN_API SceneElements {
   Surfels surfels_;
   Forest forest_;
   std::vector<Leaf> leaves_;
+  std::vector<LeafMaterial> materials_;
   std::vector<uint32_t> triangles_;
 };
 

@@ -1,4 +1,5 @@
-// What leaves reflect of the lights and of the environment, and so send on.
+// What leaves reflect of the lights and of the environment, and so send on. With GLOSSY a thread for each direction, and
+// lights alone.
 #include "glsl/unshadowed_light.glsl"
 #include "techniques/implicit_visibility/elements.glsl"
 
@@ -11,27 +12,39 @@ layout(std430, binding = 3) writeonly buffer Outgoing { vec4 outgoing[]; };  // 
 layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };
 layout(std430, binding = 5) readonly buffer Seen { float seen[]; };
 #endif
-#if ENVIRONMENT
+#if ENVIRONMENT && !GLOSSY
 layout(std430, binding = 6) readonly buffer Sky { vec4 sky[]; };
+#endif
+#if GLOSSY
+layout(std430, binding = 7) readonly buffer Materials { LeafMaterial materials[]; };
 #endif
 uniform uint slots;
 uniform uint light_count;
 
 void main() {
-  uint slot = gl_GlobalInvocationID.x;
+  uint item = sent_item();
+  uint slot = item / sent_count;
   if (slot >= slots) return;
   Leaf leaf = leaves[slot];
-  vec3 sum = vec3(0.0);
-  if (leaf.vertex.w > 0.0) {
-#if LIGHTS
-    SurfaceBrdf white = surface_brdf(vec3(1.0), 0.0, 1.0, 0.0, vec3(1.0), 1.5);
-    vec3 n = leaf.normal.xyz;
-    for (uint l = 0u; l < light_count; ++l)
-      sum += seen[l * slots + slot] * unshadowed_light(lights[indices[l]], white, leaf.position.xyz, n, n, n);
+  vec3 n = leaf.normal.xyz;
+#if GLOSSY
+  SurfaceBrdf surface = binned_brdf(materials[slot]);
+  vec3 view = from_bins(sent_direction(item % sent_count));
+  bool sends = leaf.vertex.w > 0.0 && dot(view, n) > 0.0;
+#else
+  SurfaceBrdf surface = surface_brdf(leaf.albedo.rgb, 0.0, 1.0, 0.0, vec3(1.0), 1.5);
+  vec3 view = n;
+  bool sends = leaf.vertex.w > 0.0;
 #endif
-#if ENVIRONMENT
-    sum += sky[slot].rgb * inverse_pi;
+  vec3 sum = vec3(0.0);
+  if (sends) {
+#if LIGHTS
+    for (uint l = 0u; l < light_count; ++l)
+      sum += seen[l * slots + slot] * unshadowed_light(lights[indices[l]], surface, leaf.position.xyz, n, n, view);
+#endif
+#if ENVIRONMENT && !GLOSSY
+    sum += leaf.albedo.rgb * sky[slot].rgb * inverse_pi;
 #endif
   }
-  direct[slot] = outgoing[slot] = vec4(leaf.albedo.rgb * sum, 0.0);
+  direct[item] = outgoing[item] = vec4(sum, 0.0);
 }

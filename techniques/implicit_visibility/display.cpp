@@ -9,7 +9,7 @@ namespace limn::implicit_visibility {
 
 using frame::Access;
 
-frame::TextureHandle Display::lookup(const DisplayRequest& r) {
+frame::TextureHandle Display::lookup(const PassRequest& r) {
   if (lookup_) return lookup_;
   frame::PassBuilder pass = r.graph.addPass("surface lookup", technique_);
   pass.read(r.inputs.handles.frame, Access::uniformBuffer, "camera")
@@ -53,7 +53,7 @@ frame::TextureHandle Display::lookup(const DisplayRequest& r) {
   return lookup_;
 }
 
-frame::TextureHandle Display::visibility(const DisplayRequest& r, frame::BufferHandle seen) {
+frame::TextureHandle Display::visibility(const PassRequest& r, frame::BufferHandle seen) {
   const frame::TextureHandle around = lookup(r);
   frame::PassBuilder pass = r.graph.addPass("visibility", technique_);
   pass.read(r.inputs.handles.frame, Access::uniformBuffer, "camera")
@@ -78,14 +78,14 @@ frame::TextureHandle Display::visibility(const DisplayRequest& r, frame::BufferH
   return result;
 }
 
-frame::TextureHandle Display::light(const DisplayRequest& r, const Gathered& light) {
+frame::TextureHandle Display::light(const PassRequest& r, const Gathered& light) {
   if (r.inputs.parameters.choice("display") == 0) return show(r, light, nullptr);
   frame::TextureHandle target = r.target;
   for (const LinkChunk& chunk : elements_.chunks) target = show({r.graph, r.inputs, target}, light, &chunk);
   return target;
 }
 
-frame::TextureHandle Display::show(const DisplayRequest& r, const Gathered& light, const LinkChunk* chunk) {
+frame::TextureHandle Display::show(const PassRequest& r, const Gathered& light, const LinkChunk* chunk) {
   const GBuffer& g = r.inputs.gbuffer;
   const frame::TextureHandle around = lookup(r);
   frame::PassBuilder pass = r.graph.addPass(chunk ? "gather per pixel" : "interpolate", technique_);

@@ -7,19 +7,6 @@
 
 namespace limn::implicit_visibility {
 
-/// A picture to add to.
-struct DisplayRequest {
-  frame::FrameGraph& graph;
-  const TechniqueInputs& inputs;
-  frame::TextureHandle target;
-};
-
-/// What arrives at leaves, and where it comes from: radiance of elements, or of bins.
-struct Gathered {
-  frame::BufferHandle irradiance, source;
-  bool sky = false;
-};
-
 /// Must outlive the graph.
 class Display {
  public:
@@ -27,15 +14,15 @@ class Display {
       : elements_(elements), technique_(technique) {}
 
   /// Writes V of a batch of lights; `seen`: V of each leaf, light after light.
-  frame::TextureHandle visibility(const DisplayRequest& r, frame::BufferHandle seen);
+  frame::TextureHandle visibility(const PassRequest& r, frame::BufferHandle seen);
   /// Adds reflected light, by the technique's parameter `display`.
-  frame::TextureHandle light(const DisplayRequest& r, const Gathered& light);
+  frame::TextureHandle light(const PassRequest& r, const Gathered& light);
 
  private:
   /// Which leaves lie around each pixel: the triangles between them, where they meet the G-buffer's surface.
-  frame::TextureHandle lookup(const DisplayRequest& r);
+  frame::TextureHandle lookup(const PassRequest& r);
   /// From the irradiance of vertices, or by the bins of `chunk`.
-  frame::TextureHandle show(const DisplayRequest& r, const Gathered& light, const LinkChunk* chunk);
+  frame::TextureHandle show(const PassRequest& r, const Gathered& light, const LinkChunk* chunk);
 
   const ElementPasses& elements_;
   std::string_view technique_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/base/error.h"
 #include "core/radiosity/illumination.h"
 #include "core/scene/gpu_scene.h"
 
@@ -18,8 +19,14 @@ size_t rowBytes(const ElementSettings& settings) {
   return 6 * n * n * sizeof(uint32_t);
 }
 
+/// Radiance that all elements send, in three copies; elements of all levels are a third more than leaves.
+size_t sentBytes(const ElementSettings& settings) {
+  return 4 * 6 * static_cast<size_t>(settings.glossy * settings.glossy) * sizeof(glm::vec4);
+}
+
 uint32_t mostElements(const ElementSettings& settings) {
-  return static_cast<uint32_t>(static_cast<size_t>(settings.memory) / rowBytes(settings));
+  return static_cast<uint32_t>(static_cast<size_t>(settings.memory) /
+                               (rowBytes(settings) + sentBytes(settings)));
 }
 
 }  // namespace
@@ -34,8 +41,14 @@ ElementPasses::ElementPasses(frame::FrameGraph& graph, const TechniqueInputs& in
   leaves = graph.importBuffer("leaves", leafBuffer_);
   corners = graph.importBuffer("triangles between leaves", cornerBuffer_);
   directions = graph.importBuffer("directions of bins", directions_);
+  if (glossy()) materials = graph.importBuffer("materials of leaves", materialBuffer_);
   addUpdate(graph, inputs);
-  addLinks(graph);
+  if (settings.onGpu) {
+    roots_ = graph.importBuffer("roots of clusters", rootBuffer_);
+    addGpuLinks(graph);
+  } else {
+    addLinks(graph);
+  }
 }
 
 void ElementPasses::createBuffers(gpu::Device& device) {
@@ -45,6 +58,18 @@ void ElementPasses::createBuffers(gpu::Device& device) {
   cornerBuffer_ = gpu::Buffer::of(device, "triangles between leaves", elements_.triangles());
   const std::vector<glm::vec4> table = radiosity::binTable(settings_.links.resolution);
   directions_ = gpu::Buffer::of<glm::vec4>(device, "directions of bins", table);
+  software_ = device.software();
+  if (settings_.onGpu) rootBuffer_ = gpu::Buffer::of(device, "roots of clusters", elements_.forest().roots());
+  if (glossy()) {
+    materialBuffer_ = gpu::Buffer::of(device, "materials of leaves", elements_.materials());
+    const size_t bytes = size_t{slots()} * sentCount() * sizeof(glm::vec4);
+    if (bytes > static_cast<size_t>(device.limits().maxStorageBlockBytes))
+      throw UsageError(fmt::format(
+          "implicit visibility: what {} elements send into 6 x {} x {} bins takes {} MiB; a storage block "
+          "holds {}",
+          slots(), settings_.glossy, settings_.glossy, bytes >> 20,
+          device.limits().maxStorageBlockBytes >> 20));
+  }
   const auto most =
       static_cast<uint32_t>(static_cast<size_t>(device.limits().maxStorageBlockBytes) / rowBytes(settings_));
   for (uint32_t first = 0; first < std::max(leafSlots(), 1u); first += most) {
@@ -86,9 +111,65 @@ void ElementPasses::addLinks(frame::FrameGraph& graph) {
   });
 }
 
+void ElementPasses::addGpuLinks(frame::FrameGraph& graph) {
+  // llvmpipe leaves the loops of a thread after 65,535 steps; a leaf takes about five for each bin it fills.
+  if (software_ && settings_.links.resolution > 16)
+    throw UsageError(
+        fmt::format("implicit_visibility.links=gpu: software renderers take at most 16 bins a side, not {}",
+                    settings_.links.resolution));
+  for (size_t i = 0; i < chunks.size(); ++i) {
+    chunks[i].links = graph.importBuffer(fmt::format("links {}", i), linkBuffers_[i]);
+    addGpuLinks(graph, chunks[i]);
+  }
+}
+
+void ElementPasses::addGpuLinks(frame::FrameGraph& graph, LinkChunk& chunk) const {
+  frame::BufferHandle lengths = graph.createBuffer("lengths of links", {chunk.count * rowBytes(settings_)});
+  const bool footprint = settings_.links.fill == radiosity::Fill::footprint;
+  const auto addStep = [&](const char* name, const char* file, Access access, glm::ivec2 workGroups,
+                           glm::uvec2 someRoots) {
+    frame::PassBuilder pass = graph.addPass(name, settings_.technique);
+    pass.read(groups, Access::storageLoad, "elements").cacheable();
+    if (someRoots.y > 0) pass.read(roots_, Access::storageLoad, "where to begin");
+    chunk.links = pass.write(chunk.links, access, "the nearest element in each bin of each leaf");
+    lengths = pass.write(lengths, access, "how far it is");
+    const auto kernelHandle = program(pass, file, {{"FOOTPRINT", footprint ? "1" : "0"}});
+    pass.execute(
+        [this, kernelHandle, own = chunk, lengths, someRoots, workGroups](frame::PassContext& context) {
+          gpu::Program& kernel = context.program(kernelHandle);
+          kernel.use();
+          kernel.set("leaf_count", own.count);
+          context.bindStorage(2, own.links);
+          context.bindStorage(3, lengths);
+          if (someRoots.y > 0) {
+            kernel.set("first_leaf", own.first);
+            kernel.set("first_root", someRoots.x);
+            kernel.set("root_count", someRoots.y);
+            kernel.set("opening", settings_.links.opening);
+            context.bindStorage(0, groups);
+            context.bindStorage(1, roots_);
+          }
+          context.dispatch(workGroups.x, workGroups.y, 1, 1, 1);
+        });
+  };
+  const int leafCount = static_cast<int>(chunk.count);
+  constexpr int most = 32768;  // work groups in a row, see clear_links.comp.glsl
+  addStep("clear links", "clear_links.comp.glsl", Access::storageStore,
+          {std::min(leafCount, most), (leafCount + most - 1) / most}, {0, 0});
+  const auto rootCount = static_cast<uint32_t>(elements_.forest().roots().size());
+  const uint32_t batch = software_ ? 16 : std::max(rootCount, 1u);
+  for (uint32_t first = 0; first < rootCount; first += batch)
+    addStep("links", "links.comp.glsl", Access::storageLoadStore, {(leafCount + 63) / 64, 1},
+            {first, std::min(batch, rootCount - first)});
+  if (footprint)
+    addStep("close links", "close_links.comp.glsl", Access::storageLoadStore, {(6 * leafCount + 63) / 64, 1},
+            {0, 0});
+}
+
 frame::ProgramHandle ElementPasses::program(frame::PassBuilder& pass, const char* file,
                                             std::map<std::string, std::string> defines) const {
-  defines["BINS"] = bins();
+  defines["BINS"] = fmt::format("{}u", settings_.links.resolution);
+  defines["GLOSSY"] = fmt::format("{}", settings_.glossy);
   return pass.program(
       {.files = {fmt::format("techniques/implicit_visibility/{}", file)}, .defines = defines});
 }

@@ -16,8 +16,10 @@ namespace limn::implicit_visibility {
 
 struct ElementSettings {
   radiosity::LinkSettings links;
-  bool flat = false;          ///< every pair of leaves, without hierarchy
+  bool flat = false;          ///< every pair of leaves, without hierarchy; on the CPU
+  bool onGpu = false;         ///< links are made there
   float longestEdge = 0.05f;  ///< radii of the scene
+  int glossy = 0;             ///< N of the 6 x N x N bins that elements send light into; 0: evenly
   int64_t memory = 0;         ///< bytes that links may take
   std::string_view technique;
 };
@@ -28,24 +30,41 @@ struct LinkChunk {
   uint32_t first = 0, count = 0;
 };
 
+/// A picture to add to, or to write V to.
+struct PassRequest {
+  frame::FrameGraph& graph;
+  const TechniqueInputs& inputs;
+  frame::TextureHandle target;
+};
+
+/// What arrives at leaves, and where it comes from: radiance of elements, or of bins.
+struct Gathered {
+  frame::BufferHandle irradiance, source;
+  bool sky = false;
+};
+
 /// Must outlive the graph.
 class ElementPasses {
  public:
-  /// Declares "update elements" and "links" (thesis, section 4.3.2): both work on the CPU and upload. Throws
-  /// UsageError for scenes whose links take more memory than allowed.
+  /// Declares "update elements" and "links" (thesis, section 4.3.2): both work on the CPU and upload, but for
+  /// links made on the GPU. Throws UsageError for scenes whose links take more memory than allowed.
   ElementPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs, const ElementSettings& settings);
 
   bool fits(const scene::Pose& pose) const { return elements_.fits(pose); }
   const radiosity::SceneElements& elements() const { return elements_; }
   uint32_t slots() const { return elements_.forest().slots(); }
   uint32_t leafSlots() const { return elements_.forest().leafSlots(); }
+  /// Values of radiance that each element sends.
+  uint32_t sentCount() const {
+    return settings_.glossy > 0 ? 6 * static_cast<uint32_t>(settings_.glossy * settings_.glossy) : 1;
+  }
+  bool glossy() const { return settings_.glossy > 0; }
   size_t binCount() const { return directions_.size() / sizeof(glm::vec4); }
-  std::string bins() const { return std::to_string(settings_.links.resolution) + "u"; }
 
-  frame::BufferHandle groups, leaves, corners, directions;
+  frame::BufferHandle groups, leaves, corners, directions, materials;
   std::vector<LinkChunk> chunks;
 
-  /// A compute program of this folder, with BINS defined.
+  /// A compute program of this folder, with BINS and GLOSSY defined.
   frame::ProgramHandle program(frame::PassBuilder& pass, const char* file,
                                std::map<std::string, std::string> defines = {}) const;
   /// Declares that a pass reads links, leaves and directions.
@@ -59,12 +78,16 @@ class ElementPasses {
   void createBuffers(gpu::Device& device);
   void addUpdate(frame::FrameGraph& graph, const TechniqueInputs& inputs);
   void addLinks(frame::FrameGraph& graph);
+  void addGpuLinks(frame::FrameGraph& graph);
+  void addGpuLinks(frame::FrameGraph& graph, LinkChunk& chunk) const;
 
   ElementSettings settings_;
   const scene::Pose& pose_;
   radiosity::SceneElements elements_;
   radiosity::Links links_;
-  gpu::Buffer groupBuffer_, leafBuffer_, cornerBuffer_, directions_;
+  gpu::Buffer groupBuffer_, leafBuffer_, cornerBuffer_, directions_, materialBuffer_, rootBuffer_;
+  bool software_ = false;
+  frame::BufferHandle roots_;
   std::deque<gpu::Buffer> linkBuffers_;  ///< the graph keeps their addresses
 };
 

@@ -1,6 +1,8 @@
-// What the passes of implicit visibility share: leaves, their links, and the space of the bins.
+// What the passes of implicit visibility share: leaves, their links, the space of the bins, and the radiance that elements
+// send: GLOSSY 0: the same in all directions; else: into the 6 x GLOSSY x GLOSSY bins of directions.
 #ifndef LIMN_IMPLICIT_VISIBILITY_ELEMENTS_GLSL
 #define LIMN_IMPLICIT_VISIBILITY_ELEMENTS_GLSL
+#include "glsl/brdf.glsl"
 #include "glsl/direction_bins.glsl"
 
 // limn::radiosity::Leaf, metres.
@@ -11,7 +13,20 @@ struct Leaf {
   vec4 albedo;
 };
 
+// limn::radiosity::LeafMaterial.
+struct LeafMaterial {
+  vec4 diffuse;     // w: alpha
+  vec4 f0;          // w: f90
+  vec4 dielectric;  // x: f0, y: f90
+};
+
 const uint bin_count = 6u * BINS * BINS;
+
+#if GLOSSY
+const uint sent_count = 6u * uint(GLOSSY) * uint(GLOSSY);
+#else
+const uint sent_count = 1u;
+#endif
 
 // Rows of the rotation from world space to that of the bins.
 uniform vec4 bins_x;
@@ -19,5 +34,43 @@ uniform vec4 bins_y;
 uniform vec4 bins_z;
 
 vec3 to_bins(vec3 world) { return vec3(dot(bins_x.xyz, world), dot(bins_y.xyz, world), dot(bins_z.xyz, world)); }
+vec3 from_bins(vec3 d) { return d.x * bins_x.xyz + d.y * bins_y.xyz + d.z * bins_z.xyz; }
+
+// Number of a work item of LightPasses::dispatchSent, which are more than one row of work groups takes.
+uint sent_item() { return gl_GlobalInvocationID.y * 2097152u + gl_GlobalInvocationID.x; }
+
+// Where the radiance is that an element sends towards a direction (in the space of the bins).
+uint sent_index(uint element, vec3 direction) {
+#if GLOSSY
+  return element * sent_count + bin_of(direction, uint(GLOSSY));
+#else
+  return element;
+#endif
+}
+
+// Unit, in the space of the bins: the middle of an element's sent-th bin of directions.
+vec3 sent_direction(uint sent) {
+#if GLOSSY
+  return normalize(bin_direction(sent, uint(GLOSSY)));
+#else
+  return vec3(0.0);
+#endif
+}
+
+// Lobes are no narrower than bins, between whose middles they would be lost: half vectors turn half as far as directions.
+SurfaceBrdf binned_brdf(LeafMaterial m) {
+  SurfaceBrdf s;
+  s.diffuse = m.diffuse.rgb;
+#if GLOSSY
+  s.alpha = max(m.diffuse.w, 0.25 * pi / float(min(BINS, uint(GLOSSY))));
+#else
+  s.alpha = m.diffuse.w;
+#endif
+  s.f0 = m.f0.rgb;
+  s.f90 = m.f0.w;
+  s.dielectric_f0 = m.dielectric.x;
+  s.dielectric_f90 = m.dielectric.y;
+  return s;
+}
 
 #endif

@@ -1,7 +1,9 @@
-// Gathers at a leaf over its bins (limn::radiosity::gather): a work group for each. SKY 1: what empty bins see of the
-// environment; 0: what links bring.
+// Gathers at leaves over their bins (limn::radiosity::gather). SKY 1: what empty bins see of the environment; 0: what links
+// bring. SERIAL 1: a thread for each leaf, for renderers whose barriers cost more than loads; 0: a work group.
 #define THREADS 64
+#if !SERIAL
 #include "glsl/work_group.glsl"
+#endif
 #include "techniques/implicit_visibility/elements.glsl"
 
 layout(local_size_x = THREADS) in;
@@ -11,22 +13,20 @@ layout(std430, binding = 2) readonly buffer Links { uint links[]; };
 #if SKY
 layout(std430, binding = 3) readonly buffer Environment { vec4 environment[]; };  // radiance of each bin
 #else
-layout(std430, binding = 3) readonly buffer Outgoing { vec4 outgoing[]; };  // of elements of all levels
+layout(std430, binding = 3) readonly buffer Sent { vec4 sent[]; };  // radiance of elements of all levels
+#if !GLOSSY
 layout(std430, binding = 5) readonly buffer Direct { vec4 direct[]; };
 layout(std430, binding = 6) writeonly buffer Next { vec4 next[]; };
+#endif
 #endif
 layout(std430, binding = 4) writeonly buffer Irradiance { vec4 irradiance[]; };
 uniform uint first_leaf;
 uniform uint leaf_count;
 
-void main() {
-  uint row = gl_WorkGroupID.y * 32768u + gl_WorkGroupID.x;
-  if (row >= leaf_count) return;
-  uint slot = first_leaf + row;
-  Leaf leaf = leaves[slot];
-  vec3 normal = to_bins(leaf.normal.xyz);
+// Every step-th bin from the first on: light and weights.
+vec4 gathered(uint row, vec3 normal, uint first, uint step) {
   vec4 sum = vec4(0.0);
-  for (uint bin = gl_LocalInvocationIndex; bin < bin_count; bin += uint(THREADS)) {
+  for (uint bin = first; bin < bin_count; bin += step) {
     vec4 direction = directions[bin];
     float weight = direction.w * dot(normal, direction.xyz);
     if (weight > 0.0) {
@@ -35,16 +35,33 @@ void main() {
 #if SKY
       if (link == no_link) radiance = environment[bin].rgb;
 #else
-      if (link < link_back) radiance = outgoing[link].rgb;
+      if (link < link_back) radiance = sent[sent_index(link, -direction.xyz)].rgb;
 #endif
       sum += weight * vec4(radiance, 1.0);
     }
   }
-  sum = total(sum);
+  return sum;
+}
+
+void main() {
+#if SERIAL
+  uint row = gl_GlobalInvocationID.x;
+#else
+  uint row = gl_WorkGroupID.y * 32768u + gl_WorkGroupID.x;
+#endif
+  if (row >= leaf_count) return;
+  uint slot = first_leaf + row;
+  Leaf leaf = leaves[slot];
+  vec3 normal = to_bins(leaf.normal.xyz);
+#if SERIAL
+  vec4 sum = gathered(row, normal, 0u, 1u);
+#else
+  vec4 sum = total(gathered(row, normal, gl_LocalInvocationIndex, uint(THREADS)));
   if (gl_LocalInvocationIndex > 0u) return;
+#endif
   vec3 light = leaf.vertex.w > 0.0 && sum.w > 0.0 ? pi / sum.w * sum.rgb : vec3(0.0);
   irradiance[slot] = vec4(light, 0.0);
-#if !SKY
+#if !SKY && !GLOSSY
   next[slot] = vec4(direct[slot].rgb + leaf.albedo.rgb * light * inverse_pi, 0.0);
 #endif
 }

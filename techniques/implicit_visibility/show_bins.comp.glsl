@@ -25,7 +25,7 @@ vec3 reflected(uint row, SurfaceBrdf material, vec3 n, vec3 v) {
 #if SKY
     if (link == no_link) sum += weight * source[bin].rgb * brdf(material, n, v, direction.xyz);
 #else
-    if (link < link_back) sum += weight * source[link].rgb * brdf(material, n, v, direction.xyz);
+    if (link < link_back) sum += weight * source[sent_index(link, -direction.xyz)].rgb * brdf(material, n, v, direction.xyz);
 #endif
   }
   return pi / weights * sum;

@@ -32,9 +32,13 @@ class RenderTest : public GlTest {
   static render::TechniqueUse quick(const std::string& name) {
     render::TechniqueUse use = technique(name);
     for (const Parameter& p : use.parameters.declared()) {
-      if (!p.tradesErrorForTime || p.type != ParameterType::integer) continue;
+      if (!p.tradesErrorForTime) continue;
       const std::string_view unit(p.unit);
-      const double most = unit == "texels" ? 512 : unit == "lights" ? 256 : 16;
+      // Of surface elements: as long as may be without losing whole objects.
+      if (p.type == ParameterType::real && unit == "scene radii" && p.defaultValue < 0.1)
+        use.parameters.set(p.name, "0.1");
+      if (p.type != ParameterType::integer) continue;
+      const double most = unit == "texels" ? 512 : unit == "lights" ? 256 : unit == "bins" ? 8 : 16;
       if (p.defaultValue > most && p.range.low <= most) use.parameters.set(p.name, std::to_string(int(most)));
     }
     return use;

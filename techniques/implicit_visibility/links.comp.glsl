@@ -1,0 +1,163 @@
+// Links made on the GPU: each leaf goes down the hierarchy by itself, opens elements that are larger than its bins and keeps
+// the shortest link of each bin, as radiosity::Links does for leaves; no links are shared between receivers. FOOTPRINT 1: an
+// element fills the bins whose centres its disc covers; 0: that of its centre. The bins are clear to begin with.
+//
+// One loop does everything, a step at a time: the threads of a GPU's or processor's vector then wait for the longest of their
+// sums of steps, not for the sum of the longest. llvmpipe leaves all loops of a thread after 65,535 steps in all: the roots
+// come in batches.
+#include "techniques/implicit_visibility/elements.glsl"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Groups { ElementGroup groups[]; };
+layout(std430, binding = 1) readonly buffer Roots { uint roots[]; };
+layout(std430, binding = 2) buffer Links { uint links[]; };
+layout(std430, binding = 3) buffer Distances { float distances[]; };  // squared
+uniform uint first_leaf;
+uniform uint leaf_count;
+uniform uint first_root;
+uniform uint root_count;
+uniform float opening;  // bins
+
+const int n = int(BINS);
+const float half_n = 0.5 * float(n);
+const float overlap = 1e-3;   // as radiosity::BinFiller
+const float coplanar = 1e-3;
+const float grazing = 1e-4;   // as radiosity::LinkTest
+const int most_waiting = 64;  // groups: three for each level above the leaves at most
+
+// In the axes of a face: major, column, row.
+vec3 turned(vec3 v, uint face) {
+  vec3 t = face < 2u ? v : face < 4u ? v.yzx : v.zxy;
+  if ((face & 1u) != 0u) t.x = -t.x;
+  return t;
+}
+
+int below(float u) { return int(max((u + 1.0) * half_n + 0.5, 0.0)); }
+float centre(int bin) { return (float(bin) + 0.5) / half_n - 1.0; }
+
+// Bins of a face that a disc may cover: first columns and rows, and the last. Empty: last before first.
+ivec4 box_on_face(vec3 d, vec3 normal, float radius) {
+  ivec4 nothing = ivec4(1, 1, 0, 0);
+  if (d.x <= -radius) return nothing;
+  vec2 low = vec2(-1.0);
+  vec2 high = vec2(1.0);
+  if (d.x > radius) {
+    vec2 place = d.yz / d.x;
+    vec2 along = normal.yz - place * normal.x;
+    vec2 size2 = max(1.0 + place * place - along * along, vec2(0.0));
+    float closer = radius * sqrt(max(1.0 - normal.x * normal.x, 0.0));
+    vec2 reach = radius / (d.x - closer) * sqrt(size2);
+    low = max(place - reach, low);
+    high = min(place + reach, high);
+    if (low.x > high.x || low.y > high.y) return nothing;
+  }
+  return ivec4(below(low.x), below(low.y), min(n, below(high.x)) - 1, min(n, below(high.y)) - 1);
+}
+
+void keep(uint bin, float distance2, uint link) {
+  if (distance2 < distances[bin]) {
+    distances[bin] = distance2;
+    links[bin] = link;
+  }
+}
+
+void main() {
+  uint row = gl_GlobalInvocationID.x;
+  if (row >= leaf_count) return;
+  ElementGroup own = groups[(first_leaf + row) / 4u];
+  uint self = (first_leaf + row) % 4u;
+  if (self >= own.info.y) return;
+  vec3 position = vec3(own.x[self], own.y[self], own.z[self]);
+  vec3 up = vec3(own.nx[self], own.ny[self], own.nz[self]);
+  float angle = opening * 4.0 / float(n * n);
+  uint first_bin = row * bin_count;
+
+  uint waiting[most_waiting];
+  int top = 0;
+  uint root = first_root;
+  uint group = 0u;
+  uint lanes = 0u;  // of the group, still to be looked at
+  // The disc in work: its faces to come, and on one of them the box of bins and the bin that comes next.
+  uint faces = 0u;
+  uint face = 0u;
+  ivec4 box = ivec4(1, 1, 0, 0);
+  ivec2 at = ivec2(1);
+  vec3 offset = vec3(0.0);
+  vec3 normal = vec3(0.0);
+  float height = 0.0;
+  float radius = 0.0;
+  uint link = no_link;
+
+  bool busy = true;
+  while (busy) {
+    if (at.y <= box.w) {
+      vec3 d = turned(offset, face);
+      vec3 ray = vec3(1.0, centre(at.x), centre(at.y));
+      float t = height / dot(turned(normal, face), ray);
+      vec3 miss = t * ray - d;
+      float miss2 = dot(miss, miss);
+      if (t > 0.0 && miss2 <= radius * radius)
+        keep(first_bin + uint((int(face) * n + at.y) * n + at.x),
+             t * t * dot(ray, ray) * (1.0 + overlap / (radius * radius) * miss2), link);
+      ++at.x;
+      if (at.x > box.z) at = ivec2(box.x, at.y + 1);
+    } else if (faces != 0u) {
+      face = uint(findLSB(faces));
+      faces &= faces - 1u;
+      box = box_on_face(turned(offset, face), turned(normal, face), radius);
+      at = box.x <= box.z ? box.xy : ivec2(0, n);
+    } else if (lanes != 0u) {
+      int k = findLSB(lanes);
+      lanes &= lanes - 1u;
+      ElementGroup g = groups[group];
+      offset = vec3(g.x[k], g.y[k], g.z[k]) - position;
+      normal = vec3(g.nx[k], g.ny[k], g.nz[k]);
+      height = dot(offset, normal);
+      float distance2 = dot(offset, offset);
+      float distance = sqrt(distance2);
+      float reach = g.radius[k];
+      bool facing = dot(offset, up) + reach - grazing * distance > 0.0;
+      if (g.info.z == 0u) facing = facing && reach + (g.spread[k] - grazing) * distance > height;
+      vec3 size = abs(offset);
+      float major = max(size.x, max(size.y, size.z));
+      float extent = max(g.area[k], reach * reach);
+      float limit = angle * major * major * major;
+      float shown = min(abs(height) + g.spread[k] * distance, distance);
+      bool open = g.info.x != no_link && extent * shown >= limit;
+      bool linked = facing && !open && distance2 > 1e-14;
+      if (g.info.z != 0u) linked = linked && (height <= 0.0 || height > max(0.1 * distance, 0.25 * g.disc[k]));
+      radius = g.disc[k];
+      link = (4u * group + uint(k)) | (g.info.z != 0u && height > 0.0 ? link_back : 0u);
+      if (facing && open && top < most_waiting) {
+        waiting[top] = g.info.x + uint(k);
+        ++top;
+      }
+#if FOOTPRINT
+      vec2 place;
+      uint towards = bin_face(offset, place);
+      if (linked && abs(height) >= coplanar * radius) faces = radius < 0.5 * major ? 1u << towards : 63u;
+      if (faces != 0u && faces != 63u) {
+        // A disc that reaches over the edge of its face is looked for on all.
+        ivec4 whole = box_on_face(turned(offset, towards), turned(normal, towards), radius);
+        if (min(whole.x, whole.y) <= 0 || max(whole.z, whole.w) >= n - 1) {
+          faces = 63u;
+        } else if (whole.x > whole.z || whole.y > whole.w) {
+          faces = 0u;
+        }
+      }
+#else
+      if (linked) keep(first_bin + bin_of(offset, uint(n)), distance2, link);
+#endif
+    } else if (top > 0) {
+      --top;
+      group = waiting[top];
+      lanes = (1u << groups[group].info.y) - 1u;
+    } else if (root < first_root + root_count) {
+      group = roots[root];
+      lanes = 1u;
+      ++root;
+    } else {
+      busy = false;
+    }
+  }
+}
