@@ -75,7 +75,7 @@ void illumination(benchmark::State& state) {
 void monster(benchmark::State& state) {
   const scene::Scene scene = scene::load(std::filesystem::path(LIMN_ASSETS) / "monster" / "monster.glb");
   const scene::Pose pose = scene::evaluate(scene, 0);
-  SceneElements elements(scene, pose, 0.05f, 1u << 20);
+  SceneElements elements(scene, pose, 0.03f, 1u << 20);
   Links made;
   LinkTimes all;
   double updating = 0, linking = 0;
