@@ -15,10 +15,16 @@ int main(int argc, char** argv) {
        "The floor's colours twice reflected."},
       {"Every pair of elements", "implicit_visibility", "implicit_visibility.structure=flat",
        "The same picture without the hierarchy, for more time the more elements there are."},
+      {"Links made on the GPU", "implicit_visibility", "implicit_visibility.links=gpu",
+       "Each surface element goes down the hierarchy by itself; elsewhere the CPU does, for several "
+       "together."},
       {"As published", "implicit_visibility", "implicit_visibility.fill=centre implicit_visibility.opening=1",
        "An element fills the bin of its centre: holes let light through."},
       {"Per pixel", "implicit_visibility", "implicit_visibility.display=pixel",
        "The BRDF of every pixel over the bins around it."},
+      {"Glossy interreflection", "implicit_visibility",
+       "implicit_visibility.display=pixel implicit_visibility.glossy_bins=6",
+       "Elements send light into bins of directions; look at --scene glossy_sphere."},
   };
   return limn::app::runChapter({.name = "ch4-implicit-visibility",
                                 .title = "Global illumination using implicit visibility",
