@@ -115,7 +115,7 @@ LightPasses::Sent LightPasses::directLight(const PassRequest& r, std::span<const
                 lightBuffer = r.inputs.handles.lights, count = lights.size()](frame::PassContext& context) {
     gpu::Program& kernel = context.program(kernelHandle);
     kernel.use();
-    if (glossy) elements_.setSpace(kernel);
+    if (glossy && seen) elements_.setSpace(kernel);  // no light, no direction
     kernel.set("slots", elements_.leafSlots());
     context.bindStorage(0, lightBuffer);
     context.bindStorage(1, elements_.leaves);

@@ -103,5 +103,19 @@ TEST_F(ImplicitVisibilityTest, LambertianSurfacesSendTheSameIntoAllBins) {
   EXPECT_GT(mean(even), 0);
 }
 
+TEST_F(ImplicitVisibilityTest, ASkyAloneIsSentIntoBins) {
+  const scene::Scene scene = asset("balls_sky");
+  render::Renderer renderer(device(), scene);
+  const auto final = [&](const char* glossyBins) {
+    return picture(
+        renderer,
+        settings(48, 36, Output::final,
+                 {technique("implicit_visibility",
+                            {{"bins", "4"}, {"longest_edge", "0.2"}, {"glossy_bins", glossyBins}})}));
+  };
+  const Image even = final("0"), sent = final("4");
+  EXPECT_NEAR(mean(sent) / mean(even), 1, 0.05);
+}
+
 }  // namespace
 }  // namespace limn
