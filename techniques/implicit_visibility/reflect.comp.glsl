@@ -1,12 +1,9 @@
 // What leaves send into a bin of directions: the BRDF over the bins of what they see, and what they reflect of lights.
 // A thread for each leaf and direction. SKY as in gather.comp.glsl.
-#include "techniques/implicit_visibility/elements.glsl"
+#include "techniques/implicit_visibility/bin_reflection.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Directions { vec4 directions[]; };
 layout(std430, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
-layout(std430, binding = 2) readonly buffer Links { uint links[]; };
-layout(std430, binding = 3) readonly buffer Source { vec4 source[]; };  // radiance of elements, or of bins (SKY)
 layout(std430, binding = 4) readonly buffer Irradiance { vec4 irradiance[]; };  // of the same light
 #if SKY
 layout(std430, binding = 5) buffer Direct { vec4 direct[]; };  // becomes the same as next, which is pulled up
@@ -17,28 +14,6 @@ layout(std430, binding = 6) writeonly buffer Next { vec4 next[]; };
 layout(std430, binding = 7) readonly buffer Materials { LeafMaterial materials[]; };
 uniform uint first_leaf;
 uniform uint leaf_count;
-
-// Mean of radiance times BRDF, weighted as in gather.comp.glsl.
-vec3 reflected(uint row, SurfaceBrdf surface, vec3 n, vec3 view) {
-  vec3 sum = vec3(0.0);
-  float weights = 0.0;
-  for (uint bin = 0u; bin < bin_count; ++bin) {
-    vec4 direction = directions[bin];
-    float weight = direction.w * dot(n, direction.xyz);
-    if (weight > 0.0) {
-      vec3 radiance = vec3(0.0);
-      uint link = links[row * bin_count + bin];
-#if SKY
-      if (link == no_link) radiance = source[bin].rgb;
-#else
-      if (link < link_back) radiance = source[sent_index(link, -direction.xyz)].rgb;
-#endif
-      weights += weight;
-      sum += weight * radiance * brdf(surface, n, view, direction.xyz);
-    }
-  }
-  return weights > 0.0 ? pi / weights * sum : vec3(0.0);
-}
 
 void main() {
   uint item = sent_item();

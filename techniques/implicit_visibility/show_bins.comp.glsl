@@ -2,34 +2,13 @@
 // gather.comp.glsl. Leaves whose links are not bound are left to the passes that have them.
 #include "glsl/gbuffer_input.glsl"
 #include "glsl/brdf.glsl"
-#include "techniques/implicit_visibility/elements.glsl"
+#include "techniques/implicit_visibility/bin_reflection.glsl"
 #include "techniques/implicit_visibility/surface_lookup.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f, binding = 0) uniform image2D radiance;
-layout(std430, binding = 0) readonly buffer Directions { vec4 directions[]; };
-layout(std430, binding = 2) readonly buffer Links { uint links[]; };
-layout(std430, binding = 3) readonly buffer Source { vec4 source[]; };  // radiance of elements, or of bins (SKY)
 uniform uint first_leaf;
 uniform uint leaf_count;
-
-vec3 reflected(uint row, SurfaceBrdf material, vec3 n, vec3 v) {
-  vec3 sum = vec3(0.0);
-  float weights = 0.0;
-  for (uint bin = 0u; bin < bin_count; ++bin) {
-    vec4 direction = directions[bin];
-    float weight = direction.w * dot(n, direction.xyz);
-    if (!(weight > 0.0)) continue;
-    weights += weight;
-    uint link = links[row * bin_count + bin];
-#if SKY
-    if (link == no_link) sum += weight * source[bin].rgb * brdf(material, n, v, direction.xyz);
-#else
-    if (link < link_back) sum += weight * source[sent_index(link, -direction.xyz)].rgb * brdf(material, n, v, direction.xyz);
-#endif
-  }
-  return pi / weights * sum;
-}
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
