@@ -126,16 +126,7 @@ TEST_F(MediaTest, SurfacesAreAttenuatedAsInTheReference) {
   render::Renderer renderer(device(), scene);
   for (uint32_t light = 0; light < renderer.pose().lights.size(); ++light) {
     SCOPED_TRACE(renderer.pose().lightNames[light]);
-    reference::Request request{.scene = scene,
-                               .pose = renderer.pose(),
-                               .camera = renderer.pose().cameras.at(0),
-                               .progress = {},
-                               .checkpoint = {}};
-    request.width = width;
-    request.height = height;
-    request.light = int(light);
-    request.spp = 64;
-    const double truth = mean(reference::render(request).image);
+    const double truth = mean(reference(renderer, scene, reference::Term::direct, 64, int(light)));
     for (const char* shadows : {"sampled_area_light", "vssm"}) {
       const Image lit =
           picture(renderer, settings(width, height, Output::direct, {technique(shadows)}, int(light)));
