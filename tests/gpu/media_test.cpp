@@ -140,17 +140,7 @@ TEST_F(MediaTest, EveryLightShinesIntoTheMedium) {
   render::Renderer renderer(device(), scene);
   for (size_t light = 0; light < renderer.pose().lights.size(); ++light) {
     SCOPED_TRACE(renderer.pose().lightNames[light]);
-    reference::Request request{.scene = scene,
-                               .pose = renderer.pose(),
-                               .camera = renderer.pose().cameras.at(0),
-                               .progress = {},
-                               .checkpoint = {}};
-    request.width = width;
-    request.height = height;
-    request.term = reference::Term::media;
-    request.light = int(light);
-    request.spp = 32;
-    const double truth = mean(reference::render(request).image);
+    const double truth = mean(reference(renderer, scene, reference::Term::media, 32, int(light)));
     const Image ours = picture(
         renderer, settings(width, height, Output::media,
                            {technique("airlight", {{"light_samples", "16"}}),
