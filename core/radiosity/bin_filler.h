@@ -2,43 +2,25 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
 
-#include "core/radiosity/float4.h"
+#include "core/radiosity/face_discs.h"
 #include "core/radiosity/links.h"
 #include "glsl/direction_bins.glsl"
 
 namespace limn::radiosity {
 
-/// The bins of one receiver: the shortest link of each and its squared length.
-struct Bins {
-  float* distance2 = nullptr;
-  uint32_t* links = nullptr;
-};
-
-/// Up to four siblings at the other ends of links: offsets from the receiver, unit normals, heights along
-/// these.
-struct Candidates {
-  Float4 x, y, z, nx, ny, nz;
-  Float4 distance2, height, disc;
-  uint32_t links[4];
-};
-
 class BinFiller {
-  /// A disc whose plane passes the receiver at less than this part of its radius is seen edge-on.
-  static constexpr float coplanar = 1e-3f;
-  /// The rim of a disc counts as farther than its centre by this part of the squared distance.
-  static constexpr float overlap = 1e-3f;
   static constexpr int most = 32;  // bins in a row
 
  public:
   explicit BinFiller(const LinkSettings& settings)
       : n_(settings.resolution),
         half_(0.5f * static_cast<float>(n_)),
+        width_(1 / half_),
         footprint_(settings.fill == Fill::footprint) {}
 
   int count() const { return 6 * n_ * n_; }
@@ -70,87 +52,58 @@ class BinFiller {
   }
 
   /// Fills what those among `lanes` cover.
-  void fill(Bins bins, const Candidates& c, uint32_t lanes) const {
+  void fill(const Bins& bins, const Candidates& c, uint32_t lanes) const {
     const OnFaces on(c);
     if (!footprint_) {
+      const Float4 place_u = on.u / on.major, place_v = on.v / on.major;
       for (; lanes != 0; lanes &= lanes - 1) {
         const int k = std::countr_zero(lanes);
-        keep(bins, index(on.face(k), column(on.place_u[k]), column(on.place_v[k])), c.distance2[k],
-             c.links[k]);
+        keep(bins, index(on.face(k), column(place_u[k]), column(place_v[k])), c.distance2[k],
+             static_cast<uint32_t>(c.links[k]));
       }
       return;
     }
-    Float4 reach_u, reach_v;
-    on.reach(c.disc, reach_u, reach_v);
-    const Float4 low_u = on.place_u - reach_u, high_u = on.place_u + reach_u, low_v = on.place_v - reach_v,
-                 high_v = on.place_v + reach_v;
-    const Float4 one = splat(1);
-    const uint32_t single =
-        lanes & laneMask((c.disc < 0.5f * on.major) & (magnitude(on.place_u) + reach_u <= one) &
-                         (magnitude(on.place_v) + reach_v <= one));
-    const Int4 x0 = firstBin(low_u), x1 = lastBin(high_u), y0 = firstBin(low_v), y1 = lastBin(high_v);
-    // Discs smaller than bins cover no bin's centre, mostly.
-    for (uint32_t some = single & laneMask((x0 <= x1) & (y0 <= y1)); some != 0; some &= some - 1) {
-      const int k = std::countr_zero(some);
-      const Disc disc{on.offset(k), on.normal(k), c.height[k], c.disc[k], c.links[k]};
-      raster(bins, disc, on.face(k), {x0[k], x1[k], y0[k], y1[k], low_u[k], high_u[k]});
-    }
-    for (uint32_t several = lanes & ~single; several != 0; several &= several - 1)
-      fillFaces(bins, c, std::countr_zero(several));
+    // Discs whose plane passes the receiver at less than this part of their radius are seen edge-on.
+    constexpr float coplanar = 1e-3f;
+    lanes &= laneMask(magnitude(c.height) >= coplanar * c.disc);
+    const Extent own = on.extent(c.disc);
+    const uint32_t whole = lanes & laneMask(own.front > 0.f);
+    fillFace(bins, c, on, own, whole);
+    // Over the edges of the face, as far as the first bins' centres on the next.
+    const float next = half_ / (half_ - 0.5f);
+    const uint32_t over_u = whole & own.u.over(next), over_v = whole & own.v.over(next);
+    const uint32_t far = (over_u & ~own.u.overNear(on.u)) | (over_v & ~own.v.overNear(on.v));
+    uint32_t several = (lanes & ~whole) | far;
+    if ((over_u & ~far) != 0) several |= fillNext(bins, c, on.alongU(), over_u & ~far);
+    if ((over_v & ~far) != 0) several |= fillNext(bins, c, on.alongV(), over_v & ~far);
+    for (; several != 0; several &= several - 1) fillFaces(bins, c, std::countr_zero(several));
   }
 
  private:
-  /// Offsets and normals in the axes of the faces that the offsets point to: major (not negative), column,
-  /// row; and where the offsets meet the faces.
-  struct OnFaces {
-    Float4 major, u, v, n_major, n_u, n_v, place_u, place_v;
-    Int4 x_major, y_major, negative;
-
-    explicit OnFaces(const Candidates& c) {
-      const Float4 ax = magnitude(c.x), ay = magnitude(c.y), az = magnitude(c.z);
-      x_major = (ax >= ay) & (ax >= az);
-      y_major = ~x_major & (ay >= az);
-      const Float4 along = select(c.x, c.y, c.z), n_along = select(c.nx, c.ny, c.nz);
-      negative = along < 0.f;
-      major = magnitude(along);
-      n_major = negative ? -n_along : n_along;
-      u = select(c.y, c.z, c.x);
-      v = select(c.z, c.x, c.y);
-      n_u = select(c.ny, c.nz, c.nx);
-      n_v = select(c.nz, c.nx, c.ny);
-      place_u = u / major;
-      place_v = v / major;
+  /// The parts of discs on one face each.
+  void fillFace(const Bins& bins, const Candidates& c, const OnFaces& on, const Extent& extent,
+                uint32_t lanes) const {
+    const Int4 x0 = firstBin(extent.u.low), x1 = lastBin(extent.u.high), y0 = firstBin(extent.v.low),
+               y1 = lastBin(extent.v.high);
+    // Discs smaller than bins cover no bin's centre, mostly.
+    for (lanes &= laneMask((x0 <= x1) & (y0 <= y1)); lanes != 0; lanes &= lanes - 1) {
+      const int k = std::countr_zero(lanes);
+      const Disc disc{on.offset(k), on.normal(k), c.height[k], c.disc[k], static_cast<uint32_t>(c.links[k])};
+      raster(bins, disc, on.face(k), {x0[k], x1[k], y0[k], y1[k]});
     }
-    Float4 select(Float4 x, Float4 y, Float4 z) const { return x_major ? x : y_major ? y : z; }
-    uint32_t face(int k) const {
-      return (x_major[k] != 0 ? 0u : y_major[k] != 0 ? 2u : 4u) + (negative[k] != 0 ? 1u : 0u);
-    }
-    glm::vec3 offset(int k) const { return {major[k], u[k], v[k]}; }
-    glm::vec3 normal(int k) const { return {n_major[k], n_u[k], n_v[k]}; }
+  }
 
-    /// How far from the centre's place on the face points of the disc can be; where major > disc.
-    void reach(Float4 disc, Float4& of_u, Float4& of_v) const {
-      // The offset o of a point moves its place by (o_u - u o_m) / (major + o_m), and is perpendicular to the
-      // normal.
-      const Float4 along_u = n_u - place_u * n_major, along_v = n_v - place_v * n_major;
-      const Float4 none = splat(0);
-      const Float4 closer = disc * root(greater(1.f - n_major * n_major, none));
-      const Float4 scale = disc / (major - closer);
-      of_u = scale * root(greater(1.f + place_u * place_u - along_u * along_u, none));
-      of_v = scale * root(greater(1.f + place_v * place_v - along_v * along_v, none));
-    }
-  };
+  /// The same on a face that the offsets do not point to. Returns the lanes that this does not do for.
+  uint32_t fillNext(const Bins& bins, const Candidates& c, const OnFaces& on, uint32_t lanes) const {
+    const Extent extent = on.extent(c.disc);
+    const uint32_t whole = lanes & laneMask(extent.front > 0.f);
+    fillFace(bins, c, on, extent, whole);
+    return lanes & ~whole;
+  }
 
-  /// A disc in the axes of a face.
-  struct Disc {
-    glm::vec3 offset, normal;
-    float height, radius;
-    uint32_t link;
-  };
-  /// Bins of a face, and where on it columns of the disc begin and end.
+  /// Bins of a face.
   struct Box {
     int x0, x1, y0, y1;
-    float low, high;
   };
 
   int column(float u) const { return std::clamp(static_cast<int>((u + 1) * half_), 0, n_ - 1); }
@@ -160,14 +113,12 @@ class BinFiller {
   // Truncation of positive numbers: floor and ceil are calls where the target has no instruction for them.
   int below(float u) const { return static_cast<int>(std::max((u + 1) * half_ + 0.5f, 0.f)); }
   Int4 firstBin(Float4 u) const {
-    return __builtin_convertvector(greater((u + 1.f) * half_ + 0.5f, splat(0)), Int4);
+    const Float4 place = (u + 1.f) * half_ + 0.5f, end = splat(2 * half_);
+    return __builtin_convertvector(greater(lesser(place, end), splat(0)), Int4);
   }
-  Int4 lastBin(Float4 u) const {
-    const Int4 behind = firstBin(u);
-    return (behind < n_ ? behind : Int4{n_, n_, n_, n_}) - 1;
-  }
+  Int4 lastBin(Float4 u) const { return firstBin(u) - 1; }
 
-  static void keep(Bins bins, size_t bin, float distance2, uint32_t link) {
+  static void keep(const Bins& bins, size_t bin, float distance2, uint32_t link) {
     if (!(distance2 < bins.distance2[bin])) return;
     bins.distance2[bin] = distance2;
     bins.links[bin] = link;
@@ -183,6 +134,7 @@ class BinFiller {
 
   /// `empty`: of this row; the rows above and below lie around it.
   void closeRow(Bins bins, size_t first, int y, uint32_t* empty) const {
+    if (empty[0] == 0) return;
     const uint32_t up = empty[-1], down = empty[1];
     for (uint32_t closed = ~0u; closed != 0; empty[0] &= ~closed) {
       const uint32_t left = empty[0] << 1, right = empty[0] >> 1;
@@ -208,40 +160,8 @@ class BinFiller {
     bins.distance2[bin] = bins.distance2[longest];
   }
 
-  /// Where the rays (m, u, v) of a row meet the disc, h ray / (n.ray) within its radius of the centre d: a
-  /// quadratic inequality in u, (h ray - d n.ray)^2 <= radius^2 (n.ray)^2.
-  class RowCut {
-   public:
-    RowCut(const glm::vec3& d, const glm::vec3& n, float height, float disc2)
-        : d_(d), n_(n), height_(height), disc2_(disc2), slope_(glm::vec3(0, height, 0) - n.y * d) {
-      square_ = glm::dot(slope_, slope_) - disc2 * n.y * n.y;
-    }
-    /// Narrows [low, high]; leaves it as it is where the disc's outline is open towards the row's ends.
-    void cut(float v, float& low, float& high) const {
-      const float towards = n_.x + n_.z * v;
-      const glm::vec3 start = height_ * glm::vec3(1, 0, v) - towards * d_;
-      const float half = glm::dot(start, slope_) - disc2_ * towards * n_.y;
-      const float rest = glm::dot(start, start) - disc2_ * towards * towards;
-      if (!(square_ > 0)) return;
-      const float inside = half * half - square_ * rest;
-      if (inside < 0) {
-        high = low - 1;
-        return;
-      }
-      const float width = std::sqrt(inside);
-      low = std::max(low, (-half - width) / square_);
-      high = std::min(high, (-half + width) / square_);
-    }
-
-   private:
-    glm::vec3 d_, n_;
-    float height_, disc2_;
-    glm::vec3 slope_;
-    float square_;
-  };
-
   /// Lane k's disc, in front of several faces.
-  void fillFaces(Bins bins, const Candidates& c, int k) const {
+  void fillFaces(const Bins& bins, const Candidates& c, int k) const {
     const glm::vec3 offset(c.x[k], c.y[k], c.z[k]), normal(c.nx[k], c.ny[k], c.nz[k]);
     // How far its points are from its centre along each axis.
     const glm::vec3 extent = c.disc[k] * glm::sqrt(glm::max(1.f - normal * normal, glm::vec3(0)));
@@ -255,84 +175,88 @@ class BinFiller {
                         {sign * normal[axis], normal[u], normal[v]},
                         c.height[k],
                         c.disc[k],
-                        c.links[k]};
-        rasterFace(bins, disc, static_cast<uint32_t>(2 * axis + (sign < 0 ? 1 : 0)), extent[axis]);
+                        static_cast<uint32_t>(c.links[k])};
+        rasterFace(bins, disc, static_cast<uint32_t>(2 * axis + (sign < 0 ? 1 : 0)));
       }
     }
   }
 
-  /// The part of a disc in front of a face; `closer`: its extent along the face's major axis.
-  void rasterFace(Bins bins, const Disc& disc, uint32_t face, float closer) const {
-    const float major = disc.offset.x;
+  /// The part of a disc in front of a face.
+  void rasterFace(const Bins& bins, const Disc& disc, uint32_t face) const {
+    const float m = disc.offset.x, n = disc.normal.x, disc2 = disc.radius * disc.radius;
+    const float front = m * m - disc2 * (1 - n * n);
     glm::vec2 low(-1), high(1);
-    if (major > closer) {
-      const glm::vec2 place = glm::vec2(disc.offset.y, disc.offset.z) / major;
-      const glm::vec2 along = glm::vec2(disc.normal.y, disc.normal.z) - place * disc.normal.x;
-      const glm::vec2 size2 = glm::max(glm::vec2(1) + place * place - along * along, glm::vec2(0));
-      const glm::vec2 reach = disc.radius / (major - closer) * glm::sqrt(size2);
-      low = glm::max(place - reach, low);
-      high = glm::min(place + reach, high);
+    if (m > 0 && front > 0) {  // see OnFaces::extent
+      const glm::vec2 offset(disc.offset.y, disc.offset.z), normal(disc.normal.y, disc.normal.z),
+          across(disc.normal.z, disc.normal.y);
+      const glm::vec2 turned = m * normal - n * offset,
+                      inside = m * m + offset * offset - turned * turned - disc2 * across * across,
+                      half = disc.radius * glm::sqrt(glm::max(inside, glm::vec2(0))),
+                      middle = m * offset + disc2 * n * normal;
+      low = glm::max((middle - half) / front, low);
+      high = glm::min((middle + half) / front, high);
       if (low.x > high.x || low.y > high.y) return;
     }
-    const Box box{below(low.x), std::min(n_, below(high.x)) - 1,
-                  below(low.y), std::min(n_, below(high.y)) - 1,
-                  low.x,        high.x};
+    const Box box{below(low.x), std::min(n_, below(high.x)) - 1, below(low.y),
+                  std::min(n_, below(high.y)) - 1};
     if (box.x0 <= box.x1 && box.y0 <= box.y1) raster(bins, disc, face, box);
   }
 
-  /// Bins of the box whose centres lie on the disc.
-  void raster(Bins bins, const Disc& c, uint32_t face, const Box& box) const {
-    if (std::abs(c.height) < coplanar * c.radius) return;
-    const size_t first = index(face, box.x0, box.y0);
-    const auto wide = static_cast<size_t>(n_);
-    if (box.x1 <= box.x0 + 1 && box.y1 <= box.y0 + 1) {
-      const uint32_t columns = box.x1 > box.x0 ? 0xfu : 0x5u, rows = box.y1 > box.y0 ? 0xfu : 0x3u;
-      rasterFour(bins, c, centre(box.x0) + Float4{0, 1, 0, 1} / half_,
-                 centre(box.y0) + Float4{0, 0, 1, 1} / half_, columns & rows,
-                 {first, first + 1, first + wide, first + wide + 1});
-      return;
-    }
-    const RowCut row(c.offset, c.normal, c.height, c.radius * c.radius);
-    const bool cut = box.x1 - box.x0 >= 4;
-    for (int y = box.y0; y <= box.y1; ++y) {
-      int begin = box.x0, end = box.x1;
-      if (cut) {
-        float from = box.low, to = box.high;
-        row.cut(centre(y), from, to);
-        begin = std::max(begin, below(from - 1e-4f));
-        end = std::min(end, below(to + 1e-4f) - 1);
+  /// Bins of the box whose centres lie on the disc. Four columns at once, beyond the box where it is
+  /// narrower: there the disc is not.
+  void raster(const Bins& bins, const Disc& c, uint32_t face, const Box& box) const {
+    if (box.x1 - box.x0 >= 4) return rasterWide(bins, c, face, box);
+    const int x = std::min(box.x0, n_ - 4);
+    const Columns columns(c, places(x));
+    size_t bin = index(face, x, box.y0);
+    float v = centre(box.y0);
+    for (int y = box.y0; y <= box.y1; ++y, bin += static_cast<size_t>(n_), v += width_)
+      columns.fill(bins, bin, v);
+  }
+
+  /// The same for more than four columns.
+  [[gnu::noinline]] void rasterWide(const Bins& bins, const Disc& c, uint32_t face, const Box& box) const {
+    const RowCut cut(c);
+    const glm::vec3 up = onFace(bins.up, face);
+    // Of rays as long as those to a face's corners.
+    const float margin = 1.7321f * bins.margin;
+    if (up.x + std::abs(up.y) + std::abs(up.z) < -margin) return;
+    for (int four = box.y0; four <= box.y1; four += 4) {
+      Int4 begin = Int4{} + box.x0, end = Int4{} + box.x1;
+      if (cut.closed()) {
+        const Bounds row = cut(places(four));
+        const Int4 first = firstBin(row.low), last = lastBin(row.high);
+        begin = begin > first ? begin : first;
+        end = end < last ? end : last;
       }
-      const Float4 v = splat(centre(y));
-      Float4 u = centre(begin) + Float4{0, 1, 2, 3} / half_;
-      size_t bin = index(face, begin, y);
-      for (int x = begin; x <= end; x += 4, bin += 4, u += 4 / half_)
-        rasterFour(bins, c, u, v, (2u << std::min(end - x, 3)) - 1, {bin, bin + 1, bin + 2, bin + 3});
+      if (std::abs(up.y) > 1e-3f) {
+        const Float4 horizon = (-margin - up.x - up.z * places(four)) / up.y;
+        const Int4 first = firstBin(horizon), last = lastBin(horizon);
+        if (up.y > 0)
+          begin = begin > first ? begin : first;
+        else
+          end = end < last ? end : last;
+      }
+      for (int y = four; y <= std::min(four + 3, box.y1); ++y)
+        for (int x = begin[y - four]; x <= end[y - four]; x += 4) {
+          const int first = std::min(x, n_ - 4);
+          Columns(c, places(first)).fill(bins, index(face, first, y), centre(y));
+        }
     }
+  }
+
+  /// A vector in the axes of a face: major, column, row.
+  static glm::vec3 onFace(const glm::vec3& v, uint32_t face) {
+    const int axis = static_cast<int>(face / 2);
+    return {face % 2 != 0 ? -v[axis] : v[axis], v[(axis + 1) % 3], v[(axis + 2) % 3]};
   }
 
   /// The place of a column's or row's centre.
-  float centre(int bin) const { return (static_cast<float>(bin) + 0.5f) / half_ - 1; }
-
-  /// Four rays (1, u, v), those among `lanes`.
-  static void rasterFour(Bins bins, const Disc& c, Float4 u, Float4 v, uint32_t lanes,
-                         const std::array<size_t, 4>& at) {
-    // Where a ray meets the disc's plane, and how far from its centre.
-    const Float4 t = c.height / (c.normal.x + c.normal.y * u + c.normal.z * v);
-    const Float4 miss_m = t - c.offset.x, miss_u = t * u - c.offset.y, miss_v = t * v - c.offset.z;
-    const Float4 miss2 = miss_m * miss_m + miss_u * miss_u + miss_v * miss_v;
-    const float disc2 = c.radius * c.radius;
-    uint32_t hits = laneMask((t > 0.f) & (miss2 <= splat(disc2))) & lanes;
-    if (hits == 0) return;
-    // Discs of a plane overlap at the same distance: the one whose centre is nearer wins, and not rounding.
-    const Float4 distance2 = t * t * (1.f + u * u + v * v) * (1.f + overlap / disc2 * miss2);
-    for (; hits != 0; hits &= hits - 1) {
-      const int k = std::countr_zero(hits);
-      keep(bins, at[static_cast<size_t>(k)], distance2[k], c.link);
-    }
-  }
+  float centre(int bin) const { return (static_cast<float>(bin) + 0.5f) * width_ - 1; }
+  Float4 places(int first) const { return centre(first) + Float4{0, 1, 2, 3} * width_; }
 
   int n_;
-  float half_;
+  float half_, width_;  ///< of bins in a row, and 1 over it
   bool footprint_;
 };
 

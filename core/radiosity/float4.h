@@ -21,6 +21,12 @@ inline Int4 loadInts(const uint32_t* values) {
   std::memcpy(&r, values, sizeof r);
   return r;
 }
+inline void store(float* values, Float4 v) {
+  std::memcpy(values, &v, sizeof v);
+}
+inline void storeInts(uint32_t* values, Int4 v) {
+  std::memcpy(values, &v, sizeof v);
+}
 inline Float4 splat(float value) {
   return Float4{value, value, value, value};
 }
@@ -33,10 +39,26 @@ inline Float4 root(Float4 v) {
 #endif
 }
 inline Float4 magnitude(Float4 v) {
-  return v < 0.f ? -v : v;
+  Int4 bits;
+  std::memcpy(&bits, &v, sizeof bits);
+  bits &= 0x7fffffff;
+  std::memcpy(&v, &bits, sizeof v);
+  return v;
 }
+/// b where either is not a number, as below: what the target's instructions do.
 inline Float4 greater(Float4 a, Float4 b) {
+#ifdef __SSE__
+  return __builtin_ia32_maxps(a, b);
+#else
   return a > b ? a : b;
+#endif
+}
+inline Float4 lesser(Float4 a, Float4 b) {
+#ifdef __SSE__
+  return __builtin_ia32_minps(a, b);
+#else
+  return a < b ? a : b;
+#endif
 }
 /// Bit k where lane k of a comparison is true.
 inline uint32_t laneMask(Int4 v) {

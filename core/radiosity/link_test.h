@@ -15,10 +15,6 @@ inline Float4 lanes(const glm::vec4& v) {
   return load(&v.x);
 }
 
-inline Float4 lesser(Float4 a, Float4 b) {
-  return a < b ? a : b;
-}
-
 /// An element as the near end of links.
 struct Receiver {
   glm::vec3 position{0}, normal{0};

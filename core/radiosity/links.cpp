@@ -24,6 +24,9 @@ constexpr size_t coarseLevel = 3;
 /// only its outline. 1, which takes a quarter less time, shows as mottled walls.
 constexpr float sharing = 0.25f;
 
+/// Sine of how far below their horizon receivers see: pixels' normals differ from vertices'.
+constexpr float belowHorizon = 0.2f;
+
 /// Lanes of a group that wait for a receiver: 16 group + mask.
 uint32_t waiting(uint32_t group, uint32_t lanes) {
   return group << 4 | lanes;
@@ -51,7 +54,7 @@ struct Inner {
     distance2.resize(bins);
     links.resize(bins);
   }
-  Bins bins() { return {distance2.data(), links.data()}; }
+  Bins bins() { return {.distance2 = distance2.data(), .links = links.data()}; }
 };
 
 /// What one thread needs on its way through a branch.
@@ -84,6 +87,8 @@ class Traversal {
              std::vector<uint32_t>* waitingOut) const {
     Receiver receiver = Receiver::of(groups_[slot / 4], slot % 4);
     receiver.extent /= sharing;
+    bins.up = receiver.normal;
+    bins.margin = belowHorizon + receiver.spread;
     stack.assign(candidates.begin(), candidates.end());
     while (!stack.empty()) {
       const uint32_t entry = stack.back();
@@ -113,7 +118,8 @@ class Traversal {
   void branch(uint32_t slot, size_t level, const Inner& parent, Branch& b) const {
     if (level == 0) {
       Stopwatch watch;
-      const Bins bins{b.distance2.data(), out_ + static_cast<size_t>(slot) * parent.links.size()};
+      const Bins bins{.distance2 = b.distance2.data(),
+                      .links = out_ + static_cast<size_t>(slot) * parent.links.size()};
       std::copy(parent.distance2.begin(), parent.distance2.end(), bins.distance2);
       std::copy(parent.links.begin(), parent.links.end(), bins.links);
       watch.add(b.times.inherit);
@@ -133,6 +139,8 @@ class Traversal {
   void all(uint32_t slot, uint32_t leafGroups, Bins bins) const {
     const Receiver receiver = Receiver::of(groups_[slot / 4], slot % 4);
     filler_.clear(bins);
+    bins.up = receiver.normal;
+    bins.margin = belowHorizon;
     for (uint32_t g = 0; g < leafGroups; ++g) {
       const Decision decision = test_(receiver, groups_[g]);
       link(bins, groups_[g], g, decision, decision.link);
@@ -141,7 +149,8 @@ class Traversal {
   }
 
  private:
-  void link(Bins bins, const glsl::ElementGroup& group, uint32_t g, const Decision& d, uint32_t lanes) const {
+  void link(const Bins& bins, const glsl::ElementGroup& group, uint32_t g, const Decision& d,
+            uint32_t lanes) const {
     lanes &= 15;
     if (lanes == 0) return;
     Candidates c{.x = d.x,
@@ -153,9 +162,8 @@ class Traversal {
                  .distance2 = d.distance2,
                  .height = d.height,
                  .disc = radiosity::lanes(group.disc),
-                 .links = {}};
-    const uint32_t backs = group.info.z != 0 ? laneMask(d.height > 0.f) : 0;
-    for (uint32_t k = 0; k < 4; ++k) c.links[k] = (4 * g + k) | ((backs >> k & 1) != 0 ? glsl::link_back : 0);
+                 .links = static_cast<int32_t>(4 * g) + Int4{0, 1, 2, 3}};
+    if (group.info.z != 0) c.links |= (d.height > 0.f) & static_cast<int32_t>(glsl::link_back);
     filler_.fill(bins, c, lanes);
   }
 
@@ -187,7 +195,7 @@ void Links::buildFlat(const Forest& forest, const LinkSettings& settings) {
     Branch& b = scratch_->branches.local();
     b.distance2.resize(binCount());
     for (uint32_t slot = 4 * g; slot < 4 * g + forest.groups()[g].info.y; ++slot)
-      traversal.all(slot, leafGroups, {b.distance2.data(), &links_[slot * binCount()]});
+      traversal.all(slot, leafGroups, {.distance2 = b.distance2.data(), .links = &links_[slot * binCount()]});
   });
 }
 

@@ -1,23 +1,16 @@
-// Gathers at leaves over their bins (limn::radiosity::gather). SKY 1: what empty bins see of the environment; 0: what links
-// bring. SERIAL 1: a thread for each leaf, for renderers whose barriers cost more than loads; 0: a work group.
+// Gathers at leaves over their bins (limn::radiosity::gather). SKY as in bin_lookup.glsl. SERIAL 1: a thread for each leaf, for
+// renderers whose barriers cost more than loads; 0: a work group.
 #define THREADS 64
 #if !SERIAL
 #include "glsl/work_group.glsl"
 #endif
-#include "techniques/implicit_visibility/elements.glsl"
+#include "techniques/implicit_visibility/bin_lookup.glsl"
 
 layout(local_size_x = THREADS) in;
-layout(std430, binding = 0) readonly buffer Directions { vec4 directions[]; };  // in the space of the bins; w: sr
 layout(std430, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
-layout(std430, binding = 2) readonly buffer Links { uint links[]; };
-#if SKY
-layout(std430, binding = 3) readonly buffer Environment { vec4 environment[]; };  // radiance of each bin
-#else
-layout(std430, binding = 3) readonly buffer Sent { vec4 sent[]; };  // radiance of elements of all levels
-#if !GLOSSY
+#if !SKY && !GLOSSY
 layout(std430, binding = 5) readonly buffer Direct { vec4 direct[]; };
 layout(std430, binding = 6) writeonly buffer Next { vec4 next[]; };
-#endif
 #endif
 layout(std430, binding = 4) writeonly buffer Irradiance { vec4 irradiance[]; };
 uniform uint first_leaf;
@@ -29,16 +22,7 @@ vec4 gathered(uint row, vec3 normal, uint first, uint step) {
   for (uint bin = first; bin < bin_count; bin += step) {
     vec4 direction = directions[bin];
     float weight = direction.w * dot(normal, direction.xyz);
-    if (weight > 0.0) {
-      vec3 radiance = vec3(0.0);
-      uint link = links[row * bin_count + bin];
-#if SKY
-      if (link == no_link) radiance = environment[bin].rgb;
-#else
-      if (link < link_back) radiance = sent[sent_index(link, -direction.xyz)].rgb;
-#endif
-      sum += weight * vec4(radiance, 1.0);
-    }
+    if (weight > 0.0) sum += weight * vec4(bin_radiance(row, bin, direction.xyz), 1.0);
   }
   return sum;
 }

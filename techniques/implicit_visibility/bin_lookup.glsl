@@ -1,0 +1,22 @@
+// What a leaf sees through its bins. SKY 1: what empty bins see of the environment; 0: what links bring.
+#ifndef LIMN_BIN_LOOKUP_GLSL
+#define LIMN_BIN_LOOKUP_GLSL
+#include "techniques/implicit_visibility/elements.glsl"
+
+layout(std430, binding = 0) readonly buffer Directions { vec4 directions[]; };  // in the space of the bins; w: sr
+layout(std430, binding = 2) readonly buffer Links { uint links[]; };
+layout(std430, binding = 3) readonly buffer Source { vec4 source[]; };  // radiance of elements of all levels, or of bins (SKY)
+
+// Radiance that reaches the leaf of `row` through a bin, which lies in `direction`.
+vec3 bin_radiance(uint row, uint bin, vec3 direction) {
+  vec3 radiance = vec3(0.0);
+  uint link = links[row * bin_count + bin];
+#if SKY
+  if (link == no_link) radiance = source[bin].rgb;
+#else
+  if (link < link_back) radiance = source[sent_index(link, -direction)].rgb;
+#endif
+  return radiance;
+}
+
+#endif  // LIMN_BIN_LOOKUP_GLSL
