@@ -23,6 +23,13 @@ ivec4 kernel_texels(ShadowCursor cursor, ShadowKernel kernel) {
   return ivec4(low, max(high, low));
 }
 
+// The box of their centres, which is where the depths that they hold are to be compared: on a slope seen edge-on, half a
+// texel aside is more than any bias.
+ShadowKernel kernel_centres(ShadowCursor cursor, ShadowKernel kernel) {
+  ivec4 texels = kernel_texels(cursor, kernel);
+  return ShadowKernel(vec2(texels.xy) + 0.5, vec2(texels.zw) + 0.5, kernel.weight);
+}
+
 // Bounds of the depths stored in them.
 vec2 kernel_depth_bounds(ShadowCursor cursor, ShadowKernel kernel) {
   ivec4 texels = kernel_texels(cursor, kernel);
@@ -42,10 +49,11 @@ BlockerSearch blocker_search(inout ShadowCursor cursor, VisibilityQuery q, int r
       ShadowKernel kernel;
       if (!shadow_kernel_in_face(cursor, q, face, search.gap, kernel)) continue;
       vec2 depths = kernel_depth_bounds(cursor, kernel);
-      vec2 thresholds = shadow_threshold_range(cursor.view, cursor.receiver, kernel);
+      ShadowKernel centres = kernel_centres(cursor, kernel);
+      vec2 thresholds = shadow_threshold_range(cursor.view, cursor.receiver, centres);
       lit = lit && thresholds.y <= depths.x;
       umbra = umbra && depths.y < thresholds.x;
-      widest = max(widest, shadow_gap_bound(cursor.view, cursor.receiver, kernel, depths.x));
+      widest = max(widest, shadow_gap_bound(cursor.view, cursor.receiver, centres, depths.x));
     }
     search.answer = lit ? search_lit : umbra ? search_umbra : search_partial;
     if (search.answer != search_partial) return search;

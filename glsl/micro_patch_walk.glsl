@@ -97,7 +97,8 @@ bool blocker_box(inout ShadowCursor cursor, VisibilityQuery q, uint face, float 
     if (4 * max(extent.x, extent.y) >= 3 * max(former.x, former.y)) break;
   }
   if (!shadow_kernel_in_face(cursor, q, face, gap, kernel)) return false;
-  umbra = kernel_depth_bounds(cursor, kernel).y < shadow_threshold_range(cursor.view, cursor.receiver, kernel).x;
+  ShadowKernel centres = kernel_centres(cursor, kernel);
+  umbra = kernel_depth_bounds(cursor, kernel).y < shadow_threshold_range(cursor.view, cursor.receiver, centres).x;
   return true;
 }
 
@@ -106,7 +107,9 @@ MicroPatch fetched_patch(ShadowCursor cursor, PatchProjection projection, ivec2 
   int cell = 1 << level;
   ivec2 texel = min((at << level) + (cell >> 1), ivec2(cursor.view.info.z) - 1);
   float stored = texelFetch(shadow_depth, ivec3(texel, cursor.layer), 0).r;
-  vec2 centre = (vec2(at) + 0.5) * float(cell);
+  // Placed where that texel is, half a texel beside the middle of a wider cell: elsewhere its depth is not the
+  // surface's, and slopes shadow themselves.
+  vec2 centre = vec2(texel) + 0.5;
   MicroPatch found =
       micro_patch(projection, centre, float(cell), shadow_metres(cursor.view, stored), PATCH_SPREAD);
   found.blocks = found.blocks && stored < 1.0;

@@ -38,7 +38,7 @@ struct MicroPatch {
 // Adds the value dot(a, b) + k at offset b (of the view's axes, from its origin) as component i.
 LIMN_FN void patch_value(LIMN_INOUT(PatchProjection) p, ShadowView view, int i, vec3 a, float k) {
   float step = 1.0f / (view.axis_x.w * float(view.info.z));
-  float corner = -0.5f * (a.x + a.y) / view.axis_x.w;
+  float corner = -(a.x * view.middle.x + a.y * view.middle.y) / view.axis_x.w;
   bool flat_view = view.info.x == shadow_orthographic;
   p.c0[i] = flat_view ? k + corner : k;
   p.cx[i] = flat_view ? a.x * step : 0.0f;

@@ -35,6 +35,7 @@ LIMN_FN ShadowView paraboloid_view(vec3 origin, vec3 axis, float near, float far
   view.axis_x = vec4(around.t, 0.5f);
   view.axis_y = vec4(-around.b, 4.0f / float(texels));
   view.axis_z = vec4(around.n, far);
+  view.middle = vec4(0.5f, 0.5f, 0.0f, 0.0f);
   view.info = uvec4(shadow_paraboloid, layer, texels, no_light);
   return view;
 }

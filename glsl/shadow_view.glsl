@@ -15,10 +15,11 @@ LIMN_CONST uint shadow_paraboloid = 2u;
 
 struct ShadowView {
   vec4 origin;  // xyz: centre of projection (orthographic: any point of the axis plane z = 0); w: near
-  vec4 axis_x;  // w: scale s; uv = 1/2 + s (x, y) / z (perspective: s = 1 / (2 tan(half angle)))
-                //    or 1/2 + s (x, y) (orthographic: s = 1 / width) or 1/2 + s (x, y) / (r + z) (paraboloid: 1/2)
+  vec4 axis_x;  // w: scale s; uv = middle + s (x, y) / z (perspective: s = 1 / width at z = 1)
+                //    or middle + s (x, y) (orthographic: s = 1 / width) or 1/2 + s (x, y) / (r + z) (paraboloid: 1/2)
   vec4 axis_y;  // w: footprint: side of a texel at unit depth (orthographic: at any depth)
   vec4 axis_z;  // w: far
+  vec4 middle;  // xy: uv of the axis x = y = 0; zw: unused
   uvec4 info;   // x: shadow_perspective, ...; y: layer; z: texels per side; w: light
 };
 
@@ -69,7 +70,7 @@ LIMN_FN ShadowPoint shadow_project_local(ShadowView view, vec3 r) {
   ShadowPoint q;
   float s = view.axis_x.w;
   if (view.info.x == shadow_orthographic) {
-    q.uv = vec2(0.5f + s * r.x, 0.5f + s * r.y);
+    q.uv = vec2(view.middle.x + s * r.x, view.middle.y + s * r.y);
     q.depth = r.z;
     return q;
   }
@@ -85,7 +86,7 @@ LIMN_FN ShadowPoint shadow_project_local(ShadowView view, vec3 r) {
     return q;
   }
   float k = s / divisor;
-  q.uv = vec2(0.5f + k * r.x, 0.5f + k * r.y);
+  q.uv = vec2(view.middle.x + k * r.x, view.middle.y + k * r.y);
   return q;
 }
 
@@ -98,8 +99,8 @@ LIMN_FN bool shadow_inside(ShadowPoint q) {
 // Offset from the origin, in the view's axes, of what lies at `depth` metres behind uv: the inverse of
 // shadow_project_local.
 LIMN_FN vec3 shadow_unproject_local(ShadowView view, vec2 uv, float depth) {
-  float x = (uv.x - 0.5f) / view.axis_x.w;
-  float y = (uv.y - 0.5f) / view.axis_x.w;
+  float x = (uv.x - view.middle.x) / view.axis_x.w;
+  float y = (uv.y - view.middle.y) / view.axis_x.w;
   if (view.info.x == shadow_orthographic) return vec3(x, y, depth);
   if (view.info.x == shadow_perspective) return vec3(x * depth, y * depth, depth);
   // Paraboloid: (x, y) = (dx, dy) / (1 + dz) with unit d, so dz = (1 - x^2 - y^2) / (1 + x^2 + y^2).
@@ -143,10 +144,12 @@ LIMN_FN vec4 shadow_clip(ShadowView view, vec3 p) {
   float near = view.origin.w;
   float far = view.axis_z.w;
   float s = 2.0f * view.axis_x.w;
+  float x = 2.0f * view.middle.x - 1.0f;
+  float y = 2.0f * view.middle.y - 1.0f;
   if (view.info.x == shadow_perspective) {
-    return vec4(s * r.x, s * r.y, near * ((far - r.z) / (far - near)), r.z);
+    return vec4(s * r.x + x * r.z, s * r.y + y * r.z, near * ((far - r.z) / (far - near)), r.z);
   }
-  if (view.info.x == shadow_orthographic) return vec4(s * r.x, s * r.y, (far - r.z) / (far - near), 1.0f);
+  if (view.info.x == shadow_orthographic) return vec4(s * r.x + x, s * r.y + y, (far - r.z) / (far - near), 1.0f);
   float depth = sqrt(dot(r, r));
   float divisor = max(depth + r.z, 1e-6f * depth);
   return vec4(s * r.x / divisor, s * r.y / divisor, (far - depth) / (far - near), 1.0f);

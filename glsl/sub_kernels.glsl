@@ -337,8 +337,9 @@ KernelBounds family_bounds(KernelFamily f, ShadowCursor cursor, ShadowKernel ker
 #endif
   float least = shadow_metres(cursor.view, stored.x);
   float greatest = shadow_metres(cursor.view, stored.y);
-  vec2 plane = threshold_range(t.biased, kernel.low, kernel.high);
-  vec2 axis = threshold_range(t.axis, kernel.low, kernel.high);
+  ShadowKernel centres = kernel_centres(cursor, kernel);
+  vec2 plane = threshold_range(t.biased, centres.low, centres.high);
+  vec2 axis = threshold_range(t.axis, centres.low, centres.high);
   KernelBounds bounds;
   bounds.lit = f.unblocked || stored.x >= 1.0 || !threshold_nearer(t, least, max(plane.x, axis.x));
   bounds.umbra = !f.unblocked && stored.y < 1.0 && threshold_nearer(t, greatest, max(plane.y, axis.y));

@@ -35,8 +35,9 @@ LIMN_FN ShadowThresholds shadow_thresholds(ShadowView view, ShadowReceiver recei
   float s = view.axis_x.w;
   vec3 n = vec3(receiver.plane);
   vec3 a = vec3(receiver.axis);
-  vec3 across = vec3(-0.5f * (n.x + n.y), n.x, n.y) / s;
-  vec3 along = vec3(-0.5f * (a.x + a.y), a.x, a.y) / s;
+  vec2 middle = vec2(view.middle);
+  vec3 across = vec3(-dot(middle, vec2(n)), n.x, n.y) / s;
+  vec3 along = vec3(-dot(middle, vec2(a)), a.x, a.y) / s;
   t.inverse = view.info.x == shadow_perspective;
   t.near = view.origin.w;
   t.quanta = scale / (view.axis_z.w - view.origin.w);

@@ -1,11 +1,17 @@
 // What a compute pass that answers `visibility` starts from: its bindings (shadow::addVisibilityPass fills them), the
 // receiver of a pixel and the light of a layer.
+//
+// Define WHOLE_BIAS 1 before including this to keep the whole bias where a light with extent grazes.
 #ifndef LIMN_VISIBILITY_GLSL
 #define LIMN_VISIBILITY_GLSL
 #include "glsl/gbuffer_input.glsl"
 #include "glsl/light_view.glsl"
 #include "glsl/shadow_kernel.glsl"
 #include "glsl/shadow_view.glsl"
+
+#ifndef WHOLE_BIAS
+#define WHOLE_BIAS 0
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -43,6 +49,17 @@ VisibilityQuery visibility_query(ivec2 at, uint maps) {
   return q;
 }
 
+// The share of the bias that a receiver needs. shadow_receiver() takes the bias across the tangent plane; along the
+// light's rays that is 1 / cosine times as long, and where the light grazes it lifts the plane above the light's centre,
+// so that nothing blocks. But the slope is in the plane already: twice `bias` along the rays suffices (up to 60 degrees
+// nothing changes), and of that a little for what depths and normals are rounded to.
+float bias_share(ShadowView view, VisibilityQuery q) {
+  if (WHOLE_BIAS == 1 && q.light.extended) return 1.0;
+  vec3 r = q.position - view.origin.xyz;
+  vec3 ray = view.info.x == shadow_orthographic ? view.axis_z.xyz : r / max(length(r), 1e-30);
+  return clamp(-2.0 * dot(q.normal, ray), 0.02, 1.0);
+}
+
 // The view that taps of a query land in; kept between taps, most of which land in the same one.
 struct ShadowCursor {
   uint face;
@@ -57,7 +74,8 @@ ShadowCursor shadow_cursor_at(VisibilityQuery q, uint face) {
   cursor.layer = q.maps.info.x + face;
   cursor.view = q.first;
   if (face != 0u) cursor.view = shadow_views[cursor.layer];
-  cursor.receiver = shadow_receiver(cursor.view, q.position, q.normal, q.light.axis, bias);
+  cursor.receiver = shadow_receiver(cursor.view, q.position, q.normal, q.light.axis,
+                                    bias * bias_share(cursor.view, q));
   return cursor;
 }
 

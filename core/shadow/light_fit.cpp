@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
+#include "core/shadow/window_fit.h"
 #include "glsl/geometry.glsl"
 #include "glsl/light_view.glsl"
 
@@ -12,10 +15,7 @@ namespace {
 using glm::vec3;
 using scene::Bounds;
 
-/// Right, up, forward; cross(x, y) = -z, as ShadowView wants it.
-struct Axes {
-  vec3 x, y, z;
-};
+using Axes = MapAxes;
 
 Axes axesOf(const glsl::Light& light) {
   const vec3 z(light.direction), u(light.axis_u), v(light.axis_v);
@@ -49,12 +49,10 @@ Axes faceAxes(const Axes& a, uint32_t face) {
 
 /// The eight corners relative to `origin`, in the frame.
 std::array<vec3, 8> corners(const Bounds& box, const vec3& origin, const Axes& axes) {
-  std::array<vec3, 8> out;
-  for (size_t i = 0; i < 8; ++i) {
-    const vec3 p = vec3((i & 1) != 0 ? box.high.x : box.low.x, (i & 2) != 0 ? box.high.y : box.low.y,
-                        (i & 4) != 0 ? box.high.z : box.low.z) -
-                   origin;
-    out[i] = {glm::dot(axes.x, p), glm::dot(axes.y, p), glm::dot(axes.z, p)};
+  std::array<vec3, 8> out = boxCorners(box);
+  for (vec3& p : out) {
+    p -= origin;
+    p = {glm::dot(axes.x, p), glm::dot(axes.y, p), glm::dot(axes.z, p)};
   }
   return out;
 }
@@ -81,47 +79,25 @@ float fittedTangent(const vec3& origin, const Axes& axes, std::span<const Bounds
   return tangent;
 }
 
-using Polygon = std::vector<vec3>;
-
-/// The part of a polygon with dot(n, p) >= 0.
-void clip(const Polygon& in, const vec3& n, Polygon& out) {
-  out.clear();
-  for (size_t i = 0; i < in.size(); ++i) {
-    const vec3 a = in[i], b = in[(i + 1) % in.size()];
-    const float ha = glm::dot(n, a), hb = glm::dot(n, b);
-    if (ha >= 0) out.push_back(a);
-    if ((ha >= 0) != (hb >= 0)) out.push_back(a + (ha / (ha - hb)) * (b - a));
-  }
-}
-
 struct Range {
   float near = std::numeric_limits<float>::max(), far = 0;
 };
 
 /// Widens `range` by the depths of the part of the box inside the pyramid.
-void addBox(const std::array<vec3, 8>& box, float tangent, Range& range) {
+void addBox(const std::array<vec3, 8>& box, float tangent, Convex& solid, Range& range) {
   float low = box[0].z, high = box[0].z;
   for (const vec3& p : box) {
     low = std::min(low, p.z);
     high = std::max(high, p.z);
   }
   if (high <= 0 || (low >= range.near && high <= range.far)) return;
-  constexpr std::array<std::array<size_t, 4>, 6> sides{
-      {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
-  const std::array<vec3, 4> planes{vec3(1, 0, tangent), vec3(-1, 0, tangent), vec3(0, 1, tangent),
-                                   vec3(0, -1, tangent)};
-  Polygon polygon, clipped;
-  for (const auto& side : sides) {
-    polygon.clear();
-    for (const size_t corner : side) polygon.push_back(box[corner]);
-    for (const vec3& plane : planes) {
-      clip(polygon, plane, clipped);
-      polygon.swap(clipped);
-    }
-    for (const vec3& p : polygon) {
-      range.near = std::min(range.near, std::max(p.z, 0.f));
-      range.far = std::max(range.far, p.z);
-    }
+  solid.setBox(box);
+  for (const glm::vec4& plane : {glm::vec4(1, 0, tangent, 0), glm::vec4(-1, 0, tangent, 0),
+                                 glm::vec4(0, 1, tangent, 0), glm::vec4(0, -1, tangent, 0)})
+    solid.clip(plane);
+  for (const vec3& p : solid.corners()) {
+    range.near = std::min(range.near, std::max(p.z, 0.f));
+    range.far = std::max(range.far, p.z);
   }
 }
 
@@ -129,13 +105,11 @@ void addBox(const std::array<vec3, 8>& box, float tangent, Range& range) {
 Range pyramidRange(const vec3& origin, const Axes& axes, uint32_t faceCount, uint32_t step, float tangent,
                    std::span<const Bounds> boxes) {
   Range range;
+  Convex solid;
   for (uint32_t face = 0; face < faceCount; ++face) {
     const Axes frame = faceAxes(axes, face * step);
     for (const Bounds& box : boxes) {
-      if (box.empty()) continue;
-      addBox(corners(box, origin, frame), tangent, range);
-      if (glm::all(glm::lessThanEqual(box.low, origin)) && glm::all(glm::lessThanEqual(origin, box.high)))
-        range.near = 0;
+      if (!box.empty()) addBox(corners(box, origin, frame), tangent, solid, range);
     }
   }
   return range;
@@ -149,16 +123,22 @@ Range widened(Range range) {
   return range;
 }
 
-glsl::ShadowView makeView(uint32_t projection, const vec3& origin, const Axes& axes, float scale,
-                          const Range& range, int size, uint32_t layer, uint32_t light) {
+glsl::ShadowView makeView(uint32_t projection, const vec3& origin, const Axes& axes, const MapWindow& window,
+                          int size, uint32_t layer, uint32_t light) {
+  const float scale = 1 / (window.high.x - window.low.x);
   float footprint = 1 / (scale * static_cast<float>(size));
   // At the centre of a paraboloid map a texel spans 4 / size radians: uv = 1/2 + s tan(angle / 2).
   if (projection == glsl::shadow_paraboloid) footprint *= 2;
-  return {.origin = glm::vec4(origin, range.near),
+  return {.origin = glm::vec4(origin, window.near),
           .axis_x = glm::vec4(axes.x, scale),
           .axis_y = glm::vec4(axes.y, footprint),
-          .axis_z = glm::vec4(axes.z, range.far),
+          .axis_z = glm::vec4(axes.z, window.far),
+          .middle = glm::vec4(0.5f - 0.5f * scale * (window.low + window.high), 0, 0),
           .info = {projection, layer, static_cast<uint32_t>(size), light}};
+}
+
+MapWindow square(float half, const Range& range) {
+  return {glm::vec2(-half), glm::vec2(half), range.near, range.far};
 }
 
 struct Writer {
@@ -170,14 +150,45 @@ struct Writer {
   void light(const glm::vec4& origin, uint32_t faces) {
     lights.push_back({origin, {static_cast<uint32_t>(views.size()), faces, lightIndex, 0}});
   }
-  void view(uint32_t projection, const vec3& origin, const Axes& axes, float scale, const Range& range) {
-    views.push_back(makeView(projection, origin, axes, scale, range, size,
-                             static_cast<uint32_t>(views.size()), lightIndex));
+  void view(uint32_t projection, const vec3& origin, const Axes& axes, const MapWindow& window) {
+    views.push_back(
+        makeView(projection, origin, axes, window, size, static_cast<uint32_t>(views.size()), lightIndex));
   }
 };
 
+/// Half of a light's sides, each as far as it reaches along the axes of its map. `size` as in light_view().
+vec3 spreadOf(const glsl::Light& light, const Axes& axes, float size) {
+  if (light.info.x == glsl::light_directional && !glsl::light_is_distant_rectangle(light))
+    return vec3(glm::vec2(std::tan(std::min(0.5f * (size < 0 ? light.cone.w : size), 1.55f))), 0);
+  // A square that faces the receiver, whichever way.
+  if (light.info.x == glsl::light_point || light.info.x == glsl::light_spot)
+    return vec3(std::sqrt(0.5f) * std::max(size, 0.f));
+  vec3 u = light.axis_u.w * vec3(light.axis_u), v = light.axis_v.w * vec3(light.axis_v);
+  const bool distant = glsl::light_is_distant_rectangle(light);
+  if (size >= 0) {
+    const float side = distant ? 2 * std::tan(std::min(0.5f * size, 1.5f)) : size;
+    u = side * vec3(light.axis_u);
+    v = side * vec3(light.axis_v);
+  }
+  const auto reach = [&](const vec3& axis) {
+    return 0.5f * (std::abs(glm::dot(axis, u)) + std::abs(glm::dot(axis, v)));
+  };
+  const vec3 half(reach(axes.x), reach(axes.y), reach(axes.z));
+  if (!distant) return half;
+  // Points are directions centre + a u + b v: across the map's axis per metre along it.
+  const float along = std::max(glm::length(vec3(light.position)) - half.z, 1e-3f);
+  return {half.x / along, half.y / along, 0};
+}
+
+/// What a map is fitted to besides the boxes: null, or what the camera sees, for all points of the light as
+/// far as `spread` says.
+struct ViewFit {
+  const VisibleScene* visible = nullptr;
+  vec3 spread{0};
+};
+
 void appendOrthographic(const glsl::Light& light, const vec3& direction, std::span<const Bounds> boxes,
-                        Writer& out) {
+                        const ViewFit& fit, Writer& out) {
   Axes axes = axesOf(light);
   if (direction != axes.z) {  // a sample off the disc's centre: turn the frame
     const vec3 x = glm::normalize(axes.x - glm::dot(axes.x, direction) * direction);
@@ -197,7 +208,11 @@ void appendOrthographic(const glsl::Light& light, const vec3& direction, std::sp
   // The plane z = 0 lies a tenth of the depth before everything, so that depths are positive.
   const vec3 origin = centre + middle.x * axes.x + middle.y * axes.y + (middle.z - 0.6f * depth) * axes.z;
   out.light(glm::vec4(-direction, 0), glsl::shadow_faces_single);
-  out.view(glsl::shadow_orthographic, origin, axes, 1 / width, {0.0999f * depth, 1.1001f * depth});
+  const MapWindow whole = square(0.5f * width, {0.0999f * depth, 1.1001f * depth});
+  MapWindow window, receivers;
+  const bool fitted = fit.visible != nullptr && fitWindow({origin, axes, false, fit.spread}, *fit.visible,
+                                                          light.info.z, whole, window, receivers);
+  out.view(glsl::shadow_orthographic, origin, axes, fitted ? steadyWindow(window, whole, out.size) : whole);
 }
 
 vec3 samplePoint(const glsl::Light& light, const glm::vec2& sample) {
@@ -232,6 +247,23 @@ LightLayout paraboloidLayout(const glsl::Light& light) {
   return {glsl::shadow_paraboloid, both ? glsl::shadow_faces_pair : glsl::shadow_faces_single};
 }
 
+/// Of perspective views from `origin`: all boxes that they may see, as far as there is light.
+MapWindow wholeWindow(const glsl::Light& light, const vec3& origin, const Axes& axes,
+                      const LightLayout& layout, std::span<const Bounds> boxes, const ShadowMapDesc& desc) {
+  const uint32_t count = glsl::shadow_face_count(layout.faces);
+  float tangent = 1;
+  if (count <= 2) {
+    tangent =
+        light.info.x == glsl::light_spot ? spotTangent(light, desc.size) : fittedTangent(origin, axes, boxes);
+    if (count == 2) tangent = std::max(tangent, fittedTangent(origin, faceAxes(axes, 5), boxes));
+    if (light.info.x != glsl::light_spot) tangent *= 1 + 4 / static_cast<float>(desc.size);
+    if (hasCone(light) && count == 1) tangent = std::min(tangent, spotTangent(light, desc.size));
+    if (!(tangent > 0)) tangent = 1;
+  }
+  const uint32_t step = layout.faces == glsl::shadow_faces_pair ? 5 : 1;
+  return square(tangent, widened(pyramidRange(origin, axes, count, step, tangent, boxes)));
+}
+
 }  // namespace
 
 std::vector<glm::vec2> samplesOf(const glsl::Light& light, const ShadowMapDesc& desc) {
@@ -261,15 +293,32 @@ LightLayout fitLayout(const glsl::Light& light, std::span<const Bounds> boxes, c
 }
 
 void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayout& layout,
-                 std::span<const Bounds> boxes, const ShadowMapDesc& desc,
+                 std::span<const Bounds> boxes, const ShadowMapDesc& desc, const VisibleScene* visible,
                  std::vector<glsl::ShadowView>& views, std::vector<glsl::ShadowLight>& lights) {
   Writer out{lightIndex, desc.size, views, lights};
   const Axes axes = axesOf(light);
   const uint32_t count = glsl::shadow_face_count(layout.faces);
   const std::vector<glm::vec2> samples = samplesOf(light, desc);
+  const bool perspective = layout.projection == glsl::shadow_perspective;
+  ViewFit fit;
+  if (desc.fit == MapFit::view && layout.faces == glsl::shadow_faces_single &&
+      layout.projection != glsl::shadow_paraboloid)
+    fit.visible = visible;
+  const bool sampled = !desc.samples.empty();
+  if (!sampled || perspective) fit.spread = spreadOf(light, axes, desc.lightSize);
+  std::optional<MapWindow> window, receivers;
+  if (fit.visible != nullptr && perspective) {
+    const vec3 origin(light.position);
+    const MapWindow whole = wholeWindow(light, origin, axes, layout, boxes, desc);
+    MapWindow fitted, seen;
+    if (fitWindow({origin, axes, true, fit.spread}, *fit.visible, light.info.z, whole, fitted, seen)) {
+      window = fitted;
+      receivers = seen;
+    }
+  }
   for (const glm::vec2& sample : samples) {
     if (layout.projection == glsl::shadow_orthographic) {
-      appendOrthographic(light, sampleDirection(light, sample), boxes, out);
+      appendOrthographic(light, sampleDirection(light, sample), boxes, fit, out);
       continue;
     }
     const vec3 origin = samplePoint(light, sample);
@@ -280,21 +329,20 @@ void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayou
       const Range range = widened(pyramidRange(origin, axes, 6, 1, 1, boxes));
       const Range radial{0.5f * range.near, std::sqrt(3.f) * range.far};  // corners of the cube faces
       for (uint32_t face = 0; face < count; ++face)
-        out.view(glsl::shadow_paraboloid, origin, faceAxes(axes, face * step), 0.5f, radial);
+        out.view(glsl::shadow_paraboloid, origin, faceAxes(axes, face * step), square(1, radial));
       continue;
     }
-    float tangent = 1;
-    if (count <= 2) {
-      tangent = light.info.x == glsl::light_spot ? spotTangent(light, desc.size)
-                                                 : fittedTangent(origin, axes, boxes);
-      if (count == 2) tangent = std::max(tangent, fittedTangent(origin, faceAxes(axes, 5), boxes));
-      if (light.info.x != glsl::light_spot) tangent *= 1 + 4 / static_cast<float>(desc.size);
-      if (hasCone(light) && count == 1) tangent = std::min(tangent, spotTangent(light, desc.size));
-      if (!(tangent > 0)) tangent = 1;
+    const MapWindow whole = wholeWindow(light, origin, axes, layout, boxes, desc);
+    if (window) {
+      const vec3 r = origin - vec3(light.position);
+      MapWindow own =
+          sampled ? shiftedWindow(*receivers, {glm::dot(axes.x, r), glm::dot(axes.y, r)}) : *window;
+      own.near = window->near;
+      out.view(glsl::shadow_perspective, origin, axes, steadyWindow(own, whole, desc.size));
+      continue;
     }
-    const Range range = widened(pyramidRange(origin, axes, count, step, tangent, boxes));
     for (uint32_t face = 0; face < count; ++face)
-      out.view(glsl::shadow_perspective, origin, faceAxes(axes, face * step), 0.5f / tangent, range);
+      out.view(glsl::shadow_perspective, origin, faceAxes(axes, face * step), whole);
   }
   for (size_t shared = samples.size(); shared < desc.samples.size(); ++shared)
     lights.push_back(lights.back());
@@ -303,18 +351,14 @@ void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayou
 scene::CullVolume cullVolume(const glsl::ShadowView& view) {
   const vec3 origin(view.origin), x(view.axis_x), y(view.axis_y), z(view.axis_z);
   const auto plane = [&](const vec3& n, float offset) { return glm::vec4(n, offset - glm::dot(n, origin)); };
-  const float half = 0.5f / view.axis_x.w;
+  const glm::vec2 low = -glm::vec2(view.middle) / view.axis_x.w, high = low + 1 / view.axis_x.w;
   scene::CullVolume volume;
   if (view.info.x == glsl::shadow_orthographic) {
-    volume.planes = {plane(x, half),  plane(-x, half), plane(y, half),
-                     plane(-y, half), plane(z, 0),     plane(-z, view.axis_z.w)};
+    volume.planes = {plane(x, -low.x),  plane(-x, high.x),        plane(y, -low.y),
+                     plane(-y, high.y), plane(z, -view.origin.w), plane(-z, view.axis_z.w)};
   } else if (view.info.x == glsl::shadow_perspective) {
-    volume.planes = {plane(x + half * z, 0),
-                     plane(half * z - x, 0),
-                     plane(y + half * z, 0),
-                     plane(half * z - y, 0),
-                     plane(z, 0),
-                     plane(-z, view.axis_z.w)};
+    volume.planes = {plane(x - low.x * z, 0),  plane(high.x * z - x, 0), plane(y - low.y * z, 0),
+                     plane(high.y * z - y, 0), plane(z, -view.origin.w), plane(-z, view.axis_z.w)};
   } else {
     volume.planes[0] = plane(z, 0);
   }

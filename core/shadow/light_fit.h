@@ -7,6 +7,7 @@
 #include "core/base/export.h"
 #include "core/scene/scene.h"
 #include "core/shadow/shadow_map.h"
+#include "core/shadow/visible_scene.h"
 #include "glsl/light.glsl"
 #include "glsl/shadow_view.glsl"
 
@@ -29,10 +30,12 @@ LIMN_API LightLayout fitLayout(const glsl::Light& light, std::span<const scene::
                                const ShadowMapDesc& desc);
 
 /// Appends the views of one light, for every sample of `desc` in turn, with layers numbered from
-/// views.size(), and one ShadowLight per sample.
+/// views.size(), and one ShadowLight per sample. `visible`: what maps of one view per sample are fitted to
+/// with MapFit::view; null: to the boxes.
 LIMN_API void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayout& layout,
                           std::span<const scene::Bounds> boxes, const ShadowMapDesc& desc,
-                          std::vector<glsl::ShadowView>& views, std::vector<glsl::ShadowLight>& lights);
+                          const VisibleScene* visible, std::vector<glsl::ShadowView>& views,
+                          std::vector<glsl::ShadowLight>& lights);
 
 /// Samples that need maps of their own: all of `desc`, or the centre for lights without extent.
 LIMN_API std::vector<glm::vec2> samplesOf(const glsl::Light& light, const ShadowMapDesc& desc);

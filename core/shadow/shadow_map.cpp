@@ -72,6 +72,10 @@ struct ShadowMapService::Implementation {
   std::vector<glsl::Light> lights;
   std::vector<std::string> lightNames;
   std::vector<scene::Bounds> boxes;
+  const scene::Pose* current =
+      nullptr;  ///< of the last begin() or update(); valid during those and request()
+  std::unique_ptr<VisibleScene> visible = {};  ///< made at the first request that is fitted to it
+  bool watching = false;                       ///< some request of the graph is
   std::vector<std::unique_ptr<Request>> requests;
   DerivedMaps derived;
   std::vector<KnownFourierMaps> fourier = {};
@@ -84,10 +88,17 @@ struct ShadowMapService::Implementation {
     return std::ranges::all_of(scene.scene().materials, &scene::Material::lambertian);
   }
   void take(const scene::Pose& pose) {
+    current = &pose;
     lights = pose.lights;
     lightNames = pose.lightNames;
     boxes.resize(scene.instanceCount());
     for (uint32_t i = 0; i < boxes.size(); ++i) boxes[i] = scene.bounds(i);
+  }
+  /// What the camera sees of `pose`, which the bounds belong to.
+  void see(const scene::Pose& pose) {
+    if (!visible) visible = std::make_unique<VisibleScene>(scene.scene());
+    const glm::vec2 size(scene.frame().frame_size);
+    visible->update(pose, boxes, scene.camera(), size.x / size.y);
   }
   const glsl::Light& light(uint32_t index) const {
     if (index >= lights.size())
@@ -142,7 +153,7 @@ bool ShadowMapService::Implementation::fit(Request& request) const {
   for (size_t i = 0; i < countOf(request); ++i) {
     const glsl::Light l = lightOf(request, i);
     appendViews(l, request.directions.empty() ? request.lights[i] : glsl::no_light, request.layouts[i],
-                boxesFor(l), request.desc, views, shadowLights);
+                boxesFor(l), request.desc, visible.get(), views, shadowLights);
   }
   request.depthViews.clear();
   for (const glsl::ShadowView& view : views) {
@@ -203,6 +214,7 @@ void ShadowMapService::begin(frame::FrameGraph& graph, const SceneHandles& handl
   implementation_->fourier.clear();
   implementation_->ltcHandle = {};
   implementation_->take(pose);
+  implementation_->watching = false;
 }
 
 void ShadowMapService::forget() {
@@ -241,6 +253,10 @@ ShadowMaps ShadowMapService::Implementation::add(std::unique_ptr<Request> made) 
     layers +=
         glsl::shadow_face_count(made->layouts[i].faces) * samplesOf(lightOf(*made, i), made->desc).size();
   check(*made, layers);
+  if (made->desc.fit == MapFit::view && !watching) {
+    watching = true;
+    see(*current);
+  }
   fit(*made);
   made->viewBuffer =
       gpu::Buffer::of<glsl::ShadowView>(device, "shadow views", made->views, gpu::BufferUse::updated);
@@ -293,6 +309,7 @@ bool ShadowMapService::update(const scene::Pose& pose) {
   s.coverage.clear();
   const bool lightsCameOrWent = pose.lights.size() != s.lights.size();
   s.take(pose);
+  if (s.watching) s.see(pose);
   if (lightsCameOrWent) return true;
   for (const auto& request : s.requests) {
     if (s.layoutsOf(*request) != request->layouts) return true;

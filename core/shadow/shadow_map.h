@@ -30,6 +30,12 @@ enum class Projection {
   paraboloid,  ///< one layer per hemisphere (two for point lights); radial depth
 };
 
+/// What maps of one view cover; cubes, hemicubes, pairs and paraboloids cover the whole scene.
+enum class MapFit {
+  scene,  ///< everything that a light reaches, whoever looks
+  view,   ///< what the camera sees of it, and what may block light from there: redrawn when that changes
+};
+
 struct ShadowMapDesc {
   int size = 1024;  ///< texels per side of each layer
   Projection projection = Projection::automatic;
@@ -44,6 +50,9 @@ struct ShadowMapDesc {
   bool reflective = false;
   /// Specular surfaces are in the maps.
   bool specular = true;
+  MapFit fit = MapFit::scene;
+  /// MapFit::view: size of the lights, as light_view() takes it; < 0: the scene's.
+  float lightSize = -1;
   bool operator==(const ShadowMapDesc&) const = default;
 };
 
@@ -69,6 +78,9 @@ struct ShadowMapStats {
   float halfAngle = 0;      ///< radians, perspective only
 };
 
+/// Views of fit `view` may be off the light's axis (glsl::ShadowView::middle): cuts of those of fit `scene`,
+/// and never larger.
+///
 /// Chosen automatically: point light: cube. Spot: perspective over its cone up to 75 degrees half angle, else
 /// cube. Directional: orthographic around the scene. Rectangle: perspective from its centre, half angle
 /// fitted to the scene up to 75 degrees, beyond that a hemicube (five faces); two-sided: the same for both

@@ -11,18 +11,37 @@ namespace limn::shadow {
 
 using frame::Access;
 
+namespace {
+
+bool declares(const ParameterValues& p, std::string_view name) {
+  return std::ranges::any_of(p.declared(), [&](const Parameter& known) { return known.name == name; });
+}
+
+/// light_size, or that of the scene where there is no such parameter.
+float lightSize(const ParameterValues& p) {
+  return declares(p, "light_size") ? p.real("light_size") : -1;
+}
+
+}  // namespace
+
+ShadowMapDesc shadowMapDesc(const ParameterValues& parameters) {
+  ShadowMapDesc desc{.size = parameters.integer("shadow_map_size")};
+  if (!declares(parameters, "shadow_map_fit") || parameters.choice("shadow_map_fit") == 0) return desc;
+  desc.fit = MapFit::view;
+  desc.lightSize = lightSize(parameters);
+  return desc;
+}
+
 VisibilityPass visibilityPass(const TechniqueInputs& inputs, const TermRequest& request,
                               std::string_view technique, std::map<std::string, std::string> defines) {
   const ParameterValues& p = inputs.parameters;
-  const bool sized = std::ranges::any_of(
-      p.declared(), [](const Parameter& known) { return std::string_view(known.name) == "light_size"; });
   return {.name = "visibility",
           .technique = technique,
           .program = {.files = {fmt::format("techniques/{}/visibility.comp.glsl", technique)},
                       .defines = std::move(defines)},
-          .maps = inputs.shadowMaps.request(request.lights, {.size = p.integer("shadow_map_size")}),
+          .maps = inputs.shadowMaps.request(request.lights, shadowMapDesc(p)),
           .bias = p.real("bias"),
-          .lightSize = sized ? p.real("light_size") : -1};
+          .lightSize = lightSize(p)};
 }
 
 void readSurfaces(VisibilityPass& pass, const GBuffer& g) {

@@ -22,6 +22,13 @@ constexpr Parameter shadowMapSizeParameter(int texels = 1024) {
       .quality()
       .logScale();
 }
+constexpr const char* mapFits[] = {"scene", "view"};
+constexpr Parameter shadowMapFitParameter() {
+  return choice(
+      "shadow_map_fit", 0, mapFits,
+      "What maps of one view cover: all that the light reaches, or what the camera sees of it and what "
+      "may block light from there");
+}
 constexpr Parameter biasParameter() {
   return real("bias", 1, {0, 64}, "texel footprints",
               "How far a blocker must lie above the receiver's tangent plane to count");
@@ -37,6 +44,10 @@ struct SampledTexture {
   frame::TextureHandle texture;
   const char* why;  ///< as for PassBuilder::read()
 };
+
+/// Of the maps of a technique that declares shadow_map_size, and maybe shadow_map_fit (else: scene) and
+/// light_size.
+LIMN_API ShadowMapDesc shadowMapDesc(const ParameterValues& parameters);
 
 /// Units of glsl/blocker_search.glsl and of the table or maps that a technique derives.
 constexpr unsigned minMaxUnit = 9, tableUnit = 10;
@@ -56,8 +67,8 @@ struct VisibilityPass {
   bool accumulate = false;
 };
 
-/// The pass of a technique that declares the three parameters above (light_size may be missing): maps of the
-/// request's lights, and the program of techniques/NAME/visibility.comp.glsl.
+/// The pass of a technique that declares the parameters above (shadow_map_fit and light_size may be missing):
+/// maps of the request's lights, and the program of techniques/NAME/visibility.comp.glsl.
 LIMN_API VisibilityPass visibilityPass(const TechniqueInputs& inputs, const TermRequest& request,
                                        std::string_view technique,
                                        std::map<std::string, std::string> defines = {});

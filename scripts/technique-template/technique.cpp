@@ -9,6 +9,7 @@ using namespace limn;
 constexpr Parameter parameters[] = {
     integer("taps", 4, {1, 64}, "texels", "Width and height of the filter").quality(),
     shadow::shadowMapSizeParameter(),
+    shadow::shadowMapFitParameter(),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };

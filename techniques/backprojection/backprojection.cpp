@@ -17,6 +17,7 @@ constexpr Parameter parameters[] = {
             "How often the kernel is narrowed by the min-max pyramid, at most; 0: at the near plane")
         .quality(),
     shadow::shadowMapSizeParameter(),
+    shadow::shadowMapFitParameter(),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };

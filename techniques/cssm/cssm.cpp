@@ -30,6 +30,7 @@ constexpr Parameter parameters[] = {
     integer("splits", 4, {1, 8}, "parts", "Parts of a kernel per axis, each with its own depth threshold")
         .quality(),
     shadow::shadowMapSizeParameter(),
+    shadow::shadowMapFitParameter(),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };

@@ -3,6 +3,9 @@
 // 0: V as it is; 1: sharpened, as published; 2: normalised by what a blocker at the mean depth of the part gives.
 //
 // Loops end in their condition: software renderers run a body once more where it comes first.
+//
+// Without the whole bias planes that a hemicube light grazes shadow themselves, V down to 0.06.
+#define WHOLE_BIAS 1
 #include "glsl/blocker_search.glsl"
 #include "glsl/fourier_lookup.glsl"
 #include "glsl/visibility_main.glsl"

@@ -9,6 +9,7 @@ using namespace limn;
 constexpr const char* filters[] = {"nearest", "2x2"};
 constexpr Parameter parameters[] = {
     shadow::shadowMapSizeParameter(),
+    shadow::shadowMapFitParameter(),
     shadow::biasParameter(),
     choice("filter", 0, filters, "One texel, or the four around the receiver weighted bilinearly"),
 };

@@ -20,6 +20,7 @@ constexpr Parameter parameters[] = {
     integer("moment_bits", 0, {0, 20}, "bits",
             "Of each moment of a texel, 10 to 20; 0: by the size of the shadow map"),
     shadow::shadowMapSizeParameter(),
+    shadow::shadowMapFitParameter(),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };

@@ -20,6 +20,7 @@ constexpr Parameter parameters[] = {
            "Search at the near plane, as published, or through the cone from receiver to light, keeping what "
            "lies in it"),
     shadow::shadowMapSizeParameter(),
+    shadow::shadowMapFitParameter(),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };

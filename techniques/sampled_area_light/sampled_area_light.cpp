@@ -15,6 +15,7 @@ constexpr Parameter parameters[] = {
         .quality()
         .logScale(),
     shadow::shadowMapSizeParameter(512),
+    shadow::shadowMapFitParameter(),
     shadow::biasParameter(),
     shadow::memoryParameter(),
 };
@@ -41,8 +42,8 @@ class SampledAreaLight : public Technique {
 
   static shadow::VisibilityPass commonPass(const TechniqueInputs& inputs, std::span<const uint32_t> lights,
                                            const Batch& batch) {
-    shadow::ShadowMapDesc desc{.size = inputs.parameters.integer("shadow_map_size"),
-                               .cacheable = batch.count == batch.total};
+    shadow::ShadowMapDesc desc = shadow::shadowMapDesc(inputs.parameters);
+    desc.cacheable = batch.count == batch.total;
     for (int i = batch.first; i < batch.first + batch.count; ++i)
       desc.samples.push_back(shadow::samplePlace(i));
     return {

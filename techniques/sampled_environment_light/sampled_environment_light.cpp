@@ -18,6 +18,7 @@ constexpr Parameter parameters[] = {
         .quality()
         .logScale(),
     shadow::shadowMapSizeParameter(512),
+    shadow::shadowMapFitParameter(),
     shadow::biasParameter(),
     shadow::memoryParameter(),
 };
@@ -67,12 +68,13 @@ class SampledEnvironmentLight : public Technique {
                                 const shadow::SampleBatch& batch) {
     const std::span<const glm::vec3> directions =
         std::span(directions_).subspan(static_cast<size_t>(batch.first), static_cast<size_t>(batch.count));
+    shadow::ShadowMapDesc desc = shadow::shadowMapDesc(inputs.parameters);
+    desc.cacheable = batch.count == batch.total;
     shadow::VisibilityPass pass{
         .name = "environment",
         .technique = info.name,
         .program = {.files = {"techniques/sampled_environment_light/environment.comp.glsl"}, .defines = {}},
-        .maps = inputs.shadowMaps.request(directions, {.size = inputs.parameters.integer("shadow_map_size"),
-                                                       .cacheable = batch.count == batch.total}),
+        .maps = inputs.shadowMaps.request(directions, desc),
         .bias = inputs.parameters.real("bias"),
         .lightSize = std::nullopt,
         .bind =

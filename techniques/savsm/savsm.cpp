@@ -22,6 +22,7 @@ constexpr Parameter parameters[] = {
     integer("sat_bits", 16, {8, 24}, "bits", "Of a depth in the summed-area table"),
     integer("sat_words", 2, {1, 2}, "32-bit words", "Per moment; 1: squares rounded, as published"),
     shadow::shadowMapSizeParameter(),
+    shadow::shadowMapFitParameter(),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };

@@ -1,8 +1,9 @@
 // Variance soft shadow maps (Yang et al. 2010): percentage-closer soft shadows of which both steps, the mean blocker depth
 // and the share of light, come from a summed-area table of z and z^2.
 //
-// EARLY_OUT 1: what the bounds of the search kernel decide ends there. BLOCKERS_ADAPTIVE and VISIBILITY_ADAPTIVE: which subdivision. CONTACT 1: narrow
-// penumbrae from jittered bilinear texels.
+// What the bounds of the search kernel prove lit or dark is so, whatever the moments say. EARLY_OUT 0: the rest is computed all
+// the same. BLOCKERS_ADAPTIVE and VISIBILITY_ADAPTIVE: which subdivision. CONTACT 1: narrow penumbrae from jittered bilinear
+// texels.
 #include "glsl/sampling.glsl"
 #include "glsl/sub_kernels.glsl"
 #include "glsl/visibility_main.glsl"
@@ -77,8 +78,9 @@ Contents kernel_contents(inout ShadowCursor cursor, VisibilityQuery q, inout Ker
 }
 
 struct Search {
-  bool lit;
-  bool umbra;
+  bool lit;       // proven by bounds
+  bool umbra;     // likewise
+  bool open;      // there is more to compute
   float gap;      // of the search kernel, metres
   float deepest;  // stored in it
 };
@@ -88,7 +90,10 @@ Search search_kernel(inout ShadowCursor cursor, VisibilityQuery q, inout KernelF
   Search search;
   search.gap = shadow_near_gap(cursor, q);
   int round = 0;
-  bool open;
+#if !EARLY_OUT
+  bool lit = false;
+  bool umbra = false;
+#endif
   do {
     search.lit = true;
     search.umbra = true;
@@ -117,13 +122,18 @@ Search search_kernel(inout ShadowCursor cursor, VisibilityQuery q, inout KernelF
       widest = max(widest, seen ? bounds.gap : 0.0);
     } while (++face < shadow_face_count(q.maps.info.y));
 #endif
+    search.open = !(search.lit || search.umbra);
 #if !EARLY_OUT
-    search.lit = f.unblocked;
-    search.umbra = false;
+    lit = lit || (search.lit && !umbra);
+    umbra = umbra || (search.umbra && !lit);
+    search.open = !f.unblocked;
 #endif
-    open = !(search.lit || search.umbra);
-    search.gap = open ? clamp(widest, 0.0, search.gap) : search.gap;
-  } while (open && ++round <= search_rounds);
+    search.gap = search.open ? clamp(widest, 0.0, search.gap) : search.gap;
+  } while (search.open && ++round <= search_rounds);
+#if !EARLY_OUT
+  search.lit = lit;
+  search.umbra = umbra;
+#endif
   return search;
 }
 
@@ -159,7 +169,7 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
 #endif
   // Step 1: the search kernel, and what its bounds decide.
   Search search = search_kernel(cursor, q, f);
-  bool open = !(search.lit || search.umbra);
+  bool open = search.open;
   bool narrow = false;
   float v = search.umbra && !search.lit ? 0.0 : 1.0;
   float gap = search.gap;
@@ -187,6 +197,9 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   vec2 jitter = pixel_noise(uint(pixel.x), uint(pixel.y), 0u).xy;
   float soft = contact_visibility(home, q, gap, jitter, narrow);
   v = narrow ? soft : v;
+#endif
+#if !EARLY_OUT
+  v = search.lit ? 1.0 : search.umbra ? 0.0 : v;
 #endif
   return v;
 }

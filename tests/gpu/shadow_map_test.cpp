@@ -268,6 +268,57 @@ TEST_F(ShadowMapTest, StaticMapsAreCachedAndSharedAndFollowWhatMoves) {
   gpuScene.forget();
 }
 
+TEST_F(ShadowMapTest, MapsFittedToTheViewFollowTheCamera) {
+  scene::Scene scene;
+  addMesh(scene, floorPrimitive(20, addMaterial(scene)));
+  addMesh(scene, spherePrimitive(0.3f, 0));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  addInstance(scene, pose, 1, at(0, 1, 0));    // over what the camera sees
+  addInstance(scene, pose, 1, at(12, 1, 12));  // far from it
+  addLight(pose, rectangleLight({0, 8, 0}, {0, -1, 0}, 2, 1));
+  scene::GpuScene gpuScene(device(), scene);
+  const auto look = [](float x) { return scene::lookAt({x, 2, 3}, {x, 0, 0}, 0.5f); };
+  gpuScene.update(pose, look(0), {64, 64}, 0);
+  shadow::ShadowMapService service(device(), gpuScene);
+  frame::ResourcePool pool(device());
+  frame::FrameGraph graph;
+  service.begin(graph, gpuScene.import(graph), pose);
+  const std::vector<uint32_t> lights{0};
+  const shadow::ShadowMaps whole = service.request(lights, {.size = 64});
+  const shadow::ShadowMaps cut = service.request(lights, {.size = 64, .fit = shadow::MapFit::view});
+  ASSERT_NE(cut.depth, whole.depth);
+  graph.output(whole.depth);
+  graph.output(cut.depth);
+  graph.prepare(device(), shaders(), pool);
+  const auto view = [&](const shadow::ShadowMaps& maps) {
+    glsl::ShadowView read;
+    graph.buffer(maps.views).read(0, &read, sizeof(read));
+    return read;
+  };
+  const auto drawn = [&](float x, uint32_t frame) {
+    gpuScene.update(pose, look(x), {64, 64}, frame);
+    EXPECT_FALSE(service.update(pose));
+    graph.execute();
+    int passes = 0;
+    for (const frame::PassReport& report : graph.explain())
+      passes += report.name.starts_with("shadow maps") && report.state == frame::PassState::run ? 1 : 0;
+    return passes;
+  };
+  EXPECT_EQ(drawn(0, 1), 2);
+  EXPECT_GT(view(cut).axis_x.w, 3 * view(whole).axis_x.w);
+  std::vector<float> depth(64 * 64);
+  graph.texture(cut.depth).read(0, GL_RED, GL_FLOAT, depth.data(), depth.size() * sizeof(float));
+  const glsl::ShadowPoint ball = glsl::shadow_project(view(cut), {0, 1.3f, 0});
+  ASSERT_TRUE(glsl::shadow_inside(ball));
+  const auto texel = static_cast<size_t>(ball.uv.y * 64) * 64 + static_cast<size_t>(ball.uv.x * 64);
+  EXPECT_NEAR(glsl::shadow_metres(view(cut), depth[texel]), 6.7f, 0.05f);
+  EXPECT_EQ(drawn(0, 2), 0);
+  EXPECT_EQ(drawn(0.001f, 3), 0) << "rounded: as before";
+  EXPECT_EQ(drawn(2, 4), 1) << "the map of the whole scene stays";
+  gpuScene.forget();
+}
+
 TEST_F(ShadowMapTest, DerivedMapsAreKeptWhereTheMapsAre) {
   scene::Scene scene;
   addMesh(scene, floorPrimitive(2, addMaterial(scene)));

@@ -225,6 +225,45 @@ TEST_F(ShadowTechniqueTest, ScaleChangesNothing) {
   }
 }
 
+/// What all of a pixel's neighbours agree on, within what a texel decides, no fit of the maps changes.
+TEST_F(ShadowTechniqueTest, MapsFittedToTheViewLoseNoShadow) {
+  BallScene s;
+  addInstance(s.scene, s.pose, 1, at(0.4f, 2.6f, -0.2f, 0.3f));  // near the lights, out of sight
+  addInstance(s.scene, s.pose, 1, at(1.2f, 0.3f, 0.4f, 0.5f));   // cut by the edge of the picture
+  const auto camera = scene::lookAt({0.4f, 0.9f, 2.2f}, {0.4f, 0.1f, 0.1f}, 0.7f);
+  for (const TechniquePlugin* plugin : techniques()) {
+    if (!has(*plugin, "shadow_map_fit")) continue;
+    const auto draw = [&](const char* fit) {
+      auto settings = quick(*plugin);
+      settings["shadow_map_size"] = "512";
+      settings["shadow_map_fit"] = fit;
+      return visibility(plugin->info->name, settings, s.scene, s.pose, camera);
+    };
+    const Answer whole = draw("scene"), cut = draw("view");
+    EXPECT_EQ(cut.uncovered, whole.uncovered) << plugin->info->name;
+    for (size_t l = 0; l < whole.lights.size(); ++l) {
+      int certain = 0, wrong = 0;
+      for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+          float low = 1, high = 0;
+          for (int dy = -3; dy <= 3; ++dy) {
+            for (int dx = -3; dx <= 3; ++dx) {
+              const float v = whole.at(l, std::clamp(x + dx, 0, side - 1), std::clamp(y + dy, 0, side - 1));
+              low = std::min(low, v);
+              high = std::max(high, v);
+            }
+          }
+          if (high - low > 0.02f) continue;
+          ++certain;
+          if (std::abs(cut.at(l, x, y) - whole.at(l, x, y)) > 0.06f) ++wrong;
+        }
+      }
+      EXPECT_GT(certain, side * side / 8) << plugin->info->name << " light " << l;
+      EXPECT_LE(wrong, certain / 500) << plugin->info->name << " light " << l;
+    }
+  }
+}
+
 TEST_F(ShadowTechniqueTest, LightsWithoutSizeGiveHardShadows) {
   const BallScene s;
   const Answer hard = visibility("hard_shadow_map", {{"shadow_map_size", "256"}}, s.scene, s.pose, s.camera);

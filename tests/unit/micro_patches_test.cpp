@@ -31,6 +31,7 @@ ShadowView viewOf(const Light& light, uint32_t kind, const vec3& direction) {
   view.axis_x = vec4(frame.t, scale);
   view.axis_y = vec4(frame.b, 1 / (scale * texels));
   view.axis_z = vec4(direction, 20);
+  view.middle = vec4(0.5f, 0.5f, 0, 0);
   view.info = uvec4(kind, 0, texels, 0);
   return view;
 }

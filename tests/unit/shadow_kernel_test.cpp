@@ -26,6 +26,7 @@ ShadowView viewOf(const Light& light, uint32_t kind, float tangent, int size) {
   v.axis_x = vec4(vec3(light.axis_u), scale);
   v.axis_y = vec4(vec3(light.axis_v), 1 / (scale * static_cast<float>(size)));
   v.axis_z = vec4(vec3(light.direction), 20);
+  v.middle = vec4(0.5f, 0.5f, 0, 0);
   v.info = uvec4(kind, 0, size, 0);
   return v;
 }
@@ -98,6 +99,7 @@ TEST(ShadowKernel, FacesOfACubeShareAKernelBetweenThem) {
   side.axis_x = vec4(0, -1, 0, 0.5f);
   side.axis_y = vec4(0, 0, 1, 2.f / 256);
   side.axis_z = vec4(1, 0, 0, 20);
+  front.middle = side.middle = vec4(0.5f, 0.5f, 0, 0);
   front.info = side.info = uvec4(shadow_perspective, 0, 256, 0);
   const vec3 receiver(3, 0.3f, 3);
   const LightView seen = light_view(light, receiver, normalize(-receiver), 0.5f);

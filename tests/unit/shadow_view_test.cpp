@@ -23,6 +23,7 @@ ShadowView view(uint32_t kind) {
   v.axis_x = vec4(frame.t, scale);
   v.axis_y = vec4(-frame.b, 1 / (scale * 256));
   v.axis_z = vec4(frame.n, farPlane);  // cross(t, -b) = -n
+  v.middle = vec4(0.5f, 0.5f, 0, 0);
   v.info = uvec4(kind, 0, 256, 0);
   return v;
 }

@@ -75,6 +75,7 @@ TEST(VarianceKernel, ThresholdsAreThoseOfShadowKernels) {
     view.axis_x = vec4(1, 0, 0, scale);
     view.axis_y = vec4(0, 1, 0, 1 / (scale * 256));
     view.axis_z = vec4(0, 0, 1, 20);
+    view.middle = vec4(0.5f, 0.5f, 0, 0);
     view.info = uvec4(perspective ? shadow_perspective : shadow_orthographic, 0, 256, 0);
     const vec3 receiver(4 * uniform(random) - 2, 4 * uniform(random) - 2, 8 + uniform(random));
     const vec3 normal = normalize(vec3(uniform(random) - 0.5f, uniform(random) - 0.5f, -0.6f));
@@ -100,6 +101,7 @@ TEST(VarianceKernel, ConesGiveTheKernelsOfEveryGap) {
     view.axis_x = vec4(1, 0, 0, perspective ? 0.625f : 0.1f);
     view.axis_y = vec4(0, 1, 0, 0);
     view.axis_z = vec4(0, 0, 1, 20);
+    view.middle = vec4(0.5f, 0.5f, 0, 0);
     view.info = uvec4(perspective ? shadow_perspective : shadow_orthographic, 0, 256, 0);
     const vec3 receiver(4 * uniform(random) - 2, 4 * uniform(random) - 2, 8 + uniform(random));
     LightView light{};

@@ -1,0 +1,135 @@
+#include "core/shadow/window_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace limn::shadow {
+namespace {
+
+using glm::vec2;
+using glm::vec3;
+using glm::vec4;
+
+constexpr float infinite = std::numeric_limits<float>::max();
+/// Of the far plane: what is nearer to a perspective map's origin has no place in it.
+constexpr float leastDepth = 1e-6f;
+/// A window's edges and depths are rounded to 1/32 to 1/64 of its size and to 1/16 of an octave, both counted
+/// from those of the whole map, so that scenes of every scale are cut the same.
+constexpr int windowSteps = 5, depthSteps = 16;
+/// Of the whole map's side: no window is smaller.
+constexpr float leastSide = 1e-4f;
+
+/// Straight edges: low(z) = low.x + low.y z <= x <= high.x + high.y z, and the same of y.
+struct Wedge {
+  std::array<vec4, 4> planes;
+};
+
+Wedge pyramid(const MapEye& eye, const MapWindow& w) {
+  if (eye.perspective)
+    return {{vec4(1, 0, -w.low.x, 0), vec4(-1, 0, w.high.x, 0), vec4(0, 1, -w.low.y, 0),
+             vec4(0, -1, w.high.y, 0)}};
+  return {
+      {vec4(1, 0, 0, -w.low.x), vec4(-1, 0, 0, w.high.x), vec4(0, 1, 0, -w.low.y), vec4(0, -1, 0, w.high.y)}};
+}
+
+/// All lines from receivers to points of the light: the hull of both.
+Wedge linesToLight(const MapEye& eye, const MapWindow& receivers) {
+  Wedge wedge = pyramid(eye, receivers);
+  for (size_t i = 0; i < 4; ++i) {
+    const float spread = i < 2 ? eye.spread.x : eye.spread.y;
+    vec4& plane = wedge.planes[i];
+    // Perspective: spread (1 - (z - spread.z) / far) wider at depth z; orthographic: spread (far - z).
+    plane.z -= eye.perspective ? spread / receivers.far : spread;
+    plane.w += eye.perspective ? spread * (1 + eye.spread.z / receivers.far) : spread * receivers.far;
+  }
+  return wedge;
+}
+
+void clipTo(Convex& solid, const Wedge& wedge, float near, float far) {
+  const auto clip = [&](const vec4& plane) {
+    if (!solid.empty()) solid.clip(plane);
+  };
+  clip({0, 0, 1, -near});
+  clip({0, 0, -1, far});
+  for (const vec4& plane : wedge.planes) clip(plane);
+}
+
+void add(MapWindow& window, const MapEye& eye, const Convex& solid) {
+  for (const vec3& p : solid.corners()) {
+    const vec2 at = eye.perspective ? vec2(p) / p.z : vec2(p);
+    window.low = glm::min(window.low, at);
+    window.high = glm::max(window.high, at);
+    window.near = std::min(window.near, p.z);
+    window.far = std::max(window.far, p.z);
+  }
+}
+
+MapWindow nothing() {
+  return {vec2(infinite), vec2(-infinite), infinite, -infinite};
+}
+
+}  // namespace
+
+bool fitWindow(const MapEye& eye, const VisibleScene& scene, uint32_t skip, const MapWindow& whole,
+               MapWindow& window, MapWindow& receivers) {
+  const auto local = [&](const vec3& p) {
+    const vec3 r = p - eye.origin;
+    return vec3(glm::dot(eye.axes.x, r), glm::dot(eye.axes.y, r), glm::dot(eye.axes.z, r));
+  };
+  const float near = eye.perspective ? leastDepth * whole.far : whole.near;
+  Convex solid;
+  receivers = nothing();
+  const Wedge limits = pyramid(eye, whole);
+  for (const VisiblePart& part : scene.visible()) {
+    if (part.instance == skip) continue;
+    solid.assign(part.solid, local);
+    clipTo(solid, limits, near, whole.far);
+    add(receivers, eye, solid);
+  }
+  if (!(receivers.far > 0 && receivers.low.x <= receivers.high.x)) return false;
+  window = receivers;
+  const Wedge lines = linesToLight(eye, receivers);
+  for (const ScenePart& part : scene.parts()) {
+    if (part.instance == skip) continue;
+    std::array<vec3, 8> corners = boxCorners(part.bounds);
+    for (vec3& p : corners) p = local(p);
+    solid.setBox(corners);
+    clipTo(solid, lines, near, receivers.far);
+    add(window, eye, solid);
+  }
+  window.low = glm::max(window.low, whole.low);
+  window.high = glm::min(window.high, whole.high);
+  return true;
+}
+
+MapWindow shiftedWindow(const MapWindow& receivers, const vec2& offset) {
+  MapWindow shifted = receivers;
+  // A point at tangent t and depth z lies at t - offset / z.
+  const vec2 a = offset / receivers.near, b = offset / receivers.far;
+  shifted.low -= glm::max(a, b);
+  shifted.high -= glm::min(a, b);
+  return shifted;
+}
+
+MapWindow steadyWindow(const MapWindow& window, const MapWindow& whole, int size) {
+  const float wholeSide = whole.high.x - whole.low.x;
+  const vec2 extent = window.high - window.low;
+  const float needed =
+      std::max({extent.x, extent.y, leastSide * wholeSide}) * (1 + 4 / static_cast<float>(size));
+  const float step = std::exp2(std::floor(std::log2(needed / wholeSide)) - windowSteps) * wholeSide;
+  const float side = (std::ceil(needed / step) + 1) * step;
+  if (side >= wholeSide) return whole;
+  const vec2 middle = glm::round(0.5f * (window.low + window.high) / step) * step;
+  const auto rounded = [&](float depth, bool up) {
+    const float octaves = static_cast<float>(depthSteps) * std::log2(depth / whole.far);
+    return whole.far *
+           std::exp2((up ? std::ceil(octaves) : std::floor(octaves)) / static_cast<float>(depthSteps));
+  };
+  return {middle - 0.5f * side, middle + 0.5f * side,
+          std::max(rounded(0.9999f * window.near, false), whole.near),
+          std::min(rounded(1.0001f * window.far, true), whole.far)};
+}
+
+}  // namespace limn::shadow
