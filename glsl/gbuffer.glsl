@@ -28,6 +28,7 @@ LIMN_CONST int gbuffer_unit_emission = 5;
 LIMN_CONST int gbuffer_unit_instance = 6;
 
 LIMN_CONST uint gbuffer_flag_specular = 1u;  // specular surface: takes no direct and no indirect light
+LIMN_CONST uint gbuffer_flag_back = 2u;      // of a specular surface: its back is seen, from within the body
 
 // A surface point before packing and after unpacking.
 struct GBufferSurface {

@@ -1,4 +1,5 @@
-// Scenes in which metal and glass send light into a thin fog: all of it scattered only once.
+// Scenes in which metal and glass send light into a thin fog: all of it scattered only once; and one to look
+// through.
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <string>
@@ -177,6 +178,30 @@ Scene makeSmoke() {
   scene.addCamera("main", {0.3f, 1.6f, 5.2f}, {0.1f, 1.15f, 0}, 38);
   scene.addCamera("close", {0.5f, 1.2f, 2.4f}, {0.3f, 0.95f, 0}, 38);
   scene.addCamera("above", {0.2f, 4.4f, 3.2f}, {0.2f, 0.6f, 0}, 38);
+  return scene;
+}
+
+Scene makeGlassware() {
+  Scene scene;
+  Material tiles = lambert("tiles", glm::vec3(1));
+  tiles.baseColourTexture = scene.addTexture(
+      "tiles", tileImage(512, 4, {0.72f, 0.34f, 0.2f}, {0.75f, 0.73f, 0.68f}, {0.25f, 0.24f, 0.22f}));
+  scene.add("floor", backdrop(3.2f, 2.2f, 1.8f, 2.8f, 1.2f), scene.addMaterial(tiles));
+  const auto put = [&](const char* name, Mesh mesh, Material material, glm::vec3 place) {
+    const int node = scene.add(name, std::move(mesh), scene.addMaterial(std::move(material)));
+    scene.nodes[static_cast<std::size_t>(node)].translation = place;
+    return node;
+  };
+  put("ball", sphere(0.5f, 96), glass("glass", 1.5f), {-0.75f, 0.55f, 0.3f});
+  put("ring", torus(0.5f, 0.16f, 128, 48), glossy("silver", {0.95f, 0.93f, 0.88f}, 0, 1),
+      {0.35f, 0.17f, 0.75f});
+  const int gem = put("gem", transformed(gemstone(8), scaling(glm::vec3(0.5f))),
+                      glass("gem", 1.7f, {0.9f, 0.97f, 1.0f}), {0.75f, 0.95f, -0.1f});
+  put("clay", sphere(0.28f, 48), lambert("clay", {0.2f, 0.45f, 0.3f}), {-0.2f, 0.28f, -0.75f});
+  scene.animations.push_back(turning(gem, {0, 1, 0}, 8));
+  scene.addAreaLight("key", {-1.6f, 3.6f, 2.2f}, {0, 0.4f, 0}, {0.8f, 0.8f}, 36, {1, 0.96f, 0.9f}, 60);
+  scene.addCamera("main", {0.2f, 1.5f, 4.4f}, {0, 0.62f, 0}, 36);
+  scene.addCamera("close", {-0.5f, 0.9f, 2.2f}, {-0.55f, 0.55f, 0}, 38);
   return scene;
 }
 

@@ -19,6 +19,7 @@ const std::vector<SceneEntry>& allScenes() {
       {"gem_4_lights", makeGem4Lights},
       {"glass_sphere", makeGlassSphere},
       {"glass_statue", makeGlassStatue},
+      {"glassware", makeGlassware},
       {"glossy_sphere", makeGlossySphere},
       {"lights", makeLights},
       {"metaballs", makeMetaballs},

@@ -23,6 +23,7 @@ Scene makeGem2Lights();
 Scene makeGem4Lights();
 Scene makeGlassSphere();
 Scene makeGlassStatue();
+Scene makeGlassware();
 Scene makeGlossySphere();
 Scene makeLights();
 Scene makeMetaballs();

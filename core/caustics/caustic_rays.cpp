@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/caustics/specular_buffers.h"
 #include "core/scene/gpu_medium.h"
 #include "core/scene/light_textures.h"
 #include "core/shadow/light_fit.h"
@@ -23,7 +24,6 @@ using frame::TextureHandle;
 
 constexpr int64_t bufferLimit = int64_t{128} << 20;  // bytes of one storage buffer that every device has
 constexpr int group = 8;
-constexpr unsigned viewBinding = 4;  // in specular.vert.glsl
 
 /// The light as its map of the specular objects sees it: finite lights look at the middle of the objects.
 glsl::Light aimed(const glsl::Light& light, const glm::vec3& origin, const scene::Bounds& objects) {
@@ -49,14 +49,11 @@ struct Request {
   std::vector<glm::vec2> samples;  ///< as ShadowMapDesc has them
   std::vector<glsl::ShadowView> views;
   std::vector<glm::vec4> layers;  ///< of the pass that traces
-  std::vector<scene::DepthView> depthViews;
+  SpecularBuffers buffers;
   gpu::Buffer viewBuffer, layerBuffer;
   frame::BufferHandle importedViews, importedLayers;
-  scene::DrawList frontList, backList;
-};
 
-struct SpecularBuffer {
-  TextureHandle surface, depth;
+  explicit Request(scene::GpuScene& scene) : buffers(scene) {}
 };
 
 }  // namespace
@@ -79,9 +76,7 @@ struct CausticRayService::Implementation {
   }
   void fit(Request& request) const;
   void upload(Request& request) const;
-  SpecularBuffer addBuffer(Request& request, const SpecularBuffer* front);
-  frame::BufferHandle trace(const Request& request, const SpecularBuffer& front, const SpecularBuffer& back,
-                            const shadow::ShadowMaps& maps);
+  frame::BufferHandle trace(const Request& request, const shadow::ShadowMaps& maps);
   CausticRays add(std::unique_ptr<Request> made);
 };
 
@@ -91,7 +86,6 @@ void CausticRayService::Implementation::fit(Request& request) const {
   for (const scene::Bounds& box : boxes) objects.add(box);
   request.views.clear();
   request.layers.clear();
-  request.depthViews.clear();
   float mapIndex = 0;
   const shadow::ShadowMapDesc samplesDesc{.samples = request.samples};
   for (const uint32_t index : request.lights) {
@@ -104,20 +98,15 @@ void CausticRayService::Implementation::fit(Request& request) const {
                                ab.y * light.axis_v.w * glm::vec3(light.axis_v);
       const glsl::Light eye = aimed(light, origin, objects);
       std::vector<glsl::ShadowLight> unused;
-      shadow::appendViews(eye, index, shadow::fitLayout(eye, boxes, desc), boxes, desc, request.views,
-                          unused);
+      shadow::appendViews(eye, index, shadow::fitLayout(eye, boxes, desc), boxes, desc, nullptr,
+                          request.views, unused);
       request.layers.resize(request.views.size(), glm::vec4(mapIndex, 2 * objects.radius(), 0, 0));
       ++mapIndex;
     }
     // Lights without extent share one map among all samples.
     mapIndex += static_cast<float>(std::max<size_t>(request.samples.size(), 1) - points.size());
   }
-  for (const glsl::ShadowView& view : request.views)
-    request.depthViews.push_back({.volume = shadow::cullVolume(view),
-                                  .skipInstance = glsl::no_instance,
-                                  .view = view.info.y,
-                                  .layer = static_cast<int>(view.info.y),
-                                  .surfaces = scene::Surfaces::specular});
+  request.buffers.setViews(request.views);
 }
 
 void CausticRayService::Implementation::upload(Request& request) const {
@@ -125,57 +114,9 @@ void CausticRayService::Implementation::upload(Request& request) const {
   request.layerBuffer.update(0, request.layers.data(), request.layers.size() * sizeof(request.layers[0]));
 }
 
-/// Nearest surfaces, or farthest ones of the instances in `front`.
-SpecularBuffer CausticRayService::Implementation::addBuffer(Request& request, const SpecularBuffer* front) {
-  const bool back = front != nullptr;
-  frame::PassBuilder pass = graph->addPass(back ? "specular back" : "specular front", "caustics");
-  scene::GpuScene::declareReads(pass, handles);
-  pass.read(handles.geometry, Access::storageLoad, "bound with the surfaces")
-      .read(request.importedViews, Access::storageLoad, "projections")
-      .cacheable();
-  if (back) pass.read(front->surface, Access::sampled, "instances whose back is wanted");
-  gpu::TextureDesc desc{.target = GL_TEXTURE_2D_ARRAY,
-                        .format = GL_RGBA32F,
-                        .width = request.desc.size,
-                        .height = request.desc.size,
-                        .layers = request.made.layers};
-  const auto create = [&](const char* name, GLenum format) {
-    desc.format = format;
-    return graph->createTexture(name, desc);
-  };
-  SpecularBuffer buffer;
-  buffer.surface = pass.write(create("specular surface", GL_RGBA32F), Access::colourAttachment, "normals");
-  buffer.depth = pass.write(create("specular depth", GL_R32F), Access::colourAttachment, "linear depth");
-  const TextureHandle zbuffer =
-      pass.write(create("specular z", GL_DEPTH_COMPONENT32F), Access::depthAttachment, "nearest or farthest");
-  const auto program =
-      pass.program({.files = {"glsl/caustics/specular.vert.glsl", "glsl/caustics/specular.frag.glsl"},
-                    .defines = {{"BACK", back ? "1" : "0"}}});
-  scene::SurfacePrograms programs;
-  for (const scene::SurfaceVariant& variant : scene.surfaceVariants()) programs[variant] = program;
-  pass.execute([this, &request, programs, buffer, zbuffer, back,
-                nearest = back ? front->surface : TextureHandle{}](frame::PassContext& context) {
-    const auto bind = [&](int layer) {
-      context.bindFramebuffer({{buffer.surface, 0, layer}, {buffer.depth, 0, layer}}, {zbuffer, 0, layer});
-    };
-    bind(-1);
-    constexpr GLfloat none[4] = {0, 0, 0, 0}, farthest[4] = {1, 1, 1, 1}, far = 0;
-    context.gl().ClearBufferfv(GL_COLOR, 0, none);
-    context.gl().ClearBufferfv(GL_COLOR, 1, farthest);
-    context.gl().ClearBufferfv(GL_DEPTH, 0, &far);
-    context.bindStorage(viewBinding, request.importedViews);
-    if (back) context.bindSampled(8, nearest);
-    scene.drawSurfaces(context, handles, programs, request.depthViews,
-                       back ? request.backList : request.frontList, false,
-                       [&](const scene::DepthView& view) { bind(view.layer); });
-  });
-  return buffer;
-}
-
 frame::BufferHandle CausticRayService::Implementation::trace(const Request& request,
-                                                             const SpecularBuffer& front,
-                                                             const SpecularBuffer& back,
                                                              const shadow::ShadowMaps& maps) {
+  const SpecularBuffer &front = request.buffers.front(), &back = request.buffers.back();
   frame::PassBuilder pass = graph->addPass("caustic rays", "caustics");
   pass.read(handles.frame, Access::uniformBuffer, "medium")
       .read(handles.lights, Access::storageLoad, "what lights send")
@@ -248,9 +189,8 @@ CausticRays CausticRayService::Implementation::add(std::unique_ptr<Request> made
   request.importedLayers = graph->importBuffer("specular layers", request.layerBuffer);
   const shadow::ShadowMaps maps = shadowMaps.request(
       request.lights, {.size = request.desc.sceneSize, .samples = request.samples, .specular = false});
-  const SpecularBuffer front = addBuffer(request, nullptr);
-  const SpecularBuffer back = addBuffer(request, &front);
-  request.made.rays = trace(request, front, back, maps);
+  request.buffers.add(*graph, handles, request.importedViews, request.desc.size, "caustics");
+  request.made.rays = trace(request, maps);
   return request.made;
 }
 
@@ -273,7 +213,7 @@ void CausticRayService::forget() {
 
 CausticRays CausticRayService::request(std::span<const uint32_t> lights, const CausticRayDesc& desc) {
   Implementation& s = *implementation_;
-  auto made = std::make_unique<Request>();
+  auto made = std::make_unique<Request>(s.scene);
   if (!s.boxes.empty())
     std::ranges::copy_if(lights, std::back_inserter(made->lights), [&](uint32_t light) {
       return (s.lights.at(light).info.y & glsl::light_flag_environment) == 0;

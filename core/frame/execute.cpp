@@ -81,21 +81,38 @@ void runPass(Graph& graph, uint32_t index, GLbitfield barriers, Timing timing, P
   pass.function(context);
 }
 
-void executePasses(Graph& graph, Timing timing, PassContext& context) {
+/// A pass that was to run and did not has nothing to be kept; passes that write to the same resources or read
+/// its results follow from that in the next frame (decideRuns).
+void forgetFrom(Graph& graph, size_t position) {
+  for (size_t i = position; i < graph.order.size(); ++i) {
+    Pass& pass = graph.passes[graph.order[i]];
+    if (pass.run) pass.valid = false;
+  }
+}
+
+/// False if it was cancelled.
+bool executePasses(Graph& graph, Timing timing, const FrameGraph::Cancelled& cancelled,
+                   PassContext& context) {
   // Before the first frame the memory may have been written by shaders of another graph.
   GLbitfield barriers = graph.firstFrame ? GL_ALL_BARRIER_BITS : 0;
   graph.firstFrame = false;
-  for (uint32_t p : graph.order) {
-    Pass& pass = graph.passes[p];
+  for (size_t i = 0; i < graph.order.size(); ++i) {
+    Pass& pass = graph.passes[graph.order[i]];
     pass.triangles = 0;
     barriers |= pass.barriers;  // those of a pass that is skipped are left to the next that runs
     if (!pass.run) continue;
-    runPass(graph, p, barriers, timing, context);
+    if (cancelled && cancelled()) {
+      forgetFrom(graph, i);
+      graph.device->gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // the next frame begins anywhere
+      return false;
+    }
+    runPass(graph, graph.order[i], barriers, timing, context);
     noteRun(graph, pass);
     barriers = 0;
   }
   barriers |= graph.finalBarriers;
   if (barriers != 0) graph.device->gl().MemoryBarrier(barriers);
+  return true;
 }
 
 }  // namespace
@@ -116,12 +133,12 @@ Timing preferredTiming(const gpu::Device& device) {
   return device.software() ? Timing::finish : Timing::query;
 }
 
-void FrameGraph::execute(Timing timing) {
+bool FrameGraph::execute(Timing timing, const Cancelled& cancelled) {
   Graph& graph = *implementation_;
   if (!graph.planned || graph.device == nullptr) {
     throw Error("frame graph: executed before prepare(), or declared further since");
   }
-  if (graph.order.empty()) return;
+  if (graph.order.empty()) return true;
   decideRuns(graph);
   if (timing != Timing::off) {
     graph.lastTiming = timing;
@@ -129,8 +146,9 @@ void FrameGraph::execute(Timing timing) {
     for (uint32_t p : graph.order) graph.passes[p].timed = false;
   }
   PassContext context(*this);
+  bool whole = false;
   try {
-    executePasses(graph, timing, context);
+    whole = executePasses(graph, timing, cancelled, context);
   } catch (...) {
     graph.current = no_index;
     invalidate();
@@ -139,6 +157,7 @@ void FrameGraph::execute(Timing timing) {
   }
   graph.current = no_index;
   setBaseline(graph.device->gl());
+  return whole;
 }
 
 void FrameGraph::invalidate() {

@@ -261,9 +261,12 @@ class LIMN_API FrameGraph {
   void touch(BufferHandle imported);
   /// Forgets every cached result (after a shader was reloaded, for example).
   void invalidate();
+  /// Asked before each pass that runs.
+  using Cancelled = std::function<bool()>;
   /// Runs one frame. Needs prepare() and its context current. When a pass throws, cached results are
-  /// forgotten.
-  void execute(Timing timing = Timing::off);
+  /// forgotten. False: `cancelled` said so, and the outputs are worth nothing; of the cached results only those
+  /// that the passes left over would have changed are forgotten.
+  bool execute(Timing timing = Timing::off, const Cancelled& cancelled = {});
   /// The passes that ran in the last frame executed with timing, in order. Timing::query blocks here until
   /// the results are there, never in execute().
   std::vector<PassTime> passTimes();

@@ -26,7 +26,7 @@ glm::dvec3 Airlight::sample(const glm::vec3& eye, const glm::vec3& direction, fl
   for (uint32_t i = 0; i < lights_.size(); ++i) {
     const glsl::Light& light = lights_[i];
     const glm::vec3 source = lightPoint(light, sampler.pair(firstPair + 2 * i));
-    const glsl::AirlightRay ray = glsl::airlight_ray(medium.medium(), light, source, eye, direction);
+    const glsl::AirlightRay ray = glsl::airlight_ray(medium.medium(), light, source, 0, eye, direction);
     const float low = glsl::airlight_variable(ray, from), high = glsl::airlight_variable(ray, to);
     const float t = glsl::airlight_metres(ray, low + sampler.pair(firstPair + 2 * i + 1).x * (high - low));
     const glsl::AirlightPoint point = glsl::airlight_point(light, ray, t, 1);

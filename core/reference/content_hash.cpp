@@ -110,6 +110,8 @@ void addWork(Hasher& h, const Request& r) {
   h.addAll(r.camera.worldToView, r.camera.yfov, r.camera.near);
   h.addAll(r.width, r.height, r.term, r.light, r.seed, r.aa);
   if (r.bounces > 0) h.add(r.bounces);
+  constexpr uint32_t interfacesFollow = 0x5eec;  // tells them from bounces
+  if (r.interfaces != 0) h.addAll(interfacesFollow, r.interfaces);
   constexpr uint32_t causticVersion = 1;
   if (r.term == Term::final && std::ranges::any_of(r.scene.materials, &scene::Material::specularSurface))
     h.add(causticVersion);

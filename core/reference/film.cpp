@@ -142,10 +142,13 @@ void develop(const Integrator& integrator, const View& view, const Request& requ
     Mean mean = meanOf(integrator, state, pixel);
     if (request.term == Term::final) {
       Surface surface;
-      const glm::vec3 seen =
-          covered[pixel] && view.surface(pixel, surface)
-              ? cameraRadiance(surface, *view.rays.draws()[surface.draw].material, environment)
-              : environment.radiance(view.direction(pixel));
+      glm::vec3 seen;
+      if (!covered[pixel] || !view.surface(pixel, surface))
+        seen = environment.radiance(view.direction(pixel));
+      else if (request.interfaces != 0)
+        seen = surface.values.emission;
+      else
+        seen = cameraRadiance(surface, *view.rays.draws()[surface.draw].material, environment);
       mean.value += glm::dvec3(seen * view.transmittance(pixel, out[4]));
     }
     writeColour(out, mean.value, glm::dot(mean.deviation, mean.deviation) / 3);

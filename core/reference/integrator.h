@@ -26,7 +26,8 @@ class Integrator {
 /// Reflected light: direct (unless the term is indirect), and what came to the seen surface over 1 to
 /// Request::bounces others; sums: R, G, B. Path tracing with next-event estimation (DirectLight) at every
 /// surface, directions chosen with the BRDF's density, and Russian roulette from the fourth bounce on.
-/// Surfaces that are specular end a path, as do backs of single-sided ones.
+/// Surfaces that are specular end a path, as do backs of single-sided ones; specular ones that the camera
+/// sees show, with Request::interfaces, the light of others (SpecularPaths).
 std::unique_ptr<Integrator> makePathIntegrator(const RayScene& rays, const Request& request);
 
 /// V of one light; sums: visible samples, samples above the tangent plane, and both weighted by irradiance.

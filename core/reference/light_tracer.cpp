@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/reference/optics.h"
 #include "core/scene/light_textures.h"
 #include "glsl/caustic_ray.glsl"
 #include "glsl/geometry.glsl"
@@ -17,16 +18,6 @@ namespace {
 constexpr int scatterPoints = 4;            // on each segment in the medium
 constexpr size_t mostFilmPixels = 1 << 22;  // of all films together, unless two are more
 constexpr float leastCosine = 1e-4f;        // as in trace_rays.comp.glsl
-
-glsl::Optics opticsOf(const scene::Material& m) {
-  return {.base = glm::clamp(glm::vec3(m.baseColour), 0.f, 1.f),
-          .metallic = m.metallic,
-          .transmission = m.transmission,
-          .ior = glm::clamp(m.ior, 1.f, 3.f),
-          .thickness = m.thickness,
-          .attenuation = m.attenuationColour,
-          .attenuation_distance = m.attenuationDistance};
-}
 
 /// Flux that arrives from a light in the direction of the objects, per sample, before the light's own
 /// directional factors.

@@ -3,6 +3,7 @@
 #include <glm/glm.hpp>
 
 #include "core/reference/direct_light.h"
+#include "core/reference/specular_paths.h"
 
 namespace limn::reference {
 namespace {
@@ -16,14 +17,17 @@ class PathIntegrator final : public Integrator {
       : rays_(rays),
         light_(rays, request),
         withDirect_(request.term != Term::indirect),
-        bounces_(request.bounces) {}
+        specularAlone_(request.term == Term::specular),
+        bounces_(request.bounces) {
+    if (request.interfaces != 0) specular_.emplace(rays, request.interfaces);
+  }
 
   void sample(const Surface& surface, Sampler& sampler, uint32_t first, uint32_t count,
               Sums& sums) const override {
-    if (surface.specular()) return;  // takes no such light: what it reflects belongs to other terms
-    if (withDirect_) light_.add(surface, {sampler, 0, first, count}, sums);
-    if (bounces_ == 0) return;
-    for (uint32_t i = first; i < first + count; ++i) follow(surface, sampler, i, sums);
+    if (surface.specular())
+      addSeenIn(surface, sampler, first, count, sums);
+    else if (!specularAlone_)
+      addReflected(surface, sampler, first, count, sums);
   }
 
   glm::dvec3 estimate(const Sums& sums, double samples) const override {
@@ -31,6 +35,35 @@ class PathIntegrator final : public Integrator {
   }
 
  private:
+  void addReflected(const Surface& surface, Sampler& sampler, uint32_t first, uint32_t count,
+                    Sums& sums) const {
+    if (withDirect_) light_.add(surface, {sampler, 0, first, count}, sums);
+    if (bounces_ == 0) return;
+    for (uint32_t i = first; i < first + count; ++i) follow(surface, sampler, i, sums);
+  }
+
+  /// A specular surface takes no light itself: it shows that of others.
+  void addSeenIn(const Surface& surface, Sampler& sampler, uint32_t first, uint32_t count, Sums& sums) const {
+    if (!specular_) return;
+    if (!specular_->many()) {
+      for (const SpecularEnd& end : specular_->imageSpace(surface)) addEnd(end, sampler, first, count, sums);
+      return;
+    }
+    for (uint32_t i = first; i < first + count; ++i) {
+      sampler.startSample(i);
+      addEnd(specular_->sample(surface, sampler), sampler, i, 1, sums);
+    }
+  }
+
+  void addEnd(const SpecularEnd& end, Sampler& sampler, uint32_t first, uint32_t count, Sums& sums) const {
+    if (end.throughput == glm::dvec3(0)) return;
+    const glm::dvec3 own(end.surface ? end.surface->values.emission : end.background);
+    Sums light{own.x * count, own.y * count, own.z * count, 0};
+    if (end.surface) addReflected(*end.surface, sampler, first, count, light);
+    for (int c = 0; c < 3; ++c)
+      sums[static_cast<size_t>(c)] += end.throughput[c] * light[static_cast<size_t>(c)];
+  }
+
   /// One path. The random numbers of a bounce do not depend on how many there may be: one bounce more adds
   /// its own light and changes nothing else.
   void follow(Surface surface, Sampler& sampler, uint32_t sample, Sums& sums) const {
@@ -74,7 +107,8 @@ class PathIntegrator final : public Integrator {
 
   const RayScene& rays_;
   DirectLight light_;
-  bool withDirect_;
+  std::optional<SpecularPaths> specular_;
+  bool withDirect_, specularAlone_;
   int bounces_;
 };
 

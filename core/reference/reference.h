@@ -21,18 +21,28 @@ namespace limn::reference {
 enum class Term {
   direct,  ///< reflected direct light of all lights and the environment, or of one of them; shadows included
   visibility,  ///< V of one light
-  final,       ///< direct, indirect of up to Request::bounces, caustic, media, emission the camera sees,
+  final,       ///< direct, indirect of up to Request::bounces, caustic, media, specular or, without
+               ///< Request::interfaces, the environment alone in specular surfaces, emission the camera sees,
                ///< environment as background
   indirect,    ///< light that came to the seen surface over 1 to Request::bounces others (L D+ D E)
   caustic,     ///< light that came to the seen surface off or through one specular object (L S+ D E)
   media,  ///< light that the medium scattered once, directly or off or through a specular object (L S* M E)
+  specular,  ///< what the camera sees in specular surfaces: emission, direct light and indirect of up to
+             ///< Request::bounces, and the environment (L D+ S+ E); neither caustics nor light in the medium
 };
 LIMN_API const char* name(Term term);
 /// Throws UsageError naming the terms there are.
 LIMN_API Term termFromName(const std::string& name);
 
-/// Whether Request::bounces counts: with indirect and final.
+/// Whether Request::bounces counts: with indirect, specular and final.
 LIMN_API bool hasBounces(Term term);
+/// Whether Request::interfaces counts: with specular and final.
+LIMN_API bool hasInterfaces(Term term);
+/// Most smooth interfaces that can be asked for, besides all.
+constexpr int maxInterfaces = 64;
+constexpr int allInterfaces = -1;
+/// Those that image-space refraction follows: into an object and out of it.
+constexpr int imageSpaceInterfaces = 2;
 /// Most bounces that can be asked for.
 constexpr int maxBounces = 1024;
 
@@ -67,6 +77,10 @@ struct Request {
   /// many (at least 1), final adds them to direct light; 0 with the other terms. The pictures of N and of N -
   /// 1 bounces with the same samples and seed differ by exactly what the Nth bounce brings.
   int bounces = 0;
+  /// With specular and final: most smooth interfaces between the camera and what it sees in the surfaces of
+  /// one object, as image space has them (SpecularPaths::imageSpace), or allInterfaces: the truth. 0, with
+  /// final alone: the environment as specular_view.glsl has it.
+  int interfaces = 0;
   int spp = 64;  ///< samples per pixel and light, rounded up to an even number; the maximum if noise is given
   /// Target noise, RMS relative to the mean; 0: take spp samples. Tested after 16, 32, 64, ... samples.
   double noise = 0;
@@ -87,7 +101,7 @@ struct Request {
 /// estimated), Z, coverage, id (-1: nothing seen), albedo.R/G/B, N.X/Y/Z; for visibility also V, Vw (V
 /// weighted by irradiance) and masked (1 where no part of the light lies above the geometric tangent plane: V
 /// = 1). Metadata: noise_rms, spp, seed, term, light,
-/// bounces.
+/// bounces, interfaces.
 struct Result {
   Image image;
   double noiseRms =

@@ -42,11 +42,22 @@ void validate(const Request& r) {
   const bool bounces = hasBounces(r.term);
   const int least = r.term == Term::indirect ? 1 : 0;
   if (r.bounces < least || r.bounces > (bounces ? maxBounces : 0))
-    throw UsageError(bounces ? fmt::format("reference: bounces {} is not in {} .. {} with the term {}",
-                                           r.bounces, least, maxBounces, name(r.term))
-                             : fmt::format("reference: bounces {} with the term {}; only indirect and final "
-                                           "have bounces",
-                                           r.bounces, name(r.term)));
+    throw UsageError(bounces
+                         ? fmt::format("reference: bounces {} is not in {} .. {} with the term {}", r.bounces,
+                                       least, maxBounces, name(r.term))
+                         : fmt::format("reference: bounces {} with the term {}; only indirect, specular and "
+                                       "final have bounces",
+                                       r.bounces, name(r.term)));
+  const bool interfaces = hasInterfaces(r.term);
+  if (r.interfaces < allInterfaces || r.interfaces > (interfaces ? maxInterfaces : 0) ||
+      (r.interfaces < 0 && !interfaces) || (r.interfaces == 0 && r.term == Term::specular))
+    throw UsageError(
+        interfaces ? fmt::format("reference: interfaces {} is not in {} .. {} nor {} (all) with the term {}",
+                                 r.interfaces, r.term == Term::specular ? 1 : 0, maxInterfaces, allInterfaces,
+                                 name(r.term))
+                   : fmt::format(
+                         "reference: interfaces {} with the term {}; only specular and final have interfaces",
+                         r.interfaces, name(r.term)));
   if (r.light < allLights || r.light > lights)
     throw UsageError(fmt::format("reference: light {} is not in 0 .. {} ({}: the environment) nor {} (all)",
                                  r.light, lights, lights, allLights));
@@ -217,6 +228,7 @@ class Work {
     metadata["term"] = name(request_.term);
     metadata["light"] = fmt::format("{}", request_.light);
     metadata["bounces"] = fmt::format("{}", request_.bounces);
+    metadata["interfaces"] = fmt::format("{}", request_.interfaces);
     result.image = downsample(image_, request_.aa);
     if (request_.progress) request_.progress({1, result.noiseRms, 0, result.spp});
     std::error_code ignored;
@@ -250,7 +262,11 @@ int ownLights(const scene::Pose& pose) {
 }
 
 bool hasBounces(Term term) {
-  return term == Term::indirect || term == Term::final;
+  return term == Term::indirect || hasInterfaces(term);
+}
+
+bool hasInterfaces(Term term) {
+  return term == Term::specular || term == Term::final;
 }
 
 const char* name(Term term) {
@@ -267,16 +283,19 @@ const char* name(Term term) {
       return "caustic";
     case Term::media:
       return "media";
+    case Term::specular:
+      return "specular";
   }
   return "";
 }
 
 Term termFromName(const std::string& text) {
-  for (const Term term :
-       {Term::direct, Term::visibility, Term::final, Term::indirect, Term::caustic, Term::media})
+  for (const Term term : {Term::direct, Term::visibility, Term::final, Term::indirect, Term::caustic,
+                          Term::media, Term::specular})
     if (text == name(term)) return term;
   throw UsageError(fmt::format(
-      "reference: unknown term '{}'; there are direct, visibility, final, indirect, caustic, media", text));
+      "reference: unknown term '{}'; there are direct, visibility, final, indirect, caustic, media, specular",
+      text));
 }
 
 Result render(const Request& request) {

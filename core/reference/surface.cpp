@@ -106,6 +106,7 @@ Surface seenFrom(const RayScene& rays, const Hit& hit, const glm::vec3& view,
   }
   glsl::GBufferSurface& values = surface.values;
   fillMaterial(draw, corner, lookup, values);
+  if (back && surface.specular()) values.flags |= glsl::gbuffer_flag_back;
   values.normal = normal;
   values.geometric_normal = geometricNormal;
   surface.brdf = glsl::surface_brdf(values.base_colour, values.metallic, values.roughness,
@@ -142,8 +143,9 @@ std::optional<Surface> surfaceAlong(const RayScene& rays, const Hit& hit, const 
 Interface interfaceAt(const RayScene& rays, const Hit& hit, const glm::vec3& direction) {
   bool back = false;
   const Surface surface = seenFrom(rays, hit, -direction, std::nullopt, back);
-  return {surface.position,  surface.values.normal, surface.values.geometric_normal, back,
-          surface.rayOffset, surface.draw};
+  const glsl::GBufferSurface& values = surface.values;
+  return {surface.position,   values.normal,   values.geometric_normal, back,
+          values.base_colour, values.metallic, surface.rayOffset,       surface.draw};
 }
 
 }  // namespace limn::reference

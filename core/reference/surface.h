@@ -41,7 +41,9 @@ struct Interface {
   glm::vec3 position{0};
   glm::vec3 normal{0}, geometricNormal{0};  ///< unit, both turned to the side that the light comes from
   bool back = false;                        ///< that side is the surface's back
-  float rayOffset = 0;                      ///< Draw::rayOffset
+  glm::vec3 baseColour{0};
+  float metallic = 0;
+  float rayOffset = 0;  ///< Draw::rayOffset
   uint32_t draw = 0;
 };
 Interface interfaceAt(const RayScene& rays, const Hit& hit, const glm::vec3& direction);

@@ -95,14 +95,14 @@ Deferred::Deferred(gpu::Device& device, const scene::Scene& scene)
     : implementation_(new Implementation{device, scene, {}, {}, {}, {}, {}, {}}) {}
 Deferred::~Deferred() = default;
 
-TextureHandle Deferred::start(const Frame& frame, bool emission) {
+TextureHandle Deferred::start(const Frame& frame, Start with) {
   frame::FrameGraph& graph = frame.graph;
   implementation_->environmentHandle = implementation_->ltcHandle = {};
   const TextureHandle target =
       graph.createTexture("radiance", {.format = GL_RGBA32F, .width = frame.size.x, .height = frame.size.y});
   const bool geometry = static_cast<bool>(frame.gbuffer.depth);
   const bool environment = static_cast<bool>(implementation_->scene.environment);
-  if (!emission || (!geometry && !environment)) {
+  if (with == Start::black || (!geometry && !environment)) {
     frame::PassBuilder clear = graph.addPass("clear radiance");
     const TextureHandle cleared = clear.write(target, Access::copyTarget, "no light yet");
     clear.execute([cleared](frame::PassContext& context) {
@@ -119,7 +119,8 @@ TextureHandle Deferred::start(const Frame& frame, bool emission) {
     map = implementation_->environment(graph);
     builder.read(map, Access::sampled, "background");
   }
-  const bool specular = geometry && environment && hasSpecularSurface(implementation_->scene);
+  const bool specular = with == Start::emissionAndSpecular && geometry && environment &&
+                        hasSpecularSurface(implementation_->scene);
   if (specular) {
     for (const GBufferInput& input : gbufferInputs(frame.gbuffer))
       builder.read(input.texture, Access::sampled, input.why);
@@ -255,6 +256,54 @@ TextureHandle Deferred::addTransmittance(const Frame& frame, TextureHandle befor
     context.dispatch(size.x, size.y, 1, group_size, group_size);
   });
   return radiance;
+}
+
+TextureHandle Deferred::environmentMap(frame::FrameGraph& graph) {
+  return implementation_->scene.environment ? implementation_->environment(graph) : TextureHandle{};
+}
+
+TextureHandle Deferred::addSpecular(const Frame& frame, TextureHandle before, TextureHandle seen) {
+  frame::PassBuilder builder = frame.graph.addPass("specular surfaces");
+  builder.read(frame.gbuffer.material, Access::sampled, "which surfaces are specular")
+      .read(frame.gbuffer.emission, Access::sampled, "their emission")
+      .read(before, Access::sampled, "what is seen beside them")
+      .read(seen, Access::sampled, "what is seen in them");
+  const TextureHandle radiance = builder.write(
+      frame.graph.createTexture("radiance with specular surfaces",
+                                {.format = GL_RGBA32F, .width = frame.size.x, .height = frame.size.y}),
+      Access::imageStore, "both");
+  const auto program = builder.program({.files = {"glsl/deferred/specular.comp.glsl"}, .defines = {}});
+  builder.execute([=, g = frame.gbuffer, size = frame.size](frame::PassContext& context) {
+    context.program(program).use();
+    context.bindSampled(0, g.material);
+    context.bindSampled(1, g.emission);
+    context.bindSampled(2, before);
+    context.bindSampled(3, seen);
+    context.bindImage(0, radiance, GL_WRITE_ONLY);
+    context.dispatch(size.x, size.y, 1, group_size, group_size);
+  });
+  return radiance;
+}
+
+TextureHandle Deferred::addToneMapping(const Frame& frame, TextureHandle picture, bool layered,
+                                       float exposureEv) {
+  frame::PassBuilder builder = frame.graph.addPass("tone mapping");
+  builder.read(picture, Access::sampled, "linear picture");
+  const TextureHandle display =
+      builder.write(frame.graph.createTexture(
+                        "display", {.format = GL_RGBA8, .width = frame.size.x, .height = frame.size.y}),
+                    Access::imageStore, "what the window shows");
+  const auto program = builder.program(
+      {.files = {"glsl/deferred/tone_map.comp.glsl"}, .defines = {{"VISIBILITY", layered ? "1" : "0"}}});
+  builder.execute([=, size = frame.size](frame::PassContext& context) {
+    gpu::Program& kernel = context.program(program);
+    kernel.use();
+    kernel.set("exposure_ev", exposureEv);
+    context.bindSampled(0, picture);
+    context.bindImage(0, display, GL_WRITE_ONLY);
+    context.dispatch(size.x, size.y, 1, group_size, group_size);
+  });
+  return display;
 }
 
 }  // namespace limn::render

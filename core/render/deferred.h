@@ -1,5 +1,5 @@
 // Core's own passes of the frame: emission and background, unshadowed light times visibility, environment
-// light.
+// light, and what is seen in specular surfaces over what is seen beside them.
 #pragma once
 
 #include <cstdint>
@@ -28,8 +28,13 @@ class Deferred {
     glm::ivec2 size;
   };
 
-  /// Black, or with `emission` what the camera sees without any light: emission and background.
-  frame::TextureHandle start(const Frame& frame, bool emission);
+  /// What is seen without any light.
+  enum class Start : uint8_t {
+    black,
+    emission,            ///< and the background
+    emissionAndSpecular  ///< also the environment in specular surfaces
+  };
+  frame::TextureHandle start(const Frame& frame, Start with);
   /// Adds sum of L_u V over `lights` (at most light_batch). `visibility`: R16 array, layer per light; empty
   /// handle: V = 1.
   frame::TextureHandle addLights(const Frame& frame, frame::TextureHandle radiance,
@@ -38,6 +43,16 @@ class Deferred {
   frame::TextureHandle addTransmittance(const Frame& frame, frame::TextureHandle radiance);
   /// Adds the light of the environment, V = 1.
   frame::TextureHandle addEnvironment(const Frame& frame, frame::TextureHandle radiance);
+  /// The scene's map, RGB32F, in the graph of the last start(); empty: it has none.
+  frame::TextureHandle environmentMap(frame::FrameGraph& graph);
+  /// A texture of its own: `seen` and their emission where the frame shows specular surfaces, `radiance`
+  /// elsewhere.
+  frame::TextureHandle addSpecular(const Frame& frame, frame::TextureHandle radiance,
+                                   frame::TextureHandle seen);
+  /// What the window shows: RGBA8 of clamp(2^EV * picture), then sRGB. `layered`: the picture is a
+  /// visibility.
+  frame::TextureHandle addToneMapping(const Frame& frame, frame::TextureHandle picture, bool layered,
+                                      float exposureEv);
 
  private:
   struct Implementation;

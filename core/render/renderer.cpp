@@ -37,7 +37,7 @@ struct Renderer::Implementation {
   indirect::VirtualLightService virtualLights;
   caustics::CausticRayService causticRays;
   Deferred deferred;
-  scene::GBufferPass gbufferPass;
+  scene::GBufferPass gbufferPass, mattePass;
   Settings settings;
   scene::CameraPose camera;
   scene::Pose pose;
@@ -45,13 +45,14 @@ struct Renderer::Implementation {
   int animation = scene::none;
   bool poseDirty = true;
   uint32_t frameIndex = 0;
+  std::vector<bool> emitting;  ///< of each light, when the graph was built
   std::vector<std::string> mounted;
   std::vector<Use> uses;
 
   // Handles of the current graph.
   std::unique_ptr<frame::FrameGraph> graph;
   SceneHandles handles;
-  GBuffer gbuffer;
+  GBuffer gbuffer, matte;  ///< matte: what is lit, the same or the surfaces behind the specular ones
   frame::TextureHandle output, display;
   InspectionView inspectionView;
   std::unique_ptr<TextureInspector> inspector;
@@ -92,9 +93,21 @@ struct Renderer::Implementation {
 
   frame::TextureHandle ask(Use& use, Term term, std::span<const uint32_t> lights,
                            frame::TextureHandle target) {
-    const TechniqueInputs inputs{
-        scene,   pose,    gpuScene,     shadowMaps, virtualLights, causticRays, use.settings->parameters,
-        handles, gbuffer, settings.size};
+    const bool behind = term != Term::specular && term != Term::caustic && term != Term::media;
+    TechniqueInputs inputs{scene,
+                           pose,
+                           gpuScene,
+                           shadowMaps,
+                           virtualLights,
+                           causticRays,
+                           use.settings->parameters,
+                           handles,
+                           behind ? matte : gbuffer,
+                           settings.size};
+    if (term == Term::specular) {
+      inputs.matte = matte;
+      inputs.environmentMap = deferred.environmentMap(*graph);
+    }
     return use.technique->addPasses(*graph, inputs, {term, lights, target});
   }
 
@@ -108,6 +121,20 @@ struct Renderer::Implementation {
     return std::ranges::find(settings.forced, saving) != settings.forced.end();
   }
 
+  bool emits(size_t light) const { return glm::vec3(pose.lights[light].emission) != glm::vec3(0); }
+
+  void noteEmitting() {
+    emitting.resize(pose.lights.size());
+    for (size_t i = 0; i < emitting.size(); ++i) emitting[i] = emits(i);
+  }
+
+  /// A light was turned on or off: the graph leaves out what dark ones would need.
+  bool switched() const {
+    for (size_t i = 0; i < emitting.size(); ++i)
+      if (emitting[i] != emits(i)) return true;
+    return false;
+  }
+
   /// The lights that can contribute: the one asked for, or all that emit, without those whose place a
   /// technique takes.
   std::vector<uint32_t> activeLights() {
@@ -118,8 +145,7 @@ struct Renderer::Implementation {
     for (uint32_t i = 0; i < pose.lights.size(); ++i) {
       if (settings.light >= 0 && static_cast<uint32_t>(settings.light) != i) continue;
       if (replaced && (pose.lights[i].info.y & glsl::light_flag_environment) != 0) continue;
-      if (glm::vec3(pose.lights[i].emission) == glm::vec3(0) && settings.output != Output::visibility &&
-          !forced(Saving::darkLights)) {
+      if (!emits(i) && settings.output != Output::visibility && !forced(Saving::darkLights)) {
         graph->leaveOut(fmt::format("light {}", pose.lightNames[i]), "core", "it emits nothing");
         continue;
       }
@@ -160,29 +186,48 @@ struct Renderer::Implementation {
     return radiance;
   }
 
+  /// The technique that shows the scene in its specular surfaces, if the picture has them.
+  Use* answeringSpecular() {
+    Use* use = answering(Term::specular);
+    if (!use || (settings.output != Output::final && settings.output != Output::specular)) return nullptr;
+    if (gpuScene.hasSpecular()) return use;
+    graph->leaveOut("specular surfaces", use->settings->plugin->info->name,
+                    "the scene has no specular surface");
+    return nullptr;
+  }
+
   frame::TextureHandle addRadiance() {
+    Use* specular = answeringSpecular();
+    matte =
+        specular ? mattePass.add(*graph, gpuScene, handles, settings.size, scene::Surfaces::matte) : gbuffer;
+    const Deferred::Frame lit{*graph, handles, matte, settings.size};
     const Deferred::Frame frame{*graph, handles, gbuffer, settings.size};
-    const bool all = settings.output == Output::final;
-    frame::TextureHandle radiance = deferred.start(frame, all);
+    const bool all = settings.output == Output::final, whole = all || specular;
+    frame::TextureHandle radiance = deferred.start(lit, specular ? Deferred::Start::emission
+                                                        : all    ? Deferred::Start::emissionAndSpecular
+                                                                 : Deferred::Start::black);
     if (!gbuffer.depth) {
       graph->leaveOut("lighting", "core", "the scene has no geometry");
       return radiance;
     }
     const std::vector<uint32_t> lights = activeLights();
-    if (all || settings.output == Output::direct) {
+    if (whole || settings.output == Output::direct) {
       if (!lights.empty())
-        radiance = addDirect(frame, radiance, lights);
+        radiance = addDirect(lit, radiance, lights);
       else
         graph->leaveOut("lights", "core", "the scene has no light");
-      radiance = addEnvironment(frame, radiance);
+      radiance = addEnvironment(lit, radiance);
     }
-    const auto add = [&](Term term, Output wanted) {
-      if (!all && settings.output != wanted) return;
+    const auto add = [&](Term term, bool wanted) {
       for (Use& use : uses)
-        if (contains(termsOf(*use.settings), term)) radiance = ask(use, term, lights, radiance);
+        if (wanted && contains(termsOf(*use.settings), term)) radiance = ask(use, term, lights, radiance);
     };
-    add(Term::indirect, Output::indirect);
-    add(Term::caustic, Output::caustic);
+    add(Term::indirect, whole || settings.output == Output::indirect);
+    if (specular) {
+      const frame::TextureHandle seen = ask(*specular, Term::specular, lights, radiance);
+      radiance = all ? deferred.addSpecular(frame, radiance, seen) : seen;
+    }
+    add(Term::caustic, all || settings.output == Output::caustic);
     const char* clear = !scene.medium.present()            ? "the scene has no medium"
                         : settings.output == Output::media ? "no surface is shown"
                                                            : nullptr;
@@ -190,7 +235,7 @@ struct Renderer::Implementation {
       graph->leaveOut("transmittance", "core", clear);
     else
       radiance = deferred.addTransmittance(frame, radiance);
-    add(Term::media, Output::media);
+    add(Term::media, all || settings.output == Output::media);
     return radiance;
   }
 
@@ -199,28 +244,8 @@ struct Renderer::Implementation {
     if (lights.size() != 1)
       throw UsageError("--output-term visibility shows one light; choose it with --light");
     if (!gbuffer.depth) throw Error("visibility has no surface to show: the scene has no geometry");
+    matte = gbuffer;
     return ask(*answering(Term::visibility), Term::visibility, lights, visibilityTarget(1));
-  }
-
-  void addToneMapping(float exposureEv) {
-    frame::PassBuilder pass = graph->addPass("tone mapping");
-    pass.read(output, frame::Access::sampled, "linear picture");
-    display =
-        pass.write(graph->createTexture(
-                       "display", {.format = GL_RGBA8, .width = settings.size.x, .height = settings.size.y}),
-                   frame::Access::imageStore, "what the window shows");
-    const bool layered = settings.output == Output::visibility;
-    const auto program = pass.program(
-        {.files = {"glsl/deferred/tone_map.comp.glsl"}, .defines = {{"VISIBILITY", layered ? "1" : "0"}}});
-    pass.execute([this, program, exposureEv, from = output, to = display](frame::PassContext& context) {
-      gpu::Program& kernel = context.program(program);
-      kernel.use();
-      kernel.set("exposure_ev", exposureEv);
-      context.bindSampled(0, from);
-      context.bindImage(0, to, GL_WRITE_ONLY);
-      context.dispatch(settings.size.x, settings.size.y, 1, 8, 8);
-    });
-    graph->output(display);
   }
 
   /// Behind everything else: the pass looked at may be any.
@@ -233,6 +258,7 @@ struct Renderer::Implementation {
 
   void build() {
     dropGraph();
+    noteEmitting();
     graph = std::make_unique<frame::FrameGraph>();
     for (const TechniqueUse& use : settings.techniques) {
       mountTechnique(*use.plugin);
@@ -240,7 +266,7 @@ struct Renderer::Implementation {
     }
     gpuScene.setCulling(!forced(Saving::culling));
     handles = gpuScene.import(*graph);
-    gbuffer = {};
+    gbuffer = matte = {};
     if (gpuScene.instanceCount() > 0)
       gbuffer = gbufferPass.add(*graph, gpuScene, handles, settings.size);
     else
@@ -251,7 +277,11 @@ struct Renderer::Implementation {
     output = settings.output == Output::visibility ? addVisibility() : addRadiance();
     graph->output(output);
     display = {};
-    if (settings.displayEv) addToneMapping(*settings.displayEv);
+    if (settings.displayEv) {
+      display = deferred.addToneMapping({*graph, handles, gbuffer, settings.size}, output,
+                                        settings.output == Output::visibility, *settings.displayEv);
+      graph->output(display);
+    }
     if (settings.channels && gbuffer.depth)
       for (frame::TextureHandle kept : {gbuffer.depth, gbuffer.instance, gbuffer.albedo, gbuffer.normal})
         graph->output(kept);
@@ -267,9 +297,9 @@ struct Renderer::Implementation {
     poseDirty = false;
   }
 
-  void render(frame::Timing timing) {
+  bool render(frame::Timing timing, const frame::FrameGraph::Cancelled& cancelled) {
     refreshPose();
-    bool rebuild = gpuScene.update(pose, camera, settings.size, frameIndex++) || !graph;
+    bool rebuild = gpuScene.update(pose, camera, settings.size, frameIndex++) || !graph || switched();
     if (!rebuild) {
       rebuild = shadowMaps.update(pose);
       rebuild = causticRays.update(pose) || rebuild;
@@ -277,7 +307,7 @@ struct Renderer::Implementation {
     }
     if (rebuild) build();
     if (settings.dynamic) graph->invalidate();
-    graph->execute(timing);
+    return graph->execute(timing, cancelled);
   }
 };
 Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, std::filesystem::path shaderOverride)
@@ -301,8 +331,8 @@ void Renderer::setTime(double seconds, int animation) {
   implementation_->poseDirty = true;
 }
 
-void Renderer::render(frame::Timing timing) {
-  implementation_->render(timing);
+bool Renderer::render(frame::Timing timing, const frame::FrameGraph::Cancelled& cancelled) {
+  return implementation_->render(timing, cancelled);
 }
 
 const gpu::Texture& Renderer::display() const {

@@ -2,7 +2,7 @@
 // terms nobody claims (V = 1, the other terms 0), all as one frame graph.
 //
 //     L = T_cam (L_e + sum over lights of L_u V T_l  (or a technique's `direct`)  + indirect + caustic +
-//     background) + media
+//     specular + background) + media
 //
 // T_l and T_cam are the medium's transmittance from light l to the surface and from there to the camera. The
 // pictures of single terms hold T_cam too: they sum to the final one.
@@ -30,7 +30,7 @@ struct TechniqueUse {
 };
 
 /// What the picture shows.
-enum class Output { final, visibility, direct, indirect, caustic, media };
+enum class Output { final, visibility, direct, indirect, caustic, media, specular };
 LIMN_API std::string_view name(Output output);
 /// Throws UsageError naming the accepted values.
 LIMN_API Output parseOutput(std::string_view text);
@@ -65,6 +65,11 @@ struct Settings {
 /// for.
 LIMN_API void checkTechniques(const std::vector<TechniqueUse>& techniques, Output output);
 
+/// Most smooth interfaces that a picture of `output` follows, and its reference should: those of the technique
+/// which answers specular, its parameter `interfaces`, or into an object and out of it; 0 where none answers or
+/// the output shows no specular surfaces.
+LIMN_API int interfacesOf(Output output, const std::vector<TechniqueUse>& techniques);
+
 class LIMN_API Renderer {
  public:
   /// Uploads the scene. `scene` and `device` must outlive the renderer.
@@ -78,8 +83,9 @@ class LIMN_API Renderer {
   void setCamera(const scene::CameraPose& camera);
   void setTime(double seconds, int animation = scene::none);
 
-  /// Renders one frame. Throws Error (shader errors, memory, sizes).
-  void render(frame::Timing timing = frame::Timing::off);
+  /// Renders one frame. Throws Error (shader errors, memory, sizes). False: it was cancelled between two
+  /// passes (frame::FrameGraph::execute) and there is no picture.
+  bool render(frame::Timing timing = frame::Timing::off, const frame::FrameGraph::Cancelled& cancelled = {});
 
   /// The last frame: R, G, B (visibility: three equal channels), and with Settings::channels Z, coverage, id
   /// (-1: nothing seen), albedo.*, N.*. Blocks.

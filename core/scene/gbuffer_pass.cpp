@@ -5,12 +5,12 @@
 namespace limn::scene {
 
 GBuffer GBufferPass::add(frame::FrameGraph& graph, GpuScene& scene, const SceneHandles& handles,
-                         glm::ivec2 size) {
+                         glm::ivec2 size, Surfaces surfaces) {
   using frame::Access;
   const auto create = [&](const char* name, GLenum format) {
     return graph.createTexture(name, {.format = format, .width = size.x, .height = size.y});
   };
-  frame::PassBuilder builder = graph.addPass("gbuffer");
+  frame::PassBuilder builder = graph.addPass(surfaces == Surfaces::matte ? "matte gbuffer" : "gbuffer");
   builder.read(handles.frame, Access::uniformBuffer, "camera");
   GpuScene::declareReads(builder, handles);
   builder.read(handles.geometry, Access::storageLoad, "corners of triangles, for their normals");
@@ -34,7 +34,7 @@ GBuffer GBufferPass::add(frame::FrameGraph& graph, GpuScene& scene, const SceneH
                                                      {"TEXTURES", fmt::format("{}u", variant.textures)},
                                                      {"COLOURS", scene.hasColours() ? "1" : "0"}}});
 
-  builder.execute([this, &scene, handles, g, zbuffer, programs](frame::PassContext& context) {
+  builder.execute([this, &scene, handles, g, zbuffer, programs, surfaces](frame::PassContext& context) {
     context.bindFramebuffer(
         {{g.depth}, {g.normal}, {g.geometricNormal}, {g.albedo}, {g.material}, {g.emission}, {g.instance}},
         {zbuffer});
@@ -44,7 +44,7 @@ GBuffer GBufferPass::add(frame::FrameGraph& graph, GpuScene& scene, const SceneH
     for (GLint i = 0; i < 6; ++i) gl.ClearBufferfv(GL_COLOR, i, zero);
     gl.ClearBufferuiv(GL_COLOR, 6, nobody);
     gl.ClearBufferfv(GL_DEPTH, 0, zero);
-    scene.drawGBuffer(context, handles, programs, list_);
+    scene.drawGBuffer(context, handles, programs, surfaces, list_);
   });
   return g;
 }

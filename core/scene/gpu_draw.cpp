@@ -181,12 +181,12 @@ void GpuScene::Implementation::drawRun(const DrawRun& run) const {
 }
 
 void GpuScene::drawGBuffer(const frame::PassContext& context, const SceneHandles& handles,
-                           const SurfacePrograms& programs, DrawList& list) {
+                           const SurfacePrograms& programs, Surfaces surfaces, DrawList& list) {
   Implementation& scene = *implementation_;
   const gl::Functions& gl = scene.device.gl();
   DrawList::Implementation& draws = *list.implementation_;
   draws.clear();
-  const DepthView view{.volume = cameraVolume(scene.frame.world_to_clip)};
+  const DepthView view{.volume = cameraVolume(scene.frame.world_to_clip), .surfaces = surfaces};
   scene.fill(draws, scene.cameraOrder, {&view, 1}, false);
   draws.upload(scene.device);
   if (draws.runs.empty()) return;

@@ -53,14 +53,13 @@ constexpr std::array<GLint, 3> wraps{GL_REPEAT, GL_CLAMP_TO_EDGE, GL_MIRRORED_RE
 }  // namespace
 
 GpuMaterials::GpuMaterials(gpu::Device& device, const Scene& scene) : device_(device) {
-  std::vector<glsl::Material> all;
   std::map<std::array<int, 8>, uint32_t> keys{{{none, none, none, none, 0, 0, 0, 0}, 0u}};
   const auto keyOf = [&](const std::array<int, 4>& t, const std::array<int, 4>& s) {
     const std::array<int, 8> both{t[0], t[1], t[2], t[3], s[0], s[1], s[2], s[3]};
     return keys.emplace(both, static_cast<uint32_t>(keys.size())).first->second;
   };
   for (const Material& material : scene.materials) {
-    all.push_back(packConstants(material));
+    materials_.push_back(packConstants(material));
     Set set;
     const std::array<const TextureRef*, 4> refs{&material.baseColourTexture, &material.metalRoughTexture,
                                                 &material.normalTexture, &material.emissiveTexture};
@@ -71,13 +70,13 @@ GpuMaterials::GpuMaterials(gpu::Device& device, const Scene& scene) : device_(de
     }
     set.key = keyOf(set.textures, set.samplers);
     set.baseColourKey = keyOf({set.textures[0], none, none, none}, {set.samplers[0], 0, 0, 0});
-    set.variant = {all.back().info.x & texture_flags, material.alphaCutoff > 0};
+    set.variant = {materials_.back().info.x & texture_flags, material.alphaCutoff > 0};
     set.doubleSided = material.doubleSided;
     set.specular = material.specularSurface();
     sets_.push_back(set);
   }
-  constants_ = gpu::Buffer::of<glsl::Material>(device, "materials", all);
-  makeBlocks(all);
+  constants_ = gpu::Buffer::of<glsl::Material>(device, "materials", materials_, gpu::BufferUse::updated);
+  makeBlocks();
   std::vector<bool> isNormalMap(scene.images.size());
   for (const Material& material : scene.materials)
     if (material.normalTexture.image != none)
@@ -94,15 +93,28 @@ GpuMaterials::GpuMaterials(gpu::Device& device, const Scene& scene) : device_(de
   }
 }
 
-void GpuMaterials::makeBlocks(std::span<const glsl::Material> materials) {
+void GpuMaterials::makeBlocks() {
   GLint alignment = 1;
   device_.gl().GetIntegerv(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, &alignment);
   const auto step = static_cast<size_t>(alignment);
   blockStride_ = (sizeof(glsl::Material) + step - 1) / step * step;
-  std::vector<std::byte> bytes(std::max<size_t>(materials.size(), 1) * blockStride_);
-  for (size_t i = 0; i < materials.size(); ++i)
-    std::memcpy(bytes.data() + i * blockStride_, &materials[i], sizeof(glsl::Material));
-  blocks_ = gpu::Buffer(device_, "material blocks", bytes.size(), gpu::BufferUse::fixed, bytes.data());
+  std::vector<std::byte> bytes(std::max<size_t>(materials_.size(), 1) * blockStride_);
+  for (size_t i = 0; i < materials_.size(); ++i)
+    std::memcpy(bytes.data() + i * blockStride_, &materials_[i], sizeof(glsl::Material));
+  blocks_ = gpu::Buffer(device_, "material blocks", bytes.size(), gpu::BufferUse::updated, bytes.data());
+}
+
+bool GpuMaterials::update(const Scene& scene) {
+  bool any = false;
+  for (size_t i = 0; i < materials_.size(); ++i) {
+    const glm::vec3& emission = scene.materials[i].emission;
+    if (glm::vec3(materials_[i].emission) == emission) continue;
+    materials_[i].emission = glm::vec4(emission, materials_[i].emission.w);
+    constants_.update(i * sizeof(glsl::Material), &materials_[i], sizeof(glsl::Material));
+    blocks_.update(i * blockStride_, &materials_[i], sizeof(glsl::Material));
+    any = true;
+  }
+  return any;
 }
 
 void GpuMaterials::bind(int material) const {

@@ -16,6 +16,8 @@ class GpuMaterials {
  public:
   GpuMaterials(gpu::Device& device, const Scene& scene);
 
+  /// Takes over emissions that changed; everything else of a material is fixed. True if any did.
+  bool update(const Scene& scene);
   const gpu::Buffer& constants() const { return constants_; }
   /// Materials with equal keys bind the same textures; 0: none at all.
   uint32_t textureKey(int material) const { return sets_[static_cast<size_t>(material)].key; }
@@ -31,7 +33,7 @@ class GpuMaterials {
   bool doubleSided(int material) const { return sets_[static_cast<size_t>(material)].doubleSided; }
 
  private:
-  void makeBlocks(std::span<const glsl::Material> materials);
+  void makeBlocks();
 
   struct Set {
     std::array<int, 4> textures{none, none, none, none}, samplers{};
@@ -40,6 +42,7 @@ class GpuMaterials {
     bool doubleSided = false, specular = false;
   };
   gpu::Device& device_;
+  std::vector<glsl::Material> materials_;
   gpu::Buffer constants_;
   gpu::Buffer blocks_;      ///< the same, each where a uniform block may begin
   size_t blockStride_ = 0;  ///< bytes

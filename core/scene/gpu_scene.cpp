@@ -206,6 +206,7 @@ bool GpuScene::update(const Pose& pose, const CameraPose& camera, glm::ivec2 siz
   bool moved = s.allocate(pose);
   moved = s.writeDynamic() || moved;
   if (moved) s.touch(&SceneHandles::geometry);
+  if (s.materials.update(s.scene)) s.touch(&SceneHandles::materials);
   s.updateInstances(pose);
   const bool deformed = s.deform.update(pose, s.geometry, s.deformedRanges);
   if (deformed && s.graph != nullptr) s.deform.touch(*s.graph);
@@ -282,6 +283,12 @@ uint64_t GpuScene::triangles() const {
 
 void GpuScene::setCulling(bool culling) {
   implementation_->culling = culling;
+}
+
+bool GpuScene::hasSpecular() const {
+  for (uint32_t i = 0; i < instanceCount(); ++i)
+    if (specular(i)) return true;
+  return false;
 }
 
 bool GpuScene::specular(uint32_t instance) const {

@@ -106,8 +106,9 @@ class LIMN_API GpuScene {
   uint64_t triangles() const;  ///< instances counted
   /// Whether the instance's material is specular.
   bool specular(uint32_t instance) const;
-  bool hasMasked() const;      ///< some material has an alpha cutoff
-  bool hasColours() const;     ///< some vertices have colours
+  bool hasSpecular() const;  ///< some instance is
+  bool hasMasked() const;    ///< some material has an alpha cutoff
+  bool hasColours() const;   ///< some vertices have colours
   /// Those of all materials of the scene, each once.
   std::vector<SurfaceVariant> surfaceVariants() const;
 
@@ -121,7 +122,7 @@ class LIMN_API GpuScene {
   /// depth test reversed (cleared to 0). Uniform blocks FrameBlock and 1 (the draw's material), storage
   /// bindings 0 (instances), 2 and 3 (positions, indices) are bound by it. `programs`: of all variants.
   void drawGBuffer(const frame::PassContext& context, const SceneHandles& handles,
-                   const SurfacePrograms& programs, DrawList& list);
+                   const SurfacePrograms& programs, Surfaces surfaces, DrawList& list);
 
   /// Draws surfaces as all `views` see them, both sides (gl_FrontFacing tells them apart): drawDepth() with
   /// the materials and bindings of drawGBuffer(), without its frame block. `programs`: of all variants.
@@ -144,8 +145,10 @@ class LIMN_API GpuScene {
 /// The G-buffer pass: rasterises what the camera sees. Layout: glsl/gbuffer.glsl.
 class LIMN_API GBufferPass {
  public:
-  /// Declares the pass "gbuffer". The pass object must outlive the graph.
-  GBuffer add(frame::FrameGraph& graph, GpuScene& scene, const SceneHandles& handles, glm::ivec2 size);
+  /// Declares the pass "gbuffer", or "matte gbuffer" of the surfaces that are not specular. The pass object
+  /// must outlive the graph.
+  GBuffer add(frame::FrameGraph& graph, GpuScene& scene, const SceneHandles& handles, glm::ivec2 size,
+              Surfaces surfaces = Surfaces::all);
 
  private:
   DrawList list_;

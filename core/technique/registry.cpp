@@ -45,6 +45,8 @@ const char* name(Term term) {
       return "media";
     case Term::environment:
       return "environment";
+    case Term::specular:
+      return "specular";
   }
   return "";
 }

@@ -27,6 +27,8 @@ enum class StressChange : uint8_t {
   oneTriangle,   ///< all geometry replaced by one triangle
   degenerate,    ///< triangles without area added
   invalidVertices,  ///< a triangle with a NaN vertex added
+  cameraNear,       ///< the camera at amount radii (of its box) from the middle of the smallest object
+  refraction,       ///< the index of refraction of every material becomes amount
 };
 
 struct StressCase {

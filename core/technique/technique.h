@@ -47,7 +47,7 @@ class CausticRayService;
 }
 
 /// The terms of the rendering equation a technique may answer (path classes: direct L D E, indirect L D+ D E,
-/// caustic L S+ D E, media L S* M E).
+/// caustic L S+ D E, media L S* M E, specular L D+ S+ E and the environment's S+ E).
 enum class Term : uint32_t {
   visibility = 1,  ///< V of each light, 0 occluded .. 1 lit
   direct = 2,      ///< sum over the lights of reflected direct light, shadows included
@@ -57,6 +57,8 @@ enum class Term : uint32_t {
   environment =
       32,  ///< reflected light of the environment's map, shadows included; instead of all lights that stand
            ///< for parts of it. One technique at most, beside one that answers visibility or direct
+  specular = 64,  ///< what the camera sees in specular surfaces, caustics and light in a medium left out;
+                  ///< unanswered: the environment alone. One technique at most
 };
 using TermSet = uint32_t;
 constexpr TermSet operator|(Term a, Term b) {
@@ -117,8 +119,12 @@ struct TechniqueInputs {
   caustics::CausticRayService& causticRays;
   const ParameterValues& parameters;
   SceneHandles handles;
+  /// The surfaces to light. Where specular is answered: of visibility, direct, environment and indirect those
+  /// behind the specular ones.
   GBuffer gbuffer;
-  glm::ivec2 size;  ///< pixels
+  glm::ivec2 size;                        ///< pixels
+  GBuffer matte{};                        ///< of specular: the G-buffer without specular surfaces
+  frame::TextureHandle environmentMap{};  ///< of specular: equirectangular, RGB32F; empty: no environment
 };
 
 /// One question to a technique.
@@ -128,8 +134,9 @@ struct TermRequest {
   /// answered layer by layer.
   std::span<const uint32_t> lights;
   /// visibility: R16 array with one layer per entry of `lights`; the pass writes every pixel, and 1 where the
-  /// pixel has no coverage or the light lies wholly behind the surface. Other terms: RGBA32F radiance to add
-  /// to.
+  /// pixel has no coverage or the light lies wholly behind the surface. specular: RGBA32F, radiance of
+  /// TechniqueInputs::matte and the background behind it, to be read; the answer is a texture of its own,
+  /// black where no specular surface is seen. Other terms: RGBA32F radiance to add to.
   frame::TextureHandle target;
 };
 

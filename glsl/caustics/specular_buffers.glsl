@@ -1,12 +1,13 @@
-// The specular buffers of a layer as the rays' pass searches them.
+// The specular buffers of a layer as passes search them that follow light through objects. SPECULAR_UNIT: the first of
+// their four texture units.
 #ifndef LIMN_SPECULAR_BUFFERS_GLSL
 #define LIMN_SPECULAR_BUFFERS_GLSL
 #include "glsl/shadow_view.glsl"
 
-layout(binding = 0) uniform sampler2DArray front_surface;  // xyz: normal; w: +-(instance + 1)
-layout(binding = 1) uniform sampler2DArray front_depth;
-layout(binding = 2) uniform sampler2DArray back_surface;
-layout(binding = 3) uniform sampler2DArray back_depth;
+layout(binding = SPECULAR_UNIT) uniform sampler2DArray front_surface;  // xyz: normal; w: +-(instance + 1)
+layout(binding = SPECULAR_UNIT + 1) uniform sampler2DArray front_depth;
+layout(binding = SPECULAR_UNIT + 2) uniform sampler2DArray back_surface;
+layout(binding = SPECULAR_UNIT + 3) uniform sampler2DArray back_depth;
 
 // Depth at uv, interpolated among the texels of the instance; < 0: the instance is not there.
 float buffer_depth(sampler2DArray surfaces, sampler2DArray depths, vec2 uv, int layer, float instance) {

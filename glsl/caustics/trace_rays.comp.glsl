@@ -2,6 +2,7 @@
 // again where it leaves the object, and ends where it meets the rest of the scene (thesis, section 8.3.2).
 // PATHS: caustic_reflection | caustic_refraction; PATH_COUNT: how many these are.
 #include "glsl/caustic_ray.glsl"
+#define SPECULAR_UNIT 0
 #include "glsl/caustics/specular_buffers.glsl"
 #include "glsl/light_intensity.glsl"
 #include "glsl/light_texture.glsl"

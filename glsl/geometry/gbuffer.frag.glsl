@@ -49,7 +49,10 @@ void main() {
   s.specular_factor = material.specular.w;
   s.specular_colour = material.specular.w > 0.0 ? material.specular.rgb / material.specular.w : vec3(1.0);
   s.ior = material.metal_rough.w;
-  s.flags = (material.info.x & material_specular_surface) != 0u ? gbuffer_flag_specular : 0u;
+  s.flags = 0u;
+  if ((material.info.x & material_specular_surface) != 0u) {
+    s.flags = gbuffer_flag_specular | (gl_FrontFacing ? 0u : gbuffer_flag_back);
+  }
 
   GBufferTexels texels = gbuffer_pack(s);
   out_depth = 1.0 / gl_FragCoord.w;

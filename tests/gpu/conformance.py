@@ -19,7 +19,7 @@ CHEAP = {"instant_radiosity": ["--set", "instant_radiosity.vpls=16"]}
 
 def scene_for(technique):
     terms = set(technique["terms"])
-    if terms & {"media", "caustic"}:
+    if terms & {"media", "caustic", "specular"}:
         return "glass_sphere"
     return "balls_sky" if "environment" in terms else "cornell_box"
 

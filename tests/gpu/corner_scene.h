@@ -45,10 +45,10 @@ struct Corner {
     const double inner = 1 - light.cone.x, outer = 1 - light.cone.y;
     flux = albedo * 1000 * 2 * glsl::pi * (inner + (outer - inner) / 3);
   }
-  /// Halfway between the origin and the wall, 0.3 m wide.
-  void addPlate() {
+  /// Parallel to the wall, 0.3 m wide, at `x` m: by default halfway between the origin and the wall.
+  void addPlate(float x = 0.5f) {
     addInstance(scene, pose, addMesh(scene, floorPrimitive(0.15f, 0)),
-                glm::translate(glm::mat4(1), {0.5f, 0.4f, 0}) * upright());
+                glm::translate(glm::mat4(1), {x, 0.4f, 0}) * upright());
   }
   glm::vec3 position(const Answer& v, int x, int y) const {
     glsl::FrameBlock frame{};

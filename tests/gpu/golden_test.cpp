@@ -1,7 +1,7 @@
 // Each technique's picture against the one committed in its folder (techniques/NAME/golden.png; the core's
 // own in tests/golden/unshadowed.png). llvmpipe renders the same bits everywhere, so the bound is one 8-bit
-// step for differences between compilers. LIMN_UPDATE_GOLDEN=1 writes new ones: look at them before
-// committing.
+// step for differences between compilers. LIMN_UPDATE_GOLDEN=NAME writes a new one of that technique (or
+// unshadowed), =1 of all: look at them before committing.
 #include <algorithm>
 #include <cstdlib>
 
@@ -31,18 +31,17 @@ class GoldenTest : public RenderTest {
   }
 
   /// Scenes side by side in one picture; those that answer the environment's light are lit by a sky alone,
-  /// and those that answer media or caustics have their own scenes.
+  /// and those that answer media, caustics or specular have their own scenes.
   Image strip(const std::vector<render::TechniqueUse>& techniques) {
-    const bool outdoors = std::ranges::any_of(techniques, [](const render::TechniqueUse& use) {
-      return contains(use.plugin->info->terms, Term::environment);
-    });
-    const bool optics = std::ranges::any_of(techniques, [](const render::TechniqueUse& use) {
-      const TermSet terms = use.plugin->info->terms;
-      return contains(terms, Term::media) || contains(terms, Term::caustic);
-    });
-    const std::vector<std::string> scenes = optics
-                                                ? std::vector<std::string>{"glass_sphere", "ring", "gem"}
-                                                : std::vector<std::string>{"cornell_box", "balls", "lights"};
+    const auto answers = [&](Term term) {
+      return std::ranges::any_of(techniques, [term](const render::TechniqueUse& use) {
+        return contains(use.plugin->info->terms, term);
+      });
+    };
+    std::vector<std::string> scenes{"cornell_box", "balls", "lights"};
+    if (answers(Term::media) || answers(Term::caustic)) scenes = {"glass_sphere", "ring", "gem"};
+    if (answers(Term::specular)) scenes = {"glassware", "ring", "gem"};
+    const bool outdoors = answers(Term::environment);
     Image whole(width * int(scenes.size()), height, {"R", "G", "B"});
     for (size_t s = 0; s < scenes.size(); ++s) {
       scene::Scene scene = asset(scenes[s]);
@@ -59,9 +58,14 @@ class GoldenTest : public RenderTest {
     return whole;
   }
 
-  void check(const std::string& name, const Image& actual, const fs::path& golden) {
+  void check(const std::string& name, const std::vector<render::TechniqueUse>& techniques,
+             const fs::path& golden) {
     SCOPED_TRACE(name);
-    if (std::getenv("LIMN_UPDATE_GOLDEN")) {
+    const char* variable = std::getenv("LIMN_UPDATE_GOLDEN");
+    const std::string update = variable != nullptr ? variable : "";
+    if (!update.empty() && update != "1" && update != name) return;
+    const Image actual = strip(techniques);
+    if (!update.empty()) {
       fs::create_directories(golden.parent_path());
       writePng(golden, actual);
       return;
@@ -71,7 +75,8 @@ class GoldenTest : public RenderTest {
     const fs::path actualFile = failed / (name + ".actual.png");
     writePng(actualFile, actual);
     ASSERT_TRUE(fs::exists(golden)) << "no " << golden << "; look at " << actualFile
-                                    << " and accept it with LIMN_UPDATE_GOLDEN=1 ctest -R golden";
+                                    << " and accept it with LIMN_UPDATE_GOLDEN=" << name << " "
+                                    << test::binaryDir << "/bin/limn_gpu_tests --gtest_filter='GoldenTest.*'";
     const Image8 a = readImage8(actualFile), b = readImage8(golden);
     ASSERT_EQ(a.data.size(), b.data.size());
     float worst = 0;
@@ -88,12 +93,12 @@ class GoldenTest : public RenderTest {
 };
 
 TEST_F(GoldenTest, Unshadowed) {
-  check("unshadowed", strip({}), fs::path(test::sourceDir) / "tests/golden/unshadowed.png");
+  check("unshadowed", {}, fs::path(test::sourceDir) / "tests/golden/unshadowed.png");
 }
 
 TEST_F(GoldenTest, EveryTechnique) {
-  for (const TechniquePlugin* plugin : registry().all())
-    check(plugin->info->name, strip({technique(plugin->info->name)}),
+  for (const TechniquePlugin* plugin : testedTechniques())
+    check(plugin->info->name, {technique(plugin->info->name)},
           fs::path(test::sourceDir) / "techniques" / plugin->info->name / "golden.png");
 }
 

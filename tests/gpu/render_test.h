@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -53,9 +54,15 @@ class RenderTest : public GlTest {
     return use;
   }
 
+  /// Those under test: all, or the one that LIMN_TEST_TECHNIQUE names.
+  static std::vector<const TechniquePlugin*> testedTechniques() {
+    if (const char* name = std::getenv("LIMN_TEST_TECHNIQUE")) return {&registry().find(name)};
+    return {registry().all().begin(), registry().all().end()};
+  }
+
   static std::vector<std::string> techniquesAnswering(Term term) {
     std::vector<std::string> names;
-    for (const TechniquePlugin* plugin : registry().all())
+    for (const TechniquePlugin* plugin : testedTechniques())
       if (contains(plugin->info->terms, term)) names.emplace_back(plugin->info->name);
     return names;
   }

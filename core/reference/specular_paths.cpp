@@ -1,0 +1,147 @@
+#include "core/reference/specular_paths.h"
+
+#include <algorithm>
+#include <glm/glm.hpp>
+
+#include "core/reference/optics.h"
+#include "core/reference/reference.h"
+#include "glsl/caustic_ray.glsl"
+
+namespace limn::reference {
+namespace {
+
+constexpr float leastCosine = 1e-4f;   // as in refraction.comp.glsl
+constexpr int mostEvents = 512;        // of a path without limit
+constexpr uint32_t firstRoulette = 8;  // from this event on it goes on with a probability alone
+
+glm::dvec3 doubles(const glm::vec3& v) {
+  return glm::dvec3(v);
+}
+
+double largest(const glm::dvec3& v) {
+  return std::max({v.x, v.y, v.z});
+}
+
+/// The first interface of a path as the camera sees it.
+struct First {
+  glsl::Optics optics;
+  glsl::SpecularEvent event;
+  bool inside;
+
+  First(const Surface& s, const scene::Material& material)
+      : optics(opticsOf(material, s.values.base_colour, s.values.metallic)),
+        inside((s.values.flags & glsl::gbuffer_flag_back) != 0) {
+    const glm::vec3& n =
+        glm::dot(s.values.normal, s.view) > leastCosine ? s.values.normal : s.values.geometric_normal;
+    event = glsl::specular_event(optics, -s.view, n, inside);
+  }
+};
+
+}  // namespace
+
+SpecularPaths::SpecularPaths(const RayScene& rays, int interfaces)
+    : rays_(rays), environment_(rays.scene().environment), interfaces_(interfaces) {}
+
+bool SpecularPaths::many() const {
+  return interfaces_ == allInterfaces;
+}
+
+SpecularEnd SpecularPaths::backgroundAlong(const Ray& ray, const glm::vec3& from) const {
+  return {ray.throughput * doubles(rays_.medium().transmittanceToInfinity(from, ray.direction)), std::nullopt,
+          environment_.radiance(ray.direction)};
+}
+
+/// At a surface that is not specular; `from`: where the medium begins.
+SpecularEnd SpecularPaths::endAt(const Ray& ray, const Hit& hit, const glm::vec3& from) const {
+  std::optional<Surface> surface = surfaceAlong(rays_, hit, ray.direction);
+  if (!surface) return {};
+  const glm::vec3 passes = rays_.medium().transmittanceBetween(from, surface->position);
+  return {ray.throughput * doubles(passes), std::move(surface)};
+}
+
+/// The end of a ray that specular surfaces do not stop.
+SpecularEnd SpecularPaths::matteAlong(const Ray& ray) const {
+  Ray rest = ray;
+  Hit hit;
+  for (int i = 0; i < mostEvents && rays_.nearest(rest.origin, rest.direction, hit); ++i) {
+    if (!rays_.draws()[hit.draw].material->specularSurface()) return endAt(ray, hit, ray.origin);
+    const Interface passed = interfaceAt(rays_, hit, rest.direction);
+    rest.origin = passed.position - passed.rayOffset * passed.geometricNormal;
+  }
+  return backgroundAlong(ray, ray.origin);
+}
+
+/// From the front of a body to where it is left; behind a surface that bounds none, light goes on.
+SpecularEnd SpecularPaths::throughBody(const Surface& seen, const glsl::Optics& optics, Ray ray) const {
+  for (int interfaces = 1;; ++interfaces) {
+    Hit hit;
+    if (!rays_.nearest(ray.origin, ray.direction, hit) || hit.draw != seen.draw)
+      return interfaces == 1 ? matteAlong(ray) : SpecularEnd{};
+    if (interfaces >= interfaces_) return {};
+    const Interface exit = interfaceAt(rays_, hit, ray.direction);
+    if (!exit.back || !(glm::dot(exit.normal, -ray.direction) > leastCosine)) return {};
+    const glsl::SpecularEvent event = glsl::specular_event(optics, ray.direction, exit.normal, true);
+    ray.throughput *= doubles(glsl::optics_absorption(optics, hit.depth));
+    const bool inside = event.refracted == glm::vec3(0);
+    const float side = inside ? 1.f : -1.f;
+    ray.origin = exit.position + side * exit.rayOffset * exit.geometricNormal;
+    ray.direction = inside ? event.reflected : event.refracted;
+    ray.throughput *= doubles(inside ? event.reflectance : event.transmittance);
+    if (!inside) return matteAlong(ray);
+  }
+}
+
+std::array<SpecularEnd, 2> SpecularPaths::imageSpace(const Surface& seen) const {
+  const First first(seen, *rays_.draws()[seen.draw].material);
+  const auto ray = [&](const glm::vec3& direction, const glm::vec3& share) {
+    return Ray{seen.rayOrigin(direction), direction, doubles(share)};
+  };
+  std::array<SpecularEnd, 2> ends;
+  if (first.event.reflectance != glm::vec3(0))
+    ends[0] = matteAlong(ray(first.event.reflected, first.event.reflectance));
+  if (first.event.refracted == glm::vec3(0) || first.event.transmittance == glm::vec3(0)) return ends;
+  const Ray refracted = ray(first.event.refracted, first.event.transmittance);
+  const bool straight = first.inside || !(first.optics.thickness > 0);
+  ends[1] = straight ? matteAlong(refracted) : throughBody(seen, first.optics, refracted);
+  return ends;
+}
+
+SpecularEnd SpecularPaths::sample(const Surface& seen, const Sampler& sampler) const {
+  First first(seen, *rays_.draws()[seen.draw].material);
+  glsl::SpecularEvent event = first.event;
+  Ray ray{seen.position, -seen.view, glm::dvec3(1)};
+  glm::vec3 position = seen.position, away = seen.rayOffset * seen.values.geometric_normal;
+  for (uint32_t i = 0; i < mostEvents; ++i) {
+    const glm::vec2 u = sampler.pair(firstPair + i);
+    const glm::dvec3 reflected = doubles(event.reflectance),
+                     passing = event.refracted == glm::vec3(0) ? glm::dvec3(0) : doubles(event.transmittance);
+    const double both = largest(reflected) + largest(passing);
+    if (!(both > 0)) return {};
+    const double probability = largest(reflected) / both;
+    const bool mirrored = static_cast<double>(u.x) < probability;
+    ray.throughput *= mirrored ? reflected / probability : passing / (1 - probability);
+    ray.direction = mirrored ? event.reflected : event.refracted;
+    if (i >= firstRoulette) {
+      const double survival = std::min(largest(ray.throughput), 1.0);
+      if (static_cast<double>(u.y) >= survival) return {};
+      ray.throughput /= survival;
+    }
+    ray.origin = position + (mirrored ? 1.f : -1.f) * away;
+    Hit hit;
+    if (!rays_.nearest(ray.origin, ray.direction, hit)) return backgroundAlong(ray, ray.origin);
+    const scene::Material& material = *rays_.draws()[hit.draw].material;
+    if (!material.specularSurface()) return endAt(ray, hit, ray.origin);
+    const Interface met = interfaceAt(rays_, hit, ray.direction);
+    if (!(glm::dot(met.normal, -ray.direction) > leastCosine)) return {};
+    const glsl::Optics optics = opticsOf(material, met.baseColour, met.metallic);
+    const bool body = met.back && optics.thickness > 0;  // what lies before its back is its inside
+    ray.throughput *= doubles(body ? glsl::optics_absorption(optics, hit.depth)
+                                   : rays_.medium().transmittanceBetween(ray.origin, met.position));
+    event = glsl::specular_event(optics, ray.direction, met.normal, met.back);
+    position = met.position;
+    away = met.rayOffset * met.geometricNormal;
+  }
+  return {};
+}
+
+}  // namespace limn::reference

@@ -1,0 +1,53 @@
+// What the camera sees in specular surfaces: paths from there, off and through smooth interfaces, to the
+// first surface that is not one.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "core/reference/environment.h"
+#include "core/reference/sampler.h"
+#include "core/reference/surface.h"
+
+namespace limn::reference {
+
+/// Where such a path ends.
+struct SpecularEnd {
+  glm::dvec3 throughput{0};  ///< share of its light that arrives, the medium included; 0: it ends nowhere
+  std::optional<Surface> surface;  ///< nothing: the background
+  glm::vec3 background{0};         ///< radiance, W/(sr m^2)
+};
+
+class SpecularPaths {
+ public:
+  /// `interfaces`: most of a path, or allInterfaces.
+  SpecularPaths(const RayScene& rays, int interfaces);
+
+  /// Whether paths are many, to be sampled, rather than the two of the image-space limit.
+  bool many() const;
+  /// The limit that image space has: one reflection at the surface that the camera sees; and one way through
+  /// the object behind it, which goes on within it where it is totally reflected. Light that leaves the
+  /// object passes through others, and an object that is seen from within is an open sheet.
+  std::array<SpecularEnd, 2> imageSpace(const Surface& seen) const;
+  /// One path without limit, reflected and refracted at random; its pairs of random numbers are those behind
+  /// firstPair.
+  SpecularEnd sample(const Surface& seen, const Sampler& sampler) const;
+
+  static constexpr uint32_t firstPair = 1u << 30;
+
+ private:
+  struct Ray {
+    glm::vec3 origin, direction;
+    glm::dvec3 throughput;
+  };
+  SpecularEnd matteAlong(const Ray& ray) const;
+  SpecularEnd endAt(const Ray& ray, const Hit& hit, const glm::vec3& from) const;
+  SpecularEnd backgroundAlong(const Ray& ray, const glm::vec3& from) const;
+  SpecularEnd throughBody(const Surface& seen, const glsl::Optics& optics, Ray ray) const;
+
+  const RayScene& rays_;
+  EnvironmentLight environment_;
+  int interfaces_;
+};
+
+}  // namespace limn::reference

@@ -1,0 +1,20 @@
+// Puts what is seen in specular surfaces over what is seen beside them.
+#include "glsl/gbuffer.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 0) uniform sampler2D gbuffer_material;
+layout(binding = 1) uniform sampler2D gbuffer_emission;
+layout(binding = 2) uniform sampler2D beside;
+layout(binding = 3) uniform sampler2D seen;
+layout(rgba32f, binding = 0) writeonly uniform image2D radiance;
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, imageSize(radiance)))) return;
+  uint flags = uint(texelFetch(gbuffer_material, pixel, 0).a * 255.0 + 0.5);
+  vec4 light = texelFetch(beside, pixel, 0);
+  if ((flags & gbuffer_flag_specular) != 0u) {
+    light.rgb = texelFetch(gbuffer_emission, pixel, 0).rgb + texelFetch(seen, pixel, 0).rgb;
+  }
+  imageStore(radiance, pixel, light);
+}

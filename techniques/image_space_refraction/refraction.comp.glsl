@@ -1,0 +1,109 @@
+// What the camera sees in a specular surface: light that is mirrored at its front, and light that comes through the object
+// behind it (Wyman 2005, An Approximate Image-Space Approach for Interactive Refraction, with the true way to the back
+// instead of an estimated thickness). Both end in the picture of the scene without specular surfaces, else in the
+// environment, else in the dark.
+//
+// INTERFACES: most smooth interfaces of a path. ENVIRONMENT 1: there is a map. MEDIUM 1: there is a medium.
+#include "glsl/caustic_ray.glsl"
+#include "glsl/equirectangular.glsl"
+#include "glsl/gbuffer_input.glsl"
+#include "glsl/medium_input.glsl"
+#define SPECULAR_UNIT 7
+#include "glsl/caustics/specular_buffers.glsl"
+#include "techniques/image_space_refraction/scene_ray.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(rgba32f, binding = 0) writeonly uniform image2D seen;
+layout(std430, binding = 0) readonly buffer Instances { Instance instances[]; };
+layout(std430, binding = 1) readonly buffer Materials { Material materials[]; };
+layout(std430, binding = 2) readonly buffer Views { ShadowView views[]; };
+#if ENVIRONMENT
+layout(binding = 14) uniform sampler2D environment_map;
+#endif
+uniform float diameter;  // of the specular objects together, metres
+uniform int steps;
+
+const float least_cosine = 1e-4;
+
+// Light that comes against `direction` (unit) to `origin`, off every surface that is not specular.
+vec3 scene_radiance(vec3 origin, vec3 direction) {
+  float reach = max(ball_range(frame.medium_ball, origin, direction).y, 0.0);
+  SceneHit hit = scene_hit(origin, direction, reach, steps);
+  vec3 light = vec3(0.0);
+  if (hit.t >= 0.0) {
+    light = radiance_at(hit, origin + hit.t * direction);
+  } else {
+#if ENVIRONMENT
+    vec2 uv = equirectangular_uv(environment_lookup_direction(direction, frame.environment.x));
+    light = frame.environment.y * textureLod(environment_map, uv, 0.0).rgb;
+#endif
+  }
+#if MEDIUM
+  Medium medium = scene_medium();
+  float end = hit.t >= 0.0 ? hit.t : 3.0e38;
+  light *= medium_transmittance(medium, medium_length(medium, origin, direction, end));
+#endif
+  return light;
+}
+
+// Light on its way out of an object, followed against its direction.
+struct Way {
+  vec3 origin;
+  vec3 direction;  // unit, away from the object
+  vec3 weight;     // share of it that reaches the viewer; 0: none is found
+};
+
+// From the front of a body at `origin` along `direction` (unit) to where it is left: at most INTERFACES - 1 interfaces further on.
+Way through_body(Optics optics, vec3 origin, vec3 direction, vec3 weight, float instance) {
+  Way way = Way(origin, direction, weight);
+  bool inside = true;
+  for (int i = 1; i < INTERFACES && inside; ++i) {
+    BodyExit leaves = body_exit(views[0], way.origin, way.direction, diameter, 0, instance);
+    if (!(dot(leaves.normal, way.direction) > least_cosine)) break;
+    SpecularEvent event = specular_event(optics, way.direction, -leaves.normal, true);
+    way.origin += leaves.distance * way.direction;
+    way.weight *= optics_absorption(optics, leaves.distance);
+    inside = event.refracted == vec3(0.0);
+    way.direction = inside ? event.reflected : event.refracted;
+    way.weight *= inside ? event.reflectance : event.transmittance;
+  }
+  if (inside) way.weight = vec3(0.0);
+  return way;
+}
+
+// Whether a surface bounds no body: light stays in the medium behind it.
+bool is_sheet(vec3 position, float instance) {
+  ShadowPoint q = shadow_project(views[0], position);
+  float near = buffer_depth(front_surface, front_depth, q.uv, 0, instance);
+  float far = buffer_depth(back_surface, back_depth, q.uv, 0, instance);
+  return !(far - near > 1e-6);
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  float depth = pixel_depth(pixel);
+  GBufferSurface s = pixel_surface(pixel);
+  if (depth == 0.0 || (s.flags & gbuffer_flag_specular) == 0u) {
+    imageStore(seen, pixel, vec4(0.0, 0.0, 0.0, 1.0));
+    return;
+  }
+  uint instance = pixel_instance(pixel);
+  Optics optics = material_optics(materials[instances[instance].info.x]);
+  optics.base = s.base_colour;
+  optics.metallic = s.metallic;
+  vec3 position = pixel_position(pixel, depth);
+  vec3 view = -normalize(pixel_ray(pixel));
+  vec3 normal = dot(s.normal, view) > least_cosine ? s.normal : s.geometric_normal;
+  bool inside = (s.flags & gbuffer_flag_back) != 0u;
+  SpecularEvent event = specular_event(optics, -view, normal, inside);
+  vec3 light = vec3(0.0);
+  if (event.reflectance != vec3(0.0)) light += event.reflectance * scene_radiance(position, event.reflected);
+  Way way = Way(position, event.refracted, event.refracted == vec3(0.0) ? vec3(0.0) : event.transmittance);
+  bool straight = inside || !(optics.thickness > 0.0) || is_sheet(position, float(instance + 1u));
+  if (!straight && way.weight != vec3(0.0)) {
+    way = through_body(optics, way.origin, way.direction, way.weight, float(instance + 1u));
+  }
+  if (way.weight != vec3(0.0)) light += way.weight * scene_radiance(way.origin, way.direction);
+  imageStore(seen, pixel, vec4(light, 1.0));
+}

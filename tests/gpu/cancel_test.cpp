@@ -1,0 +1,72 @@
+// Frames that are given up between two passes leave nothing behind that a later frame could see.
+#include <gmock/gmock.h>
+
+#include "tests/gpu/render_test.h"
+
+namespace limn {
+namespace {
+
+class CancelTest : public RenderTest {
+ protected:
+  static std::vector<float> rgb(const render::Renderer& renderer) {
+    const Image image = renderer.read().select({"R", "G", "B"});
+    return {image.data().begin(), image.data().end()};
+  }
+
+  /// Puts the last node that is seen or shines elsewhere: a light in the scenes used here.
+  static void move(scene::Scene& scene, const scene::Pose& pose, int place) {
+    for (size_t n = scene.nodes.size(); n-- > 0;) {
+      scene::Node& node = scene.nodes[n];
+      if (node.light == scene::none && node.mesh == scene::none) continue;
+      node.placed = pose.nodeToWorld[n];
+      (*node.placed)[3].x += 0.1f * static_cast<float>(place);
+      return;
+    }
+  }
+};
+
+TEST_F(CancelTest, leavesNoTrace) {
+  for (const TechniquePlugin* plugin : testedTechniques()) {
+    const std::string name = plugin->info->name;
+    const bool glass =
+        contains(plugin->info->terms, Term::caustic) || contains(plugin->info->terms, Term::media);
+    scene::Scene scene = asset(glass ? "glass_sphere" : "cornell_box");
+    const scene::Pose pose = scene::evaluate(scene, 0);
+    render::Settings settings;
+    settings.size = {40, 30};
+    settings.techniques = {quick(name)};
+    settings.dynamic = false;
+    // Begun where the other begins: hierarchies that follow what moves depend on that.
+    std::vector<std::vector<float>> wanted;
+    render::Renderer undisturbed(device(), scene);
+    undisturbed.configure(settings);
+    undisturbed.setCamera(pose.cameras.at(0));
+    for (int place = 0; place < 2; ++place) {
+      move(scene, pose, place);
+      undisturbed.setTime(0);
+      undisturbed.render();
+      wanted.push_back(rgb(undisturbed));
+    }
+    ASSERT_NE(wanted[0], wanted[1]) << name;
+
+    render::Renderer renderer(device(), scene);
+    renderer.configure(settings);
+    renderer.setCamera(pose.cameras.at(0));
+    bool whole = false;
+    for (int passes = 0; passes < 64 && !whole; ++passes) {
+      move(scene, pose, passes % 2);
+      renderer.setTime(0);
+      int left = passes;
+      whole = renderer.render(frame::Timing::off, [&] { return left-- == 0; });
+      const int place = (passes / 2) % 2;
+      move(scene, pose, place);
+      renderer.setTime(0);
+      ASSERT_TRUE(renderer.render());
+      ASSERT_EQ(rgb(renderer), wanted[static_cast<size_t>(place)])
+          << name << " given up before pass " << passes;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limn

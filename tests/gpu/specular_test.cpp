@@ -1,0 +1,345 @@
+// What the camera sees in specular surfaces: against closed forms and the reference with the same limit, and
+// what is left out where there are none.
+#include <fmt/format.h>
+
+#include "core/bench/stress_scene.h"
+#include "core/scene/camera.h"
+#include "tests/gpu/media_harness.h"
+#include "tests/gpu/test_scenes.h"
+
+namespace limn {
+namespace {
+
+using glm::dvec3;
+using glm::vec3;
+using render::Output;
+
+class SpecularTest : public MediaHarness {
+ protected:
+  static render::TechniqueUse refraction(
+      const std::vector<std::pair<std::string, std::string>>& values = {}) {
+    return technique("image_space_refraction", values);
+  }
+
+  static Image pictureFrom(render::Renderer& renderer, render::Settings s, const scene::CameraPose& camera) {
+    renderer.configure(std::move(s));
+    renderer.setCamera(camera);
+    renderer.render();
+    return renderer.read();
+  }
+
+  static Image truth(render::Renderer& renderer, const scene::Scene& scene, const scene::CameraPose& camera,
+                     int interfaces, int spp, reference::Term term = reference::Term::specular) {
+    reference::Request request{
+        .scene = scene, .pose = renderer.pose(), .camera = camera, .progress = {}, .checkpoint = {}};
+    request.width = width;
+    request.height = height;
+    request.term = term;
+    request.interfaces = interfaces;
+    request.spp = spp;
+    return reference::render(request).image;
+  }
+
+  static double luminance(const Image& image, int x, int y) {
+    return (double(image.at(x, y, 0)) + double(image.at(x, y, 1)) + double(image.at(x, y, 2))) / 3;
+  }
+
+  /// Share of the pixels in which `truth` shows anything that differ from it by more than a tenth of what
+  /// these show on average.
+  static double shareOff(const Image& image, const Image& truth) {
+    double sum = 0;
+    int shown = 0, off = 0;
+    for (int y = 0; y < truth.height(); ++y)
+      for (int x = 0; x < truth.width(); ++x) {
+        sum += luminance(truth, x, y);
+        shown += luminance(truth, x, y) > 0;
+      }
+    for (int y = 0; y < truth.height(); ++y)
+      for (int x = 0; x < truth.width(); ++x)
+        off += luminance(truth, x, y) > 0 &&
+               !(std::abs(luminance(image, x, y) - luminance(truth, x, y)) <= 0.1 * sum / shown);
+    return shown > 0 ? double(off) / shown : 0;
+  }
+
+  static scene::Primitive quad(const vec3& centre, const vec3& u, const vec3& v, int material) {
+    scene::Primitive p;
+    p.positions = {centre - 0.5f * u - 0.5f * v, centre + 0.5f * u - 0.5f * v, centre + 0.5f * u + 0.5f * v,
+                   centre - 0.5f * u + 0.5f * v};
+    p.normals.assign(4, glm::normalize(glm::cross(u, v)));
+    p.indices = {0, 1, 2, 0, 2, 3};
+    p.material = material;
+    return p;
+  }
+  static void show(scene::Scene& scene, scene::Primitive primitive) {
+    scene::Node node;
+    node.mesh = test::addMesh(scene, test::finish(std::move(primitive)));
+    scene.nodes.push_back(node);
+  }
+
+  static int addLambert(scene::Scene& scene) {
+    scene::Material material;
+    material.metallic = 0;
+    material.roughness = 1;
+    material.specularFactor = 0;
+    return test::addMaterial(scene, material);
+  }
+  static int addGlass(scene::Scene& scene, float ior) {
+    scene::Material material;
+    material.metallic = material.roughness = 0;
+    material.transmission = material.thickness = 1;
+    material.ior = ior;
+    return test::addMaterial(scene, material);
+  }
+
+  /// A white wall at z = -3, facing +z, and a lamp before it.
+  static scene::Scene wall() {
+    scene::Scene scene;
+    show(scene, quad({0, 0, -3}, {20, 0, 0}, {0, 20, 0}, addLambert(scene)));
+    scene::LightSource source;
+    source.intensity = 10;
+    scene.lights.push_back(source);
+    scene::Node node;
+    node.light = 0;
+    node.transform.translation = vec3(lamp);
+    scene.nodes.push_back(node);
+    return scene;
+  }
+  static constexpr dvec3 lamp{0.3, 0.2, -1.5};
+  static double wallAt(const dvec3& p) {
+    const dvec3 towards = lamp - p;
+    return 10 / double(glsl::pi) * towards.z / std::pow(glm::length(towards), 3);
+  }
+
+  static dvec3 rayOf(const render::Renderer&, const scene::CameraPose& camera, const scene::Bounds& bounds,
+                     int x, int y) {
+    glsl::FrameBlock frame{};
+    scene::setCamera(frame, camera, bounds, width, height);
+    return glm::normalize(dvec3(vec3(frame.view_ray_origin) +
+                                static_cast<float>(x) * vec3(frame.view_ray_dx) +
+                                static_cast<float>(height - 1 - y) * vec3(frame.view_ray_dy)));
+  }
+};
+
+TEST_F(SpecularTest, ASlabShiftsTheWallByItsClosedForm) {
+  for (const float ior : {1.0001f, 1.5f, 3.f}) {
+    SCOPED_TRACE(ior);
+    scene::Scene scene = wall();
+    const int glass = addGlass(scene, ior);
+    scene::Primitive slab = quad({0, 0, 0.5f}, {3, 0, 0}, {0, 2, 0}, glass);
+    const scene::Primitive back = quad({0, 0, -0.5f}, {3, 0, 0}, {0, -2, 0}, glass);
+    slab.positions.insert(slab.positions.end(), back.positions.begin(), back.positions.end());
+    slab.normals.insert(slab.normals.end(), back.normals.begin(), back.normals.end());
+    for (const uint32_t index : back.indices) slab.indices.push_back(index + 4);
+    show(scene, std::move(slab));
+    render::Renderer renderer(device(), scene);
+    const dvec3 eye(0.2, 0.1, 3);
+    const auto camera = scene::lookAt(vec3(eye), vec3(eye) - vec3(0, 0, 1), 0.8f);
+    const Image image =
+        pictureFrom(renderer, settings(width, height, Output::specular, {refraction()}), camera);
+    int shown = 0, off = 0;
+    double shift = 0;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const dvec3 d = rayOf(renderer, camera, renderer.pose().bounds, x, y);
+        const dvec3 front = eye + (0.5 - eye.z) / d.z * d;
+        const double n = double(ior), sine2 = (d.x * d.x + d.y * d.y) / (n * n);
+        const dvec3 inside(d.x / n, d.y / n, -std::sqrt(1 - sine2)), exit = front - inside / inside.z;
+        const auto within = [](const dvec3& p) { return std::abs(p.x) < 1.45 && std::abs(p.y) < 0.95; };
+        // The slab has no sides: where the camera sees its front alone, it is a sheet.
+        if (!within(front) || !within(exit) || !within(eye + (-0.5 - eye.z) / d.z * d)) continue;
+        const double passes = 1 - double(glsl::fresnel_reflectance(float(-d.z), 1, ior));
+        const dvec3 hit = exit + (-2.5 / d.z) * d, straight = eye + (-3 - eye.z) / d.z * d;
+        const double expected = passes * passes * wallAt(hit);
+        ++shown;
+        off += !(std::abs(double(image.at(x, y, 0)) / expected - 1) < 0.005);
+        shift = std::max(shift, std::abs(wallAt(straight) / wallAt(hit) - 1));
+      }
+    EXPECT_GT(shown, 3000);
+    EXPECT_LT(off, 0.01 * shown);
+    EXPECT_TRUE(shift > 0.05 || ior < 1.1f) << "the shift must show";
+  }
+}
+
+TEST_F(SpecularTest, AMirrorShowsTheMirroredWall) {
+  scene::Scene scene = wall();
+  scene::Material silver;
+  silver.metallic = 1;
+  silver.roughness = 0;
+  // On a floor before the wall: what it mirrors is on the screen, too.
+  show(scene, quad({0, -1.2f, -1}, {2.4f, 0, 0}, {0, 0, -2}, test::addMaterial(scene, silver)));
+  render::Renderer renderer(device(), scene);
+  const dvec3 eye(0.1, 0.4, 3);
+  const auto camera = scene::lookAt(vec3(eye), {0, -0.1f, -3}, 0.9f);
+  const Image image =
+      pictureFrom(renderer, settings(width, height, Output::specular, {refraction()}), camera);
+  int shown = 0, off = 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const dvec3 d = rayOf(renderer, camera, renderer.pose().bounds, x, y);
+      const dvec3 p = eye + (-1.2 - eye.y) / d.y * d;
+      if (!(d.y < 0) || std::abs(p.x) > 1.1 || std::abs(p.z + 1) > 0.9) continue;
+      const dvec3 hit = p + (-3 - p.z) / d.z * dvec3(d.x, -d.y, d.z);
+      ++shown;
+      off += !(std::abs(double(image.at(x, y, 0)) / wallAt(hit) - 1) < 0.005);
+    }
+  EXPECT_GT(shown, 800);
+  EXPECT_LT(off, 0.01 * shown);
+}
+
+TEST_F(SpecularTest, IsTheReferencesWithTheSameLimit) {
+  struct Case {
+    const char* scene;
+    const char* shadows;
+    double share, mean;
+  };
+  for (const Case& c :
+       {Case{"glass_sphere", "hard_shadow_map", 0.25, 0.05}, Case{"ring", "hard_shadow_map", 0.2, 0.05},
+        Case{"gem", "hard_shadow_map", 0.05, 0.05}, Case{"glassware", "sampled_area_light", 0.42, 0.1}}) {
+    SCOPED_TRACE(c.scene);
+    const scene::Scene scene = asset(c.scene);
+    render::Renderer renderer(device(), scene);
+    const Image image =
+        picture(renderer, settings(width, height, Output::specular, {technique(c.shadows), refraction()}));
+    const Image expected = truth(renderer, scene, renderer.pose().cameras.at(0), 2, 16);
+    EXPECT_LT(shareOff(image, expected), c.share);  // edges of textures and shadows, rays off the screen
+    EXPECT_NEAR(mean(image) / mean(expected), 1, c.mean);
+  }
+}
+
+TEST_F(SpecularTest, MoreInterfacesFollowTotalReflection) {
+  const scene::Scene scene = asset("gem");
+  render::Renderer renderer(device(), scene);
+  for (const int interfaces : {2, 4}) {
+    const Image image = picture(
+        renderer,
+        settings(width, height, Output::specular,
+                 {technique("hard_shadow_map"), refraction({{"interfaces", std::to_string(interfaces)}})}));
+    const Image expected = truth(renderer, scene, renderer.pose().cameras.at(0), interfaces, 16);
+    EXPECT_NEAR(mean(image) / mean(expected), 1, 0.15) << interfaces;
+  }
+}
+
+TEST_F(SpecularTest, RaysThatTheScreenDoesNotKnowSeeTheEnvironment) {
+  scene::Scene scene;
+  scene.environment.width = 16;
+  scene.environment.height = 8;
+  for (int i = 0; i < 128; ++i) scene.environment.texels.emplace_back(0.2f + float(i % 5), 0.5f, 1.f);
+  const int glass = addGlass(scene, 1.5f);
+  show(scene, test::spherePrimitive(1, glass));
+  render::Renderer renderer(device(), scene);
+  const auto camera = scene::lookAt({0.5f, 1, 3}, {0, 0, 0}, 0.9f);
+  for (const bool mirror : {false, true}) {
+    scene.materials[0].metallic = mirror ? 1.f : 0.f;
+    scene.materials[0].transmission = mirror ? 0.f : 1.f;
+    render::Renderer other(device(), scene);
+    const Image image = pictureFrom(other, settings(width, height, Output::final, {refraction()}), camera);
+    const Image expected = truth(other, scene, camera, 2, 2, reference::Term::final);
+    EXPECT_LT(shareOff(image, expected), 0.01) << mirror;
+  }
+}
+
+TEST_F(SpecularTest, WithoutSpecularSurfacesThereAreNoPasses) {
+  const scene::Scene scene = asset("balls");
+  render::Renderer renderer(device(), scene);
+  const Image with =
+      picture(renderer, settings(width, height, Output::final, {technique("pcf"), refraction()}));
+  EXPECT_EQ(stateOf(renderer, "image_space_refraction", "specular surfaces"),
+            "the scene has no specular surface");
+  for (const char* pass : {"refraction", "specular front", "specular back"})
+    EXPECT_EQ(stateOf(renderer, "image_space_refraction", pass), "unknown");
+  EXPECT_EQ(stateOf(renderer, "core", "matte gbuffer"), "unknown");
+  EXPECT_TRUE(sameBits(with, picture(renderer, settings(width, height, Output::final, {technique("pcf")}))));
+  expectWithin(picture(renderer, settings(width, height, Output::specular, {refraction()})), 0, 0);
+}
+
+TEST_F(SpecularTest, WhatIsSeenBesideSpecularSurfacesStaysTheSameToTheBit) {
+  const scene::Scene scene = asset("glassware");
+  render::Renderer renderer(device(), scene);
+  // A filter over the screen would average with what lies behind the glass.
+  const std::vector<render::TechniqueUse> lit{technique("pcss"),
+                                              technique("reflective_shadow_map", {{"blur", "false"}})};
+  std::vector<render::TechniqueUse> all = lit;
+  all.push_back(refraction());
+  render::Settings s = settings(width, height, Output::final, all);
+  s.channels = true;
+  const Image with = picture(renderer, s);
+  s.techniques = lit;
+  const Image without = picture(renderer, s);
+  int specular = 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const float id = with.at(x, y, with.channel("id"));
+      ASSERT_EQ(id, without.at(x, y, without.channel("id")));
+      if (id >= 0 &&
+          scene
+              .materials[size_t(
+                  scene.meshes[size_t(renderer.pose().instances[size_t(id)].mesh)].primitives[0].material)]
+              .specularSurface()) {
+        ++specular;
+        continue;
+      }
+      for (int c = 0; c < 3; ++c) ASSERT_EQ(with.at(x, y, c), without.at(x, y, c)) << x << " " << y;
+    }
+  EXPECT_GT(specular, 500);
+}
+
+TEST_F(SpecularTest, TermsSumToTheFinalPicture) {
+  const scene::Scene scene = asset("gem");
+  render::Renderer renderer(device(), scene);
+  const std::vector<render::TechniqueUse> all{technique("hard_shadow_map"), technique("surface_caustics"),
+                                              technique("airlight"), refraction()};
+  const Image whole = picture(renderer, settings(width, height, Output::final, all));
+  double sum = 0;
+  for (const Output part : {Output::direct, Output::caustic, Output::media, Output::specular})
+    sum += mean(picture(renderer, settings(width, height, part, all)));
+  EXPECT_NEAR(sum / mean(whole), 1, 1e-4);
+}
+
+TEST_F(SpecularTest, ExtremesStayFinite) {
+  for (const float ior : {1.f, 1.0001f, 2.42f, 3.f})
+    for (const float radii : {0.f, 0.3f, 1.05f}) {
+      SCOPED_TRACE(fmt::format("index {}, camera at {} radii", ior, radii));
+      scene::Scene scene = asset("gem");
+      for (scene::Material& material : scene.materials) {
+        material.ior = ior;
+        material.doubleSided = true;  // the camera within sees the stone's back
+      }
+      render::Renderer renderer(device(), scene);
+      const auto camera =
+          bench::cameraAtSmallest(scene, renderer.pose(), renderer.pose().cameras.at(0), radii);
+      for (const char* interfaces : {"2", "16"})
+        expectWithin(
+            pictureFrom(renderer,
+                        settings(64, 48, Output::final,
+                                 {technique("hard_shadow_map"), refraction({{"interfaces", interfaces}})}),
+                        camera),
+            0, 1e4f);
+    }
+}
+
+TEST_F(SpecularTest, ScalesOfTheSceneChangeNothing) {
+  const scene::Scene scene = asset("gem");
+  render::Renderer renderer(device(), scene);
+  const Image usual = picture(renderer, settings(width, height, Output::specular, {refraction()}));
+  for (const float factor : {1e-4f, 1e4f}) {
+    const scene::Scene scaled = bench::stressed(scene, StressChange::sceneScale, double(factor));
+    render::Renderer other(device(), scaled);
+    EXPECT_LT(shareOff(picture(other, settings(width, height, Output::specular, {refraction()})), usual),
+              0.02)
+        << factor;
+  }
+}
+
+TEST_F(SpecularTest, TheCameraMovesAndTheBuffersFollow) {
+  const scene::Scene scene = asset("glass_sphere");
+  render::Renderer moved(device(), scene), fresh(device(), scene);
+  render::Settings s = settings(width, height, Output::specular, {refraction()});
+  s.dynamic = false;
+  picture(moved, s);
+  moved.setCamera(moved.pose().cameras.at(1));
+  moved.render();
+  EXPECT_TRUE(sameBits(moved.read(), pictureFrom(fresh, s, fresh.pose().cameras.at(1))));
+}
+
+}  // namespace
+}  // namespace limn
