@@ -4,6 +4,12 @@
 // With t = s0 + h tan(angle) (s0, h: closest approach of ray and source) dt / r^2 = d(angle) / h: what is left to integrate
 // is smooth (Kulla and Fajardo 2012, equiangular sampling; Sun et al. 2005 tabulate the same integral). Callers divide the
 // ray evenly in the angle; each stretch is integrated by the Gauss-Legendre rule with two nodes.
+//
+// Where a point stands for a part of an area light, the inverse square would grow without bound near it. On the axis of a
+// disc of radius R and radiance L the light that passes a place at distance d, whatever its direction, is
+// 2 pi L (1 - d / sqrt(d^2 + R^2)) (solid angle of the disc). pi R^2 L / (d^2 + R^2 / 2) is the same far away and on the
+// disc and at most (1 + sqrt(2)) / 2 = 1.21 times as much between (at 0.46 R), and keeps the integral what it is with
+// h^2 + R^2 / 2 in place of h^2.
 #ifndef LIMN_AIRLIGHT_GLSL
 #define LIMN_AIRLIGHT_GLSL
 #include "glsl/language.glsl"
@@ -23,11 +29,17 @@ struct AirlightRay {
   vec3 direction;  // unit
   vec3 source;     // position; directional lights: unused
   float nearest;   // s0: where the ray passes the source, m
-  float distance;  // h: how far from it, m
+  float distance;  // h: how far from it, m; of parts of area lights sqrt(h^2 + R^2 / 2)
   bool parallel;   // directional light: no inverse square
 };
 
-LIMN_FN AirlightRay airlight_ray(Medium m, Light light, vec3 source, vec3 eye, vec3 direction) {
+// Of a light, what one of `samples` points on it stands for, m^2; 0: a point.
+LIMN_FN float airlight_part(Light light, int samples) {
+  return light.info.x == light_rectangle ? light.axis_u.w * light.axis_v.w / float(samples) : 0.0f;
+}
+
+// part: airlight_part; 0 where points are chosen at random and averaged.
+LIMN_FN AirlightRay airlight_ray(Medium m, Light light, vec3 source, float part, vec3 eye, vec3 direction) {
   AirlightRay r;
   r.eye = eye;
   r.direction = direction;
@@ -35,7 +47,7 @@ LIMN_FN AirlightRay airlight_ray(Medium m, Light light, vec3 source, vec3 eye, v
   r.parallel = light.info.x == light_directional;
   r.nearest = dot(source - eye, direction);
   vec3 across = source - eye - r.nearest * direction;
-  r.distance = max(sqrt(dot(across, across)), airlight_least_distance * m.ball.w);
+  r.distance = max(sqrt(dot(across, across) + part / (2.0f * pi)), airlight_least_distance * m.ball.w);
   return r;
 }
 

@@ -76,7 +76,8 @@ vec3 airlight_lit(Medium medium, Light light, AirlightRay ray, float a, float b,
 // From one light or a point on it, between a and b metres along the ray.
 vec3 airlight(Medium medium, Light light, ShadowLight maps, vec3 direction, float a, float b) {
   ShadowView first = shadow_views[maps.info.x];
-  AirlightRay ray = airlight_ray(medium, light, maps.origin.xyz, frame.camera_position.xyz, direction);
+  AirlightRay ray = airlight_ray(medium, light, maps.origin.xyz, airlight_part(light, light_samples),
+                                 frame.camera_position.xyz, direction);
   float from = airlight_variable(ray, a);
   float to = airlight_variable(ray, b);
   vec3 sum = vec3(0.0);

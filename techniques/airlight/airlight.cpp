@@ -39,6 +39,8 @@ class Airlight : public Technique {
     });
     const char* dark = nullptr;
     if (inputs.scene.medium.sigmaS == glm::vec3(0)) dark = "no medium scatters light";
+    if (inputs.scene.environment && !dark)
+      graph.leaveOut("airlight of the environment", info.name, "only lamps light the medium");
     if (lights.empty()) dark = "the scene has no light";
     if (dark) {
       graph.leaveOut("airlight", info.name, dark);

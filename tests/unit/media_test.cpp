@@ -142,7 +142,7 @@ TEST(Airlight, MeetsNumericQuadrature) {
       light.position.y = away;
       const Medium m{vec3(0.3f), vec3(0.2f), g, vec4(0, 0, 0, 20)};
       const vec3 eye(0), direction = normalize(vec3(0.02f, 0, -1));
-      const AirlightRay ray = airlight_ray(m, light, vec3(light.position), eye, direction);
+      const AirlightRay ray = airlight_ray(m, light, vec3(light.position), 0, eye, direction);
       vec3 sum(0);
       const float from = airlight_variable(ray, 0), to = airlight_variable(ray, 9);
       constexpr int steps = 32;
@@ -161,8 +161,37 @@ TEST(Airlight, ParallelLightThroughASlab) {
   light.info = uvec4(light_directional, 0, no_instance, 0);
   const Medium m{vec3(0), vec3(0.2f), 0, vec4(0, 0, 0, 1)};  // extinction 0: nothing is lost
   const vec3 eye(0, 0, 3), direction(0, 0, -1);
-  const AirlightRay ray = airlight_ray(m, light, vec3(0), eye, direction);
+  const AirlightRay ray = airlight_ray(m, light, vec3(0), 0, eye, direction);
   EXPECT_NEAR(airlight_stretch(m, light, ray, 2, 4, 1).x, 2 * 0.2 * 0.25 / M_PI * 2, 1e-6);
+}
+
+/// Of an area light whose centre stands for all of it: on the axis of a disc of the same area, which has a
+/// closed form, the light is right far away and on the disc, and never more than (1 + sqrt(2)) / 2 times as
+/// much.
+TEST(Airlight, DiscsSendNoMoreThanTheirSolidAngle) {
+  constexpr float side = 2;
+  Light light{};
+  light.direction = vec4(0, 0, 1, 0);
+  light.axis_u = vec4(1, 0, 0, side);
+  light.axis_v = vec4(0, -1, 0, side);
+  light.emission = vec4(3);
+  light.info = uvec4(light_rectangle, 0, no_instance, 0);
+  const Medium m{vec3(0), vec3(0.2f), 0, vec4(0, 0, 0, 1000)};  // extinction 0: nothing is lost
+  const double radius2 = side * side / M_PI;
+  for (const float away : {1e-3f, 0.01f, 0.1f, 0.5f, 1.f, 2.f, 10.f, 100.f}) {
+    const vec3 eye(0, 0, 1.001f * away), direction(0, 0, -1);
+    const AirlightRay ray = airlight_ray(m, light, vec3(0), airlight_part(light, 1), eye, direction);
+    const float step = 0.002f * away;
+    const double scattered =
+        airlight_stretch(m, light, ray, airlight_variable(ray, 0), airlight_variable(ray, step), 1).x / step;
+    const double solidAngle = 2 * M_PI * (1 - away / std::sqrt(away * away + radius2));
+    const double exact = 0.2 * 3 * solidAngle / (4 * M_PI);
+    EXPECT_GT(scattered / exact, 0.999) << away;
+    EXPECT_LT(scattered / exact, 0.5 * (1 + std::sqrt(2.0)) + 1e-3) << away;
+    if (away < 0.02f || away > 5) {
+      EXPECT_NEAR(scattered / exact, 1, 0.02) << away;
+    }
+  }
 }
 
 /// The fragments of a line between two points of the picture, one per column or row; and their sum with the
