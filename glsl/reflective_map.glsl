@@ -20,8 +20,8 @@ LIMN_FN float reflective_map_measure(ShadowView view, vec2 uv) {
   float s = view.axis_x.w;
   float area = 1.0f / (s * s);
   if (view.info.x == shadow_orthographic) return area;
-  float x = (uv.x - 0.5f) / s;
-  float y = (uv.y - 0.5f) / s;
+  float x = (uv.x - view.middle.x) / s;
+  float y = (uv.y - view.middle.y) / s;
   float cosine2 = 1.0f / (1.0f + x * x + y * y);
   return area * cosine2 * sqrt(cosine2);
 }

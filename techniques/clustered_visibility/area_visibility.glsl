@@ -3,7 +3,7 @@
 //
 // KERNEL_THESIS 1: widths as published. SEARCH_NEAREST 1: the first kernel starts from the nearest depth there is; 0: it is
 // the light's own solid angle, as published. AREA_DIP: least s of what is lit. SPLITS: parts of a kernel per axis, each with
-// a threshold of its own.
+// a threshold of its own. CONTACT 1: blockers whose penumbrae are narrow are found in the map itself.
 #ifndef LIMN_AREA_VISIBILITY_GLSL
 #define LIMN_AREA_VISIBILITY_GLSL
 #include "glsl/fourier_lookup.glsl"
@@ -12,6 +12,10 @@
 #include "glsl/virtual_area_light.glsl"
 
 layout(binding = 9) uniform sampler2DArray area_depth_bounds;  // MinMaxPyramid
+#if CONTACT
+layout(binding = 13) uniform sampler2DArray area_depths;
+uniform float contact_texels;
+#endif
 layout(std430, binding = 1) readonly buffer AreaViews { ShadowView area_views[]; };
 layout(std430, binding = 2) readonly buffer AreaLights { VirtualAreaLight area_lights[]; };
 uniform float bias;    // texel footprints
@@ -32,14 +36,18 @@ struct AreaReceiver {
   vec2 sides;      // of the light
 };
 
-// Series depth below which what lies at a texel blocks: what is nearer to the light than the receiver, and above its
+// Radial distance, m, below which what lies at uv blocks: what is nearer to the light than the receiver, and above its
 // tangent plane.
-float series_threshold(AreaReceiver r, vec2 texel) {
-  vec2 uv = texel / float(r.view.info.z);
+float blocking_limit(AreaReceiver r, vec2 uv) {
   float facing = dot(r.normal, paraboloid_direction(2.0 * uv - 1.0));
   bool bounded = r.height < 0.0 && facing < 0.0;
-  float depth = bounded ? min(r.height / facing, r.limit) : r.limit;
-  return fourier_depth(r.range, uv, shadow_normalise(r.view, depth));
+  return bounded ? min(r.height / facing, r.limit) : r.limit;
+}
+
+// The same as a depth of the series, at a place in texels.
+float series_threshold(AreaReceiver r, vec2 texel) {
+  vec2 uv = texel / float(r.view.info.z);
+  return fourier_depth(r.range, uv, shadow_normalise(r.view, blocking_limit(r, uv)));
 }
 
 struct SeriesPart {
@@ -131,6 +139,28 @@ float penumbra_visibility(AreaReceiver r, vec4 kernel, float z) {
   return sum / float(SPLITS * SPLITS);
 }
 
+#if CONTACT
+// Share of the light that blockers just before the receiver leave, of which the series knows nothing: their penumbrae are
+// narrower than `contact_texels`, so that a bilinear shadow test is as good as a kernel.
+float contact_visibility(AreaReceiver r) {
+  float size = float(r.view.info.z);
+  vec2 at = (0.5 * paraboloid_map(r.direction) + 0.5) * size - 0.5;
+  vec2 corner = floor(at);
+  vec2 share = at - corner;
+  vec4 stored = textureGather(area_depths, vec3((corner + 1.0) / size, r.view.info.y));  // (0,1), (1,1), (1,0), (0,0)
+  // Penumbrae of `sides` s are s (d - z) / (d z) radians wide.
+  float angle = contact_texels * r.view.axis_y.w;
+  float nearest = r.d / (1.0 + angle * r.d / max(max(r.sides.x, r.sides.y), 1e-30));
+  vec4 limit = vec4(blocking_limit(r, (corner + vec2(0.5, 1.5)) / size), blocking_limit(r, (corner + vec2(1.5, 1.5)) / size),
+                    blocking_limit(r, (corner + vec2(1.5, 0.5)) / size), blocking_limit(r, (corner + vec2(0.5, 0.5)) / size));
+  vec4 depth = vec4(shadow_metres(r.view, stored.x), shadow_metres(r.view, stored.y), shadow_metres(r.view, stored.z),
+                    shadow_metres(r.view, stored.w));
+  vec4 lit = 1.0 - vec4(lessThan(depth, limit)) * vec4(greaterThan(depth, vec4(nearest)));
+  vec2 rows = mix(lit.wx, lit.zy, share.x);
+  return mix(rows.x, rows.y, share.y);
+}
+#endif
+
 AreaReceiver area_receiver(uint area, vec3 p, vec3 normal) {
   AreaReceiver r;
   r.view = area_views[area];
@@ -153,6 +183,9 @@ float area_visibility(uint area, vec3 p, vec3 normal) {
   float above = dot(r.view.axis_z.xyz, p - r.view.origin.xyz);
   float z = mean_blocker(r, search_kernel(r));
   float v = z < r.d ? penumbra_visibility(r, kernel_texels(r, z), z) : 1.0;
+#if CONTACT
+  v = min(v, contact_visibility(r));
+#endif
   if (r.d <= r.view.origin.w) v = 1.0;
   return above > 0.0 ? v : behind;
 }

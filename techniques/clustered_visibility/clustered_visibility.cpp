@@ -40,8 +40,10 @@ constexpr auto parameters = indirect::gatherParameters(std::to_array<Parameter>(
         "Where blockers are sought: in the light's solid angle, as published, or from the nearest depth on"),
     integer("splits", 1, {1, 4}, "parts", "Parts of a kernel per axis, each with its own depth threshold")
         .quality(),
-    real("bias", 1, {0, 64}, "texel footprints",
+    real("bias", 0.25, {0, 64}, "texel footprints",
          "How far a blocker must lie above the receiver's tangent plane to count"),
+    real("contact_texels", 2, {0, 16}, "texels",
+         "Blockers whose penumbrae are narrower than this are found in the map itself; 0: as published"),
     real("near", 0.02, {0, 0.5}, "scene extents",
          "Geometry nearer to the centre of an area light than this is ignored"),
     real("behind", 1, {0, 1}, "",
@@ -128,19 +130,23 @@ class ClusteredVisibility : public Technique {
     pass.program.defines["SEARCH_NEAREST"] = std::to_string(p.choice("search"));
     pass.program.defines["SPLITS"] = std::to_string(p.integer("splits"));
     pass.program.defines["AREA_DIP"] = fmt::format("{:.9e}", fourier.constants.dip);
-    if (p.choice("search") == 1) pass.sampled = {{9, pyramid.texture, "nearest depths"}};
+    const float contact = p.real("contact_texels");
+    pass.program.defines["CONTACT"] = contact > 0 ? "1" : "0";
+    if (contact > 0) pass.sampled.push_back({13, maps.depth, "blockers just before the receiver"});
+    if (p.choice("search") == 1) pass.sampled.push_back({9, pyramid.texture, "nearest depths"});
     pass.declare = [fourier, areas](frame::PassBuilder& builder) {
       fourier.declare(builder);
       builder.read(areas.views, Access::storageLoad, "hemispheres of the maps")
           .read(areas.areas, Access::storageLoad, "sizes of the area lights");
     };
-    pass.bind = [fourier, areas, bias = p.real("bias"), behind = p.real("behind")](
+    pass.bind = [fourier, areas, bias = p.real("bias"), behind = p.real("behind"), contact](
                     frame::PassContext& context, gpu::Program& program) {
       fourier.bind(context);
       context.bindStorage(1, areas.views);
       context.bindStorage(2, areas.areas);
       program.set("bias", bias);
       program.set("behind", behind);
+      if (contact > 0) program.set("contact_texels", contact);
     };
     return pass;
   }

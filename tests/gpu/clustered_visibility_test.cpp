@@ -43,6 +43,28 @@ TEST_F(ClusteredVisibilityTest, APlateHidesASpeckFromTheWall) {
                      {0.06f, 0.02f, 0.07f, 300});
 }
 
+/// 2 cm before the wall, where a series of four terms cannot tell the plate from it.
+TEST_F(ClusteredVisibilityTest, APlateJustBeforeTheWallHidesIt) {
+  Corner s;
+  s.addPlate(0.98f);
+  s.camera = scene::lookAt({0.9f, 0.05f, 0}, {1, 0.26f, 0}, 0.7f);  // up into the gap
+  const Answer all = answer("reflective_shadow_map", s, {{"vpls", "64"}});
+  for (const char* vals : {"1", "4"}) {
+    const Answer seen = answer("clustered_visibility", s, {{"vpls", "64"}, {"vals", vals}});
+    int hidden = 0;
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) {
+        if (all.instance[static_cast<size_t>(y * side + x)] != 1) continue;
+        const glm::vec3 p = s.position(all, x, y);
+        if (p.y < 0.28f || p.y > 0.5f || std::abs(p.z) > 0.12f) continue;
+        EXPECT_NEAR(seen.at(0, x, y), 0, 0.05f * all.at(0, x, y)) << x << "," << y;
+        ++hidden;
+      }
+    }
+    EXPECT_GT(hidden, 50) << vals;
+  }
+}
+
 /// One area light for a wide pool of light has a penumbra about as wide as many have: on the line across the
 /// shadow's edge the light rises steadily.
 TEST_F(ClusteredVisibilityTest, AreaLightsCastSoftShadows) {

@@ -113,7 +113,7 @@ TEST(DistantRectangle, KernelsHaveTheMomentsOfTheLight) {
     const shadow::ShadowMapDesc desc{.size = 512};
     const shadow::LightLayout layout = shadow::fitLayout(light, boxes, desc);
     ASSERT_EQ(layout.projection, glsl::shadow_orthographic);
-    shadow::appendViews(light, 0, layout, boxes, desc, views, lights);
+    shadow::appendViews(light, 0, layout, boxes, desc, nullptr, views, lights);
     ASSERT_EQ(views.size(), 1u);
     const glsl::ShadowView& map = views[0];
     EXPECT_NEAR(glm::dot(vec3(map.axis_x), vec3(map.axis_y)), 0, 1e-6);

@@ -40,6 +40,7 @@ ShadowView view(uint32_t kind, float scale) {
   v.axis_x = vec4(1, 0, 0, scale);
   v.axis_y = vec4(0, 1, 0, 0);
   v.axis_z = vec4(0, 0, -1, 10);
+  v.middle = vec4(0.5f, 0.5f, 0, 0);
   v.info = uvec4(kind, 0, 64, 0);
   return v;
 }
