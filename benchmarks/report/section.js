@@ -10,9 +10,10 @@ import {drawPlot} from "./plot.js";
 import {drawSpectrum} from "./spectrum.js";
 import {swatch} from "./marks.js";
 
-export function subjectName({scene, camera, light, light_size: size, environment, time, fps}) {
+export function subjectName({scene, camera, light, light_size: size, environment, time, fps,
+  changes}) {
   return [scene, camera && `camera ${camera}`, light && `light ${light}`, size && `light size ${size}`,
-    environment && `environment ${environment}`, time && `${time} s`, fps && `played at ${fps} fps`]
+    environment && `environment ${environment}`, time && `${time} s`, fps && `played at ${fps} fps`, changes]
     .filter(Boolean).join(", ");
 }
 

@@ -109,6 +109,59 @@ Cost costFromJson(const Json& json) {
   return cost;
 }
 
+/// What is changed; the rest is left out.
+Json changesToJson(const SceneChanges& c) {
+  const SceneChanges none;
+  Json json = Json::object();
+  const auto add = [&json](const char* key, const auto& value, const auto& otherwise) {
+    if (value != otherwise) json[key] = value;
+  };
+  add("eye", c.eye, none.eye);
+  add("target", c.target, none.target);
+  add("fov", c.fov, none.fov);
+  add("animation", c.animation, none.animation);
+  add("set_light", c.setLight, none.setLight);
+  add("default_lights", c.defaultLights, none.defaultLights);
+  add("environment_rotation", c.environmentRotation, none.environmentRotation);
+  add("environment_scale", c.environmentScale, none.environmentScale);
+  add("grid", c.grid, none.grid);
+  return json;
+}
+
+SceneChanges changesFromJson(const Json& json) {
+  SceneChanges c;
+  c.eye = json.value("eye", c.eye);
+  c.target = json.value("target", c.target);
+  c.fov = json.value("fov", c.fov);
+  c.animation = json.value("animation", c.animation);
+  c.setLight = json.value("set_light", c.setLight);
+  c.defaultLights = json.value("default_lights", c.defaultLights);
+  c.environmentRotation = json.value("environment_rotation", c.environmentRotation);
+  c.environmentScale = json.value("environment_scale", c.environmentScale);
+  c.grid = json.value("grid", c.grid);
+  return c;
+}
+
+Json mediumToJson(const MediumSettings& m) {
+  Json json = Json::object();
+  if (!m.sigmaA.empty()) json["sigma_a"] = m.sigmaA;
+  if (!m.sigmaS.empty()) json["sigma_s"] = m.sigmaS;
+  if (m.g) json["g"] = *m.g;
+  return json;
+}
+
+MediumSettings mediumFromJson(const Json& json) {
+  const auto coefficient = [&json](const char* key) {
+    const auto found = json.find(key);
+    if (found == json.end()) return std::string();
+    // rows of earlier versions have a number
+    return found->is_number() ? fmt::format("{}", found->get<double>()) : found->get<std::string>();
+  };
+  MediumSettings m{coefficient("sigma_a"), coefficient("sigma_s"), {}};
+  if (json.contains("g")) m.g = json["g"].get<double>();
+  return m;
+}
+
 Json caseToJson(const Case& c) {
   Json parameters = Json::object();
   for (const auto& [name, value] : c.parameters) parameters[name] = value;
@@ -118,15 +171,12 @@ Json caseToJson(const Case& c) {
                       {"resolution", e.resolution},
                       {"shape", e.shape},
                       {"reflection", e.reflection}};
-  Json medium = Json::object();
-  for (const auto& [name, value] :
-       {std::pair("sigma_a", c.medium.sigmaA), {"sigma_s", c.medium.sigmaS}, {"g", c.medium.g}})
-    if (value) medium[name] = *value;
   return {{"scene", c.scene},
           {"camera", c.camera},
           {"light", c.light},
           {"environment", environment},
-          {"medium", medium},
+          {"medium", mediumToJson(c.medium)},
+          {"changes", changesToJson(c.changes)},
           {"time", c.time},
           {"fps", c.fps},
           {"light_size", c.lightSize},
@@ -143,7 +193,10 @@ Json caseToJson(const Case& c) {
           {"baseline", c.baseline},
           {"max_masked_share", c.maxMaskedShare},
           {"quality",
-           {{"spp", c.reference.spp}, {"noise", c.reference.noise}, {"bounces", c.reference.bounces}}}};
+           {{"spp", c.reference.spp},
+            {"noise", c.reference.noise},
+            {"bounces", c.reference.bounces},
+            {"interfaces", c.reference.interfaces}}}};
 }
 
 Case caseFromJson(const Json& json) {
@@ -157,11 +210,8 @@ Case caseFromJson(const Json& json) {
                      e.at("resolution").get<int>(), e.at("shape").get<std::string>(),
                      e.at("reflection").get<std::string>()};
   }
-  if (const auto medium = json.find("medium"); medium != json.end()) {
-    for (const auto& [name, value] :
-         {std::pair("sigma_a", &c.medium.sigmaA), {"sigma_s", &c.medium.sigmaS}, {"g", &c.medium.g}})
-      if (medium->contains(name)) *value = medium->at(name).get<double>();
-  }
+  if (json.contains("medium")) c.medium = mediumFromJson(json["medium"]);
+  if (json.contains("changes")) c.changes = changesFromJson(json["changes"]);
   c.time = json.at("time").get<double>();
   c.fps = json.value("fps", 0.0);
   c.lightSize = json.value("light_size", 0.0);
@@ -183,7 +233,7 @@ Case caseFromJson(const Json& json) {
   c.maxMaskedShare = json.at("max_masked_share").get<double>();
   const Json& quality = json.at("quality");
   c.reference = {quality.at("spp").get<int>(), quality.at("noise").get<double>(),
-                 quality.at("bounces").get<int>()};
+                 quality.at("bounces").get<int>(), quality.value("interfaces", 0)};
   return c;
 }
 

@@ -49,6 +49,7 @@ render::Output outputOf(const TechniquePlugin& technique, StressChange change) {
   const TermSet terms = technique.info->terms;
   if (terms == termSet(Term::media)) return render::Output::media;
   if (terms == termSet(Term::caustic)) return render::Output::caustic;
+  if (terms == termSet(Term::specular)) return render::Output::specular;
   const bool indirect = terms == termSet(Term::indirect);
   switch (change) {
     case StressChange::radiance:
@@ -162,20 +163,24 @@ StressRun::Question& StressRun::question(const TechniquePlugin& technique, const
   const bool sky = contains(technique.info->terms, Term::environment);
   const bool fog =
       contains(technique.info->terms, Term::media) || contains(technique.info->terms, Term::caustic);
-  const std::string key = fmt::format("{} {} {} {}{}{}", c.scene, static_cast<int>(c.change), c.amount,
-                                      render::name(output), sky ? " sky" : "", fog ? " fog" : "");
+  const bool glass = contains(technique.info->terms, Term::specular);
+  const std::string key =
+      fmt::format("{} {} {} {}{}{}{}", c.scene, static_cast<int>(c.change), c.amount, render::name(output),
+                  sky ? " sky" : "", fog ? " fog" : "", glass ? " glass" : "");
   if (question_ && question_->key == key) return *question_;
   question_.reset();
   scene::Scene scene = scene_(c.scene);
   if (sky) scene = litBySkyAlone(std::move(scene));
   if (fog) scene = inFog(std::move(scene));
+  if (glass) scene = withGlass(std::move(scene));
   auto question =
       std::make_unique<Question>(device_, key, stressed(std::move(scene), c.change, c.amount), output);
   const scene::Pose& pose = question->renderer.pose();
   if (output == render::Output::visibility && !pose.lights.empty()) question->light = 0;
   question->camera = pose.cameras.at(0);
-  if (c.change == StressChange::cameraInside)
-    question->camera = cameraInside(question->scene, pose, question->camera);
+  if (c.change == StressChange::cameraInside || c.change == StressChange::cameraNear)
+    question->camera =
+        cameraAtSmallest(question->scene, pose, question->camera, static_cast<float>(c.amount));
   question->size = {options_.width, options_.height};
   if (c.change == StressChange::imageWidth) question->size = {static_cast<int>(c.amount), 1};
   question_ = std::move(question);
@@ -192,13 +197,14 @@ double StressRun::error(const TechniquePlugin& technique, const StressCase& c, r
   settings.light = q.light;
   settings.channels = true;
   settings.techniques = {{&technique, parametersOf(technique, c.settings)}};
+  const int interfaces = render::interfacesOf(q.output, settings.techniques);
   q.renderer.configure(std::move(settings));
   q.renderer.setCamera(q.camera);
   q.renderer.render();
   const Image image = q.renderer.read();
   checkValues(image, q.output);
 
-  const auto [known, isNew] = references_.try_emplace(q.key);
+  const auto [known, isNew] = references_.try_emplace(fmt::format("{} {}", q.key, interfaces));
   if (isNew) {
     reference::Request request{
         .scene = q.scene, .pose = q.renderer.pose(), .camera = q.camera, .progress = {}, .checkpoint = {}};
@@ -208,6 +214,7 @@ double StressRun::error(const TechniquePlugin& technique, const StressCase& c, r
     request.light = q.light == scene::none ? reference::allLights : q.light;
     request.spp = options_.spp;
     request.bounces = q.output == render::Output::indirect ? 1 : 0;
+    request.interfaces = interfaces;
     try {
       known->second = reference::render(request).image;
     } catch (...) {

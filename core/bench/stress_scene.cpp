@@ -124,6 +124,10 @@ scene::Scene stressed(scene::Scene scene, StressChange change, double amount) {
     case StressChange::none:
     case StressChange::imageWidth:
     case StressChange::cameraInside:
+    case StressChange::cameraNear:
+      break;
+    case StressChange::refraction:
+      for (scene::Material& material : scene.materials) material.ior = value;
       break;
     case StressChange::sceneScale:
       scale(scene, value);
@@ -197,11 +201,16 @@ scene::Scene litBySkyAlone(scene::Scene scene) {
 }
 
 scene::Scene inFog(scene::Scene scene) {
-  const scene::Pose pose = scene::evaluate(scene, 0);
-  if (!scene.medium.present() && pose.bounds.radius() > 0) {
-    scene.medium.sigmaA = glm::vec3(0.05f / pose.bounds.radius());
-    scene.medium.sigmaS = glm::vec3(0.3f / pose.bounds.radius());
+  const float radius = scene::evaluate(scene, 0).bounds.radius();
+  if (!scene.medium.present() && radius > 0) {
+    scene.medium.sigmaA = glm::vec3(0.05f / radius);
+    scene.medium.sigmaS = glm::vec3(0.3f / radius);
   }
+  return withGlass(std::move(scene));
+}
+
+scene::Scene withGlass(scene::Scene scene) {
+  const scene::Pose pose = scene::evaluate(scene, 0);
   if (std::ranges::any_of(scene.materials, &scene::Material::specularSurface)) return scene;
   const scene::DrawInstance* smallest = nullptr;
   float radius = std::numeric_limits<float>::max();
@@ -222,7 +231,8 @@ scene::Scene inFog(scene::Scene scene) {
   return scene;
 }
 
-scene::CameraPose cameraInside(const scene::Scene& scene, const scene::Pose& pose, scene::CameraPose camera) {
+scene::CameraPose cameraAtSmallest(const scene::Scene& scene, const scene::Pose& pose,
+                                   scene::CameraPose camera, float radii) {
   scene::Bounds smallest = pose.bounds;
   for (const scene::DrawInstance& instance : pose.instances) {
     const scene::Bounds bounds = scene::instanceBounds(scene, pose, instance);
@@ -232,6 +242,7 @@ scene::CameraPose cameraInside(const scene::Scene& scene, const scene::Pose& pos
   }
   camera.worldToView[3] = glm::vec4(0, 0, 0, 1);
   camera.worldToView[3] = camera.worldToView * glm::vec4(-smallest.centre(), 1);
+  camera.worldToView[3].z -= radii * smallest.radius();
   return camera;
 }
 

@@ -23,20 +23,46 @@ std::string environmentLights(const EnvironmentSettings& e) {
 /// What differs from the scene's medium; empty: nothing.
 std::string mediumText(const MediumSettings& m) {
   std::string text;
-  for (const auto& [name, value] : {std::pair("sigma_a", m.sigmaA), {"sigma_s", m.sigmaS}, {"g", m.g}})
-    if (value) text += fmt::format("{}{} {}", text.empty() ? "" : " ", name, *value);
+  const auto add = [&text](const char* name, const std::string& value) {
+    if (!value.empty()) text += fmt::format("{}{} {}", text.empty() ? "" : " ", name, value);
+  };
+  add("sigma_a", m.sigmaA);
+  add("sigma_s", m.sigmaS);
+  if (m.g) add("g", fmt::format("{}", *m.g));
   return text;
 }
 
 }  // namespace
 
+std::string describe(const SceneChanges& changes) {
+  const SceneChanges none;
+  std::string text;
+  const auto add = [&text](bool changed, const std::string& what) {
+    if (changed) text += (text.empty() ? "" : " ") + what;
+  };
+  add(!changes.eye.empty(), "eye " + changes.eye);
+  add(!changes.target.empty(), "target " + changes.target);
+  add(changes.fov != none.fov, fmt::format("fov {}", changes.fov));
+  add(!changes.animation.empty(), "animation " + changes.animation);
+  for (const std::string& setting : changes.setLight) add(true, setting);
+  add(changes.defaultLights != none.defaultLights, "default lights " + changes.defaultLights);
+  add(changes.environmentRotation != none.environmentRotation,
+      fmt::format("environment rotation {}", changes.environmentRotation));
+  add(changes.environmentScale != none.environmentScale,
+      fmt::format("environment scale {}", changes.environmentScale));
+  add(!changes.grid.empty(), "grid " + changes.grid);
+  return text;
+}
+
 std::string question(const Case& c) {
   std::string text =
       fmt::format("{}/{}/{}/t{}/{}/{}x{}/spp{}/noise{}/bounces{}", c.scene, c.camera, c.light, c.time, c.term,
                   c.width, c.height, c.reference.spp, c.reference.noise, c.reference.bounces);
+  if (c.reference.interfaces != 0) text += fmt::format("/interfaces{}", c.reference.interfaces);
   if (!c.environment.map.empty()) text += "/" + c.environment.map;
   if (c.lightSize > 0) text += fmt::format("/light size {}", c.lightSize);
   if (const std::string medium = mediumText(c.medium); !medium.empty()) text += "/" + medium;
+  if (const std::string changes = describe(c.changes); !changes.empty()) text += "/" + changes;
   // All light together is asked of the map itself.
   if (!c.light.empty()) text += environmentLights(c.environment);
   return text;
@@ -54,6 +80,7 @@ std::string label(const Case& c) {
   if (c.environment.lights > 0)
     text = fmt::format("environment lights {}/{}", environmentLights(c.environment), text);
   if (const std::string medium = mediumText(c.medium); !medium.empty()) text = medium + "/" + text;
+  if (const std::string changes = describe(c.changes); !changes.empty()) text = changes + "/" + text;
   char separator = '?';
   for (const auto& [name, value] : c.parameters) {
     text += fmt::format("{}{}={}", separator, name, value);

@@ -3,8 +3,7 @@
 //     name = "quick"
 //     minutes = 2                 # what the whole suite takes on 2 cores without a GPU; said before it
 //     starts include = ["ch5.toml"]      # the cases of other suites, files beside this one; then scenes and
-//     techniques may be
-//                                 # missing
+//                                 # techniques may be missing
 //     sizes = ["256x256"]         # of the pictures whose error is measured
 //     time_size = "1024x768"      # of the timed frames; default: as the pictures
 //     frames = 20                 # timed frames of a turn
@@ -14,7 +13,8 @@
 //     modes = ["dynamic"]         # and/or "static"
 //     term = "visibility"
 //     reference = {spp = 256}     # or {noise = 0.005}: RMS relative to the mean; also bounces, for
-//                                 # the terms indirect and final
+//                                 # the terms indirect, specular and final, and interfaces (a number
+//                                 # or "all"), for the latter two
 //
 //     pictures = true             # keep every picture as PNG, and the reference's
 //
@@ -31,8 +31,13 @@
 //     environment_shape = "squares"
 //     environment_reflection = "area"
 //     sigma_a = 0.02              # of the medium, per metre, as --sigma-a; default: the scene's
-//     sigma_s = 0.1               # likewise
+//     sigma_s = "0.1,0.1,0.2"     # likewise; one number or a text of three
 //     g = [-0.7, 0, 0.7]          # as --g
+//     set_light = ["key.size=0.5"]      # as --set-light, for all cases of the scene
+//     eye = "0,1,3"               # as the options --eye, --target, --fov, --animation, --default-lights,
+//     target = "0,0.5,0"          # --environment-rotation, --environment-scale and --grid; so are
+//     fov = 40                    # animation, default_lights, environment_rotation, environment_scale and
+//                                 # grid
 //
 //     [[techniques]]
 //     technique = "pcss"          # or a combination, "vssm,airlight"
@@ -58,7 +63,8 @@ namespace limn::bench {
 struct ReferenceSettings {
   int spp = 256;       ///< samples per pixel; the maximum if noise is given
   double noise = 0.0;  ///< RMS relative to the mean; 0: take spp samples
-  int bounces = 1;     ///< of indirect light, 1 unless given, and of final pictures, 0 unless given
+  int bounces = 1;     ///< of indirect light, 1 unless given, of specular and final pictures 0 unless given
+  int interfaces = 0;  ///< as Request::interfaces; of specular pictures 2 unless given
   bool operator==(const ReferenceSettings&) const = default;
 };
 
@@ -73,9 +79,24 @@ struct EnvironmentSettings {
 
 /// As the options --sigma-a, --sigma-s and --g; nothing: as the scene has them.
 struct MediumSettings {
-  std::optional<double> sigmaA, sigmaS, g;
+  std::string sigmaA, sigmaS;  ///< one number, or three with commas
+  std::optional<double> g;
   bool operator==(const MediumSettings&) const = default;
 };
+
+/// As the options of these names; as they are: nothing is changed.
+struct SceneChanges {
+  std::string eye, target;
+  double fov = 0;  ///< degrees
+  std::string animation;
+  std::vector<std::string> setLight;
+  std::string defaultLights = "auto";
+  double environmentRotation = 0, environmentScale = 1;  ///< degrees; factor
+  std::string grid;
+  bool operator==(const SceneChanges&) const = default;
+};
+/// For people, in one line; empty where nothing is changed.
+LIMN_API std::string describe(const SceneChanges& changes);
 
 /// One picture of one technique: a row of the results.
 struct Case {
@@ -84,6 +105,7 @@ struct Case {
   std::string light;   ///< "": all
   EnvironmentSettings environment;
   MediumSettings medium;
+  SceneChanges changes;
   double lightSize = 0;  ///< as --light-size; 0: as the scene has them
   double time = 0;       ///< seconds of the scene's animation
   double fps = 0;        ///< of that time in timed frames; 0: it stands still

@@ -18,7 +18,8 @@ namespace limn::bench {
 namespace {
 
 constexpr std::size_t kMaxCases = 100000;
-constexpr const char* kTerms[] = {"final", "visibility", "direct", "indirect", "caustic", "media"};
+constexpr const char* kTerms[] = {"final",   "visibility", "direct",  "indirect",
+                                  "caustic", "media",      "specular"};
 
 std::string parseTerm(const TomlSection& section, const std::string& otherwise) {
   const std::string value = section.text("term", otherwise);
@@ -48,30 +49,60 @@ std::vector<std::pair<int, int>> parseSizes(const TomlSection& section) {
   return sizes;
 }
 
-/// Bounces: 0 where nothing is said of them.
+/// A number or "all"; 0 where nothing is said of them.
+int parseInterfaces(const TomlSection& section) {
+  const toml::node* node = section.find("interfaces");
+  if (node != nullptr && node->value_exact<std::string>() == "all") return reference::allInterfaces;
+  return section.integer("interfaces", 0, 1, reference::maxInterfaces);
+}
+
+/// Bounces and interfaces: 0 where nothing is said of them.
 ReferenceSettings parseReference(const TomlSection& suite) {
   const toml::node* node = suite.find("reference");
   ReferenceSettings settings;
   settings.bounces = 0;
   if (node == nullptr) return settings;
   if (!node->is_table()) suite.fail(*node, "'reference' must be a table such as {spp = 256}");
-  const TomlSection section(suite.file(), *node->as_table(), "reference", {"spp", "noise", "bounces"});
+  const TomlSection section(suite.file(), *node->as_table(), "reference",
+                            {"spp", "noise", "bounces", "interfaces"});
   settings.noise = section.real("noise", 0.0, 0.0, 1.0);
   settings.spp = section.integer("spp", settings.noise > 0.0 ? 1 << 20 : settings.spp, 1, 1 << 24);
   settings.bounces = section.integer("bounces", 0, 1, reference::maxBounces);
+  settings.interfaces = parseInterfaces(section);
   return settings;
 }
 
-bool hasBounces(const std::string& term) {
-  return term == "indirect" || term == "final";
+bool hasInterfaces(const std::string& term) {
+  return term == "specular" || term == "final";
 }
 
-/// Complains about bounces of which no case makes anything.
-void checkBounces(const TomlSection& suite, std::span<const Case> cases) {
+bool hasBounces(const std::string& term) {
+  return term == "indirect" || hasInterfaces(term);
+}
+
+/// What the suite says of references, where the term has it.
+ReferenceSettings referenceOf(ReferenceSettings given, const std::string& term) {
+  if (!hasBounces(term))
+    given.bounces = 1;
+  else if (given.bounces == 0)
+    given.bounces = term == "indirect" ? 1 : 0;
+  if (!hasInterfaces(term))
+    given.interfaces = 0;
+  else if (given.interfaces == 0 && term == "specular")
+    given.interfaces = reference::imageSpaceInterfaces;
+  return given;
+}
+
+/// Complains about bounces and interfaces of which no case makes anything.
+void checkReference(const TomlSection& suite, std::span<const Case> cases) {
   const toml::node* reference = suite.find("reference");
-  const toml::node* bounces = reference ? reference->as_table()->get("bounces") : nullptr;
+  const auto given = [&](const char* key) { return reference ? reference->as_table()->get(key) : nullptr; };
+  const toml::node* bounces = given("bounces");
   if (bounces && std::ranges::none_of(cases, [](const Case& c) { return hasBounces(c.term); }))
-    suite.fail(*bounces, "no scene asks for a term that has 'bounces': indirect, final");
+    suite.fail(*bounces, "no scene asks for a term that has 'bounces': indirect, specular, final");
+  const toml::node* interfaces = given("interfaces");
+  if (interfaces && std::ranges::none_of(cases, [](const Case& c) { return hasInterfaces(c.term); }))
+    suite.fail(*interfaces, "no scene asks for a term that has 'interfaces': specular, final");
 }
 
 std::vector<bool> parseModes(const TomlSection& suite) {
@@ -154,11 +185,32 @@ std::vector<double> parseEnvironment(const TomlSection& scene, EnvironmentSettin
   return thresholds;
 }
 
+/// A coefficient of the medium: a number, or a text of three.
+std::string parseCoefficient(const TomlSection& scene, const char* key) {
+  const toml::node* node = scene.find(key);
+  if (node == nullptr || node->is_string()) return scene.text(key, "");
+  return fmt::format("{}", scene.real(key, 0, 0, 1e9));
+}
+
+SceneChanges parseChanges(const TomlSection& scene) {
+  SceneChanges changes;
+  changes.eye = scene.text("eye", "");
+  changes.target = scene.text("target", "");
+  if (changes.eye.empty() != changes.target.empty())
+    scene.fail(*scene.find(changes.eye.empty() ? "target" : "eye"), "'eye' and 'target' belong together");
+  changes.fov = scene.find("fov") ? scene.real("fov", 0, 0.1, 179) : 0;
+  changes.animation = scene.text("animation", "");
+  changes.setLight = scene.texts("set_light", {});
+  changes.defaultLights = scene.choice("default_lights", {"auto", "on", "off"});
+  changes.environmentRotation = scene.real("environment_rotation", 0, -1e6, 1e6);
+  changes.environmentScale = scene.real("environment_scale", 1, 0, 1e9);
+  changes.grid = scene.text("grid", "");
+  return changes;
+}
+
 /// All but g, of which there may be several.
 std::vector<std::optional<double>> parseMedium(const TomlSection& scene, MediumSettings& medium) {
-  medium = {};
-  if (scene.find("sigma_a")) medium.sigmaA = scene.real("sigma_a", 0, 0, 1e9);
-  if (scene.find("sigma_s")) medium.sigmaS = scene.real("sigma_s", 0, 0, 1e9);
+  medium = {parseCoefficient(scene, "sigma_a"), parseCoefficient(scene, "sigma_s"), {}};
   if (!scene.find("g")) return {std::nullopt};
   const std::vector<double> values = scene.reals("g", 0, -0.999, 0.999);
   return {values.begin(), values.end()};
@@ -215,8 +267,7 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
   base.frames = suite.integer("frames", 20, 0, 100000);
   base.warmup = suite.integer("warmup", 3, 0, 100000);
   base.turns = suite.integer("turns", 1, 1, 1000);
-  base.reference = parseReference(suite);
-  const int bounces = base.reference.bounces;
+  const ReferenceSettings reference = parseReference(suite);
   const std::size_t before = cases.size();
   base.picture = suite.boolean("pictures", false);
   if (const toml::node* node = suite.find("time_size"))
@@ -230,20 +281,42 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
     techniques.push_back(parseTechnique(file, *table));
 
   for (const toml::table* table : suite.tables("scenes")) {
-    const TomlSection scene(
-        file, *table, "[[scenes]]",
-        {"scene", "cameras", "lights", "light_sizes", "time", "fps", "term", "max_masked_share",
-         "environment", "environment_lights", "environment_resolution", "environment_shape",
-         "environment_reflection", "sigma_a", "sigma_s", "g"});
+    const TomlSection scene(file, *table, "[[scenes]]",
+                            {"scene",
+                             "cameras",
+                             "lights",
+                             "light_sizes",
+                             "time",
+                             "fps",
+                             "term",
+                             "max_masked_share",
+                             "environment",
+                             "environment_lights",
+                             "environment_resolution",
+                             "environment_shape",
+                             "environment_reflection",
+                             "environment_rotation",
+                             "environment_scale",
+                             "sigma_a",
+                             "sigma_s",
+                             "g",
+                             "grid",
+                             "eye",
+                             "target",
+                             "fov",
+                             "animation",
+                             "set_light",
+                             "default_lights"});
     base.scene = scene.text(scene.require("scene"), "scene");
     base.time = scene.real("time", 0.0, -1e6, 1e6);
     base.fps = scene.real("fps", 0.0, 0.0, 1e6);
     base.maxMaskedShare = scene.real("max_masked_share", 0.005, 0.0, 1.0);
     base.term = parseTerm(scene, term);
-    base.reference.bounces = hasBounces(base.term) && bounces > 0 ? bounces : base.term == "final" ? 0 : 1;
+    base.reference = referenceOf(reference, base.term);
     const std::vector<double> lightSizes = scene.reals("light_sizes", 0, 1e-6, 1e6);
     const std::vector<double> environmentLights = parseEnvironment(scene, base.environment);
     const std::vector<std::optional<double>> phases = parseMedium(scene, base.medium);
+    base.changes = parseChanges(scene);
     for (const std::string& camera : scene.texts("cameras", {""})) {
       for (const std::string& light : scene.texts("lights", {""})) {
         for (const auto& [width, height] : sizes) {
@@ -268,7 +341,7 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
       }
     }
   }
-  checkBounces(suite, std::span(cases).subspan(before));
+  checkReference(suite, std::span(cases).subspan(before));
 }
 
 Suite buildSuite(const toml::table& root, const std::string& file, bool mayInclude) {

@@ -40,6 +40,7 @@ std::string tableTitle(const Row& row) {
     title += ", environment " + std::filesystem::path(c.environment.map).filename().string();
   if (c.time != 0) title += fmt::format(", {} s", c.time);
   if (c.fps > 0) title += fmt::format(", played at {} fps", c.fps);
+  if (const std::string changes = describe(c.changes); !changes.empty()) title += ", " + changes;
   return title + fmt::format(": {}, {}x{}{}, {}, {}", c.term, c.width, c.height, timeSizeText(c),
                              c.dynamic ? "dynamic" : "static", row.cost.renderer);
 }

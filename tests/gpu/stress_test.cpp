@@ -21,7 +21,7 @@ class StressTest : public RenderTest {
 };
 
 TEST_F(StressTest, EveryTechniqueDeclaresCases) {
-  for (const TechniquePlugin* plugin : registry().all())
+  for (const TechniquePlugin* plugin : testedTechniques())
     EXPECT_FALSE(plugin->info->stress.empty())
         << plugin->info->name
         << ": declare its stability cases beside its parameters (TechniqueInfo::stress)";
@@ -29,7 +29,7 @@ TEST_F(StressTest, EveryTechniqueDeclaresCases) {
 
 TEST_F(StressTest, DeclaredCasesEndInAPictureOrAMessage) {
   bench::StressRun run = stressRun();
-  for (const TechniquePlugin* plugin : registry().all())
+  for (const TechniquePlugin* plugin : testedTechniques())
     for (const StressCase& c : plugin->info->stress) {
       const std::string_view name = c.name;
       if (name.find("8192") != name.npos || name.find("million") != name.npos)
@@ -74,7 +74,7 @@ TEST_F(StressTest, ChangesDoWhatTheySay) {
   EXPECT_EQ(after(StressChange::lightSize, 0).lights.at(0).info.x, glsl::light_spot);
   EXPECT_NEAR(after(StressChange::edgeOn, 0).lights.at(0).position.y, bounds.low.y, 1e-4);
   const scene::Pose pose = scene::evaluate(balls, 0);
-  const glm::vec3 eye(glm::inverse(bench::cameraInside(balls, pose, pose.cameras.at(0)).worldToView)[3]);
+  const glm::vec3 eye(glm::inverse(bench::cameraAtSmallest(balls, pose, pose.cameras.at(0)).worldToView)[3]);
   EXPECT_TRUE(glm::all(glm::greaterThan(eye, bounds.low)) && glm::all(glm::lessThan(eye, bounds.high)));
 }
 

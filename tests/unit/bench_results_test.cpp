@@ -77,6 +77,16 @@ class BenchResults : public testing::Test {
 TEST_F(BenchResults, RowsSurviveJson) {
   Case played = exampleCase();
   played.fps = 24;
+  played.medium = {"0.1,0.2,0.3", "0.5", 0.25};
+  played.changes = {.eye = "0,1,3",
+                    .target = "0,0,0",
+                    .fov = 30,
+                    .animation = "walk",
+                    .setLight = {"key.size=0.5"},
+                    .defaultLights = "on",
+                    .environmentRotation = 90,
+                    .environmentScale = 2,
+                    .grid = "smoke"};
   const Row row = exampleRow(played);
   const std::string line = toJson(row);
   EXPECT_EQ(line.find('\n'), std::string::npos);
@@ -111,11 +121,13 @@ TEST_F(BenchResults, WhatEarlierVersionsLackedIsOptional) {
   row.cost.qualityParameters = {"pcss.samples"};
   auto json = nlohmann::json::parse(toJson(row));
   EXPECT_EQ(nlohmann::json::parse(toJson(rowFromJson(json.dump()))), json);
-  for (const char* key : {"spectrum", "difference", "penumbra"}) json.erase(key);
+  for (const char* key : {"spectrum", "difference", "penumbra", "changes"}) json.erase(key);
+  json["medium"] = {{"sigma_s", 0.5}};  // a number, not a text
   for (const char* key : {"driver", "machine", "lights", "quality_parameters"}) json["stats"].erase(key);
   const Row old = rowFromJson(json.dump());
   EXPECT_TRUE(old.spectrum.empty() && old.difference.empty() && !old.penumbra);
   EXPECT_TRUE(old.cost.driver.empty() && old.cost.machine.empty() && old.cost.qualityParameters.empty());
+  EXPECT_EQ(old.what.medium, (MediumSettings{"", "0.5", {}}));
   EXPECT_EQ(old.cost.lights, 0);
   EXPECT_EQ(referencePicture(old), "pictures/a.png");
 }

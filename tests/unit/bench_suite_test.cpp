@@ -117,12 +117,43 @@ TEST(BenchSuite, MediaAreSweptByPhaseFunction) {
   const Suite suite = parseSuite(start + "sigma_s = 0.5\ng = [-0.7, 0, 0.7]\n", "s.toml");
   ASSERT_EQ(suite.cases.size(), 3u);
   EXPECT_EQ(suite.cases[0].medium.g, -0.7);
-  EXPECT_EQ(suite.cases[2].medium.sigmaS, 0.5);
-  EXPECT_EQ(suite.cases[2].medium.sigmaA, std::nullopt) << "the scene's";
+  EXPECT_EQ(suite.cases[2].medium.sigmaS, "0.5");
+  EXPECT_EQ(suite.cases[2].medium.sigmaA, "") << "the scene's";
+  EXPECT_EQ(parseSuite(start + "sigma_a = \"0.1,0.2,0.3\"\n", "s.toml").cases[0].medium.sigmaA,
+            "0.1,0.2,0.3");
   EXPECT_NE(question(suite.cases[0]), question(suite.cases[1]));
   EXPECT_NE(label(suite.cases[1]).find("sigma_s 0.5 g 0/"), std::string::npos);
   EXPECT_EQ(label(parseSuite(start, "s.toml").cases[0]).find("g "), std::string::npos);
   expectUsageError(start + "g = 1.5\n", "'g'");
+}
+
+TEST(BenchSuite, ScenesMayBeChangedAsOnTheCommandLine) {
+  const std::string start =
+      "name = \"m\"\nsizes = \"8x8\"\n[[techniques]]\ntechnique = \"pcss\"\n[[scenes]]\nscene = \"lights\"\n";
+  const Case plain = parseSuite(start, "s.toml").cases[0];
+  EXPECT_EQ(plain.changes, SceneChanges());
+  const Case changed =
+      parseSuite(start +
+                     "set_light = [\"key.size=0.5\", \"key.intensity=3\"]\neye = \"0,1,3\"\ntarget = "
+                     "\"0,0,0\"\nfov = 30\ndefault_lights = \"on\"\nenvironment_rotation = 90\n"
+                     "environment_scale = 2\nanimation = \"walk\"\ngrid = \"smoke\"\n",
+                 "s.toml")
+          .cases[0];
+  const SceneChanges wanted{.eye = "0,1,3",
+                            .target = "0,0,0",
+                            .fov = 30,
+                            .animation = "walk",
+                            .setLight = {"key.size=0.5", "key.intensity=3"},
+                            .defaultLights = "on",
+                            .environmentRotation = 90,
+                            .environmentScale = 2,
+                            .grid = "smoke"};
+  EXPECT_EQ(changed.changes, wanted);
+  EXPECT_NE(question(changed), question(plain));
+  EXPECT_NE(label(changed).find("key.size=0.5 key.intensity=3"), std::string::npos);
+  expectUsageError(start + "eye = \"0,1,3\"\n", "'eye' and 'target' belong together");
+  expectUsageError(start + "set_light = [3]\n", "'set_light'");
+  expectUsageError(start + "fov = 0\n", "'fov'");
 }
 
 TEST(BenchSuite, ExpandsAllCombinations) {
@@ -234,7 +265,7 @@ TEST(BenchSuite, ErrorsNameFileLineAndColumn) {
   expectUsageError("reference={sp=1}\n" + good, "s.toml:1:12: unknown key 'sp' in reference; known are spp");
   expectUsageError("reference={bounces=0}\n" + good, "'bounces' must be a whole number in 1..1024");
   expectUsageError("term='direct'\nreference={bounces=2}\n" + good,
-                   "s.toml:2:20: no scene asks for a term that has 'bounces': indirect, final");
+                   "s.toml:2:20: no scene asks for a term that has 'bounces': indirect, specular, final");
   expectUsageError("reference={noise='low'}\n" + good, "'noise' must be a number in 0..1");
   expectUsageError(good + "camera='x'\n", "s.toml:7:1: unknown key 'camera' in [[techniques]]");
   expectUsageError(good + "parameters={a=[]}\n", "'c.a' has an empty list");

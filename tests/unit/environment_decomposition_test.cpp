@@ -13,6 +13,7 @@
 #include "core/scene/load.h"
 #include "glsl/equirectangular.glsl"
 #include "glsl/rectangle_light.glsl"
+#include "tests/unit/environment_maps.h"
 
 namespace limn::shading {
 namespace {
@@ -21,20 +22,7 @@ using glm::dvec3;
 using glm::vec2;
 using glm::vec3;
 using glsl::pi;
-
-scene::Environment environmentOf(int width, const std::function<vec3(vec3)>& radiance) {
-  scene::Environment e;
-  e.width = width;
-  e.height = width / 2;
-  for (int y = 0; y < e.height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      e.texels.push_back(radiance(glsl::equirectangular_direction(
-          vec2((static_cast<float>(x) + 0.5f) / static_cast<float>(width),
-               (static_cast<float>(y) + 0.5f) / static_cast<float>(e.height)))));
-    }
-  }
-  return e;
-}
+using test::environmentOf;
 
 scene::Environment noise(int width, int seed) {
   std::mt19937 random(static_cast<unsigned>(seed));

@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/image/image.h"
 #include "glsl/environment.glsl"
+#include "tests/unit/environment_maps.h"
 
 namespace limn::shading {
 namespace {
@@ -20,20 +21,7 @@ using glm::dvec3;
 using glm::vec2;
 using glm::vec3;
 using glsl::pi;
-
-scene::Environment environmentOf(int width, const std::function<vec3(vec3)>& radiance) {
-  scene::Environment e;
-  e.width = width;
-  e.height = width / 2;
-  for (int y = 0; y < e.height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      e.texels.push_back(radiance(glsl::equirectangular_direction(
-          vec2((static_cast<float>(x) + 0.5f) / static_cast<float>(width),
-               (static_cast<float>(y) + 0.5f) / static_cast<float>(e.height)))));
-    }
-  }
-  return e;
-}
+using test::environmentOf;
 
 vec3 randomDirection(std::mt19937& random) {
   std::normal_distribution<float> normal;
