@@ -36,18 +36,32 @@ SceneOptions sceneOptions(const bench::Case& c) {
                                .resolution = c.environment.resolution,
                                .shape = c.environment.shape};
   options.environmentReflection = c.environment.reflection;
-  if (c.medium.sigmaA) options.sigmaA = fmt::format("{}", *c.medium.sigmaA);
-  if (c.medium.sigmaS) options.sigmaS = fmt::format("{}", *c.medium.sigmaS);
+  options.sigmaA = c.medium.sigmaA;
+  options.sigmaS = c.medium.sigmaS;
   options.g = c.medium.g;
+  options.eye = c.changes.eye;
+  options.target = c.changes.target;
+  options.fov = c.changes.fov;
+  options.animation = c.changes.animation;
+  options.lightSettings = c.changes.setLight;
+  options.defaultLights = c.changes.defaultLights;
+  options.environmentRotation = c.changes.environmentRotation;
+  options.environmentScale = c.changes.environmentScale;
+  options.grid = c.changes.grid;
   options.time = c.time;
   options.size = fmt::format("{}x{}", c.width, c.height);
   return options;
 }
 
-bool sameScene(const SceneOptions& a, const SceneOptions& b) {
-  return a.scene == b.scene && a.time == b.time && a.lightSize == b.lightSize && a.sigmaA == b.sigmaA &&
-         a.sigmaS == b.sigmaS && a.g == b.g && a.environment == b.environment &&
-         a.environmentLights == b.environmentLights && a.environmentReflection == b.environmentReflection;
+/// But for what load() sets of a scene that is there: size, camera and the light that shines.
+bool sameScene(const SceneOptions& a, SceneOptions b) {
+  b.size = a.size;
+  b.camera = a.camera;
+  b.eye = a.eye;
+  b.target = a.target;
+  b.fov = a.fov;
+  b.light = a.light;
+  return a == b;
 }
 
 render::Settings baseSettings(const View& view, render::Output output, int light) {
@@ -92,7 +106,12 @@ BenchSession::Loaded& BenchSession::load(const bench::Case& c) {
   }
   View& view = loaded_->view;
   view.size = {c.width, c.height};
-  view.camera = chooseCamera(options, view.pose);
+  if (view.defaultLights) {
+    moveTo(view, options, view.time);
+    loaded_->renderer.setTime(view.time, view.animation);
+  } else {
+    view.camera = chooseCamera(options, view.pose);
+  }
   view.light = c.light.empty() ? scene::none : findNamed("light", c.light, view.pose.lightNames);
   return *loaded_;
 }
@@ -104,6 +123,7 @@ reference::Request BenchSession::request(const bench::Case& c, reference::Term t
   request.spp = c.reference.spp;
   request.noise = c.reference.noise;
   if (reference::hasBounces(term)) request.bounces = c.reference.bounces;
+  if (reference::hasInterfaces(term)) request.interfaces = c.reference.interfaces;
   return request;
 }
 

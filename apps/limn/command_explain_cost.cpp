@@ -25,10 +25,11 @@ struct Options {
   fs::path out, json;
 };
 
-Image referenceImage(const Options& options, const View& view) {
+Image referenceImage(const Options& options, const View& view, int interfaces) {
   reference::Request request =
       referenceRequest(view, view.pose, view.camera, reference::termFromName(options.outputTerm));
   request.spp = options.spp;
+  request.interfaces = interfaces;
   return reference::render(request).image;
 }
 
@@ -44,7 +45,8 @@ int run(const Options& options) {
   settings.size = view.size;
   settings.light = view.light;
   Image reference;
-  if (options.spp > 0) reference = referenceImage(options, view);
+  if (options.spp > 0)
+    reference = referenceImage(options, view, render::interfacesOf(settings.output, settings.techniques));
 
   const auto context = Context::create(options.backend.contextOptions());
   gpu::Device device(*context);
@@ -71,7 +73,7 @@ Action addExplainCostCommand(CLI::App& command) {
   options->backend.addTo(command);
   command
       .add_option("--output-term", options->outputTerm,
-                  "final, visibility, direct, indirect, caustic or media")
+                  "final, visibility, direct, indirect, caustic, media or specular")
       ->capture_default_str();
   command.add_option("--repeat", options->savings.frames, "Frames timed with and without each kind of work")
       ->capture_default_str()

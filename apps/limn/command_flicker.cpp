@@ -69,6 +69,7 @@ class Sequence {
     settings.size = view_.size;
     settings.light = view_.light;
     settings.channels = true;
+    interfaces_ = render::interfacesOf(settings.output, techniques);
     renderer_.configure(settings);
   }
 
@@ -85,12 +86,14 @@ class Sequence {
     reference::Request request =
         referenceRequest(view_, renderer_.pose(), camera, reference::termFromName(options_.outputTerm));
     if (reference::hasBounces(request.term)) request.bounces = options_.bounces;
+    request.interfaces = interfaces_;
     request.spp = options_.spp;
     request.seed = seed;
     return reference::render(request).image;
   }
 
   const Options& options_;
+  int interfaces_ = 0;
   View view_;
   std::unique_ptr<Context> context_;
   gpu::Device device_;
@@ -155,7 +158,7 @@ Action addFlickerCommand(CLI::App& command) {
   options->backend.addTo(command);
   command
       .add_option("--output-term", options->outputTerm,
-                  "indirect, direct, visibility (with --light) or final")
+                  "indirect, direct, specular, visibility (with --light) or final")
       ->capture_default_str();
   command.add_option("--frames", options->frames, "The frames a to b (inclusive) of the animation")
       ->capture_default_str();

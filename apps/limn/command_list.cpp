@@ -9,8 +9,8 @@
 namespace limn::app {
 namespace {
 
-constexpr Term all_terms[] = {Term::visibility, Term::direct,  Term::environment,
-                              Term::indirect,   Term::caustic, Term::media};
+constexpr Term all_terms[] = {Term::visibility, Term::direct, Term::environment, Term::indirect,
+                              Term::caustic,    Term::media,  Term::specular};
 
 const char* typeName(ParameterType type) {
   switch (type) {

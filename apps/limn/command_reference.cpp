@@ -1,7 +1,9 @@
 // limn reference: the ground truth of one term, on the CPU.
 #include <fmt/format.h>
 
+#include <charconv>
 #include <optional>
+#include <string>
 
 #include "apps/limn/commands.h"
 #include "apps/limn/interruption.h"
@@ -21,10 +23,23 @@ struct Options {
   double noise = 0, exposure = 0;
   uint64_t seed = 0;
   std::optional<int> bounces;
+  std::string interfaces;
   bool atVertices = false;
   double longestEdge = 0.05;
   fs::path out, cache;
 };
+
+/// "all", or a number.
+int parseInterfaces(const std::string& text) {
+  if (text == "all") return reference::allInterfaces;
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || value < 0 ||
+      value > reference::maxInterfaces)
+    throw UsageError(fmt::format("--interfaces '{}' is not accepted; expected 0 to {}, or all", text,
+                                 reference::maxInterfaces));
+  return value;
+}
 
 reference::Request makeRequest(const Options& options, const View& view) {
   reference::Request request =
@@ -32,6 +47,7 @@ reference::Request makeRequest(const Options& options, const View& view) {
   request.spp = options.spp;
   request.noise = options.noise;
   request.bounces = options.bounces.value_or(request.bounces);
+  if (!options.interfaces.empty()) request.interfaces = parseInterfaces(options.interfaces);
   request.seed = options.seed;
   request.aa = options.aa;
   request.threads = options.threads;
@@ -82,7 +98,9 @@ int run(const Options& options) {
 Action addReferenceCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
   options->scene.addTo(command);
-  command.add_option("--term", options->term, "direct, indirect, caustic, media, visibility (with --light) or final")
+  command
+      .add_option("--term", options->term,
+                  "direct, indirect, caustic, media, specular, visibility (with --light) or final")
       ->capture_default_str();
   command
       .add_option("--spp", options->spp, "Samples per pixel and light; with --noise the most that are taken")
@@ -92,8 +110,14 @@ Action addReferenceCommand(CLI::App& command) {
       .add_option(
           "--bounces", options->bounces,
           "Most surfaces that reflect light before the one that is seen does: indirect is the light that\n"
-          "came over 1 to N of them (default 1), final adds it to direct light (default 0: direct alone)")
+          "came over 1 to N of them (default 1), final adds it to direct light (default 0: direct alone),\n"
+          "specular sees as much of both")
       ->check(CLI::Range(0, reference::maxBounces));
+  command.add_option(
+      "--interfaces", options->interfaces,
+      "Most smooth interfaces between the camera and what it sees in a specular object, as image space has\n"
+      "them: specular 1 to 64 (default 2), final 0 to 64 (default 0: the environment alone); or all: the "
+      "truth");
   command.add_option("--noise", options->noise, "Stop at this noise: RMS relative to the mean")
       ->check(CLI::Range(0.0, 1.0));
   command.add_flag(

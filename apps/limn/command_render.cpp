@@ -119,7 +119,7 @@ Action addRenderCommand(CLI::App& command) {
   options->backend.addTo(command);
   command
       .add_option("--output-term", options->outputTerm,
-                  "final, visibility, direct, indirect, caustic or media")
+                  "final, visibility, direct, indirect, caustic, media or specular")
       ->capture_default_str();
   command.add_option("--frames", options->frames,
                      "Render the frames a to b (inclusive) of the animation, as NAME.0000.png");

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "apps/limn/mesh_light.h"
 #include "apps/limn/options.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -52,8 +54,8 @@ void add(LightEdit& edit, const std::string& setting, std::string_view property,
   if (edit.intensity && *edit.intensity < 0) refuse(setting, "intensities are not negative");
 }
 
-/// Node of a light of the pose; none for emissive quads and the environment's. Pose::lights has the nodes'
-/// lights first.
+/// Node of a punctual light of the pose; none for meshes and the environment's. Pose::lights has those of
+/// nodes first.
 int nodeOf(const scene::Scene& scene, int light) {
   for (size_t n = 0; n < scene.nodes.size(); ++n)
     if (scene.nodes[n].light != scene::none && light-- == 0) return static_cast<int>(n);
@@ -64,10 +66,6 @@ scene::LightSource& ownSource(scene::Scene& scene, scene::Node& node) {
   scene.lights.push_back(scene.lights[static_cast<size_t>(node.light)]);  // nodes may share one
   node.light = static_cast<int>(scene.lights.size()) - 1;
   return scene.lights.back();
-}
-
-glm::mat3 axesOf(const glsl::Light& light) {
-  return {glm::vec3(light.axis_u), glm::vec3(light.axis_v), -glm::vec3(light.direction)};
 }
 
 void apply(scene::Scene& scene, const glsl::Light& now, const std::string& name, const LightEdit& edit,
@@ -127,26 +125,33 @@ std::vector<std::string> printed(const LightEdits& edits) {
 void applyLightEdits(scene::Scene& scene, const scene::Pose& pose, const LightEdits& edits) {
   for (const auto& [name, edit] : edits) {
     const int light = findNamed("light", name, pose.lightNames);
-    const int node = nodeOf(scene, light);
-    if (node == scene::none)
+    const glsl::Light& now = pose.lights[static_cast<size_t>(light)];
+    if (const int node = nodeOf(scene, light); node != scene::none)
+      apply(scene, now, name, edit, scene.nodes[static_cast<size_t>(node)]);
+    else if (const auto mesh = meshLightOf(scene, pose, light))
+      applyToMesh(scene, pose, light, *mesh, edit);
+    else
       throw UsageError(fmt::format(
-          "--set-light {}: only lights of nodes can be changed; this one is part of {}", name,
-          light < static_cast<int>(pose.lights.size()) &&
-                  (pose.lights[static_cast<size_t>(light)].info.y & glsl::light_flag_environment) != 0
-              ? "the environment"
-              : "a mesh"));
-    apply(scene, pose.lights[static_cast<size_t>(light)], name, edit, scene.nodes[static_cast<size_t>(node)]);
+          "--set-light {}: only lights of nodes and emissive quads can be changed; this one is {}", name,
+          (now.info.y & glsl::light_flag_environment) != 0
+              ? "part of the environment"
+              : "one of several of its mesh, or its mesh is textured, instanced or deformed"));
   }
 }
 
-bool isEditable(const scene::Scene& scene, int index) {
-  return nodeOf(scene, index) != scene::none;
+bool isEditable(const scene::Scene& scene, const scene::Pose& pose, int index) {
+  const auto first = std::ranges::find(pose.lightNames, pose.lightNames[static_cast<size_t>(index)]);
+  if (first - pose.lightNames.begin() != index) return false;
+  return nodeOf(scene, index) != scene::none || meshLightOf(scene, pose, index);
 }
 
 LightEdit describeLight(const scene::Scene& scene, const scene::Pose& pose, int index) {
   LightEdit now;
   const int node = nodeOf(scene, index);
-  if (node == scene::none) return now;
+  if (node == scene::none) {
+    const auto mesh = meshLightOf(scene, pose, index);
+    return mesh ? describeMesh(scene, pose.lights[static_cast<size_t>(index)], *mesh) : now;
+  }
   const scene::Node& holder = scene.nodes[static_cast<size_t>(node)];
   const scene::LightSource& source = scene.lights[static_cast<size_t>(holder.light)];
   const glsl::Light& light = pose.lights[static_cast<size_t>(index)];

@@ -60,6 +60,7 @@ struct SceneOptions {
 struct FileLights {
   std::vector<scene::Node> nodes;
   std::vector<scene::LightSource> lights;
+  std::vector<glm::vec3> emission;  ///< of each material
   float environmentRotation = 0, environmentScale = 1;
 };
 
@@ -81,6 +82,7 @@ View open(const SceneOptions& options);
 
 /// Gives the scene the lights that the options ask for (--light-size, --default-lights, --set-light and the
 /// environment's rotation and scale), beginning from those of its file; sets pose and camera at view.time.
+/// Writes to materials only where their emission changes.
 /// Throws UsageError for lights that are not there.
 void relight(View& view, const SceneOptions& options);
 
@@ -91,8 +93,8 @@ void moveTo(View& view, const SceneOptions& options, double time);
 void resizeLights(scene::Scene& scene, double size);
 
 /// What the CPU is asked for the same picture: the view's scene, size and light. The caller sets samples, and
-/// bounces where they are not the one of indirect light and none of the other terms. `view` and `pose` must
-/// outlive the request.
+/// bounces where they are not the one of indirect light and none of the other terms, and interfaces where
+/// they are not the two of specular and none of final. `view` and `pose` must outlive the request.
 reference::Request referenceRequest(const View& view, const scene::Pose& pose,
                                     const scene::CameraPose& camera, reference::Term term);
 

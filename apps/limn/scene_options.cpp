@@ -112,7 +112,8 @@ void SceneOptions::addTo(CLI::App& command) {
           "--set-light", lightSettings,
           "NAME.PROPERTY=VALUE, repeatable; PROPERTY is position=x,y,z (metres), rotation=pitch,yaw,roll\n"
           "(degrees, of a light that shines along -z), size=u,v (metres; directional: radians),\n"
-          "colour=r,g,b or intensity=I (W/sr; directional: W/m^2)")
+          "colour=r,g,b or intensity=I (W/sr; directional: W/m^2). Emissive quads are lights, too: they are\n"
+          "named as their node, which goes with them")
       ->take_all();
   command.add_option("--sigma-a", sigmaA,
                      "Absorption of the participating medium per metre: one number or red,green,blue");
@@ -206,6 +207,9 @@ void relight(View& view, const SceneOptions& options) {
   scene::Scene& scene = view.scene;
   scene.nodes = view.file.nodes;
   scene.lights = view.file.lights;
+  for (size_t i = 0; i < scene.materials.size(); ++i)
+    if (scene.materials[i].emission != view.file.emission[i])
+      scene.materials[i].emission = view.file.emission[i];
   scene.environment.rotation =
       view.file.environmentRotation + static_cast<float>(options.environmentRotation * degrees);
   scene.environment.scale = view.file.environmentScale * static_cast<float>(options.environmentScale);
@@ -250,8 +254,14 @@ View open(const SceneOptions& options) {
   view.size = parseSize(options.size);
   view.scene = scene::load(findScene(options.scene));
   addEnvironment(options, view.scene);
-  view.file = {view.scene.nodes, view.scene.lights, view.scene.environment.rotation,
+  giveOwnMaterials(view.scene);
+  view.file = {view.scene.nodes,
+               view.scene.lights,
+               {},
+               view.scene.environment.rotation,
                view.scene.environment.scale};
+  for (const scene::Material& material : view.scene.materials)
+    view.file.emission.push_back(material.emission);
   if (!options.sigmaA.empty()) view.scene.medium.sigmaA = parseCoefficient("--sigma-a", options.sigmaA);
   if (!options.sigmaS.empty()) view.scene.medium.sigmaS = parseCoefficient("--sigma-s", options.sigmaS);
   if (options.g) view.scene.medium.g = static_cast<float>(*options.g);
@@ -279,6 +289,7 @@ reference::Request referenceRequest(const View& view, const scene::Pose& pose,
   request.term = term;
   request.light = view.light == scene::none ? reference::allLights : view.light;
   request.bounces = term == reference::Term::indirect ? 1 : 0;
+  request.interfaces = term == reference::Term::specular ? reference::imageSpaceInterfaces : 0;
   return request;
 }
 

@@ -11,6 +11,10 @@
 namespace limn::app {
 namespace {
 
+bool isMesh(const LightFacts& light) {
+  return (light.light.info.y & glsl::light_flag_geometry) != 0;
+}
+
 const char* kindOf(const LightFacts& light) {
   switch (light.light.info.x) {
     case glsl::light_point:
@@ -20,8 +24,46 @@ const char* kindOf(const LightFacts& light) {
     case glsl::light_directional:
       return (light.light.info.y & glsl::light_flag_environment) != 0 ? "environment" : "directional";
     default:
-      return "rectangle";
+      return isMesh(light) ? "mesh" : "rectangle";
   }
+}
+
+/// Rows of the editor; true if the edit changed.
+bool lightSize(const LightFacts& light, float radius, LightEdit& edit) {
+  const bool directional = light.light.info.x == glsl::light_directional;
+  nameCell(
+      directional ? "angle, rad" : "size, m",
+      directional ? "Angular diameter" : "Sides; a light that had none becomes a rectangle that faces -z");
+  glm::vec2 size = edit.size.value_or(*light.now.size);
+  const bool resized = directional
+                           ? ImGui::DragFloat("##size", &size.x, 0.001f, 1e-4f, 1, "%.4f")
+                           : ImGui::DragFloat2("##size", &size.x, 0.002f * radius, 1e-4f, 1e4f, "%.3f");
+  if (!resized) return false;
+  const bool square = directional || (!edit.size && *light.now.size == glm::vec2(0));
+  edit.size =
+      glm::max(square ? glm::vec2(std::max(size.x, directional ? 0.f : size.y)) : size, glm::vec2(1e-4f));
+  return true;
+}
+
+bool lightColour(const LightFacts& light, LightEdit& edit) {
+  const bool directional = light.light.info.x == glsl::light_directional;
+  bool changed = false;
+  nameCell("colour", "Linear Rec. 709");
+  glm::vec3 colour = edit.colour.value_or(*light.now.colour);
+  if (ImGui::ColorEdit3("##colour", &colour.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR)) {
+    edit.colour = glm::max(colour, glm::vec3(0));
+    changed = true;
+  }
+  nameCell("intensity", directional
+                            ? "Irradiance of a surface that faces the light"
+                            : "Radiant intensity; that of a rectangle or mesh does not change with its size");
+  float intensity = edit.intensity.value_or(*light.now.intensity);
+  if (ImGui::DragFloat("##intensity", &intensity, std::max(0.01f * intensity, 1e-3f), 0, 1e6f,
+                       directional ? "%.4g W/m2" : "%.4g W/sr")) {
+    edit.intensity = std::max(intensity, 0.f);
+    changed = true;
+  }
+  return changed;
 }
 
 }  // namespace
@@ -77,7 +119,9 @@ void ViewerWindow::lightPanel() {
 
 void ViewerWindow::lightEditor(const LightFacts& light) {
   if (!light.editable) {
-    wrapped("This light is part of a mesh or of the environment: it changes with them.");
+    wrapped(
+        "This light is part of the environment or of a mesh that cannot be changed alone (several lights, "
+        "textured, instanced or deformed).");
     return;
   }
   const bool directional = light.light.info.x == glsl::light_directional;
@@ -109,38 +153,16 @@ void ViewerWindow::lightEditor(const LightFacts& light) {
       changed = true;
     }
   }
-  nameCell(
-      directional ? "angle, rad" : "size, m",
-      directional ? "Angular diameter" : "Sides; a light that had none becomes a rectangle that faces -z");
-  glm::vec2 size = edit.size.value_or(*now.size);
-  const bool resized = directional
-                           ? ImGui::DragFloat("##size", &size.x, 0.001f, 1e-4f, 1, "%.4f")
-                           : ImGui::DragFloat2("##size", &size.x, 0.002f * radius, 1e-4f, 1e4f, "%.3f");
-  if (resized) {
-    const bool square = directional || (!edit.size && *now.size == glm::vec2(0));
-    edit.size =
-        glm::max(square ? glm::vec2(std::max(size.x, directional ? 0.f : size.y)) : size, glm::vec2(1e-4f));
-    changed = true;
-  }
-  nameCell("colour", "Linear Rec. 709");
-  glm::vec3 colour = edit.colour.value_or(*now.colour);
-  if (ImGui::ColorEdit3("##colour", &colour.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR)) {
-    edit.colour = glm::max(colour, glm::vec3(0));
-    changed = true;
-  }
-  nameCell("intensity", directional ? "Irradiance of a surface that faces the light" : "Radiant intensity");
-  float intensity = edit.intensity.value_or(*now.intensity);
-  if (ImGui::DragFloat("##intensity", &intensity, std::max(0.01f * intensity, 1e-3f), 0, 1e6f,
-                       directional ? "%.4g W/m2" : "%.4g W/sr")) {
-    edit.intensity = std::max(intensity, 0.f);
-    changed = true;
-  }
+  if (now.size) changed |= lightSize(light, radius, edit);
+  if (now.colour) changed |= lightColour(light, edit);
   endRows();
   // A light that was moved keeps both, so that the command places it the same whatever animations do.
-  if (changed && edit.rotation && !directional && !edit.position) edit.position = now.position;
-  if (changed && edit.position && light.light.info.x != glsl::light_point && !edit.rotation)
-    edit.rotation = now.rotation;
+  if (changed && (edit.position || edit.rotation || (isMesh(light) && edit.size))) {
+    if (!directional && !edit.position) edit.position = now.position;
+    if (light.light.info.x != glsl::light_point && !edit.rotation) edit.rotation = now.rotation;
+  }
   if (changed) editLight(light, edit);
+  if (!now.size) wrapped("Several nodes share its mesh, so that it can be moved and turned only.");
   if (found != lightEdits_.end() && !changed && ImGui::Button("As in the scene")) editLight(light, {});
 }
 

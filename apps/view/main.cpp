@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
     options.techniques.addTo(program);
     program
         .add_option("--output-term", options.outputTerm,
-                    "final, visibility, direct, indirect, caustic or media")
+                    "final, visibility, direct, indirect, caustic, media or specular")
         ->capture_default_str();
     program.add_option("--exposure", options.exposure, "EV")->check(CLI::Range(-60.0, 60.0));
     program.add_option(

@@ -29,13 +29,17 @@ struct InspectionOrder {
   bool operator==(const InspectionOrder&) const = default;
 };
 
+struct SceneFacts;
+
 /// The picture wanted. The latest order is the one that counts.
 struct PictureOrder {
-  SceneOptions scene;  ///< of the scene that is open: camera, time, lights
+  std::shared_ptr<const SceneFacts>
+      of;              ///< the scene it is a picture of; not of one that was opened meanwhile
+  SceneOptions scene;  ///< what is chosen of that: camera, time, lights
   std::vector<render::TechniqueUse> techniques, others;
   render::Output output = render::Output::final;
   float exposure = 0;  ///< EV
-  glm::ivec2 size{0};  ///< pixels; 0: none is wanted
+  glm::ivec2 size{0};  ///< pixels; 0: none is wanted, the window is minimised
   Beside beside = Beside::nothing;
   bool moving = false;  ///< something moves: a smaller picture now is better than a whole one later
   bool timed = false;   ///< passes are timed

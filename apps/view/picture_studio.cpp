@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -13,6 +15,7 @@ namespace {
 constexpr double fluentMs = 60;        // a frame while things move
 constexpr double reloadSeconds = 0.5;  // between looks at the shaders on disk
 constexpr int largestReduction = 4;
+constexpr double slower = 2;  // than what had passed of it a whole frame is held for that was given up
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -32,6 +35,16 @@ render::Settings settingsOf(const PictureOrder& order, int reduction, int light)
 bool sameLights(const SceneOptions& a, const SceneOptions& b) {
   return a.lightSize == b.lightSize && a.lightSettings == b.lightSettings &&
          a.environmentRotation == b.environmentRotation && a.environmentScale == b.environmentScale;
+}
+
+/// Whether relight() may write to materials.
+bool changesMeshes(const std::vector<LightFacts>& lights, const SceneOptions& options) {
+  return std::ranges::any_of(lights, [&](const LightFacts& light) {
+    return (light.light.info.y & glsl::light_flag_geometry) != 0 &&
+           std::ranges::any_of(options.lightSettings, [&](const std::string& setting) {
+             return setting.starts_with(light.name + ".");
+           });
+  });
 }
 
 std::shared_ptr<const SceneFacts> factsOf(const View& view, const SceneOptions& options) {
@@ -62,6 +75,9 @@ PictureStudio::PictureStudio(gpu::Device& device, std::filesystem::path shaders,
 void PictureStudio::publish() {
   device_.gl().Finish();  // another context draws what was made here
   publish_(facts_);
+  if (std::exchange(printed_, facts_.messages) == facts_.messages) return;
+  std::puts(facts_.message.c_str());  // for whoever started the program from a terminal
+  std::fflush(stdout);
 }
 
 void PictureStudio::say(std::string message) {
@@ -94,6 +110,7 @@ void PictureStudio::open(const SceneOptions& wanted) {
     view_ = std::move(view);
     placed_ = wanted;
     rendered_.reset();
+    facts_.settled = false;
     wholeMs_ = 0;
     facts_.scene = factsOf(*view_, wanted);
     say("opened " + wanted.scene.string());
@@ -112,19 +129,25 @@ void PictureStudio::reloadShaders() {
   if (!changed) return;
   facts_.shaderProblem = picture_->shaderProblem();
   if (facts_.shaderProblem.empty() && other_) facts_.shaderProblem = other_->shaderProblem();
+  say(facts_.shaderProblem.empty() ? "shaders read again"
+                                   : "shaders read again, one does not compile: its last version goes on");
   rendered_.reset();
 }
 
 /// Time, camera and lights of the scene as the order has them.
 void PictureStudio::place(const PictureOrder& order) {
   const SceneOptions& s = order.scene;
-  if (placed_ && sameLights(s, *placed_)) {
+  const bool relit = !placed_ || !sameLights(s, *placed_);
+  const bool turned = !placed_ || s.environmentRotation != placed_->environmentRotation ||
+                      s.environmentScale != placed_->environmentScale;
+  const bool painted =
+      (relit || view_->defaultLights) &&
+      (changesMeshes(facts_.lights, s) || (placed_ && changesMeshes(facts_.lights, *placed_)));
+  if (turned || painted) reference_.stop();  // it reads the environment and what surfaces emit
+  if (!relit) {
     moveTo(*view_, s, s.time);
   } else {
-    const bool turned = !placed_ || s.environmentRotation != placed_->environmentRotation ||
-                        s.environmentScale != placed_->environmentScale;
-    if (turned) reference_.stop();  // it reads the environment
-    placed_.reset();                // should relight() fail
+    placed_.reset();  // should relight() fail
     view_->time = s.time;
     relight(*view_, s);
     placed_ = s;
@@ -136,27 +159,30 @@ void PictureStudio::place(const PictureOrder& order) {
   view_->light = s.light.empty() ? scene::none : findNamed("light", s.light, view_->pose.lightNames);
 }
 
-bool PictureStudio::renderShot(ShownPicture& picture, const render::Settings& settings,
-                               const PictureOrder& order, Shot& shot) {
+PictureStudio::Outcome PictureStudio::renderShot(ShownPicture& picture, const render::Settings& settings,
+                                                 const PictureOrder& order,
+                                                 const std::function<bool()>& cancelled, Shot& shot) {
   picture.configure(settings);
-  const bool done = picture.render(view_->camera, view_->time, view_->animation, order.timed);
+  const Outcome outcome =
+      picture.render(view_->camera, view_->time, view_->animation, order.timed, cancelled);
   facts_.compiled = facts_.toCompile = 0;
   shot.problem = picture.problem();
-  if (!done) return false;
+  if (outcome != Outcome::done) return outcome;
   shot.texture = pool_.copyOf(*picture.display(), GL_LINEAR);
   shot.size = settings.size;
   shot.whole = settings.size == order.size;
   shot.ms = picture.frameMs();
-  return true;
+  return outcome;
 }
 
-/// False where that failed: facts_ say why.
-bool PictureStudio::render(const PictureOrder& order) {
+/// Where it failed, facts_ say why; where it was cancelled, they are what they were.
+PictureStudio::Outcome PictureStudio::render(const PictureOrder& order,
+                                             const std::function<bool()>& cancelled) {
   try {
     place(order);
   } catch (const Error& error) {
     facts_.picture.problem = error.what();
-    return false;
+    return Outcome::failed;
   }
   render::Settings settings = settingsOf(order, reduction_, view_->light);
   if (order.inspect) {
@@ -169,13 +195,16 @@ bool PictureStudio::render(const PictureOrder& order) {
             : order.inspect->view);
   }
   double ms = 0;
-  const bool done = renderShot(*picture_, settings, order, facts_.picture);
-  if (done) ms += facts_.picture.ms;
+  const Outcome outcome = renderShot(*picture_, settings, order, cancelled, facts_.picture);
+  if (outcome == Outcome::cancelled) return outcome;
+  if (outcome == Outcome::done) ms += facts_.picture.ms;
   settings.inspect.reset();
   if (order.beside == Beside::techniques) {
     if (!other_) other_ = makePicture(*view_);
     settings.techniques = order.others;
-    if (renderShot(*other_, settings, order, facts_.other)) ms += facts_.other.ms;
+    const Outcome beside = renderShot(*other_, settings, order, cancelled, facts_.other);
+    if (beside == Outcome::cancelled) return beside;
+    if (beside == Outcome::done) ms += facts_.other.ms;
   } else {
     facts_.other = {};
   }
@@ -184,7 +213,7 @@ bool PictureStudio::render(const PictureOrder& order) {
   describe();
   inspect(order);
   pool_.trim();
-  return done;
+  return outcome;
 }
 
 void PictureStudio::describe() {
@@ -194,7 +223,7 @@ void PictureStudio::describe() {
     LightFacts& light = facts_.lights[i];
     light.name = view_->pose.lightNames[i];
     light.light = view_->pose.lights[i];
-    light.editable = isEditable(view_->scene, static_cast<int>(i));
+    light.editable = isEditable(view_->scene, view_->pose, static_cast<int>(i));
     light.now = describeLight(view_->scene, view_->pose, static_cast<int>(i));
   }
   if (!facts_.picture.problem.empty()) return;
@@ -206,7 +235,7 @@ void PictureStudio::describe() {
 }
 
 /// Renders anew if the order, or how small the picture may be, has changed; true if so.
-bool PictureStudio::follow(const PictureOrder& order) {
+bool PictureStudio::follow(const PictureOrder& order, const std::function<bool()>& outdated) {
   int wanted = 1;
   if (order.moving)
     while (wanted < largestReduction && wholeMs_ / (wanted * wanted) > fluentMs) wanted *= 2;
@@ -218,15 +247,24 @@ bool PictureStudio::follow(const PictureOrder& order) {
   if (!again) return false;
   facts_.settled = compared_ = false;
   facts_.metrics.reset();
-  render(order);
+  const double start = now();
+  const auto milliseconds = [&] { return 1000 * (now() - start); };
+  const bool smallest = order.moving && reduction_ == largestReduction;
+  const auto cancelled = [&] { return !smallest && milliseconds() > fluentMs && outdated(); };
+  if (render(order, cancelled) == Outcome::cancelled) {
+    rendered_.reset();
+    wholeMs_ = std::max(wholeMs_, slower * milliseconds() * reduction_ * reduction_);
+    return false;
+  }
   publish();
   return true;
 }
 
-void PictureStudio::step(const PictureOrder& order) {
-  if (!view_ || order.size.x < 1 || order.size.y < 1) return;  // minimised
+void PictureStudio::step(const PictureOrder& order, const std::function<bool()>& outdated) {
+  if (!view_ || order.of != facts_.scene || order.size.x < 1 || order.size.y < 1) return;
   reloadShaders();
-  bool changed = follow(order);
+  bool changed = follow(order, outdated);
+  if (!rendered_) return;  // given up
   changed |= followReference(order);
   changed |= inspectAtRest(order);
   changed |= compare(order);

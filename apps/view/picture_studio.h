@@ -19,8 +19,10 @@ class PictureStudio {
                 std::function<void(const PictureFacts&)> publish, std::function<void()> news);
 
   void open(const SceneOptions& wanted);
-  /// Shows what is ordered, as far as nothing has to be waited for.
-  void step(const PictureOrder& order);
+  /// Shows what is ordered, as far as nothing has to be waited for. A frame that has begun is given up
+  /// between two of its passes when `outdated` says that something else is wanted; one that something else is
+  /// always wanted of, because things move, is then made smaller, and the smallest is never given up.
+  void step(const PictureOrder& order, const std::function<bool()>& outdated);
   void save(const SaveOrder& order);
   /// The next frame of a sequence.
   void saveNext();
@@ -37,13 +39,14 @@ class PictureStudio {
   std::unique_ptr<ShownPicture> makePicture(const View& view);
   void reloadShaders();
   void place(const PictureOrder& order);
-  bool render(const PictureOrder& order);
-  bool renderShot(ShownPicture& picture, const render::Settings& settings, const PictureOrder& order,
-                  Shot& shot);
+  using Outcome = ShownPicture::Outcome;
+  Outcome render(const PictureOrder& order, const std::function<bool()>& cancelled = {});
+  Outcome renderShot(ShownPicture& picture, const render::Settings& settings, const PictureOrder& order,
+                     const std::function<bool()>& cancelled, Shot& shot);
   void describe();
   void inspect(const PictureOrder& order);
   bool inspectAtRest(const PictureOrder& order);
-  bool follow(const PictureOrder& order);
+  bool follow(const PictureOrder& order, const std::function<bool()>& outdated);
   bool followReference(const PictureOrder& order);
   bool noMetrics(const char* why);
   bool compare(const PictureOrder& order);
@@ -68,6 +71,7 @@ class PictureStudio {
   bool compared_ = false;    ///< the metrics are of what is shown
   std::optional<Sequence> sequence_;
   PictureFacts facts_;
+  uint64_t printed_ = 0;  ///< facts_.messages when one was last printed
 };
 
 }  // namespace limn::app

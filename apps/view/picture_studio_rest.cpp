@@ -8,6 +8,7 @@
 #include "apps/view/difference.h"
 #include "apps/view/display_image.h"
 #include "apps/view/picture_studio.h"
+#include "apps/view/view_state.h"
 #include "core/base/error.h"
 
 namespace limn::app {
@@ -18,22 +19,14 @@ reference::Term termOf(render::Output output) {
   return reference::termFromName(std::string(render::name(output)));
 }
 
-/// One where the picture has indirect light in it.
-int bouncesOf(const PictureOrder& order) {
-  const auto indirect = [](const render::TechniqueUse& use) {
-    return contains(use.plugin->info->terms, Term::indirect);
-  };
-  if (!reference::hasBounces(termOf(order.output))) return 0;
-  return order.output == render::Output::indirect || std::ranges::any_of(order.techniques, indirect) ? 1 : 0;
-}
-
 /// Everything that determines the reference's picture.
 std::string truthKeyOf(const PictureOrder& order) {
   const SceneOptions& s = order.scene;
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{} x {}|{}|{}", s.camera, s.eye, s.target, s.fov, s.time,
-                     s.light, s.lightSize, fmt::join(s.lightSettings, ";"), s.environmentRotation,
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{} x {}|{}|{}|{}", s.camera, s.eye, s.target, s.fov,
+                     s.time, s.light, s.lightSize, fmt::join(s.lightSettings, ";"), s.environmentRotation,
                      s.environmentScale, order.size.x, order.size.y, render::name(order.output),
-                     bouncesOf(order));
+                     bouncesOf(order.output, order.techniques),
+                     render::interfacesOf(order.output, order.techniques));
 }
 
 /// Of one channel, or of the first three; black and white where all values are equal.
@@ -67,7 +60,8 @@ bool PictureStudio::followReference(const PictureOrder& order) {
   if (wanted && truthKey_.empty() && !reference_.busy()) {
     truthKey_ = key;
     reference_.start({view_, view_->pose, view_->camera, order.size, termOf(order.output), view_->light,
-                      bouncesOf(order)});
+                      bouncesOf(order.output, order.techniques),
+                      render::interfacesOf(order.output, order.techniques)});
   }
   std::optional<Image> finer = reference_.take();
   const bool fresh = finer && !truthKey_.empty();
@@ -143,7 +137,7 @@ bool PictureStudio::inspectAtRest(const PictureOrder& order) {
     if (low != facts_.inspected->view.low || high != facts_.inspected->view.high) {
       facts_.inspected->view.low = low;
       facts_.inspected->view.high = high;
-      if (!render(order)) return true;
+      if (render(order) != Outcome::done) return true;
     }
   }
   facts_.inspected->values = std::move(values);
@@ -166,11 +160,12 @@ void PictureStudio::save(const SaveOrder& order) {
 }
 
 void PictureStudio::write(const SaveOrder& order, const std::filesystem::path& file) {
+  if (order.picture.of != facts_.scene) throw Error("not saved: another scene was opened meanwhile");
   if (!rendered_ || !same(*rendered_, order.picture) || !facts_.picture.whole ||
       !facts_.picture.problem.empty()) {
     reduction_ = 1;
     rendered_.reset();
-    if (!render(order.picture)) throw Error(facts_.picture.problem);
+    if (render(order.picture) != Outcome::done) throw Error(facts_.picture.problem);
   }
   Image image = picture_->read();
   if (!order.command.empty()) image.metadata()["command"] = order.command;
@@ -186,28 +181,26 @@ void PictureStudio::saveNext() {
     write(sequence_->order, numbered(sequence_->order.file, frame));
   } catch (const std::exception& error) {
     finishSaving(fmt::format("frame {}: {}", frame, error.what()));
-    publish();
     return;
   }
   const int done = frame - range.first + 1, all = range.last - range.first + 1;
   facts_.job = fmt::format("frame {} of {}", done, all);
   facts_.jobFraction = static_cast<double>(done) / all;
-  if (frame == range.last)
-    finishSaving(
-        fmt::format("wrote {} frames, the last to {}", all, numbered(sequence_->order.file, frame).string()));
-  publish();
+  if (frame < range.last) return publish();
+  finishSaving(
+      fmt::format("wrote {} frames, the last to {}", all, numbered(sequence_->order.file, frame).string()));
 }
 
 void PictureStudio::cancelSaving() {
   if (!sequence_) return;
   finishSaving(fmt::format("stopped before frame {} of {}", sequence_->frame, sequence_->order.frames->last));
-  publish();
 }
 
 void PictureStudio::finishSaving(std::string message) {
   sequence_.reset();
   facts_.job.clear();
   if (!message.empty()) say(std::move(message));
+  publish();
 }
 
 }  // namespace limn::app

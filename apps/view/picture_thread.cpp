@@ -78,6 +78,10 @@ void PictureThread::run(const std::stop_token& stop) {
     PictureStudio studio(
         *device_, options_.shaders, options_.cache, [&box](const PictureFacts& facts) { box.publish(facts); },
         [&box] { box.notify(); });
+    const auto outdated = [&] {
+      const std::scoped_lock lock(box.mutex);
+      return stop.stop_requested() || box.order || !box.jobs.empty();
+    };
     PictureOrder order;
     while (!stop.stop_requested()) {
       std::deque<Mailbox::Job> jobs;
@@ -95,7 +99,7 @@ void PictureThread::run(const std::stop_token& stop) {
         if (const auto* save = std::get_if<SaveOrder>(&job)) studio.save(*save);
         if (std::holds_alternative<Mailbox::Cancel>(job)) studio.cancelSaving();
       }
-      studio.saving() ? studio.saveNext() : studio.step(order);
+      studio.saving() ? studio.saveNext() : studio.step(order, outdated);
       const std::vector<std::string> errors = context_->takeErrors();
       if (!errors.empty()) throw Error("OpenGL: " + errors.front());
     }

@@ -83,6 +83,7 @@ void ReferenceWorker::work(const std::stop_token& stop, const Task& task) {
   request.height = task.size.y;
   request.light = task.light == scene::none ? reference::allLights : task.light;
   request.bounces = task.bounces;
+  request.interfaces = task.interfaces;
   request.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
   request.stop = stop;
   auto told = std::chrono::steady_clock::now();

@@ -27,7 +27,7 @@ class ReferenceWorker {
     scene::CameraPose camera;
     glm::ivec2 size{0};
     reference::Term term = reference::Term::direct;
-    int light = scene::none, bounces = 0;
+    int light = scene::none, bounces = 0, interfaces = 0;
   };
 
   /// `cache`: folder, empty for none. `news` is called, from any thread, when state() changed.

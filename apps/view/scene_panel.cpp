@@ -12,7 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* outputs[] = {"final", "visibility", "direct", "indirect", "caustic", "media"};
+constexpr const char* outputs[] = {"final",   "visibility", "direct",  "indirect",
+                                   "caustic", "media",      "specular"};
 
 bool isEnvironment(const fs::path& file) {
   return file.extension() == ".hdr" || file.extension() == ".exr";

@@ -23,7 +23,8 @@ void ShownPicture::configure(const render::Settings& settings) {
   configured_ = false;
 }
 
-bool ShownPicture::render(const scene::CameraPose& camera, double time, int animation, bool timed) {
+ShownPicture::Outcome ShownPicture::render(const scene::CameraPose& camera, double time, int animation,
+                                           bool timed, const frame::FrameGraph::Cancelled& cancelled) {
   try {
     if (!configured_) {
       shown_ = false;
@@ -34,7 +35,8 @@ bool ShownPicture::render(const scene::CameraPose& camera, double time, int anim
     renderer_.setTime(time, animation);
     renderer_.setCamera(camera);
     const auto start = std::chrono::steady_clock::now();
-    renderer_.render(timed ? frame::preferredTiming(device_) : frame::Timing::off);
+    if (!renderer_.render(timed ? frame::preferredTiming(device_) : frame::Timing::off, cancelled))
+      return Outcome::cancelled;
     renderer_.finish();
     frameMs_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     passes_ = renderer_.explain();
@@ -42,11 +44,11 @@ bool ShownPicture::render(const scene::CameraPose& camera, double time, int anim
     if (timed) times_ = renderer_.graph().passTimes();
     shown_ = true;
     problem_.clear();
-    return true;
+    return Outcome::done;
   } catch (const Error& error) {
     problem_ = error.what();
     configured_ = shown_ = false;
-    return false;
+    return Outcome::failed;
   }
 }
 

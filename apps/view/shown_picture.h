@@ -18,8 +18,14 @@ class ShownPicture {
 
   /// Takes effect with the next render(), if it says something new.
   void configure(const render::Settings& settings);
-  /// Renders one frame; false, and problem() says why, if that failed: there is no picture then.
-  bool render(const scene::CameraPose& camera, double time, int animation, bool timed);
+  enum class Outcome {
+    done,
+    failed,     ///< problem() says why; there is no picture then
+    cancelled,  ///< the picture is as it was
+  };
+  /// Renders one frame. `cancelled` is asked between its passes.
+  Outcome render(const scene::CameraPose& camera, double time, int animation, bool timed,
+                 const frame::FrameGraph::Cancelled& cancelled);
   /// Compiles the shaders that changed on disk; true if any file did. Of those that do not compile the last
   /// good version goes on, and shaderProblem() says why.
   bool reloadShaders();

@@ -86,7 +86,8 @@ void dropRivals(std::vector<render::TechniqueUse>& techniques, const TechniquePl
   };
   const auto rivals = [&](const render::TechniqueUse& use) {
     if (use.plugin == &added) return false;
-    for (const TermSet alone : {Term::visibility | Term::direct, termSet(Term::environment)})
+    for (const TermSet alone :
+         {Term::visibility | Term::direct, termSet(Term::environment), termSet(Term::specular)})
       if (claims(*use.plugin, alone) && claims(added, alone)) return true;
     return false;
   };
@@ -124,37 +125,92 @@ std::string renderCommand(const ViewState& state, const std::filesystem::path& o
   return line.add("--out", out.string()).text();
 }
 
+int bouncesOf(render::Output output, const std::vector<render::TechniqueUse>& techniques) {
+  if (output == render::Output::indirect) return 1;
+  const auto indirect = [](const render::TechniqueUse& use) {
+    return contains(use.plugin->info->terms, Term::indirect);
+  };
+  return output == render::Output::final && std::ranges::any_of(techniques, indirect) ? 1 : 0;
+}
+
+namespace {
+
+class TomlTable {
+ public:
+  /// Left out where `value` is empty.
+  TomlTable& text(const char* key, const std::string& value) {
+    if (!value.empty()) text_ += fmt::format("{} = {}\n", key, tomlText(value));
+    return *this;
+  }
+  TomlTable& number(const char* key, double value) {
+    text_ += fmt::format("{} = {}\n", key, value);
+    return *this;
+  }
+  /// Left out where `value` is `standard`.
+  TomlTable& number(const char* key, double value, double standard) {
+    return value == standard ? *this : number(key, value);
+  }
+  TomlTable& texts(const char* key, const std::vector<std::string>& values) {
+    std::string list;
+    for (const std::string& value : values) list += (list.empty() ? "" : ", ") + tomlText(value);
+    if (!values.empty()) text_ += fmt::format("{} = [{}]\n", key, list);
+    return *this;
+  }
+  const std::string& written() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+std::string sceneTable(const SceneOptions& s) {
+  const SceneOptions standard;
+  TomlTable table;
+  table.text("scene", s.scene.string()).text("cameras", s.camera).text("lights", s.light);
+  table.text("eye", s.eye).text("target", s.target).number("fov", s.fov, standard.fov);
+  table.number("light_sizes", s.lightSize, standard.lightSize).texts("set_light", s.lightSettings);
+  table.number("time", s.time, standard.time).text("animation", s.animation);
+  if (s.defaultLights != standard.defaultLights) table.text("default_lights", s.defaultLights);
+  table.text("sigma_a", s.sigmaA).text("sigma_s", s.sigmaS).text("grid", s.grid);
+  if (s.g) table.number("g", *s.g);
+  if (s.environment.empty()) return table.written();
+  table.text("environment", s.environment.string())
+      .number("environment_rotation", s.environmentRotation, standard.environmentRotation)
+      .number("environment_scale", s.environmentScale, standard.environmentScale);
+  const EnvironmentLightOptions& lights = s.environmentLights;
+  if (lights.threshold > 0)
+    table.number("environment_lights", lights.threshold, 0)
+        .number("environment_resolution", lights.resolution, standard.environmentLights.resolution)
+        .text("environment_shape", lights.shape)
+        .text("environment_reflection", s.environmentReflection);
+  return table.written();
+}
+
+std::string techniqueTable(const std::vector<render::TechniqueUse>& uses) {
+  std::string text = fmt::format("\n[[techniques]]\ntechnique = {}\n", tomlText(techniqueNames(uses)));
+  std::string values;
+  for (const render::TechniqueUse& use : uses)
+    for (const auto& [name, value] : changed(use)) {
+      const std::string key = uses.size() > 1 ? fmt::format("\"{}.{}\"", use.plugin->info->name, name) : name;
+      values += fmt::format("{}{} = [{}]", values.empty() ? "" : ", ", key, tomlText(value));
+    }
+  if (!values.empty()) text += fmt::format("parameters = {{{}}}\n", values);
+  return text;
+}
+
+}  // namespace
+
 std::string benchSuite(const ViewState& state) {
-  const SceneOptions& s = state.scene;
-  const std::string term(render::name(state.output));
+  const int bounces = bouncesOf(state.output, state.techniques);
+  const int interfaces = render::interfacesOf(state.output, state.techniques);
   std::string text = fmt::format(
       "# Saved by limn-view: `limn bench` on this file measures what it showed.\nname = \"view\"\nsizes = "
       "[{}]\nterm = {}\n",
-      tomlText(s.size), tomlText(term));
-  text += "reference = {noise = 0.02, spp = 4096}\npictures = true\n\n[[scenes]]\n";
-  text += fmt::format("scene = {}\n", tomlText(s.scene.string()));
-  if (!s.camera.empty()) text += fmt::format("cameras = [{}]\n", tomlText(s.camera));
-  if (!s.eye.empty())
-    text += fmt::format("# the camera was --eye {} --target {}, which suites do not take\n", s.eye, s.target);
-  for (const std::string& setting : s.lightSettings)
-    text += fmt::format("# a light was changed by --set-light {}, which suites do not take\n", setting);
-  if (!s.light.empty()) text += fmt::format("lights = [{}]\n", tomlText(s.light));
-  if (s.lightSize > 0) text += fmt::format("light_sizes = [{}]\n", s.lightSize);
-  if (s.time != 0) text += fmt::format("time = {}\n", s.time);
-  if (!s.environment.empty()) text += fmt::format("environment = {}\n", tomlText(s.environment.string()));
-  if (s.environmentLights.threshold > 0)
-    text += fmt::format("environment_lights = [{}]\n", s.environmentLights.threshold);
-  if (state.techniques.empty()) return text;
-  text += fmt::format("\n[[techniques]]\ntechnique = {}\n", tomlText(techniqueNames(state.techniques)));
-  const bool several = state.techniques.size() > 1;
-  std::string values;
-  for (const render::TechniqueUse& use : state.techniques) {
-    for (const auto& [name, value] : changed(use)) {
-      const std::string key = several ? fmt::format("\"{}.{}\"", use.plugin->info->name, name) : name;
-      values += fmt::format("{}{} = [{}]", values.empty() ? "" : ", ", key, tomlText(value));
-    }
-  }
-  if (!values.empty()) text += fmt::format("parameters = {{{}}}\n", values);
+      tomlText(state.scene.size), tomlText(std::string(render::name(state.output))));
+  text += fmt::format("reference = {{noise = 0.02, spp = 4096{}{}}}\npictures = true\n\n[[scenes]]\n",
+                      bounces > 0 ? fmt::format(", bounces = {}", bounces) : "",
+                      interfaces > 0 ? fmt::format(", interfaces = {}", interfaces) : "");
+  text += sceneTable(state.scene);
+  if (!state.techniques.empty()) text += techniqueTable(state.techniques);
   return text;
 }
 

@@ -29,8 +29,11 @@ void dropRivals(std::vector<render::TechniqueUse>& techniques, const TechniquePl
 /// The command that renders the state to `out`: one line for a shell, arguments quoted where they must be.
 std::string renderCommand(const ViewState& state, const std::filesystem::path& out);
 
-/// A suite for `limn bench` that measures the state's technique in its scene, with the scene's own camera or
-/// the one the scene options name. Cameras of --eye are not in suites: the file says so in a comment.
+/// Of indirect light, in the truth that a picture is compared with: 1 where the picture has any, else 0.
+int bouncesOf(render::Output output, const std::vector<render::TechniqueUse>& techniques);
+
+/// A suite for `limn bench` that measures the state's techniques in its scene: all of the state but the
+/// exposure.
 std::string benchSuite(const ViewState& state);
 
 }  // namespace limn::app

@@ -83,7 +83,9 @@ void ViewerWindow::listen() {
   // ImGui knows only whether a key is down when a frame begins; taps may be shorter than a frame.
   glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int modifiers) {
     auto& self = *static_cast<ViewerWindow*>(glfwGetWindowUserPointer(w));
-    if (action == GLFW_PRESS) self.pressed_.emplace_back(key, (modifiers & GLFW_MOD_CONTROL) != 0);
+    if (action != GLFW_PRESS) return;
+    if (key == GLFW_KEY_Q && (modifiers & GLFW_MOD_CONTROL) != 0) glfwSetWindowShouldClose(w, GLFW_TRUE);
+    self.pressed_.push_back(key);
   });
   glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** files) {
     auto& self = *static_cast<ViewerWindow*>(glfwGetWindowUserPointer(w));
@@ -143,14 +145,19 @@ bool ViewerWindow::moving() const {
   return playing_ || glfwGetTime() - lastChange_ < restAfter;
 }
 
+bool ViewerWindow::minimised() const {
+  return glfwGetWindowAttrib(context_->window(), GLFW_ICONIFIED) != 0;
+}
+
 PictureOrder ViewerWindow::order() const {
   PictureOrder order;
+  order.of = facts_->scene;
   order.scene = state_.scene;
   order.techniques = state_.techniques;
   order.others = otherTechniques_;
   order.output = state_.output;
   order.exposure = state_.exposure;
-  order.size = area_;
+  order.size = minimised() ? glm::ivec2(0) : area_;
   order.beside = beside_;
   order.moving = moving();
   order.timed = framePanelOpen_;
@@ -223,7 +230,7 @@ void ViewerWindow::run() {
   constexpr int settling = 3;  // frames that ImGui takes to answer an event
   int lively = settling, shown = 0;
   for (bool last = false; !last;) {
-    const bool busy = lively > 0 || moving() || drag_ || options_.frames > 0;
+    const bool busy = !minimised() && (lively > 0 || moving() || drag_ || options_.frames > 0);
     const double start = glfwGetTime();
     glfwWaitEventsTimeout(busy ? frameSeconds : idleSeconds);
     const double woken = glfwGetTime();

@@ -15,8 +15,8 @@ constexpr const char* besides[] = {"nothing", "other techniques", "the truth"};
 
 std::string termsOf(const TechniqueInfo& info) {
   std::string text;
-  for (const Term term :
-       {Term::visibility, Term::direct, Term::indirect, Term::caustic, Term::media, Term::environment})
+  for (const Term term : {Term::visibility, Term::direct, Term::indirect, Term::caustic, Term::media,
+                          Term::environment, Term::specular})
     if (contains(info.terms, term)) text += (text.empty() ? "" : ", ") + std::string(name(term));
   return text;
 }
@@ -124,7 +124,7 @@ void ViewerWindow::techniquePanel(std::vector<render::TechniqueUse>& uses) {
     break;
   }
   ImGui::SetNextItemWidth(-1);
-  if (ImGui::BeginCombo("##add", "add or replace ...", ImGuiComboFlags_HeightLarge)) {
+  if (ImGui::BeginCombo("##add", "add or replace ...", ImGuiComboFlags_HeightLargest)) {
     for (const TechniquePlugin* plugin : registry_.all()) {
       const bool used =
           std::ranges::any_of(uses, [&](const render::TechniqueUse& use) { return use.plugin == plugin; });

@@ -122,7 +122,7 @@ void ViewerWindow::nextTechnique() {
   moved();
 }
 
-void ViewerWindow::press(int key, bool control) {
+void ViewerWindow::press(int key) {
   if (key == GLFW_KEY_SPACE && facts_->scene && facts_->scene->animated) {
     playing_ = !playing_;
     moved();
@@ -139,12 +139,13 @@ void ViewerWindow::press(int key, bool control) {
   if (key == GLFW_KEY_ESCAPE) inspection_.reset();
   if (key == GLFW_KEY_PAGE_DOWN && step_ + 1 < options_.steps.size()) chooseStep(step_ + 1);
   if (key == GLFW_KEY_PAGE_UP && step_ > 0) chooseStep(step_ - 1);
-  if (key == GLFW_KEY_Q && control) glfwSetWindowShouldClose(context_->window(), GLFW_TRUE);
 }
 
+/// What is pressed before the first scene is there waits for it.
 void ViewerWindow::handleKeys() {
+  if (!facts_->scene) return;
   if (!ImGui::GetIO().WantTextInput)
-    for (const auto& [key, control] : pressed_) press(key, control);
+    for (const int key : pressed_) press(key);
   pressed_.clear();
 }
 

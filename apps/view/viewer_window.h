@@ -43,6 +43,7 @@ class ViewerWindow {
   void open(const SceneOptions& wanted);
   void moved();  ///< something changed what is seen
   bool moving() const;
+  bool minimised() const;
   PictureOrder order() const;
   void postOrder();
   bool finished(int shown) const;
@@ -53,7 +54,7 @@ class ViewerWindow {
   void pictureArea();
   void handleMouse();
   void handleKeys();
-  void press(int key, bool control);
+  void press(int key);
   void nextTechnique();
   void drawPictures(glm::vec2 corner, glm::vec2 size);
   bool dragSplit();
@@ -120,7 +121,7 @@ class ViewerWindow {
   glm::ivec2 area_{0};   ///< its size
   double lastChange_ = 0, lastFrame_ = 0;
   bool playing_ = false, framePanelOpen_ = false, lightPanelOpen_ = false;
-  std::vector<std::pair<int, bool>> pressed_;  ///< GLFW keys since the last frame; true: with control
+  std::vector<int> pressed_;  ///< GLFW keys since the last frame
   size_t step_ = 0;
   std::string message_;  ///< what went wrong last, or was done
   /// Of the window's frames, without the time in which it waits for events.

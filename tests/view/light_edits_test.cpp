@@ -77,6 +77,107 @@ TEST(LightEdits, DescribeWhatIs) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR((*now.rotation)[c], (*wanted.rotation)[c], 1e-3f);
 }
 
+/// Two lamps, whose meshes share a material: an emissive quad each, turned and scaled by its node.
+class MeshLights : public testing::Test {
+ protected:
+  MeshLights() {
+    scene_.materials.emplace_back().emission = {4, 2, 0};
+    for (const char* name : {"left", "right"}) {
+      scene::Primitive quad;
+      quad.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+      quad.normals.assign(4, {0, 0, 1});
+      quad.indices = {0, 1, 2, 0, 2, 3};
+      quad.material = 0;
+      quad.bounds = {{-1, -1, 0}, {1, 1, 0}};
+      quad.emissiveParts = {{{.sideU = {2, 0, 0}, .sideV = {0, 2, 0}}}};
+      scene_.meshes.push_back({name, {quad}, {}});
+      scene::Node node;
+      node.name = name;
+      node.mesh = static_cast<int>(scene_.meshes.size()) - 1;
+      node.transform.translation = {1, 3, 2};
+      node.transform.rotation = glm::angleAxis(0.5f, glm::vec3(1, 0, 0));
+      node.transform.scale = {0.5f, 0.25f, 1};
+      scene_.nodes.push_back(node);
+    }
+    giveOwnMaterials(scene_);
+  }
+  scene::Pose edited(const std::vector<std::string>& settings) {
+    applyLightEdits(scene_, scene::evaluate(scene_, 0), parseLightEdits(settings));
+    return scene::evaluate(scene_, 0);
+  }
+  scene::Scene scene_;
+};
+
+TEST_F(MeshLights, AreDescribedAsRectangles) {
+  const scene::Pose pose = scene::evaluate(scene_, 0);
+  ASSERT_TRUE(isEditable(scene_, pose, 1));
+  const LightEdit now = describeLight(scene_, pose, 1);
+  EXPECT_EQ(now.position, glm::vec3(1, 3, 2));
+  EXPECT_NEAR(now.size->x, 1, 1e-6f);
+  EXPECT_NEAR(now.size->y, 0.5f, 1e-6f);
+  EXPECT_EQ(now.colour, glm::vec3(1, 0.5f, 0));
+  EXPECT_NEAR(*now.intensity, 4 * 0.5f, 1e-5f) << "radiance times area";
+}
+
+TEST_F(MeshLights, AreMovedTurnedAndResizedAlone) {
+  const scene::Pose before = scene::evaluate(scene_, 0);
+  const scene::Pose pose =
+      edited({"right.position=-1,2,0.5", "right.rotation=-90,0,0", "right.size=2,0.25", "right.intensity=3"});
+  EXPECT_EQ(pose.lights[0].position, before.lights[0].position);
+  EXPECT_EQ(pose.lights[0].emission, before.lights[0].emission);
+  const glsl::Light& light = pose.lights[1];
+  EXPECT_LT(glm::distance(glm::vec3(light.position), glm::vec3(-1, 2, 0.5f)), 1e-6f);
+  EXPECT_NEAR(light.direction.y, -1, 1e-6f) << "shines down";
+  EXPECT_NEAR(light.axis_u.w, 2, 1e-5f);
+  EXPECT_NEAR(light.axis_v.w, 0.25f, 1e-5f);
+  EXPECT_LT(glm::distance(glm::vec3(light.emission), glm::vec3(6, 3, 0)), 1e-5f) << "3 W/sr over 0.5 m2";
+  EXPECT_EQ(pose.instances[0].objectToWorld, before.instances[0].objectToWorld);
+}
+
+/// Smaller lights are brighter: what they send stays the same.
+TEST_F(MeshLights, KeepTheirIntensityWhenResized) {
+  const scene::Pose pose = edited({"left.size=0.5,0.5"});
+  EXPECT_NEAR(*describeLight(scene_, pose, 0).intensity, 2, 1e-5f);
+  EXPECT_LT(glm::distance(glm::vec3(pose.lights[0].emission), glm::vec3(8, 4, 0)), 1e-4f);
+}
+
+/// Where an animated lamp was put by hand, it stays, and is the same whenever that was done.
+TEST_F(MeshLights, StayWhereTheyArePutWhateverAnimationsSay) {
+  scene::Animation& animation = scene_.animations.emplace_back();
+  animation.duration = 2;
+  animation.channels = {{scene::AnimationChannel::Path::translation,
+                         scene::AnimationChannel::Interpolation::linear,
+                         1,
+                         {0, 2},
+                         {1, 3, 2, 5, 3, 2}}};
+  const LightEdits edits =
+      parseLightEdits({"right.position=-1,2,0.5", "right.rotation=-80,5,0", "right.size=2,0.25"});
+  scene::Scene later = scene_;
+  applyLightEdits(scene_, scene::evaluate(scene_, 0.25), edits);
+  applyLightEdits(later, scene::evaluate(later, 1.5), edits);
+  EXPECT_EQ(scene::evaluate(scene_, 1).instances[1].objectToWorld,
+            scene::evaluate(later, 1).instances[1].objectToWorld);
+}
+
+TEST_F(MeshLights, OfSharedMeshesCanOnlyBeMoved) {
+  scene_.nodes.push_back(scene_.nodes[1]);
+  scene_.nodes.back().name = "third";
+  const LightEdit now = describeLight(scene_, scene::evaluate(scene_, 0), 2);
+  EXPECT_TRUE(now.position && now.rotation);
+  EXPECT_FALSE(now.size || now.colour || now.intensity);
+  EXPECT_LT(glm::distance(glm::vec3(edited({"third.position=0,1,0"}).lights[2].position), glm::vec3(0, 1, 0)),
+            1e-6f);
+  EXPECT_THROW(edited({"third.intensity=1"}), UsageError);
+  scene_.nodes.back().name = "right";
+  EXPECT_FALSE(isEditable(scene_, scene::evaluate(scene_, 0), 2)) << "the name is another's";
+}
+
+TEST_F(MeshLights, OfSeveralPartsAreLeftAlone) {
+  scene_.meshes[1].primitives[0].emissiveParts.push_back(scene_.meshes[1].primitives[0].emissiveParts[0]);
+  EXPECT_FALSE(isEditable(scene_, scene::evaluate(scene_, 0), 1));
+  EXPECT_THROW(edited({"right#1.intensity=1"}), UsageError);
+}
+
 TEST(LightEdits, AnglesAreThoseOfTheRotation) {
   for (const glm::vec3& angles :
        {glm::vec3(0), glm::vec3(-90, 35, 0), glm::vec3(90, -120, 0), glm::vec3(10, 170, -60)}) {

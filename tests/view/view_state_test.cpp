@@ -83,6 +83,47 @@ TEST_F(ViewStateTest, SuitesAreSuites) {
   EXPECT_EQ(suite.cases[0].time, 0.5);
 }
 
+/// All that the command says is in the suite.
+TEST_F(ViewStateTest, SuitesKeepEverySetting) {
+  use("pcss,clustered_visibility,image_space_refraction");
+  SceneOptions& s = state_.scene;
+  s.camera = "front";
+  s.eye = "0,1,3";
+  s.target = "0,0.5,0";
+  s.fov = 30;
+  s.environment = "sky.exr";
+  s.environmentRotation = 45;
+  s.environmentScale = 0.5;
+  s.environmentLights = {.threshold = 0.02, .resolution = 24, .shape = "rectangles"};
+  s.environmentReflection = "centre";
+  s.animation = "walk";
+  s.lightSettings = {"key.size=1,2", "key.intensity=3"};
+  s.sigmaA = "0.1,0.2,0.3";
+  s.sigmaS = "0.5";
+  s.g = 0.25;
+  s.grid = "smoke";
+  s.defaultLights = "on";
+  const bench::Suite suite = bench::parseSuite(benchSuite(state_), "view.toml");
+  ASSERT_EQ(suite.cases.size(), 1u);
+  const bench::Case& c = suite.cases[0];
+  EXPECT_EQ(c.camera, "front");
+  const bench::SceneChanges changes{.eye = s.eye,
+                                    .target = s.target,
+                                    .fov = s.fov,
+                                    .animation = s.animation,
+                                    .setLight = s.lightSettings,
+                                    .defaultLights = s.defaultLights,
+                                    .environmentRotation = s.environmentRotation,
+                                    .environmentScale = s.environmentScale,
+                                    .grid = s.grid};
+  EXPECT_EQ(c.changes, changes);
+  EXPECT_EQ(c.environment, (bench::EnvironmentSettings{"sky.exr", 0.02, 24, "rectangles", "centre"}));
+  EXPECT_EQ(c.medium, (bench::MediumSettings{s.sigmaA, s.sigmaS, s.g}));
+  EXPECT_EQ(c.reference.bounces, 1) << "indirect light is in the picture";
+  EXPECT_EQ(c.reference.interfaces, render::interfacesOf(render::Output::final, state_.techniques));
+  EXPECT_GT(c.reference.interfaces, 0) << "glass is in the picture";
+}
+
 TEST(Orbit, StartsWhereTheCameraIs) {
   const scene::Bounds box{glm::vec3(-1), glm::vec3(1)};
   const scene::CameraPose camera = scene::lookAt({2, 3, 4}, {0.2f, 0.1f, 0}, 0.8f);
