@@ -24,6 +24,17 @@ TEST(Chapters, FiguresAreWrittenAsFiles) {
               testing::HasSubstr("| VSM from a summed-area table"));
 }
 
+TEST(Chapters, ADisplayThatIsGoneIsNone) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      run({std::string(binaryDir) + "/bin/ch7-variance-soft-shadows", "--out", folder / "out", "--filter",
+           "512x384", "--filter", "balls", "--filter", "savsm"},
+          {{"DISPLAY", ":4321"}, {"WAYLAND_DISPLAY", ""}});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, testing::HasSubstr("as with --headless"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/ch7_figures/pictures.md"));
+}
+
 TEST(Chapters, FiltersThatNothingFitsAreRefused) {
   const TemporaryFolder folder;
   for (const char* name : {"ch4-implicit-visibility", "ch5-convolution-soft-shadows",

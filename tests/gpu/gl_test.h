@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "core/base/error.h"
 #include "core/context/context.h"
 #include "core/gpu/device.h"
 #include "core/gpu/objects.h"
@@ -21,6 +22,18 @@ class GlTest : public ::testing::Test {
   static Backend testBackend() {
     const char* text = std::getenv("LIMN_TEST_BACKEND");
     return text == nullptr ? Backend::egl : parseBackend(text);
+  }
+
+  /// Whether the tests of this program meet the very same renderer when they run under EGL.
+  static bool sameRendererUnderEgl() {
+    if (testBackend() == Backend::egl) return false;
+    const ContextScope scope(nullptr);
+    try {
+      const ContextInfo own = context().info(), other = Context::create({.backend = Backend::egl})->info();
+      return other.renderer == own.renderer && other.version == own.version;
+    } catch (const Error&) {
+      return false;  // no EGL here
+    }
   }
 
   static void SetUpTestSuite() { suite_ = std::make_unique<Suite>(testBackend()); }
@@ -72,6 +85,20 @@ class GlTest : public ::testing::Test {
 
   std::optional<gpu::ShaderLibrary> shaders_;
   gpu::Counters before_;
+};
+
+/// Laws over every technique take minutes and say of one renderer the same twice: under OSMesa they are
+/// skipped where EGL has that renderer, too, unless LIMN_TEST_EVERYTHING is set. Contexts, resources, the
+/// frame graph and every technique's golden picture are tested with both.
+template <class Base>
+class OncePerRenderer : public Base {
+ protected:
+  void SetUp() override {
+    Base::SetUp();
+    static const bool again = std::getenv("LIMN_TEST_EVERYTHING") == nullptr && Base::sameRendererUnderEgl();
+    if (again)
+      GTEST_SKIP() << "EGL has the same renderer and runs this (LIMN_TEST_EVERYTHING=1 runs it here, too)";
+  }
 };
 
 }  // namespace limn

@@ -30,7 +30,7 @@ class RenderTest : public GlTest {
 
   /// A technique whose quality parameters are kept small, so that laws that hold at any quality are tested
   /// quickly.
-  static render::TechniqueUse quick(const std::string& name) {
+  static render::TechniqueUse quick(const std::string& name, int lights = 64) {
     render::TechniqueUse use = technique(name);
     for (const Parameter& p : use.parameters.declared()) {
       if (!p.tradesErrorForTime) continue;
@@ -39,7 +39,7 @@ class RenderTest : public GlTest {
       if (p.type == ParameterType::real && unit == "scene radii" && p.defaultValue < 0.1)
         use.parameters.set(p.name, "0.1");
       if (p.type != ParameterType::integer) continue;
-      const double most = unit == "texels" ? 512 : unit == "lights" ? 256 : unit == "bins" ? 8 : 16;
+      const double most = unit == "texels" ? 512 : unit == "lights" ? lights : unit == "bins" ? 8 : 16;
       if (p.defaultValue > most && p.range.low <= most) use.parameters.set(p.name, std::to_string(int(most)));
     }
     return use;

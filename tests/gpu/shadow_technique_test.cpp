@@ -113,7 +113,7 @@ struct Errors {
   int penumbra = 0;
 };
 
-class ShadowTechniqueTest : public TechniqueTest {
+class ShadowTechniqueTest : public OncePerRenderer<TechniqueTest> {
  protected:
   static std::vector<const TechniquePlugin*> techniques() {
     std::vector<const TechniquePlugin*> found;

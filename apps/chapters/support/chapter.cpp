@@ -10,18 +10,27 @@
 #include "apps/limn/options.h"
 #include "apps/view/viewer.h"
 #include "core/base/error.h"
+#include "core/context/context.h"
 
 namespace limn::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-bool hasDisplay() {
+/// A variable may name a display that is gone, so that only opening a window tells.
+bool canOpenWindow() {
   const auto set = [](const char* variable) {
     const char* value = std::getenv(variable);
     return value != nullptr && *value != 0;
   };
-  return set("DISPLAY") || set("WAYLAND_DISPLAY");
+  if (!set("DISPLAY") && !set("WAYLAND_DISPLAY")) return false;
+  try {
+    Context::create({.backend = Backend::glfw, .visible = false});
+    return true;
+  } catch (const Error& error) {
+    fmt::print(stderr, "{}; writing pictures and tables as with --headless\n", error.what());
+    return false;
+  }
 }
 
 int writeFiles(const Chapter& chapter, const fs::path& out, const BackendOptions& backend,
@@ -86,7 +95,7 @@ int runChapter(const Chapter& chapter, int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
       return program.exit(error) == 0 ? 0 : 2;
     }
-    if (headless || !hasDisplay()) return writeFiles(chapter, out, backend, filters);
+    if (headless || !canOpenWindow()) return writeFiles(chapter, out, backend, filters);
     ViewerOptions viewer;
     viewer.title = chapter.title;
     viewer.scene = scene;
