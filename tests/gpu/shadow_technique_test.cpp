@@ -113,7 +113,7 @@ struct Errors {
   int penumbra = 0;
 };
 
-class ShadowTechniqueTest : public OncePerRenderer<TechniqueTest> {
+class ShadowTechniqueTest : public TechniqueTest {
  protected:
   static std::vector<const TechniquePlugin*> techniques() {
     std::vector<const TechniquePlugin*> found;

@@ -13,7 +13,7 @@ namespace {
 using bench::StressResult;
 using bench::Verdict;
 
-class StressTest : public OncePerRenderer<RenderTest> {
+class StressTest : public RenderTest {
  protected:
   bench::StressRun stressRun() {
     return bench::StressRun(device(), asset, {.width = 48, .height = 36, .spp = 4});

@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,8 @@ class ViewerWindowTest : public ::testing::Test {
   /// window has been drawn so often with all that was done before, `save FILE` for the picture of the moment,
   /// which limn-view saves as a.exr, `focused` until keys reach the window. `point X Y` and `click X Y` are
   /// the mouse's, `drop FILE` drops one on the window; the window is closed at the end. At most `seconds`.
-  Outcome view(const std::string& arguments, const std::string& script, int seconds = 400) {
+  Outcome view(const std::string& arguments, const std::string& script, int seconds = 400,
+               const std::map<std::string, std::string>& environment = {}) {
     const std::string text =
         "cd '" + folder_.path().string() + "' || exit 9\n" +  //
         "await() { for i in $(seq 1200); do [ -e \"$1\" ] && return; sleep .05; done; echo no $1 >&2; }\n" +
@@ -49,7 +51,8 @@ class ViewerWindowTest : public ::testing::Test {
         "window=$(timeout 60 xdotool search --sync --onlyvisible --name '^limn$' | head -n 1)\n" +
         "focused\n" + script + "\nxdotool key ctrl+q\nwait $viewer\n";
     return run({"/usr/bin/timeout", std::to_string(seconds), "/usr/bin/xvfb-run", "-a", "-s",
-                "-screen 0 1000x700x24", "/bin/sh", "-c", text});
+                "-screen 0 1000x700x24", "/bin/sh", "-c", text},
+               environment);
   }
   /// The picture that the window shows after `script` is the one that the command kept in it renders.
   void expectSamePixels(const std::string& arguments, const std::string& script, const std::string& said) {
