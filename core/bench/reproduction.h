@@ -6,10 +6,13 @@
 //     [[claims]]
 //     where = "7.4, table 7.3"            # section, table or figure
 //     what = "VSSM against PCSS"
-//     measure = "frame"                   # frame or shadows: slow / fast in time; memory: slow / fast in
-//     bytes thesis = 14.8                       # times as fast (or small) suite = "ch7_512" # what measures
-//     it slow = ["light size 2.7/balls", "/pcss?", "blocker_samples=1024"]   # parts of the row's label fast
-//     = ["light size 2.7/balls", "/vssm?vssm.shadow_map_size=512$"]   # $: there the label ends
+//     # frame or shadows: slow / fast in time; memory: slow / fast in bytes
+//     measure = "frame"
+//     thesis = 14.8                       # times as fast (or small)
+//     suite = "ch7_512"                   # what measures it
+//     # Parts of the row's label; $: there the label ends.
+//     slow = ["light size 2.7/balls", "/pcss?", "blocker_samples=1024"]
+//     fast = ["light size 2.7/balls", "/vssm?vssm.shadow_map_size=512$"]
 #pragma once
 
 #include <filesystem>

@@ -100,15 +100,6 @@ class FrameGraphGpu : public GlTest {
     return text;
   }
 
-  static std::string errorOf(const std::function<void()>& action) {
-    try {
-      action();
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
-  }
-
   std::optional<ResourcePool> pool_;
 };
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -64,6 +65,16 @@ class GlTest : public ::testing::Test {
   static Context& context() { return *suite_->context; }
   static gpu::Device& device() { return suite_->device; }
   static const gl::Functions& gl() { return suite_->context->gl(); }
+
+  /// The message of the Error that `action` throws; empty when it throws none.
+  static std::string errorOf(const std::function<void()>& action) {
+    try {
+      action();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
 
   /// A library of this test with limn's own sources; made at the first call.
   gpu::ShaderLibrary& shaders() {

@@ -14,8 +14,8 @@ class MediaHarness : public RenderTest {
   using Output = render::Output;
   static constexpr int width = 128, height = 96;
 
-  static Image reference(render::Renderer& renderer, const scene::Scene& scene, reference::Term term, int spp,
-                         int light = reference::allLights) {
+  static reference::Request request(render::Renderer& renderer, const scene::Scene& scene,
+                                    reference::Term term, int spp) {
     reference::Request request{.scene = scene,
                                .pose = renderer.pose(),
                                .camera = renderer.pose().cameras.at(0),
@@ -24,9 +24,14 @@ class MediaHarness : public RenderTest {
     request.width = width;
     request.height = height;
     request.term = term;
-    request.light = light;
     request.spp = spp;
-    return reference::render(request).image;
+    return request;
+  }
+  static Image reference(render::Renderer& renderer, const scene::Scene& scene, reference::Term term, int spp,
+                         int light = reference::allLights) {
+    reference::Request asked = request(renderer, scene, term, spp);
+    asked.light = light;
+    return reference::render(asked).image;
   }
 
   static double mean(const Image& image) {

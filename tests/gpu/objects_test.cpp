@@ -16,18 +16,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class ObjectsTest : public GlTest {
- protected:
-  /// The message of the Error that `action` throws; empty when it throws none.
-  static std::string errorOf(const std::function<void()>& action) {
-    try {
-      action();
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
-  }
-};
+class ObjectsTest : public GlTest {};
 
 TEST_F(ObjectsTest, buffersRoundTrip) {
   std::vector<uint32_t> values(100);

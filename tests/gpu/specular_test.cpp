@@ -30,14 +30,10 @@ class SpecularTest : public MediaHarness {
 
   static Image truth(render::Renderer& renderer, const scene::Scene& scene, const scene::CameraPose& camera,
                      int interfaces, int spp, reference::Term term = reference::Term::specular) {
-    reference::Request request{
-        .scene = scene, .pose = renderer.pose(), .camera = camera, .progress = {}, .checkpoint = {}};
-    request.width = width;
-    request.height = height;
-    request.term = term;
-    request.interfaces = interfaces;
-    request.spp = spp;
-    return reference::render(request).image;
+    reference::Request asked = request(renderer, scene, term, spp);
+    asked.camera = camera;
+    asked.interfaces = interfaces;
+    return reference::render(asked).image;
   }
 
   static double luminance(const Image& image, int x, int y) {

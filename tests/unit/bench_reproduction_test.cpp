@@ -9,6 +9,7 @@ namespace limn::bench {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 const std::string kClaim =
     "[[claims]]\nwhere = \"7.6, table\"\nwhat = \"fast | slow\"\nmeasure = \"frame\"\nthesis = 14.8\n"
@@ -55,9 +56,17 @@ TEST(Reproduction, BrokenClaimsNameTheirPlace) {
     EXPECT_THROW(parseClaims(text, "c"), UsageError) << text;
 }
 
-TEST(Reproduction, TheThesissClaimsAreRead) {
-  EXPECT_GE(readClaims(std::filesystem::path(test::sourceDir) / "benchmarks" / "reproduction.claims").size(),
-            10u);
+/// Of everything that `limn bench thesis` measures, in one folder.
+TEST(Reproduction, TheThesissSuiteMeasuresEveryClaimOnce) {
+  const std::filesystem::path folder = std::filesystem::path(test::sourceDir) / "benchmarks";
+  const auto claims = readClaims(folder / "reproduction.claims");
+  EXPECT_GE(claims.size(), 25u);
+  std::vector<Row> rows;
+  for (const Case& what : readSuite(folder / "thesis.toml").cases) {
+    rows.push_back(row(what.technique, 1));
+    rows.back().what = what;
+  }
+  EXPECT_THAT(reproductionMarkdown(claims, rows), Not(HasSubstr("not measured")));
 }
 
 }  // namespace
