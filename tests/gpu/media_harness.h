@@ -15,12 +15,9 @@ class MediaHarness : public RenderTest {
   static constexpr int width = 128, height = 96;
 
   static reference::Request request(render::Renderer& renderer, const scene::Scene& scene,
-                                    reference::Term term, int spp) {
-    reference::Request request{.scene = scene,
-                               .pose = renderer.pose(),
-                               .camera = renderer.pose().cameras.at(0),
-                               .progress = {},
-                               .checkpoint = {}};
+                                    const scene::CameraPose& camera, reference::Term term, int spp) {
+    reference::Request request{
+        .scene = scene, .pose = renderer.pose(), .camera = camera, .progress = {}, .checkpoint = {}};
     request.width = width;
     request.height = height;
     request.term = term;
@@ -29,7 +26,7 @@ class MediaHarness : public RenderTest {
   }
   static Image reference(render::Renderer& renderer, const scene::Scene& scene, reference::Term term, int spp,
                          int light = reference::allLights) {
-    reference::Request asked = request(renderer, scene, term, spp);
+    reference::Request asked = request(renderer, scene, renderer.pose().cameras.at(0), term, spp);
     asked.light = light;
     return reference::render(asked).image;
   }

@@ -30,8 +30,7 @@ class SpecularTest : public MediaHarness {
 
   static Image truth(render::Renderer& renderer, const scene::Scene& scene, const scene::CameraPose& camera,
                      int interfaces, int spp, reference::Term term = reference::Term::specular) {
-    reference::Request asked = request(renderer, scene, term, spp);
-    asked.camera = camera;
+    reference::Request asked = request(renderer, scene, camera, term, spp);
     asked.interfaces = interfaces;
     return reference::render(asked).image;
   }
