@@ -160,7 +160,9 @@ StressRun::~StressRun() = default;
 
 StressRun::Question& StressRun::question(const TechniquePlugin& technique, const StressCase& c,
                                          render::Output output) {
-  const bool sky = contains(technique.info->terms, Term::environment);
+  // Of a technique that has shadows of lights, too, those are asked for.
+  const bool sky = contains(technique.info->terms, Term::environment) &&
+                   !contains(technique.info->terms, Term::visibility);
   const bool fog =
       contains(technique.info->terms, Term::media) || contains(technique.info->terms, Term::caustic);
   const bool glass = contains(technique.info->terms, Term::specular);

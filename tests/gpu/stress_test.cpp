@@ -40,6 +40,17 @@ TEST_F(StressTest, DeclaredCasesEndInAPictureOrAMessage) {
     }
 }
 
+TEST_F(StressTest, CommonCasesAskEveryTechniqueSomethingItAnswers) {
+  bench::StressRun run = stressRun();
+  const auto cases = bench::commonStressCases();
+  const auto triangle = std::ranges::find(cases, StressChange::oneTriangle, &StressCase::change);
+  ASSERT_NE(triangle, cases.end());
+  for (const TechniquePlugin* plugin : testedTechniques()) {
+    const StressResult result = run.run(*plugin, *triangle, false);
+    EXPECT_NE(result.verdict, Verdict::refused) << result.technique << ": " << result.message;
+  }
+}
+
 TEST_F(StressTest, VerdictsFollowWhatHappened) {
   bench::StressRun run = stressRun();
   const TechniquePlugin& hard = registry().find("hard_shadow_map");
