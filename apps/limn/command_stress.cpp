@@ -83,6 +83,10 @@ class Table {
 
   void add(bench::StressResult result) {
     results_.push_back(std::move(result));
+    write();
+  }
+
+  void write() const {
     if (folder_.empty()) return;
     writeTextFile(folder_ / "stress.md", text());
     writeTextFile(folder_ / "stress.json", toJson(results_, renderer_));
@@ -119,6 +123,7 @@ int run(const Options& options) {
                                 cases.size()));
     }
   }
+  table.write();  // also where the folder held everything
   fmt::print("{}", table.text());
   return table.failed() ? 1 : 0;
 }
