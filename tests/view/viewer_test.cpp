@@ -141,7 +141,7 @@ TEST_F(ViewerTest, DoesNotGrow) {
               "xdotool key Escape F4; hear opened " +
               std::to_string(i + 2) + "\nsave seen.exr; cut -d ' ' -f 2 /proc/$viewer/statm >> pages\n";
   const Outcome outcome = view(
-      "cornell_box --technique pcss --size 560x160 --open frame --cache '' --save a.exr", script, 400,
+      "cornell_box --technique pcss --size 560x160 --open frame --cache '' --save a.exr", script, 1200,
       {{"MALLOC_ARENA_MAX", "1"}, {"MALLOC_TRIM_THRESHOLD_", "65536"}, {"MALLOC_MMAP_THRESHOLD_", "65536"}});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(command("seen.exr"), testing::HasSubstr("pcss"));
