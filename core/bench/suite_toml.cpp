@@ -72,23 +72,15 @@ ReferenceSettings parseReference(const TomlSection& suite) {
   return settings;
 }
 
-bool hasInterfaces(const std::string& term) {
-  return term == "specular" || term == "final";
-}
-
-bool hasBounces(const std::string& term) {
-  return term == "indirect" || hasInterfaces(term);
-}
-
 /// What the suite says of references, where the term has it.
-ReferenceSettings referenceOf(ReferenceSettings given, const std::string& term) {
-  if (!hasBounces(term))
+ReferenceSettings referenceOf(ReferenceSettings given, reference::Term term) {
+  if (!reference::hasBounces(term))
     given.bounces = 1;
   else if (given.bounces == 0)
-    given.bounces = term == "indirect" ? 1 : 0;
-  if (!hasInterfaces(term))
+    given.bounces = term == reference::Term::indirect ? 1 : 0;
+  if (!reference::hasInterfaces(term))
     given.interfaces = 0;
-  else if (given.interfaces == 0 && term == "specular")
+  else if (given.interfaces == 0 && term == reference::Term::specular)
     given.interfaces = reference::imageSpaceInterfaces;
   return given;
 }
@@ -98,10 +90,14 @@ void checkReference(const TomlSection& suite, std::span<const Case> cases) {
   const toml::node* reference = suite.find("reference");
   const auto given = [&](const char* key) { return reference ? reference->as_table()->get(key) : nullptr; };
   const toml::node* bounces = given("bounces");
-  if (bounces && std::ranges::none_of(cases, [](const Case& c) { return hasBounces(c.term); }))
+  if (bounces && std::ranges::none_of(cases, [](const Case& c) {
+        return reference::hasBounces(reference::termFromName(c.term));
+      }))
     suite.fail(*bounces, "no scene asks for a term that has 'bounces': indirect, specular, final");
   const toml::node* interfaces = given("interfaces");
-  if (interfaces && std::ranges::none_of(cases, [](const Case& c) { return hasInterfaces(c.term); }))
+  if (interfaces && std::ranges::none_of(cases, [](const Case& c) {
+        return reference::hasInterfaces(reference::termFromName(c.term));
+      }))
     suite.fail(*interfaces, "no scene asks for a term that has 'interfaces': specular, final");
 }
 
@@ -267,7 +263,7 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
   base.frames = suite.integer("frames", 20, 0, 100000);
   base.warmup = suite.integer("warmup", 3, 0, 100000);
   base.turns = suite.integer("turns", 1, 1, 1000);
-  const ReferenceSettings reference = parseReference(suite);
+  const ReferenceSettings references = parseReference(suite);
   const std::size_t before = cases.size();
   base.picture = suite.boolean("pictures", false);
   if (const toml::node* node = suite.find("time_size"))
@@ -312,7 +308,7 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
     base.fps = scene.real("fps", 0.0, 0.0, 1e6);
     base.maxMaskedShare = scene.real("max_masked_share", 0.005, 0.0, 1.0);
     base.term = parseTerm(scene, term);
-    base.reference = referenceOf(reference, base.term);
+    base.reference = referenceOf(references, reference::termFromName(base.term));
     const std::vector<double> lightSizes = scene.reals("light_sizes", 0, 1e-6, 1e6);
     const std::vector<double> environmentLights = parseEnvironment(scene, base.environment);
     const std::vector<std::optional<double>> phases = parseMedium(scene, base.medium);
