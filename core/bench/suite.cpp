@@ -69,9 +69,11 @@ std::string question(const Case& c) {
 }
 
 std::string label(const Case& c) {
+  const std::string timed =
+      c.timeWidth > 0 ? fmt::format(" times at {}x{}", c.timeWidth, c.timeHeight) : std::string();
   std::string text =
-      fmt::format("{}/{}/{}/{}/{}x{}/{}/{}", c.scene, c.camera.empty() ? "first camera" : c.camera,
-                  c.light.empty() ? "all lights" : c.light, c.term, c.width, c.height,
+      fmt::format("{}/{}/{}/{}/{}x{}{}/{}/{}", c.scene, c.camera.empty() ? "first camera" : c.camera,
+                  c.light.empty() ? "all lights" : c.light, c.term, c.width, c.height, timed,
                   c.dynamic ? "dynamic" : "static", c.technique);
   if (!c.environment.map.empty())
     text = fmt::format("{}/{}", std::filesystem::path(c.environment.map).filename().string(), text);

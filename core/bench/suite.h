@@ -130,7 +130,8 @@ inline constexpr const char* kSeparationFloor = "separation_floor";
 
 /// The question without who answers it: cases with equal text share a reference.
 LIMN_API std::string question(const Case& c);
-/// The whole case for people and filters: scene/camera/light/term/256x256/dynamic/pcss?pcss.samples=16
+/// The whole case for people and filters: scene/camera/light/term/256x256/dynamic/pcss?pcss.samples=16; where
+/// frames are timed at another size: .../256x256 times at 1024x768/...
 LIMN_API std::string label(const Case& c);
 /// 16 hexadecimal digits: the same for the same case on the same renderer.
 LIMN_API std::string rowKey(const Case& c, std::string_view renderer);

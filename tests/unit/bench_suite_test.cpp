@@ -86,6 +86,16 @@ TEST(BenchSuite, LightSizesAreQuestionsOfTheirOwn) {
   EXPECT_NE(label(suite.cases[0]), label(suite.cases[1]));
 }
 
+TEST(BenchSuite, TimeSizesAreTheSameQuestionUnderAnotherLabel) {
+  const std::string rest =
+      "sizes = \"8x8\"\n[[techniques]]\ntechnique = \"pcss\"\n[[scenes]]\nscene = \"balls\"\n";
+  const Case small = parseSuite("name = \"s\"\n" + rest, "s.toml").cases[0];
+  const Case large = parseSuite("name = \"l\"\ntime_size = \"16x12\"\n" + rest, "s.toml").cases[0];
+  EXPECT_EQ(question(small), question(large));
+  EXPECT_EQ(label(small), "balls/first camera/all lights/visibility/8x8/dynamic/pcss");
+  EXPECT_EQ(label(large), "balls/first camera/all lights/visibility/8x8 times at 16x12/dynamic/pcss");
+}
+
 TEST(BenchSuite, EnvironmentsAreSweptByThreshold) {
   const std::string start =
       "name = \"e\"\nsizes = \"8x8\"\nterm = \"direct\"\n[[techniques]]\ntechnique = \"pcss\"\n"
