@@ -92,6 +92,7 @@ SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose,
   surfels_ = createSurfels(meshes, longestEdge);
   if (surfels_.size() > maxElements)
     refuse(fmt::format("the scene has {} surface elements", surfels_.size()));
+  bodies_ = Bodies(surfels_);
   forest_ = Forest(surfels_);
   for (const uint32_t corner : surfels_.triangles) triangles_.push_back(forest_.leafOf()[corner]);
   leaves_.resize(forest_.leafSlots());
@@ -137,11 +138,13 @@ void SceneElements::moveSurfels() {
     leaf.vertex = glm::vec4(vertex, 1);
   });
   tbb::parallel_for(size_t{0}, surfels_.size(), [&](size_t i) {
-    const glm::vec3& normal = surfels_.normals[i];
-    surfels_.positions[i] = surfels_.centre(i, surfels_.vertices, normal);
+    surfels_.positions[i] = surfels_.centre(i, surfels_.vertices, surfels_.normals[i]);
+  });
+  bodies_.leave(surfels_);
+  tbb::parallel_for(size_t{0}, surfels_.size(), [&](size_t i) {
     Leaf& leaf = leaves_[forest_.leafOf()[i]];
     leaf.position = glm::vec4(space_.worldPoint(surfels_.positions[i]), 1);
-    leaf.normal = glm::vec4(space_.worldDirection(normal), 0);
+    leaf.normal = glm::vec4(space_.worldDirection(surfels_.normals[i]), 0);
   });
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/export.h"
+#include "core/radiosity/bodies.h"
 #include "core/radiosity/forest.h"
 #include "core/scene/scene.h"
 
@@ -63,6 +64,7 @@ class LIMN_API SceneElements {
   ElementSpace space_;
   std::vector<Instance> instances_;
   Surfels surfels_;
+  Bodies bodies_;
   Forest forest_;
   std::vector<Leaf> leaves_;
   std::vector<LeafMaterial> materials_;

@@ -7,6 +7,8 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "core/radiosity/bodies.h"
+
 namespace limn::radiosity {
 namespace {
 
@@ -318,6 +320,7 @@ Surfels createSurfels(std::span<const TriangleMesh> objects, float longestEdge) 
   surfels.firstOrigin.push_back(static_cast<uint32_t>(surfels.origins.size()));
   addNeighbours(surfels);
   placeDiscs(surfels);
+  Bodies(surfels).leave(surfels);
   return surfels;
 }
 

@@ -90,15 +90,20 @@ inline TriangleMesh roomMesh(int n) {
   return room;
 }
 
-/// The meshes' surfels in the space of the elements.
-inline Surfels surfelsOf(std::vector<TriangleMesh> meshes, float longestEdge = 1e9f) {
+/// The space in which the meshes' bounds have radius 1.
+inline ElementSpace spaceOf(const std::vector<TriangleMesh>& meshes) {
   glm::vec3 low(1e30f), high(-1e30f);
   for (const TriangleMesh& mesh : meshes)
     for (const glm::vec3& p : mesh.positions) {
       low = glm::min(low, p);
       high = glm::max(high, p);
     }
-  const ElementSpace space(0.5f * (low + high), 0.5f * glm::length(high - low));
+  return {0.5f * (low + high), 0.5f * glm::length(high - low)};
+}
+
+/// The meshes' surfels in the space of the elements.
+inline Surfels surfelsOf(std::vector<TriangleMesh> meshes, float longestEdge = 1e9f) {
+  const ElementSpace space = spaceOf(meshes);
   for (TriangleMesh& mesh : meshes) {
     for (glm::vec3& p : mesh.positions) p = space.point(p);
     for (glm::vec3& n : mesh.normals) n = space.direction(n);

@@ -256,6 +256,32 @@ TEST(RadiosityTest, HierarchyAgreesWithAllPairs) {
   }
 }
 
+/// A block that stands on a floor, with its lowest face in the floor's plane: the floor's vertices below it
+/// are corners of triangles that are seen around it, and must not be as bright as if no block were there.
+TEST(RadiosityTest, WhatLiesWithinAClosedBodyTakesTheLightAroundIt) {
+  TriangleMesh block = roomMesh(8);
+  for (size_t t = 0; t < block.indices.size(); t += 3) std::swap(block.indices[t + 1], block.indices[t + 2]);
+  for (glm::vec3& n : block.normals) n = -n;
+  for (glm::vec3& p : block.positions) p = glm::vec3(0.5f, 1, 0.5f) * p + glm::vec3(0.05f, 1, 0.05f);
+  const World world({block, rectangleMesh({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, 21)}, {});
+  ASSERT_EQ(world.surfels.backless[0], 1);
+  const std::vector<float> light = world.received({0, 0}, 1);
+  const ElementSpace space = spaceOf({block, rectangleMesh({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, 21)});
+  size_t within = 0;
+  for (size_t i = 0; i < light.size(); ++i) {
+    const glm::vec3 p = space.worldPoint(world.surfels.vertices[i]);
+    if (world.surfels.objects[i] != 1 || std::max(std::abs(p.x - 0.05f), std::abs(p.z - 0.05f)) > 0.5f)
+      continue;
+    ++within;
+    // At the foot of a wall half of the sky is hidden, at a corner of the block a quarter.
+    EXPECT_LT(light[i], 0.85f);
+    EXPECT_GT(light[i], 0.4f) << "lit as its neighbours, and not dark";
+    const glm::vec3 from = space.worldPoint(world.surfels.positions[i]);
+    EXPECT_GT(std::max(std::abs(from.x - 0.05f), std::abs(from.z - 0.05f)), 0.5f);
+  }
+  EXPECT_GT(within, 16u);
+}
+
 /// What of a bright sky gets into closed bodies, whose elements do not cover all directions: nothing should.
 TEST(RadiosityTest, CoarseMeshesLeakLittle) {
   for (const int n : {4, 8, 16, 24}) {
