@@ -16,14 +16,32 @@ LIMN_FN float caustic_line_position(vec3 origin, vec3 direction, vec2 axis, vec2
   return rate != 0.0f ? offset / rate : 0.0f;
 }
 
+// Where the picture of x lies along an axis of the view plane at distance 1.
+LIMN_FN float caustic_line_picture(vec3 x, vec2 axis) { return dot(axis, vec2(x.x, x.y)) / x.z; }
+
+// The part of a line's picture between `piece`.x and .y, places along the axis (unit), that belongs to the line and is seen.
+// The picture moves forwards on the axis as l grows; range: of l on the line; depth: of what the pixel shows, 0: nothing.
+// x >= y: nothing is seen.
+LIMN_FN vec2 caustic_line_part(vec3 origin, vec3 direction, vec2 axis, vec2 range, float depth, vec2 piece) {
+  bool away = direction.z >= 0.0f;
+  vec2 seen = range;
+  if (depth > 0.0f) {
+    float rate = abs(direction.z) > 1e-20f ? direction.z : 1e-20f;
+    float met = clamp((depth - origin.z) / rate, range.x, range.y);
+    seen = away ? vec2(range.x, met) : vec2(met, range.y);
+  }
+  return vec2(max(piece.x, caustic_line_picture(origin + seen.x * direction, axis)),
+              min(piece.y, caustic_line_picture(origin + seen.y * direction, axis)));
+}
+
 // Movement of the picture of x, in view-plane units, per metre along `direction`; times focal / z: pixels.
 LIMN_FN vec2 caustic_line_rate(vec3 x, vec3 direction) {
   return vec2(direction.x - x.x / x.z * direction.z, direction.y - x.y / x.z * direction.z);
 }
 
-// Radiance per (flux * sigma_s * p * transmittances) of a fragment at x, 1/m. rate: |caustic_line_rate|, its largest
-// component where lines have as many fragments as columns (or rows), its length where they have as many as pixels of
-// length (rectangles; then also divide by the width in pixels).
+// Radiance per (flux * sigma_s * p * transmittances) of a fragment at x, 1/m, whose whole piece is seen. rate: of the
+// picture along the axis, that is, the largest component of caustic_line_rate where lines have as many fragments as columns
+// (or rows), its length where they have as many as pixels of length (rectangles; then also divide by the width in pixels).
 LIMN_FN float caustic_line_weight(vec3 x, float rate, float focal) {
   return focal * length(x) / (x.z * x.z * max(rate, 1e-12f));
 }

@@ -51,7 +51,7 @@ struct Request {
   std::vector<glm::vec4> layers;  ///< of the pass that traces
   SpecularBuffers buffers;
   gpu::Buffer viewBuffer, layerBuffer;
-  frame::BufferHandle importedViews, importedLayers;
+  frame::BufferHandle importedViews;
 
   explicit Request(scene::GpuScene& scene) : buffers(scene) {}
 };
@@ -76,7 +76,7 @@ struct CausticRayService::Implementation {
   }
   void fit(Request& request) const;
   void upload(Request& request) const;
-  frame::BufferHandle trace(const Request& request, const shadow::ShadowMaps& maps);
+  frame::BufferHandle trace(const Request& request);
   CausticRays add(std::unique_ptr<Request> made);
 };
 
@@ -114,8 +114,8 @@ void CausticRayService::Implementation::upload(Request& request) const {
   request.layerBuffer.update(0, request.layers.data(), request.layers.size() * sizeof(request.layers[0]));
 }
 
-frame::BufferHandle CausticRayService::Implementation::trace(const Request& request,
-                                                             const shadow::ShadowMaps& maps) {
+frame::BufferHandle CausticRayService::Implementation::trace(const Request& request) {
+  const shadow::ShadowMaps& maps = request.made.scene;
   const SpecularBuffer &front = request.buffers.front(), &back = request.buffers.back();
   frame::PassBuilder pass = graph->addPass("caustic rays", "caustics");
   pass.read(handles.frame, Access::uniformBuffer, "medium")
@@ -123,7 +123,7 @@ frame::BufferHandle CausticRayService::Implementation::trace(const Request& requ
       .read(handles.instances, Access::storageLoad, "materials of instances")
       .read(handles.materials, Access::storageLoad, "index of refraction, colours")
       .read(request.importedViews, Access::storageLoad, "projections")
-      .read(request.importedLayers, Access::storageLoad, "map of each layer")
+      .read(request.made.layerLights, Access::storageLoad, "map of each layer")
       .read(maps.depth, Access::sampled, "where rays end")
       .read(maps.views, Access::storageLoad, "projections of the scene")
       .read(maps.lights, Access::storageLoad, "layers of each light");
@@ -145,7 +145,7 @@ frame::BufferHandle CausticRayService::Implementation::trace(const Request& requ
   const auto program = pass.program(std::move(source));
   pass.execute([=, handles = handles, desc = request.desc, layers = request.made.layers,
                 views = request.importedViews,
-                indices = request.importedLayers](frame::PassContext& context) {
+                indices = request.made.layerLights](frame::PassContext& context) {
     gpu::Program& kernel = context.program(program);
     kernel.use();
     kernel.set("light_samples", desc.lightSamples);
@@ -186,11 +186,13 @@ CausticRays CausticRayService::Implementation::add(std::unique_ptr<Request> made
   request.layerBuffer =
       gpu::Buffer::of<glm::vec4>(device, "specular layers", request.layers, gpu::BufferUse::updated);
   request.importedViews = graph->importBuffer("specular views", request.viewBuffer);
-  request.importedLayers = graph->importBuffer("specular layers", request.layerBuffer);
-  const shadow::ShadowMaps maps = shadowMaps.request(
+  request.made.layerLights = graph->importBuffer("specular layers", request.layerBuffer);
+  request.made.scene = shadowMaps.request(
       request.lights, {.size = request.desc.sceneSize, .samples = request.samples, .specular = false});
+  request.made.sceneLights =
+      static_cast<int>(request.lights.size() * std::max<size_t>(request.samples.size(), 1));
   request.buffers.add(*graph, handles, request.importedViews, request.desc.size, "caustics");
-  request.made.rays = trace(request, maps);
+  request.made.rays = trace(request);
   return request.made;
 }
 
@@ -244,7 +246,7 @@ bool CausticRayService::update(const scene::Pose& pose) {
     s.upload(*request);
     if (s.graph == nullptr) continue;
     s.graph->touch(request->importedViews);
-    s.graph->touch(request->importedLayers);
+    s.graph->touch(request->made.layerLights);
   }
   return false;
 }

@@ -34,6 +34,10 @@ struct CausticRayDesc {
 /// size + x.
 struct CausticRays {
   frame::BufferHandle rays;  ///< storage buffer of glsl::CausticRay; empty: no light meets a specular object
+  shadow::ShadowMaps scene;  ///< the rest of the scene as the lights see it: where rays end
+  int sceneLights = 0;       ///< entries of scene.lights
+  /// Storage buffer of vec4, one per layer. x: which of scene.lights; y: diameter of the objects, m.
+  frame::BufferHandle layerLights;
   int layers = 0, size = 0, paths = 0;
   int count() const { return layers * size * size * paths; }
 };

@@ -92,7 +92,7 @@ frame::TextureHandle RayLines::add(frame::FrameGraph& graph, const TechniqueInpu
         {.files = {"glsl/caustics/lines.vert.glsl", draw.fragmentShader}, .defines = std::move(defines)});
   }
   pass.execute([=, this, &scene = inputs.gpuScene, frame = inputs.handles.frame, depth = inputs.gbuffer.depth,
-                bind = draw.bind](frame::PassContext& context) {
+                beams = draw.beams, bind = draw.bind](frame::PassContext& context) {
     const gl::Functions& gl = context.gl();
     context.bindFramebuffer({{result}});
     gl.Enable(GL_BLEND);
@@ -108,7 +108,7 @@ frame::TextureHandle RayLines::add(frame::FrameGraph& graph, const TechniqueInpu
       gpu::Program& program = context.program(kind.program);
       program.use();
       program.set("near_plane", scene.camera().near);
-      if (kinds.size() > 2) program.set("buffer_size", rays.size);
+      if (beams || kind.primitive == GL_LINES) program.set("buffer_size", rays.size);
       if (bind) bind(program);
       if (kind.primitive == GL_TRIANGLE_STRIP)
         gl.DrawArraysInstanced(kind.primitive, 0, kind.vertices, rays.count());

@@ -1,5 +1,5 @@
-// What fragment shaders of caustic lines share: where on its ray a fragment lies, what hides it, and its weight. KIND and
-// BEAMS: see lines.vert.glsl.
+// What fragment shaders of caustic lines share: where on its ray a fragment lies, how much of it is seen, and its weight. KIND
+// and BEAMS: see lines.vert.glsl.
 #ifndef LIMN_LINE_FRAGMENT_GLSL
 #define LIMN_LINE_FRAGMENT_GLSL
 #include "glsl/caustic_line.glsl"
@@ -15,44 +15,49 @@ layout(location = 5) in vec2 line_width;
 
 layout(binding = 0) uniform sampler2D gbuffer_depth;
 layout(std430, binding = 0) readonly buffer Rays { CausticRay rays[]; };
-layout(std430, binding = 1) readonly buffer LineRule { uint line_fragments; };
 
 layout(location = 0) out vec4 radiance;
 
 struct LineFragment {
-  float along;    // metres from the start of the ray
-  vec3 place;     // camera space
-  bool hidden;
+  float along;  // metres from the start of the ray
+  vec3 place;   // camera space
+  float share;  // of the piece that the fragment stands for: what belongs to the line and is seen; 0: nothing
 };
 
+// A fragment stands for the piece of its line between two columns of pixels (or rows, or across a beam), as far as the line
+// reaches and the surface at the pixel's centre does not hide it.
 LineFragment line_fragment() {
   LineFragment f;
-  vec2 metres = vec2(length(frame.view_ray_dx.xyz), length(frame.view_ray_dy.xyz));
-  vec2 slope = (gl_FragCoord.xy - 0.5 * vec2(frame.frame_size.xy)) * metres;
+  float pixel = length(frame.view_ray_dx.xyz);
+  float depth = texelFetch(gbuffer_depth, ivec2(gl_FragCoord.xy), 0).x;
 #if KIND == 1
   f.along = 0.5 * (line_range.x + line_range.y);
-#else
-  f.along = clamp(caustic_line_position(line_origin, line_direction, line_axis, slope), line_range.x, line_range.y);
-#endif
   f.place = line_origin + f.along * line_direction;
-  float depth = texelFetch(gbuffer_depth, ivec2(gl_FragCoord.xy), 0).x;
-  f.hidden = depth > 0.0 && f.place.z > depth;
+  f.share = depth > 0.0 && f.place.z > depth ? 0.0 : 1.0;
+#else
+  vec2 slope = (gl_FragCoord.xy - 0.5 * vec2(frame.frame_size.xy)) * vec2(pixel, length(frame.view_ray_dy.xyz));
+  float middle = dot(line_axis, slope);
+  vec2 part = caustic_line_part(line_origin, line_direction, line_axis, line_range.xy, depth,
+                                vec2(middle - 0.5 * pixel, middle + 0.5 * pixel));
+  float at = caustic_line_position(line_origin, line_direction, line_axis, line_axis * (0.5 * (part.x + part.y)));
+  f.along = clamp(at, line_range.x, line_range.y);
+  f.place = line_origin + f.along * line_direction;
+  f.share = max(part.y - part.x, 0.0) / pixel;
+#endif
   return f;
 }
 
 // Radiance per (flux * sigma_s * p * transmittances), 1/m.
 float line_weight(LineFragment f) {
-  float focal = 1.0 / length(frame.view_ray_dx.xyz);
 #if KIND == 1
-  return line_range.z;
+  return f.share * line_range.z;
 #else
-  vec2 rate = abs(caustic_line_rate(f.place, line_direction));
-#if KIND == 0
-  bool rectangles = line_fragments > 850u;
-  return caustic_line_weight(f.place, rectangles ? length(rate) : max(rate.x, rate.y), focal);
-#else
-  return caustic_line_weight(f.place, length(rate), focal) * line_width.y / line_width.x;
+  float rate = dot(caustic_line_rate(f.place, line_direction), line_axis);
+  float weight = f.share * caustic_line_weight(f.place, rate, 1.0 / length(frame.view_ray_dx.xyz));
+#if KIND == 2
+  weight *= line_width.y / line_width.x;
 #endif
+  return weight;
 #endif
 }
 

@@ -4,12 +4,13 @@
 #include "glsl/caustics/ray_beam.glsl"
 #include "glsl/medium_input.glsl"
 
+layout(std430, binding = 1) readonly buffer LineRule { uint line_fragments; };
 uniform float near_plane;  // metres
 
 layout(location = 0) flat out int ray_index;
 layout(location = 1) flat out vec3 line_origin;     // camera space, metres
 layout(location = 2) flat out vec3 line_direction;
-layout(location = 3) flat out vec2 line_axis;       // on the view plane: along the line, or its larger component
+layout(location = 3) flat out vec2 line_axis;       // unit, on the view plane: along the line, or along its larger component
 layout(location = 4) flat out vec3 line_range;      // x, y: from and to, metres along the ray; z: weight of a point
 layout(location = 5) out vec2 line_width;  // width in pixels times depth, and depth: their ratio is linear on the screen
 
@@ -23,6 +24,14 @@ vec3 camera_direction(vec3 world) {
   vec3 view = mat3(frame.world_to_view) * world;
   return vec3(view.xy, -view.z);
 }
+
+#if KIND == 0
+// In [-1/2, 1/2), even among rays that are neighbours in the buffer (Roberts 2018, as r2_sequence).
+float share_of_column(int index) {
+  uint at = uint(index % buffer_size) * 3242174889u + uint(index / buffer_size) * 2447445414u;
+  return float(at >> 8) * 5.9604644775390625e-8 - 0.5;
+}
+#endif
 
 void leave_out() { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); }
 
@@ -111,9 +120,19 @@ void main() {
 
 #if KIND == 0
   if (point || wide) return;
-  line_axis = abs(along.x) >= abs(along.y) ? vec2(1.0, 0.0) : vec2(0.0, 1.0);
+  vec2 forwards = vec2(axis.x < 0.0 ? -1.0 : 1.0, axis.y < 0.0 ? -1.0 : 1.0);
+  bool steep = abs(axis.x) < abs(axis.y);
+  bool rectangle = line_fragments > 850u;
+  line_axis = rectangle ? axis : forwards * (steep ? vec2(0.0, 1.0) : vec2(1.0, 0.0));
+  // In pixels along the larger component: a pixel beyond the end, so that every pixel that the line touches has a fragment.
+  float beyond = column == 0 ? -1.0 : 1.0;
+  vec2 step = axis / (focal * max(abs(axis.x), abs(axis.y)));
+  // A fragment is in the row where the line passes the middle of its column, however much of it is in the next row. So
+  // each line is moved across by what it rises over a share of a column, an even spread among neighbours: together they lie
+  // in the pixels where their light does.
+  vec2 rise = rectangle ? vec2(0.0) : step - dot(step, line_axis) * line_axis;
   vec3 end = column == 0 ? a : b;
-  gl_Position = clip_position(end.xy / end.z, end.z);
+  gl_Position = clip_position(end.xy / end.z + beyond * step + rise * share_of_column(index), end.z);
 #elif KIND == 1
   if (!point) return;
   vec3 middle = 0.5 * (a + b);
@@ -129,7 +148,7 @@ void main() {
 #else
   if (!wide) return;
   line_axis = axis;
-  // Three columns of two corners: the ends, and where the beam is narrowest.
+  // Three columns of two corners: the ends, half a pixel further, and where the beam is narrowest.
   float share = column == 0 ? 0.0 : 1.0;
 #if BEAMS
   if (column == 1) {
@@ -146,7 +165,8 @@ void main() {
   float size = max(width_of(beam, share, corner, line_direction, across, focal), 1.0);
   line_width = vec2(size * corner.z, corner.z);
   float side = (gl_VertexID & 1) == 0 ? 0.5 : -0.5;
-  gl_Position = clip_position(corner.xy / corner.z + across * (side * size / focal), corner.z);
+  vec2 beyond = axis * (0.5 * float(column - 1));
+  gl_Position = clip_position(corner.xy / corner.z + (beyond + across * (side * size)) / focal, corner.z);
 #endif
 #endif
 }

@@ -5,6 +5,6 @@ uniform float scale;
 
 void main() {
   LineFragment f = line_fragment();
-  if (f.hidden) discard;
-  radiance = vec4(rays[ray_index].power.rgb * scale, 0.0);
+  if (f.share == 0.0) discard;
+  radiance = vec4(rays[ray_index].power.rgb * (scale * f.share), 0.0);
 }

@@ -1,5 +1,5 @@
 // Surface caustics: light that specular objects reflect or refract onto other surfaces, as photons splatted
-// on the screen.
+// on the screen, or into a caustic map of the light.
 #include <array>
 
 #include "core/caustics/ray_lines.h"
@@ -12,6 +12,10 @@ namespace {
 using namespace limn;
 using frame::Access;
 
+constexpr const char* splatNames[] = {"screen", "light"};
+constexpr int splatLight = 1;
+constexpr int widestPoint = 64;  // pixels; in photon.vert.glsl
+
 constexpr Parameter parameters[] = {
     caustics::bufferSizeParameter(),
     caustics::sceneMapSizeParameter(),
@@ -19,59 +23,160 @@ constexpr Parameter parameters[] = {
     caustics::lightSamplesParameter(),
     scene::mediumStepsParameter(),
     real("kernel", 2, {0.25, 16}, "photon distances", "Radius of a photon's kernel"),
+    choice("splat", 0, splatNames,
+           "Where photons are gathered: on the screen, or in a map of the light, as large as the scene map, "
+           "which surfaces look up (as published)"),
 };
 constexpr StressCase stress[] = {
     {.name = "buffer of 1 texel", .settings = "buffer_size=1", .factor = 0},
     {.name = "buffer of 16 texels", .settings = "buffer_size=16", .factor = 6},
     {.name = "wide kernels", .settings = "kernel=8", .factor = 6},
+    {.name = "caustic map", .settings = "splat=light", .factor = 2},
+    {.name = "caustic map of 16 texels", .settings = "splat=light,scene_map_size=16", .factor = 20},
+};
+
+/// The photons of some rays as points, whatever they are splatted on.
+struct Photons {
+  caustics::CausticRays rays;
+  frame::BufferHandle frame;
+  scene::MediumInput medium;
+  float kernel;
+  frame::ProgramHandle program = {};
+
+  Photons(const TechniqueInputs& inputs, const caustics::CausticRays& made)
+      : rays(made),
+        frame(inputs.handles.frame),
+        medium(inputs.handles, inputs.parameters.integer("medium_steps")),
+        kernel(inputs.parameters.real("kernel")) {}
+
+  void declare(frame::PassBuilder& pass, bool map) {
+    pass.read(frame, Access::uniformBuffer, "camera, medium").read(rays.rays, Access::storageLoad, "photons");
+    gpu::ProgramDesc desc{.files = {"techniques/surface_caustics/photon.vert.glsl",
+                                    "techniques/surface_caustics/photon.frag.glsl"},
+                          .defines = {{"CAUSTIC_MAP", map ? "1" : "0"}}};
+    medium.define(desc.defines);
+    medium.declare(pass);
+    program = pass.program(std::move(desc));
+  }
+
+  /// Ready to draw into the bound framebuffer, which is cleared.
+  gpu::Program& begin(frame::PassContext& context, const gpu::VertexArray& empty) const {
+    const gl::Functions& gl = context.gl();
+    constexpr GLfloat black[4] = {0, 0, 0, 0};
+    gl.ClearBufferfv(GL_COLOR, 0, black);
+    gl.Enable(GL_BLEND);
+    gl.BlendFunc(GL_ONE, GL_ONE);
+    gl.Enable(GL_PROGRAM_POINT_SIZE);
+    gl.BindVertexArray(empty.id());
+    gpu::Program& points = context.program(program);
+    points.use();
+    points.set("buffer_size", rays.size);
+    points.set("kernel", kernel);
+    context.bindUniform(glsl::FrameBlock::binding, frame);
+    context.bindStorage(0, rays.rays);
+    medium.bind(context);
+    return points;
+  }
+  void draw(frame::PassContext& context) const { context.gl().DrawArrays(GL_POINTS, 0, rays.count()); }
+  void end(frame::PassContext& context) const { context.gl().Disable(GL_PROGRAM_POINT_SIZE); }
 };
 
 class SurfaceCaustics : public Technique {
   gpu::VertexArray empty_;
 
-  /// Irradiance of the photons on what the camera sees, W/m^2.
-  frame::TextureHandle addPhotons(frame::FrameGraph& graph, const TechniqueInputs& inputs,
-                                  const caustics::CausticRays& rays) {
-    if (!empty_) empty_ = gpu::VertexArray(inputs.gpuScene.device(), {});
+  /// Irradiance of the photons on what the camera sees, W/m^2, splatted on the screen.
+  frame::TextureHandle addScreen(frame::FrameGraph& graph, const TechniqueInputs& inputs, Photons photons) {
     frame::PassBuilder pass = graph.addPass("photons", info.name);
-    pass.read(inputs.handles.frame, Access::uniformBuffer, "camera, medium")
-        .read(rays.rays, Access::storageLoad, "photons")
-        .read(inputs.gbuffer.depth, Access::sampled, "receivers")
+    photons.declare(pass, false);
+    pass.read(inputs.gbuffer.depth, Access::sampled, "receivers")
         .read(inputs.gbuffer.geometricNormal, Access::sampled, "sides of receivers");
-    const frame::TextureHandle irradiance = pass.write(
-        graph.createTexture("caustic irradiance",
-                            {.format = GL_RGBA32F, .width = inputs.size.x, .height = inputs.size.y}),
-        Access::colourAttachment, "flux per area");
-    gpu::ProgramDesc desc{.files = {"techniques/surface_caustics/photon.vert.glsl",
-                                    "techniques/surface_caustics/photon.frag.glsl"},
-                          .defines = {}};
-    const scene::MediumInput medium(inputs.handles, inputs.parameters.integer("medium_steps"));
-    medium.define(desc.defines);
-    medium.declare(pass);
-    const auto program = pass.program(std::move(desc));
-    pass.execute([=, this, frame = inputs.handles.frame, gbuffer = inputs.gbuffer,
-                  kernel = inputs.parameters.real("kernel")](frame::PassContext& context) {
-      const gl::Functions& gl = context.gl();
+    const frame::TextureHandle irradiance =
+        pass.write(createIrradiance(graph, inputs.size), Access::colourAttachment, "flux per area");
+    pass.execute([=, this, gbuffer = inputs.gbuffer](frame::PassContext& context) {
       context.bindFramebuffer({{irradiance}});
-      constexpr GLfloat black[4] = {0, 0, 0, 0};
-      gl.ClearBufferfv(GL_COLOR, 0, black);
-      gl.Enable(GL_BLEND);
-      gl.BlendFunc(GL_ONE, GL_ONE);
-      gl.Enable(GL_PROGRAM_POINT_SIZE);
-      gl.BindVertexArray(empty_.id());
-      gpu::Program& photons = context.program(program);
-      photons.use();
-      photons.set("buffer_size", rays.size);
-      photons.set("kernel", kernel);
-      context.bindUniform(glsl::FrameBlock::binding, frame);
-      context.bindStorage(0, rays.rays);
-      medium.bind(context);
+      photons.begin(context, empty_);
       context.bindSampled(glsl::gbuffer_unit_depth, gbuffer.depth);
       context.bindSampled(glsl::gbuffer_unit_geometric_normal, gbuffer.geometricNormal);
-      gl.DrawArrays(GL_POINTS, 0, rays.count());
-      gl.Disable(GL_PROGRAM_POINT_SIZE);
+      photons.draw(context);
+      photons.end(context);
     });
     return irradiance;
+  }
+
+  /// The same by way of caustic maps: irradiance on what the lights' scene maps show, texel by texel.
+  frame::TextureHandle addMaps(frame::FrameGraph& graph, const TechniqueInputs& inputs, Photons photons) {
+    const caustics::CausticRays& rays = photons.rays;
+    frame::PassBuilder pass = graph.addPass("caustic map", info.name);
+    photons.declare(pass, true);
+    pass.read(rays.layerLights, Access::storageLoad, "light of each layer of rays")
+        .read(rays.scene.views, Access::storageLoad, "projections of the maps")
+        .read(rays.scene.lights, Access::storageLoad, "layers of each light")
+        .read(rays.scene.depth, Access::sampled, "receivers");
+    const frame::TextureHandle maps =
+        pass.write(graph.createTexture("caustic maps", {.target = GL_TEXTURE_2D_ARRAY,
+                                                        .format = GL_RGBA32F,
+                                                        .width = rays.scene.size,
+                                                        .height = rays.scene.size,
+                                                        .layers = rays.scene.layers}),
+                   Access::colourAttachment, "flux per area");
+    pass.execute([=, this](frame::PassContext& context) {
+      const caustics::CausticRays& rays = photons.rays;
+      for (int layer = 0; layer < rays.scene.layers; ++layer) {
+        context.bindFramebuffer({{maps, 0, layer}});
+        gpu::Program& points = photons.begin(context, empty_);
+        points.set("layer_count", rays.layers);
+        points.set("map_layer", layer);
+        bindMaps(context, rays);
+        context.bindStorage(3, rays.layerLights);
+        const int room = widestPoint / 2, side = rays.scene.size + widestPoint;
+        context.gl().Viewport(-room, -room, side, side);
+        photons.draw(context);
+      }
+      photons.end(context);
+    });
+    return maps;
+  }
+
+  frame::TextureHandle addLookup(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                 const caustics::CausticRays& rays, frame::TextureHandle maps) {
+    frame::PassBuilder pass = graph.addPass("caustic map lookup", info.name);
+    pass.read(inputs.handles.frame, Access::uniformBuffer, "camera")
+        .read(inputs.gbuffer.depth, Access::sampled, "receivers")
+        .read(inputs.gbuffer.geometricNormal, Access::sampled, "sides of receivers")
+        .read(rays.scene.views, Access::storageLoad, "projections of the maps")
+        .read(rays.scene.lights, Access::storageLoad, "layers of each light")
+        .read(rays.scene.depth, Access::sampled, "what the maps show")
+        .read(maps, Access::sampled, "what arrives there");
+    const frame::TextureHandle irradiance =
+        pass.write(createIrradiance(graph, inputs.size), Access::imageStore, "flux per area");
+    const auto program =
+        pass.program({.files = {"techniques/surface_caustics/lookup.comp.glsl"}, .defines = {}});
+    pass.execute([=, frame = inputs.handles.frame, gbuffer = inputs.gbuffer,
+                  size = inputs.size](frame::PassContext& context) {
+      gpu::Program& kernel = context.program(program);
+      kernel.use();
+      kernel.set("light_count", rays.sceneLights);
+      context.bindUniform(glsl::FrameBlock::binding, frame);
+      context.bindSampled(glsl::gbuffer_unit_depth, gbuffer.depth);
+      context.bindSampled(glsl::gbuffer_unit_geometric_normal, gbuffer.geometricNormal);
+      context.bindSampled(7, maps);
+      bindMaps(context, rays);
+      context.bindImage(0, irradiance, GL_WRITE_ONLY);
+      context.dispatch(size.x, size.y, 1, 8, 8);
+    });
+    return irradiance;
+  }
+
+  static frame::TextureHandle createIrradiance(frame::FrameGraph& graph, glm::ivec2 size) {
+    return graph.createTexture("caustic irradiance",
+                               {.format = GL_RGBA32F, .width = size.x, .height = size.y});
+  }
+
+  /// As caustic_map.glsl reads them.
+  static void bindMaps(frame::PassContext& context, const caustics::CausticRays& rays) {
+    context.bindStorage(1, rays.scene.views);
+    context.bindStorage(2, rays.scene.lights);
+    context.bindSampled(8, rays.scene.depth);
   }
 
   static frame::TextureHandle addReflection(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -103,9 +208,16 @@ class SurfaceCaustics : public Technique {
 
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
-    const caustics::CausticRays rays = caustics::requestRays(graph, inputs, request, "photons", info.name);
+    const bool map = inputs.parameters.choice("splat") == splatLight;
+    const caustics::CausticRays rays =
+        caustics::requestRays(graph, inputs, request, map ? "caustic map" : "photons", info.name);
     if (!rays.rays) return request.target;
-    return addReflection(graph, inputs, addPhotons(graph, inputs, rays), request.target);
+    if (!empty_) empty_ = gpu::VertexArray(inputs.gpuScene.device(), {});
+    const Photons photons(inputs, rays);
+    const frame::TextureHandle irradiance =
+        map ? addLookup(graph, inputs, rays, addMaps(graph, inputs, photons))
+            : addScreen(graph, inputs, photons);
+    return addReflection(graph, inputs, irradiance, request.target);
   }
 
  public:

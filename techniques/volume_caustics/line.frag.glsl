@@ -37,7 +37,7 @@ vec3 shared_scattering(Medium medium, vec3 direction, float distance) {
 
 void main() {
   LineFragment f = line_fragment();
-  if (f.hidden) discard;
+  if (f.share == 0.0) discard;
   CausticRay ray = rays[ray_index];
   Medium medium = scene_medium();
   vec3 place = ray.start.xyz + f.along * ray.direction.xyz;

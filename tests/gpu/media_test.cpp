@@ -54,10 +54,57 @@ TEST_F(MediaTest, SurfaceCausticsAreAsBrightAsTheReference) {
   scene::Scene scene = asset("glass_sphere");
   scene.medium = {};
   render::Renderer renderer(device(), scene);
-  const Image ours =
-      picture(renderer, settings(width, height, Output::caustic, {technique("surface_caustics")}));
   const Image truth = reference(renderer, scene, reference::Term::caustic, 64);
-  EXPECT_NEAR(mean(ours) / mean(truth), 1, 0.1);
+  for (const char* splat : {"screen", "light"}) {
+    const Image ours = picture(renderer, settings(width, height, Output::caustic,
+                                                  {technique("surface_caustics", {{"splat", splat}})}));
+    EXPECT_NEAR(mean(ours) / mean(truth), 1, 0.1) << splat;
+  }
+}
+
+/// All of the floor is seen by the light. Where the ring's caustic is thinner than a pixel, photons on the
+/// screen are wider than those in the map: a kernel has at least a pixel, or a texel.
+TEST_F(MediaTest, CausticMapsShowWhatPhotonsOnTheScreenDo) {
+  struct Bound {
+    const char* scene;
+    double mean, rms;  ///< relative
+  };
+  for (const auto& [name, ofMean, ofRms] :
+       {Bound{"glass_sphere", 0.01, 0.1}, Bound{"gem", 0.01, 0.1}, Bound{"ring", 0.05, 0.3}}) {
+    SCOPED_TRACE(name);
+    scene::Scene scene = asset(name);
+    scene.medium = {};
+    render::Renderer renderer(device(), scene);
+    const auto splat = [&](const char* where) {
+      return picture(renderer, settings(width, height, Output::caustic,
+                                        {technique("surface_caustics", {{"splat", where}})}));
+    };
+    const Image screen = splat("screen"), map = splat("light");
+    EXPECT_EQ(stateOf(renderer, "surface_caustics", "caustic map"), "run");
+    EXPECT_EQ(stateOf(renderer, "surface_caustics", "photons"), "unknown");
+    double difference = 0, square = 0;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const double a = double(screen.at(x, y, 1)), b = double(map.at(x, y, 1));
+        difference += (a - b) * (a - b);
+        square += a * a;
+      }
+    EXPECT_NEAR(mean(map) / mean(screen), 1, ofMean);
+    EXPECT_LT(std::sqrt(difference / square), ofRms);
+  }
+}
+
+/// A point light's map is a cube: photons near its edges lie in two faces.
+TEST_F(MediaTest, CausticMapsOfCubesHaveNoSeams) {
+  scene::Scene scene = asset("glass_sphere");
+  scene.medium = {};
+  for (scene::LightSource& light : scene.lights) light.type = glsl::light_point;
+  render::Renderer renderer(device(), scene);
+  const auto brightness = [&](const char* where) {
+    return mean(picture(renderer, settings(width, height, Output::caustic,
+                                           {technique("surface_caustics", {{"splat", where}})})));
+  };
+  EXPECT_NEAR(brightness("light") / brightness("screen"), 1, 0.02);
 }
 
 TEST_F(MediaTest, AMediumThatScattersNothingCostsNothing) {
@@ -94,8 +141,11 @@ TEST_F(MediaTest, WithoutSpecularSurfacesThereAreNoLines) {
                0);
   EXPECT_EQ(stateOf(renderer, "volume_caustics", "caustic lines"), "the scene has no specular surface");
   EXPECT_EQ(stateOf(renderer, "caustics", "specular front"), "unknown");
-  expectWithin(picture(renderer, settings(width, height, Output::caustic, {technique("surface_caustics")})),
-               0, 0);
+  for (const char* splat : {"screen", "light"})
+    expectWithin(picture(renderer, settings(width, height, Output::caustic,
+                                            {technique("surface_caustics", {{"splat", splat}})})),
+                 0, 0);
+  EXPECT_EQ(stateOf(renderer, "surface_caustics", "caustic map"), "the scene has no specular surface");
 }
 
 TEST_F(MediaTest, TechniquesThatShareRaysTraceThemOnce) {

@@ -194,22 +194,35 @@ TEST(Airlight, DiscsSendNoMoreThanTheirSolidAngle) {
   }
 }
 
-/// The fragments of a line between two points of the picture, one per column or row; and their sum with the
-/// flux, sigma_s, phase function and transmittances left out, over the pixel's solid angle.
-double sumOfFragments(vec3 from, vec3 to, float focal) {
+/// The fragments of a line between two points of the picture, one per column or row that it touches; their
+/// sum with the flux, sigma_s, phase function and transmittances left out, over the pixel's solid angle. What
+/// lies behind `depth` is hidden; 0: nothing.
+double sumOfFragments(vec3 from, vec3 to, float focal, float depth = 0) {
   const vec3 direction = normalize(to - from);
   const vec2 a = vec2(from.x, from.y) / from.z, b = vec2(to.x, to.y) / to.z;
-  const vec2 axis = std::abs(b.x - a.x) >= std::abs(b.y - a.y) ? vec2(1, 0) : vec2(0, 1);
-  const double low = focal * std::min(dot(axis, a), dot(axis, b)),
-               high = focal * std::max(dot(axis, a), dot(axis, b));
+  const vec2 larger = std::abs(b.x - a.x) >= std::abs(b.y - a.y) ? vec2(1, 0) : vec2(0, 1);
+  const vec2 axis = dot(larger, b - a) < 0 ? -larger : larger;
   double sum = 0;
-  for (double u = std::ceil(low - 0.5) + 0.5; u < high; ++u) {
-    const float l = caustic_line_position(from, direction, axis, axis * (float(u) / focal));
+  for (float u = std::floor(focal * dot(axis, a)); u < focal * dot(axis, b); ++u) {
+    const vec2 part = caustic_line_part(from, direction, axis, vec2(0, length(to - from)), depth,
+                                        vec2(u / focal, (u + 1) / focal));
+    if (!(part.x < part.y)) continue;
+    const float l = caustic_line_position(from, direction, axis, axis * (0.5f * (part.x + part.y)));
     const vec3 x = from + l * direction;
-    const vec2 rate = abs(caustic_line_rate(x, direction));
-    const double cosine = x.z / length(x);
-    sum +=
-        caustic_line_weight(x, std::max(rate.x, rate.y), focal) * cosine * cosine * cosine / (focal * focal);
+    const float rate = dot(caustic_line_rate(x, direction), axis);
+    const double cosine = x.z / length(x), share = double(part.y - part.x) * double(focal);
+    sum += share * caustic_line_weight(x, rate, focal) * cosine * cosine * cosine / (focal * focal);
+  }
+  return sum;
+}
+
+/// The same by quadrature of the line: int dl / R^2.
+double irradianceOfLine(vec3 from, vec3 to, float depth = 0) {
+  double sum = 0;
+  constexpr int n = 20000;
+  for (int k = 0; k < n; ++k) {
+    const vec3 x = mix(from, to, (k + 0.5f) / n);
+    if (depth == 0 || x.z < depth) sum += length(to - from) / n / dot(x, x);
   }
   return sum;
 }
@@ -221,13 +234,13 @@ TEST(CausticLine, FragmentsSumToTheIrradianceOfTheLineAtTheEye) {
     const vec3 from(2 * unit(random), 2 * unit(random), 3 + 2 * unit(random));
     const vec3 to = from + vec3(unit(random), unit(random), 0.9f * unit(random));
     if (to.z < 0.5f) continue;
-    double exact = 0;
-    constexpr int n = 20000;
-    for (int k = 0; k < n; ++k) {
-      const vec3 x = mix(from, to, (k + 0.5f) / n);
-      exact += length(to - from) / n / dot(x, x);
-    }
+    const double exact = irradianceOfLine(from, to);
     EXPECT_NEAR(sumOfFragments(from, to, 4000) / exact, 1, 0.01) << i;
+    EXPECT_NEAR(sumOfFragments(from, to, 40) / exact, 1, 0.01) << i << ": a line of some pixels";
+    const float half = 0.5f * (from.z + to.z);
+    EXPECT_NEAR(sumOfFragments(from, to, 40, half) / irradianceOfLine(from, to, half), 1, 0.01)
+        << i << ": half of it hidden";
+    EXPECT_EQ(sumOfFragments(from, to, 40, 0.9f * std::min(from.z, to.z)), 0) << i << ": all of it hidden";
     const double cosine = [&] {
       const vec3 middle = 0.5f * (from + to);
       return double(middle.z / length(middle));

@@ -1,0 +1,53 @@
+// Irradiance of the caustics on what the camera sees, from the lights' caustic maps: interpolated among those texels that
+// show the same surface.
+#include "glsl/gbuffer_input.glsl"
+#include "techniques/surface_caustics/caustic_map.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 7) uniform sampler2DArray caustic_map;  // W/m^2
+layout(rgba32f, binding = 0) writeonly uniform image2D irradiance;
+uniform int light_count;  // of scene_lights
+
+const float plane_bias = 2.0;  // texel footprints by which a texel's surface may leave the receiver's plane
+
+vec3 map_irradiance(ShadowLight maps, vec3 position, vec3 normal) {
+  vec3 towards = maps.origin.w > 0.0 ? maps.origin.xyz - position : maps.origin.xyz;
+  if (!(dot(normal, towards) > 0.0)) return vec3(0.0);
+  ShadowView view = scene_views[maps.info.x + shadow_face(maps.info.y, scene_views[maps.info.x], position)];
+  ShadowPoint q = shadow_project(view, position);
+  if (!shadow_inside(q)) return vec3(0.0);
+  int size = int(view.info.z);
+  vec2 corner = q.uv * float(size) - 0.5;
+  vec2 weight = fract(corner);
+  float bias = plane_bias * shadow_footprint(view, q.depth);
+  vec3 sum = vec3(0.0);
+  float total = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 step = ivec2(i & 1, i >> 1);
+    ivec2 texel = ivec2(floor(corner)) + step;
+    if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(size)))) continue;
+    MapSurface surface = map_surface(view, texel);
+    if (!surface.present || abs(dot(normal, surface.position - position)) > bias) continue;
+    vec2 w = mix(1.0 - weight, weight, vec2(step));
+    sum += w.x * w.y * texelFetch(caustic_map, ivec3(texel, view.info.y), 0).rgb;
+    total += w.x * w.y;
+  }
+  return total > 0.0 ? sum / total : vec3(0.0);
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  float depth = pixel_depth(pixel);
+  vec3 sum = vec3(0.0);
+  if (depth > 0.0) {
+    vec3 position = pixel_position(pixel, depth);
+    vec3 normal = pixel_geometric_normal(pixel);
+    for (int i = 0; i < light_count; ++i) {
+      // Samples of a light without extent share its map.
+      if (i > 0 && scene_lights[i].info.x == scene_lights[i - 1].info.x) continue;
+      sum += map_irradiance(scene_lights[i], position, normal);
+    }
+  }
+  imageStore(irradiance, pixel, vec4(sum, 0.0));
+}
