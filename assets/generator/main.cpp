@@ -14,11 +14,14 @@ using limn::assets::allScenes;
 using limn::assets::EnvironmentEntry;
 using limn::assets::SceneEntry;
 
-int usage(const std::string& problem) {
+std::string usage() {
   std::string names;
   for (const SceneEntry& entry : allScenes()) names += fmt::format(" {}", entry.name);
-  fmt::print(stderr, "limn-make-scenes: {}; usage: limn-make-scenes FOLDER [SCENE...] | --list; scenes:{}\n",
-             problem, names);
+  return "usage: limn-make-scenes FOLDER [SCENE...] | --list; scenes:" + names;
+}
+
+int wrong(const std::string& problem) {
+  fmt::print(stderr, "limn-make-scenes: {}; {}\n", problem, usage());
   return 2;
 }
 
@@ -49,16 +52,21 @@ void writeEnvironments(const std::filesystem::path& folder) {
 
 int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
-  if (arguments.empty()) return usage("no folder given");
+  if (arguments.empty()) return wrong("no folder given");
+  if (arguments[0] == "--help" || arguments[0] == "-h") {
+    fmt::print("{}\n", usage());
+    return 0;
+  }
   if (arguments[0] == "--list") {
     for (const SceneEntry& entry : allScenes()) fmt::print("{}\n", entry.name);
     return 0;
   }
+  if (arguments[0].starts_with('-')) return wrong(fmt::format("unknown option '{}'", arguments[0]));
   std::vector<SceneEntry> chosen;
   for (std::size_t i = 1; i < arguments.size(); ++i) {
     const auto found = std::find_if(allScenes().begin(), allScenes().end(),
                                     [&](const SceneEntry& entry) { return entry.name == arguments[i]; });
-    if (found == allScenes().end()) return usage(fmt::format("no scene is called '{}'", arguments[i]));
+    if (found == allScenes().end()) return wrong(fmt::format("no scene is called '{}'", arguments[i]));
     chosen.push_back(*found);
   }
   if (chosen.empty()) chosen = allScenes();

@@ -371,8 +371,14 @@ TEST(Assets, TheGeneratorIsDeterministicAndRefusesUnknownNames) {
     ++compared;
   }
   EXPECT_GE(compared, 5);
-  const int status = std::system((program + folder.string() + " no_such_scene 2> /dev/null").c_str());
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 2);
+  const auto status = [&](const std::string& arguments) {
+    const int result = std::system((program + arguments + " > /dev/null 2>&1").c_str());
+    return WIFEXITED(result) ? WEXITSTATUS(result) : -1;
+  };
+  EXPECT_EQ(status(folder.string() + " no_such_scene"), 2);
+  EXPECT_EQ(status("--folder"), 2);
+  EXPECT_EQ(status("--help"), 0);
+  EXPECT_FALSE(fs::exists("--folder") || fs::exists("--help"));
   fs::remove_all(folder);
 }
 
