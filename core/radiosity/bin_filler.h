@@ -14,7 +14,7 @@
 namespace limn::radiosity {
 
 class BinFiller {
-  static constexpr int most = 32;  // bins in a row
+  static constexpr float cornerLength = 1.7321f;  // of the longest rays, those to a face's corners
 
  public:
   explicit BinFiller(const LinkSettings& settings)
@@ -31,23 +31,25 @@ class BinFiller {
   }
 
   /// Links that receivers share are in the bins as the receivers' parent sees them; between those and the
-  /// receivers' own single bins may stay empty. An empty bin with at least three neighbours on its face that
-  /// are not (at its edges: all but one) takes the longest of their links, and so on along a row. Two sweeps.
+  /// receivers' own single bins may stay as they were, empty or with what lies behind. A bin of which all
+  /// neighbours but one are nearer than half as far takes the longest of their links, and so on
+  /// along a row. Two sweeps.
   void close(Bins bins) const {
     if (!footprint_) return;
-    uint32_t empty[most + 2] = {};  // a bit per bin; nothing beyond the face's first and last row
-    for (int face = 0; face < 6; ++face) {
-      const size_t first = index(static_cast<uint32_t>(face), 0, 0);
-      uint32_t any = 0, all = ~0u;
-      for (int y = 0; y < n_; ++y) {
-        const uint32_t row = emptyBins(bins.links + first + static_cast<size_t>(y * n_));
-        empty[y + 1] = row;
-        any |= row;
-        all &= row;
+    for (uint32_t face = 0; face < 6; ++face) {
+      const glm::vec3 up = onFace(bins.up, face);
+      const float highest = up.x + std::abs(up.y) + cornerLength * bins.margin;
+      uint32_t rows =
+          0;  // a bit for each to look at: those above the horizon, then those beside what was closed
+      for (int y = 0; y < n_; ++y) rows |= (highest + up.z * centre(y) >= 0 ? 1u : 0u) << y;
+      for (int sweep = 0; sweep < 2; ++sweep) {
+        uint32_t closed = 0;
+        for (; rows != 0; rows &= rows - 1) {
+          const int y = std::countr_zero(rows);
+          if (closeRow(bins, index(face, 0, y), y)) closed |= 1u << y;
+        }
+        rows = closed >> 1 | (closed << 1 & ~0u >> (32 - n_));
       }
-      if (any == 0 || all == ~0u >> (32 - n_)) continue;
-      for (int sweep = 0; sweep < 2; ++sweep)
-        for (int y = 0; y < n_; ++y) closeRow(bins, first, y, &empty[y + 1]);
     }
   }
 
@@ -124,32 +126,47 @@ class BinFiller {
     bins.links[bin] = link;
   }
 
-  uint32_t emptyBins(const uint32_t* row) const {
-    uint32_t bits = 0;
-    int x = 0;
-    for (; x + 4 <= n_; x += 4) bits |= laneMask(loadInts(row + x) == -1) << x;
-    for (; x < n_; ++x) bits |= (row[x] == glsl::no_link ? 1u : 0u) << x;
-    return bits;
+  /// Distances of the bins around four of a row. Beyond the face there is nothing in between, but for empty
+  /// bins.
+  struct Around {
+    Float4 left, right, up, down;
+  };
+  Around around(const float* own, int x, int y) const {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    const Float4 here = load(own), beyond = here == infinity ? splat(0) : splat(infinity);
+    return {.left = x > 0 ? load(own - 1) : Float4{beyond[0], here[0], here[1], here[2]},
+            .right = x + 4 < n_ ? load(own + 1) : Float4{here[1], here[2], here[3], beyond[3]},
+            .up = y > 0 ? load(own - n_) : beyond,
+            .down = y + 1 < n_ ? load(own + n_) : beyond};
   }
 
-  /// `empty`: of this row; the rows above and below lie around it.
-  void closeRow(Bins bins, size_t first, int y, uint32_t* empty) const {
-    if (empty[0] == 0) return;
-    const uint32_t up = empty[-1], down = empty[1];
-    for (uint32_t closed = ~0u; closed != 0; empty[0] &= ~closed) {
-      const uint32_t left = empty[0] << 1, right = empty[0] >> 1;
-      const uint32_t several = (left & right) | (up & down) | ((left | right) & (up | down));
-      closed = empty[0] & ~several;
-      for (uint32_t some = closed; some != 0; some &= some - 1)
-        closeOne(bins, first + static_cast<size_t>(y * n_), std::countr_zero(some), y);
+  /// Whether there was something to close.
+  bool closeRow(const Bins& bins, size_t row, int y) const {
+    constexpr float nearer2 = 0.25f;  // half as far, squared
+    bool closed = false;
+    for (int start = 0; start < n_; start += 4) {
+      const int x = std::min(start, n_ - 4);
+      float* own = bins.distance2 + row + x;
+      for (uint32_t holes = ~0u; holes != 0;) {
+        const Around a = around(own, x, y);
+        const Float4 limit = load(own) * nearer2;
+        const Int4 nearer = (a.left < limit) + (a.right < limit) + (a.up < limit) + (a.down < limit);
+        holes = laneMask(nearer <= -3);
+        closed = closed || holes != 0;
+        for (uint32_t some = holes; some != 0; some &= some - 1) {
+          const int k = std::countr_zero(some);
+          closeOne(bins, row + static_cast<size_t>(x + k), x + k, y, limit[k]);
+        }
+      }
     }
+    return closed;
   }
 
-  void closeOne(Bins bins, size_t row, int x, int y) const {
-    const size_t bin = row + static_cast<size_t>(x), width = static_cast<size_t>(n_);
+  void closeOne(const Bins& bins, size_t bin, int x, int y, float limit) const {
+    const size_t width = static_cast<size_t>(n_);
     size_t longest = bin;
     const auto see = [&](bool inside, size_t neighbour) {
-      if (!inside || bins.links[neighbour] == glsl::no_link) return;
+      if (!inside || !(bins.distance2[neighbour] < limit)) return;
       if (longest == bin || bins.distance2[neighbour] > bins.distance2[longest]) longest = neighbour;
     };
     see(x > 0, bin - 1);
@@ -218,8 +235,7 @@ class BinFiller {
   [[gnu::noinline]] void rasterWide(const Bins& bins, const Disc& c, uint32_t face, const Box& box) const {
     const RowCut cut(c);
     const glm::vec3 up = onFace(bins.up, face);
-    // Of rays as long as those to a face's corners.
-    const float margin = 1.7321f * bins.margin;
+    const float margin = cornerLength * bins.margin;
     if (up.x + std::abs(up.y) + std::abs(up.z) < -margin) return;
     for (int four = box.y0; four <= box.y1; four += 4) {
       Int4 begin = Int4{} + box.x0, end = Int4{} + box.x1;

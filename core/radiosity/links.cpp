@@ -83,7 +83,7 @@ class Traversal {
       : groups_(forest.groups()), test_(settings), filler_(settings), out_(out) {}
 
   /// Fills `bins`, which hold the parent's links, with what `slot` need not leave to its children.
-  void visit(uint32_t slot, std::span<const uint32_t> candidates, Bins bins, std::vector<uint32_t>& stack,
+  void visit(uint32_t slot, std::span<const uint32_t> candidates, Bins& bins, std::vector<uint32_t>& stack,
              std::vector<uint32_t>* waitingOut) const {
     Receiver receiver = Receiver::of(groups_[slot / 4], slot % 4);
     receiver.extent /= sharing;
@@ -110,7 +110,8 @@ class Traversal {
     std::copy(parent.links.begin(), parent.links.end(), own.links.begin());
     watch.add(b.times.inherit);
     own.waiting.clear();
-    visit(slot, parent.waiting, own.bins(), b.stack, &own.waiting);
+    Bins bins = own.bins();
+    visit(slot, parent.waiting, bins, b.stack, &own.waiting);
     watch.add(b.times.create);
   }
 
@@ -118,8 +119,8 @@ class Traversal {
   void branch(uint32_t slot, size_t level, const Inner& parent, Branch& b) const {
     if (level == 0) {
       Stopwatch watch;
-      const Bins bins{.distance2 = b.distance2.data(),
-                      .links = out_ + static_cast<size_t>(slot) * parent.links.size()};
+      Bins bins{.distance2 = b.distance2.data(),
+                .links = out_ + static_cast<size_t>(slot) * parent.links.size()};
       std::copy(parent.distance2.begin(), parent.distance2.end(), bins.distance2);
       std::copy(parent.links.begin(), parent.links.end(), bins.links);
       watch.add(b.times.inherit);

@@ -258,6 +258,26 @@ TEST(RadiosityTest, HierarchyAgreesWithAllPairs) {
 
 /// A block that stands on a floor, with its lowest face in the floor's plane: the floor's vertices below it
 /// are corners of triangles that are seen around it, and must not be as bright as if no block were there.
+/// Below a plate that hides a bright ceiling: what comes through between links that receivers share and those
+/// of their own.
+TEST(RadiosityTest, SharedLinksLeaveNoHoles) {
+  const std::vector<TriangleMesh> meshes = {
+      rectangleMesh({-1.6f, 0.5f, -1.6f}, {3.2f, 0, 0}, {0, 0, 3.2f}, 40),
+      rectangleMesh({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, 60),
+      rectangleMesh({-2, 2, -2}, {4, 0, 0}, {0, 0, 4}, 30)};
+  const World shared(meshes, {}), flat(meshes, {}, true);
+  const std::vector<float> through = shared.received({0, 0, 1}), around = flat.received({0, 0, 1});
+  const ElementSpace space = spaceOf(meshes);
+  float most = 0;
+  for (size_t i = 0; i < through.size(); ++i) {
+    const glm::vec3 p = space.worldPoint(shared.surfels.vertices[i]);
+    if (shared.surfels.objects[i] == 1 && std::max(std::abs(p.x), std::abs(p.z)) < 1)
+      most = std::max(most, through[i] - around[i]);
+  }
+  std::printf("through a plate: at most %.5f of the ceiling\n", double(most));
+  EXPECT_LT(most, 0.002f);
+}
+
 TEST(RadiosityTest, WhatLiesWithinAClosedBodyTakesTheLightAroundIt) {
   TriangleMesh block = roomMesh(8);
   for (size_t t = 0; t < block.indices.size(); t += 3) std::swap(block.indices[t + 1], block.indices[t + 2]);
