@@ -3,13 +3,15 @@
 //
 // Define TABLE_FORMAT (sat_format), WIDE_Z 1: sums of z over a sub-kernel may need two words, POOLED 1: Chebyshev's
 // inequality once for all sub-kernels with E(z) < d, 0: for each, SIMILAR_KERNELS 1: every light has one view, in which its
-// kernels are scaled copies of each other; 0: some do not, N_BUFFER 1: shadow_min_max is an N-buffer, 0: a min-max pyramid.
+// kernels are scaled copies of each other; 0: some do not, BOUNDS_DEPTH: the lookup that suits what shadow_min_max is,
+// min_max_depth, min_max_windows_depth or n_buffer_depth.
 //
 // Loops end in their condition: software renderers run a body once more where it comes first. They run what nobody wants,
 // too, so loops of lanes without work take one round.
 #ifndef LIMN_SUB_KERNELS_GLSL
 #define LIMN_SUB_KERNELS_GLSL
 #include "glsl/blocker_search.glsl"
+#include "glsl/min_max_windows.glsl"
 #include "glsl/n_buffer.glsl"
 #include "glsl/variance_kernel.glsl"
 #include "glsl/visibility.glsl"
@@ -332,12 +334,8 @@ struct KernelBounds {
 
 KernelBounds family_bounds(KernelFamily f, ShadowCursor cursor, ShadowKernel kernel) {
   ShadowThresholds t = f.thresholds;
-#if N_BUFFER
   ivec4 texels = kernel_texels(cursor, kernel);
-  vec2 stored = n_buffer_depth(shadow_min_max, texels.xy, texels.zw, int(cursor.layer));
-#else
-  vec2 stored = kernel_depth_bounds(cursor, kernel);
-#endif
+  vec2 stored = BOUNDS_DEPTH(shadow_min_max, texels.xy, texels.zw, int(cursor.layer));
   float least = shadow_metres(cursor.view, stored.x);
   float greatest = shadow_metres(cursor.view, stored.y);
   ShadowKernel centres = kernel_centres(cursor, kernel);
