@@ -3,13 +3,15 @@
 //
 // Define TABLE_FORMAT (sat_format), WIDE_Z 1: sums of z over a sub-kernel may need two words, POOLED 1: Chebyshev's
 // inequality once for all sub-kernels with E(z) < d, 0: for each, SIMILAR_KERNELS 1: every light has one view, in which its
-// kernels are scaled copies of each other; 0: some do not, N_BUFFER 1: shadow_min_max is an N-buffer, 0: a min-max pyramid.
+// kernels are scaled copies of each other; 0: some do not, BOUNDS_DEPTH: the lookup that suits what shadow_min_max is,
+// min_max_depth, min_max_windows_depth or n_buffer_depth.
 //
 // Loops end in their condition: software renderers run a body once more where it comes first. They run what nobody wants,
 // too, so loops of lanes without work take one round.
 #ifndef LIMN_SUB_KERNELS_GLSL
 #define LIMN_SUB_KERNELS_GLSL
 #include "glsl/blocker_search.glsl"
+#include "glsl/min_max_windows.glsl"
 #include "glsl/n_buffer.glsl"
 #include "glsl/variance_kernel.glsl"
 #include "glsl/visibility.glsl"
@@ -171,28 +173,29 @@ void tally_moments(inout KernelTally tally, KernelFamily f, TexelBox box, SubKer
 // Texels that stand for a box: up to 2 x 2, or 4 in a line.
 ivec2 box_taps(ivec2 extent) { return min(extent, extent.x == 1 ? ivec2(1, 4) : extent.y == 1 ? ivec2(4, 1) : ivec2(2)); }
 
-// Adds texel `tap` of those.
-void tally_texel(inout KernelTally tally, KernelFamily f, TexelBox box, int tap, bool wanted) {
+// Adds those of one box.
+void tally_texels(inout KernelTally tally, KernelFamily f, TexelBox box, bool wanted) {
   ShadowThresholds t = f.thresholds;
   ivec2 extent = box.high - box.low;
-  ivec2 taps = box_taps(extent);
-  ivec2 place = taps == ivec2(2) ? ivec2(tap & 1, tap >> 1) : min(ivec2(tap), taps - 1);
-  ivec2 step = extent * (2 * place + 1);
-  ivec2 texel = box.low + ivec2(whole_quotient(step.x, 2 * taps.x), whole_quotient(step.y, 2 * taps.y));
-  float stored = texelFetch(shadow_depth, ivec3(texel, f.layer), 0).r;
-  float depth = t.near + stored * float(sat_scale(table_format)) / t.quanta;
-  vec2 centre = vec2(texel) + 0.5;
-  if (wanted && stored < 1.0 && threshold_blocks(t, centre, depth)) {
+  ivec2 taps = max(box_taps(extent), ivec2(1));  // boxes that nobody wants may be empty
+  vec2 part = vec2(extent) / vec2(taps);
+  float metres = float(sat_scale(table_format)) / t.quanta;
+  for (int tap = 0; tap < 4; ++tap) {
+    ivec2 place = taps == ivec2(2) ? ivec2(tap & 1, tap >> 1) : min(ivec2(tap), taps - 1);
+    vec2 corner = vec2(box.low) + part * vec2(place);
+    ivec2 texel = ivec2(corner + 0.5 * part);
+    float stored = texelFetch(shadow_depth, ivec3(texel, f.layer), 0).r;
+    float depth = t.near + stored * metres;
+    vec2 centre = vec2(texel) + 0.5;
+    bool blocks = wanted && tap < taps.x * taps.y && stored < 1.0 && threshold_blocks(t, centre, depth);
     float gap = threshold_gap(t, centre, depth);
-    vec2 part = vec2(extent) / vec2(taps);
 #if POOLED
     float blocked = box.weight * part.x * part.y;
 #else
-    vec2 corner = vec2(box.low) + part * vec2(place);
     float blocked = hidden_texels(f, tally, corner, corner + part, gap);
 #endif
-    tally.blocked += blocked;
-    tally.reach += blocked * gap;
+    tally.blocked += blocks ? blocked : 0.0;
+    tally.reach += blocks ? blocked * gap : 0.0;
   }
 }
 
@@ -252,44 +255,50 @@ bool tally_uniform(inout KernelTally tally, KernelFamily f, KernelAxes axes, int
   bool open = false;
   ivec2 count = max(min(ivec2(parts), ivec2(axes.x.last - axes.x.first, axes.y.last - axes.y.first)), ivec2(1));
   ivec2 end = wanted ? count + rim : ivec2(1 - rim);
+  int rows = parts + 2 * rim;
+  int columns = max(whole_quotient(32, rows), 1);
   int i = -rim;
   do {
+    // Columns whose sub-kernels have a bit each: few lanes need texels, so they take them together.
+    int from = i;
+    int till = min(from + columns, end.x);
+    uint mixed = 0u;  // sub-kernels of these columns, bit by bit
     TexelBox box;
-    box.low.x = clamp(axis_edge(axes.x, i, count.x), 0, f.size);
-    box.high.x = clamp(axis_edge(axes.x, i + 1, count.x), 0, f.size);
-    float weight = wanted ? axis_weight(axes.x, i, count.x) : 0.0;
-    box.high.y = clamp(axis_edge(axes.y, -rim, count.y), 0, f.size);
-    uvec4 left = table_sums(f, ivec2(box.low.x, box.high.y));
-    uvec4 right = table_sums(f, box.high);
-    uint mixed = 0u;  // sub-kernels of this column
-    int j = -rim;
     do {
-      uvec4 s00 = left;
-      uvec4 s10 = right;
-      box.low.y = box.high.y;
-      box.high.y = clamp(axis_edge(axes.y, j + 1, count.y), 0, f.size);
-      box.weight = weight * axis_weight(axes.y, j, count.y);
-      left = table_sums(f, ivec2(box.low.x, box.high.y));
-      right = table_sums(f, box.high);
-      bool undecided = tally_box(tally, f, box, right, left, s10, s00);
-      bool whole = leave_whole && i == 0 && j == 0;
-      open = open || (undecided && whole);
-      mixed |= undecided && !whole ? 1u << uint(j + rim) : 0u;
-    } while (++j < end.y);
-    int tap = 0;
+      box.low.x = clamp(axis_edge(axes.x, i, count.x), 0, f.size);
+      box.high.x = clamp(axis_edge(axes.x, i + 1, count.x), 0, f.size);
+      float weight = wanted ? axis_weight(axes.x, i, count.x) : 0.0;
+      box.high.y = clamp(axis_edge(axes.y, -rim, count.y), 0, f.size);
+      uvec4 left = table_sums(f, ivec2(box.low.x, box.high.y));
+      uvec4 right = table_sums(f, box.high);
+      int j = -rim;
+      do {
+        uvec4 s00 = left;
+        uvec4 s10 = right;
+        box.low.y = box.high.y;
+        box.high.y = clamp(axis_edge(axes.y, j + 1, count.y), 0, f.size);
+        box.weight = weight * axis_weight(axes.y, j, count.y);
+        left = table_sums(f, ivec2(box.low.x, box.high.y));
+        right = table_sums(f, box.high);
+        bool undecided = tally_box(tally, f, box, right, left, s10, s00);
+        bool whole = leave_whole && i == 0 && j == 0;
+        open = open || (undecided && whole);
+        mixed |= undecided && !whole ? 1u << uint((i - from) * rows + j + rim) : 0u;
+      } while (++j < end.y);
+    } while (++i < till);
     do {
-      int row = findLSB(mixed | 0x80000000u) - rim;
-      box.low.y = clamp(axis_edge(axes.y, row, count.y), 0, f.size);
-      box.high.y = clamp(axis_edge(axes.y, row + 1, count.y), 0, f.size);
-      box.weight = weight * axis_weight(axes.y, row, count.y);
-      tally_texel(tally, f, box, tap, mixed != 0u);
-      ivec2 taps = box_taps(box.high - box.low);
-      if (++tap >= taps.x * taps.y) {
-        tap = 0;
-        mixed &= mixed - 1u;
-      }
+      int bit = findLSB(mixed | 0x80000000u);
+      int column = whole_quotient(bit, rows);
+      ivec2 place = ivec2(from + column, bit - column * rows - rim);
+      box.low = ivec2(axis_edge(axes.x, place.x, count.x), axis_edge(axes.y, place.y, count.y));
+      box.high = ivec2(axis_edge(axes.x, place.x + 1, count.x), axis_edge(axes.y, place.y + 1, count.y));
+      box.low = clamp(box.low, ivec2(0), ivec2(f.size));
+      box.high = clamp(box.high, ivec2(0), ivec2(f.size));
+      box.weight = axis_weight(axes.x, place.x, count.x) * axis_weight(axes.y, place.y, count.y);
+      tally_texels(tally, f, box, mixed != 0u);
+      mixed &= mixed - 1u;
     } while (mixed != 0u);
-  } while (++i < end.x);
+  } while (i < end.x);
   return open;
 }
 
@@ -308,11 +317,7 @@ void tally_adaptive(inout KernelTally tally, KernelFamily f, KernelAxes axes, in
                            table_sums(f, ivec2(box.high.x, box.low.y)), table_sums(f, box.low));
     ivec2 extent = box.high - box.low;
     bool leaf = int(node.x) >= height || max(extent.x, extent.y) <= 2;
-    ivec2 taps = box_taps(extent);
-    int tap = mixed && leaf ? 0 : taps.x * taps.y - 1;
-    do {
-      tally_texel(tally, f, box, tap, mixed && leaf);
-    } while (++tap < taps.x * taps.y);
+    tally_texels(tally, f, box, mixed && leaf);
     node = mixed && !leaf ? quadtree_child(node) : quadtree_next(node);
   } while (wanted && !quadtree_done(node));
 }
@@ -329,12 +334,8 @@ struct KernelBounds {
 
 KernelBounds family_bounds(KernelFamily f, ShadowCursor cursor, ShadowKernel kernel) {
   ShadowThresholds t = f.thresholds;
-#if N_BUFFER
   ivec4 texels = kernel_texels(cursor, kernel);
-  vec2 stored = n_buffer_depth(shadow_min_max, texels.xy, texels.zw, int(cursor.layer));
-#else
-  vec2 stored = kernel_depth_bounds(cursor, kernel);
-#endif
+  vec2 stored = BOUNDS_DEPTH(shadow_min_max, texels.xy, texels.zw, int(cursor.layer));
   float least = shadow_metres(cursor.view, stored.x);
   float greatest = shadow_metres(cursor.view, stored.y);
   ShadowKernel centres = kernel_centres(cursor, kernel);

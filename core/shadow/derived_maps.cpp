@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/shadow/summed_area_passes.h"
+#include "glsl/min_max_windows.glsl"
 #include "glsl/n_buffer.glsl"
 #include "glsl/summed_area_table.glsl"
 
@@ -17,7 +18,7 @@ namespace {
 using frame::Access;
 using frame::TextureHandle;
 
-enum class PyramidKind { minMax, moments };
+enum class PyramidKind { minMax, windows, moments };
 
 struct KnownTable {
   TextureHandle source;
@@ -41,23 +42,28 @@ struct KnownNBuffer {
 };
 
 std::string_view nameOf(PyramidKind kind) {
+  if (kind == PyramidKind::windows) return "min-max windows";
   return kind == PyramidKind::minMax ? "min-max pyramid" : "moment mips";
 }
 
 /// Level 0 from the shadow maps, each further level from the one before: a pass each, so that the graph puts
 /// the barriers between them.
 TextureHandle addPyramid(frame::FrameGraph& graph, TextureHandle source, PyramidKind kind, bool cacheable) {
-  const gpu::TextureDesc desc = derivedDesc(graph, source, nameOf(kind), GL_RG32F, 0);
+  const gpu::TextureDesc& maps = graph.desc(source);
+  const int levels =
+      kind == PyramidKind::windows ? glsl::min_max_windows_levels(std::max(maps.width, maps.height)) : 0;
+  const gpu::TextureDesc desc = derivedDesc(graph, source, nameOf(kind), GL_RG32F, levels);
   TextureHandle pyramid = graph.createTexture(nameOf(kind), desc);
-  const std::string moments = kind == PyramidKind::moments ? "1" : "0";
+  const auto is = [kind](PyramidKind other) { return kind == other ? "1" : "0"; };
   for (int level = 0; level < desc.levels; ++level) {
     frame::PassBuilder pass = graph.addPass(fmt::format("{} level {}", nameOf(kind), level), "shadow");
     if (level == 0) pass.read(source, Access::sampled, "shadow maps");
     pyramid = pass.write(pyramid, level == 0 ? Access::imageStore : Access::imageLoadStore,
                          level == 0 ? "finest level" : "next level from the one before");
-    const frame::ProgramHandle program =
-        pass.program({.files = {"glsl/shadow/pyramid.comp.glsl"},
-                      .defines = {{"BASE", level == 0 ? "1" : "0"}, {"MOMENTS", moments}}});
+    const frame::ProgramHandle program = pass.program({.files = {"glsl/shadow/pyramid.comp.glsl"},
+                                                       .defines = {{"BASE", level == 0 ? "1" : "0"},
+                                                                   {"MOMENTS", is(PyramidKind::moments)},
+                                                                   {"WINDOWS", is(PyramidKind::windows)}}});
     if (cacheable) pass.cacheable();
     pass.execute([source, pyramid, program, level, desc](frame::PassContext& context) {
       context.program(program).use();
@@ -184,6 +190,10 @@ void DerivedMaps::begin(frame::FrameGraph& graph) {
 MinMaxPyramid DerivedMaps::minMaxPyramid(TextureHandle depth, bool cacheable) {
   const TextureHandle texture = implementation_->pyramid(depth, PyramidKind::minMax, cacheable);
   return {texture, implementation_->graph->desc(texture).levels};
+}
+
+TextureHandle DerivedMaps::minMaxWindows(TextureHandle depth, bool cacheable) {
+  return implementation_->pyramid(depth, PyramidKind::windows, cacheable);
 }
 
 TextureHandle DerivedMaps::nBuffer(TextureHandle depth, bool cacheable) {

@@ -1,6 +1,6 @@
-// What shadow techniques look up instead of single texels of a shadow map: min-max pyramids, N-buffers,
-// summed-area tables, mip chains of moments. Each is built when the first technique asks, by passes of the
-// frame graph, and shared by all that ask.
+// What shadow techniques look up instead of single texels of a shadow map: min-max pyramids and windows,
+// N-buffers, summed-area tables, mip chains of moments. Each is built when the first technique asks, by
+// passes of the frame graph, and shared by all that ask.
 #pragma once
 
 #include <cstdint>
@@ -64,6 +64,9 @@ class LIMN_API DerivedMaps {
   void begin(frame::FrameGraph& graph);
 
   MinMaxPyramid minMaxPyramid(frame::TextureHandle depth, bool cacheable);
+  /// RG32F array with a mip chain: (least, greatest) depth of overlapping windows, which bound boxes more
+  /// tightly than a pyramid for the same time and memory. Lookups: glsl/min_max_windows.glsl.
+  frame::TextureHandle minMaxWindows(frame::TextureHandle depth, bool cacheable);
   /// RG32F array of one level: (least, greatest) depth of overlapping windows, which bound boxes more tightly
   /// than a pyramid for 2 log2(size) times a map's memory. Lookups: glsl/n_buffer.glsl. Throws
   /// UsageError beyond 4 GiB and beyond the layers that the device has in one array.

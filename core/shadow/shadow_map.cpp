@@ -276,6 +276,10 @@ MinMaxPyramid ShadowMapService::minMaxPyramid(const ShadowMaps& maps) {
   return implementation_->derived.minMaxPyramid(maps.depth, implementation_->cacheable(maps));
 }
 
+frame::TextureHandle ShadowMapService::minMaxWindows(const ShadowMaps& maps) {
+  return implementation_->derived.minMaxWindows(maps.depth, implementation_->cacheable(maps));
+}
+
 frame::TextureHandle ShadowMapService::nBuffer(const ShadowMaps& maps) {
   return implementation_->derived.nBuffer(maps.depth, implementation_->cacheable(maps));
 }

@@ -106,6 +106,7 @@ class LIMN_API ShadowMapService {
 
   /// Resources derived from the maps of a request, built once per graph whoever asks.
   MinMaxPyramid minMaxPyramid(const ShadowMaps& maps);
+  frame::TextureHandle minMaxWindows(const ShadowMaps& maps);
   frame::TextureHandle nBuffer(const ShadowMaps& maps);
   SummedAreaTable summedAreaTable(const ShadowMaps& maps, const SatDesc& desc);
   MomentTable momentTable(const ShadowMaps& maps, int bits);

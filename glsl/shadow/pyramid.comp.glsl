@@ -1,4 +1,6 @@
-// One level of a pyramid over shadow maps: (min, max) of depth, or the means of depth and its square (MOMENTS).
+// One level of a pyramid over shadow maps: (min, max) of depth, in overlapping windows (WINDOWS) or not, or the means of
+// depth and its square (MOMENTS).
+#include "glsl/min_max_windows.glsl"
 #include "glsl/mip_weights.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -8,11 +10,27 @@ layout(rg32f, binding = 0) writeonly uniform image2DArray coarser;
 layout(binding = 0) uniform sampler2DArray depth;
 
 vec2 value(ivec3 at) {
+#if WINDOWS
+  // Beyond the map's edge its last texels are repeated.
+  vec4 least = vec4(1.0);
+  vec4 greatest = vec4(0.0);
+  int quads = min_max_window(0) / 2;
+  for (int i = 0; i < quads * quads; ++i) {
+    vec2 corner = vec2(at.xy + 2 * ivec2(i % quads, i / quads) + 1);
+    vec4 z = textureGather(depth, vec3(corner / vec2(textureSize(depth, 0).xy), at.z));
+    least = min(least, z);
+    greatest = max(greatest, z);
+  }
+  least.xy = min(least.xy, least.zw);
+  greatest.xy = max(greatest.xy, greatest.zw);
+  return vec2(min(least.x, least.y), max(greatest.x, greatest.y));
+#else
   float z = texelFetch(depth, at, 0).r;
 #if MOMENTS
   return vec2(z, z * z);
 #else
   return vec2(z);
+#endif
 #endif
 }
 
@@ -33,6 +51,15 @@ vec2 value(ivec3 at) {
     }
   }
   return sum;
+#elif WINDOWS
+  // The last of the finer windows reach the map's edge.
+  ivec2 first = min(2 * at.xy, fine - 1);
+  ivec2 second = min(first + (1 << min_max_overlap), fine - 1);
+  vec2 t00 = imageLoad(finer, ivec3(first, at.z)).xy;
+  vec2 t10 = imageLoad(finer, ivec3(second.x, first.y, at.z)).xy;
+  vec2 t01 = imageLoad(finer, ivec3(first.x, second.y, at.z)).xy;
+  vec2 t11 = imageLoad(finer, ivec3(second, at.z)).xy;
+  return vec2(min(min(t00.x, t10.x), min(t01.x, t11.x)), max(max(t00.y, t10.y), max(t01.y, t11.y)));
 #else
   // The last texel takes an odd one out along with its own.
   ivec2 first = min(2 * at.xy, fine - 1);

@@ -14,7 +14,8 @@ using namespace limn;
 
 constexpr const char* subdivisions[] = {"uniform", "adaptive", "mixed"};
 constexpr const char* poolings[] = {"each", "pooled"};
-constexpr const char* boundings[] = {"mip", "nbuffer"};
+constexpr const char* boundings[] = {"mip", "windows", "nbuffer"};
+constexpr const char* boundsLookups[] = {"min_max_depth", "min_max_windows_depth", "n_buffer_depth"};
 constexpr const char* contacts[] = {"off", "jittered"};
 
 constexpr Parameter parameters[] = {
@@ -27,10 +28,11 @@ constexpr Parameter parameters[] = {
         .quality(),
     integer("tree_height", 3, {1, 5}, "levels", "Of the quad-tree").quality(),
     choice("chebyshev", 0, poolings, "Evaluate Chebyshev's inequality for each sub-kernel or once for all"),
-    integer("search_rounds", 3, {0, 8}, "rounds",
+    integer("search_rounds", 5, {0, 8}, "rounds",
             "How often the minimum depth in the search kernel narrows it; 0: as published"),
-    choice("bounds", 0, boundings,
-           "Of the depths in the search kernel: from a min-max pyramid or, tighter and dearer, an N-buffer"),
+    choice("bounds", 1, boundings,
+           "Of the depths in the search kernel: from a min-max pyramid, from one of overlapping windows, "
+           "tighter, or an N-buffer, tighter still and dearer"),
     boolean("early_out", true, "Answer at once where bounds of the depths in the search kernel decide")
         .savesWork("false"),
     choice("contact", 0, contacts, "Narrow penumbrae: from the table, or 3 x 3 jittered bilinear texels"),
@@ -69,12 +71,17 @@ bool similarKernels(const TechniqueInputs& inputs, const TermRequest& request) {
   });
 }
 
+frame::TextureHandle depthBounds(shadow::ShadowMapService& service, const shadow::ShadowMaps& maps,
+                                 int kind) {
+  if (kind == 0) return service.minMaxPyramid(maps).texture;
+  return kind == 1 ? service.minMaxWindows(maps) : service.nBuffer(maps);
+}
+
 class Vssm : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
     const ParameterValues& p = inputs.parameters;
     const int subdivision = p.choice("subdivision");
-    const bool nBuffer = p.choice("bounds") == 1;
     shadow::VisibilityPass pass =
         shadow::visibilityPass(inputs, request, info.name,
                                {{"POOLED", std::to_string(p.choice("chebyshev"))},
@@ -82,17 +89,15 @@ class Vssm : public Technique {
                                 {"VISIBILITY_ADAPTIVE", subdivision == 0 ? "0" : "1"},
                                 {"SIMILAR_KERNELS", similarKernels(inputs, request) ? "1" : "0"},
                                 {"WIDE_Z", needsWideSums(p) ? "1" : "0"},
-                                {"N_BUFFER", nBuffer ? "1" : "0"},
+                                {"BOUNDS_DEPTH", boundsLookups[p.choice("bounds")]},
                                 {"EARLY_OUT", p.boolean("early_out") ? "1" : "0"},
                                 {"CONTACT", std::to_string(p.choice("contact"))}});
     const shadow::SummedAreaTable table = inputs.shadowMaps.summedAreaTable(
         pass.maps, {.bits = p.integer("sat_bits"), .words = p.integer("sat_words")});
     pass.program.defines["TABLE_FORMAT"] = fmt::format("{}u", table.format);
-    pass.sampled = {
-        {shadow::minMaxUnit,
-         nBuffer ? inputs.shadowMaps.nBuffer(pass.maps) : inputs.shadowMaps.minMaxPyramid(pass.maps).texture,
-         "what is lit or dark at once"},
-        {shadow::tableUnit, table.texture, "moments of kernels"}};
+    pass.sampled = {{shadow::minMaxUnit, depthBounds(inputs.shadowMaps, pass.maps, p.choice("bounds")),
+                     "what is lit or dark at once"},
+                    {shadow::tableUnit, table.texture, "moments of kernels"}};
     pass.bind = [subdivision, passes = p.integer("passes"), rounds = p.integer("search_rounds"),
                  blockers = p.integer("blocker_cells"), cells = p.integer("visibility_cells"),
                  height = p.integer("tree_height"), contact = p.real("contact_texels"),

@@ -107,6 +107,7 @@ inline std::vector<Kernel> randomKernels(const Size& size, bool whole) {
 
 inline constexpr const char* lookup_shader = R"(
 #include "glsl/min_max_pyramid.glsl"
+#include "glsl/min_max_windows.glsl"
 #include "glsl/n_buffer.glsl"
 #include "glsl/summed_area_table.glsl"
 layout(local_size_x = 64) in;

@@ -229,12 +229,16 @@ TEST_F(DerivedMapsTest, EachIsBuiltOnceLeftOutUnusedAndKeptWhileNothingChanges) 
   EXPECT_FALSE(maps.momentMips(source, true) == pyramid.texture);
   const frame::TextureHandle windows = maps.nBuffer(source, true);
   EXPECT_EQ(windows, maps.nBuffer(source, true));
+  const frame::TextureHandle overlapping = maps.minMaxWindows(source, true);
+  EXPECT_EQ(overlapping, maps.minMaxWindows(source, true));
+  EXPECT_FALSE(overlapping == pyramid.texture);
   const SummedAreaTable table = maps.summedAreaTable(source, true, {.moments = SatMoments::z});
   EXPECT_EQ(table.texture,
             maps.summedAreaTable(source, true, {.words = 1, .moments = SatMoments::z}).texture);
   EXPECT_FALSE(table.texture == maps.summedAreaTable(source, true, {}).texture);
   graph.output(pyramid.texture);
   graph.output(windows);
+  graph.output(overlapping);
   graph.output(table.texture);
   graph.prepare(device(), shaders(), *pool_);
   const auto states = [&] {
@@ -242,11 +246,11 @@ TEST_F(DerivedMapsTest, EachIsBuiltOnceLeftOutUnusedAndKeptWhileNothingChanges) 
     for (const frame::PassReport& row : graph.explain()) list.emplace_back(row.name, row.state);
     return list;
   };
-  // Two pyramids of seven levels and two tables of two passes, of which the first each is wanted, and an
-  // N-buffer of six levels.
+  // Two pyramids of seven levels and two tables of two passes, of which the first each is wanted, an
+  // N-buffer of six levels and overlapping windows of four.
   const auto expectStates = [&](frame::PassState used) {
     const auto list = states();
-    EXPECT_EQ(list.size(), 24u);
+    EXPECT_EQ(list.size(), 28u);
     for (const auto& [name, state] : list) {
       const bool wanted = name.starts_with("min-max") || name.starts_with("N-buffer") ||
                           (name.starts_with("summed") && !name.ends_with(" 2"));

@@ -342,6 +342,7 @@ TEST_F(ShadowMapTest, DerivedMapsAreKeptWhereTheMapsAre) {
     graph.output(service.summedAreaTable(maps, {}).texture);
     graph.output(service.momentMips(maps));
     graph.output(service.nBuffer(maps));
+    graph.output(service.minMaxWindows(maps));
     graph.prepare(device(), shaders(), pool);
     graph.execute();
     graph.execute();

@@ -55,10 +55,11 @@ class VarianceTechniqueTest : public TechniqueTest {
   }
 };
 
-const Settings variants[] = {
-    {{"subdivision", "uniform"}}, {{"subdivision", "adaptive"}}, {{"subdivision", "mixed"}},
-    {{"chebyshev", "pooled"}},    {{"search_rounds", "0"}},      {{"sat_words", "1"}},
-    {{"sat_bits", "20"}},         {{"contact", "off"}},          {{"bounds", "nbuffer"}}};
+const Settings variants[] = {{{"subdivision", "uniform"}}, {{"subdivision", "adaptive"}},
+                             {{"subdivision", "mixed"}},   {{"chebyshev", "pooled"}},
+                             {{"search_rounds", "0"}},     {{"sat_words", "1"}},
+                             {{"sat_bits", "20"}},         {{"contact", "off"}},
+                             {{"bounds", "nbuffer"}},      {{"bounds", "mip"}}};
 
 TEST_F(VarianceTechniqueTest, ParallelPlanesAreExact) {
   // A square of side 1, one metre over the floor, under a light of side 0.8 at 4 metres.
@@ -204,19 +205,24 @@ TEST_F(VarianceTechniqueTest, FacesOfAHemicubeCutNoHolesOrPatchesIntoShadows) {
 TEST_F(VarianceTechniqueTest, EarlyOutsChangeNextToNothing) {
   Planes s;
   s.addPlane(0.5f, at(0, 1, 0));
-  const Answer with = answer(s, {{"early_out", "on"}}), without = answer(s, {{"early_out", "off"}});
-  for (size_t i = 0; i < with.instance.size(); ++i)
-    ASSERT_NEAR(with.lights[0][i], without.lights[0][i], 1.f / 255) << i;
+  for (const char* bounds : {"mip", "nbuffer", "windows"}) {
+    const Answer with = answer(s, {{"bounds", bounds}, {"early_out", "on"}}),
+                 without = answer(s, {{"bounds", bounds}, {"early_out", "off"}});
+    for (size_t i = 0; i < with.instance.size(); ++i)
+      ASSERT_NEAR(with.lights[0][i], without.lights[0][i], 1.f / 255) << bounds << " " << i;
+  }
 }
 
-TEST_F(VarianceTechniqueTest, BoundsFromNBuffersChangeNextToNothing) {
+TEST_F(VarianceTechniqueTest, TighterBoundsChangeNextToNothing) {
   Planes s;
   s.addPlane(0.5f, at(0, 1, 0));
   for (const char* rounds : {"0", "3"}) {
-    const Answer mip = answer(s, {{"search_rounds", rounds}}),
-                 windows = answer(s, {{"bounds", "nbuffer"}, {"search_rounds", rounds}});
-    for (size_t i = 0; i < mip.instance.size(); ++i)
-      ASSERT_NEAR(mip.lights[0][i], windows.lights[0][i], 1.f / 255) << i;
+    const Answer mip = answer(s, {{"bounds", "mip"}, {"search_rounds", rounds}});
+    for (const char* bounds : {"nbuffer", "windows"}) {
+      const Answer tighter = answer(s, {{"bounds", bounds}, {"search_rounds", rounds}});
+      for (size_t i = 0; i < mip.instance.size(); ++i)
+        ASSERT_NEAR(mip.lights[0][i], tighter.lights[0][i], 1.f / 255) << bounds << " " << i;
+    }
   }
 }
 
@@ -240,7 +246,7 @@ TEST_F(VarianceTechniqueTest, MapsOfAllSizesWorkOrAreRefusedInOneLine) {
 
 using VarianceOnScenesTest = RenderTest;
 
-TEST_F(VarianceOnScenesTest, BoundsFromNBuffersAreNoWorseOnBalls) {
+TEST_F(VarianceOnScenesTest, TighterBoundsAreNoWorseOnBalls) {
   const scene::Scene scene = asset("balls");
   render::Renderer renderer(device(), scene);
   const auto shadow = [&](const render::TechniqueUse& use) {
@@ -249,8 +255,10 @@ TEST_F(VarianceOnScenesTest, BoundsFromNBuffersAreNoWorseOnBalls) {
   const Image truth =
                   shadow(technique("sampled_area_light", {{"samples", "256"}, {"shadow_map_size", "512"}})),
               mip = shadow(technique("vssm", {{"bounds", "mip"}})),
-              windows = shadow(technique("vssm", {{"bounds", "nbuffer"}}));
+              windows = shadow(technique("vssm", {{"bounds", "windows"}})),
+              nBuffer = shadow(technique("vssm", {{"bounds", "nbuffer"}}));
   EXPECT_LE(rmse(windows, truth), rmse(mip, truth));
+  EXPECT_LE(rmse(nBuffer, truth), rmse(mip, truth));
 }
 
 }  // namespace
