@@ -32,7 +32,7 @@ constexpr StressCase stress[] = {
     {.name = "buffer of 16 texels", .settings = "buffer_size=16", .factor = 6},
     {.name = "wide kernels", .settings = "kernel=8", .factor = 6},
     {.name = "caustic map", .settings = "splat=light", .factor = 2},
-    {.name = "caustic map of 16 texels", .settings = "splat=light,scene_map_size=16", .factor = 20},
+    {.name = "caustic map of 16 texels", .settings = "splat=light scene_map_size=16", .factor = 20},
 };
 
 /// The photons of some rays as points, whatever they are splatted on.
