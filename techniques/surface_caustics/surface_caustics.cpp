@@ -104,7 +104,7 @@ class SurfaceCaustics : public Technique {
   }
 
   /// The same by way of caustic maps: irradiance on what the lights' scene maps show, texel by texel.
-  frame::TextureHandle addMaps(frame::FrameGraph& graph, const TechniqueInputs& inputs, Photons photons) {
+  frame::TextureHandle addMaps(frame::FrameGraph& graph, Photons photons) {
     const caustics::CausticRays& rays = photons.rays;
     frame::PassBuilder pass = graph.addPass("caustic map", info.name);
     photons.declare(pass, true);
@@ -120,15 +120,15 @@ class SurfaceCaustics : public Technique {
                                                         .layers = rays.scene.layers}),
                    Access::colourAttachment, "flux per area");
     pass.execute([=, this](frame::PassContext& context) {
-      const caustics::CausticRays& rays = photons.rays;
-      for (int layer = 0; layer < rays.scene.layers; ++layer) {
+      const caustics::CausticRays& splatted = photons.rays;
+      for (int layer = 0; layer < splatted.scene.layers; ++layer) {
         context.bindFramebuffer({{maps, 0, layer}});
         gpu::Program& points = photons.begin(context, empty_);
-        points.set("layer_count", rays.layers);
+        points.set("layer_count", splatted.layers);
         points.set("map_layer", layer);
-        bindMaps(context, rays);
-        context.bindStorage(3, rays.layerLights);
-        const int room = widestPoint / 2, side = rays.scene.size + widestPoint;
+        bindMaps(context, splatted);
+        context.bindStorage(3, splatted.layerLights);
+        const int room = widestPoint / 2, side = splatted.scene.size + widestPoint;
         context.gl().Viewport(-room, -room, side, side);
         photons.draw(context);
       }
@@ -215,8 +215,7 @@ class SurfaceCaustics : public Technique {
     if (!empty_) empty_ = gpu::VertexArray(inputs.gpuScene.device(), {});
     const Photons photons(inputs, rays);
     const frame::TextureHandle irradiance =
-        map ? addLookup(graph, inputs, rays, addMaps(graph, inputs, photons))
-            : addScreen(graph, inputs, photons);
+        map ? addLookup(graph, inputs, rays, addMaps(graph, photons)) : addScreen(graph, inputs, photons);
     return addReflection(graph, inputs, irradiance, request.target);
   }
 

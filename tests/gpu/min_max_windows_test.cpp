@@ -124,7 +124,9 @@ TEST_F(MinMaxWindowsTest, TwoWindowsCoverABoxAndReachBeyondItByLessThanWhereTheN
         if (a == std::max(size >> level, 1) - 1)
           continue;  // what the map's edge cuts off has no window of its own
         ASSERT_LT(first - a * stride, stride);
-        if (last - first + 1 >= window) ASSERT_LT(b * stride + window - 1 - last, stride);
+        if (last - first + 1 >= window) {
+          ASSERT_LT(b * stride + window - 1 - last, stride);
+        }
       }
     }
   }

@@ -40,8 +40,9 @@ class ViewerScenesTest : public ViewerWindowTest {
       EXPECT_THAT(command(name), testing::HasSubstr(file.filename().string()));
       EXPECT_EQ(picture(name).width(), 60);
       const std::vector<float> shown = colours(picture(name));
-      if (file.stem() != "water")  // where all light comes through its surface, by caustics
+      if (file.stem() != "water") {  // where all light comes through its surface, by caustics
         EXPECT_GT(std::reduce(shown.begin(), shown.end()), 0) << "there is light";
+      }
     }
   }
 };
