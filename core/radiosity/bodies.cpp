@@ -78,7 +78,8 @@ void Bodies::leave(Surfels& surfels) {
       const Surfels::Neighbour* best = nullptr;
       for (uint32_t k = surfels.firstNeighbour[i]; k < surfels.firstNeighbour[i + 1]; ++k) {
         const Surfels::Neighbour& n = surfels.neighbours[k];
-        if (enclosed_[n.surfel] == 0 && (best == nullptr || n.weight > best->weight)) best = &n;
+        // On regular meshes weights are equal but for rounding, which must not choose.
+        if (enclosed_[n.surfel] == 0 && (best == nullptr || n.weight > 1.001f * best->weight)) best = &n;
       }
       if (best != nullptr) moves_.push_back({best->surfel, i});
     }

@@ -92,8 +92,8 @@ TEST(BenchSuite, TimeSizesAreTheSameQuestionUnderAnotherLabel) {
   const Case small = parseSuite("name = \"s\"\n" + rest, "s.toml").cases[0];
   const Case large = parseSuite("name = \"l\"\ntime_size = \"16x12\"\n" + rest, "s.toml").cases[0];
   EXPECT_EQ(question(small), question(large));
-  EXPECT_EQ(label(small), "balls/first camera/all lights/visibility/8x8/dynamic/pcss");
-  EXPECT_EQ(label(large), "balls/first camera/all lights/visibility/8x8 times at 16x12/dynamic/pcss");
+  EXPECT_EQ(label(small), "balls/first camera/all lights/final/8x8/dynamic/pcss");
+  EXPECT_EQ(label(large), "balls/first camera/all lights/final/8x8 times at 16x12/dynamic/pcss");
 }
 
 TEST(BenchSuite, EnvironmentsAreSweptByThreshold) {
