@@ -59,6 +59,35 @@ LIMN_FN float airlight_metres(AirlightRay r, float variable) {
   return r.parallel ? variable : r.nearest + r.distance * tan(variable);
 }
 
+// Where the ray is in the light's cone: t in [x, y]; x > y where it misses. All of it where there is no cone. A cone is
+// convex (of up to 90 degrees from its axis), so there is one piece. With w the ray's and d the cone's direction, c the cosine
+// of its angle and p from the apex to a place, (d . p)^2 = c^2 p^2 on the cone and on its mirror image behind the apex.
+LIMN_FN vec2 light_cone_range(Light light, vec3 eye, vec3 w) {
+  const float far = 3.0e38f;
+  if ((light.info.y & light_flag_cone) == 0u) return vec2(-far, far);
+  float c2 = light.cone.y * light.cone.y;
+  vec3 d = vec3(light.direction);
+  vec3 apex = vec3(light.position);
+  float middle = dot(apex - eye, w);  // the quadratic's variable counts from where the ray passes the apex
+  vec3 o = eye + middle * w - apex;
+  float dw = dot(d, w);
+  float d_o = dot(d, o);
+  float a = dw * dw - c2;
+  float b = dw * d_o;
+  float c = d_o * d_o - c2 * dot(o, o);
+  float discriminant = b * b - a * c;
+  if (discriminant < 0.0f && a < 0.0f) return vec2(1.0f, -1.0f);
+  if (abs(a) < 1e-20f) a = 1e-20f;  // beside the cone's side: one of the roots is as good as infinite
+  float root = sqrt(max(discriminant, 0.0f));  // never below 0 where a > 0, but for rounding
+  float q = b < 0.0f ? root - b : -root - b;
+  float first = q / a;
+  float second = q == 0.0f ? first : c / q;
+  float low = min(first, second);
+  float high = max(first, second);
+  if (a > 0.0f) return dw > 0.0f ? vec2(middle + high, far) : vec2(-far, middle + low);
+  return d_o + 0.5f * (low + high) * dw > 0.0f ? vec2(middle + low, middle + high) : vec2(1.0f, -1.0f);
+}
+
 // A place on the ray, and the light that comes there.
 struct AirlightPoint {
   vec3 place;

@@ -14,7 +14,8 @@ LIMN_CONST float caustic_ray_surface = 2.0f;   // ends on a surface of the scene
 struct CausticRay {
   vec4 start;      // xyz: p1, where the light leaves the object; w: length of the segment p1 p2, m
   vec4 direction;  // xyz: unit, of propagation; w: caustic_ray_*
-  vec4 power;      // rgb: flux at p1, W; w: unused
+  vec3 power;      // flux at p1, W
+  uint normal;     // of the surface that p2 lies on, against the ray: octahedral, snorm
 };
 
 LIMN_CONST uint caustic_reflection = 1u;

@@ -187,8 +187,10 @@ CausticRays CausticRayService::Implementation::add(std::unique_ptr<Request> made
       gpu::Buffer::of<glm::vec4>(device, "specular layers", request.layers, gpu::BufferUse::updated);
   request.importedViews = graph->importBuffer("specular views", request.viewBuffer);
   request.made.layerLights = graph->importBuffer("specular layers", request.layerBuffer);
-  request.made.scene = shadowMaps.request(
-      request.lights, {.size = request.desc.sceneSize, .samples = request.samples, .specular = false});
+  request.made.scene = shadowMaps.request(request.lights, {.size = request.desc.sceneSize,
+                                                           .projection = shadow::Projection::cube,
+                                                           .samples = request.samples,
+                                                           .specular = false});
   request.made.sceneLights =
       static_cast<int>(request.lights.size() * std::max<size_t>(request.samples.size(), 1));
   request.buffers.add(*graph, handles, request.importedViews, request.desc.size, "caustics");

@@ -4,6 +4,7 @@
 #include "glsl/caustic_ray.glsl"
 #define SPECULAR_UNIT 0
 #include "glsl/caustics/specular_buffers.glsl"
+#include "glsl/gbuffer.glsl"
 #include "glsl/light_intensity.glsl"
 #include "glsl/light_texture.glsl"
 #include "glsl/medium_input.glsl"
@@ -25,6 +26,12 @@ uniform int steps;
 const float least_cosine = 1e-4;
 const int end_refinements = 8;
 const float shadow_bias = 2.0;  // texel footprints
+
+// Place of what a texel of the scene's map shows, in the view's axes.
+vec3 map_place(ShadowView view, ivec2 texel, uint layer) {
+  float stored = texelFetch(scene_depth, ivec3(texel, layer), 0).x;
+  return shadow_unproject_local(view, (vec2(texel) + 0.5) / float(view.info.z), shadow_metres(view, stored));
+}
 
 // How far p lies behind what the light sees in the scene without specular objects, metres; < 0: before it, or nothing known.
 float behind_scene(ShadowLight maps, vec3 p) {
@@ -52,6 +59,29 @@ const int place_object = 2;  // within a specular object
 int place_of(ShadowLight maps, ShadowView view, int layer, vec3 p) {
   if (behind_scene(maps, p) > 0.0) return place_scene;
   return within_object(view, p, layer) ? place_object : place_free;
+}
+
+// Normal of the scene at p, where a ray ends on it, against the ray: of the plane through the texels about p, towards the
+// nearer neighbour on each axis, so that no edge is crossed where the scene goes on to either side.
+vec3 end_normal(ShadowLight maps, vec3 p, vec3 direction) {
+  ShadowView first = scene_views[maps.info.x];
+  uint layer = maps.info.x + shadow_face(maps.info.y, first, p);
+  ShadowView view = scene_views[layer];
+  int last = int(view.info.z) - 1;
+  ivec2 texel = clamp(ivec2(shadow_project(view, p).uv * float(view.info.z)), ivec2(0), ivec2(last));
+  vec3 here = map_place(view, texel, layer);
+  vec3 side[2];
+  for (int axis = 0; axis < 2; ++axis) {
+    ivec2 step = ivec2(1 - axis, axis);
+    vec3 low = here - map_place(view, max(texel - step, ivec2(0)), layer);
+    vec3 high = map_place(view, min(texel + step, ivec2(last)), layer) - here;
+    bool forward = dot(low, low) == 0.0 || (dot(high, high) > 0.0 && dot(high, high) < dot(low, low));
+    side[axis] = forward ? high : low;
+  }
+  vec3 normal = shadow_world_offset(view, cross(side[0], side[1]));
+  float size = length(normal);
+  if (size == 0.0) return -direction;
+  return normal * ((dot(normal, direction) < 0.0 ? 1.0 : -1.0) / size);
 }
 
 // Ends the ray where it passes from before the scene to behind it, or into a specular object, as the light sees them.
@@ -84,10 +114,12 @@ void find_end(ShadowLight maps, ShadowView view, int layer, inout CausticRay ray
     }
   }
   ray.start.w = 0.5 * (before + behind);
-  if (met == place_scene) ray.direction.w = caustic_ray_surface;
+  if (met != place_scene) return;
+  ray.direction.w = caustic_ray_surface;
+  ray.normal = packSnorm2x16(octahedral_encode(end_normal(maps, start + ray.start.w * direction, direction)));
 }
 
-CausticRay no_ray() { return CausticRay(vec4(0.0), vec4(0.0, 0.0, 1.0, caustic_ray_none), vec4(0.0)); }
+CausticRay no_ray() { return CausticRay(vec4(0.0), vec4(0.0, 0.0, 1.0, caustic_ray_none), vec3(0.0), 0u); }
 
 // The light of one texel at the front of a specular object.
 struct Incident {
@@ -105,7 +137,7 @@ struct Incident {
 CausticRay ray_from(Medium medium, ShadowLight maps, Incident at, vec3 start, vec3 direction, vec3 power) {
   float reach = ball_range(medium.ball, start, direction).y;
   if (!(reach > 0.0) || all(equal(power, vec3(0.0)))) return no_ray();
-  CausticRay ray = CausticRay(vec4(start, reach), vec4(direction, caustic_ray_open), vec4(power, 0.0));
+  CausticRay ray = CausticRay(vec4(start, reach), vec4(direction, caustic_ray_open), power, 0u);
   find_end(maps, at.view, at.layer, ray);
   return ray;
 }

@@ -78,13 +78,17 @@ vec3 airlight(Medium medium, Light light, ShadowLight maps, vec3 direction, floa
   ShadowView first = shadow_views[maps.info.x];
   AirlightRay ray = airlight_ray(medium, light, maps.origin.xyz, airlight_part(light, light_samples),
                                  frame.camera_position.xyz, direction);
+  vec2 cone = light_cone_range(light, ray.eye, direction);
+  a = max(a, cone.x);
+  b = min(b, cone.y);
+  if (!(a < b)) return vec3(0.0);
   float from = airlight_variable(ray, a);
   float to = airlight_variable(ray, b);
   vec3 sum = vec3(0.0);
   float start = from;
   bool start_lit = lit_at(maps, first, ray, from);
 #if MARCH
-  float before = 0.0;  // metres of medium of density 1 between the eye and the stretch
+  float before = medium_length(medium, ray.eye, direction, a);  // of density 1, between the eye and the stretch
 #endif
   for (int i = 1; i <= steps; ++i) {
     float end = mix(from, to, float(i) / float(steps));

@@ -15,7 +15,7 @@ using namespace limn;
 using frame::Access;
 
 constexpr Parameter parameters[] = {
-    shadow::shadowMapSizeParameter(256),
+    shadow::shadowMapSizeParameter(),
     integer("steps", 32, {1, 1024}, "steps",
             "Stretches of each viewing ray, even in the angle from the light")
         .quality()

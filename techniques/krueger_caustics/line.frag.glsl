@@ -6,5 +6,5 @@ uniform float scale;
 void main() {
   LineFragment f = line_fragment();
   if (f.share == 0.0) discard;
-  radiance = vec4(rays[ray_index].power.rgb * (scale * f.share), 0.0);
+  radiance = vec4(rays[ray_index].power * (scale * f.share), 0.0);
 }

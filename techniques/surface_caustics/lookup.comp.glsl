@@ -8,6 +8,8 @@ layout(binding = 7) uniform sampler2DArray caustic_map;  // W/m^2
 layout(rgba32f, binding = 0) writeonly uniform image2D irradiance;
 uniform int light_count;  // of scene_lights
 
+const int points = 2;            // per side of a pixel, over which the map is averaged: it may be finer than the picture
+const float least_cosine = 0.1;  // the pixel's plane is stretched no further than by its inverse
 const float plane_bias = 2.0;  // texel footprints by which a texel's surface may leave the receiver's plane
 
 vec3 map_irradiance(ShadowLight maps, vec3 position, vec3 normal) {
@@ -43,11 +45,18 @@ void main() {
   if (depth > 0.0) {
     vec3 position = pixel_position(pixel, depth);
     vec3 normal = pixel_geometric_normal(pixel);
-    for (int i = 0; i < light_count; ++i) {
-      // Samples of a light without extent share its map.
-      if (i > 0 && scene_lights[i].info.x == scene_lights[i - 1].info.x) continue;
-      sum += map_irradiance(scene_lights[i], position, normal);
+    vec3 ray = pixel_ray(pixel);
+    float facing = min(dot(normal, ray), -least_cosine * length(ray));
+    for (int p = 0; p < points * points; ++p) {
+      vec2 offset = (vec2(p % points, p / points) + 0.5) / float(points) - 0.5;
+      vec3 across = depth * (offset.x * frame.view_ray_dx.xyz + offset.y * frame.view_ray_dy.xyz);
+      vec3 place = position + across - ray * (dot(normal, across) / facing);  // on the surface's plane
+      for (int i = 0; i < light_count; ++i) {
+        // Samples of a light without extent share its map.
+        if (i > 0 && scene_lights[i].info.x == scene_lights[i - 1].info.x) continue;
+        sum += map_irradiance(scene_lights[i], place, normal);
+      }
     }
   }
-  imageStore(irradiance, pixel, vec4(sum, 0.0));
+  imageStore(irradiance, pixel, vec4(sum / float(points * points), 0.0));
 }

@@ -1,5 +1,6 @@
 // Irradiance of one photon on the surface that a pixel of the screen shows, or a texel of the light's map (CAUSTIC_MAP 1):
-// Epanechnikov's kernel over the distance in space.
+// Epanechnikov's kernel over the distance across the ray, in an ellipse as the rays beside it have it (photon differentials:
+// Schjoeth et al. 2007).
 #if CAUSTIC_MAP
 #include "techniques/surface_caustics/caustic_map.glsl"
 
@@ -9,8 +10,10 @@ uniform int map_layer;
 #endif
 
 layout(location = 0) flat in vec4 photon;
-layout(location = 1) flat in vec3 flux;
-layout(location = 2) flat in vec3 incidence;
+layout(location = 1) flat in vec3 peak;
+layout(location = 2) flat in vec4 incidence;
+layout(location = 3) flat in vec3 kernel_x;
+layout(location = 4) flat in vec3 kernel_y;
 
 layout(location = 0) out vec4 irradiance;
 
@@ -18,14 +21,17 @@ void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
 #if CAUSTIC_MAP
   MapSurface surface = map_surface(scene_views[map_layer], pixel);
-  bool lit = surface.present;
+  float cosine = surface.present ? incidence.w : 0.0;
   vec3 away = surface.position - photon.xyz;
 #else
   float depth = pixel_depth(pixel);
-  bool lit = depth > 0.0 && dot(pixel_geometric_normal(pixel), incidence) < 0.0;
+  float cosine = depth > 0.0 ? -dot(pixel_geometric_normal(pixel), incidence.xyz) : 0.0;
   vec3 away = pixel_position(pixel, depth) - photon.xyz;
 #endif
-  float square = dot(away, away) / (photon.w * photon.w);
-  if (!(lit && square < 1.0)) discard;
-  irradiance = vec4(flux * (2.0 * inverse_pi / (photon.w * photon.w) * (1.0 - square)), 0.0);
+  vec2 at = vec2(dot(away, kernel_x), dot(away, kernel_y));
+  float square = dot(at, at);
+  // Along the ray, no further than a plane goes within the kernel: not to what lies before or behind.
+  bool near = abs(dot(away, incidence.xyz)) * incidence.w <= photon.w;
+  if (!(cosine > 0.0 && near && square < 1.0)) discard;
+  irradiance = vec4(peak * (cosine * (1.0 - square)), 0.0);
 }

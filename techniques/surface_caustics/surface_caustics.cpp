@@ -14,7 +14,6 @@ using frame::Access;
 
 constexpr const char* splatNames[] = {"screen", "light"};
 constexpr int splatLight = 1;
-constexpr int widestPoint = 64;  // pixels; in photon.vert.glsl
 
 constexpr Parameter parameters[] = {
     caustics::bufferSizeParameter(),
@@ -22,7 +21,7 @@ constexpr Parameter parameters[] = {
     caustics::pathsParameter(),
     caustics::lightSamplesParameter(),
     scene::mediumStepsParameter(),
-    real("kernel", 2, {0.25, 16}, "photon distances", "Radius of a photon's kernel"),
+    real("kernel", 1.5, {0.25, 16}, "photon distances", "Half-diameters of a photon's kernel"),
     choice("splat", 0, splatNames,
            "Where photons are gathered: on the screen, or in a map of the light, as large as the scene map, "
            "which surfaces look up (as published)"),
@@ -35,7 +34,7 @@ constexpr StressCase stress[] = {
     {.name = "caustic map of 16 texels", .settings = "splat=light scene_map_size=16", .factor = 20},
 };
 
-/// The photons of some rays as points, whatever they are splatted on.
+/// The photons of some rays as triangles, whatever they are splatted on.
 struct Photons {
   caustics::CausticRays rays;
   frame::BufferHandle frame;
@@ -66,19 +65,17 @@ struct Photons {
     gl.ClearBufferfv(GL_COLOR, 0, black);
     gl.Enable(GL_BLEND);
     gl.BlendFunc(GL_ONE, GL_ONE);
-    gl.Enable(GL_PROGRAM_POINT_SIZE);
     gl.BindVertexArray(empty.id());
-    gpu::Program& points = context.program(program);
-    points.use();
-    points.set("buffer_size", rays.size);
-    points.set("kernel", kernel);
+    gpu::Program& splats = context.program(program);
+    splats.use();
+    splats.set("buffer_size", rays.size);
+    splats.set("kernel", kernel);
     context.bindUniform(glsl::FrameBlock::binding, frame);
     context.bindStorage(0, rays.rays);
     medium.bind(context);
-    return points;
+    return splats;
   }
-  void draw(frame::PassContext& context) const { context.gl().DrawArrays(GL_POINTS, 0, rays.count()); }
-  void end(frame::PassContext& context) const { context.gl().Disable(GL_PROGRAM_POINT_SIZE); }
+  void draw(frame::PassContext& context) const { context.gl().DrawArrays(GL_TRIANGLES, 0, 3 * rays.count()); }
 };
 
 class SurfaceCaustics : public Technique {
@@ -98,7 +95,6 @@ class SurfaceCaustics : public Technique {
       context.bindSampled(glsl::gbuffer_unit_depth, gbuffer.depth);
       context.bindSampled(glsl::gbuffer_unit_geometric_normal, gbuffer.geometricNormal);
       photons.draw(context);
-      photons.end(context);
     });
     return irradiance;
   }
@@ -123,16 +119,13 @@ class SurfaceCaustics : public Technique {
       const caustics::CausticRays& splatted = photons.rays;
       for (int layer = 0; layer < splatted.scene.layers; ++layer) {
         context.bindFramebuffer({{maps, 0, layer}});
-        gpu::Program& points = photons.begin(context, empty_);
-        points.set("layer_count", splatted.layers);
-        points.set("map_layer", layer);
+        gpu::Program& splats = photons.begin(context, empty_);
+        splats.set("layer_count", splatted.layers);
+        splats.set("map_layer", layer);
         bindMaps(context, splatted);
         context.bindStorage(3, splatted.layerLights);
-        const int room = widestPoint / 2, side = splatted.scene.size + widestPoint;
-        context.gl().Viewport(-room, -room, side, side);
         photons.draw(context);
       }
-      photons.end(context);
     });
     return maps;
   }

@@ -55,7 +55,7 @@ void main() {
 #else
   float along = f.along;
 #endif
-  vec3 arriving = ray.power.rgb * medium_transmittance(medium, along);
+  vec3 arriving = ray.power * medium_transmittance(medium, along);
   float phase = phase_function(medium.g, ray.direction.xyz, -direction);
   radiance = vec4(arriving * medium.scattering * seen * (phase * line_weight(f)), 0.0);
 }

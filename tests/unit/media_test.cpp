@@ -1,6 +1,7 @@
 // Laws of media and smooth interfaces (glsl/media.glsl), of airlight and of the weight of light lines.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -163,6 +164,41 @@ TEST(Airlight, ParallelLightThroughASlab) {
   const vec3 eye(0, 0, 3), direction(0, 0, -1);
   const AirlightRay ray = airlight_ray(m, light, vec3(0), 0, eye, direction);
   EXPECT_NEAR(airlight_stretch(m, light, ray, 2, 4, 1).x, 2 * 0.2 * 0.25 / M_PI * 2, 1e-6);
+}
+
+/// Places of random rays, and of rays through the apex, along the cone's side and across a half-space, are in
+/// the range where the cone lets light pass and nowhere else.
+TEST(Airlight, TheRangeOfAConeIsWhereItsFactorIsNotZero) {
+  std::mt19937 random(7);
+  std::normal_distribution<float> normal;
+  const auto direction = [&] { return normalize(vec3(normal(random), normal(random), normal(random))); };
+  Light light{};
+  light.position = vec4(0.3f, -0.2f, 0.5f, 1);
+  light.info = uvec4(light_spot, light_flag_cone, no_instance, 0);
+  const vec3 apex(light.position);
+  int lit = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const float angle = i % 5 == 0 ? 0.5f * pi : 0.02f + 1.5f * float(i % 97) / 97;
+    const vec3 axis = direction();
+    light.direction = vec4(axis, 0);
+    light.cone = vec4(std::cos(0.9f * angle), i % 5 == 0 ? 0 : std::cos(angle), 0, 0);
+    const vec3 beside = normalize(cross(axis, direction()));
+    const vec3 side = std::cos(angle) * axis + std::sin(angle) * beside;
+    const std::array ways{direction(), side, -side, axis, beside};
+    const vec3 w = ways[std::size_t(i) % ways.size()];
+    const vec3 eye = apex + (i % 7 == 0 ? -2.f * w : vec3(normal(random), normal(random), normal(random)));
+    const vec2 range = light_cone_range(light, eye, w);
+    for (float t = -8; t < 8; t += 0.11f) {
+      const vec3 offset = eye + t * w - apex;
+      const float past = dot(axis, normalize(offset)) - light.cone.y;  // > 0: inside
+      if (std::abs(past) < 1e-4f) continue;
+      EXPECT_EQ(t > range.x && t<range.y, past> 0) << i << " at " << t << ": " << range.x << " " << range.y;
+      lit += past > 0;
+    }
+  }
+  EXPECT_GT(lit, 100000);
+  light.info.y = 0;
+  EXPECT_LT(light_cone_range(light, vec3(0), vec3(1, 0, 0)).x, -1e38f);
 }
 
 /// Of an area light whose centre stands for all of it: on the axis of a disc of the same area, which has a
