@@ -16,7 +16,7 @@ using frame::Access;
 
 constexpr Parameter parameters[] = {
     shadow::shadowMapSizeParameter(),
-    integer("steps", 32, {1, 1024}, "steps",
+    integer("steps", 48, {1, 1024}, "steps",
             "Stretches of each viewing ray, even in the angle from the light")
         .quality()
         .logScale(),
