@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/caustics/ray_lists.h"
 #include "core/scene/gpu_medium.h"
 #include "glsl/gbuffer.glsl"
 
@@ -20,6 +21,32 @@ const char* whyNoRays(const TechniqueInputs& inputs, const TermRequest& request)
   if (std::ranges::none_of(inputs.scene.materials, &scene::Material::specularSurface))
     return "the scene has no specular surface";
   return request.lights.empty() ? "the scene has no light" : nullptr;
+}
+
+/// Which rays are drawn as lines, points and quads.
+RayLists addLists(frame::FrameGraph& graph, const TechniqueInputs& inputs, const CausticRays& rays,
+                  const scene::MediumInput& medium, const LineDraw& draw) {
+  gpu::ProgramDesc program{.files = {"glsl/caustics/line_kinds.comp.glsl"},
+                           .defines = {{"BEAMS", draw.beams ? "1" : "0"}}};
+  medium.define(program.defines);
+  return addRayLists(
+      graph, rays,
+      {.technique = draw.technique,
+       .program = std::move(program),
+       .kinds = {{{.vertices = 2}, {.vertices = 1}, {.vertices = draw.beams ? 6u : 0u, .instances = true}}},
+       .declare =
+           [&](frame::PassBuilder& pass) {
+             pass.read(inputs.handles.frame, Access::uniformBuffer, "camera");
+             medium.declare(pass);
+           },
+       .bind =
+           [=, &scene = inputs.gpuScene, frame = inputs.handles.frame, beams = draw.beams](
+               frame::PassContext& context, gpu::Program& kernel) {
+             context.bindUniform(glsl::FrameBlock::binding, frame);
+             medium.bind(context);
+             kernel.set("near_plane", scene.camera().near);
+             if (beams) kernel.set("buffer_size", rays.size);
+           }});
 }
 
 }  // namespace
@@ -68,31 +95,27 @@ frame::TextureHandle RayLines::add(frame::FrameGraph& graph, const TechniqueInpu
                                    const LineDraw& draw) {
   if (!empty_) empty_ = gpu::VertexArray(inputs.gpuScene.device(), {});
   const frame::BufferHandle rule = addRule(graph, draw.technique);
+  const scene::MediumInput medium(inputs.handles, draw.mediumSteps);
+  const RayLists lists = addLists(graph, inputs, rays, medium, draw);
   frame::PassBuilder pass = graph.addPass("caustic lines", draw.technique);
   pass.read(inputs.handles.frame, Access::uniformBuffer, "camera, medium")
       .read(rays.rays, Access::storageLoad, "lines")
       .read(rule, Access::storageLoad, "what a fragment stands for")
       .read(inputs.gbuffer.depth, Access::sampled, "what hides lines");
-  const scene::MediumInput medium(inputs.handles, draw.mediumSteps);
+  declareRayLists(pass, lists);
   medium.declare(pass);
   const frame::TextureHandle result = pass.write(target, Access::colourBlend, "light of the lines");
-  struct Kind {
-    frame::ProgramHandle program;
-    GLenum primitive;
-    int vertices;  ///< of each ray
-  };
-  std::vector<Kind> kinds{{{}, GL_LINES, 2}, {{}, GL_POINTS, 1}, {{}, GL_TRIANGLE_STRIP, 6}};
-  if (!draw.beams) kinds.pop_back();
-  for (size_t k = 0; k < kinds.size(); ++k) {
+  std::vector<frame::ProgramHandle> programs;
+  for (unsigned kind = 0; kind < (draw.beams ? 3u : 2u); ++kind) {
     std::map<std::string, std::string> defines = draw.defines;
-    defines["KIND"] = std::to_string(k);
+    defines["KIND"] = std::to_string(kind);
     defines["BEAMS"] = draw.beams ? "1" : "0";
     medium.define(defines);
-    kinds[k].program = pass.program(
-        {.files = {"glsl/caustics/lines.vert.glsl", draw.fragmentShader}, .defines = std::move(defines)});
+    programs.push_back(pass.program(
+        {.files = {"glsl/caustics/lines.vert.glsl", draw.fragmentShader}, .defines = std::move(defines)}));
   }
   pass.execute([=, this, &scene = inputs.gpuScene, frame = inputs.handles.frame, depth = inputs.gbuffer.depth,
-                beams = draw.beams, bind = draw.bind](frame::PassContext& context) {
+                bind = draw.bind](frame::PassContext& context) {
     const gl::Functions& gl = context.gl();
     context.bindFramebuffer({{result}});
     gl.Enable(GL_BLEND);
@@ -104,16 +127,14 @@ frame::TextureHandle RayLines::add(frame::FrameGraph& graph, const TechniqueInpu
     context.bindStorage(1, rule);
     context.bindSampled(glsl::gbuffer_unit_depth, depth);
     medium.bind(context);
-    for (const Kind& kind : kinds) {
-      gpu::Program& program = context.program(kind.program);
+    constexpr GLenum primitives[] = {GL_LINES, GL_POINTS, GL_TRIANGLE_STRIP};
+    for (unsigned kind = 0; kind < programs.size(); ++kind) {
+      gpu::Program& program = context.program(programs[kind]);
       program.use();
       program.set("near_plane", scene.camera().near);
-      if (beams || kind.primitive == GL_LINES) program.set("buffer_size", rays.size);
+      if (programs.size() == 3 || kind == 0) program.set("buffer_size", rays.size);
       if (bind) bind(program);
-      if (kind.primitive == GL_TRIANGLE_STRIP)
-        gl.DrawArraysInstanced(kind.primitive, 0, kind.vertices, rays.count());
-      else
-        gl.DrawArrays(kind.primitive, 0, kind.vertices * rays.count());
+      drawRays(context, lists, kind, primitives[kind]);
     }
     gl.Disable(GL_PROGRAM_POINT_SIZE);
   });

@@ -1,5 +1,6 @@
 // Photons as triangles: each lies on the surface that its ray meets, around its kernel. CAUSTIC_MAP 0: on the screen; 1: in one
 // layer of the light's map.
+#include "glsl/caustics/listed_ray.glsl"
 #include "glsl/caustics/ray_beam.glsl"
 #include "glsl/gbuffer.glsl"
 #include "glsl/medium_input.glsl"
@@ -96,14 +97,14 @@ Ellipse ellipse(vec3 sides[4], vec3 direction) {
 
 void main() {
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-  int index = gl_VertexID / 3;
+  int index = listed_ray(0u, gl_VertexID / 3);
   CausticRay ray = rays[index];
   photon = vec4(0.0);
   peak = vec3(0.0);
   incidence = vec4(ray.direction.xyz, 0.0);
   kernel_x = vec3(0.0);
   kernel_y = vec3(0.0);
-  if (ray.direction.w != caustic_ray_surface || !in_target(index)) return;
+  if (!in_target(index)) return;
   vec3 place = ray.start.xyz + ray.start.w * ray.direction.xyz;
   vec3 normal = octahedral_decode(unpackSnorm2x16(ray.normal));
   incidence.w = -dot(normal, ray.direction.xyz);

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/caustics/ray_lines.h"
+#include "core/caustics/ray_lists.h"
 #include "core/scene/gpu_medium.h"
 #include "core/technique/technique.h"
 #include "glsl/gbuffer.glsl"
@@ -37,19 +38,27 @@ constexpr StressCase stress[] = {
 /// The photons of some rays as triangles, whatever they are splatted on.
 struct Photons {
   caustics::CausticRays rays;
+  caustics::RayLists lists;
   frame::BufferHandle frame;
   scene::MediumInput medium;
   float kernel;
   frame::ProgramHandle program = {};
 
-  Photons(const TechniqueInputs& inputs, const caustics::CausticRays& made)
+  Photons(frame::FrameGraph& graph, const TechniqueInputs& inputs, const caustics::CausticRays& made,
+          std::string_view technique)
       : rays(made),
+        lists(caustics::addRayLists(
+            graph, made,
+            {.technique = technique,
+             .program = {.files = {"techniques/surface_caustics/photon_kinds.comp.glsl"}, .defines = {}},
+             .kinds = {{{.vertices = 3}}}})),
         frame(inputs.handles.frame),
         medium(inputs.handles, inputs.parameters.integer("medium_steps")),
         kernel(inputs.parameters.real("kernel")) {}
 
   void declare(frame::PassBuilder& pass, bool map) {
     pass.read(frame, Access::uniformBuffer, "camera, medium").read(rays.rays, Access::storageLoad, "photons");
+    caustics::declareRayLists(pass, lists);
     gpu::ProgramDesc desc{.files = {"techniques/surface_caustics/photon.vert.glsl",
                                     "techniques/surface_caustics/photon.frag.glsl"},
                           .defines = {{"CAUSTIC_MAP", map ? "1" : "0"}}};
@@ -75,7 +84,7 @@ struct Photons {
     medium.bind(context);
     return splats;
   }
-  void draw(frame::PassContext& context) const { context.gl().DrawArrays(GL_TRIANGLES, 0, 3 * rays.count()); }
+  void draw(frame::PassContext& context) const { caustics::drawRays(context, lists, 0, GL_TRIANGLES); }
 };
 
 class SurfaceCaustics : public Technique {
@@ -206,7 +215,7 @@ class SurfaceCaustics : public Technique {
         caustics::requestRays(graph, inputs, request, map ? "caustic map" : "photons", info.name);
     if (!rays.rays) return request.target;
     if (!empty_) empty_ = gpu::VertexArray(inputs.gpuScene.device(), {});
-    const Photons photons(inputs, rays);
+    const Photons photons(graph, inputs, rays, info.name);
     const frame::TextureHandle irradiance =
         map ? addLookup(graph, inputs, rays, addMaps(graph, photons)) : addScreen(graph, inputs, photons);
     return addReflection(graph, inputs, irradiance, request.target);

@@ -1,0 +1,16 @@
+// What each caustic ray is drawn as: a line, a point or a quad. BEAMS 0: no quads, lines stand for all.
+#include "glsl/caustics/ray_shape.glsl"
+
+uint ray_kind(int index) {
+  CausticRay ray = rays[index];
+  RayPiece piece = ray_piece(ray);
+  if (!(piece.range.x < piece.range.y)) return ray_kind_none;
+  if (!(piece.pixels >= 1.0)) return ray_kind_point;
+#if BEAMS
+  RayBeam beam = ray_beam(index, ray, piece);
+  if (max(beam_width(beam, piece, 0.0), beam_width(beam, piece, 1.0)) > 1.0) return ray_kind_quad;
+#endif
+  return ray_kind_line;
+}
+
+#include "glsl/caustics/ray_kinds.glsl"

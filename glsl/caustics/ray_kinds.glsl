@@ -1,0 +1,20 @@
+// Main function of the pass that sorts rays by kind. Include behind `uint ray_kind(int index)`, 0 to 2 or ray_kind_none.
+#include "glsl/caustics/ray_runs.glsl"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 1) writeonly buffer RayRuns { RayRun runs[]; };
+uniform int ray_count;
+
+void main() {
+  uint run = gl_GlobalInvocationID.x;
+  uint first = run * rays_per_run;
+  if (first >= uint(ray_count)) return;
+  uvec3 counts = uvec3(0u);
+  uint kinds = 0u;
+  for (uint i = 0u; i < rays_per_run; ++i) {
+    uint kind = first + i < uint(ray_count) ? ray_kind(int(first + i)) : ray_kind_none;
+    counts += uvec3(equal(uvec3(kind), uvec3(0u, 1u, 2u)));
+    kinds |= kind << (2u * i);
+  }
+  runs[run] = RayRun(counts, kinds);
+}
