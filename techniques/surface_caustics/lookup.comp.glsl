@@ -10,7 +10,7 @@ uniform int light_count;  // of scene_lights
 
 const int points = 2;            // per side of a pixel, over which the map is averaged: it may be finer than the picture
 const float least_cosine = 0.1;  // the pixel's plane is stretched no further than by its inverse
-const float plane_bias = 2.0;  // texel footprints by which a texel's surface may leave the receiver's plane
+const float plane_bias = 2.0;    // texel footprints by which a texel's surface may leave the receiver's plane
 
 vec3 map_irradiance(ShadowLight maps, vec3 position, vec3 normal) {
   vec3 towards = maps.origin.w > 0.0 ? maps.origin.xyz - position : maps.origin.xyz;

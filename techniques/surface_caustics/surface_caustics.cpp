@@ -225,7 +225,7 @@ class SurfaceCaustics : public Technique {
   static constexpr TechniqueInfo info{
       .name = "surface_caustics",
       .title = "Surface caustics",
-      .source = "Wyman and Davis 2006; Shah et al. 2007; thesis, section 8.3.4",
+      .source = "Wyman and Davis 2006; Shah et al. 2007; Schjoeth et al. 2007; thesis, section 8.3.4",
       .terms = termSet(Term::caustic),
       .parameters = parameters,
       .stress = stress};
