@@ -115,7 +115,7 @@ frame::TextureHandle RayLines::add(frame::FrameGraph& graph, const TechniqueInpu
         {.files = {"glsl/caustics/lines.vert.glsl", draw.fragmentShader}, .defines = std::move(defines)}));
   }
   pass.execute([=, this, &scene = inputs.gpuScene, frame = inputs.handles.frame, depth = inputs.gbuffer.depth,
-                bind = draw.bind](frame::PassContext& context) {
+                beams = draw.beams, bind = draw.bind](frame::PassContext& context) {
     const gl::Functions& gl = context.gl();
     context.bindFramebuffer({{result}});
     gl.Enable(GL_BLEND);
@@ -132,7 +132,7 @@ frame::TextureHandle RayLines::add(frame::FrameGraph& graph, const TechniqueInpu
       gpu::Program& program = context.program(programs[kind]);
       program.use();
       program.set("near_plane", scene.camera().near);
-      if (programs.size() == 3 || kind == 0) program.set("buffer_size", rays.size);
+      if (beams || primitives[kind] == GL_LINES) program.set("buffer_size", rays.size);
       if (bind) bind(program);
       drawRays(context, lists, kind, primitives[kind]);
     }

@@ -28,12 +28,19 @@ int beam_neighbour(int index, int along, int at) {
   return best;
 }
 
-// Sides of the beam's cross-section at `l` metres along the ray, perpendicular to it.
-struct BeamSection {
-  vec3 u;
-  vec3 v;
+// The neighbours along both axes of the buffer.
+struct BeamNeighbours {
+  CausticRay beside;
+  CausticRay above;
 };
 
+BeamNeighbours beam_neighbours(int index) {
+  int x = index % buffer_size;
+  int y = index / buffer_size % buffer_size;
+  return BeamNeighbours(rays[beam_neighbour(index, 1, x)], rays[beam_neighbour(index, buffer_size, y)]);
+}
+
+// The side of the beam towards a neighbour at `l` metres along the ray, perpendicular to it.
 vec3 beam_side(CausticRay ray, CausticRay other, float l) {
   vec3 offset = other.start.xyz + l * other.direction.xyz - ray.start.xyz - l * ray.direction.xyz;
   return offset - dot(offset, ray.direction.xyz) * ray.direction.xyz;

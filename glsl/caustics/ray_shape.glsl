@@ -67,15 +67,12 @@ struct RayBeam {
 };
 
 RayBeam ray_beam(int index, CausticRay ray, RayPiece p) {
-  int x = index % buffer_size;
-  int y = index / buffer_size % buffer_size;
-  CausticRay beside = rays[beam_neighbour(index, 1, x)];
-  CausticRay above = rays[beam_neighbour(index, buffer_size, y)];
+  BeamNeighbours to = beam_neighbours(index);
   RayBeam beam;
-  beam.u_near = camera_direction(beam_side(ray, beside, p.range.x));
-  beam.v_near = camera_direction(beam_side(ray, above, p.range.x));
-  beam.u_far = camera_direction(beam_side(ray, beside, p.range.y));
-  beam.v_far = camera_direction(beam_side(ray, above, p.range.y));
+  beam.u_near = camera_direction(beam_side(ray, to.beside, p.range.x));
+  beam.v_near = camera_direction(beam_side(ray, to.above, p.range.x));
+  beam.u_far = camera_direction(beam_side(ray, to.beside, p.range.y));
+  beam.v_far = camera_direction(beam_side(ray, to.above, p.range.y));
   return beam;
 }
 

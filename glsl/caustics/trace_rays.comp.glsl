@@ -33,10 +33,14 @@ vec3 map_place(ShadowView view, ivec2 texel, uint layer) {
   return shadow_unproject_local(view, (vec2(texel) + 0.5) / float(view.info.z), shadow_metres(view, stored));
 }
 
+// Of the scene's map that sees p.
+uint scene_layer(ShadowLight maps, vec3 p) {
+  return maps.info.x + shadow_face(maps.info.y, scene_views[maps.info.x], p);
+}
+
 // How far p lies behind what the light sees in the scene without specular objects, metres; < 0: before it, or nothing known.
 float behind_scene(ShadowLight maps, vec3 p) {
-  ShadowView first = scene_views[maps.info.x];
-  uint layer = maps.info.x + shadow_face(maps.info.y, first, p);
+  uint layer = scene_layer(maps, p);
   ShadowView view = scene_views[layer];
   ShadowPoint q = shadow_project(view, p);
   if (!shadow_inside(q)) return -1.0;
@@ -64,8 +68,7 @@ int place_of(ShadowLight maps, ShadowView view, int layer, vec3 p) {
 // Normal of the scene at p, where a ray ends on it, against the ray: of the plane through the texels about p, towards the
 // nearer neighbour on each axis, so that no edge is crossed where the scene goes on to either side.
 vec3 end_normal(ShadowLight maps, vec3 p, vec3 direction) {
-  ShadowView first = scene_views[maps.info.x];
-  uint layer = maps.info.x + shadow_face(maps.info.y, first, p);
+  uint layer = scene_layer(maps, p);
   ShadowView view = scene_views[layer];
   int last = int(view.info.z) - 1;
   ivec2 texel = clamp(ivec2(shadow_project(view, p).uv * float(view.info.z)), ivec2(0), ivec2(last));

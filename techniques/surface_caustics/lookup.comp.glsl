@@ -2,6 +2,7 @@
 // show the same surface.
 #include "glsl/gbuffer_input.glsl"
 #include "techniques/surface_caustics/caustic_map.glsl"
+#include "techniques/surface_caustics/on_plane.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 7) uniform sampler2DArray caustic_map;  // W/m^2
@@ -45,12 +46,11 @@ void main() {
   if (depth > 0.0) {
     vec3 position = pixel_position(pixel, depth);
     vec3 normal = pixel_geometric_normal(pixel);
-    vec3 ray = pixel_ray(pixel);
-    float facing = min(dot(normal, ray), -least_cosine * length(ray));
+    vec3 ray = normalize(pixel_ray(pixel));
     for (int p = 0; p < points * points; ++p) {
       vec2 offset = (vec2(p % points, p / points) + 0.5) / float(points) - 0.5;
       vec3 across = depth * (offset.x * frame.view_ray_dx.xyz + offset.y * frame.view_ray_dy.xyz);
-      vec3 place = position + across - ray * (dot(normal, across) / facing);  // on the surface's plane
+      vec3 place = position + on_plane(across, normal, ray, least_cosine);
       for (int i = 0; i < light_count; ++i) {
         // Samples of a light without extent share its map.
         if (i > 0 && scene_lights[i].info.x == scene_lights[i - 1].info.x) continue;

@@ -4,6 +4,7 @@
 #include "glsl/caustics/ray_beam.glsl"
 #include "glsl/gbuffer.glsl"
 #include "glsl/medium_input.glsl"
+#include "techniques/surface_caustics/on_plane.glsl"
 #if CAUSTIC_MAP
 #include "techniques/surface_caustics/caustic_map.glsl"
 
@@ -33,12 +34,6 @@ struct Target {
   vec3 pixel_x;   // sides of a pixel on a plane through the place that faces the eye, m
   vec3 pixel_y;
 };
-
-// d moved along a direction onto the plane through 0 of normal n.
-vec3 on_plane(vec3 d, vec3 n, vec3 direction) {
-  float facing = dot(n, direction);
-  return d - direction * (dot(n, d) / (facing < 0.0 ? min(facing, -least_cosine) : max(facing, least_cosine)));
-}
 
 #if CAUSTIC_MAP
 bool in_target(int index) {
@@ -112,13 +107,10 @@ void main() {
   Medium medium = scene_medium();
   vec3 flux = ray.power * medium_transmittance(medium, medium_length(medium, ray.start.xyz, ray.direction.xyz, ray.start.w));
 
-  int x = index % buffer_size;
-  int y = index / buffer_size % buffer_size;
-  CausticRay beside = rays[beam_neighbour(index, 1, x)];
-  CausticRay above = rays[beam_neighbour(index, buffer_size, y)];
-  vec3 pixel_x = box_radius * on_plane(target.pixel_x, normal, target.eye_ray);
-  vec3 pixel_y = box_radius * on_plane(target.pixel_y, normal, target.eye_ray);
-  Ellipse e = ellipse(vec3[4](kernel * beam_side(ray, beside, ray.start.w), kernel * beam_side(ray, above, ray.start.w),
+  BeamNeighbours to = beam_neighbours(index);
+  vec3 pixel_x = box_radius * on_plane(target.pixel_x, normal, target.eye_ray, least_cosine);
+  vec3 pixel_y = box_radius * on_plane(target.pixel_y, normal, target.eye_ray, least_cosine);
+  Ellipse e = ellipse(vec3[4](kernel * beam_side(ray, to.beside, ray.start.w), kernel * beam_side(ray, to.above, ray.start.w),
                               pixel_x, pixel_y), ray.direction.xyz);
   if (!(e.size.y > 0.0)) return;
   vec3 other_axis = cross(ray.direction.xyz, e.axis);
@@ -128,6 +120,6 @@ void main() {
   kernel_y = other_axis / e.size.y;
   vec2 corner = corners[gl_VertexID % 3];
   vec3 across = corner.x * e.size.x * e.axis + corner.y * e.size.y * other_axis;
-  vec4 clip = target_clip(place + on_plane(across, normal, ray.direction.xyz));
+  vec4 clip = target_clip(place + on_plane(across, normal, ray.direction.xyz, least_cosine));
   gl_Position = vec4(clip.xy, 0.0, clip.w);
 }

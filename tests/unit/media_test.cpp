@@ -192,7 +192,8 @@ TEST(Airlight, TheRangeOfAConeIsWhereItsFactorIsNotZero) {
       const vec3 offset = eye + t * w - apex;
       const float past = dot(axis, normalize(offset)) - light.cone.y;  // > 0: inside
       if (std::abs(past) < 1e-4f) continue;
-      EXPECT_EQ(t > range.x && t<range.y, past> 0) << i << " at " << t << ": " << range.x << " " << range.y;
+      const bool inRange = range.x < t && t < range.y;
+      EXPECT_EQ(inRange, past > 0) << i << " at " << t << ": " << range.x << " " << range.y;
       lit += past > 0;
     }
   }
