@@ -20,26 +20,19 @@ LIMN_FN int min_max_texel(int x, int level, int size) {
 LIMN_END
 
 #ifndef __cplusplus
-// Bounds of the depths in texels lo..hi (both included) of one layer, lo <= hi: at least as wide as the truth. The
+#include "glsl/depth_bounds.glsl"
+
+// Bounds of the depths in texels low..high (both included) of one layer, low <= high: at least as wide as the truth. The
 // part outside the map is unoccluded (depth 1).
-vec2 min_max_depth(sampler2DArray pyramid, ivec2 lo, ivec2 hi, int layer) {
+vec2 min_max_depth(sampler2DArray pyramid, ivec2 low, ivec2 high, int layer) {
   ivec2 size = textureSize(pyramid, 0).xy;
-  ivec2 a = max(lo, ivec2(0));
-  ivec2 b = min(hi, size - 1);
+  ivec2 a = max(low, ivec2(0));
+  ivec2 b = min(high, size - 1);
   if (any(greaterThan(a, b))) return vec2(1.0);
   int level = min_max_level(max(b.x - a.x, b.y - a.y) + 1, textureQueryLevels(pyramid));
-  int x0 = min_max_texel(a.x, level, size.x);
-  int x1 = min_max_texel(b.x, level, size.x);
-  int y0 = min_max_texel(a.y, level, size.y);
-  int y1 = min_max_texel(b.y, level, size.y);
-  vec2 t00 = texelFetch(pyramid, ivec3(x0, y0, layer), level).xy;
-  vec2 t10 = texelFetch(pyramid, ivec3(x1, y0, layer), level).xy;
-  vec2 t01 = texelFetch(pyramid, ivec3(x0, y1, layer), level).xy;
-  vec2 t11 = texelFetch(pyramid, ivec3(x1, y1, layer), level).xy;
-  float least = min(min(t00.x, t10.x), min(t01.x, t11.x));
-  float greatest = max(max(t00.y, t10.y), max(t01.y, t11.y));
-  bool inside = a == lo && b == hi;
-  return vec2(least, inside ? greatest : 1.0);
+  ivec2 first = ivec2(min_max_texel(a.x, level, size.x), min_max_texel(a.y, level, size.y));
+  ivec2 second = ivec2(min_max_texel(b.x, level, size.x), min_max_texel(b.y, level, size.y));
+  return depth_bounds_of_four(pyramid, first, second, layer, level, a == low && b == high);
 }
 #endif
 

@@ -36,6 +36,8 @@ LIMN_FN int min_max_windows_second(int high, int first, int level) {
 LIMN_END
 
 #ifndef __cplusplus
+#include "glsl/depth_bounds.glsl"
+
 // Bounds of the depths in texels low..high (both included) of one layer, low <= high: at least as wide as the truth.
 // Windows go by the longer side of what of the box lies in the map. The part outside the map has depth 1.
 vec2 min_max_windows_depth(sampler2DArray windows, ivec2 low, ivec2 high, int layer) {
@@ -46,18 +48,9 @@ vec2 min_max_windows_depth(sampler2DArray windows, ivec2 low, ivec2 high, int la
   int level = min_max_windows_level(max(b.x - a.x, b.y - a.y) + 1);
   bool covered = min_max_windows_cover(a.x, b.x, level) && min_max_windows_cover(a.y, b.y, level);
   level += covered ? 0 : 1;
-  int x0 = min_max_windows_first(a.x, level, size.x);
-  int x1 = min_max_windows_second(b.x, x0, level);
-  int y0 = min_max_windows_first(a.y, level, size.y);
-  int y1 = min_max_windows_second(b.y, y0, level);
-  vec2 t00 = texelFetch(windows, ivec3(x0, y0, layer), level).xy;
-  vec2 t10 = texelFetch(windows, ivec3(x1, y0, layer), level).xy;
-  vec2 t01 = texelFetch(windows, ivec3(x0, y1, layer), level).xy;
-  vec2 t11 = texelFetch(windows, ivec3(x1, y1, layer), level).xy;
-  float least = min(min(t00.x, t10.x), min(t01.x, t11.x));
-  float greatest = max(max(t00.y, t10.y), max(t01.y, t11.y));
-  bool inside = a == low && b == high;
-  return vec2(least, inside ? greatest : 1.0);
+  ivec2 first = ivec2(min_max_windows_first(a.x, level, size.x), min_max_windows_first(a.y, level, size.y));
+  ivec2 second = ivec2(min_max_windows_second(b.x, first.x, level), min_max_windows_second(b.y, first.y, level));
+  return depth_bounds_of_four(windows, first, second, layer, level, a == low && b == high);
 }
 #endif
 

@@ -24,6 +24,8 @@ LIMN_FN int n_buffer_second(int high, int first, int level) { return max(high + 
 LIMN_END
 
 #ifndef __cplusplus
+#include "glsl/depth_bounds.glsl"
+
 // Bounds of the depths in texels low..high (both included) of one layer, low <= high. Windows go by the longer side of
 // what of the box lies in the map. Bounds are exact where the shorter side is no shorter than a window: of squares and
 // where the sides differ by one texel; else at least as wide as the truth. The part outside the map has depth 1.
@@ -34,18 +36,9 @@ vec2 n_buffer_depth(sampler2DArray windows, ivec2 low, ivec2 high, int layer) {
   if (any(greaterThan(a, b))) return vec2(1.0);
   int level = n_buffer_level(max(b.x - a.x, b.y - a.y) + 1);
   int slice = layer * n_buffer_levels(max(size.x, size.y)) + level;
-  int x0 = n_buffer_first(a.x, b.x, level);
-  int x1 = n_buffer_second(b.x, x0, level);
-  int y0 = n_buffer_first(a.y, b.y, level);
-  int y1 = n_buffer_second(b.y, y0, level);
-  vec2 t00 = texelFetch(windows, ivec3(x0, y0, slice), 0).xy;
-  vec2 t10 = texelFetch(windows, ivec3(x1, y0, slice), 0).xy;
-  vec2 t01 = texelFetch(windows, ivec3(x0, y1, slice), 0).xy;
-  vec2 t11 = texelFetch(windows, ivec3(x1, y1, slice), 0).xy;
-  float least = min(min(t00.x, t10.x), min(t01.x, t11.x));
-  float greatest = max(max(t00.y, t10.y), max(t01.y, t11.y));
-  bool inside = a == low && b == high;
-  return vec2(least, inside ? greatest : 1.0);
+  ivec2 first = ivec2(n_buffer_first(a.x, b.x, level), n_buffer_first(a.y, b.y, level));
+  ivec2 second = ivec2(n_buffer_second(b.x, first.x, level), n_buffer_second(b.y, first.y, level));
+  return depth_bounds_of_four(windows, first, second, slice, 0, a == low && b == high);
 }
 #endif
 

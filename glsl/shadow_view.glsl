@@ -137,6 +137,12 @@ LIMN_FN float shadow_metres(ShadowView view, float stored) {
   return view.origin.w + stored * (view.axis_z.w - view.origin.w);
 }
 
+// What a texel, whose depth as stored is given, shows at its centre: offset from the origin, in the view's axes.
+LIMN_FN vec3 shadow_texel_offset(ShadowView view, ivec2 texel, float stored) {
+  vec2 uv = (vec2(texel) + 0.5f) / float(view.info.z);
+  return shadow_unproject_local(view, uv, shadow_metres(view, stored));
+}
+
 // Clip coordinates for rasterising the view: depth in [0, 1], reversed (near: 1, far: 0). The perspective ones keep
 // the precision of floating-point depth over any range.
 LIMN_FN vec4 shadow_clip(ShadowView view, vec3 p) {

@@ -93,9 +93,8 @@ struct ShadowTap {
 // A texel of the cursor's view, which lies in the map.
 ShadowTap shadow_texel(ShadowCursor cursor, ivec2 texel) {
   float stored = texelFetch(shadow_depth, ivec3(texel, cursor.layer), 0).r;
-  float metres = shadow_metres(cursor.view, stored);
   ShadowTap tap;
-  tap.offset = shadow_unproject_local(cursor.view, (vec2(texel) + 0.5) / float(cursor.view.info.z), metres);
+  tap.offset = shadow_texel_offset(cursor.view, texel, stored);
   tap.blocked = stored < 1.0 && shadow_blocks(cursor.receiver, tap.offset);
   return tap;
 }

@@ -158,7 +158,7 @@ Action addFlickerCommand(CLI::App& command) {
   options->backend.addTo(command);
   command
       .add_option("--output-term", options->outputTerm,
-                  "indirect, direct, specular, visibility (with --light) or final")
+                  "final, visibility (with --light), direct, indirect, caustic, media or specular")
       ->capture_default_str();
   command.add_option("--frames", options->frames, "The frames a to b (inclusive) of the animation")
       ->capture_default_str();

@@ -59,6 +59,13 @@ export function measured(rows, metric, time) {
     .filter((point) => isNumber(point.error) && isNumber(point.ms) && point.ms > 0);
 }
 
+/** Time and noise of the reference, where they may be set beside the rows': {ms, sigma} or null. */
+export function tracedBy(table, metric, time) {
+  const row = table.rows.find((other) => other.reference_ms);
+  if (!row || metric.key !== "rmse" || time.key !== "frame") return null;
+  return {ms: 1000 * table.reference.seconds, sigma: metric.floor(row) / 3};
+}
+
 /** The rows that nobody beats in both error and time, quickest first; errors below the noise are no difference. */
 export function paretoFront(points) {
   const front = [];

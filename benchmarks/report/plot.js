@@ -38,6 +38,17 @@ function levelLine(svg, y, value, width, name, label) {
   group.append("text").attr("x", width - MARGIN.right - 4).attr("y", y(value) - 4).attr("text-anchor", "end").text(label);
 }
 
+/** The reference's own method, whose error falls with the square root of its time. */
+function tracedLine(svg, x, y, {ms, sigma}) {
+  const error = (time) => sigma * Math.sqrt(ms / time), time = (value) => ms * (sigma / value) ** 2;
+  const [low, high] = y.domain();
+  const start = Math.max(x.domain()[0], time(high)), end = Math.min(x.domain()[1], time(low));
+  if (!(start < end)) return;
+  const group = svg.append("g").attr("class", "level traced");
+  group.append("line").attr("x1", x(start)).attr("x2", x(end)).attr("y1", y(error(start))).attr("y2", y(error(end)));
+  group.append("text").attr("x", x(end) - 4).attr("y", y(error(end)) - 4).attr("text-anchor", "end").text("as the reference");
+}
+
 function frontLine(front, x, y) {
   return front.map((point, i) =>
     i === 0 ? `M${x(point.ms)},${y(point.error)}` : `H${x(point.ms)}V${y(point.error)}`).join("");
@@ -59,9 +70,10 @@ function neighbour(points, current, key) {
 
 /**
  * Draws the chart into `container` and returns {mark(row)}, which shows a row as the current one.
+ * `level`: the separation floor. `traced`: {ms, sigma} of the reference, where its time may be set beside the rows'.
  * `onCurrent(row)` is told when a point is hovered, touched or focused.
  */
-export function drawPlot(container, {curves, rows, metric, time, level, onCurrent}) {
+export function drawPlot(container, {curves, rows, metric, time, level, traced, onCurrent}) {
   const points = curves.flatMap((curve) => measured(curve.rows, metric, time).map((point) => ({...point, curve})));
   if (points.length === 0) {
     container.replaceChildren("No row has both a time and this error.");
@@ -85,6 +97,7 @@ export function drawPlot(container, {curves, rows, metric, time, level, onCurren
   logAxes(svg, x, y, width, height, [`milliseconds, ${time.label}`, metric.label]);
   if (floor) levelLine(svg, y, floor, width, "noise", "noise of the reference (3 sigma)");
   if (level > 0) levelLine(svg, y, level, width, "separation", "separation floor");
+  if (traced) tracedLine(svg, x, y, traced);
   svg.append("path").attr("class", "front").attr("d", frontLine(front, x, place));
 
   for (const curve of curves) {

@@ -1,7 +1,7 @@
 // One subject (scene, camera, light, environment): its chart, its pictures and its tables. A table of the bench is
 // shown at a time, so that terms, sizes, modes and renderers never mix.
 import {breakable, chooser, el} from "./dom.js";
-import {METRICS, TIMES, isNumber, knownMetrics} from "./metrics.js";
+import {METRICS, TIMES, isNumber, knownMetrics, tracedBy} from "./metrics.js";
 import {SEPARATION_FLOOR, curveOf, curves as curvesOf} from "./series.js";
 import {commonTarget, equalRows, nearest} from "./equal.js";
 import {errorTable, framesPerSecond, passTable} from "./tables.js";
@@ -115,7 +115,7 @@ export class Section {
     const floor = table.rows.find((row) => row.technique === SEPARATION_FLOOR && !row.failure);
     const focused = this.chart.contains(document.activeElement);
     this.plot = drawPlot(this.chart, {curves, rows: table.rows, metric, time, level: floor && metric.read(floor),
-      onCurrent: (row) => { if (row !== this.current) this.select(row); }});
+      traced: tracedBy(table, metric, time), onCurrent: (row) => { if (row !== this.current) this.select(row); }});
     this.select(this.current);
     if (focused) this.chart.querySelector(".current")?.focus();
   }

@@ -25,16 +25,20 @@ function ratioText(ratio) {
   return ratio.high > ratio.low ? `${number(ratio.value)} (${number(ratio.low)}–${number(ratio.high)})` : number(ratio.value);
 }
 
+const referenceText = (time) => (time ? `${time.at_least ? ">" : ""}${number(time.value)}` : "–");
+
 export function errorTable(table, metric, time, onCurrent) {
   const metrics = knownMetrics(table.rows);
   const front = paretoFront(measured(table.rows, metric, time)).map((point) => point.row);
+  const traced = table.rows.some((row) => row.reference_ms);
   const head = [{label: "technique", text: true}, {label: "settings", text: true},
     ...metrics.map((known) => ({label: known.label, help: known.help})),
     {label: "spectrum", help: "power of the error over frequency, both logarithmic"},
     {label: "above 16 px", help: "share of the error's power at wavelengths above 16 pixels"},
     ...(table.baseline ? [{label: "times as fast", help: `as ${table.baseline}, with the interval of 95 %`}] : []),
     {label: "ms"}, {label: "quartiles"},
-    {label: "p99 / median", help: "how far the slowest frames lie above the others: stalls show here"}, {label: "frames"}, {label: "MiB"}, {label: "Pareto front"}];
+    {label: "p99 / median", help: "how far the slowest frames lie above the others: stalls show here"}, {label: "frames"},
+    ...(traced ? [{label: "reference ms", help: "that the reference's own method takes for the row's RMSE, on the same processor"}] : []), {label: "MiB"}, {label: "Pareto front"}];
   const rows = table.rows.map((row) => {
     const start = [nameCell(row, onCurrent), text(settingsText(row))];
     if (row.failure)
@@ -45,7 +49,7 @@ export function errorTable(table, metric, time, onCurrent) {
       table.baseline ? cell(ratioText(row.times_as_fast)) : null, cell(time ? number(time.median) : "–"),
       cell(time ? `${number(time.q1)}–${number(time.q3)}` : "–"),
       cell(isNumber(time?.p99) ? number(time.p99 / time.median) : "–"), cell(time ? String(time.n) : "–"),
-      cell(isNumber(row.memory_bytes) ? number(row.memory_bytes / 2 ** 20) : "–"), cell(front.includes(row) ? "*" : ""));
+      traced ? cell(referenceText(row.reference_ms)) : null, cell(isNumber(row.memory_bytes) ? number(row.memory_bytes / 2 ** 20) : "–"), cell(front.includes(row) ? "*" : ""));
   });
   const compared = table.baseline ? `Times as fast: against ${table.baseline}, with the interval of 95 %. ` : "";
   return tableElement(`Errors and times. ${compared}* on the Pareto front of ${metric.label} and time (${time.label}); < below three ` +

@@ -48,6 +48,16 @@ std::string frameRatio(const Row& slow, const Row& fast) {
   return fmt::format("{:.2f} ({:.2f} to {:.2f})", ratio.value, ratio.low, ratio.high);
 }
 
+std::optional<ReferenceTime> referenceTime(const Row& row) {
+  const Metrics& e = row.error;
+  if (!isTimed(row) || row.what.timeWidth > 0 || !row.referenceSeconds || !e.noise_floor ||
+      *e.noise_floor <= 0)
+    return std::nullopt;
+  const double sigma = *e.noise_floor / 3, ms = 1000 * *row.referenceSeconds;
+  const double least = 0.25 * sigma * sigma, own = e.rmse * e.rmse - sigma * sigma;
+  return ReferenceTime{ms * sigma * sigma / std::max(own, least), own < least};
+}
+
 std::string rowName(const Row& row) {
   std::string name = row.what.title.empty() ? row.what.technique : row.what.title;
   if (!row.what.title.empty()) return name;

@@ -73,6 +73,8 @@ Json rowJson(const Row& row, const std::vector<Window>& windows, EmbeddedPicture
       json["frame_ms"]["p99"] = render::quantile(row.cost.frameMs.samples, 0.99);
     json["passes"] = passes(stats);
   }
+  if (const std::optional<ReferenceTime> time = referenceTime(row))
+    json["reference_ms"] = {{"value", time->ms}, {"at_least", time->atLeast}};
   json["picture"] = pictures.whole(row.picture);
   json["difference"] = pictures.whole(row.difference);
   json["windows"] = Json::array();
@@ -100,8 +102,10 @@ Json referenceJson(const Table& table, const std::string& file, const std::vecto
                {"picture", pictures.whole(file)},
                {"windows", Json::array()}};
   for (const Window& window : windows) json["windows"].push_back(pictures.window(file, window));
-  for (const Row& row : table.rows)
+  for (const Row& row : table.rows) {
     if (row.referenceNoise) json["noise_rms"] = *row.referenceNoise;
+    if (row.referenceSeconds) json["seconds"] = *row.referenceSeconds;
+  }
   return json;
 }
 

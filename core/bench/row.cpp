@@ -244,6 +244,7 @@ std::string toJson(const Row& row) {
   json["key"] = row.key;
   json["reference"] = {{"file", row.referenceFile}};
   if (row.referenceNoise) json["reference"]["noise_rms"] = *row.referenceNoise;
+  if (row.referenceSeconds) json["reference"]["seconds"] = *row.referenceSeconds;
   if (!row.picture.empty()) json["picture"] = row.picture;
   if (!row.difference.empty()) json["difference"] = row.difference;
   if (row.failure.empty()) {
@@ -269,6 +270,8 @@ Row rowFromJson(const std::string& line) {
     row.referenceFile = json.at("reference").at("file").get<std::string>();
     if (json["reference"].contains("noise_rms"))
       row.referenceNoise = json["reference"]["noise_rms"].get<double>();
+    if (json["reference"].contains("seconds"))
+      row.referenceSeconds = json["reference"]["seconds"].get<double>();
     row.what.picture = json.contains("picture");
     if (row.what.picture) row.picture = json["picture"].get<std::string>();
     row.difference = json.value("difference", "");

@@ -55,7 +55,8 @@ struct Row {
   std::string key;  ///< rowKey of the case and cost.renderer
   Case what;
   std::string referenceFile;
-  std::optional<double> referenceNoise;  ///< RMS relative to the mean
+  std::optional<double> referenceNoise;    ///< RMS relative to the mean
+  std::optional<double> referenceSeconds;  ///< that it took on all cores; none in rows of earlier versions
   Metrics error;
   std::optional<Metrics> penumbra;     ///< visibility: over pixels whose reference lies in (0.02, 0.98)
   std::optional<Misjudged> misjudged;  ///< visibility

@@ -50,6 +50,7 @@ Row measureRow(const Case& c, const std::string& key, const Reference& reference
   row.what = c;
   row.referenceFile = reference.file;
   row.referenceNoise = reference.noise;
+  row.referenceSeconds = reference.seconds;
   Measurement measurement = callbacks.measure(c);
   CompareOptions options;
   options.maxMaskedShare = c.maxMaskedShare;

@@ -16,8 +16,9 @@ namespace limn::bench {
 
 struct Reference {
   Image image;
-  std::string file;             ///< as recorded in the row
-  std::optional<double> noise;  ///< RMS relative to the mean
+  std::string file;               ///< as recorded in the row
+  std::optional<double> noise;    ///< RMS relative to the mean
+  std::optional<double> seconds;  ///< that it took
 };
 
 struct Measurement {

@@ -83,6 +83,11 @@ std::string rmseText(const Metrics& m) {
   return fmt::format("{:.4g}", m.rmse);
 }
 
+std::string referenceTimeText(const Row& row) {
+  const std::optional<ReferenceTime> time = referenceTime(row);
+  return time ? fmt::format("{}{:.4g}", time->atLeast ? ">" : "", time->ms) : "-";
+}
+
 std::string csvField(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -119,11 +124,11 @@ std::string markdownRow(const Row& row, const Table& table, bool visibility) {
                       e.bias, e.p999, e.psnr, e.flip, e.structured);
   if (visibility) line += visibilityCells(row);
   const FrameTime& t = row.cost.frameMs;
-  if (!isTimed(row)) return line + " - | - | - | - | 0 | - | - | - | - | - |  |\n";
+  if (!isTimed(row)) return line + " - | - | - | - | 0 | - | - | - | - | - | - |  |\n";
   const CostSplit& split = row.cost.split;
-  line +=
-      fmt::format(" {:.3f} | {:.3f} | {:.3f} | {} | {} | {:.1f} | {:.2f} | {:.2f} | {:.2f} |", t.median, t.q1,
-                  t.q3, tailText(t), t.n, 1000 / t.median, split.maps, split.filters, split.technique);
+  line += fmt::format(" {:.3f} | {:.3f} | {:.3f} | {} | {} | {:.1f} | {} | {:.2f} | {:.2f} | {:.2f} |",
+                      t.median, t.q1, t.q3, tailText(t), t.n, 1000 / t.median, referenceTimeText(row),
+                      split.maps, split.filters, split.technique);
   return line + fmt::format(" {:.1f} | {} |\n", static_cast<double>(row.cost.memoryBytes) / (1 << 20),
                             onParetoFront(row, table.rows) ? "*" : "");
 }
@@ -152,10 +157,12 @@ std::string toMarkdown(const Table& table) {
   std::string text = fmt::format("### {}\n\n", table.title);
   text += fmt::format(
       "| technique | parameters | RMSE | rel. MSE | bias | p99.9 | PSNR | FLIP | structured |{} median ms | "
-      "q1 | q3 | p99 / median | n | fps | maps ms | filters ms | technique ms | MiB | front |\n",
+      "q1 | q3 | p99 / median | n | fps | reference ms | maps ms | filters ms | technique ms | MiB | front "
+      "|\n",
       visibility ? " penumbra RMSE | lit in umbra % | dark in light % |" : "");
-  text += fmt::format("|---|---|--:|--:|--:|--:|--:|--:|--:|{}--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|:-:|\n",
-                      visibility ? "--:|--:|--:|" : "");
+  text +=
+      fmt::format("|---|---|--:|--:|--:|--:|--:|--:|--:|{}--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|:-:|\n",
+                  visibility ? "--:|--:|--:|" : "");
   for (const Row& row : table.rows) text += markdownRow(row, table, visibility);
   return text + comparisonMarkdown(table.rows);
 }
@@ -168,7 +175,7 @@ std::string toCsv(const Table& table) {
       "flip,structured,noise_floor,masked_share,pixels,penumbra_rmse,penumbra_structured,umbra,lit_in_umbra,"
       "lit,dark_in_light,time_width,time_"
       "height,"
-      "median_ms,q1_ms,q3_ms,p99_ms,n,maps_ms,filters_ms,technique_ms,memory_bytes,failure\r\n";
+      "median_ms,q1_ms,q3_ms,p99_ms,n,reference_ms,maps_ms,filters_ms,technique_ms,memory_bytes,failure\r\n";
   const auto optional = [](bool known, auto value) {
     return known ? fmt::format("{}", value) : std::string();
   };
@@ -179,7 +186,7 @@ std::string toCsv(const Table& table) {
                         c.width, c.height, c.dynamic ? "dynamic" : "static", csvField(row.cost.renderer),
                         csvField(c.technique), csvField(parameterText(c)));
     if (!row.failure.empty()) {
-      text += fmt::format("{}{}\r\n", std::string(27, ','), csvField(row.failure));
+      text += fmt::format("{}{}\r\n", std::string(28, ','), csvField(row.failure));
       continue;
     }
     const Metrics& e = row.error;
@@ -194,12 +201,13 @@ std::string toCsv(const Table& table) {
     text += fmt::format("{},{},{},{},", optional(judged, m.umbra), optional(judged, m.litInUmbra),
                         optional(judged, m.lit), optional(judged, m.darkInLight));
     const CostSplit& split = row.cost.split;
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},\r\n", c.timeWidth > 0 ? c.timeWidth : c.width,
-                        c.timeWidth > 0 ? c.timeHeight : c.height, optional(t.n > 0, t.median),
-                        optional(t.n > 0, t.q1), optional(t.n > 0, t.q3),
-                        optional(!t.samples.empty(), render::quantile(t.samples, 0.99)), t.n,
-                        optional(t.n > 0, split.maps), optional(t.n > 0, split.filters),
-                        optional(t.n > 0, split.technique), row.cost.memoryBytes);
+    const std::optional<ReferenceTime> reference = referenceTime(row);
+    text += fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{},\r\n", c.timeWidth > 0 ? c.timeWidth : c.width,
+        c.timeWidth > 0 ? c.timeHeight : c.height, optional(t.n > 0, t.median), optional(t.n > 0, t.q1),
+        optional(t.n > 0, t.q3), optional(!t.samples.empty(), render::quantile(t.samples, 0.99)), t.n,
+        optional(reference.has_value(), reference ? reference->ms : 0), optional(t.n > 0, split.maps),
+        optional(t.n > 0, split.filters), optional(t.n > 0, split.technique), row.cost.memoryBytes);
   }
   return text;
 }

@@ -23,7 +23,8 @@ struct Table {
 LIMN_API std::vector<Table> makeTables(std::span<const Row> rows);
 
 /// Errors, frame time (median, quartiles, number of frames) and memory. Rows on the Pareto front of RMSE and
-/// time carry a star; an RMSE below three times the reference's noise is shown as that bound ("<0.001").
+/// time carry a star; an RMSE below three times the reference's noise is shown as that bound ("<0.001"). The
+/// column "reference ms" is referenceTime().
 LIMN_API std::string toMarkdown(const Table& table);
 /// The same numbers in full precision, with a header line (RFC 4180).
 LIMN_API std::string toCsv(const Table& table);

@@ -89,8 +89,20 @@ EGLDisplay openDevice(int index) {
   return display;
 }
 
-/// The surfaceless platform, and where there is none (NVIDIA's driver alone) the first device that opens.
+bool rendersOnProcessor(EGLDeviceEXT device) {
+  const auto query =
+      reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(eglGetProcAddress("eglQueryDeviceStringEXT"));
+  return query != nullptr && listsExtension(query(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
+}
+
+/// The first device that is a GPU and opens; else the surfaceless platform, which Mesa alone may serve where
+/// a GPU has another driver; else whatever device opens.
 EGLDisplay openDefault() {
+  for (EGLDeviceEXT device : eglDevices()) {
+    if (rendersOnProcessor(device)) continue;
+    const EGLDisplay display = initialisedDisplay(EGL_PLATFORM_DEVICE_EXT, device);
+    if (display != EGL_NO_DISPLAY) return display;
+  }
   if (clientOffers("EGL_MESA_platform_surfaceless")) {
     const EGLDisplay display = initialisedDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY);
     if (display != EGL_NO_DISPLAY) return display;

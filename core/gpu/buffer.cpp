@@ -81,6 +81,7 @@ void Buffer::read(size_t offset, void* data, size_t bytes) const {
 void Buffer::clear(uint32_t value) {
   if (bytes_ % sizeof value != 0)
     throw Error(fmt::format("buffer of {} bytes cannot be cleared by words of 4", bytes_));
+  device_->gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);  // after shaders' writes
   device_->gl().ClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
 }
 

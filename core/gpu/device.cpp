@@ -1,5 +1,8 @@
 #include "core/gpu/device.h"
 
+#include <fmt/format.h>
+
+#include <cstdlib>
 #include <string_view>
 
 #include "core/base/error.h"
@@ -39,11 +42,24 @@ Limits queryLimits(const gl::Functions& gl) {
   };
 }
 
+/// OpenGL promises storage blocks to fragments and compute shaders alone.
+void checkStages(const gl::Functions& gl, const std::string& renderer) {
+  constexpr int vertex = 6, geometry = 1;  // what limn's shaders need
+  const int vertexBlocks = query<int>(gl, GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS),
+            geometryBlocks = query<int>(gl, GL_MAX_GEOMETRY_SHADER_STORAGE_BLOCKS);
+  if (vertexBlocks < vertex || geometryBlocks < geometry)
+    throw Error(
+        fmt::format("{} offers {} storage blocks in vertex and {} in geometry shaders: limn needs {} and {}",
+                    renderer, vertexBlocks, geometryBlocks, vertex, geometry));
+}
+
 }  // namespace
 
-Device::Device(Context& context) : context_(context) {
+Device::Device(Context& context)
+    : context_(context), software_(context.info().software && std::getenv("LIMN_HARDWARE_PATHS") == nullptr) {
   const ContextScope scope(&context);
   const gl::Functions& gl = context.gl();
+  checkStages(gl, context.info().renderer);
   limits_ = queryLimits(gl);
   gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
   gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);

@@ -45,7 +45,10 @@ class LIMN_API Device {
   Context& context() const { return context_; }
   const gl::Functions& gl() const { return context_.gl(); }
   const Limits& limits() const { return limits_; }
-  bool software() const { return context_.info().software; }
+  /// Which of two ways suits the renderer where they differ: the processor's or a GPU's. A renderer on the
+  /// processor is given the GPU's where the environment has LIMN_HARDWARE_PATHS, so that tests meet these,
+  /// too.
+  bool software() const { return software_; }
   const Counters& counters() const { return counters_; }
   Counters& mutableCounters() { return counters_; }  ///< for the GPU objects themselves
 
@@ -53,6 +56,7 @@ class LIMN_API Device {
   Context& context_;
   Limits limits_;
   Counters counters_;
+  bool software_;
 };
 
 }  // namespace limn::gpu

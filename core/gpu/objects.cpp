@@ -124,6 +124,7 @@ Program& Program::operator=(Program&& other) noexcept {
   Program moved(std::move(other));
   swap(moved);
   std::swap(label_, moved.label_);
+  std::swap(locations_, moved.locations_);
   return *this;
 }
 
@@ -158,9 +159,13 @@ void Program::set4(const char* name, const float* value) {
   device_->gl().ProgramUniform4fv(id_, location(name), 1, value);
 }
 
-GLint Program::location(const char* name) const {
+GLint Program::location(const char* name) {
+  for (const auto& [known, location] : locations_)
+    if (known == name) return location;
   const GLint location = device_->gl().GetUniformLocation(id_, name);
-  if (location < 0) throw Error(fmt::format("program '{}' has no active uniform '{}'", label_, name));
+  if (location < 0 && device_->software())
+    throw Error(fmt::format("program '{}' has no active uniform '{}'", label_, name));
+  locations_.emplace_back(name, location);
   return location;
 }
 

@@ -195,7 +195,8 @@ class LIMN_API Program : public Object {
   ~Program();
   void use() const;
   const std::string& label() const { return label_; }
-  // Plain uniforms are allowed for a few scalars per dispatch; an unknown name throws Error (it is a bug).
+  // Plain uniforms are allowed for a few scalars per dispatch. A name that is no active uniform is a bug, and
+  // throws Error, on software renderers; hardware's compilers leave out more, and there it is passed over.
   void set(const char* name, int value);
   void set(const char* name, unsigned value);
   void set(const char* name, float value);
@@ -203,8 +204,10 @@ class LIMN_API Program : public Object {
   void set4(const char* name, const float* value);
 
  private:
-  GLint location(const char* name) const;
+  GLint location(const char* name);
   std::string label_;
+  std::vector<std::pair<std::string, GLint>>
+      locations_;  ///< asked for so far: asking the driver may wait for it
 };
 
 }  // namespace limn::gpu

@@ -98,7 +98,9 @@ ScopedName compileStage(Device& device, const std::string& label, const ShaderSt
   if (compiled == GL_FALSE) {
     throw Error(fmt::format("cannot compile {}: {}", label, summary(diagnostics, log)));
   }
-  if (device.context().info().debug && !diagnostics.empty()) {
+  // Mesa's, which every test sees. Other compilers warn of what is sound, as of members that nobody reads
+  // unset.
+  if (device.context().info().debug && device.context().info().software && !diagnostics.empty()) {
     throw Error(fmt::format("warnings in {}: {}", label, summary(diagnostics, log)));
   }
   return shader;

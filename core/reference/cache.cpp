@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <charconv>
 #include <optional>
 
@@ -44,6 +46,7 @@ std::optional<Result> Cache::get(const std::string& contentHash) const {
     result.image.metadata() = kept;
     result.noiseRms = *noise;
     result.spp = *spp;
+    result.seconds = numberOf<double>(result.image, "seconds").value_or(0);
     return result;
   } catch (const Error&) {
     return std::nullopt;  // a broken file is rendered again
@@ -58,6 +61,7 @@ void Cache::put(const std::string& contentHash, const Result& result) const {
                 ")");
   Image image = result.image;
   image.metadata()["content_hash"] = contentHash;
+  image.metadata()["seconds"] = fmt::format("{}", result.seconds);
   writeExr(pathOf(contentHash), image);
 }
 

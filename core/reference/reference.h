@@ -107,6 +107,7 @@ struct Result {
   double noiseRms =
       0;  ///< RMS over pixels of the standard deviation of the mean, relative to the mean; Monte Carlo only
   int spp = 0;
+  double seconds = 0;  ///< that all samples took; of a cached picture when it was made, 0 if it does not say
 };
 
 /// Throws UsageError for a request that makes no sense (names the member and what is accepted), Error if the
@@ -117,7 +118,8 @@ LIMN_API Result render(const Request& request);
 /// camera, size, term, light, bounces, samples or noise, seed, version of this code.
 LIMN_API std::string contentHash(const Request& request);
 
-/// Finished references on disk: one EXR per content hash.
+/// Finished references on disk: one EXR per content hash. Their metadata has content_hash and seconds besides
+/// that of render().
 class LIMN_API Cache {
  public:
   /// Created when the first picture is put into it.

@@ -92,12 +92,12 @@ class Work {
   Result run() {
     const Clock::time_point start = Clock::now();
     const uint32_t before = state_.samples;
+    const auto perSample = [&] { return secondsSince(start) / std::max(1u, state_.samples - before); };
     Clock::time_point saved = start;
     while (!finished()) {
       pass(std::min(passSize(), needed_ - state_.samples));
       const bool last = finished();
-      const bool goOn =
-          last || !request_.progress || request_.progress(progress(secondsSince(start), before));
+      const bool goOn = last || !request_.progress || request_.progress(progress(perSample()));
       if (!last && !request_.checkpoint.empty() &&
           (!goOn || secondsSince(saved) >= request_.checkpointSeconds)) {
         saveCheckpoint(request_.checkpoint, hash_, state_);
@@ -108,7 +108,10 @@ class Work {
             "reference: stopped after {} of {} samples per pixel{}", 2 * state_.samples, 2 * needed_,
             request_.checkpoint.empty() ? "" : "; kept in " + request_.checkpoint.string()));
     }
-    return finish();
+    const double seconds = perSample() * state_.samples;
+    Result result = finish();
+    result.seconds = seconds;
+    return result;
   }
 
  private:
@@ -203,16 +206,15 @@ class Work {
            noiseOf(*integrator_, request_.term, state_, counts_) <= request_.noise;
   }
 
-  Progress progress(double seconds, uint32_t before) const {
+  Progress progress(double secondsPerSample) const {
     double wanted = needed_;
     if (request_.noise > 0 && noise_ > 0) {
       const double ratio = noise_ / request_.noise;
       wanted = std::clamp(state_.samples * ratio * ratio, static_cast<double>(state_.samples), wanted);
     }
-    const double perSample = seconds / std::max(1u, state_.samples - before);
     return {.fraction = state_.samples / wanted,
             .noise = noise_,
-            .secondsLeft = perSample * (wanted - state_.samples),
+            .secondsLeft = secondsPerSample * (wanted - state_.samples),
             .spp = static_cast<int>(2 * state_.samples)};
   }
 

@@ -29,8 +29,7 @@ const float shadow_bias = 2.0;  // texel footprints
 
 // Place of what a texel of the scene's map shows, in the view's axes.
 vec3 map_place(ShadowView view, ivec2 texel, uint layer) {
-  float stored = texelFetch(scene_depth, ivec3(texel, layer), 0).x;
-  return shadow_unproject_local(view, (vec2(texel) + 0.5) / float(view.info.z), shadow_metres(view, stored));
+  return shadow_texel_offset(view, texel, texelFetch(scene_depth, ivec3(texel, layer), 0).x);
 }
 
 // Of the scene's map that sees p.

@@ -33,15 +33,14 @@ vec3 texel_intensity(uint index, vec3 origin, ReflectiveTexel t) {
 ReflectiveTexel reflective_texel(ShadowView view, ivec2 texel) {
   ivec3 at = ivec3(texel, view.info.y);
   float stored = texelFetch(reflective_depth, at, 0).r;
-  vec2 uv = (vec2(texel) + 0.5) / float(view.info.z);
-  vec3 offset = shadow_unproject_local(view, uv, shadow_metres(view, stored));
   ReflectiveTexel t;
   t.position = view.origin.xyz;
   t.normal = octahedral_decode(texelFetch(reflective_normal, at, 0).xy);
   t.flux = vec3(0.0);
   if (stored < 1.0) {
-    t.position += shadow_world_offset(view, offset);
+    t.position += shadow_world_offset(view, shadow_texel_offset(view, texel, stored));
     vec3 albedo = srgb_decode(texelFetch(reflective_albedo, at, 0).rgb);
+    vec2 uv = (vec2(texel) + 0.5) / float(view.info.z);
     t.flux = albedo * texel_intensity(view.info.w, view.origin.xyz, t) * reflective_map_measure(view, uv);
   }
   return t;

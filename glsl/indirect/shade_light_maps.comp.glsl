@@ -14,7 +14,6 @@ float vpl_visibility(uint vpl, vec3 receiver, vec3 normal) {
   float stored = texelFetch(maps, ivec3(texel, view.info.y), 0).r;
   vec3 axis = normalize(receiver - view.origin.xyz);
   ShadowReceiver plane = shadow_receiver(view, receiver, normal, axis, bias);
-  vec2 centre = (vec2(texel) + 0.5) / float(view.info.z);
-  bool blocked = stored < 1.0 && shadow_blocks(plane, shadow_unproject_local(view, centre, shadow_metres(view, stored)));
+  bool blocked = stored < 1.0 && shadow_blocks(plane, shadow_texel_offset(view, texel, stored));
   return blocked ? 0.0 : 1.0;
 }

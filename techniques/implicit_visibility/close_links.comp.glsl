@@ -9,9 +9,10 @@ uniform uint leaf_count;
 const uint n = BINS;
 
 void main() {
-  uint row = gl_GlobalInvocationID.x / 6u;
+  uint index = 64u * (gl_WorkGroupID.y * 32768u + gl_WorkGroupID.x) + gl_LocalInvocationIndex;
+  uint row = index / 6u;
   if (row >= leaf_count) return;
-  uint first = row * bin_count + gl_GlobalInvocationID.x % 6u * n * n;
+  uint first = row * bin_count + index % 6u * n * n;
   for (uint sweep = 0u; sweep < 2u; ++sweep)
     for (uint bin = 0u; bin < n * n; ++bin) {
       if (links[first + bin] != no_link) continue;

@@ -153,7 +153,7 @@ void ElementPasses::addGpuLinks(frame::FrameGraph& graph, LinkChunk& chunk) cons
         });
   };
   const int leafCount = static_cast<int>(chunk.count);
-  constexpr int most = 32768;  // work groups in a row, see clear_links.comp.glsl
+  constexpr int most = 32768;  // work groups in a row, see clear_links.comp.glsl and close_links.comp.glsl
   addStep("clear links", "clear_links.comp.glsl", Access::storageStore,
           {std::min(leafCount, most), (leafCount + most - 1) / most}, {0, 0});
   const auto rootCount = static_cast<uint32_t>(elements_.forest().roots().size());
@@ -161,9 +161,11 @@ void ElementPasses::addGpuLinks(frame::FrameGraph& graph, LinkChunk& chunk) cons
   for (uint32_t first = 0; first < rootCount; first += batch)
     addStep("links", "links.comp.glsl", Access::storageLoadStore, {(leafCount + 63) / 64, 1},
             {first, std::min(batch, rootCount - first)});
-  if (footprint)
-    addStep("close links", "close_links.comp.glsl", Access::storageLoadStore, {(6 * leafCount + 63) / 64, 1},
-            {0, 0});
+  if (footprint) {
+    const int closers = (6 * leafCount + 63) / 64;
+    addStep("close links", "close_links.comp.glsl", Access::storageLoadStore,
+            {std::min(closers, most), (closers + most - 1) / most}, {0, 0});
+  }
 }
 
 frame::ProgramHandle ElementPasses::program(frame::PassBuilder& pass, const char* file,

@@ -16,8 +16,7 @@ struct MapSurface {
 
 MapSurface map_surface(ShadowView view, ivec2 texel) {
   float stored = texelFetch(scene_depth, ivec3(texel, view.info.y), 0).x;
-  vec2 uv = (vec2(texel) + 0.5) / float(view.info.z);
-  vec3 local = shadow_unproject_local(view, uv, shadow_metres(view, stored));
+  vec3 local = shadow_texel_offset(view, texel, stored);
   return MapSurface(stored < 1.0, view.origin.xyz + shadow_world_offset(view, local));
 }
 

@@ -1,5 +1,6 @@
 // Fixture for tests that need OpenGL: one context per test suite, from the back end named by
-// LIMN_TEST_BACKEND (egl by default). A test fails when it leaves an OpenGL error or a live object behind.
+// LIMN_TEST_BACKEND (egl by default), on the EGL device LIMN_TEST_DEVICE if there is one. A test fails when
+// it leaves an OpenGL error or a live object behind.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,6 +24,11 @@ class GlTest : public ::testing::Test {
   static Backend testBackend() {
     const char* text = std::getenv("LIMN_TEST_BACKEND");
     return text == nullptr ? Backend::egl : parseBackend(text);
+  }
+
+  static int testDevice(Backend backend) {
+    const char* text = std::getenv("LIMN_TEST_DEVICE");
+    return text == nullptr || backend != Backend::egl ? -1 : std::atoi(text);
   }
 
   /// Whether the tests of this program meet the very same renderer when they run under EGL.
@@ -88,7 +94,9 @@ class GlTest : public ::testing::Test {
  private:
   struct Suite {
     explicit Suite(Backend backend)
-        : context(Context::create({.backend = backend, .debug = true, .visible = false})), device(*context) {}
+        : context(Context::create(
+              {.backend = backend, .device = testDevice(backend), .debug = true, .visible = false})),
+          device(*context) {}
     std::unique_ptr<Context> context;
     gpu::Device device;
   };

@@ -33,10 +33,7 @@ struct Maps {
   /// Offset of what a texel sees from its view's origin, in world axes.
   vec3 seen(int layer, int x, int y) const {
     const glsl::ShadowView& view = views[static_cast<size_t>(layer)];
-    const glm::vec2 uv((static_cast<float>(x) + 0.5f) / static_cast<float>(size),
-                       (static_cast<float>(y) + 0.5f) / static_cast<float>(size));
-    const vec3 r = glsl::shadow_unproject_local(view, uv, glsl::shadow_metres(view, stored(layer, x, y)));
-    return r.x * vec3(view.axis_x) + r.y * vec3(view.axis_y) + r.z * vec3(view.axis_z);
+    return glsl::shadow_world_offset(view, glsl::shadow_texel_offset(view, {x, y}, stored(layer, x, y)));
   }
 };
 

@@ -169,6 +169,25 @@ def is_accessible(browser):
         check(browser.evaluate(expression) == 0, what)
 
 
+def sets_the_reference_beside(browser):
+    """Where errors and times are of one picture, the reference's own method has a line and a column."""
+    check("reference ms" not in browser.evaluate("document.body.textContent"), "a time for errors of another size")
+    kept = results.read_text()
+    rows = [json.loads(line) for line in kept.splitlines()]
+    for row in rows:
+        row.update(time_size=[0, 0], term="direct")
+        row.pop("penumbra")
+        row["reference"]["seconds"] = 2e-3 * row["stats"]["frame_ms"]["median"]
+        row["error"]["noise_floor"] = 3 * row["error"]["rmse"]
+    results.write_text("".join(json.dumps(row) + "\n" for row in rows))
+    limn("report", out)
+    browser.open(page)
+    check(browser.evaluate("document.querySelectorAll('.level.traced line').length") == 1, "no line of the reference")
+    check("reference ms" in browser.evaluate("document.querySelector('table').textContent"), "no time of the reference")
+    results.write_text(kept)
+    limn("report", out)
+
+
 def withstands_foreign_rows(browser):
     """Texts from elsewhere stay texts, failed rows and rows of earlier versions are shown, renderers never mix."""
     rows = [json.loads(line) for line in results.read_text().splitlines()]
@@ -214,7 +233,7 @@ def withstands_foreign_rows(browser):
 
 bench()
 with Browser(options.chromium) as browser:
-    for step in (shows_points_and_pictures, reacts, is_painted, is_accessible, withstands_foreign_rows):
+    for step in (shows_points_and_pictures, reacts, is_painted, is_accessible, sets_the_reference_beside, withstands_foreign_rows):
         step(browser)
         check(not browser.problems, f"{step.__name__}: {browser.problems}")
 print("the report page shows and does what it should")

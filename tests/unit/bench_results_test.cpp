@@ -39,6 +39,7 @@ Row exampleRow(const Case& c, double rmse = 0.25, double ms = 2.5) {
   row.key = rowKey(c, "llvmpipe");
   row.referenceFile = "references/a.exr";
   row.referenceNoise = 0.001;
+  row.referenceSeconds = 7.5;
   row.error.rmse = rmse;
   row.error.rel_mse = 0.1;
   row.error.bias = -0.01;
@@ -95,6 +96,7 @@ TEST_F(BenchResults, RowsSurviveJson) {
   EXPECT_EQ(back.key, row.key);
   EXPECT_EQ(back.referenceFile, row.referenceFile);
   EXPECT_EQ(back.referenceNoise, row.referenceNoise);
+  EXPECT_EQ(back.referenceSeconds, row.referenceSeconds);
   EXPECT_EQ(back.error.rmse, row.error.rmse);
   EXPECT_EQ(back.error.psnr, row.error.psnr);
   EXPECT_EQ(back.error.noise_floor, row.error.noise_floor);
@@ -349,11 +351,11 @@ TEST(BenchTables, MarkdownShowsErrorTimeNoiseFloorAndFront) {
   const std::string text = toMarkdown(makeTables(rows).front());
   EXPECT_NE(text.find("| fast | fast.samples=16 | 0.25 | 0.1 | -0.01 | 0.7 | inf | 0.1250 | 0.03 | 0.25 | "
                       "5.00 | 1.00 | 1.000 | 0.750 | "
-                      "1.250 | 1.49 | 5 | 1000.0 | 0.50 | 0.25 | 0.25 | 3.0 | * |"),
+                      "1.250 | 1.49 | 5 | 1000.0 | 0.12 | 0.50 | 0.25 | 0.25 | 3.0 | * |"),
             std::string::npos)
       << text;
   EXPECT_NE(text.find("| beaten | beaten.samples=16 | 0.3 "), std::string::npos) << text;
-  EXPECT_NE(text.find("| 1.500 | 1.250 | 1.750 | 1.33 | 5 | 666.7 | 0.75 | 0.38 | 0.38 | 3.0 |  |"),
+  EXPECT_NE(text.find("| 1.500 | 1.250 | 1.750 | 1.33 | 5 | 666.7 | 0.08333 | 0.75 | 0.38 | 0.38 | 3.0 |  |"),
             std::string::npos)
       << text;
   EXPECT_NE(text.find("| good | good.samples=16 | <0.003 "), std::string::npos) << text;
@@ -366,6 +368,27 @@ TEST(BenchTables, MarkdownShowsErrorTimeNoiseFloorAndFront) {
     if (bars == 0) bars = count;
     EXPECT_EQ(count, bars) << line;
   }
+}
+
+TEST(BenchTables, ReferencesTakeLongerForLess) {
+  Row row = exampleRow(exampleCase("a"));
+  row.referenceSeconds = 50;
+  row.error.noise_floor = 3 * 0.01;
+  row.error.rmse = std::hypot(0.05, 0.01);  // 5 sigma beyond the reference's own noise
+  ASSERT_TRUE(referenceTime(row));
+  EXPECT_NEAR(referenceTime(row)->ms, 50e3 / 25, 1e-6);
+  EXPECT_FALSE(referenceTime(row)->atLeast);
+  row.error.rmse = 0.011;  // drowns in the noise
+  EXPECT_NEAR(referenceTime(row)->ms, 50e3 * 4, 1e-6);
+  EXPECT_TRUE(referenceTime(row)->atLeast);
+  row.what.timeWidth = row.what.timeHeight = 1024;  // errors and times of different pictures
+  EXPECT_FALSE(referenceTime(row));
+  row.what.timeWidth = row.what.timeHeight = 0;
+  row.error.noise_floor = 0;  // no noise, no Monte Carlo
+  EXPECT_FALSE(referenceTime(row));
+  row.error.noise_floor = 0.03;
+  row.referenceSeconds.reset();  // of an earlier version
+  EXPECT_FALSE(referenceTime(row));
 }
 
 TEST(BenchTables, RowsAreComparedWithTheBaseline) {

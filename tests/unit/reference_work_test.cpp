@@ -156,6 +156,8 @@ TEST(ReferenceWork, CacheReturnsWhatWasRendered) {
   EXPECT_TRUE(sameBits(first.image, second.image));
   EXPECT_EQ(first.noiseRms, second.noiseRms);
   EXPECT_EQ(first.spp, second.spp);
+  EXPECT_GT(first.seconds, 0);
+  EXPECT_EQ(first.seconds, second.seconds);
   const auto file = cache.pathOf(contentHash(world.request(16, Term::direct, 16)));
   ASSERT_TRUE(std::filesystem::exists(file));
   std::ofstream(file) << "broken";

@@ -53,6 +53,18 @@ TEST(ShadowView, ProjectionAndItsInverseAgreeUnderEveryKind) {
   }
 }
 
+TEST(ShadowView, TexelsLieAtTheirCentres) {
+  for (const uint32_t kind : {shadow_perspective, shadow_orthographic, shadow_paraboloid}) {
+    const ShadowView v = view(kind);
+    const float d = 0.5f * (nearPlane + farPlane);
+    const vec3 offset = shadow_texel_offset(v, {100, 40}, shadow_normalise(v, d));
+    const ShadowPoint q = shadow_project_local(v, offset);
+    EXPECT_NEAR(q.uv.x, 100.5f / 256, 1e-5f);
+    EXPECT_NEAR(q.uv.y, 40.5f / 256, 1e-5f);
+    EXPECT_NEAR(q.depth, d, 1e-5f * d);
+  }
+}
+
 TEST(ShadowView, NothingBehindAViewIsInside) {
   const ShadowView v = view(shadow_perspective);
   for (const float back : {0.f, -1.f, -100.f})
