@@ -11,9 +11,9 @@ import {drawSpectrum} from "./spectrum.js";
 import {swatch} from "./marks.js";
 
 export function subjectName({scene, camera, light, light_size: size, environment, time, fps,
-  changes}) {
+  medium, changes}) {
   return [scene, camera && `camera ${camera}`, light && `light ${light}`, size && `light size ${size}`,
-    environment && `environment ${environment}`, time && `${time} s`, fps && `played at ${fps} fps`, changes]
+    environment && `environment ${environment}`, time && `${time} s`, fps && `played at ${fps} fps`, medium, changes]
     .filter(Boolean).join(", ");
 }
 

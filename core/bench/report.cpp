@@ -121,6 +121,7 @@ Json tableJson(const Table& table, EmbeddedPictures& pictures) {
                  {"environment", std::filesystem::path(c.environment.map).filename().string()},
                  {"time", c.time},
                  {"fps", c.fps},
+                 {"medium", describe(c.medium)},
                  {"changes", describe(c.changes)}}},
                {"term", c.term},
                {"size", {c.width, c.height}},

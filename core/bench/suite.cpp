@@ -20,8 +20,9 @@ std::string environmentLights(const EnvironmentSettings& e) {
   return fmt::format("{} {} {} {}", e.lights, e.resolution, e.shape, e.reflection);
 }
 
-/// What differs from the scene's medium; empty: nothing.
-std::string mediumText(const MediumSettings& m) {
+}  // namespace
+
+std::string describe(const MediumSettings& m) {
   std::string text;
   const auto add = [&text](const char* name, const std::string& value) {
     if (!value.empty()) text += fmt::format("{}{} {}", text.empty() ? "" : " ", name, value);
@@ -31,8 +32,6 @@ std::string mediumText(const MediumSettings& m) {
   if (m.g) add("g", fmt::format("{}", *m.g));
   return text;
 }
-
-}  // namespace
 
 std::string describe(const SceneChanges& changes) {
   const SceneChanges none;
@@ -61,7 +60,7 @@ std::string question(const Case& c) {
   if (c.reference.interfaces != 0) text += fmt::format("/interfaces{}", c.reference.interfaces);
   if (!c.environment.map.empty()) text += "/" + c.environment.map;
   if (c.lightSize > 0) text += fmt::format("/light size {}", c.lightSize);
-  if (const std::string medium = mediumText(c.medium); !medium.empty()) text += "/" + medium;
+  if (const std::string medium = describe(c.medium); !medium.empty()) text += "/" + medium;
   if (const std::string changes = describe(c.changes); !changes.empty()) text += "/" + changes;
   // All light together is asked of the map itself.
   if (!c.light.empty()) text += environmentLights(c.environment);
@@ -81,7 +80,7 @@ std::string label(const Case& c) {
   if (c.fps > 0) text = fmt::format("{} fps/{}", c.fps, text);
   if (c.environment.lights > 0)
     text = fmt::format("environment lights {}/{}", environmentLights(c.environment), text);
-  if (const std::string medium = mediumText(c.medium); !medium.empty()) text = medium + "/" + text;
+  if (const std::string medium = describe(c.medium); !medium.empty()) text = medium + "/" + text;
   if (const std::string changes = describe(c.changes); !changes.empty()) text = changes + "/" + text;
   char separator = '?';
   for (const auto& [name, value] : c.parameters) {

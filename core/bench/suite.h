@@ -97,6 +97,8 @@ struct SceneChanges {
 };
 /// For people, in one line; empty where nothing is changed.
 LIMN_API std::string describe(const SceneChanges& changes);
+/// The same of a medium.
+LIMN_API std::string describe(const MediumSettings& medium);
 
 /// One picture of one technique: a row of the results.
 struct Case {

@@ -40,6 +40,7 @@ std::string tableTitle(const Row& row) {
     title += ", environment " + std::filesystem::path(c.environment.map).filename().string();
   if (c.time != 0) title += fmt::format(", {} s", c.time);
   if (c.fps > 0) title += fmt::format(", played at {} fps", c.fps);
+  if (const std::string medium = describe(c.medium); !medium.empty()) title += ", " + medium;
   if (const std::string changes = describe(c.changes); !changes.empty()) title += ", " + changes;
   return title + fmt::format(": {}, {}x{}{}, {}, {}", c.term, c.width, c.height, timeSizeText(c),
                              c.dynamic ? "dynamic" : "static", row.cost.renderer);
@@ -169,7 +170,8 @@ std::string toMarkdown(const Table& table) {
 
 std::string toCsv(const Table& table) {
   std::string text =
-      "scene,camera,light,light_size,time_s,term,width,height,mode,renderer,technique,parameters,rmse,rel_"
+      "scene,camera,light,light_size,medium,changes,time_s,term,width,height,mode,renderer,technique,"
+      "parameters,rmse,rel_"
       "mse,bias,p999,"
       "psnr,"
       "flip,structured,noise_floor,masked_share,pixels,penumbra_rmse,penumbra_structured,umbra,lit_in_umbra,"
@@ -181,8 +183,9 @@ std::string toCsv(const Table& table) {
   };
   for (const Row& row : table.rows) {
     const Case& c = row.what;
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},", csvField(c.scene), csvField(c.camera),
-                        csvField(c.light), optional(c.lightSize > 0, c.lightSize), c.time, csvField(c.term),
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},", csvField(c.scene), csvField(c.camera),
+                        csvField(c.light), optional(c.lightSize > 0, c.lightSize),
+                        csvField(describe(c.medium)), csvField(describe(c.changes)), c.time, csvField(c.term),
                         c.width, c.height, c.dynamic ? "dynamic" : "static", csvField(row.cost.renderer),
                         csvField(c.technique), csvField(parameterText(c)));
     if (!row.failure.empty()) {

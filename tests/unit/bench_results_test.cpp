@@ -5,6 +5,7 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -341,6 +342,20 @@ TEST(BenchTables, NeverMixModesRenderersOrQuestions) {
   std::set<std::string> names;
   for (const Table& table : makeTables(rows)) names.insert(table.fileName);
   EXPECT_EQ(names.size(), 5u);
+}
+
+TEST(BenchTables, TitlesTellTablesApart) {
+  std::vector<Row> rows(4, exampleRow(exampleCase()));
+  rows[1].what.medium.g = -0.7;
+  rows[2].what.medium.sigmaS = "0.5";
+  rows[3].what.changes.fov = 30;
+  std::set<std::string> titles, files;
+  for (const Table& table : makeTables(rows)) {
+    titles.insert(table.title);
+    files.insert(table.fileName);
+  }
+  EXPECT_EQ(titles.size(), rows.size());
+  EXPECT_EQ(files.size(), rows.size());
 }
 
 TEST(BenchTables, MarkdownShowsErrorTimeNoiseFloorAndFront) {
