@@ -209,7 +209,7 @@ struct Fakes {
     Callbacks made;
     made.reference = [this](const Case& c) {
       ++references;
-      Reference reference{Image::rgb(c.width, c.height), "reference.exr", 0.001};
+      Reference reference{Image::rgb(c.width, c.height), "reference.exr", 0.001, std::nullopt};
       std::ranges::fill(reference.image.data(), 0.5f);
       return reference;
     };
