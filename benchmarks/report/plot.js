@@ -46,7 +46,7 @@ function tracedLine(svg, x, y, {ms, sigma}) {
   if (!(start < end)) return;
   const group = svg.append("g").attr("class", "level traced");
   group.append("line").attr("x1", x(start)).attr("x2", x(end)).attr("y1", y(error(start))).attr("y2", y(error(end)));
-  group.append("text").attr("x", x(end) - 4).attr("y", y(error(end)) - 4).attr("text-anchor", "end").text("as the reference");
+  group.append("text").attr("x", x(start) + 6).attr("y", y(error(start)) - 4).text("as the reference");
 }
 
 function frontLine(front, x, y) {
