@@ -132,10 +132,7 @@ bench::Reference BenchSession::reference(const bench::Case& c) {
   reference::Result result = cache_.render(asked);
   const fs::path file = cache_.pathOf(reference::contentHash(asked));
   if (c.picture) keepPicture(file.stem().string(), result.image);
-  bench::Reference reference{std::move(result.image), fs::path("references") / file.filename(),
-                             result.noiseRms, std::nullopt};
-  if (result.seconds > 0) reference.seconds = result.seconds;
-  return reference;
+  return {std::move(result.image), fs::path("references") / file.filename(), result.noiseRms, result.seconds};
 }
 
 std::string BenchSession::keepPicture(const std::string& name, const Image& image) {

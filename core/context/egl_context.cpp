@@ -95,22 +95,25 @@ bool rendersOnProcessor(EGLDeviceEXT device) {
   return query != nullptr && listsExtension(query(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
 }
 
-/// The first device that is a GPU and opens; else the surfaceless platform, which Mesa alone may serve where
-/// a GPU has another driver; else whatever device opens.
-EGLDisplay openDefault() {
+/// Of the first device of this kind that opens; else EGL_NO_DISPLAY.
+EGLDisplay openFirst(bool onProcessor) {
   for (EGLDeviceEXT device : eglDevices()) {
-    if (rendersOnProcessor(device)) continue;
+    if (rendersOnProcessor(device) != onProcessor) continue;
     const EGLDisplay display = initialisedDisplay(EGL_PLATFORM_DEVICE_EXT, device);
     if (display != EGL_NO_DISPLAY) return display;
   }
+  return EGL_NO_DISPLAY;
+}
+
+/// The first GPU; else the surfaceless platform, which Mesa alone may serve where a GPU has another driver;
+/// else a device that is none.
+EGLDisplay openDefault() {
+  if (const EGLDisplay gpu = openFirst(false); gpu != EGL_NO_DISPLAY) return gpu;
   if (clientOffers("EGL_MESA_platform_surfaceless")) {
     const EGLDisplay display = initialisedDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY);
     if (display != EGL_NO_DISPLAY) return display;
   }
-  for (EGLDeviceEXT device : eglDevices()) {
-    const EGLDisplay display = initialisedDisplay(EGL_PLATFORM_DEVICE_EXT, device);
-    if (display != EGL_NO_DISPLAY) return display;
-  }
+  if (const EGLDisplay processor = openFirst(true); processor != EGL_NO_DISPLAY) return processor;
   throw Error(
       "no EGL driver offers the surfaceless or the device platform: install one (Debian: libegl-mesa0) or "
       "choose "

@@ -46,7 +46,7 @@ std::optional<Result> Cache::get(const std::string& contentHash) const {
     result.image.metadata() = kept;
     result.noiseRms = *noise;
     result.spp = *spp;
-    result.seconds = numberOf<double>(result.image, "seconds").value_or(0);
+    result.seconds = numberOf<double>(result.image, "seconds");
     return result;
   } catch (const Error&) {
     return std::nullopt;  // a broken file is rendered again
@@ -61,7 +61,7 @@ void Cache::put(const std::string& contentHash, const Result& result) const {
                 ")");
   Image image = result.image;
   image.metadata()["content_hash"] = contentHash;
-  image.metadata()["seconds"] = fmt::format("{}", result.seconds);
+  if (result.seconds) image.metadata()["seconds"] = fmt::format("{}", *result.seconds);
   writeExr(pathOf(contentHash), image);
 }
 

@@ -107,7 +107,7 @@ struct Result {
   double noiseRms =
       0;  ///< RMS over pixels of the standard deviation of the mean, relative to the mean; Monte Carlo only
   int spp = 0;
-  double seconds = 0;  ///< that all samples took; of a cached picture when it was made, 0 if it does not say
+  std::optional<double> seconds{};  ///< that all samples took; older files of a cache do not say
 };
 
 /// Throws UsageError for a request that makes no sense (names the member and what is accepted), Error if the

@@ -7,7 +7,7 @@ layout(std430, binding = 3) writeonly buffer Distances { float distances[]; };
 uniform uint leaf_count;
 
 void main() {
-  uint row = gl_WorkGroupID.y * 32768u + gl_WorkGroupID.x;
+  uint row = work_group_index();
   if (row >= leaf_count) return;
   for (uint bin = gl_LocalInvocationIndex; bin < bin_count; bin += 64u) {
     links[row * bin_count + bin] = no_link;

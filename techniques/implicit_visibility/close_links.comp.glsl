@@ -9,7 +9,7 @@ uniform uint leaf_count;
 const uint n = BINS;
 
 void main() {
-  uint index = 64u * (gl_WorkGroupID.y * 32768u + gl_WorkGroupID.x) + gl_LocalInvocationIndex;
+  uint index = work_item_index();
   uint row = index / 6u;
   if (row >= leaf_count) return;
   uint first = row * bin_count + index % 6u * n * n;

@@ -22,7 +22,7 @@ uniform uint slots;
 uniform uint light_count;
 
 void main() {
-  uint item = sent_item();
+  uint item = work_item_index();
   uint slot = item / sent_count;
   if (slot >= slots) return;
   Leaf leaf = leaves[slot];

@@ -126,7 +126,7 @@ void ElementPasses::addGpuLinks(frame::FrameGraph& graph) {
 void ElementPasses::addGpuLinks(frame::FrameGraph& graph, LinkChunk& chunk) const {
   frame::BufferHandle lengths = graph.createBuffer("lengths of links", {chunk.count * rowBytes(settings_)});
   const bool footprint = settings_.links.fill == radiosity::Fill::footprint;
-  const auto addStep = [&](const char* name, const char* file, Access access, glm::ivec2 workGroups,
+  const auto addStep = [&](const char* name, const char* file, Access access, glm::ivec2 size,
                            glm::uvec2 someRoots) {
     frame::PassBuilder pass = graph.addPass(name, settings_.technique);
     pass.read(groups, Access::storageLoad, "elements").cacheable();
@@ -134,38 +134,33 @@ void ElementPasses::addGpuLinks(frame::FrameGraph& graph, LinkChunk& chunk) cons
     chunk.links = pass.write(chunk.links, access, "the nearest element in each bin of each leaf");
     lengths = pass.write(lengths, access, "how far it is");
     const auto kernelHandle = program(pass, file, {{"FOOTPRINT", footprint ? "1" : "0"}});
-    pass.execute(
-        [this, kernelHandle, own = chunk, lengths, someRoots, workGroups](frame::PassContext& context) {
-          gpu::Program& kernel = context.program(kernelHandle);
-          kernel.use();
-          kernel.set("leaf_count", own.count);
-          context.bindStorage(2, own.links);
-          context.bindStorage(3, lengths);
-          if (someRoots.y > 0) {
-            kernel.set("first_leaf", own.first);
-            kernel.set("first_root", someRoots.x);
-            kernel.set("root_count", someRoots.y);
-            kernel.set("opening", settings_.links.opening);
-            context.bindStorage(0, groups);
-            context.bindStorage(1, roots_);
-          }
-          context.dispatch(workGroups.x, workGroups.y, 1, 1, 1);
-        });
+    pass.execute([this, kernelHandle, own = chunk, lengths, someRoots, size](frame::PassContext& context) {
+      gpu::Program& kernel = context.program(kernelHandle);
+      kernel.use();
+      kernel.set("leaf_count", own.count);
+      context.bindStorage(2, own.links);
+      context.bindStorage(3, lengths);
+      if (someRoots.y > 0) {
+        kernel.set("first_leaf", own.first);
+        kernel.set("first_root", someRoots.x);
+        kernel.set("root_count", someRoots.y);
+        kernel.set("opening", settings_.links.opening);
+        context.bindStorage(0, groups);
+        context.bindStorage(1, roots_);
+      }
+      context.dispatch(size.x, size.y, 1, 1, 1);
+    });
   };
   const int leafCount = static_cast<int>(chunk.count);
-  constexpr int most = 32768;  // work groups in a row, see clear_links.comp.glsl and close_links.comp.glsl
-  addStep("clear links", "clear_links.comp.glsl", Access::storageStore,
-          {std::min(leafCount, most), (leafCount + most - 1) / most}, {0, 0});
+  addStep("clear links", "clear_links.comp.glsl", Access::storageStore, workGroups(leafCount), {0, 0});
   const auto rootCount = static_cast<uint32_t>(elements_.forest().roots().size());
   const uint32_t batch = software_ ? 16 : std::max(rootCount, 1u);
   for (uint32_t first = 0; first < rootCount; first += batch)
     addStep("links", "links.comp.glsl", Access::storageLoadStore, {(leafCount + 63) / 64, 1},
             {first, std::min(batch, rootCount - first)});
-  if (footprint) {
-    const int closers = (6 * leafCount + 63) / 64;
+  if (footprint)
     addStep("close links", "close_links.comp.glsl", Access::storageLoadStore,
-            {std::min(closers, most), (closers + most - 1) / most}, {0, 0});
-  }
+            workGroups((6 * leafCount + 63) / 64), {0, 0});
 }
 
 frame::ProgramHandle ElementPasses::program(frame::PassBuilder& pass, const char* file,

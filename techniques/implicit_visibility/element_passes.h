@@ -2,6 +2,7 @@
 // them.
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <map>
 #include <string>
@@ -52,6 +53,12 @@ class ElementPasses {
 
   bool fits(const scene::Pose& pose) const { return elements_.fits(pose); }
   const radiosity::SceneElements& elements() const { return elements_; }
+  /// This many work groups in rows that every device takes, numbered by work_group_index() in elements.glsl.
+  static glm::ivec2 workGroups(int64_t count) {
+    constexpr int64_t most = 32768;  // in a row
+    return {std::min(count, most), (count + most - 1) / most};
+  }
+
   uint32_t slots() const { return elements_.forest().slots(); }
   uint32_t leafSlots() const { return elements_.forest().leafSlots(); }
   /// Values of radiance that each element sends.

@@ -31,7 +31,7 @@ void main() {
 #if SERIAL
   uint row = gl_GlobalInvocationID.x;
 #else
-  uint row = gl_WorkGroupID.y * 32768u + gl_WorkGroupID.x;
+  uint row = work_group_index();
 #endif
   if (row >= leaf_count) return;
   uint slot = first_leaf + row;

@@ -40,10 +40,8 @@ BufferHandle LightPasses::sent(const PassRequest& r, const char* name) const {
   return perSlot(r, name, elements_.sentCount());
 }
 void LightPasses::dispatchSent(const frame::PassContext& context, uint32_t slots) const {
-  constexpr int64_t most = 2097152;  // in a row, see elements.glsl
-  const int64_t items = int64_t{slots} * elements_.sentCount();
-  context.dispatch(static_cast<int>(std::min(items, most)), static_cast<int>((items + most - 1) / most), 1,
-                   64, 1);
+  const glm::ivec2 groups = ElementPasses::workGroups((int64_t{slots} * elements_.sentCount() + 63) / 64);
+  context.dispatch(groups.x, groups.y, 1, 1, 1);
 }
 
 const LightPasses::Seen& LightPasses::seen(const PassRequest& r, std::span<const uint32_t> lights) {
@@ -236,12 +234,11 @@ void LightPasses::gatherChunks(frame::PassContext& context, gpu::Program& kernel
   context.bindStorage(4, irradiance);
   for (const LinkChunk& chunk : elements_.chunks) {
     ElementPasses::bind(context, kernel, chunk);
-    constexpr int most = 32768;  // work groups in a row, see gather.comp.glsl
-    const int count = static_cast<int>(chunk.count);
+    const glm::ivec2 groups = ElementPasses::workGroups(chunk.count);
     if (serial)
-      context.dispatch(count, 1, 1, 64, 1);
+      context.dispatch(static_cast<int>(chunk.count), 1, 1, 64, 1);
     else
-      context.dispatch(std::min(count, most), (count + most - 1) / most, 1, 1, 1);
+      context.dispatch(groups.x, groups.y, 1, 1, 1);
   }
 }
 

@@ -9,7 +9,7 @@ uniform uint first_group;
 uniform uint group_count;
 
 void main() {
-  uint item = sent_item();
+  uint item = work_item_index();
   uint index = item / sent_count;
   uint sent = item % sent_count;
   if (index >= 4u * group_count) return;

@@ -16,7 +16,7 @@ uniform uint first_leaf;
 uniform uint leaf_count;
 
 void main() {
-  uint item = sent_item();
+  uint item = work_item_index();
   uint row = item / sent_count;
   if (row >= leaf_count) return;
   uint slot = first_leaf + row;

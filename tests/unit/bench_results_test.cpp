@@ -3,65 +3,22 @@
 
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/bench/comparison.h"
 #include "core/bench/results_file.h"
 #include "core/bench/row.h"
 #include "core/bench/runner.h"
 #include "core/bench/tables.h"
+#include "tests/unit/bench_rows.h"
 
 namespace limn::bench {
 namespace {
 
 namespace fs = std::filesystem;
-
-Case exampleCase(const std::string& technique = "pcss", int samples = 16) {
-  Case c;
-  c.scene = "cornell_box";
-  c.camera = "main";
-  c.term = "visibility";
-  c.width = 32;
-  c.height = 16;
-  c.technique = technique;
-  c.parameters = {{technique + ".samples", std::to_string(samples)}};
-  c.frames = 5;
-  c.warmup = 1;
-  return c;
-}
-
-Row exampleRow(const Case& c, double rmse = 0.25, double ms = 2.5) {
-  Row row;
-  row.what = c;
-  row.key = rowKey(c, "llvmpipe");
-  row.referenceFile = "references/a.exr";
-  row.referenceNoise = 0.001;
-  row.referenceSeconds = 7.5;
-  row.error.rmse = rmse;
-  row.error.rel_mse = 0.1;
-  row.error.bias = -0.01;
-  row.error.p999 = 0.7;
-  row.error.psnr = std::numeric_limits<double>::infinity();
-  row.error.flip = 0.125;
-  row.error.structured = 0.03;
-  row.error.pixels = 512;
-  row.error.noise_floor = 0.003;
-  row.penumbra = row.error;
-  row.misjudged = {200, 10, 100, 1};
-  row.cost.renderer = "llvmpipe";
-  row.cost.backend = "egl";
-  row.cost.timer = "finish";
-  row.cost.software = true;
-  row.cost.frameMs = {ms, ms - 0.25, ms + 0.25, 5, {ms - 0.5, ms - 0.25, ms, ms + 0.25, ms + 0.5}};
-  row.cost.split = {ms / 2, ms / 4, ms / 4, ms};
-  row.cost.memoryBytes = 3 << 20;
-  row.cost.details = R"({"passes":[{"name":"shadow map"}]})";
-  return row;
-}
+using test::exampleCase;
+using test::exampleRow;
 
 class BenchResults : public testing::Test {
  protected:
@@ -322,128 +279,6 @@ TEST_F(BenchResults, RunnerLetsUsageErrorsThrough) {
   const std::vector<Case> cases = {exampleCase()};
   EXPECT_THROW(runCases(cases, "x", results, callbacks), UsageError);
   EXPECT_TRUE(results.rows().empty());
-}
-
-TEST(BenchTables, NeverMixModesRenderersOrQuestions) {
-  std::vector<Row> rows = {exampleRow(exampleCase("pcss", 16)), exampleRow(exampleCase("pcss", 64))};
-  EXPECT_EQ(makeTables(rows).size(), 1u);
-  Row other = exampleRow(exampleCase());
-  other.what.dynamic = false;
-  rows.push_back(other);
-  EXPECT_EQ(makeTables(rows).size(), 2u);
-  other.cost.renderer = "GPU";
-  rows.push_back(other);
-  EXPECT_EQ(makeTables(rows).size(), 3u);
-  other.what.width = 64;
-  rows.push_back(other);
-  other.what.term = "direct";
-  rows.push_back(other);
-  EXPECT_EQ(makeTables(rows).size(), 5u);
-  std::set<std::string> names;
-  for (const Table& table : makeTables(rows)) names.insert(table.fileName);
-  EXPECT_EQ(names.size(), 5u);
-}
-
-TEST(BenchTables, TitlesTellTablesApart) {
-  std::vector<Row> rows(4, exampleRow(exampleCase()));
-  rows[1].what.medium.g = -0.7;
-  rows[2].what.medium.sigmaS = "0.5";
-  rows[3].what.changes.fov = 30;
-  std::set<std::string> titles, files;
-  for (const Table& table : makeTables(rows)) {
-    titles.insert(table.title);
-    files.insert(table.fileName);
-  }
-  EXPECT_EQ(titles.size(), rows.size());
-  EXPECT_EQ(files.size(), rows.size());
-}
-
-TEST(BenchTables, MarkdownShowsErrorTimeNoiseFloorAndFront) {
-  // The second is beaten in both; the third's error is below the noise floor.
-  const std::vector<Row> rows = {exampleRow(exampleCase("fast"), 0.25, 1.0),
-                                 exampleRow(exampleCase("beaten"), 0.3, 1.5),
-                                 exampleRow(exampleCase("good"), 0.002, 9.0)};
-  const std::string text = toMarkdown(makeTables(rows).front());
-  EXPECT_NE(text.find("| fast | fast.samples=16 | 0.25 | 0.1 | -0.01 | 0.7 | inf | 0.1250 | 0.03 | 0.25 | "
-                      "5.00 | 1.00 | 1.000 | 0.750 | "
-                      "1.250 | 1.49 | 5 | 1000.0 | 0.12 | 0.50 | 0.25 | 0.25 | 3.0 | * |"),
-            std::string::npos)
-      << text;
-  EXPECT_NE(text.find("| beaten | beaten.samples=16 | 0.3 "), std::string::npos) << text;
-  EXPECT_NE(text.find("| 1.500 | 1.250 | 1.750 | 1.33 | 5 | 666.7 | 0.08333 | 0.75 | 0.38 | 0.38 | 3.0 |  |"),
-            std::string::npos)
-      << text;
-  EXPECT_NE(text.find("| good | good.samples=16 | <0.003 "), std::string::npos) << text;
-  // Every line of the table has as many cells.
-  std::size_t bars = 0;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    if (line.empty() || line[0] != '|') continue;
-    const std::size_t count = static_cast<std::size_t>(std::count(line.begin(), line.end(), '|'));
-    if (bars == 0) bars = count;
-    EXPECT_EQ(count, bars) << line;
-  }
-}
-
-TEST(BenchTables, ReferencesTakeLongerForLess) {
-  Row row = exampleRow(exampleCase("a"));
-  row.referenceSeconds = 50;
-  row.error.noise_floor = 3 * 0.01;
-  row.error.rmse = std::hypot(0.05, 0.01);  // 5 sigma beyond the reference's own noise
-  ASSERT_TRUE(referenceTime(row));
-  EXPECT_NEAR(referenceTime(row)->ms, 50e3 / 25, 1e-6);
-  EXPECT_FALSE(referenceTime(row)->atLeast);
-  row.error.rmse = 0.011;  // drowns in the noise
-  EXPECT_NEAR(referenceTime(row)->ms, 50e3 * 4, 1e-6);
-  EXPECT_TRUE(referenceTime(row)->atLeast);
-  row.what.timeWidth = row.what.timeHeight = 1024;  // errors and times of different pictures
-  EXPECT_FALSE(referenceTime(row));
-  row.what.timeWidth = row.what.timeHeight = 0;
-  row.error.noise_floor = 0;  // no noise, no Monte Carlo
-  EXPECT_FALSE(referenceTime(row));
-  row.error.noise_floor = 0.03;
-  row.referenceSeconds.reset();  // of an earlier version
-  EXPECT_FALSE(referenceTime(row));
-}
-
-TEST(BenchTables, RowsAreComparedWithTheBaseline) {
-  std::vector<Row> rows = {
-      exampleRow(exampleCase("pcss", 1024), 0.1, 8), exampleRow(exampleCase("pcss", 16), 0.2, 2),
-      exampleRow(exampleCase("pcss", 64), 0.15, 4), exampleRow(exampleCase("vssm"), 0.16, 1)};
-  EXPECT_EQ(comparisonMarkdown(rows), "");
-  rows[0].what.baseline = true;
-  for (Row& row : rows) row.penumbra->structured = 0.5 * row.penumbra->rmse;
-  rows[3].penumbra->structured = 0.01;
-  rows[3].what.title = "VSSM";
-  const std::string text = comparisonMarkdown(rows);
-  EXPECT_NE(text.find("| VSSM | 8.00 (5.33 to 16.00) | 8.00 | pcss samples=64 | 4.00 (2.67 to 8.00) | 4.00 | "
-                      "none | - | - |"),
-            std::string::npos)
-      << text;
-}
-
-TEST(BenchTables, CsvQuotesAndKeepsPrecision) {
-  Row row = exampleRow(exampleCase("a,b"), 0.1 + 0.2);
-  Row failed = row;
-  failed.failure = "he said \"no\"";
-  const std::vector<Row> rows = {row, failed};
-  const std::string text = toCsv(makeTables(rows).front());
-  EXPECT_NE(text.find("\"a,b\""), std::string::npos);
-  EXPECT_NE(text.find("0.30000000000000004"), std::string::npos);
-  EXPECT_NE(text.find("\"he said \"\"no\"\"\""), std::string::npos);
-  std::vector<long> fields;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t quoted = line.find("\"a,b\"");
-    if (quoted != std::string::npos) line.replace(quoted, 5, "a");
-    std::size_t parameters = line.find("\"a,b.samples");
-    EXPECT_EQ(parameters == std::string::npos, fields.empty());
-    if (parameters != std::string::npos) line.replace(parameters, 4, "a");
-    fields.push_back(std::count(line.begin(), line.end(), ','));
-  }
-  ASSERT_EQ(fields.size(), 3u);
-  EXPECT_EQ(fields[0], fields[1]);
-  EXPECT_EQ(fields[0], fields[2]);
 }
 
 TEST_F(BenchResults, TablesAreWritten) {
