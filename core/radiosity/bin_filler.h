@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <glm/glm.hpp>
@@ -13,22 +14,26 @@
 
 namespace limn::radiosity {
 
+/// N: bins along the edge of a face, so that loops over them have a known length; 0: as the settings say.
+template <int N>
 class BinFiller {
   static constexpr float cornerLength = 1.7321f;  // of the longest rays, those to a face's corners
 
  public:
   explicit BinFiller(const LinkSettings& settings)
-      : n_(settings.resolution),
-        half_(0.5f * static_cast<float>(n_)),
+      : runtime_n_(settings.resolution),
+        half_(0.5f * static_cast<float>(n())),
         width_(1 / half_),
-        footprint_(settings.fill == Fill::footprint) {}
-
-  int count() const { return 6 * n_ * n_; }
-
-  void clear(Bins bins) const {
-    std::fill_n(bins.distance2, count(), std::numeric_limits<float>::infinity());
-    std::fill_n(bins.links, count(), glsl::no_link);
+        footprint_(settings.fill == Fill::footprint) {
+    for (size_t i = 0; i < static_cast<size_t>(n()); ++i) {
+      const float at = (static_cast<float>(i) + 0.5f) * width_ - 1;
+      centres_[i] = at;
+      squareColumns_[i] = Float4{at, at + width_, at, at + width_};
+      squareRows_[i] = Float4{at, at, at + width_, at + width_};
+    }
   }
+
+  int count() const { return 6 * n() * n(); }
 
   /// Links that receivers share are in the bins as the receivers' parent sees them; between those and the
   /// receivers' own single bins may stay as they were, empty or with what lies behind. A bin of which all
@@ -36,39 +41,41 @@ class BinFiller {
   /// along a row. Two sweeps.
   void close(Bins bins) const {
     if (!footprint_) return;
+    const uint32_t last = 1u << (n() - 1), all = last | (last - 1);
     for (uint32_t face = 0; face < 6; ++face) {
-      const glm::vec3 up = onFace(bins.up, face);
-      const float highest = up.x + std::abs(up.y) + cornerLength * bins.margin;
-      uint32_t rows =
-          0;  // a bit for each to look at: those above the horizon, then those beside what was closed
-      for (int y = 0; y < n_; ++y) rows |= (highest + up.z * centre(y) >= 0 ? 1u : 0u) << y;
+      // A bit for each row to look at: of a hole's nearer neighbours one lies in its row, unless it is a
+      // row's first or last bin and both rows beside it hold one.
+      const uint32_t held = occupied(bins.distance2 + index(face, 0, 0));
+      if (held == 0) continue;
+      uint32_t rows = (held | ((held << 1 | 1) & (held >> 1 | last))) & all;
       for (int sweep = 0; sweep < 2; ++sweep) {
         uint32_t closed = 0;
         for (; rows != 0; rows &= rows - 1) {
           const int y = std::countr_zero(rows);
-          if (closeRow(bins, index(face, 0, y), y)) closed |= 1u << y;
+          if (mayClose(bins.distance2 + index(face, 0, y), y) && closeRow(bins, index(face, 0, y), y))
+            closed |= 1u << y;
         }
-        rows = closed >> 1 | (closed << 1 & ~0u >> (32 - n_));
+        rows = (closed >> 1 | closed << 1) & all;  // those beside what was closed
       }
     }
   }
 
   /// Fills what those among `lanes` cover.
-  void fill(const Bins& bins, const Candidates& c, uint32_t lanes) const {
+  [[gnu::always_inline]] inline void fill(const Bins& bins, const Candidates& c, uint32_t lanes) const {
     const OnFaces on(c);
     if (!footprint_) {
       const Float4 place_u = on.u / on.major, place_v = on.v / on.major;
       for (; lanes != 0; lanes &= lanes - 1) {
         const int k = std::countr_zero(lanes);
-        keep(bins, index(on.face(k), column(place_u[k]), column(place_v[k])), c.distance2[k],
-             static_cast<uint32_t>(c.links[k]));
+        keep(bins, index(static_cast<uint32_t>(on.face[k]), column(place_u[k]), column(place_v[k])),
+             c.distance2[k], static_cast<uint32_t>(c.links[k]));
       }
       return;
     }
     // Discs whose plane passes the receiver at less than this part of their radius are seen edge-on.
     constexpr float coplanar = 1e-3f;
     lanes &= laneMask(magnitude(c.height) >= coplanar * c.disc);
-    const Extent own = on.extent(c.disc);
+    const Extent own = on.extent(c);
     const uint32_t whole = lanes & laneMask(own.front > 0.f);
     fillFace(bins, c, on, own, whole);
     // Over the edges of the face, as far as the first bins' centres on the next.
@@ -78,42 +85,43 @@ class BinFiller {
     uint32_t several = (lanes & ~whole) | far;
     if ((over_u & ~far) != 0) several |= fillNext(bins, c, on.alongU(), over_u & ~far);
     if ((over_v & ~far) != 0) several |= fillNext(bins, c, on.alongV(), over_v & ~far);
-    for (; several != 0; several &= several - 1) fillFaces(bins, c, std::countr_zero(several));
+    if (several != 0) fillFaces(bins, c, several);
   }
 
  private:
   /// The parts of discs on one face each.
-  void fillFace(const Bins& bins, const Candidates& c, const OnFaces& on, const Extent& extent,
-                uint32_t lanes) const {
-    const Int4 x0 = firstBin(extent.u.low), x1 = lastBin(extent.u.high), y0 = firstBin(extent.v.low),
-               y1 = lastBin(extent.v.high);
+  [[gnu::noinline]] void fillFace(const Bins& bins, const Candidates& c, const OnFaces& on,
+                                  const Extent& extent, uint32_t lanes) const {
+    const Boxes boxes{firstBin(extent.u.low), lastBin(extent.u.high), firstBin(extent.v.low),
+                      lastBin(extent.v.high)};
     // Discs smaller than bins cover no bin's centre, mostly.
-    for (lanes &= laneMask((x0 <= x1) & (y0 <= y1)); lanes != 0; lanes &= lanes - 1) {
+    for (lanes &= laneMask((boxes.x0 <= boxes.x1) & (boxes.y0 <= boxes.y1)); lanes != 0; lanes &= lanes - 1) {
       const int k = std::countr_zero(lanes);
-      const Disc disc{on.offset(k), on.normal(k), c.height[k], c.disc[k], static_cast<uint32_t>(c.links[k])};
-      raster(bins, disc, on.face(k), {x0[k], x1[k], y0[k], y1[k]});
+      if (boxes.x1[k] - boxes.x0[k] < 4)
+        raster(bins, c, on, boxes, k);
+      else
+        rasterWide(bins, c, on, boxes, k);
     }
   }
 
   /// The same on a face that the offsets do not point to. Returns the lanes that this does not do for.
   uint32_t fillNext(const Bins& bins, const Candidates& c, const OnFaces& on, uint32_t lanes) const {
-    const Extent extent = on.extent(c.disc);
+    const Extent extent = on.extent(c);
     const uint32_t whole = lanes & laneMask(extent.front > 0.f);
     fillFace(bins, c, on, extent, whole);
     return lanes & ~whole;
   }
 
-  /// Bins of a face.
-  struct Box {
-    int x0, x1, y0, y1;
+  /// Bins of a face each: first and last columns and rows.
+  struct Boxes {
+    Int4 x0, x1, y0, y1;
   };
 
-  int column(float u) const { return std::clamp(static_cast<int>((u + 1) * half_), 0, n_ - 1); }
+  int column(float u) const { return std::clamp(static_cast<int>((u + 1) * half_), 0, n() - 1); }
   size_t index(uint32_t face, int column, int row) const {
-    return static_cast<size_t>((static_cast<int>(face) * n_ + row) * n_ + column);
+    return static_cast<size_t>((static_cast<int>(face) * n() + row) * n() + column);
   }
   // Truncation of positive numbers: floor and ceil are calls where the target has no instruction for them.
-  int below(float u) const { return static_cast<int>(std::max((u + 1) * half_ + 0.5f, 0.f)); }
   Int4 firstBin(Float4 u) const {
     const Float4 place = (u + 1.f) * half_ + 0.5f, end = splat(2 * half_);
     return __builtin_convertvector(greater(lesser(place, end), splat(0)), Int4);
@@ -135,17 +143,48 @@ class BinFiller {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     const Float4 here = load(own), beyond = here == infinity ? splat(0) : splat(infinity);
     return {.left = x > 0 ? load(own - 1) : Float4{beyond[0], here[0], here[1], here[2]},
-            .right = x + 4 < n_ ? load(own + 1) : Float4{here[1], here[2], here[3], beyond[3]},
-            .up = y > 0 ? load(own - n_) : beyond,
-            .down = y + 1 < n_ ? load(own + n_) : beyond};
+            .right = x + 4 < n() ? load(own + 1) : Float4{here[1], here[2], here[3], beyond[3]},
+            .up = y > 0 ? load(own - n()) : beyond,
+            .down = y + 1 < n() ? load(own + n()) : beyond};
+  }
+
+  static constexpr float nearer2 = 0.25f;  // half as far, squared
+
+  /// A bit for each row of a face that holds a link.
+  uint32_t occupied(const float* face) const {
+    uint32_t rows = 0;
+    for (int y = 0; y < n(); ++y, face += n()) {
+      Float4 shortest = load(face + n() - 4);
+      for (int x = 0; x + 4 < n(); x += 4) shortest = lesser(shortest, load(face + x));
+      rows |= (laneMask(shortest < std::numeric_limits<float>::infinity()) != 0 ? 1u : 0u) << y;
+    }
+    return rows;
+  }
+
+  /// Whether three of four neighbours of some bin of a row are nearer, where those beyond the face count as
+  /// nearer: most rows have nothing to close.
+  bool mayClose(const float* row, int y) const {
+    const float *up = y > 0 ? row - n() : row, *down = y + 1 < n() ? row + n() : row;
+    const Int4 beyond = Int4{} - (y == 0 ? 1 : 0) - (y + 1 == n() ? 1 : 0);
+    Int4 found{};
+    for (int start = 0; start < n(); start += 4) {
+      const int x = std::min(start, n() - 4);
+      const Float4 here = load(row + x), limit = here * nearer2;
+      const Float4 left = x > 0 ? load(row + x - 1) : __builtin_shufflevector(here, Float4{}, 4, 0, 1, 2);
+      const Float4 right =
+          x + 4 < n() ? load(row + x + 1) : __builtin_shufflevector(here, Float4{}, 1, 2, 3, 4);
+      const Int4 nearer =
+          beyond + (left < limit) + (right < limit) + (load(up + x) < limit) + (load(down + x) < limit);
+      found |= nearer <= -3;
+    }
+    return laneMask(found) != 0;
   }
 
   /// Whether there was something to close.
   bool closeRow(const Bins& bins, size_t row, int y) const {
-    constexpr float nearer2 = 0.25f;  // half as far, squared
     bool closed = false;
-    for (int start = 0; start < n_; start += 4) {
-      const int x = std::min(start, n_ - 4);
+    for (int start = 0; start < n(); start += 4) {
+      const int x = std::min(start, n() - 4);
       float* own = bins.distance2 + row + x;
       for (uint32_t holes = ~0u; holes != 0;) {
         const Around a = around(own, x, y);
@@ -163,80 +202,70 @@ class BinFiller {
   }
 
   void closeOne(const Bins& bins, size_t bin, int x, int y, float limit) const {
-    const size_t width = static_cast<size_t>(n_);
+    const size_t width = static_cast<size_t>(n());
     size_t longest = bin;
     const auto see = [&](bool inside, size_t neighbour) {
       if (!inside || !(bins.distance2[neighbour] < limit)) return;
       if (longest == bin || bins.distance2[neighbour] > bins.distance2[longest]) longest = neighbour;
     };
     see(x > 0, bin - 1);
-    see(x + 1 < n_, bin + 1);
+    see(x + 1 < n(), bin + 1);
     see(y > 0, bin - width);
-    see(y + 1 < n_, bin + width);
+    see(y + 1 < n(), bin + width);
     bins.links[bin] = bins.links[longest];
     bins.distance2[bin] = bins.distance2[longest];
   }
 
-  /// Lane k's disc, in front of several faces.
-  void fillFaces(const Bins& bins, const Candidates& c, int k) const {
-    const glm::vec3 offset(c.x[k], c.y[k], c.z[k]), normal(c.nx[k], c.ny[k], c.nz[k]);
-    // How far its points are from its centre along each axis.
-    const glm::vec3 extent = c.disc[k] * glm::sqrt(glm::max(1.f - normal * normal, glm::vec3(0)));
-    const glm::vec3 least = glm::abs(offset) - extent;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-      const float between = std::max({least[u], least[v], 0.f});
-      for (const float sign : {1.f, -1.f}) {
-        if (sign * offset[axis] + extent[axis] <= between) continue;
-        const Disc disc{{sign * offset[axis], offset[u], offset[v]},
-                        {sign * normal[axis], normal[u], normal[v]},
-                        c.height[k],
-                        c.disc[k],
-                        static_cast<uint32_t>(c.links[k])};
-        rasterFace(bins, disc, static_cast<uint32_t>(2 * axis + (sign < 0 ? 1 : 0)));
+  /// Discs in front of several faces each.
+  [[gnu::noinline]] void fillFaces(const Bins& bins, const Candidates& c, uint32_t lanes) const {
+    for (int axis = 0; axis < 3; ++axis)
+      for (const bool negative : {false, true}) {
+        const OnFaces on(c, axis, negative);
+        // How far points of the discs are from their centres along each axis.
+        const auto reach = [&](Float4 normal) {
+          return c.disc * root(greater(1.f - normal * normal, splat(0)));
+        };
+        const Float4 least_u = magnitude(on.u) - reach(on.n_u), least_v = magnitude(on.v) - reach(on.n_v);
+        const Float4 between = greater(greater(least_u, least_v), splat(0));
+        const uint32_t seen = lanes & laneMask(on.major + reach(on.n_major) > between);
+        if (seen == 0) continue;
+        Extent extent = on.extent(c);
+        const Int4 bounded = (on.major > 0.f) & (extent.front > 0.f);
+        for (Bounds* bounds : {&extent.u, &extent.v}) {
+          bounds->low = bounded ? bounds->low : splat(-1);
+          bounds->high = bounded ? bounds->high : splat(1);
+        }
+        fillFace(bins, c, on, extent, seen);
+      }
+  }
+
+  /// Bins of a box of up to four columns whose centres lie on the disc. Squares of four at once, beyond the
+  /// box where it is narrower: there the disc is not.
+  void raster(const Bins& bins, const Candidates& c, const OnFaces& on, const Boxes& boxes, int k) const {
+    const DiscRays rays(c, on, k);
+    const size_t row = static_cast<size_t>(n()), first = index(static_cast<uint32_t>(on.face[k]), 0, 0);
+    const int x1 = boxes.x1[k], y0 = boxes.y0[k], y1 = boxes.y1[k];
+    for (int left = boxes.x0[k]; left <= x1; left += 2) {
+      const int x = std::min(left, n() - 2);
+      const DiscRays::Columns columns = rays.columns(squareColumns_[static_cast<size_t>(x)]);
+      for (int top = y0; top <= y1; top += 2) {
+        const int y = std::min(top, n() - 2);
+        rays.fillSquare(bins, first + static_cast<size_t>(y * n() + x), row, columns,
+                        squareRows_[static_cast<size_t>(y)]);
       }
     }
   }
 
-  /// The part of a disc in front of a face.
-  void rasterFace(const Bins& bins, const Disc& disc, uint32_t face) const {
-    const float m = disc.offset.x, n = disc.normal.x, disc2 = disc.radius * disc.radius;
-    const float front = m * m - disc2 * (1 - n * n);
-    glm::vec2 low(-1), high(1);
-    if (m > 0 && front > 0) {  // see OnFaces::extent
-      const glm::vec2 offset(disc.offset.y, disc.offset.z), normal(disc.normal.y, disc.normal.z),
-          across(disc.normal.z, disc.normal.y);
-      const glm::vec2 turned = m * normal - n * offset,
-                      inside = m * m + offset * offset - turned * turned - disc2 * across * across,
-                      half = disc.radius * glm::sqrt(glm::max(inside, glm::vec2(0))),
-                      middle = m * offset + disc2 * n * normal;
-      low = glm::max((middle - half) / front, low);
-      high = glm::min((middle + half) / front, high);
-      if (low.x > high.x || low.y > high.y) return;
-    }
-    const Box box{below(low.x), std::min(n_, below(high.x)) - 1, below(low.y),
-                  std::min(n_, below(high.y)) - 1};
-    if (box.x0 <= box.x1 && box.y0 <= box.y1) raster(bins, disc, face, box);
-  }
-
-  /// Bins of the box whose centres lie on the disc. Four columns at once, beyond the box where it is
-  /// narrower: there the disc is not.
-  void raster(const Bins& bins, const Disc& c, uint32_t face, const Box& box) const {
-    if (box.x1 - box.x0 >= 4) return rasterWide(bins, c, face, box);
-    const int x = std::min(box.x0, n_ - 4);
-    const Columns columns(c, places(x));
-    size_t bin = index(face, x, box.y0);
-    float v = centre(box.y0);
-    for (int y = box.y0; y <= box.y1; ++y, bin += static_cast<size_t>(n_), v += width_)
-      columns.fill(bins, bin, v);
-  }
-
   /// The same for more than four columns.
-  [[gnu::noinline]] void rasterWide(const Bins& bins, const Disc& c, uint32_t face, const Box& box) const {
-    const RowCut cut(c);
+  [[gnu::noinline]] void rasterWide(const Bins& bins, const Candidates& c, const OnFaces& on,
+                                    const Boxes& boxes, int k) const {
+    const auto face = static_cast<uint32_t>(on.face[k]);
+    const RowCut cut(c, on, k);
     const glm::vec3 up = onFace(bins.up, face);
     const float margin = cornerLength * bins.margin;
     if (up.x + std::abs(up.y) + std::abs(up.z) < -margin) return;
+    const DiscRays rays(c, on, k);
+    const struct { int x0, x1, y0, y1; } box{boxes.x0[k], boxes.x1[k], boxes.y0[k], boxes.y1[k]};
     for (int four = box.y0; four <= box.y1; four += 4) {
       Int4 begin = Int4{} + box.x0, end = Int4{} + box.x1;
       if (cut.closed()) {
@@ -255,8 +284,8 @@ class BinFiller {
       }
       for (int y = four; y <= std::min(four + 3, box.y1); ++y)
         for (int x = begin[y - four]; x <= end[y - four]; x += 4) {
-          const int first = std::min(x, n_ - 4);
-          Columns(c, places(first)).fill(bins, index(face, first, y), centre(y));
+          const int first = std::min(x, n() - 4);
+          rays.fill(bins, index(face, first, y), rays.columns(places(first)), splat(centre(y)));
         }
     }
   }
@@ -268,12 +297,17 @@ class BinFiller {
   }
 
   /// The place of a column's or row's centre.
-  float centre(int bin) const { return (static_cast<float>(bin) + 0.5f) * width_ - 1; }
+  float centre(int bin) const { return centres_[static_cast<size_t>(bin)]; }
   Float4 places(int first) const { return centre(first) + Float4{0, 1, 2, 3} * width_; }
 
-  int n_;
+  int n() const { return N > 0 ? N : runtime_n_; }
+
+  int runtime_n_;
   float half_, width_;  ///< of bins in a row, and 1 over it
   bool footprint_;
+  // Places of columns or rows: of their centres, and of the squares of bins that begin there.
+  std::array<float, 32> centres_{};
+  std::array<Float4, 32> squareColumns_{}, squareRows_{};
 };
 
 }  // namespace limn::radiosity

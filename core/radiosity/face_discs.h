@@ -1,10 +1,13 @@
 // Internal to the construction of links: discs in front of the faces of a receiver's cube map of bins.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 
 #include "core/radiosity/float4.h"
+#include "glsl/direction_bins.glsl"
 
 namespace limn::radiosity {
 
@@ -15,6 +18,11 @@ struct Bins {
   uint32_t* links = nullptr;
   glm::vec3 up{0};
   float margin = 1;
+
+  void clear(size_t count) const {
+    std::fill_n(distance2, count, std::numeric_limits<float>::infinity());
+    std::fill_n(links, count, glsl::no_link);
+  }
 };
 
 /// Up to four siblings at the other ends of links: offsets from the receiver, unit normals, heights along
@@ -23,13 +31,11 @@ struct Candidates {
   Float4 x, y, z, nx, ny, nz;
   Float4 distance2, height, disc;
   Int4 links;
-};
+  Float4 disc2 = disc * disc;
+  Float4 fattening = rim / disc2;
 
-/// A disc in the axes of a face.
-struct Disc {
-  glm::vec3 offset, normal;
-  float height, radius;
-  uint32_t link;
+  /// The rim of a disc counts as farther than its centre by this part of the squared distance.
+  static constexpr float rim = 1e-3f;
 };
 
 /// Where discs begin and end along an axis of a face.
@@ -46,19 +52,19 @@ struct Extent {
   Bounds u, v;
 };
 
-/// Offsets and normals in the axes of the faces that the offsets point to: major (not negative), column,
-/// row.
+/// Discs in the axes of a face each: major, column, row.
 struct OnFaces {
   Float4 major, u, v, n_major, n_u, n_v;
-  Int4 axis, negative;
+  Int4 face;
 
+  /// Of the faces that the offsets point to.
   explicit OnFaces(const Candidates& c) {
     const Float4 ax = magnitude(c.x), ay = magnitude(c.y), az = magnitude(c.z);
     const Int4 x_major = (ax >= ay) & (ax >= az), y_major = ~x_major & (ay >= az);
     const auto select = [&](Float4 x, Float4 y, Float4 z) { return x_major ? x : y_major ? y : z; };
     const Float4 along = select(c.x, c.y, c.z), n_along = select(c.nx, c.ny, c.nz);
-    axis = x_major ? Int4{} : y_major ? Int4{} + 1 : Int4{} + 2;
-    negative = along < 0.f;
+    const Int4 negative = along < 0.f;
+    face = (x_major ? Int4{} : y_major ? Int4{} + 2 : Int4{} + 4) - negative;
     major = magnitude(along);
     n_major = negative ? -n_along : n_along;
     u = select(c.y, c.z, c.x);
@@ -66,16 +72,21 @@ struct OnFaces {
     n_u = select(c.ny, c.nz, c.nx);
     n_v = select(c.nz, c.nx, c.ny);
   }
+  /// Of one face.
+  OnFaces(const Candidates& c, int axis, bool negative) : face(Int4{} + (2 * axis + (negative ? 1 : 0))) {
+    const Float4 offsets[] = {c.x, c.y, c.z}, normals[] = {c.nx, c.ny, c.nz};
+    const int column = (axis + 1) % 3, row = (axis + 2) % 3;
+    major = negative ? -offsets[axis] : offsets[axis];
+    n_major = negative ? -normals[axis] : normals[axis];
+    u = offsets[column], v = offsets[row];
+    n_u = normals[column], n_v = normals[row];
+  }
   /// In the axes of the faces next to them on the offsets' side of the columns, or of the rows.
-  OnFaces alongU() const { return {u, v, signedMajor(), n_u, n_v, signedNormal(), axis + 1}; }
-  OnFaces alongV() const { return {v, signedMajor(), u, n_v, signedNormal(), n_u, axis + 2}; }
+  OnFaces alongU() const { return {u, v, signedMajor(), n_u, n_v, signedNormal(), (face & 6) + 2}; }
+  OnFaces alongV() const { return {v, signedMajor(), u, n_v, signedNormal(), n_u, (face & 6) + 4}; }
 
-  uint32_t face(int k) const { return static_cast<uint32_t>(2 * axis[k] + (negative[k] != 0 ? 1 : 0)); }
-  glm::vec3 offset(int k) const { return {major[k], u[k], v[k]}; }
-  glm::vec3 normal(int k) const { return {n_major[k], n_u[k], n_v[k]}; }
-
-  Extent extent(Float4 disc) const {
-    const Float4 disc2 = disc * disc;
+  Extent extent(const Candidates& c) const {
+    const Float4 disc2 = c.disc2;
     const Float4 front = major * major - disc2 * (1.f - n_major * n_major);
     const Float4 scale = 1.f / front;
     // The planes x = place major that touch a disc: (x - place major)^2 = disc^2 (1 + place^2 - (n_x - place
@@ -83,7 +94,7 @@ struct OnFaces {
     const auto bounds = [&](Float4 offset, Float4 normal, Float4 across) -> Bounds {
       const Float4 turned = major * normal - offset * n_major;
       const Float4 inside = major * major + offset * offset - turned * turned - disc2 * across * across;
-      const Float4 half = disc * root(greater(inside, splat(0)));
+      const Float4 half = c.disc * root(greater(inside, splat(0)));
       const Float4 middle = major * offset + disc2 * normal * n_major;
       return {(middle - half) * scale, (middle + half) * scale};
     };
@@ -91,29 +102,29 @@ struct OnFaces {
   }
 
  private:
-  OnFaces(Float4 along, Float4 column, Float4 row, Float4 n_along, Float4 n_column, Float4 n_row, Int4 turn)
+  OnFaces(Float4 along, Float4 column, Float4 row, Float4 n_along, Float4 n_column, Float4 n_row, Int4 turned)
       : major(magnitude(along)),
         u(column),
         v(row),
         n_major(along < 0.f ? -n_along : n_along),
         n_u(n_column),
         n_v(n_row),
-        axis(turn >= 3 ? turn - 3 : turn),
-        negative(along < 0.f) {}
-  Float4 signedMajor() const { return negative ? -major : major; }
-  Float4 signedNormal() const { return negative ? -n_major : n_major; }
+        face((turned >= 6 ? turned - 6 : turned) - (along < 0.f)) {}
+  Int4 negative() const { return (face & 1) != 0; }
+  Float4 signedMajor() const { return negative() ? -major : major; }
+  Float4 signedNormal() const { return negative() ? -n_major : n_major; }
 };
 
 /// Where the rays (m, u, v) of a row meet the disc, h ray / (n.ray) within its radius of the centre d: a
 /// quadratic inequality in u, (h ray - d n.ray)^2 <= radius^2 (n.ray)^2.
 class RowCut {
  public:
-  explicit RowCut(const Disc& c)
-      : d_(c.offset),
-        n_(c.normal),
-        height_(c.height),
-        disc2_(c.radius * c.radius),
-        slope_(glm::vec3(0, c.height, 0) - c.normal.y * c.offset),
+  RowCut(const Candidates& c, const OnFaces& on, int k)
+      : d_(on.major[k], on.u[k], on.v[k]),
+        n_(on.n_major[k], on.n_u[k], on.n_v[k]),
+        height_(c.height[k]),
+        disc2_(c.disc2[k]),
+        slope_(glm::vec3(0, height_, 0) - n_.y * d_),
         square_(glm::dot(slope_, slope_) - disc2_ * n_.y * n_.y) {}
   /// Whether the disc's outline is closed towards the rows' ends.
   bool closed() const { return square_ > 0; }
@@ -136,42 +147,61 @@ class RowCut {
   float square_;
 };
 
-/// Rays (1, u, v) of four neighbouring columns against a disc.
-class Columns {
-  /// The rim of a disc counts as farther than its centre by this part of the squared distance.
-  static constexpr float rim = 1e-3f;
-
+/// Rays (1, u, v) through four bins at once against a disc.
+class DiscRays {
  public:
-  Columns(const Disc& c, Float4 places)
-      : u_(places),
-        towards_(c.normal.x + c.normal.y * places),
-        n_v_(splat(c.normal.z)),
-        length2_(1.f + places * places),
-        height_(splat(c.height)),
-        disc2_(splat(c.radius * c.radius)),
-        fattening_(splat(rim / (c.radius * c.radius))),
-        major_(splat(c.offset.x)),
-        offset_u_(splat(c.offset.y)),
-        offset_v_(splat(c.offset.z)),
-        link_(Int4{} + static_cast<int32_t>(c.link)) {}
+  DiscRays(const Candidates& c, const OnFaces& on, int k)
+      : n_m_(splat(on.n_major[k])),
+        n_u_(splat(on.n_u[k])),
+        n_v_(splat(on.n_v[k])),
+        height_(splat(c.height[k])),
+        disc2_(splat(c.disc2[k])),
+        fattening_(splat(c.fattening[k])),
+        major_(splat(on.major[k])),
+        offset_u_(splat(on.u[k])),
+        offset_v_(splat(on.v[k])),
+        link_(Int4{} + c.links[k]) {}
 
-  /// The row at place v, whose first bin is given.
-  void fill(const Bins& bins, size_t first, float v) const {
-    // Where a ray meets the disc's plane, and how far from its centre.
-    const Float4 t = height_ / (towards_ + n_v_ * v);
-    const Float4 miss_m = t - major_, miss_u = t * u_ - offset_u_, miss_v = t * v - offset_v_;
-    const Float4 miss2 = miss_m * miss_m + miss_u * miss_u + miss_v * miss_v;
-    // Discs of a plane overlap at the same distance: the one whose centre is nearer wins, and not rounding.
-    const Float4 distance2 = t * t * (length2_ + v * v) * (1.f + fattening_ * miss2);
-    const Float4 shortest = load(bins.distance2 + first);
-    const Int4 links = loadInts(bins.links + first);
-    const Int4 hit = (t > 0.f) & (miss2 <= disc2_) & (distance2 < shortest);
-    store(bins.distance2 + first, hit ? distance2 : shortest);
-    storeInts(bins.links + first, hit ? link_ : links);
+  /// What the bins' columns have in common whatever their rows.
+  struct Columns {
+    Float4 u, towards, length2;
+  };
+  Columns columns(Float4 u) const { return {u, n_m_ + n_u_ * u, 1.f + u * u}; }
+
+  /// The four bins of a row from `first` on.
+  void fill(const Bins& bins, size_t first, const Columns& columns, Float4 v) const {
+    Float4 shortest = load(bins.distance2 + first);
+    Int4 links = loadInts(bins.links + first);
+    meet(columns, v, shortest, links);
+    store(bins.distance2 + first, shortest);
+    storeInts(bins.links + first, links);
+  }
+  /// Two bins of a row from `first` on, and the two of the next row.
+  void fillSquare(const Bins& bins, size_t first, size_t row, const Columns& columns, Float4 v) const {
+    float* const distance2 = bins.distance2 + first;
+    uint32_t* const link = bins.links + first;
+    Float4 shortest = loadPairs(distance2, distance2 + row);
+    Int4 links = loadIntPairs(link, link + row);
+    meet(columns, v, shortest, links);
+    storePairs(distance2, distance2 + row, shortest);
+    storeIntPairs(link, link + row, links);
   }
 
  private:
-  Float4 u_, towards_, n_v_, length2_, height_, disc2_, fattening_, major_, offset_u_, offset_v_;
+  void meet(const Columns& c, Float4 v, Float4& shortest, Int4& links) const {
+    // Where a ray meets the disc's plane, and how far from its centre.
+    const Float4 t = height_ / (c.towards + n_v_ * v);
+    const Float4 miss_m = t - major_, miss_u = t * c.u - offset_u_, miss_v = t * v - offset_v_;
+    const Float4 miss2 = miss_m * miss_m + miss_u * miss_u + miss_v * miss_v;
+    // Discs of a plane overlap at the same distance: the one whose centre is nearer wins, and not rounding.
+    const Float4 distance2 = t * t * (c.length2 + v * v) * (1.f + fattening_ * miss2);
+    // Where there is no hit, not a number: which is not less than anything, nor the lesser of two.
+    const Float4 candidate = missing((t <= 0.f) | (miss2 > disc2_), distance2);
+    links = candidate < shortest ? link_ : links;
+    shortest = lesser(candidate, shortest);
+  }
+
+  Float4 n_m_, n_u_, n_v_, height_, disc2_, fattening_, major_, offset_u_, offset_v_;
   Int4 link_;
 };
 

@@ -10,6 +10,8 @@ namespace limn::radiosity {
 
 using Float4 = float __attribute__((vector_size(16)));
 using Int4 = int32_t __attribute__((vector_size(16)));
+using Float2 = float __attribute__((vector_size(8)));
+using Int2 = int32_t __attribute__((vector_size(8)));
 
 inline Float4 load(const float* values) {
   Float4 r;
@@ -20,6 +22,29 @@ inline Int4 loadInts(const uint32_t* values) {
   Int4 r;
   std::memcpy(&r, values, sizeof r);
   return r;
+}
+/// Two numbers each from two places.
+inline Float4 loadPairs(const float* low, const float* high) {
+  Float2 a, b;
+  std::memcpy(&a, low, sizeof a);
+  std::memcpy(&b, high, sizeof b);
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3);
+}
+inline Int4 loadIntPairs(const uint32_t* low, const uint32_t* high) {
+  Int2 a, b;
+  std::memcpy(&a, low, sizeof a);
+  std::memcpy(&b, high, sizeof b);
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3);
+}
+inline void storePairs(float* low, float* high, Float4 v) {
+  const Float2 a = __builtin_shufflevector(v, v, 0, 1), b = __builtin_shufflevector(v, v, 2, 3);
+  std::memcpy(low, &a, sizeof a);
+  std::memcpy(high, &b, sizeof b);
+}
+inline void storeIntPairs(uint32_t* low, uint32_t* high, Int4 v) {
+  const Int2 a = __builtin_shufflevector(v, v, 0, 1), b = __builtin_shufflevector(v, v, 2, 3);
+  std::memcpy(low, &a, sizeof a);
+  std::memcpy(high, &b, sizeof b);
 }
 inline void store(float* values, Float4 v) {
   std::memcpy(values, &v, sizeof v);
@@ -42,6 +67,14 @@ inline Float4 magnitude(Float4 v) {
   Int4 bits;
   std::memcpy(&bits, &v, sizeof bits);
   bits &= 0x7fffffff;
+  std::memcpy(&v, &bits, sizeof v);
+  return v;
+}
+/// Not a number where the comparison is true, else v.
+inline Float4 missing(Int4 comparison, Float4 v) {
+  Int4 bits;
+  std::memcpy(&bits, &v, sizeof bits);
+  bits |= comparison;
   std::memcpy(&v, &bits, sizeof v);
   return v;
 }

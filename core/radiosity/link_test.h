@@ -20,7 +20,6 @@ struct Receiver {
   glm::vec3 position{0}, normal{0};
   float radius = 0, spread = 0;
   float extent = 0;  ///< what counts as size when links are opened
-  bool leaf = false;
 
   static Receiver of(const glsl::ElementGroup& g, uint32_t laneIndex) {
     const int k = static_cast<int>(laneIndex);
@@ -28,8 +27,7 @@ struct Receiver {
             .normal = {g.nx[k], g.ny[k], g.nz[k]},
             .radius = g.radius[k],
             .spread = g.spread[k],
-            .extent = std::max(g.area[k], g.radius[k] * g.radius[k]),
-            .leaf = g.info.x == glsl::no_link};
+            .extent = std::max(g.area[k], g.radius[k] * g.radius[k])};
   }
 };
 
@@ -51,7 +49,8 @@ class LinkTest {
 
   /// Facing pairs only (thesis: pairs that face away from each other are culled), conservatively for elements
   /// that stand for many. A grazing angle of 1e-4 counts as facing away.
-  Decision operator()(const Receiver& r, const glsl::ElementGroup& g) const {
+  template <bool leaf>
+  Decision decide(const Receiver& r, const glsl::ElementGroup& g) const {
     Decision d;
     d.x = lanes(g.x) - r.position.x;
     d.y = lanes(g.y) - r.position.y;
@@ -60,9 +59,9 @@ class LinkTest {
     d.height = d.x * lanes(g.nx) + d.y * lanes(g.ny) + d.z * lanes(g.nz);
     const Float4 above = d.x * r.normal.x + d.y * r.normal.y + d.z * r.normal.z;
     const Float4 distance = root(d.distance2);
-    const Float4 reach = lanes(g.radius) + r.radius;
+    const Float4 reach = leaf ? lanes(g.radius) : lanes(g.radius) + r.radius;
     constexpr float grazing = 1e-4f;
-    Int4 facing = above + reach + (r.spread - grazing) * distance > 0.f;
+    Int4 facing = above + reach + (leaf ? -grazing : r.spread - grazing) * distance > 0.f;
     if (g.info.z == 0) facing &= reach + (lanes(g.spread) - grazing) * distance > d.height;
     const uint32_t visible = laneMask(facing) & ((1u << g.info.y) - 1);
     if (visible == 0) return d;
@@ -73,15 +72,13 @@ class LinkTest {
                  major2 = major * major;
     const Float4 limit = angle2_ * major2 * major2 * major2;
     const Float4 radius = lanes(g.radius), extent = greater(lanes(g.area), radius * radius);
-    if (g.info.x != glsl::no_link || !r.leaf) {
+    if (g.info.x != glsl::no_link || !leaf) {
       const Float4 shown = lesser(magnitude(d.height) + lanes(g.spread) * distance, distance);
       const Int4 tooLarge = extent * extent * shown * shown >= limit;
-      const Int4 receiverTooLarge = r.extent * r.extent * d.distance2 >= limit;
-      const uint32_t deferrable = r.leaf ? 0 : laneMask(receiverTooLarge);
-      if (g.info.x != glsl::no_link) {
-        const Int4 larger = extent >= r.extent;
-        d.open = laneMask(tooLarge) & (laneMask(larger) | ~deferrable) & visible;
-      }
+      uint32_t deferrable = 0;
+      if constexpr (!leaf) deferrable = laneMask(r.extent * r.extent * d.distance2 >= limit);
+      if (g.info.x != glsl::no_link)
+        d.open = laneMask(tooLarge) & (leaf ? 15 : laneMask(extent >= r.extent) | ~deferrable) & visible;
       d.defer = deferrable & ~d.open & visible;
     }
     const Int4 apart = d.distance2 > 1e-14f;

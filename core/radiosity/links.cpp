@@ -76,13 +76,15 @@ struct Links::Scratch {
 
 namespace {
 
-/// The traversal of one build.
+/// The traversal of one build, N as of BinFiller.
+template <int N>
 class Traversal {
  public:
   Traversal(const Forest& forest, const LinkSettings& settings, uint32_t* out)
       : groups_(forest.groups()), test_(settings), filler_(settings), out_(out) {}
 
   /// Fills `bins`, which hold the parent's links, with what `slot` need not leave to its children.
+  template <bool leaf>
   void visit(uint32_t slot, std::span<const uint32_t> candidates, Bins& bins, std::vector<uint32_t>& stack,
              std::vector<uint32_t>* waitingOut) const {
     Receiver receiver = Receiver::of(groups_[slot / 4], slot % 4);
@@ -95,12 +97,14 @@ class Traversal {
       stack.pop_back();
       const uint32_t g = entry >> 4;
       const glsl::ElementGroup& group = groups_[g];
-      const Decision decision = test_(receiver, group);
+      const Decision decision = test_.decide<leaf>(receiver, group);
       link(bins, group, g, decision, decision.link & entry);
       for (uint32_t open = decision.open & entry & 15; open != 0; open &= open - 1)
         stack.push_back(waiting(group.info.x + static_cast<uint32_t>(std::countr_zero(open)), 15));
-      if (const uint32_t defer = decision.defer & entry & 15; defer != 0)
-        waitingOut->push_back(waiting(g, defer));
+      if constexpr (!leaf) {
+        const uint32_t defer = decision.defer & entry & 15;
+        if (defer != 0) waitingOut->push_back(waiting(g, defer));
+      }
     }
   }
 
@@ -111,7 +115,7 @@ class Traversal {
     watch.add(b.times.inherit);
     own.waiting.clear();
     Bins bins = own.bins();
-    visit(slot, parent.waiting, bins, b.stack, &own.waiting);
+    visit<false>(slot, parent.waiting, bins, b.stack, &own.waiting);
     watch.add(b.times.create);
   }
 
@@ -124,7 +128,7 @@ class Traversal {
       std::copy(parent.distance2.begin(), parent.distance2.end(), bins.distance2);
       std::copy(parent.links.begin(), parent.links.end(), bins.links);
       watch.add(b.times.inherit);
-      visit(slot, parent.waiting, bins, b.stack, nullptr);
+      visit<true>(slot, parent.waiting, bins, b.stack, nullptr);
       watch.add(b.times.refine);
       filler_.close(bins);
       watch.add(b.times.close);
@@ -139,19 +143,19 @@ class Traversal {
   /// Every leaf as a candidate for one leaf.
   void all(uint32_t slot, uint32_t leafGroups, Bins bins) const {
     const Receiver receiver = Receiver::of(groups_[slot / 4], slot % 4);
-    filler_.clear(bins);
+    bins.clear(static_cast<size_t>(filler_.count()));
     bins.up = receiver.normal;
     bins.margin = belowHorizon;
     for (uint32_t g = 0; g < leafGroups; ++g) {
-      const Decision decision = test_(receiver, groups_[g]);
+      const Decision decision = test_.decide<true>(receiver, groups_[g]);
       link(bins, groups_[g], g, decision, decision.link);
     }
     filler_.close(bins);
   }
 
  private:
-  void link(const Bins& bins, const glsl::ElementGroup& group, uint32_t g, const Decision& d,
-            uint32_t lanes) const {
+  [[gnu::always_inline]] inline void link(const Bins& bins, const glsl::ElementGroup& group, uint32_t g,
+                                          const Decision& d, uint32_t lanes) const {
     lanes &= 15;
     if (lanes == 0) return;
     Candidates c{.x = d.x,
@@ -170,9 +174,26 @@ class Traversal {
 
   std::span<const glsl::ElementGroup> groups_;
   LinkTest test_;
-  BinFiller filler_;
+  BinFiller<N> filler_;
   uint32_t* out_;
 };
+
+/// Calls `work` with the traversal for this many bins: the usual numbers have code of their own.
+template <class Work>
+void withTraversal(const Forest& forest, const LinkSettings& settings, uint32_t* out, const Work& work) {
+  switch (settings.resolution) {
+    case 8:
+      return work(Traversal<8>(forest, settings, out));
+    case 12:
+      return work(Traversal<12>(forest, settings, out));
+    case 16:
+      return work(Traversal<16>(forest, settings, out));
+    case 24:
+      return work(Traversal<24>(forest, settings, out));
+    default:
+      return work(Traversal<0>(forest, settings, out));
+  }
+}
 
 }  // namespace
 
@@ -190,30 +211,32 @@ void Links::prepare(const Forest& forest, const LinkSettings& settings) {
 
 void Links::buildFlat(const Forest& forest, const LinkSettings& settings) {
   prepare(forest, settings);
-  const Traversal traversal(forest, settings, links_.data());
   const uint32_t leafGroups = forest.levels()[0].count;
-  tbb::parallel_for(0u, leafGroups, [&](uint32_t g) {
-    Branch& b = scratch_->branches.local();
-    b.distance2.resize(binCount());
-    for (uint32_t slot = 4 * g; slot < 4 * g + forest.groups()[g].info.y; ++slot)
-      traversal.all(slot, leafGroups, {.distance2 = b.distance2.data(), .links = &links_[slot * binCount()]});
+  withTraversal(forest, settings, links_.data(), [&](const auto& traversal) {
+    tbb::parallel_for(0u, leafGroups, [&](uint32_t g) {
+      Branch& b = scratch_->branches.local();
+      b.distance2.resize(binCount());
+      for (uint32_t slot = 4 * g; slot < 4 * g + forest.groups()[g].info.y; ++slot)
+        traversal.all(slot, leafGroups,
+                      {.distance2 = b.distance2.data(), .links = &links_[slot * binCount()]});
+    });
   });
 }
 
 void Links::build(const Forest& forest, const LinkSettings& settings) {
   prepare(forest, settings);
   Scratch& s = *scratch_;
-  const Traversal traversal(forest, settings, links_.data());
   const auto groups = forest.groups();
   const auto parents = forest.parents();
   const auto levels = forest.levels();
   for (Branch& b : s.branches) b.times = {};
   s.nothing.reserve(binCount());
-  BinFiller(settings).clear(s.nothing.bins());
+  s.nothing.bins().clear(binCount());
   s.nothing.waiting.clear();
   for (const uint32_t root : forest.roots()) s.nothing.waiting.push_back(waiting(root, 1));
 
-  // Breadth first through the coarse levels.
+  // Breadth first through the coarse levels, then the branches below: of elements with a coarse parent, and
+  // of small clusters.
   const uint32_t firstCoarse =
       levels.size() > coarseLevel ? levels[coarseLevel].first : static_cast<uint32_t>(groups.size());
   s.coarse.resize(4 * (groups.size() - firstCoarse));
@@ -226,26 +249,26 @@ void Links::build(const Forest& forest, const LinkSettings& settings) {
     for (Inner& inner : b.inner) inner.reserve(binCount());
     return b;
   };
-  for (size_t level = levels.size(); level-- > coarseLevel;)
-    tbb::parallel_for(4 * levels[level].first, 4 * (levels[level].first + levels[level].count),
-                      [&](uint32_t slot) {
-                        if (slot % 4 >= groups[slot / 4].info.y) return;
-                        Inner& own = s.coarse[slot - 4 * firstCoarse];
-                        own.reserve(binCount());
-                        traversal.inner(slot, parentOf(slot / 4), own, local());
-                      });
-
-  // The branches below: of elements with a coarse parent, and of small clusters.
   s.tasks.clear();
   for (uint32_t g = 0; g < firstCoarse; ++g) {
     if (parents[g] != glsl::no_link && parents[g] < 4 * firstCoarse) continue;
     for (uint32_t lane = 0; lane < groups[g].info.y; ++lane) s.tasks.push_back(4 * g + lane);
   }
-  tbb::parallel_for(size_t{0}, s.tasks.size(), [&](size_t i) {
-    const uint32_t slot = s.tasks[i];
-    size_t level = 0;
-    while (level + 1 < levels.size() && slot / 4 >= levels[level + 1].first) ++level;
-    traversal.branch(slot, level, parentOf(slot / 4), local());
+  withTraversal(forest, settings, links_.data(), [&](const auto& traversal) {
+    for (size_t level = levels.size(); level-- > coarseLevel;)
+      tbb::parallel_for(4 * levels[level].first, 4 * (levels[level].first + levels[level].count),
+                        [&](uint32_t slot) {
+                          if (slot % 4 >= groups[slot / 4].info.y) return;
+                          Inner& own = s.coarse[slot - 4 * firstCoarse];
+                          own.reserve(binCount());
+                          traversal.inner(slot, parentOf(slot / 4), own, local());
+                        });
+    tbb::parallel_for(size_t{0}, s.tasks.size(), [&](size_t i) {
+      const uint32_t slot = s.tasks[i];
+      size_t level = 0;
+      while (level + 1 < levels.size() && slot / 4 >= levels[level + 1].first) ++level;
+      traversal.branch(slot, level, parentOf(slot / 4), local());
+    });
   });
   times_ = {};
   for (const Branch& b : s.branches) times_ += b.times;
