@@ -85,7 +85,7 @@ class LinkTest {
     d.link = visible & ~d.open & ~d.defer & laneMask(apart);
     if (g.info.z != 0) {
       // Neighbours on one surface may seem to show their backs where normals bend more than triangles do.
-      const Int4 behind = (d.height > 0.1f * distance) & (d.height > 0.25f * lanes(g.disc));
+      const Int4 behind = (d.height > 0.1f * distance) & (d.height > lanes(g.disc));
       d.link &= laneMask((d.height <= 0.f) | behind);
     }
     return d;

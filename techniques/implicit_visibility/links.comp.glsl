@@ -125,7 +125,7 @@ void main() {
       float shown = min(abs(height) + g.spread[k] * distance, distance);
       bool open = g.info.x != no_link && extent * shown >= limit;
       bool linked = facing && !open && distance2 > 1e-14;
-      if (g.info.z != 0u) linked = linked && (height <= 0.0 || height > max(0.1 * distance, 0.25 * g.disc[k]));
+      if (g.info.z != 0u) linked = linked && (height <= 0.0 || height > max(0.1 * distance, g.disc[k]));
       radius = g.disc[k];
       link = (4u * group + uint(k)) | (g.info.z != 0u && height > 0.0 ? link_back : 0u);
       if (facing && open && top < most_waiting) {

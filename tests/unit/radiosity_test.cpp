@@ -221,6 +221,18 @@ TEST(RadiosityTest, BacksOfOpenSurfacesBlockAndAreBlack) {
   EXPECT_NEAR(world.mean(world.received({0, 5}, 1), 1), 1, 1e-4);
 }
 
+/// On an open bowl of few triangles with smooth normals, split into smaller ones: neighbours lean towards
+/// each other, which must not pass for backs of other surfaces.
+TEST(RadiosityTest, NeighboursOnACoarseOpenSurfaceDoNotHideEachOther) {
+  TriangleMesh bowl = sphereMesh({0, 0, 0}, 1, 10);
+  bowl.indices.resize(bowl.indices.size() * 7 / 10);  // open at the top
+  const World world({bowl}, {}, false, 0.06f);
+  ASSERT_EQ(world.surfels.backless.front(), 0);
+  const std::vector<float> sky = world.received({0}, 1);
+  const auto darkened = std::ranges::count_if(sky, [](float v) { return v < 0.98f; });
+  EXPECT_LT(double(darkened) / double(sky.size()), 0.01) << *std::ranges::min_element(sky);
+}
+
 TEST(RadiosityTest, ScaleOfTheSceneDoesNotMatter) {
   const auto scaled = [](float factor) {
     auto meshes = std::vector{sphereMesh({0.1f, 0.9f, 0}, 0.5f, 24),
