@@ -80,17 +80,26 @@ std::string comparisonMarkdown(std::span<const Row> rows) {
       std::ranges::find_if(rows, [](const Row& row) { return row.what.baseline && isTimed(row); });
   if (baseline == rows.end()) return "";
   const std::string& technique = baseline->what.technique;
+  const auto other = [&](const Row& row) { return isTimed(row) && row.what.technique != technique; };
   std::string text = fmt::format(
-      "\nTimes of {0} as multiples of each row's (frame, with the 95 % interval of the "
-      "samples | shadows: maps, filters and the technique's passes), and of "
-      "the quickest {1} whose RMSE, and whose structured error, is not above the row's{2}:\n\n"
-      "| technique | frame | shadows | {1} at equal RMSE | frame | shadows | {1} at equal structured error | "
-      "frame | "
-      "shadows |\n|---|--:|--:|---|--:|--:|---|--:|--:|\n",
-      markdownCell(rowName(*baseline)), markdownCell(technique),
-      baseline->penumbra ? " in the penumbra" : "");
+      "\nTimes of {} as multiples of each row's (frame, with the 95 % interval of the samples | shadows: "
+      "maps, "
+      "filters and the technique's passes)",
+      markdownCell(rowName(*baseline)));
+  if (std::ranges::none_of(rows, other)) {  // settings of one technique
+    text += ":\n\n| settings | frame | shadows |\n|---|--:|--:|\n";
+    for (const Row& row : rows)
+      if (isTimed(row) && &row != &*baseline)
+        text += fmt::format("| {} | {} |\n", markdownCell(rowName(row)), ratios(*baseline, row));
+    return text;
+  }
+  text += fmt::format(
+      ", and of the quickest {0} whose RMSE, and whose structured error, is not above the row's{1}:\n\n"
+      "| technique | frame | shadows | {0} at equal RMSE | frame | shadows | {0} at equal structured error | "
+      "frame | shadows |\n|---|--:|--:|---|--:|--:|---|--:|--:|\n",
+      markdownCell(technique), baseline->penumbra ? " in the penumbra" : "");
   for (const Row& row : rows) {
-    if (!isTimed(row) || row.what.technique == technique) continue;
+    if (!other(row)) continue;
     const Row* equalRmse =
         quickest(rows, technique, errorOf(row).rmse, [](const Row& r) { return errorOf(r).rmse; });
     const Row* equalStructured = quickest(rows, technique, errorOf(row).structured,

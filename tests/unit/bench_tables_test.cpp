@@ -113,6 +113,16 @@ TEST(BenchTables, RowsAreComparedWithTheBaseline) {
       << text;
 }
 
+TEST(BenchTables, SettingsOfOneTechniqueAreComparedWithTheBaselineAmongThem) {
+  std::vector<Row> rows = {exampleRow(exampleCase("pcss", 1024), 0.1, 8),
+                           exampleRow(exampleCase("pcss", 16), 0.2, 2)};
+  rows[0].what.baseline = true;
+  const std::string text = comparisonMarkdown(rows);
+  EXPECT_NE(text.find("| settings | frame | shadows |\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("| pcss samples=16 | 4.00 (2.67 to 8.00) | 4.00 |\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("samples=1024 | "), std::string::npos) << text;
+}
+
 TEST(BenchTables, CsvQuotesAndKeepsPrecision) {
   Row row = exampleRow(exampleCase("a,b"), 0.1 + 0.2);
   Row failed = row;
