@@ -96,8 +96,8 @@ scene::Scene sceneOf(const std::string& name) {
   return scene::load(std::filesystem::path(LIMN_ASSETS) / name / (name + ".glb"));
 }
 
-/// Irradiance of every vertex by one bounce (in slots of leaves), of two seeds: what direct light at the
-/// vertices sends on, and what it is to come to.
+/// Path-traced irradiance of every vertex: direct light, which sends the bounce on, and the bounce from two
+/// seeds.
 struct VertexLight {
   VertexLight(const scene::Scene& scene, const scene::Pose& pose, float longestEdge) {
     const auto points = reference::vertexPoints(scene, pose, longestEdge);
