@@ -25,12 +25,12 @@ export function breakable(name) {
   return String(name).split(/(?<=_)/).flatMap((part, i) => (i ? [el("wbr"), part] : [part]));
 }
 
-/** Three significant digits. */
+/** Three significant digits, with a power of ten only where zeros would be counted. */
 export function number(value) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  return size >= 1e4 || size < 1e-4 ? value.toExponential(2) : String(Number(value.toPrecision(3)));
+  return size >= 1e6 || size < 1e-4 ? value.toExponential(2) : String(Number(value.toPrecision(3)));
 }
 
 export function milliseconds(value) {

@@ -12,6 +12,7 @@ function summary(tables) {
   return renderers.map((renderer) => {
     const own = tables.filter((table) => table.renderer === renderer);
     const all = (key) => [...new Set(own.flatMap((table) => table[key]))];
+    const counts = (key) => all(key).sort((a, b) => a - b).join(", ").replace(/, (?=[^,]*$)/, " or ");
     const failed = own.flatMap((table) => table.rows).filter((row) => row.failure).length;
     const rows = own.flatMap((table) => table.rows).length;
     const software = own.some((table) => table.software);
@@ -20,7 +21,7 @@ function summary(tables) {
       el("p", {}, el("strong", {}, renderer), ` – ${software ? "software" : "hardware"} rendering. `,
         all("drivers").map((driver) => `Driver: ${driver}. `), machines.map((machine) => `Machine: ${machine}. `),
         `${rows} row${rows === 1 ? "" : "s"}${failed ? `, ${failed} failed` : ""}; `,
-        `medians of ${all("frames").join(", ")} frames after ${all("warmup").join(", ")} to warm up.`),
+        `medians of ${counts("frames")} frames in each of ${counts("turns")} turns, after ${counts("warmup")} to warm up.`),
       machines.length > 1 ? el("p", {class: "note"}, "Rows of several machines: compare times only within one.") : null,
       software ? el("p", {class: "note"}, "Software rendering says nothing about the times of a GPU.") : null);
   });

@@ -1,7 +1,7 @@
 // The chart of error against time, both logarithmic.
 import {axisBottom, axisLeft} from "d3-axis";
 import {scaleLog} from "d3-scale";
-import {create, select} from "d3-selection";
+import {clientPoint, create, select} from "d3-selection";
 import {line as polyline} from "d3-shape";
 
 import {milliseconds} from "./dom.js";
@@ -10,6 +10,7 @@ import {colour, dashes, marker} from "./marks.js";
 import {settingsText} from "./series.js";
 
 const MARGIN = {top: 12, right: 16, bottom: 44, left: 58};
+const REACH = 13;  // pixels around a point in which the pointer means it
 
 /** From a little below the smallest to a little above the largest; at least a factor of two. */
 export function logDomain(values) {
@@ -20,12 +21,12 @@ export function logDomain(values) {
 
 export function logAxes(svg, x, y, width, height, labels) {
   const short = (value) => (value < 1e-3 || value >= 1e5 ? value.toExponential(0) : String(Number(value.toPrecision(3))));
-  const ticks = (pixels) => [Math.max(2, Math.min(8, pixels / 70)), short];
+  const ticks = (pixels, each) => [Math.max(2, Math.min(8, pixels / each)), short];
   const grid = svg.append("g").attr("class", "grid").attr("aria-hidden", "true");
   grid.append("g").attr("transform", `translate(0,${height - MARGIN.bottom})`)
-    .call(axisBottom(x).ticks(...ticks(width)).tickSize(-(height - MARGIN.top - MARGIN.bottom)));
+    .call(axisBottom(x).ticks(...ticks(width, 110)).tickSize(-(height - MARGIN.top - MARGIN.bottom)));
   grid.append("g").attr("transform", `translate(${MARGIN.left},0)`)
-    .call(axisLeft(y).ticks(...ticks(height)).tickSize(-(width - MARGIN.left - MARGIN.right)));
+    .call(axisLeft(y).ticks(...ticks(height, 70)).tickSize(-(width - MARGIN.left - MARGIN.right)));
   grid.append("text").attr("class", "axis").attr("x", (MARGIN.left + width - MARGIN.right) / 2).attr("y", height - 6)
     .attr("text-anchor", "middle").text(labels[0]);
   grid.append("text").attr("class", "axis").attr("transform", `translate(13,${(height - MARGIN.bottom) / 2}) rotate(-90)`)
@@ -119,15 +120,41 @@ export function drawPlot(container, {curves, rows, metric, time, level, traced, 
       select(this).append("path").attr("class", "spread").attr("stroke", colour(point.curve))
         .attr("d", `M${x(spread[0]) - x(point.ms)},0H${x(spread[1]) - x(point.ms)}`);
   });
-  marks.append("circle").attr("class", "reach").attr("r", 13);
+  marks.append("circle").attr("class", "reach").attr("r", REACH);
   marks.filter((point) => front.includes(point)).append("circle").attr("class", "ring").attr("r", 9);
   marks.append("path").attr("class", "marker").attr("d", (point) => marker(point.curve))
     .attr("fill", (point) => colour(point.curve));
+  const pointOf = (event) => {
+    const mark = event.target.closest("g.point");
+    return mark && select(mark).datum();
+  };
   const focusOn = (point) => marks.filter((other) => other === point).node()?.focus();
-  marks.on("pointerenter focus click", (point) => onCurrent(point.row));
+  // The nearest point, not the topmost: those that lie close together cover each other's reach.
+  const nearest = (event) => {
+    const [px, py] = clientPoint(svg.node(), event);
+    const distance = (point) => Math.hypot(x(point.ms) - px, place(point.error) - py);
+    const found = points.reduce((best, point) => (distance(point) < distance(best) ? point : best));
+    return distance(found) <= REACH ? found : null;
+  };
+  let current = null;
+  marks.on("focus", (point) => onCurrent(point.row));
+  svg.node().addEventListener("pointermove", (event) => {
+    const point = nearest(event);
+    if (point && point.row !== current) onCurrent(point.row);
+  });
+  svg.node().addEventListener("mousedown", (event) => {
+    const point = nearest(event);
+    if (!point) return;
+    event.preventDefault();  // or the topmost would take the focus
+    focusOn(point);
+  });
+  svg.node().addEventListener("click", (event) => {
+    const point = event.detail === 0 && pointOf(event);  // pressed by a screen reader
+    if (point) onCurrent(point.row);
+  });
   svg.node().addEventListener("keydown", (event) => {
-    const current = select(event.target.closest("g.point")).datum();
-    const next = current && neighbour(points, current, event.key);
+    const focused = pointOf(event);
+    const next = focused && neighbour(points, focused, event.key);
     if (!next) return;
     event.preventDefault();
     focusOn(next);
@@ -136,6 +163,7 @@ export function drawPlot(container, {curves, rows, metric, time, level, traced, 
 
   return {
     mark(row) {
+      current = row;
       const any = points.some((point) => point.row === row);
       marks.classed("current", (point) => point.row === row)
         .attr("aria-pressed", (point) => String(point.row === row))

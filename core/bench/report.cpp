@@ -128,6 +128,7 @@ Json tableJson(const Table& table, EmbeddedPictures& pictures) {
                {"time_size", {own ? c.timeWidth : c.width, own ? c.timeHeight : c.height}},
                {"dynamic", c.dynamic},
                {"frames", c.frames},
+               {"turns", c.turns},
                {"warmup", c.warmup},
                {"renderer", table.rows.front().cost.renderer}};
   std::set<std::string> machines, drivers;

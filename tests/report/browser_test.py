@@ -36,6 +36,7 @@ technique = "sampled_area_light"
 parameters = {samples = [1, 4], shadow_map_size = 128}
 """
 POINTS = 5
+HEADING = "document.querySelector('.detail h3').textContent"
 HOSTILE = "</script><img src=x onerror=\"window.harmed = true\"><script>window.harmed = true</script>{{data}}"
 
 parser = argparse.ArgumentParser()
@@ -81,25 +82,30 @@ def shows_points_and_pictures(browser):
     check("96 x 72, 1 light" in browser.evaluate("document.body.textContent"), "no frames per second by resolution and lights")
 
 
-def reacts(browser):
-    """Hovering, arrow keys, drop-downs, sliders and the tables' buttons."""
-    heading = "document.querySelector('.detail h3').textContent"
+def hover(browser):
+    """The points' centres in whole pixels, and what the pointer shows at each."""
     centres = browser.evaluate("""[...document.querySelectorAll('g.point')].map(p => {
-        p.scrollIntoView({block: 'center'}); const box = p.querySelector('.marker').getBoundingClientRect();
-        return {x: box.x + box.width / 2, y: box.y + box.height / 2 + scrollY}; })""")
+        p.scrollIntoView({block: 'center'}); const centre = p.getScreenCTM();
+        return {x: centre.e, y: centre.f + scrollY}; })""")
     seen = set()
     for centre in centres:
         browser.evaluate(f"scrollTo(0, {centre['y'] - 300})")
         browser.point(centre["x"], centre["y"] - browser.evaluate("scrollY"))
-        seen.add(browser.evaluate(heading))
-    check(len(seen) >= POINTS - 1, f"hovering shows only {seen}")  # two points may cover each other
+        seen.add(browser.evaluate(HEADING))
+    return {(round(centre["x"]), round(centre["y"])) for centre in centres}, seen
+
+
+def reacts(browser):
+    """Hovering, arrow keys, drop-downs, sliders and the tables' buttons."""
+    places, seen = hover(browser)
+    check(len(seen) >= len(places), f"hovering shows only {seen}")
 
     browser.evaluate("document.querySelector('g.point[tabindex=\"0\"]').focus()")
     browser.press("Home")
-    walked = [browser.evaluate(heading)]
+    walked = [browser.evaluate(HEADING)]
     for _ in range(POINTS - 1):
         browser.press("ArrowRight")
-        walked.append(browser.evaluate(heading))
+        walked.append(browser.evaluate(HEADING))
     check(len(set(walked)) == POINTS, f"the arrow keys reach only {walked}")
     check(browser.evaluate("document.querySelectorAll('g.point[aria-pressed=true]').length") == 1, "not one current point")
 
@@ -120,7 +126,7 @@ def reacts(browser):
         document.querySelector('.equal-ms input'))""")
     check(browser.evaluate(text) != before, "the slider does nothing")
     browser.evaluate("[...document.querySelectorAll('th button')].at(-1).click()")
-    check("sampled_area_light" in browser.evaluate(heading), "the table's button shows nothing")
+    check("sampled_area_light" in browser.evaluate(HEADING), "the table's button shows nothing")
 
 
 def is_painted(browser):
@@ -167,6 +173,24 @@ def is_accessible(browser):
             "element identifier used twice": "(i => i.length - new Set(i).size)([...document.querySelectorAll('[id]')].map(e => e.id))",
     }.items():
         check(browser.evaluate(expression) == 0, what)
+
+
+def tells_close_points_apart(browser):
+    """Points that cover each other: the pointer means the nearest."""
+    kept = results.read_text()
+    rows = [json.loads(line) for line in kept.splitlines()]
+    times = rows[0]["stats"]["frame_ms"], rows[0]["stats"]["frame_samples_ms"]
+    for i, row in enumerate(rows):
+        row.update(error=rows[0]["error"], penumbra=rows[0]["penumbra"])
+        row["stats"]["frame_ms"] = {key: value if key == "n" else value * 1.03 ** i for key, value in times[0].items()}
+        row["stats"]["frame_samples_ms"] = [value * 1.03 ** i for value in times[1]]
+    results.write_text("".join(json.dumps(row) + "\n" for row in rows))
+    limn("report", out)
+    browser.open(page)
+    places, seen = hover(browser)
+    check(len(places) == POINTS and len(seen) == POINTS, f"of {places} hovering shows only {seen}")
+    results.write_text(kept)
+    limn("report", out)
 
 
 def sets_the_reference_beside(browser):
@@ -233,7 +257,8 @@ def withstands_foreign_rows(browser):
 
 bench()
 with Browser(options.chromium) as browser:
-    for step in (shows_points_and_pictures, reacts, is_painted, is_accessible, sets_the_reference_beside, withstands_foreign_rows):
+    for step in (shows_points_and_pictures, reacts, tells_close_points_apart, is_painted, is_accessible, sets_the_reference_beside,
+                 withstands_foreign_rows):
         step(browser)
         check(not browser.problems, f"{step.__name__}: {browser.problems}")
 print("the report page shows and does what it should")
