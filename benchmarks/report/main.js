@@ -21,7 +21,7 @@ function summary(tables) {
       el("p", {}, el("strong", {}, renderer), ` – ${software ? "software" : "hardware"} rendering. `,
         all("drivers").map((driver) => `Driver: ${driver}. `), machines.map((machine) => `Machine: ${machine}. `),
         `${rows} row${rows === 1 ? "" : "s"}${failed ? `, ${failed} failed` : ""}; `,
-        `medians of ${counts("frames")} frames in each of ${counts("turns")} turns, after ${counts("warmup")} to warm up.`),
+        `medians of ${counts("frames")} frames a turn (turns: ${counts("turns")}), after ${counts("warmup")} to warm up.`),
       machines.length > 1 ? el("p", {class: "note"}, "Rows of several machines: compare times only within one.") : null,
       software ? el("p", {class: "note"}, "Software rendering says nothing about the times of a GPU.") : null);
   });
