@@ -1,5 +1,6 @@
 """The report page of a real, small bench in a real browser: what it shows, and what foreign texts cannot do to it."""
 import argparse
+import contextlib
 import json
 import pathlib
 import shutil
@@ -175,41 +176,44 @@ def is_accessible(browser):
         check(browser.evaluate(expression) == 0, what)
 
 
+@contextlib.contextmanager
+def reported(rows):
+    """The report of other rows, until the end of the block."""
+    kept = results.read_text()
+    results.write_text("".join(json.dumps(row) + "\n" for row in rows))
+    limn("report", out)
+    yield
+    results.write_text(kept)
+    limn("report", out)
+
+
 def tells_close_points_apart(browser):
     """Points that cover each other: the pointer means the nearest."""
-    kept = results.read_text()
-    rows = [json.loads(line) for line in kept.splitlines()]
+    rows = [json.loads(line) for line in results.read_text().splitlines()]
     times = rows[0]["stats"]["frame_ms"], rows[0]["stats"]["frame_samples_ms"]
     for i, row in enumerate(rows):
         row.update(error=rows[0]["error"], penumbra=rows[0]["penumbra"])
         row["stats"]["frame_ms"] = {key: value if key == "n" else value * 1.03 ** i for key, value in times[0].items()}
         row["stats"]["frame_samples_ms"] = [value * 1.03 ** i for value in times[1]]
-    results.write_text("".join(json.dumps(row) + "\n" for row in rows))
-    limn("report", out)
-    browser.open(page)
-    places, seen = hover(browser)
-    check(len(places) == POINTS and len(seen) == POINTS, f"of {places} hovering shows only {seen}")
-    results.write_text(kept)
-    limn("report", out)
+    with reported(rows):
+        browser.open(page)
+        places, seen = hover(browser)
+        check(len(places) == POINTS and len(seen) == POINTS, f"of {places} hovering shows only {seen}")
 
 
 def sets_the_reference_beside(browser):
     """Where errors and times are of one picture, the reference's own method has a line and a column."""
     check("reference ms" not in browser.evaluate("document.querySelector('table').textContent"), "a time for errors of another size")
-    kept = results.read_text()
-    rows = [json.loads(line) for line in kept.splitlines()]
+    rows = [json.loads(line) for line in results.read_text().splitlines()]
     for row in rows:
         row.update(time_size=[0, 0], term="direct")
         row.pop("penumbra")
         row["reference"]["seconds"] = 2e-3 * row["stats"]["frame_ms"]["median"]
         row["error"]["noise_floor"] = 3 * row["error"]["rmse"]
-    results.write_text("".join(json.dumps(row) + "\n" for row in rows))
-    limn("report", out)
-    browser.open(page)
-    check(browser.evaluate("document.querySelectorAll('.level.traced line').length") == 1, "no line of the reference")
-    check("reference ms" in browser.evaluate("document.querySelector('table').textContent"), "no time of the reference")
-    results.write_text(kept)
-    limn("report", out)
+    with reported(rows):
+        browser.open(page)
+        check(browser.evaluate("document.querySelectorAll('.level.traced line').length") == 1, "no line of the reference")
+        check("reference ms" in browser.evaluate("document.querySelector('table').textContent"), "no time of the reference")
 
 
 def withstands_foreign_rows(browser):
