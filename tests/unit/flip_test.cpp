@@ -88,36 +88,48 @@ std::pair<std::vector<float>, std::vector<float>> patterns() {
           picture(kWidth, kHeight, [&](int x, int y) { return common(x, y, 1, 0.8f, 0.15f, 0.85f); })};
 }
 
-TEST(Flip, PatternsMatchDirectEvaluation) {
-  // Expected values: two-dimensional filters applied as they are written in the paper (not separated), in
-  // double precision, borders replicated.
+// The values below are those of NVIDIA's own implementation (python/flip_api.py of NVlabs/flip:
+// its matrices, two-dimensional filters and replicated borders), evaluated in double precision.
+constexpr double kNvidiaTolerance = 1e-5;
+
+TEST(Flip, PatternsMatchNvidiasImplementation) {
   const auto [a, b] = patterns();
   const std::vector<float> map = flipMap(a, b, kWidth, kHeight);
-  EXPECT_NEAR(mean(map), 0.283565, 1e-4);
-  EXPECT_NEAR(*std::max_element(map.begin(), map.end()), 0.611476, 1e-4);
-  EXPECT_NEAR(map[0], 0.415769, 1e-4);
-  EXPECT_NEAR(map[20 * kWidth + 24], 0.228245, 1e-4);
-  EXPECT_NEAR(map[39 * kWidth + 47], 0.356235, 1e-4);
-  EXPECT_NEAR(map[7 * kWidth + 31], 0.302832, 1e-4);
+  EXPECT_NEAR(mean(map), 0.2835646, kNvidiaTolerance);
+  EXPECT_NEAR(*std::max_element(map.begin(), map.end()), 0.6114755, kNvidiaTolerance);
+  EXPECT_NEAR(map[0], 0.4157690, kNvidiaTolerance);
+  EXPECT_NEAR(map[20 * kWidth + 24], 0.2282455, kNvidiaTolerance);
+  EXPECT_NEAR(map[39 * kWidth + 47], 0.3562346, kNvidiaTolerance);
+  EXPECT_NEAR(map[7 * kWidth + 31], 0.3028317, kNvidiaTolerance);
 }
 
-TEST(Flip, EdgesAndPointsMatchDirectEvaluation) {
+TEST(Flip, OtherDistancesMatchNvidiasImplementation) {
+  const auto [a, b] = patterns();
+  const std::vector<float> near = flipMap(a, b, kWidth, kHeight, 20.0);
+  EXPECT_NEAR(mean(near), 0.4351887, kNvidiaTolerance);
+  EXPECT_NEAR(near[20 * kWidth + 24], 0.4993346, kNvidiaTolerance);
+  const std::vector<float> far = flipMap(a, b, kWidth, kHeight, 134.04);
+  EXPECT_NEAR(mean(far), 0.2379443, kNvidiaTolerance);
+  EXPECT_NEAR(far[20 * kWidth + 24], 0.2269682, kNvidiaTolerance);
+}
+
+TEST(Flip, EdgesAndPointsMatchNvidiasImplementation) {
   const auto edgeAt = [](int column) {
     return picture(kWidth, kHeight, [column](int x, int) { return grey(x >= column ? 0.5f : 0.0f); });
   };
   const std::vector<float> edge = edgeAt(kWidth / 2);
   const std::vector<float> shifted = flipMap(edge, edgeAt(kWidth / 2 + 2), kWidth, kHeight);
-  EXPECT_NEAR(mean(shifted), 0.087028, 1e-4);
-  EXPECT_NEAR(shifted[20 * kWidth + 23], 0.869644, 1e-4);
-  EXPECT_NEAR(shifted[20 * kWidth + 24], 0.867859, 1e-4);
-  EXPECT_NEAR(shifted[20 * kWidth + 26], 0.455093, 1e-4);
+  EXPECT_NEAR(mean(shifted), 0.0870282, kNvidiaTolerance);
+  EXPECT_NEAR(shifted[20 * kWidth + 23], 0.8696436, kNvidiaTolerance);
+  EXPECT_NEAR(shifted[20 * kWidth + 24], 0.8678588, kNvidiaTolerance);
+  EXPECT_NEAR(shifted[20 * kWidth + 26], 0.4550926, kNvidiaTolerance);
 
   std::vector<float> dot = edge;
   std::fill_n(dot.begin() + 3 * (20 * kWidth + 10), 3, 1.0f);
   const std::vector<float> point = flipMap(dot, edge, kWidth, kHeight);
-  EXPECT_NEAR(mean(point), 0.007454, 1e-4);
-  EXPECT_NEAR(point[20 * kWidth + 10], 0.864906, 1e-4);
-  EXPECT_NEAR(point[20 * kWidth + 13], 0.133711, 1e-4);
+  EXPECT_NEAR(mean(point), 0.0074539, kNvidiaTolerance);
+  EXPECT_NEAR(point[20 * kWidth + 10], 0.8649065, kNvidiaTolerance);
+  EXPECT_NEAR(point[20 * kWidth + 13], 0.1337110, kNvidiaTolerance);
 }
 
 TEST(Flip, IsSymmetricAndBounded) {
