@@ -27,7 +27,9 @@ function(limn_add_technique name)
   target_link_libraries(technique_${name} PRIVATE limn::limn)
   target_compile_definitions(technique_${name} PRIVATE LIMN_TECHNIQUE_ID=${name})
   set_target_properties(technique_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name}
-    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON INSTALL_RPATH "$ORIGIN/../.."
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
+    # One path for the built and the installed module: CMake fills up a shorter path of its own with empty entries.
+    INSTALL_RPATH "$ORIGIN/../.." BUILD_WITH_INSTALL_RPATH ON
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/limn/techniques)
   limn_embed(technique_${name} limn_technique_${name}::embeddedSources ${folder} ${shaders})
   install(TARGETS technique_${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/limn/techniques)
