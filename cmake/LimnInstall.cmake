@@ -9,13 +9,10 @@ install(EXPORT limnTargets NAMESPACE limn:: DESTINATION ${LIMN_INSTALL_CMAKE})
 
 install(DIRECTORY core DESTINATION ${LIMN_INSTALL_INCLUDE} FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY glsl DESTINATION ${LIMN_INSTALL_INCLUDE} FILES_MATCHING PATTERN "*.glsl")
-install(FILES ${CMAKE_BINARY_DIR}/generated/core/context/gl_functions.h
-  DESTINATION ${LIMN_INSTALL_INCLUDE}/core/context)
-install(FILES ${CMAKE_BINARY_DIR}/generated/core/technique/interface_hash.h
-  DESTINATION ${LIMN_INSTALL_INCLUDE}/core/technique)
+install(FILES ${LIMN_GENERATED_HEADERS} DESTINATION ${LIMN_INSTALL_INCLUDE}/core/context)
 
 configure_package_config_file(cmake/limnConfig.cmake.in ${CMAKE_BINARY_DIR}/limnConfig.cmake
-  INSTALL_DESTINATION ${LIMN_INSTALL_CMAKE})
+  INSTALL_DESTINATION ${LIMN_INSTALL_CMAKE} PATH_VARS LIMN_INSTALL_INCLUDE)
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/limnConfigVersion.cmake COMPATIBILITY ExactVersion)
 install(FILES ${CMAKE_BINARY_DIR}/limnConfig.cmake ${CMAKE_BINARY_DIR}/limnConfigVersion.cmake
-  cmake/LimnTechnique.cmake cmake/embed.py DESTINATION ${LIMN_INSTALL_CMAKE})
+  cmake/LimnTechnique.cmake cmake/embed.py cmake/interface_hash.py DESTINATION ${LIMN_INSTALL_CMAKE})

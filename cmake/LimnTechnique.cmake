@@ -1,8 +1,18 @@
 # limn_embed(TARGET FUNCTION ROOT FILES...): compiles text files into TARGET behind `FUNCTION()`.
-# limn_add_technique(NAME [FOLDER]): the plug-in in FOLDER (default: the current one): its *.cpp and *.glsl.
-# Both are installed, so that an out-of-tree technique is built by the same call.
+# limn_interface_hash(TARGET FUNCTION): compiles into TARGET, behind `FUNCTION()`, a hash of limn's headers as they are now.
+# limn_add_technique(NAME [FOLDER]): builds the *.cpp and *.glsl of FOLDER (default: the current one) to lib/limn/techniques.
+# All are installed, so that an out-of-tree technique is built by the same call.
+#
+# LIMN_INCLUDE_ROOTS are the folders that "core/..." and "glsl/..." are looked up in: limn's source tree and what it
+# generates, or the installed headers.
 
 set(LIMN_EMBED_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/embed.py)
+set(LIMN_INTERFACE_HASH_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/interface_hash.py)
+# All headers and all shared GLSL, which compiles as C++ too: none can be forgotten, since none is chosen.
+list(GET LIMN_INCLUDE_ROOTS 0 LIMN_INTERFACE_HEADERS)
+file(GLOB_RECURSE LIMN_INTERFACE_HEADERS CONFIGURE_DEPENDS
+  ${LIMN_INTERFACE_HEADERS}/core/*.h ${LIMN_INTERFACE_HEADERS}/glsl/*.glsl)
+list(APPEND LIMN_INTERFACE_HEADERS ${LIMN_GENERATED_HEADERS})
 if(NOT Python3_EXECUTABLE)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
 endif()
@@ -16,19 +26,35 @@ function(limn_embed target function root)
   target_sources(${target} PRIVATE ${out})
 endfunction()
 
+function(limn_interface_hash target function)
+  set(out ${CMAKE_CURRENT_BINARY_DIR}/${target}_interface_hash.cpp)
+  add_custom_command(OUTPUT ${out}
+    COMMAND ${Python3_EXECUTABLE} ${LIMN_INTERFACE_HASH_SCRIPT} ${out} ${function} ${LIMN_INCLUDE_ROOTS} --
+            ${LIMN_INTERFACE_HEADERS}
+    DEPENDS ${LIMN_INTERFACE_HASH_SCRIPT} ${LIMN_INTERFACE_HEADERS} VERBATIM)
+  target_sources(${target} PRIVATE ${out})
+endfunction()
+
 function(limn_add_technique name)
   set(folder ${CMAKE_CURRENT_SOURCE_DIR})
   if(ARGC GREATER 1)
-    set(folder ${ARGV1})
+    get_filename_component(folder ${ARGV1} ABSOLUTE)
   endif()
   file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
+  if(NOT sources)
+    message(FATAL_ERROR "limn_add_technique(${name}): no *.cpp in ${folder}; name the technique's folder: "
+                        "limn_add_technique(${name} FOLDER)")
+  endif()
   file(GLOB shaders CONFIGURE_DEPENDS ${folder}/*.glsl)
   add_library(technique_${name} MODULE ${sources})
   target_link_libraries(technique_${name} PRIVATE limn::limn)
   target_compile_definitions(technique_${name} PRIVATE LIMN_TECHNIQUE_ID=${name})
   set_target_properties(technique_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name}
-    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON INSTALL_RPATH "$ORIGIN/../.."
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
+    # One path for the built and the installed module: CMake fills up a shorter path of its own with empty entries.
+    INSTALL_RPATH "$ORIGIN/../.." BUILD_WITH_INSTALL_RPATH ON
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/limn/techniques)
+  limn_interface_hash(technique_${name} limn_technique_${name}::interfaceHash)
   limn_embed(technique_${name} limn_technique_${name}::embeddedSources ${folder} ${shaders})
   install(TARGETS technique_${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/limn/techniques)
 endfunction()

@@ -92,7 +92,7 @@ BenchSession::BenchSession(const BackendOptions& backend, const fs::path& out)
       cache_(out / "references"),
       context_(Context::create(backend.contextOptions())),
       device_(*context_),
-      registry_(TechniqueRegistry::defaultFolders()) {}
+      registry_(TechniqueRegistry::defaultFolders(), warn) {}
 
 BenchSession::~BenchSession() = default;
 

@@ -36,7 +36,7 @@ Image referenceImage(const Options& options, const View& view, int interfaces) {
 int run(const Options& options) {
   for (const fs::path& file : {options.out, options.json})
     if (!file.empty()) checkWritable(file);
-  const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
+  const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
   render::Settings settings;
   settings.techniques = options.technique.resolve(registry);
   settings.output = render::parseOutput(options.outputTerm);

@@ -120,7 +120,7 @@ int run(const Options& options) {
   const auto range = parseFrames(options.frames);
   if (!range || range->first == range->last)
     throw UsageError(fmt::format("--frames '{}' is not accepted; expected a:b with a < b", options.frames));
-  const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
+  const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
   const auto techniques = options.technique.resolve(registry);
   render::checkTechniques(techniques, render::parseOutput(options.outputTerm));
   reference::termFromName(options.outputTerm);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/limn/commands.h"
+#include "apps/limn/options.h"
 #include "core/technique/registry.h"
 
 namespace limn::app {
@@ -95,8 +96,7 @@ Action addListCommand(CLI::App& command) {
   auto json = std::make_shared<bool>(false);
   command.add_flag("--json", *json, "Print JSON");
   return [json] {
-    const auto folders = TechniqueRegistry::defaultFolders();
-    const TechniqueRegistry registry(folders);
+    const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
     *json ? printJson(registry) : printText(registry);
     return 0;
   };

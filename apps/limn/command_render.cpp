@@ -62,8 +62,7 @@ int run(const Options& options) {
   for (const fs::path& file : {options.out, options.stats, options.graph})
     if (!file.empty()) checkWritable(file);
   const auto frames = parseFrames(options.frames);
-  const auto folders = TechniqueRegistry::defaultFolders();
-  const TechniqueRegistry registry(folders);
+  const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
   render::Settings settings;
   settings.techniques = options.technique.resolve(registry);
   settings.output = render::parseOutput(options.outputTerm);

@@ -104,7 +104,7 @@ class Table {
 };
 
 int run(const Options& options) {
-  const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
+  const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
   const std::vector<Case> cases = chosenCases(registry, options);
   const auto context = Context::create(options.backend.contextOptions());
   gpu::Device device(*context);

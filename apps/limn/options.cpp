@@ -165,6 +165,10 @@ ContextOptions BackendOptions::contextOptions() const {
   return options;
 }
 
+void warn(const std::string& message) {
+  std::fputs(("limn: warning: " + message + "\n").c_str(), stderr);
+}
+
 int guarded(const std::function<int()>& work) {
   const auto say = [](const std::string& message) {
     std::fputs(("limn: " + message + "\n").c_str(), stderr);

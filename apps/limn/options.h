@@ -146,6 +146,9 @@ struct BackendOptions {
   ContextOptions contextOptions() const;
 };
 
+/// Says on stderr, in one line, what is odd and does not end the run.
+void warn(const std::string& message);
+
 /// Runs `work`, reports what it throws in one line on stderr, and gives the exit status.
 int guarded(const std::function<int()>& work);
 

@@ -266,7 +266,7 @@ View open(const SceneOptions& options) {
   if (!options.sigmaS.empty()) view.scene.medium.sigmaS = parseCoefficient("--sigma-s", options.sigmaS);
   if (options.g) view.scene.medium.g = static_cast<float>(*options.g);
   if (!options.grid.empty()) chooseGrid(options.grid, view.scene);
-  for (const std::string& warning : view.scene.warnings) fmt::print(stderr, "limn: warning: {}\n", warning);
+  for (const std::string& warning : view.scene.warnings) warn(warning);
   if (!options.animation.empty()) {
     std::vector<std::string> names;
     for (const auto& animation : view.scene.animations) names.push_back(animation.name);

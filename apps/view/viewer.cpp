@@ -42,7 +42,7 @@ void setText(TextField& target, const std::string& text) {
 }
 
 ViewerWindow::ViewerWindow(const ViewerOptions& options)
-    : options_(options), registry_(TechniqueRegistry::defaultFolders()) {
+    : options_(options), registry_(TechniqueRegistry::defaultFolders(), warn) {
   state_.scene = options.scene;
   state_.output = render::parseOutput(options.outputTerm);
   state_.exposure = static_cast<float>(options.exposure);

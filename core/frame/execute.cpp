@@ -1,6 +1,9 @@
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "core/base/error.h"
+#include "core/base/foreign_exception.h"
 #include "core/frame/graph_data.h"
 
 namespace limn::frame {
@@ -78,7 +81,11 @@ void runPass(Graph& graph, uint32_t index, GLbitfield barriers, Timing timing, P
   if (barriers != 0) gl.MemoryBarrier(barriers);
   setBaseline(gl);
   graph.current = index;
-  pass.function(context);
+  try {
+    pass.function(context);
+  } catch (...) {
+    rethrowAsError(fmt::format("pass {}", graph.title(index)));
+  }
 }
 
 /// A pass that was to run and did not has nothing to be kept; passes that write to the same resources or read

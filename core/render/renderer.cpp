@@ -11,6 +11,7 @@
 #include "core/render/read_picture.h"
 #include "core/scene/gpu_scene.h"
 #include "core/shadow/shadow_map.h"
+#include "core/technique/module.h"
 
 namespace limn::render {
 namespace {
@@ -86,7 +87,7 @@ struct Renderer::Implementation {
   void mountTechnique(const TechniquePlugin& plugin) {
     const std::string prefix = fmt::format("techniques/{}/", plugin.info->name);
     if (std::find(mounted.begin(), mounted.end(), prefix) != mounted.end()) return;
-    shaders.mount(prefix, plugin.sources(),
+    shaders.mount(prefix, inTechnique(plugin, plugin.sources),
                   shaderOverride.empty() ? shaderOverride : shaderOverride / prefix);
     mounted.push_back(prefix);
   }
@@ -108,7 +109,13 @@ struct Renderer::Implementation {
       inputs.matte = matte;
       inputs.environmentMap = deferred.environmentMap(*graph);
     }
-    return use.technique->addPasses(*graph, inputs, {term, lights, target});
+    const TechniquePlugin& plugin = *use.settings->plugin;
+    const frame::TextureHandle answer = inTechnique(plugin, [&] {
+      return use.technique->addPasses(*graph, inputs, {term, lights, target});
+    });
+    if (!answer)
+      throw Error(fmt::format("{}: it answers {} with nothing", described(plugin), limn::name(term)));
+    return answer;
   }
 
   Use* answering(Term term) {
@@ -262,7 +269,7 @@ struct Renderer::Implementation {
     graph = std::make_unique<frame::FrameGraph>();
     for (const TechniqueUse& use : settings.techniques) {
       mountTechnique(*use.plugin);
-      uses.push_back({&use, use.plugin->create()});
+      uses.push_back({&use, createTechnique(*use.plugin)});
     }
     gpuScene.setCulling(!forced(Saving::culling));
     handles = gpuScene.import(*graph);
@@ -303,7 +310,8 @@ struct Renderer::Implementation {
     if (!rebuild) {
       rebuild = shadowMaps.update(pose);
       rebuild = causticRays.update(pose) || rebuild;
-      for (Use& use : uses) rebuild = use.technique->update(pose) || rebuild;
+      for (Use& use : uses)
+        rebuild = inTechnique(*use.settings->plugin, [&] { return use.technique->update(pose); }) || rebuild;
     }
     if (rebuild) build();
     if (settings.dynamic) graph->invalidate();

@@ -1,33 +1,40 @@
 #include "core/technique/registry.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
+#include <map>
+#include <mutex>
+#include <optional>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/technique/module.h"
 
 namespace limn {
 namespace fs = std::filesystem;
 namespace {
 
-/// Empty when the plug-in was built against the same interface as this core.
-std::string mismatch(const Handshake& theirs) {
-  const Handshake ours = handshake();
-  if (theirs.interfaceNumber != ours.interfaceNumber)
-    return fmt::format("it was built for interface {}, this limn has interface {}", theirs.interfaceNumber,
-                       ours.interfaceNumber);
-  if (std::strncmp(theirs.compiler, ours.compiler, sizeof ours.compiler) != 0)
-    return fmt::format("it was built with compiler {:.63}, this limn with {:.63}", theirs.compiler,
-                       ours.compiler);
-  if (std::strncmp(theirs.headers, ours.headers, sizeof ours.headers) != 0)
-    return fmt::format("it was built against headers {:.32}, this limn has {:.32}; rebuild it",
-                       theirs.headers, ours.headers);
-  return {};
-}
+/// A file that may hold a technique, and what became of it.
+struct Candidate {
+  fs::path file;
+  std::vector<fs::path> unused;  ///< files of the same name in later folders
+  bool builtIn = false;
+  std::optional<Module> module;
+  std::string refusal;
+
+  bool opened() const { return module || !refusal.empty(); }
+
+  void open(const std::string& name) {
+    try {
+      if (!builtIn) tryModule(file, name);
+      module.emplace(file, name);
+    } catch (const Error& error) {
+      refusal = error.what();
+    }
+  }
+};
 
 }  // namespace
 
@@ -61,66 +68,107 @@ std::vector<fs::path> TechniqueRegistry::defaultFolders() {
       rest = colon == std::string_view::npos ? std::string_view() : rest.substr(colon + 1);
     }
   }
-  Dl_info self{};
-  if (dladdr(reinterpret_cast<void*>(&TechniqueRegistry::defaultFolders), &self) != 0 && self.dli_fname)
-    folders.push_back(fs::absolute(self.dli_fname).parent_path() / "limn" / "techniques");
+  folders.push_back(builtInFolder());
   return folders;
 }
 
-TechniqueRegistry::TechniqueRegistry(std::span<const fs::path> folders) {
-  for (const fs::path& folder : folders) {
-    std::error_code ignored;  // a folder that is not there holds no techniques
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(folder, ignored))
-      if (entry.path().extension() == ".so") files.push_back(entry.path());
-    std::sort(files.begin(), files.end());
-    for (const fs::path& file : files) loadModule(file);
-  }
-  std::sort(plugins_.begin(), plugins_.end(),
-            [](const auto* a, const auto* b) { return std::strcmp(a->info->name, b->info->name) < 0; });
+fs::path TechniqueRegistry::builtInFolder() {
+  return limnFile().parent_path() / "limn" / "techniques";
 }
 
-TechniqueRegistry::~TechniqueRegistry() {
-  for (void* module : modules_) dlclose(module);
+struct TechniqueRegistry::Implementation {
+  std::map<std::string, Candidate, std::less<>> candidates;
+  Warn warn;
+  std::mutex mutex;  // of what follows and of the candidates' states
+  bool allOpened = false;
+  std::vector<const TechniquePlugin*> plugins;
+  std::vector<Refusal> refusals;
+
+  void scan(const fs::path& folder) {
+    std::error_code problem;
+    const bool builtIn = fs::equivalent(folder, builtInFolder(), problem);
+    bool any = false;
+    fs::directory_iterator entry(folder, problem);
+    for (; !problem && entry != fs::directory_iterator(); entry.increment(problem)) {
+      if (entry->path().extension() != ".so") continue;
+      any = true;
+      add(fs::absolute(entry->path()).lexically_normal(), builtIn);
+    }
+    if (builtIn || !warn) return;
+    if (problem)
+      warn(fmt::format("technique folder '{}' cannot be read: {}; see LIMN_TECHNIQUE_PATH", folder.string(),
+                       problem.message()));
+    else if (!any)
+      warn(fmt::format("technique folder '{}' holds no technique (*.so); see LIMN_TECHNIQUE_PATH",
+                       folder.string()));
+  }
+
+  void add(const fs::path& file, bool builtIn) {
+    const auto [known, isNew] = candidates.try_emplace(file.stem().string());
+    Candidate& candidate = known->second;
+    std::error_code ignored;  // what is not there cannot be the same
+    if (isNew) {
+      candidate.file = file;
+      candidate.builtIn = builtIn;
+    } else if (!fs::equivalent(candidate.file, file, ignored)) {
+      candidate.unused.push_back(file);
+    }
+  }
+
+  void open(const std::string& name, Candidate& candidate) {
+    if (candidate.opened()) return;
+    if (warn)
+      for (const fs::path& unused : candidate.unused)
+        warn(fmt::format("technique {} is {}, not {}", name, candidate.file.string(), unused.string()));
+    candidate.open(name);
+  }
+
+  void openAll() {
+    const std::lock_guard lock(mutex);
+    if (allOpened) return;
+    for (auto& [name, candidate] : candidates) {
+      open(name, candidate);
+      if (candidate.module)
+        plugins.push_back(&candidate.module->plugin());
+      else
+        refusals.push_back({name, candidate.refusal});
+    }
+    allOpened = true;
+  }
+};
+
+TechniqueRegistry::TechniqueRegistry(std::span<const fs::path> folders, Warn warn)
+    : implementation_(std::make_unique<Implementation>()) {
+  implementation_->warn = std::move(warn);
+  for (const fs::path& folder : folders) implementation_->scan(folder);
 }
 
-void TechniqueRegistry::loadModule(const fs::path& file) {
-  const std::string stem = file.stem().string();
-  const auto known = [&](const TechniquePlugin* p) { return stem == p->info->name; };
-  if (std::any_of(plugins_.begin(), plugins_.end(), known)) return;
-  void* module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!module) {
-    refused_.push_back({stem, dlerror()});
-    return;
-  }
-  std::string reason;
-  using EntryPoint = const TechniquePlugin* (*)();
-  const auto entry = reinterpret_cast<EntryPoint>(dlsym(module, "limnTechniquePlugin"));
-  const TechniquePlugin* plugin = entry ? entry() : nullptr;
-  if (!plugin) {
-    reason = "it has no entry point limnTechniquePlugin";
-  } else if (reason = mismatch(plugin->handshake); reason.empty() && stem != plugin->info->name) {
-    reason = fmt::format("it calls itself {}", plugin->info->name);
-  }
-  if (!reason.empty()) {
-    refused_.push_back({stem, reason});
-    dlclose(module);
-    return;
-  }
-  modules_.push_back(module);
-  plugins_.push_back(plugin);
+TechniqueRegistry::~TechniqueRegistry() = default;
+
+std::span<const TechniquePlugin* const> TechniqueRegistry::all() const {
+  implementation_->openAll();
+  return implementation_->plugins;
+}
+
+std::span<const TechniqueRegistry::Refusal> TechniqueRegistry::refused() const {
+  implementation_->openAll();
+  return implementation_->refusals;
 }
 
 const TechniquePlugin& TechniqueRegistry::find(std::string_view name) const {
-  std::vector<std::string> names;
-  for (const TechniquePlugin* plugin : plugins_) {
-    if (name == plugin->info->name) return *plugin;
-    names.emplace_back(plugin->info->name);
+  Implementation& self = *implementation_;
+  const std::lock_guard lock(self.mutex);
+  const auto known = self.candidates.find(name);
+  if (known == self.candidates.end()) {
+    std::vector<std::string> names;
+    for (const auto& [candidate, ignored] : self.candidates) names.push_back(candidate);
+    throw UsageError(fmt::format("unknown technique '{}'{}; known are {}", name, didYouMean(name, names),
+                                 names.empty() ? "none" : joined(names)));
   }
-  for (const Refusal& refusal : refused_)
-    if (name == refusal.name) throw Error(fmt::format("technique {} was refused: {}", name, refusal.reason));
-  throw UsageError(fmt::format("unknown technique '{}'{}; known are {}", name, didYouMean(name, names),
-                               names.empty() ? "none" : joined(names)));
+  Candidate& candidate = known->second;
+  self.open(known->first, candidate);
+  if (candidate.module) return candidate.module->plugin();
+  throw Error(fmt::format("technique {} was refused: {}", name, candidate.refusal));
 }
 
 }  // namespace limn

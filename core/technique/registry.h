@@ -1,7 +1,8 @@
-// Finds the technique plug-ins on disk and loads those that fit this build.
+// Finds the technique plug-ins on disk and loads those that are asked for.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -12,35 +13,42 @@
 
 namespace limn {
 
+/// Knows techniques by the names of their files and loads a module when it is first asked for, so that a
+/// broken one harms nobody else. One that is not in limn's own folder is first tried in a process of its own.
+/// May be used from several threads.
 class LIMN_API TechniqueRegistry {
  public:
-  /// Loads every *.so in `folders`, the first of a name wins. A module that does not fit is not an error
-  /// until it is asked for by name.
-  explicit TechniqueRegistry(std::span<const std::filesystem::path> folders);
+  using Warn = std::function<void(const std::string&)>;
+
+  /// Looks for *.so in `folders`; of two with one name the one in the earlier folder is used. `warn` is told,
+  /// in one line each, of a folder without techniques (limn's own may be empty) and, when a technique is
+  /// first asked for, of a file that is used instead of another of its name.
+  explicit TechniqueRegistry(std::span<const std::filesystem::path> folders, Warn warn = {});
   ~TechniqueRegistry();
   TechniqueRegistry(const TechniqueRegistry&) = delete;
   TechniqueRegistry& operator=(const TechniqueRegistry&) = delete;
 
-  /// The folders of LIMN_TECHNIQUE_PATH (separated by ':'), then limn/techniques beside liblimn.
+  /// The folders of LIMN_TECHNIQUE_PATH (separated by ':'), then builtInFolder().
   static std::vector<std::filesystem::path> defaultFolders();
+  /// limn/techniques beside liblimn.
+  static std::filesystem::path builtInFolder();
 
-  /// Sorted by name.
-  std::span<const TechniquePlugin* const> all() const { return plugins_; }
-  /// Throws UsageError for an unknown name (with the nearest known ones), Error for a module that was
+  /// Every technique that can be loaded, sorted by name.
+  std::span<const TechniquePlugin* const> all() const;
+  /// Throws UsageError for an unknown name (with the nearest known ones), Error for a module that is
   /// refused.
   const TechniquePlugin& find(std::string_view name) const;
 
   struct Refusal {
-    std::string name;  ///< file name without extension
-    std::string reason;
+    std::string name;    ///< file name without extension
+    std::string reason;  ///< begins with the file
   };
-  std::span<const Refusal> refused() const { return refused_; }
+  /// Every technique that cannot be loaded, sorted by name.
+  std::span<const Refusal> refused() const;
 
  private:
-  void loadModule(const std::filesystem::path& file);
-  std::vector<void*> modules_;
-  std::vector<const TechniquePlugin*> plugins_;
-  std::vector<Refusal> refused_;
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
 };
 
 }  // namespace limn

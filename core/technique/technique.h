@@ -13,8 +13,9 @@
 //     }  // namespace
 //     LIMN_TECHNIQUE(info, Example)
 //
-// The core loads the module, compares the handshake (interface number, compiler, hash of the public headers)
-// and refuses a mismatch with a message that names both sides.
+// The core loads the module when the technique is asked for, compares the handshake (interface number,
+// compiler, settings that change the layout of types, hash of all headers and shared GLSL), looks over what
+// the module declares, and refuses with a message that names both sides.
 #pragma once
 
 #include <cstdint>
@@ -165,13 +166,14 @@ struct TechniquePlugin {
 /// Defines the module's entry point. LIMN_TECHNIQUE_ID comes from limn_add_technique().
 #define LIMN_TECHNIQUE(INFO, CLASS) LIMN_TECHNIQUE_EXPANDED(INFO, CLASS, LIMN_TECHNIQUE_ID)
 #define LIMN_TECHNIQUE_EXPANDED(INFO, CLASS, ID) LIMN_TECHNIQUE_ENTRY(INFO, CLASS, ID)
-#define LIMN_TECHNIQUE_ENTRY(INFO, CLASS, ID)                                                            \
-  namespace limn_technique_##ID {                                                                        \
-    std::span<const limn::gpu::EmbeddedSource> embeddedSources();                                        \
-  }                                                                                                      \
-  extern "C" __attribute__((visibility("default"))) const limn::TechniquePlugin* limnTechniquePlugin() { \
-    static const limn::TechniquePlugin plugin{                                                           \
-        limn::handshake(), &INFO, &limn_technique_##ID::embeddedSources,                                 \
-        []() -> std::unique_ptr<limn::Technique> { return std::make_unique<CLASS>(); }};                 \
-    return &plugin;                                                                                      \
+#define LIMN_TECHNIQUE_ENTRY(INFO, CLASS, ID)                                                                \
+  namespace limn_technique_##ID {                                                                            \
+    std::span<const limn::gpu::EmbeddedSource> embeddedSources();                                            \
+    const char* interfaceHash();                                                                             \
+  }                                                                                                          \
+  extern "C" __attribute__((visibility("default"))) const limn::TechniquePlugin* limnTechniquePlugin() {     \
+    static const limn::TechniquePlugin plugin{                                                               \
+        limn::handshake(limn_technique_##ID::interfaceHash()), &INFO, &limn_technique_##ID::embeddedSources, \
+        []() -> std::unique_ptr<limn::Technique> { return std::make_unique<CLASS>(); }};                     \
+    return &plugin;                                                                                          \
   }

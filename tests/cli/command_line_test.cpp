@@ -202,12 +202,5 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
   expectRefused(limn({"compare", cornell_box, cornell_box}), 1, {"cornell_box.glb"});
 }
 
-TEST(Plugins, AModuleOfAnotherVersionIsRefusedWhenAskedFor) {
-  const Outcome outcome =
-      limn({"render", cornell_box, "--technique", "misfit", "--size", "8x8", "--out", "x.exr"},
-           {{"LIMN_TECHNIQUE_PATH", std::string(binaryDir) + "/tests/misfit"}});
-  expectRefused(outcome, 1, {"misfit", "interface 99"});
-}
-
 }  // namespace
 }  // namespace limn::test

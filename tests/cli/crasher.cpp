@@ -33,7 +33,8 @@ constexpr limn::TechniqueInfo info{.name = "crasher",
 
 extern "C" __attribute__((visibility("default"))) const limn::TechniquePlugin* limnTechniquePlugin() {
   static const limn::TechniquePlugin plugin{
-      limn::handshake(), &info, [] { return std::span<const limn::gpu::EmbeddedSource>(); },
+      limn::handshake(limn::interfaceHash()), &info,
+      [] { return std::span<const limn::gpu::EmbeddedSource>(); },
       []() -> std::unique_ptr<limn::Technique> { return std::make_unique<Crasher>(); }};
   return &plugin;
 }

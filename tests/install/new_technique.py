@@ -1,8 +1,9 @@
 """scripts/new-technique: on day one the technique builds, renders, passes every technique's tests and has bench rows."""
 import json
 import pathlib
+import re
 
-from common import SOURCE, build, check, fail, fresh, limn, options, run, techniques
+from common import PREFIX, SOURCE, build, check, fail, fresh, limn, options, run, techniques
 
 NAME = "stamped_2nd"
 scratch = fresh("new_technique")
@@ -24,13 +25,23 @@ for arguments in ([], ["Upper"], ["../up"], ["2nd"], ["with-dash"], [""], ["é"]
     check(message.count("\n") == 1 and message.startswith("new-technique: "), f"{arguments}: {message}")
 check(not list(scratch.glob(".*")), "something was left behind")
 
-project = scratch / "project"
-project.mkdir()
-(project / "CMakeLists.txt").write_text(
-    "cmake_minimum_required(VERSION 3.25)\nproject(outside LANGUAGES CXX)\nfind_package(limn REQUIRED)\n"
-    f"limn_add_technique({NAME} {folder})\n")
-build(project, scratch / "build")
-path = {"LIMN_TECHNIQUE_PATH": str(scratch / "build/lib/limn/techniques")}
+# Out of tree it is built and run as README.md says, word for word but for names and folders.
+section = (SOURCE / "README.md").read_text().split("## A technique of your own")[1]
+project = re.search("```cmake\n(.*?)```", section, re.DOTALL)[1]
+(scratch / "CMakeLists.txt").write_text(project.replace("my_technique my_technique", f"{NAME} {NAME}"))
+documented = re.search(r"LIMN_TECHNIQUE_PATH=\$HOME/my_techniques/(\S+)", section)[1]
+build(scratch, scratch / "build")
+path = {"LIMN_TECHNIQUE_PATH": str(scratch / documented)}
+
+# A folder without sources is an error when the project is configured, not when its module is used.
+nothing = scratch / "nothing"
+nothing.mkdir()
+(nothing / "CMakeLists.txt").write_text(project.replace("my_technique my_technique", NAME))
+_, message = run("cmake", "-S", nothing, "-B", nothing / "build", "-G", options.generator,
+                 f"-DCMAKE_CXX_COMPILER={options.compiler}", f"-DCMAKE_PREFIX_PATH={PREFIX}", status=1)
+message = " ".join(message.split())
+check(f"limn_add_technique({NAME}): no *.cpp in {nothing}; name the technique's folder: limn_add_technique({NAME} FOLDER)"
+      in message, f"a folder without sources: {message}")
 
 check(NAME in techniques(**path), f"limn list does not show {NAME}")
 picture = scratch / "picture.png"

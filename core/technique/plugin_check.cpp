@@ -1,0 +1,85 @@
+#include "core/technique/plugin_check.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+
+namespace limn {
+namespace {
+
+constexpr TermSet all_terms = Term::visibility | Term::direct | Term::indirect | Term::caustic | Term::media |
+                              Term::environment | Term::specular;
+constexpr size_t most_entries = 1000;  // beyond this a table is a mistake
+
+/// Letters, digits, '_' and '-'.
+bool isIdentifier(const char* text) {
+  constexpr const char* accepted = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+  return text && *text != 0 && text[std::strspn(text, accepted)] == 0;
+}
+
+std::string choicesProblem(const Parameter& p) {
+  if (!p.choices || p.choiceCount < 1 || static_cast<size_t>(p.choiceCount) > most_entries)
+    return "has no choices";
+  for (int i = 0; i < p.choiceCount; ++i)
+    if (!p.choices[i]) return fmt::format("has no name for choice {}", i);
+  if (p.range.low != 0 || p.range.high != p.choiceCount - 1) return "has another range than its choices";
+  return {};
+}
+
+std::string parameterProblem(const Parameter& p) {
+  if (!p.unit || !p.doc) return "has no unit or description";
+  if (!(p.range.low <= p.range.high) || !std::isfinite(p.range.low) || !std::isfinite(p.range.high))
+    return fmt::format("has the range {}..{}", p.range.low, p.range.high);
+  if (!(p.defaultValue >= p.range.low && p.defaultValue <= p.range.high))
+    return fmt::format("has the default {} outside of {}..{}", p.defaultValue, p.range.low, p.range.high);
+  switch (p.type) {
+    case ParameterType::boolean:
+    case ParameterType::integer:
+    case ParameterType::real:
+      return {};
+    case ParameterType::choice:
+      return choicesProblem(p);
+  }
+  return "is of an unknown type";
+}
+
+std::string parametersProblem(std::span<const Parameter> parameters) {
+  if (parameters.size() > most_entries || (!parameters.empty() && !parameters.data()))
+    return fmt::format("it declares {} parameters", parameters.size());
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    if (!isIdentifier(parameters[i].name)) return fmt::format("its parameter {} has no name", i);
+    for (size_t j = 0; j < i; ++j)
+      if (std::strcmp(parameters[i].name, parameters[j].name) == 0)
+        return fmt::format("it declares parameter {} twice", parameters[i].name);
+    if (const std::string problem = parameterProblem(parameters[i]); !problem.empty())
+      return fmt::format("its parameter {} {}", parameters[i].name, problem);
+  }
+  return {};
+}
+
+std::string stressProblem(std::span<const StressCase> cases) {
+  if (cases.size() > most_entries || (!cases.empty() && !cases.data()))
+    return fmt::format("it declares {} stability cases", cases.size());
+  for (size_t i = 0; i < cases.size(); ++i)
+    if (!cases[i].name || !cases[i].scene || !cases[i].settings)
+      return fmt::format("its stability case {} has no name, scene or settings", i);
+  return {};
+}
+
+}  // namespace
+
+std::string pluginProblem(const TechniquePlugin& plugin, std::string_view name) {
+  if (!plugin.info) return "it gives no TechniqueInfo";
+  if (!plugin.sources || !plugin.create) return "it gives no function for its shaders or none that makes it";
+  const TechniqueInfo& info = *plugin.info;
+  if (!isIdentifier(info.name)) return "it gives no name";
+  if (info.name != name) return fmt::format("it calls itself {:.64}", info.name);
+  if (!info.title || !info.source) return "it gives no title or source";
+  if (info.terms == 0 || (info.terms & ~all_terms) != 0)
+    return fmt::format("it answers the terms {:#x}, which are none or not known", info.terms);
+  if (std::string problem = parametersProblem(info.parameters); !problem.empty()) return problem;
+  return stressProblem(info.stress);
+}
+
+}  // namespace limn

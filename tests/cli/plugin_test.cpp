@@ -1,0 +1,169 @@
+// Plug-ins that are broken, foreign or dangerous: each is named in one line when it is asked for, and harms
+// nobody else.
+#include <sys/stat.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/limn_program.h"
+
+namespace limn::test {
+namespace {
+namespace fs = std::filesystem;
+
+const fs::path built_in = fs::path(binaryDir) / "lib/limn/techniques";
+const fs::path misfit = fs::path(binaryDir) / "tests/misfit/misfit.so";
+
+/// What `limn list` and `limn render` must say of a module, besides its file.
+struct Broken {
+  std::string name, reason;
+};
+
+/// tests/cli/misfit.cpp under each of its names.
+const std::vector<Broken>& misfits() {
+  static const std::vector<Broken> all = {
+      {"aborts_in_load", "it crashes when it is loaded (Aborted)"},
+      {"entry_aborts", "it crashes when it is loaded (Aborted)"},
+      {"entry_crashes", "it crashes when it is loaded (Segmentation fault)"},
+      {"entry_exits", "it ends its process when it is loaded (exit status 0)"},
+      {"entry_hangs", "it does not come back within"},
+      {"entry_throws", "its entry point failed: no licence"},
+      {"entry_throws_42", "its entry point failed: it threw something that is no std::exception"},
+      {"nan_default", "its parameter size has the default nan outside of 0..2"},
+      {"no_choices", "its parameter size has no choices"},
+      {"no_terms", "it answers the terms 0x0, which are none or not known"},
+      {"null_create", "it gives no function for its shaders or none that makes it"},
+      {"null_info", "it gives no TechniqueInfo"},
+      {"null_name", "it gives no name"},
+      {"null_parameter", "its parameter 0 has no name"},
+      {"null_plugin", "its entry point gives no plug-in"},
+      {"null_title", "it gives no title or source"},
+      {"null_unit", "its parameter size has no unit or description"},
+      {"other_compiler", "it was built with compiler x"},
+      {"other_headers", "it was built from headers x"},
+      {"other_interface", "it was built for interface 99, limn has interface"},
+      {"unterminated", "it was built from headers xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx, limn from headers"},
+      {"wrong_name", "it calls itself pcss"},
+  };
+  return all;
+}
+
+void cutShort(const fs::path& whole, const fs::path& part, uintmax_t bytes) {
+  fs::copy_file(whole, part);
+  fs::resize_file(part, bytes);
+}
+
+class Plugins : public testing::Test {
+ protected:
+  Outcome list(const std::string& path) { return limn({"list", "--json"}, {{"LIMN_TECHNIQUE_PATH", path}}); }
+  Outcome render(const std::string& technique, const std::string& path,
+                 const std::vector<std::string>& more = {}) {
+    std::vector<std::string> command = {
+        "render", cornell_box, "--technique", technique,
+        "--size", "16x16",     "--out",       (folder_ / "picture.png").string()};
+    command.insert(command.end(), more.begin(), more.end());
+    return limn(command, {{"LIMN_TECHNIQUE_PATH", path}});
+  }
+  /// The technique is refused when it is asked for, in one line that names its file and says why; the others
+  /// are listed and render as if it was not there.
+  void expectAllRefused(const std::vector<Broken>& broken) {
+    const std::string path = folder_.path().string();
+    const Outcome listed = list(path);
+    ASSERT_EQ(listed.status, 0) << listed.err;
+    EXPECT_EQ(listed.err, "");
+    const auto answer = nlohmann::json::parse(listed.out);
+    EXPECT_EQ(answer["techniques"].size(), techniques_);
+    std::map<std::string, std::string> refused;
+    for (const auto& refusal : answer["refused"]) refused[refusal["name"]] = refusal["reason"];
+    EXPECT_EQ(refused.size(), broken.size());
+    for (const auto& [name, reason] : broken) {
+      const std::string file = (folder_ / (name + ".so")).string();
+      EXPECT_THAT(refused[name], testing::AllOf(testing::HasSubstr(file), testing::HasSubstr(reason)))
+          << name;
+      if (name == "entry_hangs") continue;  // takes its time; nothing differs from the others
+      expectRefused(render(name, path), 1, {"technique " + name + " was refused: ", file, reason});
+    }
+    const Outcome whole = render("pcss", path);
+    EXPECT_EQ(whole.status, 0);
+    EXPECT_EQ(whole.err, "");
+  }
+
+  TemporaryFolder folder_;
+  const size_t techniques_ = listing(built_in).size();
+};
+
+TEST_F(Plugins, AModuleThatMisbehavesIsRefusedAndHarmsNobodyElse) {
+  for (const Broken& broken : misfits()) fs::copy_file(misfit, folder_ / (broken.name + ".so"));
+  expectAllRefused(misfits());
+}
+
+TEST_F(Plugins, AFileThatIsNoWholeModuleIsRefusedAndHarmsNobodyElse) {
+  const fs::path whole = built_in / "vssm.so";
+  const uintmax_t size = fs::file_size(whole);
+  cutShort(whole, folder_ / "empty.so", 0);
+  cutShort(whole, folder_ / "header.so", 40);
+  cutShort(whole, folder_ / "half.so", size / 2);
+  cutShort(whole, folder_ / "all_but_a_byte.so", size - 1);
+  std::ofstream(folder_ / "text.so") << "INPUT(libm.so.6)\n";
+  fs::create_directory(folder_ / "directory.so");
+  ASSERT_EQ(mkfifo((folder_ / "fifo.so").c_str(), 0600), 0);
+  fs::create_symlink("nowhere", folder_ / "link.so");
+  fs::copy_file(limn_binary, folder_ / "program.so");
+  const std::string part = "it is cut short: it names what lies beyond its ";
+  expectAllRefused({{"empty", "it is not a shared object"},
+                    {"header", "it ends after 40 bytes"},
+                    {"half", part},
+                    {"all_but_a_byte", part},
+                    {"text", "it is not a shared object"},
+                    {"directory", ""},
+                    {"fifo", ""},
+                    {"link", ""},
+                    {"program", ""}});
+}
+
+TEST_F(Plugins, WhatATechniqueThrowsAtWorkNamesTechniqueAndFile) {
+  const std::map<std::string, std::string> expected = {
+      {"makes_nothing", "it makes no instance of itself"},
+      {"returns_nothing", "it answers visibility with nothing"},
+      {"throws_42", "it threw something that is no std::exception"},
+      {"throws_exception", "no luck"},
+      {"update_throws_42", "it threw something that is no std::exception"},
+  };
+  for (const auto& [name, what] : expected) {
+    const fs::path file = folder_ / (name + ".so");
+    fs::copy_file(misfit, file);
+    expectRefused(render(name, folder_.path().string(), {"--repeat", "2"}), 1,
+                  {"technique " + name + " (" + file.string() + "): " + what});
+  }
+  fs::copy_file(misfit, folder_ / "pass_throws_42.so");
+  expectRefused(render("pass_throws_42", folder_.path().string()), 1,
+                {"pass", "misfit", "clear", "it threw something that is no std::exception"});
+}
+
+TEST_F(Plugins, OfTwoModulesOfOneNameTheOneThatIsUsedIsSaid) {
+  fs::copy_file(built_in / "pcss.so", folder_ / "pcss.so");
+  const std::string foreign = (folder_ / "pcss.so").string(), own = (built_in / "pcss.so").string();
+  const std::string said = "limn: warning: technique pcss is " + foreign + ", not " + own + "\n";
+  EXPECT_EQ(list(folder_.path().string()).err, said);
+  const Outcome used = render("pcss", folder_.path().string());
+  EXPECT_EQ(used.status, 0);
+  EXPECT_EQ(used.err, said);
+  EXPECT_EQ(render("pcf", folder_.path().string()).err, "");  // did not ask for it
+  EXPECT_EQ(list(built_in.string()).err, "");                 // the same file twice
+}
+
+TEST_F(Plugins, AWrongTechniquePathIsSaid) {
+  const std::string none = (folder_ / "none").string(), empty = folder_.path().string();
+  EXPECT_EQ(list(none).err, "limn: warning: technique folder '" + none +
+                                "' cannot be read: No such file or directory; see LIMN_TECHNIQUE_PATH\n");
+  EXPECT_EQ(list(empty).err, "limn: warning: technique folder '" + empty +
+                                 "' holds no technique (*.so); see LIMN_TECHNIQUE_PATH\n");
+  EXPECT_EQ(list("").err, "");
+}
+
+TEST_F(Plugins, AnUnknownNameIsAnsweredWithCloseOnesAlsoAmongTheRefused) {
+  std::ofstream(folder_ / "my_shadow.so") << "no module\n";
+  expectRefused(render("my_shadows", folder_.path().string()), 2, {"did you mean my_shadow?", "known are"});
+}
+
+}  // namespace
+}  // namespace limn::test
