@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "core/base/error.h"
+#include "core/base/helper.h"
 #include "core/base/text.h"
 
 namespace limn {
@@ -61,9 +62,7 @@ std::vector<fs::path> TechniqueRegistry::defaultFolders() {
       rest = colon == std::string_view::npos ? std::string_view() : rest.substr(colon + 1);
     }
   }
-  Dl_info self{};
-  if (dladdr(reinterpret_cast<void*>(&TechniqueRegistry::defaultFolders), &self) != 0 && self.dli_fname)
-    folders.push_back(fs::absolute(self.dli_fname).parent_path() / "limn" / "techniques");
+  folders.push_back(libraryFolder() / "limn" / "techniques");
   return folders;
 }
 
