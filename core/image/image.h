@@ -109,8 +109,9 @@ LIMN_API Image readImageMemory(std::span<const std::byte> bytes, const std::stri
 LIMN_API Image8 readImage8Memory(std::span<const std::byte> bytes, const std::string& name);
 LIMN_API Image8 readImage8(const std::filesystem::path& path);
 
-/// Writes every channel as float32, ZIP-compressed, with the metadata. The file appears whole or not at all;
-/// throws Error naming it otherwise (missing folder, full disk, no permission).
+/// Writes every channel as float32, ZIP-compressed, with the metadata. The bytes are a function of the image
+/// alone: as its date (capDate) the file carries the first second of 1970. The file appears whole or not at
+/// all; throws Error naming it otherwise (missing folder, full disk, no permission).
 LIMN_API void writeExr(const std::filesystem::path& path, const Image& image);
 
 /// A PNG in memory: R, G, B as 8-bit sRGB of clamp(2^exposureEv * value, 0, 1); NaN becomes 0. `name` is used

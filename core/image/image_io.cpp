@@ -280,6 +280,7 @@ void writeExr(const std::filesystem::path& path, const Image& image) {
   OIIO::ImageSpec spec(image.width(), image.height(), image.channelCount(), OIIO::TypeDesc::FLOAT);
   spec.channelnames = image.channels();
   spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "1970:01:01 00:00:00");  // otherwise the encoder looks at the clock
   for (const auto& [key, value] : image.metadata()) spec.attribute(kMetadataPrefix + key, value);
   const std::vector<std::uint8_t> file = guarded(path.string(), [&] {
     return encode(path.string(), "openexr", spec, OIIO::TypeDesc::FLOAT, image.data().data());
