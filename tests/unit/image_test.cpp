@@ -111,7 +111,7 @@ TEST(Image, AnswersColourForGreyPictures) {
   EXPECT_EQ(Image(1, 1, {"V"}).rgbChannels(), (std::array<int, 3>{0, 0, 0}));
   EXPECT_EQ(Image(1, 1, {"Z", "Y"}).rgbChannels(), (std::array<int, 3>{1, 1, 1}));
   EXPECT_EQ(Image(1, 1, {"B", "G", "R"}).rgbChannels(), (std::array<int, 3>{2, 1, 0}));
-  EXPECT_THROW(Image(1, 1, {"Z", "id"}).rgbChannels(), Error);
+  expectRefusal([] { Image(1, 1, {"Z", "id"}).rgbChannels("depth.exr"); }, "depth.exr: no channels R, G, B");
 }
 
 TEST_F(ImageFile, ExrKeepsEveryChannelAndTextBitForBit) {
