@@ -27,7 +27,7 @@ Image8 readImage8Memory(std::span<const std::byte> bytes, const std::string& nam
 
 namespace scene {
 
-Environment loadEnvironment(const std::filesystem::path& file) {
+Environment loadEnvironment(const std::filesystem::path& file, std::vector<std::string>&) {
   throw Error(fmt::format("{}: no such file", file.string()));
 }
 
