@@ -18,6 +18,7 @@ find_library(LIMN_EGL_LIBRARY EGL REQUIRED)
 # Debian's OpenVDB has no CMake package of its own.
 find_path(LIMN_OPENVDB_INCLUDE openvdb/openvdb.h REQUIRED)
 find_library(LIMN_OPENVDB_LIBRARY openvdb REQUIRED)
+find_package(Imath REQUIRED)  # whose numbers it holds
 # Its templates' static members must be one with the library's own: hidden, they crash it.
 set(LIMN_OPENVDB_OPTIONS -fvisibility=default -fno-visibility-inlines-hidden)
 # The report page: D3's modules, and the bundler that joins them.

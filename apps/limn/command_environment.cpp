@@ -94,7 +94,9 @@ int run(const Options& options) {
                                    options.overlay.string()));
     checkWritable(options.overlay);
   }
-  const scene::Environment map = scene::loadEnvironment(findEnvironment(options.map));
+  std::vector<std::string> warnings;
+  const scene::Environment map = scene::loadEnvironment(findEnvironment(options.map), warnings);
+  for (const std::string& warning : warnings) fmt::print(stderr, "limn: warning: {}\n", warning);
   const auto start = std::chrono::steady_clock::now();
   const shading::EnvironmentDecomposition lights =
       shading::decomposeEnvironment(map, options.lights.settings());

@@ -191,7 +191,7 @@ bool wantsDefaultLights(const SceneOptions& options, const View& view) {
 
 void addEnvironment(const SceneOptions& options, scene::Scene& scene) {
   if (!options.environment.empty())
-    scene.environment = scene::loadEnvironment(findEnvironment(options.environment));
+    scene.environment = scene::loadEnvironment(findEnvironment(options.environment), scene.warnings);
   if (options.environmentLights.threshold > 0) {
     if (!scene.environment)
       throw UsageError("--environment-lights needs --environment: there is no map to find lights in");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "core/context/context.h"
 
@@ -10,6 +11,10 @@ namespace limn {
 std::unique_ptr<Context> createEglContext(const ContextOptions& options);
 std::unique_ptr<Context> createOsmesaContext(const ContextOptions& options);
 std::unique_ptr<Context> createGlfwContext(const ContextOptions& options);
+
+/// What the process has too little of for a driver to be loaded, memory or open files, and what would do;
+/// empty where neither is short. Drivers themselves only say that they cannot be loaded.
+std::string driverShortage();
 
 /// Number of EGL devices (EGL_EXT_device_enumeration); 0 where there is no EGL driver.
 int eglDeviceCount();

@@ -7,6 +7,7 @@
 #include <EGL/eglext.h>
 #include <fmt/format.h>
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -74,17 +75,23 @@ std::vector<EGLDeviceEXT> eglDevices() {
   return devices;
 }
 
+/// Throws: of a driver that cannot be loaded EGL says the same as of one that is not there.
+[[noreturn]] void fail(const std::string& what) {
+  const std::string shortage = driverShortage();
+  throw Error(shortage.empty() ? what : "EGL cannot be started: " + shortage);
+}
+
 EGLDisplay openDevice(int index) {
   const std::vector<EGLDeviceEXT> devices = eglDevices();
   if (index < 0 || static_cast<size_t>(index) >= devices.size()) {
-    throw Error(devices.empty() ? fmt::format("EGL device {} does not exist: EGL lists no device", index)
-                                : fmt::format("EGL device {} does not exist: accepted are 0 to {}", index,
-                                              devices.size() - 1));
+    fail(devices.empty()
+             ? fmt::format("EGL device {} does not exist: EGL lists no device", index)
+             : fmt::format("EGL device {} does not exist: accepted are 0 to {}", index, devices.size() - 1));
   }
   const EGLDisplay display = initialisedDisplay(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<size_t>(index)]);
   if (display == EGL_NO_DISPLAY) {
-    throw Error(fmt::format("EGL device {} cannot be opened ({}): `limn info` lists those that can", index,
-                            errorName(eglGetError())));
+    fail(fmt::format("EGL device {} cannot be opened ({}): `limn info` lists those that can", index,
+                     errorName(eglGetError())));
   }
   return display;
 }
@@ -114,7 +121,7 @@ EGLDisplay openDefault() {
     if (display != EGL_NO_DISPLAY) return display;
   }
   if (const EGLDisplay processor = openFirst(true); processor != EGL_NO_DISPLAY) return processor;
-  throw Error(
+  fail(
       "no EGL driver offers the surfaceless or the device platform: install one (Debian: libegl-mesa0) or "
       "choose "
       "another back end (--backend osmesa)");
@@ -134,7 +141,7 @@ class EglContext final : public Context {
     EGLConfig config = nullptr;
     EGLint count = 0;
     if (!eglChooseConfig(display_, configAttributes, &config, 1, &count) || count < 1) {
-      throw Error("this EGL driver has no configuration for OpenGL: limn needs OpenGL 4.5 core");
+      fail("this EGL driver has no configuration for OpenGL: limn needs OpenGL 4.5 core");
     }
     const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
                                  4,
@@ -147,10 +154,9 @@ class EglContext final : public Context {
                                  EGL_NONE};
     context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, attributes);
     if (context_ == EGL_NO_CONTEXT) {
-      throw Error(
-          fmt::format("EGL makes no OpenGL 4.5 core context on {} ({})",
-                      options.device < 0 ? "the default device" : fmt::format("device {}", options.device),
-                      errorName(eglGetError())));
+      fail(fmt::format("EGL makes no OpenGL 4.5 core context on {} ({})",
+                       options.device < 0 ? "the default device" : fmt::format("device {}", options.device),
+                       errorName(eglGetError())));
     }
   }
 

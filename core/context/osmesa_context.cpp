@@ -31,6 +31,8 @@ Library openLibrary() {
     if (handle == nullptr) handle = dlopen(file, RTLD_NOW | RTLD_LOCAL);
   }
   if (handle == nullptr) {
+    const std::string shortage = driverShortage();
+    if (!shortage.empty()) throw Error("OSMesa cannot be loaded: " + shortage);
     throw Error(
         "OSMesa is not installed (libOSMesa.so.8, .so.6 and .so were tried): install it (Debian: libosmesa6) "
         "or choose "

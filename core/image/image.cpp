@@ -60,13 +60,13 @@ int Image::channel(std::string_view name) const {
   return *found;
 }
 
-std::array<int, 3> Image::rgbChannels() const {
+std::array<int, 3> Image::rgbChannels(std::string_view name) const {
   const std::optional<int> r = findChannel("R"), g = findChannel("G"), b = findChannel("B");
   if (r && g && b) return {*r, *g, *b};
   const std::optional<int> y = findChannel("Y");
   if (y) return {*y, *y, *y};
   if (channelCount() == 1) return {0, 0, 0};
-  throw Error(fmt::format("image: no channels R, G, B or Y; there are {}", fmt::join(channels_, ", ")));
+  throw Error(fmt::format("{}: no channels R, G, B or Y; there are {}", name, fmt::join(channels_, ", ")));
 }
 
 void Image::addChannel(std::string name, std::span<const float> values) {

@@ -26,6 +26,8 @@ inline constexpr int kMaxImageSide = 32768;
 inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 28;
 inline constexpr std::int64_t kMaxImageValues = std::int64_t{1} << 30;
 inline constexpr int kMaxImageChannels = 256;
+/// Limit on the values of a picture that is read from a file: 2 GiB.
+inline constexpr std::int64_t kMaxReadValues = std::int64_t{1} << 29;
 
 /// width x height pixels, rows from the top, channel-interleaved float32.
 class LIMN_API Image {
@@ -51,8 +53,8 @@ class LIMN_API Image {
   /// The same; throws Error naming the channels there are.
   int channel(std::string_view name) const;
   /// Positions of R, G, B; an image with one single channel (Y or any other) answers it three times. Throws
-  /// Error if there is neither.
-  std::array<int, 3> rgbChannels() const;
+  /// Error if there is neither; `name` says in it which picture that is.
+  std::array<int, 3> rgbChannels(std::string_view name = "image") const;
 
   std::span<float> data() { return data_; }
   std::span<const float> data() const { return data_; }
@@ -98,7 +100,9 @@ struct Image8 {
 /// Reads EXR (first part, all channels), HDR, PNG or JPEG. The result is linear: 8- and 16-bit PNG and JPEG
 /// colours are decoded from sRGB (alpha is not), float formats are taken as they are; one- and three-channel
 /// files get channels Y and R, G, B. Throws Error of one line naming the file if it is missing, truncated,
-/// not an image, or larger than the limits above (checked before anything is allocated).
+/// not an image, or larger than what may be read (checked before anything is allocated): at most
+/// kMaxReadValues values, and, so that a small file cannot fill the memory, beyond 256 MiB of them at most
+/// 256 bytes for each byte of the file.
 LIMN_API Image readImage(const std::filesystem::path& path);
 
 /// The same from memory. `name` is used in messages and, by its extension, to choose the decoder; the content
@@ -109,8 +113,9 @@ LIMN_API Image readImageMemory(std::span<const std::byte> bytes, const std::stri
 LIMN_API Image8 readImage8Memory(std::span<const std::byte> bytes, const std::string& name);
 LIMN_API Image8 readImage8(const std::filesystem::path& path);
 
-/// Writes every channel as float32, ZIP-compressed, with the metadata. The file appears whole or not at all;
-/// throws Error naming it otherwise (missing folder, full disk, no permission).
+/// Writes every channel as float32, ZIP-compressed, with the metadata. The bytes are a function of the image
+/// alone: as its date (capDate) the file carries the first second of 1970. The file appears whole or not at
+/// all; throws Error naming it otherwise (missing folder, full disk, no permission).
 LIMN_API void writeExr(const std::filesystem::path& path, const Image& image);
 
 /// A PNG in memory: R, G, B as 8-bit sRGB of clamp(2^exposureEv * value, 0, 1); NaN becomes 0. `name` is used

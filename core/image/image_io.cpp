@@ -13,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/image/exr_header.h"
 #include "core/image/image.h"
 #include "glsl/srgb.glsl"
 
@@ -20,6 +21,10 @@ namespace limn {
 namespace {
 
 constexpr const char* kMetadataPrefix = "limn/";
+
+/// What any file may unfold to, and what for each of its bytes beyond that. Pictures of the world stay below
+/// 30; deflate reaches 1032 where all is the same.
+constexpr std::int64_t kUnfoldedBytes = std::int64_t{1} << 28, kUnfoldedRatio = 256;
 
 enum class Format { exr, hdr, png, jpeg };
 
@@ -117,6 +122,10 @@ class Decoder {
       : name_(name), format_(detectFormat(bytes, name)), memory_(bytes.data(), bytes.size()) {
     if (format_ == Format::jpeg && !jpegIsComplete(bytes)) fail("truncated JPEG");
     if (format_ == Format::png && !pngIsComplete(bytes)) fail("truncated or damaged PNG");
+    if (format_ == Format::exr) {
+      const std::string problem = exrHeaderProblem(bytes);
+      if (!problem.empty()) fail(problem);
+    }
     input_ = OIIO::ImageInput::create(decoderName(format_), false);
     if (!input_) fail(OIIO::geterror());
     input_->set_ioproxy(&memory_);
@@ -143,10 +152,17 @@ class Decoder {
     if (spec_.deep || spec_.depth > 1) fail("deep and volume pictures are not accepted");
     if (width < 1 || height < 1 || channels < 1 || width > kMaxImageSide || height > kMaxImageSide ||
         channels > kMaxImageChannels || width * height > kMaxImagePixels ||
-        width * height * channels > kMaxImageValues) {
+        width * height * channels > kMaxReadValues) {
       fail(fmt::format(
           "{}x{} pixels of {} channels; at most {} per side, {} pixels, {} channels, {} values are accepted",
-          width, height, channels, kMaxImageSide, kMaxImagePixels, kMaxImageChannels, kMaxImageValues));
+          width, height, channels, kMaxImageSide, kMaxImagePixels, kMaxImageChannels, kMaxReadValues));
+    }
+    const std::int64_t file = memory_.size(), bytes = width * height * channels * std::int64_t{sizeof(float)};
+    if (bytes > kUnfoldedBytes && bytes / kUnfoldedRatio > file) {
+      fail(
+          fmt::format("{}x{} pixels of {} channels in {} bytes; more than {} MiB of values are accepted from "
+                      "files of at least a {}th of that",
+                      width, height, channels, file, kUnfoldedBytes >> 20, kUnfoldedRatio));
     }
   }
 
@@ -280,6 +296,7 @@ void writeExr(const std::filesystem::path& path, const Image& image) {
   OIIO::ImageSpec spec(image.width(), image.height(), image.channelCount(), OIIO::TypeDesc::FLOAT);
   spec.channelnames = image.channels();
   spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "1970:01:01 00:00:00");  // otherwise the encoder looks at the clock
   for (const auto& [key, value] : image.metadata()) spec.attribute(kMetadataPrefix + key, value);
   const std::vector<std::uint8_t> file = guarded(path.string(), [&] {
     return encode(path.string(), "openexr", spec, OIIO::TypeDesc::FLOAT, image.data().data());
@@ -289,7 +306,7 @@ void writeExr(const std::filesystem::path& path, const Image& image) {
 
 std::vector<std::uint8_t> encodePng(const Image& image, const std::string& name, float exposureEv) {
   if (image.empty()) throw Error(fmt::format("{}: cannot write an empty image", name));
-  const std::array<int, 3> rgb = image.rgbChannels();
+  const std::array<int, 3> rgb = image.rgbChannels(name);
   std::vector<std::uint8_t> pixels;
   pixels.reserve(image.pixelCount() * 3);
   const std::size_t channels = static_cast<std::size_t>(image.channelCount());

@@ -1,6 +1,7 @@
 // Densities of inhomogeneous media on the CPU: files, smoke at a time, lookups, integrals along rays.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 
 #include "core/base/export.h"
@@ -9,17 +10,22 @@
 
 namespace limn::scene {
 
-/// What a file's grid may be.
+/// What a file's grid may be, and what reading it may take.
 struct GridLimits {
   uint64_t fileBytes = uint64_t{1} << 29;
   uint64_t voxels = uint64_t{1} << 26;  ///< of the box around the voxels that are set
   int side = 2048;                      ///< voxels
+  uint64_t memory = uint64_t{1} << 31;  ///< bytes of address space of the process that reads it
+  std::chrono::milliseconds time{60'000};
 };
 
-/// The grid `density` of an OpenVDB file, or its first grid of floats where none has that name. Its box is
-/// that of the voxels that are set, its unit the metre. Throws Error of one line naming file and what would
-/// be accepted: no such grid, too many voxels, a transform that is not affine, densities that are negative or
-/// no numbers.
+/// The grid of floats `density` of an OpenVDB file; where none has that name the first, in the order of the
+/// names, of which one may be empty. Its box is that of the voxels that are set, its unit the metre. The file
+/// is read in a process of its own (limn-read-grid), since damaged ones crash the library that does it.
+/// Throws Error of one line naming file and what would be accepted: no such grid, too many voxels or voxels
+/// beyond
+/// +-2^30, a transform that is not affine, densities that are negative or no numbers, a file that takes more
+/// than the limits or crashes its reader.
 LIMN_API DensityGrid readDensityGrid(const std::filesystem::path& file, const GridLimits& limits = {});
 
 /// Gives a medium a grid. One that is 0 everywhere is no medium: it takes the coefficients away.

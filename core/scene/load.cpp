@@ -147,7 +147,7 @@ void Loader::readSceneExtras() {
   if (extras.Has("limn_environment")) {
     const tinygltf::Value& file = extras.Get("limn_environment");
     if (!file.IsString()) fail("limn_environment: the name of a file is accepted");
-    scene_.environment = loadEnvironment(resolve(file.Get<std::string>(), "limn_environment"));
+    scene_.environment = loadEnvironment(resolve(file.Get<std::string>(), "limn_environment"), scene_.warnings);
   }
 }
 

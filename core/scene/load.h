@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "core/scene/scene.h"
 
@@ -21,7 +23,12 @@ struct LoadLimits {
 LIMN_API Scene load(const std::filesystem::path& file, const LoadLimits& limits = {});
 /// The same from memory (GLB or JSON), without access to any file: the fuzzer's entry.
 LIMN_API Scene loadMemory(std::span<const std::byte> bytes, const LoadLimits& limits = {});
-/// Equirectangular .hdr or .exr; negative pixels are clamped to 0, NaN and infinities are an Error.
-LIMN_API Environment loadEnvironment(const std::filesystem::path& file);
+/// The brightest that a pixel of an environment may be: fifty thousand times the sun's disc in W / (m^2 sr),
+/// six hundred times in cd / m^2. Sums over all pixels and products with the largest scale (1e9) stay finite.
+inline constexpr float mostEnvironmentRadiance = 1e12f;
+
+/// Equirectangular .hdr or .exr. Pixels below 0 or above mostEnvironmentRadiance are clamped to that, and
+/// one more line of `warnings` says how many there are; NaN and infinities are an Error.
+LIMN_API Environment loadEnvironment(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
 }  // namespace limn::scene

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/base/helper.h"
 #include "core/base/text.h"
 #include "core/technique/module.h"
 
@@ -73,7 +74,7 @@ std::vector<fs::path> TechniqueRegistry::defaultFolders() {
 }
 
 fs::path TechniqueRegistry::builtInFolder() {
-  return limnFile().parent_path() / "limn" / "techniques";
+  return libraryFolder() / "limn" / "techniques";
 }
 
 struct TechniqueRegistry::Implementation {

@@ -91,6 +91,14 @@ TEST_F(BadScene, NodesInACircle) {
   expectScene("cycle.glb", builder, {"cycle", "node 0 'a'"});
 }
 
+TEST_F(BadScene, GridThatIsNone) {
+  write("cloud.vdb", GltfBuilder::toBytes("no volume"));
+  GltfBuilder builder = triangle();
+  builder.append("scenes",
+                 {{"nodes", {0}}, {"extras", {{"limn_medium", {{"sigma_s", 1}, {"grid", "cloud.vdb"}}}}}});
+  expectScene("grid.glb", builder, {"cloud.vdb", "not an OpenVDB file"});
+}
+
 TEST_F(BadScene, TextureOutsideTheSceneFolder) {
   write("../secret.png", png(1, 1, {1, 2, 3, 4}));
   GltfBuilder builder;

@@ -2,9 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdlib>
+#include <fstream>
 
 #include "core/base/error.h"
 #include "core/gpu/objects.h"
@@ -173,6 +176,42 @@ TEST(ContextDeathTest, aMachineWithoutEglIsToldSo) {
       },
       ::testing::ExitedWithCode(1), "^no EGL driver offers .*--backend osmesa.\n$");
 }
+
+/// Makes a context with a limit on what the process may use; ends it with the message.
+[[noreturn]] void createWithin(Backend backend, int resource, rlim_t limit) {
+  rlimit limits{};
+  getrlimit(static_cast<__rlimit_resource>(resource), &limits);
+  limits.rlim_cur = limit;
+  if (setrlimit(static_cast<__rlimit_resource>(resource), &limits) != 0) std::_Exit(2);
+  try {
+    Context::create({.backend = backend});
+  } catch (const Error& error) {
+    fprintf(stderr, "%s\n", error.what());
+    std::_Exit(1);
+  }
+  std::_Exit(0);
+}
+
+TEST(ContextDeathTest, tooFewOpenFilesAreNamedAsTheCause) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  for (const Backend backend : {Backend::egl, Backend::osmesa}) {
+    EXPECT_EXIT(createWithin(backend, RLIMIT_NOFILE, 3), ::testing::ExitedWithCode(1),
+                "(EGL|OSMesa) cannot be .*Too many open files.*ulimit -n");
+  }
+}
+
+#if !defined(__SANITIZE_ADDRESS__)  // whose shadow memory takes terabytes of addresses
+TEST(ContextDeathTest, tooLittleMemoryIsNamedAsTheCause) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  unsigned long pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const rlim_t used = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
+  for (const Backend backend : {Backend::egl, Backend::osmesa}) {
+    EXPECT_EXIT(createWithin(backend, RLIMIT_AS, used + (20 << 20)), ::testing::ExitedWithCode(1),
+                "(EGL|OSMesa) cannot be .*too little memory.*512 MiB");
+  }
+}
+#endif
 
 TEST(ContextDeathTest, aMachineWithoutADisplayIsToldSo) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");

@@ -1,9 +1,17 @@
 """Installs limn once for the tests beside this one. The prefix is moved: nothing in it may name where it was."""
 import shutil
 
-from common import PREFIX, SCRATCH, check, options, run, techniques
+from common import PREFIX, SCRATCH, check, limn, options, run, techniques
 
 shutil.rmtree(SCRATCH, ignore_errors=True)
 run("cmake", "--install", options.build, "--prefix", SCRATCH / "prefix")
 (SCRATCH / "prefix").rename(PREFIX)
 check(techniques(), "the installed limn lists no technique")
+
+# Grids are read by a program that is found beside the library.
+grid = SCRATCH / "cloud.vdb"
+grid.write_bytes(b"no volume")
+scene = PREFIX / "share/limn/assets/cornell_box/cornell_box.glb"
+_, message = limn("render", scene, "--sigma-s", "0.1", "--grid", grid, "--technique", "hard_shadow_map", "--size", "8x8",
+                  "--out", SCRATCH / "fog.png", status=1)
+check("cloud.vdb: not an OpenVDB file that can be read (" in message, f"the grid's reader did not answer: {message}")

@@ -211,7 +211,10 @@ TEST(Assets, EverySceneHasNamedCamerasAndTheLightsItNames) {
 }
 
 TEST(Assets, TheSkyIsBrightInFewPlacesAndTakesAboutThirtyLights) {
-  const limn::scene::Environment sky = limn::scene::loadEnvironment(kAssets / "environments" / "sky.exr");
+  std::vector<std::string> warnings;
+  const limn::scene::Environment sky =
+      limn::scene::loadEnvironment(kAssets / "environments" / "sky.exr", warnings);
+  EXPECT_TRUE(warnings.empty());
   EXPECT_EQ(sky.width, 512);
   EXPECT_EQ(sky.height, 256);
   EXPECT_EQ(bytesOf(kAssets / "environments" / "sky.exr"),

@@ -1,53 +1,15 @@
 // Grids from OpenVDB files, good and bad ones.
-#include <openvdb/openvdb.h>
-
 #include <fstream>
 
-#include "core/scene/density_grid.h"
-#include "tests/support/scene_files.h"
+#include "tests/support/vdb_file.h"
 
 namespace limn::test {
 namespace {
 
 using scene::DensityGrid;
-using scene::GridLimits;
 using scene::readDensityGrid;
 using testing::AllOf;
 using testing::HasSubstr;
-
-class VdbFile : public SceneFiles {
- protected:
-  std::filesystem::path file() const { return folder_ / "scene" / "cloud.vdb"; }
-
-  void write(const openvdb::GridBase::Ptr& grid) const {
-    openvdb::io::File out(file().string());
-    out.write({grid});
-    out.close();
-  }
-
-  /// Density x + 10 y + 100 z at the voxels of a box.
-  static openvdb::FloatGrid::Ptr ramp(openvdb::Coord low, openvdb::Coord high) {
-    openvdb::initialize();
-    auto grid = openvdb::FloatGrid::create(0.f);
-    grid->setName("density");
-    auto accessor = grid->getAccessor();
-    for (int x = low.x(); x <= high.x(); ++x)
-      for (int y = low.y(); y <= high.y(); ++y)
-        for (int z = low.z(); z <= high.z(); ++z) accessor.setValue({x, y, z}, float(x + 10 * y + 100 * z));
-    return grid;
-  }
-
-  std::string error(const GridLimits& limits = {}) const {
-    try {
-      readDensityGrid(file(), limits);
-    } catch (const Error& thrown) {
-      EXPECT_EQ(std::string(thrown.what()).find('\n'), std::string::npos);
-      EXPECT_THAT(thrown.what(), HasSubstr("cloud.vdb"));
-      return thrown.what();
-    }
-    return {};
-  }
-};
 
 TEST_F(VdbFile, HoldsDensitiesInItsPlace) {
   const auto grid = ramp({1, 2, 3}, {4, 6, 5});

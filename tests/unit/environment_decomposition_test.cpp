@@ -237,7 +237,10 @@ TEST(EnvironmentDecomposition, MeasuredMapsTakeAsManyLightsAsTheThesisReports) {
   if (models == nullptr) GTEST_SKIP() << "LIMN_MODELS names no folder with env/courtyard.exr and others";
   for (const char* file : {"courtyard.exr", "sunset.exr", "uffizi_256.hdr", "eucalyptus_1k.exr"}) {
     SCOPED_TRACE(file);
-    const scene::Environment e = scene::loadEnvironment(std::filesystem::path(models) / "env" / file);
+    std::vector<std::string> warnings;
+    const scene::Environment e =
+        scene::loadEnvironment(std::filesystem::path(models) / "env" / file, warnings);
+    EXPECT_TRUE(warnings.empty());
     size_t before = 0;
     for (const auto& [threshold, lights] :
          {std::pair(0.015, 31), std::pair(0.025, 45), std::pair(0.035, 60)}) {

@@ -83,12 +83,6 @@ TEST_F(SceneBadFile, EnvironmentOutsideTheFolder) {
               AllOf(HasSubstr("limn_environment"), HasSubstr("outside the scene's folder")));
 }
 
-TEST_F(SceneBadFile, EnvironmentThatIsNone) {
-  const auto picture = write("sky.png", png(1, 1, {1, 2, 3, 4}));
-  EXPECT_THROW(scene::loadEnvironment(picture), Error);
-  EXPECT_THROW(scene::loadEnvironment(write("sky.exr", GltfBuilder::toBytes("no picture"))), Error);
-}
-
 TEST(SceneBadInput, TruncatedGlbAtEveryByte) {
   GltfBuilder b;
   b.triangle();

@@ -1,0 +1,20 @@
+// What an OpenEXR file says of itself, looked at before the library does, which takes memory for whatever
+// the header claims.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace limn {
+
+/// Limit on the pixels of a tile: the library holds several tiles at once, however small the picture is.
+inline constexpr std::uint64_t kMaxTilePixels = std::uint64_t{1} << 22;
+
+/// Empty, or what is wrong with the header of a file that starts with OpenEXR's magic number: an attribute
+/// that is longer than the file, or tiles larger than the limit. Everything else is left to the library.
+/// Layout: "OpenEXR File Layout", sections "Header" and "Predefined attribute types".
+std::string exrHeaderProblem(std::span<const std::byte> bytes);
+
+}  // namespace limn

@@ -1,0 +1,13 @@
+// What a process may take that reads untrusted input with a library that may fail in any way.
+#pragma once
+
+#include <cstdint>
+
+namespace limn {
+
+/// Limits this process to `memory` bytes of address space and `seconds` of processor and wall-clock time,
+/// lets it write no file and leave no core dump, and ends it with the one that started it. Returns false
+/// where the system does not grant that.
+bool confine(std::uint64_t memory, unsigned seconds);
+
+}  // namespace limn
