@@ -136,9 +136,14 @@ void LightTracer::follow(const Path& path, const Sampler& sampler, Film& film) c
   const glsl::Optics optics = opticsOf(*view_.rays.draws()[s.draw].material);
   const glsl::SpecularEvent event = glsl::specular_event(optics, path.direction, s.normal, s.back);
   const glm::vec3 before = s.position + s.rayOffset * s.geometricNormal;
-  if (!s.back) segment(before, event.reflected, path.flux * event.reflectance, sampler, film);
-  const glm::vec3 passing = path.flux * event.transmittance;
-  if (event.refracted == glm::vec3(0) || passing == glm::vec3(0)) return;
+  const auto adjoint = [&](const glm::vec3& leaving) {
+    return glsl::shading_flux(s.normal, s.geometricNormal, path.direction, leaving);
+  };
+  if (!s.back)
+    segment(before, event.reflected, path.flux * event.reflectance * adjoint(event.reflected), sampler, film);
+  if (event.refracted == glm::vec3(0)) return;
+  const glm::vec3 passing = path.flux * event.transmittance * adjoint(event.refracted);
+  if (passing == glm::vec3(0)) return;
   if (s.back || !(optics.thickness > 0)) {
     segment(s.position - s.rayOffset * s.geometricNormal, event.refracted, passing, sampler, film);
     return;
@@ -160,8 +165,9 @@ void LightTracer::refract(const Path& path, const glsl::Optics& optics, const gl
   if (!exit.back || !(glm::dot(exit.normal, -direction) > leastCosine)) return;
   const glsl::SpecularEvent event = glsl::specular_event(optics, direction, exit.normal, true);
   if (event.refracted == glm::vec3(0)) return;
+  const float adjoint = glsl::shading_flux(exit.normal, exit.geometricNormal, direction, event.refracted);
   segment(exit.position - exit.rayOffset * exit.geometricNormal, event.refracted,
-          flux * event.transmittance * glsl::optics_absorption(optics, hit.depth), sampler, film);
+          flux * event.transmittance * adjoint * glsl::optics_absorption(optics, hit.depth), sampler, film);
 }
 
 /// Through the medium until something is met.
@@ -227,14 +233,20 @@ void LightTracer::reflect(const Hit& hit, const glm::vec3& direction, const glm:
   const glm::vec3 eye(view_.frame.camera_position), towards = eye - met->position;
   const float distance = glm::length(towards),
               cosine = glm::dot(met->values.geometric_normal, towards) / distance;
+  // Flux counts per area of the triangle; the light's cosine is that with the shading normal (Veach 1997,
+  // section 5.3).
+  const float lit = glm::dot(met->values.normal, -direction),
+              crossed = glm::dot(met->values.geometric_normal, -direction);
+  if (!(lit > 0 && crossed > 0)) return;
   size_t pixel = 0;
   float depth = 0;
   double perSolidAngle = 0;
   if (!(cosine > 0) || !project(met->position, pixel, depth, perSolidAngle) || !(depths_[pixel] > 0)) return;
   const glm::vec3 origin = met->rayOrigin(towards);
   if (view_.rays.occluded(origin, eye - origin, 1.f)) return;
-  const glm::vec3 reflected =
-      flux * glsl::brdf(met->brdf, met->values.normal, towards / distance, -direction) * cosine;
+  const glm::vec3 reflected = flux *
+                              glsl::brdf(met->brdf, met->values.normal, towards / distance, -direction) *
+                              (cosine * lit / crossed);
   film.add(pixel, glm::dvec3(reflected * view_.rays.medium().transmittanceBetween(met->position, eye)) *
                       (perSolidAngle / (static_cast<double>(distance) * distance)));
 }
