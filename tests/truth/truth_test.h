@@ -23,6 +23,7 @@ struct Question {
   int spp = 2;                                        ///< of the reference
   int bounces = 0, interfaces = 0;                    ///< of the reference
   glm::ivec2 size{48, 48};
+  bool background = false;  ///< pixels without a surface are looked at, too
 };
 
 /// How far a picture is from a closed form, over the pixels for which there is one.
@@ -74,7 +75,7 @@ class TruthTest : public RenderTest {
     double sum = 0, truth = 0;
     for (int y = 0; y < q.size.y; ++y)
       for (int x = 0; x < q.size.x; ++x) {
-        if (image.at(x, y, coverage) == 0.f) continue;
+        if (image.at(x, y, coverage) == 0.f && !q.background) continue;
         const dvec3 position = rays.eye() + double(image.at(x, y, z)) * rays.ray(x, y);
         const double e = expected(position, rays.direction(x, y)), value = double(image.at(x, y, channel));
         if (std::isnan(e)) continue;
