@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/reference/optics.h"
+#include "core/reference/specular_paths.h"
 #include "core/scene/light_textures.h"
 #include "glsl/caustic_ray.glsl"
 #include "glsl/geometry.glsl"
@@ -18,6 +19,8 @@ namespace {
 constexpr int scatterPoints = 4;            // on each segment in the medium
 constexpr size_t mostFilmPixels = 1 << 22;  // of all films together, unless two are more
 constexpr float leastCosine = 1e-4f;        // as in trace_rays.comp.glsl
+constexpr int mostEvents = 512;             // of a chain without limit
+constexpr uint32_t firstRoulette = 8;       // from this event on it goes on with a probability alone
 
 /// Flux that arrives from a light in the direction of the objects, per sample, before the light's own
 /// directional factors.
@@ -51,6 +54,10 @@ Aim aimAt(const glsl::Light& light, const glm::vec3& centre, float radius, float
   const glm::vec3 local(lateral * std::cos(angle), lateral * std::sin(angle), 1 - down);
   return {origin, glm::normalize(glsl::from_local(glsl::frame_around(towards / distance), local)),
           2 * glsl::pi * cap};
+}
+
+float largest(const glm::vec3& v) {
+  return std::max({v.x, v.y, v.z});
 }
 
 }  // namespace
@@ -99,7 +106,11 @@ void LightTracer::trace(uint32_t first, uint32_t count, std::vector<Sums>& sums)
       if (request_.stop.stop_requested()) return;
       sampler.startSample(static_cast<uint32_t>(i));
       Path path;
-      if (emit(sampler, i, path)) follow(path, sampler, film);
+      if (!emit(sampler, i, path)) continue;
+      if (request_.interfaces == allInterfaces)
+        wander(path, sampler, film);
+      else
+        follow(path, sampler, film);
     }
   });
   tbb::parallel_for(size_t{0}, pixels, [&](size_t pixel) {
@@ -170,16 +181,67 @@ void LightTracer::refract(const Path& path, const glsl::Optics& optics, const gl
           flux * event.transmittance * adjoint * glsl::optics_absorption(optics, hit.depth), sampler, film);
 }
 
+/// Without limit: off and through smooth interfaces, at random, until something else is met.
+void LightTracer::wander(const Path& path, const Sampler& sampler, Film& film) const {
+  Interface s = path.surface;
+  glm::vec3 direction = path.direction, flux = path.flux;
+  const float sent = largest(flux);
+  for (uint32_t i = 0; i < mostEvents; ++i) {
+    const glsl::Optics optics = opticsOf(*view_.rays.draws()[s.draw].material, s.baseColour, s.metallic);
+    const glsl::SpecularEvent event = glsl::specular_event(optics, direction, s.normal, s.back);
+    const auto share = [&](const glm::vec3& leaving, const glm::vec3& factor) {
+      return leaving == glm::vec3(0)
+                 ? glm::vec3(0)
+                 : factor * glsl::shading_flux(s.normal, s.geometricNormal, direction, leaving);
+    };
+    const glm::vec3 reflected = share(event.reflected, event.reflectance),
+                    passing = share(event.refracted, event.transmittance);
+    const float both = largest(reflected) + largest(passing);
+    if (!(both > 0)) return;
+    const glm::vec2 u = sampler.pair(SpecularPaths::firstPair + i);
+    const float probability = largest(reflected) / both;
+    const bool mirrored = u.x < probability;
+    flux *= mirrored ? reflected / probability : passing / (1 - probability);
+    if (i >= firstRoulette) {
+      const float survival = std::min(largest(flux) / sent, 1.f);
+      if (u.y >= survival) return;
+      flux /= survival;
+    }
+    direction = mirrored ? event.reflected : event.refracted;
+    const glm::vec3 from = s.position + (mirrored ? 1.f : -1.f) * s.rayOffset * s.geometricNormal;
+    Hit hit;
+    if (!view_.rays.nearest(from, direction, hit))
+      return arrive(from, direction, flux, nullptr, sampler, film);
+    const scene::Material& material = *view_.rays.draws()[hit.draw].material;
+    if (!material.specularSurface()) return arrive(from, direction, flux, &hit, sampler, film);
+    s = interfaceAt(view_.rays, hit, direction);
+    const glsl::Optics met = opticsOf(material, s.baseColour, s.metallic);
+    if (s.back && met.thickness > 0) {  // what lies before its back is its inside
+      flux *= glsl::optics_absorption(met, hit.depth);
+    } else {
+      arrive(from, direction, flux, &hit, sampler, film);  // the medium alone: it reflects nothing
+      flux *= view_.rays.medium().transmittanceBetween(from, s.position);
+    }
+    if (!(glm::dot(s.normal, -direction) > leastCosine)) return;
+  }
+}
+
 /// Through the medium until something is met.
 void LightTracer::segment(const glm::vec3& from, const glm::vec3& direction, const glm::vec3& flux,
                           const Sampler& sampler, Film& film) const {
   if (flux == glm::vec3(0)) return;
   Hit hit;
   const bool ends = view_.rays.nearest(from, direction, hit);
+  arrive(from, direction, flux, ends ? &hit : nullptr, sampler, film);
+}
+
+/// Through the medium to `hit`, or to where it ends.
+void LightTracer::arrive(const glm::vec3& from, const glm::vec3& direction, const glm::vec3& flux,
+                         const Hit* hit, const Sampler& sampler, Film& film) const {
   const RayMedium& medium = view_.rays.medium();
   const glm::vec2 range = medium.range(from, direction);
   const float begin = std::max(range.x, 0.f);
-  const float reach = std::min(range.y, ends ? hit.depth : std::numeric_limits<float>::max()) - begin;
+  const float reach = std::min(range.y, hit ? hit->depth : std::numeric_limits<float>::max()) - begin;
   if (media_ && reach > 0) {
     const float u = sampler.pair(2).x;
     for (int i = 0; i < scatterPoints; ++i) {
@@ -188,8 +250,8 @@ void LightTracer::segment(const glm::vec3& from, const glm::vec3& direction, con
               flux * medium.transmittance(from, direction, l) * (reach / scatterPoints), film);
     }
   }
-  if (surfaces_ && ends)
-    reflect(hit, direction, flux * medium.transmittance(from, direction, hit.depth), film);
+  if (surfaces_ && hit)
+    reflect(*hit, direction, flux * medium.transmittance(from, direction, hit->depth), film);
 }
 
 /// The pixel that shows x, its depth, and one over the pixel's solid angle (1/sr).

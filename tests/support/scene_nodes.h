@@ -20,6 +20,16 @@ inline scene::Primitive quad(const glm::vec3& centre, const glm::vec3& u, const 
   return p;
 }
 
+/// The primitive with the triangles of both; they have the same material and attributes.
+inline scene::Primitive joined(scene::Primitive whole, const scene::Primitive& part) {
+  const auto first = static_cast<uint32_t>(whole.positions.size());
+  whole.positions.insert(whole.positions.end(), part.positions.begin(), part.positions.end());
+  whole.normals.insert(whole.normals.end(), part.normals.begin(), part.normals.end());
+  whole.uvs.insert(whole.uvs.end(), part.uvs.begin(), part.uvs.end());
+  for (const uint32_t index : part.indices) whole.indices.push_back(first + index);
+  return whole;
+}
+
 /// A node that draws the primitive.
 inline void show(scene::Scene& scene, scene::Primitive primitive, const glm::mat4& place = glm::mat4(1)) {
   scene::Node node;
