@@ -47,5 +47,16 @@ LIMN_FN SpecularEvent specular_event(Optics o, vec3 direction, vec3 n, bool insi
   return e;
 }
 
+// What the flux of light along `direction` (unit, of propagation) is multiplied by where it leaves a surface along
+// `leaving`, besides the reflectance or transmittance: 1 unless the shading normal n differs from the geometric normal ng
+// (either side). A shading normal keeps radiance as it is (times the square of the indices' ratio), not the flux through the
+// surface: the adjoint of a specular event, (n.l) (ng.o) / ((ng.l) (n.o)) (Veach 1997, section 5.3). 0 where one normal says
+// that light is reflected and the other that it passes.
+LIMN_FN float shading_flux(vec3 n, vec3 ng, vec3 direction, vec3 leaving) {
+  float meets = dot(n, direction) * dot(ng, leaving);
+  float below = dot(ng, direction) * dot(n, leaving);
+  return below != 0.0f ? max(meets / below, 0.0f) : 0.0f;
+}
+
 LIMN_END
 #endif  // LIMN_CAUSTIC_RAY_GLSL

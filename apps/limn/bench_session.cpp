@@ -123,7 +123,7 @@ reference::Request BenchSession::request(const bench::Case& c, reference::Term t
   request.spp = c.reference.spp;
   request.noise = c.reference.noise;
   if (reference::hasBounces(term)) request.bounces = c.reference.bounces;
-  if (reference::hasInterfaces(term)) request.interfaces = c.reference.interfaces;
+  if (reference::acceptsInterfaces(term, c.reference.interfaces)) request.interfaces = c.reference.interfaces;
   return request;
 }
 

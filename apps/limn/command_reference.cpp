@@ -116,8 +116,10 @@ Action addReferenceCommand(CLI::App& command) {
   command.add_option(
       "--interfaces", options->interfaces,
       "Most smooth interfaces between the camera and what it sees in a specular object, as image space has\n"
-      "them: specular 1 to 64 (default 2), final 0 to 64 (default 0: the environment alone); or all: the "
-      "truth");
+      "them: specular 1 to 64 (default 2), final 0 to 64 (default 0: the environment alone); or all: the\n"
+      "truth. all with caustic, media and final: light over any number of interfaces, too (default: off "
+      "one,\n"
+      "or into an object and out of it, as techniques have it)");
   command.add_option("--noise", options->noise, "Stop at this noise: RMS relative to the mean")
       ->check(CLI::Range(0.0, 1.0));
   command.add_flag(

@@ -14,7 +14,7 @@
 //     term = "visibility"
 //     reference = {spp = 256}     # or {noise = 0.005}: RMS relative to the mean; also bounces, for
 //                                 # the terms indirect, specular and final, and interfaces (a number
-//                                 # or "all"), for the latter two
+//                                 # or "all"), for the latter two; "all" for caustic and media, too
 //
 //     pictures = true             # keep every picture as PNG, and the reference's
 //

@@ -78,10 +78,8 @@ ReferenceSettings referenceOf(ReferenceSettings given, reference::Term term) {
     given.bounces = 1;
   else if (given.bounces == 0)
     given.bounces = term == reference::Term::indirect ? 1 : 0;
-  if (!reference::hasInterfaces(term))
-    given.interfaces = 0;
-  else if (given.interfaces == 0 && term == reference::Term::specular)
-    given.interfaces = reference::imageSpaceInterfaces;
+  if (!reference::acceptsInterfaces(term, given.interfaces))
+    given.interfaces = term == reference::Term::specular ? reference::imageSpaceInterfaces : 0;
   return given;
 }
 
@@ -95,10 +93,10 @@ void checkReference(const TomlSection& suite, std::span<const Case> cases) {
       }))
     suite.fail(*bounces, "no scene asks for a term that has 'bounces': indirect, specular, final");
   const toml::node* interfaces = given("interfaces");
-  if (interfaces && std::ranges::none_of(cases, [](const Case& c) {
-        return reference::hasInterfaces(reference::termFromName(c.term));
-      }))
-    suite.fail(*interfaces, "no scene asks for a term that has 'interfaces': specular, final");
+  if (interfaces && std::ranges::none_of(cases, [](const Case& c) { return c.reference.interfaces != 0; }))
+    suite.fail(*interfaces,
+               "no scene asks for a term that has these 'interfaces': specular, final, with \"all\" caustic "
+               "and media, too");
 }
 
 std::vector<bool> parseModes(const TomlSection& suite) {

@@ -127,7 +127,8 @@ frame::BufferHandle CausticRayService::Implementation::trace(const Request& requ
       .read(maps.depth, Access::sampled, "where rays end")
       .read(maps.views, Access::storageLoad, "projections of the scene")
       .read(maps.lights, Access::storageLoad, "layers of each light");
-  for (const TextureHandle texture : {front.surface, front.depth, back.surface, back.depth})
+  for (const TextureHandle texture :
+       {front.surface, front.depth, back.surface, back.depth, front.geometricNormal, back.geometricNormal})
     pass.read(texture, Access::sampled, "where light is reflected and refracted");
   const frame::BufferHandle rays =
       pass.write(graph->createBuffer("caustic rays",
@@ -154,7 +155,8 @@ frame::BufferHandle CausticRayService::Implementation::trace(const Request& requ
     medium.bind(context);
     textures.bind(context);
     unsigned unit = 0;
-    for (const TextureHandle texture : {front.surface, front.depth, back.surface, back.depth, maps.depth})
+    for (const TextureHandle texture : {front.surface, front.depth, back.surface, back.depth, maps.depth,
+                                        front.geometricNormal, back.geometricNormal})
       context.bindSampled(unit++, texture);
     unsigned binding = 0;
     for (const frame::BufferHandle buffer : {handles.lights, views, indices, handles.instances,

@@ -37,7 +37,7 @@ SpecularBuffer SpecularBuffers::addPass(frame::FrameGraph& graph, const SceneHan
   const bool back = front != nullptr;
   frame::PassBuilder pass = graph.addPass(back ? "specular back" : "specular front", owner);
   scene::GpuScene::declareReads(pass, handles);
-  pass.read(handles.geometry, Access::storageLoad, "bound with the surfaces")
+  pass.read(handles.geometry, Access::storageLoad, "corners of triangles, for their normals")
       .read(views, Access::storageLoad, "projections")
       .cacheable();
   if (back) pass.read(front->surface, Access::sampled, "instances whose back is wanted");
@@ -53,6 +53,8 @@ SpecularBuffer SpecularBuffers::addPass(frame::FrameGraph& graph, const SceneHan
   SpecularBuffer buffer;
   buffer.surface = pass.write(create("specular surface", GL_RGBA32F), Access::colourAttachment, "normals");
   buffer.depth = pass.write(create("specular depth", GL_R32F), Access::colourAttachment, "linear depth");
+  buffer.geometricNormal = pass.write(create("specular geometric normal", GL_RG16_SNORM),
+                                      Access::colourAttachment, "normals of triangles");
   const TextureHandle zbuffer =
       pass.write(create("specular z", GL_DEPTH_COMPONENT32F), Access::depthAttachment, "nearest or farthest");
   const auto program =
@@ -63,7 +65,9 @@ SpecularBuffer SpecularBuffers::addPass(frame::FrameGraph& graph, const SceneHan
   pass.execute([this, handles, views, programs, buffer, zbuffer, back,
                 nearest = back ? front->surface : TextureHandle{}](frame::PassContext& context) {
     const auto bind = [&](int layer) {
-      context.bindFramebuffer({{buffer.surface, 0, layer}, {buffer.depth, 0, layer}}, {zbuffer, 0, layer});
+      context.bindFramebuffer(
+          {{buffer.surface, 0, layer}, {buffer.depth, 0, layer}, {buffer.geometricNormal, 0, layer}},
+          {zbuffer, 0, layer});
     };
     bind(-1);
     constexpr GLfloat none[4] = {0, 0, 0, 0}, farthest[4] = {1, 1, 1, 1}, far = 0;

@@ -16,7 +16,8 @@ namespace limn::caustics {
 struct SpecularBuffer {
   frame::TextureHandle
       surface;  ///< RGBA32F: shading normal; w: +-(instance + 1), negative where the back shows
-  frame::TextureHandle depth;  ///< R32F: linear depth (shadow_normalise), 1 where there is nothing
+  frame::TextureHandle depth;            ///< R32F: linear depth (shadow_normalise), 1 where there is nothing
+  frame::TextureHandle geometricNormal;  ///< RG16_SNORM: octahedral, of the triangle's front face
 };
 
 class LIMN_API SpecularBuffers {

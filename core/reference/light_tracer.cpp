@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/reference/optics.h"
+#include "core/reference/specular_paths.h"
 #include "core/scene/light_texture.h"
 #include "glsl/caustic_ray.glsl"
 #include "glsl/geometry.glsl"
@@ -18,6 +19,8 @@ namespace {
 constexpr int scatterPoints = 4;            // on each segment in the medium
 constexpr size_t mostFilmPixels = 1 << 22;  // of all films together, unless two are more
 constexpr float leastCosine = 1e-4f;        // as in trace_rays.comp.glsl
+constexpr int mostEvents = 512;             // of a chain without limit
+constexpr uint32_t firstRoulette = 8;       // from this event on it goes on with a probability alone
 
 /// Flux that arrives from a light in the direction of the objects, per sample, before the light's own
 /// directional factors.
@@ -51,6 +54,10 @@ Aim aimAt(const glsl::Light& light, const glm::vec3& centre, float radius, float
   const glm::vec3 local(lateral * std::cos(angle), lateral * std::sin(angle), 1 - down);
   return {origin, glm::normalize(glsl::from_local(glsl::frame_around(towards / distance), local)),
           2 * glsl::pi * cap};
+}
+
+float largest(const glm::vec3& v) {
+  return std::max({v.x, v.y, v.z});
 }
 
 }  // namespace
@@ -99,7 +106,11 @@ void LightTracer::trace(uint32_t first, uint32_t count, std::vector<Sums>& sums)
       if (request_.stop.stop_requested()) return;
       sampler.startSample(static_cast<uint32_t>(i));
       Path path;
-      if (emit(sampler, i, path)) follow(path, sampler, film);
+      if (!emit(sampler, i, path)) continue;
+      if (request_.interfaces == allInterfaces)
+        wander(path, sampler, film);
+      else
+        follow(path, sampler, film);
     }
   });
   tbb::parallel_for(size_t{0}, pixels, [&](size_t pixel) {
@@ -136,9 +147,14 @@ void LightTracer::follow(const Path& path, const Sampler& sampler, Film& film) c
   const glsl::Optics optics = opticsOf(*view_.rays.draws()[s.draw].material);
   const glsl::SpecularEvent event = glsl::specular_event(optics, path.direction, s.normal, s.back);
   const glm::vec3 before = s.position + s.rayOffset * s.geometricNormal;
-  if (!s.back) segment(before, event.reflected, path.flux * event.reflectance, sampler, film);
-  const glm::vec3 passing = path.flux * event.transmittance;
-  if (event.refracted == glm::vec3(0) || passing == glm::vec3(0)) return;
+  const auto adjoint = [&](const glm::vec3& leaving) {
+    return glsl::shading_flux(s.normal, s.geometricNormal, path.direction, leaving);
+  };
+  if (!s.back)
+    segment(before, event.reflected, path.flux * event.reflectance * adjoint(event.reflected), sampler, film);
+  if (event.refracted == glm::vec3(0)) return;
+  const glm::vec3 passing = path.flux * event.transmittance * adjoint(event.refracted);
+  if (passing == glm::vec3(0)) return;
   if (s.back || !(optics.thickness > 0)) {
     segment(s.position - s.rayOffset * s.geometricNormal, event.refracted, passing, sampler, film);
     return;
@@ -160,8 +176,54 @@ void LightTracer::refract(const Path& path, const glsl::Optics& optics, const gl
   if (!exit.back || !(glm::dot(exit.normal, -direction) > leastCosine)) return;
   const glsl::SpecularEvent event = glsl::specular_event(optics, direction, exit.normal, true);
   if (event.refracted == glm::vec3(0)) return;
+  const float adjoint = glsl::shading_flux(exit.normal, exit.geometricNormal, direction, event.refracted);
   segment(exit.position - exit.rayOffset * exit.geometricNormal, event.refracted,
-          flux * event.transmittance * glsl::optics_absorption(optics, hit.depth), sampler, film);
+          flux * event.transmittance * adjoint * glsl::optics_absorption(optics, hit.depth), sampler, film);
+}
+
+/// Without limit: off and through smooth interfaces, at random, until something else is met.
+void LightTracer::wander(const Path& path, const Sampler& sampler, Film& film) const {
+  Interface s = path.surface;
+  glm::vec3 direction = path.direction, flux = path.flux;
+  const float sent = largest(flux);
+  for (uint32_t i = 0; i < mostEvents; ++i) {
+    const glsl::Optics optics = opticsOf(*view_.rays.draws()[s.draw].material, s.baseColour, s.metallic);
+    const glsl::SpecularEvent event = glsl::specular_event(optics, direction, s.normal, s.back);
+    const auto share = [&](const glm::vec3& leaving, const glm::vec3& factor) {
+      return leaving == glm::vec3(0)
+                 ? glm::vec3(0)
+                 : factor * glsl::shading_flux(s.normal, s.geometricNormal, direction, leaving);
+    };
+    const glm::vec3 reflected = share(event.reflected, event.reflectance),
+                    passing = share(event.refracted, event.transmittance);
+    const float both = largest(reflected) + largest(passing);
+    if (!(both > 0)) return;
+    const glm::vec2 u = sampler.pair(SpecularPaths::firstPair + i);
+    const float probability = largest(reflected) / both;
+    const bool mirrored = u.x < probability;
+    flux *= mirrored ? reflected / probability : passing / (1 - probability);
+    if (i >= firstRoulette) {
+      const float survival = std::min(largest(flux) / sent, 1.f);
+      if (u.y >= survival) return;
+      flux /= survival;
+    }
+    direction = mirrored ? event.reflected : event.refracted;
+    const glm::vec3 from = s.position + (mirrored ? 1.f : -1.f) * s.rayOffset * s.geometricNormal;
+    Hit hit;
+    if (!view_.rays.nearest(from, direction, hit))
+      return arrive(from, direction, flux, nullptr, sampler, film);
+    const scene::Material& material = *view_.rays.draws()[hit.draw].material;
+    if (!material.specularSurface()) return arrive(from, direction, flux, &hit, sampler, film);
+    s = interfaceAt(view_.rays, hit, direction);
+    const glsl::Optics met = opticsOf(material, s.baseColour, s.metallic);
+    if (s.back && met.thickness > 0) {  // what lies before its back is its inside
+      flux *= glsl::optics_absorption(met, hit.depth);
+    } else {
+      arrive(from, direction, flux, &hit, sampler, film);  // the medium alone: it reflects nothing
+      flux *= view_.rays.medium().transmittanceBetween(from, s.position);
+    }
+    if (!(glm::dot(s.normal, -direction) > leastCosine)) return;
+  }
 }
 
 /// Through the medium until something is met.
@@ -170,10 +232,16 @@ void LightTracer::segment(const glm::vec3& from, const glm::vec3& direction, con
   if (flux == glm::vec3(0)) return;
   Hit hit;
   const bool ends = view_.rays.nearest(from, direction, hit);
+  arrive(from, direction, flux, ends ? &hit : nullptr, sampler, film);
+}
+
+/// Through the medium to `hit`, or to where it ends.
+void LightTracer::arrive(const glm::vec3& from, const glm::vec3& direction, const glm::vec3& flux,
+                         const Hit* hit, const Sampler& sampler, Film& film) const {
   const RayMedium& medium = view_.rays.medium();
   const glm::vec2 range = medium.range(from, direction);
   const float begin = std::max(range.x, 0.f);
-  const float reach = std::min(range.y, ends ? hit.depth : std::numeric_limits<float>::max()) - begin;
+  const float reach = std::min(range.y, hit ? hit->depth : std::numeric_limits<float>::max()) - begin;
   if (media_ && reach > 0) {
     const float u = sampler.pair(2).x;
     for (int i = 0; i < scatterPoints; ++i) {
@@ -182,8 +250,8 @@ void LightTracer::segment(const glm::vec3& from, const glm::vec3& direction, con
               flux * medium.transmittance(from, direction, l) * (reach / scatterPoints), film);
     }
   }
-  if (surfaces_ && ends)
-    reflect(hit, direction, flux * medium.transmittance(from, direction, hit.depth), film);
+  if (surfaces_ && hit)
+    reflect(*hit, direction, flux * medium.transmittance(from, direction, hit->depth), film);
 }
 
 /// The pixel that shows x, its depth, and one over the pixel's solid angle (1/sr).
@@ -227,14 +295,20 @@ void LightTracer::reflect(const Hit& hit, const glm::vec3& direction, const glm:
   const glm::vec3 eye(view_.frame.camera_position), towards = eye - met->position;
   const float distance = glm::length(towards),
               cosine = glm::dot(met->values.geometric_normal, towards) / distance;
+  // Flux counts per area of the triangle; the light's cosine is that with the shading normal (Veach 1997,
+  // section 5.3).
+  const float lit = glm::dot(met->values.normal, -direction),
+              crossed = glm::dot(met->values.geometric_normal, -direction);
+  if (!(lit > 0 && crossed > 0)) return;
   size_t pixel = 0;
   float depth = 0;
   double perSolidAngle = 0;
   if (!(cosine > 0) || !project(met->position, pixel, depth, perSolidAngle) || !(depths_[pixel] > 0)) return;
   const glm::vec3 origin = met->rayOrigin(towards);
   if (view_.rays.occluded(origin, eye - origin, 1.f)) return;
-  const glm::vec3 reflected =
-      flux * glsl::brdf(met->brdf, met->values.normal, towards / distance, -direction) * cosine;
+  const glm::vec3 reflected = flux *
+                              glsl::brdf(met->brdf, met->values.normal, towards / distance, -direction) *
+                              (cosine * lit / crossed);
   film.add(pixel, glm::dvec3(reflected * view_.rays.medium().transmittanceBetween(met->position, eye)) *
                       (perSolidAngle / (static_cast<double>(distance) * distance)));
 }

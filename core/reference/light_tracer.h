@@ -1,7 +1,8 @@
 // Light that specular objects send into the medium and onto surfaces, traced from the lights: one reflection,
-// or the refractions into and out of a body. Every point of its way in the medium, and the surface where it
-// ends, is joined to the camera: without bias, but for the point that decides whether a pixel sees a place in
-// the medium (its centre).
+// or the refractions into and out of a body, as the techniques have it (LS DE, LSS DE), or with
+// Request::interfaces == allInterfaces chains of any length (L S+ D E). Every point of its way in the medium,
+// and the surface where it ends, is joined to the camera: without bias, but for the point that decides
+// whether a pixel sees a place in the medium (its centre).
 #pragma once
 
 #include <memory>
@@ -31,8 +32,11 @@ class LightTracer {
   void follow(const Path& path, const Sampler& sampler, Film& film) const;
   void refract(const Path& path, const glsl::Optics& optics, const glm::vec3& flux,
                const glm::vec3& direction, const Sampler& sampler, Film& film) const;
+  void wander(const Path& path, const Sampler& sampler, Film& film) const;
   void segment(const glm::vec3& from, const glm::vec3& direction, const glm::vec3& flux,
                const Sampler& sampler, Film& film) const;
+  void arrive(const glm::vec3& from, const glm::vec3& direction, const glm::vec3& flux, const Hit* hit,
+              const Sampler& sampler, Film& film) const;
   void scatter(const glm::vec3& x, const glm::vec3& direction, const glm::vec3& flux, Film& film) const;
   void reflect(const Hit& hit, const glm::vec3& direction, const glm::vec3& flux, Film& film) const;
   bool project(const glm::vec3& x, size_t& pixel, float& depth, double& perSolidAngle) const;

@@ -25,8 +25,9 @@ enum class Term {
                ///< Request::interfaces, the environment alone in specular surfaces, emission the camera sees,
                ///< environment as background
   indirect,    ///< light that came to the seen surface over 1 to Request::bounces others (L D+ D E)
-  caustic,     ///< light that came to the seen surface off or through one specular object (L S+ D E)
-  media,  ///< light that the medium scattered once, directly or off or through a specular object (L S* M E)
+  caustic,  ///< light that came to the seen surface off a specular object, or through one (LS DE, LSS DE), or
+            ///< with Request::interfaces over any number of interfaces (L S+ D E)
+  media,    ///< light that the medium scattered once, directly or as that of caustic (L S* M E)
   specular,  ///< what the camera sees in specular surfaces: emission, direct light and indirect of up to
              ///< Request::bounces, and the environment (L D+ S+ E); neither caustics nor light in the medium
 };
@@ -36,8 +37,9 @@ LIMN_API Term termFromName(const std::string& name);
 
 /// Whether Request::bounces counts: with indirect, specular and final.
 LIMN_API bool hasBounces(Term term);
-/// Whether Request::interfaces counts: with specular and final.
-LIMN_API bool hasInterfaces(Term term);
+/// Whether a request may ask for `interfaces`: 1 to maxInterfaces with specular and final, allInterfaces with
+/// caustic and media, too, and 0 with all but specular.
+LIMN_API bool acceptsInterfaces(Term term, int interfaces);
 /// Most smooth interfaces that can be asked for, besides all.
 constexpr int maxInterfaces = 64;
 constexpr int allInterfaces = -1;
@@ -79,7 +81,9 @@ struct Request {
   int bounces = 0;
   /// With specular and final: most smooth interfaces between the camera and what it sees in the surfaces of
   /// one object, as image space has them (SpecularPaths::imageSpace), or allInterfaces: the truth. 0, with
-  /// final alone: the environment as specular_view.glsl has it.
+  /// final alone: the environment as specular_view.glsl has it. With allInterfaces light comes to surfaces
+  /// and into the medium over any number of interfaces, too, in final, caustic and media; else off one
+  /// interface or into an object and out of it, as techniques have it.
   int interfaces = 0;
   int spp = 64;  ///< samples per pixel and light, rounded up to an even number; the maximum if noise is given
   /// Target noise, RMS relative to the mean; 0: take spp samples. Tested after 16, 32, 64, ... samples.

@@ -26,6 +26,15 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+std::string acceptedInterfaces(Term term) {
+  if (term == Term::specular || term == Term::final)
+    return fmt::format("accepted are {} to {} and {} (all)", term == Term::specular ? 1 : 0, maxInterfaces,
+                       allInterfaces);
+  if (acceptsInterfaces(term, allInterfaces))
+    return fmt::format("accepted are 0 (off one, or in and out) and {} (all)", allInterfaces);
+  return "only specular, final, caustic and media have interfaces";
+}
+
 void validate(const Request& r) {
   const int lights = static_cast<int>(r.pose.lights.size());
   if (r.aa < 1 || r.aa > 16) throw UsageError(fmt::format("reference: aa {} is not in 1 .. 16", r.aa));
@@ -48,16 +57,9 @@ void validate(const Request& r) {
                          : fmt::format("reference: bounces {} with the term {}; only indirect, specular and "
                                        "final have bounces",
                                        r.bounces, name(r.term)));
-  const bool interfaces = hasInterfaces(r.term);
-  if (r.interfaces < allInterfaces || r.interfaces > (interfaces ? maxInterfaces : 0) ||
-      (r.interfaces < 0 && !interfaces) || (r.interfaces == 0 && r.term == Term::specular))
-    throw UsageError(
-        interfaces ? fmt::format("reference: interfaces {} is not in {} .. {} nor {} (all) with the term {}",
-                                 r.interfaces, r.term == Term::specular ? 1 : 0, maxInterfaces, allInterfaces,
-                                 name(r.term))
-                   : fmt::format(
-                         "reference: interfaces {} with the term {}; only specular and final have interfaces",
-                         r.interfaces, name(r.term)));
+  if (!acceptsInterfaces(r.term, r.interfaces))
+    throw UsageError(fmt::format("reference: interfaces {} with the term {}; {}", r.interfaces, name(r.term),
+                                 acceptedInterfaces(r.term)));
   if (r.light < allLights || r.light > lights)
     throw UsageError(fmt::format("reference: light {} is not in 0 .. {} ({}: the environment) nor {} (all)",
                                  r.light, lights, lights, allLights));

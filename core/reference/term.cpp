@@ -7,11 +7,14 @@
 namespace limn::reference {
 
 bool hasBounces(Term term) {
-  return term == Term::indirect || hasInterfaces(term);
+  return term == Term::indirect || term == Term::specular || term == Term::final;
 }
 
-bool hasInterfaces(Term term) {
-  return term == Term::specular || term == Term::final;
+bool acceptsInterfaces(Term term, int interfaces) {
+  const bool seen = term == Term::specular || term == Term::final;
+  if (interfaces == allInterfaces) return seen || term == Term::caustic || term == Term::media;
+  if (interfaces == 0) return term != Term::specular;
+  return seen && interfaces > 0 && interfaces <= maxInterfaces;
 }
 
 const char* name(Term term) {

@@ -18,7 +18,7 @@ glm::dvec3 anyPerpendicular(const glm::dvec3& n) {
 
 struct Sum {
   glm::dvec3 direction{0};
-  double orientation = 0;
+  double winding = 0;  ///< > 0: u, v and the normal are right-handed
 };
 
 /// Adds what one triangle says about the tangents of its three vertices.
@@ -37,7 +37,7 @@ void accumulate(std::span<const glm::vec3> positions, std::span<const glm::vec3>
     const glm::dvec3 n(normals[corner[i]]);
     Sum& sum = sums[corner[i]];
     sum.direction += angle * unitOrZero(direction - glm::dot(direction, n) * n);
-    sum.orientation += sign * angle;
+    sum.winding += sign * angle;
   }
 }
 
@@ -55,7 +55,8 @@ std::vector<glm::vec4> generateTangents(std::span<const glm::vec3> positions,
     glm::dvec3 t = unitOrZero(sums[i].direction);
     t = unitOrZero(t - glm::dot(t, n) * n);
     const bool usable = glm::length(t) > 0.5;
-    tangents[i] = glm::vec4(usable ? t : anyPerpendicular(n), usable && sums[i].orientation < 0 ? -1.f : 1.f);
+    // v grows down the picture and the normal map's green points up it (glTF 2.0, 3.8.3 and 3.9.3).
+    tangents[i] = glm::vec4(usable ? t : anyPerpendicular(n), usable && sums[i].winding > 0 ? -1.f : 1.f);
   }
   return tangents;
 }

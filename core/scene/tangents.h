@@ -9,11 +9,12 @@
 namespace limn::scene {
 
 /// One tangent per vertex: xyz unit and perpendicular to the normal, w the bitangent's sign, so that
-/// bitangent = w * cross(normal, tangent). Each triangle's direction of growing u (Lengyel 2001, "Computing
-/// Tangent Space Basis Vectors for an Arbitrary Mesh") is projected onto the vertex's tangent plane and
-/// accumulated with the triangle's angle at the vertex as its weight; w follows the orientation of the
-/// majority by the same weight. Vertices are not split: where mirrored texture halves share vertices the seam
-/// is one triangle wide. Without a usable direction: any perpendicular, w = 1.
+/// bitangent = w * cross(normal, tangent) points up the texture, where v falls (glTF 2.0, 3.7.2.1 and 3.9.3):
+/// the directions of MikkTSpace with the sign of its w turned round. Each triangle's direction of growing u
+/// (Lengyel 2001, "Computing Tangent Space Basis Vectors for an Arbitrary Mesh") is projected onto the
+/// vertex's tangent plane and accumulated with the triangle's angle at the vertex as its weight; w follows
+/// the winding of the majority by the same weight. Vertices are not split: where mirrored texture halves
+/// share vertices the seam is one triangle wide. Without a usable direction: any perpendicular, w = 1.
 LIMN_API std::vector<glm::vec4> generateTangents(std::span<const glm::vec3> positions,
                                                  std::span<const glm::vec3> normals,
                                                  std::span<const glm::vec2> uvs,

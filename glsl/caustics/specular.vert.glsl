@@ -12,7 +12,9 @@ layout(std430, binding = 4) readonly buffer Views { ShadowView views[]; };
 
 layout(location = 0) out vec3 normal_ws;
 layout(location = 1) out float linear_depth;
-layout(location = 2) flat out uvec2 surface;  // draw instance, layer
+layout(location = 2) flat out uint layer;
+layout(location = 3) out vec3 from_eye;  // of the view, towards the surface
+layout(location = 4) flat out uvec3 surface_instance;  // draw instance, first vertex, first index
 
 void main() {
   ShadowView view = views[entry.y];
@@ -23,5 +25,8 @@ void main() {
 #endif
   normal_ws = mat3(instances[entry.x].normal_to_world) * vertex_unpack_normal(directions.x);
   linear_depth = shadow_normalise(view, shadow_view_depth(view, world));
-  surface = uvec2(entry.x, view.info.y);
+  layer = view.info.y;
+  from_eye = view.info.x == shadow_orthographic ? view.axis_z.xyz : world - view.origin.xyz;
+  uvec4 info = instances[entry.x].info;
+  surface_instance = uvec3(entry.x, info.y, info.w);
 }

@@ -83,6 +83,8 @@ bool within_object(ShadowView view, vec3 p, int layer) {
 struct BodyExit {
   float distance;  // metres from the start
   vec3 normal;     // unit, out of the body; 0: not found
+  bool front;      // on the nearest surface, not on the farthest
+  vec2 uv;         // where
 };
 
 const int exit_steps = 32;
@@ -115,9 +117,10 @@ BodyExit body_exit(ShadowView view, vec3 start, vec3 direction, float reach, int
   }
   BodyExit e;
   e.distance = 0.5 * (inside + outside);
-  vec2 uv = shadow_project(view, start + inside * direction).uv;
-  e.normal = side == body_front ? buffer_normal(front_surface, uv, layer, instance)
-                                : buffer_normal(back_surface, uv, layer, instance);
+  e.uv = shadow_project(view, start + inside * direction).uv;
+  e.front = side == body_front;
+  e.normal = e.front ? buffer_normal(front_surface, e.uv, layer, instance)
+                     : buffer_normal(back_surface, e.uv, layer, instance);
   return e;
 }
 

@@ -12,6 +12,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 4) uniform sampler2DArray scene_depth;  // without specular objects
+layout(binding = 5) uniform sampler2DArray front_geometric_normal;
+layout(binding = 6) uniform sampler2DArray back_geometric_normal;
 layout(std430, binding = 0) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = 1) readonly buffer Views { ShadowView views[]; };
 layout(std430, binding = 2) readonly buffer Layers { vec4 layers[]; };  // x: of shadow_lights; y: diameter of the objects, m
@@ -131,6 +133,7 @@ struct Incident {
   vec3 direction;  // unit, of propagation
   vec3 flux;       // W
   vec3 normal;     // unit, against the direction
+  vec3 geometric;  // normal of the triangle, either side
   float instance;  // + 1
   bool inside;     // the light comes from within the body
   Optics optics;
@@ -144,14 +147,26 @@ CausticRay ray_from(Medium medium, ShadowLight maps, Incident at, vec3 start, ve
   return ray;
 }
 
+vec3 geometric_normal_at(sampler2DArray normals, ivec3 texel) { return octahedral_decode(texelFetch(normals, texel, 0).xy); }
+
+// Of the triangle on which light leaves a body.
+vec3 exit_triangle(BodyExit leaves, int layer) {
+  ivec2 size = textureSize(front_geometric_normal, 0).xy;
+  ivec3 texel = ivec3(clamp(ivec2(leaves.uv * vec2(size)), ivec2(0), size - 1), layer);
+  return leaves.front ? geometric_normal_at(front_geometric_normal, texel)
+                      : geometric_normal_at(back_geometric_normal, texel);
+}
+
 CausticRay reflected_ray(Medium medium, ShadowLight maps, Incident at, SpecularEvent event) {
   if (at.inside) return no_ray();
-  return ray_from(medium, maps, at, at.position, event.reflected, at.flux * event.reflectance);
+  float adjoint = shading_flux(at.normal, at.geometric, at.direction, event.reflected);
+  return ray_from(medium, maps, at, at.position, event.reflected, at.flux * event.reflectance * adjoint);
 }
 
 CausticRay refracted_ray(Medium medium, ShadowLight maps, Incident at, SpecularEvent event, float diameter) {
-  vec3 flux = at.flux * event.transmittance;
-  if (event.refracted == vec3(0.0) || flux == vec3(0.0)) return no_ray();
+  if (event.refracted == vec3(0.0)) return no_ray();
+  vec3 flux = at.flux * event.transmittance * shading_flux(at.normal, at.geometric, at.direction, event.refracted);
+  if (flux == vec3(0.0)) return no_ray();
   ShadowPoint q = shadow_project(at.view, at.position);
   float near = buffer_depth(front_surface, front_depth, q.uv, at.layer, at.instance);
   float far = buffer_depth(back_surface, back_depth, q.uv, at.layer, at.instance);
@@ -163,6 +178,7 @@ CausticRay refracted_ray(Medium medium, ShadowLight maps, Incident at, SpecularE
   SpecularEvent second = specular_event(at.optics, event.refracted, -leaves.normal, true);
   if (second.refracted == vec3(0.0)) return no_ray();
   flux *= second.transmittance * optics_absorption(at.optics, leaves.distance);
+  flux *= shading_flux(leaves.normal, exit_triangle(leaves, at.layer), event.refracted, second.refracted);
   return ray_from(medium, maps, at, at.position + leaves.distance * event.refracted, second.refracted, flux);
 }
 
@@ -190,6 +206,7 @@ void main() {
     incident.instance = abs(front.w);
     incident.inside = front.w < 0.0;
     incident.normal = incident.inside ? -front.xyz : front.xyz;
+    incident.geometric = geometric_normal_at(front_geometric_normal, at);
     incident.optics = material_optics(materials[instances[uint(incident.instance) - 1u].info.x]);
     incident.flux = light_point_intensity(light, view.origin.xyz, incident.position, light_samples) *
                     (reflective_map_measure(view, uv) / (float(side) * float(side)));

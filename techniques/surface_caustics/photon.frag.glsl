@@ -25,7 +25,9 @@ void main() {
   vec3 away = surface.position - photon.xyz;
 #else
   float depth = pixel_depth(pixel);
-  float cosine = depth > 0.0 ? -dot(pixel_geometric_normal(pixel), incidence.xyz) : 0.0;
+  // From before the triangle, with the cosine of the shading normal (Veach 1997, section 5.3).
+  bool lit = depth > 0.0 && dot(pixel_geometric_normal(pixel), incidence.xyz) < 0.0;
+  float cosine = lit ? -dot(pixel_normal(pixel), incidence.xyz) : 0.0;
   vec3 away = pixel_position(pixel, depth) - photon.xyz;
 #endif
   vec2 at = vec2(dot(away, kernel_x), dot(away, kernel_y));

@@ -95,6 +95,7 @@ class SurfaceCaustics : public Technique {
     frame::PassBuilder pass = graph.addPass("photons", info.name);
     photons.declare(pass, false);
     pass.read(inputs.gbuffer.depth, Access::sampled, "receivers")
+        .read(inputs.gbuffer.normal, Access::sampled, "cosines of receivers")
         .read(inputs.gbuffer.geometricNormal, Access::sampled, "sides of receivers");
     const frame::TextureHandle irradiance =
         pass.write(createIrradiance(graph, inputs.size), Access::colourAttachment, "flux per area");
@@ -102,6 +103,7 @@ class SurfaceCaustics : public Technique {
       context.bindFramebuffer({{irradiance}});
       photons.begin(context, empty_);
       context.bindSampled(glsl::gbuffer_unit_depth, gbuffer.depth);
+      context.bindSampled(glsl::gbuffer_unit_normal, gbuffer.normal);
       context.bindSampled(glsl::gbuffer_unit_geometric_normal, gbuffer.geometricNormal);
       photons.draw(context);
     });

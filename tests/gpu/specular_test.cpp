@@ -6,6 +6,7 @@
 #include "core/scene/camera.h"
 #include "tests/gpu/media_harness.h"
 #include "tests/gpu/test_scenes.h"
+#include "tests/support/scene_nodes.h"
 
 namespace limn {
 namespace {
@@ -13,6 +14,8 @@ namespace {
 using glm::dvec3;
 using glm::vec3;
 using render::Output;
+using test::quad;
+using test::show;
 
 class SpecularTest : public MediaHarness {
  protected:
@@ -56,35 +59,8 @@ class SpecularTest : public MediaHarness {
     return shown > 0 ? double(off) / shown : 0;
   }
 
-  static scene::Primitive quad(const vec3& centre, const vec3& u, const vec3& v, int material) {
-    scene::Primitive p;
-    p.positions = {centre - 0.5f * u - 0.5f * v, centre + 0.5f * u - 0.5f * v, centre + 0.5f * u + 0.5f * v,
-                   centre - 0.5f * u + 0.5f * v};
-    p.normals.assign(4, glm::normalize(glm::cross(u, v)));
-    p.indices = {0, 1, 2, 0, 2, 3};
-    p.material = material;
-    return p;
-  }
-  static void show(scene::Scene& scene, scene::Primitive primitive) {
-    scene::Node node;
-    node.mesh = test::addMesh(scene, test::finish(std::move(primitive)));
-    scene.nodes.push_back(node);
-  }
-
-  static int addLambert(scene::Scene& scene) {
-    scene::Material material;
-    material.metallic = 0;
-    material.roughness = 1;
-    material.specularFactor = 0;
-    return test::addMaterial(scene, material);
-  }
-  static int addGlass(scene::Scene& scene, float ior) {
-    scene::Material material;
-    material.metallic = material.roughness = 0;
-    material.transmission = material.thickness = 1;
-    material.ior = ior;
-    return test::addMaterial(scene, material);
-  }
+  static int addLambert(scene::Scene& scene) { return test::addMaterial(scene, test::lambertian(1)); }
+  static int addGlass(scene::Scene& scene, float ior) { return test::addMaterial(scene, test::glass(ior)); }
 
   /// A white wall at z = -3, facing +z, and a lamp before it.
   static scene::Scene wall() {
@@ -105,13 +81,8 @@ class SpecularTest : public MediaHarness {
     return 10 / double(glsl::pi) * towards.z / std::pow(glm::length(towards), 3);
   }
 
-  static dvec3 rayOf(const render::Renderer&, const scene::CameraPose& camera, const scene::Bounds& bounds,
-                     int x, int y) {
-    glsl::FrameBlock frame{};
-    scene::setCamera(frame, camera, bounds, width, height);
-    return glm::normalize(dvec3(vec3(frame.view_ray_origin) +
-                                static_cast<float>(x) * vec3(frame.view_ray_dx) +
-                                static_cast<float>(height - 1 - y) * vec3(frame.view_ray_dy)));
+  static dvec3 rayOf(const scene::CameraPose& camera, const scene::Bounds& bounds, int x, int y) {
+    return test::ViewRays(camera, bounds, {width, height}).direction(x, y);
   }
 };
 
@@ -135,7 +106,7 @@ TEST_F(SpecularTest, ASlabShiftsTheWallByItsClosedForm) {
     double shift = 0;
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
-        const dvec3 d = rayOf(renderer, camera, renderer.pose().bounds, x, y);
+        const dvec3 d = rayOf(camera, renderer.pose().bounds, x, y);
         const dvec3 front = eye + (0.5 - eye.z) / d.z * d;
         const double n = double(ior), sine2 = (d.x * d.x + d.y * d.y) / (n * n);
         const dvec3 inside(d.x / n, d.y / n, -std::sqrt(1 - sine2)), exit = front - inside / inside.z;
@@ -170,7 +141,7 @@ TEST_F(SpecularTest, AMirrorShowsTheMirroredWall) {
   int shown = 0, off = 0;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
-      const dvec3 d = rayOf(renderer, camera, renderer.pose().bounds, x, y);
+      const dvec3 d = rayOf(camera, renderer.pose().bounds, x, y);
       const dvec3 p = eye + (-1.2 - eye.y) / d.y * d;
       if (!(d.y < 0) || std::abs(p.x) > 1.1 || std::abs(p.z + 1) > 0.9) continue;
       const dvec3 hit = p + (-3 - p.z) / d.z * dvec3(d.x, -d.y, d.z);

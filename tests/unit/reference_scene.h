@@ -13,6 +13,7 @@
 #include "core/reference/reference.h"
 #include "core/scene/camera.h"
 #include "core/scene/scene.h"
+#include "tests/support/closed_forms.h"
 
 namespace limn::reference::test {
 
@@ -204,25 +205,6 @@ inline double largestDifference(const Image& a, const Image& b, const char* chan
   return largest / std::max(sum / static_cast<double>(a.pixelCount()), 1e-300);
 }
 
-/// Irradiance from a polygon of radiance 1 on a surface at `x` with normal n, clipped by its horizon:
-/// Lambert's formula (1760), 1/2 sum of edge angles times the cosine between n and the edge's plane.
-/// `vertices` clockwise or not.
-inline double lambertIrradiance(const glm::dvec3& x, const glm::dvec3& n,
-                                const std::vector<glm::dvec3>& vertices) {
-  std::vector<glm::dvec3> above;
-  for (size_t i = 0; i < vertices.size(); ++i) {
-    const glm::dvec3 p = vertices[i] - x, q = vertices[(i + 1) % vertices.size()] - x;
-    const double hp = glm::dot(n, p), hq = glm::dot(n, q);
-    if (hp >= 0) above.push_back(p);
-    if ((hp >= 0) != (hq >= 0)) above.push_back(p + hp / (hp - hq) * (q - p));
-  }
-  double sum = 0;
-  for (size_t i = 0; i < above.size(); ++i) {
-    const glm::dvec3 p = above[i], q = above[(i + 1) % above.size()], across = glm::cross(p, q);
-    const double sine = glm::length(across);
-    if (sine > 0) sum += std::atan2(sine, glm::dot(p, q)) * glm::dot(n, across) / sine;
-  }
-  return 0.5 * std::abs(sum);
-}
+using limn::test::lambertIrradiance;
 
 }  // namespace limn::reference::test

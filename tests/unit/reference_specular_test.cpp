@@ -276,6 +276,15 @@ TEST(ReferenceSpecular, RefusesWhatHasNoInterfaces) {
   Request direct = slab.world.request(4, Term::direct, 2);
   direct.interfaces = 2;
   EXPECT_THROW(render(direct), UsageError);
+  for (const Term term : {Term::caustic, Term::media}) {
+    Request request = slab.world.request(4, term, 2);
+    const std::string limited = contentHash(request);
+    request.interfaces = allInterfaces;
+    EXPECT_NO_THROW(render(request)) << name(term);
+    EXPECT_NE(contentHash(request), limited) << name(term);
+    request.interfaces = 2;
+    EXPECT_THROW(render(request), UsageError) << name(term) << " has no other number";
+  }
 }
 
 }  // namespace

@@ -1,0 +1,106 @@
+// A normal map is the surface whose bumps it stands for: lit from the side, it shines as that surface would.
+#include <nlohmann/json.hpp>
+
+#include "tests/support/gltf_builder.h"
+#include "tests/support/png.h"
+#include "tests/support/scene_files.h"
+#include "tests/truth/truth_test.h"
+
+namespace limn {
+namespace {
+
+using glm::dvec2;
+using glm::vec3;
+using json = nlohmann::json;
+
+constexpr int texels = 64;
+constexpr double albedo = 0.8, irradiance = 3;
+
+/// Gradient of bumps h = 0.03 sin(2 pi x) + 0.05 cos(2 pi y) + 0.02 sin(2 pi (x + y)), in sides of the quad,
+/// over the place (x to the right, y up) on the upright picture; lopsided, so that no two ways of turning it
+/// look alike.
+dvec2 slope(const dvec2& p) {
+  const double both = 2 * M_PI * 0.02 * std::cos(2 * M_PI * (p.x + p.y));
+  return {2 * M_PI * 0.03 * std::cos(2 * M_PI * p.x) + both,
+          -2 * M_PI * 0.05 * std::sin(2 * M_PI * p.y) + both};
+}
+
+/// glTF 2.0, 3.9.3: red is to the right of the picture, green is up, blue is towards the viewer.
+std::vector<std::byte> normalMap() {
+  std::vector<std::uint8_t> rgba;
+  for (int row = 0; row < texels; ++row)
+    for (int column = 0; column < texels; ++column) {
+      const dvec2 s = slope({(column + 0.5) / texels, 1 - (row + 0.5) / texels});
+      const glm::dvec3 n = glm::normalize(glm::dvec3(-s.x, -s.y, 1));
+      for (int c = 0; c < 3; ++c)
+        rgba.push_back(static_cast<std::uint8_t>(std::lround(255 * (0.5 * n[c] + 0.5))));
+      rgba.push_back(255);
+    }
+  return test::png(texels, texels, rgba);
+}
+
+struct Setting {
+  const char* name;
+  bool tangents;         ///< in the file
+  bool mirroredTexture;  ///< its picture stands mirrored on the quad
+  glm::vec3 scale;       ///< of the node
+};
+
+/// A quad of side 1 in the plane z = 0 of a node, its picture upright or mirrored.
+scene::Scene bumps(const Setting& s, const vec3& towardsLight) {
+  test::GltfBuilder b;
+  const int material = b.texturedMaterial(normalMap());
+  b.root["materials"][static_cast<size_t>(material)] = {
+      {"pbrMetallicRoughness",
+       {{"baseColorFactor", {albedo, albedo, albedo, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
+      {"normalTexture", {{"index", 0}}},
+      {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}};
+  const float left = s.mirroredTexture ? 1.f : 0.f;
+  json attributes = {
+      {"POSITION", b.vec3({{-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0.5f, 0.5f, 0}, {-0.5f, 0.5f, 0}})},
+      {"NORMAL", b.vec3(std::vector<vec3>(4, {0, 0, 1}))},
+      {"TEXCOORD_0", b.vec2({{left, 1}, {1 - left, 1}, {1 - left, 0}, {left, 0}})}};
+  // 3.7.2.1: the bitangent, cross(normal, tangent) * w, points up the picture, here to +y.
+  const float side = s.mirroredTexture ? -1.f : 1.f;
+  if (s.tangents) attributes["TANGENT"] = b.vec4(std::vector<glm::vec4>(4, {side, 0, 0, side}));
+  const int mesh = b.mesh(attributes, b.indices({0, 1, 2, 0, 2, 3}), material);
+  b.node({{"mesh", mesh}, {"scale", {s.scale.x, s.scale.y, s.scale.z}}});
+  scene::Scene scene = test::loadBuilt(b);
+  test::shine(scene, test::lamp(glsl::light_directional, float(irradiance)), vec3(0), -towardsLight);
+  return scene;
+}
+
+class NormalMapTruth : public TruthTest {};
+
+/// Lambert: radiance = albedo / pi * irradiance * cosine with the normal (-dh/dx, -dh/dy, 1) of the surface
+/// z = h(x, y).
+TEST_F(NormalMapTruth, ABumpLitFromTheSideIsTheSurfaceItStandsFor) {
+  const Setting all[] = {{"tangents in the file", true, false, vec3(1)},
+                         {"generated tangents", false, false, vec3(1)},
+                         {"mirrored texture, tangents in the file", true, true, vec3(1)},
+                         {"mirrored texture, generated tangents", false, true, vec3(1)},
+                         {"mirrored node, tangents in the file", true, false, {-1, 1, 1}},
+                         {"mirrored node, generated tangents", false, false, {-1, 1, 1}},
+                         {"node mirrored upside down, generated tangents", false, false, {1, -1, 1}},
+                         {"mirrored texture and node, generated tangents", false, true, {-1, 1, 1}}};
+  for (const Setting& s : all)
+    for (const vec3& light : {glm::normalize(vec3(0.8f, 0, 0.6f)), glm::normalize(vec3(0, 0.8f, 0.6f))}) {
+      SCOPED_TRACE(std::string(s.name) + (light.x > 0 ? ", lit from the right" : ", lit from above"));
+      const scene::Scene scene = bumps(s, light);
+      const Question q{.camera = scene::lookAt({0, 0, 2}, {0, 0, 0}, 0.45f), .size = {64, 64}};
+      expectBoth(scene, q,
+                 [&](const dvec3& p, const dvec3&) {
+                   if (std::max(std::abs(p.x), std::abs(p.y)) > 0.48)
+                     return nothing;  // the border's texels wrap
+                   // World to the picture: both scale by +-1.
+                   const dvec2 way(double(s.scale.x) * (s.mirroredTexture ? -1 : 1), double(s.scale.y));
+                   const dvec2 gradient = way * slope(way * dvec2(p) + 0.5);
+                   const dvec3 n = glm::normalize(dvec3(-gradient, 1));
+                   return albedo / M_PI * irradiance * std::max(glm::dot(n, dvec3(light)), 0.0);
+                 },
+                 {.pixels = 1500});
+    }
+}
+
+}  // namespace
+}  // namespace limn
