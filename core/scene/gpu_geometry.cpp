@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <glm/gtc/packing.hpp>
 #include <limits>
 
 #include "core/base/error.h"
@@ -36,11 +37,11 @@ std::vector<glsl::VertexAttributes> packAttributes(const Primitive& primitive) {
   return packed;
 }
 
+/// Halves: dark colours keep as many digits as light ones.
 std::vector<glm::u16vec4> packColours(const Primitive& primitive) {
-  std::vector<glm::u16vec4> packed(primitive.positions.size(), glm::u16vec4(0xffff));
-  for (size_t i = 0; i < std::min(packed.size(), primitive.colours.size()); ++i) {
-    packed[i] = glm::u16vec4(glm::clamp(primitive.colours[i], 0.f, 1.f) * 65535.f + 0.5f);
-  }
+  std::vector<glm::u16vec4> packed(primitive.positions.size(), glm::packHalf(glm::vec4(1)));
+  for (size_t i = 0; i < std::min(packed.size(), primitive.colours.size()); ++i)
+    packed[i] = glm::packHalf(glm::clamp(primitive.colours[i], 0.f, 1.f));
   return packed;
 }
 
