@@ -142,6 +142,14 @@ void GpuGeometry::commit() {
   grow(indices_, "indices", indexCount_ * sizeof(uint32_t), use);
 }
 
+void GpuGeometry::copyColours(const GeometryRange& source, const GeometryRange& target) {
+  if (!hasColours_ || source.vertexCount == 0) return;
+  device_.gl().CopyNamedBufferSubData(colours_.id(), colours_.id(),
+                                      static_cast<GLintptr>(source.firstVertex * colourBytes),
+                                      static_cast<GLintptr>(target.firstVertex * colourBytes),
+                                      static_cast<GLsizeiptr>(source.vertexCount * colourBytes));
+}
+
 void GpuGeometry::write(const GeometryRange& range, const Primitive& primitive) {
   const size_t count = primitive.positions.size();
   positions_.update(range.firstVertex * positionBytes, primitive.positions.data(), count * positionBytes);

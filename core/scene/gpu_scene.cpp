@@ -77,6 +77,9 @@ bool GpuScene::Implementation::allocate(const Pose& pose) {
     d.dirty = true;
   }
   geometry.commit();
+  for (size_t i = 0; i < deformedRanges.size(); ++i)
+    geometry.copyColours(geometry.primitive(deformedPrimitives[i].first, deformedPrimitives[i].second),
+                         deformedRanges[i]);
   return true;
 }
 
