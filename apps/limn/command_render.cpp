@@ -1,6 +1,7 @@
 // limn render: a picture, or a sequence, and what it cost.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "apps/limn/commands.h"
@@ -57,6 +58,32 @@ void printStats(const render::FrameStats& stats) {
                stats.passSumMs, stats.frameMs.median);
 }
 
+/// Throws Error for a picture with values that are not finite, which no file should be taken for a result
+/// with.
+void checkFinite(const Image& picture, const Options& options) {
+  size_t count = 0;
+  glm::ivec2 first(0);
+  for (int y = 0; y < picture.height(); ++y)
+    for (int x = 0; x < picture.width(); ++x) {
+      const bool finite = std::ranges::all_of(picture.pixel(x, y), [](float v) { return std::isfinite(v); });
+      if (!finite && count++ == 0) first = {x, y};
+    }
+  if (count > 0)
+    throw Error(
+        fmt::format("{}: {} of {} pixels of term {} by {} are not finite, the first at {},{} from the upper "
+                    "left; nothing is written",
+                    options.out.string(), count, picture.pixelCount(), options.outputTerm,
+                    options.technique.techniques.empty() ? "no technique" : options.technique.techniques,
+                    first.x, first.y));
+}
+
+/// What was rendered, whose values are finite.
+Image finitePicture(const render::Renderer& renderer, const Options& options) {
+  Image picture = renderer.read();
+  checkFinite(picture, options);
+  return picture;
+}
+
 int run(const Options& options) {
   checkOutputName(options.out);
   for (const fs::path& file : {options.out, options.stats, options.graph})
@@ -87,12 +114,13 @@ int run(const Options& options) {
       renderer.setTime(view.time, view.animation);
       renderer.setCamera(view.camera);
       renderer.render();
-      writeImage(numbered(options.out, frame), renderer.read(), static_cast<float>(options.exposure));
+      writeImage(numbered(options.out, frame), finitePicture(renderer, options),
+                 static_cast<float>(options.exposure));
       progress.update(double(frame - frames->first + 1) / (frames->last - frames->first + 1));
     }
   } else {
     renderer.render();
-    writeImage(options.out, renderer.read(), static_cast<float>(options.exposure));
+    writeImage(options.out, finitePicture(renderer, options), static_cast<float>(options.exposure));
   }
 
   std::optional<render::FrameStats> stats;

@@ -1,5 +1,7 @@
 #include "core/reference/surface.h"
 
+#include <algorithm>
+
 #include "core/reference/texture.h"
 #include "glsl/normal_map.glsl"
 
@@ -73,6 +75,25 @@ struct Triangle {
   glm::vec3 at(float u, float v) const {
     return glm::vec3(p[0] + static_cast<double>(u) * (p[1] - p[0]) + static_cast<double>(v) * (p[2] - p[0]));
   }
+  /// The way towards the centroid that takes the point of these weights as far as `clearance` from every
+  /// edge, or as far as there is room; 0 where it is clear of them. A point on the edge where two walls meet
+  /// lies in both of their planes, as far as floats can tell, and rays that leave it must not meet the other
+  /// one.
+  glm::vec3 inward(const Corner& corner, float clearance) const {
+    const double twiceArea = glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
+    double share = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double height = twiceArea / glm::length(p[(k + 2) % 3] - p[(k + 1) % 3]);
+      const double least = std::min(clearance / height, 1.0 / 3);
+      if (corner.weight[k] < least)
+        share = std::max(share, (least - corner.weight[k]) / (1.0 / 3 - corner.weight[k]));
+    }
+    if (!(share > 0)) return glm::vec3(0);
+    const glm::dvec3 point = static_cast<double>(corner.weight[0]) * p[0] +
+                             static_cast<double>(corner.weight[1]) * p[1] +
+                             static_cast<double>(corner.weight[2]) * p[2];
+    return glm::vec3(share * ((p[0] + p[1] + p[2]) / 3.0 - point));
+  }
   /// Of the front face; `otherwise` where the triangle has no area.
   glm::vec3 normal(float orientation, const glm::vec3& otherwise) const {
     const glm::dvec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
@@ -90,7 +111,7 @@ Surface seenFrom(const RayScene& rays, const Hit& hit, const glm::vec3& view,
   const Corner corner{{indices[0], indices[1], indices[2]}, {1.f - hit.u - hit.v, hit.u, hit.v}};
   const Triangle triangle(draw, corner);
   Surface surface;
-  surface.position = triangle.at(hit.u, hit.v);
+  surface.position = triangle.at(hit.u, hit.v) + triangle.inward(corner, draw.rayOffset);
   surface.view = view;
   surface.rayOffset = draw.rayOffset;
   surface.draw = hit.draw;

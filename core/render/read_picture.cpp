@@ -1,7 +1,6 @@
 #include "core/render/read_picture.h"
 
 #include "glsl/gbuffer.glsl"
-#include "glsl/srgb.glsl"
 
 namespace limn::render {
 namespace {
@@ -37,7 +36,7 @@ struct Reader {
       pixel[5] = covered ? static_cast<float>(instance[i]) : -1.f;
       if (!covered) return;
       const glm::vec3 colour =
-          glsl::srgb_decode(glm::vec3(albedo[4 * i], albedo[4 * i + 1], albedo[4 * i + 2]));
+          glsl::gbuffer_colour_decode(glm::vec3(albedo[4 * i], albedo[4 * i + 1], albedo[4 * i + 2]));
       const glm::vec3 n = glsl::octahedral_decode(glm::vec2(normal[2 * i], normal[2 * i + 1]));
       for (int c = 0; c < 3; ++c) {
         pixel[static_cast<size_t>(6 + c)] = colour[c];

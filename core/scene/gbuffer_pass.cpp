@@ -20,7 +20,7 @@ GBuffer GBufferPass::add(frame::FrameGraph& graph, GpuScene& scene, const SceneH
   const GBuffer g{.depth = write("depth", GL_R32F, "linear view depth"),
                   .normal = write("normal", GL_RG16_SNORM, "shading normal"),
                   .geometricNormal = write("geometric normal", GL_RG16_SNORM, "normal of the triangle"),
-                  .albedo = write("albedo", GL_RGBA8, "base colour, metallic"),
+                  .albedo = write("albedo", GL_RGBA16, "base colour, metallic"),
                   .material = write("material", GL_RGBA8, "roughness, specular, index of refraction"),
                   .emission = write("emission", GL_RGBA16F, "emitted radiance"),
                   .instance = write("instance", GL_R32UI, "draw instance")};

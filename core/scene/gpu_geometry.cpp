@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <glm/gtc/packing.hpp>
 #include <limits>
 
 #include "core/base/error.h"
@@ -36,11 +37,11 @@ std::vector<glsl::VertexAttributes> packAttributes(const Primitive& primitive) {
   return packed;
 }
 
+/// Halves: dark colours keep as many digits as light ones.
 std::vector<glm::u16vec4> packColours(const Primitive& primitive) {
-  std::vector<glm::u16vec4> packed(primitive.positions.size(), glm::u16vec4(0xffff));
-  for (size_t i = 0; i < std::min(packed.size(), primitive.colours.size()); ++i) {
-    packed[i] = glm::u16vec4(glm::clamp(primitive.colours[i], 0.f, 1.f) * 65535.f + 0.5f);
-  }
+  std::vector<glm::u16vec4> packed(primitive.positions.size(), glm::packHalf(glm::vec4(1)));
+  for (size_t i = 0; i < std::min(packed.size(), primitive.colours.size()); ++i)
+    packed[i] = glm::packHalf(glm::clamp(primitive.colours[i], 0.f, 1.f));
   return packed;
 }
 
@@ -139,6 +140,14 @@ void GpuGeometry::commit() {
   grow(attributes_, "vertex attributes", vertices_ * attributeBytes, use);
   if (hasColours_) grow(colours_, "vertex colours", vertices_ * colourBytes, use);
   grow(indices_, "indices", indexCount_ * sizeof(uint32_t), use);
+}
+
+void GpuGeometry::copyColours(const GeometryRange& source, const GeometryRange& target) {
+  if (!hasColours_ || source.vertexCount == 0) return;
+  device_.gl().CopyNamedBufferSubData(colours_.id(), colours_.id(),
+                                      static_cast<GLintptr>(source.firstVertex * colourBytes),
+                                      static_cast<GLintptr>(target.firstVertex * colourBytes),
+                                      static_cast<GLsizeiptr>(source.vertexCount * colourBytes));
 }
 
 void GpuGeometry::write(const GeometryRange& range, const Primitive& primitive) {

@@ -38,6 +38,9 @@ class GpuGeometry {
   uint32_t allocateIndices(uint32_t count);
   /// Grows the buffers to hold what was allocated, keeping their contents.
   void commit();
+  /// Gives the vertices of an allocated range the colours of the scene's own range that they are deformed
+  /// from.
+  void copyColours(const GeometryRange& source, const GeometryRange& target);
   /// Writes a dynamic primitive into its allocated range.
   void write(const GeometryRange& range, const Primitive& primitive);
 

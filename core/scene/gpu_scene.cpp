@@ -24,9 +24,7 @@ gpu::VertexArray makeVertexArray(gpu::Device& device, bool colours) {
       {.location = 1, .components = 2, .type = GL_UNSIGNED_INT, .integer = true, .binding = 3},
       {.location = 2, .components = 2, .type = GL_UNSIGNED_INT, .integer = true, .binding = 1},
       {.location = 3, .components = 2, .type = GL_FLOAT, .offset = 8, .binding = 1}};
-  if (colours)
-    attributes.push_back(
-        {.location = 4, .components = 4, .type = GL_UNSIGNED_SHORT, .normalised = true, .binding = 2});
+  if (colours) attributes.push_back({.location = 4, .components = 4, .type = GL_HALF_FLOAT, .binding = 2});
   return gpu::VertexArray(device, attributes);
 }
 
@@ -79,6 +77,9 @@ bool GpuScene::Implementation::allocate(const Pose& pose) {
     d.dirty = true;
   }
   geometry.commit();
+  for (size_t i = 0; i < deformedRanges.size(); ++i)
+    geometry.copyColours(geometry.primitive(deformedPrimitives[i].first, deformedPrimitives[i].second),
+                         deformedRanges[i]);
   return true;
 }
 

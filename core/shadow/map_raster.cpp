@@ -75,7 +75,7 @@ void addReflectivePass(const MapRaster& raster, TextureHandle ltc, ShadowMaps& m
   };
   maps.depth = write("reflective depth", GL_R32F, "linear depth");
   maps.normal = write("reflective normal", GL_RG16_SNORM, "normal of the triangle");
-  maps.albedo = write("reflective albedo", GL_RGBA8, "diffuse albedo");
+  maps.albedo = write("reflective albedo", GL_RGB10_A2, "diffuse albedo");
   const TextureHandle zbuffer = pass.write(createMaps(raster, maps, "reflective z", GL_DEPTH_COMPONENT32F),
                                            Access::depthAttachment, "hidden-surface removal");
   const bool together = layered(raster.device);

@@ -61,7 +61,7 @@ struct ShadowMapDesc {
 struct ShadowMaps {
   frame::TextureHandle depth;   ///< R32F array
   frame::TextureHandle normal;  ///< reflective: RG16_SNORM array, geometric normal on the light's side
-  frame::TextureHandle albedo;  ///< reflective: RGBA8 array, diffuse albedo, sRGB-encoded
+  frame::TextureHandle albedo;  ///< reflective: RGB10_A2 array, square root of the diffuse albedo
   frame::BufferHandle views;    ///< storage buffer of glsl::ShadowView, index = layer
   frame::BufferHandle lights;   ///< storage buffer of glsl::ShadowLight
   int layers = 0;

@@ -91,7 +91,7 @@ struct GBuffer {
   frame::TextureHandle depth;            ///< R32F, linear view depth in metres, 0: no coverage
   frame::TextureHandle normal;           ///< RG16_SNORM octahedral, shading normal, world space
   frame::TextureHandle geometricNormal;  ///< RG16_SNORM octahedral, faces the camera
-  frame::TextureHandle albedo;           ///< RGBA8, sRGB-encoded base colour, a: metallic
+  frame::TextureHandle albedo;           ///< RGBA16, square root of the base colour, a: metallic
   frame::TextureHandle material;         ///< RGBA8, see glsl/gbuffer.glsl
   frame::TextureHandle emission;         ///< RGBA16F, W/(sr m^2)
   frame::TextureHandle instance;         ///< R32UI, index into Pose::instances, 0xffffffff: none

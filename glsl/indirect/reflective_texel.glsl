@@ -39,7 +39,7 @@ ReflectiveTexel reflective_texel(ShadowView view, ivec2 texel) {
   t.flux = vec3(0.0);
   if (stored < 1.0) {
     t.position += shadow_world_offset(view, shadow_texel_offset(view, texel, stored));
-    vec3 albedo = srgb_decode(texelFetch(reflective_albedo, at, 0).rgb);
+    vec3 albedo = gbuffer_colour_decode(texelFetch(reflective_albedo, at, 0).rgb);
     vec2 uv = (vec2(texel) + 0.5) / float(view.info.z);
     t.flux = albedo * texel_intensity(view.info.w, view.origin.xyz, t) * reflective_map_measure(view, uv);
   }

@@ -6,7 +6,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(r32f, binding = 0) writeonly uniform image2D split_depth;
 layout(rg16_snorm, binding = 1) writeonly uniform image2D split_normal;
 layout(rg16_snorm, binding = 2) writeonly uniform image2D split_geometric_normal;
-layout(rgba8, binding = 3) writeonly uniform image2D split_albedo;
+layout(rgba16, binding = 3) writeonly uniform image2D split_albedo;
 layout(rgba8, binding = 4) writeonly uniform image2D split_material;
 layout(rgba16f, binding = 5) writeonly uniform image2D split_emission;
 uniform int block;

@@ -53,5 +53,5 @@ void main() {
   if (back || (material.info.x & material_specular_surface) != 0u) albedo = vec3(0.0);  // blocks light, sends none on
   stored_depth = linear_depth < 1.0 ? max(linear_depth, 0.0) : 1.0;  // NaN: nothing there
   stored_normal = octahedral_encode(normal);
-  stored_albedo = vec4(srgb_encode(clamp(albedo, vec3(0.0), vec3(1.0))), 1.0);
+  stored_albedo = vec4(gbuffer_colour_encode(albedo), 1.0);
 }

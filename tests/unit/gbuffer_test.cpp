@@ -17,6 +17,11 @@ vec2 asSnorm16(vec2 v) {
 vec4 asUnorm8(vec4 v) {
   return unpackUnorm4x8(packUnorm4x8(v));
 }
+vec4 asUnorm16(vec4 v) {
+  const vec2 low = unpackUnorm2x16(packUnorm2x16(vec2(v.x, v.y)));
+  const vec2 high = unpackUnorm2x16(packUnorm2x16(vec2(v.z, v.w)));
+  return {low.x, low.y, high.x, high.y};
+}
 vec4 asHalf(vec4 v) {
   const vec2 low = unpackHalf2x16(packHalf2x16(vec2(v.x, v.y)));
   const vec2 high = unpackHalf2x16(packHalf2x16(vec2(v.z, v.w)));
@@ -64,18 +69,18 @@ TEST(GBuffer, SurfaceSurvivesTheTexturesWithinHalfAStep) {
     GBufferTexels t = gbuffer_pack(s);
     t.normal = asSnorm16(t.normal);
     t.geometric_normal = asSnorm16(t.geometric_normal);
-    t.albedo = asUnorm8(t.albedo);
+    t.albedo = asUnorm16(t.albedo);
     t.material = asUnorm8(t.material);
     t.emission = asHalf(t.emission);
     const GBufferSurface r = gbuffer_unpack(t);
     ASSERT_LT(length(r.normal - s.normal), kNormalError);
     ASSERT_LT(length(r.geometric_normal - s.geometric_normal), kNormalError);
     for (int c = 0; c < 3; ++c) {
-      ASSERT_NEAR(srgb_encode(r.base_colour[c]), srgb_encode(s.base_colour[c]), 0.501f / 255);
+      ASSERT_NEAR(sqrt(r.base_colour[c]), sqrt(s.base_colour[c]), 0.51f / 65535);
       ASSERT_NEAR(r.specular_colour[c], s.specular_colour[c], 0.501f / 30);
       ASSERT_NEAR(r.emission[c], s.emission[c], s.emission[c] / 2048 + 1e-6f);
     }
-    ASSERT_NEAR(r.metallic, s.metallic, 0.501f / 255);
+    ASSERT_NEAR(r.metallic, s.metallic, 0.51f / 65535);
     ASSERT_NEAR(r.roughness, s.roughness, 0.501f / 255);
     ASSERT_NEAR(r.specular_factor, s.specular_factor, 0.501f / 255);
     ASSERT_NEAR(r.ior, s.ior, 2 * 0.501f / 255);
