@@ -4,23 +4,13 @@
 
 #include <algorithm>
 
+#include "core/base/shell.h"
+
 namespace limn::app {
 namespace {
 
 std::string vector(const glm::vec3& v) {
   return fmt::format("{},{},{}", v.x, v.y, v.z);  // the shortest text that reads as the same numbers
-}
-
-/// For a POSIX shell.
-std::string quoted(const std::string& text) {
-  const auto plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view("_-./,:=@%+").find(c) != std::string_view::npos;
-  };
-  if (!text.empty() && std::ranges::all_of(text, plain)) return text;
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
 }
 
 /// TOML basic string.
@@ -58,13 +48,13 @@ class CommandLine {
   explicit CommandLine(const std::string& start) : text_(start) {}
   /// Left out where `value` is empty.
   CommandLine& add(const char* option, const std::string& value) {
-    if (!value.empty()) text_ += fmt::format(" {} {}", option, quoted(value));
+    if (!value.empty()) text_ += fmt::format(" {} {}", option, shellQuoted(value));
     return *this;
   }
   /// Left out where `value` is `standard`.
   template <class T>
   CommandLine& add(const char* option, const T& value, const T& standard) {
-    if (!(value == standard)) text_ += fmt::format(" {} {}", option, quoted(fmt::format("{}", value)));
+    if (!(value == standard)) text_ += fmt::format(" {} {}", option, shellQuoted(fmt::format("{}", value)));
     return *this;
   }
   std::string text() const { return text_; }
@@ -97,7 +87,7 @@ void dropRivals(std::vector<render::TechniqueUse>& techniques, const TechniquePl
 std::string renderCommand(const ViewState& state, const std::filesystem::path& out) {
   const SceneOptions& s = state.scene;
   const SceneOptions standard;
-  CommandLine line("limn render " + quoted(s.scene.string()));
+  CommandLine line("limn render " + shellQuoted(s.scene.string()));
   line.add("--technique", techniqueNames(state.techniques));
   for (const render::TechniqueUse& use : state.techniques)
     for (const auto& [name, value] : changed(use))

@@ -7,7 +7,7 @@ import {ownName, settings} from "./series.js";
 export function framed(uri, text, table) {
   const [width, height] = table.size;
   const boxes = table.windows.map(([x, y, w, h], i) => el("span", {class: `window-${i}`, "aria-hidden": "true",
-    style: `left:${100 * x / width}%;top:${100 * y / height}%;width:${100 * w / width}%;height:${100 * h / height}%`}));
+    style: {left: `${100 * x / width}%`, top: `${100 * y / height}%`, width: `${100 * w / width}%`, height: `${100 * h / height}%`}}));
   return el("div", {class: "framed"}, el("img", {src: uri, alt: text}), boxes);
 }
 

@@ -1,10 +1,14 @@
 // Elements from data. Texts only ever become text nodes and attribute values, never markup.
 
-/** An element; functions among the attributes are listeners, null and false are left out, children may be texts. */
+/**
+ * An element; functions among the attributes are listeners, null and false are left out, children may be texts. `style` is an
+ * object: the page's policy lets no style attribute in.
+ */
 export function el(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (typeof value === "function") element.addEventListener(name, value);
+    else if (name === "style") Object.assign(element.style, value);
     else if (value !== null && value !== undefined && value !== false)
       element.setAttribute(name, value === true ? "" : value);
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/bench/markdown.h"
 #include "core/bench/ratio.h"
 
 namespace limn::bench {
@@ -20,15 +21,18 @@ const Row* quickest(std::span<const Row> rows, const std::string& technique, dou
   return best;
 }
 
-std::string ratios(const Row& slow, const Row& fast) {
+using Cells = std::vector<std::string>;
+
+/// The row that is shown, and how much slower than another it is: of the frame and of its shadows.
+Cells ratioCells(const Row& shown, const Row& slow, const Row& fast) {
   const double shadow = shadowMs(fast);
-  return fmt::format("{} | {}", frameRatio(slow, fast),
-                     shadow > 0 ? fmt::format("{:.2f}", shadowMs(slow) / shadow) : "-");
+  return {rowName(shown), frameRatio(slow, fast),
+          shadow > 0 ? fmt::format("{:.2f}", shadowMs(slow) / shadow) : "-"};
 }
 
-std::string atEqual(const Row* row, const Row& against) {
-  if (row == nullptr) return "none | - | -";
-  return fmt::format("{} | {}", markdownCell(rowName(*row)), ratios(*row, against));
+void appendAtEqual(Cells& cells, const Row* row, const Row& against) {
+  const Cells more = row == nullptr ? Cells{"none", "-", "-"} : ratioCells(*row, *row, against);
+  cells.insert(cells.end(), more.begin(), more.end());
 }
 
 }  // namespace
@@ -69,12 +73,6 @@ std::string rowName(const Row& row) {
   return name;
 }
 
-std::string markdownCell(std::string text) {
-  for (std::size_t i = 0; (i = text.find('|', i)) != std::string::npos; i += 2) text.insert(i, 1, '\\');
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
 std::string comparisonMarkdown(std::span<const Row> rows) {
   const auto baseline =
       std::ranges::find_if(rows, [](const Row& row) { return row.what.baseline && isTimed(row); });
@@ -85,27 +83,28 @@ std::string comparisonMarkdown(std::span<const Row> rows) {
       "\nTimes of {} as multiples of each row's (frame, with the 95 % interval of the samples | shadows: "
       "maps, "
       "filters and the technique's passes)",
-      markdownCell(rowName(*baseline)));
+      markdownText(rowName(*baseline)));
   if (std::ranges::none_of(rows, other)) {  // settings of one technique
     text += ":\n\n| settings | frame | shadows |\n|---|--:|--:|\n";
     for (const Row& row : rows)
-      if (isTimed(row) && &row != &*baseline)
-        text += fmt::format("| {} | {} |\n", markdownCell(rowName(row)), ratios(*baseline, row));
+      if (isTimed(row) && &row != &*baseline) text += markdownRow(ratioCells(row, *baseline, row));
     return text;
   }
   text += fmt::format(
       ", and of the quickest {0} whose RMSE, and whose structured error, is not above the row's{1}:\n\n"
       "| technique | frame | shadows | {0} at equal RMSE | frame | shadows | {0} at equal structured error | "
       "frame | shadows |\n|---|--:|--:|---|--:|--:|---|--:|--:|\n",
-      markdownCell(technique), baseline->penumbra ? " in the penumbra" : "");
+      markdownText(technique), baseline->penumbra ? " in the penumbra" : "");
   for (const Row& row : rows) {
     if (!other(row)) continue;
     const Row* equalRmse =
         quickest(rows, technique, errorOf(row).rmse, [](const Row& r) { return errorOf(r).rmse; });
     const Row* equalStructured = quickest(rows, technique, errorOf(row).structured,
                                           [](const Row& r) { return errorOf(r).structured; });
-    text += fmt::format("| {} | {} | {} | {} |\n", markdownCell(rowName(row)), ratios(*baseline, row),
-                        atEqual(equalRmse, row), atEqual(equalStructured, row));
+    Cells cells = ratioCells(row, *baseline, row);
+    appendAtEqual(cells, equalRmse, row);
+    appendAtEqual(cells, equalStructured, row);
+    text += markdownRow(cells);
   }
   return text;
 }

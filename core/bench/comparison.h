@@ -41,9 +41,6 @@ LIMN_API std::optional<ReferenceTime> referenceTime(const Row& row);
 /// The row for people: its title, or the technique with its parameters.
 LIMN_API std::string rowName(const Row& row);
 
-/// A text as a cell of a Markdown table.
-LIMN_API std::string markdownCell(std::string text);
-
 /// Markdown with a line for each timed row but those of the baseline's technique: frame time and the time of
 /// its shadows (maps, filters, technique) as multiples in which the baseline is slower (above 1: the row is
 /// faster), and the same for the quickest rows of the baseline's technique whose RMSE and whose structured

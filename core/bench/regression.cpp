@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/bench/comparison.h"
+#include "core/bench/markdown.h"
 
 namespace limn::bench {
 namespace {
@@ -39,7 +40,7 @@ Change compareRows(const Row& before, const Row& now, const RegressionOptions& o
 }
 
 std::string verdict(const Change& change) {
-  if (!change.failure.empty()) return "failed: " + markdownCell(change.failure);
+  if (!change.failure.empty()) return "failed: " + change.failure;
   std::string text;
   const auto add = [&](bool holds, const char* word) {
     if (holds) text += fmt::format("{}{}", text.empty() ? "" : ", ", word);
@@ -95,8 +96,8 @@ std::string toMarkdown(const Regression& regression) {
         change.time.value > 0
             ? fmt::format("{:.3f} ({:.3f} to {:.3f})", change.time.value, change.time.low, change.time.high)
             : "-";
-    rows += fmt::format("| {} | {} | {:.4g} | {:.4g} | {} |\n", markdownCell(change.label), time,
-                        change.errorBefore, change.error, verdictText);
+    rows += markdownRow({change.label, time, fmt::format("{:.4g}", change.errorBefore),
+                         fmt::format("{:.4g}", change.error), verdictText});
   }
   if (rows.empty()) return text;
   return text + "\n| case | time, now / before (95 %) | RMSE before | now | |\n|---|--:|--:|--:|---|\n" +

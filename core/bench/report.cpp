@@ -18,7 +18,7 @@
 
 namespace limn::bench {
 
-/// benchmarks/report/ and the bundle of its scripts, compiled in.
+/// page.html of benchmarks/report/ with its style and its script, compiled in; {{data}} is where the rows go.
 std::span<const gpu::EmbeddedSource> reportSources();
 
 namespace {
@@ -169,18 +169,6 @@ Json stability(const std::filesystem::path& folder) {
   return json;
 }
 
-std::string_view source(std::string_view name) {
-  for (const gpu::EmbeddedSource& file : reportSources())
-    if (name == file.path) return file.text;
-  throw Error(fmt::format("report: '{}' is not compiled in", name));
-}
-
-/// Puts `text` in the place of `{{name}}`, which the page has once.
-void fill(std::string& page, std::string_view name, std::string_view text) {
-  const std::string mark = fmt::format("{{{{{}}}}}", name);
-  page.replace(page.find(mark), mark.size(), text);
-}
-
 }  // namespace
 
 std::string reportData(std::span<const Row> rows, const std::filesystem::path& folder) {
@@ -194,24 +182,17 @@ std::string reportData(std::span<const Row> rows, const std::filesystem::path& f
   json["pictures"] = pictures.uris();
   json["reduction"] = pictures.reduction();
   json["stability"] = stability(folder);
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string safe;  // "</script>" and "<!--" would end or change the element
-  safe.reserve(text.size());
-  for (const char c : text) {
-    if (c == '<') {
-      safe += "\\u003c";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
+  // ASCII alone: no line separator (U+2028) or mark of direction stands in the page as itself.
+  std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
+  for (std::size_t i = 0; (i = text.find('<', i)) != std::string::npos; ++i)
+    text.replace(i, 1, "\\u003c");  // "</script>" and "<!--" would end or change the element
+  return text;
 }
 
 void writeReport(std::span<const Row> rows, const std::filesystem::path& folder) {
-  std::string page(source("page.html"));
-  fill(page, "style", source("page.css"));
-  fill(page, "script", source("page.js"));
-  fill(page, "data", reportData(rows, folder));
+  constexpr std::string_view mark = "{{data}}";
+  std::string page(reportSources().front().text);
+  page.replace(page.find(mark), mark.size(), reportData(rows, folder));
   writeTextFile(folder / "index.html", page);
 }
 

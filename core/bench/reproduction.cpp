@@ -9,7 +9,9 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/shell.h"
 #include "core/bench/comparison.h"
+#include "core/bench/markdown.h"
 
 namespace limn::bench {
 namespace {
@@ -133,21 +135,22 @@ std::string reproductionMarkdown(std::span<const Claim> claims, std::span<const 
       markdown += fmt::format(
           "{}## Chapter {}\n\n| thesis | comparison | of | thesis | measured | at "
           "|\n|---|---|---|--:|--:|---|\n",
-          markdown.empty() ? "" : "\n", current);
+          markdown.empty() ? "" : "\n", markdownText(current));
     chapter = current;
     const Row *slow = find(rows, claim.slow), *fast = find(rows, claim.fast);
     const bool measured = slow != nullptr && fast != nullptr;
-    markdown += fmt::format("| {} | {} | {} | {:.2f} | {} | {} |\n", markdownCell(claim.where),
-                            markdownCell(claim.what), name(claim.measure), claim.thesis,
-                            measured ? ratioText(claim, *slow, *fast) : "not measured",
-                            measured ? markdownCell(settings(*fast)) : "");
+    markdown += markdownRow(
+        {claim.where, claim.what, name(claim.measure), fmt::format("{:.2f}", claim.thesis),
+         measured ? ratioText(claim, *slow, *fast) : "not measured", measured ? settings(*fast) : ""});
     suites.insert(claim.suite);
   }
   markdown += "\nMeasured with\n\n```sh\n";
-  for (const std::string& suite : suites)
-    markdown += fmt::format("build/bin/limn bench {0} --out out/{0}\n", suite);
   std::string folders;
-  for (const std::string& suite : suites) folders += " out/" + suite;
+  for (const std::string& suite : suites) {
+    const std::string folder = shellQuoted("out/" + suite);
+    markdown += fmt::format("build/bin/limn bench {} --out {}\n", shellQuoted(suite), folder);
+    folders += " " + folder;
+  }
   return markdown + fmt::format("build/bin/limn reproduction{} --out docs/reproduction.md\n```\n", folders);
 }
 

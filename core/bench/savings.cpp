@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/bench/markdown.h"
 #include "core/image/metrics.h"
 #include "core/render/frame_stats.h"
 
@@ -213,14 +214,16 @@ std::string toMarkdown(std::span<const SavingResult> results) {
       "| --- | --- | --: | --: | --: | --: | --: | --: | --- |\n";
   for (const SavingResult& r : results) {
     if (!r.applies) {
-      text += fmt::format("| {} | {} | | | | | | | nothing to leave out |\n", r.name, r.how);
+      text += markdownRow({r.name, r.how, "", "", "", "", "", "", "nothing to leave out"});
       continue;
     }
-    text += fmt::format(
-        "| {} | {} | {} | {:.2f} | {:.2f} | {:.3f} ({:.3f} to {:.3f}) | {:.1f} | {:.1f} | {}{} |\n", r.name,
-        r.how, r.passes.size(), render::quartiles(r.forced.ms).median, render::quartiles(r.without.ms).median,
-        r.ratio.value, r.ratio.low, r.ratio.high, mebibytes(r.forced.memoryBytes),
-        mebibytes(r.without.memoryBytes), pictureText(r), r.holds() ? "" : " (NOT as it must be)");
+    text += markdownRow({r.name, r.how, fmt::format("{}", r.passes.size()),
+                         fmt::format("{:.2f}", render::quartiles(r.forced.ms).median),
+                         fmt::format("{:.2f}", render::quartiles(r.without.ms).median),
+                         fmt::format("{:.3f} ({:.3f} to {:.3f})", r.ratio.value, r.ratio.low, r.ratio.high),
+                         fmt::format("{:.1f}", mebibytes(r.forced.memoryBytes)),
+                         fmt::format("{:.1f}", mebibytes(r.without.memoryBytes)),
+                         pictureText(r) + (r.holds() ? "" : " (NOT as it must be)")});
   }
   return text;
 }

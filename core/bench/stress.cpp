@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
-#include "core/bench/comparison.h"
+#include "core/bench/markdown.h"
 #include "core/bench/stress_scene.h"
 #include "core/image/metrics.h"
 #include "core/reference/reference.h"
@@ -273,16 +273,11 @@ std::string toMarkdown(std::span<const StressResult> results) {
     if (!r.settings.empty()) what += fmt::format(" ({})", r.settings);
     std::string verdict = name(r.verdict);
     if (!r.message.empty()) verdict += ": " + r.message;
-    text +=
-        fmt::format("| {} | {} | {} | {} |", r.technique, markdownCell(what), r.scene, markdownCell(verdict));
     const bool measured = r.verdict == Verdict::pass || r.verdict == Verdict::degraded;
-    if (!measured) {
-      text += fmt::format(" - | {:.4f} | - | - |\n", r.benign);
-    } else if (r.allowed > 0) {
-      text += fmt::format(" {:.4f} | {:.4f} | {:.2f} | {:.1f} |\n", r.error, r.benign, r.factor, r.allowed);
-    } else {
-      text += fmt::format(" {:.4f} | {:.4f} | - | - |\n", r.error, r.benign);
-    }
+    const bool bounded = measured && r.allowed > 0;
+    text += markdownRow({r.technique, what, r.scene, verdict, measured ? fmt::format("{:.4f}", r.error) : "-",
+                         fmt::format("{:.4f}", r.benign), bounded ? fmt::format("{:.2f}", r.factor) : "-",
+                         bounded ? fmt::format("{:.1f}", r.allowed) : "-"});
   }
   return text;
 }

@@ -10,6 +10,7 @@
 
 #include "core/base/file.h"
 #include "core/bench/comparison.h"
+#include "core/bench/markdown.h"
 #include "core/render/frame_stats.h"
 
 namespace limn::bench {
@@ -104,11 +105,17 @@ std::string share(std::size_t part, std::size_t whole) {
                     : fmt::format("{:.2f}", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
 }
 
+using Cells = std::vector<std::string>;
+
+void append(Cells& cells, const Cells& more) {
+  cells.insert(cells.end(), more.begin(), more.end());
+}
+
 /// Columns of visibility alone.
-std::string visibilityCells(const Row& row) {
-  std::string cells = row.penumbra ? fmt::format(" {} |", rmseText(*row.penumbra)) : " - |";
+Cells visibilityCells(const Row& row) {
   const Misjudged m = row.misjudged.value_or(Misjudged{});
-  return cells + fmt::format(" {} | {} |", share(m.litInUmbra, m.umbra), share(m.darkInLight, m.lit));
+  return {row.penumbra ? rmseText(*row.penumbra) : "-", share(m.litInUmbra, m.umbra),
+          share(m.darkInLight, m.lit)};
 }
 
 /// How far the slowest frames lie above the others: stalls show here, not in the quartiles.
@@ -116,22 +123,37 @@ std::string tailText(const FrameTime& t) {
   return t.samples.empty() ? "-" : fmt::format("{:.2f}", render::quantile(t.samples, 0.99) / t.median);
 }
 
-std::string markdownRow(const Row& row, const Table& table, bool visibility) {
-  const std::string& name = row.what.title.empty() ? row.what.technique : row.what.title;
-  std::string line = fmt::format("| {} | {} |", markdownCell(name), markdownCell(parameterText(row.what)));
-  if (!row.failure.empty()) return line + fmt::format(" failed: {} |\n", markdownCell(row.failure));
-  const Metrics& e = row.error;
-  line += fmt::format(" {} | {:.4g} | {:+.3g} | {:.4g} | {:.1f} | {:.4f} | {:.4g} |", rmseText(e), e.rel_mse,
-                      e.bias, e.p999, e.psnr, e.flip, e.structured);
-  if (visibility) line += visibilityCells(row);
+Cells timeCells(const Row& row, const Table& table) {
   const FrameTime& t = row.cost.frameMs;
-  if (!isTimed(row)) return line + " - | - | - | - | 0 | - | - | - | - | - | - |  |\n";
+  if (!isTimed(row)) return {"-", "-", "-", "-", "0", "-", "-", "-", "-", "-", "-", ""};
   const CostSplit& split = row.cost.split;
-  line += fmt::format(" {:.3f} | {:.3f} | {:.3f} | {} | {} | {:.1f} | {} | {:.2f} | {:.2f} | {:.2f} |",
-                      t.median, t.q1, t.q3, tailText(t), t.n, 1000 / t.median, referenceTimeText(row),
-                      split.maps, split.filters, split.technique);
-  return line + fmt::format(" {:.1f} | {} |\n", static_cast<double>(row.cost.memoryBytes) / (1 << 20),
-                            onParetoFront(row, table.rows) ? "*" : "");
+  return {fmt::format("{:.3f}", t.median),
+          fmt::format("{:.3f}", t.q1),
+          fmt::format("{:.3f}", t.q3),
+          tailText(t),
+          fmt::format("{}", t.n),
+          fmt::format("{:.1f}", 1000 / t.median),
+          referenceTimeText(row),
+          fmt::format("{:.2f}", split.maps),
+          fmt::format("{:.2f}", split.filters),
+          fmt::format("{:.2f}", split.technique),
+          fmt::format("{:.1f}", static_cast<double>(row.cost.memoryBytes) / (1 << 20)),
+          onParetoFront(row, table.rows) ? "*" : ""};
+}
+
+Cells cellsOf(const Row& row, const Table& table, bool visibility) {
+  Cells cells = {row.what.title.empty() ? row.what.technique : row.what.title, parameterText(row.what)};
+  if (!row.failure.empty()) {
+    append(cells, {"failed: " + row.failure});
+    return cells;
+  }
+  const Metrics& e = row.error;
+  append(cells, {rmseText(e), fmt::format("{:.4g}", e.rel_mse), fmt::format("{:+.3g}", e.bias),
+                 fmt::format("{:.4g}", e.p999), fmt::format("{:.1f}", e.psnr), fmt::format("{:.4f}", e.flip),
+                 fmt::format("{:.4g}", e.structured)});
+  if (visibility) append(cells, visibilityCells(row));
+  append(cells, timeCells(row, table));
+  return cells;
 }
 
 }  // namespace
@@ -155,7 +177,7 @@ std::vector<Table> makeTables(std::span<const Row> rows) {
 std::string toMarkdown(const Table& table) {
   const bool visibility = std::any_of(table.rows.begin(), table.rows.end(),
                                       [](const Row& row) { return row.penumbra || row.misjudged; });
-  std::string text = fmt::format("### {}\n\n", table.title);
+  std::string text = fmt::format("### {}\n\n", markdownText(table.title));
   text += fmt::format(
       "| technique | parameters | RMSE | rel. MSE | bias | p99.9 | PSNR | FLIP | structured |{} median ms | "
       "q1 | q3 | p99 / median | n | fps | reference ms | maps ms | filters ms | technique ms | MiB | front "
@@ -164,7 +186,7 @@ std::string toMarkdown(const Table& table) {
   text +=
       fmt::format("|---|---|--:|--:|--:|--:|--:|--:|--:|{}--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|:-:|\n",
                   visibility ? "--:|--:|--:|" : "");
-  for (const Row& row : table.rows) text += markdownRow(row, table, visibility);
+  for (const Row& row : table.rows) text += markdownRow(cellsOf(row, table, visibility));
   return text + comparisonMarkdown(table.rows);
 }
 
@@ -216,29 +238,31 @@ std::string toCsv(const Table& table) {
 }
 
 std::string picturesMarkdown(const Table& table) {
-  struct Cell {
-    std::string picture, caption;
-  };
-  std::vector<Cell> cells;
+  std::vector<std::string> pictures, captions;
   for (const Row& row : table.rows) {
-    if (row.picture.empty()) continue;
-    if (cells.empty()) cells.push_back({referencePicture(row), "reference"});
-    std::string caption = markdownCell(rowName(row)) + ": RMSE " + rmseText(row.error);
+    const std::string picture = markdownPicture(row.picture);
+    if (picture.empty()) continue;
+    if (pictures.empty()) {
+      pictures.push_back(markdownPicture(referencePicture(row)));
+      captions.push_back("reference");
+    }
+    std::string caption = rowName(row) + ": RMSE " + rmseText(row.error);
     if (row.penumbra) caption += fmt::format(" ({} in the penumbra)", rmseText(*row.penumbra));
     if (isTimed(row)) caption += fmt::format(", {:.1f} ms", row.cost.frameMs.median);
-    cells.push_back({row.picture, caption});
+    pictures.push_back(picture);
+    captions.push_back(caption);
   }
-  if (cells.empty()) return "";
+  if (pictures.empty()) return "";
   constexpr std::size_t columns = 3;
-  std::string text = fmt::format("### {}\n\n| | | |\n|---|---|---|\n", table.title);
-  for (std::size_t line = 0; line < cells.size(); line += columns) {
-    std::string pictures = "|", captions = "|";
-    for (std::size_t i = line; i < line + columns; ++i) {
-      const bool there = i < cells.size();
-      pictures += there ? fmt::format(" ![]({}) |", cells[i].picture) : " |";
-      captions += there ? fmt::format(" {} |", cells[i].caption) : " |";
+  std::string text = fmt::format("### {}\n\n| | | |\n|---|---|---|\n", markdownText(table.title));
+  for (std::size_t first = 0; first < pictures.size(); first += columns) {
+    text += "|";
+    std::vector<std::string> below;
+    for (std::size_t i = first; i < first + columns; ++i) {
+      text += i < pictures.size() ? fmt::format(" {} |", pictures[i]) : " |";
+      below.push_back(i < captions.size() ? captions[i] : "");
     }
-    text += pictures + "\n" + captions + "\n";
+    text += "\n" + markdownRow(below);
   }
   return text;
 }
@@ -248,7 +272,7 @@ void writeTables(std::span<const Row> rows, const std::filesystem::path& folder)
   std::string scene;
   for (const Table& table : makeTables(rows)) {
     const std::string& current = table.rows.front().what.scene;
-    if (markdown.empty() || current != scene) markdown += fmt::format("## {}\n\n", current);
+    if (markdown.empty() || current != scene) markdown += fmt::format("## {}\n\n", markdownText(current));
     scene = current;
     markdown += toMarkdown(table) + "\n";
     if (const std::string shown = picturesMarkdown(table); !shown.empty()) pictures += shown + "\n";

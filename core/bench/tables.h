@@ -26,7 +26,9 @@ LIMN_API std::vector<Table> makeTables(std::span<const Row> rows);
 /// time carry a star; an RMSE below three times the reference's noise is shown as that bound ("<0.001"). The
 /// column "reference ms" is referenceTime().
 LIMN_API std::string toMarkdown(const Table& table);
-/// The same numbers in full precision, with a header line (RFC 4180).
+/// The same numbers in full precision, with a header line (RFC 4180). Texts are data, as they are: one that
+/// begins with =, +, - or @ is left so, and a spreadsheet may take it for a formula; import such columns as
+/// text.
 LIMN_API std::string toCsv(const Table& table);
 
 /// The pictures that were kept, the reference's first, three in a line with error and time below; "" if there

@@ -1,11 +1,13 @@
 """The report page of a real, small bench in a real browser: what it shows, and what foreign texts cannot do to it."""
 import argparse
 import contextlib
+import http.server
 import json
 import pathlib
 import shutil
 import subprocess
 import sys
+import threading
 
 from chromium import Browser
 from png import decode
@@ -39,6 +41,24 @@ parameters = {samples = [1, 4], shadow_map_size = 128}
 POINTS = 5
 HEADING = "document.querySelector('.detail h3').textContent"
 HOSTILE = "</script><img src=x onerror=\"window.harmed = true\"><script>window.harmed = true</script>{{data}}"
+
+# What a name may hold; ADDRESS is a server that counts who asks.
+HOSTILE_TEXTS = [
+    "</script><script>window.harmed = true</script>",
+    "<img src=x onerror='window.harmed = true'><svg onload='window.harmed = true'>",
+    "<img src='ADDRESS/image'><link rel=stylesheet href='ADDRESS/style'><iframe src='ADDRESS/frame'></iframe>",
+    "javascript:window.harmed = true",
+    "url(ADDRESS/url) } * { background: url(ADDRESS/background) }",
+    "\" onmouseover=\"window.harmed = true\" x='",
+    "{{data}} {{style}} ${window.harmed = true} {{constructor.constructor('window.harmed = true')()}}",
+    "<!--<script> --> ]]> &lt;b&gt; \u2028window.harmed = true\u2029",
+    "\u202egnp.txet\u202c \u2066isolated\u2069 \u200fmark",
+    "__proto__ constructor toString",
+    "../../../../etc/passwd",
+    "W" * 5000,
+    "long name with spaces " * 300,
+    "\x1b[31mred\x07\x00 \ud83d\ude00",
+]
 
 parser = argparse.ArgumentParser()
 for option in ("limn", "chromium", "scratch"):
@@ -259,10 +279,93 @@ def withstands_foreign_rows(browser):
     check("No rows yet" in browser.evaluate("document.body.textContent"), "a report without rows")
 
 
+def replaced(value, text):
+    """The value with `text` in the place of every text and every parameter's name."""
+    if isinstance(value, str):
+        return text
+    if isinstance(value, list):
+        return [replaced(item, text) for item in value]
+    if isinstance(value, dict):
+        return {(text if key.startswith(("pcss.", "sampled_area_light.")) else key): replaced(item, text)
+                for key, item in value.items()}
+    return value
+
+
+@contextlib.contextmanager
+def listening():
+    """An address on this machine, and the paths that were asked for there."""
+    asked = []
+
+    class Handler(http.server.BaseHTTPRequestHandler):
+        def do_GET(self):
+            asked.append(self.path)
+            self.send_response(204)
+            self.end_headers()
+
+        def log_message(self, *_):
+            pass
+
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{server.server_port}", asked
+    server.shutdown()
+
+
+def shows_hostile_names_literally(browser):
+    """Hostile texts in every field of every row: shown as they are, nothing runs, nothing is fetched."""
+    rows = [json.loads(line) for line in results.read_text().splitlines()]
+    with listening() as (address, asked):
+        for number, text in enumerate(HOSTILE_TEXTS):
+            text = text.replace("ADDRESS", address)
+            hostile = [dict(replaced(row, text), key=str(i)) for i, row in enumerate(rows)]
+            hostile.append(dict(hostile[0], key="failed", failure=text, renderer=text))
+            with reported([*rows, *hostile]):
+                browser.open(page)
+                what = f"hostile text {number}"
+                for point in browser.evaluate("[...document.querySelectorAll('g.point')].slice(-2).map((p, i) => i)"):
+                    browser.evaluate(f"[...document.querySelectorAll('g.point')].at(-1 - {point}).focus()")
+                browser.settle()
+                check(browser.evaluate("window.harmed === undefined"), f"{what} ran")
+                check(browser.evaluate("document.querySelectorAll('main script, main link, main iframe, main svg svg').length") == 0,
+                      f"{what} became markup")
+                check(browser.evaluate("[...document.images].every(i => i.src.startsWith('data:image/png;base64,'))"),
+                      f"{what} became the address of a picture")
+                check(browser.evaluate("[...document.links].every(l => l.getAttribute('href').startsWith('#'))"),
+                      f"{what} became a link")
+                literal = json.dumps(text)
+                check(browser.evaluate(f"document.getElementById('results').textContent.includes({literal})"),
+                      f"{what} is not shown as it is")
+                check(browser.evaluate("document.documentElement.scrollWidth <= innerWidth"), f"{what} widens the page")
+                check(not browser.problems, f"{what}: {browser.problems}")
+        check(not asked, f"the page asked for {asked}")
+
+
+def is_shut_by_its_policy(browser):
+    """Even markup that came into the page could neither run nor ask for anything."""
+    with listening() as (address, asked):
+        browser.open(page)
+        stopped = browser.evaluate(f"""(async () => {{
+            const stopped = []; document.addEventListener('securitypolicyviolation', e => stopped.push(e.effectiveDirective));
+            const put = (tag, set) => document.body.append(Object.assign(document.createElement(tag), set));
+            put('script', {{textContent: 'window.harmed = true'}}); put('script', {{src: '{address}/script'}});
+            put('style', {{textContent: 'body {{ color: red }}'}}); put('img', {{src: '{address}/image'}});
+            put('iframe', {{src: '{address}/frame'}}); put('link', {{rel: 'stylesheet', href: '{address}/style'}});
+            document.body.insertAdjacentHTML('beforeend', '<i onclick="window.harmed = true" style="color: red"></i>');
+            document.querySelector('i').click();
+            await fetch('{address}/fetch').catch(() => 0); try {{ new WebSocket('{address}'.replace('http', 'ws')); }} catch {{ }}
+            await new Promise(done => setTimeout(done, 500)); return stopped; }})()""")
+        check(browser.evaluate("window.harmed === undefined"), "a script without its hash runs")
+        for directive in ("script-src-elem", "script-src-attr", "style-src-elem", "style-src-attr", "img-src", "connect-src",
+                          "frame-src"):
+            check(directive in stopped, f"the policy lets {directive} through: {stopped}")
+        check(not asked, f"the page asked for {asked}")
+        browser.problems.clear()  # what was stopped
+
+
 bench()
 with Browser(options.chromium) as browser:
     for step in (shows_points_and_pictures, reacts, tells_close_points_apart, is_painted, is_accessible, sets_the_reference_beside,
-                 withstands_foreign_rows):
+                 shows_hostile_names_literally, is_shut_by_its_policy, withstands_foreign_rows):
         step(browser)
         check(not browser.problems, f"{step.__name__}: {browser.problems}")
 print("the report page shows and does what it should")

@@ -85,17 +85,19 @@ TEST_F(BenchReport, TextsCannotLeaveTheScript) {
   Row bad = row("pcss", 0.5f);
   bad.what.scene = bad.what.title = bad.cost.renderer = bad.cost.machine = kHostile;
   Row failed = bad;
-  failed.failure = std::string(kHostile) + "\xff<!--";
+  failed.failure = std::string(kHostile) + "\xff<!-- \xe2\x80\xa8 \xe2\x80\xae";  // line separator, direction
   failed.what.light = kHostile;
   const std::vector<Row> rows = {bad, failed};
   const std::string text = reportData(rows, results());
   EXPECT_EQ(text.find('<'), std::string::npos);
+  EXPECT_TRUE(std::ranges::all_of(text, [](unsigned char c) { return c < 0x80; }));
   EXPECT_EQ(Json::parse(text)["tables"][0]["subject"]["scene"], kHostile);
   writeReport(rows, results());
   const std::string page = readTextFile(results() / "index.html");
   EXPECT_EQ(page.find("<img"), std::string::npos);
   EXPECT_EQ(page.find("{{"), std::string::npos);
   EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
+  EXPECT_EQ(page.find("unsafe-inline"), std::string::npos);
 }
 
 TEST_F(BenchReport, OnlyPicturesInsideTheFolderAreRead) {

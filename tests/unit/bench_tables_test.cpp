@@ -147,5 +147,46 @@ TEST(BenchTables, CsvQuotesAndKeepsPrecision) {
   EXPECT_EQ(fields[0], fields[2]);
 }
 
+/// The records of a file as RFC 4180 reads it.
+std::vector<std::vector<std::string>> csvRecords(const std::string& text) {
+  std::vector<std::vector<std::string>> records(1, {""});
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted && c == '"' && i + 1 < text.size() && text[i + 1] == '"') {
+      records.back().back() += text[++i];
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (!quoted && c == ',') {
+      records.back().emplace_back();
+    } else if (!quoted && text.compare(i, 2, "\r\n") == 0) {
+      records.push_back({""});
+      ++i;
+    } else {
+      records.back().back() += c;
+    }
+  }
+  records.pop_back();
+  return records;
+}
+
+TEST(BenchTables, CsvKeepsEveryTextAsItIs) {
+  for (const std::string hostile : {"a,b\"c\r\nd\ne", "=1+1", "@x", "\"", "|<b>"}) {
+    Row row = exampleRow(exampleCase(hostile));
+    row.what.scene = row.what.camera = row.what.light = row.what.term = row.cost.renderer = hostile;
+    row.what.changes.animation = row.what.medium.sigmaA = hostile;
+    Row failed = row;
+    failed.failure = hostile;
+    const std::vector<Row> rows = {row, failed};
+    const auto records = csvRecords(toCsv(makeTables(rows).front()));
+    ASSERT_EQ(records.size(), 3u) << hostile;
+    for (const auto& record : records) EXPECT_EQ(record.size(), records[0].size()) << hostile;
+    EXPECT_EQ(records[1][0], hostile);
+    EXPECT_EQ(records[1][2], hostile);
+    EXPECT_EQ(records[1][12], hostile);
+    EXPECT_EQ(records[2].back(), hostile);
+  }
+}
+
 }  // namespace
 }  // namespace limn::bench
