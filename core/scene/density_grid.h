@@ -17,10 +17,11 @@ struct GridLimits {
 };
 
 /// The grid `density` of an OpenVDB file, or its first grid of floats where none has that name. Its box is
-/// that of the voxels that are set, its unit the metre. Throws Error of one line naming file and what would
-/// be accepted: no such grid, too many voxels, a transform that is not affine, densities that are negative or
-/// no numbers.
-LIMN_API DensityGrid readDensityGrid(const std::filesystem::path& file, const GridLimits& limits = {});
+/// that of the voxels that are set, its unit the metre, and it is placed from `origin` (Scene::origin).
+/// Throws Error of one line naming file and what would be accepted: no such grid, too many voxels, a
+/// transform that is not affine, densities that are negative or no numbers.
+LIMN_API DensityGrid readDensityGrid(const std::filesystem::path& file, const GridLimits& limits = {},
+                                     const glm::dvec3& origin = glm::dvec3(0));
 
 /// Gives a medium a grid. One that is 0 everywhere is no medium: it takes the coefficients away.
 LIMN_API void setGrid(Medium& medium, DensityGrid grid);

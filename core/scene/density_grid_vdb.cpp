@@ -21,7 +21,8 @@ using openvdb::FloatGrid;
 
 class Reader {
  public:
-  Reader(const std::filesystem::path& file, const GridLimits& limits) : file_(file), limits_(limits) {}
+  Reader(const std::filesystem::path& file, const GridLimits& limits, const glm::dvec3& origin)
+      : file_(file), limits_(limits), origin_(origin) {}
 
   DensityGrid read() {
     std::error_code error;
@@ -103,7 +104,8 @@ class Reader {
     for (int column = 0; column < 4; ++column)
       for (int axis = 0; axis < 3; ++axis) {
         // OpenVDB multiplies row vectors from the left.
-        const double offset = column == 3 ? 0.5 - box.min()[axis] : 0;
+        double offset = column == 3 ? 0.5 - box.min()[axis] : 0;
+        for (int from = 0; column == 3 && from < 3; ++from) offset += toIndex[from][axis] * origin_[from];
         const double value = (toIndex[column][axis] + offset) / dim[axis];
         if (!(std::abs(value) <= 1e30)) fail("its grid has a transform that cannot be inverted");
         result[column][axis] = static_cast<float>(value);
@@ -113,12 +115,14 @@ class Reader {
 
   const std::filesystem::path& file_;
   const GridLimits& limits_;
+  const glm::dvec3 origin_;
 };
 
 }  // namespace
 
-DensityGrid readDensityGrid(const std::filesystem::path& file, const GridLimits& limits) {
-  return Reader(file, limits).read();
+DensityGrid readDensityGrid(const std::filesystem::path& file, const GridLimits& limits,
+                            const glm::dvec3& origin) {
+  return Reader(file, limits, origin).read();
 }
 
 }  // namespace limn::scene
