@@ -26,15 +26,15 @@ constexpr const char* properties =
 }
 
 /// As many numbers as `values` has, at least `least`; a single one stands for all where least is 1.
-template <int N>
-glm::vec<N, float> numbers(const std::string& setting, std::string_view text, int least = N) {
-  glm::vec<N, float> values(0.f);
+template <int N, class T = float>
+glm::vec<N, T> numbers(const std::string& setting, std::string_view text, int least = N) {
+  glm::vec<N, T> values(0);
   int count = 0;
   for (; count < N && !text.empty(); ++count) {
     const size_t comma = text.find(',');
     const auto number = parseNumber(text.substr(0, comma));
     if (!number || !(std::abs(*number) <= 1e9)) refuse(setting, "a number is wrong");
-    values[count] = static_cast<float>(*number);
+    values[count] = static_cast<T>(*number);
     text = comma == std::string_view::npos ? std::string_view() : text.substr(comma + 1);
   }
   if (!text.empty() || count < least) refuse(setting, fmt::format("{} numbers are wanted", N));
@@ -43,7 +43,7 @@ glm::vec<N, float> numbers(const std::string& setting, std::string_view text, in
 }
 
 void add(LightEdit& edit, const std::string& setting, std::string_view property, std::string_view value) {
-  if (property == "position") edit.position = numbers<3>(setting, value);
+  if (property == "position") edit.position = numbers<3, double>(setting, value);
   if (property == "rotation") edit.rotation = numbers<3>(setting, value);
   if (property == "size") edit.size = numbers<2>(setting, value, 1);
   if (property == "colour") edit.colour = numbers<3>(setting, value, 1);
@@ -68,6 +68,15 @@ scene::LightSource& ownSource(scene::Scene& scene, scene::Node& node) {
   return scene.lights.back();
 }
 
+/// World coordinates, with no more digits than a float where they are one.
+std::string text(const glm::dvec3& v) {
+  const auto one = [](double x) {
+    const auto rounded = static_cast<float>(x);
+    return rounded == x ? fmt::format("{}", rounded) : fmt::format("{}", x);
+  };
+  return fmt::format("{},{},{}", one(v.x), one(v.y), one(v.z));
+}
+
 void apply(scene::Scene& scene, const glsl::Light& now, const std::string& name, const LightEdit& edit,
            scene::Node& node) {
   scene::LightSource& source = ownSource(scene, node);
@@ -78,7 +87,8 @@ void apply(scene::Scene& scene, const glsl::Light& now, const std::string& name,
   if (edit.position || edit.rotation) {
     const glm::mat3 axes = edit.rotation ? rotationOf(*edit.rotation) : axesOf(now);
     node.placed = glm::mat4(axes);
-    (*node.placed)[3] = glm::vec4(edit.position.value_or(glm::vec3(now.position)), 1);
+    (*node.placed)[3] =
+        glm::vec4(edit.position ? glm::vec3(*edit.position - scene.origin) : glm::vec3(now.position), 1);
   }
   if (edit.size && directional) source.angle = edit.size->x;
   if (edit.size && !directional) node.limnArea = *edit.size;
@@ -112,7 +122,6 @@ std::vector<std::string> printed(const LightEdits& edits) {
     const auto say = [&settings, &name = name](const char* property, const std::string& value) {
       settings.push_back(fmt::format("{}.{}={}", name, property, value));
     };
-    const auto text = [](const glm::vec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
     if (edit.position) say("position", text(*edit.position));
     if (edit.rotation) say("rotation", text(*edit.rotation));
     if (edit.size) say("size", fmt::format("{},{}", edit.size->x, edit.size->y));
@@ -156,7 +165,7 @@ LightEdit describeLight(const scene::Scene& scene, const scene::Pose& pose, int 
   const scene::LightSource& source = scene.lights[static_cast<size_t>(holder.light)];
   const glsl::Light& light = pose.lights[static_cast<size_t>(index)];
   const bool directional = source.type == glsl::light_directional;
-  if (!directional) now.position = glm::vec3(light.position);
+  if (!directional) now.position = scene.origin + glm::dvec3(light.position);
   now.rotation = anglesOf(axesOf(light));
   now.size = directional ? glm::vec2(source.angle) : holder.limnArea;
   now.colour = source.colour;

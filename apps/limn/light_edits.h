@@ -16,7 +16,8 @@ namespace limn::app {
 /// What is said of one light; the rest is the file's. A light that is a mesh (an emissive quad) takes its
 /// whole node along.
 struct LightEdit {
-  std::optional<glm::vec3> position;  ///< world, metres; the light then stays there, whatever animations say
+  std::optional<glm::dvec3>
+      position;  ///< the file's world, metres; the light then stays there, whatever animations say
   /// Pitch, yaw and roll in degrees: a light that shines along -z is rolled about z, then pitched about x,
   /// then turned about y.
   std::optional<glm::vec3> rotation;

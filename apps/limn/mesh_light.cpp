@@ -101,8 +101,9 @@ void applyToMesh(scene::Scene& scene, const scene::Pose& pose, int light, const 
   const AtRest rest = atRest(scene, pose, light, mesh.node);
   const glm::vec2 restSize = sizeOf(rest.light), size = edit.size.value_or(restSize);
   if (edit.position || edit.rotation || edit.size) {
-    const glm::mat4 wanted = frameOf(edit.rotation ? rotationOf(*edit.rotation) : axesOf(now),
-                                     edit.position.value_or(glm::vec3(now.position)));
+    const glm::mat4 wanted =
+        frameOf(edit.rotation ? rotationOf(*edit.rotation) : axesOf(now),
+                edit.position ? glm::vec3(*edit.position - scene.origin) : glm::vec3(now.position));
     glm::mat4 scale(1);
     scale[0][0] = size.x / restSize.x;
     scale[1][1] = size.y / restSize.y;
@@ -118,7 +119,7 @@ void applyToMesh(scene::Scene& scene, const scene::Pose& pose, int light, const 
 
 LightEdit describeMesh(const scene::Scene& scene, const glsl::Light& light, const MeshLight& mesh) {
   LightEdit now;
-  now.position = glm::vec3(light.position);
+  now.position = scene.origin + glm::dvec3(light.position);
   now.rotation = anglesOf(axesOf(light));
   if (mesh.shared) return now;
   const glm::vec3 emission = scene.materials[at(mesh.material)].emission;

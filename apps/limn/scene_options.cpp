@@ -18,16 +18,16 @@ namespace {
 
 constexpr double degrees = 3.14159265358979323846 / 180;
 
-glm::vec3 parseVector(const char* option, const std::string& text,
-                      const char* expected = "three numbers x,y,z in metres") {
-  glm::vec3 v;
+glm::dvec3 parseVector(const char* option, const std::string& text,
+                       const char* expected = "three numbers x,y,z in metres") {
+  glm::dvec3 v;
   std::string_view rest = text;
   for (int i = 0; i < 3; ++i) {
     const size_t comma = i < 2 ? rest.find(',') : rest.size();
     const auto number = comma == std::string_view::npos ? std::nullopt : parseNumber(rest.substr(0, comma));
     if (!number || std::abs(*number) > 1e30)
       throw UsageError(fmt::format("{} '{}' is not accepted; expected {}", option, text, expected));
-    v[i] = static_cast<float>(*number);
+    v[i] = *number;
     rest = i < 2 ? rest.substr(comma + 1) : rest;
   }
   return v;
@@ -38,7 +38,7 @@ glm::vec3 parseCoefficient(const char* option, const std::string& text) {
   const auto number = parseNumber(text);
   const bool alone = number && *number <= 1e30;
   const glm::vec3 v = alone ? glm::vec3(static_cast<float>(*number))
-                            : parseVector(option, text, "one number or red,green,blue per metre");
+                            : glm::vec3(parseVector(option, text, "one number or red,green,blue per metre"));
   if (v.x < 0 || v.y < 0 || v.z < 0)
     throw UsageError(fmt::format("{} '{}' is not accepted; coefficients must not be negative", option, text));
   return v;
@@ -142,8 +142,8 @@ scene::CameraPose chooseCamera(const SceneOptions& options, const scene::Pose& p
   if (!options.eye.empty() || !options.target.empty()) {
     if (options.eye.empty() || options.target.empty())
       throw UsageError("--eye and --target belong together; one is missing");
-    camera = scene::lookAt(parseVector("--eye", options.eye), parseVector("--target", options.target),
-                           camera.yfov);
+    camera = scene::lookAt(glm::vec3(parseVector("--eye", options.eye) - pose.origin),
+                           glm::vec3(parseVector("--target", options.target) - pose.origin), camera.yfov);
   }
   if (options.fov > 0) camera.yfov = static_cast<float>(options.fov * degrees);
   return camera;
@@ -246,7 +246,7 @@ static void chooseGrid(const std::string& grid, scene::Scene& scene) {
   if (grid == "smoke")
     scene.medium.smoke = scene::smokeIn(scene::evaluate(scene, 0).bounds);
   else
-    scene::setGrid(scene.medium, scene::readDensityGrid(grid));
+    scene::setGrid(scene.medium, scene::readDensityGrid(grid, {}, scene.origin));
 }
 
 View open(const SceneOptions& options) {
@@ -255,11 +255,8 @@ View open(const SceneOptions& options) {
   view.scene = scene::load(findScene(options.scene));
   addEnvironment(options, view.scene);
   giveOwnMaterials(view.scene);
-  view.file = {view.scene.nodes,
-               view.scene.lights,
-               {},
-               view.scene.environment.rotation,
-               view.scene.environment.scale};
+  view.file = {
+      view.scene.nodes, view.scene.lights, {}, view.scene.environment.rotation, view.scene.environment.scale};
   for (const scene::Material& material : view.scene.materials)
     view.file.emission.push_back(material.emission);
   if (!options.sigmaA.empty()) view.scene.medium.sigmaA = parseCoefficient("--sigma-a", options.sigmaA);

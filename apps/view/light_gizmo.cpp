@@ -120,7 +120,9 @@ bool ViewerWindow::dragLight() {
     const LightFacts& light = facts_->lights[static_cast<size_t>(chosenLight_)];
     const GizmoPose pose = dragged(camera, *drag_, mouse);
     LightEdit edit = lightEdits_[light.name];
-    if (!isDirectional(light)) edit.position = rounded(pose.position, facts_->scene->bounds.radius());
+    if (!isDirectional(light))
+      edit.position =
+          facts_->scene->origin + glm::dvec3(rounded(pose.position, facts_->scene->bounds.radius()));
     const glm::vec3 angles = glm::round(anglesOf(pose.rotation) * 10.f) / 10.f;
     const bool turned = drag_->handle.kind == GizmoHandle::Kind::ring;
     if (light.light.info.x != glsl::light_point && (turned || !edit.rotation)) edit.rotation = angles;

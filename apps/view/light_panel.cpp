@@ -137,8 +137,9 @@ void ViewerWindow::lightEditor(const LightFacts& light) {
     ImGui::SameLine();
     if (ImGui::RadioButton("turn", gizmoMode_ == GizmoMode::turn)) gizmoMode_ = GizmoMode::turn;
     nameCell("position, m", "In the world; drag the numbers, or double-click to type");
-    glm::vec3 position = edit.position.value_or(*now.position);
-    if (ImGui::DragFloat3("##position", &position.x, 0.003f * radius, 0, 0, "%.3f")) {
+    glm::dvec3 position = edit.position.value_or(*now.position);
+    if (ImGui::DragScalarN("##position", ImGuiDataType_Double, &position.x, 3, 0.003f * radius, nullptr,
+                           nullptr, "%.3f")) {
       edit.position = position;
       changed = true;
     }

@@ -60,6 +60,7 @@ struct SaveOrder {
 /// What is known of the scene that is open.
 struct SceneFacts {
   SceneOptions options;
+  glm::dvec3 origin{0};  ///< scene::Scene::origin: what bounds and cameras are counted from
   scene::Bounds bounds;
   std::vector<scene::CameraPose> cameras;  ///< at the time it was opened
   scene::CameraPose camera;                ///< that of the options

@@ -50,6 +50,7 @@ bool changesMeshes(const std::vector<LightFacts>& lights, const SceneOptions& op
 std::shared_ptr<const SceneFacts> factsOf(const View& view, const SceneOptions& options) {
   auto facts = std::make_shared<SceneFacts>();
   facts->options = options;
+  facts->origin = view.scene.origin;
   facts->bounds = view.pose.bounds;
   facts->cameras = view.pose.cameras;
   facts->camera = view.camera;

@@ -9,8 +9,11 @@
 namespace limn::app {
 namespace {
 
-std::string vector(const glm::vec3& v) {
-  return fmt::format("{},{},{}", v.x, v.y, v.z);  // the shortest text that reads as the same numbers
+/// The shortest text that reads as the same numbers.
+std::string worldText(const glm::vec3& v, const glm::dvec3& origin) {
+  if (origin == glm::dvec3(0)) return fmt::format("{},{},{}", v.x, v.y, v.z);
+  const glm::dvec3 world = origin + glm::dvec3(v);
+  return fmt::format("{},{},{}", world.x, world.y, world.z);
 }
 
 /// TOML basic string.
@@ -65,9 +68,9 @@ class CommandLine {
 
 }  // namespace
 
-void setCamera(SceneOptions& options, const Orbit& orbit) {
-  options.eye = vector(orbit.eye());
-  options.target = vector(orbit.target());
+void setCamera(SceneOptions& options, const Orbit& orbit, const glm::dvec3& origin) {
+  options.eye = worldText(orbit.eye(), origin);
+  options.target = worldText(orbit.target(), origin);
 }
 
 void dropRivals(std::vector<render::TechniqueUse>& techniques, const TechniquePlugin& added) {

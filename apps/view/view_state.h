@@ -19,7 +19,7 @@ struct ViewState {
 };
 
 /// Puts the orbit's camera into the options, so that what reads them gets it to the bit.
-void setCamera(SceneOptions& options, const Orbit& orbit);
+void setCamera(SceneOptions& options, const Orbit& orbit, const glm::dvec3& origin);
 
 /// The techniques that answer one of the terms already are replaced by one that claims it too, if only one
 /// may: visibility, direct and environment have one technique each. Called after `use` was added to

@@ -99,7 +99,7 @@ void ViewerWindow::handleMouse() {
     }
   }
   if (!changed) return;
-  setCamera(state_.scene, orbit_);
+  setCamera(state_.scene, orbit_, facts_->scene ? facts_->scene->origin : glm::dvec3(0));
   moved();
 }
 

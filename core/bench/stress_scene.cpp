@@ -42,6 +42,7 @@ void addTriangles(scene::Scene& scene, const std::vector<glm::vec3>& corners) {
 /// Positions and sizes by `factor`, intensities by its square (directional lights keep their irradiance), so
 /// that the picture stays the same.
 void scale(scene::Scene& scene, float factor) {
+  scene.origin *= factor;
   for (scene::Node& node : scene.nodes) {
     node.limnArea *= factor;
     if (node.parent == scene::none) node.parent = -2;
@@ -110,6 +111,7 @@ void moveLightToTheFloor(scene::Scene& scene, const scene::Pose& pose) {
   if (glm::length(to - from) < 1e-3f * pose.bounds.radius()) from.x += pose.bounds.radius();
   node->parent = scene::none;
   node->matrix.reset();
+  node->base = scene.origin;
   node->transform = {from, glm::quatLookAt(glm::normalize(to - from), glm::vec3(0, 1, 0)), glm::vec3(1)};
 }
 

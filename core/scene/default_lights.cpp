@@ -11,6 +11,7 @@ void addLight(Scene& scene, LightSource source, const Transform& transform) {
   Node node;
   node.name = source.name;
   node.transform = transform;
+  node.base = scene.origin;
   node.light = static_cast<int>(scene.lights.size());
   scene.lights.push_back(std::move(source));
   scene.nodes.push_back(std::move(node));

@@ -20,13 +20,13 @@ struct GridLimits {
 };
 
 /// The grid of floats `density` of an OpenVDB file; where none has that name the first, in the order of the
-/// names, of which one may be empty. Its box is that of the voxels that are set, its unit the metre. The file
-/// is read in a process of its own (limn-read-grid), since damaged ones crash the library that does it.
-/// Throws Error of one line naming file and what would be accepted: no such grid, too many voxels or voxels
-/// beyond
-/// +-2^30, a transform that is not affine, densities that are negative or no numbers, a file that takes more
-/// than the limits or crashes its reader.
-LIMN_API DensityGrid readDensityGrid(const std::filesystem::path& file, const GridLimits& limits = {});
+/// names, of which one may be empty. Its box is that of the voxels that are set, its unit the metre, and it is
+/// placed from `origin` (Scene::origin). The file is read in a process of its own (limn-read-grid), since
+/// damaged ones crash the library that does it. Throws Error of one line naming file and what would be
+/// accepted: no such grid, too many voxels or voxels beyond +-2^30, a transform that is not affine, densities
+/// that are negative or no numbers, a file that takes more than the limits or crashes its reader.
+LIMN_API DensityGrid readDensityGrid(const std::filesystem::path& file, const GridLimits& limits = {},
+                                     const glm::dvec3& origin = glm::dvec3(0));
 
 /// Gives a medium a grid. One that is 0 everywhere is no medium: it takes the coefficients away.
 LIMN_API void setGrid(Medium& medium, DensityGrid grid);

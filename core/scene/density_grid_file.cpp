@@ -27,20 +27,22 @@ void checkFile(const std::filesystem::path& file, const GridLimits& limits) {
     fail(file, fmt::format("{} bytes; at most {} are accepted", bytes, limits.fileBytes));
 }
 
-HelperAnswer ask(const std::filesystem::path& file, const GridLimits& limits) {
+HelperAnswer ask(const std::filesystem::path& file, const GridLimits& limits, const glm::dvec3& origin) {
   const auto seconds = std::chrono::ceil<std::chrono::seconds>(limits.time).count();
   return runHelper("limn-read-grid",
                    {file.string(), fmt::format("{}", limits.memory), fmt::format("{}", seconds),
-                    fmt::format("{}", limits.voxels), fmt::format("{}", limits.side)},
+                    fmt::format("{}", limits.voxels), fmt::format("{}", limits.side), fmt::format("{}", origin.x),
+                    fmt::format("{}", origin.y), fmt::format("{}", origin.z)},
                    {.time = limits.time, .answerBytes = largestGridMessage(limits)});
 }
 
 }  // namespace
 
-DensityGrid readDensityGrid(const std::filesystem::path& file, const GridLimits& limits) {
+DensityGrid readDensityGrid(const std::filesystem::path& file, const GridLimits& limits,
+                            const glm::dvec3& origin) {
   checkFile(file, limits);
   try {
-    const HelperAnswer answer = ask(file, limits);
+    const HelperAnswer answer = ask(file, limits, origin);
     if (!answer.failure.empty())
       throw Error(fmt::format("not an OpenVDB file that can be read ({})", answer.failure));
     return decodeGridMessage(answer.bytes, limits);

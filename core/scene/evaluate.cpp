@@ -78,8 +78,32 @@ void animate(const Scene& scene, const Animation* animation, double time, Pose& 
   }
 }
 
+/// Far from the file's origin translations cancel: in double, and from Scene::origin.
+void updateExactMatrices(const Scene& scene, Pose& pose) {
+  pose.nodeToWorldExact.resize(scene.nodes.size());
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    const Node& node = scene.nodes[i];
+    glm::dmat4& world = pose.nodeToWorldExact[i];
+    if (node.placed) {
+      world = glm::dmat4(*node.placed);
+      continue;
+    }
+    world = glm::dmat4(node.matrix ? *node.matrix : pose.nodeLocal[i].matrix());
+    world[3] += glm::dvec4(node.parent == none ? node.base - scene.origin : node.base, 0);
+    if (node.parent != none) world = pose.nodeToWorldExact[at(node.parent)] * world;
+  }
+}
+
 void updateWorldMatrices(const Scene& scene, Pose& pose) {
+  pose.origin = scene.origin;
   pose.nodeToWorld.resize(scene.nodes.size());
+  if (scene.origin != glm::dvec3(0)) {
+    updateExactMatrices(scene, pose);
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i)
+      pose.nodeToWorld[i] = glm::mat4(pose.nodeToWorldExact[i]);
+    return;
+  }
+  pose.nodeToWorldExact.clear();
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
     const Node& node = scene.nodes[i];
     if (node.placed) {
@@ -89,6 +113,12 @@ void updateWorldMatrices(const Scene& scene, Pose& pose) {
     const glm::mat4 local = node.matrix ? *node.matrix : pose.nodeLocal[i].matrix();
     pose.nodeToWorld[i] = node.parent == none ? local : pose.nodeToWorld[at(node.parent)] * local;
   }
+}
+
+/// Node to world times `local`, rounded once.
+glm::mat4 inWorld(const Pose& pose, std::size_t node, const glm::mat4& local) {
+  if (pose.nodeToWorldExact.empty()) return pose.nodeToWorld[node] * local;
+  return glm::mat4(pose.nodeToWorldExact[node] * glm::dmat4(local));
 }
 
 /// Appends elements to a vector whose elements own memory, without giving that memory back between frames.
@@ -121,7 +151,7 @@ void setWeights(const Scene& scene, const Animation* animation, double time, con
 void setJoints(const Skin& skin, const Pose& pose, std::vector<glm::mat4>& joints) {
   joints.resize(skin.joints.size());
   for (std::size_t j = 0; j < skin.joints.size(); ++j)
-    joints[j] = pose.nodeToWorld[at(skin.joints[j])] * skin.inverseBind[j];
+    joints[j] = inWorld(pose, at(skin.joints[j]), skin.inverseBind[j]);
 }
 
 /// Index into pose.deformed of one primitive of a node, or none if it is rigid.
@@ -152,7 +182,7 @@ void addInstances(const Scene& scene, const Animation* animation, double time, P
     const std::size_t copies = std::max<std::size_t>(1, node.instances.size());
     for (std::size_t copy = 0; copy < copies; ++copy) {
       const glm::mat4 world =
-          node.instances.empty() ? pose.nodeToWorld[n] : pose.nodeToWorld[n] * node.instances[copy].matrix();
+          node.instances.empty() ? pose.nodeToWorld[n] : inWorld(pose, n, node.instances[copy].matrix());
       int known = firstDeformed;  // copies share their node's morph state
       for (std::size_t p = 0; p < scene.meshes[at(node.mesh)].primitives.size(); ++p) {
         DrawInstance instance;
@@ -165,9 +195,9 @@ void addInstances(const Scene& scene, const Animation* animation, double time, P
         } else if (!scene.meshes[at(node.mesh)].primitives[p].morphTargets.empty()) {
           instance.deformed = known++;
         }
-        const bool inWorld =
+        const bool skinned =
             instance.deformed != none && !pose.deformed[at(instance.deformed)].joints.empty();
-        instance.objectToWorld = inWorld ? glm::mat4(1) : world;
+        instance.objectToWorld = skinned ? glm::mat4(1) : world;
         pose.instances.push_back(instance);
       }
     }

@@ -1,6 +1,9 @@
 // How the program limn-read-grid and the process that asked it speak: arguments one way, one message back.
 //
-//   limn-read-grid FILE MEMORY SECONDS VOXELS SIDE      bytes, seconds, and the numbers of GridLimits
+//   limn-read-grid FILE MEMORY SECONDS VOXELS SIDE X Y Z
+//
+// These are bytes, seconds, the numbers of GridLimits, and the place in the file's world, in metres, from
+// which the grid is placed.
 //
 // The message is a header in the machine's own byte order, then `bytes` bytes: the densities as floats, x
 // fastest, or, where the file is refused, the reason. Nothing follows. It counts as untrusted, since a

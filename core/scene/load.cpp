@@ -105,7 +105,7 @@ void Loader::readMedium(const tinygltf::Value& medium) {
   const std::filesystem::path file = resolve(grid.Get<std::string>(), what + " grid");
   if (!scene_.medium.present()) return;
   try {
-    setGrid(scene_.medium, readDensityGrid(file));
+    setGrid(scene_.medium, readDensityGrid(file, {}, scene_.origin));
   } catch (const Error& error) {
     fail(fmt::format("{} grid: {}", what, error.what()));
   }
@@ -116,8 +116,11 @@ void Loader::readSmoke(const tinygltf::Value& smoke, const std::string& what) {
   if (!smoke.IsObject()) fail(what + ": an object {low, high, whirl, rise, seed, resolution} is accepted");
   Smoke& s = scene_.medium.smoke.emplace();
   const auto corner = [&](const char* key) {
-    const std::vector<float> xyz = numbers(smoke.Get(key), 3, fmt::format("{} {}", what, key));
-    return glm::vec3(xyz[0], xyz[1], xyz[2]);
+    const tinygltf::Value& xyz = smoke.Get(key);
+    numbers(xyz, 3, fmt::format("{} {}", what, key));  // checks them
+    glm::dvec3 place;
+    for (int c = 0; c < 3; ++c) place[c] = xyz.Get(c).GetNumberAsDouble();
+    return glm::vec3(place - scene_.origin);
   };
   s.low = corner("low");
   s.high = corner("high");
@@ -170,6 +173,7 @@ Scene Loader::load(std::span<const std::byte> bytes) {
   readSkins();
   checkNodeUses();
   readAnimations();
+  moveOrigin();
   readSceneExtras();
   checkResult();
   model_ = nullptr;

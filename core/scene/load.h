@@ -18,7 +18,9 @@ struct LoadLimits {
   uint64_t instances = 10'000'000;  ///< drawn primitives, and joint matrices
 };
 
-/// Loads glTF 2.0 (.gltf, .glb). Throws Error of one line naming file, place, value and what would be
+/// Loads glTF 2.0 (.gltf, .glb). Where the middle of what is drawn lies more than 64 of its radii from the
+/// origin (on one axis), Scene::origin is a place in its midst and translations of nodes count as the file's
+/// doubles. Throws Error of one line naming file, place, value and what would be
 /// accepted. Files named by the scene are read from its folder or below, nowhere else.
 LIMN_API Scene load(const std::filesystem::path& file, const LoadLimits& limits = {});
 /// The same from memory (GLB or JSON), without access to any file: the fuzzer's entry.

@@ -135,8 +135,13 @@ class Loader {
   void checkNodeUses();
   glm::quat unitRotation(const glm::dquat& q, const std::string& what) const;
 
+  // loader_origin.cpp
+  /// Counts positions from a place in the midst of the scene (Scene::origin) where that lies far away.
+  void moveOrigin();
+  void rebaseNodes();
+
   // loader_metaballs.cpp
-  void readMetaballs();
+  void readMetaballs();  ///< all of them, instead of those read before
   Metaballs readMetaballs(const tinygltf::Value& extras, const std::string& what) const;
   int metaballMaterial(const tinygltf::Value& extras, const std::string& what);
 

@@ -10,19 +10,23 @@ namespace {
 
 constexpr std::size_t kMaxSources = 16;  ///< in one scene
 
-/// Of a node at rest.
+/// Of a node at rest, from Scene::origin.
 glm::mat4 nodeToWorld(const Scene& scene, int node) {
-  glm::mat4 matrix(1);
+  glm::dmat4 matrix(1);
   for (int n = node; n != none; n = scene.nodes[static_cast<std::size_t>(n)].parent) {
     const Node& at = scene.nodes[static_cast<std::size_t>(n)];
-    matrix = (at.matrix ? *at.matrix : at.transform.matrix()) * matrix;
+    glm::dmat4 local(at.matrix ? *at.matrix : at.transform.matrix());
+    local[3] += glm::dvec4(at.base, 0);
+    matrix = local * matrix;
   }
-  return matrix;
+  matrix[3] -= glm::dvec4(scene.origin, 0);
+  return glm::mat4(matrix);
 }
 
 }  // namespace
 
 void Loader::readMetaballs() {
+  scene_.dynamic.clear();
   for (std::size_t i = 0; i < fileIndex_.size(); ++i) {
     const auto file = static_cast<std::size_t>(fileIndex_[i]);
     const tinygltf::Node& source = model_->nodes[file];

@@ -1,5 +1,9 @@
 // A scene on the CPU: what a glTF 2.0 file holds, validated, in plain values. Units: metres, radians,
 // seconds, radiance W/(sr m^2), intensity W/sr. Everything may move: evaluate() gives the state at a time.
+//
+// Positions in the world are counted from Scene::origin, in scenes, poses and all that is made of them, so
+// that scenes far from the file's origin keep their digits; only what people read and write is in the file's
+// own world coordinates.
 #pragma once
 
 #include <cstdint>
@@ -155,6 +159,8 @@ struct Node {
   std::vector<float> morphWeights;   ///< overrides the mesh's
   std::vector<Transform> instances;  ///< EXT_mesh_gpu_instancing; empty: the node itself
   glm::vec2 limnArea{0};  ///< extras.limn_area (u, v) in metres: its light is a rectangle facing -Z
+  /// Added to the translation that transform, matrix or animation gives, metres; 0 where Scene::origin is.
+  glm::dvec3 base{0};
 };
 
 struct Skin {
@@ -239,9 +245,10 @@ struct Medium {
 class LIMN_API GeometrySource {
  public:
   virtual ~GeometrySource() = default;
-  /// The triangles at `time` seconds, in world space: positions, one normal each, indices; anything else is
-  /// optional, material and bounds are not looked at. The pointer that the last call gave says that nothing
-  /// changed; null, that there is nothing. What a pointer leads to stays as it is while somebody holds it.
+  /// The triangles at `time` seconds, in world space, counted from Scene::origin: positions, one normal each,
+  /// indices; anything else is optional, material and bounds are not looked at. The pointer that the last
+  /// call gave says that nothing changed; null, that there is nothing. What a pointer leads to stays as it is
+  /// while somebody holds it.
   virtual std::shared_ptr<const Primitive> at(double time) = 0;
 };
 
@@ -264,7 +271,10 @@ struct Scene {
     int material = 0;
   };
   std::vector<Dynamic> dynamic;
-  std::vector<std::string> warnings;    ///< one line each, shown once
+  std::vector<std::string> warnings;  ///< one line each, shown once
+  /// Where in the file's world positions are counted from, metres: 0 unless what is drawn lies far away
+  /// (load.h).
+  glm::dvec3 origin{0};
   LIMN_API uint64_t triangles() const;  ///< drawn, instances counted
 };
 
@@ -311,6 +321,9 @@ struct Pose {
   std::vector<Transform> nodeLocal;    ///< animated transform of each node
   std::vector<glm::mat4> nodeToWorld;  ///< of each node
   std::vector<int> weightChannel;      ///< of each node: the animation channel of its morph weights, or none
+  glm::dvec3 origin{0};                ///< Scene::origin
+  /// nodeToWorld before it is rounded, in which large translations cancel; empty where Scene::origin is 0.
+  std::vector<glm::dmat4> nodeToWorldExact;
 };
 
 /// The state at `time` seconds; `animation` none: the first one. Animations repeat (time modulo duration).

@@ -99,7 +99,7 @@ void grid(Input input) {
     else
       made->tree().setValue(place, input.take<float>());
   }
-  const DensityGrid dense = limn::scene::denseGrid(*made, limits);
+  const DensityGrid dense = limn::scene::denseGrid(*made, limits, glm::dvec3(0));
   check(dense);
   const GridHeader header = limn::scene::headerOf(dense);
   std::vector<std::byte> bytes(sizeof header + header.bytes);

@@ -31,7 +31,7 @@ Environment loadEnvironment(const std::filesystem::path& file, std::vector<std::
   throw Error(fmt::format("{}: no such file", file.string()));
 }
 
-DensityGrid readDensityGrid(const std::filesystem::path& file, const GridLimits&) {
+DensityGrid readDensityGrid(const std::filesystem::path& file, const GridLimits&, const glm::dvec3&) {
   throw Error(fmt::format("{}: no such file", file.string()));
 }
 

@@ -112,7 +112,7 @@ TEST_F(MeshLights, AreDescribedAsRectangles) {
   const scene::Pose pose = scene::evaluate(scene_, 0);
   ASSERT_TRUE(isEditable(scene_, pose, 1));
   const LightEdit now = describeLight(scene_, pose, 1);
-  EXPECT_EQ(now.position, glm::vec3(1, 3, 2));
+  EXPECT_EQ(now.position, glm::dvec3(1, 3, 2));
   EXPECT_NEAR(now.size->x, 1, 1e-6f);
   EXPECT_NEAR(now.size->y, 0.5f, 1e-6f);
   EXPECT_EQ(now.colour, glm::vec3(1, 0.5f, 0));

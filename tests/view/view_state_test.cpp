@@ -52,7 +52,7 @@ TEST_F(ViewStateTest, CamerasSurviveTheCommandLine) {
   Orbit orbit(scene::lookAt({0.1f, 1.234567f, 3}, {0, 0.5f, 0}, 0.7f), {glm::vec3(-1), glm::vec3(1)});
   orbit.turn(0.1234f, 0.0567f);
   orbit.approach(1.0f / 3);
-  setCamera(state_.scene, orbit);
+  setCamera(state_.scene, orbit, glm::dvec3(0));
   scene::Pose pose;
   pose.cameras.push_back(scene::lookAt({0, 0, 5}, glm::vec3(0), 0.7f));
   EXPECT_EQ(chooseCamera(state_.scene, pose).worldToView,

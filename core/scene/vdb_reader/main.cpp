@@ -40,9 +40,9 @@ bool refuse(std::string_view reason) {
   return answer(headerOf(reason), reason.data());
 }
 
-bool work(const char* file, std::uint64_t memory, const GridLimits& limits) {
+bool work(const char* file, std::uint64_t memory, const GridLimits& limits, const glm::dvec3& origin) {
   try {
-    const DensityGrid grid = readVdbGrid(file, limits);
+    const DensityGrid grid = readVdbGrid(file, limits, origin);
     return answer(headerOf(grid), grid.values.data());
   } catch (const limn::Error& error) {
     return refuse(error.what());
@@ -59,13 +59,17 @@ bool work(const char* file, std::uint64_t memory, const GridLimits& limits) {
 
 int main(int count, char** arguments) {
   std::uint64_t numbers[4] = {};
-  bool understood = count == 6;
-  for (int i = 0; understood && i < 4; ++i) {
-    const std::string_view text = arguments[i + 2];
-    understood = std::from_chars(text.data(), text.data() + text.size(), numbers[i]).ec == std::errc();
-  }
+  glm::dvec3 origin(0);
+  bool understood = count == 9;
+  const auto read = [&](int argument, auto& number) {
+    if (!understood) return;
+    const std::string_view text = arguments[argument];
+    understood = std::from_chars(text.data(), text.data() + text.size(), number).ec == std::errc();
+  };
+  for (int i = 0; i < 4; ++i) read(2 + i, numbers[i]);
+  for (int i = 0; i < 3; ++i) read(6 + i, origin[i]);
   if (!understood || numbers[3] > std::numeric_limits<int>::max()) {
-    std::fprintf(stderr, "usage: limn-read-grid FILE MEMORY SECONDS VOXELS SIDE\n");
+    std::fprintf(stderr, "usage: limn-read-grid FILE MEMORY SECONDS VOXELS SIDE X Y Z\n");
     return 2;
   }
   if (!limn::confine(numbers[0], static_cast<unsigned>(numbers[1]))) return 3;
@@ -75,5 +79,5 @@ int main(int count, char** arguments) {
   limits.voxels = numbers[2];
   limits.side = static_cast<int>(numbers[3]);
   // What the library made of a damaged file is not taken down.
-  _exit(work(arguments[1], numbers[0], limits) ? 0 : 1);
+  _exit(work(arguments[1], numbers[0], limits, origin) ? 0 : 1);
 }

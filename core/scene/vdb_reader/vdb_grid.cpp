@@ -39,14 +39,15 @@ void checkBox(const CoordBBox& box, const GridLimits& limits) {
 }
 
 /// Voxels fill half their size around their centres.
-glm::mat4 toBox(const FloatGrid& grid, const CoordBBox& box) {
+glm::mat4 toBox(const FloatGrid& grid, const CoordBBox& box, const glm::dvec3& origin) {
   const openvdb::Mat4R toIndex = grid.transform().baseMap()->getAffineMap()->getMat4().inverse();
   const openvdb::Coord dim = box.dim();
   glm::mat4 result(1);
   for (int column = 0; column < 4; ++column)
     for (int axis = 0; axis < 3; ++axis) {
       // OpenVDB multiplies row vectors from the left.
-      const double offset = column == 3 ? 0.5 - box.min()[axis] : 0;
+      double offset = column == 3 ? 0.5 - box.min()[axis] : 0;
+      for (int from = 0; column == 3 && from < 3; ++from) offset += toIndex[from][axis] * origin[from];
       const double value = (toIndex[column][axis] + offset) / dim[axis];
       if (!(std::abs(value) <= 1e30)) throw Error("its grid has a transform that cannot be inverted");
       result[column][axis] = static_cast<float>(value);
@@ -77,7 +78,7 @@ std::string chooseGrid(openvdb::io::File& file, const GridLimits& limits) {
 
 }  // namespace
 
-DensityGrid denseGrid(const FloatGrid& grid, const GridLimits& limits) {
+DensityGrid denseGrid(const FloatGrid& grid, const GridLimits& limits, const glm::dvec3& origin) {
   const CoordBBox box = grid.evalActiveVoxelBoundingBox();
   checkBox(box, limits);
   if (!grid.transform().isLinear())
@@ -85,19 +86,20 @@ DensityGrid denseGrid(const FloatGrid& grid, const GridLimits& limits) {
   DensityGrid result;
   const openvdb::Coord dim = box.dim();
   result.size = {dim[0], dim[1], dim[2]};
-  result.worldToBox = toBox(grid, box);
+  result.worldToBox = toBox(grid, box, origin);
   result.values.resize(box.volume());
   openvdb::tools::Dense<float, openvdb::tools::LayoutXYZ> dense(box, result.values.data());
   openvdb::tools::copyToDense(grid, dense);
   return result;
 }
 
-DensityGrid readVdbGrid(const std::filesystem::path& file, const GridLimits& limits) {
+DensityGrid readVdbGrid(const std::filesystem::path& file, const GridLimits& limits,
+                        const glm::dvec3& origin) {
   openvdb::initialize();
   openvdb::io::File vdb(file.string());
   vdb.open(/*delayLoad=*/false);
   const std::string chosen = chooseGrid(vdb, limits);
-  return denseGrid(*openvdb::gridPtrCast<FloatGrid>(vdb.readGrid(chosen)), limits);
+  return denseGrid(*openvdb::gridPtrCast<FloatGrid>(vdb.readGrid(chosen)), limits, origin);
 }
 
 }  // namespace limn::scene

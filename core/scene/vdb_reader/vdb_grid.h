@@ -11,10 +11,11 @@
 namespace limn::scene {
 
 /// What readDensityGrid promises, but the file's name in messages and the check of each density.
-DensityGrid readVdbGrid(const std::filesystem::path& file, const GridLimits& limits);
+DensityGrid readVdbGrid(const std::filesystem::path& file, const GridLimits& limits,
+                        const glm::dvec3& origin);
 
-/// The voxels of the box around those that are set. Throws Error where that is empty, larger than the limits
+/// The voxels of the box around those that are set, placed from `origin`. Throws Error where that is empty, larger than the limits
 /// or out of the range in which the library can count, or where the transform is not affine.
-DensityGrid denseGrid(const openvdb::FloatGrid& grid, const GridLimits& limits);
+DensityGrid denseGrid(const openvdb::FloatGrid& grid, const GridLimits& limits, const glm::dvec3& origin);
 
 }  // namespace limn::scene

@@ -1,0 +1,152 @@
+// A scene far from the origin is the same scene: picture and reference are those of the scene that lies near
+// it.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/file.h"
+#include "core/reference/reference.h"
+#include "tests/gpu/render_test.h"
+
+namespace limn {
+namespace {
+
+using json = nlohmann::json;
+
+constexpr const char* whiteTexel =
+    "data:image/"
+    "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5E"
+    "rkJggg==";
+
+enum class By { translation, matrix, chain };
+
+/// Puts the document's roots below a new node at (x, 2 x, -x), which a matrix or several nodes may stand for.
+void shift(json& document, double x, By by) {
+  json& roots = document["scenes"][0]["nodes"];
+  json& nodes = document["nodes"];
+  const json translation = {x, 2 * x, -x};
+  json node = {{"children", roots}};
+  if (by == By::matrix)
+    node["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, 2 * x, -x, 1};
+  else
+    node["translation"] = translation;
+  nodes.push_back(node);
+  if (by == By::chain) {  // two nodes that almost cancel
+    nodes.back()["translation"] = {x + 0.375, 2 * x, -x};
+    nodes.push_back({{"children", {nodes.size() - 1}}, {"translation", {-0.375, 0, 0}}});
+  }
+  roots = {nodes.size() - 1};
+}
+
+/// An asset, moved.
+scene::Scene moved(const std::string& name, double x, By by) {
+  const auto file = std::filesystem::path(test::binaryDir) / "assets" / name / (name + ".glb");
+  std::vector<std::byte> glb = readFile(file);
+  const auto word = [&](size_t at) {
+    uint32_t value = 0;
+    std::memcpy(&value, &glb[at], 4);
+    return value;
+  };
+  const size_t length = word(12);
+  json document =
+      json::parse(reinterpret_cast<const char*>(&glb[20]), reinterpret_cast<const char*>(&glb[20]) + length);
+  shift(document, x, by);
+  if (document.contains("images"))
+    for (json& image : document["images"])  // what is not in the file: one white texel
+      if (image.contains("uri")) image["uri"] = whiteTexel;
+  std::string text = document.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
+  std::vector<std::byte> out(glb.begin(), glb.begin() + 20);
+  out.insert(out.end(), bytes, bytes + text.size());
+  out.insert(out.end(), glb.begin() + 20 + static_cast<std::ptrdiff_t>(length), glb.end());
+  const auto put = [&](size_t at, size_t value) {
+    const auto v = static_cast<uint32_t>(value);
+    std::memcpy(&out[at], &v, 4);
+  };
+  put(8, out.size());
+  put(12, text.size());
+  return scene::loadMemory(out);
+}
+
+/// Mean absolute difference over the mean of `a`; NaN where a value is none.
+double difference(const Image& a, const Image& b) {
+  double error = 0, sum = 0;
+  for (int y = 0; y < a.height(); ++y)
+    for (int x = 0; x < a.width(); ++x)
+      for (int c = 0; c < 3; ++c) {
+        error += std::abs(double(a.at(x, y, c)) - b.at(x, y, c));
+        sum += a.at(x, y, c);
+      }
+  return sum > 0 ? error / sum : error;
+}
+
+class FarTest : public RenderTest {
+ protected:
+  Image picture(const scene::Scene& scene, const TechniquePlugin& plugin) {
+    render::Renderer renderer(device(), scene);
+    render::Settings settings;
+    settings.size = {48, 48};
+    settings.techniques = {quick(plugin.info->name)};
+    settings.output = render::Output::final;
+    renderer.configure(settings);
+    renderer.setCamera(scene::evaluate(scene, 0).cameras.front());
+    renderer.render();
+    return renderer.read();
+  }
+  static Image truth(const scene::Scene& scene) {
+    const scene::Pose pose = scene::evaluate(scene, 0);
+    reference::Request request{.scene = scene, .pose = pose, .camera = pose.cameras.front()};
+    request.width = request.height = 48;
+    request.term = reference::Term::final;
+    request.bounces = 1;
+    request.spp = 16;
+    return reference::render(request).image;
+  }
+};
+
+TEST_F(FarTest, TheReferenceIsTheSameAnywhere) {
+  const Image near = truth(moved("cornell_box", 0, By::translation));
+  for (const double x : {1e5, 1e7})
+    for (const By by : {By::translation, By::matrix, By::chain})
+      EXPECT_LT(difference(near, truth(moved("cornell_box", x, by))), 1e-4) << x << " " << int(by);
+}
+
+TEST_F(FarTest, EveryTechniqueIsTheSameAnywhere) {
+  const scene::Scene near = moved("cornell_box", 0, By::translation);
+  const scene::Scene far = moved("cornell_box", 1e5, By::matrix),
+                     farther = moved("cornell_box", 1e7, By::chain);
+  for (const TechniquePlugin* plugin : testedTechniques()) {
+    SCOPED_TRACE(plugin->info->name);
+    const Image expected = picture(near, *plugin);
+    EXPECT_LT(difference(expected, picture(far, *plugin)), 5e-3);
+    EXPECT_LT(difference(expected, picture(farther, *plugin)), 5e-3);
+  }
+}
+
+TEST_F(FarTest, NearbyScenesKeepTheirOrigin) {
+  for (const char* name : {"atrium", "balls", "cornell_box", "robot"}) {
+    const scene::Scene scene = asset(name);
+    EXPECT_EQ(scene.origin, glm::dvec3(0)) << name;
+    EXPECT_TRUE(scene::evaluate(scene, 0).nodeToWorldExact.empty()) << name;
+  }
+}
+
+TEST_F(FarTest, AnimatedAndSkinnedNodesComeAlong) {
+  const scene::Scene near = moved("robot", 0, By::translation), far = moved("robot", 1e7, By::chain);
+  ASSERT_NE(far.origin, glm::dvec3(0));
+  for (const double time : {0.0, 0.37}) {
+    const scene::Pose a = scene::evaluate(near, time), b = scene::evaluate(far, time);
+    const glm::vec3 shift(glm::dvec3(1e7, 2e7, -1e7) - far.origin);
+    ASSERT_EQ(a.instances.size(), b.instances.size());
+    for (size_t i = 0; i < a.instances.size(); ++i) {
+      const scene::Bounds x = scene::instanceBounds(near, a, a.instances[i]),
+                          y = scene::instanceBounds(far, b, b.instances[i]);
+      EXPECT_LT(glm::length(x.low + shift - y.low), 1e-4f * a.bounds.radius());
+      EXPECT_LT(glm::length(x.high + shift - y.high), 1e-4f * a.bounds.radius());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limn
