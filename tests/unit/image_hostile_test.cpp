@@ -4,12 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
-#include <cstring>
-#include <functional>
+#include <array>
+#include <filesystem>
+#include <optional>
 #include <random>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/image/image.h"
 
 namespace limn {
@@ -152,6 +155,24 @@ std::vector<std::byte> encoded(const char* format, OIIO::TypeDesc type) {
   EXPECT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) && output->close());
   const auto bytes = std::as_bytes(std::span(memory.buffer()));
   return {bytes.begin(), bytes.end()};
+}
+
+// A pass over the whole picture for four bytes of the file.
+TEST(HostileImage, JpegsOfManyScans) {
+  const auto file =
+      std::filesystem::temp_directory_path() / ("limn_scans_" + std::to_string(::getpid()) + ".jpg");
+  const auto output = OIIO::ImageOutput::create("jpeg");
+  const std::vector<std::uint8_t> pixels(16 * 16 * 3, 128);
+  ASSERT_TRUE(output->open(file.string(), OIIO::ImageSpec(16, 16, 3, OIIO::TypeDesc::UINT8)));
+  ASSERT_TRUE(output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) && output->close());
+  std::vector<std::byte> bytes = readFile(file);
+  std::filesystem::remove(file);
+  EXPECT_EQ(refusal(bytes), "");
+  bytes.resize(bytes.size() - 2);  // the end marker
+  for (int scan = 0; scan < 100; ++scan)
+    for (const int byte : {0xff, 0xda, 0, 2}) bytes.push_back(static_cast<std::byte>(byte));
+  for (const int byte : {0xff, 0xd9}) bytes.push_back(static_cast<std::byte>(byte));
+  EXPECT_THAT(refusal(bytes), HasSubstr("more than 100 scans"));
 }
 
 TEST(HostileImage, DamagedPicturesOfEveryFormat) {
