@@ -112,9 +112,12 @@ TEST(HostileImage, TilesLargerThanThePicture) {
   ExrBuilder exr;
   exr.tiles = {{16000, 8000}};
   const long before = mostMemory();
-  EXPECT_THAT(refusal(exr.bytes()), HasSubstr("tiles of 16000x8000 pixels; at most 4194304"));
+  EXPECT_THAT(refusal(exr.bytes()), HasSubstr("tiles of 16000x8000 pixels of 3 channels; at most 16777216"));
   exr.tiles = {{0xffffffff, 0xffffffff}};
   EXPECT_THAT(refusal(exr.bytes()), HasSubstr("tiles of 4294967295x4294967295 pixels"));
+  exr.tiles = {{2048, 2048}};
+  exr.channels = 200;
+  EXPECT_THAT(refusal(exr.bytes()), HasSubstr("tiles of 2048x2048 pixels of 200 channels"));
   EXPECT_LT(mostMemory() - before, 100l << 20);
 }
 
