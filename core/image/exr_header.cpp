@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -40,6 +41,14 @@ class Cursor {
   std::span<const std::byte> rest_;
 };
 
+/// Channels of a list: each has a name and sixteen bytes more, an empty name ends it.
+std::uint64_t channelCount(std::span<const std::byte> list) {
+  Cursor cursor(list);
+  std::uint64_t count = 0;
+  for (auto name = cursor.text(); name && !name->empty() && cursor.take(16); name = cursor.text()) ++count;
+  return count;
+}
+
 }  // namespace
 
 std::string exrHeaderProblem(std::span<const std::byte> bytes) {
@@ -52,22 +61,26 @@ std::string exrHeaderProblem(std::span<const std::byte> bytes) {
     auto name = cursor.text();
     if (!name) return tooShort;
     if (name->empty() && !first && (*version & severalParts) != 0) return {};  // of the list of headers
+    std::uint64_t width = 0, height = 0, channels = 0;
     while (!name->empty()) {
       const auto type = cursor.text();
       const auto size = type ? cursor.number() : std::nullopt;
       const auto value = size ? cursor.take(*size) : std::nullopt;
       if (!value) return tooShort;
+      if (*name == "channels") channels = std::max(channels, channelCount(*value));
       if (*name == "tiles") {
         Cursor tile(*value);
-        const auto width = tile.number(), height = tile.number();
-        if (!width || !height) return tooShort;
-        if (std::uint64_t{*width} * *height > kMaxTilePixels)
-          return fmt::format("tiles of {}x{} pixels; at most {} pixels are accepted", *width, *height,
-                             kMaxTilePixels);
+        const auto w = tile.number(), h = tile.number();
+        if (!w || !h) return tooShort;
+        width = std::max<std::uint64_t>(width, *w);
+        height = std::max<std::uint64_t>(height, *h);
       }
       name = cursor.text();
       if (!name) return tooShort;
     }
+    if (width * height > kMaxTileValues || width * height * channels > kMaxTileValues)
+      return fmt::format("tiles of {}x{} pixels of {} channels; at most {} values are accepted", width,
+                         height, channels, kMaxTileValues);
     if ((*version & severalParts) == 0) return {};
   }
 }

@@ -9,8 +9,9 @@
 
 namespace limn {
 
-/// Limit on the pixels of a tile: the library holds several tiles at once, however small the picture is.
-inline constexpr std::uint64_t kMaxTilePixels = std::uint64_t{1} << 22;
+/// Limit on the values (pixels times channels) of a tile: the library holds several tiles at once, however
+/// small the picture is.
+inline constexpr std::uint64_t kMaxTileValues = std::uint64_t{1} << 24;
 
 /// Empty, or what is wrong with the header of a file that starts with OpenEXR's magic number: an attribute
 /// that is longer than the file, or tiles larger than the limit. Everything else is left to the library.

@@ -54,13 +54,19 @@ Format detectFormat(std::span<const std::byte> bytes, const std::string& name) {
   throw Error(fmt::format("{}: not a picture; EXR, HDR, PNG or JPEG is accepted", name));
 }
 
-/// libjpeg fills what a truncated file lacks with grey. A complete one has an end marker (FF D9) after its
-/// first scan; within entropy-coded data FF is always followed by 00 or a restart marker.
-bool jpegIsComplete(std::span<const std::byte> bytes) {
+/// Each scan of a progressive JPEG is a pass over the whole picture, however little it says; encoders make
+/// ten or so.
+constexpr int kMaxJpegScans = 100;
+
+/// Empty, or what is wrong. libjpeg fills what a truncated file lacks with grey. A complete one has an end
+/// marker (FF D9) after its first scan; within entropy-coded data FF is always followed by 00 or a restart
+/// marker.
+std::string jpegProblem(std::span<const std::byte> bytes) {
+  const std::string truncated = "truncated JPEG";
   const auto at = [&](std::size_t i) { return std::to_integer<unsigned>(bytes[i]); };
   std::size_t i = 2;
   while (i + 4 <= bytes.size()) {  // header segments, whose thumbnails may contain end markers
-    if (at(i) != 0xff) return false;
+    if (at(i) != 0xff) return truncated;
     const unsigned marker = at(i + 1);
     if (marker == 0xff) {
       ++i;
@@ -69,10 +75,14 @@ bool jpegIsComplete(std::span<const std::byte> bytes) {
     i += 2 + (at(i + 2) << 8 | at(i + 3));
     if (marker == 0xda) break;
   }
+  int scans = 1;
   for (; i + 1 < bytes.size(); ++i) {
-    if (at(i) == 0xff && at(i + 1) == 0xd9) return true;
+    if (at(i) != 0xff) continue;
+    if (at(i + 1) == 0xd9) return {};
+    if (at(i + 1) == 0xda && ++scans > kMaxJpegScans)
+      return fmt::format("more than {} scans, which is as many as are accepted", kMaxJpegScans);
   }
-  return false;
+  return truncated;
 }
 
 /// Cyclic redundancy code of PNG chunks (ISO 3309; reflected polynomial EDB88320).
@@ -109,6 +119,13 @@ bool pngIsComplete(std::span<const std::byte> bytes) {
   return false;
 }
 
+/// Empty, or what a decoder should not be given the file for.
+std::string problemOf(std::span<const std::byte> bytes, Format format) {
+  if (format == Format::jpeg) return jpegProblem(bytes);
+  if (format == Format::exr) return exrHeaderProblem(bytes);
+  return format == Format::png && !pngIsComplete(bytes) ? "truncated or damaged PNG" : "";
+}
+
 std::string oneLine(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   while (!text.empty() && text.back() == ' ') text.pop_back();
@@ -120,12 +137,8 @@ class Decoder {
  public:
   Decoder(std::span<const std::byte> bytes, const std::string& name)
       : name_(name), format_(detectFormat(bytes, name)), memory_(bytes.data(), bytes.size()) {
-    if (format_ == Format::jpeg && !jpegIsComplete(bytes)) fail("truncated JPEG");
-    if (format_ == Format::png && !pngIsComplete(bytes)) fail("truncated or damaged PNG");
-    if (format_ == Format::exr) {
-      const std::string problem = exrHeaderProblem(bytes);
-      if (!problem.empty()) fail(problem);
-    }
+    const std::string problem = problemOf(bytes, format_);
+    if (!problem.empty()) fail(problem);
     input_ = OIIO::ImageInput::create(decoderName(format_), false);
     if (!input_) fail(OIIO::geterror());
     input_->set_ioproxy(&memory_);

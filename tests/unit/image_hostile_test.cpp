@@ -4,12 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
-#include <cstring>
-#include <functional>
+#include <array>
+#include <filesystem>
+#include <optional>
 #include <random>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/image/image.h"
 
 namespace limn {
@@ -109,9 +112,12 @@ TEST(HostileImage, TilesLargerThanThePicture) {
   ExrBuilder exr;
   exr.tiles = {{16000, 8000}};
   const long before = mostMemory();
-  EXPECT_THAT(refusal(exr.bytes()), HasSubstr("tiles of 16000x8000 pixels; at most 4194304"));
+  EXPECT_THAT(refusal(exr.bytes()), HasSubstr("tiles of 16000x8000 pixels of 3 channels; at most 16777216"));
   exr.tiles = {{0xffffffff, 0xffffffff}};
   EXPECT_THAT(refusal(exr.bytes()), HasSubstr("tiles of 4294967295x4294967295 pixels"));
+  exr.tiles = {{2048, 2048}};
+  exr.channels = 200;
+  EXPECT_THAT(refusal(exr.bytes()), HasSubstr("tiles of 2048x2048 pixels of 200 channels"));
   EXPECT_LT(mostMemory() - before, 100l << 20);
 }
 
@@ -152,6 +158,24 @@ std::vector<std::byte> encoded(const char* format, OIIO::TypeDesc type) {
   EXPECT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) && output->close());
   const auto bytes = std::as_bytes(std::span(memory.buffer()));
   return {bytes.begin(), bytes.end()};
+}
+
+// A pass over the whole picture for four bytes of the file.
+TEST(HostileImage, JpegsOfManyScans) {
+  const auto file =
+      std::filesystem::temp_directory_path() / ("limn_scans_" + std::to_string(::getpid()) + ".jpg");
+  const auto output = OIIO::ImageOutput::create("jpeg");
+  const std::vector<std::uint8_t> pixels(16 * 16 * 3, 128);
+  ASSERT_TRUE(output->open(file.string(), OIIO::ImageSpec(16, 16, 3, OIIO::TypeDesc::UINT8)));
+  ASSERT_TRUE(output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) && output->close());
+  std::vector<std::byte> bytes = readFile(file);
+  std::filesystem::remove(file);
+  EXPECT_EQ(refusal(bytes), "");
+  bytes.resize(bytes.size() - 2);  // the end marker
+  for (int scan = 0; scan < 100; ++scan)
+    for (const int byte : {0xff, 0xda, 0, 2}) bytes.push_back(static_cast<std::byte>(byte));
+  for (const int byte : {0xff, 0xd9}) bytes.push_back(static_cast<std::byte>(byte));
+  EXPECT_THAT(refusal(bytes), HasSubstr("more than 100 scans"));
 }
 
 TEST(HostileImage, DamagedPicturesOfEveryFormat) {
