@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "core/scene/light_textures.h"
+#include "core/scene/light_texture.h"
 #include "glsl/airlight.glsl"
 
 namespace limn::reference {

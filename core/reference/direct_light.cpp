@@ -3,7 +3,7 @@
 #include <glm/glm.hpp>
 
 #include "core/reference/light_view.h"
-#include "core/scene/light_textures.h"
+#include "core/scene/light_texture.h"
 
 namespace limn::reference {
 namespace {

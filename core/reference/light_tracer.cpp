@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/reference/optics.h"
-#include "core/scene/light_textures.h"
+#include "core/scene/light_texture.h"
 #include "glsl/caustic_ray.glsl"
 #include "glsl/geometry.glsl"
 #include "glsl/light_intensity.glsl"

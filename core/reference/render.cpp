@@ -263,43 +263,6 @@ int ownLights(const scene::Pose& pose) {
                           pose.lights.begin());
 }
 
-bool hasBounces(Term term) {
-  return term == Term::indirect || hasInterfaces(term);
-}
-
-bool hasInterfaces(Term term) {
-  return term == Term::specular || term == Term::final;
-}
-
-const char* name(Term term) {
-  switch (term) {
-    case Term::direct:
-      return "direct";
-    case Term::visibility:
-      return "visibility";
-    case Term::final:
-      return "final";
-    case Term::indirect:
-      return "indirect";
-    case Term::caustic:
-      return "caustic";
-    case Term::media:
-      return "media";
-    case Term::specular:
-      return "specular";
-  }
-  return "";
-}
-
-Term termFromName(const std::string& text) {
-  for (const Term term : {Term::direct, Term::visibility, Term::final, Term::indirect, Term::caustic,
-                          Term::media, Term::specular})
-    if (text == name(term)) return term;
-  throw UsageError(fmt::format(
-      "reference: unknown term '{}'; there are direct, visibility, final, indirect, caustic, media, specular",
-      text));
-}
-
 Result render(const Request& request) {
   validate(request);
   tbb::task_arena arena(request.threads > 0 ? request.threads : tbb::task_arena::automatic);

@@ -1,4 +1,4 @@
-// Textures that spots shine through: made from images, looked up on the CPU, and read by passes.
+// Textures that spots shine through, on the GPU: uploaded, and read by passes.
 #pragma once
 
 #include <map>
@@ -9,12 +9,6 @@
 #include "core/technique/technique.h"
 
 namespace limn::scene {
-
-/// An image as a light texture: averaged over each texel of LightTexture::side squared, in linear light.
-LightTexture makeLightTexture(const TextureImage& image);
-
-/// The factor on what a light sends to `receiver`, world; 1 without a texture. Bilinear, as OpenGL does it.
-LIMN_API glm::vec3 lightTextureAt(const Scene& scene, const glsl::Light& light, const glm::vec3& receiver);
 
 /// All of a scene in one array texture; empty where there is none.
 gpu::Texture makeLightTextures(gpu::Device& device, const Scene& scene);

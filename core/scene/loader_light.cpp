@@ -1,7 +1,7 @@
 // Lights and cameras.
 #include <tiny_gltf.h>
 
-#include "core/scene/light_textures.h"
+#include "core/scene/light_texture.h"
 #include "core/scene/loader.h"
 
 namespace limn::scene {

@@ -1,0 +1,59 @@
+#include "core/scene/light_texture.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "glsl/srgb.glsl"
+
+namespace limn::scene {
+namespace {
+
+const glm::vec3& texelOf(const LightTexture& texture, int x, int y) {
+  return texture.texels[static_cast<size_t>(y) * LightTexture::side + static_cast<size_t>(x)];
+}
+
+}  // namespace
+
+LightTexture makeLightTexture(const TextureImage& image) {
+  const TextureImage::Level& level = image.levels.at(0);
+  constexpr int side = LightTexture::side;
+  // Points per texel and axis: as many as there are texels of the image, so that each counts.
+  const int across = std::max(1, (level.width + side - 1) / side),
+            down = std::max(1, (level.height + side - 1) / side);
+  const auto texel = [&](int x, int y) {
+    const uint8_t* rgba = level.rgba.data() + 4 * (static_cast<size_t>(y) * static_cast<size_t>(level.width) +
+                                                   static_cast<size_t>(x));
+    const glm::vec3 encoded = glm::vec3(rgba[0], rgba[1], rgba[2]) / 255.f;
+    return image.srgb ? glsl::srgb_decode(encoded) : encoded;
+  };
+  LightTexture texture;
+  texture.texels.resize(size_t{side} * side);
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      glm::vec3 sum(0);
+      for (int i = 0; i < across * down; ++i) {
+        const int64_t column = int64_t{x} * across + i % across, row = int64_t{y} * down + i / across;
+        sum += texel(static_cast<int>(column * level.width / (side * across)),
+                     static_cast<int>(row * level.height / (side * down)));
+      }
+      // Images have their top row first, v points up.
+      texture.texels[static_cast<size_t>(side - 1 - y) * side + static_cast<size_t>(x)] =
+          sum / static_cast<float>(across * down);
+    }
+  return texture;
+}
+
+glm::vec3 lightTextureAt(const Scene& scene, const glsl::Light& light, const glm::vec3& receiver) {
+  if (light.direction.w == 0) return glm::vec3(1);
+  const LightTexture& texture = scene.lightTextures.at(static_cast<size_t>(light.direction.w) - 1);
+  constexpr int last = LightTexture::side - 1;
+  const glm::vec2 place =
+      glm::clamp(glsl::light_texture_place(light, receiver) * static_cast<float>(LightTexture::side) - 0.5f,
+                 0.f, static_cast<float>(last));
+  const glm::ivec2 low(place), high = glm::min(low + 1, last);
+  const glm::vec2 w = place - glm::vec2(low);
+  return glm::mix(glm::mix(texelOf(texture, low.x, low.y), texelOf(texture, high.x, low.y), w.x),
+                  glm::mix(texelOf(texture, low.x, high.y), texelOf(texture, high.x, high.y), w.x), w.y);
+}
+
+}  // namespace limn::scene
