@@ -171,7 +171,7 @@ void warn(const std::string& message) {
 
 int guarded(const std::function<int()>& work) {
   const auto say = [](const std::string& message) {
-    std::fputs(("limn: " + message + "\n").c_str(), stderr);
+    std::fputs(("limn: " + oneLine(message, 4000) + "\n").c_str(), stderr);
   };
   try {
     return work();

@@ -33,6 +33,13 @@ std::optional<double> parseNumber(std::string_view text) {
   return value;
 }
 
+std::string oneLine(std::string_view text, size_t limit) {
+  std::string line(text.substr(0, limit));
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, '?');
+  return text.size() > limit ? line + "..." : line;
+}
+
 std::string joined(std::span<const std::string> names, std::string_view last) {
   std::string text;
   for (size_t i = 0; i < names.size(); ++i) {

@@ -10,7 +10,9 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/text.h"
 #include "core/bench/suite.h"
+#include "core/bench/toml_nesting.h"
 #include "core/bench/toml_section.h"
 #include "core/reference/reference.h"
 
@@ -112,7 +114,8 @@ std::vector<bool> parseModes(const TomlSection& suite) {
 
 /// A parameter's value as the command line takes it.
 std::string valueText(const TomlSection& section, const toml::node& node, const std::string& name) {
-  if (const auto text = node.value_exact<std::string>()) return *text;
+  if (const auto text = node.value_exact<std::string>(); text && text->empty()) return *text;
+  if (node.is_string()) return section.text(node, name.c_str());
   if (const auto flag = node.value_exact<bool>()) return *flag ? "true" : "false";
   if (const auto whole = node.value_exact<std::int64_t>()) return fmt::format("{}", *whole);
   if (const auto number = node.value_exact<double>(); number && std::isfinite(*number)) {
@@ -139,6 +142,7 @@ SweptTechnique parseTechnique(const std::string& file, const toml::table& table)
   if (!parameters->is_table()) section.fail(*parameters, "'parameters' must be a table");
   for (const auto& [key, node] : *parameters->as_table()) {
     std::string name(key.str());
+    if (oneLine(name, name.size()) != name) failAt(file, key.source(), "a parameter's name must be one line");
     if (name.find('.') == std::string::npos) {
       if (technique.name.find(',') != std::string::npos) {
         failAt(file, key.source(),
@@ -153,6 +157,8 @@ SweptTechnique parseTechnique(const std::string& file, const toml::table& table)
     } else {
       values.push_back(valueText(section, node, name));
     }
+    if (technique.settings.size() * values.size() > kMaxCases)
+      section.fail(node, fmt::format("more than {} combinations", kMaxCases));
     decltype(technique.settings) combined;
     for (const auto& setting : technique.settings) {
       for (const std::string& value : values) {
@@ -160,7 +166,6 @@ SweptTechnique parseTechnique(const std::string& file, const toml::table& table)
         combined.back().emplace_back(name, value);
       }
     }
-    if (combined.size() > kMaxCases) section.fail(node, fmt::format("more than {} combinations", kMaxCases));
     technique.settings = std::move(combined);
   }
   return technique;
@@ -213,6 +218,7 @@ std::vector<std::optional<double>> parseMedium(const TomlSection& scene, MediumS
 /// All cases that ask one question of every technique.
 void addCases(const Case& base, const std::vector<SweptTechnique>& techniques, const std::vector<bool>& modes,
               bool separationFloor, std::vector<Case>& cases) {
+  if (cases.size() > kMaxCases) return;  // refused below; no need to fill the memory first
   if (separationFloor && base.term == "direct") {
     for (const bool dynamic : modes) {
       cases.push_back(base);
@@ -356,6 +362,9 @@ Suite buildSuite(const toml::table& root, const std::string& file, bool mayInclu
 }
 
 Suite parse(std::string_view text, const std::string& file, bool mayInclude) {
+  if (const int line = tooDeepLine(text))
+    throw UsageError(
+        oneLine(fmt::format("{}:{}: nested deeper than {} levels", file, line, kMaxTomlNesting)));
   try {
     return buildSuite(toml::parse(text), file, mayInclude);
   } catch (const toml::parse_error& error) {

@@ -6,11 +6,13 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace limn::bench {
 
 void failAt(const std::string& file, const toml::source_region& where, const std::string& message) {
-  throw UsageError(fmt::format("{}:{}:{}: {}", file, where.begin.line, where.begin.column, message));
+  throw UsageError(
+      oneLine(fmt::format("{}:{}:{}: {}", file, where.begin.line, where.begin.column, message), 4000));
 }
 
 TomlSection::TomlSection(const std::string& file, const toml::table& table, std::string name,
@@ -37,6 +39,8 @@ void TomlSection::fail(const toml::node& node, const std::string& message) const
 std::string TomlSection::text(const toml::node& node, const char* key) const {
   const auto value = node.value_exact<std::string>();
   if (!value || value->empty()) fail(node, fmt::format("'{}' must be a text that is not empty", key));
+  if (oneLine(*value, value->size()) != *value)
+    fail(node, fmt::format("'{}' must be a text of one line", key));
   return *value;
 }
 

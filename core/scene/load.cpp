@@ -9,21 +9,11 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/text.h"
 #include "core/scene/density_grid.h"
 #include "core/scene/loader.h"
 
 namespace limn::scene {
-namespace {
-
-/// File names and JSON strings end up in messages, which are one line of text.
-std::string oneLine(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, '?');
-  return text.size() > 600 ? text.substr(0, 600) + "..." : text;
-}
-
-}  // namespace
-
 Loader::Loader(std::string name, std::filesystem::path folder, const LoadLimits& limits)
     : name_(std::move(name)), folder_(std::move(folder)), limits_(limits) {}
 
@@ -92,8 +82,11 @@ void Loader::readMedium(const tinygltf::Value& medium) {
   };
   scene_.medium.sigmaA = coefficient("sigma_a");
   scene_.medium.sigmaS = coefficient("sigma_s");
-  const tinygltf::Value& g = medium.Get("g");
-  scene_.medium.g = g.IsNumber() ? number(g.GetNumberAsDouble(), what + " g") : 0.f;
+  if (medium.Has("g")) {
+    const tinygltf::Value& g = medium.Get("g");
+    if (!g.IsNumber()) fail(what + " g: a number is accepted");
+    scene_.medium.g = number(g.GetNumberAsDouble(), what + " g");
+  }
   if (!(std::abs(scene_.medium.g) < 1))
     fail(fmt::format("{} g: {}; more than -1 and less than 1 is accepted", what, scene_.medium.g));
   if (medium.Has("grid") && medium.Has("smoke"))
@@ -137,8 +130,14 @@ void Loader::readSmoke(const tinygltf::Value& smoke, const std::string& what) {
   const double size = glm::length(extent);
   s.whirl = real("whirl", 1e-3 * size, 1e3 * size, 0.15 * size);
   s.rise = real("rise", -1e3 * size, 1e3 * size, 0);
-  s.seed = static_cast<uint32_t>(real("seed", 0, 1e6, 0));
-  s.resolution = static_cast<int>(real("resolution", 2, 256, s.resolution));
+  const auto whole = [&](const char* key, double low, double high, double otherwise) {
+    const float value = real(key, low, high, otherwise);
+    if (value != std::floor(value))
+      fail(fmt::format("{} {}: {}; a whole number is accepted", what, key, value));
+    return static_cast<int>(value);
+  };
+  s.seed = static_cast<uint32_t>(whole("seed", 0, 1e6, 0));
+  s.resolution = whole("resolution", 2, 256, s.resolution);
 }
 
 void Loader::readSceneExtras() {

@@ -76,6 +76,10 @@ class Loader {
   // loader_files.cpp
   /// A file the scene names, whose URI may be percent-encoded; throws Error if it lies outside the folder.
   std::filesystem::path resolve(const std::string& uri, const std::string& what) const;
+  /// What a URI stands for; throws Error "WHAT: ..." without the scene's name.
+  std::vector<std::byte> uriBytes(const std::string& uri, const std::string& what,
+                                  std::uint64_t maxBytes) const;
+  /// The same with it.
   std::vector<std::byte> readUri(const std::string& uri, const std::string& what,
                                  std::uint64_t maxBytes) const;
 
@@ -109,6 +113,7 @@ class Loader {
   void readMaterialExtensions(const tinygltf::Material& source, Material& material, const std::string& what);
   TextureRef readTexture(int index, int texCoord, const tinygltf::Value* transform, bool srgb, UvUse& use,
                          const std::string& what);
+  /// Its index in Scene::images; none, with a warning, if it is no picture that can be read.
   int readImage(int index, bool srgb, const std::string& what);
   void checkImageSize(std::span<const std::byte> bytes, const std::string& label) const;
 

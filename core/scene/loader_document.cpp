@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/scene/document_schema.h"
 #include "core/scene/loader.h"
 
 namespace limn::scene {
@@ -36,13 +38,6 @@ std::uint32_t word(std::span<const std::byte> bytes, std::size_t at) {
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < 4; ++i) value |= std::to_integer<std::uint32_t>(bytes[at + i]) << (8 * i);
   return value;
-}
-
-std::string oneLine(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 32; }, ' ');
-  while (!text.empty() && text.back() == ' ') text.pop_back();
-  return text.substr(0, 300);
 }
 
 /// Counts nesting without recursion.
@@ -136,7 +131,8 @@ class DocumentCheck {
                              "materials", "meshes", "nodes", "samplers", "scenes", "skins", "textures"}) {
       if (const std::string problem = checkList(root, list); !problem.empty()) return problem;
     }
-    return checkExtensions(root);
+    if (const std::string problem = checkExtensions(root); !problem.empty()) return problem;
+    return checkProperties(root);
   }
 
  private:
@@ -183,6 +179,16 @@ struct Loader::Document {
   json root;
 };
 
+namespace {
+
+/// Names end up in messages, tables and lists, a line each.
+void cleanNames(json& entries) {
+  for (json& entry : entries)
+    if (const auto name = entry.find("name"); name != entry.end()) *name = oneLine(name->get<std::string>());
+}
+
+}  // namespace
+
 void Loader::parse(const Container& container, tinygltf::Model& model) {
   if (tooDeep(container.json)) fail(fmt::format("JSON nested deeper than {} levels", kMaxDepth));
   Document document;
@@ -193,6 +199,10 @@ void Loader::parse(const Container& container, tinygltf::Model& model) {
     fail(fmt::format("not valid JSON: {}", oneLine(error.what())));
   }
   if (const std::string problem = DocumentCheck(limits_).check(root); !problem.empty()) fail(problem);
+  for (const char* list : {"animations", "cameras", "images", "materials", "meshes", "nodes", "skins"})
+    if (const auto entries = root.find(list); entries != root.end()) cleanNames(*entries);
+  if (const json::json_pointer lights("/extensions/KHR_lights_punctual/lights"); root.contains(lights))
+    cleanNames(root[lights]);
   takeBuffers(document, container.binary);
   takeImages(document);
 
@@ -217,14 +227,10 @@ void Loader::takeBuffers(Document& document, std::span<const std::byte> binary) 
   for (std::size_t i = 0; i < list->size(); ++i) {
     const json& buffer = (*list)[i];
     const std::string what = fmt::format("buffer {}", i);
-    const auto length = buffer.find("byteLength");
-    if (length == buffer.end() || !length->is_number_unsigned())
-      fail(fmt::format("{} has no byteLength", what));
-    const std::uint64_t bytes = length->get<std::uint64_t>();
+    const auto bytes = buffer.at("byteLength").get<std::uint64_t>();
     const auto uri = buffer.find("uri");
     std::span<const std::byte> content = binary;
     if (uri != buffer.end()) {
-      if (!uri->is_string()) fail(fmt::format("{}: the uri is not a string", what));
       bufferStorage_.push_back(readUri(uri->get<std::string>(), what, kMaxFileBytes));
       content = bufferStorage_.back();
     } else if (i != 0) {
@@ -244,16 +250,14 @@ void Loader::takeImages(Document& document) {
   for (std::size_t i = 0; i < list->size(); ++i) {
     const json& image = (*list)[i];
     ImageSource source;
-    if (const auto name = image.find("name"); name != image.end() && name->is_string())
-      source.name = oneLine(name->get<std::string>());
+    source.name = image.value("name", "");
     const std::string what = fmt::format("image {}", i);
     const auto uri = image.find("uri");
     const auto view = image.find("bufferView");
-    if (uri != image.end() && uri->is_string()) {
+    if (uri != image.end()) {
       source.uri = uri->get<std::string>();
       if (!tinygltf::IsDataURI(source.uri)) resolve(source.uri, what);
-    } else if (view != image.end() && view->is_number_unsigned() &&
-               view->get<std::uint64_t>() < std::numeric_limits<int>::max()) {
+    } else if (view != image.end()) {
       source.view = view->get<int>();
     } else {
       fail(fmt::format("{} has neither a uri nor a bufferView", what));

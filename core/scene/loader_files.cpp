@@ -1,11 +1,11 @@
 // Which files a scene may name: those in its own folder or below.
 #include <tiny_gltf.h>
 
-#include <cctype>
 #include <system_error>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/text.h"
 #include "core/scene/loader.h"
 
 namespace limn::scene {
@@ -31,15 +31,6 @@ std::string percentDecoded(const std::string& uri) {
   return out;
 }
 
-/// For messages: one line, not endless.
-std::string shown(const std::string& uri) {
-  std::string text = uri.substr(0, 80);
-  for (char& c : text) {
-    if (std::iscntrl(static_cast<unsigned char>(c))) c = '?';
-  }
-  return uri.size() > 80 ? text + "..." : text;
-}
-
 bool isInside(const std::filesystem::path& file, const std::filesystem::path& folder) {
   auto part = file.begin();
   for (const auto& step : folder) {
@@ -54,41 +45,52 @@ bool isInside(const std::filesystem::path& file, const std::filesystem::path& fo
 std::filesystem::path Loader::resolve(const std::string& uri, const std::string& what) const {
   const std::string decoded = percentDecoded(uri);
   if (folder_.empty())
-    fail(fmt::format("{}: '{}' is another file; a scene in memory can name none", what, shown(uri)));
+    fail(fmt::format("{}: '{}' is another file; a scene in memory can name none", what, oneLine(uri, 80)));
   if (decoded.empty() || decoded.find('\0') != std::string::npos || decoded.find("://") != std::string::npos)
     fail(fmt::format("{}: '{}' is not a file name; a file in the scene's folder is accepted", what,
-                     shown(uri)));
+                     oneLine(uri, 80)));
   const std::filesystem::path relative(decoded);
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::weakly_canonical(folder_, error);
   if (error) fail(fmt::format("{}: cannot resolve the scene's folder: {}", what, error.message()));
   const std::filesystem::path file = std::filesystem::weakly_canonical(folder / relative, error);
-  if (error) fail(fmt::format("{}: '{}' cannot be resolved: {}", what, shown(uri), error.message()));
+  if (error) fail(fmt::format("{}: '{}' cannot be resolved: {}", what, oneLine(uri, 80), error.message()));
   // `..` is refused even where it would lead back: whether it does depends on the folder's own name.
   bool climbs = relative.is_absolute();
   for (const auto& step : relative) climbs = climbs || step == "..";
   if (climbs || !isInside(file, folder))
     fail(fmt::format("{}: '{}' lies outside the scene's folder; only files in it or below are read", what,
-                     shown(uri)));
+                     oneLine(uri, 80)));
   return file;
 }
 
-std::vector<std::byte> Loader::readUri(const std::string& uri, const std::string& what,
-                                       std::uint64_t maxBytes) const {
+std::vector<std::byte> Loader::uriBytes(const std::string& uri, const std::string& what,
+                                        std::uint64_t maxBytes) const {
   if (!tinygltf::IsDataURI(uri)) {
     const std::filesystem::path file = resolve(uri, what);
     try {
       return readFile(file, maxBytes);
     } catch (const Error& error) {
-      fail(fmt::format("{}: {}", what, error.what()));
+      throw Error(fmt::format("{}: {}", what, error.what()));
     }
   }
   std::vector<unsigned char> decoded;
   std::string type;
   if (!tinygltf::DecodeDataURI(&decoded, type, uri, 0, false) || decoded.empty())
-    fail(fmt::format("{}: the data URI cannot be decoded; base64 is accepted", what));
+    throw Error(fmt::format("{}: the data URI cannot be decoded; base64 is accepted", what));
   const auto bytes = std::as_bytes(std::span(decoded));
   return {bytes.begin(), bytes.end()};
+}
+
+std::vector<std::byte> Loader::readUri(const std::string& uri, const std::string& what,
+                                       std::uint64_t maxBytes) const {
+  std::string problem;
+  try {
+    return uriBytes(uri, what, maxBytes);
+  } catch (const Error& error) {
+    problem = error.what();
+  }
+  fail(problem);
 }
 
 }  // namespace limn::scene

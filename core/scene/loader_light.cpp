@@ -51,6 +51,7 @@ int Loader::readLightTexture(const tinygltf::Value& index, uint32_t type, const 
   if (!(given >= 0 && given < static_cast<double>(model_->textures.size())))
     fail(fmt::format("{}: the index of one of the {} textures is accepted", what, model_->textures.size()));
   const int image = readImage(model_->textures[static_cast<std::size_t>(given)].source, true, what);
+  if (image == none) return none;
   const auto known = lightTextureIndex_.find(image);
   if (known != lightTextureIndex_.end()) return known->second;
   if (scene_.lightTextures.size() == most) fail(fmt::format("{}: more than {} of them", what, most));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/image/image.h"
 #include "core/scene/loader.h"
 #include "core/scene/mip_chain.h"
@@ -36,19 +37,32 @@ int Loader::readImage(int index, bool srgb, const std::string& what) {
   const auto known = imageIndex_.find({index, srgb});
   if (known != imageIndex_.end()) return known->second;
   const ImageSource& source = imageSources_[static_cast<std::size_t>(index)];
+  const bool named = source.view < 0 && !tinygltf::IsDataURI(source.uri);
   const std::string label =
-      fmt::format("{}: image {}{}", name_, index, source.name.empty() ? "" : " '" + source.name + "'");
+      fmt::format("image {}{}{}", index, source.name.empty() ? "" : " '" + source.name + "'",
+                  named ? " (" + oneLine(source.uri, 80) + ")" : "");
 
   std::vector<std::byte> storage;
   std::span<const std::byte> bytes;
-  if (source.view >= 0) {
-    bytes = viewBytes(source.view, fmt::format("image {}", index));
-  } else {
-    storage = readUri(source.uri, fmt::format("image {}", index), std::uint64_t{1} << 32);
-    bytes = storage;
+  if (source.view >= 0) bytes = viewBytes(source.view, label);
+  // One damaged picture is no reason to show nothing: the factors of what it is for stand alone.
+  const auto withoutImage = [&](const std::string& problem) {
+    warn(fmt::format("{}; {} goes without it", problem, what));
+    return imageIndex_[{index, srgb}] = none;
+  };
+  Image8 decoded;
+  try {
+    if (source.view < 0) bytes = storage = uriBytes(source.uri, label, std::uint64_t{1} << 32);
+    if (bytes.empty()) throw Error(label + ": it is empty; PNG or JPEG is accepted");
+  } catch (const Error& error) {
+    return withoutImage(error.what());
   }
   checkImageSize(bytes, label);
-  Image8 decoded = readImage8Memory(bytes, label);
+  try {
+    decoded = readImage8Memory(bytes, label);
+  } catch (const Error& error) {
+    return withoutImage(error.what());
+  }
   texels_ += static_cast<std::uint64_t>(decoded.width) * static_cast<std::uint64_t>(decoded.height);
   if (texels_ > limits_.imageTexels)
     fail(fmt::format("image {}: more than {} texels in all images", index, limits_.imageTexels));
@@ -89,8 +103,8 @@ void Loader::checkImageSize(std::span<const std::byte> bytes, const std::string&
   if (width > static_cast<std::uint64_t>(kMaxImageSide) ||
       height > static_cast<std::uint64_t>(kMaxImageSide) ||
       width * height > limits_.imageTexels - std::min(texels_, limits_.imageTexels)) {
-    throw Error(fmt::format("{}: {}x{} texels; at most {} per side and {} in all images are accepted", label,
-                            width, height, kMaxImageSide, limits_.imageTexels));
+    fail(fmt::format("{}: {}x{} texels; at most {} per side and {} in all images are accepted", label, width,
+                     height, kMaxImageSide, limits_.imageTexels));
   }
 }
 
@@ -114,6 +128,7 @@ TextureRef Loader::readTexture(int index, int texCoord, const tinygltf::Value* t
     out.wrapT = wrapMode(sampler.wrapT);
   }
   out.image = readImage(texture.source, srgb, what);
+  if (out.image == none) return {};
 
   UvUse wanted{true, texCoord, glm::vec2(0), glm::vec2(1), 0};
   if (transform) {

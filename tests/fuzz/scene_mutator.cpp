@@ -79,19 +79,28 @@ void collect(json& value, std::vector<json*>& all) {
 
 json boundaryNumber(Random& random) {
   static const std::array numbers = {
-      json(0),     json(-1),      json(1),          json(2),         json(3),           json(127),  json(255),
-      json(256),   json(65535),   json(65536),      json(INT32_MAX), json(INT32_MIN),   json(0.5),  json(-0.0),
-      json(1e-30), json(1e30),    json(-1e30),      json(3.5e38),    json(1e308),       json(5120), json(5121),
-      json(5123),  json(5125),    json(5126),       json(1e-320),    json(UINT32_MAX),  json(4),    json(5),
-      json(1.5),   json(1u << 30), json(1ull << 53), json(INT64_MIN), json(UINT64_MAX)};
+      json(0),          json(-1),         json(1),         json(2),     json(3),         json(127),
+      json(255),        json(256),        json(65535),     json(65536), json(INT32_MAX), json(INT32_MIN),
+      json(0.5),        json(-0.0),       json(1e-30),     json(1e30),  json(-1e30),     json(3.5e38),
+      json(1e308),      json(5120),       json(5121),      json(5123),  json(5125),      json(5126),
+      json(1e-320),     json(UINT32_MAX), json(4),         json(5),     json(1.5),       json(1u << 30),
+      json(1ull << 53), json(INT64_MIN),  json(UINT64_MAX)};
   return numbers[below(numbers.size(), random)];
 }
 
 json otherType(Random& random) {
-  static const std::array values = {json(),          json(true),          json(false),
-                                    json(""),        json("a"),           json("0"),
-                                    json::array(),   json::object(),      json::array({0}),
-                                    json("a\nb\x1b"), json::array({0, 1, 2}), json::array({1e30, -1, "x"})};
+  static const std::array values = {json(),
+                                    json(true),
+                                    json(false),
+                                    json(""),
+                                    json("a"),
+                                    json("0"),
+                                    json::array(),
+                                    json::object(),
+                                    json::array({0}),
+                                    json("a\nb\x1b"),
+                                    json::array({0, 1, 2}),
+                                    json::array({1e30, -1, "x"})};
   return values[below(values.size(), random)];
 }
 

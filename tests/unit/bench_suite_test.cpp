@@ -53,6 +53,28 @@ void expectUsageError(const std::string& text, const std::string& message) {
   }
 }
 
+TEST(BenchSuite, DeepNestingIsRefusedBeforeParsing) {
+  std::string dotted = "name";
+  for (int i = 0; i < 50'000; ++i) dotted += ".a";
+  expectUsageError("sizes=[]\n" + dotted + "=1\n", "s.toml:2: nested deeper than 16 levels");
+  expectUsageError("[" + dotted + "]\n", "s.toml:1: nested deeper than 16 levels");
+  expectUsageError("name=" + std::string(50'000, '['), "s.toml:1: nested deeper than 16 levels");
+  // Strings and comments may say what they like.
+  const std::string dots(100, '.'), brackets(100, '[');
+  expectUsageError(
+      "#" + dots + "\nname=\"" + brackets + "\\\"" + dots + "\"\nsizes='''\n" + brackets + "\n'''\n",
+      "s.toml:3:7: ");
+}
+
+TEST(BenchSuite, TextsAreOneLine) {
+  expectUsageError("name = \"a\\nb\"\n", "s.toml:1:8: 'name' must be a text of one line");
+  expectUsageError(
+      "name='a'\nsizes='8x8'\n[[techniques]]\ntechnique='t'\nparameters={\"a\\nb\"=1}\n[[scenes]]\nscene='s'"
+      "\n",
+      "a parameter's name must be one line");
+  expectUsageError("name = 'a'\n\"two\\nlines\" = 1\n", "unknown key 'two?lines'");
+}
+
 TEST(BenchSuite, IncludedSuitesGiveTheirCasesOnce) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / fmt::format("limn_include_{}", ::getpid());

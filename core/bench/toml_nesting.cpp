@@ -1,0 +1,53 @@
+#include "core/bench/toml_nesting.h"
+
+#include <algorithm>
+#include <string>
+
+namespace limn::bench {
+namespace {
+
+/// The position behind the string that begins at `at`; the end of the text if it has no end.
+std::size_t afterString(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  const bool lines = text.substr(at, 3) == std::string_view(quote == '"' ? "\"\"\"" : "'''");
+  const std::size_t marks = lines ? 3 : 1;
+  for (at += marks; at < text.size(); ++at) {
+    if (text[at] == '\\' && quote == '"')
+      ++at;
+    else if (text[at] == '\n' && !lines)
+      return at;  // the parser will refuse it
+    else if (text.substr(at, marks) == std::string(marks, quote))
+      return at + marks;
+  }
+  return text.size();
+}
+
+}  // namespace
+
+int tooDeepLine(std::string_view toml) {
+  int dots = 0, brackets = 0, line = 1;
+  for (std::size_t at = 0; at < toml.size();) {
+    const char c = toml[at];
+    if (c == '"' || c == '\'') {
+      const std::size_t end = afterString(toml, at);
+      line += static_cast<int>(std::count(toml.begin() + static_cast<std::ptrdiff_t>(at),
+                                          toml.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
+      at = end;
+      continue;
+    }
+    if (c == '#') {
+      at = std::min(toml.find('\n', at), toml.size());
+      continue;
+    }
+    if (c == '.') ++dots;
+    if (c == '[' || c == '{') ++brackets;
+    if (c == ']' || c == '}') --brackets;
+    if (dots > kMaxTomlNesting || brackets > kMaxTomlNesting) return line;
+    if (c == '=' || c == ',' || c == '\n' || c == '[' || c == '{') dots = 0;
+    if (c == '\n') ++line;
+    ++at;
+  }
+  return 0;
+}
+
+}  // namespace limn::bench
