@@ -3,6 +3,7 @@
 
 #include "apps/limn/bench_session.h"
 #include "apps/limn/commands.h"
+#include "apps/limn/interruption.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/bench/regression.h"
@@ -37,6 +38,8 @@ bool reportRegressions(const std::vector<bench::Row>& before, const fs::path& ou
 int run(const Options& options) {
   std::optional<std::vector<bench::Row>> before;
   if (!options.against.empty()) before = earlierRows(options.against);
+  const LastWords words(fmt::format("interrupted; the rows so far are kept in {}, the same command goes on",
+                                    (options.out / "results.jsonl").string()));
   const bench::Summary summary =
       runSuite(findSuite(options.suite), options.out, options.backend, options.filters,
                options.shard.empty() ? bench::Shard{} : bench::parseShard(options.shard));
@@ -53,7 +56,7 @@ Action addBenchCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
   command.add_option("suite", options->suite, "TOML file, or the name of one of limn's suites")->required();
   command
-      .add_option("--out", options->out,
+      .add_option("-o,--out", options->out,
                   "Folder for results.jsonl, index.html, tables and references; resumed if it exists")
       ->required();
   command.add_option("--filter", options->filters, "Only cases whose label contains this text; repeatable")

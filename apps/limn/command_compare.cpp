@@ -3,6 +3,7 @@
 
 #include "apps/limn/commands.h"
 #include "apps/limn/options.h"
+#include "apps/limn/provenance.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/image/compare_report.h"
@@ -38,7 +39,12 @@ int run(const Options& options) {
   if (!options.diff.empty()) checkWritable(options.diff);
   const Image image = readImage(options.image), reference = readImage(options.reference);
   const Metrics metrics = compareImages(image, reference, compare);
-  if (!options.diff.empty()) writePng(options.diff, differenceImage(image, reference, compare));
+  if (!options.diff.empty()) {
+    Image difference = differenceImage(image, reference, compare);
+    sign(difference);
+    writePng(options.diff, difference);
+    sayWritten(options.diff);
+  }
   fmt::print("{}\n", options.json ? metricsJson(metrics) : metricsTable(metrics));
   return 0;
 }

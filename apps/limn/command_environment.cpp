@@ -7,6 +7,7 @@
 
 #include "apps/limn/commands.h"
 #include "apps/limn/options.h"
+#include "apps/limn/provenance.h"
 #include "core/base/error.h"
 #include "core/scene/load.h"
 #include "core/shading/environment_decomposition.h"
@@ -109,9 +110,13 @@ int run(const Options& options) {
     printTable(rows);
     fmt::print("{}: {} lights in {:.1f} ms\n", options.map.string(), rows.size(), milliseconds);
   }
-  if (!options.overlay.empty())
-    writeImage(options.overlay, shading::decompositionOverlay(map, lights, options.width,
-                                                              static_cast<float>(options.exposure)));
+  if (!options.overlay.empty()) {
+    Image overlay =
+        shading::decompositionOverlay(map, lights, options.width, static_cast<float>(options.exposure));
+    sign(overlay);
+    writeImage(options.overlay, overlay);
+    sayWritten(options.overlay);
+  }
   return 0;
 }
 

@@ -25,11 +25,18 @@ struct Options {
   fs::path out, json;
 };
 
+constexpr double kPatience = 1;  // seconds without a word where there is no terminal
+
 Image referenceImage(const Options& options, const View& view, int interfaces) {
   reference::Request request =
       referenceRequest(view, view.pose, view.camera, reference::termFromName(options.outputTerm));
   request.spp = options.spp;
   request.interfaces = interfaces;
+  Progress progress("reference", kPatience);
+  request.progress = [&](const reference::Progress& state) {
+    progress.update(state.fraction, fmt::format("{} spp", state.spp));
+    return true;
+  };
   return reference::render(request).image;
 }
 
@@ -52,15 +59,26 @@ int run(const Options& options) {
   gpu::Device device(*context);
   render::Renderer renderer(device, view.scene);
   renderer.setTime(view.time, view.animation);
-  const auto results = bench::measureSavings(renderer, view.camera, settings,
-                                             options.spp > 0 ? &reference : nullptr, options.savings);
+  std::vector<bench::SavingResult> results;
+  {
+    Progress progress("explain-cost", kPatience);
+    bench::SavingOptions savings = options.savings;
+    savings.progress = [&](double fraction, const std::string& name) { progress.update(fraction, name); };
+    results = bench::measureSavings(renderer, view.camera, settings, options.spp > 0 ? &reference : nullptr,
+                                    savings);
+  }
   const std::string text = fmt::format(
       "{}, {}, {}, {}x{}, {}\n\n{}", options.scene.scene.filename().string(),
       options.technique.techniques.empty() ? "no technique" : options.technique.techniques,
       options.outputTerm, view.size.x, view.size.y, context->info().renderer, toMarkdown(results));
   fmt::print("{}", text);
-  if (!options.out.empty()) writeTextFile(options.out, text);
-  if (!options.json.empty()) writeTextFile(options.json, toJson(results) + "\n");
+  const auto write = [](const fs::path& file, const std::string& content) {
+    if (file.empty()) return;
+    writeTextFile(file, content);
+    sayWritten(file);
+  };
+  write(options.out, text);
+  write(options.json, toJson(results) + "\n");
   return std::ranges::all_of(results, &bench::SavingResult::holds) ? 0 : 1;
 }
 
@@ -82,7 +100,7 @@ Action addExplainCostCommand(CLI::App& command) {
       .add_option("--spp", options->spp,
                   "Also tell the errors against a reference of this many samples per pixel")
       ->check(CLI::Range(1, 1 << 22));
-  command.add_option("--out", options->out, "Write the table to a file, too (Markdown)");
+  command.add_option("-o,--out", options->out, "Write the table to a file, too (Markdown)");
   command.add_option("--json", options->json, "Write all samples as JSON");
   return [options] { return run(*options); };
 }

@@ -130,13 +130,12 @@ int run(const Options& options) {
   const int frames = range->last - range->first + 1;
   {
     Progress progress("flicker");
-    const Interruption interruption;
+    const LastWords words("interrupted; flicker keeps nothing before its last frame");
     for (int frame = range->first; frame <= range->last; ++frame) {
       Frame now = sequence.at(frame / options.fps);
       if (before) sums.add(*before, now);
       before = std::move(now);
       progress.update(double(frame - range->first + 1) / frames);
-      if (interruption.asked()) throw Error("flicker: stopped before the last frame");
     }
   }
   if (!(sums.trueChange() > 0))

@@ -8,6 +8,7 @@
 #include "apps/limn/commands.h"
 #include "apps/limn/interruption.h"
 #include "apps/limn/options.h"
+#include "apps/limn/provenance.h"
 #include "core/base/error.h"
 #include "core/reference/reference.h"
 #include "core/reference/vertices.h"
@@ -60,7 +61,9 @@ int runAtVertices(const Options& options, const View& view, reference::Request r
     throw UsageError("--at-vertices writes a list; --out takes a name ending in .exr");
   const auto points = reference::vertexPoints(view.scene, view.pose, static_cast<float>(options.longestEdge));
   const auto irradiance = reference::irradianceAt(request, points, 1e-4f * view.pose.bounds.radius());
-  writeImage(options.out, reference::vertexImage(points, irradiance), 0);
+  Image list = reference::vertexImage(points, irradiance);
+  sign(list);
+  writeImage(options.out, list, 0);
   fmt::print("{}: {} points, {} samples each\n", options.out.string(), points.size(), request.spp);
   return 0;
 }
@@ -81,12 +84,18 @@ int run(const Options& options) {
     return !interruption.asked();
   };
   reference::Result result;
-  if (options.cache.empty()) {
-    request.checkpoint = fs::path(options.out.string() + ".checkpoint");
-    result = reference::render(request);
-  } else {
-    result = reference::Cache(options.cache).render(request);
+  try {
+    if (options.cache.empty()) {
+      request.checkpoint = fs::path(options.out.string() + ".checkpoint");
+      result = reference::render(request);
+    } else {
+      result = reference::Cache(options.cache).render(request);
+    }
+  } catch (const Error& stopped) {
+    if (!interruption.asked()) throw;
+    throw Interrupted{interruption.signal(), std::string(stopped.what()) + "; the same command goes on"};
   }
+  sign(result.image);
   writeImage(options.out, result.image, static_cast<float>(options.exposure));
   fmt::print("{}: {} samples per pixel, noise {:.5f} of the mean\n", options.out.string(), result.spp,
              result.noiseRms);
@@ -139,7 +148,7 @@ Action addReferenceCommand(CLI::App& command) {
   command.add_option("--cache", options->cache,
                      "Folder of finished references, found again by their content");
   command
-      .add_option("--out", options->out,
+      .add_option("-o,--out", options->out,
                   "Picture (.exr with all channels, or .png); interrupted work is kept beside it")
       ->required();
   return [options] { return run(*options); };

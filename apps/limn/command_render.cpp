@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "apps/limn/commands.h"
+#include "apps/limn/interruption.h"
 #include "apps/limn/options.h"
+#include "apps/limn/provenance.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
@@ -84,6 +86,43 @@ Image finitePicture(const render::Renderer& renderer, const Options& options) {
   return picture;
 }
 
+void write(const Options& options, const fs::path& file, Image picture) {
+  sign(picture);
+  writeImage(file, picture, static_cast<float>(options.exposure));
+}
+
+void writeText(const fs::path& file, const std::string& text) {
+  writeTextFile(file, text);
+  sayWritten(file);
+}
+
+/// One frame that says which program it compiles and which pass it is in. What was asked for is waited for
+/// before each pass, so that the bar tells where the time goes.
+void renderWithProgress(render::Renderer& renderer) {
+  constexpr double patience = 1, compiling = 0.5;  // seconds; share of the bar
+  Progress progress("rendering", patience);
+  const LastWords words("interrupted; no picture was written");
+  renderer.setCompileProgress([&](int compiled, int wanted) {
+    progress.update(compiling * compiled / std::max(1, wanted),
+                    fmt::format("program {} of {}", compiled + 1, wanted));
+  });
+  std::vector<frame::PassReport> passes;
+  std::size_t next = 0;
+  renderer.render(frame::Timing::off, [&] {
+    if (passes.empty()) {
+      passes = renderer.explain();
+      std::erase_if(passes, [](const auto& pass) { return pass.state == frame::PassState::leftOut; });
+    }
+    renderer.finish();
+    if (next < passes.size())
+      progress.update(compiling + (1 - compiling) * double(next) / double(passes.size()), passes[next].name);
+    ++next;
+    return false;
+  });
+  renderer.setCompileProgress({});
+  renderer.finish();
+}
+
 int run(const Options& options) {
   checkOutputName(options.out);
   for (const fs::path& file : {options.out, options.stats, options.graph})
@@ -110,17 +149,24 @@ int run(const Options& options) {
   if (frames) {
     Progress progress("rendering");
     for (int frame = frames->first; frame <= frames->last; ++frame) {
+      const LastWords words(
+          frame == frames->first
+              ? std::string("interrupted; no frame was written")
+              : fmt::format("interrupted; the frames {}:{} are written, --frames {}:{} goes on",
+                            frames->first, frame - 1, frame, frames->last));
       moveTo(view, options.scene, frame / options.fps);
       renderer.setTime(view.time, view.animation);
       renderer.setCamera(view.camera);
       renderer.render();
-      writeImage(numbered(options.out, frame), finitePicture(renderer, options),
-                 static_cast<float>(options.exposure));
+      write(options, numbered(options.out, frame), finitePicture(renderer, options));
       progress.update(double(frame - frames->first + 1) / (frames->last - frames->first + 1));
     }
+    sayWritten(fmt::format("{} to {}", numbered(options.out, frames->first).string(),
+                           numbered(options.out, frames->last).string()));
   } else {
-    renderer.render();
-    writeImage(options.out, finitePicture(renderer, options), static_cast<float>(options.exposure));
+    renderWithProgress(renderer);
+    write(options, options.out, finitePicture(renderer, options));
+    sayWritten(options.out);
   }
 
   std::optional<render::FrameStats> stats;
@@ -131,8 +177,8 @@ int run(const Options& options) {
     printStats(*stats);
   }
   if (options.explain) printExplanation(renderer.explain(), stats ? &*stats : nullptr);
-  if (!options.stats.empty()) writeTextFile(options.stats, render::toJson(*stats) + "\n");
-  if (!options.graph.empty()) writeTextFile(options.graph, renderer.graph().graphviz());
+  if (!options.stats.empty()) writeText(options.stats, render::toJson(*stats) + "\n");
+  if (!options.graph.empty()) writeText(options.graph, renderer.graph().graphviz());
   for (const std::string& error : context->takeErrors()) throw Error("OpenGL: " + error);
   return 0;
 }
@@ -160,7 +206,8 @@ Action addRenderCommand(CLI::App& command) {
       command.add_flag("--dynamic", options->dynamicFrames, "Timed frames compute everything anew (default)");
   command.add_flag("--static", options->staticFrames, "Timed frames keep what did not change")
       ->excludes(dynamicFlag);
-  command.add_option("--out", options->out, "Picture: .exr (linear, with depth, id, albedo, normal) or .png")
+  command
+      .add_option("-o,--out", options->out, "Picture: .exr (linear, with depth, id, albedo, normal) or .png")
       ->required();
   command.add_flag("--explain", options->explain,
                    "Print every pass: run, cached or left out, why, memory and time");

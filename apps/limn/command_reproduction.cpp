@@ -3,6 +3,7 @@
 
 #include "apps/limn/bench_session.h"
 #include "apps/limn/commands.h"
+#include "apps/limn/options.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/bench/reproduction.h"
@@ -34,6 +35,7 @@ int run(const Options& options) {
       "renderer would say nothing, its ratios may. Made by `limn reproduction`.\n\n" +
       bench::reproductionMarkdown(bench::readClaims(claims), rows);
   writeTextFile(options.out, page);
+  sayWritten(options.out);
   return 0;
 }
 
@@ -42,7 +44,7 @@ int run(const Options& options) {
 Action addReproductionCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
   command.add_option("results", options->results, "Folders of `limn bench`")->required();
-  command.add_option("--out", options->out, "Markdown file")->required();
+  command.add_option("-o,--out", options->out, "Markdown file")->required();
   command.add_option("--claims", options->claims, "TOML file; default: the thesis's");
   return [options] { return run(*options); };
 }

@@ -112,15 +112,16 @@ int run(const Options& options) {
   bench::StressRun stress(device, [](const std::string& name) { return scene::load(findScene(name)); });
   {
     Progress progress("stress");
-    const Interruption interruption;
+    const LastWords words(options.out.empty()
+                              ? std::string("interrupted; nothing is kept without --out")
+                              : fmt::format("interrupted; the cases so far are kept in {}, the same command "
+                                            "goes on",
+                                            options.out.string()));
     for (std::size_t i = 0; i < cases.size(); ++i) {
       const Case& c = cases[i];
       progress.update(double(i) / double(cases.size()),
                       fmt::format("{}: {}", c.technique->info->name, c.stressCase->name));
       if (!table.holds(c)) table.add(stress.run(*c.technique, *c.stressCase, c.own));
-      if (interruption.asked())
-        throw Error(fmt::format("stress: stopped after {} of {} cases; the same command goes on", i + 1,
-                                cases.size()));
     }
   }
   table.write();  // also where the folder held everything
@@ -134,7 +135,7 @@ Action addStressCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
   command.add_option("--technique", options->techniques, "Techniques, comma-separated; default: all");
   command.add_option("--filter", options->filter, "Only cases whose name contains this text");
-  command.add_option("--out", options->out,
+  command.add_option("-o,--out", options->out,
                      "Folder for stress.md and stress.json; cases that it holds are not run again");
   options->backend.addTo(command);
   return [options] { return run(*options); };

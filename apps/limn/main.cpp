@@ -1,12 +1,17 @@
 // limn: the command line.
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <optional>
 
 #include "apps/limn/commands.h"
+#include "apps/limn/interruption.h"
 #include "apps/limn/options.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -22,6 +27,26 @@ void checkCommand(const CLI::App& limn, const std::string& name) {
                          limn::joined(known));
 }
 
+/// While one lives, what anybody writes to stderr is lost.
+class SilentStderr {
+ public:
+  SilentStderr() : former_(dup(STDERR_FILENO)) {
+    const int nothing = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    dup2(nothing, STDERR_FILENO);
+    close(nothing);
+  }
+  ~SilentStderr() {
+    std::fflush(stderr);
+    dup2(former_, STDERR_FILENO);
+    close(former_);
+  }
+  SilentStderr(const SilentStderr&) = delete;
+  SilentStderr& operator=(const SilentStderr&) = delete;
+
+ private:
+  int former_;
+};
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -33,12 +58,16 @@ int main(int argc, char** argv) {
     return std::string("limn: ") + error.what() + "; see limn --help\n";
   });
 
-  limn::app::Action action;
-  const auto add = [&](const char* name, const char* description, limn::app::Action (*build)(CLI::App&)) {
+  using namespace limn::app;
+  const LastWords words("interrupted; what it was to write is whole or not there");
+  Action action;
+  bool quiet = false;
+  const auto add = [&](const char* name, const char* description, Action (*build)(CLI::App&)) {
     CLI::App* command = limn.add_subcommand(name, description);
     command->callback([&action, run = build(*command)] { action = run; });
+    if (command->get_prefix_command()) return;  // what follows is another program's
+    command->add_flag("-q,--quiet", quiet, "Only results and errors: no progress, no notes, no warnings");
   };
-  using namespace limn::app;
   add("list", "Techniques, the terms they answer, their parameters", addListCommand);
   add("info", "OpenGL back ends, devices and limits of this machine", addInfoCommand);
   add("render", "Render a scene with techniques to a file", addRenderCommand);
@@ -62,6 +91,8 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
       return limn.exit(error) == 0 ? 0 : 2;
     }
+    std::optional<SilentStderr> silence;
+    if (quiet) silence.emplace();
     const int status = action();
     if (std::fflush(stdout) != 0)
       throw limn::Error(std::string("standard output cannot be written: ") + std::strerror(errno));

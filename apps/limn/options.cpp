@@ -11,6 +11,7 @@
 #include <new>
 #include <system_error>
 
+#include "apps/limn/interruption.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 
@@ -175,6 +176,9 @@ int guarded(const std::function<int()>& work) {
   };
   try {
     return work();
+  } catch (const Interrupted& interruption) {
+    say(interruption.message);
+    return 128 + interruption.signal;
   } catch (const UsageError& error) {
     say(error.what());
     return 2;
@@ -190,7 +194,15 @@ int guarded(const std::function<int()>& work) {
   return 1;
 }
 
-Progress::Progress(std::string label) : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) != 0) {}
+void sayWritten(const fs::path& file) {
+  std::fputs(fmt::format("wrote {}\n", file.string()).c_str(), stderr);
+}
+
+Progress::Progress(std::string label, double patience)
+    : label_(std::move(label)),
+      terminal_(isatty(STDERR_FILENO) != 0),
+      silentUntil_(std::chrono::steady_clock::now() +
+                   std::chrono::milliseconds(static_cast<int>(1000 * patience))) {}
 
 Progress::~Progress() {
   if (terminal_ && lastShown_ >= 0) std::fputs("\r\033[K", stderr);
@@ -203,7 +215,8 @@ void Progress::update(double fraction, const std::string& note) {
     const std::string bar(static_cast<size_t>(percent * width / 100), '#');
     std::fputs(fmt::format("\r{} [{:<{}}] {:3}% {}\033[K", label_, bar, width, percent, note).c_str(),
                stderr);
-  } else if (percent / 10 > lastShown_ / 10 || lastShown_ < 0) {
+  } else if ((percent / 10 > lastShown_ / 10 || lastShown_ < 0) &&
+             std::chrono::steady_clock::now() >= silentUntil_) {
     std::fputs(fmt::format("{}: {}% {}\n", label_, percent, note).c_str(), stderr);
   } else {
     return;

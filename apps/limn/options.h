@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -149,19 +150,24 @@ struct BackendOptions {
 /// Says on stderr, in one line, what is odd and does not end the run.
 void warn(const std::string& message);
 
-/// Runs `work`, reports what it throws in one line on stderr, and gives the exit status.
+/// Runs `work`, reports what it throws (Interrupted, too) in one line on stderr, and gives the exit status.
 int guarded(const std::function<int()>& work);
 
-/// A bar on a terminal, plain lines (at most one every 10 %) elsewhere; on stderr.
+/// Says on stderr that the file is there.
+void sayWritten(const std::filesystem::path& file);
+
+/// A bar on a terminal, plain lines (at most one every 10 %, none before `patience` seconds) elsewhere; on
+/// stderr.
 class Progress {
  public:
-  explicit Progress(std::string label);
+  explicit Progress(std::string label, double patience = 0);
   ~Progress();
   void update(double fraction, const std::string& note = {});
 
  private:
   std::string label_;
   bool terminal_;
+  std::chrono::steady_clock::time_point silentUntil_;
   int lastShown_ = -1;
 };
 

@@ -81,6 +81,7 @@ std::optional<Crash> runInWorker(WorkerReport& report, const std::function<void(
   if (child == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(1);
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);  // the parent has the last words
     Ending ending = Ending::returned;
     try {
       work();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "apps/limn/provenance.h"
 #include "apps/view/difference.h"
 #include "apps/view/display_image.h"
 #include "apps/view/picture_studio.h"
@@ -168,7 +169,7 @@ void PictureStudio::write(const SaveOrder& order, const std::filesystem::path& f
     if (render(order.picture) != Outcome::done) throw Error(facts_.picture.problem);
   }
   Image image = picture_->read();
-  if (!order.command.empty()) image.metadata()["command"] = order.command;
+  if (!order.command.empty()) sign(image, order.command);
   if (file.has_parent_path()) createFolder(file.parent_path());
   writeImage(file, image, order.picture.exposure);
 }

@@ -141,9 +141,11 @@ void look(Comparison& c, render::Renderer& renderer, const scene::CameraPose& ca
   comparePictures(c.result, forced, without, reference);
 }
 
+/// `tell` is called with the turn before each.
 void time(Comparison& c, render::Renderer& renderer, const scene::CameraPose& camera,
-          const SavingOptions& options) {
-  for (int turn = 0; turn < kTurns; ++turn)
+          const SavingOptions& options, const std::function<void(int turn)>& tell) {
+  for (int turn = 0; turn < kTurns; ++turn) {
+    tell(turn);
     for (const auto& [settings, side] :
          {std::pair(&c.forced, &c.result.forced), {&c.without, &c.result.without}}) {
       Settings timed = *settings;
@@ -153,6 +155,7 @@ void time(Comparison& c, render::Renderer& renderer, const scene::CameraPose& ca
       const auto samples = render::timeFrames(renderer, frames, options.warmup);
       side->ms.insert(side->ms.end(), samples.begin(), samples.end());
     }
+  }
   c.result.ratio = ratioOfMedians({c.result.forced.ms, kTurns}, {c.result.without.ms, kTurns});
 }
 
@@ -198,10 +201,17 @@ std::vector<SavingResult> measureSavings(render::Renderer& renderer, const scene
                                          const render::Settings& settings, const Image* reference,
                                          const SavingOptions& options) {
   std::vector<SavingResult> results;
-  for (Comparison& c : comparisons(settings)) {
+  std::vector<Comparison> asked = comparisons(settings);
+  for (Comparison& c : asked) {
+    const auto tell = [&](int step) {
+      const double done = static_cast<double>(results.size()) + static_cast<double>(step) / (kTurns + 1);
+      if (options.progress) options.progress(done / static_cast<double>(asked.size()), c.result.name);
+    };
+    tell(0);
     look(c, renderer, camera, reference);
     c.result.applies = applies(c.result, c.forced);
-    if (c.result.applies && options.frames > 0) time(c, renderer, camera, options);
+    if (c.result.applies && options.frames > 0)
+      time(c, renderer, camera, options, [&](int turn) { tell(turn + 1); });
     results.push_back(std::move(c.result));
   }
   return results;

@@ -42,6 +42,9 @@ struct SavingResult {
 struct SavingOptions {
   int frames = 9;  ///< timed, of each side, in three turns; 0: only pictures and memory are compared
   int warmup = 1;  ///< before each turn
+  /// Called before each kind of work is looked at, and before each turn: the part that is done, in [0, 1],
+  /// and the name of the kind. May be empty.
+  std::function<void(double fraction, const std::string& name)> progress = {};
 };
 
 /// `settings` says what is rendered; its `dynamic` and `forced` are not looked at. `reference` may be null:

@@ -73,7 +73,8 @@ class LIMN_API Image {
   Image select(std::span<const std::string> names) const;
   Image select(std::initializer_list<std::string> names) const;
 
-  /// Free-form text stored with an EXR (as attributes "limn/KEY") and read back; for example "noise_rms".
+  /// Free-form text stored with an EXR (as attributes "limn/KEY") or a PNG (as chunks tEXt with the keyword
+  /// "limn/KEY") and read back; for example "noise_rms".
   std::map<std::string, std::string>& metadata() { return metadata_; }
   const std::map<std::string, std::string>& metadata() const { return metadata_; }
 
@@ -118,8 +119,8 @@ LIMN_API Image8 readImage8(const std::filesystem::path& path);
 /// all; throws Error naming it otherwise (missing folder, full disk, no permission).
 LIMN_API void writeExr(const std::filesystem::path& path, const Image& image);
 
-/// A PNG in memory: R, G, B as 8-bit sRGB of clamp(2^exposureEv * value, 0, 1); NaN becomes 0. `name` is used
-/// in messages.
+/// A PNG in memory: R, G, B as 8-bit sRGB of clamp(2^exposureEv * value, 0, 1); NaN becomes 0; the metadata.
+/// `name` is used in messages.
 LIMN_API std::vector<std::uint8_t> encodePng(const Image& image, const std::string& name,
                                              float exposureEv = 0.0f);
 /// The same as a file. Whole or not at all.

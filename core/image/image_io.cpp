@@ -272,6 +272,11 @@ Image8 decode8(std::span<const std::byte> bytes, const std::string& name) {
   return image;
 }
 
+/// Attributes of an EXR; text chunks (tEXt) of a PNG.
+void addMetadata(OIIO::ImageSpec& spec, const Image& image) {
+  for (const auto& [key, value] : image.metadata()) spec.attribute(kMetadataPrefix + key, value);
+}
+
 /// Encodes in memory: the encoder never sees the disk, so a full one is noticed when the file is written
 /// whole.
 std::vector<std::uint8_t> encode(const std::string& name, const char* encoder, const OIIO::ImageSpec& spec,
@@ -310,7 +315,7 @@ void writeExr(const std::filesystem::path& path, const Image& image) {
   spec.channelnames = image.channels();
   spec.attribute("compression", "zip");
   spec.attribute("DateTime", "1970:01:01 00:00:00");  // otherwise the encoder looks at the clock
-  for (const auto& [key, value] : image.metadata()) spec.attribute(kMetadataPrefix + key, value);
+  addMetadata(spec, image);
   const std::vector<std::uint8_t> file = guarded(path.string(), [&] {
     return encode(path.string(), "openexr", spec, OIIO::TypeDesc::FLOAT, image.data().data());
   });
@@ -331,6 +336,7 @@ std::vector<std::uint8_t> encodePng(const Image& image, const std::string& name,
   }
   OIIO::ImageSpec spec(image.width(), image.height(), 3, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
+  addMetadata(spec, image);
   return guarded(name, [&] { return encode(name, "png", spec, OIIO::TypeDesc::UINT8, pixels.data()); });
 }
 

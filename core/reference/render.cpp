@@ -137,8 +137,9 @@ class Work {
     hash_ = workHash(request_);
     Accumulators found;
     found.sums.resize(state_.sums.size());
-    if (loadCheckpoint(request_.checkpoint, hash_, found) && found.samples <= needed_)
-      state_ = std::move(found);
+    if (!loadCheckpoint(request_.checkpoint, hash_, found) || found.samples > needed_) return;
+    state_ = std::move(found);
+    noise_ = noiseOf(*integrator_, request_.term, state_, counts_);
   }
 
   /// Samples per half of the next pass: as many as there are, between limits, so that the counts 8, 16, 32,

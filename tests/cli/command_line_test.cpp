@@ -106,6 +106,9 @@ TEST(CommandLine, HelpOfEveryCommandIsComplete) {
     const Outcome outcome = limn({command, "--help"});
     EXPECT_EQ(outcome.status, 0) << command;
     EXPECT_THAT(outcome.out, HasSubstr("--help")) << command;
+    if (std::string(command) != "view") {
+      EXPECT_THAT(outcome.out, HasSubstr("-q,--quiet")) << command;
+    }
   }
 }
 
@@ -163,6 +166,22 @@ TEST_F(Render, WritesAPictureWithChannelsAndStatistics) {
   EXPECT_EQ(json["size"], nlohmann::json::array({32, 24}));
   EXPECT_EQ(json["frame_ms"]["n"], 2);
   EXPECT_FALSE(json["passes"].empty());
+}
+
+TEST_F(Render, SaysWhatItWroteUnlessQuiet) {
+  const Outcome spoken = limn({"render", cornell_box, "--size", "32x24", "-o", out_.string()});
+  ASSERT_EQ(spoken.status, 0) << spoken.err;
+  EXPECT_EQ(spoken.out, "") << "results alone";
+  EXPECT_THAT(spoken.err, testing::EndsWith("wrote " + out_.string() + "\n"));
+  const Outcome quiet = limn(command({"--quiet"}));
+  EXPECT_EQ(quiet.status, 0);
+  EXPECT_EQ(quiet.out + quiet.err, "");
+  expectRefused(limn(command({"-q", "--technique", "hard_shadow_mop"})), 2, {"hard_shadow_mop"});
+  const Outcome cost = limn({"explain-cost", cornell_box, "-q", "--technique", "hard_shadow_map", "--size",
+                             "32x24", "--repeat", "3", "--output-term", "direct", "-o", folder_ / "cost.md"});
+  EXPECT_EQ(cost.status, 0) << cost.err;
+  EXPECT_EQ(cost.err, "");
+  EXPECT_THAT(cost.out, HasSubstr("| left out |"));
 }
 
 TEST_F(Render, RefusesWhatItDoesNotUnderstand) {

@@ -31,12 +31,15 @@ TEST(Interruption, ReferenceLeavesACheckpointAndResumes) {
         << process.err();
     process.signal(signal);
     const Outcome outcome = process.wait();
-    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(outcome.status, 128 + signal);
     EXPECT_THAT(outcome.err,
-                testing::AllOf(testing::HasSubstr("stopped after"), testing::HasSubstr(checkpoint.string())));
+                testing::AllOf(testing::HasSubstr("stopped after"), testing::HasSubstr(checkpoint.string()),
+                               testing::HasSubstr("the same command goes on")));
     EXPECT_EQ(listing(folder.path()), (std::vector<std::string>{"a.exr.checkpoint", "whole.exr"}));
 
-    ASSERT_EQ(run(command("a.exr")).status, 0);
+    const Outcome resumed = run(command("a.exr"));
+    ASSERT_EQ(resumed.status, 0) << resumed.err;
+    EXPECT_THAT(resumed.err, testing::Not(testing::HasSubstr("noise 0.0000"))) << "known from what was kept";
     EXPECT_EQ(listing(folder.path()), (std::vector<std::string>{"a.exr", "whole.exr"}));
     const Outcome compared = limn({"compare", folder / "a.exr", folder / "whole.exr", "--json"});
     ASSERT_EQ(compared.status, 0) << compared.err;
@@ -44,6 +47,56 @@ TEST(Interruption, ReferenceLeavesACheckpointAndResumes) {
         << "the same bits as without the interruption";
     fs::remove(folder / "a.exr");
   }
+}
+
+TEST(Interruption, AnimationSaysWhichFramesAreThere) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const TemporaryFolder folder;
+    Process process({limn_binary, "render", cornell_box, "--size", "16x12", "--frames", "5:100000", "-o",
+                     folder / "a.png"});
+    ASSERT_TRUE(process.waitUntil([&] { return fs::exists(folder / "a.0007.png"); })) << process.err();
+    process.signal(signal);
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.status, 128 + signal) << outcome.err;
+    std::vector<std::string> pictures = listing(folder.path());
+    std::erase_if(pictures, [](const std::string& name) { return name.ends_with(".part"); });
+    const std::size_t next = 5 + pictures.size();
+    for (std::size_t frame = 5; frame < next; ++frame)
+      EXPECT_THAT(pictures, testing::Contains("a." + std::string(4 - std::to_string(frame).size(), '0') +
+                                              std::to_string(frame) + ".png"));
+    // The frame in which it ended may have been written already.
+    const auto says = [](std::size_t frame) {
+      return testing::HasSubstr("interrupted; the frames 5:" + std::to_string(frame - 1) +
+                                " are written, --frames " + std::to_string(frame) + ":100000 goes on");
+    };
+    EXPECT_THAT(outcome.err, testing::AnyOf(says(next), says(next - 1)));
+    EXPECT_THAT(outcome.err, testing::EndsWith("goes on\n"));
+  }
+}
+
+TEST(Interruption, BenchSaysWhatIsKept) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "suite.toml")
+      << "name = 'stopped'\nsizes = ['32x20']\nframes = 2\nwarmup = 0\nreference = {spp = 2}\n"
+         "modes = ['dynamic', 'static']\n[[scenes]]\nscene = '"
+      << cornell_box
+      << "'\nmax_masked_share = 0.05\n[[techniques]]\ntechnique = 'hard_shadow_map'\n"
+         "parameters = {shadow_map_size = [16, 32], filter = ['nearest', '2x2']}\n";
+  const std::vector<std::string> command{limn_binary, "bench", folder / "suite.toml", "-o", folder / "out"};
+  const fs::path results = folder / "out/results.jsonl";
+  for (const auto& [signal, rows] : {std::pair(SIGINT, 1u), std::pair(SIGTERM, 3u)}) {
+    Process process(command);
+    ASSERT_TRUE(process.waitUntil([&] { return lines(results).size() >= rows; })) << process.err();
+    process.signal(signal);
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.status, 128 + signal) << outcome.err;
+    EXPECT_THAT(outcome.err, testing::HasSubstr("limn: interrupted; the rows so far are kept in " +
+                                                results.string() + ", the same command goes on\n"));
+    EXPECT_GE(lines(results).size(), rows);
+  }
+  const Outcome resumed = run(command);
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_EQ(lines(results).size(), 8u);
 }
 
 TEST(Interruption, KilledBenchLosesNoRow) {

@@ -173,6 +173,37 @@ TEST_F(ImageFile, PngIsExposureClampAndSrgb) {
   EXPECT_EQ(readImage8(folder_ / "c.png").data[4], 137);  // sRGB of 0.25 is 0.5371
 }
 
+/// Keywords and texts of the chunks tEXt of a PNG (ISO/IEC 15948, 11.3.4.3).
+std::map<std::string, std::string> textChunks(const std::string& png) {
+  std::map<std::string, std::string> texts;
+  const auto number = [&](std::size_t at) {
+    std::size_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(png[at + i]);
+    return value;
+  };
+  for (std::size_t at = 8; at + 12 <= png.size(); at += 12 + number(at)) {
+    if (png.compare(at + 4, 4, "tEXt") != 0) continue;
+    const std::string chunk = png.substr(at + 8, number(at));
+    texts[chunk.substr(0, chunk.find('\0'))] = chunk.substr(chunk.find('\0') + 1);
+  }
+  return texts;
+}
+
+TEST_F(ImageFile, PngKeepsTheTexts) {
+  Image image = noise(5, 3, {"R", "G", "B"});
+  image.metadata() = {{"command", "limn render 'a b' --out x.png"}, {"version", "0.1.0"}};
+  writePng(folder_ / "a.png", image);
+  EXPECT_EQ(readImage(folder_ / "a.png").metadata(), image.metadata());
+  const auto chunks = textChunks(readTextFile(folder_ / "a.png"));
+  EXPECT_EQ(chunks.at("limn/command"), image.metadata().at("command"));
+  EXPECT_EQ(chunks.at("limn/version"), "0.1.0");
+  writePng(folder_ / "b.png", image);
+  EXPECT_EQ(readFile(folder_ / "a.png"), readFile(folder_ / "b.png"));
+  image.metadata().clear();
+  writePng(folder_ / "c.png", image);
+  EXPECT_EQ(readImage8(folder_ / "a.png").data, readImage8(folder_ / "c.png").data);
+}
+
 TEST_F(ImageFile, PngReadsBackLinear) {
   Image image = Image::rgb(256, 1);
   for (int x = 0; x < 256; ++x) {

@@ -80,7 +80,7 @@ int runChapter(const Chapter& chapter, int argc, char** argv) {
     BackendOptions backend;
     program.add_flag("--headless", headless,
                      "Write pictures and tables although there is a display (the default without one)");
-    program.add_option("--out", out, "Folder of the pictures and tables; resumed if it exists")
+    program.add_option("-o,--out", out, "Folder of the pictures and tables; resumed if it exists")
         ->capture_default_str();
     program.add_option("--filter", filters, "Only cases whose label contains this text; repeatable")
         ->take_all();

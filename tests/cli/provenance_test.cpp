@@ -1,0 +1,61 @@
+// Every picture holds the command that gives it.
+#include <OpenImageIO/imageio.h>
+
+#include "tests/cli/limn_program.h"
+
+namespace limn::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A text that limn put into a picture, as another program finds it.
+std::string text(const fs::path& picture, const std::string& key) {
+  const auto input = OIIO::ImageInput::open(picture.string());
+  return input ? std::string(input->spec().get_string_attribute("limn/" + key)) : "not a picture";
+}
+
+/// Runs a line in a shell and in a folder, with `limn` as the program under test.
+Outcome shell(const fs::path& folder, const std::string& line) {
+  return run({"/bin/bash", "-c", "cd \"$1\" && limn() { \"$0\" \"$@\"; }; shift; eval \"$1\"", limn_binary,
+              folder.string(), line});
+}
+
+/// That the command in the picture gives the picture again, to the byte.
+void expectReproduced(const fs::path& folder, const std::string& line, const std::string& name) {
+  const Outcome made = shell(folder, line);
+  ASSERT_EQ(made.status, 0) << line << made.err;
+  const std::string command = text(folder / name, "command"), picture = contents(folder / name);
+  EXPECT_THAT(command, testing::StartsWith("limn "));
+  fs::remove(folder / name);
+  const Outcome again = shell(folder, command);
+  ASSERT_EQ(again.status, 0) << command << again.err;
+  EXPECT_TRUE(contents(folder / name) == picture) << command;
+}
+
+TEST(Provenance, TheCommandInsideAPictureGivesItAgain) {
+  const TemporaryFolder folder;
+  const std::string scene = "cornell_box --size 32x24 ";
+  for (const std::string name : {"a.png", "a.exr"})
+    expectReproduced(folder.path(),
+                     "limn render " + scene + "--technique pcss --set pcss.filter_samples=8 -o " + name,
+                     name);
+  expectReproduced(folder.path(), "limn render " + scene + "-q -o 'it'\\''s; $(x) `y` \"z\".png'",
+                   "it's; $(x) `y` \"z\".png");
+  expectReproduced(folder.path(), "limn render " + scene + "-o $'l\\ni\\303\\244.png'", "l\ni\xc3\xa4.png");
+  for (const std::string name : {"r.png", "r.exr"})
+    expectReproduced(folder.path(), "limn reference " + scene + "--spp 4 --seed 7 -o " + name, name);
+  expectReproduced(folder.path(), "limn compare a.exr r.exr --diff d.png", "d.png");
+  expectReproduced(folder.path(), "limn environment sky --width 64 --overlay o.png", "o.png");
+  expectReproduced(folder.path(), "limn render " + scene + "--frames 1:2 -o f.png", "f.0002.png");
+}
+
+TEST(Provenance, APictureNamesTheVersionAndNoPathThatNobodyTyped) {
+  const TemporaryFolder folder;
+  const std::string line = "limn render cornell_box --size 16x12 --out a.png";
+  ASSERT_EQ(shell(folder.path(), line).status, 0);
+  EXPECT_EQ(text(folder / "a.png", "command"), line);
+  EXPECT_EQ(text(folder / "a.png", "version") + "\n", limn({"--version"}).out);
+}
+
+}  // namespace
+}  // namespace limn::test
