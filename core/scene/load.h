@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <vector>
 
 #include "core/scene/scene.h"
 
@@ -21,6 +22,9 @@ struct LoadLimits {
 LIMN_API Scene load(const std::filesystem::path& file, const LoadLimits& limits = {});
 /// The same from memory (GLB or JSON), without access to any file: the fuzzer's entry.
 LIMN_API Scene loadMemory(std::span<const std::byte> bytes, const LoadLimits& limits = {});
+/// The scene's own file, and every file in its folder or below that a text of the document names: buffers,
+/// images, grids, environments. Documents that cannot be read name none.
+LIMN_API std::vector<std::filesystem::path> filesOf(const std::filesystem::path& scene);
 /// Equirectangular .hdr or .exr; negative pixels are clamped to 0, NaN and infinities are an Error.
 LIMN_API Environment loadEnvironment(const std::filesystem::path& file);
 

@@ -1,11 +1,17 @@
 // Which files a scene may name: those in its own folder or below.
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <cctype>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
 #include <system_error>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/scene/load.h"
 #include "core/scene/loader.h"
 
 namespace limn::scene {
@@ -38,6 +44,15 @@ std::string shown(const std::string& uri) {
     if (std::iscntrl(static_cast<unsigned char>(c))) c = '?';
   }
   return uri.size() > 80 ? text + "..." : text;
+}
+
+/// The JSON of a .gltf or .glb: the first chunk, behind 12 bytes of header and 8 of its own.
+std::string_view documentOf(std::string_view file) {
+  constexpr std::size_t chunk = 20;
+  std::uint32_t length = 0;
+  if (!file.starts_with("glTF") || file.size() < chunk) return file;
+  std::memcpy(&length, file.data() + 12, sizeof length);
+  return file.substr(chunk, length);
 }
 
 bool isInside(const std::filesystem::path& file, const std::filesystem::path& folder) {
@@ -89,6 +104,27 @@ std::vector<std::byte> Loader::readUri(const std::string& uri, const std::string
     fail(fmt::format("{}: the data URI cannot be decoded; base64 is accepted", what));
   const auto bytes = std::as_bytes(std::span(decoded));
   return {bytes.begin(), bytes.end()};
+}
+
+std::vector<std::filesystem::path> filesOf(const std::filesystem::path& scene) {
+  std::vector<std::filesystem::path> files = {scene};
+  std::set<std::string> known;
+  const std::filesystem::path folder = scene.has_parent_path() ? scene.parent_path() : ".";
+  const auto add = [&](const std::string& text) {
+    constexpr std::size_t longest = 4096;
+    const std::string name = percentDecoded(text);
+    const std::filesystem::path relative(name);
+    if (text.empty() || text.size() > longest || name.find('\0') != std::string::npos) return;
+    if (relative.is_absolute() || std::find(relative.begin(), relative.end(), "..") != relative.end()) return;
+    std::error_code ignored;
+    if (!known.insert(name).second || !std::filesystem::is_regular_file(folder / name, ignored)) return;
+    files.push_back(folder / name);
+  };
+  const nlohmann::json document =
+      nlohmann::json::parse(documentOf(readTextFile(scene)), nullptr, false).flatten();
+  for (const nlohmann::json& value : document)
+    if (value.is_string()) add(value.get_ref<const std::string&>());
+  return files;
 }
 
 }  // namespace limn::scene

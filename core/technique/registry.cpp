@@ -123,4 +123,11 @@ const TechniquePlugin& TechniqueRegistry::find(std::string_view name) const {
                                names.empty() ? "none" : joined(names)));
 }
 
+fs::path TechniqueRegistry::fileOf(std::string_view name) const {
+  Dl_info module{};
+  if (dladdr(&find(name), &module) == 0 || !module.dli_fname)
+    throw Error(fmt::format("technique {} comes from no file", name));
+  return module.dli_fname;
+}
+
 }  // namespace limn
