@@ -9,6 +9,8 @@
 #include "apps/limn/interruption.h"
 #include "apps/limn/options.h"
 #include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/file_lock.h"
 #include "core/reference/reference.h"
 #include "core/reference/vertices.h"
 
@@ -82,10 +84,15 @@ int run(const Options& options) {
   };
   reference::Result result;
   if (options.cache.empty()) {
-    request.checkpoint = fs::path(options.out.string() + ".checkpoint");
+    const FileLock lock(beside(options.out, ".lock"), options.out.string());
+    request.checkpoint = beside(options.out, ".checkpoint");
     result = reference::render(request);
   } else {
-    result = reference::Cache(options.cache).render(request);
+    removeAbandonedFiles(options.cache);
+    reference::Cache cache(options.cache, [](const std::string& warning) {
+      fmt::print(stderr, "limn: warning: {}\n", warning);
+    });
+    result = cache.render(request);
   }
   writeImage(options.out, result.image, static_cast<float>(options.exposure));
   fmt::print("{}: {} samples per pixel, noise {:.5f} of the mean\n", options.out.string(), result.spp,
