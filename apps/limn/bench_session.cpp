@@ -2,13 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <set>
-
-#include "apps/limn/worker.h"
 #include "core/base/error.h"
 #include "core/bench/machine.h"
-#include "core/bench/report.h"
-#include "core/bench/tables.h"
 #include "core/render/frame_stats.h"
 
 namespace limn::app {
@@ -20,10 +15,8 @@ struct BenchSession::Loaded {
   render::Renderer renderer;
 
   Loaded(gpu::Device& device, SceneOptions chosen)
-      : options(std::move(chosen)), view(open(options)), renderer(device, view.scene) {}
+      : options(std::move(chosen)), view(open(options, true)), renderer(device, view.scene) {}
 };
-
-namespace {
 
 SceneOptions sceneOptions(const bench::Case& c) {
   SceneOptions options;
@@ -52,6 +45,16 @@ SceneOptions sceneOptions(const bench::Case& c) {
   options.size = fmt::format("{}x{}", c.width, c.height);
   return options;
 }
+
+TechniqueOptions techniqueOptions(const bench::Case& c) {
+  TechniqueOptions options;
+  options.techniques = c.technique;
+  for (const auto& [name, value] : c.parameters)
+    options.settings.push_back(fmt::format("{}={}", name, value));
+  return options;
+}
+
+namespace {
 
 /// But for what load() sets of a scene that is there: size, camera and the light that shines.
 bool sameScene(const SceneOptions& a, SceneOptions b) {
@@ -87,14 +90,19 @@ bench::CostSplit costSplit(const render::FrameStats& stats) {
 
 }  // namespace
 
-BenchSession::BenchSession(const BackendOptions& backend, const fs::path& out)
+BenchSession::BenchSession(const BackendOptions& backend, const fs::path& out, std::function<void()> alive)
     : out_(out),
-      cache_(out / "references"),
+      alive_(std::move(alive)),
+      cache_(out / "references", warn),
       context_(Context::create(backend.contextOptions())),
       device_(*context_),
       registry_(TechniqueRegistry::defaultFolders(), warn) {}
 
 BenchSession::~BenchSession() = default;
+
+void BenchSession::forgetScene() {
+  loaded_.reset();
+}
 
 BenchSession::Loaded& BenchSession::load(const bench::Case& c) {
   SceneOptions options = sceneOptions(c);
@@ -124,6 +132,10 @@ reference::Request BenchSession::request(const bench::Case& c, reference::Term t
   request.noise = c.reference.noise;
   if (reference::hasBounces(term)) request.bounces = c.reference.bounces;
   if (reference::acceptsInterfaces(term, c.reference.interfaces)) request.interfaces = c.reference.interfaces;
+  request.progress = [this](const reference::Progress&) {
+    alive_();
+    return true;
+  };
   return request;
 }
 
@@ -176,12 +188,8 @@ Image BenchSession::separationFloor(const bench::Case& c) {
 
 render::Settings BenchSession::settingsOf(const bench::Case& c) {
   Loaded& loaded = load(c);
-  TechniqueOptions techniques;
-  techniques.techniques = c.technique;
-  for (const auto& [name, value] : c.parameters)
-    techniques.settings.push_back(fmt::format("{}={}", name, value));
   render::Settings settings = baseSettings(loaded.view, render::parseOutput(c.term), loaded.view.light);
-  settings.techniques = techniques.resolve(registry_);
+  settings.techniques = techniqueOptions(c).resolve(registry_);
   settings.dynamic = c.dynamic;
   return settings;
 }
@@ -193,8 +201,8 @@ void BenchSession::configureTimed(Loaded& loaded, const bench::Case& c, render::
   loaded.renderer.setCamera(loaded.view.camera);
 }
 
-render::Playback BenchSession::playback(const Loaded& loaded, const bench::Case& c) {
-  return {loaded.view.time, c.fps, loaded.view.animation};
+render::Playback BenchSession::playback(const Loaded& loaded, const bench::Case& c) const {
+  return {loaded.view.time, c.fps, loaded.view.animation, alive_};
 }
 
 std::vector<double> BenchSession::time(const bench::Case& c) {
@@ -243,103 +251,6 @@ bench::Measurement BenchSession::measure(const bench::Case& c) {
       if (parameter.tradesErrorForTime)
         result.cost.qualityParameters.push_back(fmt::format("{}.{}", use.plugin->info->name, parameter.name));
   return result;
-}
-
-fs::path findSuite(const fs::path& nameOrFile) {
-  std::error_code ignored;
-  if (fs::exists(nameOrFile, ignored)) return nameOrFile;
-  const fs::path file = findShared("benchmarks", fs::path(nameOrFile).concat(".toml"));
-  if (file.empty())
-    throw Error(
-        fmt::format("suite '{}' does not exist; expected a TOML file, or the name of one of limn's suites",
-                    nameOrFile.string()));
-  return file;
-}
-
-namespace {
-
-/// In the worker: measures what `out` has no row for.
-void measureCases(const std::vector<bench::Case>& cases, const fs::path& out, const BackendOptions& backend,
-                  WorkerReport& report) {
-  bench::ResultsFile results(out / "results.jsonl");
-  BenchSession session(backend, out);
-  report.renderer(session.rendererName());
-  Progress bar("bench");
-  bench::Callbacks callbacks;
-  callbacks.reference = [&](const bench::Case& c) { return session.reference(c); };
-  callbacks.measure = [&](const bench::Case& c) { return session.measure(c); };
-  callbacks.time = [&](const bench::Case& c) { return session.time(c); };
-  callbacks.keepPicture = [&](const std::string& name, const Image& image) {
-    return session.keepPicture(name, image);
-  };
-  callbacks.progress = [&](const bench::Progress& progress) {
-    if (progress.state == bench::Progress::State::started) report.started(progress.index);
-    bar.update((progress.turn - 1 + double(progress.index) / progress.count) / progress.turns,
-               bench::label(progress.what));
-    if (progress.state == bench::Progress::State::failed)
-      fmt::print(stderr, "limn: {}: {}\n", bench::label(progress.what), progress.failure);
-  };
-  bench::runCases(cases, session.rendererName(), results, callbacks);
-}
-
-/// A row that says that measuring it ended the worker.
-bench::Row crashRow(const bench::Case& c, const std::string& renderer, const std::string& failure) {
-  bench::Row row;
-  row.what = c;
-  row.key = bench::rowKey(c, renderer);
-  row.failure = failure;
-  row.cost.renderer = renderer;
-  return row;
-}
-
-/// Keys of the rows that need not be measured.
-std::set<std::string> finishedRows(const fs::path& file) {
-  std::set<std::string> keys;
-  if (!fs::exists(file)) return keys;
-  for (const bench::Row& row : bench::readRows(file))
-    if (row.failure.empty()) keys.insert(row.key);
-  return keys;
-}
-
-}  // namespace
-
-bench::Summary runSuite(const fs::path& suite, const fs::path& out, const BackendOptions& backend,
-                        const std::vector<std::string>& filters, bench::Shard shard) {
-  const bench::Suite asked = bench::readSuite(suite);
-  const auto cases = bench::selectCases(asked.cases, filters, shard);
-  if (cases.empty())
-    throw UsageError(fmt::format("suite {} has no case that fits the filter", suite.string()));
-  createFolder(out);
-  const fs::path file = out / "results.jsonl";
-  const std::set<std::string> before = finishedRows(file);
-  if (asked.minutes > 0)
-    fmt::print(
-        stderr,
-        "limn: suite {} takes about {} minutes in all on 2 cores without a GPU; {} of its {} cases are asked "
-        "for, the folder holds {} rows\n",
-        asked.name, asked.minutes, cases.size(), asked.cases.size(), before.size());
-  WorkerReport report;
-  std::vector<bench::Case> left = cases;
-  while (!left.empty()) {
-    const auto crash = runInWorker(report, [&] { measureCases(left, out, backend, report); });
-    if (!crash) break;
-    const int index = report.caseIndex();
-    if (index < 0) throw Error("no case could be started: the process that measures " + crash->what);
-    const auto crashed = left.begin() + index;
-    fmt::print(stderr, "limn: {}: {}\n", bench::label(*crashed), crash->what);
-    bench::ResultsFile(file).append(crashRow(*crashed, report.renderer(), crash->what));
-    left.erase(crashed);
-  }
-  const std::set<std::string> after = finishedRows(file);
-  bench::Summary summary;
-  for (const bench::Case& c : cases) {
-    const std::string key = bench::rowKey(c, report.renderer());
-    ++(before.contains(key) ? summary.skipped : after.contains(key) ? summary.done : summary.failed);
-  }
-  const std::vector<bench::Row> rows = bench::readRows(file);
-  bench::writeTables(rows, out);
-  bench::writeReport(rows, out);
-  return summary;
 }
 
 }  // namespace limn::app

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -12,24 +13,22 @@
 
 namespace limn::app {
 
-/// A suite by its file, or by its name if it came with limn. Throws Error when there is neither.
-std::filesystem::path findSuite(const std::filesystem::path& nameOrFile);
-
-/// Runs the cases of a suite that `out` has no row for yet, with a progress bar, and writes tables and
-/// report. Measures in a process of its own: a case that crashes loses its own row only. No thread and no
-/// OpenGL context may exist. Returns how many rows were measured, found and failed. `filters` and `shard`:
-/// bench::selectCases().
-bench::Summary runSuite(const std::filesystem::path& suite, const std::filesystem::path& out,
-                        const BackendOptions& backend, const std::vector<std::string>& filters = {},
-                        bench::Shard shard = {});
+/// What the case looks at.
+SceneOptions sceneOptions(const bench::Case& c);
+/// What answers the case, with its parameters.
+TechniqueOptions techniqueOptions(const bench::Case& c);
 
 /// One context; the scene of the last case stays loaded.
 class BenchSession {
  public:
-  BenchSession(const BackendOptions& backend, const std::filesystem::path& out);
+  /// `alive` is called while work goes on: between frames, and between passes of references.
+  BenchSession(const BackendOptions& backend, const std::filesystem::path& out, std::function<void()> alive);
   ~BenchSession();
 
   const std::string& rendererName() const { return context_->info().renderer; }
+  const TechniqueRegistry& registry() const { return registry_; }
+  /// The next case starts from nothing: a failure may have left scene and renderer half changed.
+  void forgetScene();
   bench::Reference reference(const bench::Case& c);
   bench::Measurement measure(const bench::Case& c);
   /// Milliseconds of the case's timed frames alone.
@@ -43,13 +42,14 @@ class BenchSession {
   /// Of the picture that is compared.
   render::Settings settingsOf(const bench::Case& c);
   /// Prepares the frames that are timed.
-  static render::Playback playback(const Loaded& loaded, const bench::Case& c);
+  render::Playback playback(const Loaded& loaded, const bench::Case& c) const;
   static void configureTimed(Loaded& loaded, const bench::Case& c, render::Settings settings);
   reference::Request request(const bench::Case& c, reference::Term term, int light);
   Image separationFloor(const bench::Case& c);
   Image unshadowed(const bench::Case& c, int light);
 
   std::filesystem::path out_;
+  std::function<void()> alive_;
   reference::Cache cache_;
   std::unique_ptr<Context> context_;
   gpu::Device device_;

@@ -1,9 +1,11 @@
 // limn bench: a suite of questions, answered with error and time.
 #include <fmt/format.h>
 
-#include "apps/limn/bench_session.h"
+#include <optional>
+
 #include "apps/limn/commands.h"
 #include "apps/limn/interruption.h"
+#include "apps/limn/run_suite.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/bench/regression.h"
@@ -16,6 +18,7 @@ struct Options {
   fs::path suite, out, against;
   std::vector<std::string> filters;
   std::string shard;
+  std::optional<double> stallTimeout;
   BackendOptions backend;
 };
 
@@ -41,8 +44,10 @@ int run(const Options& options) {
   const LastWords words(fmt::format("interrupted; the rows so far are kept in {}, the same command goes on",
                                     (options.out / "results.jsonl").string()));
   const bench::Summary summary =
-      runSuite(findSuite(options.suite), options.out, options.backend, options.filters,
-               options.shard.empty() ? bench::Shard{} : bench::parseShard(options.shard));
+      runSuite(findSuite(options.suite), options.out, options.backend,
+               {.filters = options.filters,
+                .shard = options.shard.empty() ? bench::Shard{} : bench::parseShard(options.shard),
+                .stallTimeout = options.stallTimeout});
   fmt::print("{} rows measured, {} were there already, {} failed; the report is {}, tables are in {}\n",
              summary.done, summary.skipped, summary.failed, (options.out / "index.html").string(),
              (options.out / "tables.md").string());
@@ -65,7 +70,12 @@ Action addBenchCommand(CLI::App& command) {
       "--against", options->against,
       "Folder of an earlier result: says what got slower or worse beyond noise, exit status 1 if "
       "anything did");
-  command.add_option("--shard", options->shard, "i/n: the i-th of n parts");
+  command.add_option("--shard", options->shard, "i/n: the i-th of n parts; each into a folder of its own");
+  command
+      .add_option("--stall-timeout", options->stallTimeout,
+                  "Seconds without a frame or a pass of a reference after which a case is ended and fails;\n"
+                  "0: never; default: the suite's, which is 1800 unless it says otherwise")
+      ->check(CLI::Range(0.0, 1e6));
   options->backend.addTo(command);
   return [options] { return run(*options); };
 }

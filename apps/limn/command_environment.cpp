@@ -97,7 +97,7 @@ int run(const Options& options) {
   }
   std::vector<std::string> warnings;
   const scene::Environment map = scene::loadEnvironment(findEnvironment(options.map), warnings);
-  for (const std::string& warning : warnings) fmt::print(stderr, "limn: warning: {}\n", warning);
+  for (const std::string& warning : warnings) warn(warning);
   const auto start = std::chrono::steady_clock::now();
   const shading::EnvironmentDecomposition lights =
       shading::decomposeEnvironment(map, options.lights.settings());

@@ -10,6 +10,8 @@
 #include "apps/limn/options.h"
 #include "apps/limn/provenance.h"
 #include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/file_lock.h"
 #include "core/reference/reference.h"
 #include "core/reference/vertices.h"
 
@@ -86,10 +88,12 @@ int run(const Options& options) {
   reference::Result result;
   try {
     if (options.cache.empty()) {
-      request.checkpoint = fs::path(options.out.string() + ".checkpoint");
+      const FileLock lock(beside(options.out, ".lock"), options.out.string());
+      request.checkpoint = beside(options.out, ".checkpoint");
       result = reference::render(request);
     } else {
-      result = reference::Cache(options.cache).render(request);
+      removeAbandonedFiles(options.cache);
+      result = reference::Cache(options.cache, warn).render(request);
     }
   } catch (const Error& stopped) {
     if (!interruption.asked()) throw;

@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "apps/limn/commands.h"
 #include "apps/limn/interruption.h"
 #include "apps/limn/options.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/file_lock.h"
 #include "core/bench/stress.h"
 #include "core/gpu/objects.h"
 #include "core/scene/load.h"
@@ -62,6 +64,8 @@ class Table {
     if (folder_.empty()) return;
     createFolder(folder_);
     checkWritable(folder_ / "stress.md");
+    lock_.emplace(folder_ / ".lock", fmt::format("folder {}", folder_.string()));
+    removeAbandonedFiles(folder_);
     std::error_code ignored;
     const fs::path file = folder_ / "stress.json";
     if (!fs::is_regular_file(file, ignored)) return;
@@ -99,6 +103,7 @@ class Table {
 
  private:
   fs::path folder_;
+  std::optional<FileLock> lock_;
   std::string renderer_;
   std::vector<bench::StressResult> results_;
 };

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <new>
 #include <system_error>
 
 #include "apps/limn/interruption.h"
 #include "core/base/error.h"
+#include "core/base/failure.h"
 #include "core/base/text.h"
 
 namespace limn::app {
@@ -182,14 +182,12 @@ int guarded(const std::function<int()>& work) {
   } catch (const UsageError& error) {
     say(error.what());
     return 2;
-  } catch (const std::bad_alloc&) {
-    say("out of memory");
   } catch (const fs::filesystem_error& error) {
     say(error.what());
   } catch (const std::system_error& error) {  // of fmt::print: the buffer was full before the end
     say("standard output cannot be written: " + error.code().message());
-  } catch (const std::exception& error) {
-    say(error.what());
+  } catch (...) {
+    say(currentFailure());
   }
   return 1;
 }

@@ -78,8 +78,9 @@ struct View {
   bool defaultLights = false;  ///< the scene is lit by them: they go where the camera goes
 };
 
-/// Loads everything SceneOptions names; prints the scene's warnings to stderr. Throws UsageError or Error.
-View open(const SceneOptions& options);
+/// Loads everything SceneOptions names; prints the scene's warnings to stderr unless it is `quiet`. Throws
+/// UsageError or Error.
+View open(const SceneOptions& options, bool quiet = false);
 
 /// Gives the scene the lights that the options ask for (--light-size, --default-lights, --set-light and the
 /// environment's rotation and scale), beginning from those of its file; sets pose and camera at view.time.

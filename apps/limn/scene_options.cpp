@@ -169,18 +169,18 @@ void resizeLights(scene::Scene& scene, double size) {
 
 namespace {
 
-/// Whether the scene is lit by default lights; says so, or that it is dark.
-bool wantsDefaultLights(const SceneOptions& options, const View& view) {
+/// Whether the scene is lit by default lights; says so, or that it is dark, unless it is `quiet`.
+bool wantsDefaultLights(const SceneOptions& options, const View& view, bool quiet) {
   const bool dark = view.pose.lights.empty() && !view.scene.environment;
   const std::string file = options.scene.string();
   if (options.defaultLights == "off" || view.pose.bounds.empty()) {
-    if (dark && !view.pose.bounds.empty())
+    if (dark && !quiet && !view.pose.bounds.empty())
       fmt::print(stderr, "limn: warning: {}: neither lights nor an environment; only emission can be seen\n",
                  file);
     return false;
   }
   if (options.defaultLights == "auto" && !dark) return false;
-  if (dark)
+  if (dark && !quiet)
     fmt::print(
         stderr,
         "limn: warning: {}: neither lights nor an environment; lit by default lights (key, headlight), see "
@@ -249,7 +249,7 @@ static void chooseGrid(const std::string& grid, scene::Scene& scene) {
     scene::setGrid(scene.medium, scene::readDensityGrid(grid, {}, scene.origin));
 }
 
-View open(const SceneOptions& options) {
+View open(const SceneOptions& options, bool quiet) {
   View view;
   view.size = parseSize(options.size);
   view.scene = scene::load(findScene(options.scene));
@@ -263,7 +263,8 @@ View open(const SceneOptions& options) {
   if (!options.sigmaS.empty()) view.scene.medium.sigmaS = parseCoefficient("--sigma-s", options.sigmaS);
   if (options.g) view.scene.medium.g = static_cast<float>(*options.g);
   if (!options.grid.empty()) chooseGrid(options.grid, view.scene);
-  for (const std::string& warning : view.scene.warnings) warn(warning);
+  if (!quiet)
+    for (const std::string& warning : view.scene.warnings) warn(warning);
   if (!options.animation.empty()) {
     std::vector<std::string> names;
     for (const auto& animation : view.scene.animations) names.push_back(animation.name);
@@ -271,7 +272,7 @@ View open(const SceneOptions& options) {
   }
   view.time = options.time;
   view.pose = scene::evaluate(view.scene, view.time, view.animation);
-  view.defaultLights = wantsDefaultLights(options, view);
+  view.defaultLights = wantsDefaultLights(options, view, quiet);
   relight(view, options);
   if (!options.light.empty()) view.light = findNamed("light", options.light, view.pose.lightNames);
   return view;

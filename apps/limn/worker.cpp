@@ -9,21 +9,31 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <thread>
+#include <utility>
 
 #include "core/base/error.h"
+#include "core/base/failure.h"
 
 namespace limn::app {
 
 struct WorkerReport::Shared {
   enum class Ending : int { none, returned, error, usageError };
-  std::atomic<int> caseIndex{-1};
+  std::atomic<int> current{-1};
+  std::atomic<unsigned> signsOfLife{0};
   std::atomic<Ending> ending{Ending::none};
   char renderer[256] = {};
   char message[4096] = {};
+
+  /// One for each case, behind the object.
+  std::atomic<State>& state(std::size_t caseIndex) {
+    return reinterpret_cast<std::atomic<State>*>(this + 1)[caseIndex];
+  }
 };
 
 namespace {
@@ -35,45 +45,73 @@ void copyText(char (&to)[N], const std::string& from) {
   to[length] = 0;
 }
 
-/// Sleeps until the child has ended; gives what waitpid says.
-int waitFor(pid_t child) {
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0)
-    if (errno != EINTR)
+/// Waits until the child has ended, and ends it when `signsOfLife` stands still for too long; gives what
+/// waitpid says, and whether the child was ended.
+std::pair<int, bool> waitFor(pid_t child, double stallTimeout, const std::atomic<unsigned>& signsOfLife) {
+  constexpr double tick = 0.02;  // seconds
+  // Ticks are counted instead of time: while all of this program is stopped (Ctrl-Z), nothing can progress.
+  double idle = 0;
+  bool ended = false;
+  for (unsigned last = signsOfLife;;) {
+    int status = 0;
+    const pid_t done = waitpid(child, &status, WNOHANG);
+    if (done == child) return {status, ended};
+    if (done < 0 && errno != EINTR)
       throw Error(fmt::format("waiting for a worker process failed: {}", std::strerror(errno)));
-  return status;
+    std::this_thread::sleep_for(std::chrono::duration<double>(tick));
+    idle = signsOfLife == last ? idle + tick : 0;
+    last = signsOfLife;
+    if (stallTimeout <= 0 || idle < stallTimeout || ended) continue;
+    kill(child, SIGKILL);
+    ended = true;
+  }
 }
 
 }  // namespace
 
-WorkerReport::WorkerReport() {
-  void* memory = mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+WorkerReport::WorkerReport(std::size_t cases) : bytes_(sizeof(Shared) + cases * sizeof(std::atomic<State>)) {
+  void* memory = mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED)
     throw Error(fmt::format("no memory can be shared with a worker: {}", std::strerror(errno)));
   shared_ = new (memory) Shared;
+  for (std::size_t i = 0; i < cases; ++i) new (&shared_->state(i)) std::atomic<State>(State::open);
 }
 
 WorkerReport::~WorkerReport() {
-  munmap(shared_, sizeof(Shared));
+  munmap(shared_, bytes_);
 }
 
-void WorkerReport::started(int caseIndex) {
-  shared_->caseIndex = caseIndex;
+void WorkerReport::started(std::size_t caseIndex) {
+  shared_->current = static_cast<int>(caseIndex);
+  alive();
+}
+void WorkerReport::finished(std::size_t caseIndex, State state) {
+  std::atomic<State>& known = shared_->state(caseIndex);
+  if (known == State::open || known == State::failed) known = state;
+  alive();
+}
+void WorkerReport::alive() {
+  ++shared_->signsOfLife;
 }
 void WorkerReport::renderer(const std::string& name) {
   copyText(shared_->renderer, name);
 }
-int WorkerReport::caseIndex() const {
-  return shared_->caseIndex;
+std::optional<std::size_t> WorkerReport::current() const {
+  const int index = shared_->current;
+  return index < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(index));
+}
+WorkerReport::State WorkerReport::state(std::size_t caseIndex) const {
+  return shared_->state(caseIndex);
 }
 std::string WorkerReport::renderer() const {
   return shared_->renderer;
 }
 
-std::optional<Crash> runInWorker(WorkerReport& report, const std::function<void()>& work) {
+std::optional<Crash> runInWorker(WorkerReport& report, double stallTimeout,
+                                 const std::function<void()>& work) {
   using Ending = WorkerReport::Shared::Ending;
   WorkerReport::Shared& shared = *report.shared_;
-  shared.caseIndex = -1;
+  shared.current = -1;
   shared.ending = Ending::none;
   std::fflush(nullptr);
   const pid_t parent = getpid(), child = fork();
@@ -88,18 +126,15 @@ std::optional<Crash> runInWorker(WorkerReport& report, const std::function<void(
     } catch (const UsageError& error) {
       ending = Ending::usageError;
       copyText(shared.message, error.what());
-    } catch (const std::bad_alloc&) {
+    } catch (...) {
       ending = Ending::error;
-      copyText(shared.message, "out of memory");
-    } catch (const std::exception& error) {
-      ending = Ending::error;
-      copyText(shared.message, error.what());
+      copyText(shared.message, currentFailure());
     }
     std::fflush(nullptr);
     shared.ending = ending;
     _exit(0);  // what this process inherited is the parent's to destroy
   }
-  const int status = waitFor(child);
+  const auto [status, stalled] = waitFor(child, stallTimeout, shared.signsOfLife);
   switch (shared.ending) {
     case Ending::returned:
       return std::nullopt;
@@ -110,6 +145,7 @@ std::optional<Crash> runInWorker(WorkerReport& report, const std::function<void(
     case Ending::none:
       break;
   }
+  if (stalled) return Crash{fmt::format("no progress for {} s", stallTimeout)};
   if (!WIFSIGNALED(status)) return Crash{fmt::format("ended with status {}", WEXITSTATUS(status))};
   const int signal = WTERMSIG(status);
   if (signal == SIGINT || signal == SIGTERM) {

@@ -2,10 +2,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/random.h>
+#include <sys/stat.h>
 #include <unistd.h>
+#include <xxhash.h>
 
-#include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 
 #include "core/base/error.h"
@@ -17,11 +21,52 @@ namespace {
   throw Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(error)));
 }
 
-/// Unique within the machine: process number and a count; the same folder, so that rename cannot cross
-/// devices.
+constexpr std::size_t kMaxName = 255;    // bytes, of Linux's file systems
+constexpr std::size_t kShownName = 100;  // of the target's, in a temporary's
+constexpr std::string_view kUnfinished = ".part";
+
+/// A random number: a count or a process number comes back where processes have their own numbering.
+std::string randomDigits() {
+  std::uint64_t value = 0;
+  if (::getrandom(&value, sizeof value, 0) != static_cast<ssize_t>(sizeof value))
+    value = static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
+  return fmt::format("{:016x}", value);
+}
+
+/// In the same folder, so that rename cannot cross devices.
 std::filesystem::path temporaryBeside(const std::filesystem::path& path) {
-  static std::atomic<unsigned> count{0};
-  return path.parent_path() / fmt::format(".{}.{}-{}.part", path.filename().string(), ::getpid(), count++);
+  return path.parent_path() /
+         fmt::format(".{}.{}{}", path.filename().string().substr(0, kShownName), randomDigits(), kUnfinished);
+}
+
+/// .NAME.0123456789abcdef.part, or .NAME.12-0.part of earlier versions.
+bool isTemporary(std::string_view name) {
+  if (!name.starts_with('.') || !name.ends_with(kUnfinished)) return false;
+  name.remove_suffix(kUnfinished.size());
+  const std::string_view tag = name.substr(name.rfind('.') + 1);
+  const std::size_t digits = tag.find_first_not_of("0123456789abcdef");
+  if (digits == std::string_view::npos) return tag.size() == 16;
+  return digits > 0 && tag[digits] == '-' && digits + 1 < tag.size() &&
+         tag.find_first_not_of("0123456789", digits + 1) == std::string_view::npos;
+}
+
+/// A new file that this process writes: locked, so that removeAbandonedFiles() elsewhere leaves it alone. On
+/// failure -1 and errno.
+int openTemporary(const std::filesystem::path& path, std::filesystem::path& temporary) {
+  for (;;) {
+    temporary = temporaryBeside(path);
+    const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file < 0) {
+      if (errno == EEXIST) continue;
+      return -1;
+    }
+    // File systems without locks go without; there nothing is taken for abandoned either.
+    while (::flock(file, LOCK_EX) != 0)
+      if (errno != EINTR) return file;
+    struct stat status {};
+    if (::fstat(file, &status) == 0 && status.st_nlink > 0) return file;
+    ::close(file);  // removed between open() and flock()
+  }
 }
 
 /// Returns 0 or the error number.
@@ -79,22 +124,38 @@ std::string readTextFile(const std::filesystem::path& path, std::uint64_t maxByt
 }
 
 void writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  const std::filesystem::path temporary = temporaryBeside(path);
-  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  std::filesystem::path temporary;
+  const int file = openTemporary(path, temporary);
   if (file < 0) failWrite(path, errno);
   int error = writeAll(file, bytes);
   // Some file systems report a full disk only here.
   if (error == 0 && ::fsync(file) != 0 && errno != EINVAL) error = errno;
-  if (::close(file) != 0 && error == 0) error = errno;
   if (error == 0 && ::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
-  if (error != 0) {
-    ::unlink(temporary.c_str());
-    failWrite(path, error);
-  }
+  if (error != 0) ::unlink(temporary.c_str());
+  ::close(file);  // last, since it ends the lock; what it could report, fsync has reported
+  if (error != 0) failWrite(path, error);
 }
 
 void writeTextFile(const std::filesystem::path& path, std::string_view text) {
   writeFile(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+void removeAbandonedFiles(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    if (!isTemporary(entry.path().filename().string()) || !entry.is_regular_file(ignored)) continue;
+    const int file = ::open(entry.path().c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) continue;
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlink(entry.path().c_str());
+    ::close(file);
+  }
+}
+
+std::filesystem::path beside(const std::filesystem::path& path, std::string_view suffix) {
+  std::string name = path.filename().string();
+  if (name.size() + suffix.size() > kMaxName)
+    name = fmt::format("{}.{:016x}", name.substr(0, kShownName), XXH3_64bits(name.data(), name.size()));
+  return path.parent_path() / name.append(suffix);
 }
 
 }  // namespace limn

@@ -25,4 +25,12 @@ LIMN_API std::string readTextFile(const std::filesystem::path& path,
 LIMN_API void writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes);
 LIMN_API void writeTextFile(const std::filesystem::path& path, std::string_view text);
 
+/// Removes from a folder what writeFile() left there when its process was killed: unfinished files that no
+/// living writer holds. Others, and a folder that is not there, are left as they are.
+LIMN_API void removeAbandonedFiles(const std::filesystem::path& folder);
+
+/// `path` with `suffix` behind its name. A name that file systems would then not take (255 bytes) is cut and
+/// told apart by a hash of the whole.
+LIMN_API std::filesystem::path beside(const std::filesystem::path& path, std::string_view suffix);
+
 }  // namespace limn

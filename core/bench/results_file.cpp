@@ -15,13 +15,13 @@ namespace limn::bench {
 
 namespace {
 
-/// For each key the last row, in the order of their first appearance.
+/// For each key the last row that did not fail, else the last one, in the order of their first appearance.
 void remember(std::vector<Row>& rows, std::map<std::string, std::size_t>& position, Row row) {
   const auto [known, isNew] = position.emplace(row.key, rows.size());
   if (isNew) {
     rows.push_back(std::move(row));
-  } else {
-    rows[known->second] = std::move(row);
+  } else if (Row& before = rows[known->second]; row.failure.empty() || !before.failure.empty()) {
+    before = std::move(row);
   }
 }
 
@@ -91,13 +91,17 @@ void ResultsFile::append(const Row& row) {
   add(row);
 }
 
+bool ResultsFile::contains(const std::string& key) const {
+  const Row* row = find(key);
+  return row && row->failure.empty();
+}
+
 const Row* ResultsFile::find(const std::string& key) const {
   const auto found = position_.find(key);
   return found == position_.end() ? nullptr : &rows_[found->second];
 }
 
 void ResultsFile::add(Row row) {
-  if (row.failure.empty()) finished_.insert(row.key);
   remember(rows_, position_, std::move(row));
 }
 

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <map>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,8 +12,9 @@
 
 namespace limn::bench {
 
-/// The rows of a file, for each key the last one, in the order of their first appearance; the file is left as
-/// it is. A torn last line is skipped; a broken line elsewhere is an Error naming file and line.
+/// The rows of a file, for each key the last one that did not fail, else the last one, in the order of their
+/// first appearance; the file is left as it is. A torn last line is skipped; a broken line elsewhere is an
+/// Error naming file and line.
 LIMN_API std::vector<Row> readRows(const std::filesystem::path& path);
 
 class LIMN_API ResultsFile {
@@ -27,13 +27,13 @@ class LIMN_API ResultsFile {
   ResultsFile& operator=(const ResultsFile&) = delete;
 
   /// Whether there is a successful row of that key; failed ones are to be tried again.
-  bool contains(const std::string& key) const { return finished_.contains(key); }
-  /// The last row of that key, null if there is none.
+  bool contains(const std::string& key) const;
+  /// The row of that key, null if there is none: the last one, but a failure never replaces a good row.
   const Row* find(const std::string& key) const;
   /// Writes one whole line and hands it to the disk. Throws Error if that fails; the file then still ends in
   /// a whole line.
   void append(const Row& row);
-  /// All rows, for each key the last one, in the order of their first appearance.
+  /// All rows, for each key the one that find() gives, in the order of their first appearance.
   std::vector<Row> rows() const;
 
  private:
@@ -44,7 +44,6 @@ class LIMN_API ResultsFile {
   int file_ = -1;
   std::vector<Row> rows_;
   std::map<std::string, std::size_t> position_;  ///< of a key in rows_
-  std::set<std::string> finished_;
 };
 
 }  // namespace limn::bench

@@ -109,6 +109,21 @@ Cost costFromJson(const Json& json) {
   return cost;
 }
 
+Json provenanceToJson(const Provenance& p) {
+  Json modules = Json::array();
+  for (const Provenance::Module& m : p.modules)
+    modules.push_back({{"technique", m.technique}, {"file", m.file}, {"hash", m.hash}});
+  return {{"program", p.program}, {"scene", p.scene}, {"techniques", modules}};
+}
+
+Provenance provenanceFromJson(const Json& json) {
+  Provenance p{json.at("program").get<std::string>(), json.at("scene").get<std::string>(), {}};
+  for (const Json& m : json.at("techniques"))
+    p.modules.push_back({m.at("technique").get<std::string>(), m.at("file").get<std::string>(),
+                         m.at("hash").get<std::string>()});
+  return p;
+}
+
 /// What is changed; the rest is left out.
 Json changesToJson(const SceneChanges& c) {
   const SceneChanges none;
@@ -245,6 +260,7 @@ std::string toJson(const Row& row) {
   json["reference"] = {{"file", row.referenceFile}};
   if (row.referenceNoise) json["reference"]["noise_rms"] = *row.referenceNoise;
   if (row.referenceSeconds) json["reference"]["seconds"] = *row.referenceSeconds;
+  if (!row.provenance.program.empty()) json["provenance"] = provenanceToJson(row.provenance);
   if (!row.picture.empty()) json["picture"] = row.picture;
   if (!row.difference.empty()) json["difference"] = row.difference;
   if (row.failure.empty()) {
@@ -272,6 +288,7 @@ Row rowFromJson(const std::string& line) {
       row.referenceNoise = json["reference"]["noise_rms"].get<double>();
     if (json["reference"].contains("seconds"))
       row.referenceSeconds = json["reference"]["seconds"].get<double>();
+    if (json.contains("provenance")) row.provenance = provenanceFromJson(json["provenance"]);
     row.what.picture = json.contains("picture");
     if (row.what.picture) row.picture = json["picture"].get<std::string>();
     row.difference = json.value("difference", "");

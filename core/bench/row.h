@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/export.h"
+#include "core/bench/provenance.h"
 #include "core/bench/suite.h"
 #include "core/image/metrics.h"
 
@@ -62,6 +63,7 @@ struct Row {
   std::optional<Misjudged> misjudged;  ///< visibility
   std::vector<double> spectrum;        ///< errorSpectrum(); empty in rows of earlier versions
   Cost cost;
+  Provenance provenance;   ///< empty in rows of earlier versions
   std::string picture;     ///< file in the folder of the results; "" if it was not kept
   std::string difference;  ///< the same for the difference image
   std::string

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/base/error.h"
+#include "core/base/failure.h"
 #include "core/image/error_spectrum.h"
 #include "core/render/frame_stats.h"
 
@@ -104,13 +104,25 @@ class Run {
   void append(Row row, const std::string& key) {
     row.key = key;
     row.cost.renderer = renderer_;
+    row.provenance = provenanceOf(row.what);
     results_.append(row);
+  }
+
+  Provenance provenanceOf(const Case& c) const {
+    return callbacks_.provenance ? callbacks_.provenance(c) : Provenance();
+  }
+
+  /// The row that holds for the case as it is now, null if there is none.
+  const Row* finished(const Case& c, const std::string& key) const {
+    const Row* row = results_.contains(key) ? results_.find(key) : nullptr;
+    return row && (!callbacks_.provenance || staleness(row->provenance, provenanceOf(c)).empty()) ? row
+                                                                                                  : nullptr;
   }
 
   void measure(std::size_t i) {
     const Case& c = cases_[i];
     const std::string key = rowKey(c, renderer_);
-    if (results_.contains(key)) {
+    if (finished(c, key)) {
       ++summary_.skipped;
       return report(i, 1, Progress::State::skipped);
     }
@@ -123,12 +135,10 @@ class Run {
         referenceQuestion_ = question(c);
       }
       row = measureRow(c, key, *reference_, callbacks_);
-    } catch (const UsageError&) {
-      throw;
-    } catch (const Error& error) {
+    } catch (...) {
       row = Row{};
       row.what = c;
-      row.failure = error.what();
+      row.failure = currentFailure();
     }
     append(row, key);
     ++(row.failure.empty() ? summary_.done : summary_.failed);
@@ -138,15 +148,15 @@ class Run {
   void retime(std::size_t i, int turn) {
     const Case& c = cases_[i];
     const std::string key = rowKey(c, renderer_);
-    const Row* row = results_.find(key);
-    if (!row || !row->failure.empty() || row->cost.frameMs.n == 0 || turn > c.turns) return;
+    const Row* row = finished(c, key);
+    if (!row || row->cost.frameMs.n == 0 || turn > c.turns) return;
     if (row->cost.frameMs.turns >= turn) return;
     report(i, turn, Progress::State::started);
     std::vector<double> ms;
     try {
       ms = callbacks_.time(c);
-    } catch (const Error& error) {  // the row stays as it is
-      return report(i, turn, Progress::State::failed, error.what());
+    } catch (...) {  // the row stays as it is
+      return report(i, turn, Progress::State::failed, currentFailure());
     }
     append(withTurn(*row, ms), key);
     report(i, turn, Progress::State::done);
@@ -163,6 +173,19 @@ class Run {
 };
 
 }  // namespace
+
+std::map<std::string, int> staleRows(std::span<const Case> cases, const std::string& renderer,
+                                     const ResultsFile& results,
+                                     const std::function<Provenance(const Case&)>& provenance) {
+  std::map<std::string, int> counts;
+  for (const Case& c : cases) {
+    const std::string key = rowKey(c, renderer);
+    if (!results.contains(key)) continue;
+    const std::string reason = staleness(results.find(key)->provenance, provenance(c));
+    if (!reason.empty()) ++counts[reason];
+  }
+  return counts;
+}
 
 Summary runCases(std::span<const Case> cases, const std::string& renderer, ResultsFile& results,
                  const Callbacks& callbacks) {

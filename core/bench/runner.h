@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -46,16 +47,24 @@ struct Callbacks {
   /// Milliseconds of the frames of a further turn; asked for cases with several.
   std::function<std::vector<double>(const Case&)> time;
   std::function<void(const Progress&)> progress;  ///< may be empty
+  /// What the case is measured with now: rows that were measured with something else are measured again. May
+  /// be empty: every row is then as good as a new one.
+  std::function<Provenance(const Case&)> provenance;
 };
 
 struct Summary {
   int done = 0, skipped = 0, failed = 0;
 };
 
+/// How many of the cases have a row that was measured with something else, by what has changed (staleness()).
+LIMN_API std::map<std::string, int> staleRows(std::span<const Case> cases, const std::string& renderer,
+                                              const ResultsFile& results,
+                                              const std::function<Provenance(const Case&)>& provenance);
+
 /// All cases first, then further turns of timing, each of which replaces the rows by longer ones.
 /// `renderer` is recorded in the rows and part of their keys: results of another renderer are measured anew.
-/// An Error in a case is recorded in its row and the next case is run; a UsageError ends the run, as does an
-/// Error of the results file.
+/// Whatever a callback but `progress` and `provenance` throws is recorded in the case's row, and the next
+/// case is run. An Error of the results file ends the run.
 LIMN_API Summary runCases(std::span<const Case> cases, const std::string& renderer, ResultsFile& results,
                           const Callbacks& callbacks);
 

@@ -1,8 +1,10 @@
 // A bench suite: which questions are asked of which techniques. Read from TOML:
 //
 //     name = "quick"
-//     minutes = 2                 # what the whole suite takes on 2 cores without a GPU; said before it
-//     starts include = ["ch5.toml"]      # the cases of other suites, files beside this one; then scenes and
+//     minutes = 2                 # what the whole suite takes on 2 cores without a GPU; said first
+//     stall_timeout = 1800        # seconds: a case that shows no sign of life for so long, neither a frame nor a
+//                                 # pass of a reference, is ended and fails; 0: never
+//     include = ["ch5.toml"]      # the cases of other suites, files beside this one; then scenes and
 //                                 # techniques may be missing
 //     sizes = ["256x256"]         # of the pictures whose error is measured
 //     time_size = "1024x768"      # of the timed frames; default: as the pictures
@@ -140,7 +142,8 @@ LIMN_API std::string rowKey(const Case& c, std::string_view renderer);
 
 struct Suite {
   std::string name;
-  double minutes = 0;  ///< 0: not said
+  double minutes = 0;          ///< 0: not said
+  double stallTimeout = 1800;  ///< seconds without progress after which a case is ended; 0: never
   std::vector<Case>
       cases;  ///< included ones first, each once; then in the order of the file, one question side by side
 };

@@ -2,8 +2,10 @@
 
 #include <charconv>
 #include <optional>
+#include <utility>
 
 #include "core/base/error.h"
+#include "core/base/file_lock.h"
 #include "core/reference/film.h"
 #include "core/reference/reference.h"
 
@@ -65,17 +67,33 @@ void Cache::put(const std::string& contentHash, const Result& result) const {
   writeExr(pathOf(contentHash), image);
 }
 
-Result Cache::render(Request request) const {
+void Cache::keepInMemory(const std::string& contentHash, const Result& result) {
+  constexpr size_t most = size_t{1} << 30;  // bytes
+  const auto bytes = [](const auto& kept) { return kept.second.image.data().size() * sizeof(float); };
+  kept_.emplace_back(contentHash, result);
+  size_t sum = 0;
+  for (const auto& kept : kept_) sum += bytes(kept);
+  for (; sum > most && kept_.size() > 1; kept_.pop_front()) sum -= bytes(kept_.front());
+}
+
+Result Cache::render(Request request) {
   const std::string hash = contentHash(request);
   if (auto cached = get(hash)) return *std::move(cached);
-  if (request.checkpoint.empty()) {
-    std::error_code failure;
-    std::filesystem::create_directories(folder_, failure);
-    if (!failure) request.checkpoint = folder_ / (hash + ".partial");
-  }
+  for (const auto& [name, kept] : kept_)
+    if (name == hash) return kept;
+  std::error_code failure;
+  std::filesystem::create_directories(folder_, failure);
+  const FileLock lock(folder_ / (hash + ".lock"), pathOf(hash).string());
+  if (request.checkpoint.empty() && !failure) request.checkpoint = folder_ / (hash + ".partial");
   Result result = reference::render(request);
-  put(hash, result);
   result.image.metadata()["content_hash"] = hash;
+  try {
+    put(hash, result);
+  } catch (const Error& error) {
+    keepInMemory(hash, result);
+    if (warn_ && !std::exchange(warned_, true))
+      warn_(fmt::format("{}; references are kept in memory until the end of this run", error.what()));
+  }
   return result;
 }
 

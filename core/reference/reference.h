@@ -4,11 +4,13 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 
 #include "core/base/export.h"
 #include "core/image/image.h"
@@ -123,20 +125,29 @@ LIMN_API Result render(const Request& request);
 LIMN_API std::string contentHash(const Request& request);
 
 /// Finished references on disk: one EXR per content hash. Their metadata has content_hash and seconds besides
-/// that of render().
+/// that of render(). Not to be shared by threads.
 class LIMN_API Cache {
  public:
-  /// Created when the first picture is put into it.
-  explicit Cache(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  /// The folder is created when the first picture is put into it. `warn` is told once, in one line, when
+  /// pictures cannot be kept there; may be empty.
+  explicit Cache(std::filesystem::path folder, std::function<void(const std::string&)> warn = {})
+      : folder_(std::move(folder)), warn_(std::move(warn)) {}
   std::filesystem::path pathOf(const std::string& contentHash) const;
   /// nullopt if there is none, or if the file is broken or not of that hash.
   std::optional<Result> get(const std::string& contentHash) const;
   void put(const std::string& contentHash, const Result& result) const;
-  /// get(), else render() and put(). Interrupted work is kept in the folder and resumed.
-  Result render(Request request) const;
+  /// get(), else render() and put(). Interrupted work is kept in the folder and resumed. Where put() fails
+  /// the picture is kept in memory, with those of up to 1 GiB in all. Throws Error when another process
+  /// renders the same picture into the folder.
+  Result render(Request request);
 
  private:
+  void keepInMemory(const std::string& contentHash, const Result& result);
+
   std::filesystem::path folder_;
+  std::function<void(const std::string&)> warn_;
+  std::deque<std::pair<std::string, Result>> kept_;  ///< what the folder did not take, oldest first
+  bool warned_ = false;
 };
 
 }  // namespace limn::reference

@@ -102,7 +102,7 @@ class Work {
       const bool goOn = last || !request_.progress || request_.progress(progress(perSample()));
       if (!last && !request_.checkpoint.empty() &&
           (!goOn || secondsSince(saved) >= request_.checkpointSeconds)) {
-        saveCheckpoint(request_.checkpoint, hash_, state_);
+        save(!goOn);
         saved = Clock::now();
       }
       if (!goOn)
@@ -140,6 +140,15 @@ class Work {
     if (!loadCheckpoint(request_.checkpoint, hash_, found) || found.samples > needed_) return;
     state_ = std::move(found);
     noise_ = noiseOf(*integrator_, request_.term, state_, counts_);
+  }
+
+  /// A disk that is full ends no work that may still succeed: only the last save, of stopped work, must.
+  void save(bool must) const {
+    try {
+      saveCheckpoint(request_.checkpoint, hash_, state_);
+    } catch (const Error&) {
+      if (must) throw;
+    }
   }
 
   /// Samples per half of the next pass: as many as there are, between limits, so that the counts 8, 16, 32,

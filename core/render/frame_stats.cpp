@@ -44,6 +44,7 @@ double frameMilliseconds(Renderer& renderer, frame::Timing timing) {
 }
 
 void show(Renderer& renderer, const Playback& playback, int frame) {
+  if (playback.beforeFrame) playback.beforeFrame();
   if (playback.fps > 0) renderer.setTime(playback.start + frame / playback.fps, playback.animation);
 }
 

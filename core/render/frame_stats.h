@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -63,6 +64,7 @@ struct Playback {
   double fps = 0;               ///< frames per second of the scene's time; 0: it stands still, at whatever
                                 ///< Renderer::setTime said
   int animation = scene::none;  ///< as Renderer::setTime
+  std::function<void()> beforeFrame{};  ///< called before each frame, outside of its time; may be empty
 };
 
 /// Wall-clock milliseconds of each of `frames` frames between two glFinish, after `warmup` others, which

@@ -25,6 +25,9 @@ struct LoadLimits {
 LIMN_API Scene load(const std::filesystem::path& file, const LoadLimits& limits = {});
 /// The same from memory (GLB or JSON), without access to any file: the fuzzer's entry.
 LIMN_API Scene loadMemory(std::span<const std::byte> bytes, const LoadLimits& limits = {});
+/// The scene's own file, and every file in its folder or below that a text of the document names: buffers,
+/// images, grids, environments. Documents that cannot be read name none.
+LIMN_API std::vector<std::filesystem::path> filesOf(const std::filesystem::path& scene);
 /// The brightest that a pixel of an environment may be: fifty thousand times the sun's disc in W / (m^2 sr),
 /// six hundred times in cd / m^2. Sums over all pixels and products with the largest scale (1e9) stay finite.
 inline constexpr float mostEnvironmentRadiance = 1e12f;

@@ -1,11 +1,17 @@
 // Which files a scene may name: those in its own folder or below.
 #include <tiny_gltf.h>
 
+#include <algorithm>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
 #include <system_error>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
+#include "core/scene/load.h"
 #include "core/scene/loader.h"
 
 namespace limn::scene {
@@ -29,6 +35,15 @@ std::string percentDecoded(const std::string& uri) {
     }
   }
   return out;
+}
+
+/// The JSON of a .gltf or .glb: the first chunk, behind 12 bytes of header and 8 of its own.
+std::string_view documentOf(std::string_view file) {
+  constexpr std::size_t chunk = 20;
+  std::uint32_t length = 0;
+  if (!file.starts_with("glTF") || file.size() < chunk) return file;
+  std::memcpy(&length, file.data() + 12, sizeof length);
+  return file.substr(chunk, length);
 }
 
 bool isInside(const std::filesystem::path& file, const std::filesystem::path& folder) {
@@ -91,6 +106,33 @@ std::vector<std::byte> Loader::readUri(const std::string& uri, const std::string
     problem = error.what();
   }
   fail(problem);
+}
+
+std::vector<std::filesystem::path> filesOf(const std::filesystem::path& scene) {
+  std::vector<std::filesystem::path> files = {scene};
+  std::set<std::string> known;
+  const std::filesystem::path folder = scene.has_parent_path() ? scene.parent_path() : ".";
+  const auto add = [&](const std::string& text) {
+    constexpr std::size_t longest = 4096;
+    const std::string name = percentDecoded(text);
+    const std::filesystem::path relative(name);
+    if (text.empty() || text.size() > longest || name.find('\0') != std::string::npos) return;
+    if (relative.is_absolute() || std::find(relative.begin(), relative.end(), "..") != relative.end()) return;
+    std::error_code ignored;
+    if (!known.insert(name).second || !std::filesystem::is_regular_file(folder / name, ignored)) return;
+    files.push_back(folder / name);
+  };
+  const std::string text = readTextFile(scene);
+  const nlohmann::json document = nlohmann::json::parse(documentOf(text), nullptr, false);
+  std::vector<const nlohmann::json*> left = {&document};  // no recursion: nobody has looked at its depth
+  while (!left.empty()) {
+    const nlohmann::json& value = *left.back();
+    left.pop_back();
+    if (value.is_string()) add(value.get_ref<const std::string&>());
+    if (value.is_structured())
+      for (const nlohmann::json& part : value) left.push_back(&part);
+  }
+  return files;
 }
 
 }  // namespace limn::scene

@@ -172,4 +172,9 @@ const TechniquePlugin& TechniqueRegistry::find(std::string_view name) const {
   throw Error(fmt::format("technique {} was refused: {}", name, candidate.refusal));
 }
 
+fs::path TechniqueRegistry::fileOf(std::string_view name) const {
+  find(name);
+  return implementation_->candidates.find(name)->second.file;
+}
+
 }  // namespace limn

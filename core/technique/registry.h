@@ -39,6 +39,9 @@ class LIMN_API TechniqueRegistry {
   /// refused.
   const TechniquePlugin& find(std::string_view name) const;
 
+  /// The module file that find(name) comes from; throws as find() does.
+  std::filesystem::path fileOf(std::string_view name) const;
+
   struct Refusal {
     std::string name;    ///< file name without extension
     std::string reason;  ///< begins with the file

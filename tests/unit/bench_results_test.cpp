@@ -3,7 +3,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <new>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -232,9 +235,9 @@ TEST_F(BenchResults, FurtherTurnsLengthenTheRowsAndResume) {
     // Interrupted in the second turn, after its first row.
     ResultsFile results(path_);
     Callbacks callbacks = fakes.callbacks();
-    callbacks.time = [&, time = callbacks.time](const Case& c) {
-      if (fakes.timings == 1) throw std::runtime_error("interrupted");
-      return time(c);
+    callbacks.progress = [&](const Progress& progress) {
+      if (fakes.timings == 1 && progress.state == Progress::State::started)
+        throw std::runtime_error("interrupted");
     };
     EXPECT_THROW(runCases(cases, "llvmpipe", results, callbacks), std::runtime_error);
   }
@@ -271,14 +274,118 @@ TEST_F(BenchResults, RunnerKeepsPicturesThatAreWanted) {
       << shown;
 }
 
-TEST_F(BenchResults, RunnerLetsUsageErrorsThrough) {
+TEST_F(BenchResults, WhateverACaseThrowsLosesItsOwnRowOnly) {
+  struct Thrown {
+    const char* technique;
+    std::function<void()> raise;
+    const char* message;
+  };
+  const std::vector<Thrown> all = {
+      {"memory", [] { throw std::bad_alloc(); }, "out of memory"},
+      {"foreign", [] { throw std::runtime_error("no such\nthing"); }, "no such thing"},
+      {"number", [] { throw 42; }, "something was thrown that is no std::exception"},
+      {"usage", [] { throw UsageError("not with this term"); }, "not with this term"}};
+  std::vector<Case> cases;
+  for (const Thrown& thrown : all) cases.push_back(exampleCase(thrown.technique));
+  cases.push_back(exampleCase("pcss"));
+  for (Case& c : cases) c.turns = 2;
   Fakes fakes;
   Callbacks callbacks = fakes.callbacks();
-  callbacks.measure = [](const Case&) -> Measurement { throw UsageError("unknown technique"); };
+  const auto raise = [&](const Case& c) {
+    for (const Thrown& thrown : all)
+      if (c.technique == thrown.technique) thrown.raise();
+  };
+  callbacks.measure = [&, measure = callbacks.measure](const Case& c) {
+    raise(c);
+    return measure(c);
+  };
+  {
+    ResultsFile results(path_);
+    const Summary summary = runCases(cases, "x", results, callbacks);
+    EXPECT_EQ(summary.failed, 4);
+    EXPECT_EQ(summary.done, 1);
+    for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(results.rows()[i].failure, all[i].message);
+  }
+  // Thrown in a later turn they leave the row as it is.
+  fs::remove(path_);
+  callbacks = fakes.callbacks();
+  callbacks.time = [&, time = callbacks.time](const Case& c) {
+    raise(c);
+    return time(c);
+  };
   ResultsFile results(path_);
+  EXPECT_EQ(runCases(cases, "x", results, callbacks).done, 5);
+  for (const Row& row : results.rows()) EXPECT_EQ(row.failure, "");
+}
+
+TEST_F(BenchResults, AFailureNeverReplacesAGoodRow) {
+  const Row good = exampleRow(exampleCase());
+  Row failed = good;
+  failed.failure = "crashed: Segmentation fault";
+  const std::string before = toJson(failed) + "\n" + toJson(good) + "\n" + toJson(failed) + "\n";
+  writeTextFile(path_, before);  // as versions wrote it in which a crash in a later turn won
+  ASSERT_EQ(readRows(path_).size(), 1u);
+  EXPECT_EQ(readRows(path_)[0].failure, "");
+  ResultsFile results(path_);
+  EXPECT_TRUE(results.contains(good.key));
+  results.append(failed);
+  EXPECT_TRUE(results.contains(good.key));
+  EXPECT_EQ(results.find(good.key)->error.rmse, good.error.rmse);
+  results.append(exampleRow(exampleCase(), 0.5));
+  EXPECT_EQ(results.find(good.key)->error.rmse, 0.5) << "the last good one";
+  // The row is complete where all of its turns are there: neither measured nor timed again.
+  Fakes fakes;
   const std::vector<Case> cases = {exampleCase()};
-  EXPECT_THROW(runCases(cases, "x", results, callbacks), UsageError);
-  EXPECT_TRUE(results.rows().empty());
+  EXPECT_EQ(runCases(cases, "llvmpipe", results, fakes.callbacks()).skipped, 1);
+  EXPECT_EQ(fakes.measurements, 0);
+}
+
+TEST_F(BenchResults, WhatWasMeasuredWithSomethingElseIsMeasuredAgain) {
+  const std::vector<Case> cases = {exampleCase("pcss"), exampleCase("vssm")};
+  Fakes fakes;
+  Provenance now{"program 1", "scene 1", {}};
+  const auto provenance = [&](const Case& c) {
+    Provenance p = now;
+    p.modules = {{c.technique, "/lib/" + c.technique + ".so", c.technique == "pcss" ? "old" : "same"}};
+    return p;
+  };
+  const auto run = [&](const auto& what) {
+    ResultsFile results(path_);
+    Callbacks callbacks = fakes.callbacks();
+    callbacks.provenance = what;
+    const auto stale = staleRows(cases, "x", results, what);
+    const Summary summary = runCases(cases, "x", results, callbacks);
+    EXPECT_EQ(summary.done + summary.skipped, 2);
+    int count = 0;
+    for (const auto& [reason, rows] : stale) count += rows;
+    return std::pair(summary.done, count > 0 ? stale.begin()->first : std::string());
+  };
+  EXPECT_EQ(run(provenance), std::pair(2, std::string()));
+  EXPECT_EQ(run(provenance), std::pair(0, std::string()));
+  EXPECT_EQ(readRows(path_)[0].provenance.modules[0].file, "/lib/pcss.so");
+  now.scene = "scene 2";
+  EXPECT_EQ(run(provenance), std::pair(2, std::string("the scene has changed")));
+  now.program = "program 2";
+  EXPECT_EQ(run(provenance), std::pair(2, std::string("the program has changed")));
+  const auto newer = [&](const Case& c) {
+    Provenance p = provenance(c);
+    p.modules[0].file = "/elsewhere.so";
+    if (c.technique == "pcss") p.modules[0].hash = "new";
+    return p;
+  };
+  EXPECT_EQ(run(newer), std::pair(1, std::string("technique pcss has changed")));
+  EXPECT_EQ(run(newer), std::pair(0, std::string())) << "where a file lies does not count";
+  EXPECT_EQ(readRows(path_).size(), 2u) << "the key is that of what was asked";
+
+  // Rows of earlier versions do not say what they were measured with.
+  std::string old;
+  for (Row row : readRows(path_)) {
+    row.provenance = {};
+    old += toJson(row) + "\n";
+  }
+  EXPECT_EQ(old.find("provenance"), std::string::npos);
+  writeTextFile(path_, old);
+  EXPECT_EQ(run(newer), std::pair(2, std::string("an earlier version did not record what it used")));
 }
 
 TEST_F(BenchResults, TablesAreWritten) {

@@ -316,7 +316,7 @@ TEST(ReferencePath, ContentHashSeesTheBounces) {
 TEST(ReferencePath, CacheKeepsIndirectLight) {
   const Folder folder;
   const World world = room();
-  const Cache cache(folder.path());
+  Cache cache(folder.path());
   Request request = world.request(8, Term::indirect, 4);
   request.bounces = 2;
   const Image image = cache.render(request).image;

@@ -140,7 +140,7 @@ TEST(ReferenceWork, ABrokenOrForeignCheckpointIsIgnored) {
 
 TEST(ReferenceWork, CacheReturnsWhatWasRendered) {
   const Folder folder;
-  const Cache cache(folder.path() / "cache");
+  Cache cache(folder.path() / "cache");
   World world = busyWorld();
   int passes = 0;
   const auto ask = [&] {
@@ -164,6 +164,31 @@ TEST(ReferenceWork, CacheReturnsWhatWasRendered) {
   ask();
   EXPECT_GT(passes, 0);
   EXPECT_TRUE(cache.get(contentHash(world.request(16, Term::direct, 16))).has_value());
+}
+
+TEST(ReferenceWork, ACacheThatCannotBeWrittenKeepsReferencesInMemoryAndSaysSoOnce) {
+  const Folder folder;
+  const auto blocked = folder.path() / "file";
+  std::ofstream(blocked) << "no folder";
+  std::vector<std::string> warnings;
+  Cache cache(blocked / "cache", [&](const std::string& warning) { warnings.push_back(warning); });
+  const World world = busyWorld();
+  int passes = 0;
+  const auto ask = [&](int spp) {
+    Request request = world.request(16, Term::direct, spp);
+    request.progress = [&](const Progress&) { return ++passes, true; };
+    return cache.render(request);
+  };
+  const Result first = ask(16);
+  EXPECT_GT(passes, 0);
+  passes = 0;
+  EXPECT_TRUE(sameBits(first.image, ask(16).image));
+  EXPECT_EQ(passes, 0) << "not rendered again";
+  ask(8);
+  EXPECT_GT(passes, 0);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("kept in memory"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find(blocked.string()), std::string::npos) << warnings[0];
 }
 
 TEST(ReferenceWork, ContentHashSeesEverythingThatMatters) {

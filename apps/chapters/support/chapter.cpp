@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "apps/limn/bench_session.h"
 #include "apps/limn/options.h"
+#include "apps/limn/run_suite.h"
 #include "apps/view/viewer.h"
 #include "core/base/error.h"
 #include "core/context/context.h"
@@ -40,7 +40,7 @@ int writeFiles(const Chapter& chapter, const fs::path& out, const BackendOptions
   for (const char* suite : chapter.suites) {
     if (bench::selectCases(bench::readSuite(findSuite(suite)).cases, filters, {}).empty()) continue;
     any = true;
-    const bench::Summary summary = runSuite(findSuite(suite), out / suite, backend, filters);
+    const bench::Summary summary = runSuite(findSuite(suite), out / suite, backend, {.filters = filters});
     failed += summary.failed;
     const bool pictures = fs::exists(out / suite / "pictures.md");
     fmt::print("{}: {}{}\n", suite, (out / suite / "tables.md").string(),

@@ -1,0 +1,46 @@
+#include "core/bench/provenance.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <memory>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+
+namespace limn::bench {
+
+std::string staleness(const Provenance& then, const Provenance& now) {
+  if (then.program.empty() && !now.program.empty()) return "an earlier version did not record what it used";
+  if (then.program != now.program) return "the program has changed";
+  if (then.scene != now.scene) return "the scene has changed";
+  if (then.modules.size() != now.modules.size()) return "the techniques have changed";
+  for (std::size_t i = 0; i < now.modules.size(); ++i)
+    if (then.modules[i].hash != now.modules[i].hash)
+      return fmt::format("technique {} has changed", now.modules[i].technique);
+  return {};
+}
+
+std::string hashOfFiles(std::span<const std::filesystem::path> files) {
+  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
+                                                                              XXH3_freeState);
+  XXH3_128bits_reset(state.get());
+  for (const std::filesystem::path& file : files) {
+    const std::vector<std::byte> bytes = readFile(file);
+    const std::uint64_t size = bytes.size();
+    XXH3_128bits_update(state.get(), &size, sizeof size);
+    XXH3_128bits_update(state.get(), bytes.data(), bytes.size());
+  }
+  const XXH128_hash_t hash = XXH3_128bits_digest(state.get());
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+std::filesystem::path libraryFile() {
+  Dl_info self{};
+  if (dladdr(reinterpret_cast<void*>(&libraryFile), &self) == 0 || !self.dli_fname)
+    throw Error("the file of liblimn cannot be found");
+  return self.dli_fname;
+}
+
+}  // namespace limn::bench
