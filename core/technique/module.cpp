@@ -42,6 +42,14 @@ void* load(const fs::path& file) {
   throw Error(dlerror());
 }
 
+std::string declarationProblem(const TechniquePlugin& plugin, const std::string& name) {
+  try {
+    return pluginProblem(plugin, name);
+  } catch (...) {
+    rethrowAsError("it cannot be looked over");
+  }
+}
+
 /// `what`, behind the name of the file unless that stands there already.
 Error named(const fs::path& file, const std::string& what) {
   return Error(what.find(file.string()) == std::string::npos ? fmt::format("{}: {}", file.string(), what)
@@ -63,7 +71,8 @@ Module::Module(const fs::path& file, const std::string& name) {
         !difference.empty())
       throw Error(
           fmt::format("{} (limn: {}); rebuild it against this limn", difference, limnFile().string()));
-    if (const std::string problem = pluginProblem(*plugin_, name); !problem.empty()) throw Error(problem);
+    if (const std::string problem = declarationProblem(*plugin_, name); !problem.empty())
+      throw Error(problem);
   } catch (const Error& error) {
     throw named(file, error.what());
   }

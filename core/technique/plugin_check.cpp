@@ -12,6 +12,12 @@ constexpr TermSet all_terms = Term::visibility | Term::direct | Term::indirect |
                               Term::environment | Term::specular;
 constexpr size_t most_entries = 1000;  // beyond this a table is a mistake
 
+/// Reads the text to its end, so that a wild pointer does its harm where the module is tried.
+bool isText(const char* text) {
+  constexpr size_t longest = size_t{1} << 24;
+  return text && strnlen(text, longest) < longest;
+}
+
 /// Letters, digits, '_' and '-'.
 bool isIdentifier(const char* text) {
   constexpr const char* accepted = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
@@ -22,13 +28,14 @@ std::string choicesProblem(const Parameter& p) {
   if (!p.choices || p.choiceCount < 1 || static_cast<size_t>(p.choiceCount) > most_entries)
     return "has no choices";
   for (int i = 0; i < p.choiceCount; ++i)
-    if (!p.choices[i]) return fmt::format("has no name for choice {}", i);
+    if (!isText(p.choices[i])) return fmt::format("has no name for choice {}", i);
   if (p.range.low != 0 || p.range.high != p.choiceCount - 1) return "has another range than its choices";
   return {};
 }
 
 std::string parameterProblem(const Parameter& p) {
-  if (!p.unit || !p.doc) return "has no unit or description";
+  if (!isText(p.unit) || !isText(p.doc)) return "has no unit or description";
+  if (p.forcing && !isText(p.forcing)) return "has no end to its forcing value";
   if (!(p.range.low <= p.range.high) || !std::isfinite(p.range.low) || !std::isfinite(p.range.high))
     return fmt::format("has the range {}..{}", p.range.low, p.range.high);
   if (!(p.defaultValue >= p.range.low && p.defaultValue <= p.range.high))
@@ -62,8 +69,17 @@ std::string stressProblem(std::span<const StressCase> cases) {
   if (cases.size() > most_entries || (!cases.empty() && !cases.data()))
     return fmt::format("it declares {} stability cases", cases.size());
   for (size_t i = 0; i < cases.size(); ++i)
-    if (!cases[i].name || !cases[i].scene || !cases[i].settings)
+    if (!isText(cases[i].name) || !isText(cases[i].scene) || !isText(cases[i].settings))
       return fmt::format("its stability case {} has no name, scene or settings", i);
+  return {};
+}
+
+std::string sourcesProblem(std::span<const gpu::EmbeddedSource> sources) {
+  if (sources.size() > most_entries || (!sources.empty() && !sources.data()))
+    return fmt::format("it brings {} shader files", sources.size());
+  for (size_t i = 0; i < sources.size(); ++i)
+    if (!isText(sources[i].path) || !isText(sources[i].text))
+      return fmt::format("its shader file {} has no name or text", i);
   return {};
 }
 
@@ -75,11 +91,12 @@ std::string pluginProblem(const TechniquePlugin& plugin, std::string_view name) 
   const TechniqueInfo& info = *plugin.info;
   if (!isIdentifier(info.name)) return "it gives no name";
   if (info.name != name) return fmt::format("it calls itself {:.64}", info.name);
-  if (!info.title || !info.source) return "it gives no title or source";
+  if (!isText(info.title) || !isText(info.source)) return "it gives no title or source";
   if (info.terms == 0 || (info.terms & ~all_terms) != 0)
     return fmt::format("it answers the terms {:#x}, which are none or not known", info.terms);
   if (std::string problem = parametersProblem(info.parameters); !problem.empty()) return problem;
-  return stressProblem(info.stress);
+  if (std::string problem = stressProblem(info.stress); !problem.empty()) return problem;
+  return sourcesProblem(plugin.sources());
 }
 
 }  // namespace limn
