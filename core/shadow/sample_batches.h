@@ -22,9 +22,16 @@ constexpr Parameter memoryParameter() {
                  "Shadow maps held at once; more samples are rendered in batches");
 }
 
-/// Splits samples into batches whose maps take at most `mebibytes` (and one sample at least):
-/// `layersPerSample` layers of `size` x `size` texels each.
-LIMN_API std::vector<SampleBatch> sampleBatches(int total, int64_t layersPerSample, int size, int mebibytes);
+/// What the maps of a batch take.
+struct SampleLayers {
+  int64_t each = 0;    ///< layers of every sample
+  int64_t shared = 0;  ///< layers that every batch has besides
+  int size = 0;        ///< texels per side of each layer
+};
+
+/// Splits samples into batches (of one sample at least) whose maps take at most `mebibytes`, and no more
+/// layers than every device has in one texture.
+LIMN_API std::vector<SampleBatch> sampleBatches(int total, const SampleLayers& layers, int mebibytes);
 
 /// Where sample i lies in the unit square: the R2 sequence, shifted so that the first is the centre.
 inline glm::vec2 samplePlace(int i) {

@@ -15,6 +15,9 @@ constexpr Parameter parameters[] = {
     integer("search_rounds", 2, {0, 8}, "rounds",
             "How often the search kernel is narrowed to the nearest depth in it; 0: at the near plane, as "
             "published"),
+    integer("passes", 3, {1, 8}, "passes",
+            "Penumbra kernels, each at the blockers of the one before, while those are much nearer than it")
+        .quality(),
     integer("direct_texels", 8, {0, 32}, "texels",
             "Penumbra kernels up to this width are filtered texel by texel"),
     integer("moment_bits", 0, {0, 20}, "bits",
@@ -39,13 +42,14 @@ class MomentSoftShadowMap : public Technique {
                      "least and greatest depth in a kernel"},
                     {shadow::tableUnit, table.texture, "moments of depth in a kernel"}};
     pass.bind = [bits = table.bits, bias = p.real("moment_bias"), rounds = p.integer("search_rounds"),
-                 direct = p.integer("direct_texels"),
+                 direct = p.integer("direct_texels"), passes = p.integer("passes"),
                  cells = p.integer("cells")](frame::PassContext&, gpu::Program& program) {
       program.set("moment_bits", bits);
       program.set("moment_bias", bias);
       program.set("search_rounds", rounds);
       program.set("direct_texels", direct);
       program.set("cells", cells);
+      program.set("passes", passes);
     };
     return shadow::addVisibilityPass(graph, inputs, request.target, std::move(pass));
   }

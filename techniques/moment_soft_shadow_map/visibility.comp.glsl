@@ -1,8 +1,8 @@
 // Moment soft shadow maps (Peters and Klein 2015, Peters et al. 2017): percentage-closer soft shadows of which both
 // steps, the mean depth of the blockers and the share of light, come from four moments of depth in a summed-area table.
 #include "glsl/blocker_search.glsl"
+#include "glsl/hidden_share.glsl"
 #include "glsl/moment_shadow.glsl"
-#include "glsl/texel_kernel.glsl"
 #include "glsl/visibility_main.glsl"
 
 layout(binding = 10) uniform usampler2DArray moment_table;
@@ -11,10 +11,11 @@ uniform float moment_bias;
 uniform int search_rounds;
 uniform int direct_texels;
 uniform int cells;
+uniform int passes;
 
-// What blocks in a kernel of one view.
+// What blocks in a kernel.
 struct KernelBlockers {
-  float texels;  // that block
+  float texels;  // of the kernel that hide as much of the light
   float gap;     // sum of their distances to the receiver along the light's axis, metres
 };
 
@@ -28,9 +29,28 @@ MomentBlockers cell_blockers(ShadowCursor cursor, ShadowKernel cell) {
   return moment_blockers(t, d, depths.x, moment_bias);
 }
 
-// The kernel in cells x cells parts, or as many as sums of the table stay exact in. What lies outside the map is
+// Adds what lies in low..high of the kernel at `gap`, by `share`, at the map's depth `stored`.
+void add_blockers(inout KernelBlockers blockers, ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap,
+                  vec2 low, vec2 high, float share, float stored) {
+  vec2 middle = 0.5 * (low + high) / float(cursor.view.info.z);
+  float own_gap = clamp(shadow_gap(cursor.view, cursor.receiver, middle, stored), shadow_least_gap * gap, gap);
+  bool whole = q.maps.info.y == shadow_faces_single;
+  ShadowKernel own;
+  if (!shadow_kernel(cursor.view, q.light, q.position, own_gap, whole, own)) return;
+  // Another view may hold more of the kernel at the one distance than at the other.
+  float most = 3.0e38;
+  if (!whole) {
+    most = shadow_kernel_measure(cursor.view, q.light, q.position, gap) /
+           max(shadow_kernel_measure(cursor.view, q.light, q.position, own_gap), 1e-30);
+  }
+  float texels = share * shadow_hidden_texels(kernel, own, low, high, most);
+  blockers.texels += texels;
+  blockers.gap += texels * own_gap;
+}
+
+// The kernel at `gap` in cells x cells parts, or as many as sums of the table stay exact in. What lies outside the map is
 // unoccluded.
-KernelBlockers kernel_blockers(ShadowCursor cursor, ShadowKernel kernel) {
+KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap) {
   vec2 size = vec2(cursor.view.info.z);
   vec2 a = clamp(kernel.low, vec2(0.0), size);
   vec2 b = clamp(kernel.high, vec2(0.0), size);
@@ -45,64 +65,88 @@ KernelBlockers kernel_blockers(ShadowCursor cursor, ShadowKernel kernel) {
     cell.high = mix(round(mix(a, b, vec2(part + 1) / vec2(parts))), b, equal(part + 1, parts));
     if (any(lessThanEqual(cell.high, cell.low))) continue;
     MomentBlockers found = cell_blockers(cursor, cell);
-    vec2 extent = cell.high - cell.low;
-    float texels = found.share * extent.x * extent.y;
-    blockers.texels += texels;
-    blockers.gap += texels * shadow_gap(cursor.view, cursor.receiver, 0.5 * (cell.low + cell.high) / size, found.depth);
+    if (found.share > 0.0)
+      add_blockers(blockers, cursor, q, kernel, gap, cell.low, cell.high, found.share, found.depth);
   }
   return blockers;
 }
 
-// Steps 1 and 2: mean distance from the blockers in the search kernel to the receiver, metres; 0: there are none.
-float blocker_gap(inout ShadowCursor cursor, VisibilityQuery q, float reach) {
-  float sum = 0.0;
-  float share = 0.0;
-  float texels = 0.0;
-  for (uint face = 0u; face < shadow_face_count(q.maps.info.y); ++face) {
-    ShadowKernel kernel;
-    if (!shadow_kernel_in_face(cursor, q, face, reach, kernel)) continue;
-    kernel.low = floor(kernel.low);
-    kernel.high = max(ceil(kernel.high), kernel.low + 1.0);
-    KernelBlockers found = kernel_blockers(cursor, kernel);
-    vec2 extent = kernel.high - kernel.low;
-    float weight = kernel.weight / (extent.x * extent.y);
-    sum += weight * found.gap;
-    share += weight * found.texels;
-    texels += found.texels;
+// The same, texel by texel.
+KernelBlockers texel_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap) {
+  ivec2 first = max(ivec2(floor(kernel.low)), ivec2(0));
+  ivec2 last = min(ivec2(ceil(kernel.high)), ivec2(cursor.view.info.z)) - 1;
+  KernelBlockers blockers = KernelBlockers(0.0, 0.0);
+  for (int y = first.y; y <= last.y; ++y) {
+    for (int x = first.x; x <= last.x; ++x) {
+      float stored = texelFetch(shadow_depth, ivec3(x, y, cursor.layer), 0).r;
+      vec3 offset = shadow_texel_offset(cursor.view, ivec2(x, y), stored);
+      if (stored >= 1.0 || !shadow_blocks(cursor.receiver, offset)) continue;
+      add_blockers(blockers, cursor, q, kernel, gap, max(vec2(x, y), kernel.low), min(vec2(x, y) + 1.0, kernel.high), 1.0,
+                   stored);
+    }
   }
-  return texels >= 0.5 ? clamp(sum / share, 0.0, reach) : 0.0;
+  return blockers;
 }
 
-// Steps 3 and 4: the lit share of the kernel on the plane of the mean blocker.
-float filtered(inout ShadowCursor cursor, VisibilityQuery q, float gap) {
-  float blocked = 0.0;
+// What hides the light.
+struct Blockers {
+  float share;   // of the light
+  float gap;     // their mean distance to the receiver along the light's axis, metres
+  float texels;  // of all kernels
+};
+
+// Those in the kernel at `gap`. Steps 1 and 2, `searching`: in all texels that it touches; steps 3 and 4: in it.
+Blockers blockers_at(inout ShadowCursor cursor, VisibilityQuery q, float gap, bool searching) {
+  Blockers all = Blockers(0.0, 0.0, 0.0);
   float total = 0.0;
   for (uint face = 0u; face < shadow_face_count(q.maps.info.y); ++face) {
     ShadowKernel kernel;
     if (!shadow_kernel_in_face(cursor, q, face, gap, kernel)) continue;
-    // A kernel within a texel would make the texels' edges visible.
-    vec2 widen = max(0.5 * (1.0 - (kernel.high - kernel.low)), vec2(0.0));
-    kernel.low -= widen;
-    kernel.high += widen;
+    if (searching) {
+      kernel.low = floor(kernel.low);
+      kernel.high = max(ceil(kernel.high), kernel.low + 1.0);
+    } else {
+      // A kernel within a texel would make the texels' edges visible.
+      vec2 widen = max(0.5 * (1.0 - (kernel.high - kernel.low)), vec2(0.0));
+      kernel.low -= widen;
+      kernel.high += widen;
+    }
     vec2 extent = kernel.high - kernel.low;
     // From texels to moments by degrees, between direct_texels and a quarter more: the two answers differ.
-    float direct = direct_texels > 0 ? clamp(5.0 - 4.0 * max(extent.x, extent.y) / float(direct_texels), 0.0, 1.0) : 0.0;
-    float share = 0.0;
-    if (direct > 0.0) share += direct * (1.0 - texel_kernel_lit(cursor, kernel.low, kernel.high));
-    if (direct < 1.0) share += (1.0 - direct) * kernel_blockers(cursor, kernel).texels / (extent.x * extent.y);
-    blocked += kernel.weight * share;
+    float direct = !searching && direct_texels > 0
+                       ? clamp(5.0 - 4.0 * max(extent.x, extent.y) / float(direct_texels), 0.0, 1.0)
+                       : 0.0;
+    KernelBlockers found = KernelBlockers(0.0, 0.0);
+    if (direct < 1.0) found = kernel_blockers(cursor, q, kernel, gap);
+    if (direct > 0.0) {
+      KernelBlockers texels = texel_blockers(cursor, q, kernel, gap);
+      found.texels = mix(found.texels, texels.texels, direct);
+      found.gap = mix(found.gap, texels.gap, direct);
+    }
+    float weight = kernel.weight / (extent.x * extent.y);
+    all.share += weight * found.texels;
+    all.gap += weight * found.gap;
+    all.texels += found.texels;
     total += kernel.weight;
   }
-  return total > 0.0 ? 1.0 - blocked / total : 1.0;
+  all.gap = clamp(all.gap / max(all.share, 1e-30), 0.0, gap);
+  all.share /= max(total, 1e-30);
+  return all;
 }
 
 float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   BlockerSearch search = blocker_search(cursor, q, search_rounds);
   if (search.answer == search_lit) return 1.0;
   if (search.answer == search_umbra) return 0.0;
-  float gap = blocker_gap(cursor, q, search.gap);
-  if (gap <= 0.0) return 1.0;
+  float gap = search.gap;
+  Blockers found = blockers_at(cursor, q, gap, true);
+  if (found.texels < 0.5) return 1.0;
+  for (int pass = 0; pass < passes; ++pass) {
+    if (pass > 0 && found.gap >= 0.8 * gap) break;
+    gap = found.gap;
+    found = blockers_at(cursor, q, gap, false);
+  }
   // What rounding and bias leave of nothing and of everything.
   const float rest = 1.0 / 256.0;
-  return clamp((filtered(cursor, q, gap) - rest) / (1.0 - 2.0 * rest), 0.0, 1.0);
+  return clamp((1.0 - found.share - rest) / (1.0 - 2.0 * rest), 0.0, 1.0);
 }

@@ -29,23 +29,39 @@ class SampledAreaLight : public Technique {
 
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
-    const int size = inputs.parameters.integer("shadow_map_size");
-    int64_t layers = 0;
-    for (const uint32_t light : request.lights) layers += inputs.shadowMaps.layersOf(light, {.size = size});
     frame::TextureHandle target = request.target;
-    for (const Batch& batch : shadow::sampleBatches(inputs.parameters.integer("samples"), layers, size,
-                                                    inputs.parameters.integer("memory")))
+    for (const Batch& batch : batchesOf(inputs, request.lights))
       target = request.term == Term::direct ? addDirect(graph, inputs, request, target, batch)
                                             : addVisibility(graph, inputs, target, request, batch);
     return target;
   }
 
+  /// Maps of samples first .. first + count - 1.
+  static shadow::ShadowMapDesc mapsOf(const ParameterValues& parameters, int first, int count) {
+    shadow::ShadowMapDesc desc = shadow::shadowMapDesc(parameters);
+    for (int i = first; i < first + count; ++i) desc.samples.push_back(shadow::samplePlace(i));
+    return desc;
+  }
+
+  static std::vector<Batch> batchesOf(const TechniqueInputs& inputs, std::span<const uint32_t> lights) {
+    const int samples = inputs.parameters.integer("samples");
+    // Faces are chosen for all samples: those at a light's edge may need more than its centre does.
+    const shadow::ShadowMapDesc all = mapsOf(inputs.parameters, 0, samples);
+    shadow::SampleLayers layers{.size = all.size};
+    for (const uint32_t light : lights) {
+      const int taken = inputs.shadowMaps.layersOf(light, all);
+      if (glsl::light_has_extent(inputs.pose.lights[light]))
+        layers.each += taken / samples;
+      else
+        layers.shared += taken;
+    }
+    return shadow::sampleBatches(samples, layers, inputs.parameters.integer("memory"));
+  }
+
   static shadow::VisibilityPass commonPass(const TechniqueInputs& inputs, std::span<const uint32_t> lights,
                                            const Batch& batch) {
-    shadow::ShadowMapDesc desc = shadow::shadowMapDesc(inputs.parameters);
+    shadow::ShadowMapDesc desc = mapsOf(inputs.parameters, batch.first, batch.count);
     desc.cacheable = batch.count == batch.total;
-    for (int i = batch.first; i < batch.first + batch.count; ++i)
-      desc.samples.push_back(shadow::samplePlace(i));
     return {
         .name = "visibility",
         .technique = info.name,

@@ -41,9 +41,10 @@ class SampledEnvironmentLight : public Technique {
     takeSamples(environment, inputs);
     const frame::BufferHandle irradiance = graph.importBuffer("irradiance of the samples", irradiance_);
     frame::TextureHandle target = request.target;
-    for (const shadow::SampleBatch& batch : shadow::sampleBatches(
-             inputs.parameters.integer("samples"), 1, inputs.parameters.integer("shadow_map_size"),
-             inputs.parameters.integer("memory")))
+    for (const shadow::SampleBatch& batch :
+         shadow::sampleBatches(inputs.parameters.integer("samples"),
+                               {.each = 1, .size = inputs.parameters.integer("shadow_map_size")},
+                               inputs.parameters.integer("memory")))
       target = addBatch(graph, inputs, target, irradiance, batch);
     return target;
   }

@@ -164,6 +164,85 @@ TEST_F(MomentSoftShadowMapTest, ParallelPlanesAreExact) {
   }
 }
 
+/// A room of 4 x 3 x 4 m around a lamp of 0.6 m that hangs 0.1 m below the ceiling, with or without a table.
+struct RoomScene {
+  static constexpr float lampHeight = 2.9f, lampSide = 0.6f, tableHeight = 0.75f, tableSide = 1;
+  scene::Scene scene;
+  scene::Pose pose;
+  scene::CameraPose camera;
+
+  explicit RoomScene(bool table) {
+    const int wall = addMesh(scene, floorPrimitive(2, addMaterial(scene)));
+    addInstance(scene, pose, wall);
+    addInstance(scene, pose, wall,
+                glm::translate(glm::mat4(1), {0, 3, 0}) * glm::rotate(glm::mat4(1), glsl::pi, vec3(1, 0, 0)));
+    for (int i = 0; i < 4; ++i) {
+      const glm::mat4 turn =
+          glm::rotate(glm::mat4(1), 0.5f * glsl::pi * static_cast<float>(i), vec3(0, 1, 0));
+      const glm::mat4 upright = glm::rotate(glm::mat4(1), 0.5f * glsl::pi, vec3(0, 0, 1));
+      addInstance(scene, pose, wall, turn * glm::translate(glm::mat4(1), {2, 1, 0}) * upright);
+    }
+    if (table) {
+      addInstance(scene, pose, addMesh(scene, floorPrimitive(0.5f * tableSide, 0)), at(0, tableHeight, 0));
+    }
+    addLight(pose, rectangleLight({0, lampHeight, 0}, {0, -1, 0}, lampSide, lampSide));
+    camera = scene::lookAt({1.5f, 1.6f, 1.8f}, {-0.4f, 0.8f, -0.5f}, 1.3f);
+  }
+  /// The share of the lamp that a point of the floor sees past the table: of the lamp scaled down to the
+  /// table's height, the part beside it.
+  static double floorSees(const vec3& p) {
+    const float share = tableHeight / lampHeight, reach = 0.5f * share * lampSide, edge = 0.5f * tableSide;
+    const auto covered = [&](float c) {
+      const float middle = (1 - share) * c;
+      return double{std::max(0.f, std::min(edge, middle + reach) - std::max(-edge, middle - reach))} /
+             (2 * reach);
+    };
+    return 1 - covered(p.x) * covered(p.z);
+  }
+};
+
+/// Of a room without anything in it every point sees all of the lamp. From the lamp's centre walls and floor
+/// fill whole search kernels, so whoever takes all of a kernel for blockers darkens them.
+TEST_F(MomentSoftShadowMapTest, NothingShadowsAnEmptyRoom) {
+  const RoomScene s(false);
+  const Answer v = visibility(name, {}, s.scene, s.pose, s.camera);
+  EXPECT_GE(*std::ranges::min_element(v.lights[0]), 0.99f);
+}
+
+TEST_F(MomentSoftShadowMapTest, ATableShadowsTheFloorAloneUnderALampNearTheCeiling) {
+  const RoomScene s(true);
+  const Answer v = visibility(name, {}, s.scene, s.pose, s.camera);
+  glsl::FrameBlock frame{};
+  scene::setCamera(frame, s.camera, s.pose.bounds, side, side);
+  double dark = 0, squares = 0;
+  int lit = 0, umbra = 0, penumbra = 0;
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const auto i = static_cast<size_t>(y * side + x);
+      const vec3 p =
+          vec3(frame.camera_position) +
+          v.depth[i] * (vec3(frame.view_ray_origin) + static_cast<float>(x) * vec3(frame.view_ray_dx) +
+                        static_cast<float>(y) * vec3(frame.view_ray_dy));
+      const double exact = v.instance[i] == 0 ? RoomScene::floorSees(p) : 1, seen = v.lights[0][i];
+      if (exact == 1) {
+        dark += 1 - seen;
+        ++lit;
+      } else if (exact == 0) {
+        EXPECT_LT(seen, 0.02) << x << "," << y;
+        ++umbra;
+      } else {
+        squares += (seen - exact) * (seen - exact);
+        ++penumbra;
+      }
+    }
+  }
+  EXPECT_GT(lit, 8000);
+  EXPECT_GT(umbra, 300);
+  EXPECT_GT(penumbra, 300);
+  EXPECT_LT(dark / lit, 0.001);
+  EXPECT_LT(std::sqrt(squares / penumbra), 0.05);
+}
+
 TEST_F(MomentSoftShadowMapTest, ExtremesGiveVisibilitiesInRange) {
   const PlanesScene contact(1e-6f), edge(0.5f);
   for (const char* technique : {name, "pcf"}) {
