@@ -97,10 +97,6 @@ TEST_F(HostileVdbFile, OtherTypesAndTransforms) {
       openvdb::math::Transform::createFrustumTransform(openvdb::BBoxd({0, 0, 0}, {9, 9, 9}), 0.5, 10));
   write(frustum);
   EXPECT_THAT(error(), HasSubstr("affine"));
-  const auto distant = with({{{0, 0, 0}, 1}});
-  distant->transform().postTranslate({1e38, 0, 0});
-  write(distant);
-  EXPECT_THAT(error(), HasSubstr("cannot be inverted"));
   write(openvdb::GridPtrVec{});
   EXPECT_THAT(error(), HasSubstr("no grid of floats"));
 }
