@@ -29,28 +29,45 @@ MomentBlockers cell_blockers(ShadowCursor cursor, ShadowKernel cell) {
   return moment_blockers(t, d, depths.x, moment_bias);
 }
 
-// Adds what lies in low..high of the kernel at `gap`, by `share`, at the map's depth `stored`.
-void add_blockers(inout KernelBlockers blockers, ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap,
-                  vec2 low, vec2 high, float share, float stored) {
-  vec2 middle = 0.5 * (low + high) / float(cursor.view.info.z);
-  float own_gap = clamp(shadow_gap(cursor.view, cursor.receiver, middle, stored), shadow_least_gap * gap, gap);
+// What a kernel is looked at for.
+const int kernel_search = 0;  // steps 1 and 2: how far away the blockers are; all texels that it touches
+const int kernel_filter = 1;  // steps 3 and 4: how much they hide; what lies in it
+
+// How far, in texels, a part of a search kernel may lie beside the cone to the light and still count: its depth is a mean,
+// which would let go of blockers that touch the receiver.
+const float search_blur = 4.0;
+
+// How many texels of the kernel at `gap` hide as much of the light as what fills low..high at `own_gap`.
+float hiding_texels(ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap, vec2 low, vec2 high, float own_gap) {
   bool whole = q.maps.info.y == shadow_faces_single;
   ShadowKernel own;
-  if (!shadow_kernel(cursor.view, q.light, q.position, own_gap, whole, own)) return;
+  if (!shadow_kernel(cursor.view, q.light, q.position, own_gap, whole, own)) return 0.0;
   // Another view may hold more of the kernel at the one distance than at the other.
   float most = 3.0e38;
   if (!whole) {
     most = shadow_kernel_measure(cursor.view, q.light, q.position, gap) /
            max(shadow_kernel_measure(cursor.view, q.light, q.position, own_gap), 1e-30);
   }
-  float texels = share * shadow_hidden_texels(kernel, own, low, high, most);
+  own.low -= vec2(search_blur);
+  own.high += vec2(search_blur);
+  return shadow_hidden_texels(kernel, own, low, high, most);
+}
+
+// Adds what lies in low..high of the kernel at `gap`, by `share`, at the map's depth `stored`. A search kernel is so wide
+// that much of what is in it lies beside the cone to the light; one at the blockers' distance is filtered as published.
+void add_blockers(inout KernelBlockers blockers, ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap,
+                  int use, vec2 low, vec2 high, float share, float stored) {
+  vec2 middle = 0.5 * (low + high) / float(cursor.view.info.z);
+  float own_gap = clamp(shadow_gap(cursor.view, cursor.receiver, middle, stored), shadow_least_gap * gap, gap);
+  float texels = share * (use == kernel_search ? hiding_texels(cursor, q, kernel, gap, low, high, own_gap)
+                                               : (high.x - low.x) * (high.y - low.y));
   blockers.texels += texels;
   blockers.gap += texels * own_gap;
 }
 
 // The kernel at `gap` in cells x cells parts, or as many as sums of the table stay exact in. What lies outside the map is
 // unoccluded.
-KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap) {
+KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap, int use) {
   vec2 size = vec2(cursor.view.info.z);
   vec2 a = clamp(kernel.low, vec2(0.0), size);
   vec2 b = clamp(kernel.high, vec2(0.0), size);
@@ -66,7 +83,7 @@ KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKer
     if (any(lessThanEqual(cell.high, cell.low))) continue;
     MomentBlockers found = cell_blockers(cursor, cell);
     if (found.share > 0.0)
-      add_blockers(blockers, cursor, q, kernel, gap, cell.low, cell.high, found.share, found.depth);
+      add_blockers(blockers, cursor, q, kernel, gap, use, cell.low, cell.high, found.share, found.depth);
   }
   return blockers;
 }
@@ -81,8 +98,8 @@ KernelBlockers texel_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKern
       float stored = texelFetch(shadow_depth, ivec3(x, y, cursor.layer), 0).r;
       vec3 offset = shadow_texel_offset(cursor.view, ivec2(x, y), stored);
       if (stored >= 1.0 || !shadow_blocks(cursor.receiver, offset)) continue;
-      add_blockers(blockers, cursor, q, kernel, gap, max(vec2(x, y), kernel.low), min(vec2(x, y) + 1.0, kernel.high), 1.0,
-                   stored);
+      add_blockers(blockers, cursor, q, kernel, gap, kernel_filter, max(vec2(x, y), kernel.low),
+                   min(vec2(x, y) + 1.0, kernel.high), 1.0, stored);
     }
   }
   return blockers;
@@ -95,14 +112,14 @@ struct Blockers {
   float texels;  // of all kernels
 };
 
-// Those in the kernel at `gap`. Steps 1 and 2, `searching`: in all texels that it touches; steps 3 and 4: in it.
-Blockers blockers_at(inout ShadowCursor cursor, VisibilityQuery q, float gap, bool searching) {
+// Those in the kernel at `gap`.
+Blockers blockers_at(inout ShadowCursor cursor, VisibilityQuery q, float gap, int use) {
   Blockers all = Blockers(0.0, 0.0, 0.0);
   float total = 0.0;
   for (uint face = 0u; face < shadow_face_count(q.maps.info.y); ++face) {
     ShadowKernel kernel;
     if (!shadow_kernel_in_face(cursor, q, face, gap, kernel)) continue;
-    if (searching) {
+    if (use == kernel_search) {
       kernel.low = floor(kernel.low);
       kernel.high = max(ceil(kernel.high), kernel.low + 1.0);
     } else {
@@ -113,11 +130,11 @@ Blockers blockers_at(inout ShadowCursor cursor, VisibilityQuery q, float gap, bo
     }
     vec2 extent = kernel.high - kernel.low;
     // From texels to moments by degrees, between direct_texels and a quarter more: the two answers differ.
-    float direct = !searching && direct_texels > 0
+    float direct = use == kernel_filter && direct_texels > 0
                        ? clamp(5.0 - 4.0 * max(extent.x, extent.y) / float(direct_texels), 0.0, 1.0)
                        : 0.0;
     KernelBlockers found = KernelBlockers(0.0, 0.0);
-    if (direct < 1.0) found = kernel_blockers(cursor, q, kernel, gap);
+    if (direct < 1.0) found = kernel_blockers(cursor, q, kernel, gap, use);
     if (direct > 0.0) {
       KernelBlockers texels = texel_blockers(cursor, q, kernel, gap);
       found.texels = mix(found.texels, texels.texels, direct);
@@ -139,12 +156,12 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   if (search.answer == search_lit) return 1.0;
   if (search.answer == search_umbra) return 0.0;
   float gap = search.gap;
-  Blockers found = blockers_at(cursor, q, gap, true);
+  Blockers found = blockers_at(cursor, q, gap, kernel_search);
   if (found.texels < 0.5) return 1.0;
   for (int pass = 0; pass < passes; ++pass) {
     if (pass > 0 && found.gap >= 0.8 * gap) break;
     gap = found.gap;
-    found = blockers_at(cursor, q, gap, false);
+    found = blockers_at(cursor, q, gap, kernel_filter);
   }
   // What rounding and bias leave of nothing and of everything.
   const float rest = 1.0 / 256.0;

@@ -1,4 +1,5 @@
 // A plug-in that fails in every way in which the code of others can fail.
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <new>
@@ -65,7 +66,7 @@ constexpr limn::TechniqueInfo info{.name = "misbehaver",
 
 extern "C" __attribute__((visibility("default"))) const limn::TechniquePlugin* limnTechniquePlugin() {
   static const limn::TechniquePlugin plugin{
-      limn::handshake(), &info, [] { return std::span<const limn::gpu::EmbeddedSource>(); },
+      limn::handshake(limn::interfaceHash()), &info, [] { return std::span<const limn::gpu::EmbeddedSource>(); },
       []() -> std::unique_ptr<limn::Technique> { return std::make_unique<Misbehaver>(); }};
   return &plugin;
 }
