@@ -11,7 +11,6 @@
 #ifndef LIMN_SUB_KERNELS_GLSL
 #define LIMN_SUB_KERNELS_GLSL
 #include "glsl/blocker_search.glsl"
-#include "glsl/hidden_share.glsl"
 #include "glsl/min_max_windows.glsl"
 #include "glsl/n_buffer.glsl"
 #include "glsl/variance_kernel.glsl"
@@ -20,6 +19,8 @@
 layout(binding = 10) uniform usampler2DArray shadow_table;
 
 const uint table_format = TABLE_FORMAT;
+const float least_gap = 0.05;  // of the kernel's: nearer blockers hide no more than at that
+const float edge_blur = 0.5;   // texels: how far kernels reach into texels that their edges cut
 
 // One pixel's kernels in one view.
 struct KernelFamily {
@@ -76,6 +77,17 @@ bool family_kernel(KernelFamily f, float gap, out ShadowKernel kernel) {
   return true;
 }
 
+#if !SIMILAR_KERNELS
+// Solid angle, or area, of all of the kernel at `gap`, relative to those at other gaps.
+float family_measure(KernelFamily f, float gap) {
+  if (f.view.info.x != shadow_perspective) return gap * gap;
+  vec3 r = f.receiver - f.view.origin.xyz;
+  vec3 middle = r + gap * f.light.centre;
+  float inverse = inversesqrt(max(dot(middle, middle), 1e-30));
+  return gap * gap * max(dot(f.light.axis, r) - gap, 0.0) * inverse * inverse * inverse;
+}
+#endif
+
 // A kernel in one view, and what was found in it.
 struct KernelTally {
   float gap;      // the kernel's
@@ -122,20 +134,24 @@ vec2 box_moments(uvec4 s11, uvec4 s01, uvec4 s10, uvec4 s00, uint texels, float 
   return vec2(m.first + n * rest, m.second + rest * (2.0 * m.first + n * rest));
 }
 
-// Texels of the kernel that hide as much of the light as what lies in low..high, texels, `gap` metres from the receiver.
+// Share of the light that what lies in low..high, texels, `gap` metres from the receiver hides, as the number of texels of
+// the kernel that would hide as much: it is compared to the kernel at its own gap, the cone to the light cut there.
 float hidden_texels(KernelFamily f, KernelTally tally, vec2 low, vec2 high, float gap) {
-  ShadowKernel own;
-  gap = clamp(gap, shadow_least_gap * tally.gap, tally.gap);
-  bool seen = family_kernel(f, gap, own);
-  float most = 3.0e38;
+  ShadowKernel kernel;
+  gap = clamp(gap, least_gap * tally.gap, tally.gap);
+  bool seen = family_kernel(f, gap, kernel);
+  vec2 first = max(tally.low, kernel.low - vec2(edge_blur));
+  vec2 last = min(tally.high, kernel.high + vec2(edge_blur));
+  vec2 extent = max(last - first, vec2(1e-6));
+  vec2 inside = max(min(high, last) - max(low, first), vec2(0.0));
+  vec2 whole = tally.high - tally.low;
+  float magnified = whole.x * whole.y / (extent.x * extent.y);
 #if !SIMILAR_KERNELS
   // Another view may hold more of the kernel at the one distance than at the other.
-  float measure = shadow_kernel_measure(f.view, f.light, f.receiver, gap);
-  float ratio = shadow_kernel_measure(f.view, f.light, f.receiver, tally.gap) / max(measure, 1e-30);
-  most = f.similar ? most : ratio;
+  float most = family_measure(f, tally.gap) / max(family_measure(f, gap), 1e-30);
+  magnified = f.similar ? magnified : min(magnified, most);
 #endif
-  ShadowKernel of = ShadowKernel(tally.low, tally.high, 1.0);
-  return seen ? shadow_hidden_texels(of, own, low, high, most) : 0.0;
+  return seen ? inside.x * inside.y * magnified : 0.0;
 }
 
 // Adds a box in which Chebyshev's inequality holds, about `d`.

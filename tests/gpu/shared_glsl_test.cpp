@@ -84,24 +84,31 @@ TEST_F(SharedGlslTest, everyHeaderCompilesAlone) {
     const std::string path = source.path;
     const bool stage = path.ends_with(".comp.glsl") || path.ends_with(".vert.glsl") ||
                        path.ends_with(".frag.glsl") || path.ends_with(".geom.glsl");
-    if (stage || brings(source, "gl_FragCoord")) continue;  // of fragment shaders alone
+    if (stage) continue;
     SCOPED_TRACE(path);
-    const std::string text = "#include \"" + path + "\"\n" +
-                             (brings(source, "local_size_x") ? "" : "layout(local_size_x = 1) in;\n") +
-                             (brings(source, "void main()") ? "" : "void main() {}\n");
-    const gpu::EmbeddedSource user[] = {{"main.comp.glsl", text.c_str()}};
+    const bool fragment = brings(source, "gl_FragCoord") || brings(source, "gl_PrimitiveID");
+    const std::string text =
+        "#include \"" + path + "\"\n" +
+        (fragment || brings(source, "local_size_x") ? "" : "layout(local_size_x = 1) in;\n") +
+        (brings(source, "void main()") ? "" : "void main() {}\n");
+    const gpu::EmbeddedSource user[] = {{fragment ? "main.frag.glsl" : "main.comp.glsl", text.c_str()},
+                                        {"main.vert.glsl", "void main() { gl_Position = vec4(0); }\n"}};
     gpu::ShaderLibrary library(device());
     library.mount("", embeddedSources());
     library.mount("test/", user);
     try {
-      library.program({{"test/main.comp.glsl"}, {}});
+      if (fragment)
+        library.program({{"test/main.vert.glsl", "test/main.frag.glsl"}, {}});
+      else
+        library.program({{"test/main.comp.glsl"}, {}});
     } catch (const Error& error) {
       // A header of a permutation lacks its macro, whose name is in capitals, a main program its function;
       // anything else is broken.
       EXPECT_THAT(error.what(),
                   AnyOf(HasSubstr("is tested but not defined"), HasSubstr("light_visibility"),
                         HasSubstr("no function with name 'ray_kind'"),
-                        ::testing::ContainsRegex("main.comp.glsl:[0-9]+: `[A-Z][A-Z0-9_]+' undeclared")));
+                        HasSubstr("has no matching output"),  // of the vertex shader it is used with
+                        ::testing::ContainsRegex("main.[a-z]+.glsl:[0-9]+: `[A-Z][A-Z0-9_]+' undeclared")));
     }
   }
 }
