@@ -78,9 +78,13 @@ TEST_F(BenchFaults, EveryWayToFailCostsOneRow) {
   const Outcome outcome = bench({"--stall-timeout", "4"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.out, HasSubstr("3 rows measured, 0 were there already, 5 failed")) << outcome.err;
-  for (const char* line :
-       {"way=foreign: no error of limn's own\n", "way=number: something was thrown",
-        "way=memory: out of memory\n", "way=hang: no progress for 4 s\n", "way=crash: crashed: Aborted\n"})
+  const std::string thrown =
+      ": technique misbehaver (" + std::string(binaryDir) + "/tests/misbehaver/misbehaver.so): ";
+  for (const std::string& line :
+       {"way=foreign" + thrown + "no error of limn's own\n",
+        "way=number" + thrown + "it threw something that is no std::exception\n",
+        "way=memory" + thrown + "out of memory\n", std::string("way=hang: no progress for 4 s\n"),
+        std::string("way=crash: crashed: Aborted\n")})
     EXPECT_THAT(outcome.err, HasSubstr(line));
   EXPECT_EQ(rows(folder_ / "out").size(), 8u);
   EXPECT_THAT(contents(folder_ / "out/tables.md"), HasSubstr("failed: no progress for 4 s"));

@@ -34,7 +34,7 @@ void expectReproduced(const fs::path& folder, const std::string& line, const std
 
 TEST(Provenance, TheCommandInsideAPictureGivesItAgain) {
   const TemporaryFolder folder;
-  const std::string scene = "cornell_box --size 32x24 ";
+  const std::string scene = "cornell_box --size 33x25 ";
   for (const std::string name : {"a.png", "a.exr"})
     expectReproduced(folder.path(),
                      "limn render " + scene + "--technique pcss --set pcss.filter_samples=8 -o " + name,
