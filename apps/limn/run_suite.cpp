@@ -137,13 +137,16 @@ class SuiteWork {
                                                              : WorkerReport::State::failed);
   }
 
-  /// A row for the case that ended the worker, unless it has a good one; it is not tried again in this run.
+  /// A row for the case that ended the worker, unless it has a good one. Neither it nor what failed before it
+  /// is tried again in this run.
   void recordCrash(const std::string& what) {
     const auto current = report_.current();
     if (!current) throw Error("no case could be started by the process that measures: " + what);
     const bench::Case& c = cases_[*current];
     fmt::print(stderr, "limn: {}: {}\n", bench::label(c), what);
-    std::erase(left_, *current);
+    std::erase_if(left_, [&](std::size_t i) {
+      return i == *current || report_.state(i) == WorkerReport::State::failed;
+    });
     const WorkerReport::State state = report_.state(*current);
     if (state == WorkerReport::State::done || state == WorkerReport::State::skipped) return;
     bench::Row row;
