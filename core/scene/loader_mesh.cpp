@@ -171,12 +171,16 @@ void Loader::readSkinAttributes(const tinygltf::Primitive& source, Primitive& ou
       const std::uint32_t joint = indices[4 * i + static_cast<std::size_t>(k)];
       if (joint > 65535) fail(fmt::format("{} JOINTS_0: joint {} of vertex {} is too large", what, joint, i));
       w[k] = std::max(w[k], 0.f);
-      out.joints[i][k] = w[k] > 0 ? static_cast<std::uint16_t>(joint) : std::uint16_t{0};
+      out.joints[i][k] = static_cast<std::uint16_t>(joint);
     }
     const double sum = static_cast<double>(w.x) + w.y + w.z + w.w;
     // One quantisation step of 8-bit weights may be missing from each; that is rounding, not a fault.
     changed = changed || std::abs(sum - 1) > 4.0 / 255;
-    w = sum > 0 ? glm::vec4(glm::dvec4(w) / sum) : glm::vec4(1, 0, 0, 0);
+    w = sum > 0 ? glm::vec4(glm::dvec4(w) / sum) : glm::vec4(0);
+    // Only joints that move the vertex must exist; a weight may vanish in the division.
+    for (int k = 0; k < 4; ++k)
+      if (!(w[k] > 0)) out.joints[i][k] = 0;
+    if (!(sum > 0)) w.x = 1;
   }
   if (changed) warn(what + ": skin weights do not sum to 1; normalised");
 }

@@ -371,6 +371,20 @@ TEST(SceneBadInput, JointOutsideTheSkin) {
   EXPECT_THAT(loadError(b.glb()), HasSubstr("names joint 2; skin 0 has 1"));
 }
 
+TEST(SceneBadInput, JointsWhoseWeightVanishesNeedNotExist) {
+  GltfBuilder b;
+  const glm::vec4 tiny(1e-45f, 3e38f, 0, 0);
+  const int mesh = b.mesh({{"POSITION", b.vec3({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})},
+                           {"JOINTS_0", b.accessor(std::vector<glm::u8vec4>(3, glm::u8vec4(9, 0, 9, 9)),
+                                                   GltfBuilder::kUbyte, "VEC4")},
+                           {"WEIGHTS_0", b.vec4(std::vector<glm::vec4>(3, tiny))}});
+  b.node({{"mesh", mesh}, {"skin", 0}});
+  b.append("skins", {{"joints", {0}}});
+  const scene::Scene loaded = scene::loadMemory(b.glb());
+  for (const glm::u16vec4& joints : loaded.meshes[0].primitives[0].joints)
+    EXPECT_EQ(joints, glm::u16vec4(0));
+}
+
 TEST(SceneBadInput, SparseRanges) {
   GltfBuilder b;
   b.triangle();
