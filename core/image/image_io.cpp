@@ -132,11 +132,22 @@ std::string oneLine(std::string text) {
   return text.empty() ? "unreadable or truncated" : text;
 }
 
+/// What decoders read from: a file of `bytes`. OpenImageIO's reader follows offsets before the first byte,
+/// which an EXR's table of lines may hold.
+class MemoryFile : public OIIO::Filesystem::IOMemReader {
+ public:
+  explicit MemoryFile(std::span<const std::byte> bytes) : IOMemReader(bytes.data(), bytes.size()) {}
+  bool seek(std::int64_t offset) override { return offset >= 0 && IOMemReader::seek(offset); }
+  std::size_t pread(void* target, std::size_t size, std::int64_t offset) override {
+    return offset < 0 ? 0 : IOMemReader::pread(target, size, offset);
+  }
+};
+
 /// An opened decoder whose size has been checked against the limits; nothing of that size is allocated yet.
 class Decoder {
  public:
   Decoder(std::span<const std::byte> bytes, const std::string& name)
-      : name_(name), format_(detectFormat(bytes, name)), memory_(bytes.data(), bytes.size()) {
+      : name_(name), format_(detectFormat(bytes, name)), memory_(bytes) {
     const std::string problem = problemOf(bytes, format_);
     if (!problem.empty()) fail(problem);
     input_ = OIIO::ImageInput::create(decoderName(format_), false);
@@ -181,7 +192,7 @@ class Decoder {
 
   std::string name_;
   Format format_;
-  OIIO::Filesystem::IOMemReader memory_;
+  MemoryFile memory_;
   std::unique_ptr<OIIO::ImageInput> input_;
   OIIO::ImageSpec spec_;
 };

@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <array>
+#include <cstring>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <random>
 
@@ -158,6 +160,25 @@ std::vector<std::byte> encoded(const char* format, OIIO::TypeDesc type) {
   EXPECT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) && output->close());
   const auto bytes = std::as_bytes(std::span(memory.buffer()));
   return {bytes.begin(), bytes.end()};
+}
+
+// The table of an EXR of one block of lines says that the block begins behind the table.
+TEST(HostileImage, LinesBeforeTheFileOrBehindIt) {
+  const std::vector<std::byte> whole = encoded("exr", OIIO::TypeDesc::FLOAT);
+  const auto entryAt = [&](std::size_t place) {
+    std::uint64_t entry = 0;
+    std::memcpy(&entry, &whole.at(place), sizeof entry);
+    return entry;
+  };
+  std::size_t table = 0;
+  while (entryAt(table) != table + sizeof(std::uint64_t)) ++table;
+  using Limits = std::numeric_limits<std::int64_t>;
+  for (const std::int64_t place : {std::int64_t{-1}, std::int64_t{-40}, -(std::int64_t{1} << 40), Limits::min(),
+                                   std::int64_t{1} << 40, Limits::max()}) {
+    std::vector<std::byte> astray = whole;
+    std::memcpy(&astray.at(table), &place, sizeof place);
+    EXPECT_NE(refusal(astray), "") << place;
+  }
 }
 
 // A pass over the whole picture for four bytes of the file.
