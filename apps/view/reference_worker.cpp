@@ -78,9 +78,12 @@ int ReferenceWorker::resume(const std::stop_token& stop, const reference::Reques
 }
 
 void ReferenceWorker::work(const std::stop_token& stop, const Task& task) {
-  reference::Request request = referenceRequest(*task.view, task.pose, task.camera, task.term);
+  // Nothing but its scene is taken from the view, whose time and light are set anew meanwhile.
+  reference::Request request{
+      .scene = task.view->scene, .pose = task.pose, .camera = task.camera, .progress = {}, .checkpoint = {}};
   request.width = task.size.x;
   request.height = task.size.y;
+  request.term = task.term;
   request.light = task.light == scene::none ? reference::allLights : task.light;
   request.bounces = task.bounces;
   request.interfaces = task.interfaces;
