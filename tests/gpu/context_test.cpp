@@ -200,7 +200,7 @@ TEST(ContextDeathTest, tooFewOpenFilesAreNamedAsTheCause) {
   }
 }
 
-#if !defined(__SANITIZE_ADDRESS__)  // whose shadow memory takes terabytes of addresses
+#if !defined(LIMN_SANITIZED)  // whose shadow memory takes terabytes of addresses
 TEST(ContextDeathTest, tooLittleMemoryIsNamedAsTheCause) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   unsigned long pages = 0;

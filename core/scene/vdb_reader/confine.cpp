@@ -24,7 +24,7 @@ bool confine(std::uint64_t memory, unsigned seconds) {
   granted &= prctl(PR_SET_DUMPABLE, 0) == 0;  // where core dumps go to a program their limit says nothing
   granted &= limit(RLIMIT_CORE, 0, 0) && limit(RLIMIT_FSIZE, 0, 0);
   granted &= limit(RLIMIT_CPU, seconds, seconds + 1);
-#if !defined(__SANITIZE_ADDRESS__)  // whose shadow memory alone takes terabytes of addresses
+#if !defined(LIMN_SANITIZED)  // whose shadow memory alone takes terabytes of addresses
   granted &= limit(RLIMIT_AS, memory, memory);
 #else
   static_cast<void>(memory);
