@@ -34,6 +34,7 @@ std::optional<double> parseNumber(std::string_view text) {
 }
 
 std::string oneLine(std::string_view text, size_t limit) {
+  text = text.substr(0, text.find_last_not_of(" \t\r\n") + 1);  // npos + 1 is 0
   std::string line(text.substr(0, limit));
   std::replace_if(
       line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, '?');

@@ -14,7 +14,8 @@ namespace limn {
 /// The whole of `text` as a finite number, or nothing.
 LIMN_API std::optional<double> parseNumber(std::string_view text);
 
-/// `text` as messages show it: one line, control characters as '?', and no more than `limit` bytes of it.
+/// `text` as messages show it: one line without white space at its end, other line ends as ' ', control
+/// characters as '?', and no more than `limit` bytes of it.
 LIMN_API std::string oneLine(std::string_view text, size_t limit = 600);
 
 /// "a, b and c".

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <mutex>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/context/backends.h"
 
 namespace limn {
@@ -40,12 +40,6 @@ std::string_view sourceName(GLenum source) {
     default:
       return "other";
   }
-}
-
-std::string oneLine(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  while (!text.empty() && text.back() == ' ') text.pop_back();
-  return text;
 }
 
 }  // namespace

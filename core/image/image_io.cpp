@@ -13,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/text.h"
 #include "core/image/exr_header.h"
 #include "core/image/image.h"
 #include "glsl/srgb.glsl"
@@ -126,10 +127,9 @@ std::string problemOf(std::span<const std::byte> bytes, Format format) {
   return format == Format::png && !pngIsComplete(bytes) ? "truncated or damaged PNG" : "";
 }
 
-std::string oneLine(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  while (!text.empty() && text.back() == ' ') text.pop_back();
-  return text.empty() ? "unreadable or truncated" : text;
+std::string reasonOf(std::string_view failure) {
+  const std::string line = oneLine(failure);
+  return line.empty() ? "unreadable or truncated" : line;
 }
 
 /// What decoders read from: a file of `bytes`. OpenImageIO's reader follows offsets before the first byte,
@@ -168,7 +168,7 @@ class Decoder {
 
  private:
   [[noreturn]] void fail(const std::string& reason) const {
-    throw Error(fmt::format("{}: {}", name_, oneLine(reason)));
+    throw Error(fmt::format("{}: {}", name_, reasonOf(reason)));
   }
 
   void checkSize() const {
@@ -207,7 +207,7 @@ auto guarded(const std::string& name, Step step) {
   } catch (const std::bad_alloc&) {
     throw Error(fmt::format("{}: not enough memory", name));
   } catch (const std::exception& failure) {
-    throw Error(fmt::format("{}: {}", name, oneLine(failure.what())));
+    throw Error(fmt::format("{}: {}", name, reasonOf(failure.what())));
   }
 }
 
@@ -294,10 +294,10 @@ std::vector<std::uint8_t> encode(const std::string& name, const char* encoder, c
                                  OIIO::TypeDesc type, const void* pixels) {
   OIIO::Filesystem::IOVecOutput memory;
   std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(encoder);
-  if (!output) throw Error(fmt::format("{}: {}", name, oneLine(OIIO::geterror())));
+  if (!output) throw Error(fmt::format("{}: {}", name, reasonOf(OIIO::geterror())));
   output->set_ioproxy(&memory);
   if (!output->open(name, spec) || !output->write_image(type, pixels) || !output->close()) {
-    throw Error(fmt::format("{}: {}", name, oneLine(output->geterror())));
+    throw Error(fmt::format("{}: {}", name, reasonOf(output->geterror())));
   }
   return memory.buffer();
 }

@@ -8,6 +8,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace limn::scene {
 namespace {
@@ -52,8 +53,11 @@ DensityGrid decodeGridMessage(std::span<const std::byte> message, const GridLimi
   std::memcpy(&header, message.data(), sizeof header);
   const std::span<const std::byte> rest = message.subspan(sizeof header);
   if (header.magic != GridHeader::expected || header.bytes != rest.size()) refuse();
-  if (header.kind == GridHeader::refusal)
-    throw Error(std::string(reinterpret_cast<const char*>(rest.data()), rest.size()));
+  if (header.kind == GridHeader::refusal) {
+    const std::string reason =
+        oneLine({reinterpret_cast<const char*>(rest.data()), rest.size()}, mostReasonBytes);
+    if (!reason.empty()) throw Error(reason);
+  }
   const std::uint64_t count = voxels(header.size, limits);
   if (header.kind != GridHeader::grid || count == 0 || rest.size() != count * sizeof(float)) refuse();
 

@@ -116,7 +116,7 @@ TEST_F(HostileVdbFile, GridsWithoutAName) {
 TEST_F(HostileVdbFile, TakesNoMoreThanIsAllowed) {
   write(with({{{0, 0, 0}, 1}}));
   EXPECT_THAT(error({.time = std::chrono::milliseconds(1)}), HasSubstr("it takes longer than 0.001 s"));
-#if !defined(__SANITIZE_ADDRESS__)
+#if !defined(LIMN_SANITIZED)
   EXPECT_THAT(error({.memory = 1 << 20}), HasSubstr("not an OpenVDB file that can be read"));
   write(with({{Coord(0), 1}, {Coord(399), 1}}));
   EXPECT_EQ(error(), "");
@@ -207,6 +207,9 @@ TEST_F(GridMessage, ThatContradictsItselfIsRefused) {
   EXPECT_THAT(refusal(bytesOf(header_, values_), {.side = 2}), nothing);
   EXPECT_THAT(refusal(bytesOf(header_, values_.first(20))), nothing);
   EXPECT_THAT(refusal({}), nothing);
+  EXPECT_THAT(refusal(bytesOf(scene::headerOf(""), {})), nothing);
+  const std::string_view odd("\0two\nlines\n", 11);
+  EXPECT_EQ(refusal(bytesOf(scene::headerOf(odd), std::as_bytes(std::span(odd)))), "?two?lines");
   grid_.values[4] = -1;
   EXPECT_THAT(refusal(bytesOf(header_, values_)), HasSubstr("a density of -1"));
 }
