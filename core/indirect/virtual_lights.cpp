@@ -22,6 +22,7 @@ struct Builder {
   const SceneHandles& handles;
   const shadow::ShadowMaps& maps;
   const VirtualLightDesc& desc;
+  size_t lightCount;
 
   BufferHandle buffer(const char* name, size_t elements, size_t bytes) const {
     return graph.createBuffer(name, {elements * bytes});
@@ -64,6 +65,15 @@ void bindMaps(const frame::PassContext& context, const SceneHandles& handles, co
   scene::LightTextureInput(handles).bind(context);
 }
 
+/// What glsl/indirect/map_groups.glsl reads.
+void bindGroups(const frame::PassContext& context, const shadow::ShadowMaps& maps, gpu::Program& kernel,
+                size_t lightCount, int lightSamples) {
+  kernel.set("layers", static_cast<unsigned>(maps.layers));
+  kernel.set("light_count", static_cast<unsigned>(lightCount));
+  kernel.set("points_listed", static_cast<unsigned>(std::max(lightSamples, 1)));
+  context.bindStorage(4, maps.lights);
+}
+
 BufferHandle Builder::tileFlux() const {
   const int across = tilesPerSide(maps.size);
   frame::PassBuilder pass = graph.addPass("reflected flux", "indirect");
@@ -104,21 +114,23 @@ BufferHandle Builder::layerFlux(BufferHandle values, bool sampled, uint32_t coun
 BufferHandle Builder::sample(BufferHandle reflected) const {
   frame::PassBuilder pass = graph.addPass("virtual lights", "indirect");
   readMaps(pass);
-  pass.read(reflected, Access::storageLoad, "how many samples a map deserves");
+  pass.read(reflected, Access::storageLoad, "how many samples a map deserves")
+      .read(maps.lights, Access::storageLoad, "which maps belong together");
   const BufferHandle lights =
       pass.write(buffer("virtual lights", static_cast<size_t>(desc.count), sizeof(glsl::VirtualPointLight)),
                  Access::storageStore, "samples of the maps");
   const auto program = pass.program(texelProgram("glsl/indirect/sample_maps.comp.glsl", {}));
-  pass.execute([=, maps = maps, handles = handles, desc = desc](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(program);
-    kernel.use();
-    kernel.set("count", static_cast<unsigned>(desc.count));
-    kernel.set("layers", static_cast<unsigned>(maps.layers));
-    bindMaps(context, handles, maps, kernel, desc.lightSamples);
-    context.bindStorage(2, reflected);
-    context.bindStorage(3, lights);
-    context.dispatch(desc.count, 1, 1, group, 1);
-  });
+  pass.execute(
+      [=, maps = maps, handles = handles, desc = desc, lightCount = lightCount](frame::PassContext& context) {
+        gpu::Program& kernel = context.program(program);
+        kernel.use();
+        kernel.set("count", static_cast<unsigned>(desc.count));
+        bindMaps(context, handles, maps, kernel, desc.lightSamples);
+        bindGroups(context, maps, kernel, lightCount, desc.lightSamples);
+        context.bindStorage(2, reflected);
+        context.bindStorage(3, lights);
+        context.dispatch(desc.count, 1, 1, group, 1);
+      });
   return lights;
 }
 
@@ -126,19 +138,20 @@ BufferHandle Builder::conserve(BufferHandle before, BufferHandle reflected, Buff
   frame::PassBuilder pass = graph.addPass("conserve flux", "indirect");
   pass.read(reflected, Access::storageLoad, "what the maps reflect")
       .read(sampled, Access::storageLoad, "what the samples carry")
+      .read(maps.lights, Access::storageLoad, "which maps belong together")
       .cacheable();
   const BufferHandle lights =
       pass.write(before, Access::storageLoadStore, "scaled so that both sums are the same");
   const auto program = pass.program({.files = {"glsl/indirect/conserve_flux.comp.glsl"}, .defines = {}});
-  pass.execute([=, layers = maps.layers, count = desc.count](frame::PassContext& context) {
+  pass.execute([=, maps = maps, desc = desc, lightCount = lightCount](frame::PassContext& context) {
     gpu::Program& kernel = context.program(program);
     kernel.use();
-    kernel.set("count", static_cast<unsigned>(count));
-    kernel.set("layers", static_cast<unsigned>(layers));
+    kernel.set("count", static_cast<unsigned>(desc.count));
+    bindGroups(context, maps, kernel, lightCount, desc.lightSamples);
     context.bindStorage(0, reflected);
     context.bindStorage(1, sampled);
     context.bindStorage(2, lights);
-    context.dispatch(count, 1, 1, group, 1);
+    context.dispatch(desc.count, 1, 1, group, 1);
   });
   return lights;
 }
@@ -161,7 +174,7 @@ VirtualLights VirtualLightService::request(std::span<const uint32_t> lights, con
   VirtualLights made;
   made.maps = shadowMaps_.request(lights, mapDesc);
   made.count = desc.count;
-  const Builder build{*graph_, handles_, made.maps, desc};
+  const Builder build{*graph_, handles_, made.maps, desc, lights.size()};
   const int across = tilesPerSide(desc.mapSize);
   made.reflected = build.layerFlux(build.tileFlux(), false, static_cast<uint32_t>(across * across));
   const BufferHandle sampled = build.sample(made.reflected);

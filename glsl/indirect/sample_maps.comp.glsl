@@ -1,15 +1,15 @@
 // Virtual point lights at Halton points of reflective shadow maps. The third coordinate chooses the layer, in proportion
-// to the flux it reflects; the other two the texel. Such a light carries the flux of 1 / (N p) of its layer, where p is
-// the layer's share of all flux. Its flux.w is the layer: what conserve_flux needs.
+// to the flux it reflects, group by group; the other two the texel. Such a light carries the flux of 1 / (N p) of its
+// layer, where p is the layer's share of all flux. Its flux.w is the group's first layer: what conserve_flux needs.
 #include "glsl/halton.glsl"
+#include "glsl/indirect/map_groups.glsl"
 #include "glsl/indirect/reflective_texel.glsl"
 #include "glsl/virtual_light.glsl"
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 2) readonly buffer LayerFlux { vec4 layer_flux[]; };
 layout(std430, binding = 3) writeonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
-uniform uint count;   // of virtual lights
-uniform uint layers;  // of the maps
+uniform uint count;  // of virtual lights
 
 void main() {
   uint index = gl_GlobalInvocationID.x;
@@ -20,14 +20,23 @@ void main() {
   float wanted = at.z * total;
   float before = 0.0;
   uint layer = 0u;
+  uint group = 0u;
   float weight = 0.0;
-  for (uint l = 0u; l < layers; ++l) {  // the last layer with flux that begins at or before what is wanted
-    float own = flux_weight(layer_flux[l].rgb);
-    if (own > 0.0 && before <= wanted) {
-      layer = l;
-      weight = own;
+  for (uint light = 0u; light < light_count; ++light) {
+    LightLayers of_light = light_layers(light);
+    for (uint face = 0u; face < of_light.faces; ++face) {
+      // the last layer with flux that begins at or before what is wanted
+      for (uint point = 0u; point < of_light.points; ++point) {
+        uint l = of_light.first + point * of_light.faces + face;
+        float own = flux_weight(layer_flux[l].rgb);
+        if (own > 0.0 && before <= wanted) {
+          layer = l;
+          group = of_light.first + face;
+          weight = own;
+        }
+        before += own;
+      }
     }
-    before += own;
   }
   ShadowView view = views[layer];
   ivec2 texel = ivec2(at.xy * float(view.info.z));
@@ -35,6 +44,6 @@ void main() {
   VirtualPointLight light;
   light.position = vec4(t.position, 1.0);
   light.normal = vec4(t.normal, 0.0);
-  light.flux = vec4(weight > 0.0 ? t.flux * (total / (weight * float(count))) : vec3(0.0), float(layer));
+  light.flux = vec4(weight > 0.0 ? t.flux * (total / (weight * float(count))) : vec3(0.0), float(group));
   virtual_lights[index] = light;
 }
