@@ -41,7 +41,8 @@ constexpr std::array<Parameter, N + 11> gatherParameters(const std::array<Parame
               "Width and height of each layer of the reflective shadow maps")
           .logScale(),
       integer("light_samples", 1, {1, 256}, "points",
-              "Points on each area light that reflective shadow maps are drawn from; 1: its centre"),
+              "Points on each area light that reflective shadow maps are drawn from; 1: its centre, "
+              "which is enough unless things near the light hide parts of it"),
       integer("block", block, {1, 16}, "pixels",
               "Side of the pattern of interleaved pixels, each of which shades 1 / block^2 of the virtual "
               "lights"),

@@ -4,7 +4,8 @@
 // Sampling (glsl/indirect/sample_maps.comp.glsl): point i of the Halton sequence chooses a layer of the maps
 // in proportion to the flux that the layer reflects, and a texel of it. So N is split among the lights by
 // what they contribute; a light that N is too small for gives its flux to the others. The sum over all
-// virtual lights is the flux that the maps reflect, in every channel.
+// virtual lights is the flux that the maps reflect, in every channel, for each face of each light: the maps
+// of one face from several points of the light share one factor.
 #pragma once
 
 #include <cstdint>

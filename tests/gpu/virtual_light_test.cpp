@@ -188,6 +188,56 @@ TEST_F(VirtualLightTest, ALargeRectangleIsNoPoint) {
   }
 }
 
+/// Irradiance at points on the walls of a box, in which nothing hides anything: few virtual lights for each
+/// map of a light that is drawn from many points are no reason for more noise.
+TEST_F(VirtualLightTest, PointsOfOneLightAddLittleNoise) {
+  scene::Scene scene;
+  scene::Pose pose;
+  addBox(scene, pose, addMaterial(scene, lambert(colour)));
+  addLight(pose, rectangleLight({0.1f, 0.8f, -0.2f}, {0, -1, 0}, 0.5f, 0.4f, false));
+  std::vector<std::pair<vec3, vec3>> receivers;  // points and normals
+  for (const auto& [axis, wall] :
+       {std::pair(0, -1.f), std::pair(0, 1.f), std::pair(1, -1.f), std::pair(2, -1.f)})
+    for (int i = 0; i < 10 * 10; ++i) {
+      const glm::vec2 u = 2.f * glsl::grid_point(i, 10) - 1.f;
+      vec3 point(0), normal(0);
+      point[axis] = wall;
+      normal[axis] = -wall;
+      point[(axis + 1) % 3] = u.x;
+      point[(axis + 2) % 3] = u.y;
+      receivers.emplace_back(point, normal);
+    }
+  const auto irradiance = [&](const indirect::VirtualLightDesc& desc) {
+    std::vector<double> out;
+    const Sampled s = sample(scene, pose, desc);
+    for (const auto& [point, normal] : receivers) {
+      double sum = 0;
+      for (const glsl::VirtualPointLight& light : s.lights) {
+        const vec3 to = vec3(light.position) - point;
+        const float d2 = glm::dot(to, to);
+        if (d2 > 0)
+          sum += light.flux.x / pi * std::max(glm::dot(normal, to), 0.f) *
+                 std::max(-glm::dot(vec3(light.normal), to), 0.f) / (d2 * std::max(d2, 0.01f));
+      }
+      out.push_back(sum);
+    }
+    return out;
+  };
+  const std::vector<double> expected = irradiance({.count = 16384});
+  const auto error = [&](int count, int lightSamples) {
+    const std::vector<double> found = irradiance({.count = count, .lightSamples = lightSamples});
+    double sum = 0;
+    for (size_t i = 0; i < found.size(); ++i) sum += (found[i] - expected[i]) * (found[i] - expected[i]);
+    return std::sqrt(sum / std::inner_product(expected.begin(), expected.end(), expected.begin(), 0.0));
+  };
+  for (const int count : {256, 1024}) {
+    const double one = error(count, 1);
+    for (const int lightSamples : {16, 64})
+      EXPECT_LT(error(count, lightSamples), 1.4 * one)
+          << count << " virtual lights, " << lightSamples << " points";
+  }
+}
+
 TEST_F(VirtualLightTest, SeveralLightsShareThemByFlux) {
   scene::Scene scene;
   scene::Pose pose;
