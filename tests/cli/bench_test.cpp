@@ -57,17 +57,16 @@ TEST_F(BenchCommand, AgainstNothingIsRefusedBeforeAnythingIsMeasured) {
 
 TEST_F(BenchCommand, ACrashLosesItsOwnRowOnly) {
   std::ofstream(folder_ / "suite.toml", std::ios::app)
-      << "[[techniques]]\ntechnique = \"crasher\"\nparameters = {crash = [true, false]}\n"
+      << "[[techniques]]\ntechnique = \"misbehaver\"\nparameters = {way = ['crash', 'none']}\n"
          "[[techniques]]\ntechnique = \"hard_shadow_map\"\n";
   const std::map<std::string, std::string> environment = {
-      {"LIMN_TECHNIQUE_PATH", std::string(binaryDir) + "/tests/crasher"}};
+      {"LIMN_TECHNIQUE_PATH", std::string(binaryDir) + "/tests/misbehaver"}};
   const std::vector<std::string> command = {"bench", folder_ / "suite.toml", "--out", folder_ / "out"};
   const Outcome outcome = limn(command, environment);
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.err, testing::HasSubstr("crasher.crash=true: crashed: Segmentation fault"));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("misbehaver.way=crash: crashed: Aborted"));
   EXPECT_THAT(outcome.out, testing::HasSubstr("3 rows measured, 0 were there already, 1 failed"));
-  EXPECT_THAT(contents(folder_ / "out" / "tables.md"),
-              testing::HasSubstr("failed: crashed: Segmentation fault"));
+  EXPECT_THAT(contents(folder_ / "out" / "tables.md"), testing::HasSubstr("failed: crashed: Aborted"));
   // Only the crash is tried again.
   EXPECT_THAT(limn(command, environment).out,
               testing::HasSubstr("0 rows measured, 3 were there already, 1 failed"));
