@@ -15,6 +15,7 @@
 #include "apps/limn/options.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/base/whereabouts.h"
 
 namespace {
 
@@ -51,6 +52,7 @@ class SilentStderr {
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is that file's error, not the program's end
+  limn::leaveWordsAtCrash("limn");
   CLI::App limn("limn: real-time shadows and global illumination, with their error and their cost", "limn");
   limn.set_version_flag("--version", LIMN_VERSION);
   limn.require_subcommand(1);

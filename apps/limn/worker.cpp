@@ -19,6 +19,7 @@
 
 #include "core/base/error.h"
 #include "core/base/failure.h"
+#include "core/base/whereabouts.h"
 
 namespace limn::app {
 
@@ -120,6 +121,8 @@ std::optional<Crash> runInWorker(WorkerReport& report, double stallTimeout,
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(1);
     for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);  // the parent has the last words
+    shared.message[0] = 0;
+    leaveWordsAtCrash(shared.message, sizeof shared.message);
     Ending ending = Ending::returned;
     try {
       work();
@@ -152,7 +155,7 @@ std::optional<Crash> runInWorker(WorkerReport& report, double stallTimeout,
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   }
-  return Crash{fmt::format("crashed: {}", strsignal(signal))};
+  return Crash{fmt::format("crashed: {}", shared.message[0] != 0 ? shared.message : strsignal(signal))};
 }
 
 }  // namespace limn::app

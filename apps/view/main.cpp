@@ -2,9 +2,11 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/view/viewer.h"
+#include "core/base/whereabouts.h"
 
 int main(int argc, char** argv) {
   using namespace limn::app;
+  limn::leaveWordsAtCrash("limn-view");
   return guarded([&] {
     CLI::App program("A window on a scene: techniques, parameters, cost and error while one looks",
                      "limn-view");

@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/foreign_exception.h"
+#include "core/base/whereabouts.h"
 #include "core/frame/graph_data.h"
 
 namespace limn::frame {
@@ -81,6 +82,7 @@ void runPass(Graph& graph, uint32_t index, GLbitfield barriers, Timing timing, P
   if (barriers != 0) gl.MemoryBarrier(barriers);
   setBaseline(gl);
   graph.current = index;
+  const Whereabouts here(pass.technique.c_str(), pass.name.c_str());
   try {
     pass.function(context);
   } catch (...) {

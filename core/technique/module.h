@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/base/foreign_exception.h"
+#include "core/base/whereabouts.h"
 #include "core/technique/technique.h"
 
 namespace limn {
@@ -41,6 +42,7 @@ LIMN_API std::string described(const TechniquePlugin& plugin);
 /// file.
 template <class Call>
 decltype(auto) inTechnique(const TechniquePlugin& plugin, Call&& call) {
+  const Whereabouts here(plugin.info->name, nullptr);
   try {
     return call();
   } catch (...) {

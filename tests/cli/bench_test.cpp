@@ -64,7 +64,8 @@ TEST_F(BenchCommand, ACrashLosesItsOwnRowOnly) {
   const std::vector<std::string> command = {"bench", folder_ / "suite.toml", "--out", folder_ / "out"};
   const Outcome outcome = limn(command, environment);
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.err, testing::HasSubstr("misbehaver.way=crash: crashed: Aborted"));
+  EXPECT_THAT(outcome.err,
+              testing::HasSubstr("misbehaver.way=crash: crashed: Aborted, in technique misbehaver"));
   EXPECT_THAT(outcome.out, testing::HasSubstr("3 rows measured, 0 were there already, 1 failed"));
   EXPECT_THAT(contents(folder_ / "out" / "tables.md"), testing::HasSubstr("failed: crashed: Aborted"));
   // Only the crash is tried again.

@@ -10,8 +10,9 @@
 
 namespace {
 
-enum class Way { none, crash, foreign, number, memory, hang, once_there };
-constexpr const char* ways[] = {"none", "crash", "foreign", "number", "memory", "hang", "once_there"};
+enum class Way { none, crash, crash_in_pass, foreign, number, memory, hang, once_there };
+constexpr const char* ways[] = {"none",   "crash",  "crash_in_pass", "foreign",
+                                "number", "memory", "hang",          "once_there"};
 
 constexpr limn::Parameter parameters[] = {
     limn::choice("way", 0, ways,
@@ -22,6 +23,7 @@ void misbehave(Way way) {
   std::error_code ignored;
   switch (way) {
     case Way::none:
+    case Way::crash_in_pass:
       return;
     case Way::crash:
       std::abort();
@@ -48,7 +50,7 @@ class Misbehaver : public limn::Technique {
     limn::frame::PassBuilder pass = graph.addPass("clear", "misbehaver");
     const auto target = pass.write(request.target, limn::frame::Access::copyTarget, "black");
     pass.execute([target, way](limn::frame::PassContext& context) {
-      misbehave(way);
+      misbehave(way == Way::crash_in_pass ? Way::crash : way);
       context.gl().ClearTexImage(context.texture(target).id(), 0, GL_RED, GL_FLOAT, nullptr);
     });
     return target;
@@ -66,7 +68,8 @@ constexpr limn::TechniqueInfo info{.name = "misbehaver",
 
 extern "C" __attribute__((visibility("default"))) const limn::TechniquePlugin* limnTechniquePlugin() {
   static const limn::TechniquePlugin plugin{
-      limn::handshake(limn::interfaceHash()), &info, [] { return std::span<const limn::gpu::EmbeddedSource>(); },
+      limn::handshake(limn::interfaceHash()), &info,
+      [] { return std::span<const limn::gpu::EmbeddedSource>(); },
       []() -> std::unique_ptr<limn::Technique> { return std::make_unique<Misbehaver>(); }};
   return &plugin;
 }

@@ -155,6 +155,20 @@ TEST_F(Plugins, OfTwoModulesOfOneNameTheOneThatIsUsedIsSaid) {
   EXPECT_EQ(list(built_in.string()).err, "");                 // the same file twice
 }
 
+TEST_F(Plugins, ACrashSaysWhere) {
+  const std::string path = std::string(binaryDir) + "/tests/misbehaver";
+  for (const auto& [way, where] :
+       {std::pair("crash", "technique misbehaver"), std::pair("crash_in_pass", "pass clear of misbehaver")}) {
+    const Outcome outcome =
+        limn({"render", cornell_box, "--size", "16x16", "--technique", "misbehaver", "--set",
+              std::string("misbehaver.way=") + way, "-o", folder_ / "a.exr", "-q"},
+             {{"LIMN_TECHNIQUE_PATH", path}});
+    EXPECT_EQ(outcome.status, -1);
+    EXPECT_EQ(outcome.err, std::string("limn: crashed: Aborted, in ") + where + "\n");
+    EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
+  }
+}
+
 TEST_F(Plugins, AWrongTechniquePathIsSaid) {
   const std::string none = (folder_ / "none").string(), empty = folder_.path().string();
   EXPECT_EQ(list(none).err, "limn: warning: technique folder '" + none +
