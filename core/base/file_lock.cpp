@@ -12,7 +12,11 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
 #include <ctime>
+#include <thread>
 
 #include "core/base/error.h"
 
@@ -36,6 +40,21 @@ std::string holder(int file) {
   return name.empty() ? "another process" : name;
 }
 
+/// Whether `name`, as ownName() makes it, is that of a process of this machine that has ended: what holds its
+/// lock are processes it started, which end with it but a moment later.
+bool ended(const std::string& name) {
+  utsname system{};
+  ::uname(&system);
+  int id = 0, length = 0;
+  if (std::sscanf(name.c_str(), "process %d on %n", &id, &length) != 1 || length == 0 || id <= 0)
+    return false;
+  const std::string host = fmt::format("{} since ", system.nodename);
+  return name.compare(static_cast<std::size_t>(length), host.size(), host) == 0 && ::kill(id, 0) != 0 &&
+         errno == ESRCH;
+}
+
+constexpr int patience = 500;  // times 10 ms
+
 /// Whether the open file is still the one of that name: its former holder may have removed it meanwhile.
 bool isFile(int file, const std::filesystem::path& path) {
   struct stat open {
@@ -47,7 +66,7 @@ bool isFile(int file, const std::filesystem::path& path) {
 }  // namespace
 
 FileLock::FileLock(std::filesystem::path path, const std::string& what) : path_(std::move(path)) {
-  for (;;) {
+  for (int waited = 0;;) {
     file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (file_ < 0) return;
     if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
@@ -55,6 +74,10 @@ FileLock::FileLock(std::filesystem::path path, const std::string& what) : path_(
       const std::string name = holder(file_);
       ::close(file_);
       file_ = -1;
+      if (held && waited++ < patience && ended(name)) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        continue;
+      }
       if (held)
         throw Error(fmt::format("{} is in use by {}; wait for it, or choose another place", what, name));
       return;

@@ -84,7 +84,7 @@ TEST_F(BenchFaults, EveryWayToFailCostsOneRow) {
        {"way=foreign" + thrown + "no error of limn's own\n",
         "way=number" + thrown + "it threw something that is no std::exception\n",
         "way=memory" + thrown + "out of memory\n", std::string("way=hang: no progress for 4 s\n"),
-        std::string("way=crash: crashed: Aborted\n")})
+        std::string("way=crash: crashed: Aborted, in technique misbehaver\n")})
     EXPECT_THAT(outcome.err, HasSubstr(line));
   EXPECT_EQ(rows(folder_ / "out").size(), 8u);
   EXPECT_THAT(contents(folder_ / "out/tables.md"), HasSubstr("failed: no progress for 4 s"));
