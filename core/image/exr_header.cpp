@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 namespace limn {
 namespace {
@@ -36,17 +37,70 @@ class Cursor {
     rest_ = rest_.subspan(end + 1);
     return all.substr(0, end);
   }
+  bool atEnd() const { return rest_.empty(); }
 
  private:
   std::span<const std::byte> rest_;
 };
 
-/// Channels of a list: each has a name and sixteen bytes more, an empty name ends it.
-std::uint64_t channelCount(std::span<const std::byte> list) {
-  Cursor cursor(list);
-  std::uint64_t count = 0;
-  for (auto name = cursor.text(); name && !name->empty() && cursor.take(16); name = cursor.text()) ++count;
-  return count;
+/// Channels of a list: each has a name and sixteen bytes more, an empty name ends it. Nothing where the list
+/// ends earlier or later than its attribute.
+std::optional<std::uint64_t> channelCount(Cursor list) {
+  for (std::uint64_t count = 0;; ++count) {
+    const auto name = list.text();
+    if (name && name->empty()) return list.atEnd() ? std::optional(count) : std::nullopt;
+    if (!name || !list.take(16)) return std::nullopt;
+  }
+}
+
+bool isStringVector(Cursor list) {
+  while (!list.atEnd()) {
+    const auto length = list.number();
+    if (!length || !list.take(*length)) return false;
+  }
+  return true;
+}
+
+bool isPreview(Cursor picture) {
+  const auto width = picture.number(), height = picture.number();
+  if (!width || !height) return false;
+  const std::uint64_t pixels = std::uint64_t{*width} * *height;
+  return pixels < kMaxTileValues && picture.take(4 * pixels) && picture.atEnd();
+}
+
+/// Whether a value of one of the predefined types is as long as its attribute says. The library reads such a
+/// value by its type, whatever the length: everything behind one that is shorter or longer is read askew, and
+/// the length of the next attribute may be any number.
+bool fillsItsAttribute(std::string_view type, std::span<const std::byte> value) {
+  constexpr std::pair<std::string_view, std::size_t> sizes[] = {{"box2f", 16},
+                                                                {"box2i", 16},
+                                                                {"chromaticities", 32},
+                                                                {"compression", 1},
+                                                                {"deepImageState", 1},
+                                                                {"double", 8},
+                                                                {"envmap", 1},
+                                                                {"float", 4},
+                                                                {"int", 4},
+                                                                {"keycode", 28},
+                                                                {"lineOrder", 1},
+                                                                {"m33d", 72},
+                                                                {"m33f", 36},
+                                                                {"m44d", 128},
+                                                                {"m44f", 64},
+                                                                {"rational", 8},
+                                                                {"tiledesc", 9},
+                                                                {"timecode", 8},
+                                                                {"v2d", 16},
+                                                                {"v2f", 8},
+                                                                {"v2i", 8},
+                                                                {"v3d", 24},
+                                                                {"v3f", 12},
+                                                                {"v3i", 12}};
+  if (type == "chlist") return channelCount(Cursor(value)).has_value();
+  if (type == "stringvector") return isStringVector(Cursor(value));
+  if (type == "preview") return isPreview(Cursor(value));
+  const auto known = std::ranges::find(sizes, type, [](const auto& size) { return size.first; });
+  return known == std::end(sizes) || known->second == value.size();
 }
 
 }  // namespace
@@ -66,8 +120,8 @@ std::string exrHeaderProblem(std::span<const std::byte> bytes) {
       const auto type = cursor.text();
       const auto size = type ? cursor.number() : std::nullopt;
       const auto value = size ? cursor.take(*size) : std::nullopt;
-      if (!value) return tooShort;
-      if (*name == "channels") channels = std::max(channels, channelCount(*value));
+      if (!value || !fillsItsAttribute(*type, *value)) return tooShort;
+      if (*name == "channels") channels = std::max(channels, channelCount(Cursor(*value)).value_or(0));
       if (*name == "tiles") {
         Cursor tile(*value);
         const auto w = tile.number(), h = tile.number();

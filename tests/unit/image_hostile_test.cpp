@@ -21,6 +21,7 @@ namespace limn {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 /// An OpenEXR file of one part, by "OpenEXR File Layout", with `body` zeros for its pixels.
 class ExrBuilder {
@@ -72,7 +73,6 @@ class ExrBuilder {
     out.push_back({});
   }
 
- private:
   static void attribute(std::vector<std::byte>& out, const std::string& name, const std::string& type,
                         const std::vector<std::byte>& value) {
     text(out, name);
@@ -108,6 +108,54 @@ TEST(HostileImage, AttributesLongerThanTheFile) {
   const long before = mostMemory();
   EXPECT_THAT(refusal(exr.bytes()), HasSubstr("truncated or damaged OpenEXR header"));
   EXPECT_LT(mostMemory() - before, 100l << 20);
+}
+
+// The library reads a list of channels up to its empty name: a list that says it is one byte long hides an
+// attribute of two gigabytes from whoever goes by the lengths.
+TEST(HostileImage, AttributesHiddenBehindAShorterLength) {
+  ExrBuilder exr;
+  std::vector<std::byte> hidden;
+  ExrBuilder::text(hidden, "c");
+  for (int i = 0; i < 4; ++i) ExrBuilder::number(hidden, 1);
+  ExrBuilder::text(hidden, "");
+  ExrBuilder::text(hidden, "comment");
+  ExrBuilder::text(hidden, "string");
+  ExrBuilder::number(hidden, 0x7fffffff);
+  ExrBuilder::attribute(exr.extra, "more", "chlist", {hidden.front()});
+  exr.extra.insert(exr.extra.end(), hidden.begin() + 1, hidden.end());
+  const long before = mostMemory();
+  EXPECT_THAT(refusal(exr.bytes()), HasSubstr("truncated or damaged OpenEXR header"));
+  EXPECT_LT(mostMemory() - before, 100l << 20);
+}
+
+TEST(HostileImage, AttributesAreAsLongAsAValueOfTheirType) {
+  const auto with = [](const std::string& type, std::vector<std::byte> value) {
+    ExrBuilder exr;
+    ExrBuilder::attribute(exr.extra, "more", type, value);
+    return refusal(exr.bytes());
+  };
+  const auto damaged = HasSubstr("truncated or damaged OpenEXR header");
+  for (const auto& [type, size] : {std::pair("box2i", 16), {"lineOrder", 1}, {"m44d", 128}, {"v3f", 12}}) {
+    EXPECT_THAT(with(type, std::vector<std::byte>(size)), Not(damaged)) << type;
+    EXPECT_THAT(with(type, std::vector<std::byte>(size - 1)), damaged) << type;
+    EXPECT_THAT(with(type, std::vector<std::byte>(size + 1)), damaged) << type;
+  }
+  EXPECT_THAT(with("of another house", std::vector<std::byte>(77)), Not(damaged));
+
+  std::vector<std::byte> texts;
+  ExrBuilder::number(texts, 1);
+  texts.push_back(std::byte{'a'});
+  EXPECT_THAT(with("stringvector", texts), Not(damaged));
+  ExrBuilder::number(texts, 0x7fffffff);
+  EXPECT_THAT(with("stringvector", texts), damaged);
+
+  std::vector<std::byte> preview;
+  for (const std::uint32_t value : {2, 1, 0, 0}) ExrBuilder::number(preview, value);
+  EXPECT_THAT(with("preview", preview), Not(damaged));
+  preview[0] = std::byte{3};
+  EXPECT_THAT(with("preview", preview), damaged);
+  preview[3] = preview[7] = std::byte{0x7f};
+  EXPECT_THAT(with("preview", preview), damaged);
 }
 
 TEST(HostileImage, TilesLargerThanThePicture) {
@@ -173,8 +221,8 @@ TEST(HostileImage, LinesBeforeTheFileOrBehindIt) {
   std::size_t table = 0;
   while (entryAt(table) != table + sizeof(std::uint64_t)) ++table;
   using Limits = std::numeric_limits<std::int64_t>;
-  for (const std::int64_t place : {std::int64_t{-1}, std::int64_t{-40}, -(std::int64_t{1} << 40), Limits::min(),
-                                   std::int64_t{1} << 40, Limits::max()}) {
+  for (const std::int64_t place : {std::int64_t{-1}, std::int64_t{-40}, -(std::int64_t{1} << 40),
+                                   Limits::min(), std::int64_t{1} << 40, Limits::max()}) {
     std::vector<std::byte> astray = whole;
     std::memcpy(&astray.at(table), &place, sizeof place);
     EXPECT_NE(refusal(astray), "") << place;
