@@ -13,7 +13,7 @@
 #include "core/radiosity/illumination.h"
 #include "core/radiosity/scene_elements.h"
 #include "core/reference/vertices.h"
-#include "core/scene/load.h"
+#include "core/scene_io/load.h"
 #include "tests/support/radiosity_meshes.h"
 
 namespace {
@@ -101,18 +101,18 @@ scene::Scene sceneOf(const std::string& name) {
 struct VertexLight {
   VertexLight(const scene::Scene& scene, const scene::Pose& pose, float longestEdge) {
     const auto points = reference::vertexPoints(scene, pose, longestEdge);
-    const auto trace = [&](reference::Term term, uint64_t seed) {
+    const auto trace = [&](Term term, uint64_t seed) {
       reference::Request request{
           .scene = scene, .pose = pose, .camera = {}, .progress = {}, .checkpoint = {}};
       request.term = term;
-      request.bounces = term == reference::Term::indirect ? 1 : 0;
+      request.bounces = reference::defaultBounces(term);
       request.spp = 1024;
       request.seed = seed;
       return reference::irradianceAt(request, points, 1e-4f * pose.bounds.radius());
     };
-    direct = trace(reference::Term::direct, 0);
-    indirect = trace(reference::Term::indirect, 0);
-    again = trace(reference::Term::indirect, 1);
+    direct = trace(Term::direct, 0);
+    indirect = trace(Term::indirect, 0);
+    again = trace(Term::indirect, 1);
   }
   std::vector<glm::vec3> direct, indirect, again;  ///< of each surfel
 };
@@ -132,7 +132,7 @@ void vertices(benchmark::State& state, const char* name) {
   Links made;
   for (auto _ : state) {
     for (size_t i = 0; i < leafOf.size(); ++i)
-      outgoing[leafOf[i]] = glm::vec3(elements.leaves()[leafOf[i]].albedo) * truth.direct[i] / glsl::pi;
+      outgoing[leafOf[i]] = elements.leaves()[leafOf[i]].albedo * truth.direct[i] / glsl::pi;
     pullUp(forest, outgoing);
     made.build(forest, {.resolution = static_cast<int>(state.range(0))});
     gather(forest, made, binTable(made.resolution()), outgoing, {}, irradiance);

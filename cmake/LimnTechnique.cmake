@@ -1,18 +1,19 @@
 # limn_embed(TARGET FUNCTION ROOT FILES...): compiles text files into TARGET behind `FUNCTION()`.
-# limn_interface_hash(TARGET FUNCTION): compiles into TARGET, behind `FUNCTION()`, a hash of limn's headers as they are now.
+# limn_interface_hash(TARGET FUNCTION): compiles into TARGET, behind `FUNCTION()`, a hash of limn's interface as it is now (module_headers.py).
 # limn_add_technique(NAME [FOLDER]): builds the *.cpp and *.glsl of FOLDER (default: the current one) to lib/limn/techniques.
+# Where the folder has a technique.cmake, it is included afterwards: it may link technique_NAME to further libraries.
 # All are installed, so that an out-of-tree technique is built by the same call.
 #
 # LIMN_INCLUDE_ROOTS are the folders that "core/..." and "glsl/..." are looked up in: limn's source tree and what it
 # generates, or the installed headers.
 
 set(LIMN_EMBED_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/embed.py)
-set(LIMN_INTERFACE_HASH_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/interface_hash.py)
-# All headers and all shared GLSL, which compiles as C++ too: none can be forgotten, since none is chosen.
+set(LIMN_MODULE_HEADERS_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/module_headers.py)
+# Whatever of these changes, the hash of the interface may (it covers what module_headers.txt lists, and what that includes).
 list(GET LIMN_INCLUDE_ROOTS 0 LIMN_INTERFACE_HEADERS)
 file(GLOB_RECURSE LIMN_INTERFACE_HEADERS CONFIGURE_DEPENDS
   ${LIMN_INTERFACE_HEADERS}/core/*.h ${LIMN_INTERFACE_HEADERS}/glsl/*.glsl)
-list(APPEND LIMN_INTERFACE_HEADERS ${LIMN_GENERATED_HEADERS})
+list(APPEND LIMN_INTERFACE_HEADERS ${LIMN_GENERATED_HEADERS} ${CMAKE_CURRENT_LIST_DIR}/module_headers.txt)
 if(NOT Python3_EXECUTABLE)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
 endif()
@@ -29,9 +30,8 @@ endfunction()
 function(limn_interface_hash target function)
   set(out ${CMAKE_CURRENT_BINARY_DIR}/${target}_interface_hash.cpp)
   add_custom_command(OUTPUT ${out}
-    COMMAND ${Python3_EXECUTABLE} ${LIMN_INTERFACE_HASH_SCRIPT} ${out} ${function} ${LIMN_INCLUDE_ROOTS} --
-            ${LIMN_INTERFACE_HEADERS}
-    DEPENDS ${LIMN_INTERFACE_HASH_SCRIPT} ${LIMN_INTERFACE_HEADERS} VERBATIM)
+    COMMAND ${Python3_EXECUTABLE} -B ${LIMN_MODULE_HEADERS_SCRIPT} hash ${out} ${function} ${LIMN_INCLUDE_ROOTS}
+    DEPENDS ${LIMN_MODULE_HEADERS_SCRIPT} ${LIMN_INTERFACE_HEADERS} VERBATIM)
   target_sources(${target} PRIVATE ${out})
 endfunction()
 
@@ -56,5 +56,6 @@ function(limn_add_technique name)
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/limn/techniques)
   limn_interface_hash(technique_${name} limn_technique_${name}::interfaceHash)
   limn_embed(technique_${name} limn_technique_${name}::embeddedSources ${folder} ${shaders})
+  include(${folder}/technique.cmake OPTIONAL)
   install(TARGETS technique_${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/limn/techniques)
 endfunction()

@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/bench/regression.h"
+#include "core/session/find.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
@@ -44,7 +45,7 @@ int run(const Options& options) {
   const LastWords words(fmt::format("interrupted; the rows so far are kept in {}, the same command goes on",
                                     (options.out / "results.jsonl").string()));
   const bench::Summary summary =
-      runSuite(findSuite(options.suite), options.out, options.backend,
+      runSuite(session::findSuite(options.suite), options.out, options.backend,
                {.filters = options.filters,
                 .shard = options.shard.empty() ? bench::Shard{} : bench::parseShard(options.shard),
                 .stallTimeout = options.stallTimeout});
@@ -62,7 +63,8 @@ Action addBenchCommand(CLI::App& command) {
   command.add_option("suite", options->suite, "TOML file, or the name of one of limn's suites")->required();
   command
       .add_option("-o,--out", options->out,
-                  "Folder for results.jsonl, index.html, tables and references; resumed if it exists")
+                  "Folder for results.jsonl, index.html, tables and references; a run that is in it already "
+                  "is resumed")
       ->required();
   command.add_option("--filter", options->filters, "Only cases whose label contains this text; repeatable")
       ->take_all();

@@ -8,6 +8,7 @@
 #include "core/base/text.h"
 #include "core/image/compare_report.h"
 #include "core/image/metrics.h"
+#include "core/question/term.h"
 
 namespace limn::app {
 namespace {
@@ -38,6 +39,8 @@ int run(const Options& options) {
   compare.maskTermRange = parseTermRange(options.maskTermRange);
   if (!options.diff.empty()) checkWritable(options.diff);
   const Image image = readImage(options.image), reference = readImage(options.reference);
+  const auto term = reference.metadata().find("term");
+  compare.background = term != reference.metadata().end() && hasBackground(term->second);
   const Metrics metrics = compareImages(image, reference, compare);
   if (!options.diff.empty()) {
     Image difference = differenceImage(image, reference, compare);
@@ -54,7 +57,7 @@ int run(const Options& options) {
 Action addCompareCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
   command.add_option("image", options->image, "EXR, HDR or PNG")->required();
-  command.add_option("reference", options->reference, "What it should be")->required();
+  command.add_option("reference", options->reference, "Reference image: EXR, HDR or PNG")->required();
   command.add_flag("--json", options->json, "Print JSON");
   command.add_option("--diff", options->diff, "Write the FLIP map as a PNG in false colour");
   command.add_option(
@@ -66,6 +69,7 @@ Action addCompareCommand(CLI::App& command) {
                   "Fail above this share of pixels whose coverage, instance or depth differ, percent")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 100.0));
+  command.footer(metricsHelp());
   return [options] { return run(*options); };
 }
 

@@ -9,9 +9,11 @@
 #include "apps/limn/options.h"
 #include "apps/limn/provenance.h"
 #include "core/base/error.h"
-#include "core/scene/load.h"
+#include "core/scene_io/load.h"
+#include "core/session/find.h"
+#include "core/session/view.h"
 #include "core/shading/environment_decomposition.h"
-#include "glsl/srgb.glsl"
+#include "glsl/numeric/srgb.glsl"
 
 namespace limn::app {
 namespace fs = std::filesystem;
@@ -19,14 +21,14 @@ namespace {
 
 struct Options {
   fs::path map;
-  EnvironmentLightOptions lights{.threshold = 0.015};
+  SceneQuestion lights{.environmentLights = 0.015};
   fs::path overlay;
   int width = 1024;
   double exposure = 0;
   bool json = false;
 };
 
-constexpr double degrees = 180 / 3.14159265358979323846;
+constexpr double kDegrees = 180 / 3.14159265358979323846;
 
 /// One light as people read it.
 struct Row {
@@ -47,10 +49,10 @@ std::vector<Row> rowsOf(const shading::EnvironmentDecomposition& decomposition) 
       const glm::vec3 half = 0.5f * side * axis;
       return std::acos(std::min(
                  1.f, glm::dot(glm::normalize(light.centre - half), glm::normalize(light.centre + half)))) *
-             static_cast<float>(degrees);
+             static_cast<float>(kDegrees);
     };
-    rows.push_back({std::atan2(d.x, -d.z) * degrees,
-                    std::asin(d.y) * degrees,
+    rows.push_back({std::atan2(d.x, -d.z) * kDegrees,
+                    std::asin(d.y) * kDegrees,
                     {across(light.axisU, light.sides.x), across(light.axisV, light.sides.y)},
                     light.irradiance,
                     total > 0 ? static_cast<double>(glsl::luminance(light.irradiance)) / total : 0});
@@ -71,9 +73,9 @@ void printTable(const std::vector<Row>& rows) {
 
 std::string toJson(const std::vector<Row>& rows, const Options& options, double milliseconds) {
   nlohmann::ordered_json json = {{"map", options.map.string()},
-                                 {"threshold", options.lights.threshold},
-                                 {"resolution", options.lights.resolution},
-                                 {"shape", options.lights.shape},
+                                 {"threshold", options.lights.environmentLights},
+                                 {"resolution", options.lights.environmentResolution},
+                                 {"shape", options.lights.environmentShape},
                                  {"milliseconds", milliseconds},
                                  {"lights", nlohmann::ordered_json::array()}};
   for (size_t i = 0; i < rows.size(); ++i) {
@@ -96,11 +98,11 @@ int run(const Options& options) {
     checkWritable(options.overlay);
   }
   std::vector<std::string> warnings;
-  const scene::Environment map = scene::loadEnvironment(findEnvironment(options.map), warnings);
+  const scene::Environment map = scene::loadEnvironment(session::findEnvironment(options.map), warnings);
   for (const std::string& warning : warnings) warn(warning);
   const auto start = std::chrono::steady_clock::now();
   const shading::EnvironmentDecomposition lights =
-      shading::decomposeEnvironment(map, options.lights.settings());
+      shading::decomposeEnvironment(map, session::decompositionSettings(options.lights));
   const double milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   const std::vector<Row> rows = rowsOf(lights);
@@ -127,12 +129,15 @@ Action addEnvironmentCommand(CLI::App& command) {
   command
       .add_option("map", options->map, "Equirectangular .hdr or .exr, or the name of one of limn's own: sky")
       ->required();
-  options->lights.addTo(command, "");
+  addSceneFlag(command, options->lights, "environment_lights", "--lights");
+  addSceneFlag(command, options->lights, "environment_resolution", "--resolution");
+  addSceneFlag(command, options->lights, "environment_shape", "--shape");
   command.add_option("--overlay", options->overlay, "Write the map with the lights' outlines: .png or .exr");
-  command.add_option("--width", options->width, "Of the overlay, pixels")
+  command.add_option("--width", options->width, "Width of the overlay, pixels")
       ->capture_default_str()
       ->check(CLI::Range(16, 16384));
-  command.add_option("--exposure", options->exposure, "EV, of the overlay")->check(CLI::Range(-60.0, 60.0));
+  command.add_option("--exposure", options->exposure, "Exposure of the overlay, EV")
+      ->check(CLI::Range(-60.0, 60.0));
   command.add_flag("--json", options->json, "Print JSON instead of a table");
   return [options] { return run(*options); };
 }

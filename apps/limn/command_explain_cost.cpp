@@ -1,7 +1,8 @@
-// limn explain-cost: what a scene lets limn leave out, and what that is worth.
+// limn explain-cost: measures what it saves to leave out work that a scene does not need.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "apps/limn/commands.h"
 #include "apps/limn/options.h"
@@ -10,16 +11,17 @@
 #include "core/bench/savings.h"
 #include "core/gpu/device.h"
 #include "core/reference/reference.h"
+#include "core/render/renderer.h"
+#include "core/session/view.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
 
 struct Options {
-  SceneOptions scene;
-  TechniqueOptions technique;
+  SceneQuestion scene;
+  session::TechniqueChoice technique;
   BackendOptions backend;
-  std::string outputTerm = "final";
   bench::SavingOptions savings;
   int spp = 0;
   fs::path out, json;
@@ -27,9 +29,9 @@ struct Options {
 
 constexpr double kPatience = 1;  // seconds without a word where there is no terminal
 
-Image referenceImage(const Options& options, const View& view, int interfaces) {
+Image referenceImage(const Options& options, const session::View& view, int interfaces) {
   reference::Request request =
-      referenceRequest(view, view.pose, view.camera, reference::termFromName(options.outputTerm));
+      session::referenceRequest(view, view.pose, view.camera, parseTerm(options.scene.term));
   request.spp = options.spp;
   request.interfaces = interfaces;
   Progress progress("reference", kPatience);
@@ -46,14 +48,14 @@ int run(const Options& options) {
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
   render::Settings settings;
   settings.techniques = options.technique.resolve(registry);
-  settings.output = render::parseOutput(options.outputTerm);
-  render::checkTechniques(settings.techniques, settings.output);
-  const View view = open(options.scene);
+  settings.term = parseTerm(options.scene.term);
+  render::checkTechniques(settings.techniques, settings.term);
+  const session::View view = session::open(options.scene, warn);
   settings.size = view.size;
   settings.light = view.light;
   Image reference;
   if (options.spp > 0)
-    reference = referenceImage(options, view, render::interfacesOf(settings.output, settings.techniques));
+    reference = referenceImage(options, view, render::interfacesOf(settings.term, settings.techniques));
 
   const auto context = Context::create(options.backend.contextOptions());
   gpu::Device device(*context);
@@ -68,9 +70,9 @@ int run(const Options& options) {
                                     savings);
   }
   const std::string text = fmt::format(
-      "{}, {}, {}, {}x{}, {}\n\n{}", options.scene.scene.filename().string(),
+      "{}, {}, {}, {}x{}, {}\n\n{}", std::filesystem::path(options.scene.scene).filename().string(),
       options.technique.techniques.empty() ? "no technique" : options.technique.techniques,
-      options.outputTerm, view.size.x, view.size.y, context->info().renderer, toMarkdown(results));
+      options.scene.term, view.size.x, view.size.y, context->info().renderer, toMarkdown(results));
   fmt::print("{}", text);
   const auto write = [](const fs::path& file, const std::string& content) {
     if (file.empty()) return;
@@ -86,22 +88,21 @@ int run(const Options& options) {
 
 Action addExplainCostCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
-  options->scene.addTo(command);
-  options->technique.addTo(command);
+  addSceneFlags(command, options->scene);
+  addSceneFlag(command, options->scene, "term");
+  addTechniqueFlags(command, options->technique);
   options->backend.addTo(command);
   command
-      .add_option("--output-term", options->outputTerm,
-                  "final, visibility, direct, indirect, caustic, media or specular")
-      ->capture_default_str();
-  command.add_option("--repeat", options->savings.frames, "Frames timed with and without each kind of work")
+      .add_option("--repeat", options->savings.frames,
+                  "Number of frames to time with, and again without, each kind of work")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
   command
       .add_option("--spp", options->spp,
-                  "Also tell the errors against a reference of this many samples per pixel")
+                  "Also report the errors against a reference with this many samples per pixel")
       ->check(CLI::Range(1, 1 << 22));
-  command.add_option("-o,--out", options->out, "Write the table to a file, too (Markdown)");
-  command.add_option("--json", options->json, "Write all samples as JSON");
+  command.add_option("-o,--out", options->out, "Also write the table to this Markdown file");
+  command.add_option("--json", options->json, "Write all time samples to this JSON file");
   return [options] { return run(*options); };
 }
 

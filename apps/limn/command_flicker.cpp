@@ -11,15 +11,17 @@
 #include "core/gpu/device.h"
 #include "core/image/flicker.h"
 #include "core/reference/reference.h"
+#include "core/render/renderer.h"
+#include "core/session/view.h"
 
 namespace limn::app {
 namespace {
 
 struct Options {
-  SceneOptions scene;
-  TechniqueOptions technique;
+  SceneQuestion scene{.term = name(Term::indirect)};
+  session::TechniqueChoice technique;
   BackendOptions backend;
-  std::string outputTerm = "indirect", frames = "0:59";
+  std::string frames = "0:59";
   double fps = 30, atMost = 0;
   int spp = 128, bounces = 1;
   bool json = false;
@@ -59,23 +61,23 @@ class Sequence {
  public:
   Sequence(const Options& options, const std::vector<render::TechniqueUse>& techniques)
       : options_(options),
-        view_(open(options.scene)),
+        view_(session::open(options.scene, warn)),
         context_(Context::create(options.backend.contextOptions())),
         device_(*context_),
         renderer_(device_, view_.scene) {
     render::Settings settings;
     settings.techniques = techniques;
-    settings.output = render::parseOutput(options.outputTerm);
+    settings.term = parseTerm(options.scene.term);
     settings.size = view_.size;
     settings.light = view_.light;
     settings.channels = true;
-    interfaces_ = render::interfacesOf(settings.output, techniques);
+    interfaces_ = render::interfacesOf(settings.term, techniques);
     renderer_.configure(settings);
   }
 
   Frame at(double time) {
     renderer_.setTime(time, view_.animation);
-    const scene::CameraPose camera = chooseCamera(options_.scene, renderer_.pose());
+    const scene::CameraPose camera = session::chooseCamera(options_.scene, renderer_.pose());
     renderer_.setCamera(camera);
     renderer_.render();
     return {renderer_.read(), truth(camera, 0), truth(camera, 1)};
@@ -84,7 +86,7 @@ class Sequence {
  private:
   Image truth(const scene::CameraPose& camera, uint64_t seed) {
     reference::Request request =
-        referenceRequest(view_, renderer_.pose(), camera, reference::termFromName(options_.outputTerm));
+        session::referenceRequest(view_, renderer_.pose(), camera, parseTerm(options_.scene.term));
     if (reference::hasBounces(request.term)) request.bounces = options_.bounces;
     request.interfaces = interfaces_;
     request.spp = options_.spp;
@@ -94,7 +96,7 @@ class Sequence {
 
   const Options& options_;
   int interfaces_ = 0;
-  View view_;
+  session::View view_;
   std::unique_ptr<Context> context_;
   gpu::Device device_;
   render::Renderer renderer_;
@@ -122,8 +124,7 @@ int run(const Options& options) {
     throw UsageError(fmt::format("--frames '{}' is not accepted; expected a:b with a < b", options.frames));
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
   const auto techniques = options.technique.resolve(registry);
-  render::checkTechniques(techniques, render::parseOutput(options.outputTerm));
-  reference::termFromName(options.outputTerm);
+  render::checkTechniques(techniques, parseTerm(options.scene.term));
   Sequence sequence(options, techniques);
   Sums sums;
   std::optional<Frame> before;
@@ -152,14 +153,11 @@ int run(const Options& options) {
 
 Action addFlickerCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
-  options->scene.addTo(command);
-  options->technique.addTo(command);
+  addSceneFlags(command, options->scene);
+  addSceneFlag(command, options->scene, "term");
+  addTechniqueFlags(command, options->technique);
   options->backend.addTo(command);
-  command
-      .add_option("--output-term", options->outputTerm,
-                  "final, visibility (with --light), direct, indirect, caustic, media or specular")
-      ->capture_default_str();
-  command.add_option("--frames", options->frames, "The frames a to b (inclusive) of the animation")
+  command.add_option("--frames", options->frames, "Frames of the animation to compare, a:b, both included")
       ->capture_default_str();
   command.add_option("--fps", options->fps, "Frames per second of the animation")
       ->capture_default_str()
@@ -167,10 +165,11 @@ Action addFlickerCommand(CLI::App& command) {
   command.add_option("--spp", options->spp, "Samples per pixel of the reference, which is rendered twice")
       ->capture_default_str()
       ->check(CLI::Range(2, 1 << 22));
-  command.add_option("--bounces", options->bounces, "Of the reference, as limn reference --bounces")
+  command
+      .add_option("--bounces", options->bounces, "Bounces of the reference, as in limn reference --bounces")
       ->capture_default_str()
-      ->check(CLI::Range(1, reference::maxBounces));
-  command.add_option("--at-most", options->atMost, "Fail (exit status 1) above this ratio")
+      ->check(CLI::Range(1, reference::kMaxBounces));
+  command.add_option("--at-most", options->atMost, "Exit with status 1 if the ratio exceeds this value")
       ->check(CLI::Range(0.0, 1e9));
   command.add_flag("--json", options->json, "Print JSON");
   return [options] { return run(*options); };

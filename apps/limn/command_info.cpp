@@ -1,12 +1,17 @@
-// limn info: what this machine offers.
+// limn info: what this machine offers, and which technique modules limn uses.
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "apps/limn/commands.h"
 #include "apps/limn/options.h"
 #include "core/base/error.h"
+#include "core/base/version.h"
 #include "core/gpu/device.h"
+#include "core/technique/registry.h"
 
 namespace limn::app {
 namespace {
@@ -43,7 +48,7 @@ nlohmann::ordered_json describe(const DeviceDescription& device) {
   return json;
 }
 
-void printText(const nlohmann::ordered_json& device) {
+void printDevice(const nlohmann::ordered_json& device) {
   const int index = device["device"];
   fmt::print("{}{}: {}\n", device["backend"].get<std::string>(),
              index < 0 ? "" : fmt::format(" --device {}", index), device["description"].get<std::string>());
@@ -57,6 +62,34 @@ void printText(const nlohmann::ordered_json& device) {
   for (const auto& [key, value] : device["limits"].items()) fmt::print("  {}: {}\n", key, value.dump());
 }
 
+/// Every module in the order of names; `refused` says why limn does not use it.
+nlohmann::ordered_json modules(const TechniqueRegistry& registry) {
+  std::map<std::string, nlohmann::ordered_json> byName;
+  const auto add = [&](const std::string& name, nlohmann::ordered_json refused) {
+    const std::filesystem::path file = registry.fileOf(name);
+    byName[name] = {{"name", name},
+                    {"file", file.string()},
+                    {"folder", file.parent_path().string()},
+                    {"refused", std::move(refused)}};
+  };
+  for (const TechniquePlugin* plugin : registry.all()) add(plugin->info->name, nullptr);
+  for (const auto& refusal : registry.refused()) add(refusal.name, refusal.reason);
+  nlohmann::ordered_json sorted = nlohmann::ordered_json::array();
+  for (auto& [name, module] : byName) sorted.push_back(std::move(module));
+  return sorted;
+}
+
+void printModules(const nlohmann::ordered_json& modules) {
+  fmt::print("techniques\n");
+  for (const auto& module : modules) {
+    const std::string name = module["name"], file = module["file"];
+    if (module["refused"].is_null())
+      fmt::print("  {}: {}\n", name, file);
+    else
+      fmt::print("  {}: refused: {}\n", name, module["refused"].get<std::string>());
+  }
+}
+
 }  // namespace
 
 Action addInfoCommand(CLI::App& command) {
@@ -65,10 +98,17 @@ Action addInfoCommand(CLI::App& command) {
   return [json] {
     nlohmann::ordered_json devices = nlohmann::ordered_json::array();
     for (const DeviceDescription& device : listDevices()) devices.push_back(describe(device));
-    if (*json)
-      fmt::print("{}\n", nlohmann::ordered_json{{"version", LIMN_VERSION}, {"devices", devices}}.dump(2));
-    else
-      for (const auto& device : devices) printText(device);
+    const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
+    const nlohmann::ordered_json techniques = modules(registry);
+    if (*json) {
+      fmt::print(
+          "{}\n",
+          nlohmann::ordered_json{{"version", version()}, {"devices", devices}, {"techniques", techniques}}
+              .dump(2));
+    } else {
+      for (const auto& device : devices) printDevice(device);
+      printModules(techniques);
+    }
     return 0;
   };
 }

@@ -10,9 +10,6 @@
 namespace limn::app {
 namespace {
 
-constexpr Term all_terms[] = {Term::visibility, Term::direct, Term::environment, Term::indirect,
-                              Term::caustic,    Term::media,  Term::specular};
-
 const char* typeName(ParameterType type) {
   switch (type) {
     case ParameterType::boolean:
@@ -41,13 +38,6 @@ nlohmann::ordered_json parameterJson(const Parameter& p) {
   json["doc"] = p.doc;
   json["trades_error_for_time"] = p.tradesErrorForTime;
   return json;
-}
-
-std::vector<std::string> termNames(TermSet terms) {
-  std::vector<std::string> names;
-  for (Term term : all_terms)
-    if (contains(terms, term)) names.emplace_back(name(term));
-  return names;
 }
 
 void printJson(const TechniqueRegistry& registry) {

@@ -14,14 +14,14 @@
 #include "core/base/file_lock.h"
 #include "core/reference/reference.h"
 #include "core/reference/vertices.h"
+#include "core/session/view.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
 
 struct Options {
-  SceneOptions scene;
-  std::string term = "direct";
+  SceneQuestion scene{.term = name(Term::direct)};
   int spp = 256, threads = 0, aa = 1;
   double noise = 0, exposure = 0;
   uint64_t seed = 0;
@@ -34,19 +34,19 @@ struct Options {
 
 /// "all", or a number.
 int parseInterfaces(const std::string& text) {
-  if (text == "all") return reference::allInterfaces;
+  if (text == "all") return reference::kAllInterfaces;
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || value < 0 ||
-      value > reference::maxInterfaces)
+      value > reference::kMaxInterfaces)
     throw UsageError(fmt::format("--interfaces '{}' is not accepted; expected 0 to {}, or all", text,
-                                 reference::maxInterfaces));
+                                 reference::kMaxInterfaces));
   return value;
 }
 
-reference::Request makeRequest(const Options& options, const View& view) {
+reference::Request makeRequest(const Options& options, const session::View& view) {
   reference::Request request =
-      referenceRequest(view, view.pose, view.camera, reference::termFromName(options.term));
+      session::referenceRequest(view, view.pose, view.camera, parseTerm(options.scene.term));
   request.spp = options.spp;
   request.noise = options.noise;
   request.bounces = options.bounces.value_or(request.bounces);
@@ -58,12 +58,12 @@ reference::Request makeRequest(const Options& options, const View& view) {
 }
 
 /// Irradiance of vertices, as a list in the shape of a picture.
-int runAtVertices(const Options& options, const View& view, reference::Request request) {
+int runAtVertices(const Options& options, const session::View& view, reference::Request request) {
   if (options.out.extension() != ".exr")
     throw UsageError("--at-vertices writes a list; --out takes a name ending in .exr");
   const auto points = reference::vertexPoints(view.scene, view.pose, static_cast<float>(options.longestEdge));
   const auto irradiance = reference::irradianceAt(request, points, 1e-4f * view.pose.bounds.radius());
-  Image list = reference::vertexImage(points, irradiance);
+  Image list = reference::vertexImage(points, irradiance, view.pose.origin);
   sign(list);
   writeImage(options.out, list, 0);
   fmt::print("{}: {} points, {} samples each\n", options.out.string(), points.size(), request.spp);
@@ -75,7 +75,7 @@ int run(const Options& options) {
     throw UsageError(fmt::format("--out '{}' is not accepted; expected a name ending in .exr or .png",
                                  options.out.string()));
   checkWritable(options.out);
-  const View view = open(options.scene);
+  const session::View view = session::open(options.scene, warn);
   reference::Request request = makeRequest(options, view);
   if (options.atVertices) return runAtVertices(options, view, request);
   Progress progress("reference");
@@ -110,13 +110,9 @@ int run(const Options& options) {
 
 Action addReferenceCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
-  options->scene.addTo(command);
-  command
-      .add_option("--term", options->term,
-                  "direct, indirect, caustic, media, specular, visibility (with --light) or final")
-      ->capture_default_str();
-  command
-      .add_option("--spp", options->spp, "Samples per pixel and light; with --noise the most that are taken")
+  addSceneFlags(command, options->scene);
+  addSceneFlag(command, options->scene, "term", "--term");
+  command.add_option("--spp", options->spp, "Samples per pixel and light; with --noise the maximum")
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 22));
   command
@@ -125,7 +121,7 @@ Action addReferenceCommand(CLI::App& command) {
           "Most surfaces that reflect light before the one that is seen does: indirect is the light that\n"
           "came over 1 to N of them (default 1), final adds it to direct light (default 0: direct alone),\n"
           "specular sees as much of both")
-      ->check(CLI::Range(0, reference::maxBounces));
+      ->check(CLI::Range(0, reference::kMaxBounces));
   command.add_option(
       "--interfaces", options->interfaces,
       "Most smooth interfaces between the camera and what it sees in a specular object, as image space has\n"
@@ -133,24 +129,27 @@ Action addReferenceCommand(CLI::App& command) {
       "truth. all with caustic, media and final: light over any number of interfaces, too (default: off "
       "one,\n"
       "or into an object and out of it, as techniques have it)");
-  command.add_option("--noise", options->noise, "Stop at this noise: RMS relative to the mean")
+  command
+      .add_option("--noise", options->noise,
+                  "Stop when the noise (RMS relative to the mean) falls to this value")
       ->check(CLI::Range(0.0, 1.0));
   command.add_flag(
       "--at-vertices", options->atVertices,
       "Irradiance at the vertices of the scene instead of a picture: rows of 1024 of them, with positions\n"
-      "P and normals N, as implicit_visibility sees them");
+      "P and normals N, as implicit_visibility sees them; far from the origin P + P.rest is the position");
   command
       .add_option("--longest-edge", options->longestEdge,
-                  "With --at-vertices: longer edges of triangles are halved; scene radii")
+                  "With --at-vertices: halve triangle edges longer than this, in scene radii")
       ->capture_default_str()
       ->check(CLI::Range(0.005, 1e3));
   command.add_option("--aa", options->aa, "N x N samples in each pixel (both renderers or neither)")
       ->check(CLI::Range(1, 16));
-  command.add_option("--seed", options->seed, "Of the random numbers");
+  command.add_option("--seed", options->seed, "Seed of the random numbers");
   command.add_option("--threads", options->threads, "0: all cores")->check(CLI::Range(0, 1024));
-  command.add_option("--exposure", options->exposure, "EV, for .png only")->check(CLI::Range(-60.0, 60.0));
+  command.add_option("--exposure", options->exposure, "Exposure of a .png output, EV")
+      ->check(CLI::Range(-60.0, 60.0));
   command.add_option("--cache", options->cache,
-                     "Folder of finished references, found again by their content");
+                     "Folder in which finished references are kept, and reused for the same request");
   command
       .add_option("-o,--out", options->out,
                   "Picture (.exr with all channels, or .png); interrupted work is kept beside it")

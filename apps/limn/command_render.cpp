@@ -12,16 +12,18 @@
 #include "core/base/file.h"
 #include "core/base/text.h"
 #include "core/gpu/device.h"
+#include "core/render/renderer.h"
+#include "core/session/view.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
 
 struct Options {
-  SceneOptions scene;
-  TechniqueOptions technique;
+  SceneQuestion scene;
+  session::TechniqueChoice technique;
   BackendOptions backend;
-  std::string outputTerm = "final", frames;
+  std::string frames;
   double fps = 30, exposure = 0;
   int repeat = 0;
   bool dynamicFrames = false, staticFrames = false, explain = false;
@@ -74,7 +76,7 @@ void checkFinite(const Image& picture, const Options& options) {
     throw Error(
         fmt::format("{}: {} of {} pixels of term {} by {} are not finite, the first at {},{} from the upper "
                     "left; nothing is written",
-                    options.out.string(), count, picture.pixelCount(), options.outputTerm,
+                    options.out.string(), count, picture.pixelCount(), options.scene.term,
                     options.technique.techniques.empty() ? "no technique" : options.technique.techniques,
                     first.x, first.y));
 }
@@ -131,12 +133,12 @@ int run(const Options& options) {
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
   render::Settings settings;
   settings.techniques = options.technique.resolve(registry);
-  settings.output = render::parseOutput(options.outputTerm);
+  settings.term = parseTerm(options.scene.term);
   settings.dynamic = !options.staticFrames;
   settings.channels = options.out.extension() == ".exr";
-  render::checkTechniques(settings.techniques, settings.output);
+  render::checkTechniques(settings.techniques, settings.term);
 
-  View view = open(options.scene);
+  session::View view = session::open(options.scene, warn);
   settings.size = view.size;
   settings.light = view.light;
   const auto context = Context::create(options.backend.contextOptions());
@@ -148,13 +150,12 @@ int run(const Options& options) {
 
   if (frames) {
     Progress progress("rendering");
+    LastWords words("interrupted; no frame was written");
     for (int frame = frames->first; frame <= frames->last; ++frame) {
-      const LastWords words(
-          frame == frames->first
-              ? std::string("interrupted; no frame was written")
-              : fmt::format("interrupted; the frames {}:{} are written, --frames {}:{} goes on",
-                            frames->first, frame - 1, frame, frames->last));
-      moveTo(view, options.scene, frame / options.fps);
+      if (frame > frames->first)
+        words.say(fmt::format("interrupted; the frames {}:{} are written, --frames {}:{} goes on",
+                              frames->first, frame - 1, frame, frames->last));
+      session::moveTo(view, options.scene, frame / options.fps);
       renderer.setTime(view.time, view.animation);
       renderer.setCamera(view.camera);
       renderer.render();
@@ -173,7 +174,7 @@ int run(const Options& options) {
   const int repeat = options.repeat > 0 ? options.repeat : (options.stats.empty() ? 0 : 10);
   if (repeat > 0) {
     stats = render::measure(renderer, repeat);
-    stats->scene = options.scene.scene.string();
+    stats->scene = options.scene.scene;
     printStats(*stats);
   }
   if (options.explain) printExplanation(renderer.explain(), stats ? &*stats : nullptr);
@@ -187,34 +188,33 @@ int run(const Options& options) {
 
 Action addRenderCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
-  options->scene.addTo(command);
-  options->technique.addTo(command);
+  addSceneFlags(command, options->scene);
+  addSceneFlag(command, options->scene, "term");
+  addTechniqueFlags(command, options->technique);
   options->backend.addTo(command);
-  command
-      .add_option("--output-term", options->outputTerm,
-                  "final, visibility, direct, indirect, caustic, media or specular")
-      ->capture_default_str();
   command.add_option("--frames", options->frames,
-                     "Render the frames a to b (inclusive) of the animation, as NAME.0000.png");
+                     "Render frames a:b of the animation, both included, to NAME.0000.png and so on");
   command.add_option("--fps", options->fps, "Frames per second of the animation")
       ->capture_default_str()
       ->check(CLI::Range(0.001, 1e5));
-  command.add_option("--exposure", options->exposure, "EV, for .png only")->check(CLI::Range(-60.0, 60.0));
-  command.add_option("--repeat", options->repeat, "Time this many frames after the picture")
+  command.add_option("--exposure", options->exposure, "Exposure of a .png output, EV")
+      ->check(CLI::Range(-60.0, 60.0));
+  command.add_option("--repeat", options->repeat, "After the picture, time this many frames")
       ->check(CLI::Range(1, 100000));
-  auto* dynamicFlag =
-      command.add_flag("--dynamic", options->dynamicFrames, "Timed frames compute everything anew (default)");
-  command.add_flag("--static", options->staticFrames, "Timed frames keep what did not change")
+  auto* dynamicFlag = command.add_flag("--dynamic", options->dynamicFrames,
+                                       "Compute everything again in each timed frame (default)");
+  command.add_flag("--static", options->staticFrames, "Reuse unchanged results in timed frames")
       ->excludes(dynamicFlag);
   command
       .add_option("-o,--out", options->out, "Picture: .exr (linear, with depth, id, albedo, normal) or .png")
       ->required();
-  command.add_flag("--explain", options->explain,
-                   "Print every pass: run, cached or left out, why, memory and time");
-  command.add_option("--stats", options->stats, "Write times and memory as JSON");
-  command.add_option("--graph", options->graph, "Write the frame graph for Graphviz");
+  command.add_flag(
+      "--explain", options->explain,
+      "Print for every pass whether it was run, cached or left out and why, with memory and time");
+  command.add_option("--stats", options->stats, "Write times and memory to this JSON file");
+  command.add_option("--graph", options->graph, "Write the frame graph to this Graphviz file");
   command.add_option("--shaders", options->shaders,
-                     "Folder with glsl/ and techniques/ that overrides the embedded shaders");
+                     "Folder with glsl/ and techniques/ whose shaders replace the embedded ones");
   return [options] { return run(*options); };
 }
 

@@ -29,7 +29,7 @@ int run(const std::vector<fs::path>& folders) {
 
 Action addReportCommand(CLI::App& command) {
   auto folders = std::make_shared<std::vector<fs::path>>();
-  command.add_option("folders", *folders, "What limn bench --out wrote")->required();
+  command.add_option("folders", *folders, "Result folders of limn bench (its --out)")->required();
   return [folders] { return run(*folders); };
 }
 

@@ -1,13 +1,13 @@
 // limn reproduction: what the thesis found, beside what bench results say.
 #include <fmt/format.h>
 
-#include "apps/limn/bench_session.h"
 #include "apps/limn/commands.h"
 #include "apps/limn/options.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/bench/reproduction.h"
 #include "core/bench/results_file.h"
+#include "core/session/find.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
@@ -20,7 +20,7 @@ struct Options {
 
 int run(const Options& options) {
   fs::path claims = options.claims;
-  if (claims.empty()) claims = findShared("benchmarks", "reproduction.claims");
+  if (claims.empty()) claims = session::findShared("benchmarks", "reproduction.claims");
   if (claims.empty())
     throw Error("reproduction.claims was not built or installed with limn; name a file with --claims");
   std::vector<bench::Row> rows;
@@ -28,11 +28,9 @@ int run(const Options& options) {
     for (bench::Row& row : bench::readRows(folder / "results.jsonl")) rows.push_back(std::move(row));
   const std::string page =
       "# What the thesis found, and what is measured here\n\n"
-      "Ratios between settings that one run measured side by side: times of the frame unless another column "
-      "says so, above 1\n"
-      "where the second is faster. The thesis measured on GPUs of 2006 and 2009; its frame rates beside "
-      "those of another\n"
-      "renderer would say nothing, its ratios may. Made by `limn reproduction`.\n\n" +
+      "The thesis measured on GPUs of 2006 and 2009: its frame rates beside those of another renderer would "
+      "say nothing,\n"
+      "its ratios may. Made by `limn reproduction` from rows of `limn bench`.\n\n" +
       bench::reproductionMarkdown(bench::readClaims(claims), rows);
   writeTextFile(options.out, page);
   sayWritten(options.out);
@@ -43,7 +41,7 @@ int run(const Options& options) {
 
 Action addReproductionCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
-  command.add_option("results", options->results, "Folders of `limn bench`")->required();
+  command.add_option("results", options->results, "Result folders of limn bench (its --out)")->required();
   command.add_option("-o,--out", options->out, "Markdown file")->required();
   command.add_option("--claims", options->claims, "TOML file; default: the thesis's");
   return [options] { return run(*options); };

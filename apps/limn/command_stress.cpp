@@ -12,7 +12,8 @@
 #include "core/base/file_lock.h"
 #include "core/bench/stress.h"
 #include "core/gpu/objects.h"
-#include "core/scene/load.h"
+#include "core/scene_io/load.h"
+#include "core/session/find.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
@@ -114,7 +115,8 @@ int run(const Options& options) {
   const auto context = Context::create(options.backend.contextOptions());
   gpu::Device device(*context);
   Table table(options.out, context->info().renderer);
-  bench::StressRun stress(device, [](const std::string& name) { return scene::load(findScene(name)); });
+  bench::StressRun stress(device,
+                          [](const std::string& name) { return scene::load(session::findScene(name)); });
   {
     Progress progress("stress");
     const LastWords words(options.out.empty()
@@ -141,7 +143,7 @@ Action addStressCommand(CLI::App& command) {
   command.add_option("--technique", options->techniques, "Techniques, comma-separated; default: all");
   command.add_option("--filter", options->filter, "Only cases whose name contains this text");
   command.add_option("-o,--out", options->out,
-                     "Folder for stress.md and stress.json; cases that it holds are not run again");
+                     "Folder for stress.md and stress.json; cases that are already in it are skipped");
   options->backend.addTo(command);
   return [options] { return run(*options); };
 }

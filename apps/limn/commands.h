@@ -1,4 +1,5 @@
-// The commands of limn. Each adds its options to the command line and runs when chosen.
+// Declares the commands of limn. Each command adds its options to the command line and runs when it is
+// chosen.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,7 +9,8 @@ namespace limn::app {
 
 using Action = std::function<int()>;  ///< returns the exit status; may throw limn::Error
 
-/// Each returns what to do once the command line has been parsed.
+/// Declares the options of one command, as do all functions below, and returns what to do once the command
+/// line has been parsed.
 Action addListCommand(CLI::App& command);
 Action addInfoCommand(CLI::App& command);
 Action addRenderCommand(CLI::App& command);

@@ -1,5 +1,5 @@
-// What happens at SIGINT and SIGTERM: one line says what is kept and how to go on, and the exit status is 128
-// and the signal's number, as shells have it.
+// Handles SIGINT and SIGTERM: one line says what is kept and how to continue, and the exit status is 128 plus
+// the signal's number, as in shells.
 #pragma once
 
 #include <csignal>
@@ -7,14 +7,14 @@
 
 namespace limn::app {
 
-/// Says how a command ends that noticed an Interruption. No std::exception, so that nothing on the way takes
-/// it for a failure.
+/// Says how a command ends that noticed an Interruption. It is no std::exception, so that no handler on the
+/// way takes it for a failure.
 struct Interrupted {
   int signal;           ///< SIGINT or SIGTERM
   std::string message;  ///< one line
 };
 
-/// What signal handlers were before; the destructor puts them back.
+/// Holds the previous signal handlers; the destructor restores them.
 class FormerHandlers {
  public:
   FormerHandlers();
@@ -26,21 +26,24 @@ class FormerHandlers {
   struct sigaction int_, term_;
 };
 
-/// While one lives, SIGINT or SIGTERM writes "limn: LINE" to stderr and ends the program at once, child
-/// processes that die with it (apps/limn/worker.h) included. For work whose files are written whole or not at
-/// all. The innermost one speaks.
+/// Makes SIGINT and SIGTERM write "limn: LINE" to stderr and end the program at once while an object of this
+/// class lives; child processes that die with the program (apps/limn/worker.h) end too. The class is for work
+/// whose files are written whole or not at all. If several objects live, the innermost one writes its line.
 class LastWords {
  public:
   explicit LastWords(const std::string& line);
   ~LastWords();
+  /// Replaces the line; a signal finds either the old or the new line at any moment.
+  void say(const std::string& line);
 
  private:
   FormerHandlers former_;
   std::string formerLine_;
 };
 
-/// While one lives, the first SIGINT or SIGTERM is only noted, so that the work can keep what it has; the
-/// second ends the program with the LastWords around it. One at a time.
+/// Only notes the first SIGINT or SIGTERM while an object of this class lives, so that the work can keep what
+/// it has; the second one ends the program with the line of the enclosing LastWords. Only one object may live
+/// at a time.
 class Interruption {
  public:
   Interruption();

@@ -15,6 +15,7 @@
 #include "apps/limn/options.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/base/version.h"
 #include "core/base/whereabouts.h"
 
 namespace {
@@ -54,7 +55,7 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is that file's error, not the program's end
   limn::leaveWordsAtCrash("limn");
   CLI::App limn("limn: real-time shadows and global illumination, with their error and their cost", "limn");
-  limn.set_version_flag("--version", LIMN_VERSION);
+  limn.set_version_flag("--version", limn::version());
   limn.require_subcommand(1);
   limn.failure_message([](const CLI::App*, const CLI::Error& error) {
     return std::string("limn: ") + error.what() + "; see limn --help\n";
@@ -68,23 +69,28 @@ int main(int argc, char** argv) {
     CLI::App* command = limn.add_subcommand(name, description);
     command->callback([&action, run = build(*command)] { action = run; });
     if (command->get_prefix_command()) return;  // what follows is another program's
-    command->add_flag("-q,--quiet", quiet, "Only results and errors: no progress, no notes, no warnings");
+    command->add_flag("-q,--quiet", quiet, "Print only results and errors: no progress, notes or warnings");
   };
-  add("list", "Techniques, the terms they answer, their parameters", addListCommand);
-  add("info", "OpenGL back ends, devices and limits of this machine", addInfoCommand);
+  add("list", "List the techniques, the terms they answer and their parameters", addListCommand);
+  add("info", "Show the OpenGL back ends, devices and limits of this machine, and the technique modules",
+      addInfoCommand);
   add("render", "Render a scene with techniques to a file", addRenderCommand);
   add("reference", "Compute the ground truth of a term on the CPU", addReferenceCommand);
   add("compare", "Measure how far an image is from its reference", addCompareCommand);
   add("environment", "List and show the area lights that stand for an environment", addEnvironmentCommand);
-  add("bench", "Run a suite: error and time of many settings, as tables and a report", addBenchCommand);
-  add("stress", "Run every technique on its stability cases: pass, degraded or refused", addStressCommand);
-  add("flicker", "Measure how much more a technique changes from frame to frame than the truth",
+  add("bench", "Measure error and time of every case of a suite; write tables and a report", addBenchCommand);
+  add("stress", "Test the stability of every technique on extreme cases: pass, degraded or refused",
+      addStressCommand);
+  add("flicker", "Measure how much more a technique changes from frame to frame than the reference does",
       addFlickerCommand);
-  add("explain-cost", "What a scene lets limn leave out, forced in: pictures, time and memory compared",
+  add("explain-cost",
+      "Measure what it saves to leave out work that a scene does not need: force each kind in; compare frame "
+      "times (ms), memory (MiB) and pictures",
       addExplainCostCommand);
-  add("report", "Write the tables and the report of finished benches anew", addReportCommand);
-  add("reproduction", "The thesis's ratios beside those of bench results, as a page", addReproductionCommand);
-  add("view", "Open a window on a scene; takes what limn-view takes", addViewCommand);
+  add("report", "Write the tables and the report of finished benches again", addReportCommand);
+  add("reproduction", "Compare the thesis's ratios with those of bench results; write a Markdown page",
+      addReproductionCommand);
+  add("view", "Open a window on a scene; accepts the options of limn-view", addViewCommand);
 
   return guarded([&] {
     if (argc > 1 && argv[1][0] != '-') checkCommand(limn, argv[1]);

@@ -18,44 +18,6 @@
 namespace limn::app {
 namespace fs = std::filesystem;
 
-fs::path findShared(const fs::path& folder, const fs::path& file) {
-  std::error_code ignored;
-  const fs::path prefix = fs::read_symlink("/proc/self/exe", ignored).parent_path().parent_path();
-  for (const fs::path& share : {prefix, prefix / "share/limn"})
-    if (fs::exists(share / folder / file, ignored)) return share / folder / file;
-  return {};
-}
-
-fs::path findScene(const fs::path& nameOrFile) {
-  std::error_code ignored;
-  if (fs::exists(nameOrFile, ignored)) return nameOrFile;
-  const std::string name = nameOrFile.string();
-  if (name.find('/') == std::string::npos)
-    if (const fs::path file = findShared("assets", fs::path(name) / (name + ".glb")); !file.empty())
-      return file;
-  throw Error(fmt::format(
-      "scene '{}' does not exist; expected a .gltf or .glb file, or the name of one of limn's scenes", name));
-}
-
-fs::path findEnvironment(const fs::path& nameOrFile) {
-  std::error_code ignored;
-  if (fs::exists(nameOrFile, ignored)) return nameOrFile;
-  const fs::path name = nameOrFile.filename();
-  if (name == nameOrFile)
-    if (const fs::path file = findShared("assets/environments", name.string() + ".exr"); !file.empty())
-      return file;
-  throw Error(fmt::format(
-      "environment '{}' does not exist; expected an equirectangular .exr or .hdr file, or the name of one of "
-      "limn's maps",
-      nameOrFile.string()));
-}
-
-void createFolder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw Error(fmt::format("folder '{}' cannot be created: {}", folder.string(), error.message()));
-}
-
 void checkWritable(const fs::path& file) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored))
@@ -63,20 +25,6 @@ void checkWritable(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
   if (access(folder.c_str(), W_OK | X_OK) != 0)
     throw Error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
-}
-
-glm::ivec2 parseSize(const std::string& text) {
-  const size_t x = text.find('x');
-  const auto width = x == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(0, x));
-  const auto height =
-      x == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(x + 1));
-  const auto fits = [](const std::optional<double>& v) {
-    return v && *v >= 1 && *v <= 16384 && *v == std::floor(*v);
-  };
-  if (!fits(width) || !fits(height))
-    throw UsageError(
-        fmt::format("--size '{}' is not accepted; expected WxH, each from 1 to 16384 pixels", text));
-  return {static_cast<int>(*width), static_cast<int>(*height)};
 }
 
 std::optional<FrameRange> parseFrames(const std::string& text) {
@@ -97,64 +45,16 @@ fs::path numbered(const fs::path& out, int frame) {
   return out.parent_path() / fmt::format("{}.{:04}{}", out.stem().string(), frame, out.extension().string());
 }
 
-int findNamed(const std::string& what, const std::string& text, const std::vector<std::string>& names) {
-  for (size_t i = 0; i < names.size(); ++i)
-    if (names[i] == text) return static_cast<int>(i);
-  if (text.starts_with('#'))
-    if (const auto index = parseNumber(std::string_view(text).substr(1));
-        index && *index >= 0 && *index < static_cast<double>(names.size()) && *index == std::floor(*index))
-      return static_cast<int>(*index);
-  constexpr size_t listed = 20;
-  std::vector<std::string> shown(names.begin(),
-                                 names.begin() + static_cast<long>(std::min(names.size(), listed)));
-  throw UsageError(
-      fmt::format("{} '{}' is not in the scene{}; it has {}{}", what, text, didYouMean(text, names),
-                  names.empty() ? "none" : joined(shown),
-                  names.size() > listed ? fmt::format(" and {} more", names.size() - listed) : ""));
-}
-
-void TechniqueOptions::addTo(CLI::App& command) {
-  command.add_option("--technique", techniques,
+void addTechniqueFlags(CLI::App& command, session::TechniqueChoice& choice) {
+  command.add_option("--technique", choice.techniques,
                      "Techniques, comma-separated (see limn list); none: unshadowed");
-  command.add_option("--set", settings, "TECHNIQUE.PARAMETER=VALUE, repeatable")->take_all();
-}
-
-std::vector<render::TechniqueUse> TechniqueOptions::resolve(const TechniqueRegistry& registry) const {
-  std::vector<render::TechniqueUse> uses;
-  std::string_view rest = techniques;
-  while (!rest.empty()) {
-    const size_t comma = rest.find(',');
-    const std::string_view name = rest.substr(0, comma);
-    const TechniquePlugin& plugin = registry.find(name);
-    for (const auto& use : uses)
-      if (use.plugin == &plugin)
-        throw UsageError(fmt::format("technique {} is named twice; once is enough", name));
-    uses.push_back({&plugin, ParameterValues(std::string(name), plugin.info->parameters)});
-    rest = comma == std::string_view::npos ? std::string_view() : rest.substr(comma + 1);
-  }
-  for (const std::string& setting : settings) {
-    const size_t dot = setting.find('.'), equals = setting.find('=');
-    if (dot == std::string::npos || equals == std::string::npos || equals < dot)
-      throw UsageError(
-          fmt::format("--set '{}' is not accepted; expected TECHNIQUE.PARAMETER=VALUE", setting));
-    const std::string technique = setting.substr(0, dot);
-    bool found = false;
-    for (auto& use : uses) {
-      if (technique != use.plugin->info->name) continue;
-      use.parameters.set(setting.substr(dot + 1, equals - dot - 1), setting.substr(equals + 1));
-      found = true;
-    }
-    if (!found)
-      throw UsageError(
-          fmt::format("--set '{}' names technique {}, which --technique does not", setting, technique));
-  }
-  return uses;
+  command.add_option("--set", choice.settings, "TECHNIQUE.PARAMETER=VALUE, repeatable")->take_all();
 }
 
 void BackendOptions::addTo(CLI::App& command) {
   command.add_option("--backend", backend, "egl or osmesa")->capture_default_str();
   command.add_option("--device", device, "EGL device index, see limn info")->check(CLI::Range(0, 255));
-  command.add_flag("--gl-debug", debug, "Debug context: driver errors end the run");
+  command.add_flag("--gl-debug", debug, "Use an OpenGL debug context: driver errors end the run");
 }
 
 ContextOptions BackendOptions::contextOptions() const {

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "core/base/shell.h"
+#include "core/base/version.h"
 
 namespace limn::app {
 
@@ -16,7 +17,7 @@ std::string commandLine() {
 
 void sign(Image& picture, const std::string& command) {
   picture.metadata()["command"] = command;
-  picture.metadata()["version"] = LIMN_VERSION;
+  picture.metadata()["version"] = version();
 }
 
 }  // namespace limn::app

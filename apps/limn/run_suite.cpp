@@ -4,29 +4,18 @@
 
 #include <set>
 
-#include "apps/limn/bench_session.h"
-#include "apps/limn/case_origins.h"
-#include "apps/limn/suite_check.h"
 #include "apps/limn/worker.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/file_lock.h"
 #include "core/bench/report.h"
 #include "core/bench/tables.h"
+#include "core/session/bench_session.h"
+#include "core/session/case_origins.h"
+#include "core/session/suite_check.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
-
-fs::path findSuite(const fs::path& nameOrFile) {
-  std::error_code ignored;
-  if (fs::exists(nameOrFile, ignored)) return nameOrFile;
-  const fs::path file = findShared("benchmarks", fs::path(nameOrFile).concat(".toml"));
-  if (file.empty())
-    throw Error(
-        fmt::format("suite '{}' does not exist; expected a TOML file, or the name of one of limn's suites",
-                    nameOrFile.string()));
-  return file;
-}
 
 namespace {
 
@@ -50,7 +39,8 @@ class SuiteWork {
     // What crashes here crashes in its own row again.
     runInWorker(report_, stallTimeout_, [&] {
       const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
-      const auto missing = missingThings(unanswered(), registry, [&] { report_.alive(); });
+      const auto missing = session::missingThings(
+          unanswered(), registry, [&] { report_.alive(); }, warn);
       for (std::size_t i = 0; i + 1 < missing.size(); ++i) fmt::print(stderr, "limn: {}\n", missing[i]);
       if (!missing.empty()) throw UsageError(missing.back());
     });
@@ -88,32 +78,33 @@ class SuiteWork {
   /// In the worker: measures what there is no row for.
   void measure() {
     bench::ResultsFile results(file_);
-    BenchSession session(backend_, out_, [this] { report_.alive(); });
-    CaseOrigins origins(session.registry());
-    report_.renderer(session.rendererName());
+    session::BenchSession benchSession(
+        backend_.contextOptions(), out_, [this] { report_.alive(); }, warn);
+    session::CaseOrigins origins(benchSession.registry());
+    report_.renderer(benchSession.rendererName());
     std::vector<bench::Case> cases;
     for (const std::size_t i : left_) cases.push_back(cases_[i]);
     const auto provenance = [&](const bench::Case& c) { return origins.of(c); };
     if (left_.size() == cases_.size())  // not after a crash, when it has been said
-      sayStale(bench::staleRows(cases, session.rendererName(), results, provenance));
+      sayStale(bench::staleRows(cases, benchSession.rendererName(), results, provenance));
     Progress bar("bench");
     bench::Callbacks callbacks;
     callbacks.provenance = provenance;
-    callbacks.reference = [&](const bench::Case& c) { return session.reference(c); };
-    callbacks.measure = [&](const bench::Case& c) { return session.measure(c); };
-    callbacks.time = [&](const bench::Case& c) { return session.time(c); };
+    callbacks.reference = [&](const bench::Case& c) { return benchSession.reference(c); };
+    callbacks.measure = [&](const bench::Case& c) { return benchSession.measure(c); };
+    callbacks.time = [&](const bench::Case& c) { return benchSession.time(c); };
     callbacks.keepPicture = [&](const std::string& name, const Image& image) {
-      return session.keepPicture(name, image);
+      return benchSession.keepPicture(name, image);
     };
     callbacks.progress = [&](const bench::Progress& progress) {
       tell(progress);
       bar.update((progress.turn - 1 + double(progress.index) / progress.count) / progress.turns,
                  bench::label(progress.what));
       if (progress.state != bench::Progress::State::failed) return;
-      session.forgetScene();
+      benchSession.forgetScene();
       fmt::print(stderr, "limn: {}: {}\n", bench::label(progress.what), progress.failure);
     };
-    bench::runCases(cases, session.rendererName(), results, callbacks);
+    bench::runCases(cases, benchSession.rendererName(), results, callbacks);
   }
 
   static void sayStale(const std::map<std::string, int>& reasons) {

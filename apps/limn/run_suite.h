@@ -1,4 +1,4 @@
-// The whole of `limn bench`: a suite's rows, its tables and its report.
+// Does the complete work of `limn bench`: a suite's rows, its tables and its report.
 #pragma once
 
 #include <filesystem>
@@ -12,22 +12,18 @@
 
 namespace limn::app {
 
-/// A suite by its file, or by its name if it came with limn. Throws Error when there is neither.
-std::filesystem::path findSuite(const std::filesystem::path& nameOrFile);
-
-/// Which part of a suite is run, and how patiently.
+/// Declares which part of a suite is run, and how long a case may stall.
 struct SuiteRun {
   std::vector<std::string> filters{};  ///< bench::selectCases()
   bench::Shard shard{};
   std::optional<double> stallTimeout{};  ///< seconds; nothing: the suite's
 };
 
-/// Runs the cases of a suite that `out` has no row for yet, or one that was measured with something else than
-/// what there is now, with a progress bar, and writes tables and report. Throws UsageError before anything is
-/// measured when the suite names what is not there, and Error when another process works in `out`. Measures
-/// in a process of its own: a case that crashes, or that shows no sign of life for too long, loses its own
-/// row only. No thread and no OpenGL context may exist. Returns how many rows were measured, found and
-/// failed.
+/// Runs the cases of a suite for which `out` has no row yet, or whose row was measured with something that
+/// has changed since, with a progress bar, and writes tables and report. Throws UsageError before anything is
+/// measured when the suite names what does not exist, and Error when another process works in `out`. Measures
+/// in a separate process: a case that crashes, or that shows no sign of life for too long, loses only its own
+/// row. No thread and no OpenGL context may exist. Returns how many rows were measured, found and failed.
 bench::Summary runSuite(const std::filesystem::path& suite, const std::filesystem::path& out,
                         const BackendOptions& backend, const SuiteRun& run = {});
 

@@ -1,4 +1,4 @@
-// Work in a process of its own, so that what crashes there ends nothing else.
+// Runs work in a separate process, so that a crash there ends nothing else.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace limn::app {
 
-/// What a worker and the process that waits for it share.
+/// Holds what a worker and the process that waits for it share.
 class WorkerReport {
  public:
   enum class State : unsigned char { open, skipped, done, failed };
@@ -18,11 +18,11 @@ class WorkerReport {
   WorkerReport(const WorkerReport&) = delete;
   WorkerReport& operator=(const WorkerReport&) = delete;
 
-  /// The worker says what it does. Texts are cut to 255 bytes.
+  /// Says, on behalf of the worker, which case it works on. Texts are cut to 255 bytes.
   void started(std::size_t caseIndex);
-  /// What was skipped or done stays so.
+  /// Sets the state of a case that has ended; a case that was skipped or done keeps its state.
   void finished(std::size_t caseIndex, State state);
-  /// A sign of life; so are the others.
+  /// Gives a sign of life, as the other functions do.
   void alive();
   void renderer(const std::string& name);
 
@@ -38,17 +38,17 @@ class WorkerReport {
   Shared* shared_;
 };
 
-/// How a worker ended that neither returned nor threw: "crashed: Segmentation fault", "ended with status 3",
-/// "no progress for 60 s".
+/// Describes how a worker ended that neither returned nor threw: "crashed: Segmentation fault", "ended with
+/// status 3", "no progress for 60 s".
 struct Crash {
   std::string what;
 };
 
-/// Runs `work` in a child process and waits for it. No thread and no OpenGL context may exist yet. An Error
-/// or UsageError that `work` throws is thrown here, anything else as an Error; an interruption of the child
-/// (SIGINT, SIGTERM) ends this process in the same way; the child does not outlive this process. A child that
-/// gives no sign of life for `stallTimeout` seconds (0: any time) is killed. Returns what happened if it
-/// crashed or was killed.
+/// Runs `work` in a child process and waits for it. No thread and no OpenGL context may exist yet. Throws the
+/// Error or UsageError that `work` throws, and an Error for anything else that it throws; an interruption of
+/// the child (SIGINT, SIGTERM) ends this process in the same way; the child does not outlive this process.
+/// Kills a child that gives no sign of life for `stallTimeout` seconds (0: no limit). Returns what happened
+/// if the child crashed or was killed.
 std::optional<Crash> runInWorker(WorkerReport& report, double stallTimeout,
                                  const std::function<void()>& work);
 

@@ -1,8 +1,9 @@
 #include "apps/view/display_image.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "glsl/srgb.glsl"
+#include "glsl/numeric/srgb.glsl"
 
 namespace limn::app {
 
@@ -20,10 +21,16 @@ Image8 toneMapped(const Image& image, float exposureEv) {
   return result;
 }
 
-gpu::Texture toTexture(gpu::Device& device, const Image8& image) {
-  gpu::Texture texture(device, "picture", {.format = GL_RGBA8, .width = image.width, .height = image.height});
-  texture.upload(0, 0, GL_RGBA, GL_UNSIGNED_BYTE, image.data.data());
-  return texture;
+std::shared_ptr<const Image8> readBack(const gpu::Texture& texture) {
+  auto image = std::make_shared<Image8>(Image8{texture.desc().width, texture.desc().height, {}});
+  const size_t row = static_cast<size_t>(image->width) * 4;
+  const auto rows = static_cast<size_t>(image->height);
+  image->data.resize(row * rows);
+  texture.read(0, GL_RGBA, GL_UNSIGNED_BYTE, image->data.data(), image->data.size());
+  uint8_t* data = image->data.data();  // its bottom row first, as OpenGL has them
+  for (size_t y = 0; y < rows / 2; ++y)
+    std::swap_ranges(data + y * row, data + (y + 1) * row, data + (rows - 1 - y) * row);
+  return image;
 }
 
 Image fromBottomFirst(glm::ivec2 size, std::span<const uint8_t> pixels) {

@@ -1,8 +1,9 @@
-// Pictures on their way to and from the window.
+// Converts pictures on their way to and from the window.
 #pragma once
 
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <memory>
 #include <span>
 
 #include "core/gpu/objects.h"
@@ -10,13 +11,14 @@
 
 namespace limn::app {
 
-/// R, G, B as the window shows them: clamp(2^EV * value), then sRGB, as PNG files are written. Opaque.
+/// Returns R, G, B as the window shows them: clamp(2^EV * value), then sRGB, as PNG files are written. The
+/// result is opaque.
 Image8 toneMapped(const Image& image, float exposureEv);
 
-/// RGBA8, top row first.
-gpu::Texture toTexture(gpu::Device& device, const Image8& image);
+/// Returns level 0 of an RGBA8 texture as it is stored. Waits for the GPU.
+std::shared_ptr<const Image8> readBack(const gpu::Texture& texture);
 
-/// What glReadPixels gives (RGB, 8 bits, sRGB-encoded, bottom row first), linear.
+/// Returns the linear image of what glReadPixels gives (RGB, 8 bits, sRGB-encoded, bottom row first).
 Image fromBottomFirst(glm::ivec2 size, std::span<const uint8_t> pixels);
 
 }  // namespace limn::app

@@ -37,7 +37,7 @@ std::optional<size_t> firstTexture(const frame::PassReport& pass) {
 }
 
 bool isInspector(const frame::PassReport& pass) {
-  return pass.technique == "inspector";
+  return pass.technique == render::TextureInspector::passOwner;
 }
 
 }  // namespace

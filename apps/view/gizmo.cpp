@@ -8,11 +8,11 @@
 namespace limn::app {
 namespace {
 
-constexpr float armPixels = 90;                     // of an axis
-constexpr float planeFrom = 0.3f, planeTo = 0.55f;  // parts of it
-constexpr float grabPixels = 7;
-constexpr int ringCorners = 48;
-constexpr float edgeOn = 0.05f;  // sine of the angle below which a plane has no depth
+constexpr float kArmPixels = 90;                      // of an axis
+constexpr float kPlaneFrom = 0.3f, kPlaneTo = 0.55f;  // parts of it
+constexpr float kGrabPixels = 7;
+constexpr int kRingCorners = 48;
+constexpr float kEdgeOn = 0.05f;  // sine of the angle below which a plane has no depth
 
 glm::vec3 unit(int axis) {
   glm::vec3 v(0);
@@ -41,7 +41,7 @@ std::optional<glm::vec3> onPlane(const ScreenCamera& screen, glm::vec2 mouse, co
                                  const glm::vec3& normal) {
   const glm::vec3 eye = screen.eye(), direction = screen.direction(mouse);
   const float cosine = glm::dot(direction, normal);
-  if (std::abs(cosine) < edgeOn) return std::nullopt;
+  if (std::abs(cosine) < kEdgeOn) return std::nullopt;
   const float t = glm::dot(point - eye, normal) / cosine;
   if (!(t > 0)) return std::nullopt;
   return eye + t * direction;
@@ -52,7 +52,7 @@ std::optional<float> onAxis(const ScreenCamera& screen, glm::vec2 mouse, const g
                             const glm::vec3& axis) {
   const glm::vec3 direction = screen.direction(mouse), away = point - screen.eye();
   const float b = glm::dot(axis, direction), span = 1 - b * b;
-  if (span < edgeOn * edgeOn) return std::nullopt;
+  if (span < kEdgeOn * kEdgeOn) return std::nullopt;
   return (b * glm::dot(direction, away) - glm::dot(axis, away)) / span;
 }
 
@@ -95,20 +95,20 @@ std::vector<GizmoHandle> handlesOf(GizmoMode mode) {
 
 std::vector<glm::vec3> outlineOf(const ScreenCamera& screen, const glm::vec3& centre,
                                  const GizmoHandle& handle) {
-  const float arm = screen.metres(armPixels, centre);
+  const float arm = screen.metres(kArmPixels, centre);
   const glm::vec3 u = arm * unit((handle.axis + 1) % 3), v = arm * unit((handle.axis + 2) % 3);
   switch (handle.kind) {
     case GizmoHandle::Kind::axis:
       return {centre, centre + arm * unit(handle.axis)};
     case GizmoHandle::Kind::plane:
-      return {centre + planeFrom * (u + v), centre + planeTo * u + planeFrom * v, centre + planeTo * (u + v),
-              centre + planeFrom * u + planeTo * v};
+      return {centre + kPlaneFrom * (u + v), centre + kPlaneTo * u + kPlaneFrom * v,
+              centre + kPlaneTo * (u + v), centre + kPlaneFrom * u + kPlaneTo * v};
     case GizmoHandle::Kind::ring:
       break;
   }
   std::vector<glm::vec3> ring;
-  for (int i = 0; i < ringCorners; ++i) {
-    const float angle = 2 * glsl::pi * static_cast<float>(i) / ringCorners;
+  for (int i = 0; i < kRingCorners; ++i) {
+    const float angle = 2 * glsl::pi * static_cast<float>(i) / kRingCorners;
     ring.push_back(centre + 0.8f * (std::cos(angle) * u + std::sin(angle) * v));
   }
   return ring;
@@ -117,7 +117,7 @@ std::vector<glm::vec3> outlineOf(const ScreenCamera& screen, const glm::vec3& ce
 std::optional<GizmoHandle> handleAt(const ScreenCamera& screen, const glm::vec3& centre, GizmoMode mode,
                                     const glm::vec2& mouse) {
   std::optional<GizmoHandle> found;
-  float nearest = grabPixels;
+  float nearest = kGrabPixels;
   for (const GizmoHandle& handle : handlesOf(mode)) {
     std::vector<glm::vec2> pixels;
     for (const glm::vec3& corner : outlineOf(screen, centre, handle))

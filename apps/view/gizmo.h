@@ -1,4 +1,5 @@
-// Handles in the picture by which a thing is moved and turned with the mouse. No window, no OpenGL.
+// Declares handles in the picture by which an object is moved and turned with the mouse. The code needs no
+// window and no OpenGL.
 #pragma once
 
 #include <array>
@@ -10,24 +11,24 @@
 
 namespace limn::app {
 
-/// Between the world and the pixels of the window, for a picture of `size` pixels whose upper left corner is
-/// `corner`.
+/// Maps between the world and the pixels of the window, for a picture of `size` pixels whose upper left
+/// corner is `corner`.
 struct ScreenCamera {
   scene::CameraPose camera;
   glm::vec2 corner{0}, size{1};
 
-  /// Nothing for points behind the camera.
+  /// Returns the pixel of a point; nothing for points behind the camera.
   std::optional<glm::vec2> pixel(const glm::vec3& world) const;
   glm::vec3 eye() const;
-  /// Unit direction of what `pixel` shows.
+  /// Returns the unit direction of what `pixel` shows.
   glm::vec3 direction(const glm::vec2& pixel) const;
-  /// Metres that `pixels` cover at a point.
+  /// Returns the metres that `pixels` cover at a point.
   float metres(float pixels, const glm::vec3& world) const;
 };
 
 enum class GizmoMode { move, turn };
 
-/// What can be taken hold of: along the axis, in the plane across it, or around it. Axes are the world's.
+/// Declares what can be dragged: along the axis, in the plane across it, or around it. Axes are the world's.
 struct GizmoHandle {
   enum class Kind { axis, plane, ring } kind = Kind::axis;
   int axis = 0;  ///< 0: x, 1: y, 2: z
@@ -39,23 +40,23 @@ struct GizmoPose {
   glm::mat3 rotation{1};
 };
 
-/// The handles of a mode.
+/// Returns the handles of a mode.
 std::vector<GizmoHandle> handlesOf(GizmoMode mode);
-/// The line (axis), the corners (plane) or the closed line (ring) of a handle, in the world.
+/// Returns the line (axis), the corners (plane) or the closed line (ring) of a handle, in world space.
 std::vector<glm::vec3> outlineOf(const ScreenCamera& screen, const glm::vec3& centre,
                                  const GizmoHandle& handle);
-/// The handle under the mouse.
+/// Returns the handle under the mouse, if there is one.
 std::optional<GizmoHandle> handleAt(const ScreenCamera& screen, const glm::vec3& centre, GizmoMode mode,
                                     const glm::vec2& mouse);
 
-/// A handle taken hold of.
+/// Holds the state of a handle that is being dragged.
 struct GizmoDrag {
   GizmoHandle handle;
   GizmoPose start;
-  glm::vec2 mouse{0};  ///< where
+  glm::vec2 mouse{0};  ///< at the start, pixels
 };
-/// Where the thing is when the mouse is at `mouse`; where it started, as long as that cannot be said (the
-/// plane or axis is seen edge on).
+/// Returns the pose of the object when the mouse is at `mouse`; the pose at the start where that is undefined
+/// (the plane or axis is seen edge-on).
 GizmoPose dragged(const ScreenCamera& screen, const GizmoDrag& drag, const glm::vec2& mouse);
 
 }  // namespace limn::app

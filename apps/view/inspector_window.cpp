@@ -11,7 +11,7 @@
 namespace limn::app {
 namespace {
 
-constexpr const char* channels[] = {"R", "G", "B", "A", "RGB"};
+constexpr const char* kChannels[] = {"R", "G", "B", "A", "RGB"};
 
 const char* targetName(GLenum target) {
   switch (target) {
@@ -86,7 +86,7 @@ void ViewerWindow::inspectorChoices(const frame::PassReport& pass) {
     for (int c = 0; c < 5; ++c) {
       if (c < 4 ? c >= format.components : format.components < 3) continue;
       if (c > 0) ImGui::SameLine();
-      if (ImGui::RadioButton(channels[c], wanted.view.channel == c)) wanted.view.channel = c;
+      if (ImGui::RadioButton(kChannels[c], wanted.view.channel == c)) wanted.view.channel = c;
     }
   }
   nameCell("range",
@@ -114,7 +114,7 @@ void ViewerWindow::inspectorChoices(const frame::PassReport& pass) {
 }
 
 void ViewerWindow::inspectedPicture(const InspectedFacts& facts) {
-  if (!facts.problem.empty() || !facts.texture) {
+  if (!facts.problem.empty() || !facts.image) {
     complaint(facts.problem);
     return;
   }
@@ -124,8 +124,8 @@ void ViewerWindow::inspectedPicture(const InspectedFacts& facts) {
   const glm::vec2 whole(facts.desc.width, facts.desc.height);
   const glm::vec2 part = size / whole;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  ImGui::Image(textureId(*facts.texture), {scale * size.x, scale * size.y}, {0, part.y}, {part.x, 0},
-               {1, 1, 1, 1}, {1, 1, 1, 0.2f});
+  ImGui::Image(textureId(textures_->of(facts.image, GL_NEAREST)), {scale * size.x, scale * size.y},
+               {0, 1 - part.y}, {part.x, 1}, {1, 1, 1, 1}, {1, 1, 1, 0.2f});
   const bool hovered = ImGui::IsItemHovered();
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   std::string text = facts.values ? "" : "values are read when the picture stands still";
@@ -138,7 +138,7 @@ void ViewerWindow::inspectedPicture(const InspectedFacts& facts) {
     const int channel = facts.view.channel < 4 ? facts.view.channel : 0;
     const render::InspectedValues::Range range = facts.values->range(channel);
     text = fmt::format("{}{:.5g} to {:.5g}, mean {:.5g}{}",
-                       facts.values->components > 1 ? channels[channel] + std::string(": ") : "", range.low,
+                       facts.values->components > 1 ? kChannels[channel] + std::string(": ") : "", range.low,
                        range.high, range.mean,
                        range.notFinite > 0 ? fmt::format("; {} not finite (magenta)", range.notFinite) : "");
   }

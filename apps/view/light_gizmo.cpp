@@ -9,21 +9,21 @@
 namespace limn::app {
 namespace {
 
-constexpr float markPixels = 7;
-constexpr ImU32 axisColours[3] = {0xff5a5af0, 0xff5ad05a, 0xfff0965a};  // red, green, blue
-constexpr ImU32 heldColour = 0xff40e0ff, markColour = 0xff80e8ff;
+constexpr float kMarkPixels = 7;
+constexpr ImU32 kAxisColours[3] = {0xff5a5af0, 0xff5ad05a, 0xfff0965a};  // red, green, blue
+constexpr ImU32 kHeldColour = 0xff40e0ff, kMarkColour = 0xff80e8ff;
 
 ImVec2 im(glm::vec2 v) {
   return {v.x, v.y};
 }
 
 bool isDirectional(const LightFacts& light) {
-  return light.light.info.x == glsl::light_directional;
+  return light.light.type == glsl::light_directional;
 }
 
 /// Where a light's handles are: directional ones have no place, theirs is the scene's middle.
 glm::vec3 placeOf(const LightFacts& light, const SceneFacts& scene) {
-  return isDirectional(light) ? scene.bounds.centre() : glm::vec3(light.light.position);
+  return isDirectional(light) ? scene.bounds.centre() : light.light.position;
 }
 
 /// To four digits of the scene's size: what a hand can aim at.
@@ -40,7 +40,7 @@ void drawOutline(const ScreenCamera& screen, const glm::vec3& centre, const Gizm
     pixels.push_back(im(*pixel));
   }
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const ImU32 colour = held ? heldColour : axisColours[handle.axis];
+  const ImU32 colour = held ? kHeldColour : kAxisColours[handle.axis];
   const int count = static_cast<int>(pixels.size());
   if (handle.kind == GizmoHandle::Kind::plane) {
     draw.AddConvexPolyFilled(pixels.data(), count, (colour & 0x00ffffff) | 0x60000000);
@@ -58,16 +58,15 @@ void drawShape(const ScreenCamera& screen, const LightFacts& light, const glm::v
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const auto line = [&](const glm::vec3& a, const glm::vec3& b) {
     const auto from = screen.pixel(a), to = screen.pixel(b);
-    if (from && to) draw.AddLine(im(*from), im(*to), markColour, 1.5f);
+    if (from && to) draw.AddLine(im(*from), im(*to), kMarkColour, 1.5f);
   };
   const glsl::Light& l = light.light;
-  if (l.info.x == glsl::light_rectangle) {
-    const glm::vec3 u = 0.5f * l.axis_u.w * glm::vec3(l.axis_u), v = 0.5f * l.axis_v.w * glm::vec3(l.axis_v);
+  if (l.type == glsl::light_rectangle) {
+    const glm::vec3 u = 0.5f * l.length_u * l.axis_u, v = 0.5f * l.length_v * l.axis_v;
     const glm::vec3 corners[4] = {centre - u - v, centre + u - v, centre + u + v, centre - u + v};
     for (int i = 0; i < 4; ++i) line(corners[i], corners[(i + 1) % 4]);
   }
-  if (l.info.x != glsl::light_point)
-    line(centre, centre + screen.metres(45, centre) * glm::vec3(l.direction));
+  if (l.type != glsl::light_point) line(centre, centre + screen.metres(45, centre) * l.direction);
 }
 
 }  // namespace
@@ -81,15 +80,15 @@ void ViewerWindow::chooseLight(int light) {
   drag_.reset();
 }
 
-void ViewerWindow::editLight(const LightFacts& light, const LightEdit& edit) {
+void ViewerWindow::editLight(const LightFacts& light, const session::LightEdit& edit) {
   lightEdits_[light.name] = edit;
-  if (edit == LightEdit{}) lightEdits_.erase(light.name);
-  state_.scene.lightSettings = printed(lightEdits_);
+  if (edit == session::LightEdit{}) lightEdits_.erase(light.name);
+  state_.scene.lightSettings = session::printed(lightEdits_);
   moved();
 }
 
 void ViewerWindow::drawLights() {
-  if (!facts_->scene || !facts_->picture.texture) return;
+  if (!facts_->scene || !facts_->picture.image) return;
   const ScreenCamera camera = screen();
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.PushClipRect(im(corner_), im(corner_ + glm::vec2(area_)), true);
@@ -100,7 +99,7 @@ void ViewerWindow::drawLights() {
     const glm::vec3 centre = placeOf(light, *facts_->scene);
     const auto pixel = camera.pixel(centre);
     if (!pixel) continue;
-    draw.AddCircle(im(*pixel), markPixels, markColour, 0, chosen ? 3.f : 1.5f);
+    draw.AddCircle(im(*pixel), kMarkPixels, kMarkColour, 0, chosen ? 3.f : 1.5f);
     if (!chosen) continue;
     drawShape(camera, light, centre);
     const GizmoMode mode = isDirectional(light) ? GizmoMode::turn : gizmoMode_;
@@ -119,13 +118,13 @@ bool ViewerWindow::dragLight() {
   if (drag_) {
     const LightFacts& light = facts_->lights[static_cast<size_t>(chosenLight_)];
     const GizmoPose pose = dragged(camera, *drag_, mouse);
-    LightEdit edit = lightEdits_[light.name];
+    session::LightEdit edit = lightEdits_[light.name];
     if (!isDirectional(light))
       edit.position =
           facts_->scene->origin + glm::dvec3(rounded(pose.position, facts_->scene->bounds.radius()));
-    const glm::vec3 angles = glm::round(anglesOf(pose.rotation) * 10.f) / 10.f;
+    const glm::vec3 angles = glm::round(session::anglesOf(pose.rotation) * 10.f) / 10.f;
     const bool turned = drag_->handle.kind == GizmoHandle::Kind::ring;
-    if (light.light.info.x != glsl::light_point && (turned || !edit.rotation)) edit.rotation = angles;
+    if (light.light.type != glsl::light_point && (turned || !edit.rotation)) edit.rotation = angles;
     if (io.MouseDelta.x != 0 || io.MouseDelta.y != 0) editLight(light, edit);
     if (!io.MouseDown[0]) drag_.reset();  // the last movement may come with the release
     return true;
@@ -136,14 +135,15 @@ bool ViewerWindow::dragLight() {
     const GizmoMode mode = isDirectional(light) ? GizmoMode::turn : gizmoMode_;
     const glm::vec3 centre = placeOf(light, *facts_->scene);
     if (const auto handle = light.editable ? handleAt(camera, centre, mode, mouse) : std::nullopt) {
-      drag_ = GizmoDrag{*handle, {centre, rotationOf(light.now.rotation.value_or(glm::vec3(0)))}, mouse};
+      drag_ =
+          GizmoDrag{*handle, {centre, session::rotationOf(light.now.rotation.value_or(glm::vec3(0)))}, mouse};
       return true;
     }
   }
   for (int i = 0; i < count; ++i) {
     const LightFacts& light = facts_->lights[static_cast<size_t>(i)];
-    const auto pixel = camera.pixel(glm::vec3(light.light.position));
-    if (!light.editable || isDirectional(light) || !pixel || glm::distance(*pixel, mouse) > markPixels)
+    const auto pixel = camera.pixel(light.light.position);
+    if (!light.editable || isDirectional(light) || !pixel || glm::distance(*pixel, mouse) > kMarkPixels)
       continue;
     chooseLight(i);
     return true;

@@ -12,25 +12,25 @@ namespace limn::app {
 namespace {
 
 bool isMesh(const LightFacts& light) {
-  return (light.light.info.y & glsl::light_flag_geometry) != 0;
+  return (light.light.flags & glsl::light_flag_geometry) != 0;
 }
 
 const char* kindOf(const LightFacts& light) {
-  switch (light.light.info.x) {
+  switch (light.light.type) {
     case glsl::light_point:
       return "point";
     case glsl::light_spot:
       return "spot";
     case glsl::light_directional:
-      return (light.light.info.y & glsl::light_flag_environment) != 0 ? "environment" : "directional";
+      return (light.light.flags & glsl::light_flag_environment) != 0 ? "environment" : "directional";
     default:
       return isMesh(light) ? "mesh" : "rectangle";
   }
 }
 
 /// Rows of the editor; true if the edit changed.
-bool lightSize(const LightFacts& light, float radius, LightEdit& edit) {
-  const bool directional = light.light.info.x == glsl::light_directional;
+bool lightSize(const LightFacts& light, float radius, session::LightEdit& edit) {
+  const bool directional = light.light.type == glsl::light_directional;
   nameCell(
       directional ? "angle, rad" : "size, m",
       directional ? "Angular diameter" : "Sides; a light that had none becomes a rectangle that faces -z");
@@ -45,8 +45,8 @@ bool lightSize(const LightFacts& light, float radius, LightEdit& edit) {
   return true;
 }
 
-bool lightColour(const LightFacts& light, LightEdit& edit) {
-  const bool directional = light.light.info.x == glsl::light_directional;
+bool lightColour(const LightFacts& light, session::LightEdit& edit) {
+  const bool directional = light.light.type == glsl::light_directional;
   bool changed = false;
   nameCell("colour", "Linear Rec. 709");
   glm::vec3 colour = edit.colour.value_or(*light.now.colour);
@@ -106,7 +106,8 @@ void ViewerWindow::lightPanel() {
     const LightFacts& light = lights[static_cast<size_t>(i)];
     ImGui::PushID(i);
     const std::string title = light.name + (lightEdits_.contains(light.name) ? " *" : "");
-    if (ImGui::Selectable(title.c_str(), i == chosenLight_)) chooseLight(i == chosenLight_ ? scene::none : i);
+    if (ImGui::Selectable(title.c_str(), i == chosenLight_))
+      chooseLight(i == chosenLight_ ? scene::kNone : i);
     tip("Choose it to move, turn and change it; its handles are in the picture. *: changed");
     ImGui::SameLine(ImGui::GetContentRegionMax().x - 90);
     ImGui::TextDisabled("%s", kindOf(light));
@@ -124,11 +125,11 @@ void ViewerWindow::lightEditor(const LightFacts& light) {
         "textured, instanced or deformed).");
     return;
   }
-  const bool directional = light.light.info.x == glsl::light_directional;
+  const bool directional = light.light.type == glsl::light_directional;
   const float radius = facts_->scene ? facts_->scene->bounds.radius() : 1;
   const auto found = lightEdits_.find(light.name);
-  LightEdit edit = found == lightEdits_.end() ? LightEdit{} : found->second;
-  const LightEdit& now = light.now;
+  session::LightEdit edit = found == lightEdits_.end() ? session::LightEdit{} : found->second;
+  const session::LightEdit& now = light.now;
   bool changed = false;
   if (!beginRows("editor")) return;
   if (!directional) {
@@ -144,7 +145,7 @@ void ViewerWindow::lightEditor(const LightFacts& light) {
       changed = true;
     }
   }
-  if (light.light.info.x != glsl::light_point) {
+  if (light.light.type != glsl::light_point) {
     nameCell("rotation",
              "Pitch, yaw and roll in degrees of a light that shines along -z: rolled about z, "
              "pitched about x, turned about y");
@@ -160,7 +161,7 @@ void ViewerWindow::lightEditor(const LightFacts& light) {
   // A light that was moved keeps both, so that the command places it the same whatever animations do.
   if (changed && (edit.position || edit.rotation || (isMesh(light) && edit.size))) {
     if (!directional && !edit.position) edit.position = now.position;
-    if (light.light.info.x != glsl::light_point && !edit.rotation) edit.rotation = now.rotation;
+    if (light.light.type != glsl::light_point && !edit.rotation) edit.rotation = now.rotation;
   }
   if (changed) editLight(light, edit);
   if (!now.size) wrapped("Several nodes share its mesh, so that it can be moved and turned only.");

@@ -1,33 +1,31 @@
 // limn-view: the window as a program.
 #include <CLI/CLI.hpp>
 
+#include "apps/limn/options.h"
 #include "apps/view/viewer.h"
+#include "core/base/version.h"
 #include "core/base/whereabouts.h"
 
 int main(int argc, char** argv) {
   using namespace limn::app;
   limn::leaveWordsAtCrash("limn-view");
   return guarded([&] {
-    CLI::App program("A window on a scene: techniques, parameters, cost and error while one looks",
-                     "limn-view");
-    program.set_version_flag("--version", LIMN_VERSION);
+    CLI::App program("Interactive viewer of a scene: techniques, parameters, cost and error", "limn-view");
+    program.set_version_flag("--version", limn::version());
     program.failure_message([](const CLI::App*, const CLI::Error& error) {
       return std::string("limn-view: ") + error.what() + "; see limn-view --help\n";
     });
     ViewerOptions options;
     options.title = "limn";
-    options.scene.addTo(program);
-    options.techniques.addTo(program);
-    program
-        .add_option("--output-term", options.outputTerm,
-                    "final, visibility, direct, indirect, caustic, media or specular")
-        ->capture_default_str();
+    addSceneFlags(program, options.scene);
+    addSceneFlag(program, options.scene, "term");
+    addTechniqueFlags(program, options.techniques);
     program.add_option("--exposure", options.exposure, "EV")->check(CLI::Range(-60.0, 60.0));
-    program.add_option(
-        "--shaders", options.shaders,
-        "Folder with glsl/ and techniques/ that overrides the embedded shaders, reloaded when they change");
-    program.add_flag("--debug", options.debug, "OpenGL errors end the program");
-    program.add_option("--save", options.save, "Where F5 saves the picture (.exr, .png)")
+    program.add_option("--shaders", options.shaders,
+                       "Folder with glsl/ and techniques/ whose shaders replace the embedded ones; reloaded "
+                       "when a file changes");
+    program.add_flag("--debug", options.debug, "Use an OpenGL debug context: OpenGL errors end the program");
+    program.add_option("--save", options.save, "File to which F5 saves the picture (.exr or .png)")
         ->capture_default_str();
     program
         .add_option("--cache", options.cache,
@@ -46,11 +44,12 @@ int main(int argc, char** argv) {
         ->check(CLI::IsMember({"techniques", "truth"}));
     program
         .add_option("--frames", options.frames,
-                    "Close the window after so many frames with the whole picture; 0: stay")
+                    "Close the window after this many frames that show the complete picture; 0: keep it open")
         ->check(CLI::NonNegativeNumber);
-    program.add_option("--screenshot", options.screenshot, "Write the window to this .png when it closes");
+    program.add_option("--screenshot", options.screenshot,
+                       "When the window closes, write its last content to this .png file");
     program.add_option("--stats", options.stats,
-                       "Write to this .json how long the window's frames took, when it closes");
+                       "When the window closes, write the times of its frames to this .json file");
     try {
       program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -7,7 +7,7 @@
 namespace limn::app {
 namespace {
 
-constexpr float steepest = 1.5f;  // radians: straight up has no upright picture
+constexpr float kSteepest = 1.5f;  // radians: straight up has no upright picture
 
 }  // namespace
 
@@ -17,7 +17,7 @@ Orbit::Orbit(const scene::CameraPose& camera, const scene::Bounds& bounds) : nea
   distance_ = std::max(glm::dot(bounds.centre() - from, forward), 2 * near_);
   target_ = from + distance_ * forward;
   azimuth_ = std::atan2(-forward.x, -forward.z);
-  elevation_ = std::clamp(std::asin(std::clamp(-forward.y, -1.f, 1.f)), -steepest, steepest);
+  elevation_ = std::clamp(std::asin(std::clamp(-forward.y, -1.f, 1.f)), -kSteepest, kSteepest);
 }
 
 glm::vec3 Orbit::back() const {
@@ -31,7 +31,7 @@ glm::vec3 Orbit::right() const {
 
 void Orbit::turn(float right, float up) {
   azimuth_ -= right;
-  elevation_ = std::clamp(elevation_ + up, -steepest, steepest);
+  elevation_ = std::clamp(elevation_ + up, -kSteepest, kSteepest);
 }
 
 void Orbit::approach(float factor) {

@@ -1,4 +1,4 @@
-// A camera that a person moves: around a point, towards it, or freely.
+// Declares a camera that a person moves: around a point, towards it, or freely.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -7,21 +7,21 @@
 
 namespace limn::app {
 
-/// The camera on a sphere around the point it looks at, upright.
+/// Holds an upright camera on a sphere around the point that it looks at.
 class Orbit {
  public:
   Orbit() = default;
-  /// Looks where `camera` does; the point lies in the depth of the middle of `bounds`.
+  /// Makes the orbit look where `camera` does; the point lies at the depth of the middle of `bounds`.
   Orbit(const scene::CameraPose& camera, const scene::Bounds& bounds);
 
-  /// Radians around the point.
+  /// Turns the camera around the point, radians.
   void turn(float right, float up);
-  /// Factor on the distance.
+  /// Multiplies the distance by a factor.
   void approach(float factor);
-  /// The point and the camera together, in parts of the distance.
+  /// Moves the point and the camera together, in fractions of the distance.
   void pan(float right, float up);
   void fly(float right, float up, float forward);
-  /// The same, radians around the camera instead of the point.
+  /// Turns the view around the camera instead of the point, radians.
   void look(float right, float up);
 
   glm::vec3 eye() const { return target_ + distance_ * back(); }

@@ -1,11 +1,13 @@
-// Widgets of declared parameters: name, unit, range, tooltip and reset all come from the declaration.
+// Declares widgets for declared parameters: name, unit, range, tooltip and reset value all come from the
+// declaration.
 #pragma once
 
-#include "core/technique/parameters.h"
+#include "core/base/parameters.h"
 
 namespace limn::app {
 
-/// A row for each parameter. True if one was changed. `defaults`: values that reset gives back.
+/// Shows a row for each parameter and returns whether one was changed. `defaults` holds the values that reset
+/// restores.
 bool parameterWidgets(ParameterValues& values, const ParameterValues& defaults);
 
 }  // namespace limn::app

@@ -1,4 +1,5 @@
-// What the window asks of the thread that renders, and what it is told: plain values, shared by nobody.
+// Declares the orders that the window gives to the rendering thread, and the facts that it gets back: plain
+// values that no two threads share.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +10,19 @@
 #include <string>
 #include <vector>
 
-#include "apps/limn/light_edits.h"
 #include "apps/limn/options.h"
 #include "apps/view/reference_worker.h"
 #include "core/gpu/objects.h"
 #include "core/image/metrics.h"
 #include "core/render/renderer.h"
+#include "core/session/light_edits.h"
 
 namespace limn::app {
 
-/// What the right part of the picture shows.
+/// Says what the right part of the picture shows.
 enum class Beside { nothing, techniques, reference };
 
-/// A texture of the frame that somebody looks at.
+/// Declares which texture of the frame is inspected.
 struct InspectionOrder {
   render::Inspection texture;
   render::InspectionView view;
@@ -31,13 +32,12 @@ struct InspectionOrder {
 
 struct SceneFacts;
 
-/// The picture wanted. The latest order is the one that counts.
+/// Declares the picture that is wanted. Only the latest order counts.
 struct PictureOrder {
   std::shared_ptr<const SceneFacts>
-      of;              ///< the scene it is a picture of; not of one that was opened meanwhile
-  SceneOptions scene;  ///< what is chosen of that: camera, time, lights
+      of;               ///< the scene it is a picture of; not of one that was opened meanwhile
+  SceneQuestion scene;  ///< what is chosen of that: camera, time, lights
   std::vector<render::TechniqueUse> techniques, others;
-  render::Output output = render::Output::final;
   float exposure = 0;  ///< EV
   glm::ivec2 size{0};  ///< pixels; 0: none is wanted, the window is minimised
   Beside beside = Beside::nothing;
@@ -48,7 +48,7 @@ struct PictureOrder {
 bool same(const std::vector<render::TechniqueUse>& a, const std::vector<render::TechniqueUse>& b);
 bool same(const PictureOrder& a, const PictureOrder& b);
 
-/// A picture to be written.
+/// Declares a picture that is to be written.
 struct SaveOrder {
   PictureOrder picture;
   std::filesystem::path file;        ///< .png or .exr
@@ -57,9 +57,9 @@ struct SaveOrder {
   double fps = 30;
 };
 
-/// What is known of the scene that is open.
+/// Holds what is known of the open scene.
 struct SceneFacts {
-  SceneOptions options;
+  SceneQuestion options;
   glm::dvec3 origin{0};  ///< scene::Scene::origin: what bounds and cameras are counted from
   scene::Bounds bounds;
   std::vector<scene::CameraPose> cameras;  ///< at the time it was opened
@@ -70,18 +70,18 @@ struct SceneFacts {
 
 struct LightFacts {
   std::string name;
-  bool editable = false;  ///< belongs to a node of the scene
-  LightEdit now;          ///< of editable ones
+  bool editable = false;   ///< belongs to a node of the scene
+  session::LightEdit now;  ///< of editable ones
   glsl::Light light{};
 };
 
-/// A rendered picture, ready to be drawn by the window's context: bottom row first.
+/// Holds a rendered picture as it is shown.
 struct Shot {
-  std::shared_ptr<const gpu::Texture> texture;  ///< null before the first
+  std::shared_ptr<const Image8> image;  ///< null before the first
   glm::ivec2 size{0};
   bool whole = false;   ///< not reduced
   double ms = 0;        ///< of the frame
-  std::string problem;  ///< why there is none newer; empty: there is
+  std::string problem;  ///< why there is no newer one; empty: there is one
 };
 
 struct FrameFacts {
@@ -91,16 +91,16 @@ struct FrameFacts {
 };
 
 struct InspectedFacts {
-  std::shared_ptr<const gpu::Texture> texture;  ///< RGBA8
+  std::shared_ptr<const Image8> image;  ///< as large as level 0
   gpu::TextureDesc desc;
-  glm::ivec2 size{0};  ///< of the level, the texture's lower left corner
+  glm::ivec2 size{0};  ///< of the level, the image's lower left corner
   int layers = 1;      ///< of the level
   render::InspectionView view;
   std::shared_ptr<const render::InspectedValues> values;  ///< null while things move
   std::string problem;
 };
 
-/// All that the window is told.
+/// Holds everything that the window is told.
 struct PictureFacts {
   std::shared_ptr<const SceneFacts> scene;  ///< null before the first; a new object for each that was opened
   scene::CameraPose camera;                 ///< of the picture
@@ -108,7 +108,7 @@ struct PictureFacts {
   Shot picture, other;
   std::shared_ptr<const FrameFacts> frame;
   std::optional<InspectedFacts> inspected;
-  std::shared_ptr<const gpu::Texture> truth, difference;  ///< top row first
+  std::shared_ptr<const Image8> truth, difference;
   ReferenceWorker::State reference;
   std::optional<Metrics> metrics;
   std::string whyNoMetrics;  ///< empty where nothing is compared
@@ -116,8 +116,8 @@ struct PictureFacts {
   int compiled = 0, toCompile = 0;  ///< programs; 0, 0: none is being compiled
   std::string job;                  ///< what is going on besides the picture: "frame 3 of 60"; empty: nothing
   double jobFraction = 0;
-  std::string message;       ///< what was done or went wrong last
-  uint64_t messages = 0;     ///< how many there were
+  std::string message;       ///< the last result or problem
+  uint64_t messages = 0;     ///< messages so far
   uint64_t pictures = 0;     ///< rendered so far
   bool settled = false;      ///< the newest order is shown, and it stands still
   std::exception_ptr fatal;  ///< ends the program

@@ -5,17 +5,20 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <utility>
 
+#include "apps/view/display_image.h"
 #include "core/base/error.h"
+#include "core/question/question_fields.h"
 
 namespace limn::app {
 namespace {
 
-constexpr double fluentMs = 60;        // a frame while things move
-constexpr double reloadSeconds = 0.5;  // between looks at the shaders on disk
-constexpr int largestReduction = 4;
-constexpr double slower = 2;  // than what had passed of it a whole frame is held for that was given up
+constexpr double kFluentMs = 60;        // a frame while things move
+constexpr double kReloadSeconds = 0.5;  // between looks at the shaders on disk
+constexpr int kLargestReduction = 4;
+constexpr double kSlower = 2;  // than what had passed of it a whole frame is held for that was given up
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -24,30 +27,24 @@ double now() {
 render::Settings settingsOf(const PictureOrder& order, int reduction, int light) {
   render::Settings settings;
   settings.size = glm::max(order.size / reduction, glm::ivec2(1));
-  settings.output = order.output;
+  settings.term = parseTerm(order.scene.term);
   settings.light = light;
   settings.displayEv = order.exposure;
   settings.techniques = order.techniques;
   return settings;
 }
 
-/// Whether relight() would change something for other reasons than time and camera.
-bool sameLights(const SceneOptions& a, const SceneOptions& b) {
-  return a.lightSize == b.lightSize && a.lightSettings == b.lightSettings &&
-         a.environmentRotation == b.environmentRotation && a.environmentScale == b.environmentScale;
-}
-
 /// Whether relight() may write to materials.
-bool changesMeshes(const std::vector<LightFacts>& lights, const SceneOptions& options) {
+bool changesMeshes(const std::vector<LightFacts>& lights, const SceneQuestion& options) {
   return std::ranges::any_of(lights, [&](const LightFacts& light) {
-    return (light.light.info.y & glsl::light_flag_geometry) != 0 &&
+    return (light.light.flags & glsl::light_flag_geometry) != 0 &&
            std::ranges::any_of(options.lightSettings, [&](const std::string& setting) {
              return setting.starts_with(light.name + ".");
            });
   });
 }
 
-std::shared_ptr<const SceneFacts> factsOf(const View& view, const SceneOptions& options) {
+std::shared_ptr<const SceneFacts> factsOf(const session::View& view, const SceneQuestion& options) {
   auto facts = std::make_shared<SceneFacts>();
   facts->options = options;
   facts->origin = view.scene.origin;
@@ -70,11 +67,9 @@ PictureStudio::PictureStudio(gpu::Device& device, std::filesystem::path shaders,
     : device_(device),
       shaders_(std::move(shaders)),
       publish_(std::move(publish)),
-      pool_(device),
       reference_(std::move(cache), std::move(news)) {}
 
 void PictureStudio::publish() {
-  device_.gl().Finish();  // another context draws what was made here
   publish_(facts_);
   if (std::exchange(printed_, facts_.messages) == facts_.messages) return;
   std::puts(facts_.message.c_str());  // for whoever started the program from a terminal
@@ -86,7 +81,7 @@ void PictureStudio::say(std::string message) {
   ++facts_.messages;
 }
 
-std::unique_ptr<ShownPicture> PictureStudio::makePicture(const View& view) {
+std::unique_ptr<ShownPicture> PictureStudio::makePicture(const session::View& view) {
   auto picture = std::make_unique<ShownPicture>(device_, view, shaders_);
   picture->renderer().setCompileProgress([this](int compiled, int wanted) {
     facts_.compiled = compiled;
@@ -97,12 +92,12 @@ std::unique_ptr<ShownPicture> PictureStudio::makePicture(const View& view) {
 }
 
 /// Replaces what is shown; leaves everything as it is when that fails.
-void PictureStudio::open(const SceneOptions& wanted) {
-  facts_.job = "opening " + wanted.scene.filename().string();
+void PictureStudio::open(const SceneQuestion& wanted) {
+  facts_.job = "opening " + std::filesystem::path(wanted.scene).filename().string();
   publish();
   facts_.job.clear();
   try {
-    auto view = std::make_shared<View>(app::open(wanted));
+    auto view = std::make_shared<session::View>(session::open(wanted, warn));
     auto picture = makePicture(*view);
     reference_.stop();
     truthKey_.clear();
@@ -114,7 +109,7 @@ void PictureStudio::open(const SceneOptions& wanted) {
     facts_.settled = false;
     wholeMs_ = 0;
     facts_.scene = factsOf(*view_, wanted);
-    say("opened " + wanted.scene.string());
+    say("opened " + wanted.scene);
   } catch (const std::exception& error) {
     if (!facts_.scene) facts_.fatal = std::current_exception();
     say(error.what());
@@ -123,7 +118,7 @@ void PictureStudio::open(const SceneOptions& wanted) {
 }
 
 void PictureStudio::reloadShaders() {
-  if (shaders_.empty() || now() - lastReload_ < reloadSeconds) return;
+  if (shaders_.empty() || now() - lastReload_ < kReloadSeconds) return;
   lastReload_ = now();
   bool changed = picture_->reloadShaders();
   if (other_) changed |= other_->reloadShaders();
@@ -137,8 +132,9 @@ void PictureStudio::reloadShaders() {
 
 /// Time, camera and lights of the scene as the order has them.
 void PictureStudio::place(const PictureOrder& order) {
-  const SceneOptions& s = order.scene;
-  const bool relit = !placed_ || !sameLights(s, *placed_);
+  const SceneQuestion& s = order.scene;
+  // For other reasons than time and camera.
+  const bool relit = !placed_ || !sameFields(QuestionEffect::lights, s, *placed_);
   const bool turned = !placed_ || s.environmentRotation != placed_->environmentRotation ||
                       s.environmentScale != placed_->environmentScale;
   const bool painted =
@@ -146,18 +142,19 @@ void PictureStudio::place(const PictureOrder& order) {
       (changesMeshes(facts_.lights, s) || (placed_ && changesMeshes(facts_.lights, *placed_)));
   if (turned || painted) reference_.stop();  // it reads the environment and what surfaces emit
   if (!relit) {
-    moveTo(*view_, s, s.time);
+    session::moveTo(*view_, s, s.time);
   } else {
     placed_.reset();  // should relight() fail
     view_->time = s.time;
-    relight(*view_, s);
+    session::relight(*view_, s);
     placed_ = s;
     if (turned) {
       picture_->forget();
       if (other_) other_->forget();
     }
   }
-  view_->light = s.light.empty() ? scene::none : findNamed("light", s.light, view_->pose.lightNames);
+  view_->light =
+      s.light.empty() ? scene::kNone : session::findNamed("light", s.light, view_->pose.lightNames);
 }
 
 PictureStudio::Outcome PictureStudio::renderShot(ShownPicture& picture, const render::Settings& settings,
@@ -169,7 +166,7 @@ PictureStudio::Outcome PictureStudio::renderShot(ShownPicture& picture, const re
   facts_.compiled = facts_.toCompile = 0;
   shot.problem = picture.problem();
   if (outcome != Outcome::done) return outcome;
-  shot.texture = pool_.copyOf(*picture.display(), GL_LINEAR);
+  shot.image = readBack(*picture.display());
   shot.size = settings.size;
   shot.whole = settings.size == order.size;
   shot.ms = picture.frameMs();
@@ -213,7 +210,6 @@ PictureStudio::Outcome PictureStudio::render(const PictureOrder& order,
   ++facts_.pictures;
   describe();
   inspect(order);
-  pool_.trim();
   return outcome;
 }
 
@@ -224,8 +220,8 @@ void PictureStudio::describe() {
     LightFacts& light = facts_.lights[i];
     light.name = view_->pose.lightNames[i];
     light.light = view_->pose.lights[i];
-    light.editable = isEditable(view_->scene, view_->pose, static_cast<int>(i));
-    light.now = describeLight(view_->scene, view_->pose, static_cast<int>(i));
+    light.editable = session::isEditable(view_->scene, view_->pose, static_cast<int>(i));
+    light.now = session::describeLight(view_->scene, view_->pose, static_cast<int>(i));
   }
   if (!facts_.picture.problem.empty()) return;
   auto frame = std::make_shared<FrameFacts>();
@@ -239,7 +235,7 @@ void PictureStudio::describe() {
 bool PictureStudio::follow(const PictureOrder& order, const std::function<bool()>& outdated) {
   int wanted = 1;
   if (order.moving)
-    while (wanted < largestReduction && wholeMs_ / (wanted * wanted) > fluentMs) wanted *= 2;
+    while (wanted < kLargestReduction && wholeMs_ / (wanted * wanted) > kFluentMs) wanted *= 2;
   PictureOrder before = rendered_.value_or(order);
   before.moving = order.moving;  // which alone does not change a whole picture
   const bool again = !rendered_ || wanted != reduction_ || !same(order, before);
@@ -250,11 +246,11 @@ bool PictureStudio::follow(const PictureOrder& order, const std::function<bool()
   facts_.metrics.reset();
   const double start = now();
   const auto milliseconds = [&] { return 1000 * (now() - start); };
-  const bool smallest = order.moving && reduction_ == largestReduction;
-  const auto cancelled = [&] { return !smallest && milliseconds() > fluentMs && outdated(); };
+  const bool smallest = order.moving && reduction_ == kLargestReduction;
+  const auto cancelled = [&] { return !smallest && milliseconds() > kFluentMs && outdated(); };
   if (render(order, cancelled) == Outcome::cancelled) {
     rendered_.reset();
-    wholeMs_ = std::max(wholeMs_, slower * milliseconds() * reduction_ * reduction_);
+    wholeMs_ = std::max(wholeMs_, kSlower * milliseconds() * reduction_ * reduction_);
     return false;
   }
   publish();

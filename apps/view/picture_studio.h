@@ -1,4 +1,5 @@
-// What the rendering thread does, one step at a time: the scene, the pictures of it, what is read of them.
+// Does the work of the rendering thread, one step at a time: the scene, its pictures, and what is read from
+// them.
 #pragma once
 
 #include <functional>
@@ -6,25 +7,24 @@
 
 #include "apps/view/picture_order.h"
 #include "apps/view/shown_picture.h"
-#include "apps/view/texture_pool.h"
 
 namespace limn::app {
 
-/// All of it happens on one thread, in whose context `device` is.
+/// Renders the pictures of the viewer. All calls come from one thread, in whose context `device` is.
 class PictureStudio {
  public:
-  /// `publish` is given the facts whenever they changed; `news` is called from other threads when step() has
-  /// something to do.
+  /// Takes two callbacks: `publish` gets the facts whenever they changed; `news` is called from other threads
+  /// when step() has something to do.
   PictureStudio(gpu::Device& device, std::filesystem::path shaders, std::filesystem::path cache,
                 std::function<void(const PictureFacts&)> publish, std::function<void()> news);
 
-  void open(const SceneOptions& wanted);
-  /// Shows what is ordered, as far as nothing has to be waited for. A frame that has begun is given up
-  /// between two of its passes when `outdated` says that something else is wanted; one that something else is
-  /// always wanted of, because things move, is then made smaller, and the smallest is never given up.
+  void open(const SceneQuestion& wanted);
+  /// Shows what is ordered, as far as it need not wait for anything. When `outdated` says that something else
+  /// is wanted, a frame that has begun is abandoned between two of its passes. If every frame is outdated
+  /// because things move, the picture is made smaller; the smallest one is never abandoned.
   void step(const PictureOrder& order, const std::function<bool()>& outdated);
   void save(const SaveOrder& order);
-  /// The next frame of a sequence.
+  /// Saves the next frame of a sequence.
   void saveNext();
   void cancelSaving();
   bool saving() const { return sequence_.has_value(); }
@@ -36,7 +36,7 @@ class PictureStudio {
   };
   void say(std::string message);
   void publish();
-  std::unique_ptr<ShownPicture> makePicture(const View& view);
+  std::unique_ptr<ShownPicture> makePicture(const session::View& view);
   void reloadShaders();
   void place(const PictureOrder& order);
   using Outcome = ShownPicture::Outcome;
@@ -56,10 +56,9 @@ class PictureStudio {
   gpu::Device& device_;
   std::filesystem::path shaders_;
   std::function<void(const PictureFacts&)> publish_;
-  TexturePool pool_;
-  std::shared_ptr<View> view_;
+  std::shared_ptr<session::View> view_;
   std::unique_ptr<ShownPicture> picture_, other_;
-  std::optional<SceneOptions> placed_;  ///< whose lights the scene has
+  std::optional<SceneQuestion> placed_;  ///< whose lights the scene has
   std::optional<PictureOrder> rendered_;
   int reduction_ = 1;      ///< of the last picture
   double wholeMs_ = 0;     ///< estimate for a frame that is not reduced

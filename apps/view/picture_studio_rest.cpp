@@ -11,23 +11,20 @@
 #include "apps/view/picture_studio.h"
 #include "apps/view/view_state.h"
 #include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/question/question_fields.h"
 
 namespace limn::app {
 namespace {
 
-/// What the reference is asked for where the picture shows `output`.
-reference::Term termOf(render::Output output) {
-  return reference::termFromName(std::string(render::name(output)));
-}
-
 /// Everything that determines the reference's picture.
 std::string truthKeyOf(const PictureOrder& order) {
-  const SceneOptions& s = order.scene;
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{} x {}|{}|{}|{}", s.camera, s.eye, s.target, s.fov,
-                     s.time, s.light, s.lightSize, fmt::join(s.lightSettings, ";"), s.environmentRotation,
-                     s.environmentScale, order.size.x, order.size.y, render::name(order.output),
-                     bouncesOf(order.output, order.techniques),
-                     render::interfacesOf(order.output, order.techniques));
+  SceneQuestion question = order.scene;
+  question.width = order.size.x;
+  question.height = order.size.y;
+  const Term term = parseTerm(question.term);
+  return fmt::format("{}|{}|{}", questionText(question), bouncesOf(term, order.techniques),
+                     render::interfacesOf(term, order.techniques));
 }
 
 /// Of one channel, or of the first three; black and white where all values are equal.
@@ -60,16 +57,16 @@ bool PictureStudio::followReference(const PictureOrder& order) {
   const bool wanted = !key.empty() && !order.moving && facts_.picture.problem.empty();
   if (wanted && truthKey_.empty() && !reference_.busy()) {
     truthKey_ = key;
-    reference_.start({view_, view_->pose, view_->camera, order.size, termOf(order.output), view_->light,
-                      bouncesOf(order.output, order.techniques),
-                      render::interfacesOf(order.output, order.techniques)});
+    const Term term = parseTerm(order.scene.term);
+    reference_.start({view_, view_->pose, view_->camera, order.size, term, view_->light,
+                      bouncesOf(term, order.techniques), render::interfacesOf(term, order.techniques)});
   }
   std::optional<Image> finer = reference_.take();
   const bool fresh = finer && !truthKey_.empty();
   if (fresh) truth_ = std::move(finer);
   if (truth_ && (fresh || truthExposure_ != order.exposure)) {
     truthExposure_ = order.exposure;
-    facts_.truth = pool_.of(toneMapped(*truth_, order.exposure));
+    facts_.truth = std::make_shared<const Image8>(toneMapped(*truth_, order.exposure));
     compared_ = false;
   }
   const ReferenceWorker::State before = std::exchange(facts_.reference, reference_.state());
@@ -98,7 +95,7 @@ bool PictureStudio::compare(const PictureOrder& order) {
     const Image against = order.beside == Beside::reference ? *truth_ : other_->read();
     facts_.metrics =
         compareImages(image, against, {.exposureEv = order.exposure, .useMask = false, .maskTermRange = {}});
-    facts_.difference = pool_.of(signedDifference(image, against, {}));
+    facts_.difference = std::make_shared<const Image8>(signedDifference(image, against, {}));
     facts_.whyNoMetrics.clear();
   } catch (const Error& error) {
     noMetrics(error.what());
@@ -126,7 +123,7 @@ void PictureStudio::inspect(const PictureOrder& order) {
   facts.layers = inspector->layersOf(facts.view.level);
   facts.view.layer = std::clamp(facts.view.layer, 0, facts.layers - 1);
   facts.size = inspector->sizeOf(facts.view.level);
-  facts.texture = pool_.copyOf(inspector->display(), GL_NEAREST);
+  facts.image = readBack(inspector->display());
 }
 
 bool PictureStudio::inspectAtRest(const PictureOrder& order) {

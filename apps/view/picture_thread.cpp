@@ -11,13 +11,13 @@
 namespace limn::app {
 namespace {
 
-constexpr std::chrono::milliseconds idle{250};  // between looks at the shaders on disk
+constexpr std::chrono::milliseconds kIdle{250};  // between looks at the shaders on disk
 
 }  // namespace
 
 struct PictureThread::Mailbox {
   struct Cancel {};
-  using Job = std::variant<SceneOptions, SaveOrder, Cancel>;
+  using Job = std::variant<SceneQuestion, SaveOrder, Cancel>;
 
   std::mutex mutex;
   std::condition_variable_any wake;
@@ -32,7 +32,6 @@ struct PictureThread::Mailbox {
       const std::scoped_lock lock(mutex);
       facts.swap(next);
     }
-    next.reset();  // its textures may be used again
     glfwPostEmptyEvent();
   }
   void notify() {
@@ -52,17 +51,13 @@ struct PictureThread::Mailbox {
   }
 };
 
-PictureThread::PictureThread(Context& window, const PictureThreadOptions& options)
+PictureThread::PictureThread(const PictureThreadOptions& options)
     : options_(options), mailbox_(std::make_unique<Mailbox>()) {
-  context_ = Context::create({.backend = Backend::glfw,
-                              .debug = options.debug,
-                              .width = 16,
-                              .height = 16,
-                              .visible = false,
-                              .title = "",
-                              .share = &window});
-  device_ = std::make_unique<gpu::Device>(*context_);
-  window.makeCurrent();  // which releases the new one, for the thread
+  {
+    const ContextScope none(nullptr);  // gives the caller its own back
+    context_ = Context::create({.backend = Backend::egl, .debug = options.debug});
+    device_ = std::make_unique<gpu::Device>(*context_);
+  }
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
@@ -88,14 +83,14 @@ void PictureThread::run(const std::stop_token& stop) {
       {
         std::unique_lock lock(box.mutex);
         if (!studio.saving())
-          box.wake.wait_for(lock, stop, idle, [&] { return box.order || !box.jobs.empty() || box.news; });
+          box.wake.wait_for(lock, stop, kIdle, [&] { return box.order || !box.jobs.empty() || box.news; });
         if (box.order) order = std::move(*box.order);
         box.order.reset();
         box.news = false;
         jobs.swap(box.jobs);
       }
       for (const Mailbox::Job& job : jobs) {
-        if (const auto* scene = std::get_if<SceneOptions>(&job)) studio.open(*scene);
+        if (const auto* scene = std::get_if<SceneQuestion>(&job)) studio.open(*scene);
         if (const auto* save = std::get_if<SaveOrder>(&job)) studio.save(*save);
         if (std::holds_alternative<Mailbox::Cancel>(job)) studio.cancelSaving();
       }
@@ -108,10 +103,6 @@ void PictureThread::run(const std::stop_token& stop) {
     failed.fatal = std::current_exception();
     box.publish(failed);
   }
-  {
-    const std::scoped_lock lock(box.mutex);
-    if (!box.facts->fatal) box.facts = std::make_shared<PictureFacts>();
-  }
   Context::release();
 }
 
@@ -123,7 +114,7 @@ void PictureThread::show(PictureOrder order) {
   mailbox_->wake.notify_one();
 }
 
-void PictureThread::open(SceneOptions scene) {
+void PictureThread::open(SceneQuestion scene) {
   mailbox_->push(std::move(scene));
 }
 

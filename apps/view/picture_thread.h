@@ -1,5 +1,8 @@
-// The thread that renders, with an OpenGL context of its own: whatever it takes, a compilation, a slow
-// technique, a scene from disk, the window goes on.
+// Declares the rendering thread, with an OpenGL context of its own, so that the window keeps responding
+// whatever a compilation, a slow technique or a scene from disk takes. The two contexts share nothing;
+// pictures pass through memory. Mesa's llvmpipe crashes where one context of a display draws while another
+// shows its frame (it walks the lists of resources of all contexts without a lock), so that a shared picture
+// would crash the viewer.
 #pragma once
 
 #include <condition_variable>
@@ -22,22 +25,22 @@ struct PictureThreadOptions {
 
 class PictureThread {
  public:
-  /// `window`'s context is current on the calling thread, the main one, and stays so. It must outlive this.
-  PictureThread(Context& window, const PictureThreadOptions& options);
-  /// What facts() gave must have been dropped. On the main thread.
+  /// Starts the thread. The context that is current on the calling thread stays current. Throws Error when no
+  /// EGL context can be created.
+  explicit PictureThread(const PictureThreadOptions& options);
   ~PictureThread();
   PictureThread(const PictureThread&) = delete;
   PictureThread& operator=(const PictureThread&) = delete;
 
   // None of these waits.
-  /// Replaces the order before.
+  /// Replaces the previous order.
   void show(PictureOrder order);
   /// Replaces the scene, unless that fails.
-  void open(SceneOptions scene);
+  void open(SceneQuestion scene);
   void save(SaveOrder order);
   /// Ends a sequence that is being saved.
   void cancelSaving();
-  /// The newest; the same object as before where nothing changed. Never null.
+  /// Returns the newest facts; the same object as before where nothing changed. Never null.
   std::shared_ptr<const PictureFacts> facts() const;
 
  private:

@@ -8,9 +8,9 @@
 namespace limn::app {
 namespace {
 
-constexpr int firstSpp = 4, lastSpp = 1 << 14;
-constexpr int firstKeptSpp = 64;  // coarser ones are there again in no time
-constexpr double finest = 0.002;  // noise at which nothing more is to be seen
+constexpr int kFirstSpp = 4, kLastSpp = 1 << 14;
+constexpr int kFirstKeptSpp = 64;  // coarser ones are there again in no time
+constexpr double kFinest = 0.002;  // noise at which nothing more is to be seen
 
 }  // namespace
 
@@ -66,7 +66,7 @@ void ReferenceWorker::deliver(const std::stop_token& stop, reference::Result res
 int ReferenceWorker::resume(const std::stop_token& stop, const reference::Request& wanted) {
   if (cache_.empty()) return 0;
   const reference::Cache cache(cache_);
-  for (int spp = lastSpp; spp >= firstKeptSpp && !stop.stop_requested(); spp /= 4) {
+  for (int spp = kLastSpp; spp >= kFirstKeptSpp && !stop.stop_requested(); spp /= 4) {
     reference::Request request = wanted;
     request.spp = spp;
     if (auto found = cache.get(reference::contentHash(request))) {
@@ -84,7 +84,7 @@ void ReferenceWorker::work(const std::stop_token& stop, const Task& task) {
   request.width = task.size.x;
   request.height = task.size.y;
   request.term = task.term;
-  request.light = task.light == scene::none ? reference::allLights : task.light;
+  request.light = task.light == scene::kNone ? reference::kAllLights : task.light;
   request.bounces = task.bounces;
   request.interfaces = task.interfaces;
   request.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
@@ -99,14 +99,14 @@ void ReferenceWorker::work(const std::stop_token& stop, const Task& task) {
     return true;
   };
   const int found = resume(stop, request);
-  for (request.spp = found > 0 ? 4 * found : firstSpp; request.spp <= lastSpp; request.spp *= 4) {
-    if (stop.stop_requested() || (found > 0 && state().noise < finest)) return;
+  for (request.spp = found > 0 ? 4 * found : kFirstSpp; request.spp <= kLastSpp; request.spp *= 4) {
+    if (stop.stop_requested() || (found > 0 && state().noise < kFinest)) return;
     reference::Result result = reference::render(request);
     const double noise = result.noiseRms;
-    if (!cache_.empty() && request.spp >= firstKeptSpp)
+    if (!cache_.empty() && request.spp >= kFirstKeptSpp)
       reference::Cache(cache_).put(reference::contentHash(request), result);
     deliver(stop, std::move(result), false);
-    if (noise < finest) return;
+    if (noise < kFinest) return;
   }
 }
 

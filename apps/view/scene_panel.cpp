@@ -6,14 +6,12 @@
 
 #include "apps/view/viewer_style.h"
 #include "apps/view/viewer_window.h"
+#include "core/question/term.h"
 
 namespace limn::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* outputs[] = {"final",   "visibility", "direct",  "indirect",
-                                   "caustic", "media",      "specular"};
 
 bool isEnvironment(const fs::path& file) {
   return file.extension() == ".hdr" || file.extension() == ".exr";
@@ -27,6 +25,19 @@ std::vector<fs::path> environmentsIn(const fs::path& folder) {
     if (isEnvironment(entry.path())) files.push_back(entry.path());
   std::ranges::sort(files);
   return files;
+}
+
+/// Returns true where another term was chosen.
+bool termChooser(std::string& term) {
+  if (!ImGui::BeginCombo("##shows", term.c_str())) return false;
+  const std::string before = term;
+  for (const TermInfo& info : kTerms) {
+    if (!contains(kPicturedTerms, info.term)) continue;
+    if (ImGui::Selectable(info.name, before == info.name)) term = info.name;
+    tip(info.help);
+  }
+  ImGui::EndCombo();
+  return term != before;
 }
 
 }  // namespace
@@ -79,11 +90,7 @@ void ViewerWindow::scenePanel() {
     nameCell("camera", "Of the scene; turning and flying makes it free");
     cameraChooser();
     nameCell("shows", "The whole light, or one part of it; visibility is that of one light");
-    int output = static_cast<int>(state_.output);
-    if (ImGui::Combo("##shows", &output, outputs, IM_ARRAYSIZE(outputs))) {
-      state_.output = static_cast<render::Output>(output);
-      moved();
-    }
+    if (termChooser(state_.scene.term)) moved();
     nameCell("exposure", "The picture is shown as clamp(2^EV L), sRGB-encoded");
     if (ImGui::SliderFloat("##exposure", &state_.exposure, -10, 10, "%.2f EV")) moved();
     if (facts_->scene->animated) timePanel();
@@ -92,15 +99,15 @@ void ViewerWindow::scenePanel() {
 }
 
 void ViewerWindow::environmentPanel() {
-  SceneOptions wanted = state_.scene;
+  SceneQuestion wanted = state_.scene;
   if (!beginRows("environment")) return;
   nameCell("map",
            "Equirectangular .hdr or .exr: those beside the present one, and limn's own. One that is "
            "dropped on the window is taken, too");
-  const fs::path& now = state_.scene.environment;
+  const fs::path now = state_.scene.environment;
   if (ImGui::BeginCombo("##map", now.empty() ? "none" : now.filename().string().c_str())) {
     const auto offer = [&](const std::string& title, const fs::path& file) {
-      if (ImGui::Selectable(title.c_str(), file == now)) wanted.environment = file;
+      if (ImGui::Selectable(title.c_str(), file == now)) wanted.environment = file.string();
     };
     offer("none", {});
     offer("sky", "sky");
@@ -124,16 +131,17 @@ void ViewerWindow::environmentPanel() {
     nameCell("as lights",
              "Area lights at infinity stand for it, so that every technique shadows it: how much "
              "of a light's energy a row of texels must add for it to grow; smaller: more lights");
-    auto threshold = static_cast<float>(state_.scene.environmentLights.threshold);
+    auto threshold = static_cast<float>(state_.scene.environmentLights);
     ImGui::SliderFloat("##threshold", &threshold, 0, 0.1f, threshold > 0 ? "%.3f" : "no",
                        ImGuiSliderFlags_AlwaysClamp);
     environmentThreshold_ = ImGui::IsItemActive() ? threshold : environmentThreshold_;
     if (ImGui::IsItemDeactivatedAfterEdit())
-      wanted.environmentLights.threshold = environmentThreshold_ < 1e-3f ? 0 : environmentThreshold_;
+      wanted.environmentLights = environmentThreshold_ < 1e-3f ? 0 : environmentThreshold_;
   }
   endRows();
-  if (!(wanted.environment == now) || !(wanted.environmentLights == state_.scene.environmentLights)) {
-    if (wanted.environment.empty()) wanted.environmentLights.threshold = 0;
+  if (wanted.environment != state_.scene.environment ||
+      wanted.environmentLights != state_.scene.environmentLights) {
+    if (wanted.environment.empty()) wanted.environmentLights = 0;
     open(wanted);
   }
 }

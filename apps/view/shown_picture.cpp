@@ -10,7 +10,7 @@ namespace limn::app {
 namespace {
 
 bool same(const render::Settings& a, const render::Settings& b) {
-  return a.size == b.size && a.output == b.output && a.light == b.light && a.displayEv == b.displayEv &&
+  return a.size == b.size && a.term == b.term && a.light == b.light && a.displayEv == b.displayEv &&
          a.inspect == b.inspect && app::same(a.techniques, b.techniques);
 }
 
@@ -28,7 +28,7 @@ ShownPicture::Outcome ShownPicture::render(const scene::CameraPose& camera, doub
   try {
     if (!configured_) {
       shown_ = false;
-      render::checkTechniques(settings_.techniques, settings_.output);
+      render::checkTechniques(settings_.techniques, settings_.term);
       renderer_.configure(settings_);
       configured_ = true;
     }

@@ -1,38 +1,38 @@
-// One picture of the view: a renderer and what the panels tell about its last frame.
+// Holds one picture of the view: a renderer and what the panels show about its last frame.
 #pragma once
 
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "apps/limn/options.h"
 #include "core/gpu/device.h"
 #include "core/render/renderer.h"
+#include "core/session/view.h"
 
 namespace limn::app {
 
 class ShownPicture {
  public:
-  ShownPicture(gpu::Device& device, const View& view, std::filesystem::path shaders)
+  ShownPicture(gpu::Device& device, const session::View& view, std::filesystem::path shaders)
       : device_(device), renderer_(device, view.scene, std::move(shaders)) {}
 
-  /// Takes effect with the next render(), if it says something new.
+  /// Sets what the next render() shows, if the settings have changed.
   void configure(const render::Settings& settings);
   enum class Outcome {
     done,
     failed,     ///< problem() says why; there is no picture then
-    cancelled,  ///< the picture is as it was
+    cancelled,  ///< the picture is unchanged
   };
   /// Renders one frame. `cancelled` is asked between its passes.
   Outcome render(const scene::CameraPose& camera, double time, int animation, bool timed,
                  const frame::FrameGraph::Cancelled& cancelled);
-  /// Compiles the shaders that changed on disk; true if any file did. Of those that do not compile the last
-  /// good version goes on, and shaderProblem() says why.
+  /// Compiles the shaders that changed on disk and returns whether any file did. Where a shader does not
+  /// compile, its last good version stays in use, and shaderProblem() says why.
   bool reloadShaders();
-  /// What the scene's environment or anything else that the renderer keeps may have changed.
+  /// Says that the scene's environment, or anything else that the renderer keeps, may have changed.
   void forget() { configured_ = false; }
 
-  /// The tone-mapped picture, bottom row first; null before the first one.
+  /// Returns the tone-mapped picture, bottom row first; null before the first one.
   const gpu::Texture* display() const { return shown_ ? &renderer_.display() : nullptr; }
   Image read() const { return renderer_.read(); }
   glm::ivec2 size() const { return settings_.size; }

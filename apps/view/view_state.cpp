@@ -1,10 +1,12 @@
 #include "apps/view/view_state.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "core/base/shell.h"
+#include "core/question/question_fields.h"
 
 namespace limn::app {
 namespace {
@@ -68,114 +70,71 @@ class CommandLine {
 
 }  // namespace
 
-void setCamera(SceneOptions& options, const Orbit& orbit, const glm::dvec3& origin) {
+void setCamera(SceneQuestion& options, const Orbit& orbit, const glm::dvec3& origin) {
   options.eye = worldText(orbit.eye(), origin);
   options.target = worldText(orbit.target(), origin);
 }
 
 void dropRivals(std::vector<render::TechniqueUse>& techniques, const TechniquePlugin& added) {
-  const auto claims = [](const TechniquePlugin& plugin, TermSet terms) {
-    return (plugin.info->terms & terms) != 0;
-  };
+  const TermSet claimed = exclusiveWith(added.info->terms);
   const auto rivals = [&](const render::TechniqueUse& use) {
-    if (use.plugin == &added) return false;
-    for (const TermSet alone :
-         {Term::visibility | Term::direct, termSet(Term::environment), termSet(Term::specular)})
-      if (claims(*use.plugin, alone) && claims(added, alone)) return true;
-    return false;
+    return use.plugin != &added && (use.plugin->info->terms & claimed) != 0;
   };
   std::erase_if(techniques, rivals);
 }
 
 std::string renderCommand(const ViewState& state, const std::filesystem::path& out) {
-  const SceneOptions& s = state.scene;
-  const SceneOptions standard;
-  CommandLine line("limn render " + shellQuoted(s.scene.string()));
+  const SceneQuestion& question = state.scene;
+  CommandLine line("limn render " + shellQuoted(question.scene));
   line.add("--technique", techniqueNames(state.techniques));
   for (const render::TechniqueUse& use : state.techniques)
     for (const auto& [name, value] : changed(use))
       line.add("--set", fmt::format("{}.{}={}", use.plugin->info->name, name, value));
-  line.add("--camera", s.camera)
-      .add("--eye", s.eye)
-      .add("--target", s.target)
-      .add("--fov", s.fov, standard.fov);
-  line.add("--environment", s.environment.string())
-      .add("--environment-rotation", s.environmentRotation, standard.environmentRotation)
-      .add("--environment-scale", s.environmentScale, standard.environmentScale)
-      .add("--environment-lights", s.environmentLights.threshold, standard.environmentLights.threshold)
-      .add("--environment-resolution", s.environmentLights.resolution, standard.environmentLights.resolution)
-      .add("--environment-shape", s.environmentLights.shape, standard.environmentLights.shape)
-      .add("--environment-reflection", s.environmentReflection, standard.environmentReflection);
-  line.add("--time", s.time, standard.time).add("--animation", s.animation);
-  line.add("--light", s.light).add("--light-size", s.lightSize, standard.lightSize);
-  for (const std::string& setting : s.lightSettings) line.add("--set-light", setting);
-  line.add("--sigma-a", s.sigmaA).add("--sigma-s", s.sigmaS).add("--grid", s.grid);
-  if (s.g) line.add("--g", fmt::format("{}", *s.g));
-  line.add("--default-lights", s.defaultLights, standard.defaultLights);
-  line.add("--size", s.size);
-  line.add("--output-term", std::string(render::name(state.output)), std::string("final"));
+  for (const QuestionField& field : questionFields().subspan(1))  // the scene stands before them
+    if (!isDefault(field, question))
+      for (const std::string& value : printed(field, question)) line.add(field.flag, value);
   line.add("--exposure", state.exposure, 0.f);
   return line.add("--out", out.string()).text();
 }
 
-int bouncesOf(render::Output output, const std::vector<render::TechniqueUse>& techniques) {
-  if (output == render::Output::indirect) return 1;
+int bouncesOf(Term term, const std::vector<render::TechniqueUse>& techniques) {
+  if (term == Term::indirect) return 1;
   const auto indirect = [](const render::TechniqueUse& use) {
     return contains(use.plugin->info->terms, Term::indirect);
   };
-  return output == render::Output::final && std::ranges::any_of(techniques, indirect) ? 1 : 0;
+  return term == Term::final && std::ranges::any_of(techniques, indirect) ? 1 : 0;
 }
 
 namespace {
 
-class TomlTable {
- public:
-  /// Left out where `value` is empty.
-  TomlTable& text(const char* key, const std::string& value) {
-    if (!value.empty()) text_ += fmt::format("{} = {}\n", key, tomlText(value));
-    return *this;
+/// The field's value as a suite has it.
+std::string tomlValue(const QuestionField& field, const SceneQuestion& question) {
+  std::vector<std::string> values = printed(field, question);
+  switch (field.kind) {
+    case QuestionKind::real:
+    case QuestionKind::optionalReal:
+    case QuestionKind::integer:
+      return values.front();
+    case QuestionKind::text:
+    case QuestionKind::choice:
+    case QuestionKind::coefficient:
+    case QuestionKind::size:
+      return tomlText(values.front());
+    case QuestionKind::texts:
+      break;
   }
-  TomlTable& number(const char* key, double value) {
-    text_ += fmt::format("{} = {}\n", key, value);
-    return *this;
-  }
-  /// Left out where `value` is `standard`.
-  TomlTable& number(const char* key, double value, double standard) {
-    return value == standard ? *this : number(key, value);
-  }
-  TomlTable& texts(const char* key, const std::vector<std::string>& values) {
-    std::string list;
-    for (const std::string& value : values) list += (list.empty() ? "" : ", ") + tomlText(value);
-    if (!values.empty()) text_ += fmt::format("{} = [{}]\n", key, list);
-    return *this;
-  }
-  const std::string& written() const { return text_; }
+  for (std::string& value : values) value = tomlText(value);
+  return fmt::format("[{}]", fmt::join(values, ", "));
+}
 
- private:
-  std::string text_;
-};
-
-std::string sceneTable(const SceneOptions& s) {
-  const SceneOptions standard;
-  TomlTable table;
-  table.text("scene", s.scene.string()).text("cameras", s.camera).text("lights", s.light);
-  table.text("eye", s.eye).text("target", s.target).number("fov", s.fov, standard.fov);
-  table.number("light_sizes", s.lightSize, standard.lightSize).texts("set_light", s.lightSettings);
-  table.number("time", s.time, standard.time).text("animation", s.animation);
-  if (s.defaultLights != standard.defaultLights) table.text("default_lights", s.defaultLights);
-  table.text("sigma_a", s.sigmaA).text("sigma_s", s.sigmaS).text("grid", s.grid);
-  if (s.g) table.number("g", *s.g);
-  if (s.environment.empty()) return table.written();
-  table.text("environment", s.environment.string())
-      .number("environment_rotation", s.environmentRotation, standard.environmentRotation)
-      .number("environment_scale", s.environmentScale, standard.environmentScale);
-  const EnvironmentLightOptions& lights = s.environmentLights;
-  if (lights.threshold > 0)
-    table.number("environment_lights", lights.threshold, 0)
-        .number("environment_resolution", lights.resolution, standard.environmentLights.resolution)
-        .text("environment_shape", lights.shape)
-        .text("environment_reflection", s.environmentReflection);
-  return table.written();
+/// All but what the suite says itself.
+std::string sceneTable(const SceneQuestion& question) {
+  std::string text;
+  for (const QuestionField& field : questionFields())
+    if (!isDefault(field, question) && field.kind != QuestionKind::size &&
+        field.key != std::string_view("term"))
+      text += fmt::format("{} = {}\n", keyInSuite(field), tomlValue(field, question));
+  return text;
 }
 
 std::string techniqueTable(const std::vector<render::TechniqueUse>& uses) {
@@ -193,16 +152,18 @@ std::string techniqueTable(const std::vector<render::TechniqueUse>& uses) {
 }  // namespace
 
 std::string benchSuite(const ViewState& state) {
-  const int bounces = bouncesOf(state.output, state.techniques);
-  const int interfaces = render::interfacesOf(state.output, state.techniques);
+  const SceneQuestion& question = state.scene;
+  const Term term = parseTerm(question.term);
+  const int bounces = bouncesOf(term, state.techniques);
+  const int interfaces = render::interfacesOf(term, state.techniques);
   std::string text = fmt::format(
       "# Saved by limn-view: `limn bench` on this file measures what it showed.\nname = \"view\"\nsizes = "
       "[{}]\nterm = {}\n",
-      tomlText(state.scene.size), tomlText(std::string(render::name(state.output))));
+      tomlValue(questionField("size"), question), tomlText(question.term));
   text += fmt::format("reference = {{noise = 0.02, spp = 4096{}{}}}\npictures = true\n\n[[scenes]]\n",
                       bounces > 0 ? fmt::format(", bounces = {}", bounces) : "",
                       interfaces > 0 ? fmt::format(", interfaces = {}", interfaces) : "");
-  text += sceneTable(state.scene);
+  text += sceneTable(question);
   if (!state.techniques.empty()) text += techniqueTable(state.techniques);
   return text;
 }

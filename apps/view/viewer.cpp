@@ -20,9 +20,9 @@
 namespace limn::app {
 namespace {
 
-constexpr double restAfter = 0.25;        // seconds without a change
-constexpr double frameSeconds = 1. / 60;  // of the window, while something moves
-constexpr double idleSeconds = 0.25;      // while nothing does
+constexpr double kRestAfter = 0.25;        // seconds without a change
+constexpr double kFrameSeconds = 1. / 60;  // of the window, while something moves
+constexpr double kIdleSeconds = 0.25;      // while nothing does
 
 /// Resident memory of the process, MiB.
 double residentMiB() {
@@ -44,21 +44,21 @@ void setText(TextField& target, const std::string& text) {
 ViewerWindow::ViewerWindow(const ViewerOptions& options)
     : options_(options), registry_(TechniqueRegistry::defaultFolders(), warn) {
   state_.scene = options.scene;
-  state_.output = render::parseOutput(options.outputTerm);
   state_.exposure = static_cast<float>(options.exposure);
   state_.techniques = options.techniques.resolve(registry_);
-  const glm::ivec2 size = parseSize(options.scene.size);
   context_ = Context::create({.backend = Backend::glfw,
                               .debug = options.debug,
-                              .width = size.x,
-                              .height = size.y,
+                              .width = options.scene.width,
+                              .height = options.scene.height,
                               .title = options.title});
-  thread_ = std::make_unique<PictureThread>(
-      *context_, PictureThreadOptions{options.debug, options.shaders, options.cache});
+  device_ = std::make_unique<gpu::Device>(*context_);
+  textures_ = std::make_unique<WindowTextures>(*device_);
+  thread_ =
+      std::make_unique<PictureThread>(PictureThreadOptions{options.debug, options.shaders, options.cache});
   thread_->open(state_.scene);
   if (!options_.steps.empty()) chooseStep(0);
   compareWith(besideNamed(options.compareWith));
-  setText(sceneText_, options.scene.scene.string());
+  setText(sceneText_, options.scene.scene);
   setText(saveText_, options.save.string());
   listen();
   IMGUI_CHECKVERSION();
@@ -73,8 +73,6 @@ ViewerWindow::~ViewerWindow() {
   ImGui_ImplOpenGL3_Shutdown();
   ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext();
-  facts_.reset();
-  before_.reset();
 }
 
 void ViewerWindow::listen() {
@@ -96,43 +94,47 @@ void ViewerWindow::listen() {
 /// A scene, or an environment for the one that is shown.
 void ViewerWindow::openFile(const std::filesystem::path& file) {
   const std::string extension = file.extension().string();
-  SceneOptions wanted = state_.scene;
+  SceneQuestion wanted = state_.scene;
   if (extension == ".hdr" || extension == ".exr") {
-    wanted.environment = file;
+    wanted.environment = file.string();
   } else {
-    wanted = SceneOptions();
-    wanted.scene = file;
-    wanted.size = state_.scene.size;
+    wanted = SceneQuestion();
+    wanted.scene = file.string();
+    wanted.width = state_.scene.width;
+    wanted.height = state_.scene.height;
   }
   open(wanted);
 }
 
-void ViewerWindow::open(const SceneOptions& wanted) {
+void ViewerWindow::open(const SceneQuestion& wanted) {
   thread_->open(wanted);
   moved();
 }
 
 /// What follows from another scene being shown.
 void ViewerWindow::adopt(const SceneFacts& scene) {
-  const std::string size = state_.scene.size;
+  const int width = state_.scene.width, height = state_.scene.height;
+  const std::string term = state_.scene.term;
   state_.scene = scene.options;
-  state_.scene.size = size;
+  state_.scene.width = width;
+  state_.scene.height = height;
+  state_.scene.term = term;
   orbit_ = Orbit(scene.camera, scene.bounds);
-  lightEdits_ = parseLightEdits(scene.options.lightSettings);
-  chosenLight_ = scene::none;
+  lightEdits_ = session::parseLightEdits(scene.options.lightSettings);
+  chosenLight_ = scene::kNone;
   lightsNew_ = true;
   drag_.reset();
-  setText(sceneText_, scene.options.scene.string());
+  setText(sceneText_, scene.options.scene);
   moved();
 }
 
 void ViewerWindow::takeFacts() {
   std::shared_ptr<const PictureFacts> newest = thread_->facts();
   if (newest == facts_) return;
-  const SceneFacts* shown = facts_ ? facts_->scene.get() : nullptr;
-  before_ = std::exchange(facts_, std::move(newest));
+  const std::shared_ptr<const SceneFacts> shown = facts_ ? facts_->scene : nullptr;
+  facts_ = std::move(newest);
   if (facts_->fatal) std::rethrow_exception(facts_->fatal);
-  if (facts_->scene && facts_->scene.get() != shown) adopt(*facts_->scene);
+  if (facts_->scene && facts_->scene != shown) adopt(*facts_->scene);
   if (facts_->messages != messagesSeen_) message_ = facts_->message;
   messagesSeen_ = facts_->messages;
 }
@@ -142,7 +144,7 @@ void ViewerWindow::moved() {
 }
 
 bool ViewerWindow::moving() const {
-  return playing_ || glfwGetTime() - lastChange_ < restAfter;
+  return playing_ || glfwGetTime() - lastChange_ < kRestAfter;
 }
 
 bool ViewerWindow::minimised() const {
@@ -155,7 +157,6 @@ PictureOrder ViewerWindow::order() const {
   order.scene = state_.scene;
   order.techniques = state_.techniques;
   order.others = otherTechniques_;
-  order.output = state_.output;
   order.exposure = state_.exposure;
   order.size = minimised() ? glm::ivec2(0) : area_;
   order.beside = beside_;
@@ -197,6 +198,7 @@ void ViewerWindow::frame() {
   const GLfloat background[4] = {0.1f, 0.1f, 0.1f, 1};
   gl.ClearBufferfv(GL_COLOR, 0, background);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  textures_->endFrame();
 }
 
 void ViewerWindow::saveScreenshot(const std::filesystem::path& file) const {
@@ -204,9 +206,7 @@ void ViewerWindow::saveScreenshot(const std::filesystem::path& file) const {
   glfwGetFramebufferSize(context_->window(), &size.x, &size.y);
   std::vector<uint8_t> pixels(static_cast<size_t>(size.x) * static_cast<size_t>(size.y) * 3);
   const gl::Functions& gl = context_->gl();
-  gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
   gl.ReadPixels(0, 0, size.x, size.y, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
-  gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
   writePng(file, fromBottomFirst(size, pixels));
 }
 
@@ -232,9 +232,9 @@ void ViewerWindow::run() {
   for (bool last = false; !last;) {
     const bool busy = !minimised() && (lively > 0 || moving() || drag_ || options_.frames > 0);
     const double start = glfwGetTime();
-    glfwWaitEventsTimeout(busy ? frameSeconds : idleSeconds);
+    glfwWaitEventsTimeout(busy ? kFrameSeconds : kIdleSeconds);
     const double woken = glfwGetTime();
-    lively = woken - start < idleSeconds ? settling : lively - 1;
+    lively = woken - start < kIdleSeconds ? settling : lively - 1;
     frame();
     if (facts_->settled && posted_ && !posted_->moving) ++shown;
     last = finished(shown);

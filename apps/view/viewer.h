@@ -1,5 +1,5 @@
-// limn-view: a window on a scene, in which techniques, parameters, lights and cameras are changed while one
-// looks, compared with each other and with the truth.
+// Declares the viewer limn-view: a window on a scene, in which techniques, parameters, lights and cameras are
+// changed interactively and compared with each other and with the ground truth.
 #pragma once
 
 #include <filesystem>
@@ -7,22 +7,22 @@
 #include <string>
 #include <vector>
 
-#include "apps/limn/options.h"
+#include "core/question/scene_question.h"
 #include "core/render/renderer.h"
+#include "core/session/technique_choice.h"
 
 namespace limn::app {
 
-/// A setting that a guide offers, with a sentence about what is to be seen.
+/// Declares a setting that a guide offers, with a sentence about what it shows.
 struct ViewerStep {
   std::string title, sentence;
-  TechniqueOptions techniques;
+  session::TechniqueChoice techniques;
 };
 
 struct ViewerOptions {
   std::string title = "limn";
-  SceneOptions scene;
-  TechniqueOptions techniques;
-  std::string outputTerm = "final";
+  SceneQuestion scene;
+  session::TechniqueChoice techniques;
   double exposure = 0;
   std::vector<ViewerStep> steps;                           ///< may be empty
   std::vector<std::string> panels{"scene", "techniques"};  ///< open at first
@@ -30,10 +30,10 @@ struct ViewerOptions {
   bool debug = false;                                      ///< OpenGL errors end the program
   std::filesystem::path shaders;  ///< folder that overrides the embedded ones, watched for changes
   std::filesystem::path save = "out/view.png";     ///< where pictures are saved at first
-  std::filesystem::path cache = "out/references";  ///< of the truth's pictures; empty: none are kept
-  int frames = 0;                                  ///< ends after so many with the whole picture; 0: stays
+  std::filesystem::path cache = "out/references";  ///< of reference pictures; empty: none are kept
+  int frames = 0;                                  ///< with the whole picture, then it closes; 0: stays
   std::filesystem::path screenshot;                ///< of the window, written at its end (.png); empty: none
-  std::filesystem::path stats;  ///< how the window fared, written at its end (.json); empty: not
+  std::filesystem::path stats;  ///< of the window's frames, written at its end (.json); empty: none
 };
 
 /// Runs until the window is closed. Throws Error if no window can be opened or the first scene cannot be

@@ -1,5 +1,6 @@
 // The panels left of the picture, those that are no longer than a screen; the others have files of their own.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -7,18 +8,29 @@
 #include "apps/view/parameter_widgets.h"
 #include "apps/view/viewer_style.h"
 #include "apps/view/viewer_window.h"
+#include "core/base/text.h"
+#include "core/image/metric_table.h"
+#include "core/question/term.h"
 
 namespace limn::app {
 namespace {
 
-constexpr const char* besides[] = {"nothing", "other techniques", "the truth"};
+constexpr const char* kBesides[] = {"nothing", "other techniques", "the truth"};
 
 std::string termsOf(const TechniqueInfo& info) {
-  std::string text;
-  for (const Term term : {Term::visibility, Term::direct, Term::indirect, Term::caustic, Term::media,
-                          Term::environment, Term::specular})
-    if (contains(info.terms, term)) text += (text.empty() ? "" : ", ") + std::string(name(term));
-  return text;
+  return fmt::format("{}", fmt::join(termNames(info.terms), ", "));
+}
+
+/// Says which terms leave room for one technique, and which for several.
+std::string ruleOfTerms() {
+  std::vector<std::string> alone;
+  for (const TermInfo& info : kTerms)
+    if (info.exclusive && (alone.empty() || alone.back() != info.exclusive))
+      alone.emplace_back(info.exclusive);
+  constexpr TermSet together =
+      termsWhere([](const TermInfo& info) { return info.answerable && !info.exclusive; });
+  return fmt::format("One technique each for {}; answers of several to {} add up", joined(alone),
+                     joined(termNames(together)));
 }
 
 void helpPanel() {
@@ -54,7 +66,7 @@ void helpPanel() {
 
 void ViewerWindow::panels() {
   ImGui::SetNextWindowPos({0, 0});
-  ImGui::SetNextWindowSize({panelWidth, std::max(ImGui::GetIO().DisplaySize.y, 1.f)});
+  ImGui::SetNextWindowSize({kPanelWidth, std::max(ImGui::GetIO().DisplaySize.y, 1.f)});
   ImGui::Begin("limn", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings);
@@ -140,9 +152,7 @@ void ViewerWindow::techniquePanel(std::vector<render::TechniqueUse>& uses) {
     }
     ImGui::EndCombo();
   }
-  tip("One technique for visibility or direct light and one for the environment; indirect light, caustics "
-      "and "
-      "media add up");
+  tip(ruleOfTerms());
   if (changed) moved();
 }
 
@@ -157,7 +167,7 @@ void ViewerWindow::comparePanel() {
   if (beginRows("compare")) {
     nameCell("with", "What the right part of the picture shows; F3 goes through them");
     int beside = static_cast<int>(beside_);
-    if (ImGui::Combo("##with", &beside, besides, IM_ARRAYSIZE(besides)))
+    if (ImGui::Combo("##with", &beside, kBesides, IM_ARRAYSIZE(kBesides)))
       compareWith(static_cast<Beside>(beside));
     if (beside_ != Beside::nothing) {
       nameCell("right part",
@@ -181,25 +191,16 @@ void ViewerWindow::comparePanel() {
                          fmt::format("refining, {:.0f} %", 100 * state.fraction).c_str());
   }
   if (facts.metrics && ImGui::BeginTable("metrics", 4)) {
-    const Metrics& m = *facts.metrics;
-    const auto figure = [](const char* name, const std::string& value, const char* explanation) {
+    for (const MetricInfo& info : kMetrics) {
+      if (info.kind == MetricKind::basis) continue;
       ImGui::TableNextColumn();
-      ImGui::TextDisabled("%s", name);
-      tip(explanation);
+      ImGui::TextDisabled("%s", std::string(info.head).c_str());
+      tip(fmt::format("{}; x is the left part, r the right one", info.help));
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(value.c_str());
-    };
-    figure("RMSE", fmt::format("{:.4g}", m.rmse), "root of the mean squared difference");
-    figure("bias", fmt::format("{:+.3g}", m.bias), "mean of left minus right");
-    figure("rel. MSE", fmt::format("{:.4g}", m.rel_mse),
-           "squared difference relative to the right part's square");
-    figure("99.9 %", fmt::format("{:.3g}", m.p999),
-           "luminance difference that a thousandth of the pixels exceed");
-    figure("PSNR", fmt::format("{:.4g} dB", m.psnr), "with the peak at the right part's 99.9 %");
-    figure("FLIP", fmt::format("{:.3g}", m.flip), "mean visible difference, 67 pixels per degree");
-    figure("structured", fmt::format("{:.4g}", m.structured),
-           "RMS of the error after a 9 x 9 Gaussian: banding "
-           "survives it, noise does not");
+      ImGui::TextUnformatted(
+          fmt::format("{}{}{}", shownText(info, *facts.metrics), info.unit.empty() ? "" : " ", info.unit)
+              .c_str());
+    }
     ImGui::EndTable();
   }
   if (!facts.metrics && !facts.whyNoMetrics.empty()) ImGui::TextDisabled("%s", facts.whyNoMetrics.c_str());

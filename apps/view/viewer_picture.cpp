@@ -15,19 +15,17 @@
 namespace limn::app {
 namespace {
 
-constexpr float statusHeight = 28, barHeight = 18;  // pixels
-constexpr float grabPixels = 6;                     // of the line between two pictures
+constexpr float kStatusHeight = 28, kBarHeight = 18;  // pixels
+constexpr float kGrabPixels = 6;                      // of the line between two pictures
 
 ImVec2 im(glm::vec2 v) {
   return {v.x, v.y};
 }
 
 /// The columns from `from` to `to` (parts of the width) of a picture that fills the area.
-void drawColumns(const gpu::Texture& texture, glm::vec2 corner, glm::vec2 size, float from, float to,
-                 bool bottomFirst) {
-  const float top = bottomFirst ? 1.f : 0.f;
+void drawColumns(const gpu::Texture& texture, glm::vec2 corner, glm::vec2 size, float from, float to) {
   ImGui::GetWindowDrawList()->AddImage(textureId(texture), im(corner + size * glm::vec2(from, 0)),
-                                       im(corner + size * glm::vec2(to, 1)), {from, top}, {to, 1 - top});
+                                       im(corner + size * glm::vec2(to, 1)), {from, 0}, {to, 1});
 }
 
 /// White text that is readable on any picture.
@@ -51,19 +49,19 @@ std::string namesOf(const std::vector<render::TechniqueUse>& uses) {
 void ViewerWindow::drawColourBar(glm::vec2 corner, float width) const {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   constexpr int cells = 64;
-  draw.AddRectFilled(im(corner - glm::vec2(6, 6)), im(corner + glm::vec2(width + 6, 2 * barHeight + 2)),
+  draw.AddRectFilled(im(corner - glm::vec2(6, 6)), im(corner + glm::vec2(width + 6, 2 * kBarHeight + 2)),
                      0xa0000000, 3);
   for (int i = 0; i < cells; ++i) {
     const glm::vec3 c = differenceColour(2 * (static_cast<float>(i) + 0.5f) / cells - 1);
     const float left = width * static_cast<float>(i) / cells,
                 right = width * static_cast<float>(i + 1) / cells;
-    draw.AddRectFilled(im(corner + glm::vec2(left, 0)), im(corner + glm::vec2(right, barHeight)),
+    draw.AddRectFilled(im(corner + glm::vec2(left, 0)), im(corner + glm::vec2(right, kBarHeight)),
                        ImGui::ColorConvertFloat4ToU32({c.x, c.y, c.z, 1}));
   }
   const DifferenceScale scale;
   const auto number = [&](float part, const std::string& text) {
     const float wide = ImGui::CalcTextSize(text.c_str()).x;
-    draw.AddText(im(corner + glm::vec2(std::clamp(part * width - wide / 2, 0.f, width - wide), barHeight)),
+    draw.AddText(im(corner + glm::vec2(std::clamp(part * width - wide / 2, 0.f, width - wide), kBarHeight)),
                  0xffffffff, text.c_str());
   };
   number(0, fmt::format("-{:g} too dark", scale.most));
@@ -105,7 +103,7 @@ void ViewerWindow::handleMouse() {
 
 /// The technique that claims what only one may is replaced by the next one that does.
 void ViewerWindow::nextTechnique() {
-  const TermSet alone = Term::visibility | Term::direct;
+  const TermSet alone = exclusiveWith(termSet(Term::direct));
   std::vector<const TechniquePlugin*> candidates;
   for (const TechniquePlugin* plugin : registry_.all())
     if ((plugin->info->terms & alone) != 0) candidates.push_back(plugin);
@@ -151,16 +149,16 @@ void ViewerWindow::handleKeys() {
 
 void ViewerWindow::drawPictures(glm::vec2 corner, glm::vec2 size) {
   const PictureFacts& facts = *facts_;
-  const gpu::Texture* left = facts.picture.texture.get();
-  const gpu::Texture* right = nullptr;
-  if (beside_ == Beside::techniques) right = facts.other.texture.get();
-  if (beside_ == Beside::reference) right = facts.truth.get();
+  std::shared_ptr<const Image8> right;
+  if (beside_ == Beside::techniques) right = facts.other.image;
+  if (beside_ == Beside::reference) right = facts.truth;
   const bool difference = showDifference_ && facts.metrics && facts.difference && beside_ != Beside::nothing;
-  if (difference) right = facts.difference.get();
-  const float line = right != nullptr ? split_ : 1;
-  if (left != nullptr) drawColumns(*left, corner, size, 0, line, true);
-  if (right == nullptr) return;
-  drawColumns(*right, corner, size, line, 1, beside_ == Beside::techniques && !difference);
+  if (difference) right = facts.difference;
+  const float line = right ? split_ : 1;
+  if (facts.picture.image) drawColumns(textures_->of(facts.picture.image, GL_LINEAR), corner, size, 0, line);
+  if (!right) return;
+  const GLenum filter = right == facts.other.image ? GL_LINEAR : GL_NEAREST;
+  drawColumns(textures_->of(right, filter), corner, size, line, 1);
   const float x = corner.x + line * size.x;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.AddLine({x - 1, corner.y}, {x - 1, corner.y + size.y}, 0x80000000, 3);
@@ -177,7 +175,7 @@ void ViewerWindow::drawPictures(glm::vec2 corner, glm::vec2 size) {
 void ViewerWindow::statusLine(glm::vec2 corner, float width) const {
   const PictureFacts& facts = *facts_;
   std::string text;
-  if (facts.picture.texture)
+  if (facts.picture.image)
     text = fmt::format("{} x {}{}   {:.1f} ms", facts.picture.size.x, facts.picture.size.y,
                        facts.picture.whole ? "" : " (reduced)", facts.picture.ms);
   if (facts.metrics)
@@ -187,7 +185,7 @@ void ViewerWindow::statusLine(glm::vec2 corner, float width) const {
   if (!facts.job.empty()) text += "   " + facts.job;
   if (!message_.empty()) text += "   " + message_;
   ImGui::SetCursorScreenPos(im(corner));
-  ImGui::PushClipRect(im(corner), im(corner + glm::vec2(width, statusHeight)), true);
+  ImGui::PushClipRect(im(corner), im(corner + glm::vec2(width, kStatusHeight)), true);
   ImGui::TextUnformatted(text.c_str());
   ImGui::PopClipRect();
   tip(message_);
@@ -195,20 +193,23 @@ void ViewerWindow::statusLine(glm::vec2 corner, float width) const {
 
 void ViewerWindow::pictureArea() {
   const ImVec2 window = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({panelWidth, 0});
-  ImGui::SetNextWindowSize({std::max(window.x - panelWidth, 1.f), std::max(window.y, 1.f)});
+  ImGui::SetNextWindowPos({kPanelWidth, 0});
+  ImGui::SetNextWindowSize({std::max(window.x - kPanelWidth, 1.f), std::max(window.y, 1.f)});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
   ImGui::Begin("picture", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
   ImGui::PopStyleVar();
   const ImVec2 place = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
-  const glm::vec2 size(room.x, room.y - statusHeight);
+  const glm::vec2 size(room.x, room.y - kStatusHeight);
   corner_ = {place.x, place.y};
   const glm::ivec2 area = glm::max(glm::ivec2(size), glm::ivec2(0));
   if (area != area_) moved();
   area_ = area;
-  if (area_.x > 0 && area_.y > 0) state_.scene.size = fmt::format("{}x{}", area_.x, area_.y);
+  if (area_.x > 0 && area_.y > 0) {
+    state_.scene.width = area_.x;
+    state_.scene.height = area_.y;
+  }
   handleKeys();
   if (area_.x > 0 && area_.y > 0) {
     ImGui::InvisibleButton("hands", im(size),
@@ -227,7 +228,7 @@ void ViewerWindow::pictureArea() {
       ImGui::PopTextWrapPos();
     }
   }
-  statusLine({place.x + 10, place.y + room.y - statusHeight + 7}, size.x - 20);
+  statusLine({place.x + 10, place.y + room.y - kStatusHeight + 7}, size.x - 20);
   ImGui::End();
 }
 
@@ -236,7 +237,7 @@ bool ViewerWindow::dragSplit() {
   if (beside_ == Beside::nothing || area_.x < 1) return false;
   const ImGuiIO& io = ImGui::GetIO();
   const float x = corner_.x + split_ * static_cast<float>(area_.x);
-  const bool near = ImGui::IsItemHovered() && std::abs(io.MousePos.x - x) < grabPixels;
+  const bool near = ImGui::IsItemHovered() && std::abs(io.MousePos.x - x) < kGrabPixels;
   if (near || splitDragged_) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
   if (near && ImGui::IsMouseClicked(0)) splitDragged_ = true;
   if (!io.MouseDown[0]) splitDragged_ = false;

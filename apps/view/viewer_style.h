@@ -1,4 +1,4 @@
-// How the viewer's widgets look, and the few that it has beyond ImGui's.
+// Declares the style of the viewer's widgets, and the few widgets that ImGui lacks.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -8,22 +8,23 @@
 
 namespace limn::app {
 
-/// Once, after ImGui's context was made.
+/// Sets the style. Called once, after ImGui's context has been created.
 void setStyle();
 
-/// Text that breaks at the panel's edge.
+/// Shows text that wraps at the panel's edge.
 void wrapped(const std::string& text);
-/// The same, in the colour of things that went wrong.
+/// Shows wrapped text in the colour of errors.
 void complaint(const std::string& text);
-/// For the widget before.
+/// Gives the previous widget a tooltip.
 void tip(const std::string& text);
-/// A row of a two-column table: name with explanation, then the place for a widget as wide as the column.
+/// Begins a row of a two-column table: name with explanation, then the place for a widget as wide as the
+/// column.
 void nameCell(const char* name, const std::string& explanation);
-/// Begins and ends such a table.
+/// Begins such a table and returns whether it is shown; endRows() ends one that is.
 bool beginRows(const char* name);
 void endRows();
 
-/// For ImGui's pictures.
+/// Returns the texture as ImGui identifies it.
 void* textureId(const gpu::Texture& texture);
 
 }  // namespace limn::app

@@ -1,5 +1,5 @@
-// Internal to the viewer: the window, what it shows, and its panels. Everything here is of the main thread
-// and waits for nothing: pictures come from a PictureThread.
+// Internal to the viewer: declares the window, its content and its panels. All of this runs on the main
+// thread and waits for nothing: pictures come from a PictureThread.
 #pragma once
 
 #include <algorithm>
@@ -13,15 +13,16 @@
 #include "apps/view/picture_thread.h"
 #include "apps/view/view_state.h"
 #include "apps/view/viewer.h"
+#include "apps/view/window_textures.h"
 
 struct GLFWwindow;
 struct ImDrawList;
 
 namespace limn::app {
 
-inline constexpr float panelWidth = 400;  ///< pixels
+inline constexpr float kPanelWidth = 400;  ///< pixels
 
-/// What a text field holds.
+/// Holds the text of a text field.
 using TextField = char[1024];
 void setText(TextField& target, const std::string& text);
 
@@ -40,7 +41,7 @@ class ViewerWindow {
   void takeFacts();
   void adopt(const SceneFacts& scene);
   void openFile(const std::filesystem::path& file);
-  void open(const SceneOptions& wanted);
+  void open(const SceneQuestion& wanted);
   void moved();  ///< something changed what is seen
   bool moving() const;
   bool minimised() const;
@@ -50,7 +51,7 @@ class ViewerWindow {
   void saveScreenshot(const std::filesystem::path& file) const;
   void writeStats() const;
 
-  // --- viewer_picture.cpp: the picture and the hands on it
+  // --- viewer_picture.cpp: the picture, mouse and keyboard
   void pictureArea();
   void handleMouse();
   void handleKeys();
@@ -64,9 +65,9 @@ class ViewerWindow {
   // --- light_gizmo.cpp: lights in the picture
   ScreenCamera screen() const;
   void drawLights();
-  bool dragLight();  ///< true while the mouse is the gizmo's
+  bool dragLight();  ///< true while the gizmo uses the mouse
   void chooseLight(int light);
-  void editLight(const LightFacts& light, const LightEdit& edit);
+  void editLight(const LightFacts& light, const session::LightEdit& edit);
 
   // --- panels
   void panels();
@@ -97,10 +98,11 @@ class ViewerWindow {
   ViewerOptions options_;
   ViewState state_;
   std::unique_ptr<Context> context_;
+  std::unique_ptr<gpu::Device> device_;  ///< of the window
+  std::unique_ptr<WindowTextures> textures_;
   TechniqueRegistry registry_;
   std::unique_ptr<PictureThread> thread_;
-  /// What is drawn, and what was drawn before, which the GPU may still be at.
-  std::shared_ptr<const PictureFacts> facts_, before_;
+  std::shared_ptr<const PictureFacts> facts_;  ///< what is drawn
   std::optional<PictureOrder> posted_;
   uint64_t messagesSeen_ = 0;
 
@@ -111,8 +113,8 @@ class ViewerWindow {
   bool splitDragged_ = false;
   bool showDifference_ = false;  ///< instead of the right part
   std::optional<InspectionOrder> inspection_;
-  LightEdits lightEdits_;
-  int chosenLight_ = scene::none;
+  session::LightEdits lightEdits_;
+  int chosenLight_ = scene::kNone;
   bool lightsNew_ = true;  ///< of a scene whose changed light, if there is one, is chosen at first
   GizmoMode gizmoMode_ = GizmoMode::move;
   std::optional<GizmoDrag> drag_;
@@ -123,8 +125,8 @@ class ViewerWindow {
   bool playing_ = false, framePanelOpen_ = false, lightPanelOpen_ = false;
   std::vector<int> pressed_;  ///< GLFW keys since the last frame
   size_t step_ = 0;
-  std::string message_;  ///< what went wrong last, or was done
-  /// Of the window's frames, without the time in which it waits for events.
+  std::string message_;  ///< the last problem or result
+  /// Sums the times of the window's frames, without the time in which it waits for events.
   struct FrameTimes {
     int frames = 0;
     double longestMs = 0, sumMs = 0;

@@ -48,7 +48,7 @@ class Writer {
  private:
   template <class T>
   int accessor(const std::vector<T>& data, int componentType, const char* type, int target,
-               json bounds = {}) {
+               const json& bounds = {}) {
     bytes_.resize((bytes_.size() + 3) / 4 * 4);
     const std::size_t offset = bytes_.size(), size = data.size() * sizeof(T);
     bytes_.resize(offset + size);

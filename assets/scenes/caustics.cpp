@@ -10,7 +10,7 @@
 namespace limn::assets {
 namespace {
 
-constexpr float turn = 2 * glm::pi<float>();
+constexpr float kTurn = 2 * glm::pi<float>();
 
 /// A full turn about `axis` in `seconds`.
 Animation turning(int node, glm::vec3 axis, float seconds) {
@@ -19,7 +19,7 @@ Animation turning(int node, glm::vec3 axis, float seconds) {
   for (int i = 0; i <= parts; ++i) {
     const float share = static_cast<float>(i) / parts;
     animation.channels[0].times.push_back(share * seconds);
-    animation.channels[0].rotations.push_back(glm::angleAxis(share * turn, axis));
+    animation.channels[0].rotations.push_back(glm::angleAxis(share * kTurn, axis));
   }
   return animation;
 }
@@ -52,7 +52,7 @@ void addFacet(Mesh& mesh, std::initializer_list<glm::vec3> corners) {
 Mesh gemstone(int sides) {
   Mesh mesh;
   const auto at = [&](float radius, float height, int i) {
-    const float angle = turn * static_cast<float>(i % sides) / static_cast<float>(sides);
+    const float angle = kTurn * static_cast<float>(i % sides) / static_cast<float>(sides);
     return glm::vec3(radius * std::sin(angle), height, radius * std::cos(angle));
   };
   constexpr float table = 0.56f, top = 0.34f, girdle = 0.03f, depth = -0.86f;
@@ -89,9 +89,9 @@ Image roseWindow() {
   constexpr int petals = 8;
   return makeImage(256, 256, [](glm::vec2 uv) {
     const glm::vec2 p = 2.f * uv - 1.f;
-    const float radius = glm::length(p), sector = (std::atan2(p.y, p.x) / turn + 0.5f) * petals;
-    const float across = std::abs(sector - std::floor(sector) - 0.5f) / petals * turn * radius;
-    const float half = turn * radius / (2 * petals);
+    const float radius = glm::length(p), sector = (std::atan2(p.y, p.x) / kTurn + 0.5f) * petals;
+    const float across = std::abs(sector - std::floor(sector) - 0.5f) / petals * kTurn * radius;
+    const float half = kTurn * radius / (2 * petals);
     const int petal = static_cast<int>(sector) % petals;
     constexpr float rings[] = {0.16f, 0.5f, 0.86f};
     float lead = half - across;  // to the nearest bar, where the unit is half the window's side

@@ -6,7 +6,7 @@
 #include "assets/generator/shapes.h"
 #include "assets/scenes/scenes.h"
 #include "assets/scenes/soldier.h"
-#include "glsl/equirectangular.glsl"
+#include "glsl/numeric/equirectangular.glsl"
 
 namespace limn::assets {
 namespace {

@@ -2,9 +2,9 @@
 import "./licence.js";
 import {Section, subjectName} from "./section.js";
 import {el} from "./dom.js";
+import {page} from "./page.js";
 import {stability} from "./stability.js";
 
-const page = JSON.parse(document.getElementById("data").textContent);
 const main = document.getElementById("results");
 
 function summary(tables) {

@@ -82,7 +82,7 @@ export function drawPlot(container, {curves, rows, metric, time, level, traced, 
   }
   const width = Math.max(280, container.clientWidth), height = Math.min(460, Math.max(300, width * 0.62));
   const front = paretoFront(points);
-  const floors = rows.map((row) => metric.floor?.(row)).filter((value) => value > 0);
+  const floors = rows.map((row) => metric.floor(row)).filter((value) => value > 0);
   const floor = floors.length ? Math.max(...floors) : null;
   const levels = [floor, level].filter((value) => value > 0);
   const positive = points.map((point) => point.error).filter((error) => error > 0);

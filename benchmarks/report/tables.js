@@ -1,10 +1,12 @@
 // The same numbers as tables: errors, frames per second, milliseconds per pass.
 import {el, number} from "./dom.js";
 import {TIMES, errorText, isNumber, knownMetrics, lowFrequencyShare, measured, paretoFront} from "./metrics.js";
+import {page} from "./page.js";
 import {settingsText} from "./series.js";
 import {percent, sparkline} from "./spectrum.js";
 
 const FRAME = TIMES[0];
+const NAMES = ["technique", "parameters"].map((key) => ({...page.columns[key], text: true}));
 
 export function tableElement(caption, head, rows) {
   const header = (cell) => el("th", {scope: "col", class: cell.text ? "text" : null, title: cell.help}, cell.label);
@@ -31,14 +33,13 @@ export function errorTable(table, metric, time, onCurrent) {
   const metrics = knownMetrics(table.rows);
   const front = paretoFront(measured(table.rows, metric, time)).map((point) => point.row);
   const traced = table.rows.some((row) => row.reference_ms);
-  const head = [{label: "technique", text: true}, {label: "settings", text: true},
-    ...metrics.map((known) => ({label: known.label, help: known.help})),
+  const {median_ms, p99_ms, n, reference_ms, memory_bytes, front: onFront} = page.columns;
+  const head = [...NAMES, ...metrics,
     {label: "spectrum", help: "power of the error over frequency, both logarithmic"},
     {label: "above 16 px", help: "share of the error's power at wavelengths above 16 pixels"},
     ...(table.baseline ? [{label: "times as fast", help: `as ${table.baseline}, with the interval of 95 %`}] : []),
-    {label: "ms"}, {label: "quartiles"},
-    {label: "p99 / median", help: "how far the slowest frames lie above the others: stalls show here"}, {label: "frames"},
-    ...(traced ? [{label: "reference ms", help: "that the reference's own method takes for the row's RMSE, on the same processor"}] : []), {label: "MiB"}, {label: "Pareto front"}];
+    median_ms, {label: "quartiles", help: "lower and upper quartile of the time of a frame, milliseconds"}, p99_ms, n,
+    ...(traced ? [reference_ms] : []), memory_bytes, onFront];
   const rows = table.rows.map((row) => {
     const start = [nameCell(row, onCurrent), text(settingsText(row))];
     if (row.failure)
@@ -78,7 +79,7 @@ export function framesPerSecond(tables) {
   const rows = [...lines.values()].map(({row, settings, values}) => el("tr", {}, nameCell(row, null), text(settings),
     ordered.map((column) => cell(values.has(column) ? `${number(1000 / values.get(column))} (${number(values.get(column))} ms)` : "–"))));
   return tableElement("Frames per second (milliseconds per frame), by resolution and number of lights",
-    [{label: "technique", text: true}, {label: "settings", text: true}, ...ordered.map((label) => ({label}))], rows);
+    [...NAMES, ...ordered.map((label) => ({label}))], rows);
 }
 
 export function passTable(table) {
@@ -90,12 +91,12 @@ export function passTable(table) {
   const every = timed.flatMap((row) => (row.passes ?? []).filter((pass) => pass.state !== "left_out").map((pass) =>
     el("tr", {}, nameCell(row, null), text(settingsText(row)), text(String(pass.technique)), text(String(pass.name)),
       cell(number(pass.ms)))));
-  const names = [{label: "technique", text: true}, {label: "settings", text: true}];
   return [
-    tableElement("Milliseconds per frame and where they go; passes are timed in a run of their own", [...names,
-      {label: "shadow maps"}, {label: "filters"}, {label: "technique's passes"}, {label: "G-buffer, shading"}, {label: "frame"}],
+    tableElement("Milliseconds per frame and where they go; passes are timed in a run of their own", [...NAMES,
+      ...["maps_ms", "filters_ms", "technique_ms"].map((key) => page.columns[key]), {label: "G-buffer, shading ms"},
+      page.columns.median_ms],
       summary),
-    every.length ? el("details", {}, el("summary", {}, "Every pass"), tableElement("Milliseconds per pass", [...names,
+    every.length ? el("details", {}, el("summary", {}, "Every pass"), tableElement("Milliseconds per pass", [...NAMES,
       {label: "of", text: true}, {label: "pass", text: true}, {label: "ms"}], every)) : null,
   ];
 }

@@ -1,4 +1,4 @@
-// What was thrown, whatever it is, as one line.
+// Declares how any thrown object is described on one line.
 #pragma once
 
 #include <string>
@@ -7,8 +7,9 @@
 
 namespace limn {
 
-/// To be called while an exception is handled: its message on one line; "out of memory" for std::bad_alloc,
-/// and a sentence for what is no std::exception.
+/// Returns the message of the exception that is being handled, on one line: "out of memory" for
+/// std::bad_alloc, and a fixed sentence for anything that is not a std::exception. Must be called inside a
+/// catch block.
 LIMN_API std::string currentFailure();
 
 }  // namespace limn

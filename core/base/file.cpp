@@ -151,6 +151,12 @@ void removeAbandonedFiles(const std::filesystem::path& folder) {
   }
 }
 
+void createFolder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw Error(fmt::format("folder '{}' cannot be created: {}", folder.string(), error.message()));
+}
+
 std::filesystem::path beside(const std::filesystem::path& path, std::string_view suffix) {
   std::string name = path.filename().string();
   if (name.size() + suffix.size() > kMaxName)

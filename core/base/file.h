@@ -1,4 +1,4 @@
-// Whole files: read into memory, written whole or not at all.
+// Declares functions that read whole files into memory and that write files completely or not at all.
 #pragma once
 
 #include <cstddef>
@@ -13,24 +13,28 @@
 
 namespace limn {
 
-/// The content of a regular file. Throws Error naming it if it is missing, unreadable or larger than
-/// `maxBytes`.
+/// Returns the content of a regular file. Throws Error naming the file when it is missing, unreadable or
+/// larger than `maxBytes`.
 LIMN_API std::vector<std::byte> readFile(const std::filesystem::path& path,
                                          std::uint64_t maxBytes = std::uint64_t{1} << 34);
 LIMN_API std::string readTextFile(const std::filesystem::path& path,
                                   std::uint64_t maxBytes = std::uint64_t{1} << 30);
 
-/// Writes beside `path`, flushes, then renames: readers see the old file or the new one, never a part. Throws
-/// Error naming `path` and the reason (no such folder, no permission, disk full) and leaves nothing behind.
+/// Writes to a temporary file beside `path`, flushes it and renames it: readers see the old file or the new
+/// one, never a part. Throws Error naming `path` and the reason (no such folder, no permission, disk full)
+/// and leaves nothing behind.
 LIMN_API void writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes);
 LIMN_API void writeTextFile(const std::filesystem::path& path, std::string_view text);
 
-/// Removes from a folder what writeFile() left there when its process was killed: unfinished files that no
-/// living writer holds. Others, and a folder that is not there, are left as they are.
+/// Removes from a folder the unfinished files that writeFile() left there when its process was killed and
+/// that no living writer holds. Leaves other files alone, and does nothing when the folder does not exist.
 LIMN_API void removeAbandonedFiles(const std::filesystem::path& folder);
 
-/// `path` with `suffix` behind its name. A name that file systems would then not take (255 bytes) is cut and
-/// told apart by a hash of the whole.
+/// Creates the folder and all folders above it; does nothing where it exists. Throws Error when that fails.
+LIMN_API void createFolder(const std::filesystem::path& folder);
+
+/// Returns `path` with `suffix` appended to its file name. A name that would become too long for file systems
+/// (255 bytes) is cut and made unique by a hash of the whole name.
 LIMN_API std::filesystem::path beside(const std::filesystem::path& path, std::string_view suffix);
 
 }  // namespace limn

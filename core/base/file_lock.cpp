@@ -53,7 +53,7 @@ bool ended(const std::string& name) {
          errno == ESRCH;
 }
 
-constexpr int patience = 500;  // times 10 ms
+constexpr int kPatience = 500;  // times 10 ms
 
 /// Whether the open file is still the one of that name: its former holder may have removed it meanwhile.
 bool isFile(int file, const std::filesystem::path& path) {
@@ -74,7 +74,7 @@ FileLock::FileLock(std::filesystem::path path, const std::string& what) : path_(
       const std::string name = holder(file_);
       ::close(file_);
       file_ = -1;
-      if (held && waited++ < patience && ended(name)) {
+      if (held && waited++ < kPatience && ended(name)) {
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
         continue;
       }

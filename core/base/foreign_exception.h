@@ -1,4 +1,4 @@
-// Exceptions that cross from code that limn did not compile into limn.
+// Declares the handling of exceptions that enter limn from code that was compiled separately.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace limn {
 
-/// Inside a catch block: throws limn's own Error again as it is, and anything else as an Error that begins
-/// with `who`, so that no exception outlives the module whose type it is.
+/// Rethrows limn's own Error unchanged, and any other exception as an Error that begins with `who`, so that
+/// no exception outlives the module that defines its type. Must be called inside a catch block.
 [[noreturn]] LIMN_API void rethrowAsError(const std::string& who);
 
 }  // namespace limn

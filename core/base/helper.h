@@ -1,9 +1,9 @@
-// Programs that come with limn for work that may crash, hang or grow without bound: each runs in a process of
-// its own.
+// Declares how limn runs its helper programs, which do work that may crash, hang or grow without bound, each
+// in a process of its own.
 //
 // Such a program is started by posix_spawn, not by fork alone: a process with threads and OpenGL contexts may
-// do next to nothing between fork and exec, and nothing at all without exec. It inherits no thread, no lock
-// and no file but the three standard ones; it limits itself before it touches its input, and answers on its
+// do almost nothing between fork and exec, and must call exec. The program inherits no thread, no lock and no
+// file except the three standard ones; it limits itself before it reads its input, and answers on its
 // standard output.
 #pragma once
 
@@ -18,22 +18,22 @@
 
 namespace limn {
 
-/// The folder that the library liblimn was loaded from.
+/// Returns the folder from which the library liblimn was loaded.
 LIMN_API std::filesystem::path libraryFolder();
 
 struct HelperLimits {
-  std::chrono::milliseconds time{60'000};  ///< on the clock, from the start to the end of the answer
+  std::chrono::milliseconds time{60'000};  ///< wall-clock time, from the start to the end of the answer
   std::uint64_t answerBytes = 0;
 };
 
-/// What a helper program answered. Whatever it says is untrusted: its input may have taken it over.
+/// Holds the answer of a helper program. The answer is untrusted: the input may have taken over the program.
 struct HelperAnswer {
   std::vector<std::byte> bytes;
-  std::string failure;  ///< how it failed, "it crashed: Segmentation fault"; empty: it ended with status 0
+  std::string failure;  ///< how it failed, "it crashed: Segmentation fault"; empty after exit status 0
 };
 
-/// Runs the program `name` from the folder limn/ beside liblimn and waits for it. An interruption from the
-/// keyboard does not reach it. Throws Error if it cannot be started.
+/// Runs the program `name` from the folder limn/ beside liblimn, waits for it and returns its answer. An
+/// interrupt from the keyboard does not reach the program. Throws Error if it cannot be started.
 LIMN_API HelperAnswer runHelper(const std::string& name, const std::vector<std::string>& arguments,
                                 const HelperLimits& limits);
 

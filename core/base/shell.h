@@ -1,4 +1,4 @@
-// Texts as words of a POSIX shell.
+// Declares how text is quoted as a word for a POSIX shell.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace limn {
 
-/// The word that a shell reads as `text`: as it is where nothing in it means more, else between quotes. The
-/// result is printable ASCII on one line, whatever the text: other bytes, line breaks and control characters
-/// among them, are written as octal escapes in $'...' (POSIX.1-2024; bash, zsh, ksh), so that no name can
-/// pretend to be another command.
+/// Returns the word that a shell reads as `text`: unchanged where it contains no special characters,
+/// otherwise quoted. The result is always printable ASCII on one line: other bytes, including line breaks and
+/// control characters, are written as octal escapes in $'...' (POSIX.1-2024; bash, zsh, ksh), so that no name
+/// can look like another command.
 LIMN_API std::string shellQuoted(std::string_view text);
 
 }  // namespace limn

@@ -1,4 +1,4 @@
-// Small helpers for messages and for numbers from untrusted text.
+// Declares small helpers for messages and for numbers in untrusted text.
 #pragma once
 
 #include <optional>
@@ -11,18 +11,18 @@
 
 namespace limn {
 
-/// The whole of `text` as a finite number, or nothing.
+/// Returns the whole of `text` as a finite number, or nothing if it is not one.
 LIMN_API std::optional<double> parseNumber(std::string_view text);
 
-/// `text` as messages show it: one line without white space at its end, other line ends as ' ', control
-/// characters as '?', and no more than `limit` bytes of it.
+/// Returns `text` as messages show it: one line without trailing white space, other line ends as ' ', control
+/// characters as '?', and at most `limit` bytes of the text.
 LIMN_API std::string oneLine(std::string_view text, size_t limit = 600);
 
-/// "a, b and c".
+/// Returns the names as a list: "a, b and c".
 LIMN_API std::string joined(std::span<const std::string> names, std::string_view last = "and");
 
-/// Up to three of `known` that are close to `name` in spelling, as " (did you mean a or b?)"; empty if none
-/// is close.
+/// Returns up to three of the `known` names that are close to `name` in spelling, as " (did you mean a or
+/// b?)"; empty if none is close.
 LIMN_API std::string didYouMean(std::string_view name, std::span<const std::string> known);
 
 }  // namespace limn

@@ -1,4 +1,4 @@
-// What the program is in the middle of, for the line it leaves behind when it crashes.
+// Records what the program is doing, for the line that it writes when it crashes.
 #pragma once
 
 #include <cstddef>
@@ -7,9 +7,9 @@
 
 namespace limn {
 
-/// While one lives, the program is said to be in pass `pass` of `technique`, or, where `pass` is null,
-/// elsewhere in the technique. The innermost one counts. For the thread that talks to OpenGL: one at a time.
-/// The texts outlive it.
+/// Records, while it lives, that the program is in pass `pass` of `technique`, or elsewhere in the technique
+/// where `pass` is null. The innermost object counts. To be used only on the thread that calls OpenGL, one at
+/// a time. The texts must outlive the object.
 class LIMN_API Whereabouts {
  public:
   Whereabouts(const char* technique, const char* pass);
@@ -22,17 +22,17 @@ class LIMN_API Whereabouts {
   const char* formerPass_;
 };
 
-/// Writes "Segmentation fault" for signal SIGSEGV, and ", in pass P of T" or ", in technique T" where that is
-/// known, to `to`
-/// (`size` > 0 bytes; ends in a NUL). Signal handlers may call it.
+/// Writes "Segmentation fault" for signal SIGSEGV (for other signals, their description), followed by ", in
+/// pass P of T" or ", in technique T" where that is known, to `to` (`size` > 0 bytes; ends in a NUL). May be
+/// called by signal handlers.
 LIMN_API void describeCrash(int signal, char* to, std::size_t size) noexcept;
 
-/// From now on a crash (SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL) writes "PROGRAM: crashed: ..." to what is
-/// stderr now, before it ends the process as ever. Handlers of others (sanitizers, debuggers) stay. `program`
-/// is a literal.
+/// Installs handlers with which a crash (SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL) writes "PROGRAM: crashed:
+/// ..." to what is stderr at the time of this call, before it ends the process as usual. Keeps handlers that
+/// others (sanitizers, debuggers) installed. `program` must be a literal.
 LIMN_API void leaveWordsAtCrash(const char* program);
 
-/// The same with the line written into `to` (`size` > 0 bytes, which stay) instead.
+/// Does the same, but writes the line into `to` (`size` > 0 bytes, which must stay valid).
 LIMN_API void leaveWordsAtCrash(char* to, std::size_t size);
 
 }  // namespace limn

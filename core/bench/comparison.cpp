@@ -1,33 +1,27 @@
-#include "core/bench/comparison.h"
+#include "core/bench/private/comparison.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
-#include "core/bench/markdown.h"
-#include "core/bench/ratio.h"
+#include "core/bench/private/markdown.h"
 
 namespace limn::bench {
 namespace {
 
-/// The quickest of the technique's rows that is not above `limit`.
-template <class Error>
-const Row* quickest(std::span<const Row> rows, const std::string& technique, double limit, Error error) {
-  const Row* best = nullptr;
-  for (const Row& row : rows) {
-    if (!isTimed(row) || row.what.technique != technique || error(row) > limit) continue;
-    if (best == nullptr || row.cost.frameMs.median < best->cost.frameMs.median) best = &row;
-  }
-  return best;
-}
-
 using Cells = std::vector<std::string>;
+
+/// The ratio of the frames with its interval where the single times are known.
+std::string frameText(const Row& slow, const Row& fast) {
+  const bool single = !slow.cost.frameMs.samples.empty() && !fast.cost.frameMs.samples.empty();
+  const Ratio ratio = frameRatio(slow, fast);
+  return single ? ratioText(ratio) : ratioText(ratio.value);
+}
 
 /// The row that is shown, and how much slower than another it is: of the frame and of its shadows.
 Cells ratioCells(const Row& shown, const Row& slow, const Row& fast) {
-  const double shadow = shadowMs(fast);
-  return {rowName(shown), frameRatio(slow, fast),
-          shadow > 0 ? fmt::format("{:.2f}", shadowMs(slow) / shadow) : "-"};
+  return {rowName(shown), frameText(slow, fast), shadowRatio(slow, fast)};
 }
 
 void appendAtEqual(Cells& cells, const Row* row, const Row& against) {
@@ -45,11 +39,41 @@ const Metrics& errorOf(const Row& row) {
   return row.penumbra ? *row.penumbra : row.error;
 }
 
-std::string frameRatio(const Row& slow, const Row& fast) {
+Ratio frameRatio(const Row& slow, const Row& fast) {
+  const auto samples = [](const FrameTime& time) {
+    return time.samples.empty() ? std::vector<double>{time.median} : time.samples;
+  };
   const FrameTime &a = slow.cost.frameMs, &b = fast.cost.frameMs;
-  if (a.samples.empty() || b.samples.empty()) return fmt::format("{:.2f}", a.median / b.median);
-  const Ratio ratio = ratioOfMedians({a.samples, a.turns}, {b.samples, b.turns});
-  return fmt::format("{:.2f} ({:.2f} to {:.2f})", ratio.value, ratio.low, ratio.high);
+  const std::vector<double> above = samples(a), below = samples(b);
+  return ratioOfMedians({above, a.turns}, {below, b.turns});
+}
+
+int pairedTurns(const Row& a, const Row& b) {
+  return std::min(a.cost.frameMs.turns, b.cost.frameMs.turns);
+}
+
+std::string shadowRatio(const Row& slow, const Row& fast) {
+  const double shadow = shadowMs(fast);
+  return shadow > 0 ? ratioText(shadowMs(slow) / shadow) : "-";
+}
+
+std::string ratioText(double ratio) {
+  return fmt::format("{:.2f}", ratio);
+}
+
+std::string ratioText(const Ratio& ratio) {
+  return fmt::format("{} ({} to {})", ratioText(ratio.value), ratioText(ratio.low), ratioText(ratio.high));
+}
+
+const Row* quickest(std::span<const Row> rows, const std::string& technique, const MetricInfo& error,
+                    std::optional<double> limit) {
+  const Row* best = nullptr;
+  for (const Row& row : rows) {
+    if (!isTimed(row) || row.what.technique != technique || metricValue(error, errorOf(row)) > limit)
+      continue;
+    if (best == nullptr || row.cost.frameMs.median < best->cost.frameMs.median) best = &row;
+  }
+  return best;
 }
 
 std::optional<ReferenceTime> referenceTime(const Row& row) {
@@ -63,8 +87,11 @@ std::optional<ReferenceTime> referenceTime(const Row& row) {
 }
 
 std::string rowName(const Row& row) {
-  std::string name = row.what.title.empty() ? row.what.technique : row.what.title;
-  if (!row.what.title.empty()) return name;
+  return row.what.title.empty() ? settingsName(row) : row.what.title;
+}
+
+std::string settingsName(const Row& row) {
+  std::string name = row.what.technique;
   for (const auto& [parameter, value] : row.what.parameters) {
     const std::string prefix = row.what.technique + ".";
     const bool own = parameter.compare(0, prefix.size(), prefix) == 0;
@@ -85,25 +112,25 @@ std::string comparisonMarkdown(std::span<const Row> rows) {
       "filters and the technique's passes)",
       markdownText(rowName(*baseline)));
   if (std::ranges::none_of(rows, other)) {  // settings of one technique
-    text += ":\n\n| settings | frame | shadows |\n|---|--:|--:|\n";
+    text += ":\n\n" + markdownHead({{"settings", Align::left}, {"frame"}, {"shadows"}});
     for (const Row& row : rows)
       if (isTimed(row) && &row != &*baseline) text += markdownRow(ratioCells(row, *baseline, row));
     return text;
   }
-  text += fmt::format(
-      ", and of the quickest {0} whose RMSE, and whose structured error, is not above the row's{1}:\n\n"
-      "| technique | frame | shadows | {0} at equal RMSE | frame | shadows | {0} at equal structured error | "
-      "frame | shadows |\n|---|--:|--:|---|--:|--:|---|--:|--:|\n",
-      markdownText(technique), baseline->penumbra ? " in the penumbra" : "");
+  std::vector<MarkdownHead> heads = {{"technique", Align::left}, {"frame"}, {"shadows"}};
+  text += fmt::format(", and of the quickest {} whose", markdownText(technique));
+  for (const MetricInfo* error : kCompared) {
+    text += fmt::format("{} {},", error == kCompared[0] ? "" : " and whose", error->label);
+    heads.push_back({fmt::format("{} at equal {}", markdownText(technique), error->label), Align::left});
+    for (const char* ratio : {"frame", "shadows"}) heads.push_back({ratio});
+  }
+  text += fmt::format(" is not above the row's{}:\n\n{}", baseline->penumbra ? " in the penumbra" : "",
+                      markdownHead(heads));
   for (const Row& row : rows) {
     if (!other(row)) continue;
-    const Row* equalRmse =
-        quickest(rows, technique, errorOf(row).rmse, [](const Row& r) { return errorOf(r).rmse; });
-    const Row* equalStructured = quickest(rows, technique, errorOf(row).structured,
-                                          [](const Row& r) { return errorOf(r).structured; });
     Cells cells = ratioCells(row, *baseline, row);
-    appendAtEqual(cells, equalRmse, row);
-    appendAtEqual(cells, equalStructured, row);
+    for (const MetricInfo* error : kCompared)
+      appendAtEqual(cells, quickest(rows, technique, *error, metricValue(*error, errorOf(row))), row);
     text += markdownRow(cells);
   }
   return text;

@@ -1,4 +1,4 @@
-// The machine that rows are measured on.
+// Names the machine that rows are measured on.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace limn::bench {
 
-/// Processor, hardware threads, operating system: "AMD EPYC 7B13, 2 threads, Linux x86_64". No name of
-/// the host or its user.
+/// Returns processor, hardware threads and operating system: "AMD EPYC 7B13, 2 threads, Linux x86_64". The
+/// text names neither the host nor its user.
 LIMN_API std::string machineName();
 
 }  // namespace limn::bench

@@ -1,4 +1,4 @@
-#include "core/bench/markdown.h"
+#include "core/bench/private/markdown.h"
 
 #include <fmt/format.h>
 
@@ -99,6 +99,15 @@ std::string markdownText(std::string_view text) {
     i += std::max<std::size_t>(length, 1);
   }
   return result;
+}
+
+std::string markdownHead(const std::vector<MarkdownHead>& heads) {
+  std::string names = "|", rule = "|";
+  for (const MarkdownHead& head : heads) {
+    names += head.text.empty() ? " |" : fmt::format(" {} |", head.text);
+    rule += head.align == Align::left ? "---|" : head.align == Align::right ? "--:|" : ":-:|";
+  }
+  return names + "\n" + rule + "\n";
 }
 
 std::string markdownRow(const std::vector<std::string>& cells) {

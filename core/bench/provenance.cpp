@@ -36,11 +36,10 @@ std::string hashOfFiles(std::span<const std::filesystem::path> files) {
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-std::filesystem::path libraryFile() {
-  Dl_info self{};
-  if (dladdr(reinterpret_cast<void*>(&libraryFile), &self) == 0 || !self.dli_fname)
-    throw Error("the file of liblimn cannot be found");
-  return self.dli_fname;
+std::filesystem::path fileOfFunction(const void* function) {
+  Dl_info info{};
+  if (dladdr(function, &info) == 0 || !info.dli_fname) throw Error("a library of limn cannot be found");
+  return info.dli_fname;
 }
 
 }  // namespace limn::bench

@@ -1,4 +1,4 @@
-// What a row was measured with, so that a later run can tell whether it still holds.
+// Records what a row was measured with, so that a later run can tell whether the row is still valid.
 #pragma once
 
 #include <filesystem>
@@ -14,20 +14,22 @@ struct Provenance {
   struct Module {
     std::string technique, file, hash;
   };
-  std::string program;          ///< hash of the program and liblimn; "" in rows of earlier versions
+  std::string program;          ///< hash of the program and limn's libraries; "" in rows of earlier versions
   std::string scene;            ///< hash of the scene with every file it names, environment map and grid
   std::vector<Module> modules;  ///< of the case's techniques, in its order
 };
 
-/// Why what `then` measured does not answer for `now`: "the program has changed", "the scene has changed",
-/// "technique pcss has changed", or that a row of an earlier version does not say. "" if it does. Contents
-/// count, not where the files lie.
+/// Returns why a measurement made with `then` is not valid for `now`: "the program has changed", "the scene
+/// has changed", "technique pcss has changed", or that a row of an earlier version does not record it.
+/// Returns "" if it is valid. Only contents count, not the paths of the files.
 LIMN_API std::string staleness(const Provenance& then, const Provenance& now);
 
-/// 32 hexadecimal digits: of the contents of files, in this order. Throws Error for what cannot be read.
+/// Returns a hash of 32 hexadecimal digits of the files' contents, in this order. Throws Error when a file
+/// cannot be read.
 LIMN_API std::string hashOfFiles(std::span<const std::filesystem::path> files);
 
-/// The file of liblimn that is running.
-LIMN_API std::filesystem::path libraryFile();
+/// Returns the program or library that a function of this process comes from. Throws Error when there is
+/// none.
+LIMN_API std::filesystem::path fileOfFunction(const void* function);
 
 }  // namespace limn::bench

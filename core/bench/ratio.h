@@ -1,4 +1,4 @@
-// Ratios of measured times, with what the samples say about their uncertainty.
+// Computes ratios of measured times, with the uncertainty that follows from the samples.
 #pragma once
 
 #include <span>
@@ -7,24 +7,24 @@
 
 namespace limn::bench {
 
-/// A ratio of medians and its bootstrap percentile interval.
+/// Holds a ratio of medians and its bootstrap percentile interval.
 struct Ratio {
   double value = 0;
   double low = 0, high = 0;  ///< 95 %; both equal to value where either side has one sample only
 };
 
-/// Samples in the order measured, taken in turns of equal length with other work in between.
+/// Holds samples in the order measured, taken in turns of equal length with other work in between.
 struct Samples {
   std::span<const double> values;  ///< not empty, above 0
   int turns = 1;
 };
 
-/// median(numerator) / median(denominator); both resampled with replacement, always by the same random
-/// numbers, so that equal samples give equal intervals (Efron 1979). Where there are several turns, they are
-/// resampled first and their samples then, since what a machine does besides changes more from turn to turn
-/// than from frame to frame; the interval is then widened by sqrt(turns / (turns - 1)) in the logarithm,
-/// which a resample of few turns lacks in spread (Davison and Hinkley 1997, Bootstrap Methods and their
-/// Application, section 3.8).
+/// Returns median(numerator) / median(denominator). Both are resampled with replacement, always by the same
+/// random numbers, so that equal samples give equal intervals (Efron 1979). Where there are several turns,
+/// the turns are resampled first and then their samples, since other load on the machine changes more from
+/// turn to turn than from frame to frame; the interval is then widened by sqrt(turns / (turns - 1)) in the
+/// logarithm, to correct the spread that a resample of few turns lacks (Davison and Hinkley 1997, Bootstrap
+/// Methods and their Application, section 3.8).
 LIMN_API Ratio ratioOfMedians(const Samples& numerator, const Samples& denominator);
 
 }  // namespace limn::bench

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 
-#include "core/bench/comparison.h"
-#include "core/bench/markdown.h"
+#include "core/bench/private/comparison.h"
+#include "core/bench/private/markdown.h"
 
 namespace limn::bench {
 namespace {
@@ -100,7 +100,12 @@ std::string toMarkdown(const Regression& regression) {
                          fmt::format("{:.4g}", change.error), verdictText});
   }
   if (rows.empty()) return text;
-  return text + "\n| case | time, now / before (95 %) | RMSE before | now | |\n|---|--:|--:|--:|---|\n" +
+  return text + "\n" +
+         markdownHead({{"case", Align::left},
+                       {"time, now / before (95 %)"},
+                       {fmt::format("{} before", metricInfo(&Metrics::rmse).label)},
+                       {"now"},
+                       {"", Align::left}}) +
          rows;
 }
 

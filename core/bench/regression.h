@@ -1,4 +1,4 @@
-// Two results of the same suites, the later one against the earlier: what got slower or worse beyond noise.
+// Compares two results of the same suites and finds what got slower or worse beyond noise in the later one.
 #pragma once
 
 #include <span>
@@ -12,12 +12,12 @@
 namespace limn::bench {
 
 struct RegressionOptions {
-  /// Share by which the whole interval of a ratio has to lie above 1 before a row counts as slower: what a
-  /// machine drifts by between two runs is in no sample.
+  /// Share by which the whole interval of a ratio has to lie above 1 before a row counts as slower: no sample
+  /// contains a machine's drift between two runs.
   double drift = 0.05;
 };
 
-/// A row that both results have: the same case on the same renderer.
+/// Holds the change of a row that both results have: the same case on the same renderer.
 struct Change {
   std::string label;
   Ratio time;                         ///< later / earlier, frame; value 0: not timed in both
@@ -33,13 +33,14 @@ struct Regression {
   LIMN_API bool found() const;              ///< any row slower, worse or failed
 };
 
-/// The error's difference counts where it is larger than three standard deviations of what the noise of two
-/// independent references does to it: MSE_a - MSE_b has the standard deviation 2 sigma (RMSE_a + RMSE_b +
-/// sigma) / sqrt(pixels) at most, sigma the references' noise.
+/// Compares the later rows with the earlier ones. A difference of errors counts where it exceeds three
+/// standard deviations of what the noise of two independent references does to it: MSE_a - MSE_b has the
+/// standard deviation 2 sigma (RMSE_a + RMSE_b + sigma) / sqrt(pixels) at most, where sigma is the
+/// references' noise.
 LIMN_API Regression compareResults(std::span<const Row> before, std::span<const Row> now,
                                    const RegressionOptions& options = {});
 
-/// A line of totals, and a table of the rows that changed.
+/// Returns a line of totals and a table of the rows that changed.
 LIMN_API std::string toMarkdown(const Regression& regression);
 
 }  // namespace limn::bench

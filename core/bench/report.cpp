@@ -9,11 +9,13 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/bench/comparison.h"
-#include "core/bench/ratio.h"
-#include "core/bench/report_pictures.h"
+#include "core/bench/private/columns.h"
+#include "core/bench/private/comparison.h"
+#include "core/bench/private/misjudged_table.h"
+#include "core/bench/private/report_pictures.h"
 #include "core/bench/tables.h"
 #include "core/gpu/shader_source.h"
+#include "core/question/question_fields.h"
 #include "core/render/frame_stats.h"
 
 namespace limn::bench {
@@ -48,12 +50,7 @@ Json passes(const Json& stats) {
 /// How many times as long the baseline's frame takes as the row's, with its interval where there are samples.
 Json timesAsFast(const Row* baseline, const Row& row) {
   if (baseline == nullptr || !isTimed(row)) return {};
-  const auto samples = [](const FrameTime& time) {
-    return time.samples.empty() ? std::vector<double>{time.median} : time.samples;
-  };
-  const FrameTime &slow = baseline->cost.frameMs, &fast = row.cost.frameMs;
-  const std::vector<double> above = samples(slow), below = samples(fast);
-  const Ratio ratio = ratioOfMedians({above, slow.turns}, {below, fast.turns});
+  const Ratio ratio = frameRatio(*baseline, row);
   return {{"value", ratio.value}, {"low", ratio.low}, {"high", ratio.high}};
 }
 
@@ -64,7 +61,7 @@ Json rowJson(const Row& row, const std::vector<Window>& windows, EmbeddedPicture
   for (const char* key : {"key", "technique", "title", "parameters", "baseline", "error", "penumbra",
                           "misjudged", "spectrum", "failure"})
     json[key] = known(line, key);
-  if (row.what.environment.lights > 0) json["environment_lights"] = row.what.environment.lights;
+  if (row.what.environmentLights > 0) json["environment_lights"] = row.what.environmentLights;
   if (line.contains("stats")) {
     const Json& stats = line["stats"];
     for (const char* key : {"frame_ms", "split_ms", "memory_bytes", "lights", "quality_parameters", "timer"})
@@ -118,11 +115,11 @@ Json tableJson(const Table& table, EmbeddedPictures& pictures) {
                  {"camera", c.camera},
                  {"light", c.light},
                  {"light_size", c.lightSize},
-                 {"environment", std::filesystem::path(c.environment.map).filename().string()},
+                 {"environment", std::filesystem::path(c.environment).filename().string()},
                  {"time", c.time},
                  {"fps", c.fps},
-                 {"medium", describe(c.medium)},
-                 {"changes", describe(c.changes)}}},
+                 {"medium", describe(c, QuestionGroup::medium)},
+                 {"changes", describe(c, QuestionGroup::changes)}}},
                {"term", c.term},
                {"size", {c.width, c.height}},
                {"time_size", {own ? c.timeWidth : c.width, own ? c.timeHeight : c.height}},
@@ -159,6 +156,57 @@ Json tableJson(const Table& table, EmbeddedPictures& pictures) {
   return json;
 }
 
+/// What the page calls a metric of a row's `part`, and where it finds it. Axes of errors are logarithmic:
+/// what has a sign is shown without it.
+Json pageMetric(const std::string& part, const MetricInfo& info) {
+  std::string key(info.key), label = labelWithUnit(info), help(info.help);
+  const bool magnitude = info.kind == MetricKind::deviation;
+  if (magnitude) {
+    label = fmt::format("|{}|", label);
+    help += "; without its sign";
+  }
+  if (part != "error") {
+    key = fmt::format("{}_{}", part, key);
+    label += fmt::format(" in the {}", part);
+  }
+  if (part == "penumbra")
+    help += fmt::format("; over pixels whose reference visibility lies between {} and {}", Misjudged::kUmbra,
+                        Misjudged::kLit);
+  return {{"key", key},
+          {"label", label},
+          {"help", help},
+          {"path", {part, info.key}},
+          {"floored", info.floored},
+          {"magnitude", magnitude}};
+}
+
+/// What may stand on the page's axis of errors, in the order of its drop-down; the first that rows have is
+/// shown.
+Json pageMetrics() {
+  Json list = Json::array();
+  for (const MetricInfo* info : kCompared) list.push_back(pageMetric("penumbra", *info));
+  for (const MetricInfo& info : kMetrics)
+    if (info.kind == MetricKind::error || info.kind == MetricKind::deviation)
+      list.push_back(pageMetric("error", info));
+  for (const MisjudgedInfo& info : kMisjudged)
+    list.push_back({{"key", info.key},
+                    {"label", info.label},
+                    {"help", fmt::format("{}, as a share of all that could be", info.help)},
+                    {"path", {"misjudged", info.key}},
+                    {"whole", {"misjudged", info.wholeKey}}});
+  return list;
+}
+
+/// Heads and help of the tables' columns by their names in CSV, or in Markdown where CSV has none.
+Json pageColumns() {
+  Json json = Json::object();
+  for (const Column& column : columns())
+    if (!column.markdown.empty())
+      json[column.csv.empty() ? column.markdown : column.csv] = {{"label", column.markdown},
+                                                                 {"help", column.help}};
+  return json;
+}
+
 /// What `limn stress` left in the folder; null if it was not run there.
 Json stability(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "stress.json";
@@ -177,7 +225,7 @@ std::string reportData(std::span<const Row> rows, const std::filesystem::path& f
     for (const std::string& file : {row.picture, row.difference, referencePicture(row)})
       if (!file.empty()) files.push_back(file);
   EmbeddedPictures pictures(folder, files);
-  Json json = {{"tables", Json::array()}};
+  Json json = {{"metrics", pageMetrics()}, {"columns", pageColumns()}, {"tables", Json::array()}};
   for (const Table& table : makeTables(rows)) json["tables"].push_back(tableJson(table, pictures));
   json["pictures"] = pictures.uris();
   json["reduction"] = pictures.reduction();

@@ -1,4 +1,4 @@
-#include "core/bench/report_pictures.h"
+#include "core/bench/private/report_pictures.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "glsl/srgb.glsl"
+#include "glsl/numeric/srgb.glsl"
 
 namespace limn::bench {
 namespace fs = std::filesystem;

@@ -1,99 +1,114 @@
 #include "core/bench/reproduction.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
-#include <map>
+#include <optional>
 #include <set>
 
 #include "core/base/error.h"
-#include "core/base/file.h"
 #include "core/base/shell.h"
-#include "core/bench/comparison.h"
-#include "core/bench/markdown.h"
+#include "core/bench/private/comparison.h"
+#include "core/bench/private/differing_settings.h"
+#include "core/bench/private/markdown.h"
+#include "core/bench/private/verdict.h"
+#include "core/bench/tables.h"
 
 namespace limn::bench {
 namespace {
 
-[[noreturn]] void fail(const std::string& file, const toml::source_region& where,
-                       const std::string& message) {
-  throw UsageError(fmt::format("{}:{}:{}: {}", file, where.begin.line, where.begin.column, message));
-}
+constexpr const char* kReading =
+    "Each line compares a first and a second row of results. `thesis` and `measured` say how many times\n"
+    "as long the first one's frame takes (or how many times as much memory), so that above 1 the second\n"
+    "is better. `measured` stands at the suite's settings, with its 95 % interval; `n` is the number of\n"
+    "turns in which both were timed. With n = 1 a ratio is refused, since nothing says how far it\n"
+    "scatters. `RMSE` is that of both, for visibility in the penumbra; below the noise of a reference it\n"
+    "is a bound. `differ in` lists every setting that both sides have and that differs. `at equal error`\n"
+    "puts in the first one's place the quickest row of its technique, of the same suite and scene, whose\n"
+    "RMSE is not above the second's. Where the rules of several verdicts apply, the later one counts.\n\n";
 
-std::string text(const std::string& file, const toml::table& table, const char* key) {
-  const auto value = table[key].value<std::string>();
-  if (!value || value->empty()) fail(file, table.source(), fmt::format("a claim needs the text '{}'", key));
-  return *value;
-}
-
-std::vector<std::string> texts(const std::string& file, const toml::table& table, const char* key) {
-  std::vector<std::string> values;
-  if (const toml::array* list = table[key].as_array())
-    for (const toml::node& node : *list)
-      if (const auto value = node.value<std::string>()) values.push_back(*value);
-  if (values.empty()) fail(file, table.source(), fmt::format("a claim needs the list of texts '{}'", key));
-  return values;
-}
-
-Claim parseClaim(const std::string& file, const toml::table& table) {
-  static const std::map<std::string, ClaimMeasure> measures = {
-      {"frame", ClaimMeasure::frame}, {"shadows", ClaimMeasure::shadows}, {"memory", ClaimMeasure::memory}};
-  static const std::set<std::string_view> keys = {"where", "what", "measure", "thesis",
-                                                  "suite", "slow", "fast"};
-  for (const auto& [key, node] : table)
-    if (!keys.contains(key.str()))
-      fail(file, key.source(), fmt::format("unknown key '{}' in a claim", key.str()));
-  Claim claim;
-  claim.where = text(file, table, "where");
-  claim.what = text(file, table, "what");
-  const auto measure = measures.find(text(file, table, "measure"));
-  if (measure == measures.end()) fail(file, table.source(), "'measure' must be frame, shadows or memory");
-  claim.measure = measure->second;
-  claim.thesis = table["thesis"].value_or(0.0);
-  if (!(claim.thesis > 0)) fail(file, table.source(), "a claim needs 'thesis', a ratio above 0");
-  claim.suite = text(file, table, "suite");
-  claim.slow = texts(file, table, "slow");
-  claim.fast = texts(file, table, "fast");
-  return claim;
-}
-
-/// Whether the label contains the part; one that ends in $ is its end.
+/// Whether the label contains the part; one with ^ or $ is its beginning or its end.
 bool contains(const std::string& name, std::string_view part) {
+  if (part.starts_with('^')) return name.starts_with(part.substr(1));
   if (part.ends_with('$')) return name.ends_with(part.substr(0, part.size() - 1));
   return name.find(part) != std::string::npos;
 }
 
-const Row* find(std::span<const Row> rows, const std::vector<std::string>& parts) {
-  const Row* found = nullptr;
-  for (const Row& row : rows) {
-    const std::string name = label(row.what);
-    const bool fits = row.failure.empty() && std::ranges::all_of(parts, [&](const std::string& part) {
-                        return contains(name, part);
-                      });
-    if (!fits) continue;
-    if (found != nullptr && label(found->what) != name)
-      throw Error(fmt::format("two rows fit one claim: {} and {}", label(found->what), name));
-    found = &row;
+/// A row with the rows that answer the same question on the same renderer; null where there is no such row.
+struct Found {
+  const Row* row = nullptr;
+  const Table* table = nullptr;
+};
+
+Found find(std::span<const Table> tables, const std::vector<std::string>& parts) {
+  Found found;
+  for (const Table& table : tables) {
+    for (const Row& row : table.rows) {
+      const std::string name = label(row.what);
+      const bool fits = row.failure.empty() && std::ranges::all_of(parts, [&](const std::string& part) {
+                          return contains(name, part);
+                        });
+      if (!fits) continue;
+      if (found.row != nullptr && label(found.row->what) != name)
+        throw Error(fmt::format("two rows fit one claim: {} and {}", label(found.row->what), name));
+      found = {&row, &table};
+    }
   }
   return found;
 }
 
-std::string ratioText(const Claim& claim, const Row& slow, const Row& fast) {
-  switch (claim.measure) {
-    case ClaimMeasure::memory:
-      return fmt::format("{:.2f}", static_cast<double>(slow.cost.memoryBytes) /
-                                       static_cast<double>(std::max<std::int64_t>(1, fast.cost.memoryBytes)));
-    case ClaimMeasure::shadows:
-      return shadowMs(fast) > 0 ? fmt::format("{:.2f}", shadowMs(slow) / shadowMs(fast)) : "-";
-    case ClaimMeasure::frame:
-      break;
+constexpr int kFewestTurns = 2;
+
+/// Two rows side by side: how they are shown, and what they say of the thesis's ratio.
+struct Pair {
+  std::string text;
+  std::string turns = "-";
+  Verdict verdict = Verdict::notMeasured;
+  std::string withTurns() const {
+    return verdict == Verdict::notMeasured ? text : fmt::format("{}, n = {}", text, turns);
   }
-  return fast.cost.frameMs.median > 0 ? frameRatio(slow, fast) : "-";
+};
+
+Pair byFrames(double thesis, const Row& slow, const Row& fast) {
+  if (!isTimed(slow) || !isTimed(fast) || !(fast.cost.frameMs.median > 0)) return {.text = "not timed"};
+  const int turns = pairedTurns(slow, fast);
+  const std::string n = fmt::format("{}", turns);
+  if (turns < kFewestTurns) return {.text = fmt::format("refused: n = {}", turns), .turns = n};
+  const Ratio ratio = frameRatio(slow, fast);
+  return {ratioText(ratio), n, judged(thesis, ratio)};
+}
+
+/// Bytes do not scatter.
+Pair byMemory(double thesis, const Row& slow, const Row& fast) {
+  const double ratio = static_cast<double>(slow.cost.memoryBytes) /
+                       static_cast<double>(std::max<std::int64_t>(1, fast.cost.memoryBytes));
+  return {ratioText(ratio), "-", judged(thesis, {ratio, ratio, ratio})};
+}
+
+/// What is to be shown of the ratio at equal error, and its verdict, where there is one.
+struct EqualError {
+  std::string text;
+  std::optional<Verdict> verdict = {};
+};
+
+EqualError atEqualError(const Claim& claim, const Row& slow, const Found& fast) {
+  if (claim.measure == ClaimMeasure::memory) return {"-: a claim of memory"};
+  const std::string& technique = slow.what.technique;
+  if (technique == fast.row->what.technique) return {"-: two settings of one technique"};
+  const Metrics& error = errorOf(*fast.row);
+  if (error.noise_floor && error.rmse < *error.noise_floor)
+    return {"-: the reference's noise hides the errors"};
+  constexpr const MetricInfo& rmse = metricInfo(&Metrics::rmse);
+  const Row* best = quickest(fast.table->rows, technique, rmse, error.rmse);
+  if (best == nullptr) return {fmt::format("-: no row of {} reaches {}", technique, shownText(rmse, error))};
+  const Pair pair = byFrames(claim.thesis, *best, *fast.row);
+  return {fmt::format("{}: {}; differ in {}", pair.withTurns(), settingsName(*best),
+                      differingSettings(*best, *fast.row)),
+          pair.verdict};
 }
 
 const char* name(ClaimMeasure measure) {
-  return measure == ClaimMeasure::frame ? "frame" : measure == ClaimMeasure::shadows ? "shadows" : "memory";
+  return measure == ClaimMeasure::frame ? "frame" : "memory";
 }
 
 std::string settings(const Row& row) {
@@ -104,45 +119,76 @@ std::string settings(const Row& row) {
   return fmt::format("{}{}, {}x{}, {}", c.scene, size, width, height, row.cost.renderer);
 }
 
+/// The cells of a claim's line.
+struct Answer {
+  const Claim& claim;
+  std::string measured = "-", turns = "-", errors = "-", differences = "-", atEqualError = "-", verdict,
+              at = "-";
+};
+
+Answer answer(const Claim& claim, std::span<const Table> tables) {
+  if (!claim.because.empty()) {
+    return {
+        .claim = claim,
+        .verdict = fmt::format("{}, because {}", verdictInfo(Verdict::notReproduced).name, claim.because)};
+  }
+  const Found slow = find(tables, claim.slow), fast = find(tables, claim.fast);
+  if (slow.row == nullptr || fast.row == nullptr)
+    return {.claim = claim, .verdict = verdictInfo(Verdict::notMeasured).name};
+  const auto measure = claim.measure == ClaimMeasure::memory ? byMemory : byFrames;
+  const Pair pair = measure(claim.thesis, *slow.row, *fast.row);
+  const EqualError equal = atEqualError(claim, *slow.row, fast);
+  const auto rmse = [](const Row& row) { return shownText(metricInfo(&Metrics::rmse), errorOf(row)); };
+  return {claim,
+          pair.text,
+          pair.turns,
+          fmt::format("{} / {}", rmse(*slow.row), rmse(*fast.row)),
+          differingSettings(*slow.row, *fast.row),
+          equal.text,
+          verdictInfo(judged(pair.verdict, equal.verdict)).name,
+          settings(*fast.row)};
+}
+
+const std::vector<MarkdownColumn<Answer>>& reproductionColumns() {
+  static const std::vector<MarkdownColumn<Answer>> columns = {
+      {{"thesis", Align::left}, [](const Answer& a) { return a.claim.where; }},
+      {{"comparison", Align::left}, [](const Answer& a) { return a.claim.what; }},
+      {{"of", Align::left},
+       [](const Answer& a) -> std::string { return a.claim.because.empty() ? name(a.claim.measure) : "-"; }},
+      {{"thesis"}, [](const Answer& a) { return a.claim.thesis > 0 ? ratioText(a.claim.thesis) : "-"; }},
+      {{"measured"}, [](const Answer& a) { return a.measured; }},
+      {{"n"}, [](const Answer& a) { return a.turns; }},
+      {{"RMSE"}, [](const Answer& a) { return a.errors; }},
+      {{"differ in", Align::left}, [](const Answer& a) { return a.differences; }},
+      {{"at equal error", Align::left}, [](const Answer& a) { return a.atEqualError; }},
+      {{"verdict", Align::left}, [](const Answer& a) { return a.verdict; }},
+      {{"at", Align::left}, [](const Answer& a) { return a.at; }}};
+  return columns;
+}
+
+std::string verdictMarkdown() {
+  static const std::vector<MarkdownColumn<VerdictInfo>> columns = {
+      {{"verdict", Align::left}, [](const VerdictInfo& v) -> std::string { return v.name; }},
+      {{"rule", Align::left}, [](const VerdictInfo& v) -> std::string { return v.rule; }}};
+  std::string text = markdownHead(columns);
+  for (const VerdictInfo& info : kVerdicts) text += markdownRow(columns, info);
+  return text;
+}
+
 }  // namespace
 
-std::vector<Claim> parseClaims(std::string_view toml, const std::string& fileName) {
-  try {
-    const toml::table root = toml::parse(toml);
-    const toml::array* list = root["claims"].as_array();
-    if (list == nullptr || list->empty()) fail(fileName, root.source(), "there are no [[claims]]");
-    std::vector<Claim> claims;
-    for (const toml::node& node : *list) {
-      if (!node.is_table()) fail(fileName, node.source(), "'claims' must be tables: [[claims]]");
-      claims.push_back(parseClaim(fileName, *node.as_table()));
-    }
-    return claims;
-  } catch (const toml::parse_error& error) {
-    fail(fileName, error.source(), std::string(error.description()));
-  }
-}
-
-std::vector<Claim> readClaims(const std::filesystem::path& path) {
-  return parseClaims(readTextFile(path, 1 << 24), path.string());
-}
-
 std::string reproductionMarkdown(std::span<const Claim> claims, std::span<const Row> rows) {
-  std::string markdown, chapter;
+  const std::vector<Table> tables = makeTables(rows);
+  std::string markdown = kReading + verdictMarkdown(), chapter;
   std::set<std::string> suites;
   for (const Claim& claim : claims) {
     const std::string current = claim.where.substr(0, claim.where.find('.'));
     if (current != chapter)
-      markdown += fmt::format(
-          "{}## Chapter {}\n\n| thesis | comparison | of | thesis | measured | at "
-          "|\n|---|---|---|--:|--:|---|\n",
-          markdown.empty() ? "" : "\n", markdownText(current));
+      markdown +=
+          fmt::format("\n## Chapter {}\n\n{}", markdownText(current), markdownHead(reproductionColumns()));
     chapter = current;
-    const Row *slow = find(rows, claim.slow), *fast = find(rows, claim.fast);
-    const bool measured = slow != nullptr && fast != nullptr;
-    markdown += markdownRow(
-        {claim.where, claim.what, name(claim.measure), fmt::format("{:.2f}", claim.thesis),
-         measured ? ratioText(claim, *slow, *fast) : "not measured", measured ? settings(*fast) : ""});
-    suites.insert(claim.suite);
+    markdown += markdownRow(reproductionColumns(), answer(claim, tables));
+    if (!claim.suite.empty()) suites.insert(claim.suite);
   }
   markdown += "\nMeasured with\n\n```sh\n";
   std::string folders;

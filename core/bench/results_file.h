@@ -1,4 +1,4 @@
-// results.jsonl: rows are added one by one and survive an interruption at any moment.
+// Reads and writes results.jsonl: rows are added one by one and survive an interruption at any moment.
 #pragma once
 
 #include <filesystem>
@@ -12,28 +12,29 @@
 
 namespace limn::bench {
 
-/// The rows of a file, for each key the last one that did not fail, else the last one, in the order of their
-/// first appearance; the file is left as it is. A torn last line is skipped; a broken line elsewhere is an
-/// Error naming file and line.
+/// Returns the rows of a file: for each key the last one that did not fail, else the last one, in the order
+/// of their first appearance. The file is not changed. A torn last line is skipped. Throws Error naming file
+/// and line for a broken line elsewhere.
 LIMN_API std::vector<Row> readRows(const std::filesystem::path& path);
 
 class LIMN_API ResultsFile {
  public:
-  /// Opens or creates; reads the rows there are. A torn last line (the writer was interrupted) is cut off; a
-  /// broken line elsewhere is an Error naming file and line.
+  /// Opens or creates the file and reads its rows. A torn last line (the writer was interrupted) is cut off.
+  /// Throws Error naming file and line for a broken line elsewhere.
   explicit ResultsFile(std::filesystem::path path);
   ~ResultsFile();
   ResultsFile(const ResultsFile&) = delete;
   ResultsFile& operator=(const ResultsFile&) = delete;
 
-  /// Whether there is a successful row of that key; failed ones are to be tried again.
+  /// Returns whether there is a successful row of that key; failed ones are to be tried again.
   bool contains(const std::string& key) const;
-  /// The row of that key, null if there is none: the last one, but a failure never replaces a good row.
+  /// Returns the row of that key, null if there is none: the last one, but a failure never replaces a good
+  /// row.
   const Row* find(const std::string& key) const;
-  /// Writes one whole line and hands it to the disk. Throws Error if that fails; the file then still ends in
-  /// a whole line.
+  /// Writes one whole line and flushes it to the disk. Throws Error if that fails; the file then still ends
+  /// in a whole line.
   void append(const Row& row);
-  /// All rows, for each key the one that find() gives, in the order of their first appearance.
+  /// Returns all rows, for each key the one that find() gives, in the order of their first appearance.
   std::vector<Row> rows() const;
 
  private:

@@ -3,58 +3,34 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/bench/private/misjudged_table.h"
+#include "core/bench/private/question_json.h"
+#include "core/image/metric_json.h"
 
 namespace limn::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON knows no infinity: such values (the PSNR of equal pictures) are written as null.
-double numberOrInfinity(const Json& value) {
-  return value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>();
-}
-
-Json metricsToJson(const Metrics& m) {
-  Json json = {{"rmse", m.rmse},
-               {"rel_mse", m.rel_mse},
-               {"bias", m.bias},
-               {"p999", m.p999},
-               {"psnr", m.psnr},
-               {"flip", m.flip},
-               {"structured", m.structured},
-               {"masked_share", m.masked_share},
-               {"pixels", m.pixels}};
-  if (m.noise_floor) json["noise_floor"] = *m.noise_floor;
+Json misjudgedToJson(const Misjudged& m) {
+  Json json;
+  for (const MisjudgedInfo& info : kMisjudged) {
+    json[info.wholeKey] = m.*info.whole;
+    json[info.key] = m.*info.part;
+  }
   return json;
 }
 
-Metrics metricsFromJson(const Json& json) {
-  Metrics m;
-  m.rmse = json.at("rmse").get<double>();
-  m.rel_mse = numberOrInfinity(json.at("rel_mse"));
-  m.bias = json.at("bias").get<double>();
-  m.p999 = json.at("p999").get<double>();
-  m.psnr = numberOrInfinity(json.at("psnr"));
-  m.flip = json.at("flip").get<double>();
-  m.structured = json.at("structured").get<double>();
-  m.masked_share = json.at("masked_share").get<double>();
-  m.pixels = json.at("pixels").get<std::size_t>();
-  if (json.contains("noise_floor")) m.noise_floor = json["noise_floor"].get<double>();
-  return m;
-}
-
-Json misjudgedToJson(const Misjudged& m) {
-  return {
-      {"umbra", m.umbra}, {"lit_in_umbra", m.litInUmbra}, {"lit", m.lit}, {"dark_in_light", m.darkInLight}};
-}
-
 Misjudged misjudgedFromJson(const Json& json) {
-  return {json.at("umbra").get<std::size_t>(), json.at("lit_in_umbra").get<std::size_t>(),
-          json.at("lit").get<std::size_t>(), json.at("dark_in_light").get<std::size_t>()};
+  Misjudged m;
+  for (const MisjudgedInfo& info : kMisjudged) {
+    m.*info.whole = json.at(info.wholeKey).get<std::size_t>();
+    m.*info.part = json.at(info.key).get<std::size_t>();
+  }
+  return m;
 }
 
 /// The keys of `limn render --stats` that tables need; the rest of the statistics beside them.
@@ -124,119 +100,38 @@ Provenance provenanceFromJson(const Json& json) {
   return p;
 }
 
-/// What is changed; the rest is left out.
-Json changesToJson(const SceneChanges& c) {
-  const SceneChanges none;
-  Json json = Json::object();
-  const auto add = [&json](const char* key, const auto& value, const auto& otherwise) {
-    if (value != otherwise) json[key] = value;
-  };
-  add("eye", c.eye, none.eye);
-  add("target", c.target, none.target);
-  add("fov", c.fov, none.fov);
-  add("animation", c.animation, none.animation);
-  add("set_light", c.setLight, none.setLight);
-  add("default_lights", c.defaultLights, none.defaultLights);
-  add("environment_rotation", c.environmentRotation, none.environmentRotation);
-  add("environment_scale", c.environmentScale, none.environmentScale);
-  add("grid", c.grid, none.grid);
-  return json;
-}
-
-SceneChanges changesFromJson(const Json& json) {
-  SceneChanges c;
-  c.eye = json.value("eye", c.eye);
-  c.target = json.value("target", c.target);
-  c.fov = json.value("fov", c.fov);
-  c.animation = json.value("animation", c.animation);
-  c.setLight = json.value("set_light", c.setLight);
-  c.defaultLights = json.value("default_lights", c.defaultLights);
-  c.environmentRotation = json.value("environment_rotation", c.environmentRotation);
-  c.environmentScale = json.value("environment_scale", c.environmentScale);
-  c.grid = json.value("grid", c.grid);
-  return c;
-}
-
-Json mediumToJson(const MediumSettings& m) {
-  Json json = Json::object();
-  if (!m.sigmaA.empty()) json["sigma_a"] = m.sigmaA;
-  if (!m.sigmaS.empty()) json["sigma_s"] = m.sigmaS;
-  if (m.g) json["g"] = *m.g;
-  return json;
-}
-
-MediumSettings mediumFromJson(const Json& json) {
-  const auto coefficient = [&json](const char* key) {
-    const auto found = json.find(key);
-    if (found == json.end()) return std::string();
-    // rows of earlier versions have a number
-    return found->is_number() ? fmt::format("{}", found->get<double>()) : found->get<std::string>();
-  };
-  MediumSettings m{coefficient("sigma_a"), coefficient("sigma_s"), {}};
-  if (json.contains("g")) m.g = json["g"].get<double>();
-  return m;
-}
-
 Json caseToJson(const Case& c) {
   Json parameters = Json::object();
   for (const auto& [name, value] : c.parameters) parameters[name] = value;
-  const EnvironmentSettings& e = c.environment;
-  Json environment = {{"map", e.map},
-                      {"lights", e.lights},
-                      {"resolution", e.resolution},
-                      {"shape", e.shape},
-                      {"reflection", e.reflection}};
-  return {{"scene", c.scene},
-          {"camera", c.camera},
-          {"light", c.light},
-          {"environment", environment},
-          {"medium", mediumToJson(c.medium)},
-          {"changes", changesToJson(c.changes)},
-          {"time", c.time},
-          {"fps", c.fps},
-          {"light_size", c.lightSize},
-          {"technique", c.technique},
-          {"parameters", parameters},
-          {"term", c.term},
-          {"size", {c.width, c.height}},
-          {"dynamic", c.dynamic},
-          {"frames", c.frames},
-          {"warmup", c.warmup},
-          {"turns", c.turns},
-          {"time_size", {c.timeWidth, c.timeHeight}},
-          {"title", c.title},
-          {"baseline", c.baseline},
-          {"max_masked_share", c.maxMaskedShare},
-          {"quality",
-           {{"spp", c.reference.spp},
-            {"noise", c.reference.noise},
-            {"bounces", c.reference.bounces},
-            {"interfaces", c.reference.interfaces}}}};
+  Json json = Json::object();
+  addQuestion(json, c);
+  json.update(Json{{"fps", c.fps},
+                   {"technique", c.technique},
+                   {"parameters", parameters},
+                   {"dynamic", c.dynamic},
+                   {"frames", c.frames},
+                   {"warmup", c.warmup},
+                   {"turns", c.turns},
+                   {"time_size", {c.timeWidth, c.timeHeight}},
+                   {"title", c.title},
+                   {"baseline", c.baseline},
+                   {"max_masked_share", c.maxMaskedShare},
+                   {"quality",
+                    {{"spp", c.reference.spp},
+                     {"noise", c.reference.noise},
+                     {"bounces", c.reference.bounces},
+                     {"interfaces", c.reference.interfaces}}}});
+  return json;
 }
 
 Case caseFromJson(const Json& json) {
   Case c;
-  c.scene = json.at("scene").get<std::string>();
-  c.camera = json.at("camera").get<std::string>();
-  c.light = json.at("light").get<std::string>();
-  if (json.contains("environment")) {  // rows of earlier versions have none
-    const Json& e = json["environment"];
-    c.environment = {e.at("map").get<std::string>(), e.at("lights").get<double>(),
-                     e.at("resolution").get<int>(), e.at("shape").get<std::string>(),
-                     e.at("reflection").get<std::string>()};
-  }
-  if (json.contains("medium")) c.medium = mediumFromJson(json["medium"]);
-  if (json.contains("changes")) c.changes = changesFromJson(json["changes"]);
-  c.time = json.at("time").get<double>();
+  static_cast<SceneQuestion&>(c) = questionFromJson(json);
   c.fps = json.value("fps", 0.0);
-  c.lightSize = json.value("light_size", 0.0);
   c.technique = json.at("technique").get<std::string>();
   for (const auto& [name, value] : json.at("parameters").items()) {
     c.parameters.emplace_back(name, value.get<std::string>());
   }
-  c.term = json.at("term").get<std::string>();
-  c.width = json.at("size").at(0).get<int>();
-  c.height = json.at("size").at(1).get<int>();
   c.dynamic = json.at("dynamic").get<bool>();
   c.frames = json.at("frames").get<int>();
   c.warmup = json.at("warmup").get<int>();

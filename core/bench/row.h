@@ -1,4 +1,4 @@
-// One line of results.jsonl: what was asked, how wrong the answer is, what it cost.
+// Declares one line of results.jsonl: what was asked, the error of the answer, and its cost.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct FrameTime {
   int turns = 1;                      ///< in which they were taken, with other rows' in between
 };
 
-/// Where the time of a frame's passes goes, milliseconds: medians of the passes, summed.
+/// Holds the time of a frame's passes by purpose, milliseconds: medians of the passes, summed.
 struct CostSplit {
   double maps = 0;       ///< drawing the scene into maps of shadows, light or surfaces
   double filters = 0;    ///< pyramids, summed-area tables and whatever else is derived from them
@@ -43,8 +43,8 @@ struct Cost {
   std::string details;
 };
 
-/// Visibility whose error is not one of degree: pixels in the umbra that are lit, and pixels in full light
-/// that are not. Both show as leaks and blotches however small the RMSE is.
+/// Counts pixels whose visibility is wrong in kind, not in degree: lit pixels in the umbra, and dark pixels
+/// in full light. Both show as leaks and blotches however small the RMSE is.
 struct Misjudged {
   static constexpr float kUmbra = 0.02f, kLit = 0.98f;  ///< reference below, above
   static constexpr float kTolerance = 0.1f;             ///< of the error
@@ -67,15 +67,16 @@ struct Row {
   std::string picture;     ///< file in the folder of the results; "" if it was not kept
   std::string difference;  ///< the same for the difference image
   std::string
-      failure;  ///< not empty: why there is no picture; error and cost are then void but for the renderer
+      failure;  ///< not empty: why there is no picture; error and cost are then void except for the renderer
 };
 
-/// One line of JSON, without the line's end.
+/// Returns one line of JSON, without the line's end.
 LIMN_API std::string toJson(const Row& row);
-/// Throws Error saying what is wrong. What rows of earlier versions lack stays empty.
+/// Reads a row from a line of JSON. Throws Error that says what is wrong. Fields that rows of earlier
+/// versions lack stay empty.
 LIMN_API Row rowFromJson(const std::string& line);
 
-/// The file of the reference's picture beside the row's; "" if pictures were not kept.
+/// Returns the file of the reference's picture beside the row's; "" if pictures were not kept.
 LIMN_API std::string referencePicture(const Row& row);
 
 }  // namespace limn::bench

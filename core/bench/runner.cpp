@@ -4,6 +4,7 @@
 
 #include "core/base/failure.h"
 #include "core/image/error_spectrum.h"
+#include "core/question/term.h"
 #include "core/render/frame_stats.h"
 
 namespace limn::bench {
@@ -54,10 +55,11 @@ Row measureRow(const Case& c, const std::string& key, const Reference& reference
   Measurement measurement = callbacks.measure(c);
   CompareOptions options;
   options.maxMaskedShare = c.maxMaskedShare;
+  options.background = hasBackground(c.term);
   const Comparison comparison = compareImagesDetailed(measurement.image, reference.image, options);
   row.error = comparison.metrics;
   row.spectrum = errorSpectrum(measurement.image, reference.image, comparison.mask);
-  if (c.term == "visibility") {
+  if (c.term == name(Term::visibility)) {
     row.penumbra = penumbraMetrics(measurement.image, reference, options);
     row.misjudged = misjudged(measurement.image, reference, comparison.mask);
   }

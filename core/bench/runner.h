@@ -1,5 +1,5 @@
-// Runs the cases of a suite that have no row yet. Rendering is handed in, so that the logic is tested without
-// it.
+// Runs the cases of a suite that have no row yet. Rendering is passed in as callbacks, so that the logic is
+// tested without it.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@ struct Reference {
   Image image;
   std::string file;               ///< as recorded in the row
   std::optional<double> noise;    ///< RMS relative to the mean
-  std::optional<double> seconds;  ///< that it took
+  std::optional<double> seconds;  ///< of rendering it
 };
 
 struct Measurement {
@@ -36,19 +36,19 @@ struct Progress {
 };
 
 struct Callbacks {
-  /// Called once per question (consecutive cases share it).
+  /// Renders the reference; called once per question (consecutive cases share it).
   std::function<Reference(const Case&)> reference;
-  /// Keeps a picture under a name and says in which file; asked for cases that want it, with the row's key,
+  /// Keeps a picture under a name and returns its file; called for cases that want it, with the row's key,
   /// and with KEY.difference for differenceImage(). May be empty.
   std::function<std::string(const std::string& name, const Image&)> keepPicture;
-  /// The technique's picture and what it cost. kSeparationFloor asks for unshadowed light times the
+  /// Returns the technique's picture and its cost. For kSeparationFloor it returns unshadowed light times the
   /// reference's visibility, untimed (n = 0).
   std::function<Measurement(const Case&)> measure;
-  /// Milliseconds of the frames of a further turn; asked for cases with several.
+  /// Returns the milliseconds of the frames of a further turn; called for cases with several turns.
   std::function<std::vector<double>(const Case&)> time;
   std::function<void(const Progress&)> progress;  ///< may be empty
-  /// What the case is measured with now: rows that were measured with something else are measured again. May
-  /// be empty: every row is then as good as a new one.
+  /// Returns what the case is measured with now: rows that were measured with something else are measured
+  /// again. May be empty: every row then counts as valid.
   std::function<Provenance(const Case&)> provenance;
 };
 
@@ -56,15 +56,16 @@ struct Summary {
   int done = 0, skipped = 0, failed = 0;
 };
 
-/// How many of the cases have a row that was measured with something else, by what has changed (staleness()).
+/// Returns how many of the cases have a row that was measured with something else, by what has changed
+/// (staleness()).
 LIMN_API std::map<std::string, int> staleRows(std::span<const Case> cases, const std::string& renderer,
                                               const ResultsFile& results,
                                               const std::function<Provenance(const Case&)>& provenance);
 
-/// All cases first, then further turns of timing, each of which replaces the rows by longer ones.
-/// `renderer` is recorded in the rows and part of their keys: results of another renderer are measured anew.
-/// Whatever a callback but `progress` and `provenance` throws is recorded in the case's row, and the next
-/// case is run. An Error of the results file ends the run.
+/// Runs all cases first, then further turns of timing, each of which replaces the rows by longer ones.
+/// `renderer` is recorded in the rows and part of their keys: results of another renderer are measured again.
+/// Whatever a callback other than `progress` and `provenance` throws is recorded in the case's row, and the
+/// next case is run. Throws the Error of the results file, which ends the run.
 LIMN_API Summary runCases(std::span<const Case> cases, const std::string& renderer, ResultsFile& results,
                           const Callbacks& callbacks);
 

@@ -8,8 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/bench/markdown.h"
+#include "core/bench/private/columns.h"
+#include "core/bench/private/markdown.h"
+#include "core/image/metric_table.h"
 #include "core/image/metrics.h"
+#include "core/question/term.h"
 #include "core/render/frame_stats.h"
 
 namespace limn::bench {
@@ -122,6 +125,7 @@ void look(Comparison& c, render::Renderer& renderer, const scene::CameraPose& ca
           const Image* reference) {
   CompareOptions anyMask;
   anyMask.maxMaskedShare = 1;
+  anyMask.background = termInfo(c.forced.term).background;
   const auto side = [&](const Settings& settings, SavingSide& result, Frame& frame) {
     show(renderer, camera, settings);
     Image image = secondFrame(renderer);
@@ -167,6 +171,7 @@ bool applies(const SavingResult& result, const Settings& forced) {
 }
 
 std::string pictureText(const SavingResult& r) {
+  constexpr const MetricInfo& rmse = metricInfo(&Metrics::rmse);
   std::string text =
       r.largestDifference == 0 ? "equal" : fmt::format("{:.2g} apart at most", r.largestDifference);
   if (r.shareApart > 0) text += fmt::format(", {:.3f} % by more than 1/255", 100 * r.shareApart);
@@ -174,12 +179,45 @@ std::string pictureText(const SavingResult& r) {
     text += fmt::format(" (squared error there {:.2g} times that when forced)",
                         r.without.squaresApart / std::max(r.forced.squaresApart, 1e-30));
   if (r.forced.rmse && r.largestDifference > 0)
-    text += fmt::format("; RMSE {:.5f} forced, {:.5f} without", *r.forced.rmse, *r.without.rmse);
-  return text;
+    text += fmt::format("; {} {} forced, {} without", rmse.label, shownText(rmse, *r.forced.rmse),
+                        shownText(rmse, *r.without.rmse));
+  return r.holds() ? text : text + " (NOT as it must be)";
 }
 
-double mebibytes(std::int64_t bytes) {
-  return static_cast<double>(bytes) / (1 << 20);
+/// A column with a line for each kind of work; kinds that do not apply have none of its cells.
+template <class Function>
+MarkdownColumn<SavingResult> applied(std::string head, Function cell) {
+  return {{std::move(head)}, [cell](const SavingResult& r) { return r.applies ? cell(r) : std::string(); }};
+}
+
+MarkdownColumn<SavingResult> timeColumn(const char* of, SavingSide SavingResult::*side) {
+  return applied(fmt::format("{} {}", kFrameTime.head, of), [side](const SavingResult& r) {
+    return shownText(kFrameTime, render::quartiles((r.*side).ms).median);
+  });
+}
+
+MarkdownColumn<SavingResult> memoryColumn(const char* of, SavingSide SavingResult::*side) {
+  return applied(fmt::format("{} {}", kMemory.head, of), [side](const SavingResult& r) {
+    return shownText(kMemory, static_cast<double>((r.*side).memoryBytes));
+  });
+}
+
+std::vector<MarkdownColumn<SavingResult>> savingColumns() {
+  return {
+      {{"left out", Align::left}, [](const SavingResult& r) { return r.name; }},
+      {{"because", Align::left}, [](const SavingResult& r) { return r.how; }},
+      applied("passes", [](const SavingResult& r) { return fmt::format("{}", r.passes.size()); }),
+      timeColumn("forced", &SavingResult::forced),
+      timeColumn("without", &SavingResult::without),
+      applied("ratio (95 %)",
+              [](const SavingResult& r) {
+                return fmt::format("{:.3f} ({:.3f} to {:.3f})", r.ratio.value, r.ratio.low, r.ratio.high);
+              }),
+      memoryColumn("forced", &SavingResult::forced),
+      memoryColumn("without", &SavingResult::without),
+      {{"pictures", Align::left},
+       [](const SavingResult& r) { return r.applies ? pictureText(r) : "nothing to leave out"; }},
+  };
 }
 
 nlohmann::ordered_json toJsonValue(const SavingSide& side) {
@@ -218,23 +256,9 @@ std::vector<SavingResult> measureSavings(render::Renderer& renderer, const scene
 }
 
 std::string toMarkdown(std::span<const SavingResult> results) {
-  std::string text =
-      "| left out | because | passes | frame forced, ms | without, ms | ratio (95 %) | MiB forced | MiB "
-      "without | pictures |\n"
-      "| --- | --- | --: | --: | --: | --: | --: | --: | --- |\n";
-  for (const SavingResult& r : results) {
-    if (!r.applies) {
-      text += markdownRow({r.name, r.how, "", "", "", "", "", "", "nothing to leave out"});
-      continue;
-    }
-    text += markdownRow({r.name, r.how, fmt::format("{}", r.passes.size()),
-                         fmt::format("{:.2f}", render::quartiles(r.forced.ms).median),
-                         fmt::format("{:.2f}", render::quartiles(r.without.ms).median),
-                         fmt::format("{:.3f} ({:.3f} to {:.3f})", r.ratio.value, r.ratio.low, r.ratio.high),
-                         fmt::format("{:.1f}", mebibytes(r.forced.memoryBytes)),
-                         fmt::format("{:.1f}", mebibytes(r.without.memoryBytes)),
-                         pictureText(r) + (r.holds() ? "" : " (NOT as it must be)")});
-  }
+  static const std::vector<MarkdownColumn<SavingResult>> columns = savingColumns();
+  std::string text = markdownHead(columns);
+  for (const SavingResult& r : results) text += markdownRow(columns, r);
   return text;
 }
 

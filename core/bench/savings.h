@@ -1,4 +1,4 @@
-// What it is worth to leave out what a scene does not need: each kind of work that limn leaves out is forced
+// Measures what is gained by leaving out work that a scene does not need: each kind of such work is forced
 // in, and pictures, times and memory are compared.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace limn::bench {
 
-/// One side of a comparison.
+/// Holds one side of a comparison.
 struct SavingSide {
   std::vector<double> ms;        ///< of each timed frame
   std::int64_t memoryBytes = 0;  ///< buffers and textures
@@ -34,29 +34,29 @@ struct SavingResult {
   Ratio ratio = {};              ///< frame time forced in / left out
   double largestDifference = 0;  ///< between the two pictures, in any channel
   double shareApart = 0;         ///< of the pixels that are more than 1/255 apart
-  /// The pictures agree as they must. Where an early-out is more than 1/255 apart, it must be nearer the
-  /// reference: bounds know an umbra in which an estimator may leave some light.
+  /// Returns whether the pictures agree as required. Where an early-out is more than 1/255 apart, it must be
+  /// nearer to the reference: bounds detect an umbra in which an estimator may leave some light.
   LIMN_API bool holds() const;
 };
 
 struct SavingOptions {
   int frames = 9;  ///< timed, of each side, in three turns; 0: only pictures and memory are compared
   int warmup = 1;  ///< before each turn
-  /// Called before each kind of work is looked at, and before each turn: the part that is done, in [0, 1],
-  /// and the name of the kind. May be empty.
+  /// Called before each kind of work is measured, and before each turn: the part that is done, in [0, 1], and
+  /// the name of the kind. May be empty.
   std::function<void(double fraction, const std::string& name)> progress = {};
 };
 
-/// `settings` says what is rendered; its `dynamic` and `forced` are not looked at. `reference` may be null:
-/// errors are not told then. Throws what rendering throws.
+/// Measures every kind of work that can be left out. `settings` says what is rendered; its `dynamic` and
+/// `forced` are ignored. `reference` may be null: then no errors are reported. Throws what rendering throws.
 LIMN_API std::vector<SavingResult> measureSavings(render::Renderer& renderer, const scene::CameraPose& camera,
                                                   const render::Settings& settings, const Image* reference,
                                                   const SavingOptions& options = {});
 
-/// A table with a line for each result.
+/// Returns a table with a line for each result.
 LIMN_API std::string toMarkdown(std::span<const SavingResult> results);
-/// {"savings": [{"name", "how", "exact", "applies", "passes", "forced": {"frame_ms", "memory_bytes", "rmse"},
-/// "without": ..., "ratio": [value, low, high], "largest_difference", "share_apart", "holds"}]}
+/// Returns {"savings": [{"name", "how", "exact", "applies", "passes", "forced": {"frame_ms", "memory_bytes",
+/// "rmse"}, "without": ..., "ratio": [value, low, high], "largest_difference", "share_apart", "holds"}]}.
 LIMN_API std::string toJson(std::span<const SavingResult> results);
 
 }  // namespace limn::bench

@@ -9,9 +9,12 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
-#include "core/bench/markdown.h"
-#include "core/bench/stress_scene.h"
+#include "core/bench/private/columns.h"
+#include "core/bench/private/markdown.h"
+#include "core/bench/private/stress_scene.h"
+#include "core/image/metric_table.h"
 #include "core/image/metrics.h"
+#include "core/question/term.h"
 #include "core/reference/reference.h"
 #include "core/render/renderer.h"
 
@@ -45,21 +48,20 @@ constexpr StressCase kCommon[] = {
 };
 
 /// V where the technique has one and light has no part in the case; else the radiance it answers for.
-render::Output outputOf(const TechniquePlugin& technique, StressChange change) {
+Term termOf(const TechniquePlugin& technique, StressChange change) {
   const TermSet terms = technique.info->terms;
-  if (terms == termSet(Term::media)) return render::Output::media;
-  if (terms == termSet(Term::caustic)) return render::Output::caustic;
-  if (terms == termSet(Term::specular)) return render::Output::specular;
+  for (const Term alone : {Term::media, Term::caustic, Term::specular})
+    if (terms == termSet(alone)) return alone;
   const bool indirect = terms == termSet(Term::indirect);
   switch (change) {
     case StressChange::radiance:
     case StressChange::albedo:
-      return indirect ? render::Output::indirect : render::Output::direct;
+      return indirect ? Term::indirect : Term::direct;
     case StressChange::noLight:
-      return render::Output::final;
+      return Term::final;
     default:
-      if (indirect) return render::Output::indirect;
-      return contains(terms, Term::visibility) ? render::Output::visibility : render::Output::direct;
+      if (indirect) return Term::indirect;
+      return contains(terms, Term::visibility) ? Term::visibility : Term::direct;
   }
 }
 
@@ -76,7 +78,7 @@ ParameterValues parametersOf(const TechniquePlugin& technique, const char* setti
 }
 
 /// Throws Error for values that no picture may have.
-void checkValues(const Image& image, render::Output output) {
+void checkValues(const Image& image, Term term) {
   std::size_t notFinite = 0, outOfRange = 0;
   for (const int channel : image.rgbChannels())
     for (std::size_t i = 0; i < image.pixelCount(); ++i) {
@@ -84,7 +86,7 @@ void checkValues(const Image& image, render::Output output) {
           image
               .data()[i * static_cast<std::size_t>(image.channelCount()) + static_cast<std::size_t>(channel)];
       notFinite += !std::isfinite(v);
-      outOfRange += v < 0 || (output == render::Output::visibility && v > 1);
+      outOfRange += v < 0 || (term == Term::visibility && v > 1);
     }
   if (notFinite > 0) throw std::range_error(fmt::format("{} values are not finite", notFinite));
   if (outOfRange > 0) throw std::range_error(fmt::format("{} values are out of range", outOfRange));
@@ -109,6 +111,38 @@ bool anyCoverage(const Image& reference) {
   return false;
 }
 
+bool isMeasured(const StressResult& r) {
+  return r.verdict == Verdict::pass || r.verdict == Verdict::degraded;
+}
+
+bool isBounded(const StressResult& r) {
+  return isMeasured(r) && r.allowed > 0;
+}
+
+std::vector<MarkdownColumn<StressResult>> stressColumns() {
+  static constexpr const MetricInfo& rmse = metricInfo(&Metrics::rmse);
+  return {
+      {{headOf("technique"), Align::left}, [](const StressResult& r) { return r.technique; }},
+      {{"case", Align::left},
+       [](const StressResult& r) {
+         return r.settings.empty() ? r.name : fmt::format("{} ({})", r.name, r.settings);
+       }},
+      {{headOf("scene"), Align::left}, [](const StressResult& r) { return r.scene; }},
+      {{"verdict", Align::left},
+       [](const StressResult& r) {
+         return r.message.empty() ? name(r.verdict) : fmt::format("{}: {}", name(r.verdict), r.message);
+       }},
+      {{std::string(rmse.head)},
+       [](const StressResult& r) { return isMeasured(r) ? shownText(rmse, r.error) : "-"; }},
+      {{fmt::format("{} unchanged", rmse.head)},
+       [](const StressResult& r) { return shownText(rmse, r.benign); }},
+      {{"factor"},
+       [](const StressResult& r) { return isBounded(r) ? fmt::format("{:.2f}", r.factor) : "-"; }},
+      {{"allowed"},
+       [](const StressResult& r) { return isBounded(r) ? fmt::format("{:.1f}", r.allowed) : "-"; }},
+  };
+}
+
 }  // namespace
 
 /// What is asked: a scene, changed, and a term of it.
@@ -116,13 +150,13 @@ struct StressRun::Question {
   std::string key;
   scene::Scene scene;
   render::Renderer renderer;
-  render::Output output;
-  int light = scene::none;
+  Term term;
+  int light = scene::kNone;
   scene::CameraPose camera;
   glm::ivec2 size;
 
-  Question(gpu::Device& device, std::string text, scene::Scene changed, render::Output wanted)
-      : key(std::move(text)), scene(std::move(changed)), renderer(device, scene), output(wanted) {}
+  Question(gpu::Device& device, std::string text, scene::Scene changed, Term wanted)
+      : key(std::move(text)), scene(std::move(changed)), renderer(device, scene), term(wanted) {}
 };
 
 const char* name(Verdict verdict) {
@@ -158,8 +192,7 @@ StressRun::StressRun(gpu::Device& device, std::function<scene::Scene(const std::
     : device_(device), scene_(std::move(scene)), options_(options) {}
 StressRun::~StressRun() = default;
 
-StressRun::Question& StressRun::question(const TechniquePlugin& technique, const StressCase& c,
-                                         render::Output output) {
+StressRun::Question& StressRun::question(const TechniquePlugin& technique, const StressCase& c, Term term) {
   // Of a technique that has shadows of lights, too, those are asked for.
   const bool sky = contains(technique.info->terms, Term::environment) &&
                    !contains(technique.info->terms, Term::visibility);
@@ -167,7 +200,7 @@ StressRun::Question& StressRun::question(const TechniquePlugin& technique, const
       contains(technique.info->terms, Term::media) || contains(technique.info->terms, Term::caustic);
   const bool glass = contains(technique.info->terms, Term::specular);
   const std::string key =
-      fmt::format("{} {} {} {}{}{}{}", c.scene, static_cast<int>(c.change), c.amount, render::name(output),
+      fmt::format("{} {} {} {}{}{}{}", c.scene, static_cast<int>(c.change), c.amount, name(term),
                   sky ? " sky" : "", fog ? " fog" : "", glass ? " glass" : "");
   if (question_ && question_->key == key) return *question_;
   question_.reset();
@@ -176,9 +209,9 @@ StressRun::Question& StressRun::question(const TechniquePlugin& technique, const
   if (fog) scene = inFog(std::move(scene));
   if (glass) scene = withGlass(std::move(scene));
   auto question =
-      std::make_unique<Question>(device_, key, stressed(std::move(scene), c.change, c.amount), output);
+      std::make_unique<Question>(device_, key, stressed(std::move(scene), c.change, c.amount), term);
   const scene::Pose& pose = question->renderer.pose();
-  if (output == render::Output::visibility && !pose.lights.empty()) question->light = 0;
+  if (term == Term::visibility && !pose.lights.empty()) question->light = 0;
   question->camera = pose.cameras.at(0);
   if (c.change == StressChange::cameraInside || c.change == StressChange::cameraNear)
     question->camera =
@@ -191,20 +224,20 @@ StressRun::Question& StressRun::question(const TechniquePlugin& technique, const
 
 /// The RMSE against the reference, relative to its mean unless it is a visibility. Throws std::range_error
 /// for values that no picture may have, Error where something refuses.
-double StressRun::error(const TechniquePlugin& technique, const StressCase& c, render::Output output) {
-  Question& q = question(technique, c, output);
+double StressRun::error(const TechniquePlugin& technique, const StressCase& c, Term term) {
+  Question& q = question(technique, c, term);
   render::Settings settings;
   settings.size = q.size;
-  settings.output = q.output;
+  settings.term = q.term;
   settings.light = q.light;
   settings.channels = true;
   settings.techniques = {{&technique, parametersOf(technique, c.settings)}};
-  const int interfaces = render::interfacesOf(q.output, settings.techniques);
+  const int interfaces = render::interfacesOf(q.term, settings.techniques);
   q.renderer.configure(std::move(settings));
   q.renderer.setCamera(q.camera);
   q.renderer.render();
   const Image image = q.renderer.read();
-  checkValues(image, q.output);
+  checkValues(image, q.term);
 
   const auto [known, isNew] = references_.try_emplace(fmt::format("{} {}", q.key, interfaces));
   if (isNew) {
@@ -212,10 +245,10 @@ double StressRun::error(const TechniquePlugin& technique, const StressCase& c, r
         .scene = q.scene, .pose = q.renderer.pose(), .camera = q.camera, .progress = {}, .checkpoint = {}};
     request.width = q.size.x;
     request.height = q.size.y;
-    request.term = reference::termFromName(std::string(render::name(q.output)));
-    request.light = q.light == scene::none ? reference::allLights : q.light;
+    request.term = q.term;
+    request.light = q.light == scene::kNone ? reference::kAllLights : q.light;
     request.spp = options_.spp;
-    request.bounces = q.output == render::Output::indirect ? 1 : 0;
+    request.bounces = reference::defaultBounces(q.term);
     request.interfaces = interfaces;
     try {
       known->second = reference::render(request).image;
@@ -227,16 +260,19 @@ double StressRun::error(const TechniquePlugin& technique, const StressCase& c, r
   const Image& reference = known->second;
   if (!anyCoverage(reference)) return 0;
   const double rmse =
-      compareImages(image, reference, {.maxMaskedShare = kMaxMasked, .maskTermRange = {}}).rmse;
-  if (q.output == render::Output::visibility) return rmse;
+      compareImages(
+          image, reference,
+          {.maxMaskedShare = kMaxMasked, .background = termInfo(q.term).background, .maskTermRange = {}})
+          .rmse;
+  if (q.term == Term::visibility) return rmse;
   const double mean = meanOf(reference);
   return mean > 0 ? rmse / mean : rmse;
 }
 
-double StressRun::benign(const TechniquePlugin& technique, const char* scene, render::Output output) {
-  const std::string key = fmt::format("{} {} {}", technique.info->name, scene, render::name(output));
+double StressRun::benign(const TechniquePlugin& technique, const char* scene, Term term) {
+  const std::string key = fmt::format("{} {} {}", technique.info->name, scene, name(term));
   if (const auto known = benign_.find(key); known != benign_.end()) return known->second;
-  return benign_[key] = error(technique, {.name = "unchanged", .scene = scene}, output);
+  return benign_[key] = error(technique, {.name = "unchanged", .scene = scene}, term);
 }
 
 StressResult StressRun::run(const TechniquePlugin& technique, const StressCase& c, bool own) {
@@ -248,10 +284,10 @@ StressResult StressRun::run(const TechniquePlugin& technique, const StressCase& 
                       .allowed = c.factor,
                       .message = {}};
   try {
-    const render::Output output = outputOf(technique, c.change);
-    result.benign = benign(technique, c.scene, output);
+    const Term term = termOf(technique, c.change);
+    result.benign = benign(technique, c.scene, term);
     const bool unchanged = c.change == StressChange::none && *c.settings == '\0';
-    result.error = unchanged ? result.benign : error(technique, c, output);
+    result.error = unchanged ? result.benign : error(technique, c, term);
     result.factor = result.error / std::max(result.benign, kBenignFloor);
     result.verdict = c.factor > 0 && result.factor > c.factor ? Verdict::degraded : Verdict::pass;
   } catch (const std::range_error& bad) {
@@ -265,20 +301,9 @@ StressResult StressRun::run(const TechniquePlugin& technique, const StressCase& 
 }
 
 std::string toMarkdown(std::span<const StressResult> results) {
-  std::string text =
-      "| technique | case | scene | verdict | error | unchanged | factor | allowed |\n"
-      "|---|---|---|---|--:|--:|--:|--:|\n";
-  for (const StressResult& r : results) {
-    std::string what = r.name;
-    if (!r.settings.empty()) what += fmt::format(" ({})", r.settings);
-    std::string verdict = name(r.verdict);
-    if (!r.message.empty()) verdict += ": " + r.message;
-    const bool measured = r.verdict == Verdict::pass || r.verdict == Verdict::degraded;
-    const bool bounded = measured && r.allowed > 0;
-    text += markdownRow({r.technique, what, r.scene, verdict, measured ? fmt::format("{:.4f}", r.error) : "-",
-                         fmt::format("{:.4f}", r.benign), bounded ? fmt::format("{:.2f}", r.factor) : "-",
-                         bounded ? fmt::format("{:.1f}", r.allowed) : "-"});
-  }
+  static const std::vector<MarkdownColumn<StressResult>> columns = stressColumns();
+  std::string text = markdownHead(columns);
+  for (const StressResult& r : results) text += markdownRow(columns, r);
   return text;
 }
 

@@ -1,4 +1,5 @@
-// Stability: every technique on every extreme, as a table of pass, degraded (how much) or refused (why).
+// Tests stability: every technique on every extreme case, as a table of pass, degraded (how much) or refused
+// (why).
 #pragma once
 
 #include <functional>
@@ -19,16 +20,13 @@ class Device;
 namespace limn::scene {
 struct Scene;
 }
-namespace limn::render {
-enum class Output;
-}
 
 namespace limn::bench {
 
 enum class Verdict {
   pass,
   degraded,  ///< the error is above what the case allows
-  refused,   ///< ended in a message
+  refused,   ///< ended with a message
   failed,    ///< a value that is not finite, a visibility outside [0, 1] or a negative radiance
 };
 LIMN_API const char* name(Verdict verdict);
@@ -44,7 +42,7 @@ struct StressResult {
   std::string message;  ///< why it was refused or has failed
 };
 
-/// The extremes every technique has to cope with.
+/// Returns the extreme cases that every technique has to handle.
 LIMN_API std::span<const StressCase> commonStressCases();
 
 struct StressOptions {
@@ -55,7 +53,7 @@ struct StressOptions {
 /// Runs cases of one technique after the other; references are shared.
 class LIMN_API StressRun {
  public:
-  /// `scene` loads an asset by name.
+  /// Takes `scene`, which loads an asset by name.
   StressRun(gpu::Device& device, std::function<scene::Scene(const std::string&)> scene,
             StressOptions options = {});
   ~StressRun();
@@ -64,24 +62,25 @@ class LIMN_API StressRun {
 
  private:
   struct Question;
-  Question& question(const TechniquePlugin& technique, const StressCase& stressCase, render::Output output);
-  double error(const TechniquePlugin& technique, const StressCase& stressCase, render::Output output);
-  double benign(const TechniquePlugin& technique, const char* scene, render::Output output);
+  Question& question(const TechniquePlugin& technique, const StressCase& stressCase, Term term);
+  double error(const TechniquePlugin& technique, const StressCase& stressCase, Term term);
+  double benign(const TechniquePlugin& technique, const char* scene, Term term);
 
   gpu::Device& device_;
   std::function<scene::Scene(const std::string&)> scene_;
   StressOptions options_;
   std::unique_ptr<Question> question_;       ///< the last one
   std::map<std::string, Image> references_;  ///< by question
-  std::map<std::string, double> benign_;     ///< by technique, scene and output
+  std::map<std::string, double> benign_;     ///< by technique, scene and term
 };
 
-/// A table with a line for each result, those that did not pass explained.
+/// Returns a table with a line for each result; those that did not pass are explained.
 LIMN_API std::string toMarkdown(std::span<const StressResult> results);
-/// {"renderer": ..., "results": [{"technique", "case", "scene", "settings", "own", "verdict", "error",
-/// "benign", "factor", "allowed", "message"}]}
+/// Returns {"renderer": ..., "results": [{"technique", "case", "scene", "settings", "own", "verdict",
+/// "error", "benign", "factor", "allowed", "message"}]}.
 LIMN_API std::string toJson(std::span<const StressResult> results, const std::string& renderer);
-/// The inverse; none if they are of another renderer. Throws Error for text that is not such a table.
+/// Returns the results in a text of toJson(); none if they come from another renderer. Throws Error for text
+/// that is not such a table.
 LIMN_API std::vector<StressResult> stressFromJson(const std::string& text, const std::string& renderer);
 
 }  // namespace limn::bench

@@ -1,4 +1,4 @@
-#include "core/bench/stress_scene.h"
+#include "core/bench/private/stress_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,7 @@ void scale(scene::Scene& scene, float factor) {
   scene.origin *= factor;
   for (scene::Node& node : scene.nodes) {
     node.limnArea *= factor;
-    if (node.parent == scene::none) node.parent = -2;
+    if (node.parent == scene::kNone) node.parent = -2;
   }
   scene::Node root;
   root.transform.scale = glm::vec3(factor);
@@ -81,7 +81,7 @@ struct LightRay {
 
 LightRay firstLight(const scene::Scene& scene, const scene::Pose& pose) {
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-    if (scene.nodes[i].light == scene::none) continue;
+    if (scene.nodes[i].light == scene::kNone) continue;
     const glm::mat4& m = pose.nodeToWorld[i];
     return {glm::vec3(m[3]), -glm::normalize(glm::vec3(m[2]))};
   }
@@ -98,18 +98,18 @@ std::vector<glm::vec3> square(glm::vec3 centre, glm::vec3 normal, float half) {
 }
 
 void removeLights(scene::Scene& scene) {
-  for (scene::Node& node : scene.nodes) node.light = scene::none;
+  for (scene::Node& node : scene.nodes) node.light = scene::kNone;
   for (scene::Material& material : scene.materials) material.emission = glm::vec3(0);
 }
 
 void moveLightToTheFloor(scene::Scene& scene, const scene::Pose& pose) {
   const auto node =
-      std::ranges::find_if(scene.nodes, [](const scene::Node& n) { return n.light != scene::none; });
+      std::ranges::find_if(scene.nodes, [](const scene::Node& n) { return n.light != scene::kNone; });
   if (node == scene.nodes.end()) return;
   glm::vec3 from = firstLight(scene, pose).from, to = pose.bounds.centre();
   from.y = to.y = pose.bounds.low.y;
   if (glm::length(to - from) < 1e-3f * pose.bounds.radius()) from.x += pose.bounds.radius();
-  node->parent = scene::none;
+  node->parent = scene::kNone;
   node->matrix.reset();
   node->base = scene.origin;
   node->transform = {from, glm::quatLookAt(glm::normalize(to - from), glm::vec3(0, 1, 0)), glm::vec3(1)};
@@ -168,7 +168,7 @@ scene::Scene stressed(scene::Scene scene, StressChange change, double amount) {
       scene.environment = {};
       break;
     case StressChange::oneTriangle:
-      for (scene::Node& node : scene.nodes) node.mesh = scene::none;
+      for (scene::Node& node : scene.nodes) node.mesh = scene::kNone;
       addTriangles(scene, {centre + glm::vec3(-radius, 0, -radius), centre + glm::vec3(radius, 0, -radius),
                            centre + glm::vec3(0, 0, radius)});
       break;
@@ -218,7 +218,7 @@ scene::Scene withGlass(scene::Scene scene) {
   float radius = std::numeric_limits<float>::max();
   for (const scene::DrawInstance& instance : pose.instances) {
     const float size = scene::instanceBounds(scene, pose, instance).radius();
-    if (instance.node == scene::none || !(size < radius)) continue;
+    if (instance.node == scene::kNone || !(size < radius)) continue;
     radius = size;
     smallest = &instance;
   }

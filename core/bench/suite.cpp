@@ -9,79 +9,43 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/question/question_fields.h"
 
 namespace limn::bench {
 
 namespace {
 
-/// The lights that stand for the environment, for people; empty where there are none.
-std::string environmentLights(const EnvironmentSettings& e) {
-  if (!(e.lights > 0)) return {};
-  return fmt::format("{} {} {} {}", e.lights, e.resolution, e.shape, e.reflection);
-}
+/// In the order of keys; labels begin with the last.
+constexpr QuestionGroup kDescribed[] = {QuestionGroup::environment, QuestionGroup::subject,
+                                        QuestionGroup::medium, QuestionGroup::changes};
 
 }  // namespace
 
-std::string describe(const MediumSettings& m) {
-  std::string text;
-  const auto add = [&text](const char* name, const std::string& value) {
-    if (!value.empty()) text += fmt::format("{}{} {}", text.empty() ? "" : " ", name, value);
-  };
-  add("sigma_a", m.sigmaA);
-  add("sigma_s", m.sigmaS);
-  if (m.g) add("g", fmt::format("{}", *m.g));
-  return text;
-}
-
-std::string describe(const SceneChanges& changes) {
-  const SceneChanges none;
-  std::string text;
-  const auto add = [&text](bool changed, const std::string& what) {
-    if (changed) text += (text.empty() ? "" : " ") + what;
-  };
-  add(!changes.eye.empty(), "eye " + changes.eye);
-  add(!changes.target.empty(), "target " + changes.target);
-  add(changes.fov != none.fov, fmt::format("fov {}", changes.fov));
-  add(!changes.animation.empty(), "animation " + changes.animation);
-  for (const std::string& setting : changes.setLight) add(true, setting);
-  add(changes.defaultLights != none.defaultLights, "default lights " + changes.defaultLights);
-  add(changes.environmentRotation != none.environmentRotation,
-      fmt::format("environment rotation {}", changes.environmentRotation));
-  add(changes.environmentScale != none.environmentScale,
-      fmt::format("environment scale {}", changes.environmentScale));
-  add(!changes.grid.empty(), "grid " + changes.grid);
-  return text;
-}
-
 std::string question(const Case& c) {
-  std::string text =
-      fmt::format("{}/{}/{}/t{}/{}/{}x{}/spp{}/noise{}/bounces{}", c.scene, c.camera, c.light, c.time, c.term,
-                  c.width, c.height, c.reference.spp, c.reference.noise, c.reference.bounces);
+  std::string text = fmt::format("{}/spp{}/noise{}/bounces{}", subjectText(c, QuestionWording::key),
+                                 c.reference.spp, c.reference.noise, c.reference.bounces);
   if (c.reference.interfaces != 0) text += fmt::format("/interfaces{}", c.reference.interfaces);
-  if (!c.environment.map.empty()) text += "/" + c.environment.map;
-  if (c.lightSize > 0) text += fmt::format("/light size {}", c.lightSize);
-  if (const std::string medium = describe(c.medium); !medium.empty()) text += "/" + medium;
-  if (const std::string changes = describe(c.changes); !changes.empty()) text += "/" + changes;
+  for (const QuestionGroup group : kDescribed)
+    if (const std::string words = describe(c, group); !words.empty()) text += "/" + words;
   // All light together is asked of the map itself.
-  if (!c.light.empty()) text += environmentLights(c.environment);
+  if (!c.light.empty()) text += describeEnvironmentLights(c);
   return text;
 }
 
 std::string label(const Case& c) {
   const std::string timed =
       c.timeWidth > 0 ? fmt::format(" times at {}x{}", c.timeWidth, c.timeHeight) : std::string();
-  std::string text =
-      fmt::format("{}/{}/{}/{}/{}x{}{}/{}/{}", c.scene, c.camera.empty() ? "first camera" : c.camera,
-                  c.light.empty() ? "all lights" : c.light, c.term, c.width, c.height, timed,
-                  c.dynamic ? "dynamic" : "static", c.technique);
-  if (!c.environment.map.empty())
-    text = fmt::format("{}/{}", std::filesystem::path(c.environment.map).filename().string(), text);
-  if (c.lightSize > 0) text = fmt::format("light size {}/{}", c.lightSize, text);
-  if (c.fps > 0) text = fmt::format("{} fps/{}", c.fps, text);
-  if (c.environment.lights > 0)
-    text = fmt::format("environment lights {}/{}", environmentLights(c.environment), text);
-  if (const std::string medium = describe(c.medium); !medium.empty()) text = medium + "/" + text;
-  if (const std::string changes = describe(c.changes); !changes.empty()) text = changes + "/" + text;
+  std::string text = fmt::format("{}{}/{}/{}", subjectText(c, QuestionWording::label), timed,
+                                 c.dynamic ? "dynamic" : "static", c.technique);
+  const auto begin = [&text](const std::string& words) {
+    if (!words.empty()) text = words + "/" + text;
+  };
+  for (const QuestionGroup group : kDescribed) {
+    begin(describe(c, group, QuestionWording::label));
+    if (group != QuestionGroup::subject) continue;
+    if (c.fps > 0) begin(fmt::format("{} fps", c.fps));
+    if (c.environmentLights > 0) begin("environment lights " + describeEnvironmentLights(c));
+  }
   char separator = '?';
   for (const auto& [name, value] : c.parameters) {
     text += fmt::format("{}{}={}", separator, name, value);
@@ -97,7 +61,7 @@ std::string rowKey(const Case& c, std::string_view renderer) {
   for (const auto& [name, value] : c.parameters) text += fmt::format("\x1e{}\x1f{}", name, value);
   if (c.timeWidth > 0) text += fmt::format("\x1d{}x{}", c.timeWidth, c.timeHeight);
   if (c.fps > 0) text += fmt::format("\x1b{}", c.fps);
-  if (c.environment.lights > 0) text += "\x1c" + environmentLights(c.environment);
+  if (c.environmentLights > 0) text += "\x1c" + describeEnvironmentLights(c);
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 

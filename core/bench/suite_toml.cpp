@@ -4,58 +4,29 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 #include <tuple>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
+#include "core/bench/private/question_toml.h"
+#include "core/bench/private/toml_nesting.h"
+#include "core/bench/private/toml_section.h"
 #include "core/bench/suite.h"
-#include "core/bench/toml_nesting.h"
-#include "core/bench/toml_section.h"
+#include "core/question/term.h"
 #include "core/reference/reference.h"
 
 namespace limn::bench {
 namespace {
 
 constexpr std::size_t kMaxCases = 100000;
-constexpr const char* kTerms[] = {"final",   "visibility", "direct",  "indirect",
-                                  "caustic", "media",      "specular"};
-
-std::string parseTerm(const TomlSection& section, const std::string& otherwise) {
-  const std::string value = section.text("term", otherwise);
-  if (std::find(std::begin(kTerms), std::end(kTerms), value) == std::end(kTerms)) {
-    section.fail(*section.find("term"),
-                 fmt::format("unknown term '{}'; known are {}", value, fmt::join(kTerms, ", ")));
-  }
-  return value;
-}
-
-std::pair<int, int> parseSize(const TomlSection& section, const toml::node& node, const char* key = "sizes") {
-  const std::string text = section.text(node, key);
-  int width = 0, height = 0, used = 0;
-  if (std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &used) != 2 ||
-      used != static_cast<int>(text.size()) || width < 1 || height < 1 || width > 16384 || height > 16384) {
-    section.fail(node, fmt::format("size '{}': WIDTHxHEIGHT with 1..16384 pixels is accepted", text));
-  }
-  return {width, height};
-}
-
-std::vector<std::pair<int, int>> parseSizes(const TomlSection& section) {
-  const toml::node& node = section.require("sizes");
-  if (!node.is_array()) return {parseSize(section, node)};
-  if (node.as_array()->empty()) section.fail(node, "'sizes' is an empty list");
-  std::vector<std::pair<int, int>> sizes;
-  for (const toml::node& element : *node.as_array()) sizes.push_back(parseSize(section, element));
-  return sizes;
-}
 
 /// A number or "all"; 0 where nothing is said of them.
 int parseInterfaces(const TomlSection& section) {
   const toml::node* node = section.find("interfaces");
-  if (node != nullptr && node->value_exact<std::string>() == "all") return reference::allInterfaces;
-  return section.integer("interfaces", 0, 1, reference::maxInterfaces);
+  if (node != nullptr && node->value_exact<std::string>() == "all") return reference::kAllInterfaces;
+  return section.integer("interfaces", 0, 1, reference::kMaxInterfaces);
 }
 
 /// Bounces and interfaces: 0 where nothing is said of them.
@@ -69,36 +40,47 @@ ReferenceSettings parseReference(const TomlSection& suite) {
                             {"spp", "noise", "bounces", "interfaces"});
   settings.noise = section.real("noise", 0.0, 0.0, 1.0);
   settings.spp = section.integer("spp", settings.noise > 0.0 ? 1 << 20 : settings.spp, 1, 1 << 24);
-  settings.bounces = section.integer("bounces", 0, 1, reference::maxBounces);
+  settings.bounces = section.integer("bounces", 0, 1, reference::kMaxBounces);
   settings.interfaces = parseInterfaces(section);
   return settings;
 }
 
 /// What the suite says of references, where the term has it.
-ReferenceSettings referenceOf(ReferenceSettings given, reference::Term term) {
+ReferenceSettings referenceOf(ReferenceSettings given, Term term) {
   if (!reference::hasBounces(term))
     given.bounces = 1;
   else if (given.bounces == 0)
-    given.bounces = term == reference::Term::indirect ? 1 : 0;
+    given.bounces = reference::defaultBounces(term);
   if (!reference::acceptsInterfaces(term, given.interfaces))
-    given.interfaces = term == reference::Term::specular ? reference::imageSpaceInterfaces : 0;
+    given.interfaces = reference::defaultInterfaces(term);
   return given;
 }
 
-/// Complains about bounces and interfaces of which no case makes anything.
+std::string listed(TermSet terms) {
+  return fmt::format("{}", fmt::join(termNames(terms), ", "));
+}
+
+/// Rejects `bounces` or `interfaces` where no case's term has them.
 void checkReference(const TomlSection& suite, std::span<const Case> cases) {
   const toml::node* reference = suite.find("reference");
   const auto given = [&](const char* key) { return reference ? reference->as_table()->get(key) : nullptr; };
   const toml::node* bounces = given("bounces");
-  if (bounces && std::ranges::none_of(cases, [](const Case& c) {
-        return reference::hasBounces(reference::termFromName(c.term));
-      }))
-    suite.fail(*bounces, "no scene asks for a term that has 'bounces': indirect, specular, final");
+  if (bounces &&
+      std::ranges::none_of(cases, [](const Case& c) { return reference::hasBounces(parseTerm(c.term)); }))
+    suite.fail(
+        *bounces,
+        fmt::format("no scene asks for a term that has 'bounces': {}",
+                    listed(termsWhere([](const TermInfo& t) { return t.bounces != TermBounces::none; }))));
   const toml::node* interfaces = given("interfaces");
-  if (interfaces && std::ranges::none_of(cases, [](const Case& c) { return c.reference.interfaces != 0; }))
-    suite.fail(*interfaces,
-               "no scene asks for a term that has these 'interfaces': specular, final, with \"all\" caustic "
-               "and media, too");
+  if (!interfaces || std::ranges::any_of(cases, [](const Case& c) { return c.reference.interfaces != 0; }))
+    return;
+  constexpr TermSet light =
+      termsWhere([](const TermInfo& t) { return t.interfaces == TermInterfaces::light; });
+  constexpr TermSet seen =
+      termsWhere([](const TermInfo& t) { return t.interfaces != TermInterfaces::none; }) & ~light;
+  suite.fail(*interfaces,
+             fmt::format("no scene asks for a term that has these 'interfaces': {}; with \"all\" {}, too",
+                         listed(seen), listed(light)));
 }
 
 std::vector<bool> parseModes(const TomlSection& suite) {
@@ -171,55 +153,11 @@ SweptTechnique parseTechnique(const std::string& file, const toml::table& table)
   return technique;
 }
 
-/// All but the threshold, of which there may be several.
-std::vector<double> parseEnvironment(const TomlSection& scene, EnvironmentSettings& environment) {
-  environment = {};
-  environment.map = scene.text("environment", "");
-  environment.resolution = scene.integer("environment_resolution", environment.resolution, 1, 512);
-  environment.shape = scene.choice("environment_shape", {"squares", "rectangles"});
-  environment.reflection = scene.choice("environment_reflection", {"area", "centre"});
-  std::vector<double> thresholds = scene.reals("environment_lights", 0, 0, 0.5);
-  if (environment.map.empty() && scene.find("environment_lights") != nullptr)
-    scene.fail(*scene.find("environment_lights"), "'environment_lights' needs an 'environment'");
-  return thresholds;
-}
-
-/// A coefficient of the medium: a number, or a text of three.
-std::string parseCoefficient(const TomlSection& scene, const char* key) {
-  const toml::node* node = scene.find(key);
-  if (node == nullptr || node->is_string()) return scene.text(key, "");
-  return fmt::format("{}", scene.real(key, 0, 0, 1e9));
-}
-
-SceneChanges parseChanges(const TomlSection& scene) {
-  SceneChanges changes;
-  changes.eye = scene.text("eye", "");
-  changes.target = scene.text("target", "");
-  if (changes.eye.empty() != changes.target.empty())
-    scene.fail(*scene.find(changes.eye.empty() ? "target" : "eye"), "'eye' and 'target' belong together");
-  changes.fov = scene.find("fov") ? scene.real("fov", 0, 0.1, 179) : 0;
-  changes.animation = scene.text("animation", "");
-  changes.setLight = scene.texts("set_light", {});
-  changes.defaultLights = scene.choice("default_lights", {"auto", "on", "off"});
-  changes.environmentRotation = scene.real("environment_rotation", 0, -1e6, 1e6);
-  changes.environmentScale = scene.real("environment_scale", 1, 0, 1e9);
-  changes.grid = scene.text("grid", "");
-  return changes;
-}
-
-/// All but g, of which there may be several.
-std::vector<std::optional<double>> parseMedium(const TomlSection& scene, MediumSettings& medium) {
-  medium = {parseCoefficient(scene, "sigma_a"), parseCoefficient(scene, "sigma_s"), {}};
-  if (!scene.find("g")) return {std::nullopt};
-  const std::vector<double> values = scene.reals("g", 0, -0.999, 0.999);
-  return {values.begin(), values.end()};
-}
-
 /// All cases that ask one question of every technique.
 void addCases(const Case& base, const std::vector<SweptTechnique>& techniques, const std::vector<bool>& modes,
               bool separationFloor, std::vector<Case>& cases) {
   if (cases.size() > kMaxCases) return;  // refused below; no need to fill the memory first
-  if (separationFloor && base.term == "direct") {
+  if (separationFloor && base.term == name(Term::direct)) {
     for (const bool dynamic : modes) {
       cases.push_back(base);
       cases.back().technique = kSeparationFloor;
@@ -272,7 +210,7 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
   base.picture = suite.boolean("pictures", false);
   if (const toml::node* node = suite.find("time_size"))
     std::tie(base.timeWidth, base.timeHeight) = parseSize(suite, *node, "time_size");
-  const std::string term = parseTerm(suite, "final");
+  const std::string term = readTerm(suite, name(Term::final));
   const auto sizes = parseSizes(suite);
   const std::vector<bool> modes = parseModes(suite);
   const bool separationFloor = suite.boolean("separation_floor", false);
@@ -280,66 +218,19 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
   for (const toml::table* table : suite.tables("techniques"))
     techniques.push_back(parseTechnique(file, *table));
 
+  std::vector<const char*> sceneKeys = questionKeys();
+  sceneKeys.insert(sceneKeys.end(), {"fps", "max_masked_share"});
   for (const toml::table* table : suite.tables("scenes")) {
-    const TomlSection scene(file, *table, "[[scenes]]",
-                            {"scene",
-                             "cameras",
-                             "lights",
-                             "light_sizes",
-                             "time",
-                             "fps",
-                             "term",
-                             "max_masked_share",
-                             "environment",
-                             "environment_lights",
-                             "environment_resolution",
-                             "environment_shape",
-                             "environment_reflection",
-                             "environment_rotation",
-                             "environment_scale",
-                             "sigma_a",
-                             "sigma_s",
-                             "g",
-                             "grid",
-                             "eye",
-                             "target",
-                             "fov",
-                             "animation",
-                             "set_light",
-                             "default_lights"});
-    base.scene = scene.text(scene.require("scene"), "scene");
-    base.time = scene.real("time", 0.0, -1e6, 1e6);
+    const TomlSection scene(file, *table, "[[scenes]]", sceneKeys);
     base.fps = scene.real("fps", 0.0, 0.0, 1e6);
     base.maxMaskedShare = scene.real("max_masked_share", 0.005, 0.0, 1.0);
-    base.term = parseTerm(scene, term);
-    base.reference = referenceOf(references, reference::termFromName(base.term));
-    const std::vector<double> lightSizes = scene.reals("light_sizes", 0, 1e-6, 1e6);
-    const std::vector<double> environmentLights = parseEnvironment(scene, base.environment);
-    const std::vector<std::optional<double>> phases = parseMedium(scene, base.medium);
-    base.changes = parseChanges(scene);
-    for (const std::string& camera : scene.texts("cameras", {""})) {
-      for (const std::string& light : scene.texts("lights", {""})) {
-        for (const auto& [width, height] : sizes) {
-          base.camera = camera;
-          base.light = light;
-          base.width = width;
-          base.height = height;
-          for (const double lightSize : lightSizes) {
-            base.lightSize = lightSize;
-            for (const double threshold : environmentLights) {
-              base.environment.lights = threshold;
-              for (const std::optional<double>& g : phases) {
-                base.medium.g = g;
-                addCases(base, techniques, modes, separationFloor, cases);
-              }
-            }
-          }
-          if (cases.size() > kMaxCases) {
-            failAt(file, table->source(), fmt::format("more than {} cases", kMaxCases));
-          }
-        }
-      }
-    }
+    base.reference = referenceOf(references, parseTerm(readTerm(scene, term)));
+    forEachQuestion(scene, sizes, term, [&](const SceneQuestion& question) {
+      static_cast<SceneQuestion&>(base) = question;
+      addCases(base, techniques, modes, separationFloor, cases);
+      if (cases.size() > kMaxCases)
+        failAt(file, table->source(), fmt::format("more than {} cases", kMaxCases));
+    });
   }
   checkReference(suite, std::span(cases).subspan(before));
 }

@@ -1,4 +1,4 @@
-// Tables of error and time: one per question, renderer and mode, never mixed.
+// Makes tables of error and time: one per question, renderer and mode, never mixed.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace limn::bench {
 
-/// Rows that may be compared: same scene, camera, light, term, time, size, mode (dynamic or static) and
+/// Holds rows that may be compared: same scene, camera, light, term, time, size, mode (dynamic or static) and
 /// renderer.
 struct Table {
   std::string title;     ///< for people
@@ -19,20 +19,19 @@ struct Table {
   std::vector<Row> rows;
 };
 
-/// Grouped by scene first; failed rows are kept and shown as such.
+/// Returns the rows as tables, grouped by scene first; failed rows are kept and shown as failed.
 LIMN_API std::vector<Table> makeTables(std::span<const Row> rows);
 
-/// Errors, frame time (median, quartiles, number of frames) and memory. Rows on the Pareto front of RMSE and
-/// time carry a star; an RMSE below three times the reference's noise is shown as that bound ("<0.001"). The
-/// column "reference ms" is referenceTime().
+/// Returns errors, frame time (median, quartiles, number of frames) and memory. Rows on the Pareto front of
+/// RMSE and time carry a star; an RMSE below three times the reference's noise is shown as that bound
+/// ("<0.001"). The column "reference ms" is referenceTime().
 LIMN_API std::string toMarkdown(const Table& table);
-/// The same numbers in full precision, with a header line (RFC 4180). Texts are data, as they are: one that
-/// begins with =, +, - or @ is left so, and a spreadsheet may take it for a formula; import such columns as
-/// text.
+/// Returns the same numbers in full precision, with a header line (RFC 4180). Texts are written unchanged: a
+/// spreadsheet may take one that begins with =, +, - or @ for a formula; import such columns as text.
 LIMN_API std::string toCsv(const Table& table);
 
-/// The pictures that were kept, the reference's first, three in a line with error and time below; "" if there
-/// are none.
+/// Returns the pictures that were kept, the reference's first, three in a line with error and time below; ""
+/// if there are none.
 LIMN_API std::string picturesMarkdown(const Table& table);
 
 /// Writes tables.md, one CSV per table and, where pictures were kept, pictures.md into `folder`.

@@ -1,4 +1,4 @@
-#include "core/bench/toml_nesting.h"
+#include "core/bench/private/toml_nesting.h"
 
 #include <algorithm>
 #include <string>

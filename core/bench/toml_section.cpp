@@ -1,4 +1,4 @@
-#include "core/bench/toml_section.h"
+#include "core/bench/private/toml_section.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,7 +16,7 @@ void failAt(const std::string& file, const toml::source_region& where, const std
 }
 
 TomlSection::TomlSection(const std::string& file, const toml::table& table, std::string name,
-                         std::initializer_list<const char*> keys)
+                         const std::vector<const char*>& keys)
     : file_(file), table_(table), name_(std::move(name)) {
   for (const auto& [key, node] : table) {
     if (std::find(keys.begin(), keys.end(), key.str()) == keys.end()) {
@@ -101,10 +101,11 @@ std::vector<std::string> TomlSection::texts(const char* key, std::vector<std::st
   return values;
 }
 
-std::string TomlSection::choice(const char* key, std::initializer_list<const char*> known) const {
-  const std::string value = text(key, *known.begin());
-  if (std::find(known.begin(), known.end(), value) == known.end())
-    fail(*find(key), fmt::format("unknown {} '{}'; known are {}", key, value, fmt::join(known, ", ")));
+std::string TomlSection::choice(const QuestionField& field, const std::string& otherwise) const {
+  const std::string value = text(field.key, otherwise);
+  if (const toml::node* node = find(field.key);
+      node != nullptr && std::ranges::find(field.choices, value) == field.choices.end())
+    fail(*node, unknownChoice(field, value));
   return value;
 }
 

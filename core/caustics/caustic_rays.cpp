@@ -6,15 +6,17 @@
 #include <bit>
 #include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/caustics/ray_lists.h"
 #include "core/caustics/specular_buffers.h"
-#include "core/scene/gpu_medium.h"
-#include "core/scene/light_textures.h"
+#include "core/gpu_scene/gpu_medium.h"
+#include "core/gpu_scene/light_textures.h"
 #include "core/shadow/light_fit.h"
-#include "glsl/blocks.glsl"
-#include "glsl/sampling.glsl"
+#include "glsl/numeric/sampling.glsl"
+#include "glsl/scene/blocks.glsl"
 
 namespace limn::caustics {
 namespace {
@@ -22,22 +24,23 @@ namespace {
 using frame::Access;
 using frame::TextureHandle;
 
-constexpr int64_t bufferLimit = int64_t{128} << 20;  // bytes of one storage buffer that every device has
-constexpr int group = 8;
+constexpr int kGroup = 8;
 
 /// The light as its map of the specular objects sees it: finite lights look at the middle of the objects.
 glsl::Light aimed(const glsl::Light& light, const glm::vec3& origin, const scene::Bounds& objects) {
-  if (light.info.x == glsl::light_directional) return light;
+  if (light.type == glsl::light_directional) return light;
   glsl::Light eye{};
   const glm::vec3 towards = objects.centre() - origin;
   const float distance = glm::length(towards);
-  eye.position = glm::vec4(origin, 1);
-  eye.direction = glm::vec4(distance > 0 ? towards / distance : glm::vec3(0, -1, 0), 0);
+  eye.position = origin;
+  eye.direction = distance > 0 ? towards / distance : glm::vec3(0, -1, 0);
   // Within the objects' box there are no directions without them: all faces of a cube.
   const glm::vec3 room = 0.02f * (objects.high - objects.low);
   const bool within = glm::all(glm::lessThanEqual(objects.low - room, origin)) &&
                       glm::all(glm::lessThanEqual(origin, objects.high + room));
-  eye.info = {glsl::light_rectangle, within ? glsl::light_flag_two_sided : 0u, glsl::no_instance, 0};
+  eye.type = glsl::light_rectangle;
+  eye.flags = within ? glsl::light_flag_two_sided : 0u;
+  eye.own_instance = glsl::no_instance;
   return eye;
 }
 
@@ -48,7 +51,7 @@ struct Request {
   CausticRays made;
   std::vector<glm::vec2> samples;  ///< as ShadowMapDesc has them
   std::vector<glsl::ShadowView> views;
-  std::vector<glm::vec4> layers;  ///< of the pass that traces
+  std::vector<glsl::CausticLayer> layers;  ///< of the pass that traces
   SpecularBuffers buffers;
   gpu::Buffer viewBuffer, layerBuffer;
   frame::BufferHandle importedViews;
@@ -61,9 +64,6 @@ struct Request {
 struct CausticRayService::Implementation {
   gpu::Device& device;
   scene::GpuScene& scene;
-  shadow::ShadowMapService& shadowMaps;
-  frame::FrameGraph* graph = nullptr;
-  SceneHandles handles = {};
   std::vector<glsl::Light> lights = {};
   std::vector<scene::Bounds> boxes = {};  ///< of the specular instances
   std::vector<std::unique_ptr<Request>> requests = {};
@@ -76,8 +76,8 @@ struct CausticRayService::Implementation {
   }
   void fit(Request& request) const;
   void upload(Request& request) const;
-  frame::BufferHandle trace(const Request& request);
-  CausticRays add(std::unique_ptr<Request> made);
+  static frame::BufferHandle trace(const Request& request, const FrameContext& building);
+  CausticRays add(std::unique_ptr<Request> made, const FrameContext& context);
 };
 
 /// Views of the specular objects for the current lights and bounds.
@@ -94,13 +94,15 @@ void CausticRayService::Implementation::fit(Request& request) const {
     for (const glm::vec2& point : points) {
       const shadow::ShadowMapDesc desc{.size = request.desc.size, .samples = {point}};
       const glm::vec2 ab = point - 0.5f;
-      const glm::vec3 origin = glm::vec3(light.position) + ab.x * light.axis_u.w * glm::vec3(light.axis_u) +
-                               ab.y * light.axis_v.w * glm::vec3(light.axis_v);
+      const glm::vec3 origin =
+          light.position + ab.x * light.length_u * light.axis_u + ab.y * light.length_v * light.axis_v;
       const glsl::Light eye = aimed(light, origin, objects);
       std::vector<glsl::ShadowLight> unused;
       shadow::appendViews(eye, index, shadow::fitLayout(eye, boxes, desc), boxes, desc, nullptr,
                           request.views, unused);
-      request.layers.resize(request.views.size(), glm::vec4(mapIndex, 2 * objects.radius(), 0, 0));
+      request.layers.resize(
+          request.views.size(),
+          glsl::CausticLayer{.light = mapIndex, .diameter = 2 * objects.radius(), .unused = {}});
       ++mapIndex;
     }
     // Lights without extent share one map among all samples.
@@ -114,29 +116,38 @@ void CausticRayService::Implementation::upload(Request& request) const {
   request.layerBuffer.update(0, request.layers.data(), request.layers.size() * sizeof(request.layers[0]));
 }
 
-frame::BufferHandle CausticRayService::Implementation::trace(const Request& request) {
+frame::BufferHandle CausticRayService::Implementation::trace(const Request& request,
+                                                             const FrameContext& building) {
+  frame::FrameGraph& graph = building.graph;
+  const SceneHandles& handles = building.handles;
   const shadow::ShadowMaps& maps = request.made.scene;
   const SpecularBuffer &front = request.buffers.front(), &back = request.buffers.back();
-  frame::PassBuilder pass = graph->addPass("caustic rays", "caustics");
-  pass.read(handles.frame, Access::uniformBuffer, "medium")
-      .read(handles.lights, Access::storageLoad, "what lights send")
-      .read(handles.instances, Access::storageLoad, "materials of instances")
-      .read(handles.materials, Access::storageLoad, "index of refraction, colours")
-      .read(request.importedViews, Access::storageLoad, "projections")
-      .read(request.made.layerLights, Access::storageLoad, "map of each layer")
-      .read(maps.depth, Access::sampled, "where rays end")
-      .read(maps.views, Access::storageLoad, "projections of the scene")
-      .read(maps.lights, Access::storageLoad, "layers of each light");
-  for (const TextureHandle texture :
-       {front.surface, front.depth, back.surface, back.depth, front.geometricNormal, back.geometricNormal})
-    pass.read(texture, Access::sampled, "where light is reflected and refracted");
+  frame::PassBuilder pass = graph.addPass("caustic rays", "caustics");
+  pass.read(handles.frame, Access::uniformBuffer, "FrameBlock", "medium")
+      .read(handles.lights, Access::storageLoad, "Lights", "what lights send")
+      .read(handles.instances, Access::storageLoad, "Instances", "materials of instances")
+      .read(handles.materials, Access::storageLoad, "Materials", "index of refraction, colours")
+      .read(request.importedViews, Access::storageLoad, "Views", "projections")
+      .read(request.made.layerLights, Access::storageLoad, "Layers", "map of each layer")
+      .read(maps.depth, Access::sampled, "scene_depth", "where rays end")
+      .read(maps.views, Access::storageLoad, "SceneViews", "projections of the scene")
+      .read(maps.lights, Access::storageLoad, "SceneLights", "layers of each light");
+  const std::pair<const char*, TextureHandle> specular[] = {{"front_surface", front.surface},
+                                                            {"front_depth", front.depth},
+                                                            {"back_surface", back.surface},
+                                                            {"back_depth", back.depth},
+                                                            {"front_geometric_normal", front.geometricNormal},
+                                                            {"back_geometric_normal", back.geometricNormal}};
+  for (const auto& [name, texture] : specular)
+    pass.read(texture, Access::sampled, name, "where light is reflected and refracted");
   const frame::BufferHandle rays =
-      pass.write(graph->createBuffer("caustic rays",
-                                     {static_cast<size_t>(request.made.count()) * sizeof(glsl::CausticRay)}),
-                 Access::storageStore, "light behind specular objects");
+      pass.write(graph.createBuffer("caustic rays",
+                                    {static_cast<size_t>(request.made.count()) * sizeof(glsl::CausticRay)}),
+                 Access::storageStore, "Rays", "light behind specular objects");
   gpu::ProgramDesc source{.files = {"glsl/caustics/trace_rays.comp.glsl"},
                           .defines = {{"PATHS", std::to_string(request.desc.paths)},
-                                      {"PATH_COUNT", std::to_string(request.made.paths)}}};
+                                      {"PATH_COUNT", std::to_string(request.made.paths)},
+                                      {"EXIT_STEPS", std::to_string(request.desc.exitSteps)}}};
   const scene::MediumInput medium(handles);
   medium.define(source.defines);
   medium.declare(pass);
@@ -144,30 +155,17 @@ frame::BufferHandle CausticRayService::Implementation::trace(const Request& requ
   textures.define(source.defines);
   textures.declare(pass);
   const auto program = pass.program(std::move(source));
-  pass.execute([=, handles = handles, desc = request.desc, layers = request.made.layers,
-                views = request.importedViews,
-                indices = request.made.layerLights](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(program);
-    kernel.use();
+  pass.execute([program, desc = request.desc, layers = request.made.layers](frame::PassContext& context) {
+    gpu::Program& kernel = context.use(program);
     kernel.set("light_samples", desc.lightSamples);
     kernel.set("steps", desc.steps);
-    context.bindUniform(glsl::FrameBlock::binding, handles.frame);
-    medium.bind(context);
-    textures.bind(context);
-    unsigned unit = 0;
-    for (const TextureHandle texture : {front.surface, front.depth, back.surface, back.depth, maps.depth,
-                                        front.geometricNormal, back.geometricNormal})
-      context.bindSampled(unit++, texture);
-    unsigned binding = 0;
-    for (const frame::BufferHandle buffer : {handles.lights, views, indices, handles.instances,
-                                             handles.materials, maps.views, maps.lights, rays})
-      context.bindStorage(binding++, buffer);
-    context.dispatch(desc.size, desc.size, layers, group, group);
+    context.dispatch(desc.size, desc.size, layers, kGroup, kGroup);
   });
   return rays;
 }
 
-CausticRays CausticRayService::Implementation::add(std::unique_ptr<Request> made) {
+CausticRays CausticRayService::Implementation::add(std::unique_ptr<Request> made,
+                                                   const FrameContext& context) {
   Request& request = *made;
   fit(request);
   request.made.layers = static_cast<int>(request.views.size());
@@ -177,44 +175,40 @@ CausticRays CausticRayService::Implementation::add(std::unique_ptr<Request> made
   if (request.views.empty()) return request.made;
   const int64_t bytes = int64_t{request.made.layers} * request.desc.size * request.desc.size *
                         request.made.paths * static_cast<int64_t>(sizeof(glsl::CausticRay));
-  if (bytes > bufferLimit || request.made.layers > device.limits().maxArrayLayers)
+  // Passes bind the rays as one block, and list them in one dispatch.
+  const int64_t most = std::min(device.limits().maxStorageBlockBytes,
+                                kMostListedRays * static_cast<int64_t>(sizeof(glsl::CausticRay)));
+  if (bytes > most || request.made.layers > device.limits().maxArrayLayers)
     throw UsageError(fmt::format(
         "caustic rays of {} layers of {} x {} texels and {} paths take {} MiB, more than the {} MiB of a "
         "storage buffer; ask for a smaller buffer_size, fewer light_samples or fewer lights",
         request.made.layers, request.desc.size, request.desc.size, request.made.paths, bytes >> 20,
-        bufferLimit >> 20));
+        most >> 20));
   request.viewBuffer =
       gpu::Buffer::of<glsl::ShadowView>(device, "specular views", request.views, gpu::BufferUse::updated);
   request.layerBuffer =
-      gpu::Buffer::of<glm::vec4>(device, "specular layers", request.layers, gpu::BufferUse::updated);
-  request.importedViews = graph->importBuffer("specular views", request.viewBuffer);
-  request.made.layerLights = graph->importBuffer("specular layers", request.layerBuffer);
-  request.made.scene = shadowMaps.request(request.lights, {.size = request.desc.sceneSize,
-                                                           .projection = shadow::Projection::cube,
-                                                           .samples = request.samples,
-                                                           .specular = false});
+      gpu::Buffer::of<glsl::CausticLayer>(device, "specular layers", request.layers, gpu::BufferUse::updated);
+  request.importedViews = context.graph.importBuffer("specular views", request.viewBuffer);
+  request.made.layerLights = context.graph.importBuffer("specular layers", request.layerBuffer);
+  request.made.scene = context.services.get<shadow::ShadowMapService>().request(
+      request.lights, {.size = request.desc.sceneSize,
+                       .projection = shadow::Projection::cube,
+                       .samples = request.samples,
+                       .specular = false});
   request.made.sceneLights =
       static_cast<int>(request.lights.size() * std::max<size_t>(request.samples.size(), 1));
-  request.buffers.add(*graph, handles, request.importedViews, request.desc.size, "caustics");
-  request.made.rays = trace(request);
+  request.buffers.add(context.graph, context.handles, request.importedViews, request.desc.size, "caustics");
+  request.made.rays = trace(request, context);
   return request.made;
 }
 
-CausticRayService::CausticRayService(gpu::Device& device, scene::GpuScene& scene,
-                                     shadow::ShadowMapService& shadowMaps)
-    : implementation_(new Implementation{device, scene, shadowMaps}) {}
+CausticRayService::CausticRayService(gpu::Device& device, scene::GpuScene& scene)
+    : implementation_(new Implementation{device, scene}) {}
 CausticRayService::~CausticRayService() = default;
 
-void CausticRayService::begin(frame::FrameGraph& graph, const SceneHandles& handles,
-                              const scene::Pose& pose) {
+void CausticRayService::begin() {
   implementation_->requests.clear();
-  implementation_->graph = &graph;
-  implementation_->handles = handles;
-  implementation_->take(pose);
-}
-
-void CausticRayService::forget() {
-  implementation_->graph = nullptr;
+  implementation_->take(context().pose);
 }
 
 CausticRays CausticRayService::request(std::span<const uint32_t> lights, const CausticRayDesc& desc) {
@@ -222,17 +216,17 @@ CausticRays CausticRayService::request(std::span<const uint32_t> lights, const C
   auto made = std::make_unique<Request>(s.scene);
   if (!s.boxes.empty())
     std::ranges::copy_if(lights, std::back_inserter(made->lights), [&](uint32_t light) {
-      return (s.lights.at(light).info.y & glsl::light_flag_environment) == 0;
+      return (s.lights.at(light).flags & glsl::light_flag_environment) == 0;
     });
   for (const auto& known : s.requests)
     if (known->desc == desc && known->lights == made->lights) return known->made;
   made->desc = desc;
   for (int i = 0; desc.lightSamples > 1 && i < desc.lightSamples; ++i)
     made->samples.push_back(glsl::r2_sequence(static_cast<uint32_t>(i) + 1));
-  return s.add(std::move(made));
+  return s.add(std::move(made), context());
 }
 
-bool CausticRayService::update(const scene::Pose& pose) {
+bool CausticRayService::update(frame::FrameGraph& graph, const scene::Pose& pose) {
   Implementation& s = *implementation_;
   const bool some = !s.boxes.empty(), lightsCameOrWent = pose.lights.size() != s.lights.size();
   s.take(pose);
@@ -240,17 +234,16 @@ bool CausticRayService::update(const scene::Pose& pose) {
   for (const auto& request : s.requests) {
     if (request->views.empty()) continue;
     const std::vector<glsl::ShadowView> views = request->views;
-    const std::vector<glm::vec4> layers = request->layers;
+    const std::vector<glsl::CausticLayer> layers = request->layers;
     s.fit(*request);
     if (request->views.size() != views.size()) return true;
     const bool same =
         std::memcmp(views.data(), request->views.data(), views.size() * sizeof(views[0])) == 0 &&
-        layers == request->layers;
+        std::memcmp(layers.data(), request->layers.data(), layers.size() * sizeof(layers[0])) == 0;
     if (same) continue;
     s.upload(*request);
-    if (s.graph == nullptr) continue;
-    s.graph->touch(request->importedViews);
-    s.graph->touch(request->made.layerLights);
+    graph.touch(request->importedViews);
+    graph.touch(request->made.layerLights);
   }
   return false;
 }

@@ -1,12 +1,12 @@
-// Caustic rays as a service: techniques ask for the light that some lights send through or off the scene's
-// specular objects; it is traced once per graph whoever asks, and kept while nothing changed (thesis,
-// section 8.3.2).
+// Declares the service that traces caustic rays: techniques request the light that some lights send through
+// or off the scene's specular objects. It is traced once per graph, however many techniques request it, and
+// kept while nothing changes (thesis, section 8.3.2).
 //
-// Each layer is a view of the specular objects from a light, or from a point on a light with extent. Stages:
-// the scene's depth without specular objects as the light sees it (ShadowMapService), front and back of the
-// specular objects (nearest and farthest surface, normal, instance), and from these the rays: every texel is
-// a light ray, which is reflected at the front, or refracted at the front and again at the back, both in
-// image space.
+// Each layer is a view of the specular objects from a light, or from a point on a light with extent. The
+// stages are the depth of the scene without specular objects as the light sees it (ShadowMapService), the
+// front and back of the specular objects (nearest and farthest surface, normal, instance), and the rays made
+// from these: every texel is a light ray, which is reflected at the front, or refracted at the front and
+// again at the back, both in image space.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@
 #include <span>
 
 #include "core/frame/frame_graph.h"
-#include "core/scene/gpu_scene.h"
+#include "core/gpu_scene/gpu_scene.h"
 #include "core/shadow/shadow_map.h"
 #include "core/technique/technique.h"
-#include "glsl/caustic_ray.glsl"
+#include "glsl/caustics/caustic_ray.glsl"
 
 namespace limn::caustics {
 
@@ -26,42 +26,41 @@ struct CausticRayDesc {
   int sceneSize = 512;  ///< texels per side of the depth maps of the rest of the scene
   uint32_t paths = glsl::caustic_reflection | glsl::caustic_refraction;
   int lightSamples = 1;  ///< points on each light with extent; 1: its centre
-  int steps = 64;        ///< of the search for where a ray meets the scene
+  int steps = 64;        ///< of the search for a ray's intersection with the scene
+  int exitSteps = 32;    ///< of the search for where light inside an object leaves it
   bool operator==(const CausticRayDesc&) const = default;
 };
 
-/// Ray (x, y) of layer l and path p (0: the first of `paths`) has the index ((p * layers + l) * size + y) *
-/// size + x.
+/// Holds the rays of a request. The index of ray (x, y) of layer l and path p (0: the first of `paths`) is
+/// ((p * layers + l) * size + y) * size + x.
 struct CausticRays {
   frame::BufferHandle rays;  ///< storage buffer of glsl::CausticRay; empty: no light meets a specular object
   shadow::ShadowMaps scene;  ///< the rest of the scene as the lights see it: where rays end
   int sceneLights = 0;       ///< entries of scene.lights
-  /// Storage buffer of vec4, one per layer. x: which of scene.lights; y: diameter of the objects, m.
+  /// Holds a storage buffer of glsl::CausticLayer, one per layer; `light` indexes scene.lights.
   frame::BufferHandle layerLights;
   int layers = 0, size = 0, paths = 0;
   int count() const { return layers * size * size * paths; }
 };
 
-class LIMN_API CausticRayService {
+/// Provides caustic rays. Requests the rest of the scene as the lights see it from shadow::ShadowMapService.
+class LIMN_API CausticRayService : public FrameService {
  public:
-  CausticRayService(gpu::Device& device, scene::GpuScene& scene, shadow::ShadowMapService& shadowMaps);
-  ~CausticRayService();
-  CausticRayService(const CausticRayService&) = delete;
-  CausticRayService& operator=(const CausticRayService&) = delete;
+  static constexpr const char* serviceName = "caustic rays";
 
-  /// Forgets the requests of the former graph: call before building a new one, after
-  /// ShadowMapService::begin().
-  void begin(frame::FrameGraph& graph, const SceneHandles& handles, const scene::Pose& pose);
-  /// The graph is about to be destroyed.
-  void forget();
-  /// Rays of `lights` (indices into Pose::lights). Lights that stand for the environment have none. Throws
-  /// UsageError where they would take too much memory.
+  CausticRayService(gpu::Device& device, scene::GpuScene& scene);
+  ~CausticRayService() override;
+
+  /// Returns the rays of `lights` (indices into Pose::lights). Lights that stand for the environment have
+  /// none. Throws UsageError when the rays would take too much memory.
   CausticRays request(std::span<const uint32_t> lights, const CausticRayDesc& desc);
-  /// Refits the views to the pose (after GpuScene::update). True: some light needs another number of layers,
-  /// or specular objects came or went, so the graph must be rebuilt.
-  bool update(const scene::Pose& pose);
 
  private:
+  void begin() override;
+  /// Refits the views. Returns true when a light needs another number of layers, or when specular objects
+  /// appeared or disappeared.
+  bool update(frame::FrameGraph& graph, const scene::Pose& pose) override;
+
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };

@@ -1,4 +1,5 @@
-// Caustic rays drawn as lines into the picture: what volume_caustics and its baseline share.
+// Declares how caustic rays are drawn as lines into the picture, which volume_caustics and its baseline
+// share.
 #pragma once
 
 #include <functional>
@@ -7,12 +8,14 @@
 #include <string_view>
 
 #include "core/caustics/caustic_rays.h"
+#include "core/caustics/specular_buffers.h"
 #include "core/technique/technique.h"
 
 namespace limn::caustics {
 
-/// The parameters of every technique that asks for caustic rays.
-constexpr const char* pathNames[] = {"reflection", "refraction", "both"};
+/// Names the values of the parameter `paths`. The functions below declare the parameters of every technique
+/// that requests caustic rays.
+constexpr const char* kPathNames[] = {"reflection", "refraction", "both"};
 constexpr Parameter bufferSizeParameter() {
   return integer("buffer_size", 256, {1, 2048}, "texels",
                  "Width and height of the specular and caustic-ray buffers")
@@ -26,17 +29,27 @@ constexpr Parameter sceneMapSizeParameter() {
       .logScale();
 }
 constexpr Parameter pathsParameter() {
-  return choice("paths", 2, pathNames, "One reflection, two refractions, or both");
+  return choice("paths", 2, kPathNames, "Paths that are traced: one reflection, two refractions, or both");
 }
 constexpr Parameter lightSamplesParameter() {
   return integer("light_samples", 1, {1, 64}, "points",
                  "Points on each light with extent, each with its own rays; 1: its centre")
       .quality();
 }
+constexpr Parameter rayStepsParameter() {
+  return integer("ray_steps", 64, {1, 4096}, "points",
+                 "Of the search for the place where a ray meets the scene")
+      .logScale();
+}
+/// Returns the parameter of techniques that draw beams. It is no parameter of the rays.
+constexpr Parameter beamCosineParameter() {
+  return real("beam_cosine", 0.7, {-1, 1}, "cosine",
+              "Neighbouring rays whose directions part by a smaller cosine are of different beams");
+}
 LIMN_API CausticRayDesc causticRayDesc(const ParameterValues& parameters);
 
-/// The rays of the request's lights. Without any (no light, no specular material, no light that meets one;
-/// for media nothing that scatters) `rays` is empty, and `pass` is reported as left out.
+/// Returns the rays of the request's lights. When there are none (no light, no specular material, no light
+/// that meets one; for media, no scattering), `rays` is empty and `pass` is reported as left out.
 LIMN_API CausticRays requestRays(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request, std::string_view pass,
                                  std::string_view technique);
@@ -45,15 +58,16 @@ struct LineDraw {
   std::string_view technique;
   std::string fragmentShader;  ///< includes glsl/caustics/line_fragment.glsl
   std::map<std::string, std::string> defines = {};
-  int mediumSteps = 1;  ///< as scene::MediumInput has them
-  bool beams = true;    ///< lines whose beam is wider than a pixel become quads of that width
+  int mediumSteps = 1;   ///< as in scene::MediumInput
+  bool beams = true;     ///< lines whose beam is wider than a pixel become quads of that width
+  float beamCosine = 1;  ///< least cosine between neighbours of one beam
   std::function<void(gpu::Program&)> bind = {};  ///< sets the fragment shader's uniforms
 };
 
-/// One per technique; must outlive the graph.
+/// Draws the rays of one technique. Must outlive the graph.
 class LIMN_API RayLines {
  public:
-  /// Adds the lines of `rays` to `target`.
+  /// Declares the passes that add the lines of `rays` to `target`. Returns the target after them.
   frame::TextureHandle add(frame::FrameGraph& graph, const TechniqueInputs& inputs, const CausticRays& rays,
                            frame::TextureHandle target, const LineDraw& draw);
 

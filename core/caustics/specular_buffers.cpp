@@ -1,26 +1,20 @@
 #include "core/caustics/specular_buffers.h"
 
 #include "core/shadow/light_fit.h"
-#include "glsl/blocks.glsl"
+#include "glsl/scene/blocks.glsl"
 
 namespace limn::caustics {
-namespace {
 
 using frame::Access;
 using frame::TextureHandle;
-
-constexpr unsigned viewBinding = 4;  // in specular.vert.glsl
-constexpr unsigned frontUnit = 8;    // in specular.frag.glsl
-
-}  // namespace
 
 void SpecularBuffers::setViews(std::span<const glsl::ShadowView> views) {
   depthViews_.clear();
   for (const glsl::ShadowView& view : views)
     depthViews_.push_back({.volume = shadow::cullVolume(view),
                            .skipInstance = glsl::no_instance,
-                           .view = view.info.y,
-                           .layer = static_cast<int>(view.info.y),
+                           .view = view.layer,
+                           .layer = static_cast<int>(view.layer),
                            .surfaces = scene::Surfaces::specular});
 }
 
@@ -36,11 +30,14 @@ SpecularBuffer SpecularBuffers::addPass(frame::FrameGraph& graph, const SceneHan
                                         const SpecularBuffer* front) {
   const bool back = front != nullptr;
   frame::PassBuilder pass = graph.addPass(back ? "specular back" : "specular front", owner);
-  scene::GpuScene::declareReads(pass, handles);
-  pass.read(handles.geometry, Access::storageLoad, "corners of triangles, for their normals")
-      .read(views, Access::storageLoad, "projections")
-      .cacheable();
-  if (back) pass.read(front->surface, Access::sampled, "instances whose back is wanted");
+  pass.role(frame::PassRole::map);
+  const scene::SurfacePrograms programs = scene_.declareSurfaces(
+      pass, handles,
+      {.files = {"glsl/caustics/specular.vert.glsl", "glsl/caustics/specular.frag.glsl"},
+       .defines = {{"BACK", back ? "1" : "0"}}},
+      false);
+  pass.read(views, Access::storageLoad, "Views", "projections").cacheable();
+  if (back) pass.read(front->surface, Access::sampled, "front", "instances whose back is wanted");
   gpu::TextureDesc desc{.target = GL_TEXTURE_2D_ARRAY,
                         .format = GL_RGBA32F,
                         .width = size,
@@ -57,13 +54,7 @@ SpecularBuffer SpecularBuffers::addPass(frame::FrameGraph& graph, const SceneHan
                                       Access::colourAttachment, "normals of triangles");
   const TextureHandle zbuffer =
       pass.write(create("specular z", GL_DEPTH_COMPONENT32F), Access::depthAttachment, "nearest or farthest");
-  const auto program =
-      pass.program({.files = {"glsl/caustics/specular.vert.glsl", "glsl/caustics/specular.frag.glsl"},
-                    .defines = {{"BACK", back ? "1" : "0"}}});
-  scene::SurfacePrograms programs;
-  for (const scene::SurfaceVariant& variant : scene_.surfaceVariants()) programs[variant] = program;
-  pass.execute([this, handles, views, programs, buffer, zbuffer, back,
-                nearest = back ? front->surface : TextureHandle{}](frame::PassContext& context) {
+  pass.execute([this, programs, buffer, zbuffer, back](frame::PassContext& context) {
     const auto bind = [&](int layer) {
       context.bindFramebuffer(
           {{buffer.surface, 0, layer}, {buffer.depth, 0, layer}, {buffer.geometricNormal, 0, layer}},
@@ -74,9 +65,7 @@ SpecularBuffer SpecularBuffers::addPass(frame::FrameGraph& graph, const SceneHan
     context.gl().ClearBufferfv(GL_COLOR, 0, none);
     context.gl().ClearBufferfv(GL_COLOR, 1, farthest);
     context.gl().ClearBufferfv(GL_DEPTH, 0, &far);
-    context.bindStorage(viewBinding, views);
-    if (back) context.bindSampled(frontUnit, nearest);
-    scene_.drawSurfaces(context, handles, programs, depthViews_, back ? backList_ : frontList_, false,
+    scene_.drawSurfaces(context, programs, depthViews_, back ? backList_ : frontList_, false,
                         [&](const scene::DepthView& view) { bind(view.layer); });
   });
   return buffer;

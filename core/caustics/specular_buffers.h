@@ -1,18 +1,20 @@
-// Front and back of the specular objects as some views see them (thesis, section 8.3.2): where the images of
-// light and of the scene in them are found. A view is that of a light, or of the camera.
+// Declares buffers of the front and back of the specular objects as some views see them (thesis, section
+// 8.3.2): the images of light and of the scene in these objects are searched for in them. A view is that of a
+// light or of the camera.
 #pragma once
 
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "core/base/parameters.h"
 #include "core/frame/frame_graph.h"
-#include "core/scene/gpu_scene.h"
-#include "glsl/shadow_view.glsl"
+#include "core/gpu_scene/gpu_scene.h"
+#include "glsl/shadow/shadow_view.glsl"
 
 namespace limn::caustics {
 
-/// One layer per view.
+/// Holds the textures of one side of the specular objects, with one layer per view.
 struct SpecularBuffer {
   frame::TextureHandle
       surface;  ///< RGBA32F: shading normal; w: +-(instance + 1), negative where the back shows
@@ -20,15 +22,23 @@ struct SpecularBuffer {
   frame::TextureHandle geometricNormal;  ///< RG16_SNORM: octahedral, of the triangle's front face
 };
 
+/// Returns the parameter that shaders with glsl/caustics/specular_buffers.glsl take as EXIT_STEPS. Software
+/// renderers leave the loops of a thread after 65,535 steps, of which a path may make 15 such searches.
+constexpr Parameter exitStepsParameter() {
+  return integer("exit_steps", 32, {1, 1024}, "points",
+                 "Of the search for the place where light inside an object leaves it")
+      .logScale();
+}
+
 class LIMN_API SpecularBuffers {
  public:
   explicit SpecularBuffers(scene::GpuScene& scene) : scene_(scene) {}
 
-  /// The views that the passes draw from now on, as many as when they were declared.
+  /// Sets the views that the passes draw from now on, as many as when the passes were declared.
   void setViews(std::span<const glsl::ShadowView> views);
-  /// Declares the passes "specular front" (nearest surfaces) and "specular back" (farthest ones of the
-  /// instances that the front shows) on behalf of `owner`. `views`: storage buffer of the views; `size`:
-  /// texels per side. Must outlive the graph.
+  /// Declares the passes "specular front" (nearest surfaces) and "specular back" (farthest surfaces of the
+  /// instances that the front shows) on behalf of `owner`. `views` is a storage buffer of the views; `size`
+  /// is the number of texels per side. The object must outlive the graph.
   void add(frame::FrameGraph& graph, const SceneHandles& handles, frame::BufferHandle views, int size,
            const char* owner);
 

@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/context/backends.h"
+#include "core/context/private/backends.h"
 
 namespace limn {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 // limn's contexts is current, one back end could not be released before another is bound (see context.h).
 thread_local Context* currentContext = nullptr;
 
-constexpr std::array<std::pair<std::string_view, Backend>, 3> backendNames = {
+constexpr std::array<std::pair<std::string_view, Backend>, 3> kBackendNames = {
     {{"egl", Backend::egl}, {"osmesa", Backend::osmesa}, {"glfw", Backend::glfw}}};
 
 bool isSoftwareRenderer(std::string_view renderer) {
@@ -45,14 +45,14 @@ std::string_view sourceName(GLenum source) {
 }  // namespace
 
 std::string_view name(Backend backend) {
-  for (const auto& [text, value] : backendNames) {
+  for (const auto& [text, value] : kBackendNames) {
     if (value == backend) return text;
   }
   return "unknown";
 }
 
 Backend parseBackend(std::string_view text) {
-  for (const auto& [known, value] : backendNames) {
+  for (const auto& [known, value] : kBackendNames) {
     if (known == text) return value;
   }
   throw UsageError(fmt::format("unknown back end '{}': accepted are egl, osmesa, glfw", text));

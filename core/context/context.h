@@ -1,9 +1,10 @@
-// An OpenGL 4.5 core context from one of three back ends, with the function table that belongs to it.
+// Declares an OpenGL 4.5 core context, created by one of three back ends, with the function table that
+// belongs to it.
 //
-// gl* pointers differ per back end, so the table is owned by the context and there is no global one.
-// At most one context is current on a thread. makeCurrent() first releases whatever other limn context is
-// current on this thread: an OSMesa context that replaces a current EGL one without a release leaves no
-// dispatch at all (GL_RENDERER is then null and every picture black).
+// The gl* pointers differ between back ends, so each context owns its table and there is no global one. At
+// most one context is current on a thread. makeCurrent() first releases any other limn context that is
+// current on this thread: if an OSMesa context replaces a current EGL one without a release, no dispatch
+// table is left (GL_RENDERER is then null and every picture black).
 #pragma once
 
 #include <memory>
@@ -23,7 +24,7 @@ class Context;
 enum class Backend { egl, osmesa, glfw };
 
 LIMN_API std::string_view name(Backend backend);
-/// Throws UsageError naming the accepted values.
+/// Returns the back end of that name. Throws UsageError naming the accepted values.
 LIMN_API Backend parseBackend(std::string_view text);
 
 struct ContextOptions {
@@ -36,7 +37,6 @@ struct ContextOptions {
   int height = 720;  ///< window only, pixels
   bool visible = true;  ///< window only
   std::string title = "limn";
-  const Context* share = nullptr;  ///< window only: another window whose textures and buffers both see
 };
 
 struct ContextInfo {
@@ -48,31 +48,32 @@ struct ContextInfo {
 
 class LIMN_API Context {
  public:
-  /// Creates a context and makes it current. Throws Error in one line when the back end, the device or
-  /// OpenGL 4.5 is not to be had.
+  /// Creates a context and makes it current. Throws Error with one line when the back end, the device or
+  /// OpenGL 4.5 is not available.
   static std::unique_ptr<Context> create(const ContextOptions& options);
 
   virtual ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
-  /// A context is current on at most one thread. GLFW windows are made and destroyed on the main thread, but
-  /// their contexts may be current on others. Throws Error.
+  /// Makes this context current on the calling thread; a context is current on at most one thread. GLFW
+  /// windows are created and destroyed on the main thread, but their contexts may be current on others.
+  /// Throws Error when that fails.
   void makeCurrent();
-  /// Nothing is current afterwards, whichever context was.
+  /// Releases whichever context is current on this thread; afterwards none is.
   static void release();
   bool isCurrent() const;
-  /// The limn context of this thread, or null.
+  /// Returns the limn context that is current on this thread, or null.
   static Context* current();
 
   const gl::Functions& gl() const { return functions_; }
   const ContextInfo& info() const { return info_; }
 
-  /// Errors that KHR_debug reported since the last call (type error or severity high), one line each. Empty
-  /// without ContextOptions::debug.
+  /// Returns the errors that KHR_debug reported since the last call (type error or severity high), one line
+  /// each. Always empty without ContextOptions::debug.
   std::vector<std::string> takeErrors();
 
-  /// The window of a GLFW context, otherwise null.
+  /// Returns the window of a GLFW context, otherwise null.
   virtual GLFWwindow* window() const { return nullptr; }
 
  protected:
@@ -81,7 +82,8 @@ class LIMN_API Context {
   Context();
   virtual void bind() = 0;             ///< makes the native context current; throws Error
   virtual void unbind() noexcept = 0;  ///< makes no native context current
-  /// Called once by create() after the native context exists: binds, loads the table, checks the version.
+  /// Binds the context, loads the function table and checks the version. Called once by create() after the
+  /// native context exists.
   void initialise(const ContextOptions& options, const gl::GetProcAddress& getProcAddress);
 
   gl::Functions functions_{};
@@ -92,7 +94,8 @@ class LIMN_API Context {
   std::unique_ptr<DebugLog> debugLog_;
 };
 
-/// Gives the thread another current context (or none) for a scope, and the former one back at its end.
+/// Makes another context (or none) current on this thread for a scope, and restores the former one at its
+/// end.
 class LIMN_API ContextScope {
  public:
   explicit ContextScope(Context* context);
@@ -105,14 +108,14 @@ class LIMN_API ContextScope {
   Context* context_;
 };
 
-/// What a back end offers on this machine, for `limn info`.
+/// Describes a device that a back end offers on this machine, for `limn info`.
 struct DeviceDescription {
   Backend backend;
   int device = -1;  ///< EGL device index or -1
   std::string description;
   std::string problem;  ///< empty when a context can be made
 };
-/// Tries every back end and EGL device by making a context; the current context is current again afterwards.
+/// Returns all back ends and EGL devices, each tried by creating a context; restores the current context.
 LIMN_API std::vector<DeviceDescription> listDevices();
 
 }  // namespace limn

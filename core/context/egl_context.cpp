@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/context/backends.h"
+#include "core/context/private/backends.h"
 
 namespace limn {
 namespace {

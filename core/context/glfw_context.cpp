@@ -6,12 +6,12 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/context/backends.h"
+#include "core/context/private/backends.h"
 
 namespace limn {
 namespace {
 
-constexpr int largestWindow = 16384;  // pixels; GLFW and X do not survive every number
+constexpr int kLargestWindow = 16384;  // pixels; GLFW and X do not survive every number
 
 std::string lastProblem() {
   const char* description = nullptr;
@@ -37,8 +37,7 @@ class GlfwContext final : public Context {
     glfwWindowHint(GLFW_VISIBLE, options.visible ? GLFW_TRUE : GLFW_FALSE);
     glfwWindowHint(GLFW_DEPTH_BITS, 0);
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
-    GLFWwindow* const shared = options.share != nullptr ? options.share->window() : nullptr;
-    window_ = glfwCreateWindow(options.width, options.height, options.title.c_str(), nullptr, shared);
+    window_ = glfwCreateWindow(options.width, options.height, options.title.c_str(), nullptr, nullptr);
     if (window_ == nullptr) {
       throw Error(fmt::format("no window of {} x {} pixels with OpenGL 4.5 core can be opened ({})",
                               options.width, options.height, lastProblem()));
@@ -79,9 +78,9 @@ std::unique_ptr<Context> createGlfwContext(const ContextOptions& options) {
         fmt::format("device {} cannot be chosen with --backend glfw: only egl has devices", options.device));
   }
   if (std::min(options.width, options.height) < 1 ||
-      std::max(options.width, options.height) > largestWindow) {
+      std::max(options.width, options.height) > kLargestWindow) {
     throw UsageError(fmt::format("window of {} x {} pixels: accepted are 1 to {} each way", options.width,
-                                 options.height, largestWindow));
+                                 options.height, kLargestWindow));
   }
   auto context = std::make_unique<GlfwContext>(options);
   context->initialise(options);

@@ -7,15 +7,15 @@
 #include <cstdint>
 
 #include "core/base/error.h"
-#include "core/context/backends.h"
+#include "core/context/private/backends.h"
 
 namespace limn {
 namespace {
 
 // From Mesa's interface; its header is not needed to build.
 using NativeContext = struct osmesa_context*;
-constexpr int osmesaFormat = 0x22, osmesaDepthBits = 0x30, osmesaStencilBits = 0x31, osmesaProfile = 0x33,
-              osmesaCoreProfile = 0x34, osmesaMajorVersion = 0x36, osmesaMinorVersion = 0x37;
+constexpr int kOsmesaFormat = 0x22, kOsmesaDepthBits = 0x30, kOsmesaStencilBits = 0x31, kOsmesaProfile = 0x33,
+              kOsmesaCoreProfile = 0x34, kOsmesaMajorVersion = 0x36, kOsmesaMinorVersion = 0x37;
 
 struct Library {
   NativeContext (*createContextAttribs)(const int* attributes, NativeContext shared) = nullptr;
@@ -53,17 +53,17 @@ Library openLibrary() {
 class OsmesaContext final : public Context {
  public:
   OsmesaContext() : library_(openLibrary()) {
-    const int attributes[] = {osmesaFormat,
+    const int attributes[] = {kOsmesaFormat,
                               GL_RGBA,
-                              osmesaDepthBits,
+                              kOsmesaDepthBits,
                               0,
-                              osmesaStencilBits,
+                              kOsmesaStencilBits,
                               0,
-                              osmesaProfile,
-                              osmesaCoreProfile,
-                              osmesaMajorVersion,
+                              kOsmesaProfile,
+                              kOsmesaCoreProfile,
+                              kOsmesaMajorVersion,
                               4,
-                              osmesaMinorVersion,
+                              kOsmesaMinorVersion,
                               5,
                               0};
     context_ = library_.createContextAttribs(attributes, nullptr);

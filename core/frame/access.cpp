@@ -1,4 +1,4 @@
-#include "core/frame/access.h"
+#include "core/frame/private/access.h"
 
 namespace limn::frame {
 
@@ -53,6 +53,18 @@ bool isReadModifyWrite(Access access) {
 bool isShaderWrite(Access access) {
   return access == Access::imageStore || access == Access::storageStore || access == Access::imageLoadStore ||
          access == Access::storageLoadStore;
+}
+
+bool isShaderAccess(Access access) {
+  switch (access) {
+    case Access::sampled:
+    case Access::imageLoad:
+    case Access::uniformBuffer:
+    case Access::storageLoad:
+      return true;
+    default:
+      return isShaderWrite(access);
+  }
 }
 
 bool fitsTexture(Access access) {

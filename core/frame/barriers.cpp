@@ -8,18 +8,18 @@
 #include <bit>
 #include <vector>
 
-#include "core/frame/access.h"
-#include "core/frame/graph_data.h"
+#include "core/frame/private/access.h"
+#include "core/frame/private/graph_data.h"
 
 namespace limn::frame {
 namespace {
 
-constexpr int64_t never = -1;
+constexpr int64_t kNever = -1;
 
 /// Follows the accesses to every object in time. Times count passes.
 class Hazards {
  public:
-  explicit Hazards(size_t objects) : written_(objects, never), read_(objects, never) {}
+  explicit Hazards(size_t objects) : written_(objects, kNever), read_(objects, kNever) {}
 
   /// The bits needed now, before `access` to `object`.
   GLbitfield needed(size_t object, Access access, bool texture) const {
@@ -33,14 +33,14 @@ class Hazards {
   }
   /// Whole contents replaced by a write in command order: it comes after all earlier accesses, and later ones
   /// after it.
-  void replace(size_t object) { written_[object] = read_[object] = never; }
+  void replace(size_t object) { written_[object] = read_[object] = kNever; }
   void write(size_t object) { written_[object] = now_; }
   void read(size_t object) { read_[object] = now_; }
   void advance() { ++now_; }
 
  private:
   bool covered(GLbitfield bit, int64_t time) const {
-    return time == never || issued_[std::countr_zero(bit)] > time;
+    return time == kNever || issued_[std::countr_zero(bit)] > time;
   }
   int64_t now_ = 0;
   std::vector<int64_t> written_, read_;  ///< last shader write, last read
@@ -54,12 +54,12 @@ size_t objectOf(const Graph& graph, uint32_t resource) {
 }
 
 bool leavesTheGraph(const Resource& r) {
-  return r.first != no_index && (r.imported() || !r.outputs.empty());
+  return r.first != kNoIndex && (r.imported() || !r.outputs.empty());
 }
 
-constexpr std::array texture_uses{Access::sampled, Access::imageLoad, Access::copySource,
+constexpr std::array kTextureUses{Access::sampled, Access::imageLoad, Access::copySource,
                                   Access::colourBlend};
-constexpr std::array buffer_uses{Access::uniformBuffer, Access::storageLoad,    Access::vertexBuffer,
+constexpr std::array kBufferUses{Access::uniformBuffer, Access::storageLoad,    Access::vertexBuffer,
                                  Access::indexBuffer,   Access::indirectBuffer, Access::copySource};
 
 template <class Visit>
@@ -68,7 +68,7 @@ void forUsesOutside(const Graph& graph, Visit&& visit) {
     const Resource& r = graph.resources[i];
     if (!leavesTheGraph(r)) continue;
     const std::span<const Access> uses =
-        r.texture ? std::span<const Access>(texture_uses) : std::span<const Access>(buffer_uses);
+        r.texture ? std::span<const Access>(kTextureUses) : std::span<const Access>(kBufferUses);
     for (Access use : uses) visit(objectOf(graph, i), use, r.texture);
   }
 }

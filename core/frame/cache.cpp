@@ -5,8 +5,8 @@
 // last contents, so its writers run all together or not at all.
 #include <algorithm>
 
-#include "core/frame/access.h"
-#include "core/frame/graph_data.h"
+#include "core/frame/private/access.h"
+#include "core/frame/private/graph_data.h"
 
 namespace limn::frame {
 namespace {
@@ -20,8 +20,8 @@ GLuint importedId(const Resource& r) {
 }
 
 /// `but`: a pass that does not count.
-bool keptWriterAbove(const Graph& graph, const Resource& r, uint32_t version, uint32_t but = no_index) {
-  for (uint32_t v = r.versions[version].overwriter; v != no_index; v = r.versions[v].overwriter) {
+bool keptWriterAbove(const Graph& graph, const Resource& r, uint32_t version, uint32_t but = kNoIndex) {
+  for (uint32_t v = r.versions[version].overwriter; v != kNoIndex; v = r.versions[v].overwriter) {
     if (r.versions[v].producer != but && graph.passes[r.versions[v].producer].kept) return true;
   }
   return false;
@@ -38,9 +38,9 @@ void planPass(const Graph& graph, uint32_t index, Pass& pass) {
     const uint32_t version = a.write() ? a.parent : a.version;
     const uint32_t producer = r.versions[version].producer;
     if (producer == index) continue;
-    if (producer != no_index) {
+    if (producer != kNoIndex) {
       addUnique(pass.inputs, producer);
-    } else if (keptWriterAbove(graph, r, version, a.write() ? no_index : index)) {
+    } else if (keptWriterAbove(graph, r, version, a.write() ? kNoIndex : index)) {
       // The frame itself changes what this pass reads first. (A pass that reads one part and writes another
       // does not.)
       pass.alwaysRun = true;

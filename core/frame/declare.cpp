@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "core/frame/access.h"
-#include "core/frame/graph_data.h"
+#include "core/frame/private/access.h"
+#include "core/frame/private/graph_data.h"
 
 namespace limn::frame {
 namespace {
@@ -14,18 +14,18 @@ uint32_t tagOf(const Graph* graph) {
 }
 
 template <class Handle>
-constexpr bool is_texture = std::is_same_v<Handle, TextureHandle>;
+constexpr bool kIsTexture = std::is_same_v<Handle, TextureHandle>;
 template <class Handle>
-constexpr const char* kind_name = is_texture<Handle> ? "texture" : "buffer";
+constexpr const char* kKindName = kIsTexture<Handle> ? "texture" : "buffer";
 
 /// Empty when the handle names a resource of this graph, otherwise what is wrong with it.
 template <class Handle>
 std::string handleProblem(const Graph& graph, Handle handle) {
-  if (!handle) return fmt::format("a null {} handle", kind_name<Handle>);
+  if (!handle) return fmt::format("a null {} handle", kKindName<Handle>);
   if (handle.graph != graph.tag || handle.resource >= graph.resources.size() ||
-      graph.resources[handle.resource].texture != is_texture<Handle> ||
+      graph.resources[handle.resource].texture != kIsTexture<Handle> ||
       handle.version >= graph.resources[handle.resource].versions.size()) {
-    return fmt::format("a {} handle of another graph", kind_name<Handle>);
+    return fmt::format("a {} handle of another graph", kKindName<Handle>);
   }
   return {};
 }
@@ -38,11 +38,11 @@ bool accepts(Graph& graph, uint32_t pass, Handle handle, Access access, bool wri
     graph.problems.push_back(fmt::format("pass '{}' {} {} ({})", graph.title(pass), verb, wrong, why));
     return false;
   }
-  const bool fits = is_texture<Handle> ? fitsTexture(access) : fitsBuffer(access);
+  const bool fits = kIsTexture<Handle> ? fitsTexture(access) : fitsBuffer(access);
   if (!fits || isWrite(access) != write) {
     graph.problems.push_back(fmt::format(
-        "pass '{}' {} {} '{}' as {}, which is no {} of a {}", graph.title(pass), verb, kind_name<Handle>,
-        graph.resources[handle.resource].name, name(access), write ? "write" : "read", kind_name<Handle>));
+        "pass '{}' {} {} '{}' as {}, which is no {} of a {}", graph.title(pass), verb, kKindName<Handle>,
+        graph.resources[handle.resource].name, name(access), write ? "write" : "read", kKindName<Handle>));
     return false;
   }
   return true;
@@ -53,7 +53,7 @@ void declareRead(Graph& graph, uint32_t pass, Handle handle, Access access, std:
   graph.planned = false;
   if (!accepts(graph, pass, handle, access, false, why)) return;
   graph.passes[pass].accesses.push_back(
-      {handle.resource, handle.version, no_index, access, std::string(why)});
+      {handle.resource, handle.version, kNoIndex, access, std::string(why)});
   graph.resources[handle.resource].versions[handle.version].readers.push_back(pass);
 }
 
@@ -64,7 +64,7 @@ Handle declareWrite(Graph& graph, uint32_t pass, Handle handle, Access access, s
   Resource& resource = graph.resources[handle.resource];
   const auto next = static_cast<uint32_t>(resource.versions.size());
   Version& parent = resource.versions[handle.version];
-  if (parent.overwriter == no_index) {
+  if (parent.overwriter == kNoIndex) {
     parent.overwriter = next;
   } else {
     const uint32_t other = resource.versions[parent.overwriter].producer;
@@ -72,9 +72,38 @@ Handle declareWrite(Graph& graph, uint32_t pass, Handle handle, Access access, s
                                          graph.title(other), graph.title(pass), handle.version,
                                          resource.name));
   }
-  resource.versions.push_back({pass, handle.version, no_index, {}});
+  resource.versions.push_back({pass, handle.version, kNoIndex, {}});
   graph.passes[pass].accesses.push_back({handle.resource, next, handle.version, access, std::string(why)});
   return {handle.resource, next, handle.graph};
+}
+
+void declareName(Graph& graph, uint32_t pass, NamedResource named) {
+  std::vector<NamedResource>& names = graph.passes[pass].names;
+  for (const NamedResource& other : names) {
+    if (other.name == named.name) {
+      graph.problems.push_back(
+          fmt::format("pass '{}' has two resources named '{}'", graph.title(pass), named.name));
+    }
+  }
+  names.push_back(std::move(named));
+}
+
+/// Names what was declared last.
+void nameAccess(Graph& graph, uint32_t pass, const ShaderName& name) {
+  const std::vector<ResourceAccess>& accesses = graph.passes[pass].accesses;
+  if (accesses.empty()) return;  // it was refused
+  const ResourceAccess& last = accesses.back();
+  if (!isShaderAccess(last.access)) {
+    graph.problems.push_back(fmt::format("pass '{}' has '{}' as {}, which no shader calls '{}'",
+                                         graph.title(pass), graph.resources[last.resource].name,
+                                         limn::frame::name(last.access), name.text));
+  }
+  declareName(graph, pass,
+              {.name = std::string(name.text),
+               .access = static_cast<uint32_t>(accesses.size() - 1),
+               .level = name.mipLevel,
+               .layer = name.mipLayer,
+               .sampler = name.sampler});
 }
 
 template <class Handle>
@@ -91,7 +120,7 @@ void declareOutput(Graph& graph, Handle handle) {
 template <class Handle>
 Handle add(Graph& graph, Resource resource) {
   graph.planned = false;
-  resource.texture = is_texture<Handle>;
+  resource.texture = kIsTexture<Handle>;
   resource.versions.resize(1);
   graph.resources.push_back(std::move(resource));
   return {static_cast<uint32_t>(graph.resources.size() - 1), 0, graph.tag};
@@ -119,6 +148,10 @@ Resource& importedResource(Graph& graph, Handle handle) {
 }
 
 }  // namespace
+
+PassRole defaultRole(std::string_view technique) {
+  return technique == "core" ? PassRole::core : PassRole::technique;
+}
 
 std::string Graph::title(uint32_t pass) const {
   const Pass& p = passes[pass];
@@ -176,6 +209,7 @@ PassBuilder FrameGraph::addPass(std::string_view name, std::string_view techniqu
   Pass& pass = graph.passes.emplace_back();
   pass.name = std::move(unique);
   pass.technique = technique;
+  pass.role = defaultRole(technique);
   return {*this, static_cast<uint32_t>(graph.passes.size() - 1)};
 }
 
@@ -242,9 +276,53 @@ BufferHandle PassBuilder::write(BufferHandle handle, Access access, std::string_
   return declareWrite(*graph_.implementation_, pass_, handle, access, why);
 }
 
+PassBuilder& PassBuilder::read(TextureHandle handle, Access access, const ShaderName& name,
+                               std::string_view why) {
+  return read(handle, access, why).also(name);
+}
+
+PassBuilder& PassBuilder::read(BufferHandle handle, Access access, const ShaderName& name,
+                               std::string_view why) {
+  return read(handle, access, why).also(name);
+}
+
+TextureHandle PassBuilder::write(TextureHandle handle, Access access, const ShaderName& name,
+                                 std::string_view why) {
+  const TextureHandle written = write(handle, access, why);
+  also(name);
+  return written;
+}
+
+BufferHandle PassBuilder::write(BufferHandle handle, Access access, const ShaderName& name,
+                                std::string_view why) {
+  const BufferHandle written = write(handle, access, why);
+  also(name);
+  return written;
+}
+
+PassBuilder& PassBuilder::also(const ShaderName& name) {
+  nameAccess(*graph_.implementation_, pass_, name);
+  return *this;
+}
+
+PassBuilder& PassBuilder::constant(std::string_view name, const gpu::Buffer& buffer) {
+  declareName(*graph_.implementation_, pass_, {.name = std::string(name), .buffer = &buffer});
+  return *this;
+}
+
+PassBuilder& PassBuilder::constant(std::string_view name, const gpu::Texture& texture) {
+  declareName(*graph_.implementation_, pass_, {.name = std::string(name), .texture = &texture});
+  return *this;
+}
+
+SlotHandle PassBuilder::slot(std::string_view name) {
+  declareName(*graph_.implementation_, pass_, {.name = std::string(name)});
+  return {static_cast<uint32_t>(graph_.implementation_->passes[pass_].names.size() - 1)};
+}
+
 ProgramHandle PassBuilder::program(gpu::ProgramDesc desc) {
   Graph& graph = *graph_.implementation_;
-  graph.programs.push_back({std::move(desc), pass_, nullptr});
+  graph.programs.push_back({.desc = std::move(desc), .pass = pass_, .program = {}, .places = {}});
   const auto index = static_cast<uint32_t>(graph.programs.size() - 1);
   graph.passes[pass_].programs.push_back(index);
   return {index};
@@ -257,6 +335,11 @@ PassBuilder& PassBuilder::cacheable() {
 
 PassBuilder& PassBuilder::sideEffect() {
   graph_.implementation_->passes[pass_].sideEffect = true;
+  return *this;
+}
+
+PassBuilder& PassBuilder::role(PassRole role) {
+  graph_.implementation_->passes[pass_].role = role;
   return *this;
 }
 

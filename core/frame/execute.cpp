@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "core/base/foreign_exception.h"
 #include "core/base/whereabouts.h"
-#include "core/frame/graph_data.h"
+#include "core/frame/private/graph_data.h"
 
 namespace limn::frame {
 namespace {
@@ -82,6 +82,7 @@ void runPass(Graph& graph, uint32_t index, GLbitfield barriers, Timing timing, P
   if (barriers != 0) gl.MemoryBarrier(barriers);
   setBaseline(gl);
   graph.current = index;
+  graph.program = kNoIndex;
   const Whereabouts here(pass.technique.c_str(), pass.name.c_str());
   try {
     pass.function(context);
@@ -159,12 +160,12 @@ bool FrameGraph::execute(Timing timing, const Cancelled& cancelled) {
   try {
     whole = executePasses(graph, timing, cancelled, context);
   } catch (...) {
-    graph.current = no_index;
+    graph.current = kNoIndex;
     invalidate();
     setBaseline(graph.device->gl());
     throw;
   }
-  graph.current = no_index;
+  graph.current = kNoIndex;
   setBaseline(graph.device->gl());
   return whole;
 }
@@ -183,7 +184,7 @@ std::vector<PassTime> FrameGraph::passTimes() {
     if (graph.lastTiming == Timing::query) {
       pass.milliseconds = static_cast<double>(pass.queries[graph.querySet].result()) * 1e-6;
     }
-    times.push_back({pass.name, pass.technique, pass.milliseconds});
+    times.push_back({pass.name, pass.technique, pass.role, pass.milliseconds});
   }
   return times;
 }

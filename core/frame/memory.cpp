@@ -2,15 +2,15 @@
 #include <algorithm>
 #include <bit>
 
-#include "core/frame/access.h"
-#include "core/frame/graph_data.h"
+#include "core/frame/private/access.h"
+#include "core/frame/private/graph_data.h"
 
 namespace limn::frame {
 namespace {
 
 void findLifetimes(Graph& graph) {
   for (Resource& r : graph.resources) {
-    r.first = r.last = r.physical = no_index;
+    r.first = r.last = r.physical = kNoIndex;
     r.persistent = false;
   }
   for (uint32_t position = 0; position < graph.order.size(); ++position) {
@@ -24,7 +24,7 @@ void findLifetimes(Graph& graph) {
   }
   // An output is still wanted when the frame is over.
   for (Resource& r : graph.resources) {
-    if (!r.outputs.empty() && r.first != no_index) r.last = no_index;
+    if (!r.outputs.empty() && r.first != kNoIndex) r.last = kNoIndex;
   }
 }
 
@@ -75,7 +75,7 @@ void assignMemory(Graph& graph) {
   findLifetimes(graph);
   std::vector<uint32_t> used;
   for (uint32_t i = 0; i < graph.resources.size(); ++i) {
-    if (graph.resources[i].first != no_index && !graph.resources[i].imported()) used.push_back(i);
+    if (graph.resources[i].first != kNoIndex && !graph.resources[i].imported()) used.push_back(i);
   }
   std::stable_sort(used.begin(), used.end(), [&](uint32_t a, uint32_t b) {
     return graph.resources[a].first < graph.resources[b].first;

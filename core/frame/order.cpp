@@ -5,8 +5,8 @@
 #include <queue>
 #include <set>
 
-#include "core/frame/access.h"
-#include "core/frame/graph_data.h"
+#include "core/frame/private/access.h"
+#include "core/frame/private/graph_data.h"
 
 namespace limn::frame {
 namespace {
@@ -46,7 +46,7 @@ void checkContentsDefined(const Graph& graph, std::vector<std::string>& problems
 void keepPassesThatContribute(Graph& graph) {
   std::vector<uint32_t> open;
   const auto need = [&](uint32_t pass) {
-    if (pass == no_index || graph.passes[pass].kept) return;
+    if (pass == kNoIndex || graph.passes[pass].kept) return;
     graph.passes[pass].kept = true;
     open.push_back(pass);
   };
@@ -71,7 +71,7 @@ void keepPassesThatContribute(Graph& graph) {
 std::vector<uint32_t> consumers(const Graph& graph, const Resource& r, uint32_t version) {
   std::vector<uint32_t> passes = r.versions[version].readers;
   const uint32_t next = r.versions[version].overwriter;
-  if (next != no_index) {
+  if (next != kNoIndex) {
     const uint32_t writer = r.versions[next].producer;
     for (const ResourceAccess& a : graph.passes[writer].accesses) {
       if (&graph.resources[a.resource] == &r && a.version == next && a.write() &&
@@ -103,7 +103,7 @@ std::string whyLeftOut(const Graph& graph, uint32_t pass) {
 using Edges = std::vector<std::set<uint32_t>>;
 
 void addEdge(const Graph& graph, Edges& edges, uint32_t before, uint32_t after) {
-  if (before == no_index || before == after || !graph.passes[before].kept) return;
+  if (before == kNoIndex || before == after || !graph.passes[before].kept) return;
   edges[before].insert(after);
 }
 
@@ -119,10 +119,10 @@ Edges dependencies(const Graph& graph) {
       }
       // After the writer and the readers of the contents it replaces. Where that writer is left out, after
       // those of the contents before.
-      for (uint32_t v = a.parent; v != no_index; v = versions[v].parent) {
+      for (uint32_t v = a.parent; v != kNoIndex; v = versions[v].parent) {
         for (uint32_t reader : versions[v].readers) addEdge(graph, edges, reader, p);
         addEdge(graph, edges, versions[v].producer, p);
-        if (versions[v].producer != no_index && graph.passes[versions[v].producer].kept) break;
+        if (versions[v].producer != kNoIndex && graph.passes[versions[v].producer].kept) break;
       }
     }
   }
@@ -162,7 +162,7 @@ void sortTopologically(Graph& graph, std::vector<std::string>& problems) {
 void checkOutputsSurvive(const Graph& graph, std::vector<std::string>& problems) {
   for (const Resource& r : graph.resources) {
     for (uint32_t version : r.outputs) {
-      for (uint32_t v = r.versions[version].overwriter; v != no_index; v = r.versions[v].overwriter) {
+      for (uint32_t v = r.versions[version].overwriter; v != kNoIndex; v = r.versions[v].overwriter) {
         if (!graph.passes[r.versions[v].producer].kept) continue;
         problems.push_back(fmt::format("output '{}' (version {}) is overwritten by pass '{}'", r.name,
                                        version, graph.title(r.versions[v].producer)));

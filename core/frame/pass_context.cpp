@@ -4,8 +4,8 @@
 #include <initializer_list>
 
 #include "core/base/error.h"
-#include "core/frame/access.h"
-#include "core/frame/graph_data.h"
+#include "core/frame/private/access.h"
+#include "core/frame/private/graph_data.h"
 
 namespace limn::frame {
 namespace {
@@ -39,8 +39,8 @@ bool declared(const Graph& graph, Handle handle, std::initializer_list<Access> a
 /// The resource, after comparing its use with what the pass declared (in debug contexts). No accesses: any
 /// will do.
 template <class Handle>
-const Resource& use(const Graph& graph, Handle handle, std::string_view what,
-                    std::initializer_list<Access> accesses) {
+const Resource& resourceFor(const Graph& graph, Handle handle, std::string_view what,
+                            std::initializer_list<Access> accesses) {
   const Resource& resource = resourceOf(graph, handle);
   if (graph.checked && !declared(graph, handle, accesses)) {
     std::string expected;
@@ -53,17 +53,6 @@ const Resource& use(const Graph& graph, Handle handle, std::string_view what,
                             expected.empty() ? "" : " as ", expected));
   }
   return resource;
-}
-
-const Resource& useAsImage(const Graph& graph, TextureHandle handle, GLenum access) {
-  switch (access) {
-    case GL_READ_ONLY:
-      return use(graph, handle, "loads from image", {Access::imageLoad, Access::imageLoadStore});
-    case GL_WRITE_ONLY:
-      return use(graph, handle, "stores to image", {Access::imageStore, Access::imageLoadStore});
-    default:
-      return use(graph, handle, "loads from and stores to image", {Access::imageLoadStore});
-  }
 }
 
 const FramebufferEntry& findFramebuffer(Graph& graph, std::span<const PassContext::Target> colours,
@@ -103,11 +92,11 @@ const gl::Functions& PassContext::gl() const {
 }
 
 const gpu::Texture& PassContext::texture(TextureHandle handle) const {
-  return *use(*graph_.implementation_, handle, "uses texture", {}).textureObject;
+  return *resourceFor(*graph_.implementation_, handle, "uses texture", {}).textureObject;
 }
 
 const gpu::Buffer& PassContext::buffer(BufferHandle handle) const {
-  return *use(*graph_.implementation_, handle, "uses buffer", {}).bufferObject;
+  return *resourceFor(*graph_.implementation_, handle, "uses buffer", {}).bufferObject;
 }
 
 gpu::Program& PassContext::program(ProgramHandle handle) const {
@@ -118,49 +107,19 @@ gpu::Program& PassContext::program(ProgramHandle handle) const {
   return *graph.programs[handle.index].program;
 }
 
-void PassContext::bindSampled(unsigned unit, TextureHandle handle, const gpu::Sampler* sampler) const {
-  const Resource& resource = use(*graph_.implementation_, handle, "samples texture", {Access::sampled});
-  gl().BindTextureUnit(unit, resource.id());
-  gl().BindSampler(unit, sampler != nullptr ? sampler->id() : 0);
-}
-
-void PassContext::bindImage(unsigned unit, TextureHandle handle, GLenum access, int level, int layer) const {
-  const Resource& resource = useAsImage(*graph_.implementation_, handle, access);
-  gl().BindImageTexture(unit, resource.id(), level, layer < 0 ? GL_TRUE : GL_FALSE, std::max(layer, 0),
-                        access, resource.textureObject->desc().format);
-}
-
-void PassContext::bindStorage(unsigned binding, BufferHandle handle) const {
-  const Resource& resource = use(*graph_.implementation_, handle, "binds storage buffer",
-                                 {Access::storageLoad, Access::storageStore, Access::storageLoadStore});
-  // The declared size, not the pool's: length() of an unsized array in a shader counts what was asked for.
-  const size_t bytes = resource.bufferDesc.bytes;
-  if (bytes == 0) {
-    gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, resource.id());
-  } else {
-    gl().BindBufferRange(GL_SHADER_STORAGE_BUFFER, binding, resource.id(), 0, static_cast<GLsizeiptr>(bytes));
-  }
-}
-
-void PassContext::bindUniform(unsigned binding, BufferHandle handle) const {
-  const Resource& resource =
-      use(*graph_.implementation_, handle, "binds uniform buffer", {Access::uniformBuffer});
-  gl().BindBufferBase(GL_UNIFORM_BUFFER, binding, resource.id());
-}
-
 void PassContext::bindFramebuffer(std::initializer_list<Target> colours, Target depth) const {
   Graph& graph = *graph_.implementation_;
-  if (colours.size() > max_colour_attachments || (colours.size() == 0 && !depth.texture)) {
+  if (colours.size() > kMaxColourAttachments || (colours.size() == 0 && !depth.texture)) {
     throw Error(
         fmt::format("pass '{}' binds a framebuffer of {} colours{}: accepted are 1 to {} colours, or a depth",
                     graph.title(graph.current), colours.size(), depth.texture ? "" : " and no depth",
-                    max_colour_attachments));
+                    kMaxColourAttachments));
   }
   for (const Target& colour : colours) {
-    use(graph, colour.texture, "draws to", {Access::colourAttachment, Access::colourBlend});
+    resourceFor(graph, colour.texture, "draws to", {Access::colourAttachment, Access::colourBlend});
   }
   if (depth.texture)
-    use(graph, depth.texture, "draws depth to", {Access::depthAttachment, Access::depthTest});
+    resourceFor(graph, depth.texture, "draws depth to", {Access::depthAttachment, Access::depthTest});
   const FramebufferEntry& entry = findFramebuffer(graph, {colours.begin(), colours.size()}, depth);
   gl().BindFramebuffer(GL_FRAMEBUFFER, entry.framebuffer.id());
   gl().Viewport(0, 0, entry.width, entry.height);

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "core/frame/graph_data.h"
+#include "core/frame/private/graph_data.h"
 
 namespace limn::frame {
 
@@ -33,7 +33,7 @@ int64_t FrameGraph::transientBytes() const {
 int64_t FrameGraph::transientBytesUnaliased() const {
   int64_t bytes = 0;
   for (const Resource& r : implementation_->resources) {
-    if (r.first != no_index) bytes += resourceBytes(r);
+    if (r.first != kNoIndex) bytes += resourceBytes(r);
   }
   return bytes;
 }

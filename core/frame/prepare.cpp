@@ -4,8 +4,8 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/frame/graph_data.h"
-#include "core/frame/resource_pool.h"
+#include "core/frame/private/graph_data.h"
+#include "core/frame/private/resource_pool.h"
 
 namespace limn::frame {
 namespace {
@@ -61,7 +61,10 @@ void Graph::release() {
     r.textureObject = r.importedTexture;
     r.bufferObject = r.importedBuffer;
   }
-  for (ProgramUse& use : programs) use.program = nullptr;
+  for (ProgramUse& use : programs) {
+    use.program = nullptr;
+    use.placesOf = 0;
+  }
   for (Pass& pass : passes) {
     pass.valid = false;
     pass.run = true;
@@ -91,6 +94,7 @@ void FrameGraph::prepare(gpu::Device& device, gpu::ShaderLibrary& shaders, Resou
       if (!physical.texture) graph.resources[r].bufferObject = graph.buffers.back().get();
     }
   }
+  findPlaces(graph, shaders);
   graph.checked = isDebugContext(device.gl());
   graph.device = &device;
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/frame/graph_data.h"
+#include "core/frame/private/graph_data.h"
 
 namespace limn::frame {
 namespace {
@@ -21,6 +21,7 @@ PassReport report(const Graph& graph, uint32_t index) {
   PassReport row;
   row.name = pass.name;
   row.technique = pass.technique;
+  row.role = pass.role;
   row.state = !pass.kept ? PassState::leftOut : pass.run ? PassState::run : PassState::cached;
   row.reason = !pass.kept ? pass.reason : pass.run ? "" : "inputs unchanged";
   row.barriers = pass.barriers;
@@ -29,7 +30,7 @@ PassReport report(const Graph& graph, uint32_t index) {
   for (const ResourceAccess& a : pass.accesses) {
     row.accesses.push_back(described(graph, a));
     const Resource& r = graph.resources[a.resource];
-    const bool firstWriter = a.write() && r.first != no_index && graph.order[r.first] == index;
+    const bool firstWriter = a.write() && r.first != kNoIndex && graph.order[r.first] == index;
     if (firstWriter && std::find(counted.begin(), counted.end(), a.resource) == counted.end()) {
       counted.push_back(a.resource);
       row.bytes += resourceBytes(r);
@@ -68,7 +69,7 @@ std::string resourceNodes(const Graph& graph) {
     for (size_t v = 0; v < r.versions.size(); ++v) {
       const Version& version = r.versions[v];
       if (v == 0 && version.readers.empty() && !r.imported()) continue;
-      const bool dashed = version.producer != no_index && !graph.passes[version.producer].kept;
+      const bool dashed = version.producer != kNoIndex && !graph.passes[version.producer].kept;
       const bool output =
           std::find(r.outputs.begin(), r.outputs.end(), static_cast<uint32_t>(v)) != r.outputs.end();
       text += fmt::format("  r{}_{} [shape=ellipse, style={}, peripheries={}, label=\"{}{}\"];\n", i, v,
@@ -112,6 +113,26 @@ std::string AccessReport::text() const {
                      : fmt::format("{} ({}): {}", resource, name(access), why);
 }
 
+std::string_view name(PassRole role) {
+  switch (role) {
+    case PassRole::core:
+      return "core";
+    case PassRole::map:
+      return "map";
+    case PassRole::filter:
+      return "filter";
+    case PassRole::technique:
+      return "technique";
+  }
+  return "unknown";
+}
+
+PassRole passRoleFromName(std::string_view text) {
+  for (const PassRole role : {PassRole::core, PassRole::map, PassRole::filter, PassRole::technique})
+    if (text == name(role)) return role;
+  throw Error(fmt::format("pass role '{}' is unknown; expected core, map, filter or technique", text));
+}
+
 std::string_view name(PassState state) {
   switch (state) {
     case PassState::run:
@@ -136,6 +157,7 @@ std::vector<PassReport> FrameGraph::explain() const {
     PassReport& row = rows.emplace_back();
     row.name = entry.name;
     row.technique = entry.technique;
+    row.role = defaultRole(entry.technique);
     row.state = PassState::leftOut;
     row.reason = entry.reason;
   }

@@ -1,4 +1,4 @@
-#include "core/frame/resource_pool.h"
+#include "core/frame/private/resource_pool.h"
 
 #include <algorithm>
 
@@ -6,10 +6,10 @@ namespace limn::frame {
 namespace {
 
 /// Longest label every implementation accepts (GL_MAX_LABEL_LENGTH is at least 256, terminator included).
-constexpr size_t longest_label = 255;
+constexpr size_t kLongestLabel = 255;
 
 void relabel(const gpu::Device& device, GLenum kind, GLuint id, std::string_view label) {
-  const auto length = static_cast<GLsizei>(std::min(label.size(), longest_label));
+  const auto length = static_cast<GLsizei>(std::min(label.size(), kLongestLabel));
   device.gl().ObjectLabel(kind, id, length, label.data());
 }
 
@@ -23,7 +23,7 @@ std::shared_ptr<gpu::Texture> ResourcePool::Implementation::texture(std::string_
       return texture;
     }
   }
-  return textures.emplace_back(std::make_shared<gpu::Texture>(device, label.substr(0, longest_label), desc));
+  return textures.emplace_back(std::make_shared<gpu::Texture>(device, label.substr(0, kLongestLabel), desc));
 }
 
 std::shared_ptr<gpu::Buffer> ResourcePool::Implementation::buffer(std::string_view label, size_t bytes) {
@@ -33,7 +33,7 @@ std::shared_ptr<gpu::Buffer> ResourcePool::Implementation::buffer(std::string_vi
       return buffer;
     }
   }
-  return buffers.emplace_back(std::make_shared<gpu::Buffer>(device, label.substr(0, longest_label), bytes));
+  return buffers.emplace_back(std::make_shared<gpu::Buffer>(device, label.substr(0, kLongestLabel), bytes));
 }
 
 ResourcePool::ResourcePool(gpu::Device& device)

@@ -3,16 +3,16 @@
 #include <limits>
 
 #include "core/base/error.h"
-#include "core/gpu/object_support.h"
 #include "core/gpu/objects.h"
+#include "core/gpu/private/object_support.h"
 
 namespace limn::gpu {
 namespace {
 
-constexpr size_t minimumBytes = 16;
+constexpr size_t kMinimumBytes = 16;
 
 size_t storageBytes(size_t bytes) {
-  return bytes == 0 ? minimumBytes : bytes;
+  return bytes == 0 ? kMinimumBytes : bytes;
 }
 
 void checkRange(const char* what, size_t offset, size_t bytes, size_t size) {

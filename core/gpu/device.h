@@ -1,4 +1,5 @@
-// The GPU as the rest of limn sees it: the function table, the limits, and a count of every live object.
+// Declares the GPU as the rest of limn uses it: the function table, the limits, and counts of all live
+// objects.
 #pragma once
 
 #include <cstdint>
@@ -22,19 +23,19 @@ struct Limits {
   bool layerFromVertexShader = false;  ///< ARB_shader_viewport_layer_array or AMD_vertex_shader_layer
 };
 
-/// Live objects and the bytes behind them. Tests compare it before and after to prove that nothing leaks and
-/// that a left-out pass allocates nothing.
+/// Counts live objects and their bytes. Tests compare the counts before and after to check that nothing leaks
+/// and that a left-out pass allocates nothing.
 struct Counters {
   int buffers = 0, textures = 0, framebuffers = 0, programs = 0, queries = 0, samplers = 0, vertexArrays = 0;
-  int programsCompiled = 0;  ///< ever, not live
+  int programsCompiled = 0;  ///< all since the start, not only live ones
   int64_t bufferBytes = 0, textureBytes = 0;
   bool operator==(const Counters&) const = default;
 };
 
-/// Wraps a context; must outlive every GPU object made with it and be destroyed before the context.
-/// State set once, which nobody changes: pixel rows tightly packed, seamless cube maps on, sRGB encoding of
-/// framebuffers and dithering off.
-/// An object is destroyed in its own context, which is made current for the moment where it is not.
+/// Wraps a context. It must outlive every GPU object made with it and be destroyed before the context. It
+/// sets state that nothing else changes: pixel rows tightly packed, seamless cube maps on, sRGB encoding of
+/// framebuffers and dithering off. An object is destroyed in its own context, which is made current for that
+/// where it is not.
 class LIMN_API Device {
  public:
   explicit Device(Context& context);
@@ -45,9 +46,9 @@ class LIMN_API Device {
   Context& context() const { return context_; }
   const gl::Functions& gl() const { return context_.gl(); }
   const Limits& limits() const { return limits_; }
-  /// Which of two ways suits the renderer where they differ: the processor's or a GPU's. A renderer on the
-  /// processor is given the GPU's where the environment has LIMN_HARDWARE_PATHS, so that tests meet these,
-  /// too.
+  /// Says whether code that has one path for software renderers and one for GPUs should take the former. It
+  /// is false on a software renderer, too, if the environment variable LIMN_HARDWARE_PATHS is set, so that
+  /// tests cover the paths for GPUs.
   bool software() const { return software_; }
   const Counters& counters() const { return counters_; }
   Counters& mutableCounters() { return counters_; }  ///< for the GPU objects themselves

@@ -14,7 +14,7 @@ namespace {
     GL_##NAME, #NAME, BYTES, COMPONENTS, FormatClass::KIND, GL_##CLIENT_FORMAT, GL_##CLIENT_TYPE \
   }
 
-constexpr std::array formats = {
+constexpr std::array kFormats = {
     LIMN_FORMAT(R8, 1, 1, colour, RED, UNSIGNED_BYTE),
     LIMN_FORMAT(R8_SNORM, 1, 1, colour, RED, BYTE),
     LIMN_FORMAT(R16, 2, 1, colour, RED, UNSIGNED_SHORT),
@@ -111,7 +111,7 @@ size_t componentBytes(GLenum type) {
 }  // namespace
 
 std::optional<FormatInfo> findFormat(GLenum format) {
-  for (const FormatInfo& info : formats) {
+  for (const FormatInfo& info : kFormats) {
     if (info.format == format) return info;
   }
   return std::nullopt;

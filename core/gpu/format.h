@@ -1,4 +1,4 @@
-// What limn knows about sized internal formats and about pixels in client memory.
+// Declares what limn knows about sized internal formats and about pixels in client memory.
 #pragma once
 
 #include <cstddef>
@@ -21,12 +21,12 @@ struct FormatInfo {
   GLenum clientType;
 };
 
-/// The formats limn uses; nothing for any other.
+/// Returns the description of a format that limn uses, or nothing for any other.
 LIMN_API std::optional<FormatInfo> findFormat(GLenum format);
-/// Throws Error for a format that limn does not use.
+/// Returns the description of a format. Throws Error for a format that limn does not use.
 LIMN_API FormatInfo formatInfo(GLenum format);
-/// Bytes of one pixel of `format`/`type` in client memory, tightly packed. Throws Error for an unknown
-/// combination.
+/// Returns the bytes of one pixel of `format`/`type` in client memory, tightly packed. Throws Error for an
+/// unknown combination.
 LIMN_API size_t clientPixelBytes(GLenum format, GLenum type);
 
 }  // namespace limn::gpu

@@ -1,4 +1,4 @@
-#include "core/gpu/glsl_lines.h"
+#include "core/gpu/private/glsl_lines.h"
 
 #include <algorithm>
 #include <cctype>

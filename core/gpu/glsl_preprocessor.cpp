@@ -1,4 +1,4 @@
-#include "core/gpu/glsl_preprocessor.h"
+#include "core/gpu/private/glsl_preprocessor.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/gpu/glsl_lines.h"
+#include "core/gpu/private/glsl_lines.h"
 
 namespace limn::gpu {
 namespace {

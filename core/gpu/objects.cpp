@@ -124,6 +124,7 @@ Program& Program::operator=(Program&& other) noexcept {
   Program moved(std::move(other));
   swap(moved);
   std::swap(label_, moved.label_);
+  std::swap(resources_, moved.resources_);
   std::swap(locations_, moved.locations_);
   return *this;
 }

@@ -1,9 +1,10 @@
-// Move-only owners of OpenGL objects. A default-constructed one owns nothing and may be destroyed or assigned
-// to. All use direct state access; none touches bindings except through explicit bind calls.
+// Declares move-only owners of OpenGL objects. A default-constructed owner owns nothing and may be destroyed
+// or assigned to. All use direct state access; none touches bindings except through explicit bind calls.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,7 +15,7 @@
 
 namespace limn::gpu {
 
-/// Common part: the device and the name, moved as one.
+/// Holds what all owners share: the device and the object's name, which move together.
 class LIMN_API Object {
  public:
   GLuint id() const { return id_; }
@@ -45,8 +46,8 @@ enum class BufferUse {
 class LIMN_API Buffer : public Object {
  public:
   Buffer() = default;
-  /// `bytes` may be 0 (then 16 bytes are allocated, so that the buffer can be bound; size() is 0). Throws
-  /// Error when out of memory.
+  /// Creates a buffer. `bytes` may be 0 (then 16 bytes are allocated, so that the buffer can be bound, and
+  /// size() is 0). Throws Error when out of memory.
   Buffer(Device& device, std::string_view label, size_t bytes, BufferUse use = BufferUse::fixed,
          const void* data = nullptr);
   Buffer(Buffer&& other) noexcept;
@@ -54,11 +55,12 @@ class LIMN_API Buffer : public Object {
   ~Buffer();
 
   size_t size() const { return bytes_; }
-  /// BufferUse::updated only. Throws Error beyond the end, as read() does.
+  /// Writes part of a buffer made with BufferUse::updated. Throws Error beyond the end, as read() does.
   void update(size_t offset, const void* data, size_t bytes);
-  /// Blocks until the GPU is done: for tests, tools and saved results, never on the frame path.
+  /// Reads part of the buffer; blocks until the GPU is done. Meant for tests, tools and saved results, never
+  /// for the frame path.
   void read(size_t offset, void* data, size_t bytes) const;
-  void clear(uint32_t value = 0);  ///< every whole 32-bit word; the size must be a multiple of 4
+  void clear(uint32_t value = 0);  ///< sets every 32-bit word; the size must be a multiple of 4
 
   template <class T>
   static Buffer of(Device& device, std::string_view label, std::span<const T> data,
@@ -71,7 +73,8 @@ class LIMN_API Buffer : public Object {
   BufferUse use_ = BufferUse::fixed;
 };
 
-/// What a texture is. Equal descriptions are interchangeable: the frame graph's pool keys on this.
+/// Describes a texture. Textures with equal descriptions are interchangeable: the frame graph's pool uses the
+/// description as its key.
 struct TextureDesc {
   GLenum target = GL_TEXTURE_2D;  ///< GL_TEXTURE_2D, _2D_ARRAY, _CUBE_MAP, _CUBE_MAP_ARRAY or _3D
   GLenum format = GL_RGBA8;       ///< sized internal format
@@ -81,39 +84,40 @@ struct TextureDesc {
   bool operator==(const TextureDesc&) const = default;
 };
 
-/// Mip levels of a full chain.
+/// Returns the number of mip levels of a full chain.
 LIMN_API int fullMipLevels(int width, int height, int depth = 1);
-/// The same description with levels = 0 replaced by the length of the full chain.
+/// Returns the description with levels = 0 replaced by the length of the full chain.
 LIMN_API TextureDesc resolved(TextureDesc desc);
-/// Bytes of all levels and layers as limn accounts for them (the driver's padding is not known).
+/// Returns the bytes of all levels and layers as limn counts them (the driver's padding is not known).
 LIMN_API int64_t textureBytes(const TextureDesc& desc);
-/// Throws Error for an unknown target or format, a size that is not positive or beyond the device's limits,
+/// Throws Error for an unknown target or format, a size that is not positive or exceeds the device's limits,
 /// too many levels, and a cube map that is not square or lacks faces.
 LIMN_API void checkTextureDesc(const Device& device, std::string_view label, const TextureDesc& desc);
 
 class LIMN_API Texture : public Object {
  public:
   Texture() = default;
-  /// Immutable storage. Minification is nearest (or nearest mipmap), magnification nearest, edges clamped,
-  /// unless setSampling() says otherwise; passes that filter bind a Sampler or set this at creation.
+  /// Allocates immutable storage. Minification is nearest (or nearest mipmap), magnification nearest, edges
+  /// are clamped, unless setSampling() changes that; passes that filter bind a Sampler or set this at
+  /// creation.
   Texture(Device& device, std::string_view label, const TextureDesc& desc);
   Texture(Texture&& other) noexcept;
   Texture& operator=(Texture&& other) noexcept;
   ~Texture();
 
   const TextureDesc& desc() const { return desc_; }  ///< levels resolved
-  /// Layers (depth of a 3D texture) of one level.
+  /// Returns the layers (depth of a 3D texture) of one level.
   int layersOf(int level) const;
   void setSampling(GLenum minFilter, GLenum magFilter, GLenum wrapS = GL_CLAMP_TO_EDGE,
                    GLenum wrapT = GL_CLAMP_TO_EDGE);
-  /// Uploads one level of one layer (layer of a cube map: face). `format`/`type` describe `data`, tightly
+  /// Uploads one level of one layer (of a cube map: one face). `format` and `type` describe `data`, tightly
   /// packed.
   void upload(int level, int layer, GLenum format, GLenum type, const void* data);
-  /// Reads one whole level, all layers, tightly packed; `bytes` must be exactly that much. Blocks; never on
-  /// the frame path.
+  /// Reads one whole level, all layers, tightly packed; `bytes` must be exactly that size. Blocks; never to
+  /// be used on the frame path.
   void read(int level, GLenum format, GLenum type, void* data, size_t bytes) const;
-  /// All levels and layers. clear() is for colour and depth formats, clearUint() for integer ones; else
-  /// throws Error.
+  /// Sets all levels and layers to one value: clear() for colour and depth formats, clearUint() for integer
+  /// ones. Throws Error for other formats.
   void clear(const float (&value)[4]);
   void clearUint(const uint32_t (&value)[4]);
 
@@ -121,7 +125,7 @@ class LIMN_API Texture : public Object {
   TextureDesc desc_;
 };
 
-/// One image attached to a framebuffer. layer -1: all layers (layered rendering).
+/// Describes one image attached to a framebuffer. A layer of -1 attaches all layers (layered rendering).
 struct Attachment {
   const Texture* texture = nullptr;
   int level = 0;
@@ -131,8 +135,9 @@ struct Attachment {
 class LIMN_API Framebuffer : public Object {
  public:
   Framebuffer() = default;
-  /// Any number of colours, optional depth. With neither, `width` x `height` is a framebuffer without
-  /// attachments. Throws Error naming the status when incomplete.
+  /// Creates a framebuffer with any number of colour attachments and an optional depth attachment; with
+  /// neither, one without attachments of `width` x `height` pixels. Throws Error naming the status when
+  /// incomplete.
   Framebuffer(Device& device, std::string_view label, std::span<const Attachment> colours,
               Attachment depth = {}, int width = 0, int height = 0);
   Framebuffer(Framebuffer&& other) noexcept;
@@ -159,7 +164,7 @@ struct VertexAttribute {
   GLuint binding = 0;  ///< vertex buffer binding it reads
 };
 
-/// Attribute formats; the buffers are bound per draw with glVertexArrayVertexBuffer.
+/// Holds attribute formats; the buffers are bound per draw with glVertexArrayVertexBuffer.
 class LIMN_API VertexArray : public Object {
  public:
   VertexArray() = default;
@@ -185,18 +190,30 @@ class LIMN_API Query : public Object {
   GLenum target_ = 0;
 };
 
+/// Describes what a program accesses by a name in its GLSL, and the unit that limn assigned to it.
+struct ShaderResource {
+  enum class Kind : uint8_t { sampler, image, uniformBlock, storageBlock };
+  Kind kind = Kind::sampler;
+  GLuint unit = 0;   ///< texture unit, image unit or binding of a block
+  std::string name;  ///< of the variable, or of the block
+};
+
 class LIMN_API Program : public Object {
  public:
   Program() = default;
-  /// Takes a linked program object (see ShaderLibrary).
+  /// Takes ownership of a linked program object (see ShaderLibrary).
   Program(Device& device, GLuint program, std::string label);
   Program(Program&& other) noexcept;
   Program& operator=(Program&& other) noexcept;
   ~Program();
   void use() const;
   const std::string& label() const { return label_; }
-  // Plain uniforms are allowed for a few scalars per dispatch. A name that is no active uniform is a bug, and
-  // throws Error, on software renderers; hardware's compilers leave out more, and there it is passed over.
+  /// Returns the samplers, images and blocks that the linked program uses. The first call gives each a unit
+  /// of its own, counted from 0 for each kind, in the order of their names.
+  const std::vector<ShaderResource>& resources();
+  // The set functions write plain uniforms, which are allowed for a few scalars per dispatch. On software
+  // renderers a name that is no active uniform is a bug and throws Error; on hardware, whose compilers remove
+  // more, it is ignored.
   void set(const char* name, int value);
   void set(const char* name, unsigned value);
   void set(const char* name, float value);
@@ -206,8 +223,9 @@ class LIMN_API Program : public Object {
  private:
   GLint location(const char* name);
   std::string label_;
+  std::optional<std::vector<ShaderResource>> resources_;
   std::vector<std::pair<std::string, GLint>>
-      locations_;  ///< asked for so far: asking the driver may wait for it
+      locations_;  ///< those queried so far: a query may wait for the driver
 };
 
 }  // namespace limn::gpu

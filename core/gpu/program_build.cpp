@@ -1,4 +1,4 @@
-#include "core/gpu/program_build.h"
+#include "core/gpu/private/program_build.h"
 
 #include <fmt/format.h>
 
@@ -12,16 +12,16 @@
 namespace limn::gpu {
 namespace {
 
-constexpr size_t shownDiagnostics = 8;
+constexpr size_t kShownDiagnostics = 8;
 
-constexpr std::array<std::pair<std::string_view, GLenum>, 4> stageSuffixes = {
+constexpr std::array<std::pair<std::string_view, GLenum>, 4> kStageSuffixes = {
     {{".vert.glsl", GL_VERTEX_SHADER},
      {".geom.glsl", GL_GEOMETRY_SHADER},
      {".frag.glsl", GL_FRAGMENT_SHADER},
      {".comp.glsl", GL_COMPUTE_SHADER}}};
 
 GLenum stageOf(const std::string& file) {
-  for (const auto& [suffix, stage] : stageSuffixes) {
+  for (const auto& [suffix, stage] : kStageSuffixes) {
     if (file.ends_with(suffix)) return stage;
   }
   throw Error(
@@ -63,11 +63,11 @@ std::string infoLog(GLuint id, GetParameter getParameter, GetLog getLog) {
 std::string summary(std::span<const ShaderDiagnostic> diagnostics, const std::string& log) {
   std::string text;
   for (const ShaderDiagnostic& diagnostic :
-       diagnostics.first(std::min(diagnostics.size(), shownDiagnostics))) {
+       diagnostics.first(std::min(diagnostics.size(), kShownDiagnostics))) {
     text += (text.empty() ? "" : "; ") + diagnostic.text();
   }
-  if (diagnostics.size() > shownDiagnostics)
-    text += fmt::format("; and {} more", diagnostics.size() - shownDiagnostics);
+  if (diagnostics.size() > kShownDiagnostics)
+    text += fmt::format("; and {} more", diagnostics.size() - kShownDiagnostics);
   if (!text.empty()) return text;
   text = log.empty() ? "the driver gives no reason" : log;
   std::replace(text.begin(), text.end(), '\n', ' ');

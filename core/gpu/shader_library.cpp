@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <optional>
 #include <set>
 
 #include "core/base/error.h"
-#include "core/gpu/glsl_preprocessor.h"
-#include "core/gpu/program_build.h"
+#include "core/gpu/private/glsl_preprocessor.h"
+#include "core/gpu/private/program_build.h"
 
 namespace limn::gpu {
 namespace {
@@ -47,6 +48,15 @@ std::string labelOf(const ProgramDesc& desc) {
   std::vector<std::string> defines;
   for (const auto& [name, value] : desc.defines) defines.push_back(name + "=" + value);
   return fmt::format("{} ({})", label, fmt::join(defines, ", "));
+}
+
+bool hasWord(const std::string& text, std::string_view word) {
+  const auto inWord = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+    const size_t end = at + word.size();
+    if ((at == 0 || !inWord(text[at - 1])) && (end == text.size() || !inWord(text[end]))) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -103,6 +113,7 @@ struct ShaderLibrary::Implementation {
     }
     watch(entry, visited);
     std::vector<std::string> texts;
+    texts.reserve(stages.size());
     for (const ShaderStage& stage : stages) texts.push_back(stage.source.text);
     if (entry.program && texts == entry.texts) return false;
     entry.program = Program(device, linkProgram(device, labelOf(desc), stages), labelOf(desc));
@@ -149,6 +160,13 @@ Program& ShaderLibrary::program(const ProgramDesc& desc) {
 
 bool ShaderLibrary::has(const ProgramDesc& desc) const {
   return implementation_->entries.contains(desc);
+}
+
+bool ShaderLibrary::mentions(const ProgramDesc& desc, std::string_view word) const {
+  const auto found = implementation_->entries.find(desc);
+  if (found == implementation_->entries.end()) return false;
+  return std::ranges::any_of(found->second.texts,
+                             [&](const std::string& text) { return hasWord(text, word); });
 }
 
 ShaderLibrary::ReloadResult ShaderLibrary::reload() {

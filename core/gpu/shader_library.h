@@ -1,4 +1,4 @@
-// Finds, expands, compiles and caches GLSL programs.
+// Declares the library that finds, expands, compiles and caches GLSL programs.
 //
 // Sources are embedded in the binaries. A mount maps a prefix to embedded files and, optionally, to a folder
 // on disk whose files take precedence and are reloaded when they change: prefix "" holds glsl/ (paths begin
@@ -24,7 +24,7 @@
 
 namespace limn::gpu {
 
-/// A program to be: its stage files and its permutation. Equal descriptions give the same program.
+/// Describes a program by its stage files and its permutation. Equal descriptions give the same program.
 struct ProgramDesc {
   std::vector<std::string> files;              ///< full paths, e.g. "techniques/pcss/filter.comp.glsl"
   std::map<std::string, std::string> defines;  ///< name to value
@@ -41,27 +41,33 @@ class LIMN_API ShaderLibrary {
   ShaderLibrary(const ShaderLibrary&) = delete;
   ShaderLibrary& operator=(const ShaderLibrary&) = delete;
 
-  /// Adds sources under `prefix` ("" or "techniques/NAME/"). `overrideFolder` empty: embedded ones only.
+  /// Adds sources under `prefix` ("" or "techniques/NAME/"). With an empty `overrideFolder` only embedded
+  /// ones are used.
   void mount(std::string prefix, std::span<const EmbeddedSource> sources,
              std::filesystem::path overrideFolder = {});
 
-  /// Compiles at the first request. The reference stays valid until the library is destroyed; reload() swaps
-  /// the program behind it. Throws Error.
+  /// Returns the program, compiled at the first request. The reference stays valid until the library is
+  /// destroyed; reload() replaces the program behind it. Throws Error when the program cannot be compiled.
   Program& program(const ProgramDesc& desc);
 
-  /// Whether program() would find it compiled.
+  /// Says whether the program is already compiled, so that program() would not compile it.
   bool has(const ProgramDesc& desc) const;
 
-  /// Recompiles the programs whose files changed on disk since they were compiled. A program that fails keeps
-  /// its last good version. Returns in microseconds when nothing changed.
+  /// Says whether the text of a compiled program contains `word`, even in a part that the compiler removed.
+  bool mentions(const ProgramDesc& desc, std::string_view word) const;
+
+  /// Holds what reload() did.
   struct ReloadResult {
-    bool changed = false;             ///< a file did, be it to the text it had
+    bool changed = false;             ///< a file changed, even if its text is the same
     int reloaded = 0;                 ///< programs
-    std::vector<std::string> errors;  ///< one per program whose files, as they are now, make none
+    std::vector<std::string> errors;  ///< one per program whose current files do not compile
   };
+  /// Recompiles the programs whose files changed on disk since they were compiled, and returns what it did. A
+  /// program that fails to compile keeps its last good version. Returns within microseconds when nothing
+  /// changed.
   ReloadResult reload();
 
-  /// The text a stage is compiled from, for tests and diagnosis.
+  /// Returns the text from which a stage is compiled, for tests and diagnosis.
   std::string expanded(const ProgramDesc& desc, std::string_view file) const;
 
  private:

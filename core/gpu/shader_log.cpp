@@ -4,7 +4,7 @@
 #include <charconv>
 #include <regex>
 
-#include "core/gpu/glsl_preprocessor.h"
+#include "core/gpu/private/glsl_preprocessor.h"
 
 namespace limn::gpu {
 namespace {

@@ -1,4 +1,4 @@
-// Text of a shader file compiled into a binary by cmake/embed.py.
+// Declares the text of shader files that cmake/embed.py compiles into a binary.
 #pragma once
 
 #include <span>
@@ -8,13 +8,14 @@
 namespace limn::gpu {
 
 struct EmbeddedSource {
-  const char* path;  ///< relative to its root: "glsl/brdf.glsl" in core, "filter.comp.glsl" in a technique
+  const char*
+      path;  ///< relative to its root: "glsl/surface/brdf.glsl" in core, "filter.comp.glsl" in a technique
   const char* text;
 };
 
 }  // namespace limn::gpu
 
 namespace limn {
-/// The files under glsl/, embedded in liblimn.
+/// Returns the files under glsl/, which are embedded in liblimn.
 LIMN_API std::span<const gpu::EmbeddedSource> embeddedSources();
 }  // namespace limn

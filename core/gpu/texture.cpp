@@ -6,8 +6,8 @@
 
 #include "core/base/error.h"
 #include "core/gpu/format.h"
-#include "core/gpu/object_support.h"
 #include "core/gpu/objects.h"
+#include "core/gpu/private/object_support.h"
 
 namespace limn::gpu {
 namespace {

@@ -1,4 +1,4 @@
-// What `limn compare` prints.
+// Declares the output of `limn compare`.
 #pragma once
 
 #include <string>
@@ -8,12 +8,14 @@
 
 namespace limn {
 
-/// One JSON object: rmse, rel_mse, bias, p999, psnr, flip, structured, masked_share, pixels, and noise_floor
-/// if known. Infinite values (the PSNR of equal images) are null.
+/// Returns metricsToJson() as text.
 LIMN_API std::string metricsJson(const Metrics& metrics);
 
-/// A table for people, one metric per line, saying so where an error is below three times the reference's
-/// noise.
+/// Returns a table for people, one metric per line, which says where an error is below three times the
+/// reference's noise.
 LIMN_API std::string metricsTable(const Metrics& metrics);
+
+/// Returns a list of every metric with its key in JSON and its meaning.
+LIMN_API std::string metricsHelp();
 
 }  // namespace limn

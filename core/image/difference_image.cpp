@@ -2,7 +2,7 @@
 #include <glm/glm.hpp>
 
 #include "core/image/metrics.h"
-#include "glsl/srgb.glsl"
+#include "glsl/numeric/srgb.glsl"
 
 namespace limn {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/image/exr_header.h"
+#include "core/image/private/exr_header.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "glsl/srgb.glsl"
+#include "glsl/numeric/srgb.glsl"
 
 namespace limn {
 namespace {

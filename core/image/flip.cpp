@@ -1,4 +1,4 @@
-#include "core/image/flip.h"
+#include "core/image/private/flip.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -10,7 +10,7 @@
 #include <glm/glm.hpp>
 
 #include "core/base/error.h"
-#include "core/image/row_filter.h"
+#include "core/image/private/row_filter.h"
 
 namespace limn {
 namespace {

@@ -1,6 +1,6 @@
-// Pictures in memory and on disk: any number of named float channels, linear values.
+// Declares pictures in memory and on disk, with any number of named float channels of linear values.
 //
-// Channel names are the EXR ones. limn writes: R, G, B (linear radiance, or the term asked for), A, Z
+// Channel names are those of EXR. limn writes: R, G, B (linear radiance, or the term asked for), A, Z
 // (distance from the camera plane, metres), coverage (0 or 1), id (instance index, -1 where there is none;
 // exact in float up to 2^24), albedo.R/G/B, N.X/Y/Z (world space shading normal).
 #pragma once
@@ -29,14 +29,14 @@ inline constexpr int kMaxImageChannels = 256;
 /// Limit on the values of a picture that is read from a file: 2 GiB.
 inline constexpr std::int64_t kMaxReadValues = std::int64_t{1} << 29;
 
-/// width x height pixels, rows from the top, channel-interleaved float32.
+/// Holds width x height pixels, rows from the top, channel-interleaved float32.
 class LIMN_API Image {
  public:
   Image() = default;
-  /// All values 0. Throws Error if a size is not in [1, kMaxImageSide], the limits above are exceeded, or a
-  /// channel name is empty or repeated.
+  /// Creates an image whose values are all 0. Throws Error if a size is not in [1, kMaxImageSide], the limits
+  /// above are exceeded, or a channel name is empty or repeated.
   Image(int width, int height, std::vector<std::string> channels);
-  /// An image with channels R, G, B.
+  /// Returns an image with channels R, G, B.
   static Image rgb(int width, int height);
 
   int width() const { return width_; }
@@ -48,17 +48,18 @@ class LIMN_API Image {
   bool empty() const { return data_.empty(); }
   const std::vector<std::string>& channels() const { return channels_; }
 
-  /// Position of a channel within a pixel; nullopt if there is none of that name.
+  /// Returns the position of a channel within a pixel; nullopt if there is none of that name.
   std::optional<int> findChannel(std::string_view name) const;
-  /// The same; throws Error naming the channels there are.
+  /// Returns the position of a channel within a pixel. Throws Error naming the existing channels if it is
+  /// missing.
   int channel(std::string_view name) const;
-  /// Positions of R, G, B; an image with one single channel (Y or any other) answers it three times. Throws
-  /// Error if there is neither; `name` says in it which picture that is.
+  /// Returns the positions of R, G, B; for an image with a single channel (Y or any other) that position
+  /// three times. Throws Error if there is neither; `name` says in the message which picture it is.
   std::array<int, 3> rgbChannels(std::string_view name = "image") const;
 
   std::span<float> data() { return data_; }
   std::span<const float> data() const { return data_; }
-  /// The channels of one pixel, x from the left, y from the top; not range-checked.
+  /// Returns the channels of one pixel, x from the left, y from the top; not range-checked.
   std::span<float> pixel(int x, int y) { return {data_.data() + offset(x, y), channels_.size()}; }
   std::span<const float> pixel(int x, int y) const { return {data_.data() + offset(x, y), channels_.size()}; }
   float& at(int x, int y, int channel) { return data_[offset(x, y) + static_cast<std::size_t>(channel)]; }
@@ -67,14 +68,15 @@ class LIMN_API Image {
   }
 
   /// Adds a channel at the end. `values` holds one value per pixel, or is empty for zeros. Throws Error on a
-  /// repeated name or a wrong count. Moves all data: build images with their channels where speed matters.
+  /// repeated name or a wrong count. Moves all data: where speed matters, create the image with all its
+  /// channels.
   void addChannel(std::string name, std::span<const float> values = {});
-  /// Copies of the named channels, in that order.
+  /// Returns an image with copies of the named channels, in that order.
   Image select(std::span<const std::string> names) const;
   Image select(std::initializer_list<std::string> names) const;
 
-  /// Free-form text stored with an EXR (as attributes "limn/KEY") or a PNG (as chunks tEXt with the keyword
-  /// "limn/KEY") and read back; for example "noise_rms".
+  /// Returns free-form text that is stored with an EXR (as attributes "limn/KEY") or a PNG (as tEXt chunks
+  /// with the keyword "limn/KEY") and read back; for example "noise_rms".
   std::map<std::string, std::string>& metadata() { return metadata_; }
   const std::map<std::string, std::string>& metadata() const { return metadata_; }
 
@@ -91,42 +93,43 @@ class LIMN_API Image {
   std::map<std::string, std::string> metadata_;
 };
 
-/// 8-bit RGBA as stored (textures): rows from the top, no colour conversion, missing alpha 255.
+/// Holds an 8-bit RGBA picture as stored (textures): rows from the top, no colour conversion, missing alpha
+/// 255.
 struct Image8 {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> data;  ///< width * height * 4
 };
 
-/// Reads EXR (first part, all channels), HDR, PNG or JPEG. The result is linear: 8- and 16-bit PNG and JPEG
-/// colours are decoded from sRGB (alpha is not), float formats are taken as they are; one- and three-channel
-/// files get channels Y and R, G, B. Throws Error of one line naming the file if it is missing, truncated,
-/// not an image, or larger than what may be read (checked before anything is allocated): at most
-/// kMaxReadValues values, and, so that a small file cannot fill the memory, beyond 256 MiB of them at most
-/// 256 bytes for each byte of the file.
+/// Returns the image in an EXR (first part, all channels), HDR, PNG or JPEG file. The result is linear: 8-
+/// and 16-bit PNG and JPEG colours are decoded from sRGB (alpha is not), float formats are not converted;
+/// one- and three-channel files get channels Y and R, G, B. Throws Error with one line naming the file if it
+/// is missing, truncated, not an image, or larger than the limits (checked before anything is allocated): at
+/// most kMaxReadValues values; above 256 MiB of them also at most 256 bytes for each byte of the file, so
+/// that a small file cannot fill the memory.
 LIMN_API Image readImage(const std::filesystem::path& path);
 
-/// The same from memory. `name` is used in messages and, by its extension, to choose the decoder; the content
-/// decides where there is no known extension.
+/// Does the same from memory. `name` is used in messages and, by its extension, to choose the decoder;
+/// without a known extension, the content decides.
 LIMN_API Image readImageMemory(std::span<const std::byte> bytes, const std::string& name);
 
-/// A texture as 8-bit RGBA (PNG or JPEG; 16-bit values are rounded), from memory or a file.
+/// Returns a texture as 8-bit RGBA (PNG or JPEG; 16-bit values are rounded), from memory or a file.
 LIMN_API Image8 readImage8Memory(std::span<const std::byte> bytes, const std::string& name);
 LIMN_API Image8 readImage8(const std::filesystem::path& path);
 
-/// Writes every channel as float32, ZIP-compressed, with the metadata. The bytes are a function of the image
-/// alone: as its date (capDate) the file carries the first second of 1970. The file appears whole or not at
-/// all; throws Error naming it otherwise (missing folder, full disk, no permission).
+/// Writes every channel as float32, ZIP-compressed, with the metadata. The bytes depend on the image alone:
+/// the file's date (capDate) is always the first second of 1970. The file is written completely or not at
+/// all; throws Error naming it in the latter case (missing folder, full disk, no permission).
 LIMN_API void writeExr(const std::filesystem::path& path, const Image& image);
 
-/// A PNG in memory: R, G, B as 8-bit sRGB of clamp(2^exposureEv * value, 0, 1); NaN becomes 0; the metadata.
-/// `name` is used in messages.
+/// Returns a PNG in memory: R, G, B as 8-bit sRGB of clamp(2^exposureEv * value, 0, 1), with NaN as 0, and
+/// the metadata. `name` is used in messages.
 LIMN_API std::vector<std::uint8_t> encodePng(const Image& image, const std::string& name,
                                              float exposureEv = 0.0f);
-/// The same as a file. Whole or not at all.
+/// Writes the same PNG to a file, completely or not at all.
 LIMN_API void writePng(const std::filesystem::path& path, const Image& image, float exposureEv = 0.0f);
 
-/// Writes by extension: .exr as writeExr, .png as writePng. Throws UsageError for any other.
+/// Writes by extension: .exr as writeExr(), .png as writePng(). Throws UsageError for any other.
 LIMN_API void writeImage(const std::filesystem::path& path, const Image& image, float exposureEv = 0.0f);
 
 }  // namespace limn

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <memory>
 #include <new>
@@ -14,9 +15,9 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
-#include "core/image/exr_header.h"
 #include "core/image/image.h"
-#include "glsl/srgb.glsl"
+#include "core/image/private/exr_header.h"
+#include "glsl/numeric/srgb.glsl"
 
 namespace limn {
 namespace {
@@ -162,7 +163,7 @@ class Decoder {
   const OIIO::ImageSpec& spec() const { return spec_; }
   bool isSrgb() const { return format_ == Format::png || format_ == Format::jpeg; }
 
-  void read(OIIO::TypeDesc type, void* target) {
+  void read(const OIIO::TypeDesc& type, void* target) {
     if (!input_->read_image(0, 0, 0, spec_.nchannels, type, target)) fail(input_->geterror());
   }
 
@@ -291,7 +292,7 @@ void addMetadata(OIIO::ImageSpec& spec, const Image& image) {
 /// Encodes in memory: the encoder never sees the disk, so a full one is noticed when the file is written
 /// whole.
 std::vector<std::uint8_t> encode(const std::string& name, const char* encoder, const OIIO::ImageSpec& spec,
-                                 OIIO::TypeDesc type, const void* pixels) {
+                                 const OIIO::TypeDesc& type, const void* pixels) {
   OIIO::Filesystem::IOVecOutput memory;
   std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(encoder);
   if (!output) throw Error(fmt::format("{}: {}", name, reasonOf(OIIO::geterror())));
@@ -342,7 +343,7 @@ std::vector<std::uint8_t> encodePng(const Image& image, const std::string& name,
   for (std::size_t i = 0; i < image.pixelCount(); ++i) {
     for (const int c : rgb) {
       const float value = image.data()[i * channels + static_cast<std::size_t>(c)];
-      pixels.push_back(static_cast<std::uint8_t>(glsl::tone_map(value, exposureEv) * 255.0f + 0.5f));
+      pixels.push_back(static_cast<std::uint8_t>(std::lround(255.0f * glsl::tone_map(value, exposureEv))));
     }
   }
   OIIO::ImageSpec spec(image.width(), image.height(), 3, OIIO::TypeDesc::UINT8);

@@ -11,9 +11,9 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/image/flip.h"
-#include "core/image/row_filter.h"
-#include "glsl/srgb.glsl"
+#include "core/image/private/flip.h"
+#include "core/image/private/row_filter.h"
+#include "glsl/numeric/srgb.glsl"
 
 namespace limn {
 namespace {
@@ -81,15 +81,13 @@ struct MaskCounts {
 /// Decides pixel by pixel whether both pictures see the same surface.
 class SurfaceMask {
  public:
-  SurfaceMask(const Image& image, const Image& reference, double depthTolerance)
+  SurfaceMask(const Image& image, const Image& reference, const CompareOptions& options)
       : coverage_{OptionalChannel{image, "coverage"}, OptionalChannel{reference, "coverage"}},
         undefined_{OptionalChannel{image, "masked"}, OptionalChannel{reference, "masked"}},
         id_{OptionalChannel{image, "id"}, OptionalChannel{reference, "id"}},
         depth_{OptionalChannel{image, "Z"}, OptionalChannel{reference, "Z"}},
-        depthTolerance_(depthTolerance) {
-    const auto term = reference.metadata().find("term");
-    background_ = term != reference.metadata().end() && term->second == "media";
-  }
+        depthTolerance_(options.depthTolerance),
+        background_(options.background) {}
 
   /// True where the pixel is to be compared; adds to `counts`.
   bool keeps(int x, int y, MaskCounts& counts) const {
@@ -121,12 +119,12 @@ class SurfaceMask {
 
   std::array<OptionalChannel, 2> coverage_, undefined_, id_, depth_;
   double depthTolerance_;
-  bool background_ = false;  ///< the term is there without surfaces, too
+  bool background_;
 };
 
 void applySurfaceMask(const Image& image, const Image& reference, const CompareOptions& options,
                       Comparison& result) {
-  const SurfaceMask mask(image, reference, options.depthTolerance);
+  const SurfaceMask mask(image, reference, options);
   const MaskCounts counts = sumRows<MaskCounts>(image.height(), [&](int y) {
     MaskCounts row;
     unsigned char* out = &result.mask[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width())];

@@ -1,4 +1,4 @@
-// How far a picture is from its reference: the project's error metrics (design, "Comparability").
+// Declares the error metrics that say how far a picture is from its reference (design, "Comparability").
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace limn {
 
-/// All over the unmasked pixels, x the image, r the reference, linear values.
+/// Holds the metrics over the unmasked pixels; x is the image, r the reference, both in linear values.
 struct Metrics {
   double rmse = 0;     ///< root mean square error over R, G, B
   double rel_mse = 0;  ///< mean((x - r)^2 / (r^2 + 1e-2 mean(r)^2)), per channel; mean(r) over all channels
@@ -33,6 +33,7 @@ struct CompareOptions {
   double maxMaskedShare = 0.005;  ///< more is an Error (foliage: 0.02)
   double depthTolerance = 1e-3;   ///< relative difference in Z beyond which a pixel is dropped
   bool useMask = true;            ///< drop pixels by the channels coverage, masked, id and Z
+  bool background = false;        ///< keep pixels in which neither picture sees a surface
   /// Only pixels whose reference, R, lies in the open interval (penumbra pixels of a visibility term).
   std::optional<std::pair<float, float>> maskTermRange;
 };
@@ -43,8 +44,9 @@ struct Comparison {
   std::vector<unsigned char> mask;  ///< 1 where compared
 };
 
-/// Where only one picture has a coverage channel, that one decides what is dropped; pixels whose channel
-/// "masked" is 1 in either (where a term is undefined) are dropped without being counted. A ratio whose
+/// Compares the unmasked pixels of two pictures; compareImages() returns the metrics alone. Where only one
+/// picture has a coverage channel, that one decides which pixels are dropped; pixels whose channel "masked"
+/// is 1 in either picture (where a term is undefined) are dropped without being counted. A ratio whose
 /// denominator is 0 (rel_mse, psnr of a black reference) is infinite. Throws Error if the sizes differ, a
 /// value of R, G, B is NaN or infinite (masked or not), no pixel is left, or the masked share exceeds its
 /// limit.
@@ -53,8 +55,8 @@ LIMN_API Comparison compareImagesDetailed(const Image& image, const Image& refer
 LIMN_API Metrics compareImages(const Image& image, const Image& reference,
                                const CompareOptions& options = {});
 
-/// The FLIP map in false colour (black = equal, light yellow = 1; grey = masked), as linear R, G, B for
-/// writePng.
+/// Returns the FLIP map in false colour (black = equal, light yellow = 1; grey = masked), as linear R, G, B
+/// for writePng().
 LIMN_API Image differenceImage(const Image& image, const Image& reference,
                                const CompareOptions& options = {});
 

@@ -1,14 +1,11 @@
 #include "core/indirect/gather.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "core/scene/scene.h"
-#include "glsl/blocks.glsl"
-#include "glsl/gbuffer.glsl"
 
 namespace limn::indirect {
 namespace {
@@ -16,33 +13,9 @@ namespace {
 using frame::Access;
 using frame::TextureHandle;
 
-constexpr int group = 8;
-constexpr unsigned gatheredUnit = 7, spreadUnit = 8;
-constexpr int spreadWidth = 8;  // taps to either side of each tent that spreads the residual
-constexpr int spreadShare = 8;  // it reaches at least this part of the picture's height
-
-struct Input {
-  unsigned unit;
-  TextureHandle texture;
-  const char* why;
-};
-
-/// What glsl/gbuffer_input.glsl's pixel_surface() and pixel_position() sample.
-std::array<Input, 6> surfaceInputs(const GBuffer& g) {
-  return {{{glsl::gbuffer_unit_depth, g.depth, "receivers"},
-           {glsl::gbuffer_unit_normal, g.normal, "shading normals"},
-           {glsl::gbuffer_unit_geometric_normal, g.geometricNormal, "horizons"},
-           {glsl::gbuffer_unit_albedo, g.albedo, "base colour, metallic"},
-           {glsl::gbuffer_unit_material, g.material, "roughness, specular"},
-           {glsl::gbuffer_unit_emission, g.emission, "specular colour"}}};
-}
-
-void readSurfaces(frame::PassBuilder& pass, const GBuffer& g) {
-  for (const Input& input : surfaceInputs(g)) pass.read(input.texture, Access::sampled, input.why);
-}
-void bindSurfaces(const frame::PassContext& context, const GBuffer& g) {
-  for (const Input& input : surfaceInputs(g)) context.bindSampled(input.unit, input.texture);
-}
+constexpr int kGroup = 8;
+constexpr int kSpreadWidth = 8;  // taps to either side of each tent that spreads the residual
+constexpr int kSpreadShare = 8;  // it reaches at least this part of the picture's height
 
 }  // namespace
 
@@ -101,34 +74,27 @@ void Gather::defineParts(gpu::ProgramDesc& program) const {
 
 GBuffer Gather::split() {
   frame::PassBuilder pass = graph_.addPass("split", technique_);
-  pass.read(inputs_.handles.frame, Access::uniformBuffer, "size of the screen");
+  pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "size of the screen");
   readSurfaces(pass, inputs_.gbuffer);
   GBuffer to = inputs_.gbuffer;
-  const auto sorted = [&](TextureHandle& texture, const char* name) {
+  const auto sorted = [&](TextureHandle& texture, const char* title, const char* name) {
     gpu::TextureDesc desc = graph_.desc(texture);
     desc.width = size_.x;
     desc.height = size_.y;
-    texture = pass.write(graph_.createTexture(name, desc), Access::imageStore, "sorted by sub-buffer");
+    texture = pass.write(graph_.createTexture(title, desc), Access::imageStore, name, "sorted by sub-buffer");
   };
-  sorted(to.depth, "split depth");
-  sorted(to.normal, "split normal");
-  sorted(to.geometricNormal, "split geometric normal");
-  sorted(to.albedo, "split albedo");
-  sorted(to.material, "split material");
-  sorted(to.emission, "split emission");
+  sorted(to.depth, "split depth", "split_depth");
+  sorted(to.normal, "split normal", "split_normal");
+  sorted(to.geometricNormal, "split geometric normal", "split_geometric_normal");
+  sorted(to.albedo, "split albedo", "split_albedo");
+  sorted(to.material, "split material", "split_material");
+  sorted(to.emission, "split emission", "split_emission");
   gpu::ProgramDesc description{.files = {"glsl/indirect/split.comp.glsl"}, .defines = {}};
   defineParts(description);
   const auto program = pass.program(description);
-  pass.execute([=, from = inputs_.gbuffer, frame = inputs_.handles.frame, block = settings_.block,
-                size = inputs_.size](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(program);
-    kernel.use();
-    kernel.set("block", block);
-    context.bindUniform(glsl::FrameBlock::binding, frame);
-    bindSurfaces(context, from);
-    for (const Input& output : surfaceInputs(to))
-      context.bindImage(output.unit, output.texture, GL_WRITE_ONLY);
-    context.dispatch(size.x, size.y, 1, group, group);
+  pass.execute([=, block = settings_.block, size = inputs_.size](frame::PassContext& context) {
+    context.use(program).set("block", block);
+    context.dispatch(size.x, size.y, 1, kGroup, kGroup);
   });
   return to;
 }
@@ -137,12 +103,12 @@ void Gather::shade(ShadePass shade) {
   if (shade.count == 0) shade.count = lights_.count;
   const bool accumulate = shade.first > 0;
   frame::PassBuilder pass = graph_.addPass("shade", technique_);
-  pass.read(inputs_.handles.frame, Access::uniformBuffer, "camera")
-      .read(lights_.lights, Access::storageLoad, "virtual lights");
+  pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
+      .read(lights_.lights, Access::storageLoad, "VirtualLights", "virtual lights");
   readSurfaces(pass, gbuffer_);
-  for (const shadow::SampledTexture& s : shade.sampled) pass.read(s.texture, Access::sampled, s.why);
+  for (const shadow::SampledTexture& s : shade.sampled) pass.read(s.texture, Access::sampled, s.name, s.why);
   if (shade.declare) shade.declare(pass);
-  shaded_ = pass.write(shaded_, accumulate ? Access::imageLoadStore : Access::imageStore,
+  shaded_ = pass.write(shaded_, accumulate ? Access::imageLoadStore : Access::imageStore, "gathered",
                        "light from every block^2-th part of the virtual lights");
   defineParts(shade.program);
   const bool splitting = gbuffer_.depth != inputs_.gbuffer.depth;
@@ -150,79 +116,61 @@ void Gather::shade(ShadePass shade) {
   shade.program.defines["ACCUMULATE"] = accumulate ? "1" : "0";
   shade.program.defines["LAMBERTIAN"] = specular_ ? "0" : "1";
   const auto program = pass.program(shade.program);
-  pass.execute([=, shade = std::move(shade), frame = inputs_.handles.frame, gbuffer = gbuffer_, to = shaded_,
-                lights = lights_, settings = settings_, size = inputs_.size](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(program);
-    kernel.use();
+  pass.execute([program, shade = std::move(shade), lightCount = lights_.count, settings = settings_,
+                size = inputs_.size](frame::PassContext& context) {
+    gpu::Program& kernel = context.use(program);
     const auto block = static_cast<unsigned>(settings.block);
-    kernel.set("vpl_count", static_cast<unsigned>(lights.count));
+    kernel.set("vpl_count", static_cast<unsigned>(lightCount));
     kernel.set("batch_first", static_cast<unsigned>(shade.first));
     kernel.set("batch_count", static_cast<unsigned>(shade.count));
     kernel.set("block", block);
     kernel.set("nearest", settings.clamp);
-    context.bindUniform(glsl::FrameBlock::binding, frame);
-    bindSurfaces(context, gbuffer);
-    context.bindStorage(0, lights.lights);
-    context.bindImage(0, to, shade.first > 0 ? GL_READ_WRITE : GL_WRITE_ONLY);
-    for (const shadow::SampledTexture& s : shade.sampled) context.bindSampled(s.unit, s.texture);
-    if (shade.bind) shade.bind(context, kernel);
+    if (shade.bind) shade.bind(kernel);
     const glm::ivec2 part = (size + settings.block - 1) / settings.block;
-    context.dispatch(part.x, part.y, settings.block * settings.block, group, group);
+    context.dispatch(part.x, part.y, settings.block * settings.block, kGroup, kGroup);
   });
 }
 
 TextureHandle Gather::merge(TextureHandle shaded) {
   frame::PassBuilder pass = graph_.addPass("merge", technique_);
-  pass.read(inputs_.handles.frame, Access::uniformBuffer, "size of the screen")
-      .read(shaded, Access::sampled, "sub-buffers");
+  pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "size of the screen")
+      .read(shaded, Access::sampled, "split", "sub-buffers");
   const TextureHandle merged =
-      pass.write(screen("merged", inputs_.size), Access::imageStore, "pixels in their places");
+      pass.write(screen("merged", inputs_.size), Access::imageStore, "merged", "pixels in their places");
   gpu::ProgramDesc description{.files = {"glsl/indirect/merge.comp.glsl"}, .defines = {}};
   defineParts(description);
   const auto program = pass.program(description);
-  pass.execute([=, frame = inputs_.handles.frame, block = settings_.block, size = inputs_.size,
-                layers = parts()](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(program);
-    kernel.use();
-    kernel.set("block", block);
-    context.bindUniform(glsl::FrameBlock::binding, frame);
-    context.bindSampled(0, shaded);
-    context.bindImage(0, merged, GL_WRITE_ONLY);
-    context.dispatch(size.x, size.y, layers, group, group);
-  });
+  pass.execute(
+      [=, block = settings_.block, size = inputs_.size, layers = parts()](frame::PassContext& context) {
+        context.use(program).set("block", block);
+        context.dispatch(size.x, size.y, layers, kGroup, kGroup);
+      });
   return merged;
 }
 
 TextureHandle Gather::blurOnce(std::string_view name, TextureHandle from, int width, int stride,
                                int firstPart, int endPart, bool vertical) {
   frame::PassBuilder pass = graph_.addPass(name, technique_);
-  pass.read(inputs_.handles.frame, Access::uniformBuffer, "camera, scene extent")
-      .read(inputs_.gbuffer.depth, Access::sampled, "positions")
-      .read(inputs_.gbuffer.normal, Access::sampled, "normals")
-      .read(from, Access::sampled, "what is averaged");
+  pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, scene extent")
+      .read(inputs_.gbuffer.depth, Access::sampled, kGBufferNames.depth, "positions")
+      .read(inputs_.gbuffer.normal, Access::sampled, kGBufferNames.normal, "normals")
+      .read(from, Access::sampled, "gathered", "what is averaged");
   const TextureHandle to =
-      pass.write(screen(name, inputs_.size), Access::imageStore, "sums over like neighbours");
+      pass.write(screen(name, inputs_.size), Access::imageStore, "blurred", "sums over like neighbours");
   gpu::ProgramDesc description{.files = {"glsl/indirect/blur.comp.glsl"},
                                .defines = {{"VERTICAL", vertical ? "1" : "0"},
                                            {"PARTS_FIRST", std::to_string(firstPart)},
                                            {"PARTS_END", std::to_string(endPart)}}};
   defineParts(description);
   const auto program = pass.program(description);
-  pass.execute([=, frame = inputs_.handles.frame, g = inputs_.gbuffer, settings = settings_,
-                size = inputs_.size](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(program);
-    kernel.use();
+  pass.execute([=, settings = settings_, size = inputs_.size](frame::PassContext& context) {
+    gpu::Program& kernel = context.use(program);
     kernel.set("width", width);
     kernel.set("stride", stride);
     kernel.set("position_threshold", settings.blurPosition);
     kernel.set("plane_threshold", settings.blurPlane);
     kernel.set("normal_threshold", settings.blurNormal);
-    context.bindUniform(glsl::FrameBlock::binding, frame);
-    context.bindSampled(glsl::gbuffer_unit_depth, g.depth);
-    context.bindSampled(glsl::gbuffer_unit_normal, g.normal);
-    context.bindSampled(gatheredUnit, from);
-    context.bindImage(0, to, GL_WRITE_ONLY);
-    context.dispatch(size.x, size.y, 1, group, group);
+    context.dispatch(size.x, size.y, 1, kGroup, kGroup);
   });
   return to;
 }
@@ -245,30 +193,24 @@ TextureHandle Gather::finish(TextureHandle target) {
   }
   TextureHandle spread = gathered;
   int reach = blurred ? settings_.block : 1;  // pixels; taps lie closer than what they see is smooth
-  for (bool more = residual_; more; more = reach < inputs_.size.y / spreadShare) {
+  for (bool more = residual_; more; more = reach < inputs_.size.y / kSpreadShare) {
     const int stride = std::max(1, reach / 2);
-    spread = blur("spread residual", spread, spreadWidth, stride, parts() - 1, parts());
-    reach += spreadWidth * stride;
+    spread = blur("spread residual", spread, kSpreadWidth, stride, parts() - 1, parts());
+    reach += kSpreadWidth * stride;
   }
 
   frame::PassBuilder pass = graph_.addPass("reflect", technique_);
-  pass.read(inputs_.handles.frame, Access::uniformBuffer, "size of the screen")
-      .read(gathered, Access::sampled, "light that arrives");
-  if (residual_) pass.read(spread, Access::sampled, "what the clamp took away");
+  pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "size of the screen")
+      .read(gathered, Access::sampled, "gathered", "light that arrives");
+  if (residual_) pass.read(spread, Access::sampled, "spread", "what the clamp took away");
   readSurfaces(pass, inputs_.gbuffer);
-  const TextureHandle result = pass.write(target, Access::imageLoadStore, "indirect light");
+  const TextureHandle result = pass.write(target, Access::imageLoadStore, "radiance", "indirect light");
   gpu::ProgramDesc description{.files = {"glsl/indirect/reflect.comp.glsl"}, .defines = {}};
   defineParts(description);
   const auto program = pass.program(description);
-  pass.execute([=, frame = inputs_.handles.frame, g = inputs_.gbuffer, residual = residual_,
-                size = inputs_.size](frame::PassContext& context) {
-    context.program(program).use();
-    context.bindUniform(glsl::FrameBlock::binding, frame);
-    bindSurfaces(context, g);
-    context.bindSampled(gatheredUnit, gathered);
-    if (residual) context.bindSampled(spreadUnit, spread);
-    context.bindImage(0, result, GL_READ_WRITE);
-    context.dispatch(size.x, size.y, 1, group, group);
+  pass.execute([program, size = inputs_.size](frame::PassContext& context) {
+    context.use(program);
+    context.dispatch(size.x, size.y, 1, kGroup, kGroup);
   });
   return result;
 }

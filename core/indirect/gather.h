@@ -1,10 +1,10 @@
-// Indirect light gathered from virtual point lights: what every technique with virtual lights has in common.
+// Declares what every technique with virtual point lights shares: how indirect light is gathered from them.
 //
-// Stages as in Real-time indirect illumination with clustered visibility (thesis, chapter 6.5; Segovia et al.
-// 2006): the G-buffer is split into block x block sub-buffers, each pixel shades N / block^2 virtual lights,
-// the sub-buffers are merged and blurred, and the result is reflected by the surfaces. With
+// The stages are those of Real-time indirect illumination with clustered visibility (thesis, chapter 6.5;
+// Segovia et al. 2006): the G-buffer is split into block x block sub-buffers, each pixel shades N / block^2
+// virtual lights, the sub-buffers are merged and blurred, and the result is reflected by the surfaces. With
 // Interleaving::addressed the shade pass finds its pixels itself, so that nothing is split or merged; the
-// picture is the same to the bit.
+// picture is identical to the bit.
 #pragma once
 
 #include <algorithm>
@@ -25,15 +25,15 @@ enum class Interleaving {
   addressed,  ///< one pass over the screen, in interleaved order
   split,      ///< as published: split, shade and merge
 };
-inline constexpr const char* interleavingNames[] = {"addressed", "split"};
+inline constexpr const char* kInterleavingNames[] = {"addressed", "split"};
 
-/// The parameters of a technique with virtual lights: how many, its own, and what all such techniques share.
-/// `block` is the default of the side of the pattern of interleaved pixels.
+/// Returns the parameters of a technique with virtual lights: their number, its own, and those that all such
+/// techniques share. `block` is the default of the side of the pattern of interleaved pixels.
 template <size_t N = 0>
 constexpr std::array<Parameter, N + 11> gatherParameters(const std::array<Parameter, N>& own = {},
                                                          int block = 8) {
   std::array<Parameter, N + 11> all{
-      integer("vpls", 1024, {1, 65536}, "lights", "Virtual point lights, all lights together")
+      integer("vpls", 1024, {1, 65536}, "lights", "Number of virtual point lights, over all lights")
           .quality()
           .logScale()};
   const Parameter shared[] = {
@@ -42,27 +42,28 @@ constexpr std::array<Parameter, N + 11> gatherParameters(const std::array<Parame
           .logScale(),
       integer("light_samples", 1, {1, 256}, "points",
               "Points on each area light that reflective shadow maps are drawn from; 1: its centre, "
-              "which is enough unless things near the light hide parts of it"),
+              "which suffices unless geometry near the light hides parts of it"),
       integer("block", block, {1, 16}, "pixels",
               "Side of the pattern of interleaved pixels, each of which shades 1 / block^2 of the virtual "
               "lights"),
-      choice("interleaving", 0, interleavingNames,
-             "Pixels found by address, or G-buffer split and result merged"),
+      choice("interleaving", 0, kInterleavingNames,
+             "addressed: pixels are found by address; split: the G-buffer is split and the result merged"),
       real("clamp", 0.03, {0, 1}, "scene extents",
-           "Virtual lights act as if no nearer than this; 0: as near as they are"),
-      boolean("compensation", false, "Spread what the clamp takes away over the neighbourhood in the image"),
+           "Least distance that is used for a virtual light; 0: no clamping"),
+      boolean("compensation", false, "Spread the light that the clamp removes over neighbouring pixels"),
       boolean("blur", true, "Average over the pattern of interleaved pixels, not across edges"),
       real("blur_position", 0.1, {0, 1}, "scene extents", "Pixels farther apart than this are not averaged"),
       real("blur_plane", 0.01, {0, 1}, "scene extents",
-           "Nor are those farther than this from each other's tangent planes; 1: as published"),
-      real("blur_normal", 0.8, {-1, 1}, "cosine", "Nor are those whose normals differ by more than this"),
+           "Pixels farther than this from each other's tangent planes are not averaged; 1: as published"),
+      real("blur_normal", 0.8, {-1, 1}, "cosine",
+           "Pixels are not averaged where the cosine between their normals is below this"),
   };
   std::copy(own.begin(), own.end(), all.begin() + 1);
   std::copy(std::begin(shared), std::end(shared), all.begin() + 1 + N);
   return all;
 }
 
-/// Values of the parameters above.
+/// Holds the values of the parameters above.
 struct GatherSettings {
   int block = 1;
   Interleaving interleaving = Interleaving::addressed;
@@ -74,27 +75,26 @@ struct GatherSettings {
 LIMN_API GatherSettings gatherSettings(const ParameterValues& parameters);
 LIMN_API VirtualLightDesc virtualLightDesc(const ParameterValues& parameters);
 
-/// Side of the pattern of interleaved pixels: at most `block`, and no more sub-buffers than virtual lights,
-/// so that every pixel has one.
+/// Returns the side of the pattern of interleaved pixels: at most `block`, and with no more sub-buffers than
+/// virtual lights, so that every pixel has a light.
 LIMN_API int usableBlock(int block, int lights);
 
-/// A pass that shades from some of the virtual lights.
+/// Describes a pass that shades from some of the virtual lights.
 struct ShadePass {
   gpu::ProgramDesc program;  ///< a compute shader that includes glsl/indirect/gather_main.glsl
-  int first = 0, count = 0;  ///< virtual lights that vpl_visibility() can answer for; count 0: all
-  std::vector<shadow::SampledTexture> sampled = {};  ///< declared and bound, from unit 8 on
-  /// Sets further uniforms and binds what `declare` declared (storage buffers from 1 on); may be empty.
-  std::function<void(frame::PassContext&, gpu::Program&)> bind = {};
-  std::function<void(frame::PassBuilder&)> declare = {};
+  int first = 0, count = 0;  ///< virtual lights that vpl_visibility() covers; count 0: all
+  std::vector<shadow::SampledTexture> sampled = {};
+  std::function<void(gpu::Program&)> bind = {};           ///< sets further uniforms; may be empty
+  std::function<void(frame::PassBuilder&)> declare = {};  ///< declares further reads; may be empty
 };
 
-/// Declares the passes of one technique's answer: shade() once per batch of virtual lights, then finish().
+/// Declares the passes of one technique's result: shade() once per batch of virtual lights, then finish().
 class LIMN_API Gather {
  public:
   Gather(frame::FrameGraph& graph, const TechniqueInputs& inputs, std::string_view technique,
          const VirtualLights& lights, const GatherSettings& settings);
   void shade(ShadePass pass);
-  /// Adds the light to `target` and returns it.
+  /// Declares the passes that add the light to `target`, and returns the target after them.
   frame::TextureHandle finish(frame::TextureHandle target);
 
  private:
@@ -114,7 +114,7 @@ class LIMN_API Gather {
   VirtualLights lights_;
   GatherSettings settings_;
   bool specular_, residual_;
-  GBuffer gbuffer_;  ///< split where settings ask for it
+  GBuffer gbuffer_;  ///< split if the settings say so
   glm::ivec2 size_;  ///< of the shaded screen: whole sub-buffers
   frame::TextureHandle shaded_;
 };

@@ -1,6 +1,6 @@
 #include "core/indirect/light_maps.h"
 
-#include "core/scene/gpu_scene.h"
+#include "core/gpu_scene/gpu_scene.h"
 
 namespace limn::indirect {
 
@@ -10,21 +10,18 @@ frame::BufferHandle addLightViews(frame::FrameGraph& graph, const TechniqueInput
                                   const VirtualLights& lights, const LightMapDesc& desc) {
   frame::PassBuilder pass = graph.addPass("views", desc.technique);
   pass.read(inputs.handles.geometry, Access::storageLoad, "extent of the scene")
-      .read(lights.lights, Access::storageLoad, "virtual lights")
+      .read(lights.lights, Access::storageLoad, "VirtualLights", "virtual lights")
       .cacheable();
   const frame::BufferHandle views = pass.write(
       graph.createBuffer("paraboloid views", {static_cast<size_t>(lights.count) * sizeof(glsl::ShadowView)}),
-      Access::storageStore, "a hemisphere for each virtual light");
+      Access::storageStore, "Views", "a hemisphere for each virtual light");
   const auto program = pass.program({.files = {"glsl/indirect/light_map_views.comp.glsl"}, .defines = {}});
   pass.execute([=, &scene = inputs.gpuScene](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(program);
-    kernel.use();
+    gpu::Program& kernel = context.use(program);
     kernel.set("count", static_cast<unsigned>(lights.count));
     kernel.set("batch", static_cast<unsigned>(desc.batch));
     kernel.set("texels", static_cast<unsigned>(desc.size));
     kernel.set("extent", 2 * scene.bounds().radius());
-    context.bindStorage(0, lights.lights);
-    context.bindStorage(1, views);
     context.dispatch(lights.count, 1, 1, 64, 1);
   });
   return views;
@@ -34,15 +31,11 @@ ShadePass lightMapShadePass(const ParaboloidMaps& maps, float bias) {
   return {.program = {.files = {"glsl/indirect/shade_light_maps.comp.glsl"}, .defines = {}},
           .first = maps.first,
           .count = maps.count,
-          .sampled = {{8, maps.depth, "what virtual lights see"}},
-          .bind =
-              [views = maps.views, bias](frame::PassContext& context, gpu::Program& kernel) {
-                kernel.set("bias", bias);
-                context.bindStorage(1, views);
-              },
+          .sampled = {{"maps", maps.depth, "what virtual lights see"}},
+          .bind = [bias](gpu::Program& kernel) { kernel.set("bias", bias); },
           .declare =
               [views = maps.views](frame::PassBuilder& pass) {
-                pass.read(views, Access::storageLoad, "projections of the maps");
+                pass.read(views, Access::storageLoad, "Views", "projections of the maps");
               }};
 }
 

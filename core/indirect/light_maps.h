@@ -1,5 +1,5 @@
-// One paraboloid map for each virtual point light: where it looks, and the pass that shades by one test per
-// map. How the maps are filled is the techniques' business.
+// Declares one paraboloid map for each virtual point light: its view, and the pass that shades with one test
+// per map. The techniques fill the maps.
 #pragma once
 
 #include <string_view>
@@ -15,15 +15,15 @@ struct LightMapDesc {
   std::string_view technique = "indirect";
 };
 
-/// Declares the pass "views": a storage buffer of glsl::ShadowView, a hemisphere for each virtual light, 1e-4
-/// of the scene's diagonal off its surface. Those without flux look out of the scene, so that nothing is
-/// drawn for them.
+/// Declares the pass "views" and returns its result: a storage buffer of glsl::ShadowView, a hemisphere for
+/// each virtual light, offset from its surface by 1e-4 of the scene's diagonal. Views of lights without flux
+/// look out of the scene, so that nothing is drawn for them.
 LIMN_API frame::BufferHandle addLightViews(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                            const VirtualLights& lights, const LightMapDesc& desc);
 
-/// Shades virtual lights maps.first to maps.first + maps.count: a receiver does not see a light whose map
-/// holds, at its texel, something nearer that lies above the receiver's tangent plane by more than `bias`
-/// texel footprints.
+/// Returns the pass that shades virtual lights maps.first to maps.first + maps.count. A receiver does not see
+/// a light whose map holds, at the receiver's texel, something nearer that lies above the receiver's tangent
+/// plane by more than `bias` texel footprints.
 LIMN_API ShadePass lightMapShadePass(const ParaboloidMaps& maps, float bias);
 
 }  // namespace limn::indirect

@@ -11,17 +11,17 @@ namespace {
 
 using frame::Access;
 
-constexpr int64_t batchBytes = int64_t{1} << 30;
-constexpr int64_t bytesPerTexel = 8;  // depth and rasterised depth
+constexpr int64_t kBatchBytes = int64_t{1} << 30;
+constexpr int64_t kBytesPerTexel = 8;  // depth and rasterised depth
 
 }  // namespace
 
 int64_t paraboloidBytes(int size) {
-  return bytesPerTexel * size * size;
+  return kBytesPerTexel * size * size;
 }
 
 int paraboloidBatch(const gpu::Device& device, int size) {
-  const int64_t fitting = batchBytes / paraboloidBytes(size);
+  const int64_t fitting = kBatchBytes / paraboloidBytes(size);
   return static_cast<int>(std::clamp<int64_t>(fitting, 1, device.limits().maxArrayLayers));
 }
 
@@ -44,30 +44,26 @@ ParaboloidMaps ParaboloidMapPass::add(frame::FrameGraph& graph, scene::GpuScene&
                            .height = desc.size,
                            .layers = desc.count};
   frame::PassBuilder pass = graph.addPass("paraboloid maps", desc.technique);
-  scene::GpuScene::declareReads(pass, handles);
-  pass.read(views, Access::storageLoad, "where the hemispheres are");
+  pass.role(frame::PassRole::map);
+  const scene::DrawPrograms programs =
+      scene.declareDepth(pass, handles,
+                         {.files = {"glsl/shadow/paraboloid.vert.glsl", "glsl/shadow/paraboloid.geom.glsl",
+                                    "glsl/shadow/paraboloid.frag.glsl"},
+                          .defines = {}});
+  pass.read(views, Access::storageLoad, "Views", "where the hemispheres are");
   maps.depth =
       pass.write(graph.createTexture("paraboloid maps", texture), Access::colourAttachment, "radial depth");
   texture.format = GL_DEPTH_COMPONENT32F;
   const frame::TextureHandle zbuffer = pass.write(graph.createTexture("paraboloid z", texture),
                                                   Access::depthAttachment, "hidden-surface removal");
-  const auto program = [&](bool masked) {
-    return pass.program({.files = {"glsl/shadow/paraboloid.vert.glsl", "glsl/shadow/paraboloid.geom.glsl",
-                                   "glsl/shadow/paraboloid.frag.glsl"},
-                         .defines = {{"MASKED", masked ? "1" : "0"}}});
-  };
-  scene::DrawPrograms programs;
-  programs.opaque = program(false);
-  programs.masked = scene.hasMasked() ? program(true) : programs.opaque;
   if (desc.cacheable) pass.cacheable();
-  pass.execute([this, &scene, handles, programs, zbuffer, maps](frame::PassContext& context) {
+  pass.execute([this, &scene, programs, zbuffer, depth = maps.depth](frame::PassContext& context) {
     const gl::Functions& gl = context.gl();
     constexpr GLfloat nothing[4] = {1, 1, 1, 1}, farthest = 0;
-    context.bindFramebuffer({{maps.depth}}, {zbuffer});
+    context.bindFramebuffer({{depth}}, {zbuffer});
     gl.ClearBufferfv(GL_COLOR, 0, nothing);
     gl.ClearBufferfv(GL_DEPTH, 0, &farthest);
-    context.bindStorage(2, maps.views);
-    scene.drawDepth(context, handles, programs, views_, list_, true, {});
+    scene.drawDepth(context, programs, views_, list_, true, {});
   });
   return maps;
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "glsl/shadow_view.glsl"
+#include "glsl/shadow/shadow_view.glsl"
 
 namespace limn::indirect {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 using frame::Access;
 using frame::BufferHandle;
 
-constexpr int group = 64;
+constexpr int kGroup = 64;
 
 /// Diagonal of the scene's bounds, m.
 float extentOf(const scene::GpuScene& scene) {
@@ -19,7 +19,6 @@ float extentOf(const scene::GpuScene& scene) {
   return box.empty() ? 1.f : std::max(glm::length(box.high - box.low), 1e-30f);
 }
 
-/// The passes have the same bindings: 0 virtual lights, 1 clusters (or sorted lights), 2 mapping, 3 views.
 struct Builder {
   frame::FrameGraph& graph;
   const scene::GpuScene& scene;
@@ -31,24 +30,19 @@ struct Builder {
   using Uniforms = std::function<void(gpu::Program&)>;
   frame::PassBuilder pass(const char* name) const {
     frame::PassBuilder builder = graph.addPass(name, desc.technique);
-    builder.read(lights, Access::storageLoad, "virtual point lights").cacheable();
+    builder.read(lights, Access::storageLoad, "VirtualLights", "virtual point lights").cacheable();
     return builder;
   }
-  void execute(frame::PassBuilder& builder, const char* file, std::initializer_list<BufferHandle> bound,
-               int groups, Uniforms uniforms) const {
+  void execute(frame::PassBuilder& builder, const char* file, int groups, Uniforms uniforms) const {
     const auto program = builder.program({.files = {file}, .defines = {}});
-    builder.execute([=, bound = std::vector<BufferHandle>(bound), count = lightCount,
-                     uniforms = std::move(uniforms)](frame::PassContext& context) {
-      gpu::Program& kernel = context.program(program);
-      kernel.use();
+    builder.execute([=, count = lightCount, uniforms = std::move(uniforms)](frame::PassContext& context) {
+      gpu::Program& kernel = context.use(program);
       kernel.set("light_count", static_cast<unsigned>(count));
       if (uniforms) uniforms(kernel);
-      for (unsigned i = 0; i < bound.size(); ++i)
-        if (bound[i]) context.bindStorage(i, bound[i]);
       context.dispatch(groups, 1, 1, 1, 1);
     });
   }
-  static int groupsOf(int count) { return (count + group - 1) / group; }
+  static int groupsOf(int count) { return (count + kGroup - 1) / kGroup; }
 
   void start();
   void assign(const char* name);
@@ -60,19 +54,20 @@ struct Builder {
 void Builder::start() {
   frame::PassBuilder builder = pass("cluster start");
   clusters = graph.createBuffer("clusters", {clusterCount * sizeof(glsl::VirtualAreaLight)});
-  clusters = builder.write(clusters, Access::storageStore, "centres: virtual lights floor(k N / M)");
+  clusters =
+      builder.write(clusters, Access::storageStore, "Clusters", "centres: virtual lights floor(k N / M)");
   execute(
-      builder, "glsl/indirect/cluster_start.comp.glsl", {lights, clusters}, groupsOf(clusterCount),
+      builder, "glsl/indirect/cluster_start.comp.glsl", groupsOf(clusterCount),
       [m = clusterCount](gpu::Program& kernel) { kernel.set("cluster_count", static_cast<unsigned>(m)); });
 }
 
 void Builder::assign(const char* name) {
   frame::PassBuilder builder = pass(name);
-  builder.read(clusters, Access::storageLoad, "centres");
+  builder.read(clusters, Access::storageLoad, "Clusters", "centres");
   if (!mapping) mapping = graph.createBuffer("cluster mapping", {lightCount * sizeof(uint32_t)});
-  mapping = builder.write(mapping, Access::storageStore, "nearest cluster of each virtual light");
-  execute(builder, "glsl/indirect/cluster_assign.comp.glsl", {lights, clusters, mapping},
-          groupsOf(lightCount), [m = clusterCount, d = desc, scene = &scene](gpu::Program& kernel) {
+  mapping = builder.write(mapping, Access::storageStore, "Mapping", "nearest cluster of each virtual light");
+  execute(builder, "glsl/indirect/cluster_assign.comp.glsl", groupsOf(lightCount),
+          [m = clusterCount, d = desc, scene = &scene](gpu::Program& kernel) {
             kernel.set("cluster_count", static_cast<unsigned>(m));
             kernel.set("per_extent", 1 / extentOf(*scene));
             kernel.set("weight_position", d.weightPosition);
@@ -82,18 +77,19 @@ void Builder::assign(const char* name) {
 
 void Builder::average() {
   frame::PassBuilder builder = pass("cluster average");
-  builder.read(mapping, Access::storageLoad, "members");
-  clusters = builder.write(clusters, Access::storageLoadStore, "mean position and normal of each");
-  execute(builder, "glsl/indirect/cluster_average.comp.glsl", {lights, clusters, mapping}, clusterCount, {});
+  builder.read(mapping, Access::storageLoad, "Mapping", "members");
+  clusters =
+      builder.write(clusters, Access::storageLoadStore, "Clusters", "mean position and normal of each");
+  execute(builder, "glsl/indirect/cluster_average.comp.glsl", clusterCount, {});
 }
 
 void Builder::area() {
   frame::PassBuilder builder = pass("cluster area");
-  builder.read(mapping, Access::storageLoad, "members");
-  clusters = builder.write(clusters, Access::storageLoadStore, "rectangle around the members");
+  builder.read(mapping, Access::storageLoad, "Mapping", "members");
+  clusters = builder.write(clusters, Access::storageLoadStore, "Clusters", "rectangle around the members");
   views = graph.createBuffer("cluster views", {clusterCount * sizeof(glsl::ShadowView)});
-  views = builder.write(views, Access::storageStore, "hemispheres of the maps");
-  execute(builder, "glsl/indirect/cluster_area.comp.glsl", {lights, clusters, mapping, views}, clusterCount,
+  views = builder.write(views, Access::storageStore, "Views", "hemispheres of the maps");
+  execute(builder, "glsl/indirect/cluster_area.comp.glsl", clusterCount,
           [d = desc, scene = &scene](gpu::Program& kernel) {
             const float extent = extentOf(*scene);
             kernel.set("near", d.near * extent);
@@ -104,10 +100,10 @@ void Builder::area() {
 
 void Builder::sort() {
   frame::PassBuilder builder = pass("cluster sort");
-  builder.read(mapping, Access::storageLoad, "clusters");
+  builder.read(mapping, Access::storageLoad, "Mapping", "clusters");
   sorted = graph.createBuffer("sorted virtual lights", {lightCount * sizeof(glsl::VirtualPointLight)});
-  sorted = builder.write(sorted, Access::storageStore, "by cluster within each sub-buffer");
-  execute(builder, "glsl/indirect/cluster_sort.comp.glsl", {lights, sorted, mapping}, groupsOf(lightCount),
+  sorted = builder.write(sorted, Access::storageStore, "Sorted", "by cluster within each sub-buffer");
+  execute(builder, "glsl/indirect/cluster_sort.comp.glsl", groupsOf(lightCount),
           [block = desc.block](gpu::Program& kernel) { kernel.set("block", static_cast<unsigned>(block)); });
 }
 

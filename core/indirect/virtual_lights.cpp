@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "core/scene/light_textures.h"
-#include "glsl/sampling.glsl"
+#include "core/gpu_scene/light_textures.h"
+#include "glsl/numeric/sampling.glsl"
 
 namespace limn::indirect {
 namespace {
@@ -14,8 +14,8 @@ namespace {
 using frame::Access;
 using frame::BufferHandle;
 
-constexpr int tile = 64;  // texels
-constexpr int group = 64;
+constexpr int kTile = 64;  // texels
+constexpr int kGroup = 64;
 
 struct Builder {
   frame::FrameGraph& graph;
@@ -31,11 +31,11 @@ struct Builder {
     return buffer(name, static_cast<size_t>(maps.layers), sizeof(glm::vec4));
   }
   void readMaps(frame::PassBuilder& pass) const {
-    pass.read(maps.depth, Access::sampled, "where light arrives")
-        .read(maps.normal, Access::sampled, "which way surfaces face")
-        .read(maps.albedo, Access::sampled, "what is reflected")
-        .read(maps.views, Access::storageLoad, "projections")
-        .read(handles.lights, Access::storageLoad, "what lights send")
+    pass.read(maps.depth, Access::sampled, "reflective_depth", "where light arrives")
+        .read(maps.normal, Access::sampled, "reflective_normal", "which way surfaces face")
+        .read(maps.albedo, Access::sampled, "reflective_albedo", "what is reflected")
+        .read(maps.views, Access::storageLoad, "Views", "projections")
+        .read(handles.lights, Access::storageLoad, "Lights", "what lights send")
         .cacheable();
     scene::LightTextureInput(handles).declare(pass);
   }
@@ -51,27 +51,14 @@ struct Builder {
 };
 
 int tilesPerSide(int size) {
-  return (size + tile - 1) / tile;
+  return (size + kTile - 1) / kTile;
 }
 
-void bindMaps(const frame::PassContext& context, const SceneHandles& handles, const shadow::ShadowMaps& maps,
-              gpu::Program& kernel, int lightSamples) {
-  kernel.set("light_samples", lightSamples);
-  context.bindSampled(0, maps.depth);
-  context.bindSampled(1, maps.normal);
-  context.bindSampled(2, maps.albedo);
-  context.bindStorage(0, handles.lights);
-  context.bindStorage(1, maps.views);
-  scene::LightTextureInput(handles).bind(context);
-}
-
-/// What glsl/indirect/map_groups.glsl reads.
-void bindGroups(const frame::PassContext& context, const shadow::ShadowMaps& maps, gpu::Program& kernel,
-                size_t lightCount, int lightSamples) {
-  kernel.set("layers", static_cast<unsigned>(maps.layers));
+/// The uniforms of glsl/indirect/map_groups.glsl.
+void setGroups(gpu::Program& kernel, int layers, size_t lightCount, int lightSamples) {
+  kernel.set("layers", static_cast<unsigned>(layers));
   kernel.set("light_count", static_cast<unsigned>(lightCount));
   kernel.set("points_listed", static_cast<unsigned>(std::max(lightSamples, 1)));
-  context.bindStorage(4, maps.lights);
 }
 
 BufferHandle Builder::tileFlux() const {
@@ -80,32 +67,27 @@ BufferHandle Builder::tileFlux() const {
   readMaps(pass);
   const BufferHandle tiles = pass.write(
       buffer("flux of tiles", static_cast<size_t>(across) * across * maps.layers, sizeof(glm::vec4)),
-      Access::storageStore, "sums of reflected flux");
+      Access::storageStore, "Tiles", "sums of reflected flux");
   const auto program =
-      pass.program(texelProgram("glsl/indirect/reflected_flux.comp.glsl", {{"TILE", std::to_string(tile)}}));
-  pass.execute([=, maps = maps, handles = handles, samples = desc.lightSamples](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(program);
-    kernel.use();
-    bindMaps(context, handles, maps, kernel, samples);
-    context.bindStorage(2, tiles);
-    context.dispatch(across, across, maps.layers, 1, 1);
+      pass.program(texelProgram("glsl/indirect/reflected_flux.comp.glsl", {{"TILE", std::to_string(kTile)}}));
+  pass.execute([=, layers = maps.layers, samples = desc.lightSamples](frame::PassContext& context) {
+    context.use(program).set("light_samples", samples);
+    context.dispatch(across, across, layers, 1, 1);
   });
   return tiles;
 }
 
 BufferHandle Builder::layerFlux(BufferHandle values, bool sampled, uint32_t count) const {
   frame::PassBuilder pass = graph.addPass(sampled ? "sampled flux" : "flux of maps", "indirect");
-  pass.read(values, Access::storageLoad, sampled ? "virtual lights" : "tiles").cacheable();
+  pass.read(values, Access::storageLoad, sampled ? "VirtualLights" : "Tiles",
+            sampled ? "virtual lights" : "tiles")
+      .cacheable();
   const BufferHandle flux = pass.write(perLayer(sampled ? "sampled flux" : "flux of maps"),
-                                       Access::storageStore, "flux of each layer");
+                                       Access::storageStore, "LayerFlux", "flux of each layer");
   const auto program = pass.program(
       {.files = {"glsl/indirect/layer_flux.comp.glsl"}, .defines = {{"SAMPLED", sampled ? "1" : "0"}}});
   pass.execute([=, layers = maps.layers](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(program);
-    kernel.use();
-    kernel.set("count", count);
-    context.bindStorage(0, values);
-    context.bindStorage(1, flux);
+    context.use(program).set("count", count);
     context.dispatch(layers, 1, 1, 1, 1);
   });
   return flux;
@@ -114,53 +96,45 @@ BufferHandle Builder::layerFlux(BufferHandle values, bool sampled, uint32_t coun
 BufferHandle Builder::sample(BufferHandle reflected) const {
   frame::PassBuilder pass = graph.addPass("virtual lights", "indirect");
   readMaps(pass);
-  pass.read(reflected, Access::storageLoad, "how many samples a map deserves")
-      .read(maps.lights, Access::storageLoad, "which maps belong together");
+  pass.read(reflected, Access::storageLoad, "LayerFlux", "how many samples a map deserves")
+      .read(maps.lights, Access::storageLoad, "MapLights", "which maps belong together");
   const BufferHandle lights =
       pass.write(buffer("virtual lights", static_cast<size_t>(desc.count), sizeof(glsl::VirtualPointLight)),
-                 Access::storageStore, "samples of the maps");
+                 Access::storageStore, "VirtualLights", "samples of the maps");
   const auto program = pass.program(texelProgram("glsl/indirect/sample_maps.comp.glsl", {}));
   pass.execute(
-      [=, maps = maps, handles = handles, desc = desc, lightCount = lightCount](frame::PassContext& context) {
-        gpu::Program& kernel = context.program(program);
-        kernel.use();
+      [program, layers = maps.layers, desc = desc, lightCount = lightCount](frame::PassContext& context) {
+        gpu::Program& kernel = context.use(program);
         kernel.set("count", static_cast<unsigned>(desc.count));
-        bindMaps(context, handles, maps, kernel, desc.lightSamples);
-        bindGroups(context, maps, kernel, lightCount, desc.lightSamples);
-        context.bindStorage(2, reflected);
-        context.bindStorage(3, lights);
-        context.dispatch(desc.count, 1, 1, group, 1);
+        kernel.set("light_samples", desc.lightSamples);
+        setGroups(kernel, layers, lightCount, desc.lightSamples);
+        context.dispatch(desc.count, 1, 1, kGroup, 1);
       });
   return lights;
 }
 
 BufferHandle Builder::conserve(BufferHandle before, BufferHandle reflected, BufferHandle sampled) const {
   frame::PassBuilder pass = graph.addPass("conserve flux", "indirect");
-  pass.read(reflected, Access::storageLoad, "what the maps reflect")
-      .read(sampled, Access::storageLoad, "what the samples carry")
-      .read(maps.lights, Access::storageLoad, "which maps belong together")
+  pass.read(reflected, Access::storageLoad, "Reflected", "what the maps reflect")
+      .read(sampled, Access::storageLoad, "Sampled", "what the samples carry")
+      .read(maps.lights, Access::storageLoad, "MapLights", "which maps belong together")
       .cacheable();
   const BufferHandle lights =
-      pass.write(before, Access::storageLoadStore, "scaled so that both sums are the same");
+      pass.write(before, Access::storageLoadStore, "VirtualLights", "scaled so that both sums are the same");
   const auto program = pass.program({.files = {"glsl/indirect/conserve_flux.comp.glsl"}, .defines = {}});
-  pass.execute([=, maps = maps, desc = desc, lightCount = lightCount](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(program);
-    kernel.use();
-    kernel.set("count", static_cast<unsigned>(desc.count));
-    bindGroups(context, maps, kernel, lightCount, desc.lightSamples);
-    context.bindStorage(0, reflected);
-    context.bindStorage(1, sampled);
-    context.bindStorage(2, lights);
-    context.dispatch(desc.count, 1, 1, group, 1);
-  });
+  pass.execute(
+      [program, layers = maps.layers, desc = desc, lightCount = lightCount](frame::PassContext& context) {
+        gpu::Program& kernel = context.use(program);
+        kernel.set("count", static_cast<unsigned>(desc.count));
+        setGroups(kernel, layers, lightCount, desc.lightSamples);
+        context.dispatch(desc.count, 1, 1, kGroup, 1);
+      });
   return lights;
 }
 
 }  // namespace
 
-void VirtualLightService::begin(frame::FrameGraph& graph, const SceneHandles& handles) {
-  graph_ = &graph;
-  handles_ = handles;
+void VirtualLightService::begin() {
   known_.clear();
 }
 
@@ -172,9 +146,9 @@ VirtualLights VirtualLightService::request(std::span<const uint32_t> lights, con
   for (int i = 0; desc.lightSamples > 1 && i < desc.lightSamples; ++i)
     mapDesc.samples.push_back(glsl::r2_sequence(static_cast<uint32_t>(i) + 1));
   VirtualLights made;
-  made.maps = shadowMaps_.request(lights, mapDesc);
+  made.maps = context().services.get<shadow::ShadowMapService>().request(lights, mapDesc);
   made.count = desc.count;
-  const Builder build{*graph_, handles_, made.maps, desc, lights.size()};
+  const Builder build{context().graph, context().handles, made.maps, desc, lights.size()};
   const int across = tilesPerSide(desc.mapSize);
   made.reflected = build.layerFlux(build.tileFlux(), false, static_cast<uint32_t>(across * across));
   const BufferHandle sampled = build.sample(made.reflected);

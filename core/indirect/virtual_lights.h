@@ -1,11 +1,12 @@
-// Virtual point lights as a service: techniques ask for N of them for some lights, they are sampled from
-// reflective shadow maps once per graph whoever asks, and kept while nothing changed.
+// Declares the service that samples virtual point lights: techniques request N of them for some lights. They
+// are sampled from reflective shadow maps once per graph, however many techniques request them, and kept
+// while nothing changes.
 //
 // Sampling (glsl/indirect/sample_maps.comp.glsl): point i of the Halton sequence chooses a layer of the maps
-// in proportion to the flux that the layer reflects, and a texel of it. So N is split among the lights by
-// what they contribute; a light that N is too small for gives its flux to the others. The sum over all
-// virtual lights is the flux that the maps reflect, in every channel, for each face of each light: the maps
-// of one face from several points of the light share one factor.
+// in proportion to the flux that the layer reflects, and a texel of it. N is therefore split among the lights
+// by their contribution; a light whose share is below one virtual light gives its flux to the others. The sum
+// over all virtual lights is the flux that the maps reflect, in every channel, for each face of each light:
+// the maps of one face from several points of the light share one factor.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,7 @@
 #include "core/frame/frame_graph.h"
 #include "core/shadow/shadow_map.h"
 #include "core/technique/technique.h"
-#include "glsl/virtual_light.glsl"
+#include "glsl/indirect/virtual_light.glsl"
 
 namespace limn::indirect {
 
@@ -34,26 +35,23 @@ struct VirtualLights {
   int count = 0;
 };
 
-class LIMN_API VirtualLightService {
+/// Provides virtual lights. Requests their maps from shadow::ShadowMapService.
+class LIMN_API VirtualLightService : public FrameService {
  public:
-  explicit VirtualLightService(shadow::ShadowMapService& shadowMaps) : shadowMaps_(shadowMaps) {}
+  static constexpr const char* serviceName = "virtual lights";
 
-  /// Forgets the requests of the former graph: call before building a new one, after
-  /// ShadowMapService::begin().
-  void begin(frame::FrameGraph& graph, const SceneHandles& handles);
-  /// Virtual lights of `lights` (indices into Pose::lights, at least one). Throws UsageError where the maps
-  /// would take too much memory.
+  /// Returns virtual lights of `lights` (indices into Pose::lights, at least one). Throws UsageError when the
+  /// maps would take too much memory.
   VirtualLights request(std::span<const uint32_t> lights, const VirtualLightDesc& desc);
 
  private:
+  void begin() override;
+
   struct Known {
     std::vector<uint32_t> lights;
     VirtualLightDesc desc;
     VirtualLights made;
   };
-  shadow::ShadowMapService& shadowMaps_;
-  frame::FrameGraph* graph_ = nullptr;
-  SceneHandles handles_;
   std::vector<Known> known_;
 };
 

@@ -10,11 +10,7 @@
 namespace limn::radiosity {
 namespace {
 
-/// Elements look from this part of their disc's radius above it: bodies stand on floors with a face of their
-/// own in the same plane.
-constexpr float lift = 0.02f;
-
-constexpr float mostCells = 64;  // of a grid over a body, along each axis
+constexpr float kMostCells = 64;  // of a grid over a body, along each axis
 
 /// How often a triangle turns around a point of the plane, -1, 0 or 1. Half-open, so that of triangles that
 /// share an edge exactly one has a point on it.
@@ -40,7 +36,8 @@ double heightAt(const glm::vec2& p, const glm::vec3 (&corners)[3]) {
 
 }  // namespace
 
-Bodies::Bodies(const Surfels& surfels) : objects_(surfels.backless.size()), enclosed_(surfels.size()) {
+Bodies::Bodies(const Surfels& surfels, double lift)
+    : lift_(static_cast<float>(lift)), objects_(surfels.backless.size()), enclosed_(surfels.size()) {
   const auto extend = [](Range& range, size_t i) {
     if (range.end == 0) range.first = static_cast<uint32_t>(i);
     range.end = static_cast<uint32_t>(i) + 1;
@@ -99,7 +96,7 @@ void Bodies::find(const Surfels& surfels, Object& body) const {
   for (const Object& other : objects_) {
     if (&other == &body || apart(other.bounds, body.bounds)) continue;
     for (uint32_t i = other.surfels.first; i < other.surfels.end; ++i) {
-      const glm::vec3 p = surfels.positions[i] + lift * surfels.discs[i] * surfels.normals[i];
+      const glm::vec3 p = surfels.positions[i] + lift_ * surfels.discs[i] * surfels.normals[i];
       if (!apart({p, p}, body.bounds)) body.queries.push_back({glm::vec2(p), p.z, i, 0});
     }
   }
@@ -108,7 +105,7 @@ void Bodies::find(const Surfels& surfels, Object& body) const {
 
 void Bodies::wind(const Surfels& surfels, Object& body) {
   const glm::vec2 low(body.bounds.low), size = glm::max(glm::vec2(body.bounds.high) - low, glm::vec2(1e-30f));
-  const float n = std::clamp(std::floor(std::sqrt(static_cast<float>(body.queries.size()))), 1.f, mostCells);
+  const float n = std::clamp(std::floor(std::sqrt(static_cast<float>(body.queries.size()))), 1.f, kMostCells);
   const auto side = static_cast<uint32_t>(n);
   const auto cellOf = [&](const glm::vec2& p) {
     return glm::uvec2(glm::clamp((p - low) / size * n, glm::vec2(0), glm::vec2(n - 1)));

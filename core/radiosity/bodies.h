@@ -1,4 +1,5 @@
-// Surface elements within closed bodies of other objects: a floor's below a block that stands on it.
+// Handles surface elements within closed bodies of other objects, such as those of a floor below a block that
+// stands on it.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +13,21 @@ namespace limn::radiosity {
 
 struct Surfels;
 
-/// Closed bodies have no backs, so that what lies in one would see the light outside, and light interpolated
-/// between vertices would shine out along the edge where the body stands. Nobody sees these elements; they
-/// take the place of the nearest ones outside along the mesh, and so their light, as lightmaps are dilated.
+/// Elements look from this part of their disc's radius above it, unless told otherwise: bodies stand on
+/// floors with a face of their own in the same plane.
+inline constexpr double kDefaultLift = 0.02;
+
+/// Finds the surface elements within closed bodies and moves them out. Closed bodies have no backs, so that
+/// an element inside one would see the light outside, and light interpolated between vertices would shine out
+/// along the edge where the body stands. These elements are never visible; they take the place of the nearest
+/// ones outside along the mesh, and so their light, as lightmaps are dilated.
 class LIMN_API Bodies {
  public:
   Bodies() = default;
-  /// Topology alone counts.
-  explicit Bodies(const Surfels& surfels);
+  /// Takes the topology alone from the surfels. `lift` is in radii of an element's disc.
+  explicit Bodies(const Surfels& surfels, double lift = kDefaultLift);
   /// Moves the positions of enclosed elements to those of neighbours outside. Elements of an object that is
-  /// enclosed as a whole stay. All cores; allocates nothing once it has seen as many enclosed elements.
+  /// enclosed as a whole stay. Uses all cores; allocates nothing once it has seen as many enclosed elements.
   void leave(Surfels& surfels);
 
  private:
@@ -31,7 +37,7 @@ class LIMN_API Bodies {
   struct Box {
     glm::vec3 low{0}, high{0};
   };
-  /// A point that may lie in a body; winding: of the body's surface around it.
+  /// Holds a point that may lie in a body, and the winding number of the body's surface around it.
   struct Query {
     glm::vec2 place;
     float height;
@@ -48,6 +54,7 @@ class LIMN_API Bodies {
   void find(const Surfels& surfels, Object& body) const;
   static void wind(const Surfels& surfels, Object& body);
 
+  float lift_ = 0;  ///< radii of an element's disc
   std::vector<Object> objects_;
   std::vector<unsigned char> enclosed_;  ///< of each surfel
   struct Move {

@@ -9,9 +9,10 @@
 namespace limn::radiosity {
 namespace {
 
-/// Squared radius of the disc of an element above the leaves, over its area, at most. A disc around a square
-/// has 1/2; more would fatten outlines, less would leave gaps.
-constexpr float discPerArea = 0.5f;
+/// Squared radius of the disc of an element above the leaves, over its area, at most. Elements side by side
+/// in a square grid have cells of area A; a point between four of them lies half a diagonal, sqrt(A/2), from
+/// each. Discs of this radius are the smallest that leave no gap; larger ones would fatten outlines.
+constexpr float kDiscPerArea = 0.5f;
 
 /// A rotation without any special relation to the axes: by 1 radian about (1, 2, 3).
 const glm::mat3& turn() {
@@ -111,8 +112,11 @@ Forest::Forest(const Surfels& surfels) : leafOf_(surfels.size()) {
         glsl::ElementGroup& group = groups_[next[level] + g];
         // The groups of the level below have been placed: they end where its next cluster begins.
         const uint32_t below = level > 0 ? next[level - 1] - count + 4 * g : glsl::no_link;
-        group.info = {below, std::min(count - 4 * g, 4u), surfels.backless[object] ? 0u : 1u, object};
-        for (uint32_t lane = 0; level > 0 && lane < group.info.y; ++lane)
+        group.children = below;
+        group.lanes = std::min(count - 4 * g, 4u);
+        group.backs = surfels.backless[object] ? 0u : 1u;
+        group.object = object;
+        for (uint32_t lane = 0; level > 0 && lane < group.lanes; ++lane)
           parents_[below + lane] = 4 * (next[level] + g) + lane;
       }
       next[level] += quarter(count);
@@ -146,9 +150,9 @@ void Forest::refit(std::span<const glm::vec3> positions, std::span<const glm::ve
 }
 
 void Forest::refitGroup(glsl::ElementGroup& group) {
-  for (uint32_t lane = 0; lane < group.info.y; ++lane) {
-    const glsl::ElementGroup& from = groups_[group.info.x + lane];
-    const auto count = static_cast<int>(from.info.y);
+  for (uint32_t lane = 0; lane < group.lanes; ++lane) {
+    const glsl::ElementGroup& from = groups_[group.children + lane];
+    const auto count = static_cast<int>(from.lanes);
     float area = 0;
     glm::vec3 position(0), normal(0);
     for (int k = 0; k < count; ++k) {
@@ -173,7 +177,7 @@ void Forest::refitGroup(glsl::ElementGroup& group) {
     group.area[i] = area;
     group.radius[i] = radius;
     group.spread[i] = std::min(spread, 2.f);
-    group.disc[i] = std::min(disc, std::sqrt(discPerArea * area));
+    group.disc[i] = std::min(disc, std::sqrt(kDiscPerArea * area));
   }
 }
 

@@ -1,5 +1,5 @@
-// The hierarchy of surface elements: a quad-tree over every cluster (thesis, section 4.3.1, "Geometric
-// Hierarchy Preprocessing"). Built once; each frame refits positions and normals.
+// Declares the hierarchy of surface elements: a quad-tree over every cluster (thesis, section 4.3.1,
+// "Geometric Hierarchy Preprocessing"). It is built once; each frame refits positions and normals.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +9,23 @@
 
 #include "core/base/export.h"
 #include "core/radiosity/surfels.h"
-#include "glsl/direction_bins.glsl"
+#include "glsl/indirect/direction_bins.glsl"
 
 namespace limn::radiosity {
 
-/// From world space to the space of the elements: the scene's radius becomes 1, so that scale does not
-/// matter, and the axes are turned away from those of the world, along which scenes are aligned and would run
-/// along the edges of bins.
+/// Maps from world space to the space of the elements. The scene's radius becomes 1, so that scale does not
+/// matter, and the axes are rotated against those of the world: scenes are often aligned with the world's
+/// axes, and their surfaces would run along the edges of bins.
 class LIMN_API ElementSpace {
  public:
   ElementSpace() = default;
   ElementSpace(const glm::vec3& centre, float radius);
   glm::vec3 point(const glm::vec3& world) const;
   glm::vec3 worldPoint(const glm::vec3& point) const;
-  /// Keeps lengths.
+  /// Returns the direction in the space of the elements; lengths are kept.
   glm::vec3 direction(const glm::vec3& world) const;
   glm::vec3 worldDirection(const glm::vec3& direction) const;
-  /// One unit of elements in metres.
+  /// Returns one unit of the space of the elements in metres.
   float radius() const { return radius_; }
   const glm::vec3& centre() const { return centre_; }
 
@@ -34,35 +34,35 @@ class LIMN_API ElementSpace {
   float radius_ = 1;
 };
 
-/// Elements of all levels in groups of four siblings: leaves first, then level after level, the clusters of a
-/// level one after the other. No pointers: the children of lane k of a group are group children + k. Unused
-/// lanes have no area.
+/// Holds the elements of all levels in groups of four siblings: leaves first, then level after level, the
+/// clusters of a level one after the other. It needs no pointers: the children of lane k of a group are group
+/// children + k. Unused lanes have no area.
 class LIMN_API Forest {
  public:
   Forest() = default;
-  /// Positions and areas of `surfels` are those of the space of the elements.
+  /// Builds the hierarchy. Positions and areas of `surfels` are in the space of the elements.
   explicit Forest(const Surfels& surfels);
 
-  /// Slots of leaves: 4 per group, unused ones included. Every level's elements come behind those of the
-  /// level below.
+  /// Returns the number of leaf slots: 4 per group, including unused ones. Every level's elements follow
+  /// those of the level below.
   uint32_t leafSlots() const { return 4 * levels_.front().count; }
   uint32_t slots() const { return 4 * static_cast<uint32_t>(groups_.size()); }
-  /// Of each surfel: its leaf.
+  /// Returns the leaf of each surfel.
   std::span<const uint32_t> leafOf() const { return leafOf_; }
 
   std::span<const glsl::ElementGroup> groups() const { return groups_; }
-  /// Groups of each level: first and count; [0]: leaves.
+  /// Holds the groups of a level: first and count. Level [0] holds the leaves.
   struct Level {
     uint32_t first = 0, count = 0;
   };
   std::span<const Level> levels() const { return levels_; }
-  /// Groups that hold the roots of the clusters (lane 0 alone).
+  /// Returns the groups that hold the roots of the clusters (lane 0 alone).
   std::span<const uint32_t> roots() const { return roots_; }
 
-  /// Of each group: the element whose children it holds, or no_link.
+  /// Returns, for each group, the element whose children it holds, or no_link.
   std::span<const uint32_t> parents() const { return parents_; }
 
-  /// New positions and normals, one per surfel; areas stay. All cores; allocates nothing.
+  /// Sets new positions and normals, one per surfel; areas stay. Uses all cores; allocates nothing.
   void refit(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals);
 
  private:

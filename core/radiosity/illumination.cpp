@@ -19,7 +19,7 @@ void gather(const Forest& forest, const Links& links, std::span<const glm::vec4>
             std::span<glm::vec3> irradiance) {
   const auto groups = forest.groups();
   tbb::parallel_for(0u, forest.levels()[0].count, [&](uint32_t g) {
-    for (uint32_t lane = 0; lane < groups[g].info.y; ++lane) {
+    for (uint32_t lane = 0; lane < groups[g].lanes; ++lane) {
       const int k = static_cast<int>(lane);
       const glm::vec3 normal(groups[g].nx[k], groups[g].ny[k], groups[g].nz[k]);
       const auto row = links.of(4 * g + lane);
@@ -46,11 +46,11 @@ void pullUp(const Forest& forest, std::span<glm::vec3> outgoing) {
   const auto levels = forest.levels();
   for (size_t level = 1; level < levels.size(); ++level)
     tbb::parallel_for(levels[level].first, levels[level].first + levels[level].count, [&](uint32_t g) {
-      for (uint32_t lane = 0; lane < groups[g].info.y; ++lane) {
-        const uint32_t children = groups[g].info.x + lane;
+      for (uint32_t lane = 0; lane < groups[g].lanes; ++lane) {
+        const uint32_t children = groups[g].children + lane;
         glm::vec3 sum(0);
         float area = 0;
-        for (uint32_t k = 0; k < groups[children].info.y; ++k) {
+        for (uint32_t k = 0; k < groups[children].lanes; ++k) {
           const float share = groups[children].area[static_cast<int>(k)];
           sum += share * outgoing[4 * children + k];
           area += share;

@@ -1,4 +1,5 @@
-// Light through links: gathered at leaves, pulled up to the elements above them (thesis, section 4.3.3).
+// Computes light through links: gathered at leaves, pulled up to the elements above them (thesis, section
+// 4.3.3).
 #pragma once
 
 #include <cstdint>
@@ -9,27 +10,27 @@
 #include "core/base/export.h"
 #include "core/radiosity/forest.h"
 #include "core/radiosity/links.h"
-#include "glsl/direction_bins.glsl"
+#include "glsl/indirect/direction_bins.glsl"
 
 namespace limn::radiosity {
 
-/// Of each bin: its unit direction (xyz) and solid angle in sr (w).
+/// Returns the unit direction (xyz) and the solid angle in sr (w) of each bin.
 LIMN_API std::vector<glm::vec4> binTable(int resolution);
 
-/// Irradiance of every leaf, W/m^2: pi times the mean over the bins above its tangent plane of the radiance
-/// that arrives, weighted by cosine and solid angle. A filled bin is filled wholly (equation 4.5), and
-/// weights are divided by their sum: no white furnace gains light, which it would with bins' own weights (by
-/// 0.13 to 0.5 %). `outgoing`: radiance of each slot; `environment`: of each bin, what empty ones see, or
-/// empty for darkness.
+/// Computes the irradiance of every leaf, W/m^2: pi times the mean over the bins above its tangent plane of
+/// the radiance that arrives, weighted by cosine and solid angle. A filled bin is filled wholly (equation
+/// 4.5), and weights are divided by their sum, so that no white furnace gains light, which it would with the
+/// bins' own weights (by 0.13 to 0.5 %). `outgoing` holds the radiance of each slot; `environment` the
+/// radiance that empty bins see, for each bin, or is empty for darkness.
 LIMN_API void gather(const Forest& forest, const Links& links, std::span<const glm::vec4> table,
                      std::span<const glm::vec3> outgoing, std::span<const glm::vec3> environment,
                      std::span<glm::vec3> irradiance);
 
-/// Radiance of every element above the leaves: the mean of its children's, weighted by area.
+/// Sets the radiance of every element above the leaves: the mean of its children's, weighted by area.
 LIMN_API void pullUp(const Forest& forest, std::span<glm::vec3> outgoing);
 
-/// Emission plus light of `bounces` reflections of it by Lambert surfaces. Values per leaf slot; the result
-/// per slot of the forest.
+/// Returns emission plus the light of `bounces` reflections of it by Lambertian surfaces. Values are per leaf
+/// slot, the result is per slot of the forest.
 LIMN_API std::vector<glm::vec3> illuminate(const Forest& forest, const Links& links,
                                            std::span<const glm::vec3> emission,
                                            std::span<const glm::vec3> albedo, int bounces,

@@ -9,23 +9,15 @@
 #include <limits>
 
 #include "core/base/error.h"
-#include "core/radiosity/bin_filler.h"
-#include "core/radiosity/link_test.h"
+#include "core/radiosity/private/bin_filler.h"
+#include "core/radiosity/private/link_test.h"
 
 namespace limn::radiosity {
 namespace {
 
 /// Elements of this level and above are worked off level by level, those below them in tasks, each with a
 /// whole branch: 16 leaves.
-constexpr size_t coarseLevel = 3;
-
-/// Receivers share links until their solid angle, seen from the other end, is this part of what elements at
-/// the other end may have: of a shared link the direction is wrong at most receivers, of an element of many
-/// only its outline. 1, which takes a quarter less time, shows as mottled walls.
-constexpr float sharing = 0.25f;
-
-/// Sine of how far below their horizon receivers see: pixels' normals differ from vertices'.
-constexpr float belowHorizon = 0.2f;
+constexpr size_t kCoarseLevel = 3;
 
 /// Lanes of a group that wait for a receiver: 16 group + mask.
 uint32_t waiting(uint32_t group, uint32_t lanes) {
@@ -61,17 +53,17 @@ struct Inner {
 struct Branch {
   std::vector<uint32_t> stack;
   std::vector<float> distance2;  ///< of the leaf in work
-  Inner inner[coarseLevel];      ///< [level]; [0] unused
+  Inner inner[kCoarseLevel];     ///< [level]; [0] unused
   LinkTimes times;
 };
 
 }  // namespace
 
 struct Links::Scratch {
-  std::vector<Inner> coarse;  ///< from the first slot of coarseLevel on
+  std::vector<Inner> coarse;  ///< from the first slot of kCoarseLevel on
   tbb::enumerable_thread_specific<Branch> branches;
   Inner nothing;                ///< the parent of the roots
-  std::vector<uint32_t> tasks;  ///< elements below coarseLevel without a parent there
+  std::vector<uint32_t> tasks;  ///< elements below kCoarseLevel without a parent there
 };
 
 namespace {
@@ -81,16 +73,21 @@ template <int N>
 class Traversal {
  public:
   Traversal(const Forest& forest, const LinkSettings& settings, uint32_t* out)
-      : groups_(forest.groups()), test_(settings), filler_(settings), out_(out) {}
+      : groups_(forest.groups()),
+        test_(settings),
+        filler_(settings),
+        sharing_(static_cast<float>(settings.sharing)),
+        belowHorizon_(static_cast<float>(settings.belowHorizon)),
+        out_(out) {}
 
   /// Fills `bins`, which hold the parent's links, with what `slot` need not leave to its children.
   template <bool leaf>
   void visit(uint32_t slot, std::span<const uint32_t> candidates, Bins& bins, std::vector<uint32_t>& stack,
              std::vector<uint32_t>* waitingOut) const {
     Receiver receiver = Receiver::of(groups_[slot / 4], slot % 4);
-    receiver.extent /= sharing;
+    receiver.extent /= sharing_;
     bins.up = receiver.normal;
-    bins.margin = belowHorizon + receiver.spread;
+    bins.margin = belowHorizon_ + receiver.spread;
     stack.assign(candidates.begin(), candidates.end());
     while (!stack.empty()) {
       const uint32_t entry = stack.back();
@@ -100,7 +97,7 @@ class Traversal {
       const Decision decision = test_.decide<leaf>(receiver, group);
       link(bins, group, g, decision, decision.link & entry);
       for (uint32_t open = decision.open & entry & 15; open != 0; open &= open - 1)
-        stack.push_back(waiting(group.info.x + static_cast<uint32_t>(std::countr_zero(open)), 15));
+        stack.push_back(waiting(group.children + static_cast<uint32_t>(std::countr_zero(open)), 15));
       if constexpr (!leaf) {
         const uint32_t defer = decision.defer & entry & 15;
         if (defer != 0) waitingOut->push_back(waiting(g, defer));
@@ -119,7 +116,7 @@ class Traversal {
     watch.add(b.times.create);
   }
 
-  /// An element below coarseLevel and all below it.
+  /// An element below kCoarseLevel and all below it.
   void branch(uint32_t slot, size_t level, const Inner& parent, Branch& b) const {
     if (level == 0) {
       Stopwatch watch;
@@ -135,8 +132,8 @@ class Traversal {
       return;
     }
     inner(slot, parent, b.inner[level], b);
-    const uint32_t children = groups_[slot / 4].info.x + slot % 4;
-    for (uint32_t lane = 0; lane < groups_[children].info.y; ++lane)
+    const uint32_t children = groups_[slot / 4].children + slot % 4;
+    for (uint32_t lane = 0; lane < groups_[children].lanes; ++lane)
       branch(4 * children + lane, level - 1, b.inner[level], b);
   }
 
@@ -145,7 +142,7 @@ class Traversal {
     const Receiver receiver = Receiver::of(groups_[slot / 4], slot % 4);
     bins.clear(static_cast<size_t>(filler_.count()));
     bins.up = receiver.normal;
-    bins.margin = belowHorizon;
+    bins.margin = belowHorizon_;
     for (uint32_t g = 0; g < leafGroups; ++g) {
       const Decision decision = test_.decide<true>(receiver, groups_[g]);
       link(bins, groups_[g], g, decision, decision.link);
@@ -168,13 +165,14 @@ class Traversal {
                  .height = d.height,
                  .disc = radiosity::lanes(group.disc),
                  .links = static_cast<int32_t>(4 * g) + Int4{0, 1, 2, 3}};
-    if (group.info.z != 0) c.links |= (d.height > 0.f) & static_cast<int32_t>(glsl::link_back);
+    if (group.backs != 0) c.links |= (d.height > 0.f) & static_cast<int32_t>(glsl::link_back);
     filler_.fill(bins, c, lanes);
   }
 
   std::span<const glsl::ElementGroup> groups_;
   LinkTest test_;
   BinFiller<N> filler_;
+  float sharing_, belowHorizon_;
   uint32_t* out_;
 };
 
@@ -216,7 +214,7 @@ void Links::buildFlat(const Forest& forest, const LinkSettings& settings) {
     tbb::parallel_for(0u, leafGroups, [&](uint32_t g) {
       Branch& b = scratch_->branches.local();
       b.distance2.resize(binCount());
-      for (uint32_t slot = 4 * g; slot < 4 * g + forest.groups()[g].info.y; ++slot)
+      for (uint32_t slot = 4 * g; slot < 4 * g + forest.groups()[g].lanes; ++slot)
         traversal.all(slot, leafGroups,
                       {.distance2 = b.distance2.data(), .links = &links_[slot * binCount()]});
     });
@@ -238,7 +236,7 @@ void Links::build(const Forest& forest, const LinkSettings& settings) {
   // Breadth first through the coarse levels, then the branches below: of elements with a coarse parent, and
   // of small clusters.
   const uint32_t firstCoarse =
-      levels.size() > coarseLevel ? levels[coarseLevel].first : static_cast<uint32_t>(groups.size());
+      levels.size() > kCoarseLevel ? levels[kCoarseLevel].first : static_cast<uint32_t>(groups.size());
   s.coarse.resize(4 * (groups.size() - firstCoarse));
   const auto parentOf = [&](uint32_t group) -> const Inner& {
     return parents[group] == glsl::no_link ? s.nothing : s.coarse[parents[group] - 4 * firstCoarse];
@@ -252,13 +250,13 @@ void Links::build(const Forest& forest, const LinkSettings& settings) {
   s.tasks.clear();
   for (uint32_t g = 0; g < firstCoarse; ++g) {
     if (parents[g] != glsl::no_link && parents[g] < 4 * firstCoarse) continue;
-    for (uint32_t lane = 0; lane < groups[g].info.y; ++lane) s.tasks.push_back(4 * g + lane);
+    for (uint32_t lane = 0; lane < groups[g].lanes; ++lane) s.tasks.push_back(4 * g + lane);
   }
   withTraversal(forest, settings, links_.data(), [&](const auto& traversal) {
-    for (size_t level = levels.size(); level-- > coarseLevel;)
+    for (size_t level = levels.size(); level-- > kCoarseLevel;)
       tbb::parallel_for(4 * levels[level].first, 4 * (levels[level].first + levels[level].count),
                         [&](uint32_t slot) {
-                          if (slot % 4 >= groups[slot / 4].info.y) return;
+                          if (slot % 4 >= groups[slot / 4].lanes) return;
                           Inner& own = s.coarse[slot - 4 * firstCoarse];
                           own.reserve(binCount());
                           traversal.inner(slot, parentOf(slot / 4), own, local());

@@ -1,5 +1,6 @@
-// Links of surface elements in bins of directions, each the shortest of its bin: what a point sees, found
-// while links are made (implicit visibility, thesis, sections 4.2.1 and 4.3.2).
+// Declares links of surface elements in bins of directions, each the shortest of its bin. They say what a
+// point sees, and visibility is found while links are made (implicit visibility, thesis, sections 4.2.1 and
+// 4.3.2).
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace limn::radiosity {
 
-/// Which bins an element fills.
+/// Says which bins an element fills.
 enum class Fill {
   centre,     ///< the one in which its centre lies, wholly (as published)
   footprint,  ///< those whose centres its disc covers
@@ -21,12 +22,21 @@ enum class Fill {
 struct LinkSettings {
   int resolution = 16;  ///< N of the 6 x N x N bins, 4 to 32
   Fill fill = Fill::footprint;
-  /// Elements are opened while their solid angle exceeds this many times the bin's; 1: as published.
+  /// Elements are opened while their solid angle exceeds this multiple of the bin's; 1: as published.
   float opening = 2;
+  /// Receivers share links until their solid angle, seen from the other end, is this part of what elements at
+  /// the other end may have: of a shared link the direction is wrong at most receivers, of an element of many
+  /// only its outline. 1, which takes a quarter less time, shows as mottled walls. More than 0.
+  double sharing = 0.25;
+  /// A bin is closed where its neighbours, all but one, are nearer than this part of its distance; more than
+  /// 0.
+  double closing = 0.5;
+  /// Sine of how far below their horizon receivers see: normals of pixels differ from those of vertices.
+  double belowHorizon = 0.2;
   bool operator==(const LinkSettings&) const = default;
 };
 
-/// What a build took, ms of one core: that of all cores together.
+/// Holds the times of a build, ms of one core: the sum over all cores.
 struct LinkTimes {
   double create = 0;   ///< links of elements above the leaves (thesis: create links)
   double inherit = 0;  ///< their parents' links, copied to them and to leaves (push down)
@@ -39,8 +49,8 @@ struct LinkTimes {
   }
 };
 
-/// For every leaf and bin the element that the leaf sees there: its slot in the forest, with glsl::link_back
-/// where it shows its back, or glsl::no_link.
+/// Holds, for every leaf and bin, the element that the leaf sees there: its slot in the forest, with
+/// glsl::link_back where it shows its back, or glsl::no_link.
 class LIMN_API Links {
  public:
   Links();
@@ -48,21 +58,22 @@ class LIMN_API Links {
   Links(Links&&) noexcept;
   Links& operator=(Links&&) noexcept;
 
-  /// The thesis's algorithm, from the receivers' side: every element, from the roots down, takes the links
-  /// that neither end has to be opened for, in the bins as its parent left them, and leaves the rest to its
-  /// children. So creation, refinement (a shorter link of a child replaces its parent's for that child alone)
-  /// and push-down are one traversal, and links are one-directional from the start. All cores; the result
-  /// does not depend on their number. Allocates nothing once it has seen the forest.
+  /// Builds the links by the thesis's algorithm, from the receivers' side: every element, from the roots
+  /// down, takes the links for which neither end has to be opened, in the bins as its parent left them, and
+  /// leaves the rest to its children. So creation, refinement (a shorter link of a child replaces its
+  /// parent's for that child alone) and push-down are one traversal, and links are one-directional from the
+  /// start. Uses all cores; the result does not depend on their number. Allocates nothing once it has seen
+  /// the forest.
   void build(const Forest& forest, const LinkSettings& settings);
-  /// Every pair of leaves is tried.
+  /// Builds the links by testing every pair of leaves.
   void buildFlat(const Forest& forest, const LinkSettings& settings);
 
-  /// Of the last build through the hierarchy.
+  /// Returns the times of the last build through the hierarchy.
   const LinkTimes& times() const { return times_; }
 
   int resolution() const { return resolution_; }
   size_t binCount() const { return 6 * static_cast<size_t>(resolution_) * static_cast<size_t>(resolution_); }
-  /// leafSlots * binCount(), leaf after leaf. Rows of unused leaves hold nothing of meaning.
+  /// Returns leafSlots * binCount() links, leaf after leaf. Rows of unused leaves have no meaning.
   std::span<const uint32_t> links() const { return links_; }
   std::span<const uint32_t> of(uint32_t leaf) const {
     return std::span(links_).subspan(leaf * binCount(), binCount());

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/reference/texture.h"
-#include "glsl/reflectance.glsl"
+#include "core/scene/texture_lookup.h"
+#include "glsl/surface/reflectance.glsl"
 
 namespace limn::radiosity {
 
@@ -21,7 +21,7 @@ struct SceneElements::Instance {
   std::vector<glm::vec4> tangents;  ///< nobody looks at them; deform() makes them
 
   void move(const scene::Pose& pose, const scene::DrawInstance& draw) {
-    if (draw.deformed != scene::none) {
+    if (draw.deformed != scene::kNone) {
       scene::deform(*primitive, pose.deformed[static_cast<size_t>(draw.deformed)], positions, normals,
                     tangents);
     } else {
@@ -52,21 +52,21 @@ namespace {
 const scene::Primitive* primitiveOf(const scene::Scene& scene, const scene::Pose& pose,
                                     const scene::DrawInstance& draw) {
   const auto mesh = static_cast<size_t>(draw.mesh);
-  if (draw.node == scene::none) return pose.dynamic[mesh].primitive.get();
+  if (draw.node == scene::kNone) return pose.dynamic[mesh].primitive.get();
   return &scene.meshes[mesh].primitives[static_cast<size_t>(draw.primitive)];
 }
 
 }  // namespace
 
 SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose, float longestEdge,
-                             uint32_t maxElements)
+                             uint32_t maxElements, double lift)
     : scene_(scene), space_(pose.bounds.centre(), pose.bounds.radius()) {
   uint64_t triangles = 0;
   for (const scene::DrawInstance& draw : pose.instances) {
     Instance& instance = instances_.emplace_back();
     instance.primitive = primitiveOf(scene, pose, draw);
-    instance.material = draw.node == scene::none ? scene.dynamic[static_cast<size_t>(draw.mesh)].material
-                                                 : instance.primitive->material;
+    instance.material = draw.node == scene::kNone ? scene.dynamic[static_cast<size_t>(draw.mesh)].material
+                                                  : instance.primitive->material;
     triangles += instance.primitive->indices.size() / 3;
   }
   const auto refuse = [&](const std::string& what) {
@@ -89,10 +89,10 @@ SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose,
         std::swap(mesh.indices[t + 1], mesh.indices[t + 2]);
     mesh.doubleSided = scene.materials[static_cast<size_t>(instance.material)].doubleSided;
   }
-  surfels_ = createSurfels(meshes, longestEdge);
+  surfels_ = createSurfels(meshes, longestEdge, lift);
   if (surfels_.size() > maxElements)
     refuse(fmt::format("the scene has {} surface elements", surfels_.size()));
-  bodies_ = Bodies(surfels_);
+  bodies_ = Bodies(surfels_, lift);
   forest_ = Forest(surfels_);
   for (const uint32_t corner : surfels_.triangles) triangles_.push_back(forest_.leafOf()[corner]);
   leaves_.resize(forest_.leafSlots());
@@ -135,7 +135,8 @@ void SceneElements::moveSurfels() {
     if (length > 0) surfels_.normals[i] = space_.direction(normal / length);
     const glm::vec3 vertex = blend(surfels_.origins[surfels_.firstOrigin[i]], instance.positions);
     surfels_.vertices[i] = space_.point(vertex);
-    leaf.vertex = glm::vec4(vertex, 1);
+    leaf.vertex = vertex;
+    leaf.used = 1;
   });
   tbb::parallel_for(size_t{0}, surfels_.size(), [&](size_t i) {
     surfels_.positions[i] = surfels_.centre(i, surfels_.vertices, surfels_.normals[i]);
@@ -174,9 +175,9 @@ void SceneElements::setMaterials() {
                                  glm::vec3(uv[o.vertices[2]] - uv[o.vertices[0]], 0));
       const float disc = surfels_.areas[i] * space_.radius() * space_.radius();
       const auto lookup = [&](const scene::TextureRef& texture) {
-        const glm::vec2 size = reference::textureSize(scene_, texture);
+        const glm::vec2 size = scene::textureSize(scene_, texture);
         const float texels = plane / std::max(space, 1e-30f) * disc * size.x * size.y;
-        return reference::sampleTexture(scene_, texture, blend(uv), 0.5f * std::log2(std::max(texels, 1.f)));
+        return scene::sampleTexture(scene_, texture, blend(uv), 0.5f * std::log2(std::max(texels, 1.f)));
       };
       base *= lookup(material.baseColourTexture);
       metalRough = lookup(material.metalRoughTexture);
@@ -187,9 +188,13 @@ void SceneElements::setMaterials() {
         glm::clamp(material.specularFactor, 0.f, 1.f), glm::clamp(material.specularColour, 0.f, 1.f),
         material.ior);
     const uint32_t leaf = forest_.leafOf()[i];
-    leaves_[leaf].albedo = glm::vec4(glsl::hemispherical_reflectance(brdf), 0);
-    materials_[leaf] = {glm::vec4(brdf.diffuse, brdf.alpha), glm::vec4(brdf.f0, brdf.f90),
-                        glm::vec4(brdf.dielectric_f0, brdf.dielectric_f90, 0, 0)};
+    leaves_[leaf].albedo = glsl::hemispherical_reflectance(brdf);
+    materials_[leaf] = {.diffuse = brdf.diffuse,
+                        .alpha = brdf.alpha,
+                        .f0 = brdf.f0,
+                        .f90 = brdf.f90,
+                        .dielectric_f0 = brdf.dielectric_f0,
+                        .dielectric_f90 = brdf.dielectric_f90};
   }
 }
 

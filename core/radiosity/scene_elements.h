@@ -1,7 +1,8 @@
-// The surface elements of a posed scene: what moves them from frame to frame, and what light needs to know of
-// them.
+// Declares the surface elements of a posed scene: what moves them from frame to frame, and what light needs
+// to know of them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -15,43 +16,53 @@
 
 namespace limn::radiosity {
 
-/// A leaf as shaders see it (storage buffer element, glsl/radiosity.glsl), in world space.
+/// Holds a leaf as shaders see it (storage buffer element, glsl/radiosity.glsl), in world space.
 struct Leaf {
-  glm::vec4 vertex{0};    ///< xyz: where triangles meet, m; w: 1, or 0 for unused slots
-  glm::vec4 position{0};  ///< xyz: the disc's centre, m
-  glm::vec4 normal{0};    ///< xyz: unit
-  glm::vec4 albedo{0};    ///< rgb: hemispherical reflectance; textures averaged over the disc
+  glm::vec3 vertex{0};    ///< where triangles meet, m
+  float used = 0;         ///< 1, or 0 for unused slots
+  glm::vec4 position{0};  ///< the disc's centre, m
+  glm::vec4 normal{0};    ///< unit
+  glm::vec3 albedo{0};    ///< hemispherical reflectance; textures averaged over the disc
+  float unused = 0;
 };
+static_assert(sizeof(Leaf) == 64 && offsetof(Leaf, position) == 16);
 
-/// What a leaf's surface reflects with, textures averaged over the disc (storage buffer element): a
+/// Holds the reflectance of a leaf's surface, textures averaged over the disc (storage buffer element): a
 /// glsl::SurfaceBrdf. Specular surfaces reflect nothing.
 struct LeafMaterial {
-  glm::vec4 diffuse{0};     ///< rgb; w: alpha, 0..1
-  glm::vec4 f0{0};          ///< rgb; w: f90
-  glm::vec4 dielectric{0};  ///< x: dielectric_f0, y: dielectric_f90
+  glm::vec3 diffuse{0};
+  float alpha = 0;  ///< 0..1
+  glm::vec3 f0{0};
+  float f90 = 0;
+  float dielectric_f0 = 0;
+  float dielectric_f90 = 0;
+  glm::vec2 unused{0};
 };
+static_assert(sizeof(LeafMaterial) == 48 && offsetof(LeafMaterial, dielectric_f0) == 32);
 
 class LIMN_API SceneElements {
  public:
-  /// `longestEdge`: longer edges of triangles are halved; in radii of the scene. All lengths are in units of
-  /// the radius that the scene has now. Object i is instance i of the pose. Throws UsageError beyond
-  /// `maxElements` leaves.
-  SceneElements(const scene::Scene& scene, const scene::Pose& pose, float longestEdge, uint32_t maxElements);
+  /// Makes the elements. Edges of triangles longer than `longestEdge`, in radii of the scene, are halved. All
+  /// lengths are in units of the radius that the scene has now. Object i is instance i of the pose. `lift` is
+  /// as Bodies has it. Throws UsageError beyond `maxElements` leaves.
+  SceneElements(const scene::Scene& scene, const scene::Pose& pose, float longestEdge, uint32_t maxElements,
+                double lift = kDefaultLift);
   ~SceneElements();
 
-  /// Whether `pose` differs in where vertices are alone.
+  /// Returns whether `pose` differs only in where vertices are.
   bool fits(const scene::Pose& pose) const;
-  /// Positions and normals of `pose`, which fits. All cores; allocates nothing where no instance is deformed.
+  /// Sets the positions and normals of `pose`, which must fit. Uses all cores; allocates nothing where no
+  /// instance is deformed.
   void update(const scene::Pose& pose);
 
   const ElementSpace& space() const { return space_; }
   const Surfels& surfels() const { return surfels_; }
   const Forest& forest() const { return forest_; }
   std::span<const Leaf> leaves() const { return leaves_; }
-  /// Of each leaf slot.
+  /// Returns the material of each leaf slot.
   std::span<const LeafMaterial> materials() const { return materials_; }
-  /// Of the mesh between the surfels: 3 leaf slots per triangle, front faces counter-clockwise; double-sided
-  /// surfaces have one for each side.
+  /// Returns the mesh between the surfels: 3 leaf slots per triangle, front faces counter-clockwise;
+  /// double-sided surfaces have one for each side.
   std::span<const uint32_t> triangles() const { return triangles_; }
 
  private:

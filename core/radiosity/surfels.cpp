@@ -12,8 +12,8 @@
 namespace limn::radiosity {
 namespace {
 
-constexpr float smallestWeldCosine = 0.70710678f;
-constexpr uint32_t smallestCluster = 16;
+constexpr float kSmallestWeldCosine = 0.70710678f;
+constexpr uint32_t kSmallestCluster = 16;
 
 /// Disjoint sets (Tarjan 1975), by path halving.
 class Sets {
@@ -99,7 +99,7 @@ class Builder {
     for (uint32_t i = 0; i < sizes.size(); ++i) {
       const uint32_t root = sets.find(i);
       const auto own = static_cast<uint32_t>(sizes.size());
-      const uint32_t name = sizes[root] < smallestCluster ? own + axis(i) : root;
+      const uint32_t name = sizes[root] < kSmallestCluster ? own + axis(i) : root;
       const auto [found, isNew] = names.emplace(name, out_.clusterCount);
       out_.clusterCount += isNew ? 1 : 0;
       out_.clusters.push_back(found->second);
@@ -171,7 +171,7 @@ class Builder {
     std::vector<uint32_t>& here = surfelsAt(p);
     if (here.empty()) ++places_;
     for (const uint32_t known : here)
-      if (glm::dot(out_.normals[known], n) > smallestWeldCosine) {
+      if (glm::dot(out_.normals[known], n) > kSmallestWeldCosine) {
         addOrigin(known, w, n);
         return known;
       }
@@ -260,7 +260,7 @@ class Builder {
 
 /// What the centroid of surfel's third of a triangle (the quadrilateral of corner, edge midpoints and
 /// centroid) takes of each of the two other corners.
-constexpr float centroidShare = 7.f / 36;
+constexpr float kCentroidShare = 7.f / 36;
 
 void addNeighbours(Surfels& s) {
   std::vector<std::vector<Surfels::Neighbour>> lists(s.size());
@@ -275,7 +275,7 @@ void addNeighbours(Surfels& s) {
         auto& list = lists[self];
         auto found = std::ranges::find(list, neighbour, &Surfels::Neighbour::surfel);
         if (found == list.end()) found = list.insert(list.end(), {neighbour, 0});
-        found->weight += centroidShare * area / 3 / std::max(s.areas[self], 1e-37f);
+        found->weight += kCentroidShare * area / 3 / std::max(s.areas[self], 1e-37f);
       }
     }
   }
@@ -303,7 +303,7 @@ void placeDiscs(Surfels& s) {
 
 }  // namespace
 
-Surfels createSurfels(std::span<const TriangleMesh> objects, float longestEdge) {
+Surfels createSurfels(std::span<const TriangleMesh> objects, float longestEdge, double lift) {
   Surfels surfels;
   for (uint32_t object = 0; object < objects.size(); ++object) {
     const TriangleMesh& mesh = objects[object];
@@ -320,7 +320,7 @@ Surfels createSurfels(std::span<const TriangleMesh> objects, float longestEdge) 
   surfels.firstOrigin.push_back(static_cast<uint32_t>(surfels.origins.size()));
   addNeighbours(surfels);
   placeDiscs(surfels);
-  Bodies(surfels).leave(surfels);
+  Bodies(surfels, lift).leave(surfels);
   return surfels;
 }
 

@@ -1,5 +1,5 @@
-// Surface elements at the vertices of meshes (thesis, section 4.3.1): oriented discs whose areas add up to
-// the meshes'.
+// Makes surface elements at the vertices of meshes (thesis, section 4.3.1): oriented discs whose areas add up
+// to the meshes'.
 #pragma once
 
 #include <array>
@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "core/base/export.h"
+#include "core/radiosity/bodies.h"
 
 namespace limn::radiosity {
 
-/// The triangles of one object; positions and normals of all objects in one space.
+/// Holds the triangles of one object; positions and normals of all objects are in one space.
 struct TriangleMesh {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;  ///< unit, one per position
@@ -21,7 +22,7 @@ struct TriangleMesh {
   bool doubleSided = false;        ///< elements on both sides
 };
 
-/// A point of an object as a combination of its vertices: what a surface element moves with.
+/// Declares a point of an object as a combination of its vertices, with which a surface element moves.
 struct SurfelOrigin {
   std::array<uint32_t, 3> vertices{};
   glm::vec3 weights{1, 0, 0};
@@ -30,8 +31,8 @@ struct SurfelOrigin {
 
 struct Surfels {
   std::vector<uint32_t> objects;  ///< of each surfel
-  /// Of surfel i: [firstOrigin[i], firstOrigin[i + 1]). The first says where it is; its normal is the mean of
-  /// all.
+  /// Surfel i has the origins [firstOrigin[i], firstOrigin[i + 1]). The first one gives its position; its
+  /// normal is the mean of all.
   std::vector<uint32_t> firstOrigin;
   std::vector<SurfelOrigin> origins;
   std::vector<glm::vec3> vertices;   ///< where triangles meet
@@ -45,7 +46,7 @@ struct Surfels {
   std::vector<unsigned char>
       backless;  ///< of each object: closed or double-sided, so that no ray meets a back
   uint32_t clusterCount = 0;
-  /// Neighbours of surfel i: [firstNeighbour[i], firstNeighbour[i + 1]).
+  /// Holds a neighbour; those of surfel i are [firstNeighbour[i], firstNeighbour[i + 1]).
   struct Neighbour {
     uint32_t surfel = 0;
     float weight = 0;
@@ -54,10 +55,10 @@ struct Surfels {
   std::vector<Neighbour> neighbours;
 
   size_t size() const { return vertices.size(); }
-  /// The centre of surfel i for other places of the vertices: the centroid of its third of the adjacent
-  /// triangles, moved along the normal into the vertex's tangent plane. On smooth surfaces that is the
-  /// vertex, nearly; at the edge of a wall it lies inside the wall's face instead of on the next wall, where
-  /// half of what it saw would lie behind that one.
+  /// Returns the centre of surfel i for other positions of the vertices: the centroid of its third of the
+  /// adjacent triangles, moved along the normal into the vertex's tangent plane. On smooth surfaces that is
+  /// nearly the vertex; at the edge of a wall it lies inside the wall's face instead of on the next wall,
+  /// where half of what it saw would lie behind that one.
   glm::vec3 centre(size_t i, std::span<const glm::vec3> at, const glm::vec3& normal) const {
     glm::vec3 offset(0);
     for (uint32_t k = firstNeighbour[i]; k < firstNeighbour[i + 1]; ++k)
@@ -66,13 +67,15 @@ struct Surfels {
   }
 };
 
-/// Lengths are in units of the scene's radius. Vertices at the same place (within 2^-22) whose normals differ
-/// by less than 45 degrees are one surfel; triangles without area count for nothing, nor do vertices without
-/// triangles. Edges longer than `longestEdge` are halved until none is; triangles that share an edge share
-/// the points on it.
+/// Returns the surfels of the objects. Lengths are in units of the scene's radius. Vertices at the same place
+/// (within 2^-22) whose normals differ by less than 45 degrees are one surfel; triangles without area and
+/// vertices without triangles are ignored. Edges longer than `longestEdge` are halved until none is;
+/// triangles that share an edge share the points on it.
 ///
-/// Clusters are the charts of the texture coordinates; of an object without any, its connected pieces whose
-/// normals have the same dominant axis. Clusters of fewer than 16 surfels are joined, by axis.
-LIMN_API Surfels createSurfels(std::span<const TriangleMesh> objects, float longestEdge);
+/// Clusters are the charts of the texture coordinates; for an object without any, they are its connected
+/// pieces whose normals have the same dominant axis. Clusters of fewer than 16 surfels are joined, by axis.
+/// `lift` is as Bodies has it.
+LIMN_API Surfels createSurfels(std::span<const TriangleMesh> objects, float longestEdge,
+                               double lift = kDefaultLift);
 
 }  // namespace limn::radiosity

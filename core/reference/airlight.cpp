@@ -1,15 +1,15 @@
-#include "core/reference/airlight.h"
+#include "core/reference/private/airlight.h"
 
 #include <limits>
 
 #include "core/scene/light_texture.h"
-#include "glsl/airlight.glsl"
+#include "glsl/media/airlight.glsl"
 
 namespace limn::reference {
 namespace {
 
 /// Random numbers of airlight lie behind those of all other estimators of a pixel.
-constexpr uint32_t firstPair = 1u << 20;
+constexpr uint32_t kFirstPair = 1u << 20;
 
 }  // namespace
 
@@ -25,18 +25,18 @@ glm::dvec3 Airlight::sample(const glm::vec3& eye, const glm::vec3& direction, fl
   if (!(from < to)) return sum;
   for (uint32_t i = 0; i < lights_.size(); ++i) {
     const glsl::Light& light = lights_[i];
-    const glm::vec3 source = lightPoint(light, sampler.pair(firstPair + 2 * i));
+    const glm::vec3 source = lightPoint(light, sampler.pair(kFirstPair + 2 * i));
     const glsl::AirlightRay ray = glsl::airlight_ray(medium.medium(), light, source, 0, eye, direction);
     const float low = glsl::airlight_variable(ray, from), high = glsl::airlight_variable(ray, to);
-    const float t = glsl::airlight_metres(ray, low + sampler.pair(firstPair + 2 * i + 1).x * (high - low));
+    const float t = glsl::airlight_metres(ray, low + sampler.pair(kFirstPair + 2 * i + 1).x * (high - low));
     const glsl::AirlightPoint point = glsl::airlight_point(light, ray, t, 1);
     const glm::vec3& x = point.place;
     const glm::vec3 tint = scene::lightTextureAt(rays_.scene(), light, x);
     const float density = medium.density(x);
     if (density == 0.f || point.sent == glm::vec3(0)) continue;
-    const bool blocked =
-        ray.parallel ? rays_.occluded(x, -glm::vec3(light.direction), std::numeric_limits<float>::infinity())
-                     : rays_.occluded(x, source - x, 0.9999f);
+    const bool blocked = ray.parallel
+                             ? rays_.occluded(x, -light.direction, std::numeric_limits<float>::infinity())
+                             : rays_.occluded(x, source - x, 0.9999f);
     if (blocked) continue;
     const float toLight = ray.parallel ? medium.length(x, -point.from, std::numeric_limits<float>::max())
                                        : medium.lengthBetween(source, x);

@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file_lock.h"
-#include "core/reference/film.h"
+#include "core/reference/private/film.h"
 #include "core/reference/reference.h"
 
 namespace limn::reference {
@@ -44,7 +44,7 @@ std::optional<Result> Cache::get(const std::string& contentHash) const {
     if (hash == metadata.end() || hash->second != contentHash || !noise || !spp || term == metadata.end())
       return std::nullopt;
     const auto kept = metadata;
-    result.image = result.image.select(channelNames(termFromName(term->second)));  // files order them by name
+    result.image = result.image.select(channelNames(parseTerm(term->second)));  // files order them by name
     result.image.metadata() = kept;
     result.noiseRms = *noise;
     result.spp = *spp;

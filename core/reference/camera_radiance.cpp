@@ -1,11 +1,11 @@
-#include "core/reference/camera_radiance.h"
+#include "core/reference/private/camera_radiance.h"
 
-#include "glsl/specular_view.glsl"
+#include "glsl/caustics/specular_view.glsl"
 
 namespace limn::reference {
 
 glm::vec3 cameraRadiance(const Surface& surface, const scene::Material& material,
-                         const EnvironmentLight& environment) {
+                         const scene::EnvironmentLight& environment) {
   const glsl::GBufferSurface& values = surface.values;
   if (!surface.specular()) return values.emission;
   const glsl::SpecularView seen =

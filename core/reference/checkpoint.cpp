@@ -1,4 +1,4 @@
-#include "core/reference/checkpoint.h"
+#include "core/reference/private/checkpoint.h"
 
 #include <xxhash.h>
 

@@ -1,4 +1,4 @@
-#include "core/reference/content_hash.h"
+#include "core/reference/private/content_hash.h"
 
 #include <fmt/format.h>
 #include <xxhash.h>
@@ -12,7 +12,7 @@ namespace limn::reference {
 namespace {
 
 /// Counts the changes of this code that change pictures: old cached results are then not found any more.
-constexpr uint32_t codeVersion = 3;
+constexpr uint32_t kCodeVersion = 3;
 
 class Hasher {
  public:
@@ -85,7 +85,7 @@ void addScene(Hasher& h, const scene::Scene& scene) {
 void addPose(Hasher& h, const scene::Pose& pose, int lights) {
   h.add(pose.instances.size());
   for (const auto& i : pose.instances)
-    h.addAll(i.node == scene::none, i.mesh, i.primitive, i.objectToWorld, i.deformed);
+    h.addAll(i.node == scene::kNone, i.mesh, i.primitive, i.objectToWorld, i.deformed);
   h.add(pose.deformed.size());
   for (const auto& d : pose.deformed) h.addAll(d.mesh, d.primitive, d.joints, d.morphWeights);
   for (const auto& d : pose.dynamic) addPrimitive(h, *d.primitive);
@@ -102,13 +102,13 @@ void addDensity(Hasher& h, const scene::Medium& medium, double time) {
 }
 
 void addWork(Hasher& h, const Request& r) {
-  h.add(codeVersion);
+  h.add(kCodeVersion);
   addScene(h, r.scene);
   addDensity(h, r.scene.medium, r.pose.time);
   // Lights that stand for the environment do not change pictures of all light.
-  addPose(h, r.pose, r.light == allLights ? ownLights(r.pose) : static_cast<int>(r.pose.lights.size()));
+  addPose(h, r.pose, r.light == kAllLights ? ownLights(r.pose) : static_cast<int>(r.pose.lights.size()));
   h.addAll(r.camera.worldToView, r.camera.yfov, r.camera.near);
-  h.addAll(r.width, r.height, r.term, r.light, r.seed, r.aa);
+  h.addAll(r.width, r.height, termInfo(r.term).hashed, r.light, r.seed, r.aa);
   if (r.bounces > 0) h.add(r.bounces);
   constexpr uint32_t interfacesFollow = 0x5eec;  // tells them from bounces
   if (r.interfaces != 0) h.addAll(interfacesFollow, r.interfaces);

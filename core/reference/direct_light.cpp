@@ -1,8 +1,8 @@
-#include "core/reference/direct_light.h"
+#include "core/reference/private/direct_light.h"
 
 #include <glm/glm.hpp>
 
-#include "core/reference/light_view.h"
+#include "core/reference/private/light_view.h"
 #include "core/scene/light_texture.h"
 
 namespace limn::reference {
@@ -89,9 +89,9 @@ struct Estimate {
 DirectLight::DirectLight(const RayScene& rays, const Request& request)
     : rays_(rays), lights_(request.pose.lights), environment_(request.scene.environment) {
   const int count = static_cast<int>(lights_.size());
-  first_ = request.light == allLights ? 0 : std::min(request.light, count);
-  last_ = request.light == allLights ? ownLights(request.pose) : std::min(request.light + 1, count);
-  withEnvironment_ = request.light == allLights || request.light == count;
+  first_ = request.light == kAllLights ? 0 : std::min(request.light, count);
+  last_ = request.light == kAllLights ? ownLights(request.pose) : std::min(request.light + 1, count);
+  withEnvironment_ = request.light == kAllLights || request.light == count;
 }
 
 void DirectLight::add(const Surface& surface, const SampleRange& samples, Sums& sums) const {
@@ -106,7 +106,7 @@ void DirectLight::add(const Surface& surface, const SampleRange& samples, Sums& 
                             .tint = scene::lightTextureAt(rays_.scene(), light, surface.position)};
     if (isPunctual(light))
       estimate.addPunctual(PointView(light, surface));
-    else if (light.info.x == glsl::light_rectangle || glsl::light_is_distant_rectangle(light))
+    else if (light.type == glsl::light_rectangle || glsl::light_is_distant_rectangle(light))
       estimate.addExtended(RectangleView(light, surface));
     else
       estimate.addExtended(ConeView(light, surface));

@@ -1,4 +1,4 @@
-#include "core/reference/film.h"
+#include "core/reference/private/film.h"
 
 #include <tbb/parallel_for.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/reference/camera_radiance.h"
+#include "core/reference/private/camera_radiance.h"
 
 namespace limn::reference {
 namespace {
@@ -127,7 +127,7 @@ double noiseOf(const Integrator& integrator, Term term, const Accumulators& stat
 
 void develop(const Integrator& integrator, const View& view, const Request& request,
              const Accumulators& state, const std::vector<unsigned char>& covered, Image& image) {
-  const EnvironmentLight environment(request.scene.environment);
+  const scene::EnvironmentLight environment(request.scene.environment);
   tbb::parallel_for(size_t{0}, view.pixelCount(), [&](size_t pixel) {
     const std::span<float> out = imagePixel(view, image, pixel);
     if (request.term == Term::visibility) {

@@ -1,4 +1,4 @@
-#include "core/reference/light_tracer.h"
+#include "core/reference/private/light_tracer.h"
 
 #include <tbb/parallel_for.h>
 
@@ -6,21 +6,21 @@
 #include <cmath>
 #include <limits>
 
-#include "core/reference/optics.h"
-#include "core/reference/specular_paths.h"
+#include "core/reference/private/optics.h"
+#include "core/reference/private/specular_paths.h"
 #include "core/scene/light_texture.h"
-#include "glsl/caustic_ray.glsl"
-#include "glsl/geometry.glsl"
-#include "glsl/light_intensity.glsl"
+#include "glsl/caustics/caustic_ray.glsl"
+#include "glsl/light/light_intensity.glsl"
+#include "glsl/numeric/geometry.glsl"
 
 namespace limn::reference {
 namespace {
 
-constexpr int scatterPoints = 4;            // on each segment in the medium
-constexpr size_t mostFilmPixels = 1 << 22;  // of all films together, unless two are more
-constexpr float leastCosine = 1e-4f;        // as in trace_rays.comp.glsl
-constexpr int mostEvents = 512;             // of a chain without limit
-constexpr uint32_t firstRoulette = 8;       // from this event on it goes on with a probability alone
+constexpr int kScatterPoints = 4;            // on each segment in the medium
+constexpr size_t kMostFilmPixels = 1 << 22;  // of all films together, unless two are more
+constexpr float kLeastCosine = 1e-4f;        // as in trace_rays.comp.glsl
+constexpr int kMostEvents = 512;             // of a chain without limit
+constexpr uint32_t kFirstRoulette = 8;       // from this event on it goes on with a probability alone
 
 /// Flux that arrives from a light in the direction of the objects, per sample, before the light's own
 /// directional factors.
@@ -31,10 +31,10 @@ struct Aim {
 
 Aim aimAt(const glsl::Light& light, const glm::vec3& centre, float radius, float away, glm::vec2 u,
           glm::vec2 onLight) {
-  if (light.info.x == glsl::light_directional) {
+  if (light.type == glsl::light_directional) {
     glm::vec3 direction(light.direction);
-    if (light.cone.w > 0) {
-      const float tangent = std::tan(std::min(0.5f * light.cone.w, 1.5f));
+    if (light.angular_diameter > 0) {
+      const float tangent = std::tan(std::min(0.5f * light.angular_diameter, 1.5f));
       const glm::vec2 disc = tangent * glsl::sample_disc(onLight);
       direction = glm::normalize(glsl::from_local(glsl::frame_around(direction), glm::vec3(disc, 1)));
     }
@@ -89,7 +89,7 @@ LightTracer::LightTracer(const View& view, const Request& request, const std::ve
   }
   if (!media_ && !surfaces_) lights_.clear();
   const size_t pixels = view.pixelCount();
-  const size_t films = std::clamp<size_t>(mostFilmPixels / std::max<size_t>(pixels, 1), 2, 16) / 2 * 2;
+  const size_t films = std::clamp<size_t>(kMostFilmPixels / std::max<size_t>(pixels, 1), 2, 16) / 2 * 2;
   if (present()) films_.assign(films, std::vector<glm::dvec3>(pixels));
 }
 
@@ -107,7 +107,7 @@ void LightTracer::trace(uint32_t first, uint32_t count, std::vector<Sums>& sums)
       sampler.startSample(static_cast<uint32_t>(i));
       Path path;
       if (!emit(sampler, i, path)) continue;
-      if (request_.interfaces == allInterfaces)
+      if (request_.interfaces == kAllInterfaces)
         wander(path, sampler, film);
       else
         follow(path, sampler, film);
@@ -124,7 +124,7 @@ void LightTracer::trace(uint32_t first, uint32_t count, std::vector<Sums>& sums)
 bool LightTracer::emit(const Sampler& sampler, uint64_t index, Path& path) const {
   const size_t count = lights_.size();
   const glsl::Light& light = lights_[index % count];
-  const float scene = medium_.ball.w, offset = 0x1p-18f * scene;
+  const float scene = medium_.ball.radius, offset = 0x1p-18f * scene;
   const Aim aim = aimAt(light, objects_.centre(), 1.001f * objects_.radius(), 4 * scene, sampler.pair(0),
                         sampler.pair(1));
   Hit hit;
@@ -136,10 +136,10 @@ bool LightTracer::emit(const Sampler& sampler, uint64_t index, Path& path) const
   path.flux =
       glsl::light_point_intensity(light, aim.origin, p, 1) * (aim.measure * static_cast<float>(count));
   path.flux *= scene::lightTextureAt(view_.rays.scene(), light, p);
-  path.flux *= light.info.x == glsl::light_directional
+  path.flux *= light.type == glsl::light_directional
                    ? view_.rays.medium().transmittanceToInfinity(p, -aim.direction)
                    : view_.rays.medium().transmittanceBetween(aim.origin, p);
-  return path.flux != glm::vec3(0) && glm::dot(path.surface.normal, -aim.direction) > leastCosine;
+  return path.flux != glm::vec3(0) && glm::dot(path.surface.normal, -aim.direction) > kLeastCosine;
 }
 
 void LightTracer::follow(const Path& path, const Sampler& sampler, Film& film) const {
@@ -173,7 +173,7 @@ void LightTracer::refract(const Path& path, const glsl::Optics& optics, const gl
     return;
   }
   const Interface exit = interfaceAt(view_.rays, hit, direction);
-  if (!exit.back || !(glm::dot(exit.normal, -direction) > leastCosine)) return;
+  if (!exit.back || !(glm::dot(exit.normal, -direction) > kLeastCosine)) return;
   const glsl::SpecularEvent event = glsl::specular_event(optics, direction, exit.normal, true);
   if (event.refracted == glm::vec3(0)) return;
   const float adjoint = glsl::shading_flux(exit.normal, exit.geometricNormal, direction, event.refracted);
@@ -186,7 +186,7 @@ void LightTracer::wander(const Path& path, const Sampler& sampler, Film& film) c
   Interface s = path.surface;
   glm::vec3 direction = path.direction, flux = path.flux;
   const float sent = largest(flux);
-  for (uint32_t i = 0; i < mostEvents; ++i) {
+  for (uint32_t i = 0; i < kMostEvents; ++i) {
     const glsl::Optics optics = opticsOf(*view_.rays.draws()[s.draw].material, s.baseColour, s.metallic);
     const glsl::SpecularEvent event = glsl::specular_event(optics, direction, s.normal, s.back);
     const auto share = [&](const glm::vec3& leaving, const glm::vec3& factor) {
@@ -202,7 +202,7 @@ void LightTracer::wander(const Path& path, const Sampler& sampler, Film& film) c
     const float probability = largest(reflected) / both;
     const bool mirrored = u.x < probability;
     flux *= mirrored ? reflected / probability : passing / (1 - probability);
-    if (i >= firstRoulette) {
+    if (i >= kFirstRoulette) {
       const float survival = std::min(largest(flux) / sent, 1.f);
       if (u.y >= survival) return;
       flux /= survival;
@@ -222,7 +222,7 @@ void LightTracer::wander(const Path& path, const Sampler& sampler, Film& film) c
       arrive(from, direction, flux, &hit, sampler, film);  // the medium alone: it reflects nothing
       flux *= view_.rays.medium().transmittanceBetween(from, s.position);
     }
-    if (!(glm::dot(s.normal, -direction) > leastCosine)) return;
+    if (!(glm::dot(s.normal, -direction) > kLeastCosine)) return;
   }
 }
 
@@ -244,10 +244,10 @@ void LightTracer::arrive(const glm::vec3& from, const glm::vec3& direction, cons
   const float reach = std::min(range.y, hit ? hit->depth : std::numeric_limits<float>::max()) - begin;
   if (media_ && reach > 0) {
     const float u = sampler.pair(2).x;
-    for (int i = 0; i < scatterPoints; ++i) {
-      const float l = begin + reach * (static_cast<float>(i) + u) / scatterPoints;
+    for (int i = 0; i < kScatterPoints; ++i) {
+      const float l = begin + reach * (static_cast<float>(i) + u) / kScatterPoints;
       scatter(from + l * direction, direction,
-              flux * medium.transmittance(from, direction, l) * (reach / scatterPoints), film);
+              flux * medium.transmittance(from, direction, l) * (reach / kScatterPoints), film);
     }
   }
   if (surfaces_ && hit)

@@ -1,4 +1,4 @@
-#include "core/reference/light_view.h"
+#include "core/reference/private/light_view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,17 +9,16 @@ namespace {
 
 /// Distance along the light's normal that clears its own surface, as Draw::rayOffset does for receivers.
 float lightOffset(const glsl::Light& light) {
-  const glm::vec3 reach = glm::abs(glm::vec3(light.position)) +
-                          glm::abs(glm::vec3(light.axis_u)) * light.axis_u.w +
-                          glm::abs(glm::vec3(light.axis_v)) * light.axis_v.w;
+  const glm::vec3 reach = glm::abs(light.position) + glm::abs(light.axis_u) * light.length_u +
+                          glm::abs(light.axis_v) * light.length_v;
   return 0x1p-20f * std::max(reach.x, std::max(reach.y, reach.z));
 }
 
 }  // namespace
 
 bool isPunctual(const glsl::Light& light) {
-  return light.info.x == glsl::light_point || light.info.x == glsl::light_spot ||
-         (light.info.x == glsl::light_directional && !(light.cone.w > 0.f) &&
+  return light.type == glsl::light_point || light.type == glsl::light_spot ||
+         (light.type == glsl::light_directional && !(light.angular_diameter > 0.f) &&
           !glsl::light_is_distant_rectangle(light));
 }
 
@@ -30,14 +29,14 @@ bool unblocked(const RayScene& rays, const Surface& receiver, const Arrival& arr
 }
 
 PointView::PointView(const glsl::Light& light, const Surface& receiver) {
-  if (light.info.x == glsl::light_directional) {
-    arrival_.direction = -glm::vec3(light.direction);
+  if (light.type == glsl::light_directional) {
+    arrival_.direction = -light.direction;
   } else {
-    const glm::vec3 offset = glm::vec3(light.position) - receiver.position;
+    const glm::vec3 offset = light.position - receiver.position;
     const float distance = glm::length(offset);
     if (!(distance > 0.f)) return;
     arrival_.direction = offset / distance;
-    arrival_.target = glm::vec3(light.position);
+    arrival_.target = light.position;
     arrival_.finite = true;
   }
   above_ = glm::dot(arrival_.direction, receiver.values.geometric_normal) > 0.f &&
@@ -48,19 +47,19 @@ PointView::PointView(const glsl::Light& light, const Surface& receiver) {
 RectangleView::RectangleView(const glsl::Light& light, const Surface& receiver)
     : light_(light), receiver_(receiver.position), normal_(receiver.values.geometric_normal) {
   // A flat light does not see itself; rounding must not decide on which side of itself it lies.
-  if (light.info.z == receiver.draw) return;
+  if (light.own_instance == receiver.draw) return;
   part_ = glsl::rectangle_visible_part(light, receiver_, normal_);
   if (part_.count == 0) return;
   rectangle_ = glsl::rectangle_from(light, receiver_);
-  area_ = glsl::rectangle_part_share(part_) * light.axis_u.w * light.axis_v.w;
+  area_ = glsl::rectangle_part_share(part_) * light.length_u * light.length_v;
   radiance_ = glsl::rectangle_radiance(light) * glsl::receiver_factor(light, receiver_);
-  facing_ = glm::vec3(light.direction);
+  facing_ = light.direction;
   if (glsl::light_is_distant_rectangle(light)) {
-    facing_ = glm::cross(glm::vec3(light.axis_v), glm::vec3(light.axis_u));
+    facing_ = glm::cross(light.axis_v, light.axis_u);
     return;
   }
   finite_ = true;
-  clearance_ = lightOffset(light) * glsl::rectangle_side(light, receiver_) * glm::vec3(light.direction);
+  clearance_ = lightOffset(light) * glsl::rectangle_side(light, receiver_) * light.direction;
 }
 
 Arrival RectangleView::at(glm::vec2 ab) const {
@@ -87,18 +86,18 @@ Arrival RectangleView::towards(const glm::vec3& direction) const {
   const float distance = glm::dot(facing_, rectangle_.centre) / glm::dot(facing_, direction);
   if (!(distance > 0.f && std::isfinite(distance))) return {};
   const glm::vec3 offset = distance * direction - rectangle_.centre;
-  const glm::vec2 ab(glm::dot(offset, glm::vec3(light_.axis_u)) / light_.axis_u.w,
-                     glm::dot(offset, glm::vec3(light_.axis_v)) / light_.axis_v.w);
+  const glm::vec2 ab(glm::dot(offset, light_.axis_u) / light_.length_u,
+                     glm::dot(offset, light_.axis_v) / light_.length_v);
   return std::abs(ab.x) <= 0.5f && std::abs(ab.y) <= 0.5f ? at(ab) : Arrival{};
 }
 
 ConeView::ConeView(const glsl::Light& light, const Surface& receiver)
     : normal_(receiver.values.geometric_normal) {
-  const float half = std::min(0.5f * light.cone.w, 1.55f);
+  const float half = std::min(0.5f * light.angular_diameter, 1.55f);
   const float sine = std::sin(half), sineHalf = std::sin(0.5f * half);
-  frame_ = glsl::frame_around(-glm::vec3(light.direction));
+  frame_ = glsl::frame_around(-light.direction);
   oneMinusCosine_ = 2.f * sineHalf * sineHalf;
-  radiance_ = glm::vec3(light.emission) / (glsl::pi * sine * sine);
+  radiance_ = light.emission / (glsl::pi * sine * sine);
   above_ = glm::dot(frame_.n, normal_) > -sine;
 }
 

@@ -2,14 +2,14 @@
 #include <algorithm>
 #include <glm/glm.hpp>
 
-#include "core/reference/direct_light.h"
-#include "core/reference/specular_paths.h"
+#include "core/reference/private/direct_light.h"
+#include "core/reference/private/specular_paths.h"
 
 namespace limn::reference {
 namespace {
 
 /// From this bounce on a path goes on with a probability alone (Arvo and Kirk 1990, Russian roulette).
-constexpr int firstRoulette = 4;
+constexpr int kFirstRoulette = 4;
 
 class PathIntegrator final : public Integrator {
  public:
@@ -73,7 +73,7 @@ class PathIntegrator final : public Integrator {
       sampler.startSample(sample);
       const glm::vec2 lobe = sampler.pair(pair + 1);
       if (!step(surface, glm::vec3(sampler.pair(pair), lobe.x), throughput)) return;
-      if (bounce >= firstRoulette && !survives(lobe.y, throughput)) return;
+      if (bounce >= kFirstRoulette && !survives(lobe.y, throughput)) return;
       Sums reflected{};
       light_.add(surface, {sampler, pair + 2, sample, 1}, reflected);
       for (int c = 0; c < 3; ++c)

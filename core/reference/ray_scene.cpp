@@ -1,4 +1,4 @@
-#include "core/reference/ray_scene.h"
+#include "core/reference/private/ray_scene.h"
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/reference/texture.h"
-#include "glsl/texture_level.glsl"
+#include "core/scene/texture_lookup.h"
+#include "glsl/surface/texture_level.glsl"
 
 namespace limn::reference {
 namespace {
@@ -51,7 +51,7 @@ struct GeometryUser {
 };
 
 uint32_t drawOf(const GeometryUser& user, const RTCIntersectContext& context) {
-  return user.draw != scene::none ? static_cast<uint32_t>(user.draw) : context.instID[0];
+  return user.draw != scene::kNone ? static_cast<uint32_t>(user.draw) : context.instID[0];
 }
 
 glm::vec2 uvAt(const scene::Primitive& primitive, uint32_t triangle, float u, float v) {
@@ -62,8 +62,8 @@ glm::vec2 uvAt(const scene::Primitive& primitive, uint32_t triangle, float u, fl
 float coverageAt(const scene::Scene& scene, const scene::Primitive& primitive,
                  const scene::Material& material, uint32_t triangle, float u, float v, float lod) {
   float alpha = material.baseColour.a;
-  if (material.baseColourTexture.image != scene::none && !primitive.uvs.empty())
-    alpha *= sampleTexture(scene, material.baseColourTexture, uvAt(primitive, triangle, u, v), lod).a;
+  if (material.baseColourTexture.image != scene::kNone && !primitive.uvs.empty())
+    alpha *= scene::sampleTexture(scene, material.baseColourTexture, uvAt(primitive, triangle, u, v), lod).a;
   if (!primitive.colours.empty()) {
     const uint32_t* i = &primitive.indices[3 * static_cast<size_t>(triangle)];
     alpha *= (1.f - u - v) * primitive.colours[i[0]].a + u * primitive.colours[i[1]].a +
@@ -94,7 +94,7 @@ void surfaceFilter(const RTCFilterFunctionNArguments* args) {
   const scene::Scene& scene = context.scene->scene();
   const Draw& draw = context.scene->draws()[drawOf(user, context.embree)];
   float lod = 0.f;
-  if (context.frame && user.material->baseColourTexture.image != scene::none && !user.primitive->uvs.empty())
+  if (context.frame && user.material->baseColourTexture.image != scene::kNone && !user.primitive->uvs.empty())
     lod = levelOfDetail(scene, user.material->baseColourTexture,
                         textureFootprint(draw, hit.primID, *context.frame, context.x, context.y));
   if (coverageAt(scene, *user.primitive, *user.material, hit.primID, hit.u, hit.v, lod) <
@@ -169,7 +169,7 @@ TextureFootprint textureFootprint(const Draw& draw, uint32_t triangle, const gls
 
 float levelOfDetail(const scene::Scene& scene, const scene::TextureRef& texture,
                     const TextureFootprint& footprint) {
-  const float lod = glsl::texture_level(footprint.dx, footprint.dy, textureSize(scene, texture));
+  const float lod = glsl::texture_level(footprint.dx, footprint.dy, scene::textureSize(scene, texture));
   return std::isnan(lod) ? 32.f : lod;
 }
 
@@ -265,14 +265,14 @@ RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose)
   Hierarchy& h = *hierarchy_;
   std::map<std::pair<int, int>, int> uses;
   for (const auto& instance : pose.instances)
-    if (instance.node != scene::none && instance.deformed == scene::none)
+    if (instance.node != scene::kNone && instance.deformed == scene::kNone)
       ++uses[{instance.mesh, instance.primitive}];
   h.users.reserve(pose.instances.size() + uses.size());
   draws_.reserve(pose.instances.size());
 
   for (const scene::DrawInstance& instance : pose.instances) {
     const auto id = static_cast<unsigned>(draws_.size());
-    const bool dynamic = instance.node == scene::none;
+    const bool dynamic = instance.node == scene::kNone;
     const auto mesh = static_cast<size_t>(instance.mesh);
     const scene::Primitive& primitive =
         dynamic ? *pose.dynamic[mesh].primitive
@@ -289,14 +289,14 @@ RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose)
     draw.orientation = glm::determinant(glm::dmat3(glm::dmat4(matrix))) < 0 ? -1.f : 1.f;
 
     const std::pair<int, int> key{instance.mesh, instance.primitive};
-    if (!dynamic && instance.deformed == scene::none && uses[key] > 1) {
+    if (!dynamic && instance.deformed == scene::kNone && uses[key] > 1) {
       draw.toWorld = matrix;
       draw.positions =
-          h.attachShared(id, key, primitive, matrix, {&primitive, draw.material, scene::none, 1.f});
+          h.attachShared(id, key, primitive, matrix, {&primitive, draw.material, scene::kNone, 1.f});
     } else {
       std::vector<glm::vec3> deformedPositions;
       const std::vector<glm::vec3>* positions = &primitive.positions;
-      if (instance.deformed != scene::none) {
+      if (instance.deformed != scene::kNone) {
         auto& normals = h.normals.emplace_back();
         auto& tangents = h.tangents.emplace_back();
         scene::deform(primitive, pose.deformed[static_cast<size_t>(instance.deformed)], deformedPositions,

@@ -9,10 +9,11 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "core/reference/airlight.h"
-#include "core/reference/content_hash.h"
-#include "core/reference/film.h"
-#include "core/reference/light_tracer.h"
+#include "core/base/text.h"
+#include "core/reference/private/airlight.h"
+#include "core/reference/private/content_hash.h"
+#include "core/reference/private/film.h"
+#include "core/reference/private/light_tracer.h"
 #include "core/reference/reference.h"
 #include "core/scene/camera.h"
 #include "core/scene/medium.h"
@@ -27,12 +28,34 @@ double secondsSince(Clock::time_point start) {
 }
 
 std::string acceptedInterfaces(Term term) {
-  if (term == Term::specular || term == Term::final)
-    return fmt::format("accepted are {} to {} and {} (all)", term == Term::specular ? 1 : 0, maxInterfaces,
-                       allInterfaces);
-  if (acceptsInterfaces(term, allInterfaces))
-    return fmt::format("accepted are 0 (off one, or in and out) and {} (all)", allInterfaces);
-  return "only specular, final, caustic and media have interfaces";
+  const auto seen = [](int least) {
+    return fmt::format("accepted are {} to {} and {} (all)", least, kMaxInterfaces, kAllInterfaces);
+  };
+  switch (termInfo(term).interfaces) {
+    case TermInterfaces::fromZero:
+      return seen(0);
+    case TermInterfaces::fromOne:
+      return seen(1);
+    case TermInterfaces::light:
+      return fmt::format("accepted are 0 (off one, or in and out) and {} (all)", kAllInterfaces);
+    case TermInterfaces::none:
+      break;
+  }
+  constexpr TermSet others =
+      termsWhere([](const TermInfo& info) { return info.interfaces != TermInterfaces::none; });
+  return fmt::format("only {} have interfaces", joined(termNames(others)));
+}
+
+void checkBounces(const Request& r) {
+  const int least = defaultBounces(r.term);
+  if (r.bounces >= least && r.bounces <= (hasBounces(r.term) ? kMaxBounces : 0)) return;
+  if (hasBounces(r.term))
+    throw UsageError(fmt::format("reference: bounces {} is not in {} .. {} with the term {}", r.bounces,
+                                 least, kMaxBounces, name(r.term)));
+  constexpr TermSet others =
+      termsWhere([](const TermInfo& info) { return info.bounces != TermBounces::none; });
+  throw UsageError(fmt::format("reference: bounces {} with the term {}; only {} have bounces", r.bounces,
+                               name(r.term), joined(termNames(others))));
 }
 
 void validate(const Request& r) {
@@ -45,24 +68,18 @@ void validate(const Request& r) {
     throw UsageError(fmt::format("reference: spp {} is not in 1 .. 2^24", r.spp));
   if (!(r.noise >= 0 && r.noise < 1))
     throw UsageError(fmt::format("reference: noise {} is not in [0, 1) (0: take spp samples)", r.noise));
+  if (!contains(kPicturedTerms, r.term))
+    throw UsageError(fmt::format("reference: no picture shows the term {} alone", name(r.term)));
   if (r.term == Term::visibility && (r.light < 0 || r.light >= lights))
     throw UsageError(
         fmt::format("reference: visibility needs one light; {} is not in 0 .. {}", r.light, lights - 1));
-  const bool bounces = hasBounces(r.term);
-  const int least = r.term == Term::indirect ? 1 : 0;
-  if (r.bounces < least || r.bounces > (bounces ? maxBounces : 0))
-    throw UsageError(bounces
-                         ? fmt::format("reference: bounces {} is not in {} .. {} with the term {}", r.bounces,
-                                       least, maxBounces, name(r.term))
-                         : fmt::format("reference: bounces {} with the term {}; only indirect, specular and "
-                                       "final have bounces",
-                                       r.bounces, name(r.term)));
+  checkBounces(r);
   if (!acceptsInterfaces(r.term, r.interfaces))
     throw UsageError(fmt::format("reference: interfaces {} with the term {}; {}", r.interfaces, name(r.term),
                                  acceptedInterfaces(r.term)));
-  if (r.light < allLights || r.light > lights)
+  if (r.light < kAllLights || r.light > lights)
     throw UsageError(fmt::format("reference: light {} is not in 0 .. {} ({}: the environment) nor {} (all)",
-                                 r.light, lights, lights, allLights));
+                                 r.light, lights, lights, kAllLights));
 }
 
 std::unique_ptr<Integrator> makeIntegrator(const RayScene& rays, const Request& request) {
@@ -269,7 +286,7 @@ class Work {
 
 int ownLights(const scene::Pose& pose) {
   const auto environment = [](const glsl::Light& light) {
-    return (light.info.y & glsl::light_flag_environment) != 0;
+    return (light.flags & glsl::light_flag_environment) != 0;
   };
   return static_cast<int>(std::find_if(pose.lights.begin(), pose.lights.end(), environment) -
                           pose.lights.begin());

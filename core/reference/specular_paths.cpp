@@ -1,18 +1,18 @@
-#include "core/reference/specular_paths.h"
+#include "core/reference/private/specular_paths.h"
 
 #include <algorithm>
 #include <glm/glm.hpp>
 
-#include "core/reference/optics.h"
+#include "core/reference/private/optics.h"
 #include "core/reference/reference.h"
-#include "glsl/caustic_ray.glsl"
+#include "glsl/caustics/caustic_ray.glsl"
 
 namespace limn::reference {
 namespace {
 
-constexpr float leastCosine = 1e-4f;   // as in refraction.comp.glsl
-constexpr int mostEvents = 512;        // of a path without limit
-constexpr uint32_t firstRoulette = 8;  // from this event on it goes on with a probability alone
+constexpr float kLeastCosine = 1e-4f;   // as in refraction.comp.glsl
+constexpr int kMostEvents = 512;        // of a path without limit
+constexpr uint32_t kFirstRoulette = 8;  // from this event on it goes on with a probability alone
 
 glm::dvec3 doubles(const glm::vec3& v) {
   return glm::dvec3(v);
@@ -32,7 +32,7 @@ struct First {
       : optics(opticsOf(material, s.values.base_colour, s.values.metallic)),
         inside((s.values.flags & glsl::gbuffer_flag_back) != 0) {
     const glm::vec3& n =
-        glm::dot(s.values.normal, s.view) > leastCosine ? s.values.normal : s.values.geometric_normal;
+        glm::dot(s.values.normal, s.view) > kLeastCosine ? s.values.normal : s.values.geometric_normal;
     event = glsl::specular_event(optics, -s.view, n, inside);
   }
 };
@@ -43,7 +43,7 @@ SpecularPaths::SpecularPaths(const RayScene& rays, int interfaces)
     : rays_(rays), environment_(rays.scene().environment), interfaces_(interfaces) {}
 
 bool SpecularPaths::many() const {
-  return interfaces_ == allInterfaces;
+  return interfaces_ == kAllInterfaces;
 }
 
 SpecularEnd SpecularPaths::backgroundAlong(const Ray& ray, const glm::vec3& from) const {
@@ -56,14 +56,14 @@ SpecularEnd SpecularPaths::endAt(const Ray& ray, const Hit& hit, const glm::vec3
   std::optional<Surface> surface = surfaceAlong(rays_, hit, ray.direction);
   if (!surface) return {};
   const glm::vec3 passes = rays_.medium().transmittanceBetween(from, surface->position);
-  return {ray.throughput * doubles(passes), std::move(surface)};
+  return {ray.throughput * doubles(passes), surface};
 }
 
 /// The end of a ray that specular surfaces do not stop.
 SpecularEnd SpecularPaths::matteAlong(const Ray& ray) const {
   Ray rest = ray;
   Hit hit;
-  for (int i = 0; i < mostEvents && rays_.nearest(rest.origin, rest.direction, hit); ++i) {
+  for (int i = 0; i < kMostEvents && rays_.nearest(rest.origin, rest.direction, hit); ++i) {
     if (!rays_.draws()[hit.draw].material->specularSurface()) return endAt(ray, hit, ray.origin);
     const Interface passed = interfaceAt(rays_, hit, rest.direction);
     rest.origin = passed.position - passed.rayOffset * passed.geometricNormal;
@@ -79,7 +79,7 @@ SpecularEnd SpecularPaths::throughBody(const Surface& seen, const glsl::Optics& 
       return interfaces == 1 ? matteAlong(ray) : SpecularEnd{};
     if (interfaces >= interfaces_) return {};
     const Interface exit = interfaceAt(rays_, hit, ray.direction);
-    if (!exit.back || !(glm::dot(exit.normal, -ray.direction) > leastCosine)) return {};
+    if (!exit.back || !(glm::dot(exit.normal, -ray.direction) > kLeastCosine)) return {};
     const glsl::SpecularEvent event = glsl::specular_event(optics, ray.direction, exit.normal, true);
     ray.throughput *= doubles(glsl::optics_absorption(optics, hit.depth));
     const bool inside = event.refracted == glm::vec3(0);
@@ -111,7 +111,7 @@ SpecularEnd SpecularPaths::sample(const Surface& seen, const Sampler& sampler) c
   glsl::SpecularEvent event = first.event;
   Ray ray{seen.position, -seen.view, glm::dvec3(1)};
   glm::vec3 position = seen.position, away = seen.rayOffset * seen.values.geometric_normal;
-  for (uint32_t i = 0; i < mostEvents; ++i) {
+  for (uint32_t i = 0; i < kMostEvents; ++i) {
     const glm::vec2 u = sampler.pair(firstPair + i);
     const glm::dvec3 reflected = doubles(event.reflectance),
                      passing = event.refracted == glm::vec3(0) ? glm::dvec3(0) : doubles(event.transmittance);
@@ -121,7 +121,7 @@ SpecularEnd SpecularPaths::sample(const Surface& seen, const Sampler& sampler) c
     const bool mirrored = static_cast<double>(u.x) < probability;
     ray.throughput *= mirrored ? reflected / probability : passing / (1 - probability);
     ray.direction = mirrored ? event.reflected : event.refracted;
-    if (i >= firstRoulette) {
+    if (i >= kFirstRoulette) {
       const double survival = std::min(largest(ray.throughput), 1.0);
       if (static_cast<double>(u.y) >= survival) return {};
       ray.throughput /= survival;
@@ -132,7 +132,7 @@ SpecularEnd SpecularPaths::sample(const Surface& seen, const Sampler& sampler) c
     const scene::Material& material = *rays_.draws()[hit.draw].material;
     if (!material.specularSurface()) return endAt(ray, hit, ray.origin);
     const Interface met = interfaceAt(rays_, hit, ray.direction);
-    if (!(glm::dot(met.normal, -ray.direction) > leastCosine)) return {};
+    if (!(glm::dot(met.normal, -ray.direction) > kLeastCosine)) return {};
     const glsl::Optics optics = opticsOf(material, met.baseColour, met.metallic);
     const bool body = met.back && optics.thickness > 0;  // what lies before its back is its inside
     ray.throughput *= doubles(body ? glsl::optics_absorption(optics, hit.depth)

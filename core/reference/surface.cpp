@@ -1,9 +1,9 @@
-#include "core/reference/surface.h"
+#include "core/reference/private/surface.h"
 
 #include <algorithm>
 
-#include "core/reference/texture.h"
-#include "glsl/normal_map.glsl"
+#include "core/scene/texture_lookup.h"
+#include "glsl/surface/normal_map.glsl"
 
 namespace limn::reference {
 namespace {
@@ -26,10 +26,11 @@ struct TextureLookup {
   glm::vec2 uv;
   std::optional<TextureFootprint> footprint;  ///< nullopt: full size
 
-  bool has(const scene::TextureRef& texture) const { return hasUv && texture.image != scene::none; }
+  bool has(const scene::TextureRef& texture) const { return hasUv && texture.image != scene::kNone; }
   glm::vec4 operator()(const scene::TextureRef& texture) const {
     if (!has(texture)) return glm::vec4(1);
-    return sampleTexture(scene, texture, uv, footprint ? levelOfDetail(scene, texture, *footprint) : 0.f);
+    return scene::sampleTexture(scene, texture, uv,
+                                footprint ? levelOfDetail(scene, texture, *footprint) : 0.f);
   }
 };
 

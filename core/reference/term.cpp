@@ -1,49 +1,26 @@
-// The names of terms, and what there is to ask of them.
-#include <fmt/format.h>
-
-#include "core/base/error.h"
+// What there is to ask of a term's reference, as the table of terms has it.
 #include "core/reference/reference.h"
 
 namespace limn::reference {
 
 bool hasBounces(Term term) {
-  return term == Term::indirect || term == Term::specular || term == Term::final;
+  return termInfo(term).bounces != TermBounces::none;
 }
 
 bool acceptsInterfaces(Term term, int interfaces) {
-  const bool seen = term == Term::specular || term == Term::final;
-  if (interfaces == allInterfaces) return seen || term == Term::caustic || term == Term::media;
-  if (interfaces == 0) return term != Term::specular;
-  return seen && interfaces > 0 && interfaces <= maxInterfaces;
+  const TermInterfaces taken = termInfo(term).interfaces;
+  if (interfaces == kAllInterfaces) return taken != TermInterfaces::none;
+  if (interfaces == 0) return taken != TermInterfaces::fromOne;
+  const bool some = taken == TermInterfaces::fromZero || taken == TermInterfaces::fromOne;
+  return some && interfaces > 0 && interfaces <= kMaxInterfaces;
 }
 
-const char* name(Term term) {
-  switch (term) {
-    case Term::direct:
-      return "direct";
-    case Term::visibility:
-      return "visibility";
-    case Term::final:
-      return "final";
-    case Term::indirect:
-      return "indirect";
-    case Term::caustic:
-      return "caustic";
-    case Term::media:
-      return "media";
-    case Term::specular:
-      return "specular";
-  }
-  return "";
+int defaultBounces(Term term) {
+  return termInfo(term).bounces == TermBounces::fromOne ? 1 : 0;
 }
 
-Term termFromName(const std::string& text) {
-  for (const Term term : {Term::direct, Term::visibility, Term::final, Term::indirect, Term::caustic,
-                          Term::media, Term::specular})
-    if (text == name(term)) return term;
-  throw UsageError(fmt::format(
-      "reference: unknown term '{}'; there are direct, visibility, final, indirect, caustic, media, specular",
-      text));
+int defaultInterfaces(Term term) {
+  return termInfo(term).interfaces == TermInterfaces::fromOne ? kImageSpaceInterfaces : 0;
 }
 
 }  // namespace limn::reference

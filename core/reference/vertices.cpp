@@ -1,19 +1,25 @@
 #include "core/reference/vertices.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <limits>
+#include <string>
+#include <utility>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/question/term.h"
 #include "core/radiosity/scene_elements.h"
-#include "core/reference/integrator.h"
+#include "core/reference/private/integrator.h"
 
 namespace limn::reference {
 namespace {
 
-constexpr int rowLength = 1024;
+constexpr int kRowLength = 1024;
+constexpr TermSet kVertexTerms = Term::final | Term::direct | Term::indirect;
 
 Surface whiteSurface(const SurfacePoint& point, float clearance) {
   Surface s;
@@ -31,8 +37,9 @@ Surface whiteSurface(const SurfacePoint& point, float clearance) {
 
 std::vector<glm::vec3> irradianceAt(const Request& request, std::span<const SurfacePoint> points,
                                     float clearance) {
-  if (request.term != Term::direct && request.term != Term::indirect && request.term != Term::final)
-    throw UsageError("reference: at vertices there are the terms direct, indirect and final");
+  if (!contains(kVertexTerms, request.term))
+    throw UsageError(
+        fmt::format("reference: at vertices there are the terms {}", joined(termNames(kVertexTerms))));
   const RayScene rays(request.scene, request.pose);
   const auto integrator = makePathIntegrator(rays, request);
   std::vector<glm::vec3> result(points.size());
@@ -59,16 +66,24 @@ std::vector<SurfacePoint> vertexPoints(const scene::Scene& scene, const scene::P
   return points;
 }
 
-Image vertexImage(std::span<const SurfacePoint> points, std::span<const glm::vec3> irradiance) {
+Image vertexImage(std::span<const SurfacePoint> points, std::span<const glm::vec3> irradiance,
+                  const glm::dvec3& origin) {
+  std::vector<std::string> channels{"R", "G", "B", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "coverage"};
+  const bool far = origin != glm::dvec3(0);
+  if (far) channels.insert(channels.end(), {"P.rest.X", "P.rest.Y", "P.rest.Z"});
   const int count = static_cast<int>(points.size());
-  Image image(std::clamp(count, 1, rowLength), std::max(1, (count + rowLength - 1) / rowLength),
-              {"R", "G", "B", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "coverage"});
+  Image image(std::clamp(count, 1, kRowLength), std::max(1, (count + kRowLength - 1) / kRowLength),
+              std::move(channels));
   for (int i = 0; i < count; ++i) {
-    const std::span<float> pixel = image.pixel(i % rowLength, i / rowLength);
+    const std::span<float> pixel = image.pixel(i % kRowLength, i / kRowLength);
+    const SurfacePoint& point = points[static_cast<size_t>(i)];
+    const glm::dvec3 position = origin + glm::dvec3(point.position);
+    const glm::vec3 rounded(position), rest(position - glm::dvec3(rounded));
     for (int c = 0; c < 3; ++c) {
       pixel[static_cast<size_t>(c)] = irradiance[static_cast<size_t>(i)][c];
-      pixel[static_cast<size_t>(3 + c)] = points[static_cast<size_t>(i)].position[c];
-      pixel[static_cast<size_t>(6 + c)] = points[static_cast<size_t>(i)].normal[c];
+      pixel[static_cast<size_t>(3 + c)] = rounded[c];
+      pixel[static_cast<size_t>(6 + c)] = point.normal[c];
+      if (far) pixel[static_cast<size_t>(10 + c)] = rest[c];
     }
     pixel[9] = 1;
   }

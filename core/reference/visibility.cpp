@@ -1,7 +1,7 @@
 #include <glm/glm.hpp>
 
-#include "core/reference/integrator.h"
-#include "core/reference/light_view.h"
+#include "core/reference/private/integrator.h"
+#include "core/reference/private/light_view.h"
 
 namespace limn::reference {
 namespace {
@@ -18,7 +18,7 @@ class VisibilityIntegrator final : public Integrator {
       if (!view.above()) return;
       const double visible = unblocked(rays_, surface, view.arrival()) ? count : 0;
       for (size_t i = 0; i < sums.size(); ++i) sums[i] += i % 2 == 0 ? visible : count;
-    } else if (light_.info.x == glsl::light_rectangle || glsl::light_is_distant_rectangle(light_)) {
+    } else if (light_.type == glsl::light_rectangle || glsl::light_is_distant_rectangle(light_)) {
       addSamples(RectangleView(light_, surface), surface, sampler, first, count, sums);
     } else {
       addSamples(ConeView(light_, surface), surface, sampler, first, count, sums);

@@ -120,7 +120,7 @@ FrameStats measure(Renderer& renderer, int frames, int warmup, const Playback& p
   }
   stats.passSumMs = quartiles(samples.sums).median;
   for (const frame::PassReport& report : renderer.explain()) {
-    PassStats pass{report.name, report.technique, report.state,    report.reason,
+    PassStats pass{report.name, report.technique, report.role,     report.state, report.reason,
                    {},          report.bytes,     report.triangles};
     const auto found = position.find({report.technique, report.name});
     if (report.state == frame::PassState::run && found != position.end())
@@ -139,6 +139,7 @@ std::string toJson(const FrameStats& stats) {
   for (const PassStats& pass : stats.passes)
     passes.push_back({{"name", pass.name},
                       {"technique", pass.technique},
+                      {"role", frame::name(pass.role)},
                       {"state", frame::name(pass.state)},
                       {"reason", pass.reason},
                       {"ms", toJsonValue(pass.ms)},
@@ -191,9 +192,10 @@ FrameStats frameStatsFromJson(const std::string& text) {
     stats.passSumMs = json.at("pass_sum_ms");
     stats.memoryBytes = json.at("memory_bytes");
     for (const Json& pass : json.at("passes"))
-      stats.passes.push_back({pass.at("name"), pass.at("technique"), stateFrom(pass.at("state")),
-                              pass.at("reason"), quartilesFrom(pass.at("ms")), pass.at("bytes"),
-                              pass.value("triangles", uint64_t{0})});
+      stats.passes.push_back({pass.at("name"), pass.at("technique"),
+                              frame::passRoleFromName(pass.at("role").get<std::string>()),
+                              stateFrom(pass.at("state")), pass.at("reason"), quartilesFrom(pass.at("ms")),
+                              pass.at("bytes"), pass.value("triangles", uint64_t{0})});
     for (const Json& fit : json.at("shadow_maps"))
       stats.shadowMaps.push_back({fit.at("light"), fit.at("projection"), fit.at("layers"), fit.at("near"),
                                   fit.at("far"), fit.at("half_angle")});

@@ -1,4 +1,4 @@
-// What a frame cost: the product of `limn render --stats` and of every bench row.
+// Declares what a frame cost: the output of `limn render --stats` and part of every bench row.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,15 @@ struct Quartiles {
   double median = 0, q1 = 0, q3 = 0;
   int n = 0;
 };
-/// Linear interpolation between order statistics; n = 0 for no samples.
+/// Returns the quartiles by linear interpolation between order statistics; n = 0 for no samples.
 LIMN_API Quartiles quartiles(std::vector<double> samples);
-/// Likewise the value that a share p of the samples, 0 to 1, lies below; 0 for no samples.
+/// Returns, by the same interpolation, the value below which a share p of the samples, 0 to 1, lies; 0 for no
+/// samples.
 LIMN_API double quantile(std::vector<double> samples, double p);
 
 struct PassStats {
   std::string name, technique;
+  frame::PassRole role = frame::PassRole::core;
   frame::PassState state = frame::PassState::run;
   std::string reason;
   Quartiles ms;
@@ -32,7 +34,7 @@ struct PassStats {
   uint64_t triangles = 0;  ///< drawn in a frame, views counted
 };
 
-/// How the shadow maps of one light lay in the last frame.
+/// Describes how the shadow maps of one light were placed in the last frame.
 struct ShadowMapFit {
   std::string light;
   std::string projection;  ///< perspective, orthographic, cube, hemicube or paraboloid
@@ -58,17 +60,17 @@ struct FrameStats {
   uint32_t uncoveredPixels = 0;  ///< whose receiver no map of a light covers: V = 1 there
 };
 
-/// The scene's time in timed frames.
+/// Declares the scene's time in timed frames.
 struct Playback {
-  double start = 0;             ///< seconds, of the first frame
-  double fps = 0;               ///< frames per second of the scene's time; 0: it stands still, at whatever
-                                ///< Renderer::setTime said
-  int animation = scene::none;  ///< as Renderer::setTime
+  double start = 0;              ///< seconds, of the first frame
+  double fps = 0;                ///< frames per second of the scene's time; 0: it stands still, at whatever
+                                 ///< Renderer::setTime said
+  int animation = scene::kNone;  ///< as Renderer::setTime
   std::function<void()> beforeFrame{};  ///< called before each frame, outside of its time; may be empty
 };
 
-/// Wall-clock milliseconds of each of `frames` frames between two glFinish, after `warmup` others, which
-/// show the same times as the first timed ones.
+/// Returns the wall-clock milliseconds of each of `frames` frames between two glFinish, after `warmup`
+/// others, which show the same times as the first timed ones.
 LIMN_API std::vector<double> timeFrames(Renderer& renderer, int frames, int warmup,
                                         const Playback& playback = {});
 
@@ -77,7 +79,7 @@ LIMN_API std::vector<double> timeFrames(Renderer& renderer, int frames, int warm
 LIMN_API FrameStats measure(Renderer& renderer, int frames, int warmup = 3, const Playback& playback = {});
 
 LIMN_API std::string toJson(const FrameStats& stats);
-/// The inverse; throws Error for text that is not such an object.
+/// Reads the statistics from such a JSON object. Throws Error for text that is not one.
 LIMN_API FrameStats frameStatsFromJson(const std::string& text);
 
 }  // namespace limn::render

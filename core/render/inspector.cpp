@@ -79,29 +79,26 @@ TextureInspector::TextureInspector(frame::FrameGraph& graph, frame::TextureHandl
                                    const InspectionView& view)
     : graph_(graph), desc_(gpu::resolved(graph.desc(texture))), view_(view) {
   const gpu::TextureDesc flat{.format = desc_.format, .width = desc_.width, .height = desc_.height};
-  frame::PassBuilder copying = graph.addPass("copy", "inspector");
-  copying.read(texture, Access::copySource, "the texture looked at");
+  frame::PassBuilder copying = graph.addPass("copy", passOwner);
+  copying.role(frame::PassRole::core).read(texture, Access::copySource, "the texture looked at");
   copy_ = copying.write(graph.createTexture("values", flat), Access::copyTarget, "one level of one layer");
   copying.execute(
       [this, handles = Copy{texture, copy_}](frame::PassContext& context) { copy(context, handles); });
   graph.output(copy_);
 
-  frame::PassBuilder showing = graph.addPass("show", "inspector");
-  showing.read(copy_, Access::sampled, "values");
+  frame::PassBuilder showing = graph.addPass("show", passOwner);
+  showing.role(frame::PassRole::core).read(copy_, Access::sampled, "values", "values");
   display_ = showing.write(
       graph.createTexture("colours", {.format = GL_RGBA8, .width = desc_.width, .height = desc_.height}),
-      Access::imageStore, "what people see of them");
+      Access::imageStore, "display", "what people see of them");
   const auto program =
       showing.program({.files = {"glsl/inspect/show.comp.glsl"},
                        .defines = {{"SAMPLER", samplerFor(gpu::formatInfo(desc_.format).kind)}}});
-  showing.execute([this, program, from = copy_, to = display_](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(program);
-    kernel.use();
+  showing.execute([this, program](frame::PassContext& context) {
+    gpu::Program& kernel = context.use(program);
     kernel.set("channel", view_.channel);
     kernel.set("low", view_.low);
     kernel.set("high", view_.high);
-    context.bindSampled(0, from);
-    context.bindImage(0, to, GL_WRITE_ONLY);
     context.dispatch(desc_.width, desc_.height, 1, 8, 8);
   });
   graph.output(display_);

@@ -5,11 +5,10 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/caustics/caustic_rays.h"
-#include "core/indirect/virtual_lights.h"
-#include "core/render/deferred.h"
-#include "core/render/read_picture.h"
-#include "core/scene/gpu_scene.h"
+#include "core/gpu_scene/gpu_scene.h"
+#include "core/render/private/deferred.h"
+#include "core/render/private/read_picture.h"
+#include "core/render/services.h"
 #include "core/shadow/shadow_map.h"
 #include "core/technique/module.h"
 
@@ -34,16 +33,14 @@ struct Renderer::Implementation {
   gpu::ShaderLibrary shaders;
   frame::ResourcePool pool;
   scene::GpuScene gpuScene;
-  shadow::ShadowMapService shadowMaps;
-  indirect::VirtualLightService virtualLights;
-  caustics::CausticRayService causticRays;
+  FrameServices services;
   Deferred deferred;
   scene::GBufferPass gbufferPass, mattePass;
   Settings settings;
   scene::CameraPose camera;
   scene::Pose pose;
   double time = 0;
-  int animation = scene::none;
+  int animation = scene::kNone;
   bool poseDirty = true;
   uint32_t frameIndex = 0;
   std::vector<bool> emitting;  ///< of each light, when the graph was built
@@ -66,9 +63,7 @@ struct Renderer::Implementation {
         shaders(gpuDevice),
         pool(gpuDevice),
         gpuScene(gpuDevice, shown),
-        shadowMaps(gpuDevice, gpuScene),
-        virtualLights(shadowMaps),
-        causticRays(gpuDevice, gpuScene, shadowMaps),
+        services(makeServices(gpuDevice, gpuScene)),
         deferred(gpuDevice, shown) {
     shaders.mount("", embeddedSources(), shaderOverride);
   }
@@ -78,7 +73,6 @@ struct Renderer::Implementation {
   void dropGraph() {
     if (!graph) return;
     gpuScene.forget();
-    causticRays.forget();
     inspector.reset();
     graph.reset();
     uses.clear();
@@ -95,16 +89,9 @@ struct Renderer::Implementation {
   frame::TextureHandle ask(Use& use, Term term, std::span<const uint32_t> lights,
                            frame::TextureHandle target) {
     const bool behind = term != Term::specular && term != Term::caustic && term != Term::media;
-    TechniqueInputs inputs{scene,
-                           pose,
-                           gpuScene,
-                           shadowMaps,
-                           virtualLights,
-                           causticRays,
-                           use.settings->parameters,
-                           handles,
-                           behind ? matte : gbuffer,
-                           settings.size};
+    TechniqueInputs inputs{
+        scene,        pose, gpuScene, services, use.settings->parameters, handles, behind ? matte : gbuffer,
+        settings.size};
     if (term == Term::specular) {
       inputs.matte = matte;
       inputs.environmentMap = deferred.environmentMap(*graph);
@@ -128,7 +115,7 @@ struct Renderer::Implementation {
     return std::ranges::find(settings.forced, saving) != settings.forced.end();
   }
 
-  bool emits(size_t light) const { return glm::vec3(pose.lights[light].emission) != glm::vec3(0); }
+  bool emits(size_t light) const { return pose.lights[light].emission != glm::vec3(0); }
 
   void noteEmitting() {
     emitting.resize(pose.lights.size());
@@ -151,8 +138,8 @@ struct Renderer::Implementation {
       graph->leaveOut("lights of the environment", "core", "a technique answers the environment's light");
     for (uint32_t i = 0; i < pose.lights.size(); ++i) {
       if (settings.light >= 0 && static_cast<uint32_t>(settings.light) != i) continue;
-      if (replaced && (pose.lights[i].info.y & glsl::light_flag_environment) != 0) continue;
-      if (!emits(i) && settings.output != Output::visibility && !forced(Saving::darkLights)) {
+      if (replaced && (pose.lights[i].flags & glsl::light_flag_environment) != 0) continue;
+      if (!emits(i) && settings.term != Term::visibility && !forced(Saving::darkLights)) {
         graph->leaveOut(fmt::format("light {}", pose.lightNames[i]), "core", "it emits nothing");
         continue;
       }
@@ -170,8 +157,8 @@ struct Renderer::Implementation {
                                  std::span<const uint32_t> lights) {
     if (Use* direct = answering(Term::direct)) return ask(*direct, Term::direct, lights, radiance);
     Use* shadowing = answering(Term::visibility);
-    for (size_t first = 0; first < lights.size(); first += light_batch) {
-      const auto batch = lights.subspan(first, std::min<size_t>(light_batch, lights.size() - first));
+    for (size_t first = 0; first < lights.size(); first += kLightBatch) {
+      const auto batch = lights.subspan(first, std::min<size_t>(kLightBatch, lights.size() - first));
       frame::TextureHandle visibility;
       if (shadowing)
         visibility =
@@ -196,7 +183,7 @@ struct Renderer::Implementation {
   /// The technique that shows the scene in its specular surfaces, if the picture has them.
   Use* answeringSpecular() {
     Use* use = answering(Term::specular);
-    if (!use || (settings.output != Output::final && settings.output != Output::specular)) return nullptr;
+    if (!use || (settings.term != Term::final && settings.term != Term::specular)) return nullptr;
     if (gpuScene.hasSpecular()) return use;
     graph->leaveOut("specular surfaces", use->settings->plugin->info->name,
                     "the scene has no specular surface");
@@ -209,7 +196,7 @@ struct Renderer::Implementation {
         specular ? mattePass.add(*graph, gpuScene, handles, settings.size, scene::Surfaces::matte) : gbuffer;
     const Deferred::Frame lit{*graph, handles, matte, settings.size};
     const Deferred::Frame frame{*graph, handles, gbuffer, settings.size};
-    const bool all = settings.output == Output::final, whole = all || specular;
+    const bool all = settings.term == Term::final, whole = all || specular;
     frame::TextureHandle radiance = deferred.start(lit, specular ? Deferred::Start::emission
                                                         : all    ? Deferred::Start::emissionAndSpecular
                                                                  : Deferred::Start::black);
@@ -218,7 +205,7 @@ struct Renderer::Implementation {
       return radiance;
     }
     const std::vector<uint32_t> lights = activeLights();
-    if (whole || settings.output == Output::direct) {
+    if (whole || settings.term == Term::direct) {
       if (!lights.empty())
         radiance = addDirect(lit, radiance, lights);
       else
@@ -229,20 +216,20 @@ struct Renderer::Implementation {
       for (Use& use : uses)
         if (wanted && contains(termsOf(*use.settings), term)) radiance = ask(use, term, lights, radiance);
     };
-    add(Term::indirect, whole || settings.output == Output::indirect);
+    add(Term::indirect, whole || settings.term == Term::indirect);
     if (specular) {
       const frame::TextureHandle seen = ask(*specular, Term::specular, lights, radiance);
       radiance = all ? deferred.addSpecular(frame, radiance, seen) : seen;
     }
-    add(Term::caustic, all || settings.output == Output::caustic);
-    const char* clear = !scene.medium.present()            ? "the scene has no medium"
-                        : settings.output == Output::media ? "no surface is shown"
-                                                           : nullptr;
+    add(Term::caustic, all || settings.term == Term::caustic);
+    const char* clear = !scene.medium.present()        ? "the scene has no medium"
+                        : settings.term == Term::media ? "no surface is shown"
+                                                       : nullptr;
     if (clear)
       graph->leaveOut("transmittance", "core", clear);
     else
       radiance = deferred.addTransmittance(frame, radiance);
-    add(Term::media, all || settings.output == Output::media);
+    add(Term::media, all || settings.term == Term::media);
     return radiance;
   }
 
@@ -278,15 +265,13 @@ struct Renderer::Implementation {
       gbuffer = gbufferPass.add(*graph, gpuScene, handles, settings.size);
     else
       graph->leaveOut("gbuffer", "core", "the scene has no geometry");
-    shadowMaps.begin(*graph, handles, pose);
-    virtualLights.begin(*graph, handles);
-    causticRays.begin(*graph, handles, pose);
-    output = settings.output == Output::visibility ? addVisibility() : addRadiance();
+    const auto building = services.begin(*graph, handles, pose);
+    output = settings.term == Term::visibility ? addVisibility() : addRadiance();
     graph->output(output);
     display = {};
     if (settings.displayEv) {
       display = deferred.addToneMapping({*graph, handles, gbuffer, settings.size}, output,
-                                        settings.output == Output::visibility, *settings.displayEv);
+                                        settings.term == Term::visibility, *settings.displayEv);
       graph->output(display);
     }
     if (settings.channels && gbuffer.depth)
@@ -295,7 +280,6 @@ struct Renderer::Implementation {
     addInspector();
     graph->prepare(device, shaders, pool, compileProgress);
     pool.trim();
-    shadowMaps.update(pose);
   }
 
   void refreshPose() {
@@ -308,8 +292,7 @@ struct Renderer::Implementation {
     refreshPose();
     bool rebuild = gpuScene.update(pose, camera, settings.size, frameIndex++) || !graph || switched();
     if (!rebuild) {
-      rebuild = shadowMaps.update(pose);
-      rebuild = causticRays.update(pose) || rebuild;
+      rebuild = services.update(*graph, pose);
       for (Use& use : uses)
         rebuild = inTechnique(*use.settings->plugin, [&] { return use.technique->update(pose); }) || rebuild;
     }
@@ -323,7 +306,7 @@ Renderer::Renderer(gpu::Device& device, const scene::Scene& scene, std::filesyst
 Renderer::~Renderer() = default;
 
 void Renderer::configure(Settings settings) {
-  checkTechniques(settings.techniques, settings.output);
+  checkTechniques(settings.techniques, settings.term);
   Implementation& self = *implementation_;
   self.dropGraph();
   self.settings = std::move(settings);
@@ -409,7 +392,7 @@ FrameStats Renderer::describe() const {
 }
 
 void Renderer::describeShadowMaps(FrameStats& stats) const {
-  const shadow::ShadowMapService& maps = implementation_->shadowMaps;
+  const auto& maps = implementation_->services.get<shadow::ShadowMapService>();
   for (const shadow::ShadowMapStats& fit : maps.stats())
     stats.shadowMaps.push_back({fit.light, fit.projection, fit.layers, fit.near, fit.far, fit.halfAngle});
   if (!stats.shadowMaps.empty()) stats.uncoveredPixels = maps.uncoveredPixels();

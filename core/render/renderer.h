@@ -1,5 +1,5 @@
 // Puts a frame together: scene data, G-buffer, the techniques that were asked for, and core's answers to the
-// terms nobody claims (V = 1, the other terms 0), all as one frame graph.
+// terms that no technique claims (V = 1, the other terms 0), all as one frame graph.
 //
 //     L = T_cam (L_e + sum over lights of L_u V T_l  (or a technique's `direct`)  + indirect + caustic +
 //     specular + background) + media
@@ -17,6 +17,7 @@
 
 #include "core/frame/frame_graph.h"
 #include "core/image/image.h"
+#include "core/question/term.h"
 #include "core/render/frame_stats.h"
 #include "core/render/inspector.h"
 #include "core/scene/scene.h"
@@ -29,13 +30,7 @@ struct TechniqueUse {
   ParameterValues parameters;
 };
 
-/// What the picture shows.
-enum class Output { final, visibility, direct, indirect, caustic, media, specular };
-LIMN_API std::string_view name(Output output);
-/// Throws UsageError naming the accepted values.
-LIMN_API Output parseOutput(std::string_view text);
-
-/// Work that core leaves out of a frame because it would not change the picture.
+/// Names work that core leaves out of a frame because it would not change the picture.
 enum class Saving : uint8_t {
   darkLights,   ///< maps, visibility and shading of lights that emit nothing
   environment,  ///< the light of a black environment
@@ -44,31 +39,32 @@ enum class Saving : uint8_t {
 
 struct Settings {
   glm::ivec2 size{1280, 720};
-  Output output = Output::final;
+  Term term = Term::final;  ///< what the picture shows
   std::vector<TechniqueUse> techniques;
   /// Index into Pose::lights: the light whose visibility is wanted, or the only one that shines; -1: all.
   int light = -1;
-  /// Everything that depends on geometry or lights is computed anew in each frame; otherwise unchanged
+  /// Everything that depends on geometry or lights is computed again in each frame; otherwise unchanged
   /// results are kept.
   bool dynamic = true;
   /// Keep depth, coverage, instance id, albedo and normal for read().
   bool channels = false;
   /// Tone-map the picture for display(): clamp(2^EV * picture), then sRGB, as PNG files are written.
   std::optional<float> displayEv = {};
-  /// A texture to look at, if the frame has it: see inspector(). A pass that would be left out runs for it.
+  /// A texture to inspect, if the frame has it: see inspector(). A pass that would be left out runs for it.
   std::optional<Inspection> inspect = {};
-  /// Done all the same, to learn what leaving it out is worth (core/bench/savings.h).
+  /// Work that is done although it could be left out, to measure what leaving it out saves
+  /// (core/bench/savings.h).
   std::vector<Saving> forced = {};
 };
 
-/// Throws UsageError when two techniques claim the same exclusive term, or nobody answers the output asked
-/// for.
-LIMN_API void checkTechniques(const std::vector<TechniqueUse>& techniques, Output output);
+/// Throws UsageError when two techniques claim what the table of terms gives to only one, or when a picture
+/// cannot show `term` with these techniques.
+LIMN_API void checkTechniques(const std::vector<TechniqueUse>& techniques, Term term);
 
-/// Most smooth interfaces that a picture of `output` follows, and its reference should: those of the technique
-/// which answers specular, its parameter `interfaces`, or into an object and out of it; 0 where none answers or
-/// the output shows no specular surfaces.
-LIMN_API int interfacesOf(Output output, const std::vector<TechniqueUse>& techniques);
+/// Returns the most smooth interfaces that a picture of `term` follows, and that its reference should follow:
+/// those of the technique which answers specular, its parameter `interfaces`, or into an object and out of
+/// it; 0 where none answers or the picture shows no specular surfaces.
+LIMN_API int interfacesOf(Term term, const std::vector<TechniqueUse>& techniques);
 
 class LIMN_API Renderer {
  public:
@@ -81,47 +77,49 @@ class LIMN_API Renderer {
   /// Chooses what to render. The graph is built at the next render().
   void configure(Settings settings);
   void setCamera(const scene::CameraPose& camera);
-  void setTime(double seconds, int animation = scene::none);
+  void setTime(double seconds, int animation = scene::kNone);
 
-  /// Renders one frame. Throws Error (shader errors, memory, sizes). False: it was cancelled between two
-  /// passes (frame::FrameGraph::execute) and there is no picture.
+  /// Renders one frame. Throws Error (shader errors, memory, sizes). Returns false when it was cancelled
+  /// between two passes (frame::FrameGraph::execute); then there is no picture.
   bool render(frame::Timing timing = frame::Timing::off, const frame::FrameGraph::Cancelled& cancelled = {});
 
-  /// The last frame: R, G, B (visibility: three equal channels), and with Settings::channels Z, coverage, id
-  /// (-1: nothing seen), albedo.*, N.*. Blocks.
+  /// Returns the last frame: R, G, B (visibility: three equal channels), and with Settings::channels Z,
+  /// coverage, id (-1: nothing seen), albedo.*, N.*. Waits for the GPU.
   Image read() const;
 
-  /// The last frame, tone-mapped (Settings::displayEv): RGBA8, bottom row first. Throws Error without one.
+  /// Returns the last frame, tone-mapped (Settings::displayEv): RGBA8, bottom row first. Throws Error without
+  /// one.
   const gpu::Texture& display() const;
 
-  /// Of the last frame; null without Settings::inspect or where the frame does not have that texture.
+  /// Returns the inspector of the last frame; null without Settings::inspect or where the frame does not have
+  /// that texture.
   const TextureInspector* inspector() const;
-  /// What the following frames show of it.
+  /// Sets what the following frames show of the inspected texture.
   void setInspectionView(const InspectionView& view);
 
-  /// Called, by render(), before each program that it compiles.
+  /// Sets a callback that render() calls before each program that it compiles.
   void setCompileProgress(frame::FrameGraph::CompileProgress progress);
 
-  /// Blocks until the GPU has done everything asked of it (glFinish).
+  /// Waits until the GPU has finished all its work (glFinish).
   void finish();
 
-  /// The state of the scene at the time set.
+  /// Returns the state of the scene at the time set.
   const scene::Pose& pose();
   frame::FrameGraph& graph();
   std::vector<frame::PassReport> explain() const;
-  /// The part of FrameStats that is known without measuring.
+  /// Returns the part of FrameStats that is known without measuring.
   FrameStats describe() const;
-  /// Adds how the shadow maps of the last frame lay. Blocks.
+  /// Adds how the shadow maps of the last frame were placed. Waits for the GPU.
   void describeShadowMaps(FrameStats& stats) const;
-  /// Live buffers and textures of this device, bytes.
+  /// Returns the size of the live buffers and textures of this device, bytes.
   int64_t memoryBytes() const;
 
   struct Reload {
-    bool changed = false;             ///< a file did
-    int programs = 0;                 ///< that are new
-    std::vector<std::string> errors;  ///< of all files that make no program as they are now
+    bool changed = false;             ///< a file changed
+    int programs = 0;                 ///< compiled again
+    std::vector<std::string> errors;  ///< of all files that do not compile in their current state
   };
-  /// Recompiles shaders that changed on disk.
+  /// Compiles the shaders that changed on disk.
   Reload reloadShaders();
 
  private:

@@ -1,4 +1,4 @@
-#include "core/scene/animate.h"
+#include "core/scene/private/animate.h"
 
 #include <algorithm>
 

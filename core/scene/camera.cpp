@@ -71,9 +71,8 @@ void setCamera(glsl::FrameBlock& frame, const CameraPose& camera, const Bounds& 
   frame.view_ray_origin = glm::vec4(glm::vec3(rotation * origin), 0.f);
   frame.view_ray_dx = glm::vec4(glm::vec3(rotation * dx), 0.f);
   frame.view_ray_dy = glm::vec4(glm::vec3(rotation * dy), 0.f);
-  frame.environment.w = bounds.radius();
-  frame.frame_size.x = static_cast<uint32_t>(width);
-  frame.frame_size.y = static_cast<uint32_t>(height);
+  frame.scene_radius = bounds.radius();
+  frame.frame_size = {width, height};
 }
 
 CameraPose lookAt(const glm::vec3& eye, const glm::vec3& target, float yfov) {

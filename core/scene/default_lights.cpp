@@ -5,7 +5,7 @@
 namespace limn::scene {
 namespace {
 
-constexpr float keyRadiance = 0.7f, headlightRadiance = 0.15f;  // of a white Lambertian surface
+constexpr float kKeyRadiance = 0.7f, kHeadlightRadiance = 0.15f;  // of a white Lambertian surface
 
 void addLight(Scene& scene, LightSource source, const Transform& transform) {
   Node node;
@@ -28,7 +28,7 @@ void addDefaultLights(Scene& scene, const CameraPose& camera, const Bounds& boun
   LightSource key;
   key.name = "key";
   key.type = glsl::light_directional;
-  key.intensity = keyRadiance * glsl::pi;
+  key.intensity = kKeyRadiance * glsl::pi;
   key.angle = 0.03f;
   addLight(scene, key, {.rotation = glm::quatLookAt(shines, glm::vec3(viewToWorld[1]))});
 
@@ -37,7 +37,7 @@ void addDefaultLights(Scene& scene, const CameraPose& camera, const Bounds& boun
   headlight.type = glsl::light_point;
   // Inside a scene its centre may be anywhere, the camera's place included.
   const float distance = std::max(glm::length(eye - bounds.centre()), 0.5f * bounds.radius());
-  headlight.intensity = headlightRadiance * glsl::pi * distance * distance;
+  headlight.intensity = kHeadlightRadiance * glsl::pi * distance * distance;
   addLight(scene, headlight, {.translation = eye});
 }
 

@@ -1,4 +1,4 @@
-#include "glsl/deform.glsl"
+#include "glsl/geometry/deform.glsl"
 
 #include <algorithm>
 

@@ -119,9 +119,12 @@ glm::ivec3 smokeVoxels(const Smoke& smoke) {
 
 glsl::SmokeBlock smokeBlock(const Smoke& smoke, double time) {
   glsl::SmokeBlock block{};
-  block.low = glm::vec4(smoke.low, static_cast<float>(static_cast<double>(smoke.rise) * time));
-  block.high = glm::vec4(smoke.high, smoke.whirl);
-  block.voxels = glm::uvec4(smokeVoxels(smoke), smoke.seed);
+  block.low = smoke.low;
+  block.risen = static_cast<float>(static_cast<double>(smoke.rise) * time);
+  block.high = smoke.high;
+  block.whirl = smoke.whirl;
+  block.voxels = glm::uvec3(smokeVoxels(smoke));
+  block.seed = smoke.seed;
   return block;
 }
 
@@ -137,7 +140,7 @@ DensityGrid smokeAt(const Smoke& smoke, double time) {
     for (int y = 0; y < n.y; ++y)
       for (int x = 0; x < n.x; ++x) {
         const glm::vec3 share = (glm::vec3(x, y, z) + 0.5f) / glm::vec3(n);
-        *out++ = glsl::smoke_density(block.low, block.high, block.voxels.w,
+        *out++ = glsl::smoke_density(block.low, block.high, block.risen, block.whirl, block.seed,
                                      glm::mix(smoke.low, smoke.high, share));
       }
   });

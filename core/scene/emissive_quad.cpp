@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "core/reference/texture.h"
-#include "core/shading/greedy_regions.h"
+#include "core/image/greedy_regions.h"
+#include "core/scene/texture_lookup.h"
 
 namespace limn::scene {
 namespace {
@@ -38,20 +38,19 @@ std::optional<AffineUv> affineUv(const Primitive& p, const Quad& quad) {
 }
 
 /// Mean radiance of each cell, the first row where t is 0.
-shading::TexelGrid meanRadiance(const Scene& scene, const Material& material, const AffineUv& uv) {
-  constexpr int n = texturedLightCells, kMostSamples = 64;
-  const glm::dvec2 texels(reference::textureSize(scene, material.emissiveTexture));
+TexelGrid meanRadiance(const Scene& scene, const Material& material, const AffineUv& uv) {
+  constexpr int n = kTexturedLightCells, kMostSamples = 64;
+  const glm::dvec2 texels(textureSize(scene, material.emissiveTexture));
   const double across = std::max(glm::length(uv.alongU * texels), glm::length(uv.alongV * texels)) / n;
   const int samples = static_cast<int>(std::clamp(std::ceil(across), 1.0, double{kMostSamples}));
   const auto lod = static_cast<float>(std::log2(std::max(across / samples, 1.0)));
-  shading::TexelGrid grid{n, n, std::vector<glm::dvec3>(n * n), std::vector<double>(n * n, 1.0)};
+  TexelGrid grid{n, n, std::vector<glm::dvec3>(n * n), std::vector<double>(n * n, 1.0)};
   for (int cell = 0; cell < n * n; ++cell) {
     glm::dvec3 sum(0);
     for (int i = 0; i < samples * samples; ++i) {
       const double s = (cell % n + (i % samples + 0.5) / samples) / n,
                    t = (cell / n + (i / samples + 0.5) / samples) / n;
-      sum +=
-          glm::dvec3(reference::sampleTexture(scene, material.emissiveTexture, glm::vec2(uv.at(s, t)), lod));
+      sum += glm::dvec3(sampleTexture(scene, material.emissiveTexture, glm::vec2(uv.at(s, t)), lod));
     }
     grid.energy[static_cast<std::size_t>(cell)] =
         glm::dvec3(material.emission) * sum / double(samples * samples);
@@ -60,16 +59,16 @@ shading::TexelGrid meanRadiance(const Scene& scene, const Material& material, co
 }
 
 /// As many as it takes at a threshold that makes one light of a uniform texture; fewer and larger ones where
-/// those were more than mostTexturedLightParts.
-std::vector<shading::Region> regions(const shading::TexelGrid& grid) {
+/// those were more than kMostTexturedLightParts.
+std::vector<Region> regions(const TexelGrid& grid) {
   for (double threshold = 0.05; threshold > 1e-3; threshold /= 2) {
     try {
-      return shading::greedyRegions(grid, threshold, shading::RegionShape::rectangles, mostTexturedLightParts,
-                                    "emissive texture");
+      return greedyRegions(grid, threshold, RegionShape::rectangles, kMostTexturedLightParts,
+                           "emissive texture");
     } catch (const UsageError&) {  // too many
     }
   }
-  shading::Region all{0, 0, grid.width, grid.height};
+  Region all{0, 0, grid.width, grid.height};
   for (const glm::dvec3& energy : grid.energy) all.energy += energy;
   return {all};
 }
@@ -78,14 +77,14 @@ std::vector<shading::Region> regions(const shading::TexelGrid& grid) {
 
 std::vector<EmissivePart> emissiveParts(const Scene& scene, const Primitive& primitive, const Quad& quad) {
   const Material& material = scene.materials[static_cast<std::size_t>(primitive.material)];
-  if (material.emissiveTexture.image == none) return {{quad}};
+  if (material.emissiveTexture.image == kNone) return {{quad}};
   const std::optional<AffineUv> uv = affineUv(primitive, quad);
   if (!uv) return {};
   std::vector<EmissivePart> parts;
-  for (const shading::Region& r : regions(meanRadiance(scene, material, *uv))) {
+  for (const Region& r : regions(meanRadiance(scene, material, *uv))) {
     const glm::vec2 size(r.x1 - r.x0, r.y1 - r.y0);
-    const glm::vec2 middle = (glm::vec2(r.x0, r.y0) + 0.5f * size) / float{texturedLightCells} - 0.5f;
-    const glm::vec2 sides = size / float{texturedLightCells};
+    const glm::vec2 middle = (glm::vec2(r.x0, r.y0) + 0.5f * size) / float{kTexturedLightCells} - 0.5f;
+    const glm::vec2 sides = size / float{kTexturedLightCells};
     const glm::dvec3 radiance = r.energy / double(size.x * size.y);
     EmissivePart& part = parts.emplace_back();
     part.quad = {quad.centre + middle.x * quad.sideU + middle.y * quad.sideV, sides.x * quad.sideU,

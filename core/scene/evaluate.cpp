@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/scene/animate.h"
+#include "core/scene/private/animate.h"
+#include "core/scene/private/world_light.h"
 #include "core/scene/scene.h"
-#include "core/scene/world_light.h"
 
 namespace limn::scene {
 namespace {
@@ -40,7 +40,7 @@ Bounds morphReach(const Primitive& primitive, const std::vector<float>& weights)
 
 const Animation* chooseAnimation(const Scene& scene, double time, int animation) {
   if (!std::isfinite(time)) throw UsageError("time: a finite number of seconds is accepted");
-  if (animation == none) return scene.animations.empty() ? nullptr : &scene.animations.front();
+  if (animation == kNone) return scene.animations.empty() ? nullptr : &scene.animations.front();
   if (animation < 0 || at(animation) >= scene.animations.size())
     throw UsageError(
         fmt::format("animation {} does not exist; the scene has {}", animation, scene.animations.size()));
@@ -55,7 +55,7 @@ double wrapped(double time, double duration) {
 
 void animate(const Scene& scene, const Animation* animation, double time, Pose& pose) {
   pose.nodeLocal.resize(scene.nodes.size());
-  pose.weightChannel.assign(scene.nodes.size(), none);
+  pose.weightChannel.assign(scene.nodes.size(), kNone);
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) pose.nodeLocal[i] = scene.nodes[i].transform;
   if (!animation) return;
   for (std::size_t k = 0; k < animation->channels.size(); ++k) {
@@ -89,8 +89,8 @@ void updateExactMatrices(const Scene& scene, Pose& pose) {
       continue;
     }
     world = glm::dmat4(node.matrix ? *node.matrix : pose.nodeLocal[i].matrix());
-    world[3] += glm::dvec4(node.parent == none ? node.base - scene.origin : node.base, 0);
-    if (node.parent != none) world = pose.nodeToWorldExact[at(node.parent)] * world;
+    world[3] += glm::dvec4(node.parent == kNone ? node.base - scene.origin : node.base, 0);
+    if (node.parent != kNone) world = pose.nodeToWorldExact[at(node.parent)] * world;
   }
 }
 
@@ -111,7 +111,7 @@ void updateWorldMatrices(const Scene& scene, Pose& pose) {
       continue;
     }
     const glm::mat4 local = node.matrix ? *node.matrix : pose.nodeLocal[i].matrix();
-    pose.nodeToWorld[i] = node.parent == none ? local : pose.nodeToWorld[at(node.parent)] * local;
+    pose.nodeToWorld[i] = node.parent == kNone ? local : pose.nodeToWorld[at(node.parent)] * local;
   }
 }
 
@@ -145,7 +145,7 @@ void setWeights(const Scene& scene, const Animation* animation, double time, con
   const std::vector<float>& start = source.morphWeights.empty() ? mesh : source.morphWeights;
   weights.assign(start.begin(), start.end());
   const int channel = pose.weightChannel[at(node)];
-  if (animation && channel != none) sampleChannel(animation->channels[at(channel)], time, weights);
+  if (animation && channel != kNone) sampleChannel(animation->channels[at(channel)], time, weights);
 }
 
 void setJoints(const Skin& skin, const Pose& pose, std::vector<glm::mat4>& joints) {
@@ -159,8 +159,8 @@ int addDeformation(const Scene& scene, const Animation* animation, double time, 
                    int primitiveIndex, Pose& pose, Refill<Deformation>& deformed) {
   const Node& node = scene.nodes[at(nodeIndex)];
   const Primitive& primitive = scene.meshes[at(node.mesh)].primitives[at(primitiveIndex)];
-  const bool skinned = node.skin != none && !primitive.joints.empty();
-  if (!skinned && primitive.morphTargets.empty()) return none;
+  const bool skinned = node.skin != kNone && !primitive.joints.empty();
+  if (!skinned && primitive.morphTargets.empty()) return kNone;
   const int index = deformed.count();
   Deformation& out = deformed.next();
   out.mesh = node.mesh;
@@ -177,7 +177,7 @@ void addInstances(const Scene& scene, const Animation* animation, double time, P
   pose.instances.clear();
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     const Node& node = scene.nodes[n];
-    if (node.mesh == none) continue;
+    if (node.mesh == kNone) continue;
     const int firstDeformed = deformed.count();
     const std::size_t copies = std::max<std::size_t>(1, node.instances.size());
     for (std::size_t copy = 0; copy < copies; ++copy) {
@@ -196,7 +196,7 @@ void addInstances(const Scene& scene, const Animation* animation, double time, P
           instance.deformed = known++;
         }
         const bool skinned =
-            instance.deformed != none && !pose.deformed[at(instance.deformed)].joints.empty();
+            instance.deformed != kNone && !pose.deformed[at(instance.deformed)].joints.empty();
         instance.objectToWorld = skinned ? glm::mat4(1) : world;
         pose.instances.push_back(instance);
       }
@@ -243,7 +243,7 @@ void updateDynamic(const Scene& scene, double time, Pose& pose) {
 void addCameras(const Scene& scene, Pose& pose) {
   Refill<CameraPose> cameras(pose.cameras);
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
-    if (scene.nodes[n].camera == none) continue;
+    if (scene.nodes[n].camera == kNone) continue;
     const CameraLens& lens = scene.cameras[at(scene.nodes[n].camera)];
     CameraPose& camera = cameras.next();
     setName(camera.name, scene.nodes[n].name, lens.name, cameras.count() - 1);
@@ -258,19 +258,19 @@ void addLights(const Scene& scene, Pose& pose) {
   pose.lights.clear();
   std::string name;
   const auto add = [&](glsl::Light light, const std::string& first, const std::string& second) {
-    light.info.w = static_cast<uint32_t>(pose.lights.size());
+    light.index = static_cast<uint32_t>(pose.lights.size());
     setName(names.next(), first, second, static_cast<int>(pose.lights.size()));
     pose.lights.push_back(light);
   };
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     const Node& node = scene.nodes[n];
-    if (node.light == none) continue;
+    if (node.light == kNone) continue;
     const LightSource& source = scene.lights[at(node.light)];
     add(punctualLight(source, node.limnArea, pose.nodeToWorld[n]), node.name, source.name);
   }
   for (std::size_t i = 0; i < pose.instances.size(); ++i) {
     const DrawInstance& instance = pose.instances[i];
-    if (instance.node == none) continue;
+    if (instance.node == kNone) continue;
     const Mesh& mesh = scene.meshes[at(instance.mesh)];
     const Primitive& primitive = mesh.primitives[at(instance.primitive)];
     for (std::size_t k = 0; k < primitive.emissiveParts.size(); ++k) {
@@ -306,7 +306,7 @@ glm::mat4 Transform::matrix() const {
 uint64_t Scene::triangles() const {
   uint64_t count = 0;
   for (const Node& node : nodes) {
-    if (node.mesh == none) continue;
+    if (node.mesh == kNone) continue;
     uint64_t one = 0;
     for (const Primitive& primitive : meshes[at(node.mesh)].primitives) one += primitive.indices.size() / 3;
     count += one * std::max<uint64_t>(1, node.instances.size());
@@ -315,9 +315,9 @@ uint64_t Scene::triangles() const {
 }
 
 Bounds instanceBounds(const Scene& scene, const Pose& pose, const DrawInstance& instance) {
-  if (instance.node == none) return pose.dynamic[at(instance.mesh)].bounds;
+  if (instance.node == kNone) return pose.dynamic[at(instance.mesh)].bounds;
   const Primitive& primitive = scene.meshes[at(instance.mesh)].primitives[at(instance.primitive)];
-  if (instance.deformed == none) return transformed(instance.objectToWorld, primitive.bounds);
+  if (instance.deformed == kNone) return transformed(instance.objectToWorld, primitive.bounds);
   const Deformation& state = pose.deformed[at(instance.deformed)];
   const Bounds reach = morphReach(primitive, state.morphWeights);
   const auto grown = [&](const Bounds& box) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "glsl/srgb.glsl"
+#include "glsl/numeric/srgb.glsl"
 
 namespace limn::scene {
 namespace {
@@ -44,8 +44,8 @@ LightTexture makeLightTexture(const TextureImage& image) {
 }
 
 glm::vec3 lightTextureAt(const Scene& scene, const glsl::Light& light, const glm::vec3& receiver) {
-  if (light.direction.w == 0) return glm::vec3(1);
-  const LightTexture& texture = scene.lightTextures.at(static_cast<size_t>(light.direction.w) - 1);
+  if (light.texture_number == 0) return glm::vec3(1);
+  const LightTexture& texture = scene.lightTextures.at(static_cast<size_t>(light.texture_number) - 1);
   constexpr int last = LightTexture::side - 1;
   const glm::vec2 place =
       glm::clamp(glsl::light_texture_place(light, receiver) * static_cast<float>(LightTexture::side) - 0.5f,

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "glsl/srgb.glsl"
+#include "glsl/numeric/srgb.glsl"
 
 namespace limn::scene {
 namespace {

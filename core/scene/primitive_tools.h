@@ -1,4 +1,4 @@
-// Internal to the scene loader: operations on one primitive's vertices.
+// Declares operations on the vertices of one primitive. Internal to the scene loader.
 #pragma once
 
 #include "core/scene/scene.h"
@@ -9,10 +9,11 @@ namespace limn::scene {
 /// means flat). Morph targets get the change of that normal at weight 1.
 void splitFlat(Primitive& primitive);
 
-/// Fills bounds, jointBounds and the targets' deltaBounds.
+/// Computes bounds, jointBounds and the morph targets' deltaBounds.
 void computeBounds(Primitive& primitive);
 
-/// The rectangle that two triangles form: coplanar, facing the same way, right angles within 1e-3.
+/// Returns the rectangle that the primitive's two triangles form, or nothing when they form none. The
+/// triangles must be coplanar, face the same way and have right angles within 1e-3.
 std::optional<Quad> findRectangle(const Primitive& primitive);
 
 }  // namespace limn::scene

@@ -1,9 +1,10 @@
-// A scene on the CPU: what a glTF 2.0 file holds, validated, in plain values. Units: metres, radians,
-// seconds, radiance W/(sr m^2), intensity W/sr. Everything may move: evaluate() gives the state at a time.
+// Declares a scene on the CPU: the content of a glTF 2.0 file, validated, as plain values. Units are metres,
+// radians, seconds, W/(sr m^2) for radiance and W/sr for intensity. Everything may move: evaluate() returns
+// the state at a time.
 //
-// Positions in the world are counted from Scene::origin, in scenes, poses and all that is made of them, so
-// that scenes far from the file's origin keep their digits; only what people read and write is in the file's
-// own world coordinates.
+// World positions are relative to Scene::origin, in scenes, poses and everything made from them, so that
+// scenes far from the file's origin keep their precision. Only values that people read and write are in the
+// file's own world coordinates.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +18,11 @@
 #include <vector>
 
 #include "core/base/export.h"
-#include "glsl/light.glsl"
+#include "glsl/scene/light.glsl"
 
 namespace limn::scene {
 
-constexpr int none = -1;
+constexpr int kNone = -1;
 
 struct Bounds {
   glm::vec3 low{std::numeric_limits<float>::max()};
@@ -36,12 +37,12 @@ struct Bounds {
     high = glm::max(high, other.high);
   }
   glm::vec3 centre() const { return empty() ? glm::vec3(0) : 0.5f * (low + high); }
-  /// Radius of the sphere through the corners; 0 when empty.
+  /// Returns the radius of the sphere through the corners; 0 when empty.
   float radius() const { return empty() ? 0.f : 0.5f * glm::length(high - low); }
 };
 
-/// 8-bit RGBA with its whole mip chain, made once on the CPU (averaged in linear light for sRGB), so that the
-/// GPU and the reference filter the same texels.
+/// Holds an 8-bit RGBA image with its whole mip chain, built once on the CPU (averaged in linear light for
+/// sRGB), so that the GPU and the reference filter the same texels.
 struct TextureImage {
   std::string name;
   bool srgb = false;
@@ -55,7 +56,7 @@ struct TextureImage {
 enum class Wrap { repeat, clamp, mirror };
 
 struct TextureRef {
-  int image = none;  ///< index into Scene::images; none: absent
+  int image = kNone;  ///< index into Scene::images; none: absent
   Wrap wrapS = Wrap::repeat, wrapT = Wrap::repeat;
 };
 
@@ -76,10 +77,10 @@ struct Material {
   glm::vec3 attenuationColour{1};
   TextureRef baseColourTexture, metalRoughTexture, normalTexture, emissiveTexture;
 
-  /// Blocks direct and indirect light in both renderers (transmission > 0, or metallic with roughness below
-  /// 0.05).
-  /// No specular part whatever its textures hold (glsl::brdf_is_lambertian).
+  /// Says whether the material has no specular part, whatever its textures hold (glsl::brdf_is_lambertian).
   bool lambertian() const { return metallic == 0 && specularFactor == 0; }
+  /// Says whether the surface blocks direct and indirect light in both renderers (transmission > 0, or
+  /// metallic with roughness below 0.05).
   bool specularSurface() const { return transmission > 0 || (metallic >= 0.5f && roughness < 0.05f); }
 };
 
@@ -88,19 +89,19 @@ struct MorphTarget {
   Bounds deltaBounds;                                   ///< of the position deltas, 0 included
 };
 
-/// Two coplanar triangles that form a rectangle, in object space.
+/// Holds a rectangle in object space, formed by two coplanar triangles.
 struct Quad {
   glm::vec3 centre{0};
   glm::vec3 sideU{0}, sideV{0};  ///< whole sides; cross(sideU, sideV) points to the front face
 };
 
-/// A rectangle light as well as geometry: a part of an emissive quad that emits uniformly.
+/// Holds a part of an emissive quad that emits uniformly: a rectangle light that is geometry as well.
 struct EmissivePart {
   Quad quad;
   glm::vec3 texture{1};  ///< factor on the material's emission
 };
 
-/// Triangles with one material. All vertex arrays have positions.size() elements or are empty.
+/// Holds triangles with one material. Each vertex array has positions.size() elements or is empty.
 struct Primitive {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;   ///< unit; always present after loading (flat if the file has none)
@@ -111,9 +112,9 @@ struct Primitive {
   std::vector<glm::vec4> weights;  ///< normalised to sum 1
   std::vector<uint32_t> indices;   ///< 3 per triangle, every one < positions.size()
   std::vector<MorphTarget> morphTargets;
-  int material = none;  ///< always valid after loading
+  int material = kNone;  ///< always valid after loading
   Bounds bounds;
-  std::vector<Bounds> jointBounds;  ///< skinned: of the vertices that each joint moves
+  std::vector<Bounds> jointBounds;  ///< skinned: bounds of the vertices that each joint moves
   std::vector<EmissivePart>
       emissiveParts;  ///< one, or several where the emission is textured; they may overlap
 };
@@ -131,7 +132,7 @@ struct Transform {
   LIMN_API glm::mat4 matrix() const;
 };
 
-/// KHR_lights_punctual, with the extras limn_angle; limn_area is the node's.
+/// Holds a light of KHR_lights_punctual with the extra limn_angle; limn_area belongs to the node.
 struct LightSource {
   std::string name;
   uint32_t type = glsl::light_point;  ///< light_point, light_spot or light_directional
@@ -140,7 +141,7 @@ struct LightSource {
   float range = 0;                              ///< metres, 0: unlimited
   float innerCone = 0, outerCone = 0.7853982f;  ///< half angles, radians (spot)
   float angle = 0;                              ///< angular diameter of a directional light, radians
-  int texture = none;  ///< that a spot shines through: index into Scene::lightTextures
+  int texture = kNone;                          ///< projected by a spot: index into Scene::lightTextures
 };
 
 struct CameraLens {
@@ -151,15 +152,16 @@ struct CameraLens {
 
 struct Node {
   std::string name;
-  int parent = none;
+  int parent = kNone;
   Transform transform;
   std::optional<glm::mat4> matrix;  ///< replaces transform when the file gives a matrix
-  std::optional<glm::mat4> placed;  ///< node to world, whatever parents and animations say: put there by hand
-  int mesh = none, skin = none, camera = none, light = none;
+  std::optional<glm::mat4> placed;  ///< node to world, set by hand; overrides parents and animations
+  int mesh = kNone, skin = kNone, camera = kNone, light = kNone;
   std::vector<float> morphWeights;   ///< overrides the mesh's
   std::vector<Transform> instances;  ///< EXT_mesh_gpu_instancing; empty: the node itself
   glm::vec2 limnArea{0};  ///< extras.limn_area (u, v) in metres: its light is a rectangle facing -Z
-  /// Added to the translation that transform, matrix or animation gives, metres; 0 where Scene::origin is.
+  /// Holds a translation that is added to that of transform, matrix or animation, metres; 0 when
+  /// Scene::origin is 0.
   glm::dvec3 base{0};
 };
 
@@ -171,7 +173,7 @@ struct Skin {
 struct AnimationChannel {
   enum class Path { translation, rotation, scale, weights } path;
   enum class Interpolation { step, linear, cubic } interpolation;
-  int node = none;
+  int node = kNone;
   std::vector<float> times;   ///< strictly increasing
   std::vector<float> values;  ///< times.size() * (cubic ? 3 : 1) * components
 };
@@ -181,9 +183,9 @@ struct Animation {
   std::vector<AnimationChannel> channels;
 };
 
-/// A uniform rectangle at infinity: what a receiver sees in the directions centre + a u + b v, |a|, |b| <=
-/// 1/2, with the sides u = sides.x axisU and v = sides.y axisV. Lengths are tangents: the rectangle lies in
-/// the plane at distance 1.
+/// Holds a uniform rectangle at infinity. A receiver sees it in the directions centre + a u + b v, |a|, |b|
+/// <= 1/2, with the sides u = sides.x axisU and v = sides.y axisV. Lengths are tangents: the rectangle lies
+/// in the plane at distance 1.
 struct DistantRectangle {
   glm::vec3 centre{0, 0, 1};  ///< on that plane
   glm::vec3 axisU{1, 0, 0},
@@ -192,36 +194,38 @@ struct DistantRectangle {
   glm::vec3 irradiance{0};  ///< W/m^2 on a perpendicular surface: radiance times solid angle
 };
 
-/// Equirectangular radiance, RGB float, top row first, >= 0 and finite.
+/// Holds equirectangular radiance as RGB floats, top row first, >= 0 and finite.
 struct Environment {
   int width = 0, height = 0;
   std::vector<glm::vec3> texels;
   float rotation = 0;  ///< about +Y, radians
   float scale = 1;
-  /// The same light as rectangles at infinity (shading::decomposeEnvironment), in the map's own frame and
-  /// without scale; empty: not decomposed. They are lights of every pose, behind all others.
+  /// Holds rectangles at infinity that stand for the map (shading::decomposeEnvironment), in the map's own
+  /// frame and without scale; empty: not decomposed. They are lights of every pose, after all others.
   std::vector<DistantRectangle> lights;
-  /// They are reflected as if each came from its centre (as published) instead of from its area.
+  /// Says whether each of `lights` is reflected as if its light came from its centre (as published) instead
+  /// of from its area.
   bool reflectCentres = false;
   explicit operator bool() const { return width > 0; }
 };
 
-/// Factors on what a spot sends, by direction (glsl::light_texture_place).
+/// Holds factors on the light of a spot, by direction (glsl::light_texture_place).
 struct LightTexture {
   static constexpr int side = 256;
   std::vector<glm::vec3> texels;  ///< side * side, linear, 0 to 1, bottom row first
 };
 
-/// How dense a medium is: factors on its coefficients at the centres of voxels that fill a box, x fastest.
-/// Between them they are interpolated linearly, within the outer half voxels they go on as they are, and
-/// outside the box there is no medium.
+/// Holds the density of a medium: factors on its coefficients at the centres of voxels that fill a box, x
+/// fastest. Values are interpolated linearly between the centres and are constant beyond them, in the outer
+/// half voxels. There is no medium outside the box.
 struct DensityGrid {
   glm::ivec3 size{0};         ///< voxels
   std::vector<float> values;  ///< size.x * size.y * size.z, >= 0 and finite
   glm::mat4 worldToBox{1};    ///< affine, from world space to the unit cube
 };
 
-/// Smoke: a density that is a function of place and time (glsl/smoke.glsl), looked up in a grid.
+/// Holds smoke: a density that is a function of position and time (glsl/media/smoke.glsl), looked up in a
+/// grid.
 struct Smoke {
   glm::vec3 low{0}, high{0};  ///< corners of the box that it fills, world, metres
   float whirl = 1;            ///< size of its largest whirls, metres
@@ -230,8 +234,8 @@ struct Smoke {
   int resolution = 64;  ///< voxels along the box's longest side, 2 to 256
 };
 
-/// Participating medium from extras.limn_medium or flags; coefficients per metre, where there is a grid or
-/// smoke those at density 1.
+/// Holds a participating medium from extras.limn_medium or flags. Coefficients are per metre; with a grid or
+/// smoke they are those at density 1.
 struct Medium {
   glm::vec3 sigmaA{0}, sigmaS{0};
   float g = 0;
@@ -241,14 +245,15 @@ struct Medium {
   bool inhomogeneous() const { return present() && (grid || smoke); }
 };
 
-/// Triangles that an outside source rewrites, in count and topology too (iso-surfaces, cloth, particles).
+/// Provides triangles that an outside source rewrites, count and topology included (isosurfaces, cloth,
+/// particles).
 class LIMN_API GeometrySource {
  public:
   virtual ~GeometrySource() = default;
-  /// The triangles at `time` seconds, in world space, counted from Scene::origin: positions, one normal each,
-  /// indices; anything else is optional, material and bounds are not looked at. The pointer that the last
-  /// call gave says that nothing changed; null, that there is nothing. What a pointer leads to stays as it is
-  /// while somebody holds it.
+  /// Returns the triangles at `time` seconds, in world space, relative to Scene::origin: positions, one
+  /// normal each, and indices. Anything else is optional; material and bounds are ignored. The same pointer
+  /// as in the last call means that nothing changed; null means that there are no triangles. The primitive
+  /// must not change while a caller holds its pointer.
   virtual std::shared_ptr<const Primitive> at(double time) = 0;
 };
 
@@ -272,30 +277,31 @@ struct Scene {
   };
   std::vector<Dynamic> dynamic;
   std::vector<std::string> warnings;  ///< one line each, shown once
-  /// Where in the file's world positions are counted from, metres: 0 unless what is drawn lies far away
-  /// (load.h).
+  /// Holds the point of the file's world to which positions are relative, metres: 0 unless the drawn geometry
+  /// lies far away (load.h).
   glm::dvec3 origin{0};
   LIMN_API uint64_t triangles() const;  ///< drawn, instances counted
 };
 
-/// One drawn primitive. Its index in Pose::instances is the instance id of the G-buffer, in both renderers.
+/// Holds one drawn primitive. Its index in Pose::instances is the instance id of the G-buffer, in both
+/// renderers.
 struct DrawInstance {
-  int node = none;  ///< none: dynamic geometry
-  int mesh = none;  ///< Scene::meshes index, or Scene::dynamic index when node is none
+  int node = kNone;  ///< none: dynamic geometry
+  int mesh = kNone;  ///< Scene::meshes index, or Scene::dynamic index when node is none
   int primitive = 0;
   glm::mat4 objectToWorld{
-      1};               ///< identity for skinned primitives: their vertices are deformed into world space
-  int deformed = none;  ///< index into Pose::deformed when skinned or morphed
+      1};                ///< identity for skinned primitives: their vertices are deformed into world space
+  int deformed = kNone;  ///< index into Pose::deformed when skinned or morphed
 };
 
-/// Skin and morph state of one primitive instance.
+/// Holds the skin and morph state of one primitive instance.
 struct Deformation {
-  int mesh = none, primitive = 0;
+  int mesh = kNone, primitive = 0;
   std::vector<glm::mat4> joints;    ///< empty: not skinned; maps bind-space positions to world
   std::vector<float> morphWeights;  ///< empty: not morphed
 };
 
-/// What a GeometrySource gave.
+/// Holds the geometry that a GeometrySource returned.
 struct DynamicGeometry {
   std::shared_ptr<const Primitive> primitive;  ///< never null
   Bounds bounds;                               ///< world
@@ -309,7 +315,7 @@ struct CameraPose {
 };
 
 struct Pose {
-  double time = 0;  ///< seconds, as evaluate() was asked
+  double time = 0;  ///< seconds, as passed to evaluate()
   std::vector<DrawInstance> instances;
   std::vector<Deformation> deformed;
   std::vector<DynamicGeometry> dynamic;  ///< parallel to Scene::dynamic
@@ -322,23 +328,25 @@ struct Pose {
   std::vector<glm::mat4> nodeToWorld;  ///< of each node
   std::vector<int> weightChannel;      ///< of each node: the animation channel of its morph weights, or none
   glm::dvec3 origin{0};                ///< Scene::origin
-  /// nodeToWorld before it is rounded, in which large translations cancel; empty where Scene::origin is 0.
+  /// Holds nodeToWorld before rounding, in double precision, where large translations cancel; empty when
+  /// Scene::origin is 0.
   std::vector<glm::dmat4> nodeToWorldExact;
 };
 
-/// The state at `time` seconds; `animation` none: the first one. Animations repeat (time modulo duration).
-/// Throws UsageError if `time` is not finite or there is no such animation, Error if a geometry source gives
-/// triangles that make no sense.
-LIMN_API Pose evaluate(const Scene& scene, double time, int animation = none);
-/// The same into `pose`, whose memory is reused: nothing is allocated from the second call for one scene on.
+/// Returns the state at `time` seconds. `animation` none: the first one. Animations repeat (time modulo
+/// duration). Throws UsageError when `time` is not finite or there is no such animation, and Error when a
+/// geometry source returns invalid triangles.
+LIMN_API Pose evaluate(const Scene& scene, double time, int animation = kNone);
+/// Writes the same state to `pose`, whose memory is reused: nothing is allocated from the second call for one
+/// scene on.
 LIMN_API void evaluate(const Scene& scene, double time, int animation, Pose& pose);
 
-/// World bounds of an instance at `pose`; conservative for deformed ones.
+/// Returns the world bounds of an instance at `pose`; conservative for deformed ones.
 LIMN_API Bounds instanceBounds(const Scene& scene, const Pose& pose, const DrawInstance& instance);
 
-/// Deformed vertices of one primitive on the CPU: the reference's twin of the compute shader (same formulas,
-/// from glsl/deform.glsl). Positions and normals are in world space when skinned, in object space when only
-/// morphed.
+/// Computes the deformed vertices of one primitive on the CPU, for the reference, with the same formulas as
+/// the compute shader (glsl/geometry/deform.glsl). Positions and normals are in world space when skinned, in
+/// object space when only morphed.
 LIMN_API void deform(const Primitive& primitive, const Deformation& state, std::vector<glm::vec3>& positions,
                      std::vector<glm::vec3>& normals, std::vector<glm::vec4>& tangents);
 

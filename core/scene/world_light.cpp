@@ -1,12 +1,12 @@
-#include "core/scene/world_light.h"
+#include "core/scene/private/world_light.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <iterator>
 
-#include "glsl/equirectangular.glsl"
-#include "glsl/rectangle_light.glsl"
+#include "glsl/light/rectangle_light.glsl"
+#include "glsl/numeric/equirectangular.glsl"
 
 namespace limn::scene {
 namespace {
@@ -31,17 +31,23 @@ glsl::Light punctualLight(const LightSource& source, const glm::vec2& area, cons
   const glm::mat3 axis = axes(nodeToWorld);
   const bool rectangle = area.x > 0 && area.y > 0 && source.type != glsl::light_directional;
   glsl::Light light{};
-  light.position = glm::vec4(glm::vec3(nodeToWorld[3]), 1);
-  light.direction = glm::vec4(-axis[2], static_cast<float>(source.texture + 1));
-  light.axis_u = glm::vec4(axis[0], rectangle ? area.x : 0.f);
-  light.axis_v = glm::vec4(axis[1], rectangle ? area.y : 0.f);
+  light.position = glm::vec3(nodeToWorld[3]);
+  light.direction = -axis[2];
+  light.texture_number = static_cast<float>(source.texture + 1);
+  light.axis_u = axis[0];
+  light.length_u = rectangle ? area.x : 0.f;
+  light.axis_v = axis[1];
+  light.length_v = rectangle ? area.y : 0.f;
   const float scale = rectangle ? source.intensity / (area.x * area.y) : source.intensity;
-  light.emission = glm::vec4(source.colour * scale, 0);
+  light.emission = source.colour * scale;
   const bool cone = source.type == glsl::light_spot;
-  light.cone = glm::vec4(cone ? std::cos(source.innerCone) : -1.f, cone ? std::cos(source.outerCone) : -1.f,
-                         source.range, source.angle);
-  light.info = glm::uvec4(rectangle ? glsl::light_rectangle : source.type, cone ? glsl::light_flag_cone : 0u,
-                          glsl::no_instance, 0u);
+  light.cos_inner = cone ? std::cos(source.innerCone) : -1.f;
+  light.cos_outer = cone ? std::cos(source.outerCone) : -1.f;
+  light.range = source.range;
+  light.angular_diameter = source.angle;
+  light.type = rectangle ? glsl::light_rectangle : source.type;
+  light.flags = cone ? glsl::light_flag_cone : 0u;
+  light.own_instance = glsl::no_instance;
   return light;
 }
 
@@ -59,14 +65,19 @@ std::optional<glsl::Light> quadLight(const EmissivePart& part, const Material& m
   const glm::dvec3 front = (glm::determinant(m) < 0 ? -1.0 : 1.0) * glm::normalize(glm::cross(u, v));
   v = glm::cross(-front, u);  // removes the last 1e-3 of skew, and cross(u, v) = -front
   glsl::Light light{};
-  light.position = glm::vec4(glm::vec3(objectToWorld * glm::vec4(quad.centre, 1)), 1);
-  light.direction = glm::vec4(glm::vec3(front), 0);
-  light.axis_u = glm::vec4(glm::vec3(u), static_cast<float>(lengthU));
-  light.axis_v = glm::vec4(glm::vec3(v), static_cast<float>(lengthV));
-  light.emission = glm::vec4(material.emission * part.texture, 0);
-  light.cone = glm::vec4(-1, -1, 0, 0);
+  light.position = glm::vec3(objectToWorld * glm::vec4(quad.centre, 1));
+  light.direction = glm::vec3(front);
+  light.axis_u = glm::vec3(u);
+  light.length_u = static_cast<float>(lengthU);
+  light.axis_v = glm::vec3(v);
+  light.length_v = static_cast<float>(lengthV);
+  light.emission = material.emission * part.texture;
+  light.cos_inner = -1;
+  light.cos_outer = -1;
   const uint32_t sides = material.doubleSided ? glsl::light_flag_two_sided : 0u;
-  light.info = glm::uvec4(glsl::light_rectangle, glsl::light_flag_geometry | sides, instance, 0u);
+  light.type = glsl::light_rectangle;
+  light.flags = glsl::light_flag_geometry | sides;
+  light.own_instance = instance;
   return light;
 }
 
@@ -76,18 +87,20 @@ glsl::Light distantLight(const DistantRectangle& rectangle, const Environment& e
   };
   glsl::Light light{};
   const glm::vec3 centre = turned(rectangle.centre);
-  light.position = glm::vec4(centre, 1);
-  light.direction = glm::vec4(-glm::normalize(centre), 0);
-  light.axis_u = glm::vec4(turned(rectangle.axisU), rectangle.sides.x);
-  light.axis_v = glm::vec4(turned(rectangle.axisV), rectangle.sides.y);
-  light.cone = glm::vec4(-1, -1, 0, 0);
-  light.info =
-      glm::uvec4(glsl::light_directional,
-                 glsl::light_flag_environment | (environment.reflectCentres ? glsl::light_flag_centre : 0u),
-                 glsl::no_instance, 0u);
+  light.position = centre;
+  light.direction = -glm::normalize(centre);
+  light.axis_u = turned(rectangle.axisU);
+  light.length_u = rectangle.sides.x;
+  light.axis_v = turned(rectangle.axisV);
+  light.length_v = rectangle.sides.y;
+  light.cos_inner = -1;
+  light.cos_outer = -1;
+  light.type = glsl::light_directional;
+  light.flags = glsl::light_flag_environment | (environment.reflectCentres ? glsl::light_flag_centre : 0u);
+  light.own_instance = glsl::no_instance;
   const glsl::Rectangle seen = glsl::rectangle_from(light, glm::vec3(0));
-  light.emission = glm::vec4(rectangle.irradiance * environment.scale,
-                             glsl::rectangle_solid_angle(seen, glsl::rectangle_whole()));
+  light.emission = rectangle.irradiance * environment.scale;
+  light.solid_angle = glsl::rectangle_solid_angle(seen, glsl::rectangle_whole());
   return light;
 }
 

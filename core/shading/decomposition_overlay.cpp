@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "core/shading/environment.h"
 #include "core/shading/environment_decomposition.h"
-#include "glsl/equirectangular.glsl"
+#include "glsl/numeric/equirectangular.glsl"
 
 namespace limn::shading {
 namespace {

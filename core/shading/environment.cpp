@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
-#include "glsl/environment.glsl"
+#include "glsl/light/environment.glsl"
 
 namespace limn::shading {
 namespace {

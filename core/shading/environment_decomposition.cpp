@@ -9,8 +9,8 @@
 
 #include "core/base/error.h"
 #include "core/shading/environment.h"
-#include "glsl/equirectangular.glsl"
-#include "glsl/srgb.glsl"
+#include "glsl/numeric/equirectangular.glsl"
+#include "glsl/numeric/srgb.glsl"
 
 namespace limn::shading {
 namespace {
@@ -123,10 +123,10 @@ scene::DistantRectangle distantRectangle(const CubeFace& face, const Region& reg
 }
 
 void check(const DecompositionSettings& settings) {
-  if (settings.resolution < 1 || settings.resolution > largestFaceResolution)
+  if (settings.resolution < 1 || settings.resolution > kLargestFaceResolution)
     throw UsageError(
         fmt::format("environment: a face resolution of {} is not accepted; expected 1 to {} texels",
-                    settings.resolution, largestFaceResolution));
+                    settings.resolution, kLargestFaceResolution));
 }
 
 /// The lights in the order of their brightness.
@@ -147,12 +147,12 @@ void sortByBrightness(EnvironmentDecomposition& d) {
 
 }  // namespace
 
-const std::array<CubeFace, 6> cubeFaces{{{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
-                                         {{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
-                                         {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}},
-                                         {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}},
-                                         {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}},
-                                         {{0, 0, -1}, {-1, 0, 0}, {0, 1, 0}}}};
+const std::array<CubeFace, 6> kCubeFaces{{{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
+                                          {{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
+                                          {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}},
+                                          {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}},
+                                          {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}},
+                                          {{0, 0, -1}, {-1, 0, 0}, {0, 1, 0}}}};
 
 double faceSolidAngle(double a0, double b0, double a1, double b1) {
   return cornerSolidAngle(a1, b1) - cornerSolidAngle(a0, b1) - cornerSolidAngle(a1, b0) +
@@ -171,7 +171,7 @@ std::array<TexelGrid, 6> cubeMap(const scene::Environment& environment, int reso
   std::array<TexelGrid, 6> faces;
   dvec3 sampled(0);
   for (size_t f = 0; f < 6; ++f) {
-    faces[f] = sampleFace(map, cubeFaces[f], resolution, samples);
+    faces[f] = sampleFace(map, kCubeFaces[f], resolution, samples);
     for (const dvec3& energy : faces[f].energy) sampled += energy;
   }
   dvec3 correction(1);
@@ -188,7 +188,7 @@ EnvironmentDecomposition decomposeEnvironment(const scene::Environment& environm
   const std::array<TexelGrid, 6> grids = cubeMap(environment, settings.resolution);
   std::array<std::vector<Region>, 6> regions;
   tbb::parallel_for(size_t{0}, size_t{6}, [&](size_t f) {
-    regions[f] = greedyRegions(grids[f], settings.threshold, settings.shape, mostEnvironmentLights,
+    regions[f] = greedyRegions(grids[f], settings.threshold, settings.shape, kMostEnvironmentLights,
                                "environment lights");
   });
   EnvironmentDecomposition result;
@@ -197,14 +197,14 @@ EnvironmentDecomposition decomposeEnvironment(const scene::Environment& environm
     for (const Region& region : regions[f]) {
       result.faces.push_back(static_cast<int>(f));
       result.regions.push_back(region);
-      result.lights.push_back(distantRectangle(cubeFaces[f], region, settings.resolution));
+      result.lights.push_back(distantRectangle(kCubeFaces[f], region, settings.resolution));
     }
   }
-  if (result.lights.size() > mostEnvironmentLights)
+  if (result.lights.size() > kMostEnvironmentLights)
     throw UsageError(
         fmt::format("environment lights: the threshold {} asks for {} lights, more than {}; a smaller "
                     "threshold or resolution gives fewer",
-                    settings.threshold, result.lights.size(), mostEnvironmentLights));
+                    settings.threshold, result.lights.size(), kMostEnvironmentLights));
   sortByBrightness(result);
   return result;
 }

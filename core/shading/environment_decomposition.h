@@ -1,5 +1,5 @@
-// An environment as few area lights at infinity, so that every shadow technique shadows it (the thesis's
-// section 5.3.2).
+// Declares the decomposition of an environment into few area lights at infinity, so that every shadow
+// technique can shadow it (the thesis's section 5.3.2).
 #pragma once
 
 #include <array>
@@ -7,26 +7,26 @@
 #include <vector>
 
 #include "core/base/export.h"
+#include "core/image/greedy_regions.h"
 #include "core/image/image.h"
 #include "core/scene/scene.h"
-#include "core/shading/greedy_regions.h"
 
 namespace limn::shading {
 
-/// One face of a cube around the viewer: points n + a u + b v with a, b in [-1, 1], cross(u, v) = n. Texel
-/// (x, y) of F x F covers a in -1 + 2/F [x, x + 1], b in 1 - 2/F [y, y + 1].
+/// Describes one face of a cube around the viewer: points n + a u + b v with a, b in [-1, 1], cross(u, v) =
+/// n. Texel (x, y) of F x F covers a in -1 + 2/F [x, x + 1], b in 1 - 2/F [y, y + 1].
 struct CubeFace {
   glm::vec3 n, u, v;
 };
-/// +x, -x, +y, -y, +z, -z.
-LIMN_API extern const std::array<CubeFace, 6> cubeFaces;
+/// Lists the faces in the order +x, -x, +y, -y, +z, -z.
+LIMN_API extern const std::array<CubeFace, 6> kCubeFaces;
 
-/// Solid angle (sr) of the part [a0, a1] x [b0, b1] of a cube's face: exact, in double precision.
+/// Returns the solid angle (sr) of the part [a0, a1] x [b0, b1] of a cube's face: exact, in double precision.
 LIMN_API double faceSolidAngle(double a0, double b0, double a1, double b1);
 
-/// The faces of an environment's cube map in its own frame (rotation and scale not applied): energy =
-/// radiance times solid angle. Their sum is the map's, sum of radiance times exact solid angle over its
-/// pixels; negative pixels and those that are not finite count as 0. Throws Error without a map.
+/// Returns the faces of an environment's cube map in its own frame (rotation and scale not applied); energy
+/// is radiance times solid angle. The sum over the faces equals that over the map's pixels of radiance times
+/// exact solid angle; negative pixels and those that are not finite count as 0. Throws Error without a map.
 LIMN_API std::array<TexelGrid, 6> cubeMap(const scene::Environment& environment, int resolution);
 
 struct DecompositionSettings {
@@ -36,8 +36,8 @@ struct DecompositionSettings {
   int resolution = 48;
   RegionShape shape = RegionShape::squares;
 };
-constexpr int largestFaceResolution = 512;
-constexpr int mostEnvironmentLights = 1024;
+constexpr int kLargestFaceResolution = 512;
+constexpr int kMostEnvironmentLights = 1024;
 
 struct EnvironmentDecomposition {
   int resolution = 0;
@@ -47,11 +47,13 @@ struct EnvironmentDecomposition {
   std::vector<scene::DistantRectangle> lights;  ///< brightest first, in the environment's own frame
 };
 
-/// Throws UsageError for settings out of range, or such that would give more than mostEnvironmentLights.
+/// Returns the decomposition. Throws UsageError for settings that are out of range or would give more than
+/// kMostEnvironmentLights.
 LIMN_API EnvironmentDecomposition decomposeEnvironment(const scene::Environment& environment,
                                                        const DecompositionSettings& settings);
 
-/// The map times 2^exposureEv, `width` pixels wide, with the outlines of the lights on it in green (0, 1, 0).
+/// Returns the map times 2^exposureEv, `width` pixels wide, with the outlines of the lights in green (0, 1,
+/// 0).
 LIMN_API Image decompositionOverlay(const scene::Environment& environment,
                                     const EnvironmentDecomposition& decomposition, int width,
                                     float exposureEv = 0);

@@ -1,4 +1,4 @@
-// The table of glsl/ltc.glsl, compiled in.
+// The table of glsl/light/ltc.glsl, compiled in.
 #include "core/shading/ltc_table.h"
 
 #include <array>

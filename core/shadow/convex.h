@@ -1,4 +1,4 @@
-// Convex polyhedra, cut by planes. No OpenGL.
+// Declares convex polyhedra and how planes cut them. No OpenGL.
 #pragma once
 
 #include <array>
@@ -11,20 +11,22 @@
 
 namespace limn::shadow {
 
-/// Bit 0, 1, 2 of the index is high x, y, z.
+/// Returns the corners of a box. Bits 0, 1 and 2 of the index select high x, y and z.
 LIMN_API std::array<glm::vec3, 8> boxCorners(const scene::Bounds& box);
 
-/// A convex polyhedron as its faces; flat or empty ones included. Memory is kept when it is filled again.
+/// Holds a convex polyhedron as its faces, flat and empty ones included. Memory is reused when it is filled
+/// again.
 class LIMN_API Convex {
  public:
-  /// A box, however turned, from boxCorners() of it.
+  /// Sets the polyhedron to a box in any orientation, given by its corners in the order of boxCorners().
   void setBox(const std::array<glm::vec3, 8>& corners);
-  /// What lies where dot(plane, (p, 1)) >= 0.
+  /// Keeps only the part where dot(plane, (p, 1)) >= 0.
   void clip(const glm::vec4& plane);
-  /// Every corner once for each face that has it.
+  /// Returns every corner once for each face that has it.
   const std::vector<glm::vec3>& corners() const { return corners_; }
   bool empty() const { return corners_.empty(); }
-  /// The same in other coordinates: `map` of every corner; it must keep planes plane.
+  /// Sets the polyhedron to `from` in other coordinates: `map` is applied to every corner and must keep
+  /// planes planar.
   template <class Map>
   void assign(const Convex& from, const Map& map) {
     ends_ = from.ends_;

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/shadow/summed_area_passes.h"
-#include "glsl/min_max_windows.glsl"
-#include "glsl/n_buffer.glsl"
-#include "glsl/summed_area_table.glsl"
+#include "core/shadow/private/summed_area_passes.h"
+#include "glsl/shadow/min_max_windows.glsl"
+#include "glsl/shadow/n_buffer.glsl"
+#include "glsl/shadow/summed_area_table.glsl"
 
 namespace limn::shadow {
 namespace {
@@ -57,22 +57,19 @@ TextureHandle addPyramid(frame::FrameGraph& graph, TextureHandle source, Pyramid
   const auto is = [kind](PyramidKind other) { return kind == other ? "1" : "0"; };
   for (int level = 0; level < desc.levels; ++level) {
     frame::PassBuilder pass = graph.addPass(fmt::format("{} level {}", nameOf(kind), level), "shadow");
-    if (level == 0) pass.read(source, Access::sampled, "shadow maps");
+    pass.role(frame::PassRole::filter);
+    if (level == 0) pass.read(source, Access::sampled, "depth", "shadow maps");
     pyramid = pass.write(pyramid, level == 0 ? Access::imageStore : Access::imageLoadStore,
+                         frame::ShaderName("coarser").level(level),
                          level == 0 ? "finest level" : "next level from the one before");
+    if (level > 0) pass.also(frame::ShaderName("finer").level(level - 1));
     const frame::ProgramHandle program = pass.program({.files = {"glsl/shadow/pyramid.comp.glsl"},
                                                        .defines = {{"BASE", level == 0 ? "1" : "0"},
                                                                    {"MOMENTS", is(PyramidKind::moments)},
                                                                    {"WINDOWS", is(PyramidKind::windows)}}});
     if (cacheable) pass.cacheable();
-    pass.execute([source, pyramid, program, level, desc](frame::PassContext& context) {
-      context.program(program).use();
-      if (level == 0) {
-        context.bindSampled(0, source);
-      } else {
-        context.bindImage(1, pyramid, GL_READ_ONLY, level - 1);
-      }
-      context.bindImage(0, pyramid, GL_WRITE_ONLY, level);
+    pass.execute([program, level, desc](frame::PassContext& context) {
+      context.use(program);
       context.dispatch(std::max(desc.width >> level, 1), std::max(desc.height >> level, 1), desc.layers, 8,
                        8);
     });
@@ -94,24 +91,18 @@ TextureHandle addNBuffer(frame::FrameGraph& graph, TextureHandle source, bool ca
   TextureHandle windows = graph.createTexture(name, desc);
   for (int level = 0; level < levels; ++level) {
     frame::PassBuilder pass = graph.addPass(fmt::format("{} level {}", name, level), "shadow");
-    if (level == 0) pass.read(source, Access::sampled, "shadow maps");
-    windows = pass.write(windows, level == 0 ? Access::imageStore : Access::imageLoadStore,
+    pass.role(frame::PassRole::filter);
+    if (level == 0) pass.read(source, Access::sampled, "depth", "shadow maps");
+    windows = pass.write(windows, level == 0 ? Access::imageStore : Access::imageLoadStore, "windows",
                          level == 0 ? "windows of one texel" : "windows twice as wide as before");
     const frame::ProgramHandle program = pass.program(
         {.files = {"glsl/shadow/n_buffer.comp.glsl"}, .defines = {{"BASE", level == 0 ? "1" : "0"}}});
     if (cacheable) pass.cacheable();
-    pass.execute(
-        [source, windows, program, level, desc, layers = desc.layers / levels](frame::PassContext& context) {
-          gpu::Program& kernel = context.program(program);
-          kernel.use();
-          if (level == 0) {
-            context.bindSampled(0, source);
-          } else {
-            kernel.set("level", level);
-          }
-          context.bindImage(0, windows, level == 0 ? GL_WRITE_ONLY : GL_READ_WRITE);
-          context.dispatch(desc.width, desc.height, layers, 8, 8);
-        });
+    pass.execute([program, level, desc, layers = desc.layers / levels](frame::PassContext& context) {
+      gpu::Program& kernel = context.use(program);
+      if (level > 0) kernel.set("level", level);
+      context.dispatch(desc.width, desc.height, layers, 8, 8);
+    });
   }
   return windows;
 }
@@ -161,17 +152,16 @@ SummedAreaTable addTable(frame::FrameGraph& graph, TextureHandle source, const S
 
 struct DerivedMaps::Implementation {
   const gpu::Device& device;
-  frame::FrameGraph* graph = nullptr;
   std::vector<KnownPyramid> pyramids = {};
   std::vector<KnownNBuffer> nBuffers = {};
   std::vector<KnownTable> tables = {};
   std::vector<KnownMoments> moments = {};
 
-  TextureHandle pyramid(TextureHandle source, PyramidKind kind, bool cacheable) {
+  TextureHandle pyramid(frame::FrameGraph& graph, TextureHandle source, PyramidKind kind, bool cacheable) {
     for (const KnownPyramid& known : pyramids) {
       if (known.source == source && known.kind == kind) return known.texture;
     }
-    pyramids.push_back({source, kind, addPyramid(*graph, source, kind, cacheable)});
+    pyramids.push_back({source, kind, addPyramid(graph, source, kind, cacheable)});
     return pyramids.back().texture;
   }
 };
@@ -179,54 +169,55 @@ struct DerivedMaps::Implementation {
 DerivedMaps::DerivedMaps(const gpu::Device& device) : implementation_(new Implementation{.device = device}) {}
 DerivedMaps::~DerivedMaps() = default;
 
-void DerivedMaps::begin(frame::FrameGraph& graph) {
-  implementation_->graph = &graph;
+void DerivedMaps::clear() {
   implementation_->pyramids.clear();
   implementation_->nBuffers.clear();
   implementation_->tables.clear();
   implementation_->moments.clear();
 }
 
-MinMaxPyramid DerivedMaps::minMaxPyramid(TextureHandle depth, bool cacheable) {
-  const TextureHandle texture = implementation_->pyramid(depth, PyramidKind::minMax, cacheable);
-  return {texture, implementation_->graph->desc(texture).levels};
+MinMaxPyramid DerivedMaps::minMaxPyramid(frame::FrameGraph& graph, TextureHandle depth, bool cacheable) {
+  const TextureHandle texture = implementation_->pyramid(graph, depth, PyramidKind::minMax, cacheable);
+  return {texture, graph.desc(texture).levels};
 }
 
-TextureHandle DerivedMaps::minMaxWindows(TextureHandle depth, bool cacheable) {
-  return implementation_->pyramid(depth, PyramidKind::windows, cacheable);
+TextureHandle DerivedMaps::minMaxWindows(frame::FrameGraph& graph, TextureHandle depth, bool cacheable) {
+  return implementation_->pyramid(graph, depth, PyramidKind::windows, cacheable);
 }
 
-TextureHandle DerivedMaps::nBuffer(TextureHandle depth, bool cacheable) {
+TextureHandle DerivedMaps::nBuffer(frame::FrameGraph& graph, TextureHandle depth, bool cacheable) {
   Implementation& d = *implementation_;
   for (const KnownNBuffer& known : d.nBuffers) {
     if (known.source == depth) return known.texture;
   }
-  d.nBuffers.push_back({depth, addNBuffer(*d.graph, depth, cacheable, d.device.limits().maxArrayLayers)});
+  d.nBuffers.push_back({depth, addNBuffer(graph, depth, cacheable, d.device.limits().maxArrayLayers)});
   return d.nBuffers.back().texture;
 }
 
-SummedAreaTable DerivedMaps::summedAreaTable(TextureHandle depth, bool cacheable, const SatDesc& desc) {
+SummedAreaTable DerivedMaps::summedAreaTable(frame::FrameGraph& graph, TextureHandle depth, bool cacheable,
+                                             const SatDesc& desc) {
   Implementation& d = *implementation_;
   const SatDesc full = resolved(desc, d.device.software());
   for (const KnownTable& known : d.tables) {
     if (known.source == depth && known.desc == full) return known.table;
   }
-  d.tables.push_back({depth, full, addTable(*d.graph, depth, full, cacheable)});
+  d.tables.push_back({depth, full, addTable(graph, depth, full, cacheable)});
   return d.tables.back().table;
 }
 
-MomentTable DerivedMaps::momentTable(TextureHandle depth, bool cacheable, int bits) {
+MomentTable DerivedMaps::momentTable(frame::FrameGraph& graph, TextureHandle depth, bool cacheable,
+                                     int bits) {
   Implementation& d = *implementation_;
-  const int wanted = bits == 0 ? momentBits(d.graph->desc(depth).width) : bits;
+  const int wanted = bits == 0 ? momentBits(graph.desc(depth).width) : bits;
   for (const KnownMoments& known : d.moments) {
     if (known.source == depth && known.table.bits == wanted) return known.table;
   }
-  d.moments.push_back({depth, addMomentTable(*d.graph, depth, cacheable, wanted, !d.device.software())});
+  d.moments.push_back({depth, addMomentTable(graph, depth, cacheable, wanted, !d.device.software())});
   return d.moments.back().table;
 }
 
-TextureHandle DerivedMaps::momentMips(TextureHandle depth, bool cacheable) {
-  return implementation_->pyramid(depth, PyramidKind::moments, cacheable);
+TextureHandle DerivedMaps::momentMips(frame::FrameGraph& graph, TextureHandle depth, bool cacheable) {
+  return implementation_->pyramid(graph, depth, PyramidKind::moments, cacheable);
 }
 
 }  // namespace limn::shadow

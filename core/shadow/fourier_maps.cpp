@@ -6,15 +6,15 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "glsl/fourier_shadow.glsl"
+#include "glsl/shadow/fourier_shadow.glsl"
 
 namespace limn::shadow {
 namespace {
 
 using frame::Access;
 
-constexpr int64_t memoryLimit = int64_t{4} << 30;  // bytes of all maps of one request
-constexpr int chunk = 2;                           // groups that a thread sums at once
+constexpr int64_t kMemoryLimit = int64_t{4} << 30;  // bytes of all maps of one request
+constexpr int kChunk = 2;                           // groups that a thread sums at once
 
 struct Formats {
   GLenum basis, depthBasis, depth;
@@ -50,12 +50,12 @@ void createTextures(frame::FrameGraph& graph, const gpu::Device& device, frame::
   maps.basis = create("Fourier basis", formats.basis, views * maps.groups());
   maps.depthBasis = create("Fourier basis times depth", formats.depthBasis, views * maps.groups());
   maps.depth = create("Fourier depth", formats.depth, views);
-  if (bytes > memoryLimit) {
+  if (bytes > kMemoryLimit) {
     throw UsageError(
         fmt::format("Fourier maps of order {} of {} shadow maps of {} x {} texels take {} MiB, more than the "
                     "{} MiB that they may; "
                     "ask for a smaller shadow_map_size, a smaller order, mip maps or fewer lights at once",
-                    maps.desc.order, views, desc.width, desc.height, bytes >> 20, memoryLimit >> 20));
+                    maps.desc.order, views, desc.width, desc.height, bytes >> 20, kMemoryLimit >> 20));
   }
 }
 
@@ -68,20 +68,18 @@ frame::BufferHandle addRanges(frame::FrameGraph& graph, const MinMaxPyramid& pyr
   frame::BufferHandle ranges =
       graph.createBuffer("Fourier ranges", {static_cast<size_t>(desc.layers) * sizeof(glsl::FourierRange)});
   frame::PassBuilder pass = graph.addPass("Fourier ranges", "shadow");
+  pass.role(frame::PassRole::filter);
   const bool fitted = maps.desc.fit != FourierFit::map;
-  if (fitted) pass.read(pyramid.texture, Access::sampled, "depths that are there");
-  ranges = pass.write(ranges, Access::storageStore, "depths that the series spans");
+  if (fitted) pass.read(pyramid.texture, Access::sampled, "pyramid", "depths that are there");
+  ranges = pass.write(ranges, Access::storageStore, "Ranges", "depths that the series spans");
   const frame::ProgramHandle program =
       pass.program({.files = {"glsl/shadow/fourier_range.comp.glsl"},
                     .defines = {{"FIT", std::to_string(static_cast<int>(maps.desc.fit))}}});
   if (cacheable) pass.cacheable();
   pass.execute([=, span = static_cast<float>(maps.constants.range)](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(program);
-    kernel.use();
+    gpu::Program& kernel = context.use(program);
     kernel.set("span", span);
     if (fitted) kernel.set("level", level);
-    if (fitted) context.bindSampled(0, pyramid.texture);
-    context.bindStorage(0, ranges);
     context.dispatch(desc.layers, 1, 1, 1, 1);
   });
   return ranges;
@@ -92,15 +90,20 @@ void addMips(frame::FrameGraph& graph, frame::TextureHandle source, bool cacheab
   for (int level = 0; level < desc.levels; ++level) {
     const bool base = level == 0;
     frame::PassBuilder pass = graph.addPass(fmt::format("Fourier basis level {}", level), "shadow");
+    pass.role(frame::PassRole::filter);
     if (base) {
-      pass.read(source, Access::sampled, "shadow maps")
-          .read(maps.ranges, Access::storageLoad, "depths that the series spans");
+      pass.read(source, Access::sampled, "depth", "shadow maps")
+          .read(maps.ranges, Access::storageLoad, "Ranges", "depths that the series spans");
     }
     const Access access = base ? Access::imageStore : Access::imageLoadStore;
     const std::string_view why = base ? "finest level" : "next level from the one before";
-    maps.basis = pass.write(maps.basis, access, why);
-    maps.depthBasis = pass.write(maps.depthBasis, access, why);
-    maps.depth = pass.write(maps.depth, access, why);
+    const auto write = [&](frame::TextureHandle& image, const char* coarser, const char* finer) {
+      image = pass.write(image, access, frame::ShaderName(coarser).level(level), why);
+      if (!base) pass.also(frame::ShaderName(finer).level(level - 1));
+    };
+    write(maps.basis, "coarser_basis", "finer_basis");
+    write(maps.depthBasis, "coarser_depth_basis", "finer_depth_basis");
+    write(maps.depth, "coarser_depth", "finer_depth");
     const auto even = [&](int size) { return size >> level > 0 && ((size >> (level - 1)) & 1) == 0; };
     const bool halved = !base && even(desc.width) && even(desc.height);
     const frame::ProgramHandle program =
@@ -109,19 +112,9 @@ void addMips(frame::FrameGraph& graph, frame::TextureHandle source, bool cacheab
                                   {"HALVED", halved ? "1" : "0"},
                                   {"GROUPS", std::to_string(maps.groups())}}});
     if (cacheable) pass.cacheable();
-    pass.execute([=, maps = maps](frame::PassContext& context) {
-      gpu::Program& kernel = context.program(program);
-      kernel.use();
-      const frame::TextureHandle images[] = {maps.basis, maps.depthBasis, maps.depth};
-      for (unsigned i = 0; i < 3; ++i) {
-        context.bindImage(i, images[i], GL_WRITE_ONLY, level);
-        if (!base) context.bindImage(i + 3, images[i], GL_READ_ONLY, level - 1);
-      }
-      if (base) {
-        kernel.set("span", static_cast<float>(maps.constants.range));
-        context.bindSampled(0, source);
-        context.bindStorage(0, maps.ranges);
-      }
+    pass.execute([=, span = static_cast<float>(maps.constants.range)](frame::PassContext& context) {
+      gpu::Program& kernel = context.use(program);
+      if (base) kernel.set("span", span);
       context.dispatch(std::max(desc.width >> level, 1), std::max(desc.height >> level, 1), desc.layers, 8,
                        8);
     });
@@ -138,27 +131,21 @@ void addRows(frame::FrameGraph& graph, frame::TextureHandle source, bool cacheab
              FourierMaps& maps) {
   const gpu::TextureDesc desc = graph.desc(maps.depth);
   frame::PassBuilder pass = graph.addPass("Fourier sums rows", "shadow");
-  pass.read(source, Access::sampled, "shadow maps")
-      .read(maps.ranges, Access::storageLoad, "depths that the series spans");
-  maps.basis = pass.write(maps.basis, Access::imageStore, "sums along rows");
-  maps.depthBasis = pass.write(maps.depthBasis, Access::imageStore, "sums along rows");
-  maps.depth = pass.write(maps.depth, Access::imageStore, "sums along rows");
-  const int groups = maps.groups(), perThread = std::min(groups, chunk);
+  pass.role(frame::PassRole::filter);
+  pass.read(source, Access::sampled, "depth", "shadow maps")
+      .read(maps.ranges, Access::storageLoad, "Ranges", "depths that the series spans");
+  maps.basis = pass.write(maps.basis, Access::imageStore, "basis", "sums along rows");
+  maps.depthBasis = pass.write(maps.depthBasis, Access::imageStore, "depth_basis", "sums along rows");
+  maps.depth = pass.write(maps.depth, Access::imageStore, "plain_depth", "sums along rows");
+  const int groups = maps.groups(), perThread = std::min(groups, kChunk);
   const frame::ProgramHandle program = pass.program({.files = {"glsl/shadow/fourier_sums.comp.glsl"},
                                                      .defines = {{"VERTICAL", "0"},
                                                                  {"SHARED", shared ? "1" : "0"},
                                                                  {"GROUPS", std::to_string(groups)},
                                                                  {"CHUNK", std::to_string(perThread)}}});
   if (cacheable) pass.cacheable();
-  pass.execute([=, maps = maps](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(program);
-    kernel.use();
-    kernel.set("span", static_cast<float>(maps.constants.range));
-    context.bindSampled(0, source);
-    context.bindStorage(0, maps.ranges);
-    context.bindImage(0, maps.basis, GL_WRITE_ONLY);
-    context.bindImage(1, maps.depthBasis, GL_WRITE_ONLY);
-    context.bindImage(2, maps.depth, GL_WRITE_ONLY);
+  pass.execute([=, span = static_cast<float>(maps.constants.range)](frame::PassContext& context) {
+    context.use(program).set("span", span);
     const int chunks = (groups + perThread - 1) / perThread;
     context.dispatch(lineGroups(desc.height, shared, false), 1, desc.layers * chunks, 1, 1);
   });
@@ -166,9 +153,11 @@ void addRows(frame::FrameGraph& graph, frame::TextureHandle source, bool cacheab
 
 void addColumns(frame::FrameGraph& graph, bool cacheable, bool shared, FourierMaps& maps) {
   frame::PassBuilder pass = graph.addPass("Fourier sums columns", "shadow");
+  pass.role(frame::PassRole::filter);
   maps.basis = pass.write(maps.basis, Access::imageLoadStore, "sums along columns, in place");
   maps.depthBasis = pass.write(maps.depthBasis, Access::imageLoadStore, "sums along columns, in place");
   maps.depth = pass.write(maps.depth, Access::imageLoadStore, "sums along columns, in place");
+  const frame::SlotHandle table = pass.slot("table");
   const auto program = [&](const char* format) {
     return pass.program(
         {.files = {"glsl/shadow/fourier_sums.comp.glsl"},
@@ -179,13 +168,13 @@ void addColumns(frame::FrameGraph& graph, bool cacheable, bool shared, FourierMa
   if (cacheable) pass.cacheable();
   pass.execute([=, maps = maps](frame::PassContext& context) {
     const int columns = lineGroups(basis.width, shared, true);
-    context.program(four).use();
+    context.use(four);
     for (const frame::TextureHandle image : {maps.basis, maps.depthBasis}) {
-      context.bindImage(0, image, GL_READ_WRITE);
+      context.bind(table, image);
       context.dispatch(columns, 1, basis.layers, 1, 1);
     }
-    context.program(one).use();
-    context.bindImage(0, maps.depth, GL_READ_WRITE);
+    context.use(one);
+    context.bind(table, maps.depth);
     context.dispatch(columns, 1, depth.layers, 1, 1);
   });
 }
@@ -211,17 +200,12 @@ std::map<std::string, std::string> FourierMaps::defines() const {
 }
 
 void FourierMaps::declare(frame::PassBuilder& pass) const {
-  pass.read(depthBasis, Access::sampled, "stage 1: mean blocker depth")
-      .read(depth, Access::sampled, "stage 1: its constant term")
-      .read(basis, Access::sampled, "stage 2: its normalisation; stage 3: visibility")
-      .read(ranges, Access::storageLoad, "depths that the series spans");
-}
-
-void FourierMaps::bind(frame::PassContext& context) const {
-  context.bindSampled(10, basis, trilinear);
-  context.bindSampled(11, depthBasis, trilinear);
-  context.bindSampled(12, depth, trilinear);
-  context.bindStorage(4, ranges);
+  const auto sampled = [&](const char* name) { return frame::ShaderName(name).sampledWith(trilinear); };
+  pass.read(depthBasis, Access::sampled, sampled("fourier_depth_basis_maps"), "stage 1: mean blocker depth")
+      .read(depth, Access::sampled, sampled("fourier_depth_maps"), "stage 1: its constant term")
+      .read(basis, Access::sampled, sampled("fourier_basis_maps"),
+            "stage 2: its normalisation; stage 3: visibility")
+      .read(ranges, Access::storageLoad, "FourierRanges", "depths that the series spans");
 }
 
 FourierMaps addFourierMaps(frame::FrameGraph& graph, const gpu::Device& device, frame::TextureHandle depth,

@@ -1,6 +1,6 @@
-// Fourier basis maps of shadow maps: the filtered basis images from which convolution shadow maps answer the
-// shadow test and the mean blocker depth for whole kernels (Annen et al. 2007, 2008). Series and lookups:
-// glsl/fourier_shadow.glsl, glsl/fourier_lookup.glsl.
+// Declares Fourier basis maps of shadow maps: the filtered basis images from which convolution shadow maps
+// compute the shadow test and the mean blocker depth for whole kernels (Annen et al. 2007, 2008). Series and
+// lookups are in glsl/shadow/fourier_shadow.glsl and glsl/shadow/fourier_lookup.glsl.
 #pragma once
 
 #include <map>
@@ -16,13 +16,13 @@ enum class FourierFilter {
   sat,  ///< summed-area tables of integers, 32 bits per image: kernels are exact boxes
 };
 
-enum class FourierWindow { none, lanczos, fejer };  // as fourier_window_* in glsl/fourier_shadow.glsl
+enum class FourierWindow { none, lanczos, fejer };  // as fourier_window_* in glsl/shadow/fourier_shadow.glsl
 
-/// Which depths of a map the series spans.
+/// Says which depths of a map the series spans.
 enum class FourierFit {
   map,    ///< near to far of the view
-  range,  ///< the least to the greatest depth that is there
-  plane,  ///< the same relative to a plane fitted to the map, where that is less
+  range,  ///< from the least to the greatest depth in the map
+  plane,  ///< the same relative to a plane fitted to the map, where that range is smaller
 };
 
 struct FourierDesc {
@@ -34,25 +34,25 @@ struct FourierDesc {
   bool operator==(const FourierDesc&) const = default;
 };
 
-/// Numbers of the series S(x) = 1/2 + sum of u_k sin(c_k x), derived numerically.
+/// Holds constants of the series S(x) = 1/2 + sum of u_k sin(c_k x), derived numerically.
 struct FourierConstants {
-  double delta = 0;  ///< where the series is evaluated before the receiver: S(delta) = 1, or S is flat there
-  double range = 0;  ///< R = 1 - 2 delta: depths lie in [0, R]
+  double delta = 0;      ///< offset before the receiver for evaluation: S(delta) = 1, or S is flat there
+  double range = 0;      ///< R = 1 - 2 delta: depths lie in [0, R]
   double overshoot = 0;  ///< greatest S - 1; negative where S stays below 1
   double dip = 0;        ///< least S in [delta, 1 - delta]
-  double valley = 0;  ///< where that is, at most 1/2; S falls monotonically to it once it has fallen below 1
-  double gain = 0;    ///< a_M of ringing suppression: maps what lies at or behind the receiver to 1
-  double level = 0;   ///< S(delta): 1, or less where S stays below 1
+  double valley = 0;     ///< place of the dip, at most 1/2; S falls monotonically to it once below 1
+  double gain = 0;       ///< a_M of ringing suppression: maps depths at or behind the receiver to 1
+  double level = 0;      ///< S(delta): 1, or less where S stays below 1
   double tolerance =
       0;  ///< half the depth t that a lit plane may span within a kernel: mean S stays above dip
   double curvature = 0;  ///< mean S over such a plane is at least level - curvature t^2
 };
 
-/// S(x).
+/// Returns S(x).
 LIMN_API double fourierSeries(double x, int order, FourierWindow window);
-/// Throws UsageError for an order outside 1 to 64.
+/// Returns the constants of a series. Throws UsageError for an order outside 1 to 64.
 LIMN_API FourierConstants fourierConstants(int order, FourierWindow window);
-/// Bounds how far S strays from the truth when every basis value is off by at most half of 1 / scale.
+/// Returns a bound on the error of S when every basis value is off by at most half of 1 / scale.
 LIMN_API double fourierNoise(int order, FourierWindow window, int scale);
 
 struct FourierMaps {
@@ -66,14 +66,14 @@ struct FourierMaps {
   const gpu::Sampler* trilinear = nullptr;  ///< for mip maps; the service's
 
   int groups() const { return (desc.order + 1) / 2; }
-  // For programs that include glsl/fourier_lookup.glsl: what they must define, read and have bound.
+  // Programs that include glsl/shadow/fourier_lookup.glsl must use these definitions and declarations.
   LIMN_API std::map<std::string, std::string> defines() const;
   LIMN_API void declare(frame::PassBuilder& pass) const;
-  LIMN_API void bind(frame::PassContext& context) const;
 };
 
 /// Declares the passes that build the maps of `depth`, an R32F array with values in [0, 1]. Throws UsageError
-/// for a description out of range, and for maps that take more than 4 GiB or more layers than the device has.
+/// for a description out of range, and for maps that take more than 4 GiB or more layers than the device
+/// allows.
 LIMN_API FourierMaps addFourierMaps(frame::FrameGraph& graph, const gpu::Device& device,
                                     frame::TextureHandle depth, const MinMaxPyramid& pyramid, bool cacheable,
                                     FourierDesc desc);

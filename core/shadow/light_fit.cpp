@@ -5,9 +5,9 @@
 #include <limits>
 #include <optional>
 
-#include "core/shadow/window_fit.h"
-#include "glsl/geometry.glsl"
-#include "glsl/light_view.glsl"
+#include "core/shadow/private/window_fit.h"
+#include "glsl/light/light_view.glsl"
+#include "glsl/numeric/geometry.glsl"
 
 namespace limn::shadow {
 namespace {
@@ -117,9 +117,9 @@ Range pyramidRange(const vec3& origin, const Axes& axes, uint32_t faceCount, uin
 
 /// A little room at both ends, so that what touches them is not cut by rounding; never empty.
 Range widened(Range range) {
-  if (!(range.far > 0)) return {leastNear, 1};
+  if (!(range.far > 0)) return {kLeastNear, 1};
   range.far *= 1.0001f;
-  range.near = std::max(0.9999f * range.near, leastNear * range.far);
+  range.near = std::max(0.9999f * range.near, kLeastNear * range.far);
   return range;
 }
 
@@ -129,12 +129,20 @@ glsl::ShadowView makeView(uint32_t projection, const vec3& origin, const Axes& a
   float footprint = 1 / (scale * static_cast<float>(size));
   // At the centre of a paraboloid map a texel spans 4 / size radians: uv = 1/2 + s tan(angle / 2).
   if (projection == glsl::shadow_paraboloid) footprint *= 2;
-  return {.origin = glm::vec4(origin, window.near),
-          .axis_x = glm::vec4(axes.x, scale),
-          .axis_y = glm::vec4(axes.y, footprint),
-          .axis_z = glm::vec4(axes.z, window.far),
-          .middle = glm::vec4(0.5f - 0.5f * scale * (window.low + window.high), 0, 0),
-          .info = {projection, layer, static_cast<uint32_t>(size), light}};
+  return {.origin = origin,
+          .near = window.near,
+          .axis_x = axes.x,
+          .scale = scale,
+          .axis_y = axes.y,
+          .footprint = footprint,
+          .axis_z = axes.z,
+          .far = window.far,
+          .middle = 0.5f - 0.5f * scale * (window.low + window.high),
+          .unused = {},
+          .projection = projection,
+          .layer = layer,
+          .size = static_cast<uint32_t>(size),
+          .light = light};
 }
 
 MapWindow square(float half, const Range& range) {
@@ -147,8 +155,13 @@ struct Writer {
   std::vector<glsl::ShadowView>& views;
   std::vector<glsl::ShadowLight>& lights;
 
-  void light(const glm::vec4& origin, uint32_t faces) {
-    lights.push_back({origin, {static_cast<uint32_t>(views.size()), faces, lightIndex, 0}});
+  void light(const vec3& origin, bool finite, uint32_t faces) {
+    lights.push_back({.origin = origin,
+                      .finite = finite ? 1.f : 0.f,
+                      .first_layer = static_cast<uint32_t>(views.size()),
+                      .faces = faces,
+                      .light = lightIndex,
+                      .unused = 0});
   }
   void view(uint32_t projection, const vec3& origin, const Axes& axes, const MapWindow& window) {
     views.push_back(
@@ -158,17 +171,17 @@ struct Writer {
 
 /// Half of a light's sides, each as far as it reaches along the axes of its map. `size` as in light_view().
 vec3 spreadOf(const glsl::Light& light, const Axes& axes, float size) {
-  if (light.info.x == glsl::light_directional && !glsl::light_is_distant_rectangle(light))
-    return vec3(glm::vec2(std::tan(std::min(0.5f * (size < 0 ? light.cone.w : size), 1.55f))), 0);
+  if (light.type == glsl::light_directional && !glsl::light_is_distant_rectangle(light))
+    return vec3(glm::vec2(std::tan(std::min(0.5f * (size < 0 ? light.angular_diameter : size), 1.55f))), 0);
   // A square that faces the receiver, whichever way.
-  if (light.info.x == glsl::light_point || light.info.x == glsl::light_spot)
+  if (light.type == glsl::light_point || light.type == glsl::light_spot)
     return vec3(std::sqrt(0.5f) * std::max(size, 0.f));
-  vec3 u = light.axis_u.w * vec3(light.axis_u), v = light.axis_v.w * vec3(light.axis_v);
+  vec3 u = light.length_u * light.axis_u, v = light.length_v * light.axis_v;
   const bool distant = glsl::light_is_distant_rectangle(light);
   if (size >= 0) {
     const float side = distant ? 2 * std::tan(std::min(0.5f * size, 1.5f)) : size;
-    u = side * vec3(light.axis_u);
-    v = side * vec3(light.axis_v);
+    u = side * light.axis_u;
+    v = side * light.axis_v;
   }
   const auto reach = [&](const vec3& axis) {
     return 0.5f * (std::abs(glm::dot(axis, u)) + std::abs(glm::dot(axis, v)));
@@ -176,7 +189,7 @@ vec3 spreadOf(const glsl::Light& light, const Axes& axes, float size) {
   const vec3 half(reach(axes.x), reach(axes.y), reach(axes.z));
   if (!distant) return half;
   // Points are directions centre + a u + b v: across the map's axis per metre along it.
-  const float along = std::max(glm::length(vec3(light.position)) - half.z, 1e-3f);
+  const float along = std::max(glm::length(light.position) - half.z, 1e-3f);
   return {half.x / along, half.y / along, 0};
 }
 
@@ -207,44 +220,44 @@ void appendOrthographic(const glsl::Light& light, const vec3& direction, std::sp
   const float depth = std::max(size.z, 1e-3f * width);
   // The plane z = 0 lies a tenth of the depth before everything, so that depths are positive.
   const vec3 origin = centre + middle.x * axes.x + middle.y * axes.y + (middle.z - 0.6f * depth) * axes.z;
-  out.light(glm::vec4(-direction, 0), glsl::shadow_faces_single);
+  out.light(-direction, false, glsl::shadow_faces_single);
   const MapWindow whole = square(0.5f * width, {0.0999f * depth, 1.1001f * depth});
   MapWindow window, receivers;
   const bool fitted = fit.visible != nullptr && fitWindow({origin, axes, false, fit.spread}, *fit.visible,
-                                                          light.info.z, whole, window, receivers);
+                                                          light.own_instance, whole, window, receivers);
   out.view(glsl::shadow_orthographic, origin, axes, fitted ? steadyWindow(window, whole, out.size) : whole);
 }
 
 vec3 samplePoint(const glsl::Light& light, const glm::vec2& sample) {
   const glm::vec2 ab = sample - 0.5f;
-  return vec3(light.position) + ab.x * light.axis_u.w * vec3(light.axis_u) +
-         ab.y * light.axis_v.w * vec3(light.axis_v);
+  return light.position + ab.x * light.length_u * light.axis_u + ab.y * light.length_v * light.axis_v;
 }
 
 /// The unit direction that a directional light's sample shines along.
 vec3 sampleDirection(const glsl::Light& light, const glm::vec2& sample) {
-  const glsl::LightView view = glsl::light_view(light, vec3(0), -vec3(light.direction), -1);
+  const glsl::LightView view = glsl::light_view(light, vec3(0), -light.direction, -1);
   return -glm::normalize(glsl::light_view_point(view, sample));
 }
 
 float spotTangent(const glsl::Light& light, int size) {
-  const float angle = std::acos(std::clamp(light.cone.y, -1.f, 1.f));
-  return angle <= largestHalfAngle ? std::tan(angle) * (1 + 4 / static_cast<float>(size)) : 2;
+  const float angle = std::acos(std::clamp(light.cos_outer, -1.f, 1.f));
+  return angle <= kLargestHalfAngle ? std::tan(angle) * (1 + 4 / static_cast<float>(size)) : 2;
 }
 
 bool hasCone(const glsl::Light& light) {
-  return (light.info.y & glsl::light_flag_cone) != 0 &&
-         std::acos(std::clamp(light.cone.y, -1.f, 1.f)) <= largestHalfAngle;
+  return (light.flags & glsl::light_flag_cone) != 0 &&
+         std::acos(std::clamp(light.cos_outer, -1.f, 1.f)) <= kLargestHalfAngle;
 }
 
 bool twoSided(const glsl::Light& light) {
-  return (light.info.y & glsl::light_flag_two_sided) != 0;
+  return (light.flags & glsl::light_flag_two_sided) != 0;
 }
 
 LightLayout paraboloidLayout(const glsl::Light& light) {
-  const bool both = light.info.x == glsl::light_point || twoSided(light) ||
-                    (light.info.x == glsl::light_spot && light.cone.y < 0);
-  return {glsl::shadow_paraboloid, both ? glsl::shadow_faces_pair : glsl::shadow_faces_single};
+  const bool both = light.type == glsl::light_point || twoSided(light) ||
+                    (light.type == glsl::light_spot && light.cos_outer < 0);
+  return {glsl::shadow_paraboloid, both ? glsl::shadow_faces_pair : glsl::shadow_faces_single,
+          glsl::light_kind(light)};
 }
 
 /// Of perspective views from `origin`: all boxes that they may see, as far as there is light.
@@ -254,9 +267,9 @@ MapWindow wholeWindow(const glsl::Light& light, const vec3& origin, const Axes& 
   float tangent = 1;
   if (count <= 2) {
     tangent =
-        light.info.x == glsl::light_spot ? spotTangent(light, desc.size) : fittedTangent(origin, axes, boxes);
+        light.type == glsl::light_spot ? spotTangent(light, desc.size) : fittedTangent(origin, axes, boxes);
     if (count == 2) tangent = std::max(tangent, fittedTangent(origin, faceAxes(axes, 5), boxes));
-    if (light.info.x != glsl::light_spot) tangent *= 1 + 4 / static_cast<float>(desc.size);
+    if (light.type != glsl::light_spot) tangent *= 1 + 4 / static_cast<float>(desc.size);
     if (hasCone(light) && count == 1) tangent = std::min(tangent, spotTangent(light, desc.size));
     if (!(tangent > 0)) tangent = 1;
   }
@@ -272,12 +285,14 @@ std::vector<glm::vec2> samplesOf(const glsl::Light& light, const ShadowMapDesc& 
 }
 
 LightLayout fitLayout(const glsl::Light& light, std::span<const Bounds> boxes, const ShadowMapDesc& desc) {
-  if (light.info.x == glsl::light_directional) return {glsl::shadow_orthographic, glsl::shadow_faces_single};
+  const uint32_t kind = glsl::light_kind(light);
+  if (light.type == glsl::light_directional)
+    return {glsl::shadow_orthographic, glsl::shadow_faces_single, kind};
   if (desc.projection == Projection::paraboloid) return paraboloidLayout(light);
-  const LightLayout cube{glsl::shadow_perspective, glsl::shadow_faces_cube};
-  if (light.info.x == glsl::light_point || desc.projection == Projection::cube) return cube;
-  if (light.info.x == glsl::light_spot)
-    return hasCone(light) ? LightLayout{glsl::shadow_perspective, glsl::shadow_faces_single} : cube;
+  const LightLayout cube{glsl::shadow_perspective, glsl::shadow_faces_cube, kind};
+  const LightLayout single{glsl::shadow_perspective, glsl::shadow_faces_single, kind};
+  if (light.type == glsl::light_point || desc.projection == Projection::cube) return cube;
+  if (light.type == glsl::light_spot) return hasCone(light) ? single : cube;
 
   const Axes axes = axesOf(light);
   const bool both = twoSided(light);
@@ -287,9 +302,9 @@ LightLayout fitLayout(const glsl::Light& light, std::span<const Bounds> boxes, c
     tangent = std::max(tangent, fittedTangent(origin, axes, boxes));
     if (both) tangent = std::max(tangent, fittedTangent(origin, faceAxes(axes, 5), boxes));
   }
-  if (tangent <= std::tan(largestHalfAngle) || (!both && hasCone(light) && desc.samples.empty()))
-    return {glsl::shadow_perspective, both ? glsl::shadow_faces_pair : glsl::shadow_faces_single};
-  return both ? cube : LightLayout{glsl::shadow_perspective, glsl::shadow_faces_hemicube};
+  if (tangent <= std::tan(kLargestHalfAngle) || (!both && hasCone(light) && desc.samples.empty()))
+    return both ? LightLayout{glsl::shadow_perspective, glsl::shadow_faces_pair, kind} : single;
+  return both ? cube : LightLayout{glsl::shadow_perspective, glsl::shadow_faces_hemicube, kind};
 }
 
 void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayout& layout,
@@ -311,7 +326,7 @@ void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayou
     const vec3 origin(light.position);
     const MapWindow whole = wholeWindow(light, origin, axes, layout, boxes, desc);
     MapWindow fitted, seen;
-    if (fitWindow({origin, axes, true, fit.spread}, *fit.visible, light.info.z, whole, fitted, seen)) {
+    if (fitWindow({origin, axes, true, fit.spread}, *fit.visible, light.own_instance, whole, fitted, seen)) {
       window = fitted;
       receivers = seen;
     }
@@ -322,7 +337,7 @@ void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayou
       continue;
     }
     const vec3 origin = samplePoint(light, sample);
-    out.light(glm::vec4(origin, 1), layout.faces);
+    out.light(origin, true, layout.faces);
     // The second view of a pair looks backwards.
     const uint32_t step = layout.faces == glsl::shadow_faces_pair ? 5 : 1;
     if (layout.projection == glsl::shadow_paraboloid) {
@@ -334,7 +349,7 @@ void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayou
     }
     const MapWindow whole = wholeWindow(light, origin, axes, layout, boxes, desc);
     if (window) {
-      const vec3 r = origin - vec3(light.position);
+      const vec3 r = origin - light.position;
       MapWindow own =
           sampled ? shiftedWindow(*receivers, {glm::dot(axes.x, r), glm::dot(axes.y, r)}) : *window;
       own.near = window->near;
@@ -351,14 +366,14 @@ void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayou
 scene::CullVolume cullVolume(const glsl::ShadowView& view) {
   const vec3 origin(view.origin), x(view.axis_x), y(view.axis_y), z(view.axis_z);
   const auto plane = [&](const vec3& n, float offset) { return glm::vec4(n, offset - glm::dot(n, origin)); };
-  const glm::vec2 low = -glm::vec2(view.middle) / view.axis_x.w, high = low + 1 / view.axis_x.w;
+  const glm::vec2 low = -view.middle / view.scale, high = low + 1 / view.scale;
   scene::CullVolume volume;
-  if (view.info.x == glsl::shadow_orthographic) {
-    volume.planes = {plane(x, -low.x),  plane(-x, high.x),        plane(y, -low.y),
-                     plane(-y, high.y), plane(z, -view.origin.w), plane(-z, view.axis_z.w)};
-  } else if (view.info.x == glsl::shadow_perspective) {
+  if (view.projection == glsl::shadow_orthographic) {
+    volume.planes = {plane(x, -low.x),  plane(-x, high.x),    plane(y, -low.y),
+                     plane(-y, high.y), plane(z, -view.near), plane(-z, view.far)};
+  } else if (view.projection == glsl::shadow_perspective) {
     volume.planes = {plane(x - low.x * z, 0),  plane(high.x * z - x, 0), plane(y - low.y * z, 0),
-                     plane(high.y * z - y, 0), plane(z, -view.origin.w), plane(-z, view.axis_z.w)};
+                     plane(high.y * z - y, 0), plane(z, -view.near),     plane(-z, view.far)};
   } else {
     volume.planes[0] = plane(z, 0);
   }

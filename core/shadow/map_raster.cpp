@@ -1,10 +1,8 @@
-#include "core/shadow/map_raster.h"
+#include "core/shadow/private/map_raster.h"
 
 #include <fmt/format.h>
 
 #include <string>
-
-#include "glsl/ltc.glsl"
 
 namespace limn::shadow {
 namespace {
@@ -12,8 +10,7 @@ namespace {
 using frame::Access;
 using frame::TextureHandle;
 
-constexpr GLfloat nothing[4] = {1, 1, 1, 1}, farthest = 0;
-constexpr unsigned reflectiveViews = 4;  // storage binding in glsl/shadow/reflective.vert.glsl
+constexpr GLfloat kNothing[4] = {1, 1, 1, 1}, kFarthest = 0;
 
 TextureHandle createMaps(const MapRaster& raster, const ShadowMaps& maps, const char* name, GLenum format) {
   return raster.graph.createTexture(name, {.target = GL_TEXTURE_2D_ARRAY,
@@ -31,45 +28,43 @@ bool layered(const gpu::Device& device) {
 
 void addDepthPass(const MapRaster& raster, bool paraboloid, ShadowMaps& maps) {
   frame::PassBuilder pass = raster.graph.addPass("shadow maps", "shadow");
-  scene::GpuScene::declareReads(pass, raster.handles);
-  pass.read(maps.views, Access::storageLoad, "projections");
+  pass.role(frame::PassRole::map);
+  const bool together = layered(raster.device);
+  const scene::DrawPrograms programs = raster.scene.declareDepth(
+      pass, raster.handles,
+      {.files = {"glsl/shadow/depth.vert.glsl", "glsl/shadow/depth.frag.glsl"},
+       .defines = {{"LAYERED", together ? "1" : "0"}, {"PARABOLOID", paraboloid ? "1" : "0"}}});
+  pass.read(maps.views, Access::storageLoad, "Views", "projections");
   maps.depth =
       pass.write(createMaps(raster, maps, "shadow maps", GL_R32F), Access::colourAttachment, "linear depth");
   const TextureHandle zbuffer = pass.write(createMaps(raster, maps, "shadow map z", GL_DEPTH_COMPONENT32F),
                                            Access::depthAttachment, "hidden-surface removal");
-  const bool together = layered(raster.device);
-  const auto program = [&](bool masked) {
-    return pass.program({.files = {"glsl/shadow/depth.vert.glsl", "glsl/shadow/depth.frag.glsl"},
-                         .defines = {{"LAYERED", together ? "1" : "0"},
-                                     {"MASKED", masked ? "1" : "0"},
-                                     {"PARABOLOID", paraboloid ? "1" : "0"}}});
-  };
-  scene::DrawPrograms programs;
-  programs.opaque = program(false);
-  programs.masked = raster.scene.hasMasked() ? program(true) : programs.opaque;
   if (raster.cacheable) pass.cacheable();
-  pass.execute([raster, zbuffer, together, paraboloid, programs, depth = maps.depth,
-                views = maps.views](frame::PassContext& context) {
-    const gl::Functions& gl = context.gl();
-    context.bindFramebuffer({{depth}}, {zbuffer});
-    gl.ClearBufferfv(GL_COLOR, 0, nothing);
-    gl.ClearBufferfv(GL_DEPTH, 0, &farthest);
-    context.bindStorage(2, views);
-    if (paraboloid) gl.Enable(GL_CLIP_DISTANCE0);
-    raster.scene.drawDepth(context, raster.handles, programs, raster.views, raster.list, together,
-                           [&](const scene::DepthView& view) {
-                             context.bindFramebuffer({{depth, 0, view.layer}}, {zbuffer, 0, view.layer});
-                           });
-    if (paraboloid) gl.Disable(GL_CLIP_DISTANCE0);
-  });
+  pass.execute(
+      [raster, zbuffer, together, paraboloid, programs, depth = maps.depth](frame::PassContext& context) {
+        const gl::Functions& gl = context.gl();
+        context.bindFramebuffer({{depth}}, {zbuffer});
+        gl.ClearBufferfv(GL_COLOR, 0, kNothing);
+        gl.ClearBufferfv(GL_DEPTH, 0, &kFarthest);
+        if (paraboloid) gl.Enable(GL_CLIP_DISTANCE0);
+        raster.scene.drawDepth(context, programs, raster.views, raster.list, together,
+                               [&](const scene::DepthView& view) {
+                                 context.bindFramebuffer({{depth, 0, view.layer}}, {zbuffer, 0, view.layer});
+                               });
+        if (paraboloid) gl.Disable(GL_CLIP_DISTANCE0);
+      });
 }
 
 void addReflectivePass(const MapRaster& raster, TextureHandle ltc, ShadowMaps& maps) {
   frame::PassBuilder pass = raster.graph.addPass("reflective shadow maps", "shadow");
-  scene::GpuScene::declareReads(pass, raster.handles);
-  pass.read(raster.handles.geometry, Access::storageLoad, "corners of triangles, for their normals");
-  pass.read(maps.views, Access::storageLoad, "projections");
-  if (ltc) pass.read(ltc, Access::sampled, "diffuse albedo below a specular layer");
+  pass.role(frame::PassRole::map);
+  const bool together = layered(raster.device);
+  const scene::SurfacePrograms programs = raster.scene.declareSurfaces(
+      pass, raster.handles,
+      {.files = {"glsl/shadow/reflective.vert.glsl", "glsl/shadow/reflective.frag.glsl"},
+       .defines = {{"LAYERED", together ? "1" : "0"}, {"LAMBERTIAN", ltc ? "0" : "1"}}});
+  pass.read(maps.views, Access::storageLoad, "Views", "projections");
+  if (ltc) pass.read(ltc, Access::sampled, "ltc_table", "diffuse albedo below a specular layer");
   const auto write = [&](const char* name, GLenum format, const char* why) {
     return pass.write(createMaps(raster, maps, name, format), Access::colourAttachment, why);
   };
@@ -78,19 +73,9 @@ void addReflectivePass(const MapRaster& raster, TextureHandle ltc, ShadowMaps& m
   maps.albedo = write("reflective albedo", GL_RGB10_A2, "diffuse albedo");
   const TextureHandle zbuffer = pass.write(createMaps(raster, maps, "reflective z", GL_DEPTH_COMPONENT32F),
                                            Access::depthAttachment, "hidden-surface removal");
-  const bool together = layered(raster.device);
-  scene::SurfacePrograms programs;
-  for (const scene::SurfaceVariant& variant : raster.scene.surfaceVariants())
-    programs[variant] =
-        pass.program({.files = {"glsl/shadow/reflective.vert.glsl", "glsl/shadow/reflective.frag.glsl"},
-                      .defines = {{"LAYERED", together ? "1" : "0"},
-                                  {"MASKED", variant.masked ? "1" : "0"},
-                                  {"TEXTURES", fmt::format("{}u", variant.textures)},
-                                  {"COLOURS", raster.scene.hasColours() ? "1" : "0"},
-                                  {"LAMBERTIAN", ltc ? "0" : "1"}}});
   if (raster.cacheable) pass.cacheable();
-  pass.execute([raster, zbuffer, together, programs, ltc, depth = maps.depth, normal = maps.normal,
-                albedo = maps.albedo, views = maps.views](frame::PassContext& context) {
+  pass.execute([raster, zbuffer, together, programs, depth = maps.depth, normal = maps.normal,
+                albedo = maps.albedo](frame::PassContext& context) {
     const gl::Functions& gl = context.gl();
     const auto bind = [&](int layer) {
       context.bindFramebuffer({{depth, 0, layer}, {normal, 0, layer}, {albedo, 0, layer}},
@@ -98,13 +83,11 @@ void addReflectivePass(const MapRaster& raster, TextureHandle ltc, ShadowMaps& m
     };
     bind(-1);
     constexpr GLfloat black[4] = {0, 0, 0, 0};
-    gl.ClearBufferfv(GL_COLOR, 0, nothing);
+    gl.ClearBufferfv(GL_COLOR, 0, kNothing);
     gl.ClearBufferfv(GL_COLOR, 1, black);
     gl.ClearBufferfv(GL_COLOR, 2, black);
-    gl.ClearBufferfv(GL_DEPTH, 0, &farthest);
-    context.bindStorage(reflectiveViews, views);
-    if (ltc) context.bindSampled(glsl::ltc_unit, ltc);
-    raster.scene.drawSurfaces(context, raster.handles, programs, raster.views, raster.list, together,
+    gl.ClearBufferfv(GL_DEPTH, 0, &kFarthest);
+    raster.scene.drawSurfaces(context, programs, raster.views, raster.list, together,
                               [&](const scene::DepthView& view) { bind(view.layer); });
   });
 }

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "core/shadow/summed_area_passes.h"
-#include "glsl/moment_shadow.glsl"
+#include "core/shadow/private/summed_area_passes.h"
+#include "glsl/shadow/moment_shadow.glsl"
 
 namespace limn::shadow {
 

@@ -8,16 +8,16 @@
 #include "core/base/error.h"
 #include "core/shading/ltc_table.h"
 #include "core/shadow/light_fit.h"
-#include "core/shadow/map_raster.h"
+#include "core/shadow/private/map_raster.h"
 
 namespace limn::shadow {
 namespace {
 
-constexpr int64_t memoryLimit = int64_t{4} << 30;  // bytes of one request
-constexpr int64_t keptBytesPerTexel = 8;           // linear depth, and rasterised depth beside it
-constexpr int64_t reflectiveBytesPerTexel = 8;     // normal and albedo on top
-constexpr int64_t keptLimit = int64_t{256}
-                              << 20;  // bytes of all maps that are kept; what is derived comes on top
+constexpr int64_t kMemoryLimit = int64_t{4} << 30;  // bytes of one request
+constexpr int64_t kKeptBytesPerTexel = 8;           // linear depth, and rasterised depth beside it
+constexpr int64_t kReflectiveBytesPerTexel = 8;     // normal and albedo on top
+constexpr int64_t kKeptLimit = int64_t{256}
+                               << 20;  // bytes of all maps that are kept; what is derived comes on top
 
 template <class T>
 bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
@@ -61,26 +61,21 @@ struct ShadowMapService::Implementation {
         scene(ofScene),
         derived(onDevice),
         trilinear(onDevice, GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR),
-        coverage(onDevice, "uncovered pixels", sizeof(uint32_t)) {
-    coverage.clear();
-  }
+        uncovered(onDevice, "uncovered pixels", sizeof(uint32_t)) {}
 
   gpu::Device& device;
   scene::GpuScene& scene;
-  frame::FrameGraph* graph = nullptr;
-  SceneHandles handles;
   std::vector<glsl::Light> lights;
   std::vector<std::string> lightNames;
   std::vector<scene::Bounds> boxes;
-  const scene::Pose* current =
-      nullptr;  ///< of the last begin() or update(); valid during those and request()
   std::unique_ptr<VisibleScene> visible = {};  ///< made at the first request that is fitted to it
   bool watching = false;                       ///< some request of the graph is
   std::vector<std::unique_ptr<Request>> requests;
   DerivedMaps derived;
   std::vector<KnownFourierMaps> fourier = {};
   gpu::Sampler trilinear;
-  gpu::Buffer coverage;
+  gpu::Buffer uncovered;
+  frame::BufferHandle uncoveredHandle = {};
   gpu::Texture ltcTable = {};  ///< what diffuse albedos depend on; uploaded when reflective maps need it
   frame::TextureHandle ltcHandle = {};
 
@@ -88,7 +83,6 @@ struct ShadowMapService::Implementation {
     return std::ranges::all_of(scene.scene().materials, &scene::Material::lambertian);
   }
   void take(const scene::Pose& pose) {
-    current = &pose;
     lights = pose.lights;
     lightNames = pose.lightNames;
     boxes.resize(scene.instanceCount());
@@ -107,7 +101,8 @@ struct ShadowMapService::Implementation {
   }
   std::vector<scene::Bounds> boxesFor(const glsl::Light& light) const {
     std::vector<scene::Bounds> result = boxes;
-    if (light.info.z < result.size()) result[light.info.z] = {};  // its own quad is not in its map
+    if (light.own_instance < result.size())
+      result[light.own_instance] = {};  // its own quad is not in its map
     return result;
   }
   size_t countOf(const Request& request) const {
@@ -117,8 +112,9 @@ struct ShadowMapService::Implementation {
   glsl::Light lightOf(const Request& request, size_t i) const {
     if (request.directions.empty()) return light(request.lights[i]);
     glsl::Light parallel{};
-    parallel.direction = glm::vec4(request.directions[i], 0);
-    parallel.info = {glsl::light_directional, 0, glsl::no_instance, 0};
+    parallel.direction = request.directions[i];
+    parallel.type = glsl::light_directional;
+    parallel.own_instance = glsl::no_instance;
     return parallel;
   }
   std::vector<LightLayout> layoutsOf(const Request& request) const {
@@ -131,7 +127,7 @@ struct ShadowMapService::Implementation {
   }
   bool cacheable(const ShadowMaps& maps) const { return requests.at(maps.index)->kept; }
   int64_t bytesOf(const Request& request) const {
-    const int64_t texel = keptBytesPerTexel + (request.desc.reflective ? reflectiveBytesPerTexel : 0);
+    const int64_t texel = kKeptBytesPerTexel + (request.desc.reflective ? kReflectiveBytesPerTexel : 0);
     return int64_t{request.maps.size} * request.maps.size * request.maps.layers * texel;
   }
   int64_t keptBytes() const {
@@ -140,10 +136,10 @@ struct ShadowMapService::Implementation {
       if (request->kept) bytes += bytesOf(*request);
     return bytes;
   }
-  ShadowMaps add(std::unique_ptr<Request> made);
+  ShadowMaps add(std::unique_ptr<Request> made, const FrameContext& context);
   bool fit(Request& request) const;
   void check(const Request& request, size_t layers) const;
-  void addPasses(Request& request);
+  void addPasses(Request& request, const FrameContext& context);
 };
 
 /// Recomputes views for the current lights and bounds. True if they changed.
@@ -159,9 +155,9 @@ bool ShadowMapService::Implementation::fit(Request& request) const {
   for (const glsl::ShadowView& view : views) {
     request.depthViews.push_back(
         {.volume = cullVolume(view),
-         .skipInstance = view.info.w == glsl::no_light ? glsl::no_instance : lights[view.info.w].info.z,
-         .view = view.info.y,
-         .layer = static_cast<int>(view.info.y),
+         .skipInstance = view.light == glsl::no_light ? glsl::no_instance : lights[view.light].own_instance,
+         .view = view.layer,
+         .layer = static_cast<int>(view.layer),
          .surfaces = request.desc.specular ? scene::Surfaces::all : scene::Surfaces::matte});
   }
   const bool changed = !sameBytes(views, request.views) || !sameBytes(shadowLights, request.shadowLights);
@@ -179,22 +175,24 @@ void ShadowMapService::Implementation::check(const Request& request, size_t laye
     throw UsageError(
         fmt::format("shadow maps in {} layers: the device has at most {} in one array", layers, most));
   const int64_t bytes = int64_t{size} * size * 4 * static_cast<int64_t>(layers);
-  if (bytes > memoryLimit)
+  if (bytes > kMemoryLimit)
     throw UsageError(
         fmt::format("shadow maps of {} layers of {} x {} texels take {} MiB, more than the {} MiB that one "
                     "request may; ask for a smaller shadow_map_size or fewer lights at once",
-                    layers, size, size, bytes >> 20, memoryLimit >> 20));
+                    layers, size, size, bytes >> 20, kMemoryLimit >> 20));
 }
 
-void ShadowMapService::Implementation::addPasses(Request& request) {
+void ShadowMapService::Implementation::addPasses(Request& request, const FrameContext& context) {
+  frame::FrameGraph& graph = context.graph;
   ShadowMaps& maps = request.maps;
-  request.importedViews = maps.views = graph->importBuffer("shadow views", request.viewBuffer);
-  request.importedLights = maps.lights = graph->importBuffer("shadow lights", request.lightBuffer);
-  const MapRaster raster{*graph, device, scene, handles, request.depthViews, request.drawList, request.kept};
+  request.importedViews = maps.views = graph.importBuffer("shadow views", request.viewBuffer);
+  request.importedLights = maps.lights = graph.importBuffer("shadow lights", request.lightBuffer);
+  const MapRaster raster{graph,       device, scene, context.handles, request.depthViews, request.drawList,
+                         request.kept};
   if (request.desc.reflective) {
     if (!lambertian() && !ltcHandle) {
       if (!ltcTable) ltcTable = shading::makeLtcTexture(device);
-      ltcHandle = graph->importTexture("table of diffuse reflectance", ltcTable);
+      ltcHandle = graph.importTexture("table of diffuse reflectance", ltcTable);
     }
     addReflectivePass(raster, lambertian() ? frame::TextureHandle{} : ltcHandle, maps);
   } else {
@@ -206,19 +204,16 @@ ShadowMapService::ShadowMapService(gpu::Device& device, scene::GpuScene& scene)
     : implementation_(std::make_unique<Implementation>(device, scene)) {}
 ShadowMapService::~ShadowMapService() = default;
 
-void ShadowMapService::begin(frame::FrameGraph& graph, const SceneHandles& handles, const scene::Pose& pose) {
-  implementation_->requests.clear();
-  implementation_->graph = &graph;
-  implementation_->handles = handles;
-  implementation_->derived.begin(graph);
-  implementation_->fourier.clear();
-  implementation_->ltcHandle = {};
-  implementation_->take(pose);
-  implementation_->watching = false;
-}
-
-void ShadowMapService::forget() {
-  implementation_->graph = nullptr;
+void ShadowMapService::begin() {
+  Implementation& s = *implementation_;
+  s.requests.clear();
+  s.derived.clear();
+  s.fourier.clear();
+  s.ltcHandle = {};
+  s.uncovered.clear();
+  s.uncoveredHandle = {};
+  s.take(context().pose);
+  s.watching = false;
 }
 
 ShadowMaps ShadowMapService::request(std::span<const uint32_t> lights, const ShadowMapDesc& desc) {
@@ -230,7 +225,7 @@ ShadowMaps ShadowMapService::request(std::span<const uint32_t> lights, const Sha
   auto made = std::make_unique<Request>();
   made->lights.assign(lights.begin(), lights.end());
   made->desc = desc;
-  return s.add(std::move(made));
+  return s.add(std::move(made), context());
 }
 
 ShadowMaps ShadowMapService::request(std::span<const glm::vec3> directions, const ShadowMapDesc& desc) {
@@ -243,10 +238,10 @@ ShadowMaps ShadowMapService::request(std::span<const glm::vec3> directions, cons
   made->directions.assign(directions.begin(), directions.end());
   made->desc = desc;
   made->desc.samples.clear();
-  return s.add(std::move(made));
+  return s.add(std::move(made), context());
 }
 
-ShadowMaps ShadowMapService::Implementation::add(std::unique_ptr<Request> made) {
+ShadowMaps ShadowMapService::Implementation::add(std::unique_ptr<Request> made, const FrameContext& context) {
   made->layouts = layoutsOf(*made);
   size_t layers = 0;
   for (size_t i = 0; i < countOf(*made); ++i)
@@ -255,7 +250,7 @@ ShadowMaps ShadowMapService::Implementation::add(std::unique_ptr<Request> made) 
   check(*made, layers);
   if (made->desc.fit == MapFit::view && !watching) {
     watching = true;
-    see(*current);
+    see(context.pose);
   }
   fit(*made);
   made->viewBuffer =
@@ -266,34 +261,42 @@ ShadowMaps ShadowMapService::Implementation::add(std::unique_ptr<Request> made) 
   made->maps.size = made->desc.size;
   made->maps.index = static_cast<uint32_t>(requests.size());
   const int64_t before = keptBytes();
-  made->kept = made->desc.cacheable && (before == 0 || before + bytesOf(*made) <= keptLimit);
-  addPasses(*made);
+  made->kept = made->desc.cacheable && (before == 0 || before + bytesOf(*made) <= kKeptLimit);
+  addPasses(*made, context);
   requests.push_back(std::move(made));
   return requests.back()->maps;
 }
 
+std::span<const LightLayout> ShadowMapService::layouts(const ShadowMaps& maps) const {
+  return implementation_->requests.at(maps.index)->layouts;
+}
+
 MinMaxPyramid ShadowMapService::minMaxPyramid(const ShadowMaps& maps) {
-  return implementation_->derived.minMaxPyramid(maps.depth, implementation_->cacheable(maps));
+  return implementation_->derived.minMaxPyramid(context().graph, maps.depth,
+                                                implementation_->cacheable(maps));
 }
 
 frame::TextureHandle ShadowMapService::minMaxWindows(const ShadowMaps& maps) {
-  return implementation_->derived.minMaxWindows(maps.depth, implementation_->cacheable(maps));
+  return implementation_->derived.minMaxWindows(context().graph, maps.depth,
+                                                implementation_->cacheable(maps));
 }
 
 frame::TextureHandle ShadowMapService::nBuffer(const ShadowMaps& maps) {
-  return implementation_->derived.nBuffer(maps.depth, implementation_->cacheable(maps));
+  return implementation_->derived.nBuffer(context().graph, maps.depth, implementation_->cacheable(maps));
 }
 
 SummedAreaTable ShadowMapService::summedAreaTable(const ShadowMaps& maps, const SatDesc& desc) {
-  return implementation_->derived.summedAreaTable(maps.depth, implementation_->cacheable(maps), desc);
+  return implementation_->derived.summedAreaTable(context().graph, maps.depth,
+                                                  implementation_->cacheable(maps), desc);
 }
 
 MomentTable ShadowMapService::momentTable(const ShadowMaps& maps, int bits) {
-  return implementation_->derived.momentTable(maps.depth, implementation_->cacheable(maps), bits);
+  return implementation_->derived.momentTable(context().graph, maps.depth, implementation_->cacheable(maps),
+                                              bits);
 }
 
 frame::TextureHandle ShadowMapService::momentMips(const ShadowMaps& maps) {
-  return implementation_->derived.momentMips(maps.depth, implementation_->cacheable(maps));
+  return implementation_->derived.momentMips(context().graph, maps.depth, implementation_->cacheable(maps));
 }
 
 FourierMaps ShadowMapService::fourierMaps(const ShadowMaps& maps, const FourierDesc& desc) {
@@ -302,15 +305,14 @@ FourierMaps ShadowMapService::fourierMaps(const ShadowMaps& maps, const FourierD
     if (known.source == maps.depth && known.desc == desc) return known.maps;
   }
   FourierMaps built =
-      addFourierMaps(*s.graph, s.device, maps.depth, minMaxPyramid(maps), s.cacheable(maps), desc);
+      addFourierMaps(context().graph, s.device, maps.depth, minMaxPyramid(maps), s.cacheable(maps), desc);
   if (desc.filter == FourierFilter::mip) built.trilinear = &s.trilinear;
   s.fourier.push_back({maps.depth, desc, built});
   return built;
 }
 
-bool ShadowMapService::update(const scene::Pose& pose) {
+bool ShadowMapService::update(frame::FrameGraph& graph, const scene::Pose& pose) {
   Implementation& s = *implementation_;
-  s.coverage.clear();
   const bool lightsCameOrWent = pose.lights.size() != s.lights.size();
   s.take(pose);
   if (s.watching) s.see(pose);
@@ -321,9 +323,8 @@ bool ShadowMapService::update(const scene::Pose& pose) {
     request->viewBuffer.update(0, request->views.data(), request->views.size() * sizeof(request->views[0]));
     request->lightBuffer.update(0, request->shadowLights.data(),
                                 request->shadowLights.size() * sizeof(request->shadowLights[0]));
-    if (s.graph == nullptr) continue;
-    s.graph->touch(request->importedViews);
-    s.graph->touch(request->importedLights);
+    graph.touch(request->importedViews);
+    graph.touch(request->importedLights);
   }
   return false;
 }
@@ -335,14 +336,24 @@ int ShadowMapService::layersOf(uint32_t light, const ShadowMapDesc& desc) const 
   return static_cast<int>(glsl::shadow_face_count(layout.faces) * samplesOf(l, desc).size());
 }
 
-void ShadowMapService::bindCoverage(unsigned storageBinding) const {
-  const Implementation& s = *implementation_;
-  s.device.gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, storageBinding, s.coverage.id());
+frame::BufferHandle& ShadowMapService::uncoveredCounter() {
+  Implementation& s = *implementation_;
+  if (s.uncoveredHandle) return s.uncoveredHandle;
+  frame::FrameGraph& graph = context().graph;
+  const frame::BufferHandle imported = graph.importBuffer("uncovered pixels", s.uncovered);
+  frame::PassBuilder pass = graph.addPass("clear uncovered pixels");
+  s.uncoveredHandle = pass.write(imported, frame::Access::copyTarget, "none so far");
+  pass.execute([counter = s.uncoveredHandle](frame::PassContext& context) {
+    constexpr GLuint none = 0;
+    context.gl().ClearNamedBufferData(context.buffer(counter).id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT,
+                                      &none);
+  });
+  return s.uncoveredHandle;
 }
 
 uint32_t ShadowMapService::uncoveredPixels() const {
   uint32_t count = 0;
-  implementation_->coverage.read(0, &count, sizeof(count));
+  implementation_->uncovered.read(0, &count, sizeof(count));
   return count;
 }
 
@@ -353,20 +364,20 @@ std::vector<ShadowMapStats> ShadowMapService::stats() const {
       all.push_back({.light = "parallel light",
                      .projection = "orthographic",
                      .layers = request->maps.layers,
-                     .near = request->views.front().origin.w,
-                     .far = request->views.front().axis_z.w});
+                     .near = request->views.front().near,
+                     .far = request->views.front().far});
     const size_t samples = std::max<size_t>(request->desc.samples.size(), 1);
     for (size_t i = 0; i < request->lights.size(); ++i) {
       const LightLayout& layout = request->layouts[i];
-      const glsl::ShadowView& view = request->views[request->shadowLights[i * samples].info.x];
+      const glsl::ShadowView& view = request->views[request->shadowLights[i * samples].first_layer];
       const bool perspective = layout.projection == glsl::shadow_perspective;
       const auto maps = samplesOf(implementation_->light(request->lights[i]), request->desc).size();
       all.push_back({.light = implementation_->lightNames[request->lights[i]],
                      .projection = std::string(projectionName(layout)),
                      .layers = static_cast<int>(glsl::shadow_face_count(layout.faces) * maps),
-                     .near = view.origin.w,
-                     .far = view.axis_z.w,
-                     .halfAngle = perspective ? std::atan(0.5f / view.axis_x.w) : 0.f});
+                     .near = view.near,
+                     .far = view.far,
+                     .halfAngle = perspective ? std::atan(0.5f / view.scale) : 0.f});
     }
   }
   return all;

@@ -1,4 +1,4 @@
-#include "core/shadow/summed_area_passes.h"
+#include "core/shadow/private/summed_area_passes.h"
 
 #include <fmt/format.h>
 
@@ -10,15 +10,15 @@ namespace {
 using frame::Access;
 using frame::TextureHandle;
 
-constexpr int64_t memoryLimit = int64_t{4} << 30;  // bytes of one derived map
+constexpr int64_t kMemoryLimit = int64_t{4} << 30;  // bytes of one derived map
 
 void checkBytes(std::string_view what, const gpu::TextureDesc& desc) {
   const int64_t bytes = gpu::textureBytes(desc);
-  if (bytes <= memoryLimit) return;
+  if (bytes <= kMemoryLimit) return;
   throw UsageError(fmt::format(
       "{} of {} layers of {} x {} texels takes {} MiB, more than the {} MiB that one may; ask for a smaller "
       "shadow_map_size or fewer lights at once",
-      what, desc.layers, desc.width, desc.height, bytes >> 20, memoryLimit >> 20));
+      what, desc.layers, desc.width, desc.height, bytes >> 20, kMemoryLimit >> 20));
 }
 
 /// Work groups for so many rows or columns; how many one takes is as in the shader.
@@ -49,8 +49,9 @@ TextureHandle addSummedAreaPasses(frame::FrameGraph& graph, TextureHandle source
   for (const bool vertical : {false, true}) {
     frame::PassBuilder pass =
         graph.addPass(fmt::format("{} {}", desc.name, vertical ? "columns" : "rows"), "shadow");
-    if (!vertical) pass.read(source, Access::sampled, "shadow maps");
-    table = pass.write(table, vertical ? Access::imageLoadStore : Access::imageStore,
+    pass.role(frame::PassRole::filter);
+    if (!vertical) pass.read(source, Access::sampled, "depth", "shadow maps");
+    table = pass.write(table, vertical ? Access::imageLoadStore : Access::imageStore, "table",
                        vertical ? "sums along columns, in place" : "sums along rows");
     std::map<std::string, std::string> defines = desc.defines;
     defines["SHARED"] = desc.shared ? "1" : "0";
@@ -58,14 +59,11 @@ TextureHandle addSummedAreaPasses(frame::FrameGraph& graph, TextureHandle source
     const frame::ProgramHandle program =
         pass.program({.files = {"glsl/shadow/summed_area_table.comp.glsl"}, .defines = std::move(defines)});
     if (desc.cacheable) pass.cacheable();
-    pass.execute(
-        [source, table, program, vertical, shared = desc.shared, texture](frame::PassContext& context) {
-          context.program(program).use();
-          if (!vertical) context.bindSampled(0, source);
-          context.bindImage(0, table, vertical ? GL_READ_WRITE : GL_WRITE_ONLY);
-          const int groups = lineGroups(vertical ? texture.width : texture.height, shared, vertical);
-          context.dispatch(groups, 1, texture.layers, 1, 1);
-        });
+    pass.execute([program, vertical, shared = desc.shared, texture](frame::PassContext& context) {
+      context.use(program);
+      const int groups = lineGroups(vertical ? texture.width : texture.height, shared, vertical);
+      context.dispatch(groups, 1, texture.layers, 1, 1);
+    });
   }
   return table;
 }

@@ -1,5 +1,5 @@
-// What every shadow-map technique's visibility pass has in common: parameters, declared reads, bindings
-// (glsl/visibility.glsl) and the dispatch over pixels and lights.
+// Declares what the visibility passes of all shadow-map techniques share: parameters, the inputs of
+// glsl/shadow/visibility.glsl and the dispatch over pixels and lights.
 #pragma once
 
 #include <functional>
@@ -15,19 +15,20 @@
 
 namespace limn::shadow {
 
-/// The parameters that all techniques with shadow maps share.
+/// Returns the parameter for the size of shadow maps. This and the functions below declare the parameters
+/// that all techniques with shadow maps share.
 constexpr Parameter shadowMapSizeParameter(int texels = 1024) {
   return integer("shadow_map_size", texels, {16, 16384}, "texels",
                  "Width and height of each layer of the shadow maps")
       .quality()
       .logScale();
 }
-constexpr const char* mapFits[] = {"scene", "view"};
+constexpr const char* kMapFits[] = {"scene", "view"};
 constexpr Parameter shadowMapFitParameter() {
   return choice(
-      "shadow_map_fit", 0, mapFits,
-      "What maps of one view cover: all that the light reaches, or what the camera sees of it and what "
-      "may block light from there");
+      "shadow_map_fit", 0, kMapFits,
+      "What maps of one view cover: scene: all that the light reaches; view: what the camera sees of it, "
+      "and what may block light from there");
 }
 constexpr Parameter biasParameter() {
   return real("bias", 1, {0, 64}, "texel footprints",
@@ -38,45 +39,45 @@ constexpr Parameter lightSizeParameter() {
               "Side of every light (directional: angular diameter in radians); negative: the scene's");
 }
 
-/// A texture that a pass samples besides its maps.
+/// Names a texture that a pass samples in addition to its maps.
 struct SampledTexture {
-  unsigned unit;
+  frame::ShaderName name;  ///< of the sampler
   frame::TextureHandle texture;
   const char* why;  ///< as for PassBuilder::read()
 };
 
-/// Of the maps of a technique that declares shadow_map_size, and maybe shadow_map_fit (else: scene) and
-/// light_size.
+/// Returns the description of the maps of a technique that declares shadow_map_size, and optionally
+/// shadow_map_fit (default: scene) and light_size.
 LIMN_API ShadowMapDesc shadowMapDesc(const ParameterValues& parameters);
 
-/// Units of glsl/blocker_search.glsl and of the table or maps that a technique derives.
-constexpr unsigned minMaxUnit = 9, tableUnit = 10;
-
 struct VisibilityPass {
-  std::string_view name;       ///< of the pass
-  std::string_view technique;  ///< whose it is
-  gpu::ProgramDesc program;    ///< a compute shader that includes glsl/visibility.glsl and writes image 0
+  std::string_view name;                  ///< of the pass
+  std::string_view technique;             ///< owner of the pass
+  gpu::ProgramDesc program;               ///< a compute shader that includes glsl/shadow/visibility.glsl
+  std::string_view image = "visibility";  ///< the program's name for the target
   ShadowMaps maps;
-  float bias = 1;                            ///< texel footprints
-  std::optional<float> lightSize = -1;       ///< < 0: the scene's; nullopt: the program asks for no light
-  std::vector<SampledTexture> sampled = {};  ///< declared and bound
-  /// Sets further uniforms and binds what `declare` declared; may be empty.
+  float bias = 1;                       ///< texel footprints
+  std::optional<float> lightSize = -1;  ///< < 0: the scene's; nullopt: the program has no such uniform
+  std::vector<SampledTexture> sampled = {};
+  /// Says whether the program reflects light: it calls pixel_surface() of glsl/surface/gbuffer_input.glsl,
+  /// and goes through all lights of the maps. Else it answers for one light per layer of the target.
+  bool reflects = false;
+  /// Sets further uniforms, and fills slots that `declare` announced; may be empty.
   std::function<void(frame::PassContext&, gpu::Program&)> bind = {};
   std::function<void(frame::PassBuilder&)> declare = {};
-  /// Whether the pass adds to what `target` holds already (sums over batches of samples).
+  /// Says whether the pass adds to the contents of `target` (sums over batches of samples).
   bool accumulate = false;
 };
 
-/// The pass of a technique that declares the parameters above (shadow_map_fit and light_size may be missing):
-/// maps of the request's lights, and the program of techniques/NAME/visibility.comp.glsl.
+/// Returns the pass of a technique that declares the parameters above (shadow_map_fit and light_size are
+/// optional), with maps of the request's lights and the program of techniques/NAME/visibility.comp.glsl.
 LIMN_API VisibilityPass visibilityPass(const TechniqueInputs& inputs, const TermRequest& request,
                                        std::string_view technique,
                                        std::map<std::string, std::string> defines = {});
 
-/// Adds what glsl/gbuffer_input.glsl needs for pixel_surface(): to a pass that reflects light.
-LIMN_API void readSurfaces(VisibilityPass& pass, const GBuffer& gbuffer);
-
-/// Declares the pass; it writes one layer of `target` per light of the request. Returns the target after it.
+/// Declares the pass, which writes one layer of `target` per light of the request. Lights whose maps are laid
+/// out alike share a dispatch, whose program is compiled for them (glsl/shadow/visibility.glsl says how).
+/// Returns the target after it.
 LIMN_API frame::TextureHandle addVisibilityPass(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                                 frame::TextureHandle target, VisibilityPass pass);
 

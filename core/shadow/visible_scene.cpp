@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/scene/gpu_scene_data.h"
+#include "core/gpu_scene/gpu_scene_data.h"
 
 namespace limn::shadow {
 namespace {
@@ -12,9 +12,9 @@ namespace {
 using glm::vec3;
 using scene::Bounds;
 
-constexpr int mostCells = 4;            // per axis of a primitive's bounds
-constexpr size_t mostBoxes = 1024;      // of a scene, more or less: instances times cells
-constexpr float frustumMargin = 1e-3f;  // of the tangents of the field of view
+constexpr int kMostCells = 4;            // per axis of a primitive's bounds
+constexpr size_t kMostBoxes = 1024;      // of a scene, more or less: instances times cells
+constexpr float kFrustumMargin = 1e-3f;  // of the tangents of the field of view
 
 /// Boxes around the triangles whose centres lie in the same cell of a grid over the primitive.
 std::vector<Bounds> splitPrimitive(const scene::Primitive& primitive, int cells) {
@@ -36,7 +36,7 @@ std::vector<Bounds> splitPrimitive(const scene::Primitive& primitive, int cells)
 size_t primitiveInstances(const scene::Scene& scene) {
   size_t count = 0;
   for (const scene::Node& node : scene.nodes) {
-    if (node.mesh == scene::none) continue;
+    if (node.mesh == scene::kNone) continue;
     count += scene.meshes[static_cast<size_t>(node.mesh)].primitives.size() *
              std::max<size_t>(node.instances.size(), 1);
   }
@@ -45,7 +45,7 @@ size_t primitiveInstances(const scene::Scene& scene) {
 
 /// Planes, world, of what a camera sees: left, right, bottom, top.
 std::array<glm::vec4, 4> frustum(const scene::CameraPose& camera, float aspect) {
-  const float up = std::tan(0.5f * camera.yfov) * (1 + frustumMargin), across = up * aspect;
+  const float up = std::tan(0.5f * camera.yfov) * (1 + kFrustumMargin), across = up * aspect;
   const glm::mat4 toWorld = glm::transpose(camera.worldToView);  // of planes
   return {toWorld * glm::vec4(1, 0, -across, 0), toWorld * glm::vec4(-1, 0, -across, 0),
           toWorld * glm::vec4(0, 1, -up, 0), toWorld * glm::vec4(0, -1, -up, 0)};
@@ -55,8 +55,8 @@ std::array<glm::vec4, 4> frustum(const scene::CameraPose& camera, float aspect) 
 
 VisibleScene::VisibleScene(const scene::Scene& scene) : scene_(scene) {
   const size_t instances = std::max<size_t>(primitiveInstances(scene), 1);
-  int cells = mostCells;
-  while (cells > 1 && instances * static_cast<size_t>(cells * cells * cells) > mostBoxes) --cells;
+  int cells = kMostCells;
+  while (cells > 1 && instances * static_cast<size_t>(cells * cells * cells) > kMostBoxes) --cells;
   boxes_.resize(scene.meshes.size());
   for (size_t m = 0; m < scene.meshes.size(); ++m) {
     for (const scene::Primitive& primitive : scene.meshes[m].primitives)
@@ -69,7 +69,7 @@ void VisibleScene::update(const scene::Pose& pose, std::span<const Bounds> insta
   parts_.clear();
   for (uint32_t i = 0; i < pose.instances.size(); ++i) {
     const scene::DrawInstance& drawn = pose.instances[i];
-    if (drawn.node == scene::none || drawn.deformed != scene::none) {
+    if (drawn.node == scene::kNone || drawn.deformed != scene::kNone) {
       if (!instanceBounds[i].empty()) parts_.push_back({instanceBounds[i], i});
       continue;
     }

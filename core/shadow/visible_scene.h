@@ -1,5 +1,5 @@
-// What a camera sees of a scene, as far as boxes around parts of its meshes tell: for fitting shadow maps to
-// it. No OpenGL.
+// Declares what a camera sees of a scene, estimated with boxes around parts of its meshes, for fitting shadow
+// maps to it. No OpenGL.
 #pragma once
 
 #include <cstdint>
@@ -12,26 +12,26 @@
 
 namespace limn::shadow {
 
-/// A box around some triangles of an instance.
+/// Holds a box around some triangles of an instance.
 struct ScenePart {
   scene::Bounds bounds;  ///< world
   uint32_t instance = 0;
 };
 
-/// A convex solid that holds all the camera sees of a part.
+/// Holds a convex solid that encloses all that the camera sees of a part.
 struct VisiblePart {
   Convex solid;  ///< world
   uint32_t instance = 0;
 };
 
-/// Boxes of all parts, and what of them the camera sees, at one pose.
+/// Holds the boxes of all parts, and what the camera sees of them, at one pose.
 class LIMN_API VisibleScene {
  public:
-  /// Splits every primitive into boxes: once, O(triangles). `scene` must outlive it.
+  /// Splits every primitive into boxes, once, in O(triangles). `scene` must outlive the object.
   explicit VisibleScene(const scene::Scene& scene);
 
-  /// `instanceBounds`: world bounds of pose.instances; they stand for what is deformed or dynamic. `aspect`:
-  /// width over height.
+  /// Updates the parts to `pose` and the camera. `instanceBounds` are the world bounds of pose.instances;
+  /// they replace the boxes of what is deformed or dynamic. `aspect` is width over height.
   void update(const scene::Pose& pose, std::span<const scene::Bounds> instanceBounds,
               const scene::CameraPose& camera, float aspect);
 
@@ -42,7 +42,7 @@ class LIMN_API VisibleScene {
   const scene::Scene& scene_;
   std::vector<std::vector<std::vector<scene::Bounds>>> boxes_;  ///< of meshes' primitives, object space
   std::vector<ScenePart> parts_;
-  std::vector<VisiblePart> visible_;  ///< the first visibleCount_ of them; the rest is memory kept
+  std::vector<VisiblePart> visible_;  ///< the first visibleCount_ are valid; the rest is kept memory
   size_t visibleCount_ = 0;
 };
 

@@ -1,4 +1,4 @@
-#include "core/shadow/window_fit.h"
+#include "core/shadow/private/window_fit.h"
 
 #include <algorithm>
 #include <array>
@@ -12,14 +12,14 @@ using glm::vec2;
 using glm::vec3;
 using glm::vec4;
 
-constexpr float infinite = std::numeric_limits<float>::max();
+constexpr float kInfinite = std::numeric_limits<float>::max();
 /// Of the far plane: what is nearer to a perspective map's origin has no place in it.
-constexpr float leastDepth = 1e-6f;
+constexpr float kLeastDepth = 1e-6f;
 /// A window's edges and depths are rounded to 1/32 to 1/64 of its size and to 1/16 of an octave, both counted
 /// from those of the whole map, so that scenes of every scale are cut the same.
-constexpr int windowSteps = 5, depthSteps = 16;
+constexpr int kWindowSteps = 5, kDepthSteps = 16;
 /// Of the whole map's side: no window is smaller.
-constexpr float leastSide = 1e-4f;
+constexpr float kLeastSide = 1e-4f;
 
 /// Straight edges: low(z) = low.x + low.y z <= x <= high.x + high.y z, and the same of y.
 struct Wedge {
@@ -67,7 +67,7 @@ void add(MapWindow& window, const MapEye& eye, const Convex& solid) {
 }
 
 MapWindow nothing() {
-  return {vec2(infinite), vec2(-infinite), infinite, -infinite};
+  return {vec2(kInfinite), vec2(-kInfinite), kInfinite, -kInfinite};
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ bool fitWindow(const MapEye& eye, const VisibleScene& scene, uint32_t skip, cons
     const vec3 r = p - eye.origin;
     return vec3(glm::dot(eye.axes.x, r), glm::dot(eye.axes.y, r), glm::dot(eye.axes.z, r));
   };
-  const float near = eye.perspective ? leastDepth * whole.far : whole.near;
+  const float near = eye.perspective ? kLeastDepth * whole.far : whole.near;
   Convex solid;
   receivers = nothing();
   const Wedge limits = pyramid(eye, whole);
@@ -117,15 +117,15 @@ MapWindow steadyWindow(const MapWindow& window, const MapWindow& whole, int size
   const float wholeSide = whole.high.x - whole.low.x;
   const vec2 extent = window.high - window.low;
   const float needed =
-      std::max({extent.x, extent.y, leastSide * wholeSide}) * (1 + 4 / static_cast<float>(size));
-  const float step = std::exp2(std::floor(std::log2(needed / wholeSide)) - windowSteps) * wholeSide;
+      std::max({extent.x, extent.y, kLeastSide * wholeSide}) * (1 + 4 / static_cast<float>(size));
+  const float step = std::exp2(std::floor(std::log2(needed / wholeSide)) - kWindowSteps) * wholeSide;
   const float side = (std::ceil(needed / step) + 1) * step;
   if (side >= wholeSide) return whole;
   const vec2 middle = glm::round(0.5f * (window.low + window.high) / step) * step;
   const auto rounded = [&](float depth, bool up) {
-    const float octaves = static_cast<float>(depthSteps) * std::log2(depth / whole.far);
+    const float octaves = static_cast<float>(kDepthSteps) * std::log2(depth / whole.far);
     return whole.far *
-           std::exp2((up ? std::ceil(octaves) : std::floor(octaves)) / static_cast<float>(depthSteps));
+           std::exp2((up ? std::ceil(octaves) : std::floor(octaves)) / static_cast<float>(kDepthSteps));
   };
   return {middle - 0.5f * side, middle + 0.5f * side,
           std::max(rounded(0.9999f * window.near, false), whole.near),

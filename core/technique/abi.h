@@ -1,5 +1,5 @@
-// What decides, beside the headers, how a type of the interface lies in memory: the compiler's and the
-// standard library's settings and the libraries whose types cross the interface by value.
+// Declares what determines, beside the headers, the memory layout of the interface's types: settings of the
+// compiler and the standard library, and the libraries whose types cross the interface by value.
 #pragma once
 
 #include <fmt/core.h>
@@ -13,8 +13,8 @@
 
 namespace limn {
 
-/// The settings that both sides must share, "NAME=VALUE;" for each.
-constexpr char technique_abi[] =
+/// Lists the settings that both sides must share, "NAME=VALUE;" for each.
+constexpr char kTechniqueAbi[] =
     // Language and data model.
     LIMN_ABI_MACRO(__cplusplus) LIMN_ABI_MACRO(__GXX_ABI_VERSION) LIMN_ABI_MACRO(__SIZEOF_POINTER__)
         LIMN_ABI_MACRO(__SIZEOF_LONG_DOUBLE__)

@@ -6,8 +6,8 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/foreign_exception.h"
-#include "core/technique/plugin_check.h"
-#include "core/technique/shared_object.h"
+#include "core/technique/private/plugin_check.h"
+#include "core/technique/private/shared_object.h"
 
 namespace limn {
 namespace fs = std::filesystem;

@@ -1,4 +1,4 @@
-// One technique's shared object, from file to plug-in.
+// Declares how a technique's shared object is loaded and checked.
 #pragma once
 
 #include <filesystem>
@@ -11,9 +11,10 @@
 
 namespace limn {
 
+/// Holds a loaded module; it stays loaded as long as this object lives.
 class LIMN_API Module {
  public:
-  /// Loads the technique `name` from `file` and looks it over: the file, the handshake, everything it
+  /// Loads the technique `name` from `file` and checks the file, the handshake and everything that it
   /// declares. Throws Error that begins with the file and says what is wrong.
   Module(const std::filesystem::path& file, const std::string& name);
 
@@ -27,19 +28,19 @@ class LIMN_API Module {
   const TechniquePlugin* plugin_;
 };
 
-/// Tries the same in a process of its own, so that a module which crashes, aborts, ends its process or hangs
-/// while it is loaded does so there. Throws Error that begins with the file if that process came to such an
-/// end; otherwise returns, even if the module was refused.
+/// Loads the module in a separate process, so that a module that crashes, aborts, ends its process or hangs,
+/// while it is loaded or when the program ends, does so there. Throws Error that begins with the file when
+/// that process ends in such a way; otherwise returns, even when the module was refused.
 LIMN_API void tryModule(const std::filesystem::path& file, const std::string& name);
 
-/// The file that liblimn was loaded from.
+/// Returns the file that liblimn was loaded from.
 LIMN_API std::filesystem::path limnFile();
 
-/// "technique NAME (FILE)": for messages about a plug-in at work.
+/// Returns "technique NAME (FILE)", for messages about a plug-in that is running.
 LIMN_API std::string described(const TechniquePlugin& plugin);
 
-/// Calls into a plug-in. What it throws that is not limn's own becomes an Error that names technique and
-/// file.
+/// Calls into a plug-in and returns the result. Exceptions that are not limn's own become an Error that names
+/// technique and file.
 template <class Call>
 decltype(auto) inTechnique(const TechniquePlugin& plugin, Call&& call) {
   const Whereabouts here(plugin.info->name, nullptr);
@@ -50,7 +51,7 @@ decltype(auto) inTechnique(const TechniquePlugin& plugin, Call&& call) {
   }
 }
 
-/// An instance of the technique. Throws Error that names it and its file where it makes none.
+/// Returns an instance of the technique. Throws Error that names it and its file when it makes none.
 LIMN_API std::unique_ptr<Technique> createTechnique(const TechniquePlugin& plugin);
 
 }  // namespace limn

@@ -1,6 +1,9 @@
-// tryModule(): a module is loaded in a process of its own before it is loaded in this one.
+// tryModule(): a module is loaded and unloaded in a process of its own before it is loaded in this one.
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <link.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,8 +18,33 @@
 namespace limn {
 namespace {
 
-constexpr int lived = 113;    // exit status that a module is unlikely to end its process with
-constexpr int patience = 10;  // seconds
+constexpr int kLived = 113;    // exit status that a module is unlikely to end its process with
+constexpr int kPatience = 10;  // seconds
+
+/// How far a trial has come.
+enum class Stage : int { loading, leaving };
+
+const char* said(Stage stage) {
+  return stage == Stage::loading ? "when it is loaded" : "when the program ends";
+}
+
+/// What a trial and who waits for it both see.
+class SharedStage {
+ public:
+  SharedStage()
+      : memory_(mmap(nullptr, sizeof(Stage), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {
+    if (memory_ == MAP_FAILED)
+      throw Error(fmt::format("no memory for the trial of a technique: {}", std::strerror(errno)));
+  }
+  ~SharedStage() { munmap(memory_, sizeof(Stage)); }
+  SharedStage(const SharedStage&) = delete;
+  SharedStage& operator=(const SharedStage&) = delete;
+
+  Stage& operator*() const { return *static_cast<Stage*>(memory_); }
+
+ private:
+  void* memory_;
+};
 
 /// Whatever the module prints or leaves behind in its last moments is not part of the answer.
 void silence() {
@@ -28,22 +56,46 @@ void silence() {
   setrlimit(RLIMIT_CORE, &none);
 }
 
-[[noreturn]] void runTrial(const std::filesystem::path& file, const std::string& name) {
+/// What the loader calls when a program ends, of a module that is loaded still: one that shares a variable
+/// with others (an inline static, say) outlives dlclose().
+void runDestructors(void* handle) {
+  link_map* map = nullptr;
+  if (dlinfo(handle, RTLD_DI_LINKMAP, &map) != 0) return;
+  using Function = void (*)();
+  const Function* functions = nullptr;
+  size_t count = 0;
+  Function last = nullptr;
+  for (const ElfW(Dyn)* entry = map->l_ld; entry->d_tag != DT_NULL; ++entry) {
+    if (entry->d_tag == DT_FINI_ARRAY)
+      functions = reinterpret_cast<const Function*>(map->l_addr + entry->d_un.d_ptr);
+    if (entry->d_tag == DT_FINI_ARRAYSZ) count = entry->d_un.d_val / sizeof(Function);
+    if (entry->d_tag == DT_FINI) last = reinterpret_cast<Function>(map->l_addr + entry->d_un.d_ptr);
+  }
+  while (functions && count > 0) functions[--count]();
+  if (last) last();
+}
+
+/// exit() would run the destructors of the whole program, whose threads are not here.
+[[noreturn]] void runTrial(const std::filesystem::path& file, const std::string& name, Stage& stage) {
   silence();
   for (int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGALRM}) std::signal(signal, SIG_DFL);
-  alarm(patience);
+  alarm(kPatience);
   try {
     const Module module(file, name);
+    stage = Stage::leaving;
   } catch (const Error&) {  // will be refused once more, with the reason
   }
-  _exit(lived);
+  stage = Stage::leaving;
+  if (void* handle = dlopen(file.c_str(), RTLD_LAZY | RTLD_NOLOAD)) runDestructors(handle);
+  _exit(kLived);
 }
 
 }  // namespace
 
 void tryModule(const std::filesystem::path& file, const std::string& name) {
+  const SharedStage stage;
   const pid_t child = fork();
-  if (child == 0) runTrial(file, name);
+  if (child == 0) runTrial(file, name, *stage);
   int status = 0;
   pid_t ended = child;
   while (child > 0 && (ended = waitpid(child, &status, 0)) < 0 && errno == EINTR) {
@@ -51,15 +103,14 @@ void tryModule(const std::filesystem::path& file, const std::string& name) {
   if (ended < 0)
     throw Error(fmt::format("{}: it cannot be tried in a process of its own: {}", file.string(),
                             std::strerror(errno)));
+  const char* when = said(*stage);
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM)
-    throw Error(
-        fmt::format("{}: it does not come back within {} s when it is loaded", file.string(), patience));
+    throw Error(fmt::format("{}: it does not come back within {} s {}", file.string(), kPatience, when));
   if (WIFSIGNALED(status))
+    throw Error(fmt::format("{}: it crashes {} ({})", file.string(), when, strsignal(WTERMSIG(status))));
+  if (WEXITSTATUS(status) != kLived)
     throw Error(
-        fmt::format("{}: it crashes when it is loaded ({})", file.string(), strsignal(WTERMSIG(status))));
-  if (WEXITSTATUS(status) != lived)
-    throw Error(fmt::format("{}: it ends its process when it is loaded (exit status {})", file.string(),
-                            WEXITSTATUS(status)));
+        fmt::format("{}: it ends its process {} (exit status {})", file.string(), when, WEXITSTATUS(status)));
 }
 
 }  // namespace limn

@@ -1,16 +1,16 @@
-#include "core/technique/plugin_check.h"
+#include "core/technique/private/plugin_check.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstring>
 
+#include "core/base/text.h"
+
 namespace limn {
 namespace {
 
-constexpr TermSet all_terms = Term::visibility | Term::direct | Term::indirect | Term::caustic | Term::media |
-                              Term::environment | Term::specular;
-constexpr size_t most_entries = 1000;  // beyond this a table is a mistake
+constexpr size_t kMostEntries = 1000;  // beyond this a table is a mistake
 
 /// Reads the text to its end, so that a wild pointer does its harm where the module is tried.
 bool isText(const char* text) {
@@ -25,7 +25,7 @@ bool isIdentifier(const char* text) {
 }
 
 std::string choicesProblem(const Parameter& p) {
-  if (!p.choices || p.choiceCount < 1 || static_cast<size_t>(p.choiceCount) > most_entries)
+  if (!p.choices || p.choiceCount < 1 || static_cast<size_t>(p.choiceCount) > kMostEntries)
     return "has no choices";
   for (int i = 0; i < p.choiceCount; ++i)
     if (!isText(p.choices[i])) return fmt::format("has no name for choice {}", i);
@@ -51,8 +51,17 @@ std::string parameterProblem(const Parameter& p) {
   return "is of an unknown type";
 }
 
+std::string termsProblem(TermSet terms) {
+  constexpr TermSet known = termsWhere([](const TermInfo&) { return true; });
+  if (terms == 0 || (terms & ~known) != 0)
+    return fmt::format("it answers the terms {:#x}, which are none or not known", terms);
+  if (const TermSet foreign = terms & ~kAnswerableTerms)
+    return fmt::format("it answers {}, which is not for techniques to answer", joined(termNames(foreign)));
+  return {};
+}
+
 std::string parametersProblem(std::span<const Parameter> parameters) {
-  if (parameters.size() > most_entries || (!parameters.empty() && !parameters.data()))
+  if (parameters.size() > kMostEntries || (!parameters.empty() && !parameters.data()))
     return fmt::format("it declares {} parameters", parameters.size());
   for (size_t i = 0; i < parameters.size(); ++i) {
     if (!isIdentifier(parameters[i].name)) return fmt::format("its parameter {} has no name", i);
@@ -66,7 +75,7 @@ std::string parametersProblem(std::span<const Parameter> parameters) {
 }
 
 std::string stressProblem(std::span<const StressCase> cases) {
-  if (cases.size() > most_entries || (!cases.empty() && !cases.data()))
+  if (cases.size() > kMostEntries || (!cases.empty() && !cases.data()))
     return fmt::format("it declares {} stability cases", cases.size());
   for (size_t i = 0; i < cases.size(); ++i)
     if (!isText(cases[i].name) || !isText(cases[i].scene) || !isText(cases[i].settings))
@@ -75,7 +84,7 @@ std::string stressProblem(std::span<const StressCase> cases) {
 }
 
 std::string sourcesProblem(std::span<const gpu::EmbeddedSource> sources) {
-  if (sources.size() > most_entries || (!sources.empty() && !sources.data()))
+  if (sources.size() > kMostEntries || (!sources.empty() && !sources.data()))
     return fmt::format("it brings {} shader files", sources.size());
   for (size_t i = 0; i < sources.size(); ++i)
     if (!isText(sources[i].path) || !isText(sources[i].text))
@@ -92,8 +101,7 @@ std::string pluginProblem(const TechniquePlugin& plugin, std::string_view name) 
   if (!isIdentifier(info.name)) return "it gives no name";
   if (info.name != name) return fmt::format("it calls itself {:.64}", info.name);
   if (!isText(info.title) || !isText(info.source)) return "it gives no title or source";
-  if (info.terms == 0 || (info.terms & ~all_terms) != 0)
-    return fmt::format("it answers the terms {:#x}, which are none or not known", info.terms);
+  if (std::string problem = termsProblem(info.terms); !problem.empty()) return problem;
   if (std::string problem = parametersProblem(info.parameters); !problem.empty()) return problem;
   if (std::string problem = stressProblem(info.stress); !problem.empty()) return problem;
   return sourcesProblem(plugin.sources());

@@ -39,26 +39,6 @@ struct Candidate {
 
 }  // namespace
 
-const char* name(Term term) {
-  switch (term) {
-    case Term::visibility:
-      return "visibility";
-    case Term::direct:
-      return "direct";
-    case Term::indirect:
-      return "indirect";
-    case Term::caustic:
-      return "caustic";
-    case Term::media:
-      return "media";
-    case Term::environment:
-      return "environment";
-    case Term::specular:
-      return "specular";
-  }
-  return "";
-}
-
 std::vector<fs::path> TechniqueRegistry::defaultFolders() {
   std::vector<fs::path> folders;
   if (const char* list = std::getenv("LIMN_TECHNIQUE_PATH")) {
@@ -116,6 +96,18 @@ struct TechniqueRegistry::Implementation {
     }
   }
 
+  using Entry = std::pair<const std::string, Candidate>;
+
+  /// Throws UsageError for an unknown name.
+  Entry& known(std::string_view name) {
+    const auto entry = candidates.find(name);
+    if (entry != candidates.end()) return *entry;
+    std::vector<std::string> names;
+    for (const auto& [candidate, ignored] : candidates) names.push_back(candidate);
+    throw UsageError(fmt::format("unknown technique '{}'{}; known are {}", name, didYouMean(name, names),
+                                 names.empty() ? "none" : joined(names)));
+  }
+
   void open(const std::string& name, Candidate& candidate) {
     if (candidate.opened()) return;
     if (warn)
@@ -159,22 +151,14 @@ std::span<const TechniqueRegistry::Refusal> TechniqueRegistry::refused() const {
 const TechniquePlugin& TechniqueRegistry::find(std::string_view name) const {
   Implementation& self = *implementation_;
   const std::lock_guard lock(self.mutex);
-  const auto known = self.candidates.find(name);
-  if (known == self.candidates.end()) {
-    std::vector<std::string> names;
-    for (const auto& [candidate, ignored] : self.candidates) names.push_back(candidate);
-    throw UsageError(fmt::format("unknown technique '{}'{}; known are {}", name, didYouMean(name, names),
-                                 names.empty() ? "none" : joined(names)));
-  }
-  Candidate& candidate = known->second;
-  self.open(known->first, candidate);
+  auto& [known, candidate] = self.known(name);
+  self.open(known, candidate);
   if (candidate.module) return candidate.module->plugin();
   throw Error(fmt::format("technique {} was refused: {}", name, candidate.refusal));
 }
 
 fs::path TechniqueRegistry::fileOf(std::string_view name) const {
-  find(name);
-  return implementation_->candidates.find(name)->second.file;
+  return implementation_->known(name).second.file;
 }
 
 }  // namespace limn

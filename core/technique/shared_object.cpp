@@ -1,4 +1,4 @@
-#include "core/technique/shared_object.h"
+#include "core/technique/private/shared_object.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>

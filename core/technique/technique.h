@@ -1,21 +1,21 @@
-// The plug-in interface. A technique is one folder that builds to one shared module with one entry point.
+// Declares the plug-in interface. A technique is a folder that builds one shared module with one entry point.
 //
 //     #include "core/technique/technique.h"
 //
 //     namespace {
-//     constexpr limn::Parameter parameters[] = {...};
+//     constexpr limn::Parameter kParameters[] = {...};
 //     class Example : public limn::Technique {
-//       limn::frame::TextureHandle addPasses(limn::frame::FrameGraph& graph, const limn::TechniqueInputs&
-//       inputs,
-//                                            const limn::TermRequest& request) override { ... }
+//       limn::frame::TextureHandle addPasses(
+//           limn::frame::FrameGraph& graph, const limn::TechniqueInputs& inputs,
+//           const limn::TermRequest& request) override { ... }
 //     };
-//     constexpr limn::TechniqueInfo info{.name = "example", ...};
+//     constexpr limn::TechniqueInfo kInfo{.name = "example", ...};
 //     }  // namespace
-//     LIMN_TECHNIQUE(info, Example)
+//     LIMN_TECHNIQUE(kInfo, Example)
 //
-// The core loads the module when the technique is asked for, compares the handshake (interface number,
-// compiler, settings that change the layout of types, hash of all headers and shared GLSL), looks over what
-// the module declares, and refuses with a message that names both sides.
+// The core loads the module when the technique is requested, compares the handshake (interface number,
+// compiler, settings that change the layout of types, hash of all headers and shared GLSL) and checks what
+// the module declares. It refuses a module that does not match with a message that names both sides.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +24,13 @@
 #include <span>
 #include <string>
 
+#include "core/base/parameters.h"
 #include "core/frame/frame_graph.h"
 #include "core/gpu/shader_source.h"
+#include "core/gpu_scene/scene_handles.h"
+#include "core/question/term.h"
+#include "core/technique/frame_service.h"
 #include "core/technique/handshake.h"
-#include "core/technique/parameters.h"
 #include "core/technique/stress_case.h"
 
 namespace limn {
@@ -37,111 +40,57 @@ struct Scene;
 struct Pose;
 class GpuScene;
 }  // namespace scene
-namespace shadow {
-class ShadowMapService;
-}
-namespace indirect {
-class VirtualLightService;
-}
-namespace caustics {
-class CausticRayService;
-}
 
-/// The terms of the rendering equation a technique may answer (path classes: direct L D E, indirect L D+ D E,
-/// caustic L S+ D E, media L S* M E, specular L D+ S+ E and the environment's S+ E).
-enum class Term : uint32_t {
-  visibility = 1,  ///< V of each light, 0 occluded .. 1 lit
-  direct = 2,      ///< sum over the lights of reflected direct light, shadows included
-  indirect = 4,
-  caustic = 8,
-  media = 16,
-  environment =
-      32,  ///< reflected light of the environment's map, shadows included; instead of all lights that stand
-           ///< for parts of it. One technique at most, beside one that answers visibility or direct
-  specular = 64,  ///< what the camera sees in specular surfaces, caustics and light in a medium left out;
-                  ///< unanswered: the environment alone. One technique at most
-};
-using TermSet = uint32_t;
-constexpr TermSet operator|(Term a, Term b) {
-  return static_cast<TermSet>(a) | static_cast<TermSet>(b);
-}
-constexpr TermSet operator|(TermSet a, Term b) {
-  return a | static_cast<TermSet>(b);
-}
-constexpr TermSet termSet(Term term) {
-  return static_cast<TermSet>(term);
-}
-constexpr bool contains(TermSet set, Term term) {
-  return (set & static_cast<TermSet>(term)) != 0;
-}
-LIMN_API const char* name(Term term);
-
+/// Declares a technique: what `limn list`, flags, suites and the renderer know of it.
 struct TechniqueInfo {
   const char* name;    ///< folder name, identifier
   const char* title;   ///< for people
   const char* source;  ///< paper, year, or the thesis's chapter
-  TermSet terms = 0;
+  TermSet terms = 0;   ///< answered terms; core/question/term.h says which may be answered
   std::span<const Parameter> parameters;
-  /// Extremes of the method itself; those that every technique meets are core's (core/bench/stress.h).
+  /// Holds extremes of the method itself; those that every technique meets are in core/bench/stress.h.
   std::span<const StressCase> stress;
 };
 
-/// The G-buffer (layout: glsl/gbuffer.glsl). Screen-sized, one sample at the pixel centre.
-struct GBuffer {
-  frame::TextureHandle depth;            ///< R32F, linear view depth in metres, 0: no coverage
-  frame::TextureHandle normal;           ///< RG16_SNORM octahedral, shading normal, world space
-  frame::TextureHandle geometricNormal;  ///< RG16_SNORM octahedral, faces the camera
-  frame::TextureHandle albedo;           ///< RGBA16, square root of the base colour, a: metallic
-  frame::TextureHandle material;         ///< RGBA8, see glsl/gbuffer.glsl
-  frame::TextureHandle emission;         ///< RGBA16F, W/(sr m^2)
-  frame::TextureHandle instance;         ///< R32UI, index into Pose::instances, 0xffffffff: none
-};
-
-/// Scene data as graph resources. Their versions change with what they hold, so a cacheable pass that reads
-/// `geometry` and `lights` (and not `frame`) survives a moving camera.
-struct SceneHandles {
-  frame::BufferHandle frame;           ///< uniform block FrameBlock
-  frame::BufferHandle geometry;        ///< stands for all vertex, index and instance data after deformation
-  frame::BufferHandle instances;       ///< storage buffer of glsl::Instance
-  frame::BufferHandle materials;       ///< storage buffer of glsl::Material
-  frame::BufferHandle lights;          ///< storage buffer of glsl::Light, index = light index
-  frame::TextureHandle lightTextures;  ///< RGBA32F array that spots shine through; empty: none does
-  frame::TextureHandle density;        ///< R32F volume (scene::DensityGrid); empty: the medium is homogeneous
-};
-
-/// What every technique is given.
+/// Holds what every technique receives.
 struct TechniqueInputs {
   const scene::Scene& scene;
-  const scene::Pose&
-      pose;  ///< state at the time of building; moves afterwards, so read it only for its structure
+  /// Holds the state at the time of building; it changes afterwards, so only its structure may be read.
+  const scene::Pose& pose;
   scene::GpuScene& gpuScene;  ///< draws geometry
-  shadow::ShadowMapService& shadowMaps;
-  indirect::VirtualLightService& virtualLights;
-  caustics::CausticRayService& causticRays;
+  const FrameServices& services;
   const ParameterValues& parameters;
   SceneHandles handles;
-  /// The surfaces to light. Where specular is answered: of visibility, direct, environment and indirect those
-  /// behind the specular ones.
+  /// Holds the surfaces to light. When specular is answered: for visibility, direct, environment and
+  /// indirect, the surfaces behind the specular ones.
   GBuffer gbuffer;
   glm::ivec2 size;                        ///< pixels
-  GBuffer matte{};                        ///< of specular: the G-buffer without specular surfaces
-  frame::TextureHandle environmentMap{};  ///< of specular: equirectangular, RGB32F; empty: no environment
+  GBuffer matte{};                        ///< for specular: the G-buffer without specular surfaces
+  frame::TextureHandle environmentMap{};  ///< for specular: equirectangular, RGB32F; empty: no environment
+
+  /// Returns a service that shares work with other techniques, such as shadow::ShadowMapService.
+  template <NamedService S>
+  S& service() const {
+    return services.get<S>();
+  }
 };
 
-/// One question to a technique.
+/// Holds one request to a technique.
 struct TermRequest {
   Term term;
-  /// The lights asked about (indices into Pose::lights); none for environment. For visibility: one batch,
-  /// answered layer by layer.
+  /// Holds the lights of the request (indices into Pose::lights); none for environment. For visibility: one
+  /// batch, answered layer by layer.
   std::span<const uint32_t> lights;
-  /// visibility: R16 array with one layer per entry of `lights`; the pass writes every pixel, and 1 where the
-  /// pixel has no coverage or the light lies wholly behind the surface. specular: RGBA32F, radiance of
-  /// TechniqueInputs::matte and the background behind it, to be read; the answer is a texture of its own,
-  /// black where no specular surface is seen. Other terms: RGBA32F radiance to add to.
+  /// Holds the texture to answer into. visibility: R16 array with one layer per entry of `lights`; the pass
+  /// writes every pixel, and 1 where the pixel has no coverage or the light lies wholly behind the surface.
+  /// specular: RGBA32F, radiance of TechniqueInputs::matte and the background behind it, to be read; the
+  /// result is a separate texture, black where no specular surface is seen. Other terms: RGBA32F radiance to
+  /// add to.
   frame::TextureHandle target;
 };
 
-/// One instance per use in a frame graph; holds what lives as long as the graph (imported buffers, tables).
+/// Answers requests; there is one instance per use in a frame graph. Holds what lives as long as the graph
+/// (imported buffers, tables).
 class Technique {
  public:
   virtual ~Technique() = default;
@@ -149,11 +98,12 @@ class Technique {
   /// lights. Passes that the scene does not need are not declared but reported with graph.leaveOut().
   virtual frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                          const TermRequest& request) = 0;
-  /// Called before each frame when lights or geometry may have moved. True asks for the graph to be rebuilt.
+  /// Updates the technique: called before each frame when lights or geometry may have moved. Returns true to
+  /// request that the graph is built again.
   virtual bool update(const scene::Pose&) { return false; }
 };
 
-/// What the entry point returns.
+/// Holds what the entry point returns.
 struct TechniquePlugin {
   Handshake handshake;
   const TechniqueInfo* info;

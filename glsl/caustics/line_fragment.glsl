@@ -2,9 +2,9 @@
 // and BEAMS: see lines.vert.glsl.
 #ifndef LIMN_LINE_FRAGMENT_GLSL
 #define LIMN_LINE_FRAGMENT_GLSL
-#include "glsl/caustic_line.glsl"
-#include "glsl/caustic_ray.glsl"
-#include "glsl/medium_input.glsl"
+#include "glsl/caustics/caustic_line.glsl"
+#include "glsl/caustics/caustic_ray.glsl"
+#include "glsl/media/medium_input.glsl"
 
 layout(location = 0) flat in int ray_index;
 layout(location = 1) flat in vec3 line_origin;
@@ -13,8 +13,8 @@ layout(location = 3) flat in vec2 line_axis;
 layout(location = 4) flat in vec3 line_range;
 layout(location = 5) in vec2 line_width;
 
-layout(binding = 0) uniform sampler2D gbuffer_depth;
-layout(std430, binding = 0) readonly buffer Rays { CausticRay rays[]; };
+uniform sampler2D gbuffer_depth;
+layout(std430) readonly buffer Rays { CausticRay rays[]; };
 
 layout(location = 0) out vec4 radiance;
 
@@ -35,7 +35,7 @@ LineFragment line_fragment() {
   f.place = line_origin + f.along * line_direction;
   f.share = depth > 0.0 && f.place.z > depth ? 0.0 : 1.0;
 #else
-  vec2 slope = (gl_FragCoord.xy - 0.5 * vec2(frame.frame_size.xy)) * vec2(pixel, length(frame.view_ray_dy.xyz));
+  vec2 slope = (gl_FragCoord.xy - 0.5 * vec2(frame.frame_size)) * vec2(pixel, length(frame.view_ray_dy.xyz));
   float middle = dot(line_axis, slope);
   vec2 part = caustic_line_part(line_origin, line_direction, line_axis, line_range.xy, depth,
                                 vec2(middle - 0.5 * pixel, middle + 0.5 * pixel));

@@ -4,7 +4,7 @@
 #include "glsl/caustics/listed_ray.glsl"
 #include "glsl/caustics/ray_shape.glsl"
 
-layout(std430, binding = 1) readonly buffer LineRule { uint line_fragments; };
+layout(std430) readonly buffer LineRule { uint line_fragments; };
 
 layout(location = 0) flat out int ray_index;
 layout(location = 1) flat out vec3 line_origin;     // camera space, metres
@@ -25,7 +25,7 @@ float share_of_column(int index) {
 
 // `slope`: place on the view plane at distance 1.
 vec4 clip_position(vec2 slope, float depth) {
-  vec2 half_size = 0.5 * vec2(frame.frame_size.xy) * vec2(length(frame.view_ray_dx.xyz), length(frame.view_ray_dy.xyz));
+  vec2 half_size = 0.5 * vec2(frame.frame_size) * vec2(length(frame.view_ray_dx.xyz), length(frame.view_ray_dy.xyz));
   return vec4(slope / half_size * depth, 0.0, depth);
 }
 

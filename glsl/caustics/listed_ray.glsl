@@ -3,8 +3,8 @@
 #define LIMN_LISTED_RAY_GLSL
 #include "glsl/caustics/ray_runs.glsl"
 
-layout(std430, binding = 4) readonly buffer RayIndices { uint ray_indices[]; };
-layout(std430, binding = 5) readonly buffer RayDraws {
+layout(std430) readonly buffer RayIndices { uint ray_indices[]; };
+layout(std430) readonly buffer RayDraws {
   RayDraw draws[ray_kinds];
   uint first_places[ray_kinds];
 };

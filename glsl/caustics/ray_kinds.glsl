@@ -2,7 +2,7 @@
 #include "glsl/caustics/ray_runs.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 1) writeonly buffer RayRuns { RayRun runs[]; };
+layout(std430) writeonly buffer RayRuns { RayRun runs[]; };
 uniform int ray_count;
 
 void main() {

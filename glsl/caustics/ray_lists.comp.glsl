@@ -2,8 +2,8 @@
 #include "glsl/caustics/ray_runs.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer RayRuns { RayRun runs[]; };
-layout(std430, binding = 1) writeonly buffer RayIndices { uint ray_indices[]; };
+layout(std430) readonly buffer RayRuns { RayRun runs[]; };
+layout(std430) writeonly buffer RayIndices { uint ray_indices[]; };
 uniform int run_count;
 
 void main() {

@@ -3,8 +3,8 @@
 #include "glsl/caustics/ray_runs.glsl"
 
 layout(local_size_x = THREADS) in;
-layout(std430, binding = 0) buffer RayRuns { RayRun runs[]; };
-layout(std430, binding = 1) writeonly buffer RayDraws {
+layout(std430) buffer RayRuns { RayRun runs[]; };
+layout(std430) writeonly buffer RayDraws {
   RayDraw draws[ray_kinds];
   uint first_places[ray_kinds];
 };

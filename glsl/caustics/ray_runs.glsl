@@ -4,7 +4,7 @@
 // core/caustics/ray_lists.h runs the three passes.
 #ifndef LIMN_RAY_RUNS_GLSL
 #define LIMN_RAY_RUNS_GLSL
-#include "glsl/language.glsl"
+#include "glsl/numeric/language.glsl"
 LIMN_BEGIN
 
 LIMN_CONST uint ray_kinds = 3u;

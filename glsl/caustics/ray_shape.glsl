@@ -2,10 +2,10 @@
 // the caustic-ray buffer and the frame block. BEAMS 0: no beams.
 #ifndef LIMN_RAY_SHAPE_GLSL
 #define LIMN_RAY_SHAPE_GLSL
-#include "glsl/caustic_line.glsl"
+#include "glsl/caustics/caustic_line.glsl"
 #include "glsl/caustics/ray_beam.glsl"
 #include "glsl/caustics/ray_runs.glsl"
-#include "glsl/medium_input.glsl"
+#include "glsl/media/medium_input.glsl"
 
 uniform float near_plane;  // metres
 
@@ -36,16 +36,16 @@ struct RayPiece {
 
 RayPiece ray_piece(CausticRay ray) {
   RayPiece p;
-  p.origin = camera_space(ray.start.xyz);
-  p.direction = camera_direction(ray.direction.xyz);
-  p.range = ray.direction.w == caustic_ray_none ? vec2(0.0) : vec2(0.0, ray.start.w);
+  p.origin = camera_space(ray.start);
+  p.direction = camera_direction(ray.direction);
+  p.range = ray.kind == caustic_ray_none ? vec2(0.0) : vec2(0.0, ray.segment_length);
   // The part beyond the near plane.
   float to_near = (near_plane - p.origin.z) / p.direction.z;
   if (p.direction.z > 0.0) p.range.x = max(p.range.x, to_near);
   if (p.direction.z < 0.0) p.range.y = min(p.range.y, to_near);
   if (p.direction.z == 0.0 && p.origin.z < near_plane) p.range = vec2(0.0);
 #if MEDIUM_STEPS > 0
-  vec2 medium = medium_range(scene_medium(), ray.start.xyz, ray.direction.xyz);
+  vec2 medium = medium_range(scene_medium(), ray.start, ray.direction);
   p.range = vec2(max(p.range.x, medium.x), min(p.range.y, medium.y));
 #endif
   p.a = p.origin + p.range.x * p.direction;

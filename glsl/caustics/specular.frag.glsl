@@ -1,6 +1,6 @@
 // A texel of the specular buffers: shading normal and which surface it is, linear depth, and the triangle's normal. BACK 1:
 // only the instance that the front buffer shows there.
-#include "glsl/gbuffer.glsl"
+#include "glsl/surface/gbuffer.glsl"
 #include "glsl/geometry/triangle_input.glsl"
 
 layout(location = 0) in vec3 normal_ws;
@@ -13,7 +13,7 @@ layout(location = 1) out float stored_depth;
 layout(location = 2) out vec2 stored_geometric_normal;  // octahedral, of the front face
 
 #if BACK
-layout(binding = 8) uniform sampler2DArray front;
+uniform sampler2DArray front;
 #endif
 
 void main() {

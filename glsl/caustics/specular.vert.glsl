@@ -1,14 +1,14 @@
 // Specular objects as the views of caustic rays see them. BACK 1: the farthest surface wins instead of the nearest.
-#include "glsl/blocks.glsl"
-#include "glsl/shadow_view.glsl"
-#include "glsl/vertex.glsl"
+#include "glsl/scene/blocks.glsl"
+#include "glsl/shadow/shadow_view.glsl"
+#include "glsl/geometry/vertex.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in uvec2 entry;  // x: draw instance, y: view
 layout(location = 2) in uvec2 directions;
 
-layout(std430, binding = 0) readonly buffer Instances { Instance instances[]; };
-layout(std430, binding = 4) readonly buffer Views { ShadowView views[]; };
+layout(std430) readonly buffer Instances { Instance instances[]; };
+layout(std430) readonly buffer Views { ShadowView views[]; };
 
 layout(location = 0) out vec3 normal_ws;
 layout(location = 1) out float linear_depth;
@@ -25,8 +25,7 @@ void main() {
 #endif
   normal_ws = mat3(instances[entry.x].normal_to_world) * vertex_unpack_normal(directions.x);
   linear_depth = shadow_normalise(view, shadow_view_depth(view, world));
-  layer = view.info.y;
-  from_eye = view.info.x == shadow_orthographic ? view.axis_z.xyz : world - view.origin.xyz;
-  uvec4 info = instances[entry.x].info;
-  surface_instance = uvec3(entry.x, info.y, info.w);
+  layer = view.layer;
+  from_eye = view.projection == shadow_orthographic ? view.axis_z : world - view.origin;
+  surface_instance = uvec3(entry.x, instances[entry.x].first_vertex, instances[entry.x].first_index);
 }

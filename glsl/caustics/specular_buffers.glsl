@@ -1,13 +1,13 @@
-// The specular buffers of a layer as passes search them that follow light through objects. SPECULAR_UNIT: the first of
-// their four texture units.
+// The specular buffers of a layer as passes search them that follow light through objects. EXIT_STEPS: points of the search
+// for where light leaves an object.
 #ifndef LIMN_SPECULAR_BUFFERS_GLSL
 #define LIMN_SPECULAR_BUFFERS_GLSL
-#include "glsl/shadow_view.glsl"
+#include "glsl/shadow/shadow_view.glsl"
 
-layout(binding = SPECULAR_UNIT) uniform sampler2DArray front_surface;  // xyz: normal; w: +-(instance + 1)
-layout(binding = SPECULAR_UNIT + 1) uniform sampler2DArray front_depth;
-layout(binding = SPECULAR_UNIT + 2) uniform sampler2DArray back_surface;
-layout(binding = SPECULAR_UNIT + 3) uniform sampler2DArray back_depth;
+uniform sampler2DArray front_surface;  // xyz: normal; w: +-(instance + 1)
+uniform sampler2DArray front_depth;
+uniform sampler2DArray back_surface;
+uniform sampler2DArray back_depth;
 
 // Depth at uv, interpolated among the texels of the instance; < 0: the instance is not there.
 float buffer_depth(sampler2DArray surfaces, sampler2DArray depths, vec2 uv, int layer, float instance) {
@@ -71,10 +71,10 @@ int body_side(ShadowView view, vec3 p, int layer, float instance, float toleranc
 bool within_object(ShadowView view, vec3 p, int layer) {
   ShadowPoint q = shadow_project(view, p);
   if (!shadow_inside(q)) return false;
-  ivec3 texel = ivec3(min(ivec2(q.uv * float(view.info.z)), ivec2(view.info.z) - 1), layer);
+  ivec3 texel = ivec3(min(ivec2(q.uv * float(view.size)), ivec2(view.size) - 1), layer);
   if (texelFetch(front_surface, texel, 0).w == 0.0) return false;
   float depth = shadow_normalise(view, q.depth);
-  float tolerance = shadow_footprint(view, q.depth) / (view.axis_z.w - view.origin.w);
+  float tolerance = shadow_footprint(view, q.depth) / (view.far - view.near);
   return depth > texelFetch(front_depth, texel, 0).x + tolerance &&
          depth < texelFetch(back_depth, texel, 0).x - tolerance;
 }
@@ -87,12 +87,12 @@ struct BodyExit {
   vec2 uv;         // where
 };
 
-const int exit_steps = 32;
+const int exit_steps = EXIT_STEPS;
 const int exit_refinements = 10;
 
 // The first place on start + t direction, 0 < t < reach, that lies outside.
 BodyExit body_exit(ShadowView view, vec3 start, vec3 direction, float reach, int layer, float instance) {
-  float tolerance = shadow_footprint(view, shadow_view_depth(view, start)) / (view.axis_z.w - view.origin.w);
+  float tolerance = shadow_footprint(view, shadow_view_depth(view, start)) / (view.far - view.near);
   float inside = 0.0;
   float outside = reach;
   int side = body_back;

@@ -1,27 +1,26 @@
 // Caustic rays: each texel of the specular buffers is a light ray, which is reflected at the front, or refracted there and
 // again where it leaves the object, and ends where it meets the rest of the scene (thesis, section 8.3.2).
 // PATHS: caustic_reflection | caustic_refraction; PATH_COUNT: how many these are.
-#include "glsl/caustic_ray.glsl"
-#define SPECULAR_UNIT 0
+#include "glsl/caustics/caustic_ray.glsl"
 #include "glsl/caustics/specular_buffers.glsl"
-#include "glsl/gbuffer.glsl"
-#include "glsl/light_intensity.glsl"
-#include "glsl/light_texture.glsl"
-#include "glsl/medium_input.glsl"
-#include "glsl/reflective_map.glsl"
+#include "glsl/surface/gbuffer.glsl"
+#include "glsl/light/light_intensity.glsl"
+#include "glsl/light/light_texture.glsl"
+#include "glsl/media/medium_input.glsl"
+#include "glsl/indirect/reflective_map.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 4) uniform sampler2DArray scene_depth;  // without specular objects
-layout(binding = 5) uniform sampler2DArray front_geometric_normal;
-layout(binding = 6) uniform sampler2DArray back_geometric_normal;
-layout(std430, binding = 0) readonly buffer Lights { Light lights[]; };
-layout(std430, binding = 1) readonly buffer Views { ShadowView views[]; };
-layout(std430, binding = 2) readonly buffer Layers { vec4 layers[]; };  // x: of shadow_lights; y: diameter of the objects, m
-layout(std430, binding = 3) readonly buffer Instances { Instance instances[]; };
-layout(std430, binding = 4) readonly buffer Materials { Material materials[]; };
-layout(std430, binding = 5) readonly buffer SceneViews { ShadowView scene_views[]; };
-layout(std430, binding = 6) readonly buffer SceneLights { ShadowLight scene_lights[]; };
-layout(std430, binding = 7) writeonly buffer Rays { CausticRay rays[]; };
+uniform sampler2DArray scene_depth;  // without specular objects
+uniform sampler2DArray front_geometric_normal;
+uniform sampler2DArray back_geometric_normal;
+layout(std430) readonly buffer Lights { Light lights[]; };
+layout(std430) readonly buffer Views { ShadowView views[]; };
+layout(std430) readonly buffer Layers { CausticLayer layers[]; };
+layout(std430) readonly buffer Instances { Instance instances[]; };
+layout(std430) readonly buffer Materials { Material materials[]; };
+layout(std430) readonly buffer SceneViews { ShadowView scene_views[]; };
+layout(std430) readonly buffer SceneLights { ShadowLight scene_lights[]; };
+layout(std430) writeonly buffer Rays { CausticRay rays[]; };
 uniform int light_samples;
 uniform int steps;
 
@@ -36,7 +35,7 @@ vec3 map_place(ShadowView view, ivec2 texel, uint layer) {
 
 // Of the scene's map that sees p.
 uint scene_layer(ShadowLight maps, vec3 p) {
-  return maps.info.x + shadow_face(maps.info.y, scene_views[maps.info.x], p);
+  return maps.first_layer + shadow_face(maps.faces, scene_views[maps.first_layer], p);
 }
 
 // How far p lies behind what the light sees in the scene without specular objects, metres; < 0: before it, or nothing known.
@@ -45,14 +44,14 @@ float behind_scene(ShadowLight maps, vec3 p) {
   ShadowView view = scene_views[layer];
   ShadowPoint q = shadow_project(view, p);
   if (!shadow_inside(q)) return -1.0;
-  ivec2 texel = min(ivec2(q.uv * float(view.info.z)), ivec2(view.info.z) - 1);
+  ivec2 texel = min(ivec2(q.uv * float(view.size)), ivec2(view.size) - 1);
   float stored = texelFetch(scene_depth, ivec3(texel, layer), 0).x;
   return stored < 1.0 ? q.depth - shadow_metres(view, stored) : -1.0;
 }
 
 bool light_blocked(ShadowLight maps, vec3 p) {
-  ShadowView view = scene_views[maps.info.x];
-  float bias = shadow_bias * shadow_footprint(view, length(p - view.origin.xyz));
+  ShadowView view = scene_views[maps.first_layer];
+  float bias = shadow_bias * shadow_footprint(view, length(p - view.origin));
   return behind_scene(maps, p) > bias;
 }
 
@@ -71,8 +70,8 @@ int place_of(ShadowLight maps, ShadowView view, int layer, vec3 p) {
 vec3 end_normal(ShadowLight maps, vec3 p, vec3 direction) {
   uint layer = scene_layer(maps, p);
   ShadowView view = scene_views[layer];
-  int last = int(view.info.z) - 1;
-  ivec2 texel = clamp(ivec2(shadow_project(view, p).uv * float(view.info.z)), ivec2(0), ivec2(last));
+  int last = int(view.size) - 1;
+  ivec2 texel = clamp(ivec2(shadow_project(view, p).uv * float(view.size)), ivec2(0), ivec2(last));
   vec3 here = map_place(view, texel, layer);
   vec3 side[2];
   for (int axis = 0; axis < 2; ++axis) {
@@ -90,14 +89,14 @@ vec3 end_normal(ShadowLight maps, vec3 p, vec3 direction) {
 
 // Ends the ray where it passes from before the scene to behind it, or into a specular object, as the light sees them.
 void find_end(ShadowLight maps, ShadowView view, int layer, inout CausticRay ray) {
-  vec3 start = ray.start.xyz;
-  vec3 direction = ray.direction.xyz;
+  vec3 start = ray.start;
+  vec3 direction = ray.direction;
   float before = 0.0;
   float behind = -1.0;
   int met = place_free;
   bool was_free = false;  // the crossing must be seen to happen
   for (int i = 0; i <= steps; ++i) {
-    float t = ray.start.w * float(i) / float(steps);
+    float t = ray.segment_length * float(i) / float(steps);
     met = place_of(maps, view, layer, start + t * direction);
     if (met != place_free && was_free) {
       behind = t;
@@ -117,13 +116,13 @@ void find_end(ShadowLight maps, ShadowView view, int layer, inout CausticRay ray
       met = there;
     }
   }
-  ray.start.w = 0.5 * (before + behind);
+  ray.segment_length = 0.5 * (before + behind);
   if (met != place_scene) return;
-  ray.direction.w = caustic_ray_surface;
-  ray.normal = packSnorm2x16(octahedral_encode(end_normal(maps, start + ray.start.w * direction, direction)));
+  ray.kind = caustic_ray_surface;
+  ray.normal = packSnorm2x16(octahedral_encode(end_normal(maps, start + ray.segment_length * direction, direction)));
 }
 
-CausticRay no_ray() { return CausticRay(vec4(0.0), vec4(0.0, 0.0, 1.0, caustic_ray_none), vec3(0.0), 0u); }
+CausticRay no_ray() { return CausticRay(vec3(0.0), 0.0, vec3(0.0, 0.0, 1.0), caustic_ray_none, vec3(0.0), 0u); }
 
 // The light of one texel at the front of a specular object.
 struct Incident {
@@ -142,7 +141,7 @@ struct Incident {
 CausticRay ray_from(Medium medium, ShadowLight maps, Incident at, vec3 start, vec3 direction, vec3 power) {
   float reach = ball_range(medium.ball, start, direction).y;
   if (!(reach > 0.0) || all(equal(power, vec3(0.0)))) return no_ray();
-  CausticRay ray = CausticRay(vec4(start, reach), vec4(direction, caustic_ray_open), power, 0u);
+  CausticRay ray = CausticRay(start, reach, direction, caustic_ray_open, power, 0u);
   find_end(maps, at.view, at.layer, ray);
   return ray;
 }
@@ -185,11 +184,11 @@ CausticRay refracted_ray(Medium medium, ShadowLight maps, Incident at, SpecularE
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   ShadowView view = views[at.z];
-  vec4 layer = layers[at.z];
-  ShadowLight maps = scene_lights[uint(layer.x)];
-  Light light = lights[maps.info.z];
+  CausticLayer layer = layers[at.z];
+  ShadowLight maps = scene_lights[uint(layer.light)];
+  Light light = lights[maps.light];
   Medium medium = scene_medium();
-  int side = int(view.info.z);
+  int side = int(view.size);
   if (any(greaterThanEqual(at.xy, ivec2(side)))) return;
   vec4 front = texelFetch(front_surface, at, 0);
   CausticRay reflection = no_ray();
@@ -200,19 +199,19 @@ void main() {
     Incident incident;
     incident.view = view;
     incident.layer = at.z;
-    incident.position = view.origin.xyz + shadow_world_offset(view, local);
-    bool parallel = view.info.x == shadow_orthographic;
-    incident.direction = parallel ? view.axis_z.xyz : normalize(incident.position - view.origin.xyz);
+    incident.position = view.origin + shadow_world_offset(view, local);
+    bool parallel = view.projection == shadow_orthographic;
+    incident.direction = parallel ? view.axis_z : normalize(incident.position - view.origin);
     incident.instance = abs(front.w);
     incident.inside = front.w < 0.0;
     incident.normal = incident.inside ? -front.xyz : front.xyz;
     incident.geometric = geometric_normal_at(front_geometric_normal, at);
-    incident.optics = material_optics(materials[instances[uint(incident.instance) - 1u].info.x]);
-    incident.flux = light_point_intensity(light, view.origin.xyz, incident.position, light_samples) *
+    incident.optics = material_optics(materials[instances[uint(incident.instance) - 1u].material]);
+    incident.flux = light_point_intensity(light, view.origin, incident.position, light_samples) *
                     (reflective_map_measure(view, uv) / (float(side) * float(side)));
     incident.flux *= light_texture(light, incident.position);
     float inside = parallel ? medium_length(medium, incident.position, -incident.direction, 3.0e38)
-                            : medium_length_between(medium, view.origin.xyz, incident.position);
+                            : medium_length_between(medium, view.origin, incident.position);
     incident.flux *= medium_transmittance(medium, inside);
     bool dark = incident.flux == vec3(0.0) || !(dot(incident.normal, -incident.direction) > least_cosine);
     if (!dark && !light_blocked(maps, incident.position)) {
@@ -221,7 +220,7 @@ void main() {
       reflection = reflected_ray(medium, maps, incident, event);
 #endif
 #if PATHS & 2
-      refraction = refracted_ray(medium, maps, incident, event, layer.y);
+      refraction = refracted_ray(medium, maps, incident, event, layer.diameter);
 #endif
     }
   }

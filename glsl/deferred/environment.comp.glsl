@@ -1,15 +1,15 @@
 // Adds the light of the environment on every surface to the radiance, unoccluded (V = 1). MEDIUM 1: times
 // the medium's transmittance along the normal.
-#include "glsl/gbuffer_input.glsl"
-#include "glsl/environment.glsl"
-#include "glsl/medium_input.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
+#include "glsl/light/environment.glsl"
+#include "glsl/media/medium_input.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(rgba32f, binding = 0) uniform image2D radiance;
+layout(rgba32f) uniform image2D radiance;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
   float depth = pixel_depth(pixel);
   if (depth == 0.0) return;
   GBufferSurface surface = pixel_surface(pixel);
@@ -17,7 +17,7 @@ void main() {
   vec3 v = -normalize(pixel_ray(pixel));
   SurfaceBrdf material = surface_brdf(surface.base_colour, surface.metallic, surface.roughness,
                                       surface.specular_factor, surface.specular_colour, surface.ior);
-  vec3 light = environment_light(material, surface.normal, v, frame.environment.x, frame.environment.y);
+  vec3 light = environment_light(material, surface.normal, v, frame.environment_rotation, frame.environment_scale);
 #if MEDIUM
   Medium medium = scene_medium();
   light *= medium_transmittance(medium, medium_length(medium, pixel_position(pixel, depth), surface.normal, 3.0e38));

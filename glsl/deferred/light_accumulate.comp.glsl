@@ -1,15 +1,15 @@
 // Adds sum of L_u V over a batch of lights to the radiance: unshadowed reflected light, exact for diffuse surfaces, times
 // visibility (layer per light; V = 1 where nobody was asked). MEDIUM 1: and times the transmittance from the light's centre.
-#include "glsl/gbuffer_input.glsl"
-#include "glsl/light_texture.glsl"
-#include "glsl/medium_input.glsl"
-#include "glsl/unshadowed_light.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
+#include "glsl/light/light_texture.glsl"
+#include "glsl/media/medium_input.glsl"
+#include "glsl/light/unshadowed_light.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(rgba32f, binding = 0) uniform image2D radiance;
-layout(std430, binding = 0) readonly buffer LightBuffer { Light lights[]; };
+layout(rgba32f) uniform image2D radiance;
+layout(std430) readonly buffer Lights { Light lights[]; };
 #if VISIBILITY
-layout(binding = 7) uniform sampler2DArray visibility;
+uniform sampler2DArray visibility;
 #endif
 uniform uint light_indices[LIGHT_COUNT];
 
@@ -17,16 +17,16 @@ uniform uint light_indices[LIGHT_COUNT];
 // T_l: of the medium, from a light to a surface point.
 vec3 light_transmittance(Light light, vec3 position) {
   Medium medium = scene_medium();
-  float inside = light.info.x == light_directional
-                     ? medium_length(medium, position, -light.direction.xyz, 3.0e38)
-                     : medium_length_between(medium, light.position.xyz, position);
+  float inside = light.type == light_directional
+                     ? medium_length(medium, position, -light.direction, 3.0e38)
+                     : medium_length_between(medium, light.position, position);
   return medium_transmittance(medium, inside);
 }
 #endif
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
   float depth = pixel_depth(pixel);
   if (depth == 0.0) return;
   GBufferSurface surface = pixel_surface(pixel);

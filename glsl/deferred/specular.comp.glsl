@@ -1,12 +1,12 @@
 // Puts what is seen in specular surfaces over what is seen beside them.
-#include "glsl/gbuffer.glsl"
+#include "glsl/surface/gbuffer.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0) uniform sampler2D gbuffer_material;
-layout(binding = 1) uniform sampler2D gbuffer_emission;
-layout(binding = 2) uniform sampler2D beside;
-layout(binding = 3) uniform sampler2D seen;
-layout(rgba32f, binding = 0) writeonly uniform image2D radiance;
+uniform sampler2D gbuffer_material;
+uniform sampler2D gbuffer_emission;
+uniform sampler2D beside;
+uniform sampler2D seen;
+layout(rgba32f) writeonly uniform image2D radiance;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

@@ -1,13 +1,13 @@
-// Radiance to what a display shows: clamp(2^exposure L), then sRGB (glsl/srgb.glsl).
-#include "glsl/srgb.glsl"
+// Radiance to what a display shows: clamp(2^exposure L), then sRGB (glsl/numeric/srgb.glsl).
+#include "glsl/numeric/srgb.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 #if VISIBILITY
-layout(binding = 0) uniform sampler2DArray visibility;
+uniform sampler2DArray visibility;
 #else
-layout(binding = 0) uniform sampler2D radiance;
+uniform sampler2D radiance;
 #endif
-layout(rgba8, binding = 0) writeonly uniform image2D display;
+layout(rgba8) writeonly uniform image2D display;
 uniform float exposure_ev;
 
 void main() {

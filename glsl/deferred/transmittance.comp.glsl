@@ -1,13 +1,13 @@
 // T_cam: the medium between what a pixel shows and the camera.
-#include "glsl/gbuffer_input.glsl"
-#include "glsl/medium_input.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
+#include "glsl/media/medium_input.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(rgba32f, binding = 0) uniform image2D radiance;
+layout(rgba32f) uniform image2D radiance;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
   vec3 ray = pixel_ray(pixel);
   float metres_per_depth = length(ray);
   float depth = pixel_depth(pixel);

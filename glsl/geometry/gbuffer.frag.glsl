@@ -1,13 +1,10 @@
 // Surface of the G-buffer. MASKED, TEXTURES, COLOURS: see surface_input.glsl.
-#include "glsl/gbuffer.glsl"
+#include "glsl/surface/gbuffer.glsl"
 #include "glsl/geometry/surface_input.glsl"
-#include "glsl/normal_map.glsl"
+#include "glsl/surface/normal_map.glsl"
 
 layout(location = 0) in vec3 normal_ws;
 layout(location = 1) in vec4 tangent_ws;
-
-layout(binding = 2) uniform sampler2D normal_texture;
-layout(binding = 3) uniform sampler2D emissive_texture;
 
 layout(location = 0) out float out_depth;
 layout(location = 1) out vec2 out_normal;
@@ -23,7 +20,7 @@ void main() {
 
   vec4 base = surface_base(uv_dx, uv_dy);
 #if MASKED
-  if (base.a < material.emission.w) discard;
+  if (base.a < material.alpha_cutoff) discard;
 #endif
 
   vec2 pixel = floor(gl_FragCoord.xy);
@@ -35,22 +32,22 @@ void main() {
   s.normal = dot(normal_ws, normal_ws) > 0.0 ? normalize(normal_ws) : side * s.geometric_normal;
   if ((textures & material_has_normal_texture) != 0u) {
     vec4 tangent = vec4(tangent_ws.xyz, tangent_ws.w < 0.0 ? -1.0 : 1.0);
-    s.normal = mapped_normal(s.normal, tangent, texel(normal_texture, uv_dx, uv_dy).rgb, material.metal_rough.z);
+    s.normal = mapped_normal(s.normal, tangent, texel(normal_texture, uv_dx, uv_dy).rgb, material.normal_scale);
   }
   s.normal *= side;
 
   vec2 metal_rough = surface_metal_rough(uv_dx, uv_dy);
-  s.emission = material.emission.rgb;
+  s.emission = material.emission;
   if ((textures & material_has_emissive_texture) != 0u) s.emission *= texel(emissive_texture, uv_dx, uv_dy).rgb;
 
   s.base_colour = base.rgb;
   s.metallic = metal_rough.x;
   s.roughness = metal_rough.y;
-  s.specular_factor = material.specular.w;
-  s.specular_colour = material.specular.w > 0.0 ? material.specular.rgb / material.specular.w : vec3(1.0);
-  s.ior = material.metal_rough.w;
+  s.specular_factor = material.specular_factor;
+  s.specular_colour = material.specular_factor > 0.0 ? material.specular_colour / material.specular_factor : vec3(1.0);
+  s.ior = material.ior;
   s.flags = 0u;
-  if ((material.info.x & material_specular_surface) != 0u) {
+  if ((material.flags & material_specular_surface) != 0u) {
     s.flags = gbuffer_flag_specular | (gl_FrontFacing ? 0u : gbuffer_flag_back);
   }
 

@@ -1,13 +1,13 @@
 // Vertices of the G-buffer. Clip depth is reversed and infinite: z = near, w = view depth. COLOURS 1: vertex colours.
-#include "glsl/blocks.glsl"
-#include "glsl/vertex.glsl"
+#include "glsl/scene/blocks.glsl"
+#include "glsl/geometry/vertex.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in uvec2 entry;  // x: draw instance
 layout(location = 2) in uvec2 directions;
 layout(location = 3) in vec2 uv;
 
-layout(std430, binding = 0) readonly buffer Instances { Instance instances[]; };
+layout(std430) readonly buffer Instances { Instance instances[]; };
 uniform float near_plane;  // metres
 
 layout(location = 0) out vec3 normal_ws;
@@ -20,15 +20,14 @@ layout(location = 3) out vec4 surface_colour;
 layout(location = 4) flat out uvec3 surface_instance;  // draw instance, first vertex, first index
 
 void main() {
-  uvec4 info = instances[entry.x].info;
-  surface_instance = uvec3(entry.x, info.y, info.w);
+  surface_instance = uvec3(entry.x, instances[entry.x].first_vertex, instances[entry.x].first_index);
   mat4 object_to_world = instances[entry.x].object_to_world;
   vec4 clip = frame.world_to_clip * (object_to_world * vec4(position, 1.0));
   gl_Position = vec4(clip.xy, near_plane, clip.w);
 
   vec4 tangent = vertex_unpack_tangent(directions.y);
   normal_ws = mat3(instances[entry.x].normal_to_world) * vertex_unpack_normal(directions.x);
-  bool mirrored = (info.z & 2u) != 0u;
+  bool mirrored = (instances[entry.x].flags & 2u) != 0u;
   tangent_ws = vec4(mat3(object_to_world) * tangent.xyz, mirrored ? -tangent.w : tangent.w);
   surface_uv = uv;
 #if COLOURS

@@ -4,18 +4,20 @@
 #ifndef LIMN_SURFACE_INPUT_GLSL
 #define LIMN_SURFACE_INPUT_GLSL
 #include "glsl/geometry/triangle_input.glsl"
-#include "glsl/texture_level.glsl"
+#include "glsl/surface/texture_level.glsl"
 
 layout(location = 2) in vec2 surface_uv;
 #if COLOURS
 layout(location = 3) in vec4 surface_colour;
 #endif
-layout(std140, binding = 1) uniform MaterialBlock { Material material; };  // of the draw, at a constant place
+layout(std140) uniform MaterialBlock { Material material; };  // of the draw, at a constant place
 
 const uint textures = TEXTURES;
 
-layout(binding = 0) uniform sampler2D base_colour_texture;
-layout(binding = 1) uniform sampler2D metal_rough_texture;
+uniform sampler2D base_colour_texture;
+uniform sampler2D metal_rough_texture;
+uniform sampler2D normal_texture;
+uniform sampler2D emissive_texture;
 
 vec4 texel(sampler2D image, vec2 uv_dx, vec2 uv_dy) {
   return textureLod(image, surface_uv, texture_level(uv_dx, uv_dy, vec2(textureSize(image, 0))));
@@ -33,7 +35,7 @@ vec4 surface_base(vec2 uv_dx, vec2 uv_dy) {
 
 // Metallic and perceptual roughness.
 vec2 surface_metal_rough(vec2 uv_dx, vec2 uv_dy) {
-  vec2 metal_rough = material.metal_rough.xy;
+  vec2 metal_rough = vec2(material.metallic, material.roughness);
   if ((textures & material_has_metal_rough_texture) != 0u) {
     metal_rough *= texel(metal_rough_texture, uv_dx, uv_dy).bg;
   }

@@ -1,13 +1,13 @@
 // The triangle that a fragment belongs to, for fragment shaders of surfaces.
 #ifndef LIMN_TRIANGLE_INPUT_GLSL
 #define LIMN_TRIANGLE_INPUT_GLSL
-#include "glsl/blocks.glsl"
+#include "glsl/scene/blocks.glsl"
 
 layout(location = 4) flat in uvec3 surface_instance;  // draw instance, first vertex, first index
 
-layout(std430, binding = 0) readonly buffer Instances { Instance instances[]; };
-layout(std430, binding = 2) readonly buffer Positions { float positions[]; };
-layout(std430, binding = 3) readonly buffer Indices { uint indices[]; };
+layout(std430) readonly buffer Instances { Instance instances[]; };
+layout(std430) readonly buffer Positions { float positions[]; };
+layout(std430) readonly buffer Indices { uint indices[]; };
 
 vec3 corner(int k) {
   uint vertex = surface_instance.y + indices[surface_instance.z + 3u * uint(gl_PrimitiveID) + uint(k)];

@@ -7,12 +7,12 @@
 // full.
 //
 // PARTS_FIRST, PARTS_END: the parts blurred. VERTICAL 1: along columns.
-#include "glsl/gbuffer_input.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/indirect/gather_parts.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 7) uniform sampler2DArray gathered;
-layout(rgba32f, binding = 0) writeonly uniform image2DArray blurred;
+uniform sampler2DArray gathered;
+layout(rgba32f) writeonly uniform image2DArray blurred;
 uniform int width;
 uniform int stride;
 uniform float position_threshold;  // part of the scene's extent
@@ -29,7 +29,7 @@ struct Centre {
 vec3 normal_at(ivec2 pixel) { return octahedral_decode(texelFetch(gbuffer_normal, pixel, 0).xy); }
 
 bool counts(Centre c, ivec2 pixel) {
-  if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return false;
+  if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return false;
   float depth = pixel_depth(pixel);
   vec3 offset = pixel_position(pixel, depth) - c.position;
   return depth > 0.0 && dot(offset, offset) <= c.reach * c.reach && abs(dot(offset, c.normal)) <= c.thickness &&
@@ -38,7 +38,7 @@ bool counts(Centre c, ivec2 pixel) {
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
   float depth = pixel_depth(pixel);
   Centre centre = Centre(pixel_position(pixel, depth), normal_at(pixel), position_threshold * gather_extent(),
                          plane_threshold * gather_extent());

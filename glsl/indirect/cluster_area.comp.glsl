@@ -1,9 +1,9 @@
 // The area light of each cluster: the rectangle around its virtual lights in the plane of their mean normal, and the view
 // of its paraboloid map.
 #include "glsl/indirect/cluster_members.glsl"
-#include "glsl/paraboloid.glsl"
+#include "glsl/shadow/paraboloid.glsl"
 
-layout(std430, binding = 3) writeonly buffer Views { ShadowView views[]; };
+layout(std430) writeonly buffer Views { ShadowView views[]; };
 uniform float near;  // m: what lies nearer to the centre is not seen
 uniform float far;
 uniform uint map_size;  // texels
@@ -23,18 +23,18 @@ void main() {
   VirtualAreaLight cluster = clusters[k];
   vec3 any_normal = some_normal();
   vec3 axis = cluster.normal.xyz == vec3(0.0) ? any_normal : cluster.normal.xyz;
-  bool empty = cluster.position.w <= 0.0;
-  ShadowView view = paraboloid_view(cluster.position.xyz, axis, near, empty ? 0.0 : far, k, map_size);
+  bool empty = cluster.count <= 0.0;
+  ShadowView view = paraboloid_view(cluster.position, axis, near, empty ? 0.0 : far, k, map_size);
   vec4 bounds = vec4(3.0e38);  // least along both axes, greatest negated
   for (uint i = gl_LocalInvocationIndex; i < light_count; i += THREADS) {
     if (!member(i)) continue;
-    vec2 at = shadow_local(view, virtual_lights[i].position.xyz).xy;
+    vec2 at = shadow_local(view, virtual_lights[i].position).xy;
     bounds = min(bounds, vec4(at, -at));
   }
   bounds = least(bounds);
   if (gl_LocalInvocationIndex != 0u) return;
   vec2 reach = empty ? vec2(0.0) : max(-bounds.zw - bounds.xy, vec2(0.0));
-  cluster.extent = vec4(cluster_side(reach.x, cluster.position.w), cluster_side(reach.y, cluster.position.w), 0.0, 0.0);
+  cluster.extent = vec2(cluster_side(reach.x, cluster.count), cluster_side(reach.y, cluster.count));
   clusters[k] = cluster;
   views[k] = view;
 }

@@ -1,10 +1,10 @@
 // The nearest cluster of each virtual light: C(i).
-#include "glsl/virtual_area_light.glsl"
+#include "glsl/indirect/virtual_area_light.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
-layout(std430, binding = 1) readonly buffer Clusters { VirtualAreaLight clusters[]; };
-layout(std430, binding = 2) writeonly buffer Mapping { uint mapping[]; };
+layout(std430) readonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
+layout(std430) readonly buffer Clusters { VirtualAreaLight clusters[]; };
+layout(std430) writeonly buffer Mapping { uint mapping[]; };
 uniform uint light_count;
 uniform uint cluster_count;
 uniform float per_extent;  // 1/m
@@ -19,7 +19,7 @@ void main() {
   float least = 3.0e38;
   for (uint k = 0u; k < cluster_count; ++k) {
     float d = cluster_distance(light, clusters[k], per_extent, weight_position, weight_angle);
-    if (clusters[k].position.w >= 0.0 && d < least) {
+    if (clusters[k].count >= 0.0 && d < least) {
       least = d;
       nearest = k;
     }

@@ -9,7 +9,7 @@ void main() {
   vec4 normals = vec4(0.0);
   for (uint i = gl_LocalInvocationIndex; i < light_count; i += THREADS) {
     if (!member(i)) continue;
-    offsets += vec4(virtual_lights[i].position.xyz - cluster.position.xyz, 1.0);
+    offsets += vec4(virtual_lights[i].position - cluster.position, 1.0);
     normals += vec4(virtual_lights[i].normal.xyz, 0.0);
   }
   offsets = total(offsets);
@@ -17,9 +17,9 @@ void main() {
   if (gl_LocalInvocationIndex != 0u) return;
   float count = offsets.w;
   if (count > 0.0) {
-    cluster.position.xyz += offsets.xyz / count;
+    cluster.position += offsets.xyz / count;
     cluster.normal.xyz = cluster_normal(normals.xyz, count);
   }
-  if (cluster.position.w >= 0.0) cluster.position.w = count;
+  if (cluster.count >= 0.0) cluster.count = count;
   clusters[k] = cluster;
 }

@@ -1,12 +1,12 @@
 // Virtual lights of each sub-buffer in the order of their clusters, so that a pixel asks for the visibility of a cluster
-// once. position.w of the result is the cluster.
+// once; `cluster` is set in the result.
 #include "glsl/indirect/gather.glsl"
-#include "glsl/virtual_area_light.glsl"
+#include "glsl/indirect/virtual_area_light.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
-layout(std430, binding = 1) writeonly buffer Sorted { VirtualPointLight sorted[]; };
-layout(std430, binding = 2) readonly buffer Mapping { uint mapping[]; };
+layout(std430) readonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
+layout(std430) writeonly buffer Sorted { VirtualPointLight sorted[]; };
+layout(std430) readonly buffer Mapping { uint mapping[]; };
 uniform uint light_count;
 uniform uint block;  // side of the pattern of sub-buffers
 
@@ -24,6 +24,6 @@ void main() {
     if (other < cluster || (other == cluster && j < i)) ++rank;
   }
   VirtualPointLight light = virtual_lights[i];
-  light.position.w = float(cluster);
+  light.cluster = float(cluster);
   sorted[first + rank] = light;
 }

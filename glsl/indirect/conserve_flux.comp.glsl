@@ -1,12 +1,12 @@
 // Scales virtual lights so that each channel of their sum over a group is the flux that the group reflects, and what
 // groups reflect that no sample met is shared among the rest.
 #include "glsl/indirect/map_groups.glsl"
-#include "glsl/virtual_light.glsl"
+#include "glsl/indirect/virtual_light.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Reflected { vec4 reflected[]; };      // by layer
-layout(std430, binding = 1) readonly buffer Sampled { vec4 sampled_flux[]; };  // by group, at its first layer
-layout(std430, binding = 2) buffer VirtualLights { VirtualPointLight virtual_lights[]; };
+layout(std430) readonly buffer Reflected { vec4 reflected[]; };      // by layer
+layout(std430) readonly buffer Sampled { vec4 sampled_flux[]; };  // by group, at its first layer
+layout(std430) buffer VirtualLights { VirtualPointLight virtual_lights[]; };
 uniform uint count;  // of virtual lights
 
 void main() {

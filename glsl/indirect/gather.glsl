@@ -7,7 +7,7 @@
 // Interactive High-Quality Global Illumination with Virtual Point Lights, by a filter instead of their recursion).
 #ifndef LIMN_GATHER_GLSL
 #define LIMN_GATHER_GLSL
-#include "glsl/language.glsl"
+#include "glsl/numeric/language.glsl"
 LIMN_BEGIN
 
 // 1 / m^2 at squared distance d2, as if no nearer than `nearest` metres.

@@ -3,21 +3,21 @@
 // sub-buffer; 0: both are screens. PARTS: layers of the result (gather_part_*). LAMBERTIAN 1: no material has a specular
 // part. ACCUMULATE 1: adds to what other batches of lights left.
 //
-// The technique defines vpl_visibility(). It binds textures from unit 8 and storage buffers from 1 on.
+// The technique defines vpl_visibility().
 #ifndef LIMN_GATHER_MAIN_GLSL
 #define LIMN_GATHER_MAIN_GLSL
-#include "glsl/brdf.glsl"
-#include "glsl/gbuffer_input.glsl"
+#include "glsl/surface/brdf.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/indirect/gather.glsl"
 #include "glsl/indirect/gather_parts.glsl"
-#include "glsl/virtual_light.glsl"
+#include "glsl/indirect/virtual_light.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(std430, binding = 0) readonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
+layout(std430) readonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
 #if ACCUMULATE
-layout(rgba32f, binding = 0) uniform image2DArray gathered;
+layout(rgba32f) uniform image2DArray gathered;
 #else
-layout(rgba32f, binding = 0) writeonly uniform image2DArray gathered;
+layout(rgba32f) writeonly uniform image2DArray gathered;
 #endif
 uniform uint vpl_count;    // N
 uniform uint batch_first;  // virtual lights that this pass may use
@@ -46,7 +46,7 @@ struct Gathered {
 
 void gather_from(uint vpl, Receiver r, inout Gathered sum) {
   VirtualPointLight light = virtual_lights[vpl];
-  vec3 offset = light.position.xyz - r.position;
+  vec3 offset = light.position - r.position;
   float d2 = dot(offset, offset);
   vec3 l = offset * inversesqrt(d2);  // NaN at the light itself, where no comparison holds
   float cosines = dot(r.normal, l) * -dot(light.normal.xyz, l);
@@ -96,9 +96,9 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) * int(block) + within;
   uint first = max(gather_begin(sub_buffer, vpl_count, block), batch_first);
   uint end = min(gather_begin(sub_buffer + 1u, vpl_count, block), batch_first + batch_count);
-  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
 #if SPLIT
-  ivec2 texel = split_texel(pixel, int(block), ivec2(frame.frame_size.xy));
+  ivec2 texel = split_texel(pixel, int(block), ivec2(frame.frame_size));
 #else
   ivec2 texel = pixel;
 #endif

@@ -9,7 +9,7 @@ const int gather_part_residual = 1 + GATHER_SPECULAR;  // of the diffuse part, w
 const int gather_parts = 1 + GATHER_SPECULAR + GATHER_RESIDUAL;
 
 // Diagonal of the scene's bounds, m.
-float gather_extent() { return 2.0 * frame.environment.w; }
+float gather_extent() { return 2.0 * frame.scene_radius; }
 
 // Where a pixel lies in a screen that is split into block x block sub-buffers.
 ivec2 split_texel(ivec2 pixel, int block, ivec2 size) {

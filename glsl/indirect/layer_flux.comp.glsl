@@ -2,15 +2,15 @@
 // (SAMPLED 1).
 #define GROUP 64
 #include "glsl/indirect/group_sum.glsl"
-#include "glsl/virtual_light.glsl"
+#include "glsl/indirect/virtual_light.glsl"
 
 layout(local_size_x = 64) in;
 #if SAMPLED
-layout(std430, binding = 0) readonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
+layout(std430) readonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
 #else
-layout(std430, binding = 0) readonly buffer Tiles { vec4 tiles[]; };
+layout(std430) readonly buffer Tiles { vec4 tiles[]; };
 #endif
-layout(std430, binding = 1) writeonly buffer LayerFlux { vec4 layer_flux[]; };
+layout(std430) writeonly buffer LayerFlux { vec4 layer_flux[]; };
 uniform uint count;  // of tiles in a layer, of virtual lights in all
 
 void main() {

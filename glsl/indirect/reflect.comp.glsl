@@ -1,19 +1,19 @@
 // Adds gathered indirect light to the radiance.
-#include "glsl/gbuffer_input.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/indirect/gather_parts.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 7) uniform sampler2DArray gathered;
+uniform sampler2DArray gathered;
 #if GATHER_RESIDUAL
-layout(binding = 8) uniform sampler2DArray spread;  // the residual is taken from here
+uniform sampler2DArray spread;  // the residual is taken from here
 #endif
-layout(rgba32f, binding = 0) uniform image2D radiance;
+layout(rgba32f) uniform image2D radiance;
 
 vec3 value_of(vec4 sum) { return sum.a > 0.0 ? sum.rgb / sum.a : vec3(0.0); }
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
   GBufferSurface surface = pixel_surface(pixel);
   vec4 sum = texelFetch(gathered, ivec3(pixel, gather_part_diffuse), 0);
   if (sum.a == 0.0 || (surface.flags & gbuffer_flag_specular) != 0u) return;

@@ -4,11 +4,11 @@
 #include "glsl/indirect/reflective_texel.glsl"
 
 layout(local_size_x = 16, local_size_y = 16) in;
-layout(std430, binding = 2) writeonly buffer Tiles { vec4 tiles[]; };
+layout(std430) writeonly buffer Tiles { vec4 tiles[]; };
 
 void main() {
   ShadowView view = views[gl_WorkGroupID.z];
-  ivec2 size = ivec2(view.info.z);
+  ivec2 size = ivec2(view.size);
   ivec2 last = min((ivec2(gl_WorkGroupID.xy) + 1) * TILE, size);
   vec3 sum = vec3(0.0);
   for (int y = int(gl_WorkGroupID.y) * TILE + int(gl_LocalInvocationID.y); y < last.y; y += 16)

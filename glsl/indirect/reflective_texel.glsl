@@ -1,15 +1,15 @@
 // Texels of reflective shadow maps as the passes that make virtual lights read them.
 #ifndef LIMN_REFLECTIVE_TEXEL_GLSL
 #define LIMN_REFLECTIVE_TEXEL_GLSL
-#include "glsl/gbuffer.glsl"
-#include "glsl/light_texture.glsl"
-#include "glsl/reflective_map.glsl"
+#include "glsl/surface/gbuffer.glsl"
+#include "glsl/light/light_texture.glsl"
+#include "glsl/indirect/reflective_map.glsl"
 
-layout(binding = 0) uniform sampler2DArray reflective_depth;
-layout(binding = 1) uniform sampler2DArray reflective_normal;
-layout(binding = 2) uniform sampler2DArray reflective_albedo;
-layout(std430, binding = 0) readonly buffer Lights { Light lights[]; };
-layout(std430, binding = 1) readonly buffer Views { ShadowView views[]; };
+uniform sampler2DArray reflective_depth;
+uniform sampler2DArray reflective_normal;
+uniform sampler2DArray reflective_albedo;
+layout(std430) readonly buffer Lights { Light lights[]; };
+layout(std430) readonly buffer Views { ShadowView views[]; };
 uniform int light_samples;  // points on lights with extent
 
 struct ReflectiveTexel {
@@ -22,7 +22,7 @@ struct ReflectiveTexel {
 vec3 texel_intensity(uint index, vec3 origin, ReflectiveTexel t) {
   Light light = lights[index];
   vec3 intensity = reflective_map_intensity(light, t.position, light_samples);
-  bool rectangle = light.info.x == light_rectangle;
+  bool rectangle = light.type == light_rectangle;
   while (rectangle) {  // once: software renderers run both sides of an `if`, but leave a loop that nobody is in
     intensity = reflective_map_rectangle_intensity(light, origin, t.position, t.normal, light_samples);
     rectangle = false;
@@ -31,17 +31,17 @@ vec3 texel_intensity(uint index, vec3 origin, ReflectiveTexel t) {
 }
 
 ReflectiveTexel reflective_texel(ShadowView view, ivec2 texel) {
-  ivec3 at = ivec3(texel, view.info.y);
+  ivec3 at = ivec3(texel, view.layer);
   float stored = texelFetch(reflective_depth, at, 0).r;
   ReflectiveTexel t;
-  t.position = view.origin.xyz;
+  t.position = view.origin;
   t.normal = octahedral_decode(texelFetch(reflective_normal, at, 0).xy);
   t.flux = vec3(0.0);
   if (stored < 1.0) {
     t.position += shadow_world_offset(view, shadow_texel_offset(view, texel, stored));
     vec3 albedo = gbuffer_colour_decode(texelFetch(reflective_albedo, at, 0).rgb);
-    vec2 uv = (vec2(texel) + 0.5) / float(view.info.z);
-    t.flux = albedo * texel_intensity(view.info.w, view.origin.xyz, t) * reflective_map_measure(view, uv);
+    vec2 uv = (vec2(texel) + 0.5) / float(view.size);
+    t.flux = albedo * texel_intensity(view.light, view.origin, t) * reflective_map_measure(view, uv);
   }
   return t;
 }

@@ -1,14 +1,14 @@
 // Virtual point lights at Halton points of reflective shadow maps. The third coordinate chooses the layer, in proportion
 // to the flux it reflects, group by group; the other two the texel. Such a light carries the flux of 1 / (N p) of its
 // layer, where p is the layer's share of all flux. Its flux.w is the group's first layer: what conserve_flux needs.
-#include "glsl/halton.glsl"
+#include "glsl/numeric/halton.glsl"
 #include "glsl/indirect/map_groups.glsl"
 #include "glsl/indirect/reflective_texel.glsl"
-#include "glsl/virtual_light.glsl"
+#include "glsl/indirect/virtual_light.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 2) readonly buffer LayerFlux { vec4 layer_flux[]; };
-layout(std430, binding = 3) writeonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
+layout(std430) readonly buffer LayerFlux { vec4 layer_flux[]; };
+layout(std430) writeonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
 uniform uint count;  // of virtual lights
 
 void main() {
@@ -39,10 +39,11 @@ void main() {
     }
   }
   ShadowView view = views[layer];
-  ivec2 texel = ivec2(at.xy * float(view.info.z));
+  ivec2 texel = ivec2(at.xy * float(view.size));
   ReflectiveTexel t = reflective_texel(view, texel);
   VirtualPointLight light;
-  light.position = vec4(t.position, 1.0);
+  light.position = t.position;
+  light.cluster = 0.0;
   light.normal = vec4(t.normal, 0.0);
   light.flux = vec4(weight > 0.0 ? t.flux * (total / (weight * float(count))) : vec3(0.0), float(group));
   virtual_lights[index] = light;

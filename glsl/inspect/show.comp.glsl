@@ -1,8 +1,8 @@
 // What people see of a texture's values: one channel as grey or three as colours, `low` black and `high` white.
 // Values that are not finite are magenta.
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0) uniform SAMPLER values;  // sampler2D, isampler2D or usampler2D
-layout(rgba8, binding = 0) writeonly uniform image2D display;
+uniform SAMPLER values;  // sampler2D, isampler2D or usampler2D
+layout(rgba8) writeonly uniform image2D display;
 uniform int channel;  // 0 to 3; 4: the first three as colours
 uniform float low, high;
 

@@ -8,8 +8,8 @@
 #extension GL_AMD_vertex_shader_layer : require
 #endif
 #endif
-#include "glsl/blocks.glsl"
-#include "glsl/shadow_view.glsl"
+#include "glsl/scene/blocks.glsl"
+#include "glsl/shadow/shadow_view.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in uvec2 entry;  // x: draw instance, y: view
@@ -22,8 +22,8 @@ layout(location = 3) flat out uint material_index;
 #endif
 layout(location = 0) out float linear_depth;  // linear in the view's depth, so interpolated exactly
 
-layout(std430, binding = 0) readonly buffer Instances { Instance instances[]; };
-layout(std430, binding = 2) readonly buffer Views { ShadowView views[]; };
+layout(std430) readonly buffer Instances { Instance instances[]; };
+layout(std430) readonly buffer Views { ShadowView views[]; };
 
 void main() {
   ShadowView view = views[entry.y];
@@ -32,14 +32,14 @@ void main() {
   linear_depth = shadow_normalise(view, shadow_view_depth(view, world));
 #if PARABOLOID
   vec3 local = shadow_local(view, world);
-  gl_ClipDistance[0] = view.info.x == shadow_paraboloid ? local.z + 0.1 * length(local) : 1.0;
+  gl_ClipDistance[0] = view.projection == shadow_paraboloid ? local.z + 0.1 * length(local) : 1.0;
 #endif
 #if MASKED
   surface_uv = uv;
   surface_alpha = colour.a;
-  material_index = instances[entry.x].info.x;
+  material_index = instances[entry.x].material;
 #endif
 #if LAYERED
-  gl_Layer = int(view.info.y);
+  gl_Layer = int(view.layer);
 #endif
 }

@@ -1,17 +1,17 @@
 // One level of the mip chains of all Fourier basis images of a shadow map. BASE 1: the finest, from depth; else from the
 // level before. HALVED 1: whose sizes are twice this level's, so that four texels count alike: software renderers take every
 // turn of a loop whose length varies. GROUPS: texels of four values that hold the ORDER terms.
-#include "glsl/fourier_shadow.glsl"
-#include "glsl/mip_weights.glsl"
+#include "glsl/shadow/fourier_shadow.glsl"
+#include "glsl/numeric/mip_weights.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(rgba8_snorm, binding = 0) writeonly uniform image2DArray coarser_basis;
-layout(rgba16_snorm, binding = 1) writeonly uniform image2DArray coarser_depth_basis;
-layout(r16, binding = 2) writeonly uniform image2DArray coarser_depth;
+layout(rgba8_snorm) writeonly uniform image2DArray coarser_basis;
+layout(rgba16_snorm) writeonly uniform image2DArray coarser_depth_basis;
+layout(r16) writeonly uniform image2DArray coarser_depth;
 
 #if BASE
-layout(binding = 0) uniform sampler2DArray depth;
-layout(std430, binding = 0) readonly buffer Ranges { FourierRange ranges[]; };
+uniform sampler2DArray depth;
+layout(std430) readonly buffer Ranges { FourierRange ranges[]; };
 uniform float span;
 
 void write_level(ivec3 at, ivec2 size) {
@@ -31,9 +31,9 @@ void write_level(ivec3 at, ivec2 size) {
 }
 
 #else
-layout(rgba8_snorm, binding = 3) readonly uniform image2DArray finer_basis;
-layout(rgba16_snorm, binding = 4) readonly uniform image2DArray finer_depth_basis;
-layout(r16, binding = 5) readonly uniform image2DArray finer_depth;
+layout(rgba8_snorm) readonly uniform image2DArray finer_basis;
+layout(rgba16_snorm) readonly uniform image2DArray finer_depth_basis;
+layout(r16) readonly uniform image2DArray finer_depth;
 
 void write_level(ivec3 at, ivec2 size) {
   ivec2 fine = imageSize(finer_depth).xy;

@@ -2,13 +2,13 @@
 // min-max pyramid. FIT 0: all of it; 1: from the least depth to the greatest; 2: the same relative to a plane over the
 // map, where that is less. The plane is fitted to the greatest depths, which receivers have, and again with less weight
 // on what lies off it.
-#include "glsl/fourier_shadow.glsl"
+#include "glsl/shadow/fourier_shadow.glsl"
 
 #define THREADS 256
 layout(local_size_x = THREADS) in;
-layout(std430, binding = 0) writeonly buffer Ranges { FourierRange ranges[]; };
+layout(std430) writeonly buffer Ranges { FourierRange ranges[]; };
 #if FIT >= 1
-layout(binding = 0) uniform sampler2DArray pyramid;  // MinMaxPyramid
+uniform sampler2DArray pyramid;  // MinMaxPyramid
 uniform int level;
 #endif
 uniform float span;  // of the series' depths: R
@@ -16,7 +16,7 @@ uniform float span;  // of the series' depths: R
 const float least_range = 1.0 / 64.0;  // of the map's own, so that rounding is not spread over the whole series
 
 #if FIT >= 1
-#include "glsl/work_group.glsl"
+#include "glsl/numeric/work_group.glsl"
 
 vec2 cell(int i, ivec2 size) { return vec2(i % size.x, i / size.x); }
 vec2 bounds(int i, ivec2 size) {
@@ -71,7 +71,7 @@ vec4 range_of(ivec2 size, vec3 first, vec3 second) {
 #endif
 
 void main() {
-  vec4 plane = vec4(0.0, 0.0, 0.0, span);
+  FourierRange range = FourierRange(0.0, 0.0, 0.0, span);
 #if FIT >= 1
   ivec2 size = textureSize(pyramid, level).xy;
   vec3 flat_plane = vec3(0.0);
@@ -84,8 +84,9 @@ void main() {
   if (r.x < 1.0e30) {
     vec2 extent = max(-r.zw - r.xy, vec2(least_range));
     bool tilt = extent.y < extent.x;
-    plane = tilt ? vec4(tilted.x + r.y, tilted.yz, span / extent.y) : vec4(r.x, 0.0, 0.0, span / extent.x);
+    range = tilt ? FourierRange(tilted.x + r.y, tilted.y, tilted.z, span / extent.y)
+                 : FourierRange(r.x, 0.0, 0.0, span / extent.x);
   }
 #endif
-  if (gl_LocalInvocationID.x == 0u) ranges[gl_WorkGroupID.x].plane = plane;
+  if (gl_LocalInvocationID.x == 0u) ranges[gl_WorkGroupID.x] = range;
 }

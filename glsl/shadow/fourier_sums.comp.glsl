@@ -4,7 +4,7 @@
 //
 // VERTICAL 0: a thread sums up to CHUNK groups of ORDER terms at once, so that depth is read and its sine taken once.
 // VERTICAL 1: the images of one texture, `integer image4` or of one component.
-#include "glsl/fourier_shadow.glsl"
+#include "glsl/shadow/fourier_shadow.glsl"
 
 #include "glsl/shadow/scan_layout.glsl"
 
@@ -14,14 +14,14 @@ shared ivec4 partial_sums[2][LINES][LENGTH];
 
 #if VERTICAL
 #define IMAGES 1
-layout(IMAGE_FORMAT, binding = 0) uniform iimage2DArray table;
+layout(IMAGE_FORMAT) uniform iimage2DArray table;
 #else
 #define IMAGES (2 * CHUNK + 1)
-layout(rgba32i, binding = 0) writeonly uniform iimage2DArray basis;
-layout(rgba32i, binding = 1) writeonly uniform iimage2DArray depth_basis;
-layout(r32i, binding = 2) writeonly uniform iimage2DArray plain_depth;
-layout(binding = 0) uniform sampler2DArray depth;
-layout(std430, binding = 0) readonly buffer Ranges { FourierRange ranges[]; };
+layout(rgba32i) writeonly uniform iimage2DArray basis;
+layout(rgba32i) writeonly uniform iimage2DArray depth_basis;
+layout(r32i) writeonly uniform iimage2DArray plain_depth;
+uniform sampler2DArray depth;
+layout(std430) readonly buffer Ranges { FourierRange ranges[]; };
 uniform float span;
 #endif
 

@@ -1,12 +1,12 @@
 // One level of the N-buffer of shadow maps: level 0 from the maps (BASE 1), each further one from four windows of the one
 // before.
-#include "glsl/n_buffer.glsl"
+#include "glsl/shadow/n_buffer.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(rg32f, binding = 0) uniform image2DArray windows;
+layout(rg32f) uniform image2DArray windows;
 
 #if BASE
-layout(binding = 0) uniform sampler2DArray depth;
+uniform sampler2DArray depth;
 #else
 uniform int level;
 #endif

@@ -1,6 +1,6 @@
 // Radial depth of a paraboloid map: where the ray of a texel meets a triangle.
-#include "glsl/blocks.glsl"
-#include "glsl/paraboloid.glsl"
+#include "glsl/scene/blocks.glsl"
+#include "glsl/shadow/paraboloid.glsl"
 
 layout(location = 0) flat in vec3 corner_a;
 layout(location = 1) flat in vec3 corner_b;
@@ -14,16 +14,16 @@ layout(location = 5) flat in vec3 coverage_b;
 layout(location = 6) flat in vec3 coverage_c;
 layout(location = 7) flat in uint material_index;
 
-layout(std430, binding = 1) readonly buffer Materials { Material materials[]; };
-layout(binding = 0) uniform sampler2D base_colour_texture;
+layout(std430) readonly buffer Materials { Material materials[]; };
+uniform sampler2D base_colour_texture;
 
 bool covered(vec3 shares) {
   vec3 surface = shares.x * coverage_a + shares.y * coverage_b + shares.z * coverage_c;
   float alpha = materials[material_index].base_colour.a * surface.z;
-  if ((materials[material_index].info.x & material_has_base_colour_texture) != 0u) {
+  if ((materials[material_index].flags & material_has_base_colour_texture) != 0u) {
     alpha *= textureLod(base_colour_texture, surface.xy, 0.0).a;
   }
-  return alpha >= materials[material_index].emission.w;
+  return alpha >= materials[material_index].alpha_cutoff;
 }
 #endif
 

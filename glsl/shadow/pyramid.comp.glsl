@@ -1,13 +1,13 @@
 // One level of a pyramid over shadow maps: (min, max) of depth, in overlapping windows (WINDOWS) or not, or the means of
 // depth and its square (MOMENTS).
-#include "glsl/min_max_windows.glsl"
-#include "glsl/mip_weights.glsl"
+#include "glsl/shadow/min_max_windows.glsl"
+#include "glsl/numeric/mip_weights.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(rg32f, binding = 0) writeonly uniform image2DArray coarser;
+layout(rg32f) writeonly uniform image2DArray coarser;
 
 #if BASE
-layout(binding = 0) uniform sampler2DArray depth;
+uniform sampler2DArray depth;
 
 vec2 value(ivec3 at) {
 #if WINDOWS
@@ -35,7 +35,7 @@ vec2 value(ivec3 at) {
 }
 
 #else
-layout(rg32f, binding = 1) readonly uniform image2DArray finer;
+layout(rg32f) readonly uniform image2DArray finer;
 
 vec2 value(ivec3 at) {
   ivec2 fine = imageSize(finer).xy;

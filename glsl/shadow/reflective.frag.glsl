@@ -1,10 +1,10 @@
-// A texel of a reflective shadow map (glsl/reflective_map.glsl): depth as in shadow maps, geometric normal on the light's
+// A texel of a reflective shadow map (glsl/indirect/reflective_map.glsl): depth as in shadow maps, geometric normal on the light's
 // side, diffuse albedo. LAMBERTIAN 1: no material of the scene has a specular part.
 // MASKED, TEXTURES, COLOURS: see surface_input.glsl.
-#include "glsl/gbuffer.glsl"
+#include "glsl/surface/gbuffer.glsl"
 #include "glsl/geometry/surface_input.glsl"
 #if !LAMBERTIAN
-#include "glsl/ltc.glsl"
+#include "glsl/light/ltc.glsl"
 #endif
 
 layout(location = 0) in float linear_depth;
@@ -24,7 +24,7 @@ void alpha_test() {
   if ((textures & material_has_base_colour_texture) != 0u) {
     alpha *= textureLod(base_colour_texture, surface_uv, 0.0).a;
   }
-  if (alpha < material.emission.w) discard;
+  if (alpha < material.alpha_cutoff) discard;
 }
 #endif
 
@@ -34,8 +34,8 @@ vec3 diffuse_albedo(vec3 base, vec2 metal_rough, float cosine) {
 #if LAMBERTIAN
   return base;
 #else
-  vec3 colour = material.specular.w > 0.0 ? material.specular.rgb / material.specular.w : vec3(1.0);
-  SurfaceBrdf s = surface_brdf(base, metal_rough.x, metal_rough.y, material.specular.w, colour, material.metal_rough.w);
+  vec3 colour = material.specular_factor > 0.0 ? material.specular_colour / material.specular_factor : vec3(1.0);
+  SurfaceBrdf s = surface_brdf(base, metal_rough.x, metal_rough.y, material.specular_factor, colour, material.ior);
   return brdf_is_lambertian(s) ? s.diffuse : s.diffuse * ltc_diffuse_weight(s, ltc_lookup(cosine, s.alpha));
 #endif
 }
@@ -49,8 +49,8 @@ void main() {
   vec3 along = normalize(from_light);
   vec3 normal = triangle_normal(along);
   vec3 albedo = diffuse_albedo(surface_base(uv_dx, uv_dy).rgb, surface_metal_rough(uv_dx, uv_dy), -dot(normal, along));
-  bool back = !gl_FrontFacing && (material.info.x & material_double_sided) == 0u;
-  if (back || (material.info.x & material_specular_surface) != 0u) albedo = vec3(0.0);  // blocks light, sends none on
+  bool back = !gl_FrontFacing && (material.flags & material_double_sided) == 0u;
+  if (back || (material.flags & material_specular_surface) != 0u) albedo = vec3(0.0);  // blocks light, sends none on
   stored_depth = linear_depth < 1.0 ? max(linear_depth, 0.0) : 1.0;  // NaN: nothing there
   stored_normal = octahedral_encode(normal);
   stored_albedo = vec4(gbuffer_colour_encode(albedo), 1.0);

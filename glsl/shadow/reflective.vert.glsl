@@ -7,15 +7,15 @@
 #extension GL_AMD_vertex_shader_layer : require
 #endif
 #endif
-#include "glsl/blocks.glsl"
-#include "glsl/shadow_view.glsl"
+#include "glsl/scene/blocks.glsl"
+#include "glsl/shadow/shadow_view.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in uvec2 entry;  // x: draw instance, y: view
 layout(location = 3) in vec2 uv;
 
-layout(std430, binding = 0) readonly buffer Instances { Instance instances[]; };
-layout(std430, binding = 4) readonly buffer Views { ShadowView views[]; };
+layout(std430) readonly buffer Instances { Instance instances[]; };
+layout(std430) readonly buffer Views { ShadowView views[]; };
 
 layout(location = 0) out float linear_depth;
 layout(location = 1) out vec3 from_light;  // metres; parallel light: unit
@@ -27,18 +27,17 @@ layout(location = 3) out vec4 surface_colour;
 layout(location = 4) flat out uvec3 surface_instance;  // draw instance, first vertex, first index
 
 void main() {
-  uvec4 info = instances[entry.x].info;
-  surface_instance = uvec3(entry.x, info.y, info.w);
+  surface_instance = uvec3(entry.x, instances[entry.x].first_vertex, instances[entry.x].first_index);
   ShadowView view = views[entry.y];
   vec3 world = (instances[entry.x].object_to_world * vec4(position, 1.0)).xyz;
   gl_Position = shadow_clip(view, world);
   linear_depth = shadow_normalise(view, shadow_view_depth(view, world));
-  from_light = view.info.x == shadow_orthographic ? view.axis_z.xyz : world - view.origin.xyz;
+  from_light = view.projection == shadow_orthographic ? view.axis_z : world - view.origin;
   surface_uv = uv;
 #if COLOURS
   surface_colour = colour;
 #endif
 #if LAYERED
-  gl_Layer = int(view.info.y);
+  gl_Layer = int(view.layer);
 #endif
 }

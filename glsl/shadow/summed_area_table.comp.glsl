@@ -5,13 +5,13 @@
 //
 // MOMENT_BITS 0: sums of z or of z and z^2 as TABLE_FORMAT says; else four moments of so many bits.
 #if MOMENT_BITS
-#include "glsl/moment_shadow.glsl"
+#include "glsl/shadow/moment_shadow.glsl"
 #define SUM(a, b) ((a) + (b))
 #define PACK(a) (a)
 #define UNPACK(a) (a)
 #define TEXEL(z, at) moment_texel(z, uvec2(at), MOMENT_BITS)
 #else
-#include "glsl/summed_area_table.glsl"
+#include "glsl/shadow/summed_area_table.glsl"
 #define SUM(a, b) sat_add(a, b)
 #define PACK(a) sat_pack(a, TABLE_FORMAT)
 #define UNPACK(a) sat_unpack(a, TABLE_FORMAT)
@@ -25,9 +25,9 @@
 shared uvec4 partial_sums[2][LINES][LENGTH];
 #endif
 
-layout(IMAGE_FORMAT, binding = 0) uniform uimage2DArray table;
+layout(IMAGE_FORMAT) uniform uimage2DArray table;
 #if !VERTICAL
-layout(binding = 0) uniform sampler2DArray depth;
+uniform sampler2DArray depth;
 #endif
 
 ivec3 texel_at(int line, int position) {

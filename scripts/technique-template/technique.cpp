@@ -6,14 +6,14 @@ namespace {
 
 using namespace limn;
 
-constexpr Parameter parameters[] = {
+constexpr Parameter kParameters[] = {
     integer("taps", 4, {1, 64}, "texels", "Width and height of the filter").quality(),
     shadow::shadowMapSizeParameter(),
     shadow::shadowMapFitParameter(),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "map of 16 texels", .settings = "shadow_map_size=16", .factor = 4},
 };
 
@@ -32,8 +32,8 @@ class @CLASS@ : public Technique {
                                       .title = "@NAME@",
                                       .source = "Reeves, Salesin, Cook 1987",
                                       .terms = termSet(Term::visibility),
-                                      .parameters = parameters,
-                                      .stress = stress};
+                                      .parameters = kParameters,
+                                      .stress = kStress};
 };
 
 }  // namespace

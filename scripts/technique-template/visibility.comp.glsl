@@ -1,5 +1,5 @@
 // The lit share of taps x taps texels around the receiver's, seen from the light's centre.
-#include "glsl/visibility_main.glsl"
+#include "glsl/shadow/visibility_main.glsl"
 
 uniform int taps;
 
@@ -9,7 +9,7 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   int lit = 0;
   for (int i = 0; i < taps * taps; ++i) {
     vec2 step = vec2(i % taps, i / taps) - 0.5 * float(taps - 1);
-    vec3 offset = texel * (step.x * view.axis_x.xyz + step.y * view.axis_y.xyz);
+    vec3 offset = texel * (step.x * view.axis_x + step.y * view.axis_y);
     if (!shadow_tap(cursor, q, q.position + offset).blocked) ++lit;
   }
   return float(lit) / float(taps * taps);

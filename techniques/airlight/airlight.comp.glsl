@@ -1,20 +1,20 @@
 // Airlight: each viewing ray is cut into stretches that are even in the angle from the light; of each, the part that the
-// light reaches is integrated (glsl/airlight.glsl). MARCH: where the medium or the light is not that simple, what the medium
+// light reaches is integrated (glsl/media/airlight.glsl). MARCH: where the medium or the light is not that simple, what the medium
 // takes on the way to the eye is summed along the stretches, what it takes on the way from the light is looked up at each node.
-#include "glsl/airlight.glsl"
-#include "glsl/gbuffer_input.glsl"
-#include "glsl/light_texture.glsl"
-#include "glsl/medium_input.glsl"
-#include "glsl/shadow_view.glsl"
+#include "glsl/media/airlight.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
+#include "glsl/light/light_texture.glsl"
+#include "glsl/media/medium_input.glsl"
+#include "glsl/shadow/shadow_view.glsl"
 
 #define MARCH (MEDIUM_STEPS > 0 || LIGHT_TEXTURES)
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(rgba32f, binding = 0) uniform image2D radiance;
-layout(binding = 8) uniform sampler2DArray shadow_depth;
-layout(std430, binding = 0) readonly buffer Lights { Light lights[]; };
-layout(std430, binding = 1) readonly buffer ShadowViews { ShadowView shadow_views[]; };
-layout(std430, binding = 2) readonly buffer ShadowLights { ShadowLight shadow_lights[]; };
+layout(rgba32f) uniform image2D radiance;
+uniform sampler2DArray shadow_depth;
+layout(std430) readonly buffer Lights { Light lights[]; };
+layout(std430) readonly buffer ShadowViews { ShadowView shadow_views[]; };
+layout(std430) readonly buffer ShadowLights { ShadowLight shadow_lights[]; };
 uniform int light_count;
 uniform int light_samples;
 uniform int steps;
@@ -23,14 +23,14 @@ const int refinements = 6;  // of the place where a ray enters or leaves a shado
 
 bool lit(ShadowLight maps, ShadowView first, vec3 p) {
   ShadowView view = first;
-  uint layer = maps.info.x;
-  if (maps.info.y != shadow_faces_single) {
-    layer += shadow_face(maps.info.y, first, p);
+  uint layer = maps.first_layer;
+  if (maps.faces != shadow_faces_single) {
+    layer += shadow_face(maps.faces, first, p);
     view = shadow_views[layer];
   }
   ShadowPoint q = shadow_project(view, p);
   if (!shadow_inside(q)) return true;
-  ivec2 texel = min(ivec2(q.uv * float(view.info.z)), ivec2(view.info.z) - 1);
+  ivec2 texel = min(ivec2(q.uv * float(view.size)), ivec2(view.size) - 1);
   float stored = texelFetch(shadow_depth, ivec3(texel, layer), 0).x;
   return !(stored < 1.0 && shadow_metres(view, stored) < q.depth);
 }
@@ -75,8 +75,8 @@ vec3 airlight_lit(Medium medium, Light light, AirlightRay ray, float a, float b,
 
 // From one light or a point on it, between a and b metres along the ray.
 vec3 airlight(Medium medium, Light light, ShadowLight maps, vec3 direction, float a, float b) {
-  ShadowView first = shadow_views[maps.info.x];
-  AirlightRay ray = airlight_ray(medium, light, maps.origin.xyz, airlight_part(light, light_samples),
+  ShadowView first = shadow_views[maps.first_layer];
+  AirlightRay ray = airlight_ray(medium, light, maps.origin, airlight_part(light, light_samples),
                                  frame.camera_position.xyz, direction);
   vec2 cone = light_cone_range(light, ray.eye, direction);
   a = max(a, cone.x);
@@ -122,7 +122,7 @@ vec3 airlight(Medium medium, Light light, ShadowLight maps, vec3 direction, floa
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
   Medium medium = scene_medium();
   vec3 ray = pixel_ray(pixel);
   float metres_per_depth = length(ray);
@@ -135,7 +135,7 @@ void main() {
   vec3 sum = vec3(0.0);
   for (int i = 0; i < light_count * light_samples; ++i) {
     ShadowLight maps = shadow_lights[i];
-    Light light = lights[maps.info.z];
+    Light light = lights[maps.light];
     if (!light_has_extent(light) && i % light_samples != 0) continue;  // one map for all samples
     sum += airlight(medium, light, maps, direction, range.x, range.y);
   }

@@ -1,20 +1,19 @@
 // Airlight: what the medium scatters of the lights' direct light, with its shadows.
 #include <algorithm>
 
-#include "core/scene/gpu_medium.h"
-#include "core/scene/light_textures.h"
+#include "core/gpu_scene/gpu_medium.h"
+#include "core/gpu_scene/light_textures.h"
 #include "core/shadow/shadow_map.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
-#include "glsl/gbuffer.glsl"
-#include "glsl/sampling.glsl"
+#include "glsl/numeric/sampling.glsl"
 
 namespace {
 
 using namespace limn;
 using frame::Access;
 
-constexpr Parameter parameters[] = {
+constexpr Parameter kParameters[] = {
     shadow::shadowMapSizeParameter(),
     integer("steps", 48, {1, 1024}, "steps",
             "Stretches of each viewing ray, even in the angle from the light")
@@ -25,7 +24,7 @@ constexpr Parameter parameters[] = {
             "Points on each light with extent, each with its own maps; 1: its centre")
         .quality(),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "one stretch", .settings = "steps=1", .factor = 20},
     {.name = "map of 16 texels", .settings = "shadow_map_size=16", .factor = 20},
 };
@@ -35,7 +34,7 @@ class Airlight : public Technique {
                                  const TermRequest& request) override {
     std::vector<uint32_t> lights;
     std::ranges::copy_if(request.lights, std::back_inserter(lights), [&](uint32_t light) {
-      return (inputs.pose.lights[light].info.y & glsl::light_flag_environment) == 0;
+      return (inputs.pose.lights[light].flags & glsl::light_flag_environment) == 0;
     });
     const char* dark = nullptr;
     if (inputs.scene.medium.sigmaS == glm::vec3(0)) dark = "no medium scatters light";
@@ -51,16 +50,16 @@ class Airlight : public Technique {
     shadow::ShadowMapDesc desc{.size = p.integer("shadow_map_size")};
     for (int i = 0; samples > 1 && i < samples; ++i)
       desc.samples.push_back(glsl::r2_sequence(static_cast<uint32_t>(i) + 1));
-    const shadow::ShadowMaps maps = inputs.shadowMaps.request(lights, desc);
+    const shadow::ShadowMaps maps = inputs.service<shadow::ShadowMapService>().request(lights, desc);
     frame::PassBuilder pass = graph.addPass("airlight", info.name);
-    pass.read(inputs.handles.frame, Access::uniformBuffer, "camera, medium")
-        .read(inputs.handles.lights, Access::storageLoad, "what lights send")
-        .read(inputs.gbuffer.depth, Access::sampled, "where viewing rays end")
-        .read(maps.depth, Access::sampled, "shadow maps")
-        .read(maps.views, Access::storageLoad, "projections")
-        .read(maps.lights, Access::storageLoad, "layers of each light");
+    pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, medium")
+        .read(inputs.handles.lights, Access::storageLoad, "Lights", "what lights send")
+        .read(inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "where viewing rays end")
+        .read(maps.depth, Access::sampled, "shadow_depth", "shadow maps")
+        .read(maps.views, Access::storageLoad, "ShadowViews", "projections")
+        .read(maps.lights, Access::storageLoad, "ShadowLights", "layers of each light");
     const frame::TextureHandle result =
-        pass.write(request.target, Access::imageLoadStore, "light scattered towards the camera");
+        pass.write(request.target, Access::imageLoadStore, "radiance", "light scattered towards the camera");
     gpu::ProgramDesc source{.files = {"techniques/airlight/airlight.comp.glsl"}, .defines = {}};
     const scene::MediumInput medium(inputs.handles, p.integer("medium_steps"));
     medium.define(source.defines);
@@ -69,23 +68,12 @@ class Airlight : public Technique {
     textures.define(source.defines);
     textures.declare(pass);
     const auto program = pass.program(std::move(source));
-    pass.execute([=, handles = inputs.handles, depth = inputs.gbuffer.depth, size = inputs.size,
-                  steps = p.integer("steps"),
+    pass.execute([program, samples, size = inputs.size, steps = p.integer("steps"),
                   count = static_cast<int>(lights.size())](frame::PassContext& context) {
-      gpu::Program& kernel = context.program(program);
-      kernel.use();
+      gpu::Program& kernel = context.use(program);
       kernel.set("light_count", count);
       kernel.set("light_samples", samples);
       kernel.set("steps", steps);
-      context.bindUniform(glsl::FrameBlock::binding, handles.frame);
-      context.bindStorage(0, handles.lights);
-      context.bindStorage(1, maps.views);
-      context.bindStorage(2, maps.lights);
-      context.bindSampled(glsl::gbuffer_unit_depth, depth);
-      context.bindSampled(8, maps.depth);
-      medium.bind(context);
-      textures.bind(context);
-      context.bindImage(0, result, GL_READ_WRITE);
       context.dispatch(size.x, size.y, 1, 8, 8);
     });
     return result;
@@ -97,8 +85,8 @@ class Airlight : public Technique {
       .title = "Airlight with volumetric shadows",
       .source = "Sun et al. 2005; Wyman and Ramsey 2008; thesis, section 8.3.1",
       .terms = termSet(Term::media),
-      .parameters = parameters,
-      .stress = stress};
+      .parameters = kParameters,
+      .stress = kStress};
 };
 
 }  // namespace

@@ -6,7 +6,7 @@ namespace {
 
 using namespace limn;
 
-constexpr Parameter parameters[] = {
+constexpr Parameter kParameters[] = {
     integer(
         "patches", 32, {2, 1024}, "micro-patches",
         "Micro-patches along each side of a kernel, at most; wider kernels are walked in steps of several "
@@ -21,7 +21,7 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "map of 64 texels", .settings = "shadow_map_size=64", .factor = 4},
     {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
 };
@@ -31,7 +31,8 @@ class Backprojection : public Technique {
                                  const TermRequest& request) override {
     const ParameterValues& p = inputs.parameters;
     shadow::VisibilityPass pass = shadow::visibilityPass(inputs, request, info.name);
-    pass.sampled = {{shadow::minMaxUnit, inputs.shadowMaps.minMaxPyramid(pass.maps).texture,
+    pass.sampled = {{"shadow_min_max",
+                     inputs.service<shadow::ShadowMapService>().minMaxPyramid(pass.maps).texture,
                      "nearest and farthest depths"}};
     pass.bind = [patches = p.integer("patches"), rounds = p.integer("search_rounds")](frame::PassContext&,
                                                                                       gpu::Program& program) {
@@ -47,8 +48,8 @@ class Backprojection : public Technique {
       .title = "Soft shadow mapping by backprojection",
       .source = "Guennebaud, Barthe and Paulin 2006, Real-time Soft Shadow Mapping by Backprojection",
       .terms = termSet(Term::visibility),
-      .parameters = parameters,
-      .stress = stress};
+      .parameters = kParameters,
+      .stress = kStress};
 };
 
 }  // namespace

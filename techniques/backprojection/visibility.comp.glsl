@@ -3,8 +3,8 @@
 #define DISC_SIDE square_of_disc
 #define PATCH_SPREAD 0.0
 #define LIMN_PATCH_UNION 0
-#include "glsl/micro_patch_walk.glsl"
-#include "glsl/visibility_main.glsl"
+#include "glsl/shadow/micro_patch_walk.glsl"
+#include "glsl/shadow/visibility_main.glsl"
 
 float covered = 0.0;  // of the box of the light's counted part
 float counted = 1.0;  // of it

@@ -6,9 +6,9 @@ namespace {
 
 using namespace limn;
 
-constexpr const char* sampleCounts[] = {"64", "128", "256"};
-constexpr Parameter parameters[] = {
-    choice("sample_points", 0, sampleCounts, "Sample points on the light, one bit each").quality(),
+constexpr const char* kSampleCounts[] = {"64", "128", "256"};
+constexpr Parameter kParameters[] = {
+    choice("sample_points", 0, kSampleCounts, "Sample points on the light, one bit each").quality(),
     integer(
         "patches", 32, {2, 1024}, "micro-patches",
         "Micro-patches along each side of a kernel, at most; wider kernels are walked in steps of several "
@@ -23,7 +23,7 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "map of 64 texels", .settings = "shadow_map_size=64", .factor = 4},
     {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
 };
@@ -34,7 +34,8 @@ class BitmaskSoftShadows : public Technique {
     const ParameterValues& p = inputs.parameters;
     shadow::VisibilityPass pass = shadow::visibilityPass(
         inputs, request, info.name, {{"WORDS", std::to_string(2 << p.choice("sample_points"))}});
-    pass.sampled = {{shadow::minMaxUnit, inputs.shadowMaps.minMaxPyramid(pass.maps).texture,
+    pass.sampled = {{"shadow_min_max",
+                     inputs.service<shadow::ShadowMapService>().minMaxPyramid(pass.maps).texture,
                      "nearest and farthest depths"}};
     pass.bind = [patches = p.integer("patches"), rounds = p.integer("search_rounds")](frame::PassContext&,
                                                                                       gpu::Program& program) {
@@ -49,8 +50,8 @@ class BitmaskSoftShadows : public Technique {
                                       .title = "Bitmask soft shadows",
                                       .source = "Schwarz and Stamminger 2007, Bitmask Soft Shadows",
                                       .terms = termSet(Term::visibility),
-                                      .parameters = parameters,
-                                      .stress = stress};
+                                      .parameters = kParameters,
+                                      .stress = kStress};
 };
 
 }  // namespace

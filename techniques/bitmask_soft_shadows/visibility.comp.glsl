@@ -1,11 +1,11 @@
 // Bitmask soft shadows (Schwarz and Stamminger 2007): V = the share of sample points on the light that no micro-patch
-// covers. The samples are the bits of WORDS words (glsl/coverage_mask.glsl).
+// covers. The samples are the bits of WORDS words (glsl/shadow/coverage_mask.glsl).
 #define DISC_SIDE 1.0
 #define PATCH_SPREAD 1.0
 #define LIMN_PATCH_UNION 1
-#include "glsl/coverage_mask.glsl"
-#include "glsl/micro_patch_walk.glsl"
-#include "glsl/visibility_main.glsl"
+#include "glsl/shadow/coverage_mask.glsl"
+#include "glsl/shadow/micro_patch_walk.glsl"
+#include "glsl/shadow/visibility_main.glsl"
 
 uint covered[WORDS];
 

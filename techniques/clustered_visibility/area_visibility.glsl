@@ -6,18 +6,18 @@
 // a threshold of its own. CONTACT 1: blockers whose penumbrae are narrow are found in the map itself.
 #ifndef LIMN_AREA_VISIBILITY_GLSL
 #define LIMN_AREA_VISIBILITY_GLSL
-#include "glsl/fourier_lookup.glsl"
-#include "glsl/min_max_pyramid.glsl"
-#include "glsl/paraboloid.glsl"
-#include "glsl/virtual_area_light.glsl"
+#include "glsl/shadow/fourier_lookup.glsl"
+#include "glsl/shadow/min_max_pyramid.glsl"
+#include "glsl/shadow/paraboloid.glsl"
+#include "glsl/indirect/virtual_area_light.glsl"
 
-layout(binding = 9) uniform sampler2DArray area_depth_bounds;  // MinMaxPyramid
+uniform sampler2DArray area_depth_bounds;  // MinMaxPyramid
 #if CONTACT
-layout(binding = 13) uniform sampler2DArray area_depths;
+uniform sampler2DArray area_depths;
 uniform float contact_texels;
 #endif
-layout(std430, binding = 1) readonly buffer AreaViews { ShadowView area_views[]; };
-layout(std430, binding = 2) readonly buffer AreaLights { VirtualAreaLight area_lights[]; };
+layout(std430) readonly buffer AreaViews { ShadowView area_views[]; };
+layout(std430) readonly buffer AreaLights { VirtualAreaLight area_lights[]; };
 uniform float bias;    // texel footprints
 uniform float behind;  // visibility of what lies behind an area light, where its map knows nothing
 
@@ -46,7 +46,7 @@ float blocking_limit(AreaReceiver r, vec2 uv) {
 
 // The same as a depth of the series, at a place in texels.
 float series_threshold(AreaReceiver r, vec2 texel) {
-  vec2 uv = texel / float(r.view.info.z);
+  vec2 uv = texel / float(r.view.size);
   return fourier_depth(r.range, uv, shadow_normalise(r.view, blocking_limit(r, uv)));
 }
 
@@ -78,7 +78,7 @@ vec4 kernel_texels(AreaReceiver r, float z) {
 #else
   vec4 kernel = paraboloid_rectangle_kernel(r.direction, r.sides, r.d, z);
 #endif
-  float size = float(r.view.info.z);
+  float size = float(r.view.size);
   vec2 centre = (0.5 * kernel.xy + 0.5) * size;
   vec2 reach = 0.5 * max(kernel.zw * size, vec2(1.0));
   return clamp(vec4(centre - reach, centre + reach), vec4(0.0), vec4(size));
@@ -92,7 +92,7 @@ vec4 search_kernel(AreaReceiver r) {
 #if SEARCH_NEAREST
   float z = clamp(stored_metres(r, 0.0), 0.02 * r.d, r.d);
   vec4 kernel = kernel_texels(r, z);
-  float nearest = min_max_depth(area_depth_bounds, ivec2(kernel.xy), ivec2(ceil(kernel.zw)) - 1, int(r.view.info.y)).x;
+  float nearest = min_max_depth(area_depth_bounds, ivec2(kernel.xy), ivec2(ceil(kernel.zw)) - 1, int(r.view.layer)).x;
   return kernel_texels(r, clamp(shadow_metres(r.view, nearest), z, r.d));
 #else
   return kernel_texels(r, 0.5 * r.d);
@@ -101,7 +101,7 @@ vec4 search_kernel(AreaReceiver r) {
 
 // Stages 1 and 2: mean radial distance of the blockers in the kernel; as far as the receiver where there are none.
 float mean_blocker(AreaReceiver r, vec4 kernel) {
-  int layer = int(r.view.info.y);
+  int layer = int(r.view.layer);
   vec2 part_size = (kernel.zw - kernel.xy) / float(SPLITS);
   float blocked = 0.0;
   float depths = 0.0;
@@ -109,7 +109,7 @@ float mean_blocker(AreaReceiver r, vec4 kernel) {
   do {
     vec2 low = kernel.xy + vec2(i % SPLITS, i / SPLITS) * part_size;
     SeriesPart part = series_part(r, low, low + part_size);
-    FourierMeans means = fourier_means(low, low + part_size, ivec2(r.view.info.z), layer);
+    FourierMeans means = fourier_means(low, low + part_size, ivec2(r.view.size), layer);
     vec2 sums = fourier_shadow(means, part.threshold);
     float share = 1.0 - sums.x;
     if (share > 1.0 - part.dip) {
@@ -122,7 +122,7 @@ float mean_blocker(AreaReceiver r, vec4 kernel) {
 
 // Stage 3: visibility in the penumbra's kernel, normalised by what a blocker at their mean depth gives.
 float penumbra_visibility(AreaReceiver r, vec4 kernel, float z) {
-  int layer = int(r.view.info.y);
+  int layer = int(r.view.layer);
   vec2 part_size = (kernel.zw - kernel.xy) / float(SPLITS);
   float depth = fourier_depth(r.range, vec2(0.5), shadow_normalise(r.view, z));
   float sum = 0.0;
@@ -130,7 +130,7 @@ float penumbra_visibility(AreaReceiver r, vec4 kernel, float z) {
   do {
     vec2 low = kernel.xy + vec2(i % SPLITS, i / SPLITS) * part_size;
     SeriesPart part = series_part(r, low, low + part_size);
-    FourierMeans means = fourier_means(low, low + part_size, ivec2(r.view.info.z), layer);
+    FourierMeans means = fourier_means(low, low + part_size, ivec2(r.view.size), layer);
     float gain = 0.5 / (part.dip - 0.5);
     float v = fourier_visibility(fourier_shadow(means, part.threshold).x, gain);
     float blocked = fourier_visibility(fourier_step(min(depth - part.threshold, 0.0)), gain);
@@ -143,13 +143,13 @@ float penumbra_visibility(AreaReceiver r, vec4 kernel, float z) {
 // Share of the light that blockers just before the receiver leave, of which the series knows nothing: their penumbrae are
 // narrower than `contact_texels`, so that a bilinear shadow test is as good as a kernel.
 float contact_visibility(AreaReceiver r) {
-  float size = float(r.view.info.z);
+  float size = float(r.view.size);
   vec2 at = (0.5 * paraboloid_map(r.direction) + 0.5) * size - 0.5;
   vec2 corner = floor(at);
   vec2 share = at - corner;
-  vec4 stored = textureGather(area_depths, vec3((corner + 1.0) / size, r.view.info.y));  // (0,1), (1,1), (1,0), (0,0)
+  vec4 stored = textureGather(area_depths, vec3((corner + 1.0) / size, r.view.layer));  // (0,1), (1,1), (1,0), (0,0)
   // Penumbrae of `sides` s are s (d - z) / (d z) radians wide.
-  float angle = contact_texels * r.view.axis_y.w;
+  float angle = contact_texels * r.view.footprint;
   float nearest = r.d / (1.0 + angle * r.d / max(max(r.sides.x, r.sides.y), 1e-30));
   vec4 limit = vec4(blocking_limit(r, (corner + vec2(0.5, 1.5)) / size), blocking_limit(r, (corner + vec2(1.5, 1.5)) / size),
                     blocking_limit(r, (corner + vec2(1.5, 0.5)) / size), blocking_limit(r, (corner + vec2(0.5, 0.5)) / size));
@@ -169,24 +169,24 @@ AreaReceiver area_receiver(uint area, vec3 p, vec3 normal) {
   r.direction = local / r.d;
   r.direction.z = max(r.direction.z, 0.0);
   r.normal = shadow_view_axes(r.view, normal);
-  float raised = bias * r.view.axis_y.w * r.d;
+  float raised = bias * r.view.footprint * r.d;
   r.height = dot(r.normal, local) + raised;
   r.limit = max(r.d - raised, 0.0);
   r.range = fourier_ranges[area];
-  r.sides = area_lights[area].extent.xy;
+  r.sides = area_lights[area].extent;
   return r;
 }
 
 // Share of area light `area` that the point p with the geometric normal sees.
 float area_visibility(uint area, vec3 p, vec3 normal) {
   AreaReceiver r = area_receiver(area, p, normal);
-  float above = dot(r.view.axis_z.xyz, p - r.view.origin.xyz);
+  float above = dot(r.view.axis_z, p - r.view.origin);
   float z = mean_blocker(r, search_kernel(r));
   float v = z < r.d ? penumbra_visibility(r, kernel_texels(r, z), z) : 1.0;
 #if CONTACT
   v = min(v, contact_visibility(r));
 #endif
-  if (r.d <= r.view.origin.w) v = 1.0;
+  if (r.d <= r.view.near) v = 1.0;
   return above > 0.0 ? v : behind;
 }
 

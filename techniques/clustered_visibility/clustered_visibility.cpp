@@ -17,11 +17,11 @@ namespace {
 using namespace limn;
 using frame::Access;
 
-constexpr const char* kernels[] = {"exact", "thesis"};
-constexpr const char* searches[] = {"solid_angle", "nearest"};
-constexpr const char* fits[] = {"map", "range"};
-constexpr const char* shows[] = {"light", "clusters"};
-constexpr auto parameters = indirect::gatherParameters(std::to_array<Parameter>({
+constexpr const char* kKernels[] = {"exact", "thesis"};
+constexpr const char* kSearches[] = {"solid_angle", "nearest"};
+constexpr const char* kFits[] = {"map", "range"};
+constexpr const char* kShows[] = {"light", "clusters"};
+constexpr auto kParameters = indirect::gatherParameters(std::to_array<Parameter>({
     integer("vals", 30, {1, 1024}, "lights", "Virtual area lights, which the virtual point lights share")
         .quality()
         .logScale(),
@@ -32,11 +32,11 @@ constexpr auto parameters = indirect::gatherParameters(std::to_array<Parameter>(
         .quality()
         .logScale(),
     integer("terms", 4, {1, 16}, "terms", "Of the Fourier series").quality().logScale(),
-    choice("depth_fit", 0, fits,
+    choice("depth_fit", 0, kFits,
            "Depths that the series spans: the scene's extent, or those that are in the map"),
-    choice("kernel", 0, kernels, "Size of a penumbra in the map: exact, or as published"),
+    choice("kernel", 0, kKernels, "Size of a penumbra in the map: exact, or as published"),
     choice(
-        "search", 0, searches,
+        "search", 0, kSearches,
         "Where blockers are sought: in the light's solid angle, as published, or from the nearest depth on"),
     integer("splits", 1, {1, 4}, "parts", "Parts of a kernel per axis, each with its own depth threshold")
         .quality(),
@@ -48,9 +48,9 @@ constexpr auto parameters = indirect::gatherParameters(std::to_array<Parameter>(
          "Geometry nearer to the centre of an area light than this is ignored"),
     real("behind", 1, {0, 1}, "",
          "Visibility behind an area light, where its map knows nothing; 1: as published"),
-    choice("show", 0, shows, "The light, or the clusters in colours"),
+    choice("show", 0, kShows, "The light, or the clusters in colours"),
 }));
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "one area light", .scene = "cornell_box", .settings = "vals=1", .factor = 2},
     {.name = "as many area lights as point lights",
      .scene = "cornell_box",
@@ -76,27 +76,20 @@ class ClusteredVisibility : public Technique {
   static frame::TextureHandle showClusters(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                            const indirect::VirtualAreas& areas, frame::TextureHandle target) {
     frame::PassBuilder pass = graph.addPass("show clusters", info.name);
-    pass.read(inputs.handles.frame, Access::uniformBuffer, "camera, scene extent")
-        .read(inputs.gbuffer.depth, Access::sampled, "positions")
-        .read(inputs.gbuffer.geometricNormal, Access::sampled, "normals")
-        .read(areas.lights, Access::storageLoad, "virtual point lights")
-        .read(areas.areas, Access::storageLoad, "clusters");
-    const frame::TextureHandle shown = pass.write(target, Access::imageLoadStore, "colours of the clusters");
+    pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, scene extent")
+        .read(inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "positions")
+        .read(inputs.gbuffer.geometricNormal, Access::sampled, kGBufferNames.geometricNormal, "normals")
+        .read(areas.lights, Access::storageLoad, "VirtualLights", "virtual point lights")
+        .read(areas.areas, Access::storageLoad, "Clusters", "clusters");
+    const frame::TextureHandle shown =
+        pass.write(target, Access::imageLoadStore, "radiance", "colours of the clusters");
     const auto program =
         pass.program({.files = {"techniques/clustered_visibility/show_clusters.comp.glsl"}, .defines = {}});
-    pass.execute([=, frame = inputs.handles.frame, gbuffer = inputs.gbuffer, size = inputs.size,
-                  x = inputs.parameters.real("weight_position"),
+    pass.execute([program, size = inputs.size, x = inputs.parameters.real("weight_position"),
                   a = inputs.parameters.real("weight_angle")](frame::PassContext& context) {
-      gpu::Program& kernel = context.program(program);
-      kernel.use();
+      gpu::Program& kernel = context.use(program);
       kernel.set("weight_position", x);
       kernel.set("weight_angle", a);
-      context.bindUniform(glsl::FrameBlock::binding, frame);
-      context.bindSampled(0, gbuffer.depth);
-      context.bindSampled(2, gbuffer.geometricNormal);
-      context.bindStorage(0, areas.lights);
-      context.bindStorage(1, areas.areas);
-      context.bindImage(0, shown, GL_READ_WRITE);
       context.dispatch(size.x, size.y, 1, 8, 8);
     });
     return shown;
@@ -121,8 +114,7 @@ class ClusteredVisibility : public Technique {
         mapPass_.add(graph, inputs.gpuScene, inputs.handles, areas.views,
                      {.count = areas.count, .size = p.integer("map_size"), .technique = info.name});
     derived_.emplace(device);
-    derived_->begin(graph);
-    const shadow::MinMaxPyramid pyramid = derived_->minMaxPyramid(maps.depth, true);
+    const shadow::MinMaxPyramid pyramid = derived_->minMaxPyramid(graph, maps.depth, true);
     const shadow::FourierMaps fourier = fourierMaps(graph, device, maps.depth, pyramid, p);
     indirect::ShadePass pass{.program = {.files = {"techniques/clustered_visibility/shade.comp.glsl"},
                                          .defines = fourier.defines()}};
@@ -132,18 +124,15 @@ class ClusteredVisibility : public Technique {
     pass.program.defines["AREA_DIP"] = fmt::format("{:.9e}", fourier.constants.dip);
     const float contact = p.real("contact_texels");
     pass.program.defines["CONTACT"] = contact > 0 ? "1" : "0";
-    if (contact > 0) pass.sampled.push_back({13, maps.depth, "blockers just before the receiver"});
-    if (p.choice("search") == 1) pass.sampled.push_back({9, pyramid.texture, "nearest depths"});
+    if (contact > 0) pass.sampled.push_back({"area_depths", maps.depth, "blockers just before the receiver"});
+    if (p.choice("search") == 1)
+      pass.sampled.push_back({"area_depth_bounds", pyramid.texture, "nearest depths"});
     pass.declare = [fourier, areas](frame::PassBuilder& builder) {
       fourier.declare(builder);
-      builder.read(areas.views, Access::storageLoad, "hemispheres of the maps")
-          .read(areas.areas, Access::storageLoad, "sizes of the area lights");
+      builder.read(areas.views, Access::storageLoad, "AreaViews", "hemispheres of the maps")
+          .read(areas.areas, Access::storageLoad, "AreaLights", "sizes of the area lights");
     };
-    pass.bind = [fourier, areas, bias = p.real("bias"), behind = p.real("behind"), contact](
-                    frame::PassContext& context, gpu::Program& program) {
-      fourier.bind(context);
-      context.bindStorage(1, areas.views);
-      context.bindStorage(2, areas.areas);
+    pass.bind = [bias = p.real("bias"), behind = p.real("behind"), contact](gpu::Program& program) {
       program.set("bias", bias);
       program.set("behind", behind);
       if (contact > 0) program.set("contact_texels", contact);
@@ -159,8 +148,8 @@ class ClusteredVisibility : public Technique {
     }
     const ParameterValues& p = inputs.parameters;
     const indirect::GatherSettings settings = indirect::gatherSettings(p);
-    indirect::VirtualLights lights =
-        inputs.virtualLights.request(request.lights, indirect::virtualLightDesc(p));
+    indirect::VirtualLights lights = inputs.service<indirect::VirtualLightService>().request(
+        request.lights, indirect::virtualLightDesc(p));
     const indirect::VirtualAreas areas =
         indirect::addVirtualAreas(graph, inputs.gpuScene, lights.lights, lights.count,
                                   {.count = p.integer("vals"),
@@ -183,8 +172,8 @@ class ClusteredVisibility : public Technique {
                                       .title = "Clustered visibility",
                                       .source = "Dong et al. 2009; thesis, chapter 6",
                                       .terms = termSet(Term::indirect),
-                                      .parameters = parameters,
-                                      .stress = stress};
+                                      .parameters = kParameters,
+                                      .stress = kStress};
 };
 
 }  // namespace

@@ -7,7 +7,7 @@ uint known_area = 0xffffffffu;
 float known_visibility = 1.0;
 
 float vpl_visibility(uint vpl, vec3 receiver, vec3 normal) {
-  uint area = uint(virtual_lights[vpl].position.w);
+  uint area = uint(virtual_lights[vpl].cluster);
   bool wanted = area != known_area;
   while (wanted) {  // a loop, not an `if`: software renderers run both sides of those
     known_visibility = area_visibility(area, receiver, normal);

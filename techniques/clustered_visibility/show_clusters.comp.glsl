@@ -1,13 +1,13 @@
 // A picture of the clusters: each pixel in the colour of the cluster that a virtual light would belong to there, and the
 // virtual lights as dots of the colours of theirs.
-#include "glsl/gbuffer_input.glsl"
-#include "glsl/sampling.glsl"
-#include "glsl/virtual_area_light.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
+#include "glsl/numeric/sampling.glsl"
+#include "glsl/indirect/virtual_area_light.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(std430, binding = 0) readonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
-layout(std430, binding = 1) readonly buffer Clusters { VirtualAreaLight clusters[]; };
-layout(rgba32f, binding = 0) writeonly uniform image2D radiance;
+layout(std430) readonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
+layout(std430) readonly buffer Clusters { VirtualAreaLight clusters[]; };
+layout(rgba32f) writeonly uniform image2D radiance;
 uniform float weight_position;
 uniform float weight_angle;
 
@@ -17,26 +17,27 @@ vec3 colour_of(uint cluster) { return mix(vec3(0.1), vec3(1.0), pixel_noise(clus
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
   float depth = pixel_depth(pixel);
-  float extent = 2.0 * frame.environment.w;
+  float extent = 2.0 * frame.scene_radius;
   VirtualPointLight here;
-  here.position = vec4(pixel_position(pixel, depth), 0.0);
+  here.position = pixel_position(pixel, depth);
+  here.cluster = 0.0;
   here.normal = vec4(pixel_geometric_normal(pixel), 0.0);
   uint nearest = 0u;
   float least = 3.0e38;
   for (uint k = 0u; k < uint(clusters.length()); ++k) {
     float distance = cluster_distance(here, clusters[k], 1.0 / extent, weight_position, weight_angle);
-    if (clusters[k].position.w > 0.0 && distance < least) {
+    if (clusters[k].count > 0.0 && distance < least) {
       least = distance;
       nearest = k;
     }
   }
   vec3 colour = 0.5 * colour_of(nearest);
   for (uint i = 0u; i < uint(virtual_lights.length()); ++i) {
-    vec3 offset = virtual_lights[i].position.xyz - here.position.xyz;
+    vec3 offset = virtual_lights[i].position - here.position;
     if (virtual_light_shines(virtual_lights[i]) && dot(offset, offset) < dot_radius * dot_radius * extent * extent)
-      colour = colour_of(uint(virtual_lights[i].position.w));
+      colour = colour_of(uint(virtual_lights[i].cluster));
   }
   imageStore(radiance, pixel, vec4(depth > 0.0 && least < 3.0e38 ? colour : vec3(0.0), 1.0));
 }

@@ -7,17 +7,17 @@ namespace {
 
 using namespace limn;
 
-constexpr const char* filters[] = {"mip", "sat"};
-constexpr const char* windows[] = {"none", "lanczos", "fejer"};
-constexpr const char* fits[] = {"map", "range", "plane"};
-constexpr const char* contacts[] = {"plain", "sharpened", "normalised"};
-constexpr Parameter parameters[] = {
+constexpr const char* kFilters[] = {"mip", "sat"};
+constexpr const char* kWindows[] = {"none", "lanczos", "fejer"};
+constexpr const char* kFits[] = {"map", "range", "plane"};
+constexpr const char* kContacts[] = {"plain", "sharpened", "normalised"};
+constexpr Parameter kParameters[] = {
     integer("order", 4, {1, 64}, "terms", "Terms of the Fourier series").quality().logScale(),
-    choice("filter", 1, filters, "Mip maps (cheap) or summed-area tables (kernels are exact boxes)"),
-    choice("window", 0, windows, "Damps the series' higher terms: less ringing, wider transition"),
-    choice("depth_fit", 2, fits,
+    choice("filter", 1, kFilters, "Mip maps (cheap) or summed-area tables (kernels are exact boxes)"),
+    choice("window", 0, kWindows, "Damps the series' higher terms: less ringing, wider transition"),
+    choice("depth_fit", 2, kFits,
            "Depths that the series spans: near to far, those that are there, or those relative to a plane"),
-    choice("contact", 2, contacts,
+    choice("contact", 2, kContacts,
            "What is done about blockers close to the receiver, which the series lets leak: nothing, V to a "
            "power "
            "(as published), or V normalised by what a blocker at their mean depth gives"),
@@ -34,7 +34,7 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "one term", .settings = "order=1", .factor = 4},
     {.name = "64 terms", .settings = "order=64 shadow_map_size=256"},
     {.name = "8-bit basis", .settings = "filter=mip"},
@@ -52,17 +52,16 @@ class Cssm : public Technique {
                                    .window = static_cast<shadow::FourierWindow>(p.choice("window")),
                                    .fit = static_cast<shadow::FourierFit>(p.choice("depth_fit"))};
     shadow::VisibilityPass pass = shadow::visibilityPass(inputs, request, info.name);
-    const shadow::MinMaxPyramid pyramid = inputs.shadowMaps.minMaxPyramid(pass.maps);
-    const shadow::FourierMaps maps = inputs.shadowMaps.fourierMaps(pass.maps, desc);
+    const shadow::MinMaxPyramid pyramid = inputs.service<shadow::ShadowMapService>().minMaxPyramid(pass.maps);
+    const shadow::FourierMaps maps = inputs.service<shadow::ShadowMapService>().fourierMaps(pass.maps, desc);
     pass.program.defines = maps.defines();
     pass.program.defines["CONTACT"] = std::to_string(p.choice("contact"));
-    pass.sampled = {{shadow::minMaxUnit, pyramid.texture, "early-outs and nearest depths"}};
+    pass.sampled = {{"shadow_min_max", pyramid.texture, "early-outs and nearest depths"}};
     pass.declare = [maps](frame::PassBuilder& builder) { maps.declare(builder); };
     const bool sharpened = p.choice("contact") == 1;
-    pass.bind = [maps, sharpened, rounds = p.integer("search_rounds"), passes = p.integer("blocker_passes"),
+    pass.bind = [sharpened, rounds = p.integer("search_rounds"), passes = p.integer("blocker_passes"),
                  splits = p.integer("splits"), sharpening = p.real("sharpening"),
-                 falloff = p.real("falloff")](frame::PassContext& context, gpu::Program& program) {
-      maps.bind(context);
+                 falloff = p.real("falloff")](frame::PassContext&, gpu::Program& program) {
       program.set("search_rounds", rounds);
       program.set("blocker_passes", passes);
       program.set("splits", splits);
@@ -78,8 +77,8 @@ class Cssm : public Technique {
                                       .title = "Convolution soft shadow maps",
                                       .source = "Annen et al. 2008; thesis, chapter 5",
                                       .terms = termSet(Term::visibility),
-                                      .parameters = parameters,
-                                      .stress = stress};
+                                      .parameters = kParameters,
+                                      .stress = kStress};
 };
 
 }  // namespace

@@ -6,9 +6,9 @@
 //
 // Without the whole bias planes that a hemicube light grazes shadow themselves, V down to 0.06.
 #define WHOLE_BIAS 1
-#include "glsl/blocker_search.glsl"
-#include "glsl/fourier_lookup.glsl"
-#include "glsl/visibility_main.glsl"
+#include "glsl/shadow/blocker_search.glsl"
+#include "glsl/shadow/fourier_lookup.glsl"
+#include "glsl/shadow/visibility_main.glsl"
 
 uniform int search_rounds;
 uniform int blocker_passes;
@@ -41,15 +41,15 @@ struct Contents {
 KernelView kernel_view(ShadowCursor cursor, VisibilityQuery q, float gap) {
   KernelView k;
   vec3 local = shadow_local(cursor.view, q.position);
-  k.thresholds = shadow_thresholds(cursor.view, cursor.receiver, dot(cursor.receiver.plane.xyz, local),
-                                   cursor.view.axis_z.w, 1.0);
+  k.thresholds = shadow_thresholds(cursor.view, cursor.receiver, dot(cursor.receiver.normal, local),
+                                   cursor.view.far, 1.0);
   k.range = fourier_ranges[cursor.layer];
   k.layer = int(cursor.layer);
-  k.size = float(cursor.view.info.z);
+  k.size = float(cursor.view.size);
 #if CONTACT == 1
   // From the blockers to the receiver along the map's depth.
   float distance = shadow_normalise(cursor.view, gap) - shadow_normalise(cursor.view, 0.0);
-  k.sharpening = fourier_sharpening(distance * k.range.plane.w / FOURIER_RANGE, sharpening, falloff);
+  k.sharpening = fourier_sharpening(distance * k.range.scale / FOURIER_RANGE, sharpening, falloff);
 #endif
   return k;
 }
@@ -85,7 +85,7 @@ PartDepths part_depths(ShadowCursor cursor, KernelView k, vec2 low, vec2 high) {
   part.threshold = clamp(least + before, 0.0, FOURIER_RANGE);
   vec2 bounds = kernel_depth_bounds(cursor, ShadowKernel(low, high, 1.0));
   vec2 uv = centre / k.size;
-  float tilt = k.range.plane.w * 0.5 * dot(abs(k.range.plane.yz), (high - low) / k.size);
+  float tilt = k.range.scale * 0.5 * dot(abs(vec2(k.range.change_u, k.range.change_v)), (high - low) / k.size);
   part.least = min(fourier_depth(k.range, uv, bounds.x) - tilt, part.threshold);
   float behind = max(fourier_depth(k.range, uv, bounds.y) + tilt - part.threshold, 0.0);
   part.dip = min(FOURIER_LEVEL - FOURIER_CURVATURE * before * before,
@@ -120,7 +120,7 @@ void add_part(inout Contents contents, KernelView k, PartDepths part, FourierMea
 Contents kernel_contents(ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap, bool whole) {
   Contents contents = Contents(0.0, 0.0, 0.0);
   KernelView k = kernel_view(cursor, q, gap);
-  ivec2 size = ivec2(cursor.view.info.z);
+  ivec2 size = ivec2(cursor.view.size);
   FourierAxis x = fourier_axis(kernel.low.x, kernel.high.x, size.x, splits, whole);
   FourierAxis y = fourier_axis(kernel.low.y, kernel.high.y, size.y, splits, whole);
   int cut = whole ? 0 : fourier_cut;
@@ -159,7 +159,7 @@ Contents kernel_contents(ShadowCursor cursor, VisibilityQuery q, ShadowKernel ke
 Contents contents_at(inout ShadowCursor cursor, VisibilityQuery q, float gap, bool whole, bool wanted) {
   Contents sum = Contents(0.0, 0.0, 0.0);
   float weights = 0.0;
-  uint faces = wanted ? shadow_face_count(q.maps.info.y) : 0u;
+  uint faces = wanted ? shadow_face_count(q.maps.faces) : 0u;
   uint face = 0u;
   do {
     ShadowKernel kernel;

@@ -6,14 +6,14 @@ namespace {
 
 using namespace limn;
 
-constexpr const char* filters[] = {"nearest", "2x2"};
-constexpr Parameter parameters[] = {
+constexpr const char* kFilters[] = {"nearest", "2x2"};
+constexpr Parameter kParameters[] = {
     shadow::shadowMapSizeParameter(),
     shadow::shadowMapFitParameter(),
     shadow::biasParameter(),
-    choice("filter", 0, filters, "One texel, or the four around the receiver weighted bilinearly"),
+    choice("filter", 0, kFilters, "One texel, or the four around the receiver weighted bilinearly"),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "map of 16 texels", .settings = "shadow_map_size=16", .factor = 4},
     {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
     {.name = "no bias", .settings = "bias=0", .factor = 4},
@@ -33,8 +33,8 @@ class HardShadowMap : public Technique {
                                       .title = "Hard shadow mapping",
                                       .source = "Williams 1978, Casting Curved Shadows on Curved Surfaces",
                                       .terms = termSet(Term::visibility),
-                                      .parameters = parameters,
-                                      .stress = stress};
+                                      .parameters = kParameters,
+                                      .stress = kStress};
 };
 
 }  // namespace

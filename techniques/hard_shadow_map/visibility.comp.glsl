@@ -1,6 +1,6 @@
 // Hard shadows: one test towards the light's centre (FILTER 0: the nearest texel; 1: 2 x 2 texels, bilinear).
 #define POINT_LIGHTS 1
-#include "glsl/visibility_main.glsl"
+#include "glsl/shadow/visibility_main.glsl"
 
 float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
 #if FILTER == 0

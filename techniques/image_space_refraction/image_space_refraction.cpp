@@ -6,11 +6,10 @@
 #include <memory>
 
 #include "core/caustics/specular_buffers.h"
+#include "core/gpu_scene/gpu_medium.h"
 #include "core/scene/camera.h"
-#include "core/scene/gpu_medium.h"
 #include "core/technique/technique.h"
-#include "glsl/blocks.glsl"
-#include "glsl/gbuffer.glsl"
+#include "glsl/scene/blocks.glsl"
 
 namespace {
 
@@ -18,7 +17,7 @@ using namespace limn;
 using frame::Access;
 using frame::TextureHandle;
 
-constexpr Parameter parameters[] = {
+constexpr Parameter kParameters[] = {
     integer(
         "interfaces", 2, {1, 16}, "interfaces",
         "Most smooth interfaces between the camera and the scene; more follow light totally reflected inside")
@@ -27,12 +26,13 @@ constexpr Parameter parameters[] = {
             "Side of the buffers of the specular objects' front and back, as the camera sees them")
         .quality()
         .logScale(),
+    caustics::exitStepsParameter(),
     integer("steps", 64, {1, 4096}, "points", "Of the search for the surface that a ray meets on the screen")
         .quality()
         .logScale(),
     scene::mediumStepsParameter(),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "mirror", .scene = "ring"},
     {.name = "facets", .scene = "gem", .factor = 3},
     {.name = "object fills the screen",
@@ -52,6 +52,8 @@ constexpr StressCase stress[] = {
     {.name = "16 interfaces", .scene = "gem", .settings = "interfaces=16", .factor = 3},
     {.name = "buffer of 16 texels", .scene = "glass_sphere", .settings = "buffer_size=16", .factor = 0},
     {.name = "one step", .scene = "glass_sphere", .settings = "steps=1", .factor = 0},
+    {.name = "one step through glass", .scene = "glass_sphere", .settings = "exit_steps=1", .factor = 0},
+    {.name = "1024 steps through glass", .scene = "glass_sphere", .settings = "exit_steps=1024"},
 };
 
 /// The camera as a view of the specular objects: a square around the picture.
@@ -64,12 +66,18 @@ glsl::ShadowView viewOf(const scene::CameraPose& camera, const scene::Bounds& ob
       std::tan(0.5f * camera.yfov) * std::max(aspect, 1.f) * (1 + 4 / static_cast<float>(size));
   const scene::DepthRange range = scene::fitDepthRange(camera, objects);
   glsl::ShadowView view{};
-  view.origin = glm::vec4(eye, range.near);
-  view.axis_x = glm::vec4(glm::normalize(rotation[0]), 0.5f / tangent);
-  view.axis_y = glm::vec4(glm::normalize(rotation[1]), 2 * tangent / static_cast<float>(size));
-  view.axis_z = glm::vec4(-glm::normalize(rotation[2]), range.far);
-  view.middle = glm::vec4(0.5f, 0.5f, 0, 0);
-  view.info = {glsl::shadow_perspective, 0, static_cast<uint32_t>(size), glsl::no_light};
+  view.origin = eye;
+  view.near = range.near;
+  view.axis_x = glm::normalize(rotation[0]);
+  view.scale = 0.5f / tangent;
+  view.axis_y = glm::normalize(rotation[1]);
+  view.footprint = 2 * tangent / static_cast<float>(size);
+  view.axis_z = -glm::normalize(rotation[2]);
+  view.far = range.far;
+  view.middle = glm::vec2(0.5f, 0.5f);
+  view.projection = glsl::shadow_perspective;
+  view.size = static_cast<uint32_t>(size);
+  view.light = glsl::no_light;
   return view;
 }
 
@@ -112,60 +120,42 @@ class ImageSpaceRefraction : public Technique {
   }
 
   TextureHandle addRefraction(const TechniqueInputs& inputs, TextureHandle background) {
-    struct Input {
-      unsigned unit;
-      TextureHandle texture;
-      const char* why;
-    };
     const GBuffer& g = inputs.gbuffer;
     const caustics::SpecularBuffer &front = buffers_->front(), &back = buffers_->back();
-    std::vector<Input> textures{{glsl::gbuffer_unit_depth, g.depth, "front of specular surfaces"},
-                                {glsl::gbuffer_unit_normal, g.normal, "their normals"},
-                                {glsl::gbuffer_unit_geometric_normal, g.geometricNormal, "their horizons"},
-                                {glsl::gbuffer_unit_albedo, g.albedo, "base colour, metallic"},
-                                {glsl::gbuffer_unit_material, g.material, "which surfaces are specular"},
-                                {glsl::gbuffer_unit_emission, g.emission, "part of a surface's description"},
-                                {glsl::gbuffer_unit_instance, g.instance, "objects"},
-                                {7, front.surface, "where light enters objects"},
-                                {8, front.depth, "where light enters objects"},
-                                {9, back.surface, "where light leaves objects"},
-                                {10, back.depth, "where light leaves objects"},
-                                {11, inputs.matte.depth, "what rays meet"},
-                                {12, inputs.matte.geometricNormal, "what rays meet"},
-                                {13, background, "light of what rays meet"}};
-    if (inputs.environmentMap) textures.push_back({14, inputs.environmentMap, "rays that meet nothing"});
-
     frame::PassBuilder pass = graph_->addPass("refraction", info.name);
-    pass.read(inputs.handles.frame, Access::uniformBuffer, "camera, medium")
-        .read(inputs.handles.instances, Access::storageLoad, "materials of instances")
-        .read(inputs.handles.materials, Access::storageLoad, "index of refraction, colours")
-        .read(views_, Access::storageLoad, "the camera's view of specular objects");
-    for (const Input& input : textures) pass.read(input.texture, Access::sampled, input.why);
+    pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, medium")
+        .read(inputs.handles.instances, Access::storageLoad, "Instances", "materials of instances")
+        .read(inputs.handles.materials, Access::storageLoad, "Materials", "index of refraction, colours")
+        .read(views_, Access::storageLoad, "Views", "the camera's view of specular objects");
+    readSurfaces(pass, g);
+    pass.read(g.instance, Access::sampled, kGBufferNames.instance, "objects")
+        .read(front.surface, Access::sampled, "front_surface", "where light enters objects")
+        .read(front.depth, Access::sampled, "front_depth", "where light enters objects")
+        .read(back.surface, Access::sampled, "back_surface", "where light leaves objects")
+        .read(back.depth, Access::sampled, "back_depth", "where light leaves objects")
+        .read(inputs.matte.depth, Access::sampled, "matte_depth", "what rays meet")
+        .read(inputs.matte.geometricNormal, Access::sampled, "matte_normal", "what rays meet")
+        .read(background, Access::sampled, "matte_radiance", "light of what rays meet");
+    if (inputs.environmentMap)
+      pass.read(inputs.environmentMap, Access::sampled, "environment_map", "rays that meet nothing");
     const TextureHandle seen = pass.write(
         graph_->createTexture("seen in specular surfaces",
                               {.format = GL_RGBA32F, .width = inputs.size.x, .height = inputs.size.y}),
-        Access::imageStore, "radiance");
+        Access::imageStore, "seen", "radiance");
     gpu::ProgramDesc desc{.files = {"techniques/image_space_refraction/refraction.comp.glsl"},
                           .defines = {{"INTERFACES", std::to_string(inputs.parameters.integer("interfaces"))},
+                                      {"EXIT_STEPS", std::to_string(inputs.parameters.integer("exit_steps"))},
                                       {"ENVIRONMENT", inputs.environmentMap ? "1" : "0"},
                                       {"MEDIUM", inputs.scene.medium.present() ? "1" : "0"}}};
     const scene::MediumInput medium(inputs.handles, inputs.parameters.integer("medium_steps"));
     medium.define(desc.defines);
     medium.declare(pass);
     const auto program = pass.program(std::move(desc));
-    pass.execute([=, this, handles = inputs.handles, size = inputs.size,
+    pass.execute([this, program, size = inputs.size,
                   steps = inputs.parameters.integer("steps")](frame::PassContext& context) {
-      gpu::Program& kernel = context.program(program);
-      kernel.use();
+      gpu::Program& kernel = context.use(program);
       kernel.set("diameter", diameter_);
       kernel.set("steps", steps);
-      context.bindUniform(glsl::FrameBlock::binding, handles.frame);
-      context.bindStorage(0, handles.instances);
-      context.bindStorage(1, handles.materials);
-      context.bindStorage(2, views_);
-      for (const Input& input : textures) context.bindSampled(input.unit, input.texture);
-      medium.bind(context);
-      context.bindImage(0, seen, GL_WRITE_ONLY);
       context.dispatch(size.x, size.y, 1, 8, 8);
     });
     return seen;
@@ -184,8 +174,8 @@ class ImageSpaceRefraction : public Technique {
                                       .title = "Image-space refraction and reflection",
                                       .source = "Wyman 2005; McGuire and Mara 2014; thesis, section 8.3.2",
                                       .terms = termSet(Term::specular),
-                                      .parameters = parameters,
-                                      .stress = stress};
+                                      .parameters = kParameters,
+                                      .stress = kStress};
 };
 
 }  // namespace

@@ -4,21 +4,20 @@
 // environment, else in the dark.
 //
 // INTERFACES: most smooth interfaces of a path. ENVIRONMENT 1: there is a map. MEDIUM 1: there is a medium.
-#include "glsl/caustic_ray.glsl"
-#include "glsl/equirectangular.glsl"
-#include "glsl/gbuffer_input.glsl"
-#include "glsl/medium_input.glsl"
-#define SPECULAR_UNIT 7
+#include "glsl/caustics/caustic_ray.glsl"
+#include "glsl/numeric/equirectangular.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
+#include "glsl/media/medium_input.glsl"
 #include "glsl/caustics/specular_buffers.glsl"
 #include "techniques/image_space_refraction/scene_ray.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(rgba32f, binding = 0) writeonly uniform image2D seen;
-layout(std430, binding = 0) readonly buffer Instances { Instance instances[]; };
-layout(std430, binding = 1) readonly buffer Materials { Material materials[]; };
-layout(std430, binding = 2) readonly buffer Views { ShadowView views[]; };
+layout(rgba32f) writeonly uniform image2D seen;
+layout(std430) readonly buffer Instances { Instance instances[]; };
+layout(std430) readonly buffer Materials { Material materials[]; };
+layout(std430) readonly buffer Views { ShadowView views[]; };
 #if ENVIRONMENT
-layout(binding = 14) uniform sampler2D environment_map;
+uniform sampler2D environment_map;
 #endif
 uniform float diameter;  // of the specular objects together, metres
 uniform int steps;
@@ -34,8 +33,8 @@ vec3 scene_radiance(vec3 origin, vec3 direction) {
     light = radiance_at(hit, origin + hit.t * direction);
   } else {
 #if ENVIRONMENT
-    vec2 uv = equirectangular_uv(environment_lookup_direction(direction, frame.environment.x));
-    light = frame.environment.y * textureLod(environment_map, uv, 0.0).rgb;
+    vec2 uv = equirectangular_uv(environment_lookup_direction(direction, frame.environment_rotation));
+    light = frame.environment_scale * textureLod(environment_map, uv, 0.0).rgb;
 #endif
   }
 #if MEDIUM
@@ -81,7 +80,7 @@ bool is_sheet(vec3 position, float instance) {
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
   float depth = pixel_depth(pixel);
   GBufferSurface s = pixel_surface(pixel);
   if (depth == 0.0 || (s.flags & gbuffer_flag_specular) == 0u) {
@@ -89,7 +88,7 @@ void main() {
     return;
   }
   uint instance = pixel_instance(pixel);
-  Optics optics = material_optics(materials[instances[instance].info.x]);
+  Optics optics = material_optics(materials[instances[instance].material]);
   optics.base = s.base_colour;
   optics.metallic = s.metallic;
   vec3 position = pixel_position(pixel, depth);

@@ -3,12 +3,12 @@
 // spaced on the screen), on the plane of the triangle that is seen there.
 #ifndef LIMN_SCENE_RAY_GLSL
 #define LIMN_SCENE_RAY_GLSL
-#include "glsl/blocks.glsl"
-#include "glsl/gbuffer.glsl"
+#include "glsl/scene/blocks.glsl"
+#include "glsl/surface/gbuffer.glsl"
 
-layout(binding = 11) uniform sampler2D matte_depth;   // metres along the view axis; 0: nothing
-layout(binding = 12) uniform sampler2D matte_normal;  // of the triangle, octahedral
-layout(binding = 13) uniform sampler2D matte_radiance;
+uniform sampler2D matte_depth;   // metres along the view axis; 0: nothing
+uniform sampler2D matte_normal;  // of the triangle, octahedral
+uniform sampler2D matte_radiance;
 
 const int ray_refinements = 6;
 const int ray_candidates = 4;      // crossings that are looked at
@@ -17,7 +17,7 @@ const float near_plane_part = 1e-3;  // of the ray's first depth
 
 // Place on the screen (pixels; whole numbers are centres) and depth of a point before the camera.
 vec3 screen_place(vec4 clip) {
-  return vec3((0.5 * clip.xy / clip.w + 0.5) * vec2(frame.frame_size.xy) - 0.5, clip.w);
+  return vec3((0.5 * clip.xy / clip.w + 0.5) * vec2(frame.frame_size) - 0.5, clip.w);
 }
 
 vec3 screen_ray(vec2 place) {
@@ -76,7 +76,7 @@ ScreenPoint screen_point(ScreenRay ray, float s) {
   return p;
 }
 
-ivec2 nearest_pixel(vec2 place) { return clamp(ivec2(floor(place + 0.5)), ivec2(0), ivec2(frame.frame_size.xy) - 1); }
+ivec2 nearest_pixel(vec2 place) { return clamp(ivec2(floor(place + 0.5)), ivec2(0), ivec2(frame.frame_size) - 1); }
 
 bool behind_scene(ScreenPoint p) {
   float depth = texelFetch(matte_depth, nearest_pixel(p.place), 0).x;
@@ -167,7 +167,7 @@ vec3 radiance_at(SceneHit hit, vec3 position) {
   for (int i = 0; i < 4; ++i) {
     ivec2 step = ivec2(i & 1, i >> 1);
     ivec2 pixel = corner + step;
-    if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) continue;
+    if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) continue;
     float depth = texelFetch(matte_depth, pixel, 0).x;
     vec3 surface = frame.camera_position.xyz + depth * screen_ray(vec2(pixel));
     if (depth == 0.0 || !(abs(dot(hit.normal, surface - position)) <= footprint)) continue;

@@ -2,8 +2,8 @@
 // (of those only what lies near the nearest), then texels that know nothing take what the next coarser level has.
 // TEXELS: per side of a map. LEVELS: beyond the finest; a hole of 2^LEVELS texels is closed.
 layout(local_size_x = 16, local_size_y = 16) in;
-layout(std430, binding = 0) readonly buffer Depths { uint depths[]; };
-layout(r32f, binding = 0) writeonly uniform image2DArray maps;
+layout(std430) readonly buffer Depths { uint depths[]; };
+layout(r32f) writeonly uniform image2DArray maps;
 uniform float apart;  // of two stored depths that are not averaged
 
 const float nothing = 1.0;

@@ -6,8 +6,8 @@
 #include <array>
 #include <optional>
 
+#include "core/gpu_scene/gpu_scene.h"
 #include "core/indirect/light_maps.h"
-#include "core/scene/gpu_scene.h"
 #include "core/technique/technique.h"
 #include "techniques/imperfect_shadow_maps/scene_points.h"
 
@@ -16,9 +16,9 @@ namespace {
 using namespace limn;
 using frame::Access;
 
-constexpr int windows = 16;  // the pool of points holds as many times what one map takes
+constexpr int kWindows = 16;  // the pool of points holds as many times what one map takes
 
-constexpr auto parameters = indirect::gatherParameters(std::to_array<Parameter>({
+constexpr auto kParameters = indirect::gatherParameters(std::to_array<Parameter>({
     integer("map_size", 64, {8, 64}, "texels", "Width and height of each virtual light's map"),
     integer("points", 2048, {64, 65536}, "points", "Splatted into each map").quality().logScale(),
     real("splat", 4, {0.5, 16}, "texels", "Radius of the largest splat"),
@@ -28,7 +28,7 @@ constexpr auto parameters = indirect::gatherParameters(std::to_array<Parameter>(
     real("bias", 1, {0, 64}, "texel footprints",
          "How far a blocker must lie above the receiver's tangent plane to count"),
 }));
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "one virtual light", .scene = "cornell_box", .settings = "vpls=1 block=1", .factor = 8},
     {.name = "N not divisible", .scene = "cornell_box", .settings = "vpls=1021"},
     {.name = "more maps than layers",
@@ -49,8 +49,8 @@ class ImperfectShadowMaps : public Technique {
                                       .title = "Imperfect shadow maps, one for each virtual light",
                                       .source = "Ritschel et al. 2008, Imperfect Shadow Maps",
                                       .terms = termSet(Term::indirect),
-                                      .parameters = parameters,
-                                      .stress = stress};
+                                      .parameters = kParameters,
+                                      .stress = kStress};
 
  private:
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -60,14 +60,14 @@ class ImperfectShadowMaps : public Technique {
       return request.target;
     }
     const ParameterValues& p = inputs.parameters;
-    const indirect::VirtualLights lights =
-        inputs.virtualLights.request(request.lights, indirect::virtualLightDesc(p));
+    const indirect::VirtualLights lights = inputs.service<indirect::VirtualLightService>().request(
+        request.lights, indirect::virtualLightDesc(p));
     const int size = p.integer("map_size");
     const int batch = std::min(lights.count, indirect::paraboloidBatch(inputs.gpuScene.device(), size));
     kept_ = batch == lights.count;
     const frame::BufferHandle views = indirect::addLightViews(
         graph, inputs, lights, {.size = size, .batch = batch, .technique = info.name});
-    points_.emplace(inputs.gpuScene.device(), inputs.scene, inputs.pose, windows * p.integer("points"));
+    points_.emplace(inputs.gpuScene.device(), inputs.scene, inputs.pose, kWindows * p.integer("points"));
     const frame::BufferHandle placed = placePoints(graph, inputs);
     indirect::Gather gather(graph, inputs, info.name, lights, indirect::gatherSettings(p));
     for (int first = 0; first < lights.count; first += batch) {
@@ -91,24 +91,18 @@ class ImperfectShadowMaps : public Technique {
     const frame::BufferHandle chosen = points_->import(graph);
     const int count = points_->count();
     frame::PassBuilder pass = graph.addPass("points of the scene", info.name);
-    pass.read(chosen, Access::storageLoad, "points on triangles")
-        .read(inputs.handles.geometry, Access::storageLoad, "where the triangles are")
-        .read(inputs.handles.instances, Access::storageLoad, "transforms")
+    pass.read(chosen, Access::storageLoad, "Points", "points on triangles")
+        .read(inputs.handles.geometry, Access::storageLoad, "Positions", "where the triangles are")
+        .read(inputs.handles.instances, Access::storageLoad, "Instances", "transforms")
         .cacheable();
     const frame::BufferHandle placed = pass.write(
         graph.createBuffer("placed points", {static_cast<size_t>(count) * sizeof(glsl::PlacedPoint)}),
-        Access::storageStore, "points in the world");
+        Access::storageStore, "Placed", "points in the world");
     const auto program =
         pass.program({.files = {"techniques/imperfect_shadow_maps/place_points.comp.glsl"}, .defines = {}});
-    pass.execute([=, this, handles = inputs.handles](frame::PassContext& context) {
+    pass.execute([this, program, count](frame::PassContext& context) {
       if (!(points_->area() > 0)) return;
-      gpu::Program& kernel = context.program(program);
-      kernel.use();
-      kernel.set("count", static_cast<unsigned>(count));
-      context.bindStorage(0, chosen);
-      context.bindStorage(1, handles.instances);
-      context.bindStorage(2, handles.geometry);
-      context.bindStorage(3, placed);
+      context.use(program).set("count", static_cast<unsigned>(count));
       context.dispatch(count, 1, 1, 64, 1);
     });
     return placed;
@@ -132,25 +126,22 @@ class ImperfectShadowMaps : public Technique {
                             const indirect::ParaboloidMaps& maps, frame::BufferHandle placed) {
     const frame::BufferHandle cleared = clear(graph, maps);
     frame::PassBuilder pass = graph.addPass("splat points", info.name);
-    pass.read(placed, Access::storageLoad, "points in the world")
-        .read(maps.views, Access::storageLoad, "where the hemispheres are");
+    pass.read(placed, Access::storageLoad, "Placed", "points in the world")
+        .read(maps.views, Access::storageLoad, "Views", "where the hemispheres are");
     if (kept_) pass.cacheable();
-    const frame::BufferHandle depths = pass.write(cleared, Access::storageLoadStore, "nearest depths");
+    const frame::BufferHandle depths =
+        pass.write(cleared, Access::storageLoadStore, "Depths", "nearest depths");
     const auto program =
         pass.program({.files = {"techniques/imperfect_shadow_maps/splat.comp.glsl"}, .defines = {}});
-    pass.execute([=, this, points = inputs.parameters.integer("points"),
+    pass.execute([this, program, maps, points = inputs.parameters.integer("points"),
                   reach = inputs.parameters.real("splat")](frame::PassContext& context) {
       if (!(points_->area() > 0)) return;
-      gpu::Program& kernel = context.program(program);
-      kernel.use();
+      gpu::Program& kernel = context.use(program);
       kernel.set("first", static_cast<unsigned>(maps.first));
       kernel.set("points", static_cast<unsigned>(points));
       kernel.set("pool", static_cast<unsigned>(points_->count()));
       kernel.set("radius", std::sqrt(points_->area() / (glsl::pi * static_cast<float>(points))));
       kernel.set("reach", reach);
-      context.bindStorage(0, placed);
-      context.bindStorage(1, maps.views);
-      context.bindStorage(2, depths);
       context.dispatch(points, maps.count, 1, 64, 1);
     });
     return depths;
@@ -165,7 +156,7 @@ class ImperfectShadowMaps : public Technique {
       room += side * side;
     }
     frame::PassBuilder pass = graph.addPass("fill holes", info.name);
-    pass.read(depths, Access::storageLoad, "splatted depths");
+    pass.read(depths, Access::storageLoad, "Depths", "splatted depths");
     if (kept_) pass.cacheable();
     const frame::TextureHandle filled =
         pass.write(graph.createTexture("imperfect maps", {.target = GL_TEXTURE_2D_ARRAY,
@@ -173,18 +164,15 @@ class ImperfectShadowMaps : public Technique {
                                                           .width = maps.size,
                                                           .height = maps.size,
                                                           .layers = maps.count}),
-                   Access::imageStore, "radial depth");
+                   Access::imageStore, "maps", "radial depth");
     const auto program = pass.program({.files = {"techniques/imperfect_shadow_maps/fill_holes.comp.glsl"},
                                        .defines = {{"TEXELS", std::to_string(maps.size)},
                                                    {"LEVELS", std::to_string(levels)},
                                                    {"ROOM", std::to_string(room)}}});
-    pass.execute([=, apart = inputs.parameters.real("fill_depth")](frame::PassContext& context) {
-      gpu::Program& kernel = context.program(program);
-      kernel.use();
-      kernel.set("apart", apart);
-      context.bindStorage(0, depths);
-      context.bindImage(0, filled, GL_WRITE_ONLY);
-      context.dispatch(maps.count, 1, 1, 1, 1);
+    pass.execute([program, count = maps.count,
+                  apart = inputs.parameters.real("fill_depth")](frame::PassContext& context) {
+      context.use(program).set("apart", apart);
+      context.dispatch(count, 1, 1, 1, 1);
     });
     return filled;
   }

@@ -1,16 +1,16 @@
 // Where the points of the scene are now.
-#include "glsl/blocks.glsl"
+#include "glsl/scene/blocks.glsl"
 #include "techniques/imperfect_shadow_maps/scene_point.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Points { ScenePoint points[]; };
-layout(std430, binding = 1) readonly buffer Instances { Instance instances[]; };
-layout(std430, binding = 2) readonly buffer Positions { float positions[]; };
-layout(std430, binding = 3) writeonly buffer Placed { PlacedPoint placed[]; };
+layout(std430) readonly buffer Points { ScenePoint points[]; };
+layout(std430) readonly buffer Instances { Instance instances[]; };
+layout(std430) readonly buffer Positions { float positions[]; };
+layout(std430) writeonly buffer Placed { PlacedPoint placed[]; };
 uniform uint count;
 
 vec3 corner(Instance instance, uint vertex) {
-  uint at = 3u * (instance.info.y + vertex);
+  uint at = 3u * (instance.first_vertex + vertex);
   return vec3(instance.object_to_world * vec4(positions[at], positions[at + 1u], positions[at + 2u], 1.0));
 }
 
@@ -18,7 +18,7 @@ void main() {
   uint index = gl_GlobalInvocationID.x;
   if (index >= count) return;
   ScenePoint point = points[index];
-  Instance instance = instances[point.corners.w];
+  Instance instance = instances[point.instance];
   vec3 a = corner(instance, point.corners.x);
   vec3 e = corner(instance, point.corners.y) - a;
   vec3 f = corner(instance, point.corners.z) - a;

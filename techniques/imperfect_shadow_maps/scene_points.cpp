@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "glsl/sampling.glsl"
+#include "glsl/numeric/sampling.glsl"
 
 namespace limn::imperfect {
 namespace {
@@ -69,7 +69,7 @@ void ScenePoints::update(const scene::Pose& pose) {
 const scene::Primitive& ScenePoints::primitive(const scene::Pose& pose,
                                                const scene::DrawInstance& drawn) const {
   const auto mesh = static_cast<size_t>(drawn.mesh);
-  if (drawn.node == scene::none) return *pose.dynamic[mesh].primitive;
+  if (drawn.node == scene::kNone) return *pose.dynamic[mesh].primitive;
   return scene_.meshes[mesh].primitives[static_cast<size_t>(drawn.primitive)];
 }
 
@@ -87,9 +87,9 @@ void ScenePoints::measure(const scene::Pose& pose) {
   for (size_t i = 0; i < pose.instances.size(); ++i) {
     const scene::DrawInstance& drawn = pose.instances[i];
     const auto mesh = static_cast<size_t>(drawn.mesh);
-    if (drawn.node == scene::none) {
+    if (drawn.node == scene::kNone) {
       tables_[i] = &dynamic_[mesh];
-    } else if (drawn.deformed != scene::none) {
+    } else if (drawn.deformed != scene::kNone) {
       tables_[i] = &deformed_[static_cast<size_t>(drawn.deformed)];
     } else {
       AreaTable& table = fixed_[firstOfMesh_[mesh] + static_cast<size_t>(drawn.primitive)];
@@ -120,7 +120,10 @@ void ScenePoints::choose(const scene::Pose& pose) {
     const scene::Primitive& p = primitive(pose, pose.instances[instance]);
     const uint32_t* corner = &p.indices[3 * size_t{triangle}];
     const float root = std::sqrt(u.y);
-    points_[i] = {{corner[0], corner[1], corner[2], instance}, {root * (1 - u.z), root * u.z, 0, 0}};
+    points_[i] = {.corners = {corner[0], corner[1], corner[2]},
+                  .instance = instance,
+                  .place = {root * (1 - u.z), root * u.z},
+                  .unused = {}};
   }
 }
 

@@ -1,4 +1,4 @@
-// Points spread evenly over all surfaces of a scene, which stick to their triangles.
+// Places points evenly over all surfaces of a scene; the points stick to their triangles.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,24 @@
 
 namespace limn::imperfect {
 
-/// Areas of a list of triangles, added up.
+/// Holds the running sum of the areas of a list of triangles.
 struct AreaTable {
   std::vector<float> upTo;  ///< m^2 of the triangles 0 to i
-  /// Of triangles with more than 0 corners; `indices` holds 3 for each.
+  /// Fills the table; `indices` holds the 3 corners of each triangle and is not empty.
   void fill(std::span<const glm::vec3> positions, std::span<const uint32_t> indices);
   float total() const { return upTo.empty() ? 0.f : upTo.back(); }
-  /// The triangle in which the part `u` in [0, 1) of the area lies; only of a table with an area above 0.
+  /// Returns the triangle in which the fraction `u` in [0, 1) of the area lies; only for a table with an area
+  /// above 0.
   uint32_t triangle(float u) const;
 };
 
 class ScenePoints {
  public:
-  /// Chooses `count` points in proportion to area at `pose`. Any of them that follow each other are spread
-  /// evenly, too. Where instances are scaled by different factors along their axes, or move so that their
-  /// size changes, the density follows the size at the pose of the choice.
+  /// Chooses `count` points in proportion to area at `pose`. Any run of consecutive points is spread evenly,
+  /// too. Where instances are scaled by different factors along their axes, or move so that their size
+  /// changes, the density follows the size at the pose of the choice.
   ScenePoints(gpu::Device& device, const scene::Scene& scene, const scene::Pose& pose, int count);
-  /// Chooses again if triangles came or went.
+  /// Chooses again if triangles were added or removed.
   void update(const scene::Pose& pose);
   frame::BufferHandle import(frame::FrameGraph& graph);
   float area() const { return area_; }  ///< of all surfaces, m^2

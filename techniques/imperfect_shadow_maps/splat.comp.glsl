@@ -1,12 +1,12 @@
 // Splats the discs of some points into each map: the nearest depth of every texel whose centre a disc covers. Each map has
 // its own points, which follow each other in the pool.
-#include "glsl/paraboloid.glsl"
+#include "glsl/shadow/paraboloid.glsl"
 #include "techniques/imperfect_shadow_maps/scene_point.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Placed { PlacedPoint placed[]; };
-layout(std430, binding = 1) readonly buffer Views { ShadowView views[]; };
-layout(std430, binding = 2) buffer Depths { uint depths[]; };  // bits of stored depths, map by map
+layout(std430) readonly buffer Placed { PlacedPoint placed[]; };
+layout(std430) readonly buffer Views { ShadowView views[]; };
+layout(std430) buffer Depths { uint depths[]; };  // bits of stored depths, map by map
 uniform uint first;   // view of the first map
 uniform uint points;  // per map
 uniform uint pool;
@@ -29,11 +29,11 @@ void main() {
   PlacedPoint point = placed[((first + map) * points + k) % pool];
   vec3 centre = shadow_local(view, point.position.xyz);
   float depth = length(centre);
-  if (!(centre.z > 0.0 && depth > view.origin.w && depth < view.axis_z.w)) return;
+  if (!(centre.z > 0.0 && depth > view.near && depth < view.far)) return;
 
   vec3 normal = shadow_view_axes(view, point.normal.xyz);
   vec2 disc = paraboloid_map(centre / depth);
-  int side = int(view.info.z);
+  int side = int(view.size);
   vec2 at = (0.5 + 0.5 * disc) * float(side);
   float facing = sqrt(abs(dot(normal, centre)) / depth);  // of a circle of the disc's solid angle
   float texels = min(facing * radius / depth * paraboloid_scale(dot(disc, disc)) * 0.5 * float(side), reach);

@@ -3,9 +3,14 @@
 #define LIMN_BIN_LOOKUP_GLSL
 #include "techniques/implicit_visibility/elements.glsl"
 
-layout(std430, binding = 0) readonly buffer Directions { vec4 directions[]; };  // in the space of the bins; w: sr
-layout(std430, binding = 2) readonly buffer Links { uint links[]; };
-layout(std430, binding = 3) readonly buffer Source { vec4 source[]; };  // radiance of elements of all levels, or of bins (SKY)
+struct BinDirection {
+  vec3 direction;     // unit, in the space of the bins
+  float solid_angle;  // sr
+};
+
+layout(std430) readonly buffer Directions { BinDirection directions[]; };
+layout(std430) readonly buffer Links { uint links[]; };
+layout(std430) readonly buffer Source { vec4 source[]; };  // radiance of elements of all levels, or of bins (SKY)
 
 // Radiance that reaches the leaf of `row` through a bin, which lies in `direction`.
 vec3 bin_radiance(uint row, uint bin, vec3 direction) {

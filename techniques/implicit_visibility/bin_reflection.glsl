@@ -8,11 +8,11 @@ vec3 reflected(uint row, SurfaceBrdf surface, vec3 n, vec3 view) {
   vec3 sum = vec3(0.0);
   float weights = 0.0;
   for (uint bin = 0u; bin < bin_count; ++bin) {
-    vec4 direction = directions[bin];
-    float weight = direction.w * dot(n, direction.xyz);
+    BinDirection to = directions[bin];
+    float weight = to.solid_angle * dot(n, to.direction);
     if (weight > 0.0) {
       weights += weight;
-      sum += weight * bin_radiance(row, bin, direction.xyz) * brdf(surface, n, view, direction.xyz);
+      sum += weight * bin_radiance(row, bin, to.direction) * brdf(surface, n, view, to.direction);
     }
   }
   return weights > 0.0 ? pi / weights * sum : vec3(0.0);

@@ -2,8 +2,8 @@
 #include "techniques/implicit_visibility/elements.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 2) writeonly buffer Links { uint links[]; };
-layout(std430, binding = 3) writeonly buffer Distances { float distances[]; };
+layout(std430) writeonly buffer Links { uint links[]; };
+layout(std430) writeonly buffer Distances { float distances[]; };
 uniform uint leaf_count;
 
 void main() {

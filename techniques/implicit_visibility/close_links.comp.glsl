@@ -2,8 +2,8 @@
 #include "techniques/implicit_visibility/elements.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 2) buffer Links { uint links[]; };
-layout(std430, binding = 3) buffer Distances { float distances[]; };
+layout(std430) buffer Links { uint links[]; };
+layout(std430) buffer Distances { float distances[]; };
 uniform uint leaf_count;
 
 const uint n = BINS;

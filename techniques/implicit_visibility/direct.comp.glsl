@@ -1,22 +1,22 @@
 // What leaves reflect of the lights and of the environment, and so send on. With GLOSSY a thread for each direction, and
 // lights alone.
-#include "glsl/unshadowed_light.glsl"
+#include "glsl/light/unshadowed_light.glsl"
 #include "techniques/implicit_visibility/elements.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Lights { Light lights[]; };
-layout(std430, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
-layout(std430, binding = 2) writeonly buffer Direct { vec4 direct[]; };
-layout(std430, binding = 3) writeonly buffer Outgoing { vec4 outgoing[]; };  // the same, to be pulled up
+layout(std430) readonly buffer Lights { Light lights[]; };
+layout(std430) readonly buffer Leaves { Leaf leaves[]; };
+layout(std430) writeonly buffer Direct { vec4 direct[]; };
+layout(std430) writeonly buffer Outgoing { vec4 outgoing[]; };  // the same, to be pulled up
 #if LIGHTS
-layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };
-layout(std430, binding = 5) readonly buffer Seen { float seen[]; };
+layout(std430) readonly buffer Indices { uint indices[]; };
+layout(std430) readonly buffer Seen { float seen[]; };
 #endif
 #if ENVIRONMENT && !GLOSSY
-layout(std430, binding = 6) readonly buffer Sky { vec4 sky[]; };
+layout(std430) readonly buffer Sky { vec4 sky[]; };
 #endif
 #if GLOSSY
-layout(std430, binding = 7) readonly buffer Materials { LeafMaterial materials[]; };
+layout(std430) readonly buffer Materials { LeafMaterial materials[]; };
 #endif
 uniform uint slots;
 uniform uint light_count;
@@ -30,11 +30,12 @@ void main() {
 #if GLOSSY
   SurfaceBrdf surface = binned_brdf(materials[slot]);
   vec3 view = from_bins(sent_direction(item % sent_count));
-  bool sends = leaf.vertex.w > 0.0 && dot(view, n) > 0.0;
+  bool sends = leaf.used > 0.0 && dot(view, n) > 0.0;
 #else
-  SurfaceBrdf surface = surface_brdf(leaf.albedo.rgb, 0.0, 1.0, 0.0, vec3(1.0), 1.5);
+  // Lambertian by its literals, so that no compiler keeps the table of glossy lobes, which the pass has with GLOSSY alone.
+  SurfaceBrdf surface = SurfaceBrdf(leaf.albedo, 1.0, vec3(0.0), 0.0, 0.0, 0.0);
   vec3 view = n;
-  bool sends = leaf.vertex.w > 0.0;
+  bool sends = leaf.used > 0.0;
 #endif
   vec3 sum = vec3(0.0);
   if (sends) {
@@ -43,7 +44,7 @@ void main() {
       sum += seen[l * slots + slot] * unshadowed_light(lights[indices[l]], surface, leaf.position.xyz, n, n, view);
 #endif
 #if ENVIRONMENT && !GLOSSY
-    sum += leaf.albedo.rgb * sky[slot].rgb * inverse_pi;
+    sum += leaf.albedo * sky[slot].rgb * inverse_pi;
 #endif
   }
   direct[item] = outgoing[item] = vec4(sum, 0.0);

@@ -1,9 +1,8 @@
 #include "techniques/implicit_visibility/display.h"
 
-#include <array>
+#include <utility>
 
-#include "core/scene/gpu_scene.h"
-#include "glsl/gbuffer.glsl"
+#include "core/gpu_scene/gpu_scene.h"
 
 namespace limn::implicit_visibility {
 
@@ -12,10 +11,11 @@ using frame::Access;
 frame::TextureHandle Display::lookup(const PassRequest& r) {
   if (lookup_) return lookup_;
   frame::PassBuilder pass = r.graph.addPass("surface lookup", technique_);
-  pass.read(r.inputs.handles.frame, Access::uniformBuffer, "camera")
-      .read(r.inputs.gbuffer.depth, Access::sampled, "which surface is seen")
-      .read(elements_.leaves, Access::storageLoad, "vertices")
-      .read(elements_.corners, Access::storageLoad, "triangles");
+  pass.role(frame::PassRole::map)
+      .read(r.inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
+      .read(r.inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "which surface is seen")
+      .read(elements_.leaves, Access::storageLoad, "Leaves", "vertices")
+      .read(elements_.corners, Access::storageLoad, "Corners", "triangles");
   const auto create = [&](const char* name, GLenum format) {
     return r.graph.createTexture(name,
                                  {.format = format, .width = r.inputs.size.x, .height = r.inputs.size.y});
@@ -27,21 +27,14 @@ frame::TextureHandle Display::lookup(const PassRequest& r) {
                                                     "techniques/implicit_visibility/lookup.frag.glsl"},
                                           .defines = {}});
   vertexArray_ = gpu::VertexArray(r.inputs.gpuScene.device(), {});
-  pass.execute([this, kernelHandle, depth, inputs = &r.inputs.gpuScene, frame = r.inputs.handles.frame,
-                gbufferDepth = r.inputs.gbuffer.depth](frame::PassContext& context) {
+  pass.execute([this, kernelHandle, depth, &scene = r.inputs.gpuScene](frame::PassContext& context) {
     const gl::Functions& gl = context.gl();
     context.bindFramebuffer({{lookup_}}, {depth});
     constexpr GLuint nobody[4] = {glsl::no_link, 0, 0, 0};
     constexpr GLfloat far = 0;
     gl.ClearBufferuiv(GL_COLOR, 0, nobody);
     gl.ClearBufferfv(GL_DEPTH, 0, &far);
-    gpu::Program& kernel = context.program(kernelHandle);
-    kernel.use();
-    kernel.set("near_plane", inputs->camera().near);
-    context.bindUniform(glsl::FrameBlock::binding, frame);
-    context.bindSampled(0, gbufferDepth);
-    context.bindStorage(0, elements_.leaves);
-    context.bindStorage(1, elements_.corners);
+    context.use(kernelHandle).set("near_plane", scene.camera().near);
     gl.BindVertexArray(vertexArray_.id());
     gl.Enable(GL_CULL_FACE);
     gl.Enable(GL_DEPTH_TEST);
@@ -56,23 +49,16 @@ frame::TextureHandle Display::lookup(const PassRequest& r) {
 frame::TextureHandle Display::visibility(const PassRequest& r, frame::BufferHandle seen) {
   const frame::TextureHandle around = lookup(r);
   frame::PassBuilder pass = r.graph.addPass("visibility", technique_);
-  pass.read(r.inputs.handles.frame, Access::uniformBuffer, "camera")
-      .read(r.inputs.gbuffer.depth, Access::sampled, "where surfaces are")
-      .read(around, Access::sampled, "leaves around pixels")
-      .read(seen, Access::storageLoad, "V of leaves");
+  pass.read(r.inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
+      .read(r.inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "where surfaces are")
+      .read(around, Access::sampled, "surface_lookup", "leaves around pixels")
+      .read(seen, Access::storageLoad, "Seen", "V of leaves");
   const frame::TextureHandle result =
-      pass.write(r.target, Access::imageStore, "visibility, one layer per light");
+      pass.write(r.target, Access::imageStore, "visibility", "visibility, one layer per light");
   const auto kernelHandle = elements_.program(pass, "show_visibility.comp.glsl");
-  pass.execute([this, kernelHandle, around, result, seen, size = r.inputs.size,
-                layers = r.graph.desc(r.target).layers, depth = r.inputs.gbuffer.depth,
-                frame = r.inputs.handles.frame](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(kernelHandle);
-    kernel.use();
-    kernel.set("slots", elements_.leafSlots());
-    context.bindSampled(glsl::gbuffer_unit_depth, depth);
-    context.bindSampled(8, around);
-    context.bindStorage(0, seen);
-    context.bindImage(0, result, GL_WRITE_ONLY);
+  pass.execute([this, kernelHandle, size = r.inputs.size,
+                layers = r.graph.desc(r.target).layers](frame::PassContext& context) {
+    context.use(kernelHandle).set("slots", elements_.leafSlots());
     context.dispatch(size.x, size.y, layers, 8, 8);
   });
   return result;
@@ -86,41 +72,30 @@ frame::TextureHandle Display::light(const PassRequest& r, const Gathered& light)
 }
 
 frame::TextureHandle Display::show(const PassRequest& r, const Gathered& light, const LinkChunk* chunk) {
-  const GBuffer& g = r.inputs.gbuffer;
   const frame::TextureHandle around = lookup(r);
   frame::PassBuilder pass = r.graph.addPass(chunk ? "gather per pixel" : "interpolate", technique_);
-  pass.read(r.inputs.handles.frame, Access::uniformBuffer, "camera")
-      .read(around, Access::sampled, "leaves around pixels");
-  const std::pair<int, frame::TextureHandle> textures[] = {
-      {glsl::gbuffer_unit_depth, g.depth},
-      {glsl::gbuffer_unit_normal, g.normal},
-      {glsl::gbuffer_unit_geometric_normal, g.geometricNormal},
-      {glsl::gbuffer_unit_albedo, g.albedo},
-      {glsl::gbuffer_unit_material, g.material},
-      {glsl::gbuffer_unit_emission, g.emission}};
-  for (const auto& [unit, texture] : textures) pass.read(texture, Access::sampled, "surfaces");
-  pass.read(chunk ? light.source : light.irradiance, Access::storageLoad, "light");
-  if (chunk) elements_.readLinks(pass);
-  const frame::TextureHandle result = pass.write(r.target, Access::imageLoadStore, "reflected light");
+  pass.read(r.inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
+      .read(around, Access::sampled, "surface_lookup", "leaves around pixels");
+  readSurfaces(pass, r.inputs.gbuffer);
+  frame::SlotHandle links;
+  if (chunk) {
+    pass.read(light.source, Access::storageLoad, "Source", "light");
+    elements_.readDirections(pass);
+    links = elements_.readLinks(pass);
+  } else {
+    pass.read(light.irradiance, Access::storageLoad, "Irradiance", "light");
+  }
+  const frame::TextureHandle result =
+      pass.write(r.target, Access::imageLoadStore, "radiance", "reflected light");
   const auto kernelHandle =
       chunk ? elements_.program(pass, "show_bins.comp.glsl", {{"SKY", light.sky ? "1" : "0"}})
             : elements_.program(pass, "show_light.comp.glsl");
-  pass.execute([this, kernelHandle, around, result, light, textures = std::to_array(textures),
-                own = chunk ? *chunk : LinkChunk{}, perPixel = chunk != nullptr, size = r.inputs.size,
-                frame = r.inputs.handles.frame](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(kernelHandle);
-    kernel.use();
-    context.bindUniform(glsl::FrameBlock::binding, frame);
-    for (const auto& [unit, texture] : textures) context.bindSampled(static_cast<unsigned>(unit), texture);
-    context.bindSampled(8, around);
-    context.bindImage(0, result, GL_READ_WRITE);
+  pass.execute([this, kernelHandle, links, own = chunk ? *chunk : LinkChunk{}, perPixel = chunk != nullptr,
+                size = r.inputs.size](frame::PassContext& context) {
+    gpu::Program& kernel = context.use(kernelHandle);
     if (perPixel) {
       elements_.setSpace(kernel);
-      ElementPasses::bind(context, kernel, own);
-      context.bindStorage(0, elements_.directions);
-      context.bindStorage(3, light.source);
-    } else {
-      context.bindStorage(0, light.irradiance);
+      ElementPasses::bind(context, kernel, links, own);
     }
     context.dispatch(size.x, size.y, 1, 8, 8);
   });

@@ -1,4 +1,4 @@
-// What leaves know, as a picture: interpolated over the triangles between them, or gathered per pixel.
+// Shows what leaves know as a picture: interpolated over the triangles between them, or gathered per pixel.
 #pragma once
 
 #include <string_view>
@@ -7,21 +7,22 @@
 
 namespace limn::implicit_visibility {
 
-/// Must outlive the graph.
+/// Declares the passes that show the leaves' light and visibility. The object must outlive the graph.
 class Display {
  public:
   Display(const ElementPasses& elements, std::string_view technique)
       : elements_(elements), technique_(technique) {}
 
-  /// Writes V of a batch of lights; `seen`: V of each leaf, light after light.
+  /// Writes V of a batch of lights; `seen` holds V of each leaf, light after light.
   frame::TextureHandle visibility(const PassRequest& r, frame::BufferHandle seen);
   /// Adds reflected light, by the technique's parameter `display`.
   frame::TextureHandle light(const PassRequest& r, const Gathered& light);
 
  private:
-  /// Which leaves lie around each pixel: the triangles between them, where they meet the G-buffer's surface.
+  /// Finds which leaves surround each pixel: the triangles between them, where they meet the G-buffer's
+  /// surface.
   frame::TextureHandle lookup(const PassRequest& r);
-  /// From the irradiance of vertices, or by the bins of `chunk`.
+  /// Shows light from the irradiance of vertices, or by the bins of `chunk`.
   frame::TextureHandle show(const PassRequest& r, const Gathered& light, const LinkChunk* chunk);
 
   const ElementPasses& elements_;

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/gpu_scene/gpu_scene.h"
 #include "core/radiosity/illumination.h"
-#include "core/scene/gpu_scene.h"
 
 namespace limn::implicit_visibility {
 
@@ -35,7 +35,7 @@ ElementPasses::ElementPasses(frame::FrameGraph& graph, const TechniqueInputs& in
                              const ElementSettings& settings)
     : settings_(settings),
       pose_(inputs.pose),
-      elements_(inputs.scene, inputs.pose, settings.longestEdge, mostElements(settings)) {
+      elements_(inputs.scene, inputs.pose, settings.longestEdge, mostElements(settings), settings.lift) {
   createBuffers(inputs.gpuScene.device());
   groups = graph.importBuffer("element groups", groupBuffer_);
   leaves = graph.importBuffer("leaves", leafBuffer_);
@@ -130,23 +130,18 @@ void ElementPasses::addGpuLinks(frame::FrameGraph& graph, LinkChunk& chunk) cons
                            glm::uvec2 someRoots) {
     frame::PassBuilder pass = graph.addPass(name, settings_.technique);
     pass.read(groups, Access::storageLoad, "elements").cacheable();
-    if (someRoots.y > 0) pass.read(roots_, Access::storageLoad, "where to begin");
-    chunk.links = pass.write(chunk.links, access, "the nearest element in each bin of each leaf");
-    lengths = pass.write(lengths, access, "how far it is");
+    if (someRoots.y > 0) pass.also("Groups").read(roots_, Access::storageLoad, "Roots", "where to begin");
+    chunk.links = pass.write(chunk.links, access, "Links", "the nearest element in each bin of each leaf");
+    lengths = pass.write(lengths, access, "Distances", "how far it is");
     const auto kernelHandle = program(pass, file, {{"FOOTPRINT", footprint ? "1" : "0"}});
-    pass.execute([this, kernelHandle, own = chunk, lengths, someRoots, size](frame::PassContext& context) {
-      gpu::Program& kernel = context.program(kernelHandle);
-      kernel.use();
+    pass.execute([this, kernelHandle, own = chunk, someRoots, size](frame::PassContext& context) {
+      gpu::Program& kernel = context.use(kernelHandle);
       kernel.set("leaf_count", own.count);
-      context.bindStorage(2, own.links);
-      context.bindStorage(3, lengths);
       if (someRoots.y > 0) {
         kernel.set("first_leaf", own.first);
         kernel.set("first_root", someRoots.x);
         kernel.set("root_count", someRoots.y);
         kernel.set("opening", settings_.links.opening);
-        context.bindStorage(0, groups);
-        context.bindStorage(1, roots_);
       }
       context.dispatch(size.x, size.y, 1, 1, 1);
     });
@@ -171,16 +166,20 @@ frame::ProgramHandle ElementPasses::program(frame::PassBuilder& pass, const char
       {.files = {fmt::format("techniques/implicit_visibility/{}", file)}, .defines = defines});
 }
 
-void ElementPasses::readLinks(frame::PassBuilder& pass) const {
-  pass.read(directions, Access::storageLoad, "directions and solid angles of bins")
-      .read(leaves, Access::storageLoad, "normals and albedos");
-  for (const LinkChunk& chunk : chunks) pass.read(chunk.links, Access::storageLoad, "links");
+void ElementPasses::readDirections(frame::PassBuilder& pass) const {
+  pass.read(directions, Access::storageLoad, "Directions", "directions and solid angles of bins");
 }
 
-void ElementPasses::bind(const frame::PassContext& context, gpu::Program& kernel, const LinkChunk& chunk) {
+frame::SlotHandle ElementPasses::readLinks(frame::PassBuilder& pass) const {
+  for (const LinkChunk& chunk : chunks) pass.read(chunk.links, Access::storageLoad, "links");
+  return pass.slot("Links");
+}
+
+void ElementPasses::bind(const frame::PassContext& context, gpu::Program& kernel, frame::SlotHandle links,
+                         const LinkChunk& chunk) {
   kernel.set("first_leaf", chunk.first);
   kernel.set("leaf_count", chunk.count);
-  context.bindStorage(2, chunk.links);
+  context.bind(links, context.buffer(chunk.links));
 }
 
 void ElementPasses::setSpace(gpu::Program& program) const {

@@ -1,5 +1,5 @@
-// The surface elements of a frame on the GPU: buffers, and the passes that bring them to the pose and link
-// them.
+// Declares the surface elements of a frame on the GPU: buffers, and the passes that bring them to the pose
+// and link them.
 #pragma once
 
 #include <algorithm>
@@ -20,40 +20,42 @@ struct ElementSettings {
   bool flat = false;          ///< every pair of leaves, without hierarchy; on the CPU
   bool onGpu = false;         ///< links are made there
   float longestEdge = 0.05f;  ///< radii of the scene
+  float lift = 0;             ///< as radiosity::Bodies has it
   int glossy = 0;             ///< N of the 6 x N x N bins that elements send light into; 0: evenly
   int64_t memory = 0;         ///< bytes that links may take
   std::string_view technique;
 };
 
-/// Links of leaves [first, first + count), as many as one storage block holds.
+/// Holds the links of leaves [first, first + count), as many as one storage block holds.
 struct LinkChunk {
   frame::BufferHandle links;
   uint32_t first = 0, count = 0;
 };
 
-/// A picture to add to, or to write V to.
+/// Declares a picture to add to, or to write V to.
 struct PassRequest {
   frame::FrameGraph& graph;
   const TechniqueInputs& inputs;
   frame::TextureHandle target;
 };
 
-/// What arrives at leaves, and where it comes from: radiance of elements, or of bins.
+/// Holds what arrives at leaves, and where it comes from: radiance of elements, or of bins.
 struct Gathered {
   frame::BufferHandle irradiance, source;
   bool sky = false;
 };
 
-/// Must outlive the graph.
+/// Declares the passes of the elements. The object must outlive the graph.
 class ElementPasses {
  public:
-  /// Declares "update elements" and "links" (thesis, section 4.3.2): both work on the CPU and upload, but for
-  /// links made on the GPU. Throws UsageError for scenes whose links take more memory than allowed.
+  /// Declares "update elements" and "links" (thesis, section 4.3.2): both work on the CPU and upload, unless
+  /// links are made on the GPU. Throws UsageError for scenes whose links take more memory than allowed.
   ElementPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs, const ElementSettings& settings);
 
   bool fits(const scene::Pose& pose) const { return elements_.fits(pose); }
   const radiosity::SceneElements& elements() const { return elements_; }
-  /// This many work groups in rows that every device takes, numbered by work_group_index() in elements.glsl.
+  /// Returns `count` work groups in rows that every device accepts, numbered by work_group_index() in
+  /// elements.glsl.
   static glm::ivec2 workGroups(int64_t count) {
     constexpr int64_t most = 32768;  // in a row
     return {std::min(count, most), (count + most - 1) / most};
@@ -61,7 +63,7 @@ class ElementPasses {
 
   uint32_t slots() const { return elements_.forest().slots(); }
   uint32_t leafSlots() const { return elements_.forest().leafSlots(); }
-  /// Values of radiance that each element sends.
+  /// Returns the number of radiance values that each element sends.
   uint32_t sentCount() const {
     return settings_.glossy > 0 ? 6 * static_cast<uint32_t>(settings_.glossy * settings_.glossy) : 1;
   }
@@ -71,13 +73,16 @@ class ElementPasses {
   frame::BufferHandle groups, leaves, corners, directions, materials;
   std::vector<LinkChunk> chunks;
 
-  /// A compute program of this folder, with BINS and GLOSSY defined.
+  /// Returns a compute program of this folder, with BINS and GLOSSY defined.
   frame::ProgramHandle program(frame::PassBuilder& pass, const char* file,
                                std::map<std::string, std::string> defines = {}) const;
-  /// Declares that a pass reads links, leaves and directions.
-  void readLinks(frame::PassBuilder& pass) const;
-  /// Binds a chunk's links to binding 2, and says which leaves they belong to.
-  static void bind(const frame::PassContext& context, gpu::Program& kernel, const LinkChunk& chunk);
+  /// Declares that a pass reads the directions of bins, as bin_lookup.glsl does.
+  void readDirections(frame::PassBuilder& pass) const;
+  /// Declares that a pass reads all links, and returns the slot to which one chunk after the other is bound.
+  frame::SlotHandle readLinks(frame::PassBuilder& pass) const;
+  /// Binds a chunk's links, and tells the program which leaves they belong to.
+  static void bind(const frame::PassContext& context, gpu::Program& kernel, frame::SlotHandle links,
+                   const LinkChunk& chunk);
   /// Sets the rotation to the bins in a program that includes elements.glsl.
   void setSpace(gpu::Program& program) const;
 

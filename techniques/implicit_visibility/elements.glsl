@@ -2,22 +2,28 @@
 // send: GLOSSY 0: the same in all directions; else: into the 6 x GLOSSY x GLOSSY bins of directions.
 #ifndef LIMN_IMPLICIT_VISIBILITY_ELEMENTS_GLSL
 #define LIMN_IMPLICIT_VISIBILITY_ELEMENTS_GLSL
-#include "glsl/brdf.glsl"
-#include "glsl/direction_bins.glsl"
+#include "glsl/surface/brdf.glsl"
+#include "glsl/indirect/direction_bins.glsl"
 
 // limn::radiosity::Leaf, metres.
 struct Leaf {
-  vec4 vertex;  // w: 0 where the slot is not in use
+  vec3 vertex;
+  float used;  // 0 where the slot is not in use
   vec4 position;
   vec4 normal;
-  vec4 albedo;
+  vec3 albedo;
+  float unused;
 };
 
 // limn::radiosity::LeafMaterial.
 struct LeafMaterial {
-  vec4 diffuse;     // w: alpha
-  vec4 f0;          // w: f90
-  vec4 dielectric;  // x: f0, y: f90
+  vec3 diffuse;
+  float alpha;
+  vec3 f0;
+  float f90;
+  float dielectric_f0;
+  float dielectric_f90;
+  vec2 unused;
 };
 
 const uint bin_count = 6u * BINS * BINS;
@@ -61,16 +67,16 @@ vec3 sent_direction(uint sent) {
 // Lobes are no narrower than bins, between whose middles they would be lost: half vectors turn half as far as directions.
 SurfaceBrdf binned_brdf(LeafMaterial m) {
   SurfaceBrdf s;
-  s.diffuse = m.diffuse.rgb;
+  s.diffuse = m.diffuse;
 #if GLOSSY
-  s.alpha = max(m.diffuse.w, 0.25 * pi / float(min(BINS, uint(GLOSSY))));
+  s.alpha = max(m.alpha, 0.25 * pi / float(min(BINS, uint(GLOSSY))));
 #else
-  s.alpha = m.diffuse.w;
+  s.alpha = m.alpha;
 #endif
-  s.f0 = m.f0.rgb;
-  s.f90 = m.f0.w;
-  s.dielectric_f0 = m.dielectric.x;
-  s.dielectric_f90 = m.dielectric.y;
+  s.f0 = m.f0;
+  s.f90 = m.f90;
+  s.dielectric_f0 = m.dielectric_f0;
+  s.dielectric_f90 = m.dielectric_f90;
   return s;
 }
 

@@ -2,17 +2,17 @@
 // renderers whose barriers cost more than loads; 0: a work group.
 #define THREADS 64
 #if !SERIAL
-#include "glsl/work_group.glsl"
+#include "glsl/numeric/work_group.glsl"
 #endif
 #include "techniques/implicit_visibility/bin_lookup.glsl"
 
 layout(local_size_x = THREADS) in;
-layout(std430, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
+layout(std430) readonly buffer Leaves { Leaf leaves[]; };
 #if !SKY && !GLOSSY
-layout(std430, binding = 5) readonly buffer Direct { vec4 direct[]; };
-layout(std430, binding = 6) writeonly buffer Next { vec4 next[]; };
+layout(std430) readonly buffer Direct { vec4 direct[]; };
+layout(std430) writeonly buffer Next { vec4 next[]; };
 #endif
-layout(std430, binding = 4) writeonly buffer Irradiance { vec4 irradiance[]; };
+layout(std430) writeonly buffer Irradiance { vec4 irradiance[]; };
 uniform uint first_leaf;
 uniform uint leaf_count;
 
@@ -20,9 +20,9 @@ uniform uint leaf_count;
 vec4 gathered(uint row, vec3 normal, uint first, uint step) {
   vec4 sum = vec4(0.0);
   for (uint bin = first; bin < bin_count; bin += step) {
-    vec4 direction = directions[bin];
-    float weight = direction.w * dot(normal, direction.xyz);
-    if (weight > 0.0) sum += weight * vec4(bin_radiance(row, bin, direction.xyz), 1.0);
+    BinDirection to = directions[bin];
+    float weight = to.solid_angle * dot(normal, to.direction);
+    if (weight > 0.0) sum += weight * vec4(bin_radiance(row, bin, to.direction), 1.0);
   }
   return sum;
 }
@@ -43,9 +43,9 @@ void main() {
   vec4 sum = total(gathered(row, normal, gl_LocalInvocationIndex, uint(THREADS)));
   if (gl_LocalInvocationIndex > 0u) return;
 #endif
-  vec3 light = leaf.vertex.w > 0.0 && sum.w > 0.0 ? pi / sum.w * sum.rgb : vec3(0.0);
+  vec3 light = leaf.used > 0.0 && sum.w > 0.0 ? pi / sum.w * sum.rgb : vec3(0.0);
   irradiance[slot] = vec4(light, 0.0);
 #if !SKY && !GLOSSY
-  next[slot] = vec4(direct[slot].rgb + leaf.albedo.rgb * light * inverse_pi, 0.0);
+  next[slot] = vec4(direct[slot].rgb + leaf.albedo * light * inverse_pi, 0.0);
 #endif
 }

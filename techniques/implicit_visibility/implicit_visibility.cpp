@@ -18,38 +18,78 @@ using implicit_visibility::ElementPasses;
 using implicit_visibility::LightPasses;
 using implicit_visibility::PassRequest;
 
-constexpr const char* structures[] = {"hierarchical", "flat"};
-constexpr const char* makers[] = {"cpu", "gpu"};
-constexpr const char* fills[] = {"centre", "footprint"};
-constexpr const char* displays[] = {"vertex", "pixel"};
-constexpr Parameter parameters[] = {
+constexpr const char* kStructures[] = {"hierarchical", "flat"};
+constexpr const char* kMakers[] = {"cpu", "gpu"};
+constexpr const char* kFills[] = {"centre", "footprint"};
+constexpr const char* kDisplays[] = {"vertex", "pixel"};
+constexpr Parameter kParameters[] = {
     integer("bins", 16, {4, 32}, "bins", "N of the 6 x N x N bins of directions").quality().logScale(),
     integer("bounces", 1, {1, 16}, "bounces", "Surfaces that reflect light before the one that is seen"),
-    choice("structure", 0, structures, "Links through the hierarchy, or every pair of surface elements"),
-    choice("links", 0, makers, "Where links are made: on all cores of the CPU, as published, or on the GPU"),
+    choice("structure", 0, kStructures, "Links through the hierarchy, or every pair of surface elements"),
+    choice("links", 0, kMakers, "Where links are made: on all cores of the CPU, as published, or on the GPU"),
     choice(
-        "fill", 1, fills,
+        "fill", 1, kFills,
         "Bins that an element fills: the one of its centre, as published, or those whose centres it covers"),
     real("opening", radiosity::LinkSettings{}.opening, {0.05, 16}, "bins",
          "Solid angle above which elements are opened; 1: as published")
         .logScale(),
+    real("sharing", radiosity::LinkSettings{}.sharing, {0.01, 1}, "of opening",
+         "Solid angle below which receivers share links; links made on the GPU are not shared")
+        .logScale(),
+    real(
+        "closing", radiosity::LinkSettings{}.closing, {0.01, 1}, "of a bin's distance",
+        "Single bins take the links of neighbours that are nearer than this; on the GPU empty bins alone do"),
+    real("below_horizon", radiosity::LinkSettings{}.belowHorizon, {0, 1}, "sine",
+         "How far below their horizon vertices see, whose normals differ from pixels'; links=cpu"),
     real("longest_edge", 0.03, {0.005, 10}, "scene radii", "Longer edges of triangles are halved")
         .quality()
         .logScale(),
-    choice("display", 0, displays,
+    real("lift", radiosity::kDefaultLift, {0, 1}, "disc radii",
+         "Height over an element from which it is looked for within bodies of other objects"),
+    choice("display", 0, kDisplays,
            "Irradiance of vertices, interpolated, or bins gathered with the BRDF per pixel"),
     integer("glossy_bins", 0, {0, 16}, "bins",
             "N of the 6 x N x N bins that glossy surfaces send light into; 0: they send it evenly")
         .quality(),
     integer("light_samples", 64, {1, 1024}, "points", "Of each area light, tested against the bins")
         .logScale(),
+    real("reach", 0.98, {0, 1}, "of the way",
+         "Links that are shorter than this hide a point of a light: those at the light itself are not to"),
     integer("memory", 1024, {1, 16384}, "MiB", "Scenes whose links take more are refused"),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "4 bins", .scene = "cornell_box", .settings = "bins=4", .factor = 4},
     {.name = "32 bins", .scene = "cornell_box", .settings = "bins=32"},
     {.name = "as published", .scene = "cornell_box", .settings = "fill=centre", .factor = 2},
     {.name = "every pair", .scene = "cornell_box", .settings = "structure=flat"},
+    {.name = "links shared by many", .scene = "cornell_box", .settings = "sharing=1 bins=8", .factor = 4},
+    {.name = "hardly a link shared", .scene = "cornell_box", .settings = "sharing=0.01 bins=8", .factor = 4},
+    {.name = "empty bins alone closed",
+     .scene = "cornell_box",
+     .settings = "closing=0.01 bins=8",
+     .factor = 4},
+    {.name = "all single bins closed", .scene = "cornell_box", .settings = "closing=1 bins=8", .factor = 4},
+    {.name = "nothing below the horizon",
+     .scene = "cornell_box",
+     .settings = "below_horizon=0 bins=8",
+     .factor = 4},
+    {.name = "all below the horizon",
+     .scene = "cornell_box",
+     .settings = "below_horizon=1 bins=8",
+     .factor = 4},
+    {.name = "bodies looked for in the surface",
+     .scene = "cornell_box",
+     .settings = "lift=0 bins=8",
+     .factor = 4},
+    {.name = "bodies looked for a radius above",
+     .scene = "cornell_box",
+     .settings = "lift=1 bins=8",
+     .factor = 4},
+    {.name = "nothing hides a light", .scene = "cornell_box", .settings = "reach=0 bins=8", .factor = 0},
+    {.name = "links as long as the way hide",
+     .scene = "cornell_box",
+     .settings = "reach=1 bins=8",
+     .factor = 0},
     {.name = "coarse mesh", .scene = "cornell_box", .settings = "longest_edge=10", .factor = 8},
     {.name = "per pixel", .scene = "cornell_box", .settings = "display=pixel bins=8", .factor = 2},
     {.name = "links made on the GPU", .scene = "cornell_box", .settings = "links=gpu bins=8", .factor = 2},
@@ -66,8 +106,8 @@ class ImplicitVisibility : public Technique {
                                       .title = "Implicit visibility",
                                       .source = "Dong, Kautz, Theobalt, Seidel 2007; thesis, chapter 4",
                                       .terms = Term::visibility | Term::indirect | Term::environment,
-                                      .parameters = parameters,
-                                      .stress = stress};
+                                      .parameters = kParameters,
+                                      .stress = kStress};
 
  private:
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -91,7 +131,7 @@ class ImplicitVisibility : public Technique {
   /// Whether no light of the scene's own is left out: then the environment is asked for, too.
   static bool asksForAll(const TechniqueInputs& inputs, const TermRequest& request) {
     const auto own = [](const glsl::Light& light) {
-      return (light.info.y & glsl::light_flag_environment) == 0 && glm::vec3(light.emission) != glm::vec3(0);
+      return (light.flags & glsl::light_flag_environment) == 0 && light.emission != glm::vec3(0);
     };
     return static_cast<std::ptrdiff_t>(request.lights.size()) >=
            std::ranges::count_if(inputs.pose.lights, own);
@@ -108,10 +148,14 @@ class ImplicitVisibility : public Technique {
         graph, inputs,
         implicit_visibility::ElementSettings{.links = {.resolution = p.integer("bins"),
                                                        .fill = static_cast<radiosity::Fill>(p.choice("fill")),
-                                                       .opening = p.real("opening")},
+                                                       .opening = p.real("opening"),
+                                                       .sharing = p.real("sharing"),
+                                                       .closing = p.real("closing"),
+                                                       .belowHorizon = p.real("below_horizon")},
                                              .flat = p.choice("structure") == 1,
                                              .onGpu = p.choice("links") == 1,
                                              .longestEdge = p.real("longest_edge"),
+                                             .lift = p.real("lift"),
                                              .glossy = p.integer("glossy_bins"),
                                              .memory = int64_t{p.integer("memory")} << 20,
                                              .technique = info.name});

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/reference/environment.h"
-#include "core/scene/gpu_scene.h"
+#include "core/gpu_scene/gpu_scene.h"
+#include "core/scene/environment_light.h"
 #include "core/shading/ltc_table.h"
 
 namespace limn::implicit_visibility {
@@ -53,31 +53,27 @@ const LightPasses::Seen& LightPasses::seen(const PassRequest& r, std::span<const
       gpu::Buffer::of(r.inputs.gpuScene.device(), "lights asked for", std::span<const uint32_t>(s.lights));
   s.indices = r.graph.importBuffer(fmt::format("lights asked for {}", seen_.size()), s.indexBuffer);
   frame::PassBuilder pass = r.graph.addPass("light visibility", technique_);
-  elements_.readLinks(pass);
-  pass.read(r.inputs.handles.lights, Access::storageLoad, "lights")
-      .read(elements_.groups, Access::storageLoad, "how far elements are")
-      .read(s.indices, Access::storageLoad, "which lights")
+  pass.read(elements_.leaves, Access::storageLoad, "Leaves", "normals and albedos");
+  const frame::SlotHandle links = elements_.readLinks(pass);
+  pass.read(r.inputs.handles.lights, Access::storageLoad, "Lights", "lights")
+      .read(elements_.groups, Access::storageLoad, "Groups", "how far elements are")
+      .read(s.indices, Access::storageLoad, "Indices", "which lights")
       .cacheable();
   const size_t bytes = std::max<size_t>(lights.size() * elements_.leafSlots(), 4) * sizeof(float);
-  s.seen = pass.write(r.graph.createBuffer("visibility of lights", {bytes}), Access::storageStore,
+  s.seen = pass.write(r.graph.createBuffer("visibility of lights", {bytes}), Access::storageStore, "Seen",
                       "V of each leaf");
   const auto kernelHandle = elements_.program(pass, "light_visibility.comp.glsl");
-  pass.execute([this, kernelHandle, lightBuffer = r.inputs.handles.lights, indices = s.indices, seen = s.seen,
-                count = static_cast<int>(lights.size()),
-                samples = r.inputs.parameters.integer("light_samples")](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(kernelHandle);
-    kernel.use();
+  pass.execute([this, kernelHandle, links, count = static_cast<int>(lights.size()),
+                samples = r.inputs.parameters.integer("light_samples"),
+                reach = r.inputs.parameters.real("reach")](frame::PassContext& context) {
+    gpu::Program& kernel = context.use(kernelHandle);
     elements_.setSpace(kernel);
     kernel.set("slots", elements_.leafSlots());
     kernel.set("samples", static_cast<unsigned>(samples));
+    kernel.set("reach", reach);
     kernel.set("unit", elements_.elements().space().radius());
-    context.bindStorage(0, lightBuffer);
-    context.bindStorage(1, elements_.leaves);
-    context.bindStorage(3, elements_.groups);
-    context.bindStorage(4, indices);
-    context.bindStorage(5, seen);
     for (const LinkChunk& chunk : elements_.chunks) {
-      ElementPasses::bind(context, kernel, chunk);
+      ElementPasses::bind(context, kernel, links, chunk);
       context.dispatch(static_cast<int>(chunk.count), count, 1, 64, 1);
     }
   });
@@ -89,46 +85,30 @@ LightPasses::Sent LightPasses::directLight(const PassRequest& r, std::span<const
   const BufferHandle skyIrradiance = sky ? this->sky(r).irradiance : BufferHandle{};
   const bool glossy = elements_.glossy();
   frame::PassBuilder pass = r.graph.addPass("direct light", technique_);
-  pass.read(r.inputs.handles.lights, Access::storageLoad, "lights")
-      .read(elements_.leaves, Access::storageLoad, "normals and albedos")
+  pass.read(r.inputs.handles.lights, Access::storageLoad, "Lights", "lights")
+      .read(elements_.leaves, Access::storageLoad, "Leaves", "normals and albedos")
       .cacheable();
   if (seen)
-    pass.read(seen->seen, Access::storageLoad, "V of each light")
-        .read(seen->indices, Access::storageLoad, "which lights");
-  if (sky && !glossy) pass.read(skyIrradiance, Access::storageLoad, "irradiance of the environment");
-  frame::TextureHandle ltc;
+    pass.read(seen->seen, Access::storageLoad, "Seen", "V of each light")
+        .read(seen->indices, Access::storageLoad, "Indices", "which lights");
+  if (sky && !glossy) pass.read(skyIrradiance, Access::storageLoad, "Sky", "irradiance of the environment");
   if (glossy) {
     if (!ltcTable_) ltcTable_ = shading::makeLtcTexture(r.inputs.gpuScene.device());
-    ltc = r.graph.importTexture("lobes as linearly transformed cosines", ltcTable_);
-    pass.read(elements_.materials, Access::storageLoad, "BRDFs")
-        .read(ltc, Access::sampled, "glossy light of rectangles");
+    pass.read(elements_.materials, Access::storageLoad, "Materials", "BRDFs")
+        .read(r.graph.importTexture("lobes as linearly transformed cosines", ltcTable_), Access::sampled,
+              "ltc_table", "glossy light of rectangles");
   }
   const BufferHandle direct =
-      pass.write(sent(r, "direct light"), Access::storageStore, "reflected by leaves");
+      pass.write(sent(r, "direct light"), Access::storageStore, "Direct", "reflected by leaves");
   const BufferHandle outgoing =
-      pass.write(sent(r, "outgoing"), Access::storageStore, "the same, before it is pulled up");
+      pass.write(sent(r, "outgoing"), Access::storageStore, "Outgoing", "the same, before it is pulled up");
   const auto kernelHandle = elements_.program(
       pass, "direct.comp.glsl", {{"LIGHTS", seen ? "1" : "0"}, {"ENVIRONMENT", sky ? "1" : "0"}});
-  pass.execute([this, kernelHandle, seen, skyIrradiance, direct, outgoing, glossy, ltc,
-                lightBuffer = r.inputs.handles.lights, count = lights.size()](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(kernelHandle);
-    kernel.use();
-    if (glossy && seen) elements_.setSpace(kernel);  // no light, no direction
+  pass.execute([this, kernelHandle, glossy, count = lights.size()](frame::PassContext& context) {
+    gpu::Program& kernel = context.use(kernelHandle);
+    if (glossy && count > 0) elements_.setSpace(kernel);  // no light, no direction
     kernel.set("slots", elements_.leafSlots());
-    context.bindStorage(0, lightBuffer);
-    context.bindStorage(1, elements_.leaves);
-    context.bindStorage(2, direct);
-    context.bindStorage(3, outgoing);
-    if (seen) {
-      kernel.set("light_count", static_cast<unsigned>(count));
-      context.bindStorage(4, seen->indices);
-      context.bindStorage(5, seen->seen);
-    }
-    if (skyIrradiance && !glossy) context.bindStorage(6, skyIrradiance);
-    if (glossy) {
-      context.bindStorage(7, elements_.materials);
-      context.bindSampled(glsl::ltc_unit, ltc);
-    }
+    if (count > 0) kernel.set("light_count", static_cast<unsigned>(count));
     dispatchSent(context, elements_.leafSlots());
   });
   if (sky && glossy) return reflect(r, this->sky(r), direct);
@@ -139,16 +119,13 @@ BufferHandle LightPasses::pullUp(const PassRequest& r, BufferHandle outgoing) {
   const auto levels = elements_.elements().forest().levels();
   for (size_t level = 1; level < levels.size(); ++level) {
     frame::PassBuilder pass = r.graph.addPass("pull up", technique_);
-    pass.read(elements_.groups, Access::storageLoad, "children and areas").cacheable();
-    outgoing = pass.write(outgoing, Access::storageLoadStore, "radiance of the next level");
+    pass.read(elements_.groups, Access::storageLoad, "Groups", "children and areas").cacheable();
+    outgoing = pass.write(outgoing, Access::storageLoadStore, "Outgoing", "radiance of the next level");
     const auto kernelHandle = elements_.program(pass, "pull_up.comp.glsl");
-    pass.execute([this, kernelHandle, outgoing, range = levels[level]](frame::PassContext& context) {
-      gpu::Program& kernel = context.program(kernelHandle);
-      kernel.use();
+    pass.execute([this, kernelHandle, range = levels[level]](frame::PassContext& context) {
+      gpu::Program& kernel = context.use(kernelHandle);
       kernel.set("first_group", range.first);
       kernel.set("group_count", range.count);
-      context.bindStorage(0, elements_.groups);
-      context.bindStorage(1, outgoing);
       dispatchSent(context, 4 * range.count);
     });
   }
@@ -159,24 +136,17 @@ Gathered LightPasses::gather(const PassRequest& r, BufferHandle outgoing, Buffer
                              BufferHandle& next) {
   const bool glossy = elements_.glossy();
   frame::PassBuilder pass = r.graph.addPass("gather", technique_);
-  elements_.readLinks(pass);
-  pass.read(outgoing, Access::storageLoad, "radiance of elements").cacheable();
-  if (!glossy) pass.read(direct, Access::storageLoad, "direct light, reflected by leaves");
-  const BufferHandle irradiance = pass.write(perSlot(r, "irradiance"), Access::storageStore, "of leaves");
+  const frame::SlotHandle links = readBins(pass);
+  pass.read(outgoing, Access::storageLoad, "Source", "radiance of elements").cacheable();
+  if (!glossy) pass.read(direct, Access::storageLoad, "Direct", "direct light, reflected by leaves");
+  const BufferHandle irradiance =
+      pass.write(perSlot(r, "irradiance"), Access::storageStore, "Irradiance", "of leaves");
   const BufferHandle reflected =
       glossy ? BufferHandle{}
-             : pass.write(perSlot(r, "outgoing"), Access::storageStore, "reflected by leaves");
+             : pass.write(perSlot(r, "outgoing"), Access::storageStore, "Next", "reflected by leaves");
   const auto kernelHandle = elements_.program(pass, "gather.comp.glsl", gatherDefines(r, false));
-  pass.execute([this, kernelHandle, outgoing, direct, irradiance, reflected,
-                oneEach = serial(r)](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(kernelHandle);
-    kernel.use();
-    context.bindStorage(3, outgoing);
-    if (reflected) {
-      context.bindStorage(5, direct);
-      context.bindStorage(6, reflected);
-    }
-    gatherChunks(context, kernel, irradiance, oneEach);
+  pass.execute([this, kernelHandle, links, oneEach = serial(r)](frame::PassContext& context) {
+    gatherChunks(context, kernelHandle, links, oneEach);
   });
   const Gathered gathered{irradiance, outgoing, false};
   next = glossy ? reflect(r, gathered, direct).second : reflected;
@@ -186,31 +156,23 @@ Gathered LightPasses::gather(const PassRequest& r, BufferHandle outgoing, Buffer
 LightPasses::Sent LightPasses::reflect(const PassRequest& r, const Gathered& gathered,
                                        BufferHandle direct) const {
   frame::PassBuilder pass = r.graph.addPass("reflect", technique_);
-  elements_.readLinks(pass);
-  pass.read(gathered.source, Access::storageLoad, "radiance of elements or of the environment")
-      .read(gathered.irradiance, Access::storageLoad, "of leaves")
-      .read(elements_.materials, Access::storageLoad, "BRDFs")
+  const frame::SlotHandle links = readBins(pass);
+  pass.read(gathered.source, Access::storageLoad, "Source", "radiance of elements or of the environment")
+      .read(gathered.irradiance, Access::storageLoad, "Irradiance", "of leaves")
+      .read(elements_.materials, Access::storageLoad, "Materials", "BRDFs")
       .cacheable();
   if (gathered.sky)
-    direct = pass.write(direct, Access::storageLoadStore, "direct light, reflected by leaves");
+    direct = pass.write(direct, Access::storageLoadStore, "Direct", "direct light, reflected by leaves");
   else
-    pass.read(direct, Access::storageLoad, "direct light, reflected by leaves");
+    pass.read(direct, Access::storageLoad, "Direct", "direct light, reflected by leaves");
   const BufferHandle next =
-      pass.write(sent(r, "outgoing"), Access::storageStore, "reflected by leaves, to be pulled up");
+      pass.write(sent(r, "outgoing"), Access::storageStore, "Next", "reflected by leaves, to be pulled up");
   const auto kernelHandle = elements_.program(pass, "reflect.comp.glsl", {{"SKY", gathered.sky ? "1" : "0"}});
-  pass.execute([this, kernelHandle, gathered, direct, next](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(kernelHandle);
-    kernel.use();
+  pass.execute([this, kernelHandle, links](frame::PassContext& context) {
+    gpu::Program& kernel = context.use(kernelHandle);
     elements_.setSpace(kernel);
-    context.bindStorage(0, elements_.directions);
-    context.bindStorage(1, elements_.leaves);
-    context.bindStorage(3, gathered.source);
-    context.bindStorage(4, gathered.irradiance);
-    context.bindStorage(5, direct);
-    context.bindStorage(6, next);
-    context.bindStorage(7, elements_.materials);
     for (const LinkChunk& chunk : elements_.chunks) {
-      ElementPasses::bind(context, kernel, chunk);
+      ElementPasses::bind(context, kernel, links, chunk);
       dispatchSent(context, chunk.count);
     }
   });
@@ -226,14 +188,18 @@ std::map<std::string, std::string> LightPasses::gatherDefines(const PassRequest&
   return {{"SKY", sky ? "1" : "0"}, {"SERIAL", serial(r) ? "1" : "0"}};
 }
 
-void LightPasses::gatherChunks(frame::PassContext& context, gpu::Program& kernel, BufferHandle irradiance,
-                               bool serial) const {
+frame::SlotHandle LightPasses::readBins(frame::PassBuilder& pass) const {
+  elements_.readDirections(pass);
+  pass.read(elements_.leaves, Access::storageLoad, "Leaves", "normals and albedos");
+  return elements_.readLinks(pass);
+}
+
+void LightPasses::gatherChunks(frame::PassContext& context, frame::ProgramHandle program,
+                               frame::SlotHandle links, bool serial) const {
+  gpu::Program& kernel = context.use(program);
   elements_.setSpace(kernel);
-  context.bindStorage(0, elements_.directions);
-  context.bindStorage(1, elements_.leaves);
-  context.bindStorage(4, irradiance);
   for (const LinkChunk& chunk : elements_.chunks) {
-    ElementPasses::bind(context, kernel, chunk);
+    ElementPasses::bind(context, kernel, links, chunk);
     const glm::ivec2 groups = ElementPasses::workGroups(chunk.count);
     if (serial)
       context.dispatch(static_cast<int>(chunk.count), 1, 1, 64, 1);
@@ -248,24 +214,21 @@ const Gathered& LightPasses::sky(const PassRequest& r) {
       gpu::Buffer::of<glm::vec4>(r.inputs.gpuScene.device(), "environment of bins", skyBins(r.inputs.scene));
   const BufferHandle bins = r.graph.importBuffer("environment of bins", environment_);
   frame::PassBuilder pass = r.graph.addPass("environment light", technique_);
-  elements_.readLinks(pass);
-  pass.read(bins, Access::storageLoad, "radiance of bins").cacheable();
+  const frame::SlotHandle links = readBins(pass);
+  pass.read(bins, Access::storageLoad, "Source", "radiance of bins").cacheable();
   const BufferHandle irradiance =
-      pass.write(perSlot(r, "environment's irradiance"), Access::storageStore, "of leaves");
+      pass.write(perSlot(r, "environment's irradiance"), Access::storageStore, "Irradiance", "of leaves");
   const auto kernelHandle = elements_.program(pass, "gather.comp.glsl", gatherDefines(r, true));
-  pass.execute([this, kernelHandle, bins, irradiance, oneEach = serial(r)](frame::PassContext& context) {
-    gpu::Program& kernel = context.program(kernelHandle);
-    kernel.use();
-    context.bindStorage(3, bins);
-    gatherChunks(context, kernel, irradiance, oneEach);
+  pass.execute([this, kernelHandle, links, oneEach = serial(r)](frame::PassContext& context) {
+    gatherChunks(context, kernelHandle, links, oneEach);
   });
   sky_ = Gathered{irradiance, bins, true};
   return *sky_;
 }
 
 std::vector<glm::vec4> LightPasses::skyBins(const scene::Scene& scene) const {
-  const reference::EnvironmentLight environment(scene.environment);
-  const auto n = static_cast<uint32_t>(std::sqrt(static_cast<double>(elements_.binCount()) / 6) + 0.5);
+  const scene::EnvironmentLight environment(scene.environment);
+  const auto n = static_cast<uint32_t>(std::lround(std::sqrt(static_cast<double>(elements_.binCount()) / 6)));
   // Four samples for each pixel of the map, so that no small bright one is missed.
   const double pixels = double(scene.environment.width) * scene.environment.height;
   const int side =

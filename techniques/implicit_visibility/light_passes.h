@@ -1,5 +1,5 @@
-// Light through the links: visibility of lights, what leaves reflect of them and of the environment, and
-// bounces (thesis, section 4.3.3).
+// Computes light through the links: visibility of lights, what leaves reflect of them and of the environment,
+// and bounces (thesis, section 4.3.3).
 #pragma once
 
 #include <deque>
@@ -15,48 +15,51 @@
 
 namespace limn::implicit_visibility {
 
-/// Must outlive the graph.
+/// Declares the passes of light. The object must outlive the graph.
 class LightPasses {
  public:
   LightPasses(const ElementPasses& elements, std::string_view technique);
 
-  /// V of each leaf, light after light.
+  /// Returns V of each leaf, light after light.
   frame::BufferHandle seenBy(const PassRequest& r, std::span<const uint32_t> lights);
-  /// Light of the environment in the leaves' empty bins.
+  /// Returns the light of the environment in the leaves' empty bins.
   const Gathered& sky(const PassRequest& r);
-  /// Light that arrives over 1 to `bounces` surfaces, from lights and, if `sky`, the environment.
+  /// Returns the light that arrives over 1 to `bounces` surfaces, from lights and, if `sky`, the environment.
   Gathered reflected(const PassRequest& r, std::span<const uint32_t> lights, bool sky, int bounces);
 
  private:
-  /// Visibility of some lights at all leaves; shared by those who ask for the same lights.
+  /// Holds the visibility of some lights at all leaves; requests for the same lights share it.
   struct Seen {
     std::vector<uint32_t> lights;
     gpu::Buffer indexBuffer;
     frame::BufferHandle indices, seen;
   };
-  /// What leaves send, twice: to keep, and to be pulled up.
+  /// Holds two buffers of what leaves send: one to keep, and one to be pulled up.
   using Sent = std::pair<frame::BufferHandle, frame::BufferHandle>;
 
   const Seen& seen(const PassRequest& r, std::span<const uint32_t> lights);
-  /// What leaves reflect of lights and environment.
+  /// Returns what leaves reflect of lights and environment.
   Sent directLight(const PassRequest& r, std::span<const uint32_t> lights, bool sky);
-  /// Levels above the leaves take their children's mean (thesis: pull-up).
+  /// Sets the levels above the leaves to their children's mean (thesis: pull-up).
   frame::BufferHandle pullUp(const PassRequest& r, frame::BufferHandle outgoing);
-  /// What arrives at leaves from `outgoing`, and in `next` what they then send on.
+  /// Returns what arrives at leaves from `outgoing`, and in `next` what they then send on.
   Gathered gather(const PassRequest& r, frame::BufferHandle outgoing, frame::BufferHandle direct,
                   frame::BufferHandle& next);
-  /// What leaves send into bins of directions: `direct`, and what they reflect of `gathered`; where that is
-  /// the environment it is kept in `direct`, too.
+  /// Returns what leaves send into bins of directions: `direct`, and what they reflect of `gathered`; where
+  /// `gathered` is the environment, the result is also kept in `direct`.
   Sent reflect(const PassRequest& r, const Gathered& gathered, frame::BufferHandle direct) const;
-  void gatherChunks(frame::PassContext& context, gpu::Program& kernel, frame::BufferHandle irradiance,
+  /// Declares what a pass reads at leaves to look through their bins; returns the slot of the links.
+  frame::SlotHandle readBins(frame::PassBuilder& pass) const;
+  /// Runs gather.comp.glsl for all leaves.
+  void gatherChunks(frame::PassContext& context, frame::ProgramHandle program, frame::SlotHandle links,
                     bool serial) const;
-  /// The environment's mean radiance over each bin.
+  /// Returns the environment's mean radiance over each bin.
   std::vector<glm::vec4> skyBins(const scene::Scene& scene) const;
 
   frame::BufferHandle perSlot(const PassRequest& r, const char* name, uint32_t count = 1) const;
-  /// For values of radiance that elements send.
+  /// Returns a buffer for the radiance values that elements send.
   frame::BufferHandle sent(const PassRequest& r, const char* name) const;
-  /// A work item for every value that `slots` elements send.
+  /// Dispatches a work item for every value that `slots` elements send.
   void dispatchSent(const frame::PassContext& context, uint32_t slots) const;
   static bool serial(const PassRequest& r);
   static std::map<std::string, std::string> gatherDefines(const PassRequest& r, bool sky);

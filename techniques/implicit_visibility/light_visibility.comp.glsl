@@ -1,24 +1,22 @@
 // How much of each light each leaf sees: points of the light are hidden where the link in their bin is shorter. That is the
 // sum of equation 4.4 with the visibility of 4.5, so that lights smaller than a bin keep their size.
-#include "glsl/light_view.glsl"
-#include "glsl/sampling.glsl"
+#include "glsl/light/light_view.glsl"
+#include "glsl/numeric/sampling.glsl"
 #include "techniques/implicit_visibility/elements.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Lights { Light lights[]; };
-layout(std430, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
-layout(std430, binding = 2) readonly buffer Links { uint links[]; };
-layout(std430, binding = 3) readonly buffer Groups { ElementGroup groups[]; };
-layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };
-layout(std430, binding = 5) writeonly buffer Seen { float seen[]; };
+layout(std430) readonly buffer Lights { Light lights[]; };
+layout(std430) readonly buffer Leaves { Leaf leaves[]; };
+layout(std430) readonly buffer Links { uint links[]; };
+layout(std430) readonly buffer Groups { ElementGroup groups[]; };
+layout(std430) readonly buffer Indices { uint indices[]; };
+layout(std430) writeonly buffer Seen { float seen[]; };
 uniform uint first_leaf;  // of those whose links are bound
 uniform uint leaf_count;
 uniform uint slots;
 uniform uint samples;
-uniform float unit;  // metres
-
-// A blocker must be nearer than this part of the way, so that lights at a surface are not hidden by it.
-const float reach = 0.98;
+uniform float unit;   // metres
+uniform float reach;  // a blocker is nearer than this part of the way, so that lights at a surface are not hidden by it
 
 // Whether the light's point is visible; distance: in metres, huge for distant lights.
 bool clear(uint slot, Light light, vec3 direction, float distance) {
@@ -26,7 +24,7 @@ bool clear(uint slot, Light light, vec3 direction, float distance) {
   if (link == no_link) return true;
   uint element = link & ~link_back;
   ElementGroup g = groups[element / 4u];
-  if (g.info.w == light.info.z) return true;  // a light does not hide itself
+  if (g.object == light.own_instance) return true;  // a light does not hide itself
   ElementGroup own = groups[slot / 4u];
   uint k = element % 4u;
   uint i = slot % 4u;
@@ -41,8 +39,8 @@ void main() {
   float lit = 1.0;
   Light light = lights[indices[gl_WorkGroupID.y]];
   LightView v = light_view(light, leaf.position.xyz, leaf.normal.xyz, -1.0);
-  if (leaf.vertex.w > 0.0 && !v.masked) {
-    bool distant = light.info.x == light_directional;
+  if (leaf.used > 0.0 && !v.masked) {
+    bool distant = light.type == light_directional;
     float total = 0.0;
     float hits = 0.0;
     uint count = v.extended ? samples : 1u;

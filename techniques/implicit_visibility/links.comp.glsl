@@ -8,10 +8,10 @@
 #include "techniques/implicit_visibility/elements.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Groups { ElementGroup groups[]; };
-layout(std430, binding = 1) readonly buffer Roots { uint roots[]; };
-layout(std430, binding = 2) buffer Links { uint links[]; };
-layout(std430, binding = 3) buffer Distances { float distances[]; };  // squared
+layout(std430) readonly buffer Groups { ElementGroup groups[]; };
+layout(std430) readonly buffer Roots { uint roots[]; };
+layout(std430) buffer Links { uint links[]; };
+layout(std430) buffer Distances { float distances[]; };  // squared
 uniform uint first_leaf;
 uniform uint leaf_count;
 uniform uint first_root;
@@ -66,7 +66,7 @@ void main() {
   if (row >= leaf_count) return;
   ElementGroup own = groups[(first_leaf + row) / 4u];
   uint self = (first_leaf + row) % 4u;
-  if (self >= own.info.y) return;
+  if (self >= own.lanes) return;
   vec3 position = vec3(own.x[self], own.y[self], own.z[self]);
   vec3 up = vec3(own.nx[self], own.ny[self], own.nz[self]);
   float angle = opening * 4.0 / float(n * n);
@@ -117,19 +117,19 @@ void main() {
       float distance = sqrt(distance2);
       float reach = g.radius[k];
       bool facing = dot(offset, up) + reach - grazing * distance > 0.0;
-      if (g.info.z == 0u) facing = facing && reach + (g.spread[k] - grazing) * distance > height;
+      if (g.backs == 0u) facing = facing && reach + (g.spread[k] - grazing) * distance > height;
       vec3 size = abs(offset);
       float major = max(size.x, max(size.y, size.z));
       float extent = max(g.area[k], reach * reach);
       float limit = angle * major * major * major;
       float shown = min(abs(height) + g.spread[k] * distance, distance);
-      bool open = g.info.x != no_link && extent * shown >= limit;
+      bool open = g.children != no_link && extent * shown >= limit;
       bool linked = facing && !open && distance2 > 1e-14;
-      if (g.info.z != 0u) linked = linked && (height <= 0.0 || height > max(0.1 * distance, g.disc[k]));
+      if (g.backs != 0u) linked = linked && (height <= 0.0 || height > max(0.1 * distance, g.disc[k]));
       radius = g.disc[k];
-      link = (4u * group + uint(k)) | (g.info.z != 0u && height > 0.0 ? link_back : 0u);
+      link = (4u * group + uint(k)) | (g.backs != 0u && height > 0.0 ? link_back : 0u);
       if (facing && open && top < most_waiting) {
-        waiting[top] = g.info.x + uint(k);
+        waiting[top] = g.children + uint(k);
         ++top;
       }
 #if FOOTPRINT
@@ -151,7 +151,7 @@ void main() {
     } else if (top > 0) {
       --top;
       group = waiting[top];
-      lanes = (1u << groups[group].info.y) - 1u;
+      lanes = (1u << groups[group].lanes) - 1u;
     } else if (root < first_root + root_count) {
       group = roots[root];
       lanes = 1u;

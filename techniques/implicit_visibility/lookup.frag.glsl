@@ -2,7 +2,7 @@
 layout(location = 0) in vec2 place;
 layout(location = 1) flat in uvec3 around;
 layout(location = 0) out uvec4 found;  // leaf slots; barycentric coordinates, 2 x 16 bits
-layout(binding = 0) uniform sampler2D gbuffer_depth;
+uniform sampler2D gbuffer_depth;
 
 void main() {
   float depth = texelFetch(gbuffer_depth, ivec2(gl_FragCoord.xy), 0).x;

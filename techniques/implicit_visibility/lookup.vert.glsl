@@ -1,14 +1,16 @@
 // The triangles between surfels, as the camera sees them: which leaves lie around a pixel. Clip depth as in the G-buffer.
-#include "glsl/blocks.glsl"
+#include "glsl/scene/blocks.glsl"
 
 struct Leaf {
-  vec4 vertex;
+  vec3 vertex;
+  float used;
   vec4 position;
   vec4 normal;
-  vec4 albedo;
+  vec3 albedo;
+  float unused;
 };
-layout(std430, binding = 0) readonly buffer Leaves { Leaf leaves[]; };
-layout(std430, binding = 1) readonly buffer Corners { uint corners[]; };
+layout(std430) readonly buffer Leaves { Leaf leaves[]; };
+layout(std430) readonly buffer Corners { uint corners[]; };
 uniform float near_plane;
 
 layout(location = 0) out vec2 place;  // barycentric coordinates of the second and third corner
@@ -19,6 +21,6 @@ void main() {
   int corner = gl_VertexID - first;
   around = uvec3(corners[first], corners[first + 1], corners[first + 2]);
   place = vec2(corner == 1 ? 1.0 : 0.0, corner == 2 ? 1.0 : 0.0);
-  vec4 clip = frame.world_to_clip * vec4(leaves[corners[gl_VertexID]].vertex.xyz, 1.0);
+  vec4 clip = frame.world_to_clip * vec4(leaves[corners[gl_VertexID]].vertex, 1.0);
   gl_Position = vec4(clip.xy, near_plane, clip.w);
 }

@@ -3,8 +3,8 @@
 #include "techniques/implicit_visibility/elements.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Groups { ElementGroup groups[]; };
-layout(std430, binding = 1) buffer Outgoing { vec4 outgoing[]; };
+layout(std430) readonly buffer Groups { ElementGroup groups[]; };
+layout(std430) buffer Outgoing { vec4 outgoing[]; };
 uniform uint first_group;
 uniform uint group_count;
 
@@ -15,14 +15,13 @@ void main() {
   if (index >= 4u * group_count) return;
   uint group = first_group + index / 4u;
   uint lane = index % 4u;
-  uvec4 info = groups[group].info;
-  if (lane >= info.y) return;
-  uint children = info.x + lane;
+  if (lane >= groups[group].lanes) return;
+  uint children = groups[group].children + lane;
   ElementGroup g = groups[children];
   vec3 direction = sent_direction(sent);
   vec3 sum = vec3(0.0);
   float area = 0.0;
-  for (uint k = 0u; k < g.info.y; ++k) {
+  for (uint k = 0u; k < g.lanes; ++k) {
 #if GLOSSY
     float shown = g.area[k] * max(dot(vec3(g.nx[k], g.ny[k], g.nz[k]), direction), 0.0);
 #else

@@ -3,15 +3,15 @@
 #include "techniques/implicit_visibility/bin_reflection.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
-layout(std430, binding = 4) readonly buffer Irradiance { vec4 irradiance[]; };  // of the same light
+layout(std430) readonly buffer Leaves { Leaf leaves[]; };
+layout(std430) readonly buffer Irradiance { vec4 irradiance[]; };  // of the same light
 #if SKY
-layout(std430, binding = 5) buffer Direct { vec4 direct[]; };  // becomes the same as next, which is pulled up
+layout(std430) buffer Direct { vec4 direct[]; };  // becomes the same as next, which is pulled up
 #else
-layout(std430, binding = 5) readonly buffer Direct { vec4 direct[]; };
+layout(std430) readonly buffer Direct { vec4 direct[]; };
 #endif
-layout(std430, binding = 6) writeonly buffer Next { vec4 next[]; };
-layout(std430, binding = 7) readonly buffer Materials { LeafMaterial materials[]; };
+layout(std430) writeonly buffer Next { vec4 next[]; };
+layout(std430) readonly buffer Materials { LeafMaterial materials[]; };
 uniform uint first_leaf;
 uniform uint leaf_count;
 
@@ -26,7 +26,7 @@ void main() {
   vec3 n = to_bins(leaf.normal.xyz);
   vec3 view = sent_direction(item % sent_count);
   vec3 sum = direct[at].rgb;
-  if (leaf.vertex.w > 0.0 && dot(n, view) > 0.0) {
+  if (leaf.used > 0.0 && dot(n, view) > 0.0) {
     if (brdf_is_lambertian(surface)) {
       sum += surface.diffuse * irradiance[slot].rgb * inverse_pi;
     } else {

@@ -1,18 +1,18 @@
 // Per-pixel gathering: the BRDF of the pixel's own normal and view over the bins of the leaves around it. SKY as in
 // gather.comp.glsl. Leaves whose links are not bound are left to the passes that have them.
-#include "glsl/gbuffer_input.glsl"
-#include "glsl/brdf.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
+#include "glsl/surface/brdf.glsl"
 #include "techniques/implicit_visibility/bin_reflection.glsl"
 #include "techniques/implicit_visibility/surface_lookup.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(rgba32f, binding = 0) uniform image2D radiance;
+layout(rgba32f) uniform image2D radiance;
 uniform uint first_leaf;
 uniform uint leaf_count;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
   if (pixel_depth(pixel) == 0.0) return;
   GBufferSurface surface = pixel_surface(pixel);
   if ((surface.flags & gbuffer_flag_specular) != 0u) return;

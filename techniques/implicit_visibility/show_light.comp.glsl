@@ -1,15 +1,15 @@
 // Adds what surfaces reflect of the irradiance interpolated between leaves.
-#include "glsl/gbuffer_input.glsl"
-#include "glsl/reflectance.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
+#include "glsl/surface/reflectance.glsl"
 #include "techniques/implicit_visibility/surface_lookup.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(rgba32f, binding = 0) uniform image2D radiance;
-layout(std430, binding = 0) readonly buffer Irradiance { vec4 irradiance[]; };
+layout(rgba32f) uniform image2D radiance;
+layout(std430) readonly buffer Irradiance { vec4 irradiance[]; };
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
   if (pixel_depth(pixel) == 0.0) return;
   GBufferSurface surface = pixel_surface(pixel);
   if ((surface.flags & gbuffer_flag_specular) != 0u) return;

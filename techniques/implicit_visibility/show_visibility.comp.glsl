@@ -1,10 +1,10 @@
 // V of each light of a batch: the mean of the leaves around the pixel.
-#include "glsl/gbuffer_input.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
 #include "techniques/implicit_visibility/surface_lookup.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0, r16) writeonly uniform image2DArray visibility;
-layout(std430, binding = 0) readonly buffer Seen { float seen[]; };
+layout(r16) writeonly uniform image2DArray visibility;
+layout(std430) readonly buffer Seen { float seen[]; };
 uniform uint slots;
 
 void main() {

@@ -2,7 +2,7 @@
 #ifndef LIMN_IMPLICIT_VISIBILITY_LOOKUP_GLSL
 #define LIMN_IMPLICIT_VISIBILITY_LOOKUP_GLSL
 
-layout(binding = 8) uniform usampler2D surface_lookup;
+uniform usampler2D surface_lookup;
 
 struct Around {
   uvec3 slots;

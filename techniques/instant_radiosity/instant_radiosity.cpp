@@ -4,15 +4,15 @@
 #include <memory>
 #include <vector>
 
+#include "core/gpu_scene/gpu_scene.h"
 #include "core/indirect/light_maps.h"
-#include "core/scene/gpu_scene.h"
 #include "core/technique/technique.h"
 
 namespace {
 
 using namespace limn;
 
-constexpr auto parameters = indirect::gatherParameters(
+constexpr auto kParameters = indirect::gatherParameters(
     std::to_array<Parameter>({
         integer("map_size", 128, {16, 2048}, "texels", "Width and height of each virtual light's map")
             .quality()
@@ -22,7 +22,7 @@ constexpr auto parameters = indirect::gatherParameters(
         integer("memory", 512, {16, 1024}, "MiB", "Maps drawn at once take no more than this"),
     }),
     1);
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "one virtual light", .scene = "cornell_box", .settings = "vpls=1", .factor = 8},
     {.name = "N not divisible", .scene = "cornell_box", .settings = "vpls=1021"},
     {.name = "many batches", .scene = "cornell_box", .settings = "vpls=300 map_size=256 memory=16"},
@@ -38,8 +38,8 @@ class InstantRadiosity : public Technique {
                                       .title = "Instant radiosity, one shadow map per virtual light",
                                       .source = "Keller 1997, Instant Radiosity",
                                       .terms = termSet(Term::indirect),
-                                      .parameters = parameters,
-                                      .stress = stress};
+                                      .parameters = kParameters,
+                                      .stress = kStress};
 
  private:
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -49,8 +49,8 @@ class InstantRadiosity : public Technique {
       return request.target;
     }
     const ParameterValues& p = inputs.parameters;
-    const indirect::VirtualLights lights =
-        inputs.virtualLights.request(request.lights, indirect::virtualLightDesc(p));
+    const indirect::VirtualLights lights = inputs.service<indirect::VirtualLightService>().request(
+        request.lights, indirect::virtualLightDesc(p));
     const int size = p.integer("map_size");
     const int64_t fitting = (int64_t{p.integer("memory")} << 20) / indirect::paraboloidBytes(size);
     const int batch = static_cast<int>(std::clamp<int64_t>(

@@ -6,17 +6,20 @@ namespace {
 
 using namespace limn;
 
-constexpr Parameter parameters[] = {
+constexpr Parameter kParameters[] = {
     caustics::bufferSizeParameter(),
     caustics::sceneMapSizeParameter(),
     caustics::pathsParameter(),
     caustics::lightSamplesParameter(),
+    caustics::rayStepsParameter(),
+    caustics::exitStepsParameter(),
     real("scale", 0.002, {0, 1e6}, "pixels/(sr m^2)",
          "Radiance that a fragment adds per watt of its line, in a picture of one pixel's height; set by "
          "hand for each scene"),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "buffer of 1 texel", .settings = "buffer_size=1", .factor = 0},
+    {.name = "one point of each search", .settings = "ray_steps=1 exit_steps=1", .factor = 0},
 };
 
 class KruegerCaustics : public Technique {
@@ -42,8 +45,8 @@ class KruegerCaustics : public Technique {
       .title = "Caustic lines without a physical model",
       .source = "Krueger, Buerger and Westermann 2006, Interactive Screen-Space Accurate Photon Tracing",
       .terms = termSet(Term::media),
-      .parameters = parameters,
-      .stress = stress};
+      .parameters = kParameters,
+      .stress = kStress};
 };
 
 }  // namespace

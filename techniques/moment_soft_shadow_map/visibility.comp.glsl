@@ -1,16 +1,24 @@
 // Moment soft shadow maps (Peters and Klein 2015, Peters et al. 2017): percentage-closer soft shadows of which both
 // steps, the mean depth of the blockers and the share of light, come from four moments of depth in a summed-area table.
-#include "glsl/blocker_search.glsl"
-#include "glsl/moment_shadow.glsl"
-#include "glsl/visibility_main.glsl"
+#include "glsl/shadow/blocker_search.glsl"
+#include "glsl/shadow/moment_shadow.glsl"
+#include "glsl/shadow/visibility_main.glsl"
 
-layout(binding = 10) uniform usampler2DArray moment_table;
+uniform usampler2DArray moment_table;
 uniform int moment_bits;
 uniform float moment_bias;
 uniform int search_rounds;
 uniform int direct_texels;
 uniform int cells;
 uniform int passes;
+
+// How far, in texels, a part of a search kernel may lie beside the cone to the light and still count: its depth is a mean,
+// which would let go of blockers that touch the receiver.
+uniform float search_blur;
+
+// The least distance of blockers to the receiver, relative to that of the kernel that they are found in: their mean depth is
+// no more exact.
+uniform float least_gap;
 
 // What blocks in a kernel.
 struct KernelBlockers {
@@ -20,7 +28,7 @@ struct KernelBlockers {
 
 // A part of a kernel, in the map. The threshold is the least one in it, so that no plane blocks itself.
 MomentBlockers cell_blockers(ShadowCursor cursor, ShadowKernel cell) {
-  float d = shadow_threshold_range(cursor.view, cursor.receiver, cell).x;
+  float d = map_threshold_range(cursor.view, cursor.in_map, cell.low, cell.high).x;
   vec2 depths = kernel_depth_bounds(cursor, cell);
   if (d <= depths.x) return MomentBlockers(0.0, d);
   if (depths.y < d) return MomentBlockers(1.0, 0.5 * (depths.x + depths.y));
@@ -32,28 +40,20 @@ MomentBlockers cell_blockers(ShadowCursor cursor, ShadowKernel cell) {
 const int kernel_search = 0;  // steps 1 and 2: how far away the blockers are; all texels that it touches
 const int kernel_filter = 1;  // steps 3 and 4: how much they hide; what lies in it
 
-// How far, in texels, a part of a search kernel may lie beside the cone to the light and still count: its depth is a mean,
-// which would let go of blockers that touch the receiver.
-const float search_blur = 4.0;
-
-// The least distance of blockers to the receiver, relative to that of the kernel that they are found in: their mean depth is
-// no more exact.
-const float least_gap = 0.05;
-
 // How many texels of low..high lie in the cone to the light where they are, `own_gap` before the receiver.
 float texels_in_cone(ShadowCursor cursor, VisibilityQuery q, vec2 low, vec2 high, float own_gap) {
   ShadowKernel own;
-  if (!shadow_kernel(cursor.view, q.light, q.position, own_gap, q.maps.info.y == shadow_faces_single, own)) return 0.0;
+  if (!shadow_kernel(cursor.view, q.light, q.position, own_gap, q.maps.faces == shadow_faces_single, own)) return 0.0;
   vec2 inside = max(min(high, own.high + search_blur) - max(low, own.low - search_blur), vec2(0.0));
   return inside.x * inside.y;
 }
 
-// Adds what lies in low..high of the kernel at `gap`, by `share`, at the map's depth `stored`. A search kernel is so wide
+// Adds what lies in low..high of the kernel at `gap`, by `share`, `depth` metres from the light. A search kernel is so wide
 // that much of what is in it lies beside the cone to the light; one at the blockers' distance is filtered as published.
 void add_blockers(inout KernelBlockers blockers, ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap,
-                  int use, vec2 low, vec2 high, float share, float stored) {
-  vec2 middle = 0.5 * (low + high) / float(cursor.view.info.z);
-  float own_gap = clamp(shadow_gap(cursor.view, cursor.receiver, middle, stored), least_gap * gap, gap);
+                  int use, vec2 low, vec2 high, float share, float depth) {
+  vec2 middle = 0.5 * (low + high) - 0.5;
+  float own_gap = clamp(map_gap(cursor.view, cursor.in_map, middle, depth), least_gap * gap, gap);
   float texels = share * (use == kernel_search ? texels_in_cone(cursor, q, low, high, own_gap)
                                                : (high.x - low.x) * (high.y - low.y));
   blockers.texels += texels;
@@ -63,7 +63,7 @@ void add_blockers(inout KernelBlockers blockers, ShadowCursor cursor, Visibility
 // The kernel at `gap` in cells x cells parts, or as many as sums of the table stay exact in. What lies outside the map is
 // unoccluded.
 KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap, int use) {
-  vec2 size = vec2(cursor.view.info.z);
+  vec2 size = vec2(cursor.view.size);
   vec2 a = clamp(kernel.low, vec2(0.0), size);
   vec2 b = clamp(kernel.high, vec2(0.0), size);
   // Rounding moves an edge by half a texel.
@@ -78,7 +78,8 @@ KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKer
     if (any(lessThanEqual(cell.high, cell.low))) continue;
     MomentBlockers found = cell_blockers(cursor, cell);
     if (found.share > 0.0)
-      add_blockers(blockers, cursor, q, kernel, gap, use, cell.low, cell.high, found.share, found.depth);
+      add_blockers(blockers, cursor, q, kernel, gap, use, cell.low, cell.high, found.share,
+                   shadow_metres(cursor.view, found.depth));
   }
   return blockers;
 }
@@ -86,15 +87,14 @@ KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKer
 // The same, texel by texel.
 KernelBlockers texel_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap) {
   ivec2 first = max(ivec2(floor(kernel.low)), ivec2(0));
-  ivec2 last = min(ivec2(ceil(kernel.high)), ivec2(cursor.view.info.z)) - 1;
+  ivec2 last = min(ivec2(ceil(kernel.high)), ivec2(cursor.view.size)) - 1;
   KernelBlockers blockers = KernelBlockers(0.0, 0.0);
   for (int y = first.y; y <= last.y; ++y) {
     for (int x = first.x; x <= last.x; ++x) {
-      float stored = texelFetch(shadow_depth, ivec3(x, y, cursor.layer), 0).r;
-      vec3 offset = shadow_texel_offset(cursor.view, ivec2(x, y), stored);
-      if (stored >= 1.0 || !shadow_blocks(cursor.receiver, offset)) continue;
+      ShadowTap tap = shadow_texel(cursor, ivec2(x, y));
+      if (!tap.blocked) continue;
       add_blockers(blockers, cursor, q, kernel, gap, kernel_filter, max(vec2(x, y), kernel.low),
-                   min(vec2(x, y) + 1.0, kernel.high), 1.0, stored);
+                   min(vec2(x, y) + 1.0, kernel.high), 1.0, tap.depth);
     }
   }
   return blockers;
@@ -111,7 +111,7 @@ struct Blockers {
 Blockers blockers_at(inout ShadowCursor cursor, VisibilityQuery q, float gap, int use) {
   Blockers all = Blockers(0.0, 0.0, 0.0);
   float total = 0.0;
-  for (uint face = 0u; face < shadow_face_count(q.maps.info.y); ++face) {
+  for (uint face = 0u; face < shadow_face_count(q.maps.faces); ++face) {
     ShadowKernel kernel;
     if (!shadow_kernel_in_face(cursor, q, face, gap, kernel)) continue;
     if (use == kernel_search) {

@@ -6,13 +6,13 @@ namespace {
 
 using namespace limn;
 
-constexpr Parameter parameters[] = {
+constexpr Parameter kParameters[] = {
     real("kernel", 5, {1, 64}, "texels", "Width and height of the filter").quality().logScale(),
     shadow::shadowMapSizeParameter(),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "map of 16 texels", .settings = "shadow_map_size=16", .factor = 4},
     {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
 };
@@ -21,7 +21,8 @@ class Pcf : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
     shadow::VisibilityPass pass = shadow::visibilityPass(inputs, request, info.name);
-    pass.sampled = {{shadow::minMaxUnit, inputs.shadowMaps.minMaxPyramid(pass.maps).texture,
+    pass.sampled = {{"shadow_min_max",
+                     inputs.service<shadow::ShadowMapService>().minMaxPyramid(pass.maps).texture,
                      "least and greatest depth in a kernel"}};
     pass.bind = [kernel = inputs.parameters.real("kernel")](frame::PassContext&, gpu::Program& program) {
       program.set("kernel_width", kernel);
@@ -35,8 +36,8 @@ class Pcf : public Technique {
       .title = "Percentage-closer filtering",
       .source = "Reeves, Salesin, Cook 1987, Rendering Antialiased Shadows with Depth Maps",
       .terms = termSet(Term::visibility),
-      .parameters = parameters,
-      .stress = stress};
+      .parameters = kParameters,
+      .stress = kStress};
 };
 
 }  // namespace

@@ -6,17 +6,17 @@ namespace {
 
 using namespace limn;
 
-constexpr const char* patterns[] = {"grid", "r2"};
-constexpr const char* searches[] = {"near", "cone"};
-constexpr Parameter parameters[] = {
+constexpr const char* kPatterns[] = {"grid", "r2"};
+constexpr const char* kSearches[] = {"near", "cone"};
+constexpr Parameter kParameters[] = {
     integer("blocker_samples", 32, {1, 4096}, "samples", "Point samples of the blocker search")
         .quality()
         .logScale(),
     integer("filter_samples", 64, {1, 4096}, "samples", "Point samples of the penumbra kernel")
         .quality()
         .logScale(),
-    choice("pattern", 1, patterns, "Regular grid, or the R2 sequence shifted in each pixel"),
-    choice("search", 1, searches,
+    choice("pattern", 1, kPatterns, "Regular grid, or the R2 sequence shifted in each pixel"),
+    choice("search", 1, kSearches,
            "Search at the near plane, as published, or through the cone from receiver to light, keeping what "
            "lies in it"),
     shadow::shadowMapSizeParameter(),
@@ -24,7 +24,7 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "one sample each", .settings = "blocker_samples=1 filter_samples=1", .factor = 4},
     {.name = "map of 64 texels", .settings = "shadow_map_size=64", .factor = 4},
     {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
@@ -54,8 +54,8 @@ class Pcss : public Technique {
                                       .title = "Percentage-closer soft shadows",
                                       .source = "Fernando 2005, Percentage-Closer Soft Shadows",
                                       .terms = termSet(Term::visibility),
-                                      .parameters = parameters,
-                                      .stress = stress};
+                                      .parameters = kParameters,
+                                      .stress = kStress};
 };
 
 }  // namespace

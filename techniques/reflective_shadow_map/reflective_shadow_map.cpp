@@ -7,8 +7,8 @@ namespace {
 
 using namespace limn;
 
-constexpr auto parameters = indirect::gatherParameters();
-constexpr StressCase stress[] = {
+constexpr auto kParameters = indirect::gatherParameters();
+constexpr StressCase kStress[] = {
     {.name = "one virtual light", .scene = "cornell_box", .settings = "vpls=1", .factor = 4},
     {.name = "N not divisible", .scene = "cornell_box", .settings = "vpls=1021"},
     {.name = "no bound, no blur", .scene = "cornell_box", .settings = "clamp=0 blur=false", .factor = 20},
@@ -22,8 +22,8 @@ class ReflectiveShadowMap : public Technique {
       graph.leaveOut("indirect light", info.name, "the scene has no light");
       return request.target;
     }
-    const indirect::VirtualLights lights =
-        inputs.virtualLights.request(request.lights, indirect::virtualLightDesc(inputs.parameters));
+    const indirect::VirtualLights lights = inputs.service<indirect::VirtualLightService>().request(
+        request.lights, indirect::virtualLightDesc(inputs.parameters));
     indirect::Gather gather(graph, inputs, info.name, lights, indirect::gatherSettings(inputs.parameters));
     gather.shade({.program = {.files = {"techniques/reflective_shadow_map/shade.comp.glsl"}, .defines = {}}});
     return gather.finish(request.target);
@@ -34,8 +34,8 @@ class ReflectiveShadowMap : public Technique {
                                       .title = "Reflective shadow maps",
                                       .source = "Dachsbacher and Stamminger 2005, Reflective Shadow Maps",
                                       .terms = termSet(Term::indirect),
-                                      .parameters = parameters,
-                                      .stress = stress};
+                                      .parameters = kParameters,
+                                      .stress = kStress};
 };
 
 }  // namespace

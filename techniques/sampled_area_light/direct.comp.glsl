@@ -1,11 +1,11 @@
 // Reflected direct light, each sample of a light shadowed by its own map and reflected by the whole BRDF. Each batch adds
 // its part. MEDIUM 1: times the medium's transmittance from the sample.
-#include "glsl/brdf.glsl"
-#include "glsl/light_texture.glsl"
-#include "glsl/medium_input.glsl"
-#include "glsl/shadow_samples.glsl"
+#include "glsl/surface/brdf.glsl"
+#include "glsl/light/light_texture.glsl"
+#include "glsl/media/medium_input.glsl"
+#include "glsl/shadow/shadow_samples.glsl"
 
-layout(binding = 0, rgba32f) uniform image2D radiance;
+layout(rgba32f) uniform image2D radiance;
 uniform int light_count;
 
 // Irradiance of one sample on a surface that faces it, were it all of the light.
@@ -13,23 +13,23 @@ vec3 sample_irradiance(Light light, LightView view, vec3 receiver, vec3 offset) 
   if (!view.extended) return punctual_irradiance(light, receiver);
   if (view.cone) {
     // Uniform radiance E / (pi sin^2) over the solid angle 2 pi (1 - cos), with sin^2 = (1 - cos) (1 + cos).
-    return light.emission.rgb * (2.0 / (2.0 - view.cap));
+    return light.emission * (2.0 / (2.0 - view.cap));
   }
   if (light_is_distant_rectangle(light)) {
     // Uniform in the rectangle's plane: solid angle of a piece of its area, by the cube of the cosine.
     float cosine = -dot(view.axis, offset);
-    return rectangle_radiance(light) * (light.axis_u.w * light.axis_v.w * cosine * cosine * cosine);
+    return rectangle_radiance(light) * (light.length_u * light.length_v * cosine * cosine * cosine);
   }
   float distance2 = dot(offset, offset);
-  float cosine = abs(dot(light.direction.xyz, offset)) * inversesqrt(distance2);
-  return light.emission.rgb * (receiver_factor(light, receiver) * light.axis_u.w * light.axis_v.w * cosine / distance2);
+  float cosine = abs(dot(light.direction, offset)) * inversesqrt(distance2);
+  return light.emission * (receiver_factor(light, receiver) * light.length_u * light.length_v * cosine / distance2);
 }
 
 vec3 light_from(VisibilityQuery q, Light light, int l, SurfaceBrdf surface, vec3 normal, vec3 to_viewer) {
   vec3 sum = vec3(0.0);
   int samples = q.light.extended ? batch_samples : first_sample == 0 ? 1 : 0;
   for (int s = 0; s < samples; ++s) {
-    ShadowLight maps = shadow_lights[l * batch_samples + s];
+    ShadowLight maps = maps_at(uint(l * batch_samples + s));
     vec3 offset = sample_offset(q, maps);
     vec3 direction = normalize(offset);
     if (dot(offset, q.normal) <= 0.0 || dot(offset, normal) <= 0.0 || !sample_visible(q, maps)) continue;
@@ -37,7 +37,7 @@ vec3 light_from(VisibilityQuery q, Light light, int l, SurfaceBrdf surface, vec3
                      sample_irradiance(light, q.light, q.position, offset);
 #if MEDIUM
     Medium medium = scene_medium();
-    float inside = maps.origin.w > 0.0 ? medium_length_between(medium, q.position, maps.origin.xyz)
+    float inside = maps.finite > 0.0 ? medium_length_between(medium, q.position, maps.origin)
                                        : medium_length(medium, q.position, direction, 3.0e38);
     reflected *= medium_transmittance(medium, inside);
 #endif
@@ -60,7 +60,7 @@ void main() {
     VisibilityQuery q = visibility_query(pixel, uint(l * batch_samples));
     if (q.masked) continue;
     vec3 to_viewer = normalize(frame.camera_position.xyz - q.position);
-    sum += light_from(q, lights[q.maps.info.z], l, surface, s.normal, to_viewer);
+    sum += light_from(q, lights[q.maps.light], l, surface, s.normal, to_viewer);
   }
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(sum, 0.0));
 }

@@ -1,7 +1,7 @@
 // Area lights as many point samples, each with a shadow map of its own (Brotman and Badler 1984; Haeberli and
 // Akeley 1990): converges to the truth, and is what the soft-shadow techniques are compared with on the GPU.
-#include "core/scene/gpu_medium.h"
-#include "core/scene/light_textures.h"
+#include "core/gpu_scene/gpu_medium.h"
+#include "core/gpu_scene/light_textures.h"
 #include "core/shadow/sample_batches.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
@@ -10,7 +10,7 @@ namespace {
 
 using namespace limn;
 
-constexpr Parameter parameters[] = {
+constexpr Parameter kParameters[] = {
     integer("samples", 64, {1, 4096}, "samples", "Points on each light, and maps rendered from them")
         .quality()
         .logScale(),
@@ -19,7 +19,7 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::memoryParameter(),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "one sample", .settings = "samples=1", .factor = 8},
     {.name = "maps of 16 texels", .settings = "shadow_map_size=16", .factor = 8},
 };
@@ -37,8 +37,8 @@ class SampledAreaLight : public Technique {
   }
 
   /// Maps of samples first .. first + count - 1.
-  static shadow::ShadowMapDesc mapsOf(const ParameterValues& parameters, int first, int count) {
-    shadow::ShadowMapDesc desc = shadow::shadowMapDesc(parameters);
+  static shadow::ShadowMapDesc mapsOf(const ParameterValues& values, int first, int count) {
+    shadow::ShadowMapDesc desc = shadow::shadowMapDesc(values);
     for (int i = first; i < first + count; ++i) desc.samples.push_back(shadow::samplePlace(i));
     return desc;
   }
@@ -50,8 +50,8 @@ class SampledAreaLight : public Technique {
     shadow::SampleLayers layers{.size = all.size};
     for (const uint32_t light : lights) {
       // A light that emits nothing is here only to show what leaving it out is worth: the picture must stay.
-      if (glm::vec3(inputs.pose.lights[light].emission) == glm::vec3(0)) continue;
-      const int taken = inputs.shadowMaps.layersOf(light, all);
+      if (inputs.pose.lights[light].emission == glm::vec3(0)) continue;
+      const int taken = inputs.service<shadow::ShadowMapService>().layersOf(light, all);
       if (glsl::light_has_extent(inputs.pose.lights[light]))
         layers.each += taken / samples;
       else
@@ -68,7 +68,7 @@ class SampledAreaLight : public Technique {
         .name = "visibility",
         .technique = info.name,
         .program = {},
-        .maps = inputs.shadowMaps.request(lights, desc),
+        .maps = inputs.service<shadow::ShadowMapService>().request(lights, desc),
         .bias = inputs.parameters.real("bias"),
         .bind = [batch](frame::PassContext&, gpu::Program& program) { shadow::setBatch(program, batch); }};
   }
@@ -88,6 +88,8 @@ class SampledAreaLight : public Technique {
                                         const Batch& batch) {
     shadow::VisibilityPass pass = commonPass(inputs, request.lights, batch);
     pass.name = "direct";
+    pass.image = "radiance";
+    pass.reflects = true;
     pass.accumulate = true;
     pass.program = {.files = {"techniques/sampled_area_light/direct.comp.glsl"},
                     .defines = {{"MEDIUM", inputs.scene.medium.present() ? "1" : "0"}}};
@@ -99,14 +101,11 @@ class SampledAreaLight : public Technique {
       medium.declare(builder);
       textures.declare(builder);
     };
-    pass.bind = [medium, textures, bindSamples = pass.bind, lights = static_cast<int>(request.lights.size())](
+    pass.bind = [bindSamples = pass.bind, lights = static_cast<int>(request.lights.size())](
                     frame::PassContext& context, gpu::Program& program) {
       bindSamples(context, program);
-      medium.bind(context);
-      textures.bind(context);
       program.set("light_count", lights);
     };
-    shadow::readSurfaces(pass, inputs.gbuffer);
     return shadow::addVisibilityPass(graph, inputs, target, std::move(pass));
   }
 
@@ -115,8 +114,8 @@ class SampledAreaLight : public Technique {
                                       .title = "Sampled area lights",
                                       .source = "Haeberli and Akeley 1990, The Accumulation Buffer",
                                       .terms = Term::visibility | Term::direct,
-                                      .parameters = parameters,
-                                      .stress = stress};
+                                      .parameters = kParameters,
+                                      .stress = kStress};
 };
 
 }  // namespace

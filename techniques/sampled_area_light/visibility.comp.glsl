@@ -1,10 +1,10 @@
 // V as the lit share of the samples above the receiver's tangent plane. Each batch adds its part.
-#include "glsl/shadow_samples.glsl"
+#include "glsl/shadow/shadow_samples.glsl"
 
 #if ACCUMULATE
-layout(binding = 0, r16) uniform image2DArray visibility;
+layout(r16) uniform image2DArray visibility;
 #else
-layout(binding = 0, r16) writeonly uniform image2DArray visibility;
+layout(r16) writeonly uniform image2DArray visibility;
 #endif
 
 // How many of all samples count: every batch needs the same number.
@@ -25,15 +25,15 @@ float batch_share(VisibilityQuery q, int layer) {
   if (above == 0) return first_sample == 0 ? 1.0 : 0.0;
   int lit = 0;
   for (int s = 0; s < batch_samples; ++s) {
-    ShadowLight maps = shadow_lights[layer * batch_samples + s];
+    ShadowLight maps = maps_at(uint(layer * batch_samples + s));
     if (dot(sample_offset(q, maps), q.normal) > 0.0 && sample_visible(q, maps)) ++lit;
   }
   return float(lit) / float(above);
 }
 
 void main() {
-  ivec3 at = ivec3(gl_GlobalInvocationID.xy, gl_WorkGroupID.z);
-  VisibilityQuery q = visibility_query(at.xy, gl_WorkGroupID.z * uint(batch_samples));
+  ivec3 at = ivec3(gl_GlobalInvocationID.xy, light_layer());
+  VisibilityQuery q = visibility_query(at.xy, uint(at.z * batch_samples));
   if (any(greaterThanEqual(at, imageSize(visibility)))) return;
   float v = first_sample == 0 ? 1.0 : 0.0;
   if (!q.masked) v = batch_share(q, at.z);

@@ -1,10 +1,10 @@
 // Reflected light of the environment as a sum over directions, each shadowed by its own map and reflected by the whole
 // BRDF. Each batch adds its part.
-#include "glsl/brdf.glsl"
-#include "glsl/shadow_samples.glsl"
+#include "glsl/surface/brdf.glsl"
+#include "glsl/shadow/shadow_samples.glsl"
 
-layout(binding = 0, rgba32f) uniform image2D radiance;
-layout(std430, binding = 4) readonly buffer Irradiance { vec4 irradiance[]; };  // on surfaces that face the sample, were it all
+layout(rgba32f) uniform image2D radiance;
+layout(std430) readonly buffer Irradiance { vec4 irradiance[]; };  // on surfaces that face the sample, were it all
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -21,8 +21,8 @@ void main() {
   vec3 to_viewer = normalize(frame.camera_position.xyz - q.position);
   vec3 sum = vec3(0.0);
   for (int i = 0; i < batch_samples; ++i) {
-    ShadowLight maps = shadow_lights[i];
-    vec3 direction = maps.origin.xyz;
+    ShadowLight maps = maps_at(uint(i));
+    vec3 direction = maps.origin;
     float cosine = dot(s.normal, direction);
     if (cosine <= 0.0 || dot(q.normal, direction) <= 0.0) continue;
     q.light.axis = -direction;

@@ -2,8 +2,8 @@
 // area lights is compared with on the GPU.
 #include <vector>
 
-#include "core/reference/environment.h"
-#include "core/scene/gpu_scene.h"
+#include "core/gpu_scene/gpu_scene.h"
+#include "core/scene/environment_light.h"
 #include "core/shadow/sample_batches.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
@@ -13,7 +13,7 @@ namespace {
 using namespace limn;
 using frame::Access;
 
-constexpr Parameter parameters[] = {
+constexpr Parameter kParameters[] = {
     integer("samples", 64, {1, 4096}, "samples", "Directions, and shadow maps rendered along them")
         .quality()
         .logScale(),
@@ -22,7 +22,7 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::memoryParameter(),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "one sample", .settings = "samples=1", .factor = 8},
     {.name = "maps of 16 texels", .settings = "shadow_map_size=16", .factor = 8},
 };
@@ -33,7 +33,7 @@ class SampledEnvironmentLight : public Technique {
 
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
-    const reference::EnvironmentLight environment(inputs.scene.environment);
+    const scene::EnvironmentLight environment(inputs.scene.environment);
     if (!environment.present()) {
       graph.leaveOut("environment", info.name, "the environment is black");
       return request.target;
@@ -50,7 +50,7 @@ class SampledEnvironmentLight : public Technique {
   }
 
   /// Directions by the map's own density, so that all samples are about equally bright.
-  void takeSamples(const reference::EnvironmentLight& environment, const TechniqueInputs& inputs) {
+  void takeSamples(const scene::EnvironmentLight& environment, const TechniqueInputs& inputs) {
     const int count = inputs.parameters.integer("samples");
     std::vector<glm::vec4> irradiance;
     directions_.clear();
@@ -75,20 +75,17 @@ class SampledEnvironmentLight : public Technique {
         .name = "environment",
         .technique = info.name,
         .program = {.files = {"techniques/sampled_environment_light/environment.comp.glsl"}, .defines = {}},
-        .maps = inputs.shadowMaps.request(directions, desc),
+        .image = "radiance",
+        .maps = inputs.service<shadow::ShadowMapService>().request(directions, desc),
         .bias = inputs.parameters.real("bias"),
         .lightSize = std::nullopt,
-        .bind =
-            [batch, irradiance](frame::PassContext& context, gpu::Program& program) {
-              shadow::setBatch(program, batch);
-              context.bindStorage(4, irradiance);
-            },
+        .reflects = true,
+        .bind = [batch](frame::PassContext&, gpu::Program& program) { shadow::setBatch(program, batch); },
         .declare =
             [irradiance](frame::PassBuilder& builder) {
-              builder.read(irradiance, Access::storageLoad, "what each direction brings");
+              builder.read(irradiance, Access::storageLoad, "Irradiance", "what each direction brings");
             },
         .accumulate = true};
-    shadow::readSurfaces(pass, inputs.gbuffer);
     return shadow::addVisibilityPass(graph, inputs, target, std::move(pass));
   }
 
@@ -98,8 +95,8 @@ class SampledEnvironmentLight : public Technique {
       .title = "Sampled environment light",
       .source = "the thesis, figures 5.10 and 5.11 (shadow maps of many samples)",
       .terms = termSet(Term::environment),
-      .parameters = parameters,
-      .stress = stress};
+      .parameters = kParameters,
+      .stress = kStress};
 };
 
 }  // namespace

@@ -8,15 +8,15 @@ namespace {
 
 using namespace limn;
 
-constexpr const char* patterns[] = {"grid", "r2"};
-constexpr const char* searches[] = {"near", "cone"};
+constexpr const char* kPatterns[] = {"grid", "r2"};
+constexpr const char* kSearches[] = {"near", "cone"};
 
-constexpr Parameter parameters[] = {
+constexpr Parameter kParameters[] = {
     integer("blocker_samples", 64, {1, 4096}, "samples", "Point samples of the blocker search")
         .quality()
         .logScale(),
-    choice("pattern", 1, patterns, "Regular grid, or the R2 sequence shifted in each pixel"),
-    choice("search", 1, searches,
+    choice("pattern", 1, kPatterns, "Regular grid, or the R2 sequence shifted in each pixel"),
+    choice("search", 1, kSearches,
            "Search at the near plane, as published, or through the cone from receiver to light, keeping what "
            "lies in it"),
     integer("sat_bits", 16, {8, 24}, "bits", "Of a depth in the summed-area table"),
@@ -26,7 +26,7 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "one blocker sample", .settings = "blocker_samples=1", .factor = 4},
     {.name = "map of 64 texels", .settings = "shadow_map_size=64", .factor = 4},
     {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
@@ -39,10 +39,10 @@ class Savsm : public Technique {
     shadow::VisibilityPass pass = shadow::visibilityPass(
         inputs, request, info.name,
         {{"PATTERN", std::to_string(p.choice("pattern"))}, {"SEARCH", std::to_string(p.choice("search"))}});
-    const shadow::SummedAreaTable table = inputs.shadowMaps.summedAreaTable(
+    const shadow::SummedAreaTable table = inputs.service<shadow::ShadowMapService>().summedAreaTable(
         pass.maps, {.bits = p.integer("sat_bits"), .words = p.integer("sat_words")});
     pass.program.defines["TABLE_FORMAT"] = fmt::format("{}u", table.format);
-    pass.sampled = {{shadow::tableUnit, table.texture, "moments of kernels"}};
+    pass.sampled = {{"shadow_table", table.texture, "moments of kernels"}};
     pass.bind = [blockers = p.integer("blocker_samples")](frame::PassContext&, gpu::Program& program) {
       program.set("blocker_samples", blockers);
     };
@@ -54,8 +54,8 @@ class Savsm : public Technique {
                                       .title = "Summed-area variance shadow maps",
                                       .source = "Lauritzen 2007, Summed-Area Variance Shadow Maps",
                                       .terms = termSet(Term::visibility),
-                                      .parameters = parameters,
-                                      .stress = stress};
+                                      .parameters = kParameters,
+                                      .stress = kStress};
 };
 
 }  // namespace

@@ -1,22 +1,22 @@
 // Soft shadows from a summed-area variance shadow map (Lauritzen 2007): the mean blocker depth from point samples, the
 // share of light from Chebyshev's inequality over the whole penumbra kernel.
 //
-// PATTERN, SEARCH: see glsl/blocker_samples.glsl. TABLE_FORMAT: sat_format.
-#include "glsl/blocker_samples.glsl"
-#include "glsl/summed_area_table.glsl"
-#include "glsl/visibility_main.glsl"
+// PATTERN, SEARCH: see glsl/shadow/blocker_samples.glsl. TABLE_FORMAT: sat_format.
+#include "glsl/shadow/blocker_samples.glsl"
+#include "glsl/shadow/summed_area_table.glsl"
+#include "glsl/shadow/visibility_main.glsl"
 
-layout(binding = 10) uniform usampler2DArray shadow_table;
+uniform usampler2DArray shadow_table;
 
 const uint table_format = TABLE_FORMAT;
 
 // P(z >= d) over the kernel, d the receiver's depth at its centre. Kernels with E(z) >= d count as lit, whatever they hold:
 // the "non-planarity" artefact.
 float kernel_light(ShadowCursor cursor, ShadowKernel kernel) {
-  float size = float(cursor.view.info.z);
+  float size = float(cursor.view.size);
   vec2 centre = clamp(0.5 * (kernel.low + kernel.high), vec2(0.0), vec2(size));
   vec2 half_extent = max(0.5 * (kernel.high - kernel.low), vec2(0.5));  // bilinear at least
-  float d = shadow_threshold(cursor.view, cursor.receiver, centre / size);
+  float d = map_threshold(cursor.view, cursor.in_map, centre);
   vec2 m = sat_lookup_moments(shadow_table, centre - half_extent, centre + half_extent, int(cursor.layer), d, table_format);
   float quantum = 1.0 / float(sat_scale(table_format));
   return m.x <= quantum ? 1.0 : clamp(1.0 - m.x * m.x / (m.y + quantum * quantum / 12.0), 0.0, 1.0);
@@ -34,6 +34,6 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
       lit += kernel.weight * kernel_light(cursor, kernel);
       weights += kernel.weight;
     }
-  } while (++face < shadow_face_count(q.maps.info.y));
+  } while (++face < shadow_face_count(q.maps.faces));
   return weights > 0.0 ? lit / weights : 1.0;
 }

@@ -1,12 +1,12 @@
 // The lights' maps of the scene without specular objects, where caustic rays end: a caustic map has a texel for each of theirs.
 #ifndef LIMN_CAUSTIC_MAP_GLSL
 #define LIMN_CAUSTIC_MAP_GLSL
-#include "glsl/sampling.glsl"
-#include "glsl/shadow_view.glsl"
+#include "glsl/numeric/sampling.glsl"
+#include "glsl/shadow/shadow_view.glsl"
 
-layout(binding = 8) uniform sampler2DArray scene_depth;
-layout(std430, binding = 1) readonly buffer SceneViews { ShadowView scene_views[]; };
-layout(std430, binding = 2) readonly buffer SceneLights { ShadowLight scene_lights[]; };
+uniform sampler2DArray scene_depth;
+layout(std430) readonly buffer SceneViews { ShadowView scene_views[]; };
+layout(std430) readonly buffer SceneLights { ShadowLight scene_lights[]; };
 
 // What a texel shows of the scene.
 struct MapSurface {
@@ -15,9 +15,9 @@ struct MapSurface {
 };
 
 MapSurface map_surface(ShadowView view, ivec2 texel) {
-  float stored = texelFetch(scene_depth, ivec3(texel, view.info.y), 0).x;
+  float stored = texelFetch(scene_depth, ivec3(texel, view.layer), 0).x;
   vec3 local = shadow_texel_offset(view, texel, stored);
-  return MapSurface(stored < 1.0, view.origin.xyz + shadow_world_offset(view, local));
+  return MapSurface(stored < 1.0, view.origin + shadow_world_offset(view, local));
 }
 
 #endif  // LIMN_CAUSTIC_MAP_GLSL

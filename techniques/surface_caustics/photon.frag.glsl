@@ -6,7 +6,7 @@
 
 uniform int map_layer;
 #else
-#include "glsl/gbuffer_input.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
 #endif
 
 layout(location = 0) flat in vec4 photon;

@@ -2,13 +2,13 @@
 // layer of the light's map.
 #include "glsl/caustics/listed_ray.glsl"
 #include "glsl/caustics/ray_beam.glsl"
-#include "glsl/gbuffer.glsl"
-#include "glsl/medium_input.glsl"
+#include "glsl/surface/gbuffer.glsl"
+#include "glsl/media/medium_input.glsl"
 #include "techniques/surface_caustics/on_plane.glsl"
 #if CAUSTIC_MAP
 #include "techniques/surface_caustics/caustic_map.glsl"
 
-layout(std430, binding = 3) readonly buffer LayerLights { vec4 layer_lights[]; };  // x: of scene_lights
+layout(std430) readonly buffer Layers { CausticLayer layers[]; };
 uniform int layer_count;  // of the rays
 uniform int map_layer;
 #endif
@@ -37,14 +37,14 @@ struct Target {
 
 #if CAUSTIC_MAP
 bool in_target(int index) {
-  ShadowLight maps = scene_lights[int(layer_lights[index / (buffer_size * buffer_size) % layer_count].x)];
-  return uint(map_layer) - maps.info.x < shadow_face_count(maps.info.y);
+  ShadowLight maps = scene_lights[int(layers[index / (buffer_size * buffer_size) % layer_count].light)];
+  return uint(map_layer) - maps.first_layer < shadow_face_count(maps.faces);
 }
 Target target_at(vec3 place) {
   ShadowView view = scene_views[map_layer];
   float across = shadow_footprint(view, shadow_view_depth(view, place));
-  vec3 ray = view.info.x == shadow_orthographic ? view.axis_z.xyz : normalize(place - view.origin.xyz);
-  return Target(ray, across * view.axis_x.xyz, across * view.axis_y.xyz);
+  vec3 ray = view.projection == shadow_orthographic ? view.axis_z : normalize(place - view.origin);
+  return Target(ray, across * view.axis_x, across * view.axis_y);
 }
 vec4 target_clip(vec3 place) { return shadow_clip(scene_views[map_layer], place); }
 #else
@@ -96,30 +96,31 @@ void main() {
   CausticRay ray = rays[index];
   photon = vec4(0.0);
   peak = vec3(0.0);
-  incidence = vec4(ray.direction.xyz, 0.0);
+  incidence = vec4(ray.direction, 0.0);
   kernel_x = vec3(0.0);
   kernel_y = vec3(0.0);
   if (!in_target(index)) return;
-  vec3 place = ray.start.xyz + ray.start.w * ray.direction.xyz;
+  vec3 place = ray.start + ray.segment_length * ray.direction;
   vec3 normal = octahedral_decode(unpackSnorm2x16(ray.normal));
-  incidence.w = -dot(normal, ray.direction.xyz);
+  incidence.w = -dot(normal, ray.direction);
   Target target = target_at(place);
   Medium medium = scene_medium();
-  vec3 flux = ray.power * medium_transmittance(medium, medium_length(medium, ray.start.xyz, ray.direction.xyz, ray.start.w));
+  vec3 flux = ray.power * medium_transmittance(medium, medium_length(medium, ray.start, ray.direction, ray.segment_length));
 
   BeamNeighbours to = beam_neighbours(index);
   vec3 pixel_x = box_radius * on_plane(target.pixel_x, normal, target.eye_ray, least_cosine);
   vec3 pixel_y = box_radius * on_plane(target.pixel_y, normal, target.eye_ray, least_cosine);
-  Ellipse e = ellipse(vec3[4](kernel * beam_side(ray, to.beside, ray.start.w), kernel * beam_side(ray, to.above, ray.start.w),
-                              pixel_x, pixel_y), ray.direction.xyz);
+  vec3 beside = kernel * beam_side(ray, to.beside, ray.segment_length);
+  vec3 above = kernel * beam_side(ray, to.above, ray.segment_length);
+  Ellipse e = ellipse(vec3[4](beside, above, pixel_x, pixel_y), ray.direction);
   if (!(e.size.y > 0.0)) return;
-  vec3 other_axis = cross(ray.direction.xyz, e.axis);
+  vec3 other_axis = cross(ray.direction, e.axis);
   photon = vec4(place, e.size.x);
   peak = flux * (2.0 * inverse_pi / (e.size.x * e.size.y));
   kernel_x = e.axis / e.size.x;
   kernel_y = other_axis / e.size.y;
   vec2 corner = corners[gl_VertexID % 3];
   vec3 across = corner.x * e.size.x * e.axis + corner.y * e.size.y * other_axis;
-  vec4 clip = target_clip(place + on_plane(across, normal, ray.direction.xyz, least_cosine));
+  vec4 clip = target_clip(place + on_plane(across, normal, ray.direction, least_cosine));
   gl_Position = vec4(clip.xy, 0.0, clip.w);
 }

@@ -1,14 +1,14 @@
 // Adds what surfaces reflect of the caustics' irradiance, diffusely.
-#include "glsl/brdf.glsl"
-#include "glsl/gbuffer_input.glsl"
+#include "glsl/surface/brdf.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 7) uniform sampler2D irradiance;
-layout(rgba32f, binding = 0) uniform image2D radiance;
+uniform sampler2D irradiance;
+layout(rgba32f) uniform image2D radiance;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size.xy)))) return;
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
   vec3 arriving = texelFetch(irradiance, pixel, 0).rgb;
   if (arriving == vec3(0.0)) return;
   GBufferSurface s = pixel_surface(pixel);

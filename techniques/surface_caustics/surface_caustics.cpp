@@ -1,36 +1,44 @@
 // Surface caustics: light that specular objects reflect or refract onto other surfaces, as photons splatted
 // on the screen, or into a caustic map of the light.
-#include <array>
+#include <utility>
 
 #include "core/caustics/ray_lines.h"
 #include "core/caustics/ray_lists.h"
-#include "core/scene/gpu_medium.h"
+#include "core/gpu_scene/gpu_medium.h"
 #include "core/technique/technique.h"
-#include "glsl/gbuffer.glsl"
 
 namespace {
 
 using namespace limn;
 using frame::Access;
 
-constexpr const char* splatNames[] = {"screen", "light"};
-constexpr int splatLight = 1;
+constexpr const char* kSplatNames[] = {"screen", "light"};
+constexpr int kSplatLight = 1;
 
-constexpr Parameter parameters[] = {
+constexpr Parameter kParameters[] = {
     caustics::bufferSizeParameter(),
     caustics::sceneMapSizeParameter(),
     caustics::pathsParameter(),
     caustics::lightSamplesParameter(),
+    caustics::rayStepsParameter(),
+    caustics::exitStepsParameter(),
+    caustics::beamCosineParameter(),
     scene::mediumStepsParameter(),
     real("kernel", 1.5, {0.25, 16}, "photon distances", "Half-diameters of a photon's kernel"),
-    choice("splat", 0, splatNames,
+    choice("splat", 0, kSplatNames,
            "Where photons are gathered: on the screen, or in a map of the light, as large as the scene map, "
            "which surfaces look up (as published)"),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "buffer of 1 texel", .settings = "buffer_size=1", .factor = 0},
     {.name = "buffer of 16 texels", .settings = "buffer_size=16", .factor = 6},
     {.name = "wide kernels", .settings = "kernel=8", .factor = 6},
+    {.name = "photons of a pixel", .settings = "beam_cosine=1", .factor = 20},
+    {.name = "kernels across edges", .settings = "beam_cosine=-1", .factor = 6},
+    {.name = "one point of each search", .settings = "ray_steps=1 exit_steps=1", .factor = 0},
+    {.name = "many points of each search",
+     .settings = "ray_steps=4096 exit_steps=1024 buffer_size=64",
+     .factor = 6},
     {.name = "caustic map", .settings = "splat=light", .factor = 2},
     {.name = "caustic map of 16 texels", .settings = "splat=light scene_map_size=16", .factor = 20},
 };
@@ -41,7 +49,7 @@ struct Photons {
   caustics::RayLists lists;
   frame::BufferHandle frame;
   scene::MediumInput medium;
-  float kernel;
+  float kernel, beamCosine;
   frame::ProgramHandle program = {};
 
   Photons(frame::FrameGraph& graph, const TechniqueInputs& inputs, const caustics::CausticRays& made,
@@ -54,10 +62,12 @@ struct Photons {
              .kinds = {{{.vertices = 3}}}})),
         frame(inputs.handles.frame),
         medium(inputs.handles, inputs.parameters.integer("medium_steps")),
-        kernel(inputs.parameters.real("kernel")) {}
+        kernel(inputs.parameters.real("kernel")),
+        beamCosine(inputs.parameters.real("beam_cosine")) {}
 
   void declare(frame::PassBuilder& pass, bool map) {
-    pass.read(frame, Access::uniformBuffer, "camera, medium").read(rays.rays, Access::storageLoad, "photons");
+    pass.read(frame, Access::uniformBuffer, "FrameBlock", "camera, medium")
+        .read(rays.rays, Access::storageLoad, "Rays", "photons");
     caustics::declareRayLists(pass, lists);
     gpu::ProgramDesc desc{.files = {"techniques/surface_caustics/photon.vert.glsl",
                                     "techniques/surface_caustics/photon.frag.glsl"},
@@ -75,13 +85,10 @@ struct Photons {
     gl.Enable(GL_BLEND);
     gl.BlendFunc(GL_ONE, GL_ONE);
     gl.BindVertexArray(empty.id());
-    gpu::Program& splats = context.program(program);
-    splats.use();
+    gpu::Program& splats = context.use(program);
     splats.set("buffer_size", rays.size);
     splats.set("kernel", kernel);
-    context.bindUniform(glsl::FrameBlock::binding, frame);
-    context.bindStorage(0, rays.rays);
-    medium.bind(context);
+    splats.set("beam_cosine", beamCosine);
     return splats;
   }
   void draw(frame::PassContext& context) const { caustics::drawRays(context, lists, 0, GL_TRIANGLES); }
@@ -94,17 +101,15 @@ class SurfaceCaustics : public Technique {
   frame::TextureHandle addScreen(frame::FrameGraph& graph, const TechniqueInputs& inputs, Photons photons) {
     frame::PassBuilder pass = graph.addPass("photons", info.name);
     photons.declare(pass, false);
-    pass.read(inputs.gbuffer.depth, Access::sampled, "receivers")
-        .read(inputs.gbuffer.normal, Access::sampled, "cosines of receivers")
-        .read(inputs.gbuffer.geometricNormal, Access::sampled, "sides of receivers");
+    pass.read(inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "receivers")
+        .read(inputs.gbuffer.normal, Access::sampled, kGBufferNames.normal, "cosines of receivers")
+        .read(inputs.gbuffer.geometricNormal, Access::sampled, kGBufferNames.geometricNormal,
+              "sides of receivers");
     const frame::TextureHandle irradiance =
         pass.write(createIrradiance(graph, inputs.size), Access::colourAttachment, "flux per area");
-    pass.execute([=, this, gbuffer = inputs.gbuffer](frame::PassContext& context) {
+    pass.execute([=, this](frame::PassContext& context) {
       context.bindFramebuffer({{irradiance}});
       photons.begin(context, empty_);
-      context.bindSampled(glsl::gbuffer_unit_depth, gbuffer.depth);
-      context.bindSampled(glsl::gbuffer_unit_normal, gbuffer.normal);
-      context.bindSampled(glsl::gbuffer_unit_geometric_normal, gbuffer.geometricNormal);
       photons.draw(context);
     });
     return irradiance;
@@ -115,10 +120,10 @@ class SurfaceCaustics : public Technique {
     const caustics::CausticRays& rays = photons.rays;
     frame::PassBuilder pass = graph.addPass("caustic map", info.name);
     photons.declare(pass, true);
-    pass.read(rays.layerLights, Access::storageLoad, "light of each layer of rays")
-        .read(rays.scene.views, Access::storageLoad, "projections of the maps")
-        .read(rays.scene.lights, Access::storageLoad, "layers of each light")
-        .read(rays.scene.depth, Access::sampled, "receivers");
+    pass.read(rays.layerLights, Access::storageLoad, "Layers", "light of each layer of rays")
+        .read(rays.scene.views, Access::storageLoad, "SceneViews", "projections of the maps")
+        .read(rays.scene.lights, Access::storageLoad, "SceneLights", "layers of each light")
+        .read(rays.scene.depth, Access::sampled, "scene_depth", "receivers");
     const frame::TextureHandle maps =
         pass.write(graph.createTexture("caustic maps", {.target = GL_TEXTURE_2D_ARRAY,
                                                         .format = GL_RGBA32F,
@@ -133,8 +138,6 @@ class SurfaceCaustics : public Technique {
         gpu::Program& splats = photons.begin(context, empty_);
         splats.set("layer_count", splatted.layers);
         splats.set("map_layer", layer);
-        bindMaps(context, splatted);
-        context.bindStorage(3, splatted.layerLights);
         photons.draw(context);
       }
     });
@@ -144,28 +147,20 @@ class SurfaceCaustics : public Technique {
   frame::TextureHandle addLookup(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const caustics::CausticRays& rays, frame::TextureHandle maps) {
     frame::PassBuilder pass = graph.addPass("caustic map lookup", info.name);
-    pass.read(inputs.handles.frame, Access::uniformBuffer, "camera")
-        .read(inputs.gbuffer.depth, Access::sampled, "receivers")
-        .read(inputs.gbuffer.geometricNormal, Access::sampled, "sides of receivers")
-        .read(rays.scene.views, Access::storageLoad, "projections of the maps")
-        .read(rays.scene.lights, Access::storageLoad, "layers of each light")
-        .read(rays.scene.depth, Access::sampled, "what the maps show")
-        .read(maps, Access::sampled, "what arrives there");
+    pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
+        .read(inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "receivers")
+        .read(inputs.gbuffer.geometricNormal, Access::sampled, kGBufferNames.geometricNormal,
+              "sides of receivers")
+        .read(rays.scene.views, Access::storageLoad, "SceneViews", "projections of the maps")
+        .read(rays.scene.lights, Access::storageLoad, "SceneLights", "layers of each light")
+        .read(rays.scene.depth, Access::sampled, "scene_depth", "what the maps show")
+        .read(maps, Access::sampled, "caustic_map", "what arrives there");
     const frame::TextureHandle irradiance =
-        pass.write(createIrradiance(graph, inputs.size), Access::imageStore, "flux per area");
+        pass.write(createIrradiance(graph, inputs.size), Access::imageStore, "irradiance", "flux per area");
     const auto program =
         pass.program({.files = {"techniques/surface_caustics/lookup.comp.glsl"}, .defines = {}});
-    pass.execute([=, frame = inputs.handles.frame, gbuffer = inputs.gbuffer,
-                  size = inputs.size](frame::PassContext& context) {
-      gpu::Program& kernel = context.program(program);
-      kernel.use();
-      kernel.set("light_count", rays.sceneLights);
-      context.bindUniform(glsl::FrameBlock::binding, frame);
-      context.bindSampled(glsl::gbuffer_unit_depth, gbuffer.depth);
-      context.bindSampled(glsl::gbuffer_unit_geometric_normal, gbuffer.geometricNormal);
-      context.bindSampled(7, maps);
-      bindMaps(context, rays);
-      context.bindImage(0, irradiance, GL_WRITE_ONLY);
+    pass.execute([program, lights = rays.sceneLights, size = inputs.size](frame::PassContext& context) {
+      context.use(program).set("light_count", lights);
       context.dispatch(size.x, size.y, 1, 8, 8);
     });
     return irradiance;
@@ -176,35 +171,18 @@ class SurfaceCaustics : public Technique {
                                {.format = GL_RGBA32F, .width = size.x, .height = size.y});
   }
 
-  /// As caustic_map.glsl reads them.
-  static void bindMaps(frame::PassContext& context, const caustics::CausticRays& rays) {
-    context.bindStorage(1, rays.scene.views);
-    context.bindStorage(2, rays.scene.lights);
-    context.bindSampled(8, rays.scene.depth);
-  }
-
   static frame::TextureHandle addReflection(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                             frame::TextureHandle irradiance, frame::TextureHandle target) {
     frame::PassBuilder pass = graph.addPass("reflect", info.name);
-    const GBuffer& g = inputs.gbuffer;
-    const std::array<std::pair<unsigned, frame::TextureHandle>, 5> surface{
-        {{glsl::gbuffer_unit_depth, g.depth},
-         {glsl::gbuffer_unit_normal, g.normal},
-         {glsl::gbuffer_unit_albedo, g.albedo},
-         {glsl::gbuffer_unit_material, g.material},
-         {glsl::gbuffer_unit_emission, g.emission}}};
-    pass.read(inputs.handles.frame, Access::uniformBuffer, "camera")
-        .read(irradiance, Access::sampled, "what arrives");
-    for (const auto& [unit, texture] : surface) pass.read(texture, Access::sampled, "what is reflected");
-    const frame::TextureHandle result = pass.write(target, Access::imageLoadStore, "reflected caustics");
+    pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
+        .read(irradiance, Access::sampled, "irradiance", "what arrives");
+    readSurfaces(pass, inputs.gbuffer);
+    const frame::TextureHandle result =
+        pass.write(target, Access::imageLoadStore, "radiance", "reflected caustics");
     const auto program =
         pass.program({.files = {"techniques/surface_caustics/reflect.comp.glsl"}, .defines = {}});
-    pass.execute([=, frame = inputs.handles.frame, size = inputs.size](frame::PassContext& context) {
-      context.program(program).use();
-      context.bindUniform(glsl::FrameBlock::binding, frame);
-      for (const auto& [unit, texture] : surface) context.bindSampled(unit, texture);
-      context.bindSampled(7, irradiance);
-      context.bindImage(0, result, GL_READ_WRITE);
+    pass.execute([program, size = inputs.size](frame::PassContext& context) {
+      context.use(program);
       context.dispatch(size.x, size.y, 1, 8, 8);
     });
     return result;
@@ -212,7 +190,7 @@ class SurfaceCaustics : public Technique {
 
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
-    const bool map = inputs.parameters.choice("splat") == splatLight;
+    const bool map = inputs.parameters.choice("splat") == kSplatLight;
     const caustics::CausticRays rays =
         caustics::requestRays(graph, inputs, request, map ? "caustic map" : "photons", info.name);
     if (!rays.rays) return request.target;
@@ -229,8 +207,8 @@ class SurfaceCaustics : public Technique {
       .title = "Surface caustics",
       .source = "Wyman and Davis 2006; Shah et al. 2007; Schjoeth et al. 2007; thesis, section 8.3.4",
       .terms = termSet(Term::caustic),
-      .parameters = parameters,
-      .stress = stress};
+      .parameters = kParameters,
+      .stress = kStress};
 };
 
 }  // namespace

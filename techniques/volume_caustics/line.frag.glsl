@@ -17,7 +17,7 @@ uniform float filter_radius;  // steps
 // Mean of density and transmittance to the camera over the STEPS regular points of the viewing ray around `distance`, by a
 // Gaussian of standard deviation filter_radius / 2 that is divided by the sum of its weights.
 vec3 shared_scattering(Medium medium, vec3 direction, float distance) {
-  float size = step_size * frame.environment.w;
+  float size = step_size * frame.scene_radius;
   float first = floor(distance / size - 0.5 * float(STEPS) + 1.0);
   vec3 sum = vec3(0.0);
   float total = 0.0;
@@ -40,7 +40,7 @@ void main() {
   if (f.share == 0.0) discard;
   CausticRay ray = rays[ray_index];
   Medium medium = scene_medium();
-  vec3 place = ray.start.xyz + f.along * ray.direction.xyz;
+  vec3 place = ray.start + f.along * ray.direction;
   vec3 from_eye = place - frame.camera_position.xyz;
   float distance = length(from_eye);
   vec3 direction = from_eye / distance;
@@ -51,11 +51,11 @@ void main() {
 #endif
   if (seen == vec3(0.0)) discard;
 #if MEDIUM_STEPS > 0
-  float along = medium_length(medium, ray.start.xyz, ray.direction.xyz, f.along);
+  float along = medium_length(medium, ray.start, ray.direction, f.along);
 #else
   float along = f.along;
 #endif
   vec3 arriving = ray.power * medium_transmittance(medium, along);
-  float phase = phase_function(medium.g, ray.direction.xyz, -direction);
+  float phase = phase_function(medium.g, ray.direction, -direction);
   radiance = vec4(arriving * medium.scattering * seen * (phase * line_weight(f)), 0.0);
 }

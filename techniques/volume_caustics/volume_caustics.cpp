@@ -1,30 +1,39 @@
 // Volume caustics: light that specular objects reflect or refract into the medium, as lines.
 #include "core/caustics/ray_lines.h"
-#include "core/scene/gpu_medium.h"
+#include "core/gpu_scene/gpu_medium.h"
 #include "core/technique/technique.h"
 
 namespace {
 
 using namespace limn;
 
-constexpr Parameter parameters[] = {
+constexpr Parameter kParameters[] = {
     caustics::bufferSizeParameter(),
     caustics::sceneMapSizeParameter(),
     caustics::pathsParameter(),
     caustics::lightSamplesParameter(),
+    caustics::rayStepsParameter(),
+    caustics::exitStepsParameter(),
     boolean("beams", true,
             "Lines whose beam is wider than a pixel become quads of that width; false: lines alone, as "
             "published"),
+    caustics::beamCosineParameter(),
     integer("steps", 1, {1, 4}, "steps",
             "Regular points of the viewing ray that share a fragment's light; 1: its place on the light ray"),
     real("step", 0.02, {1e-4, 1}, "scene radii", "Distance between these points"),
     scene::mediumStepsParameter(),
     real("filter_radius", 1, {0.1, 8}, "steps", "Radius of the Gaussian by which they share"),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "buffer of 1 texel", .settings = "buffer_size=1", .factor = 0},
     {.name = "buffer of 16 texels", .settings = "buffer_size=16", .factor = 6},
     {.name = "lines alone", .settings = "beams=false", .factor = 6},
+    {.name = "no beam between rays", .settings = "beam_cosine=1", .factor = 6},
+    {.name = "beams across edges", .settings = "beam_cosine=-1", .factor = 6},
+    {.name = "one point of each search", .settings = "ray_steps=1 exit_steps=1", .factor = 0},
+    {.name = "many points of each search",
+     .settings = "ray_steps=4096 exit_steps=1024 buffer_size=64",
+     .factor = 6},
     {.name = "reflection alone", .settings = "paths=reflection", .factor = 0},
     {.name = "four steps", .settings = "steps=4", .factor = 2},
 };
@@ -46,6 +55,7 @@ class VolumeCaustics : public Technique {
          .defines = {{"STEPS", std::to_string(steps)}},
          .mediumSteps = p.integer("medium_steps"),
          .beams = p.boolean("beams"),
+         .beamCosine = p.real("beam_cosine"),
          .bind = [steps, step = p.real("step"), radius = p.real("filter_radius")](gpu::Program& program) {
            if (steps == 1) return;
            program.set("step_size", step);
@@ -58,8 +68,8 @@ class VolumeCaustics : public Technique {
                                       .title = "Volume caustics",
                                       .source = "Hu et al. 2010; thesis, chapter 8",
                                       .terms = termSet(Term::media),
-                                      .parameters = parameters,
-                                      .stress = stress};
+                                      .parameters = kParameters,
+                                      .stress = kStress};
 };
 
 }  // namespace

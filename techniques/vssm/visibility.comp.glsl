@@ -4,13 +4,14 @@
 // What the bounds of the search kernel prove lit or dark is so, whatever the moments say. EARLY_OUT 0: the rest is computed all
 // the same. BLOCKERS_ADAPTIVE and VISIBILITY_ADAPTIVE: which subdivision. CONTACT 1: narrow penumbrae from jittered bilinear
 // texels.
-#include "glsl/sampling.glsl"
-#include "glsl/sub_kernels.glsl"
-#include "glsl/visibility_main.glsl"
+#include "glsl/numeric/sampling.glsl"
+#include "glsl/shadow/sub_kernels.glsl"
+#include "glsl/shadow/visibility_main.glsl"
 
 uniform int search_rounds;
 uniform int blocker_cells;
 uniform int passes;
+uniform float pass_gap;  // of a kernel's: blockers nearer than this are looked for in a kernel of their own
 uniform int visibility_cells;
 uniform int tree_height;
 uniform float contact_texels;
@@ -61,7 +62,7 @@ Contents kernel_contents(inout ShadowCursor cursor, VisibilityQuery q, inout Ker
 #if SIMILAR_KERNELS
   add_contents(contents, weights, f, gap, deepest, blockers, wanted);
 #else
-  uint faces = wanted ? shadow_face_count(q.maps.info.y) : 0u;
+  uint faces = wanted ? shadow_face_count(q.maps.faces) : 0u;
   uint face = 0u;
   do {
     if (face != cursor.face) {
@@ -120,7 +121,7 @@ Search search_kernel(inout ShadowCursor cursor, VisibilityQuery q, inout KernelF
       search.umbra = search.umbra && (bounds.umbra || !seen);
       search.deepest = max(search.deepest, seen ? bounds.deepest : 0.0);
       widest = max(widest, seen ? bounds.gap : 0.0);
-    } while (++face < shadow_face_count(q.maps.info.y));
+    } while (++face < shadow_face_count(q.maps.faces));
 #endif
     search.open = !(search.lit || search.umbra);
 #if !EARLY_OUT
@@ -182,7 +183,7 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
     float found = clamp(contents.gap / max(contents.blocked, 1e-30), 0.0, gap);
     if (open && !searching) v = clamp(1.0 - contents.blocked, 0.0, 1.0);
     bool none = contents.texels < (searching ? 0.5 : 1e-3);
-    open = open && !none && (searching || found < 0.8 * gap);
+    open = open && !none && (searching || found < pass_gap * gap);
     gap = open ? found : gap;
 #if CONTACT
 #if SIMILAR_KERNELS

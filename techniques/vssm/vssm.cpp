@@ -12,30 +12,35 @@ namespace {
 
 using namespace limn;
 
-constexpr const char* subdivisions[] = {"uniform", "adaptive", "mixed"};
-constexpr const char* poolings[] = {"each", "pooled"};
-constexpr const char* boundings[] = {"mip", "windows", "nbuffer"};
-constexpr const char* boundsLookups[] = {"min_max_depth", "min_max_windows_depth", "n_buffer_depth"};
-constexpr const char* contacts[] = {"off", "jittered"};
+constexpr const char* kSubdivisions[] = {"uniform", "adaptive", "mixed"};
+constexpr const char* kPoolings[] = {"each", "pooled"};
+constexpr const char* kBoundings[] = {"mip", "windows", "nbuffer"};
+constexpr const char* kBoundsLookups[] = {"min_max_depth", "min_max_windows_depth", "n_buffer_depth"};
+constexpr const char* kContacts[] = {"off", "jittered"};
 
-constexpr Parameter parameters[] = {
+constexpr Parameter kParameters[] = {
     choice(
-        "subdivision", 0, subdivisions,
+        "subdivision", 0, kSubdivisions,
         "Of kernels: equal parts, a quad-tree, or equal parts for blockers and a quad-tree for visibility"),
     integer("blocker_cells", 3, {1, 30}, "per side", "Equal parts of the blocker search").quality(),
     integer("passes", 1, {1, 8}, "passes", "Of the blocker search").quality(),
+    real("pass_gap", 0.8, {0, 1}, "kernel distances",
+         "Another pass is taken where blockers are nearer to the receiver than this"),
+    real("least_gap", 0.05, {0.001, 1}, "kernel distances",
+         "Blockers nearer to the receiver than this hide as much as at this distance; chebyshev=each")
+        .logScale(),
     integer("visibility_cells", 3, {1, 30}, "per side", "Equal parts of the penumbra kernel, besides its rim")
         .quality(),
     integer("tree_height", 3, {1, 5}, "levels", "Of the quad-tree").quality(),
-    choice("chebyshev", 0, poolings, "Evaluate Chebyshev's inequality for each sub-kernel or once for all"),
+    choice("chebyshev", 0, kPoolings, "Evaluate Chebyshev's inequality for each sub-kernel or once for all"),
     integer("search_rounds", 5, {0, 8}, "rounds",
             "How often the minimum depth in the search kernel narrows it; 0: as published"),
-    choice("bounds", 1, boundings,
+    choice("bounds", 1, kBoundings,
            "Of the depths in the search kernel: from a min-max pyramid, from one of overlapping windows, "
            "tighter, or an N-buffer, tighter still and dearer"),
     boolean("early_out", true, "Answer at once where bounds of the depths in the search kernel decide")
         .savesWork("false"),
-    choice("contact", 0, contacts, "Narrow penumbrae: from the table, or 3 x 3 jittered bilinear texels"),
+    choice("contact", 0, kContacts, "Narrow penumbrae: from the table, or 3 x 3 jittered bilinear texels"),
     real("contact_texels", 3, {1, 64}, "texels", "Width of the kernels that count as narrow"),
     integer("sat_bits", 16, {8, 24}, "bits", "Of a depth in the summed-area table"),
     integer("sat_words", 2, {1, 2}, "32-bit words", "Per moment; 1: squares rounded, as published"),
@@ -44,13 +49,17 @@ constexpr Parameter parameters[] = {
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
-constexpr StressCase stress[] = {
+constexpr StressCase kStress[] = {
     {.name = "map of 64 texels", .settings = "shadow_map_size=64", .factor = 4},
     {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
     {.name = "adaptive subdivision in foliage", .scene = "plant", .settings = "subdivision=adaptive"},
     {.name = "published subdivision in foliage",
      .scene = "plant",
      .settings = "subdivision=mixed chebyshev=pooled"},
+    {.name = "a pass for any nearer blocker", .settings = "passes=8 pass_gap=1"},
+    {.name = "no second pass", .settings = "passes=8 pass_gap=0"},
+    {.name = "blockers in contact", .settings = "least_gap=0.001"},
+    {.name = "blockers all at the kernel", .settings = "least_gap=1"},
 };
 
 /// Whether the sum of depths over the largest sub-kernel may exceed one word.
@@ -59,16 +68,6 @@ bool needsWideSums(const ParameterValues& p) {
   const int parts = uniform ? std::min(p.integer("blocker_cells"), p.integer("visibility_cells")) : 1;
   const int64_t side = (p.integer("shadow_map_size") + parts - 1) / parts;
   return side * side * ((int64_t{1} << p.integer("sat_bits")) - 1) > 0xffffffffLL;
-}
-
-/// Whether every light has one view, in which its kernels at all distances are scaled copies of each other:
-/// not so where several faces cut them, nor where a square that faces the receiver is seen at an angle.
-bool similarKernels(const TechniqueInputs& inputs, const TermRequest& request) {
-  return std::ranges::all_of(request.lights, [&](uint32_t light) {
-    const uint32_t type = inputs.pose.lights[light].info.x;
-    return inputs.shadowMaps.layersOf(light, {.size = inputs.parameters.integer("shadow_map_size")}) == 1 &&
-           (type == glsl::light_rectangle || type == glsl::light_directional);
-  });
 }
 
 frame::TextureHandle depthBounds(shadow::ShadowMapService& service, const shadow::ShadowMaps& maps,
@@ -87,24 +86,28 @@ class Vssm : public Technique {
                                {{"POOLED", std::to_string(p.choice("chebyshev"))},
                                 {"BLOCKERS_ADAPTIVE", subdivision == 1 ? "1" : "0"},
                                 {"VISIBILITY_ADAPTIVE", subdivision == 0 ? "0" : "1"},
-                                {"SIMILAR_KERNELS", similarKernels(inputs, request) ? "1" : "0"},
                                 {"WIDE_Z", needsWideSums(p) ? "1" : "0"},
-                                {"BOUNDS_DEPTH", boundsLookups[p.choice("bounds")]},
+                                {"BOUNDS_DEPTH", kBoundsLookups[p.choice("bounds")]},
                                 {"EARLY_OUT", p.boolean("early_out") ? "1" : "0"},
                                 {"CONTACT", std::to_string(p.choice("contact"))}});
-    const shadow::SummedAreaTable table = inputs.shadowMaps.summedAreaTable(
+    const shadow::SummedAreaTable table = inputs.service<shadow::ShadowMapService>().summedAreaTable(
         pass.maps, {.bits = p.integer("sat_bits"), .words = p.integer("sat_words")});
     pass.program.defines["TABLE_FORMAT"] = fmt::format("{}u", table.format);
-    pass.sampled = {{shadow::minMaxUnit, depthBounds(inputs.shadowMaps, pass.maps, p.choice("bounds")),
+    pass.sampled = {{"shadow_min_max",
+                     depthBounds(inputs.service<shadow::ShadowMapService>(), pass.maps, p.choice("bounds")),
                      "what is lit or dark at once"},
-                    {shadow::tableUnit, table.texture, "moments of kernels"}};
+                    {"shadow_table", table.texture, "moments of kernels"}};
     pass.bind = [subdivision, passes = p.integer("passes"), rounds = p.integer("search_rounds"),
                  blockers = p.integer("blocker_cells"), cells = p.integer("visibility_cells"),
                  height = p.integer("tree_height"), contact = p.real("contact_texels"),
-                 contacts = p.choice("contact") != 0](frame::PassContext&, gpu::Program& program) {
+                 jittered = p.choice("contact") != 0, pooled = p.choice("chebyshev") != 0,
+                 passGap = p.real("pass_gap"),
+                 leastGap = p.real("least_gap")](frame::PassContext&, gpu::Program& program) {
       program.set("search_rounds", rounds);
-      if (contacts) program.set("contact_texels", contact);
+      if (jittered) program.set("contact_texels", contact);
       program.set("passes", passes);
+      program.set("pass_gap", passGap);
+      if (!pooled) program.set("least_gap", leastGap);
       if (subdivision != 1) program.set("blocker_cells", blockers);
       if (subdivision == 0) program.set("visibility_cells", cells);
       if (subdivision != 0) program.set("tree_height", height);
@@ -117,8 +120,8 @@ class Vssm : public Technique {
                                       .title = "Variance soft shadow maps",
                                       .source = "Yang et al. 2010, Variance Soft Shadow Mapping",
                                       .terms = termSet(Term::visibility),
-                                      .parameters = parameters,
-                                      .stress = stress};
+                                      .parameters = kParameters,
+                                      .stress = kStress};
 };
 
 }  // namespace

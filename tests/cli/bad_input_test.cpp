@@ -58,7 +58,7 @@ GltfBuilder trianglePositions(float value) {
 
 TEST_F(BadScene, MissingOrCutOff) {
   expectScene("none.glb", {"does not exist"});
-  const std::string whole = contents(cornell_box);
+  const std::string whole = contents(kCornellBox);
   const std::string half = whole.substr(0, whole.size() / 2);
   write("cut.glb", GltfBuilder::toBytes(half));
   expectScene("cut.glb", {});
@@ -112,7 +112,7 @@ class BadOutput : public testing::Test {
  protected:
   /// `limn render` and `limn reference` of a small picture.
   static Outcome write(const std::string& command, const std::string& out, rlim_t fileSizeLimit = 0) {
-    return limn({command, cornell_box, "--size", "64x64", "--out", out}, {}, fileSizeLimit);
+    return limn({command, kCornellBox, "--size", "64x64", "--out", out}, {}, fileSizeLimit);
   }
   const TemporaryFolder folder_;
 };
@@ -142,7 +142,7 @@ TEST_F(BadOutput, FullDisk) {
 
 TEST_F(BadOutput, FullStandardOutput) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
-  const Outcome outcome = run({"/bin/sh", "-c", "exec " + limn_binary + " list > /dev/full"});
+  const Outcome outcome = run({"/bin/sh", "-c", "exec " + kLimnBinary + " list > /dev/full"});
   expectRefused(outcome, 1, {"standard output"});
 }
 
@@ -150,7 +150,7 @@ TEST_F(BadOutput, FullDiskDuringABench) {
   std::ofstream(folder_ / "suite.toml")
       << "name = 'full'\nsizes = ['32x20']\nframes = 1\nwarmup = 0\nreference = {spp = 2}\n"
          "[[scenes]]\nscene = '"
-      << cornell_box
+      << kCornellBox
       << "'\n"
          "max_masked_share = 0.05\n[[techniques]]\ntechnique = 'hard_shadow_map'\n";
   const Outcome outcome = limn({"bench", folder_ / "suite.toml", "--out", folder_ / "out"}, {}, 2000);

@@ -19,7 +19,7 @@ using testing::Not;
 
 class BenchFaults : public testing::Test {
  protected:
-  BenchFaults() { fs::copy_file(cornell_box, folder_ / "box.glb"); }
+  BenchFaults() { fs::copy_file(kCornellBox, folder_ / "box.glb"); }
 
   /// A suite of 16 x 16 pixels of which a case takes milliseconds.
   void suite(const std::string& techniques, const std::string& more = "",
@@ -40,7 +40,7 @@ class BenchFaults : public testing::Test {
   }
 
   std::vector<std::string> command(const std::string& out = "out") const {
-    return {limn_binary, "bench", folder_ / "suite.toml", "--out", folder_ / out};
+    return {kLimnBinary, "bench", folder_ / "suite.toml", "--out", folder_ / out};
   }
   Outcome bench(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments = command();
@@ -67,7 +67,7 @@ class BenchFaults : public testing::Test {
 
   const TemporaryFolder folder_;
   std::map<std::string, std::string> environment_ = {
-      {"LIMN_TECHNIQUE_PATH", std::string(binaryDir) + "/tests/misbehaver"}};
+      {"LIMN_TECHNIQUE_PATH", std::string(kBinaryDir) + "/tests/misbehaver"}};
 };
 
 TEST_F(BenchFaults, EveryWayToFailCostsOneRow) {
@@ -79,7 +79,7 @@ TEST_F(BenchFaults, EveryWayToFailCostsOneRow) {
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.out, HasSubstr("3 rows measured, 0 were there already, 5 failed")) << outcome.err;
   const std::string thrown =
-      ": technique misbehaver (" + std::string(binaryDir) + "/tests/misbehaver/misbehaver.so): ";
+      ": technique misbehaver (" + std::string(kBinaryDir) + "/tests/misbehaver/misbehaver.so): ";
   for (const std::string& line :
        {"way=foreign" + thrown + "no error of limn's own\n",
         "way=number" + thrown + "it threw something that is no std::exception\n",
@@ -139,7 +139,7 @@ TEST_F(BenchFaults, WhatIsMissingIsSaidBeforeAnythingIsMeasured) {
 TEST_F(BenchFaults, WhatHasChangedIsMeasuredAgain) {
   const fs::path modules = folder_ / "modules";
   fs::create_directory(modules);
-  fs::copy_file(std::string(binaryDir) + "/tests/misbehaver/misbehaver.so", modules / "misbehaver.so");
+  fs::copy_file(std::string(kBinaryDir) + "/tests/misbehaver/misbehaver.so", modules / "misbehaver.so");
   environment_["LIMN_TECHNIQUE_PATH"] = modules;
   suite(shadows() + technique("misbehaver"));
   ASSERT_THAT(bench().out, HasSubstr("2 rows measured, 0 were"));
@@ -149,7 +149,7 @@ TEST_F(BenchFaults, WhatHasChangedIsMeasuredAgain) {
   EXPECT_THAT(module.out, HasSubstr("1 rows measured, 1 were"));
   EXPECT_THAT(module.err, HasSubstr("1 rows are measured again: technique misbehaver has changed (1)\n"));
   fs::remove(folder_ / "box.glb");
-  fs::copy_file(fs::path(cornell_box).parent_path().parent_path() / "balls/balls.glb", folder_ / "box.glb");
+  fs::copy_file(fs::path(kCornellBox).parent_path().parent_path() / "balls/balls.glb", folder_ / "box.glb");
   const Outcome scene = bench();
   EXPECT_THAT(scene.out, HasSubstr("2 rows measured, 0 were")) << scene.err;
   EXPECT_THAT(scene.err, HasSubstr("2 rows are measured again: the scene has changed (2)\n"));
@@ -221,7 +221,7 @@ TEST_F(BenchFaults, TheSecondOfTwoInOneFolderSaysWhoIsThere) {
 
 TEST_F(BenchFaults, AReferenceIsRenderedByOneProcessAtATime) {
   const auto reference = [&](const std::string& where) {
-    std::vector<std::string> arguments = {limn_binary, "reference", cornell_box,      "--size",
+    std::vector<std::string> arguments = {kLimnBinary, "reference", kCornellBox,      "--size",
                                           "64x64",     "--spp",     "1048576",        "--threads",
                                           "1",         "--out",     folder_ / "a.exr"};
     if (!where.empty()) arguments.insert(arguments.end(), {"--cache", folder_ / where});
@@ -283,13 +283,13 @@ TEST_F(BenchFaults, OddFileNamesAreNamesLikeOthers) {
         std::string("\xff\xfe"), std::string("-dash"), std::string(250, 'n')}) {
     suite(shadows());
     const fs::path out = folder_ / name;
-    const Outcome outcome = run({limn_binary, "bench", folder_ / "suite.toml", "--out=" + out.string()});
+    const Outcome outcome = run({kLimnBinary, "bench", folder_ / "suite.toml", "--out=" + out.string()});
     EXPECT_EQ(outcome.status, 0) << name << ": " << outcome.err;
-    EXPECT_THAT(run({limn_binary, "bench", folder_ / "suite.toml", "--out=" + out.string()}).out,
+    EXPECT_THAT(run({kLimnBinary, "bench", folder_ / "suite.toml", "--out=" + out.string()}).out,
                 HasSubstr("0 rows measured, 1 were there"));
   }
   const fs::path picture = folder_ / (std::string(240, 'p') + ".exr");
-  const Outcome reference = limn({"reference", cornell_box, "--size", "8x8", "--spp", "2", "--out", picture});
+  const Outcome reference = limn({"reference", kCornellBox, "--size", "8x8", "--spp", "2", "--out", picture});
   EXPECT_EQ(reference.status, 0) << reference.err;
 }
 
@@ -313,7 +313,7 @@ TEST_F(BenchFaults, AFolderThatCannotBeWrittenIsOneLine) {
 TEST_F(BenchFaults, LittleIsEnoughOrSaidInOneLine) {
   suite(shadows());
   const auto limited = [&](const std::string& limit) {
-    return run({"/bin/sh", "-c", "ulimit " + limit + "; exec \"$0\" \"$@\"", limn_binary, "bench",
+    return run({"/bin/sh", "-c", "ulimit " + limit + "; exec \"$0\" \"$@\"", kLimnBinary, "bench",
                 folder_ / "suite.toml", "--out", folder_ / "out"});
   };
   // Each ends in rows, or in a message, and leaves a folder that goes on.
@@ -333,7 +333,7 @@ TEST_F(BenchFaults, NoHomeAndACommaForAPointChangeNothing) {
   const auto whole = rows(folder_ / "out");
   fs::remove_all(folder_ / "out");
   const Outcome bare =
-      run({"/usr/bin/env", "-i", limn_binary, "bench", folder_ / "suite.toml", "--out", folder_ / "out"});
+      run({"/usr/bin/env", "-i", kLimnBinary, "bench", folder_ / "suite.toml", "--out", folder_ / "out"});
   EXPECT_EQ(bare.status, 0) << bare.err;
   EXPECT_EQ(rows(folder_ / "out"), whole);
   fs::remove_all(folder_ / "out");

@@ -60,7 +60,7 @@ TEST_F(BenchCommand, ACrashLosesItsOwnRowOnly) {
       << "[[techniques]]\ntechnique = \"misbehaver\"\nparameters = {way = ['crash', 'none']}\n"
          "[[techniques]]\ntechnique = \"hard_shadow_map\"\n";
   const std::map<std::string, std::string> environment = {
-      {"LIMN_TECHNIQUE_PATH", std::string(binaryDir) + "/tests/misbehaver"}};
+      {"LIMN_TECHNIQUE_PATH", std::string(kBinaryDir) + "/tests/misbehaver"}};
   const std::vector<std::string> command = {"bench", folder_ / "suite.toml", "--out", folder_ / "out"};
   const Outcome outcome = limn(command, environment);
   EXPECT_EQ(outcome.status, 1);

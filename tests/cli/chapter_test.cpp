@@ -6,7 +6,7 @@ namespace {
 
 /// Without a display, whatever the machine has.
 Outcome chapter(const std::string& name, const std::vector<std::string>& arguments) {
-  std::vector<std::string> command = {std::string(binaryDir) + "/bin/" + name, "--headless"};
+  std::vector<std::string> command = {std::string(kBinaryDir) + "/bin/" + name, "--headless"};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return run(command);
 }
@@ -27,7 +27,7 @@ TEST(Chapters, FiguresAreWrittenAsFiles) {
 TEST(Chapters, ADisplayThatIsGoneIsNone) {
   const TemporaryFolder folder;
   const Outcome outcome =
-      run({std::string(binaryDir) + "/bin/ch7-variance-soft-shadows", "--out", folder / "out", "--filter",
+      run({std::string(kBinaryDir) + "/bin/ch7-variance-soft-shadows", "--out", folder / "out", "--filter",
            "512x384", "--filter", "balls", "--filter", "savsm"},
           {{"DISPLAY", ":4321"}, {"WAYLAND_DISPLAY", ""}});
   EXPECT_EQ(outcome.status, 0) << outcome.err;

@@ -43,7 +43,7 @@ TEST_F(EnvironmentCommand, WritesTheOverlayAndRefusesWhatMakesNoSense) {
   expectRefused(limn({"environment", map(), "--shape", "discs"}), 2, {"discs", "squares", "rectangles"});
   expectRefused(limn({"environment", map(), "--overlay", "lights.jpg"}), 2, {"lights.jpg", ".png"});
   expectRefused(limn({"environment", map(), "--lights", "0.5", "--resolution", "256"}), 2, {"0.5", "1024"});
-  expectRefused(limn({"render", cornell_box, "--environment-lights", "0.02", "--out", "a.png"}), 2,
+  expectRefused(limn({"render", kCornellBox, "--environment-lights", "0.02", "--out", "a.png"}), 2,
                 {"--environment-lights", "--environment"});
   expectRefused(limn({"environment", (folder_ / "none.hdr").string()}), 1, {"none.hdr"});
   expectRefused(limn({"environment", "ski"}), 1, {"'ski'", ".exr"});
@@ -52,7 +52,7 @@ TEST_F(EnvironmentCommand, WritesTheOverlayAndRefusesWhatMakesNoSense) {
 
 TEST_F(EnvironmentCommand, LightsOfTheEnvironmentShadowAndAreReferredToByName) {
   const std::string environment = map();
-  const std::vector<std::string> scene{cornell_box, "--environment", environment, "--environment-lights",
+  const std::vector<std::string> scene{kCornellBox, "--environment", environment, "--environment-lights",
                                        "0.05",      "--size",        "32x24",     "--light",
                                        "env#1",     "--out"};
   const auto with = [&](std::vector<std::string> command, const char* out, std::vector<std::string> more) {

@@ -20,14 +20,14 @@ std::vector<std::string> lines(const fs::path& file) {
 TEST(Interruption, ReferenceLeavesACheckpointAndResumes) {
   const TemporaryFolder folder;
   const auto command = [&](const std::string& name) {
-    return std::vector<std::string>{limn_binary, "reference", cornell_box,   "--size",    "48x48", "--spp",
+    return std::vector<std::string>{kLimnBinary, "reference", kCornellBox,   "--size",    "48x48", "--spp",
                                     "4096",      "--out",     folder / name, "--threads", "1"};
   };
   ASSERT_EQ(run(command("whole.exr")).status, 0);
   for (const int signal : {SIGINT, SIGTERM}) {
     const fs::path checkpoint = folder / "a.exr.checkpoint";
     Process process(command("a.exr"));
-    ASSERT_TRUE(process.waitUntil([&] { return process.err().find("%") != std::string::npos; }))
+    ASSERT_TRUE(process.waitUntil([&] { return process.err().find('%') != std::string::npos; }))
         << process.err();
     process.signal(signal);
     const Outcome outcome = process.wait();
@@ -52,7 +52,7 @@ TEST(Interruption, ReferenceLeavesACheckpointAndResumes) {
 TEST(Interruption, AnimationSaysWhichFramesAreThere) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const TemporaryFolder folder;
-    Process process({limn_binary, "render", cornell_box, "--size", "16x12", "--frames", "5:100000", "-o",
+    Process process({kLimnBinary, "render", kCornellBox, "--size", "16x12", "--frames", "5:100000", "-o",
                      folder / "a.png"});
     ASSERT_TRUE(process.waitUntil([&] { return fs::exists(folder / "a.0007.png"); })) << process.err();
     process.signal(signal);
@@ -79,14 +79,15 @@ TEST(Interruption, BenchSaysWhatIsKept) {
   std::ofstream(folder / "suite.toml")
       << "name = 'stopped'\nsizes = ['32x20']\nframes = 2\nwarmup = 0\nreference = {spp = 2}\n"
          "modes = ['dynamic', 'static']\n[[scenes]]\nscene = '"
-      << cornell_box
+      << kCornellBox
       << "'\nmax_masked_share = 0.05\n[[techniques]]\ntechnique = 'hard_shadow_map'\n"
          "parameters = {shadow_map_size = [16, 32], filter = ['nearest', '2x2']}\n";
-  const std::vector<std::string> command{limn_binary, "bench", folder / "suite.toml", "-o", folder / "out"};
+  const std::vector<std::string> command{kLimnBinary, "bench", folder / "suite.toml", "-o", folder / "out"};
   const fs::path results = folder / "out/results.jsonl";
   for (const auto& [signal, rows] : {std::pair(SIGINT, 1u), std::pair(SIGTERM, 3u)}) {
     Process process(command);
-    ASSERT_TRUE(process.waitUntil([&] { return lines(results).size() >= rows; })) << process.err();
+    ASSERT_TRUE(process.waitUntil([&, wanted = rows] { return lines(results).size() >= wanted; }))
+        << process.err();
     process.signal(signal);
     const Outcome outcome = process.wait();
     EXPECT_EQ(outcome.status, 128 + signal) << outcome.err;
@@ -107,11 +108,11 @@ TEST(Interruption, KilledBenchLosesNoRow) {
   std::ofstream(folder / "suite.toml")
       << "name = 'killed'\nsizes = ['32x20', '48x30']\nframes = 2\nwarmup = 0\nreference = {spp = 2}\n"
          "modes = ['dynamic', 'static']\n[[scenes]]\nscene = '"
-      << cornell_box
+      << kCornellBox
       << "'\n"
          "max_masked_share = 0.05\n[[techniques]]\ntechnique = 'hard_shadow_map'\n"
          "parameters = {shadow_map_size = [16, 32], filter = ['nearest', '2x2']}\n";
-  const std::vector<std::string> command{limn_binary, "bench", folder / "suite.toml", "--out",
+  const std::vector<std::string> command{kLimnBinary, "bench", folder / "suite.toml", "--out",
                                          folder / "out"};
   const fs::path results = folder / "out/results.jsonl";
 

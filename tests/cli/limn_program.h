@@ -11,12 +11,12 @@
 
 namespace limn::test {
 
-inline const std::string limn_binary = std::string(binaryDir) + "/bin/limn";
-inline const std::string cornell_box = std::string(binaryDir) + "/assets/cornell_box/cornell_box.glb";
+inline const std::string kLimnBinary = std::string(kBinaryDir) + "/bin/limn";
+inline const std::string kCornellBox = std::string(kBinaryDir) + "/assets/cornell_box/cornell_box.glb";
 
 inline Outcome limn(std::vector<std::string> arguments,
                     const std::map<std::string, std::string>& environment = {}, rlim_t fileSizeLimit = 0) {
-  arguments.insert(arguments.begin(), limn_binary);
+  arguments.insert(arguments.begin(), kLimnBinary);
   return run(arguments, environment, fileSizeLimit);
 }
 

@@ -11,11 +11,11 @@
 namespace {
 
 enum class Way { none, crash, crash_in_pass, foreign, number, memory, hang, once_there };
-constexpr const char* ways[] = {"none",   "crash",  "crash_in_pass", "foreign",
-                                "number", "memory", "hang",          "once_there"};
+constexpr const char* kWays[] = {"none",   "crash",  "crash_in_pass", "foreign",
+                                 "number", "memory", "hang",          "once_there"};
 
-constexpr limn::Parameter parameters[] = {
-    limn::choice("way", 0, ways,
+constexpr limn::Parameter kParameters[] = {
+    limn::choice("way", 0, kWays,
                  "How it fails; once_there: it crashes when the file LIMN_TEST_TRIGGER has a content"),
 };
 
@@ -57,18 +57,18 @@ class Misbehaver : public limn::Technique {
   }
 };
 
-constexpr limn::TechniqueInfo info{.name = "misbehaver",
-                                   .title = "Misbehaviour",
-                                   .source = "a test",
-                                   .terms = limn::termSet(limn::Term::visibility),
-                                   .parameters = parameters,
-                                   .stress = {}};
+constexpr limn::TechniqueInfo kInfo{.name = "misbehaver",
+                                    .title = "Misbehaviour",
+                                    .source = "a test",
+                                    .terms = limn::termSet(limn::Term::visibility),
+                                    .parameters = kParameters,
+                                    .stress = {}};
 
 }  // namespace
 
 extern "C" __attribute__((visibility("default"))) const limn::TechniquePlugin* limnTechniquePlugin() {
   static const limn::TechniquePlugin plugin{
-      limn::handshake(limn::interfaceHash()), &info,
+      limn::handshake(limn::interfaceHash()), &kInfo,
       [] { return std::span<const limn::gpu::EmbeddedSource>(); },
       []() -> std::unique_ptr<limn::Technique> { return std::make_unique<Misbehaver>(); }};
   return &plugin;

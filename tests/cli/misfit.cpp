@@ -47,9 +47,26 @@ void die(int signal) {
   std::raise(signal);
 }
 
+/// From now on dlclose() does not unload the module.
+void stay() {
+  Dl_info self{};
+  if (dladdr(reinterpret_cast<const void*>(&wrong), &self))
+    dlopen(self.dli_fname, RTLD_LAZY | RTLD_NOLOAD | RTLD_NODELETE);
+}
+
+/// What happens when the module is unloaded or the program ends.
+const struct kLast {
+  const std::string way = wrong();
+  ~kLast() {
+    if (way == "crashes_at_exit" || way == "stays_and_crashes_at_exit") die(SIGSEGV);
+    if (way == "exits_at_exit") _exit(0);
+  }
+} last;
+
 /// What happens before anybody calls the module.
-const bool loaded = [] {
+const bool kLoaded = [] {
   if (wrong() == "aborts_in_load") die(SIGABRT);
+  if (wrong() == "stays_and_crashes_at_exit") stay();
   return true;
 }();
 
@@ -77,6 +94,8 @@ extern "C" __attribute__((visibility("default"))) const limn::TechniquePlugin* l
   if (name == "null_create") plugin.create = nullptr;
   if (name == "wrong_name") info.name = "pcss";
   if (name == "no_terms") info.terms = 0;
+  if (name == "answers_final") info.terms |= limn::termSet(limn::Term::final);
+  if (name == "answers_unknown") info.terms |= 0x40000000;
   if (name == "null_parameter") parameters[0].name = nullptr;
   if (name == "null_unit") parameters[0].unit = nullptr;
   if (name == "nan_default") parameters[0].defaultValue = std::numeric_limits<double>::quiet_NaN();

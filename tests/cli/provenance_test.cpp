@@ -16,7 +16,7 @@ std::string text(const fs::path& picture, const std::string& key) {
 
 /// Runs a line in a shell and in a folder, with `limn` as the program under test.
 Outcome shell(const fs::path& folder, const std::string& line) {
-  return run({"/bin/bash", "-c", "cd \"$1\" && limn() { \"$0\" \"$@\"; }; shift; eval \"$1\"", limn_binary,
+  return run({"/bin/bash", "-c", "cd \"$1\" && limn() { \"$0\" \"$@\"; }; shift; eval \"$1\"", kLimnBinary,
               folder.string(), line});
 }
 

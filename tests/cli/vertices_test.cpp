@@ -1,36 +1,14 @@
 // limn reference --at-vertices: irradiance of the points that methods light which light vertices.
-#include <OpenImageIO/imageio.h>
-
 #include <cmath>
 #include <fstream>
 #include <glm/gtc/constants.hpp>
 
+#include "tests/cli/channels.h"
 #include "tests/cli/limn_program.h"
 #include "tests/support/gltf_builder.h"
 
 namespace limn::test {
 namespace {
-
-/// Values of a channel of an EXR, pixel after pixel.
-class Channels {
- public:
-  explicit Channels(const std::filesystem::path& file) {
-    const auto input = OIIO::ImageInput::open(file.string());
-    if (!input) return;
-    names_ = input->spec().channelnames;
-    values_.resize(input->spec().image_pixels() * names_.size());
-    input->read_image(0, 0, 0, static_cast<int>(names_.size()), OIIO::TypeDesc::FLOAT, values_.data());
-  }
-  size_t size() const { return names_.empty() ? 0 : values_.size() / names_.size(); }
-  float at(size_t pixel, const std::string& name) const {
-    const auto channel = static_cast<size_t>(std::ranges::find(names_, name) - names_.begin());
-    return values_.at(pixel * names_.size() + channel);
-  }
-
- private:
-  std::vector<std::string> names_;
-  std::vector<float> values_;
-};
 
 class Vertices : public testing::Test {
  protected:

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/scene/grid_message.h"
-#include "core/scene/vdb_reader/vdb_grid.h"
+#include "core/scene_io/private/grid_message.h"
+#include "core/scene_io/vdb_reader/vdb_grid.h"
 
 namespace {
 
@@ -19,7 +19,7 @@ using limn::scene::DensityGrid;
 using limn::scene::GridHeader;
 using limn::scene::GridLimits;
 
-constexpr GridLimits limits{.voxels = 1 << 12, .side = 64};
+constexpr GridLimits kLimits{.voxels = 1 << 12, .side = 64};
 
 void require(bool condition) {
   if (!condition) std::abort();
@@ -58,12 +58,12 @@ void attempt(Step step) {
 void check(const DensityGrid& grid) {
   const std::size_t count = static_cast<std::size_t>(grid.size.x) * static_cast<std::size_t>(grid.size.y) *
                             static_cast<std::size_t>(grid.size.z);
-  require(grid.values.size() == count && count > 0 && count <= limits.voxels);
-  for (int axis = 0; axis < 3; ++axis) require(grid.size[axis] >= 1 && grid.size[axis] <= limits.side);
+  require(grid.values.size() == count && count > 0 && count <= kLimits.voxels);
+  for (int axis = 0; axis < 3; ++axis) require(grid.size[axis] >= 1 && grid.size[axis] <= kLimits.side);
 }
 
 void message(std::span<const std::byte> bytes) {
-  const DensityGrid grid = limn::scene::decodeGridMessage(bytes, limits);
+  const DensityGrid grid = limn::scene::decodeGridMessage(bytes, kLimits);
   check(grid);
   for (const float v : grid.values) require(v >= 0 && v <= 1e30f);
 }
@@ -99,7 +99,7 @@ void grid(Input input) {
     else
       made->tree().setValue(place, input.take<float>());
   }
-  const DensityGrid dense = limn::scene::denseGrid(*made, limits, glm::dvec3(0));
+  const DensityGrid dense = limn::scene::denseGrid(*made, kLimits, glm::dvec3(0));
   check(dense);
   const GridHeader header = limn::scene::headerOf(dense);
   std::vector<std::byte> bytes(sizeof header + header.bytes);

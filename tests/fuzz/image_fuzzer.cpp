@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/image/exr_header.h"
 #include "core/image/image.h"
+#include "core/image/private/exr_header.h"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/image/image.h"
-#include "core/scene/density_grid.h"
-#include "core/scene/load.h"
+#include "core/scene_io/density_grid_file.h"
+#include "core/scene_io/load.h"
 
 namespace limn {
 

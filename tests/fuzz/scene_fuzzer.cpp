@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/scene/load.h"
+#include "core/scene_io/load.h"
 
 namespace {
 
@@ -15,7 +15,7 @@ void require(bool condition) {
 
 void use(const limn::scene::Scene& scene) {
   limn::scene::Pose pose;
-  for (const double time : {0.0, 0.37, -1e6}) limn::scene::evaluate(scene, time, limn::scene::none, pose);
+  for (const double time : {0.0, 0.37, -1e6}) limn::scene::evaluate(scene, time, limn::scene::kNone, pose);
   require(pose.lights.size() == pose.lightNames.size());
   std::vector<glm::vec3> positions, normals;
   std::vector<glm::vec4> tangents;

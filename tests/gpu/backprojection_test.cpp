@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "tests/gpu/technique_harness.h"
-#include "tests/gpu/test_scenes.h"
+#include "tests/support/test_scenes.h"
 
 namespace limn {
 namespace {

@@ -17,7 +17,7 @@ class CancelTest : public OncePerRenderer<RenderTest> {
   static void move(scene::Scene& scene, const scene::Pose& pose, int place) {
     for (size_t n = scene.nodes.size(); n-- > 0;) {
       scene::Node& node = scene.nodes[n];
-      if (node.light == scene::none && node.mesh == scene::none) continue;
+      if (node.light == scene::kNone && node.mesh == scene::kNone) continue;
       node.placed = pose.nodeToWorld[n];
       (*node.placed)[3].x += 0.1f * static_cast<float>(place);
       return;

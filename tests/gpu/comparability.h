@@ -75,12 +75,12 @@ struct Pair {
 
 /// One term of a scene by both renderers, without techniques (V = 1); the reference with `spp` samples.
 inline Pair renderBoth(gpu::Device& device, const scene::Scene& scene, const scene::Pose& pose,
-                       const scene::CameraPose& camera, glm::ivec2 size, render::Output output, int spp,
-                       double time = 0, int animation = scene::none) {
+                       const scene::CameraPose& camera, glm::ivec2 size, Term term, int spp, double time = 0,
+                       int animation = scene::kNone) {
   render::Renderer renderer(device, scene);
   render::Settings settings;
   settings.size = size;
-  settings.output = output;
+  settings.term = term;
   settings.channels = true;
   renderer.configure(settings);
   renderer.setTime(time, animation);
@@ -90,7 +90,7 @@ inline Pair renderBoth(gpu::Device& device, const scene::Scene& scene, const sce
       .scene = scene, .pose = pose, .camera = camera, .progress = {}, .checkpoint = {}};
   request.width = size.x;
   request.height = size.y;
-  request.term = output == render::Output::final ? reference::Term::final : reference::Term::direct;
+  request.term = term;
   request.spp = spp;
   return {renderer.read(), reference::render(request).image};
 }

@@ -8,12 +8,12 @@
 #include "core/scene/camera.h"
 #include "core/scene/mip_chain.h"
 #include "tests/gpu/render_test.h"
-#include "tests/gpu/test_scenes.h"
+#include "tests/support/test_scenes.h"
 
 namespace limn {
 namespace {
 
-constexpr float degree = glsl::pi / 180;
+constexpr float kDegree = glsl::pi / 180;
 
 struct Bound {
   double maskedShare = 0.005, albedo = 1.0 / 255, normalMedian = 0.1;  // degrees
@@ -95,7 +95,7 @@ scene::LightSource light(uint32_t type, float intensity, float range = 0, float 
 void addLight(scene::Scene& scene, const scene::LightSource& source, const glm::vec3& position,
               const glm::vec3& direction, glm::vec2 area = {0, 0}) {
   const int node = addNode(
-      scene, scene::none,
+      scene, scene::kNone,
       {.translation = position, .rotation = glm::quatLookAt(glm::normalize(direction), glm::vec3(0, 0, 1))});
   scene.nodes[static_cast<size_t>(node)].light = static_cast<int>(scene.lights.size());
   scene.nodes[static_cast<size_t>(node)].limnArea = area;
@@ -134,8 +134,8 @@ scene::Scene texturedScene() {
     primitive.material = of;
     return test::addMesh(scene, std::move(primitive));
   };
-  const glm::quat upright = glm::angleAxis(70 * degree, glm::vec3(1, 0, 0));
-  const glm::quat away = glm::angleAxis(-110 * degree, glm::vec3(1, 0, 0));
+  const glm::quat upright = glm::angleAxis(70 * kDegree, glm::vec3(1, 0, 0));
+  const glm::quat away = glm::angleAxis(-110 * kDegree, glm::vec3(1, 0, 0));
   addNode(scene, mesh(sheet, plain), {.translation = {-2.2f, 0, 0}, .rotation = upright});
   addNode(scene, mesh(sheet, plain), {.translation = {0, 0, 0}, .rotation = away});  // culled: shows its back
   addNode(scene, mesh(sheet, twoSided), {.translation = {2.2f, 0, 0}, .rotation = away});
@@ -169,10 +169,10 @@ scene::Environment sky() {
 
 class ComparabilityTest : public RenderTest {
  protected:
-  test::Pair both(const scene::Scene& scene, const scene::CameraPose& camera, glm::ivec2 size,
-                  render::Output output, int spp = 2, double time = 0, int animation = scene::none) {
-    return test::renderBoth(device(), scene, scene::evaluate(scene, time, animation), camera, size, output,
-                            spp, time, animation);
+  test::Pair both(const scene::Scene& scene, const scene::CameraPose& camera, glm::ivec2 size, Term term,
+                  int spp = 2, double time = 0, int animation = scene::kNone) {
+    return test::renderBoth(device(), scene, scene::evaluate(scene, time, animation), camera, size, term, spp,
+                            time, animation);
   }
 
   /// Direct light on one plane and nothing else: there is no shadow to differ in.
@@ -187,7 +187,7 @@ class ComparabilityTest : public RenderTest {
     addNode(scene, test::addMesh(scene, test::floorPrimitive(3, test::addMaterial(scene, material))), {});
     addLight(scene, source, position, -position, area);
     const auto camera = scene::lookAt({0.5f, 2.5f, 4}, {0, 0, 0}, 0.7f);
-    return lightDifference(both(scene, camera, {48, 36}, render::Output::direct, spp), true);
+    return lightDifference(both(scene, camera, {48, 36}, Term::direct, spp), true);
   }
 };
 
@@ -200,15 +200,14 @@ TEST_F(ComparabilityTest, SeesTheSameSurfacesInEveryAsset) {
     Bound bound;
     if (std::string(name) == "plant" || std::string(name) == "foliage_card") bound.maskedShare = 0.02;
     expectSameSurfaces(
-        both(scene, scene::evaluate(scene, time).cameras.at(0), {160, 120}, render::Output::final, 2, time),
-        bound);
+        both(scene, scene::evaluate(scene, time).cameras.at(0), {160, 120}, Term::final, 2, time), bound);
   }
 }
 
 TEST_F(ComparabilityTest, TexturesNormalMapsMirroringCutOutsAndVertexColoursAgree) {
   const scene::Scene scene = texturedScene();
   const test::Pair pair =
-      both(scene, scene::lookAt({0.7f, 0.6f, 9}, {0, -0.4f, 0}, 0.8f), {192, 144}, render::Output::final);
+      both(scene, scene::lookAt({0.7f, 0.6f, 9}, {0, -0.4f, 0}, 0.8f), {192, 144}, Term::final);
   expectSameSurfaces(pair, {.maskedShare = 0.01});
   EXPECT_LT(lightDifference(pair, true), 2e-3) << "emission";
 }
@@ -239,7 +238,7 @@ TEST_F(ComparabilityTest, GeometryOfASourceIsTheSameForBothWhoeverAsksFirst) {
   const auto camera = scene::lookAt({0.5f, 2.5f, 4}, {0, 0, 0}, 0.7f);
   Image last;
   for (const double time : {0.0, 2.0, 0.5}) {
-    const test::Pair pair = both(scene, camera, {96, 72}, render::Output::direct, 2, time);
+    const test::Pair pair = both(scene, camera, {96, 72}, Term::direct, 2, time);
     expectSameSurfaces(pair);
     if (last.width() > 0) {
       EXPECT_FALSE(std::ranges::equal(last.data(), pair.image.data())) << "nothing changed";
@@ -252,7 +251,7 @@ TEST_F(ComparabilityTest, BackgroundAgrees) {
   scene::Scene scene = texturedScene();
   scene.environment = sky();
   const test::Pair pair =
-      both(scene, scene::lookAt({0.7f, -1, 9}, {0, 1.5f, 0}, 1.2f), {128, 96}, render::Output::final);
+      both(scene, scene::lookAt({0.7f, -1, 9}, {0, 1.5f, 0}, 1.2f), {128, 96}, Term::final);
   EXPECT_LT(lightDifference(pair, false), 1e-3);
 }
 
@@ -282,9 +281,8 @@ TEST_F(ComparabilityTest, GlossyPlanesAgree) {
 
 TEST_F(ComparabilityTest, LightOfTheEnvironmentOnConvexBodiesAgrees) {
   const scene::Scene furnace = asset("white_furnace");
-  EXPECT_LT(lightDifference(both(furnace, scene::evaluate(furnace, 0).cameras.at(0), {64, 48},
-                                 render::Output::direct, 256),
-                            true),
+  EXPECT_LT(lightDifference(
+                both(furnace, scene::evaluate(furnace, 0).cameras.at(0), {64, 48}, Term::direct, 256), true),
             0.01);
   scene::Scene scene;
   scene.environment = sky();
@@ -293,7 +291,7 @@ TEST_F(ComparabilityTest, LightOfTheEnvironmentOnConvexBodiesAgrees) {
   lambert.specularFactor = 0;
   addNode(scene, test::addMesh(scene, test::spherePrimitive(1, test::addMaterial(scene, lambert))), {});
   const auto camera = scene::lookAt({0.5f, 1, 3}, {0, 0, 0}, 0.8f);
-  EXPECT_LT(lightDifference(both(scene, camera, {64, 48}, render::Output::direct, 1024), true), 0.01);
+  EXPECT_LT(lightDifference(both(scene, camera, {64, 48}, Term::direct, 1024), true), 0.01);
 }
 
 TEST_F(ComparabilityTest, SpecularSurfacesShowTheSameEnvironment) {
@@ -309,7 +307,7 @@ TEST_F(ComparabilityTest, SpecularSurfacesShowTheSameEnvironment) {
     material.baseColour = {0.9f, 0.7f, 0.5f, 1};
     addNode(scene, test::addMesh(scene, test::spherePrimitive(1, test::addMaterial(scene, material))), {});
     const auto camera = scene::lookAt({0.5f, 1, 3}, {0, 0, 0}, 0.8f);
-    EXPECT_LT(lightDifference(both(scene, camera, {96, 72}, render::Output::final, 2), true), 0.01);
+    EXPECT_LT(lightDifference(both(scene, camera, {96, 72}, Term::final, 2), true), 0.01);
   }
 }
 
@@ -324,8 +322,7 @@ TEST_F(ComparabilityTest, SeesTheSameSurfacesInOutsideModels) {
     const double time = 0.7;
     const scene::Pose pose = scene::evaluate(scene, time);
     const auto camera = pose.cameras.empty() ? scene::frameBounds(pose.bounds) : pose.cameras.front();
-    const test::Pair pair =
-        test::renderBoth(device(), scene, pose, camera, {128, 96}, render::Output::final, 2, time);
+    const test::Pair pair = test::renderBoth(device(), scene, pose, camera, {128, 96}, Term::final, 2, time);
     expectSameSurfaces(pair);
   }
 }

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "tests/gpu/technique_harness.h"
-#include "tests/gpu/test_scenes.h"
+#include "tests/support/test_scenes.h"
 
 namespace limn::test {
 
@@ -40,9 +40,9 @@ struct Corner {
     addInstance(scene, pose, mesh);
     addInstance(scene, pose, mesh, glm::translate(glm::mat4(1), {1, 1, 0}) * upright());
     glsl::Light light = spotLight({spotX, 1, 0}, {0, -1, 0}, halfAngle);
-    light.emission = glm::vec4(1000);
+    light.emission = glm::vec3(1000);
     addLight(pose, light);
-    const double inner = 1 - light.cone.x, outer = 1 - light.cone.y;
+    const double inner = 1 - light.cos_inner, outer = 1 - light.cos_outer;
     flux = albedo * 1000 * 2 * glsl::pi * (inner + (outer - inner) / 3);
   }
   /// Parallel to the wall, 0.3 m wide, at `x` m: by default halfway between the origin and the wall.

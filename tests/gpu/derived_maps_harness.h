@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/shadow/derived_maps.h"
+#include "tests/gpu/bind_by_name.h"
 #include "tests/gpu/gl_test.h"
 
 namespace limn::shadow {
@@ -15,7 +16,7 @@ namespace limn::shadow {
 struct Size {
   int width, height, layers;
 };
-inline constexpr Size sizes[] = {{64, 64, 3}, {100, 100, 3}, {257, 257, 3}, {100, 33, 1}, {1, 1, 1}};
+inline constexpr Size kSizes[] = {{64, 64, 3}, {100, 100, 3}, {257, 257, 3}, {100, 33, 1}, {1, 1, 1}};
 
 class DerivedMapsTest : public GlTest {
  protected:
@@ -105,19 +106,19 @@ inline std::vector<Kernel> randomKernels(const Size& size, bool whole) {
   return kernels;
 }
 
-inline constexpr const char* lookup_shader = R"(
-#include "glsl/min_max_pyramid.glsl"
-#include "glsl/min_max_windows.glsl"
-#include "glsl/n_buffer.glsl"
-#include "glsl/summed_area_table.glsl"
+inline constexpr const char* kLookupShader = R"(
+#include "glsl/shadow/min_max_pyramid.glsl"
+#include "glsl/shadow/min_max_windows.glsl"
+#include "glsl/shadow/n_buffer.glsl"
+#include "glsl/shadow/summed_area_table.glsl"
 layout(local_size_x = 64) in;
 struct Kernel { vec4 box; vec4 receiver; };
-layout(std430, binding = 0) readonly buffer Kernels { Kernel kernels[]; };
-layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
+layout(std430) readonly buffer Kernels { Kernel kernels[]; };
+layout(std430) writeonly buffer Results { vec4 results[]; };
 #ifdef BOUNDS
-layout(binding = 0) uniform sampler2DArray bounds;
+uniform sampler2DArray bounds;
 #else
-layout(binding = 0) uniform usampler2DArray table;
+uniform usampler2DArray table;
 uniform uint table_format;
 #endif
 void main() {
@@ -135,16 +136,18 @@ void main() {
 }
 )";
 
-/// What the lookups of `lookup_shader` give for every kernel.
+/// What the lookups of `kLookupShader` give for every kernel.
 inline std::vector<glm::vec4> lookup(gpu::Device& device, gpu::Program& program, const gpu::Texture& texture,
                                      const std::vector<Kernel>& kernels) {
   const gpu::Buffer in = gpu::Buffer::of<Kernel>(device, "kernels", kernels);
   const gpu::Buffer out(device, "results", kernels.size() * sizeof(glm::vec4));
   const gl::Functions& gl = device.gl();
   program.use();
-  gl.BindTextureUnit(0, texture.id());
-  gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, in.id());
-  gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, out.id());
+  const bool bounds =
+      std::ranges::any_of(program.resources(), [](const auto& r) { return r.name == "bounds"; });
+  test::bindByName(gl, program, bounds ? "bounds" : "table", texture);
+  test::bindByName(gl, program, "Kernels", in);
+  test::bindByName(gl, program, "Results", out);
   gl.DispatchCompute(static_cast<GLuint>((kernels.size() + 63) / 64), 1, 1);
   gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   std::vector<glm::vec4> results(kernels.size());

@@ -8,20 +8,19 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "glsl/min_max_pyramid.glsl"
-#include "glsl/summed_area_table.glsl"
+#include "glsl/shadow/min_max_pyramid.glsl"
+#include "glsl/shadow/summed_area_table.glsl"
 #include "tests/gpu/derived_maps_harness.h"
 
 namespace limn::shadow {
 namespace {
 
 TEST_F(DerivedMapsTest, MinMaxPyramidIsTheBoundsOfEveryFootprint) {
-  for (const Size& size : sizes) {
+  for (const Size& size : kSizes) {
     makeSource(size);
     frame::FrameGraph graph;
     DerivedMaps maps(device());
-    maps.begin(graph);
-    const MinMaxPyramid pyramid = maps.minMaxPyramid(graph.importTexture("source", source_), false);
+    const MinMaxPyramid pyramid = maps.minMaxPyramid(graph, graph.importTexture("source", source_), false);
     graph.output(pyramid.texture);
     graph.prepare(device(), shaders(), *pool_);
     graph.execute();
@@ -57,12 +56,11 @@ TEST_F(DerivedMapsTest, TwoTexelsPerAxisOfTheChosenLevelCoverTheBox) {
 }
 
 TEST_F(DerivedMapsTest, MomentMipsKeepTheMeansOfTheMapOnEveryLevel) {
-  for (const Size& size : sizes) {
+  for (const Size& size : kSizes) {
     makeSource(size);
     frame::FrameGraph graph;
     DerivedMaps maps(device());
-    maps.begin(graph);
-    const frame::TextureHandle mips = maps.momentMips(graph.importTexture("source", source_), false);
+    const frame::TextureHandle mips = maps.momentMips(graph, graph.importTexture("source", source_), false);
     graph.output(mips);
     graph.prepare(device(), shaders(), *pool_);
     graph.execute();
@@ -122,13 +120,13 @@ TEST_F(DerivedMapsTest, SummedAreaTablesAreExactToTheBitByBothMethods) {
                                {.method = shared},
                                {.bits = 24, .method = rows},
                                {.bits = 8, .words = 1, .method = rows}};
-  for (const Size& size : sizes) {
+  for (const Size& size : kSizes) {
     makeSource(size);
     for (const SatDesc& desc : descs) {
       frame::FrameGraph graph;
       DerivedMaps maps(device());
-      maps.begin(graph);
-      const SummedAreaTable table = maps.summedAreaTable(graph.importTexture("source", source_), false, desc);
+      const SummedAreaTable table =
+          maps.summedAreaTable(graph, graph.importTexture("source", source_), false, desc);
       graph.output(table.texture);
       graph.prepare(device(), shaders(), *pool_);
       graph.execute();
@@ -145,14 +143,14 @@ TEST_F(DerivedMapsTest, SummedAreaTablesAreExactToTheBitByBothMethods) {
 }
 
 TEST_F(DerivedMapsTest, MomentsLookedUpAgreeWithDouble) {
-  const gpu::EmbeddedSource sources[] = {{"lookup.comp.glsl", lookup_shader}};
+  const gpu::EmbeddedSource sources[] = {{"lookup.comp.glsl", kLookupShader}};
   shaders().mount("test/", sources);
   const Size size{100, 77, 3};
   makeSource(size);
   frame::FrameGraph graph;
   DerivedMaps maps(device());
-  maps.begin(graph);
-  const SummedAreaTable table = maps.summedAreaTable(graph.importTexture("source", source_), false, {});
+  const SummedAreaTable table =
+      maps.summedAreaTable(graph, graph.importTexture("source", source_), false, {});
   graph.output(table.texture);
   graph.prepare(device(), shaders(), *pool_);
   graph.execute();
@@ -192,14 +190,13 @@ TEST_F(DerivedMapsTest, MomentsLookedUpAgreeWithDouble) {
 }
 
 TEST_F(DerivedMapsTest, MinMaxLookupsAreConservativeAndTightForSingleTexels) {
-  const gpu::EmbeddedSource sources[] = {{"lookup.comp.glsl", lookup_shader}};
+  const gpu::EmbeddedSource sources[] = {{"lookup.comp.glsl", kLookupShader}};
   shaders().mount("test/", sources);
   const Size size{100, 77, 3};
   makeSource(size);
   frame::FrameGraph graph;
   DerivedMaps maps(device());
-  maps.begin(graph);
-  const MinMaxPyramid pyramid = maps.minMaxPyramid(graph.importTexture("source", source_), false);
+  const MinMaxPyramid pyramid = maps.minMaxPyramid(graph, graph.importTexture("source", source_), false);
   graph.output(pyramid.texture);
   graph.prepare(device(), shaders(), *pool_);
   graph.execute();
@@ -222,20 +219,19 @@ TEST_F(DerivedMapsTest, EachIsBuiltOnceLeftOutUnusedAndKeptWhileNothingChanges) 
   makeSource({64, 64, 2});
   frame::FrameGraph graph;
   DerivedMaps maps(device());
-  maps.begin(graph);
   const frame::TextureHandle source = graph.importTexture("source", source_);
-  const MinMaxPyramid pyramid = maps.minMaxPyramid(source, true);
-  EXPECT_EQ(pyramid.texture, maps.minMaxPyramid(source, true).texture);
-  EXPECT_FALSE(maps.momentMips(source, true) == pyramid.texture);
-  const frame::TextureHandle windows = maps.nBuffer(source, true);
-  EXPECT_EQ(windows, maps.nBuffer(source, true));
-  const frame::TextureHandle overlapping = maps.minMaxWindows(source, true);
-  EXPECT_EQ(overlapping, maps.minMaxWindows(source, true));
+  const MinMaxPyramid pyramid = maps.minMaxPyramid(graph, source, true);
+  EXPECT_EQ(pyramid.texture, maps.minMaxPyramid(graph, source, true).texture);
+  EXPECT_FALSE(maps.momentMips(graph, source, true) == pyramid.texture);
+  const frame::TextureHandle windows = maps.nBuffer(graph, source, true);
+  EXPECT_EQ(windows, maps.nBuffer(graph, source, true));
+  const frame::TextureHandle overlapping = maps.minMaxWindows(graph, source, true);
+  EXPECT_EQ(overlapping, maps.minMaxWindows(graph, source, true));
   EXPECT_FALSE(overlapping == pyramid.texture);
-  const SummedAreaTable table = maps.summedAreaTable(source, true, {.moments = SatMoments::z});
+  const SummedAreaTable table = maps.summedAreaTable(graph, source, true, {.moments = SatMoments::z});
   EXPECT_EQ(table.texture,
-            maps.summedAreaTable(source, true, {.words = 1, .moments = SatMoments::z}).texture);
-  EXPECT_FALSE(table.texture == maps.summedAreaTable(source, true, {}).texture);
+            maps.summedAreaTable(graph, source, true, {.words = 1, .moments = SatMoments::z}).texture);
+  EXPECT_FALSE(table.texture == maps.summedAreaTable(graph, source, true, {}).texture);
   graph.output(pyramid.texture);
   graph.output(windows);
   graph.output(overlapping);
@@ -276,24 +272,23 @@ TEST_F(DerivedMapsTest, EachIsBuiltOnceLeftOutUnusedAndKeptWhileNothingChanges) 
 TEST_F(DerivedMapsTest, RefusesOtherSourcesAndDescriptionsOutOfRange) {
   frame::FrameGraph graph;
   DerivedMaps maps(device());
-  maps.begin(graph);
   const frame::TextureHandle wrong =
       graph.createTexture("wrong", {.format = GL_R32F, .width = 4, .height = 4});
-  EXPECT_THROW(maps.minMaxPyramid(wrong, false), Error);
+  EXPECT_THROW(maps.minMaxPyramid(graph, wrong, false), Error);
   const frame::TextureHandle large = graph.createTexture(
       "large",
       {.target = GL_TEXTURE_2D_ARRAY, .format = GL_R32F, .width = 8192, .height = 8192, .layers = 5});
-  EXPECT_THROW(maps.summedAreaTable(large, false, {}), UsageError);
-  EXPECT_THROW(maps.nBuffer(large, false), UsageError);
+  EXPECT_THROW(maps.summedAreaTable(graph, large, false, {}), UsageError);
+  EXPECT_THROW(maps.nBuffer(graph, large, false), UsageError);
   const frame::TextureHandle many = graph.createTexture("many", {.target = GL_TEXTURE_2D_ARRAY,
                                                                  .format = GL_R32F,
                                                                  .width = 4,
                                                                  .height = 4,
                                                                  .layers = device().limits().maxArrayLayers});
-  EXPECT_THROW(maps.nBuffer(many, false), UsageError);
-  EXPECT_THROW(maps.summedAreaTable(large, false, {.bits = 7}), UsageError);
-  EXPECT_THROW(maps.summedAreaTable(large, false, {.bits = 25}), UsageError);
-  EXPECT_THROW(maps.summedAreaTable(large, false, {.words = 3}), UsageError);
+  EXPECT_THROW(maps.nBuffer(graph, many, false), UsageError);
+  EXPECT_THROW(maps.summedAreaTable(graph, large, false, {.bits = 7}), UsageError);
+  EXPECT_THROW(maps.summedAreaTable(graph, large, false, {.bits = 25}), UsageError);
+  EXPECT_THROW(maps.summedAreaTable(graph, large, false, {.words = 3}), UsageError);
 }
 
 }  // namespace

@@ -7,8 +7,9 @@
 
 #include "core/shading/environment.h"
 #include "core/shading/ltc_table.h"
-#include "glsl/environment.glsl"
-#include "glsl/srgb.glsl"
+#include "glsl/light/environment.glsl"
+#include "glsl/numeric/srgb.glsl"
+#include "tests/gpu/bind_by_name.h"
 #include "tests/gpu/gl_test.h"
 
 namespace limn {
@@ -20,11 +21,11 @@ using glm::vec4;
 constexpr float kRotation = 0.7f, kScale = 1.5f;
 
 constexpr const char* kShader = R"(
-#include "glsl/environment.glsl"
+#include "glsl/light/environment.glsl"
 layout(local_size_x = 64) in;
 struct Point { vec4 base; vec4 surface; vec4 normal; vec4 view; };
-layout(std430, binding = 0) readonly buffer Points { Point points[]; };
-layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
+layout(std430) readonly buffer Points { Point points[]; };
+layout(std430) writeonly buffer Results { vec4 results[]; };
 uniform float rotation;
 uniform float scale;
 void main() {
@@ -91,11 +92,11 @@ TEST_F(EnvironmentLight, GpuAgreesWithCpu) {
   program.use();
   program.set("rotation", kRotation);
   program.set("scale", kScale);
-  gl().BindTextureUnit(glsl::ltc_unit, table.id());
-  gl().BindTextureUnit(glsl::environment_unit_irradiance, irradiance.id());
-  gl().BindTextureUnit(glsl::environment_unit_filtered, filtered.id());
-  gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, in.id());
-  gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, out.id());
+  test::bindByName(gl(), program, "ltc_table", table);
+  test::bindByName(gl(), program, "environment_irradiance", irradiance);
+  test::bindByName(gl(), program, "environment_filtered", filtered);
+  test::bindByName(gl(), program, "Points", in);
+  test::bindByName(gl(), program, "Results", out);
   gl().DispatchCompute(static_cast<GLuint>((points.size() + 63) / 64), 1, 1);
   gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   std::vector<vec4> results(points.size());
@@ -120,11 +121,12 @@ TEST_F(ToneMap, WritesWhatTheFileWriterWrites) {
   gpu::Texture in(device(), "radiance", {.format = GL_RGBA32F, .width = 4, .height = 1});
   in.upload(0, 0, GL_RGBA, GL_FLOAT, radiance.data());
   const gpu::Texture out(device(), "display", {.format = GL_RGBA8, .width = 4, .height = 1});
-  gpu::Program& program = shaders().program({.files = {"glsl/deferred/tone_map.comp.glsl"}, .defines = {{"VISIBILITY", "0"}}});
+  gpu::Program& program =
+      shaders().program({.files = {"glsl/deferred/tone_map.comp.glsl"}, .defines = {{"VISIBILITY", "0"}}});
   program.use();
   program.set("exposure_ev", exposure);
-  gl().BindTextureUnit(0, in.id());
-  gl().BindImageTexture(0, out.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
+  test::bindByName(gl(), program, "radiance", in);
+  test::bindByName(gl(), program, "display", out);
   gl().DispatchCompute(1, 1, 1);
   gl().MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
   std::array<uint8_t, 16> pixels{};

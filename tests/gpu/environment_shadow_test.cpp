@@ -4,7 +4,7 @@
 #include "core/base/error.h"
 #include "core/reference/reference.h"
 #include "core/shading/environment_decomposition.h"
-#include "glsl/equirectangular.glsl"
+#include "glsl/numeric/equirectangular.glsl"
 #include "tests/gpu/render_test.h"
 
 namespace limn {
@@ -12,7 +12,6 @@ namespace {
 
 using glm::vec2;
 using glm::vec3;
-using render::Output;
 
 class EnvironmentShadowTest : public RenderTest {
  protected:
@@ -54,7 +53,7 @@ class EnvironmentShadowTest : public RenderTest {
   /// Without lights of its own, and with an environment in up to about `threshold` lights (0: not
   /// decomposed).
   static scene::Scene lit(scene::Scene scene, scene::Environment environment, double threshold) {
-    for (scene::Node& node : scene.nodes) node.light = scene::none;
+    for (scene::Node& node : scene.nodes) node.light = scene::kNone;
     scene.environment = std::move(environment);
     if (threshold > 0)
       scene.environment.lights =
@@ -94,8 +93,8 @@ class EnvironmentShadowTest : public RenderTest {
         .scene = scene, .pose = pose, .camera = pose.cameras.at(0), .progress = {}, .checkpoint = {}};
     request.width = s.size.x;
     request.height = s.size.y;
-    request.term = s.output == Output::visibility ? reference::Term::visibility : reference::Term::direct;
-    request.light = s.light < 0 ? reference::allLights : s.light;
+    request.term = s.term;
+    request.light = s.light < 0 ? reference::kAllLights : s.light;
     request.spp = spp;
     return reference::render(request).image.select({"R", "G", "B"});
   }
@@ -114,10 +113,10 @@ TEST_F(EnvironmentShadowTest, PosesHoldTheLightsOfTheEnvironmentBehindTheirOwn) 
   EXPECT_EQ(pose.lightNames[own + 1], "env#1");
   const glsl::Light& sun = pose.lights[own];
   const vec3 expected = glsl::environment_world_direction(glm::normalize(vec3(0.5f, 0.8f, 0.4f)), 0.5f);
-  EXPECT_GT(glm::dot(-vec3(sun.direction), expected), 0.97f);
+  EXPECT_GT(glm::dot(-sun.direction, expected), 0.97f);
   EXPECT_FLOAT_EQ(sun.emission.y, 2 * scene.environment.lights[0].irradiance.y);
   double solidAngle = 0;
-  for (size_t i = own; i < pose.lights.size(); ++i) solidAngle += double(pose.lights[i].emission.w);
+  for (size_t i = own; i < pose.lights.size(); ++i) solidAngle += double(pose.lights[i].solid_angle);
   EXPECT_GT(solidAngle, 4 * 3.14159) << "they cover the sphere, overlapping";
 }
 
@@ -130,11 +129,11 @@ TEST_F(EnvironmentShadowTest, VisibilityOfEachLightConvergesToTheReference) {
   for (int light = 0; light < lights && tested < 3; ++light) {
     // What shines along a floor is shadowed by parts of it that rise less than a texel above the tangent
     // plane.
-    const vec3 from = -vec3(renderer.pose().lights[static_cast<size_t>(light)].direction);
+    const vec3 from = -renderer.pose().lights[static_cast<size_t>(light)].direction;
     if (from.y < 0.6f) continue;
     ++tested;
     SCOPED_TRACE(renderer.pose().lightNames[static_cast<size_t>(light)]);
-    render::Settings s = settings(96, 72, Output::visibility, {}, light);
+    render::Settings s = settings(96, 72, Term::visibility, {}, light);
     const Image truth = reference(scene, s, 256);
     s.techniques = {technique("sampled_area_light", {{"samples", "256"}, {"shadow_map_size", "512"}})};
     const double sampled = rmse(picture(renderer, s), truth);
@@ -155,7 +154,7 @@ TEST_F(EnvironmentShadowTest, AUniformSkyOverAPlaneGivesPiTimesItsRadiance) {
   for (const auto& [threshold, error] : {std::pair(0.02, 2e-3f), std::pair(0.1, 0.02f)}) {
     const scene::Scene scene = lit(floor(), uniform(0.7f), threshold);
     render::Renderer renderer(device(), scene);
-    const Image picture = this->picture(renderer, settings(16, 12, Output::direct));
+    const Image picture = this->picture(renderer, settings(16, 12, Term::direct));
     for (const float v : picture.data()) EXPECT_NEAR(v, 0.7f, 0.7f * error);
   }
 }
@@ -168,7 +167,7 @@ TEST_F(EnvironmentShadowTest, LightsReflectedFromTheirCentresAreThePublishedAppr
     expected +=
         std::max(0.0, double(light.irradiance.x) * double(glm::normalize(light.centre).y)) / 3.14159265;
   render::Renderer renderer(device(), scene);
-  const Image picture = this->picture(renderer, settings(16, 12, Output::direct));
+  const Image picture = this->picture(renderer, settings(16, 12, Term::direct));
   EXPECT_NEAR(picture.at(8, 6, 0), expected, 1e-3);
 }
 
@@ -176,7 +175,7 @@ TEST_F(EnvironmentShadowTest, ALightAloneIsWhatTheReferenceSays) {
   const scene::Scene scene = lit(asset("balls"), sky(), 0.05);
   render::Renderer renderer(device(), scene);
   render::Settings s =
-      settings(96, 72, Output::direct, {technique("sampled_area_light", {{"samples", "256"}})}, 0);
+      settings(96, 72, Term::direct, {technique("sampled_area_light", {{"samples", "256"}})}, 0);
   const Image truth = reference(scene, s, 256);
   EXPECT_LT(rmse(picture(renderer, s), truth), 0.05 * mean(truth));
 }
@@ -184,10 +183,10 @@ TEST_F(EnvironmentShadowTest, ALightAloneIsWhatTheReferenceSays) {
 TEST_F(EnvironmentShadowTest, ManyLightsAreMoreExactThanNoShadows) {
   const scene::Scene scene = lit(asset("balls"), sky(), 0.05), unshadowed = lit(asset("balls"), sky(), 0);
   render::Renderer renderer(device(), scene), plain(device(), unshadowed);
-  const render::Settings bare = settings(96, 72, Output::direct);
+  const render::Settings bare = settings(96, 72, Term::direct);
   const Image truth = reference(scene, bare, 256);
   EXPECT_LT(rmse(truth, reference(unshadowed, bare, 256)), 1e-6) << "the reference integrates the map itself";
-  render::Settings s = settings(96, 72, Output::direct, {technique("pcss", {{"shadow_map_size", "512"}})});
+  render::Settings s = settings(96, 72, Term::direct, {technique("pcss", {{"shadow_map_size", "512"}})});
   const double shadowed = rmse(picture(renderer, s), truth), without = rmse(picture(plain, bare), truth);
   EXPECT_LT(shadowed, 0.5 * without);
   EXPECT_LT(shadowed, 0.15 * mean(truth));
@@ -199,7 +198,7 @@ TEST_F(EnvironmentShadowTest, MemoryIsBoundedByBatches) {
     EXPECT_GE(scene.environment.lights.size(), lights);
     scene.environment.lights.resize(lights);
     render::Renderer renderer(device(), scene);
-    render::Settings s = settings(64, 48, Output::direct, {technique("pcss", {{"shadow_map_size", "2048"}})});
+    render::Settings s = settings(64, 48, Term::direct, {technique("pcss", {{"shadow_map_size", "2048"}})});
     s.dynamic = dynamic;
     picture(renderer, s);
     return static_cast<double>(renderer.memoryBytes());
@@ -214,25 +213,25 @@ TEST_F(EnvironmentShadowTest, ATechniqueTakesThePlaceOfTheLights) {
     SCOPED_TRACE(name);
     const scene::Scene whole = lit(asset("balls"), sky(), 0), parts = lit(asset("balls"), sky(), 0.05);
     render::Renderer a(device(), whole), b(device(), parts);
-    const render::Settings s = settings(64, 48, Output::direct, {quick(name), technique("hard_shadow_map")});
+    const render::Settings s = settings(64, 48, Term::direct, {quick(name), technique("hard_shadow_map")});
     const Image first = picture(a, s), second = picture(b, s);
     EXPECT_EQ(rmse(first, second), 0);
     EXPECT_GT(mean(first), 0);
-    EXPECT_THROW(a.configure(settings(8, 8, Output::direct, {quick(name), quick(name)})), UsageError);
-    EXPECT_THROW(a.configure(settings(8, 8, Output::visibility, {quick(name)})), UsageError);
+    EXPECT_THROW(a.configure(settings(8, 8, Term::direct, {quick(name), quick(name)})), UsageError);
+    EXPECT_THROW(a.configure(settings(8, 8, Term::visibility, {quick(name)})), UsageError);
   }
 }
 
 TEST_F(EnvironmentShadowTest, EveryTechniqueConvergesToTheReference) {
   const scene::Scene scene = lit(asset("balls"), sky(), 0);
   render::Renderer renderer(device(), scene);
-  const Image truth = reference(scene, settings(96, 72, Output::direct), 1024);
+  const Image truth = reference(scene, settings(96, 72, Term::direct), 1024);
   for (const std::string& name : environmentTechniques()) {
     SCOPED_TRACE(name);
     std::vector<double> errors;
     for (const char* samples : {"16", "64", "256"})
       errors.push_back(
-          rmse(picture(renderer, settings(96, 72, Output::direct, {technique(name, {{"samples", samples}})})),
+          rmse(picture(renderer, settings(96, 72, Term::direct, {technique(name, {{"samples", samples}})})),
                truth));
     RecordProperty(
         name, std::to_string(errors[0]) + " " + std::to_string(errors[1]) + " " + std::to_string(errors[2]));
@@ -249,7 +248,7 @@ TEST_F(EnvironmentShadowTest, EveryTechniqueGivesTheClosedFormOverAPlane) {
     const scene::Scene scene = lit(floor(), uniform(0.7f), 0);
     render::Renderer renderer(device(), scene);
     const Image picture =
-        this->picture(renderer, settings(16, 12, Output::direct, {technique(name, {{"samples", "500"}})}));
+        this->picture(renderer, settings(16, 12, Term::direct, {technique(name, {{"samples", "500"}})}));
     for (const float v : picture.data()) EXPECT_NEAR(v, 0.7f, 0.7f * 0.01f);
   }
 }
@@ -259,10 +258,10 @@ TEST_F(EnvironmentShadowTest, TechniquesLeaveScenesWithoutEnvironmentAlone) {
     SCOPED_TRACE(name);
     const scene::Scene scene = asset("balls"), black = lit(asset("balls"), uniform(0), 0);
     render::Renderer renderer(device(), scene), dark(device(), black);
-    EXPECT_EQ(rmse(picture(renderer, settings(64, 48, Output::direct, {quick(name)})),
-                   picture(renderer, settings(64, 48, Output::direct))),
+    EXPECT_EQ(rmse(picture(renderer, settings(64, 48, Term::direct, {quick(name)})),
+                   picture(renderer, settings(64, 48, Term::direct))),
               0);
-    expectWithin(picture(dark, settings(64, 48, Output::direct, {quick(name)})), 0, 0);
+    expectWithin(picture(dark, settings(64, 48, Term::direct, {quick(name)})), 0, 0);
   }
 }
 
@@ -271,7 +270,7 @@ TEST_F(EnvironmentShadowTest, BatchesOfAnySizeGiveTheSamePicture) {
   render::Renderer renderer(device(), scene);
   const auto with = [&](const char* memory) {
     return picture(
-        renderer, settings(64, 48, Output::direct,
+        renderer, settings(64, 48, Term::direct,
                            {technique("sampled_environment_light",
                                       {{"samples", "40"}, {"shadow_map_size", "256"}, {"memory", memory}})}));
   };

@@ -11,20 +11,21 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "glsl/fourier_shadow.glsl"
+#include "glsl/shadow/fourier_shadow.glsl"
+#include "tests/gpu/bind_by_name.h"
 #include "tests/gpu/gl_test.h"
 
 namespace limn::shadow {
 namespace {
 
-constexpr int width = 100, height = 77, layers = 3;
+constexpr int kWidth = 100, kHeight = 77, kLayers = 3;
 
-constexpr const char* lookup_shader = R"(
-#include "glsl/fourier_lookup.glsl"
+constexpr const char* kLookupShader = R"(
+#include "glsl/shadow/fourier_lookup.glsl"
 layout(local_size_x = 64) in;
 struct Kernel { vec4 box; vec4 receiver; };
-layout(std430, binding = 0) readonly buffer Kernels { Kernel kernels[]; };
-layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
+layout(std430) readonly buffer Kernels { Kernel kernels[]; };
+layout(std430) writeonly buffer Results { vec4 results[]; };
 void main() {
   uint at = gl_GlobalInvocationID.x;
   if (at >= uint(kernels.length())) return;
@@ -49,7 +50,7 @@ void main() {
 #else
   sum = vec3(fourier_shadow(fourier_means(k.box.xy, k.box.zw, size, layer), k.receiver.y), 1.0);
 #endif
-  results[at] = vec4(sum.xy / sum.z, fourier_ranges[layer].plane.x, fourier_ranges[layer].plane.w);
+  results[at] = vec4(sum.xy / sum.z, fourier_ranges[layer].zero, fourier_ranges[layer].scale);
 }
 )";
 
@@ -64,16 +65,17 @@ class FourierMapsTest : public GlTest {
     pool_.emplace(device());
     std::mt19937 random(1);
     std::uniform_real_distribution<float> value(-0.1f, 1.1f);
-    depth_.resize(size_t{width} * height * layers);
+    depth_.resize(size_t{kWidth} * kHeight * kLayers);
     for (float& z : depth_) z = std::clamp(value(random), 0.f, 1.f);
     source_ = gpu::Texture(device(), "source",
                            {.target = GL_TEXTURE_2D_ARRAY,
                             .format = GL_R32F,
-                            .width = width,
-                            .height = height,
-                            .layers = layers});
-    for (int i = 0; i < layers; ++i)
-      source_.upload(0, i, GL_RED, GL_FLOAT, depth_.data() + size_t{width} * height * static_cast<size_t>(i));
+                            .width = kWidth,
+                            .height = kHeight,
+                            .layers = kLayers});
+    for (int i = 0; i < kLayers; ++i)
+      source_.upload(0, i, GL_RED, GL_FLOAT,
+                     depth_.data() + size_t{kWidth} * kHeight * static_cast<size_t>(i));
   }
   void TearDown() override {
     pool_.reset();
@@ -82,16 +84,15 @@ class FourierMapsTest : public GlTest {
   }
 
   float depth(int x, int y, int layer) const {
-    return depth_[static_cast<size_t>((layer * height + y) * width + x)];
+    return depth_[static_cast<size_t>((layer * kHeight + y) * kWidth + x)];
   }
 
   /// Builds the maps in `graph` and runs it.
   FourierMaps build(frame::FrameGraph& graph, const FourierDesc& desc) {
     DerivedMaps derived(device());
-    derived.begin(graph);
     const frame::TextureHandle source = graph.importTexture("source", source_);
     FourierMaps maps =
-        addFourierMaps(graph, device(), source, derived.minMaxPyramid(source, false), false, desc);
+        addFourierMaps(graph, device(), source, derived.minMaxPyramid(graph, source, false), false, desc);
     graph.output(maps.basis);
     graph.output(maps.depthBasis);
     graph.output(maps.depth);
@@ -114,13 +115,13 @@ class FourierMapsTest : public GlTest {
     std::uniform_real_distribution<float> unit(0.f, 1.f);
     std::vector<Kernel> kernels(300);
     for (Kernel& k : kernels) {
-      const glm::vec2 extent(width, height), a = extent * glm::vec2(unit(random), unit(random)),
-                                             b = extent * glm::vec2(unit(random), unit(random));
+      const glm::vec2 extent(kWidth, kHeight), a = extent * glm::vec2(unit(random), unit(random)),
+                                               b = extent * glm::vec2(unit(random), unit(random));
       k.box = {glm::min(a, b), glm::max(a, b) + 0.01f};
-      k.box.z = std::min(k.box.z, float(width)), k.box.w = std::min(k.box.w, float(height));
-      k.receiver = {std::floor(unit(random) * layers), unit(random) * range, 0, 0};
+      k.box.z = std::min(k.box.z, float(kWidth)), k.box.w = std::min(k.box.w, float(kHeight));
+      k.receiver = {std::floor(unit(random) * kLayers), unit(random) * range, 0, 0};
     }
-    kernels[0].box = {0, 0, width, height};
+    kernels[0].box = {0, 0, kWidth, kHeight};
     kernels[1].receiver.y = 0;
     kernels[2].receiver.y = range;
     return kernels;
@@ -128,7 +129,7 @@ class FourierMapsTest : public GlTest {
 
   std::vector<glm::vec4> lookUp(frame::FrameGraph& graph, const FourierMaps& maps,
                                 const std::vector<Kernel>& kernels) {
-    const gpu::EmbeddedSource sources[] = {{"lookup.comp.glsl", lookup_shader}};
+    const gpu::EmbeddedSource sources[] = {{"lookup.comp.glsl", kLookupShader}};
     shaders().mount("test/", sources);
     gpu::Program& program =
         shaders().program({.files = {"test/lookup.comp.glsl"}, .defines = maps.defines()});
@@ -137,18 +138,19 @@ class FourierMapsTest : public GlTest {
     const gpu::Buffer out(device(), "results", kernels.size() * sizeof(glm::vec4));
     const gl::Functions& gl = device().gl();
     program.use();
-    unsigned unit = 10;
-    for (const frame::TextureHandle map : {maps.basis, maps.depthBasis, maps.depth}) {
-      gl.BindTextureUnit(unit, graph.texture(map).id());
-      if (maps.desc.filter == FourierFilter::mip) gl.BindSampler(unit, trilinear.id());
-      ++unit;
-    }
-    gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, in.id());
-    gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, out.id());
-    gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, graph.buffer(maps.ranges).id());
+    const std::pair<const char*, frame::TextureHandle> named[] = {
+        {"fourier_basis_maps", maps.basis},
+        {"fourier_depth_basis_maps", maps.depthBasis},
+        {"fourier_depth_maps", maps.depth}};
+    for (const auto& [name, map] : named)
+      test::bindByName(gl, program, name, graph.texture(map),
+                       maps.desc.filter == FourierFilter::mip ? &trilinear : nullptr);
+    test::bindByName(gl, program, "Kernels", in);
+    test::bindByName(gl, program, "Results", out);
+    test::bindByName(gl, program, "FourierRanges", graph.buffer(maps.ranges));
     gl.DispatchCompute(static_cast<GLuint>((kernels.size() + 63) / 64), 1, 1);
     gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    for (unsigned u = 10; u < 13; ++u) gl.BindSampler(u, 0);
+    for (const auto& [name, map] : named) test::bindByName(gl, program, name, graph.texture(map));
     std::vector<glm::vec4> results(kernels.size());
     out.read(0, results.data(), results.size() * sizeof(glm::vec4));
     return results;
@@ -185,8 +187,8 @@ TEST_F(FourierMapsTest, KernelsOfSumsAreTheMeansOfTheirTexels) {
       for (size_t i = 0; i < kernels.size(); ++i) {
         const auto& [box, receiver] = kernels[i];
         double lit = 0, blocked = 0, weights = 0;
-        for (int y = int(box.y); y < std::min(int(std::ceil(box.w)), height); ++y) {
-          for (int x = int(box.x); x < std::min(int(std::ceil(box.z)), width); ++x) {
+        for (int y = int(box.y); y < std::min(int(std::ceil(box.w)), kHeight); ++y) {
+          for (int x = int(box.x); x < std::min(int(std::ceil(box.z)), kWidth); ++x) {
             const double w = (std::min<double>(box.z, x + 1) - std::max<double>(box.x, x)) *
                              (std::min<double>(box.w, y + 1) - std::max<double>(box.y, y));
             const double z = range * depth(x, y, int(receiver.x)),
@@ -213,15 +215,15 @@ TEST_F(FourierMapsTest, TheCoarsestMipLevelIsTheMeanOfTheMap) {
     const auto results = lookUp(graph, maps, kernels);
     for (size_t i = 0; i < kernels.size(); ++i) {
       double lit = 0;
-      for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
+      for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
           lit += fourierSeries(maps.constants.range * depth(x, y, int(kernels[i].receiver.x)) -
                                    double{kernels[i].receiver.y} + maps.constants.delta,
                                order, FourierWindow::none);
         }
       }
       // Each of seven levels rounds to 8 bits once.
-      ASSERT_NEAR(results[i].x, lit / (width * height), 4 * maps.noise) << i;
+      ASSERT_NEAR(results[i].x, lit / (kWidth * kHeight), 4 * maps.noise) << i;
     }
   }
 }
@@ -229,32 +231,32 @@ TEST_F(FourierMapsTest, TheCoarsestMipLevelIsTheMeanOfTheMap) {
 TEST_F(FourierMapsTest, RangesHoldAllThatIsThere) {
   for (const FourierFit fit : {FourierFit::map, FourierFit::range, FourierFit::plane}) {
     // A tilted plane with something before it, and nothing in one corner.
-    for (int layer = 0; layer < layers; ++layer) {
-      for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-          float z = 0.4f + 0.3f * float(x) / width + 0.1f * float(y) / height;
+    for (int layer = 0; layer < kLayers; ++layer) {
+      for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+          float z = 0.4f + 0.3f * float(x) / kWidth + 0.1f * float(y) / kHeight;
           if (x > 30 && x < 40 && y > 30) z -= 0.1f;
-          depth_[static_cast<size_t>((layer * height + y) * width + x)] = x < 5 && y < 5 ? 1.f : z;
+          depth_[static_cast<size_t>((layer * kHeight + y) * kWidth + x)] = x < 5 && y < 5 ? 1.f : z;
         }
       }
       source_.upload(0, layer, GL_RED, GL_FLOAT,
-                     depth_.data() + size_t{width} * height * static_cast<size_t>(layer));
+                     depth_.data() + size_t{kWidth} * kHeight * static_cast<size_t>(layer));
     }
     frame::FrameGraph graph;
     const FourierMaps maps = build(graph, {.fit = fit});
     glsl::FourierRange range{};
     graph.buffer(maps.ranges).read(0, &range, sizeof range);
     const auto most = float(maps.constants.range);
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
         if (depth(x, y, 0) == 1) continue;
-        const glm::vec2 uv((float(x) + 0.5f) / width, (float(y) + 0.5f) / height);
+        const glm::vec2 uv((float(x) + 0.5f) / kWidth, (float(y) + 0.5f) / kHeight);
         const float d = glsl::fourier_depth(range, uv, depth(x, y, 0));
         ASSERT_GE(d, -1e-5f);
         ASSERT_LE(d, most + 1e-5f);
       }
     }
-    const float extent = most / range.plane.w;
+    const float extent = most / range.scale;
     if (fit == FourierFit::map) {
       EXPECT_NEAR(extent, 1, 1e-6);
     }
@@ -270,7 +272,6 @@ TEST_F(FourierMapsTest, RangesHoldAllThatIsThere) {
 TEST_F(FourierMapsTest, WhatDoesNotFitIsRefusedInOneLine) {
   frame::FrameGraph graph;
   DerivedMaps derived(device());
-  derived.begin(graph);
   const frame::TextureHandle source = graph.createTexture(
       "large", {.target = GL_TEXTURE_2D_ARRAY, .format = GL_R32F, .width = 8192, .height = 8192});
   try {

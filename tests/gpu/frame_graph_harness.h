@@ -12,26 +12,26 @@
 
 namespace limn::frame {
 
-inline constexpr int size = 16;
-inline const gpu::TextureDesc value_desc{.format = GL_R32F, .width = size, .height = size};
+inline constexpr int kSize = 16;
+inline const gpu::TextureDesc kValueDesc{.format = GL_R32F, .width = kSize, .height = kSize};
 
-inline constexpr gpu::EmbeddedSource sources[] = {
+inline constexpr gpu::EmbeddedSource kSources[] = {
     {"set.comp.glsl",
      "layout(local_size_x = 8, local_size_y = 8) in;\n"
-     "layout(binding = 0, r32f) writeonly uniform image2D target;\n"
+     "layout(r32f) writeonly uniform image2D target;\n"
      "void main() { imageStore(target, ivec2(gl_GlobalInvocationID.xy), vec4(LIMN_VALUE)); }\n"},
     {"add.comp.glsl",
      "layout(local_size_x = 8, local_size_y = 8) in;\n"
-     "layout(binding = 0, r32f) writeonly uniform image2D target;\n"
-     "layout(binding = 0) uniform sampler2D source;\n"
+     "layout(r32f) writeonly uniform image2D target;\n"
+     "uniform sampler2D source;\n"
      "void main() {\n"
      "  ivec2 p = ivec2(gl_GlobalInvocationID.xy);\n"
      "  imageStore(target, p, texelFetch(source, p, 0) + LIMN_VALUE);\n"
      "}\n"},
     {"scale.comp.glsl",
      "layout(local_size_x = 64) in;\n"
-     "layout(std430, binding = 0) readonly buffer Source { uint source[]; };\n"
-     "layout(std430, binding = 1) writeonly buffer Target { uint target[]; };\n"
+     "layout(std430) readonly buffer Source { uint source[]; };\n"
+     "layout(std430) writeonly buffer Target { uint target[]; };\n"
      "void main() {\n"
      "  uint i = gl_GlobalInvocationID.x;\n"
      "  if (i < source.length() && i < target.length()) target[i] = source[i] * LIMN_VALUE;\n"
@@ -43,7 +43,7 @@ class FrameGraphGpu : public GlTest {
   void SetUp() override {
     GlTest::SetUp();
     pool_.emplace(device());
-    shaders().mount("techniques/test/", sources);
+    shaders().mount("techniques/test/", kSources);
   }
   void TearDown() override {
     pool_.reset();
@@ -60,12 +60,12 @@ class FrameGraphGpu : public GlTest {
   static TextureHandle set(FrameGraph& graph, const char* name, int value, bool cacheable = false) {
     PassBuilder pass = graph.addPass(name);
     if (cacheable) pass.cacheable();
-    const TextureHandle target = pass.write(graph.createTexture(name, value_desc), Access::imageStore, "");
+    const TextureHandle target =
+        pass.write(graph.createTexture(name, kValueDesc), Access::imageStore, "target", "");
     const ProgramHandle run = pass.program(program("set", std::to_string(value)));
     pass.execute([=](PassContext& context) {
-      context.program(run).use();
-      context.bindImage(0, target, GL_WRITE_ONLY);
-      context.dispatch(size, size, 1, 8, 8);
+      context.use(run);
+      context.dispatch(kSize, kSize, 1, 8, 8);
     });
     return target;
   }
@@ -75,20 +75,19 @@ class FrameGraphGpu : public GlTest {
                            bool cacheable = false) {
     PassBuilder pass = graph.addPass(name);
     if (cacheable) pass.cacheable();
-    pass.read(source, Access::sampled, "");
-    const TextureHandle target = pass.write(graph.createTexture(name, value_desc), Access::imageStore, "");
+    pass.read(source, Access::sampled, "source", "");
+    const TextureHandle target =
+        pass.write(graph.createTexture(name, kValueDesc), Access::imageStore, "target", "");
     const ProgramHandle run = pass.program(program("add", std::to_string(value)));
     pass.execute([=](PassContext& context) {
-      context.program(run).use();
-      context.bindSampled(0, source);
-      context.bindImage(0, target, GL_WRITE_ONLY);
-      context.dispatch(size, size, 1, 8, 8);
+      context.use(run);
+      context.dispatch(kSize, kSize, 1, 8, 8);
     });
     return target;
   }
 
   static std::vector<float> read(const gpu::Texture& texture) {
-    std::vector<float> values(size * size);
+    std::vector<float> values(kSize * kSize);
     texture.read(0, GL_RED, GL_FLOAT, values.data(), values.size() * sizeof(float));
     return values;
   }

@@ -92,23 +92,17 @@ TEST_F(FrameGraphState, undeclaredUsesAreRefusedInDebugContexts) {
     const char* message;
   };
   const Case cases[] = {
-      {[](PassContext& c, TextureHandle t) { c.bindImage(0, t, GL_READ_ONLY); },
-       "pass 'use' loads from image 'start' (version 1), which it did not declare as imageLoad or "
-       "imageLoadStore"},
-      {[](PassContext& c, TextureHandle t) { c.bindImage(0, t, GL_WRITE_ONLY); },
-       "pass 'use' stores to image 'start' (version 1), which it did not declare as imageStore or "
-       "imageLoadStore"},
       {[](PassContext& c, TextureHandle t) { c.bindFramebuffer({{t}}); },
        "pass 'use' draws to 'start' (version 1), which it did not declare as colourAttachment or "
        "colourBlend"},
       {[](PassContext& c, TextureHandle t) {
          --t.version;
-         c.bindSampled(0, t);
+         c.texture(t);
        },
-       "pass 'use' samples texture 'start' (version 0), which it did not declare as sampled"},
+       "pass 'use' uses texture 'start' (version 0), which it did not declare"},
       {[](PassContext& c, TextureHandle) { c.texture({}); },
        "pass 'use' uses a texture handle that is null or of another graph"},
-      {[](PassContext& c, TextureHandle) { c.program({0}); },
+      {[](PassContext& c, TextureHandle) { c.use({0}); },
        "pass 'use' uses a program that it did not declare"},
   };
   for (const Case& test : cases) {

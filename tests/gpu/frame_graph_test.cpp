@@ -40,14 +40,11 @@ TEST_F(FrameGraphGpu, buffersFlowThroughPasses) {
   BufferHandle current = graph.importBuffer("numbers", source);
   for (const char* factor : {"3", "5", "7"}) {
     PassBuilder pass = graph.addPass("scale");
-    pass.read(current, Access::storageLoad, "");
-    const BufferHandle from = current;
-    current = pass.write(graph.createBuffer("scaled", {400}), Access::storageStore, "");
+    pass.read(current, Access::storageLoad, "Source", "");
+    current = pass.write(graph.createBuffer("scaled", {400}), Access::storageStore, "Target", "");
     const ProgramHandle run = pass.program(program("scale", factor + std::string("u")));
-    pass.execute([=, to = current](PassContext& context) {
-      context.program(run).use();
-      context.bindStorage(0, from);
-      context.bindStorage(1, to);
+    pass.execute([=](PassContext& context) {
+      context.use(run);
       context.dispatch(128, 1, 1, 64, 1);
     });
   }
@@ -65,8 +62,8 @@ TEST_F(FrameGraphGpu, aliasedMemoryGivesTheSameResults) {
   for (int i = 0; i < 8; ++i) current = add(graph, "add", current, 1 << i);
   graph.output(current);
   prepare(graph);
-  EXPECT_EQ(graph.transientBytes(), 2 * size * size * 4);
-  EXPECT_EQ(graph.transientBytesUnaliased(), 9 * size * size * 4);
+  EXPECT_EQ(graph.transientBytes(), 2 * kSize * kSize * 4);
+  EXPECT_EQ(graph.transientBytesUnaliased(), 9 * kSize * kSize * 4);
   EXPECT_EQ(pool_->bytes(), graph.transientBytes());
   for (int frame = 0; frame < 3; ++frame) {
     graph.execute();
@@ -93,7 +90,7 @@ TEST_F(FrameGraphGpu, aRebuiltGraphFindsItsMemoryAgain) {
 }
 
 TEST_F(FrameGraphGpu, cachedPassesRunAgainWhenTheirInputsChange) {
-  gpu::Texture source(device(), "source", value_desc);
+  gpu::Texture source(device(), "source", kValueDesc);
   source.clear({1, 0, 0, 0});
   FrameGraph graph;
   const TextureHandle imported = graph.importTexture("source", source);
@@ -136,7 +133,7 @@ TEST_F(FrameGraphGpu, aCacheablePassAfterOneThatAlwaysRunsIsNeverCached) {
 }
 
 TEST_F(FrameGraphGpu, aPassThatReadsOnePartAndWritesAnotherIsCached) {
-  gpu::Texture source(device(), "source", value_desc);
+  gpu::Texture source(device(), "source", kValueDesc);
   source.clear({1, 0, 0, 0});
   FrameGraph graph;
   const TextureHandle imported = graph.importTexture("source", source);

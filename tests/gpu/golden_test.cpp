@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int width = 128, height = 96;
-constexpr float allowed = 1.01f / 255;  // of the sRGB-encoded value
+constexpr int kWidth = 128, kHeight = 96;
+constexpr float kAllowed = 1.01f / 255;  // of the sRGB-encoded value
 
 class GoldenTest : public RenderTest {
  protected:
@@ -42,18 +42,18 @@ class GoldenTest : public RenderTest {
     if (answers(Term::media) || answers(Term::caustic)) scenes = {"glass_sphere", "ring", "gem"};
     if (answers(Term::specular)) scenes = {"glassware", "ring", "gem"};
     const bool outdoors = answers(Term::environment);
-    Image whole(width * int(scenes.size()), height, {"R", "G", "B"});
+    Image whole(kWidth * int(scenes.size()), kHeight, {"R", "G", "B"});
     for (size_t s = 0; s < scenes.size(); ++s) {
       scene::Scene scene = asset(scenes[s]);
       if (outdoors) {
-        for (scene::Node& node : scene.nodes) node.light = scene::none;
+        for (scene::Node& node : scene.nodes) node.light = scene::kNone;
         scene.environment = sky();
       }
       render::Renderer renderer(device(), scene);
-      const Image part = picture(renderer, settings(width, height, render::Output::final, techniques));
-      for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-          for (int c = 0; c < 3; ++c) whole.at(x + int(s) * width, y, c) = part.at(x, y, c);
+      const Image part = picture(renderer, settings(kWidth, kHeight, Term::final, techniques));
+      for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x)
+          for (int c = 0; c < 3; ++c) whole.at(x + int(s) * kWidth, y, c) = part.at(x, y, c);
     }
     return whole;
   }
@@ -70,20 +70,21 @@ class GoldenTest : public RenderTest {
       writePng(golden, actual);
       return;
     }
-    const fs::path failed = fs::path(test::binaryDir) / "failed";
+    const fs::path failed = fs::path(test::kBinaryDir) / "failed";
     fs::create_directories(failed);
     const fs::path actualFile = failed / (name + ".actual.png");
     writePng(actualFile, actual);
     ASSERT_TRUE(fs::exists(golden)) << "no " << golden << "; look at " << actualFile
                                     << " and accept it with LIMN_UPDATE_GOLDEN=" << name << " "
-                                    << test::binaryDir << "/bin/limn_gpu_tests --gtest_filter='GoldenTest.*'";
+                                    << test::kBinaryDir
+                                    << "/bin/limn_gpu_tests --gtest_filter='GoldenTest.*'";
     const Image8 a = readImage8(actualFile), b = readImage8(golden);
     ASSERT_EQ(a.data.size(), b.data.size());
     float worst = 0;
     for (size_t i = 0; i < a.data.size(); ++i)
       worst = std::max(worst, std::abs(a.data[i] - b.data[i]) / 255.f);
-    EXPECT_LE(worst, allowed) << "see " << failed << "/" << name << ".{actual,expected,difference}.png";
-    if (worst <= allowed) {
+    EXPECT_LE(worst, kAllowed) << "see " << failed << "/" << name << ".{actual,expected,difference}.png";
+    if (worst <= kAllowed) {
       fs::remove(actualFile);
       return;
     }
@@ -93,13 +94,13 @@ class GoldenTest : public RenderTest {
 };
 
 TEST_F(GoldenTest, Unshadowed) {
-  check("unshadowed", {}, fs::path(test::sourceDir) / "tests/golden/unshadowed.png");
+  check("unshadowed", {}, fs::path(test::kSourceDir) / "tests/golden/unshadowed.png");
 }
 
 TEST_F(GoldenTest, EveryTechnique) {
   for (const TechniquePlugin* plugin : testedTechniques())
     check(plugin->info->name, {technique(plugin->info->name)},
-          fs::path(test::sourceDir) / "techniques" / plugin->info->name / "golden.png");
+          fs::path(test::kSourceDir) / "techniques" / plugin->info->name / "golden.png");
 }
 
 }  // namespace

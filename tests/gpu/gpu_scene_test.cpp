@@ -1,19 +1,19 @@
-#include "core/scene/gpu_scene.h"
+#include "core/gpu_scene/gpu_scene.h"
 
 #include <gmock/gmock.h>
 
 #include <functional>
 
-#include "glsl/gbuffer.glsl"
+#include "glsl/surface/gbuffer.glsl"
 #include "tests/gpu/gl_test.h"
-#include "tests/gpu/test_scenes.h"
+#include "tests/support/test_scenes.h"
 
 namespace limn {
 namespace {
 
 using namespace limn::test;
 
-constexpr int side = 128;
+constexpr int kSide = 128;
 
 /// A G-buffer on the CPU, row 0 at the bottom.
 struct Picture {
@@ -22,7 +22,7 @@ struct Picture {
   std::vector<glm::vec2> normal, geometricNormal;
   std::vector<glm::u8vec4> albedo;
 
-  size_t at(int x, int y) const { return static_cast<size_t>(y) * side + static_cast<size_t>(x); }
+  size_t at(int x, int y) const { return static_cast<size_t>(y) * kSide + static_cast<size_t>(x); }
   glm::vec3 shadingNormal(int x, int y) const { return glsl::octahedral_decode(normal[at(x, y)]); }
   glm::vec3 faceNormal(int x, int y) const { return glsl::octahedral_decode(geometricNormal[at(x, y)]); }
 };
@@ -32,19 +32,19 @@ class GpuSceneTest : public GlTest {
   /// Renders the scene once and reads the G-buffer.
   Picture draw(const scene::Scene& scene, const scene::Pose& pose, const scene::CameraPose& camera) {
     scene::GpuScene gpuScene(device(), scene);
-    gpuScene.update(pose, camera, {side, side}, 0);
+    gpuScene.update(pose, camera, {kSide, kSide}, 0);
     frame::ResourcePool pool(device());
     scene::GBufferPass pass;
     frame::FrameGraph graph;
     const SceneHandles handles = gpuScene.import(graph);
-    const GBuffer g = pass.add(graph, gpuScene, handles, {side, side});
+    const GBuffer g = pass.add(graph, gpuScene, handles, {kSide, kSide});
     for (const frame::TextureHandle h : {g.depth, g.normal, g.geometricNormal, g.albedo, g.instance})
       graph.output(h);
     graph.prepare(device(), shaders(), pool);
     graph.execute();
     Picture picture;
     const auto read = [&](frame::TextureHandle handle, auto& out, GLenum format, GLenum type) {
-      out.resize(side * side);
+      out.resize(kSide * kSide);
       graph.texture(handle).read(0, format, type, out.data(), out.size() * sizeof(out[0]));
     };
     read(g.depth, picture.depth, GL_RED, GL_FLOAT);
@@ -71,10 +71,10 @@ TEST_F(GpuSceneTest, DepthOfAPlaneIsExactAtEveryScale) {
     const auto camera = scene::lookAt({0, 2 * scale, 5 * scale}, {0, 0, 0}, 0.8f);
     const Picture picture = draw(scene, pose, camera);
     glsl::FrameBlock frame{};
-    scene::setCamera(frame, camera, pose.bounds, side, side);
+    scene::setCamera(frame, camera, pose.bounds, kSide, kSide);
     int covered = 0;
-    for (int y = 0; y < side; ++y) {
-      for (int x = 0; x < side; ++x) {
+    for (int y = 0; y < kSide; ++y) {
+      for (int x = 0; x < kSide; ++x) {
         const glm::vec3 d = ray(frame, x, y);
         const float expected = -frame.camera_position.y / d.y;
         const glm::vec3 hit = glm::vec3(frame.camera_position) + expected * d;
@@ -85,10 +85,10 @@ TEST_F(GpuSceneTest, DepthOfAPlaneIsExactAtEveryScale) {
         EXPECT_EQ(picture.instance[picture.at(x, y)], 0u);
       }
     }
-    EXPECT_GT(covered, side * side / 3);
+    EXPECT_GT(covered, kSide * kSide / 3);
     EXPECT_LT(glm::distance(picture.faceNormal(64, 40), glm::vec3(0, 1, 0)), 1e-4f);
-    EXPECT_EQ(picture.depth[picture.at(0, side - 1)], 0.f);
-    EXPECT_EQ(picture.instance[picture.at(0, side - 1)], glsl::no_instance);
+    EXPECT_EQ(picture.depth[picture.at(0, kSide - 1)], 0.f);
+    EXPECT_EQ(picture.instance[picture.at(0, kSide - 1)], glsl::no_instance);
   }
 }
 
@@ -121,11 +121,11 @@ TEST_F(GpuSceneTest, InstancesShareOneDrawAndKeepTheirIds) {
   const auto camera = scene::lookAt({0, 0, 8}, {0, 0, 0}, 0.6f);
   const Picture picture = draw(scene, pose, camera);
   glsl::FrameBlock frame{};
-  scene::setCamera(frame, camera, pose.bounds, side, side);
+  scene::setCamera(frame, camera, pose.bounds, kSide, kSide);
   for (uint32_t i = 0; i < 16; ++i) {
     const glm::vec4 clip = frame.world_to_clip * pose.instances[i].objectToWorld * glm::vec4(0, 0, 0, 1);
-    const int x = static_cast<int>((clip.x / clip.w * 0.5f + 0.5f) * side);
-    const int y = static_cast<int>((clip.y / clip.w * 0.5f + 0.5f) * side);
+    const int x = static_cast<int>((clip.x / clip.w * 0.5f + 0.5f) * kSide);
+    const int y = static_cast<int>((clip.y / clip.w * 0.5f + 0.5f) * kSide);
     EXPECT_EQ(picture.instance[picture.at(x, y)], i);
   }
 }
@@ -189,7 +189,7 @@ TEST_F(GpuSceneTest, TextureLevelFollowsTheSharedFormula) {
   addInstance(scene, pose, 0, upright);
   for (const float distance : {2.f, 4.f, 8.f}) {
     const Picture picture = draw(scene, pose, scene::lookAt({0, 0, distance}, {0, 0, 0}, 0.8f));
-    const float texelsPerPixel = 128 * (2 * std::tan(0.4f) * distance / side);
+    const float texelsPerPixel = 128 * (2 * std::tan(0.4f) * distance / kSide);
     const float linear = 20 * (1 + std::max(0.f, std::log2(texelsPerPixel))) / 255.f;
     const float encoded = std::sqrt(linear) * 255;
     EXPECT_NEAR(picture.albedo[picture.at(64, 64)].x, encoded, 2) << distance;
@@ -263,7 +263,7 @@ TEST_F(GpuSceneTest, OnlyWhatMovesIsTouched) {
   addLight(pose, pointLight({0, 2, 0}));
   scene::GpuScene gpuScene(device(), scene);
   auto camera = scene::lookAt({0, 2, 4}, {0, 0, 0}, 0.6f);
-  EXPECT_FALSE(gpuScene.update(pose, camera, {side, side}, 0));
+  EXPECT_FALSE(gpuScene.update(pose, camera, {kSide, kSide}, 0));
   frame::ResourcePool pool(device());
   frame::FrameGraph graph;
   const SceneHandles handles = gpuScene.import(graph);
@@ -280,19 +280,19 @@ TEST_F(GpuSceneTest, OnlyWhatMovesIsTouched) {
   EXPECT_EQ(runs, 1);
 
   camera = scene::lookAt({1, 2, 4}, {0, 0, 0}, 0.6f);
-  EXPECT_FALSE(gpuScene.update(pose, camera, {side, side}, 1));
+  EXPECT_FALSE(gpuScene.update(pose, camera, {kSide, kSide}, 1));
   graph.execute();
   EXPECT_EQ(runs, 1);
   pose.instances[0].objectToWorld = at(0, 1, 0);
-  EXPECT_FALSE(gpuScene.update(pose, camera, {side, side}, 2));
+  EXPECT_FALSE(gpuScene.update(pose, camera, {kSide, kSide}, 2));
   graph.execute();
   EXPECT_EQ(runs, 2);
   pose.lights[0].position.x = 1;
-  EXPECT_FALSE(gpuScene.update(pose, camera, {side, side}, 3));
+  EXPECT_FALSE(gpuScene.update(pose, camera, {kSide, kSide}, 3));
   graph.execute();
   EXPECT_EQ(runs, 3);
   addLight(pose, pointLight({0, 3, 0}));
-  EXPECT_TRUE(gpuScene.update(pose, camera, {side, side}, 4));
+  EXPECT_TRUE(gpuScene.update(pose, camera, {kSide, kSide}, 4));
   gpuScene.forget();
 }
 

@@ -8,14 +8,12 @@
 namespace limn {
 namespace {
 
-using render::Output;
-
 class ImplicitVisibilityTest : public RenderTest {
  protected:
   using Values = std::vector<std::pair<std::string, std::string>>;
 
   static Image indirect(render::Renderer& renderer, const Values& values) {
-    return picture(renderer, settings(96, 72, Output::indirect, {technique("implicit_visibility", values)}));
+    return picture(renderer, settings(96, 72, Term::indirect, {technique("implicit_visibility", values)}));
   }
 
   static reference::Result truth(render::Renderer& renderer, const scene::Scene& scene) {
@@ -24,7 +22,7 @@ class ImplicitVisibilityTest : public RenderTest {
                                .camera = renderer.pose().cameras.at(0),
                                .width = 96,
                                .height = 72};
-    request.term = reference::Term::indirect;
+    request.term = Term::indirect;
     request.bounces = 1;
     request.spp = 256;
     return reference::render(request);
@@ -68,7 +66,7 @@ TEST_F(ImplicitVisibilityTest, LinksMadeOnTheGpuSeeWhatThoseOfTheCpuSee) {
         return picture(
             renderer,
             settings(
-                96, 72, Output::final,
+                96, 72, Term::final,
                 {technique("implicit_visibility",
                            {{"bins", "8"}, {"fill", fill}, {"longest_edge", "0.1"}, {parameter, value}})}));
       };
@@ -85,7 +83,7 @@ TEST_F(ImplicitVisibilityTest, EveryPairIsNotTriedOnTheGpu) {
   render::Renderer renderer(device(), scene);
   EXPECT_THROW(
       picture(renderer,
-              settings(8, 8, Output::final,
+              settings(8, 8, Term::final,
                        {technique("implicit_visibility", {{"links", "gpu"}, {"structure", "flat"}})})),
       UsageError);
 }
@@ -109,7 +107,7 @@ TEST_F(ImplicitVisibilityTest, ASkyAloneIsSentIntoBins) {
   const auto final = [&](const char* glossyBins) {
     return picture(
         renderer,
-        settings(48, 36, Output::final,
+        settings(48, 36, Term::final,
                  {technique("implicit_visibility",
                             {{"bins", "4"}, {"longest_edge", "0.2"}, {"glossy_bins", glossyBins}})}));
   };

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "glsl/brdf.glsl"
+#include "glsl/surface/brdf.glsl"
 #include "tests/gpu/corner_scene.h"
 #include "tests/gpu/render_test.h"
 
@@ -13,7 +13,6 @@ namespace {
 
 using namespace limn::test;
 using glm::vec3;
-using render::Output;
 
 using IndirectTest = CornerTest;
 
@@ -89,7 +88,7 @@ class IndirectPictureTest : public RenderTest {
  protected:
   Image indirect(render::Renderer& renderer, const std::string& name,
                  const std::vector<std::pair<std::string, std::string>>& values) {
-    return picture(renderer, settings(96, 72, Output::indirect, {technique(name, values)}));
+    return picture(renderer, settings(96, 72, Term::indirect, {technique(name, values)}));
   }
 };
 
@@ -168,7 +167,7 @@ TEST_F(IndirectPictureTest, BatchesOfMapsGiveTheSamePicture) {
 TEST_F(IndirectPictureTest, NothingIsRedrawnWhileOnlyTheCameraMoves) {
   const scene::Scene scene = asset("cornell_box");
   render::Renderer renderer(device(), scene);
-  render::Settings s = settings(64, 48, Output::indirect, {technique("instant_radiosity", {{"vpls", "16"}})});
+  render::Settings s = settings(64, 48, Term::indirect, {technique("instant_radiosity", {{"vpls", "16"}})});
   s.dynamic = false;
   picture(renderer, s);
   renderer.setCamera(renderer.pose().cameras.at(1));

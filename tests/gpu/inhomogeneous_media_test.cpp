@@ -4,15 +4,13 @@
 
 #include <cmath>
 
-#include "core/bench/stress_scene.h"
+#include "core/bench/private/stress_scene.h"
 #include "core/scene/density_grid.h"
 #include "tests/gpu/media_harness.h"
 #include "tests/support/density_grids.h"
 
 namespace limn {
 namespace {
-
-using render::Output;
 
 class InhomogeneousMediaTest : public MediaHarness {
  protected:
@@ -46,11 +44,11 @@ TEST_F(InhomogeneousMediaTest, AGridOfOneDensityIsHomogeneous) {
   grid.medium.sigmaS *= 0.5f;
   scene::setGrid(grid.medium, test::constantGrid(scene::evaluate(grid, 0).bounds, 2));
   render::Renderer a(device(), homogeneous), b(device(), grid);
-  for (const Output output : {Output::media, Output::caustic, Output::direct, Output::final}) {
-    const Image one = picture(a, settings(width, height, output, all()));
-    const Image other = picture(b, settings(width, height, output, all()));
-    EXPECT_NEAR(mean(other) / mean(one), 1, 1e-3) << render::name(output);
-    EXPECT_LT(rmseOf(one, other) / mean(one), 1e-3) << render::name(output);
+  for (const Term term : {Term::media, Term::caustic, Term::direct, Term::final}) {
+    const Image one = picture(a, settings(width, height, term, all()));
+    const Image other = picture(b, settings(width, height, term, all()));
+    EXPECT_NEAR(mean(other) / mean(one), 1, 1e-3) << name(term);
+    EXPECT_LT(rmseOf(one, other) / mean(one), 1e-3) << name(term);
   }
   EXPECT_EQ(stateOf(a, "core", "smoke"), "unknown");
 }
@@ -59,7 +57,7 @@ TEST_F(InhomogeneousMediaTest, ARampAttenuatesSurfacesByItsIntegral) {
   scene::Scene scene = asset("glass_sphere");
   scene.medium = {};
   render::Renderer clear(device(), scene);
-  const Image before = picture(clear, settings(width, height, Output::direct));
+  const Image before = picture(clear, settings(width, height, Term::direct));
   const scene::Bounds bounds = scene::evaluate(scene, 0).bounds;
   const float radius = bounds.radius();
   const glm::vec3 centre = bounds.centre();
@@ -69,8 +67,8 @@ TEST_F(InhomogeneousMediaTest, ARampAttenuatesSurfacesByItsIntegral) {
                  test::gridOf({2, 64, 2}, centre - 1.1f * radius, centre + 1.1f * radius,
                               [&](const glm::vec3& p) { return p.y - centre.y + 1.2f * radius; }));
   render::Renderer renderer(device(), dim);
-  const Image after = picture(renderer, settings(width, height, Output::direct));
-  const Image truth = reference(renderer, dim, reference::Term::direct, 2);
+  const Image after = picture(renderer, settings(width, height, Term::direct));
+  const Image truth = reference(renderer, dim, Term::direct, 2);
   int compared = 0;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
@@ -86,17 +84,14 @@ TEST_F(InhomogeneousMediaTest, ARampAttenuatesSurfacesByItsIntegral) {
 TEST_F(InhomogeneousMediaTest, SmokeIsAsBrightAsTheReference) {
   const scene::Scene scene = asset("smoke");
   render::Renderer renderer(device(), scene);
-  const auto ratio = [&](Output output, reference::Term term, std::vector<render::TechniqueUse> techniques,
-                         int spp) {
-    const Image ours = picture(renderer, settings(width, height, output, std::move(techniques)));
+  const auto ratio = [&](Term term, std::vector<render::TechniqueUse> techniques, int spp) {
+    const Image ours = picture(renderer, settings(width, height, term, std::move(techniques)));
     return mean(ours) / mean(reference(renderer, scene, term, spp));
   };
-  EXPECT_NEAR(ratio(Output::media, reference::Term::media, all("128"), 16), 1, 0.02);
-  EXPECT_NEAR(ratio(Output::final, reference::Term::final, all("128"), 16), 1, 0.02);
-  EXPECT_NEAR(ratio(Output::direct, reference::Term::direct,
-                    {technique("sampled_area_light", {{"samples", "1"}})}, 2),
-              1, 0.02);
-  EXPECT_NEAR(ratio(Output::caustic, reference::Term::caustic, all("256"), 64), 1, 0.1);
+  EXPECT_NEAR(ratio(Term::media, all("128"), 16), 1, 0.02);
+  EXPECT_NEAR(ratio(Term::final, all("128"), 16), 1, 0.02);
+  EXPECT_NEAR(ratio(Term::direct, {technique("sampled_area_light", {{"samples", "1"}})}, 2), 1, 0.02);
+  EXPECT_NEAR(ratio(Term::caustic, all("256"), 64), 1, 0.1);
 }
 
 TEST_F(InhomogeneousMediaTest, MoreStepsComeNearerToTheTruth) {
@@ -104,7 +99,7 @@ TEST_F(InhomogeneousMediaTest, MoreStepsComeNearerToTheTruth) {
   render::Renderer renderer(device(), scene);
   const auto scattered = [&](const char* steps) {
     return picture(renderer,
-                   settings(width, height, Output::media,
+                   settings(width, height, Term::media,
                             {technique("volume_caustics", {{"medium_steps", steps}, {"buffer_size", "48"}}),
                              technique("airlight", {{"medium_steps", steps}})}));
   };
@@ -121,7 +116,7 @@ TEST_F(InhomogeneousMediaTest, MoreStepsComeNearerToTheTruth) {
 TEST_F(InhomogeneousMediaTest, SmokeIsMadeAnewWhenTimeGoesOnAndNotElse) {
   const scene::Scene scene = asset("smoke");
   render::Renderer renderer(device(), scene);
-  render::Settings s = settings(width, height, Output::media, {technique("airlight")});
+  render::Settings s = settings(width, height, Term::media, {technique("airlight")});
   s.dynamic = false;
   const Image first = picture(renderer, s);
   renderer.render();
@@ -150,8 +145,8 @@ TEST_F(InhomogeneousMediaTest, AGridOfZerosIsTheSamePictureBitForBit) {
   clear.medium = {};
   scene::setGrid(scene.medium, test::constantGrid(scene::evaluate(scene, 0).bounds, 0));
   render::Renderer with(device(), scene), without(device(), clear);
-  EXPECT_TRUE(sameBits(picture(with, settings(width, height, Output::final, all())),
-                       picture(without, settings(width, height, Output::final, all()))));
+  EXPECT_TRUE(sameBits(picture(with, settings(width, height, Term::final, all())),
+                       picture(without, settings(width, height, Term::final, all()))));
   EXPECT_EQ(stateOf(with, "airlight", "airlight"), "no medium scatters light");
   EXPECT_EQ(stateOf(with, "core", "transmittance"), "the scene has no medium");
 }
@@ -159,11 +154,11 @@ TEST_F(InhomogeneousMediaTest, AGridOfZerosIsTheSamePictureBitForBit) {
 TEST_F(InhomogeneousMediaTest, ScaleDoesNotMatter) {
   const scene::Scene scene = asset("smoke");
   render::Renderer renderer(device(), scene);
-  const Image usual = picture(renderer, settings(width, height, Output::final, all()));
+  const Image usual = picture(renderer, settings(width, height, Term::final, all()));
   for (const double factor : {1e-4, 1e4}) {
     const scene::Scene scaled = bench::stressed(scene, StressChange::sceneScale, factor);
     render::Renderer other(device(), scaled);
-    EXPECT_NEAR(mean(picture(other, settings(width, height, Output::final, all()))) / mean(usual), 1, 2e-3)
+    EXPECT_NEAR(mean(picture(other, settings(width, height, Term::final, all()))) / mean(usual), 1, 2e-3)
         << factor;
   }
 }
@@ -177,7 +172,7 @@ TEST_F(InhomogeneousMediaTest, ExtremesGiveFinitePictures) {
       scene.medium.sigmaA = glm::vec3(0);
       scene.medium.g = g;
       render::Renderer renderer(device(), scene);
-      const Image image = picture(renderer, settings(width, height, Output::media, all()));
+      const Image image = picture(renderer, settings(width, height, Term::media, all()));
       expectWithin(image, 0, 1e4f);
       if (thickness == 0) {
         EXPECT_EQ(mean(image), 0);
@@ -190,38 +185,28 @@ TEST_F(InhomogeneousMediaTest, TexturedSpotsAreAsTheReferenceHasThem) {
   ASSERT_EQ(scene.lightTextures.size(), 1u);
   render::Renderer renderer(device(), scene);
   struct Question {
-    Output output;
-    reference::Term term;
+    Term term;
     std::vector<render::TechniqueUse> techniques;
     int spp;
     double within;
   };
   const Question questions[] = {
-      {Output::direct, reference::Term::direct, {technique("hard_shadow_map")}, 2, 0.01},
-      {Output::direct,
-       reference::Term::direct,
-       {technique("sampled_area_light", {{"samples", "1"}})},
-       2,
-       0.01},
-      {Output::media,
-       reference::Term::media,
-       {technique("airlight"), technique("volume_caustics")},
-       32,
-       0.02},
-      {Output::caustic, reference::Term::caustic, {technique("surface_caustics")}, 64, 0.1}};
+      {Term::direct, {technique("hard_shadow_map")}, 2, 0.01},
+      {Term::direct, {technique("sampled_area_light", {{"samples", "1"}})}, 2, 0.01},
+      {Term::media, {technique("airlight"), technique("volume_caustics")}, 32, 0.02},
+      {Term::caustic, {technique("surface_caustics")}, 64, 0.1}};
   for (const Question& q : questions) {
-    const Image ours = picture(renderer, settings(width, height, q.output, q.techniques));
+    const Image ours = picture(renderer, settings(width, height, q.term, q.techniques));
     const Image truth = reference(renderer, scene, q.term, q.spp);
     for (int c = 0; c < 3; ++c)
-      EXPECT_NEAR(meanOf(ours, c) / meanOf(truth, c), 1, q.within)
-          << render::name(q.output) << " channel " << c;
+      EXPECT_NEAR(meanOf(ours, c) / meanOf(truth, c), 1, q.within) << name(q.term) << " channel " << c;
   }
   scene::Scene plain = scene;
-  for (scene::LightSource& light : plain.lights) light.texture = scene::none;
+  for (scene::LightSource& light : plain.lights) light.texture = scene::kNone;
   plain.lightTextures.clear();
   render::Renderer white(device(), plain);
-  const Image lit = picture(white, settings(width, height, Output::media, {technique("airlight")}));
-  const Image stained = picture(renderer, settings(width, height, Output::media, {technique("airlight")}));
+  const Image lit = picture(white, settings(width, height, Term::media, {technique("airlight")}));
+  const Image stained = picture(renderer, settings(width, height, Term::media, {technique("airlight")}));
   EXPECT_LT(meanOf(stained, 1), 0.6 * meanOf(lit, 1)) << "the window takes light away";
 }
 

@@ -11,11 +11,10 @@ namespace limn {
 
 class MediaHarness : public RenderTest {
  protected:
-  using Output = render::Output;
   static constexpr int width = 128, height = 96;
 
   static reference::Request request(render::Renderer& renderer, const scene::Scene& scene,
-                                    const scene::CameraPose& camera, reference::Term term, int spp) {
+                                    const scene::CameraPose& camera, Term term, int spp) {
     reference::Request request{
         .scene = scene, .pose = renderer.pose(), .camera = camera, .progress = {}, .checkpoint = {}};
     request.width = width;
@@ -24,8 +23,8 @@ class MediaHarness : public RenderTest {
     request.spp = spp;
     return request;
   }
-  static Image reference(render::Renderer& renderer, const scene::Scene& scene, reference::Term term, int spp,
-                         int light = reference::allLights) {
+  static Image reference(render::Renderer& renderer, const scene::Scene& scene, Term term, int spp,
+                         int light = reference::kAllLights) {
     reference::Request asked = request(renderer, scene, renderer.pose().cameras.at(0), term, spp);
     asked.light = light;
     return reference::render(asked).image;

@@ -1,5 +1,5 @@
 // Overlapping min-max windows of shadow maps against bounds computed on the CPU, texel by texel.
-#include "glsl/min_max_windows.glsl"
+#include "glsl/shadow/min_max_windows.glsl"
 
 #include <fmt/format.h>
 
@@ -41,8 +41,8 @@ class MinMaxWindowsTest : public DerivedMapsTest {
   const gpu::Texture& build(frame::FrameGraph& graph, const Size& size) {
     makeSource(size);
     DerivedMaps maps(device());
-    maps.begin(graph);
-    const frame::TextureHandle windows = maps.minMaxWindows(graph.importTexture("source", source_), false);
+    const frame::TextureHandle windows =
+        maps.minMaxWindows(graph, graph.importTexture("source", source_), false);
     graph.output(windows);
     graph.prepare(device(), shaders(), *pool_);
     graph.execute();
@@ -51,7 +51,7 @@ class MinMaxWindowsTest : public DerivedMapsTest {
 };
 
 TEST_F(MinMaxWindowsTest, EachHoldsTheBoundsOfItsTexelsAsFarAsTheMapReaches) {
-  for (const Size& size : sizes) {
+  for (const Size& size : kSizes) {
     frame::FrameGraph graph;
     const gpu::Texture& windows = build(graph, size);
     EXPECT_EQ(windows.desc().levels, glsl::min_max_windows_levels(std::max(size.width, size.height)));
@@ -74,9 +74,9 @@ TEST_F(MinMaxWindowsTest, EachHoldsTheBoundsOfItsTexelsAsFarAsTheMapReaches) {
 }
 
 TEST_F(MinMaxWindowsTest, LookupsAreConservativeAndExactWhereWindowsFit) {
-  const gpu::EmbeddedSource sources[] = {{"lookup.comp.glsl", lookup_shader}};
+  const gpu::EmbeddedSource sources[] = {{"lookup.comp.glsl", kLookupShader}};
   shaders().mount("test/", sources);
-  std::vector<Size> maps(std::begin(sizes), std::end(sizes));
+  std::vector<Size> maps(std::begin(kSizes), std::end(kSizes));
   maps.insert(maps.end(), {{513, 513, 1}, {2048, 2048, 1}});
   gpu::Program& program = shaders().program(
       {.files = {"test/lookup.comp.glsl"}, .defines = {{"BOUNDS", "min_max_windows_depth"}}});

@@ -1,6 +1,6 @@
 // Moment soft shadow maps and percentage-closer filtering: their tables against sums, and answers that are
 // known.
-#include "glsl/moment_shadow.glsl"
+#include "glsl/shadow/moment_shadow.glsl"
 
 #include <gmock/gmock.h>
 
@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "core/shadow/derived_maps.h"
 #include "tests/gpu/technique_harness.h"
-#include "tests/gpu/test_scenes.h"
+#include "tests/support/test_scenes.h"
 
 namespace limn {
 namespace {

@@ -1,5 +1,5 @@
 // N-buffers of shadow maps against bounds computed on the CPU, texel by texel.
-#include "glsl/n_buffer.glsl"
+#include "glsl/shadow/n_buffer.glsl"
 
 #include <fmt/format.h>
 
@@ -32,17 +32,16 @@ std::vector<Kernel> nearlySquareKernels(const Size& size) {
 }
 
 TEST_F(NBufferTest, LookupsAreExactForNearlySquareBoxesAndNeverWiderThanThePyramids) {
-  const gpu::EmbeddedSource sources[] = {{"lookup.comp.glsl", lookup_shader}};
+  const gpu::EmbeddedSource sources[] = {{"lookup.comp.glsl", kLookupShader}};
   shaders().mount("test/", sources);
-  for (const Size& size : sizes) {
+  for (const Size& size : kSizes) {
     SCOPED_TRACE(fmt::format("{} x {}", size.width, size.height));
     makeSource(size);
     frame::FrameGraph graph;
     DerivedMaps maps(device());
-    maps.begin(graph);
     const frame::TextureHandle source = graph.importTexture("source", source_),
-                               windows = maps.nBuffer(source, false),
-                               pyramid = maps.minMaxPyramid(source, false).texture;
+                               windows = maps.nBuffer(graph, source, false),
+                               pyramid = maps.minMaxPyramid(graph, source, false).texture;
     graph.output(windows);
     graph.output(pyramid);
     graph.prepare(device(), shaders(), *pool_);

@@ -14,7 +14,6 @@ namespace limn::gpu {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 class ObjectsTest : public GlTest {};
 
@@ -94,6 +93,7 @@ TEST_F(ObjectsTest, movingTransfersOwnership) {
     EXPECT_EQ(device().counters().textures, before.textures + 1)
         << "what was assigned over is destroyed at once";
     std::vector<Buffer> buffers;
+    buffers.reserve(10);
     for (int i = 0; i < 10; ++i) buffers.emplace_back(device(), "b", size_t(i) + 1);
     EXPECT_EQ(device().counters().buffers, before.buffers + 10);
     buffers.erase(buffers.begin() + 2);

@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 #include "tests/gpu/gl_test.h"
-#include "tests/gpu/test_scenes.h"
+#include "tests/support/test_scenes.h"
 
 namespace limn {
 namespace {
@@ -103,7 +103,7 @@ TEST_F(ParaboloidMapsTest, ARoomOfLargeTrianglesIsExactFromEveryView) {
           const float expected =
               glm::dot(p, p) > 1
                   ? 1
-                  : glsl::shadow_normalise(view, leaves(vec3(view.origin), drawn.direction(map, x, y), half));
+                  : glsl::shadow_normalise(view, leaves(view.origin, drawn.direction(map, x, y), half));
           ASSERT_NEAR(drawn.stored(map, x, y), expected, 2e-5f)
               << "map " << map << " texel " << x << "," << y;
         }
@@ -125,8 +125,8 @@ TEST_F(ParaboloidMapsTest, ASphereOfSmallTriangles) {
       EXPECT_EQ(drawn.stored(1, x, y), 1) << "behind the hemisphere";
       if (drawn.stored(0, x, y) >= 1) continue;
       ++covered;
-      const vec3 p = vec3(views[0].origin) +
-                     glsl::shadow_metres(views[0], drawn.stored(0, x, y)) * drawn.direction(0, x, y);
+      const vec3 p =
+          views[0].origin + glsl::shadow_metres(views[0], drawn.stored(0, x, y)) * drawn.direction(0, x, y);
       EXPECT_NEAR(glm::length(p), 1, 1e-3f);
     }
   // The sphere is a circle of half angle asin(1 / |origin|), which covers the share sin^2 / (cos theta + cos

@@ -13,18 +13,18 @@ namespace limn::caustics {
 namespace {
 
 /// The kind of a ray stands in place of what its end is.
-constexpr const char* kindShader = R"(
-#include "glsl/caustic_ray.glsl"
-layout(std430, binding = 0) readonly buffer Rays { CausticRay rays[]; };
-uint ray_kind(int index) { return uint(rays[index].direction.w); }
+constexpr const char* kKindShader = R"(
+#include "glsl/caustics/caustic_ray.glsl"
+layout(std430) readonly buffer Rays { CausticRay rays[]; };
+uint ray_kind(int index) { return uint(rays[index].kind); }
 #include "glsl/caustics/ray_kinds.glsl"
 )";
 
 class RayListsTest : public frame::FrameGraphGpu {};
 
 TEST_F(RayListsTest, HoldEachRayOnceByKindAndInOrder) {
-  const gpu::EmbeddedSource sources[] = {{"kind.comp.glsl", kindShader}};
-  shaders().mount("test/", sources);
+  const gpu::EmbeddedSource kSources[] = {{"kind.comp.glsl", kKindShader}};
+  shaders().mount("test/", kSources);
   std::mt19937 random(3);
   // Sides of buffers: one ray, less than a run, more runs than one work group sums one by one. Highest kinds:
   // 0: all rays are of the first, 3: of each kind, or not drawn; 4: none is drawn.
@@ -35,7 +35,7 @@ TEST_F(RayListsTest, HoldEachRayOnceByKindAndInOrder) {
       std::array<std::vector<uint32_t>, glsl::ray_kinds> expected;
       for (uint32_t i = 0; i < rays.size(); ++i) {
         const uint32_t kind = highest == 4 ? 3 : std::uniform_int_distribution<uint32_t>(0, highest)(random);
-        rays[i].direction.w = static_cast<float>(kind);
+        rays[i].kind = static_cast<float>(kind);
         if (kind < glsl::ray_kinds) expected[kind].push_back(i);
       }
       const auto buffer = gpu::Buffer::of<glsl::CausticRay>(device(), "rays", rays);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/render/renderer.h"
-#include "core/scene/load.h"
+#include "core/scene_io/load.h"
 #include "core/technique/registry.h"
 #include "tests/gpu/gl_test.h"
 #include "tests/support/paths.h"
@@ -19,7 +19,7 @@ class RenderTest : public GlTest {
  protected:
   /// A scene of assets/, as built.
   static scene::Scene asset(const std::string& name) {
-    return scene::load(std::filesystem::path(test::binaryDir) / "assets" / name / (name + ".glb"));
+    return scene::load(std::filesystem::path(test::kBinaryDir) / "assets" / name / (name + ".glb"));
   }
 
   static const TechniqueRegistry& registry() {
@@ -68,20 +68,20 @@ class RenderTest : public GlTest {
   }
 
   /// Those with a picture of their own, and what shows it.
-  static std::vector<std::pair<std::string, render::Output>> techniquesAndOutputs() {
-    std::vector<std::pair<std::string, render::Output>> all;
+  static std::vector<std::pair<std::string, Term>> techniquesAndTerms() {
+    std::vector<std::pair<std::string, Term>> all;
     for (const std::string& name : techniquesAnswering(Term::visibility))
-      all.emplace_back(name, render::Output::visibility);
+      all.emplace_back(name, Term::visibility);
     for (const std::string& name : techniquesAnswering(Term::indirect))
-      all.emplace_back(name, render::Output::indirect);
+      all.emplace_back(name, Term::indirect);
     return all;
   }
 
-  static render::Settings settings(int width, int height, render::Output output,
+  static render::Settings settings(int width, int height, Term term,
                                    std::vector<render::TechniqueUse> techniques = {}, int light = -1) {
     render::Settings s;
     s.size = {width, height};
-    s.output = output;
+    s.term = term;
     s.techniques = std::move(techniques);
     s.light = light;
     return s;

@@ -23,7 +23,7 @@ class SavingsTest : public OncePerRenderer<RenderTest> {
     node.name = dark.name = "dark";
     dark.intensity = 0;
     node.light = static_cast<int>(scene.lights.size());
-    node.mesh = node.camera = scene::none;
+    node.mesh = node.camera = scene::kNone;
     scene.lights.push_back(dark);
     scene.nodes.push_back(node);
     return scene;
@@ -31,7 +31,7 @@ class SavingsTest : public OncePerRenderer<RenderTest> {
 
   static std::vector<SavingResult> savings(render::Renderer& renderer, const std::string& name, int frames) {
     return bench::measureSavings(renderer, renderer.pose().cameras.at(0),
-                                 settings(64, 48, render::Output::final, {quick(name)}), nullptr,
+                                 settings(64, 48, Term::final, {quick(name)}), nullptr,
                                  {.frames = frames, .warmup = 0});
   }
 

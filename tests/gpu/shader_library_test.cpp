@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/base/error.h"
+#include "tests/gpu/bind_by_name.h"
 #include "tests/gpu/gl_test.h"
 
 namespace limn::gpu {
@@ -18,11 +19,11 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 
 // Writes the number a test asks for, so that it can see which source ran.
-constexpr EmbeddedSource sources[] = {
+constexpr EmbeddedSource kSources[] = {
     {"answer.comp.glsl",
      "#include \"value.glsl\"\n"
      "layout(local_size_x = 1) in;\n"
-     "layout(std430, binding = 0) buffer Result { uint result; };\n"
+     "layout(std430) buffer Result { uint result; };\n"
      "void main() { result = value() + LIMN_OFFSET; }\n"},
     {"value.glsl", "uint value() { return 1u; }\n"},
     {"broken.comp.glsl", "#include \"broken.glsl\"\nlayout(local_size_x = 1) in;\nvoid main() {}\n"},
@@ -32,7 +33,7 @@ constexpr EmbeddedSource sources[] = {
      "layout(local_size_x = 1) in;\n#ifdef __cplusplus\n#include <cmath>\n#include \"core/none.h\"\n#endif\n"
      "void main() {}\n"},
     {"warns.comp.glsl",
-     "layout(local_size_x = 1) in;\nlayout(std430, binding = 0) buffer Result { float result; };\n"
+     "layout(local_size_x = 1) in;\nlayout(std430) buffer Result { float result; };\n"
      "void main() { float x; result = x; }\n"},
     {"unlinkable.vert.glsl", "out vec2 a;\nvoid main() { a = vec2(0); gl_Position = vec4(0); }\n"},
     {"unlinkable.frag.glsl",
@@ -63,9 +64,9 @@ class ShaderLibraryTest : public GlTest {
     fs::last_write_time(path, fs::file_time_type::clock::now() + std::chrono::seconds(++writes_));
   }
 
-  uint32_t run(const Program& program) {
+  uint32_t run(Program& program) {
     Buffer result(device(), "result", sizeof(uint32_t));
-    gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, result.id());
+    test::bindByName(gl(), program, "Result", result);
     program.use();
     gl().DispatchCompute(1, 1, 1);
     uint32_t value = 0;
@@ -89,7 +90,7 @@ class ShaderLibraryTest : public GlTest {
 };
 
 TEST_F(ShaderLibraryTest, permutationsAreCompiledOnce) {
-  shaders().mount("techniques/test/", sources);
+  shaders().mount("techniques/test/", kSources);
   const int before = device().counters().programsCompiled;
   Program& ten = shaders().program(answer("10u"));
   Program& twenty = shaders().program(answer("20u"));
@@ -100,7 +101,7 @@ TEST_F(ShaderLibraryTest, permutationsAreCompiledOnce) {
 }
 
 TEST_F(ShaderLibraryTest, errorsNameTheIncludedFileAndLine) {
-  shaders().mount("techniques/test/", sources);
+  shaders().mount("techniques/test/", kSources);
   const std::string error = errorOf({{"techniques/test/broken.comp.glsl"}, {{"LIMN_A", "1"}}});
   EXPECT_THAT(error, HasSubstr("cannot compile techniques/test/broken.comp.glsl (LIMN_A=1): "));
   EXPECT_THAT(error, HasSubstr("techniques/test/broken.glsl:3: "));
@@ -108,7 +109,7 @@ TEST_F(ShaderLibraryTest, errorsNameTheIncludedFileAndLine) {
 }
 
 TEST_F(ShaderLibraryTest, macrosThatAreTestedMustBeDefined) {
-  shaders().mount("techniques/test/", sources);
+  shaders().mount("techniques/test/", kSources);
   const std::string file = "techniques/test/tested.comp.glsl";
   EXPECT_THAT(errorOf({{file}, {}}), HasSubstr(file + ":2: "));
   EXPECT_THAT(errorOf({{file}, {}}), HasSubstr("LIMN_MODE is tested but not defined"));
@@ -116,18 +117,18 @@ TEST_F(ShaderLibraryTest, macrosThatAreTestedMustBeDefined) {
 }
 
 TEST_F(ShaderLibraryTest, partsForCppAreSkipped) {
-  shaders().mount("techniques/test/", sources);
+  shaders().mount("techniques/test/", kSources);
   EXPECT_THAT(errorOf({{"techniques/test/ladder.comp.glsl"}, {}}), IsEmpty());
 }
 
 TEST_F(ShaderLibraryTest, warningsAreErrorsInADebugContext) {
-  shaders().mount("techniques/test/", sources);
+  shaders().mount("techniques/test/", kSources);
   EXPECT_THAT(errorOf({{"techniques/test/warns.comp.glsl"}, {}}),
               HasSubstr("techniques/test/warns.comp.glsl:3: "));
 }
 
 TEST_F(ShaderLibraryTest, otherFailuresSayWhichProgram) {
-  shaders().mount("techniques/test/", sources);
+  shaders().mount("techniques/test/", kSources);
   EXPECT_THAT(
       errorOf({{"techniques/test/unlinkable.vert.glsl", "techniques/test/unlinkable.frag.glsl"}, {}}),
       HasSubstr("cannot link techniques/test/unlinkable.vert.glsl + techniques/test/unlinkable.frag.glsl: "));
@@ -137,13 +138,13 @@ TEST_F(ShaderLibraryTest, otherFailuresSayWhichProgram) {
 }
 
 TEST_F(ShaderLibraryTest, unknownUniformsAreRefused) {
-  shaders().mount("techniques/test/", sources);
+  shaders().mount("techniques/test/", kSources);
   Program& program = shaders().program(answer("1u"));
   EXPECT_THROW(program.set("radius", 1.0f), Error);
 }
 
 TEST_F(ShaderLibraryTest, filesOnDiskTakePrecedenceAndAreReloaded) {
-  shaders().mount("techniques/test/", sources, folder_);
+  shaders().mount("techniques/test/", kSources, folder_);
   Program& program = shaders().program(answer("10u"));
   EXPECT_EQ(run(program), 11u) << "the embedded source, since the folder is empty";
   EXPECT_EQ(shaders().reload().reloaded, 0);
@@ -182,17 +183,17 @@ TEST_F(ShaderLibraryTest, filesOnDiskTakePrecedenceAndAreReloaded) {
 }
 
 TEST_F(ShaderLibraryTest, aTouchedFileWithTheSameTextIsNotCompiledAgain) {
-  shaders().mount("techniques/test/", sources, folder_);
-  write("value.glsl", sources[1].text);
+  shaders().mount("techniques/test/", kSources, folder_);
+  write("value.glsl", kSources[1].text);
   shaders().program(answer("10u"));
   const int before = device().counters().programsCompiled;
-  write("value.glsl", sources[1].text);
+  write("value.glsl", kSources[1].text);
   EXPECT_EQ(shaders().reload().reloaded, 0);
   EXPECT_EQ(device().counters().programsCompiled, before);
 }
 
 TEST_F(ShaderLibraryTest, anIdleReloadTakesMicroseconds) {
-  shaders().mount("techniques/test/", sources, folder_);
+  shaders().mount("techniques/test/", kSources, folder_);
   shaders().program(answer("10u"));
   shaders().reload();
   double fastest = 1;  // seconds; the minimum, because the machine may be busy
@@ -206,10 +207,11 @@ TEST_F(ShaderLibraryTest, anIdleReloadTakesMicroseconds) {
 }
 
 TEST_F(ShaderLibraryTest, limnsOwnSourcesAreMounted) {
-  constexpr EmbeddedSource user[] = {{"pi.comp.glsl",
-                                      "#include \"glsl/language.glsl\"\nlayout(local_size_x = 1) in;\n"
-                                      "layout(std430, binding = 0) buffer Result { uint result; };\n"
-                                      "void main() { result = uint(pi * 1000.0); }\n"}};
+  constexpr EmbeddedSource user[] = {
+      {"pi.comp.glsl",
+       "#include \"glsl/numeric/language.glsl\"\nlayout(local_size_x = 1) in;\n"
+       "layout(std430) buffer Result { uint result; };\n"
+       "void main() { result = uint(pi * 1000.0); }\n"}};
   shaders().mount("techniques/test/", user);
   EXPECT_EQ(run(shaders().program({{"techniques/test/pi.comp.glsl"}, {}})), 3141u);
 }

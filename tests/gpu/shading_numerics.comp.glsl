@@ -1,8 +1,8 @@
 #include "shading_numerics.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Inputs { NumericsInput inputs[]; };
-layout(std430, binding = 1) writeonly buffer Results { NumericsResult results[]; };
+layout(std430) readonly buffer Inputs { NumericsInput inputs[]; };
+layout(std430) writeonly buffer Results { NumericsResult results[]; };
 
 void main() {
   uint i = gl_GlobalInvocationID.x;

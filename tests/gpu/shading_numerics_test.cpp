@@ -13,6 +13,7 @@
 
 #include "core/base/file.h"
 #include "core/shading/ltc_table.h"
+#include "tests/gpu/bind_by_name.h"
 #include "tests/gpu/gl_test.h"
 #include "tests/support/paths.h"
 
@@ -34,26 +35,33 @@ vec3 upward(std::mt19937& random, float lowest) {
 glsl::NumericsInput randomInput(std::mt19937& random) {
   std::uniform_real_distribution<float> unit(0.f, 1.f);
   glsl::NumericsInput i{};
-  i.base = vec4(unit(random), unit(random), unit(random), unit(random) < 0.5f ? 0.f : unit(random));
-  i.surface = vec4(0.1f + 0.9f * unit(random), unit(random) < 0.2f ? 0.f : unit(random), 1 + unit(random), 0);
-  i.random = vec4(unit(random), unit(random), unit(random), 0);
+  i.base_colour = vec3(unit(random), unit(random), unit(random));
+  i.metallic = unit(random) < 0.5f ? 0.f : unit(random);
+  i.roughness = 0.1f + 0.9f * unit(random);
+  i.specular_factor = unit(random) < 0.2f ? 0.f : unit(random);
+  i.ior = 1 + unit(random);
+  i.random = vec3(unit(random), unit(random), unit(random));
   i.normal = vec4(upward(random, 0.9f), 0);
   i.view = vec4(upward(random, 0.5f), 0);
   i.incident = vec4(upward(random, 0.05f), 0);
   const vec3 towards = upward(random, -0.3f) * std::pow(10.f, 3 * unit(random) - 0.5f);
-  i.light.position = vec4(towards, 1);
+  i.light.position = towards;
   const glsl::Frame frame =
       glsl::frame_around(normalize(towards + 0.7f * glm::length(towards) * upward(random, -1)));
-  i.light.direction = vec4(-frame.n, 0);
-  i.light.axis_u = vec4(frame.t, unit(random) + 0.1f);
-  i.light.axis_v = vec4(frame.b, unit(random) + 0.1f);
-  i.light.emission = vec4(1, 2, 3, 0);
-  i.light.info = glm::uvec4(glsl::light_rectangle, glsl::light_flag_two_sided, glsl::no_instance, 0);
+  i.light.direction = -frame.n;
+  i.light.axis_u = frame.t;
+  i.light.length_u = unit(random) + 0.1f;
+  i.light.axis_v = frame.b;
+  i.light.length_v = unit(random) + 0.1f;
+  i.light.emission = vec3(1, 2, 3);
+  i.light.type = glsl::light_rectangle;
+  i.light.flags = glsl::light_flag_two_sided;
+  i.light.own_instance = glsl::no_instance;
   return i;
 }
 
 std::string source(const char* name) {
-  return readTextFile(std::string(test::sourceDir) + "/tests/gpu/" + name);
+  return readTextFile(std::string(test::kSourceDir) + "/tests/gpu/" + name);
 }
 
 TEST_F(ShadingNumerics, GpuAgreesWithCpu) {
@@ -68,10 +76,11 @@ TEST_F(ShadingNumerics, GpuAgreesWithCpu) {
   const gpu::Texture table = shading::makeLtcTexture(device());
   const gpu::Buffer in = gpu::Buffer::of<glsl::NumericsInput>(device(), "inputs", inputs);
   const gpu::Buffer out(device(), "results", inputs.size() * sizeof(glsl::NumericsResult));
-  shaders().program({.files = {"test/shading_numerics.comp.glsl"}, .defines = {}}).use();
-  gl().BindTextureUnit(glsl::ltc_unit, table.id());
-  gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, in.id());
-  gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, out.id());
+  gpu::Program& program = shaders().program({.files = {"test/shading_numerics.comp.glsl"}, .defines = {}});
+  program.use();
+  test::bindByName(gl(), program, "ltc_table", table);
+  test::bindByName(gl(), program, "Inputs", in);
+  test::bindByName(gl(), program, "Results", out);
   gl().DispatchCompute(static_cast<GLuint>((inputs.size() + 63) / 64), 1, 1);
   gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   std::vector<glsl::NumericsResult> results(inputs.size());

@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/shadow/light_fit.h"
 #include "tests/gpu/gl_test.h"
-#include "tests/gpu/test_scenes.h"
+#include "tests/support/test_scenes.h"
 
 namespace limn {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 using namespace limn::test;
 using glm::vec3;
 
-constexpr int texels = 128;
+constexpr int kTexels = 128;
 
 /// Shadow maps on the CPU.
 struct Maps {
@@ -43,10 +43,11 @@ class ShadowMapTest : public GlTest {
             const shadow::ShadowMapDesc& desc) {
     scene::GpuScene gpuScene(device(), scene);
     gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
-    shadow::ShadowMapService service(device(), gpuScene);
+    FrameServices services;
+    auto& service = services.add<shadow::ShadowMapService>(device(), gpuScene);
     frame::ResourcePool pool(device());
     frame::FrameGraph graph;
-    service.begin(graph, gpuScene.import(graph), pose);
+    const auto building = services.begin(graph, gpuScene.import(graph), pose);
     const shadow::ShadowMaps maps = service.request(lights, desc);
     graph.output(maps.depth);
     graph.prepare(device(), shaders(), pool);
@@ -75,14 +76,14 @@ TEST_F(ShadowMapTest, DepthOfAPlaneIsLinearAndExactAtEveryScale) {
     scene::Pose pose;
     addInstance(scene, pose, 0);
     addLight(pose, spotLight(vec3(1, 3, 0.5f) * scale, {0.2f, -1, 0.1f}, 0.6f));
-    const Maps maps = draw(scene, pose, {0}, {.size = texels});
+    const Maps maps = draw(scene, pose, {0}, {.size = kTexels});
     ASSERT_EQ(maps.views.size(), 1u);
     EXPECT_EQ(maps.stats[0].projection, "perspective");
-    for (int y = 0; y < texels; ++y) {
-      for (int x = 0; x < texels; ++x) {
+    for (int y = 0; y < kTexels; ++y) {
+      for (int x = 0; x < kTexels; ++x) {
         ASSERT_GE(maps.stored(0, x, y), 0.f);
         ASSERT_LT(maps.stored(0, x, y), 1.f);
-        EXPECT_NEAR((vec3(maps.views[0].origin) + maps.seen(0, x, y)).y / scale, 0, 2e-5f) << x << "," << y;
+        EXPECT_NEAR((maps.views[0].origin + maps.seen(0, x, y)).y / scale, 0, 2e-5f) << x << "," << y;
       }
     }
     if (first.empty()) first = maps.depth;
@@ -102,26 +103,26 @@ TEST_F(ShadowMapTest, DepthOfASphereUnderEveryProjection) {
   addLight(pose, rectangleLight({0, 0, 3}, {0, 0, -1}, 1, 1));
   for (const auto projection :
        {shadow::Projection::automatic, shadow::Projection::cube, shadow::Projection::paraboloid}) {
-    const Maps maps = draw(scene, pose, {0, 1, 2, 3}, {.size = texels, .projection = projection});
+    const Maps maps = draw(scene, pose, {0, 1, 2, 3}, {.size = kTexels, .projection = projection});
     ASSERT_EQ(maps.lights.size(), 4u);
     for (const glsl::ShadowLight& light : maps.lights) {
       int covered = 0;
-      const uint32_t faces = glsl::shadow_face_count(light.info.y);
-      for (uint32_t layer = light.info.x; layer < light.info.x + faces; ++layer) {
-        for (int y = 0; y < texels; ++y) {
-          for (int x = 0; x < texels; ++x) {
+      const uint32_t faces = glsl::shadow_face_count(light.faces);
+      for (uint32_t layer = light.first_layer; layer < light.first_layer + faces; ++layer) {
+        for (int y = 0; y < kTexels; ++y) {
+          for (int x = 0; x < kTexels; ++x) {
             if (maps.stored(static_cast<int>(layer), x, y) >= 1) continue;
             ++covered;
-            const vec3 p = vec3(maps.views[layer].origin) + maps.seen(static_cast<int>(layer), x, y);
+            const vec3 p = maps.views[layer].origin + maps.seen(static_cast<int>(layer), x, y);
             // A point of a chord of the tessellated sphere: up to pi^2 / (8 * 96^2) inside it, more where
             // seen at grazing.
             EXPECT_NEAR(glm::length(p), 1, projection == shadow::Projection::paraboloid ? 4e-3f : 1e-3f)
-                << "light " << light.info.z << " layer " << layer << " texel " << x << "," << y;
+                << "light " << light.light << " layer " << layer << " texel " << x << "," << y;
             EXPECT_GT(p.z, -0.02f) << "the side that faces the light";
           }
         }
       }
-      EXPECT_GT(covered, texels * texels / 50) << "light " << light.info.z;
+      EXPECT_GT(covered, kTexels * kTexels / 50) << "light " << light.light;
     }
   }
 }
@@ -133,17 +134,18 @@ TEST_F(ShadowMapTest, CubeAndParaboloidsSeeAllAround) {
   addInstance(scene, pose, 0);
   addLight(pose, pointLight({0.3f, -0.2f, 0.1f}));
   for (const auto projection : {shadow::Projection::cube, shadow::Projection::paraboloid}) {
-    const Maps maps = draw(scene, pose, {0}, {.size = texels, .projection = projection});
+    const Maps maps = draw(scene, pose, {0}, {.size = kTexels, .projection = projection});
     EXPECT_EQ(maps.views.size(), projection == shadow::Projection::cube ? 6u : 2u);
     std::mt19937 random(7);
     std::normal_distribution<float> normal;
     for (int i = 0; i < 2000; ++i) {
       const vec3 p = 2.f * glm::normalize(vec3(normal(random), normal(random), normal(random)));
       const glsl::ShadowLight& light = maps.lights[0];
-      const uint32_t layer = light.info.x + glsl::shadow_face(light.info.y, maps.views[light.info.x], p);
+      const uint32_t layer =
+          light.first_layer + glsl::shadow_face(light.faces, maps.views[light.first_layer], p);
       const glsl::ShadowPoint q = glsl::shadow_project(maps.views[layer], p);
       ASSERT_TRUE(glsl::shadow_inside(q)) << p.x << " " << p.y << " " << p.z;
-      const int x = static_cast<int>(q.uv.x * texels), y = static_cast<int>(q.uv.y * texels);
+      const int x = static_cast<int>(q.uv.x * kTexels), y = static_cast<int>(q.uv.y * kTexels);
       const float metres = glsl::shadow_metres(maps.views[layer], maps.stored(static_cast<int>(layer), x, y));
       EXPECT_NEAR(metres, q.depth, 0.05f);
     }
@@ -158,11 +160,11 @@ TEST_F(ShadowMapTest, LightsThatSeeMoreThanOneMapHoldsGetAHemicube) {
   addInstance(scene, pose, 0);
   const uint32_t own = addInstance(scene, pose, 1, at(0, 0.5f, 0));
   glsl::Light low = rectangleLight({0, 0.5f, 0}, {0, -1, 0}, 1, 1);
-  low.info.z = own;
+  low.own_instance = own;
   glsl::Light high = rectangleLight({0, 8, 0}, {0, -1, 0}, 1, 1);
   addLight(pose, low);
   addLight(pose, high);
-  const Maps maps = draw(scene, pose, {0, 1}, {.size = texels});
+  const Maps maps = draw(scene, pose, {0, 1}, {.size = kTexels});
   EXPECT_EQ(maps.stats[0].projection, "hemicube");
   EXPECT_EQ(maps.stats[1].projection, "perspective");
   ASSERT_EQ(maps.views.size(), 6u);
@@ -171,15 +173,16 @@ TEST_F(ShadowMapTest, LightsThatSeeMoreThanOneMapHoldsGetAHemicube) {
   for (const glsl::ShadowLight& light : maps.lights) {
     for (int i = 0; i < 2000; ++i) {
       const vec3 p(uniform(random), 0, uniform(random));
-      const uint32_t layer = light.info.x + glsl::shadow_face(light.info.y, maps.views[light.info.x], p);
+      const uint32_t layer =
+          light.first_layer + glsl::shadow_face(light.faces, maps.views[light.first_layer], p);
       const glsl::ShadowPoint q = glsl::shadow_project(maps.views[layer], p);
       ASSERT_TRUE(glsl::shadow_inside(q));
-      const int x = static_cast<int>(q.uv.x * texels), y = static_cast<int>(q.uv.y * texels);
-      const vec3 seen = vec3(maps.views[layer].origin) + maps.seen(static_cast<int>(layer), x, y);
-      const bool shadowed = light.info.z == 1 && std::max(std::abs(p.x), std::abs(p.z)) < 0.4f;
+      const int x = static_cast<int>(q.uv.x * kTexels), y = static_cast<int>(q.uv.y * kTexels);
+      const vec3 seen = maps.views[layer].origin + maps.seen(static_cast<int>(layer), x, y);
+      const bool shadowed = light.light == 1 && std::max(std::abs(p.x), std::abs(p.z)) < 0.4f;
       if (shadowed) {
         EXPECT_NEAR(seen.y, 0.5f, 1e-4f);
-      } else if (light.info.z == 0) {
+      } else if (light.light == 0) {
         EXPECT_NEAR(seen.y, 0, 1e-4f) << "its own quad must not be in the way";
       }
     }
@@ -200,11 +203,11 @@ TEST_F(ShadowMapTest, MaskedTexelsLetLightThrough) {
   addInstance(scene, pose, 0, at(0, 1, 0));
   addInstance(scene, pose, 1);
   addLight(pose, directionalLight({0, -1, 0}, 0));
-  const Maps maps = draw(scene, pose, {0}, {.size = texels});
+  const Maps maps = draw(scene, pose, {0}, {.size = kTexels});
   for (const float x : {-0.8f, -0.4f, 0.4f, 0.8f}) {
     const glsl::ShadowPoint q = glsl::shadow_project(maps.views[0], {x, 0, 0});
-    const vec3 seen = maps.seen(0, static_cast<int>(q.uv.x * texels), static_cast<int>(q.uv.y * texels));
-    EXPECT_NEAR((seen + vec3(maps.views[0].origin)).y, x < 0 ? 1 : 0, 1e-4f) << x;
+    const vec3 seen = maps.seen(0, static_cast<int>(q.uv.x * kTexels), static_cast<int>(q.uv.y * kTexels));
+    EXPECT_NEAR((seen + maps.views[0].origin).y, x < 0 ? 1 : 0, 1e-4f) << x;
   }
 }
 
@@ -217,10 +220,11 @@ TEST_F(ShadowMapTest, SamplesOfALightGetMapsOfTheirOwn) {
   addLight(pose, pointLight({0, 4, 0}));
   const Maps maps = draw(scene, pose, {0, 1}, {.size = 16, .samples = {{0, 0.5f}, {0.5f, 1}, {1, 0.5f}}});
   ASSERT_EQ(maps.lights.size(), 6u);
-  for (size_t i = 3; i < 6; ++i) EXPECT_EQ(maps.lights[i].info.x, 3u) << "samples of a point share its maps";
+  for (size_t i = 3; i < 6; ++i)
+    EXPECT_EQ(maps.lights[i].first_layer, 3u) << "samples of a point share its maps";
   const vec3 u(pose.lights[0].axis_u), v(pose.lights[0].axis_v);
-  EXPECT_LT(glm::distance(vec3(maps.lights[0].origin), vec3(0, 4, 0) - u), 1e-6f);
-  EXPECT_LT(glm::distance(vec3(maps.lights[1].origin), vec3(0, 4, 0) + 0.5f * v), 1e-6f);
+  EXPECT_LT(glm::distance(maps.lights[0].origin, vec3(0, 4, 0) - u), 1e-6f);
+  EXPECT_LT(glm::distance(maps.lights[1].origin, vec3(0, 4, 0) + 0.5f * v), 1e-6f);
   EXPECT_EQ(maps.views.size(), 9u);
 }
 
@@ -233,10 +237,11 @@ TEST_F(ShadowMapTest, StaticMapsAreCachedAndSharedAndFollowWhatMoves) {
   scene::GpuScene gpuScene(device(), scene);
   const auto camera = scene::frameBounds(pose.bounds);
   gpuScene.update(pose, camera, {64, 64}, 0);
-  shadow::ShadowMapService service(device(), gpuScene);
+  FrameServices services;
+  auto& service = services.add<shadow::ShadowMapService>(device(), gpuScene);
   frame::ResourcePool pool(device());
   frame::FrameGraph graph;
-  service.begin(graph, gpuScene.import(graph), pose);
+  const auto building = services.begin(graph, gpuScene.import(graph), pose);
   const std::vector<uint32_t> lights{0};
   const shadow::ShadowMaps maps = service.request(lights, {.size = 64});
   EXPECT_EQ(service.request(lights, {.size = 64}).depth, maps.depth);
@@ -253,15 +258,15 @@ TEST_F(ShadowMapTest, StaticMapsAreCachedAndSharedAndFollowWhatMoves) {
   EXPECT_EQ(state(), frame::PassState::run);
   EXPECT_EQ(state(), frame::PassState::cached);
   gpuScene.update(pose, scene::lookAt({1, 2, 3}, {0, 0, 0}, 0.5f), {64, 64}, 1);
-  EXPECT_FALSE(service.update(pose));
+  EXPECT_FALSE(services.update(graph, pose));
   EXPECT_EQ(state(), frame::PassState::cached);
   pose.lights[0].position.x = 0.5f;
   gpuScene.update(pose, camera, {64, 64}, 2);
-  EXPECT_FALSE(service.update(pose));
+  EXPECT_FALSE(services.update(graph, pose));
   EXPECT_EQ(state(), frame::PassState::run);
   pose.lights[0].position.y = 0.1f;
   gpuScene.update(pose, camera, {64, 64}, 3);
-  EXPECT_TRUE(service.update(pose)) << "one map is not enough any more";
+  EXPECT_TRUE(services.update(graph, pose)) << "one map is not enough any more";
   gpuScene.forget();
 }
 
@@ -277,10 +282,11 @@ TEST_F(ShadowMapTest, MapsFittedToTheViewFollowTheCamera) {
   scene::GpuScene gpuScene(device(), scene);
   const auto look = [](float x) { return scene::lookAt({x, 2, 3}, {x, 0, 0}, 0.5f); };
   gpuScene.update(pose, look(0), {64, 64}, 0);
-  shadow::ShadowMapService service(device(), gpuScene);
+  FrameServices services;
+  auto& service = services.add<shadow::ShadowMapService>(device(), gpuScene);
   frame::ResourcePool pool(device());
   frame::FrameGraph graph;
-  service.begin(graph, gpuScene.import(graph), pose);
+  const auto building = services.begin(graph, gpuScene.import(graph), pose);
   const std::vector<uint32_t> lights{0};
   const shadow::ShadowMaps whole = service.request(lights, {.size = 64});
   const shadow::ShadowMaps cut = service.request(lights, {.size = 64, .fit = shadow::MapFit::view});
@@ -295,7 +301,7 @@ TEST_F(ShadowMapTest, MapsFittedToTheViewFollowTheCamera) {
   };
   const auto drawn = [&](float x, uint32_t frame) {
     gpuScene.update(pose, look(x), {64, 64}, frame);
-    EXPECT_FALSE(service.update(pose));
+    EXPECT_FALSE(services.update(graph, pose));
     graph.execute();
     int passes = 0;
     for (const frame::PassReport& report : graph.explain())
@@ -303,7 +309,7 @@ TEST_F(ShadowMapTest, MapsFittedToTheViewFollowTheCamera) {
     return passes;
   };
   EXPECT_EQ(drawn(0, 1), 2);
-  EXPECT_GT(view(cut).axis_x.w, 3 * view(whole).axis_x.w);
+  EXPECT_GT(view(cut).scale, 3 * view(whole).scale);
   std::vector<float> depth(64 * 64);
   graph.texture(cut.depth).read(0, GL_RED, GL_FLOAT, depth.data(), depth.size() * sizeof(float));
   const glsl::ShadowPoint ball = glsl::shadow_project(view(cut), {0, 1.3f, 0});
@@ -324,11 +330,12 @@ TEST_F(ShadowMapTest, DerivedMapsAreKeptWhereTheMapsAre) {
   addLight(pose, pointLight({0, 4, 0}));
   scene::GpuScene gpuScene(device(), scene);
   gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
-  shadow::ShadowMapService service(device(), gpuScene);
+  FrameServices services;
+  auto& service = services.add<shadow::ShadowMapService>(device(), gpuScene);
   frame::ResourcePool pool(device());
   for (const bool cacheable : {true, false}) {
     frame::FrameGraph graph;
-    service.begin(graph, gpuScene.import(graph), pose);
+    const auto building = services.begin(graph, gpuScene.import(graph), pose);
     const std::vector<uint32_t> light{0};
     const shadow::ShadowMaps maps = service.request(light, {.size = 16, .cacheable = cacheable});
     const shadow::MinMaxPyramid pyramid = service.minMaxPyramid(maps);
@@ -351,6 +358,46 @@ TEST_F(ShadowMapTest, DerivedMapsAreKeptWhereTheMapsAre) {
   gpuScene.forget();
 }
 
+TEST_F(ShadowMapTest, UncoveredPixelsAreCountedAnewInEachFrameAndGraph) {
+  scene::Scene scene;
+  addMesh(scene, floorPrimitive(2, addMaterial(scene)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  scene::GpuScene gpuScene(device(), scene);
+  gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
+  FrameServices services;
+  auto& service = services.add<shadow::ShadowMapService>(device(), gpuScene);
+  frame::ResourcePool pool(device());
+  {
+    frame::FrameGraph graph;
+    const auto building = services.begin(graph, gpuScene.import(graph), pose);
+    std::vector<uint32_t> found;
+    for (const uint32_t count : {3u, 5u}) {
+      frame::BufferHandle& counter = service.uncoveredCounter();
+      frame::PassBuilder pass = graph.addPass("count");
+      counter = pass.write(counter, frame::Access::storageLoadStore, "what a visibility pass would count");
+      pass.sideEffect().execute([&found, count, counter](frame::PassContext& context) {
+        const gpu::Buffer& buffer = context.buffer(counter);
+        uint32_t before = 0;
+        buffer.read(0, &before, sizeof(before));
+        found.push_back(before);
+        const uint32_t after = before + count;
+        context.gl().ClearNamedBufferData(buffer.id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &after);
+      });
+    }
+    graph.prepare(device(), shaders(), pool);
+    for (int i = 0; i < 2; ++i) {
+      graph.execute();
+      EXPECT_EQ(service.uncoveredPixels(), 8u);
+    }
+    EXPECT_THAT(found, testing::ElementsAre(0, 3, 0, 3));
+  }
+  frame::FrameGraph another;
+  const auto building = services.begin(another, gpuScene.import(another), pose);
+  EXPECT_EQ(service.uncoveredPixels(), 0u);
+  gpuScene.forget();
+}
+
 TEST_F(ShadowMapTest, ImpossibleRequestsAreRefused) {
   scene::Scene scene;
   addMesh(scene, floorPrimitive(2, addMaterial(scene)));
@@ -359,9 +406,10 @@ TEST_F(ShadowMapTest, ImpossibleRequestsAreRefused) {
   addLight(pose, pointLight({0, 4, 0}));
   scene::GpuScene gpuScene(device(), scene);
   gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
-  shadow::ShadowMapService service(device(), gpuScene);
+  FrameServices services;
+  auto& service = services.add<shadow::ShadowMapService>(device(), gpuScene);
   frame::FrameGraph graph;
-  service.begin(graph, gpuScene.import(graph), pose);
+  const auto building = services.begin(graph, gpuScene.import(graph), pose);
   const std::vector<uint32_t> light{0}, absent{1};
   EXPECT_THROW(service.request(light, {.size = 0}), UsageError);
   EXPECT_THROW(service.request(light, {.size = 1 << 20}), UsageError);

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "core/image/image.h"
-#include "glsl/light_view.glsl"
+#include "glsl/light/light_view.glsl"
 #include "tests/gpu/technique_harness.h"
-#include "tests/gpu/test_scenes.h"
+#include "tests/support/test_scenes.h"
 
 namespace limn {
 namespace {
@@ -64,8 +64,8 @@ void keep(const Answer& v, const std::string& name) {
 
 /// Signed distance, in sphere radii, between the segment from p to the light's centre and the ball's surface.
 float clearance(const BallScene& s, const glsl::Light& light, const vec3& p) {
-  const bool directional = light.info.x == glsl::light_directional;
-  const vec3 to = directional ? -vec3(light.direction) : vec3(light.position) - p;
+  const bool directional = light.type == glsl::light_directional;
+  const vec3 to = directional ? -light.direction : light.position - p;
   const vec3 d = glm::normalize(to), ball = s.scale * vec3(0, 1, 0);
   const float along = glm::dot(ball - p, d);
   if (along < 0 || (!directional && along > glm::length(to))) return 1;
@@ -161,10 +161,10 @@ TEST_F(ShadowTechniqueTest, HardShadowOfABallUnderEveryLight) {
           const float c = clearance(s, s.pose.lights[l], p);
           if (std::abs(c) < 0.04f) continue;  // a few texels around the silhouette
           const vec3 centre(s.pose.lights[l].position), axis(s.pose.lights[l].direction);
-          const bool masked = s.pose.lights[l].info.x == glsl::light_rectangle &&
-                              s.pose.lights[l].info.y == 0 && glm::dot(axis, p - centre) <= 0;
-          const bool outside = s.pose.lights[l].info.x == glsl::light_spot &&
-                               glm::dot(axis, glm::normalize(p - centre)) < s.pose.lights[l].cone.y;
+          const bool masked = s.pose.lights[l].type == glsl::light_rectangle && s.pose.lights[l].flags == 0 &&
+                              glm::dot(axis, p - centre) <= 0;
+          const bool outside = s.pose.lights[l].type == glsl::light_spot &&
+                               glm::dot(axis, glm::normalize(p - centre)) < s.pose.lights[l].cos_outer;
           const float expected = c > 0 || masked || outside ? 1.f : 0.f;
           (expected > 0 ? lit : shadowed) += 1;
           if (v.lights[l][i] != expected) ++wrong;
@@ -379,8 +379,8 @@ TEST_F(ShadowTechniqueTest, SampledDirectLightEqualsClosedForms) {
         if (v.instance[i] != 0) continue;
         const vec3 p = s.position(v, x, y), n(0, 1, 0);
         float irradiance = 0;
-        if (l.info.x != glsl::light_rectangle) {
-          const vec3 to = light == 2 ? -vec3(l.direction) : vec3(l.position) - p;
+        if (l.type != glsl::light_rectangle) {
+          const vec3 to = light == 2 ? -l.direction : l.position - p;
           irradiance = glsl::punctual_irradiance(l, p).x * glm::normalize(to).y;
         } else if (glsl::rectangle_emits_towards(l, p)) {
           irradiance = glsl::rectangle_irradiance(glsl::rectangle_from(l, p), n);

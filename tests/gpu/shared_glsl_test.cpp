@@ -6,7 +6,14 @@
 #include <cstring>
 
 #include "core/base/error.h"
-#include "glsl/blocks.glsl"
+#include "glsl/caustics/caustic_ray.glsl"
+#include "glsl/indirect/direction_bins.glsl"
+#include "glsl/indirect/virtual_area_light.glsl"
+#include "glsl/media/smoke.glsl"
+#include "glsl/scene/blocks.glsl"
+#include "glsl/shadow/fourier_shadow.glsl"
+#include "glsl/shadow/shadow_view.glsl"
+#include "tests/gpu/bind_by_name.h"
 #include "tests/gpu/gl_test.h"
 
 namespace limn {
@@ -35,8 +42,8 @@ class SharedGlslTest : public GlTest {
     return false;
   }
 
-  gpu::Program& mounted(const std::string& body) {
-    text_ = "#include \"glsl/blocks.glsl\"\nlayout(local_size_x = 1) in;\n" + body;
+  gpu::Program& mounted(const std::string& body, const std::string& header = "glsl/scene/blocks.glsl") {
+    text_ = "#include \"" + header + "\"\nlayout(local_size_x = 1) in;\n" + body;
     const gpu::EmbeddedSource source[] = {{"main.comp.glsl", text_.c_str()}};
     shaders().mount("test/", source);
     return shaders().program({{"test/main.comp.glsl"}, {}});
@@ -55,13 +62,16 @@ class SharedGlslTest : public GlTest {
 
   /// Compares an std430 array of `type` with the C++ struct.
   void expectElement(const std::string& type, const std::string& firstMember, size_t size,
-                     std::initializer_list<Member> members) {
+                     std::initializer_list<Member> members,
+                     const std::string& header = "glsl/scene/blocks.glsl") {
     SCOPED_TRACE(type);
     const gpu::Program& program =
-        mounted("layout(std430, binding = 0) buffer Elements { " + type +
-                " elements[]; };\nlayout(std430, binding = 1) buffer Result { vec4 result; };\n" +
-                "void main() { result = vec4(elements[1]." + firstMember + "[0]); }\n");
-    EXPECT_EQ(size_t(property(program, GL_BUFFER_VARIABLE, "elements[0]." + firstMember,
+        mounted("layout(std430) buffer Elements { " + type +
+                    " elements[]; };\nlayout(std430) buffer Result { vec4 result; };\n" +
+                    "void main() { result = vec4(elements[1]." + firstMember + "); }\n",
+                header);
+    EXPECT_EQ(size_t(property(program, GL_BUFFER_VARIABLE,
+                              "elements[0]." + firstMember.substr(0, firstMember.find('[')),
                               GL_TOP_LEVEL_ARRAY_STRIDE)),
               size);
     for (const Member& member : members) {
@@ -114,21 +124,33 @@ TEST_F(SharedGlslTest, everyHeaderCompilesAlone) {
 }
 
 TEST_F(SharedGlslTest, frameBlockHasOneLayout) {
-  const gpu::Program& program = mounted(
-      "layout(std430, binding = 1) buffer Result { vec4 result; };\nvoid main() { result = "
+  gpu::Program& program = mounted(
+      "layout(std430) buffer Result { vec4 result; };\nvoid main() { result = "
       "frame.camera_position; }\n");
   EXPECT_EQ(size_t(property(program, GL_UNIFORM_BLOCK, "FrameBlock", GL_BUFFER_DATA_SIZE)),
             sizeof(glsl::FrameBlock));
-  EXPECT_EQ(unsigned(property(program, GL_UNIFORM_BLOCK, "FrameBlock", GL_BUFFER_BINDING)),
-            glsl::FrameBlock::binding);
   const Member members[] = {
-      LIMN_MEMBER(FrameBlock, world_to_clip),     LIMN_MEMBER(FrameBlock, clip_to_world),
-      LIMN_MEMBER(FrameBlock, world_to_view),     LIMN_MEMBER(FrameBlock, camera_position),
-      LIMN_MEMBER(FrameBlock, view_ray_origin),   LIMN_MEMBER(FrameBlock, view_ray_dx),
-      LIMN_MEMBER(FrameBlock, view_ray_dy),       LIMN_MEMBER(FrameBlock, environment),
-      LIMN_MEMBER(FrameBlock, frame_size),        LIMN_MEMBER(FrameBlock, medium_extinction),
-      LIMN_MEMBER(FrameBlock, medium_scattering), LIMN_MEMBER(FrameBlock, medium_ball),
+      LIMN_MEMBER(FrameBlock, world_to_clip),
+      LIMN_MEMBER(FrameBlock, clip_to_world),
+      LIMN_MEMBER(FrameBlock, world_to_view),
+      LIMN_MEMBER(FrameBlock, camera_position),
+      LIMN_MEMBER(FrameBlock, view_ray_origin),
+      LIMN_MEMBER(FrameBlock, view_ray_dx),
+      LIMN_MEMBER(FrameBlock, view_ray_dy),
+      LIMN_MEMBER(FrameBlock, environment_rotation),
+      LIMN_MEMBER(FrameBlock, environment_scale),
+      LIMN_MEMBER(FrameBlock, environment_present),
+      LIMN_MEMBER(FrameBlock, scene_radius),
+      LIMN_MEMBER(FrameBlock, frame_size),
+      LIMN_MEMBER(FrameBlock, light_count),
+      LIMN_MEMBER(FrameBlock, frame_index),
+      LIMN_MEMBER(FrameBlock, medium_extinction),
+      LIMN_MEMBER(FrameBlock, medium_present),
+      LIMN_MEMBER(FrameBlock, medium_scattering),
+      LIMN_MEMBER(FrameBlock, medium_asymmetry),
       LIMN_MEMBER(FrameBlock, medium_to_box),
+      {"medium_ball.centre", offsetof(glsl::FrameBlock, medium_ball)},
+      {"medium_ball.radius", offsetof(glsl::FrameBlock, medium_ball) + offsetof(glsl::Ball, radius)},
   };
   for (const Member& member : members) {
     EXPECT_EQ(size_t(property(program, GL_UNIFORM, std::string("FrameBlock.") + member.name, GL_OFFSET)),
@@ -138,24 +160,113 @@ TEST_F(SharedGlslTest, frameBlockHasOneLayout) {
 }
 
 TEST_F(SharedGlslTest, lightsHaveOneLayout) {
-  expectElement("Light", "position", sizeof(glsl::Light),
-                {LIMN_MEMBER(Light, position), LIMN_MEMBER(Light, direction), LIMN_MEMBER(Light, axis_u),
-                 LIMN_MEMBER(Light, axis_v), LIMN_MEMBER(Light, emission), LIMN_MEMBER(Light, cone),
-                 LIMN_MEMBER(Light, info)});
+  expectElement(
+      "Light", "position[0]", sizeof(glsl::Light),
+      {LIMN_MEMBER(Light, position), LIMN_MEMBER(Light, direction), LIMN_MEMBER(Light, texture_number),
+       LIMN_MEMBER(Light, axis_u), LIMN_MEMBER(Light, length_u), LIMN_MEMBER(Light, axis_v),
+       LIMN_MEMBER(Light, length_v), LIMN_MEMBER(Light, emission), LIMN_MEMBER(Light, solid_angle),
+       LIMN_MEMBER(Light, cos_inner), LIMN_MEMBER(Light, cos_outer), LIMN_MEMBER(Light, range),
+       LIMN_MEMBER(Light, angular_diameter), LIMN_MEMBER(Light, type), LIMN_MEMBER(Light, flags),
+       LIMN_MEMBER(Light, own_instance), LIMN_MEMBER(Light, index)});
 }
 
 TEST_F(SharedGlslTest, instancesHaveOneLayout) {
-  expectElement("Instance", "object_to_world", sizeof(glsl::Instance),
+  expectElement("Instance", "object_to_world[0]", sizeof(glsl::Instance),
                 {LIMN_MEMBER(Instance, object_to_world), LIMN_MEMBER(Instance, normal_to_world),
-                 LIMN_MEMBER(Instance, info)});
+                 LIMN_MEMBER(Instance, material), LIMN_MEMBER(Instance, first_vertex),
+                 LIMN_MEMBER(Instance, flags), LIMN_MEMBER(Instance, first_index)});
 }
 
 TEST_F(SharedGlslTest, materialsHaveOneLayout) {
+  expectElement("Material", "base_colour[0]", sizeof(glsl::Material),
+                {LIMN_MEMBER(Material, base_colour), LIMN_MEMBER(Material, emission),
+                 LIMN_MEMBER(Material, alpha_cutoff), LIMN_MEMBER(Material, metallic),
+                 LIMN_MEMBER(Material, roughness), LIMN_MEMBER(Material, normal_scale),
+                 LIMN_MEMBER(Material, ior), LIMN_MEMBER(Material, specular_colour),
+                 LIMN_MEMBER(Material, specular_factor), LIMN_MEMBER(Material, transmission),
+                 LIMN_MEMBER(Material, thickness), LIMN_MEMBER(Material, attenuation_distance),
+                 LIMN_MEMBER(Material, attenuation), LIMN_MEMBER(Material, flags)});
+}
+
+TEST_F(SharedGlslTest, shadowViewsHaveOneLayout) {
   expectElement(
-      "Material", "base_colour", sizeof(glsl::Material),
-      {LIMN_MEMBER(Material, base_colour), LIMN_MEMBER(Material, emission),
-       LIMN_MEMBER(Material, metal_rough), LIMN_MEMBER(Material, specular),
-       LIMN_MEMBER(Material, transmission), LIMN_MEMBER(Material, attenuation), LIMN_MEMBER(Material, info)});
+      "ShadowView", "origin[0]", sizeof(glsl::ShadowView),
+      {LIMN_MEMBER(ShadowView, origin), LIMN_MEMBER(ShadowView, near), LIMN_MEMBER(ShadowView, axis_x),
+       LIMN_MEMBER(ShadowView, scale), LIMN_MEMBER(ShadowView, axis_y), LIMN_MEMBER(ShadowView, footprint),
+       LIMN_MEMBER(ShadowView, axis_z), LIMN_MEMBER(ShadowView, far), LIMN_MEMBER(ShadowView, middle),
+       LIMN_MEMBER(ShadowView, projection), LIMN_MEMBER(ShadowView, layer), LIMN_MEMBER(ShadowView, size),
+       LIMN_MEMBER(ShadowView, light)},
+      "glsl/shadow/shadow_view.glsl");
+}
+
+TEST_F(SharedGlslTest, shadowLightsHaveOneLayout) {
+  expectElement("ShadowLight", "origin[0]", sizeof(glsl::ShadowLight),
+                {LIMN_MEMBER(ShadowLight, origin), LIMN_MEMBER(ShadowLight, finite),
+                 LIMN_MEMBER(ShadowLight, first_layer), LIMN_MEMBER(ShadowLight, faces),
+                 LIMN_MEMBER(ShadowLight, light)},
+                "glsl/shadow/shadow_view.glsl");
+}
+
+TEST_F(SharedGlslTest, fourierRangesHaveOneLayout) {
+  expectElement("FourierRange", "zero", sizeof(glsl::FourierRange),
+                {LIMN_MEMBER(FourierRange, zero), LIMN_MEMBER(FourierRange, change_u),
+                 LIMN_MEMBER(FourierRange, change_v), LIMN_MEMBER(FourierRange, scale)},
+                "glsl/shadow/fourier_shadow.glsl");
+}
+
+TEST_F(SharedGlslTest, virtualPointLightsHaveOneLayout) {
+  expectElement("VirtualPointLight", "position[0]", sizeof(glsl::VirtualPointLight),
+                {LIMN_MEMBER(VirtualPointLight, position), LIMN_MEMBER(VirtualPointLight, cluster),
+                 LIMN_MEMBER(VirtualPointLight, normal), LIMN_MEMBER(VirtualPointLight, flux)},
+                "glsl/indirect/virtual_light.glsl");
+}
+
+TEST_F(SharedGlslTest, virtualAreaLightsHaveOneLayout) {
+  expectElement("VirtualAreaLight", "position[0]", sizeof(glsl::VirtualAreaLight),
+                {LIMN_MEMBER(VirtualAreaLight, position), LIMN_MEMBER(VirtualAreaLight, count),
+                 LIMN_MEMBER(VirtualAreaLight, normal), LIMN_MEMBER(VirtualAreaLight, extent)},
+                "glsl/indirect/virtual_area_light.glsl");
+}
+
+TEST_F(SharedGlslTest, causticRaysHaveOneLayout) {
+  expectElement("CausticRay", "start[0]", sizeof(glsl::CausticRay),
+                {LIMN_MEMBER(CausticRay, start), LIMN_MEMBER(CausticRay, segment_length),
+                 LIMN_MEMBER(CausticRay, direction), LIMN_MEMBER(CausticRay, kind),
+                 LIMN_MEMBER(CausticRay, power), LIMN_MEMBER(CausticRay, normal)},
+                "glsl/caustics/caustic_ray.glsl");
+}
+
+TEST_F(SharedGlslTest, causticLayersHaveOneLayout) {
+  expectElement("CausticLayer", "light", sizeof(glsl::CausticLayer),
+                {LIMN_MEMBER(CausticLayer, light), LIMN_MEMBER(CausticLayer, diameter)},
+                "glsl/caustics/caustic_ray.glsl");
+}
+
+TEST_F(SharedGlslTest, elementGroupsHaveOneLayout) {
+  expectElement(
+      "ElementGroup", "x[0]", sizeof(glsl::ElementGroup),
+      {LIMN_MEMBER(ElementGroup, x), LIMN_MEMBER(ElementGroup, y), LIMN_MEMBER(ElementGroup, z),
+       LIMN_MEMBER(ElementGroup, nx), LIMN_MEMBER(ElementGroup, ny), LIMN_MEMBER(ElementGroup, nz),
+       LIMN_MEMBER(ElementGroup, area), LIMN_MEMBER(ElementGroup, radius), LIMN_MEMBER(ElementGroup, spread),
+       LIMN_MEMBER(ElementGroup, disc), LIMN_MEMBER(ElementGroup, children), LIMN_MEMBER(ElementGroup, lanes),
+       LIMN_MEMBER(ElementGroup, backs), LIMN_MEMBER(ElementGroup, object)},
+      "glsl/indirect/direction_bins.glsl");
+}
+
+TEST_F(SharedGlslTest, smokeBlockHasOneLayout) {
+  const gpu::Program& program =
+      mounted("layout(std430) buffer Result { vec3 result; };\nvoid main() { result = smoke.low; }\n",
+              "glsl/media/smoke.glsl");
+  EXPECT_EQ(size_t(property(program, GL_UNIFORM_BLOCK, "SmokeBlock", GL_BUFFER_DATA_SIZE)),
+            sizeof(glsl::SmokeBlock));
+  const Member members[] = {LIMN_MEMBER(SmokeBlock, low),    LIMN_MEMBER(SmokeBlock, risen),
+                            LIMN_MEMBER(SmokeBlock, high),   LIMN_MEMBER(SmokeBlock, whirl),
+                            LIMN_MEMBER(SmokeBlock, voxels), LIMN_MEMBER(SmokeBlock, seed)};
+  for (const Member& member : members) {
+    EXPECT_EQ(size_t(property(program, GL_UNIFORM, std::string("SmokeBlock.") + member.name, GL_OFFSET)),
+              member.offset)
+        << member.name;
+  }
 }
 
 // A block filled in C++, read in GLSL and written back word by word.
@@ -165,22 +276,28 @@ TEST_F(SharedGlslTest, uniformBlocksRoundTrip) {
   auto* words = reinterpret_cast<float*>(&block);
   constexpr size_t floats = sizeof(glsl::FrameBlock) / sizeof(float);
   for (size_t i = 0; i < floats; ++i) words[i] = base + static_cast<float>(i);
-  block.frame_size = glm::uvec4(640, 480, 3, 4000000000u);
+  block.frame_size = {640, 480};
+  block.light_count = 3;
+  block.frame_index = 4000000000u;
 
-  const gpu::Program& program = mounted(
-      "layout(std430, binding = 1) buffer Result {\n"
+  gpu::Program& program = mounted(
+      "layout(std430) buffer Result {\n"
       "  mat4 a; mat4 b; mat4 c; vec4 d; vec4 e; vec4 f; vec4 g; vec4 h; uvec4 i;\n  vec4 j; vec4 k; vec4 "
       "l; mat4 m;\n};\n"
       "void main() {\n"
       "  a = frame.world_to_clip; b = frame.clip_to_world; c = frame.world_to_view; d = "
       "frame.camera_position;\n"
-      "  e = frame.view_ray_origin; f = frame.view_ray_dx; g = frame.view_ray_dy; h = frame.environment;\n"
-      "  i = frame.frame_size; j = frame.medium_extinction;\n"
-      "  k = frame.medium_scattering; l = frame.medium_ball; m = frame.medium_to_box;\n}\n");
+      "  e = frame.view_ray_origin; f = frame.view_ray_dx; g = frame.view_ray_dy;\n"
+      "  h = vec4(frame.environment_rotation, frame.environment_scale, frame.environment_present, "
+      "frame.scene_radius);\n"
+      "  i = uvec4(frame.frame_size, frame.light_count, frame.frame_index);\n"
+      "  j = vec4(frame.medium_extinction, frame.medium_present);\n"
+      "  k = vec4(frame.medium_scattering, frame.medium_asymmetry);\n"
+      "  l = vec4(frame.medium_ball.centre, frame.medium_ball.radius); m = frame.medium_to_box;\n}\n");
   const gpu::Buffer uniforms(device(), "frame", sizeof block, gpu::BufferUse::fixed, &block);
   const gpu::Buffer result(device(), "result", sizeof block);
-  gl().BindBufferBase(GL_UNIFORM_BUFFER, glsl::FrameBlock::binding, uniforms.id());
-  gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, result.id());
+  test::bindByName(gl(), program, "FrameBlock", uniforms);
+  test::bindByName(gl(), program, "Result", result);
   program.use();
   gl().DispatchCompute(1, 1, 1);
   glsl::FrameBlock readBack;

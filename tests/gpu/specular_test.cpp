@@ -2,18 +2,17 @@
 // what is left out where there are none.
 #include <fmt/format.h>
 
-#include "core/bench/stress_scene.h"
+#include "core/bench/private/stress_scene.h"
 #include "core/scene/camera.h"
 #include "tests/gpu/media_harness.h"
-#include "tests/gpu/test_scenes.h"
 #include "tests/support/scene_nodes.h"
+#include "tests/support/test_scenes.h"
 
 namespace limn {
 namespace {
 
 using glm::dvec3;
 using glm::vec3;
-using render::Output;
 using test::quad;
 using test::show;
 
@@ -32,7 +31,7 @@ class SpecularTest : public MediaHarness {
   }
 
   static Image truth(render::Renderer& renderer, const scene::Scene& scene, const scene::CameraPose& camera,
-                     int interfaces, int spp, reference::Term term = reference::Term::specular) {
+                     int interfaces, int spp, Term term = Term::specular) {
     reference::Request asked = request(renderer, scene, camera, term, spp);
     asked.interfaces = interfaces;
     return reference::render(asked).image;
@@ -101,7 +100,7 @@ TEST_F(SpecularTest, ASlabShiftsTheWallByItsClosedForm) {
     const dvec3 eye(0.2, 0.1, 3);
     const auto camera = scene::lookAt(vec3(eye), vec3(eye) - vec3(0, 0, 1), 0.8f);
     const Image image =
-        pictureFrom(renderer, settings(width, height, Output::specular, {refraction()}), camera);
+        pictureFrom(renderer, settings(width, height, Term::specular, {refraction()}), camera);
     int shown = 0, off = 0;
     double shift = 0;
     for (int y = 0; y < height; ++y)
@@ -136,8 +135,7 @@ TEST_F(SpecularTest, AMirrorShowsTheMirroredWall) {
   render::Renderer renderer(device(), scene);
   const dvec3 eye(0.1, 0.4, 3);
   const auto camera = scene::lookAt(vec3(eye), {0, -0.1f, -3}, 0.9f);
-  const Image image =
-      pictureFrom(renderer, settings(width, height, Output::specular, {refraction()}), camera);
+  const Image image = pictureFrom(renderer, settings(width, height, Term::specular, {refraction()}), camera);
   int shown = 0, off = 0;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
@@ -165,7 +163,7 @@ TEST_F(SpecularTest, IsTheReferencesWithTheSameLimit) {
     const scene::Scene scene = asset(c.scene);
     render::Renderer renderer(device(), scene);
     const Image image =
-        picture(renderer, settings(width, height, Output::specular, {technique(c.shadows), refraction()}));
+        picture(renderer, settings(width, height, Term::specular, {technique(c.shadows), refraction()}));
     const Image expected = truth(renderer, scene, renderer.pose().cameras.at(0), 2, 16);
     EXPECT_LT(shareOff(image, expected), c.share);  // edges of textures and shadows, rays off the screen
     EXPECT_NEAR(mean(image) / mean(expected), 1, c.mean);
@@ -178,7 +176,7 @@ TEST_F(SpecularTest, MoreInterfacesFollowTotalReflection) {
   for (const int interfaces : {2, 4}) {
     const Image image = picture(
         renderer,
-        settings(width, height, Output::specular,
+        settings(width, height, Term::specular,
                  {technique("hard_shadow_map"), refraction({{"interfaces", std::to_string(interfaces)}})}));
     const Image expected = truth(renderer, scene, renderer.pose().cameras.at(0), interfaces, 16);
     EXPECT_NEAR(mean(image) / mean(expected), 1, 0.15) << interfaces;
@@ -198,8 +196,8 @@ TEST_F(SpecularTest, RaysThatTheScreenDoesNotKnowSeeTheEnvironment) {
     scene.materials[0].metallic = mirror ? 1.f : 0.f;
     scene.materials[0].transmission = mirror ? 0.f : 1.f;
     render::Renderer other(device(), scene);
-    const Image image = pictureFrom(other, settings(width, height, Output::final, {refraction()}), camera);
-    const Image expected = truth(other, scene, camera, 2, 2, reference::Term::final);
+    const Image image = pictureFrom(other, settings(width, height, Term::final, {refraction()}), camera);
+    const Image expected = truth(other, scene, camera, 2, 2, Term::final);
     EXPECT_LT(shareOff(image, expected), 0.01) << mirror;
   }
 }
@@ -208,14 +206,14 @@ TEST_F(SpecularTest, WithoutSpecularSurfacesThereAreNoPasses) {
   const scene::Scene scene = asset("balls");
   render::Renderer renderer(device(), scene);
   const Image with =
-      picture(renderer, settings(width, height, Output::final, {technique("pcf"), refraction()}));
+      picture(renderer, settings(width, height, Term::final, {technique("pcf"), refraction()}));
   EXPECT_EQ(stateOf(renderer, "image_space_refraction", "specular surfaces"),
             "the scene has no specular surface");
   for (const char* pass : {"refraction", "specular front", "specular back"})
     EXPECT_EQ(stateOf(renderer, "image_space_refraction", pass), "unknown");
   EXPECT_EQ(stateOf(renderer, "core", "matte gbuffer"), "unknown");
-  EXPECT_TRUE(sameBits(with, picture(renderer, settings(width, height, Output::final, {technique("pcf")}))));
-  expectWithin(picture(renderer, settings(width, height, Output::specular, {refraction()})), 0, 0);
+  EXPECT_TRUE(sameBits(with, picture(renderer, settings(width, height, Term::final, {technique("pcf")}))));
+  expectWithin(picture(renderer, settings(width, height, Term::specular, {refraction()})), 0, 0);
 }
 
 TEST_F(SpecularTest, WhatIsSeenBesideSpecularSurfacesStaysTheSameToTheBit) {
@@ -226,7 +224,7 @@ TEST_F(SpecularTest, WhatIsSeenBesideSpecularSurfacesStaysTheSameToTheBit) {
                                               technique("reflective_shadow_map", {{"blur", "false"}})};
   std::vector<render::TechniqueUse> all = lit;
   all.push_back(refraction());
-  render::Settings s = settings(width, height, Output::final, all);
+  render::Settings s = settings(width, height, Term::final, all);
   s.channels = true;
   const Image with = picture(renderer, s);
   s.techniques = lit;
@@ -254,9 +252,9 @@ TEST_F(SpecularTest, TermsSumToTheFinalPicture) {
   render::Renderer renderer(device(), scene);
   const std::vector<render::TechniqueUse> all{technique("hard_shadow_map"), technique("surface_caustics"),
                                               technique("airlight"), refraction()};
-  const Image whole = picture(renderer, settings(width, height, Output::final, all));
+  const Image whole = picture(renderer, settings(width, height, Term::final, all));
   double sum = 0;
-  for (const Output part : {Output::direct, Output::caustic, Output::media, Output::specular})
+  for (const Term part : {Term::direct, Term::caustic, Term::media, Term::specular})
     sum += mean(picture(renderer, settings(width, height, part, all)));
   EXPECT_NEAR(sum / mean(whole), 1, 1e-4);
 }
@@ -276,7 +274,7 @@ TEST_F(SpecularTest, ExtremesStayFinite) {
       for (const char* interfaces : {"2", "16"})
         expectWithin(
             pictureFrom(renderer,
-                        settings(64, 48, Output::final,
+                        settings(64, 48, Term::final,
                                  {technique("hard_shadow_map"), refraction({{"interfaces", interfaces}})}),
                         camera),
             0, 1e4f);
@@ -286,12 +284,11 @@ TEST_F(SpecularTest, ExtremesStayFinite) {
 TEST_F(SpecularTest, ScalesOfTheSceneChangeNothing) {
   const scene::Scene scene = asset("gem");
   render::Renderer renderer(device(), scene);
-  const Image usual = picture(renderer, settings(width, height, Output::specular, {refraction()}));
+  const Image usual = picture(renderer, settings(width, height, Term::specular, {refraction()}));
   for (const float factor : {1e-4f, 1e4f}) {
     const scene::Scene scaled = bench::stressed(scene, StressChange::sceneScale, double(factor));
     render::Renderer other(device(), scaled);
-    EXPECT_LT(shareOff(picture(other, settings(width, height, Output::specular, {refraction()})), usual),
-              0.02)
+    EXPECT_LT(shareOff(picture(other, settings(width, height, Term::specular, {refraction()})), usual), 0.02)
         << factor;
   }
 }
@@ -299,7 +296,7 @@ TEST_F(SpecularTest, ScalesOfTheSceneChangeNothing) {
 TEST_F(SpecularTest, TheCameraMovesAndTheBuffersFollow) {
   const scene::Scene scene = asset("glass_sphere");
   render::Renderer moved(device(), scene), fresh(device(), scene);
-  render::Settings s = settings(width, height, Output::specular, {refraction()});
+  render::Settings s = settings(width, height, Term::specular, {refraction()});
   s.dynamic = false;
   picture(moved, s);
   moved.setCamera(moved.pose().cameras.at(1));

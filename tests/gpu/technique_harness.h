@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/caustics/caustic_rays.h"
-#include "core/indirect/virtual_lights.h"
-#include "core/scene/gpu_scene.h"
+#include "core/gpu_scene/gpu_scene.h"
+#include "core/render/services.h"
 #include "core/shadow/shadow_map.h"
 #include "core/technique/registry.h"
 #include "core/technique/technique.h"
@@ -32,7 +31,7 @@ class TechniqueTest : public GlTest {
   static constexpr int side = 128;
 
   static TechniqueRegistry& registry() {
-    static const std::filesystem::path folder = std::filesystem::path(binaryDir) / "lib/limn/techniques";
+    static const std::filesystem::path folder = std::filesystem::path(kBinaryDir) / "lib/limn/techniques";
     static TechniqueRegistry instance(std::span(&folder, 1));
     return instance;
   }
@@ -51,20 +50,15 @@ class TechniqueTest : public GlTest {
 
     scene::GpuScene gpuScene(device(), scene);
     gpuScene.update(pose, camera, {side, side}, 0);
-    shadow::ShadowMapService shadowMaps(device(), gpuScene);
-    indirect::VirtualLightService virtualLights(shadowMaps);
-    caustics::CausticRayService causticRays(device(), gpuScene, shadowMaps);
+    FrameServices services = render::makeServices(device(), gpuScene);
     frame::ResourcePool pool(device());
     scene::GBufferPass gbufferPass;
     frame::FrameGraph graph;
     const SceneHandles handles = gpuScene.import(graph);
     const GBuffer gbuffer = gbufferPass.add(graph, gpuScene, handles, {side, side});
-    shadowMaps.begin(graph, handles, pose);
-    virtualLights.begin(graph, handles);
-    causticRays.begin(graph, handles, pose);
+    const auto building = services.begin(graph, handles, pose);
     const auto instance = plugin.create();
-    const TechniqueInputs inputs{scene,       pose,       gpuScene, shadowMaps, virtualLights,
-                                 causticRays, parameters, handles,  gbuffer,    {side, side}};
+    const TechniqueInputs inputs{scene, pose, gpuScene, services, parameters, handles, gbuffer, {side, side}};
     const frame::TextureHandle target =
         term == Term::visibility ? visibilityTarget(graph, lights.size()) : black(graph);
     const frame::TextureHandle written =
@@ -73,7 +67,6 @@ class TechniqueTest : public GlTest {
     graph.output(gbuffer.depth);
     graph.output(gbuffer.instance);
     graph.prepare(device(), shaders(), pool);
-    shadowMaps.update(pose);
     graph.execute();
 
     Answer result;
@@ -90,7 +83,7 @@ class TechniqueTest : public GlTest {
       const auto first = layers.begin() + static_cast<std::ptrdiff_t>(l * side * side);
       result.lights.emplace_back(first, first + side * side);
     }
-    result.uncovered = shadowMaps.uncoveredPixels();
+    result.uncovered = services.get<shadow::ShadowMapService>().uncoveredPixels();
     gpuScene.forget();
     return result;
   }

@@ -4,13 +4,11 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/bench/stress_scene.h"
+#include "core/bench/private/stress_scene.h"
 #include "tests/gpu/render_test.h"
 
 namespace limn {
 namespace {
-
-using render::Output;
 
 using TechniqueTest = OncePerRenderer<RenderTest>;
 
@@ -20,7 +18,7 @@ TEST_F(TechniqueTest, EveryTechniqueAnswersEveryLightAlone) {
   for (const std::string& name : techniquesAnswering(Term::visibility)) {
     for (size_t light = 0; light < renderer.pose().lights.size(); ++light) {
       SCOPED_TRACE(name + ", light " + renderer.pose().lightNames[light]);
-      const Image v = picture(renderer, settings(96, 64, Output::visibility, {quick(name)}, int(light)));
+      const Image v = picture(renderer, settings(96, 64, Term::visibility, {quick(name)}, int(light)));
       expectWithin(v, 0, 1);
       EXPECT_GT(mean(v), 0.3) << "mostly lit";
       EXPECT_LT(mean(v), 0.9999) << "something casts a shadow";
@@ -37,14 +35,13 @@ TEST_F(TechniqueTest, IndirectLightOfEveryLightAloneAndTogether) {
     for (size_t light = 0; light < renderer.pose().lights.size(); ++light) {
       SCOPED_TRACE(name + ", light " + renderer.pose().lightNames[light]);
       const Image alone =
-          picture(renderer, settings(64, 48, Output::indirect, {quick(name, virtualLights)}, int(light)));
+          picture(renderer, settings(64, 48, Term::indirect, {quick(name, virtualLights)}, int(light)));
       expectWithin(alone, 0, 1e6f);
       EXPECT_GT(mean(alone), 0);
       sum += mean(alone);
     }
     // What virtual lights there are depends on how many share them.
-    const Image together =
-        picture(renderer, settings(64, 48, Output::indirect, {quick(name, virtualLights)}));
+    const Image together = picture(renderer, settings(64, 48, Term::indirect, {quick(name, virtualLights)}));
     EXPECT_NEAR(mean(together) / sum, 1, 0.1) << name;
   }
 }
@@ -57,10 +54,10 @@ TEST_F(TechniqueTest, LightsTogetherAreTheSumOfTheLightsAlone) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   for (const std::string& name : names) {
     SCOPED_TRACE(name);
-    const Image together = picture(renderer, settings(64, 48, Output::direct, {quick(name)}));
+    const Image together = picture(renderer, settings(64, 48, Term::direct, {quick(name)}));
     Image sum(64, 48, {"R", "G", "B"});
     for (size_t light = 0; light < renderer.pose().lights.size(); ++light) {
-      const Image alone = picture(renderer, settings(64, 48, Output::direct, {quick(name)}, int(light)));
+      const Image alone = picture(renderer, settings(64, 48, Term::direct, {quick(name)}, int(light)));
       for (size_t i = 0; i < sum.data().size(); ++i) sum.data()[i] += alone.data()[i];
     }
     expectWithin(together, 0, 1e6f);
@@ -72,10 +69,10 @@ TEST_F(TechniqueTest, LightsTogetherAreTheSumOfTheLightsAlone) {
 TEST_F(TechniqueTest, ShadowsOnlyTakeLightAway) {
   const scene::Scene scene = asset("lights");
   render::Renderer renderer(device(), scene);
-  const Image unshadowed = picture(renderer, settings(64, 48, Output::direct));
+  const Image unshadowed = picture(renderer, settings(64, 48, Term::direct));
   for (const std::string& name : techniquesAnswering(Term::visibility)) {
     if (contains(registry().find(name).info->terms, Term::direct)) continue;  // does not use core's L_u
-    const Image shadowed = picture(renderer, settings(64, 48, Output::direct, {quick(name)}));
+    const Image shadowed = picture(renderer, settings(64, 48, Term::direct, {quick(name)}));
     int brighter = 0;
     for (size_t i = 0; i < shadowed.data().size(); ++i)
       brighter += shadowed.data()[i] > unshadowed.data()[i] * (1 + 1e-5f);
@@ -88,13 +85,13 @@ TEST_F(TechniqueTest, ScaleOfTheSceneDoesNotMatter) {
   for (const float factor : {1e-4f, 1e4f}) {
     const scene::Scene other = bench::stressed(scene, StressChange::sceneScale, factor);
     render::Renderer renderer(device(), scene), scaledRenderer(device(), other);
-    for (const auto& [name, output] : techniquesAndOutputs()) {
+    for (const auto& [name, term] : techniquesAndTerms()) {
       SCOPED_TRACE(name + " at scale " + std::to_string(factor));
-      const Image a = picture(renderer, settings(128, 96, output, {quick(name)}, 0));
-      const Image b = picture(scaledRenderer, settings(128, 96, output, {quick(name)}, 0));
+      const Image a = picture(renderer, settings(128, 96, term, {quick(name)}, 0));
+      const Image b = picture(scaledRenderer, settings(128, 96, term, {quick(name)}, 0));
       EXPECT_LT(rmse(a, b), 1e-3);
-      const Image c = picture(renderer, settings(128, 96, Output::final, {quick(name)}));
-      const Image d = picture(scaledRenderer, settings(128, 96, Output::final, {quick(name)}));
+      const Image c = picture(renderer, settings(128, 96, Term::final, {quick(name)}));
+      const Image d = picture(scaledRenderer, settings(128, 96, Term::final, {quick(name)}));
       EXPECT_LT(rmse(c, d), 1e-3);
     }
   }
@@ -105,9 +102,9 @@ TEST_F(TechniqueTest, ExtremeResolutionsGiveFinitePictures) {
   render::Renderer renderer(device(), scene);
   for (const auto& [width, height] :
        {std::pair(1, 1), std::pair(4096, 1), std::pair(1, 4096), std::pair(17, 3)})
-    for (const auto& [name, output] : techniquesAndOutputs()) {
+    for (const auto& [name, term] : techniquesAndTerms()) {
       SCOPED_TRACE(name);
-      expectWithin(picture(renderer, settings(width, height, Output::final, {quick(name)})), 0, 1e6f);
+      expectWithin(picture(renderer, settings(width, height, Term::final, {quick(name)})), 0, 1e6f);
     }
 }
 
@@ -117,9 +114,9 @@ TEST_F(TechniqueTest, RadianceScalesLinearlyOverTwelveDecades) {
     scene::Scene other = scene;
     for (scene::LightSource& light : other.lights) light.intensity *= factor;
     render::Renderer renderer(device(), scene), brighter(device(), other);
-    for (const auto& [name, output] : techniquesAndOutputs()) {
+    for (const auto& [name, term] : techniquesAndTerms()) {
       SCOPED_TRACE(name);
-      const Output shown = output == Output::visibility ? Output::direct : output;
+      const Term shown = term == Term::visibility ? Term::direct : term;
       const Image a = picture(renderer, settings(64, 48, shown, {quick(name)}));
       const Image b = picture(brighter, settings(64, 48, shown, {quick(name)}));
       EXPECT_NEAR(mean(b) / mean(a) / factor, 1.0, 1e-4);
@@ -131,8 +128,8 @@ TEST_F(TechniqueTest, CameraInsideAnObjectGivesAFinitePicture) {
   const scene::Scene scene = asset("balls");
   render::Renderer renderer(device(), scene);
   scene::CameraPose camera = renderer.pose().cameras.at(0);
-  for (const auto& [name, output] : techniquesAndOutputs()) {
-    renderer.configure(settings(64, 48, Output::final, {quick(name)}));
+  for (const auto& [name, term] : techniquesAndTerms()) {
+    renderer.configure(settings(64, 48, Term::final, {quick(name)}));
     camera.worldToView = glm::mat4(1);
     camera.worldToView[3] = glm::vec4(-renderer.pose().bounds.centre(), 1);
     renderer.setCamera(camera);
@@ -145,9 +142,9 @@ TEST_F(TechniqueTest, LightsOfSizeZeroGiveTheHardShadowBitForBit) {
   for (const char* name : {"balls", "lights"}) {
     const scene::Scene scene = asset(name);
     render::Renderer renderer(device(), scene);
-    const Image hard =
-        picture(renderer, settings(128, 96, Output::visibility,
-                                   {technique("hard_shadow_map", {{"shadow_map_size", "512"}})}, 0));
+    const Image hard = picture(
+        renderer,
+        settings(128, 96, Term::visibility, {technique("hard_shadow_map", {{"shadow_map_size", "512"}})}, 0));
     for (const std::string& soft : techniquesAnswering(Term::visibility)) {
       const auto declares = [&](std::string_view parameter) {
         return std::ranges::any_of(registry().find(soft).info->parameters,
@@ -156,7 +153,7 @@ TEST_F(TechniqueTest, LightsOfSizeZeroGiveTheHardShadowBitForBit) {
       if (!declares("light_size") || !declares("shadow_map_size")) continue;
       SCOPED_TRACE(soft + " on " + name);
       const Image point = picture(
-          renderer, settings(128, 96, Output::visibility,
+          renderer, settings(128, 96, Term::visibility,
                              {technique(soft, {{"light_size", "0"}, {"shadow_map_size", "512"}})}, 0));
       EXPECT_TRUE(std::equal(hard.data().begin(), hard.data().end(), point.data().begin()));
     }
@@ -167,16 +164,16 @@ TEST_F(TechniqueTest, TwoAnswersToDirectLightAreRefused) {
   const scene::Scene scene = asset("cornell_box");
   render::Renderer renderer(device(), scene);
   EXPECT_THROW(
-      renderer.configure(settings(8, 8, Output::final, {technique("pcss"), technique("hard_shadow_map")})),
+      renderer.configure(settings(8, 8, Term::final, {technique("pcss"), technique("hard_shadow_map")})),
       UsageError);
 }
 
 TEST_F(TechniqueTest, AnEmptySceneCompilesNothingAndAllocatesOnlyTheOutput) {
   const scene::Scene scene;
-  for (const auto& [name, output] : techniquesAndOutputs()) {
+  for (const auto& [name, term] : techniquesAndTerms()) {
     SCOPED_TRACE(name);
     render::Renderer renderer(device(), scene);
-    renderer.configure(settings(64, 48, Output::final, {technique(name)}));
+    renderer.configure(settings(64, 48, Term::final, {technique(name)}));
     const gpu::Counters before = device().counters();
     renderer.render();
     EXPECT_EQ(device().counters().programsCompiled, before.programsCompiled);
@@ -191,7 +188,7 @@ TEST_F(TechniqueTest, NoLightGivesNoIndirectLightAndNoPassForIt) {
   render::Renderer renderer(device(), scene);
   for (const std::string& name : techniquesAnswering(Term::indirect)) {
     SCOPED_TRACE(name);
-    expectWithin(picture(renderer, settings(32, 24, Output::indirect, {quick(name)})), 0, 0);
+    expectWithin(picture(renderer, settings(32, 24, Term::indirect, {quick(name)})), 0, 0);
     for (const auto& pass : renderer.explain())
       if (pass.technique == name) {
         EXPECT_EQ(pass.state, frame::PassState::leftOut) << pass.name;
@@ -203,7 +200,7 @@ TEST_F(TechniqueTest, StaticShadowMapsAreNotRedrawn) {
   const scene::Scene scene = asset("balls");
   render::Renderer renderer(device(), scene);
   for (const bool dynamic : {false, true}) {
-    render::Settings s = settings(64, 48, Output::final, {technique("hard_shadow_map")});
+    render::Settings s = settings(64, 48, Term::final, {technique("hard_shadow_map")});
     s.dynamic = dynamic;
     picture(renderer, s);
     renderer.render();

@@ -4,10 +4,10 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "glsl/light_view.glsl"
+#include "glsl/light/light_view.glsl"
 #include "tests/gpu/render_test.h"
 #include "tests/gpu/technique_harness.h"
-#include "tests/gpu/test_scenes.h"
+#include "tests/support/test_scenes.h"
 
 namespace limn {
 namespace {
@@ -55,11 +55,11 @@ class VarianceTechniqueTest : public TechniqueTest {
   }
 };
 
-const Settings variants[] = {{{"subdivision", "uniform"}}, {{"subdivision", "adaptive"}},
-                             {{"subdivision", "mixed"}},   {{"chebyshev", "pooled"}},
-                             {{"search_rounds", "0"}},     {{"sat_words", "1"}},
-                             {{"sat_bits", "20"}},         {{"contact", "off"}},
-                             {{"bounds", "nbuffer"}},      {{"bounds", "mip"}}};
+const Settings kVariants[] = {{{"subdivision", "uniform"}}, {{"subdivision", "adaptive"}},
+                              {{"subdivision", "mixed"}},   {{"chebyshev", "pooled"}},
+                              {{"search_rounds", "0"}},     {{"sat_words", "1"}},
+                              {{"sat_bits", "20"}},         {{"contact", "off"}},
+                              {{"bounds", "nbuffer"}},      {{"bounds", "mip"}}};
 
 TEST_F(VarianceTechniqueTest, ParallelPlanesAreExact) {
   // A square of side 1, one metre over the floor, under a light of side 0.8 at 4 metres.
@@ -69,7 +69,7 @@ TEST_F(VarianceTechniqueTest, ParallelPlanesAreExact) {
     const float a = p + 4 * (0.5f - p), b = p + 4 * (-0.5f - p);
     return std::clamp(std::min(a, 0.4f) - std::max(b, -0.4f), 0.f, 0.8f) / 0.8f;
   };
-  for (Settings settings : variants) {
+  for (Settings settings : kVariants) {
     settings["shadow_map_size"] = "1024";
     const Answer v = answer(s, settings);
     double squares = 0;
@@ -109,7 +109,7 @@ TEST_F(VarianceTechniqueTest, KernelsThatAreAllLitOrAllBlockedAreExact) {
 TEST_F(VarianceTechniqueTest, LightsLargerThanTheSceneGiveFaintShadows) {
   Planes s(100, 4);
   s.addPlane(0.5f, at(0, 1, 0));
-  for (const Settings& settings : variants) {
+  for (const Settings& settings : kVariants) {
     const Answer v = answer(s, settings);
     double sum = 0;
     for (const float value : v.lights[0]) sum += value;
@@ -140,7 +140,7 @@ TEST_F(VarianceTechniqueTest, DepthRangesOfAMillionKeepTheirShadows) {
 TEST_F(VarianceTechniqueTest, SurfacesInContactDoNotShadowEachOtherOrThemselves) {
   Planes s;
   s.addPlane(0.5f, at(0, 4e-6f, 0));  // 1e-6 of the scene's radius
-  for (const Settings& settings : variants)
+  for (const Settings& settings : kVariants)
     EXPECT_EQ(*std::ranges::min_element(answer(s, settings).lights[0]), 1.f) << settings.begin()->second;
 }
 
@@ -153,7 +153,7 @@ TEST_F(VarianceTechniqueTest, ManyDepthLayersStayBetweenDarkAndLight) {
                           glm::rotate(glm::mat4(1), 1.3f * f, vec3(0.4f, 1, 0.3f)));
   }
   const Answer truth = answer(s, {{"samples", "256"}}, "sampled_area_light");
-  for (const Settings& settings : variants) {
+  for (const Settings& settings : kVariants) {
     const Answer v = answer(s, settings);
     double squares = 0;
     int count = 0;
@@ -172,7 +172,7 @@ TEST_F(VarianceTechniqueTest, ReceiversSeenEdgeOnByTheLightAreFinite) {
   // A wall in the plane x = 0, which holds the light's centre.
   s.addPlane(1, at(0, 1, 0) * glm::rotate(glm::mat4(1), glsl::pi / 2, {0, 0, 1}));
   s.camera = scene::lookAt({5, 2, 2}, {0, 1, 0}, 0.6f);
-  for (const Settings& settings : variants) answer(s, settings);
+  for (const Settings& settings : kVariants) answer(s, settings);
   answer(s, {}, "savsm");
 }
 
@@ -184,7 +184,7 @@ TEST_F(VarianceTechniqueTest, FacesOfAHemicubeCutNoHolesOrPatchesIntoShadows) {
   s.addPlane(0.3f, at(0.7f, 1.1f, 0));
   s.camera = scene::lookAt({-3, 2, 4}, {0.7f, 0.7f, 0}, 0.8f);
   const Answer truth = answer(s, {{"samples", "256"}}, "sampled_area_light");
-  for (const Settings& settings : variants) {
+  for (const Settings& settings : kVariants) {
     const Answer v = answer(s, settings);
     double squares = 0;
     int shadowed = 0, patches = 0;
@@ -250,7 +250,7 @@ TEST_F(VarianceOnScenesTest, TighterBoundsAreNoWorseOnBalls) {
   const scene::Scene scene = asset("balls");
   render::Renderer renderer(device(), scene);
   const auto shadow = [&](const render::TechniqueUse& use) {
-    return picture(renderer, settings(128, 96, render::Output::visibility, {use}, 0));
+    return picture(renderer, settings(128, 96, Term::visibility, {use}, 0));
   };
   const Image truth =
                   shadow(technique("sampled_area_light", {{"samples", "256"}, {"shadow_map_size", "512"}})),

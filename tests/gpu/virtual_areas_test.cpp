@@ -7,9 +7,9 @@
 #include <random>
 
 #include "glsl/indirect/gather.glsl"
-#include "glsl/shadow_view.glsl"
+#include "glsl/shadow/shadow_view.glsl"
 #include "tests/gpu/gl_test.h"
-#include "tests/gpu/test_scenes.h"
+#include "tests/support/test_scenes.h"
 
 namespace limn {
 namespace {
@@ -19,7 +19,7 @@ using glm::vec3;
 using Lights = std::vector<glsl::VirtualPointLight>;
 
 glsl::VirtualPointLight light(vec3 position, vec3 normal, float flux = 1) {
-  return {{position, 1}, {normal, 0}, {flux, flux, flux, 0}};
+  return {position, 1, {normal, 0}, {flux, flux, flux, 0}};
 }
 
 struct Clusters {
@@ -29,7 +29,7 @@ struct Clusters {
   std::vector<uint32_t> mapping;  ///< by the lights' own order
 };
 
-constexpr float extent = 4;  // of the scene's cube: a diagonal of 4
+constexpr float kExtent = 4;  // of the scene's cube: a diagonal of 4
 
 /// The same on the CPU, in double where it sums.
 struct Reference {
@@ -40,10 +40,12 @@ struct Reference {
     const auto n = static_cast<uint32_t>(lights.size());
     const auto m = static_cast<uint32_t>(std::min<size_t>(static_cast<size_t>(desc.count), n));
     for (uint32_t k = 0; k < m; ++k) {
-      areas.push_back({{0, 0, 0, -1}, {}, {}});
+      areas.push_back({.position = {}, .count = -1, .normal = {}, .extent = {}, .unused = {}});
       for (uint32_t i = glsl::cluster_start(k, n, m); i < glsl::cluster_start(k + 1, n, m); ++i) {
         if (!glsl::virtual_light_shines(lights[i])) continue;
-        areas[k] = {glm::vec4(vec3(lights[i].position), 0), glm::vec4(vec3(lights[i].normal), 0), {}};
+        areas[k].position = lights[i].position;
+        areas[k].count = 0;
+        areas[k].normal = glm::vec4(vec3(lights[i].normal), 0);
         break;
       }
     }
@@ -58,8 +60,8 @@ struct Reference {
       float least = 3e38f;
       for (uint32_t k = 0; k < areas.size(); ++k) {
         const float d =
-            glsl::cluster_distance(lights[i], areas[k], 1 / extent, desc.weightPosition, desc.weightAngle);
-        if (areas[k].position.w >= 0 && d < least) least = d, mapping[i] = k;
+            glsl::cluster_distance(lights[i], areas[k], 1 / kExtent, desc.weightPosition, desc.weightAngle);
+        if (areas[k].count >= 0 && d < least) least = d, mapping[i] = k;
       }
       if (!glsl::virtual_light_shines(lights[i])) continue;
       positions[mapping[i]] += glm::dvec3(lights[i].position);
@@ -69,10 +71,11 @@ struct Reference {
     for (size_t k = 0; k < areas.size(); ++k) {
       const auto count = static_cast<float>(counts[k]);
       if (count > 0) {
-        areas[k].position = glm::vec4(vec3(positions[k] / counts[k]), count);
+        areas[k].position = vec3(positions[k] / counts[k]);
+        areas[k].count = count;
         areas[k].normal = glm::vec4(glsl::cluster_normal(vec3(normals[k]), count), 0);
-      } else if (areas[k].position.w >= 0) {
-        areas[k].position.w = 0;
+      } else if (areas[k].count >= 0) {
+        areas[k].count = 0;
       }
     }
   }
@@ -82,7 +85,7 @@ class VirtualAreasTest : public GlTest {
  protected:
   Clusters cluster(const Lights& lights, const indirect::VirtualAreaDesc& desc) {
     scene::Scene scene;
-    const float half = 0.5f * extent / std::sqrt(3.f);
+    const float half = 0.5f * kExtent / std::sqrt(3.f);
     scene::Primitive cube;
     cube.positions = {vec3(-half), vec3(half), vec3(-half, half, half)};
     cube.normals.assign(3, {0, 1, 0});
@@ -114,10 +117,10 @@ class VirtualAreasTest : public GlTest {
     graph.buffer(areas.lights).read(0, out.sorted.data(), out.sorted.size() * sizeof(out.sorted[0]));
     for (const glsl::VirtualPointLight& l : lights) {
       const auto found = std::ranges::find_if(out.sorted, [&](const glsl::VirtualPointLight& s) {
-        return vec3(s.position) == vec3(l.position) && s.normal == l.normal && s.flux == l.flux;
+        return s.position == l.position && s.normal == l.normal && s.flux == l.flux;
       });
       EXPECT_NE(found, out.sorted.end()) << "every light is among the sorted ones";
-      if (found != out.sorted.end()) out.mapping.push_back(static_cast<uint32_t>(found->position.w));
+      if (found != out.sorted.end()) out.mapping.push_back(static_cast<uint32_t>(found->cluster));
     }
     gpuScene.forget();
     return out;
@@ -143,6 +146,7 @@ class VirtualAreasTest : public GlTest {
     EXPECT_EQ(gpu.mapping, cpu.mapping);
     for (size_t k = 0; k < cpu.areas.size(); ++k) {
       EXPECT_LT(glm::length(gpu.areas[k].position - cpu.areas[k].position), 1e-5f) << k;
+      EXPECT_NEAR(gpu.areas[k].count, cpu.areas[k].count, 1e-5f) << k;
       EXPECT_LT(glm::length(gpu.areas[k].normal - cpu.areas[k].normal), 1e-5f) << k;
     }
   }
@@ -164,11 +168,14 @@ TEST_F(VirtualAreasTest, AreasHoldTheirLights) {
   const Clusters c = cluster(lights, {.count = 12, .iterations = 6, .near = 0.02f, .mapSize = 128});
   float counted = 0;
   for (size_t k = 0; k < c.areas.size(); ++k) {
-    counted += c.areas[k].position.w;
+    counted += c.areas[k].count;
     const glsl::ShadowView& view = c.views[k];
-    EXPECT_EQ(view.info, glm::uvec4(glsl::shadow_paraboloid, k, 128, glsl::no_light));
-    EXPECT_NEAR(view.origin.w, 0.02f * extent, 1e-5f);
-    EXPECT_EQ(vec3(view.origin), vec3(c.areas[k].position));
+    EXPECT_EQ(view.projection, glsl::shadow_paraboloid);
+    EXPECT_EQ(view.layer, k);
+    EXPECT_EQ(view.size, 128u);
+    EXPECT_EQ(view.light, glsl::no_light);
+    EXPECT_NEAR(view.near, 0.02f * kExtent, 1e-5f);
+    EXPECT_EQ(view.origin, c.areas[k].position);
     glm::vec2 low(1e30f), high(-1e30f);
     for (size_t i = 0; i < lights.size(); ++i) {
       if (c.mapping[i] != k || !glsl::virtual_light_shines(lights[i])) continue;
@@ -176,7 +183,7 @@ TEST_F(VirtualAreasTest, AreasHoldTheirLights) {
       low = glm::min(low, glm::vec2(local));
       high = glm::max(high, glm::vec2(local));
     }
-    const float n = c.areas[k].position.w;
+    const float n = c.areas[k].count;
     EXPECT_NEAR(c.areas[k].extent.x, (high.x - low.x) * (n + 1) / (n - 1), 1e-4f);
     EXPECT_NEAR(c.areas[k].extent.y, (high.y - low.y) * (n + 1) / (n - 1), 1e-4f);
   }
@@ -197,26 +204,26 @@ TEST_F(VirtualAreasTest, OfASinglePlaneAndOfOneLightEach) {
   }
   const Clusters each = cluster(plane, {.count = 500});  // more than lights: as many as lights
   ASSERT_EQ(each.areas.size(), 300u);
-  for (const auto& area : each.areas) EXPECT_EQ(glm::vec2(area.extent), glm::vec2(0));
+  for (const auto& area : each.areas) EXPECT_EQ(area.extent, glm::vec2(0));
 }
 
 TEST_F(VirtualAreasTest, NothingToClusterDoesNoHarm) {
   Lights dark = room(100);
   for (auto& l : dark) l.flux = {};
-  for (const auto& area : cluster(dark, {.count = 8}).areas) EXPECT_EQ(area.position.w, -1);
+  for (const auto& area : cluster(dark, {.count = 8}).areas) EXPECT_EQ(area.count, -1);
   // All in one place, with normals that cancel out.
   Lights same;
   for (int i = 0; i < 64; ++i) same.push_back(light(vec3(0.5f), {0, 0, i % 2 ? 1.f : -1.f}));
   const Clusters one = cluster(same, {.count = 1});
   EXPECT_EQ(vec3(one.areas[0].normal), vec3(0));
-  EXPECT_NEAR(glm::length(vec3(one.views[0].axis_z)), 1, 1e-6f);
+  EXPECT_NEAR(glm::length(one.views[0].axis_z), 1, 1e-6f);
   const Clusters many = cluster(same, {.count = 8});
   float counted = 0;
   for (const auto& area : many.areas) {
     EXPECT_FALSE(glm::any(glm::isnan(area.position)) || glm::any(glm::isnan(area.normal)) ||
                  glm::any(glm::isnan(area.extent)));
-    EXPECT_LT(glm::length(vec3(area.position) - (area.position.w >= 0 ? vec3(0.5f) : vec3(0))), 1e-6f);
-    counted += std::max(area.position.w, 0.f);
+    EXPECT_LT(glm::length(area.position - (area.count >= 0 ? vec3(0.5f) : vec3(0))), 1e-6f);
+    counted += std::max(area.count, 0.f);
   }
   EXPECT_EQ(counted, 64);
 }
@@ -229,11 +236,10 @@ TEST_F(VirtualAreasTest, SortedByClusterWithinEachSubBuffer) {
     const uint32_t first = glsl::gather_begin(s, 500, block), end = glsl::gather_begin(s + 1, 500, block);
     for (uint32_t i = first; i < end; ++i) {
       if (i > first) {
-        EXPECT_LE(c.sorted[i - 1].position.w, c.sorted[i].position.w);
+        EXPECT_LE(c.sorted[i - 1].cluster, c.sorted[i].cluster);
       }
-      const auto found = std::ranges::find_if(lights, [&](const glsl::VirtualPointLight& l) {
-        return vec3(l.position) == vec3(c.sorted[i].position);
-      });
+      const auto found = std::ranges::find_if(
+          lights, [&](const glsl::VirtualPointLight& l) { return l.position == c.sorted[i].position; });
       const auto index = static_cast<uint32_t>(found - lights.begin());
       EXPECT_TRUE(index >= first && index < end) << "lights stay in their sub-buffer";
     }

@@ -4,11 +4,11 @@
 #include <numeric>
 
 #include "core/indirect/virtual_lights.h"
-#include "glsl/brdf.glsl"
-#include "glsl/rectangle_light.glsl"
-#include "glsl/sampling.glsl"
+#include "glsl/light/rectangle_light.glsl"
+#include "glsl/numeric/sampling.glsl"
+#include "glsl/surface/brdf.glsl"
 #include "tests/gpu/gl_test.h"
-#include "tests/gpu/test_scenes.h"
+#include "tests/support/test_scenes.h"
 
 namespace limn {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 using namespace limn::test;
 using glm::vec3;
 
-constexpr float pi = glsl::pi;
+constexpr float kPi = glsl::pi;
 
 struct Sampled {
   std::vector<glsl::VirtualPointLight> lights;
@@ -39,13 +39,13 @@ class VirtualLightTest : public GlTest {
     std::iota(all.begin(), all.end(), 0u);
     scene::GpuScene gpuScene(device(), scene);
     gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
-    shadow::ShadowMapService maps(device(), gpuScene);
-    indirect::VirtualLightService service(maps);
+    FrameServices services;
+    services.add<shadow::ShadowMapService>(device(), gpuScene);
+    auto& service = services.add<indirect::VirtualLightService>();
     frame::ResourcePool pool(device());
     frame::FrameGraph graph;
     const SceneHandles handles = gpuScene.import(graph);
-    maps.begin(graph, handles, pose);
-    service.begin(graph, handles);
+    const auto building = services.begin(graph, handles, pose);
     const indirect::VirtualLights made = service.request(all, desc);
     EXPECT_EQ(service.request(all, desc).lights, made.lights) << "made once whoever asks";
     graph.output(made.lights);
@@ -79,9 +79,9 @@ class VirtualLightTest : public GlTest {
   static void addBox(scene::Scene& scene, scene::Pose& pose, int material) {
     const int mesh = addMesh(scene, floorPrimitive(1, material));
     for (const auto& [angle, axis] :
-         {std::pair(0.f, vec3(1, 0, 0)), std::pair(pi, vec3(1, 0, 0)), std::pair(0.5f * pi, vec3(1, 0, 0)),
-          std::pair(-0.5f * pi, vec3(1, 0, 0)), std::pair(0.5f * pi, vec3(0, 0, 1)),
-          std::pair(-0.5f * pi, vec3(0, 0, 1))}) {
+         {std::pair(0.f, vec3(1, 0, 0)), std::pair(kPi, vec3(1, 0, 0)), std::pair(0.5f * kPi, vec3(1, 0, 0)),
+          std::pair(-0.5f * kPi, vec3(1, 0, 0)), std::pair(0.5f * kPi, vec3(0, 0, 1)),
+          std::pair(-0.5f * kPi, vec3(0, 0, 1))}) {
       const glm::mat4 turn = glm::rotate(glm::mat4(1), angle, axis);
       addInstance(scene, pose, mesh, turn * glm::translate(glm::mat4(1), {0, -1, 0}));
     }
@@ -97,10 +97,10 @@ TEST_F(VirtualLightTest, SpotOverAPlane) {
     scene::Pose pose;
     addInstance(scene, pose, 0);
     glsl::Light light = spotLight(vec3(1, 3, 0.5f) * scale, {0.2f, -1, 0.1f}, 0.7f);
-    light.emission = {5, 5, 5, 0};
+    light.emission = glm::vec3(5, 5, 5);
     addLight(pose, light);
-    const float inner = light.cone.x, outer = light.cone.y;
-    const float solid = 2 * pi * (1 - inner + (inner - outer) / 3);
+    const float inner = light.cos_inner, outer = light.cos_outer;
+    const float solid = 2 * kPi * (1 - inner + (inner - outer) / 3);
     const Sampled s = sample(scene, pose, {.count = 1000});
     expectFlux(s, colour * 5.f * solid, 0.01f);
     for (const glsl::VirtualPointLight& v : s.lights) {
@@ -119,7 +119,7 @@ TEST_F(VirtualLightTest, PointLightInABox) {
   // A power of two, odd, fewer than the layers, and one.
   for (const int count : {1024, 777, 3, 1}) {
     SCOPED_TRACE(count);
-    expectFlux(sample(scene, pose, {.count = count}), colour * 4.f * pi, 0.01f);
+    expectFlux(sample(scene, pose, {.count = count}), colour * 4.f * kPi, 0.01f);
   }
 }
 
@@ -131,7 +131,7 @@ TEST_F(VirtualLightTest, LightsThatSeeOnlyBackFacesReflectNothing) {
   addLight(pose, pointLight({0, 0, 0}));
   EXPECT_EQ(sample(scene, pose, {.count = 100}).flux, vec3(0));
   scene.materials[0].doubleSided = true;
-  expectFlux(sample(scene, pose, {.count = 100}), colour * 4.f * pi, 0.01f);
+  expectFlux(sample(scene, pose, {.count = 100}), colour * 4.f * kPi, 0.01f);
 }
 
 TEST_F(VirtualLightTest, ParallelLightOnAPlane) {
@@ -151,7 +151,7 @@ TEST_F(VirtualLightTest, RectanglesOneAndTwoSided) {
     scene::Pose pose;
     addBox(scene, pose, addMaterial(scene, lambert(colour)));
     addLight(pose, rectangleLight({0, 0.5f, 0}, {0, -1, 0}, 0.5f, 0.25f, twoSided));
-    const vec3 expected = colour * (pi * 0.125f * (twoSided ? 2.f : 1.f));
+    const vec3 expected = colour * (kPi * 0.125f * (twoSided ? 2.f : 1.f));
     for (const int samples : {1, 5})
       expectFlux(sample(scene, pose, {.count = 300, .lightSamples = samples}), expected, 0.01f);
   }
@@ -180,7 +180,7 @@ TEST_F(VirtualLightTest, ALargeRectangleIsNoPoint) {
   ASSERT_GT(asPoint, 1.3 * below);
   for (const int samples : {1, 4}) {
     const Sampled s = sample(scene, pose, {.count = 8192, .mapSize = 512, .lightSamples = samples});
-    expectFlux(s, colour * (4 * pi), 0.01f);
+    expectFlux(s, colour * (4 * kPi), 0.01f);
     double found = 0;
     for (const glsl::VirtualPointLight& v : s.lights)
       if (std::abs(v.position.x) < 1 && std::abs(v.position.z) < 1) found += v.flux.x;
@@ -213,10 +213,10 @@ TEST_F(VirtualLightTest, PointsOfOneLightAddLittleNoise) {
     for (const auto& [point, normal] : receivers) {
       double sum = 0;
       for (const glsl::VirtualPointLight& light : s.lights) {
-        const vec3 to = vec3(light.position) - point;
+        const vec3 to = light.position - point;
         const float d2 = glm::dot(to, to);
         if (d2 > 0)
-          sum += light.flux.x / pi * std::max(glm::dot(normal, to), 0.f) *
+          sum += light.flux.x / kPi * std::max(glm::dot(normal, to), 0.f) *
                  std::max(-glm::dot(vec3(light.normal), to), 0.f) / (d2 * std::max(d2, 0.01f));
       }
       out.push_back(sum);
@@ -244,13 +244,13 @@ TEST_F(VirtualLightTest, SeveralLightsShareThemByFlux) {
   addBox(scene, pose, addMaterial(scene, lambert(colour)));
   addLight(pose, pointLight({0.3f, -0.2f, 0.5f}));
   glsl::Light strong = spotLight({0, 0.5f, 0}, {0, -1, 0}, 0.5f);
-  strong.emission = {0, 100, 0, 0};
+  strong.emission = glm::vec3(0, 100, 0);
   addLight(pose, strong);
   glsl::Light dark = pointLight({0, 0, 0});
-  dark.emission = glm::vec4(0);
+  dark.emission = glm::vec3(0);
   addLight(pose, dark);
-  const float solid = 2 * pi * (1 - strong.cone.x + (strong.cone.x - strong.cone.y) / 3);
-  const vec3 fromStrong = colour * vec3(0, 100, 0) * solid, fromPoint = colour * 4.f * pi;
+  const float solid = 2 * kPi * (1 - strong.cos_inner + (strong.cos_inner - strong.cos_outer) / 3);
+  const vec3 fromStrong = colour * vec3(0, 100, 0) * solid, fromPoint = colour * 4.f * kPi;
   const Sampled s = sample(scene, pose, {.count = 900});
   expectFlux(s, fromPoint + fromStrong, 0.01f);
   int green = 0;

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "core/scene/load.h"
 #include "core/scene/scene.h"
+#include "core/scene_io/load.h"
 #include "tests/heap/counted_allocations.h"
 #include "tests/support/paths.h"
 
@@ -15,11 +15,11 @@ namespace {
 TEST(SceneEvaluateHeap, reusesItsMemory) {
   for (const char* name : {"robot", "lights", "patrol"}) {
     const Scene scene =
-        load(std::filesystem::path(test::binaryDir) / "assets" / name / (std::string(name) + ".glb"));
+        load(std::filesystem::path(test::kBinaryDir) / "assets" / name / (std::string(name) + ".glb"));
     Pose pose;
-    evaluate(scene, 0, none, pose);
+    evaluate(scene, 0, kNone, pose);
     const test::CountedAllocations allocations;
-    for (int i = 1; i < 20; ++i) evaluate(scene, 0.1 * i, none, pose);
+    for (int i = 1; i < 20; ++i) evaluate(scene, 0.1 * i, kNone, pose);
     EXPECT_EQ(allocations.count(), 0) << name;
   }
 }

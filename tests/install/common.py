@@ -3,6 +3,7 @@ import argparse
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -44,6 +45,12 @@ def techniques(prefix=PREFIX, **environment):
     listed = json.loads(limn("list", "--json", prefix=prefix, **environment)[0])
     check(not listed["refused"], f"refused: {listed['refused']}")
     return [technique["name"] for technique in listed["techniques"]]
+
+
+def cached(name):
+    """The value of a variable in the build's cache; "" where it was not found."""
+    found = re.search(rf"^{name}:\w+=(.*)$", (pathlib.Path(options.build) / "CMakeCache.txt").read_text(), re.MULTILINE)
+    return "" if found is None or found[1].endswith("-NOTFOUND") else found[1]
 
 
 def fresh(name):

@@ -52,11 +52,11 @@ check(NAME in techniques(LIMN_TECHNIQUE_PATH=str(built)), "refused though nothin
 
 # A field more in a structure that C++ and GLSL share, in a header that technique.h includes over others, in one that
 # only some techniques include, and in one that is generated.
-light = re.search(r"struct Light \{\n", (include / "glsl/light.glsl").read_text())
-check(light, "glsl/light.glsl has no struct Light")
-changed_header("glsl/light.glsl", light[0], light[0] + "  vec4 more;\n")
+light = re.search(r"struct Light \{\n", (include / "glsl/scene/light.glsl").read_text())
+check(light, "glsl/scene/light.glsl has no struct Light")
+changed_header("glsl/scene/light.glsl", light[0], light[0] + "  vec4 more;\n")
 changed_header("core/gpu/objects.h", "#pragma once\n", "#pragma once\n// changed\n")
-changed_header("core/reference/environment.h", "#pragma once\n", "#pragma once\n// changed\n")
+changed_header("core/scene/environment_light.h", "#pragma once\n", "#pragma once\n// changed\n")
 changed_header("core/context/gl_functions.h", "#pragma once\n", "#pragma once\n// changed\n")
 
 # Containers with checks are larger, quaternions may lie the other way round.

@@ -1,9 +1,12 @@
-"""Installs limn once for the tests beside this one. The prefix is moved: nothing in it may name where it was."""
+"""Installs limn once for the tests beside this one. The prefix is moved: nothing in it may name where it was.
+
+Nothing else in the scratch folder is touched: tests that need no prefix may have begun there."""
 import shutil
 
 from common import PREFIX, SCRATCH, check, limn, options, run, techniques
 
-shutil.rmtree(SCRATCH, ignore_errors=True)
+for left in (SCRATCH / "prefix", PREFIX):
+    shutil.rmtree(left, ignore_errors=True)
 run("cmake", "--install", options.build, "--prefix", SCRATCH / "prefix")
 (SCRATCH / "prefix").rename(PREFIX)
 check(techniques(), "the installed limn lists no technique")

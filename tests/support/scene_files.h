@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/scene/load.h"
+#include "core/scene_io/load.h"
 #include "tests/support/gltf_builder.h"
 
 namespace limn::test {

@@ -3,7 +3,7 @@
 
 #include <glm/gtc/quaternion.hpp>
 
-#include "tests/gpu/test_scenes.h"
+#include "tests/support/test_scenes.h"
 
 namespace limn::test {
 

@@ -3,7 +3,7 @@
 
 #include <openvdb/openvdb.h>
 
-#include "core/scene/density_grid.h"
+#include "core/scene_io/density_grid_file.h"
 #include "tests/support/scene_files.h"
 
 namespace limn::test {

@@ -6,12 +6,12 @@
 #include "core/scene/camera.h"
 #include "tests/gpu/comparability.h"
 #include "tests/gpu/render_test.h"
-#include "tests/gpu/test_scenes.h"
+#include "tests/support/test_scenes.h"
 
 namespace limn {
 namespace {
 
-constexpr float irradiance = 3;
+constexpr float kIrradiance = 3;
 
 enum class Holder { material, vertices };
 
@@ -31,7 +31,7 @@ scene::Scene wall(float albedo, Holder holder) {
   scene.nodes[1].light = 0;
   scene::LightSource light;
   light.type = glsl::light_directional;
-  light.intensity = irradiance;
+  light.intensity = kIrradiance;
   scene.lights.push_back(light);
   return scene;
 }
@@ -44,8 +44,8 @@ TEST_F(AlbedoTest, NoFormatTakesOrAddsLight) {
       const scene::Scene scene = wall(albedo, holder);
       const test::Pair pair =
           test::renderBoth(device(), scene, scene::evaluate(scene, 0),
-                           scene::lookAt({0, 0, 2}, {0, 0, 0}, 0.8f), {8, 8}, render::Output::direct, 2);
-      const float expected = albedo * irradiance / glsl::pi;
+                           scene::lookAt({0, 0, 2}, {0, 0, 0}, 0.8f), {8, 8}, Term::direct, 2);
+      const float expected = albedo * kIrradiance / glsl::pi;
       for (int c = 0; c < 3; ++c) {
         EXPECT_NEAR(pair.image.at(3, 4, c), expected, 5e-4f * expected) << albedo;
         EXPECT_NEAR(pair.reference.at(3, 4, c), expected, 1e-5f * expected) << albedo;

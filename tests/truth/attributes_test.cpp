@@ -4,7 +4,7 @@
 
 #include "tests/gpu/comparability.h"
 #include "tests/gpu/render_test.h"
-#include "tests/gpu/test_scenes.h"
+#include "tests/support/test_scenes.h"
 
 namespace limn {
 namespace {
@@ -140,9 +140,9 @@ TEST_F(AttributesTest, AreTheSameForBothOnEveryKindOfGeometry) {
     for (const Maps maps : {Maps::none, Maps::colour, Maps::colourAndNormals}) {
       SCOPED_TRACE(testing::Message() << "colours " << int(colours) << ", maps " << int(maps));
       const scene::Scene scene = spheres({colours, maps});
-      const test::Pair pair = test::renderBoth(device(), scene, scene::evaluate(scene, 0),
-                                               scene::lookAt({0, 0.3f, 7}, {0, 0, 0}, 0.7f), {128, 96},
-                                               render::Output::direct, 2);
+      const test::Pair pair =
+          test::renderBoth(device(), scene, scene::evaluate(scene, 0),
+                           scene::lookAt({0, 0.3f, 7}, {0, 0, 0}, 0.7f), {128, 96}, Term::direct, 2);
       const test::Agreement found = test::agreement(pair.image, pair.reference);
       EXPECT_GT(found.covered, pair.image.pixelCount() / 5);
       EXPECT_LT(found.maskedShare, 0.01);

@@ -7,7 +7,7 @@ namespace {
 using glm::dvec3;
 using glm::vec3;
 
-constexpr double albedo = 0.6, sun = 2;  // W/m^2 across its light
+constexpr double kAlbedo = 0.6, kSun = 2;  // W/m^2 across its light
 
 /// The normal +z turned about y, towards +x by `angle`.
 dvec3 tilted(double angle) {
@@ -17,17 +17,15 @@ dvec3 tilted(double angle) {
 class CausticTruth : public TruthTest {
  protected:
   static Question question(const scene::CameraPose& camera, int spp) {
-    return {.camera = camera,
-            .output = Output::caustic,
-            .techniques = {technique("surface_caustics")},
-            .spp = spp};
+    return {
+        .camera = camera, .term = Term::caustic, .techniques = {technique("surface_caustics")}, .spp = spp};
   }
 
   /// In the plane x = 1.2, facing what lies at the origin, above z = 0; the sun that shines along (1, 0, -1)
   /// passes it and lights it, too.
   static void addWall(scene::Scene& scene, const dvec3& normal) {
     scene::Primitive wall = test::quad({1.2f, 0, 2}, {0, 4, 0}, {0, 0, -4},
-                                       test::addMaterial(scene, test::lambertian(float(albedo))));
+                                       test::addMaterial(scene, test::lambertian(float(kAlbedo))));
     wall.normals.assign(4, vec3(normal));
     test::show(scene, wall);
   }
@@ -62,9 +60,9 @@ TEST_F(CausticTruth, AMirrorWithTiltedNormalsIsAsBrightAsTheSun) {
     mirror.normals.assign(4, vec3(normal));
     test::show(scene, mirror);
     addWall(scene, facing);
-    test::shine(scene, test::lamp(glsl::light_directional, float(sun)), vec3(0), vec3(light));
+    test::shine(scene, test::lamp(glsl::light_directional, float(kSun)), vec3(0), vec3(light));
     const auto expected = [&](const dvec3& p, const dvec3&) {
-      return fullyLit(p, leaves) ? albedo / M_PI * sun * -glm::dot(facing, leaves) : nothing;
+      return fullyLit(p, leaves) ? kAlbedo / M_PI * kSun * -glm::dot(facing, leaves) : nothing;
     };
     const Question q = question(towardsWall(leaves), 128);
     expectPicture(scene, q, expected, {.average = 0.02, .pixels = 300});
@@ -97,20 +95,20 @@ TEST_F(CausticTruth, GlassPassesWhatFresnelAndBeerLeave) {
     plate.normals.assign(4, vec3(front));
     test::show(scene, test::joined(plate, test::quad({0, 0, 0.5f}, {2, 0, 0}, {0, -2, 0}, glass)));
     test::show(scene, test::quad({0, 0, 0}, {6, 0, 0}, {0, 6, 0},
-                                 test::addMaterial(scene, test::lambertian(float(albedo)))));
-    test::shine(scene, test::lamp(glsl::light_directional, float(sun)), vec3(0), vec3(light));
+                                 test::addMaterial(scene, test::lambertian(float(kAlbedo)))));
+    test::shine(scene, test::lamp(glsl::light_directional, float(kSun)), vec3(0), vec3(light));
     const dvec3 middle = 0.2 * within / -within.z + 0.5 * leaves / -leaves.z;
     Question q = question(scene::lookAt({float(middle.x), -2, 0.42f}, {float(middle.x), 0, 0}, 0.6f), 192);
     const auto expected = [&](double transmitted) {
       return [=](const dvec3& p, const dvec3&) {
         const bool whole = std::abs(p.z) < 1e-3 && std::abs(p.x - middle.x) < 0.5 && std::abs(p.y) < 0.5;
-        return whole ? albedo / M_PI * sun * transmitted * -leaves.z : nothing;
+        return whole ? kAlbedo / M_PI * kSun * transmitted * -leaves.z : nothing;
       };
     };
     expectPicture(scene, q, expected(once), {.average = 0.02, .pixels = 300});
     expectReference(scene, q, expected(once), {.average = 0.2, .pixels = 300});
     if (angle != 0) continue;
-    q.interfaces = reference::allInterfaces;
+    q.interfaces = reference::kAllInterfaces;
     expectReference(scene, q, expected(once / (1 - std::pow(in * passes, 2))),
                     {.average = 0.3, .pixels = 300});
   }
@@ -127,7 +125,7 @@ TEST_F(CausticTruth, AMirrorCornerIsLitByThreeImages) {
   test::show(scene, test::quad({0, 1, 1}, {0, 2, 0}, {0, 0, 2}, silver));  // x = 0, facing +x
   test::show(scene, test::quad({1, 0, 1}, {0, 0, 2}, {2, 0, 0}, silver));  // y = 0, facing +y
   test::show(scene, test::quad({1, 1, 0}, {2, 0, 0}, {0, 2, 0},
-                               test::addMaterial(scene, test::lambertian(float(albedo)))));
+                               test::addMaterial(scene, test::lambertian(float(kAlbedo)))));
   test::shine(scene, test::lamp(glsl::light_point, float(intensity)), vec3(lamp));
   const auto expected = [&](bool both) {
     return [=](const dvec3& p, const dvec3&) {
@@ -138,13 +136,13 @@ TEST_F(CausticTruth, AMirrorCornerIsLitByThreeImages) {
         const dvec3 towards = dvec3(x, y, 1) * lamp - p;
         sum += intensity * towards.z / std::pow(glm::length(towards), 3);
       }
-      return albedo / M_PI * sum;
+      return kAlbedo / M_PI * sum;
     };
   };
   Question q = question(scene::lookAt({1.6f, 1.7f, 1.9f}, {0.7f, 0.7f, 0}, 0.7f), 256);
   expectPicture(scene, q, expected(false), {.average = 0.03});
   expectReference(scene, q, expected(false), {.average = 0.3});
-  q.interfaces = reference::allInterfaces;
+  q.interfaces = reference::kAllInterfaces;
   expectReference(scene, q, expected(true), {.average = 0.3});
 }
 

@@ -2,9 +2,9 @@
 // by the thousand: a closed room has no holes, and one that is empty no shadows.
 #include <gtest/gtest.h>
 
-#include "core/scene/load.h"
+#include "core/scene_io/load.h"
 #include "tests/support/paths.h"
-#include "tests/unit/reference_scene.h"
+#include "tests/support/reference_scene.h"
 
 namespace limn::reference::test {
 namespace {
@@ -89,7 +89,7 @@ int lonelyMisses(const Image& image) {
 TEST(Edges, AMillionPixelsOfTheCornellBoxAreSeen) {
   World world;
   world.scene =
-      scene::load(std::filesystem::path(limn::test::binaryDir) / "assets/cornell_box/cornell_box.glb");
+      scene::load(std::filesystem::path(limn::test::kBinaryDir) / "assets/cornell_box/cornell_box.glb");
   world.pose = scene::evaluate(world.scene, 0);
   world.camera = world.pose.cameras.front();
   int missed = 0, pixels = 0;

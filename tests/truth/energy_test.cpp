@@ -90,7 +90,7 @@ TEST_F(EnergyTruth, AnIntegratingSphereAddsTheGeometricSeries) {
   Question q{.camera = scene::lookAt({0.3f, 0.2f, 0.1f}, {1, 0.5f, 2}, 1.2f), .size = {24, 24}};
   const auto constant = [](double value) { return [value](const dvec3&, const dvec3&) { return value; }; };
   expectBoth(scene, q, constant(direct), {.mean = 3e-3, .average = 3e-3});
-  q.output = Output::indirect;
+  q.term = Term::indirect;
   q.spp = 64;
   for (const int bounces : {1, 3, 40}) {
     SCOPED_TRACE(bounces);

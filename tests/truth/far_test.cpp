@@ -12,8 +12,9 @@ namespace limn {
 namespace {
 
 using json = nlohmann::json;
+using namespace nlohmann::literals;
 
-constexpr const char* whiteTexel =
+constexpr const char* kWhiteTexel =
     "data:image/"
     "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5E"
     "rkJggg==";
@@ -30,6 +31,12 @@ void shift(json& document, double x, By by) {
     node["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, 2 * x, -x, 1};
   else
     node["translation"] = translation;
+  if (document["scenes"][0].contains("/extras/limn_medium/smoke"_json_pointer))
+    for (const char* corner : {"low", "high"})
+      for (size_t axis = 0; axis < 3; ++axis) {
+        json& value = document["scenes"][0]["extras"]["limn_medium"]["smoke"][corner][axis];
+        value = value.get<double>() + translation[axis].get<double>();
+      }
   nodes.push_back(node);
   if (by == By::chain) {  // two nodes that almost cancel
     nodes.back()["translation"] = {x + 0.375, 2 * x, -x};
@@ -40,7 +47,7 @@ void shift(json& document, double x, By by) {
 
 /// An asset, moved.
 scene::Scene moved(const std::string& name, double x, By by) {
-  const auto file = std::filesystem::path(test::binaryDir) / "assets" / name / (name + ".glb");
+  const auto file = std::filesystem::path(test::kBinaryDir) / "assets" / name / (name + ".glb");
   std::vector<std::byte> glb = readFile(file);
   const auto word = [&](size_t at) {
     uint32_t value = 0;
@@ -53,7 +60,7 @@ scene::Scene moved(const std::string& name, double x, By by) {
   shift(document, x, by);
   if (document.contains("images"))
     for (json& image : document["images"])  // what is not in the file: one white texel
-      if (image.contains("uri")) image["uri"] = whiteTexel;
+      if (image.contains("uri")) image["uri"] = kWhiteTexel;
   std::string text = document.dump();
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
@@ -83,12 +90,12 @@ double difference(const Image& a, const Image& b) {
 
 class FarTest : public RenderTest {
  protected:
-  Image picture(const scene::Scene& scene, const TechniquePlugin& plugin) {
+  static Image picture(const scene::Scene& scene, std::vector<render::TechniqueUse> techniques) {
     render::Renderer renderer(device(), scene);
     render::Settings settings;
     settings.size = {48, 48};
-    settings.techniques = {quick(plugin.info->name)};
-    settings.output = render::Output::final;
+    settings.techniques = std::move(techniques);
+    settings.term = Term::final;
     renderer.configure(settings);
     renderer.setCamera(scene::evaluate(scene, 0).cameras.front());
     renderer.render();
@@ -98,7 +105,7 @@ class FarTest : public RenderTest {
     const scene::Pose pose = scene::evaluate(scene, 0);
     reference::Request request{.scene = scene, .pose = pose, .camera = pose.cameras.front()};
     request.width = request.height = 48;
-    request.term = reference::Term::final;
+    request.term = Term::final;
     request.bounces = 1;
     request.spp = 16;
     return reference::render(request).image;
@@ -118,9 +125,34 @@ TEST_F(FarTest, EveryTechniqueIsTheSameAnywhere) {
                      farther = moved("cornell_box", 1e7, By::chain);
   for (const TechniquePlugin* plugin : testedTechniques()) {
     SCOPED_TRACE(plugin->info->name);
-    const Image expected = picture(near, *plugin);
-    EXPECT_LT(difference(expected, picture(far, *plugin)), 5e-3);
-    EXPECT_LT(difference(expected, picture(farther, *plugin)), 5e-3);
+    const Image expected = picture(near, {quick(plugin->info->name)});
+    EXPECT_LT(difference(expected, picture(far, {quick(plugin->info->name)})), 5e-3);
+    EXPECT_LT(difference(expected, picture(farther, {quick(plugin->info->name)})), 5e-3);
+  }
+}
+
+/// Fog in a room, smoke that the scene's file places, and surfaces that are made anew for every time.
+TEST_F(FarTest, MediaAndMetaballsAreTheSameAnywhere) {
+  const std::vector<render::TechniqueUse> techniques = {quick("hard_shadow_map"), quick("airlight")};
+  for (const char* name : {"cornell_box", "smoke", "metaballs"}) {
+    SCOPED_TRACE(name);
+    const auto at = [&](double x, By by) {
+      scene::Scene scene = moved(name, x, by);
+      if (!scene.medium.present()) {
+        scene.medium.sigmaA = glm::vec3(0.1f);
+        scene.medium.sigmaS = glm::vec3(0.2f, 0.3f, 0.4f);
+      }
+      return scene;
+    };
+    const scene::Scene near = at(0, By::translation);
+    const Image seen = picture(near, techniques), exact = truth(near);
+    for (const auto& [x, by] : {std::pair(1e5, By::matrix), std::pair(1e7, By::chain)}) {
+      SCOPED_TRACE(x);
+      const scene::Scene far = at(x, by);
+      ASSERT_NE(far.origin, glm::dvec3(0));
+      EXPECT_LT(difference(seen, picture(far, techniques)), 5e-3);
+      EXPECT_LT(difference(exact, truth(far)), 1e-3);
+    }
   }
 }
 

@@ -24,7 +24,7 @@ TEST_F(MediaTruth, AirlightOfALampMeetsQuadrature) {
     SCOPED_TRACE(g);
     scene.medium.g = float(g);
     const Question q{.camera = scene::lookAt(vec3(eye), {0, 0.9f, 0}, 0.7f),
-                     .output = Output::media,
+                     .term = Term::media,
                      .techniques = {technique("hard_shadow_map"), technique("airlight")},
                      .spp = 256,
                      .size = {24, 24},

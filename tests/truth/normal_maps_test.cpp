@@ -13,8 +13,8 @@ using glm::dvec2;
 using glm::vec3;
 using json = nlohmann::json;
 
-constexpr int texels = 64;
-constexpr double albedo = 0.8, irradiance = 3;
+constexpr int kTexels = 64;
+constexpr double kAlbedo = 0.8, kIrradiance = 3;
 
 /// Gradient of bumps h = 0.03 sin(2 pi x) + 0.05 cos(2 pi y) + 0.02 sin(2 pi (x + y)), in sides of the quad,
 /// over the place (x to the right, y up) on the upright picture; lopsided, so that no two ways of turning it
@@ -28,15 +28,15 @@ dvec2 slope(const dvec2& p) {
 /// glTF 2.0, 3.9.3: red is to the right of the picture, green is up, blue is towards the viewer.
 std::vector<std::byte> normalMap() {
   std::vector<std::uint8_t> rgba;
-  for (int row = 0; row < texels; ++row)
-    for (int column = 0; column < texels; ++column) {
-      const dvec2 s = slope({(column + 0.5) / texels, 1 - (row + 0.5) / texels});
+  for (int row = 0; row < kTexels; ++row)
+    for (int column = 0; column < kTexels; ++column) {
+      const dvec2 s = slope({(column + 0.5) / kTexels, 1 - (row + 0.5) / kTexels});
       const glm::dvec3 n = glm::normalize(glm::dvec3(-s.x, -s.y, 1));
       for (int c = 0; c < 3; ++c)
         rgba.push_back(static_cast<std::uint8_t>(std::lround(255 * (0.5 * n[c] + 0.5))));
       rgba.push_back(255);
     }
-  return test::png(texels, texels, rgba);
+  return test::png(kTexels, kTexels, rgba);
 }
 
 struct Setting {
@@ -52,7 +52,7 @@ scene::Scene bumps(const Setting& s, const vec3& towardsLight) {
   const int material = b.texturedMaterial(normalMap());
   b.root["materials"][static_cast<size_t>(material)] = {
       {"pbrMetallicRoughness",
-       {{"baseColorFactor", {albedo, albedo, albedo, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
+       {{"baseColorFactor", {kAlbedo, kAlbedo, kAlbedo, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
       {"normalTexture", {{"index", 0}}},
       {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}};
   const float left = s.mirroredTexture ? 1.f : 0.f;
@@ -66,7 +66,7 @@ scene::Scene bumps(const Setting& s, const vec3& towardsLight) {
   const int mesh = b.mesh(attributes, b.indices({0, 1, 2, 0, 2, 3}), material);
   b.node({{"mesh", mesh}, {"scale", {s.scale.x, s.scale.y, s.scale.z}}});
   scene::Scene scene = test::loadBuilt(b);
-  test::shine(scene, test::lamp(glsl::light_directional, float(irradiance)), vec3(0), -towardsLight);
+  test::shine(scene, test::lamp(glsl::light_directional, float(kIrradiance)), vec3(0), -towardsLight);
   return scene;
 }
 
@@ -96,7 +96,7 @@ TEST_F(NormalMapTruth, ABumpLitFromTheSideIsTheSurfaceItStandsFor) {
                    const dvec2 way(double(s.scale.x) * (s.mirroredTexture ? -1 : 1), double(s.scale.y));
                    const dvec2 gradient = way * slope(way * dvec2(p) + 0.5);
                    const dvec3 n = glm::normalize(dvec3(-gradient, 1));
-                   return albedo / M_PI * irradiance * std::max(glm::dot(n, dvec3(light)), 0.0);
+                   return kAlbedo / M_PI * kIrradiance * std::max(glm::dot(n, dvec3(light)), 0.0);
                  },
                  {.pixels = 1500});
     }

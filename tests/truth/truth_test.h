@@ -18,7 +18,7 @@ namespace limn {
 /// What is asked of both renderers.
 struct Question {
   scene::CameraPose camera;
-  render::Output output = render::Output::direct;
+  Term term = Term::direct;
   std::vector<render::TechniqueUse> techniques = {};  ///< of the picture
   int spp = 2;                                        ///< of the reference
   int bounces = 0, interfaces = 0;                    ///< of the reference
@@ -36,14 +36,13 @@ struct Deviation {
 
 class TruthTest : public RenderTest {
  protected:
-  using Output = render::Output;
   using dvec3 = glm::dvec3;
   using vec3 = glm::vec3;
   static constexpr double nothing = std::numeric_limits<double>::quiet_NaN();  ///< no closed form here
 
   static Image pictureOf(const scene::Scene& scene, const Question& q) {
     render::Renderer renderer(device(), scene);
-    render::Settings s = settings(q.size.x, q.size.y, q.output, q.techniques);
+    render::Settings s = settings(q.size.x, q.size.y, q.term, q.techniques);
     s.channels = true;
     renderer.configure(std::move(s));
     renderer.setCamera(q.camera);
@@ -57,7 +56,7 @@ class TruthTest : public RenderTest {
         .scene = scene, .pose = pose, .camera = q.camera, .progress = {}, .checkpoint = {}};
     request.width = q.size.x;
     request.height = q.size.y;
-    request.term = reference::termFromName(std::string(render::name(q.output)));
+    request.term = q.term;
     request.spp = q.spp;
     request.bounces = q.bounces;
     request.interfaces = q.interfaces;

@@ -10,7 +10,7 @@
 
 namespace {
 
-constexpr long version = 5;
+constexpr long kVersion = 5;
 
 class DragSource {
  public:
@@ -24,7 +24,7 @@ class DragSource {
   bool drop() {
     XSetSelectionOwner(display_, atom("XdndSelection"), self_, CurrentTime);
     const auto list = static_cast<long>(atom("text/uri-list"));
-    say("XdndEnter", {version << 24, list, 0, 0});
+    say("XdndEnter", {kVersion << 24, list, 0, 0});
     say("XdndPosition", {0, 0, CurrentTime, static_cast<long>(atom("XdndActionCopy"))});
     for (XEvent event;;) {
       XNextEvent(display_, &event);

@@ -1,4 +1,5 @@
 // What the viewer saves says what it shows.
+
 #include "apps/view/view_state.h"
 
 #include <gmock/gmock.h>
@@ -10,7 +11,9 @@
 #include "apps/view/display_image.h"
 #include "core/bench/suite.h"
 #include "core/scene/camera.h"
-#include "glsl/srgb.glsl"
+#include "core/session/technique_choice.h"
+#include "core/session/view.h"
+#include "glsl/numeric/srgb.glsl"
 
 namespace limn::app {
 namespace {
@@ -19,7 +22,7 @@ class ViewStateTest : public ::testing::Test {
  protected:
   ViewStateTest() : registry_(TechniqueRegistry::defaultFolders()) { state_.scene.scene = "cornell_box"; }
   void use(const char* techniques, std::vector<std::string> settings = {}) {
-    TechniqueOptions options;
+    session::TechniqueChoice options;
     options.techniques = techniques;
     options.settings = std::move(settings);
     state_.techniques = options.resolve(registry_);
@@ -29,11 +32,12 @@ class ViewStateTest : public ::testing::Test {
 };
 
 TEST_F(ViewStateTest, CommandsSayOnlyWhatIsNotTheDefault) {
-  state_.scene.size = "320x200";
+  state_.scene.width = 320;
+  state_.scene.height = 200;
   EXPECT_EQ(renderCommand(state_, "a.png"), "limn render cornell_box --size 320x200 --out a.png");
   use("pcss,clustered_visibility", {"pcss.filter_samples=16", "clustered_visibility.vals=5"});
   state_.exposure = -1.5f;
-  state_.output = render::Output::direct;
+  state_.scene.term = "direct";
   EXPECT_EQ(
       renderCommand(state_, "a.png"),
       "limn render cornell_box --technique pcss,clustered_visibility --set pcss.filter_samples=16 --set "
@@ -55,7 +59,7 @@ TEST_F(ViewStateTest, CamerasSurviveTheCommandLine) {
   setCamera(state_.scene, orbit, glm::dvec3(0));
   scene::Pose pose;
   pose.cameras.push_back(scene::lookAt({0, 0, 5}, glm::vec3(0), 0.7f));
-  EXPECT_EQ(chooseCamera(state_.scene, pose).worldToView,
+  EXPECT_EQ(session::chooseCamera(state_.scene, pose).worldToView,
             scene::lookAt(orbit.eye(), orbit.target(), 0.7f).worldToView);
 }
 
@@ -71,10 +75,11 @@ TEST_F(ViewStateTest, TechniquesThatClaimTheSameReplaceEachOther) {
 
 TEST_F(ViewStateTest, SuitesAreSuites) {
   use("vssm,clustered_visibility", {"vssm.shadow_map_size=512"});
-  state_.scene.size = "96x64";
+  state_.scene.width = 96;
+  state_.scene.height = 64;
   state_.scene.time = 0.5;
   state_.scene.lightSize = 0.25;
-  state_.output = render::Output::direct;
+  state_.scene.term = "direct";
   const bench::Suite suite = bench::parseSuite(benchSuite(state_), "view.toml");
   ASSERT_EQ(suite.cases.size(), 1u);
   EXPECT_EQ(suite.cases[0].technique, "vssm,clustered_visibility");
@@ -86,7 +91,7 @@ TEST_F(ViewStateTest, SuitesAreSuites) {
 /// All that the command says is in the suite.
 TEST_F(ViewStateTest, SuitesKeepEverySetting) {
   use("pcss,clustered_visibility,image_space_refraction");
-  SceneOptions& s = state_.scene;
+  SceneQuestion& s = state_.scene;
   s.camera = "front";
   s.eye = "0,1,3";
   s.target = "0,0.5,0";
@@ -94,7 +99,9 @@ TEST_F(ViewStateTest, SuitesKeepEverySetting) {
   s.environment = "sky.exr";
   s.environmentRotation = 45;
   s.environmentScale = 0.5;
-  s.environmentLights = {.threshold = 0.02, .resolution = 24, .shape = "rectangles"};
+  s.environmentLights = 0.02;
+  s.environmentResolution = 24;
+  s.environmentShape = "rectangles";
   s.environmentReflection = "centre";
   s.animation = "walk";
   s.lightSettings = {"key.size=1,2", "key.intensity=3"};
@@ -106,21 +113,9 @@ TEST_F(ViewStateTest, SuitesKeepEverySetting) {
   const bench::Suite suite = bench::parseSuite(benchSuite(state_), "view.toml");
   ASSERT_EQ(suite.cases.size(), 1u);
   const bench::Case& c = suite.cases[0];
-  EXPECT_EQ(c.camera, "front");
-  const bench::SceneChanges changes{.eye = s.eye,
-                                    .target = s.target,
-                                    .fov = s.fov,
-                                    .animation = s.animation,
-                                    .setLight = s.lightSettings,
-                                    .defaultLights = s.defaultLights,
-                                    .environmentRotation = s.environmentRotation,
-                                    .environmentScale = s.environmentScale,
-                                    .grid = s.grid};
-  EXPECT_EQ(c.changes, changes);
-  EXPECT_EQ(c.environment, (bench::EnvironmentSettings{"sky.exr", 0.02, 24, "rectangles", "centre"}));
-  EXPECT_EQ(c.medium, (bench::MediumSettings{s.sigmaA, s.sigmaS, s.g}));
+  EXPECT_EQ(static_cast<const SceneQuestion&>(c), s);
   EXPECT_EQ(c.reference.bounces, 1) << "indirect light is in the picture";
-  EXPECT_EQ(c.reference.interfaces, render::interfacesOf(render::Output::final, state_.techniques));
+  EXPECT_EQ(c.reference.interfaces, render::interfacesOf(Term::final, state_.techniques));
   EXPECT_GT(c.reference.interfaces, 0) << "glass is in the picture";
 }
 

@@ -9,7 +9,7 @@ class ViewerInputTest : public ViewerWindowTest {};
 /// Files dropped on the window: a scene replaces the one that is shown, one that cannot be read leaves it, a
 /// map lights it.
 TEST_F(ViewerInputTest, TakesWhatIsDroppedOnIt) {
-  const std::string assets = std::string(binaryDir) + "/assets/";
+  const std::string assets = std::string(kBinaryDir) + "/assets/";
   std::filesystem::copy_file(assets + "environments/sky.exr", folder_ / "sky.exr");
   const Outcome outcome =
       view("cornell_box --technique hard_shadow_map --size 560x160 --save a.exr",
@@ -50,7 +50,7 @@ TEST_F(ViewerInputTest, RestsWhileMinimised) {
 
 /// The chooser offers the maps beside the present one, here those of the folder.
 TEST_F(ViewerInputTest, ChoosesEnvironments) {
-  std::filesystem::copy_file(std::string(binaryDir) + "/assets/environments/sky.exr", folder_ / "0.exr");
+  std::filesystem::copy_file(std::string(kBinaryDir) + "/assets/environments/sky.exr", folder_ / "0.exr");
   auto choose = [opened = 1](int entry) mutable {
     return "click 250 116; click 250 " + std::to_string(140 + 18 * entry) + "; hear opened " +
            std::to_string(++opened) + "\n";

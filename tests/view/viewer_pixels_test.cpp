@@ -9,7 +9,7 @@ class ViewerPixelsTest : public ViewerWindowTest {};
 /// After the mouse turned the camera, the saved command gives the saved picture, bit for bit.
 TEST_F(ViewerPixelsTest, ShowsWhatRenderRenders) {
   expectSamePixels("cornell_box --technique pcss --set pcss.filter_samples=16 --size 560x240",
-                   std::string(drag) + "xdotool click 4; frames 2", "--eye");
+                   std::string(kDrag) + "xdotool click 4; frames 2", "--eye");
 }
 
 /// Lights that were moved, and default lights, which stand by the camera.
@@ -18,7 +18,7 @@ TEST_F(ViewerPixelsTest, ShowsTheLightsThatRenderShows) {
       "lights --technique pcss --size 560x240 --set-light key.position=0.2,1.7,0.3 "
       "--set-light key.rotation=-80,10,0",
       "", "--set-light key.position=0.2,1.7,0.3");
-  expectSamePixels("gem --default-lights on --technique hard_shadow_map --size 560x240", drag,
+  expectSamePixels("gem --default-lights on --technique hard_shadow_map --size 560x240", kDrag,
                    "--default-lights on");
 }
 
@@ -46,7 +46,7 @@ TEST_F(ViewerPixelsTest, SuitesMeasureWhatItShows) {
       {"/bin/sh", "-c",
        "cd '" + folder_.path().string() +
            "' && sed -i 's/^reference = .*/reference = {spp = 1}\\nframes = 1\\nwarmup = 0/' a.toml && '" +
-           binaries +
+           kBinaries +
            "limn' bench a.toml --out bench && cp bench/pictures/$(sed -n "
            "'s|.*\"picture\":\"pictures/\\([^\"]*\\)\".*|\\1|p' bench/results.jsonl) bench.png"});
   ASSERT_EQ(bench.status, 0) << bench.err;

@@ -14,7 +14,7 @@ class ViewerScenesTest : public ViewerWindowTest {
   /// triangles take seconds a picture where there is no GPU.
   static std::vector<std::filesystem::path> scenes(char first, char last) {
     std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(std::string(binaryDir) + "/assets")) {
+    for (const auto& entry : std::filesystem::directory_iterator(std::string(kBinaryDir) + "/assets")) {
       const std::string name = entry.path().filename().string();
       const std::filesystem::path file = entry.path() / (name + ".glb");
       if (name[0] >= first && name[0] <= last && name != "soldiers" && std::filesystem::exists(file))
@@ -96,14 +96,14 @@ TEST_P(ViewerTechniquesTest, SwitchesThemOnAndOff) {
   EXPECT_EQ(colours(picture("last.exr")), colours(picture("first.exr")));
 }
 
-constexpr const char* stages[] = {"cornell_box", "teapot_pattern", "balls --environment sky", "gem"};
+constexpr const char* kStages[] = {"cornell_box", "teapot_pattern", "balls --environment sky", "gem"};
 
-INSTANTIATE_TEST_SUITE_P(Stages, ViewerTechniquesTest, testing::ValuesIn(stages));
+INSTANTIATE_TEST_SUITE_P(Stages, ViewerTechniquesTest, testing::ValuesIn(kStages));
 
 TEST_F(ViewerScenesTest, HasAStageForEveryTechnique) {
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
   for (const TechniquePlugin* plugin : registry.all())
-    EXPECT_THAT(stages, testing::Contains(stageOf(plugin->info->terms))) << plugin->info->name;
+    EXPECT_THAT(kStages, testing::Contains(stageOf(plugin->info->terms))) << plugin->info->name;
 }
 
 }  // namespace

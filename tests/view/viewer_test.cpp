@@ -11,14 +11,14 @@ namespace {
 
 // A frame of the window, milliseconds: 50 where nobody else uses the two cores, up to 900 measured with a
 // dozen processes on them, where compilations and pictures take many seconds.
-constexpr double longestMs = 2000;
-constexpr double growthMiB =
+constexpr double kLongestMs = 2000;
+constexpr double kGrowthMiB =
     24;  // over three rounds; what a leak of one picture or program in each would exceed
 
 class ViewerTest : public ViewerWindowTest {};
 
 TEST_F(ViewerTest, SurvivesABrokenSceneAndEveryTechnique) {
-  std::filesystem::copy_file(std::string(binaryDir) + "/assets/lights/lights.glb", folder_ / "mine.glb");
+  std::filesystem::copy_file(std::string(kBinaryDir) + "/assets/lights/lights.glb", folder_ / "mine.glb");
   std::string script = "save first.exr; echo broken > mine.glb; xdotool key F4; hear mine.glb 2\n";
   for (int i = 0; i < 16; ++i) script += "xdotool key F2; save " + std::to_string(i) + ".exr\n";
   const Outcome outcome = view("mine.glb --size 500x128 --save a.exr", script);
@@ -47,7 +47,7 @@ TEST_F(ViewerTest, ResizesHidesAndComparesWithTheTruth) {
 /// Shaders are read again when they change; one that does not compile leaves its last good version running.
 TEST_F(ViewerTest, ReloadsShaders) {
   for (const char* shaders : {"glsl", "techniques"})
-    std::filesystem::copy(std::filesystem::path(sourceDir) / shaders, folder_ / shaders,
+    std::filesystem::copy(std::filesystem::path(kSourceDir) / shaders, folder_ / shaders,
                           std::filesystem::copy_options::recursive);
   const std::string shader = "techniques/hard_shadow_map/visibility.comp.glsl";
   const Outcome outcome =
@@ -81,7 +81,7 @@ TEST_F(ViewerTest, SavesSequences) {
   EXPECT_EQ(outcome.err, "");
   const Image frame = picture("a.0007.exr");
   const Outcome rendered =
-      run({binaries + "limn", "render", "metaballs", "--technique", "hard_shadow_map", "--size",
+      run({kBinaries + "limn", "render", "metaballs", "--technique", "hard_shadow_map", "--size",
            std::to_string(frame.width()) + "x" + std::to_string(frame.height()), "--frames", "7:7", "--out",
            (folder_ / "b.exr").string()});
   ASSERT_EQ(rendered.status, 0) << rendered.err;
@@ -105,7 +105,7 @@ TEST_F(ViewerTest, KeepsTheTruthOnDisk) {
   const Image shown = picture("b.exr");
   const Outcome reference =
       run({"/bin/sh", "-c",
-           "cd '" + folder_.path().string() + "' && '" + binaries +
+           "cd '" + folder_.path().string() + "' && '" + kBinaries +
                "limn' reference cornell_box --term final --size " + std::to_string(shown.width()) + "x" +
                std::to_string(shown.height()) + " --spp 64 --cache out/references --out c.exr"});
   ASSERT_EQ(reference.status, 0) << reference.err;
@@ -120,7 +120,7 @@ TEST_F(ViewerTest, StaysResponsive) {
   const Outcome outcome =
       view("robot --technique vssm --size 900x600 --compare truth --open frame --stats stats.json", script);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_LT(number("longest_ms"), longestMs) << contents(folder_ / "stats.json");
+  EXPECT_LT(number("longest_ms"), kLongestMs) << contents(folder_ / "stats.json");
   EXPECT_GE(number("pictures"), 2);
 }
 
@@ -151,7 +151,7 @@ TEST_F(ViewerTest, DoesNotGrow) {
   // The first round compiles and fills what is kept.
   const double early = *std::min_element(pages.begin() + 1, pages.begin() + 3),
                late = *std::min_element(pages.begin() + 3, pages.end());
-  EXPECT_LT((late - early) * 4096 / (1 << 20), growthMiB) << contents(folder_ / "pages");
+  EXPECT_LT((late - early) * 4096 / (1 << 20), kGrowthMiB) << contents(folder_ / "pages");
 }
 
 }  // namespace

@@ -16,7 +16,7 @@
 
 namespace limn::test {
 
-inline const std::string binaries = std::string(binaryDir) + "/bin/";
+inline const std::string kBinaries = std::string(kBinaryDir) + "/bin/";
 
 class ViewerWindowTest : public ::testing::Test {
  protected:
@@ -30,23 +30,26 @@ class ViewerWindowTest : public ::testing::Test {
   /// window has been drawn so often with all that was done before, `save FILE` for the picture of the moment,
   /// which limn-view saves as a.exr, `focused` until keys reach the window. `point X Y` and `click X Y` are
   /// the mouse's, `drop FILE` drops one on the window; the window is closed at the end. At most `seconds`.
+  /// Ends with status 8 as soon as the viewer has ended by itself.
   Outcome view(const std::string& arguments, const std::string& script, int seconds = 400,
                const std::map<std::string, std::string>& environment = {}) {
     const std::string text =
         "cd '" + folder_.path().string() + "' || exit 9\n" +  //
-        "await() { for i in $(seq 1200); do [ -e \"$1\" ] && return; sleep .05; done; echo no $1 >&2; }\n" +
-        "hear() { for i in $(seq 1200); do [ $(grep -c \"$1\" said) -ge $2 ] && return; sleep .05; done; "
+        "alive() { kill -0 $viewer 2> none || exit 8; }\n" +
+        "await() { for i in $(seq 1200); do [ -e \"$1\" ] && return; alive; sleep .05; done; echo no $1 >&2; "
+        "}\n" +
+        "hear() { for i in $(seq 1200); do [ $(grep -c \"$1\" said) -ge $2 ] && return; alive; sleep .05; "
+        "done; "
         "echo not said: $1 >&2; }\n" +  //
         // Keys are answered once in a frame; F6 writes a suite right away.
         "frames() { for n in $(seq $1); do rm -f a.toml; xdotool key F6; await a.toml; done; }\n" +
         "save() { xdotool key F5; await a.exr; mv a.exr $1; }\n" +  //
-        "focused() { until xdotool windowfocus $window 2> unfocused; do kill -0 $viewer || exit 8; sleep .1; "
-        "done; }\n" +
+        "focused() { until xdotool windowfocus $window 2> unfocused; do alive; sleep .1; done; }\n" +
         "point() { xdotool mousemove $1 $2; frames 2; }\n" +
         // Down, up, and what opens shows itself two frames later.
         "click() { point $1 $2; xdotool click 1; frames 4; }\n" +  //
-        "drop() { '" + binaryDir +
-        "/tests/limn_drop_files' $window \"$1\" || echo $1 was not taken >&2; }\n" + "'" + binaries +
+        "drop() { '" + kBinaryDir +
+        "/tests/limn_drop_files' $window \"$1\" || echo $1 was not taken >&2; }\n" + "'" + kBinaries +
         "limn-view' " + arguments + " --debug > said & viewer=$!\n" +
         "window=$(timeout 60 xdotool search --sync --onlyvisible --name '^limn$' | head -n 1)\n" +
         "focused\n" + script + "\nxdotool key ctrl+q\nwait $viewer\n";
@@ -64,7 +67,7 @@ class ViewerWindowTest : public ::testing::Test {
     EXPECT_THAT(again, testing::HasSubstr(said));
     again.replace(again.find("a.exr"), 5, "rendered.exr");
     const Outcome rendered =
-        run({"/bin/sh", "-c", "cd '" + folder_.path().string() + "' && '" + binaries + "'" + again});
+        run({"/bin/sh", "-c", "cd '" + folder_.path().string() + "' && '" + kBinaries + "'" + again});
     ASSERT_EQ(rendered.status, 0) << rendered.err;
     EXPECT_EQ(colours(picture("rendered.exr")), colours(shown));
   }
@@ -85,7 +88,7 @@ class ViewerWindowTest : public ::testing::Test {
 };
 
 /// A drag across the picture; `save` before it waits for the first picture.
-inline const char* const drag =
+inline const char* const kDrag =
     "save first.exr; point 470 100; xdotool mousedown 1; frames 2; point 500 110; xdotool mouseup 1; frames "
     "2\n";
 

@@ -10,7 +10,9 @@
 #include "apps/limn/run_suite.h"
 #include "apps/view/viewer.h"
 #include "core/base/error.h"
+#include "core/base/version.h"
 #include "core/context/context.h"
+#include "core/session/find.h"
 
 namespace limn::app {
 namespace {
@@ -38,9 +40,10 @@ int writeFiles(const Chapter& chapter, const fs::path& out, const BackendOptions
   int failed = 0;
   bool any = false;
   for (const char* suite : chapter.suites) {
-    if (bench::selectCases(bench::readSuite(findSuite(suite)).cases, filters, {}).empty()) continue;
+    if (bench::selectCases(bench::readSuite(session::findSuite(suite)).cases, filters, {}).empty()) continue;
     any = true;
-    const bench::Summary summary = runSuite(findSuite(suite), out / suite, backend, {.filters = filters});
+    const bench::Summary summary =
+        runSuite(session::findSuite(suite), out / suite, backend, {.filters = filters});
     failed += summary.failed;
     const bool pictures = fs::exists(out / suite / "pictures.md");
     fmt::print("{}: {}{}\n", suite, (out / suite / "tables.md").string(),
@@ -67,7 +70,7 @@ std::vector<ViewerStep> stepsOf(const Chapter& chapter) {
 int runChapter(const Chapter& chapter, int argc, char** argv) {
   return guarded([&] {
     CLI::App program(chapter.title, chapter.name);
-    program.set_version_flag("--version", LIMN_VERSION);
+    program.set_version_flag("--version", version());
     program.failure_message([&](const CLI::App*, const CLI::Error& error) {
       return fmt::format("{}: {}; see {} --help\n", chapter.name, error.what(), chapter.name);
     });
@@ -75,19 +78,21 @@ int runChapter(const Chapter& chapter, int argc, char** argv) {
     std::vector<std::string> filters;
     bool headless = false;
     int frames = 0;
-    SceneOptions scene;
+    SceneQuestion scene;
     scene.scene = chapter.scene;
     BackendOptions backend;
     program.add_flag("--headless", headless,
-                     "Write pictures and tables although there is a display (the default without one)");
-    program.add_option("-o,--out", out, "Folder of the pictures and tables; resumed if it exists")
+                     "Write pictures and tables even if there is a display (the default without one)");
+    program
+        .add_option("-o,--out", out,
+                    "Folder for the pictures and tables; a run that is in it already is resumed")
         ->capture_default_str();
     program.add_option("--filter", filters, "Only cases whose label contains this text; repeatable")
         ->take_all();
     program.add_option("--scene", scene.scene, "Scene in the window: a file, or the name of one of limn's")
         ->capture_default_str();
-    program.add_option("--size", scene.size, "Size of the window, WIDTHxHEIGHT")->capture_default_str();
-    program.add_option("--frames", frames, "Close the window after so many frames; 0: stay")
+    addSceneFlag(program, scene, "size")->description("Size of the window, WIDTHxHEIGHT");
+    program.add_option("--frames", frames, "Close the window after this many frames; 0: keep it open")
         ->check(CLI::NonNegativeNumber);
     backend.addTo(program);
     try {

@@ -1,5 +1,5 @@
-// A chapter's demo program. Without a display it writes the chapter's pictures and its table of frames per
-// second; with one it opens the viewer, with a guide through the chapter's settings.
+// Declares the demo program of a chapter. Without a display it writes the chapter's pictures and its table of
+// frames per second; with one it opens the viewer, with a guide through the chapter's settings.
 #pragma once
 
 #include <span>
@@ -7,12 +7,12 @@
 
 namespace limn::app {
 
-/// One step of the guide through the chapter that the window offers.
+/// Declares one step of the guide through the chapter that the window offers.
 struct ChapterSetting {
   const char* title;
   const char* techniques;     ///< as --technique
   const char* parameters;     ///< as --set, separated by spaces; may be empty
-  const char* sentence = "";  ///< what is to be seen
+  const char* sentence = "";  ///< what the setting shows
 };
 
 struct Chapter {
@@ -23,7 +23,7 @@ struct Chapter {
   std::span<const ChapterSetting> settings;
 };
 
-/// main() of a chapter's program; returns its exit status.
+/// Runs main() of a chapter's program and returns the exit status.
 int runChapter(const Chapter& chapter, int argc, char** argv);
 
 }  // namespace limn::app

@@ -1,5 +1,5 @@
-// limn-fit-ltc: fits linearly transformed cosines to the glossy lobe of glsl/brdf.glsl and writes the table
-// that core/shading/ltc_table.cpp compiles in. Run it after changing that lobe:
+// limn-fit-ltc: fits linearly transformed cosines to the glossy lobe of glsl/surface/brdf.glsl and writes the
+// table that core/shading/ltc_table.cpp compiles in. Run it after changing that lobe:
 //
 //     limn-fit-ltc core/shading/ltc_table.inc
 //
@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "glsl/ltc.glsl"
+#include "glsl/light/ltc.glsl"
 
 namespace {
 
@@ -201,6 +201,7 @@ struct Texels {
 Texels fit(const Setting& s, Point& state) {
   const Albedo total = albedo(s);
   std::vector<vec3> fromLobe;
+  fromLobe.reserve(size_t{kFitSide} * kFitSide);
   for (int i = 0; i < kFitSide * kFitSide; ++i) fromLobe.push_back(sampleLobe(s, stratum(i, kFitSide)));
   const auto error = [&](const Point& p) { return misfit(s, total.a + total.b, fromLobe, p); };
   // Two starts: the rougher neighbour's lobe, and the lobe of a very smooth surface.
@@ -222,7 +223,7 @@ Texels fit(const Setting& s, Point& state) {
 
 void write(const char* path, const std::vector<Texels>& table) {
   std::ofstream out(path);
-  out << "// Written by limn-fit-ltc; see glsl/ltc.glsl. Rows of n.v, columns of roughness, two texels "
+  out << "// Written by limn-fit-ltc; see glsl/light/ltc.glsl. Rows of n.v, columns of roughness, two texels "
          "each.\n";
   for (const Texels& t : table) {
     for (const vec4& v : {t.shape, t.reflectance}) {

@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/technique/registry.h"
-#include "glsl/language.glsl"
+#include "glsl/numeric/language.glsl"
 
 int main(int argc, char** argv) {
   if (argc != 3) {

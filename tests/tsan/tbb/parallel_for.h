@@ -1,6 +1,6 @@
-// What limn uses of TBB's loops, on threads that ThreadSanitizer sees: Debian's libtbb is built without it, so that each
-// task handed from thread to thread would look like a race, and hiding those would hide limn's own. Builds with
-// LIMN_SANITIZE=thread find this folder before TBB's.
+// What limn uses of TBB's loops, on threads that ThreadSanitizer sees: Debian's libtbb is built without it,
+// so that each task handed from thread to thread would look like a race, and hiding those would hide limn's
+// own. Builds with LIMN_SANITIZE=thread find this folder before TBB's.
 #pragma once
 
 #include <atomic>
@@ -11,8 +11,8 @@
 
 namespace tbb {
 
-/// Calls `body(i)` for each i of [first, last) on three threads, in no order, and returns when all have returned. Throws
-/// one of the exceptions that they ended with.
+/// Calls `body(i)` for each i of [first, last) on three threads, in no order, and returns when all have
+/// returned. Throws one of the exceptions that they ended with.
 template <class Index, class Body>
 void parallel_for(Index first, Index last, const Body& body) {
   std::atomic<Index> next = first;

@@ -1,0 +1,77 @@
+// Compares the rows of one table with its baseline: how much faster they are, and how much faster than the
+// baseline's technique with the fewest samples whose error is not above the row's.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/base/export.h"
+#include "core/bench/ratio.h"
+#include "core/bench/row.h"
+#include "core/image/metric_table.h"
+
+namespace limn::bench {
+
+/// The errors at which rows are compared with the baseline; they are also measured over the penumbra. The
+/// first one is shown where there is room for only one.
+inline constexpr const MetricInfo* kCompared[] = {&metricInfo(&Metrics::rmse),
+                                                  &metricInfo(&Metrics::structured)};
+
+/// Returns whether the row has a picture and a time.
+inline bool isTimed(const Row& row) {
+  return row.failure.empty() && row.cost.frameMs.n > 0;
+}
+
+/// Returns the milliseconds of maps, filters and the technique's passes.
+LIMN_API double shadowMs(const Row& row);
+
+/// Returns the errors in the penumbra where they are known, else those of the whole picture.
+LIMN_API const Metrics& errorOf(const Row& row);
+
+/// Returns how many times as long the first row's frame takes. Both rows must be timed; where the single
+/// times of one are not known, its median stands for them.
+LIMN_API Ratio frameRatio(const Row& slow, const Row& fast);
+
+/// Returns the number of turns in which both rows were timed.
+LIMN_API int pairedTurns(const Row& a, const Row& b);
+
+/// Returns how many times as long the first row's maps, filters and technique's passes take; "-" where those
+/// of the other take no time.
+LIMN_API std::string shadowRatio(const Row& slow, const Row& fast);
+
+/// Returns a ratio to the digits that tables show.
+LIMN_API std::string ratioText(double ratio);
+/// Returns the same with the interval: "2.10 (1.80 to 2.40)".
+LIMN_API std::string ratioText(const Ratio& ratio);
+
+/// Returns the quickest timed row of the technique whose error is not above `limit` (in the penumbra, where
+/// that is known); null if there is none.
+LIMN_API const Row* quickest(std::span<const Row> rows, const std::string& technique, const MetricInfo& error,
+                             std::optional<double> limit);
+
+/// Holds how long the reference's own method takes to reach the row's error, with as many cores.
+struct ReferenceTime {
+  double ms = 0;
+  bool atLeast = false;  ///< the row's error is below the reference's noise: the time is a bound
+};
+
+/// Returns T (sigma / e)^2 for a reference that took T with the noise sigma, since the noise of independent
+/// samples falls that way. e^2 is the row's squared RMSE without sigma^2, or (sigma / 2)^2 where less
+/// remains: the smallest meaningful difference of two numbers that are known to a few percent. Returns
+/// nullopt where time or noise is unknown, and where errors and times belong to pictures of different sizes.
+LIMN_API std::optional<ReferenceTime> referenceTime(const Row& row);
+
+/// Returns a name of the row for people: its title, or settingsName().
+LIMN_API std::string rowName(const Row& row);
+/// Returns the technique with the parameters that the suite sets.
+LIMN_API std::string settingsName(const Row& row);
+
+/// Returns Markdown with a line for each timed row except those of the baseline's technique: frame time and
+/// shadow time (maps, filters, technique) as factors by which the baseline is slower (above 1: the row is
+/// faster), and the same for the fastest rows of the baseline's technique whose RMSE and whose structured
+/// error are not above the row's (in the penumbra, where that is known). Returns "" without a timed row of
+/// the baseline.
+LIMN_API std::string comparisonMarkdown(std::span<const Row> rows);
+
+}  // namespace limn::bench

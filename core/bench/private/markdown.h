@@ -1,0 +1,59 @@
+// Writes texts from other sources (names of scenes, techniques and files, messages of failures) as Markdown.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/export.h"
+
+namespace limn::bench {
+
+/// Returns the text escaped so that a reader of GitHub-flavoured Markdown (and CommonMark) sees its
+/// characters and nothing else: no cell, markup, link or HTML begins in it. Line breaks and tabs become
+/// spaces, other control characters their pictures (U+2400 and on), bytes that are not UTF-8 U+FFFD. GitHub
+/// may still turn an e-mail address in the shown text into a link.
+LIMN_API std::string markdownText(std::string_view text);
+
+enum class Align { left, right, centre };
+
+struct MarkdownHead {
+  std::string text;  ///< Markdown, written unchanged
+  Align align = Align::right;
+};
+
+/// Returns the two lines that begin a table: its heads, and the alignment of its columns.
+LIMN_API std::string markdownHead(const std::vector<MarkdownHead>& heads);
+
+/// Returns a line of a table, each cell as markdownText(): "| a | b |\n".
+LIMN_API std::string markdownRow(const std::vector<std::string>& cells);
+
+/// Declares a column of a table with one line for each result: its head and its cells.
+template <class Result>
+struct MarkdownColumn {
+  MarkdownHead head;
+  std::function<std::string(const Result&)> cell;
+};
+
+/// Returns the lines that begin a table of these columns.
+template <class Result>
+std::string markdownHead(const std::vector<MarkdownColumn<Result>>& columns) {
+  std::vector<MarkdownHead> heads;
+  for (const MarkdownColumn<Result>& column : columns) heads.push_back(column.head);
+  return markdownHead(heads);
+}
+
+/// Returns the line of a table of these columns for one result.
+template <class Result>
+std::string markdownRow(const std::vector<MarkdownColumn<Result>>& columns, const Result& result) {
+  std::vector<std::string> cells;
+  for (const MarkdownColumn<Result>& column : columns) cells.push_back(column.cell(result));
+  return markdownRow(cells);
+}
+
+/// Returns a picture without alternative text, "![](file)"; "" where the path is absolute or leaves the
+/// folder that it is relative to.
+LIMN_API std::string markdownPicture(const std::string& file);
+
+}  // namespace limn::bench

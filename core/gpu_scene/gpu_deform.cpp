@@ -1,0 +1,177 @@
+#include "core/gpu_scene/gpu_deform.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "core/gpu_scene/gpu_scene_data.h"
+
+namespace limn::scene {
+namespace {
+
+constexpr uint32_t kSkinWords = 6;    // 4 x 16-bit joints, 4 float weights
+constexpr uint32_t kMorphFloats = 9;  // deltas of position, normal, tangent
+constexpr int kGroupSize = 64;
+
+/// Rewrites a buffer, growing it to the next power of two when it must.
+void store(gpu::Device& device, gpu::Buffer& buffer, const char* label, const void* data, size_t bytes) {
+  if (!buffer || buffer.size() < bytes)
+    buffer = gpu::Buffer(device, label, std::bit_ceil(std::max<size_t>(bytes, 64)), gpu::BufferUse::updated);
+  buffer.update(0, data, bytes);
+}
+
+void append(std::vector<float>& out, const std::vector<glm::vec3>& deltas, size_t i) {
+  const glm::vec3 d = i < deltas.size() ? deltas[i] : glm::vec3(0);
+  out.insert(out.end(), {d.x, d.y, d.z});
+}
+
+}  // namespace
+
+GpuDeform::GpuDeform(gpu::Device& device, const Scene& scene) : device_(device) {
+  std::vector<uint32_t> skin;
+  std::vector<float> morph;
+  for (size_t m = 0; m < scene.meshes.size(); ++m) {
+    for (size_t p = 0; p < scene.meshes[m].primitives.size(); ++p) {
+      const Primitive& primitive = scene.meshes[m].primitives[p];
+      if (primitive.joints.empty() && primitive.morphTargets.empty()) continue;
+      addRest(primitive, rest_[{static_cast<int>(m), static_cast<int>(p)}], skin, morph);
+    }
+  }
+  if (rest_.empty()) return;
+  skin_ = gpu::Buffer::of<uint32_t>(device, "skin weights", skin);
+  morph_ = gpu::Buffer::of<float>(device, "morph targets", morph);
+}
+
+void GpuDeform::addRest(const Primitive& primitive, Rest& rest, std::vector<uint32_t>& skin,
+                        std::vector<float>& morph) {
+  const size_t count = primitive.positions.size();
+  if (!primitive.joints.empty()) {
+    rest.skin = static_cast<uint32_t>(skin.size());
+    for (size_t i = 0; i < count; ++i) {
+      const glm::u16vec4 j = primitive.joints[i];
+      const glm::vec4 w = primitive.weights[i];
+      skin.push_back(uint32_t{j.x} | uint32_t{j.y} << 16);
+      skin.push_back(uint32_t{j.z} | uint32_t{j.w} << 16);
+      for (int k = 0; k < 4; ++k) {
+        skin.push_back(std::bit_cast<uint32_t>(w[k]));
+        if (w[k] == 0) continue;
+        if (rest.jointBounds.size() <= j[k]) rest.jointBounds.resize(size_t{j[k]} + 1);
+        rest.jointBounds[j[k]].add(primitive.positions[i]);
+      }
+    }
+  }
+  rest.targets = static_cast<uint32_t>(primitive.morphTargets.size());
+  rest.morph = static_cast<uint32_t>(morph.size());
+  for (const MorphTarget& target : primitive.morphTargets) {
+    Bounds& bounds = rest.morphBounds.emplace_back();
+    bounds.add(glm::vec3(0));
+    for (const glm::vec3& d : target.positions) bounds.add(d);
+    for (size_t i = 0; i < count; ++i) {
+      append(morph, target.positions, i);
+      append(morph, target.normals, i);
+      append(morph, target.tangents, i);
+    }
+  }
+}
+
+Bounds GpuDeform::bounds(const Scene& scene, const Deformation& state) const {
+  const Primitive& primitive =
+      scene.meshes[static_cast<size_t>(state.mesh)].primitives[static_cast<size_t>(state.primitive)];
+  const Rest& rest = rest_.at({state.mesh, state.primitive});
+  glm::vec3 low(0), high(0);
+  for (size_t t = 0; t < std::min(rest.morphBounds.size(), state.morphWeights.size()); ++t) {
+    const glm::vec3 a = state.morphWeights[t] * rest.morphBounds[t].low;
+    const glm::vec3 b = state.morphWeights[t] * rest.morphBounds[t].high;
+    low += glm::min(a, b);
+    high += glm::max(a, b);
+  }
+  const auto morphed = [&](Bounds box) {
+    if (box.empty()) return box;
+    box.low += low;
+    box.high += high;
+    return box;
+  };
+  if (state.joints.empty()) return morphed(primitive.bounds);
+  // A skinned vertex lies in the convex hull of its images under the joints that move it.
+  Bounds result;
+  for (size_t j = 0; j < std::min(rest.jointBounds.size(), state.joints.size()); ++j) {
+    if (!rest.jointBounds[j].empty()) result.add(transformed(morphed(rest.jointBounds[j]), state.joints[j]));
+  }
+  return result;
+}
+
+bool GpuDeform::update(const Pose& pose, const GpuGeometry& geometry,
+                       const std::vector<GeometryRange>& targets) {
+  std::vector<Job> jobs;
+  std::vector<glm::mat4> joints;
+  std::vector<float> weights;
+  for (size_t i = 0; i < pose.deformed.size(); ++i) {
+    const Deformation& d = pose.deformed[i];
+    const Rest& rest = rest_.at({d.mesh, d.primitive});
+    const GeometryRange& source = geometry.primitive(d.mesh, d.primitive);
+    Job& job = jobs.emplace_back();
+    job.first_rest = source.firstVertex;
+    job.first_deformed = targets[i].firstVertex;
+    job.vertices = source.vertexCount;
+    job.skin = d.joints.empty() ? ~0u : rest.skin;
+    job.first_joint = static_cast<uint32_t>(joints.size());
+    job.first_weight = static_cast<uint32_t>(weights.size());
+    job.targets = std::min(rest.targets, static_cast<uint32_t>(d.morphWeights.size()));
+    job.deltas = rest.morph;
+    joints.insert(joints.end(), d.joints.begin(), d.joints.end());
+    weights.insert(weights.end(), d.morphWeights.begin(), d.morphWeights.end());
+  }
+  if (jobs == jobs_ && weights == weights_ && joints == joints_) return false;
+  jobs_ = std::move(jobs);
+  weights_ = std::move(weights);
+  joints_ = std::move(joints);
+  static_assert(sizeof(Job) == 32);
+  store(device_, jobBuffer_, "deform jobs", jobs_.data(), jobs_.size() * sizeof(Job));
+  store(device_, jointBuffer_, "joint matrices", joints_.data(), joints_.size() * sizeof(glm::mat4));
+  store(device_, weightBuffer_, "morph weights", weights_.data(), weights_.size() * sizeof(float));
+  return true;
+}
+
+frame::BufferHandle GpuDeform::addPass(frame::FrameGraph& graph, const GpuGeometry& streams,
+                                       frame::BufferHandle geometry) {
+  if (jobs_.empty()) {
+    forget();
+    graph.leaveOut("deform", "core", "nothing is skinned or morphed");
+    return geometry;
+  }
+  jobHandle_ = graph.importBuffer("deform jobs", jobBuffer_);
+  jointHandle_ = graph.importBuffer("joint matrices", jointBuffer_);
+  weightHandle_ = graph.importBuffer("morph weights", weightBuffer_);
+  frame::PassBuilder builder = graph.addPass("deform");
+  builder.read(jobHandle_, frame::Access::storageLoad, "Jobs", "which vertices to deform")
+      .read(jointHandle_, frame::Access::storageLoad, "Joints", "skin")
+      .read(weightHandle_, frame::Access::storageLoad, "Weights", "morph weights")
+      .constant("Attributes", streams.attributes())
+      .constant("Skin", skin_)
+      .constant("Morph", morph_)
+      .read(geometry, frame::Access::storageLoad, "vertices at rest");
+  const frame::ProgramHandle program =
+      builder.program({.files = {"glsl/geometry/deform.comp.glsl"}, .defines = {}});
+  const frame::BufferHandle deformed = builder.write(geometry, frame::Access::storageStore, "Positions",
+                                                     "deformed vertices, beside those at rest");
+  builder.cacheable().execute([this, program](frame::PassContext& context) {
+    gpu::Program& deform = context.use(program);
+    for (size_t job = 0; job < jobs_.size(); ++job) {
+      deform.set("job_index", static_cast<unsigned>(job));
+      context.dispatch(static_cast<int>(jobs_[job].vertices), 1, 1, kGroupSize, 1);
+    }
+  });
+  return deformed;
+}
+
+void GpuDeform::touch(frame::FrameGraph& graph) const {
+  for (const frame::BufferHandle handle : {jobHandle_, jointHandle_, weightHandle_}) {
+    if (handle) graph.touch(handle);
+  }
+}
+
+void GpuDeform::forget() {
+  jobHandle_ = jointHandle_ = weightHandle_ = {};
+}
+
+}  // namespace limn::scene

@@ -1,0 +1,48 @@
+// Declares the scene and its G-buffer as resources of a frame graph.
+#pragma once
+
+#include "core/frame/frame_graph.h"
+
+namespace limn {
+
+/// Holds the G-buffer (layout: glsl/surface/gbuffer.glsl), screen-sized with one sample at the pixel centre.
+struct GBuffer {
+  frame::TextureHandle depth;            ///< R32F, linear view depth in metres, 0: no coverage
+  frame::TextureHandle normal;           ///< RG16_SNORM octahedral, shading normal, world space
+  frame::TextureHandle geometricNormal;  ///< RG16_SNORM octahedral, faces the camera
+  frame::TextureHandle albedo;           ///< RGBA16, square root of the base colour, a: metallic
+  frame::TextureHandle material;         ///< RGBA8, see glsl/surface/gbuffer.glsl
+  frame::TextureHandle emission;         ///< RGBA16F, W/(sr m^2)
+  frame::TextureHandle instance;         ///< R32UI, index into Pose::instances, 0xffffffff: none
+};
+
+/// Holds the names by which shaders sample the textures of a GBuffer (glsl/surface/gbuffer_input.glsl).
+struct GBufferNames {
+  const char* depth = "gbuffer_depth";
+  const char* normal = "gbuffer_normal";
+  const char* geometricNormal = "gbuffer_geometric_normal";
+  const char* albedo = "gbuffer_albedo";
+  const char* material = "gbuffer_material";
+  const char* emission = "gbuffer_emission";
+  const char* instance = "gbuffer_instance";
+};
+inline constexpr GBufferNames kGBufferNames;
+
+/// Declares that a pass samples what glsl/surface/gbuffer_input.glsl's pixel_surface() and pixel_position()
+/// need: all of the G-buffer but its instances.
+LIMN_API void readSurfaces(frame::PassBuilder& pass, const GBuffer& gbuffer);
+
+/// Holds scene data as graph resources. The version of each handle changes when its contents change, so the
+/// results of a cacheable pass that reads `geometry` and `lights` (and not `frame`) stay valid while the
+/// camera moves.
+struct SceneHandles {
+  frame::BufferHandle frame;           ///< uniform block FrameBlock
+  frame::BufferHandle geometry;        ///< stands for all vertex, index and instance data after deformation
+  frame::BufferHandle instances;       ///< storage buffer of glsl::Instance
+  frame::BufferHandle materials;       ///< storage buffer of glsl::Material
+  frame::BufferHandle lights;          ///< storage buffer of glsl::Light, index = light index
+  frame::TextureHandle lightTextures;  ///< RGBA32F array of textures in front of spot lights; empty: none
+  frame::TextureHandle density;        ///< R32F volume (scene::DensityGrid); empty: the medium is homogeneous
+};
+
+}  // namespace limn

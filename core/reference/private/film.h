@@ -1,0 +1,54 @@
+// Turns accumulated samples into pictures.
+#pragma once
+
+#include <stop_token>
+#include <vector>
+
+#include "core/reference/private/checkpoint.h"
+#include "core/reference/private/integrator.h"
+#include "core/scene/environment_light.h"
+
+namespace limn::reference {
+
+/// Holds the camera and the pixels, with aa x aa of them per pixel of the result. Pixels are numbered y *
+/// width + x from the lower left.
+struct View {
+  const RayScene& rays;
+  glsl::FrameBlock frame{};
+  float near = 0;
+  int width = 0, height = 0;
+
+  size_t pixelCount() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
+  /// Finds the surface that pixel `index` shows; returns false if there is none.
+  bool surface(size_t index, Surface& surface) const;
+  /// Returns the unit direction of the pixel's view ray.
+  glm::vec3 direction(size_t index) const;
+  /// Returns the distance along that ray, metres, to `depth` along the camera's axis; the largest number for
+  /// depth 0.
+  float distance(size_t index, float depth) const;
+  /// Returns T_cam, the medium's transmittance from there to the camera.
+  glm::vec3 transmittance(size_t index, float depth) const;
+};
+
+/// Returns the names of the channels of a result, in their order.
+std::vector<std::string> channelNames(Term term);
+
+/// Returns which pixels show a surface, and the values that the G-buffer would hold for it: Z, coverage, id,
+/// albedo, normal, rows from the top, behind empty channels R, G, B and variance. When asked to stop, it
+/// returns what is finished.
+Image renderFeatures(const View& view, Term term, const std::stop_token& stop,
+                     std::vector<unsigned char>& covered);
+
+/// Returns the RMS of the standard deviation of the mean over the pixels that count (for visibility: those
+/// not masked) and channels, relative to the mean; 0 where the mean is 0.
+double noiseOf(const Integrator& integrator, Term term, const Accumulators& state,
+               const std::vector<unsigned char>& counts);
+
+/// Writes the channels that the samples determine into the features' image.
+void develop(const Integrator& integrator, const View& view, const Request& request,
+             const Accumulators& state, const std::vector<unsigned char>& covered, Image& image);
+
+/// Averages aa x aa pixels; the G-buffer's channels are those of the centre pixel (of four: the upper right).
+Image downsample(const Image& image, int aa);
+
+}  // namespace limn::reference

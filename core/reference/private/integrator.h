@@ -1,0 +1,37 @@
+// Declares one estimator per term: what the samples of a pixel add up to.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "core/reference/private/sampler.h"
+#include "core/reference/private/surface.h"
+#include "core/reference/reference.h"
+
+namespace limn::reference {
+
+/// Holds what one pixel has gathered over the samples of one half; the integrator defines the meaning.
+using Sums = std::array<double, 4>;
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  /// Adds samples first .. first + count - 1 to `sums`. Called from several threads.
+  virtual void sample(const Surface& surface, Sampler& sampler, uint32_t first, uint32_t count,
+                      Sums& sums) const = 0;
+  /// Returns R, G, B of `sums`, gathered over `samples` samples.
+  virtual glm::dvec3 estimate(const Sums& sums, double samples) const = 0;
+};
+
+/// Makes the integrator of reflected light: direct (unless the term is indirect), and what came to the seen
+/// surface over 1 to Request::bounces others; sums: R, G, B. It traces paths with next-event estimation
+/// (DirectLight) at every surface, directions chosen with the BRDF's density, and Russian roulette from the
+/// fourth bounce on. Specular surfaces and backs of single-sided ones end a path; specular surfaces that the
+/// camera sees show, with Request::interfaces, the light of others (SpecularPaths).
+std::unique_ptr<Integrator> makePathIntegrator(const RayScene& rays, const Request& request);
+
+/// Makes the integrator of V of one light; sums: visible samples, samples above the tangent plane, and both
+/// weighted by irradiance.
+std::unique_ptr<Integrator> makeVisibilityIntegrator(const RayScene& rays, const Request& request);
+
+}  // namespace limn::reference

@@ -1,0 +1,54 @@
+// Traces from the lights the light that specular objects send into the medium and onto surfaces: one
+// reflection, or the refractions into and out of a body, as the techniques have it (LS DE, LSS DE), or with
+// Request::interfaces == kAllInterfaces chains of any length (L S+ D E). Every point of the light's way in
+// the medium, and the surface where it ends, is joined to the camera. The result is unbiased, except for the
+// point that decides whether a pixel sees a place in the medium (the pixel's centre).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/reference/private/film.h"
+#include "core/reference/private/light_view.h"
+#include "core/reference/private/medium_view.h"
+
+namespace limn::reference {
+
+class LightTracer {
+ public:
+  /// Takes `depths`, the depth of each pixel of `view`, 0 where nothing is seen.
+  LightTracer(const View& view, const Request& request, const std::vector<float>& depths);
+
+  /// Returns whether any light may reach the camera this way.
+  bool present() const { return !lights_.empty() && objects_.radius() > 0; }
+  /// Adds samples first .. first + count - 1 of each half to `sums` (2 * pixel + half): each traces as many
+  /// light paths as there are pixels. When asked to stop (Request::stop), it may add anything.
+  void trace(uint32_t first, uint32_t count, std::vector<Sums>& sums);
+
+ private:
+  struct Film;
+  struct Path;
+  bool emit(const Sampler& sampler, uint64_t index, Path& path) const;
+  void follow(const Path& path, const Sampler& sampler, Film& film) const;
+  void refract(const Path& path, const glsl::Optics& optics, const glm::vec3& flux,
+               const glm::vec3& direction, const Sampler& sampler, Film& film) const;
+  void wander(const Path& path, const Sampler& sampler, Film& film) const;
+  void segment(const glm::vec3& from, const glm::vec3& direction, const glm::vec3& flux,
+               const Sampler& sampler, Film& film) const;
+  void arrive(const glm::vec3& from, const glm::vec3& direction, const glm::vec3& flux, const Hit* hit,
+              const Sampler& sampler, Film& film) const;
+  void scatter(const glm::vec3& x, const glm::vec3& direction, const glm::vec3& flux, Film& film) const;
+  void reflect(const Hit& hit, const glm::vec3& direction, const glm::vec3& flux, Film& film) const;
+  bool project(const glm::vec3& x, size_t& pixel, float& depth, double& perSolidAngle) const;
+
+  const View& view_;
+  const Request& request_;
+  const std::vector<float>& depths_;
+  std::vector<glsl::Light> lights_;
+  glsl::Medium medium_;
+  scene::Bounds objects_;  ///< specular ones
+  bool media_, surfaces_;
+  std::vector<std::vector<glm::dvec3>> films_;
+};
+
+}  // namespace limn::reference

@@ -1,0 +1,27 @@
+// Computes the optics of a material where light meets it.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "core/scene/scene.h"
+#include "glsl/scene/media.glsl"
+
+namespace limn::reference {
+
+/// Returns the optics with a surface's own base colour, in [0, 1], and metallic.
+inline glsl::Optics opticsOf(const scene::Material& m, const glm::vec3& base, float metallic) {
+  return {.base = base,
+          .metallic = metallic,
+          .transmission = m.transmission,
+          .ior = glm::clamp(m.ior, 1.f, 3.f),
+          .thickness = m.thickness,
+          .attenuation = m.attenuationColour,
+          .attenuation_distance = m.attenuationDistance};
+}
+
+/// Returns the optics as caustics use them: without textures.
+inline glsl::Optics opticsOf(const scene::Material& m) {
+  return opticsOf(m, glm::clamp(glm::vec3(m.baseColour), 0.f, 1.f), m.metallic);
+}
+
+}  // namespace limn::reference

@@ -1,0 +1,95 @@
+// Declares a posed scene as rays see it: Embree's hierarchies, one draw per entry of Pose::instances.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "core/reference/private/ray_medium.h"
+#include "core/scene/scene.h"
+#include "glsl/scene/blocks.glsl"
+
+namespace limn::reference {
+
+/// Holds the triangles of one draw instance. Vertex positions are in the space that `toWorld` maps to world
+/// space (identity where the hierarchy holds world-space positions); normals and tangents are in the space of
+/// the other two matrices.
+struct Draw {
+  const scene::Primitive* primitive = nullptr;
+  const scene::Material* material = nullptr;
+  const glm::vec3* positions = nullptr;
+  const glm::vec3* normals = nullptr;
+  const glm::vec4* tangents = nullptr;  ///< null: none
+  glm::mat4 toWorld{1};
+  glm::mat3 normalToWorld{1};
+  glm::mat3 tangentToWorld{1};
+  float orientation =
+      1;  ///< -1 where toWorld's space is mirrored against the triangles' winding: front faces flip
+  /// Distance in metres, along the normal, that takes a point of the surface clear of it despite rounding:
+  /// 2^-20 of the largest coordinate met on the way from vertices to world space.
+  float rayOffset = 0;
+};
+
+struct Hit {
+  uint32_t draw = 0, triangle = 0;
+  float u = 0, v = 0;  ///< barycentric coordinates of the triangle's second and third vertex
+  float depth = 0;     ///< along the camera's axis, metres; of nearest(): in lengths of its direction
+};
+
+/// Returns the barycentric coordinates (u, v) at which the line through `origin` along `direction` meets the
+/// plane of the triangle p0, p1, p2; not finite where they are parallel.
+glm::vec2 barycentricOnPlane(const glm::vec3& p0, const glm::vec3& p1, const glm::vec3& p2,
+                             const glm::vec3& origin, const glm::vec3& direction);
+
+/// Returns the world direction of a pixel's view ray; its component along the camera's axis is 1.
+inline glm::vec3 viewRay(const glsl::FrameBlock& frame, float x, float y) {
+  return glm::vec3(frame.view_ray_origin) + x * glm::vec3(frame.view_ray_dx) +
+         y * glm::vec3(frame.view_ray_dy);
+}
+
+/// Holds the change of the texture coordinates over one pixel, as the 2x2 quad of pixel (x, y) sees it:
+/// differences between the quad's pixel centres on the triangle's plane.
+struct TextureFootprint {
+  glm::vec2 dx{0}, dy{0};
+};
+TextureFootprint textureFootprint(const Draw& draw, uint32_t triangle, const glsl::FrameBlock& frame, int x,
+                                  int y);
+
+/// Returns the level of detail of `texture` for that footprint.
+float levelOfDetail(const scene::Scene& scene, const scene::TextureRef& texture,
+                    const TextureFootprint& footprint);
+
+class RayScene {
+ public:
+  /// Builds the hierarchies with the calling thread's TBB arena. Throws Error if Embree fails (out of
+  /// memory).
+  RayScene(const scene::Scene& scene, const scene::Pose& pose);
+  ~RayScene();
+  RayScene(const RayScene&) = delete;
+  RayScene& operator=(const RayScene&) = delete;
+
+  const scene::Scene& scene() const { return scene_; }
+  const std::vector<Draw>& draws() const { return draws_; }
+  const RayMedium& medium() const { return medium_; }
+
+  /// Finds the nearest surface that the camera sees at the centre of pixel (x, y), beyond `near`, and returns
+  /// whether there is one: cut-out texels and back faces of single-sided surfaces are passed through.
+  bool see(const glsl::FrameBlock& frame, float near, int x, int y, Hit& hit) const;
+
+  /// Finds the nearest surface on origin + t * direction, t > 0, seen from either side, and returns whether
+  /// there is one; cut-out texels (of the full-size level) are passed through.
+  bool nearest(const glm::vec3& origin, const glm::vec3& direction, Hit& hit) const;
+
+  /// Returns whether anything but cut-out texels lies on origin + t * direction, 0 < t < end.
+  bool occluded(const glm::vec3& origin, const glm::vec3& direction, float end) const;
+
+ private:
+  struct Hierarchy;
+  const scene::Scene& scene_;
+  std::vector<Draw> draws_;
+  RayMedium medium_;
+  std::unique_ptr<Hierarchy> hierarchy_;
+};
+
+}  // namespace limn::reference

@@ -1,0 +1,51 @@
+// Declares what a ray meets, in a pixel or further on: the same surface values as the G-buffer, unquantised.
+#pragma once
+
+#include <optional>
+
+#include "core/reference/private/ray_scene.h"
+#include "glsl/surface/brdf.glsl"
+#include "glsl/surface/gbuffer.glsl"
+
+namespace limn::reference {
+
+struct Surface {
+  glm::vec3 position{0};  ///< world, metres
+  glm::vec3 view{0};      ///< unit, towards the camera or the surface that the ray came from
+  float depth = 0;        ///< along the camera's axis, metres; 0 behind the first surface
+  float rayOffset = 0;    ///< Draw::rayOffset
+  uint32_t draw = 0;
+  glsl::GBufferSurface values{};
+  glsl::SurfaceBrdf brdf{};
+
+  bool specular() const { return (values.flags & glsl::gbuffer_flag_specular) != 0; }
+  /// Returns f cos for light from `direction` (unit), 1/sr; 0 below either horizon.
+  glm::vec3 reflectance(const glm::vec3& direction) const;
+  /// Returns where rays towards `direction` start: clear of the surface on that side of it.
+  glm::vec3 rayOrigin(const glm::vec3& direction) const {
+    const glm::vec3& n = values.geometric_normal;
+    return position + (glm::dot(n, direction) >= 0.f ? rayOffset : -rayOffset) * n;
+  }
+};
+
+/// Returns the surface at `hit`, seen in pixel (x, y): textures at the level that the pixel's quad asks for,
+/// normals turned towards the camera where a double-sided surface shows its back.
+Surface surfaceAt(const RayScene& rays, const Hit& hit, const glsl::FrameBlock& frame, int x, int y);
+
+/// Returns the surface at `hit`, met by a ray along `direction` (unit): textures at their full size. Returns
+/// nullopt where the ray met the back of a single-sided surface, which reflects nothing.
+std::optional<Surface> surfaceAlong(const RayScene& rays, const Hit& hit, const glm::vec3& direction);
+
+/// Holds the point where light meets a smooth interface, from either side.
+struct Interface {
+  glm::vec3 position{0};
+  glm::vec3 normal{0}, geometricNormal{0};  ///< unit, both turned to the side that the light comes from
+  bool back = false;                        ///< that side is the surface's back
+  glm::vec3 baseColour{0};
+  float metallic = 0;
+  float rayOffset = 0;  ///< Draw::rayOffset
+  uint32_t draw = 0;
+};
+Interface interfaceAt(const RayScene& rays, const Hit& hit, const glm::vec3& direction);
+
+}  // namespace limn::reference

@@ -1,0 +1,63 @@
+// Declares core's own passes of the frame: emission and background, unshadowed light times visibility,
+// environment light, and what is seen in specular surfaces, drawn over the rest.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "core/frame/frame_graph.h"
+#include "core/scene/scene.h"
+#include "core/technique/technique.h"
+
+namespace limn::render {
+
+/// Limits the lights whose visibility is held at once (layers of the visibility texture).
+constexpr int kLightBatch = 8;
+
+class Deferred {
+ public:
+  /// Takes device and scene. Tables and environment maps are uploaded when a pass that needs them is first
+  /// declared.
+  Deferred(gpu::Device& device, const scene::Scene& scene);
+  ~Deferred();
+
+  struct Frame {
+    frame::FrameGraph& graph;
+    const SceneHandles& handles;
+    const GBuffer& gbuffer;  ///< handles may be empty: the scene has no geometry
+    glm::ivec2 size;
+  };
+
+  /// Says what is seen without any light.
+  enum class Start : uint8_t {
+    black,
+    emission,            ///< and the background
+    emissionAndSpecular  ///< also the environment in specular surfaces
+  };
+  frame::TextureHandle start(const Frame& frame, Start with);
+  /// Adds the sum of L_u V over `lights` (at most kLightBatch). `visibility`: R16 array, layer per light;
+  /// empty handle: V = 1.
+  frame::TextureHandle addLights(const Frame& frame, frame::TextureHandle radiance,
+                                 std::span<const uint32_t> lights, frame::TextureHandle visibility);
+  /// Multiplies the radiance by the transmittance of the medium from what each pixel shows to the camera.
+  frame::TextureHandle addTransmittance(const Frame& frame, frame::TextureHandle radiance);
+  /// Adds the light of the environment, V = 1.
+  frame::TextureHandle addEnvironment(const Frame& frame, frame::TextureHandle radiance);
+  /// Returns the scene's map, RGB32F, in the graph of the last start(); empty if the scene has none.
+  frame::TextureHandle environmentMap(frame::FrameGraph& graph);
+  /// Returns a new texture: `seen` and their emission where the frame shows specular surfaces, `radiance`
+  /// elsewhere.
+  frame::TextureHandle addSpecular(const Frame& frame, frame::TextureHandle radiance,
+                                   frame::TextureHandle seen);
+  /// Returns what the window shows: RGBA8 of clamp(2^EV * picture), then sRGB. `layered` says that the
+  /// picture is a visibility.
+  frame::TextureHandle addToneMapping(const Frame& frame, frame::TextureHandle picture, bool layered,
+                                      float exposureEv);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace limn::render

@@ -1,0 +1,18 @@
+#include "core/render/services.h"
+
+#include "core/caustics/caustic_rays.h"
+#include "core/indirect/virtual_lights.h"
+#include "core/shadow/shadow_map.h"
+
+namespace limn::render {
+
+/// In the order in which they begin: a service may ask those above it.
+FrameServices makeServices(gpu::Device& device, scene::GpuScene& scene) {
+  FrameServices services;
+  services.add<shadow::ShadowMapService>(device, scene);
+  services.add<indirect::VirtualLightService>();
+  services.add<caustics::CausticRayService>(device, scene);
+  return services;
+}
+
+}  // namespace limn::render

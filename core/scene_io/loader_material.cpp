@@ -1,0 +1,236 @@
+// Materials and their textures.
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/image/image.h"
+#include "core/scene/mip_chain.h"
+#include "core/scene_io/private/loader.h"
+
+namespace limn::scene {
+namespace {
+
+Wrap wrapMode(int gl) {
+  if (gl == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::clamp;
+  return gl == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::mirror : Wrap::repeat;
+}
+
+/// The extension's object, or null.
+const tinygltf::Value* extension(const tinygltf::ExtensionMap& map, const char* name) {
+  const auto found = map.find(name);
+  return found != map.end() && found->second.IsObject() ? &found->second : nullptr;
+}
+
+double get(const tinygltf::Value& object, const char* key, double absent) {
+  const tinygltf::Value& value = object.Get(key);
+  return value.IsNumber() ? value.GetNumberAsDouble() : absent;
+}
+
+}  // namespace
+
+int Loader::readImage(int index, bool srgb, const std::string& what) {
+  if (index < 0 || static_cast<std::size_t>(index) >= imageSources_.size())
+    fail(fmt::format("{}: image {} does not exist; there are {}", what, index, imageSources_.size()));
+  const auto known = imageIndex_.find({index, srgb});
+  if (known != imageIndex_.end()) return known->second;
+  const ImageSource& source = imageSources_[static_cast<std::size_t>(index)];
+  const bool named = source.view < 0 && !tinygltf::IsDataURI(source.uri);
+  const std::string label =
+      fmt::format("image {}{}{}", index, source.name.empty() ? "" : " '" + source.name + "'",
+                  named ? " (" + oneLine(source.uri, 80) + ")" : "");
+
+  std::vector<std::byte> storage;
+  std::span<const std::byte> bytes;
+  if (source.view >= 0) bytes = viewBytes(source.view, label);
+  // One damaged picture is no reason to show nothing: the factors of what it is for stand alone.
+  const auto withoutImage = [&](const std::string& problem) {
+    warn(fmt::format("{}; {} goes without it", problem, what));
+    return imageIndex_[{index, srgb}] = kNone;
+  };
+  Image8 decoded;
+  try {
+    if (source.view < 0) bytes = storage = uriBytes(source.uri, label, std::uint64_t{1} << 32);
+    if (bytes.empty()) throw Error(label + ": it is empty; PNG or JPEG is accepted");
+  } catch (const Error& error) {
+    return withoutImage(error.what());
+  }
+  checkImageSize(bytes, label);
+  try {
+    decoded = readImage8Memory(bytes, label);
+  } catch (const Error& error) {
+    return withoutImage(error.what());
+  }
+  texels_ += static_cast<std::uint64_t>(decoded.width) * static_cast<std::uint64_t>(decoded.height);
+  if (texels_ > limits_.imageTexels)
+    fail(fmt::format("image {}: more than {} texels in all images", index, limits_.imageTexels));
+
+  TextureImage image;
+  image.name = source.name.empty() ? fmt::format("#{}", index) : source.name;
+  image.srgb = srgb;
+  image.levels.push_back({decoded.width, decoded.height, std::move(decoded.data)});
+  buildMipChain(image);
+  const int result = static_cast<int>(scene_.images.size());
+  scene_.images.push_back(std::move(image));
+  imageIndex_[{index, srgb}] = result;
+  return result;
+}
+
+/// PNG and JPEG state their size early: a picture beyond the limits is refused before a decoder sees it.
+void Loader::checkImageSize(std::span<const std::byte> bytes, const std::string& label) const {
+  const auto at = [&](std::size_t i) { return std::to_integer<std::uint64_t>(bytes[i]); };
+  std::uint64_t width = 0, height = 0;
+  if (bytes.size() >= 24 && at(0) == 0x89 && at(1) == 'P') {
+    for (std::size_t i = 0; i < 4; ++i) {
+      width = width << 8 | at(16 + i);
+      height = height << 8 | at(20 + i);
+    }
+  } else if (bytes.size() >= 4 && at(0) == 0xff && at(1) == 0xd8) {
+    for (std::size_t i = 2; i + 9 < bytes.size() && at(i) == 0xff;) {
+      const std::uint64_t marker = at(i + 1);
+      const bool frame =
+          marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+      if (frame) {
+        height = at(i + 5) << 8 | at(i + 6);
+        width = at(i + 7) << 8 | at(i + 8);
+        break;
+      }
+      i += marker == 0xff ? 1 : 2 + (at(i + 2) << 8 | at(i + 3));
+    }
+  }
+  if (width > static_cast<std::uint64_t>(kMaxImageSide) ||
+      height > static_cast<std::uint64_t>(kMaxImageSide) ||
+      width * height > limits_.imageTexels - std::min(texels_, limits_.imageTexels)) {
+    fail(fmt::format("{}: {}x{} texels; at most {} per side and {} in all images are accepted", label, width,
+                     height, kMaxImageSide, limits_.imageTexels));
+  }
+}
+
+TextureRef Loader::readTexture(int index, int texCoord, const tinygltf::Value* transform, bool srgb,
+                               UvUse& use, const std::string& what) {
+  TextureRef out;
+  if (index == -1) return out;
+  if (index < 0 || static_cast<std::size_t>(index) >= model_->textures.size())
+    fail(fmt::format("{}: texture {} does not exist; there are {}", what, index, model_->textures.size()));
+  const tinygltf::Texture& texture = model_->textures[static_cast<std::size_t>(index)];
+  if (texture.source == -1) {
+    warn(fmt::format("{}: texture {} has no PNG or JPEG image and is ignored", what, index));
+    return out;
+  }
+  if (texture.sampler != -1) {
+    if (texture.sampler < 0 || static_cast<std::size_t>(texture.sampler) >= model_->samplers.size())
+      fail(fmt::format("{}: sampler {} does not exist; there are {}", what, texture.sampler,
+                       model_->samplers.size()));
+    const tinygltf::Sampler& sampler = model_->samplers[static_cast<std::size_t>(texture.sampler)];
+    out.wrapS = wrapMode(sampler.wrapS);
+    out.wrapT = wrapMode(sampler.wrapT);
+  }
+  out.image = readImage(texture.source, srgb, what);
+  if (out.image == kNone) return {};
+
+  UvUse wanted{true, texCoord, glm::vec2(0), glm::vec2(1), 0};
+  if (transform) {
+    if (transform->Has("offset")) {
+      const auto v = numbers(transform->Get("offset"), 2, what + " KHR_texture_transform offset");
+      wanted.offset = {v[0], v[1]};
+    }
+    if (transform->Has("scale")) {
+      const auto v = numbers(transform->Get("scale"), 2, what + " KHR_texture_transform scale");
+      wanted.scale = {v[0], v[1]};
+    }
+    wanted.rotation = number(get(*transform, "rotation", 0), what + " KHR_texture_transform rotation");
+    wanted.set = static_cast<int>(std::clamp(get(*transform, "texCoord", texCoord), -1., 1e6));
+  }
+  if (!use.used) {
+    use = wanted;
+  } else if (!(use == wanted)) {
+    warn(fmt::format(
+        "{}: its texture coordinates differ from those of the material's other textures, whose are used",
+        what));
+  }
+  return out;
+}
+
+void Loader::readMaterialExtensions(const tinygltf::Material& source, Material& m, const std::string& what) {
+  const auto& map = source.extensions;
+  if (const auto* e = extension(map, "KHR_materials_emissive_strength"))
+    m.emission *= ranged(get(*e, "emissiveStrength", 1), 0, 1e30, what + " emissiveStrength");
+  if (const auto* e = extension(map, "KHR_materials_ior")) {
+    const double ior = get(*e, "ior", 1.5);
+    m.ior = ior == 0 ? 1000.f : ranged(ior, 1, 1000, what + " ior");  // 0: "infinite", says the extension
+  }
+  if (const auto* e = extension(map, "KHR_materials_specular")) {
+    m.specularFactor = ranged(get(*e, "specularFactor", 1), 0, 1, what + " specularFactor");
+    if (e->Has("specularColorFactor")) {
+      const auto v = numbers(e->Get("specularColorFactor"), 3, what + " specularColorFactor");
+      m.specularColour = glm::max(glm::vec3(v[0], v[1], v[2]), glm::vec3(0));
+    }
+    if (e->Has("specularTexture") || e->Has("specularColorTexture"))
+      warn(what + ": textures of KHR_materials_specular are ignored");
+  }
+  if (const auto* e = extension(map, "KHR_materials_transmission")) {
+    m.transmission = ranged(get(*e, "transmissionFactor", 0), 0, 1, what + " transmissionFactor");
+    if (e->Has("transmissionTexture")) warn(what + ": the transmission texture is ignored");
+  }
+  if (const auto* e = extension(map, "KHR_materials_volume")) {
+    m.thickness = ranged(get(*e, "thicknessFactor", 0), 0, 1e30, what + " thicknessFactor");
+    m.attenuationDistance = ranged(get(*e, "attenuationDistance", 0), 0, 1e30, what + " attenuationDistance");
+    if (e->Has("attenuationColor")) {
+      const auto v = numbers(e->Get("attenuationColor"), 3, what + " attenuationColor");
+      m.attenuationColour = glm::clamp(glm::vec3(v[0], v[1], v[2]), 0.f, 1.f);
+    }
+    if (e->Has("thicknessTexture")) warn(what + ": the thickness texture is ignored");
+  }
+}
+
+Material Loader::readMaterial(const tinygltf::Material& source, const std::string& what) {
+  Material m;
+  UvUse use;
+  m.name = source.name;
+  const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+  if (pbr.baseColorFactor.size() == 4) {
+    for (int c = 0; c < 4; ++c)
+      m.baseColour[c] =
+          ranged(pbr.baseColorFactor[static_cast<std::size_t>(c)], 0, 1, what + " baseColorFactor");
+  }
+  m.metallic = ranged(pbr.metallicFactor, 0, 1, what + " metallicFactor");
+  m.roughness = ranged(pbr.roughnessFactor, 0, 1, what + " roughnessFactor");
+  if (source.emissiveFactor.size() == 3) {
+    for (int c = 0; c < 3; ++c)
+      m.emission[c] =
+          ranged(source.emissiveFactor[static_cast<std::size_t>(c)], 0, 1e30, what + " emissiveFactor");
+  }
+  m.doubleSided = source.doubleSided;
+  if (source.alphaMode == "MASK") m.alphaCutoff = ranged(source.alphaCutoff, 0, 1e30, what + " alphaCutoff");
+  if (source.alphaMode == "BLEND") {
+    m.alphaCutoff = 0.5f;
+    warn("alphaMode BLEND counts as MASK with a cutoff of 0.5");
+  }
+  const auto texture = [&](const auto& info, bool srgb, const char* slot) {
+    return readTexture(info.index, info.texCoord, extension(info.extensions, "KHR_texture_transform"), srgb,
+                       use, what + " " + slot);
+  };
+  m.baseColourTexture = texture(pbr.baseColorTexture, true, "baseColorTexture");
+  m.metalRoughTexture = texture(pbr.metallicRoughnessTexture, false, "metallicRoughnessTexture");
+  m.normalTexture = texture(source.normalTexture, false, "normalTexture");
+  m.normalScale = number(source.normalTexture.scale, what + " normalTexture scale");
+  m.emissiveTexture = texture(source.emissiveTexture, true, "emissiveTexture");
+  readMaterialExtensions(source, m, what);
+  if (source.extensions.contains("KHR_materials_pbrSpecularGlossiness"))
+    warn(what + ": KHR_materials_pbrSpecularGlossiness is ignored");
+  uvUses_.push_back(use);
+  return m;
+}
+
+void Loader::readMaterials() {
+  for (std::size_t i = 0; i < model_->materials.size(); ++i) {
+    const std::string& name = model_->materials[i].name;
+    const std::string what =
+        name.empty() ? fmt::format("material {}", i) : fmt::format("material {} '{}'", i, name);
+    scene_.materials.push_back(readMaterial(model_->materials[i], what));
+  }
+}
+
+}  // namespace limn::scene

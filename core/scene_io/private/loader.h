@@ -1,0 +1,199 @@
+// Declares what the steps of the scene loader share. Internal to the loader. One Loader reads one file.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <initializer_list>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/scene/metaballs.h"
+#include "core/scene/scene.h"
+#include "core/scene_io/load.h"
+
+namespace tinygltf {
+class Model;
+class Node;
+class Value;
+struct Accessor;
+struct AnimationChannel;
+struct AnimationSampler;
+struct Material;
+struct Primitive;
+}  // namespace tinygltf
+
+namespace limn::scene {
+
+/// Holds the two parts of a glTF file: the JSON text, and the binary chunk of a GLB (empty otherwise).
+struct Container {
+  std::string_view json;
+  std::span<const std::byte> binary;
+};
+/// Splits a file into its parts. The result points into `bytes`. Throws Error that names `name` for a damaged
+/// GLB.
+Container openContainer(std::span<const std::byte> bytes, const std::string& name);
+
+/// Holds the components of one accessor, converted to float: count * components values.
+struct Floats {
+  std::size_t count = 0;
+  int components = 0;
+  std::vector<float> values;
+};
+
+class Loader {
+ public:
+  /// Prepares to read one file. An empty `folder` means that no other file may be read.
+  Loader(std::string name, std::filesystem::path folder, const LoadLimits& limits);
+  Scene load(std::span<const std::byte> bytes);
+
+ private:
+  /// Holds the source of a material's texture coordinates: one set and one affine map for all its textures.
+  struct UvUse {
+    bool used = false;
+    int set = 0;
+    glm::vec2 offset{0}, scale{1};
+    float rotation = 0;
+    bool operator==(const UvUse&) const = default;
+  };
+  struct ImageSource {
+    std::string name, uri;
+    int view = kNone;
+  };
+
+  // load.cpp
+  void readSceneExtras();
+  void readMedium(const tinygltf::Value& medium);
+  void readSmoke(const tinygltf::Value& smoke, const std::string& what);
+  void checkResult() const;
+
+  // loader_files.cpp
+  /// Returns the path of a file that the scene names by a URI, which may be percent-encoded. Throws Error
+  /// when it lies outside the folder.
+  std::filesystem::path resolve(const std::string& uri, const std::string& what) const;
+  /// Returns the bytes that a URI refers to. Throws Error "WHAT: ..." without the scene's name.
+  std::vector<std::byte> uriBytes(const std::string& uri, const std::string& what,
+                                  std::uint64_t maxBytes) const;
+  /// Returns the same bytes; errors name the scene as well.
+  std::vector<std::byte> readUri(const std::string& uri, const std::string& what,
+                                 std::uint64_t maxBytes) const;
+
+  // loader_document.cpp
+  struct Document;
+  /// Checks the JSON text before tinygltf reads it, moves the buffers and images out of it, and parses the
+  /// rest.
+  void parse(const Container& container, tinygltf::Model& model);
+  void takeBuffers(Document& document, std::span<const std::byte> binary);
+  void takeImages(Document& document);
+
+  // loader_accessor.cpp
+  /// Returns the accessor's values, which are finite. `expected` is the count that it must have; negative:
+  /// any.
+  Floats readFloats(int accessor, std::initializer_list<int> components, std::int64_t expected,
+                    const std::string& what);
+  std::vector<std::uint32_t> readIntegers(int accessor, int components, std::int64_t expected,
+                                          const std::string& what);
+  const tinygltf::Accessor& accessorAt(int index, const std::string& what) const;
+  std::span<const std::byte> viewBytes(int view, const std::string& what) const;
+  /// Calls store(element, pointer to its first component) for every element, sparse ones last.
+  template <class Store>
+  void forEachElement(const tinygltf::Accessor& accessor, int components, std::int64_t expected,
+                      const std::string& what, Store store);
+  template <class Store>
+  void forEachSparse(const tinygltf::Accessor& accessor, std::size_t elementBytes, const std::string& what,
+                     Store store) const;
+
+  // loader_material.cpp
+  void readMaterials();
+  Material readMaterial(const tinygltf::Material& source, const std::string& what);
+  void readMaterialExtensions(const tinygltf::Material& source, Material& material, const std::string& what);
+  TextureRef readTexture(int index, int texCoord, const tinygltf::Value* transform, bool srgb, UvUse& use,
+                         const std::string& what);
+  /// Returns the index of the image in Scene::images, or none, with a warning, when it cannot be read.
+  int readImage(int index, bool srgb, const std::string& what);
+  void checkImageSize(std::span<const std::byte> bytes, const std::string& label) const;
+
+  // loader_mesh.cpp
+  void readMeshes();
+  bool readPrimitive(const tinygltf::Primitive& source, Primitive& out, const std::string& what);
+  void readAttributes(const tinygltf::Primitive& source, Primitive& out, const std::string& what);
+  void readUvs(const tinygltf::Primitive& source, Primitive& out, const std::string& what);
+  void readSkinAttributes(const tinygltf::Primitive& source, Primitive& out, const std::string& what);
+  void readMorphTargets(const tinygltf::Primitive& source, Primitive& out, const std::string& what);
+  void readTriangles(const tinygltf::Primitive& source, Primitive& out, const std::string& what);
+  int defaultMaterial();
+  void completePrimitive(Primitive& out, const std::string& what);
+  void completeNormals(Primitive& out, const std::string& what);
+
+  // loader_node.cpp
+  void readNodes();
+  void orderNodes();
+  void findVisible();
+  Node readNode(const tinygltf::Node& source, const std::string& what);
+  void readInstances(const tinygltf::Node& source, Node& node, const std::string& what);
+  void readNodeLight(const tinygltf::Node& source, Node& node, const std::string& what);
+  void readSkins();
+  void checkNodeUses();
+  glm::quat unitRotation(const glm::dquat& q, const std::string& what) const;
+
+  // loader_origin.cpp
+  /// Moves Scene::origin to a point amid the scene, and positions with it, when the scene lies far away.
+  void moveOrigin();
+  void rebaseNodes();
+
+  // loader_metaballs.cpp
+  void readMetaballs();  ///< replaces those read before
+  Metaballs readMetaballs(const tinygltf::Value& extras, const std::string& what) const;
+  int metaballMaterial(const tinygltf::Value& extras, const std::string& what);
+
+  // loader_animation.cpp
+  void readAnimations();
+  void readChannel(const tinygltf::AnimationChannel& source, const tinygltf::AnimationSampler& sampler,
+                   Animation& animation, const std::string& what);
+
+  // loader_light.cpp
+  void readLights();
+  int readLightTexture(const tinygltf::Value& index, uint32_t type, const std::string& what);
+  void readCameras();
+
+  [[noreturn]] void fail(const std::string& what) const;
+  void warn(const std::string& what);
+  /// Adds `amount` to what counts against limits_.vertices.
+  void spend(std::uint64_t amount, const std::string& what);
+  float number(double value, const std::string& what) const;  ///< throws Error unless finite as float
+  /// Returns `value` clamped to [low, high], with a warning when that changes it.
+  float ranged(double value, double low, double high, const std::string& what);
+  /// Returns the `count` numbers of an extras or extension array.
+  std::vector<float> numbers(const tinygltf::Value& value, std::size_t count, const std::string& what) const;
+
+  std::string name_;
+  std::filesystem::path folder_;
+  LoadLimits limits_;
+  const tinygltf::Model* model_ = nullptr;  ///< while load() runs
+  std::uint64_t spent_ = 0, texels_ = 0;
+  Scene scene_;
+  std::set<std::string> warned_;
+
+  std::vector<ImageSource> imageSources_;
+  std::vector<std::span<const std::byte>> buffers_;
+  std::vector<std::vector<std::byte>> bufferStorage_;
+  std::map<std::pair<int, bool>, int> imageIndex_;  ///< (image, sRGB) to Scene::images
+
+  std::map<int, int> lightTextureIndex_;  ///< Scene::images to Scene::lightTextures
+
+  int defaultMaterial_ = kNone;  ///< for primitives that name none
+  std::vector<UvUse> uvUses_;    ///< parallel to Scene::materials
+  std::vector<int> newIndex_;    ///< file's node index to Scene::nodes
+  std::vector<int> fileIndex_;
+  std::vector<int> cameraIndex_;  ///< file's camera index to Scene::cameras, or none
+  std::vector<char> visible_;     ///< by the file's index: below the scene's roots
+};
+
+}  // namespace limn::scene

@@ -1,0 +1,214 @@
+#include "core/session/bench_session.h"
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/bench/cost_split.h"
+#include "core/bench/machine.h"
+#include "core/question/question_fields.h"
+#include "core/render/frame_stats.h"
+#include "core/session/view.h"
+
+namespace limn::session {
+namespace fs = std::filesystem;
+
+struct BenchSession::Loaded {
+  SceneQuestion question;
+  View view;
+  render::Renderer renderer;
+
+  Loaded(gpu::Device& device, const SceneQuestion& asked)
+      : question(asked), view(open(question)), renderer(device, view.scene) {}
+};
+
+TechniqueChoice techniqueChoice(const bench::Case& c) {
+  TechniqueChoice choice;
+  choice.techniques = c.technique;
+  for (const auto& [name, value] : c.parameters) choice.settings.push_back(fmt::format("{}={}", name, value));
+  return choice;
+}
+
+namespace {
+
+/// Leaves out the fields of the view, which load() sets in a scene that is open already.
+bool sameScene(const SceneQuestion& a, SceneQuestion b) {
+  copyFields(QuestionEffect::view, b, a);
+  return a == b;
+}
+
+render::Settings baseSettings(const View& view, Term term, int light) {
+  render::Settings settings;
+  settings.size = view.size;
+  settings.term = term;
+  settings.light = light;
+  settings.channels = true;
+  return settings;
+}
+
+}  // namespace
+
+BenchSession::BenchSession(const ContextOptions& context, const fs::path& out, std::function<void()> alive,
+                           const Warn& warn)
+    : out_(out),
+      alive_(std::move(alive)),
+      cache_(out / "references", warn),
+      context_(Context::create(context)),
+      device_(*context_),
+      registry_(TechniqueRegistry::defaultFolders(), warn) {}
+
+BenchSession::~BenchSession() = default;
+
+void BenchSession::forgetScene() {
+  loaded_.reset();
+}
+
+BenchSession::Loaded& BenchSession::load(const bench::Case& c) {
+  if (!loaded_ || !sameScene(loaded_->question, c)) {
+    loaded_.reset();
+    loaded_ = std::make_unique<Loaded>(device_, c);
+    loaded_->renderer.setTime(loaded_->view.time, loaded_->view.animation);
+    return *loaded_;
+  }
+  View& view = loaded_->view;
+  view.size = {c.width, c.height};
+  if (view.defaultLights) {
+    moveTo(view, c, view.time);
+    loaded_->renderer.setTime(view.time, view.animation);
+  } else {
+    view.camera = chooseCamera(c, view.pose);
+  }
+  view.light = c.light.empty() ? scene::kNone : findNamed("light", c.light, view.pose.lightNames);
+  return *loaded_;
+}
+
+reference::Request BenchSession::request(const bench::Case& c, Term term, int light) {
+  const View& view = load(c).view;
+  reference::Request request = referenceRequest(view, view.pose, view.camera, term);
+  request.light = light == scene::kNone ? reference::kAllLights : light;
+  request.spp = c.reference.spp;
+  request.noise = c.reference.noise;
+  if (reference::hasBounces(term)) request.bounces = c.reference.bounces;
+  if (reference::acceptsInterfaces(term, c.reference.interfaces)) request.interfaces = c.reference.interfaces;
+  request.progress = [this](const reference::Progress&) {
+    alive_();
+    return true;
+  };
+  return request;
+}
+
+bench::Reference BenchSession::reference(const bench::Case& c) {
+  const reference::Request asked = request(c, parseTerm(c.term), load(c).view.light);
+  reference::Result result = cache_.render(asked);
+  const fs::path file = cache_.pathOf(reference::contentHash(asked));
+  if (c.picture) keepPicture(file.stem().string(), result.image);
+  return {std::move(result.image), fs::path("references") / file.filename(), result.noiseRms, result.seconds};
+}
+
+std::string BenchSession::keepPicture(const std::string& name, const Image& image) {
+  createFolder(out_ / "pictures");
+  const fs::path file = fs::path("pictures") / (name + ".png");
+  writePng(out_ / file, image);
+  return file.string();
+}
+
+Image BenchSession::unshadowed(const bench::Case& c, int light) {
+  Loaded& loaded = load(c);
+  loaded.renderer.configure(baseSettings(loaded.view, Term::direct, light));
+  loaded.renderer.setCamera(loaded.view.camera);
+  loaded.renderer.render();
+  return loaded.renderer.read();
+}
+
+/// Sum over the lights of L_u * V_reference: what no visibility technique can beat.
+Image BenchSession::separationFloor(const bench::Case& c) {
+  const int chosen = load(c).view.light;
+  const size_t lights = load(c).view.pose.lights.size();
+  Image sum;
+  for (size_t light = 0; light < lights; ++light) {
+    if (chosen != scene::kNone && static_cast<size_t>(chosen) != light) continue;
+    const Image v = cache_.render(request(c, Term::visibility, static_cast<int>(light))).image;
+    Image lit = unshadowed(c, static_cast<int>(light));
+    for (int y = 0; y < lit.height(); ++y)
+      for (int x = 0; x < lit.width(); ++x)
+        for (int i = 0; i < 3; ++i) lit.at(x, y, i) *= v.at(x, y, v.channel("R"));
+    if (sum.empty()) {
+      sum = std::move(lit);
+      continue;
+    }
+    for (int y = 0; y < sum.height(); ++y)
+      for (int x = 0; x < sum.width(); ++x)
+        for (int i = 0; i < 3; ++i) sum.at(x, y, i) += lit.at(x, y, i);
+  }
+  if (sum.empty()) throw Error(fmt::format("scene {} has no light to separate", c.scene));
+  return sum;
+}
+
+render::Settings BenchSession::settingsOf(const bench::Case& c) {
+  Loaded& loaded = load(c);
+  render::Settings settings = baseSettings(loaded.view, parseTerm(c.term), loaded.view.light);
+  settings.techniques = techniqueChoice(c).resolve(registry_);
+  settings.dynamic = c.dynamic;
+  return settings;
+}
+
+void BenchSession::configureTimed(Loaded& loaded, const bench::Case& c, render::Settings settings) {
+  if (c.timeWidth > 0) settings.size = {c.timeWidth, c.timeHeight};
+  settings.channels = false;  // what a frame costs does not include what only the comparison needs
+  loaded.renderer.configure(settings);
+  loaded.renderer.setCamera(loaded.view.camera);
+}
+
+render::Playback BenchSession::playback(const Loaded& loaded, const bench::Case& c) const {
+  return {loaded.view.time, c.fps, loaded.view.animation, alive_};
+}
+
+std::vector<double> BenchSession::time(const bench::Case& c) {
+  const render::Settings settings = settingsOf(c);
+  Loaded& loaded = load(c);
+  configureTimed(loaded, c, settings);
+  std::vector<double> samples = render::timeFrames(loaded.renderer, c.frames, c.warmup, playback(loaded, c));
+  loaded.renderer.setTime(loaded.view.time, loaded.view.animation);
+  return samples;
+}
+
+bench::Measurement BenchSession::measure(const bench::Case& c) {
+  if (c.technique == bench::kSeparationFloor) {
+    bench::Measurement floor{separationFloor(c), {}};
+    floor.cost.renderer = rendererName();
+    floor.cost.software = context_->info().software;
+    return floor;
+  }
+  Loaded& loaded = load(c);
+  render::Settings settings = settingsOf(c);
+  settings.channels = true;
+  loaded.renderer.configure(settings);
+  loaded.renderer.setCamera(loaded.view.camera);
+  loaded.renderer.render();
+  bench::Measurement result{loaded.renderer.read(), {}};
+
+  configureTimed(loaded, c, settings);
+  render::FrameStats stats = render::measure(loaded.renderer, c.frames, c.warmup, playback(loaded, c));
+  loaded.renderer.setTime(loaded.view.time, loaded.view.animation);
+  stats.scene = c.scene;
+  result.cost.renderer = stats.renderer;
+  result.cost.backend = stats.backend;
+  result.cost.timer = frame::name(stats.timer);
+  result.cost.software = stats.software;
+  result.cost.frameMs = {stats.frameMs.median, stats.frameMs.q1, stats.frameMs.q3, stats.frameMs.n,
+                         stats.frameSamplesMs};
+  result.cost.split = bench::costSplit(stats);
+  result.cost.memoryBytes = stats.memoryBytes;
+  result.cost.details = render::toJson(stats);
+  result.cost.driver = context_->info().vendor + ", " + context_->info().version;
+  result.cost.machine = bench::machineName();
+  result.cost.lights =
+      loaded.view.light == scene::kNone ? static_cast<int>(loaded.view.pose.lights.size()) : 1;
+  for (const render::TechniqueUse& use : settings.techniques)
+    for (const Parameter& parameter : use.plugin->info->parameters)
+      if (parameter.tradesErrorForTime)
+        result.cost.qualityParameters.push_back(fmt::format("{}.{}", use.plugin->info->name, parameter.name));
+  return result;
+}
+
+}  // namespace limn::session

@@ -1,0 +1,56 @@
+#include "core/session/find.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <system_error>
+
+#include "core/base/error.h"
+
+namespace limn::session {
+namespace fs = std::filesystem;
+
+fs::path findShared(const fs::path& folder, const fs::path& file) {
+  std::error_code ignored;
+  const fs::path prefix = fs::read_symlink("/proc/self/exe", ignored).parent_path().parent_path();
+  for (const fs::path& share : {prefix, prefix / "share/limn"})
+    if (fs::exists(share / folder / file, ignored)) return share / folder / file;
+  return {};
+}
+
+fs::path findScene(const fs::path& nameOrFile) {
+  std::error_code ignored;
+  if (fs::exists(nameOrFile, ignored)) return nameOrFile;
+  const std::string name = nameOrFile.string();
+  if (name.find('/') == std::string::npos)
+    if (const fs::path file = findShared("assets", fs::path(name) / (name + ".glb")); !file.empty())
+      return file;
+  throw Error(fmt::format(
+      "scene '{}' does not exist; expected a .gltf or .glb file, or the name of one of limn's scenes", name));
+}
+
+fs::path findEnvironment(const fs::path& nameOrFile) {
+  std::error_code ignored;
+  if (fs::exists(nameOrFile, ignored)) return nameOrFile;
+  const fs::path name = nameOrFile.filename();
+  if (name == nameOrFile)
+    if (const fs::path file = findShared("assets/environments", name.string() + ".exr"); !file.empty())
+      return file;
+  throw Error(fmt::format(
+      "environment '{}' does not exist; expected an equirectangular .exr or .hdr file, or the name of one of "
+      "limn's maps",
+      nameOrFile.string()));
+}
+
+fs::path findSuite(const fs::path& nameOrFile) {
+  std::error_code ignored;
+  if (fs::exists(nameOrFile, ignored)) return nameOrFile;
+  const fs::path file = findShared("benchmarks", fs::path(nameOrFile).concat(".toml"));
+  if (file.empty())
+    throw Error(
+        fmt::format("suite '{}' does not exist; expected a TOML file, or the name of one of limn's suites",
+                    nameOrFile.string()));
+  return file;
+}
+
+}  // namespace limn::session

@@ -1,0 +1,27 @@
+// Declares how files that were built or installed with limn are found by name.
+#pragma once
+
+#include <filesystem>
+
+#include "core/base/export.h"
+
+namespace limn::session {
+
+/// Returns the file itself, or the scene of that name that was built with limn. Throws Error when there is
+/// neither.
+LIMN_API std::filesystem::path findScene(const std::filesystem::path& nameOrFile);
+
+/// Returns the file itself, or the environment map of that name that was built with limn. Throws Error when
+/// there is neither.
+LIMN_API std::filesystem::path findEnvironment(const std::filesystem::path& nameOrFile);
+
+/// Returns the file itself, or the suite of that name that came with limn. Throws Error when there is
+/// neither.
+LIMN_API std::filesystem::path findSuite(const std::filesystem::path& nameOrFile);
+
+/// Returns the path of `file` in `folder` of what was built or installed with limn; empty when it does not
+/// exist.
+LIMN_API std::filesystem::path findShared(const std::filesystem::path& folder,
+                                          const std::filesystem::path& file);
+
+}  // namespace limn::session

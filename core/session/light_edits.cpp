@@ -1,0 +1,191 @@
+#include "core/session/light_edits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/session/private/mesh_light.h"
+#include "core/session/view.h"
+
+namespace limn::session {
+namespace {
+
+constexpr const char* kProperties =
+    "position=x,y,z (m), rotation=pitch,yaw,roll (degrees), size=u,v (m; directional: "
+    "radians), colour=r,g,b, intensity=I";
+
+[[noreturn]] void refuse(const std::string& setting, const std::string& why) {
+  throw UsageError(fmt::format("--set-light '{}' is not accepted: {}; expected NAME.PROPERTY=VALUE with {}",
+                               setting, why, kProperties));
+}
+
+/// As many numbers as `values` has, at least `least`; a single one stands for all where least is 1.
+template <int N, class T = float>
+glm::vec<N, T> numbers(const std::string& setting, std::string_view text, int least = N) {
+  glm::vec<N, T> values(0);
+  int count = 0;
+  for (; count < N && !text.empty(); ++count) {
+    const size_t comma = text.find(',');
+    const auto number = parseNumber(text.substr(0, comma));
+    if (!number || !(std::abs(*number) <= 1e9)) refuse(setting, "a number is wrong");
+    values[count] = static_cast<T>(*number);
+    text = comma == std::string_view::npos ? std::string_view() : text.substr(comma + 1);
+  }
+  if (!text.empty() || count < least) refuse(setting, fmt::format("{} numbers are wanted", N));
+  for (int i = count; i < N; ++i) values[i] = values[0];
+  return values;
+}
+
+void add(LightEdit& edit, const std::string& setting, std::string_view property, std::string_view value) {
+  if (property == "position") edit.position = numbers<3, double>(setting, value);
+  if (property == "rotation") edit.rotation = numbers<3>(setting, value);
+  if (property == "size") edit.size = numbers<2>(setting, value, 1);
+  if (property == "colour") edit.colour = numbers<3>(setting, value, 1);
+  if (property == "intensity") edit.intensity = numbers<1>(setting, value).x;
+  if (edit.size && !(edit.size->x > 0 && edit.size->y > 0)) refuse(setting, "sizes are above 0");
+  if (edit.colour && glm::any(glm::lessThan(*edit.colour, glm::vec3(0))))
+    refuse(setting, "colours are not negative");
+  if (edit.intensity && *edit.intensity < 0) refuse(setting, "intensities are not negative");
+}
+
+/// Node of a punctual light of the pose; none for meshes and the environment's. Pose::lights has those of
+/// nodes first.
+int nodeOf(const scene::Scene& scene, int light) {
+  for (size_t n = 0; n < scene.nodes.size(); ++n)
+    if (scene.nodes[n].light != scene::kNone && light-- == 0) return static_cast<int>(n);
+  return scene::kNone;
+}
+
+scene::LightSource& ownSource(scene::Scene& scene, scene::Node& node) {
+  scene.lights.push_back(scene.lights[static_cast<size_t>(node.light)]);  // nodes may share one
+  node.light = static_cast<int>(scene.lights.size()) - 1;
+  return scene.lights.back();
+}
+
+/// World coordinates, with no more digits than a float where they are one.
+std::string text(const glm::dvec3& v) {
+  const auto one = [](double x) {
+    const auto rounded = static_cast<float>(x);
+    return rounded == x ? fmt::format("{}", rounded) : fmt::format("{}", x);
+  };
+  return fmt::format("{},{},{}", one(v.x), one(v.y), one(v.z));
+}
+
+void apply(scene::Scene& scene, const glsl::Light& now, const std::string& name, const LightEdit& edit,
+           scene::Node& node) {
+  scene::LightSource& source = ownSource(scene, node);
+  const bool directional = source.type == glsl::light_directional;
+  if (edit.position && directional)
+    throw UsageError(
+        fmt::format("--set-light {}.position: a directional light has none; it has rotation", name));
+  if (edit.position || edit.rotation) {
+    const glm::mat3 axes = edit.rotation ? rotationOf(*edit.rotation) : axesOf(now);
+    node.placed = glm::mat4(axes);
+    (*node.placed)[3] = glm::vec4(edit.position ? glm::vec3(*edit.position - scene.origin) : now.position, 1);
+  }
+  if (edit.size && directional) source.angle = edit.size->x;
+  if (edit.size && !directional) node.limnArea = *edit.size;
+  if (edit.colour) source.colour = *edit.colour;
+  if (edit.intensity) source.intensity = *edit.intensity;
+}
+
+}  // namespace
+
+LightEdits parseLightEdits(const std::vector<std::string>& settings) {
+  LightEdits edits;
+  for (const std::string& setting : settings) {
+    bool known = false;
+    for (const std::string_view property : {"position", "rotation", "size", "colour", "intensity"}) {
+      const std::string separator = fmt::format(".{}=", property);
+      const size_t at = setting.find(separator);
+      if (at == std::string::npos || at == 0) continue;
+      add(edits[setting.substr(0, at)], setting, property,
+          std::string_view(setting).substr(at + separator.size()));
+      known = true;
+      break;
+    }
+    if (!known) refuse(setting, "it names no property");
+  }
+  return edits;
+}
+
+std::vector<std::string> printed(const LightEdits& edits) {
+  std::vector<std::string> settings;
+  for (const auto& [name, edit] : edits) {
+    const auto say = [&settings, &name = name](const char* property, const std::string& value) {
+      settings.push_back(fmt::format("{}.{}={}", name, property, value));
+    };
+    if (edit.position) say("position", text(*edit.position));
+    if (edit.rotation) say("rotation", text(*edit.rotation));
+    if (edit.size) say("size", fmt::format("{},{}", edit.size->x, edit.size->y));
+    if (edit.colour) say("colour", text(*edit.colour));
+    if (edit.intensity) say("intensity", fmt::format("{}", *edit.intensity));
+  }
+  return settings;
+}
+
+void applyLightEdits(scene::Scene& scene, const scene::Pose& pose, const LightEdits& edits) {
+  for (const auto& [name, edit] : edits) {
+    const int light = findNamed("light", name, pose.lightNames);
+    const glsl::Light& now = pose.lights[static_cast<size_t>(light)];
+    if (const int node = nodeOf(scene, light); node != scene::kNone)
+      apply(scene, now, name, edit, scene.nodes[static_cast<size_t>(node)]);
+    else if (const auto mesh = meshLightOf(scene, pose, light))
+      applyToMesh(scene, pose, light, *mesh, edit);
+    else
+      throw UsageError(fmt::format(
+          "--set-light {}: only lights of nodes and emissive quads can be changed; this one is {}", name,
+          (now.flags & glsl::light_flag_environment) != 0
+              ? "part of the environment"
+              : "one of several of its mesh, or its mesh is textured, instanced or deformed"));
+  }
+}
+
+bool isEditable(const scene::Scene& scene, const scene::Pose& pose, int index) {
+  const auto first = std::ranges::find(pose.lightNames, pose.lightNames[static_cast<size_t>(index)]);
+  if (first - pose.lightNames.begin() != index) return false;
+  return nodeOf(scene, index) != scene::kNone || meshLightOf(scene, pose, index);
+}
+
+LightEdit describeLight(const scene::Scene& scene, const scene::Pose& pose, int index) {
+  LightEdit now;
+  const int node = nodeOf(scene, index);
+  if (node == scene::kNone) {
+    const auto mesh = meshLightOf(scene, pose, index);
+    return mesh ? describeMesh(scene, pose.lights[static_cast<size_t>(index)], *mesh) : now;
+  }
+  const scene::Node& holder = scene.nodes[static_cast<size_t>(node)];
+  const scene::LightSource& source = scene.lights[static_cast<size_t>(holder.light)];
+  const glsl::Light& light = pose.lights[static_cast<size_t>(index)];
+  const bool directional = source.type == glsl::light_directional;
+  if (!directional) now.position = scene.origin + glm::dvec3(light.position);
+  now.rotation = anglesOf(axesOf(light));
+  now.size = directional ? glm::vec2(source.angle) : holder.limnArea;
+  now.colour = source.colour;
+  now.intensity = source.intensity;
+  return now;
+}
+
+glm::mat3 rotationOf(const glm::vec3& degrees) {
+  const glm::vec3 a = glm::radians(degrees);
+  const glm::mat4 one(1);
+  return glm::mat3(glm::rotate(one, a.y, {0, 1, 0}) * glm::rotate(one, a.x, {1, 0, 0}) *
+                   glm::rotate(one, a.z, {0, 0, 1}));
+}
+
+glm::vec3 anglesOf(const glm::mat3& r) {
+  const float pitch = std::atan2(-r[2].y, std::hypot(r[2].x, r[2].z));
+  // Straight up or down roll and yaw are one: all of it is called yaw.
+  const bool upright = std::hypot(r[0].y, r[1].y) < 1e-6f;
+  const float yaw = upright ? std::atan2(-r[0].z, r[0].x) : std::atan2(r[2].x, r[2].z);
+  const float roll = upright ? 0.f : std::atan2(r[0].y, r[1].y);
+  return glm::degrees(glm::vec3(pitch, yaw, roll));
+}
+
+}  // namespace limn::session

@@ -1,0 +1,29 @@
+// Declares how light_edits changes lights that are meshes (emissive quads): by their node's transform and by
+// the emission of their material.
+#pragma once
+
+#include <optional>
+
+#include "core/session/light_edits.h"
+
+namespace limn::session {
+
+/// Identifies the node and material of a rigid mesh that is one light.
+struct MeshLight {
+  int node, material;
+  bool shared;  ///< the mesh belongs to several nodes: its material is not this light's own
+};
+/// Returns the mesh of a light, or nothing for lights that are not such a mesh: see isEditable().
+std::optional<MeshLight> meshLightOf(const scene::Scene& scene, const scene::Pose& pose, int light);
+
+/// Changes the node and the material of such a light. Throws UsageError for edits that a shared mesh does not
+/// allow.
+void applyToMesh(scene::Scene& scene, const scene::Pose& pose, int light, const MeshLight& mesh,
+                 const LightEdit& edit);
+/// Returns the current values of such a light: without size, colour and intensity when its mesh is shared.
+LightEdit describeMesh(const scene::Scene& scene, const glsl::Light& light, const MeshLight& mesh);
+
+/// Returns the right-handed axes of a light that shines along -z.
+glm::mat3 axesOf(const glsl::Light& light);
+
+}  // namespace limn::session

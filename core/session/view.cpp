@@ -1,0 +1,237 @@
+#include "core/session/view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/scene/camera.h"
+#include "core/scene/default_lights.h"
+#include "core/scene_io/density_grid_file.h"
+#include "core/scene_io/load.h"
+#include "core/session/find.h"
+#include "core/session/light_edits.h"
+
+namespace limn::session {
+namespace {
+
+static_assert(shading::DecompositionSettings{}.resolution == 48 && shading::kLargestFaceResolution == 512,
+              "what the table of questions says of environment_resolution");
+
+constexpr double kDegrees = 3.14159265358979323846 / 180;
+
+glm::dvec3 parseVector(const char* option, const std::string& text,
+                       const char* expected = "three numbers x,y,z in metres") {
+  glm::dvec3 v;
+  std::string_view rest = text;
+  for (int i = 0; i < 3; ++i) {
+    const size_t comma = i < 2 ? rest.find(',') : rest.size();
+    const auto number = comma == std::string_view::npos ? std::nullopt : parseNumber(rest.substr(0, comma));
+    if (!number || std::abs(*number) > 1e30)
+      throw UsageError(fmt::format("{} '{}' is not accepted; expected {}", option, text, expected));
+    v[i] = *number;
+    rest = i < 2 ? rest.substr(comma + 1) : rest;
+  }
+  return v;
+}
+
+/// One number, or three.
+glm::vec3 parseCoefficient(const char* option, const std::string& text) {
+  const auto number = parseNumber(text);
+  const bool alone = number && *number <= 1e30;
+  const glm::vec3 v = alone ? glm::vec3(static_cast<float>(*number))
+                            : glm::vec3(parseVector(option, text, "one number or red,green,blue per metre"));
+  if (v.x < 0 || v.y < 0 || v.z < 0)
+    throw UsageError(fmt::format("{} '{}' is not accepted; coefficients must not be negative", option, text));
+  return v;
+}
+
+std::vector<std::string> cameraNames(const scene::Pose& pose) {
+  std::vector<std::string> names;
+  for (const auto& camera : pose.cameras) names.push_back(camera.name);
+  return names;
+}
+
+}  // namespace
+
+int findNamed(const std::string& what, const std::string& text, const std::vector<std::string>& names) {
+  for (size_t i = 0; i < names.size(); ++i)
+    if (names[i] == text) return static_cast<int>(i);
+  if (text.starts_with('#'))
+    if (const auto index = parseNumber(std::string_view(text).substr(1));
+        index && *index >= 0 && *index < static_cast<double>(names.size()) && *index == std::floor(*index))
+      return static_cast<int>(*index);
+  constexpr size_t listed = 20;
+  std::vector<std::string> shown(names.begin(),
+                                 names.begin() + static_cast<long>(std::min(names.size(), listed)));
+  throw UsageError(
+      fmt::format("{} '{}' is not in the scene{}; it has {}{}", what, text, didYouMean(text, names),
+                  names.empty() ? "none" : joined(shown),
+                  names.size() > listed ? fmt::format(" and {} more", names.size() - listed) : ""));
+}
+
+scene::CameraPose chooseCamera(const SceneQuestion& question, const scene::Pose& pose) {
+  scene::CameraPose camera = pose.cameras.empty() ? scene::frameBounds(pose.bounds) : pose.cameras.front();
+  if (!question.camera.empty())
+    camera = pose.cameras[static_cast<size_t>(findNamed("camera", question.camera, cameraNames(pose)))];
+  if (!question.eye.empty() || !question.target.empty()) {
+    if (question.eye.empty() || question.target.empty())
+      throw UsageError("--eye and --target belong together; one is missing");
+    camera = scene::lookAt(glm::vec3(parseVector("--eye", question.eye) - pose.origin),
+                           glm::vec3(parseVector("--target", question.target) - pose.origin), camera.yfov);
+  }
+  if (question.fov > 0) camera.yfov = static_cast<float>(question.fov * kDegrees);
+  return camera;
+}
+
+void resizeLights(scene::Scene& scene, double size) {
+  const auto side = static_cast<float>(size);
+  int resized = 0;
+  for (scene::Node& node : scene.nodes) {
+    if (node.light == scene::kNone || node.limnArea == glm::vec2(0)) continue;
+    node.limnArea = glm::vec2(side);
+    ++resized;
+  }
+  for (scene::LightSource& light : scene.lights) {
+    if (light.type != glsl::light_directional) continue;
+    light.angle = side;
+    ++resized;
+  }
+  if (resized == 0)
+    throw UsageError(fmt::format(
+        "--light-size {}: the scene has neither lights with limn_area nor directional lights", size));
+}
+
+shading::DecompositionSettings decompositionSettings(const SceneQuestion& question) {
+  return {
+      .threshold = question.environmentLights,
+      .resolution = question.environmentResolution,
+      .shape = question.environmentShape == "rectangles" ? RegionShape::rectangles : RegionShape::squares};
+}
+
+namespace {
+
+/// Returns whether the scene is lit by default lights; `warn` is told that it is, or that it is dark.
+bool wantsDefaultLights(const SceneQuestion& question, const View& view, const Warn& warn) {
+  const bool dark = view.pose.lights.empty() && !view.scene.environment;
+  const std::string file = question.scene;
+  if (question.defaultLights == "off" || view.pose.bounds.empty()) {
+    if (dark && warn && !view.pose.bounds.empty())
+      warn(fmt::format("{}: neither lights nor an environment; only emission can be seen", file));
+    return false;
+  }
+  if (question.defaultLights == "auto" && !dark) return false;
+  if (dark && warn)
+    warn(
+        fmt::format("{}: neither lights nor an environment; lit by default lights (key, headlight), see "
+                    "--environment and --default-lights",
+                    file));
+  return true;
+}
+
+void addEnvironment(const SceneQuestion& question, scene::Scene& scene) {
+  if (!question.environment.empty())
+    scene.environment = scene::loadEnvironment(findEnvironment(question.environment), scene.warnings);
+  if (question.environmentLights > 0) {
+    if (!scene.environment)
+      throw UsageError("--environment-lights needs --environment: there is no map to find lights in");
+    scene.environment.lights =
+        shading::decomposeEnvironment(scene.environment, decompositionSettings(question)).lights;
+    scene.environment.reflectCentres = question.environmentReflection == "centre";
+  }
+}
+
+}  // namespace
+
+void relight(View& view, const SceneQuestion& question) {
+  scene::Scene& scene = view.scene;
+  scene.nodes = view.file.nodes;
+  scene.lights = view.file.lights;
+  for (size_t i = 0; i < scene.materials.size(); ++i)
+    if (scene.materials[i].emission != view.file.emission[i])
+      scene.materials[i].emission = view.file.emission[i];
+  scene.environment.rotation =
+      view.file.environmentRotation + static_cast<float>(question.environmentRotation * kDegrees);
+  scene.environment.scale = view.file.environmentScale * static_cast<float>(question.environmentScale);
+  if (question.lightSize > 0) resizeLights(scene, question.lightSize);
+  scene::evaluate(scene, view.time, view.animation, view.pose);
+  view.camera = chooseCamera(question, view.pose);
+  if (view.defaultLights) {
+    scene::addDefaultLights(scene, view.camera, view.pose.bounds);
+    scene::evaluate(scene, view.time, view.animation, view.pose);
+  }
+  if (question.lightSettings.empty()) return;
+  applyLightEdits(scene, view.pose, parseLightEdits(question.lightSettings));
+  scene::evaluate(scene, view.time, view.animation, view.pose);
+}
+
+void moveTo(View& view, const SceneQuestion& question, double time) {
+  view.time = time;
+  if (view.defaultLights) {
+    relight(view, question);
+    return;
+  }
+  scene::evaluate(view.scene, view.time, view.animation, view.pose);
+  view.camera = chooseCamera(question, view.pose);
+}
+
+/// --grid.
+static void chooseGrid(const std::string& grid, scene::Scene& scene) {
+  if (!scene.medium.present())
+    throw UsageError(
+        fmt::format("--grid {}: the scene has no medium; give it --sigma-s or --sigma-a, too", grid));
+  scene.medium.grid.reset();
+  scene.medium.smoke.reset();
+  if (grid == "none") return;
+  if (grid == "smoke")
+    scene.medium.smoke = scene::smokeIn(scene::evaluate(scene, 0).bounds);
+  else
+    scene::setGrid(scene.medium, scene::readDensityGrid(grid, {}, scene.origin));
+}
+
+View open(const SceneQuestion& question, const Warn& warn) {
+  View view;
+  view.size = {question.width, question.height};
+  view.scene = scene::load(findScene(question.scene));
+  addEnvironment(question, view.scene);
+  giveOwnMaterials(view.scene);
+  view.file = {
+      view.scene.nodes, view.scene.lights, {}, view.scene.environment.rotation, view.scene.environment.scale};
+  for (const scene::Material& material : view.scene.materials)
+    view.file.emission.push_back(material.emission);
+  if (!question.sigmaA.empty()) view.scene.medium.sigmaA = parseCoefficient("--sigma-a", question.sigmaA);
+  if (!question.sigmaS.empty()) view.scene.medium.sigmaS = parseCoefficient("--sigma-s", question.sigmaS);
+  if (question.g) view.scene.medium.g = static_cast<float>(*question.g);
+  if (!question.grid.empty()) chooseGrid(question.grid, view.scene);
+  if (warn)
+    for (const std::string& warning : view.scene.warnings) warn(warning);
+  if (!question.animation.empty()) {
+    std::vector<std::string> names;
+    for (const auto& animation : view.scene.animations) names.push_back(animation.name);
+    view.animation = findNamed("animation", question.animation, names);
+  }
+  view.time = question.time;
+  view.pose = scene::evaluate(view.scene, view.time, view.animation);
+  view.defaultLights = wantsDefaultLights(question, view, warn);
+  relight(view, question);
+  if (!question.light.empty()) view.light = findNamed("light", question.light, view.pose.lightNames);
+  return view;
+}
+
+reference::Request referenceRequest(const View& view, const scene::Pose& pose,
+                                    const scene::CameraPose& camera, Term term) {
+  reference::Request request{
+      .scene = view.scene, .pose = pose, .camera = camera, .progress = {}, .checkpoint = {}};
+  request.width = view.size.x;
+  request.height = view.size.y;
+  request.term = term;
+  request.light = view.light == scene::kNone ? reference::kAllLights : view.light;
+  request.bounces = reference::defaultBounces(term);
+  request.interfaces = reference::defaultInterfaces(term);
+  return request;
+}
+
+}  // namespace limn::session

@@ -1,0 +1,71 @@
+// Declares how a question is turned into a scene with the lights, camera, time and size that it names.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "core/base/export.h"
+#include "core/question/scene_question.h"
+#include "core/reference/reference.h"
+#include "core/scene/scene.h"
+#include "core/session/warn.h"
+#include "core/shading/environment_decomposition.h"
+
+namespace limn::session {
+
+/// Returns the settings by which the question's environment is decomposed into area lights.
+LIMN_API shading::DecompositionSettings decompositionSettings(const SceneQuestion& question);
+
+/// Holds the lights of the scene's file, from which relight() starts.
+struct FileLights {
+  std::vector<scene::Node> nodes;
+  std::vector<scene::LightSource> lights;
+  std::vector<glm::vec3> emission;  ///< of each material
+  float environmentRotation = 0, environmentScale = 1;
+};
+
+/// Holds the answer to a SceneQuestion: the scene with its lights, its state at a time, and the camera.
+struct View {
+  scene::Scene scene;
+  int animation = scene::kNone;
+  double time = 0;
+  scene::CameraPose camera;
+  scene::Pose pose;
+  glm::ivec2 size;
+  int light = scene::kNone;
+  FileLights file;
+  bool defaultLights = false;  ///< the scene is lit by them; they follow the camera
+};
+
+/// Loads everything that the question names; `warn` receives the scene's warnings. Throws UsageError or
+/// Error.
+LIMN_API View open(const SceneQuestion& question, const Warn& warn = {});
+
+/// Gives the scene the lights of the question (--light-size, --default-lights, --set-light and the
+/// environment's rotation and scale), starting from those of its file; sets pose and camera at view.time.
+/// Writes to materials only where their emission changes. Throws UsageError for lights that do not exist.
+LIMN_API void relight(View& view, const SceneQuestion& question);
+
+/// Sets time, pose and camera, and the default lights, which follow the camera.
+LIMN_API void moveTo(View& view, const SceneQuestion& question, double time);
+
+/// Sets the size of every light that has an extent (--light-size). Throws UsageError when there is none.
+LIMN_API void resizeLights(scene::Scene& scene, double size);
+
+/// Returns the reference's request for the same picture: the view's scene, size and light. The caller sets
+/// samples, and bounces and interfaces where they are not the term's defaults. `view` and `pose` must outlive
+/// the request.
+LIMN_API reference::Request referenceRequest(const View& view, const scene::Pose& pose,
+                                             const scene::CameraPose& camera, Term term);
+
+/// Returns the index of a name or "#index" among `names`. Throws UsageError that lists them.
+LIMN_API int findNamed(const std::string& what, const std::string& text,
+                       const std::vector<std::string>& names);
+
+/// Returns the camera of the pose that the question names, moved to --eye and --target and given --fov.
+/// Throws UsageError for a camera that does not exist.
+LIMN_API scene::CameraPose chooseCamera(const SceneQuestion& question, const scene::Pose& pose);
+
+}  // namespace limn::session

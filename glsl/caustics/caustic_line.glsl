@@ -1,0 +1,62 @@
+// How bright a fragment of a rasterised light line is (thesis, section 8.3.3, without its free constant): a line element dl
+// of flux F scatters the radiant intensity F sigma_s p dl; a pixel's mean radiance is what arrives of it over the pixel's
+// solid angle (Z/R)^3 / f^2, and a fragment stands for the piece of line between two columns or rows of pixels.
+//
+// Camera space here: x right, y up, z depth along the view axis, metres. focal: focal length in pixels.
+#ifndef LIMN_CAUSTIC_LINE_GLSL
+#define LIMN_CAUSTIC_LINE_GLSL
+#include "glsl/numeric/language.glsl"
+LIMN_BEGIN
+
+// Metres along origin + l direction to the point whose picture lies on the line dot(axis, (x, y) / z) = dot(axis, slope).
+LIMN_FN float caustic_line_position(vec3 origin, vec3 direction, vec2 axis, vec2 slope) {
+  float a = dot(axis, slope);
+  float rate = dot(axis, vec2(direction.x, direction.y)) - a * direction.z;
+  float offset = a * origin.z - dot(axis, vec2(origin.x, origin.y));
+  return rate != 0.0f ? offset / rate : 0.0f;
+}
+
+// Where the picture of x lies along an axis of the view plane at distance 1.
+LIMN_FN float caustic_line_picture(vec3 x, vec2 axis) { return dot(axis, vec2(x.x, x.y)) / x.z; }
+
+// The part of a line's picture between `piece`.x and .y, places along the axis (unit), that belongs to the line and is seen.
+// The picture moves forwards on the axis as l grows; range: of l on the line; depth: of what the pixel shows, 0: nothing.
+// x >= y: nothing is seen.
+LIMN_FN vec2 caustic_line_part(vec3 origin, vec3 direction, vec2 axis, vec2 range, float depth, vec2 piece) {
+  bool away = direction.z >= 0.0f;
+  vec2 seen = range;
+  if (depth > 0.0f) {
+    float rate = abs(direction.z) > 1e-20f ? direction.z : 1e-20f;
+    float met = clamp((depth - origin.z) / rate, range.x, range.y);
+    seen = away ? vec2(range.x, met) : vec2(met, range.y);
+  }
+  return vec2(max(piece.x, caustic_line_picture(origin + seen.x * direction, axis)),
+              min(piece.y, caustic_line_picture(origin + seen.y * direction, axis)));
+}
+
+// Movement of the picture of x, in view-plane units, per metre along `direction`; times focal / z: pixels.
+LIMN_FN vec2 caustic_line_rate(vec3 x, vec3 direction) {
+  return vec2(direction.x - x.x / x.z * direction.z, direction.y - x.y / x.z * direction.z);
+}
+
+// Radiance per (flux * sigma_s * p * transmittances) of a fragment at x, 1/m, whose whole piece is seen. rate: of the
+// picture along the axis, that is, the largest component of caustic_line_rate where lines have as many fragments as columns
+// (or rows), its length where they have as many as pixels of length (rectangles; then also divide by the width in pixels).
+LIMN_FN float caustic_line_weight(vec3 x, float rate, float focal) {
+  return focal * length(x) / (x.z * x.z * max(rate, 1e-12f));
+}
+
+// The same for a whole line that is shorter than a pixel: (int dl / R^2) over the pixel's solid angle; with `span` the
+// angle at the eye between the line's ends a and b, int dl / R^2 = (L / (R_a R_b)) span / sin(span).
+LIMN_FN float caustic_point_weight(vec3 a, vec3 b, float focal) {
+  vec3 middle = 0.5f * (a + b);
+  float sine = length(cross(a, b)) / max(length(a) * length(b), 1e-30f);
+  float ratio = sine > 1e-3f ? asin(min(sine, 1.0f)) / sine : 1.0f;
+  float distance = length(middle);
+  float cosine = middle.z / distance;
+  float integral = length(b - a) / (length(a) * length(b)) * ratio;
+  return integral * focal * focal / (cosine * cosine * cosine);
+}
+
+LIMN_END
+#endif  // LIMN_CAUSTIC_LINE_GLSL

@@ -1,0 +1,18 @@
+// Virtual lights: what indirect light is gathered from. Layouts that C++ and GLSL share.
+#ifndef LIMN_VIRTUAL_LIGHT_GLSL
+#define LIMN_VIRTUAL_LIGHT_GLSL
+#include "glsl/numeric/language.glsl"
+LIMN_BEGIN
+
+// A point of a lit surface that sends light on (Keller 1997, "Instant radiosity"): a Lambertian sender of radiant
+// intensity flux / pi * cos(angle to the normal). Element of a storage buffer; a point where the light met nothing has
+// flux 0, and so costs nothing downstream.
+struct VirtualPointLight {
+  vec3 position;  // world, m
+  float cluster;  // that the light belongs to, in a sorted list
+  vec4 normal;    // unit, on the side the light came from
+  vec4 flux;      // reflected, W
+};
+
+LIMN_END
+#endif

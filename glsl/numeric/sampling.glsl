@@ -1,0 +1,42 @@
+// Sample points in the unit square and cube.
+#ifndef LIMN_SAMPLING_GLSL
+#define LIMN_SAMPLING_GLSL
+#include "glsl/numeric/language.glsl"
+LIMN_BEGIN
+
+// Additive recurrences on the generalised golden ratio (Roberts 2018, The Unreasonable Effectiveness of Quasirandom
+// Sequences), in fixed point so that they stay exact for all i: multiples of 2^32 / g^k.
+LIMN_FN vec2 r2_sequence(uint i) {
+  return vec2(float((i * 3242174889u) >> 8), float((i * 2447445414u) >> 8)) * 5.9604644775390625e-8f;
+}
+LIMN_FN vec3 r3_sequence(uint i) {
+  return vec3(float((i * 3518319155u) >> 8), float((i * 2882110345u) >> 8), float((i * 2360945575u) >> 8)) *
+         5.9604644775390625e-8f;
+}
+
+// The same one after the other, for loops: numbers in fixed point, of which 2^32 stand for 1.
+LIMN_CONST uvec2 r2_step = uvec2(3242174889u, 2447445414u);
+LIMN_CONST uint r3_step_z = 2360945575u;
+LIMN_FN uint fixed_point(float x) { return uint(x * 16777216.0f) << 8u; }
+LIMN_FN float fixed_point_value(uint x) { return float(int(x >> 8u)) * 5.9604644775390625e-8f; }
+
+// Centres of the cells of a regular grid of side x side.
+LIMN_FN vec2 grid_point(int i, int side) {
+  return vec2((float(i % side) + 0.5f) / float(side), (float(i / side) + 0.5f) / float(side));
+}
+
+// Three independent numbers in [0, 1) for a pixel (pcg3d; Jarzynski and Olano 2020, Hash Functions for GPU Rendering).
+LIMN_FN vec3 pixel_noise(uint x, uint y, uint seed) {
+  uvec3 v = uvec3(x, y, seed) * 1664525u + 1013904223u;
+  v.x += v.y * v.z;
+  v.y += v.z * v.x;
+  v.z += v.x * v.y;
+  v ^= v >> 16u;
+  v.x += v.y * v.z;
+  v.y += v.z * v.x;
+  v.z += v.x * v.y;
+  return vec3(float(v.x >> 8), float(v.y >> 8), float(v.z >> 8)) * 5.9604644775390625e-8f;
+}
+
+LIMN_END
+#endif  // LIMN_SAMPLING_GLSL

@@ -1,0 +1,93 @@
+// Uniform blocks and storage layouts that C++ and GLSL share: this file is their only definition.
+#ifndef LIMN_BLOCKS_GLSL
+#define LIMN_BLOCKS_GLSL
+#include "glsl/numeric/language.glsl"
+#include "glsl/scene/light.glsl"
+#include "glsl/scene/media.glsl"
+LIMN_BEGIN
+
+// The camera and the frame. World space in metres, view space looks down -Z, clip depth in [-1, 1].
+LIMN_UNIFORM_BLOCK(FrameBlock)
+mat4 world_to_clip;
+mat4 clip_to_world;
+mat4 world_to_view;
+vec4 camera_position;  // world, homogeneous
+vec4 view_ray_origin;  // world direction of pixel (0,0)'s centre: direction(x, y) = origin + x * dx + y * dy
+vec4 view_ray_dx;      // (not normalised; its component along the view axis is 1, so depth * direction is the offset)
+vec4 view_ray_dy;
+float environment_rotation;  // about +Y, radians
+float environment_scale;
+float environment_present;  // 1, or 0 without an environment
+float scene_radius;         // m
+uvec2 frame_size;           // pixels
+uint light_count;
+uint frame_index;
+vec3 medium_extinction;   // sigma_a + sigma_s per metre
+float medium_present;     // 1, or 0 without a medium
+vec3 medium_scattering;   // sigma_s per metre
+float medium_asymmetry;   // g
+Ball medium_ball;         // what the medium fills, m
+mat4 medium_to_box;       // from world space to the unit cube in which a medium with a grid has density
+LIMN_END_UNIFORM_BLOCK(frame)
+
+LIMN_FN Medium frame_medium(vec3 extinction, vec3 scattering, float asymmetry, Ball ball) {
+  Medium m;
+  m.extinction = extinction;
+  m.scattering = scattering;
+  m.g = asymmetry;
+  m.ball = ball;
+  return m;
+}
+
+// One drawn copy of a primitive (storage buffer element). The draw instance id equals its index.
+struct Instance {
+  mat4 object_to_world;
+  mat4 normal_to_world;  // inverse transpose, upper 3x3
+  uint material;
+  uint first_vertex;
+  uint flags;  // 1: double sided, 2: mirrored winding
+  uint first_index;
+};
+
+// Material constants (storage buffer element); textures are bound per draw.
+struct Material {
+  vec4 base_colour;       // linear, a: coverage
+  vec3 emission;          // radiance, W/(sr m^2)
+  float alpha_cutoff;     // 0: opaque
+  float metallic;
+  float roughness;     // perceptual
+  float normal_scale;  // of the normal map
+  float ior;
+  vec3 specular_colour;   // KHR specular colour * factor (F0 tint)
+  float specular_factor;  // F90
+  float transmission;
+  float thickness;             // m
+  float attenuation_distance;  // m, 0: infinite
+  uint unused_0;
+  vec3 attenuation;  // colour
+  uint unused_1;
+  uint flags;  // material_*
+  uint unused_2;
+  uvec2 unused_3;
+};
+LIMN_CONST uint material_double_sided = 1u;
+LIMN_CONST uint material_has_base_colour_texture = 2u;
+LIMN_CONST uint material_has_metal_rough_texture = 4u;
+LIMN_CONST uint material_has_normal_texture = 8u;
+LIMN_CONST uint material_has_emissive_texture = 16u;
+LIMN_CONST uint material_specular_surface = 32u;  // transmission > 0, or metallic with roughness < 0.05
+
+LIMN_FN Optics material_optics(Material m) {
+  Optics o;
+  o.base = clamp(vec3(m.base_colour), vec3(0.0f), vec3(1.0f));
+  o.metallic = m.metallic;
+  o.transmission = m.transmission;
+  o.ior = clamp(m.ior, 1.0f, 3.0f);
+  o.thickness = m.thickness;
+  o.attenuation = m.attenuation;
+  o.attenuation_distance = m.attenuation_distance;
+  return o;
+}
+
+LIMN_END
+#endif

@@ -1,0 +1,66 @@
+// The blocker search of prefiltered soft shadows: the kernel in which blockers are looked for, and what the min-max
+// pyramid of the maps says about it.
+#ifndef LIMN_BLOCKER_SEARCH_GLSL
+#define LIMN_BLOCKER_SEARCH_GLSL
+#include "glsl/shadow/min_max_pyramid.glsl"
+#include "glsl/shadow/visibility.glsl"
+
+uniform sampler2DArray shadow_min_max;  // MinMaxPyramid of the maps
+
+LIMN_CONST int search_lit = 0;      // nothing in the kernel blocks: V = 1
+LIMN_CONST int search_umbra = 1;    // everything in it blocks: V = 0
+LIMN_CONST int search_partial = 2;  // neither is certain
+
+struct BlockerSearch {
+  int answer;  // search_*
+  float gap;   // metres from the receiver to the plane of the search kernel; no blocker in the kernel is farther
+};
+
+// The texels that a kernel touches, with a margin of one where it reaches out of the map: (low, high), both included.
+ivec4 kernel_texels(ShadowCursor cursor, ShadowKernel kernel) {
+  ivec2 low = ivec2(floor(clamp(kernel.low, vec2(-1.0), vec2(cursor.view.size))));
+  ivec2 high = ivec2(ceil(clamp(kernel.high, vec2(0.0), vec2(cursor.view.size) + 1.0))) - 1;
+  return ivec4(low, max(high, low));
+}
+
+// The box of their centres, which is where the depths that they hold are to be compared: on a slope seen edge-on, half a
+// texel aside is more than any bias.
+ShadowKernel kernel_centres(ShadowCursor cursor, ShadowKernel kernel) {
+  ivec4 texels = kernel_texels(cursor, kernel);
+  return ShadowKernel(vec2(texels.xy) + 0.5, vec2(texels.zw) + 0.5, kernel.weight);
+}
+
+// Bounds of the depths stored in them.
+vec2 kernel_depth_bounds(ShadowCursor cursor, ShadowKernel kernel) {
+  ivec4 texels = kernel_texels(cursor, kernel);
+  return min_max_depth(shadow_min_max, texels.xy, texels.zw, int(cursor.layer));
+}
+
+// The kernel starts at the near plane, as published; each of `rounds` further rounds moves it to the nearest depth that
+// was found in it, beyond which nothing can block.
+BlockerSearch blocker_search(inout ShadowCursor cursor, VisibilityQuery q, int rounds) {
+  BlockerSearch search;
+  search.gap = shadow_near_gap(cursor, q);
+  for (int round = 0; round <= rounds; ++round) {
+    float widest = 0.0;
+    bool lit = true;
+    bool umbra = true;
+    for (uint face = 0u; face < shadow_face_count(q.maps.faces); ++face) {
+      ShadowKernel kernel;
+      if (!shadow_kernel_in_face(cursor, q, face, search.gap, kernel)) continue;
+      vec2 depths = kernel_depth_bounds(cursor, kernel);
+      ShadowKernel centres = kernel_centres(cursor, kernel);
+      vec2 thresholds = map_threshold_range(cursor.view, cursor.in_map, centres.low, centres.high);
+      lit = lit && thresholds.y <= depths.x;
+      umbra = umbra && depths.y < thresholds.x;
+      widest = max(widest, map_gap_bound(cursor.view, cursor.in_map, centres.low, centres.high,
+                                         shadow_metres(cursor.view, depths.x)));
+    }
+    search.answer = lit ? search_lit : umbra ? search_umbra : search_partial;
+    if (search.answer != search_partial) return search;
+    search.gap = clamp(widest, 0.0, search.gap);
+  }
+  return search;
+}
+
+#endif  // LIMN_BLOCKER_SEARCH_GLSL

@@ -1,0 +1,151 @@
+// Lookups in the Fourier basis maps of shadow maps (shadow::FourierMaps, whose defines() this needs) for boxes of texels.
+#ifndef LIMN_FOURIER_LOOKUP_GLSL
+#define LIMN_FOURIER_LOOKUP_GLSL
+#include "glsl/shadow/fourier_shadow.glsl"
+#include "glsl/shadow/variance_kernel.glsl"
+
+#if FOURIER_SAT
+uniform isampler2DArray fourier_basis_maps;
+uniform isampler2DArray fourier_depth_basis_maps;
+uniform isampler2DArray fourier_depth_maps;
+#else
+uniform sampler2DArray fourier_basis_maps;  // trilinear
+uniform sampler2DArray fourier_depth_basis_maps;
+uniform sampler2DArray fourier_depth_maps;
+#endif
+layout(std430) readonly buffer FourierRanges { FourierRange fourier_ranges[]; };
+
+const float fourier_weights[2 * FOURIER_GROUPS] = float[](FOURIER_WEIGHTS);
+
+// Means of all images over a box of texels.
+struct FourierMeans {
+  vec4 basis[FOURIER_GROUPS];
+  vec4 depth_basis[FOURIER_GROUPS];
+  float depth;
+};
+
+// One axis of a kernel, cut to the map and into parts: `parts` of whole texels and, as parts -1 and `parts`, the texels
+// that its ends cut. Mip maps take any box, so that their parts are all of one size.
+struct FourierAxis {
+#if FOURIER_SAT
+  KernelAxis texels;
+#else
+  float low;
+  float high;
+#endif
+  int parts;
+};
+
+#if FOURIER_SAT
+// whole: with all of every texel that the kernel touches, and then without parts that are cut.
+FourierAxis fourier_axis(float low, float high, int size, int parts, bool whole) {
+  FourierAxis axis;
+  axis.texels = kernel_axis(low, high, size);
+  if (whole) axis.texels = kernel_axis_whole(low, high, size);
+  axis.parts = clamp(axis.texels.last - axis.texels.first, 1, parts);
+  return axis;
+}
+const int fourier_cut = 1;  // parts at either end that are cut
+
+// Where part i begins.
+float fourier_part(FourierAxis axis, int i) {
+  int edge = kernel_part(axis.texels, i, axis.parts);
+  return float(i < 0 ? axis.texels.first - 1 : i > axis.parts ? axis.texels.last + 1 : edge);
+}
+// The share of part i that the kernel covers.
+float fourier_part_weight(FourierAxis axis, int i) {
+  return i < 0 ? axis.texels.before : i < axis.parts ? 1.0 : axis.texels.after;
+}
+
+// Sums over all texels between two columns and above a row.
+struct FourierEdge {
+  ivec4 basis[FOURIER_GROUPS];
+  ivec4 depth_basis[FOURIER_GROUPS];
+  int depth;
+};
+
+// 0 <= x.x <= x.y and y in texels, all at most the map's size.
+FourierEdge fourier_edge(ivec2 x, int y, int layer) {
+  FourierEdge edge;
+  ivec2 left = max(ivec2(x.x, y) - 1, ivec2(0));
+  ivec2 right = max(ivec2(x.y, y) - 1, ivec2(0));
+  bvec2 there = bvec2(x.x > 0 && y > 0, x.y > 0 && y > 0);
+  for (int g = 0; g < FOURIER_GROUPS; ++g) {
+    int at = FOURIER_GROUPS * layer + g;
+    ivec4 b0 = texelFetch(fourier_basis_maps, ivec3(left, at), 0);
+    ivec4 b1 = texelFetch(fourier_basis_maps, ivec3(right, at), 0);
+    ivec4 d0 = texelFetch(fourier_depth_basis_maps, ivec3(left, at), 0);
+    ivec4 d1 = texelFetch(fourier_depth_basis_maps, ivec3(right, at), 0);
+    edge.basis[g] = (there.y ? b1 : ivec4(0)) - (there.x ? b0 : ivec4(0));
+    edge.depth_basis[g] = (there.y ? d1 : ivec4(0)) - (there.x ? d0 : ivec4(0));
+  }
+  int z0 = texelFetch(fourier_depth_maps, ivec3(left, layer), 0).x;
+  int z1 = texelFetch(fourier_depth_maps, ivec3(right, layer), 0).x;
+  edge.depth = (there.y ? z1 : 0) - (there.x ? z0 : 0);
+  return edge;
+}
+
+// Between two edges of the same columns. Differences are exact modulo 2^32, and exact where a box is at most the map.
+// scale: of the quantised values.
+FourierMeans fourier_means(FourierEdge above, FourierEdge below, float texels, float scale) {
+  FourierMeans means;
+  float factor = 1.0 / (max(texels, 1.0) * scale);
+  for (int g = 0; g < FOURIER_GROUPS; ++g) {
+    means.basis[g] = factor * vec4(below.basis[g] - above.basis[g]);
+    means.depth_basis[g] = factor * vec4(below.depth_basis[g] - above.depth_basis[g]);
+  }
+  means.depth = factor * float(below.depth - above.depth);
+  return means;
+}
+#else
+FourierAxis fourier_axis(float low, float high, int size, int parts, bool whole) {
+  return FourierAxis(clamp(low, 0.0, float(size)), clamp(high, 0.0, float(size)), parts);
+}
+const int fourier_cut = 0;
+float fourier_part(FourierAxis axis, int i) { return mix(axis.low, axis.high, float(i) / float(axis.parts)); }
+float fourier_part_weight(FourierAxis axis, int i) { return 1.0; }
+
+FourierMeans fourier_means(vec2 low, vec2 high, ivec2 size, int layer) {
+  FourierMeans means;
+  vec2 uv = 0.5 * (low + high) / vec2(size);
+  vec2 extent = high - low;
+  float lod = fourier_lod(sqrt(0.5 * dot(extent, extent)));
+  for (int g = 0; g < FOURIER_GROUPS; ++g) {
+    vec3 at = vec3(uv, FOURIER_GROUPS * layer + g);
+    means.basis[g] = textureLod(fourier_basis_maps, at, lod);
+    means.depth_basis[g] = textureLod(fourier_depth_basis_maps, at, lod);
+  }
+  means.depth = textureLod(fourier_depth_maps, vec3(uv, layer), lod).x;
+  return means;
+}
+#endif
+
+// (s, n): the share that lies at or behind the receiver's depth; the mean of depth, where blockers count with their depth
+// and all else with 0.
+vec2 fourier_shadow(FourierMeans means, float receiver) {
+  vec2 result = vec2(0.5, 0.5 * means.depth);
+  vec2 phase = fourier_phase(1, receiver - FOURIER_DELTA);
+  vec2 step = vec2(phase.x * phase.x - phase.y * phase.y, 2.0 * phase.x * phase.y);
+  for (int g = 0; g < FOURIER_GROUPS; ++g) {
+    vec2 next = fourier_next_phase(phase, step);
+    vec2 weights = vec2(fourier_weights[2 * g], fourier_weights[2 * g + 1]);
+    result += vec2(1.0, -1.0) * vec2(fourier_terms(means.basis[g], phase, next, weights),
+                                     fourier_terms(means.depth_basis[g], phase, next, weights));
+    phase = fourier_next_phase(next, step);
+  }
+  return result;
+}
+
+// The series itself at depth x behind the point where it is taken: what fourier_lit gives where all lies there.
+float fourier_step(float x) {
+  vec2 phase = fourier_phase(1, x + FOURIER_DELTA);
+  vec2 step = vec2(phase.x * phase.x - phase.y * phase.y, 2.0 * phase.x * phase.y);
+  float lit = 0.5;
+  for (int k = 0; k < 2 * FOURIER_GROUPS; ++k) {
+    lit += fourier_weights[k] * phase.y;
+    phase = fourier_next_phase(phase, step);
+  }
+  return lit;
+}
+
+#endif  // LIMN_FOURIER_LOOKUP_GLSL

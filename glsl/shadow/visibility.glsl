@@ -1,0 +1,241 @@
+// What a compute pass that answers `visibility` starts from: its inputs (shadow::addVisibilityPass names them), the
+// receiver of a pixel and the light of a layer.
+//
+// shadow::addVisibilityPass() defines what all lights of a dispatch have in common, so that no loop asks for it again:
+// SHADOW_PROJECTION (shadow_perspective, ...), SHADOW_FACES (shadow_faces_*) and LIGHT_KIND (light_kind_*) as numbers. Where
+// they are undefined, each light says it.
+//
+// Define WHOLE_BIAS 1 before including this to keep the whole bias where a light with extent grazes.
+#ifndef LIMN_VISIBILITY_GLSL
+#define LIMN_VISIBILITY_GLSL
+#include "glsl/surface/gbuffer_input.glsl"
+#include "glsl/light/light_view.glsl"
+#include "glsl/shadow/map_space.glsl"
+#include "glsl/shadow/shadow_kernel.glsl"
+#include "glsl/shadow/shadow_view.glsl"
+
+#ifndef WHOLE_BIAS
+#define WHOLE_BIAS 0
+#endif
+
+// 1: every light of the dispatch has one view (shadow_faces_single), so that no loop moves to another.
+#define ONE_VIEW 0
+#ifdef SHADOW_FACES
+#if SHADOW_FACES == 0
+#undef ONE_VIEW
+#define ONE_VIEW 1
+#endif
+#endif
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+uniform sampler2DArray shadow_depth;
+layout(std430) readonly buffer Lights { Light lights[]; };
+#ifdef SHADOW_VIEW_COUNT  // they fit a uniform block, from which all invocations load at once
+layout(std140) uniform ShadowViews { ShadowView shadow_views[SHADOW_VIEW_COUNT]; };
+#else
+layout(std430) readonly buffer ShadowViews { ShadowView shadow_views[]; };
+#endif
+layout(std430) readonly buffer ShadowLights { ShadowLight shadow_lights[]; };
+layout(std430) buffer ShadowCoverage { uint uncovered_pixels; };
+uniform float bias;        // texel footprints
+uniform float light_size;  // metres or radians; < 0: the scene's
+uniform int light_layers[8];  // of the lights of this dispatch
+
+// The place in the request of the light that the work group answers for: its layer of the answer.
+int light_layer() { return light_layers[gl_WorkGroupID.z]; }
+
+ShadowView view_of_layer(uint layer) {
+  ShadowView view = shadow_views[layer];
+#ifdef SHADOW_PROJECTION
+  view.projection = uint(SHADOW_PROJECTION);
+#endif
+  return view;
+}
+
+ShadowLight maps_at(uint index) {
+  ShadowLight maps = shadow_lights[index];
+#ifdef SHADOW_FACES
+  maps.faces = uint(SHADOW_FACES);
+#endif
+  return maps;
+}
+
+uint kind_of_light(Light light) {
+#ifdef LIGHT_KIND
+  return uint(LIGHT_KIND);
+#else
+  return light_kind(light);
+#endif
+}
+
+// Whether the axis of the light is that of each of its views. (Directions of a disc have views of their own, where they are
+// sampled.)
+bool axis_along_view() {
+#if defined(SHADOW_FACES) && defined(LIGHT_KIND)
+  return uint(SHADOW_FACES) == shadow_faces_single && uint(LIGHT_KIND) == light_kind_rectangle;
+#else
+  return false;
+#endif
+}
+
+// One pixel and one light.
+struct VisibilityQuery {
+  vec3 position;
+  vec3 normal;  // geometric, unit, towards the camera
+  LightView light;
+  ShadowLight maps;
+  ShadowView first;  // of those maps
+  bool masked;  // V = 1: nothing there, or the light is wholly behind the surface
+};
+
+// maps: an index into shadow_lights, the same for the whole work group; called before invocations part ways, because
+// software renderers load what is uniform once for all of them.
+VisibilityQuery visibility_query(ivec2 at, uint maps) {
+  VisibilityQuery q;
+  q.maps = maps_at(maps);
+  q.first = view_of_layer(q.maps.first_layer);
+  float depth = pixel_depth(at);
+  q.position = pixel_position(at, depth);
+  q.normal = pixel_geometric_normal(at);
+  Light light = lights[q.maps.light];
+  q.light = light_view_of_kind(light, kind_of_light(light), q.position, q.normal, light_size);
+  bool itself = light.own_instance != no_instance && pixel_instance(at) == light.own_instance;
+  q.masked = depth == 0.0 || itself || q.light.masked;
+  return q;
+}
+
+// The share of the bias that a receiver needs. shadow_receiver() takes the bias across the tangent plane; along the
+// light's rays that is 1 / cosine times as long, and where the light grazes it lifts the plane above the light's centre,
+// so that nothing blocks. But the slope is in the plane already: twice `bias` along the rays suffices (up to 60 degrees
+// nothing changes), and of that a little for what depths and normals are rounded to.
+float bias_share(ShadowView view, VisibilityQuery q) {
+  if (WHOLE_BIAS == 1 && q.light.extended) return 1.0;
+  vec3 r = q.position - view.origin;
+  vec3 ray = view.projection == shadow_orthographic ? view.axis_z : r / max(length(r), 1e-30);
+  return clamp(-2.0 * dot(q.normal, ray), 0.02, 1.0);
+}
+
+// The view that taps of a query land in; kept between taps, most of which land in the same one.
+struct ShadowCursor {
+  uint face;
+  uint layer;
+  ShadowView view;
+  ShadowReceiver receiver;
+  MapReceiver in_map;  // the same, in the view's map
+};
+
+ShadowCursor shadow_cursor_at(VisibilityQuery q, uint face) {
+  ShadowCursor cursor;
+  cursor.face = face;
+  cursor.layer = q.maps.first_layer + face;
+  cursor.view = q.first;
+  if (face != 0u) cursor.view = view_of_layer(cursor.layer);
+  cursor.receiver = shadow_receiver(cursor.view, q.position, q.normal, q.light.axis,
+                                    bias * bias_share(cursor.view, q));
+  cursor.in_map = map_receiver(cursor.view, cursor.receiver, axis_along_view());
+  return cursor;
+}
+
+// Starts in the view that sees the receiver.
+ShadowCursor shadow_cursor(VisibilityQuery q) {
+#if ONE_VIEW
+  return shadow_cursor_at(q, 0u);
+#else
+  return shadow_cursor_at(q, shadow_face(q.maps.faces, q.first, q.position));
+#endif
+}
+
+// One texel of a shadow map against the receiver.
+struct ShadowTap {
+  bool blocked;
+  vec2 texel;
+  float depth;  // metres
+};
+
+// A texel of the cursor's view, which lies in the map.
+ShadowTap shadow_texel(ShadowCursor cursor, ivec2 texel) {
+  float stored = texelFetch(shadow_depth, ivec3(texel, cursor.layer), 0).r;
+  ShadowTap tap;
+  tap.texel = vec2(texel);
+  tap.depth = shadow_metres(cursor.view, stored);
+  tap.blocked = stored < 1.0 && map_blocks(cursor.view, cursor.in_map, tap.texel, tap.depth);
+  return tap;
+}
+
+// The texel that holds a place of the map; none where it lies outside.
+ShadowTap shadow_tap_at(ShadowCursor cursor, vec2 place) {
+  ShadowTap tap = shadow_texel(cursor, ivec2(place));
+  tap.blocked = tap.blocked && map_holds(cursor.view, place);
+  return tap;
+}
+
+// Where the cursor's map holds the direction of world point p, texels.
+vec2 shadow_place(ShadowCursor cursor, vec3 p) {
+  return map_texel(cursor.view, map_axes(cursor.view, shadow_local(cursor.view, p)));
+}
+
+// The texel that holds the direction of world point p.
+ShadowTap shadow_tap(inout ShadowCursor cursor, VisibilityQuery q, vec3 p) {
+#if !ONE_VIEW
+  // A loop of at most one round: software renderers run both sides of an `if`, but leave a loop that nobody is in.
+  for (uint face = shadow_face(q.maps.faces, q.first, p); face != cursor.face;) cursor = shadow_cursor_at(q, face);
+#endif
+  return shadow_tap_at(cursor, shadow_place(cursor, p));
+}
+
+// The view that sees the ray from the receiver to point p of a light (light_view_choose) at some gap.
+uint face_of_light_point(VisibilityQuery q, LightView light, vec2 p, float gap) {
+  vec3 slope = light.centre + (p.x * light.side_u + p.y * light.side_v);
+  return shadow_face(q.maps.faces, q.first, q.position + gap * slope);
+}
+
+// The four texels of the cursor's view around the direction of p, weighted bilinearly: the lit share.
+float shadow_tap_2x2(ShadowCursor cursor, vec3 p) {
+  vec2 place = shadow_place(cursor, p);
+  if (!map_holds(cursor.view, place)) return 1.0;
+  vec2 corner = place - 0.5;
+  vec2 weight = fract(corner);
+  float lit = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 step = ivec2(i & 1, i >> 1);
+    ivec2 texel = clamp(ivec2(floor(corner)) + step, ivec2(0), ivec2(cursor.view.size) - 1);
+    vec2 w = mix(1.0 - weight, weight, vec2(step));
+    if (!shadow_texel(cursor, texel).blocked) lit += w.x * w.y;
+  }
+  return lit;
+}
+
+// Pixels whose receiver no map of the light covers have V = 1 and are counted.
+bool shadow_covers_receiver(ShadowCursor cursor, VisibilityQuery q) {
+  vec2 place = shadow_place(cursor, q.position);
+  if (map_holds(cursor.view, place)) return true;
+  atomicAdd(uncovered_pixels, 1u);
+  return false;
+}
+
+// From the receiver to the near plane along the light's axis, metres: the gap of the initial kernel as published. The
+// near plane lies that far from the view's origin for directional lights, from the light for all others.
+float shadow_near_gap(ShadowCursor cursor, VisibilityQuery q) {
+  if (cursor.view.projection == shadow_orthographic && !q.light.cone) {
+    // The map looks along the centre of the distant rectangle, which is not across the rectangle's plane.
+    float gap = shadow_view_depth(cursor.view, q.position) - cursor.view.near;
+    return max(gap, 0.0) / -dot(cursor.view.axis_z, q.light.centre);
+  }
+  float depth = q.light.cone ? dot(q.light.axis, q.position - cursor.view.origin) : q.light.depth;
+  return max(depth - cursor.view.near, 0.0);
+}
+
+// Techniques that filter boxes go through all views of a light, and weight what they find by ShadowKernel::weight:
+//   for (uint face = 0u; face < shadow_face_count(q.maps.faces); ++face)
+//     if (shadow_kernel_in_face(cursor, q, face, gap, kernel)) ...
+// which moves the cursor to a view that the kernel lies in.
+bool shadow_kernel_in_face(inout ShadowCursor cursor, VisibilityQuery q, uint face, float gap,
+                           out ShadowKernel kernel) {
+#if !ONE_VIEW
+  while (face != cursor.face) cursor = shadow_cursor_at(q, face);
+#endif
+  return shadow_kernel(cursor.view, q.light, q.position, gap, q.maps.faces == shadow_faces_single, kernel);
+}
+
+#endif  // LIMN_VISIBILITY_GLSL

@@ -1,0 +1,197 @@
+// Binding by name: what a pass calls its resources meets what its programs call theirs, and what does not fit
+// is refused with pass and file.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/cli/process.h"
+#include "tests/gpu/frame_graph_harness.h"
+
+namespace limn::frame {
+namespace {
+
+using ::testing::Each;
+using ::testing::HasSubstr;
+
+class FrameGraphNames : public FrameGraphGpu {
+ protected:
+  /// The message with which a graph is refused that has one pass, which `declare` declares, with the program
+  /// add.comp.glsl: a sampler `source` and an image `target`.
+  std::string refusal(const std::function<void(FrameGraph&, PassBuilder&, TextureHandle)>& declare) {
+    FrameGraph graph;
+    const TextureHandle start = set(graph, "start", 1);
+    PassBuilder pass = graph.addPass("use", "test");
+    declare(graph, pass, start);
+    pass.program(program("add", "2"));
+    pass.sideEffect().execute([](PassContext&) {});
+    return errorOf([&] { prepare(graph); });
+  }
+  static TextureHandle target(FrameGraph& graph) { return graph.createTexture("sum", kValueDesc); }
+};
+
+TEST_F(FrameGraphNames, WhatAProgramUsesIsNamedByThePass) {
+  const std::string missing = refusal([](FrameGraph& graph, PassBuilder& pass, TextureHandle start) {
+    pass.read(start, Access::sampled, "");
+    std::ignore = pass.write(target(graph), Access::imageStore, "target", "");
+  });
+  EXPECT_EQ(missing,
+            "frame graph: techniques/test/add.comp.glsl (LIMN_VALUE=2) uses the sampler 'source', but pass "
+            "'test/use' names target");
+}
+
+TEST_F(FrameGraphNames, ANameStandsInAProgramOfThePass) {
+  const std::string unknown = refusal([](FrameGraph& graph, PassBuilder& pass, TextureHandle start) {
+    pass.read(start, Access::sampled, "source", "").also("sauce");
+    std::ignore = pass.write(target(graph), Access::imageStore, "target", "");
+  });
+  EXPECT_EQ(unknown,
+            "frame graph: pass 'test/use' names 'sauce', which is not in techniques/test/add.comp.glsl "
+            "(LIMN_VALUE=2)");
+}
+
+TEST_F(FrameGraphNames, ANameStandsForOneThing) {
+  const std::string twice = refusal([](FrameGraph& graph, PassBuilder& pass, TextureHandle start) {
+    pass.read(start, Access::sampled, "source", "");
+    std::ignore = pass.write(target(graph), Access::imageStore, "source", "");
+  });
+  EXPECT_THAT(twice, HasSubstr("pass 'test/use' has two resources named 'source'"));
+}
+
+TEST_F(FrameGraphNames, ANameStandsForWhatTheProgramTakesItFor) {
+  const std::string image = refusal([](FrameGraph& graph, PassBuilder& pass, TextureHandle start) {
+    pass.read(start, Access::imageLoad, "source", "");
+    std::ignore = pass.write(target(graph), Access::imageStore, "target", "");
+  });
+  EXPECT_EQ(
+      image,
+      "frame graph: 'source' is a sampler in techniques/test/add.comp.glsl (LIMN_VALUE=2), but imageLoad "
+      "in pass 'test/use'");
+  const std::string attachment = refusal([](FrameGraph& graph, PassBuilder& pass, TextureHandle start) {
+    pass.read(start, Access::sampled, "source", "");
+    std::ignore = pass.write(target(graph), Access::colourAttachment, "target", "");
+  });
+  EXPECT_THAT(attachment,
+              HasSubstr("pass 'test/use' has 'sum' as colourAttachment, which no shader calls 'target'"));
+}
+
+TEST_F(FrameGraphNames, SlotsHoldAnotherThingForEachDispatch) {
+  FrameGraph graph;
+  const TextureHandle start = set(graph, "start", 1);
+  PassBuilder pass = graph.addPass("use");
+  pass.read(start, Access::sampled, "source", "");
+  const TextureHandle a = pass.write(graph.createTexture("a", kValueDesc), Access::imageStore, "");
+  const TextureHandle b = pass.write(graph.createTexture("b", kValueDesc), Access::imageStore, "");
+  const SlotHandle slot = pass.slot("target");
+  const ProgramHandle run = pass.program(program("add", "2"));
+  pass.execute([=](PassContext& context) {
+    context.use(run);
+    for (const TextureHandle& each : {a, b}) {
+      context.bind(slot, each);
+      context.dispatch(kSize, kSize, 1, 8, 8);
+    }
+  });
+  graph.output(a);
+  graph.output(b);
+  prepare(graph);
+  graph.execute();
+  EXPECT_THAT(read(graph.texture(a)), Each(3.f));
+  EXPECT_THAT(read(graph.texture(b)), Each(3.f));
+}
+
+TEST_F(FrameGraphNames, SlotsTakeOnlyWhatThePassDeclared) {
+  FrameGraph graph;
+  const TextureHandle start = set(graph, "start", 1);
+  const TextureHandle other = set(graph, "other", 1);
+  PassBuilder pass = graph.addPass("use");
+  pass.read(start, Access::sampled, "source", "");
+  const SlotHandle slot = pass.slot("target");
+  const ProgramHandle run = pass.program(program("add", "2"));
+  pass.sideEffect().execute([=](PassContext& context) {
+    context.use(run);
+    context.bind(slot, other);
+  });
+  graph.output(other);
+  prepare(graph);
+  EXPECT_THAT(errorOf([&] { graph.execute(); }), HasSubstr("pass 'use' uses texture 'other'"));
+}
+
+TEST_F(FrameGraphNames, ConstantsLieOutsideTheGraph) {
+  const std::vector<uint32_t> numbers(64, 5);
+  const auto source = gpu::Buffer::of<uint32_t>(device(), "numbers", numbers);
+  FrameGraph graph;
+  PassBuilder pass = graph.addPass("scale");
+  pass.constant("Source", source);
+  const BufferHandle to = pass.write(graph.createBuffer("scaled", {256}), Access::storageStore, "Target", "");
+  const ProgramHandle run = pass.program(program("scale", "3u"));
+  pass.execute([=](PassContext& context) {
+    context.use(run);
+    context.dispatch(64, 1, 1, 64, 1);
+  });
+  graph.output(to);
+  prepare(graph);
+  graph.execute();
+  std::vector<uint32_t> result(64);
+  graph.buffer(to).read(0, result.data(), 256);
+  EXPECT_THAT(result, Each(15u));
+}
+
+/// A program of another text has its resources elsewhere.
+TEST_F(FrameGraphNames, PlacesAreFoundAgainWhenShadersWereReloaded) {
+  const test::TemporaryFolder folder;
+  const auto write = [&](const char* text, int seconds) {
+    const auto path = folder / "add.comp.glsl";
+    std::ofstream(path) << text;
+    std::filesystem::last_write_time(
+        path, std::filesystem::file_time_type::clock::now() + std::chrono::seconds(seconds));
+  };
+  shaders().mount("techniques/reloaded/", {}, folder.path());
+  write(
+      "layout(local_size_x = 8, local_size_y = 8) in;\n"
+      "layout(r32f) writeonly uniform image2D target;\n"
+      "uniform sampler2D source;\n"
+      "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy);\n"
+      "  imageStore(target, p, texelFetch(source, p, 0)); }\n",
+      1);
+  FrameGraph graph;
+  const TextureHandle one = set(graph, "one", 1), ten = set(graph, "ten", 10);
+  PassBuilder pass = graph.addPass("use");
+  pass.read(one, Access::sampled, "source", "");
+  const TextureHandle to = pass.write(target(graph), Access::imageStore, "target", "");
+  pass.read(ten, Access::sampled, "");
+  const SlotHandle other = pass.slot("another");
+  const ProgramHandle run = pass.program({{"techniques/reloaded/add.comp.glsl"}, {}});
+  pass.execute([=](PassContext& context) {
+    context.use(run);
+    context.bind(other, ten);
+    context.dispatch(kSize, kSize, 1, 8, 8);
+  });
+  graph.output(to);
+  EXPECT_THAT(errorOf([&] { prepare(graph); }), HasSubstr("pass 'use' names 'another', which is not in"));
+  write(
+      "layout(local_size_x = 8, local_size_y = 8) in;\n"
+      "// another one comes later\n"
+      "layout(r32f) writeonly uniform image2D target;\n"
+      "uniform sampler2D source;\n"
+      "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy);\n"
+      "  imageStore(target, p, texelFetch(source, p, 0)); }\n",
+      2);
+  EXPECT_EQ(shaders().reload().reloaded, 1);
+  prepare(graph);
+  graph.execute();
+  EXPECT_THAT(read(graph.texture(to)), Each(1.f));
+  write(
+      "layout(local_size_x = 8, local_size_y = 8) in;\n"
+      "layout(r32f) writeonly uniform image2D target;\n"
+      "uniform sampler2D another;\n"
+      "uniform sampler2D source;\n"
+      "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy);\n"
+      "  imageStore(target, p, texelFetch(source, p, 0) + texelFetch(another, p, 0)); }\n",
+      3);
+  EXPECT_EQ(shaders().reload().reloaded, 1);
+  graph.execute();
+  EXPECT_THAT(read(graph.texture(to)), Each(11.f));
+}
+
+}  // namespace
+}  // namespace limn::frame

@@ -1,0 +1,164 @@
+// What the report page is given. Whether it shows it is tested in a browser, tests/report/.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/base/file.h"
+#include "core/bench/private/report_pictures.h"
+#include "core/bench/report.h"
+
+namespace limn::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr const char* kHostile = "</script><img src=x onerror=alert(1)>";
+
+class BenchReport : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("limn_report_" + std::to_string(::getpid()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "results/pictures");
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path results() const { return folder_ / "results"; }
+
+  Row row(const std::string& technique, float grey) const {
+    Row row;
+    row.what.scene = "balls";
+    row.what.term = "visibility";
+    row.what.technique = technique;
+    row.what.width = 48;
+    row.what.height = 32;
+    row.key = technique;
+    row.referenceFile = "references/truth.exr";
+    row.cost.renderer = "llvmpipe";
+    row.cost.software = true;
+    row.cost.frameMs = {1, 1, 1, 3, {}};
+    row.spectrum = {1, 2, 3};
+    row.picture = "pictures/" + technique + ".png";
+    Image image = Image::rgb(48, 32);
+    std::ranges::fill(image.data(), grey);
+    writePng(results() / row.picture, image);
+    writePng(results() / "pictures/truth.png", image);
+    return row;
+  }
+
+  Json data(const std::vector<Row>& rows) const { return Json::parse(reportData(rows, results())); }
+
+  fs::path folder_;
+};
+
+TEST_F(BenchReport, HoldsRowsPicturesAndWindows) {
+  const Json page = data({row("pcss", 0.5f), row("vssm", 0.6f)});
+  ASSERT_EQ(page["tables"].size(), 1u);
+  const Json& table = page["tables"][0];
+  ASSERT_EQ(table["rows"].size(), 2u);
+  EXPECT_EQ(table["windows"].size(), 2u);
+  EXPECT_EQ(table["software"], true);
+  EXPECT_EQ(table["rows"][0]["spectrum"].size(), 3u);
+  EXPECT_EQ(table["rows"][0]["difference"], -1) << "none was kept";
+  for (const int index : {table["rows"][1]["picture"].get<int>(), table["rows"][1]["windows"][1].get<int>(),
+                          table["reference"]["picture"].get<int>()}) {
+    const std::string uri = page["pictures"].at(static_cast<std::size_t>(index));
+    EXPECT_TRUE(uri.starts_with("data:image/png;base64,iVBORw0KGgo")) << uri.substr(0, 60);
+    EXPECT_EQ(uri.substr(uri.find(',') + 1).size() % 4, 0u);
+  }
+}
+
+TEST_F(BenchReport, SoftwareAndHardwareHaveTablesOfTheirOwn) {
+  std::vector<Row> rows = {row("pcss", 0.5f), row("pcss", 0.5f)};
+  rows[1].cost.renderer = "GPU";
+  rows[1].cost.software = false;
+  const Json page = data(rows);
+  ASSERT_EQ(page["tables"].size(), 2u);
+  EXPECT_NE(page["tables"][0]["software"], page["tables"][1]["software"]);
+}
+
+TEST_F(BenchReport, TextsCannotLeaveTheScript) {
+  Row bad = row("pcss", 0.5f);
+  bad.what.scene = bad.what.title = bad.cost.renderer = bad.cost.machine = kHostile;
+  Row failed = bad;
+  failed.failure = std::string(kHostile) + "\xff<!-- \xe2\x80\xa8 \xe2\x80\xae";  // line separator, direction
+  failed.what.light = kHostile;
+  const std::vector<Row> rows = {bad, failed};
+  const std::string text = reportData(rows, results());
+  EXPECT_EQ(text.find('<'), std::string::npos);
+  EXPECT_TRUE(std::ranges::all_of(text, [](unsigned char c) { return c < 0x80; }));
+  EXPECT_EQ(Json::parse(text)["tables"][0]["subject"]["scene"], kHostile);
+  writeReport(rows, results());
+  const std::string page = readTextFile(results() / "index.html");
+  EXPECT_EQ(page.find("<img"), std::string::npos);
+  EXPECT_EQ(page.find("{{"), std::string::npos);
+  EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
+  EXPECT_EQ(page.find("unsafe-inline"), std::string::npos);
+}
+
+TEST_F(BenchReport, OnlyPicturesInsideTheFolderAreRead) {
+  Image secret = Image::rgb(4, 4);
+  writePng(folder_ / "secret.png", secret);
+  fs::create_symlink(folder_ / "secret.png", results() / "pictures/link.png");
+  writeTextFile(results() / "pictures/text.txt", "text");
+  for (const std::string& file :
+       {std::string("../secret.png"), (folder_ / "secret.png").string(), std::string("pictures/link.png"),
+        std::string("pictures/text.txt"), std::string("pictures/missing.png"), std::string("pictures")}) {
+    Row stray = row("pcss", 0.5f);
+    stray.picture = file;
+    EXPECT_EQ(data({stray})["tables"][0]["rows"][0]["picture"], -1) << file;
+  }
+}
+
+TEST_F(BenchReport, BrokenPictureLeavesTheReportWhole) {
+  const Row broken = row("pcss", 0.5f);
+  writeTextFile(results() / broken.picture, "no PNG");
+  const Json table = data({broken})["tables"][0];
+  EXPECT_EQ(table["rows"][0]["picture"], -1);
+  EXPECT_TRUE(table["windows"].empty());
+}
+
+TEST_F(BenchReport, PicturesBeyondTheBudgetAreReduced) {
+  const std::vector<std::string> files = {row("pcss", 0.5f).picture};
+  EXPECT_EQ(EmbeddedPictures(results(), files).reduction(), 1);
+  EmbeddedPictures small(results(), files, fs::file_size(results() / files[0]) / 2);
+  EXPECT_EQ(small.reduction(), 2);
+  EXPECT_EQ(small.whole(files[0]), 0);
+  EXPECT_EQ(small.whole(files[0]), 0) << "each picture once";
+  EXPECT_EQ(small.window(files[0], {0, 0, 8, 8}), 1);
+  EXPECT_EQ(small.window(files[0], {44, 0, 8, 8}), -1) << "beyond the picture";
+}
+
+TEST(WindowChooser, FindsWherePicturesDiffer) {
+  Image reference = Image::rgb(96, 64), a = reference, b = reference;
+  const auto paint = [](Image& image, int x0, int y0, float value) {
+    for (int y = y0; y < y0 + 16; ++y)
+      for (int x = x0; x < x0 + 16; ++x)
+        for (int c = 0; c < 3; ++c) image.at(x, y, c) = value;
+  };
+  // Both are equally wrong at the left, differently at the right; the second of these is the smaller one.
+  paint(a, 4, 8, 1.0f);
+  paint(b, 4, 8, 1.0f);
+  paint(a, 70, 40, 0.9f);
+  paint(b, 40, 2, 0.5f);
+  WindowChooser chooser(reference);
+  EXPECT_TRUE(chooser.choose(2).empty());
+  chooser.add(a);
+  chooser.add(b);
+  chooser.add(Image::rgb(3, 3));  // of another size
+  EXPECT_EQ(chooser.choose(2), (std::vector<Window>{{70, 40, 16, 16}, {40, 2, 16, 16}}));
+}
+
+TEST(WindowChooser, SmallPicturesHaveNone) {
+  const Image reference = Image::rgb(40, 15);
+  WindowChooser chooser(reference);
+  chooser.add(reference);
+  EXPECT_TRUE(chooser.choose(2).empty());
+}
+
+}  // namespace
+}  // namespace limn::bench

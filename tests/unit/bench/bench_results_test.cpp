@@ -1,0 +1,403 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/bench/results_file.h"
+#include "core/bench/row.h"
+#include "core/bench/runner.h"
+#include "core/bench/tables.h"
+#include "tests/unit/bench/bench_rows.h"
+
+namespace limn::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using test::exampleCase;
+using test::exampleRow;
+
+class BenchResults : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("limn_bench_" + std::to_string(::getpid()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    path_ = folder_ / "results.jsonl";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path folder_, path_;
+};
+
+TEST_F(BenchResults, RowsSurviveJson) {
+  Case played = exampleCase();
+  played.fps = 24;
+  played.sigmaA = "0.1,0.2,0.3";
+  played.sigmaS = "0.5";
+  played.g = 0.25;
+  played.eye = "0,1,3";
+  played.target = "0,0,0";
+  played.fov = 30;
+  played.animation = "walk";
+  played.lightSettings = {"key.size=0.5"};
+  played.defaultLights = "on";
+  played.environmentRotation = 90;
+  played.environmentScale = 2;
+  played.grid = "smoke";
+  const Row row = exampleRow(played);
+  const std::string line = toJson(row);
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+  const Row back = rowFromJson(line);
+  EXPECT_EQ(back.what, row.what);
+  EXPECT_EQ(back.key, row.key);
+  EXPECT_EQ(back.referenceFile, row.referenceFile);
+  EXPECT_EQ(back.referenceNoise, row.referenceNoise);
+  EXPECT_EQ(back.referenceSeconds, row.referenceSeconds);
+  EXPECT_EQ(back.error.rmse, row.error.rmse);
+  EXPECT_EQ(back.error.psnr, row.error.psnr);
+  EXPECT_EQ(back.error.noise_floor, row.error.noise_floor);
+  EXPECT_EQ(back.error.pixels, row.error.pixels);
+  ASSERT_TRUE(back.penumbra);
+  ASSERT_TRUE(back.misjudged);
+  EXPECT_EQ(back.misjudged->litInUmbra, row.misjudged->litInUmbra);
+  EXPECT_EQ(back.cost.frameMs.q3, row.cost.frameMs.q3);
+  EXPECT_EQ(back.cost.frameMs.samples, row.cost.frameMs.samples);
+  EXPECT_EQ(back.cost.memoryBytes, row.cost.memoryBytes);
+  EXPECT_NE(back.cost.details.find("shadow map"), std::string::npos);
+  EXPECT_EQ(toJson(back), line);
+}
+
+TEST_F(BenchResults, WhatEarlierVersionsLackedIsOptional) {
+  Row row = exampleRow(exampleCase());
+  row.what.picture = true;
+  row.picture = "pictures/a.png";
+  row.difference = "pictures/a.difference.png";
+  row.spectrum = {0.5, 0.25};
+  row.cost.driver = "Mesa 22.3.6";
+  row.cost.machine = "a processor";
+  row.cost.lights = 2;
+  row.cost.qualityParameters = {"pcss.samples"};
+  auto json = nlohmann::json::parse(toJson(row));
+  EXPECT_EQ(nlohmann::json::parse(toJson(rowFromJson(json.dump()))), json);
+  for (const char* key : {"spectrum", "difference", "penumbra", "changes"}) json.erase(key);
+  json["medium"] = {{"sigma_s", 0.5}};  // a number, not a text
+  for (const char* key : {"driver", "machine", "lights", "quality_parameters"}) json["stats"].erase(key);
+  const Row old = rowFromJson(json.dump());
+  EXPECT_TRUE(old.spectrum.empty() && old.difference.empty() && !old.penumbra);
+  EXPECT_TRUE(old.cost.driver.empty() && old.cost.machine.empty() && old.cost.qualityParameters.empty());
+  EXPECT_EQ(old.what.sigmaA, "");
+  EXPECT_EQ(old.what.sigmaS, "0.5");
+  EXPECT_FALSE(old.what.g);
+  EXPECT_EQ(old.cost.lights, 0);
+  EXPECT_EQ(referencePicture(old), "pictures/a.png");
+}
+
+TEST_F(BenchResults, BrokenRowsAreRefused) {
+  for (const char* text : {"", "{", "[]", "{}", R"({"key":1})", "null"})
+    EXPECT_THROW(rowFromJson(text), Error) << text;
+}
+
+TEST_F(BenchResults, ReadingLeavesATornFileAsItIs) {
+  const Row first = exampleRow(exampleCase()), again = exampleRow(exampleCase(), 0.5);
+  const std::string text = toJson(first) + "\n" + toJson(again) + "\n{";
+  writeTextFile(path_, text);
+  const std::vector<Row> rows = readRows(path_);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].error.rmse, 0.5);
+  EXPECT_EQ(readTextFile(path_), text);
+}
+
+TEST_F(BenchResults, AppendedRowsAreThereAfterReopening) {
+  const Row a = exampleRow(exampleCase("pcss", 16)), b = exampleRow(exampleCase("pcss", 64));
+  {
+    ResultsFile file(path_);
+    EXPECT_TRUE(file.rows().empty());
+    file.append(a);
+    file.append(b);
+    EXPECT_TRUE(file.contains(a.key));
+  }
+  ResultsFile file(path_);
+  EXPECT_EQ(file.rows().size(), 2u);
+  EXPECT_TRUE(file.contains(a.key) && file.contains(b.key));
+}
+
+TEST_F(BenchResults, TornLastLineIsCutOffAtEveryLength) {
+  const Row a = exampleRow(exampleCase("pcss", 16)), b = exampleRow(exampleCase("pcss", 64));
+  const std::string first = toJson(a) + "\n", second = toJson(b);
+  for (std::size_t length = 1; length <= second.size(); length += 37) {
+    writeTextFile(path_, first + second.substr(0, length));
+    {
+      ResultsFile file(path_);
+      EXPECT_EQ(file.rows().size(), 1u);
+      EXPECT_FALSE(file.contains(b.key));
+      file.append(b);
+    }
+    EXPECT_EQ(readTextFile(path_), first + second + "\n");
+  }
+}
+
+TEST_F(BenchResults, BrokenLineInTheMiddleIsAnError) {
+  writeTextFile(path_, toJson(exampleRow(exampleCase())) + "\nnonsense\n");
+  try {
+    ResultsFile file(path_);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("results.jsonl:2: not a row"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(BenchResults, FailedRowsAreTriedAgain) {
+  Row failed = exampleRow(exampleCase());
+  failed.failure = "no driver";
+  ResultsFile file(path_);
+  file.append(failed);
+  EXPECT_FALSE(file.contains(failed.key));
+  file.append(exampleRow(exampleCase()));
+  EXPECT_TRUE(file.contains(failed.key));
+  ASSERT_EQ(file.rows().size(), 1u);
+  EXPECT_TRUE(file.rows()[0].failure.empty());
+}
+
+/// Callbacks that count their calls; the picture of technique "bad" fails.
+struct Fakes {
+  int references = 0, measurements = 0, timings = 0;
+  Callbacks callbacks() {
+    Callbacks made;
+    made.reference = [this](const Case& c) {
+      ++references;
+      Reference reference{Image::rgb(c.width, c.height), "reference.exr", 0.001, std::nullopt};
+      std::ranges::fill(reference.image.data(), 0.5f);
+      return reference;
+    };
+    made.keepPicture = [](const std::string& name, const Image&) { return "pictures/" + name + ".png"; };
+    made.measure = [this](const Case& c) {
+      ++measurements;
+      if (c.technique == "bad") throw Error("shader does not compile");
+      Measurement m{Image::rgb(c.width, c.height), {}};
+      std::ranges::fill(m.image.data(), 0.6f);
+      m.cost.frameMs = {1, 1, 1, c.frames, std::vector<double>(static_cast<std::size_t>(c.frames), 1)};
+      return m;
+    };
+    made.time = [this](const Case& c) {
+      if (c.technique == "lost") throw Error("out of memory");
+      return std::vector<double>(static_cast<std::size_t>(c.frames), ++timings);
+    };
+    return made;
+  }
+};
+
+TEST_F(BenchResults, RunnerSharesReferencesRecordsFailuresAndResumes) {
+  const std::vector<Case> cases = {exampleCase("pcss", 16), exampleCase("bad"), exampleCase("pcss", 64)};
+  Fakes fakes;
+  {
+    ResultsFile results(path_);
+    const Summary summary = runCases(cases, "llvmpipe", results, fakes.callbacks());
+    EXPECT_EQ(summary.done, 2);
+    EXPECT_EQ(summary.failed, 1);
+  }
+  EXPECT_EQ(fakes.references, 1);
+  EXPECT_EQ(fakes.measurements, 3);
+
+  ResultsFile results(path_);
+  std::vector<Progress::State> states;
+  Callbacks callbacks = fakes.callbacks();
+  callbacks.progress = [&](const Progress& progress) { states.push_back(progress.state); };
+  const Summary again = runCases(cases, "llvmpipe", results, callbacks);
+  EXPECT_EQ(again.skipped, 2);
+  EXPECT_EQ(again.failed, 1);
+  EXPECT_EQ(fakes.measurements, 4);
+  using State = Progress::State;
+  EXPECT_EQ(states, (std::vector{State::skipped, State::started, State::failed, State::skipped}));
+
+  EXPECT_EQ(runCases(cases, "another GPU", results, fakes.callbacks()).done, 2);
+  const Row row = results.rows().front();
+  EXPECT_NEAR(row.error.rmse, 0.1, 1e-6);
+  ASSERT_TRUE(row.penumbra);
+  EXPECT_EQ(row.cost.renderer, "llvmpipe");
+  EXPECT_EQ(row.picture, "");
+  ASSERT_FALSE(row.spectrum.empty());
+  EXPECT_GT(row.spectrum[0], 10 * row.spectrum[5]) << "the error is the same everywhere";
+}
+
+TEST_F(BenchResults, FurtherTurnsLengthenTheRowsAndResume) {
+  std::vector<Case> cases = {exampleCase("pcss", 16), exampleCase("bad"), exampleCase("lost"),
+                             exampleCase("pcss", 64)};
+  for (Case& c : cases) {
+    c.frames = 2;
+    c.turns = 3;
+  }
+  Fakes fakes;
+  {
+    // Interrupted in the second turn, after its first row.
+    ResultsFile results(path_);
+    Callbacks callbacks = fakes.callbacks();
+    callbacks.progress = [&](const Progress& progress) {
+      if (fakes.timings == 1 && progress.state == Progress::State::started)
+        throw std::runtime_error("interrupted");
+    };
+    EXPECT_THROW(runCases(cases, "llvmpipe", results, callbacks), std::runtime_error);
+  }
+  EXPECT_EQ(fakes.timings, 1);
+  ResultsFile results(path_);
+  const Summary summary = runCases(cases, "llvmpipe", results, fakes.callbacks());
+  EXPECT_EQ(summary.skipped, 3);
+  EXPECT_EQ(fakes.timings, 4) << "two rows, two further turns each";
+  const FrameTime& first = results.find(rowKey(cases[0], "llvmpipe"))->cost.frameMs;
+  EXPECT_EQ(first.turns, 3);
+  EXPECT_EQ(first.n, 6);
+  EXPECT_EQ(first.samples.size(), 6u);
+  EXPECT_EQ(first.median, 1);
+  EXPECT_EQ(first.samples.back(), 3);
+  const FrameTime& lost = results.find(rowKey(cases[2], "llvmpipe"))->cost.frameMs;
+  EXPECT_EQ(lost.turns, 1) << "a turn that fails leaves the row as it was";
+  EXPECT_EQ(rowFromJson(toJson(results.rows()[0])).cost.frameMs.turns, 3);
+}
+
+TEST_F(BenchResults, RunnerKeepsPicturesThatAreWanted) {
+  Case wanted = exampleCase();
+  wanted.picture = true;
+  const std::vector<Case> cases = {wanted, exampleCase("pcss", 64)};
+  Fakes fakes;
+  ResultsFile results(path_);
+  runCases(cases, "llvmpipe", results, fakes.callbacks());
+  EXPECT_EQ(results.rows()[0].picture, "pictures/" + rowKey(wanted, "llvmpipe") + ".png");
+  EXPECT_EQ(results.rows()[0].difference, "pictures/" + rowKey(wanted, "llvmpipe") + ".difference.png");
+  EXPECT_EQ(results.rows()[1].picture, "");
+  EXPECT_EQ(rowFromJson(toJson(results.rows()[0])).picture, results.rows()[0].picture);
+  const std::string shown = picturesMarkdown(makeTables(results.rows()).front());
+  EXPECT_NE(shown.find("| ![](pictures/reference.png) | ![](" + results.rows()[0].picture + ") | |"),
+            std::string::npos)
+      << shown;
+}
+
+TEST_F(BenchResults, WhateverACaseThrowsLosesItsOwnRowOnly) {
+  struct Thrown {
+    const char* technique;
+    std::function<void()> raise;
+    const char* message;
+  };
+  const std::vector<Thrown> all = {
+      {"memory", [] { throw std::bad_alloc(); }, "out of memory"},
+      {"foreign", [] { throw std::runtime_error("no such\nthing"); }, "no such thing"},
+      {"number", [] { throw 42; }, "something was thrown that is no std::exception"},
+      {"usage", [] { throw UsageError("not with this term"); }, "not with this term"}};
+  std::vector<Case> cases;
+  for (const Thrown& thrown : all) cases.push_back(exampleCase(thrown.technique));
+  cases.push_back(exampleCase("pcss"));
+  for (Case& c : cases) c.turns = 2;
+  Fakes fakes;
+  Callbacks callbacks = fakes.callbacks();
+  const auto raise = [&](const Case& c) {
+    for (const Thrown& thrown : all)
+      if (c.technique == thrown.technique) thrown.raise();
+  };
+  callbacks.measure = [&, measure = callbacks.measure](const Case& c) {
+    raise(c);
+    return measure(c);
+  };
+  {
+    ResultsFile results(path_);
+    const Summary summary = runCases(cases, "x", results, callbacks);
+    EXPECT_EQ(summary.failed, 4);
+    EXPECT_EQ(summary.done, 1);
+    for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(results.rows()[i].failure, all[i].message);
+  }
+  // Thrown in a later turn they leave the row as it is.
+  fs::remove(path_);
+  callbacks = fakes.callbacks();
+  callbacks.time = [&, time = callbacks.time](const Case& c) {
+    raise(c);
+    return time(c);
+  };
+  ResultsFile results(path_);
+  EXPECT_EQ(runCases(cases, "x", results, callbacks).done, 5);
+  for (const Row& row : results.rows()) EXPECT_EQ(row.failure, "");
+}
+
+TEST_F(BenchResults, AFailureNeverReplacesAGoodRow) {
+  const Row good = exampleRow(exampleCase());
+  Row failed = good;
+  failed.failure = "crashed: Segmentation fault";
+  const std::string before = toJson(failed) + "\n" + toJson(good) + "\n" + toJson(failed) + "\n";
+  writeTextFile(path_, before);  // as versions wrote it in which a crash in a later turn won
+  ASSERT_EQ(readRows(path_).size(), 1u);
+  EXPECT_EQ(readRows(path_)[0].failure, "");
+  ResultsFile results(path_);
+  EXPECT_TRUE(results.contains(good.key));
+  results.append(failed);
+  EXPECT_TRUE(results.contains(good.key));
+  EXPECT_EQ(results.find(good.key)->error.rmse, good.error.rmse);
+  results.append(exampleRow(exampleCase(), 0.5));
+  EXPECT_EQ(results.find(good.key)->error.rmse, 0.5) << "the last good one";
+  // The row is complete where all of its turns are there: neither measured nor timed again.
+  Fakes fakes;
+  const std::vector<Case> cases = {exampleCase()};
+  EXPECT_EQ(runCases(cases, "llvmpipe", results, fakes.callbacks()).skipped, 1);
+  EXPECT_EQ(fakes.measurements, 0);
+}
+
+TEST_F(BenchResults, WhatWasMeasuredWithSomethingElseIsMeasuredAgain) {
+  const std::vector<Case> cases = {exampleCase("pcss"), exampleCase("vssm")};
+  Fakes fakes;
+  Provenance now{"program 1", "scene 1", {}};
+  const auto provenance = [&](const Case& c) {
+    Provenance p = now;
+    p.modules = {{c.technique, "/lib/" + c.technique + ".so", c.technique == "pcss" ? "old" : "same"}};
+    return p;
+  };
+  const auto run = [&](const auto& what) {
+    ResultsFile results(path_);
+    Callbacks callbacks = fakes.callbacks();
+    callbacks.provenance = what;
+    const auto stale = staleRows(cases, "x", results, what);
+    const Summary summary = runCases(cases, "x", results, callbacks);
+    EXPECT_EQ(summary.done + summary.skipped, 2);
+    int count = 0;
+    for (const auto& [reason, rows] : stale) count += rows;
+    return std::pair(summary.done, count > 0 ? stale.begin()->first : std::string());
+  };
+  EXPECT_EQ(run(provenance), std::pair(2, std::string()));
+  EXPECT_EQ(run(provenance), std::pair(0, std::string()));
+  EXPECT_EQ(readRows(path_)[0].provenance.modules[0].file, "/lib/pcss.so");
+  now.scene = "scene 2";
+  EXPECT_EQ(run(provenance), std::pair(2, std::string("the scene has changed")));
+  now.program = "program 2";
+  EXPECT_EQ(run(provenance), std::pair(2, std::string("the program has changed")));
+  const auto newer = [&](const Case& c) {
+    Provenance p = provenance(c);
+    p.modules[0].file = "/elsewhere.so";
+    if (c.technique == "pcss") p.modules[0].hash = "new";
+    return p;
+  };
+  EXPECT_EQ(run(newer), std::pair(1, std::string("technique pcss has changed")));
+  EXPECT_EQ(run(newer), std::pair(0, std::string())) << "where a file lies does not count";
+  EXPECT_EQ(readRows(path_).size(), 2u) << "the key is that of what was asked";
+
+  // Rows of earlier versions do not say what they were measured with.
+  std::string old;
+  for (Row row : readRows(path_)) {
+    row.provenance = {};
+    old += toJson(row) + "\n";
+  }
+  EXPECT_EQ(old.find("provenance"), std::string::npos);
+  writeTextFile(path_, old);
+  EXPECT_EQ(run(newer), std::pair(2, std::string("an earlier version did not record what it used")));
+}
+
+TEST_F(BenchResults, TablesAreWritten) {
+  const std::vector<Row> rows = {exampleRow(exampleCase())};
+  writeTables(rows, folder_);
+  EXPECT_NE(readTextFile(folder_ / "tables.md").find("## cornell_box"), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder_ / makeTables(rows).front().fileName));
+}
+
+}  // namespace
+}  // namespace limn::bench

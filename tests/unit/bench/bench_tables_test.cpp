@@ -1,0 +1,171 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include "core/bench/private/comparison.h"
+#include "core/bench/tables.h"
+#include "tests/unit/bench/bench_rows.h"
+#include "tests/unit/bench/csv.h"
+
+namespace limn::bench {
+namespace {
+
+using test::csvRecords;
+using test::exampleCase;
+using test::exampleRow;
+
+TEST(BenchTables, NeverMixModesRenderersOrQuestions) {
+  std::vector<Row> rows = {exampleRow(exampleCase("pcss", 16)), exampleRow(exampleCase("pcss", 64))};
+  EXPECT_EQ(makeTables(rows).size(), 1u);
+  Row other = exampleRow(exampleCase());
+  other.what.dynamic = false;
+  rows.push_back(other);
+  EXPECT_EQ(makeTables(rows).size(), 2u);
+  other.cost.renderer = "GPU";
+  rows.push_back(other);
+  EXPECT_EQ(makeTables(rows).size(), 3u);
+  other.what.width = 64;
+  rows.push_back(other);
+  other.what.term = "direct";
+  rows.push_back(other);
+  EXPECT_EQ(makeTables(rows).size(), 5u);
+  std::set<std::string> names;
+  for (const Table& table : makeTables(rows)) names.insert(table.fileName);
+  EXPECT_EQ(names.size(), 5u);
+}
+
+TEST(BenchTables, TitlesTellTablesApart) {
+  std::vector<Row> rows(4, exampleRow(exampleCase()));
+  rows[1].what.g = -0.7;
+  rows[2].what.sigmaS = "0.5";
+  rows[3].what.fov = 30;
+  std::set<std::string> titles, files;
+  for (const Table& table : makeTables(rows)) {
+    titles.insert(table.title);
+    files.insert(table.fileName);
+  }
+  EXPECT_EQ(titles.size(), rows.size());
+  EXPECT_EQ(files.size(), rows.size());
+}
+
+TEST(BenchTables, MarkdownShowsErrorTimeNoiseFloorAndFront) {
+  // The second is beaten in both; the third's error is below the noise floor.
+  const std::vector<Row> rows = {exampleRow(exampleCase("fast"), 0.25, 1.0),
+                                 exampleRow(exampleCase("beaten"), 0.3, 1.5),
+                                 exampleRow(exampleCase("good"), 0.002, 9.0)};
+  const std::string text = toMarkdown(makeTables(rows).front());
+  EXPECT_NE(text.find("| fast | fast.samples=16 | 0.25 | 0.1 | -0.01 | 0.7 | inf | 0.1250 | 0.03 | 0.25 | "
+                      "5.00 | 1.00 | 1.000 | 0.750 | "
+                      "1.250 | 1.49 | 5 | 1000.0 | 0.12 | 0.50 | 0.25 | 0.25 | 3.0 | * |"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("| beaten | beaten.samples=16 | 0.3 "), std::string::npos) << text;
+  EXPECT_NE(text.find("| 1.500 | 1.250 | 1.750 | 1.33 | 5 | 666.7 | 0.08333 | 0.75 | 0.38 | 0.38 | 3.0 |  |"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("| good | good.samples=16 | <0.003 "), std::string::npos) << text;
+  // Every line of the table has as many cells.
+  std::size_t bars = 0;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || line[0] != '|') continue;
+    const std::size_t count = static_cast<std::size_t>(std::count(line.begin(), line.end(), '|'));
+    if (bars == 0) bars = count;
+    EXPECT_EQ(count, bars) << line;
+  }
+}
+
+TEST(BenchTables, ReferencesTakeLongerForLess) {
+  Row row = exampleRow(exampleCase("a"));
+  row.referenceSeconds = 50;
+  row.error.noise_floor = 3 * 0.01;
+  row.error.rmse = std::hypot(0.05, 0.01);  // 5 sigma beyond the reference's own noise
+  ASSERT_TRUE(referenceTime(row));
+  EXPECT_NEAR(referenceTime(row)->ms, 50e3 / 25, 1e-6);
+  EXPECT_FALSE(referenceTime(row)->atLeast);
+  row.error.rmse = 0.011;  // drowns in the noise
+  EXPECT_NEAR(referenceTime(row)->ms, 50e3 * 4, 1e-6);
+  EXPECT_TRUE(referenceTime(row)->atLeast);
+  row.what.timeWidth = row.what.timeHeight = 1024;  // errors and times of different pictures
+  EXPECT_FALSE(referenceTime(row));
+  row.what.timeWidth = row.what.timeHeight = 0;
+  row.error.noise_floor = 0;  // no noise, no Monte Carlo
+  EXPECT_FALSE(referenceTime(row));
+  row.error.noise_floor = 0.03;
+  row.referenceSeconds.reset();  // of an earlier version
+  EXPECT_FALSE(referenceTime(row));
+}
+
+TEST(BenchTables, RowsAreComparedWithTheBaseline) {
+  std::vector<Row> rows = {
+      exampleRow(exampleCase("pcss", 1024), 0.1, 8), exampleRow(exampleCase("pcss", 16), 0.2, 2),
+      exampleRow(exampleCase("pcss", 64), 0.15, 4), exampleRow(exampleCase("vssm"), 0.16, 1)};
+  EXPECT_EQ(comparisonMarkdown(rows), "");
+  rows[0].what.baseline = true;
+  for (Row& row : rows) row.penumbra->structured = 0.5 * row.penumbra->rmse;
+  rows[3].penumbra->structured = 0.01;
+  rows[3].what.title = "VSSM";
+  const std::string text = comparisonMarkdown(rows);
+  EXPECT_NE(text.find("| VSSM | 8.00 (5.33 to 16.00) | 8.00 | pcss samples=64 | 4.00 (2.67 to 8.00) | 4.00 | "
+                      "none | - | - |"),
+            std::string::npos)
+      << text;
+}
+
+TEST(BenchTables, SettingsOfOneTechniqueAreComparedWithTheBaselineAmongThem) {
+  std::vector<Row> rows = {exampleRow(exampleCase("pcss", 1024), 0.1, 8),
+                           exampleRow(exampleCase("pcss", 16), 0.2, 2)};
+  rows[0].what.baseline = true;
+  const std::string text = comparisonMarkdown(rows);
+  EXPECT_NE(text.find("| settings | frame | shadows |\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("| pcss samples=16 | 4.00 (3.20 to 5.33) | 4.00 |\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("samples=1024 | "), std::string::npos) << text;
+}
+
+TEST(BenchTables, CsvQuotesAndKeepsPrecision) {
+  Row row = exampleRow(exampleCase("a,b"), 0.1 + 0.2);
+  Row failed = row;
+  failed.failure = "he said \"no\"";
+  const std::vector<Row> rows = {row, failed};
+  const std::string text = toCsv(makeTables(rows).front());
+  EXPECT_NE(text.find("\"a,b\""), std::string::npos);
+  EXPECT_NE(text.find("0.30000000000000004"), std::string::npos);
+  EXPECT_NE(text.find("\"he said \"\"no\"\"\""), std::string::npos);
+  std::vector<long> fields;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t quoted = line.find("\"a,b\"");
+    if (quoted != std::string::npos) line.replace(quoted, 5, "a");
+    std::size_t parameters = line.find("\"a,b.samples");
+    EXPECT_EQ(parameters == std::string::npos, fields.empty());
+    if (parameters != std::string::npos) line.replace(parameters, 4, "a");
+    fields.push_back(std::count(line.begin(), line.end(), ','));
+  }
+  ASSERT_EQ(fields.size(), 3u);
+  EXPECT_EQ(fields[0], fields[1]);
+  EXPECT_EQ(fields[0], fields[2]);
+}
+
+TEST(BenchTables, CsvKeepsEveryTextAsItIs) {
+  for (const std::string hostile : {"a,b\"c\r\nd\ne", "=1+1", "@x", "\"", "|<b>"}) {
+    Row row = exampleRow(exampleCase(hostile));
+    row.what.scene = row.what.camera = row.what.light = row.what.term = row.cost.renderer = hostile;
+    row.what.animation = row.what.sigmaA = hostile;
+    Row failed = row;
+    failed.failure = hostile;
+    const std::vector<Row> rows = {row, failed};
+    const auto records = csvRecords(toCsv(makeTables(rows).front()));
+    ASSERT_EQ(records.size(), 3u) << hostile;
+    for (const auto& record : records) EXPECT_EQ(record.size(), records[0].size()) << hostile;
+    EXPECT_EQ(records[1][0], hostile);
+    EXPECT_EQ(records[1][2], hostile);
+    EXPECT_EQ(records[1][12], hostile);
+    EXPECT_EQ(records[2].back(), hostile);
+  }
+}
+
+}  // namespace
+}  // namespace limn::bench

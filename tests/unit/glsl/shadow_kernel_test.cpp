@@ -1,0 +1,139 @@
+// Laws of the kernels of prefiltered soft shadows (glsl/shadow/shadow_kernel.glsl).
+#include "glsl/shadow/shadow_kernel.glsl"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace limn::glsl {
+namespace {
+
+Light squareLight(float side, vec3 position, vec3 direction) {
+  const Frame frame = frame_around(direction);
+  Light light{};
+  light.position = position;
+  light.direction = direction;
+  light.axis_u = frame.t;
+  light.length_u = side;
+  light.axis_v = -frame.b;
+  light.length_v = side;  // cross(t, -b) = -n
+  light.type = light_rectangle;
+  light.own_instance = no_instance;
+  return light;
+}
+
+ShadowView viewOf(const Light& light, uint32_t kind, float tangent, int size) {
+  ShadowView v{};
+  const float scale = kind == shadow_perspective ? 0.5f / tangent : kind == shadow_orthographic ? 0.1f : 0.5f;
+  v.origin = light.position;
+  v.near = 0.5f;
+  v.axis_x = light.axis_u;
+  v.scale = scale;
+  v.axis_y = light.axis_v;
+  v.footprint = 1 / (scale * static_cast<float>(size));
+  v.axis_z = light.direction;
+  v.far = 20;
+  v.middle = vec2(0.5f, 0.5f);
+  v.projection = kind;
+  v.size = size;
+  return v;
+}
+
+TEST(ShadowKernel, IsAsWideAsTheFrameworkSays) {
+  // w = S (d - z) / (d 2 z tan(theta)) of the map's width, framework step 3.
+  const Light light = squareLight(2, vec3(0, 10, 0), vec3(0, -1, 0));
+  const ShadowView view = viewOf(light, shadow_perspective, 0.8f, 512);
+  const vec3 receiver(1.5f, 1, -2);
+  const LightView seen = light_view(light, receiver, vec3(0, 1, 0), -1);
+  for (const float z : {1.f, 3.f, 8.f, 8.99f}) {
+    ShadowKernel kernel;
+    ASSERT_TRUE(shadow_kernel(view, seen, receiver, 9 - z, true, kernel));
+    const float width = 512 * shadow_kernel_width(view, 2, 9, z);
+    EXPECT_NEAR(kernel.high.x - kernel.low.x, width, 1e-3f * width + 1e-3f);
+    EXPECT_NEAR(kernel.high.y - kernel.low.y, width, 1e-3f * width + 1e-3f);
+  }
+}
+
+TEST(ShadowKernel, CollapsesToTheReceiversTexelAtTheReceiver) {
+  const Light light = squareLight(2, vec3(0, 10, 0), vec3(0, -1, 0));
+  for (const uint32_t kind : {shadow_perspective, shadow_orthographic, shadow_paraboloid}) {
+    const ShadowView view = viewOf(light, kind, 0.8f, 512);
+    const vec3 receiver(0.5f, 1, -2);
+    ShadowKernel kernel;
+    ASSERT_TRUE(
+        shadow_kernel(view, light_view(light, receiver, vec3(0, 1, 0), -1), receiver, 0, true, kernel));
+    const vec2 at = 512.f * shadow_project(view, receiver).uv;
+    EXPECT_NEAR(kernel.low.x, at.x, 1e-2f);
+    EXPECT_NEAR(kernel.high.y, at.y, 1e-2f);
+  }
+}
+
+TEST(ShadowKernel, ThresholdIsWhereATexelStopsBlocking) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  int crossings = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const auto kind = static_cast<uint32_t>(i % 3);
+    const Light light = squareLight(1, vec3(0, 10, 0), vec3(0, -1, 0));
+    ShadowView view = viewOf(light, kind, 0.8f, 256);
+    if (kind == shadow_orthographic) view.origin.y = 12;
+    const vec3 receiver(4 * uniform(random) - 2, uniform(random), 4 * uniform(random) - 2);
+    const vec3 normal = normalize(vec3(uniform(random) - 0.5f, 0.6f, uniform(random) - 0.5f));
+    const ShadowReceiver r = shadow_receiver(view, receiver, normal, vec3(0, -1, 0), 1);
+    const vec2 uv(uniform(random), uniform(random));
+    const float threshold = shadow_threshold(view, r, uv);
+    for (const float step : {-1e-3f, 1e-3f}) {
+      const float stored = threshold + step;
+      if (stored <= 0 || stored >= 1) continue;
+      ++crossings;
+      EXPECT_EQ(shadow_blocks(r, shadow_unproject_local(view, uv, shadow_metres(view, stored))), step < 0)
+          << "kind " << kind << " threshold " << threshold;
+    }
+  }
+  EXPECT_GT(crossings, 10000);
+}
+
+TEST(ShadowKernel, FacesOfACubeShareAKernelBetweenThem) {
+  // A kernel across the edge of two faces: both hold a part, in proportion to its solid angle.
+  Light light{};
+  light.position = vec3(0, 0, 0);
+  light.direction = vec3(0, 0, 1);
+  light.type = light_point;
+  light.own_instance = no_instance;
+  ShadowView front{}, side{};
+  front.near = side.near = 0.1f;
+  front.axis_x = vec3(1, 0, 0);
+  front.scale = 0.5f;
+  front.axis_y = vec3(0, -1, 0);
+  front.footprint = 2.f / 256;
+  front.axis_z = vec3(0, 0, 1);
+  front.far = 20;
+  side.axis_x = vec3(0, -1, 0);
+  side.scale = 0.5f;
+  side.axis_y = vec3(0, 0, 1);
+  side.footprint = 2.f / 256;
+  side.axis_z = vec3(1, 0, 0);
+  side.far = 20;
+  front.middle = side.middle = vec2(0.5f);
+  front.projection = side.projection = shadow_perspective;
+  front.size = side.size = 256;
+  const vec3 receiver(3, 0.3f, 3);
+  const LightView seen = light_view(light, receiver, normalize(-receiver), 0.5f);
+  ShadowKernel a, b;
+  ASSERT_TRUE(shadow_kernel(front, seen, receiver, 2, false, a));
+  ASSERT_TRUE(shadow_kernel(side, seen, receiver, 2, false, b));
+  EXPECT_NEAR(a.high.x, 256, 1e-3f);
+  EXPECT_NEAR(a.weight / b.weight, 1, 0.05f);
+  ShadowKernel none;
+  ShadowView back = front;
+  back.axis_x = vec3(0, 1, 0);
+  back.scale = 0.5f;
+  back.axis_y = vec3(1, 0, 0);
+  back.footprint = 2.f / 256;
+  back.axis_z = vec3(0, 0, -1);
+  back.far = 20;
+  EXPECT_FALSE(shadow_kernel(back, seen, receiver, 2, false, none));
+}
+
+}  // namespace
+}  // namespace limn::glsl

@@ -1,0 +1,95 @@
+// What the cache of references keeps, and what tells two references apart.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "core/reference/reference.h"
+#include "tests/support/reference_scene.h"
+
+namespace limn::reference {
+namespace {
+
+using namespace test;
+
+TEST(ReferenceWork, CacheReturnsWhatWasRendered) {
+  const Folder folder;
+  Cache cache(folder.path() / "cache");
+  World world = busyWorld();
+  int passes = 0;
+  const auto ask = [&] {
+    Request request = world.request(16, Term::direct, 16);
+    request.progress = [&](const Progress&) { return ++passes, true; };
+    return cache.render(request);
+  };
+  const Result first = ask();
+  EXPECT_GT(passes, 0);
+  passes = 0;
+  const Result second = ask();
+  EXPECT_EQ(passes, 0);
+  EXPECT_TRUE(sameBits(first.image, second.image));
+  EXPECT_EQ(first.noiseRms, second.noiseRms);
+  EXPECT_EQ(first.spp, second.spp);
+  EXPECT_GT(first.seconds, 0);
+  EXPECT_EQ(first.seconds, second.seconds);
+  const auto file = cache.pathOf(contentHash(world.request(16, Term::direct, 16)));
+  ASSERT_TRUE(std::filesystem::exists(file));
+  std::ofstream(file) << "broken";
+  ask();
+  EXPECT_GT(passes, 0);
+  EXPECT_TRUE(cache.get(contentHash(world.request(16, Term::direct, 16))).has_value());
+}
+
+TEST(ReferenceWork, ACacheThatCannotBeWrittenKeepsReferencesInMemoryAndSaysSoOnce) {
+  const Folder folder;
+  const auto blocked = folder.path() / "file";
+  std::ofstream(blocked) << "no folder";
+  std::vector<std::string> warnings;
+  Cache cache(blocked / "cache", [&](const std::string& warning) { warnings.push_back(warning); });
+  const World world = busyWorld();
+  int passes = 0;
+  const auto ask = [&](int spp) {
+    Request request = world.request(16, Term::direct, spp);
+    request.progress = [&](const Progress&) { return ++passes, true; };
+    return cache.render(request);
+  };
+  const Result first = ask(16);
+  EXPECT_GT(passes, 0);
+  passes = 0;
+  EXPECT_TRUE(sameBits(first.image, ask(16).image));
+  EXPECT_EQ(passes, 0) << "not rendered again";
+  ask(8);
+  EXPECT_GT(passes, 0);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("kept in memory"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find(blocked.string()), std::string::npos) << warnings[0];
+}
+
+TEST(ReferenceWork, ContentHashSeesEverythingThatMatters) {
+  World world = busyWorld();
+  const auto hash = [&](auto change) {
+    World changed = world;
+    change(changed);
+    return contentHash(changed.request(16, Term::direct, 16));
+  };
+  const std::string plain = hash([](World&) {});
+  EXPECT_EQ(plain.size(), 32u);
+  EXPECT_EQ(plain, hash([](World&) {}));
+  EXPECT_NE(plain, hash([](World& w) { w.scene.meshes[0].primitives[0].positions[0].x += 1e-6f; }));
+  EXPECT_NE(plain, hash([](World& w) { w.scene.materials[0].roughness = 0.5f; }));
+  EXPECT_NE(plain, hash([](World& w) { w.scene.environment.texels[3].r = 7; }));
+  EXPECT_NE(plain, hash([](World& w) { w.pose.lights[0].emission.x += 1; }));
+  EXPECT_NE(plain, hash([](World& w) { w.pose.instances[1].objectToWorld[3].x += 1; }));
+  EXPECT_NE(plain, hash([](World& w) { w.camera.yfov += 0.1f; }));
+  Request request = world.request(16, Term::direct, 16);
+  request.seed = 1;
+  EXPECT_NE(plain, contentHash(request));
+  EXPECT_NE(plain, contentHash(world.request(16, Term::final, 16)));
+  EXPECT_NE(plain, contentHash(world.request(16, Term::direct, 18)));
+  EXPECT_NE(plain, contentHash(world.request(17, Term::direct, 16)));
+}
+
+}  // namespace
+}  // namespace limn::reference

@@ -1,0 +1,130 @@
+// Geometry in the reference: scale, places far from the origin, instances, deformation, features, pixels.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/reference/reference.h"
+#include "tests/support/reference_scene.h"
+
+namespace limn::reference {
+namespace {
+
+using namespace test;
+
+TEST(ReferenceGeometry, ScaleDoesNotMatter) {
+  const World world = busyWorld();
+  const Image image = render(world.request(24, Term::direct, 64)).image;
+  for (const float factor : {1e-4f, 1e4f}) {
+    World scaled = world;
+    scaled.rescale(factor);
+    const Image other = render(scaled.request(24, Term::direct, 64)).image;
+    double squares = 0, sum = 0;
+    for (int y = 0; y < 24; ++y)
+      for (int x = 0; x < 24; ++x) {
+        squares +=
+            std::pow(static_cast<double>(image.at(x, y, 0)) - static_cast<double>(other.at(x, y, 0)), 2);
+        sum += static_cast<double>(image.at(x, y, 0));
+      }
+    EXPECT_LT(std::sqrt(squares * 24 * 24) / sum, 1e-3) << factor;
+  }
+}
+
+TEST(ReferenceGeometry, FarFromTheOriginPlanesDoNotShadowThemselves) {
+  World world = floorWorld();
+  world.addRectangle({0.5f, 1.5f, 0}, {1, 0, 0}, {0, 0, -1}, 4);
+  const glm::vec3 away(1000, -2000, 500);
+  world.pose.instances[0].objectToWorld = glm::translate(glm::mat4(1), away);
+  world.pose.lights[0].position += away;
+  world.pose.bounds.low += away;
+  world.pose.bounds.high += away;
+  world.camera = scene::lookAt(away + glm::vec3(0, 1, 2.5f), away, 0.8f);
+  Request request = world.request(32, Term::visibility, 16);
+  request.light = 0;
+  const Image image = render(request).image;
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) EXPECT_EQ(image.at(x, y, image.channel("V")), 1.f) << x << " " << y;
+}
+
+TEST(ReferenceGeometry, InstancesEqualCopies) {
+  // The same spheres: one mesh drawn three times (mirrored once), or three meshes.
+  const glm::mat4 places[3] = {
+      glm::translate(glm::mat4(1), glm::vec3(-0.8f, 0.5f, 0)) * glm::scale(glm::mat4(1), glm::vec3(0.3f)),
+      glm::translate(glm::mat4(1), glm::vec3(0.1f, 0.3f, 0.2f)) *
+          glm::scale(glm::mat4(1), glm::vec3(0.2f, 0.3f, 0.2f)),
+      glm::translate(glm::mat4(1), glm::vec3(0.8f, 0.4f, -0.2f)) *
+          glm::scale(glm::mat4(1), glm::vec3(-0.3f, 0.3f, 0.3f))};
+  World shared = floorWorld();
+  shared.addRectangle({0.2f, 1.5f, -0.1f}, {1, 0, 0}, {0, 0, -0.6f}, 7);
+  shared.camera = scene::lookAt({0, 2, 3}, {0, 0.2f, 0}, 0.8f);
+  World copied = shared;
+  const int mesh = shared.addMesh(World::sphere(32, shared.addMaterial(glm::vec3(0.6f))));
+  const int material = copied.addMaterial(glm::vec3(0.6f));
+  for (const glm::mat4& place : places) {
+    shared.addInstance(mesh, place);
+    copied.addInstance(copied.addMesh(World::sphere(32, material)), place);
+  }
+  const Image a = render(shared.request(48, Term::direct, 64)).image;
+  const Image b = render(copied.request(48, Term::direct, 64)).image;
+  double difference = 0, sum = 0;
+  int ids = 0;
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 48; ++x) {
+      difference += std::abs(static_cast<double>(a.at(x, y, 0)) - static_cast<double>(b.at(x, y, 0)));
+      sum += static_cast<double>(a.at(x, y, 0));
+      ids += a.at(x, y, a.channel("id")) != b.at(x, y, b.channel("id"));
+    }
+  EXPECT_LT(difference / sum, 1e-3);
+  EXPECT_LE(ids, 2);
+  EXPECT_GT(sum, 0);
+}
+
+TEST(ReferenceGeometry, SkinnedAndMorphedPrimitivesAreTracedDeformed) {
+  World world = floorWorld();
+  auto& primitive = world.scene.meshes[0].primitives[0];
+  primitive.joints.assign(4, glm::u16vec4(0));
+  primitive.weights.assign(4, glm::vec4(1, 0, 0, 0));
+  primitive.morphTargets.emplace_back().positions.assign(4, glm::vec3(0, 0.5f, 0));
+  scene::Deformation state;
+  state.mesh = 0;
+  state.joints = {glm::translate(glm::mat4(1), glm::vec3(0, 0.25f, 0))};
+  state.morphWeights = {0.5f};
+  world.pose.deformed.push_back(state);
+  world.pose.instances[0].deformed = 0;
+  world.addLight(glsl::light_point, {0, 1, 0}, {0, -1, 0}, glm::vec3(1));
+  const Image image = render(world.request(9, Term::direct, 2)).image;
+  EXPECT_NEAR(positionOf(world, image, 4, 4).y, 0.5, 1e-5);
+  EXPECT_NEAR(image.at(4, 4, 0), 0.5f * glsl::inverse_pi / 0.25f, 1e-3f);  // 0.5 m below the light
+}
+
+TEST(ReferenceGeometry, FeaturesAreThoseOfTheSurface) {
+  const World world = busyWorld();
+  const Image image = render(world.request(33, Term::direct, 2)).image;
+  const auto value = [&](const char* channel, int x, int y) {
+    return image.at(x, y, image.channel(channel));
+  };
+  EXPECT_EQ(value("coverage", 16, 30), 1.f);
+  EXPECT_EQ(value("id", 16, 30), 0.f);
+  EXPECT_EQ(value("N.Y", 16, 30), 1.f);
+  EXPECT_EQ(value("albedo.R", 16, 30), 0.5f);
+  EXPECT_EQ(value("coverage", 0, 0), 0.f);
+  EXPECT_NEAR(positionOf(world, image, 16, 30).y, 0, 1e-5);
+}
+
+TEST(ReferenceGeometry, SupersamplingAverages) {
+  const World world = busyWorld();
+  Request request = world.request(24, Term::direct, 16);
+  const Image fine = render(request).image;
+  request.width = request.height = 12;
+  request.aa = 2;
+  const Image coarse = render(request).image;
+  ASSERT_EQ(coarse.width(), 12);
+  for (int y = 0; y < 12; ++y)
+    for (int x = 0; x < 12; ++x) {
+      const float mean = 0.25f * (fine.at(2 * x, 2 * y, 0) + fine.at(2 * x + 1, 2 * y, 0) +
+                                  fine.at(2 * x, 2 * y + 1, 0) + fine.at(2 * x + 1, 2 * y + 1, 0));
+      EXPECT_NEAR(coarse.at(x, y, 0), mean, 1e-5f * (1 + mean));
+    }
+}
+
+}  // namespace
+}  // namespace limn::reference

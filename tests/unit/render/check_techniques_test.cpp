@@ -1,0 +1,81 @@
+// Which techniques go together, and which terms they can show, for every row of the table of terms.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "core/base/error.h"
+#include "core/render/renderer.h"
+
+namespace limn::render {
+namespace {
+
+/// A technique that answers these terms and can do nothing.
+struct Claimant {
+  TechniqueInfo info;
+  TechniquePlugin plugin{};
+
+  Claimant(const char* name, TermSet terms)
+      : info{.name = name, .title = "", .source = "", .terms = terms, .parameters = {}, .stress = {}} {
+    plugin.info = &info;
+  }
+  Claimant(const Claimant&) = delete;
+  Claimant& operator=(const Claimant&) = delete;
+  TechniqueUse use() const { return {&plugin, ParameterValues(info.name, info.parameters)}; }
+};
+
+/// What is said against a picture of `term` by techniques that answer these sets of terms.
+std::string refusal(TermSet first, TermSet second, Term term = Term::final) {
+  const Claimant one("one", first), other("other", second);
+  try {
+    checkTechniques({one.use(), other.use()}, term);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CheckTechniques, ExclusiveTermsAreRefusedWhereTwoClaimThem) {
+  for (const TermInfo& info : kTerms) {
+    if (!info.answerable) continue;
+    const TermSet terms = termSet(info.term);
+    const std::string expected =
+        info.exclusive
+            ? fmt::format("techniques one and other both answer {}; name one of them", info.exclusive)
+            : "";
+    EXPECT_EQ(refusal(terms, terms), expected) << info.name;
+    EXPECT_EQ(refusal(terms | Term::indirect, terms | Term::media), expected) << info.name;
+  }
+}
+
+TEST(CheckTechniques, VisibilityAndDirectAreOneClaim) {
+  const std::string both = "techniques one and other both answer direct light; name one of them";
+  EXPECT_EQ(refusal(termSet(Term::visibility), termSet(Term::direct)), both);
+  EXPECT_EQ(refusal(termSet(Term::direct), termSet(Term::visibility)), both);
+  EXPECT_EQ(refusal(Term::visibility | Term::direct, termSet(Term::indirect)), "");
+  EXPECT_EQ(refusal(termSet(Term::direct), termSet(Term::environment)), "");
+}
+
+TEST(CheckTechniques, PicturesNeedAnAnswerUnlessTheTableSaysOtherwise) {
+  for (const TermInfo& info : kTerms) {
+    const TermSet others = kAnswerableTerms & ~exclusiveWith(termSet(info.term)) & ~termSet(info.term);
+    const std::string without = refusal(others, 0, info.term);
+    const std::string with = refusal(kAnswerableTerms, 0, info.term);
+    switch (info.picture) {
+      case TermPicture::none:
+        EXPECT_THAT(without, testing::HasSubstr("no picture shows the term")) << info.name;
+        EXPECT_EQ(with, without) << info.name;
+        break;
+      case TermPicture::answered:
+        EXPECT_EQ(without,
+                  fmt::format("no technique given answers the term {}; limn list says which do", info.name));
+        EXPECT_EQ(with, "") << info.name;
+        break;
+      case TermPicture::always:
+        EXPECT_EQ(without, "") << info.name;
+        EXPECT_EQ(with, "") << info.name;
+        break;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limn::render

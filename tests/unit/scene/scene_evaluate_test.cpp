@@ -1,0 +1,359 @@
+// Animation, world matrices, skins, lights and cameras against values worked out by hand.
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/scene/camera.h"
+#include "tests/support/scene_files.h"
+
+namespace limn::test {
+namespace {
+
+using json = nlohmann::json;
+using scene::evaluate;
+using scene::kNone;
+using scene::Pose;
+using scene::Scene;
+
+/// One node with a channel on `path`.
+GltfBuilder animated(const char* path, const char* interpolation, const std::vector<float>& times,
+                     const std::vector<glm::vec3>& vectors, const std::vector<glm::vec4>& rotations = {}) {
+  GltfBuilder b;
+  b.node({{"name", "n"}});
+  const int input = b.floats(times);
+  const int output = rotations.empty() ? b.vec3(vectors) : b.vec4(rotations);
+  b.append("animations",
+           {{"samplers", {{{"input", input}, {"output", output}, {"interpolation", interpolation}}}},
+            {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", path}}}}}}});
+  return b;
+}
+
+glm::vec3 translationAt(const Scene& s, double time) {
+  return evaluate(s, time).nodeToWorld[0][3];
+}
+
+TEST(SceneEvaluate, LinearAndStep) {
+  const Scene linear =
+      loadBuilt(animated("translation", "LINEAR", {1, 3, 4}, {{0, 0, 0}, {2, 4, 6}, {0, 0, 0}}));
+  EXPECT_EQ(linear.animations[0].duration, 4);
+  expectNear(translationAt(linear, 0.5), {0, 0, 0});  // before the first key
+  expectNear(translationAt(linear, 1.5), {0.5f, 1, 1.5f});
+  expectNear(translationAt(linear, 3), {2, 4, 6});
+  expectNear(translationAt(linear, 3.5), {1, 2, 3});
+  expectNear(translationAt(linear, 4 + 1.5), {0.5f, 1, 1.5f});  // repeats
+  expectNear(translationAt(linear, 1.5 - 4), {0.5f, 1, 1.5f});  // backwards too
+  const Scene step = loadBuilt(animated("translation", "STEP", {0, 1, 2}, {{1, 0, 0}, {2, 0, 0}, {3, 0, 0}}));
+  expectNear(translationAt(step, 0.999), {1, 0, 0});
+  expectNear(translationAt(step, 1), {2, 0, 0});
+  expectNear(translationAt(step, 1.999), {2, 0, 0});
+}
+
+TEST(SceneEvaluate, Slerp) {
+  const float s = std::sqrt(0.5f);
+  // From none to 90 degrees about Y; the second key's quaternion has the far sign.
+  const Scene scene = loadBuilt(animated("rotation", "LINEAR", {0, 1}, {}, {{0, 0, 0, 1}, {0, -s, 0, -s}}));
+  const glm::mat4 m = evaluate(scene, 1.0 / 3).nodeToWorld[0];
+  const float angle = glm::radians(30.f);
+  expectNear(m[0], {std::cos(angle), 0, -std::sin(angle)});
+  expectNear(m[1], {0, 1, 0});
+}
+
+TEST(SceneEvaluate, CubicSpline) {
+  // value 0 to 1 over two seconds, out-tangent 1 at the first, in-tangent -2 at the second key. At t = 1/4:
+  // h00 = 0.84375, h10 = 0.140625, h01 = 0.15625, h11 = -0.046875; 2 * 0.140625 * 1 + 0.15625 * 1 + 2 *
+  // -0.046875 * -2.
+  const Scene scene =
+      loadBuilt(animated("translation", "CUBICSPLINE", {0, 2},
+                         {{9, 0, 0}, {0, 0, 0}, {1, 0, 0}, {-2, 0, 0}, {1, 0, 0}, {9, 0, 0}}));
+  expectNear(translationAt(scene, 0.5), {0.28125f + 0.15625f + 0.1875f, 0, 0});
+  expectNear(translationAt(scene, 0), {0, 0, 0});
+}
+
+TEST(SceneEvaluate, RotationSplineIsUnit) {
+  const Scene scene = loadBuilt(
+      animated("rotation", "CUBICSPLINE", {0, 1}, {},
+               {{0, 0, 0, 0}, {0, 0, 0, 1}, {0, 0, 0, 0}, {0, 0, 0, 0}, {1, 0, 0, 0}, {0, 0, 0, 0}}));
+  const glm::mat4 m = evaluate(scene, 0.5).nodeToWorld[0];  // half way: 90 degrees about X
+  expectNear(m[1], {0, 0, 1});
+}
+
+TEST(SceneEvaluate, HierarchyAndMatrices) {
+  GltfBuilder b;
+  b.node({{"name", "child"}, {"translation", {0, 0, 5}}});
+  b.node({{"name", "root"},
+          {"children", {0, 2}},
+          {"translation", {1, 2, 3}},
+          {"rotation", {0, std::sqrt(0.5), 0, std::sqrt(0.5)}},
+          {"scale", {2, 2, 2}}});
+  b.node({{"name", "matrix"}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 7, 0, 0, 1}}});
+  const Scene scene = loadBuilt(b);
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) EXPECT_LT(scene.nodes[i].parent, static_cast<int>(i));
+  const Pose pose = evaluate(scene, 0);
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    // 90 degrees about Y takes +Z to +X and +X to -Z; then times 2.
+    if (scene.nodes[i].name == "child") expectNear(pose.nodeToWorld[i][3], {1 + 10, 2, 3});
+    if (scene.nodes[i].name == "matrix") expectNear(pose.nodeToWorld[i][3], {1, 2, 3 - 14});
+  }
+}
+
+TEST(SceneEvaluate, UsageErrors) {
+  const Scene scene = loadBuilt(animated("translation", "STEP", {0}, {{1, 0, 0}}));
+  EXPECT_THROW(evaluate(scene, 0, 1), UsageError);
+  EXPECT_THROW(evaluate(scene, 0, -2), UsageError);
+  EXPECT_THROW(evaluate(scene, std::numeric_limits<double>::quiet_NaN()), UsageError);
+  expectNear(translationAt(scene, 10), {1, 0, 0});  // one key: no duration
+}
+
+GltfBuilder skinned() {
+  GltfBuilder b;
+  const int joints = b.accessor(std::vector<glm::u8vec4>{{0, 1, 0, 0}, {0, 1, 0, 0}, {0, 1, 0, 0}},
+                                GltfBuilder::kUbyte, "VEC4");
+  const int weights = b.vec4({{1, 0, 0, 0}, {0.5f, 0.5f, 0, 0}, {0, 2, 0, 0}});
+  const int positions = b.vec3({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  const int normals = b.vec3(std::vector<glm::vec3>(3, glm::vec3(0, 0, 1)));
+  const int mesh =
+      b.mesh({{"POSITION", positions}, {"NORMAL", normals}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}});
+  b.node({{"mesh", mesh}, {"skin", 0}, {"translation", {100, 0, 0}}});  // ignored for skinned meshes
+  b.node({{"translation", {0, 10, 0}}});
+  b.node({{"translation", {4, 0, 0}}, {"scale", {1, 1, 2}}});
+  glm::mat4 second(1);
+  second[3] = glm::vec4(0, -1, 0, 1);
+  const int bind = b.accessor(std::vector<glm::mat4>{glm::mat4(1), second}, GltfBuilder::kFloat, "MAT4");
+  b.append("skins", {{"joints", {1, 2}}, {"inverseBindMatrices", bind}});
+  return b;
+}
+
+TEST(SceneEvaluate, Skin) {
+  const Scene scene = loadBuilt(skinned());
+  EXPECT_THAT(scene.warnings, testing::ElementsAre(testing::HasSubstr("skin weights do not sum to 1")));
+  const Pose pose = evaluate(scene, 0);
+  ASSERT_EQ(pose.instances.size(), 1u);
+  ASSERT_EQ(pose.instances[0].deformed, 0);
+  EXPECT_EQ(pose.instances[0].objectToWorld, glm::mat4(1));
+  std::vector<glm::vec3> positions, normals;
+  std::vector<glm::vec4> tangents;
+  scene::deform(scene.meshes[0].primitives[0], pose.deformed[0], positions, normals, tangents);
+  expectNear(positions[0], {0, 10, 0});
+  expectNear(positions[1], {1 + 2, 5 - 0.5f, 0});  // the mean of (1, 10, 0) and (5, -1, 0)
+  expectNear(positions[2], {4, 0, 0});
+  for (const glm::vec3& n : normals) expectNear(n, {0, 0, 1});
+  for (const glm::vec3& p : positions) {
+    EXPECT_TRUE(glm::all(glm::lessThanEqual(pose.bounds.low, p + 1e-5f)));
+    EXPECT_TRUE(glm::all(glm::greaterThanEqual(pose.bounds.high, p - 1e-5f)));
+  }
+}
+
+TEST(SceneEvaluate, SkinNormalsFollowTheSurface) {
+  const glm::mat4 m = glm::scale(glm::rotate(glm::mat4(1), 0.7f, glm::vec3(1, 2, 3)), glm::vec3(1, 3, -0.5f));
+  const glm::vec3 n = glm::normalize(glm::vec3(1, 1, 1));
+  const glm::vec3 expected = glm::normalize(glm::transpose(glm::inverse(glm::mat3(m))) * n);
+  Scene scene = loadBuilt(skinned());
+  scene::Primitive& primitive = scene.meshes[0].primitives[0];
+  primitive.normals.assign(3, n);
+  primitive.tangents.assign(3, glm::vec4(glm::normalize(glm::vec3(1, -1, 0)), -1));
+  scene::Deformation state;
+  state.joints.assign(2, m);
+  std::vector<glm::vec3> positions, normals;
+  std::vector<glm::vec4> tangents;
+  scene::deform(primitive, state, positions, normals, tangents);
+  for (int i = 0; i < 3; ++i) {
+    expectNear(normals[static_cast<std::size_t>(i)], expected);
+    EXPECT_NEAR(glm::dot(glm::vec3(tangents[static_cast<std::size_t>(i)]), expected), 0, 1e-5);
+    EXPECT_EQ(tangents[static_cast<std::size_t>(i)].w, -1);
+  }
+}
+
+TEST(SceneEvaluate, MorphTargets) {
+  GltfBuilder b;
+  b.triangle();
+  const int up = b.vec3(std::vector<glm::vec3>(3, glm::vec3(0, 0, 2)));
+  const int side = b.vec3({{1, 0, 0}, {0, 0, 0}, {0, 0, 0}});
+  b.root["meshes"][0]["primitives"][0]["targets"] =
+      json::array({{{"POSITION", up}}, {{"POSITION", side}, {"NORMAL", side}}});
+  b.root["meshes"][0]["weights"] = {0.5, 0};
+  const int input = b.floats({0, 1}), output = b.floats({0, 0, 1, 1});
+  b.append("animations", {{"samplers", {{{"input", input}, {"output", output}}}},
+                          {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}});
+  Scene scene = loadBuilt(b);
+  Pose pose = evaluate(scene, 0.25);
+  EXPECT_THAT(pose.deformed.at(0).morphWeights, testing::ElementsAre(0.25f, 0.25f));
+  EXPECT_TRUE(pose.deformed[0].joints.empty());
+  std::vector<glm::vec3> positions, normals;
+  std::vector<glm::vec4> tangents;
+  scene::deform(scene.meshes[0].primitives[0], pose.deformed[0], positions, normals, tangents);
+  expectNear(positions[0], {0.25f, 0, 0.5f});
+  expectNear(positions[2], {0, 1, 0.5f});
+  expectNear(normals[0], glm::normalize(glm::vec3(0.25f, 0, 1)));
+  EXPECT_NEAR(pose.bounds.high.z, 0.5f, 1e-5f);
+  scene.animations.clear();
+  EXPECT_THAT(evaluate(scene, 0.25).deformed[0].morphWeights, testing::ElementsAre(0.5f, 0.f));
+}
+
+TEST(SceneEvaluate, Instances) {
+  GltfBuilder b;
+  b.triangle();
+  const int t = b.vec3({{0, 0, 0}, {10, 0, 0}}), s = b.vec3({{1, 1, 1}, {2, 2, 2}});
+  const int r =
+      b.accessor(std::vector<glm::i8vec4>{{0, 0, 0, 127}, {0, 0, 127, 0}}, GltfBuilder::kByte, "VEC4");
+  b.root["accessors"][static_cast<std::size_t>(r)]["normalized"] = true;
+  b.root["nodes"][0]["translation"] = {0, 1, 0};
+  b.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"TRANSLATION", t}, {"ROTATION", r}, {"SCALE", s}};
+  const Scene scene = loadBuilt(b);
+  EXPECT_EQ(scene.triangles(), 2u);
+  const Pose pose = evaluate(scene, 0);
+  ASSERT_EQ(pose.instances.size(), 2u);
+  expectNear(pose.instances[0].objectToWorld[3], {0, 1, 0});
+  expectNear(pose.instances[1].objectToWorld * glm::vec4(1, 0, 0, 1), {10 - 2, 1, 0});  // half a turn about Z
+  expectNear(pose.bounds.low, {0, -1, 0});
+  expectNear(pose.bounds.high, {10, 2, 0});
+}
+
+TEST(SceneEvaluate, Lights) {
+  GltfBuilder b;
+  const double s = std::sqrt(0.5);
+  b.light({{"type", "point"}, {"color", {1, 0.5, 0.25}}, {"intensity", 8}, {"range", 4}},
+          {{"name", "lamp"}, {"translation", {1, 2, 3}}, {"scale", {5, 6, 7}}});
+  b.light({{"type", "spot"}, {"intensity", 2}, {"spot", {{"innerConeAngle", 0.3}, {"outerConeAngle", 0.6}}}},
+          {{"rotation", {-s, 0, 0, s}}});  // -90 degrees about X: -Z becomes -Y
+  b.light({{"type", "directional"}, {"name", "sun"}, {"extras", {{"limn_angle", 0.009}}}});
+  b.light({{"type", "spot"}, {"intensity", 12}, {"spot", {{"outerConeAngle", 1}}}},
+          {{"extras", {{"limn_area", {2, 3}}}}, {"scale", {9, 9, 9}}});
+  const Pose pose = evaluate(loadBuilt(b), 0);
+  ASSERT_EQ(pose.lights.size(), 4u);
+  EXPECT_THAT(pose.lightNames, testing::ElementsAre("lamp", "#1", "sun", "#3"));
+  EXPECT_EQ(pose.lights[0].type, glsl::light_point);
+  expectNear(pose.lights[0].position, {1, 2, 3});
+  expectNear(pose.lights[0].emission, {8, 4, 2});
+  EXPECT_EQ(pose.lights[0].range, 4);
+  EXPECT_EQ(pose.lights[0].own_instance, glsl::no_instance);
+  EXPECT_EQ(pose.lights[1].type, glsl::light_spot);
+  EXPECT_EQ(pose.lights[1].flags, glsl::light_flag_cone);
+  EXPECT_EQ(pose.lights[1].index, 1u);
+  expectNear(pose.lights[1].direction, {0, -1, 0});
+  EXPECT_NEAR(pose.lights[1].cos_inner, std::cos(0.3), 1e-6);
+  EXPECT_NEAR(pose.lights[1].cos_outer, std::cos(0.6), 1e-6);
+  EXPECT_EQ(pose.lights[2].type, glsl::light_directional);
+  expectNear(pose.lights[2].direction, {0, 0, -1});
+  EXPECT_NEAR(pose.lights[2].angular_diameter, 0.009, 1e-7);
+  const glsl::Light& area = pose.lights[3];
+  EXPECT_EQ(area.type, glsl::light_rectangle);
+  EXPECT_EQ(area.flags, glsl::light_flag_cone);
+  expectNear(area.emission, glm::vec3(2));  // 12 W/sr over 6 m^2, whatever the scale
+  EXPECT_EQ(area.length_u, 2);
+  EXPECT_EQ(area.length_v, 3);
+  expectNear(glm::cross(area.axis_u, area.axis_v), -area.direction);
+}
+
+GltfBuilder quad(const std::vector<glm::vec3>& corners, json material, json node = json::object()) {
+  GltfBuilder b;
+  b.triangle();
+  const int m = b.append("materials", std::move(material));
+  node["mesh"] = b.mesh({{"POSITION", b.vec3(corners)}}, b.indices({0, 1, 2, 0, 2, 3}), m);
+  b.node(node);
+  return b;
+}
+const std::vector<glm::vec3> kQuad = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}};
+const json kGlow = {{"emissiveFactor", {1, 0.5, 0}},
+                    {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 10}}}}}};
+
+TEST(SceneEvaluate, EmissiveQuadIsALight) {
+  const Pose pose = evaluate(loadBuilt(quad(kQuad, kGlow, {{"name", "panel"}, {"scale", {1, 3, 1}}})), 0);
+  ASSERT_EQ(pose.lights.size(), 1u);
+  const glsl::Light& light = pose.lights[0];
+  EXPECT_EQ(pose.lightNames[0], "panel");
+  EXPECT_EQ(light.type, glsl::light_rectangle);
+  EXPECT_EQ(light.flags, glsl::light_flag_geometry);
+  EXPECT_EQ(light.own_instance, 1u);  // the second draw instance
+  expectNear(light.emission, {10, 5, 0});
+  expectNear(light.position, {1, 1.5f, 0});
+  expectNear(light.direction, {0, 0, 1});
+  EXPECT_NEAR(light.length_u * light.length_v, 6, 1e-5);
+  expectNear(glm::cross(light.axis_u, light.axis_v), -light.direction);
+}
+
+TEST(SceneEvaluate, EmissiveQuadVariants) {
+  json both = kGlow;
+  both["doubleSided"] = true;
+  EXPECT_EQ(evaluate(loadBuilt(quad(kQuad, both)), 0).lights.at(0).flags,
+            glsl::light_flag_geometry | glsl::light_flag_two_sided);
+  // Mirrored: the winding turns around in the file's space, the front face stays where the normal points.
+  const auto mirrored = evaluate(loadBuilt(quad(kQuad, kGlow, {{"scale", {-1, 1, 1}}})), 0).lights.at(0);
+  expectNear(mirrored.direction, {0, 0, 1});
+  expectNear(mirrored.position, {-1, 0.5f, 0});
+  for (const auto& corners :
+       {std::vector<glm::vec3>{{0, 0, 0}, {2, 0, 0}, {2.1f, 1, 0}, {0.1f, 1, 0}},  // skewed
+        std::vector<glm::vec3>{{0, 0, 0}, {2, 0, 0}, {2, 1, 0.1f}, {0, 1, 0}},     // bent
+        std::vector<glm::vec3>{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 1, 0}}}) {     // kite
+    const Scene scene = loadBuilt(quad(corners, kGlow));
+    EXPECT_TRUE(evaluate(scene, 0).lights.empty());
+    EXPECT_THAT(scene.warnings, testing::ElementsAre(testing::HasSubstr("displayed but light nothing")));
+  }
+}
+
+TEST(SceneEvaluate, Cameras) {
+  GltfBuilder b;
+  b.append("cameras",
+           {{"type", "perspective"}, {"name", "lens"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.25}}}});
+  b.append("cameras", {{"type", "orthographic"},
+                       {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 1}, {"zfar", 2}}}});
+  b.node({{"name", "front"}, {"camera", 0}, {"translation", {0, 0, 5}}, {"scale", {3, 3, 3}}});
+  b.node({{"camera", 1}});
+  b.node({{"camera", 0}});
+  const Scene scene = loadBuilt(b);
+  EXPECT_THAT(scene.warnings, testing::ElementsAre(testing::HasSubstr("orthographic cameras are ignored")));
+  const Pose pose = evaluate(scene, 0);
+  ASSERT_EQ(pose.cameras.size(), 2u);
+  EXPECT_EQ(pose.cameras[0].name, "front");
+  EXPECT_EQ(pose.cameras[1].name, "lens");
+  EXPECT_EQ(pose.cameras[0].yfov, 0.7f);
+  EXPECT_EQ(pose.cameras[0].near, 0.25f);
+  expectNear(pose.cameras[0].worldToView * glm::vec4(1, 2, 0, 1), {1, 2, -5});
+}
+
+class Growing : public scene::GeometrySource {
+ public:
+  std::shared_ptr<const scene::Primitive> at(double time) override {
+    if (time == 0) return nullptr;
+    auto made = std::make_shared<scene::Primitive>();
+    made->positions = {glm::vec3(-1), glm::vec3(static_cast<float>(time)), glm::vec3(0)};
+    made->normals.assign(normals, glm::vec3(0, 0, 1));
+    made->indices = {0, 1, last};
+    return made;
+  }
+  uint32_t last = 2;
+  size_t normals = 3;
+};
+
+TEST(SceneEvaluate, DynamicGeometryComesLast) {
+  GltfBuilder b;
+  b.triangle();
+  Scene scene = loadBuilt(b);
+  const auto source = std::make_shared<Growing>();
+  scene.dynamic.push_back({"surface", source, 0});
+  const Pose pose = evaluate(scene, 7);
+  ASSERT_EQ(pose.instances.size(), 2u);
+  EXPECT_EQ(pose.instances[1].node, kNone);
+  EXPECT_EQ(pose.instances[1].mesh, 0);
+  expectNear(pose.bounds.low, glm::vec3(-1));
+  expectNear(pose.bounds.high, glm::vec3(7));
+  EXPECT_TRUE(evaluate(scene, 0).dynamic.at(0).bounds.empty());
+  source->last = 3;
+  EXPECT_THROW(evaluate(scene, 7), Error);
+  source->last = 2;
+  source->normals = 2;
+  EXPECT_THROW(evaluate(scene, 7), Error);
+}
+
+TEST(SceneEvaluate, PoseFollowsAnotherScene) {
+  Pose pose;
+  evaluate(loadBuilt(skinned()), 0, kNone, pose);
+  evaluate(Scene{}, 0, kNone, pose);
+  EXPECT_TRUE(pose.instances.empty() && pose.deformed.empty() && pose.lights.empty() &&
+              pose.lightNames.empty());
+  EXPECT_TRUE(pose.bounds.empty());
+}
+
+}  // namespace
+}  // namespace limn::test

@@ -1,0 +1,447 @@
+// What a loaded scene holds: geometry, materials, textures, extras.
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+#include "core/image/image.h"
+#include "core/scene/mip_chain.h"
+#include "core/scene/tangents.h"
+#include "tests/support/png.h"
+#include "tests/support/scene_files.h"
+
+namespace limn::test {
+namespace {
+
+using json = nlohmann::json;
+using scene::kNone;
+using scene::Primitive;
+using scene::Scene;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class SceneFile : public SceneFiles {};
+
+const Primitive& onlyPrimitive(const Scene& s) {
+  return s.meshes.at(0).primitives.at(0);
+}
+
+TEST(SceneLoad, EmptyScenes) {
+  const Scene scene = loadBuilt(GltfBuilder());
+  EXPECT_TRUE(scene.nodes.empty() && scene.meshes.empty() && scene.images.empty() && scene.warnings.empty());
+  EXPECT_EQ(scene.triangles(), 0u);
+  EXPECT_TRUE(evaluate(scene, 0).bounds.empty());
+  GltfBuilder zero;
+  zero.append("scenes", {{"nodes", json::array()}});
+  zero.append("meshes", {{"primitives", json::array()}});
+  zero.append("skins", {{"joints", json::array()}});
+  zero.append("animations", {{"samplers", json::array()}, {"channels", json::array()}});
+  zero.node({{"mesh", 0}, {"skin", 0}});
+  EXPECT_EQ(loadBuilt(zero).triangles(), 0u);
+  GltfBuilder noVertex;
+  noVertex.view("data", 4);
+  noVertex.meshNode(noVertex.mesh({{"POSITION", noVertex.vec3({})}}));
+  EXPECT_THAT(loadBuilt(noVertex).warnings, ElementsAre(HasSubstr("no triangle")));
+}
+
+TEST(SceneLoad, Triangle) {
+  GltfBuilder b;
+  b.triangle();
+  const Scene scene = loadBuilt(b);
+  const Primitive& p = onlyPrimitive(scene);
+  EXPECT_EQ(scene.triangles(), 1u);
+  EXPECT_THAT(p.indices, ElementsAre(0, 1, 2));
+  EXPECT_TRUE(p.uvs.empty() && p.tangents.empty());  // no texture asks for them
+  EXPECT_EQ(p.bounds.high, glm::vec3(1, 1, 0));
+  EXPECT_EQ(scene.materials.at(static_cast<std::size_t>(p.material)).metallic, 1);  // glTF's default material
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(SceneLoad, NormalisedIntegers) {
+  GltfBuilder b;
+  const int p =
+      b.accessor(std::vector<glm::i16vec4>{{-32768, 32767, 0, 0}, {0, 0, 16384, 0}, {0, 32767, 0, 0}},
+                 GltfBuilder::kShort, "VEC3");
+  b.root["accessors"][static_cast<std::size_t>(p)].update({{"normalized", true}});
+  b.root["bufferViews"][0]["byteStride"] = 8;
+  const int c = b.accessor(std::vector<glm::u8vec4>{{255, 0, 51, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}},
+                           GltfBuilder::kUbyte, "VEC4");
+  b.root["accessors"][static_cast<std::size_t>(c)]["normalized"] = true;
+  b.root["extensionsRequired"] = {"KHR_mesh_quantization"};
+  b.meshNode(b.mesh({{"POSITION", p}, {"COLOR_0", c}}));
+  const Primitive primitive = onlyPrimitive(loadBuilt(b));
+  expectNear(primitive.positions[0], {-1, 1, 0});
+  EXPECT_NEAR(primitive.positions[1].z, 16384 / 32767.0, 1e-6);
+  expectNear(primitive.colours[0], {1, 0, 0.2f});
+  EXPECT_EQ(primitive.colours[0].w, 0);
+}
+
+TEST(SceneLoad, SparseAccessor) {
+  GltfBuilder b;
+  b.triangle();
+  const glm::vec3 value(7, 8, 9);
+  b.root["accessors"][0]["sparse"] = {
+      {"count", 1},
+      {"indices", {{"bufferView", b.view("\x01", 1)}, {"componentType", 5121}}},
+      {"values", {{"bufferView", b.view(&value, 12)}}}};
+  expectNear(onlyPrimitive(loadBuilt(b)).positions[1], value);
+}
+
+TEST(SceneLoad, StripsAndFans) {
+  GltfBuilder b;
+  const int p = b.vec3({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}});
+  const int n = b.vec3(std::vector<glm::vec3>(4, glm::vec3(0, 0, 1)));
+  b.meshNode(b.mesh({{"POSITION", p}, {"NORMAL", n}}));
+  b.root["meshes"][0]["primitives"][0]["mode"] = 5;
+  EXPECT_THAT(onlyPrimitive(loadBuilt(b)).indices, ElementsAre(0, 1, 2, 1, 3, 2));
+  b.root["meshes"][0]["primitives"][0]["mode"] = 6;
+  EXPECT_THAT(onlyPrimitive(loadBuilt(b)).indices, ElementsAre(1, 2, 0, 2, 3, 0));
+  b.root["meshes"][0]["primitives"][0]["mode"] = 5;
+  b.root["meshes"][0]["primitives"][0]["indices"] = b.indices({0, 1, 2, 2, 3});
+  EXPECT_THAT(onlyPrimitive(loadBuilt(b)).indices, ElementsAre(0, 1, 2));  // stitches go
+  b.root["meshes"][0]["primitives"][0]["mode"] = 1;
+  const Scene lines = loadBuilt(b);
+  EXPECT_TRUE(lines.meshes[0].primitives.empty());
+  EXPECT_THAT(lines.warnings, ElementsAre(HasSubstr("points and lines")));
+}
+
+TEST(SceneLoad, MissingNormalsAreFlat) {
+  GltfBuilder b;
+  const int p = b.vec3({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+  const int mesh = b.mesh({{"POSITION", p}}, b.indices({0, 1, 2, 0, 3, 1}));
+  b.meshNode(mesh);
+  const int delta = b.vec3({{0, 0, 0}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}});
+  b.root["meshes"][0]["primitives"][0]["targets"] = json::array({{{"POSITION", delta}}});
+  const Primitive primitive = onlyPrimitive(loadBuilt(b));
+  ASSERT_EQ(primitive.positions.size(), 6u);
+  EXPECT_THAT(primitive.indices, ElementsAre(0, 1, 2, 3, 4, 5));
+  for (std::size_t i = 0; i < 3; ++i) expectNear(primitive.normals[i], {0, 0, 1});
+  for (std::size_t i = 3; i < 6; ++i) expectNear(primitive.normals[i], {0, 1, 0});
+  // The target tilts the first face by 45 degrees.
+  const glm::vec3 tilted(0, -std::sqrt(0.5f), std::sqrt(0.5f));
+  expectNear(primitive.normals[0] + primitive.morphTargets[0].normals[0], tilted);
+  expectNear(primitive.morphTargets[0].normals[3], glm::vec3(0));
+}
+
+TEST(SceneLoad, NormalsBecomeUnit) {
+  GltfBuilder b;
+  b.triangle();
+  b.root["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+      b.vec3({{0, 0, 3}, {0, 0, 0}, {0, 0.6f, 0.8f}});
+  const Scene scene = loadBuilt(b);
+  expectNear(onlyPrimitive(scene).normals[0], {0, 0, 1});
+  expectNear(onlyPrimitive(scene).normals[1], {0, 0, 1});  // from the triangle
+  expectNear(onlyPrimitive(scene).normals[2], {0, 0.6f, 0.8f});
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("not unit vectors")));
+}
+
+TEST(SceneLoad, Materials) {
+  GltfBuilder b;
+  b.append(
+      "materials",
+      {{"name", "glass"},
+       {"pbrMetallicRoughness",
+        {{"baseColorFactor", {0.1, 0.2, 0.3, 0.4}}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}}},
+       {"emissiveFactor", {0.5, 1, 0}},
+       {"doubleSided", true},
+       {"alphaMode", "MASK"},
+       {"alphaCutoff", 0.25},
+       {"extensions",
+        {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}},
+         {"KHR_materials_ior", {{"ior", 1.33}}},
+         {"KHR_materials_specular", {{"specularFactor", 0}, {"specularColorFactor", {1, 0.5, 0}}}},
+         {"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+         {"KHR_materials_volume",
+          {{"thicknessFactor", 0.1}, {"attenuationDistance", 2}, {"attenuationColor", {0.9, 0.8, 0.7}}}}}}});
+  b.append("materials", {{"alphaMode", "BLEND"}});
+  b.append("materials", {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"roughnessFactor", 7}}}});
+  const Scene scene = loadBuilt(b);
+  const scene::Material& m = scene.materials[0];
+  EXPECT_EQ(m.baseColour, glm::vec4(0.1f, 0.2f, 0.3f, 0.4f));
+  EXPECT_EQ(m.metallic, 0);
+  EXPECT_EQ(m.roughness, 0.5f);
+  EXPECT_EQ(m.emission, glm::vec3(2, 4, 0));
+  EXPECT_TRUE(m.doubleSided);
+  EXPECT_EQ(m.alphaCutoff, 0.25f);
+  EXPECT_EQ(m.ior, 1.33f);
+  EXPECT_EQ(m.specularFactor, 0);
+  EXPECT_EQ(m.specularColour, glm::vec3(1, 0.5f, 0));
+  EXPECT_EQ(m.transmission, 1);
+  EXPECT_EQ(m.thickness, 0.1f);
+  EXPECT_EQ(m.attenuationDistance, 2);
+  EXPECT_EQ(m.attenuationColour, glm::vec3(0.9f, 0.8f, 0.7f));
+  EXPECT_EQ(scene.materials[1].alphaCutoff, 0.5f);
+  EXPECT_EQ(scene.materials[2].roughness, 1);
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("BLEND counts as MASK"), HasSubstr("7 is clamped to 1")));
+}
+
+TEST(SceneLoad, OneTexturePerImageAndUse) {
+  GltfBuilder b;
+  const std::vector<std::byte> image = png(1, 1, {10, 20, 30, 40});
+  b.append("images", {{"bufferView", b.view(image.data(), image.size())}, {"name", "pixel"}});
+  b.append("samplers", {{"wrapS", 33071}, {"wrapT", 33648}});
+  b.append("textures", {{"source", 0}, {"sampler", 0}});
+  b.append("textures", {{"source", 0}});
+  b.append("materials",
+           {{"pbrMetallicRoughness",
+             {{"baseColorTexture", {{"index", 0}}}, {"metallicRoughnessTexture", {{"index", 1}}}}},
+            {"emissiveTexture", {{"index", 1}}}});
+  const Scene scene = loadBuilt(b);
+  ASSERT_EQ(scene.images.size(), 2u);
+  const scene::Material& m = scene.materials[0];
+  EXPECT_TRUE(scene.images[static_cast<std::size_t>(m.baseColourTexture.image)].srgb);
+  EXPECT_FALSE(scene.images[static_cast<std::size_t>(m.metalRoughTexture.image)].srgb);
+  EXPECT_EQ(m.emissiveTexture.image, m.baseColourTexture.image);
+  EXPECT_EQ(m.baseColourTexture.wrapS, scene::Wrap::clamp);
+  EXPECT_EQ(m.baseColourTexture.wrapT, scene::Wrap::mirror);
+  EXPECT_EQ(m.metalRoughTexture.wrapS, scene::Wrap::repeat);
+  EXPECT_EQ(scene.images[0].name, "pixel");
+  EXPECT_THAT(scene.images[0].levels[0].rgba, ElementsAre(10, 20, 30, 40));
+}
+
+TEST(SceneLoad, DataUri) {
+  GltfBuilder b;
+  b.root["buffers"] = {{{"byteLength", 3}, {"uri", "data:application/octet-stream;base64,AAEC"}}};
+  b.append("bufferViews", {{"buffer", 0}, {"byteLength", 3}});
+  b.append("accessors", {{"bufferView", 0}, {"componentType", 5121}, {"count", 3}, {"type", "SCALAR"}});
+  EXPECT_EQ(loadError(b.text()), "");
+  b.root["buffers"][0]["byteLength"] = 4;
+  EXPECT_THAT(loadError(b.text()), HasSubstr("declares 4 bytes, 3 are there"));
+}
+
+TEST(SceneLoad, TextureTransform) {
+  GltfBuilder b;
+  const int material = b.texturedMaterial(png(1, 1, {1, 2, 3, 4}));
+  b.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] =
+      {{"offset", {0.5, 0.25}}, {"scale", {2, 4}}};
+  b.triangle(material);
+  EXPECT_THAT(onlyPrimitive(loadBuilt(b)).uvs,
+              ElementsAre(glm::vec2(0.5f, 0.25f), glm::vec2(2.5f, 0.25f), glm::vec2(0.5f, 4.25f)));
+}
+
+TEST(SceneLoad, MipChainAveragesInLinearLight) {
+  scene::TextureImage image;
+  image.srgb = true;
+  image.levels.push_back({2, 1, {255, 255, 0, 255, 0, 255, 0, 0}});
+  buildMipChain(image);
+  ASSERT_EQ(image.levels.size(), 2u);
+  EXPECT_THAT(image.levels[1].rgba, ElementsAre(188, 255, 0, 128));  // 0.5 linear is 188 in sRGB
+  image.srgb = false;
+  image.levels.resize(1);
+  buildMipChain(image);
+  EXPECT_THAT(image.levels[1].rgba, ElementsAre(128, 255, 0, 128));
+}
+
+TEST(SceneLoad, MipChainOfOddSizes) {
+  scene::TextureImage image;
+  image.levels.push_back({5, 3, std::vector<std::uint8_t>(5 * 3 * 4, 77)});
+  image.levels[0].rgba[0] = 255;
+  buildMipChain(image);
+  ASSERT_EQ(image.levels.size(), 3u);  // 5x3, 2x1, 1x1
+  EXPECT_EQ(image.levels[1].width, 2);
+  EXPECT_EQ(image.levels[1].height, 1);
+  // Texel (0, 0) covers 2.5 x 3 texels; the bright one is 1 / 7.5 of that.
+  EXPECT_EQ(image.levels[1].rgba[0], std::lround(77 + (255 - 77) / 7.5));
+  EXPECT_EQ(image.levels[1].rgba[4], 77);
+  EXPECT_NEAR(image.levels[2].rgba[0], 77 + (255 - 77) / 15.0, 1);  // the mean survives
+}
+
+/// Of the direction in which v falls, which is up in the picture: the bitangent (glTF 2.0, 3.8.3 and 3.9.3).
+glm::vec3 up(const glm::vec4& tangent, const glm::vec3& normal) {
+  return tangent.w * glm::cross(normal, glm::vec3(tangent));
+}
+
+TEST(SceneLoad, TangentsFollowTheTexture) {
+  const std::vector<glm::vec3> p = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, n(3, glm::vec3(0, 0, 1));
+  const std::vector<std::uint32_t> indices = {0, 1, 2};
+  const float angle = 0.6f, c = std::cos(angle), s = std::sin(angle);
+  // u grows along (c, s, 0) and v along (-s, c, 0); upright, it falls along it.
+  std::vector<glm::vec2> mirrored, upright;
+  for (const glm::vec3& v : p) {
+    mirrored.emplace_back(3 * (c * v.x + s * v.y), c * v.y - s * v.x);
+    upright.emplace_back(mirrored.back().x, -mirrored.back().y);
+  }
+  for (const glm::vec4& t : scene::generateTangents(p, n, upright, indices)) {
+    expectNear(t, {c, s, 0});
+    EXPECT_EQ(t.w, 1) << "as most files have it";
+    expectNear(up(t, n[0]), {-s, c, 0});
+  }
+  for (const glm::vec4& t : scene::generateTangents(p, n, mirrored, indices)) {
+    expectNear(t, {c, s, 0});
+    EXPECT_EQ(t.w, -1);
+    expectNear(up(t, n[0]), {s, -c, 0});
+  }
+  for (const glm::vec4& t : scene::generateTangents(p, n, std::vector<glm::vec2>(3), indices)) {
+    EXPECT_NEAR(glm::length(glm::vec3(t)), 1, 1e-6);  // no direction in the texture: any perpendicular
+    EXPECT_NEAR(t.z, 0, 1e-6);
+    EXPECT_EQ(t.w, 1);
+  }
+}
+
+/// mikktspace.h: "vec3 bitangent = fSign * cross(vN, tangent)" points to growing v, and glTF's exporters and
+/// viewers that use it turn its sign (three.js, computeMikkTSpaceTangents, negateSign). Of a body whose
+/// halves share a mirrored texture each has its own sign; a triangle without extent in the texture has none
+/// to say.
+TEST(SceneLoad, TangentsAreThoseOfMikkTSpaceWithItsSignTurned) {
+  const std::vector<glm::vec3> p = {{-1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0, 0, 0},
+                                    {1, 0, 0},  {0, 1, 0}, {0, 2, 0}, {0, 1, 0}};
+  const std::vector<glm::vec3> n(p.size(), glm::vec3(0, 0, 1));
+  const std::vector<glm::vec2> uv = {{1, 1}, {0, 1}, {0, 0}, {0, 1}, {1, 1}, {0, 0}, {0, 0}, {0, 0}};
+  const std::vector<std::uint32_t> left = {0, 1, 2}, right = {3, 4, 5}, flat = {5, 6, 7};
+  std::vector<std::uint32_t> all;
+  for (const auto* part : {&left, &right, &flat}) all.insert(all.end(), part->begin(), part->end());
+  const std::vector<glm::vec4> tangents = scene::generateTangents(p, n, uv, all);
+  for (const std::uint32_t i : left) {
+    expectNear(tangents[i], {-1, 0, 0});
+    EXPECT_EQ(tangents[i].w, -1);
+    expectNear(up(tangents[i], n[i]), {0, 1, 0});
+  }
+  for (const std::uint32_t i : right) {
+    expectNear(tangents[i], {1, 0, 0});
+    EXPECT_EQ(tangents[i].w, 1);
+    expectNear(up(tangents[i], n[i]), {0, 1, 0});
+  }
+}
+
+TEST(SceneLoad, TangentsOnlyWithNormalMap) {
+  GltfBuilder b;
+  b.texturedMaterial(png(1, 1, {128, 128, 255, 255}));
+  b.root["materials"][0] = {{"normalTexture", {{"index", 0}, {"scale", 0.5}}}};
+  b.triangle(0);
+  const Scene scene = loadBuilt(b);
+  EXPECT_EQ(scene.materials[0].normalScale, 0.5f);
+  ASSERT_EQ(onlyPrimitive(scene).tangents.size(), 3u);
+  expectNear(onlyPrimitive(scene).tangents[0], {1, 0, 0});
+}
+
+TEST(SceneLoad, OnlyTheDefaultSceneIsDrawn) {
+  GltfBuilder b;
+  b.triangle();
+  b.meshNode(0);
+  b.append("scenes", {{"nodes", {0}}});
+  b.append("scenes", {{"nodes", {0, 1}}});
+  EXPECT_EQ(loadBuilt(b).triangles(), 1u);
+  b.root["scene"] = 1;
+  EXPECT_EQ(loadBuilt(b).triangles(), 2u);
+}
+
+TEST(SceneLoad, Medium) {
+  GltfBuilder b;
+  b.append("scenes",
+           {{"extras", {{"limn_medium", {{"sigma_a", 0.25}, {"sigma_s", {1, 2, 3}}, {"g", 0.5}}}}}});
+  const Scene scene = loadBuilt(b);
+  EXPECT_EQ(scene.medium.sigmaA, glm::vec3(0.25f));
+  EXPECT_EQ(scene.medium.sigmaS, glm::vec3(1, 2, 3));
+  EXPECT_EQ(scene.medium.g, 0.5f);
+  EXPECT_TRUE(scene.medium.present());
+  EXPECT_FALSE(scene.medium.inhomogeneous());
+}
+
+TEST(SceneLoad, Smoke) {
+  GltfBuilder b;
+  const json smoke = {{"low", {-1, 0, -2}}, {"high", {1, 3, 2}}, {"whirl", 0.5},
+                      {"rise", 0.25},       {"seed", 7},         {"resolution", 40}};
+  b.append("scenes", {{"extras", {{"limn_medium", {{"sigma_s", 1}, {"smoke", smoke}}}}}});
+  const Scene scene = loadBuilt(b);
+  ASSERT_TRUE(scene.medium.inhomogeneous());
+  EXPECT_EQ(scene.medium.smoke->low, glm::vec3(-1, 0, -2));
+  EXPECT_EQ(scene.medium.smoke->high, glm::vec3(1, 3, 2));
+  EXPECT_EQ(scene.medium.smoke->whirl, 0.5f);
+  EXPECT_EQ(scene.medium.smoke->rise, 0.25f);
+  EXPECT_EQ(scene.medium.smoke->seed, 7u);
+  EXPECT_EQ(scene.medium.smoke->resolution, 40);
+}
+
+TEST(SceneLoad, SpotsShineThroughTextures) {
+  GltfBuilder b;
+  b.texturedMaterial(png(2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255}));
+  b.light({{"type", "spot"}, {"spot", {{"outerConeAngle", 0.5}}}, {"extras", {{"limn_texture", 0}}}});
+  b.light({{"type", "spot"}, {"spot", {{"outerConeAngle", 0.5}}}, {"extras", {{"limn_texture", 0}}}});
+  b.light({{"type", "point"}, {"extras", {{"limn_texture", 0}}}});
+  const Scene scene = loadBuilt(b);
+  ASSERT_EQ(scene.lightTextures.size(), 1u) << "one image is one texture";
+  EXPECT_EQ(scene.lights[0].texture, 0);
+  EXPECT_EQ(scene.lights[1].texture, 0);
+  EXPECT_EQ(scene.lights[2].texture, kNone);
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("only spots")));
+  const auto& texels = scene.lightTextures[0].texels;
+  constexpr int side = scene::LightTexture::side;
+  EXPECT_EQ(texels[0], glm::vec3(0, 0, 1)) << "lower left";
+  EXPECT_EQ(texels[side - 1], glm::vec3(1));
+  EXPECT_EQ(texels[size_t{side} * (side - 1)], glm::vec3(1, 0, 0)) << "upper left";
+}
+
+TEST_F(SceneFile, EnvironmentBesideTheScene) {
+  Image sky = Image::rgb(2, 1);
+  sky.at(0, 0, 0) = -3;
+  sky.at(1, 0, 2) = 5;
+  writeExr(folder_ / "scene" / "sky.exr", sky);
+  GltfBuilder b;
+  b.append("scenes", {{"extras", {{"limn_environment", "sky.exr"}}}});
+  const Scene scene = scene::load(write("scene/a.glb", b.glb()));
+  ASSERT_TRUE(scene.environment);
+  EXPECT_EQ(scene.environment.texels[0], glm::vec3(0));  // negative pixels are clamped
+  EXPECT_EQ(scene.environment.texels[1], glm::vec3(0, 0, 5));
+  EXPECT_EQ(scene.file, folder_ / "scene/a.glb");
+  sky.at(0, 0, 0) = std::nanf("");
+  writeExr(folder_ / "scene" / "sky.exr", sky);
+  EXPECT_THAT(loadError(folder_ / "scene/a.glb"), HasSubstr("pixel (0, 0) is not a finite number"));
+}
+
+TEST(SceneModels, RealFiles) {
+  const char* folder = std::getenv("LIMN_MODELS");
+  if (!folder) GTEST_SKIP() << "LIMN_MODELS names no folder of glTF models";
+  const std::map<std::string, std::uint64_t> triangles = {{"AnimatedMorphSphere.glb", 960},
+                                                          {"CesiumMan.glb", 4672},
+                                                          {"Fox.glb", 576},
+                                                          {"LeePerrySmith.glb", 17684},
+                                                          {"MorphStressTest.glb", 2412},
+                                                          {"RobotExpressive.glb", 3237},
+                                                          {"ShaderBall_88k.glb", 88264},
+                                                          {"armadillo_86k.glb", 86482},
+                                                          {"buddha_100k.glb", 100000},
+                                                          {"bunny_69k.glb", 69451},
+                                                          {"dragon_202k.glb", 199626},
+                                                          {"dragon_871k.glb", 871414},
+                                                          {"emerald.glb", 140},
+                                                          {"sponza_262k.glb", 262267}};
+  int loaded = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".glb") continue;
+    SCOPED_TRACE(entry.path().filename().string());
+    const Scene scene = scene::load(entry.path());
+    ++loaded;
+    if (const auto known = triangles.find(entry.path().filename().string()); known != triangles.end()) {
+      EXPECT_EQ(scene.triangles(), known->second);
+    }
+    for (const scene::Mesh& mesh : scene.meshes) {
+      for (const Primitive& p : mesh.primitives) {
+        double worst = 0;
+        for (const glm::vec3& n : p.normals)
+          worst = std::max(worst, std::abs(glm::length(glm::dvec3(n)) - 1));
+        for (const glm::vec4& t : p.tangents)
+          worst = std::max(worst, std::abs(glm::length(glm::dvec3(glm::vec3(t))) - 1));
+        EXPECT_LT(worst, 1e-5);
+        EXPECT_EQ(p.normals.size(), p.positions.size());
+        EXPECT_TRUE(std::isfinite(p.bounds.radius()));
+      }
+    }
+    const scene::Pose pose = evaluate(scene, 0.4);
+    std::vector<glm::vec3> positions, normals;
+    std::vector<glm::vec4> tangents;
+    for (const scene::Deformation& d : pose.deformed) {
+      deform(scene.meshes[static_cast<std::size_t>(d.mesh)].primitives[static_cast<std::size_t>(d.primitive)],
+             d, positions, normals, tangents);
+      for (const glm::vec3& n : normals) ASSERT_NEAR(glm::length(n), 1, 1e-4);
+      if (d.joints.empty()) continue;
+      const glm::vec3 slack(1e-3f * pose.bounds.radius());
+      for (const glm::vec3& p : positions) {
+        ASSERT_TRUE(glm::all(glm::lessThanEqual(pose.bounds.low, p + slack)));
+        ASSERT_TRUE(glm::all(glm::greaterThanEqual(pose.bounds.high, p - slack)));
+      }
+    }
+  }
+  EXPECT_GT(loaded, 0);
+}
+
+}  // namespace
+}  // namespace limn::test

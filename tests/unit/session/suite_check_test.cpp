@@ -1,0 +1,50 @@
+// What a suite names and is not there is said before anything is measured.
+#include "core/session/suite_check.h"
+
+#include <gmock/gmock.h>
+
+namespace limn::session {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class SuiteCheckTest : public testing::Test {
+ protected:
+  SuiteCheckTest() { case_.scene = "gem"; }
+  std::vector<std::string> missing(int copies = 1) {
+    return missingThings(std::vector<bench::Case>(static_cast<size_t>(copies), case_), registry_,
+                         [this] { ++signsOfLife_; });
+  }
+  TechniqueRegistry registry_{{}};
+  bench::Case case_;
+  int signsOfLife_ = 0;
+};
+
+TEST_F(SuiteCheckTest, NothingIsSaidOfWhatIsThere) {
+  EXPECT_THAT(missing(), IsEmpty());
+  EXPECT_EQ(signsOfLife_, 1);
+}
+
+TEST_F(SuiteCheckTest, EachThingIsSaidOnce) {
+  case_.light = "no_such_light";
+  case_.camera = "no_such_camera";
+  EXPECT_THAT(missing(3), ElementsAre(HasSubstr("no_such_camera"), HasSubstr("no_such_light")));
+  EXPECT_EQ(signsOfLife_, 1) << "of one scene";
+}
+
+TEST_F(SuiteCheckTest, FilesAndTechniquesAreLookedFor) {
+  case_.scene = "no_such_scene";
+  case_.technique = "no_such_technique";
+  EXPECT_THAT(missing(), ElementsAre(HasSubstr("no_such_technique"), HasSubstr("no_such_scene")));
+  EXPECT_EQ(signsOfLife_, 0);
+}
+
+TEST_F(SuiteCheckTest, ParametersNeedTheirTechnique) {
+  case_.parameters = {{"pcss.filter_samples", "16"}};
+  EXPECT_THAT(missing(), ElementsAre(HasSubstr("which --technique does not")));
+}
+
+}  // namespace
+}  // namespace limn::session

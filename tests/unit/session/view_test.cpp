@@ -1,0 +1,111 @@
+// What the table of questions says of each field's effect is true of the scene that is opened.
+#include "core/session/view.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/base/file.h"
+#include "core/question/question_fields.h"
+#include "tests/support/paths.h"
+#include "tests/support/question_samples.h"
+
+namespace limn::session {
+namespace {
+
+/// The content hash of the reference that answers the question.
+std::string referenceHash(const SceneQuestion& question) {
+  const View view = open(question);
+  const reference::Request request = referenceRequest(view, view.pose, view.camera, parseTerm(question.term));
+  return reference::contentHash(request);
+}
+
+/// The gem, with a second animation that turns another node.
+std::string twoAnimations() {
+  std::string glb = readTextFile(std::string(test::kBinaryDir) + "/assets/gem/gem.glb", 1 << 24);
+  const auto word = [&](size_t at) {
+    uint32_t value = 0;
+    std::memcpy(&value, glb.data() + at, 4);
+    return value;
+  };
+  nlohmann::json json = nlohmann::json::parse(glb.substr(20, word(12)));
+  nlohmann::json second = json["animations"][0];
+  second["name"] = "other";
+  for (nlohmann::json& channel : second["channels"])
+    channel["target"]["node"] = channel["target"]["node"] == 0 ? 1 : 0;
+  json["animations"].push_back(second);
+  std::string text = json.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  glb.replace(20, word(12), text);
+  const auto put = [&](size_t at, size_t value) {
+    const auto number = static_cast<uint32_t>(value);
+    std::memcpy(glb.data() + at, &number, 4);
+  };
+  put(12, text.size());
+  put(8, glb.size());
+  const std::string file = testing::TempDir() + "two_animations.glb";
+  writeTextFile(file, glb);
+  return file;
+}
+
+/// A question in which the field matters, without and with it.
+std::pair<SceneQuestion, SceneQuestion> exampleOf(const QuestionField& field) {
+  const std::string key = field.key;
+  SceneQuestion without;
+  without.scene = "lights";
+  without.width = without.height = 16;
+  if (key != "environment") without.environment = "sky";
+  if (field.approximates && key != "environment_lights") without.environmentLights = 0.05;
+  if (key == "g" || key == "grid") without.sigmaS = "0.1";
+  if (key == "eye" || key == "target") without.eye = "3,2,1", without.target = "0,0.5,0";
+  if (key == "time") without.scene = "gem";
+  if (key == "animation") without.scene = twoAnimations(), without.time = 0.5;
+  SceneQuestion with = without;
+  test::setSample(field, with);
+  const std::map<std::string, std::string SceneQuestion::*> names{
+      {"scene", &SceneQuestion::scene}, {"camera", &SceneQuestion::camera},
+      {"eye", &SceneQuestion::eye},     {"target", &SceneQuestion::target},
+      {"light", &SceneQuestion::light}, {"animation", &SceneQuestion::animation},
+      {"grid", &SceneQuestion::grid},   {"environment", &SceneQuestion::environment}};
+  const std::map<std::string, std::string> values{
+      {"scene", "gem"}, {"camera", "close"},    {"eye", "0,1,3"},  {"target", "0,0,0"},
+      {"light", "key"}, {"animation", "other"}, {"grid", "smoke"}, {"environment", "sky"}};
+  if (const auto found = names.find(key); found != names.end()) with.*found->second = values.at(key);
+  if (key == "default_lights") with.defaultLights = "on";
+  if (key == "set_light") with.lightSettings = {"key.intensity=77"};
+  if (key == "term") with.term = "direct";
+  if (key == "light_size") with.lightSize = 0.3;
+  if (key == "environment_rotation") with.environmentRotation = 90;
+  if (key == "environment_lights") with.environmentLights = 0.05;
+  if (key == "environment_resolution") with.environmentResolution = 32;
+  if (key == "time") with.time = 0.5;
+  return {without, with};
+}
+
+TEST(SceneQuestion, FieldsChangeTheReferenceUnlessTheyApproximate) {
+  for (const QuestionField& field : questionFields()) {
+    const auto [without, with] = exampleOf(field);
+    EXPECT_EQ(referenceHash(without) == referenceHash(with), field.approximates) << field.key;
+  }
+}
+
+/// Moving, lighting or looking again is enough where the table says so.
+TEST(SceneQuestion, FieldsNeedNoMoreThanTheirEffect) {
+  for (const QuestionField& field : questionFields()) {
+    if (field.effect == QuestionEffect::scene || field.effect == QuestionEffect::view) continue;
+    const auto [without, with] = exampleOf(field);
+    View view = open(without);
+    if (field.effect == QuestionEffect::lights)
+      relight(view, with);
+    else
+      moveTo(view, with, with.time);
+    EXPECT_EQ(reference::contentHash(referenceRequest(view, view.pose, view.camera, Term::final)),
+              referenceHash(with))
+        << field.key;
+  }
+}
+
+}  // namespace
+}  // namespace limn::session
