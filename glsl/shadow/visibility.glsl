@@ -1,15 +1,14 @@
 // What a compute pass that answers `visibility` starts from: its inputs (shadow::addVisibilityPass names them), the
 // receiver of a pixel and the light of a layer.
 //
-// shadow::addVisibilityPass() defines what all lights of a dispatch have in common, so that no loop asks for it again:
-// SHADOW_PROJECTION (shadow_perspective, ...), SHADOW_FACES (shadow_faces_*) and LIGHT_KIND (light_kind_*) as numbers. Where
-// they are undefined, each light says it.
+// shadow::addVisibilityPass() defines what all lights of a dispatch have in common: glsl/shadow/alike_lights.glsl.
 //
 // Define WHOLE_BIAS 1 before including this to keep the whole bias where a light with extent grazes.
 #ifndef LIMN_VISIBILITY_GLSL
 #define LIMN_VISIBILITY_GLSL
 #include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/light/light_view.glsl"
+#include "glsl/shadow/alike_lights.glsl"
 #include "glsl/shadow/map_space.glsl"
 #include "glsl/shadow/shadow_kernel.glsl"
 #include "glsl/shadow/shadow_view.glsl"
@@ -18,56 +17,14 @@
 #define WHOLE_BIAS 0
 #endif
 
-// 1: every light of the dispatch has one view (shadow_faces_single), so that no loop moves to another.
-#define ONE_VIEW 0
-#ifdef SHADOW_FACES
-#if SHADOW_FACES == 0
-#undef ONE_VIEW
-#define ONE_VIEW 1
-#endif
-#endif
-
 layout(local_size_x = 8, local_size_y = 8) in;
 
-uniform sampler2DArray shadow_depth;
-layout(std430) readonly buffer Lights { Light lights[]; };
-#ifdef SHADOW_VIEW_COUNT  // they fit a uniform block, from which all invocations load at once
-layout(std140) uniform ShadowViews { ShadowView shadow_views[SHADOW_VIEW_COUNT]; };
-#else
-layout(std430) readonly buffer ShadowViews { ShadowView shadow_views[]; };
-#endif
-layout(std430) readonly buffer ShadowLights { ShadowLight shadow_lights[]; };
 layout(std430) buffer ShadowCoverage { uint uncovered_pixels; };
 uniform float bias;        // texel footprints
 uniform float light_size;  // metres or radians; < 0: the scene's
-uniform int light_layers[8];  // of the lights of this dispatch
 
 // The place in the request of the light that the work group answers for: its layer of the answer.
 int light_layer() { return light_layers[gl_WorkGroupID.z]; }
-
-ShadowView view_of_layer(uint layer) {
-  ShadowView view = shadow_views[layer];
-#ifdef SHADOW_PROJECTION
-  view.projection = uint(SHADOW_PROJECTION);
-#endif
-  return view;
-}
-
-ShadowLight maps_at(uint index) {
-  ShadowLight maps = shadow_lights[index];
-#ifdef SHADOW_FACES
-  maps.faces = uint(SHADOW_FACES);
-#endif
-  return maps;
-}
-
-uint kind_of_light(Light light) {
-#ifdef LIGHT_KIND
-  return uint(LIGHT_KIND);
-#else
-  return light_kind(light);
-#endif
-}
 
 // Whether the axis of the light is that of each of its views. (Directions of a disc have views of their own, where they are
 // sampled.)
