@@ -64,18 +64,21 @@ LIMN_FN vec3 shadow_local(ShadowView view, vec3 p) {
   return vec3(dot(view.axis_x, r), dot(view.axis_y, r), dot(view.axis_z, r));
 }
 
-// Which of a light's views sees p; `first` is the light's first view.
-LIMN_FN uint shadow_face(uint faces, ShadowView first, vec3 p) {
+// Which of a light's views sees what lies at r, an offset from their origin in the axes of the first of them.
+LIMN_FN uint shadow_face_of_local(uint faces, vec3 r) {
   if (faces == shadow_faces_single) return 0u;
-  vec3 r = shadow_local(first, p);
   if (faces == shadow_faces_pair) return r.z >= 0.0f ? 0u : 1u;
   float x = abs(r.x);
   float y = abs(r.y);
-  float z = abs(r.z);
-  if (faces == shadow_faces_hemicube) z = max(r.z, 0.0f);
-  if (z >= x && z >= y) return r.z >= 0.0f ? 0u : 5u;
-  if (x >= y) return r.x >= 0.0f ? 1u : 2u;
-  return r.y >= 0.0f ? 3u : 4u;
+  float z = faces == shadow_faces_hemicube ? max(r.z, 0.0f) : abs(r.z);
+  uint beside = x >= y ? (r.x >= 0.0f ? 1u : 2u) : (r.y >= 0.0f ? 3u : 4u);
+  return z >= x && z >= y ? (r.z >= 0.0f ? 0u : 5u) : beside;
+}
+
+// Which of a light's views sees p; `first` is the light's first view.
+LIMN_FN uint shadow_face(uint faces, ShadowView first, vec3 p) {
+  if (faces == shadow_faces_single) return 0u;
+  return shadow_face_of_local(faces, shadow_local(first, p));
 }
 
 LIMN_FN ShadowPoint shadow_project_local(ShadowView view, vec3 r) {
