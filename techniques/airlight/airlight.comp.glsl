@@ -1,123 +1,141 @@
 // Airlight: each viewing ray is cut into stretches that are even in the angle from the light; of each, the part that the
-// light reaches is integrated (glsl/media/airlight.glsl). MARCH: where the medium or the light is not that simple, what the medium
-// takes on the way to the eye is summed along the stretches, what it takes on the way from the light is looked up at each node.
-#include "glsl/media/airlight.glsl"
+// light reaches is integrated (glsl/media/airlight_path.glsl). In a medium with a grid, what it takes on the way to the eye is
+// summed along the stretches, and what it takes on the way from the light is looked up at each node.
+#include "glsl/media/airlight_path.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/light/light_texture.glsl"
 #include "glsl/media/medium_input.glsl"
-#include "glsl/shadow/shadow_view.glsl"
-
-#define MARCH (MEDIUM_STEPS > 0 || LIGHT_TEXTURES)
+#include "glsl/shadow/alike_lights.glsl"
+#include "glsl/shadow/map_path.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f) uniform image2D radiance;
-uniform sampler2DArray shadow_depth;
-layout(std430) readonly buffer Lights { Light lights[]; };
-layout(std430) readonly buffer ShadowViews { ShadowView shadow_views[]; };
-layout(std430) readonly buffer ShadowLights { ShadowLight shadow_lights[]; };
-uniform int light_count;
+uniform int light_count;  // of the dispatch
 uniform int light_samples;
 uniform int steps;
 
 const int refinements = 6;  // of the place where a ray enters or leaves a shadow
 
-bool lit(ShadowLight maps, ShadowView first, vec3 p) {
-  ShadowView view = first;
-  uint layer = maps.first_layer;
-  if (maps.faces != shadow_faces_single) {
-    layer += shadow_face(maps.faces, first, p);
-    view = shadow_views[layer];
-  }
-  ShadowPoint q = shadow_project(view, p);
-  if (!shadow_inside(q)) return true;
-  ivec2 texel = min(ivec2(q.uv * float(view.size)), ivec2(view.size) - 1);
-  float stored = texelFetch(shadow_depth, ivec3(texel, layer), 0).x;
-  return !(stored < 1.0 && shadow_metres(view, stored) < q.depth);
+// A viewing ray as one light, or a point on it, sees it.
+struct LitRay {
+  AirlightPath path;
+  MapPath maps;
+  uint projection;
+  uint faces;
+  uint first_layer;
+  uint kind;
+  vec3 source;  // as AirlightRay's
+};
+
+bool lit_at(LitRay ray, float q) {
+  MapPlace place = map_path_place(ray.maps, ray.projection, ray.faces, q);
+  ivec3 texel = ivec3(map_path_texel(ray.maps, place), ray.first_layer + place.face);
+  float stored = texelFetch(shadow_depth, texel, 0).x;
+  return !(map_path_inside(ray.maps, place) && stored < 1.0 && map_path_behind(ray.maps, place, stored) > 0.0);
 }
 
-bool lit_at(ShadowLight maps, ShadowView first, AirlightRay ray, float variable) {
-  return lit(maps, first, ray.eye + airlight_metres(ray, variable) * ray.direction);
-}
+#if MEDIUM_STEPS > 0
 
-#if MARCH
-
-// Metres of medium of density 1 in the stretch from a to b metres along the ray (Gauss-Legendre, two nodes).
-float stretch_length(AirlightRay ray, float a, float b) {
+// Metres of medium of density 1 in the stretch from a to b (Gauss-Legendre, two nodes).
+float stretch_length(AirlightPath path, float a, float b) {
   float middle = 0.5 * (a + b);
   float step = 0.5 * (b - a) * gauss_node;
-  return 0.5 * (b - a) * (medium_density(ray.eye + (middle - step) * ray.direction) +
-                          medium_density(ray.eye + (middle + step) * ray.direction));
-}
-
-// Radiance per unit of the variable from one node; before: metres of medium of density 1 between eye and node.
-vec3 airlight_node(Medium medium, Light light, AirlightRay ray, float t, float before) {
-  AirlightPoint p = airlight_point(light, ray, t, light_samples);
-  p.sent *= light_texture(light, p.place);
-  float density = medium_density(p.place);
-  if (density == 0.0 || p.sent == vec3(0.0)) return vec3(0.0);
-  float to_light = ray.parallel ? medium_length(medium, p.place, -p.from, 3.0e38)
-                                : medium_length_between(medium, ray.source, p.place);
-  return density * airlight_scattered(medium, ray, p, before + to_light);
-}
-
-// The lit part [a, b] of a stretch that begins at `start` metres, behind `before` metres of medium of density 1.
-vec3 airlight_lit(Medium medium, Light light, AirlightRay ray, float a, float b, float start, float before) {
-  vec3 sum = vec3(0.0);
-  for (int i = -1; i <= 1; i += 2) {
-    float t = airlight_metres(ray, 0.5 * (a + b) + float(i) * 0.5 * (b - a) * gauss_node);
-    float within = (t - start) * medium_density(ray.eye + 0.5 * (start + t) * ray.direction);
-    sum += airlight_node(medium, light, ray, t, before + within);
-  }
-  return 0.5 * (b - a) * sum;
+  return 0.5 * (b - a) * (medium_density(airlight_path_place(path, middle - step)) +
+                          medium_density(airlight_path_place(path, middle + step)));
 }
 
 #endif
+
+// Radiance per unit of the variable from one node over path.sent. start: of the stretch; before: metres of medium of density 1
+// between it and the eye, where the medium has a grid.
+vec3 airlight_node(Medium medium, Light light, LitRay ray, float q, float start, float before) {
+  vec3 factor = vec3(airlight_path_factor(ray.path, ray.kind, q));
+#if LIGHT_TEXTURES
+  factor *= light_texture(light, airlight_path_place(ray.path, q));
+#endif
+#if MEDIUM_STEPS > 0
+  vec3 place = airlight_path_place(ray.path, q);
+  factor *= medium_density(place);
+  if (factor == vec3(0.0)) return vec3(0.0);
+  before += (q - start) * medium_density(airlight_path_place(ray.path, 0.5 * (start + q)));
+  float to_light = airlight_parallel(ray.kind) ? medium_length(medium, place, -light.direction, 3.0e38)
+                                               : medium_length_between(medium, ray.source, place);
+  return factor * medium_transmittance(medium, before + to_light);
+#else
+  return factor * medium_transmittance(medium, airlight_path_length(ray.path, ray.kind, q));
+#endif
+}
+
+// From the part of a stretch that the nodes stand for, over path.sent.
+vec3 airlight_part_of(Medium medium, Light light, LitRay ray, vec2 start, vec2 end, AirlightNodes nodes, float before) {
+  float start_q = airlight_place_of(start);
+  return nodes.weight *
+         (airlight_node(medium, light, ray, airlight_between(start, end, nodes.shares.x), start_q, before) +
+          airlight_node(medium, light, ray, airlight_between(start, end, nodes.shares.y), start_q, before));
+}
 
 // From one light or a point on it, between a and b metres along the ray.
 vec3 airlight(Medium medium, Light light, ShadowLight maps, vec3 direction, float a, float b) {
-  ShadowView first = shadow_views[maps.first_layer];
-  AirlightRay ray = airlight_ray(medium, light, maps.origin, airlight_part(light, light_samples),
-                                 frame.camera_position.xyz, direction);
-  vec2 cone = light_cone_range(light, ray.eye, direction);
+  ShadowView first = view_of_layer(maps.first_layer);
+  LitRay ray;
+  ray.kind = kind_of_light(light);
+  ray.path = airlight_path(medium, light, ray.kind,
+                           airlight_ray(medium, light, maps.origin, airlight_part(light, light_samples),
+                                        frame.camera_position.xyz, direction),
+                           light_samples);
+  ray.maps = map_path(first, ray.path.base, direction);
+  ray.projection = first.projection;
+  ray.faces = maps.faces;
+  ray.first_layer = maps.first_layer;
+  ray.source = maps.origin;
+  vec2 cone = light_cone_range(light, frame.camera_position.xyz, direction);
   a = max(a, cone.x);
   b = min(b, cone.y);
   if (!(a < b)) return vec3(0.0);
-  float from = airlight_variable(ray, a);
-  float to = airlight_variable(ray, b);
+  float from = airlight_path_variable(ray.path, ray.kind, a);
+  float to = airlight_path_variable(ray.path, ray.kind, b);
+  float stretch = (to - from) / float(steps);
+  AirlightNodes whole = airlight_nodes(ray.kind, 0.5 * stretch, -1.0, 1.0);
   vec3 sum = vec3(0.0);
-  float start = from;
-  bool start_lit = lit_at(maps, first, ray, from);
-#if MARCH
-  float before = medium_length(medium, ray.eye, direction, a);  // of density 1, between the eye and the stretch
+  vec2 start = airlight_end(ray.path, ray.kind, from);
+  bool start_lit = lit_at(ray, airlight_place_of(start));
+  float before = 0.0;
+#if MEDIUM_STEPS > 0
+  before = medium_length(medium, frame.camera_position.xyz, direction, a);  // between the eye and the stretch
 #endif
-  for (int i = 1; i <= steps; ++i) {
-    float end = mix(from, to, float(i) / float(steps));
-    bool end_lit = lit_at(maps, first, ray, end);
-    float low = start;
-    float high = end;
-    // Only where a shadow begins or ends; a loop, because software renderers run both sides of an `if`.
-    int left = start_lit != end_lit ? refinements : 0;
-    while (left-- > 0) {
-      float middle = 0.5 * (low + high);
-      bool middle_lit = lit_at(maps, first, ray, middle);
-      low = middle_lit == start_lit ? middle : low;
-      high = middle_lit == start_lit ? high : middle;
+  vec2 end = start;
+  // Two loops, whole stretches up to the next border and then the border: in one, each border of one ray would hold up all rays
+  // that are followed at once.
+  for (int i = 0; i < steps;) {
+    bool border = false;
+    while (i < steps) {
+      ++i;
+      end = airlight_end(ray.path, ray.kind, i < steps ? from + float(i) * stretch : to);
+      border = lit_at(ray, airlight_place_of(end)) != start_lit;
+      if (border) break;
+      if (start_lit) sum += airlight_part_of(medium, light, ray, start, end, whole, before);
+#if MEDIUM_STEPS > 0
+      before += stretch_length(ray.path, airlight_place_of(start), airlight_place_of(end));
+#endif
+      start = end;
     }
-    float border = 0.5 * (low + high);
-    float lit_from = start_lit ? start : border;
-    float lit_to = end_lit ? end : border;
-    int lit_stretch = start_lit || end_lit ? 1 : 0;
-#if MARCH
-    float metres = airlight_metres(ray, start);
-    while (lit_stretch-- > 0) sum += airlight_lit(medium, light, ray, lit_from, lit_to, metres, before);
-    before += stretch_length(ray, metres, airlight_metres(ray, end));
-#else
-    while (lit_stretch-- > 0) sum += airlight_stretch(medium, light, ray, lit_from, lit_to, light_samples);
+    if (!border) break;
+    vec2 shares = vec2(-1.0, 1.0);
+    for (int r = 0; r < refinements; ++r) {
+      float middle = 0.5 * (shares.x + shares.y);
+      bool before_border = lit_at(ray, airlight_between(start, end, middle)) == start_lit;
+      shares = before_border ? vec2(middle, shares.y) : vec2(shares.x, middle);
+    }
+    float at = 0.5 * (shares.x + shares.y);
+    AirlightNodes nodes = airlight_nodes(ray.kind, 0.5 * stretch, start_lit ? -1.0 : at, start_lit ? at : 1.0);
+    sum += airlight_part_of(medium, light, ray, start, end, nodes, before);
+#if MEDIUM_STEPS > 0
+    before += stretch_length(ray.path, airlight_place_of(start), airlight_place_of(end));
 #endif
     start = end;
-    start_lit = end_lit;
+    start_lit = !start_lit;
   }
-  return sum;
+  return ray.path.sent * sum;
 }
 
 void main() {
@@ -134,7 +152,7 @@ void main() {
   if (!(range.x < range.y)) return;
   vec3 sum = vec3(0.0);
   for (int i = 0; i < light_count * light_samples; ++i) {
-    ShadowLight maps = shadow_lights[i];
+    ShadowLight maps = maps_at(uint(light_layers[i / light_samples] * light_samples + i % light_samples));
     Light light = lights[maps.light];
     if (!light_has_extent(light) && i % light_samples != 0) continue;  // one map for all samples
     sum += airlight(medium, light, maps, direction, range.x, range.y);

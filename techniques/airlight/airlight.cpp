@@ -3,6 +3,7 @@
 
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/light_textures.h"
+#include "core/shadow/alike_lights.h"
 #include "core/shadow/shadow_map.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
@@ -51,16 +52,27 @@ class Airlight : public Technique {
     for (int i = 0; samples > 1 && i < samples; ++i)
       desc.samples.push_back(glsl::r2_sequence(static_cast<uint32_t>(i) + 1));
     const shadow::ShadowMaps maps = inputs.service<shadow::ShadowMapService>().request(lights, desc);
+    frame::TextureHandle target = request.target;
+    for (const shadow::AlikeLights& alike :
+         shadow::alikeLights(inputs.service<shadow::ShadowMapService>().layouts(maps)))
+      target = addPass(graph, inputs, maps, alike, target);
+    return target;
+  }
+
+  /// Adds the light of lights that are alike to `target`, and returns it after that.
+  static frame::TextureHandle addPass(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                      const shadow::ShadowMaps& maps, const shadow::AlikeLights& lights,
+                                      frame::TextureHandle target) {
+    const ParameterValues& p = inputs.parameters;
     frame::PassBuilder pass = graph.addPass("airlight", info.name);
     pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, medium")
         .read(inputs.handles.lights, Access::storageLoad, "Lights", "what lights send")
-        .read(inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "where viewing rays end")
-        .read(maps.depth, Access::sampled, "shadow_depth", "shadow maps")
-        .read(maps.views, Access::storageLoad, "ShadowViews", "projections")
-        .read(maps.lights, Access::storageLoad, "ShadowLights", "layers of each light");
-    const frame::TextureHandle result =
-        pass.write(request.target, Access::imageLoadStore, "radiance", "light scattered towards the camera");
+        .read(inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "where viewing rays end");
     gpu::ProgramDesc source{.files = {"techniques/airlight/airlight.comp.glsl"}, .defines = {}};
+    shadow::readMaps(pass, maps, source.defines);
+    lights.define(source.defines);
+    const frame::TextureHandle result =
+        pass.write(target, Access::imageLoadStore, "radiance", "light scattered towards the camera");
     const scene::MediumInput medium(inputs.handles, p.integer("medium_steps"));
     medium.define(source.defines);
     medium.declare(pass);
@@ -68,12 +80,13 @@ class Airlight : public Technique {
     textures.define(source.defines);
     textures.declare(pass);
     const auto program = pass.program(std::move(source));
-    pass.execute([program, samples, size = inputs.size, steps = p.integer("steps"),
-                  count = static_cast<int>(lights.size())](frame::PassContext& context) {
+    pass.execute([program, lights, samples = p.integer("light_samples"), size = inputs.size,
+                  steps = p.integer("steps")](frame::PassContext& context) {
       gpu::Program& kernel = context.use(program);
-      kernel.set("light_count", count);
+      kernel.set("light_count", static_cast<int>(lights.layers.size()));
       kernel.set("light_samples", samples);
       kernel.set("steps", steps);
+      lights.bind(kernel);
       context.dispatch(size.x, size.y, 1, 8, 8);
     });
     return result;
