@@ -2,6 +2,7 @@
 // for where light leaves an object.
 #ifndef LIMN_SPECULAR_BUFFERS_GLSL
 #define LIMN_SPECULAR_BUFFERS_GLSL
+#include "glsl/shadow/map_path.glsl"
 #include "glsl/shadow/shadow_view.glsl"
 
 uniform sampler2DArray front_surface;  // xyz: normal; w: +-(instance + 1)
@@ -9,23 +10,33 @@ uniform sampler2DArray front_depth;
 uniform sampler2DArray back_surface;
 uniform sampler2DArray back_depth;
 
-// Depth at uv, interpolated among the texels of the instance; < 0: the instance is not there.
-float buffer_depth(sampler2DArray surfaces, sampler2DArray depths, vec2 uv, int layer, float instance) {
-  ivec2 size = textureSize(surfaces, 0).xy;
-  vec2 corner = uv * vec2(size) - 0.5;
-  vec2 weight = fract(corner);
-  float sum = 0.0;
-  float total = 0.0;
+// Depths of the nearest and the farthest surface of an object at a place (texels), as stored, interpolated among the texels of
+// the instance; < 0: the instance is not there.
+vec2 body_depths(vec2 place, int layer, float instance) {
+  ivec2 size = textureSize(front_surface, 0).xy;
+  vec2 corner = place - 0.5;
+  vec2 low = floor(corner);
+  vec2 weight = corner - low;
+  vec2 sum = vec2(0.0);
+  vec2 total = vec2(0.0);
   for (int i = 0; i < 4; ++i) {
     ivec2 step = ivec2(i & 1, i >> 1);
-    ivec2 texel = ivec2(floor(corner)) + step;
-    if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size))) continue;
-    if (abs(texelFetch(surfaces, ivec3(texel, layer), 0).w) != instance) continue;
+    ivec3 texel = ivec3(ivec2(low) + step, layer);
+    if (any(lessThan(texel.xy, ivec2(0))) || any(greaterThanEqual(texel.xy, size))) continue;
     vec2 w = mix(1.0 - weight, weight, vec2(step));
-    sum += w.x * w.y * texelFetch(depths, ivec3(texel, layer), 0).x;
-    total += w.x * w.y;
+    bool front = abs(texelFetch(front_surface, texel, 0).w) == instance;
+    bool back = abs(texelFetch(back_surface, texel, 0).w) == instance;
+    vec2 share = w.x * w.y * vec2(front, back);
+    sum += share * vec2(texelFetch(front_depth, texel, 0).x, texelFetch(back_depth, texel, 0).x);
+    total += share;
   }
-  return total >= 0.5 ? sum / total : -1.0;
+  return vec2(total.x >= 0.5 ? sum.x / total.x : -1.0, total.y >= 0.5 ? sum.y / total.y : -1.0);
+}
+
+// Whether a surface at p bounds no body: light stays in the medium behind it.
+bool is_sheet(ShadowView view, vec3 p, int layer, float instance) {
+  vec2 depths = body_depths(float(view.size) * shadow_project(view, p).uv, layer, instance);
+  return !(depths.y - depths.x > 1e-6);
 }
 
 // Normal at uv: interpolated where the surface is smooth, that of the nearest texel across an edge; 0: nothing there.
@@ -56,27 +67,22 @@ const int body_inside = 0;
 const int body_back = 1;   // behind the farthest surface, or beside the object
 const int body_front = 2;  // before the nearest surface
 
-// Where the world point p is, relative to an object.
-int body_side(ShadowView view, vec3 p, int layer, float instance, float tolerance) {
-  ShadowPoint q = shadow_project(view, p);
-  if (!shadow_inside(q)) return body_back;
-  float depth = shadow_normalise(view, q.depth);
-  float far = buffer_depth(back_surface, back_depth, q.uv, layer, instance);
-  if (far < 0.0 || depth >= far) return body_back;
-  float near = buffer_depth(front_surface, front_depth, q.uv, layer, instance);
-  return near >= 0.0 && depth < near - tolerance ? body_front : body_inside;
+// Where a place on a path through the view is, relative to an object. tolerance: metres.
+int body_side(MapPath path, MapPlace place, int layer, float instance, float tolerance) {
+  vec2 depths = body_depths(place.texel, layer, instance);
+  bool before = depths.x >= 0.0 && map_path_behind(path, place, depths.x) < -tolerance;
+  bool behind = depths.y < 0.0 || map_path_behind(path, place, depths.y) >= 0.0;
+  if (behind || !map_path_inside(path, place)) return body_back;
+  return before ? body_front : body_inside;
 }
 
-// Whether p lies between the nearest and the farthest surface of an object, by the texel that holds it.
-bool within_object(ShadowView view, vec3 p, int layer) {
-  ShadowPoint q = shadow_project(view, p);
-  if (!shadow_inside(q)) return false;
-  ivec3 texel = ivec3(min(ivec2(q.uv * float(view.size)), ivec2(view.size) - 1), layer);
-  if (texelFetch(front_surface, texel, 0).w == 0.0) return false;
-  float depth = shadow_normalise(view, q.depth);
-  float tolerance = shadow_footprint(view, q.depth) / (view.far - view.near);
-  return depth > texelFetch(front_depth, texel, 0).x + tolerance &&
-         depth < texelFetch(back_depth, texel, 0).x - tolerance;
+// Whether a place on a path through the view lies between the nearest and the farthest surface of an object, by the texel that
+// holds it. Where there is nothing, both depths are 1.
+bool within_object(MapPath path, MapPlace place, int layer, float tolerance) {
+  ivec3 texel = ivec3(map_path_texel(path, place), layer);
+  return map_path_inside(path, place) &&
+         map_path_behind(path, place, texelFetch(front_depth, texel, 0).x) > tolerance &&
+         map_path_behind(path, place, texelFetch(back_depth, texel, 0).x) < -tolerance;
 }
 
 // Where light inside an object leaves it.
@@ -92,13 +98,15 @@ const int exit_refinements = 10;
 
 // The first place on start + t direction, 0 < t < reach, that lies outside.
 BodyExit body_exit(ShadowView view, vec3 start, vec3 direction, float reach, int layer, float instance) {
-  float tolerance = shadow_footprint(view, shadow_view_depth(view, start)) / (view.far - view.near);
+  MapPath path = map_path(view, start, direction);
+  float tolerance = shadow_footprint(view, path.start.z);
+  float stride = reach / float(exit_steps);
   float inside = 0.0;
   float outside = reach;
   int side = body_back;
   for (int i = 1; i <= exit_steps; ++i) {
-    float t = reach * float(i) / float(exit_steps);
-    side = body_side(view, start + t * direction, layer, instance, tolerance);
+    float t = stride * float(i);
+    side = body_side(path, map_path_place(path, view.projection, shadow_faces_single, t), layer, instance, tolerance);
     if (side != body_inside) {
       outside = t;
       break;
@@ -107,7 +115,8 @@ BodyExit body_exit(ShadowView view, vec3 start, vec3 direction, float reach, int
   }
   for (int i = 0; i < exit_refinements; ++i) {
     float t = 0.5 * (inside + outside);
-    int there = body_side(view, start + t * direction, layer, instance, tolerance);
+    int there =
+        body_side(path, map_path_place(path, view.projection, shadow_faces_single, t), layer, instance, tolerance);
     if (there == body_inside) {
       inside = t;
     } else {
@@ -117,7 +126,7 @@ BodyExit body_exit(ShadowView view, vec3 start, vec3 direction, float reach, int
   }
   BodyExit e;
   e.distance = 0.5 * (inside + outside);
-  e.uv = shadow_project(view, start + inside * direction).uv;
+  e.uv = map_path_place(path, view.projection, shadow_faces_single, inside).texel / path.size;
   e.front = side == body_front;
   e.normal = e.front ? buffer_normal(front_surface, e.uv, layer, instance)
                      : buffer_normal(back_surface, e.uv, layer, instance);

@@ -8,6 +8,7 @@
 #include "glsl/light/light_texture.glsl"
 #include "glsl/media/medium_input.glsl"
 #include "glsl/indirect/reflective_map.glsl"
+#include "glsl/shadow/map_path.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 uniform sampler2DArray scene_depth;  // without specular objects
@@ -33,26 +34,24 @@ vec3 map_place(ShadowView view, ivec2 texel, uint layer) {
   return shadow_texel_offset(view, texel, texelFetch(scene_depth, ivec3(texel, layer), 0).x);
 }
 
-// Of the scene's map that sees p.
-uint scene_layer(ShadowLight maps, vec3 p) {
-  return maps.first_layer + shadow_face(maps.faces, scene_views[maps.first_layer], p);
+// The scene's maps of one light.
+struct SceneMaps {
+  ShadowView first;
+  uint faces;
+  uint layer;  // of the first view
+};
+
+// How far a place on a path through the maps lies behind what the light sees in the scene without specular objects, metres;
+// < 0: before it, or nothing known.
+float behind_scene(SceneMaps maps, MapPath path, float t) {
+  MapPlace place = map_path_place(path, maps.first.projection, maps.faces, t);
+  float stored = texelFetch(scene_depth, ivec3(map_path_texel(path, place), maps.layer + place.face), 0).x;
+  return map_path_inside(path, place) && stored < 1.0 ? map_path_behind(path, place, stored) : -1.0;
 }
 
-// How far p lies behind what the light sees in the scene without specular objects, metres; < 0: before it, or nothing known.
-float behind_scene(ShadowLight maps, vec3 p) {
-  uint layer = scene_layer(maps, p);
-  ShadowView view = scene_views[layer];
-  ShadowPoint q = shadow_project(view, p);
-  if (!shadow_inside(q)) return -1.0;
-  ivec2 texel = min(ivec2(q.uv * float(view.size)), ivec2(view.size) - 1);
-  float stored = texelFetch(scene_depth, ivec3(texel, layer), 0).x;
-  return stored < 1.0 ? q.depth - shadow_metres(view, stored) : -1.0;
-}
-
-bool light_blocked(ShadowLight maps, vec3 p) {
-  ShadowView view = scene_views[maps.first_layer];
-  float bias = shadow_bias * shadow_footprint(view, length(p - view.origin));
-  return behind_scene(maps, p) > bias;
+bool light_blocked(SceneMaps maps, vec3 p) {
+  float bias = shadow_bias * shadow_footprint(maps.first, length(p - maps.first.origin));
+  return behind_scene(maps, map_path(maps.first, p, vec3(0.0)), 0.0) > bias;
 }
 
 // What a place on a ray is to the light's views.
@@ -60,15 +59,22 @@ const int place_free = 0;
 const int place_scene = 1;   // behind the scene
 const int place_object = 2;  // within a specular object
 
-int place_of(ShadowLight maps, ShadowView view, int layer, vec3 p) {
-  if (behind_scene(maps, p) > 0.0) return place_scene;
-  return within_object(view, p, layer) ? place_object : place_free;
+// A ray in the scene's maps, and in the view of the specular objects.
+struct TracedRay {
+  MapPath scene;
+  MapPath objects;
+};
+
+int place_of(SceneMaps maps, ShadowView view, int layer, TracedRay ray, float t) {
+  MapPlace place = map_path_place(ray.objects, view.projection, shadow_faces_single, t);
+  bool within = within_object(ray.objects, place, layer, shadow_footprint(view, place.depth));
+  return behind_scene(maps, ray.scene, t) > 0.0 ? place_scene : (within ? place_object : place_free);
 }
 
 // Normal of the scene at p, where a ray ends on it, against the ray: of the plane through the texels about p, towards the
 // nearer neighbour on each axis, so that no edge is crossed where the scene goes on to either side.
-vec3 end_normal(ShadowLight maps, vec3 p, vec3 direction) {
-  uint layer = scene_layer(maps, p);
+vec3 end_normal(SceneMaps maps, vec3 p, vec3 direction) {
+  uint layer = maps.layer + shadow_face(maps.faces, maps.first, p);
   ShadowView view = scene_views[layer];
   int last = int(view.size) - 1;
   ivec2 texel = clamp(ivec2(shadow_project(view, p).uv * float(view.size)), ivec2(0), ivec2(last));
@@ -88,16 +94,16 @@ vec3 end_normal(ShadowLight maps, vec3 p, vec3 direction) {
 }
 
 // Ends the ray where it passes from before the scene to behind it, or into a specular object, as the light sees them.
-void find_end(ShadowLight maps, ShadowView view, int layer, inout CausticRay ray) {
-  vec3 start = ray.start;
-  vec3 direction = ray.direction;
+void find_end(SceneMaps maps, ShadowView view, int layer, inout CausticRay ray) {
+  TracedRay traced = TracedRay(map_path(maps.first, ray.start, ray.direction), map_path(view, ray.start, ray.direction));
+  float stride = ray.segment_length / float(steps);
   float before = 0.0;
   float behind = -1.0;
   int met = place_free;
   bool was_free = false;  // the crossing must be seen to happen
   for (int i = 0; i <= steps; ++i) {
-    float t = ray.segment_length * float(i) / float(steps);
-    met = place_of(maps, view, layer, start + t * direction);
+    float t = stride * float(i);
+    met = place_of(maps, view, layer, traced, t);
     if (met != place_free && was_free) {
       behind = t;
       break;
@@ -108,7 +114,7 @@ void find_end(ShadowLight maps, ShadowView view, int layer, inout CausticRay ray
   if (behind < 0.0) return;
   for (int i = 0; i < end_refinements; ++i) {
     float t = 0.5 * (before + behind);
-    int there = place_of(maps, view, layer, start + t * direction);
+    int there = place_of(maps, view, layer, traced, t);
     if (there == place_free) {
       before = t;
     } else {
@@ -118,8 +124,9 @@ void find_end(ShadowLight maps, ShadowView view, int layer, inout CausticRay ray
   }
   ray.segment_length = 0.5 * (before + behind);
   if (met != place_scene) return;
+  vec3 end = ray.start + ray.segment_length * ray.direction;
   ray.kind = caustic_ray_surface;
-  ray.normal = packSnorm2x16(octahedral_encode(end_normal(maps, start + ray.segment_length * direction, direction)));
+  ray.normal = packSnorm2x16(octahedral_encode(end_normal(maps, end, ray.direction)));
 }
 
 CausticRay no_ray() { return CausticRay(vec3(0.0), 0.0, vec3(0.0, 0.0, 1.0), caustic_ray_none, vec3(0.0), 0u); }
@@ -138,7 +145,7 @@ struct Incident {
   Optics optics;
 };
 
-CausticRay ray_from(Medium medium, ShadowLight maps, Incident at, vec3 start, vec3 direction, vec3 power) {
+CausticRay ray_from(Medium medium, SceneMaps maps, Incident at, vec3 start, vec3 direction, vec3 power) {
   float reach = ball_range(medium.ball, start, direction).y;
   if (!(reach > 0.0) || all(equal(power, vec3(0.0)))) return no_ray();
   CausticRay ray = CausticRay(start, reach, direction, caustic_ray_open, power, 0u);
@@ -156,21 +163,17 @@ vec3 exit_triangle(BodyExit leaves, int layer) {
                       : geometric_normal_at(back_geometric_normal, texel);
 }
 
-CausticRay reflected_ray(Medium medium, ShadowLight maps, Incident at, SpecularEvent event) {
+CausticRay reflected_ray(Medium medium, SceneMaps maps, Incident at, SpecularEvent event) {
   if (at.inside) return no_ray();
   float adjoint = shading_flux(at.normal, at.geometric, at.direction, event.reflected);
   return ray_from(medium, maps, at, at.position, event.reflected, at.flux * event.reflectance * adjoint);
 }
 
-CausticRay refracted_ray(Medium medium, ShadowLight maps, Incident at, SpecularEvent event, float diameter) {
+CausticRay refracted_ray(Medium medium, SceneMaps maps, Incident at, SpecularEvent event, float diameter) {
   if (event.refracted == vec3(0.0)) return no_ray();
   vec3 flux = at.flux * event.transmittance * shading_flux(at.normal, at.geometric, at.direction, event.refracted);
   if (flux == vec3(0.0)) return no_ray();
-  ShadowPoint q = shadow_project(at.view, at.position);
-  float near = buffer_depth(front_surface, front_depth, q.uv, at.layer, at.instance);
-  float far = buffer_depth(back_surface, back_depth, q.uv, at.layer, at.instance);
-  bool sheet = !(far - near > 1e-6);  // a surface that bounds no body: light stays in the medium behind it
-  if (at.inside || sheet || !(at.optics.thickness > 0.0))
+  if (at.inside || is_sheet(at.view, at.position, at.layer, at.instance) || !(at.optics.thickness > 0.0))
     return ray_from(medium, maps, at, at.position, event.refracted, flux);
   BodyExit leaves = body_exit(at.view, at.position, event.refracted, diameter, at.layer, at.instance);
   if (!(dot(leaves.normal, event.refracted) > least_cosine)) return no_ray();
@@ -185,8 +188,9 @@ void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   ShadowView view = views[at.z];
   CausticLayer layer = layers[at.z];
-  ShadowLight maps = scene_lights[uint(layer.light)];
-  Light light = lights[maps.light];
+  ShadowLight scene = scene_lights[uint(layer.light)];
+  SceneMaps maps = SceneMaps(scene_views[scene.first_layer], scene.faces, scene.first_layer);
+  Light light = lights[scene.light];
   Medium medium = scene_medium();
   int side = int(view.size);
   if (any(greaterThanEqual(at.xy, ivec2(side)))) return;

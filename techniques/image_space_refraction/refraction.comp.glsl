@@ -70,14 +70,6 @@ Way through_body(Optics optics, vec3 origin, vec3 direction, vec3 weight, float 
   return way;
 }
 
-// Whether a surface bounds no body: light stays in the medium behind it.
-bool is_sheet(vec3 position, float instance) {
-  ShadowPoint q = shadow_project(views[0], position);
-  float near = buffer_depth(front_surface, front_depth, q.uv, 0, instance);
-  float far = buffer_depth(back_surface, back_depth, q.uv, 0, instance);
-  return !(far - near > 1e-6);
-}
-
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
@@ -99,7 +91,7 @@ void main() {
   vec3 light = vec3(0.0);
   if (event.reflectance != vec3(0.0)) light += event.reflectance * scene_radiance(position, event.reflected);
   Way way = Way(position, event.refracted, event.refracted == vec3(0.0) ? vec3(0.0) : event.transmittance);
-  bool straight = inside || !(optics.thickness > 0.0) || is_sheet(position, float(instance + 1u));
+  bool straight = inside || !(optics.thickness > 0.0) || is_sheet(views[0], position, 0, float(instance + 1u));
   if (!straight && way.weight != vec3(0.0)) {
     way = through_body(optics, way.origin, way.direction, way.weight, float(instance + 1u));
   }
