@@ -45,12 +45,17 @@ std::vector<AlikeLights> alikeLights(std::span<const LightLayout> layouts) {
 }
 
 void readMaps(frame::PassBuilder& pass, const ShadowMaps& maps, std::map<std::string, std::string>& defines) {
-  const auto layers = static_cast<size_t>(maps.layers);
-  const bool fitsBlock = layers * sizeof(glsl::ShadowView) <= kUniformBlockBytes;
-  if (fitsBlock) defines["SHADOW_VIEW_COUNT"] = std::to_string(layers);
+  // Uniform blocks where they fit: of these all invocations load at once.
+  const auto place = [&](int count, size_t bytes, const char* define) {
+    if (static_cast<size_t>(count) * bytes > kUniformBlockBytes) return Access::storageLoad;
+    defines[define] = std::to_string(count);
+    return Access::uniformBuffer;
+  };
+  const Access views = place(maps.layers, sizeof(glsl::ShadowView), "SHADOW_VIEW_COUNT");
+  const Access lights = place(maps.lightSamples, sizeof(glsl::ShadowLight), "SHADOW_LIGHT_COUNT");
   pass.read(maps.depth, Access::sampled, "shadow_depth", "shadow maps")
-      .read(maps.views, fitsBlock ? Access::uniformBuffer : Access::storageLoad, "ShadowViews", "projections")
-      .read(maps.lights, Access::storageLoad, "ShadowLights", "layers of each light");
+      .read(maps.views, views, "ShadowViews", "projections")
+      .read(maps.lights, lights, "ShadowLights", "layers of each light");
 }
 
 }  // namespace limn::shadow

@@ -258,6 +258,7 @@ ShadowMaps ShadowMapService::Implementation::add(std::unique_ptr<Request> made, 
   made->lightBuffer = gpu::Buffer::of<glsl::ShadowLight>(device, "shadow lights", made->shadowLights,
                                                          gpu::BufferUse::updated);
   made->maps.layers = static_cast<int>(made->views.size());
+  made->maps.lightSamples = static_cast<int>(made->shadowLights.size());
   made->maps.size = made->desc.size;
   made->maps.index = static_cast<uint32_t>(requests.size());
   const int64_t before = keptBytes();

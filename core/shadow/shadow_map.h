@@ -65,9 +65,10 @@ struct ShadowMaps {
   frame::TextureHandle depth;   ///< R32F array
   frame::TextureHandle normal;  ///< reflective: RG16_SNORM array, geometric normal on the light's side
   frame::TextureHandle albedo;  ///< reflective: RGB10_A2 array, square root of the diffuse albedo
-  frame::BufferHandle views;    ///< storage buffer of glsl::ShadowView, index = layer
-  frame::BufferHandle lights;   ///< storage buffer of glsl::ShadowLight
+  frame::BufferHandle views;    ///< glsl::ShadowView, index = layer
+  frame::BufferHandle lights;   ///< glsl::ShadowLight
   int layers = 0;
+  int lightSamples = 0;  ///< length of `lights`
   int size = 0;
   uint32_t index = 0;  ///< of the request, for the functions below
 };

@@ -22,7 +22,11 @@ layout(std140) uniform ShadowViews { ShadowView shadow_views[SHADOW_VIEW_COUNT];
 #else
 layout(std430) readonly buffer ShadowViews { ShadowView shadow_views[]; };
 #endif
+#ifdef SHADOW_LIGHT_COUNT  // likewise
+layout(std140) uniform ShadowLights { ShadowLight shadow_lights[SHADOW_LIGHT_COUNT]; };
+#else
 layout(std430) readonly buffer ShadowLights { ShadowLight shadow_lights[]; };
+#endif
 uniform int light_layers[8];  // places in the request of the lights of this dispatch
 
 ShadowView view_of_layer(uint layer) {

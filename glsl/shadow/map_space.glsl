@@ -14,13 +14,11 @@ LIMN_BEGIN
 // n . b of what a texel (by its number) shows at `depth` metres, b in the view's axes, is depth (g.x x + g.y y + g.z) in a
 // perspective and g.x x + g.y y + g.z + g.w depth in an orthographic view.
 LIMN_FN vec4 map_gradient(ShadowView view, vec3 n) {
-  float inverse = 1.0f / view.scale;
-  vec2 across = inverse * vec2(n.x, n.y);
-  vec2 first = vec2(0.5f / float(view.size)) - view.middle;  // uv of texel 0 from the axis
-  float per_texel = 1.0f / float(view.size);
+  vec2 across = view.footprint * vec2(n.x, n.y);
+  vec2 first = vec2(0.5f) - float(view.size) * view.middle;  // of texel 0, from the axis
   float constant = dot(across, first);
   if (view.projection == shadow_perspective) constant += n.z;
-  return vec4(per_texel * across.x, per_texel * across.y, constant, n.z);
+  return vec4(across.x, across.y, constant, n.z);
 }
 
 LIMN_FN float map_dot(ShadowView view, vec4 gradient, vec2 texel, float depth) {

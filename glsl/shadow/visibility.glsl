@@ -69,8 +69,9 @@ VisibilityQuery visibility_query(ivec2 at, uint maps) {
 float bias_share(ShadowView view, VisibilityQuery q) {
   if (WHOLE_BIAS == 1 && q.light.extended) return 1.0;
   vec3 r = q.position - view.origin;
-  vec3 ray = view.projection == shadow_orthographic ? view.axis_z : r / max(length(r), 1e-30);
-  return clamp(-2.0 * dot(q.normal, ray), 0.02, 1.0);
+  float cosine = view.projection == shadow_orthographic ? dot(q.normal, view.axis_z)
+                                                        : dot(q.normal, r) / max(length(r), 1e-30);
+  return clamp(-2.0 * cosine, 0.02, 1.0);
 }
 
 // The view that taps of a query land in; kept between taps, most of which land in the same one.

@@ -25,14 +25,15 @@ vec3 sample_irradiance(Light light, LightView view, vec3 receiver, vec3 offset) 
   return light.emission * (receiver_factor(light, receiver) * light.length_u * light.length_v * cosine / distance2);
 }
 
-vec3 light_from(VisibilityQuery q, Light light, int l, SurfaceBrdf surface, vec3 normal, vec3 to_viewer) {
+vec3 light_from(VisibilityQuery q, Light light, int l, SurfaceBrdf surface, vec3 normal, vec3 to_viewer,
+                inout uint uncovered) {
   vec3 sum = vec3(0.0);
   int samples = q.light.extended ? batch_samples : first_sample == 0 ? 1 : 0;
   for (int s = 0; s < samples; ++s) {
     ShadowLight maps = maps_at(uint(l * batch_samples + s));
     vec3 offset = sample_offset(q, maps);
     vec3 direction = normalize(offset);
-    if (dot(offset, q.normal) <= 0.0 || dot(offset, normal) <= 0.0 || !sample_visible(q, maps)) continue;
+    if (dot(offset, q.normal) <= 0.0 || dot(offset, normal) <= 0.0 || !sample_visible(q, maps, uncovered)) continue;
     vec3 reflected = brdf(surface, normal, to_viewer, direction) * dot(normal, direction) *
                      sample_irradiance(light, q.light, q.position, offset);
 #if MEDIUM
@@ -56,11 +57,13 @@ void main() {
   SurfaceBrdf surface =
       surface_brdf(s.base_colour, s.metallic, s.roughness, s.specular_factor, s.specular_colour, s.ior);
   vec3 sum = vec3(0.0);
+  uint uncovered = 0u;
   for (int l = 0; l < light_count; ++l) {
     VisibilityQuery q = visibility_query(pixel, uint(l * batch_samples));
     if (q.masked) continue;
     vec3 to_viewer = normalize(frame.camera_position.xyz - q.position);
-    sum += light_from(q, lights[q.maps.light], l, surface, s.normal, to_viewer);
+    sum += light_from(q, lights[q.maps.light], l, surface, s.normal, to_viewer, uncovered);
   }
+  count_uncovered(uncovered);
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(sum, 0.0));
 }

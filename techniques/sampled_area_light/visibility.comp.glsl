@@ -19,14 +19,15 @@ int samples_above(VisibilityQuery q) {
   return above;
 }
 
-float batch_share(VisibilityQuery q, int layer) {
-  if (!q.light.extended) return first_sample == 0 && sample_visible(q, q.maps) ? 1.0 : 0.0;
+float batch_share(VisibilityQuery q, int layer, inout uint uncovered) {
+  if (!q.light.extended) return first_sample == 0 && sample_visible(q, q.maps, uncovered) ? 1.0 : 0.0;
   int above = samples_above(q);
   if (above == 0) return first_sample == 0 ? 1.0 : 0.0;
   int lit = 0;
   for (int s = 0; s < batch_samples; ++s) {
     ShadowLight maps = maps_at(uint(layer * batch_samples + s));
-    if (dot(sample_offset(q, maps), q.normal) > 0.0 && sample_visible(q, maps)) ++lit;
+    bool above_plane = dot(sample_offset(q, maps), q.normal) > 0.0;
+    lit += above_plane && sample_visible(q, maps, uncovered) ? 1 : 0;
   }
   return float(lit) / float(above);
 }
@@ -36,7 +37,9 @@ void main() {
   VisibilityQuery q = visibility_query(at.xy, uint(at.z * batch_samples));
   if (any(greaterThanEqual(at, imageSize(visibility)))) return;
   float v = first_sample == 0 ? 1.0 : 0.0;
-  if (!q.masked) v = batch_share(q, at.z);
+  uint uncovered = 0u;
+  if (!q.masked) v = batch_share(q, at.z, uncovered);
+  count_uncovered(uncovered);
 #if ACCUMULATE
   v += imageLoad(visibility, at).r;
 #endif

@@ -20,14 +20,16 @@ void main() {
   q.normal = s.geometric_normal;
   vec3 to_viewer = normalize(frame.camera_position.xyz - q.position);
   vec3 sum = vec3(0.0);
+  uint uncovered = 0u;
   for (int i = 0; i < batch_samples; ++i) {
     ShadowLight maps = maps_at(uint(i));
     vec3 direction = maps.origin;
     float cosine = dot(s.normal, direction);
     if (cosine <= 0.0 || dot(q.normal, direction) <= 0.0) continue;
     q.light.axis = -direction;
-    if (!sample_visible(q, maps)) continue;
+    if (!sample_visible(q, maps, uncovered)) continue;
     sum += brdf(surface, s.normal, to_viewer, direction) * cosine * irradiance[first_sample + i].rgb;
   }
+  count_uncovered(uncovered);
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(sum / float(total_samples), 0.0));
 }
