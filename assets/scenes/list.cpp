@@ -9,6 +9,7 @@ const std::vector<SceneEntry>& allScenes() {
       {"balls", makeBalls},
       {"balls_sky", makeBallsSky},
       {"chess", makeChess},
+      {"colonnade", makeColonnade},
       {"cornell_box", makeCornellBox},
       {"cornell_horse", makeCornellHorse},
       {"flying_dragon", makeFlyingDragon},

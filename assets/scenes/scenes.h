@@ -13,6 +13,7 @@ Scene makeAtriumRobots();
 Scene makeBalls();
 Scene makeBallsSky();
 Scene makeChess();
+Scene makeColonnade();
 Scene makeCornellBox();
 Scene makeCornellHorse();
 Scene makeFlyingDragon();

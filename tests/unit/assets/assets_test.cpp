@@ -29,12 +29,12 @@ using nlohmann::json;
 
 const fs::path kAssets = fs::path(limn::test::kBinaryDir) / "assets";
 const char* const kScenes[] = {
-    "atrium",         "atrium_robots", "balls",         "balls_sky", "chess",         "cornell_box",
-    "cornell_horse",  "flying_dragon", "foliage_card",  "frog",      "gem",           "gem_2_lights",
-    "gem_4_lights",   "glass_sphere",  "glass_statue",  "glassware", "glossy_sphere", "lights",
-    "metaballs",      "monster",       "patrol",        "plant",     "ring",          "robot",
-    "smoke",          "soldiers",      "stained_light", "statue",    "teapot",        "teapot_coarse",
-    "teapot_pattern", "water",         "white_furnace"};
+    "atrium",        "atrium_robots",  "balls",         "balls_sky",     "chess",     "colonnade",
+    "cornell_box",   "cornell_horse",  "flying_dragon", "foliage_card",  "frog",      "gem",
+    "gem_2_lights",  "gem_4_lights",   "glass_sphere",  "glass_statue",  "glassware", "glossy_sphere",
+    "lights",        "metaballs",      "monster",       "patrol",        "plant",     "ring",
+    "robot",         "smoke",          "soldiers",      "stained_light", "statue",    "teapot",
+    "teapot_coarse", "teapot_pattern", "water",         "white_furnace"};
 const std::set<std::string> kUnderEnvironments = {"balls_sky", "patrol", "white_furnace"};
 
 /// Of the scenes that are not lit by an environment.
