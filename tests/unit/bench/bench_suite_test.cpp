@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <tuple>
@@ -369,6 +370,29 @@ TEST(BenchSuite, BouncesAreOneForIndirectLightAndNoneForFinalPicturesUnlessGiven
   EXPECT_EQ(bounces("reference={spp=4}\n", "final"), 0);
   EXPECT_EQ(bounces("reference={bounces=3}\n", "indirect"), 3);
   EXPECT_EQ(bounces("reference={bounces=3}\n", "final"), 3);
+}
+
+TEST(BenchSuite, ChapterSixAsksEveryTechniqueWhereVisibilityMatters) {
+  const std::filesystem::path folder = std::filesystem::path(test::kSourceDir) / "benchmarks";
+  using Parameters = std::vector<std::pair<std::string, std::string>>;
+  const std::pair<std::string, Parameters> expected[] = {
+      {"clustered_visibility", {{"clustered_visibility.vals", "30"}}},
+      {"imperfect_shadow_maps", {}},
+      {"instant_radiosity", {}},
+      {"instant_radiosity", {{"instant_radiosity.block", "8"}}},
+      {"reflective_shadow_map", {}}};
+  for (const char* file : {"ch6.toml", "ch6_figures.toml"}) {
+    const Suite suite = readSuite(folder / file);
+    for (const auto& row : expected) {
+      const auto found = std::ranges::find_if(suite.cases, [&](const Case& c) {
+        return c.scene == "colonnade" && c.camera == "aisle" && c.technique == row.first &&
+               c.parameters == row.second;
+      });
+      ASSERT_NE(found, suite.cases.end()) << file << ": " << row.first;
+      EXPECT_EQ(found->term, "indirect");
+      EXPECT_EQ(found->reference.bounces, 1);
+    }
+  }
 }
 
 TEST(BenchSuite, ReadsEverySuiteOfTheRepository) {
