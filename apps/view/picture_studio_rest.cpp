@@ -23,7 +23,7 @@ std::string truthKeyOf(const PictureOrder& order) {
   question.width = order.size.x;
   question.height = order.size.y;
   const Term term = parseTerm(question.term);
-  return fmt::format("{}|{}|{}", questionText(question), bouncesOf(term, order.techniques),
+  return fmt::format("{}|{}|{}", questionText(question), render::bouncesOf(term, order.techniques),
                      render::interfacesOf(term, order.techniques));
 }
 
@@ -59,7 +59,8 @@ bool PictureStudio::followReference(const PictureOrder& order) {
     truthKey_ = key;
     const Term term = parseTerm(order.scene.term);
     reference_.start({view_, view_->pose, view_->camera, order.size, term, view_->light,
-                      bouncesOf(term, order.techniques), render::interfacesOf(term, order.techniques)});
+                      render::bouncesOf(term, order.techniques),
+                      render::interfacesOf(term, order.techniques)});
   }
   std::optional<Image> finer = reference_.take();
   const bool fresh = finer && !truthKey_.empty();

@@ -97,14 +97,6 @@ std::string renderCommand(const ViewState& state, const std::filesystem::path& o
   return line.add("--out", out.string()).text();
 }
 
-int bouncesOf(Term term, const std::vector<render::TechniqueUse>& techniques) {
-  if (term == Term::indirect) return 1;
-  const auto indirect = [](const render::TechniqueUse& use) {
-    return contains(use.plugin->info->terms, Term::indirect);
-  };
-  return term == Term::final && std::ranges::any_of(techniques, indirect) ? 1 : 0;
-}
-
 namespace {
 
 /// The field's value as a suite has it.
@@ -154,7 +146,7 @@ std::string techniqueTable(const std::vector<render::TechniqueUse>& uses) {
 std::string benchSuite(const ViewState& state) {
   const SceneQuestion& question = state.scene;
   const Term term = parseTerm(question.term);
-  const int bounces = bouncesOf(term, state.techniques);
+  const int bounces = render::bouncesOf(term, state.techniques);
   const int interfaces = render::interfacesOf(term, state.techniques);
   std::string text = fmt::format(
       "# Saved by limn-view: `limn bench` on this file measures what it showed.\nname = \"view\"\nsizes = "

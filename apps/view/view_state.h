@@ -28,10 +28,6 @@ void dropRivals(std::vector<render::TechniqueUse>& techniques, const TechniquePl
 /// needed.
 std::string renderCommand(const ViewState& state, const std::filesystem::path& out);
 
-/// Returns the bounces of indirect light in the ground truth that a picture is compared with: 1 where the
-/// picture has any, else 0.
-int bouncesOf(Term term, const std::vector<render::TechniqueUse>& techniques);
-
 /// Returns a suite for `limn bench` that measures the state's techniques in its scene: all of the state
 /// except the exposure.
 std::string benchSuite(const ViewState& state);

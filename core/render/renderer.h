@@ -61,6 +61,11 @@ struct Settings {
 /// cannot show `term` with these techniques.
 LIMN_API void checkTechniques(const std::vector<TechniqueUse>& techniques, Term term);
 
+/// Returns the bounces that a picture of `term` shows, and that its reference should have: those of the
+/// technique that answers indirect, its parameter `bounces`, or one; at least 1 of the term indirect, 0 of
+/// other pictures without such a technique.
+LIMN_API int bouncesOf(Term term, const std::vector<TechniqueUse>& techniques);
+
 /// Returns the most smooth interfaces that a picture of `term` follows, and that its reference should follow:
 /// those of the technique which answers specular, its parameter `interfaces`, or into an object and out of
 /// it; 0 where none answers or the picture shows no specular surfaces.

@@ -24,6 +24,13 @@ void refuseTwo(const std::vector<TechniqueUse>& techniques, TermSet terms, const
                                  first->plugin->info->name, second->plugin->info->name, what));
 }
 
+/// Returns the parameter of that name, or `otherwise` for techniques that have none.
+int parameterOr(const TechniqueUse& use, std::string_view parameter, int otherwise) {
+  const bool declared =
+      std::ranges::any_of(use.parameters.declared(), [&](const Parameter& p) { return parameter == p.name; });
+  return declared ? use.parameters.integer(parameter) : otherwise;
+}
+
 }  // namespace
 
 void checkTechniques(const std::vector<TechniqueUse>& techniques, Term term) {
@@ -43,15 +50,20 @@ void checkTechniques(const std::vector<TechniqueUse>& techniques, Term term) {
   }
 }
 
+int bouncesOf(Term term, const std::vector<TechniqueUse>& techniques) {
+  if (term != Term::indirect && term != Term::final) return 0;
+  int bounces = term == Term::indirect ? 1 : 0;
+  for (const TechniqueUse& use : techniques)
+    if (contains(termsOf(use), Term::indirect)) bounces = std::max(bounces, parameterOr(use, "bounces", 1));
+  return bounces;
+}
+
 int interfacesOf(Term term, const std::vector<TechniqueUse>& techniques) {
   const TermInterfaces taken = termInfo(term).interfaces;
   if (taken != TermInterfaces::fromZero && taken != TermInterfaces::fromOne) return 0;
   for (const TechniqueUse& use : techniques) {
     if (!contains(termsOf(use), Term::specular)) continue;
-    const auto declared = use.parameters.declared();
-    const bool says = std::ranges::any_of(
-        declared, [](const Parameter& p) { return std::string_view(p.name) == "interfaces"; });
-    return says ? use.parameters.integer("interfaces") : 2;
+    return parameterOr(use, "interfaces", 2);
   }
   return 0;
 }

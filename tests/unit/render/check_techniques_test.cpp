@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <span>
+
 #include "core/base/error.h"
 #include "core/render/renderer.h"
 
@@ -13,8 +15,9 @@ struct Claimant {
   TechniqueInfo info;
   TechniquePlugin plugin{};
 
-  Claimant(const char* name, TermSet terms)
-      : info{.name = name, .title = "", .source = "", .terms = terms, .parameters = {}, .stress = {}} {
+  Claimant(const char* name, TermSet terms, std::span<const Parameter> parameters = {})
+      : info{
+            .name = name, .title = "", .source = "", .terms = terms, .parameters = parameters, .stress = {}} {
     plugin.info = &info;
   }
   Claimant(const Claimant&) = delete;
@@ -75,6 +78,23 @@ TEST(CheckTechniques, PicturesNeedAnAnswerUnlessTheTableSaysOtherwise) {
         break;
     }
   }
+}
+
+TEST(BouncesOf, FollowsTheParameterOfWhatAnswersIndirect) {
+  static constexpr Parameter kBounces[] = {integer("bounces", 2, {1, 16}, "bounces", "Of light")};
+  const Claimant once("once", termSet(Term::indirect)),
+      shadows("shadows", termSet(Term::visibility), kBounces),
+      several("several", Term::visibility | Term::indirect, kBounces);
+  TechniqueUse more = several.use();
+  more.parameters.set("bounces", "3");
+  for (const Term term : {Term::indirect, Term::final}) {
+    EXPECT_EQ(bouncesOf(term, {once.use()}), 1);
+    EXPECT_EQ(bouncesOf(term, {several.use()}), 2);
+    EXPECT_EQ(bouncesOf(term, {shadows.use(), more}), 3);
+  }
+  EXPECT_EQ(bouncesOf(Term::final, {shadows.use()}), 0) << "it has no indirect light to count";
+  EXPECT_EQ(bouncesOf(Term::indirect, {}), 1) << "there is no such picture without a bounce";
+  EXPECT_EQ(bouncesOf(Term::visibility, {several.use()}), 0);
 }
 
 }  // namespace
