@@ -58,6 +58,10 @@ std::vector<Case> chosenCases(const TechniqueRegistry& registry, const Options& 
   return cases;
 }
 
+bool hasFailed(const bench::StressResult& result) {
+  return result.worst().verdict == bench::Verdict::failed;
+}
+
 /// The results in a folder: written after every case, so that a run that was stopped goes on where it was.
 class Table {
  public:
@@ -75,7 +79,7 @@ class Table {
     } catch (const Error& error) {
       throw Error(fmt::format("{}: {}", file.string(), error.what()));
     }
-    std::erase_if(results_, [](const auto& r) { return r.verdict == bench::Verdict::failed; });
+    std::erase_if(results_, hasFailed);
   }
 
   bool holds(const Case& c) const {
@@ -98,9 +102,7 @@ class Table {
   }
 
   std::string text() const { return toMarkdown(results_); }
-  bool failed() const {
-    return std::ranges::any_of(results_, [](const auto& r) { return r.verdict == bench::Verdict::failed; });
-  }
+  bool failed() const { return std::ranges::any_of(results_, hasFailed); }
 
  private:
   fs::path folder_;

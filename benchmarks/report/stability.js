@@ -4,21 +4,34 @@ import {tableElement} from "./tables.js";
 
 const VERDICTS = [["pass", "\u2713"], ["degraded", "\u25b2"], ["refused", "\u25cb"], ["failed", "\u2715"]];
 
-function verdictText(result) {
-  const sign = VERDICTS.find(([name]) => name === result.verdict)?.[1] ?? "";
-  return `${sign} ${result.verdict}${result.message ? `: ${result.message}` : ""}`;
+/** The answers, the one that counts first; results of earlier versions are their only one. */
+const answersOf = (result) => Array.isArray(result.answers) && result.answers.length > 0 ? result.answers : [result];
+const worst = (result) => answersOf(result)[0];
+
+function verdictText(answer) {
+  const sign = VERDICTS.find(([name]) => name === answer.verdict)?.[1] ?? "";
+  return `${sign} ${answer.verdict}${answer.message ? `: ${answer.message}` : ""}`;
 }
 
+/** The term that counts, and the others: "indirect (visibility 1.00)". */
+function termText(result) {
+  const others = answersOf(result).slice(1).map((answer) =>
+    `${answer.term} ${measured(answer) ? number(answer.factor) : answer.verdict}`);
+  return (worst(result).term ?? "") + (others.length ? ` (${others.join(", ")})` : "");
+}
+
+const measured = (answer) => answer.verdict === "pass" || answer.verdict === "degraded";
+
 function caseTable(caption, results) {
-  const head = [...["technique", "case", "scene", "verdict"].map((label) => ({label, text: true})),
+  const head = [...["technique", "case", "scene", "verdict", "term that counts (others)"].map((label) => ({label, text: true})),
     {label: "error"}, {label: "unchanged"}, {label: "factor"}, {label: "allowed"}];
   const text = (value) => el("td", {class: "text"}, String(value ?? ""));
   return tableElement(caption, head, results.map((result) => {
-    const measured = result.verdict === "pass" || result.verdict === "degraded";
+    const answer = worst(result), known = measured(answer);
     return el("tr", {}, el("th", {scope: "row"}, String(result.technique)),
       text(result.settings ? `${result.case} (${result.settings})` : result.case), text(result.scene),
-      el("td", {class: "failure"}, verdictText(result)),
-      [measured ? result.error : null, result.benign, measured ? result.factor : null, result.allowed]
+      el("td", {class: "failure"}, verdictText(answer)), text(termText(result)),
+      [known ? answer.error : null, answer.benign, known ? answer.factor : null, result.allowed]
         .map((value) => el("td", {}, number(value))));
   }));
 }
@@ -29,8 +42,8 @@ export function stability(found) {
   if (results.length === 0) return [];
   const techniques = [...new Set(results.map((result) => result.technique))];
   const counts = techniques.map((technique) => el("tr", {}, el("th", {scope: "row"}, String(technique)), VERDICTS.map(([verdict]) =>
-    el("td", {}, String(results.filter((result) => result.technique === technique && result.verdict === verdict).length)))));
-  const troubled = results.filter((result) => result.verdict !== "pass");
+    el("td", {}, String(results.filter((result) => result.technique === technique && worst(result).verdict === verdict).length)))));
+  const troubled = results.filter((result) => worst(result).verdict !== "pass");
   return [el("section", {id: "stability", "aria-labelledby": "stability-name"},
     el("h2", {id: "stability-name"}, "Stability"),
     el("p", {class: "note"}, `Extreme cases by limn stress on ${found.renderer}. Factor: the error over that of the unchanged scene.`),

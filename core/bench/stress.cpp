@@ -4,15 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
+#include <tuple>
 
 #include "core/base/error.h"
-#include "core/bench/private/columns.h"
-#include "core/bench/private/markdown.h"
 #include "core/bench/private/stress_scene.h"
-#include "core/image/metric_table.h"
 #include "core/image/metrics.h"
 #include "core/question/term.h"
 #include "core/reference/reference.h"
@@ -47,21 +44,24 @@ constexpr StressCase kCommon[] = {
     {.name = "foliage", .scene = "plant"},
 };
 
-/// V where the technique has one and light has no part in the case; else the radiance it answers for.
-Term termOf(const TechniquePlugin& technique, StressChange change) {
-  const TermSet terms = technique.info->terms;
-  for (const Term alone : {Term::media, Term::caustic, Term::specular})
-    if (terms == termSet(alone)) return alone;
-  const bool indirect = terms == termSet(Term::indirect);
+/// What shows an answered term under a change of the scene.
+Term shown(Term answered, StressChange change) {
+  switch (answered) {
+    case Term::media:
+    case Term::caustic:
+    case Term::specular:
+      return answered;
+    default:
+      break;
+  }
   switch (change) {
-    case StressChange::radiance:
-    case StressChange::albedo:
-      return indirect ? Term::indirect : Term::direct;
     case StressChange::noLight:
       return Term::final;
+    case StressChange::radiance:
+    case StressChange::albedo:
+      return answered == Term::indirect ? Term::indirect : Term::direct;
     default:
-      if (indirect) return Term::indirect;
-      return contains(terms, Term::visibility) ? Term::visibility : Term::direct;
+      return answered == Term::environment ? Term::direct : answered;
   }
 }
 
@@ -111,77 +111,33 @@ bool anyCoverage(const Image& reference) {
   return false;
 }
 
-bool isMeasured(const StressResult& r) {
-  return r.verdict == Verdict::pass || r.verdict == Verdict::degraded;
-}
-
-bool isBounded(const StressResult& r) {
-  return isMeasured(r) && r.allowed > 0;
-}
-
-std::vector<MarkdownColumn<StressResult>> stressColumns() {
-  static constexpr const MetricInfo& rmse = metricInfo(&Metrics::rmse);
-  return {
-      {{headOf("technique"), Align::left}, [](const StressResult& r) { return r.technique; }},
-      {{"case", Align::left},
-       [](const StressResult& r) {
-         return r.settings.empty() ? r.name : fmt::format("{} ({})", r.name, r.settings);
-       }},
-      {{headOf("scene"), Align::left}, [](const StressResult& r) { return r.scene; }},
-      {{"verdict", Align::left},
-       [](const StressResult& r) {
-         return r.message.empty() ? name(r.verdict) : fmt::format("{}: {}", name(r.verdict), r.message);
-       }},
-      {{std::string(rmse.head)},
-       [](const StressResult& r) { return isMeasured(r) ? shownText(rmse, r.error) : "-"; }},
-      {{fmt::format("{} unchanged", rmse.head)},
-       [](const StressResult& r) { return shownText(rmse, r.benign); }},
-      {{"factor"},
-       [](const StressResult& r) { return isBounded(r) ? fmt::format("{:.2f}", r.factor) : "-"; }},
-      {{"allowed"},
-       [](const StressResult& r) { return isBounded(r) ? fmt::format("{:.1f}", r.allowed) : "-"; }},
-  };
-}
-
 }  // namespace
 
-/// What is asked: a scene, changed, and a term of it.
+/// A term that a technique answers, and the term whose picture shows it.
+struct StressRun::Asked {
+  Term answered, shown;
+
+  std::string name() const {
+    return answered == Term::environment && shown == Term::direct ? limn::name(answered) : limn::name(shown);
+  }
+};
+
+/// A scene, changed, and the camera that looks at it.
 struct StressRun::Question {
   std::string key;
   scene::Scene scene;
   render::Renderer renderer;
-  Term term;
-  int light = scene::kNone;
   scene::CameraPose camera;
   glm::ivec2 size;
 
-  Question(gpu::Device& device, std::string text, scene::Scene changed, Term wanted)
-      : key(std::move(text)), scene(std::move(changed)), renderer(device, scene), term(wanted) {}
-};
+  Question(gpu::Device& device, std::string text, scene::Scene changed)
+      : key(std::move(text)), scene(std::move(changed)), renderer(device, scene) {}
 
-const char* name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::pass:
-      return "pass";
-    case Verdict::degraded:
-      return "degraded";
-    case Verdict::refused:
-      return "refused";
-    case Verdict::failed:
-      break;
+  /// V is that of one light.
+  int light(Term term) {
+    return term == Term::visibility && !renderer.pose().lights.empty() ? 0 : scene::kNone;
   }
-  return "failed";
-}
-
-namespace {
-
-Verdict verdictFrom(const std::string& text) {
-  for (const Verdict verdict : {Verdict::pass, Verdict::degraded, Verdict::refused, Verdict::failed})
-    if (text == name(verdict)) return verdict;
-  throw Error(fmt::format("verdict '{}' is unknown; expected pass, degraded, refused or failed", text));
-}
-
-}  // namespace
+};
 
 std::span<const StressCase> commonStressCases() {
   return kCommon;
@@ -192,26 +148,38 @@ StressRun::StressRun(gpu::Device& device, std::function<scene::Scene(const std::
     : device_(device), scene_(std::move(scene)), options_(options) {}
 StressRun::~StressRun() = default;
 
-StressRun::Question& StressRun::question(const TechniquePlugin& technique, const StressCase& c, Term term) {
-  // Of a technique that has shadows of lights, too, those are asked for.
-  const bool sky = contains(technique.info->terms, Term::environment) &&
-                   !contains(technique.info->terms, Term::visibility);
-  const bool fog =
-      contains(technique.info->terms, Term::media) || contains(technique.info->terms, Term::caustic);
-  const bool glass = contains(technique.info->terms, Term::specular);
-  const std::string key =
-      fmt::format("{} {} {} {}{}{}{}", c.scene, static_cast<int>(c.change), c.amount, name(term),
-                  sky ? " sky" : "", fog ? " fog" : "", glass ? " glass" : "");
+std::vector<StressRun::Asked> StressRun::askedOf(TermSet answered, StressChange change) {
+  std::vector<Asked> all;
+  for (const TermInfo& info : kTerms) {
+    if (!contains(answered, info.term)) continue;
+    const Asked asked{info.term, shown(info.term, change)};
+    if (std::ranges::find(all, asked.name(), &Asked::name) == all.end()) all.push_back(asked);
+  }
+  // Terms of one scene follow each other, since only the last scene is kept.
+  std::ranges::stable_partition(all, [](const Asked& asked) { return asked.answered != Term::environment; });
+  return all;
+}
+
+std::vector<std::string> StressRun::terms(TermSet answered, StressChange change) {
+  std::vector<std::string> names;
+  for (const Asked& asked : askedOf(answered, change)) names.push_back(asked.name());
+  return names;
+}
+
+StressRun::Question& StressRun::question(const Asked& asked, const StressCase& c) {
+  const bool sky = asked.answered == Term::environment;
+  const bool fog = asked.answered == Term::media || asked.answered == Term::caustic;
+  const bool glass = asked.answered == Term::specular;
+  const std::string key = fmt::format("{} {} {}{}{}{}", c.scene, static_cast<int>(c.change), c.amount,
+                                      sky ? " sky" : "", fog ? " fog" : "", glass ? " glass" : "");
   if (question_ && question_->key == key) return *question_;
   question_.reset();
   scene::Scene scene = scene_(c.scene);
   if (sky) scene = litBySkyAlone(std::move(scene));
   if (fog) scene = inFog(std::move(scene));
   if (glass) scene = withGlass(std::move(scene));
-  auto question =
-      std::make_unique<Question>(device_, key, stressed(std::move(scene), c.change, c.amount), term);
+  auto question = std::make_unique<Question>(device_, key, stressed(std::move(scene), c.change, c.amount));
   const scene::Pose& pose = question->renderer.pose();
-  if (term == Term::visibility && !pose.lights.empty()) question->light = 0;
   question->camera = pose.cameras.at(0);
   if (c.change == StressChange::cameraInside || c.change == StressChange::cameraNear)
     question->camera =
@@ -224,31 +192,35 @@ StressRun::Question& StressRun::question(const TechniquePlugin& technique, const
 
 /// The RMSE against the reference, relative to its mean unless it is a visibility. Throws std::range_error
 /// for values that no picture may have, Error where something refuses.
-double StressRun::error(const TechniquePlugin& technique, const StressCase& c, Term term) {
-  Question& q = question(technique, c, term);
+double StressRun::error(const TechniquePlugin& technique, const StressCase& c, const Asked& asked) {
+  Question& q = question(asked, c);
+  const Term term = asked.shown;
+  const int light = q.light(term);
   render::Settings settings;
   settings.size = q.size;
-  settings.term = q.term;
-  settings.light = q.light;
+  settings.term = term;
+  settings.light = light;
   settings.channels = true;
   settings.techniques = {{&technique, parametersOf(technique, c.settings)}};
-  const int interfaces = render::interfacesOf(q.term, settings.techniques);
+  const int interfaces = render::interfacesOf(term, settings.techniques);
+  const int bounces = render::bouncesOf(term, settings.techniques);
   q.renderer.configure(std::move(settings));
   q.renderer.setCamera(q.camera);
   q.renderer.render();
   const Image image = q.renderer.read();
-  checkValues(image, q.term);
+  checkValues(image, term);
 
-  const auto [known, isNew] = references_.try_emplace(fmt::format("{} {}", q.key, interfaces));
+  const auto [known, isNew] =
+      references_.try_emplace(fmt::format("{} {} {} {}", q.key, name(term), interfaces, bounces));
   if (isNew) {
     reference::Request request{
         .scene = q.scene, .pose = q.renderer.pose(), .camera = q.camera, .progress = {}, .checkpoint = {}};
     request.width = q.size.x;
     request.height = q.size.y;
-    request.term = q.term;
-    request.light = q.light == scene::kNone ? reference::kAllLights : q.light;
+    request.term = term;
+    request.light = light == scene::kNone ? reference::kAllLights : light;
     request.spp = options_.spp;
-    request.bounces = reference::defaultBounces(q.term);
+    request.bounces = bounces;
     request.interfaces = interfaces;
     try {
       known->second = reference::render(request).image;
@@ -262,17 +234,36 @@ double StressRun::error(const TechniquePlugin& technique, const StressCase& c, T
   const double rmse =
       compareImages(
           image, reference,
-          {.maxMaskedShare = kMaxMasked, .background = termInfo(q.term).background, .maskTermRange = {}})
+          {.maxMaskedShare = kMaxMasked, .background = termInfo(term).background, .maskTermRange = {}})
           .rmse;
-  if (q.term == Term::visibility) return rmse;
+  if (term == Term::visibility) return rmse;
   const double mean = meanOf(reference);
   return mean > 0 ? rmse / mean : rmse;
 }
 
-double StressRun::benign(const TechniquePlugin& technique, const char* scene, Term term) {
-  const std::string key = fmt::format("{} {} {}", technique.info->name, scene, name(term));
+double StressRun::benign(const TechniquePlugin& technique, const char* scene, const Asked& asked) {
+  const std::string key =
+      fmt::format("{} {} {} {}", technique.info->name, scene, name(asked.answered), name(asked.shown));
   if (const auto known = benign_.find(key); known != benign_.end()) return known->second;
-  return benign_[key] = error(technique, {.name = "unchanged", .scene = scene}, term);
+  return benign_[key] = error(technique, {.name = "unchanged", .scene = scene}, asked);
+}
+
+StressAnswer StressRun::answer(const TechniquePlugin& technique, const StressCase& c, const Asked& asked) {
+  StressAnswer answer{.term = asked.name()};
+  try {
+    answer.benign = benign(technique, c.scene, asked);
+    const bool unchanged = c.change == StressChange::none && *c.settings == '\0';
+    answer.error = unchanged ? answer.benign : error(technique, c, asked);
+    answer.factor = answer.error / std::max(answer.benign, kBenignFloor);
+    answer.verdict = c.factor > 0 && answer.factor > c.factor ? Verdict::degraded : Verdict::pass;
+  } catch (const std::range_error& bad) {
+    answer.verdict = Verdict::failed;
+    answer.message = bad.what();
+  } catch (const Error& refusal) {
+    answer.verdict = Verdict::refused;
+    answer.message = refusal.what();
+  }
+  return answer;
 }
 
 StressResult StressRun::run(const TechniquePlugin& technique, const StressCase& c, bool own) {
@@ -281,72 +272,13 @@ StressResult StressRun::run(const TechniquePlugin& technique, const StressCase& 
                       .scene = c.scene,
                       .settings = c.settings,
                       .own = own,
-                      .allowed = c.factor,
-                      .message = {}};
-  try {
-    const Term term = termOf(technique, c.change);
-    result.benign = benign(technique, c.scene, term);
-    const bool unchanged = c.change == StressChange::none && *c.settings == '\0';
-    result.error = unchanged ? result.benign : error(technique, c, term);
-    result.factor = result.error / std::max(result.benign, kBenignFloor);
-    result.verdict = c.factor > 0 && result.factor > c.factor ? Verdict::degraded : Verdict::pass;
-  } catch (const std::range_error& bad) {
-    result.verdict = Verdict::failed;
-    result.message = bad.what();
-  } catch (const Error& refusal) {
-    result.verdict = Verdict::refused;
-    result.message = refusal.what();
-  }
+                      .allowed = c.factor};
+  for (const Asked& asked : askedOf(technique.info->terms, c.change))
+    result.answers.push_back(answer(technique, c, asked));
+  std::ranges::stable_sort(result.answers, std::ranges::greater(), [](const StressAnswer& answer) {
+    return std::tuple(answer.verdict, answer.factor);
+  });
   return result;
-}
-
-std::string toMarkdown(std::span<const StressResult> results) {
-  static const std::vector<MarkdownColumn<StressResult>> columns = stressColumns();
-  std::string text = markdownHead(columns);
-  for (const StressResult& r : results) text += markdownRow(columns, r);
-  return text;
-}
-
-std::string toJson(std::span<const StressResult> results, const std::string& renderer) {
-  using Json = nlohmann::ordered_json;
-  Json list = Json::array();
-  for (const StressResult& r : results)
-    list.push_back({{"technique", r.technique},
-                    {"case", r.name},
-                    {"scene", r.scene},
-                    {"settings", r.settings},
-                    {"own", r.own},
-                    {"verdict", name(r.verdict)},
-                    {"error", r.error},
-                    {"benign", r.benign},
-                    {"factor", r.factor},
-                    {"allowed", r.allowed},
-                    {"message", r.message}});
-  return Json{{"renderer", renderer}, {"results", list}}.dump(1, ' ', false, Json::error_handler_t::replace) +
-         "\n";
-}
-
-std::vector<StressResult> stressFromJson(const std::string& text, const std::string& renderer) {
-  try {
-    const auto json = nlohmann::json::parse(text);
-    std::vector<StressResult> results;
-    if (json.at("renderer") != renderer) return results;
-    for (const auto& r : json.at("results"))
-      results.push_back({.technique = r.at("technique"),
-                         .name = r.at("case"),
-                         .scene = r.at("scene"),
-                         .settings = r.at("settings"),
-                         .own = r.at("own"),
-                         .verdict = verdictFrom(r.at("verdict")),
-                         .error = r.at("error"),
-                         .benign = r.at("benign"),
-                         .factor = r.at("factor"),
-                         .allowed = r.at("allowed"),
-                         .message = r.at("message")});
-    return results;
-  } catch (const nlohmann::json::exception& error) {
-    throw Error(fmt::format("not what limn stress writes: {}", error.what()));
-  }
 }
 
 }  // namespace limn::bench

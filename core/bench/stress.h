@@ -23,6 +23,7 @@ struct Scene;
 
 namespace limn::bench {
 
+/// From the best to the worst.
 enum class Verdict {
   pass,
   degraded,  ///< the error is above what the case allows
@@ -31,15 +32,26 @@ enum class Verdict {
 };
 LIMN_API const char* name(Verdict verdict);
 
+/// Says how a technique did in one term that it answers.
+struct StressAnswer {
+  std::string term;  ///< as StressRun::terms() names it
+  Verdict verdict = Verdict::pass;
+  double error = 0;          ///< RMSE of V; of radiance, relative to the reference's mean
+  double benign = 0;         ///< of the unchanged scene with default parameters
+  double factor = 0;         ///< error / max(benign, 0.01); degraded above what the case allows
+  std::string message = {};  ///< why it was refused or has failed
+};
+
 struct StressResult {
   std::string technique, name, scene, settings;
   bool own = false;  ///< declared by the technique; else one that all techniques meet
-  Verdict verdict = Verdict::pass;
-  double error = 0;   ///< RMSE of V; of radiance, relative to the reference's mean
-  double benign = 0;  ///< of the unchanged scene with default parameters
-  double factor = 0;  ///< error / max(benign, 0.01); degraded above `allowed`
   double allowed = 0;
-  std::string message;  ///< why it was refused or has failed
+  /// Holds one for each term that was asked for. The first is the one that counts: of the worst verdict and,
+  /// among these, of the largest factor.
+  std::vector<StressAnswer> answers = {};
+
+  /// Returns the answer that counts; an empty one where nothing was asked.
+  LIMN_API const StressAnswer& worst() const;
 };
 
 /// Returns the extreme cases that every technique has to handle.
@@ -58,29 +70,39 @@ class LIMN_API StressRun {
             StressOptions options = {});
   ~StressRun();
 
+  /// Asks for every term that the technique answers.
   StressResult run(const TechniquePlugin& technique, const StressCase& stressCase, bool own);
 
+  /// Returns what run() asks such a technique for: every term that it answers, by its picture. Direct light
+  /// stands for V where the case changes light or surfaces, of which V knows nothing; the environment's term
+  /// has no picture of its own and is direct light under a sky alone; without any light all of these are one
+  /// question, `final`.
+  static std::vector<std::string> terms(TermSet answered, StressChange change);
+
  private:
+  struct Asked;
   struct Question;
-  Question& question(const TechniquePlugin& technique, const StressCase& stressCase, Term term);
-  double error(const TechniquePlugin& technique, const StressCase& stressCase, Term term);
-  double benign(const TechniquePlugin& technique, const char* scene, Term term);
+  static std::vector<Asked> askedOf(TermSet answered, StressChange change);
+  Question& question(const Asked& asked, const StressCase& stressCase);
+  StressAnswer answer(const TechniquePlugin& technique, const StressCase& stressCase, const Asked& asked);
+  double error(const TechniquePlugin& technique, const StressCase& stressCase, const Asked& asked);
+  double benign(const TechniquePlugin& technique, const char* scene, const Asked& asked);
 
   gpu::Device& device_;
   std::function<scene::Scene(const std::string&)> scene_;
   StressOptions options_;
   std::unique_ptr<Question> question_;       ///< the last one
   std::map<std::string, Image> references_;  ///< by question
-  std::map<std::string, double> benign_;     ///< by technique, scene and term
+  std::map<std::string, double> benign_;     ///< by technique and question
 };
 
 /// Returns a table with a line for each result; those that did not pass are explained.
 LIMN_API std::string toMarkdown(std::span<const StressResult> results);
-/// Returns {"renderer": ..., "results": [{"technique", "case", "scene", "settings", "own", "verdict",
-/// "error", "benign", "factor", "allowed", "message"}]}.
+/// Returns {"renderer": ..., "results": [{"technique", "case", "scene", "settings", "own", "allowed",
+/// "answers": [{"term", "verdict", "error", "benign", "factor", "message"}]}]}, the worst answer first.
 LIMN_API std::string toJson(std::span<const StressResult> results, const std::string& renderer);
-/// Returns the results in a text of toJson(); none if they come from another renderer. Throws Error for text
-/// that is not such a table.
+/// Returns the results in a text of toJson(); none if they come from another renderer. Results of earlier
+/// versions, which asked for one term alone, are left out. Throws Error for text that is not such a table.
 LIMN_API std::vector<StressResult> stressFromJson(const std::string& text, const std::string& renderer);
 
 }  // namespace limn::bench

@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/bench/private/stress_scene.h"
 #include "tests/gpu/render_test.h"
@@ -53,9 +55,12 @@ TEST_F(StressTest, DeclaredCasesEndInAPictureThatErrsNoMoreThanTheyAllow) {
         continue;  // minutes in software
       const StressResult result = run.run(*plugin, c, true);
       SCOPED_TRACE(result.technique + ", " + result.name);
-      EXPECT_TRUE(result.verdict == Verdict::pass || result.verdict == Verdict::degraded) << result.message;
-      if (result.allowed > 0) {
-        EXPECT_LE(result.factor, mostFactor(result));
+      for (const bench::StressAnswer& answer : result.answers) {
+        SCOPED_TRACE(answer.term);
+        EXPECT_TRUE(answer.verdict == Verdict::pass || answer.verdict == Verdict::degraded) << answer.message;
+        if (result.allowed > 0) {
+          EXPECT_LE(answer.factor, mostFactor(result));
+        }
       }
     }
 }
@@ -67,7 +72,14 @@ TEST_F(StressTest, CommonCasesAskEveryTechniqueSomethingItAnswers) {
   ASSERT_NE(triangle, cases.end());
   for (const TechniquePlugin* plugin : testedTechniques()) {
     const StressResult result = run.run(*plugin, *triangle, false);
-    EXPECT_NE(result.verdict, Verdict::refused) << result.technique << ": " << result.message;
+    std::vector<std::string> asked;
+    for (const bench::StressAnswer& answer : result.answers) {
+      EXPECT_NE(answer.verdict, Verdict::refused)
+          << result.technique << ", " << answer.term << ": " << answer.message;
+      asked.push_back(answer.term);
+    }
+    EXPECT_THAT(asked, testing::UnorderedElementsAreArray(
+                           bench::StressRun::terms(plugin->info->terms, triangle->change)));
   }
 }
 
@@ -75,19 +87,36 @@ TEST_F(StressTest, VerdictsFollowWhatHappened) {
   bench::StressRun run = stressRun();
   const TechniquePlugin& hard = registry().find("hard_shadow_map");
   const StressResult plain = run.run(hard, {.name = "plain"}, false);
-  EXPECT_EQ(plain.verdict, Verdict::pass);
-  EXPECT_EQ(plain.factor, 1);
-  EXPECT_GT(plain.error, 0);
+  EXPECT_EQ(plain.worst().verdict, Verdict::pass);
+  EXPECT_EQ(plain.worst().factor, 1);
+  EXPECT_GT(plain.worst().error, 0);
   const StressResult strict = run.run(hard, {.name = "strict", .factor = 0.5}, false);
-  EXPECT_EQ(strict.verdict, Verdict::degraded);
+  EXPECT_EQ(strict.worst().verdict, Verdict::degraded);
   const StressResult invalid =
       run.run(hard, {.name = "invalid", .change = StressChange::invalidVertices}, false);
-  EXPECT_EQ(invalid.verdict, Verdict::refused);
-  EXPECT_THAT(invalid.message, testing::HasSubstr("not finite"));
-  EXPECT_THAT(run.run(hard, {.name = "typo", .settings = "biass=1"}, false).message,
+  EXPECT_EQ(invalid.worst().verdict, Verdict::refused);
+  EXPECT_THAT(invalid.worst().message, testing::HasSubstr("not finite"));
+  EXPECT_THAT(run.run(hard, {.name = "typo", .settings = "biass=1"}, false).worst().message,
               testing::HasSubstr("bias"));
   const StressResult results[] = {plain, strict, invalid};
   EXPECT_THAT(bench::toMarkdown(results), testing::HasSubstr("refused: "));
+}
+
+// A technique that answers several terms is asked for each: a setting that V does not know of shows in the
+// others. Reflected light grows with the bounces, of the picture as of its reference.
+TEST_F(StressTest, EveryTermIsAskedForAndTheWorstCounts) {
+  bench::StressRun run = stressRun();
+  const TechniquePlugin& implicit = registry().find("implicit_visibility");
+  const StressResult result = run.run(
+      implicit, {.name = "three bounces", .scene = "cornell_box", .settings = "bounces=3 bins=8"}, true);
+  std::vector<std::string> asked;
+  for (const bench::StressAnswer& answer : result.answers) {
+    asked.push_back(answer.term);
+    EXPECT_LE(answer.verdict, result.worst().verdict);
+    EXPECT_LE(answer.factor, result.worst().factor) << answer.term;
+    EXPECT_GT(answer.benign, 0) << answer.term;
+  }
+  EXPECT_THAT(asked, testing::UnorderedElementsAre("visibility", "environment", "indirect"));
 }
 
 TEST_F(StressTest, ChangesDoWhatTheySay) {

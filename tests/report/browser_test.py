@@ -257,8 +257,10 @@ def withstands_foreign_rows(browser):
         for row in (hostile, failed, old, gpu):
             file.write(json.dumps(row) + "\n")
     (out / "stress.json").write_text(json.dumps({"renderer": HOSTILE, "results": [
-        {"technique": "pcss", "case": "one pixel", "verdict": "pass", "error": 0.1, "factor": 1.5},
-        {"technique": HOSTILE, "case": HOSTILE, "scene": HOSTILE, "verdict": "refused", "message": HOSTILE}]}))
+        {"technique": "pcss", "case": "of an earlier version", "verdict": "pass", "error": 0.1, "factor": 1.5},
+        {"technique": HOSTILE, "case": HOSTILE, "scene": HOSTILE, "answers": [
+            {"term": HOSTILE, "verdict": "refused", "message": HOSTILE},
+            {"term": HOSTILE, "verdict": "pass", "error": 0.1, "benign": 0.1, "factor": 1}]}]}))
     limn("report", out)
     browser.open(page)
     check(browser.evaluate("document.querySelectorAll('#stability table').length") == 3, "no stability")

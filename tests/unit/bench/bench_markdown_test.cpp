@@ -159,8 +159,11 @@ TEST(BenchMarkdown, NoPageHoldsMarkupOfARow) {
   std::string pages = toMarkdown(compareResults(before, rows));
   for (const Table& table : makeTables(rows)) pages += toMarkdown(table) + picturesMarkdown(table);
   pages += comparisonMarkdown(rows);
-  const std::vector<StressResult> stress = {
-      {.technique = text, .name = text, .scene = text, .settings = text, .message = text}};
+  const std::vector<StressResult> stress = {{.technique = text,
+                                             .name = text,
+                                             .scene = text,
+                                             .settings = text,
+                                             .answers = {{.term = text, .message = text}, {.term = text}}}};
   pages += toMarkdown(stress);
   const std::vector<SavingResult> savings = {{.name = text, .how = text, .applies = true},
                                              {.name = text, .how = text}};

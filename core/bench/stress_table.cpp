@@ -1,0 +1,150 @@
+// Writes and reads the stress table: a row for each case, whose figures are those of the term that did worst.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/bench/private/columns.h"
+#include "core/bench/private/markdown.h"
+#include "core/bench/stress.h"
+#include "core/image/metric_table.h"
+
+namespace limn::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Verdict verdictFrom(const std::string& text) {
+  for (const Verdict verdict : {Verdict::pass, Verdict::degraded, Verdict::refused, Verdict::failed})
+    if (text == name(verdict)) return verdict;
+  throw Error(fmt::format("verdict '{}' is unknown; expected pass, degraded, refused or failed", text));
+}
+
+bool isMeasured(const StressAnswer& answer) {
+  return answer.verdict == Verdict::pass || answer.verdict == Verdict::degraded;
+}
+
+/// The factor, or the verdict where there is none.
+std::string factorText(const StressResult& result, const StressAnswer& answer) {
+  if (!isMeasured(answer)) return name(answer.verdict);
+  return result.allowed > 0 ? fmt::format("{:.2f}", answer.factor) : "-";
+}
+
+/// The worst term, and the others with their factors: "indirect (visibility 1.00, environment 1.02)".
+std::string termText(const StressResult& result) {
+  std::string others;
+  for (std::size_t i = 1; i < result.answers.size(); ++i)
+    others += fmt::format("{}{} {}", others.empty() ? "" : ", ", result.answers[i].term,
+                          factorText(result, result.answers[i]));
+  return others.empty() ? result.worst().term : fmt::format("{} ({})", result.worst().term, others);
+}
+
+std::vector<MarkdownColumn<StressResult>> stressColumns() {
+  static constexpr const MetricInfo& rmse = metricInfo(&Metrics::rmse);
+  const auto isBounded = [](const StressResult& r) { return isMeasured(r.worst()) && r.allowed > 0; };
+  return {
+      {{headOf("technique"), Align::left}, [](const StressResult& r) { return r.technique; }},
+      {{"case", Align::left},
+       [](const StressResult& r) {
+         return r.settings.empty() ? r.name : fmt::format("{} ({})", r.name, r.settings);
+       }},
+      {{headOf("scene"), Align::left}, [](const StressResult& r) { return r.scene; }},
+      {{"verdict", Align::left},
+       [](const StressResult& r) {
+         const StressAnswer& a = r.worst();
+         return a.message.empty() ? name(a.verdict) : fmt::format("{}: {}", name(a.verdict), a.message);
+       }},
+      {{"term that counts (others)", Align::left}, termText},
+      {{std::string(rmse.head)},
+       [](const StressResult& r) { return isMeasured(r.worst()) ? shownText(rmse, r.worst().error) : "-"; }},
+      {{fmt::format("{} unchanged", rmse.head)},
+       [](const StressResult& r) { return shownText(rmse, r.worst().benign); }},
+      {{"factor"}, [=](const StressResult& r) { return isBounded(r) ? factorText(r, r.worst()) : "-"; }},
+      {{"allowed"},
+       [=](const StressResult& r) { return isBounded(r) ? fmt::format("{:.1f}", r.allowed) : "-"; }},
+  };
+}
+
+Json toJson(const StressAnswer& answer) {
+  return {{"term", answer.term},     {"verdict", name(answer.verdict)}, {"error", answer.error},
+          {"benign", answer.benign}, {"factor", answer.factor},         {"message", answer.message}};
+}
+
+StressAnswer answerFrom(const Json& json) {
+  return {.term = json.at("term"),
+          .verdict = verdictFrom(json.at("verdict")),
+          .error = json.at("error"),
+          .benign = json.at("benign"),
+          .factor = json.at("factor"),
+          .message = json.at("message")};
+}
+
+}  // namespace
+
+const char* name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return "pass";
+    case Verdict::degraded:
+      return "degraded";
+    case Verdict::refused:
+      return "refused";
+    case Verdict::failed:
+      break;
+  }
+  return "failed";
+}
+
+const StressAnswer& StressResult::worst() const {
+  static const StressAnswer none;
+  return answers.empty() ? none : answers.front();
+}
+
+std::string toMarkdown(std::span<const StressResult> results) {
+  static const std::vector<MarkdownColumn<StressResult>> columns = stressColumns();
+  std::string text = markdownHead(columns);
+  for (const StressResult& r : results) text += markdownRow(columns, r);
+  return text;
+}
+
+std::string toJson(std::span<const StressResult> results, const std::string& renderer) {
+  Json list = Json::array();
+  for (const StressResult& r : results) {
+    Json answers = Json::array();
+    for (const StressAnswer& answer : r.answers) answers.push_back(toJson(answer));
+    list.push_back({{"technique", r.technique},
+                    {"case", r.name},
+                    {"scene", r.scene},
+                    {"settings", r.settings},
+                    {"own", r.own},
+                    {"allowed", r.allowed},
+                    {"answers", std::move(answers)}});
+  }
+  return Json{{"renderer", renderer}, {"results", list}}.dump(1, ' ', false, Json::error_handler_t::replace) +
+         "\n";
+}
+
+std::vector<StressResult> stressFromJson(const std::string& text, const std::string& renderer) {
+  try {
+    const auto json = Json::parse(text);
+    std::vector<StressResult> results;
+    if (json.at("renderer") != renderer) return results;
+    for (const Json& r : json.at("results")) {
+      if (!r.contains("answers")) continue;
+      StressResult result{.technique = r.at("technique"),
+                          .name = r.at("case"),
+                          .scene = r.at("scene"),
+                          .settings = r.at("settings"),
+                          .own = r.at("own"),
+                          .allowed = r.at("allowed")};
+      for (const Json& answer : r.at("answers")) result.answers.push_back(answerFrom(answer));
+      results.push_back(std::move(result));
+    }
+    return results;
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(fmt::format("not what limn stress writes: {}", error.what()));
+  }
+}
+
+}  // namespace limn::bench

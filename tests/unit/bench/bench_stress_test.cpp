@@ -1,0 +1,83 @@
+// What the stress table asks of techniques, and how a case of several terms is written and read.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/bench/stress.h"
+
+namespace limn::bench {
+namespace {
+
+using testing::ElementsAre;
+
+std::vector<std::string> asked(TermSet answered, StressChange change = StressChange::none) {
+  return StressRun::terms(answered, change);
+}
+
+TEST(BenchStress, AsksForEveryTermByItsPicture) {
+  for (const TermInfo& info : kTerms) {
+    if (!info.answerable) continue;
+    EXPECT_THAT(asked(termSet(info.term)), ElementsAre(info.name));
+  }
+  EXPECT_THAT(asked(Term::visibility | Term::indirect | Term::environment),
+              ElementsAre("visibility", "indirect", "environment"));
+  EXPECT_THAT(asked(Term::visibility | Term::direct), ElementsAre("visibility", "direct"));
+  EXPECT_THAT(asked(Term::visibility | Term::media), ElementsAre("visibility", "media"));
+}
+
+TEST(BenchStress, AsksForLightWhereVisibilityKnowsNothingOfTheCase) {
+  for (const StressChange change : {StressChange::radiance, StressChange::albedo}) {
+    EXPECT_THAT(asked(Term::visibility | Term::direct, change), ElementsAre("direct"));
+    EXPECT_THAT(asked(Term::visibility | Term::indirect | Term::environment, change),
+                ElementsAre("direct", "indirect", "environment"));
+    EXPECT_THAT(asked(termSet(Term::specular), change), ElementsAre("specular"));
+  }
+  EXPECT_THAT(asked(Term::visibility | Term::indirect | Term::environment, StressChange::noLight),
+              ElementsAre("final"));
+  EXPECT_THAT(asked(Term::visibility | Term::media, StressChange::noLight), ElementsAre("final", "media"));
+}
+
+StressResult severalTerms() {
+  return {.technique = "t",
+          .name = "three bounces",
+          .scene = "box",
+          .settings = "bounces=3",
+          .own = true,
+          .allowed = 4,
+          .answers = {{.term = "indirect", .error = 0.5, .benign = 0.25, .factor = 2},
+                      {.term = "visibility", .error = 0.1, .benign = 0.1, .factor = 1}}};
+}
+
+TEST(BenchStress, ARowShowsTheWorstTermAndNamesTheOthers) {
+  const StressResult results[] = {severalTerms()};
+  EXPECT_THAT(toMarkdown(results),
+              testing::EndsWith("| t | three bounces (bounces=3) | box | pass | indirect (visibility 1.00) "
+                                "| 0.5 | 0.25 | 2.00 | 4.0 |\n"));
+  StressResult refused = severalTerms();
+  refused.answers[0].verdict = Verdict::refused;
+  refused.answers[0].message = "too much";
+  const StressResult others[] = {refused};
+  EXPECT_THAT(toMarkdown(others),
+              testing::HasSubstr("| refused: too much | indirect (visibility 1.00) | - |"));
+  EXPECT_EQ(StressResult{}.worst().verdict, Verdict::pass) << "nothing was asked";
+}
+
+TEST(BenchStress, JsonKeepsEveryTermAndLeavesOutResultsOfOne) {
+  const StressResult results[] = {severalTerms()};
+  const std::string text = toJson(results, "gpu");
+  const std::vector<StressResult> read = stressFromJson(text, "gpu");
+  ASSERT_EQ(read.size(), 1u);
+  EXPECT_EQ(toJson(read, "gpu"), text);
+  EXPECT_EQ(read[0].worst().term, "indirect");
+  EXPECT_TRUE(stressFromJson(text, "another").empty());
+  auto json = nlohmann::json::parse(text);
+  json["results"][0].erase("answers");
+  json["results"][0]["verdict"] = "pass";
+  EXPECT_TRUE(stressFromJson(json.dump(), "gpu").empty()) << "as versions wrote it that asked for one term";
+  EXPECT_THROW(stressFromJson("{}", "gpu"), Error);
+}
+
+}  // namespace
+}  // namespace limn::bench
