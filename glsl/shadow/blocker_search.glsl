@@ -1,11 +1,20 @@
 // The blocker search of prefiltered soft shadows: the kernel in which blockers are looked for, and what the min-max
 // pyramid of the maps says about it.
+//
+// Define BOUNDS_DEPTH, the lookup that suits what shadow_min_max is: min_max_depth (where it is undefined),
+// min_max_windows_depth or n_buffer_depth.
 #ifndef LIMN_BLOCKER_SEARCH_GLSL
 #define LIMN_BLOCKER_SEARCH_GLSL
 #include "glsl/shadow/min_max_pyramid.glsl"
+#include "glsl/shadow/min_max_windows.glsl"
+#include "glsl/shadow/n_buffer.glsl"
 #include "glsl/shadow/visibility.glsl"
 
-uniform sampler2DArray shadow_min_max;  // MinMaxPyramid of the maps
+#ifndef BOUNDS_DEPTH
+#define BOUNDS_DEPTH min_max_depth
+#endif
+
+uniform sampler2DArray shadow_min_max;  // bounds of the depths in the maps
 
 LIMN_CONST int search_lit = 0;      // nothing in the kernel blocks: V = 1
 LIMN_CONST int search_umbra = 1;    // everything in it blocks: V = 0
@@ -33,7 +42,7 @@ ShadowKernel kernel_centres(ShadowCursor cursor, ShadowKernel kernel) {
 // Bounds of the depths stored in them.
 vec2 kernel_depth_bounds(ShadowCursor cursor, ShadowKernel kernel) {
   ivec4 texels = kernel_texels(cursor, kernel);
-  return min_max_depth(shadow_min_max, texels.xy, texels.zw, int(cursor.layer));
+  return BOUNDS_DEPTH(shadow_min_max, texels.xy, texels.zw, int(cursor.layer));
 }
 
 // The kernel starts at the near plane, as published; each of `rounds` further rounds moves it to the nearest depth that

@@ -2,16 +2,13 @@
 // the light is hidden, and how far what hides it lies from the receiver. For techniques that answer `visibility`.
 //
 // Define TABLE_FORMAT (sat_format), WIDE_Z 1: sums of z over a sub-kernel may need two words, POOLED 1: Chebyshev's
-// inequality once for all sub-kernels with E(z) < d, 0: for each, BOUNDS_DEPTH: the lookup that suits what shadow_min_max is,
-// min_max_depth, min_max_windows_depth or n_buffer_depth.
+// inequality once for all sub-kernels with E(z) < d, 0: for each, BOUNDS_DEPTH: see glsl/shadow/blocker_search.glsl.
 //
 // Loops end in their condition: software renderers run a body once more where it comes first. They run what nobody wants,
 // too, so loops of lanes without work take one round.
 #ifndef LIMN_SUB_KERNELS_GLSL
 #define LIMN_SUB_KERNELS_GLSL
 #include "glsl/shadow/blocker_search.glsl"
-#include "glsl/shadow/min_max_windows.glsl"
-#include "glsl/shadow/n_buffer.glsl"
 #include "glsl/shadow/variance_kernel.glsl"
 #include "glsl/shadow/visibility.glsl"
 
@@ -349,8 +346,7 @@ struct KernelBounds {
 
 KernelBounds family_bounds(KernelFamily f, ShadowCursor cursor, ShadowKernel kernel) {
   ShadowThresholds t = f.thresholds;
-  ivec4 texels = kernel_texels(cursor, kernel);
-  vec2 stored = BOUNDS_DEPTH(shadow_min_max, texels.xy, texels.zw, int(cursor.layer));
+  vec2 stored = kernel_depth_bounds(cursor, kernel);
   float least = shadow_metres(cursor.view, stored.x);
   float greatest = shadow_metres(cursor.view, stored.y);
   ShadowKernel centres = kernel_centres(cursor, kernel);
