@@ -7,7 +7,7 @@ namespace {
 using namespace limn;
 
 constexpr const char* kPatterns[] = {"grid", "r2"};
-constexpr const char* kSearches[] = {"near", "cone"};
+constexpr const char* kSearches[] = {"near", "cone", "narrowed"};
 constexpr Parameter kParameters[] = {
     integer("blocker_samples", 32, {1, 4096}, "samples", "Point samples of the blocker search")
         .quality()
@@ -17,8 +17,10 @@ constexpr Parameter kParameters[] = {
         .logScale(),
     choice("pattern", 1, kPatterns, "Regular grid, or the R2 sequence shifted in each pixel"),
     choice("search", 1, kSearches,
-           "Search at the near plane, as published, or through the cone from receiver to light, keeping what "
-           "lies in it"),
+           "Search at the near plane, as published, through the cone from receiver to light, keeping what "
+           "lies in it, or at the nearest depth that bounds of the depths find, ending where they prove V"),
+    integer("search_rounds", 5, {0, 8}, "rounds",
+            "How often the nearest depth in the search kernel narrows it; search=narrowed"),
     shadow::shadowMapSizeParameter(),
     shadow::shadowMapFitParameter(),
     shadow::biasParameter(),
@@ -32,6 +34,8 @@ constexpr StressCase kStress[] = {
      .change = StressChange::lightSize,
      .amount = 3,
      .settings = "search=near"},
+    {.name = "search through the cone", .settings = "search=cone"},
+    {.name = "search kernel moved once", .settings = "search=narrowed search_rounds=0"},
 };
 
 class Pcss : public Technique {
@@ -41,8 +45,14 @@ class Pcss : public Technique {
     shadow::VisibilityPass pass = shadow::visibilityPass(
         inputs, request, info.name,
         {{"PATTERN", std::to_string(p.choice("pattern"))}, {"SEARCH", std::to_string(p.choice("search"))}});
-    pass.bind = [blockers = p.integer("blocker_samples"), filters = p.integer("filter_samples")](
-                    frame::PassContext&, gpu::Program& program) {
+    const bool narrowed = p.choice("search") == 2;
+    if (narrowed) {
+      pass.sampled = {{"shadow_min_max", inputs.service<shadow::ShadowMapService>().minMaxWindows(pass.maps),
+                       "how far the search kernel reaches"}};
+    }
+    pass.bind = [narrowed, rounds = p.integer("search_rounds"), blockers = p.integer("blocker_samples"),
+                 filters = p.integer("filter_samples")](frame::PassContext&, gpu::Program& program) {
+      if (narrowed) program.set("search_rounds", rounds);
       program.set("blocker_samples", blockers);
       program.set("filter_samples", filters);
     };

@@ -40,5 +40,6 @@ float filtered(inout ShadowCursor cursor, VisibilityQuery q, float gap, vec2 shi
 
 float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   float gap = blocker_gap(cursor, q, pixel_noise(uint(pixel.x), uint(pixel.y), 0u));
-  return gap > 0.0 ? filtered(cursor, q, gap, pixel_noise(uint(pixel.x), uint(pixel.y), 1u).xy) : 1.0;
+  if (gap <= 0.0) return gap < 0.0 ? 0.0 : 1.0;
+  return filtered(cursor, q, gap, pixel_noise(uint(pixel.x), uint(pixel.y), 1u).xy);
 }
