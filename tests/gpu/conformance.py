@@ -1,7 +1,8 @@
-"""Compiles what the techniques hand to the driver with the Khronos reference compiler, which accepts less than Mesa does, and
-counts what OpenGL 4.5 promises only few of: what only Mesa accepts would fail on another driver. Usage:
-conformance.py LIMN GLSLANG. Exit status 77 where the driver does not say what it compiles (Mesa does)."""
-import json
+"""Compiles what the techniques hand to the driver, in every permutation, with the Khronos reference compiler, which accepts less
+than Mesa does, and counts what OpenGL 4.5 promises only few of: what only Mesa accepts would fail on another driver. Usage:
+conformance.py TESTS GLSLANG, where TESTS is the program whose PermutationTest compiles all programs. Exit status 77 where the
+driver does not say what it compiles (Mesa does)."""
+import collections
 import os
 import pathlib
 import re
@@ -14,45 +15,66 @@ STAGES = {"VS": "vert", "GS": "geom", "FS": "frag", "CS": "comp"}
 # number is promised there and every desktop driver offers 8 or more.
 PROMISED = {"storage blocks": (r"\bbuffer\s+\w+\s*\{", 8), "samplers": (r"\buniform\s+[iu]?sampler", 16),
             "images": (r"\buniform\s+(?:\w+\s+)*[iu]?image", 8)}
-CHEAP = {"instant_radiosity": ["--set", "instant_radiosity.vpls=16"]}
+BATCH = 32  # files for one process, which takes longer to start than to compile a shader
 
 
-def scene_for(technique):
-    terms = set(technique["terms"])
-    if terms & {"media", "caustic", "specular"}:
-        return "glass_sphere"
-    return "balls_sky" if "environment" in terms else "cornell_box"
+def batches(shaders):
+    """Files of one stage, in lists of at most BATCH."""
+    stages = collections.defaultdict(list)
+    for shader in shaders:
+        stages[STAGES[shader.name.split("_")[0]]].append(shader)
+    for stage, files in stages.items():
+        for first in range(0, len(files), BATCH):
+            yield stage, files[first:first + BATCH]
 
 
-def complaints(glslang, shader):
-    stage = STAGES[shader.name.split("_")[0]]
-    compiled = subprocess.run([glslang, "-S", stage, shader], capture_output=True, text=True)
-    if compiled.returncode != 0:
-        return [compiled.stdout]
-    text = subprocess.check_output([glslang, "-E", "-S", stage, shader], text=True)
-    counts = {what: len(re.findall(pattern, text)) for what, (pattern, _) in PROMISED.items()}
-    return [f"{counts[what]} {what}, of which {most} are promised" for what, (_, most) in PROMISED.items() if counts[what] > most]
+def preprocessed(glslang, shaders):
+    """The shaders' text without comments, inactive parts and line numbers, each but once."""
+    texts = {}
+    for stage, files in batches(shaders):
+        output = subprocess.check_output([glslang, "-E", "-S", stage, *files], text=True)
+        parts = ["#version" + part for part in output.split("#version")[1:]]
+        if len(parts) != len(files):
+            raise RuntimeError(f"{len(files)} shaders became {len(parts)}")
+        for shader, part in zip(files, parts):
+            texts.setdefault((stage, re.sub(r"(?m)^#line.*\n|^\s*\n", "", part)), shader)
+    return {shader: text for (_, text), shader in texts.items()}
 
 
-def main(limn, glslang):
-    techniques = json.loads(subprocess.check_output([limn, "list", "--json"]))["techniques"]
+def refused(glslang, shaders):
+    """What the compiler says about each shader that it refuses."""
+    for stage, files in batches(shaders):
+        if subprocess.run([glslang, "-S", stage, *files], capture_output=True, text=True).returncode == 0:
+            continue
+        for shader in files:
+            compiled = subprocess.run([glslang, "-S", stage, shader], capture_output=True, text=True)
+            if compiled.returncode != 0:
+                yield shader, compiled.stdout
+
+
+def beyond(texts):
+    """What each shader has more of than every driver promises."""
+    for shader, text in texts.items():
+        for what, (pattern, most) in PROMISED.items():
+            count = len(re.findall(pattern, text))
+            if count > most:
+                yield shader, f"{count} {what}, of which {most} are promised"
+
+
+def main(tests, glslang):
     with tempfile.TemporaryDirectory() as folder:
-        environment = dict(os.environ, MESA_SHADER_DUMP_PATH=folder)
-        for technique in techniques:
-            name = technique["name"]
-            subprocess.run([limn, "render", scene_for(technique), "--technique", name, *CHEAP.get(name, []), "--size", "32x24",
-                            "--out", os.path.join(folder, "picture.png")], env=environment, check=True)
-        shaders = sorted(pathlib.Path(folder).glob("*.glsl"))
-        if not shaders:
+        for paths in ({}, {"LIMN_HARDWARE_PATHS": "1"}):
+            subprocess.run([tests, "--gtest_brief=1", "--gtest_filter=PermutationTest.*"], check=True,
+                           env=dict(os.environ, MESA_SHADER_DUMP_PATH=folder, **paths))
+        written = sorted(pathlib.Path(folder).glob("*.glsl"))
+        if not written:
             print("the driver does not write the shaders it is given")
             return 77
-        failed = 0
-        for shader in shaders:
-            found = complaints(glslang, shader)
-            if found:
-                failed += 1
-                print(*found, shader.read_text()[:400], sep="\n")
-        print(f"{len(shaders)} shaders of {len(techniques)} techniques, {failed} refused")
+        texts = preprocessed(glslang, written)
+        failed = [*refused(glslang, texts), *beyond(texts)]
+        for shader, why in failed:
+            print(why, shader.read_text()[:400], sep="\n")
+        print(f"{len(written)} shaders, {len(texts)} of which differ, {len(failed)} refused")
         return 1 if failed else 0
 
 

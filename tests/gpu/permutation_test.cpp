@@ -1,0 +1,90 @@
+// Every program that the values of a technique's parameters lead to is compiled, and none is run. The test
+// glsl.conformance reads what is handed to the driver here.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/gpu/render_test.h"
+
+namespace limn {
+namespace {
+
+/// Whole numbers up to this are tried: larger ones are sizes, which take memory and reach programs as numbers
+/// of the same kind.
+constexpr double kLargestNumber = 64;
+
+class PermutationTest : public OncePerRenderer<RenderTest> {
+ protected:
+  using Uses = std::vector<render::TechniqueUse>;
+
+  /// All combinations of the values of choices and flags.
+  static Uses combinations(const std::string& name) {
+    Uses all{quick(name)};
+    for (const Parameter& parameter : registry().find(name).info->parameters) {
+      std::vector<std::string> values(parameter.choices, parameter.choices + parameter.choiceCount);
+      if (parameter.type == ParameterType::boolean) values = {"false", "true"};
+      Uses wider;
+      for (const std::string& value : values)
+        for (const render::TechniqueUse& use : all)
+          wider.emplace_back(use).parameters.set(parameter.name, value);
+      if (!wider.empty()) all = std::move(wider);
+    }
+    return all;
+  }
+
+  /// The least and the largest value of each whole number, the others as they are by default.
+  static Uses ends(const std::string& name) {
+    Uses all;
+    for (const Parameter& parameter : registry().find(name).info->parameters) {
+      if (parameter.type != ParameterType::integer || std::string_view(parameter.unit) == "MiB") continue;
+      for (const double end : {parameter.range.low, std::min(parameter.range.high, kLargestNumber)})
+        all.emplace_back(quick(name)).parameters.set(parameter.name, std::to_string(static_cast<int>(end)));
+    }
+    return all;
+  }
+
+  /// Where the technique has something to answer. The first scene sees all combinations; each of the others
+  /// has lights, materials or a medium that core's programs depend on.
+  static std::vector<std::string> scenesFor(const std::string& name) {
+    const auto answers = [&](Term term) { return contains(registry().find(name).info->terms, term); };
+    if (answers(Term::media) || answers(Term::caustic) || answers(Term::specular))
+      return {"glass_sphere", "smoke", "stained_light", "glassware"};
+    if (answers(Term::environment)) return {"balls_sky"};
+    return {"cornell_box", "lights", "stained_light", "glossy_sphere", "foliage_card"};
+  }
+
+  static void compile(render::Renderer& renderer, Term term, const render::TechniqueUse& use) {
+    render::Settings asked = settings(48, 36, term, {use}, term == Term::visibility ? 0 : -1);
+    asked.displayEv = 0.f;
+    renderer.configure(std::move(asked));
+    renderer.setCamera(renderer.pose().cameras.at(0));
+    bool whole = false;
+    EXPECT_EQ(errorOf([&] { whole = renderer.render(frame::Timing::off, [] { return true; }); }), "");
+    EXPECT_FALSE(whole) << "passes were executed";
+  }
+};
+
+TEST_F(PermutationTest, EveryProgramCompiles) {
+  for (const TechniquePlugin* plugin : testedTechniques()) {
+    const std::string name = plugin->info->name;
+    SCOPED_TRACE(name);
+    const std::vector<std::string> scenes = scenesFor(name);
+    for (const std::string& file : scenes) {
+      SCOPED_TRACE(file);
+      const scene::Scene scene = asset(file);
+      render::Renderer renderer(device(), scene);
+      compile(renderer, Term::final, technique(name));
+      if (contains(plugin->info->terms, Term::visibility))
+        compile(renderer, Term::visibility, technique(name));
+      if (file != scenes.front()) continue;
+      for (const render::TechniqueUse& use : combinations(name)) compile(renderer, Term::final, use);
+      for (const render::TechniqueUse& use : ends(name)) compile(renderer, Term::final, use);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limn
