@@ -2,6 +2,8 @@
 // own in tests/golden/unshadowed.png). llvmpipe renders the same bits everywhere, so the bound is one 8-bit
 // step for differences between compilers. LIMN_UPDATE_GOLDEN=NAME writes a new one of that technique (or
 // unshadowed), =1 of all: look at them before committing.
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdlib>
 
@@ -72,22 +74,27 @@ class GoldenTest : public RenderTest {
     }
     const fs::path failed = fs::path(test::kBinaryDir) / "failed";
     fs::create_directories(failed);
+    // Several drivers may be tested at a time: what fails gets the common name.
+    const fs::path ownFile = failed / (name + "." + std::to_string(getpid()) + ".png");
     const fs::path actualFile = failed / (name + ".actual.png");
-    writePng(actualFile, actual);
-    ASSERT_TRUE(fs::exists(golden)) << "no " << golden << "; look at " << actualFile
-                                    << " and accept it with LIMN_UPDATE_GOLDEN=" << name << " "
-                                    << test::kBinaryDir
-                                    << "/bin/limn_gpu_tests --gtest_filter='GoldenTest.*'";
-    const Image8 a = readImage8(actualFile), b = readImage8(golden);
+    writePng(ownFile, actual);
+    if (!fs::exists(golden)) {
+      fs::rename(ownFile, actualFile);
+      FAIL() << "no " << golden << "; look at " << actualFile
+             << " and accept it with LIMN_UPDATE_GOLDEN=" << name << " " << test::kBinaryDir
+             << "/bin/limn_gpu_tests --gtest_filter='GoldenTest.*'";
+    }
+    const Image8 a = readImage8(ownFile), b = readImage8(golden);
     ASSERT_EQ(a.data.size(), b.data.size());
     float worst = 0;
     for (size_t i = 0; i < a.data.size(); ++i)
       worst = std::max(worst, std::abs(a.data[i] - b.data[i]) / 255.f);
     EXPECT_LE(worst, kAllowed) << "see " << failed << "/" << name << ".{actual,expected,difference}.png";
     if (worst <= kAllowed) {
-      fs::remove(actualFile);
+      fs::remove(ownFile);
       return;
     }
+    fs::rename(ownFile, actualFile);
     fs::copy_file(golden, failed / (name + ".expected.png"), fs::copy_options::overwrite_existing);
     writePng(failed / (name + ".difference.png"), differenceImage(readImage(actualFile), readImage(golden)));
   }
