@@ -49,5 +49,57 @@ TEST_F(MediaTruth, AirlightOfALampMeetsQuadrature) {
   }
 }
 
+/// Where light from the point `from` reaches p through a mirror on [0, 2]^2 in the plane of points whose
+/// `axis` is 0.
+bool passesMirror(const dvec3& from, const dvec3& p, int axis) {
+  const dvec3 at = from + from[axis] / (from[axis] - p[axis]) * (p - from);
+  const double other = std::abs(at[1 - axis]);  // an image's light comes through the image of the mirror
+  return other < 2 && at.z > 0 && at.z < 2;
+}
+
+/// Fog before two mirrors that meet at a right angle is lit by a lamp and by its three images, of which the
+/// reference has the one over both mirrors without limit alone. Seen from outside the fog, where it meets a
+/// floor between the mirrors.
+TEST_F(MediaTruth, FogInAMirrorCornerIsLitByThreeImages) {
+  constexpr double absorbed = 0.1, scattered = 0.2, intensity = 3;
+  const dvec3 lamp(0.7, 0.5, 0.6), eye(4), middle(1);
+  scene::Scene scene;
+  const int silver = test::addMaterial(scene, test::silver());
+  test::show(scene, test::quad({0, 1, 1}, {0, 2, 0}, {0, 0, 2}, silver));  // x = 0, facing +x
+  test::show(scene, test::quad({1, 0, 1}, {0, 0, 2}, {2, 0, 0}, silver));  // y = 0, facing +y
+  test::show(scene,
+             test::quad({1, 1, 0}, {2, 0, 0}, {0, 2, 0}, test::addMaterial(scene, test::lambertian(0.5f))));
+  test::shine(scene, test::lamp(glsl::light_point, float(intensity)), vec3(lamp));
+  scene.medium.sigmaA = vec3(float(absorbed));
+  scene.medium.sigmaS = vec3(float(scattered));
+  const auto expected = [&](bool both) {
+    return [=](const dvec3& floor, const dvec3& w) {
+      if (std::abs(floor.z) > 1e-3 || std::min(floor.x, floor.y) < 0.1 || std::max(floor.x, floor.y) > 1.4)
+        return nothing;
+      const double nearest = glm::dot(middle - eye, w), end = glm::length(floor - eye);
+      const dvec3 across = eye + nearest * w - middle;
+      const double begin = nearest - std::sqrt(3 - glm::dot(across, across));
+      constexpr int steps = 1000;
+      double sum = 0;
+      for (int i = 0; i < steps; ++i) {
+        const double t = (i + 0.5) * (end - begin) / steps;
+        const dvec3 p = eye + (begin + t) * w;
+        for (const auto& [x, y] : {std::pair(1, 1), std::pair(-1, 1), std::pair(1, -1), std::pair(-1, -1)}) {
+          const dvec3 from = dvec3(x, y, 1) * lamp;
+          if ((x < 0 && !passesMirror(from, p, 0)) || (y < 0 && !passesMirror(from, p, 1))) continue;
+          if (x + y == -2 && !both) continue;
+          const double r = glm::length(p - from);
+          sum += std::exp(-(absorbed + scattered) * (t + r)) / (r * r);
+        }
+      }
+      return scattered / (4 * M_PI) * intensity * sum * (end - begin) / steps;
+    };
+  };
+  Question q{.camera = scene::lookAt(vec3(eye), {0.7f, 0.7f, 0}, 0.3f), .term = Term::media, .spp = 512};
+  expectReference(scene, q, expected(false), {.average = 0.3, .pixels = 300});
+  q.interfaces = reference::kAllInterfaces;
+  expectReference(scene, q, expected(true), {.average = 0.3, .pixels = 300});
+}
+
 }  // namespace
 }  // namespace limn
