@@ -47,6 +47,15 @@ LineFragment line_fragment() {
   return f;
 }
 
+// Metres of medium of density 1 that weigh as much as the ray's way to the fragment; rays end where the medium does.
+float line_medium_length(Medium medium, CausticRay ray, LineFragment f) {
+#if MEDIUM_STEPS > 0
+  return medium_length(medium, ray.start, ray.direction, f.along);
+#else
+  return f.along;
+#endif
+}
+
 // Radiance per (flux * sigma_s * p * transmittances), 1/m.
 float line_weight(LineFragment f) {
 #if KIND == 1

@@ -1,10 +1,9 @@
 // Caustic rays as primitives. KIND 0: lines of one pixel; 1: points, for lines shorter than a pixel; 2: quads as wide as
 // their beam, for those wider than a pixel. Each draws the rays of its own list (line_kinds.comp.glsl). BEAMS 0: no quads, lines
 // stand for all.
+#include "glsl/caustics/line_rule.glsl"
 #include "glsl/caustics/listed_ray.glsl"
 #include "glsl/caustics/ray_shape.glsl"
-
-layout(std430) readonly buffer LineRule { uint line_fragments; };
 
 layout(location = 0) flat out int ray_index;
 layout(location = 1) flat out vec3 line_origin;     // camera space, metres
@@ -54,7 +53,7 @@ void main() {
 #if KIND == 0
   vec2 forwards = vec2(piece.axis.x < 0.0 ? -1.0 : 1.0, piece.axis.y < 0.0 ? -1.0 : 1.0);
   bool steep = abs(piece.axis.x) < abs(piece.axis.y);
-  bool rectangle = line_fragments > 850u;
+  bool rectangle = lines_are_rectangles();
   line_axis = rectangle ? piece.axis : forwards * (steep ? vec2(0.0, 1.0) : vec2(1.0, 0.0));
   // In pixels along the larger component: a pixel beyond the end, so that every pixel that the line touches has a fragment.
   float beyond = column == 0 ? -1.0 : 1.0;

@@ -50,12 +50,7 @@ void main() {
   vec3 seen = scattering_seen(medium, direction, distance);
 #endif
   if (seen == vec3(0.0)) discard;
-#if MEDIUM_STEPS > 0
-  float along = medium_length(medium, ray.start, ray.direction, f.along);
-#else
-  float along = f.along;
-#endif
-  vec3 arriving = ray.power * medium_transmittance(medium, along);
+  vec3 arriving = ray.power * medium_transmittance(medium, line_medium_length(medium, ray, f));
   float phase = phase_function(medium.g, ray.direction, -direction);
   radiance = vec4(arriving * medium.scattering * seen * (phase * line_weight(f)), 0.0);
 }
