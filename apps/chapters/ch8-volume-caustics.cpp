@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
       {"Lines alone, as published", whole, "volume_caustics.beams=false",
        "Near lines keep the width of a pixel."},
       {"Without a physical model", "hard_shadow_map,airlight,krueger_caustics", "",
-       "Lines with a brightness set by hand, as before the thesis."},
+       "All fragments of all lines have one weight, as before the thesis."},
   };
   return limn::app::runChapter({.name = "ch8-volume-caustics",
                                 .title = "Volume caustics",

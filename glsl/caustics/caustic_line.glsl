@@ -58,5 +58,12 @@ LIMN_FN float caustic_point_weight(vec3 a, vec3 b, float focal) {
   return integral * focal * focal / (cosine * cosine * cosine);
 }
 
+// One weight for all fragments, 1/m, with which lines in all directions scatter as much as with caustic_line_weight at the
+// middle of the picture, `away` metres from the camera. There a metre across the view is focal / away pixels long; in the mean
+// of all directions a metre of line has sqrt(1/2) as many columns (or rows), and pi/4 as many pixels of length (rectangles).
+LIMN_FN float caustic_even_weight(float away, float focal, bool rectangles) {
+  return focal / (away * (rectangles ? 0.25f * pi : 0.70710678f));
+}
+
 LIMN_END
 #endif  // LIMN_CAUSTIC_LINE_GLSL

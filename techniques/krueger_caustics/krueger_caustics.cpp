@@ -1,5 +1,8 @@
 // Lines of light without a physical model: the baseline of chapter 8.
+#include <algorithm>
+
 #include "core/caustics/ray_lines.h"
+#include "core/gpu_scene/gpu_medium.h"
 #include "core/technique/technique.h"
 
 namespace {
@@ -13,14 +16,27 @@ constexpr Parameter kParameters[] = {
     caustics::lightSamplesParameter(),
     caustics::rayStepsParameter(),
     caustics::exitStepsParameter(),
-    real("scale", 0.002, {0, 1e6}, "pixels/(sr m^2)",
-         "Radiance that a fragment adds per watt of its line, in a picture of one pixel's height; set by "
-         "hand for each scene"),
+    boolean("attenuation", true,
+            "The medium takes light along the lines and on the way to the eye, as the thesis adds it; false: "
+            "as published"),
+    scene::mediumStepsParameter(),
+    real("scale", 1, {0, 1e6}, "",
+         "Factor on the brightness of lines, which is derived for lines in all directions at the distance of "
+         "the specular objects"),
 };
 constexpr StressCase kStress[] = {
     {.name = "buffer of 1 texel", .settings = "buffer_size=1", .factor = 0},
     {.name = "one point of each search", .settings = "ray_steps=1 exit_steps=1", .factor = 0},
 };
+
+/// Returns how far the middle of the specular objects is from the camera, in metres; at least their radius.
+float objectsDistance(const scene::GpuScene& scene) {
+  scene::Bounds objects;
+  for (uint32_t i = 0; i < scene.instanceCount(); ++i)
+    if (scene.specular(i)) objects.add(scene.bounds(i));
+  const glm::vec3 eye(scene.frame().camera_position);
+  return std::max(glm::length(objects.centre() - eye), objects.radius());
+}
 
 class KruegerCaustics : public Technique {
   caustics::RayLines lines_;
@@ -34,9 +50,13 @@ class KruegerCaustics : public Technique {
     return lines_.add(graph, inputs, rays, request.target,
                       {.technique = info.name,
                        .fragmentShader = "techniques/krueger_caustics/line.frag.glsl",
+                       .defines = {{"ATTENUATION", p.boolean("attenuation") ? "1" : "0"}},
+                       .mediumSteps = p.integer("medium_steps"),
                        .beams = false,
-                       .bind = [scale = p.real("scale") * static_cast<float>(inputs.size.y)](
-                                   gpu::Program& program) { program.set("scale", scale); }});
+                       .bind = [&scene = inputs.gpuScene, scale = p.real("scale")](gpu::Program& program) {
+                         program.set("objects_distance", objectsDistance(scene));
+                         program.set("scale", scale);
+                       }});
   }
 
  public:

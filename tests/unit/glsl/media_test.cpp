@@ -298,5 +298,28 @@ TEST(CausticLine, FragmentsSumToTheIrradianceOfTheLineAtTheEye) {
   }
 }
 
+/// Of lines through the middle of the picture in directions that are even over the sphere: each has as many
+/// fragments as its weight assumes, a metre of it rate * focal / away.
+TEST(CausticLine, TheEvenWeightScattersAsMuchFromLinesInAllDirections) {
+  constexpr int n = 200;
+  constexpr float focal = 400;
+  for (const bool rectangles : {false, true})
+    for (const float away : {0.1f, 5.f}) {
+      const vec3 x(0, 0, away);
+      double exact = 0, even = 0;
+      for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k) {
+          const double z = 2 * (i + 0.5) / n - 1, r = std::sqrt(1 - z * z), angle = 2 * M_PI * (k + 0.5) / n;
+          const vec3 direction(float(r * std::cos(angle)), float(r * std::sin(angle)), float(z));
+          const vec2 rates = abs(caustic_line_rate(x, direction));
+          const float rate = rectangles ? length(rates) : std::max(rates.x, rates.y);
+          const double fragments = double(rate) * double(focal / away);
+          exact += fragments * double(caustic_line_weight(x, rate, focal));
+          even += fragments * double(caustic_even_weight(away, focal, rectangles));
+        }
+      EXPECT_NEAR(even / exact, 1, 1e-3) << rectangles << " " << away;
+    }
+}
+
 }  // namespace
 }  // namespace limn::glsl
