@@ -20,6 +20,19 @@ LIMN_FN float residual_inverse_square(float d2, float nearest, float footprint) 
   return max(1.0f / max(d2, least) - bounded_inverse_square(d2, nearest), 0.0f);
 }
 
+// --- The same for loops: what a receiver and all lights have in common is squared once ---
+
+// (cosine at the receiver) (cosine at the light) bounded_inverse_square(), from the products of the two unit normals with
+// the offset to the other's place, both positive. nearest2: nearest^2. One division, and finite however near they are.
+LIMN_FN float gather_geometry(float towards_light, float towards_receiver, float d2, float nearest2) {
+  return towards_light * towards_receiver / max(d2 * max(d2, nearest2), 1e-37f);
+}
+
+// residual_inverse_square() over bounded_inverse_square(). least: footprint^2 / pi.
+LIMN_FN float gather_residual(float d2, float nearest2, float least) {
+  return max(max(d2, nearest2) / max(d2, least) - 1.0f, 0.0f);
+}
+
 // Virtual lights of a pixel in block x block interleaved pixels (Segovia et al. 2006, Non-interleaved Deferred Shading of
 // Interleaved Sample Patterns): sub-buffer k of block^2 has the consecutive lights [k N / block^2, (k + 1) N / block^2),
 // which a low-discrepancy sequence spreads over all lit surfaces.

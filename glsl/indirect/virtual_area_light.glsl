@@ -16,10 +16,6 @@ struct VirtualAreaLight {
   uvec2 unused;
 };
 
-LIMN_FN bool virtual_light_shines(VirtualPointLight light) {
-  return light.flux.x + light.flux.y + light.flux.z > 0.0f;
-}
-
 // Angle between unit vectors as a share of pi, good where it is small; any to 0: 1/2.
 LIMN_FN float cluster_angle(vec3 a, vec3 b) {
   if (dot(b, b) == 0.0f) return 0.5f;

@@ -14,5 +14,9 @@ struct VirtualPointLight {
   vec4 flux;      // reflected, W
 };
 
+LIMN_FN bool virtual_light_shines(VirtualPointLight light) {
+  return light.flux.x + light.flux.y + light.flux.z > 0.0f;
+}
+
 LIMN_END
 #endif
