@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "core/gpu_scene/gpu_scene.h"
 #include "core/scene/scene.h"
 
 namespace limn::indirect {
@@ -103,8 +104,11 @@ void Gather::shade(ShadePass shade) {
   if (shade.count == 0) shade.count = lights_.count;
   const bool accumulate = shade.first > 0;
   frame::PassBuilder pass = graph_.addPass("shade", technique_);
+  const bool fitsBlock = lights_.count * sizeof(glsl::VirtualPointLight) <=
+                         static_cast<size_t>(inputs_.gpuScene.device().limits().maxUniformBlockBytes);
   pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
-      .read(lights_.lights, Access::storageLoad, "VirtualLights", "virtual lights");
+      .read(lights_.lights, fitsBlock ? Access::uniformBuffer : Access::storageLoad, "VirtualLights",
+            "virtual lights");
   readSurfaces(pass, gbuffer_);
   for (const shadow::SampledTexture& s : shade.sampled) pass.read(s.texture, Access::sampled, s.name, s.why);
   if (shade.declare) shade.declare(pass);
@@ -115,6 +119,7 @@ void Gather::shade(ShadePass shade) {
   shade.program.defines["SPLIT"] = splitting ? "1" : "0";
   shade.program.defines["ACCUMULATE"] = accumulate ? "1" : "0";
   shade.program.defines["LAMBERTIAN"] = specular_ ? "0" : "1";
+  if (fitsBlock) shade.program.defines["VIRTUAL_LIGHT_COUNT"] = std::to_string(lights_.count);
   const auto program = pass.program(shade.program);
   pass.execute([program, shade = std::move(shade), lightCount = lights_.count, settings = settings_,
                 size = inputs_.size](frame::PassContext& context) {
@@ -127,7 +132,7 @@ void Gather::shade(ShadePass shade) {
     kernel.set("nearest", settings.clamp);
     if (shade.bind) shade.bind(kernel);
     const glm::ivec2 part = (size + settings.block - 1) / settings.block;
-    context.dispatch(part.x, part.y, settings.block * settings.block, kGroup, kGroup);
+    context.dispatch(part.x, part.y, settings.block * settings.block, 2 * kGroup, 2 * kGroup);
   });
 }
 

@@ -3,8 +3,16 @@
 #include "core/gpu_scene/gpu_scene.h"
 
 namespace limn::indirect {
+namespace {
 
 using frame::Access;
+
+/// What the maps' depths and their distance from the surfaces are shares of, m.
+float extentOf(const scene::GpuScene& scene) {
+  return 2 * scene.bounds().radius();
+}
+
+}  // namespace
 
 frame::BufferHandle addLightViews(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                   const VirtualLights& lights, const LightMapDesc& desc) {
@@ -21,22 +29,21 @@ frame::BufferHandle addLightViews(frame::FrameGraph& graph, const TechniqueInput
     kernel.set("count", static_cast<unsigned>(lights.count));
     kernel.set("batch", static_cast<unsigned>(desc.batch));
     kernel.set("texels", static_cast<unsigned>(desc.size));
-    kernel.set("extent", 2 * scene.bounds().radius());
+    kernel.set("extent", extentOf(scene));
     context.dispatch(lights.count, 1, 1, 64, 1);
   });
   return views;
 }
 
-ShadePass lightMapShadePass(const ParaboloidMaps& maps, float bias) {
+ShadePass lightMapShadePass(const TechniqueInputs& inputs, const ParaboloidMaps& maps, float bias) {
   return {.program = {.files = {"glsl/indirect/shade_light_maps.comp.glsl"}, .defines = {}},
           .first = maps.first,
           .count = maps.count,
           .sampled = {{"maps", maps.depth, "what virtual lights see"}},
-          .bind = [bias](gpu::Program& kernel) { kernel.set("bias", bias); },
-          .declare =
-              [views = maps.views](frame::PassBuilder& pass) {
-                pass.read(views, Access::storageLoad, "Views", "projections of the maps");
-              }};
+          .bind = [bias, &scene = inputs.gpuScene](gpu::Program& kernel) {
+            kernel.set("bias", bias);
+            kernel.set("extent", extentOf(scene));
+          }};
 }
 
 }  // namespace limn::indirect

@@ -24,6 +24,6 @@ LIMN_API frame::BufferHandle addLightViews(frame::FrameGraph& graph, const Techn
 /// Returns the pass that shades virtual lights maps.first to maps.first + maps.count. A receiver does not see
 /// a light whose map holds, at the receiver's texel, something nearer that lies above the receiver's tangent
 /// plane by more than `bias` texel footprints.
-LIMN_API ShadePass lightMapShadePass(const ParaboloidMaps& maps, float bias);
+LIMN_API ShadePass lightMapShadePass(const TechniqueInputs& inputs, const ParaboloidMaps& maps, float bias);
 
 }  // namespace limn::indirect

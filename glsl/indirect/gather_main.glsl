@@ -1,19 +1,27 @@
 // The shade pass of techniques that gather indirect light from virtual point lights. The work groups of one z shade the
 // pixels of one sub-buffer, which all have the same virtual lights. SPLIT 1: the G-buffer and the result lie sub-buffer by
 // sub-buffer; 0: both are screens. PARTS: layers of the result (gather_part_*). LAMBERTIAN 1: no material has a specular
-// part. ACCUMULATE 1: adds to what other batches of lights left.
+// part. ACCUMULATE 1: adds to what other batches of lights left. VIRTUAL_LIGHT_COUNT: of lights, where they fit a uniform block.
 //
-// The technique defines vpl_visibility().
+// A thread shades 2 x 2 neighbours of its sub-buffer, so that a light is loaded once for four pixels. They have names of their
+// own in what follows: compilers keep what a loop indexes in memory.
+//
+// Define VPL_SHADOWS 1 before including this where virtual lights have shadows: vpl_begin() and vpl_visibility() are then the
+// technique's.
 #ifndef LIMN_GATHER_MAIN_GLSL
 #define LIMN_GATHER_MAIN_GLSL
-#include "glsl/surface/brdf.glsl"
+#include "glsl/surface/brdf_view.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/indirect/gather.glsl"
 #include "glsl/indirect/gather_parts.glsl"
 #include "glsl/indirect/virtual_light.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+#ifdef VIRTUAL_LIGHT_COUNT  // they fit a uniform block, from which all invocations load at once
+layout(std140) uniform VirtualLights { VirtualPointLight virtual_lights[VIRTUAL_LIGHT_COUNT]; };
+#else
 layout(std430) readonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
+#endif
 #if ACCUMULATE
 layout(rgba32f) uniform image2DArray gathered;
 #else
@@ -25,49 +33,98 @@ uniform uint batch_count;
 uniform uint block;        // pixels
 uniform float nearest;     // part of the scene's extent
 
-// Whether the receiver (m; geometric normal) sees virtual light `vpl`: 1, or does not: 0. Asked only where it matters.
-float vpl_visibility(uint vpl, vec3 receiver, vec3 normal);
-
 struct Receiver {
   vec3 position;
-  vec3 normal;            // shading
+  vec3 normal;            // shading; 0 where there is nothing to light
   vec3 geometric_normal;
-  vec3 view;              // unit, to the viewer
-  SurfaceBrdf brdf;
-  float nearest;          // m
-  float footprint;        // side of the pixel on the surface, m
+#if !LAMBERTIAN
+  BrdfView brdf;
+#endif
+  float least;            // m^2 of the pixel on the surface, over pi
 };
 
+// A virtual light as a receiver sees it.
+struct VplSight {
+  vec3 offset;              // from the receiver to the light, m
+  float d2;                 // its square
+  float above;              // product of the receiver's geometric normal with it, > 0
+  float towards_receiver;   // of the light's normal with the way back, > 0
+};
+
+#if VPL_SHADOWS
+// Called for each light before vpl_visibility(): what all pixels have in common.
+void vpl_begin(uint vpl, VirtualPointLight light);
+
+// Whether pixel 0 to 3 of the thread sees the light: 1, or does not: 0. Asked only where it matters.
+float vpl_visibility(VirtualPointLight light, uint pixel, Receiver r, VplSight sight);
+#endif
+
+// Sums over lights, of which constant factors are left out.
 struct Gathered {
-  vec3 diffuse;   // per unit of the diffuse albedo, W/(sr m^2)
+  vec3 diffuse;   // per unit of the diffuse albedo
   vec3 specular;
   vec3 residual;  // of the diffuse part
 };
 
-void gather_from(uint vpl, Receiver r, inout Gathered sum) {
-  VirtualPointLight light = virtual_lights[vpl];
-  vec3 offset = light.position - r.position;
-  float d2 = dot(offset, offset);
-  vec3 l = offset * inversesqrt(d2);  // NaN at the light itself, where no comparison holds
-  float cosines = dot(r.normal, l) * -dot(light.normal.xyz, l);
-  bool lit = dot(r.normal, l) > 0.0 && dot(r.geometric_normal, l) > 0.0 && dot(light.normal.xyz, l) < 0.0 &&
-             light.flux.x + light.flux.y + light.flux.z > 0.0;
+void gather_from(VirtualPointLight light, uint pixel, Receiver r, float nearest2, inout Gathered sum) {
+  VplSight sight;
+  sight.offset = light.position - r.position;
+  sight.d2 = dot(sight.offset, sight.offset);
+  sight.above = dot(r.geometric_normal, sight.offset);
+  sight.towards_receiver = -dot(light.normal.xyz, sight.offset);
+  float towards_light = dot(r.normal, sight.offset);
+  bool lit = towards_light > 0.0 && sight.above > 0.0 && sight.towards_receiver > 0.0;
+  float share = lit ? gather_geometry(towards_light, sight.towards_receiver, sight.d2, nearest2) : 0.0;
+#if VPL_SHADOWS
+  float visibility = 1.0;
   // A loop of at most one round: software renderers run both sides of an `if`, but leave a loop that nobody is in.
   while (lit) {
     lit = false;
-    vec3 sent = light.flux.rgb * (inverse_pi * cosines * vpl_visibility(vpl, r.position, r.geometric_normal));
-#if LAMBERTIAN
-    float diffuse = inverse_pi;
-#else
-    BrdfParts parts = brdf_parts(r.brdf, r.normal, r.view, l);
-    float diffuse = parts.diffuse;
-    sum.specular += sent * parts.specular * bounded_inverse_square(d2, r.nearest);
-#endif
-    sum.diffuse += sent * (diffuse * bounded_inverse_square(d2, r.nearest));
-#if GATHER_RESIDUAL
-    sum.residual += sent * (diffuse * residual_inverse_square(d2, r.nearest, r.footprint));
-#endif
+    visibility = vpl_visibility(light, pixel, r, sight);
   }
+  share *= visibility;
+#endif
+#if !LAMBERTIAN
+  BrdfParts parts = brdf_view_parts(r.brdf, inversesqrt(max(sight.d2, 1e-37)) * sight.offset);
+  sum.specular += (share * parts.specular) * light.flux.rgb;
+  share *= parts.diffuse;
+#endif
+  sum.diffuse += share * light.flux.rgb;
+#if GATHER_RESIDUAL
+  sum.residual += (share * gather_residual(sight.d2, nearest2, r.least)) * light.flux.rgb;
+#endif
+}
+
+struct GatherPixel {
+  ivec2 texel;   // in the G-buffer and the result
+  bool inside;   // the picture
+  bool covered;  // by a surface that gathers
+};
+
+GatherPixel gather_pixel(ivec2 pixel, out Receiver r) {
+  GatherPixel p;
+  ivec2 size = ivec2(frame.frame_size);
+  p.inside = all(lessThan(pixel, size));
+  pixel = min(pixel, size - 1);
+#if SPLIT
+  p.texel = split_texel(pixel, int(block), size);
+#else
+  p.texel = pixel;
+#endif
+  float depth = pixel_depth(p.texel);
+  GBufferSurface surface = pixel_surface(p.texel);
+  p.covered = p.inside && depth > 0.0 && (surface.flags & gbuffer_flag_specular) == 0u;
+  r.position = pixel_position(pixel, depth);
+  r.normal = p.covered ? surface.normal : vec3(0.0);
+  r.geometric_normal = surface.geometric_normal;
+#if !LAMBERTIAN
+  SurfaceBrdf brdf = surface_brdf(surface.base_colour, surface.metallic, surface.roughness, surface.specular_factor,
+                                  surface.specular_colour, surface.ior);
+  r.brdf = brdf_view(brdf, surface.normal, normalize(frame.camera_position.xyz - r.position));
+#endif
+  float footprint = depth * length(frame.view_ray_dx.xyz);
+  r.least = footprint * footprint * inverse_pi;
+  return p;
 }
 
 void store_part(ivec3 at, vec4 value) {
@@ -77,51 +134,59 @@ void store_part(ivec3 at, vec4 value) {
   imageStore(gathered, at, value);
 }
 
-Receiver receiver_at(ivec2 pixel, float depth, GBufferSurface surface) {
-  Receiver r;
-  r.position = pixel_position(pixel, depth);
-  r.normal = surface.normal;
-  r.geometric_normal = surface.geometric_normal;
-  r.view = normalize(frame.camera_position.xyz - r.position);
-  r.brdf = surface_brdf(surface.base_colour, surface.metallic, surface.roughness, surface.specular_factor,
-                        surface.specular_colour, surface.ior);
-  r.nearest = nearest * gather_extent();
-  r.footprint = depth * length(frame.view_ray_dx.xyz);
-  return r;
+void store(GatherPixel p, Gathered sum) {
+  if (!p.inside) return;
+  // For the lights that other sub-buffers have; a light of the flux F sends F / pi along its normal.
+  float scale = float(block * block) * inverse_pi;
+  float weight = p.covered ? 1.0 : 0.0;
+#if LAMBERTIAN
+  float diffuse = scale * inverse_pi;
+#else
+  float diffuse = scale;
+#endif
+  store_part(ivec3(p.texel, gather_part_diffuse), vec4(diffuse * sum.diffuse, weight));
+#if GATHER_SPECULAR
+  store_part(ivec3(p.texel, gather_part_specular), vec4(scale * sum.specular, weight));
+#endif
+#if GATHER_RESIDUAL
+  store_part(ivec3(p.texel, gather_part_residual), vec4(diffuse * sum.residual, weight));
+#endif
 }
 
 void main() {
   uint sub_buffer = gl_WorkGroupID.z;
-  ivec2 within = ivec2(sub_buffer % block, sub_buffer / block);
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) * int(block) + within;
+  int step = int(block);
+  ivec2 first_pixel = 2 * step * ivec2(gl_GlobalInvocationID.xy) + ivec2(sub_buffer % block, sub_buffer / block);
   uint first = max(gather_begin(sub_buffer, vpl_count, block), batch_first);
   uint end = min(gather_begin(sub_buffer + 1u, vpl_count, block), batch_first + batch_count);
-  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
-#if SPLIT
-  ivec2 texel = split_texel(pixel, int(block), ivec2(frame.frame_size));
-#else
-  ivec2 texel = pixel;
-#endif
-  float depth = pixel_depth(texel);
-  GBufferSurface surface = pixel_surface(texel);
-  bool covered = depth > 0.0 && (surface.flags & gbuffer_flag_specular) == 0u;
-  Gathered sum = Gathered(vec3(0.0), vec3(0.0), vec3(0.0));
-  if (covered && first < end) {
-    Receiver r = receiver_at(pixel, depth, surface);
+  if (any(greaterThanEqual(first_pixel, ivec2(frame.frame_size)))) return;
+  Receiver r00, r10, r01, r11;
+  GatherPixel p00 = gather_pixel(first_pixel, r00);
+  GatherPixel p10 = gather_pixel(first_pixel + ivec2(step, 0), r10);
+  GatherPixel p01 = gather_pixel(first_pixel + ivec2(0, step), r01);
+  GatherPixel p11 = gather_pixel(first_pixel + ivec2(step, step), r11);
+  const Gathered nothing = Gathered(vec3(0.0), vec3(0.0), vec3(0.0));
+  Gathered sum00 = nothing, sum10 = nothing, sum01 = nothing, sum11 = nothing;
+  if ((p00.covered || p10.covered || p01.covered || p11.covered) && first < end) {
+    float least_distance = nearest * gather_extent();
+    float nearest2 = least_distance * least_distance;
     uint i = first;
     do {  // the condition comes last: software renderers run a loop's body once more where it comes first
-      gather_from(i, r, sum);
+      VirtualPointLight light = virtual_lights[i];
+      if (!virtual_light_shines(light)) light.normal = vec4(0.0);  // so that no receiver is lit
+#if VPL_SHADOWS
+      vpl_begin(i, light);
+#endif
+      gather_from(light, 0u, r00, nearest2, sum00);
+      gather_from(light, 1u, r10, nearest2, sum10);
+      gather_from(light, 2u, r01, nearest2, sum01);
+      gather_from(light, 3u, r11, nearest2, sum11);
     } while (++i < end);
   }
-  float scale = float(block * block);  // for the lights that other sub-buffers have
-  float weight = covered ? 1.0 : 0.0;
-  store_part(ivec3(texel, gather_part_diffuse), vec4(scale * sum.diffuse, weight));
-#if GATHER_SPECULAR
-  store_part(ivec3(texel, gather_part_specular), vec4(scale * sum.specular, weight));
-#endif
-#if GATHER_RESIDUAL
-  store_part(ivec3(texel, gather_part_residual), vec4(scale * sum.residual, weight));
-#endif
+  store(p00, sum00);
+  store(p10, sum10);
+  store(p01, sum01);
+  store(p11, sum11);
 }
 
 #endif  // LIMN_GATHER_MAIN_GLSL

@@ -1,19 +1,28 @@
 // One texel of a virtual light's own map against the receiver.
+#define VPL_SHADOWS 1
 #include "glsl/indirect/gather_main.glsl"
-#include "glsl/shadow/shadow_view.glsl"
+#include "glsl/indirect/light_map.glsl"
 
-uniform sampler2DArray maps;
-layout(std430) readonly buffer Views { ShadowView views[]; };
-uniform float bias;  // texel footprints
+uniform sampler2DArray maps;  // of the batch's lights
+uniform float extent;         // diagonal of the scene's bounds, m
+uniform float bias;           // texel footprints
 
-float vpl_visibility(uint vpl, vec3 receiver, vec3 normal) {
-  ShadowView view = views[vpl];
-  ShadowPoint at = shadow_project(view, receiver);
-  if (!shadow_inside(at)) return 1.0;
-  ivec2 texel = min(ivec2(at.uv * float(view.size)), ivec2(view.size) - 1);
-  float stored = texelFetch(maps, ivec3(texel, view.layer), 0).r;
-  vec3 axis = normalize(receiver - view.origin);
-  ShadowReceiver plane = shadow_receiver(view, receiver, normal, axis, bias);
-  bool blocked = stored < 1.0 && shadow_blocks(plane, shadow_texel_offset(view, texel, stored));
+LightMaps all_maps;
+LightMapAxes axes;
+int layer;
+
+void vpl_begin(uint vpl, VirtualPointLight light) {
+  all_maps = light_maps(extent, uint(textureSize(maps, 0).x));
+  axes = light_map_axes(light.normal.xyz);
+  layer = int(vpl - batch_first);
+}
+
+float vpl_visibility(VirtualPointLight light, uint pixel, Receiver r, VplSight sight) {
+  LightMapPlace place = light_map_place(all_maps, axes, -sight.offset, sight.towards_receiver);
+  ivec2 texel = ivec2(clamp(place.texel, vec2(0.0), vec2(all_maps.texels - 1.0)));
+  float stored = texelFetch(maps, ivec3(texel, layer), 0).r;
+  float raise = bias * 4.0 / all_maps.texels;
+  bool blocked = place.inside &&
+                 light_map_blocks(all_maps, axes, place, stored, r.geometric_normal, -sight.above, raise);
   return blocked ? 0.0 : 1.0;
 }

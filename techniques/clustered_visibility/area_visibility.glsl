@@ -16,8 +16,13 @@ uniform sampler2DArray area_depth_bounds;  // MinMaxPyramid
 uniform sampler2DArray area_depths;
 uniform float contact_texels;
 #endif
+#ifdef AREA_COUNT  // they fit uniform blocks, from which all invocations load at once
+layout(std140) uniform AreaViews { ShadowView area_views[AREA_COUNT]; };
+layout(std140) uniform AreaLights { VirtualAreaLight area_lights[AREA_COUNT]; };
+#else
 layout(std430) readonly buffer AreaViews { ShadowView area_views[]; };
 layout(std430) readonly buffer AreaLights { VirtualAreaLight area_lights[]; };
+#endif
 uniform float bias;    // texel footprints
 uniform float behind;  // visibility of what lies behind an area light, where its map knows nothing
 

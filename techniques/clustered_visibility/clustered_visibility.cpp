@@ -127,10 +127,14 @@ class ClusteredVisibility : public Technique {
     if (contact > 0) pass.sampled.push_back({"area_depths", maps.depth, "blockers just before the receiver"});
     if (p.choice("search") == 1)
       pass.sampled.push_back({"area_depth_bounds", pyramid.texture, "nearest depths"});
-    pass.declare = [fourier, areas](frame::PassBuilder& builder) {
+    const bool fitsBlock = static_cast<size_t>(areas.count) * sizeof(glsl::ShadowView) <=
+                           static_cast<size_t>(device.limits().maxUniformBlockBytes);
+    if (fitsBlock) pass.program.defines["AREA_COUNT"] = std::to_string(areas.count);
+    pass.declare = [fourier, areas, access = fitsBlock ? Access::uniformBuffer : Access::storageLoad](
+                       frame::PassBuilder& builder) {
       fourier.declare(builder);
-      builder.read(areas.views, Access::storageLoad, "AreaViews", "hemispheres of the maps")
-          .read(areas.areas, Access::storageLoad, "AreaLights", "sizes of the area lights");
+      builder.read(areas.views, access, "AreaViews", "hemispheres of the maps")
+          .read(areas.areas, access, "AreaLights", "sizes of the area lights");
     };
     pass.bind = [bias = p.real("bias"), behind = p.real("behind"), contact](gpu::Program& program) {
       program.set("bias", bias);

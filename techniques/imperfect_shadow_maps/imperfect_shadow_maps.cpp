@@ -77,7 +77,7 @@ class ImperfectShadowMaps : public Technique {
                                     .first = first,
                                     .size = size};
       maps.depth = fillHoles(graph, inputs, maps, splat(graph, inputs, maps, placed));
-      gather.shade(indirect::lightMapShadePass(maps, p.real("bias")));
+      gather.shade(indirect::lightMapShadePass(inputs, maps, p.real("bias")));
     }
     return gather.finish(request.target);
   }

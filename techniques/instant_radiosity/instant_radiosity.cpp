@@ -62,7 +62,8 @@ class InstantRadiosity : public Technique {
       const int count = std::min(batch, lights.count - first);
       maps_.push_back(std::make_unique<indirect::ParaboloidMapPass>());
       gather.shade(
-          indirect::lightMapShadePass(maps_.back()->add(graph, inputs.gpuScene, inputs.handles, views,
+          indirect::lightMapShadePass(inputs,
+                                      maps_.back()->add(graph, inputs.gpuScene, inputs.handles, views,
                                                         {.count = count,
                                                          .first = first,
                                                          .size = size,

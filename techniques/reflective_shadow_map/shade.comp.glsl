@@ -1,4 +1,3 @@
 // Indirect light without shadows: every virtual light is seen from everywhere.
+#define VPL_SHADOWS 0
 #include "glsl/indirect/gather_main.glsl"
-
-float vpl_visibility(uint vpl, vec3 receiver, vec3 normal) { return 1.0; }
