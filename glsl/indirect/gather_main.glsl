@@ -3,8 +3,9 @@
 // sub-buffer; 0: both are screens. PARTS: layers of the result (gather_part_*). LAMBERTIAN 1: no material has a specular
 // part. ACCUMULATE 1: adds to what other batches of lights left. VIRTUAL_LIGHT_COUNT: of lights, where they fit a uniform block.
 //
-// A thread shades 2 x 2 neighbours of its sub-buffer, so that a light is loaded once for four pixels. They have names of their
-// own in what follows: compilers keep what a loop indexes in memory.
+// A thread shades four pixels of its sub-buffer, so that a light is loaded once for them: one in each quarter of what its work
+// group shades, so that neighbouring threads shade neighbours. They have names of their own in what follows: compilers keep
+// what a loop indexes in memory.
 //
 // Define VPL_SHADOWS 1 before including this where virtual lights have shadows: vpl_begin() and vpl_visibility() are then the
 // technique's.
@@ -155,8 +156,9 @@ void store(GatherPixel p, Gathered sum) {
 
 void main() {
   uint sub_buffer = gl_WorkGroupID.z;
-  int step = int(block);
-  ivec2 first_pixel = 2 * step * ivec2(gl_GlobalInvocationID.xy) + ivec2(sub_buffer % block, sub_buffer / block);
+  int step = 8 * int(block);
+  ivec2 first_pixel = int(block) * ivec2(16u * gl_WorkGroupID.xy + gl_LocalInvocationID.xy) +
+                      ivec2(sub_buffer % block, sub_buffer / block);
   uint first = max(gather_begin(sub_buffer, vpl_count, block), batch_first);
   uint end = min(gather_begin(sub_buffer + 1u, vpl_count, block), batch_first + batch_count);
   if (any(greaterThanEqual(first_pixel, ivec2(frame.frame_size)))) return;

@@ -29,6 +29,17 @@ uniform float behind;  // visibility of what lies behind an area light, where it
 // Blockers so close to the receiver that the series answers them with less are not made up for.
 const float least_response = max(0.02, 8.0 * FOURIER_NOISE);
 
+// What all receivers have in common.
+struct AreaLight {
+  ShadowView view;
+  FourierRange range;
+  vec2 sides;  // m
+};
+
+AreaLight area_light(uint area) {
+  return AreaLight(area_views[area], fourier_ranges[area], area_lights[area].extent);
+}
+
 // A receiver as one map sees it.
 struct AreaReceiver {
   ShadowView view;
@@ -166,9 +177,9 @@ float contact_visibility(AreaReceiver r) {
 }
 #endif
 
-AreaReceiver area_receiver(uint area, vec3 p, vec3 normal) {
+AreaReceiver area_receiver(AreaLight light, vec3 p, vec3 normal) {
   AreaReceiver r;
-  r.view = area_views[area];
+  r.view = light.view;
   vec3 local = shadow_local(r.view, p);
   r.d = max(length(local), 1e-30);
   r.direction = local / r.d;
@@ -177,14 +188,14 @@ AreaReceiver area_receiver(uint area, vec3 p, vec3 normal) {
   float raised = bias * r.view.footprint * r.d;
   r.height = dot(r.normal, local) + raised;
   r.limit = max(r.d - raised, 0.0);
-  r.range = fourier_ranges[area];
-  r.sides = area_lights[area].extent;
+  r.range = light.range;
+  r.sides = light.sides;
   return r;
 }
 
-// Share of area light `area` that the point p with the geometric normal sees.
-float area_visibility(uint area, vec3 p, vec3 normal) {
-  AreaReceiver r = area_receiver(area, p, normal);
+// Share of an area light that the point p with the geometric normal sees.
+float area_visibility(AreaLight light, vec3 p, vec3 normal) {
+  AreaReceiver r = area_receiver(light, p, normal);
   float above = dot(r.view.axis_z, p - r.view.origin);
   float z = mean_blocker(r, search_kernel(r));
   float v = z < r.d ? penumbra_visibility(r, kernel_texels(r, z), z) : 1.0;
