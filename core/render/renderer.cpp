@@ -10,6 +10,7 @@
 #include "core/render/private/read_picture.h"
 #include "core/render/services.h"
 #include "core/shadow/shadow_map.h"
+#include "core/technique/bound.h"
 #include "core/technique/module.h"
 
 namespace limn::render {
@@ -97,6 +98,7 @@ struct Renderer::Implementation {
       inputs.environmentMap = deferred.environmentMap(*graph);
     }
     const TechniquePlugin& plugin = *use.settings->plugin;
+    inputs.bound = settings.bound && hasBound(plugin);
     const frame::TextureHandle answer = inTechnique(plugin, [&] {
       return use.technique->addPasses(*graph, inputs, {term, lights, target});
     });

@@ -55,6 +55,9 @@ struct Settings {
   /// Work that is done although it could be left out, to measure what leaving it out saves
   /// (core/bench/savings.h).
   std::vector<Saving> forced = {};
+  /// Run the bounds of the techniques that have one (core/technique/bound.h), to measure them; the picture is
+  /// then theirs.
+  bool bound = false;
 };
 
 /// Throws UsageError when two techniques claim what the table of terms gives to only one, or when a picture

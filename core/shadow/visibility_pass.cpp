@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/shadow/alike_lights.h"
+#include "core/technique/bound.h"
 
 namespace limn::shadow {
 
@@ -35,6 +36,18 @@ std::vector<AlikeLights> dispatchesOf(std::span<const LightLayout> layouts, cons
 gpu::ProgramDesc programFor(const AlikeLights& lights, gpu::ProgramDesc program) {
   lights.define(program.defines);
   return program;
+}
+
+constexpr std::string_view kKernelFile = "visibility.comp.glsl";
+
+void runBound(VisibilityPass& pass, std::span<const LightLayout> layouts) {
+  constexpr LightLayout rectangleInOneView;
+  const bool known =
+      std::ranges::all_of(layouts, [&](const LightLayout& layout) { return layout == rectangleInOneView; });
+  std::string& file = pass.program.files.front();
+  if (!known || !file.ends_with(kKernelFile)) return;
+  file.replace(file.size() - kKernelFile.size(), kKernelFile.size(), kBoundFile);
+  pass.name = kBoundPass;
 }
 
 }  // namespace
@@ -65,6 +78,7 @@ frame::TextureHandle addVisibilityPass(frame::FrameGraph& graph, const Technique
   const SceneHandles& scene = inputs.handles;
   auto& maps = inputs.service<ShadowMapService>();
   frame::BufferHandle& uncovered = maps.uncoveredCounter();
+  if (inputs.bound) runBound(pass, maps.layouts(pass.maps));
   frame::PassBuilder builder = graph.addPass(pass.name, pass.technique);
   builder.read(scene.frame, Access::uniformBuffer, "FrameBlock", "camera")
       .read(scene.lights, Access::storageLoad, "Lights", "which part of each light counts");

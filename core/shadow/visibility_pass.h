@@ -77,7 +77,9 @@ LIMN_API VisibilityPass visibilityPass(const TechniqueInputs& inputs, const Term
 
 /// Declares the pass, which writes one layer of `target` per light of the request. Lights whose maps are laid
 /// out alike share a dispatch, whose program is compiled for them (glsl/shadow/visibility.glsl says how).
-/// Returns the target after it.
+/// Where the inputs ask for the bound, the program is visibility.comp.glsl, and each light is a rectangle in
+/// one perspective view (which bounds are written for), the pass is called kBoundPass and runs kBoundFile
+/// with the same defines. Returns the target after it.
 LIMN_API frame::TextureHandle addVisibilityPass(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                                 frame::TextureHandle target, VisibilityPass pass);
 

@@ -67,6 +67,8 @@ struct TechniqueInputs {
   glm::ivec2 size;                        ///< pixels
   GBuffer matte{};                        ///< for specular: the G-buffer without specular surfaces
   frame::TextureHandle environmentMap{};  ///< for specular: equirectangular, RGB32F; empty: no environment
+  /// Says whether shadow::addVisibilityPass() runs the technique's bound (core/technique/bound.h).
+  bool bound = false;
 
   /// Returns a service that shares work with other techniques, such as shadow::ShadowMapService.
   template <NamedService S>

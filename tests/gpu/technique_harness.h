@@ -21,6 +21,7 @@ struct Answer {
   std::vector<uint32_t> instance;
   std::vector<std::vector<float>> lights;  ///< V per light, or one layer of radiance
   uint32_t uncovered = 0;
+  std::vector<std::string> passes;  ///< of the technique that ran
   float at(size_t light, int x, int y) const {
     return lights[light][static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
   }
@@ -29,6 +30,7 @@ struct Answer {
 class TechniqueTest : public GlTest {
  protected:
   static constexpr int side = 128;
+  bool bound = false;  ///< the technique's bound answers in its place, where it has one
 
   static TechniqueRegistry& registry() {
     static const std::filesystem::path folder = std::filesystem::path(kBinaryDir) / "lib/limn/techniques";
@@ -58,7 +60,15 @@ class TechniqueTest : public GlTest {
     const GBuffer gbuffer = gbufferPass.add(graph, gpuScene, handles, {side, side});
     const auto building = services.begin(graph, handles, pose);
     const auto instance = plugin.create();
-    const TechniqueInputs inputs{scene, pose, gpuScene, services, parameters, handles, gbuffer, {side, side}};
+    const TechniqueInputs inputs{.scene = scene,
+                                 .pose = pose,
+                                 .gpuScene = gpuScene,
+                                 .services = services,
+                                 .parameters = parameters,
+                                 .handles = handles,
+                                 .gbuffer = gbuffer,
+                                 .size = {side, side},
+                                 .bound = bound};
     const frame::TextureHandle target =
         term == Term::visibility ? visibilityTarget(graph, lights.size()) : black(graph);
     const frame::TextureHandle written =
@@ -83,6 +93,9 @@ class TechniqueTest : public GlTest {
       const auto first = layers.begin() + static_cast<std::ptrdiff_t>(l * side * side);
       result.lights.emplace_back(first, first + side * side);
     }
+    for (const frame::PassReport& pass : graph.explain())
+      if (pass.technique == technique && pass.state == frame::PassState::run)
+        result.passes.push_back(pass.name);
     result.uncovered = services.get<shadow::ShadowMapService>().uncoveredPixels();
     gpuScene.forget();
     return result;

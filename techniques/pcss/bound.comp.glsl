@@ -1,0 +1,164 @@
+// The bound of percentage-closer soft shadows: the texels and the decisions of visibility.comp.glsl, with what a pixel fixes
+// worked out once for it: a sample is two numbers, of which place and height above the tangent plane are affine functions.
+// One view sees all of the light, which is a rectangle.
+//
+// PATTERN 0: grid, 1: R2 sequence shifted per pixel. SEARCH 0: at the near plane, 1: through the cone, 2: at the plane to
+// which bounds of the depths narrow the kernel, by the technique's own lookups.
+#include "glsl/numeric/sampling.glsl"
+#include "glsl/shadow/map_taps.glsl"
+#include "glsl/shadow/visibility_main.glsl"
+
+#if SEARCH == 2
+#define BOUNDS_DEPTH min_max_windows_depth
+#include "glsl/shadow/blocker_search.glsl"
+
+uniform int search_rounds;
+#endif
+uniform int blocker_samples;
+uniform int filter_samples;
+
+// Samples as they are counted: u in [0, 1)^2 is scale (number + middle).
+struct Lattice {
+#if PATTERN == 0
+  int side;
+  ivec2 next;
+#else
+  uvec2 next;
+#endif
+  int count;
+  float scale;
+  float middle;
+};
+
+Lattice lattice(int count, vec2 shift) {
+#if PATTERN == 0
+  int side = int(sqrt(float(count)) + 1e-3);
+  return Lattice(side, ivec2(0), side * side, 1.0 / float(side), 0.5);
+#else
+  return Lattice(uvec2(fixed_point(shift.x), fixed_point(shift.y)), count, fixed_point_value(256u), 0.0);
+#endif
+}
+
+vec2 next_number(inout Lattice points) {
+#if PATTERN == 0
+  vec2 number = vec2(points.next);
+  points.next.x += 1;
+  if (points.next.x == points.side) points.next = ivec2(0, points.next.y + 1);
+#else
+  vec2 number = vec2(ivec2(points.next >> 8u));
+  points.next += r2_step;
+#endif
+  return number;
+}
+
+// An affine function of u as one of the numbers: the factors of both, and what remains.
+vec3 of_numbers(Lattice points, vec3 f) {
+  vec2 factors = points.scale * f.xy;
+  return vec3(factors, f.z + points.middle * (factors.x + factors.y));
+}
+
+float affine(vec3 f, vec2 number) { return f.x * number.x + (f.y * number.y + f.z); }
+
+// The texel at a place of the map, and whether it blocks.
+struct Tap {
+  vec2 texel;
+  float stored;
+  bool blocks;
+};
+
+Tap tap_at(ShadowCursor cursor, MapTest test, vec2 place) {
+  Tap tap;
+  ivec2 texel = ivec2(place);
+  tap.texel = vec2(texel);
+  tap.stored = texelFetch(shadow_depth, ivec3(texel, cursor.layer), 0).r;
+  tap.blocks = map_test_blocks(test, affine(test.plane, tap.texel), tap.stored) && map_holds(cursor.view, place);
+  return tap;
+}
+
+// Where the samples of a kernel at one depth lie in the map.
+struct Places {
+  vec3 x;
+  vec3 y;
+};
+
+Places places_at(ShadowCursor cursor, Lattice points, MapKernel rays, float gap) {
+  MapBox box = map_box(cursor.view, rays, gap);
+  return Places(of_numbers(points, vec3(box.side_u.x, box.side_v.x, box.centre.x)),
+                of_numbers(points, vec3(box.side_u.y, box.side_v.y, box.centre.y)));
+}
+
+// Mean distance from the blockers to the receiver along the light's axis, metres; 0: there are none, V = 1; negative: nothing
+// else is there, V = 0.
+float mean_gap(ShadowCursor cursor, VisibilityQuery q, MapTest test, MapKernel rays, vec3 rises, vec3 shift) {
+#if SEARCH == 2
+  BlockerSearch search = blocker_search(cursor, q, search_rounds);
+  if (search.answer == search_lit) return 0.0;
+  if (search.answer == search_umbra) return -1.0;
+  float reach = search.gap;
+#else
+  float reach = shadow_near_gap(cursor, q);
+#endif
+  Lattice points = lattice(blocker_samples, shift.xy);
+  vec3 rise = of_numbers(points, rises);
+#if SEARCH == 1
+  MapCone cone = map_cone(cursor.view, q.light, q.position, cursor.in_map, cursor.receiver.axis);
+  uint height = fixed_point(shift.z);
+  float height_scale = reach * fixed_point_value(256u);
+  vec3 rays_x = of_numbers(points, vec3(rays.side_u.x, rays.side_v.x, rays.centre.x));
+  vec3 rays_y = of_numbers(points, vec3(rays.side_u.y, rays.side_v.y, rays.centre.y));
+  vec2 middle = float(cursor.view.size) * cursor.view.middle;
+#else
+  Places places = places_at(cursor, points, rays, reach);
+#endif
+  float sum = 0.0;
+  float blockers = 0.0;
+  for (int i = 0; i < points.count; ++i) {
+    vec2 number = next_number(points);
+#if SEARCH == 1
+    float gap = height_scale * float(int(height >> 8u));
+    height += r3_step_z;
+    vec2 point = rays.receiver.xy + gap * vec2(affine(rays_x, number), affine(rays_y, number));
+    vec2 place = middle + (1.0 / (rays.receiver.z - gap)) * point;
+#else
+    vec2 place = vec2(affine(places.x, number), affine(places.y, number));
+#endif
+    Tap tap = tap_at(cursor, test, place);
+    bool counts = tap.blocks && affine(rise, number) > 0.0;
+    float depth = shadow_metres(cursor.view, tap.stored);
+    float found = cursor.in_map.depth - depth;
+#if SEARCH == 1
+    counts = counts && map_cone_contains(cursor.view, q.light, cone, tap.texel, depth, found,
+                                         shadow_footprint(cursor.view, depth));
+#endif
+    sum += counts ? found : 0.0;
+    blockers += counts ? 1.0 : 0.0;
+  }
+  return blockers > 0.0 ? sum / blockers : 0.0;
+}
+
+// The lit share of the samples of the kernel on the plane of the mean blocker.
+float lit_share(ShadowCursor cursor, MapTest test, MapKernel rays, vec3 rises, float gap, vec2 shift) {
+  Lattice points = lattice(filter_samples, shift);
+  vec3 rise = of_numbers(points, rises);
+  Places places = places_at(cursor, points, rays, gap);
+  float lit = 0.0;
+  float total = 0.0;
+  for (int i = 0; i < points.count; ++i) {
+    vec2 number = next_number(points);
+    Tap tap = tap_at(cursor, test, vec2(affine(places.x, number), affine(places.y, number)));
+    bool counts = affine(rise, number) > 0.0;
+    total += counts ? 1.0 : 0.0;
+    lit += counts && !tap.blocks ? 1.0 : 0.0;
+  }
+  return total > 0.0 ? lit / total : 1.0;
+}
+
+float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
+  LightView part = light_view_part(q.light);
+  vec3 rises = light_view_rise(part);
+  MapKernel rays = map_kernel_across(cursor.view, part, q.position);
+  MapTest test = map_test(cursor);
+  float gap = mean_gap(cursor, q, test, rays, rises, pixel_noise(uint(pixel.x), uint(pixel.y), 0u));
+  if (gap <= 0.0) return gap < 0.0 ? 0.0 : 1.0;
+  return lit_share(cursor, test, rays, rises, gap, pixel_noise(uint(pixel.x), uint(pixel.y), 1u).xy);
+}
