@@ -93,6 +93,7 @@ class SuiteWork {
     callbacks.reference = [&](const bench::Case& c) { return benchSession.reference(c); };
     callbacks.measure = [&](const bench::Case& c) { return benchSession.measure(c); };
     callbacks.time = [&](const bench::Case& c) { return benchSession.time(c); };
+    callbacks.bound = [&](const bench::Case& c) { return benchSession.bound(c); };
     callbacks.keepPicture = [&](const std::string& name, const Image& image) {
       return benchSession.keepPicture(name, image);
     };

@@ -86,15 +86,17 @@ export function passTable(table) {
   const timed = table.rows.filter((row) => isNumber(FRAME.read(row)));
   if (timed.length === 0) return null;
   const parts = ["maps", "filters", "technique", "rest"];
+  const bounded = timed.some((row) => row.x_bound);
   const summary = timed.map((row) => el("tr", {}, nameCell(row, null), text(settingsText(row)),
-    parts.map((part) => cell(number(row.split_ms?.[part]))), cell(number(FRAME.read(row)))));
+    parts.map((part) => cell(number(row.split_ms?.[part]))), cell(number(FRAME.read(row))),
+    bounded ? cell(ratioText(row.x_bound)) : null));
   const every = timed.flatMap((row) => (row.passes ?? []).filter((pass) => pass.state !== "left_out").map((pass) =>
     el("tr", {}, nameCell(row, null), text(settingsText(row)), text(String(pass.technique)), text(String(pass.name)),
       cell(number(pass.ms)))));
   return [
     tableElement("Milliseconds per frame and where they go; passes are timed in a run of their own", [...NAMES,
       ...["maps_ms", "filters_ms", "technique_ms"].map((key) => page.columns[key]), {label: "G-buffer, shading ms"},
-      page.columns.median_ms],
+      page.columns.median_ms, ...(bounded ? [page.columns.x_bound] : [])],
       summary),
     every.length ? el("details", {}, el("summary", {}, "Every pass"), tableElement("Milliseconds per pass", [...NAMES,
       {label: "of", text: true}, {label: "pass", text: true}, {label: "ms"}], every)) : null,

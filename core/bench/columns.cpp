@@ -88,6 +88,10 @@ Cell pixels(std::size_t Misjudged::*member) {
   });
 }
 
+bool knowsVisibility(const Row& row) {
+  return row.penumbra || row.misjudged;
+}
+
 void appendVisibility(Columns& columns) {
   for (const MetricInfo* info : kCompared) {
     Column column{fmt::format("penumbra_{}", info->key), "",
@@ -99,7 +103,7 @@ void appendVisibility(Columns& columns) {
       column.shown = cell(
           [info](const Row& r) { return r.penumbra ? shownText(*info, *r.penumbra) : std::string("-"); });
     }
-    column.visibility = true;
+    column.known = knowsVisibility;
     columns.push_back(column);
   }
   for (const MisjudgedInfo& info : kMisjudged) {
@@ -110,7 +114,7 @@ void appendVisibility(Columns& columns) {
                     const Misjudged m = r.misjudged.value_or(Misjudged{});
                     return percent(m.*info.part, m.*info.whole);
                   })};
-    column.visibility = true;
+    column.known = knowsVisibility;
     columns.push_back(column);
   }
 }
@@ -183,6 +187,31 @@ Columns timeColumns() {
   };
 }
 
+bool knowsBound(const Row& row) {
+  return row.cost.bound.has_value();
+}
+
+/// A column of CSV alone with one end of the interval.
+Column boundEnd(const char* csv, const char* help, double Ratio::*end) {
+  return {csv, "", help, cell([end](const Row& r) {
+            return knowsBound(r) ? fmt::format("{}", xBound(*r.cost.bound).*end) : std::string();
+          })};
+}
+
+Columns boundColumns() {
+  Column column{
+      "x_bound", "x bound",
+      "how many times as long the technique's own passes take as the least kernel with the same "
+      "fetches and decisions",
+      cell([](const Row& r) {
+        return knowsBound(r) ? fmt::format("{}", xBound(*r.cost.bound).value) : std::string();
+      }),
+      cell([](const Row& r) { return knowsBound(r) ? ratioText(xBound(*r.cost.bound)) : std::string("-"); })};
+  column.known = knowsBound;
+  return {column, boundEnd("x_bound_low", "lower end of its interval of 95 %", &Ratio::low),
+          boundEnd("x_bound_high", "upper end of the same", &Ratio::high)};
+}
+
 Columns costColumns() {
   return {
       timed("maps_ms", "maps ms", "part of the frame that draws the scene into maps, milliseconds", "{:.2f}",
@@ -215,7 +244,8 @@ Columns makeColumns() {
   Columns all = questionColumns();
   appendMetrics(all);
   appendVisibility(all);
-  for (Columns more : {timeColumns(), costColumns()}) std::ranges::move(more, std::back_inserter(all));
+  for (Columns more : {timeColumns(), boundColumns(), costColumns()})
+    std::ranges::move(more, std::back_inserter(all));
   return all;
 }
 

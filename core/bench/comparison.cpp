@@ -48,6 +48,10 @@ Ratio frameRatio(const Row& slow, const Row& fast) {
   return ratioOfMedians({above, a.turns}, {below, b.turns});
 }
 
+Ratio xBound(const BoundTime& time) {
+  return ratioOfMedians({time.own, time.turns}, {time.bound, time.turns});
+}
+
 int pairedTurns(const Row& a, const Row& b) {
   return std::min(a.cost.frameMs.turns, b.cost.frameMs.turns);
 }

@@ -69,6 +69,8 @@ Json rowJson(const Row& row, const std::vector<Window>& windows, EmbeddedPicture
     if (!row.cost.frameMs.samples.empty())
       json["frame_ms"]["p99"] = render::quantile(row.cost.frameMs.samples, 0.99);
     json["passes"] = passes(stats);
+    if (stats.contains("x_bound"))
+      for (const char* key : {"value", "low", "high"}) json["x_bound"][key] = stats["x_bound"][key];
   }
   if (const std::optional<ReferenceTime> time = referenceTime(row))
     json["reference_ms"] = {{"value", time->ms}, {"at_least", time->atLeast}};

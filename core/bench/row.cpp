@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/bench/private/comparison.h"
 #include "core/bench/private/misjudged_table.h"
 #include "core/bench/private/question_json.h"
 #include "core/image/metric_json.h"
@@ -33,6 +34,12 @@ Misjudged misjudgedFromJson(const Json& json) {
   return m;
 }
 
+Json boundToJson(const BoundTime& time) {
+  const Ratio ratio = xBound(time);
+  return {{"value", ratio.value}, {"low", ratio.low},       {"high", ratio.high},
+          {"own_ms", time.own},   {"bound_ms", time.bound}, {"turns", time.turns}};
+}
+
 /// The keys of `limn render --stats` that tables need; the rest of the statistics beside them.
 Json costToJson(const Cost& cost) {
   Json json = cost.details.empty() ? Json::object() : Json::parse(cost.details);
@@ -50,6 +57,7 @@ Json costToJson(const Cost& cost) {
                       {"filters", cost.split.filters},
                       {"technique", cost.split.technique},
                       {"rest", cost.split.rest}};
+  if (cost.bound) json["x_bound"] = boundToJson(*cost.bound);
   json["memory_bytes"] = cost.memoryBytes;
   if (!cost.driver.empty()) json["driver"] = cost.driver;
   if (!cost.machine.empty()) json["machine"] = cost.machine;
@@ -76,6 +84,10 @@ Cost costFromJson(const Json& json) {
   const Json& split = json.at("split_ms");
   cost.split = {split.at("maps").get<double>(), split.at("filters").get<double>(),
                 split.at("technique").get<double>(), split.at("rest").get<double>()};
+  if (json.contains("x_bound"))
+    cost.bound = {json["x_bound"].at("own_ms").get<std::vector<double>>(),
+                  json["x_bound"].at("bound_ms").get<std::vector<double>>(),
+                  json["x_bound"].at("turns").get<int>()};
   cost.memoryBytes = json.at("memory_bytes").get<std::int64_t>();
   cost.driver = json.value("driver", "");
   cost.machine = json.value("machine", "");
@@ -112,6 +124,7 @@ Json caseToJson(const Case& c) {
                    {"frames", c.frames},
                    {"warmup", c.warmup},
                    {"turns", c.turns},
+                   {"bound", c.bound},
                    {"time_size", {c.timeWidth, c.timeHeight}},
                    {"title", c.title},
                    {"baseline", c.baseline},
@@ -136,6 +149,7 @@ Case caseFromJson(const Json& json) {
   c.frames = json.at("frames").get<int>();
   c.warmup = json.at("warmup").get<int>();
   c.turns = json.value("turns", 1);
+  c.bound = json.value("bound", false);
   c.timeWidth = json.at("time_size").at(0).get<int>();
   c.timeHeight = json.at("time_size").at(1).get<int>();
   c.title = json.at("title").get<std::string>();

@@ -28,12 +28,20 @@ struct CostSplit {
   double rest = 0;       ///< G-buffer, shading
 };
 
+/// Holds the time of a technique's own passes, and of the same with the technique's bound: milliseconds of
+/// each frame in the order measured, in turns as those of FrameTime.
+struct BoundTime {
+  std::vector<double> own, bound;
+  int turns = 1;
+};
+
 struct Cost {
   std::string renderer, backend;
   std::string timer;      ///< "query" or "finish"
   bool software = false;  ///< rows of software and hardware renderers never share a table
   FrameTime frameMs;
-  CostSplit split;  ///< of a run of its own, with pass timing
+  CostSplit split;                 ///< of a run of its own, with pass timing
+  std::optional<BoundTime> bound;  ///< where the suite asks for it and the technique has one
   std::int64_t memoryBytes = 0;
   std::string driver;   ///< vendor and version, as OpenGL says; "" in rows of earlier versions
   std::string machine;  ///< machineName(); "" in rows of earlier versions

@@ -45,6 +45,10 @@ Misjudged misjudged(const Image& image, const Reference& reference, const std::v
   return count;
 }
 
+std::optional<BoundTime> boundTurn(const Case& c, const Callbacks& callbacks) {
+  return c.bound && callbacks.bound ? callbacks.bound(c) : std::nullopt;
+}
+
 Row measureRow(const Case& c, const std::string& key, const Reference& reference,
                const Callbacks& callbacks) {
   Row row;
@@ -69,13 +73,23 @@ Row measureRow(const Case& c, const std::string& key, const Reference& reference
                                            differenceImage(measurement.image, reference.image, options));
   }
   row.cost = std::move(measurement.cost);
+  row.cost.bound = boundTurn(c, callbacks);
   return row;
 }
 
+void append(std::vector<double>& samples, const std::vector<double>& more) {
+  samples.insert(samples.end(), more.begin(), more.end());
+}
+
 /// The row with the frames of a further turn.
-Row withTurn(Row row, const std::vector<double>& ms) {
+Row withTurn(Row row, const std::vector<double>& ms, const std::optional<BoundTime>& bound) {
+  if (row.cost.bound && bound) {
+    append(row.cost.bound->own, bound->own);
+    append(row.cost.bound->bound, bound->bound);
+    ++row.cost.bound->turns;
+  }
   FrameTime& time = row.cost.frameMs;
-  time.samples.insert(time.samples.end(), ms.begin(), ms.end());
+  append(time.samples, ms);
   const render::Quartiles all = render::quartiles(time.samples);
   time = {all.median, all.q1, all.q3, all.n, std::move(time.samples), time.turns + 1};
   return row;
@@ -155,12 +169,14 @@ class Run {
     if (row->cost.frameMs.turns >= turn) return;
     report(i, turn, Progress::State::started);
     std::vector<double> ms;
+    std::optional<BoundTime> bound;
     try {
       ms = callbacks_.time(c);
+      bound = boundTurn(c, callbacks_);
     } catch (...) {  // the row stays as it is
       return report(i, turn, Progress::State::failed, currentFailure());
     }
-    append(withTurn(*row, ms), key);
+    append(withTurn(*row, ms, bound), key);
     report(i, turn, Progress::State::done);
   }
 

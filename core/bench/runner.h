@@ -46,6 +46,9 @@ struct Callbacks {
   std::function<Measurement(const Case&)> measure;
   /// Returns the milliseconds of the frames of a further turn; called for cases with several turns.
   std::function<std::vector<double>(const Case&)> time;
+  /// Returns one turn of the technique's own passes and of its bound, nullopt where it has none; called in
+  /// each turn of the cases that ask for it. May be empty: no row has a bound then.
+  std::function<std::optional<BoundTime>(const Case&)> bound;
   std::function<void(const Progress&)> progress;  ///< may be empty
   /// Returns what the case is measured with now: rows that were measured with something else are measured
   /// again. May be empty: every row then counts as valid.

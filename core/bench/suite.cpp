@@ -61,6 +61,7 @@ std::string rowKey(const Case& c, std::string_view renderer) {
   for (const auto& [name, value] : c.parameters) text += fmt::format("\x1e{}\x1f{}", name, value);
   if (c.timeWidth > 0) text += fmt::format("\x1d{}x{}", c.timeWidth, c.timeHeight);
   if (c.fps > 0) text += fmt::format("\x1b{}", c.fps);
+  if (c.bound) text += "\x1a";
   if (c.environmentLights > 0) text += "\x1c" + describeEnvironmentLights(c);
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }

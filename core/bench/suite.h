@@ -36,6 +36,7 @@ struct Case : SceneQuestion {
   std::string title;                  ///< of the technique with its parameters, for people; may be empty
   bool baseline = false;              ///< what the other rows of a table are compared with
   bool picture = false;               ///< is kept
+  bool bound = false;                 ///< the technique's bound is timed beside its own passes
   double maxMaskedShare = 0.005;      ///< see CompareOptions
   ReferenceSettings reference;
   bool operator==(const Case&) const = default;

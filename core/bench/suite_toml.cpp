@@ -208,6 +208,7 @@ void addOwnCases(const TomlSection& suite, std::vector<Case>& cases) {
   const ReferenceSettings references = parseReference(suite);
   const std::size_t before = cases.size();
   base.picture = suite.boolean("pictures", false);
+  base.bound = suite.boolean("bound", false);
   if (const toml::node* node = suite.find("time_size"))
     std::tie(base.timeWidth, base.timeHeight) = parseSize(suite, *node, "time_size");
   const std::string term = readTerm(suite, name(Term::final));
@@ -239,7 +240,7 @@ Suite buildSuite(const toml::table& root, const std::string& file, bool mayInclu
   const TomlSection suite(
       file, root, "the suite",
       {"name", "minutes", "stall_timeout", "include", "sizes", "time_size", "frames", "warmup", "turns",
-       "modes", "term", "reference", "separation_floor", "pictures", "scenes", "techniques"});
+       "modes", "term", "reference", "separation_floor", "pictures", "bound", "scenes", "techniques"});
   Suite result{suite.text(suite.require("name"), "name"), suite.real("minutes", 0, 0, 1e6),
                suite.real("stall_timeout", 1800, 0, 1e6), includedCases(suite, mayInclude)};
   if (suite.find("include") == nullptr || suite.find("scenes") != nullptr) addOwnCases(suite, result.cases);

@@ -72,13 +72,12 @@ std::string csvField(const std::string& text) {
 
 using Chosen = std::vector<const Column*>;
 
-/// The columns of visibility alone are left out where no row has them.
+/// Columns that no row knows are left out.
 Chosen markdownColumns(const Table& table) {
-  const bool visibility =
-      std::ranges::any_of(table.rows, [](const Row& row) { return row.penumbra || row.misjudged; });
   Chosen chosen;
   for (const Column& column : columns())
-    if (!column.markdown.empty() && (visibility || !column.visibility)) chosen.push_back(&column);
+    if (!column.markdown.empty() && (!column.known || std::ranges::any_of(table.rows, column.known)))
+      chosen.push_back(&column);
   return chosen;
 }
 

@@ -48,6 +48,14 @@ void show(Renderer& renderer, const Playback& playback, int frame) {
   if (playback.fps > 0) renderer.setTime(playback.start + frame / playback.fps, playback.animation);
 }
 
+void warmUp(Renderer& renderer, int frames, const Playback& playback) {
+  for (int i = 0; i < frames; ++i) {
+    show(renderer, playback, i);
+    renderer.render();
+  }
+  renderer.finish();
+}
+
 double ofSorted(const std::vector<double>& samples, double p) {
   const double position = p * static_cast<double>(samples.size() - 1);
   const auto low = static_cast<size_t>(position);
@@ -87,15 +95,27 @@ double quantile(std::vector<double> samples, double p) {
 }
 
 std::vector<double> timeFrames(Renderer& renderer, int frames, int warmup, const Playback& playback) {
-  for (int i = 0; i < warmup; ++i) {
-    show(renderer, playback, i);
-    renderer.render();
-  }
-  renderer.finish();
+  warmUp(renderer, warmup, playback);
   std::vector<double> samples;
   for (int i = 0; i < frames; ++i) {
     show(renderer, playback, i);
     samples.push_back(frameMilliseconds(renderer, frame::Timing::off));
+  }
+  return samples;
+}
+
+std::vector<double> timeOwnPasses(Renderer& renderer, std::string_view technique, int frames, int warmup,
+                                  const Playback& playback) {
+  warmUp(renderer, warmup, playback);
+  const frame::Timing timer = renderer.describe().timer;
+  std::vector<double> samples;
+  for (int i = 0; i < frames; ++i) {
+    show(renderer, playback, i);
+    frameMilliseconds(renderer, timer);
+    double sum = 0;
+    for (const frame::PassTime& pass : renderer.graph().passTimes())
+      if (pass.technique == technique && pass.role == frame::PassRole::technique) sum += pass.milliseconds;
+    samples.push_back(sum);
   }
   return samples;
 }

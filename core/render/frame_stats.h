@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -73,6 +74,11 @@ struct Playback {
 /// others, which show the same times as the first timed ones.
 LIMN_API std::vector<double> timeFrames(Renderer& renderer, int frames, int warmup,
                                         const Playback& playback = {});
+
+/// Returns the milliseconds that a technique's own passes (frame::PassRole::technique) take together in each
+/// of `frames` frames with pass timing, after `warmup` others.
+LIMN_API std::vector<double> timeOwnPasses(Renderer& renderer, std::string_view technique, int frames,
+                                           int warmup, const Playback& playback = {});
 
 /// Renders `warmup` frames, then `frames` timed ones as a whole, then as many with pass timing. The camera
 /// counts as moved in every frame; geometry and lights too unless the renderer is configured static.

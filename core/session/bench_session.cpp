@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/bench/cost_split.h"
@@ -9,6 +11,7 @@
 #include "core/question/question_fields.h"
 #include "core/render/frame_stats.h"
 #include "core/session/view.h"
+#include "core/technique/bound.h"
 
 namespace limn::session {
 namespace fs = std::filesystem;
@@ -170,6 +173,31 @@ std::vector<double> BenchSession::time(const bench::Case& c) {
   std::vector<double> samples = render::timeFrames(loaded.renderer, c.frames, c.warmup, playback(loaded, c));
   loaded.renderer.setTime(loaded.view.time, loaded.view.animation);
   return samples;
+}
+
+std::optional<bench::BoundTime> BenchSession::bound(const bench::Case& c) {
+  if (c.technique == bench::kSeparationFloor || c.frames == 0) return std::nullopt;
+  render::Settings settings = settingsOf(c);
+  if (std::ranges::none_of(settings.techniques,
+                           [](const render::TechniqueUse& use) { return hasBound(*use.plugin); }))
+    return std::nullopt;
+  Loaded& loaded = load(c);
+  const auto timed = [&](std::string_view technique, int frames, int warmup) {
+    return render::timeOwnPasses(loaded.renderer, technique, frames, warmup, playback(loaded, c));
+  };
+  settings.bound = true;
+  configureTimed(loaded, c, settings);
+  loaded.renderer.render();  // makes the graph, which says whether the lights have a bound
+  const std::vector<frame::PassReport> passes = loaded.renderer.explain();
+  const auto found = std::ranges::find(passes, kBoundPass, &frame::PassReport::name);
+  if (found == passes.end()) return std::nullopt;
+  bench::BoundTime time;
+  time.bound = timed(found->technique, c.frames, c.warmup);
+  settings.bound = false;
+  configureTimed(loaded, c, settings);
+  time.own = timed(found->technique, c.frames, std::max(c.warmup, 1));
+  loaded.renderer.setTime(loaded.view.time, loaded.view.animation);
+  return time;
 }
 
 bench::Measurement BenchSession::measure(const bench::Case& c) {

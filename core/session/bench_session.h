@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,9 @@ class LIMN_API BenchSession {
   bench::Measurement measure(const bench::Case& c);
   /// Returns only the milliseconds of the case's timed frames.
   std::vector<double> time(const bench::Case& c);
+  /// Returns one turn of the technique's own passes, and of the same frames with its bound in their place;
+  /// nullopt where no technique of the case has a bound for its lights, and where nothing is timed.
+  std::optional<bench::BoundTime> bound(const bench::Case& c);
   /// Writes pictures/NAME.png in the folder of the results and returns that path.
   std::string keepPicture(const std::string& name, const Image& image);
 

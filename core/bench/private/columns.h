@@ -22,8 +22,8 @@ struct Column {
   Cell exact = {};       ///< the text in CSV, in full precision; set where `csv` is
   Cell shown = {};       ///< the text in Markdown; set where `markdown` is
   Align align = Align::right;
-  bool failed = false;      ///< failed rows have it too: it does not come from a picture
-  bool visibility = false;  ///< in Markdown only where a row of the table knows it
+  bool failed = false;                  ///< failed rows have it too: it does not come from a picture
+  bool (*known)(const Row&) = nullptr;  ///< in Markdown only where it is true of a row; null: always
 };
 
 /// Declares how a quantity is written that is a column of several tables.

@@ -33,6 +33,9 @@ LIMN_API const Metrics& errorOf(const Row& row);
 /// times of one are not known, its median stands for them.
 LIMN_API Ratio frameRatio(const Row& slow, const Row& fast);
 
+/// Returns how many times as long the technique's own passes take as those of its bound.
+LIMN_API Ratio xBound(const BoundTime& time);
+
 /// Returns the number of turns in which both rows were timed.
 LIMN_API int pairedTurns(const Row& a, const Row& b);
 

@@ -78,6 +78,7 @@ Row distinctRow() {
   row.what.timeHeight = 48;
   row.penumbra->rmse = 0.5;
   row.penumbra->structured = 0.0625;
+  row.cost.bound = BoundTime{.own = {3, 3, 3}, .bound = {2, 2, 2}, .turns = 1};
   return row;
 }
 
@@ -140,6 +141,8 @@ TEST(BenchColumns, CsvHasErrorsAndCostInFullPrecision) {
   EXPECT_EQ(number(cells, "maps_ms"), row.cost.split.maps);
   EXPECT_EQ(number(cells, "filters_ms"), row.cost.split.filters);
   EXPECT_EQ(number(cells, "technique_ms"), row.cost.split.technique);
+  for (const char* name : {"x_bound", "x_bound_low", "x_bound_high"})
+    EXPECT_EQ(cells.at(name), "1.5") << name << ", of times that do not scatter";
   EXPECT_EQ(cells.at("memory_bytes"), "3145728");
   EXPECT_EQ(cells.at("reference_ms"), "") << "times of another size";
   row.what.timeWidth = row.what.timeHeight = 0;
@@ -153,9 +156,10 @@ TEST(BenchColumns, CsvLeavesEmptyWhatIsNotKnown) {
   row.misjudged.reset();
   row.cost.frameMs = {};
   const NamedCells cells = readCsv(toCsv(tableOf({row}))).at(0);
-  for (const char* name : {"light_size", "noise_floor", "penumbra_rmse", "penumbra_structured", "umbra",
-                           "lit_in_umbra", "lit", "dark_in_light", "median_ms", "q1_ms", "q3_ms", "p99_ms",
-                           "reference_ms", "maps_ms", "filters_ms", "technique_ms"})
+  for (const char* name :
+       {"light_size", "noise_floor", "penumbra_rmse", "penumbra_structured", "umbra", "lit_in_umbra", "lit",
+        "dark_in_light", "median_ms", "q1_ms", "q3_ms", "p99_ms", "reference_ms", "maps_ms", "filters_ms",
+        "technique_ms", "x_bound", "x_bound_low", "x_bound_high"})
     EXPECT_EQ(cells.at(name), "") << name;
   EXPECT_EQ(cells.at("n"), "0");
   EXPECT_EQ(cells.at("time_width"), "32") << "that of the picture";
@@ -191,20 +195,57 @@ TEST(BenchColumns, MarkdownHasEveryColumnUnderItsHead) {
   EXPECT_EQ(cells.at("MiB"), "3.0");
 }
 
-TEST(BenchColumns, VisibilityHasColumnsOfItsOwn) {
-  Row row = exampleRow(exampleCase());
+TEST(BenchColumns, VisibilityAndBoundsHaveColumnsOfTheirOwn) {
+  Row row = distinctRow();
   row.penumbra.reset();
   row.misjudged.reset();
+  row.cost.bound.reset();
   const NamedCells without = readMarkdown(toMarkdown(tableOf({row}))).at(0);
-  const NamedCells with = readMarkdown(toMarkdown(tableOf({row, exampleRow(exampleCase("vssm"))}))).at(0);
+  const std::vector<NamedCells> with = readMarkdown(toMarkdown(tableOf({row, distinctRow()})));
+  ASSERT_EQ(with.size(), 2u);
   for (const Column& column : columns()) {
     if (column.markdown.empty()) continue;
-    EXPECT_EQ(without.contains(column.markdown), !column.visibility) << column.markdown;
-    EXPECT_TRUE(with.contains(column.markdown)) << column.markdown;
-    if (column.visibility) {
-      EXPECT_EQ(with.at(column.markdown), "-") << column.markdown;
-    }
+    EXPECT_EQ(without.contains(column.markdown), column.known == nullptr) << column.markdown;
+    ASSERT_TRUE(with[0].contains(column.markdown)) << column.markdown;
+    if (column.known == nullptr) continue;
+    const auto unknown = [&](const NamedCells& cells) { return cells.at(column.markdown) == "-"; };
+    EXPECT_EQ(std::ranges::count_if(with, unknown), 1) << column.markdown;
   }
+  EXPECT_FALSE(without.contains("x bound"));
+  const NamedCells visible = readMarkdown(toMarkdown(tableOf({exampleRow(exampleCase())}))).at(0);
+  EXPECT_TRUE(visible.contains("penumbra RMSE"));
+  EXPECT_FALSE(visible.contains("x bound"));
+}
+
+TEST(BenchColumns, XBoundIsTheRatioOfMediansWithItsInterval) {
+  const BoundTime time{.own = {9, 3, 4, 3, 3, 5}, .bound = {2, 1, 2, 3, 2, 2}, .turns = 2};
+  const Ratio ratio = xBound(time);
+  EXPECT_DOUBLE_EQ(ratio.value, 3.5 / 2);
+  EXPECT_LE(ratio.low, ratio.value);
+  EXPECT_GE(ratio.high, ratio.value);
+  EXPECT_LT(ratio.low, ratio.high);
+  // Twice the time of the technique is twice the ratio, at the same scatter.
+  BoundTime twice = time;
+  for (double& ms : twice.own) ms *= 2;
+  EXPECT_DOUBLE_EQ(xBound(twice).value, 2 * ratio.value);
+  EXPECT_DOUBLE_EQ(xBound(twice).low, 2 * ratio.low);
+  EXPECT_DOUBLE_EQ(xBound(twice).high, 2 * ratio.high);
+  // A technique that is its bound is at 1.
+  EXPECT_DOUBLE_EQ(xBound({.own = time.bound, .bound = time.bound, .turns = 2}).value, 1);
+}
+
+TEST(BenchColumns, XBoundIsOnThePageWhereARowHasIt) {
+  const Row rows[] = {exampleRow(exampleCase()), distinctRow()};
+  const nlohmann::json page = nlohmann::json::parse(reportData(rows, "."));
+  EXPECT_EQ(page["columns"]["x_bound"]["label"], "x bound");
+  int with = 0;
+  for (const auto& table : page["tables"])
+    for (const auto& row : table["rows"]) {
+      if (!row.contains("x_bound")) continue;
+      ++with;
+      EXPECT_EQ(row["x_bound"], (nlohmann::json{{"value", 1.5}, {"low", 1.5}, {"high", 1.5}}));
+    }
+  EXPECT_EQ(with, 1);
 }
 
 TEST(BenchColumns, EveryColumnIsDescribedAndHasItsCells) {

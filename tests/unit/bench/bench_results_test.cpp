@@ -51,7 +51,9 @@ TEST_F(BenchResults, RowsSurviveJson) {
   played.environmentRotation = 90;
   played.environmentScale = 2;
   played.grid = "smoke";
-  const Row row = exampleRow(played);
+  played.bound = true;
+  Row row = exampleRow(played);
+  row.cost.bound = BoundTime{.own = {3, 4}, .bound = {2, 2.5}, .turns = 2};
   const std::string line = toJson(row);
   EXPECT_EQ(line.find('\n'), std::string::npos);
   const Row back = rowFromJson(line);
@@ -69,6 +71,10 @@ TEST_F(BenchResults, RowsSurviveJson) {
   EXPECT_EQ(back.misjudged->litInUmbra, row.misjudged->litInUmbra);
   EXPECT_EQ(back.cost.frameMs.q3, row.cost.frameMs.q3);
   EXPECT_EQ(back.cost.frameMs.samples, row.cost.frameMs.samples);
+  ASSERT_TRUE(back.cost.bound);
+  EXPECT_EQ(back.cost.bound->own, row.cost.bound->own);
+  EXPECT_EQ(back.cost.bound->bound, row.cost.bound->bound);
+  EXPECT_EQ(back.cost.bound->turns, 2);
   EXPECT_EQ(back.cost.memoryBytes, row.cost.memoryBytes);
   EXPECT_NE(back.cost.details.find("shadow map"), std::string::npos);
   EXPECT_EQ(toJson(back), line);
@@ -259,6 +265,32 @@ TEST_F(BenchResults, FurtherTurnsLengthenTheRowsAndResume) {
   const FrameTime& lost = results.find(rowKey(cases[2], "llvmpipe"))->cost.frameMs;
   EXPECT_EQ(lost.turns, 1) << "a turn that fails leaves the row as it was";
   EXPECT_EQ(rowFromJson(toJson(results.rows()[0])).cost.frameMs.turns, 3);
+}
+
+TEST_F(BenchResults, BoundsAreTimedInEveryTurnOfTheRowsThatAskForThem) {
+  std::vector<Case> cases = {exampleCase("pcss", 16), exampleCase("pcss", 64), exampleCase("airlight")};
+  for (Case& c : cases) c.turns = 3;
+  cases[0].bound = cases[2].bound = true;
+  Fakes fakes;
+  Callbacks callbacks = fakes.callbacks();
+  double turn = 0;
+  callbacks.bound = [&](const Case& c) -> std::optional<BoundTime> {
+    if (c.technique == "airlight") return std::nullopt;  // it has none
+    turn += 1;
+    return BoundTime{.own = {2 * turn, 2 * turn}, .bound = {turn, turn}, .turns = 1};
+  };
+  ResultsFile results(path_);
+  runCases(cases, "llvmpipe", results, callbacks);
+  const std::optional<BoundTime>& time = results.find(rowKey(cases[0], "llvmpipe"))->cost.bound;
+  ASSERT_TRUE(time);
+  EXPECT_EQ(time->turns, 3);
+  EXPECT_EQ(time->own, (std::vector<double>{2, 2, 4, 4, 6, 6}));
+  EXPECT_EQ(time->bound, (std::vector<double>{1, 1, 2, 2, 3, 3}));
+  for (const std::size_t i : {1u, 2u}) {
+    const Row* row = results.find(rowKey(cases[i], "llvmpipe"));
+    EXPECT_FALSE(row->cost.bound) << cases[i].technique;
+    EXPECT_EQ(row->cost.frameMs.turns, 3);
+  }
 }
 
 TEST_F(BenchResults, RunnerKeepsPicturesThatAreWanted) {

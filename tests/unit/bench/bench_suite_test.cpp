@@ -119,6 +119,20 @@ TEST(BenchSuite, TimeSizesAreTheSameQuestionUnderAnotherLabel) {
   EXPECT_EQ(label(large), "balls/first camera/all lights/final/8x8 times at 16x12/dynamic/pcss");
 }
 
+TEST(BenchSuite, BoundsAreAskedForBySuite) {
+  const std::string rest =
+      "sizes = \"8x8\"\n[[techniques]]\ntechnique = \"pcss\"\n[[scenes]]\nscene = \"balls\"\n";
+  const Case without = parseSuite("name = \"a\"\n" + rest, "s.toml").cases[0];
+  const Case with = parseSuite("name = \"b\"\nbound = true\n" + rest, "s.toml").cases[0];
+  EXPECT_FALSE(without.bound);
+  EXPECT_TRUE(with.bound);
+  EXPECT_EQ(question(with), question(without)) << "they share a reference";
+  EXPECT_EQ(label(with), label(without));
+  EXPECT_NE(rowKey(with, ""), rowKey(without, "")) << "a row without the bound does not answer the case";
+  expectUsageError("name = \"c\"\nbound = 1\n" + rest, "s.toml:2:9: 'bound' must be true or false");
+  expectUsageError("name = \"d\"\nbounds = true\n" + rest, "unknown key 'bounds'");
+}
+
 TEST(BenchSuite, EnvironmentsAreSweptByThreshold) {
   const std::string start =
       "name = \"e\"\nsizes = \"8x8\"\nterm = \"direct\"\n[[techniques]]\ntechnique = \"pcss\"\n"
