@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
       {"Back-projection", "backprojection", "",
        "Each texel of the map hides a part of the light; overlaps count twice."},
       {"16 shadow maps on the light", "sampled_area_light", "sampled_area_light.samples=16",
-       "Sixteen hard shadows: raise the number to approach the truth."},
+       "Sixteen hard shadows of 512 texels: raise the number to approach the truth."},
   };
   return limn::app::runChapter({.name = "ch5-convolution-soft-shadows",
                                 .title = "Convolution soft shadow maps",

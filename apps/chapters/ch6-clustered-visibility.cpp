@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
       {"Clusters in colours", "clustered_visibility", "clustered_visibility.show=clusters",
        "Which virtual lights k-means put together."},
       {"A map for each virtual light", "instant_radiosity", "",
-       "Brute force: what clustering is measured against."},
+       "Brute force, every light in every pixel: the other steps interleave 8 x 8 pixels."},
       {"Coarse maps of points", "imperfect_shadow_maps", "", "The other way to afford a thousand shadows."},
       {"No visibility", "reflective_shadow_map", "", "What the shadows of indirect light add."},
   };

@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
       {"VSM from a summed-area table", "savsm", "", "Without subdivision non-planar kernels are lit."},
       {"Back-projection", "backprojection", "", "Each texel of the map hides a part of the light."},
       {"16 shadow maps on the light", "sampled_area_light", "sampled_area_light.samples=16",
-       "Sixteen hard shadows: raise the number to approach the truth."},
+       "Sixteen hard shadows of 512 texels: raise the number to approach the truth."},
   };
   return limn::app::runChapter({.name = "ch7-variance-soft-shadows",
                                 .title = "Variance soft shadow maps",
