@@ -32,11 +32,11 @@ void gather(const Forest& forest, const Links& links, std::span<const glm::vec4>
         const uint32_t link = row[bin];
         if (link == glsl::no_link) {
           if (!environment.empty()) sum += weight * environment[bin];
-        } else if ((link & glsl::link_back) == 0) {
+        } else if ((link & glsl::link_back) == 0 && !outgoing.empty()) {
           sum += weight * outgoing[link];
         }
       }
-      irradiance[4 * g + lane] = glsl::pi / weights * sum;
+      irradiance[4 * g + lane] = weights > 0 ? glsl::pi / weights * sum : glm::vec3(0);
     }
   });
 }

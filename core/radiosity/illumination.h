@@ -20,8 +20,8 @@ LIMN_API std::vector<glm::vec4> binTable(int resolution);
 /// Computes the irradiance of every leaf, W/m^2: pi times the mean over the bins above its tangent plane of
 /// the radiance that arrives, weighted by cosine and solid angle. A filled bin is filled wholly (equation
 /// 4.5), and weights are divided by their sum, so that no white furnace gains light, which it would with the
-/// bins' own weights (by 0.13 to 0.5 %). `outgoing` holds the radiance of each slot; `environment` the
-/// radiance that empty bins see, for each bin, or is empty for darkness.
+/// bins' own weights (by 0.13 to 0.5 %). `outgoing` holds the radiance of each slot, `environment` the
+/// radiance that empty bins see, for each bin; either is empty for darkness. Values of unused slots stay.
 LIMN_API void gather(const Forest& forest, const Links& links, std::span<const glm::vec4> table,
                      std::span<const glm::vec3> outgoing, std::span<const glm::vec3> environment,
                      std::span<glm::vec3> irradiance);

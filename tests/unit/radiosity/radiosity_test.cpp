@@ -400,6 +400,25 @@ TEST(RadiosityTest, AFurnaceConvergesFromBelow) {
   }
 }
 
+TEST(RadiosityTest, WhatIsNotGivenToGatherIsDark) {
+  World world(discs(1, 1, 1, 8));
+  const std::vector<glm::vec4> table = binTable(world.links.resolution());
+  const std::vector<glm::vec3> dark(world.forest.slots(), glm::vec3(0)),
+      sky(world.links.binCount(), glm::vec3(2));
+  std::vector<glm::vec3> expected(world.forest.leafSlots(), glm::vec3(0)), irradiance = expected;
+  const std::vector<glm::vec3> nothing = expected;
+  gather(world.forest, world.links, table, dark, sky, expected);
+  gather(world.forest, world.links, table, {}, sky, irradiance);
+  EXPECT_EQ(irradiance, expected);
+  EXPECT_NE(irradiance, nothing);
+  gather(world.forest, world.links, table, {}, {}, irradiance);
+  EXPECT_EQ(irradiance, nothing);
+  // Leaves without a normal see no bin.
+  world.forest.refit(world.surfels.positions, std::vector<glm::vec3>(world.surfels.size(), glm::vec3(0)));
+  gather(world.forest, world.links, table, {}, sky, irradiance);
+  EXPECT_EQ(irradiance, nothing);
+}
+
 TEST(RadiosityTest, ResolutionsOutOfRangeAreRefused) {
   const Surfels surfels = surfelsOf({sphereMesh({0, 0, 0}, 1, 4)});
   const Forest forest(surfels);
