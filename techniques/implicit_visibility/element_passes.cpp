@@ -56,8 +56,8 @@ void ElementPasses::createBuffers(gpu::Device& device) {
   groupBuffer_ = gpu::Buffer(device, "element groups", groupsNow.size_bytes(), gpu::BufferUse::updated);
   leafBuffer_ = gpu::Buffer(device, "leaves", elements_.leaves().size_bytes(), gpu::BufferUse::updated);
   cornerBuffer_ = gpu::Buffer::of(device, "triangles between leaves", elements_.triangles());
-  const std::vector<glm::vec4> table = radiosity::binTable(settings_.links.resolution);
-  directions_ = gpu::Buffer::of<glm::vec4>(device, "directions of bins", table);
+  binTable_ = radiosity::binTable(settings_.links.resolution);
+  directions_ = gpu::Buffer::of<glm::vec4>(device, "directions of bins", binTable_);
   software_ = device.software();
   if (settings_.onGpu) rootBuffer_ = gpu::Buffer::of(device, "roots of clusters", elements_.forest().roots());
   if (glossy()) {
@@ -168,6 +168,13 @@ frame::ProgramHandle ElementPasses::program(frame::PassBuilder& pass, const char
 
 void ElementPasses::readDirections(frame::PassBuilder& pass) const {
   pass.read(directions, Access::storageLoad, "Directions", "directions and solid angles of bins");
+}
+
+void ElementPasses::readInMemory(frame::PassBuilder& pass) const {
+  pass.read(groups, Access::storageLoad, "elements, in the CPU's memory as well")
+      .read(leaves, Access::storageLoad, "albedos, in the CPU's memory as well");
+  for (const LinkChunk& chunk : chunks)
+    pass.read(chunk.links, Access::storageLoad, "links, in the CPU's memory as well");
 }
 
 frame::SlotHandle ElementPasses::readLinks(frame::PassBuilder& pass) const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <deque>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -68,7 +69,14 @@ class ElementPasses {
     return settings_.glossy > 0 ? 6 * static_cast<uint32_t>(settings_.glossy * settings_.glossy) : 1;
   }
   bool glossy() const { return settings_.glossy > 0; }
-  size_t binCount() const { return directions_.size() / sizeof(glm::vec4); }
+  size_t binCount() const { return binTable_.size(); }
+  /// Returns the directions and solid angles of bins, as radiosity::binTable() has them.
+  std::span<const glm::vec4> binTable() const { return binTable_; }
+  /// Returns the links that the processor made; none where they are made on the GPU.
+  const radiosity::Links& links() const { return links_; }
+  /// Says whether leaves gather on the processor: on software renderers, where it has made the links, and
+  /// elements send evenly.
+  bool gathersOnProcessor() const { return software_ && !settings_.onGpu && !glossy(); }
 
   frame::BufferHandle groups, leaves, corners, directions, materials;
   std::vector<LinkChunk> chunks;
@@ -78,6 +86,8 @@ class ElementPasses {
                                std::map<std::string, std::string> defines = {}) const;
   /// Declares that a pass reads the directions of bins, as bin_lookup.glsl does.
   void readDirections(frame::PassBuilder& pass) const;
+  /// Declares that a pass reads elements and links in the processor's memory.
+  void readInMemory(frame::PassBuilder& pass) const;
   /// Declares that a pass reads all links, and returns the slot to which one chunk after the other is bound.
   frame::SlotHandle readLinks(frame::PassBuilder& pass) const;
   /// Binds a chunk's links, and tells the program which leaves they belong to.
@@ -97,6 +107,7 @@ class ElementPasses {
   const scene::Pose& pose_;
   radiosity::SceneElements elements_;
   radiosity::Links links_;
+  std::vector<glm::vec4> binTable_;
   gpu::Buffer groupBuffer_, leafBuffer_, cornerBuffer_, directions_, materialBuffer_, rootBuffer_;
   bool software_ = false;
   frame::BufferHandle roots_;

@@ -134,6 +134,7 @@ BufferHandle LightPasses::pullUp(const PassRequest& r, BufferHandle outgoing) {
 
 Gathered LightPasses::gather(const PassRequest& r, BufferHandle outgoing, BufferHandle direct,
                              BufferHandle& next) {
+  if (elements_.gathersOnProcessor()) return gatherOnProcessor(r, outgoing, direct, next);
   const bool glossy = elements_.glossy();
   frame::PassBuilder pass = r.graph.addPass("gather", technique_);
   const frame::SlotHandle links = readBins(pass);
@@ -144,13 +145,31 @@ Gathered LightPasses::gather(const PassRequest& r, BufferHandle outgoing, Buffer
   const BufferHandle reflected =
       glossy ? BufferHandle{}
              : pass.write(perSlot(r, "outgoing"), Access::storageStore, "Next", "reflected by leaves");
-  const auto kernelHandle = elements_.program(pass, "gather.comp.glsl", gatherDefines(r, false));
-  pass.execute([this, kernelHandle, links, oneEach = serial(r)](frame::PassContext& context) {
-    gatherChunks(context, kernelHandle, links, oneEach);
+  const auto kernelHandle = elements_.program(pass, "gather.comp.glsl", {{"SKY", "0"}});
+  pass.execute([this, kernelHandle, links](frame::PassContext& context) {
+    gatherChunks(context, kernelHandle, links);
   });
   const Gathered gathered{irradiance, outgoing, false};
   next = glossy ? reflect(r, gathered, direct).second : reflected;
   return gathered;
+}
+
+Gathered LightPasses::gatherOnProcessor(const PassRequest& r, BufferHandle outgoing, BufferHandle direct,
+                                        BufferHandle& next) {
+  ProcessorGather& own = processorGathers_.emplace_back(r.inputs.gpuScene.device(), elements_);
+  frame::PassBuilder pass = r.graph.addPass("gather", technique_);
+  elements_.readInMemory(pass);
+  pass.read(outgoing, Access::copySource, "radiance of elements")
+      .read(direct, Access::copySource, "direct light, reflected by leaves")
+      .cacheable();
+  const BufferHandle irradiance =
+      pass.write(r.graph.importBuffer("irradiance", own.irradiance()), Access::copyTarget, "of leaves");
+  next = pass.write(r.graph.importBuffer("outgoing", own.reflected()), Access::copyTarget,
+                    "reflected by leaves");
+  pass.execute([&own, outgoing, direct](frame::PassContext& context) {
+    own.gather(context.buffer(outgoing), context.buffer(direct));
+  });
+  return {irradiance, outgoing, false};
 }
 
 LightPasses::Sent LightPasses::reflect(const PassRequest& r, const Gathered& gathered,
@@ -179,15 +198,6 @@ LightPasses::Sent LightPasses::reflect(const PassRequest& r, const Gathered& gat
   return {direct, next};
 }
 
-/// A thread for each leaf instead of a work group: on processors barriers cost more than loads in disorder.
-bool LightPasses::serial(const PassRequest& r) {
-  return r.inputs.gpuScene.device().software();
-}
-
-std::map<std::string, std::string> LightPasses::gatherDefines(const PassRequest& r, bool sky) {
-  return {{"SKY", sky ? "1" : "0"}, {"SERIAL", serial(r) ? "1" : "0"}};
-}
-
 frame::SlotHandle LightPasses::readBins(frame::PassBuilder& pass) const {
   elements_.readDirections(pass);
   pass.read(elements_.leaves, Access::storageLoad, "Leaves", "normals and albedos");
@@ -195,35 +205,52 @@ frame::SlotHandle LightPasses::readBins(frame::PassBuilder& pass) const {
 }
 
 void LightPasses::gatherChunks(frame::PassContext& context, frame::ProgramHandle program,
-                               frame::SlotHandle links, bool serial) const {
+                               frame::SlotHandle links) const {
   gpu::Program& kernel = context.use(program);
   elements_.setSpace(kernel);
   for (const LinkChunk& chunk : elements_.chunks) {
     ElementPasses::bind(context, kernel, links, chunk);
     const glm::ivec2 groups = ElementPasses::workGroups(chunk.count);
-    if (serial)
-      context.dispatch(static_cast<int>(chunk.count), 1, 1, 64, 1);
-    else
-      context.dispatch(groups.x, groups.y, 1, 1, 1);
+    context.dispatch(groups.x, groups.y, 1, 1, 1);
   }
 }
 
 const Gathered& LightPasses::sky(const PassRequest& r) {
   if (sky_) return *sky_;
-  environment_ =
-      gpu::Buffer::of<glm::vec4>(r.inputs.gpuScene.device(), "environment of bins", skyBins(r.inputs.scene));
+  const std::vector<glm::vec4> radiance = skyBins(r.inputs.scene);
+  environment_ = gpu::Buffer::of<glm::vec4>(r.inputs.gpuScene.device(), "environment of bins", radiance);
   const BufferHandle bins = r.graph.importBuffer("environment of bins", environment_);
+  const BufferHandle irradiance =
+      elements_.gathersOnProcessor() ? skyIrradianceOnProcessor(r, radiance) : skyIrradiance(r, bins);
+  sky_ = Gathered{irradiance, bins, true};
+  return *sky_;
+}
+
+BufferHandle LightPasses::skyIrradiance(const PassRequest& r, BufferHandle bins) {
   frame::PassBuilder pass = r.graph.addPass("environment light", technique_);
   const frame::SlotHandle links = readBins(pass);
   pass.read(bins, Access::storageLoad, "Source", "radiance of bins").cacheable();
   const BufferHandle irradiance =
       pass.write(perSlot(r, "environment's irradiance"), Access::storageStore, "Irradiance", "of leaves");
-  const auto kernelHandle = elements_.program(pass, "gather.comp.glsl", gatherDefines(r, true));
-  pass.execute([this, kernelHandle, links, oneEach = serial(r)](frame::PassContext& context) {
-    gatherChunks(context, kernelHandle, links, oneEach);
+  const auto kernelHandle = elements_.program(pass, "gather.comp.glsl", {{"SKY", "1"}});
+  pass.execute([this, kernelHandle, links](frame::PassContext& context) {
+    gatherChunks(context, kernelHandle, links);
   });
-  sky_ = Gathered{irradiance, bins, true};
-  return *sky_;
+  return irradiance;
+}
+
+BufferHandle LightPasses::skyIrradianceOnProcessor(const PassRequest& r,
+                                                   std::span<const glm::vec4> radiance) {
+  ProcessorGather& own = processorGathers_.emplace_back(r.inputs.gpuScene.device(), elements_);
+  frame::PassBuilder pass = r.graph.addPass("environment light", technique_);
+  elements_.readInMemory(pass);
+  pass.cacheable();
+  const BufferHandle irradiance = pass.write(
+      r.graph.importBuffer("environment's irradiance", own.irradiance()), Access::copyTarget, "of leaves");
+  pass.execute([&own, bins = std::vector<glm::vec3>(radiance.begin(), radiance.end())](frame::PassContext&) {
+    own.gatherEnvironment(bins);
+  });
+  return irradiance;
 }
 
 std::vector<glm::vec4> LightPasses::skyBins(const scene::Scene& scene) const {

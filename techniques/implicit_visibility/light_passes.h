@@ -3,15 +3,14 @@
 #pragma once
 
 #include <deque>
-#include <map>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "techniques/implicit_visibility/element_passes.h"
+#include "techniques/implicit_visibility/processor_gather.h"
 
 namespace limn::implicit_visibility {
 
@@ -45,14 +44,19 @@ class LightPasses {
   /// Returns what arrives at leaves from `outgoing`, and in `next` what they then send on.
   Gathered gather(const PassRequest& r, frame::BufferHandle outgoing, frame::BufferHandle direct,
                   frame::BufferHandle& next);
+  /// Does the same on the processor.
+  Gathered gatherOnProcessor(const PassRequest& r, frame::BufferHandle outgoing, frame::BufferHandle direct,
+                             frame::BufferHandle& next);
+  /// Returns the irradiance of leaves by the environment, of which `bins` holds the radiance.
+  frame::BufferHandle skyIrradiance(const PassRequest& r, frame::BufferHandle bins);
+  frame::BufferHandle skyIrradianceOnProcessor(const PassRequest& r, std::span<const glm::vec4> radiance);
   /// Returns what leaves send into bins of directions: `direct`, and what they reflect of `gathered`; where
   /// `gathered` is the environment, the result is also kept in `direct`.
   Sent reflect(const PassRequest& r, const Gathered& gathered, frame::BufferHandle direct) const;
   /// Declares what a pass reads at leaves to look through their bins; returns the slot of the links.
   frame::SlotHandle readBins(frame::PassBuilder& pass) const;
   /// Runs gather.comp.glsl for all leaves.
-  void gatherChunks(frame::PassContext& context, frame::ProgramHandle program, frame::SlotHandle links,
-                    bool serial) const;
+  void gatherChunks(frame::PassContext& context, frame::ProgramHandle program, frame::SlotHandle links) const;
   /// Returns the environment's mean radiance over each bin.
   std::vector<glm::vec4> skyBins(const scene::Scene& scene) const;
 
@@ -61,12 +65,11 @@ class LightPasses {
   frame::BufferHandle sent(const PassRequest& r, const char* name) const;
   /// Dispatches a work item for every value that `slots` elements send.
   void dispatchSent(const frame::PassContext& context, uint32_t slots) const;
-  static bool serial(const PassRequest& r);
-  static std::map<std::string, std::string> gatherDefines(const PassRequest& r, bool sky);
 
   const ElementPasses& elements_;
   std::string_view technique_;
   std::deque<Seen> seen_;
+  std::deque<ProcessorGather> processorGathers_;  ///< the graph keeps their addresses
   std::optional<Gathered> sky_;
   gpu::Buffer environment_;
   gpu::Texture ltcTable_;

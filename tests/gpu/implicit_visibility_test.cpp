@@ -1,5 +1,7 @@
 // What implicit visibility promises beyond what every technique does.
 #include <cstdio>
+#include <cstdlib>
+#include <optional>
 
 #include "core/base/error.h"
 #include "core/reference/reference.h"
@@ -7,6 +9,25 @@
 
 namespace limn {
 namespace {
+
+/// Has devices that are made while it lives take the paths for GPUs, or those that their renderer is for.
+class PathsOfDevices {
+ public:
+  explicit PathsOfDevices(bool hardware) {
+    if (const char* value = std::getenv(kName)) before_ = value;
+    set(hardware ? std::optional<std::string>("1") : std::nullopt);
+  }
+  ~PathsOfDevices() { set(before_); }
+  PathsOfDevices(const PathsOfDevices&) = delete;
+  PathsOfDevices& operator=(const PathsOfDevices&) = delete;
+
+ private:
+  static constexpr const char* kName = "LIMN_HARDWARE_PATHS";
+  static void set(const std::optional<std::string>& value) {
+    value ? setenv(kName, value->c_str(), 1) : unsetenv(kName);
+  }
+  std::optional<std::string> before_;
+};
 
 class ImplicitVisibilityTest : public RenderTest {
  protected:
@@ -75,6 +96,24 @@ TEST_F(ImplicitVisibilityTest, LinksMadeOnTheGpuSeeWhatThoseOfTheCpuSee) {
                   name, fill, rmse(gpu, cpu), rmse(gpu, flat), rmse(cpu, flat), mean(flat));
       EXPECT_LT(rmse(gpu, flat), std::max(1.1 * rmse(cpu, flat), 0.01 * mean(flat)));
     }
+  }
+}
+
+/// Software renderers gather on the processor, GPUs in shaders: the same sums in another order.
+TEST_F(ImplicitVisibilityTest, TheProcessorGathersWhatShadersGather) {
+  for (const char* name : {"cornell_box", "balls_sky"}) {
+    const scene::Scene scene = asset(name);
+    std::vector<Image> pictures;
+    for (const bool hardware : {false, true}) {
+      const PathsOfDevices paths(hardware);
+      gpu::Device own(context());
+      render::Renderer renderer(own, scene);
+      pictures.push_back(indirect(renderer, {{"bins", "8"}, {"longest_edge", "0.1"}, {"bounces", "3"}}));
+    }
+    std::printf("%s: RMSE processor - shaders %.2g, mean %.4f\n", name, rmse(pictures[0], pictures[1]),
+                mean(pictures[0]));
+    EXPECT_LT(rmse(pictures[0], pictures[1]), 1e-5 * mean(pictures[0]));
+    EXPECT_GT(mean(pictures[0]), 0);
   }
 }
 
