@@ -7,6 +7,9 @@
 // group shades, so that neighbouring threads shade neighbours. They have names of their own in what follows: compilers keep
 // what a loop indexes in memory.
 //
+// Define GATHER_PIXELS 1 before including this where a thread shades one pixel: where visibility takes more than the light, so
+// that a loop over lights does better with few values to keep.
+//
 // Define VPL_SHADOWS 1 before including this where virtual lights have shadows: vpl_begin() and vpl_visibility() are then the
 // technique's.
 #ifndef LIMN_GATHER_MAIN_GLSL
@@ -17,7 +20,16 @@
 #include "glsl/indirect/gather_parts.glsl"
 #include "glsl/indirect/virtual_light.glsl"
 
+#ifndef GATHER_PIXELS
+#define GATHER_PIXELS 4
+#endif
+
+// A work group shades 16 x 16 pixels of a sub-buffer.
+#if GATHER_PIXELS == 4
 layout(local_size_x = 8, local_size_y = 8) in;
+#else
+layout(local_size_x = 16, local_size_y = 16) in;
+#endif
 #ifdef VIRTUAL_LIGHT_COUNT  // they fit a uniform block, from which all invocations load at once
 layout(std140) uniform VirtualLights { VirtualPointLight virtual_lights[VIRTUAL_LIGHT_COUNT]; };
 #else
@@ -162,14 +174,20 @@ void main() {
   uint first = max(gather_begin(sub_buffer, vpl_count, block), batch_first);
   uint end = min(gather_begin(sub_buffer + 1u, vpl_count, block), batch_first + batch_count);
   if (any(greaterThanEqual(first_pixel, ivec2(frame.frame_size)))) return;
-  Receiver r00, r10, r01, r11;
+  const Gathered nothing = Gathered(vec3(0.0), vec3(0.0), vec3(0.0));
+  Receiver r00;
   GatherPixel p00 = gather_pixel(first_pixel, r00);
+  Gathered sum00 = nothing;
+  bool covered = p00.covered;
+#if GATHER_PIXELS == 4
+  Receiver r10, r01, r11;
   GatherPixel p10 = gather_pixel(first_pixel + ivec2(step, 0), r10);
   GatherPixel p01 = gather_pixel(first_pixel + ivec2(0, step), r01);
   GatherPixel p11 = gather_pixel(first_pixel + ivec2(step, step), r11);
-  const Gathered nothing = Gathered(vec3(0.0), vec3(0.0), vec3(0.0));
-  Gathered sum00 = nothing, sum10 = nothing, sum01 = nothing, sum11 = nothing;
-  if ((p00.covered || p10.covered || p01.covered || p11.covered) && first < end) {
+  Gathered sum10 = nothing, sum01 = nothing, sum11 = nothing;
+  covered = covered || p10.covered || p01.covered || p11.covered;
+#endif
+  if (covered && first < end) {
     float least_distance = nearest * gather_extent();
     float nearest2 = least_distance * least_distance;
     uint i = first;
@@ -180,15 +198,19 @@ void main() {
       vpl_begin(i, light);
 #endif
       gather_from(light, 0u, r00, nearest2, sum00);
+#if GATHER_PIXELS == 4
       gather_from(light, 1u, r10, nearest2, sum10);
       gather_from(light, 2u, r01, nearest2, sum01);
       gather_from(light, 3u, r11, nearest2, sum11);
+#endif
     } while (++i < end);
   }
   store(p00, sum00);
+#if GATHER_PIXELS == 4
   store(p10, sum10);
   store(p01, sum01);
   store(p11, sum11);
+#endif
 }
 
 #endif  // LIMN_GATHER_MAIN_GLSL
