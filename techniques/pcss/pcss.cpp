@@ -16,7 +16,7 @@ constexpr Parameter kParameters[] = {
         .quality()
         .logScale(),
     choice("pattern", 1, kPatterns, "Regular grid, or the R2 sequence shifted in each pixel"),
-    choice("search", 2, kSearches,
+    choice("search", 1, kSearches,
            "Search at the near plane, as published, through the cone from receiver to light, keeping what "
            "lies in it, or at the nearest depth that bounds of the depths find, ending where they prove V"),
     integer("search_rounds", 5, {0, 8}, "rounds",
@@ -34,7 +34,7 @@ constexpr StressCase kStress[] = {
      .change = StressChange::lightSize,
      .amount = 3,
      .settings = "search=near"},
-    {.name = "search through the cone", .settings = "search=cone"},
+    {.name = "narrowed search", .settings = "search=narrowed"},
     {.name = "search kernel moved once", .settings = "search=narrowed search_rounds=0"},
 };
 

@@ -66,7 +66,7 @@ const Bounded kBounded[] = {
     {"pcf", {{"kernel", "11.5"}}, true},
     {"pcss", {}, true},
     {"pcss", {{"pattern", "grid"}}, true},
-    {"pcss", {{"search", "cone"}}, true},
+    {"pcss", {{"search", "narrowed"}}, true},
     {"pcss", {{"search", "near"}}, true},
     {"sampled_area_light", {{"samples", "16"}}, false},
     {"sampled_area_light", {{"samples", "16"}, {"memory", "16"}}, false},  // in batches
