@@ -1,0 +1,243 @@
+#include "core/brdf/tabulated.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "core/base/error.h"
+
+namespace limn::brdf {
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+/// Nodes this near to the horizon take their values from neighbours: a BRDF may have a pole there.
+constexpr float kLeastCosine = 1e-4f;
+
+/// Two neighbouring nodes and the second one's share.
+struct Between {
+  std::size_t below = 0, above = 0;
+  float share = 0;
+};
+
+Between clampedBetween(float at, int count) {
+  const float last = static_cast<float>(count - 1);
+  at = std::clamp(at, 0.0f, last);
+  const float below = std::floor(at);
+  return {static_cast<std::size_t>(below), static_cast<std::size_t>(std::min(below + 1, last)), at - below};
+}
+
+/// The same on a circle of `count` nodes, for `at` in [0, count].
+Between wrappedBetween(float at, int count) {
+  const float below = std::floor(at);
+  const auto first = static_cast<std::size_t>(below), nodes = static_cast<std::size_t>(count);
+  return {first % nodes, (first + 1) % nodes, at - below};
+}
+
+std::size_t nodeCount(const glm::ivec3& size) {
+  return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
+         static_cast<std::size_t>(size.z);
+}
+
+bool isValue(const glm::vec3& f) {
+  for (int channel = 0; channel < 3; ++channel)
+    if (!(f[channel] >= 0 && f[channel] <= kLargestValue)) return false;
+  return true;
+}
+
+bool isNegative(const glm::vec3& f) {
+  return f.x < 0 || f.y < 0 || f.z < 0;
+}
+
+/// The neighbours of a node along the axes: up to six, of which those across the seam of phiD are two.
+class Neighbours {
+ public:
+  Neighbours(const glm::ivec3& size, std::size_t node) {
+    const auto m = static_cast<std::size_t>(size.y), p = static_cast<std::size_t>(size.z);
+    const std::size_t k = node % p, j = node / p % m, i = node / p / m;
+    const std::size_t row = node - k;
+    if (i > 0) add(node - p * m);
+    if (i + 1 < static_cast<std::size_t>(size.x)) add(node + p * m);
+    if (j > 0) add(node - p);
+    if (j + 1 < m) add(node + p);
+    add(row + (k + 1) % p);
+    add(row + (k + p - 1) % p);
+  }
+  const std::size_t* begin() const { return nodes_.data(); }
+  const std::size_t* end() const { return nodes_.data() + count_; }
+
+ private:
+  void add(std::size_t node) { nodes_[count_++] = node; }
+  std::array<std::size_t, 6> nodes_{};
+  std::size_t count_ = 0;
+};
+
+/// The square's coordinates of a direction above the horizon, [-1, 1].
+glm::vec2 squareOf(const glm::vec3& d) {
+  const glm::vec2 p = glm::vec2(d) / (1 + d.z);
+  const float longest = std::max(std::abs(p.x), std::abs(p.y));
+  return longest > 0 ? p * (glm::length(p) / longest) : p;
+}
+
+Between texelsBetween(float s, int size) {
+  return clampedBetween((s + 1) * 0.5f * static_cast<float>(size) - 0.5f, size);
+}
+
+}  // namespace
+
+HalfDifference halfDifference(const glm::vec3& l, const glm::vec3& v) {
+  const glm::vec3 sum = l + v, difference = l - v;
+  const float across = std::hypot(sum.x, sum.y), length = glm::length(sum);
+  // The frame at h: t leads away from the normal, b is horizontal.
+  const glm::vec2 azimuth = across > 0 ? glm::vec2(sum) / across : glm::vec2(1, 0);
+  const float cosine = length > 0 ? sum.z / length : 1, sine = length > 0 ? across / length : 0;
+  const glm::vec3 t(azimuth * cosine, -sine), b(-azimuth.y, azimuth.x, 0);
+  float phi = std::atan2(glm::dot(difference, b), glm::dot(difference, t));
+  if (phi < 0) phi += kPi;
+  if (phi >= kPi) phi = 0;
+  return {std::atan2(across, sum.z), std::atan2(glm::length(difference), length), phi};
+}
+
+DirectionPair directions(const HalfDifference& angles) {
+  const float cosine = std::cos(angles.thetaH), sine = std::sin(angles.thetaH);
+  const glm::vec3 t(cosine, 0, -sine), b(0, 1, 0), h(sine, 0, cosine);
+  const glm::vec3 across = std::sin(angles.thetaD) * (std::cos(angles.phiD) * t + std::sin(angles.phiD) * b);
+  const glm::vec3 along = std::cos(angles.thetaD) * h;
+  return {along + across, along - across};
+}
+
+HalfDifference TabulatedBrdf::node(int i, int j, int k) const {
+  const glm::vec3 share = glm::vec3(i, j, k) / glm::vec3(size);
+  return {0.5f * kPi * share.x * share.x, 0.5f * kPi * share.y, kPi * share.z};
+}
+
+glm::vec3 TabulatedBrdf::evaluate(const glm::vec3& l, const glm::vec3& v) const {
+  if (!(l.z > 0 && v.z > 0) || values.empty()) return glm::vec3(0);
+  const HalfDifference angles = halfDifference(l, v);
+  const Between h = clampedBetween(std::sqrt(angles.thetaH * (2 / kPi)) * static_cast<float>(size.x), size.x);
+  const Between d = clampedBetween(angles.thetaD * (2 / kPi) * static_cast<float>(size.y), size.y);
+  const Between p = wrappedBetween(angles.phiD / kPi * static_cast<float>(size.z), size.z);
+  const auto along = [&](std::size_t i, std::size_t j) {
+    const glm::vec3* row =
+        &values[(i * static_cast<std::size_t>(size.y) + j) * static_cast<std::size_t>(size.z)];
+    return glm::mix(row[p.below], row[p.above], p.share);
+  };
+  const auto face = [&](std::size_t i) { return glm::mix(along(i, d.below), along(i, d.above), d.share); };
+  return glm::mix(face(h.below), face(h.above), h.share);
+}
+
+bool fillInvalid(TabulatedBrdf& table) {
+  std::vector<glm::vec3>& values = table.values;
+  std::vector<bool> queued(values.size());
+  std::vector<std::size_t> front, next;
+  const auto queueAround = [&](std::size_t node) {
+    for (const std::size_t other : Neighbours(table.size, node)) {
+      if (!isNegative(values[other]) || queued[other]) continue;
+      queued[other] = true;
+      next.push_back(other);
+    }
+  };
+  bool any = false;
+  for (std::size_t node = 0; node < values.size(); ++node) {
+    if (isNegative(values[node])) continue;
+    any = true;
+    queueAround(node);
+  }
+  std::vector<glm::vec3> means;
+  while (!next.empty()) {
+    front.swap(next);
+    next.clear();
+    means.clear();
+    for (const std::size_t node : front) {
+      glm::vec3 sum(0);
+      int count = 0;
+      for (const std::size_t other : Neighbours(table.size, node)) {
+        if (isNegative(values[other])) continue;
+        sum += values[other];
+        ++count;
+      }
+      means.push_back(sum / static_cast<float>(count));
+    }
+    for (std::size_t i = 0; i < front.size(); ++i) values[front[i]] = means[i];
+    for (const std::size_t node : front) queueAround(node);
+  }
+  return any;
+}
+
+TabulatedBrdf tabulate(const glm::ivec3& size, const BrdfFunction& f) {
+  TabulatedBrdf table{.size = size, .values = {}};
+  table.values.reserve(nodeCount(size));
+  for (int i = 0; i < size.x; ++i)
+    for (int j = 0; j < size.y; ++j)
+      for (int k = 0; k < size.z; ++k) {
+        const auto [l, v] = directions(table.node(i, j, k));
+        glm::vec3 value(-1);
+        if (l.z > kLeastCosine && v.z > kLeastCosine) {
+          const glm::vec3 mean = 0.5f * (f(l, v) + f(v, l));
+          if (isValue(mean)) value = mean;
+        }
+        table.values.push_back(value);
+      }
+  if (!fillInvalid(table)) throw Error("a BRDF that is nowhere a number from 0 to 1e10");
+  return table;
+}
+
+glm::vec3 AnisotropicTable::texelDirection(int x, int y) const {
+  const glm::vec2 s = (2.0f * glm::vec2(x, y) + 1.0f) / static_cast<float>(size) - 1.0f;
+  const float length = glm::length(s);
+  const glm::vec2 p = length > 0 ? s * (std::max(std::abs(s.x), std::abs(s.y)) / length) : s;
+  const float square = glm::dot(p, p);
+  return glm::vec3(2.0f * p, 1 - square) / (1 + square);
+}
+
+glm::vec3 AnisotropicTable::evaluate(const glm::vec3& l, const glm::vec3& v) const {
+  if (!(l.z > 0 && v.z > 0) || values.empty()) return glm::vec3(0);
+  const glm::vec2 from = squareOf(l), to = squareOf(v);
+  const Between lx = texelsBetween(from.x, size), ly = texelsBetween(from.y, size);
+  const Between vx = texelsBetween(to.x, size), vy = texelsBetween(to.y, size);
+  const auto side = static_cast<std::size_t>(size);
+  const auto row = [&](std::size_t at) {
+    return glm::mix(values[at * side + lx.below], values[at * side + lx.above], lx.share);
+  };
+  const auto square = [&](std::size_t at) {
+    return glm::mix(row(at * side + ly.below), row(at * side + ly.above), ly.share);
+  };
+  const auto cube = [&](std::size_t at) {
+    return glm::mix(square(at * side + vx.below), square(at * side + vx.above), vx.share);
+  };
+  return glm::mix(cube(vy.below), cube(vy.above), vy.share);
+}
+
+AnisotropicTable tabulateAnisotropic(int size, const BrdfFunction& f) {
+  AnisotropicTable table{.size = size, .values = {}};
+  std::vector<glm::vec3> texels;
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x) texels.push_back(table.texelDirection(x, y));
+  table.values.reserve(texels.size() * texels.size());
+  for (const glm::vec3& v : texels)
+    for (const glm::vec3& l : texels) table.values.push_back(f(l, v));
+  return table;
+}
+
+glm::dvec3 albedo(const BrdfFunction& f, const glm::vec3& v, int steps) {
+  glm::dvec3 sum(0);
+  if (!(v.z > 0)) return sum;
+  constexpr double pi = std::numbers::pi;
+  for (int i = 0; i < steps; ++i) {
+    const double share = (i + 0.5) / steps, theta = pi / 2 * share * share;
+    for (int j = 0; j < steps; ++j) {
+      const double phi = 2 * pi * (j + 0.5) / steps;
+      const glm::dvec3 h(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+      const double cosine = glm::dot(h, glm::dvec3(v));
+      const glm::dvec3 l = 2 * cosine * h - glm::dvec3(v);
+      if (cosine <= 0 || l.z <= 0) continue;
+      // dl = 4 (h.v) dh, and dh = sin(theta) dtheta dphi with dtheta = pi share dshare.
+      sum += glm::dvec3(f(glm::vec3(l), v)) * (l.z * 4 * cosine * std::sin(theta) * share);
+    }
+  }
+  return sum * (pi * 2 * pi / steps / steps);
+}
+
+}  // namespace limn::brdf
