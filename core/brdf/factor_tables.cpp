@@ -1,0 +1,236 @@
+#include "core/brdf/factor_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/packing.hpp>
+#include <numbers>
+
+#include "core/base/error.h"
+#include "glsl/materials/factored.glsl"
+
+namespace limn::brdf {
+namespace {
+
+using glm::dvec3;
+using glm::ivec3;
+using glm::vec3;
+
+const double kRootPi = std::sqrt(std::numbers::pi);
+
+float kept(float value, TableFormat format) {
+  switch (format) {
+    case TableFormat::float32:
+      return value;
+    case TableFormat::half:
+      return glm::unpackHalf1x16(glm::packHalf1x16(std::clamp(value, -65504.f, 65504.f)));
+    case TableFormat::byte:
+      return std::round(255 * std::clamp(value, 0.f, 1.f)) / 255;
+  }
+  return value;
+}
+
+double clampedRoughness(const TorranceSparrow& material) {
+  return std::max(material.roughness, kLeastRoughness);
+}
+
+/// Dawson's integral by its power series, which converges everywhere and keeps its digits for |x| up to 2.
+double dawson(double x) {
+  double term = x, sum = x;
+  for (int k = 1; k < 200 && std::abs(term) > 1e-17 * std::abs(sum); ++k) {
+    term *= -2 * x * x / (2 * k + 1);
+    sum += term;
+  }
+  return sum;
+}
+
+/// The cosine times Smith's Lambda for Beckmann's distribution: finite at grazing angles, where Lambda is
+/// not.
+double cosineLambda(double cosine, double m) {
+  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  if (sine == 0) return 0;
+  const double a = cosine / (m * sine);
+  return std::max(0.0, 0.5 * (m * sine * std::exp(-a * a) / kRootPi - cosine * std::erfc(a)));
+}
+
+void check(const TorranceSparrow& material, int width, int height) {
+  if (width < 2 || height < 2)
+    throw UsageError(fmt::format("factored tables need 2 x 2 texels or more, not {} x {}", width, height));
+  if (!(material.roughness >= 0 && material.roughness <= 1))
+    throw UsageError(fmt::format("roughness is {}: a number of [0, 1] is needed", material.roughness));
+  for (int c = 0; c < 3; ++c)
+    if (!(material.eta[c] > 0 && material.eta[c] < 1e6 && material.k[c] >= 0 && material.k[c] < 1e6))
+      throw UsageError(fmt::format("index of refraction {} + {} i: eta above 0 and k of 0 or more are needed",
+                                   material.eta[c], material.k[c]));
+}
+
+std::size_t formatBytes(TableFormat format) {
+  return format == TableFormat::float32 ? 4 : format == TableFormat::half ? 2 : 1;
+}
+
+}  // namespace
+
+FactorTable FactorTable::of(const ivec3& size, TableFormat format,
+                            const std::function<dvec3(const dvec3& place)>& value) {
+  FactorTable table{size.x, size.y, size.z, format, {}};
+  table.texels.reserve(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
+                       static_cast<std::size_t>(size.z));
+  const dvec3 last(glm::max(size - 1, ivec3(1)));
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x) table.texels.emplace_back(value(dvec3(x, y, z) / last));
+  table.round();
+  return table;
+}
+
+void FactorTable::round() {
+  for (vec3& texel : texels)
+    for (int c = 0; c < 3; ++c) texel[c] = kept(texel[c], format);
+}
+
+std::size_t FactorTable::bytes() const {
+  return texels.size() * 3 * formatBytes(format);
+}
+
+dvec3 FactoredBrdf::evaluate(const dvec3& l, const dvec3& v) const {
+  if (!(l.z > 0 && v.z >= 0)) return dvec3(0);
+  const vec3 light(l), view(v);
+  const glsl::FactoredAngles angles = glsl::factored_angles(vec3(0, 0, 1), view, light);
+  vec3 product(0);
+  switch (factorisation) {
+    case Factorisation::tables:
+      product = glsl::factored_response(tables[0], tables[1], angles, warped);
+      break;
+    case Factorisation::dfg:
+      product = glsl::factored_dfg_response(tables[0], angles);
+      break;
+    case Factorisation::pqp:
+      product = glsl::factored_pqp_response(tables[0], angles);
+      break;
+    case Factorisation::pqp_disc:
+      product = glsl::factored_pqp_disc_response(tables[0], view, light, warped);
+      break;
+    case Factorisation::svd:
+      product = glsl::factored_svd_response(tables[0], tables[1], view, light, tables[0].depth);
+      break;
+    case Factorisation::trilinear:
+      product = glsl::factored_volume_response(tables[0], view, light);
+      break;
+  }
+  return scale * dvec3(product) + floor * l.z;
+}
+
+std::size_t FactoredBrdf::bytes() const {
+  std::size_t sum = 0;
+  for (const FactorTable& table : tables) sum += table.bytes();
+  return sum;
+}
+
+double fresnelReflectance(double cosine, double eta, double k) {
+  if (eta == 1 && k == 0) return 0;
+  if (cosine <= 0) return 1;
+  const double cos2 = std::min(cosine * cosine, 1.0), sin2 = 1 - cos2;
+  const double difference = eta * eta - k * k - sin2;
+  const double size =
+      std::hypot(difference, 2 * eta * k);  // a^2 + b^2, a + ib the refracted cosine times eta
+  const double twice = 2 * std::min(cosine, 1.0) * std::sqrt(std::max(0.0, 0.5 * (size + difference)));
+  const double across = (size + cos2 - twice) / (size + cos2 + twice);
+  const double straight = cos2 * size + sin2 * sin2, mixed = twice * sin2;
+  return std::clamp(0.5 * across * (1 + (straight - mixed) / (straight + mixed)), 0.0, 1.0);
+}
+
+double normalDistribution(const TorranceSparrow& material, double fromNormal) {
+  const double m = clampedRoughness(material);
+  const double cosine = 1 - fromNormal * fromNormal;
+  if (material.distribution == NormalDistribution::gaussian) {
+    const double angle = 2 * std::asin(std::min(1.0, fromNormal * std::numbers::sqrt2 / 2));
+    return std::exp(-angle * angle / (m * m)) / (std::numbers::pi * m * dawson(m));
+  }
+  if (!(cosine > 0)) return 0;
+  const double cos2 = cosine * cosine, sin2 = fromNormal * fromNormal * (2 - fromNormal * fromNormal);
+  const double exponent = -sin2 / (cos2 * m * m);
+  return exponent < -700 ? 0 : std::exp(exponent) / (std::numbers::pi * m * m * cos2 * cos2);
+}
+
+double maskingOverCosine(const TorranceSparrow& material, double nDotL, double nDotV) {
+  const double m = clampedRoughness(material);
+  const double fromL = cosineLambda(nDotL, m), fromV = cosineLambda(nDotV, m);
+  if (material.masking == Masking::product) return nDotL / (nDotL + fromL) / (4 * (nDotV + fromV));
+  if (nDotL <= 0 && nDotV <= 0) return 1 / (4 * (fromL + fromV));
+  return nDotL / (4 * (nDotL * nDotV + nDotV * fromL + nDotL * fromV));
+}
+
+FactoredBrdf torranceSparrowTables(const TorranceSparrow& material, int width, int height, bool warped,
+                                   TableFormat format) {
+  check(material, width, height);
+  const bool bytes = format == TableFormat::byte;
+  // Both distributions are largest at n, and Fresnel's term is at most 1.
+  const double largest = normalDistribution(material, 0);
+  const double unit =
+      bytes ? std::numbers::pi / 4 : 1;  // what T2 is divided by: G / (pi n.v) is what is clamped
+  FactoredBrdf result;
+  result.warped = warped;
+  result.name = fmt::format("tables {} x {}, {}", width, height, warped ? "warped" : "cosines");
+  result.scale = dvec3(largest * unit);
+  result.tables.push_back(FactorTable::of({width, height, 1}, format, [&](const dvec3& place) {
+    const double distance = warped ? 1 - place.y : std::sqrt(1 - place.y);
+    dvec3 fresnel;
+    for (int c = 0; c < 3; ++c) fresnel[c] = fresnelReflectance(place.x, material.eta[c], material.k[c]);
+    return fresnel * (normalDistribution(material, distance) / largest);
+  }));
+  result.tables.push_back(FactorTable::of({width, height, 1}, format, [&](const dvec3& place) {
+    const dvec3 cosine = warped ? place * place : place;
+    const double value = maskingOverCosine(material, cosine.x, cosine.y) / unit;
+    return dvec3(bytes ? std::min(value, 1.0) : value);
+  }));
+  return result;
+}
+
+}  // namespace limn::brdf
+
+namespace limn::glsl {
+namespace {
+
+/// The two texels around `place` of an axis of `size` texels, and the weight of the second: as OpenGL 4.5,
+/// section 8.14.3, with clamping to the edge.
+struct Neighbours {
+  int low, high;
+  float weight;
+};
+
+Neighbours neighbours(float coordinate, int size) {
+  const float u = coordinate * static_cast<float>(size) - 0.5f;
+  const float low = std::floor(u);
+  const int first = static_cast<int>(low);
+  return {std::clamp(first, 0, size - 1), std::clamp(first + 1, 0, size - 1), u - low};
+}
+
+vec3 filtered(const brdf::FactorTable& table, const Neighbours& x, const Neighbours& y, int z) {
+  const vec3 low = mix(table.at(x.low, y.low, z), table.at(x.high, y.low, z), x.weight);
+  const vec3 high = mix(table.at(x.low, y.high, z), table.at(x.high, y.high, z), x.weight);
+  return mix(low, high, y.weight);
+}
+
+}  // namespace
+
+vec3 factored_lookup(const brdf::FactorTable& table, vec2 place) {
+  return factored_lookup_layer(table, place, 0);
+}
+
+vec3 factored_lookup_layer(const brdf::FactorTable& table, vec2 place, int layer) {
+  const vec2 uv =
+      factored_coordinates(place, vec2(static_cast<float>(table.width), static_cast<float>(table.height)));
+  return filtered(table, neighbours(uv.x, table.width), neighbours(uv.y, table.height), layer);
+}
+
+vec3 factored_lookup_volume(const brdf::FactorTable& table, vec3 place) {
+  const vec3 size(static_cast<float>(table.width), static_cast<float>(table.height),
+                  static_cast<float>(table.depth));
+  const vec3 uvw = factored_coordinates(place, size);
+  const Neighbours x = neighbours(uvw.x, table.width), y = neighbours(uvw.y, table.height),
+                   z = neighbours(uvw.z, table.depth);
+  return mix(filtered(table, x, y, z.low), filtered(table, x, y, z.high), z.weight);
+}
+
+}  // namespace limn::glsl

@@ -1,0 +1,177 @@
+// BRDFs factored into tables of few dimensions: where in its table each factor is looked up, and the product. Every
+// function returns f n.l, 1/sr, as the tables hold it: the cosine that f divides by cancels.
+//
+// A place is a point of [0, 1]^2 (or ^3); 0 and 1 are the centres of the first and the last texel, so that both ends of
+// a coordinate are met. Tables are filtered linearly and clamped to the edge.
+//
+// Two tables (McCool, Ang and Ahmad 2001; Heidrich and Seidel 1999): f n.l = T1(h.l, n.h) T2(n.l, n.v), where T1 holds
+// Fresnel's term times the distribution of normals, and T2 masking over 4 n.v. In published coordinates they lie over
+// the cosines. A lobe of width m is m^2 wide in n.h, but m in sqrt(1 - n.h), which warped tables lie over: their error
+// is 0.4 / (N m)^2 for N texels where the cosines' is 0.33 / (N m^2)^2.
+#ifndef LIMN_FACTORED_GLSL
+#define LIMN_FACTORED_GLSL
+#include "glsl/numeric/language.glsl"
+
+// A table and its look-up: a texture in GLSL, core/brdf/factor_tables.h in C++.
+#ifdef __cplusplus
+#include "core/base/export.h"
+namespace limn::brdf {
+struct FactorTable;
+}
+namespace limn::glsl {
+LIMN_API glm::vec3 factored_lookup(const brdf::FactorTable& table, glm::vec2 place);
+LIMN_API glm::vec3 factored_lookup_layer(const brdf::FactorTable& table, glm::vec2 place, int layer);
+LIMN_API glm::vec3 factored_lookup_volume(const brdf::FactorTable& table, glm::vec3 place);
+}  // namespace limn::glsl
+#define FACTORED_TABLE const brdf::FactorTable&
+#define FACTORED_LAYERS const brdf::FactorTable&
+#define FACTORED_VOLUME const brdf::FactorTable&
+#else
+#define FACTORED_TABLE sampler2D
+#define FACTORED_LAYERS sampler2DArray
+#define FACTORED_VOLUME sampler3D
+#endif
+
+LIMN_BEGIN
+
+// Texture coordinates of a place in a table of `size` texels.
+LIMN_FN vec2 factored_coordinates(vec2 place, vec2 size) {
+  return (place * (size - vec2(1.0f)) + vec2(0.5f)) / size;
+}
+LIMN_FN vec3 factored_coordinates(vec3 place, vec3 size) {
+  return (place * (size - vec3(1.0f)) + vec3(0.5f)) / size;
+}
+
+#ifndef __cplusplus
+vec3 factored_lookup(sampler2D table, vec2 place) {
+  return textureLod(table, factored_coordinates(place, vec2(textureSize(table, 0))), 0.0).rgb;
+}
+vec3 factored_lookup_layer(sampler2DArray table, vec2 place, int layer) {
+  return textureLod(table, vec3(factored_coordinates(place, vec2(textureSize(table, 0).xy)), float(layer)), 0.0).rgb;
+}
+vec3 factored_lookup_volume(sampler3D table, vec3 place) {
+  return textureLod(table, factored_coordinates(place, vec3(textureSize(table, 0))), 0.0).rgb;
+}
+#endif
+
+// What isotropic factors depend on, each in [0, 1].
+struct FactoredAngles {
+  float n_dot_l;
+  float n_dot_v;
+  float l_dot_h;
+  float h_from_n;  // sqrt(1 - n.h)
+};
+
+// The half vector; n where l = -v.
+LIMN_FN vec3 factored_half(vec3 n, vec3 v, vec3 l) {
+  vec3 sum = v + l;
+  float size = length(sum);
+  return size > 1e-6f ? sum / size : n;
+}
+
+// sqrt(1 - n.h) is taken as |n - h| / sqrt(2): 1 - n.h has lost its digits where the lobe is.
+LIMN_FN FactoredAngles factored_angles(vec3 n, vec3 v, vec3 l) {
+  vec3 h = factored_half(n, v, l);
+  FactoredAngles a;
+  a.n_dot_l = clamp(dot(n, l), 0.0f, 1.0f);
+  a.n_dot_v = clamp(dot(n, v), 0.0f, 1.0f);
+  a.l_dot_h = clamp(dot(l, h), 0.0f, 1.0f);
+  a.h_from_n = min(length(n - h) * 0.70710678f, 1.0f);
+  return a;
+}
+
+// Places in the two tables.
+LIMN_FN vec2 factored_place_1(FactoredAngles a, bool warped) {
+  return vec2(a.l_dot_h, warped ? 1.0f - a.h_from_n : 1.0f - a.h_from_n * a.h_from_n);
+}
+LIMN_FN vec2 factored_place_2(FactoredAngles a, bool warped) {
+  vec2 cosines = vec2(a.n_dot_l, a.n_dot_v);
+  return warped ? sqrt(cosines) : cosines;
+}
+
+// Two tables. What a fit left as a diffuse floor, the caller adds.
+LIMN_FN vec3 factored_response(FACTORED_TABLE t1, FACTORED_TABLE t2, FactoredAngles a, bool warped) {
+  return factored_lookup(t1, factored_place_1(a, warped)) * factored_lookup(t2, factored_place_2(a, warped));
+}
+
+// Places in the rows of one-dimensional factors: the distribution's over n.h, Fresnel's over h.l, masking's over n.l
+// or n.v. `cosine_place` of 0 has an infinite slope, as masking and Fresnel's term are steep at grazing angles.
+LIMN_FN float factored_half_place(FactoredAngles a) { return 1.0f - a.h_from_n; }
+LIMN_FN float factored_cosine_place(float cosine) { return sqrt(cosine); }
+
+// log f = D(n.h) + F(h.l) + G(n.l) + G(n.v): the rows of `logs` are D, F and G, natural logarithms of f in 1/sr.
+LIMN_FN vec3 factored_dfg_response(FACTORED_TABLE logs, FactoredAngles a) {
+  vec3 sum = factored_lookup(logs, vec2(factored_half_place(a), 0.0f)) +
+             factored_lookup(logs, vec2(factored_cosine_place(a.l_dot_h), 0.5f)) +
+             factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_l), 1.0f)) +
+             factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_v), 1.0f));
+  return exp(sum) * a.n_dot_l;
+}
+
+// Homomorphic factorisation (McCool, Ang and Ahmad 2001) of isotropic BRDFs, log f = p(n.l) + q(n.h) + p(n.v): the
+// rows of `logs` are p and q.
+LIMN_FN vec3 factored_pqp_response(FACTORED_TABLE logs, FactoredAngles a) {
+  vec3 sum = factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_l), 0.0f)) +
+             factored_lookup(logs, vec2(factored_half_place(a), 1.0f)) +
+             factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_v), 0.0f));
+  return exp(sum) * a.n_dot_l;
+}
+
+// Place of a direction of the upper hemisphere (local frame) in a paraboloid's disc. Warped, the disc's radius is
+// replaced by its square root, which gives the texels to the directions around n.
+LIMN_FN vec2 factored_disc_place(vec3 direction, bool warped) {
+  vec2 disc = vec2(direction.x, direction.y) / (1.0f + max(direction.z, 0.0f));
+  float radius = length(disc);
+  if (warped && radius > 0.0f) disc = disc / sqrt(radius);
+  return clamp(0.5f * disc + vec2(0.5f), vec2(0.0f), vec2(1.0f));
+}
+
+// The same for BRDFs that turn with the tangent: p and q over directions. The layers of `logs` are p and q; local frame.
+LIMN_FN vec3 factored_pqp_disc_response(FACTORED_LAYERS logs, vec3 v, vec3 l, bool warped) {
+  vec3 h = factored_half(vec3(0.0f, 0.0f, 1.0f), v, l);
+  vec3 sum = factored_lookup_layer(logs, factored_disc_place(l, false), 0) +
+             factored_lookup_layer(logs, factored_disc_place(h, warped), 1) +
+             factored_lookup_layer(logs, factored_disc_place(v, false), 0);
+  return exp(sum) * max(l.z, 0.0f);
+}
+
+// The light's direction as seen from the half vector (Rusinkiewicz 1998, A New Change of Variables for Efficient BRDF
+// Representation): h turned to +z about the axis across n and h. Local frame.
+LIMN_FN vec3 factored_difference(vec3 h, vec3 l) {
+  float across = length(vec2(h.x, h.y));
+  vec2 azimuth = across > 1e-6f ? vec2(h.x, h.y) / across : vec2(1.0f, 0.0f);
+  float along = l.x * azimuth.x + l.y * azimuth.y;
+  float side = l.y * azimuth.x - l.x * azimuth.y;
+  return vec3(along * h.z - l.z * across, side, along * across + l.z * h.z);
+}
+
+// Half vector and difference (Kautz and McCool 1999, Interactive Rendering with Arbitrary BRDFs using Separable
+// Approximations): f n.l as the sum of `terms` products of a layer of `halves` and a layer of `differences`.
+LIMN_FN vec3 factored_svd_response(FACTORED_LAYERS halves, FACTORED_LAYERS differences, vec3 v, vec3 l, int terms) {
+  vec3 h = factored_half(vec3(0.0f, 0.0f, 1.0f), v, l);
+  vec2 half_place = factored_disc_place(h, true);
+  vec2 difference_place = factored_disc_place(factored_difference(h, l), false);
+  vec3 sum = vec3(0.0f);
+  for (int k = 0; k < terms; ++k) {
+    sum += factored_lookup_layer(halves, half_place, k) * factored_lookup_layer(differences, difference_place, k);
+  }
+  return max(sum, vec3(0.0f)) * max(l.z, 0.0f);
+}
+
+// Place of a pair of directions in a table of an isotropic BRDF over half vector and difference: the half vector's angle
+// warped once more than factors' is, as measured data are kept, then angle and azimuth of l about h. The azimuth is folded into [0, pi / 2]: isotropic reciprocal BRDFs with a mirror image of their own repeat there.
+LIMN_FN vec3 factored_volume_place(vec3 v, vec3 l) {
+  vec3 n = vec3(0.0f, 0.0f, 1.0f);
+  vec3 h = factored_half(n, v, l);
+  vec3 d = factored_difference(h, l);
+  float across = length(vec2(d.x, d.y));
+  float azimuth = across > 1e-6f ? 2.0f * inverse_pi * atan(abs(d.y), abs(d.x)) : 0.0f;
+  return vec3(1.0f - sqrt(min(length(n - h) * 0.70710678f, 1.0f)), min(2.0f * inverse_pi * atan(across, max(d.z, 0.0f)), 1.0f),
+              min(azimuth, 1.0f));
+}
+LIMN_FN vec3 factored_volume_response(FACTORED_VOLUME table, vec3 v, vec3 l) {
+  return factored_lookup_volume(table, factored_volume_place(v, l)) * max(l.z, 0.0f);
+}
+
+LIMN_END
+#endif  // LIMN_FACTORED_GLSL
