@@ -159,15 +159,16 @@ LIMN_FN vec3 factored_svd_response(FACTORED_LAYERS halves, FACTORED_LAYERS diffe
 }
 
 // Place of a pair of directions in a table of an isotropic BRDF over half vector and difference: the half vector's angle
-// warped once more than factors' is, as measured data are kept, then angle and azimuth of l about h. The azimuth is folded into [0, pi / 2]: isotropic reciprocal BRDFs with a mirror image of their own repeat there.
+// warped once more than factors' is, as measured data are kept, then angle and azimuth of l about h. The azimuth is
+// folded into [0, pi / 2]: isotropic reciprocal BRDFs that equal their mirror image repeat there.
 LIMN_FN vec3 factored_volume_place(vec3 v, vec3 l) {
   vec3 n = vec3(0.0f, 0.0f, 1.0f);
   vec3 h = factored_half(n, v, l);
   vec3 d = factored_difference(h, l);
   float across = length(vec2(d.x, d.y));
   float azimuth = across > 1e-6f ? 2.0f * inverse_pi * atan(abs(d.y), abs(d.x)) : 0.0f;
-  return vec3(1.0f - sqrt(min(length(n - h) * 0.70710678f, 1.0f)), min(2.0f * inverse_pi * atan(across, max(d.z, 0.0f)), 1.0f),
-              min(azimuth, 1.0f));
+  float polar = 2.0f * inverse_pi * atan(across, max(d.z, 0.0f));
+  return vec3(1.0f - sqrt(min(length(n - h) * 0.70710678f, 1.0f)), min(polar, 1.0f), min(azimuth, 1.0f));
 }
 LIMN_FN vec3 factored_volume_response(FACTORED_VOLUME table, vec3 v, vec3 l) {
   return factored_lookup_volume(table, factored_volume_place(v, l)) * max(l.z, 0.0f);
