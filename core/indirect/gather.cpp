@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "core/frame/array_block.h"
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/scene/scene.h"
 
@@ -104,11 +105,10 @@ void Gather::shade(ShadePass shade) {
   if (shade.count == 0) shade.count = lights_.count;
   const bool accumulate = shade.first > 0;
   frame::PassBuilder pass = graph_.addPass("shade", technique_);
-  const bool fitsBlock = lights_.count * sizeof(glsl::VirtualPointLight) <=
-                         static_cast<size_t>(inputs_.gpuScene.device().limits().maxUniformBlockBytes);
+  const Access lights = frame::arrayBlock<glsl::VirtualPointLight>(
+      inputs_.gpuScene.device().limits(), lights_.count, "VIRTUAL_LIGHT_COUNT", shade.program.defines);
   pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
-      .read(lights_.lights, fitsBlock ? Access::uniformBuffer : Access::storageLoad, "VirtualLights",
-            "virtual lights");
+      .read(lights_.lights, lights, "VirtualLights", "virtual lights");
   readSurfaces(pass, gbuffer_);
   for (const shadow::SampledTexture& s : shade.sampled) pass.read(s.texture, Access::sampled, s.name, s.why);
   if (shade.declare) shade.declare(pass);
@@ -119,7 +119,6 @@ void Gather::shade(ShadePass shade) {
   shade.program.defines["SPLIT"] = splitting ? "1" : "0";
   shade.program.defines["ACCUMULATE"] = accumulate ? "1" : "0";
   shade.program.defines["LAMBERTIAN"] = specular_ ? "0" : "1";
-  if (fitsBlock) shade.program.defines["VIRTUAL_LIGHT_COUNT"] = std::to_string(lights_.count);
   const auto program = pass.program(shade.program);
   pass.execute([program, shade = std::move(shade), lightCount = lights_.count, settings = settings_,
                 size = inputs_.size](frame::PassContext& context) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/frame/array_block.h"
+
 namespace limn::shadow {
 
 using frame::Access;
@@ -14,9 +16,6 @@ constexpr size_t kDispatchLights = 8;
 constexpr std::array<const char*, kDispatchLights> kLightLayerNames{
     "light_layers[0]", "light_layers[1]", "light_layers[2]", "light_layers[3]",
     "light_layers[4]", "light_layers[5]", "light_layers[6]", "light_layers[7]"};
-
-/// Of a uniform block, on every device with OpenGL 4.5.
-constexpr size_t kUniformBlockBytes = 16384;
 
 }  // namespace
 
@@ -44,15 +43,12 @@ std::vector<AlikeLights> alikeLights(std::span<const LightLayout> layouts) {
   return groups;
 }
 
-void readMaps(frame::PassBuilder& pass, const ShadowMaps& maps, std::map<std::string, std::string>& defines) {
-  // Uniform blocks where they fit: of these all invocations load at once.
-  const auto place = [&](int count, size_t bytes, const char* define) {
-    if (static_cast<size_t>(count) * bytes > kUniformBlockBytes) return Access::storageLoad;
-    defines[define] = std::to_string(count);
-    return Access::uniformBuffer;
-  };
-  const Access views = place(maps.layers, sizeof(glsl::ShadowView), "SHADOW_VIEW_COUNT");
-  const Access lights = place(maps.lightSamples, sizeof(glsl::ShadowLight), "SHADOW_LIGHT_COUNT");
+void readMaps(frame::PassBuilder& pass, const gpu::Device& device, const ShadowMaps& maps,
+              std::map<std::string, std::string>& defines) {
+  const Access views =
+      frame::arrayBlock<glsl::ShadowView>(device.limits(), maps.layers, "SHADOW_VIEW_COUNT", defines);
+  const Access lights =
+      frame::arrayBlock<glsl::ShadowLight>(device.limits(), maps.lightSamples, "SHADOW_LIGHT_COUNT", defines);
   pass.read(maps.depth, Access::sampled, "shadow_depth", "shadow maps")
       .read(maps.views, views, "ShadowViews", "projections")
       .read(maps.lights, lights, "ShadowLights", "layers of each light");

@@ -27,8 +27,8 @@ struct LIMN_API AlikeLights {
 /// Returns the dispatches for all lights of a request, in the order of their first lights.
 LIMN_API std::vector<AlikeLights> alikeLights(std::span<const LightLayout> layouts);
 
-/// Declares in `pass` the reads of the maps, and adds what its programs are compiled for.
-LIMN_API void readMaps(frame::PassBuilder& pass, const ShadowMaps& maps,
+/// Declares in `pass` the reads of the maps, and adds to `defines` how its programs declare them.
+LIMN_API void readMaps(frame::PassBuilder& pass, const gpu::Device& device, const ShadowMaps& maps,
                        std::map<std::string, std::string>& defines);
 
 }  // namespace limn::shadow

@@ -89,7 +89,7 @@ frame::TextureHandle addVisibilityPass(frame::FrameGraph& graph, const Technique
         .read(g.geometricNormal, Access::sampled, kGBufferNames.geometricNormal, "tangent planes");
   }
   builder.read(g.instance, Access::sampled, kGBufferNames.instance, "a light does not see itself");
-  readMaps(builder, pass.maps, pass.program.defines);
+  readMaps(builder, inputs.gpuScene.device(), pass.maps, pass.program.defines);
   for (const SampledTexture& s : pass.sampled) builder.read(s.texture, Access::sampled, s.name, s.why);
   if (pass.declare) pass.declare(builder);
   const frame::TextureHandle result =

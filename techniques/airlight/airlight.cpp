@@ -69,7 +69,7 @@ class Airlight : public Technique {
         .read(inputs.handles.lights, Access::storageLoad, "Lights", "what lights send")
         .read(inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "where viewing rays end");
     gpu::ProgramDesc source{.files = {"techniques/airlight/airlight.comp.glsl"}, .defines = {}};
-    shadow::readMaps(pass, maps, source.defines);
+    shadow::readMaps(pass, inputs.gpuScene.device(), maps, source.defines);
     lights.define(source.defines);
     const frame::TextureHandle result =
         pass.write(target, Access::imageLoadStore, "radiance", "light scattered towards the camera");

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 
+#include "core/frame/array_block.h"
 #include "core/indirect/gather.h"
 #include "core/indirect/paraboloid_maps.h"
 #include "core/indirect/virtual_areas.h"
@@ -127,11 +128,11 @@ class ClusteredVisibility : public Technique {
     if (contact > 0) pass.sampled.push_back({"area_depths", maps.depth, "blockers just before the receiver"});
     if (p.choice("search") == 1)
       pass.sampled.push_back({"area_depth_bounds", pyramid.texture, "nearest depths"});
-    const bool fitsBlock = static_cast<size_t>(areas.count) * sizeof(glsl::ShadowView) <=
-                           static_cast<size_t>(device.limits().maxUniformBlockBytes);
-    if (fitsBlock) pass.program.defines["AREA_COUNT"] = std::to_string(areas.count);
-    pass.declare = [fourier, areas, access = fitsBlock ? Access::uniformBuffer : Access::storageLoad](
-                       frame::PassBuilder& builder) {
+    // One length for both blocks, chosen by the larger of them.
+    static_assert(sizeof(glsl::VirtualAreaLight) <= sizeof(glsl::ShadowView));
+    const Access access =
+        frame::arrayBlock<glsl::ShadowView>(device.limits(), areas.count, "AREA_COUNT", pass.program.defines);
+    pass.declare = [fourier, areas, access](frame::PassBuilder& builder) {
       fourier.declare(builder);
       builder.read(areas.views, access, "AreaViews", "hemispheres of the maps")
           .read(areas.areas, access, "AreaLights", "sizes of the area lights");
