@@ -84,6 +84,9 @@ class LIMN_API ParameterValues {
   ParameterValues() = default;
   ParameterValues(std::string technique, std::span<const Parameter> declared);
 
+  /// Returns whether a parameter of that name was declared.
+  bool has(std::string_view name) const { return find(name) < declared_.size(); }
+
   bool boolean(std::string_view name) const;
   int integer(std::string_view name) const;
   float real(std::string_view name) const;

@@ -26,9 +26,7 @@ void refuseTwo(const std::vector<TechniqueUse>& techniques, TermSet terms, const
 
 /// Returns the parameter of that name, or `otherwise` for techniques that have none.
 int parameterOr(const TechniqueUse& use, std::string_view parameter, int otherwise) {
-  const bool declared =
-      std::ranges::any_of(use.parameters.declared(), [&](const Parameter& p) { return parameter == p.name; });
-  return declared ? use.parameters.integer(parameter) : otherwise;
+  return use.parameters.has(parameter) ? use.parameters.integer(parameter) : otherwise;
 }
 
 }  // namespace

@@ -17,13 +17,9 @@ using frame::Access;
 
 namespace {
 
-bool declares(const ParameterValues& p, std::string_view name) {
-  return std::ranges::any_of(p.declared(), [&](const Parameter& known) { return known.name == name; });
-}
-
 /// light_size, or that of the scene where there is no such parameter.
 float lightSize(const ParameterValues& p) {
-  return declares(p, "light_size") ? p.real("light_size") : -1;
+  return p.has("light_size") ? p.real("light_size") : -1;
 }
 
 /// Lights that one dispatch answers for; without layers the program goes through all lights.
@@ -54,7 +50,7 @@ void runBound(VisibilityPass& pass, std::span<const LightLayout> layouts) {
 
 ShadowMapDesc shadowMapDesc(const ParameterValues& parameters) {
   ShadowMapDesc desc{.size = parameters.integer("shadow_map_size")};
-  if (!declares(parameters, "shadow_map_fit") || parameters.choice("shadow_map_fit") == 0) return desc;
+  if (!parameters.has("shadow_map_fit") || parameters.choice("shadow_map_fit") == 0) return desc;
   desc.fit = MapFit::view;
   desc.lightSize = lightSize(parameters);
   return desc;

@@ -36,6 +36,14 @@ TEST(Parameters, StartAtTheirDefaults) {
   EXPECT_EQ(values.choice("pattern"), 1);
 }
 
+TEST(Parameters, SayWhichWereDeclared) {
+  const ParameterValues values("demo", kDeclared);
+  EXPECT_TRUE(values.has("shadow_map_size"));
+  EXPECT_TRUE(values.has("pattern"));
+  EXPECT_FALSE(values.has("shadow_map"));
+  EXPECT_FALSE(ParameterValues().has("pattern"));
+}
+
 TEST(Parameters, BothEndsOfARangeAreAccepted) {
   ParameterValues values("demo", kDeclared);
   values.set("shadow_map_size", "16");
