@@ -1,17 +1,11 @@
 // The blocker search of percentage-closer soft shadows by point samples (Fernando 2005, steps 1 and 2).
 //
-// Define PATTERN 0: grid, 1: R2 sequence shifted per pixel; SEARCH 0: at the near plane, 1: through the cone, 2: at the plane
-// to which bounds of the depths narrow the kernel.
+// Define PATTERN 0: grid, 1: R2 sequence shifted per pixel; SEARCH: see glsl/shadow/blocker_reach.glsl.
 #ifndef LIMN_BLOCKER_SAMPLES_GLSL
 #define LIMN_BLOCKER_SAMPLES_GLSL
 #include "glsl/numeric/sampling.glsl"
+#include "glsl/shadow/blocker_reach.glsl"
 #include "glsl/shadow/visibility.glsl"
-#if SEARCH == 2
-#define BOUNDS_DEPTH min_max_windows_depth
-#include "glsl/shadow/blocker_search.glsl"
-
-uniform int search_rounds;
-#endif
 
 uniform int blocker_samples;
 
@@ -62,14 +56,8 @@ MapKernel sample_rays(ShadowCursor cursor, VisibilityQuery q, LightView part) {
 // Steps 1 and 2: mean distance from the blockers to the receiver along the light's axis, metres; 0: there are none, V = 1;
 // negative: nothing else is there, V = 0.
 float blocker_gap(inout ShadowCursor cursor, VisibilityQuery q, vec3 shift) {
-#if SEARCH == 2
-  BlockerSearch search = blocker_search(cursor, q, search_rounds);
-  if (search.answer == search_lit) return 0.0;
-  if (search.answer == search_umbra) return -1.0;
-  float reach = search.gap;
-#else
-  float reach = shadow_near_gap(cursor, q);
-#endif
+  float reach;
+  if (!blocker_reach(cursor, q, reach)) return reach;
   LightView part = light_view_part(q.light);
   vec3 rise = light_view_rise(part);
   MapKernel rays = sample_rays(cursor, q, part);

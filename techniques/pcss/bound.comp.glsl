@@ -2,18 +2,13 @@
 // worked out once for it: a sample is two numbers, of which place and height above the tangent plane are affine functions.
 // One view sees all of the light, which is a rectangle.
 //
-// PATTERN 0: grid, 1: R2 sequence shifted per pixel. SEARCH 0: at the near plane, 1: through the cone, 2: at the plane to
-// which bounds of the depths narrow the kernel, by the technique's own lookups.
+// PATTERN 0: grid, 1: R2 sequence shifted per pixel. SEARCH: see glsl/shadow/blocker_reach.glsl, whose lookups are the
+// technique's own.
 #include "glsl/numeric/sampling.glsl"
+#include "glsl/shadow/blocker_reach.glsl"
 #include "glsl/shadow/map_taps.glsl"
 #include "glsl/shadow/visibility_main.glsl"
 
-#if SEARCH == 2
-#define BOUNDS_DEPTH min_max_windows_depth
-#include "glsl/shadow/blocker_search.glsl"
-
-uniform int search_rounds;
-#endif
 uniform int blocker_samples;
 uniform int filter_samples;
 
@@ -90,14 +85,8 @@ Places places_at(ShadowCursor cursor, Lattice points, MapKernel rays, float gap)
 // Mean distance from the blockers to the receiver along the light's axis, metres; 0: there are none, V = 1; negative: nothing
 // else is there, V = 0.
 float mean_gap(ShadowCursor cursor, VisibilityQuery q, MapTest test, MapKernel rays, vec3 rises, vec3 shift) {
-#if SEARCH == 2
-  BlockerSearch search = blocker_search(cursor, q, search_rounds);
-  if (search.answer == search_lit) return 0.0;
-  if (search.answer == search_umbra) return -1.0;
-  float reach = search.gap;
-#else
-  float reach = shadow_near_gap(cursor, q);
-#endif
+  float reach;
+  if (!blocker_reach(cursor, q, reach)) return reach;
   Lattice points = lattice(blocker_samples, shift.xy);
   vec3 rise = of_numbers(points, rises);
 #if SEARCH == 1

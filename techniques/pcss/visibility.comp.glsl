@@ -5,7 +5,7 @@
 // the soft-shadow framework hold for every projection and across the faces of a cube, and only the part of the light
 // above the receiver's tangent plane is sampled.
 //
-// PATTERN 0: grid, 1: R2 sequence shifted per pixel. SEARCH 0: at the near plane, 1: through the cone.
+// PATTERN, SEARCH: see glsl/shadow/blocker_samples.glsl.
 #include "glsl/shadow/blocker_samples.glsl"
 #include "glsl/shadow/visibility_main.glsl"
 
