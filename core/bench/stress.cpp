@@ -61,7 +61,7 @@ Term shown(Term answered, StressChange change) {
     case StressChange::albedo:
       return answered == Term::indirect ? Term::indirect : Term::direct;
     default:
-      return answered == Term::environment ? Term::direct : answered;
+      return answered == Term::environment || answered == Term::surface ? Term::direct : answered;
   }
 }
 
@@ -118,7 +118,8 @@ struct StressRun::Asked {
   Term answered, shown;
 
   std::string name() const {
-    return answered == Term::environment && shown == Term::direct ? limn::name(answered) : limn::name(shown);
+    const bool part = answered == Term::environment || answered == Term::surface;
+    return part && shown == Term::direct ? limn::name(answered) : limn::name(shown);
   }
 };
 
@@ -156,7 +157,9 @@ std::vector<StressRun::Asked> StressRun::askedOf(TermSet answered, StressChange 
     if (std::ranges::find(all, asked.name(), &Asked::name) == all.end()) all.push_back(asked);
   }
   // Terms of one scene follow each other, since only the last scene is kept.
-  std::ranges::stable_partition(all, [](const Asked& asked) { return asked.answered != Term::environment; });
+  std::ranges::stable_sort(all, {}, [](const Asked& asked) {
+    return asked.answered == Term::environment ? 1 : asked.answered == Term::surface ? 2 : 0;
+  });
   return all;
 }
 
@@ -170,14 +173,17 @@ StressRun::Question& StressRun::question(const Asked& asked, const StressCase& c
   const bool sky = asked.answered == Term::environment;
   const bool fog = asked.answered == Term::media || asked.answered == Term::caustic;
   const bool glass = asked.answered == Term::specular;
-  const std::string key = fmt::format("{} {} {}{}{}{}", c.scene, static_cast<int>(c.change), c.amount,
-                                      sky ? " sky" : "", fog ? " fog" : "", glass ? " glass" : "");
+  const bool models = asked.answered == Term::surface;
+  const std::string key =
+      fmt::format("{} {} {}{}{}{}{}", c.scene, static_cast<int>(c.change), c.amount, sky ? " sky" : "",
+                  fog ? " fog" : "", glass ? " glass" : "", models ? " models" : "");
   if (question_ && question_->key == key) return *question_;
   question_.reset();
   scene::Scene scene = scene_(c.scene);
   if (sky) scene = litBySkyAlone(std::move(scene));
   if (fog) scene = inFog(std::move(scene));
   if (glass) scene = withGlass(std::move(scene));
+  if (models) scene = withModels(std::move(scene));
   auto question = std::make_unique<Question>(device_, key, stressed(std::move(scene), c.change, c.amount));
   const scene::Pose& pose = question->renderer.pose();
   question->camera = pose.cameras.at(0);

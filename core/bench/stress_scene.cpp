@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/scene/density_grid.h"
+#include "core/scene/material_model.h"
 
 namespace limn::bench {
 namespace {
@@ -230,6 +231,19 @@ scene::Scene withGlass(scene::Scene scene) {
   glass.metallic = 0;
   glass.baseColour = glm::vec4(1);
   glass.baseColourTexture = {};
+  return scene;
+}
+
+scene::Scene withModels(scene::Scene scene) {
+  for (scene::Material& material : scene.materials) {
+    if (material.specularSurface() || material.model) continue;
+    glsl::MaterialModel copper{};
+    copper.kind = glsl::model_torrance_sparrow;
+    copper.eta = {0.2f, 0.92f, 1.1f};
+    copper.k = {3.91f, 2.45f, 2.14f};
+    copper.roughness = glm::vec2(std::max(material.roughness * material.roughness, 0.05f));
+    scene::setModel(material, copper);
+  }
   return scene;
 }
 

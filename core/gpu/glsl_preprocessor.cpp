@@ -29,6 +29,7 @@ class Expander {
   ExpandedSource run(const std::string& entry, const std::map<std::string, std::string>& defines) {
     result_.text = "#version 450 core\n";
     for (const auto& [name, value] : defines) define(name, value);
+    defines_ = &defines;
     const auto text = lookup_(entry);
     if (!text) throw Error(fmt::format("shader file '{}' does not exist", entry));
     appendFile(entry, *text, false);
@@ -91,10 +92,13 @@ class Expander {
       appendLineMark(line, numberOf(from));
       result_.text += fmt::format("#error {}\n", problem);
     };
-    if (argument.size() < 3 || argument.front() != '"' || argument.back() != '"') {
-      return refuse(fmt::format("include {} is not of the form \"path\"", argument));
+    const auto named = defines_->find(argument);
+    const bool quoted = argument.size() >= 3 && argument.front() == '"' && argument.back() == '"';
+    if (!quoted && named == defines_->end()) {
+      return refuse(
+          fmt::format("include {} is not of the form \"path\", nor a define of the program", argument));
     }
-    const std::string wanted = argument.substr(1, argument.size() - 2);
+    const std::string wanted = quoted ? argument.substr(1, argument.size() - 2) : named->second;
     const std::string beside = normalised(std::filesystem::path(from).parent_path() / wanted);
     for (const std::string& path : {beside, normalised(wanted)}) {
       if (path.starts_with("../") || path.starts_with('/')) continue;
@@ -119,6 +123,7 @@ class Expander {
   }
 
   const SourceLookup& lookup_;
+  const std::map<std::string, std::string>* defines_ = nullptr;
   ExpandedSource result_;
   std::vector<std::string> stack_;  // files being included, outermost first
   std::set<std::string> complete_;  // files included outside every condition

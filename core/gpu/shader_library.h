@@ -3,12 +3,13 @@
 // Sources are embedded in the binaries. A mount maps a prefix to embedded files and, optionally, to a folder
 // on disk whose files take precedence and are reloaded when they change: prefix "" holds glsl/ (paths begin
 // with "glsl/"), and each technique mounts "techniques/NAME/". #include "path" is looked up beside the
-// including file, then from "". Every file is included once per stage (include guards are allowed but not
-// needed). The stage of an entry file follows from its name: .vert.glsl .frag.glsl .geom.glsl .comp.glsl. The
-// library writes "#version 450 core", the defines, then the expanded text with #line directives; a compile
-// error is reported as Error with the original "file:line: message" of the diagnostics. A LIMN_ macro that an
-// #if tests without asking defined() must be defined, or the compilation fails. Warnings of the compiler are
-// errors in debug contexts only where they name a limn file.
+// including file, then from ""; #include NAME takes the path that the define NAME of the program holds. Every
+// file is included once per stage (include guards are allowed but not needed). The stage of an entry file
+// follows from its name: .vert.glsl .frag.glsl .geom.glsl .comp.glsl. The library writes "#version 450 core",
+// the defines, then the expanded text with #line directives; a compile error is reported as Error with the
+// original "file:line: message" of the diagnostics. A LIMN_ macro that an #if tests without asking defined()
+// must be defined, or the compilation fails. Warnings of the compiler are errors in debug contexts only where
+// they name a limn file.
 #pragma once
 
 #include <filesystem>

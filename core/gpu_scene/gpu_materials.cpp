@@ -32,6 +32,7 @@ glsl::Material packConstants(const Material& m) {
   if (m.normalTexture.image != kNone) flags |= glsl::material_has_normal_texture;
   if (m.emissiveTexture.image != kNone) flags |= glsl::material_has_emissive_texture;
   if (m.specularSurface()) flags |= glsl::material_specular_surface;
+  if (m.model) flags |= glsl::material_has_model;
   out.flags = flags;
   return out;
 }
@@ -84,6 +85,7 @@ GpuMaterials::GpuMaterials(gpu::Device& device, const Scene& scene) : device_(de
   }
   constants_ = gpu::Buffer::of<glsl::Material>(device, "materials", materials_, gpu::BufferUse::updated);
   makeBlocks();
+  makeModels(scene);
   std::vector<bool> isNormalMap(scene.images.size());
   for (const Material& material : scene.materials)
     if (material.normalTexture.image != kNone)
@@ -109,6 +111,17 @@ void GpuMaterials::makeBlocks() {
   for (size_t i = 0; i < materials_.size(); ++i)
     std::memcpy(bytes.data() + i * blockStride_, &materials_[i], sizeof(glsl::Material));
   blocks_ = gpu::Buffer(device_, "material blocks", bytes.size(), gpu::BufferUse::updated, bytes.data());
+}
+
+void GpuMaterials::makeModels(const Scene& scene) {
+  std::vector<glsl::MaterialModel> models;
+  for (const Material& material : scene.materials) {
+    models.push_back(material.model.value_or(glsl::MaterialModel{}));
+    models.back().material = static_cast<uint32_t>(models.size() - 1);
+    if (material.model) modelKinds_ |= 1u << material.model->kind;
+  }
+  if (modelKinds_ != 0)
+    models_ = gpu::Buffer::of<glsl::MaterialModel>(device_, "material models", models, gpu::BufferUse::fixed);
 }
 
 bool GpuMaterials::update(const Scene& scene) {

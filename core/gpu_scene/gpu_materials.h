@@ -19,6 +19,10 @@ class GpuMaterials {
   /// Adopts emissions that changed; everything else of a material is fixed. Returns true if any changed.
   bool update(const Scene& scene);
   const gpu::Buffer& constants() const { return constants_; }
+  /// Returns the model of each material (of kind model_none where it has none); empty where none has one.
+  const gpu::Buffer& models() const { return models_; }
+  /// Returns bit 1 << kind of each model.
+  uint32_t modelKinds() const { return modelKinds_; }
   /// Returns a key that is equal for materials that bind the same textures; 0 means no textures.
   uint32_t textureKey(int material) const { return sets_[static_cast<size_t>(material)].key; }
   /// Returns such a key for the base colour texture alone, which is all that an alpha test needs.
@@ -37,6 +41,7 @@ class GpuMaterials {
 
  private:
   void makeBlocks();
+  void makeModels(const Scene& scene);
   void bindTexture(const frame::PassContext& context, frame::SlotHandle slot, int material,
                    size_t texture) const;
 
@@ -49,6 +54,8 @@ class GpuMaterials {
   gpu::Device& device_;
   std::vector<glsl::Material> materials_;
   gpu::Buffer constants_;
+  gpu::Buffer models_;
+  uint32_t modelKinds_ = 0;
   gpu::Buffer blocks_;      ///< the same data, each at the alignment of a uniform block
   size_t blockStride_ = 0;  ///< bytes
   std::vector<gpu::Texture> textures_;

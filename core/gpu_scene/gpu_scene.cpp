@@ -248,8 +248,12 @@ SceneHandles GpuScene::import(frame::FrameGraph& graph) {
                 .materials = graph.importBuffer("materials", s.materials.constants()),
                 .lights = graph.importBuffer("lights", s.lightBuffer),
                 .lightTextures = {},
-                .density = {}};
+                .density = {},
+                .models = {},
+                .modelKinds = s.materials.modelKinds(),
+                .surface = {}};
   SceneHandles handles = s.imported;
+  if (handles.modelKinds != 0) handles.models = graph.importBuffer("material models", s.materials.models());
   if (s.lightTextures) handles.lightTextures = graph.importTexture("light textures", s.lightTextures);
   handles.density = s.medium.addPass(graph);
   handles.geometry = s.deform.addPass(graph, s.geometry, handles.geometry);

@@ -1,9 +1,16 @@
 // Declares the scene and its G-buffer as resources of a frame graph.
 #pragma once
 
+#include <cstdint>
+#include <memory>
+
 #include "core/frame/frame_graph.h"
 
 namespace limn {
+
+namespace scene {
+struct SurfaceAnswer;
+}  // namespace scene
 
 /// Holds the G-buffer (layout: glsl/surface/gbuffer.glsl), screen-sized with one sample at the pixel centre.
 struct GBuffer {
@@ -14,6 +21,9 @@ struct GBuffer {
   frame::TextureHandle material;         ///< RGBA8, see glsl/surface/gbuffer.glsl
   frame::TextureHandle emission;         ///< RGBA16F, W/(sr m^2)
   frame::TextureHandle instance;         ///< R32UI, index into Pose::instances, 0xffffffff: none
+  /// R16: the tangent as a turn about the normal (glsl::frame_turned); empty where no material of the scene
+  /// is anisotropic.
+  frame::TextureHandle tangent{};
 };
 
 /// Holds the names by which shaders sample the textures of a GBuffer (glsl/surface/gbuffer_input.glsl).
@@ -25,11 +35,12 @@ struct GBufferNames {
   const char* material = "gbuffer_material";
   const char* emission = "gbuffer_emission";
   const char* instance = "gbuffer_instance";
+  const char* tangent = "gbuffer_tangent";
 };
 inline constexpr GBufferNames kGBufferNames;
 
 /// Declares that a pass samples what glsl/surface/gbuffer_input.glsl's pixel_surface() and pixel_position()
-/// need: all of the G-buffer but its instances.
+/// need: all of the G-buffer but its instances and tangents.
 LIMN_API void readSurfaces(frame::PassBuilder& pass, const GBuffer& gbuffer);
 
 /// Holds scene data as graph resources. The version of each handle changes when its contents change, so the
@@ -43,6 +54,10 @@ struct SceneHandles {
   frame::BufferHandle lights;          ///< storage buffer of glsl::Light, index = light index
   frame::TextureHandle lightTextures;  ///< RGBA32F array of textures in front of spot lights; empty: none
   frame::TextureHandle density;        ///< R32F volume (scene::DensityGrid); empty: the medium is homogeneous
+  frame::BufferHandle models{};  ///< storage buffer of glsl::MaterialModel, one per material; empty: none
+  uint32_t modelKinds = 0;       ///< bit 1 << kind of each model of the scene's materials
+  /// Holds the answer to Term::surface; null: none, or the scene has no models.
+  std::shared_ptr<const scene::SurfaceAnswer> surface{};
 };
 
 }  // namespace limn

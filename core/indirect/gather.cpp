@@ -7,6 +7,7 @@
 
 #include "core/frame/array_block.h"
 #include "core/gpu_scene/gpu_scene.h"
+#include "core/gpu_scene/surface_input.h"
 #include "core/scene/scene.h"
 
 namespace limn::indirect {
@@ -109,7 +110,9 @@ void Gather::shade(ShadePass shade) {
       inputs_.gpuScene.device().limits(), lights_.count, "VIRTUAL_LIGHT_COUNT", shade.program.defines);
   pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
       .read(lights_.lights, lights, "VirtualLights", "virtual lights");
-  readSurfaces(pass, gbuffer_);
+  const scene::SurfaceInput surfaces(inputs_.handles, gbuffer_);
+  surfaces.define(shade.program.defines);
+  surfaces.declare(pass);
   for (const shadow::SampledTexture& s : shade.sampled) pass.read(s.texture, Access::sampled, s.name, s.why);
   if (shade.declare) shade.declare(pass);
   shaded_ = pass.write(shaded_, accumulate ? Access::imageLoadStore : Access::imageStore, "gathered",

@@ -22,7 +22,8 @@ enum class Term : uint32_t {
   media = 16,
   environment = 32,
   specular = 64,
-  final = 128
+  final = 128,
+  surface = 256
 };
 using TermSet = uint32_t;
 constexpr TermSet operator|(Term a, Term b) {
@@ -107,6 +108,9 @@ inline constexpr TermInfo kTerms[] = {
      "what the camera sees in mirrors and glass, without caustics and light in the medium",
      "the environment alone, mirrored and refracted once",
      true, TermPicture::answered, "specular surfaces", TermBounces::fromZero, TermInterfaces::fromOne, false, 6},
+    {Term::surface, "surface", "a factor of every D",
+     "how material models (extras.limn_material) reflect light: f cos", "the models' exact f cos",
+     true, TermPicture::none, "how materials reflect", TermBounces::none, TermInterfaces::none, false, -1},
 };
 // clang-format on
 

@@ -55,6 +55,7 @@ void addMaterial(Hasher& h, const scene::Material& m) {
   for (const auto* texture :
        {&m.baseColourTexture, &m.metalRoughTexture, &m.normalTexture, &m.emissiveTexture})
     addTexture(h, *texture);
+  if (m.model) h.add(*m.model);
 }
 
 void addPrimitive(Hasher& h, const scene::Primitive& p) {

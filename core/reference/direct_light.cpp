@@ -65,16 +65,15 @@ struct Estimate {
     if (!(arrival.pdf > 0.f)) return;
     const glm::vec3 value = surface.reflectance(arrival.direction) * arrival.radiance * through(arrival);
     if (value == glm::vec3(0)) return;
-    const float brdfPdf =
-        glsl::brdf_pdf(surface.brdf, surface.values.normal, surface.view, arrival.direction);
+    const float brdfPdf = surface.pdf(arrival.direction);
     if (unblocked(rays, surface, arrival))
       add(value * (powerHeuristic(arrival.pdf, brdfPdf) / arrival.pdf), 1);
   }
 
   template <class View>
   void addBrdfSample(const View& view, const glm::vec3& u) const {
-    const glm::vec3 direction = glsl::brdf_sample(surface.brdf, surface.values.normal, surface.view, u);
-    const float pdf = glsl::brdf_pdf(surface.brdf, surface.values.normal, surface.view, direction);
+    const glm::vec3 direction = surface.sample(u);
+    const float pdf = surface.pdf(direction);
     if (!(pdf > 0.f)) return;
     const Arrival arrival = view.towards(direction);
     if (!(arrival.pdf > 0.f)) return;

@@ -306,9 +306,7 @@ void LightTracer::reflect(const Hit& hit, const glm::vec3& direction, const glm:
   if (!(cosine > 0) || !project(met->position, pixel, depth, perSolidAngle) || !(depths_[pixel] > 0)) return;
   const glm::vec3 origin = met->rayOrigin(towards);
   if (view_.rays.occluded(origin, eye - origin, 1.f)) return;
-  const glm::vec3 reflected = flux *
-                              glsl::brdf(met->brdf, met->values.normal, towards / distance, -direction) *
-                              (cosine * lit / crossed);
+  const glm::vec3 reflected = flux * met->f(towards / distance, -direction) * (cosine * lit / crossed);
   film.add(pixel, glm::dvec3(reflected * view_.rays.medium().transmittanceBetween(met->position, eye)) *
                       (perSolidAngle / (static_cast<double>(distance) * distance)));
 }

@@ -84,8 +84,8 @@ class PathIntegrator final : public Integrator {
 
   /// On to the next surface, in a direction of the BRDF's density; false: nothing comes from there.
   bool step(Surface& surface, const glm::vec3& u, glm::dvec3& throughput) const {
-    const glm::vec3 direction = glsl::brdf_sample(surface.brdf, surface.values.normal, surface.view, u);
-    const float pdf = glsl::brdf_pdf(surface.brdf, surface.values.normal, surface.view, direction);
+    const glm::vec3 direction = surface.sample(u);
+    const float pdf = surface.pdf(direction);
     if (!(pdf > 0.f)) return false;
     throughput *= glm::dvec3(surface.reflectance(direction)) / static_cast<double>(pdf);
     Hit hit;

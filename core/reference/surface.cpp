@@ -34,6 +34,12 @@ struct TextureLookup {
   }
 };
 
+/// The frame in which the material's model is evaluated.
+glsl::Frame modelFrame(const Draw& draw, const Corner& corner, const glm::vec3& normal) {
+  if (!draw.tangents) return glsl::frame_around(normal);
+  return glsl::frame_along(normal, draw.tangentToWorld * glm::vec3(corner.blend(draw.tangents)));
+}
+
 glm::vec3 shadingNormal(const Draw& draw, const Corner& corner, const TextureLookup& lookup,
                         const glm::vec3& geometricNormal) {
   const scene::Material& material = *draw.material;
@@ -133,6 +139,10 @@ Surface seenFrom(const RayScene& rays, const Hit& hit, const glm::vec3& view,
   values.geometric_normal = geometricNormal;
   surface.brdf = glsl::surface_brdf(values.base_colour, values.metallic, values.roughness,
                                     values.specular_factor, values.specular_colour, values.ior);
+  if (draw.material->model) {
+    surface.model = &*draw.material->model;
+    surface.frame = modelFrame(draw, corner, normal);
+  }
   return surface;
 }
 
@@ -140,8 +150,28 @@ Surface seenFrom(const RayScene& rays, const Hit& hit, const glm::vec3& view,
 
 glm::vec3 Surface::reflectance(const glm::vec3& direction) const {
   if (!(glm::dot(values.geometric_normal, direction) > 0.f)) return glm::vec3(0);
+  if (model) {
+    return glsl::model_response(*model, glsl::to_local(frame, view), glsl::to_local(frame, direction));
+  }
   const float cosine = glm::dot(values.normal, direction);
   return cosine > 0.f ? cosine * glsl::brdf(brdf, values.normal, view, direction) : glm::vec3(0);
+}
+
+glm::vec3 Surface::f(const glm::vec3& towards, const glm::vec3& direction) const {
+  if (!model) return glsl::brdf(brdf, values.normal, towards, direction);
+  const glm::vec3 local = glsl::to_local(frame, direction);
+  if (!(local.z > 0.f)) return glm::vec3(0);
+  return glsl::model_response(*model, glsl::to_local(frame, towards), local) / local.z;
+}
+
+glm::vec3 Surface::sample(const glm::vec3& u) const {
+  if (!model) return glsl::brdf_sample(brdf, values.normal, view, u);
+  return glsl::from_local(frame, glsl::model_sample(*model, glsl::to_local(frame, view), u));
+}
+
+float Surface::pdf(const glm::vec3& direction) const {
+  if (!model) return glsl::brdf_pdf(brdf, values.normal, view, direction);
+  return glsl::model_pdf(*model, glsl::to_local(frame, view), glsl::to_local(frame, direction));
 }
 
 Surface surfaceAt(const RayScene& rays, const Hit& hit, const glsl::FrameBlock& frame, int x, int y) {

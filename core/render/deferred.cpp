@@ -7,6 +7,7 @@
 
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/light_textures.h"
+#include "core/gpu_scene/surface_input.h"
 #include "core/shading/environment.h"
 #include "core/shading/ltc_table.h"
 #include "glsl/light/environment.glsl"
@@ -131,7 +132,8 @@ TextureHandle Deferred::addLights(const Frame& frame, TextureHandle before, std:
   frame::PassBuilder builder = frame.graph.addPass("accumulate lights");
   builder.read(frame.handles.frame, Access::uniformBuffer, "FrameBlock", "camera");
   builder.read(frame.handles.lights, Access::storageLoad, "Lights", "lights");
-  readSurfaces(builder, frame.gbuffer);
+  const scene::SurfaceInput surfaces(frame.handles, frame.gbuffer);
+  surfaces.declare(builder);
   if (visibility) builder.read(visibility, Access::sampled, "visibility", "V of each light");
   const TextureHandle ltc = implementation_->ltc(frame.graph);
   builder.read(ltc, Access::sampled, "ltc_table", "glossy light of rectangles");
@@ -140,6 +142,7 @@ TextureHandle Deferred::addLights(const Frame& frame, TextureHandle before, std:
                         .defines = {{"VISIBILITY", visibility ? "1" : "0"},
                                     {"MEDIUM", implementation_->scene.medium.present() ? "1" : "0"},
                                     {"LIGHT_COUNT", std::to_string(lights.size())}}};
+  surfaces.define(desc.defines);
   const scene::MediumInput medium(frame.handles);
   medium.define(desc.defines);
   medium.declare(builder);
@@ -165,7 +168,8 @@ TextureHandle Deferred::addEnvironment(const Frame& frame, TextureHandle before)
   const TextureHandle ltc = implementation_->ltc(frame.graph);
   frame::PassBuilder builder = frame.graph.addPass("environment light");
   builder.read(frame.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, rotation, scale");
-  readSurfaces(builder, frame.gbuffer);
+  const scene::SurfaceInput surfaces(frame.handles, frame.gbuffer);
+  surfaces.declare(builder);
   builder.read(maps[0], Access::sampled, "environment_irradiance", "diffuse light");
   builder.read(maps[1], Access::sampled, "environment_filtered", "glossy light");
   builder.read(ltc, Access::sampled, "ltc_table", "glossy reflectance");
@@ -173,6 +177,7 @@ TextureHandle Deferred::addEnvironment(const Frame& frame, TextureHandle before)
       builder.write(before, Access::imageLoadStore, "radiance", "light of the environment, V = 1");
   gpu::ProgramDesc desc{.files = {"glsl/deferred/environment.comp.glsl"},
                         .defines = {{"MEDIUM", implementation_->scene.medium.present() ? "1" : "0"}}};
+  surfaces.define(desc.defines);
   const scene::MediumInput medium(frame.handles);
   medium.define(desc.defines);
   medium.declare(builder);

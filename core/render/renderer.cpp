@@ -87,12 +87,14 @@ struct Renderer::Implementation {
     mounted.push_back(prefix);
   }
 
+  TechniqueInputs inputsOf(const Use& use, const GBuffer& seen) {
+    return {scene, pose, gpuScene, services, use.settings->parameters, handles, seen, settings.size};
+  }
+
   frame::TextureHandle ask(Use& use, Term term, std::span<const uint32_t> lights,
                            frame::TextureHandle target) {
     const bool behind = term != Term::specular && term != Term::caustic && term != Term::media;
-    TechniqueInputs inputs{
-        scene,        pose, gpuScene, services, use.settings->parameters, handles, behind ? matte : gbuffer,
-        settings.size};
+    TechniqueInputs inputs = inputsOf(use, behind ? matte : gbuffer);
     if (term == Term::specular) {
       inputs.matte = matte;
       inputs.environmentMap = deferred.environmentMap(*graph);
@@ -105,6 +107,23 @@ struct Renderer::Implementation {
     if (!answer)
       throw Error(fmt::format("{}: it answers {} with nothing", described(plugin), limn::name(term)));
     return answer;
+  }
+
+  /// How materials reflect light, for all passes that reflect it.
+  void askSurface() {
+    Use* use = answering(Term::surface);
+    if (!use) return;
+    const TechniquePlugin& plugin = *use->settings->plugin;
+    if (handles.modelKinds == 0 || settings.term == Term::visibility || !gbuffer.depth)
+      return graph->leaveOut("surface", plugin.info->name,
+                             handles.modelKinds == 0 ? "no material has a model" : "no light is reflected");
+    const TechniqueInputs inputs = inputsOf(*use, gbuffer);
+    scene::SurfaceAnswer answer =
+        inTechnique(plugin, [&] { return use->technique->surface(*graph, inputs); });
+    if (answer.file.empty())
+      throw Error(
+          fmt::format("{}: it answers {} with nothing", described(plugin), limn::name(Term::surface)));
+    handles.surface = std::make_shared<const scene::SurfaceAnswer>(std::move(answer));
   }
 
   Use* answering(Term term) {
@@ -267,6 +286,7 @@ struct Renderer::Implementation {
       gbuffer = gbufferPass.add(*graph, gpuScene, handles, settings.size);
     else
       graph->leaveOut("gbuffer", "core", "the scene has no geometry");
+    askSurface();
     const auto building = services.begin(*graph, handles, pose);
     output = settings.term == Term::visibility ? addVisibility() : addRadiance();
     graph->output(output);

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/base/export.h"
+#include "glsl/materials/material_model.glsl"
 #include "glsl/scene/light.glsl"
 
 namespace limn::scene {
@@ -76,12 +77,20 @@ struct Material {
   float attenuationDistance = 0;  ///< 0: infinite
   glm::vec3 attenuationColour{1};
   TextureRef baseColourTexture, metalRoughTexture, normalTexture, emissiveTexture;
+  /// Holds the model of extras.limn_material, which replaces metallic-roughness: `baseColour`, `metallic` and
+  /// `roughness` are then the metal that comes next to it, for what does not evaluate the model itself
+  /// (radiosity, the flux of virtual lights).
+  std::optional<glsl::MaterialModel> model;
 
   /// Says whether the material has no specular part, whatever its textures hold (glsl::brdf_is_lambertian).
-  bool lambertian() const { return metallic == 0 && specularFactor == 0; }
+  bool lambertian() const { return metallic == 0 && specularFactor == 0 && !model; }
   /// Says whether the surface blocks direct and indirect light in both renderers (transmission > 0, or
   /// metallic with roughness below 0.05).
-  bool specularSurface() const { return transmission > 0 || (metallic >= 0.5f && roughness < 0.05f); }
+  bool specularSurface() const {
+    return !model && (transmission > 0 || (metallic >= 0.5f && roughness < 0.05f));
+  }
+  /// Says whether primitives of the material have tangents: its shading depends on them.
+  bool tangents() const { return normalTexture.image != kNone || (model && glsl::model_anisotropic(*model)); }
 };
 
 struct MorphTarget {
@@ -105,7 +114,7 @@ struct EmissivePart {
 struct Primitive {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;   ///< unit; always present after loading (flat if the file has none)
-  std::vector<glm::vec4> tangents;  ///< xyz unit, w = +-1; present when the material has a normal map
+  std::vector<glm::vec4> tangents;  ///< xyz unit, w = +-1; present as Material::tangents() says
   std::vector<glm::vec2> uvs;       ///< present when the material has a texture
   std::vector<glm::vec4> colours;   ///< linear factor on the base colour; may be empty
   std::vector<glm::u16vec4> joints;

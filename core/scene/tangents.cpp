@@ -47,7 +47,7 @@ std::vector<glm::vec4> generateTangents(std::span<const glm::vec3> positions,
                                         std::span<const glm::vec3> normals, std::span<const glm::vec2> uvs,
                                         std::span<const uint32_t> indices) {
   std::vector<Sum> sums(positions.size());
-  for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
+  for (std::size_t i = 0; !uvs.empty() && i + 2 < indices.size(); i += 3)
     accumulate(positions, normals, uvs, &indices[i], sums);
   std::vector<glm::vec4> tangents(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {

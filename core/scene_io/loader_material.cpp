@@ -220,6 +220,10 @@ Material Loader::readMaterial(const tinygltf::Material& source, const std::strin
   readMaterialExtensions(source, m, what);
   if (source.extensions.contains("KHR_materials_pbrSpecularGlossiness"))
     warn(what + ": KHR_materials_pbrSpecularGlossiness is ignored");
+  if (source.extras.IsObject() && source.extras.Has("limn_material")) {
+    const std::string place = what + " limn_material";
+    applyModel(m, readModel(source.extras.Get("limn_material"), place), place);
+  }
   uvUses_.push_back(use);
   return m;
 }

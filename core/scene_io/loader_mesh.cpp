@@ -121,8 +121,7 @@ void Loader::readAttributes(const tinygltf::Primitive& source, Primitive& out, c
   if (const int normal = attribute(attributes, "NORMAL"); normal != kNone)
     out.normals = toVec3(readFloats(normal, {3}, count, what + " NORMAL"));
   const Material& material = scene_.materials[static_cast<std::size_t>(out.material)];
-  if (const int tangent = attribute(attributes, "TANGENT");
-      tangent != kNone && material.normalTexture.image != kNone)
+  if (const int tangent = attribute(attributes, "TANGENT"); tangent != kNone && material.tangents())
     out.tangents = toVec4(readFloats(tangent, {4}, count, what + " TANGENT"));
   if (const int colour = attribute(attributes, "COLOR_0"); colour != kNone)
     out.colours = toVec4(readFloats(colour, {3, 4}, count, what + " COLOR_0"));
@@ -253,7 +252,7 @@ void Loader::completeNormals(Primitive& out, const std::string& what) {
 void Loader::completePrimitive(Primitive& out, const std::string& what) {
   const Material& material = scene_.materials[static_cast<std::size_t>(out.material)];
   completeNormals(out, what);
-  if (material.normalTexture.image == kNone) {
+  if (!material.tangents()) {
     out.tangents.clear();
   } else if (out.tangents.empty()) {
     out.tangents = generateTangents(out.positions, out.normals, out.uvs, out.indices);

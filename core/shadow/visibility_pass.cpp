@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/gpu_scene/surface_input.h"
 #include "core/shadow/alike_lights.h"
 #include "core/technique/bound.h"
 
@@ -79,12 +80,15 @@ frame::TextureHandle addVisibilityPass(frame::FrameGraph& graph, const Technique
   builder.read(scene.frame, Access::uniformBuffer, "FrameBlock", "camera")
       .read(scene.lights, Access::storageLoad, "Lights", "which part of each light counts");
   if (pass.reflects) {
-    readSurfaces(builder, g);
+    const scene::SurfaceInput surfaces(scene, g);
+    surfaces.define(pass.program.defines);
+    surfaces.declare(builder);
   } else {
     builder.read(g.depth, Access::sampled, kGBufferNames.depth, "receivers")
         .read(g.geometricNormal, Access::sampled, kGBufferNames.geometricNormal, "tangent planes");
   }
-  builder.read(g.instance, Access::sampled, kGBufferNames.instance, "a light does not see itself");
+  if (!pass.reflects || scene.modelKinds == 0)
+    builder.read(g.instance, Access::sampled, kGBufferNames.instance, "a light does not see itself");
   readMaps(builder, inputs.gpuScene.device(), pass.maps, pass.program.defines);
   for (const SampledTexture& s : pass.sampled) builder.read(s.texture, Access::sampled, s.name, s.why);
   if (pass.declare) pass.declare(builder);

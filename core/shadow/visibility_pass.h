@@ -59,8 +59,8 @@ struct VisibilityPass {
   float bias = 1;                       ///< texel footprints
   std::optional<float> lightSize = -1;  ///< < 0: the scene's; nullopt: the program has no such uniform
   std::vector<SampledTexture> sampled = {};
-  /// Says whether the program reflects light: it calls pixel_surface() of glsl/surface/gbuffer_input.glsl,
-  /// and goes through all lights of the maps. Else it answers for one light per layer of the target.
+  /// Says whether the program reflects light: it includes glsl/surface/surface_response.glsl and goes through
+  /// all lights of the maps. Else it answers for one light per layer of the target.
   bool reflects = false;
   /// Sets further uniforms, and fills slots that `declare` announced; may be empty.
   std::function<void(frame::PassContext&, gpu::Program&)> bind = {};

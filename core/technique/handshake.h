@@ -12,7 +12,7 @@
 namespace limn {
 
 /// Increases whenever Handshake or TechniquePlugin changes.
-constexpr uint32_t kTechniqueInterfaceNumber = 2;
+constexpr uint32_t kTechniqueInterfaceNumber = 3;
 
 /// Describes one side of the interface. Only the number may be read before it is known to be equal, so it
 /// stays the first member.

@@ -28,6 +28,7 @@
 #include "core/frame/frame_graph.h"
 #include "core/gpu/shader_source.h"
 #include "core/gpu_scene/scene_handles.h"
+#include "core/gpu_scene/surface_input.h"
 #include "core/question/term.h"
 #include "core/technique/frame_service.h"
 #include "core/technique/handshake.h"
@@ -100,6 +101,10 @@ class Technique {
   /// lights. Passes that the scene does not need are not declared but reported with graph.leaveOut().
   virtual frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                          const TermRequest& request) = 0;
+  /// Declares the passes that make what material_response() looks up, and returns how Term::surface is
+  /// answered: asked of techniques that declare it, before everything that reflects light, where the scene
+  /// has material models. Its requests do not reach addPasses().
+  virtual scene::SurfaceAnswer surface(frame::FrameGraph&, const TechniqueInputs&) { return {}; }
   /// Updates the technique: called before each frame when lights or geometry may have moved. Returns true to
   /// request that the graph is built again.
   virtual bool update(const scene::Pose&) { return false; }

@@ -1,8 +1,9 @@
-// Adds the light of the environment on every surface to the radiance, unoccluded (V = 1). MEDIUM 1: times
-// the medium's transmittance along the normal.
+// Adds the light of the environment on every surface to the radiance, unoccluded (V = 1). Where the material has a model, it
+// is that of the metallic-roughness surface next to it. MEDIUM 1: times the medium's transmittance along the normal.
 #include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/light/environment.glsl"
 #include "glsl/media/medium_input.glsl"
+#include "glsl/surface/surface_response.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f) uniform image2D radiance;
@@ -15,8 +16,11 @@ void main() {
   GBufferSurface surface = pixel_surface(pixel);
   if ((surface.flags & gbuffer_flag_specular) != 0u) return;
   vec3 v = -normalize(pixel_ray(pixel));
-  SurfaceBrdf material = surface_brdf(surface.base_colour, surface.metallic, surface.roughness,
-                                      surface.specular_factor, surface.specular_colour, surface.ior);
+  SurfaceMaterial own = pixel_material(pixel, surface);
+  SurfaceBrdf material = own.brdf;
+#if MATERIAL_MODELS
+  if (has_model(own)) material = nearest_brdf(own);
+#endif
   vec3 light = environment_light(material, surface.normal, v, frame.environment_rotation, frame.environment_scale);
 #if MEDIUM
   Medium medium = scene_medium();

@@ -4,6 +4,10 @@
 #include "glsl/light/light_texture.glsl"
 #include "glsl/media/medium_input.glsl"
 #include "glsl/light/unshadowed_light.glsl"
+#include "glsl/surface/surface_response.glsl"
+#if MATERIAL_MODELS
+#include "glsl/light/model_light.glsl"
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f) uniform image2D radiance;
@@ -24,6 +28,15 @@ vec3 light_transmittance(Light light, vec3 position) {
 }
 #endif
 
+// L_u.
+vec3 unshadowed(Light light, SurfaceMaterial material, vec3 position, GBufferSurface surface, vec3 v) {
+#if MATERIAL_MODELS
+  if (has_model(material))
+    return model_light(light, material.model, material.frame, position, surface.geometric_normal, v);
+#endif
+  return unshadowed_light(light, material.brdf, position, surface.normal, surface.geometric_normal, v);
+}
+
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
@@ -33,8 +46,7 @@ void main() {
   if ((surface.flags & gbuffer_flag_specular) != 0u) return;
   vec3 position = pixel_position(pixel, depth);
   vec3 v = normalize(frame.camera_position.xyz - position);
-  SurfaceBrdf material = surface_brdf(surface.base_colour, surface.metallic, surface.roughness, surface.specular_factor,
-                                      surface.specular_colour, surface.ior);
+  SurfaceMaterial material = pixel_material(pixel, surface);
   vec3 sum = vec3(0.0);
   int i = 0;
   do {  // the condition comes last: software renderers run a loop's body once more where it comes first
@@ -44,8 +56,7 @@ void main() {
     const float lit = 1.0;
 #endif
     if (lit > 0.0) {
-      vec3 arriving = unshadowed_light(lights[light_indices[i]], material, position, surface.normal,
-                                       surface.geometric_normal, v) *
+      vec3 arriving = unshadowed(lights[light_indices[i]], material, position, surface, v) *
                       light_texture(lights[light_indices[i]], position);
 #if MEDIUM
       arriving *= light_transmittance(lights[light_indices[i]], position);

@@ -1,7 +1,10 @@
-// Surface of the G-buffer. MASKED, TEXTURES, COLOURS: see surface_input.glsl.
+// Surface of the G-buffer. SURFACE_TANGENTS 1: and its tangent. MASKED, TEXTURES, COLOURS: see surface_input.glsl.
 #include "glsl/surface/gbuffer.glsl"
 #include "glsl/geometry/surface_input.glsl"
 #include "glsl/surface/normal_map.glsl"
+#if SURFACE_TANGENTS
+#include "glsl/numeric/geometry.glsl"
+#endif
 
 layout(location = 0) in vec3 normal_ws;
 layout(location = 1) in vec4 tangent_ws;
@@ -13,6 +16,9 @@ layout(location = 3) out vec4 out_albedo;
 layout(location = 4) out vec4 out_material;
 layout(location = 5) out vec4 out_emission;
 layout(location = 6) out uint out_instance;
+#if SURFACE_TANGENTS
+layout(location = 7) out float out_tangent;
+#endif
 
 void main() {
   vec2 uv_dx = dFdxFine(surface_uv);
@@ -59,4 +65,9 @@ void main() {
   out_material = texels.material;
   out_emission = texels.emission;
   out_instance = surface_instance.x;
+#if SURFACE_TANGENTS
+  // About the normal as it is read back, around which the frame that the turn counts from flips at n.z = 0.
+  vec2 stored = round(texels.normal * 32767.0) / 32767.0;
+  out_tangent = frame_turn(octahedral_decode(stored), tangent_ws.xyz);
+#endif
 }

@@ -1,7 +1,7 @@
 // The shade pass of techniques that gather indirect light from virtual point lights. The work groups of one z shade the
 // pixels of one sub-buffer, which all have the same virtual lights. SPLIT 1: the G-buffer and the result lie sub-buffer by
 // sub-buffer; 0: both are screens. PARTS: layers of the result (gather_part_*). LAMBERTIAN 1: no material has a specular
-// part. ACCUMULATE 1: adds to what other batches of lights left. VIRTUAL_LIGHT_COUNT: of lights, where they fit a uniform block.
+// part. MATERIAL_MODELS, SURFACE_TANGENTS: see surface_response.glsl. ACCUMULATE 1: adds to what other batches of lights left. VIRTUAL_LIGHT_COUNT: of lights, where they fit a uniform block.
 //
 // A thread shades four pixels of its sub-buffer, so that a light is loaded once for them: one in each quarter of what its work
 // group shades, so that neighbouring threads shade neighbours. They have names of their own in what follows: compilers keep
@@ -15,7 +15,7 @@
 #ifndef LIMN_GATHER_MAIN_GLSL
 #define LIMN_GATHER_MAIN_GLSL
 #include "glsl/surface/brdf_view.glsl"
-#include "glsl/surface/gbuffer_input.glsl"
+#include "glsl/surface/surface_response.glsl"
 #include "glsl/indirect/gather.glsl"
 #include "glsl/indirect/gather_parts.glsl"
 #include "glsl/indirect/virtual_light.glsl"
@@ -52,6 +52,10 @@ struct Receiver {
   vec3 geometric_normal;
 #if !LAMBERTIAN
   BrdfView brdf;
+#endif
+#if MATERIAL_MODELS
+  SurfaceMaterial material;
+  vec3 to_viewer;
 #endif
   float least;            // m^2 of the pixel on the surface, over pi
 };
@@ -98,7 +102,14 @@ void gather_from(VirtualPointLight light, uint pixel, Receiver r, float nearest2
   share *= visibility;
 #endif
 #if !LAMBERTIAN
-  BrdfParts parts = brdf_view_parts(r.brdf, inversesqrt(max(sight.d2, 1e-37)) * sight.offset);
+  vec3 l = inversesqrt(max(sight.d2, 1e-37)) * sight.offset;
+  BrdfParts parts = brdf_view_parts(r.brdf, l);
+#if MATERIAL_MODELS
+  if (has_model(r.material)) {  // all of it: what is left of the surface without its specular part is black
+    parts.diffuse = 0.0;
+    parts.specular = surface_response(r.material, r.normal, r.to_viewer, l) / max(dot(r.normal, l), 1e-6);
+  }
+#endif
   sum.specular += (share * parts.specular) * light.flux.rgb;
   share *= parts.diffuse;
 #endif
@@ -131,9 +142,13 @@ GatherPixel gather_pixel(ivec2 pixel, out Receiver r) {
   r.normal = p.covered ? surface.normal : vec3(0.0);
   r.geometric_normal = surface.geometric_normal;
 #if !LAMBERTIAN
-  SurfaceBrdf brdf = surface_brdf(surface.base_colour, surface.metallic, surface.roughness, surface.specular_factor,
-                                  surface.specular_colour, surface.ior);
-  r.brdf = brdf_view(brdf, surface.normal, normalize(frame.camera_position.xyz - r.position));
+  SurfaceMaterial material = pixel_material(pixel, surface);
+  vec3 to_viewer = normalize(frame.camera_position.xyz - r.position);
+  r.brdf = brdf_view(material.brdf, surface.normal, to_viewer);
+#if MATERIAL_MODELS
+  r.material = material;
+  r.to_viewer = to_viewer;
+#endif
 #endif
   float footprint = depth * length(frame.view_ray_dx.xyz);
   r.least = footprint * footprint * inverse_pi;

@@ -22,6 +22,13 @@ LIMN_FN vec3 unit_or(vec3 v, vec3 otherwise) {
   return size > 0.0f ? v / size : otherwise;
 }
 
+// Unit vector from p to a light's centre, or against a directional light; 0 where p is the centre.
+LIMN_FN vec3 punctual_direction(Light light, vec3 p) {
+  vec3 offset = light.position - p;
+  if (light.type == light_directional) offset = -light.direction;
+  return unit_or(offset, vec3(0.0f));
+}
+
 // Reflected radiance per unit of the rectangle's radiance; v: to the viewer.
 LIMN_FN vec3 unshadowed_rectangle(Rectangle r, SurfaceBrdf s, vec3 n, vec3 ng, vec3 v) {
   RectanglePart part = rectangle_part_above(r, rectangle_above(r, ng), n);
@@ -55,11 +62,7 @@ LIMN_FN vec3 unshadowed_light(Light light, SurfaceBrdf s, vec3 p, vec3 n, vec3 n
     if (factor == 0.0f) return vec3(0.0f);
     return rectangle_radiance(light) * (factor * unshadowed_rectangle(rectangle_from(light, p), s, n, ng, v));
   }
-  vec3 offset = light.position - p;
-  if (light.type == light_directional) offset = -light.direction;
-  float distance = length(offset);
-  if (!(distance > 0.0f)) return vec3(0.0f);
-  vec3 l = offset / distance;
+  vec3 l = punctual_direction(light, p);
   float cosine = dot(n, l);
   if (cosine <= 0.0f || dot(ng, l) <= 0.0f) return vec3(0.0f);
   return brdf(s, n, v, l) * punctual_irradiance(light, p) * cosine;

@@ -25,7 +25,7 @@ struct MaterialModel {
   vec3 kd;         // albedo of the diffuse part (banks: its coefficient)
   uint options;    // model_option_*
   vec3 ks;         // factor on the lobe; its albedo (phong), its coefficient (banks)
-  float unused_0;
+  uint material;  // index of the material in the scene
   vec2 roughness;  // root mean square slope times sqrt(2), along the tangent and across it
   vec2 unused_1;
 };
@@ -42,6 +42,11 @@ LIMN_FN float largest_channel(vec3 colour) { return max(colour.x, max(colour.y, 
 LIMN_FN float model_lobe_share(float lobe, float diffuse) {
   if (!(diffuse > 0.0f)) return 1.0f;
   return lobe > 0.0f ? clamp(lobe / (lobe + diffuse), 0.1f, 0.9f) : 0.0f;
+}
+
+// Whether the response changes where v and l turn about n together.
+LIMN_FN bool model_anisotropic(MaterialModel m) {
+  return m.kind == model_banks || (m.kind == model_ward && m.roughness.x != m.roughness.y);
 }
 
 LIMN_END

@@ -84,11 +84,6 @@ LIMN_FN float model_pdf(MaterialModel m, vec3 v, vec3 l) {
   return cosine_pdf(l.z);
 }
 
-// Whether the response changes where v and l turn about n together.
-LIMN_FN bool model_anisotropic(MaterialModel m) {
-  return m.kind == model_banks || (m.kind == model_ward && m.roughness.x != m.roughness.y);
-}
-
 // Hemispherical reflectance, about: an estimate in [0, 1] that costs no integral.
 LIMN_FN vec3 model_albedo(MaterialModel m) {
 #if (MATERIAL_MODELS & 2) != 0

@@ -36,6 +36,30 @@ LIMN_FN Frame frame_towards(vec3 n, vec3 v) {
   return f;
 }
 
+// Frame around n whose t is the part of `along` (any length) that is perpendicular to n; frame_around(n) where there is none.
+LIMN_FN Frame frame_along(vec3 n, vec3 along) {
+  vec3 across = along - n * dot(n, along);
+  float size = length(across);
+  if (!(size > 1e-6f * length(along))) return frame_around(n);
+  Frame f;
+  f.t = across / size;
+  f.b = cross(n, f.t);
+  f.n = n;
+  return f;
+}
+
+// The angle from frame_around(n).t to `along` about n, as a part of a whole turn in [0, 1); and the frame of that angle.
+LIMN_FN float frame_turn(vec3 n, vec3 along) {
+  Frame f = frame_around(n);
+  float turn = atan(dot(f.b, along), dot(f.t, along)) * (0.5f * inverse_pi);
+  return turn < 0.0f ? turn + 1.0f : turn;
+}
+LIMN_FN Frame frame_turned(vec3 n, float turn) {
+  Frame f = frame_around(n);
+  float angle = 2.0f * pi * turn;
+  return frame_along(n, cos(angle) * f.t + sin(angle) * f.b);
+}
+
 LIMN_FN vec3 to_local(Frame f, vec3 v) {
   return vec3(dot(f.t, v), dot(f.b, v), dot(f.n, v));
 }

@@ -77,6 +77,8 @@ LIMN_CONST uint material_has_normal_texture = 8u;
 LIMN_CONST uint material_has_emissive_texture = 16u;
 LIMN_CONST uint material_specular_surface = 32u;  // transmission > 0, or metallic with roughness < 0.05
 
+LIMN_CONST uint material_has_model = 64u;  // the constants are those of the metal next to it
+
 LIMN_FN Optics material_optics(Material m) {
   Optics o;
   o.base = clamp(vec3(m.base_colour), vec3(0.0f), vec3(1.0f));

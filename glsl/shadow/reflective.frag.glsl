@@ -5,6 +5,7 @@
 #include "glsl/geometry/surface_input.glsl"
 #if !LAMBERTIAN
 #include "glsl/light/ltc.glsl"
+#include "glsl/surface/reflectance.glsl"
 #endif
 
 layout(location = 0) in float linear_depth;
@@ -34,6 +35,8 @@ vec3 diffuse_albedo(vec3 base, vec2 metal_rough, float cosine) {
 #if LAMBERTIAN
   return base;
 #else
+  // A model sends back all that it reflects: of the metal next to it (setModel() in core/scene_io), that is its albedo.
+  if ((material.flags & material_has_model) != 0u) return mix(base, vec3(1.0), mean_schlick_weight);
   vec3 colour = material.specular_factor > 0.0 ? material.specular_colour / material.specular_factor : vec3(1.0);
   SurfaceBrdf s = surface_brdf(base, metal_rough.x, metal_rough.y, material.specular_factor, colour, material.ior);
   return brdf_is_lambertian(s) ? s.diffuse : s.diffuse * ltc_diffuse_weight(s, ltc_lookup(cosine, s.alpha));

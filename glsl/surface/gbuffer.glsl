@@ -8,6 +8,8 @@
 //   material          RGBA8       r: perceptual roughness; g: specularFactor; b: (ior - 1) / 2; a: flags / 255
 //   emission          RGBA16F     rgb: emitted radiance; a: specularColour, 31 levels per channel as bits
 //   instance id       R32UI       index of the draw instance; 0xffffffff: none
+//   tangent           R16         turn of the tangent about the normal as read back (frame_turned()), 1e-4 radians a
+//                                 step; only in scenes with anisotropic materials
 //
 // Quantisation (half a step): base colour sqrt(base colour) / 65536, which is 0.02 % of 0.005 and 0.002 % of 0.5 (8 bits
 // would be wrong by up to 3.6 and 0.6 %, the same for every pixel of a wall: a bias); metallic 8e-6; roughness and

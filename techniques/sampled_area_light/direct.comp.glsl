@@ -1,9 +1,9 @@
-// Reflected direct light, each sample of a light shadowed by its own map and reflected by the whole BRDF. Each batch adds
+// Reflected direct light, each sample of a light shadowed by its own map and reflected by the whole BRDF or model. Each batch adds
 // its part. MEDIUM 1: times the medium's transmittance from the sample.
-#include "glsl/surface/brdf.glsl"
 #include "glsl/light/light_texture.glsl"
 #include "glsl/media/medium_input.glsl"
 #include "glsl/shadow/shadow_samples.glsl"
+#include "glsl/surface/surface_response.glsl"
 
 layout(rgba32f) uniform image2D radiance;
 uniform int light_count;
@@ -25,7 +25,7 @@ vec3 sample_irradiance(Light light, LightView view, vec3 receiver, vec3 offset) 
   return light.emission * (receiver_factor(light, receiver) * light.length_u * light.length_v * cosine / distance2);
 }
 
-vec3 light_from(VisibilityQuery q, Light light, int l, SurfaceBrdf surface, vec3 normal, vec3 to_viewer,
+vec3 light_from(VisibilityQuery q, Light light, int l, SurfaceMaterial surface, vec3 normal, vec3 to_viewer,
                 inout uint uncovered) {
   vec3 sum = vec3(0.0);
   int samples = q.light.extended ? batch_samples : first_sample == 0 ? 1 : 0;
@@ -34,7 +34,7 @@ vec3 light_from(VisibilityQuery q, Light light, int l, SurfaceBrdf surface, vec3
     vec3 offset = sample_offset(q, maps);
     vec3 direction = normalize(offset);
     if (dot(offset, q.normal) <= 0.0 || dot(offset, normal) <= 0.0 || !sample_visible(q, maps, uncovered)) continue;
-    vec3 reflected = brdf(surface, normal, to_viewer, direction) * dot(normal, direction) *
+    vec3 reflected = surface_response(surface, normal, to_viewer, direction) *
                      sample_irradiance(light, q.light, q.position, offset);
 #if MEDIUM
     Medium medium = scene_medium();
@@ -54,8 +54,7 @@ void main() {
   if (pixel_depth(pixel) == 0.0) return;
   GBufferSurface s = pixel_surface(pixel);
   if ((s.flags & gbuffer_flag_specular) != 0u) return;
-  SurfaceBrdf surface =
-      surface_brdf(s.base_colour, s.metallic, s.roughness, s.specular_factor, s.specular_colour, s.ior);
+  SurfaceMaterial surface = pixel_material(pixel, s);
   vec3 sum = vec3(0.0);
   uint uncovered = 0u;
   for (int l = 0; l < light_count; ++l) {

@@ -1,7 +1,7 @@
 // Reflected light of the environment as a sum over directions, each shadowed by its own map and reflected by the whole
 // BRDF. Each batch adds its part.
-#include "glsl/surface/brdf.glsl"
 #include "glsl/shadow/shadow_samples.glsl"
+#include "glsl/surface/surface_response.glsl"
 
 layout(rgba32f) uniform image2D radiance;
 layout(std430) readonly buffer Irradiance { vec4 irradiance[]; };  // on surfaces that face the sample, were it all
@@ -13,8 +13,7 @@ void main() {
   if (depth == 0.0) return;
   GBufferSurface s = pixel_surface(pixel);
   if ((s.flags & gbuffer_flag_specular) != 0u) return;
-  SurfaceBrdf surface =
-      surface_brdf(s.base_colour, s.metallic, s.roughness, s.specular_factor, s.specular_colour, s.ior);
+  SurfaceMaterial surface = pixel_material(pixel, s);
   VisibilityQuery q;
   q.position = pixel_position(pixel, depth);
   q.normal = s.geometric_normal;
@@ -28,7 +27,7 @@ void main() {
     if (cosine <= 0.0 || dot(q.normal, direction) <= 0.0) continue;
     q.light.axis = -direction;
     if (!sample_visible(q, maps, uncovered)) continue;
-    sum += brdf(surface, s.normal, to_viewer, direction) * cosine * irradiance[first_sample + i].rgb;
+    sum += surface_response(surface, s.normal, to_viewer, direction) * irradiance[first_sample + i].rgb;
   }
   count_uncovered(uncovered);
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(sum / float(total_samples), 0.0));

@@ -6,8 +6,10 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "core/scene/camera.h"
+#include "core/scene/material_model.h"
 #include "core/scene/mip_chain.h"
 #include "tests/gpu/render_test.h"
+#include "tests/support/material_models.h"
 #include "tests/support/test_scenes.h"
 
 namespace limn {
@@ -277,6 +279,19 @@ TEST_F(ComparabilityTest, GlossyPlanesAgree) {
   // Linearly transformed cosines: their fit, not the geometry, is what differs.
   EXPECT_LT(planeDifference(light(glsl::light_point, 20), {0.5f, 2, 0.3f}, {1.5f, 0.8f}, 1024, material),
             0.03);
+}
+
+TEST_F(ComparabilityTest, MaterialModelsOnAPlaneAgree) {
+  for (const test::NamedModel& named : test::materialModels()) {
+    SCOPED_TRACE(named.name);
+    scene::Material material;
+    scene::setModel(material, named.model);
+    EXPECT_LT(planeDifference(light(glsl::light_point, 20), {0.5f, 2, 0.3f}, {}, 2, material), 0.01);
+    EXPECT_LT(planeDifference(light(glsl::light_directional, 3), {1, 2, 1}, {}, 2, material), 0.01);
+    // 16 points stand for the rectangle.
+    EXPECT_LT(planeDifference(light(glsl::light_point, 20), {0.5f, 2, 0.3f}, {0.4f, 0.3f}, 1024, material),
+              0.02);
+  }
 }
 
 TEST_F(ComparabilityTest, LightOfTheEnvironmentOnConvexBodiesAgrees) {

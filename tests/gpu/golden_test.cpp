@@ -43,6 +43,7 @@ class GoldenTest : public RenderTest {
     std::vector<std::string> scenes{"cornell_box", "balls", "lights"};
     if (answers(Term::media) || answers(Term::caustic)) scenes = {"glass_sphere", "ring", "gem"};
     if (answers(Term::specular)) scenes = {"glassware", "ring", "gem"};
+    if (answers(Term::surface)) scenes = {"torus_metal", "disk_and_sphere", "fresnel_spheres"};
     const bool outdoors = answers(Term::environment);
     Image whole(kWidth * int(scenes.size()), kHeight, {"R", "G", "B"});
     for (size_t s = 0; s < scenes.size(); ++s) {

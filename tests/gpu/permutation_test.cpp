@@ -56,6 +56,7 @@ class PermutationTest : public OncePerRenderer<RenderTest> {
     std::vector<std::string> scenes;
     if (answers(Term::visibility) || answers(Term::indirect))
       scenes = {"cornell_box", "lights", "stained_light", "glossy_sphere", "foliage_card"};
+    if (answers(Term::surface)) scenes.insert(scenes.end(), {"torus_metal", "disk_and_sphere"});
     if (answers(Term::environment)) scenes.emplace_back("balls_sky");
     return scenes;
   }

@@ -62,6 +62,7 @@ TEST_F(ViewerScenesTest, OpensScenesFromQToZ) {
 /// Where a technique that answers `terms` has something to do, quickly.
 std::string stageOf(TermSet terms) {
   if (terms == termSet(Term::environment)) return "balls --environment sky";
+  if (contains(terms, Term::surface)) return "torus_metal";
   if (contains(terms, Term::media) || contains(terms, Term::caustic) || contains(terms, Term::specular))
     return "gem";
   return contains(terms, Term::environment) ? "teapot_pattern" : "cornell_box";

@@ -19,6 +19,9 @@ LIMN_API scene::Scene litBySkyAlone(scene::Scene scene);
 /// Returns the scene; where nothing in it is specular, its smallest object is made of glass. It is for
 /// techniques that answer specular.
 LIMN_API scene::Scene withGlass(scene::Scene scene);
+/// Returns the scene with a material model, copper by Torrance and Sparrow, for every material that is not
+/// specular; its own roughness stays, down to .05.
+LIMN_API scene::Scene withModels(scene::Scene scene);
 
 /// Returns the same scene in a thin medium. It is for techniques that answer media or caustics.
 LIMN_API scene::Scene inFog(scene::Scene scene);

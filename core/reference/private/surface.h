@@ -4,6 +4,8 @@
 #include <optional>
 
 #include "core/reference/private/ray_scene.h"
+#include "glsl/materials/model.glsl"
+#include "glsl/numeric/geometry.glsl"
 #include "glsl/surface/brdf.glsl"
 #include "glsl/surface/gbuffer.glsl"
 
@@ -16,11 +18,20 @@ struct Surface {
   float rayOffset = 0;    ///< Draw::rayOffset
   uint32_t draw = 0;
   glsl::GBufferSurface values{};
-  glsl::SurfaceBrdf brdf{};
+  glsl::SurfaceBrdf brdf{};                    ///< metallic-roughness; of no account where there is a model
+  const glsl::MaterialModel* model = nullptr;  ///< null: metallic-roughness
+  glsl::Frame frame{};                         ///< around the shading normal, along the tangent; for models
 
   bool specular() const { return (values.flags & glsl::gbuffer_flag_specular) != 0; }
   /// Returns f cos for light from `direction` (unit), 1/sr; 0 below either horizon.
   glm::vec3 reflectance(const glm::vec3& direction) const;
+  /// Returns f(towards, direction) of two unit vectors away from the surface, 1/sr, without the cosine; 0
+  /// where `direction` is below the shading normal's horizon.
+  glm::vec3 f(const glm::vec3& towards, const glm::vec3& direction) const;
+  /// Returns a direction with the density pdf(), from u in [0, 1)^3.
+  glm::vec3 sample(const glm::vec3& u) const;
+  /// Returns the density with which sample() chooses `direction`, 1/sr.
+  float pdf(const glm::vec3& direction) const;
   /// Returns where rays towards `direction` start: clear of the surface on that side of it.
   glm::vec3 rayOrigin(const glm::vec3& direction) const {
     const glm::vec3& n = values.geometric_normal;

@@ -114,6 +114,12 @@ class Loader {
   void readMaterials();
   Material readMaterial(const tinygltf::Material& source, const std::string& what);
   void readMaterialExtensions(const tinygltf::Material& source, Material& material, const std::string& what);
+  // loader_material_model.cpp
+  /// Returns the model that extras.limn_material describes.
+  glsl::MaterialModel readModel(const tinygltf::Value& extras, const std::string& what);
+  void limitEnergy(glsl::MaterialModel& model, const std::string& what);
+  void applyModel(Material& material, const glsl::MaterialModel& model, const std::string& what);
+
   TextureRef readTexture(int index, int texCoord, const tinygltf::Value* transform, bool srgb, UvUse& use,
                          const std::string& what);
   /// Returns the index of the image in Scene::images, or none, with a warning, when it cannot be read.

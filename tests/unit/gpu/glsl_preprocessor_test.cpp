@@ -57,6 +57,17 @@ TEST(GlslPreprocessor, includesBesideTheFileFirstThenFromTheRoot) {
   EXPECT_THAT(source.files, ElementsAre("t/main.comp.glsl", "t/a.glsl", "glsl/b.glsl", "glsl/d.glsl"));
 }
 
+TEST(GlslPreprocessor, includesWhatADefineOfTheProgramNames) {
+  const Files files = {{"main.comp.glsl", "#ifdef CHOSEN\n#include CHOSEN\n#endif\n"},
+                       {"techniques/t/a.glsl", "chosen\n"}};
+  const ExpandedSource source = expand(files, {{"CHOSEN", "techniques/t/a.glsl"}});
+  EXPECT_THAT(source.text, HasSubstr("chosen\n"));
+  EXPECT_THAT(source.files, ElementsAre("main.comp.glsl", "techniques/t/a.glsl"));
+  EXPECT_THAT(expand(files).text, Not(HasSubstr("chosen\n")));
+  EXPECT_THAT(errorOf({{"main.comp.glsl", "#include CHOSEN\n"}}),
+              HasSubstr("include CHOSEN is not of the form \"path\", nor a define of the program"));
+}
+
 TEST(GlslPreprocessor, lineMarksLeadBackToTheFiles) {
   const ExpandedSource source =
       expand({{"main.comp.glsl", "one\n#include \"a.glsl\"\nthree\n"}, {"a.glsl", "first\nsecond\n"}});

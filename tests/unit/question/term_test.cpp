@@ -116,7 +116,7 @@ TEST(Terms, ExcludeEachOtherWhereTheTableSaysSo) {
   EXPECT_EQ(exclusiveWith(termSet(Term::direct)), Term::visibility | Term::direct);
   EXPECT_EQ(exclusiveWith(Term::direct | Term::environment),
             Term::visibility | Term::direct | Term::environment);
-  for (const Term term : {Term::environment, Term::specular})
+  for (const Term term : {Term::environment, Term::specular, Term::surface})
     EXPECT_EQ(exclusiveWith(termSet(term)), termSet(term));
   for (const Term term : {Term::indirect, Term::caustic, Term::media})
     EXPECT_EQ(exclusiveWith(termSet(term)), 0u);

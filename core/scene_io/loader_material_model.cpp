@@ -1,0 +1,124 @@
+// The models of extras.limn_material (glsl/materials).
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <array>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/scene/material_model.h"
+#include "core/scene_io/private/loader.h"
+#include "glsl/materials/model.glsl"
+
+namespace limn::scene {
+namespace {
+
+struct ModelName {
+  const char* name;
+  uint32_t kind;
+};
+constexpr std::array<ModelName, 5> kModels{{{"torrance_sparrow", glsl::model_torrance_sparrow},
+                                            {"ward", glsl::model_ward},
+                                            {"banks", glsl::model_banks},
+                                            {"phong", glsl::model_phong},
+                                            {"coated", glsl::model_coated}}};
+
+/// A choice between texts: the bit that each stands for.
+struct Option {
+  const char* name;
+  uint32_t bit;
+};
+struct Choice {
+  const char* key;
+  std::vector<Option> options;
+};
+const std::vector<Choice>& choices() {
+  static const std::vector<Choice> all{
+      {"distribution", {{"beckmann", 0}, {"gaussian", glsl::model_option_gaussian}}},
+      {"masking", {{"correlated", 0}, {"product", glsl::model_option_product}}},
+      {"banks", {{"stalling", 0}, {"printed", glsl::model_option_printed}}},
+      {"combine",
+       {{"sum", 0}, {"blend", glsl::model_option_blend}, {"physical", glsl::model_option_physical}}}};
+  return all;
+}
+
+template <class Range>
+std::string namesOf(const Range& entries) {
+  std::vector<std::string> names;
+  for (const auto& entry : entries) names.emplace_back(entry.name);
+  return joined(names);
+}
+
+constexpr double kMostIndex = 1000, kMostExponent = 1e6;
+constexpr float kLeastIndex = 1e-3f;
+
+}  // namespace
+
+glsl::MaterialModel Loader::readModel(const tinygltf::Value& extras, const std::string& what) {
+  if (!extras.IsObject() || !extras.Get("model").IsString())
+    fail(fmt::format("{}: an object with a model is accepted: {}", what, namesOf(kModels)));
+  const auto& name = extras.Get("model").Get<std::string>();
+  const auto* found = std::ranges::find(kModels, name, &ModelName::name);
+  if (found == kModels.end())
+    fail(fmt::format("{} model: '{}'; {} are accepted", what, oneLine(name, 40), namesOf(kModels)));
+  glsl::MaterialModel m{};
+  m.kind = found->kind;
+
+  const auto colour = [&](const char* key, float absent, double low, double high) {
+    if (!extras.Has(key)) return glm::vec3(absent);
+    const tinygltf::Value& value = extras.Get(key);
+    const std::string place = fmt::format("{} {}", what, key);
+    if (value.IsNumber()) return glm::vec3(ranged(value.GetNumberAsDouble(), low, high, place));
+    const std::vector<float> rgb = numbers(value, 3, place);
+    glm::vec3 out;
+    for (int c = 0; c < 3; ++c) out[c] = ranged(rgb[static_cast<size_t>(c)], low, high, place);
+    return out;
+  };
+  m.eta = colour("eta", 1.5f, kLeastIndex, kMostIndex);
+  m.k = colour("k", 0, 0, kMostIndex);
+  const bool reflects = m.kind == glsl::model_phong || m.kind == glsl::model_banks;
+  m.kd = colour("kd", m.kind == glsl::model_coated ? 0.5f : 0.f, 0, 1);
+  m.ks = colour("ks", reflects ? 0.5f : 1.f, 0, 1);
+  const tinygltf::Value& roughness = extras.Get("roughness");
+  if (roughness.IsArray()) {
+    const std::vector<float> both = numbers(roughness, 2, what + " roughness");
+    m.roughness = {ranged(both[0], 0, 1, what + " roughness"), ranged(both[1], 0, 1, what + " roughness")};
+  } else {
+    m.roughness = glm::vec2(
+        ranged(roughness.IsNumber() ? roughness.GetNumberAsDouble() : 0.3, 0, 1, what + " roughness"));
+  }
+  const tinygltf::Value& exponent = extras.Get("exponent");
+  m.exponent =
+      ranged(exponent.IsNumber() ? exponent.GetNumberAsDouble() : 32, 0, kMostExponent, what + " exponent");
+  for (const Choice& choice : choices()) {
+    if (!extras.Has(choice.key)) continue;
+    const tinygltf::Value& value = extras.Get(choice.key);
+    const std::string chosen = value.IsString() ? value.Get<std::string>() : "";
+    const auto option = std::ranges::find(choice.options, chosen, &Option::name);
+    if (option == choice.options.end())
+      fail(fmt::format("{} {}: '{}'; {} are accepted", what, choice.key, oneLine(chosen, 40),
+                       namesOf(choice.options)));
+    m.options |= option->bit;
+  }
+  limitEnergy(m, what);
+  return m;
+}
+
+/// Keeps a model from reflecting more light than there is, where that takes more than numbers in [0, 1].
+void Loader::limitEnergy(glsl::MaterialModel& m, const std::string& what) {
+  const float most = glsl::model_excess(m);
+  if (most <= 1) return;
+  m.kd /= most;
+  m.ks /= most;
+  warn(fmt::format("{}: it would reflect up to {:.3g} times the light; kd and ks are divided by that", what,
+                   most));
+}
+
+void Loader::applyModel(Material& material, const glsl::MaterialModel& model, const std::string& what) {
+  if (material.metalRoughTexture.image != kNone ||
+      (material.baseColourTexture.image != kNone && material.alphaCutoff == 0))
+    warn(what + ": textures of metallic-roughness have no part in it");
+  setModel(material, model);
+}
+
+}  // namespace limn::scene

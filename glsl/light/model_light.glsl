@@ -1,0 +1,43 @@
+// L_u of a surface whose material has a model: what one unoccluded light adds to the radiance that leaves it. Punctual lights:
+// the response itself. A rectangle: its mean over model_light_side^2 points, of which those below a horizon give nothing.
+#ifndef LIMN_MODEL_LIGHT_GLSL
+#define LIMN_MODEL_LIGHT_GLSL
+#include "glsl/light/unshadowed_light.glsl"
+#include "glsl/materials/response.glsl"
+#include "glsl/numeric/sampling.glsl"
+LIMN_BEGIN
+
+LIMN_CONST int model_light_side = 4;  // points along each side of a rectangle
+
+// Reflected radiance per unit of the rectangle's radiance. Arguments: as unshadowed_rectangle() has them.
+LIMN_FN vec3 model_rectangle(Rectangle r, MaterialModel m, Frame frame, vec3 ng, vec3 v) {
+  vec3 sum = vec3(0.0f);
+  vec3 to_viewer = to_local(frame, v);
+  vec3 area = cross(r.u, r.v);
+  for (int i = 0; i < model_light_side * model_light_side; ++i) {
+    vec3 offset = rectangle_point(r, grid_point(i, model_light_side) - vec2(0.5f));
+    float d2 = dot(offset, offset);
+    if (!(d2 > 0.0f)) continue;
+    vec3 l = offset * inversesqrt(d2);
+    if (dot(ng, l) <= 0.0f) continue;
+    sum += material_response(m, to_viewer, to_local(frame, l)) * (abs(dot(area, l)) / d2);
+  }
+  return sum / float(model_light_side * model_light_side);
+}
+
+// As unshadowed_light(), for a model in its frame, whose n is the shading normal.
+LIMN_FN vec3 model_light(Light light, MaterialModel m, Frame frame, vec3 p, vec3 ng, vec3 v) {
+  bool distant = light_is_distant_rectangle(light) && (light.flags & light_flag_centre) == 0u;
+  if (light.type == light_rectangle || distant) {
+    if (!rectangle_emits_towards(light, p)) return vec3(0.0f);
+    float factor = receiver_factor(light, p);
+    if (factor == 0.0f) return vec3(0.0f);
+    return rectangle_radiance(light) * (factor * model_rectangle(rectangle_from(light, p), m, frame, ng, v));
+  }
+  vec3 l = punctual_direction(light, p);
+  if (!(dot(frame.n, l) > 0.0f) || dot(ng, l) <= 0.0f) return vec3(0.0f);
+  return material_response(m, to_local(frame, v), to_local(frame, l)) * punctual_irradiance(light, p);
+}
+
+LIMN_END
+#endif  // LIMN_MODEL_LIGHT_GLSL

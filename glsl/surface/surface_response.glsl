@@ -1,0 +1,73 @@
+// How the surface of a pixel reflects light, for every pass that reflects it: metallic-roughness, or the model of its
+// material. MATERIAL_MODELS: bit 1 << kind of each model of the scene; 0: the program knows metallic-roughness alone.
+// SURFACE_TANGENTS 1: the G-buffer holds tangents. SURFACE_ANSWER: see response.glsl.
+#ifndef LIMN_SURFACE_RESPONSE_GLSL
+#define LIMN_SURFACE_RESPONSE_GLSL
+#include "glsl/surface/brdf.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
+#if MATERIAL_MODELS
+#include "glsl/materials/response.glsl"
+
+layout(std430) readonly buffer Instances { Instance instances[]; };
+layout(std430) readonly buffer MaterialModels { MaterialModel material_models[]; };  // of each material
+#if SURFACE_TANGENTS
+uniform sampler2D gbuffer_tangent;
+#endif
+#endif
+
+struct SurfaceMaterial {
+  SurfaceBrdf brdf;
+#if MATERIAL_MODELS
+  MaterialModel model;  // of kind model_none: brdf
+  Frame frame;          // in which the model is evaluated
+#endif
+};
+
+bool has_model(SurfaceMaterial m) {
+#if MATERIAL_MODELS
+  return m.model.kind != model_none;
+#else
+  return false;
+#endif
+}
+
+// surface: that of the pixel.
+SurfaceMaterial pixel_material(ivec2 pixel, GBufferSurface surface) {
+  SurfaceMaterial m;
+  m.brdf = surface_brdf(surface.base_colour, surface.metallic, surface.roughness, surface.specular_factor,
+                        surface.specular_colour, surface.ior);
+#if MATERIAL_MODELS
+  uint instance = pixel_instance(pixel);
+  m.model.kind = model_none;
+  if (instance != no_instance) m.model = material_models[instances[instance].material];
+#if SURFACE_TANGENTS
+  m.frame = frame_turned(surface.normal, texelFetch(gbuffer_tangent, pixel, 0).x);
+#else
+  m.frame = frame_around(surface.normal);
+#endif
+#endif
+  return m;
+}
+
+// f(v, l) times the cosine of l, 1/sr; 0 where l lies below the horizon. n: shading normal; v, l: unit, away from the surface.
+vec3 surface_response(SurfaceMaterial m, vec3 n, vec3 v, vec3 l) {
+#if MATERIAL_MODELS
+  if (m.model.kind != model_none) return material_response(m.model, to_local(m.frame, v), to_local(m.frame, l));
+#endif
+  return brdf(m.brdf, n, v, l) * dot(n, l);
+}
+
+#if MATERIAL_MODELS
+// The metallic-roughness surface that comes next to one with a model, for light that only such surfaces are prefiltered for:
+// the model's diffuse part, and a lobe of its width that reflects the rest of its albedo.
+SurfaceBrdf nearest_brdf(SurfaceMaterial m) {
+  SurfaceBrdf s = m.brdf;
+  s.diffuse = m.model.kd;
+  s.f0 = max(s.f0 - m.model.kd, vec3(0.0));
+  s.f90 = s.f0 == vec3(0.0) ? 0.0 : 1.0;
+  s.dielectric_f0 = s.dielectric_f90 = 0.0;
+  return s;
+}
+#endif
+
+#endif  // LIMN_SURFACE_RESPONSE_GLSL
