@@ -30,6 +30,28 @@ json array(const glm::quat& q) {
   return {q.x, q.y, q.z, q.w};
 }
 
+/// One number where both, or all three, are equal.
+template <int N>
+json shortest(const glm::vec<N, float>& v) {
+  return v == glm::vec<N, float>(v[0]) ? json(v[0]) : array(v);
+}
+
+/// The object of extras.limn_material.
+json reflectionModel(const ReflectionModel& m) {
+  json entry = {{"model", m.model}};
+  if (m.roughness) entry["roughness"] = shortest(*m.roughness);
+  if (m.eta) entry["eta"] = shortest(*m.eta);
+  if (m.k) entry["k"] = shortest(*m.k);
+  if (m.kd) entry["kd"] = shortest(*m.kd);
+  if (m.ks) entry["ks"] = shortest(*m.ks);
+  if (m.exponent) entry["exponent"] = *m.exponent;
+  if (!m.distribution.empty()) entry["distribution"] = m.distribution;
+  if (!m.masking.empty()) entry["masking"] = m.masking;
+  if (!m.banks.empty()) entry["banks"] = m.banks;
+  if (!m.combine.empty()) entry["combine"] = m.combine;
+  return entry;
+}
+
 /// Collects the binary chunk and the JSON that points into it.
 class Writer {
  public:
@@ -113,10 +135,14 @@ class Writer {
       if (m.transmission > 0) {
         json& extensions = entry["extensions"];
         extensions["KHR_materials_transmission"]["transmissionFactor"] = m.transmission;
-        extensions["KHR_materials_ior"]["ior"] = m.ior;
         extensions["KHR_materials_volume"]["thicknessFactor"] = m.thickness;
-        extensions_.insert({"KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_volume"});
+        extensions_.insert({"KHR_materials_transmission", "KHR_materials_volume"});
       }
+      if (m.transmission > 0 || m.ior != 1.5f) {
+        entry["extensions"]["KHR_materials_ior"]["ior"] = m.ior;
+        extensions_.insert("KHR_materials_ior");
+      }
+      if (m.model) entry["extras"]["limn_material"] = reflectionModel(*m.model);
       root_["materials"].push_back(entry);
     }
   }

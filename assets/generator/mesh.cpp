@@ -1,6 +1,7 @@
 #include "assets/generator/mesh.h"
 
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -77,6 +78,22 @@ void computeTangents(Mesh& mesh) {
     t = glm::normalize(t);
     // glTF's bitangent follows the texture's upward direction, that is falling v.
     mesh.tangents.emplace_back(t, glm::dot(glm::cross(n, t), -across[v]) < 0 ? -1.0f : 1.0f);
+  }
+}
+
+void brushAlongCircles(Mesh& mesh) {
+  mesh.tangents.clear();
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const float angle = 2 * glm::pi<float>() * mesh.uvs[v].x;
+    mesh.tangents.emplace_back(-std::sin(angle), 0, -std::cos(angle), 1);
+  }
+}
+
+void brushAlongRadii(Mesh& mesh) {
+  brushAlongCircles(mesh);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const glm::vec3 along = glm::normalize(glm::cross(mesh.normals[v], glm::vec3(mesh.tangents[v])));
+    mesh.tangents[v] = glm::vec4(along, 1);
   }
 }
 

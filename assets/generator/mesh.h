@@ -40,6 +40,13 @@ void bindToJoints(Mesh& mesh, int first, int second, const std::function<float(g
 /// Per-vertex tangents from the texture coordinates (area-weighted, made orthogonal to the normal).
 void computeTangents(Mesh& mesh);
 
+/// Tangents along circles about the Y axis, by the texture coordinate that lathe(), sphere() and torus() lay
+/// around it: a body turned on a lathe has its grooves there.
+void brushAlongCircles(Mesh& mesh);
+
+/// Tangents across those circles: along the radii of a disc, and the meridians of a sphere.
+void brushAlongRadii(Mesh& mesh);
+
 /// Smooth normals: the area-weighted mean of the triangles around each vertex.
 void computeNormals(Mesh& mesh);
 

@@ -1,5 +1,7 @@
 #include "assets/generator/scene.h"
 
+#include <cmath>
+
 namespace limn::assets {
 namespace {
 
@@ -7,6 +9,25 @@ template <class T>
 int push(std::vector<T>& list, T value) {
   list.push_back(std::move(value));
   return static_cast<int>(list.size()) - 1;
+}
+
+/// Fresnel's reflectance at normal incidence, of a dielectric (k = 0) or a conductor in air.
+glm::vec3 normalReflectance(glm::vec3 eta, glm::vec3 k) {
+  const glm::vec3 less = eta - 1.0f, more = eta + 1.0f;
+  return (less * less + k * k) / (more * more + k * k);
+}
+
+/// The GGX width that is about as wide as the model's lobe; of (r.l)^p by p = 1 / (2 alpha^2) - 1 / 2.
+float lobeWidth(const ReflectionModel& model) {
+  if (model.model == "coated") return 0;
+  if (model.exponent) return 1 / std::sqrt(2 * *model.exponent + 1);
+  const glm::vec2 roughness = model.roughness.value_or(glm::vec2(0.3f));
+  return std::sqrt(roughness.x * roughness.y);
+}
+
+/// What of diffuse light the diffuse part reflects. The coefficient of Banks has the integral 8/3.
+glm::vec3 diffuseAlbedo(const ReflectionModel& model) {
+  return model.kd.value_or(glm::vec3(0)) * (model.model == "banks" ? 8.0f / 3 : 1.0f);
 }
 
 }  // namespace
@@ -76,6 +97,22 @@ Material glossy(std::string name, glm::vec3 baseColour, float roughness, float m
           .baseColour = glm::vec4(baseColour, 1),
           .roughness = roughness,
           .metallic = metallic};
+}
+
+Material reflecting(std::string name, const ReflectionModel& model) {
+  const glm::vec3 reflectance = model.eta ? normalReflectance(*model.eta, model.k.value_or(glm::vec3(0)))
+                                          : model.ks.value_or(glm::vec3(0.5f));
+  const glm::vec3 diffuse = diffuseAlbedo(model);
+  const bool metal = diffuse == glm::vec3(0);
+  Material material = glossy(std::move(name), metal ? reflectance : diffuse, std::sqrt(lobeWidth(model)),
+                             metal ? 1.0f : 0.0f);
+  if (!metal) {
+    // The index of refraction whose reflectance is the mean of the channels.
+    const float root = std::sqrt(glm::dot(reflectance, glm::vec3(1.0f / 3)));
+    material.ior = (1 + root) / (1 - root);
+  }
+  material.model = model;
+  return material;
 }
 
 }  // namespace limn::assets

@@ -1,6 +1,6 @@
 // A scene as the generator describes it: plain data, indices into the scene's own arrays (-1: none).
-// The conventions beyond glTF 2.0 (extras.limn_area, limn_angle, limn_environment) are described in
-// assets/README.md.
+// The conventions beyond glTF 2.0 (extras.limn_area, limn_angle, limn_environment, limn_material) are
+// described in assets/README.md.
 #pragma once
 
 #include <optional>
@@ -11,6 +11,18 @@
 #include "assets/generator/mesh.h"
 
 namespace limn::assets {
+
+/// extras.limn_material: a reflection model in place of glTF's own. What is not set is not written, and has
+/// the default that assets/README.md says.
+struct ReflectionModel {
+  std::string model;                      ///< torrance_sparrow, ward, banks, phong or coated
+  std::optional<glm::vec2> roughness{};   ///< along and across the tangent
+  std::optional<glm::vec3> eta{}, k{};    ///< index of refraction and of absorption
+  std::optional<glm::vec3> kd{}, ks{};    ///< albedos
+  std::optional<float> exponent{};        ///< of phong and banks
+  std::string distribution{}, masking{};  ///< beckmann or gaussian; correlated or product
+  std::string banks{}, combine{};         ///< stalling or printed; sum, blend or physical
+};
 
 struct Material {
   std::string name;
@@ -28,6 +40,7 @@ struct Material {
   float transmission = 0;
   float ior = 1.5f;
   float thickness = 0;  ///< metres; > 0: bounds a body
+  std::optional<ReflectionModel> model{};
 };
 
 struct Texture {
@@ -153,5 +166,10 @@ Material glass(std::string name, float ior, glm::vec3 tint = glm::vec3(1));
 
 /// A dielectric or metal.
 Material glossy(std::string name, glm::vec3 baseColour, float roughness, float metallic = 0);
+
+/// A material of that model. Its glTF values, which are for viewers that do not know limn_material, are those
+/// of the metal of equal reflectance at normal incidence or, where kd is not 0, of the dielectric over kd,
+/// with a GGX lobe of about the same width.
+Material reflecting(std::string name, const ReflectionModel& model);
 
 }  // namespace limn::assets

@@ -8,10 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -20,6 +17,7 @@
 
 #include "core/scene_io/load.h"
 #include "core/shading/environment_decomposition.h"
+#include "tests/support/glb.h"
 #include "tests/support/paths.h"
 
 namespace {
@@ -27,97 +25,30 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const fs::path kAssets = fs::path(limn::test::kBinaryDir) / "assets";
+using limn::test::bytesOf;
+using limn::test::Glb;
+using limn::test::kAssets;
+using limn::test::Vec3;
+using limn::test::Vec4;
+
+// clang-format off
 const char* const kScenes[] = {
-    "atrium",        "atrium_robots",  "balls",         "balls_sky",     "chess",     "colonnade",
-    "cornell_box",   "cornell_horse",  "flying_dragon", "foliage_card",  "frog",      "gem",
-    "gem_2_lights",  "gem_4_lights",   "glass_sphere",  "glass_statue",  "glassware", "glossy_sphere",
-    "lights",        "metaballs",      "monster",       "patrol",        "plant",     "ring",
-    "robot",         "smoke",          "soldiers",      "stained_light", "statue",    "teapot",
-    "teapot_coarse", "teapot_pattern", "water",         "white_furnace"};
+    "atrium", "atrium_robots", "balls", "balls_sky", "chess", "colonnade", "cornell_box", "cornell_horse",
+    "disk_and_sphere", "flying_dragon", "foliage_card", "fresnel_spheres", "frog", "gem", "gem_2_lights",
+    "gem_4_lights", "glass_sphere", "glass_statue", "glassware", "glossy_sphere", "glossy_torus", "lights",
+    "metaballs", "monster", "patrol", "plant", "ring", "robot", "smoke", "soldiers", "stained_light",
+    "statue", "teapot", "teapot_coarse", "teapot_pattern", "torus_metal", "water", "white_furnace"};
+// clang-format on
 const std::set<std::string> kUnderEnvironments = {"balls_sky", "patrol", "white_furnace"};
 
 /// Of the scenes that are not lit by an environment.
 std::size_t lightsOf(const std::string& scene) {
   const std::map<std::string, std::size_t> several = {
-      {"gem_2_lights", 2}, {"gem_4_lights", 4}, {"lights", 5}};
+      {"disk_and_sphere", 3}, {"fresnel_spheres", 3}, {"gem_2_lights", 2}, {"gem_4_lights", 4},
+      {"glossy_torus", 4},    {"lights", 5},          {"torus_metal", 5}};
   const auto found = several.find(scene);
   return found == several.end() ? 1 : found->second;
 }
-
-std::string bytesOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// A binary glTF file, read without the loader under test.
-struct Glb {
-  json root;
-  std::string binary;
-
-  explicit Glb(const std::string& scene) {
-    const std::string bytes = bytesOf(kAssets / scene / (scene + ".glb"));
-    const auto word = [&](std::size_t at) {
-      std::uint32_t value = 0;
-      if (at + 4 <= bytes.size()) std::memcpy(&value, bytes.data() + at, 4);
-      return value;
-    };
-    EXPECT_EQ(word(0), 0x46546c67u) << scene;
-    EXPECT_EQ(word(4), 2u);
-    EXPECT_EQ(word(8), bytes.size());
-    const std::size_t length = word(12);
-    EXPECT_EQ(word(16), 0x4e4f534au);
-    if (20 + length + 8 > bytes.size()) return;
-    root = json::parse(bytes.substr(20, length), nullptr, false);
-    EXPECT_FALSE(root.is_discarded());
-    EXPECT_EQ(word(20 + length + 4), 0x004e4942u);
-    binary = bytes.substr(28 + length);
-  }
-
-  template <class T>
-  std::vector<T> read(int accessor) const {
-    const json& a = root.at("accessors").at(static_cast<std::size_t>(accessor));
-    const json& view = root.at("bufferViews").at(a.at("bufferView").get<std::size_t>());
-    std::vector<T> values(a.at("count").get<std::size_t>());
-    EXPECT_LE(view.at("byteOffset").get<std::size_t>() + values.size() * sizeof(T), binary.size());
-    EXPECT_EQ(view.at("byteOffset").get<std::size_t>() % 4, 0u);
-    EXPECT_EQ(view.at("byteLength").get<std::size_t>(), values.size() * sizeof(T));
-    std::memcpy(values.data(), binary.data() + view.at("byteOffset").get<std::size_t>(),
-                values.size() * sizeof(T));
-    return values;
-  }
-
-  std::vector<std::uint32_t> indices(const json& primitive) const {
-    const int accessor = primitive.at("indices");
-    if (root.at("accessors").at(static_cast<std::size_t>(accessor)).at("componentType") == 5125) {
-      return read<std::uint32_t>(accessor);
-    }
-    const auto narrow = read<std::uint16_t>(accessor);
-    return {narrow.begin(), narrow.end()};
-  }
-
-  /// Triangles of every node that shows a mesh, instances counted.
-  std::size_t trianglesShown() const {
-    std::size_t sum = 0;
-    for (const json& node : root.at("nodes")) {
-      if (!node.contains("mesh")) continue;
-      std::size_t copies = 1;
-      if (node.contains("extensions") && node["extensions"].contains("EXT_mesh_gpu_instancing")) {
-        const std::size_t accessor =
-            node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"];
-        copies = root["accessors"][accessor]["count"];
-      }
-      for (const json& primitive : root["meshes"][node["mesh"].get<std::size_t>()]["primitives"]) {
-        sum += copies *
-               root["accessors"][primitive["indices"].get<std::size_t>()]["count"].get<std::size_t>() / 3;
-      }
-    }
-    return sum;
-  }
-};
-
-using Vec3 = std::array<float, 3>;
-using Vec4 = std::array<float, 4>;
 
 TEST(Assets, EveryMeshIsValid) {
   for (const char* scene : kScenes) {
@@ -363,17 +294,17 @@ TEST(Assets, TheGeneratorIsDeterministicAndRefusesUnknownNames) {
   const fs::path folder = fs::path(testing::TempDir()) / "limn_assets_test";
   fs::remove_all(folder);
   const std::string program = std::string(limn::test::kBinaryDir) + "/bin/limn-make-scenes ";
-  ASSERT_EQ(
-      std::system(
-          (program + folder.string() + " atrium cornell_box robot teapot white_furnace > /dev/null").c_str()),
-      0);
+  ASSERT_EQ(std::system((program + folder.string() +
+                         " atrium cornell_box disk_and_sphere robot teapot white_furnace > /dev/null")
+                            .c_str()),
+            0);
   int compared = 0;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (!entry.is_regular_file()) continue;
     EXPECT_EQ(bytesOf(entry.path()), bytesOf(kAssets / fs::relative(entry.path(), folder))) << entry.path();
     ++compared;
   }
-  EXPECT_GE(compared, 5);
+  EXPECT_GE(compared, 6);
   const auto status = [&](const std::string& arguments) {
     const int result = std::system((program + arguments + " > /dev/null 2>&1").c_str());
     return WIFEXITED(result) ? WEXITSTATUS(result) : -1;
