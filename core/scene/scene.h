@@ -89,6 +89,11 @@ struct Material {
   bool specularSurface() const {
     return !model && (transmission > 0 || (metallic >= 0.5f && roughness < 0.05f));
   }
+  /// Says whether the material looks up a texture.
+  bool textured() const {
+    return baseColourTexture.image != kNone || metalRoughTexture.image != kNone ||
+           normalTexture.image != kNone || emissiveTexture.image != kNone;
+  }
   /// Says whether primitives of the material have tangents: its shading depends on them.
   bool tangents() const { return normalTexture.image != kNone || (model && glsl::model_anisotropic(*model)); }
 };
@@ -115,7 +120,7 @@ struct Primitive {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;   ///< unit; always present after loading (flat if the file has none)
   std::vector<glm::vec4> tangents;  ///< xyz unit, w = +-1; present as Material::tangents() says
-  std::vector<glm::vec2> uvs;       ///< present when the material has a texture
+  std::vector<glm::vec2> uvs;       ///< present when the material has a texture or, from the file, a tangent
   std::vector<glm::vec4> colours;   ///< linear factor on the base colour; may be empty
   std::vector<glm::u16vec4> joints;
   std::vector<glm::vec4> weights;  ///< normalised to sum 1

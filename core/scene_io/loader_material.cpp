@@ -223,6 +223,7 @@ Material Loader::readMaterial(const tinygltf::Material& source, const std::strin
   if (source.extras.IsObject() && source.extras.Has("limn_material")) {
     const std::string place = what + " limn_material";
     applyModel(m, readModel(source.extras.Get("limn_material"), place), place);
+    use.used = use.used || m.tangents();  // along rising u, where the file has no tangents
   }
   uvUses_.push_back(use);
   return m;

@@ -135,6 +135,7 @@ void Loader::readUvs(const tinygltf::Primitive& source, Primitive& out, const st
   const std::string name = fmt::format("TEXCOORD_{}", use.set);
   const int accessor = attribute(source.attributes, name.c_str());
   if (accessor == kNone) {
+    if (!scene_.materials[static_cast<std::size_t>(out.material)].textured()) return;
     warn(fmt::format("{}: no {} for the textures of its material; (0, 0) is used", what, name));
     out.uvs.assign(out.positions.size(), glm::vec2(0));
     return;

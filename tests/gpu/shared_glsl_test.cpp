@@ -9,6 +9,7 @@
 #include "glsl/caustics/caustic_ray.glsl"
 #include "glsl/indirect/direction_bins.glsl"
 #include "glsl/indirect/virtual_area_light.glsl"
+#include "glsl/materials/material_model.glsl"
 #include "glsl/media/smoke.glsl"
 #include "glsl/scene/blocks.glsl"
 #include "glsl/shadow/fourier_shadow.glsl"
@@ -121,6 +122,17 @@ TEST_F(SharedGlslTest, everyHeaderCompilesAlone) {
                         ::testing::ContainsRegex("main.[a-z]+.glsl:[0-9]+: `[A-Z][A-Z0-9_]+' undeclared")));
     }
   }
+}
+
+TEST_F(SharedGlslTest, materialModelsHaveOneLayout) {
+  using glsl::MaterialModel;
+  expectElement(
+      "MaterialModel", "exponent", sizeof(MaterialModel),
+      {LIMN_MEMBER(MaterialModel, eta), LIMN_MEMBER(MaterialModel, kind), LIMN_MEMBER(MaterialModel, k),
+       LIMN_MEMBER(MaterialModel, exponent), LIMN_MEMBER(MaterialModel, kd),
+       LIMN_MEMBER(MaterialModel, options), LIMN_MEMBER(MaterialModel, ks),
+       LIMN_MEMBER(MaterialModel, material), LIMN_MEMBER(MaterialModel, roughness)},
+      "glsl/materials/material_model.glsl");
 }
 
 TEST_F(SharedGlslTest, frameBlockHasOneLayout) {

@@ -66,10 +66,10 @@ def add_term():
     term = Addition(tree, "A term")
     phrase = "light that crystals of snow throw back"
     row = term.block({"caustic": "glint", "light that comes off mirrors and through glass": phrase, "nullptr": '"glints"', "4}": "7}"})
-    term.replace("core/question/term.h", "  final = 128\n", "  final = 128,\n  glint = 256\n")
+    term.replace("core/question/term.h", "  surface = 256\n", "  surface = 256,\n  glint = 512\n")
     term.before("core/question/term.h", "};\n// clang-format on\n", row)
-    rows = re.findall(r"^\| `specular` \|.*\n", (tree / "docs/architecture.md").read_text(), re.MULTILINE)
-    check(len(rows) == 1, f"docs/architecture.md has {len(rows)} rows for the term `specular`, expected 1")
+    rows = re.findall(r"^\| `surface` \|.*\n", (tree / "docs/architecture.md").read_text(), re.MULTILINE)
+    check(len(rows) == 1, f"docs/architecture.md has {len(rows)} rows for the term `surface`, expected 1")
     term.after("docs/architecture.md", rows[0], f"| `glint` | {phrase} | L S+ D E | 0 |\n")
     term.after("docs/bench.md", "| `term` | `final`, `visibility`, `direct`, `indirect`, `caustic`, `media`, `specular`", ", `glint`")
 

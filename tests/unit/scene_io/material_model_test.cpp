@@ -107,6 +107,15 @@ TEST(SceneMaterialModel, TheMetalBesideItReflectsAsMuchDiffuseLight) {
   }
 }
 
+TEST(SceneMaterialModel, LiesAlongRisingUWhereTheFileHasNoTangents) {
+  const scene::Scene scene = loaded({{"model", "ward"}, {"roughness", {0.1, 0.4}}});
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  const scene::Primitive& primitive = scene.meshes.at(0).primitives.at(0);
+  ASSERT_EQ(primitive.tangents.size(), 3u);
+  expectNear(glm::vec3(primitive.tangents[0]), {1, 0, 0});
+  EXPECT_TRUE(loaded({{"model", "ward"}, {"roughness", 0.1}}).meshes.at(0).primitives.at(0).tangents.empty());
+}
+
 TEST(SceneMaterialModel, LeavesTexturesOfMetallicRoughnessAside) {
   GltfBuilder b;
   const int material = b.texturedMaterial(png(1, 1, {1, 2, 3, 4}));
