@@ -9,6 +9,13 @@ int main(int argc, char** argv) {
        "Torrance and Sparrow's model of copper and aluminium; look at --scene disk_and_sphere, "
        "fresnel_spheres "
        "and glossy_torus, too."},
+      {"Two tables", "hard_shadow_map,factored_brdf", "",
+       "Two lookups replace the formula: the picture should not change."},
+      {"Published coordinates", "hard_shadow_map,factored_brdf", "factored_brdf.coordinates=published",
+       "Tables over cosines are too coarse where a lobe is narrow: look at the aluminium."},
+      {"As published", "hard_shadow_map,factored_brdf",
+       "factored_brdf.coordinates=published factored_brdf.format=byte",
+       "8 bits and masking clamped to 1: grazing views are too dark."},
       {"Without shadows", "", "", "What the lights reflect where nothing hides them."},
       {"Soft shadows", "pcss", "", "The rectangle casts soft shadows; highlights stay as they were."},
       {"16 shadow maps on the light", "sampled_area_light", "sampled_area_light.samples=16",

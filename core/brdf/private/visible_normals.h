@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "core/base/export.h"
+
 namespace limn::brdf {
 
 /// A number in [0, 1] between two of `count` nodes that divide it evenly.
@@ -41,7 +43,7 @@ double bilinear(std::span<const Number> grid, const GridSize& size, const Cell& 
 }
 
 /// A density on the square for each of a row of parameters, linear between parameters.
-class VisibleNormals {
+class LIMN_API VisibleNormals {
  public:
   VisibleNormals() = default;
   /// Takes `densities` one after the other, as many as fit; each is at least 0 and not 0 everywhere, and has
