@@ -19,6 +19,10 @@ float nearestRoughness(const glsl::MaterialModel& m) {
 
 }  // namespace
 
+float modelExcess(const glsl::MaterialModel& model) {
+  return glsl::model_excess(model);
+}
+
 void setModel(Material& material, const glsl::MaterialModel& model) {
   material.model = model;
   material.metalRoughTexture = {};

@@ -8,7 +8,6 @@
 #include "core/base/text.h"
 #include "core/scene/material_model.h"
 #include "core/scene_io/private/loader.h"
-#include "glsl/materials/model.glsl"
 
 namespace limn::scene {
 namespace {
@@ -106,7 +105,7 @@ glsl::MaterialModel Loader::readModel(const tinygltf::Value& extras, const std::
 
 /// Keeps a model from reflecting more light than there is, where that takes more than numbers in [0, 1].
 void Loader::limitEnergy(glsl::MaterialModel& m, const std::string& what) {
-  const float most = glsl::model_excess(m);
+  const float most = modelExcess(m);
   if (most <= 1) return;
   m.kd /= most;
   m.ks /= most;
