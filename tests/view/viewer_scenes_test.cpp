@@ -97,7 +97,8 @@ TEST_P(ViewerTechniquesTest, SwitchesThemOnAndOff) {
   EXPECT_EQ(colours(picture("last.exr")), colours(picture("first.exr")));
 }
 
-constexpr const char* kStages[] = {"cornell_box", "teapot_pattern", "balls --environment sky", "gem"};
+constexpr const char* kStages[] = {"cornell_box", "teapot_pattern", "balls --environment sky", "gem",
+                                   "torus_metal"};
 
 INSTANTIATE_TEST_SUITE_P(Stages, ViewerTechniquesTest, testing::ValuesIn(kStages));
 
