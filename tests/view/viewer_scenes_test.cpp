@@ -62,7 +62,7 @@ TEST_F(ViewerScenesTest, OpensScenesFromQToZ) {
 /// Where a technique that answers `terms` has something to do, quickly.
 std::string stageOf(TermSet terms) {
   if (terms == termSet(Term::environment)) return "balls --environment sky";
-  if (contains(terms, Term::surface)) return "torus_metal";
+  if (contains(terms, Term::surface)) return "fresnel_spheres";
   if (contains(terms, Term::media) || contains(terms, Term::caustic) || contains(terms, Term::specular))
     return "gem";
   return contains(terms, Term::environment) ? "teapot_pattern" : "cornell_box";
@@ -98,7 +98,7 @@ TEST_P(ViewerTechniquesTest, SwitchesThemOnAndOff) {
 }
 
 constexpr const char* kStages[] = {"cornell_box", "teapot_pattern", "balls --environment sky", "gem",
-                                   "torus_metal"};
+                                   "fresnel_spheres"};
 
 INSTANTIATE_TEST_SUITE_P(Stages, ViewerTechniquesTest, testing::ValuesIn(kStages));
 
