@@ -7,8 +7,7 @@ int main(int argc, char** argv) {
   constexpr ChapterSetting settings[] = {
       {"Exact models", "hard_shadow_map", "",
        "Torrance and Sparrow's model of copper and aluminium; look at --scene disk_and_sphere, "
-       "fresnel_spheres "
-       "and glossy_torus, too."},
+       "fresnel_spheres and glossy_torus, too."},
       {"Two tables", "hard_shadow_map,factored_brdf", "",
        "Two lookups replace the formula: the picture should not change."},
       {"Published coordinates", "hard_shadow_map,factored_brdf", "factored_brdf.coordinates=published",

@@ -44,6 +44,11 @@ constexpr StressCase kCommon[] = {
     {.name = "foliage", .scene = "plant"},
 };
 
+/// A term without a picture of its own is shown by that of direct light, which it is a part of.
+bool partOfDirect(Term term) {
+  return termInfo(term).picture == TermPicture::none;
+}
+
 /// What shows an answered term under a change of the scene.
 Term shown(Term answered, StressChange change) {
   switch (answered) {
@@ -61,7 +66,7 @@ Term shown(Term answered, StressChange change) {
     case StressChange::albedo:
       return answered == Term::indirect ? Term::indirect : Term::direct;
     default:
-      return answered == Term::environment || answered == Term::surface ? Term::direct : answered;
+      return partOfDirect(answered) ? Term::direct : answered;
   }
 }
 
@@ -118,8 +123,7 @@ struct StressRun::Asked {
   Term answered, shown;
 
   std::string name() const {
-    const bool part = answered == Term::environment || answered == Term::surface;
-    return part && shown == Term::direct ? limn::name(answered) : limn::name(shown);
+    return partOfDirect(answered) && shown == Term::direct ? limn::name(answered) : limn::name(shown);
   }
 };
 
