@@ -105,15 +105,14 @@ LIMN_FN vec3 model_albedo(MaterialModel m) {
 }
 
 // The most light that the diffuse part and the lobe reflect together, over what arrives, in the channel that reflects most; kd
-// and ks are to be divided by it where it is above 1. Of microfacets over a floor it is the hemispherical mean, which a grazing
-// view exceeds; of a coat it is the base alone.
+// and ks are to be divided by it where it is above 1. Of a coat it is the base alone.
 LIMN_FN float model_excess(MaterialModel m) {
 #if (MATERIAL_MODELS & 8) != 0
   if (m.kind == model_banks) return banks_excess(m);
 #endif
 #if (MATERIAL_MODELS & 6) != 0
   if (m.kind == model_torrance_sparrow || m.kind == model_ward)
-    return largest_channel(m.kd + m.ks * mean_reflectance(m.eta, m.k));
+    return microfacet_excess(m);
 #endif
   return largest_channel(m.kind == model_phong ? m.kd + m.ks : m.kd);
 }

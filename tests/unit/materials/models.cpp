@@ -4,32 +4,38 @@
 
 #include <algorithm>
 
+#include "glsl/numeric/sampling.glsl"
+
 namespace limn::glsl {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Half vectors with the slopes of GGX, whichever the model's are: h seen from v gives l.
+/// Half vectors whose slopes over alpha have the length s / (1 - s) for s uniform in [0, 1): enough of them
+/// far out for every tail that is seen at a grazing angle.
 DirectionMap halfVectorMap(const dvec2& alpha, const dvec3& v) {
   const auto half = [v](const dvec3& l) {
     const dvec3 sum = v + l;
     return sum / std::max(length(sum), 1e-300);
   };
+  const auto slope = [alpha](const dvec3& h) { return dvec2(h.x, h.y) / (alpha * h.z); };
   DirectionMap map;
   map.direction = [alpha, v](dvec2 u) {
-    const double r = std::sqrt(u.x / (1 - u.x)), azimuth = 2 * kPi * u.y;
+    const double r = u.x / (1 - u.x), azimuth = 2 * kPi * u.y;
     const dvec3 h = normalize(dvec3(alpha.x * r * std::cos(azimuth), alpha.y * r * std::sin(azimuth), 1));
     return 2 * dot(v, h) * h - v;
   };
-  map.density = [alpha, v, half](dvec3 l) {
+  map.density = [alpha, v, half, slope](dvec3 l) {
     const dvec3 h = half(l);
-    const double q = h.x * h.x / (alpha.x * alpha.x) + h.y * h.y / (alpha.y * alpha.y) + h.z * h.z;
-    return h.z > 0 ? h.z / (kPi * alpha.x * alpha.y * q * q * 4 * std::max(dot(v, h), 1e-12)) : 0;
+    if (!(h.z > 0)) return 0.0;
+    const double r = std::max(length(slope(h)), 1e-12);
+    const double ofSlopes = 1 / (2 * kPi * r * (1 + r) * (1 + r) * alpha.x * alpha.y);
+    return ofSlopes / (h.z * h.z * h.z * 4 * std::max(dot(v, h), 1e-12));
   };
-  map.place = [alpha, half](dvec3 l) {
-    const dvec3 h = half(l);
-    const double x = h.x / (alpha.x * h.z), y = h.y / (alpha.y * h.z), r2 = x * x + y * y;
-    return dvec2(r2 / (1 + r2), std::atan2(y, x) / (2 * kPi) + (y < 0 ? 1 : 0));
+  map.place = [half, slope](dvec3 l) {
+    const dvec2 at = slope(half(l));
+    const double r = length(at);
+    return dvec2(r / (1 + r), std::atan2(at.y, at.x) / (2 * kPi) + (at.y < 0 ? 1 : 0));
   };
   return map;
 }
@@ -69,6 +75,7 @@ DirectionMap coneMap(double width, const dvec3& v) {
     return dvec3(std::sin(e), std::cos(e) * y, std::cos(e) * std::sqrt(1 - y * y));
   };
   map.density = [=](dvec3 l) {
+    if (!(l.z > 0)) return 0.0;
     const double d = latitude(l) - centre, cosine2 = l.y * l.y + l.z * l.z;
     return width / ((to - from) * (width * width + d * d)) * l.z / (2 * std::max(cosine2, 1e-30));
   };
@@ -97,11 +104,9 @@ DirectionMap cosineMap() {
 DirectionMap lobeMap(const MaterialModel& m, const vec3& v) {
   switch (m.kind) {
     case model_torrance_sparrow:
-      if (v.z > 0) return halfVectorMap(dvec2(std::max(m.roughness.x, 1e-3f)), v);
-      return cosineMap();
+      return halfVectorMap(dvec2(std::max(m.roughness.x, 1e-3f)), v);
     case model_ward:
-      if (v.z > 0) return halfVectorMap(max(m.roughness, vec2(1e-3f)), v);
-      return cosineMap();
+      return halfVectorMap(max(m.roughness, vec2(1e-3f)), v);
     case model_phong:
       return powerMap(m.exponent, dvec3(-v.x, -v.y, v.z));
     case model_banks:
@@ -111,21 +116,21 @@ DirectionMap lobeMap(const MaterialModel& m, const vec3& v) {
   }
 }
 
-void overHemisphere(const MaterialModel& m, const vec3& v, int side,
+void overHemisphere(const MaterialModel& m, const vec3& v, int count,
                     const std::function<void(const vec3&, double)>& add) {
   const DirectionMap maps[] = {lobeMap(m, v), cosineMap()};
-  for (const DirectionMap& map : maps)
-    for (int i = 0; i < side * side; ++i) {
-      const dvec3 exact = map.direction({(i % side + 0.5) / side, (i / side + 0.5) / side});
+  for (int own = 0; own < 2; ++own)
+    for (int i = 0; i < count; ++i) {
+      const dvec3 exact = maps[own].direction(dvec2(r2_sequence(uint(i))));
       const vec3 l(exact);
-      if (!(l.z > 0)) continue;
-      add(l, 1 / ((maps[0].density(exact) + maps[1].density(exact)) * side * side));
+      const double density = maps[own].density(exact), other = maps[1 - own].density(exact);
+      if (l.z > 0 && density > 0) add(l, density / ((density * density + other * other) * count));
     }
 }
 
-double furnace(const MaterialModel& m, const vec3& v, int side) {
+double furnace(const MaterialModel& m, const vec3& v, int count) {
   double sum = 0;
-  overHemisphere(m, v, side,
+  overHemisphere(m, v, count,
                  [&](const vec3& l, double weight) { sum += weight * double(model_response(m, v, l).x); });
   return sum;
 }

@@ -80,13 +80,13 @@ DirectionMap cosineMap();
 DirectionMap lobeMap(const MaterialModel& m, const vec3& v);
 
 /// Calls `add(l, weight)` for directions of the upper hemisphere such that the sum of weight f(l) is the
-/// integral of f over solid angle. Points of both maps are combined by the balance heuristic, so that f may
-/// have a narrow lobe.
-void overHemisphere(const MaterialModel& m, const vec3& v, int side,
+/// integral of f over solid angle. `count` points of each map are combined by the power heuristic, so that f
+/// may have a narrow lobe; a low-discrepancy sequence keeps the horizon's cut out of step with them.
+void overHemisphere(const MaterialModel& m, const vec3& v, int count,
                     const std::function<void(const vec3&, double)>& add);
 
 /// Returns the integral of the response: the share of uniform light that is reflected towards `v`, in the
 /// first channel.
-double furnace(const MaterialModel& m, const vec3& v, int side = 160);
+double furnace(const MaterialModel& m, const vec3& v, int count = 25000);
 
 }  // namespace limn::glsl
