@@ -110,7 +110,7 @@ std::vector<LobeSample> lobeSamples(float alpha, int count, int sourceWidth) {
     // Rank-1 lattice of the golden ratio.
     const vec2 u((static_cast<float>(i) + 0.5f) / static_cast<float>(count),
                  std::fmod(0.61803399f * static_cast<float>(i), 1.0f));
-    const vec3 h = glsl::ggx_sample_visible_normal(vec3(0, 0, 1), alpha, vec2(u.y, u.x));
+    const vec3 h = glsl::sample_visible_normal(vec3(0, 0, 1), vec2(alpha), vec2(u.y, u.x));
     const vec3 l = 2 * h.z * h - vec3(0, 0, 1);
     if (l.z <= 0) continue;
     const float pdf = 0.25f * glsl::ggx_distribution(h.z, h.x * h.x + h.y * h.y, alpha);

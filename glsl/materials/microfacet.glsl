@@ -67,21 +67,10 @@ LIMN_FN float masking_over_view(vec3 v, vec3 l, vec2 alpha, bool product) {
   return 0.25f / (n_dot_v * both);
 }
 
-// Normals are sampled as GGX has them visible from v, whichever D is: with equal slopes its tail lies above those of the
-// Gaussians, so that D over its density is at most 4 / e.
+// Normals are sampled as GGX has them visible from v (sample_visible_normal()), whichever D is: with equal slopes its tail lies
+// above those of the Gaussians, so that D over its density is at most 4 / e.
 
-// A normal that is visible from v, v.z > 0 (Dupuy and Benyoub 2023, Sampling Visible GGX Normals with Spherical Caps,
-// listing 3).
-LIMN_FN vec3 sample_visible_normal(vec3 v, vec2 alpha, vec2 u) {
-  vec3 stretched = normalize(vec3(alpha.x * v.x, alpha.y * v.y, v.z));
-  float azimuth = 2.0f * pi * u.x;
-  float z = (1.0f - u.y) * (1.0f + stretched.z) - stretched.z;
-  float radius = sqrt(clamp(1.0f - z * z, 0.0f, 1.0f));
-  vec3 h = vec3(radius * cos(azimuth), radius * sin(azimuth), z) + stretched;
-  return normalize(vec3(alpha.x * h.x, alpha.y * h.y, max(h.z, 1e-12f)));
-}
-
-// Density (1/sr) of the direction that v is mirrored to by such a normal h: G1(v) D(h) / (4 n.v) of GGX.
+// Density (1/sr) of the direction that v, v.z > 0, is mirrored to by such a normal h: G1(v) D(h) / (4 n.v) of GGX.
 LIMN_FN float visible_normal_pdf(vec3 v, vec3 h, vec2 alpha) {
   vec3 q = vec3(h.x / alpha.x, h.y / alpha.y, h.z);
   float q2 = dot(q, q);

@@ -86,6 +86,17 @@ LIMN_FN float cosine_pdf(float cosine) {
   return inverse_pi * max(cosine, 0.0f);
 }
 
+// A normal of the GGX distribution with the slopes alpha along x and y as seen from v (n = +z, v.z > 0), from u in [0, 1)^2: its
+// density is G1(v) max(v.h, 0) D(h) / n.v. Dupuy and Benyoub 2023, Sampling Visible GGX Normals with Spherical Caps, listing 3.
+LIMN_FN vec3 sample_visible_normal(vec3 v, vec2 alpha, vec2 u) {
+  vec3 stretched = normalize(vec3(alpha.x * v.x, alpha.y * v.y, v.z));
+  float azimuth = 2.0f * pi * u.x;
+  float z = (1.0f - u.y) * (1.0f + stretched.z) - stretched.z;
+  float radius = sqrt(clamp(1.0f - z * z, 0.0f, 1.0f));
+  vec3 h = vec3(radius * cos(azimuth), radius * sin(azimuth), z) + stretched;
+  return normalize(vec3(alpha.x * h.x, alpha.y * h.y, max(h.z, 1e-12f)));
+}
+
 // angle / sin(angle) - 1 for angle in [0, pi) given its sine and cosine, within 7.4e-7 of its value, small angles
 // included. Grows without bound towards pi; sine = 0 with a negative cosine gives a large finite number.
 //

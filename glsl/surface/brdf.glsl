@@ -133,18 +133,8 @@ LIMN_FN vec3 brdf(SurfaceBrdf s, vec3 n, vec3 v, vec3 l) {
   return s.diffuse * parts.diffuse + parts.specular;
 }
 
-// A normal of the GGX distribution as seen from v (local frame, n = +z, v.z > 0): density ggx_visible_pdf.
-// Dupuy and Benyoub 2023, Sampling Visible GGX Normals with Spherical Caps, listing 3.
-LIMN_FN vec3 ggx_sample_visible_normal(vec3 v, float alpha, vec2 u) {
-  vec3 stretched = normalize(vec3(alpha * v.x, alpha * v.y, v.z));
-  float azimuth = 2.0f * pi * u.x;
-  float z = (1.0f - u.y) * (1.0f + stretched.z) - stretched.z;
-  float radius = sqrt(clamp(1.0f - z * z, 0.0f, 1.0f));
-  vec3 h = vec3(radius * cos(azimuth), radius * sin(azimuth), z) + stretched;
-  return normalize(vec3(alpha * h.x, alpha * h.y, max(h.z, 1e-12f)));
-}
-
-// Its density over solid angle of normals: G1(v) max(v.h, 0) D(h) / n.v (Heitz 2018, equation 3).
+// Density over solid angle of normals of sample_visible_normal() with equal slopes: G1(v) max(v.h, 0) D(h) / n.v (Heitz
+// 2018, equation 3).
 LIMN_FN float ggx_visible_pdf(float n_dot_v, float n_dot_h, float sine2, float v_dot_h, float alpha) {
   return ggx_masking(n_dot_v, alpha) * max(v_dot_h, 0.0f) * ggx_distribution(n_dot_h, sine2, alpha) / n_dot_v;
 }
@@ -183,7 +173,7 @@ LIMN_FN vec3 brdf_sample(SurfaceBrdf s, vec3 n, vec3 v, vec3 u) {
   Frame frame = frame_around(n);
   vec3 local = to_local(frame, v);
   if (u.z >= brdf_specular_probability(s, local.z)) return from_local(frame, sample_cosine(vec2(u.x, u.y)));
-  vec3 h = ggx_sample_visible_normal(local, s.alpha, vec2(u.x, u.y));
+  vec3 h = sample_visible_normal(local, vec2(s.alpha), vec2(u.x, u.y));
   return normalize(from_local(frame, 2.0f * dot(local, h) * h - local));
 }
 

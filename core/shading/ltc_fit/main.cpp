@@ -60,7 +60,7 @@ Lobe lobe(const Setting& s, const vec3& l) {
 }
 
 vec3 sampleLobe(const Setting& s, vec2 u) {
-  const vec3 h = ggx_sample_visible_normal(s.v, s.alpha, u);
+  const vec3 h = sample_visible_normal(s.v, vec2(s.alpha), u);
   return normalize(2 * dot(s.v, h) * h - s.v);
 }
 

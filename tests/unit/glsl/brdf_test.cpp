@@ -146,7 +146,7 @@ TEST(Brdf, SamplersHaveTheDensitiesTheyState) {
     }
     const float alpha = 0.05f + 0.95f * unit(random);
     const vec3 v = direction(unit(random), 6 * unit(random));
-    const auto visible = [&](vec2 x) { return ggx_sample_visible_normal(v, alpha, x); };
+    const auto visible = [&](vec2 x) { return sample_visible_normal(v, vec2(alpha), x); };
     const vec3 h = visible(u);
     const float pdf = ggx_visible_pdf(v.z, h.z, h.x * h.x + h.y * h.y, dot(v, h), alpha);
     EXPECT_NEAR(stretch(visible, u, 1e-3f) * pdf, 1, 0.03) << alpha << ' ' << v.z << ' ' << u.x << ' ' << u.y;

@@ -24,7 +24,8 @@ struct Reflectance {
 Reflectance reflectance(float alpha, const vec3& v, int side = 150) {
   Reflectance sum;
   for (int i = 0; i < side * side; ++i) {
-    const vec3 h = ggx_sample_visible_normal(v, alpha, {(i % side + 0.5f) / side, (i / side + 0.5f) / side});
+    const vec3 h =
+        sample_visible_normal(v, vec2(alpha), {(i % side + 0.5f) / side, (i / side + 0.5f) / side});
     const vec3 l = 2 * dot(v, h) * h - v;
     if (l.z <= 0) continue;
     const double g = 4.0 * v.z * l.z * ggx_visibility(v.z, l.z, alpha) / ggx_masking(v.z, alpha);
@@ -84,7 +85,8 @@ double lobeOverRectangle(const Rectangle& r, float alpha, const vec3& v, int sid
   const dvec3 u(r.u), w(r.v), c(r.centre), normal = cross(u, w);
   double sum = 0;
   for (int i = 0; i < side * side; ++i) {
-    const vec3 h = ggx_sample_visible_normal(v, alpha, {(i % side + 0.5f) / side, (i / side + 0.5f) / side});
+    const vec3 h =
+        sample_visible_normal(v, vec2(alpha), {(i % side + 0.5f) / side, (i / side + 0.5f) / side});
     const vec3 l = 2 * dot(v, h) * h - v;
     if (l.z <= 0) continue;
     const double t = dot(c, normal) / dot(dvec3(l), normal);

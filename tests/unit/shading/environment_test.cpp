@@ -78,7 +78,7 @@ TEST(Environment, FilteredLevelsAreTheLobesMean) {
       for (int k = 0; k < side * side; ++k) {
         const vec2 u((static_cast<float>(k % side) + 0.5f) / side,
                      (static_cast<float>(k / side) + 0.5f) / side);
-        const vec3 h = glsl::ggx_sample_visible_normal(vec3(0, 0, 1), alpha, u);
+        const vec3 h = glsl::sample_visible_normal(vec3(0, 0, 1), glm::vec2(alpha), u);
         const vec3 l = 2 * h.z * h - vec3(0, 0, 1);
         if (l.z <= 0) continue;
         const double weight = glsl::ggx_visibility(1, l.z, alpha) * l.z;
