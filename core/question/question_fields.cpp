@@ -63,6 +63,7 @@ constexpr auto ofPicturedTerms(const char* TermInfo::*member) {
 
 constexpr auto kTerms = ofPicturedTerms(&TermInfo::name), kTermDocs = ofPicturedTerms(&TermInfo::help);
 constexpr const char* kWhenDefaultLights[] = {"auto", "on", "off"};
+constexpr const char* kUnshadowed[] = {"off", "on"};
 constexpr const char* kShapes[] = {"squares", "rectangles"};
 constexpr const char* kReflections[] = {"area", "centre"};
 
@@ -138,6 +139,10 @@ constexpr QuestionField kFields[] = {
          "Factor on the environment's radiance")
         .changing(lights)
         .labelled("environment scale"),
+    choice("unshadowed", "--unshadowed", &Q::unshadowed, kUnshadowed,
+           "on: nothing keeps light from arriving in the reference (V = 1), so that the error of what is\n"
+           "approximated without shadows can be told from their absence; techniques do not change")
+        .changing(view),
     real(
         "environment_lights", "--environment-lights", &Q::environmentLights, {1e-4, 0.5}, "",
         "Replace the environment by area lights, which techniques can shadow. The value is the least share "

@@ -28,6 +28,7 @@ struct SceneQuestion {
   std::string defaultLights = "auto";
   std::string environment = {};
   double environmentRotation = 0, environmentScale = 1;
+  std::string unshadowed = "off";
   double environmentLights = 0;
   int environmentResolution = 48;
   std::string environmentShape = "squares", environmentReflection = "area";

@@ -35,8 +35,8 @@ glm::dvec3 Airlight::sample(const glm::vec3& eye, const glm::vec3& direction, fl
     const float density = medium.density(x);
     if (density == 0.f || point.sent == glm::vec3(0)) continue;
     const bool blocked = ray.parallel
-                             ? rays_.occluded(x, -light.direction, std::numeric_limits<float>::infinity())
-                             : rays_.occluded(x, source - x, 0.9999f);
+                             ? rays_.shadowed(x, -light.direction, std::numeric_limits<float>::infinity())
+                             : rays_.shadowed(x, source - x, 0.9999f);
     if (blocked) continue;
     const float toLight = ray.parallel ? medium.length(x, -point.from, std::numeric_limits<float>::max())
                                        : medium.lengthBetween(source, x);

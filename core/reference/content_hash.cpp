@@ -113,6 +113,8 @@ void addWork(Hasher& h, const Request& r) {
   if (r.bounces > 0) h.add(r.bounces);
   constexpr uint32_t interfacesFollow = 0x5eec;  // tells them from bounces
   if (r.interfaces != 0) h.addAll(interfacesFollow, r.interfaces);
+  constexpr uint32_t unshadowedFollows = 0x0b5c;
+  if (r.unshadowed) h.add(unshadowedFollows);
   constexpr uint32_t causticVersion = 2;
   const bool caustics = r.term == Term::final || r.term == Term::caustic || r.term == Term::media;
   if (caustics && std::ranges::any_of(r.scene.materials, &scene::Material::specularSurface))

@@ -24,8 +24,8 @@ bool isPunctual(const glsl::Light& light) {
 
 bool unblocked(const RayScene& rays, const Surface& receiver, const Arrival& arrival) {
   const glm::vec3 origin = receiver.rayOrigin(arrival.direction);
-  if (arrival.finite) return !rays.occluded(origin, arrival.target - origin, 1.f);
-  return !rays.occluded(origin, arrival.direction, std::numeric_limits<float>::infinity());
+  if (arrival.finite) return !rays.shadowed(origin, arrival.target - origin, 1.f);
+  return !rays.shadowed(origin, arrival.direction, std::numeric_limits<float>::infinity());
 }
 
 PointView::PointView(const glsl::Light& light, const Surface& receiver) {

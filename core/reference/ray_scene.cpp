@@ -260,8 +260,11 @@ struct RayScene::Hierarchy {
   }
 };
 
-RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose)
-    : scene_(scene), medium_(scene, pose), hierarchy_(std::make_unique<Hierarchy>()) {
+RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose, bool unshadowed)
+    : scene_(scene),
+      unshadowed_(unshadowed),
+      medium_(scene, pose),
+      hierarchy_(std::make_unique<Hierarchy>()) {
   Hierarchy& h = *hierarchy_;
   std::map<std::pair<int, int>, int> uses;
   for (const auto& instance : pose.instances)

@@ -92,7 +92,7 @@ class Work {
  public:
   explicit Work(const Request& request)
       : request_(request),
-        rays_(request.scene, request.pose),
+        rays_(request.scene, request.pose, request.unshadowed),
         view_{.rays = rays_,
               .near = request.camera.near,
               .width = request.width * request.aa,

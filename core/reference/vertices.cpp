@@ -40,7 +40,7 @@ std::vector<glm::vec3> irradianceAt(const Request& request, std::span<const Surf
   if (!contains(kVertexTerms, request.term))
     throw UsageError(
         fmt::format("reference: at vertices there are the terms {}", joined(termNames(kVertexTerms))));
-  const RayScene rays(request.scene, request.pose);
+  const RayScene rays(request.scene, request.pose, request.unshadowed);
   const auto integrator = makePathIntegrator(rays, request);
   std::vector<glm::vec3> result(points.size());
   tbb::task_arena arena(request.threads > 0 ? request.threads : tbb::task_arena::automatic);

@@ -195,6 +195,7 @@ static void chooseGrid(const std::string& grid, scene::Scene& scene) {
 View open(const SceneQuestion& question, const Warn& warn) {
   View view;
   view.size = {question.width, question.height};
+  view.unshadowed = question.unshadowed == "on";
   view.scene = scene::load(findScene(question.scene));
   addEnvironment(question, view.scene);
   giveOwnMaterials(view.scene);
@@ -228,6 +229,7 @@ reference::Request referenceRequest(const View& view, const scene::Pose& pose,
   request.width = view.size.x;
   request.height = view.size.y;
   request.term = term;
+  request.unshadowed = view.unshadowed;
   request.light = view.light == scene::kNone ? reference::kAllLights : view.light;
   request.bounces = reference::defaultBounces(term);
   request.interfaces = reference::defaultInterfaces(term);

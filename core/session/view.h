@@ -35,6 +35,7 @@ struct View {
   scene::Pose pose;
   glm::ivec2 size;
   int light = scene::kNone;
+  bool unshadowed = false;  ///< in the reference
   FileLights file;
   bool defaultLights = false;  ///< the scene is lit by them; they follow the camera
 };

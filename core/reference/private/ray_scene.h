@@ -62,9 +62,9 @@ float levelOfDetail(const scene::Scene& scene, const scene::TextureRef& texture,
 
 class RayScene {
  public:
-  /// Builds the hierarchies with the calling thread's TBB arena. Throws Error if Embree fails (out of
-  /// memory).
-  RayScene(const scene::Scene& scene, const scene::Pose& pose);
+  /// Builds the hierarchies with the calling thread's TBB arena. With `unshadowed` nothing keeps light from
+  /// arriving. Throws Error if Embree fails (out of memory).
+  RayScene(const scene::Scene& scene, const scene::Pose& pose, bool unshadowed);
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
@@ -84,9 +84,16 @@ class RayScene {
   /// Returns whether anything but cut-out texels lies on origin + t * direction, 0 < t < end.
   bool occluded(const glm::vec3& origin, const glm::vec3& direction, float end) const;
 
+  /// Returns whether light is kept from arriving along that line: never without shadows, else if anything
+  /// occludes it.
+  bool shadowed(const glm::vec3& origin, const glm::vec3& direction, float end) const {
+    return !unshadowed_ && occluded(origin, direction, end);
+  }
+
  private:
   struct Hierarchy;
   const scene::Scene& scene_;
+  bool unshadowed_;
   std::vector<Draw> draws_;
   RayMedium medium_;
   std::unique_ptr<Hierarchy> hierarchy_;

@@ -86,6 +86,10 @@ TEST(ReferenceWork, ContentHashSeesEverythingThatMatters) {
   Request request = world.request(16, Term::direct, 16);
   request.seed = 1;
   EXPECT_NE(plain, contentHash(request));
+  request.seed = 0;
+  EXPECT_EQ(plain, contentHash(request));
+  request.unshadowed = true;
+  EXPECT_NE(plain, contentHash(request));
   EXPECT_NE(plain, contentHash(world.request(16, Term::final, 16)));
   EXPECT_NE(plain, contentHash(world.request(16, Term::direct, 18)));
   EXPECT_NE(plain, contentHash(world.request(17, Term::direct, 16)));

@@ -213,6 +213,28 @@ TEST(ReferenceDirect, WhiteFurnace) {
   EXPECT_NEAR(final.at(0, 0, 0), 2.f, 1e-5f);  // background
 }
 
+// A floor beside a high wall, which keeps half of a white environment from it; and a roof over both.
+TEST(ReferenceDirect, UnshadowedLightIsThatOfAnEmptyScene) {
+  World world = floorWorld(0.7f);
+  world.addQuad({0, 50, -2}, {100, 0, 0}, {0, 100, 0}, world.addMaterial(glm::vec3(0), true));
+  world.scene.environment.width = 4;
+  world.scene.environment.height = 2;
+  world.scene.environment.texels.assign(8, glm::vec3(2));
+  Request request = world.request(12, Term::direct, 256);
+  const auto furnace = [](const glm::dvec3&) { return 1.4; };
+  EXPECT_GT(meanRelativeError(world, render(request).image, "R", furnace), 0.2) << "the wall occludes";
+  request.unshadowed = true;
+  EXPECT_LT(meanRelativeError(world, render(request).image, "R", furnace), kBound);
+
+  world.addQuad({0, 5, 0}, {100, 0, 0}, {0, 0, -100}, world.addMaterial(glm::vec3(0), true));
+  world.scene.environment.scale = 0;
+  world.addLight(glsl::light_directional, {0, 0, 0}, {0, -1, 0}, glm::vec3(3));
+  const auto lamp = [](const glm::dvec3&) { return 0.7 * 3 / M_PI; };
+  EXPECT_LT(meanRelativeError(world, render(request).image, "R", lamp), 1e-5);
+  request.unshadowed = false;
+  EXPECT_GT(meanRelativeError(world, render(request).image, "R", lamp), 0.999);
+}
+
 TEST(ReferenceDirect, EnvironmentWithASunIsImportanceSampled) {
   World world = floorWorld();
   auto& environment = world.scene.environment;
