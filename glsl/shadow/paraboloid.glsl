@@ -8,23 +8,9 @@
 #define LIMN_PARABOLOID_GLSL
 #include "glsl/numeric/geometry.glsl"
 #include "glsl/numeric/language.glsl"
+#include "glsl/numeric/stereographic.glsl"
 #include "glsl/shadow/shadow_view.glsl"
 LIMN_BEGIN
-
-// --- The projection ---
-
-// direction.z > -1.
-LIMN_FN vec2 paraboloid_map(vec3 direction) {
-  return vec2(direction.x, direction.y) / (1.0f + direction.z);
-}
-
-LIMN_FN vec3 paraboloid_direction(vec2 p) {
-  float k = 2.0f / (1.0f + dot(p, p));
-  return vec3(k * p.x, k * p.y, k - 1.0f);
-}
-
-// Disc radii per radian at squared radius rho2 of the disc.
-LIMN_FN float paraboloid_scale(float rho2) { return 0.5f * (1.0f + rho2); }
 
 // The view of a map from `origin` around the unit vector `axis`. What lies nearer than near or farther than far, m, is not
 // in it. layer: of the array it is drawn to.

@@ -1,0 +1,191 @@
+// Prefiltered environments: maps of an environment's radiance blurred by a surface's lobe, and where a surface looks into
+// them (Kautz, Vazquez, Heidrich, Seidel 2000, A Unified Approach to Prefiltered Environment Maps; Karis 2013, Real Shading
+// in Unreal Engine 4).
+//
+// Maps are layers of a 2D array, in the environment's own frame. A dual paraboloid map has two layers of size x size, the
+// hemispheres around +z and -z; the discs end one texel before the edge, and the texels beyond the rim hold the directions
+// that follow there, so that bilinear lookups need no other layer. An equirectangular map has one layer of 2 size x size,
+// rows from pole to pole: as many texels. Places are texture coordinates and the layer; `texel` is a position in texels,
+// whose centres lie at halves.
+#ifndef LIMN_PREFILTERED_GLSL
+#define LIMN_PREFILTERED_GLSL
+#include "glsl/light/environment.glsl"
+#include "glsl/numeric/equirectangular.glsl"
+#include "glsl/numeric/geometry.glsl"
+#include "glsl/numeric/language.glsl"
+#include "glsl/numeric/stereographic.glsl"
+#include "glsl/surface/brdf.glsl"
+LIMN_BEGIN
+
+// --- Dual paraboloid maps ---
+
+// direction: unit.
+LIMN_FN vec3 dual_paraboloid_place(vec3 direction, int size) {
+  float scale = (0.5f - 1.0f / float(size)) / (1.0f + abs(direction.z));
+  return vec3(0.5f + scale * direction.x, 0.5f + scale * direction.y, direction.z < 0.0f ? 1.0f : 0.0f);
+}
+
+// Position on the disc of radius 1.
+LIMN_FN vec2 dual_paraboloid_disc(vec2 texel, int size) {
+  return (texel - vec2(0.5f * float(size))) / (0.5f * float(size) - 1.0f);
+}
+
+LIMN_FN vec3 dual_paraboloid_direction(vec2 texel, int layer, int size) {
+  vec3 direction = paraboloid_direction(dual_paraboloid_disc(texel, size));
+  return vec3(direction.x, direction.y, layer == 0 ? direction.z : -direction.z);
+}
+
+// Solid angle of a texel by its scale at that position, sr.
+LIMN_FN float dual_paraboloid_density(vec2 texel, int size) {
+  vec2 disc = dual_paraboloid_disc(texel, size);
+  float side = 1.0f / ((0.5f * float(size) - 1.0f) * paraboloid_scale(dot(disc, disc)));
+  return side * side;
+}
+
+// The same around a direction, which is unit.
+LIMN_FN float dual_paraboloid_density_towards(vec3 direction, int size) {
+  float side = (1.0f + abs(direction.z)) / (0.5f * float(size) - 1.0f);
+  return side * side;
+}
+
+// As dual_paraboloid_density, of the part inside the rim, so that the texels of both layers share the sphere; texel: a
+// centre. The sum is 4 pi within 6e-4 for 32 texels and more.
+LIMN_FN float dual_paraboloid_solid_angle(vec2 texel, int size) {
+  float inside = (1.0f - length(dual_paraboloid_disc(texel, size))) * (0.5f * float(size) - 1.0f);
+  return clamp(0.5f + inside, 0.0f, 1.0f) * dual_paraboloid_density(texel, size);
+}
+
+// --- Equirectangular maps with rows on the poles ---
+
+LIMN_FN vec3 polar_map_place(vec3 direction, int size) {
+  vec2 place = environment_place(direction, size);
+  return vec3(place.x, place.y, 0.0f);
+}
+
+// Radians from the pole +y; texels of the first and last row reach beyond the poles.
+LIMN_FN float polar_map_angle(float row, int size) { return pi * (row - 0.5f) / float(size - 1); }
+
+LIMN_FN vec3 polar_map_direction(vec2 texel, int size) {
+  return equirectangular_direction(vec2(texel.x / float(2 * size), polar_map_angle(texel.y, size) * inverse_pi));
+}
+
+LIMN_FN float polar_map_density(vec2 texel, int size) {
+  float area = pi * pi / (float(size) * float(size - 1));
+  return area * max(abs(sin(polar_map_angle(texel.y, size))), 1e-6f);
+}
+
+// Exact; the sum is 4 pi. texel: a centre.
+LIMN_FN float polar_map_solid_angle(vec2 texel, int size) {
+  float low = clamp(polar_map_angle(texel.y - 0.5f, size), 0.0f, pi);
+  float high = clamp(polar_map_angle(texel.y + 0.5f, size), 0.0f, pi);
+  return pi / float(size) * (cos(low) - cos(high));
+}
+
+// --- Filtering ---
+
+// One direction of the GGX lobe at normal incidence, in the frame of its axis.
+struct PrefilterSample {
+  vec3 direction;
+  float weight;  // 0 below the horizon
+  float spread;  // solid angle that the sample stands for, sr
+};
+
+// Sample i of `count`: a rank-1 lattice of the golden ratio through the density of visible normals.
+LIMN_FN PrefilterSample prefilter_sample(float alpha, int i, int count) {
+  vec2 u = vec2(fract(0.61803399f * float(i)), (float(i) + 0.5f) / float(count));
+  vec3 h = sample_visible_normal(vec3(0.0f, 0.0f, 1.0f), vec2(alpha), u);
+  PrefilterSample s;
+  s.direction = vec3(2.0f * h.z * h.x, 2.0f * h.z * h.y, 2.0f * h.z * h.z - 1.0f);
+  float pdf = 0.25f * ggx_distribution(h.z, h.x * h.x + h.y * h.y, alpha);
+  float cosine = s.direction.z;
+  s.weight = cosine > 0.0f ? ggx_visibility(1.0f, cosine, alpha) * cosine : 0.0f;
+  s.spread = 1.0f / (float(count) * max(pdf, 1e-12f));
+  return s;
+}
+
+// Level of a chain of maps, each half as large as the one before, in which a texel covers as much as the sample; density:
+// solid angle of a texel of level 0 there. Half a level more hides the gaps between samples (Krivanek and Colbert 2008).
+LIMN_FN float prefilter_source_level(float spread, float density) {
+  return max(0.0f, 0.5f * log2(spread / density) + 0.5f);
+}
+
+// --- Lookups ---
+
+LIMN_CONST int prefiltered_lookup_mirror = 0;        // along the mirror direction
+LIMN_CONST int prefiltered_lookup_normal_drawn = 1;  // drawn towards the normal by alpha^2 (Filament)
+LIMN_CONST int prefiltered_lookup_centroid = 2;      // along the middle of the lobe that was fitted to the BRDF
+
+// Direction in which a GGX lobe looks into the map of its width: unit. terms: of n.v and alpha.
+LIMN_FN vec3 prefiltered_direction(int lookup, LtcTerms terms, vec3 n, vec3 v, float alpha) {
+  if (lookup == prefiltered_lookup_centroid) return environment_lobe_direction(terms, n, v, alpha);
+  vec3 mirror = 2.0f * dot(n, v) * n - v;
+  if (lookup == prefiltered_lookup_mirror) return mirror;
+  vec3 drawn = mix(mirror, n, alpha * alpha);
+  float size = length(drawn);
+  return size > 1e-6f ? drawn / size : n;
+}
+
+// Share of a Phong lobe (r.l)^p that lies above the horizon of the surface, in [0, 1]: what a map that was filtered with the
+// whole lobe is multiplied by. Across the horizon the lobe falls as a Gaussian of the elevation e of r, sin e = n.v:
+// S = (1 + erf(e sqrt((p + 3/4) / 2))) / 2, within 2.4e-3 for p >= 10, 5e-3 for p = 5 and 0.025 for p = 1; 0.75 centres the
+// errors. erf: Abramowitz and Stegun, 7.1.25, within 2.5e-5.
+LIMN_FN float phong_horizon_share(float n_dot_v, float p) {
+  float cosine = min(abs(n_dot_v), 1.0f);
+  float x = atan(cosine, sqrt(1.0f - cosine * cosine)) * sqrt(0.5f * (p + 0.75f));
+  float t = 1.0f / (1.0f + 0.47047f * x);
+  float below = 0.5f * t * (0.3480242f + t * (-0.0958798f + t * 0.7478556f)) * exp(-x * x);
+  return n_dot_v < 0.0f ? below : 1.0f - below;
+}
+
+#ifndef __cplusplus
+// The map that PREFILTERED_PARABOLOID chooses: 1, or 0 for an equirectangular one.
+
+vec3 prefiltered_place(vec3 direction, int size) {
+#if PREFILTERED_PARABOLOID
+  return dual_paraboloid_place(direction, size);
+#else
+  return polar_map_place(direction, size);
+#endif
+}
+
+vec3 prefiltered_texel_direction(vec2 texel, int layer, int size) {
+#if PREFILTERED_PARABOLOID
+  return dual_paraboloid_direction(texel, layer, size);
+#else
+  return polar_map_direction(texel, size);
+#endif
+}
+
+float prefiltered_density(vec2 texel, int size) {
+#if PREFILTERED_PARABOLOID
+  return dual_paraboloid_density(texel, size);
+#else
+  return polar_map_density(texel, size);
+#endif
+}
+
+float prefiltered_solid_angle(vec2 texel, int size) {
+#if PREFILTERED_PARABOLOID
+  return dual_paraboloid_solid_angle(texel, size);
+#else
+  return polar_map_solid_angle(texel, size);
+#endif
+}
+
+// The density around a direction, of an equirectangular map the mean.
+float prefiltered_density_towards(vec3 direction, int size) {
+#if PREFILTERED_PARABOLOID
+  return dual_paraboloid_density_towards(direction, size);
+#else
+  return 2.0 * pi / float(size * size);
+#endif
+}
+
+// Bilinear lookup in one level; direction: unit.
+vec3 prefiltered_lookup(sampler2DArray map, vec3 direction, int level) {
+  return textureLod(map, prefiltered_place(direction, textureSize(map, level).y), float(level)).rgb;
+}
+#endif
+
+LIMN_END
+#endif  // LIMN_PREFILTERED_GLSL
