@@ -1,0 +1,33 @@
+// Radiance filtered by the GGX lobe at normal incidence around each direction: samples of the lobe, each from the level of the
+// chain in which a texel covers as much as it does.
+#include "glsl/light/prefiltered.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(rgba16f) writeonly uniform image2DArray filtered;
+uniform sampler2DArray source;
+uniform float alpha;
+uniform int samples;
+
+const float largest_half = 65504.0;
+
+void main() {
+  ivec3 at = ivec3(gl_GlobalInvocationID);
+  ivec3 extent = imageSize(filtered);
+  if (any(greaterThanEqual(at, extent))) return;
+  Frame around = frame_around(prefiltered_texel_direction(vec2(at.xy) + 0.5, at.z, extent.y));
+  int size = textureSize(source, 0).y;
+  int last = textureQueryLevels(source) - 1;
+  vec3 sum = vec3(0.0);
+  float weights = 0.0;
+  for (int i = 0; i < samples; ++i) {
+    PrefilterSample s = prefilter_sample(alpha, i, samples);
+    if (s.weight == 0.0) continue;
+    vec3 direction = from_local(around, s.direction);
+    float level = min(prefilter_source_level(s.spread, prefiltered_density_towards(direction, size)), float(last));
+    int low = min(int(level), last - 1);
+    sum += s.weight * mix(prefiltered_lookup(source, direction, low), prefiltered_lookup(source, direction, low + 1),
+                          level - float(low));
+    weights += s.weight;
+  }
+  imageStore(filtered, at, vec4(min(sum / weights, vec3(largest_half)), 1.0));
+}

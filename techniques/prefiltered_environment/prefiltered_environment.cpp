@@ -1,0 +1,248 @@
+// The environment's light without shadows from maps that the GPU filters: irradiance, and radiance blurred by
+// lobes of growing width.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+
+#include "core/gpu_scene/gpu_medium.h"
+#include "core/gpu_scene/gpu_scene.h"
+#include "core/scene/environment_light.h"
+#include "core/shading/ltc_table.h"
+#include "core/technique/technique.h"
+#include "glsl/light/prefiltered.glsl"
+
+namespace {
+
+using namespace limn;
+using frame::Access;
+using frame::ShaderName;
+using frame::TextureHandle;
+
+enum Map : int { paraboloid, equirectangular };
+constexpr const char* kMaps[] = {"paraboloid", "equirectangular"};
+constexpr const char* kLookups[] = {"mirror", "normal_drawn", "centroid"};
+static_assert(glsl::prefiltered_lookup_mirror == 0 && glsl::prefiltered_lookup_normal_drawn == 1 &&
+              glsl::prefiltered_lookup_centroid == 2);
+
+constexpr Parameter kParameters[] = {
+    choice(
+        "map", paraboloid, kMaps,
+        "Layout of the maps: two paraboloids without a pole, or one equirectangular map of as many texels"),
+    integer("size", 256, {128, 1024}, "texels",
+            "Side of each paraboloid, and height of the equirectangular map, at the least roughness")
+        .quality()
+        .logScale(),
+    integer("samples", 64, {8, 1024}, "samples",
+            "Directions of the narrowest lobe that is filtered; each wider one takes twice as many")
+        .quality()
+        .logScale(),
+    choice("lookup", glsl::prefiltered_lookup_centroid, kLookups,
+           "Where a glossy surface looks into the maps: along the mirror direction, drawn from there towards "
+           "the "
+           "normal by alpha squared, or at the middle of its lobe"),
+};
+constexpr StressCase kStress[] = {
+    {.name = "smallest maps", .settings = "size=128", .factor = 4},
+    {.name = "fewest samples", .settings = "samples=8", .factor = 4},
+    {.name = "mirror direction", .settings = "lookup=mirror", .factor = 4},
+    {.name = "equirectangular maps", .settings = "map=equirectangular", .factor = 4},
+};
+
+constexpr int kGroupSize = 8;
+constexpr int kFilteredLevels = glsl::environment_levels - 1;  ///< level 0 is the radiance itself
+constexpr int kIrradianceSize = 32;
+constexpr int kCoarsestSize = 8;  ///< of the chain, at least
+
+class PrefilteredEnvironment : public Technique {
+  gpu::Texture environment_, ltcTable_;
+  gpu::Sampler sampler_;  ///< bilinear within a level, repeated around the horizon
+
+  TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                          const TermRequest& request) override {
+    if (!scene::EnvironmentLight(inputs.scene.environment).present()) {
+      graph.leaveOut("environment light", info.name, "the environment is black");
+      return request.target;
+    }
+    upload(inputs);
+    const Filtering filtering(graph, inputs.parameters, sampler_);
+    const TextureHandle chain =
+        filtering.addChain(graph.importTexture("environment", environment_), environment_.desc().width);
+    return addReflection(graph, inputs, request.target, filtering.addIrradiance(chain), chain,
+                         filtering.addLobes(chain));
+  }
+
+  void upload(const TechniqueInputs& inputs) {
+    gpu::Device& device = inputs.gpuScene.device();
+    const scene::Environment& e = inputs.scene.environment;
+    environment_ =
+        gpu::Texture(device, "environment", {.format = GL_RGB32F, .width = e.width, .height = e.height});
+    environment_.setSampling(GL_LINEAR, GL_LINEAR, GL_REPEAT, GL_CLAMP_TO_EDGE);
+    environment_.upload(0, 0, GL_RGB, GL_FLOAT, e.texels.data());
+    ltcTable_ = shading::makeLtcTexture(device);
+    sampler_ = gpu::Sampler(device, GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR, GL_REPEAT);
+  }
+
+  /// Declares the passes that filter the environment; they run again when it changes.
+  class Filtering {
+   public:
+    Filtering(frame::FrameGraph& graph, const ParameterValues& parameters, const gpu::Sampler& sampler)
+        : graph_(graph),
+          sampler_(sampler),
+          paraboloid_(parameters.choice("map") == paraboloid),
+          size_(parameters.integer("size")),
+          samples_(parameters.integer("samples")) {}
+
+    /// Returns the radiance in the technique's map, each level half as large as the one before.
+    TextureHandle addChain(TextureHandle environment, int sourceWidth) const {
+      const int levels = levelOf(kCoarsestSize) + 1;
+      TextureHandle chain =
+          graph_.createTexture("radiance of the environment", desc(GL_RGBA32F, size_, levels));
+      for (int level = 0; level < levels; ++level) {
+        const bool base = level == 0;
+        frame::PassBuilder pass = addPass("resample environment level " + std::to_string(level));
+        if (base) pass.read(environment, Access::sampled, "environment_map", "its picture");
+        chain = pass.write(chain, base ? Access::imageStore : Access::imageLoadStore,
+                           ShaderName("coarser").level(level), "means over texels");
+        if (!base) pass.also(ShaderName("finer").level(level - 1));
+        const auto program = pass.program(shader("resample", {{"BASE", base ? "1" : "0"}}));
+        pass.execute(
+            [=, across = base ? samplesAcross(sourceWidth) : kSamplesAcrossLevel,
+             extent = desc(GL_RGBA32F, std::max(size_ >> level, 1), 1)](frame::PassContext& context) {
+              context.use(program).set("samples_across", across);
+              dispatch(context, extent);
+            });
+      }
+      return chain;
+    }
+
+    /// Returns the irradiance of surfaces that face each direction, W/m^2.
+    TextureHandle addIrradiance(TextureHandle chain) const {
+      const gpu::TextureDesc extent = desc(GL_RGBA32F, kIrradianceSize, 1);
+      frame::PassBuilder pass = addPass("irradiance of the environment");
+      pass.read(chain, Access::sampled, "source", "radiance");
+      const TextureHandle irradiance =
+          pass.write(graph_.createTexture("irradiance of the environment", extent), Access::imageStore,
+                     "irradiance", "for diffuse surfaces");
+      const auto program = pass.program(shader("irradiance", {}));
+      pass.execute([=, level = levelOf(kIrradianceSize)](frame::PassContext& context) {
+        context.use(program).set("source_level", level);
+        dispatch(context, extent);
+      });
+      return irradiance;
+    }
+
+    /// Returns the radiance filtered by the lobes of glsl::environment_alpha(1), (2) and so on, a level each.
+    TextureHandle addLobes(TextureHandle chain) const {
+      TextureHandle filtered =
+          graph_.createTexture("filtered environment", desc(GL_RGBA16F, size_, kFilteredLevels));
+      for (int level = 0; level < kFilteredLevels; ++level) {
+        frame::PassBuilder pass = addPass("filter environment level " + std::to_string(level + 1));
+        pass.read(chain, Access::sampled, ShaderName("source").sampledWith(&sampler_), "radiance");
+        filtered = pass.write(filtered, level == 0 ? Access::imageStore : Access::imageLoadStore,
+                              ShaderName("filtered").level(level), "for glossy surfaces");
+        const auto program = pass.program(shader("filter", {}));
+        pass.execute([=, alpha = glsl::environment_alpha(static_cast<float>(level + 1)),
+                      samples = samples_ << level,
+                      extent = desc(GL_RGBA16F, size_ >> level, 1)](frame::PassContext& context) {
+          gpu::Program& kernel = context.use(program);
+          kernel.set("alpha", alpha);
+          kernel.set("samples", samples);
+          dispatch(context, extent);
+        });
+      }
+      return filtered;
+    }
+
+    /// Returns a shader of the technique with the chosen map.
+    gpu::ProgramDesc shader(const std::string& name, std::map<std::string, std::string> defines) const {
+      defines["PREFILTERED_PARABOLOID"] = paraboloid_ ? "1" : "0";
+      return {.files = {"techniques/prefiltered_environment/" + name + ".comp.glsl"},
+              .defines = std::move(defines)};
+    }
+
+   private:
+    static constexpr int kSamplesAcrossLevel = 4;  ///< of about two texels
+    static constexpr int kMostSamplesAcross = 32;
+
+    gpu::TextureDesc desc(GLenum format, int size, int levels) const {
+      return {.target = GL_TEXTURE_2D_ARRAY,
+              .format = format,
+              .width = paraboloid_ ? size : 2 * size,
+              .height = size,
+              .layers = paraboloid_ ? 2 : 1,
+              .levels = levels};
+    }
+
+    /// Returns the last level of the chain that is at least so large.
+    int levelOf(int size) const { return std::bit_width(static_cast<unsigned>(size_ / size)) - 1; }
+
+    /// Returns how many samples lie along a texel of level 0, two in each pixel of the picture where the
+    /// texel is widest.
+    int samplesAcross(int sourceWidth) const {
+      const double radians = paraboloid_ ? 4.0 / (size_ - 2) : std::numbers::pi / (size_ - 1);
+      const double pixels = radians * sourceWidth / (2 * std::numbers::pi);
+      return std::clamp(static_cast<int>(std::ceil(2 * pixels)), 2, kMostSamplesAcross);
+    }
+
+    frame::PassBuilder addPass(const std::string& name) const {
+      frame::PassBuilder pass = graph_.addPass(name, info.name);
+      pass.role(frame::PassRole::filter).cacheable();
+      return pass;
+    }
+
+    static void dispatch(frame::PassContext& context, const gpu::TextureDesc& extent) {
+      context.dispatch(extent.width, extent.height, extent.layers, kGroupSize, kGroupSize);
+    }
+
+    frame::FrameGraph& graph_;
+    const gpu::Sampler& sampler_;
+    bool paraboloid_;
+    int size_, samples_;
+  };
+
+  TextureHandle addReflection(frame::FrameGraph& graph, const TechniqueInputs& inputs, TextureHandle target,
+                              TextureHandle irradiance, TextureHandle sharp, TextureHandle filtered) {
+    frame::PassBuilder pass = graph.addPass("environment light", info.name);
+    pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, rotation, scale");
+    readSurfaces(pass, inputs.gbuffer);
+    const auto look = [&](TextureHandle map, const char* name, const char* why) {
+      pass.read(map, Access::sampled, ShaderName(name).sampledWith(&sampler_), why);
+    };
+    look(irradiance, "irradiance_map", "diffuse light");
+    look(sharp, "sharp_map", "light of smooth surfaces");
+    look(filtered, "filtered_map", "glossy light");
+    pass.read(graph.importTexture("table of linearly transformed cosines of the environment", ltcTable_),
+              Access::sampled, "ltc_table", "glossy reflectance");
+    const TextureHandle radiance =
+        pass.write(target, Access::imageLoadStore, "radiance", "light of the environment, V = 1");
+    gpu::ProgramDesc desc =
+        Filtering(graph, inputs.parameters, sampler_)
+            .shader("environment", {{"MEDIUM", inputs.scene.medium.present() ? "1" : "0"},
+                                    {"LOOKUP", std::to_string(inputs.parameters.choice("lookup"))}});
+    const scene::MediumInput medium(inputs.handles);
+    medium.define(desc.defines);
+    medium.declare(pass);
+    const auto program = pass.program(std::move(desc));
+    pass.execute([=, size = inputs.size](frame::PassContext& context) {
+      context.use(program);
+      context.dispatch(size.x, size.y, 1, kGroupSize, kGroupSize);
+    });
+    return radiance;
+  }
+
+ public:
+  static constexpr TechniqueInfo info{
+      .name = "prefiltered_environment",
+      .title = "Prefiltered environment",
+      .source = "Kautz, Vazquez, Heidrich, Seidel 2000; Karis 2013 (split sum)",
+      .terms = termSet(Term::environment),
+      .parameters = kParameters,
+      .stress = kStress};
+};
+
+}  // namespace
+
+LIMN_TECHNIQUE(PrefilteredEnvironment::info, PrefilteredEnvironment)
