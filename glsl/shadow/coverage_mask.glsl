@@ -27,27 +27,30 @@ LIMN_FN int coverage_rank(float x, int n) {
 
 // Bits of a word whose samples are among the first k along the first axis.
 LIMN_FN uint coverage_columns(int k, int word) {
-  int bits = clamp(k - 32 * word, 0, 32);
-  return bits == 32 ? 0xffffffffu : (1u << uint(bits)) - 1u;
+  uint first = (1u << uint(k & 31)) - 1u;
+  int whole = k >> 5;  // words
+  return whole == word ? first : whole > word ? 0xffffffffu : 0u;
 }
 
-// The same along the second axis: bits j with reversed(j) * words + reversed(word) < k. The comparison runs through the
-// five bits of reversed(j), the lowest first; each is the same in all words.
+// The same along the second axis. The sample of bit 8 a + b has place (4 reversed(b) + reversed(a)) words + reversed(word)
+// there, with 3 bits of b, 2 of a: of each byte the first bits in the order of reversed(b) are among them, in all words the
+// same, and the next one in some of the bytes.
 LIMN_FN uint coverage_rows(int k, int word, int words) {
-  int least = (k - coverage_reversed(word, words) + words - 1) / words;
-  uint limit = uint(clamp(least, 0, 32));
-  uint below = 0u;
-  uint set = 0u - (limit & 1u);
-  below = 0x0000ffffu & set;
-  set = 0u - ((limit >> 1u) & 1u);
-  below = (set & below) | (0x00ff00ffu & (set | below));
-  set = 0u - ((limit >> 2u) & 1u);
-  below = (set & below) | (0x0f0f0f0fu & (set | below));
-  set = 0u - ((limit >> 3u) & 1u);
+  uint first = uint(k) / uint(4 * words);  // 0 to 8 bits
+  uint rest = uint(k) % uint(4 * words);
+  // The comparison runs through the bits of reversed(b), the lowest first.
+  uint set = 0u - (first & 1u);
+  uint below = 0x0f0f0f0fu & set;
+  set = 0u - ((first >> 1u) & 1u);
   below = (set & below) | (0x33333333u & (set | below));
-  set = 0u - ((limit >> 4u) & 1u);
+  set = 0u - ((first >> 2u) & 1u);
   below = (set & below) | (0x55555555u & (set | below));
-  return limit == 32u ? 0xffffffffu : below;
+  below |= 0u - (first >> 3u);
+  // Bytes whose place within those of one reversed(b) is less than `rest`: bit 7 of 127 - place + rest.
+  uint places = uint(coverage_reversed(word, words)) * 0x01010101u + uint(words) * 0x03010200u;
+  uint bytes = ((rest * 0x01010101u + (0x7f7f7f7fu - places)) >> 7u) & 0x01010101u;
+  uint next = (0x73516240u >> (4u * (first & 7u))) & 7u;  // reversed(first)
+  return below | (bytes << next);
 }
 
 // Ranks of a rectangle's sides: of low.x, low.y, high.x, high.y.
