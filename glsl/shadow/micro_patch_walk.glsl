@@ -8,11 +8,23 @@
 //                     (what several patches of one row cover beyond their neighbours still counts more than once).
 #ifndef LIMN_MICRO_PATCH_WALK_GLSL
 #define LIMN_MICRO_PATCH_WALK_GLSL
+#include "glsl/shadow/aligned_patches.glsl"
 #include "glsl/shadow/blocker_search.glsl"
 #include "glsl/shadow/micro_patches.glsl"
 
 uniform int patches;        // along each side of a kernel, at most
 uniform int search_rounds;  // of narrow_box, at most
+
+// Whether the map's axes are the light's, so that patches are those of glsl/shadow/aligned_patches.glsl: a rectangle or a disc
+// that one view along its axis sees.
+bool patches_aligned() {
+#if defined(SHADOW_FACES) && defined(LIGHT_KIND)
+  return uint(SHADOW_FACES) == shadow_faces_single &&
+         (uint(LIGHT_KIND) == light_kind_rectangle || uint(LIGHT_KIND) == light_kind_disc);
+#else
+  return false;
+#endif
+}
 
 // Takes in a patch that blocks where found.blocks, its left and lower sides moved to the neighbours there.
 void add_patch(PatchProjection projection, MicroPatch found);
@@ -46,32 +58,47 @@ int box_level(TexelBox box, int most) {
   return level;
 }
 
+// The places between which a cell of a pyramid level lies along an axis; the last one reaches to the map's edge.
+ivec2 cell_ends(int at, int last, int level, int size) {
+  return ivec2(at << level, at == last ? size : (at + 1) << level);
+}
+
 // Narrows the box to the cells of a pyramid level, at most 4 x 4, in which something may block; gap: the widest of it.
 // False: there are none.
-bool narrow_box(ShadowCursor cursor, PatchProjection projection, inout TexelBox box, inout float gap) {
+bool narrow_box(ShadowCursor cursor, PatchProjection projection, AlignedPatches aligned, inout TexelBox box,
+                inout float gap) {
   int size = int(cursor.view.size);
   int level = min(box_level(box, 4), textureQueryLevels(shadow_min_max) - 1);
-  ivec2 last = ivec2(max(size >> level, 1) - 1);
-  ivec2 from = min(box.low >> level, last);
-  ivec2 to = min(box.high >> level, last);
+  int last = max(size >> level, 1) - 1;
+  ivec2 from = min(box.low >> level, ivec2(last));
+  ivec2 to = min(box.high >> level, ivec2(last));
   ivec2 low = ivec2(size);
   ivec2 high = ivec2(-1);
   float widest = 0.0;
-  for (int y = from.y; y <= to.y; ++y) {
-    for (int x = from.x; x <= to.x; ++x) {
-      ivec2 at = ivec2(x, y);
-      // The last cells reach to the map's edge.
-      ivec2 a = at << level;
-      ivec2 b = mix((at + 1) << level, ivec2(size), equal(at, last));
-      vec2 stored = texelFetch(shadow_min_max, ivec3(at, cursor.layer), level).xy;
+  int y = from.y;
+  do {
+    ivec2 across = cell_ends(y, last, level, size);
+    PatchSpan rows = patch_span(aligned, 1, float(across.x), float(across.y));
+    int x = from.x;
+    do {
+      ivec2 along = cell_ends(x, last, level, size);
+      vec2 stored = texelFetch(shadow_min_max, ivec3(x, y, cursor.layer), level).xy;
       vec2 z = vec2(shadow_metres(cursor.view, stored.x), shadow_metres(cursor.view, stored.y));
       float reach;
-      bool blocks = patches_may_block(projection, vec2(a), vec2(b), z, reach) && stored.x < 1.0;
-      low = blocks ? min(low, a) : low;
-      high = blocks ? max(high, b - 1) : high;
+      bool blocks;
+      if (patches_aligned()) {
+        PatchSpan columns = patch_span(aligned, 0, float(along.x), float(along.y));
+        blocks = aligned_patches_may_block(aligned, cursor.view.projection, columns, rows, z, reach);
+      } else {
+        vec2 first = vec2(along.x, across.x);
+        blocks = patches_may_block(projection, first, vec2(along.y, across.y), z, reach);
+      }
+      blocks = blocks && stored.x < 1.0;
+      low = blocks ? min(low, ivec2(along.x, across.x)) : low;
+      high = blocks ? max(high, ivec2(along.y, across.y) - 1) : high;
       widest = blocks ? max(widest, reach) : widest;
-    }
-  }
+    } while (++x <= to.x);
+  } while (++y <= to.y);
   gap = min(gap, widest);
   box = TexelBox(max(box.low, low), min(box.high, high));
   return high.x >= 0;
@@ -80,7 +107,7 @@ bool narrow_box(ShadowCursor cursor, PatchProjection projection, inout TexelBox 
 // The texels of one face in which something may block: of the kernel at the near plane, then narrowed by ever finer
 // levels of the pyramid. False: there are none. umbra: all texels of the kernel at the widest gap block.
 bool blocker_box(inout ShadowCursor cursor, VisibilityQuery q, uint face, float gap, out TexelBox box,
-                 out PatchProjection projection, out bool umbra) {
+                 out PatchProjection projection, out AlignedPatches aligned, out bool umbra) {
   umbra = true;
   ShadowKernel kernel;
   if (!shadow_kernel_in_face(cursor, q, face, gap, kernel)) return false;
@@ -90,9 +117,10 @@ bool blocker_box(inout ShadowCursor cursor, VisibilityQuery q, uint face, float 
   umbra = false;
   if (any(greaterThan(box.low, box.high))) return false;
   projection = patch_projection(cursor.view, cursor.receiver, q.light, q.position, DISC_SIDE);
+  aligned = aligned_patches(projection, cursor.view.projection);
   for (int round = 0; round < search_rounds; ++round) {
     ivec2 former = box.high - box.low;
-    if (!narrow_box(cursor, projection, box, gap)) return false;
+    if (!narrow_box(cursor, projection, aligned, box, gap)) return false;
     ivec2 extent = box.high - box.low;
     if (4 * max(extent.x, extent.y) >= 3 * max(former.x, former.y)) break;
   }
@@ -103,39 +131,81 @@ bool blocker_box(inout ShadowCursor cursor, VisibilityQuery q, uint face, float 
   return true;
 }
 
-// The patch of the cell `at` of 2^level texels, with the depth of the texel in its middle.
-MicroPatch fetched_patch(ShadowCursor cursor, PatchProjection projection, ivec2 at, int level) {
-  int cell = 1 << level;
-  ivec2 texel = min((at << level) + (cell >> 1), ivec2(cursor.view.size) - 1);
-  float stored = texelFetch(shadow_depth, ivec3(texel, cursor.layer), 0).r;
-  // Placed where that texel is, half a texel beside the middle of a wider cell: elsewhere its depth is not the
-  // surface's, and slopes shadow themselves.
-  vec2 centre = vec2(texel) + 0.5;
-  MicroPatch found =
-      micro_patch(projection, centre, float(cell), shadow_metres(cursor.view, stored), PATCH_SPREAD);
+// The cells of a walk, each of 2^level texels.
+struct PatchCells {
+  PatchProjection projection;
+  AlignedPatches aligned;  // where patches_aligned()
+  int level;
+};
+
+// The texel in the middle of cell `at` along an axis. Patches are placed where it is, half a texel beside the middle of a
+// wider cell: elsewhere its depth is not the surface's, and slopes shadow themselves.
+int cell_texel(ShadowCursor cursor, PatchCells cells, int at) {
+  int cell = 1 << cells.level;
+  return clamp((at << cells.level) + (cell >> 1), 0, int(cursor.view.size) - 1);
+}
+
+// The patch of the texel in the middle of a cell.
+MicroPatch fetched_patch(ShadowCursor cursor, PatchCells cells, PatchLine column, PatchLine row) {
+  float stored = texelFetch(shadow_depth, ivec3(column.texel, row.texel, cursor.layer), 0).r;
+  float z = shadow_metres(cursor.view, stored);
+  MicroPatch found;
+  if (patches_aligned()) {
+    found = aligned_patch(cells.aligned, cursor.view.projection, column, row, z);
+  } else {
+    vec2 centre = vec2(column.texel, row.texel) + 0.5;
+    found = micro_patch(cells.projection, centre, float(1 << cells.level), z, PATCH_SPREAD);
+  }
   found.blocks = found.blocks && stored < 1.0;
   return found;
 }
 
-void walk_box(ShadowCursor cursor, PatchProjection projection, TexelBox box) {
-  int level = box_level(box, patches - 1);
-  ivec2 low = box.low >> level;
+PatchLine cell_column(ShadowCursor cursor, PatchCells cells, int x) {
+  return patch_line(cells.aligned, 0, cell_texel(cursor, cells, x), float(1 << cells.level));
+}
+
+PatchLine cell_row(ShadowCursor cursor, PatchCells cells, int y) {
+  return patch_line(cells.aligned, 1, cell_texel(cursor, cells, y), float(1 << cells.level));
+}
+
+const int strip = 4;  // rows that are walked together: the one below them is fetched once
+
+void walk_box(ShadowCursor cursor, PatchProjection projection, AlignedPatches aligned, TexelBox box) {
+  PatchCells cells;
+  cells.projection = projection;
+  cells.aligned = aligned;
+  cells.level = box_level(box, patches - 1);
+  ivec2 low = box.low >> cells.level;
   // One more cell: what it covers between itself and its neighbour.
-  ivec2 high = min((box.high >> level) + 1, ivec2(cursor.view.size - 1u) >> level);
-  for (int y = low.y; y <= high.y; ++y) {
-    MicroPatch left = fetched_patch(cursor, projection, ivec2(max(low.x - 1, 0), y), level);
-    left.blocks = left.blocks && low.x > 0;
-    for (int x = low.x; x <= high.x; ++x) {
-      MicroPatch below = fetched_patch(cursor, projection, ivec2(x, max(y - 1, 0)), level);
-      MicroPatch found = fetched_patch(cursor, projection, ivec2(x, y), level);
-      MicroPatch own = found;
-      found.low.x = side_or_neighbour(own.low.x, own.high.x, left.blocks, left.high.x);
-      found.low.y = side_or_neighbour(own.low.y, own.high.y, below.blocks && y > 0, below.high.y);
-      add_patch(projection, found);
-      left = own;
+  ivec2 high = min((box.high >> cells.level) + 1, ivec2(cursor.view.size - 1u) >> cells.level);
+  int y = low.y;
+  do {
+    PatchLine rows[strip + 1];
+    for (int i = 0; i <= strip; ++i) rows[i] = cell_row(cursor, cells, y + i - 1);
+    PatchLine column = cell_column(cursor, cells, low.x - 1);
+    MicroPatch left[strip];
+    for (int i = 0; i < strip; ++i) {
+      left[i] = fetched_patch(cursor, cells, column, rows[i + 1]);
+      left[i].blocks = left[i].blocks && low.x > 0;
     }
-    if (patches_suffice()) return;
-  }
+    int x = low.x;
+    do {
+      column = cell_column(cursor, cells, x);
+      MicroPatch below = fetched_patch(cursor, cells, column, rows[0]);
+      below.blocks = below.blocks && y > 0;
+      for (int i = 0; i < strip; ++i) {
+        MicroPatch own = fetched_patch(cursor, cells, column, rows[i + 1]);
+        MicroPatch found = own;
+        found.blocks = own.blocks && y + i <= high.y;
+        found.low.x = side_or_neighbour(own.low.x, own.high.x, left[i].blocks, left[i].high.x);
+        found.low.y = side_or_neighbour(own.low.y, own.high.y, below.blocks, below.high.y);
+        add_patch(projection, found);
+        left[i] = own;
+        below = own;
+      }
+    } while (++x <= high.x);
+    y += strip;
+  } while (y <= high.y && !patches_suffice());
 }
 
 // search_lit or search_umbra where the min-max pyramid is certain, else search_partial: then all patches that may matter
@@ -145,11 +215,12 @@ int walk_patches(inout ShadowCursor cursor, VisibilityQuery q) {
   uint faces = shadow_face_count(q.maps.faces);
   TexelBox box;
   PatchProjection projection;
+  AlignedPatches aligned;
   bool lit = true;
   bool umbra = true;
   for (uint face = 0u; face < faces; ++face) {
     bool all;
-    bool some = blocker_box(cursor, q, face, gap, box, projection, all);
+    bool some = blocker_box(cursor, q, face, gap, box, projection, aligned, all);
     lit = lit && !some;
     umbra = umbra && all;
   }
@@ -160,10 +231,10 @@ int walk_patches(inout ShadowCursor cursor, VisibilityQuery q) {
     bool all;
     // A loop of at most one round, as in shadow_tap(): what a single view gave is still there.
     for (; faces > 1u; faces = faces) {
-      some = blocker_box(cursor, q, face, gap, box, projection, all);
+      some = blocker_box(cursor, q, face, gap, box, projection, aligned, all);
       break;
     }
-    if (some) walk_box(cursor, projection, box);
+    if (some) walk_box(cursor, projection, aligned, box);
   }
   return search_partial;
 }

@@ -10,7 +10,8 @@
 uint covered[WORDS];
 
 void add_patch(PatchProjection projection, MicroPatch found) {
-  MicroPatch placed = patch_in_light(projection, found);
+  MicroPatch placed = found;
+  if (!patches_aligned()) placed = patch_in_light(projection, found);
   ivec4 ranks = coverage_ranks(placed.low, placed.high, WORDS);
   for (int i = 0; i < WORDS; ++i) covered[i] |= found.blocks ? coverage_word(ranks, i, WORDS) : 0u;
 }
