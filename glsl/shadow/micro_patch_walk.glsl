@@ -168,7 +168,7 @@ PatchLine cell_row(ShadowCursor cursor, PatchCells cells, int y) {
   return patch_line(cells.aligned, 1, cell_texel(cursor, cells, y), float(1 << cells.level));
 }
 
-const int strip = 4;  // rows that are walked together: the one below them is fetched once
+const int strip = 5;  // rows that are walked together: the one below them is fetched once
 
 void walk_box(ShadowCursor cursor, PatchProjection projection, AlignedPatches aligned, TexelBox box) {
   PatchCells cells;
@@ -182,6 +182,8 @@ void walk_box(ShadowCursor cursor, PatchProjection projection, AlignedPatches al
   do {
     PatchLine rows[strip + 1];
     for (int i = 0; i <= strip; ++i) rows[i] = cell_row(cursor, cells, y + i - 1);
+    bool counts[strip];
+    for (int i = 0; i < strip; ++i) counts[i] = y + i <= high.y;
     PatchLine column = cell_column(cursor, cells, low.x - 1);
     MicroPatch left[strip];
     for (int i = 0; i < strip; ++i) {
@@ -196,7 +198,7 @@ void walk_box(ShadowCursor cursor, PatchProjection projection, AlignedPatches al
       for (int i = 0; i < strip; ++i) {
         MicroPatch own = fetched_patch(cursor, cells, column, rows[i + 1]);
         MicroPatch found = own;
-        found.blocks = own.blocks && y + i <= high.y;
+        found.blocks = own.blocks && counts[i];
         found.low.x = side_or_neighbour(own.low.x, own.high.x, left[i].blocks, left[i].high.x);
         found.low.y = side_or_neighbour(own.low.y, own.high.y, below.blocks, below.high.y);
         add_patch(projection, found);
