@@ -46,10 +46,10 @@ LIMN_FN uvec4 moment_texel(float z, uvec2 at, int bits) {
   return uvec4(texel);
 }
 
-// Sums of T1 to T4 over a box, from those over all texels left of and above its corners; exact for boxes of up to
-// moment_largest_side() squared texels.
-LIMN_FN vec4 moment_box(uvec4 s11, uvec4 s01, uvec4 s10, uvec4 s00, int bits) {
-  return vec4(ivec4(s11 - s01 - s10 + s00)) / float(moment_scale(bits));
+// Sums of T1 to T4 over a box, from those over all texels above its lower and above its upper edge, between its columns;
+// exact for boxes of up to moment_largest_side() squared texels.
+LIMN_FN vec4 moment_box(uvec4 below, uvec4 above, int bits) {
+  return vec4(ivec4(below - above)) / float(moment_scale(bits));
 }
 
 // --- The moment problem ---
@@ -137,43 +137,22 @@ LIMN_FN MomentBlockers moment_blockers(vec4 t, float d, float nearest, float bia
 
 // --- Boxes whose edges cut texels ---
 
-// One axis of a box lo..hi: parts [edges[i], edges[i + 1]) of weights[i], i < count: a texel that an edge cuts, and whole
-// texels. Prefix sums are never interpolated.
-struct MomentAxis {
-  ivec4 edges;
-  vec3 weights;
-  int count;
+// One axis of a box is made of parts: a texel that an edge cuts, or all whole texels. Prefix sums are never interpolated.
+struct MomentPart {
+  float begin;   // texels, whole
+  float end;     // likewise: where the next part begins
+  float weight;  // the share of its texels that the box covers
 };
 
-LIMN_FN MomentAxis moment_axis(float lo, float hi) {
-  MomentAxis axis;
-  axis.edges = ivec4(int(floor(lo)));
-  axis.weights = vec3(0.0f);
-  axis.count = 0;
-  int whole = int(ceil(lo));
-  int last = int(floor(hi));
-  if (whole > last) {  // within one texel
-    axis.edges[1] = whole;
-    axis.weights[0] = hi - lo;
-    axis.count = 1;
-    return axis;
-  }
-  if (float(whole) > lo) {
-    axis.edges[1] = whole;
-    axis.weights[0] = float(whole) - lo;
-    axis.count = 1;
-  }
-  if (last > whole) {
-    axis.weights[axis.count] = 1.0f;
-    ++axis.count;
-    axis.edges[axis.count] = last;
-  }
-  if (float(last) < hi) {
-    axis.weights[axis.count] = hi - float(last);
-    ++axis.count;
-    axis.edges[axis.count] = last + 1;
-  }
-  return axis;
+// The part of a box that begins at `low`, which is an edge of the box or the end of another part, and reaches up to `high`.
+LIMN_FN MomentPart moment_part(float low, float high) {
+  MomentPart part;
+  float last = floor(high);
+  part.begin = floor(low);
+  bool cut = low > part.begin || last <= part.begin;
+  part.end = cut ? part.begin + 1.0f : last;
+  part.weight = cut ? min(high, part.end) - low : 1.0f;
+  return part;
 }
 
 LIMN_END
@@ -184,21 +163,30 @@ uvec4 moment_sums(usampler2DArray table, ivec2 at, int layer) {
   return at.x <= 0 || at.y <= 0 ? uvec4(0u) : texelFetch(table, ivec3(at - 1, layer), 0);
 }
 
+// Sums over the texels of a part of the x axis and above y.
+uvec4 moment_edge(usampler2DArray table, MomentPart x, float y, int layer) {
+  return moment_sums(table, ivec2(x.end, y), layer) - moment_sums(table, ivec2(x.begin, y), layer);
+}
+
 // Means of T1 to T4 over the box lo..hi in texels, which lies in the map and is at most moment_largest_side() wide: 4
-// fetches where the edges are whole, else up to 16.
+// fetches where the edges are whole, else up to 24. Loops end in their condition: software renderers run a body once more
+// where it comes first.
 vec4 moment_lookup(usampler2DArray table, vec2 lo, vec2 hi, int layer, int bits) {
-  MomentAxis ax = moment_axis(lo.x, hi.x);
-  MomentAxis ay = moment_axis(lo.y, hi.y);
   vec4 sums = vec4(0.0);
-  uvec4 above[4];
-  uvec4 below[4];
-  for (int i = 0; i <= ax.count; ++i) above[i] = moment_sums(table, ivec2(ax.edges[i], ay.edges[0]), layer);
-  for (int j = 0; j < ay.count; ++j) {
-    for (int i = 0; i <= ax.count; ++i) below[i] = moment_sums(table, ivec2(ax.edges[i], ay.edges[j + 1]), layer);
-    for (int i = 0; i < ax.count; ++i)
-      sums += ax.weights[i] * ay.weights[j] * moment_box(below[i + 1], below[i], above[i + 1], above[i], bits);
-    above = below;
-  }
+  MomentPart x;
+  x.end = lo.x;
+  do {
+    x = moment_part(x.end, hi.x);
+    MomentPart y;
+    y.end = lo.y;
+    uvec4 below = moment_edge(table, x, floor(lo.y), layer);
+    do {
+      y = moment_part(y.end, hi.y);
+      uvec4 above = below;
+      below = moment_edge(table, x, y.end, layer);
+      sums += (x.weight * y.weight) * moment_box(below, above, bits);
+    } while (y.end < hi.y);
+  } while (x.end < hi.x);
   return sums / ((hi.x - lo.x) * (hi.y - lo.y));
 }
 #endif

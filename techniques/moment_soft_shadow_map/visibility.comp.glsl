@@ -2,6 +2,7 @@
 // steps, the mean depth of the blockers and the share of light, come from four moments of depth in a summed-area table.
 #include "glsl/shadow/blocker_search.glsl"
 #include "glsl/shadow/moment_shadow.glsl"
+#include "glsl/shadow/variance_kernel.glsl"
 #include "glsl/shadow/visibility_main.glsl"
 
 uniform usampler2DArray moment_table;
@@ -71,7 +72,8 @@ KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKer
   ivec2 parts = max(exact, ivec2(cells));
   KernelBlockers blockers = KernelBlockers(0.0, 0.0);
   for (int i = 0; i < parts.x * parts.y; ++i) {
-    ivec2 part = ivec2(i % parts.x, i / parts.x);
+    int row = whole_quotient(i, parts.x);
+    ivec2 part = ivec2(i - row * parts.x, row);
     ShadowKernel cell = kernel;
     cell.low = mix(round(mix(a, b, vec2(part) / vec2(parts))), a, equal(part, ivec2(0)));
     cell.high = mix(round(mix(a, b, vec2(part + 1) / vec2(parts))), b, equal(part + 1, parts));
