@@ -32,9 +32,9 @@ double azimuthal(double phi) {
 }
 
 /// The arrays of a file whose sizes agree.
-class MeasuredBrdf {
+class EpflArrays {
  public:
-  MeasuredBrdf(const TensorFile& file, std::string_view name) : name_(name) {
+  EpflArrays(const TensorFile& file, std::string_view name) : name_(name) {
     const Tensor azimuths = file.floats("phi_i", 1);
     polars_ = file.floats("theta_i", 1).values;
     if (azimuths.values.size() > kMostAzimuths)
@@ -156,7 +156,7 @@ class MeasuredBrdf {
 }  // namespace
 
 TabulatedBrdf decodeEpfl(std::span<const std::byte> bytes, std::string_view name, const glm::ivec3& size) {
-  const MeasuredBrdf measured(TensorFile(bytes, name), name);
+  const EpflArrays measured(TensorFile(bytes, name), name);
   try {
     return tabulate(size, [&](const glm::vec3& l, const glm::vec3& v) { return measured.evaluate(l, v); });
   } catch (const Error& error) {

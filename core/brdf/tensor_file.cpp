@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstring>
+#include <glm/gtc/packing.hpp>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -13,7 +14,6 @@ namespace {
 
 constexpr std::string_view kMagic("tensor_file\0", 12);
 constexpr std::array<std::uint8_t, 2> kVersion{1, 0};
-constexpr int kFloat = 10;  ///< of the types that the format numbers
 /// Bytes of an element of each type: none, then 8 to 64 bits without and with sign in turn, then half, float,
 /// double.
 constexpr std::array<std::uint64_t, 12> kTypeBytes{0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};
@@ -50,7 +50,7 @@ class Cursor {
 }  // namespace
 
 TensorFile::TensorFile(std::span<const std::byte> bytes, std::string_view name) : name_(name) {
-  if (bytes.size() < kMagic.size() || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0)
+  if (!isTensorFile(bytes))
     throw Error(
         fmt::format("{}: not a BRDF file of the RGL: it begins with another word than 'tensor_file'", name));
   Cursor cursor(bytes.subspan(kMagic.size()), name);
@@ -91,14 +91,52 @@ Tensor TensorFile::floats(std::string_view field, std::size_t dimensions) const 
   if (found == fields_.end())
     throw Error(fmt::format("{}: a BRDF file without the array '{}'", name_, field));
   const Field& array = found->second;
-  if (array.type != kFloat || array.shape.size() != dimensions || array.data.empty())
+  const bool half = array.type == static_cast<int>(TensorType::half);
+  if ((!half && array.type != static_cast<int>(TensorType::float32)) || array.shape.size() != dimensions ||
+      array.data.empty())
     throw Error(fmt::format(
-        "{}: array '{}' has {} dimensions of type {} and {} bytes; {} of type {} (float) are accepted, "
-        "none of them empty",
-        name_, field, array.shape.size(), array.type, array.data.size(), dimensions, kFloat));
-  Tensor tensor{.shape = array.shape, .values = std::vector<float>(array.data.size() / sizeof(float))};
-  std::memcpy(tensor.values.data(), array.data.data(), array.data.size());
+        "{}: array '{}' has {} dimensions of type {} and {} bytes; {} of type 9 or 10 (half, float) are "
+        "accepted, none of them empty",
+        name_, field, array.shape.size(), array.type, array.data.size(), dimensions));
+  Tensor tensor{.shape = array.shape, .values = {}};
+  if (half) {
+    std::vector<std::uint16_t> halves(array.data.size() / sizeof(std::uint16_t));
+    std::memcpy(halves.data(), array.data.data(), array.data.size());
+    tensor.values.reserve(halves.size());
+    for (const std::uint16_t value : halves) tensor.values.push_back(glm::unpackHalf1x16(value));
+  } else {
+    tensor.values.resize(array.data.size() / sizeof(float));
+    std::memcpy(tensor.values.data(), array.data.data(), array.data.size());
+  }
   return tensor;
+}
+
+bool isTensorFile(std::span<const std::byte> bytes) {
+  return bytes.size() >= kMagic.size() && std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) == 0;
+}
+
+std::vector<std::byte> encodeTensorFile(std::string_view field, const Tensor& tensor, TensorType type) {
+  std::vector<std::byte> bytes;
+  const auto put = [&](const void* from, std::size_t count) {
+    const auto* first = static_cast<const std::byte*>(from);
+    bytes.insert(bytes.end(), first, first + count);
+  };
+  const auto number = [&](auto value) { put(&value, sizeof value); };
+  put(kMagic.data(), kMagic.size());
+  put(kVersion.data(), kVersion.size());
+  number(std::uint32_t{1});
+  number(static_cast<std::uint16_t>(field.size()));
+  put(field.data(), field.size());
+  number(static_cast<std::uint16_t>(tensor.shape.size()));
+  number(type);
+  // The array follows its own offset and sides.
+  number(static_cast<std::uint64_t>(bytes.size() + sizeof(std::uint64_t) * (1 + tensor.shape.size())));
+  for (const std::size_t side : tensor.shape) number(static_cast<std::uint64_t>(side));
+  if (type == TensorType::half)
+    for (const float value : tensor.values) number(glm::packHalf1x16(value));
+  else
+    put(tensor.values.data(), tensor.values.size() * sizeof(float));
+  return bytes;
 }
 
 }  // namespace limn::brdf

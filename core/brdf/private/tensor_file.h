@@ -12,7 +12,10 @@
 
 namespace limn::brdf {
 
-/// An array of 32-bit floating-point numbers, the last index fastest.
+/// How the numbers of an array are kept, by the format's numbers of types.
+enum class TensorType : std::uint8_t { half = 9, float32 = 10 };
+
+/// An array of floating-point numbers, the last index fastest.
 struct Tensor {
   std::vector<std::size_t> shape;
   std::vector<float> values;
@@ -24,8 +27,11 @@ class TensorFile {
   /// outside.
   TensorFile(std::span<const std::byte> bytes, std::string_view name);
 
-  /// Returns the array of that name. Throws Error where there is none, or where it is of another type, has
-  /// another number of dimensions, or is empty.
+  /// Returns whether there is an array of that name.
+  bool has(std::string_view field) const { return fields_.contains(field); }
+
+  /// Returns the array of that name. Throws Error where there is none, or where it is neither of type half
+  /// nor float, has another number of dimensions, or is empty.
   Tensor floats(std::string_view field, std::size_t dimensions) const;
 
  private:
@@ -37,5 +43,11 @@ class TensorFile {
   std::string name_;
   std::map<std::string, Field, std::less<>> fields_;
 };
+
+/// Returns whether a content begins as one of these files.
+bool isTensorFile(std::span<const std::byte> bytes);
+
+/// Returns the content of a file with one array. Numbers beyond 65504 are none of type half.
+std::vector<std::byte> encodeTensorFile(std::string_view field, const Tensor& tensor, TensorType type);
 
 }  // namespace limn::brdf
