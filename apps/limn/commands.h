@@ -16,6 +16,7 @@ Action addInfoCommand(CLI::App& command);
 Action addRenderCommand(CLI::App& command);
 Action addReferenceCommand(CLI::App& command);
 Action addEnvironmentCommand(CLI::App& command);
+Action addBrdfCommand(CLI::App& command);
 Action addCompareCommand(CLI::App& command);
 Action addBenchCommand(CLI::App& command);
 Action addStressCommand(CLI::App& command);

@@ -78,6 +78,8 @@ int main(int argc, char** argv) {
   add("reference", "Compute the ground truth of a term on the CPU", addReferenceCommand);
   add("compare", "Measure how far an image is from its reference", addCompareCommand);
   add("environment", "List and show the area lights that stand for an environment", addEnvironmentCommand);
+  add("brdf", "Show, simulate and factorise BRDFs: measured data, models, materials of scenes",
+      addBrdfCommand);
   add("bench", "Measure error and time of every case of a suite; write tables and a report", addBenchCommand);
   add("stress", "Test the stability of every technique on extreme cases: pass, degraded or refused",
       addStressCommand);

@@ -46,6 +46,7 @@ TEST(Provenance, TheCommandInsideAPictureGivesItAgain) {
     expectReproduced(folder.path(), "limn reference " + scene + "--spp 4 --seed 7 -o " + name, name);
   expectReproduced(folder.path(), "limn compare a.exr r.exr --diff d.png", "d.png");
   expectReproduced(folder.path(), "limn environment sky --width 64 --overlay o.png", "o.png");
+  expectReproduced(folder.path(), "limn brdf info metal:0.3 --picture b.png", "b.png");
   expectReproduced(folder.path(), "limn render " + scene + "--frames 1:2 -o f.png", "f.0002.png");
 }
 
