@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "glsl/materials/measured.glsl"
 
 namespace limn::brdf {
 namespace {
@@ -15,26 +16,6 @@ constexpr float kPi = std::numbers::pi_v<float>;
 
 /// Nodes this near to the horizon take their values from neighbours: a BRDF may have a pole there.
 constexpr float kLeastCosine = 1e-4f;
-
-/// Two neighbouring nodes and the second one's share.
-struct Between {
-  std::size_t below = 0, above = 0;
-  float share = 0;
-};
-
-Between clampedBetween(float at, int count) {
-  const float last = static_cast<float>(count - 1);
-  at = std::clamp(at, 0.0f, last);
-  const float below = std::floor(at);
-  return {static_cast<std::size_t>(below), static_cast<std::size_t>(std::min(below + 1, last)), at - below};
-}
-
-/// The same on a circle of `count` nodes, for `at` in [0, count].
-Between wrappedBetween(float at, int count) {
-  const float below = std::floor(at);
-  const auto first = static_cast<std::size_t>(below), nodes = static_cast<std::size_t>(count);
-  return {first % nodes, (first + 1) % nodes, at - below};
-}
 
 std::size_t nodeCount(const glm::ivec3& size) {
   return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
@@ -74,30 +55,11 @@ class Neighbours {
   std::size_t count_ = 0;
 };
 
-/// The square's coordinates of a direction above the horizon, [-1, 1].
-glm::vec2 squareOf(const glm::vec3& d) {
-  const glm::vec2 p = glm::vec2(d) / (1 + d.z);
-  const float longest = std::max(std::abs(p.x), std::abs(p.y));
-  return longest > 0 ? p * (glm::length(p) / longest) : p;
-}
-
-Between texelsBetween(float s, int size) {
-  return clampedBetween((s + 1) * 0.5f * static_cast<float>(size) - 0.5f, size);
-}
-
 }  // namespace
 
 HalfDifference halfDifference(const glm::vec3& l, const glm::vec3& v) {
-  const glm::vec3 sum = l + v, difference = l - v;
-  const float across = std::hypot(sum.x, sum.y), length = glm::length(sum);
-  // The frame at h: t leads away from the normal, b is horizontal.
-  const glm::vec2 azimuth = across > 0 ? glm::vec2(sum) / across : glm::vec2(1, 0);
-  const float cosine = length > 0 ? sum.z / length : 1, sine = length > 0 ? across / length : 0;
-  const glm::vec3 t(azimuth * cosine, -sine), b(-azimuth.y, azimuth.x, 0);
-  float phi = std::atan2(glm::dot(difference, b), glm::dot(difference, t));
-  if (phi < 0) phi += kPi;
-  if (phi >= kPi) phi = 0;
-  return {std::atan2(across, sum.z), std::atan2(glm::length(difference), length), phi};
+  const glm::vec3 angles = glsl::half_difference_angles(v, l);
+  return {angles.x, angles.y, angles.z};
 }
 
 DirectionPair directions(const HalfDifference& angles) {
@@ -115,17 +77,7 @@ HalfDifference TabulatedBrdf::node(int i, int j, int k) const {
 
 glm::vec3 TabulatedBrdf::evaluate(const glm::vec3& l, const glm::vec3& v) const {
   if (!(l.z > 0 && v.z > 0) || values.empty()) return glm::vec3(0);
-  const HalfDifference angles = halfDifference(l, v);
-  const Between h = clampedBetween(std::sqrt(angles.thetaH * (2 / kPi)) * static_cast<float>(size.x), size.x);
-  const Between d = clampedBetween(angles.thetaD * (2 / kPi) * static_cast<float>(size.y), size.y);
-  const Between p = wrappedBetween(angles.phiD / kPi * static_cast<float>(size.z), size.z);
-  const auto along = [&](std::size_t i, std::size_t j) {
-    const glm::vec3* row =
-        &values[(i * static_cast<std::size_t>(size.y) + j) * static_cast<std::size_t>(size.z)];
-    return glm::mix(row[p.below], row[p.above], p.share);
-  };
-  const auto face = [&](std::size_t i) { return glm::mix(along(i, d.below), along(i, d.above), d.share); };
-  return glm::mix(face(h.below), face(h.above), h.share);
+  return glsl::measured_isotropic(values.data(), glm::uvec3(size), v, l);
 }
 
 bool fillInvalid(TabulatedBrdf& table) {
@@ -194,20 +146,7 @@ glm::vec3 AnisotropicTable::texelDirection(int x, int y) const {
 
 glm::vec3 AnisotropicTable::evaluate(const glm::vec3& l, const glm::vec3& v) const {
   if (!(l.z > 0 && v.z > 0) || values.empty()) return glm::vec3(0);
-  const glm::vec2 from = squareOf(l), to = squareOf(v);
-  const Between lx = texelsBetween(from.x, size), ly = texelsBetween(from.y, size);
-  const Between vx = texelsBetween(to.x, size), vy = texelsBetween(to.y, size);
-  const auto side = static_cast<std::size_t>(size);
-  const auto row = [&](std::size_t at) {
-    return glm::mix(values[at * side + lx.below], values[at * side + lx.above], lx.share);
-  };
-  const auto square = [&](std::size_t at) {
-    return glm::mix(row(at * side + ly.below), row(at * side + ly.above), ly.share);
-  };
-  const auto cube = [&](std::size_t at) {
-    return glm::mix(square(at * side + vx.below), square(at * side + vx.above), vx.share);
-  };
-  return glm::mix(cube(vy.below), cube(vy.above), vy.share);
+  return glsl::measured_pairs(values.data(), static_cast<uint32_t>(size), v, l);
 }
 
 AnisotropicTable tabulateAnisotropic(int size, const BrdfFunction& f) {

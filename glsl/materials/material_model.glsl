@@ -10,24 +10,27 @@ LIMN_CONST uint model_ward = 2u;
 LIMN_CONST uint model_banks = 3u;
 LIMN_CONST uint model_phong = 4u;
 LIMN_CONST uint model_coated = 5u;
+LIMN_CONST uint model_measured = 6u;
 
 LIMN_CONST uint model_option_gaussian = 1u;   // torrance_sparrow: D is a Gaussian of the angle, not Beckmann's
 LIMN_CONST uint model_option_product = 2u;    // torrance_sparrow, ward: masking and shadowing are independent
 LIMN_CONST uint model_option_printed = 4u;    // banks: as printed, not as a function of l.t and v.t
 LIMN_CONST uint model_option_blend = 8u;      // coated: F mirror + (1 - F) base
 LIMN_CONST uint model_option_physical = 16u;  // coated: light is refracted into the coat, and out of it
+LIMN_CONST uint model_option_pairs = 32u;     // measured: a table over pairs of directions
 
 struct MaterialModel {
   vec3 eta;        // index of refraction of each channel, over that of air
   uint kind;       // model_none, ...
-  vec3 k;          // index of absorption; 0: a dielectric
+  vec3 k;          // index of absorption; 0: a dielectric (measured: hemispherical reflectance of the table)
   float exponent;  // phong, banks
-  vec3 kd;         // albedo of the diffuse part (banks: its coefficient)
+  vec3 kd;         // albedo of the diffuse part (banks: its coefficient; measured: what the table has away from its lobe)
   uint options;    // model_option_*
   vec3 ks;         // factor on the lobe; its albedo (phong), its coefficient (banks)
   uint material;  // index of the material in the scene
   vec2 roughness;  // root mean square slope times sqrt(2), along the tangent and across it
-  vec2 unused_1;
+  uint table;      // measured: index of its first value in Scene::measured
+  uint nodes;      // measured: sizes of its table (measured_nodes)
 };
 
 // Roughness is clamped to this: single precision resolves the peak of D.
@@ -46,7 +49,8 @@ LIMN_FN float model_lobe_share(float lobe, float diffuse) {
 
 // Whether the response changes where v and l turn about n together.
 LIMN_FN bool model_anisotropic(MaterialModel m) {
-  return m.kind == model_banks || (m.kind == model_ward && m.roughness.x != m.roughness.y);
+  return m.kind == model_banks || (m.kind == model_ward && m.roughness.x != m.roughness.y) ||
+         (m.kind == model_measured && (m.options & model_option_pairs) != 0u);
 }
 
 LIMN_END

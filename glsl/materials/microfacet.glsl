@@ -91,17 +91,23 @@ LIMN_FN float microfacet_share(MaterialModel m, vec3 v) {
   return model_lobe_share(largest_channel(m.ks * fresnel(v.z, m.eta, m.k)), largest_channel(m.kd));
 }
 
-LIMN_FN vec3 microfacet_sample(MaterialModel m, vec2 alpha, vec3 v, vec3 u) {
-  if (u.z >= microfacet_share(m, v)) return sample_cosine(vec2(u));
+// A direction from a lobe of visible normals with probability `share`, else from a cosine; and its density.
+LIMN_FN vec3 microfacet_or_cosine_sample(float share, vec2 alpha, vec3 v, vec3 u) {
+  if (u.z >= share) return sample_cosine(vec2(u));
   vec3 h = sample_visible_normal(v, alpha, vec2(u));
   return normalize(2.0f * dot(v, h) * h - v);
 }
-
-LIMN_FN float microfacet_pdf(MaterialModel m, vec2 alpha, vec3 v, vec3 l) {
-  float share = microfacet_share(m, v);
+LIMN_FN float microfacet_or_cosine_pdf(float share, vec2 alpha, vec3 v, vec3 l) {
   float pdf = (1.0f - share) * cosine_pdf(l.z);
   if (share > 0.0f) pdf += share * visible_normal_pdf(v, microfacet_half(v, l), alpha);
   return pdf;
+}
+
+LIMN_FN vec3 microfacet_sample(MaterialModel m, vec2 alpha, vec3 v, vec3 u) {
+  return microfacet_or_cosine_sample(microfacet_share(m, v), alpha, v, u);
+}
+LIMN_FN float microfacet_pdf(MaterialModel m, vec2 alpha, vec3 v, vec3 l) {
+  return microfacet_or_cosine_pdf(microfacet_share(m, v), alpha, v, l);
 }
 
 // How much more than all light the lobe of the Gaussian of the angle gives back to grazing views, at the most: Smith's Lambda is

@@ -6,7 +6,8 @@
 #ifndef LIMN_MODEL_GLSL
 #define LIMN_MODEL_GLSL
 #ifdef __cplusplus
-#define MATERIAL_MODELS 62
+#include <vector>
+#define MATERIAL_MODELS 126
 #endif
 #include "glsl/materials/material_model.glsl"
 #include "glsl/numeric/geometry.glsl"
@@ -25,9 +26,13 @@
 #if (MATERIAL_MODELS & 32) != 0
 #include "glsl/materials/coated.glsl"
 #endif
+#if (MATERIAL_MODELS & 64) != 0
+#include "glsl/materials/measured.glsl"
+#endif
 LIMN_BEGIN
 
-// f cos(l), 1/sr; 0 where l lies below the horizon.
+// f cos(l), 1/sr; 0 where l lies below the horizon. A measured model needs its table: in C++ take the
+// function below.
 LIMN_FN vec3 model_response(MaterialModel m, vec3 v, vec3 l) {
   if (!(l.z > 0.0f)) return vec3(0.0f);
 #if (MATERIAL_MODELS & 2) != 0
@@ -45,8 +50,19 @@ LIMN_FN vec3 model_response(MaterialModel m, vec3 v, vec3 l) {
 #if (MATERIAL_MODELS & 32) != 0
   if (m.kind == model_coated) return coated_response(m, v, l);
 #endif
+#if (MATERIAL_MODELS & 64) != 0 && !defined(__cplusplus)
+  if (m.kind == model_measured) return measured_response(m.table, m, v, l);
+#endif
   return vec3(0.0f);
 }
+
+#ifdef __cplusplus
+// The same for every kind. measured: Scene::measured.
+LIMN_FN vec3 model_response(const std::vector<vec3>& measured, const MaterialModel& m, vec3 v, vec3 l) {
+  if (m.kind == model_measured) return measured_response(measured.data() + m.table, m, v, l);
+  return model_response(m, v, l);
+}
+#endif
 
 // A direction with density model_pdf, from u in [0, 1)^3. It may lie below the horizon (density 0: such a sample carries
 // nothing).
@@ -62,6 +78,9 @@ LIMN_FN vec3 model_sample(MaterialModel m, vec3 v, vec3 u) {
 #endif
 #if (MATERIAL_MODELS & 16) != 0
   if (m.kind == model_phong) return phong_sample(m, v, u);
+#endif
+#if (MATERIAL_MODELS & 64) != 0
+  if (m.kind == model_measured) return measured_sample(m, v, u);
 #endif
   return sample_cosine(vec2(u));
 }
@@ -80,6 +99,9 @@ LIMN_FN float model_pdf(MaterialModel m, vec3 v, vec3 l) {
 #endif
 #if (MATERIAL_MODELS & 16) != 0
   if (m.kind == model_phong) return phong_pdf(m, v, l);
+#endif
+#if (MATERIAL_MODELS & 64) != 0
+  if (m.kind == model_measured) return measured_pdf(m, v, l);
 #endif
   return cosine_pdf(l.z);
 }
@@ -100,6 +122,9 @@ LIMN_FN vec3 model_albedo(MaterialModel m) {
 #endif
 #if (MATERIAL_MODELS & 32) != 0
   if (m.kind == model_coated) return coated_albedo(m);
+#endif
+#if (MATERIAL_MODELS & 64) != 0
+  if (m.kind == model_measured) return measured_albedo(m);
 #endif
   return vec3(0.0f);
 }
