@@ -112,8 +112,9 @@ BrdfSource fromScene(const fs::path& nameOrFile, const std::string& name) {
     const glsl::MaterialModel model = *material.model;
     source.kind = "extras.limn_material";
     source.isotropic = !glsl::model_anisotropic(model);
-    source.f = [model](const dvec3& l, const dvec3& v) {
-      return dvec3(glsl::model_response(model, vec3(v), vec3(l))) / l.z;
+    const auto measured = std::make_shared<const std::vector<vec3>>(scene.measured);
+    source.f = [model, measured](const dvec3& l, const dvec3& v) {
+      return dvec3(glsl::model_response(*measured, model, vec3(v), vec3(l))) / l.z;
     };
     return source;
   }

@@ -122,6 +122,9 @@ void GpuMaterials::makeModels(const Scene& scene) {
   }
   if (modelKinds_ != 0)
     models_ = gpu::Buffer::of<glsl::MaterialModel>(device_, "material models", models, gpu::BufferUse::fixed);
+  if (!scene.measured.empty())
+    measured_ =
+        gpu::Buffer::of<glm::vec3>(device_, "measured reflectance", scene.measured, gpu::BufferUse::fixed);
 }
 
 bool GpuMaterials::update(const Scene& scene) {

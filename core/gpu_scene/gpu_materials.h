@@ -21,6 +21,8 @@ class GpuMaterials {
   const gpu::Buffer& constants() const { return constants_; }
   /// Returns the model of each material (of kind model_none where it has none); empty where none has one.
   const gpu::Buffer& models() const { return models_; }
+  /// Returns the values of Scene::measured, three floats each; empty where there are none.
+  const gpu::Buffer& measured() const { return measured_; }
   /// Returns bit 1 << kind of each model.
   uint32_t modelKinds() const { return modelKinds_; }
   /// Returns a key that is equal for materials that bind the same textures; 0 means no textures.
@@ -55,6 +57,7 @@ class GpuMaterials {
   std::vector<glsl::Material> materials_;
   gpu::Buffer constants_;
   gpu::Buffer models_;
+  gpu::Buffer measured_;
   uint32_t modelKinds_ = 0;
   gpu::Buffer blocks_;      ///< the same data, each at the alignment of a uniform block
   size_t blockStride_ = 0;  ///< bytes

@@ -254,6 +254,8 @@ SceneHandles GpuScene::import(frame::FrameGraph& graph) {
                 .surface = {}};
   SceneHandles handles = s.imported;
   if (handles.modelKinds != 0) handles.models = graph.importBuffer("material models", s.materials.models());
+  if ((handles.modelKinds & 1u << glsl::model_measured) != 0)
+    handles.measured = graph.importBuffer("measured reflectance", s.materials.measured());
   if (s.lightTextures) handles.lightTextures = graph.importTexture("light textures", s.lightTextures);
   handles.density = s.medium.addPass(graph);
   handles.geometry = s.deform.addPass(graph, s.geometry, handles.geometry);

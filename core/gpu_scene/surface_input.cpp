@@ -20,6 +20,8 @@ void SurfaceInput::declare(frame::PassBuilder& pass) const {
   pass.read(gbuffer_.instance, Access::sampled, kGBufferNames.instance, "materials of surfaces")
       .read(handles_.instances, Access::storageLoad, "Instances", "materials of surfaces")
       .read(handles_.models, Access::storageLoad, "MaterialModels", "how materials reflect light");
+  if (handles_.measured)
+    pass.read(handles_.measured, Access::storageLoad, "MeasuredValues", "measured reflectance");
   if (gbuffer_.tangent)
     pass.read(gbuffer_.tangent, Access::sampled, kGBufferNames.tangent, "along which anisotropy lies");
   if (!handles_.surface) return;

@@ -71,6 +71,7 @@ void addScene(Hasher& h, const scene::Scene& scene) {
   }
   h.add(scene.materials.size());
   for (const auto& material : scene.materials) addMaterial(h, material);
+  if (!scene.measured.empty()) h.add(scene.measured);
   h.add(scene.meshes.size());
   for (const auto& mesh : scene.meshes) {
     h.add(mesh.primitives.size());

@@ -141,6 +141,7 @@ Surface seenFrom(const RayScene& rays, const Hit& hit, const glm::vec3& view,
                                     values.specular_factor, values.specular_colour, values.ior);
   if (draw.material->model) {
     surface.model = &*draw.material->model;
+    surface.measured = &rays.scene().measured;
     surface.frame = modelFrame(draw, corner, normal);
   }
   return surface;
@@ -150,9 +151,9 @@ Surface seenFrom(const RayScene& rays, const Hit& hit, const glm::vec3& view,
 
 glm::vec3 Surface::reflectance(const glm::vec3& direction) const {
   if (!(glm::dot(values.geometric_normal, direction) > 0.f)) return glm::vec3(0);
-  if (model) {
-    return glsl::model_response(*model, glsl::to_local(frame, view), glsl::to_local(frame, direction));
-  }
+  if (model)
+    return glsl::model_response(*measured, *model, glsl::to_local(frame, view),
+                                glsl::to_local(frame, direction));
   const float cosine = glm::dot(values.normal, direction);
   return cosine > 0.f ? cosine * glsl::brdf(brdf, values.normal, view, direction) : glm::vec3(0);
 }
@@ -161,7 +162,7 @@ glm::vec3 Surface::f(const glm::vec3& towards, const glm::vec3& direction) const
   if (!model) return glsl::brdf(brdf, values.normal, towards, direction);
   const glm::vec3 local = glsl::to_local(frame, direction);
   if (!(local.z > 0.f)) return glm::vec3(0);
-  return glsl::model_response(*model, glsl::to_local(frame, towards), local) / local.z;
+  return glsl::model_response(*measured, *model, glsl::to_local(frame, towards), local) / local.z;
 }
 
 glm::vec3 Surface::sample(const glm::vec3& u) const {

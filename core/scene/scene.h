@@ -275,6 +275,9 @@ struct Scene {
   std::filesystem::path file;
   std::vector<TextureImage> images;
   std::vector<Material> materials;
+  /// Holds the tables of measured models, one after another: values of f, 1/sr
+  /// (glsl/materials/measured.glsl).
+  std::vector<glm::vec3> measured;
   std::vector<Mesh> meshes;
   std::vector<Node> nodes;  ///< parents come before children
   std::vector<Skin> skins;

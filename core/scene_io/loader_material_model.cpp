@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <variant>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/brdf/measured_file.h"
+#include "core/brdf/measured_model.h"
 #include "core/scene/material_model.h"
 #include "core/scene_io/private/loader.h"
 
@@ -16,11 +19,12 @@ struct ModelName {
   const char* name;
   uint32_t kind;
 };
-constexpr std::array<ModelName, 5> kModels{{{"torrance_sparrow", glsl::model_torrance_sparrow},
+constexpr std::array<ModelName, 6> kModels{{{"torrance_sparrow", glsl::model_torrance_sparrow},
                                             {"ward", glsl::model_ward},
                                             {"banks", glsl::model_banks},
                                             {"phong", glsl::model_phong},
-                                            {"coated", glsl::model_coated}}};
+                                            {"coated", glsl::model_coated},
+                                            {"measured", glsl::model_measured}}};
 
 /// A choice between texts: the bit that each stands for.
 struct Option {
@@ -50,6 +54,9 @@ std::string namesOf(const Range& entries) {
 
 constexpr double kMostIndex = 1000, kMostExponent = 1e6;
 constexpr float kLeastIndex = 1e-3f;
+/// A file of MERL's database has 35 MB. OpenGL's storage buffers have 128 MiB at least, of 12 bytes a value.
+constexpr std::uint64_t kMostMeasuredBytes = 256u << 20;
+constexpr std::size_t kMostMeasuredValues = (128u << 20) / 12;
 
 }  // namespace
 
@@ -62,6 +69,8 @@ glsl::MaterialModel Loader::readModel(const tinygltf::Value& extras, const std::
     fail(fmt::format("{} model: '{}'; {} are accepted", what, oneLine(name, 40), namesOf(kModels)));
   glsl::MaterialModel m{};
   m.kind = found->kind;
+  const bool measured = m.kind == glsl::model_measured;
+  if (measured) m = readMeasured(extras.Get("file"), what + " file");
 
   const auto colour = [&](const char* key, float absent, double low, double high) {
     if (!extras.Has(key)) return glm::vec3(absent);
@@ -73,6 +82,12 @@ glsl::MaterialModel Loader::readModel(const tinygltf::Value& extras, const std::
     for (int c = 0; c < 3; ++c) out[c] = ranged(rgb[static_cast<size_t>(c)], low, high, place);
     return out;
   };
+  if (measured) {
+    m.ks = colour("ks", 1, 0, 1) * m.ks;
+    m.kd *= m.ks;
+    m.k *= m.ks;
+    return m;
+  }
   m.eta = colour("eta", 1.5f, kLeastIndex, kMostIndex);
   m.k = colour("k", 0, 0, kMostIndex);
   const bool reflects = m.kind == glsl::model_phong || m.kind == glsl::model_banks;
@@ -101,6 +116,40 @@ glsl::MaterialModel Loader::readModel(const tinygltf::Value& extras, const std::
   }
   limitEnergy(m, what);
   return m;
+}
+
+glsl::MaterialModel Loader::readMeasured(const tinygltf::Value& file, const std::string& what) {
+  if (!file.IsString()) fail(what + ": the name of a file of measured reflectance is expected");
+  const auto& uri = file.Get<std::string>();
+  const auto known = measured_.find(uri);
+  if (known != measured_.end()) return known->second;
+  const std::vector<std::byte> bytes = readUri(uri, what, kMostMeasuredBytes);
+  const std::string named = tinygltf::IsDataURI(uri) ? what : fmt::format("{} '{}'", what, oneLine(uri, 80));
+  brdf::MeasuredModel out;
+  std::vector<glm::vec3> values;
+  try {
+    std::visit(
+        [&](auto&& table) {
+          out = brdf::measuredModel(table);
+          values = std::move(table.values);
+        },
+        brdf::decodeMeasured(bytes, named));
+  } catch (const Error& error) {
+    fail(error.what());
+  }
+  if (values.size() > kMostMeasuredValues - scene_.measured.size())
+    fail(fmt::format("{}: {} values more; a scene can hold {} of measured reflectance", what, values.size(),
+                     kMostMeasuredValues));
+  spend(3 * values.size(), what);
+  out.model.table = static_cast<uint32_t>(scene_.measured.size());
+  scene_.measured.insert(scene_.measured.end(), values.begin(), values.end());
+  if (out.largestAlbedo > 1) {
+    out.model.ks /= out.largestAlbedo;
+    warn(fmt::format("{} reflects up to {:.3g} times the light, and is divided by that", named,
+                     out.largestAlbedo));
+  }
+  measured_.emplace(uri, out.model);
+  return out.model;
 }
 
 /// Keeps a model from reflecting more light than there is, where that takes more than numbers in [0, 1].

@@ -18,6 +18,10 @@ std::string readTextFile(const std::filesystem::path& path, std::uint64_t) {
   throw Error(fmt::format("{}: no such file", path.string()));
 }
 
+void writeFile(const std::filesystem::path& path, std::span<const std::byte>) {
+  throw Error(fmt::format("{}: no such folder", path.string()));
+}
+
 Image8 readImage8Memory(std::span<const std::byte> bytes, const std::string& name) {
   if (bytes.size() < 24) throw Error(name + ": not a picture");
   Image8 image{1 + std::to_integer<int>(bytes[19]) % 8, 1 + std::to_integer<int>(bytes[23]) % 8, {}};

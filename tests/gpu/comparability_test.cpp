@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <glm/gtc/quaternion.hpp>
 
+#include "core/brdf/groove.h"
+#include "core/brdf/measured_model.h"
 #include "core/scene/camera.h"
 #include "core/scene/material_model.h"
 #include "core/scene/mip_chain.h"
@@ -179,8 +181,9 @@ class ComparabilityTest : public RenderTest {
 
   /// Direct light on one plane and nothing else: there is no shadow to differ in.
   double planeDifference(const scene::LightSource& source, const glm::vec3& position, glm::vec2 area, int spp,
-                         scene::Material material = {}) {
+                         scene::Material material = {}, std::vector<glm::vec3> measured = {}) {
     scene::Scene scene;
+    scene.measured = std::move(measured);
     if (material.specularFactor == 1 && material.roughness == 1) {
       material.metallic = 0;
       material.specularFactor = 0;
@@ -292,6 +295,28 @@ TEST_F(ComparabilityTest, MaterialModelsOnAPlaneAgree) {
     EXPECT_LT(planeDifference(light(glsl::light_point, 20), {0.5f, 2, 0.3f}, {0.4f, 0.3f}, 1024, material),
               0.02);
   }
+}
+
+TEST_F(ComparabilityTest, MeasuredMaterialsOnAPlaneAgree) {
+  const brdf::BrdfFunction lobe = [](const glm::vec3& l, const glm::vec3& v) {
+    return glm::vec3(0.1f, 0.05f, 0.02f) + 0.3f * std::pow(glm::normalize(l + v).z, 20.f);
+  };
+  const brdf::TabulatedBrdf isotropic = brdf::tabulate({30, 20, 20}, lobe);
+  const brdf::AnisotropicTable grooves = brdf::GrooveBrdf(brdf::Groove{}).table(8);
+  const auto expectSame = [&](const auto& table) {
+    glsl::MaterialModel model = brdf::measuredModel(table).model;
+    model.table = 3;  // a table begins where another one ends
+    std::vector<glm::vec3> values(3, glm::vec3(9));
+    values.insert(values.end(), table.values.begin(), table.values.end());
+    scene::Material material;
+    scene::setModel(material, model);
+    EXPECT_LT(planeDifference(light(glsl::light_point, 20), {0.5f, 2, 0.3f}, {}, 2, material, values), 0.01);
+    EXPECT_LT(
+        planeDifference(light(glsl::light_point, 20), {0.5f, 2, 0.3f}, {0.4f, 0.3f}, 1024, material, values),
+        0.02);
+  };
+  expectSame(isotropic);
+  expectSame(grooves);
 }
 
 TEST_F(ComparabilityTest, LightOfTheEnvironmentOnConvexBodiesAgrees) {

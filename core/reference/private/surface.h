@@ -20,7 +20,8 @@ struct Surface {
   glsl::GBufferSurface values{};
   glsl::SurfaceBrdf brdf{};                    ///< metallic-roughness; of no account where there is a model
   const glsl::MaterialModel* model = nullptr;  ///< null: metallic-roughness
-  glsl::Frame frame{};                         ///< around the shading normal, along the tangent; for models
+  const std::vector<glm::vec3>* measured = nullptr;  ///< Scene::measured
+  glsl::Frame frame{};  ///< around the shading normal, along the tangent; for models
 
   bool specular() const { return (values.flags & glsl::gbuffer_flag_specular) != 0; }
   /// Returns f cos for light from `direction` (unit), 1/sr; 0 below either horizon.

@@ -117,6 +117,9 @@ class Loader {
   // loader_material_model.cpp
   /// Returns the model that extras.limn_material describes.
   glsl::MaterialModel readModel(const tinygltf::Value& extras, const std::string& what);
+  /// Returns the model of a file of measured reflectance, whose values it appends to the scene; a file that
+  /// several materials name is read once.
+  glsl::MaterialModel readMeasured(const tinygltf::Value& file, const std::string& what);
   void limitEnergy(glsl::MaterialModel& model, const std::string& what);
   void applyModel(Material& material, const glsl::MaterialModel& model, const std::string& what);
 
@@ -191,6 +194,8 @@ class Loader {
   std::vector<std::span<const std::byte>> buffers_;
   std::vector<std::vector<std::byte>> bufferStorage_;
   std::map<std::pair<int, bool>, int> imageIndex_;  ///< (image, sRGB) to Scene::images
+
+  std::map<std::string, glsl::MaterialModel> measured_;  ///< by URI
 
   std::map<int, int> lightTextureIndex_;  ///< Scene::images to Scene::lightTextures
 

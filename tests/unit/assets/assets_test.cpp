@@ -36,16 +36,17 @@ const char* const kScenes[] = {
     "atrium", "atrium_robots", "balls", "balls_sky", "chess", "colonnade", "cornell_box", "cornell_horse",
     "disk_and_sphere", "flying_dragon", "foliage_card", "fresnel_spheres", "frog", "gem", "gem_2_lights",
     "gem_4_lights", "glass_sphere", "glass_statue", "glassware", "glossy_sphere", "glossy_torus", "lights",
-    "metaballs", "monster", "patrol", "plant", "ring", "robot", "smoke", "soldiers", "stained_light",
-    "statue", "teapot", "teapot_coarse", "teapot_pattern", "torus_metal", "water", "white_furnace"};
+    "measured_spheres", "metaballs", "monster", "patrol", "plant", "ring", "robot", "smoke", "soldiers", "stained_light",
+    "statue", "teapot", "teapot_coarse", "teapot_groove", "teapot_pattern", "torus_metal", "water", "white_furnace"};
 // clang-format on
 const std::set<std::string> kUnderEnvironments = {"balls_sky", "patrol", "white_furnace"};
 
 /// Of the scenes that are not lit by an environment.
 std::size_t lightsOf(const std::string& scene) {
   const std::map<std::string, std::size_t> several = {
-      {"disk_and_sphere", 3}, {"fresnel_spheres", 3}, {"gem_2_lights", 2}, {"gem_4_lights", 4},
-      {"glossy_torus", 4},    {"lights", 5},          {"torus_metal", 5}};
+      {"disk_and_sphere", 3},  {"fresnel_spheres", 3}, {"gem_2_lights", 2},
+      {"gem_4_lights", 4},     {"glossy_torus", 4},    {"lights", 5},
+      {"measured_spheres", 3}, {"teapot_groove", 2},   {"torus_metal", 5}};
   const auto found = several.find(scene);
   return found == several.end() ? 1 : found->second;
 }

@@ -22,7 +22,8 @@ namespace {
 
 using nlohmann::json;
 
-const char* const kScenes[] = {"disk_and_sphere", "fresnel_spheres", "glossy_torus", "torus_metal"};
+const char* const kScenes[] = {"disk_and_sphere",  "fresnel_spheres", "glossy_torus",
+                               "measured_spheres", "teapot_groove",   "torus_metal"};
 
 /// The object of a material's extras, or null.
 json modelOf(const json& material) {
@@ -68,13 +69,14 @@ struct Rule {
 
 const std::map<std::string, Rule>& rules() {
   static const std::map<std::string, Rule> table = {
-      {"model", {.words = {"torrance_sparrow", "ward", "banks", "phong", "coated"}}},
+      {"model", {.words = {"torrance_sparrow", "ward", "banks", "phong", "coated", "measured"}}},
       {"roughness", {2, 0, 1}},
       {"eta", {3, 1e-3, 1000}},
       {"k", {3, 0, 1000}},
       {"kd", {3, 0, 1}},
       {"ks", {3, 0, 1}},
       {"exponent", {1, 0, 1e6}},
+      {"file", {}},
       {"distribution", {.words = {"beckmann", "gaussian"}}},
       {"masking", {.words = {"correlated", "product"}}},
       {"banks", {.words = {"stalling", "printed"}}},
@@ -95,6 +97,10 @@ TEST(MaterialScenes, ModelsAreDescribedAsTheReadmeSays) {
       for (const auto& [key, value] : model.items()) {
         const auto rule = rules().find(key);
         ASSERT_NE(rule, rules().end()) << key;
+        if (key == "file") {
+          EXPECT_TRUE(std::filesystem::exists(kAssets / scene / value.get<std::string>())) << value;
+          continue;
+        }
         if (!rule->second.words.empty()) {
           EXPECT_TRUE(value.is_string() && rule->second.words.count(value.get<std::string>())) << value;
           continue;

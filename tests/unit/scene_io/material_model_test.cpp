@@ -1,6 +1,7 @@
 // extras.limn_material: what is read, what is refused, and the metallic-roughness that stands beside a model.
 #include "core/scene/material_model.h"
 
+#include "core/brdf/measured_file.h"
 #include "glsl/surface/reflectance.glsl"
 #include "tests/support/material_models.h"
 #include "tests/support/png.h"
@@ -66,7 +67,8 @@ TEST(SceneMaterialModel, HasDefaults) {
 
 TEST(SceneMaterialModel, RefusesWhatItDoesNotKnowInOneLine) {
   EXPECT_THAT(refusal("phong"), HasSubstr("limn_material: an object with a model is accepted"));
-  EXPECT_THAT(refusal({{"roughness", 1}}), HasSubstr("torrance_sparrow, ward, banks, phong and coated"));
+  EXPECT_THAT(refusal({{"roughness", 1}}),
+              HasSubstr("torrance_sparrow, ward, banks, phong, coated and measured"));
   EXPECT_THAT(refusal({{"model", "blinn"}}), HasSubstr("limn_material model: 'blinn'"));
   EXPECT_THAT(refusal({{"model", "ward"}, {"roughness", {1, 2, 3}}}),
               HasSubstr("roughness: 2 numbers are accepted"));
@@ -124,6 +126,47 @@ TEST(SceneMaterialModel, LeavesTexturesOfMetallicRoughnessAside) {
   const scene::Scene scene = loadBuilt(b);
   EXPECT_THAT(scene.warnings, testing::Contains(HasSubstr("textures of metallic-roughness have no part")));
   EXPECT_EQ(scene.materials.at(static_cast<size_t>(material)).baseColourTexture.image, scene::kNone);
+}
+
+class MeasuredMaterial : public SceneFiles {
+ protected:
+  /// Writes a scene whose materials name these files.
+  std::filesystem::path scene(const std::vector<json>& models) {
+    GltfBuilder b;
+    for (const json& model : models) b.append("materials", {{"extras", {{"limn_material", model}}}});
+    b.triangle(0);
+    return write("scene/scene.glb", b.glb());
+  }
+};
+
+TEST_F(MeasuredMaterial, IsReadFromAFileOnceAndReflectsNoMoreThanThereIs) {
+  const auto white = [](const glm::vec3&, const glm::vec3&) { return glm::vec3(2 / glsl::pi); };
+  const brdf::AnisotropicTable table = brdf::tabulateAnisotropic(4, white);
+  brdf::writeMeasured(folder_ / "scene" / "white.bsdf", table, brdf::MeasuredFormat::float32);
+  const json model = {{"model", "measured"}, {"file", "white.bsdf"}};
+  json half = model;
+  half["ks"] = 0.5;
+  const scene::Scene loaded = scene::load(scene({model, half}));
+  EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("white.bsdf' reflects up to 2 times the light")));
+  EXPECT_EQ(loaded.measured, table.values);
+  const glsl::MaterialModel& m = loaded.materials.at(0).model.value();
+  EXPECT_EQ(m.kind, glsl::model_measured);
+  EXPECT_EQ(glsl::measured_size(m.nodes), glm::uvec3(4, 0, 0));
+  expectNear(m.ks, glm::vec3(0.5f), 0.01f);
+  expectNear(glsl::model_albedo(m), glm::vec3(1), 0.01f);
+  expectNear(glsl::model_albedo(*loaded.materials.at(1).model), glm::vec3(0.5f), 0.01f);
+  expectNear(glsl::model_response(loaded.measured, m, {0, 0, 1}, {0, 0.6f, 0.8f}), glm::vec3(0.8f / glsl::pi),
+             0.003f);
+}
+
+TEST_F(MeasuredMaterial, RefusesFilesInOneLine) {
+  EXPECT_THAT(loadError(scene({{{"model", "measured"}}})), HasSubstr("file: the name of a file"));
+  EXPECT_THAT(loadError(scene({{{"model", "measured"}, {"file", "none.bsdf"}}})), HasSubstr("none.bsdf"));
+  EXPECT_THAT(loadError(scene({{{"model", "measured"}, {"file", "../x.bsdf"}}})),
+              HasSubstr("lies outside the scene's folder"));
+  write("scene/short.binary", std::vector<std::byte>(11));
+  EXPECT_THAT(loadError(scene({{{"model", "measured"}, {"file", "short.binary"}}})),
+              HasSubstr("material 0 limn_material file 'short.binary'"));
 }
 
 }  // namespace
