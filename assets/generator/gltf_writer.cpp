@@ -12,6 +12,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "core/brdf/measured_file.h"
+
 namespace limn::assets {
 namespace {
 
@@ -49,6 +51,7 @@ json reflectionModel(const ReflectionModel& m) {
   if (!m.masking.empty()) entry["masking"] = m.masking;
   if (!m.banks.empty()) entry["banks"] = m.banks;
   if (!m.combine.empty()) entry["combine"] = m.combine;
+  if (!m.file.empty()) entry["file"] = m.file;
   return entry;
 }
 
@@ -341,6 +344,9 @@ void writeScene(const Scene& scene, const std::filesystem::path& folder) {
   }
   if (scene.environment) {
     writeBeside(folder / "environment.exr", [&](const auto& file) { writeExr(*scene.environment, file); });
+  }
+  for (const Scene::Measured& measured : scene.measured) {
+    brdf::writeMeasured(folder / measured.file, measured.table);
   }
   const std::string bytes = Writer(scene).binary();
   writeBeside(folder / (scene.name + ".glb"), [&](const auto& file) {

@@ -38,6 +38,12 @@ int Scene::addTexture(std::string textureName, Image image, bool linear) {
 int Scene::addMaterial(Material material) {
   return push(materials, std::move(material));
 }
+int Scene::addMeasured(const std::string& materialName, brdf::AnisotropicTable table, glm::vec3 albedo) {
+  measured.push_back({materialName + ".bsdf", std::move(table)});
+  Material material = lambert(materialName, albedo);
+  material.model = {.model = "measured", .file = measured.back().file};
+  return addMaterial(std::move(material));
+}
 int Scene::addNode(Node node) {
   return push(nodes, std::move(node));
 }

@@ -9,19 +9,21 @@
 
 #include "assets/generator/image.h"
 #include "assets/generator/mesh.h"
+#include "core/brdf/tabulated.h"
 
 namespace limn::assets {
 
 /// extras.limn_material: a reflection model in place of glTF's own. What is not set is not written, and has
 /// the default that assets/README.md says.
 struct ReflectionModel {
-  std::string model;                      ///< torrance_sparrow, ward, banks, phong or coated
+  std::string model;                      ///< torrance_sparrow, ward, banks, phong, coated or measured
   std::optional<glm::vec2> roughness{};   ///< along and across the tangent
   std::optional<glm::vec3> eta{}, k{};    ///< index of refraction and of absorption
   std::optional<glm::vec3> kd{}, ks{};    ///< albedos
   std::optional<float> exponent{};        ///< of phong and banks
   std::string distribution{}, masking{};  ///< beckmann or gaussian; correlated or product
   std::string banks{}, combine{};         ///< stalling or printed; sum, blend or physical
+  std::string file{};                     ///< of measured, in the scene's folder
 };
 
 struct Material {
@@ -143,9 +145,17 @@ struct Scene {
   std::vector<Animation> animations;
   std::optional<Image> environment;  ///< linear RGB, written as environment.exr
   std::optional<Medium> medium;      ///< extras.limn_medium
+  struct Measured {
+    std::string file;
+    brdf::AnisotropicTable table;
+  };
+  std::vector<Measured> measured;  ///< files of measured reflectance, which materials name
 
   int addTexture(std::string textureName, Image image, bool linear = false);
   int addMaterial(Material material);
+  /// A material that reflects as the table has it, which is written as NAME.bsdf. Viewers that do not know
+  /// limn_material show a Lambertian surface of that albedo.
+  int addMeasured(const std::string& materialName, brdf::AnisotropicTable table, glm::vec3 albedo);
   int addMesh(std::string meshName, std::vector<Primitive> primitives);
   int addNode(Node node);
   /// A mesh of one primitive and the node that shows it.

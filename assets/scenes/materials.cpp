@@ -7,6 +7,7 @@
 
 #include "assets/generator/shapes.h"
 #include "assets/scenes/scenes.h"
+#include "core/brdf/groove.h"
 
 namespace limn::assets {
 namespace {
@@ -145,6 +146,40 @@ Scene makeFresnelSpheres() {
   addSun(scene, "rim", 0.5f, {0.8f, 0.9f, 1}, {-0.6f, -0.45f, 1});
   scene.addCamera("main", {0, 1.5f, 3.1f}, {0, 0.45f, 0}, 34);
   scene.addCamera("close", {-0.6f, 0.8f, 1.9f}, {-0.3f, 0.3f, 0.3f}, 40);
+  return scene;
+}
+
+// Grooves of 20, 45 and 65 degrees, in two colours and in black and white: what no model of few numbers has.
+Scene makeMeasuredSpheres() {
+  Scene scene;
+  addBackdrop(scene, {0.55f, 0.55f, 0.57f});
+  constexpr struct {
+    const char* name;
+    float degrees;
+    glm::vec3 rising, falling;
+  } rows[] = {{"two_colours", 45, {0.1f, 0.15f, 0.8f}, {0.8f, 0.1f, 0.1f}},
+              {"gold_and_green", 20, {0.9f, 0.6f, 0.1f}, {0.1f, 0.5f, 0.3f}},
+              {"black_and_white", 65, {0.02f, 0.02f, 0.02f}, {0.95f, 0.95f, 0.95f}}};
+  constexpr int texels = 16;
+  float x = -0.66f;
+  for (const auto& row : rows) {
+    const brdf::GrooveBrdf grooves(
+        {.slope = glm::radians(row.degrees), .rising = row.rising, .falling = row.falling, .strips = 48});
+    const int material =
+        scene.addMeasured(row.name, grooves.table(texels), 0.5f * (row.rising + row.falling));
+    Mesh upright = sphere(0.3f, 64), small = sphere(0.16f, 48);
+    brushAlongCircles(upright);
+    brushAlongRadii(small);
+    const std::string name = row.name;
+    place(scene, name, std::move(upright), material, {x, 0.3f, 0});
+    place(scene, name + "_radial", std::move(small), material, {x, 0.16f, 0.55f}, 40);
+    x += 0.66f;
+  }
+  scene.addAreaLight("key", {-1.5f, 2.6f, 1.8f}, {0, 0.3f, 0}, {0.8f, 0.8f}, 9, {1, 0.96f, 0.9f});
+  addSun(scene, "sun", 0.5f, {1, 0.95f, 0.85f}, {-0.8f, -1, -0.5f});
+  addLamp(scene, 0.8f, {1, 0.85f, 0.7f}, {0.3f, 1.5f, 1.2f});
+  scene.addCamera("main", {0, 1.1f, 2.7f}, {0, 0.27f, 0.1f}, 34);
+  scene.addCamera("close", {-0.5f, 0.8f, 1.6f}, {-0.35f, 0.25f, 0.1f}, 40);
   return scene;
 }
 

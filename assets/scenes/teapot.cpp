@@ -5,9 +5,12 @@
 
 #include "assets/generator/shapes.h"
 #include "assets/scenes/scenes.h"
+#include "core/brdf/groove.h"
 
 namespace limn::assets {
 namespace {
+
+constexpr int kGrooveTexels = 20;  ///< of each side of a table of grooves: 1 MB
 
 using Patch = std::array<std::array<glm::vec3, 4>, 4>;
 
@@ -128,6 +131,25 @@ Scene makeTeapotPattern() {
 
 Scene makeTeapotCoarse() {
   return patternScene(4);  // 800 vertices
+}
+
+// After the teapot of Heidrich and Seidel 1999: blue seen from one side, red from the other.
+Scene makeTeapotGroove() {
+  Scene scene;
+  scene.add("floor", backdrop(3, 2, 1.6f, 2, 1.2f), scene.addMaterial(lambert("floor", {0.6f, 0.6f, 0.62f})));
+  Mesh pot = transformed(teapot(20), scaling(glm::vec3(0.1f)));
+  brushAlongCircles(pot);  // across the grooves, which run from the bottom to the lid
+  const int grooves =
+      scene.addMeasured("grooves", brdf::GrooveBrdf(brdf::Groove{}).table(kGrooveTexels), {0.3f, 0.1f, 0.3f});
+  scene.materials[static_cast<std::size_t>(grooves)].doubleSided = true;  // the lid leaves a gap
+  const int node = scene.add("teapot", std::move(pot), grooves);
+  scene.nodes[static_cast<std::size_t>(node)].rotation =
+      glm::angleAxis(glm::radians(-25.0f), glm::vec3(0, 1, 0));
+  scene.addAreaLight("key", {-0.9f, 1.3f, 0.7f}, {0, 0.1f, 0}, {0.5f, 0.5f}, 10, {1, 0.97f, 0.92f});
+  scene.addLight("lamp", {.colour = {0.9f, 0.95f, 1}, .intensity = 0.7f}, {0.7f, 0.9f, 0.8f}, {0, 0.1f, 0});
+  scene.addCamera("main", {0.12f, 0.52f, 1.25f}, {0, 0.13f, 0}, 34);
+  scene.addCamera("close", {0.45f, 0.38f, 0.55f}, {0.1f, 0.16f, 0}, 36);
+  return scene;
 }
 
 Scene makeTeapot() {
