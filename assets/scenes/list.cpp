@@ -49,7 +49,7 @@ const std::vector<SceneEntry>& allScenes() {
 }
 
 const std::vector<EnvironmentEntry>& allEnvironments() {
-  static const std::vector<EnvironmentEntry> environments = {{"sky", makeSky}};
+  static const std::vector<EnvironmentEntry> environments = {{"sky", makeSky}, {"studio", makeStudio}};
   return environments;
 }
 

@@ -59,6 +59,9 @@ const std::vector<SceneEntry>& allScenes();
 
 /// 512 x 256 pixels: a low sun, a glowing horizon, two windows.
 Image makeSky();
+/// 256 x 128 pixels: a grey room with a soft box above left and a strip light on the right, seen from where
+/// a camera looks along -z.
+Image makeStudio();
 
 struct EnvironmentEntry {
   std::string_view name;
