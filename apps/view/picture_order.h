@@ -64,6 +64,7 @@ struct SceneFacts {
   scene::Bounds bounds;
   std::vector<scene::CameraPose> cameras;  ///< at the time it was opened
   scene::CameraPose camera;                ///< that of the options
+  bool environment = false;                ///< it has one: chosen, its own, or that of the default lights
   bool animated = false;
   double seconds = 0;  ///< of the animation; 0: endless
 };

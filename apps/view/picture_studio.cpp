@@ -51,6 +51,7 @@ std::shared_ptr<const SceneFacts> factsOf(const session::View& view, const Scene
   facts->bounds = view.pose.bounds;
   facts->cameras = view.pose.cameras;
   facts->camera = view.camera;
+  facts->environment = static_cast<bool>(view.scene.environment);
   const auto& animations = view.scene.animations;
   const bool endless = !view.scene.dynamic.empty() || view.scene.medium.smoke;
   facts->animated = !animations.empty() || endless;

@@ -105,18 +105,20 @@ void ViewerWindow::environmentPanel() {
            "Equirectangular .hdr or .exr: those beside the present one, and limn's own. One that is "
            "dropped on the window is taken, too");
   const fs::path now = state_.scene.environment;
-  if (ImGui::BeginCombo("##map", now.empty() ? "none" : now.filename().string().c_str())) {
-    const auto offer = [&](const std::string& title, const fs::path& file) {
-      if (ImGui::Selectable(title.c_str(), file == now)) wanted.environment = file.string();
+  const bool lit = facts_->scene && facts_->scene->environment;
+  const std::string title = !now.empty() ? now.filename().string() : lit ? "by default" : "none";
+  if (ImGui::BeginCombo("##map", title.c_str())) {
+    const auto offer = [&](const std::string& entry, const fs::path& file) {
+      if (ImGui::Selectable(entry.c_str(), file == now)) wanted.environment = file.string();
     };
     offer("none", {});
-    offer("sky", "sky");
+    for (const char* own : {"sky", "studio"}) offer(own, own);
     const fs::path folder = now.has_parent_path() ? now.parent_path() : fs::path(".");
     for (const fs::path& file : environmentsIn(folder)) offer(file.filename().string(), file);
     ImGui::EndCombo();
   }
   bool turned = false;
-  if (!now.empty()) {
+  if (lit) {
     nameCell("rotation", "About the vertical axis");
     auto rotation = static_cast<float>(state_.scene.environmentRotation);
     turned |= ImGui::SliderFloat("##rotation", &rotation, -180, 180, "%.0f degrees");
@@ -128,6 +130,8 @@ void ViewerWindow::environmentPanel() {
       state_.scene.environmentScale = scale;
       moved();
     }
+  }
+  if (!now.empty()) {
     nameCell("as lights",
              "Area lights at infinity stand for it, so that every technique shadows it: how much "
              "of a light's energy a row of texels must add for it to grow; smaller: more lights");

@@ -56,7 +56,7 @@ TEST_F(ViewerInputTest, ChoosesEnvironments) {
            std::to_string(++opened) + "\n";
   };
   std::string script = "save none.exr\n";
-  for (const auto& [entry, name] : {std::pair(2, "seen"), {1, "sky"}, {0, "last"}})
+  for (const auto& [entry, name] : {std::pair(3, "seen"), {1, "sky"}, {0, "last"}})
     script += choose(entry) + "save " + name + ".exr\n";
   const Outcome outcome =
       view("cornell_box --technique hard_shadow_map --size 560x340 --open environment --save a.exr", script);
