@@ -9,6 +9,7 @@
 #include "apps/limn/options.h"
 #include "apps/limn/provenance.h"
 #include "core/base/error.h"
+#include "core/question/question_fields.h"
 #include "core/scene_io/load.h"
 #include "core/session/find.h"
 #include "core/session/view.h"
@@ -126,9 +127,7 @@ int run(const Options& options) {
 
 Action addEnvironmentCommand(CLI::App& command) {
   auto options = std::make_shared<Options>();
-  command
-      .add_option("map", options->map, "Equirectangular .hdr or .exr, or the name of one of limn's own: sky")
-      ->required();
+  command.add_option("map", options->map, questionField("environment").doc)->required();
   addSceneFlag(command, options->lights, "environment_lights", "--lights");
   addSceneFlag(command, options->lights, "environment_resolution", "--resolution");
   addSceneFlag(command, options->lights, "environment_shape", "--shape");

@@ -119,14 +119,14 @@ constexpr QuestionField kFields[] = {
           "they have the name of their node, and the node moves with them")
         .changing(lights)
         .labelled(""),
-    choice("default_lights", "--default-lights", &Q::defaultLights, kWhenDefaultLights,
-           "auto: a scene with neither lights nor --environment gets a key light from above the "
-           "camera's left\n"
-           "shoulder and a headlight in the camera (--light key, --light headlight); on: every scene; "
-           "off: none")
+    choice(
+        "default_lights", "--default-lights", &Q::defaultLights, kWhenDefaultLights,
+        "auto: a scene with neither lights nor --environment gets a key light from above the camera's left\n"
+        "shoulder, a headlight in the camera (--light key, --light headlight) and the environment studio;\n"
+        "on: every scene, which keeps its environment if it has one; off: none")
         .labelled("default lights"),
     text("environment", "--environment", &Q::environment,
-         "Equirectangular .hdr or .exr, or the name of one of limn's own: sky")
+         "Equirectangular .hdr or .exr, or the name of one of limn's own: sky, studio")
         .in(kEnvironment)
         .storedAs("map")
         .labelled("")

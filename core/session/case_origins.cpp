@@ -23,7 +23,10 @@ constexpr const char* kMissing = "missing";
 /// Returns everything that is read from disk before the case can be seen.
 std::vector<fs::path> inputFiles(const bench::Case& c) {
   std::vector<fs::path> files = scene::filesOf(findScene(c.scene));
-  if (!c.environment.empty()) files.push_back(findEnvironment(c.environment));
+  if (!c.environment.empty())
+    files.push_back(findEnvironment(c.environment));
+  else if (c.defaultLights != "off")  // whether they are wanted is known once the scene is loaded
+    files.push_back(findDefaultEnvironment());
   const std::string& grid = c.grid;
   if (!grid.empty() && grid != "smoke" && grid != "none") files.emplace_back(grid);
   return files;
@@ -46,7 +49,8 @@ CaseOrigins::CaseOrigins(const TechniqueRegistry& registry) : registry_(registry
 }
 
 const std::string& CaseOrigins::sceneHash(const bench::Case& c) {
-  const std::string name = fmt::format("{}\x1f{}\x1f{}", c.scene, c.environment, c.grid);
+  const std::string name =
+      fmt::format("{}\x1f{}\x1f{}\x1f{}", c.scene, c.environment, c.grid, c.defaultLights);
   const auto [found, isNew] = scenes_.try_emplace(name, kMissing);
   if (!isNew) return found->second;
   try {

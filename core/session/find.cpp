@@ -18,6 +18,15 @@ fs::path findShared(const fs::path& folder, const fs::path& file) {
   return {};
 }
 
+namespace {
+
+/// Returns the map of that name; empty when it was not built or installed with limn.
+fs::path ownEnvironment(const std::string& name) {
+  return findShared("assets/environments", name + ".exr");
+}
+
+}  // namespace
+
 fs::path findScene(const fs::path& nameOrFile) {
   std::error_code ignored;
   if (fs::exists(nameOrFile, ignored)) return nameOrFile;
@@ -34,12 +43,20 @@ fs::path findEnvironment(const fs::path& nameOrFile) {
   if (fs::exists(nameOrFile, ignored)) return nameOrFile;
   const fs::path name = nameOrFile.filename();
   if (name == nameOrFile)
-    if (const fs::path file = findShared("assets/environments", name.string() + ".exr"); !file.empty())
-      return file;
+    if (const fs::path file = ownEnvironment(name.string()); !file.empty()) return file;
   throw Error(fmt::format(
       "environment '{}' does not exist; expected an equirectangular .exr or .hdr file, or the name of one of "
       "limn's maps",
       nameOrFile.string()));
+}
+
+fs::path findDefaultEnvironment() {
+  const fs::path file = ownEnvironment("studio");
+  if (file.empty())
+    throw Error(
+        "limn's environment 'studio', which belongs to the default lights, is not installed; choose another "
+        "with --environment, or --default-lights off");
+  return file;
 }
 
 fs::path findSuite(const fs::path& nameOrFile) {

@@ -15,6 +15,10 @@ LIMN_API std::filesystem::path findScene(const std::filesystem::path& nameOrFile
 /// there is neither.
 LIMN_API std::filesystem::path findEnvironment(const std::filesystem::path& nameOrFile);
 
+/// Returns the environment map that lights scenes beside the default lights. Throws Error when it was not
+/// built or installed with limn.
+LIMN_API std::filesystem::path findDefaultEnvironment();
+
 /// Returns the file itself, or the suite of that name that came with limn. Throws Error when there is
 /// neither.
 LIMN_API std::filesystem::path findSuite(const std::filesystem::path& nameOrFile);

@@ -126,8 +126,8 @@ bool wantsDefaultLights(const SceneQuestion& question, const View& view, const W
   if (question.defaultLights == "auto" && !dark) return false;
   if (dark && warn)
     warn(
-        fmt::format("{}: neither lights nor an environment; lit by default lights (key, headlight), see "
-                    "--environment and --default-lights",
+        fmt::format("{}: neither lights nor an environment; lit by default lights (key, headlight) in the "
+                    "environment studio, see --environment and --default-lights",
                     file));
   return true;
 }
@@ -153,9 +153,12 @@ void relight(View& view, const SceneQuestion& question) {
   for (size_t i = 0; i < scene.materials.size(); ++i)
     if (scene.materials[i].emission != view.file.emission[i])
       scene.materials[i].emission = view.file.emission[i];
-  scene.environment.rotation =
-      view.file.environmentRotation + static_cast<float>(question.environmentRotation * kDegrees);
-  scene.environment.scale = view.file.environmentScale * static_cast<float>(question.environmentScale);
+  const float rotation =
+                  view.file.environmentRotation + static_cast<float>(question.environmentRotation * kDegrees),
+              scale = view.file.environmentScale * static_cast<float>(question.environmentScale);
+  // Where nothing changes, a reference may go on reading it.
+  if (scene.environment.rotation != rotation) scene.environment.rotation = rotation;
+  if (scene.environment.scale != scale) scene.environment.scale = scale;
   if (question.lightSize > 0) resizeLights(scene, question.lightSize);
   scene::evaluate(scene, view.time, view.animation, view.pose);
   view.camera = chooseCamera(question, view.pose);
@@ -217,6 +220,8 @@ View open(const SceneQuestion& question, const Warn& warn) {
   view.time = question.time;
   view.pose = scene::evaluate(view.scene, view.time, view.animation);
   view.defaultLights = wantsDefaultLights(question, view, warn);
+  if (view.defaultLights && !view.scene.environment)
+    view.scene.environment = scene::loadEnvironment(findDefaultEnvironment(), view.scene.warnings);
   relight(view, question);
   if (!question.light.empty()) view.light = findNamed("light", question.light, view.pose.lightNames);
   return view;

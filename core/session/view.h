@@ -37,7 +37,9 @@ struct View {
   int light = scene::kNone;
   bool unshadowed = false;  ///< in the reference
   FileLights file;
-  bool defaultLights = false;  ///< the scene is lit by them; they follow the camera
+  /// Says whether the scene is lit by default lights. Their lights follow the camera; their environment,
+  /// which the scene has unless it has one already, stands still.
+  bool defaultLights = false;
 };
 
 /// Loads everything that the question names; `warn` receives the scene's warnings. Throws UsageError or
@@ -46,7 +48,8 @@ LIMN_API View open(const SceneQuestion& question, const Warn& warn = {});
 
 /// Gives the scene the lights of the question (--light-size, --default-lights, --set-light and the
 /// environment's rotation and scale), starting from those of its file; sets pose and camera at view.time.
-/// Writes to materials only where their emission changes. Throws UsageError for lights that do not exist.
+/// Writes to materials and to the environment only where something changes. Throws UsageError for lights that
+/// do not exist.
 LIMN_API void relight(View& view, const SceneQuestion& question);
 
 /// Sets time, pose and camera, and the default lights, which follow the camera.

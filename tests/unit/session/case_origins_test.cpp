@@ -35,6 +35,16 @@ TEST_F(CaseOriginsTest, AreHashesOfTheProgramAndTheScene) {
       << "another run, the same files";
 }
 
+/// A scene may turn out to have no light when it is loaded.
+TEST_F(CaseOriginsTest, CountTheMapOfTheDefaultLights) {
+  bench::Case off = gem("");
+  off.defaultLights = "off";
+  EXPECT_NE(origins_.of(off).scene, origins_.of(gem("")).scene);
+  bench::Case studio = gem("");
+  studio.environment = "studio";
+  EXPECT_EQ(origins_.of(studio).scene, origins_.of(gem("")).scene) << "the same files";
+}
+
 TEST_F(CaseOriginsTest, SayWhatIsMissing) {
   bench::Case c = gem("first,,second");
   c.scene = "no_such_scene";

@@ -9,6 +9,9 @@
 
 #include "core/base/file.h"
 #include "core/question/question_fields.h"
+#include "core/scene_io/load.h"
+#include "core/session/find.h"
+#include "tests/support/gltf_builder.h"
 #include "tests/support/paths.h"
 #include "tests/support/question_samples.h"
 
@@ -105,6 +108,66 @@ TEST(SceneQuestion, FieldsNeedNoMoreThanTheirEffect) {
               referenceHash(with))
         << field.key;
   }
+}
+
+/// A triangle that nothing lights.
+SceneQuestion unlit() {
+  test::GltfBuilder builder;
+  builder.triangle();
+  SceneQuestion question;
+  question.scene = testing::TempDir() + "unlit.glb";
+  writeFile(question.scene, builder.glb());
+  return question;
+}
+
+TEST(DefaultLights, BringAnEnvironmentToScenesThatHaveNone) {
+  std::string said;
+  const View lit = open(unlit(), [&](const std::string& line) { said += line; });
+  EXPECT_TRUE(lit.defaultLights);
+  EXPECT_EQ(lit.pose.lightNames, (std::vector<std::string>{"key", "headlight"}));
+  std::vector<std::string> warnings;
+  const scene::Environment studio = scene::loadEnvironment(findEnvironment("studio"), warnings);
+  EXPECT_EQ(lit.scene.environment.texels, studio.texels);
+  EXPECT_NE(said.find("studio"), std::string::npos) << said;
+
+  SceneQuestion off = unlit();
+  off.defaultLights = "off";
+  EXPECT_FALSE(open(off).scene.environment);
+  EXPECT_NE(referenceHash(unlit()), referenceHash(off));
+}
+
+TEST(DefaultLights, LeaveScenesAsTheyAreLitUnlessAskedFor) {
+  SceneQuestion gem;
+  gem.scene = "gem";
+  EXPECT_FALSE(open(gem).scene.environment);
+  gem.defaultLights = "on";
+  const View both = open(gem);
+  EXPECT_EQ(both.pose.lights.size(), 3u);
+  EXPECT_TRUE(both.scene.environment);
+  gem.environment = "sky";
+  const View sky = open(gem);
+  EXPECT_EQ(sky.pose.lights.size(), 3u);
+  EXPECT_NE(sky.scene.environment.texels, both.scene.environment.texels) << "one's own environment stays";
+  SceneQuestion underSky = unlit();
+  underSky.environment = "sky";
+  EXPECT_FALSE(open(underSky).defaultLights);
+}
+
+/// The lights move with the camera; what metals mirror is turned and scaled as any environment, and not by
+/// the camera.
+TEST(DefaultLights, EnvironmentTurnsByItsOptionsAlone) {
+  SceneQuestion question = unlit();
+  View view = open(question);
+  question.eye = "1,2,3";
+  question.target = "0,0,0";
+  moveTo(view, question, 0);
+  EXPECT_EQ(view.scene.environment.rotation, 0);
+  EXPECT_EQ(view.scene.environment.scale, 1);
+  question.environmentRotation = 180;
+  question.environmentScale = 0.5;
+  relight(view, question);
+  EXPECT_FLOAT_EQ(view.scene.environment.rotation, glsl::pi);
+  EXPECT_EQ(view.scene.environment.scale, 0.5f);
 }
 
 }  // namespace
