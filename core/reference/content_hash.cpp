@@ -56,6 +56,8 @@ void addMaterial(Hasher& h, const scene::Material& m) {
        {&m.baseColourTexture, &m.metalRoughTexture, &m.normalTexture, &m.emissiveTexture})
     addTexture(h, *texture);
   if (m.model) h.add(*m.model);
+  constexpr uint32_t coatsMirrorEnvironment = 0xc0a7;  // earlier results show their bases alone
+  if (m.model && m.model->kind == glsl::model_coated) h.add(coatsMirrorEnvironment);
 }
 
 void addPrimitive(Hasher& h, const scene::Primitive& p) {

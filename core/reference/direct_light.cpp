@@ -32,6 +32,15 @@ struct Estimate {
     if (value != glm::vec3(0) && unblocked(rays, surface, view.arrival())) add(value, samples.count);
   }
 
+  /// What a smooth coat mirrors of the light from far away.
+  void addMirrored(const EnvironmentView& view) const {
+    const glm::vec3 share = surface.mirrored();
+    if (share == glm::vec3(0)) return;
+    const Arrival arrival = view.towards(surface.mirrorDirection());
+    const glm::vec3 value = share * arrival.radiance * through(arrival);
+    if (value != glm::vec3(0) && unblocked(rays, surface, arrival)) add(value, samples.count);
+  }
+
   /// A light of which the surface may not see anything.
   template <class View>
   void addExtended(const View& view) const {
@@ -111,9 +120,11 @@ void DirectLight::add(const Surface& surface, const SampleRange& samples, Sums& 
       estimate.addExtended(ConeView(light, surface));
   }
   const EnvironmentView environment(environment_);
-  if (withEnvironment_ && !environment.dark())
-    Estimate{rays_, surface, samples, samples.pair + 3u * static_cast<uint32_t>(last_), sums, rays_.medium()}
-        .addSamples(environment);
+  if (!withEnvironment_ || environment.dark()) return;
+  const Estimate estimate{rays_, surface,       samples, samples.pair + 3u * static_cast<uint32_t>(last_),
+                          sums,  rays_.medium()};
+  estimate.addSamples(environment);
+  estimate.addMirrored(environment);
 }
 
 }  // namespace limn::reference

@@ -165,6 +165,13 @@ glm::vec3 Surface::f(const glm::vec3& towards, const glm::vec3& direction) const
   return glsl::model_response(*measured, *model, glsl::to_local(frame, towards), local) / local.z;
 }
 
+glm::vec3 Surface::mirrored() const {
+  if (!model || model->kind != glsl::model_coated) return glm::vec3(0);
+  const float cosine = glm::dot(values.normal, view);
+  if (!(cosine > 0.f) || !(glm::dot(values.geometric_normal, mirrorDirection()) > 0.f)) return glm::vec3(0);
+  return glsl::coated_mirror(*model, cosine);
+}
+
 glm::vec3 Surface::sample(const glm::vec3& u) const {
   if (!model) return glsl::brdf_sample(brdf, values.normal, view, u);
   return glsl::from_local(frame, glsl::model_sample(*model, glsl::to_local(frame, view), u));

@@ -125,16 +125,36 @@ LIMN_FN vec3 prefiltered_direction(int lookup, LtcTerms terms, vec3 n, vec3 v, f
   return size > 1e-6f ? drawn / size : n;
 }
 
-// Share of a Phong lobe (r.l)^p that lies above the horizon of the surface, in [0, 1]: what a map that was filtered with the
-// whole lobe is multiplied by. Across the horizon the lobe falls as a Gaussian of the elevation e of r, sin e = n.v:
-// S = (1 + erf(e sqrt((p + 3/4) / 2))) / 2, within 2.4e-3 for p >= 10, 5e-3 for p = 5 and 0.025 for p = 1; 0.75 centres the
-// errors. erf: Abramowitz and Stegun, 7.1.25, within 2.5e-5.
-LIMN_FN float phong_horizon_share(float n_dot_v, float p) {
+// The width alpha that a Phong lobe (r.l)^p is as wide as: Beckmann's at normal incidence, p = 1 / (2 alpha^2) - 1/2.
+LIMN_FN float power_lobe_alpha(float p) { return inversesqrt(2.0f * p + 1.0f); }
+
+// The part of a Phong lobe (r.l)^p about the mirror direction r that lies above the horizon of the surface.
+struct PhongPart {
+  float share;  // of the whole lobe, in [0, 1]: what a map that was filtered with the whole lobe is multiplied by
+  float lift;   // of the part's middle above r, towards the normal, radians
+  float alpha;  // its width
+};
+
+// Across the horizon the lobe falls as a Gaussian of the elevation e of r, sin e = n.v, of variance 1 / (p + 3/4): the share is
+// (1 + erf(e sqrt((p + 3/4) / 2))) / 2, within 2.4e-3 for p >= 10, 5e-3 for p = 5 and 0.025 for p = 1; 0.75 centres the errors.
+// erf: Abramowitz and Stegun, 7.1.25, within 2.5e-5. Lift and width are those of the Gaussian cut off there, whose variance
+// shrinks across the horizon and not along it.
+LIMN_FN PhongPart phong_above_horizon(float n_dot_v, float p) {
   float cosine = min(abs(n_dot_v), 1.0f);
-  float x = atan(cosine, sqrt(1.0f - cosine * cosine)) * sqrt(0.5f * (p + 0.75f));
+  float elevation = atan(cosine, sqrt(1.0f - cosine * cosine));
+  float sharpness = sqrt(p + 0.75f);
+  float x = elevation * sharpness * 0.70710678f;
   float t = 1.0f / (1.0f + 0.47047f * x);
-  float below = 0.5f * t * (0.3480242f + t * (-0.0958798f + t * 0.7478556f)) * exp(-x * x);
-  return n_dot_v < 0.0f ? below : 1.0f - below;
+  float tail = 0.5f * t * (0.3480242f + t * (-0.0958798f + t * 0.7478556f));  // of the Gaussian, over exp(-x^2)
+  float gauss = exp(-x * x);
+  bool below = n_dot_v < 0.0f;
+  PhongPart part;
+  part.share = below ? tail * gauss : 1.0f - tail * gauss;
+  float slope = 0.39894228f * (below ? 1.0f / tail : gauss / part.share);
+  part.lift = slope / sharpness;
+  float shrunk = 1.0f - slope * ((below ? -1.41421356f : 1.41421356f) * x + slope);
+  part.alpha = power_lobe_alpha(p) * sqrt(0.5f + 0.5f * clamp(shrunk, 0.0f, 1.0f));
+  return part;
 }
 
 #ifndef __cplusplus
@@ -181,9 +201,10 @@ float prefiltered_density_towards(vec3 direction, int size) {
 #endif
 }
 
-// Bilinear lookup in one level; direction: unit.
+// Bilinear lookup in one level; direction: unit. Levels may differ between pixels, for which the size of a level is not asked:
+// drivers are known to answer all pixels of a group with that of one.
 vec3 prefiltered_lookup(sampler2DArray map, vec3 direction, int level) {
-  return textureLod(map, prefiltered_place(direction, textureSize(map, level).y), float(level)).rgb;
+  return textureLod(map, prefiltered_place(direction, textureSize(map, 0).y >> level), float(level)).rgb;
 }
 #endif
 

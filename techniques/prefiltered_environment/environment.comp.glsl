@@ -1,7 +1,10 @@
 // Adds the light of the environment that surfaces reflect, unoccluded (V = 1): lookups in the prefiltered maps. MEDIUM 1: times
 // the medium's transmittance along the normal.
-#include "glsl/surface/gbuffer_input.glsl"
+#include "glsl/surface/surface_response.glsl"
 #include "glsl/light/prefiltered.glsl"
+#if MATERIAL_MODELS
+#include "glsl/light/prefiltered_models.glsl"
+#endif
 #include "glsl/media/medium_input.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -26,19 +29,86 @@ vec3 filtered_radiance(vec3 towards, float alpha) {
   return frame.environment_scale * mix(sharper, wider, level - float(low));
 }
 
-// Radiance that a glTF surface reflects towards v.
-vec3 gltf_reflection(GBufferSurface surface, vec3 v) {
-  SurfaceBrdf s = surface_brdf(surface.base_colour, surface.metallic, surface.roughness, surface.specular_factor,
-                               surface.specular_colour, surface.ior);
-  vec3 irradiance = irradiance_towards(surface.normal);
+// Radiance that a metallic-roughness surface reflects towards v.
+vec3 brdf_reflection(SurfaceBrdf s, vec3 n, vec3 v) {
+  vec3 irradiance = irradiance_towards(n);
   if (brdf_is_lambertian(s)) return s.diffuse * irradiance * inverse_pi;
-  LtcTerms terms = ltc_lookup(dot(surface.normal, v), s.alpha);
-  vec3 towards = prefiltered_direction(LOOKUP, terms, surface.normal, v, s.alpha);
+  LtcTerms terms = ltc_lookup(dot(n, v), s.alpha);
+  vec3 towards = prefiltered_direction(LOOKUP, terms, n, v, s.alpha);
   return environment_reflection(s, terms, irradiance, filtered_radiance(towards, s.alpha));
 }
 
+#if (MATERIAL_MODELS & 22) != 0
+uniform sampler2DArray power_map;  // filtered with power lobes of the widths power_level_alpha() 0, 1, ...
+
+vec3 lobe_radiance(PrefilteredLobe lobe) {
+  vec3 direction = environment_lookup_direction(lobe.towards, frame.environment_rotation);
+  PowerPlace place = power_place(lobe.alpha);
+  vec3 narrower = place.wider == 0 ? prefiltered_lookup(sharp_map, direction, 0)
+                                   : prefiltered_lookup(power_map, direction, max(place.wider, 1) - 1);
+  vec3 wider = prefiltered_lookup(power_map, direction, place.wider);
+  return lobe.reflectance * frame.environment_scale * mix(narrower, wider, place.weight);
+}
+#endif
+
+#if (MATERIAL_MODELS & 6) != 0
+uniform sampler2D microfacet_lobes;
+
+MicrofacetLobe microfacet_lobe_entry(float n_dot_v, float alpha) {
+  float size = float(microfacet_lobe_table_size);
+  vec2 uv = (microfacet_lobe_place(n_dot_v, alpha) * (size - 1.0) + 0.5) / size;
+  vec4 entry = textureLod(microfacet_lobes, uv, 0.0);
+  return MicrofacetLobe(entry.x, entry.y, entry.z, entry.w);
+}
+#endif
+
+#if (MATERIAL_MODELS & 32) != 0
+uniform sampler2DArray grazing_map;  // as irradiance_map, of light weighted by schlick_weight(n.l)
+
+vec3 coated_reflection(MaterialModel m, vec3 n, vec3 v) {
+  PrefilteredLobe lobe = coated_prefiltered_lobe(m, n, v);
+  vec3 mirrored = prefiltered_lookup(sharp_map, environment_lookup_direction(lobe.towards, frame.environment_rotation), 0);
+  vec3 grazing =
+      prefiltered_lookup(grazing_map, environment_lookup_direction(n, frame.environment_rotation), 0);
+  return coated_prefiltered_base(m, dot(n, v), irradiance_towards(n), frame.environment_scale * grazing) +
+         frame.environment_scale * lobe.reflectance * mirrored;
+}
+#endif
+
+#if MATERIAL_MODELS
+// Radiance that a surface with a model reflects towards v; of the kinds without an answer below it is that of the
+// metallic-roughness surface next to it.
+vec3 model_reflection(SurfaceMaterial s, vec3 n, vec3 v) {
+  MaterialModel m = s.model;
+#if (MATERIAL_MODELS & 6) != 0
+  if (m.kind == model_torrance_sparrow || m.kind == model_ward) {
+    MicrofacetLobe entry = microfacet_lobe_entry(dot(n, v), microfacet_lobe_alpha(m));
+    return m.kd * irradiance_towards(n) * inverse_pi +
+           lobe_radiance(microfacet_prefiltered_lobe(m, entry, LOOKUP, n, v));
+  }
+#endif
+#if (MATERIAL_MODELS & 8) != 0
+  if (m.kind == model_banks) return banks_albedo(m) * irradiance_towards(n) * inverse_pi;
+#endif
+#if (MATERIAL_MODELS & 16) != 0
+  if (m.kind == model_phong)
+    return m.kd * irradiance_towards(n) * inverse_pi + lobe_radiance(phong_prefiltered_lobe(m, LOOKUP, n, v));
+#endif
+#if (MATERIAL_MODELS & 32) != 0
+  if (m.kind == model_coated) return coated_reflection(m, n, v);
+#endif
+  return brdf_reflection(nearest_brdf(s), n, v);
+}
+#endif
+
 // The answer of the surface's model.
-vec3 reflected_environment(GBufferSurface surface, vec3 v) { return gltf_reflection(surface, v); }
+vec3 reflected_environment(ivec2 pixel, GBufferSurface surface, vec3 v) {
+  SurfaceMaterial material = pixel_material(pixel, surface);
+#if MATERIAL_MODELS
+  if (has_model(material)) return model_reflection(material, surface.normal, v);
+#endif
+  return brdf_reflection(material.brdf, surface.normal, v);
+}
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -47,7 +117,7 @@ void main() {
   if (depth == 0.0) return;
   GBufferSurface surface = pixel_surface(pixel);
   if ((surface.flags & gbuffer_flag_specular) != 0u) return;
-  vec3 light = reflected_environment(surface, -normalize(pixel_ray(pixel)));
+  vec3 light = reflected_environment(pixel, surface, -normalize(pixel_ray(pixel)));
 #if MEDIUM
   Medium medium = scene_medium();
   light *= medium_transmittance(medium, medium_length(medium, pixel_position(pixel, depth), surface.normal, 3.0e38));

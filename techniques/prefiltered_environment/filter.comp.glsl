@@ -1,6 +1,10 @@
-// Radiance filtered by the GGX lobe at normal incidence around each direction: samples of the lobe, each from the level of the
-// chain in which a texel covers as much as it does.
+// Radiance filtered by a lobe around each direction: samples of the lobe, each from the level of the chain in which a texel
+// covers as much as it does. POWER_LOBES 0: GGX lobes at normal incidence; 1: power lobes.
+#if POWER_LOBES
+#include "glsl/light/prefiltered_models.glsl"
+#else
 #include "glsl/light/prefiltered.glsl"
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba16f) writeonly uniform image2DArray filtered;
@@ -20,7 +24,11 @@ void main() {
   vec3 sum = vec3(0.0);
   float weights = 0.0;
   for (int i = 0; i < samples; ++i) {
+#if POWER_LOBES
+    PrefilterSample s = power_prefilter_sample(alpha, i, samples);
+#else
     PrefilterSample s = prefilter_sample(alpha, i, samples);
+#endif
     if (s.weight == 0.0) continue;
     vec3 direction = from_local(around, s.direction);
     float level = min(prefilter_source_level(s.spread, prefiltered_density_towards(direction, size)), float(last));

@@ -1,4 +1,5 @@
-// Irradiance of surfaces that face each direction: the sum over all texels of one level of the chain.
+// Irradiance of surfaces that face each direction: the sum over all texels of one level of the chain. GRAZING 1: of light
+// weighted by Schlick's (1 - cosine)^5.
 #include "glsl/light/prefiltered.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -19,6 +20,9 @@ void main() {
         vec2 centre = vec2(x, y) + 0.5;
         float cosine = dot(normal, prefiltered_texel_direction(centre, layer, texels.y));
         vec3 radiance = texelFetch(source, ivec3(x, y, layer), source_level).rgb;
+#if GRAZING
+        cosine *= schlick_weight(cosine);
+#endif
         sum += max(cosine, 0.0) * prefiltered_solid_angle(centre, texels.y) * radiance;
       }
     }

@@ -9,10 +9,11 @@
 
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/gpu_scene.h"
+#include "core/gpu_scene/surface_input.h"
 #include "core/scene/environment_light.h"
 #include "core/shading/ltc_table.h"
 #include "core/technique/technique.h"
-#include "glsl/light/prefiltered.glsl"
+#include "glsl/light/prefiltered_models.glsl"
 
 namespace {
 
@@ -55,6 +56,20 @@ constexpr int kGroupSize = 8;
 constexpr int kFilteredLevels = glsl::environment_levels - 1;  ///< level 0 is the radiance itself
 constexpr int kIrradianceSize = 32;
 constexpr int kCoarsestSize = 8;  ///< of the chain, at least
+static_assert(kFilteredLevels == glsl::power_levels);
+
+constexpr uint32_t kMicrofacetKinds = 1u << glsl::model_torrance_sparrow | 1u << glsl::model_ward;
+constexpr uint32_t kLobeKinds = kMicrofacetKinds | 1u << glsl::model_phong;
+constexpr uint32_t kCoatedKinds = 1u << glsl::model_coated;
+
+enum class Irradiance { whole, grazing };  ///< grazing: weighted by Schlick's (1 - cosine)^5
+enum class Lobes { ggx, power };
+
+/// Holds what surfaces look up; empty: no material of the scene needs it.
+struct Maps {
+  TextureHandle sharp, irradiance, filtered;
+  TextureHandle power, microfacetLobes, grazing;
+};
 
 class PrefilteredEnvironment : public Technique {
   gpu::Texture environment_, ltcTable_;
@@ -70,8 +85,15 @@ class PrefilteredEnvironment : public Technique {
     const Filtering filtering(graph, inputs.parameters, sampler_);
     const TextureHandle chain =
         filtering.addChain(graph.importTexture("environment", environment_), environment_.desc().width);
-    return addReflection(graph, inputs, request.target, filtering.addIrradiance(chain), chain,
-                         filtering.addLobes(chain));
+    Maps maps;
+    maps.sharp = chain;
+    maps.irradiance = filtering.addIrradiance(chain, Irradiance::whole);
+    maps.filtered = filtering.addLobes(chain, Lobes::ggx);
+    const uint32_t kinds = inputs.handles.modelKinds;
+    if ((kinds & kLobeKinds) != 0) maps.power = filtering.addLobes(chain, Lobes::power);
+    if ((kinds & kMicrofacetKinds) != 0) maps.microfacetLobes = filtering.addMicrofacetLobes();
+    if ((kinds & kCoatedKinds) != 0) maps.grazing = filtering.addIrradiance(chain, Irradiance::grazing);
+    return addReflection(graph, inputs, request.target, maps);
   }
 
   void upload(const TechniqueInputs& inputs) {
@@ -119,14 +141,17 @@ class PrefilteredEnvironment : public Technique {
     }
 
     /// Returns the irradiance of surfaces that face each direction, W/m^2.
-    TextureHandle addIrradiance(TextureHandle chain) const {
+    TextureHandle addIrradiance(TextureHandle chain, Irradiance kind) const {
+      const bool grazing = kind == Irradiance::grazing;
+      const std::string name =
+          grazing ? "grazing irradiance of the environment" : "irradiance of the environment";
       const gpu::TextureDesc extent = desc(GL_RGBA32F, kIrradianceSize, 1);
-      frame::PassBuilder pass = addPass("irradiance of the environment");
+      frame::PassBuilder pass = addPass(name);
       pass.read(chain, Access::sampled, "source", "radiance");
       const TextureHandle irradiance =
-          pass.write(graph_.createTexture("irradiance of the environment", extent), Access::imageStore,
-                     "irradiance", "for diffuse surfaces");
-      const auto program = pass.program(shader("irradiance", {}));
+          pass.write(graph_.createTexture(name, extent), Access::imageStore, "irradiance",
+                     grazing ? "for what lies under a coat" : "for diffuse surfaces");
+      const auto program = pass.program(shader("irradiance", {{"GRAZING", grazing ? "1" : "0"}}));
       pass.execute([=, level = levelOf(kIrradianceSize)](frame::PassContext& context) {
         context.use(program).set("source_level", level);
         dispatch(context, extent);
@@ -134,17 +159,26 @@ class PrefilteredEnvironment : public Technique {
       return irradiance;
     }
 
-    /// Returns the radiance filtered by the lobes of glsl::environment_alpha(1), (2) and so on, a level each.
-    TextureHandle addLobes(TextureHandle chain) const {
-      TextureHandle filtered =
-          graph_.createTexture("filtered environment", desc(GL_RGBA16F, size_, kFilteredLevels));
+    /// Returns the radiance filtered by lobes, a level for each width: those of glsl::environment_alpha(1),
+    /// (2) and so on, or of glsl::power_level_alpha(0), (1) and so on.
+    TextureHandle addLobes(TextureHandle chain, Lobes lobes) const {
+      const bool power = lobes == Lobes::power;
+      const std::string name = power ? "environment filtered with power lobes" : "filtered environment";
+      TextureHandle filtered = graph_.createTexture(name, desc(GL_RGBA16F, size_, kFilteredLevels));
       for (int level = 0; level < kFilteredLevels; ++level) {
-        frame::PassBuilder pass = addPass("filter environment level " + std::to_string(level + 1));
+        frame::PassBuilder pass =
+            addPass((power ? "filter environment with power lobes, level " : "filter environment level ") +
+                    std::to_string(level + 1));
         pass.read(chain, Access::sampled, ShaderName("source").sampledWith(&sampler_), "radiance");
         filtered = pass.write(filtered, level == 0 ? Access::imageStore : Access::imageLoadStore,
-                              ShaderName("filtered").level(level), "for glossy surfaces");
-        const auto program = pass.program(shader("filter", {}));
-        pass.execute([=, alpha = glsl::environment_alpha(static_cast<float>(level + 1)),
+                              ShaderName("filtered").level(level),
+                              power ? "for lobes of models" : "for glossy surfaces");
+        std::map<std::string, std::string> defines{{"POWER_LOBES", power ? "1" : "0"}};
+        if (power) defines["MATERIAL_MODELS"] = "0";
+        const auto program = pass.program(shader("filter", std::move(defines)));
+        pass.execute([=,
+                      alpha = power ? glsl::power_level_alpha(level)
+                                    : glsl::environment_alpha(static_cast<float>(level + 1)),
                       samples = samples_ << level,
                       extent = desc(GL_RGBA16F, size_ >> level, 1)](frame::PassContext& context) {
           gpu::Program& kernel = context.use(program);
@@ -154,6 +188,22 @@ class PrefilteredEnvironment : public Technique {
         });
       }
       return filtered;
+    }
+
+    /// Returns the table of glsl::microfacet_lobe().
+    TextureHandle addMicrofacetLobes() const {
+      constexpr int size = glsl::microfacet_lobe_table_size;
+      frame::PassBuilder pass = addPass("lobes of microfacets");
+      const TextureHandle lobes = pass.write(
+          graph_.createTexture("lobes of microfacets", {.format = GL_RGBA32F, .width = size, .height = size}),
+          Access::imageStore, "lobes", "where models look into the maps");
+      const auto program =
+          pass.program(shader("lobes", {{"MATERIAL_MODELS", std::to_string(kMicrofacetKinds)}}));
+      pass.execute([=](frame::PassContext& context) {
+        context.use(program);
+        context.dispatch(size, size, 1, kGroupSize, kGroupSize);
+      });
+      return lobes;
     }
 
     /// Returns a shader of the technique with the chosen map.
@@ -204,16 +254,20 @@ class PrefilteredEnvironment : public Technique {
   };
 
   TextureHandle addReflection(frame::FrameGraph& graph, const TechniqueInputs& inputs, TextureHandle target,
-                              TextureHandle irradiance, TextureHandle sharp, TextureHandle filtered) {
+                              const Maps& maps) {
     frame::PassBuilder pass = graph.addPass("environment light", info.name);
     pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, rotation, scale");
-    readSurfaces(pass, inputs.gbuffer);
+    const scene::SurfaceInput surfaces(inputs.handles, inputs.gbuffer);
+    surfaces.declare(pass);
     const auto look = [&](TextureHandle map, const char* name, const char* why) {
-      pass.read(map, Access::sampled, ShaderName(name).sampledWith(&sampler_), why);
+      if (map) pass.read(map, Access::sampled, ShaderName(name).sampledWith(&sampler_), why);
     };
-    look(irradiance, "irradiance_map", "diffuse light");
-    look(sharp, "sharp_map", "light of smooth surfaces");
-    look(filtered, "filtered_map", "glossy light");
+    look(maps.irradiance, "irradiance_map", "diffuse light");
+    look(maps.sharp, "sharp_map", "light of smooth surfaces");
+    look(maps.filtered, "filtered_map", "glossy light");
+    look(maps.power, "power_map", "light of models' lobes");
+    look(maps.microfacetLobes, "microfacet_lobes", "where models look");
+    look(maps.grazing, "grazing_map", "light that coats reflect");
     pass.read(graph.importTexture("table of linearly transformed cosines of the environment", ltcTable_),
               Access::sampled, "ltc_table", "glossy reflectance");
     const TextureHandle radiance =
@@ -222,6 +276,7 @@ class PrefilteredEnvironment : public Technique {
         Filtering(graph, inputs.parameters, sampler_)
             .shader("environment", {{"MEDIUM", inputs.scene.medium.present() ? "1" : "0"},
                                     {"LOOKUP", std::to_string(inputs.parameters.choice("lookup"))}});
+    surfaces.define(desc.defines);
     const scene::MediumInput medium(inputs.handles);
     medium.define(desc.defines);
     medium.declare(pass);

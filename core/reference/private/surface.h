@@ -29,6 +29,11 @@ struct Surface {
   /// Returns f(towards, direction) of two unit vectors away from the surface, 1/sr, without the cosine; 0
   /// where `direction` is below the shading normal's horizon.
   glm::vec3 f(const glm::vec3& towards, const glm::vec3& direction) const;
+  /// Returns the share of light from mirrorDirection() that a smooth coat reflects, which is no part of
+  /// reflectance(); 0 without a coat, and where that direction is below either horizon.
+  glm::vec3 mirrored() const;
+  /// Returns the direction that the view is mirrored to at the shading normal.
+  glm::vec3 mirrorDirection() const { return 2 * glm::dot(values.normal, view) * values.normal - view; }
   /// Returns a direction with the density pdf(), from u in [0, 1)^3.
   glm::vec3 sample(const glm::vec3& u) const;
   /// Returns the density with which sample() chooses `direction`, 1/sr.

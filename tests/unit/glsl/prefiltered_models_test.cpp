@@ -1,0 +1,242 @@
+// Materials with a model under prefiltered environments (glsl/light/prefiltered_models.glsl) against
+// integration of their responses. Maps are filtered exactly, so that what is measured is one lookup for a
+// lobe.
+#include "glsl/light/prefiltered_models.glsl"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "tests/unit/glsl/prefiltered_skies.h"
+#include "tests/unit/materials/models.h"
+
+namespace limn::glsl {
+namespace {
+
+/// The radiance filtered by a power lobe; the radiance itself for the width 0.
+double filteredPower(const Sky& sky, const vec3& axis, float alpha) {
+  if (alpha == 0) return sky.radiance(axis);
+  const Frame frame = frame_around(axis);
+  const float p = power_lobe_exponent(alpha);
+  double sum = 0;
+  for (int i = 0; i < kSide * kSide; ++i)
+    sum += sky.radiance(from_local(frame, sample_power_lobe(p, gridPoint(i))));
+  return sum / (kSide * kSide);
+}
+
+/// The same by the maps' levels.
+double mappedPower(const Sky& sky, const vec3& axis, float alpha) {
+  const PowerPlace place = power_place(alpha);
+  const double weight = static_cast<double>(place.weight);
+  return (1 - weight) * filteredPower(sky, axis, place.wider == 0 ? 0 : power_level_alpha(place.wider - 1)) +
+         weight * filteredPower(sky, axis, power_level_alpha(place.wider));
+}
+
+/// What the lobe of a model reflects, in the first channel.
+double exactLobe(const Sky& sky, MaterialModel m, const vec3& n, const vec3& v) {
+  m.kd = vec3(0);
+  const Frame frame = frame_around(n);
+  const vec3 local = to_local(frame, v);
+  double sum = 0;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const vec3 l = model_sample(m, local, vec3(gridPoint(i), 0));
+    const float pdf = model_pdf(m, local, l);
+    if (pdf > 0)
+      sum += static_cast<double>(model_response(m, local, l).x / pdf) * sky.radiance(from_local(frame, l));
+  }
+  return sum / (kSide * kSide);
+}
+
+PrefilteredLobe lobeOf(const MaterialModel& m, int lookup, const vec3& n, const vec3& v) {
+  if (m.kind == model_phong) return phong_prefiltered_lobe(m, lookup, n, v);
+  constexpr int count = 1024;
+  return microfacet_prefiltered_lobe(m, microfacet_lobe(dot(n, v), microfacet_lobe_alpha(m), count), lookup,
+                                     n, v);
+}
+
+/// Errors of one lookup.
+struct LobeErrors {
+  RelativeError mirror, centroid, mapped;  ///< mapped: the centroid's with widths between levels
+};
+
+LobeErrors lobeErrors(const Sky& sky, const MaterialModel& m, Views views) {
+  LobeErrors errors;
+  for (int i = 0; i < kViews; ++i) {
+    const auto [n, v] = views.next();
+    const double exact = exactLobe(sky, m, n, v);
+    const PrefilteredLobe mirror = lobeOf(m, prefiltered_lookup_mirror, n, v),
+                          centroid = lobeOf(m, prefiltered_lookup_centroid, n, v);
+    const auto reflected = [](const PrefilteredLobe& lobe, double light) {
+      return static_cast<double>(lobe.reflectance.x) * light;
+    };
+    errors.mirror.add(reflected(mirror, filteredPower(sky, mirror.towards, mirror.alpha)), exact);
+    errors.centroid.add(reflected(centroid, filteredPower(sky, centroid.towards, centroid.alpha)), exact);
+    errors.mapped.add(reflected(centroid, mappedPower(sky, centroid.towards, centroid.alpha)), exact);
+  }
+  return errors;
+}
+
+std::string text(const LobeErrors& errors) {
+  return std::to_string(errors.mirror.value()) + " " + std::to_string(errors.centroid.value()) + " " +
+         std::to_string(errors.mapped.value());
+}
+
+TEST(PrefilteredModels, PhongLobesLookAtTheirPartAboveTheHorizon) {
+  for (const Sky& sky : kSkies)
+    for (const float p : {10.f, 100.f, 1000.f})
+      for (const auto& [low, high] : {std::pair(0., 60.), std::pair(60., 80.), std::pair(80., 90.)}) {
+        const LobeErrors errors = lobeErrors(sky, phongModel(0, 1, p), Views{low, high});
+        const std::string name =
+            sky.name + " p " + std::to_string(int(p)) + " view " + std::to_string(int(low));
+        RecordProperty(name, text(errors));
+        if (low == 80) {
+          EXPECT_LT(errors.centroid.value(), 0.5 * errors.mirror.value()) << name;
+        }
+        if (p >= 100 && &sky == &kSkies[0]) {
+          EXPECT_LT(errors.centroid.value(), 0.01) << name;
+          EXPECT_LT(errors.mapped.value(), 0.03) << name;
+        }
+      }
+}
+
+TEST(PrefilteredModels, MicrofacetsLookAtTheMiddleOfTheirLobe) {
+  MaterialModel copper = microfacets(model_torrance_sparrow, vec2(0.1f));
+  copper.eta = vec3(1.17f);
+  copper.k = vec3(2.39f);
+  MaterialModel glass = copper;
+  glass.eta = vec3(1.5f);
+  glass.k = vec3(0);
+  const struct {
+    const char* name;
+    MaterialModel model;
+    double bound;  ///< of views below 60 degrees under wide lamps
+  } materials[] = {{"white", microfacets(model_torrance_sparrow, vec2(0.1f)), 0.04},
+                   {"copper", copper, 0.04},
+                   {"glass", glass, 0.18}};
+  for (const Sky& sky : kSkies)
+    for (const auto& material : materials)
+      for (const float alpha : {0.03f, 0.1f, 0.3f, 0.6f, 1.f})
+        for (const auto& [low, high] : {std::pair(0., 60.), std::pair(60., 80.), std::pair(80., 90.)}) {
+          MaterialModel m = material.model;
+          m.roughness = vec2(alpha);
+          const LobeErrors errors = lobeErrors(sky, m, Views{low, high});
+          const std::string name = sky.name + " " + material.name + " alpha " + std::to_string(alpha) +
+                                   " view " + std::to_string(int(low));
+          RecordProperty(name, text(errors));
+          if (low == 80) {
+            EXPECT_LT(errors.centroid.value(), errors.mirror.value()) << name;
+          }
+          if (low == 0 && &sky == &kSkies[0]) {
+            EXPECT_LT(errors.centroid.value(), material.bound) << name;
+          }
+        }
+}
+
+TEST(PrefilteredModels, BrushedMetalIsTakenForRound) {
+  for (const Sky& sky : kSkies)
+    for (const vec2 roughness : {vec2(0.06f, 0.35f), vec2(0.15f, 0.5f)}) {
+      const LobeErrors errors = lobeErrors(sky, microfacets(model_ward, roughness), Views{0, 60});
+      RecordProperty(sky.name + " " + std::to_string(roughness.x), text(errors));
+      EXPECT_LT(errors.centroid.value(), 0.5) << sky.name << roughness.x;
+    }
+}
+
+TEST(PrefilteredModels, LobesReflectOfUniformLightWhatTheirResponsesDo) {
+  for (const float alpha : {0.03f, 0.1f, 0.3f, 0.6f, 1.f})
+    for (const float cosine : {1.f, 0.8f, 0.5f, 0.2f, 0.05f}) {
+      const vec3 n(0, 0, 1), v = directionAt(static_cast<double>(cosine), 1);
+      const MaterialModel m = microfacets(model_torrance_sparrow, vec2(alpha));
+      EXPECT_NEAR(static_cast<double>(lobeOf(m, prefiltered_lookup_centroid, n, v).reflectance.x),
+                  furnace(m, v), 0.01)
+          << alpha << ' ' << cosine;
+    }
+}
+
+TEST(PrefilteredModels, LevelsOfPowerLobesMeetTheirWidths) {
+  for (int level = 0; level < power_levels; ++level) {
+    const PowerPlace place = power_place(power_level_alpha(level));
+    EXPECT_FLOAT_EQ(static_cast<float>(place.wider) + place.weight, static_cast<float>(level + 1));
+  }
+  EXPECT_EQ(power_place(0).wider, 0);
+  EXPECT_EQ(power_place(0).weight, 0);
+  EXPECT_FLOAT_EQ(power_lobe_exponent(power_lobe_alpha(100)), 100);
+}
+
+/// int w(n.l) L cos over the hemisphere.
+template <class Weight>
+double irradiance(const Sky& sky, const vec3& n, const Weight& weight) {
+  const Frame frame = frame_around(n);
+  double sum = 0;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const vec3 l = sample_cosine(gridPoint(i));
+    sum += static_cast<double>(weight(l.z)) * sky.radiance(from_local(frame, l));
+  }
+  return M_PI * sum / (kSide * kSide);
+}
+
+/// What a coat and its base reflect, in the first channel.
+double coatedLight(const MaterialModel& m, const Sky& sky, const vec3& n, const vec3& v) {
+  const double whole = irradiance(sky, n, [](float) { return 1; }),
+               grazing = irradiance(sky, n, schlick_weight);
+  const vec3 base = coated_prefiltered_base(m, dot(n, v), vec3(static_cast<float>(whole)),
+                                            vec3(static_cast<float>(grazing)));
+  const PrefilteredLobe mirror = coated_prefiltered_lobe(m, n, v);
+  return static_cast<double>(base.x) +
+         static_cast<double>(mirror.reflectance.x) * sky.radiance(mirror.towards);
+}
+
+double exactCoatedLight(const MaterialModel& m, const Sky& sky, const vec3& n, const vec3& v) {
+  const vec3 local = to_local(frame_around(n), v);
+  return irradiance(sky, n,
+                    [&](float cosine) {
+                      const vec3 l(std::sqrt(std::max(0.f, 1 - cosine * cosine)), 0, cosine);
+                      return cosine > 0 ? model_response(m, local, l).x / cosine : 0.f;
+                    }) +
+         static_cast<double>(coated_mirror(m, local.z).x) * sky.radiance(2 * dot(n, v) * n - v);
+}
+
+TEST(PrefilteredModels, CoatsShowMirrorAndBase) {
+  for (const Sky& sky : kSkies)
+    for (const uint options : {0u, model_option_blend, model_option_physical})
+      for (const float eta : {1.f, 1.3f, 1.5f, 2.f, 5.f, 200.f}) {
+        const MaterialModel m = coatedModel(0.5f, eta, options);
+        Views views{0, 90};
+        RelativeError error;
+        for (int i = 0; i < kViews; ++i) {
+          const auto [n, v] = views.next();
+          error.add(coatedLight(m, sky, n, v), exactCoatedLight(m, sky, n, v));
+        }
+        RecordProperty(sky.name + " " + std::to_string(options) + " eta " + std::to_string(eta),
+                       std::to_string(error.value()));
+        EXPECT_LT(error.value(), options == model_option_physical ? 0.01 : 1e-5)
+            << sky.name << options << ' ' << eta;
+      }
+}
+
+/// What reflects of uniform light.
+double coatedFurnace(float kd, uint options, double cosine) {
+  const MaterialModel m = coatedModel(kd, 1.5f, options);
+  const vec3 base = coated_prefiltered_base(m, static_cast<float>(cosine), vec3(static_cast<float>(M_PI)),
+                                            vec3(static_cast<float>(M_PI) / 21));
+  return static_cast<double>((base + coated_mirror(m, static_cast<float>(cosine))).x);
+}
+
+TEST(PrefilteredModels, SumsOfCoatAndBaseGainEnergyAndPhysicalOnesKeepIt) {
+  EXPECT_NEAR(coatedFurnace(1, 0, 1), 1.04, 1e-4);
+  EXPECT_NEAR(coatedFurnace(1, 0, 0.2), 1.34, 0.01);
+  for (const double cosine : {1., 0.5, 0.2, 0.05}) {
+    EXPECT_NEAR(coatedFurnace(1, model_option_blend, cosine), 1, 1e-6);
+    EXPECT_NEAR(coatedFurnace(1, model_option_physical, cosine), 1, 1e-4);
+    EXPECT_LT(coatedFurnace(0.5f, model_option_physical, cosine), 1);
+    // The base alone, over what a coat leaves of it.
+    const double mirror = static_cast<double>(fresnel(static_cast<float>(cosine), 1.5f, 0.f));
+    EXPECT_NEAR((coatedFurnace(0.5f, model_option_blend, cosine) - mirror) /
+                    (coatedFurnace(0.5f, model_option_physical, cosine) - mirror),
+                1.74, 0.01);
+  }
+}
+
+}  // namespace
+}  // namespace limn::glsl
