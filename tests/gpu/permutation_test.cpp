@@ -41,7 +41,8 @@ class PermutationTest : public OncePerRenderer<RenderTest> {
     Uses all;
     for (const Parameter& parameter : registry().find(name).info->parameters) {
       if (parameter.type != ParameterType::integer || std::string_view(parameter.unit) == "MiB") continue;
-      for (const double end : {parameter.range.low, std::min(parameter.range.high, kLargestNumber)})
+      for (const double end :
+           {parameter.range.low, std::clamp(kLargestNumber, parameter.range.low, parameter.range.high)})
         all.emplace_back(quick(name)).parameters.set(parameter.name, std::to_string(static_cast<int>(end)));
     }
     return all;
@@ -56,7 +57,8 @@ class PermutationTest : public OncePerRenderer<RenderTest> {
     std::vector<std::string> scenes;
     if (answers(Term::visibility) || answers(Term::indirect))
       scenes = {"cornell_box", "lights", "stained_light", "glossy_sphere", "foliage_card"};
-    if (answers(Term::surface)) scenes.insert(scenes.end(), {"torus_metal", "disk_and_sphere"});
+    if (answers(Term::surface))
+      scenes.insert(scenes.end(), {"torus_metal", "disk_and_sphere", "teapot_groove"});
     if (answers(Term::environment)) scenes.emplace_back("balls_sky");
     return scenes;
   }
