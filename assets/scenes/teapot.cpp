@@ -138,7 +138,7 @@ Scene makeTeapotGroove() {
   Scene scene;
   scene.add("floor", backdrop(3, 2, 1.6f, 2, 1.2f), scene.addMaterial(lambert("floor", {0.6f, 0.6f, 0.62f})));
   Mesh pot = transformed(teapot(20), scaling(glm::vec3(0.1f)));
-  brushAlongCircles(pot);  // across the grooves, which run from the bottom to the lid
+  computeTangents(pot);  // around body and limbs: the grooves run along them
   const int grooves =
       scene.addMeasured("grooves", brdf::GrooveBrdf(brdf::Groove{}).table(kGrooveTexels), {0.3f, 0.1f, 0.3f});
   scene.materials[static_cast<std::size_t>(grooves)].doubleSided = true;  // the lid leaves a gap
