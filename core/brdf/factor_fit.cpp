@@ -87,7 +87,7 @@ FactoredBrdf bakedTables(const FactoredBrdf& fit, int texels, bool warped, Table
   const bool fresnel = fit.factorisation == Factorisation::dfg;
   const auto row = [&](double place, double which) {
     return dvec3(
-        glsl::factored_lookup(logs, glm::vec2(static_cast<float>(place), static_cast<float>(which))));
+        glsl::factored_lookup(logs, glm::vec2(static_cast<float>(place), static_cast<float>(which)), 0));
   };
   FactoredBrdf result;
   result.warped = warped;

@@ -100,22 +100,22 @@ dvec3 FactoredBrdf::evaluate(const dvec3& l, const dvec3& v) const {
   vec3 product(0);
   switch (factorisation) {
     case Factorisation::tables:
-      product = glsl::factored_response(tables[0], tables[1], angles, warped);
+      product = glsl::factored_response(tables[0], tables[1], 0, angles, warped);
       break;
     case Factorisation::dfg:
-      product = glsl::factored_dfg_response(tables[0], angles);
+      product = glsl::factored_dfg_response(tables[0], 0, angles);
       break;
     case Factorisation::pqp:
-      product = glsl::factored_pqp_response(tables[0], angles);
+      product = glsl::factored_pqp_response(tables[0], 0, angles);
       break;
     case Factorisation::pqp_disc:
-      product = glsl::factored_pqp_disc_response(tables[0], view, light, warped);
+      product = glsl::factored_pqp_disc_response(tables[0], 0, view, light, warped);
       break;
     case Factorisation::svd:
-      product = glsl::factored_svd_response(tables[0], tables[1], view, light, tables[0].depth);
+      product = glsl::factored_svd_response(tables[0], tables[1], 0, tables[0].depth, view, light);
       break;
     case Factorisation::trilinear:
-      product = glsl::factored_volume_response(tables[0], view, light);
+      product = glsl::factored_volume_response(tables[0], 0, tables[0].depth, view, light);
       break;
   }
   return scale * dvec3(product) + floor * l.z;
@@ -206,31 +206,15 @@ Neighbours neighbours(float coordinate, int size) {
   return {std::clamp(first, 0, size - 1), std::clamp(first + 1, 0, size - 1), u - low};
 }
 
-vec3 filtered(const brdf::FactorTable& table, const Neighbours& x, const Neighbours& y, int z) {
-  const vec3 low = mix(table.at(x.low, y.low, z), table.at(x.high, y.low, z), x.weight);
-  const vec3 high = mix(table.at(x.low, y.high, z), table.at(x.high, y.high, z), x.weight);
-  return mix(low, high, y.weight);
-}
-
 }  // namespace
 
-vec3 factored_lookup(const brdf::FactorTable& table, vec2 place) {
-  return factored_lookup_layer(table, place, 0);
-}
-
-vec3 factored_lookup_layer(const brdf::FactorTable& table, vec2 place, int layer) {
+vec3 factored_lookup(const brdf::FactorTable& table, vec2 place, int layer) {
   const vec2 uv =
       factored_coordinates(place, vec2(static_cast<float>(table.width), static_cast<float>(table.height)));
-  return filtered(table, neighbours(uv.x, table.width), neighbours(uv.y, table.height), layer);
-}
-
-vec3 factored_lookup_volume(const brdf::FactorTable& table, vec3 place) {
-  const vec3 size(static_cast<float>(table.width), static_cast<float>(table.height),
-                  static_cast<float>(table.depth));
-  const vec3 uvw = factored_coordinates(place, size);
-  const Neighbours x = neighbours(uvw.x, table.width), y = neighbours(uvw.y, table.height),
-                   z = neighbours(uvw.z, table.depth);
-  return mix(filtered(table, x, y, z.low), filtered(table, x, y, z.high), z.weight);
+  const Neighbours x = neighbours(uv.x, table.width), y = neighbours(uv.y, table.height);
+  const vec3 low = mix(table.at(x.low, y.low, layer), table.at(x.high, y.low, layer), x.weight);
+  const vec3 high = mix(table.at(x.low, y.high, layer), table.at(x.high, y.high, layer), x.weight);
+  return mix(low, high, y.weight);
 }
 
 }  // namespace limn::glsl

@@ -12,24 +12,19 @@
 #define LIMN_FACTORED_GLSL
 #include "glsl/numeric/language.glsl"
 
-// A table and its look-up: a texture in GLSL, core/brdf/factor_tables.h in C++.
+// A table of layers: an array texture in GLSL, core/brdf/factor_tables.h in C++. Those of several BRDFs lie behind each other;
+// `first` is the first layer of one.
 #ifdef __cplusplus
 #include "core/base/export.h"
 namespace limn::brdf {
 struct FactorTable;
 }
 namespace limn::glsl {
-LIMN_API glm::vec3 factored_lookup(const brdf::FactorTable& table, glm::vec2 place);
-LIMN_API glm::vec3 factored_lookup_layer(const brdf::FactorTable& table, glm::vec2 place, int layer);
-LIMN_API glm::vec3 factored_lookup_volume(const brdf::FactorTable& table, glm::vec3 place);
+LIMN_API glm::vec3 factored_lookup(const brdf::FactorTable& table, glm::vec2 place, int layer);
 }  // namespace limn::glsl
 #define FACTORED_TABLE const brdf::FactorTable&
-#define FACTORED_LAYERS const brdf::FactorTable&
-#define FACTORED_VOLUME const brdf::FactorTable&
 #else
-#define FACTORED_TABLE sampler2D
-#define FACTORED_LAYERS sampler2DArray
-#define FACTORED_VOLUME sampler3D
+#define FACTORED_TABLE sampler2DArray
 #endif
 
 LIMN_BEGIN
@@ -38,19 +33,10 @@ LIMN_BEGIN
 LIMN_FN vec2 factored_coordinates(vec2 place, vec2 size) {
   return (place * (size - vec2(1.0f)) + vec2(0.5f)) / size;
 }
-LIMN_FN vec3 factored_coordinates(vec3 place, vec3 size) {
-  return (place * (size - vec3(1.0f)) + vec3(0.5f)) / size;
-}
 
 #ifndef __cplusplus
-vec3 factored_lookup(sampler2D table, vec2 place) {
-  return textureLod(table, factored_coordinates(place, vec2(textureSize(table, 0))), 0.0).rgb;
-}
-vec3 factored_lookup_layer(sampler2DArray table, vec2 place, int layer) {
+vec3 factored_lookup(sampler2DArray table, vec2 place, int layer) {
   return textureLod(table, vec3(factored_coordinates(place, vec2(textureSize(table, 0).xy)), float(layer)), 0.0).rgb;
-}
-vec3 factored_lookup_volume(sampler3D table, vec3 place) {
-  return textureLod(table, factored_coordinates(place, vec3(textureSize(table, 0))), 0.0).rgb;
 }
 #endif
 
@@ -90,8 +76,8 @@ LIMN_FN vec2 factored_place_2(FactoredAngles a, bool warped) {
 }
 
 // Two tables. What a fit left as a diffuse floor, the caller adds.
-LIMN_FN vec3 factored_response(FACTORED_TABLE t1, FACTORED_TABLE t2, FactoredAngles a, bool warped) {
-  return factored_lookup(t1, factored_place_1(a, warped)) * factored_lookup(t2, factored_place_2(a, warped));
+LIMN_FN vec3 factored_response(FACTORED_TABLE t1, FACTORED_TABLE t2, int layer, FactoredAngles a, bool warped) {
+  return factored_lookup(t1, factored_place_1(a, warped), layer) * factored_lookup(t2, factored_place_2(a, warped), layer);
 }
 
 // Places in the rows of one-dimensional factors: the distribution's over n.h, Fresnel's over h.l, masking's over n.l
@@ -100,20 +86,20 @@ LIMN_FN float factored_half_place(FactoredAngles a) { return 1.0f - a.h_from_n; 
 LIMN_FN float factored_cosine_place(float cosine) { return sqrt(cosine); }
 
 // log f = D(n.h) + F(h.l) + G(n.l) + G(n.v): the rows of `logs` are D, F and G, natural logarithms of f in 1/sr.
-LIMN_FN vec3 factored_dfg_response(FACTORED_TABLE logs, FactoredAngles a) {
-  vec3 sum = factored_lookup(logs, vec2(factored_half_place(a), 0.0f)) +
-             factored_lookup(logs, vec2(factored_cosine_place(a.l_dot_h), 0.5f)) +
-             factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_l), 1.0f)) +
-             factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_v), 1.0f));
+LIMN_FN vec3 factored_dfg_response(FACTORED_TABLE logs, int layer, FactoredAngles a) {
+  vec3 sum = factored_lookup(logs, vec2(factored_half_place(a), 0.0f), layer) +
+             factored_lookup(logs, vec2(factored_cosine_place(a.l_dot_h), 0.5f), layer) +
+             factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_l), 1.0f), layer) +
+             factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_v), 1.0f), layer);
   return exp(sum) * a.n_dot_l;
 }
 
 // Homomorphic factorisation (McCool, Ang and Ahmad 2001) of isotropic BRDFs, log f = p(n.l) + q(n.h) + p(n.v): the
 // rows of `logs` are p and q.
-LIMN_FN vec3 factored_pqp_response(FACTORED_TABLE logs, FactoredAngles a) {
-  vec3 sum = factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_l), 0.0f)) +
-             factored_lookup(logs, vec2(factored_half_place(a), 1.0f)) +
-             factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_v), 0.0f));
+LIMN_FN vec3 factored_pqp_response(FACTORED_TABLE logs, int layer, FactoredAngles a) {
+  vec3 sum = factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_l), 0.0f), layer) +
+             factored_lookup(logs, vec2(factored_half_place(a), 1.0f), layer) +
+             factored_lookup(logs, vec2(factored_cosine_place(a.n_dot_v), 0.0f), layer);
   return exp(sum) * a.n_dot_l;
 }
 
@@ -126,12 +112,12 @@ LIMN_FN vec2 factored_disc_place(vec3 direction, bool warped) {
   return clamp(0.5f * disc + vec2(0.5f), vec2(0.0f), vec2(1.0f));
 }
 
-// The same for BRDFs that turn with the tangent: p and q over directions. The layers of `logs` are p and q; local frame.
-LIMN_FN vec3 factored_pqp_disc_response(FACTORED_LAYERS logs, vec3 v, vec3 l, bool warped) {
+// The same for BRDFs that turn with the tangent: p and q over directions. Two layers of `logs`, p and q; local frame.
+LIMN_FN vec3 factored_pqp_disc_response(FACTORED_TABLE logs, int first, vec3 v, vec3 l, bool warped) {
   vec3 h = factored_half(vec3(0.0f, 0.0f, 1.0f), v, l);
-  vec3 sum = factored_lookup_layer(logs, factored_disc_place(l, false), 0) +
-             factored_lookup_layer(logs, factored_disc_place(h, warped), 1) +
-             factored_lookup_layer(logs, factored_disc_place(v, false), 0);
+  vec3 sum = factored_lookup(logs, factored_disc_place(l, false), first) +
+             factored_lookup(logs, factored_disc_place(h, warped), first + 1) +
+             factored_lookup(logs, factored_disc_place(v, false), first);
   return exp(sum) * max(l.z, 0.0f);
 }
 
@@ -146,14 +132,14 @@ LIMN_FN vec3 factored_difference(vec3 h, vec3 l) {
 }
 
 // Half vector and difference (Kautz and McCool 1999, Interactive Rendering with Arbitrary BRDFs using Separable
-// Approximations): f n.l as the sum of `terms` products of a layer of `halves` and a layer of `differences`.
-LIMN_FN vec3 factored_svd_response(FACTORED_LAYERS halves, FACTORED_LAYERS differences, vec3 v, vec3 l, int terms) {
+// Approximations): f n.l as the sum of `terms` products of a layer of `halves` and the same of `differences`.
+LIMN_FN vec3 factored_svd_response(FACTORED_TABLE halves, FACTORED_TABLE differences, int first, int terms, vec3 v, vec3 l) {
   vec3 h = factored_half(vec3(0.0f, 0.0f, 1.0f), v, l);
   vec2 half_place = factored_disc_place(h, true);
   vec2 difference_place = factored_disc_place(factored_difference(h, l), false);
   vec3 sum = vec3(0.0f);
-  for (int k = 0; k < terms; ++k) {
-    sum += factored_lookup_layer(halves, half_place, k) * factored_lookup_layer(differences, difference_place, k);
+  for (int k = first; k < first + terms; ++k) {
+    sum += factored_lookup(halves, half_place, k) * factored_lookup(differences, difference_place, k);
   }
   return max(sum, vec3(0.0f)) * max(l.z, 0.0f);
 }
@@ -170,8 +156,15 @@ LIMN_FN vec3 factored_volume_place(vec3 v, vec3 l) {
   float polar = 2.0f * inverse_pi * atan(across, max(d.z, 0.0f));
   return vec3(1.0f - sqrt(min(length(n - h) * 0.70710678f, 1.0f)), min(polar, 1.0f), min(azimuth, 1.0f));
 }
-LIMN_FN vec3 factored_volume_response(FACTORED_VOLUME table, vec3 v, vec3 l) {
-  return factored_lookup_volume(table, factored_volume_place(v, l)) * max(l.z, 0.0f);
+
+// The table's slices over the azimuth are layers, between which this interpolates: several volumes share an array.
+LIMN_FN vec3 factored_volume_response(FACTORED_TABLE table, int first, int slices, vec3 v, vec3 l) {
+  vec3 place = factored_volume_place(v, l);
+  float along = place.z * float(slices - 1);
+  int low = min(int(along), slices - 2);
+  return mix(factored_lookup(table, vec2(place), first + low), factored_lookup(table, vec2(place), first + low + 1),
+             along - float(low)) *
+         max(l.z, 0.0f);
 }
 
 LIMN_END
