@@ -1,22 +1,56 @@
-// Torrance-Sparrow as T1(h.l, n.h) T2(n.l, n.v) (glsl/materials/factored.glsl); other models exactly. FACTORED_WARPED: what
-// the tables lie over.
+// Material models as products of tables (glsl/materials/factored.glsl), plus a floor. FACTORED_FIT: which product, or that of no
+// table; FACTORED_COMPLETE 0: some materials are evaluated exactly. FACTORED_WARPED: what tables and discs lie over.
+// FACTORED_LAYERS: of a material in each table, of svd the terms, of a volume the slices.
 #ifndef LIMN_FACTORED_RESPONSE_GLSL
 #define LIMN_FACTORED_RESPONSE_GLSL
 #include "glsl/materials/factored.glsl"
 #include "glsl/materials/model.glsl"
 
+#define FACTORED_EXACT 0
+#define FACTORED_TABLES 1
+#define FACTORED_DFG 2
+#define FACTORED_PQP 3
+#define FACTORED_PQP_DISC 4
+#define FACTORED_SVD 5
+#define FACTORED_TRILINEAR 6
+
+#if FACTORED_FIT == FACTORED_EXACT
+vec3 material_response(MaterialModel m, vec3 v, vec3 l) { return model_response(m, v, l); }
+#else
 uniform sampler2DArray factored_1;
+#if FACTORED_FIT == FACTORED_TABLES || FACTORED_FIT == FACTORED_SVD
 uniform sampler2DArray factored_2;
-uniform sampler2D factored_layers;  // of each material: rgb: factor; a: layer of its tables
+#endif
+uniform sampler2D factored_materials;  // of each, row 0: rgb: scale; a: its tables, -1: none; row 1: rgb: floor
+
+vec3 factored_product(int first, vec3 v, vec3 l) {
+#if FACTORED_FIT == FACTORED_PQP_DISC
+  return factored_pqp_disc_response(factored_1, first, v, l, FACTORED_WARPED);
+#elif FACTORED_FIT == FACTORED_SVD
+  return factored_svd_response(factored_1, factored_2, first, FACTORED_LAYERS, v, l);
+#elif FACTORED_FIT == FACTORED_TRILINEAR
+  return factored_volume_response(factored_1, first, FACTORED_LAYERS, v, l);
+#else
+  FactoredAngles a = factored_angles(vec3(0.0, 0.0, 1.0), v, l);
+#if FACTORED_FIT == FACTORED_TABLES
+  return factored_response(factored_1, factored_2, first, a, FACTORED_WARPED);
+#elif FACTORED_FIT == FACTORED_DFG
+  return factored_dfg_response(factored_1, first, a);
+#else
+  return factored_pqp_response(factored_1, first, a);
+#endif
+#endif
+}
 
 vec3 material_response(MaterialModel m, vec3 v, vec3 l) {
-  if (m.kind != model_torrance_sparrow) return model_response(m, v, l);
+  vec4 scale = texelFetch(factored_materials, ivec2(m.material, 0), 0);
+#if !FACTORED_COMPLETE
+  if (scale.a < 0.0) return model_response(m, v, l);
+#endif
   if (!(l.z > 0.0)) return vec3(0.0);
-  FactoredAngles a = factored_angles(vec3(0.0, 0.0, 1.0), v, l);
-  vec4 layer = texelFetch(factored_layers, ivec2(m.material, 0), 0);
-  return m.ks * layer.rgb * factored_lookup_layer(factored_1, factored_place_1(a, FACTORED_WARPED), int(layer.a)) *
-             factored_lookup_layer(factored_2, factored_place_2(a, FACTORED_WARPED), int(layer.a)) +
-         m.kd * (inverse_pi * l.z);
+  vec3 diffuse = texelFetch(factored_materials, ivec2(m.material, 1), 0).rgb;
+  return scale.rgb * factored_product(int(scale.a) * FACTORED_LAYERS, v, l) + diffuse * l.z;
 }
+#endif
 
 #endif  // LIMN_FACTORED_RESPONSE_GLSL

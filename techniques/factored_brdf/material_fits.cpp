@@ -1,0 +1,104 @@
+#include "techniques/factored_brdf/material_fits.h"
+
+#include <algorithm>
+#include <numbers>
+#include <optional>
+
+#include "core/base/error.h"
+#include "glsl/materials/model.glsl"
+
+namespace limn::factored {
+namespace {
+
+using brdf::Factorisation;
+using glm::dvec3;
+using glm::vec3;
+
+brdf::TorranceSparrow described(const glsl::MaterialModel& m) {
+  using namespace glsl;
+  return {.eta = dvec3(m.eta),
+          .k = dvec3(m.k),
+          .roughness = static_cast<double>(m.roughness.x),
+          .distribution = (m.options & model_option_gaussian) != 0 ? brdf::NormalDistribution::gaussian
+                                                                   : brdf::NormalDistribution::beckmann,
+          .masking =
+              (m.options & model_option_product) != 0 ? brdf::Masking::product : brdf::Masking::correlated};
+}
+
+/// Returns f of a material with a model: what passes evaluate, without the cosine.
+brdf::Brdf exactBrdf(const scene::Material& material) {
+  return [m = *material.model](const dvec3& l, const dvec3& v) {
+    return dvec3(glsl::model_response(m, vec3(v), vec3(l))) / l.z;
+  };
+}
+
+/// Says whether two models have the same tables. Analytic ones hold neither kd nor ks.
+bool alike(const glsl::MaterialModel& a, const glsl::MaterialModel& b, bool analytic) {
+  if (a.kind != b.kind || a.eta != b.eta || a.k != b.k || a.options != b.options) return false;
+  if (analytic) return a.roughness.x == b.roughness.x;
+  return a.roughness == b.roughness && a.kd == b.kd && a.ks == b.ks && a.exponent == b.exponent;
+}
+
+/// Says why a choice cannot hold a model; empty where it can.
+std::string reasonAgainst(const glsl::MaterialModel& model, const FitChoice& choice) {
+  if (choice.analytic)
+    return model.kind == glsl::model_torrance_sparrow ? "" : "analytic tables are Torrance-Sparrow's alone";
+  const Factorisation kind = choice.fit.factorisation;
+  if (glsl::model_anisotropic(model) && kind != Factorisation::pqp_disc && kind != Factorisation::svd)
+    return "it turns with the tangent, which pqp_disc and svd alone can follow";
+  return "";
+}
+
+/// Returns the tables of a material; nothing where there is nothing to fit.
+std::optional<brdf::FactoredBrdf> fitted(const scene::Material& material, const FitChoice& choice) {
+  if (choice.analytic)
+    return brdf::torranceSparrowTables(described(*material.model), choice.fit.texels, choice.fit.texels,
+                                       choice.fit.warped, choice.fit.format);
+  try {
+    return brdf::fitBrdf(exactBrdf(material), choice.fit);
+  } catch (const UsageError&) {
+    throw;
+  } catch (const Error&) {
+    return std::nullopt;  // black
+  }
+}
+
+}  // namespace
+
+bool MaterialFits::complete(const scene::Scene& scene) const {
+  for (size_t i = 0; i < rows.size(); ++i)
+    if (scene.materials[i].model && rows[i].fit < 0) return false;
+  return true;
+}
+
+MaterialFits fitMaterials(const scene::Scene& scene, const FitChoice& choice) {
+  MaterialFits result;
+  std::vector<glsl::MaterialModel> models;  // of each fit
+  for (const scene::Material& material : scene.materials) {
+    MaterialFits::Row& row = result.rows.emplace_back();
+    if (!material.model) continue;
+    const glsl::MaterialModel& model = *material.model;
+    if (const std::string reason = reasonAgainst(model, choice); !reason.empty()) {
+      result.exact.push_back({material.name, reason});
+      continue;
+    }
+    auto found =
+        std::ranges::find_if(models, [&](const auto& m) { return alike(m, model, choice.analytic); });
+    if (found == models.end()) {
+      std::optional<brdf::FactoredBrdf> fit = fitted(material, choice);
+      if (!fit) {
+        result.exact.push_back({material.name, "it reflects nothing that could be fitted"});
+        continue;
+      }
+      result.fits.push_back(std::move(*fit));
+      found = models.insert(models.end(), model);
+    }
+    row.fit = static_cast<int>(found - models.begin());
+    const brdf::FactoredBrdf& fit = result.fits[static_cast<size_t>(row.fit)];
+    row.scale = vec3(fit.scale) * (choice.analytic ? model.ks : vec3(1));
+    row.floor = choice.analytic ? model.kd * std::numbers::inv_pi_v<float> : vec3(fit.floor);
+  }
+  return result;
+}
+
+}  // namespace limn::factored

@@ -1,0 +1,44 @@
+// Declares the tables that the material models of a scene are looked up in.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/brdf/factor_fit.h"
+#include "core/scene/scene.h"
+
+namespace limn::factored {
+
+/// Says how models become tables.
+struct FitChoice {
+  /// Torrance-Sparrow alone, by its formula; `fit` names size, coordinates and format then.
+  bool analytic = true;
+  brdf::FitSettings fit;
+};
+
+/// Holds the tables of a scene's materials.
+struct MaterialFits {
+  /// Is what a material looks up: f n.l is `scale` times the product of the tables, plus `floor` n.l.
+  struct Row {
+    int fit = -1;  ///< index in `fits`; -1: the model is evaluated exactly
+    glm::vec3 scale{0}, floor{0};
+  };
+  /// Is a material that tables cannot hold.
+  struct Exact {
+    std::string material, reason;
+  };
+  std::vector<brdf::FactoredBrdf> fits;  ///< of all materials with a model, equal ones once
+  std::vector<Row> rows;                 ///< of each material of the scene
+  std::vector<Exact> exact;
+
+  /// Returns whether no material with a model is evaluated exactly.
+  bool complete(const scene::Scene& scene) const;
+};
+
+/// Returns the tables. A numerical fit takes about a second for each different material; equal ones share it.
+/// Materials with a model have a row without a fit where the choice cannot hold them: `analytic` all but
+/// Torrance-Sparrow, dfg, pqp, tables and trilinear those that turn with the tangent, and every fit those
+/// that are black.
+MaterialFits fitMaterials(const scene::Scene& scene, const FitChoice& choice);
+
+}  // namespace limn::factored
