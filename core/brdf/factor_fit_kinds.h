@@ -14,7 +14,8 @@ FactoredBrdf fitLogarithms(const std::vector<BrdfSample>& samples, const FitSett
 
 /// The best sum of `settings.terms` products of a function of the half vector and one of the difference, on
 /// discs of `settings.texels` squared. Pairs whose l or v lies below the horizon have no value: they are
-/// taken from the sum itself, over and over.
+/// taken from the sum itself, over and over. Texels that no pair above the horizon has get the mean of their
+/// neighbours.
 FactoredBrdf fitSvd(const Brdf& brdf, const FitSettings& settings, const glm::dvec3& floor);
 
 /// A table over half vector and difference. Texels whose l or v lies below the horizon get the mean of their

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/brdf/factor_fit_kinds.h"
+#include "core/brdf/factor_fit_spread.h"
 
 namespace limn::brdf {
 namespace {
@@ -32,7 +33,8 @@ std::vector<dvec3> discDirections(int side, bool warped) {
   return directions;
 }
 
-/// A matrix of half vectors (rows) by differences (columns), of which some entries are unknown.
+/// A matrix of half vectors (rows) by differences (columns), of which some entries are unknown. Rows and
+/// columns without any known entry are 0, and so are their factors: they have no part in the others'.
 class Matrix {
  public:
   explicit Matrix(std::size_t side) : side_(side), values_(side * side, 0), known_(side * side, 0) {}
@@ -42,17 +44,33 @@ class Matrix {
     known_[row * side_ + column] = 1;
   }
 
+  /// Says of each row, or column, whether any of its entries is known.
+  std::vector<char> knownRows() const {
+    std::vector<char> rows(side_, 0);
+    for (std::size_t i = 0; i < known_.size(); ++i)
+      if (known_[i]) rows[i / side_] = 1;
+    return rows;
+  }
+  std::vector<char> knownColumns() const {
+    std::vector<char> columns(side_, 0);
+    for (std::size_t i = 0; i < known_.size(); ++i)
+      if (known_[i]) columns[i % side_] = 1;
+    return columns;
+  }
+
   /// Factors of the nearest matrix of rank `terms`, term after term: one round of subspace iteration, then
   /// unknown entries are taken from the product, until both stand still. Returns the columns' factors, and
   /// the rows' in `rows`.
   std::vector<double> factors(int terms, std::vector<double>& rows) {
     const auto rank = static_cast<std::size_t>(terms);
-    std::vector<double> columns(rank * side_);
+    const std::vector<char> known = knownColumns();
+    std::vector<double> columns(rank * side_, 0);
     for (std::size_t k = 0; k < rank;
          ++k)  // independent vectors of which none is orthogonal to all of the matrix
       for (std::size_t i = 0; i < side_; ++i)
-        columns[k * side_ + i] =
-            1 + std::cos(static_cast<double>(k * (2 * i + 1)) * 1.7 / static_cast<double>(side_));
+        if (known[i])
+          columns[k * side_ + i] =
+              1 + std::cos(static_cast<double>(k * (2 * i + 1)) * 1.7 / static_cast<double>(side_));
     rows.assign(rank * side_, 0);
     fillUnknown();
     for (int round = 0; round < kRounds; ++round) {
@@ -71,6 +89,7 @@ class Matrix {
  private:
   /// Unknown entries start as the mean of the known ones of their row.
   void fillUnknown() {
+    const std::vector<char> columns = knownColumns();
     for (std::size_t i = 0; i < side_; ++i) {
       double sum = 0;
       std::size_t count = 0;
@@ -80,7 +99,8 @@ class Matrix {
           ++count;
         }
       for (std::size_t j = i * side_; j < (i + 1) * side_; ++j)
-        if (!known_[j]) values_[j] = count > 0 ? sum / static_cast<double>(count) : 0;
+        if (!known_[j])
+          values_[j] = count > 0 && columns[j - i * side_] ? sum / static_cast<double>(count) : 0;
     }
   }
 
@@ -152,6 +172,13 @@ double store(FactorTable& table, int channel, const std::vector<double>& factors
   return largest;
 }
 
+/// Leads all layers on to the texels of which nothing is known.
+void spreadLayers(FactorTable& table, const std::vector<char>& known) {
+  std::vector<char> all;
+  for (int layer = 0; layer < table.depth; ++layer) all.insert(all.end(), known.begin(), known.end());
+  spread(table, all, 2);
+}
+
 }  // namespace
 
 FactoredBrdf fitSvd(const Brdf& brdf, const FitSettings& settings, const dvec3& floor) {
@@ -168,9 +195,9 @@ FactoredBrdf fitSvd(const Brdf& brdf, const FitSettings& settings, const dvec3& 
       directionsOf(halves[i], differences[j], l, v);
       if (!(l.z > 1e-3 && v.z > 1e-3)) continue;
       const dvec3 f = brdf(l, v);
+      if (!finite(f)) continue;
       for (int c = 0; c < 3; ++c)
-        if (std::isfinite(f[c]))
-          matrices[static_cast<std::size_t>(c)].set(i, j, std::max(f[c], 0.0) - floor[c]);
+        matrices[static_cast<std::size_t>(c)].set(i, j, std::max(f[c], 0.0) - floor[c]);
     }
   FactoredBrdf fit;
   fit.factorisation = Factorisation::svd;
@@ -186,6 +213,8 @@ FactoredBrdf fitSvd(const Brdf& brdf, const FitSettings& settings, const dvec3& 
     const std::vector<double> columns = matrices[static_cast<std::size_t>(c)].factors(settings.terms, rows);
     fit.scale[c] = store(fit.tables[0], c, rows) * store(fit.tables[1], c, columns);
   }
+  spreadLayers(fit.tables[0], matrices[0].knownRows());
+  spreadLayers(fit.tables[1], matrices[0].knownColumns());
   for (FactorTable& table : fit.tables) table.round();
   return fit;
 }

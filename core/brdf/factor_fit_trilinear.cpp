@@ -1,54 +1,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "core/brdf/factor_fit_kinds.h"
+#include "core/brdf/factor_fit_spread.h"
 
 namespace limn::brdf {
-namespace {
 
 using glm::dvec3;
-using glm::ivec3;
 using glm::vec3;
-
-/// Gives each texel without a value the mean of its neighbours that have one, layer by layer outwards.
-void fillUnknown(FactorTable& table, std::vector<char>& known) {
-  const ivec3 size(table.width, table.height, table.depth);
-  const auto index = [&](const ivec3& p) {
-    return static_cast<std::size_t>((p.z * size.y + p.y) * size.x + p.x);
-  };
-  constexpr std::array<ivec3, 6> kNeighbours{ivec3(-1, 0, 0), ivec3(1, 0, 0),  ivec3(0, -1, 0),
-                                             ivec3(0, 1, 0),  ivec3(0, 0, -1), ivec3(0, 0, 1)};
-  for (bool changed = true; changed;) {
-    changed = false;
-    std::vector<char> next = known;
-    for (int z = 0; z < size.z; ++z)
-      for (int y = 0; y < size.y; ++y)
-        for (int x = 0; x < size.x; ++x) {
-          const ivec3 p(x, y, z);
-          if (known[index(p)]) continue;
-          vec3 sum(0);
-          int count = 0;
-          for (const ivec3& step : kNeighbours) {
-            const ivec3 q = p + step;
-            if (glm::any(glm::lessThan(q, ivec3(0))) || glm::any(glm::greaterThanEqual(q, size))) continue;
-            if (!known[index(q)]) continue;
-            sum += table.texels[index(q)];
-            ++count;
-          }
-          if (count == 0) continue;
-          table.texels[index(p)] = sum / static_cast<float>(count);
-          next[index(p)] = 1;
-          changed = true;
-        }
-    known = std::move(next);
-  }
-}
-
-}  // namespace
 
 FactoredBrdf fitTrilinear(const Brdf& brdf, const FitSettings& settings) {
   const int across = std::max(settings.texels / 2, 2);
@@ -73,7 +35,7 @@ FactoredBrdf fitTrilinear(const Brdf& brdf, const FitSettings& settings) {
         const vec3& texel = table.texels.back();
         largest = std::max(largest, static_cast<double>(std::max({texel.x, texel.y, texel.z})));
       }
-  fillUnknown(table, known);
+  spread(table, known, 3);
   FactoredBrdf fit;
   fit.factorisation = Factorisation::trilinear;
   fit.name = fmt::format("trilinear {} x {} x {}", table.width, table.height, table.depth);
