@@ -47,18 +47,21 @@ FactoredBrdf fitted(const Brdf& brdf, const std::vector<BrdfSample>& samples, co
   return fitLogarithms(samples, settings, floor);
 }
 
-/// Divides a fit by its largest albedo where that is above 1, and measures its error.
-FactoredBrdf completed(FactoredBrdf fit, const SpherePicture& picture) {
-  const auto response = [&](const dvec3& l, const dvec3& v) { return fit.evaluate(l, v); };
+/// Divides a fit by its largest albedo where that is above 1.
+FactoredBrdf bounded(FactoredBrdf fit) {
   const bool isotropic =
       fit.factorisation != Factorisation::pqp_disc && fit.factorisation != Factorisation::svd;
-  const double albedo = largestAlbedo(response, isotropic);
+  const double albedo =
+      largestAlbedo([&](const dvec3& l, const dvec3& v) { return fit.evaluate(l, v); }, isotropic);
   if (albedo > 1) {
     fit.scale /= albedo;
     fit.floor /= albedo;
   }
-  fit.error = picture.errorOf(response);
   return fit;
+}
+
+double errorOf(const SpherePicture& picture, const FactoredBrdf& fit) {
+  return picture.errorOf([&](const dvec3& l, const dvec3& v) { return fit.evaluate(l, v); });
 }
 
 }  // namespace
@@ -66,16 +69,18 @@ FactoredBrdf completed(FactoredBrdf fit, const SpherePicture& picture) {
 FactoredBrdf fitBrdf(const Brdf& brdf, const FitSettings& settings) {
   check(settings);
   const std::vector<BrdfSample> samples = sampleBrdf(brdf, settings.samples);
-  const SpherePicture picture([&](const dvec3& l, const dvec3& v) {
+  const Brdf exact = [&](const dvec3& l, const dvec3& v) {
     const dvec3 f = brdf(l, v);
     return finite(f) ? glm::max(f, dvec3(0)) : dvec3(0);
-  });
-  FactoredBrdf fit = completed(fitted(brdf, samples, settings, dvec3(0)), picture);
+  };
+  FactoredBrdf fit = bounded(fitted(brdf, samples, settings, dvec3(0)));
   const dvec3 floor = diffuseFloor(samples);
   if (settings.floor && settings.factorisation != Factorisation::trilinear && floor != dvec3(0)) {
-    FactoredBrdf withFloor = completed(fitted(brdf, samples, settings, floor), picture);
-    if (withFloor.error < fit.error) return withFloor;
+    const SpherePicture picture(exact);
+    FactoredBrdf withFloor = bounded(fitted(brdf, samples, settings, floor));
+    if (errorOf(picture, withFloor) < errorOf(picture, fit)) fit = std::move(withFloor);
   }
+  fit.error = errorOf(SpherePicture(exact, 128, PictureLights::heldOut), fit);
   return fit;
 }
 

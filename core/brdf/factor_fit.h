@@ -14,8 +14,8 @@ struct FitSettings {
       64;  ///< along each axis of a factor; of a trilinear table along n.h, half as many along the others
   int terms = 1;       ///< products that svd takes the sum of
   bool warped = true;  ///< of pqp_disc: the half vector's disc over the root of its radius; of tables as well
-  /// A diffuse part is taken out first and added to the product (a sum is no product), where the error is
-  /// then smaller. A trilinear table needs none.
+  /// A diffuse part is taken out first and added to the product (a sum is no product), where a
+  /// picture under other lights is then closer. A trilinear table needs none.
   bool floor = true;
   /// Gauss-Newton on the error of f n.l n.v over f + its mean, after the least squares of the logarithms
   /// (dfg, pqp and pqp_disc).
@@ -24,9 +24,11 @@ struct FitSettings {
   TableFormat format = TableFormat::half;
 };
 
-/// Returns the fit, with its error over a picture of 128 x 128 pixels. A fit whose largest directional albedo
-/// is above 1 is divided by it. Throws UsageError for settings out of range (less than 2 texels, no term),
-/// and Error where there is nothing to fit: no function, no finite value, or 0 everywhere.
+/// Returns the fit, with its error over a picture of 128 x 128 pixels under lights that nothing was fitted or
+/// chosen by (refinement looks at samples, the floor is kept by a picture under other lights). A fit whose
+/// largest directional albedo is above 1 is divided by it. Throws UsageError for settings out of range (less
+/// than 2 texels, no term), and Error where there is nothing to fit: no function, no finite value, or 0
+/// everywhere.
 LIMN_API FactoredBrdf fitBrdf(const Brdf& brdf, const FitSettings& settings);
 
 /// Returns a fit of kind dfg or pqp as two tables of `texels` x `texels`, with the same scale and floor.

@@ -12,8 +12,11 @@ namespace {
 using glm::dvec3;
 
 /// Towards the lights, with the viewer along +z and +y up.
-const std::array<dvec3, 5> kLights{dvec3(0.5, 0.6, 0.62), dvec3(-0.7, 0.3, 0.65), dvec3(0, -0.8, 0.6),
-                                   dvec3(0.9, -0.1, 0.1), dvec3(-0.5, 0.7, -0.5)};
+using Lights = std::array<dvec3, 5>;
+const Lights kChoosing{dvec3(0.5, 0.6, 0.62), dvec3(-0.7, 0.3, 0.65), dvec3(0, -0.8, 0.6),
+                       dvec3(0.9, -0.1, 0.1), dvec3(-0.5, 0.7, -0.5)};
+const Lights kHeldOut{dvec3(-0.3, 0.2, 0.93), dvec3(0.6, -0.5, 0.62), dvec3(-0.4, -0.8, 0.45),
+                      dvec3(-0.9, 0.4, 0.15), dvec3(0.7, 0.5, -0.5)};
 
 /// Rows are the tangent along the circle of latitude, the bitangent and the normal.
 glm::dmat3 localFrame(const dvec3& n) {
@@ -25,7 +28,7 @@ glm::dmat3 localFrame(const dvec3& n) {
 
 }  // namespace
 
-SpherePicture::SpherePicture(const Brdf& exact, int size) {
+SpherePicture::SpherePicture(const Brdf& exact, int size, PictureLights lights) {
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) {
       const double px = (2.0 * x + 1) / size - 1, py = (2.0 * y + 1) / size - 1;
@@ -33,7 +36,7 @@ SpherePicture::SpherePicture(const Brdf& exact, int size) {
       if (height2 <= 0) continue;
       const glm::dmat3 toLocal = localFrame({px, py, std::sqrt(height2)});
       Pixel pixel{toLocal * dvec3(0, 0, 1), {}, dvec3(0)};
-      for (const dvec3& light : kLights) {
+      for (const dvec3& light : lights == PictureLights::choosing ? kChoosing : kHeldOut) {
         const dvec3 l = toLocal * glm::normalize(light);
         if (!(l.z > 0)) continue;
         pixel.lights.push_back(l);

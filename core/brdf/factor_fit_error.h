@@ -9,13 +9,17 @@
 
 namespace limn::brdf {
 
+/// Says which lights a picture is taken under: those that fits are chosen by, or others of as many
+/// elevations, which no fit has looked at.
+enum class PictureLights { choosing, heldOut };
+
 /// Is a sphere of one material seen from afar under five directional lights of equal strength, one of them
 /// behind it: half vectors from n to the horizon, views and lights up to grazing.
 class LIMN_API SpherePicture {
  public:
   /// Evaluates `exact` in a picture of `size` x `size` pixels. The sphere is turned so that its tangents
   /// follow its circles of latitude, which matters to anisotropic materials alone.
-  explicit SpherePicture(const Brdf& exact, int size = 128);
+  explicit SpherePicture(const Brdf& exact, int size = 128, PictureLights lights = PictureLights::choosing);
 
   /// Returns the root of the mean square of the error over that of the exact picture, over pixels and
   /// channels; 0 where both are black, infinite where only the exact picture is.

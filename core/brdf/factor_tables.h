@@ -67,7 +67,9 @@ struct LIMN_API FactoredBrdf {
   std::vector<FactorTable> tables;
   glm::dvec3 scale{1};
   glm::dvec3 floor{0};  ///< the diffuse part of f, 1/sr
-  double error = 0;  ///< over a picture (factor_fit_error.h) from what was fitted; 0 where nothing was fitted
+  /// From what was fitted, over a picture under held-out lights (factor_fit_error.h); 0 where nothing was
+  /// fitted.
+  double error = 0;
 
   /// Returns f n.l, 1/sr; 0 where l is not above the surface or v is below it.
   glm::dvec3 evaluate(const glm::dvec3& l, const glm::dvec3& v) const;

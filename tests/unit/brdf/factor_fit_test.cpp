@@ -56,6 +56,16 @@ TEST(FactorFitError, TheExactModelHasNone) {
   EXPECT_NEAR(picture.errorOf([](const dvec3&, const dvec3&) { return dvec3(0); }), 1, 1e-12);
 }
 
+// What a fit says of itself is not by the picture that its floor was chosen by.
+TEST(FactorFitError, IsThatUnderHeldOutLights) {
+  const Brdf exact = plastic(0.3f);
+  FitSettings settings = settingsOf(Factorisation::dfg, 16);
+  settings.samples = 2000;
+  const FactoredBrdf fit = fitBrdf(exact, settings);
+  EXPECT_EQ(fit.error, SpherePicture(exact, 128, PictureLights::heldOut).errorOf(responseOf(fit)));
+  EXPECT_NE(fit.error, SpherePicture(exact, 128, PictureLights::choosing).errorOf(responseOf(fit)));
+}
+
 TEST(FactorFitError, AlbedosOfClosedForms) {
   for (double cosine : {1.0, 0.5, 0.1}) {
     const dvec3 v(std::sqrt(1 - cosine * cosine), 0, cosine);

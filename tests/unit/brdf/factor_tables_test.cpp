@@ -225,6 +225,51 @@ TEST(FactorTables, ExtremesAreFinite) {
           }
 }
 
+// Tables of several BRDFs lie behind each other: layers of each kind are found from the first on.
+TEST(FactorTables, LayersOfOtherBrdfsAreNotLookedUp) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  FactorTable own{8, 8, 4, TableFormat::float32, {}};
+  for (int i = 0; i < 8 * 8 * 4; ++i)
+    own.texels.emplace_back(uniform(random), uniform(random), uniform(random));
+  FactorTable second = own;
+  second.depth = 8;  // others' layers before
+  second.texels.insert(second.texels.begin(), own.texels.size(), glm::vec3(7));
+  for (int i = 0; i < 100; ++i) {
+    const glm::vec3 l(direction(uniform(random), 6.28 * uniform(random)));
+    const glm::vec3 v(direction(uniform(random), 6.28 * uniform(random)));
+    const glsl::FactoredAngles a = glsl::factored_angles({0, 0, 1}, v, l);
+    EXPECT_EQ(glsl::factored_response(second, second, 4, a, true),
+              glsl::factored_response(own, own, 0, a, true));
+    EXPECT_EQ(glsl::factored_dfg_response(second, 4, a), glsl::factored_dfg_response(own, 0, a));
+    EXPECT_EQ(glsl::factored_pqp_response(second, 4, a), glsl::factored_pqp_response(own, 0, a));
+    EXPECT_EQ(glsl::factored_pqp_disc_response(second, 4, v, l, true),
+              glsl::factored_pqp_disc_response(own, 0, v, l, true));
+    EXPECT_EQ(glsl::factored_svd_response(second, second, 4, 4, v, l),
+              glsl::factored_svd_response(own, own, 0, 4, v, l));
+    EXPECT_EQ(glsl::factored_volume_response(second, 4, 4, v, l),
+              glsl::factored_volume_response(own, 0, 4, v, l));
+  }
+}
+
+// Slices of a volume are met at their places, the last one too.
+TEST(FactorTables, VolumesAreLinearBetweenSlices) {
+  const FactorTable table =
+      FactorTable::of({4, 4, 5}, TableFormat::float32, [](const dvec3& p) { return p; });
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int i = 0; i < 100; ++i) {
+    const glm::vec3 l(direction(0.1 + 0.9 * uniform(random), 6.28 * uniform(random)));
+    const glm::vec3 v(direction(uniform(random), 6.28 * uniform(random)));
+    const glm::vec3 place = glsl::factored_volume_place(v, l);
+    const glm::vec3 found = glsl::factored_volume_response(table, 0, 5, v, l) / l.z;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], place[c], 1e-5f);
+  }
+  const glm::vec3 up(0, 0, 1), aside(direction(0.5, 0));
+  EXPECT_NEAR(glsl::factored_volume_response(table, 0, 5, up, up).x, 1, 1e-6);
+  EXPECT_TRUE(std::isfinite(glsl::factored_volume_response(table, 0, 5, aside, up).z));
+}
+
 TEST(FactorTables, SettingsThatMakeNoTablesAreNamed) {
   EXPECT_THROW(torranceSparrowTables(rough(0.1), 1, 64, true, TableFormat::half), UsageError);
   EXPECT_THROW(torranceSparrowTables(rough(-1), 64, 64, true, TableFormat::half), UsageError);
