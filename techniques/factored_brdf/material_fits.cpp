@@ -26,9 +26,9 @@ brdf::TorranceSparrow described(const glsl::MaterialModel& m) {
 }
 
 /// Returns f of a material with a model: what passes evaluate, without the cosine.
-brdf::Brdf exactBrdf(const scene::Material& material) {
-  return [m = *material.model](const dvec3& l, const dvec3& v) {
-    return dvec3(glsl::model_response(m, vec3(v), vec3(l))) / l.z;
+brdf::Brdf exactBrdf(const scene::Scene& scene, const scene::Material& material) {
+  return [&measured = scene.measured, m = *material.model](const dvec3& l, const dvec3& v) {
+    return dvec3(glsl::model_response(measured, m, vec3(v), vec3(l))) / l.z;
   };
 }
 
@@ -36,7 +36,8 @@ brdf::Brdf exactBrdf(const scene::Material& material) {
 bool alike(const glsl::MaterialModel& a, const glsl::MaterialModel& b, bool analytic) {
   if (a.kind != b.kind || a.eta != b.eta || a.k != b.k || a.options != b.options) return false;
   if (analytic) return a.roughness.x == b.roughness.x;
-  return a.roughness == b.roughness && a.kd == b.kd && a.ks == b.ks && a.exponent == b.exponent;
+  return a.roughness == b.roughness && a.kd == b.kd && a.ks == b.ks && a.exponent == b.exponent &&
+         a.table == b.table;
 }
 
 /// Says why a choice cannot hold a model; empty where it can.
@@ -50,12 +51,13 @@ std::string reasonAgainst(const glsl::MaterialModel& model, const FitChoice& cho
 }
 
 /// Returns the tables of a material; nothing where there is nothing to fit.
-std::optional<brdf::FactoredBrdf> fitted(const scene::Material& material, const FitChoice& choice) {
+std::optional<brdf::FactoredBrdf> fitted(const scene::Scene& scene, const scene::Material& material,
+                                         const FitChoice& choice) {
   if (choice.analytic)
     return brdf::torranceSparrowTables(described(*material.model), choice.fit.texels, choice.fit.texels,
                                        choice.fit.warped, choice.fit.format);
   try {
-    return brdf::fitBrdf(exactBrdf(material), choice.fit);
+    return brdf::fitBrdf(exactBrdf(scene, material), choice.fit);
   } catch (const UsageError&) {
     throw;
   } catch (const Error&) {
@@ -85,7 +87,7 @@ MaterialFits fitMaterials(const scene::Scene& scene, const FitChoice& choice) {
     auto found =
         std::ranges::find_if(models, [&](const auto& m) { return alike(m, model, choice.analytic); });
     if (found == models.end()) {
-      std::optional<brdf::FactoredBrdf> fit = fitted(material, choice);
+      std::optional<brdf::FactoredBrdf> fit = fitted(scene, material, choice);
       if (!fit) {
         result.exact.push_back({material.name, "it reflects nothing that could be fitted"});
         continue;
