@@ -54,9 +54,9 @@ struct SceneHandles {
   frame::BufferHandle lights;          ///< storage buffer of glsl::Light, index = light index
   frame::TextureHandle lightTextures;  ///< RGBA32F array of textures in front of spot lights; empty: none
   frame::TextureHandle density;        ///< R32F volume (scene::DensityGrid); empty: the medium is homogeneous
-  frame::BufferHandle models{};  ///< storage buffer of glsl::MaterialModel, one per material; empty: none
+  frame::BufferHandle models{};    ///< storage buffer of glsl::MaterialModel, one per material; empty: none
   frame::BufferHandle measured{};  ///< storage buffer of Scene::measured; empty: none
-  uint32_t modelKinds = 0;       ///< bit 1 << kind of each model of the scene's materials
+  uint32_t modelKinds = 0;         ///< bit 1 << kind of each model of the scene's materials
   /// Holds the answer to Term::surface; null: none, or the scene has no models.
   std::shared_ptr<const scene::SurfaceAnswer> surface{};
 };

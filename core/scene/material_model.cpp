@@ -12,8 +12,7 @@ namespace {
 /// The perceptual roughness of the metal that is about as wide.
 float nearestRoughness(const glsl::MaterialModel& m) {
   if (m.kind == glsl::model_phong) return std::pow(2.f * m.exponent + 1.f, -0.25f);
-  if (m.kind == glsl::model_torrance_sparrow || m.kind == glsl::model_ward ||
-      m.kind == glsl::model_measured)
+  if (m.kind == glsl::model_torrance_sparrow || m.kind == glsl::model_ward || m.kind == glsl::model_measured)
     return std::sqrt(std::max(m.roughness.x, m.roughness.y));
   return 1;
 }

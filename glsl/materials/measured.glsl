@@ -140,8 +140,8 @@ LIMN_FN float measured_pdf(MaterialModel m, vec3 v, vec3 l) {
   return microfacet_or_cosine_pdf(measured_share(m, v), vec2(model_alpha(m).x), v, l);
 }
 
-// Hemispherical reflectance: core/brdf/measured_model.h integrates it from the table.
-LIMN_FN vec3 measured_albedo(MaterialModel m) { return min(m.ks * m.k, vec3(1.0f)); }
+// Hemispherical reflectance, with ks in it: core/brdf/measured_model.h integrates it from the table.
+LIMN_FN vec3 measured_albedo(MaterialModel m) { return min(m.k, vec3(1.0f)); }
 
 LIMN_END
 #endif  // LIMN_MEASURED_GLSL
