@@ -20,8 +20,8 @@ constexpr const char* kCoordinates[] = {"warped", "published"};
 constexpr const char* kFormats[] = {"float32", "half", "byte"};
 constexpr GLenum kTextureFormats[] = {GL_RGBA32F, GL_RGBA16F, GL_RGBA8};
 
-/// Pairs of directions that a numerical fit looks at. With 20000 metals gain a sixth in error, for three
-/// times the time.
+/// Pairs of directions that a numerical fit looks at. With 20000, pqp_disc loses a seventh of its error on
+/// metals and dfg nothing, for up to twice the time.
 constexpr int kSamples = 8000;
 
 constexpr Parameter kParameters[] = {
