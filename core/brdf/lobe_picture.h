@@ -7,7 +7,8 @@
 
 namespace limn::brdf {
 
-/// Returns the unit vector at so many degrees from the normal, with that azimuth from the tangent.
+/// Returns the unit vector at an angle of `degrees` from the normal and at `azimuth` (radians) from the
+/// tangent.
 LIMN_API glm::dvec3 directionAt(double degrees, double azimuth);
 
 /// Returns f cos(l).
