@@ -411,15 +411,22 @@ TEST(BenchSuite, ChapterSixAsksEveryTechniqueWhereVisibilityMatters) {
 }
 
 TEST(BenchSuite, ReadsEverySuiteOfTheRepository) {
-  const std::filesystem::path folder = std::filesystem::path(test::kSourceDir) / "benchmarks";
-  int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+  const std::filesystem::path root(test::kSourceDir);
+  int chapters = 0, techniques = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(root / "benchmarks")) {
     if (entry.path().extension() != ".toml") continue;
     EXPECT_FALSE(readSuite(entry.path()).cases.empty()) << entry.path();
-    ++count;
+    ++chapters;
   }
-  EXPECT_GT(count, 0);
-  EXPECT_THROW(readSuite(folder / "none.toml"), Error);
+  for (const auto& entry : std::filesystem::directory_iterator(root / "techniques")) {
+    const std::filesystem::path suite = entry.path() / "bench.toml";
+    if (!std::filesystem::exists(suite)) continue;
+    EXPECT_FALSE(readSuite(suite).cases.empty()) << suite;
+    ++techniques;
+  }
+  EXPECT_GT(chapters, 0);
+  EXPECT_GT(techniques, 0);
+  EXPECT_THROW(readSuite(root / "benchmarks" / "none.toml"), Error);
 }
 
 }  // namespace
