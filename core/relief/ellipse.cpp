@@ -1,8 +1,11 @@
 #include "core/relief/ellipse.h"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -43,6 +46,59 @@ Axes axesOf(const glm::dvec3& s) {
           .eigenvalues = {middle + apart, std::max(middle - apart, 0.0)}};
 }
 
+/// Holds an ellipse's centre (x, y) and covariance (xx, xy, yy).
+using Numbers = std::array<double, 5>;
+
+/// Measures where ellipses differ from a region that is star-shaped about 0.
+class Region {
+ public:
+  explicit Region(std::span<const double> rho) : rho_(rho) {
+    const double step = 2 * kPi / static_cast<double>(rho.size());
+    for (std::size_t i = 0; i < rho.size(); ++i)
+      directions_.emplace_back(std::cos(step * static_cast<double>(i)),
+                               std::sin(step * static_cast<double>(i)));
+  }
+
+  /// Returns the differing part of the disc. Along each azimuth the region is [0, rho], and the ellipse what
+  /// lies between the roots of a quadratic.
+  double differs(const Numbers& ellipse) const {
+    const auto& [x, y, xx, xy, yy] = ellipse;
+    const double scale = 4 * (xx * yy - xy * xy);
+    if (!(scale > 0) || !(xx > 0)) return 1;
+    // The form of the ellipse, 1 on its edge: v^T form v.
+    const glm::dmat2 form(yy / scale, -xy / scale, -xy / scale, xx / scale);
+    const glm::dvec2 centre(x, y), towards = form * centre;
+    const double atZero = glm::dot(centre, towards) - 1;
+    double sum = 0;
+    for (std::size_t i = 0; i < rho_.size(); ++i) {
+      const glm::dvec2& direction = directions_[i];
+      const double square = glm::dot(direction, form * direction), half = glm::dot(direction, towards);
+      const double root = std::sqrt(std::max(half * half - square * atZero, 0.0));
+      const double far = std::clamp((half + root) / square, 0.0, 1.0),
+                   near = std::clamp((half - root) / square, 0.0, far);
+      const double rho = rho_[i], shared = std::max(std::min(rho, far), near);
+      sum += rho * rho + far * far + near * near - 2 * shared * shared;
+    }
+    return sum / static_cast<double>(rho_.size());
+  }
+
+ private:
+  std::span<const double> rho_;
+  std::vector<glm::dvec2> directions_;
+};
+
+Numbers numbersOf(const glsl::ReliefEllipse& ellipse) {
+  return {static_cast<double>(ellipse.centre.x), static_cast<double>(ellipse.centre.y),
+          static_cast<double>(ellipse.xx), static_cast<double>(ellipse.xy), static_cast<double>(ellipse.yy)};
+}
+
+/// Returns the radii of a texel's region.
+void readRadii(const Horizons& horizons, std::size_t texel, std::vector<double>& rho) {
+  rho.resize(static_cast<std::size_t>(horizons.azimuths));
+  for (int i = 0; i < horizons.azimuths; ++i)
+    rho[static_cast<std::size_t>(i)] = litRadius(static_cast<double>(horizons.tangent(i, texel)));
+}
+
 /// Returns lit minus shadowed directions inside.
 int score(const glsl::FittedEllipse& ellipse, std::span<const glm::vec2> directions,
           std::span<const std::uint8_t> lit) {
@@ -76,12 +132,53 @@ glsl::ReliefEllipse momentEllipse(std::span<const double> rho) {
 std::vector<glsl::ReliefEllipse> momentEllipses(const Horizons& horizons) {
   std::vector<glsl::ReliefEllipse> result;
   result.reserve(horizons.texels);
-  std::vector<double> rho(static_cast<std::size_t>(horizons.azimuths));
+  std::vector<double> rho;
   for (std::size_t texel = 0; texel < horizons.texels; ++texel) {
-    for (int i = 0; i < horizons.azimuths; ++i)
-      rho[static_cast<std::size_t>(i)] = litRadius(static_cast<double>(horizons.tangent(i, texel)));
+    readRadii(horizons, texel, rho);
     result.push_back(momentEllipse(rho));
   }
+  return result;
+}
+
+double differingArea(const glsl::ReliefEllipse& ellipse, std::span<const double> rho) {
+  return Region(rho).differs(numbersOf(ellipse));
+}
+
+glsl::ReliefEllipse nearestEllipse(std::span<const double> rho, const glsl::ReliefEllipse& start) {
+  const Region region(rho);
+  Numbers best = numbersOf(start);
+  const double determinant = best[2] * best[4] - best[3] * best[3];
+  if (!(determinant > 0)) return start;
+  // Half of a circle's radius of the same area, and that squared: what centres and covariances are compared
+  // with.
+  const double variance = std::sqrt(determinant), unit = std::sqrt(variance);
+  double least = region.differs(best);
+  for (double step = 0.128; step > 0.007;) {
+    bool better = false;
+    for (std::size_t i = 0; i < best.size(); ++i)
+      for (const double way : {-step, step}) {
+        Numbers next = best;
+        next[i] += way * (i < 2 ? unit : variance);
+        const double differs = region.differs(next);
+        if (differs >= least) continue;
+        least = differs;
+        best = next;
+        better = true;
+      }
+    if (!better) step /= 2;
+  }
+  return ellipseOf({best[0], best[1]}, {best[2], best[3], best[4]}, 0);
+}
+
+std::vector<glsl::ReliefEllipse> nearestEllipses(const Horizons& horizons) {
+  std::vector<glsl::ReliefEllipse> result(horizons.texels);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, horizons.texels), [&](const auto& range) {
+    std::vector<double> rho;
+    for (std::size_t texel = range.begin(); texel < range.end(); ++texel) {
+      readRadii(horizons, texel, rho);
+      result[texel] = nearestEllipse(rho, momentEllipse(rho));
+    }
+  });
   return result;
 }
 
