@@ -36,6 +36,9 @@ class LIMN_API HeightField {
               double scale = 1, double offset = 0, Wrap wrap = Wrap::periodic);
 
   const glm::ivec2& size() const { return size_; }
+  /// Returns the place, in texels, of a texture coordinate: (0, 0) is the corner of texel (0, 0), half a texel
+  /// from its centre.
+  glm::dvec2 place(const glm::dvec2& uv) const { return uv * glm::dvec2(size_) - 0.5; }
   Wrap wrap() const { return wrap_; }
   std::size_t texels() const { return heights_.size(); }
   /// Returns the metres from texel to texel.

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/base/export.h"
+#include "core/relief/height_field.h"
 #include "glsl/materials/material_model.glsl"
 #include "glsl/scene/light.glsl"
 
@@ -77,6 +78,7 @@ struct Material {
   float attenuationDistance = 0;  ///< 0: infinite
   glm::vec3 attenuationColour{1};
   TextureRef baseColourTexture, metalRoughTexture, normalTexture, emissiveTexture;
+  int height = kNone;  ///< the height map of extras.limn_height: index into Scene::heights; none: flat
   /// Holds the model of extras.limn_material, which replaces metallic-roughness: `baseColour`, `metallic` and
   /// `roughness` are then the metal that comes next to it, for what does not evaluate the model itself
   /// (radiosity, the flux of virtual lights).
@@ -92,10 +94,12 @@ struct Material {
   /// Says whether the material looks up a texture.
   bool textured() const {
     return baseColourTexture.image != kNone || metalRoughTexture.image != kNone ||
-           normalTexture.image != kNone || emissiveTexture.image != kNone;
+           normalTexture.image != kNone || emissiveTexture.image != kNone || height != kNone;
   }
   /// Says whether primitives of the material have tangents: its shading depends on them.
-  bool tangents() const { return normalTexture.image != kNone || (model && glsl::model_anisotropic(*model)); }
+  bool tangents() const {
+    return normalTexture.image != kNone || height != kNone || (model && glsl::model_anisotropic(*model));
+  }
 };
 
 struct MorphTarget {
@@ -275,6 +279,9 @@ struct Scene {
   std::filesystem::path file;
   std::vector<TextureImage> images;
   std::vector<Material> materials;
+  /// Holds the height maps of extras.limn_height. u of a texture coordinate runs along x of the field, v along
+  /// y, and (0, 0) is the corner of texel (0, 0), half a texel from its centre.
+  std::vector<relief::HeightField> heights;
   /// Holds the tables of measured models, one after another: values of f, 1/sr
   /// (glsl/materials/measured.glsl).
   std::vector<glm::vec3> measured;
