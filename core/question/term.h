@@ -23,7 +23,8 @@ enum class Term : uint32_t {
   environment = 32,
   specular = 64,
   final = 128,
-  surface = 256
+  surface = 256,
+  relief = 512
 };
 using TermSet = uint32_t;
 constexpr TermSet operator|(Term a, Term b) {
@@ -88,6 +89,9 @@ inline constexpr TermInfo kTerms[] = {
     {Term::visibility, "visibility", "a factor of L D E",
      "V_l, the part of light l (--light) that a pixel sees, 0 to 1", "1",
      true, TermPicture::answered, "direct light", TermBounces::none, TermInterfaces::none, false, 1},
+    {Term::relief, "relief", "a factor of L D E",
+     "W_l, the part of light l (--light) that a height map's bumps leave to a pixel, 0 to 1", "1",
+     true, TermPicture::answered, "shadows of bumps", TermBounces::none, TermInterfaces::none, false, 7},
     {Term::direct, "direct", "L D E",
      "reflected direct light, shadows included", "L_u V T_l, summed over the lights",
      true, TermPicture::always, "direct light", TermBounces::none, TermInterfaces::none, false, 0},
