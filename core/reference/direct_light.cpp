@@ -29,7 +29,7 @@ struct Estimate {
     if (!view.above()) return;
     const glm::vec3 value =
         surface.reflectance(view.arrival().direction) * view.irradiance() * through(view.arrival());
-    if (value != glm::vec3(0) && unblocked(rays, surface, view.arrival())) add(value, samples.count);
+    if (value != glm::vec3(0) && arrives(view.arrival())) add(value, samples.count);
   }
 
   /// What a smooth coat mirrors of the light from far away.
@@ -38,7 +38,7 @@ struct Estimate {
     if (share == glm::vec3(0)) return;
     const Arrival arrival = view.towards(surface.mirrorDirection());
     const glm::vec3 value = share * arrival.radiance * through(arrival);
-    if (value != glm::vec3(0) && unblocked(rays, surface, arrival)) add(value, samples.count);
+    if (value != glm::vec3(0) && arrives(arrival)) add(value, samples.count);
   }
 
   /// A light of which the surface may not see anything.
@@ -64,6 +64,11 @@ struct Estimate {
                                   : medium.transmittanceToInfinity(surface.position, arrival.direction));
   }
 
+  /// W V of one direction.
+  bool arrives(const Arrival& arrival) const {
+    return surface.relief.lit(arrival.direction) && unblocked(rays, surface, arrival);
+  }
+
   void add(const glm::vec3& value, double weight) const {
     for (int c = 0; c < 3; ++c) sums[static_cast<size_t>(c)] += weight * static_cast<double>(value[c]);
   }
@@ -75,8 +80,7 @@ struct Estimate {
     const glm::vec3 value = surface.reflectance(arrival.direction) * arrival.radiance * through(arrival);
     if (value == glm::vec3(0)) return;
     const float brdfPdf = surface.pdf(arrival.direction);
-    if (unblocked(rays, surface, arrival))
-      add(value * (powerHeuristic(arrival.pdf, brdfPdf) / arrival.pdf), 1);
+    if (arrives(arrival)) add(value * (powerHeuristic(arrival.pdf, brdfPdf) / arrival.pdf), 1);
   }
 
   template <class View>
@@ -87,8 +91,7 @@ struct Estimate {
     const Arrival arrival = view.towards(direction);
     if (!(arrival.pdf > 0.f)) return;
     const glm::vec3 value = surface.reflectance(direction) * arrival.radiance * through(arrival);
-    if (value != glm::vec3(0) && unblocked(rays, surface, arrival))
-      add(value * (powerHeuristic(pdf, arrival.pdf) / pdf), 1);
+    if (value != glm::vec3(0) && arrives(arrival)) add(value * (powerHeuristic(pdf, arrival.pdf) / pdf), 1);
   }
 };
 

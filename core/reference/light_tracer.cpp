@@ -291,7 +291,7 @@ void LightTracer::scatter(const glm::vec3& x, const glm::vec3& direction, const 
 void LightTracer::reflect(const Hit& hit, const glm::vec3& direction, const glm::vec3& flux,
                           Film& film) const {
   const std::optional<Surface> met = surfaceAlong(view_.rays, hit, direction);
-  if (!met || met->specular()) return;
+  if (!met || met->specular() || !met->relief.lit(-direction)) return;
   const glm::vec3 eye(view_.frame.camera_position), towards = eye - met->position;
   const float distance = glm::length(towards),
               cosine = glm::dot(met->values.geometric_normal, towards) / distance;

@@ -89,7 +89,8 @@ class PathIntegrator final : public Integrator {
     if (!(pdf > 0.f)) return false;
     throughput *= glm::dvec3(surface.reflectance(direction)) / static_cast<double>(pdf);
     Hit hit;
-    if (throughput == glm::dvec3(0) || !rays_.nearest(surface.rayOrigin(direction), direction, hit))
+    if (throughput == glm::dvec3(0) || !surface.relief.lit(direction) ||
+        !rays_.nearest(surface.rayOrigin(direction), direction, hit))
       return false;
     const std::optional<Surface> met = surfaceAlong(rays_, hit, direction);
     if (!met || met->specular()) return false;

@@ -82,7 +82,8 @@ struct Request {
   /// comes off one interface or into an object and out of it, as techniques have it.
   int interfaces = 0;
   /// Says that nothing keeps light of the lights and of the environment from arriving: V = 1, up to the
-  /// horizons of the surface that receives it. Light that comes off specular objects keeps its shadows.
+  /// horizons of the surface that receives it, those of its height map's bumps included (W). Light that comes
+  /// off specular objects keeps its shadows.
   bool unshadowed = false;
   int spp = 64;  ///< samples per pixel and light, rounded up to an even number; the maximum if noise is given
   /// Target noise, RMS relative to the mean; 0: take spp samples. The noise is tested after 16, 32, 64, ...

@@ -40,6 +40,12 @@ glsl::Frame modelFrame(const Draw& draw, const Corner& corner, const glm::vec3& 
   return glsl::frame_along(normal, draw.tangentToWorld * glm::vec3(corner.blend(draw.tangents)));
 }
 
+/// The tangent in world space, with the sign of the bitangent there.
+glm::vec4 worldTangent(const Draw& draw, const Corner& corner) {
+  const glm::vec4 tangent = corner.blend(draw.tangents);
+  return {draw.tangentToWorld * glm::vec3(tangent), tangent.w * draw.orientation};
+}
+
 glm::vec3 shadingNormal(const Draw& draw, const Corner& corner, const TextureLookup& lookup,
                         const glm::vec3& geometricNormal) {
   const scene::Material& material = *draw.material;
@@ -48,10 +54,8 @@ glm::vec3 shadingNormal(const Draw& draw, const Corner& corner, const TextureLoo
   if (!(size > 0.f)) return geometricNormal;
   const glm::vec3 normal = interpolated / size;
   if (!lookup.has(material.normalTexture) || !draw.tangents) return normal;
-  const glm::vec4 tangent = corner.blend(draw.tangents);
-  return glsl::mapped_normal(
-      normal, glm::vec4(draw.tangentToWorld * glm::vec3(tangent), tangent.w * draw.orientation),
-      glm::vec3(lookup(material.normalTexture)), material.normalScale);
+  return glsl::mapped_normal(normal, worldTangent(draw, corner), glm::vec3(lookup(material.normalTexture)),
+                             material.normalScale);
 }
 
 void fillMaterial(const Draw& draw, const Corner& corner, const TextureLookup& lookup,
@@ -137,6 +141,9 @@ Surface seenFrom(const RayScene& rays, const Hit& hit, const glm::vec3& view,
   if (back && surface.specular()) values.flags |= glsl::gbuffer_flag_back;
   values.normal = normal;
   values.geometric_normal = geometricNormal;
+  if (draw.heights && !back)
+    surface.relief = reliefPlace(*draw.heights, lookup.uv, draw.normalToWorld * corner.blend(draw.normals),
+                                 worldTangent(draw, corner));
   surface.brdf = glsl::surface_brdf(values.base_colour, values.metallic, values.roughness,
                                     values.specular_factor, values.specular_colour, values.ior);
   if (draw.material->model) {

@@ -17,7 +17,8 @@ struct SampleRange {
 };
 
 /// Computes direct light by next-event estimation with one light sample and one BRDF sample per light,
-/// weighted by the power heuristic (Veach 1997, section 9.2.4); punctual lights are evaluated once.
+/// weighted by the power heuristic (Veach 1997, section 9.2.4); punctual lights are evaluated once. Where the
+/// surface has a height map, light arrives only past its bumps (ReliefPlace::lit).
 class DirectLight {
  public:
   /// Takes the lights that the request asks for.

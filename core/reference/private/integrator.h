@@ -26,8 +26,9 @@ class Integrator {
 /// Makes the integrator of reflected light: direct (unless the term is indirect), and what came to the seen
 /// surface over 1 to Request::bounces others; sums: R, G, B. It traces paths with next-event estimation
 /// (DirectLight) at every surface, directions chosen with the BRDF's density, and Russian roulette from the
-/// fourth bounce on. Specular surfaces and backs of single-sided ones end a path; specular surfaces that the
-/// camera sees show, with Request::interfaces, the light of others (SpecularPaths).
+/// fourth bounce on. Specular surfaces, backs of single-sided ones and bumps of a height map end a path;
+/// specular surfaces that the camera sees show, with Request::interfaces, the light of others
+/// (SpecularPaths).
 std::unique_ptr<Integrator> makePathIntegrator(const RayScene& rays, const Request& request);
 
 /// Makes the integrator of V of one light; sums: visible samples, samples above the tangent plane, and both

@@ -21,6 +21,8 @@ struct Draw {
   const glm::vec3* positions = nullptr;
   const glm::vec3* normals = nullptr;
   const glm::vec4* tangents = nullptr;  ///< null: none
+  /// The material's height map; null without one, and without the coordinates and tangents that it needs.
+  const relief::HeightField* heights = nullptr;
   glm::mat4 toWorld{1};
   glm::mat3 normalToWorld{1};
   glm::mat3 tangentToWorld{1};

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/reference/private/ray_scene.h"
+#include "core/reference/private/relief_place.h"
 #include "glsl/materials/model.glsl"
 #include "glsl/numeric/geometry.glsl"
 #include "glsl/surface/brdf.glsl"
@@ -22,6 +23,7 @@ struct Surface {
   const glsl::MaterialModel* model = nullptr;  ///< null: metallic-roughness
   const std::vector<glm::vec3>* measured = nullptr;  ///< Scene::measured
   glsl::Frame frame{};  ///< around the shading normal, along the tangent; for models
+  ReliefPlace relief;   ///< among the bumps of the front; the back has none
 
   bool specular() const { return (values.flags & glsl::gbuffer_flag_specular) != 0; }
   /// Returns f cos for light from `direction` (unit), 1/sr; 0 below either horizon.

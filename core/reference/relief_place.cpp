@@ -1,0 +1,42 @@
+#include "core/reference/private/relief_place.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/relief/interreflection.h"
+
+namespace limn::reference {
+namespace {
+
+/// Counts the sizes of a map that a place may lie off it: more than relief::traceRay follows a ray.
+constexpr double kFarthestSizes = 128;
+
+/// Returns the place of a texture coordinate, moved towards the map where rays meet the same there.
+glm::dvec2 placeNearMap(const relief::HeightField& field, const glm::dvec2& uv) {
+  if (field.wrap() == relief::Wrap::periodic) return field.place(uv - glm::floor(uv));
+  const double farthest = kFarthestSizes * std::max(field.size().x, field.size().y);
+  return glm::clamp(field.place(uv), -farthest, farthest);
+}
+
+}  // namespace
+
+bool ReliefPlace::leaves(const glm::vec3& direction) const {
+  const glm::vec3 local = glsl::to_local(frame, direction);
+  return local.z > 0.f && !relief::traceRay(*field, place, glm::dvec3(local));
+}
+
+ReliefPlace reliefPlace(const relief::HeightField& field, const glm::vec2& uv, const glm::vec3& normal,
+                        const glm::vec4& tangent) {
+  const float size = glm::length(normal);
+  if (!(size > 0.f) || !std::isfinite(uv.x) || !std::isfinite(uv.y)) return {};
+  const glm::vec3 n = normal / size;
+  const glm::vec3 along = glm::vec3(tangent) - n * glm::dot(n, glm::vec3(tangent));
+  const float length = glm::length(along);
+  if (!(length > 0.f)) return {};
+  const glm::vec3 t = along / length;
+  // The bitangent points up the texture, against v (scene::generateTangents).
+  const glm::vec3 b = tangent.w < 0.f ? glm::cross(n, t) : -glm::cross(n, t);
+  return {.field = &field, .place = placeNearMap(field, uv), .frame = {.t = t, .b = b, .n = n}};
+}
+
+}  // namespace limn::reference
