@@ -21,7 +21,7 @@ Mean meanOf(const Integrator& integrator, const Accumulators& state, size_t pixe
   return {0.5 * (a + b), 0.5 * (a - b)};
 }
 
-/// V of both halves together: samples above the tangent plane are not equally many in each.
+/// V or W of both halves together: samples above the tangent plane are not equally many in each.
 double ratioOf(const Accumulators& state, size_t pixel, size_t part) {
   const Sums& a = state.sums[2 * pixel];
   const Sums& b = state.sums[2 * pixel + 1];
@@ -78,6 +78,7 @@ std::vector<std::string> channelNames(Term term) {
   std::vector<std::string> names{"R",        "G",        "B",        "variance", "Z",   "coverage", "id",
                                  "albedo.R", "albedo.G", "albedo.B", "N.X",      "N.Y", "N.Z"};
   if (term == Term::visibility) names.insert(names.end(), {"V", "Vw", "masked"});
+  if (term == Term::relief) names.insert(names.end(), {"W", "Ww", "masked"});
   return names;
 }
 
@@ -113,7 +114,7 @@ double noiseOf(const Integrator& integrator, Term term, const Accumulators& stat
   glm::dvec3 sum(0), squares(0);
   size_t count = 0;
   for (size_t pixel = 0; pixel < counts.size(); ++pixel) {
-    if (!counts[pixel] || (term == Term::visibility && isMaskedPixel(state, pixel))) continue;
+    if (!counts[pixel] || (isLightFactor(term) && isMaskedPixel(state, pixel))) continue;
     const Mean mean = meanOf(integrator, state, pixel);
     sum += mean.value;
     squares += mean.deviation * mean.deviation;
@@ -130,7 +131,7 @@ void develop(const Integrator& integrator, const View& view, const Request& requ
   const scene::EnvironmentLight environment(request.scene.environment);
   tbb::parallel_for(size_t{0}, view.pixelCount(), [&](size_t pixel) {
     const std::span<float> out = imagePixel(view, image, pixel);
-    if (request.term == Term::visibility) {
+    if (isLightFactor(request.term)) {
       const double v = ratioOf(state, pixel, 0);
       const glm::dvec3 deviation = meanOf(integrator, state, pixel).deviation;
       writeColour(out, glm::dvec3(v), deviation.x * deviation.x);

@@ -59,7 +59,14 @@ struct Request {
   int width = 0, height = 0;
   /// The term that is asked of every pixel. With a medium, light is attenuated on its way to a surface and
   /// from there to the camera; indirect light is not attenuated on its way between surfaces.
-  /// - direct: light of all lights and the environment, or of one of them; no technique stands for either.
+  /// - visibility: V of one light, the mean over samples of its area (of its cone) above the geometric
+  ///   tangent plane; 1 where nothing is seen and where no part of the light lies above that plane.
+  /// - relief: W of one light, a mean over the same samples: which of them a ray sees that starts on the
+  ///   height map's surface above the place. V is left out of it, as it is left out of V; 0 for samples below
+  ///   the plane of the interpolated normal; 1 where V's picture is 1 for want of anything to see, on
+  ///   surfaces without a height map, and on backs. Heights are those of the full-size map.
+  /// - direct: light of all lights and the environment, or of one of them, V and W included; no technique
+  ///   stands for either.
   /// - final: direct, indirect of up to `bounces`, caustic, media, specular or, without `interfaces`, only
   ///   the environment in specular surfaces, emission that the camera sees, the environment as background.
   /// - indirect: light over 1 to `bounces` other surfaces.
@@ -68,8 +75,8 @@ struct Request {
   /// - media: light as direct and as caustic have it.
   /// - specular: emission, direct light, indirect of up to `bounces`, and the environment.
   Term term = Term::direct;
-  /// Index into Pose::lights, or lights.size() for the environment; kAllLights for all (not with visibility,
-  /// which takes one light of Pose::lights).
+  /// Index into Pose::lights, or lights.size() for the environment; kAllLights for all (not with visibility
+  /// and relief, which take one light of Pose::lights).
   int light = kAllLights;
   /// Surfaces that reflect light before the surface that the camera sees: indirect takes paths of 1 to this
   /// many (at least 1), final adds them to direct light; 0 with the other terms. The pictures of N and of N -
@@ -102,10 +109,11 @@ struct Request {
   std::stop_token stop{};
 };
 
-/// Holds the result of a request. Channels: R, G, B (radiance in W/(sr m^2); V three times for visibility),
+/// Holds the result of a request. Channels: R, G, B (radiance in W/(sr m^2); V or W three times for these),
 /// variance (of the mean of R, G, B, estimated), Z, coverage, id (-1: nothing seen), albedo.R/G/B, N.X/Y/Z;
 /// for visibility also V, Vw (V weighted by irradiance) and masked (1 where no part of the light lies above
-/// the geometric tangent plane: V = 1). Metadata: noise_rms, spp, seed, term, light, bounces, interfaces.
+/// the geometric tangent plane: V = 1); for relief W, Ww and masked. Metadata: noise_rms, spp, seed, term,
+/// light, bounces, interfaces.
 struct Result {
   Image image;
   double noiseRms =

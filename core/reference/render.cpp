@@ -70,9 +70,9 @@ void validate(const Request& r) {
     throw UsageError(fmt::format("reference: noise {} is not in [0, 1) (0: take spp samples)", r.noise));
   if (!contains(kPicturedTerms, r.term))
     throw UsageError(fmt::format("reference: no picture shows the term {} alone", name(r.term)));
-  if (r.term == Term::visibility && (r.light < 0 || r.light >= lights))
-    throw UsageError(
-        fmt::format("reference: visibility needs one light; {} is not in 0 .. {}", r.light, lights - 1));
+  if (isLightFactor(r.term) && (r.light < 0 || r.light >= lights))
+    throw UsageError(fmt::format("reference: {} needs one light; {} is not in 0 .. {}", name(r.term), r.light,
+                                 lights - 1));
   checkBounces(r);
   if (!acceptsInterfaces(r.term, r.interfaces))
     throw UsageError(fmt::format("reference: interfaces {} with the term {}; {}", r.interfaces, name(r.term),
@@ -83,8 +83,8 @@ void validate(const Request& r) {
 }
 
 std::unique_ptr<Integrator> makeIntegrator(const RayScene& rays, const Request& request) {
-  return request.term == Term::visibility ? makeVisibilityIntegrator(rays, request)
-                                          : makePathIntegrator(rays, request);
+  return isLightFactor(request.term) ? makeLightFactorIntegrator(rays, request)
+                                     : makePathIntegrator(rays, request);
 }
 
 /// One picture in the making.
@@ -208,7 +208,7 @@ class Work {
     for (uint32_t half = 0; half < 2; ++half) {
       Sampler sampler(request_.seed, pixel, half);
       Sums& sums = state_.sums[2 * pixel + half];
-      if (seen && request_.term == Term::visibility) {
+      if (seen && isLightFactor(request_.term)) {
         integrator_->sample(surface, sampler, state_.samples, count, sums);
         continue;
       }

@@ -39,8 +39,8 @@ std::vector<std::string> channelNames(Term term);
 Image renderFeatures(const View& view, Term term, const std::stop_token& stop,
                      std::vector<unsigned char>& covered);
 
-/// Returns the RMS of the standard deviation of the mean over the pixels that count (for visibility: those
-/// not masked) and channels, relative to the mean; 0 where the mean is 0.
+/// Returns the RMS of the standard deviation of the mean over the pixels that count (for factors of a light:
+/// those not masked) and channels, relative to the mean; 0 where the mean is 0.
 double noiseOf(const Integrator& integrator, Term term, const Accumulators& state,
                const std::vector<unsigned char>& counts);
 

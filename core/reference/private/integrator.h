@@ -31,8 +31,14 @@ class Integrator {
 /// (SpecularPaths).
 std::unique_ptr<Integrator> makePathIntegrator(const RayScene& rays, const Request& request);
 
-/// Makes the integrator of V of one light; sums: visible samples, samples above the tangent plane, and both
-/// weighted by irradiance.
-std::unique_ptr<Integrator> makeVisibilityIntegrator(const RayScene& rays, const Request& request);
+/// Returns whether the term is a factor of one light: V (visibility) or W (relief).
+constexpr bool isLightFactor(Term term) {
+  return term == Term::visibility || term == Term::relief;
+}
+
+/// Makes the integrator of V or of W of one light, as the request's term says; sums: samples that arrive,
+/// samples above the geometric tangent plane, and both weighted by irradiance. Neither factor holds the
+/// other one.
+std::unique_ptr<Integrator> makeLightFactorIntegrator(const RayScene& rays, const Request& request);
 
 }  // namespace limn::reference

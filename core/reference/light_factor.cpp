@@ -1,3 +1,4 @@
+// What keeps the light of one lamp from what the camera sees: V, other surfaces, or W, bumps of its own.
 #include <glm/glm.hpp>
 
 #include "core/reference/private/integrator.h"
@@ -6,17 +7,19 @@
 namespace limn::reference {
 namespace {
 
-class VisibilityIntegrator final : public Integrator {
+class LightFactorIntegrator final : public Integrator {
  public:
-  VisibilityIntegrator(const RayScene& rays, const Request& request)
-      : rays_(rays), light_(request.pose.lights[static_cast<size_t>(request.light)]) {}
+  LightFactorIntegrator(const RayScene& rays, const Request& request)
+      : rays_(rays),
+        light_(request.pose.lights[static_cast<size_t>(request.light)]),
+        relief_(request.term == Term::relief) {}
 
   void sample(const Surface& surface, Sampler& sampler, uint32_t first, uint32_t count,
               Sums& sums) const override {
     if (isPunctual(light_)) {
       const PointView view(light_, surface);
       if (!view.above()) return;
-      const double visible = unblocked(rays_, surface, view.arrival()) ? count : 0;
+      const double visible = passes(surface, view.arrival()) ? count : 0;
       for (size_t i = 0; i < sums.size(); ++i) sums[i] += i % 2 == 0 ? visible : count;
     } else if (light_.type == glsl::light_rectangle || glsl::light_is_distant_rectangle(light_)) {
       addSamples(RectangleView(light_, surface), surface, sampler, first, count, sums);
@@ -30,6 +33,10 @@ class VisibilityIntegrator final : public Integrator {
   }
 
  private:
+  bool passes(const Surface& surface, const Arrival& arrival) const {
+    return relief_ ? surface.relief.lit(arrival.direction) : unblocked(rays_, surface, arrival);
+  }
+
   template <class View>
   void addSamples(const View& view, const Surface& surface, Sampler& sampler, uint32_t first, uint32_t count,
                   Sums& sums) const {
@@ -40,7 +47,7 @@ class VisibilityIntegrator final : public Integrator {
       if (!(glm::dot(arrival.direction, surface.values.geometric_normal) > 0.f)) continue;
       sums[1] += 1;
       sums[3] += arrival.irradianceWeight;
-      if (!unblocked(rays_, surface, arrival)) continue;
+      if (!passes(surface, arrival)) continue;
       sums[0] += 1;
       sums[2] += arrival.irradianceWeight;
     }
@@ -48,12 +55,13 @@ class VisibilityIntegrator final : public Integrator {
 
   const RayScene& rays_;
   const glsl::Light light_;
+  bool relief_;
 };
 
 }  // namespace
 
-std::unique_ptr<Integrator> makeVisibilityIntegrator(const RayScene& rays, const Request& request) {
-  return std::make_unique<VisibilityIntegrator>(rays, request);
+std::unique_ptr<Integrator> makeLightFactorIntegrator(const RayScene& rays, const Request& request) {
+  return std::make_unique<LightFactorIntegrator>(rays, request);
 }
 
 }  // namespace limn::reference
