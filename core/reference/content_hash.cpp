@@ -8,6 +8,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/relief/height_field.h"
+
 namespace limn::reference {
 namespace {
 
@@ -55,6 +57,8 @@ void addMaterial(Hasher& h, const scene::Material& m) {
   for (const auto* texture :
        {&m.baseColourTexture, &m.metalRoughTexture, &m.normalTexture, &m.emissiveTexture})
     addTexture(h, *texture);
+  constexpr uint32_t heightFollows = 0x4e16;  // tells it from what else may follow
+  if (m.height != scene::kNone) h.addAll(heightFollows, m.height);
   if (m.model) h.add(*m.model);
   constexpr uint32_t coatsMirrorEnvironment = 0xc0a7;  // earlier results show their bases alone
   if (m.model && m.model->kind == glsl::model_coated) h.add(coatsMirrorEnvironment);
@@ -65,6 +69,15 @@ void addPrimitive(Hasher& h, const scene::Primitive& p) {
   for (const auto& target : p.morphTargets) h.addAll(target.positions, target.normals, target.tangents);
 }
 
+void addHeights(Hasher& h, const relief::HeightField& field) {
+  h.addAll(field.size(), field.spacing(), field.wrap());
+  std::vector<double> heights;
+  heights.reserve(field.texels());
+  for (int y = 0; y < field.size().y; ++y)
+    for (int x = 0; x < field.size().x; ++x) heights.push_back(field.texel({x, y}));
+  h.add(heights);
+}
+
 void addScene(Hasher& h, const scene::Scene& scene) {
   h.add(scene.images.size());
   for (const auto& image : scene.images) {
@@ -73,6 +86,7 @@ void addScene(Hasher& h, const scene::Scene& scene) {
   }
   h.add(scene.materials.size());
   for (const auto& material : scene.materials) addMaterial(h, material);
+  for (const auto& field : scene.heights) addHeights(h, field);
   if (!scene.measured.empty()) h.add(scene.measured);
   h.add(scene.meshes.size());
   for (const auto& mesh : scene.meshes) {

@@ -1,6 +1,7 @@
 // What the cache of references keeps, and what tells two references apart.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -93,6 +94,34 @@ TEST(ReferenceWork, ContentHashSeesEverythingThatMatters) {
   EXPECT_NE(plain, contentHash(world.request(16, Term::final, 16)));
   EXPECT_NE(plain, contentHash(world.request(16, Term::direct, 18)));
   EXPECT_NE(plain, contentHash(world.request(17, Term::direct, 16)));
+}
+
+TEST(ReferenceWork, HeightMapsAreHashedWhereThereAreAny) {
+  World world;
+  world.addQuad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}, world.addMaterial(glm::vec3(0.5f)));
+  world.addLight(glsl::light_directional, {0, 0, 0}, {0, -1, 0}, glm::vec3(1));
+  const auto hash = [&] { return contentHash(world.request(16, Term::direct, 16)); };
+  // As before there were height maps: references that were rendered then are still found.
+  EXPECT_EQ(hash(), "a1c7000ef140084a562394713b246778");
+  std::vector<std::string> hashes{hash()};
+  const auto add = [&](const relief::HeightField& field) {
+    world.scene.heights = {field};
+    hashes.push_back(hash());
+  };
+  world.scene.materials[0].height = 0;
+  const std::vector<float> values{0, 1, 2, 3};
+  add({{2, 2}, values, glm::dvec2(1)});
+  add({{4, 1}, values, glm::dvec2(1)});
+  add({{2, 2}, {0, 1, 2, 4}, glm::dvec2(1)});
+  add({{2, 2}, values, glm::dvec2(1), 2});
+  add({{2, 2}, values, glm::dvec2(1), 1, 0.5});
+  add({{2, 2}, values, glm::dvec2(1, 2)});
+  add({{2, 2}, values, glm::dvec2(1), 1, 0, relief::Wrap::clamped});
+  world.scene.heights.push_back(world.scene.heights[0]);
+  world.scene.materials[0].height = 1;
+  hashes.push_back(hash());
+  std::ranges::sort(hashes);
+  EXPECT_EQ(std::ranges::adjacent_find(hashes), hashes.end());
 }
 
 }  // namespace
