@@ -1,12 +1,38 @@
 // Adds the light of the environment on every surface to the radiance, unoccluded (V = 1). Where the material has a model, it
-// is that of the metallic-roughness surface next to it. MEDIUM 1: times the medium's transmittance along the normal.
+// is that of the metallic-roughness surface next to it, but coats mirror. MEDIUM 1: times the medium's transmittance along the
+// normal.
 #include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/light/environment.glsl"
 #include "glsl/media/medium_input.glsl"
 #include "glsl/surface/surface_response.glsl"
+#if (MATERIAL_MODELS & 32) != 0
+#include "glsl/light/coated_environment.glsl"
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f) uniform image2D radiance;
+
+#if (MATERIAL_MODELS & 32) != 0
+// What enters the coat is that of uniform light of the same irradiance, as no map here has the part that grazes.
+vec3 coated_reflection(MaterialModel m, vec3 n, vec3 v) {
+  float n_dot_v = dot(n, v);
+  vec3 irradiance = environment_irradiance_towards(n, frame.environment_rotation, frame.environment_scale);
+  vec3 mirror = environment_lookup_direction(2.0 * n_dot_v * n - v, frame.environment_rotation);
+  vec3 mirrored = frame.environment_scale * environment_filtered_level(mirror, 0);
+  return coated_environment(m, n_dot_v, irradiance, irradiance / 21.0, mirrored);
+}
+#endif
+
+vec3 reflected_environment(SurfaceMaterial own, vec3 n, vec3 v) {
+  SurfaceBrdf material = own.brdf;
+#if (MATERIAL_MODELS & 32) != 0
+  if (own.model.kind == model_coated) return coated_reflection(own.model, n, v);
+#endif
+#if MATERIAL_MODELS
+  if (has_model(own)) material = nearest_brdf(own);
+#endif
+  return environment_light(material, n, v, frame.environment_rotation, frame.environment_scale);
+}
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -16,12 +42,7 @@ void main() {
   GBufferSurface surface = pixel_surface(pixel);
   if ((surface.flags & gbuffer_flag_specular) != 0u) return;
   vec3 v = -normalize(pixel_ray(pixel));
-  SurfaceMaterial own = pixel_material(pixel, surface);
-  SurfaceBrdf material = own.brdf;
-#if MATERIAL_MODELS
-  if (has_model(own)) material = nearest_brdf(own);
-#endif
-  vec3 light = environment_light(material, surface.normal, v, frame.environment_rotation, frame.environment_scale);
+  vec3 light = reflected_environment(pixel_material(pixel, surface), surface.normal, v);
 #if MEDIUM
   Medium medium = scene_medium();
   light *= medium_transmittance(medium, medium_length(medium, pixel_position(pixel, depth), surface.normal, 3.0e38));

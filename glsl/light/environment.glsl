@@ -61,9 +61,13 @@ vec3 environment_filtered_level(vec3 direction, int level) {
 }
 
 // rotation in radians about +Y and scale as in FrameBlock.environment.
-vec3 environment_light(SurfaceBrdf s, vec3 n, vec3 v, float rotation, float scale) {
+vec3 environment_irradiance_towards(vec3 n, float rotation, float scale) {
   vec2 place = environment_place(environment_lookup_direction(n, rotation), environment_irradiance_width / 2);
-  vec3 irradiance = scale * textureLod(environment_irradiance, place, 0.0).rgb;
+  return scale * textureLod(environment_irradiance, place, 0.0).rgb;
+}
+
+vec3 environment_light(SurfaceBrdf s, vec3 n, vec3 v, float rotation, float scale) {
+  vec3 irradiance = environment_irradiance_towards(n, rotation, scale);
   LtcTerms terms = ltc_lookup(dot(n, v), s.alpha);
   vec3 filtered = vec3(0.0);
   if (!brdf_is_lambertian(s)) {

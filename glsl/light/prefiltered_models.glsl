@@ -153,29 +153,5 @@ LIMN_FN PrefilteredLobe microfacet_prefiltered_lobe(MaterialModel m, MicrofacetL
 }
 #endif
 
-#if (MATERIAL_MODELS & 32) != 0
-LIMN_FN PrefilteredLobe coated_prefiltered_lobe(MaterialModel m, vec3 n, vec3 v) {
-  PrefilteredLobe lobe;
-  lobe.towards = prefiltered_mirror(n, v);
-  lobe.alpha = 0.0f;
-  lobe.reflectance = coated_mirror(m, dot(n, v));
-  return lobe;
-}
-
-// Light of the base, given the irradiance and the part of it that grazes: that of light weighted by schlick_weight(n.l). The
-// irradiance that enters the coat, int (1 - F) L cos, follows from both with F replaced by F(1) + b (1 - n.l)^5, where b makes
-// the mean of F exact: one map serves all indices.
-LIMN_FN vec3 coated_prefiltered_base(MaterialModel m, float n_dot_v, vec3 irradiance, vec3 grazing) {
-  vec3 light = m.kd * inverse_pi * irradiance;
-  if ((m.options & (model_option_blend | model_option_physical)) == 0u) return light;
-  vec3 passing = vec3(1.0f) - coated_mirror(m, n_dot_v);
-  if ((m.options & model_option_physical) == 0u) return passing * light;
-  vec3 mean = dielectric_mean_reflectance(m.eta);
-  vec3 facing = fresnel(1.0f, m.eta, m.k);
-  vec3 entering = (vec3(1.0f) - facing) * irradiance - 21.0f * (mean - facing) * grazing;
-  return passing * m.kd * inverse_pi * max(entering, vec3(0.0f)) * coated_escape(m, mean) / (vec3(1.0f) - mean);
-}
-#endif
-
 LIMN_END
 #endif  // LIMN_PREFILTERED_MODELS_GLSL

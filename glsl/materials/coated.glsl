@@ -1,7 +1,6 @@
 // A Lambertian base of albedo kd under a smooth coat with the indices eta and k. What the coat mirrors, coated_mirror() of the
 // light from one direction, is no function of two directions and not part of the response here: whoever holds the light from
-// the mirror direction adds it (of the environment, the technique prefiltered_environment and references do). The base answers in
-// one of three ways:
+// the mirror direction adds it (of the environment: glsl/light/coated_environment.glsl). The base answers in one of three ways:
 //   sum       kd / pi: with the mirror it gains energy, F(v);
 //   blend     (1 - F(v)) kd / pi: exact only for kd = 1, and not reciprocal;
 //   physical  (1 - F(v)) (1 - F(l)) kd / (pi eta^2 (1 - kd Fi)): light is refracted into the coat and out of it, and Fi of what

@@ -5,6 +5,9 @@
 #if MATERIAL_MODELS
 #include "glsl/light/prefiltered_models.glsl"
 #endif
+#if (MATERIAL_MODELS & 32) != 0
+#include "glsl/light/coated_environment.glsl"
+#endif
 #include "glsl/media/medium_input.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -66,12 +69,11 @@ MicrofacetLobe microfacet_lobe_entry(float n_dot_v, float alpha) {
 uniform sampler2DArray grazing_map;  // as irradiance_map, of light weighted by schlick_weight(n.l)
 
 vec3 coated_reflection(MaterialModel m, vec3 n, vec3 v) {
-  PrefilteredLobe lobe = coated_prefiltered_lobe(m, n, v);
-  vec3 mirrored = prefiltered_lookup(sharp_map, environment_lookup_direction(lobe.towards, frame.environment_rotation), 0);
-  vec3 grazing =
-      prefiltered_lookup(grazing_map, environment_lookup_direction(n, frame.environment_rotation), 0);
-  return coated_prefiltered_base(m, dot(n, v), irradiance_towards(n), frame.environment_scale * grazing) +
-         frame.environment_scale * lobe.reflectance * mirrored;
+  vec3 towards = environment_lookup_direction(prefiltered_mirror(n, v), frame.environment_rotation);
+  vec3 mirrored = frame.environment_scale * prefiltered_lookup(sharp_map, towards, 0);
+  vec3 grazing = frame.environment_scale *
+                 prefiltered_lookup(grazing_map, environment_lookup_direction(n, frame.environment_rotation), 0);
+  return coated_environment(m, dot(n, v), irradiance_towards(n), grazing, mirrored);
 }
 #endif
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <string>
 
+#include "glsl/light/coated_environment.glsl"
 #include "tests/unit/glsl/prefiltered_skies.h"
 #include "tests/unit/materials/models.h"
 
@@ -180,11 +181,10 @@ double irradiance(const Sky& sky, const vec3& n, const Weight& weight) {
 double coatedLight(const MaterialModel& m, const Sky& sky, const vec3& n, const vec3& v) {
   const double whole = irradiance(sky, n, [](float) { return 1; }),
                grazing = irradiance(sky, n, schlick_weight);
-  const vec3 base = coated_prefiltered_base(m, dot(n, v), vec3(static_cast<float>(whole)),
-                                            vec3(static_cast<float>(grazing)));
-  const PrefilteredLobe mirror = coated_prefiltered_lobe(m, n, v);
-  return static_cast<double>(base.x) +
-         static_cast<double>(mirror.reflectance.x) * sky.radiance(mirror.towards);
+  const auto mirrored = static_cast<float>(sky.radiance(2 * dot(n, v) * n - v));
+  const vec3 light = coated_environment(m, dot(n, v), vec3(static_cast<float>(whole)),
+                                        vec3(static_cast<float>(grazing)), vec3(mirrored));
+  return static_cast<double>(light.x);
 }
 
 double exactCoatedLight(const MaterialModel& m, const Sky& sky, const vec3& n, const vec3& v) {
@@ -218,9 +218,9 @@ TEST(PrefilteredModels, CoatsShowMirrorAndBase) {
 /// What reflects of uniform light.
 double coatedFurnace(float kd, uint options, double cosine) {
   const MaterialModel m = coatedModel(kd, 1.5f, options);
-  const vec3 base = coated_prefiltered_base(m, static_cast<float>(cosine), vec3(static_cast<float>(M_PI)),
-                                            vec3(static_cast<float>(M_PI) / 21));
-  return static_cast<double>((base + coated_mirror(m, static_cast<float>(cosine))).x);
+  const vec3 light = coated_environment(m, static_cast<float>(cosine), vec3(static_cast<float>(M_PI)),
+                                        vec3(static_cast<float>(M_PI) / 21), vec3(1));
+  return static_cast<double>(light.x);
 }
 
 TEST(PrefilteredModels, SumsOfCoatAndBaseGainEnergyAndPhysicalOnesKeepIt) {
