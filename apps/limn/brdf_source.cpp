@@ -17,6 +17,7 @@
 #include "core/base/text.h"
 #include "core/brdf/groove.h"
 #include "core/brdf/measured_file.h"
+#include "core/brdf/model_brdf.h"
 #include "core/scene_io/load.h"
 #include "core/session/find.h"
 #include "glsl/materials/model.glsl"
@@ -113,8 +114,8 @@ BrdfSource fromScene(const fs::path& nameOrFile, const std::string& name) {
     source.kind = "extras.limn_material";
     source.isotropic = !glsl::model_anisotropic(model);
     const auto measured = std::make_shared<const std::vector<vec3>>(scene.measured);
-    source.f = [model, measured](const dvec3& l, const dvec3& v) {
-      return dvec3(glsl::model_response(*measured, model, vec3(v), vec3(l))) / l.z;
+    source.f = [measured, f = brdf::modelBrdf(model, *measured)](const dvec3& l, const dvec3& v) {
+      return f(l, v);
     };
     return source;
   }

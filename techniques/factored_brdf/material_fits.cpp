@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/brdf/model_brdf.h"
 #include "glsl/materials/model.glsl"
 
 namespace limn::factored {
@@ -23,13 +24,6 @@ brdf::TorranceSparrow described(const glsl::MaterialModel& m) {
                                                                    : brdf::NormalDistribution::beckmann,
           .masking =
               (m.options & model_option_product) != 0 ? brdf::Masking::product : brdf::Masking::correlated};
-}
-
-/// Returns f of a material with a model: what passes evaluate, without the cosine.
-brdf::Brdf exactBrdf(const scene::Scene& scene, const scene::Material& material) {
-  return [&measured = scene.measured, m = *material.model](const dvec3& l, const dvec3& v) {
-    return dvec3(glsl::model_response(measured, m, vec3(v), vec3(l))) / l.z;
-  };
 }
 
 /// Says whether two models have the same tables. Analytic ones hold neither kd nor ks.
@@ -57,7 +51,7 @@ std::optional<brdf::FactoredBrdf> fitted(const scene::Scene& scene, const scene:
     return brdf::torranceSparrowTables(described(*material.model), choice.fit.texels, choice.fit.texels,
                                        choice.fit.warped, choice.fit.format);
   try {
-    return brdf::fitBrdf(exactBrdf(scene, material), choice.fit);
+    return brdf::fitBrdf(brdf::modelBrdf(*material.model, scene.measured), choice.fit);
   } catch (const UsageError&) {
     throw;
   } catch (const Error&) {

@@ -1,0 +1,17 @@
+// Declares the models of materials (glsl/materials) as BRDFs.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "core/base/export.h"
+#include "core/brdf/factor_tables.h"
+#include "glsl/materials/material_model.glsl"
+
+namespace limn::brdf {
+
+/// Returns f of a model: what passes evaluate, without the cosine. `measured` holds the tables of measured
+/// models (Scene::measured), and lives as long as the function.
+LIMN_API Brdf modelBrdf(const glsl::MaterialModel& model, const std::vector<glm::vec3>& measured);
+
+}  // namespace limn::brdf
