@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/brdf/measured_file.h"
 #include "core/brdf/private/tensor_file.h"
 #include "core/brdf/private/visible_normals.h"
 
@@ -18,7 +19,6 @@ namespace limn::brdf {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 26;
 /// Files of isotropic materials have one azimuth of l, or two that say the same.
 constexpr std::size_t kMostAzimuths = 2;
 
@@ -165,7 +165,7 @@ TabulatedBrdf decodeEpfl(std::span<const std::byte> bytes, std::string_view name
 }
 
 TabulatedBrdf readEpfl(const std::filesystem::path& path, const glm::ivec3& size) {
-  return decodeEpfl(readFile(path, kLargestFile), path.string(), size);
+  return decodeEpfl(readFile(path, kLargestMeasuredFile), path.string(), size);
 }
 
 }  // namespace limn::brdf

@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::string_view kField = "disc_pairs";
 constexpr std::size_t kDimensions = 5;
-constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 26;
 constexpr float kLargestHalf = 65504;
 
 bool isSide(std::size_t texels) {
@@ -53,7 +52,7 @@ MeasuredBrdf decodeMeasured(std::span<const std::byte> bytes, std::string_view n
 }
 
 MeasuredBrdf readMeasured(const std::filesystem::path& path) {
-  return decodeMeasured(readFile(path, kLargestFile), path.string());
+  return decodeMeasured(readFile(path, kLargestMeasuredFile), path.string());
 }
 
 AnisotropicTable decodeDiscPairs(std::span<const std::byte> bytes, std::string_view name) {

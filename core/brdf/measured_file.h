@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string_view>
@@ -18,6 +19,9 @@ namespace limn::brdf {
 
 /// Isotropic, or over two directions.
 using MeasuredBrdf = std::variant<TabulatedBrdf, AnisotropicTable>;
+
+/// Bytes that a file of any kind may have, alone or of a scene. One of MERL's has 35 MB.
+inline constexpr std::uint64_t kLargestMeasuredFile = std::uint64_t{64} << 20;
 
 /// The texels a side that tables over two directions may have in files: 64 MB of float numbers.
 inline constexpr int kMostDiscTexels = 48;

@@ -54,8 +54,7 @@ std::string namesOf(const Range& entries) {
 
 constexpr double kMostIndex = 1000, kMostExponent = 1e6;
 constexpr float kLeastIndex = 1e-3f;
-/// A file of MERL's database has 35 MB. OpenGL's storage buffers have 128 MiB at least, of 12 bytes a value.
-constexpr std::uint64_t kMostMeasuredBytes = 256u << 20;
+/// OpenGL's storage buffers have 128 MiB at least, of 12 bytes a value.
 constexpr std::size_t kMostMeasuredValues = (128u << 20) / 12;
 
 }  // namespace
@@ -123,7 +122,7 @@ glsl::MaterialModel Loader::readMeasured(const tinygltf::Value& file, const std:
   const auto& uri = file.Get<std::string>();
   const auto known = measured_.find(uri);
   if (known != measured_.end()) return known->second;
-  const std::vector<std::byte> bytes = readUri(uri, what, kMostMeasuredBytes);
+  const std::vector<std::byte> bytes = readUri(uri, what, brdf::kLargestMeasuredFile);
   const std::string named = tinygltf::IsDataURI(uri) ? what : fmt::format("{} '{}'", what, oneLine(uri, 80));
   brdf::MeasuredModel out;
   std::vector<glm::vec3> values;
