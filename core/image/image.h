@@ -113,6 +113,20 @@ LIMN_API Image readImage(const std::filesystem::path& path);
 /// without a known extension, the content decides.
 LIMN_API Image readImageMemory(std::span<const std::byte> bytes, const std::string& name);
 
+/// Holds the first channel of a picture whose values are no colours (heights): rows from the top.
+struct ImageChannel {
+  int width = 0;
+  int height = 0;
+  int bits = 0;               ///< of a value in the file
+  std::vector<float> values;  ///< width * height
+};
+
+/// Returns the first channel of a PNG (values from 0 to 1, not decoded from sRGB) or of an EXR (as it is).
+/// Throws Error with one line that begins with `name` for anything else and for more than `mostPixels`
+/// pixels, beside the limits of readImageMemory(); sizes are checked before anything is allocated.
+LIMN_API ImageChannel readFirstChannelMemory(std::span<const std::byte> bytes, const std::string& name,
+                                             std::uint64_t mostPixels);
+
 /// Returns a texture as 8-bit RGBA (PNG or JPEG; 16-bit values are rounded), from memory or a file.
 LIMN_API Image8 readImage8Memory(std::span<const std::byte> bytes, const std::string& name);
 LIMN_API Image8 readImage8(const std::filesystem::path& path);

@@ -163,8 +163,11 @@ class Decoder {
   const OIIO::ImageSpec& spec() const { return spec_; }
   bool isSrgb() const { return format_ == Format::png || format_ == Format::jpeg; }
 
-  void read(const OIIO::TypeDesc& type, void* target) {
-    if (!input_->read_image(0, 0, 0, spec_.nchannels, type, target)) fail(input_->geterror());
+  Format format() const { return format_; }
+
+  void read(const OIIO::TypeDesc& type, void* target) { readFirst(spec_.nchannels, type, target); }
+  void readFirst(int channels, const OIIO::TypeDesc& type, void* target) {
+    if (!input_->read_image(0, 0, 0, channels, type, target)) fail(input_->geterror());
   }
 
  private:
@@ -284,6 +287,23 @@ Image8 decode8(std::span<const std::byte> bytes, const std::string& name) {
   return image;
 }
 
+ImageChannel decodeFirstChannel(std::span<const std::byte> bytes, const std::string& name,
+                                std::uint64_t mostPixels) {
+  Decoder decoder(bytes, name);
+  if (decoder.format() != Format::png && decoder.format() != Format::exr)
+    throw Error(fmt::format("{}: a PNG or an EXR is accepted", name));
+  const OIIO::ImageSpec& spec = decoder.spec();
+  const std::uint64_t pixels =
+      static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
+  if (pixels > mostPixels)
+    throw Error(
+        fmt::format("{}: {}x{} pixels; at most {} are accepted", name, spec.width, spec.height, mostPixels));
+  ImageChannel channel{spec.width, spec.height, static_cast<int>(8 * spec.format.size()), {}};
+  channel.values.resize(static_cast<std::size_t>(pixels));
+  decoder.readFirst(1, OIIO::TypeDesc::FLOAT, channel.values.data());
+  return channel;
+}
+
 /// Attributes of an EXR; text chunks (tEXt) of a PNG.
 void addMetadata(OIIO::ImageSpec& spec, const Image& image) {
   for (const auto& [key, value] : image.metadata()) spec.attribute(kMetadataPrefix + key, value);
@@ -311,6 +331,11 @@ Image readImageMemory(std::span<const std::byte> bytes, const std::string& name)
 
 Image readImage(const std::filesystem::path& path) {
   return readImageMemory(readFile(path), path.string());
+}
+
+ImageChannel readFirstChannelMemory(std::span<const std::byte> bytes, const std::string& name,
+                                    std::uint64_t mostPixels) {
+  return guarded(name, [&] { return decodeFirstChannel(bytes, name, mostPixels); });
 }
 
 Image8 readImage8Memory(std::span<const std::byte> bytes, const std::string& name) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -31,20 +32,34 @@ double get(const tinygltf::Value& object, const char* key, double absent) {
 
 }  // namespace
 
-int Loader::readImage(int index, bool srgb, const std::string& what) {
+const Loader::ImageSource& Loader::imageAt(int index, const std::string& what) const {
   if (index < 0 || static_cast<std::size_t>(index) >= imageSources_.size())
     fail(fmt::format("{}: image {} does not exist; there are {}", what, index, imageSources_.size()));
-  const auto known = imageIndex_.find({index, srgb});
-  if (known != imageIndex_.end()) return known->second;
+  return imageSources_[static_cast<std::size_t>(index)];
+}
+
+std::string Loader::imageLabel(int index) const {
   const ImageSource& source = imageSources_[static_cast<std::size_t>(index)];
   const bool named = source.view < 0 && !tinygltf::IsDataURI(source.uri);
-  const std::string label =
-      fmt::format("image {}{}{}", index, source.name.empty() ? "" : " '" + source.name + "'",
-                  named ? " (" + oneLine(source.uri, 80) + ")" : "");
+  return fmt::format("image {}{}{}", index, source.name.empty() ? "" : " '" + source.name + "'",
+                     named ? " (" + oneLine(source.uri, 80) + ")" : "");
+}
+
+std::span<const std::byte> Loader::imageBytes(const ImageSource& source, const std::string& label,
+                                              std::vector<std::byte>& storage) const {
+  if (source.view >= 0) return viewBytes(source.view, label);
+  storage = uriBytes(source.uri, label, std::uint64_t{1} << 32);
+  return storage;
+}
+
+int Loader::readImage(int index, bool srgb, const std::string& what) {
+  const ImageSource& source = imageAt(index, what);
+  const auto known = imageIndex_.find({index, srgb});
+  if (known != imageIndex_.end()) return known->second;
+  const std::string label = imageLabel(index);
 
   std::vector<std::byte> storage;
   std::span<const std::byte> bytes;
-  if (source.view >= 0) bytes = viewBytes(source.view, label);
   // One damaged picture is no reason to show nothing: the factors of what it is for stand alone.
   const auto withoutImage = [&](const std::string& problem) {
     warn(fmt::format("{}; {} goes without it", problem, what));
@@ -52,7 +67,7 @@ int Loader::readImage(int index, bool srgb, const std::string& what) {
   };
   Image8 decoded;
   try {
-    if (source.view < 0) bytes = storage = uriBytes(source.uri, label, std::uint64_t{1} << 32);
+    bytes = imageBytes(source, label, storage);
     if (bytes.empty()) throw Error(label + ": it is empty; PNG or JPEG is accepted");
   } catch (const Error& error) {
     return withoutImage(error.what());
@@ -108,28 +123,22 @@ void Loader::checkImageSize(std::span<const std::byte> bytes, const std::string&
   }
 }
 
-TextureRef Loader::readTexture(int index, int texCoord, const tinygltf::Value* transform, bool srgb,
-                               UvUse& use, const std::string& what) {
-  TextureRef out;
-  if (index == -1) return out;
+const tinygltf::Texture& Loader::textureAt(int index, const std::string& what) const {
   if (index < 0 || static_cast<std::size_t>(index) >= model_->textures.size())
     fail(fmt::format("{}: texture {} does not exist; there are {}", what, index, model_->textures.size()));
-  const tinygltf::Texture& texture = model_->textures[static_cast<std::size_t>(index)];
-  if (texture.source == -1) {
-    warn(fmt::format("{}: texture {} has no PNG or JPEG image and is ignored", what, index));
-    return out;
-  }
-  if (texture.sampler != -1) {
-    if (texture.sampler < 0 || static_cast<std::size_t>(texture.sampler) >= model_->samplers.size())
-      fail(fmt::format("{}: sampler {} does not exist; there are {}", what, texture.sampler,
-                       model_->samplers.size()));
-    const tinygltf::Sampler& sampler = model_->samplers[static_cast<std::size_t>(texture.sampler)];
-    out.wrapS = wrapMode(sampler.wrapS);
-    out.wrapT = wrapMode(sampler.wrapT);
-  }
-  out.image = readImage(texture.source, srgb, what);
-  if (out.image == kNone) return {};
+  return model_->textures[static_cast<std::size_t>(index)];
+}
 
+std::pair<Wrap, Wrap> Loader::wrapsOf(const tinygltf::Texture& texture, const std::string& what) const {
+  if (texture.sampler == -1) return {Wrap::repeat, Wrap::repeat};
+  if (texture.sampler < 0 || static_cast<std::size_t>(texture.sampler) >= model_->samplers.size())
+    fail(fmt::format("{}: sampler {} does not exist; there are {}", what, texture.sampler,
+                     model_->samplers.size()));
+  const tinygltf::Sampler& sampler = model_->samplers[static_cast<std::size_t>(texture.sampler)];
+  return {wrapMode(sampler.wrapS), wrapMode(sampler.wrapT)};
+}
+
+void Loader::takeUvs(int texCoord, const tinygltf::Value* transform, UvUse& use, const std::string& what) {
   UvUse wanted{true, texCoord, glm::vec2(0), glm::vec2(1), 0};
   if (transform) {
     if (transform->Has("offset")) {
@@ -150,6 +159,21 @@ TextureRef Loader::readTexture(int index, int texCoord, const tinygltf::Value* t
         "{}: its texture coordinates differ from those of the material's other textures, whose are used",
         what));
   }
+}
+
+TextureRef Loader::readTexture(int index, int texCoord, const tinygltf::Value* transform, bool srgb,
+                               UvUse& use, const std::string& what) {
+  TextureRef out;
+  if (index == -1) return out;
+  const tinygltf::Texture& texture = textureAt(index, what);
+  if (texture.source == -1) {
+    warn(fmt::format("{}: texture {} has no PNG or JPEG image and is ignored", what, index));
+    return out;
+  }
+  std::tie(out.wrapS, out.wrapT) = wrapsOf(texture, what);
+  out.image = readImage(texture.source, srgb, what);
+  if (out.image == kNone) return {};
+  takeUvs(texCoord, transform, use, what);
   return out;
 }
 
@@ -224,6 +248,12 @@ Material Loader::readMaterial(const tinygltf::Material& source, const std::strin
     const std::string place = what + " limn_material";
     applyModel(m, readModel(source.extras.Get("limn_material"), place), place);
     use.used = use.used || m.tangents();  // along rising u, where the file has no tangents
+  }
+  if (source.extras.IsObject() && source.extras.Has("limn_height")) {
+    const std::string place = what + " limn_height";
+    m.height = readHeight(source.extras.Get("limn_height"), use, place);
+    if (m.normalTexture.image != kNone)
+      warn(place + ": there is a normalTexture too, from which normals are taken");
   }
   uvUses_.push_back(use);
   return m;

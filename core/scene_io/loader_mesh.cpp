@@ -271,6 +271,7 @@ void Loader::completePrimitive(Primitive& out, const std::string& what) {
     }
   }
   computeBounds(out);
+  checkHeightUvs(out);
   if (material.emission == glm::vec3(0)) return;
   if (const auto quad = material.alphaCutoff > 0 ? std::nullopt : findRectangle(out))
     out.emissiveParts = emissiveParts(scene_, out, *quad);

@@ -29,6 +29,15 @@ Image8 readImage8Memory(std::span<const std::byte> bytes, const std::string& nam
   return image;
 }
 
+ImageChannel readFirstChannelMemory(std::span<const std::byte> bytes, const std::string& name,
+                                    std::uint64_t) {
+  const Image8 image = readImage8Memory(bytes, name);
+  ImageChannel channel{image.width, image.height, 8, {}};
+  channel.values.assign(static_cast<std::size_t>(image.width * image.height), 0.5f);
+  channel.values.back() = static_cast<float>(std::to_integer<int>(bytes[19]));
+  return channel;
+}
+
 namespace scene {
 
 Environment loadEnvironment(const std::filesystem::path& file, std::vector<std::string>&) {

@@ -80,6 +80,17 @@ void materials(GltfBuilder& b) {
   b.triangle(material);
 }
 
+void heights(GltfBuilder& b) {
+  std::vector<std::byte> png(sizeof kPng);
+  std::memcpy(png.data(), kPng, sizeof kPng);
+  const int material = b.texturedMaterial(png);
+  b.append("samplers", {{"wrapS", 33071}, {"wrapT", 33071}});
+  b.root["textures"][0]["sampler"] = 0;
+  b.root["materials"][0]["extras"]["limn_height"] = {
+      {"texture", {{"index", 0}, {"texCoord", 0}}}, {"scale", 0.1}, {"offset", -0.05}, {"tile", {1, 2}}};
+  b.triangle(material);
+}
+
 void emissiveQuad(GltfBuilder& b) {
   const int material = b.append("materials", {{"emissiveFactor", {1, 1, 1}}});
   const int positions = b.vec3({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
@@ -124,6 +135,7 @@ int main(int count, char** arguments) {
       {"animation", animated},
       {"lights", lights},
       {"materials", materials},
+      {"heights", heights},
       {"quad", emissiveQuad},
       {"instances", instanced},
       {"sparse_strip", sparseStrip},

@@ -1,4 +1,4 @@
-// A PNG encoder for tests: RGBA, stored without compression; the declared size may lie.
+// A PNG encoder for tests: RGBA or grey, stored without compression; the declared size may lie.
 #pragma once
 
 #include <cstddef>
@@ -25,13 +25,15 @@ inline void appendChunk(std::string& out, const std::string& type, const std::st
   appendWord(out, ~code);
 }
 
-/// `rgba`: width * height * 4 bytes, top row first (fewer where only the header matters).
-inline std::vector<std::byte> png(std::uint32_t width, std::uint32_t height,
-                                  const std::vector<std::uint8_t>& rgba) {
+/// `bytes`: those of all pixels, top row first (fewer where only the header matters). `colour`: the format's
+/// code, 0 for grey and 6 for RGBA; `depth`: bits of a value.
+inline std::vector<std::byte> pngOf(std::uint32_t width, std::uint32_t height, char depth, char colour,
+                                    const std::vector<std::uint8_t>& bytes) {
+  const std::size_t row = (colour == 6 ? 4ull : 1ull) * static_cast<std::size_t>(depth / 8) * width;
   std::string rows;
-  for (std::size_t i = 0; i < rgba.size(); ++i) {
-    if (i % (4ull * width) == 0) rows.push_back(0);
-    rows.push_back(static_cast<char>(rgba[i]));
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    if (i % row == 0) rows.push_back(0);
+    rows.push_back(static_cast<char>(bytes[i]));
   }
   std::uint32_t a = 1, b = 0;
   for (const char c : rows) {
@@ -49,12 +51,29 @@ inline std::vector<std::byte> png(std::uint32_t width, std::uint32_t height,
   std::string header;
   appendWord(header, width);
   appendWord(header, height);
-  header += std::string("\x08\x06\0\0\0", 5);
+  header += {depth, colour, 0, 0, 0};
   std::string out("\x89PNG\r\n\x1a\n");
   appendChunk(out, "IHDR", header);
   appendChunk(out, "IDAT", data);
   appendChunk(out, "IEND", "");
   return GltfBuilder::toBytes(out);
+}
+
+/// `rgba`: width * height * 4 bytes, top row first (fewer where only the header matters).
+inline std::vector<std::byte> png(std::uint32_t width, std::uint32_t height,
+                                  const std::vector<std::uint8_t>& rgba) {
+  return pngOf(width, height, 8, 6, rgba);
+}
+
+/// Grey of 16 bits.
+inline std::vector<std::byte> png16(std::uint32_t width, std::uint32_t height,
+                                    const std::vector<std::uint16_t>& grey) {
+  std::vector<std::uint8_t> bytes;
+  for (const std::uint16_t value : grey) {
+    bytes.push_back(static_cast<std::uint8_t>(value >> 8));
+    bytes.push_back(static_cast<std::uint8_t>(value & 0xff));
+  }
+  return pngOf(width, height, 16, 0, bytes);
 }
 
 }  // namespace limn::test

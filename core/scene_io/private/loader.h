@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct AnimationChannel;
 struct AnimationSampler;
 struct Material;
 struct Primitive;
+struct Texture;
 }  // namespace tinygltf
 
 namespace limn::scene {
@@ -123,8 +125,25 @@ class Loader {
   void limitEnergy(glsl::MaterialModel& model, const std::string& what);
   void applyModel(Material& material, const glsl::MaterialModel& model, const std::string& what);
 
+  // loader_height.cpp
+  /// Returns the index in Scene::heights of the map that extras.limn_height describes.
+  int readHeight(const tinygltf::Value& extras, UvUse& use, const std::string& what);
+  /// Warns where the texture coordinates of a primitive do not fit the size that its material's map has.
+  void checkHeightUvs(const Primitive& primitive);
+
   TextureRef readTexture(int index, int texCoord, const tinygltf::Value* transform, bool srgb, UvUse& use,
                          const std::string& what);
+  const tinygltf::Texture& textureAt(int index, const std::string& what) const;
+  /// Returns how a texture goes on beyond its edges, along u and v.
+  std::pair<Wrap, Wrap> wrapsOf(const tinygltf::Texture& texture, const std::string& what) const;
+  /// Makes these the texture coordinates of the material, or warns that it has others.
+  void takeUvs(int texCoord, const tinygltf::Value* transform, UvUse& use, const std::string& what);
+  const ImageSource& imageAt(int index, const std::string& what) const;
+  std::string imageLabel(int index) const;
+  /// Returns the bytes of an image, which `storage` keeps where no buffer does. Throws Error "LABEL: ..."
+  /// without the scene's name when they cannot be read.
+  std::span<const std::byte> imageBytes(const ImageSource& source, const std::string& label,
+                                        std::vector<std::byte>& storage) const;
   /// Returns the index of the image in Scene::images, or none, with a warning, when it cannot be read.
   int readImage(int index, bool srgb, const std::string& what);
   void checkImageSize(std::span<const std::byte> bytes, const std::string& label) const;
@@ -196,6 +215,12 @@ class Loader {
   std::map<std::pair<int, bool>, int> imageIndex_;  ///< (image, sRGB) to Scene::images
 
   std::map<std::string, glsl::MaterialModel> measured_;  ///< by URI
+
+  /// Holds what tells height maps apart: image, wrap, scale, offset, tile.
+  using HeightKey = std::tuple<int, relief::Wrap, double, double, double, double>;
+  std::map<HeightKey, int> heightIndex_;  ///< to Scene::heights
+  std::set<int> badUvs_;                  ///< materials whose height maps do not fit their coordinates
+  std::vector<glm::dvec2> heightTiles_;   ///< parallel to Scene::heights, metres per unit of u and v
 
   std::map<int, int> lightTextureIndex_;  ///< Scene::images to Scene::lightTextures
 
