@@ -5,6 +5,8 @@
 #include <cstring>
 #include <map>
 
+#include "core/relief/slopes.h"
+#include "core/scene/texture_lookup.h"
 #include "glsl/scene/blocks.glsl"
 
 namespace limn::scene {
@@ -33,6 +35,7 @@ glsl::Material packConstants(const Material& m) {
   if (m.emissiveTexture.image != kNone) flags |= glsl::material_has_emissive_texture;
   if (m.specularSurface()) flags |= glsl::material_specular_surface;
   if (m.model) flags |= glsl::material_has_model;
+  if (m.height != kNone && m.normalTexture.image == kNone) flags |= glsl::material_has_height_normals;
   out.flags = flags;
   return out;
 }
@@ -52,19 +55,36 @@ gpu::Texture upload(gpu::Device& device, const TextureImage& image, bool fine) {
   return texture;
 }
 
+gpu::Texture upload(gpu::Device& device, const relief::HeightField& field) {
+  const std::vector<relief::SlopeLevel> levels = relief::slopeLevels(field);
+  gpu::Texture texture(device, "height slopes",
+                       {.target = GL_TEXTURE_2D,
+                        .format = GL_RG32F,
+                        .width = field.size().x,
+                        .height = field.size().y,
+                        .levels = static_cast<int>(levels.size())});
+  for (size_t level = 0; level < levels.size(); ++level)
+    texture.upload(static_cast<int>(level), 0, GL_RG, GL_FLOAT, levels[level].slopes.data());
+  return texture;
+}
+
 constexpr uint32_t kTextureFlags = glsl::material_has_base_colour_texture |
                                    glsl::material_has_metal_rough_texture |
-                                   glsl::material_has_normal_texture | glsl::material_has_emissive_texture;
+                                   glsl::material_has_normal_texture | glsl::material_has_emissive_texture |
+                                   glsl::material_has_height_normals;
 
 constexpr std::array<GLint, 3> kWraps{GL_REPEAT, GL_CLAMP_TO_EDGE, GL_MIRRORED_REPEAT};
+
+int samplerOf(Wrap wrapS, Wrap wrapT) {
+  return 3 * static_cast<int>(wrapS) + static_cast<int>(wrapT);
+}
 
 }  // namespace
 
 GpuMaterials::GpuMaterials(gpu::Device& device, const Scene& scene) : device_(device) {
-  std::map<std::array<int, 8>, uint32_t> keys{{{kNone, kNone, kNone, kNone, 0, 0, 0, 0}, 0u}};
-  const auto keyOf = [&](const std::array<int, 4>& t, const std::array<int, 4>& s) {
-    const std::array<int, 8> both{t[0], t[1], t[2], t[3], s[0], s[1], s[2], s[3]};
-    return keys.emplace(both, static_cast<uint32_t>(keys.size())).first->second;
+  std::map<std::pair<Choice, Choice>, uint32_t> keys{{{Set().textures, Set().samplers}, 0u}};
+  const auto keyOf = [&](const Choice& textures, const Choice& samplers) {
+    return keys.emplace(std::pair(textures, samplers), static_cast<uint32_t>(keys.size())).first->second;
   };
   for (const Material& material : scene.materials) {
     materials_.push_back(packConstants(material));
@@ -74,10 +94,15 @@ GpuMaterials::GpuMaterials(gpu::Device& device, const Scene& scene) : device_(de
     for (size_t i = 0; i < refs.size(); ++i) {
       if (refs[i]->image == kNone) continue;
       set.textures[i] = refs[i]->image;
-      set.samplers[i] = 3 * static_cast<int>(refs[i]->wrapS) + static_cast<int>(refs[i]->wrapT);
+      set.samplers[i] = samplerOf(refs[i]->wrapS, refs[i]->wrapT);
+    }
+    if ((materials_.back().flags & glsl::material_has_height_normals) != 0) {
+      const Wrap wrap = wrapOf(scene.heights[static_cast<size_t>(material.height)]);
+      set.textures.back() = static_cast<int>(scene.images.size()) + material.height;
+      set.samplers.back() = samplerOf(wrap, wrap);
     }
     set.key = keyOf(set.textures, set.samplers);
-    set.baseColourKey = keyOf({set.textures[0], kNone, kNone, kNone}, {set.samplers[0], 0, 0, 0});
+    set.baseColourKey = keyOf({set.textures[0], kNone, kNone, kNone, kNone}, {set.samplers[0], 0, 0, 0, 0});
     set.variant = {materials_.back().flags & kTextureFlags, material.alphaCutoff > 0};
     set.doubleSided = material.doubleSided;
     set.specular = material.specularSurface();
@@ -92,6 +117,7 @@ GpuMaterials::GpuMaterials(gpu::Device& device, const Scene& scene) : device_(de
       isNormalMap[static_cast<size_t>(material.normalTexture.image)] = true;
   for (size_t i = 0; i < scene.images.size(); ++i)
     textures_.push_back(upload(device, scene.images[i], isNormalMap[i]));
+  for (const relief::HeightField& field : scene.heights) textures_.push_back(upload(device, field));
   if (textures_.empty()) return;
   for (const GLint wrapS : kWraps) {
     for (const GLint wrapT : kWraps) {

@@ -31,8 +31,8 @@ class GpuMaterials {
   uint32_t baseColourKey(int material) const { return sets_[static_cast<size_t>(material)].baseColourKey; }
   SurfaceVariant variant(int material) const { return sets_[static_cast<size_t>(material)].variant; }
   /// Names of a material's textures in the shaders.
-  static constexpr std::array<const char*, 4> textureNames{"base_colour_texture", "metal_rough_texture",
-                                                           "normal_texture", "emissive_texture"};
+  static constexpr std::array<const char*, 5> textureNames{
+      "base_colour_texture", "metal_rough_texture", "normal_texture", "emissive_texture", "height_slopes"};
   /// Binds the material and its textures to the slots of `programs`.
   void bind(const frame::PassContext& context, const SurfacePrograms& programs, int material) const;
   /// Binds the material's base colour texture alone to `slot`.
@@ -47,8 +47,10 @@ class GpuMaterials {
   void bindTexture(const frame::PassContext& context, frame::SlotHandle slot, int material,
                    size_t texture) const;
 
+  using Choice = std::array<int, textureNames.size()>;
   struct Set {
-    std::array<int, 4> textures{kNone, kNone, kNone, kNone}, samplers{};
+    Choice textures{kNone, kNone, kNone, kNone, kNone};  ///< of textures_
+    Choice samplers{};
     uint32_t key = 0, baseColourKey = 0;
     SurfaceVariant variant;
     bool doubleSided = false, specular = false;
@@ -59,9 +61,9 @@ class GpuMaterials {
   gpu::Buffer models_;
   gpu::Buffer measured_;
   uint32_t modelKinds_ = 0;
-  gpu::Buffer blocks_;      ///< the same data, each at the alignment of a uniform block
-  size_t blockStride_ = 0;  ///< bytes
-  std::vector<gpu::Texture> textures_;
+  gpu::Buffer blocks_;                  ///< the same data, each at the alignment of a uniform block
+  size_t blockStride_ = 0;              ///< bytes
+  std::vector<gpu::Texture> textures_;  ///< those of Scene::images, then the slopes of Scene::heights
   std::vector<gpu::Sampler> samplers_;  ///< 3 x wrapS + wrapT
   std::vector<Set> sets_;
 };

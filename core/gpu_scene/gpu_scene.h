@@ -80,7 +80,7 @@ struct SurfacePrograms {
   std::map<SurfaceVariant, frame::ProgramHandle> variants;
   bool materials = false;  ///< the programs read the material: the slots below are declared
   frame::SlotHandle material;
-  std::array<frame::SlotHandle, 4> textures;
+  std::array<frame::SlotHandle, 5> textures;
 };
 
 class LIMN_API GpuScene {

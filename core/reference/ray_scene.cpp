@@ -169,7 +169,11 @@ TextureFootprint textureFootprint(const Draw& draw, uint32_t triangle, const gls
 
 float levelOfDetail(const scene::Scene& scene, const scene::TextureRef& texture,
                     const TextureFootprint& footprint) {
-  const float lod = glsl::texture_level(footprint.dx, footprint.dy, scene::textureSize(scene, texture));
+  return levelOfDetail(scene::textureSize(scene, texture), footprint);
+}
+
+float levelOfDetail(const glm::vec2& size, const TextureFootprint& footprint) {
+  const float lod = glsl::texture_level(footprint.dx, footprint.dy, size);
   return std::isnan(lod) ? 32.f : lod;
 }
 
@@ -266,6 +270,7 @@ RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose, bool unsh
       medium_(scene, pose),
       hierarchy_(std::make_unique<Hierarchy>()) {
   Hierarchy& h = *hierarchy_;
+  for (const relief::HeightField& field : scene.heights) slopes_.push_back(relief::slopeLevels(field));
   std::map<std::pair<int, int>, int> uses;
   for (const auto& instance : pose.instances)
     if (instance.node != scene::kNone && instance.deformed == scene::kNone)

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/scene/texture_lookup.h"
+#include "glsl/relief/height_normal.glsl"
 #include "glsl/surface/normal_map.glsl"
 
 namespace limn::reference {
@@ -21,7 +22,7 @@ struct Corner {
 
 /// Material textures at the footprint's level; white without image or coordinates.
 struct TextureLookup {
-  const scene::Scene& scene;
+  const RayScene& rays;
   bool hasUv;
   glm::vec2 uv;
   std::optional<TextureFootprint> footprint;  ///< nullopt: full size
@@ -29,8 +30,14 @@ struct TextureLookup {
   bool has(const scene::TextureRef& texture) const { return hasUv && texture.image != scene::kNone; }
   glm::vec4 operator()(const scene::TextureRef& texture) const {
     if (!has(texture)) return glm::vec4(1);
-    return scene::sampleTexture(scene, texture, uv,
-                                footprint ? levelOfDetail(scene, texture, *footprint) : 0.f);
+    return scene::sampleTexture(rays.scene(), texture, uv,
+                                footprint ? levelOfDetail(rays.scene(), texture, *footprint) : 0.f);
+  }
+  /// The slopes of a height map of the scene.
+  glm::vec2 slope(int height) const {
+    const relief::HeightField& field = rays.scene().heights[static_cast<size_t>(height)];
+    return scene::sampleSlopes(rays.slopes(height), scene::wrapOf(field), uv,
+                               footprint ? levelOfDetail(glm::vec2(field.size()), *footprint) : 0.f);
   }
 };
 
@@ -53,9 +60,12 @@ glm::vec3 shadingNormal(const Draw& draw, const Corner& corner, const TextureLoo
   const float size = glm::length(interpolated);
   if (!(size > 0.f)) return geometricNormal;
   const glm::vec3 normal = interpolated / size;
-  if (!lookup.has(material.normalTexture) || !draw.tangents) return normal;
-  return glsl::mapped_normal(normal, worldTangent(draw, corner), glm::vec3(lookup(material.normalTexture)),
-                             material.normalScale);
+  if (!lookup.hasUv || !draw.tangents) return normal;
+  if (lookup.has(material.normalTexture))
+    return glsl::mapped_normal(normal, worldTangent(draw, corner), glm::vec3(lookup(material.normalTexture)),
+                               material.normalScale);
+  if (material.height == scene::kNone) return normal;
+  return glsl::height_normal(normal, worldTangent(draw, corner), lookup.slope(material.height));
 }
 
 void fillMaterial(const Draw& draw, const Corner& corner, const TextureLookup& lookup,
@@ -128,7 +138,7 @@ Surface seenFrom(const RayScene& rays, const Hit& hit, const glm::vec3& view,
   surface.draw = hit.draw;
 
   glm::vec3 geometricNormal = triangle.normal(draw.orientation, view);
-  TextureLookup lookup{rays.scene(), !primitive.uvs.empty(), {}, footprint};
+  TextureLookup lookup{rays, !primitive.uvs.empty(), {}, footprint};
   if (lookup.hasUv) lookup.uv = corner.blend(primitive.uvs.data());
   glm::vec3 normal = shadingNormal(draw, corner, lookup, geometricNormal);
   back = glm::dot(geometricNormal, view) < 0.f;

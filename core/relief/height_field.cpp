@@ -60,10 +60,14 @@ double HeightField::height(const glm::dvec2& place) const {
   return patch(glm::ivec2(corner)).at(place - corner);
 }
 
-glm::dvec3 HeightField::normal(const glm::ivec2& at) const {
+glm::dvec2 HeightField::slope(const glm::ivec2& at) const {
   const glm::ivec2 x(1, 0), y(0, 1);
   const glm::dvec2 rise(texel(at + x) - texel(at - x), texel(at + y) - texel(at - y));
-  return glm::normalize(glm::dvec3(-rise / (2.0 * spacing_), 1));
+  return rise / (2.0 * spacing_);
+}
+
+glm::dvec3 HeightField::normal(const glm::ivec2& at) const {
+  return glm::normalize(glm::dvec3(-slope(at), 1));
 }
 
 double HeightField::steepest() const {

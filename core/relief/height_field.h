@@ -36,8 +36,8 @@ class LIMN_API HeightField {
               double scale = 1, double offset = 0, Wrap wrap = Wrap::periodic);
 
   const glm::ivec2& size() const { return size_; }
-  /// Returns the place, in texels, of a texture coordinate: (0, 0) is the corner of texel (0, 0), half a texel
-  /// from its centre.
+  /// Returns the place, in texels, of a texture coordinate: (0, 0) is the corner of texel (0, 0), half a
+  /// texel from its centre.
   glm::dvec2 place(const glm::dvec2& uv) const { return uv * glm::dvec2(size_) - 0.5; }
   Wrap wrap() const { return wrap_; }
   std::size_t texels() const { return heights_.size(); }
@@ -52,6 +52,8 @@ class LIMN_API HeightField {
   double height(const glm::dvec2& place) const;
   /// Returns the cell whose lowest corner is the given texel.
   Patch patch(const glm::ivec2& cell) const;
+  /// Returns the mean slope of the four cells that meet at a texel's centre: dz over metres along u and v.
+  glm::dvec2 slope(const glm::ivec2& at) const;
   /// Returns the unit normal at a texel's centre, where four cells meet: that of their mean slope.
   glm::dvec3 normal(const glm::ivec2& at) const;
   /// Returns the slope, dz over metres along the base, of the steepest place of all cells.

@@ -42,19 +42,29 @@ glm::vec4 texel(const TextureImage::Level& level, bool srgb, int x, int y) {
   return {colour[p[0]], colour[p[1]], colour[p[2]], table.linear[p[3]]};
 }
 
-glm::vec4 bilinear(const TextureImage& image, int index, Wrap wrapS, Wrap wrapT, glm::vec2 uv) {
-  const TextureImage::Level& level = image.levels[static_cast<size_t>(index)];
-  const float s = uv.x * static_cast<float>(level.width) - 0.5f;
-  const float t = uv.y * static_cast<float>(level.height) - 0.5f;
+/// The bilinear filter of a level whose texels are `texel(x, y)`.
+template <class Texel>
+auto bilinear(const glm::ivec2& size, Wrap wrapS, Wrap wrapT, const glm::vec2& uv, const Texel& texelAt) {
+  const float s = uv.x * static_cast<float>(size.x) - 0.5f;
+  const float t = uv.y * static_cast<float>(size.y) - 0.5f;
   const float s0 = std::floor(s), t0 = std::floor(t);
-  const int x0 = wrapIndex(static_cast<int>(s0), level.width, wrapS);
-  const int x1 = wrapIndex(static_cast<int>(s0) + 1, level.width, wrapS);
-  const int y0 = wrapIndex(static_cast<int>(t0), level.height, wrapT);
-  const int y1 = wrapIndex(static_cast<int>(t0) + 1, level.height, wrapT);
-  const glm::vec4 top = glm::mix(texel(level, image.srgb, x0, y0), texel(level, image.srgb, x1, y0), s - s0);
-  const glm::vec4 bottom =
-      glm::mix(texel(level, image.srgb, x0, y1), texel(level, image.srgb, x1, y1), s - s0);
+  const int x0 = wrapIndex(static_cast<int>(s0), size.x, wrapS);
+  const int x1 = wrapIndex(static_cast<int>(s0) + 1, size.x, wrapS);
+  const int y0 = wrapIndex(static_cast<int>(t0), size.y, wrapT);
+  const int y1 = wrapIndex(static_cast<int>(t0) + 1, size.y, wrapT);
+  const auto top = glm::mix(texelAt(x0, y0), texelAt(x1, y0), s - s0);
+  const auto bottom = glm::mix(texelAt(x0, y1), texelAt(x1, y1), s - s0);
   return glm::mix(top, bottom, t - t0);
+}
+
+/// The values `at(level)` of the two levels next to `lod`, mixed.
+template <class Level>
+auto betweenLevels(std::size_t levels, float lod, const Level& at) {
+  const float level = lod > 0.f ? std::min(lod, static_cast<float>(levels - 1)) : 0.f;
+  const auto fine = static_cast<std::size_t>(level);
+  const auto value = at(fine);
+  const float fraction = level - static_cast<float>(fine);
+  return fraction == 0.f ? value : glm::mix(value, at(fine + 1), fraction);
 }
 
 }  // namespace
@@ -64,13 +74,11 @@ glm::vec4 sampleTexture(const Scene& scene, const TextureRef& texture, glm::vec2
   const TextureImage& image = scene.images[static_cast<size_t>(texture.image)];
   if (image.levels.empty()) return glm::vec4(1);
   uv = {reduce(uv.x, texture.wrapS), reduce(uv.y, texture.wrapT)};
-  const int last = static_cast<int>(image.levels.size()) - 1;
-  const float level = lod > 0.f ? std::min(lod, static_cast<float>(last)) : 0.f;
-  const int fine = static_cast<int>(level);
-  const glm::vec4 value = bilinear(image, fine, texture.wrapS, texture.wrapT, uv);
-  const float fraction = level - static_cast<float>(fine);
-  if (fraction == 0.f) return value;
-  return glm::mix(value, bilinear(image, fine + 1, texture.wrapS, texture.wrapT, uv), fraction);
+  return betweenLevels(image.levels.size(), lod, [&](std::size_t index) {
+    const TextureImage::Level& level = image.levels[index];
+    return bilinear({level.width, level.height}, texture.wrapS, texture.wrapT, uv,
+                    [&](int x, int y) { return texel(level, image.srgb, x, y); });
+  });
 }
 
 glm::vec2 textureSize(const Scene& scene, const TextureRef& texture) {
@@ -78,6 +86,17 @@ glm::vec2 textureSize(const Scene& scene, const TextureRef& texture) {
   const TextureImage& image = scene.images[static_cast<size_t>(texture.image)];
   if (image.levels.empty()) return {1, 1};
   return {image.levels[0].width, image.levels[0].height};
+}
+
+glm::vec2 sampleSlopes(const std::vector<relief::SlopeLevel>& levels, Wrap wrap, glm::vec2 uv, float lod) {
+  uv = {reduce(uv.x, wrap), reduce(uv.y, wrap)};
+  return betweenLevels(levels.size(), lod, [&](std::size_t index) {
+    const relief::SlopeLevel& level = levels[index];
+    return bilinear(level.size, wrap, wrap, uv, [&](int x, int y) {
+      return level.slopes[static_cast<std::size_t>(y) * static_cast<std::size_t>(level.size.x) +
+                          static_cast<std::size_t>(x)];
+    });
+  });
 }
 
 }  // namespace limn::scene

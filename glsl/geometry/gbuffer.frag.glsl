@@ -1,6 +1,7 @@
 // Surface of the G-buffer. SURFACE_TANGENTS 1: and its tangent. MASKED, TEXTURES, COLOURS: see surface_input.glsl.
 #include "glsl/surface/gbuffer.glsl"
 #include "glsl/geometry/surface_input.glsl"
+#include "glsl/relief/height_normal.glsl"
 #include "glsl/surface/normal_map.glsl"
 #if SURFACE_TANGENTS
 #include "glsl/numeric/geometry.glsl"
@@ -39,6 +40,10 @@ void main() {
   if ((textures & material_has_normal_texture) != 0u) {
     vec4 tangent = vec4(tangent_ws.xyz, tangent_ws.w < 0.0 ? -1.0 : 1.0);
     s.normal = mapped_normal(s.normal, tangent, texel(normal_texture, uv_dx, uv_dy).rgb, material.normal_scale);
+  }
+  if ((textures & material_has_height_normals) != 0u) {
+    vec4 tangent = vec4(tangent_ws.xyz, tangent_ws.w < 0.0 ? -1.0 : 1.0);
+    s.normal = height_normal(s.normal, tangent, texel(height_slopes, uv_dx, uv_dy).rg);
   }
   s.normal *= side;
 

@@ -18,6 +18,7 @@ uniform sampler2D base_colour_texture;
 uniform sampler2D metal_rough_texture;
 uniform sampler2D normal_texture;
 uniform sampler2D emissive_texture;
+uniform sampler2D height_slopes;  // of the height map, along u and v
 
 vec4 texel(sampler2D image, vec2 uv_dx, vec2 uv_dy) {
   return textureLod(image, surface_uv, texture_level(uv_dx, uv_dy, vec2(textureSize(image, 0))));

@@ -78,6 +78,7 @@ LIMN_CONST uint material_has_emissive_texture = 16u;
 LIMN_CONST uint material_specular_surface = 32u;  // transmission > 0, or metallic with roughness < 0.05
 
 LIMN_CONST uint material_has_model = 64u;  // the constants are those of the metal next to it
+LIMN_CONST uint material_has_height_normals = 128u;  // from a height map: there is no normal texture
 
 LIMN_FN Optics material_optics(Material m) {
   Optics o;

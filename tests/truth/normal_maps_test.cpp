@@ -1,4 +1,5 @@
-// A normal map is the surface whose bumps it stands for: lit from the side, it shines as that surface would.
+// A normal map, or a height map, is the surface whose bumps it stands for: lit from the side, it shines as
+// that surface would.
 #include <nlohmann/json.hpp>
 
 #include "tests/support/gltf_builder.h"
@@ -25,12 +26,23 @@ dvec2 slope(const dvec2& p) {
           -2 * M_PI * 0.05 * std::sin(2 * M_PI * p.y) + both};
 }
 
+/// Those bumps, in sides of the quad.
+double height(const dvec2& p) {
+  return 0.03 * std::sin(2 * M_PI * p.x) + 0.05 * std::cos(2 * M_PI * p.y) +
+         0.02 * std::sin(2 * M_PI * (p.x + p.y));
+}
+
+/// The place of a texel's centre on the upright picture.
+dvec2 centreOf(int column, int row) {
+  return {(column + 0.5) / kTexels, 1 - (row + 0.5) / kTexels};
+}
+
 /// glTF 2.0, 3.9.3: red is to the right of the picture, green is up, blue is towards the viewer.
 std::vector<std::byte> normalMap() {
   std::vector<std::uint8_t> rgba;
   for (int row = 0; row < kTexels; ++row)
     for (int column = 0; column < kTexels; ++column) {
-      const dvec2 s = slope({(column + 0.5) / kTexels, 1 - (row + 0.5) / kTexels});
+      const dvec2 s = slope(centreOf(column, row));
       const glm::dvec3 n = glm::normalize(glm::dvec3(-s.x, -s.y, 1));
       for (int c = 0; c < 3; ++c)
         rgba.push_back(static_cast<std::uint8_t>(std::lround(255 * (0.5 * n[c] + 0.5))));
@@ -38,6 +50,19 @@ std::vector<std::byte> normalMap() {
     }
   return test::png(kTexels, kTexels, rgba);
 }
+
+/// Heights are kScale value - kScale / 2.
+constexpr double kScale = 0.25;
+std::vector<std::byte> heightMap() {
+  std::vector<std::uint16_t> values;
+  for (int row = 0; row < kTexels; ++row)
+    for (int column = 0; column < kTexels; ++column)
+      values.push_back(
+          static_cast<std::uint16_t>(std::lround(65535 * (height(centreOf(column, row)) / kScale + 0.5))));
+  return test::png16(kTexels, kTexels, values);
+}
+
+enum class Map { normals, heights };
 
 struct Setting {
   const char* name;
@@ -47,14 +72,19 @@ struct Setting {
 };
 
 /// A quad of side 1 in the plane z = 0 of a node, its picture upright or mirrored.
-scene::Scene bumps(const Setting& s, const vec3& towardsLight) {
+scene::Scene bumps(const Setting& s, Map map, const vec3& towardsLight) {
   test::GltfBuilder b;
-  const int material = b.texturedMaterial(normalMap());
-  b.root["materials"][static_cast<size_t>(material)] = {
+  const int material = b.texturedMaterial(map == Map::heights ? heightMap() : normalMap());
+  json& entry = b.root["materials"][static_cast<size_t>(material)];
+  entry = {
       {"pbrMetallicRoughness",
        {{"baseColorFactor", {kAlbedo, kAlbedo, kAlbedo, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
-      {"normalTexture", {{"index", 0}}},
       {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}};
+  if (map == Map::heights)
+    entry["extras"]["limn_height"] = {
+        {"texture", {{"index", 0}}}, {"scale", kScale}, {"offset", -kScale / 2}};
+  else
+    entry["normalTexture"]["index"] = 0;
   const float left = s.mirroredTexture ? 1.f : 0.f;
   json attributes = {
       {"POSITION", b.vec3({{-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0.5f, 0.5f, 0}, {-0.5f, 0.5f, 0}})},
@@ -70,11 +100,14 @@ scene::Scene bumps(const Setting& s, const vec3& towardsLight) {
   return scene;
 }
 
-class NormalMapTruth : public TruthTest {};
+class NormalMapTruth : public TruthTest {
+ protected:
+  /// Lambert: radiance = albedo / pi * irradiance * cosine with the normal (-dh/dx, -dh/dy, 1) of the surface
+  /// z = h(x, y).
+  void expectTheSurface(Map map);
+};
 
-/// Lambert: radiance = albedo / pi * irradiance * cosine with the normal (-dh/dx, -dh/dy, 1) of the surface
-/// z = h(x, y).
-TEST_F(NormalMapTruth, ABumpLitFromTheSideIsTheSurfaceItStandsFor) {
+void NormalMapTruth::expectTheSurface(Map map) {
   const Setting all[] = {{"tangents in the file", true, false, vec3(1)},
                          {"generated tangents", false, false, vec3(1)},
                          {"mirrored texture, tangents in the file", true, true, vec3(1)},
@@ -86,7 +119,7 @@ TEST_F(NormalMapTruth, ABumpLitFromTheSideIsTheSurfaceItStandsFor) {
   for (const Setting& s : all)
     for (const vec3& light : {glm::normalize(vec3(0.8f, 0, 0.6f)), glm::normalize(vec3(0, 0.8f, 0.6f))}) {
       SCOPED_TRACE(std::string(s.name) + (light.x > 0 ? ", lit from the right" : ", lit from above"));
-      const scene::Scene scene = bumps(s, light);
+      const scene::Scene scene = bumps(s, map, light);
       const Question q{.camera = scene::lookAt({0, 0, 2}, {0, 0, 0}, 0.45f), .size = {64, 64}};
       expectBoth(scene, q,
                  [&](const dvec3& p, const dvec3&) {
@@ -100,6 +133,50 @@ TEST_F(NormalMapTruth, ABumpLitFromTheSideIsTheSurfaceItStandsFor) {
                  },
                  {.pixels = 1500});
     }
+}
+
+TEST_F(NormalMapTruth, ABumpLitFromTheSideIsTheSurfaceItStandsFor) {
+  expectTheSurface(Map::normals);
+}
+
+TEST_F(NormalMapTruth, AHeightMapLitFromTheSideIsTheSurfaceThatItHolds) {
+  expectTheSurface(Map::heights);
+}
+
+/// A field that slopes along v alone, v downwards: its surface faces up where heights rise down the picture.
+TEST_F(NormalMapTruth, ASlopeAlongVIsBrighterFromTheSideThatItFaces) {
+  constexpr double rise = 0.5;
+  test::GltfBuilder b;
+  std::vector<std::uint16_t> values;
+  for (int row = 0; row < kTexels; ++row) values.push_back(static_cast<std::uint16_t>(1024 * row));
+  b.texturedMaterial(test::png16(1, kTexels, values));
+  b.append("samplers", {{"wrapS", 33071}, {"wrapT", 33071}});
+  b.root["textures"][0]["sampler"] = 0;
+  b.root["materials"][0] = {
+      {"pbrMetallicRoughness",
+       {{"baseColorFactor", {kAlbedo, kAlbedo, kAlbedo, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
+      {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}},
+      {"extras", {{"limn_height", {{"texture", {{"index", 0}}}, {"scale", rise * 65535 / 65536}}}}}};
+  const json attributes = {
+      {"POSITION", b.vec3({{-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0.5f, 0.5f, 0}, {-0.5f, 0.5f, 0}})},
+      {"NORMAL", b.vec3(std::vector<vec3>(4, {0, 0, 1}))},
+      {"TEXCOORD_0", b.vec2({{0, 1}, {1, 1}, {1, 0}, {0, 0}})}};
+  b.meshNode(b.mesh(attributes, b.indices({0, 1, 2, 0, 2, 3}), 0));
+  for (const float side : {1.f, -1.f}) {
+    SCOPED_TRACE(side > 0 ? "lit from above" : "lit from below");
+    const vec3 light = glm::normalize(vec3(0, side * 0.8f, 0.6f));
+    scene::Scene scene = test::loadBuilt(b);
+    test::shine(scene, test::lamp(glsl::light_directional, float(kIrradiance)), vec3(0), -light);
+    const Question q{.camera = scene::lookAt({0, 0, 2}, {0, 0, 0}, 0.45f), .size = {64, 64}};
+    expectBoth(scene, q,
+               [&](const dvec3& p, const dvec3&) {
+                 if (std::max(std::abs(p.x), std::abs(p.y)) > 0.47)
+                   return nothing;  // half slopes at the edge
+                 const dvec3 n = glm::normalize(dvec3(0, rise, 1));
+                 return kAlbedo / M_PI * kIrradiance * std::max(glm::dot(n, dvec3(light)), 0.0);
+               },
+               {.pixels = 1500});
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/reference/private/ray_medium.h"
+#include "core/relief/slopes.h"
 #include "core/scene/scene.h"
 #include "glsl/scene/blocks.glsl"
 
@@ -61,6 +62,8 @@ TextureFootprint textureFootprint(const Draw& draw, uint32_t triangle, const gls
 /// Returns the level of detail of `texture` for that footprint.
 float levelOfDetail(const scene::Scene& scene, const scene::TextureRef& texture,
                     const TextureFootprint& footprint);
+/// Returns that of a texture of `size` texels.
+float levelOfDetail(const glm::vec2& size, const TextureFootprint& footprint);
 
 class RayScene {
  public:
@@ -74,6 +77,10 @@ class RayScene {
   const scene::Scene& scene() const { return scene_; }
   const std::vector<Draw>& draws() const { return draws_; }
   const RayMedium& medium() const { return medium_; }
+  /// Returns the slopes of a map of Scene::heights, as textures.
+  const std::vector<relief::SlopeLevel>& slopes(int height) const {
+    return slopes_[static_cast<size_t>(height)];
+  }
 
   /// Finds the nearest surface that the camera sees at the centre of pixel (x, y), beyond `near`, and returns
   /// whether there is one: cut-out texels and back faces of single-sided surfaces are passed through.
@@ -98,6 +105,7 @@ class RayScene {
   bool unshadowed_;
   std::vector<Draw> draws_;
   RayMedium medium_;
+  std::vector<std::vector<relief::SlopeLevel>> slopes_;
   std::unique_ptr<Hierarchy> hierarchy_;
 };
 
