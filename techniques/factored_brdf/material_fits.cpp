@@ -26,12 +26,9 @@ brdf::TorranceSparrow described(const glsl::MaterialModel& m) {
               (m.options & model_option_product) != 0 ? brdf::Masking::product : brdf::Masking::correlated};
 }
 
-/// Says whether two models have the same tables. Analytic ones hold neither kd nor ks.
-bool alike(const glsl::MaterialModel& a, const glsl::MaterialModel& b, bool analytic) {
-  if (a.kind != b.kind || a.eta != b.eta || a.k != b.k || a.options != b.options) return false;
-  if (analytic) return a.roughness.x == b.roughness.x;
-  return a.roughness == b.roughness && a.kd == b.kd && a.ks == b.ks && a.exponent == b.exponent &&
-         a.table == b.table;
+/// Says whether two Torrance-Sparrow models have the same analytic tables, which hold neither kd nor ks.
+bool sameAnalytic(const glsl::MaterialModel& a, const glsl::MaterialModel& b) {
+  return a.eta == b.eta && a.k == b.k && a.options == b.options && a.roughness.x == b.roughness.x;
 }
 
 /// Says why a choice cannot hold a model; empty where it can.
@@ -78,8 +75,9 @@ MaterialFits fitMaterials(const scene::Scene& scene, const FitChoice& choice) {
       result.exact.push_back({material.name, reason});
       continue;
     }
-    auto found =
-        std::ranges::find_if(models, [&](const auto& m) { return alike(m, model, choice.analytic); });
+    auto found = std::ranges::find_if(models, [&](const glsl::MaterialModel& m) {
+      return choice.analytic ? sameAnalytic(m, model) : brdf::sameModel(m, model, scene.measured);
+    });
     if (found == models.end()) {
       std::optional<brdf::FactoredBrdf> fit = fitted(scene, material, choice);
       if (!fit) {

@@ -114,6 +114,17 @@ TEST_F(BrdfCommand, MaterialsOfScenes) {
                 {"no material 'brush'", "brushed"});
   expectRefused(limn({"brdf", "info", "--scene", "disk_and_sphere"}), 2, {"--material"});
   expectRefused(limn({"brdf", "fit", "--scene", "no_scene", "--material", "floor"}), 1, {"no_scene"});
+
+  // A measured one is what its file alone is.
+  const std::filesystem::path file = test::kAssets / "teapot_groove" / "grooves.bsdf";
+  const auto error = [](std::vector<std::string> source) {
+    source.insert(source.begin(), "fit");
+    source.insert(source.end(), {"--fit", "svd", "--texels", "8"});
+    return printed(source)["fits"][0]["error"].get<double>();
+  };
+  const double ofFile = error({file.string()});
+  EXPECT_GT(ofFile, 0);
+  EXPECT_NEAR(error({"--scene", "teapot_groove", "--material", "grooves"}), ofFile, 1e-6);
 }
 
 TEST_F(BrdfCommand, WrongUsageIsOneLine) {

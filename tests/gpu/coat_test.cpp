@@ -1,0 +1,98 @@
+// Coats under the environment without a technique: what they mirror and what they leave to their base.
+#include <cmath>
+
+#include "core/scene/camera.h"
+#include "core/scene/material_model.h"
+#include "glsl/materials/material_model.glsl"
+#include "glsl/numeric/equirectangular.glsl"
+#include "tests/gpu/render_test.h"
+#include "tests/support/test_scenes.h"
+
+namespace limn {
+namespace {
+
+using glm::vec2;
+using glm::vec3;
+
+constexpr int kPixels = 96;
+constexpr float kDistance = 3, kFieldOfView = 0.8f;
+
+class CoatTest : public RenderTest {
+ protected:
+  static glsl::MaterialModel coat(vec3 kd, uint32_t options) {
+    glsl::MaterialModel model{};
+    model.kind = glsl::model_coated;
+    model.options = options;
+    model.eta = vec3(1.5f);
+    model.kd = kd;
+    return model;
+  }
+
+  /// An environment of any radiance(direction).
+  template <class Radiance>
+  static scene::Environment environment(const Radiance& radiance) {
+    scene::Environment e;
+    e.width = 256;
+    e.height = 128;
+    for (int y = 0; y < e.height; ++y)
+      for (int x = 0; x < e.width; ++x)
+        e.texels.push_back(radiance(glsl::equirectangular_direction(
+            (vec2(x, y) + 0.5f) / vec2(static_cast<float>(e.width), static_cast<float>(e.height)))));
+    return e;
+  }
+
+  /// The picture of a ball of radius 1 at the origin, from +z.
+  Image ball(const glsl::MaterialModel& model, scene::Environment environment) {
+    scene::Scene scene;
+    scene::Material material;
+    scene::setModel(material, model);
+    scene::Node node;
+    node.mesh = test::addMesh(scene, test::spherePrimitive(1, test::addMaterial(scene, material)));
+    scene.nodes.push_back(node);
+    scene.environment = std::move(environment);
+    render::Renderer renderer(device(), scene);
+    renderer.configure(settings(kPixels, kPixels, Term::direct));
+    renderer.setCamera(scene::lookAt({0, 0, kDistance}, {0, 0, 0}, kFieldOfView));
+    renderer.render();
+    return renderer.read();
+  }
+};
+
+/// Coats that leave all else to a white base: the ball is not seen before a white background.
+TEST_F(CoatTest, MirrorAndWhiteBaseReflectAllLight) {
+  const scene::Environment white = environment([](vec3) { return vec3(1); });
+  for (const uint32_t options : {glsl::model_option_blend, glsl::model_option_physical})
+    expectWithin(ball(coat(vec3(1), options), white), 0.999f, 1.001f);
+  // What the coat mirrors is gained by a sum: 0.04 head-on.
+  const Image sum = ball(coat(vec3(1), 0), white);
+  EXPECT_NEAR(sum.at(kPixels / 2, kPixels / 2, 0), 1.04f, 1e-3f);
+  expectWithin(sum, 0.999f, 2.001f);
+}
+
+/// A perfect mirror without a base shows the environment in the mirror direction. Interpolated normals are
+/// off by (pi / 48)^2 / 8 at most, mirror directions by twice that and by as much from chords of the sphere.
+TEST_F(CoatTest, MirrorsTheEnvironment) {
+  const auto radiance = [](vec3 d) { return 1.f + 0.8f * d; };
+  glsl::MaterialModel mirror = coat(vec3(0), 0);
+  mirror.eta = vec3(1e-3f);
+  mirror.k = vec3(1000);
+  const Image image = ball(mirror, environment(radiance));
+  int seen = 0;
+  for (int y = 0; y < kPixels; ++y)
+    for (int x = 0; x < kPixels; ++x) {
+      const vec2 place = (2.f * vec2(x, y) + 1.f) / static_cast<float>(kPixels) - 1.f;
+      const float tangent = std::tan(0.5f * kFieldOfView);
+      const vec3 ray = glm::normalize(vec3(tangent * place.x, -tangent * place.y, -1));
+      // |(0, 0, distance) + t ray| = 1.
+      const float half = kDistance * ray.z, inside = half * half - kDistance * kDistance + 1;
+      if (inside < 0.04f) continue;  // n.v below 0.2
+      const vec3 n = vec3(0, 0, kDistance) + (-half - std::sqrt(inside)) * ray;
+      const vec3 expected = radiance(glm::reflect(ray, n));
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(image.at(x, y, c), expected[c], 0.01f) << x << ' ' << y;
+      ++seen;
+    }
+  EXPECT_GT(seen, 1000);
+}
+
+}  // namespace
+}  // namespace limn

@@ -1,0 +1,76 @@
+// Models of materials as BRDFs, measured ones by the values of their tables.
+#include "core/brdf/model_brdf.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <vector>
+
+#include "core/brdf/measured_model.h"
+#include "tests/unit/materials/models.h"
+
+namespace limn::brdf {
+namespace {
+
+/// Appends the values of a table, and returns its model.
+template <class Table>
+glsl::MaterialModel appended(const Table& table, std::vector<glm::vec3>& measured) {
+  glsl::MaterialModel model = measuredModel(table).model;
+  model.table = static_cast<glsl::uint>(measured.size());
+  measured.insert(measured.end(), table.values.begin(), table.values.end());
+  return model;
+}
+
+TabulatedBrdf constantTable() {
+  return tabulate({3, 4, 5}, [](const glm::vec3&, const glm::vec3&) { return glm::vec3(0.2f, 0.1f, 0); });
+}
+
+TEST(ModelBrdf, IsTheResponseWithoutTheCosine) {
+  std::vector<glm::vec3> measured(7, glm::vec3(9));
+  const glm::dvec3 l(0.6, 0, 0.8), v(0, -0.6, 0.8);
+  const Brdf phong = modelBrdf(glsl::phongModel(0.3f, 0, 10), measured);
+  EXPECT_NEAR(phong(l, v).x, 0.3 * std::numbers::inv_pi, 1e-7);
+  const Brdf table = modelBrdf(appended(constantTable(), measured), measured);
+  EXPECT_NEAR(table(l, v).x, 0.2, 1e-7);
+  EXPECT_NEAR(table(l, v).y, 0.1, 1e-7);
+}
+
+TEST(ModelBrdf, MeasuredModelsAreTheSameByTheirValues) {
+  std::vector<glm::vec3> measured(7, glm::vec3(9));
+  TabulatedBrdf table = constantTable();
+  const glsl::MaterialModel one = appended(table, measured), again = appended(table, measured);
+  EXPECT_NE(one.table, again.table);
+  EXPECT_TRUE(sameModel(one, one, measured));
+  EXPECT_TRUE(sameModel(one, again, measured));
+  glsl::MaterialModel darker = again;
+  darker.ks *= 0.5f;
+  EXPECT_FALSE(sameModel(one, darker, measured));
+
+  // One value of a table whose other numbers are equal.
+  glsl::MaterialModel other = one;
+  table.values.back().z += 1e-3f;
+  other.table = appended(table, measured).table;
+  EXPECT_FALSE(sameModel(one, other, measured));
+  // The first and the last value of tables over two directions.
+  for (const size_t changed : {size_t{0}, size_t{15}}) {
+    AnisotropicTable pairs{.size = 2, .values = std::vector<glm::vec3>(16, glm::vec3(0.1f))};
+    const glsl::MaterialModel plain = appended(pairs, measured), equal = appended(pairs, measured);
+    EXPECT_TRUE(sameModel(plain, equal, measured));
+    pairs.values[changed].x = 0.2f;
+    glsl::MaterialModel different = plain;
+    different.table = appended(pairs, measured).table;
+    EXPECT_FALSE(sameModel(plain, different, measured)) << changed;
+  }
+}
+
+TEST(ModelBrdf, OtherModelsAreTheSameByTheirNumbers) {
+  const std::vector<glm::vec3> none;
+  const glsl::MaterialModel phong = glsl::phongModel(0.3f, 0.2f, 10);
+  EXPECT_TRUE(sameModel(phong, glsl::phongModel(0.3f, 0.2f, 10), none));
+  EXPECT_FALSE(sameModel(phong, glsl::phongModel(0.3f, 0.2f, 11), none));
+  EXPECT_FALSE(sameModel(phong, glsl::phongModel(0.3f, 0.1f, 10), none));
+  EXPECT_FALSE(sameModel(phong, glsl::banksModel(0.3f, 0.2f, 10), none));
+}
+
+}  // namespace
+}  // namespace limn::brdf
