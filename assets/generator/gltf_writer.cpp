@@ -55,6 +55,13 @@ json reflectionModel(const ReflectionModel& m) {
   return entry;
 }
 
+/// The object of extras.limn_height.
+json heightMap(const HeightMap& m) {
+  json entry = {{"texture", {{"index", m.texture}}}, {"scale", m.scale}, {"tile", array(m.tile)}};
+  if (m.offset != 0) entry["offset"] = m.offset;
+  return entry;
+}
+
 /// Collects the binary chunk and the JSON that points into it.
 class Writer {
  public:
@@ -146,6 +153,7 @@ class Writer {
         extensions_.insert("KHR_materials_ior");
       }
       if (m.model) entry["extras"]["limn_material"] = reflectionModel(*m.model);
+      if (m.height) entry["extras"]["limn_height"] = heightMap(*m.height);
       root_["materials"].push_back(entry);
     }
   }
@@ -155,7 +163,7 @@ class Writer {
     json attributes = {{"POSITION", positionAccessor(mesh.positions)},
                        {"NORMAL", accessor(mesh.normals, kFloat, "VEC3", kVertexBuffer)}};
     const Material& material = scene_.materials.at(static_cast<std::size_t>(p.material));
-    if (material.baseColourTexture >= 0 || material.normalTexture >= 0) {
+    if (material.baseColourTexture >= 0 || material.normalTexture >= 0 || material.height) {
       attributes["TEXCOORD_0"] = accessor(mesh.uvs, kFloat, "VEC2", kVertexBuffer);
     }
     if (!mesh.tangents.empty())
@@ -339,8 +347,10 @@ void writeBeside(const std::filesystem::path& file, const Write& write) {
 void writeScene(const Scene& scene, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   for (const Texture& texture : scene.textures) {
-    writeBeside(folder / (texture.name + ".png"),
-                [&](const auto& file) { writePng(texture.image, texture.linear, file); });
+    writeBeside(folder / (texture.name + ".png"), [&](const auto& file) {
+      if (texture.heights) return writeHeights(texture.image, file);
+      writePng(texture.image, texture.linear, file);
+    });
   }
   if (scene.environment) {
     writeBeside(folder / "environment.exr", [&](const auto& file) { writeExr(*scene.environment, file); });

@@ -90,6 +90,13 @@ void writePng(const Image& image, bool linear, const std::filesystem::path& file
   write(file, image.width, image.height, channels, OIIO::TypeDesc::UINT8, bytes);
 }
 
+void writeHeights(const Image& image, const std::filesystem::path& file) {
+  std::vector<std::uint16_t> values;
+  for (const glm::vec4& p : image.pixels)
+    values.push_back(static_cast<std::uint16_t>(std::lround(65535 * glm::clamp(p.r, 0.0f, 1.0f))));
+  write(file, image.width, image.height, 1, OIIO::TypeDesc::UINT16, values);
+}
+
 void writeExr(const Image& image, const std::filesystem::path& file) {
   std::vector<float> values;
   for (const glm::vec4& p : image.pixels) values.insert(values.end(), {p.r, p.g, p.b});

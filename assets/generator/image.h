@@ -19,6 +19,8 @@ Image makeImage(int width, int height, const std::function<glm::vec4(glm::vec2)>
 
 /// 8-bit PNG, sRGB-encoded unless `linear`. Throws std::runtime_error.
 void writePng(const Image& image, bool linear, const std::filesystem::path& file);
+/// 16-bit grey PNG of the red channel, as it is. Throws std::runtime_error.
+void writeHeights(const Image& image, const std::filesystem::path& file);
 /// 32-bit RGB EXR. Throws std::runtime_error.
 void writeExr(const Image& image, const std::filesystem::path& file);
 

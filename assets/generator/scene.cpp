@@ -33,7 +33,10 @@ glm::vec3 diffuseAlbedo(const ReflectionModel& model) {
 }  // namespace
 
 int Scene::addTexture(std::string textureName, Image image, bool linear) {
-  return push(textures, {std::move(textureName), std::move(image), linear});
+  return push(textures, {.name = std::move(textureName), .image = std::move(image), .linear = linear});
+}
+int Scene::addHeights(std::string textureName, Image image) {
+  return push(textures, {.name = std::move(textureName), .image = std::move(image), .heights = true});
 }
 int Scene::addMaterial(Material material) {
   return push(materials, std::move(material));

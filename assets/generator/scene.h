@@ -1,6 +1,6 @@
 // A scene as the generator describes it: plain data, indices into the scene's own arrays (-1: none).
-// The conventions beyond glTF 2.0 (extras.limn_area, limn_angle, limn_environment, limn_material) are
-// described in assets/README.md.
+// The conventions beyond glTF 2.0 (extras.limn_area, limn_angle, limn_environment, limn_height,
+// limn_material) are described in assets/README.md.
 #pragma once
 
 #include <optional>
@@ -26,6 +26,13 @@ struct ReflectionModel {
   std::string file{};                     ///< of measured, in the scene's folder
 };
 
+/// extras.limn_height: bumps of a texture that addHeights() made.
+struct HeightMap {
+  int texture = -1;
+  float scale = 1, offset = 0;  ///< metres: height = scale * value + offset
+  glm::vec2 tile{1};            ///< metres per unit of u and v
+};
+
 struct Material {
   std::string name;
   glm::vec4 baseColour{0.8f, 0.8f, 0.8f, 1};  ///< linear
@@ -43,12 +50,14 @@ struct Material {
   float ior = 1.5f;
   float thickness = 0;  ///< metres; > 0: bounds a body
   std::optional<ReflectionModel> model{};
+  std::optional<HeightMap> height{};
 };
 
 struct Texture {
   std::string name;  ///< written as NAME.png beside the scene
   Image image;
-  bool linear = false;  ///< normal maps: no sRGB encoding
+  bool linear = false;   ///< normal maps: no sRGB encoding
+  bool heights = false;  ///< red alone, with 16 bits
 };
 
 struct Primitive {
@@ -152,6 +161,8 @@ struct Scene {
   std::vector<Measured> measured;  ///< files of measured reflectance, which materials name
 
   int addTexture(std::string textureName, Image image, bool linear = false);
+  /// A texture of heights from 0 to 1 in red.
+  int addHeights(std::string textureName, Image image);
   int addMaterial(Material material);
   /// A material that reflects as the table has it, which is written as NAME.bsdf. Viewers that do not know
   /// limn_material show a Lambertian surface of that albedo.

@@ -154,6 +154,25 @@ scene::Scene texturedScene() {
   return scene;
 }
 
+/// The same, with height maps, repeated and clamped, in place of the normal map.
+scene::Scene bumpyScene() {
+  scene::Scene scene = texturedScene();
+  constexpr glm::ivec2 size(33, 64);
+  std::vector<float> values;
+  for (int y = 0; y < size.y; ++y)
+    for (int x = 0; x < size.x; ++x) {
+      const glm::vec2 p = 2 * glsl::pi * glm::vec2(x, y) / glm::vec2(size);
+      values.push_back(0.5f * std::sin(2 * p.x) * std::cos(3 * p.y) + 0.3f * std::cos(p.x + p.y));
+    }
+  for (const relief::Wrap wrap : {relief::Wrap::periodic, relief::Wrap::clamped})
+    scene.heights.emplace_back(size, values, glm::dvec2(1, 1.5), 0.08, 0, wrap);
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    scene.materials[i].normalTexture = {};
+    scene.materials[i].height = static_cast<int>(i % scene.heights.size());
+  }
+  return scene;
+}
+
 /// A sky with a gradient and a soft sun.
 scene::Environment sky() {
   scene::Environment environment;
@@ -197,8 +216,8 @@ class ComparabilityTest : public RenderTest {
 };
 
 TEST_F(ComparabilityTest, SeesTheSameSurfacesInEveryAsset) {
-  for (const char* name : {"atrium", "balls", "cornell_box", "foliage_card", "lights", "plant", "robot",
-                           "statue", "teapot", "white_furnace"}) {
+  for (const char* name : {"atrium", "balls", "bump_sphere", "bump_wall", "cornell_box", "foliage_card",
+                           "lights", "plant", "robot", "statue", "teapot", "white_furnace"}) {
     SCOPED_TRACE(name);
     const scene::Scene scene = asset(name);
     const double time = 0.7;
@@ -215,6 +234,18 @@ TEST_F(ComparabilityTest, TexturesNormalMapsMirroringCutOutsAndVertexColoursAgre
       both(scene, scene::lookAt({0.7f, 0.6f, 9}, {0, -0.4f, 0}, 0.8f), {192, 144}, Term::final);
   expectSameSurfaces(pair, {.maskedShare = 0.01});
   EXPECT_LT(lightDifference(pair, true), 2e-3) << "emission";
+}
+
+TEST_F(ComparabilityTest, HeightMapsAgreeMirroredMinifiedAndAtTheirEdges) {
+  const scene::Scene scene = bumpyScene();
+  const auto camera = scene::lookAt({0.7f, 0.6f, 9}, {0, -0.4f, 0}, 0.8f);
+  expectSameSurfaces(both(scene, camera, {192, 144}, Term::final), {.maskedShare = 0.01});
+  scene::Scene flat = bumpyScene();
+  for (scene::Material& material : flat.materials) material.height = scene::kNone;
+  const test::Pair bumpy = both(scene, camera, {48, 36}, Term::final);
+  const test::Pair plain = both(flat, camera, {48, 36}, Term::final);
+  EXPECT_GT(test::agreement(bumpy.image, plain.reference).normalMedian, 1) << "degrees";
+  EXPECT_GT(test::agreement(plain.image, bumpy.reference).normalMedian, 1) << "degrees";
 }
 
 /// A sphere that has more and more triangles.
