@@ -7,20 +7,20 @@
 namespace limn::scene {
 
 GBuffer GBufferPass::add(frame::FrameGraph& graph, GpuScene& scene, const SceneHandles& handles,
-                         glm::ivec2 size, Surfaces surfaces) {
+                         glm::ivec2 size, Surfaces surfaces, bool places) {
   using frame::Access;
   const auto create = [&](const char* name, GLenum format) {
     return graph.createTexture(name, {.format = format, .width = size.x, .height = size.y});
   };
   frame::PassBuilder builder = graph.addPass(surfaces == Surfaces::matte ? "matte gbuffer" : "gbuffer");
   builder.read(handles.frame, Access::uniformBuffer, "FrameBlock", "camera");
-  const bool tangents = std::ranges::any_of(scene.scene().materials, [](const Material& material) {
-    return material.model && glsl::model_anisotropic(*material.model);
-  });
-  const SurfacePrograms programs =
-      scene.declareSurfaces(builder, handles,
-                            {.files = {"glsl/geometry/gbuffer.vert.glsl", "glsl/geometry/gbuffer.frag.glsl"},
-                             .defines = {{"SURFACE_TANGENTS", tangents ? "1" : "0"}}});
+  const bool tangents = places || std::ranges::any_of(scene.scene().materials, [](const Material& material) {
+                          return material.model && glsl::model_anisotropic(*material.model);
+                        });
+  const SurfacePrograms programs = scene.declareSurfaces(
+      builder, handles,
+      {.files = {"glsl/geometry/gbuffer.vert.glsl", "glsl/geometry/gbuffer.frag.glsl"},
+       .defines = {{"SURFACE_TANGENTS", tangents ? "1" : "0"}, {"SURFACE_PLACES", places ? "1" : "0"}}});
   const auto write = [&](const char* name, GLenum format, const char* why) {
     return builder.write(create(name, format), Access::colourAttachment, why);
   };
@@ -31,7 +31,11 @@ GBuffer GBufferPass::add(frame::FrameGraph& graph, GpuScene& scene, const SceneH
             .material = write("material", GL_RGBA8, "roughness, specular, index of refraction"),
             .emission = write("emission", GL_RGBA16F, "emitted radiance"),
             .instance = write("instance", GL_R32UI, "draw instance")};
-  if (tangents) g.tangent = write("tangent", GL_R16, "along which anisotropy lies");
+  if (places)
+    g.tangent = write("tangent", GL_RGBA16, "along which anisotropy lies, places in height maps");
+  else if (tangents)
+    g.tangent = write("tangent", GL_R16, "along which anisotropy lies");
+  g.places = places;
   const frame::TextureHandle zbuffer = builder.write(create("gbuffer z", GL_DEPTH_COMPONENT32F),
                                                      Access::depthAttachment, "hidden-surface removal");
 

@@ -12,7 +12,7 @@
 namespace limn::scene {
 namespace {
 
-glsl::Material packConstants(const Material& m) {
+glsl::Material packConstants(const Scene& scene, const Material& m) {
   glsl::Material out{};
   out.base_colour = m.baseColour;
   out.emission = m.emission;
@@ -36,6 +36,12 @@ glsl::Material packConstants(const Material& m) {
   if (m.specularSurface()) flags |= glsl::material_specular_surface;
   if (m.model) flags |= glsl::material_has_model;
   if (m.height != kNone && m.normalTexture.image == kNone) flags |= glsl::material_has_height_normals;
+  out.height = m.height;
+  if (m.height != kNone) {
+    const relief::HeightField& field = scene.heights[static_cast<size_t>(m.height)];
+    out.height_size = glm::uvec2(field.size());
+    if (field.wrap() == relief::Wrap::clamped) flags |= glsl::material_height_clamped;
+  }
   out.flags = flags;
   return out;
 }
@@ -87,7 +93,7 @@ GpuMaterials::GpuMaterials(gpu::Device& device, const Scene& scene) : device_(de
     return keys.emplace(std::pair(textures, samplers), static_cast<uint32_t>(keys.size())).first->second;
   };
   for (const Material& material : scene.materials) {
-    materials_.push_back(packConstants(material));
+    materials_.push_back(packConstants(scene, material));
     Set set;
     const std::array<const TextureRef*, 4> refs{&material.baseColourTexture, &material.metalRoughTexture,
                                                 &material.normalTexture, &material.emissiveTexture};

@@ -319,6 +319,11 @@ bool GpuScene::hasColours() const {
   return implementation_->geometry.hasColours();
 }
 
+bool GpuScene::hasHeights() const {
+  return std::ranges::any_of(implementation_->scene.materials,
+                             [](const Material& material) { return material.height != kNone; });
+}
+
 std::vector<SurfaceVariant> GpuScene::surfaceVariants() const {
   std::set<SurfaceVariant> variants;
   for (size_t i = 0; i < implementation_->scene.materials.size(); ++i)

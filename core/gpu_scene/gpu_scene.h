@@ -118,6 +118,7 @@ class LIMN_API GpuScene {
   bool hasSpecular() const;  ///< at least one instance is specular
   bool hasMasked() const;    ///< at least one material has an alpha cutoff
   bool hasColours() const;   ///< at least one primitive has vertex colours
+  bool hasHeights() const;   ///< at least one material has a height map
   /// Returns the variants of all materials of the scene, each once.
   std::vector<SurfaceVariant> surfaceVariants() const;
 
@@ -168,9 +169,9 @@ class LIMN_API GpuScene {
 class LIMN_API GBufferPass {
  public:
   /// Declares the pass "gbuffer", or "matte gbuffer" for the surfaces that are not specular. The pass object
-  /// must outlive the graph.
+  /// must outlive the graph. `places` asks for GBuffer::places.
   GBuffer add(frame::FrameGraph& graph, GpuScene& scene, const SceneHandles& handles, glm::ivec2 size,
-              Surfaces surfaces = Surfaces::all);
+              Surfaces surfaces = Surfaces::all, bool places = false);
 
  private:
   DrawList list_;

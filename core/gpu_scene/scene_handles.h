@@ -22,8 +22,10 @@ struct GBuffer {
   frame::TextureHandle emission;         ///< RGBA16F, W/(sr m^2)
   frame::TextureHandle instance;         ///< R32UI, index into Pose::instances, 0xffffffff: none
   /// R16: the tangent as a turn about the normal (glsl::frame_turned); empty where no material of the scene
-  /// is anisotropic.
+  /// is anisotropic. With `places` RGBA16: also where the pixel lies in its height map
+  /// (glsl::GBufferPlace).
   frame::TextureHandle tangent{};
+  bool places = false;
 };
 
 /// Holds the names by which shaders sample the textures of a GBuffer (glsl/surface/gbuffer_input.glsl).

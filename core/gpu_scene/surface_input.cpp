@@ -9,6 +9,7 @@ using frame::Access;
 void SurfaceInput::define(std::map<std::string, std::string>& defines) const {
   defines["MATERIAL_MODELS"] = fmt::format("{}", handles_.modelKinds);
   defines["SURFACE_TANGENTS"] = gbuffer_.tangent ? "1" : "0";
+  defines["SURFACE_PLACES"] = gbuffer_.places ? "1" : "0";
   if (!handles_.surface) return;
   defines["SURFACE_ANSWER"] = handles_.surface->file;
   for (const auto& [name, value] : handles_.surface->defines) defines[name] = value;

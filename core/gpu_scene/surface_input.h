@@ -30,7 +30,8 @@ class LIMN_API SurfaceInput {
  public:
   SurfaceInput(const SceneHandles& handles, const GBuffer& gbuffer) : handles_(handles), gbuffer_(gbuffer) {}
   /// Adds MATERIAL_MODELS (bit 1 << kind of each model of the scene, glsl/materials/model.glsl),
-  /// SURFACE_TANGENTS and, where a technique answers Term::surface, SURFACE_ANSWER with the defines of that.
+  /// SURFACE_TANGENTS, SURFACE_PLACES and, where a technique answers Term::surface, SURFACE_ANSWER with the
+  /// defines of that.
   void define(std::map<std::string, std::string>& defines) const;
   void declare(frame::PassBuilder& pass) const;
 

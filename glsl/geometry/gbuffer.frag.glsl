@@ -1,4 +1,5 @@
-// Surface of the G-buffer. SURFACE_TANGENTS 1: and its tangent. MASKED, TEXTURES, COLOURS: see surface_input.glsl.
+// Surface of the G-buffer. SURFACE_TANGENTS 1: and its tangent; SURFACE_PLACES 1: and its place
+// in the material's height map. MASKED, TEXTURES, COLOURS: see surface_input.glsl.
 #include "glsl/surface/gbuffer.glsl"
 #include "glsl/geometry/surface_input.glsl"
 #include "glsl/relief/height_normal.glsl"
@@ -18,7 +19,23 @@ layout(location = 4) out vec4 out_material;
 layout(location = 5) out vec4 out_emission;
 layout(location = 6) out uint out_instance;
 #if SURFACE_TANGENTS
+#if SURFACE_PLACES
+layout(location = 7) out vec4 out_tangent;
+#else
 layout(location = 7) out float out_tangent;
+#endif
+#endif
+
+#if SURFACE_PLACES
+// r: the turn; gba: the place.
+vec4 tangent_and_place(vec3 plane, vec2 uv_dx, vec2 uv_dy) {
+  bool clamped = (material.flags & material_height_clamped) != 0u;
+  vec2 uv = clamped ? clamp(surface_uv, vec2(0.0), vec2(1.0)) : fract(surface_uv);
+  // The bitangent of normal maps points up the texture, against v.
+  bool left_handed = tangent_ws.w >= 0.0;
+  float level = texture_level(uv_dx, uv_dy, vec2(material.height_size));
+  return vec4(frame_turn(plane, tangent_ws.xyz), gbuffer_place_pack(uv, level, left_handed));
+}
 #endif
 
 void main() {
@@ -73,6 +90,16 @@ void main() {
 #if SURFACE_TANGENTS
   // About the normal as it is read back, around which the frame that the turn counts from flips at n.z = 0.
   vec2 stored = round(texels.normal * 32767.0) / 32767.0;
-  out_tangent = frame_turn(octahedral_decode(stored), tangent_ws.xyz);
+  float turn = frame_turn(octahedral_decode(stored), tangent_ws.xyz);
+#if SURFACE_PLACES
+  vec3 plane = octahedral_decode(round(texels.geometric_normal * 32767.0) / 32767.0);
+  vec3 across = cross(plane, tangent_ws.xyz);
+  bool finite = !any(isnan(surface_uv)) && !any(isinf(surface_uv));
+  out_tangent = vec4(turn, 0.0, 0.0, 0.0);
+  if (material.height >= 0 && gl_FrontFacing && finite && dot(across, across) > 0.0)
+    out_tangent = tangent_and_place(plane, uv_dx, uv_dy);
+#else
+  out_tangent = turn;
+#endif
 #endif
 }

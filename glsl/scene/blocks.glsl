@@ -65,10 +65,10 @@ struct Material {
   float attenuation_distance;  // m, 0: infinite
   uint unused_0;
   vec3 attenuation;  // colour
-  uint unused_1;
+  int height;         // index of the height map, -1: none
   uint flags;  // material_*
   uint unused_2;
-  uvec2 unused_3;
+  uvec2 height_size;  // texels of the height map
 };
 LIMN_CONST uint material_double_sided = 1u;
 LIMN_CONST uint material_has_base_colour_texture = 2u;
@@ -79,6 +79,7 @@ LIMN_CONST uint material_specular_surface = 32u;  // transmission > 0, or metall
 
 LIMN_CONST uint material_has_model = 64u;  // the constants are those of the metal next to it
 LIMN_CONST uint material_has_height_normals = 128u;  // from a height map: there is no normal texture
+LIMN_CONST uint material_height_clamped = 256u;  // the height map's last texels go on for ever; else it is periodic
 
 LIMN_FN Optics material_optics(Material m) {
   Optics o;

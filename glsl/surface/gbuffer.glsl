@@ -10,6 +10,10 @@
 //   instance id       R32UI       index of the draw instance; 0xffffffff: none
 //   tangent           R16         turn of the tangent about the normal as read back (frame_turned()), 1e-4 radians a
 //                                 step; only in scenes with anisotropic materials
+//             or    RGBA16      where places in height maps are asked for. r: as above, but about the geometric normal as
+//                                 read back where the pixel has a place; gba: the place (GBufferPlace), a: 0: none
+//
+// The frame of a height map's base is made of the geometric normal because the shading normal is that of the bumps.
 //
 // Quantisation (half a step): base colour sqrt(base colour) / 65536, which is 0.02 % of 0.005 and 0.002 % of 0.5 (8 bits
 // would be wrong by up to 3.6 and 0.6 %, the same for every pixel of a wall: a bias); metallic 8e-6; roughness and
@@ -44,6 +48,14 @@ struct GBufferTexels {
   vec4 albedo;
   vec4 material;
   vec4 emission;
+};
+
+// Where a pixel lies in its material's height map. Backs of surfaces have no place.
+struct GBufferPlace {
+  bool present;      // false: no height map
+  vec2 uv;           // texture coordinates within the map, [0, 1], steps of 1 / 65535
+  float level;       // of detail (texture_level()), [0, 15], steps of 1 / 2048
+  bool left_handed;  // tangent, rising v and geometric normal are
 };
 
 // Octahedral map of the sphere onto [-1, 1]^2 (Cigolle et al. 2014, A Survey of Efficient Representations for
@@ -81,6 +93,23 @@ LIMN_FN vec3 colour_from_half_bits(float bits) {
 // A colour in [0, 1]^3 as the albedo texture holds it, and back: roots spread the steps as eyes and dark walls need them.
 LIMN_FN vec3 gbuffer_colour_encode(vec3 colour) { return sqrt(clamp(colour, vec3(0.0f), vec3(1.0f))); }
 LIMN_FN vec3 gbuffer_colour_decode(vec3 encoded) { return encoded * encoded; }
+
+// A place as g, b and a of the tangent's texture. uv: within the map.
+LIMN_FN vec3 gbuffer_place_pack(vec2 uv, float level, bool left_handed) {
+  float code = 1.0f + 2.0f * floor(clamp(level, 0.0f, 15.0f) * 2048.0f + 0.5f) + (left_handed ? 1.0f : 0.0f);
+  return vec3(uv, code / 65535.0f);
+}
+
+LIMN_FN GBufferPlace gbuffer_place_unpack(vec3 stored) {
+  uint code = uint(stored.z * 65535.0f + 0.5f);
+  uint value = code == 0u ? 0u : code - 1u;
+  GBufferPlace p;
+  p.present = code != 0u;
+  p.uv = vec2(stored);
+  p.level = float(value / 2u) / 2048.0f;
+  p.left_handed = value % 2u != 0u;
+  return p;
+}
 
 LIMN_FN GBufferTexels gbuffer_pack(GBufferSurface s) {
   GBufferTexels t;

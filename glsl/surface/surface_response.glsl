@@ -1,6 +1,6 @@
 // How the surface of a pixel reflects light, for every pass that reflects it: metallic-roughness, or the model of its
 // material. MATERIAL_MODELS: bit 1 << kind of each model of the scene; 0: the program knows metallic-roughness alone.
-// SURFACE_TANGENTS 1: the G-buffer holds tangents. SURFACE_ANSWER: see response.glsl.
+// SURFACE_TANGENTS 1: the G-buffer holds tangents; SURFACE_PLACES 1: and places in height maps. SURFACE_ANSWER: see response.glsl.
 #ifndef LIMN_SURFACE_RESPONSE_GLSL
 #define LIMN_SURFACE_RESPONSE_GLSL
 #include "glsl/surface/brdf.glsl"
@@ -41,7 +41,13 @@ SurfaceMaterial pixel_material(ivec2 pixel, GBufferSurface surface) {
   m.model.kind = model_none;
   if (instance != no_instance) m.model = material_models[instances[instance].material];
 #if SURFACE_TANGENTS
-  m.frame = frame_turned(surface.normal, texelFetch(gbuffer_tangent, pixel, 0).x);
+  vec4 tangent = texelFetch(gbuffer_tangent, pixel, 0);
+  m.frame = frame_turned(surface.normal, tangent.x);
+#if SURFACE_PLACES
+  // Beside a place the tangent is that of the base, below the bumps.
+  if (tangent.a > 0.0)
+    m.frame = frame_along(surface.normal, frame_turned(surface.geometric_normal, tangent.x).t);
+#endif
 #else
   m.frame = frame_around(surface.normal);
 #endif
