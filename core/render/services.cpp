@@ -1,7 +1,9 @@
 #include "core/render/services.h"
 
 #include "core/caustics/caustic_rays.h"
+#include "core/gpu_scene/gpu_scene.h"
 #include "core/indirect/virtual_lights.h"
+#include "core/relief_maps/relief_maps.h"
 #include "core/shadow/shadow_map.h"
 
 namespace limn::render {
@@ -12,6 +14,7 @@ FrameServices makeServices(gpu::Device& device, scene::GpuScene& scene) {
   services.add<shadow::ShadowMapService>(device, scene);
   services.add<indirect::VirtualLightService>();
   services.add<caustics::CausticRayService>(device, scene);
+  services.add<relief_maps::ReliefMapService>(device, scene.scene());
   return services;
 }
 

@@ -11,6 +11,7 @@
 #include "glsl/indirect/virtual_area_light.glsl"
 #include "glsl/materials/material_model.glsl"
 #include "glsl/media/smoke.glsl"
+#include "glsl/relief/relief_field.glsl"
 #include "glsl/scene/blocks.glsl"
 #include "glsl/shadow/fourier_shadow.glsl"
 #include "glsl/shadow/shadow_view.glsl"
@@ -190,14 +191,23 @@ TEST_F(SharedGlslTest, instancesHaveOneLayout) {
 }
 
 TEST_F(SharedGlslTest, materialsHaveOneLayout) {
-  expectElement("Material", "base_colour[0]", sizeof(glsl::Material),
-                {LIMN_MEMBER(Material, base_colour), LIMN_MEMBER(Material, emission),
-                 LIMN_MEMBER(Material, alpha_cutoff), LIMN_MEMBER(Material, metallic),
-                 LIMN_MEMBER(Material, roughness), LIMN_MEMBER(Material, normal_scale),
-                 LIMN_MEMBER(Material, ior), LIMN_MEMBER(Material, specular_colour),
-                 LIMN_MEMBER(Material, specular_factor), LIMN_MEMBER(Material, transmission),
-                 LIMN_MEMBER(Material, thickness), LIMN_MEMBER(Material, attenuation_distance),
-                 LIMN_MEMBER(Material, attenuation), LIMN_MEMBER(Material, flags)});
+  expectElement(
+      "Material", "base_colour[0]", sizeof(glsl::Material),
+      {LIMN_MEMBER(Material, base_colour), LIMN_MEMBER(Material, emission),
+       LIMN_MEMBER(Material, alpha_cutoff), LIMN_MEMBER(Material, metallic), LIMN_MEMBER(Material, roughness),
+       LIMN_MEMBER(Material, normal_scale), LIMN_MEMBER(Material, ior),
+       LIMN_MEMBER(Material, specular_colour), LIMN_MEMBER(Material, specular_factor),
+       LIMN_MEMBER(Material, transmission), LIMN_MEMBER(Material, thickness),
+       LIMN_MEMBER(Material, attenuation_distance), LIMN_MEMBER(Material, attenuation),
+       LIMN_MEMBER(Material, height), LIMN_MEMBER(Material, flags), LIMN_MEMBER(Material, height_size)});
+}
+
+TEST_F(SharedGlslTest, reliefFieldsHaveOneLayout) {
+  expectElement("ReliefField", "first", sizeof(glsl::ReliefField),
+                {LIMN_MEMBER(ReliefField, first), LIMN_MEMBER(ReliefField, clamped),
+                 LIMN_MEMBER(ReliefField, size), LIMN_MEMBER(ReliefField, spacing),
+                 LIMN_MEMBER(ReliefField, highest), LIMN_MEMBER(ReliefField, levels)},
+                "glsl/relief/relief_field.glsl");
 }
 
 TEST_F(SharedGlslTest, shadowViewsHaveOneLayout) {

@@ -1,0 +1,203 @@
+#include "core/relief_maps/relief_maps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/relief/ellipse.h"
+#include "core/relief/horizon.h"
+#include "glsl/relief/horizon_map.glsl"
+
+namespace limn::relief_maps {
+namespace {
+
+/// Counts the azimuths of the horizons by which the published fit's directions are lit or not: the share of
+/// the disc that linear lookups between them get wrong is below 0.001.
+constexpr int kFitAzimuths = 64;
+constexpr uint32_t kFitSeed = 1;
+constexpr float kLargestHalf = 65504;
+
+int levelsOf(const glm::ivec2& size) {
+  return std::bit_width(static_cast<unsigned>(std::max(size.x, size.y)));
+}
+
+/// Returns the texels of a level, on top of one another.
+int64_t texelsOf(const glm::ivec2& size) {
+  return int64_t{size.x} * size.y;
+}
+
+int64_t wordsOf(const relief::HeightField& field, const ReliefMapDesc& desc) {
+  switch (desc.table) {
+    case Table::moments: {
+      int64_t texels = 0;
+      for (int level = 0; level < levelsOf(field.size()); ++level)
+        texels += texelsOf(glsl::relief_level_size(field.size(), level));
+      return texels * glsl::relief_ellipse_words;
+    }
+    case Table::published:
+      return texelsOf(field.size()) * glsl::relief_ellipse_words;
+    case Table::horizons:
+      return texelsOf(field.size()) * glsl::relief_horizon_words(desc.azimuths);
+    case Table::heights:
+      break;
+  }
+  return texelsOf(field.size());
+}
+
+void append(std::vector<uint32_t>& words, const glsl::ReliefEllipse& ellipse) {
+  const glm::uvec3 packed = glsl::relief_ellipse_pack(ellipse);
+  words.insert(words.end(), {packed.x, packed.y, packed.z});
+}
+
+/// Returns the mean over what a texel of a smaller map covers, in whole texels.
+glsl::ReliefEllipse meanOf(const std::vector<glsl::ReliefEllipse>& texels, const glm::ivec2& size,
+                           const glm::ivec2& smaller, const glm::ivec2& at) {
+  const glm::ivec2 low = at * size / smaller, high = ((at + 1) * size + smaller - 1) / smaller;
+  relief::EllipseMean mean;
+  for (int y = low.y; y < high.y; ++y)
+    for (int x = low.x; x < high.x; ++x) mean.add(texels[static_cast<size_t>(y * size.x + x)]);
+  return mean.mean();
+}
+
+/// All levels are means of the texels themselves, so that spreads are those of all that lie below.
+void appendMoments(std::vector<uint32_t>& words, const relief::HeightField& field, int azimuths) {
+  const std::vector<glsl::ReliefEllipse> texels =
+      relief::momentEllipses(relief::sweepHorizons(field, azimuths));
+  for (const glsl::ReliefEllipse& ellipse : texels) append(words, ellipse);
+  for (int level = 1; level < levelsOf(field.size()); ++level) {
+    const glm::ivec2 smaller = glsl::relief_level_size(field.size(), level);
+    for (int y = 0; y < smaller.y; ++y)
+      for (int x = 0; x < smaller.x; ++x) append(words, meanOf(texels, field.size(), smaller, {x, y}));
+  }
+}
+
+/// Returns the uniform ellipse of a fit: its variance along an axis is a quarter of the squared radius.
+glsl::ReliefEllipse uniformEllipse(const glsl::FittedEllipse& fit) {
+  const glm::vec2 along = 0.5f * fit.radii.x * fit.axis,
+                  across = 0.5f * fit.radii.y * glm::vec2(-fit.axis.y, fit.axis.x);
+  return {.centre = fit.centre,
+          .xx = along.x * along.x + across.x * across.x,
+          .xy = along.x * along.y + across.x * across.y,
+          .yy = along.y * along.y + across.y * across.y,
+          .spread = 0};
+}
+
+void appendPublished(std::vector<uint32_t>& words, const relief::HeightField& field, int count) {
+  const relief::Horizons horizons = relief::sweepHorizons(field, kFitAzimuths);
+  const std::vector<glm::vec2> directions = relief::randomDisc(count, kFitSeed);
+  std::vector<glm::vec3> rays;
+  std::vector<glsl::HorizonPlace> places;
+  for (const glm::vec2& d : directions) {
+    rays.emplace_back(d, std::sqrt(std::max(1 - glm::dot(d, d), 0.f)));
+    places.push_back(glsl::horizon_place(rays.back(), kFitAzimuths));
+  }
+  std::vector<uint8_t> lit(directions.size());
+  for (size_t texel = 0; texel < field.texels(); ++texel) {
+    for (size_t i = 0; i < rays.size(); ++i) {
+      const float first = horizons.tangent(places[i].first, texel),
+                  second = horizons.tangent(places[i].second, texel);
+      lit[i] = glsl::horizon_lit(rays[i], first + places[i].weight * (second - first)) ? 1 : 0;
+    }
+    append(words, uniformEllipse(relief::fitPublished(directions, lit)));
+  }
+}
+
+void appendHorizons(std::vector<uint32_t>& words, const relief::HeightField& field, int azimuths) {
+  const relief::Horizons horizons = relief::sweepHorizons(field, azimuths);
+  const auto tangent = [&](int azimuth, size_t texel) {
+    return azimuth < azimuths ? std::min(horizons.tangent(azimuth, texel), kLargestHalf) : 0.f;
+  };
+  for (size_t texel = 0; texel < field.texels(); ++texel)
+    for (int i = 0; i < azimuths; i += 2)
+      words.push_back(glm::packHalf2x16({tangent(i, texel), tangent(i + 1, texel)}));
+}
+
+void appendHeights(std::vector<uint32_t>& words, const relief::HeightField& field) {
+  for (int y = 0; y < field.size().y; ++y)
+    for (int x = 0; x < field.size().x; ++x)
+      words.push_back(std::bit_cast<uint32_t>(static_cast<float>(field.texel({x, y}))));
+}
+
+void appendField(std::vector<uint32_t>& words, const relief::HeightField& field, const ReliefMapDesc& desc) {
+  switch (desc.table) {
+    case Table::moments:
+      return appendMoments(words, field, desc.azimuths);
+    case Table::published:
+      return appendPublished(words, field, desc.directions);
+    case Table::horizons:
+      return appendHorizons(words, field, desc.azimuths);
+    case Table::heights:
+      return appendHeights(words, field);
+  }
+}
+
+/// Returns the description with what its table does not depend on as by default.
+ReliefMapDesc plain(const ReliefMapDesc& desc) {
+  const ReliefMapDesc standard;
+  const bool byAzimuths = desc.table == Table::moments || desc.table == Table::horizons;
+  return {.table = desc.table,
+          .azimuths = byAzimuths ? desc.azimuths : standard.azimuths,
+          .directions = desc.table == Table::published ? desc.directions : standard.directions};
+}
+
+}  // namespace
+
+int64_t reliefTableWords(std::span<const relief::HeightField> fields, const ReliefMapDesc& desc) {
+  int64_t words = 0;
+  for (const relief::HeightField& field : fields) words += wordsOf(field, desc);
+  return words;
+}
+
+ReliefTable makeReliefTable(std::span<const relief::HeightField> fields, const ReliefMapDesc& desc) {
+  ReliefTable table;
+  for (const relief::HeightField& field : fields) {
+    table.fields.push_back({.first = static_cast<uint32_t>(table.values.size()),
+                            .clamped = field.wrap() == relief::Wrap::clamped ? 1u : 0u,
+                            .size = field.size(),
+                            .spacing = field.spacing(),
+                            .highest = static_cast<float>(field.highest()),
+                            .levels = desc.table == Table::moments ? levelsOf(field.size()) : 1});
+    appendField(table.values, field, desc);
+  }
+  return table;
+}
+
+ReliefMapService::ReliefMapService(gpu::Device& device, const scene::Scene& scene)
+    : device_(device), scene_(scene) {}
+ReliefMapService::~ReliefMapService() = default;
+
+void ReliefMapService::begin() {
+  std::erase_if(entries_, [](const auto& entry) { return !entry.second.requested; });
+  for (auto& [desc, entry] : entries_) entry.requested = false;
+}
+
+ReliefMaps ReliefMapService::request(const ReliefMapDesc& asked) {
+  const FrameContext& building = context();
+  const ReliefMapDesc desc = plain(asked);
+  const int64_t bytes = reliefTableWords(scene_.heights, desc) * int64_t{sizeof(uint32_t)};
+  if (bytes > device_.limits().maxStorageBlockBytes)
+    throw UsageError(
+        fmt::format("tables of height maps take {} MiB, more than the {} MiB of a storage buffer; "
+                    "ask for fewer azimuths or smaller maps",
+                    bytes >> 20, device_.limits().maxStorageBlockBytes >> 20));
+  auto found = entries_.find(desc);
+  if (found == entries_.end()) {
+    const ReliefTable table = makeReliefTable(scene_.heights, desc);
+    Entry made{.fields = gpu::Buffer::of<glsl::ReliefField>(device_, "relief fields", table.fields),
+               .values = gpu::Buffer::of<uint32_t>(device_, "relief values", table.values),
+               .handles = {},
+               .requested = false};
+    found = entries_.emplace(desc, std::move(made)).first;
+  }
+  Entry& entry = found->second;
+  if (!entry.requested)
+    entry.handles = {building.graph.importBuffer("relief fields", entry.fields),
+                     building.graph.importBuffer("relief values", entry.values)};
+  entry.requested = true;
+  return entry.handles;
+}
+
+}  // namespace limn::relief_maps
