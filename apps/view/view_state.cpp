@@ -76,7 +76,7 @@ void setCamera(SceneQuestion& options, const Orbit& orbit, const glm::dvec3& ori
 }
 
 void dropRivals(std::vector<render::TechniqueUse>& techniques, const TechniquePlugin& added) {
-  const TermSet claimed = exclusiveWith(added.info->terms);
+  const TermSet claimed = refusedBeside(added.info->terms);
   const auto rivals = [&](const render::TechniqueUse& use) {
     return use.plugin != &added && (use.plugin->info->terms & claimed) != 0;
   };

@@ -21,7 +21,7 @@ struct ViewState {
 /// Puts the orbit's camera into the options, so that whatever reads them gets it bit for bit.
 void setCamera(SceneQuestion& options, const Orbit& orbit, const glm::dvec3& origin);
 
-/// Removes the techniques that `added`, itself one of them, excludes (exclusiveWith).
+/// Removes the techniques that `added`, itself one of them, excludes (refusedBeside).
 void dropRivals(std::vector<render::TechniqueUse>& techniques, const TechniquePlugin& added);
 
 /// Returns the command that renders the state to `out`: one line for a shell, with arguments quoted where

@@ -91,7 +91,7 @@ void checkValues(const Image& image, Term term) {
           image
               .data()[i * static_cast<std::size_t>(image.channelCount()) + static_cast<std::size_t>(channel)];
       notFinite += !std::isfinite(v);
-      outOfRange += v < 0 || (term == Term::visibility && v > 1);
+      outOfRange += v < 0 || (isFactor(term) && v > 1);
     }
   if (notFinite > 0) throw std::range_error(fmt::format("{} values are not finite", notFinite));
   if (outOfRange > 0) throw std::range_error(fmt::format("{} values are out of range", outOfRange));
@@ -138,10 +138,8 @@ struct StressRun::Question {
   Question(gpu::Device& device, std::string text, scene::Scene changed)
       : key(std::move(text)), scene(std::move(changed)), renderer(device, scene) {}
 
-  /// V is that of one light.
-  int light(Term term) {
-    return term == Term::visibility && !renderer.pose().lights.empty() ? 0 : scene::kNone;
-  }
+  /// V and W are those of one light.
+  int light(Term term) { return isFactor(term) && !renderer.pose().lights.empty() ? 0 : scene::kNone; }
 };
 
 std::span<const StressCase> commonStressCases() {
@@ -200,8 +198,8 @@ StressRun::Question& StressRun::question(const Asked& asked, const StressCase& c
   return *question_;
 }
 
-/// The RMSE against the reference, relative to its mean unless it is a visibility. Throws std::range_error
-/// for values that no picture may have, Error where something refuses.
+/// The RMSE against the reference, relative to its mean unless it is a factor of a light. Throws
+/// std::range_error for values that no picture may have, Error where something refuses.
 double StressRun::error(const TechniquePlugin& technique, const StressCase& c, const Asked& asked) {
   Question& q = question(asked, c);
   const Term term = asked.shown;
@@ -246,7 +244,7 @@ double StressRun::error(const TechniquePlugin& technique, const StressCase& c, c
           image, reference,
           {.maxMaskedShare = kMaxMasked, .background = termInfo(term).background, .maskTermRange = {}})
           .rmse;
-  if (term == Term::visibility) return rmse;
+  if (isFactor(term)) return rmse;
   const double mean = meanOf(reference);
   return mean > 0 ? rmse / mean : rmse;
 }

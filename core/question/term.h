@@ -143,6 +143,20 @@ constexpr TermSet exclusiveWith(TermSet terms) {
   });
 }
 
+/// Returns every term that no other technique may answer beside one that answers `terms`: those that exclude
+/// each other, and relief beside direct light, which would have to hold that factor itself.
+constexpr TermSet refusedBeside(TermSet terms) {
+  TermSet refused = exclusiveWith(terms);
+  if (contains(terms, Term::relief)) refused = refused | Term::direct;
+  if (contains(terms, Term::direct)) refused = refused | Term::relief;
+  return refused;
+}
+
+/// Returns whether the term is a factor of one light: its picture shows that of one, 0 to 1.
+constexpr bool isFactor(Term term) {
+  return term == Term::visibility || term == Term::relief;
+}
+
 /// Returns the row of one term. Throws std::logic_error for a value that is not a term.
 LIMN_API const TermInfo& termInfo(Term term);
 LIMN_API const char* name(Term term);

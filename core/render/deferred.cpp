@@ -128,18 +128,22 @@ TextureHandle Deferred::start(const Frame& frame, Start with) {
 }
 
 TextureHandle Deferred::addLights(const Frame& frame, TextureHandle before, std::span<const uint32_t> lights,
-                                  TextureHandle visibility) {
+                                  const Factors& factors) {
   frame::PassBuilder builder = frame.graph.addPass("accumulate lights");
   builder.read(frame.handles.frame, Access::uniformBuffer, "FrameBlock", "camera");
   builder.read(frame.handles.lights, Access::storageLoad, "Lights", "lights");
   const scene::SurfaceInput surfaces(frame.handles, frame.gbuffer);
   surfaces.declare(builder);
+  const auto& [visibility, relief] = factors;
   if (visibility) builder.read(visibility, Access::sampled, "visibility", "V of each light");
+  if (relief) builder.read(relief, Access::sampled, "relief", "W of each light");
   const TextureHandle ltc = implementation_->ltc(frame.graph);
   builder.read(ltc, Access::sampled, "ltc_table", "glossy light of rectangles");
-  const TextureHandle radiance = builder.write(before, Access::imageLoadStore, "radiance", "sum of L_u V");
+  const TextureHandle radiance =
+      builder.write(before, Access::imageLoadStore, "radiance", relief ? "sum of L_u V W" : "sum of L_u V");
   gpu::ProgramDesc desc{.files = {"glsl/deferred/light_accumulate.comp.glsl"},
                         .defines = {{"VISIBILITY", visibility ? "1" : "0"},
+                                    {"RELIEF", relief ? "1" : "0"},
                                     {"MEDIUM", implementation_->scene.medium.present() ? "1" : "0"},
                                     {"LIGHT_COUNT", std::to_string(lights.size())}}};
   surfaces.define(desc.defines);
@@ -157,6 +161,16 @@ TextureHandle Deferred::addLights(const Frame& frame, TextureHandle before, std:
     context.dispatch(size.x, size.y, 1, kGroupSize, kGroupSize);
   });
   return radiance;
+}
+
+TextureHandle Deferred::clearFactor(frame::FrameGraph& graph, TextureHandle factor) {
+  frame::PassBuilder builder = graph.addPass("clear factor");
+  const TextureHandle cleared = builder.write(factor, Access::copyTarget, "nothing keeps light away");
+  builder.execute([cleared](frame::PassContext& context) {
+    constexpr float one = 1;
+    context.gl().ClearTexImage(context.texture(cleared).id(), 0, GL_RED, GL_FLOAT, &one);
+  });
+  return cleared;
 }
 
 TextureHandle Deferred::addEnvironment(const Frame& frame, TextureHandle before) {

@@ -56,7 +56,7 @@ Image readPicture(const frame::FrameGraph& graph, const Settings& settings, fram
     names.insert(names.end(),
                  {"Z", "coverage", "id", "albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z"});
   Image image(settings.size.x, settings.size.y, names);
-  if (settings.term == Term::visibility) {
+  if (isFactor(settings.term)) {
     const auto v = reader.texture<float>(picture, GL_RED, GL_FLOAT, 1);
     reader.forEachPixel(image,
                         [&](std::span<float> pixel, size_t i) { pixel[0] = pixel[1] = pixel[2] = v[i]; });

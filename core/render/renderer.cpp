@@ -51,6 +51,7 @@ struct Renderer::Implementation {
   // Handles of the current graph.
   std::unique_ptr<frame::FrameGraph> graph;
   SceneHandles handles;
+  Use* bumps = nullptr;    ///< answers relief for the current graph
   GBuffer gbuffer, matte;  ///< matte: what is lit, the same or the surfaces behind the specular ones
   frame::TextureHandle output, display;
   InspectionView inspectionView;
@@ -76,6 +77,7 @@ struct Renderer::Implementation {
     gpuScene.forget();
     inspector.reset();
     graph.reset();
+    bumps = nullptr;
     uses.clear();
   }
 
@@ -114,7 +116,7 @@ struct Renderer::Implementation {
     Use* use = answering(Term::surface);
     if (!use) return;
     const TechniquePlugin& plugin = *use->settings->plugin;
-    if (handles.modelKinds == 0 || settings.term == Term::visibility || !gbuffer.depth)
+    if (handles.modelKinds == 0 || isFactor(settings.term) || !gbuffer.depth)
       return graph->leaveOut("surface", plugin.info->name,
                              handles.modelKinds == 0 ? "no material has a model" : "no light is reflected");
     const TechniqueInputs inputs = inputsOf(*use, gbuffer);
@@ -160,7 +162,7 @@ struct Renderer::Implementation {
     for (uint32_t i = 0; i < pose.lights.size(); ++i) {
       if (settings.light >= 0 && static_cast<uint32_t>(settings.light) != i) continue;
       if (replaced && (pose.lights[i].flags & glsl::light_flag_environment) != 0) continue;
-      if (!emits(i) && settings.term != Term::visibility && !forced(Saving::darkLights)) {
+      if (!emits(i) && !isFactor(settings.term) && !forced(Saving::darkLights)) {
         graph->leaveOut(fmt::format("light {}", pose.lightNames[i]), "core", "it emits nothing");
         continue;
       }
@@ -169,22 +171,24 @@ struct Renderer::Implementation {
     return lights;
   }
 
-  frame::TextureHandle visibilityTarget(int layers) {
-    return graph->createTexture("visibility",
+  frame::TextureHandle factorTarget(Term term, int layers) {
+    return graph->createTexture(limn::name(term),
                                 {GL_TEXTURE_2D_ARRAY, GL_R16, settings.size.x, settings.size.y, layers, 1});
   }
 
   frame::TextureHandle addDirect(const Deferred::Frame& frame, frame::TextureHandle radiance,
                                  std::span<const uint32_t> lights) {
     if (Use* direct = answering(Term::direct)) return ask(*direct, Term::direct, lights, radiance);
+    const auto factor = [&](Term term, Use* use, std::span<const uint32_t> batch) {
+      return use ? ask(*use, term, batch, factorTarget(term, static_cast<int>(batch.size())))
+                 : frame::TextureHandle{};
+    };
     Use* shadowing = answering(Term::visibility);
     for (size_t first = 0; first < lights.size(); first += kLightBatch) {
       const auto batch = lights.subspan(first, std::min<size_t>(kLightBatch, lights.size() - first));
-      frame::TextureHandle visibility;
-      if (shadowing)
-        visibility =
-            ask(*shadowing, Term::visibility, batch, visibilityTarget(static_cast<int>(batch.size())));
-      radiance = deferred.addLights(frame, radiance, batch, visibility);
+      const Deferred::Factors factors{.visibility = factor(Term::visibility, shadowing, batch),
+                                      .relief = factor(Term::relief, bumps, batch)};
+      radiance = deferred.addLights(frame, radiance, batch, factors);
     }
     return radiance;
   }
@@ -211,10 +215,25 @@ struct Renderer::Implementation {
     return nullptr;
   }
 
+  /// The technique that says what bumps leave of each light, if the picture has such light on height maps.
+  Use* answeringRelief() {
+    Use* use = answering(Term::relief);
+    if (!use) return nullptr;
+    const bool lit = settings.term == Term::final || settings.term == Term::direct ||
+                     settings.term == Term::specular || settings.term == Term::relief;
+    const char* why = !gpuScene.hasHeights() ? "no material has a height map"
+                      : !lit                 ? "no direct light is shown"
+                                             : nullptr;
+    if (!why) return use;
+    graph->leaveOut("relief", use->settings->plugin->info->name, why);
+    return nullptr;
+  }
+
   frame::TextureHandle addRadiance() {
     Use* specular = answeringSpecular();
-    matte =
-        specular ? mattePass.add(*graph, gpuScene, handles, settings.size, scene::Surfaces::matte) : gbuffer;
+    matte = specular ? mattePass.add(*graph, gpuScene, handles, settings.size, scene::Surfaces::matte,
+                                     bumps != nullptr)
+                     : gbuffer;
     const Deferred::Frame lit{*graph, handles, matte, settings.size};
     const Deferred::Frame frame{*graph, handles, gbuffer, settings.size};
     const bool all = settings.term == Term::final, whole = all || specular;
@@ -254,13 +273,19 @@ struct Renderer::Implementation {
     return radiance;
   }
 
-  frame::TextureHandle addVisibility() {
+  /// V or W of one light.
+  frame::TextureHandle addFactor() {
+    const Term term = settings.term;
     const std::vector<uint32_t> lights = activeLights();
     if (lights.size() != 1)
-      throw UsageError("--output-term visibility shows one light; choose it with --light");
-    if (!gbuffer.depth) throw Error("visibility has no surface to show: the scene has no geometry");
+      throw UsageError(
+          fmt::format("--output-term {} shows one light; choose it with --light", limn::name(term)));
+    if (!gbuffer.depth)
+      throw Error(fmt::format("{} has no surface to show: the scene has no geometry", limn::name(term)));
     matte = gbuffer;
-    return ask(*answering(Term::visibility), Term::visibility, lights, visibilityTarget(1));
+    const frame::TextureHandle target = factorTarget(term, 1);
+    if (term == Term::relief && !bumps) return Deferred::clearFactor(*graph, target);
+    return ask(*answering(term), term, lights, target);
   }
 
   /// Behind everything else: the pass looked at may be any.
@@ -282,18 +307,20 @@ struct Renderer::Implementation {
     gpuScene.setCulling(!forced(Saving::culling));
     handles = gpuScene.import(*graph);
     gbuffer = matte = {};
+    bumps = answeringRelief();
     if (gpuScene.instanceCount() > 0)
-      gbuffer = gbufferPass.add(*graph, gpuScene, handles, settings.size);
+      gbuffer =
+          gbufferPass.add(*graph, gpuScene, handles, settings.size, scene::Surfaces::all, bumps != nullptr);
     else
       graph->leaveOut("gbuffer", "core", "the scene has no geometry");
     askSurface();
     const auto building = services.begin(*graph, handles, pose);
-    output = settings.term == Term::visibility ? addVisibility() : addRadiance();
+    output = isFactor(settings.term) ? addFactor() : addRadiance();
     graph->output(output);
     display = {};
     if (settings.displayEv) {
       display = deferred.addToneMapping({*graph, handles, gbuffer, settings.size}, output,
-                                        settings.term == Term::visibility, *settings.displayEv);
+                                        isFactor(settings.term), *settings.displayEv);
       graph->output(display);
     }
     if (settings.channels && gbuffer.depth)

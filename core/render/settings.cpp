@@ -24,6 +24,17 @@ void refuseTwo(const std::vector<TechniqueUse>& techniques, TermSet terms, const
                                  first->plugin->info->name, second->plugin->info->name, what));
 }
 
+/// Throws UsageError where one technique answers relief and another direct light.
+void refuseReliefBesideDirect(const std::vector<TechniqueUse>& techniques) {
+  for (const TechniqueUse& bumps : techniques)
+    for (const TechniqueUse& other : techniques)
+      if (&bumps != &other && contains(termsOf(bumps), Term::relief) &&
+          contains(termsOf(other), Term::direct))
+        throw UsageError(fmt::format(
+            "technique {} answers relief, for which the direct light of {} has no place; name one of them",
+            bumps.plugin->info->name, other.plugin->info->name));
+}
+
 /// Returns the parameter of that name, or `otherwise` for techniques that have none.
 int parameterOr(const TechniqueUse& use, std::string_view parameter, int otherwise) {
   return use.parameters.has(parameter) ? use.parameters.integer(parameter) : otherwise;
@@ -34,6 +45,7 @@ int parameterOr(const TechniqueUse& use, std::string_view parameter, int otherwi
 void checkTechniques(const std::vector<TechniqueUse>& techniques, Term term) {
   for (const TermInfo& info : kTerms)
     if (info.exclusive) refuseTwo(techniques, exclusiveWith(termSet(info.term)), info.exclusive);
+  refuseReliefBesideDirect(techniques);
   const auto answers = [&](const TechniqueUse& use) { return contains(termsOf(use), term); };
   switch (termInfo(term).picture) {
     case TermPicture::none:

@@ -62,7 +62,7 @@ struct TechniqueInputs {
   const FrameServices& services;
   const ParameterValues& parameters;
   SceneHandles handles;
-  /// Holds the surfaces to light. When specular is answered: for visibility, direct, environment and
+  /// Holds the surfaces to light. When specular is answered: for visibility, relief, direct, environment and
   /// indirect, the surfaces behind the specular ones.
   GBuffer gbuffer;
   glm::ivec2 size;                        ///< pixels
@@ -81,11 +81,13 @@ struct TechniqueInputs {
 /// Holds one request to a technique.
 struct TermRequest {
   Term term;
-  /// Holds the lights of the request (indices into Pose::lights); none for environment. For visibility: one
-  /// batch, answered layer by layer.
+  /// Holds the lights of the request (indices into Pose::lights); none for environment. For visibility and
+  /// relief: one batch, answered layer by layer.
   std::span<const uint32_t> lights;
   /// Holds the texture to answer into. visibility: R16 array with one layer per entry of `lights`; the pass
   /// writes every pixel, and 1 where the pixel has no coverage or the light lies wholly behind the surface.
+  /// relief: the same texture for W, asked for only where the scene has height maps, with GBuffer::places in
+  /// TechniqueInputs::gbuffer; 1 where the pixel has no place in a height map.
   /// specular: RGBA32F, radiance of TechniqueInputs::matte and the background behind it, to be read; the
   /// result is a separate texture, black where no specular surface is seen. Other terms: RGBA32F radiance to
   /// add to.

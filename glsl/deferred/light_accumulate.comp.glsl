@@ -1,5 +1,6 @@
-// Adds sum of L_u V over a batch of lights to the radiance: unshadowed reflected light, exact for diffuse surfaces, times
-// visibility (layer per light; V = 1 where nobody was asked). MEDIUM 1: and times the transmittance from the light's centre.
+// Adds sum of L_u V W over a batch of lights to the radiance: unshadowed reflected light, exact for diffuse surfaces, times
+// visibility and relief (layer per light; V = 1, W = 1 where nobody was asked). MEDIUM 1: and times the transmittance from
+// the light's centre.
 #include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/light/light_texture.glsl"
 #include "glsl/media/medium_input.glsl"
@@ -14,6 +15,9 @@ layout(rgba32f) uniform image2D radiance;
 layout(std430) readonly buffer Lights { Light lights[]; };
 #if VISIBILITY
 uniform sampler2DArray visibility;
+#endif
+#if RELIEF
+uniform sampler2DArray relief;
 #endif
 uniform uint light_indices[LIGHT_COUNT];
 
@@ -52,8 +56,13 @@ void main() {
   do {  // the condition comes last: software renderers run a loop's body once more where it comes first
 #if VISIBILITY
     float lit = texelFetch(visibility, ivec3(pixel, i), 0).x;
+#elif RELIEF
+    float lit = 1.0;
 #else
     const float lit = 1.0;
+#endif
+#if RELIEF
+    lit *= texelFetch(relief, ivec3(pixel, i), 0).x;
 #endif
     if (lit > 0.0) {
       vec3 arriving = unshadowed(lights[light_indices[i]], material, position, surface, v) *

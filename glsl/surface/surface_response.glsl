@@ -1,6 +1,7 @@
 // How the surface of a pixel reflects light, for every pass that reflects it: metallic-roughness, or the model of its
 // material. MATERIAL_MODELS: bit 1 << kind of each model of the scene; 0: the program knows metallic-roughness alone.
-// SURFACE_TANGENTS 1: the G-buffer holds tangents; SURFACE_PLACES 1: and places in height maps. SURFACE_ANSWER: see response.glsl.
+// SURFACE_TANGENTS 1: the G-buffer holds tangents; SURFACE_PLACES 1: and places in height maps. SURFACE_ANSWER: see
+// response.glsl.
 #ifndef LIMN_SURFACE_RESPONSE_GLSL
 #define LIMN_SURFACE_RESPONSE_GLSL
 #include "glsl/surface/brdf.glsl"

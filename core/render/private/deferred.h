@@ -12,7 +12,7 @@
 
 namespace limn::render {
 
-/// Limits the lights whose visibility is held at once (layers of the visibility texture).
+/// Limits the lights whose visibility, or relief, is held at once (layers of its texture).
 constexpr int kLightBatch = 8;
 
 class Deferred {
@@ -36,10 +36,15 @@ class Deferred {
     emissionAndSpecular  ///< also the environment in specular surfaces
   };
   frame::TextureHandle start(const Frame& frame, Start with);
-  /// Adds the sum of L_u V over `lights` (at most kLightBatch). `visibility`: R16 array, layer per light;
-  /// empty handle: V = 1.
+  /// Holds factors of a batch of lights: R16 arrays, layer per light; an empty handle stands for 1.
+  struct Factors {
+    frame::TextureHandle visibility, relief;
+  };
+  /// Adds the sum of L_u V W over `lights` (at most kLightBatch).
   frame::TextureHandle addLights(const Frame& frame, frame::TextureHandle radiance,
-                                 std::span<const uint32_t> lights, frame::TextureHandle visibility);
+                                 std::span<const uint32_t> lights, const Factors& factors);
+  /// Returns `factor`, an array of one layer, as 1 everywhere.
+  static frame::TextureHandle clearFactor(frame::FrameGraph& graph, frame::TextureHandle factor);
   /// Multiplies the radiance by the transmittance of the medium from what each pixel shows to the camera.
   frame::TextureHandle addTransmittance(const Frame& frame, frame::TextureHandle radiance);
   /// Adds the light of the environment, V = 1.
@@ -51,7 +56,7 @@ class Deferred {
   frame::TextureHandle addSpecular(const Frame& frame, frame::TextureHandle radiance,
                                    frame::TextureHandle seen);
   /// Returns what the window shows: RGBA8 of clamp(2^EV * picture), then sRGB. `layered` says that the
-  /// picture is a visibility.
+  /// picture is a factor of a light.
   frame::TextureHandle addToneMapping(const Frame& frame, frame::TextureHandle picture, bool layered,
                                       float exposureEv);
 

@@ -122,6 +122,13 @@ TEST(Terms, ExcludeEachOtherWhereTheTableSaysSo) {
     EXPECT_EQ(exclusiveWith(termSet(term)), 0u);
 }
 
+/// Direct light is answered with its factors: only V is answered beside W.
+TEST(Terms, ReliefIsRefusedBesideDirectLight) {
+  EXPECT_EQ(refusedBeside(termSet(Term::relief)), Term::relief | Term::direct);
+  EXPECT_EQ(refusedBeside(termSet(Term::direct)), Term::visibility | Term::direct | Term::relief);
+  EXPECT_EQ(refusedBeside(termSet(Term::visibility)), exclusiveWith(termSet(Term::visibility)));
+}
+
 /// Cached references are found by these numbers.
 TEST(Terms, NumbersInHashesStay) {
   const std::pair<Term, int> numbers[] = {{Term::direct, 0},   {Term::visibility, 1}, {Term::final, 2},

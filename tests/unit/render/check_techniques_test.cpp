@@ -57,6 +57,17 @@ TEST(CheckTechniques, VisibilityAndDirectAreOneClaim) {
   EXPECT_EQ(refusal(termSet(Term::direct), termSet(Term::environment)), "");
 }
 
+TEST(CheckTechniques, ReliefIsRefusedBesideDirectLight) {
+  EXPECT_EQ(
+      refusal(termSet(Term::relief), termSet(Term::direct)),
+      "technique one answers relief, for which the direct light of other has no place; name one of them");
+  EXPECT_EQ(
+      refusal(Term::visibility | Term::direct, termSet(Term::relief)),
+      "technique other answers relief, for which the direct light of one has no place; name one of them");
+  EXPECT_EQ(refusal(termSet(Term::relief), termSet(Term::visibility)), "");
+  EXPECT_EQ(refusal(Term::relief | Term::direct, termSet(Term::indirect)), "");
+}
+
 TEST(CheckTechniques, PicturesNeedAnAnswerUnlessTheTableSaysOtherwise) {
   for (const TermInfo& info : kTerms) {
     const TermSet others = kAnswerableTerms & ~exclusiveWith(termSet(info.term)) & ~termSet(info.term);
