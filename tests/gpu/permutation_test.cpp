@@ -59,6 +59,7 @@ class PermutationTest : public OncePerRenderer<RenderTest> {
       scenes = {"cornell_box", "lights", "stained_light", "glossy_sphere", "foliage_card"};
     if (answers(Term::surface))
       scenes.insert(scenes.end(), {"torus_metal", "disk_and_sphere", "teapot_groove"});
+    if (answers(Term::relief)) scenes.insert(scenes.end(), {"bump_wall", "egg_crate"});
     if (answers(Term::environment)) scenes.emplace_back("balls_sky");
     return scenes;
   }
@@ -67,7 +68,7 @@ class PermutationTest : public OncePerRenderer<RenderTest> {
   /// counts then.
   static void compile(render::Renderer& renderer, Term term, const render::TechniqueUse& use,
                       int* refusals = nullptr) {
-    render::Settings asked = settings(48, 36, term, {use}, term == Term::visibility ? 0 : -1);
+    render::Settings asked = settings(48, 36, term, {use}, isFactor(term) ? 0 : -1);
     asked.displayEv = 0.f;
     renderer.configure(std::move(asked));
     renderer.setCamera(renderer.pose().cameras.at(0));

@@ -1,0 +1,193 @@
+// What bumps of height maps leave of light, against closed forms and pictures without them.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <glm/gtc/quaternion.hpp>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/scene/camera.h"
+#include "tests/gpu/render_test.h"
+#include "tests/support/test_scenes.h"
+
+namespace limn {
+namespace {
+
+constexpr int kSide = 128;
+constexpr int kTexels = 64;  // of the grooves
+const std::vector<std::string> kShapes{"moments", "published", "horizon_map", "march"};
+
+class BumpHorizonTest : public RenderTest {
+ protected:
+  /// A floor of 2 m x 2 m, one tile of `field`, under light that comes from `towards`.
+  static scene::Scene floorUnder(const glm::vec3& towards, std::vector<relief::HeightField> fields) {
+    scene::Scene scene;
+    scene.heights = std::move(fields);
+    scene::Material material;
+    material.metallic = 0;
+    material.specularFactor = 0;
+    if (!scene.heights.empty()) material.height = 0;
+    scene::Node node;
+    node.mesh = test::addMesh(scene, test::floorPrimitive(1, test::addMaterial(scene, material)));
+    scene.nodes.push_back(node);
+    scene::LightSource light;
+    light.type = glsl::light_directional;
+    light.intensity = 2;
+    scene::Node lamp;
+    const glm::vec3 up = std::abs(towards.z) > 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1);
+    lamp.transform.rotation = glm::quatLookAt(-glm::normalize(towards), up);
+    lamp.light = 0;
+    scene.lights.push_back(light);
+    scene.nodes.push_back(lamp);
+    return scene;
+  }
+
+  static relief::HeightField flat() { return {{4, 4}, std::vector<float>(16, 0.3f), glm::dvec2(2)}; }
+
+  /// V-shaped grooves with walls of 45 degrees across u, or across v: a crest at texel 0, a bottom in the
+  /// middle.
+  static relief::HeightField groove(bool acrossV = false) {
+    std::vector<float> values;
+    for (int i = 0; i < kTexels; ++i)
+      values.push_back(2 * static_cast<float>(std::abs(i - kTexels / 2)) / kTexels);
+    return {acrossV ? glm::ivec2(1, kTexels) : glm::ivec2(kTexels, 1), values, glm::dvec2(2)};
+  }
+
+  static scene::CameraPose camera() { return scene::lookAt({0, 2, 0.7f}, {0, 0, 0}, 0.7f); }
+
+  Image drawn(const scene::Scene& scene, Term term, const std::vector<render::TechniqueUse>& techniques,
+              std::vector<frame::PassReport>* passes = nullptr) {
+    render::Renderer renderer(device(), scene);
+    render::Settings asked = settings(kSide, kSide, term, techniques, term == Term::relief ? 0 : -1);
+    asked.channels = true;
+    renderer.configure(std::move(asked));
+    renderer.setCamera(camera());
+    renderer.render();
+    if (passes) *passes = renderer.explain();
+    return renderer.read();
+  }
+
+  /// Calls f(W, world position) for the pixels that show the floor.
+  static void forEachPoint(const Image& picture, const std::function<void(float, const glm::vec3&)>& f) {
+    scene::Bounds bounds;
+    bounds.add({-1, 0, -1});
+    bounds.add({1, 0, 1});
+    glsl::FrameBlock frame{};
+    scene::setCamera(frame, camera(), bounds, kSide, kSide);
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        const float depth = picture.at(x, y, picture.channel("Z"));
+        if (depth <= 0) continue;
+        const glm::vec3 ray(frame.view_ray_origin + static_cast<float>(x) * frame.view_ray_dx +
+                            static_cast<float>(kSide - 1 - y) * frame.view_ray_dy);
+        f(picture.at(x, y, 0), glm::vec3(frame.camera_position) + depth * ray);
+      }
+  }
+
+  /// The share of points whose W is not that of the closed form: under light that rises by 1/2 against walls
+  /// that rise by 1, those are lit that lie at most a third of the way from a crest to the next one towards
+  /// the light. `axis`: of the world, along which grooves repeat and light comes; `sign`: from which end.
+  double wrongInGrooves(const std::string& shape, int axis, float sign) {
+    glm::vec3 towards(0, 0.5f, 0);
+    towards[axis] = sign;
+    const scene::Scene scene = floorUnder(towards, {groove(axis == 2)});
+    const Image w =
+        drawn(scene, Term::relief, {technique("bump_horizon", {{"shape", shape}, {"steps", "256"}})});
+    int wrong = 0, counted = 0, lit = 0;
+    forEachPoint(w, [&](float value, const glm::vec3& p) {
+      const float texel = 0.5f * (p[axis] + 1) * kTexels - 0.5f;  // crests at 0 and kTexels
+      const float way = (sign > 0 ? texel : kTexels - texel) / kTexels;
+      const float edges = std::min({std::abs(way), std::abs(way - 1), std::abs(way - 1 / 3.f)});
+      if (edges * kTexels < 2) return;
+      const bool expected = way < 1 / 3.f;
+      ++counted;
+      lit += expected;
+      wrong += expected != (value > 0.5f);
+    });
+    EXPECT_GT(counted, 4000);
+    EXPECT_GT(lit, 500);
+    return static_cast<double>(wrong) / counted;
+  }
+};
+
+TEST_F(BumpHorizonTest, AFlatFieldChangesNoBit) {
+  const scene::Scene scene = floorUnder({1, 1, 0.5f}, {flat()});
+  const Image plain = drawn(scene, Term::direct, {});
+  EXPECT_GT(mean(plain), 0);
+  for (const std::string& shape : kShapes)
+    EXPECT_EQ(drawn(scene, Term::direct, {technique("bump_horizon", {{"shape", shape}})}).data(),
+              plain.data())
+        << shape;
+}
+
+TEST_F(BumpHorizonTest, GroovesAreShadowedAsTheClosedFormSays) {
+  for (const int axis : {0, 2})
+    for (const float sign : {-1.f, 1.f}) {
+      EXPECT_EQ(wrongInGrooves("horizon_map", axis, sign), 0) << axis << ' ' << sign;
+      EXPECT_EQ(wrongInGrooves("march", axis, sign), 0) << axis << ' ' << sign;
+      EXPECT_LT(wrongInGrooves("moments", axis, sign), 0.3) << axis << ' ' << sign;
+      EXPECT_LT(wrongInGrooves("published", axis, sign), 0.3) << axis << ' ' << sign;
+    }
+}
+
+TEST_F(BumpHorizonTest, LightOfAnyHeightIsFinite) {
+  for (const float height : {1000.f, 0.5f, 1e-4f, 0.f, -0.5f}) {
+    const scene::Scene scene = floorUnder({1, height, 0.2f}, {groove()});
+    for (const std::string& shape : kShapes)
+      for (const char* soft : {"false", "true"}) {
+        SCOPED_TRACE(shape);
+        const render::TechniqueUse use = technique("bump_horizon", {{"shape", shape}, {"soft", soft}});
+        forEachPoint(drawn(scene, Term::relief, {use}), [&](float w, const glm::vec3&) {
+          ASSERT_TRUE(w >= 0 && w <= 1);
+          if (height < 0) ASSERT_EQ(w, 0) << "from below the base";
+        });
+        for (const float value : drawn(scene, Term::direct, {use}).data()) ASSERT_TRUE(std::isfinite(value));
+      }
+  }
+}
+
+TEST_F(BumpHorizonTest, DirectLightIsTheUnshadowedTimesW) {
+  const scene::Scene scene = floorUnder({1, 0.5f, 0.3f}, {groove()});
+  const render::TechniqueUse bumps = technique("bump_horizon", {{"shape", "horizon_map"}});
+  const Image plain = drawn(scene, Term::direct, {}), w = drawn(scene, Term::relief, {bumps}),
+              lit = drawn(scene, Term::direct, {bumps}),
+              both = drawn(scene, Term::direct, {technique("hard_shadow_map"), bumps});
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      ASSERT_EQ(lit.at(x, y, 0), plain.at(x, y, 0) * w.at(x, y, 0)) << x << ',' << y;
+      ASSERT_EQ(both.at(x, y, 0), lit.at(x, y, 0)) << x << ',' << y;
+    }
+}
+
+TEST_F(BumpHorizonTest, ScenesWithoutHeightMapsAreLeftAlone) {
+  const scene::Scene scene = floorUnder({1, 1, 0.5f}, {});
+  std::vector<frame::PassReport> passes;
+  const Image plain = drawn(scene, Term::direct, {}),
+              asked = drawn(scene, Term::direct, {technique("bump_horizon")}, &passes);
+  EXPECT_EQ(asked.data(), plain.data());
+  bool said = false;
+  for (const frame::PassReport& pass : passes) {
+    for (const frame::AccessReport& access : pass.accesses) EXPECT_NE(access.resource, "tangent");
+    if (pass.technique != "bump_horizon") continue;
+    EXPECT_EQ(pass.state, frame::PassState::leftOut);
+    said = said || pass.reason == "no material has a height map";
+  }
+  EXPECT_TRUE(said);
+  const Image w = drawn(scene, Term::relief, {technique("bump_horizon")});
+  forEachPoint(w, [](float value, const glm::vec3&) { ASSERT_EQ(value, 1); });
+}
+
+TEST_F(BumpHorizonTest, IsRefusedBesideDirectLight) {
+  const scene::Scene scene = floorUnder({1, 1, 0.5f}, {flat()});
+  render::Renderer renderer(device(), scene);
+  for (const TechniquePlugin* plugin : registry().all()) {
+    if (!contains(plugin->info->terms, Term::direct)) continue;
+    EXPECT_THROW(renderer.configure(
+                     settings(8, 8, Term::final, {technique("bump_horizon"), technique(plugin->info->name)})),
+                 UsageError)
+        << plugin->info->name;
+  }
+}
+
+}  // namespace
+}  // namespace limn

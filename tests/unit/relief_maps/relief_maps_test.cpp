@@ -1,0 +1,101 @@
+// Tables of height maps as the GPU reads them, and how numbers are packed in them.
+#include "core/relief_maps/relief_maps.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "glsl/surface/gbuffer.glsl"
+#include "tests/unit/relief/fields.h"
+
+namespace limn::relief_maps {
+namespace {
+
+using relief::HeightField;
+
+HeightField flat(const glm::ivec2& size, relief::Wrap wrap = relief::Wrap::periodic) {
+  return {size, std::vector<float>(static_cast<size_t>(size.x * size.y), 0.25f), glm::dvec2(1), 1, 0, wrap};
+}
+
+glsl::ReliefEllipse stored(const ReliefTable& table, size_t word) {
+  return glsl::relief_ellipse_unpack({table.values[word], table.values[word + 1], table.values[word + 2]});
+}
+
+TEST(ReliefMapsTest, TablesAreAsLargeAsTheySay) {
+  const std::vector<HeightField> fields{flat({1, 1}), flat({1, 5}), flat({6, 3}),
+                                        flat({4, 4}, relief::Wrap::clamped), relief::test::eggCrate(16)};
+  for (const Table kind : {Table::moments, Table::published, Table::horizons, Table::heights}) {
+    const ReliefMapDesc desc{.table = kind, .azimuths = 9, .directions = 64};
+    const ReliefTable table = makeReliefTable(fields, desc);
+    EXPECT_EQ(static_cast<int64_t>(table.values.size()), reliefTableWords(fields, desc));
+    ASSERT_EQ(table.fields.size(), fields.size());
+    EXPECT_EQ(table.fields[0].first, 0u);
+    for (size_t i = 0; i < fields.size(); ++i) {
+      EXPECT_EQ(table.fields[i].size, fields[i].size());
+      EXPECT_EQ(table.fields[i].clamped, i == 3 ? 1u : 0u);
+    }
+  }
+}
+
+TEST(ReliefMapsTest, FlatFieldsSeeTheWholeSkyAtAllLevels) {
+  const std::vector<HeightField> fields{flat({6, 3})};
+  const ReliefTable table = makeReliefTable(fields, {.table = Table::moments, .azimuths = 16});
+  ASSERT_EQ(table.fields[0].levels, 3);  // 6 x 3, 3 x 1, 1 x 1
+  for (size_t word = 0; word < table.values.size(); word += glsl::relief_ellipse_words) {
+    const glsl::ReliefEllipse ellipse = stored(table, word);
+    EXPECT_NEAR(glsl::ellipse_ambient(ellipse), 1, 1e-3);
+    EXPECT_NEAR(ellipse.spread, 0, 1e-3);
+    EXPECT_NEAR(glm::length(ellipse.centre), 0, 1e-4);
+  }
+}
+
+TEST(ReliefMapsTest, MeansOfLevelsAreThoseOfAllTexels) {
+  const std::vector<HeightField> fields{relief::test::eggCrate(16)};
+  const ReliefMapDesc desc{.table = Table::moments, .azimuths = 16};
+  const ReliefTable table = makeReliefTable(fields, desc);
+  double texels = 0;
+  for (size_t i = 0; i < 256; ++i)
+    texels += static_cast<double>(glsl::ellipse_ambient(stored(table, 3 * i))) / 256;
+  const glsl::ReliefEllipse last = stored(table, table.values.size() - 3);
+  EXPECT_GT(last.spread, 0.05f);
+  EXPECT_NEAR(glsl::ellipse_ambient(last), texels, 0.05);
+}
+
+TEST(ReliefMapsTest, PackedEllipsesKeepFourDigits) {
+  const glsl::ReliefEllipse e{
+      .centre = {-0.7f, 0.3f}, .xx = 0.5f, .xy = -0.21f, .yy = 0.013f, .spread = 1.5f};
+  const glsl::ReliefEllipse back = glsl::relief_ellipse_unpack(glsl::relief_ellipse_pack(e));
+  EXPECT_NEAR(back.centre.x, e.centre.x, 2e-5);
+  EXPECT_NEAR(back.centre.y, e.centre.y, 2e-5);
+  EXPECT_NEAR(back.xx, e.xx, 1e-5);
+  EXPECT_NEAR(back.xy, e.xy, 1e-5);
+  EXPECT_NEAR(back.yy, e.yy, 1e-5);
+  EXPECT_NEAR(back.spread, e.spread, 4e-5);
+}
+
+TEST(ReliefMapsTest, PlacesWrapAsTheirFields) {
+  for (const int size : {1, 3, 64})
+    for (int i = -200; i <= 200; ++i) {
+      EXPECT_EQ(glsl::relief_wrapped(i, size, false), ((i % size) + size) % size) << i << ' ' << size;
+      EXPECT_EQ(glsl::relief_wrapped(i, size, true), std::clamp(i, 0, size - 1)) << i << ' ' << size;
+    }
+}
+
+TEST(ReliefMapsTest, PlacesOfTheGBufferComeBack) {
+  EXPECT_FALSE(glsl::gbuffer_place_unpack(glm::vec3(0)).present);
+  for (const float level : {-3.f, 0.f, 0.25f, 7.5f, 15.f, 40.f})
+    for (const bool leftHanded : {false, true}) {
+      glm::vec3 texel = glsl::gbuffer_place_pack({0.25f, 1}, level, leftHanded);
+      texel = glm::round(texel * 65535.f) / 65535.f;
+      const glsl::GBufferPlace place = glsl::gbuffer_place_unpack(texel);
+      EXPECT_TRUE(place.present);
+      EXPECT_EQ(place.left_handed, leftHanded);
+      EXPECT_NEAR(place.level, std::clamp(level, 0.f, 15.f), 1e-3);
+      EXPECT_NEAR(place.uv.x, 0.25f, 1e-5);
+      EXPECT_EQ(place.uv.y, 1);
+    }
+}
+
+}  // namespace
+}  // namespace limn::relief_maps
