@@ -31,7 +31,8 @@ int64_t texelsOf(const glm::ivec2& size) {
 
 int64_t wordsOf(const relief::HeightField& field, const ReliefMapDesc& desc) {
   switch (desc.table) {
-    case Table::moments: {
+    case Table::moments:
+    case Table::nearest: {
       int64_t texels = 0;
       for (int level = 0; level < levelsOf(field.size()); ++level)
         texels += texelsOf(glsl::relief_level_size(field.size(), level));
@@ -63,9 +64,8 @@ glsl::ReliefEllipse meanOf(const std::vector<glsl::ReliefEllipse>& texels, const
 }
 
 /// All levels are means of the texels themselves, so that spreads are those of all that lie below.
-void appendMoments(std::vector<uint32_t>& words, const relief::HeightField& field, int azimuths) {
-  const std::vector<glsl::ReliefEllipse> texels =
-      relief::momentEllipses(relief::sweepHorizons(field, azimuths));
+void appendEllipses(std::vector<uint32_t>& words, const relief::HeightField& field,
+                    const std::vector<glsl::ReliefEllipse>& texels) {
   for (const glsl::ReliefEllipse& ellipse : texels) append(words, ellipse);
   for (int level = 1; level < levelsOf(field.size()); ++level) {
     const glm::ivec2 smaller = glsl::relief_level_size(field.size(), level);
@@ -124,7 +124,11 @@ void appendHeights(std::vector<uint32_t>& words, const relief::HeightField& fiel
 void appendField(std::vector<uint32_t>& words, const relief::HeightField& field, const ReliefMapDesc& desc) {
   switch (desc.table) {
     case Table::moments:
-      return appendMoments(words, field, desc.azimuths);
+      return appendEllipses(words, field,
+                            relief::momentEllipses(relief::sweepHorizons(field, desc.azimuths)));
+    case Table::nearest:
+      return appendEllipses(words, field,
+                            relief::nearestEllipses(relief::sweepHorizons(field, desc.azimuths)));
     case Table::published:
       return appendPublished(words, field, desc.directions);
     case Table::horizons:
@@ -137,7 +141,7 @@ void appendField(std::vector<uint32_t>& words, const relief::HeightField& field,
 /// Returns the description with what its table does not depend on as by default.
 ReliefMapDesc plain(const ReliefMapDesc& desc) {
   const ReliefMapDesc standard;
-  const bool byAzimuths = desc.table == Table::moments || desc.table == Table::horizons;
+  const bool byAzimuths = desc.table != Table::published && desc.table != Table::heights;
   return {.table = desc.table,
           .azimuths = byAzimuths ? desc.azimuths : standard.azimuths,
           .directions = desc.table == Table::published ? desc.directions : standard.directions};
@@ -153,13 +157,14 @@ int64_t reliefTableWords(std::span<const relief::HeightField> fields, const Reli
 
 ReliefTable makeReliefTable(std::span<const relief::HeightField> fields, const ReliefMapDesc& desc) {
   ReliefTable table;
+  const bool levels = desc.table == Table::moments || desc.table == Table::nearest;
   for (const relief::HeightField& field : fields) {
     table.fields.push_back({.first = static_cast<uint32_t>(table.values.size()),
                             .clamped = field.wrap() == relief::Wrap::clamped ? 1u : 0u,
                             .size = field.size(),
                             .spacing = field.spacing(),
                             .highest = static_cast<float>(field.highest()),
-                            .levels = desc.table == Table::moments ? levelsOf(field.size()) : 1});
+                            .levels = levels ? levelsOf(field.size()) : 1});
     appendField(table.values, field, desc);
   }
   return table;

@@ -19,6 +19,7 @@ namespace limn::relief_maps {
 
 enum class Table : uint8_t {
   moments,    ///< moment ellipses of the horizons, with levels of means (relief::EllipseMean)
+  nearest,    ///< the ellipses that differ least from what the horizons leave (relief::nearestEllipse), too
   published,  ///< the published fit's ellipses (relief::fitPublished), as centres and covariances; one level
   horizons,   ///< tangents of the horizons' elevations (glsl/relief/horizon_map.glsl) as halfs
   heights     ///< metres, floats
@@ -26,7 +27,7 @@ enum class Table : uint8_t {
 
 struct ReliefMapDesc {
   Table table = Table::moments;
-  int azimuths = 32;     ///< of moments and horizons
+  int azimuths = 32;     ///< of all but heights and the published fit
   int directions = 256;  ///< of the published fit
   auto operator<=>(const ReliefMapDesc&) const = default;
 };

@@ -11,19 +11,19 @@ namespace {
 using namespace limn;
 using frame::Access;
 
-enum Shape { moments, published, horizonMap, march };
-constexpr const char* kShapes[] = {"moments", "published", "horizon_map", "march"};
+enum Shape { moments, published, horizonMap, march, nearest };
+constexpr const char* kShapes[] = {"moments", "published", "horizon_map", "march", "nearest"};
 
 constexpr Parameter kParameters[] = {
     choice("shape", moments, kShapes, "What says which directions a texel sees"),
-    integer("azimuths", 32, {8, 128}, "azimuths", "Of the horizons, for moments and horizon_map")
+    integer("azimuths", 32, {8, 128}, "azimuths", "Of the horizons, for moments, nearest and horizon_map")
         .quality()
         .logScale(),
     integer("directions", 256, {64, 4096}, "directions", "That the published fit is made of")
         .quality()
         .logScale(),
     integer("steps", 16, {1, 256}, "steps", "Of a march to the highest level").quality().logScale(),
-    boolean("soft", false, "Lights have their size, for moments and published; else they are their centres"),
+    boolean("soft", false, "Lights have their size, for ellipses; else they are their centres"),
 };
 constexpr StressCase kStress[] = {
     {.name = "moments of 8 azimuths", .scene = "egg_crate", .settings = "azimuths=8", .factor = 2},
@@ -58,7 +58,8 @@ constexpr std::array<const char*, 8> kLightIndexNames{
 
 relief_maps::ReliefMapDesc tableFor(const ParameterValues& parameters) {
   using relief_maps::Table;
-  constexpr std::array<Table, 4> tables{Table::moments, Table::published, Table::horizons, Table::heights};
+  constexpr std::array<Table, 5> tables{Table::moments, Table::published, Table::horizons, Table::heights,
+                                        Table::nearest};
   return {.table = tables[static_cast<size_t>(parameters.choice("shape"))],
           .azimuths = parameters.integer("azimuths"),
           .directions = parameters.integer("directions")};
@@ -86,7 +87,8 @@ class BumpHorizon : public Technique {
     const frame::TextureHandle result =
         pass.write(request.target, Access::imageStore, "relief", "W, one layer per light");
     gpu::ProgramDesc program{.files = {"techniques/bump_horizon/relief.comp.glsl"},
-                             .defines = {{"SHAPE", std::to_string(shape)},
+                             // The nearest ellipses are looked up as those of the moments are.
+                             .defines = {{"SHAPE", std::to_string(shape == nearest ? moments : shape)},
                                          {"SOFT", parameters.boolean("soft") ? "1" : "0"},
                                          {"LIGHT_COUNT", std::to_string(request.lights.size())}}};
     if (shape == horizonMap) program.defines["RELIEF_AZIMUTHS"] = std::to_string(table.azimuths);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kSide = 128;
 constexpr int kTexels = 64;  // of the grooves
-const std::vector<std::string> kShapes{"moments", "published", "horizon_map", "march"};
+const std::vector<std::string> kShapes{"moments", "published", "horizon_map", "march", "nearest"};
 
 class BumpHorizonTest : public RenderTest {
  protected:

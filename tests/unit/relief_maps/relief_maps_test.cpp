@@ -25,7 +25,8 @@ glsl::ReliefEllipse stored(const ReliefTable& table, size_t word) {
 TEST(ReliefMapsTest, TablesAreAsLargeAsTheySay) {
   const std::vector<HeightField> fields{flat({1, 1}), flat({1, 5}), flat({6, 3}),
                                         flat({4, 4}, relief::Wrap::clamped), relief::test::eggCrate(16)};
-  for (const Table kind : {Table::moments, Table::published, Table::horizons, Table::heights}) {
+  for (const Table kind :
+       {Table::moments, Table::nearest, Table::published, Table::horizons, Table::heights}) {
     const ReliefMapDesc desc{.table = kind, .azimuths = 9, .directions = 64};
     const ReliefTable table = makeReliefTable(fields, desc);
     EXPECT_EQ(static_cast<int64_t>(table.values.size()), reliefTableWords(fields, desc));
