@@ -67,6 +67,8 @@ class BumpHorizonTest : public RenderTest {
     return renderer.read();
   }
 
+  static bool same(const Image& a, const Image& b) { return std::ranges::equal(a.data(), b.data()); }
+
   /// Calls f(W, world position) for the pixels that show the floor.
   static void forEachPoint(const Image& picture, const std::function<void(float, const glm::vec3&)>& f) {
     scene::Bounds bounds;
@@ -115,8 +117,7 @@ TEST_F(BumpHorizonTest, AFlatFieldChangesNoBit) {
   const Image plain = drawn(scene, Term::direct, {});
   EXPECT_GT(mean(plain), 0);
   for (const std::string& shape : kShapes)
-    EXPECT_EQ(drawn(scene, Term::direct, {technique("bump_horizon", {{"shape", shape}})}).data(),
-              plain.data())
+    EXPECT_TRUE(same(drawn(scene, Term::direct, {technique("bump_horizon", {{"shape", shape}})}), plain))
         << shape;
 }
 
@@ -139,9 +140,12 @@ TEST_F(BumpHorizonTest, LightOfAnyHeightIsFinite) {
         const render::TechniqueUse use = technique("bump_horizon", {{"shape", shape}, {"soft", soft}});
         forEachPoint(drawn(scene, Term::relief, {use}), [&](float w, const glm::vec3&) {
           ASSERT_TRUE(w >= 0 && w <= 1);
-          if (height < 0) ASSERT_EQ(w, 0) << "from below the base";
+          if (height < 0) {
+            ASSERT_EQ(w, 0) << "from below the base";
+          }
         });
-        for (const float value : drawn(scene, Term::direct, {use}).data()) ASSERT_TRUE(std::isfinite(value));
+        const Image lit = drawn(scene, Term::direct, {use});
+        for (const float value : lit.data()) ASSERT_TRUE(std::isfinite(value));
       }
   }
 }
@@ -164,7 +168,7 @@ TEST_F(BumpHorizonTest, ScenesWithoutHeightMapsAreLeftAlone) {
   std::vector<frame::PassReport> passes;
   const Image plain = drawn(scene, Term::direct, {}),
               asked = drawn(scene, Term::direct, {technique("bump_horizon")}, &passes);
-  EXPECT_EQ(asked.data(), plain.data());
+  EXPECT_TRUE(same(asked, plain));
   bool said = false;
   for (const frame::PassReport& pass : passes) {
     for (const frame::AccessReport& access : pass.accesses) EXPECT_NE(access.resource, "tangent");
