@@ -279,8 +279,8 @@ struct Scene {
   std::filesystem::path file;
   std::vector<TextureImage> images;
   std::vector<Material> materials;
-  /// Holds the height maps of extras.limn_height. u of a texture coordinate runs along x of the field, v along
-  /// y, and (0, 0) is the corner of texel (0, 0), half a texel from its centre.
+  /// Holds the height maps of extras.limn_height. u of a texture coordinate runs along x of the field, v
+  /// along y, and (0, 0) is the corner of texel (0, 0), half a texel from its centre.
   std::vector<relief::HeightField> heights;
   /// Holds the tables of measured models, one after another: values of f, 1/sr
   /// (glsl/materials/measured.glsl).
