@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/scene_io/load.h"
-#include "tests/support/paths.h"
+#include "tests/support/glb.h"
 
 namespace limn::test {
 namespace {
