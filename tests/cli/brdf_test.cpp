@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "tests/cli/limn_program.h"
+#include "tests/support/glb.h"
 
 namespace limn::test {
 namespace {
@@ -116,7 +117,7 @@ TEST_F(BrdfCommand, MaterialsOfScenes) {
   expectRefused(limn({"brdf", "fit", "--scene", "no_scene", "--material", "floor"}), 1, {"no_scene"});
 
   // A measured one is what its file alone is.
-  const std::filesystem::path file = test::kAssets / "teapot_groove" / "grooves.bsdf";
+  const std::filesystem::path file = kAssets / "teapot_groove" / "grooves.bsdf";
   const auto error = [](std::vector<std::string> source) {
     source.insert(source.begin(), "fit");
     source.insert(source.end(), {"--fit", "svd", "--texels", "8"});
