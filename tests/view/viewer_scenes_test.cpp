@@ -63,6 +63,7 @@ TEST_F(ViewerScenesTest, OpensScenesFromQToZ) {
 std::string stageOf(TermSet terms) {
   if (terms == termSet(Term::environment)) return "balls --environment sky";
   if (contains(terms, Term::surface)) return "fresnel_spheres";
+  if (contains(terms, Term::relief)) return "bump_wall";
   if (contains(terms, Term::media) || contains(terms, Term::caustic) || contains(terms, Term::specular))
     return "gem";
   return contains(terms, Term::environment) ? "teapot_pattern" : "cornell_box";
@@ -85,7 +86,7 @@ TEST_P(ViewerTechniquesTest, SwitchesThemOnAndOff) {
         "click 200 66; click 100 " + std::to_string(y) + "; save " + chosen.back() + ".exr; click 348 66\n";
   }
   ASSERT_FALSE(chosen.empty());
-  const Outcome outcome = view(std::string(GetParam()) + " --size 416x500 --open techniques --save a.exr",
+  const Outcome outcome = view(std::string(GetParam()) + " --size 416x540 --open techniques --save a.exr",
                                script + "save last.exr");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
@@ -97,8 +98,8 @@ TEST_P(ViewerTechniquesTest, SwitchesThemOnAndOff) {
   EXPECT_EQ(colours(picture("last.exr")), colours(picture("first.exr")));
 }
 
-constexpr const char* kStages[] = {"cornell_box", "teapot_pattern", "balls --environment sky", "gem",
-                                   "fresnel_spheres"};
+constexpr const char* kStages[] = {"cornell_box", "teapot_pattern",  "balls --environment sky",
+                                   "gem",         "fresnel_spheres", "bump_wall"};
 
 INSTANTIATE_TEST_SUITE_P(Stages, ViewerTechniquesTest, testing::ValuesIn(kStages));
 
