@@ -51,7 +51,7 @@ class CoatTest : public RenderTest {
     scene.nodes.push_back(node);
     scene.environment = std::move(environment);
     render::Renderer renderer(device(), scene);
-    renderer.configure(settings(kPixels, kPixels, Term::direct));
+    renderer.configure(settings(kPixels, kPixels, Term::final));
     renderer.setCamera(scene::lookAt({0, 0, kDistance}, {0, 0, 0}, kFieldOfView));
     renderer.render();
     return renderer.read();
