@@ -5,7 +5,6 @@
 #include <random>
 
 #include "core/relief/ellipse.h"
-#include "glsl/relief/horizon_map.glsl"
 #include "tests/unit/relief/fields.h"
 
 namespace limn::relief {
@@ -19,19 +18,6 @@ constexpr double kDegree = std::numbers::pi / 180;
 glm::vec3 towards(double azimuth, double elevation) {
   return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
           std::sin(elevation)};
-}
-
-glm::vec3 over(const glm::vec2& d) {
-  return {d, std::sqrt(std::max(1 - glm::dot(d, d), 0.0f))};
-}
-
-double azimuthOf(const glm::vec3& l) {
-  return std::atan2(static_cast<double>(l.y), static_cast<double>(l.x));
-}
-
-/// Says whether a place on the field sees the direction, exactly.
-bool sees(const HeightField& field, const glm::dvec2& place, const glm::vec3& l) {
-  return glsl::horizon_lit(l, static_cast<float>(exactHorizon(field, place, azimuthOf(l))));
 }
 
 /// Says whether a texel sees the direction, as horizons that are linear between azimuths tell.

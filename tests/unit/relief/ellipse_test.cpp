@@ -2,17 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "glsl/relief/horizon_map.glsl"
 #include "tests/unit/relief/fields.h"
 
 namespace limn::relief {
 namespace {
 
 using namespace test;
-
-glm::vec3 over(const glm::vec2& d) {
-  return {d, std::sqrt(std::max(1 - glm::dot(d, d), 0.0f))};
-}
 
 /// Counts the directions that the moments and the published fit with 1024 directions get wrong, over a part
 /// of the texels.
@@ -24,20 +19,17 @@ Wrong wrongOf(const HeightField& field) {
   const std::vector<glsl::ReliefEllipse> moments = momentEllipses(horizons),
                                          nearest = nearestEllipses(horizons);
   const std::vector<glm::vec2> fitted = randomDisc(1024, 7), asked = randomDisc(512, 11);
-  const auto visible = [&](const glm::dvec2& texel, const glm::vec2& d) {
-    return glsl::horizon_lit(over(d), static_cast<float>(exactHorizon(field, texel, std::atan2(d.y, d.x))));
-  };
   Wrong wrong;
   for (int y = 0; y < field.size().y; y += 7)
     for (int x = 0; x < field.size().x; x += 7) {
       std::vector<std::uint8_t> lit;
-      for (const glm::vec2& d : fitted) lit.push_back(visible({x, y}, d) ? 1 : 0);
+      for (const glm::vec2& d : fitted) lit.push_back(sees(field, {x, y}, over(d)) ? 1 : 0);
       const glsl::FittedEllipse published = fitPublished(fitted, lit);
       for (const glm::vec2& d : asked) {
-        const bool sees = visible({x, y}, d);
-        wrong.moments += glsl::ellipse_lit(moments[field.index({x, y})], over(d)) != sees ? 1 : 0;
-        wrong.nearest += glsl::ellipse_lit(nearest[field.index({x, y})], over(d)) != sees ? 1 : 0;
-        wrong.published += glsl::fitted_lit(published, over(d)) != sees ? 1 : 0;
+        const bool truth = sees(field, {x, y}, over(d));
+        wrong.moments += glsl::ellipse_lit(moments[field.index({x, y})], over(d)) != truth ? 1 : 0;
+        wrong.nearest += glsl::ellipse_lit(nearest[field.index({x, y})], over(d)) != truth ? 1 : 0;
+        wrong.published += glsl::fitted_lit(published, over(d)) != truth ? 1 : 0;
       }
     }
   return wrong;

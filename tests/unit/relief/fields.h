@@ -1,6 +1,7 @@
 // Height fields of the tests: periodic tiles of size x size texels over 1 m x 1 m.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -8,6 +9,8 @@
 #include <vector>
 
 #include "core/relief/height_field.h"
+#include "core/relief/horizon.h"
+#include "glsl/relief/horizon_map.glsl"
 
 namespace limn::relief::test {
 
@@ -70,6 +73,17 @@ inline HeightField groove(int size, double slope) {
   for (int x = 0; x < size; ++x)
     values.push_back(static_cast<float>(std::abs(x - size / 2)) / static_cast<float>(size));
   return {{size, 1}, values, glm::dvec2(1, 1), slope};
+}
+
+/// Returns the unit vector above a place of the disc.
+inline glm::vec3 over(const glm::vec2& d) {
+  return {d, std::sqrt(std::max(1 - glm::dot(d, d), 0.0f))};
+}
+
+/// Says whether a place on the field sees the direction, exactly.
+inline bool sees(const HeightField& field, const glm::dvec2& place, const glm::vec3& l) {
+  const double azimuth = std::atan2(static_cast<double>(l.y), static_cast<double>(l.x));
+  return glsl::horizon_lit(l, static_cast<float>(exactHorizon(field, place, azimuth)));
 }
 
 struct NamedField {
