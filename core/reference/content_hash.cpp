@@ -132,6 +132,8 @@ void addWork(Hasher& h, const Request& r) {
   if (r.interfaces != 0) h.addAll(interfacesFollow, r.interfaces);
   constexpr uint32_t unshadowedFollows = 0x0b5c;
   if (r.unshadowed) h.add(unshadowedFollows);
+  constexpr uint32_t reliefPathsFollow = 0xb0b5;
+  if (r.reliefPaths != ReliefPaths::both) h.addAll(reliefPathsFollow, r.reliefPaths);
   constexpr uint32_t causticVersion = 2;
   const bool caustics = r.term == Term::final || r.term == Term::caustic || r.term == Term::media;
   if (caustics && std::ranges::any_of(r.scene.materials, &scene::Material::specularSurface))

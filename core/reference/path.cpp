@@ -11,6 +11,13 @@ namespace {
 /// From this bounce on a path goes on with a probability alone (Arvo and Kirk 1990, Russian roulette).
 constexpr int kFirstRoulette = 4;
 
+/// A path from the camera, as far as it has got.
+struct Path {
+  Surface surface;
+  glm::dvec3 throughput{1};
+  bool metBump = false;  ///< a segment ended on the height map that it started from
+};
+
 class PathIntegrator final : public Integrator {
  public:
   PathIntegrator(const RayScene& rays, const Request& request)
@@ -18,6 +25,7 @@ class PathIntegrator final : public Integrator {
         light_(rays, request),
         withDirect_(request.term != Term::indirect),
         specularAlone_(request.term == Term::specular),
+        reliefPaths_(request.reliefPaths),
         bounces_(request.bounces) {
     if (request.interfaces != 0) specular_.emplace(rays, request.interfaces);
   }
@@ -66,35 +74,54 @@ class PathIntegrator final : public Integrator {
 
   /// One path. The random numbers of a bounce do not depend on how many there may be: one bounce more adds
   /// its own light and changes nothing else.
-  void follow(Surface surface, Sampler& sampler, uint32_t sample, Sums& sums) const {
-    glm::dvec3 throughput(1);
+  void follow(const Surface& surface, Sampler& sampler, uint32_t sample, Sums& sums) const {
+    Path path{.surface = surface};
     uint32_t pair = light_.pairs();
     for (int bounce = 1; bounce <= bounces_; ++bounce) {
       sampler.startSample(sample);
       const glm::vec2 lobe = sampler.pair(pair + 1);
-      if (!step(surface, glm::vec3(sampler.pair(pair), lobe.x), throughput)) return;
-      if (bounce >= kFirstRoulette && !survives(lobe.y, throughput)) return;
-      Sums reflected{};
-      light_.add(surface, {sampler, pair + 2, sample, 1}, reflected);
-      for (int c = 0; c < 3; ++c)
-        sums[static_cast<size_t>(c)] += throughput[c] * reflected[static_cast<size_t>(c)];
+      if (!step(path, glm::vec3(sampler.pair(pair), lobe.x))) return;
+      if (bounce >= kFirstRoulette && !survives(lobe.y, path.throughput)) return;
+      if (reliefPaths_ != ReliefPaths::relief || path.metBump)
+        addLightAtEnd(path, {sampler, pair + 2, sample, 1}, sums);
       pair += 2 + light_.pairs();
     }
   }
 
-  /// On to the next surface, in a direction of the BRDF's density; false: nothing comes from there.
-  bool step(Surface& surface, const glm::vec3& u, glm::dvec3& throughput) const {
+  void addLightAtEnd(const Path& path, const SampleRange& samples, Sums& sums) const {
+    Sums reflected{};
+    light_.add(path.surface, samples, reflected);
+    for (int c = 0; c < 3; ++c)
+      sums[static_cast<size_t>(c)] += path.throughput[c] * reflected[static_cast<size_t>(c)];
+  }
+
+  /// On to the next surface, or to another bump of the same one, in a direction of the BRDF's density; false:
+  /// nothing comes from there.
+  bool step(Path& path, const glm::vec3& u) const {
+    const Surface& surface = path.surface;
     const glm::vec3 direction = surface.sample(u);
     const float pdf = surface.pdf(direction);
     if (!(pdf > 0.f)) return false;
-    throughput *= glm::dvec3(surface.reflectance(direction)) / static_cast<double>(pdf);
+    const std::optional<glm::dvec2> bump = surface.relief.bumpAlong(direction);
+    const glm::vec3 reflectance =
+        bump ? surface.reflectanceFromBump(direction) : surface.reflectance(direction);
+    path.throughput *= glm::dvec3(reflectance) / static_cast<double>(pdf);
+    if (path.throughput == glm::dvec3(0)) return false;
+    if (!bump) return stepToSurface(path, direction);
+    if (reliefPaths_ == ReliefPaths::others) return false;
+    path.surface = surfaceAtBump(rays_, surface, *bump, direction);
+    path.metBump = true;
+    return true;
+  }
+
+  bool stepToSurface(Path& path, const glm::vec3& direction) const {
+    const Surface& surface = path.surface;
     Hit hit;
-    if (throughput == glm::dvec3(0) || !surface.relief.lit(direction) ||
-        !rays_.nearest(surface.rayOrigin(direction), direction, hit))
+    if (!surface.relief.abovePlane(direction) || !rays_.nearest(surface.rayOrigin(direction), direction, hit))
       return false;
     const std::optional<Surface> met = surfaceAlong(rays_, hit, direction);
     if (!met || met->specular()) return false;
-    surface = *met;
+    path.surface = *met;
     return true;
   }
 
@@ -110,6 +137,7 @@ class PathIntegrator final : public Integrator {
   DirectLight light_;
   std::optional<SpecularPaths> specular_;
   bool withDirect_, specularAlone_;
+  ReliefPaths reliefPaths_;
   int bounces_;
 };
 

@@ -316,8 +316,10 @@ RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose, bool unsh
       draw.positions = h.attach(h.top, id, primitive, *positions, matrix,
                                 {&primitive, draw.material, static_cast<int>(id), draw.orientation});
     }
-    if (draw.material->height != scene::kNone && !primitive.uvs.empty() && draw.tangents)
-      draw.heights = &scene.heights[static_cast<size_t>(draw.material->height)];
+    if (draw.material->height != scene::kNone && !primitive.uvs.empty() && draw.tangents) {
+      const relief::HeightField& heights = scene.heights[static_cast<size_t>(draw.material->height)];
+      if (heights.lowest() < heights.highest()) draw.heights = &heights;
+    }
     draw.rayOffset = 0x1p-20f * largestCoordinate(draw.positions, primitive.positions.size(), draw.toWorld);
   }
   rtcCommitScene(h.top);

@@ -14,6 +14,7 @@
 
 #include "core/base/export.h"
 #include "core/image/image.h"
+#include "core/question/relief_paths.h"
 #include "core/question/term.h"
 #include "core/scene/scene.h"
 
@@ -69,7 +70,7 @@ struct Request {
   ///   stands for either.
   /// - final: direct, indirect of up to `bounces`, caustic, media, specular or, without `interfaces`, only
   ///   the environment in specular surfaces, emission that the camera sees, the environment as background.
-  /// - indirect: light over 1 to `bounces` other surfaces.
+  /// - indirect: light over 1 to `bounces` other surfaces, other bumps of the seen one among them.
   /// - caustic: light off a specular object, or through one (LS DE, LSS DE), or with kAllInterfaces over any
   ///   number of interfaces.
   /// - media: light as direct and as caustic have it.
@@ -92,6 +93,10 @@ struct Request {
   /// horizons of the surface that receives it, those of its height map's bumps included (W). Light that comes
   /// off specular objects keeps its shadows.
   bool unshadowed = false;
+  /// Says which paths of 1 to `bounces` other surfaces count, in terms that have bounces. With the same
+  /// samples and seed the light of both is the sum of that of relief and of others, up to rounding. A segment
+  /// from bump to bump of a height map is a bounce as any other.
+  ReliefPaths reliefPaths = ReliefPaths::both;
   int spp = 64;  ///< samples per pixel and light, rounded up to an even number; the maximum if noise is given
   /// Target noise, RMS relative to the mean; 0: take spp samples. The noise is tested after 16, 32, 64, ...
   /// samples.
@@ -127,7 +132,7 @@ struct Result {
 LIMN_API Result render(const Request& request);
 
 /// Returns a hash (32 hexadecimal digits) of everything that determines the result: scene content with
-/// textures, pose, camera, size, term, light, bounces, samples or noise, seed, version of this code.
+/// textures, pose, camera, size, term, light, bounces, paths, samples or noise, seed, version of this code.
 LIMN_API std::string contentHash(const Request& request);
 
 /// Keeps finished references on disk: one EXR per content hash. Their metadata has content_hash and seconds

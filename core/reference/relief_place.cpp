@@ -20,9 +20,17 @@ glm::dvec2 placeNearMap(const relief::HeightField& field, const glm::dvec2& uv) 
 
 }  // namespace
 
-bool ReliefPlace::leaves(const glm::vec3& direction) const {
-  const glm::vec3 local = glsl::to_local(frame, direction);
-  return local.z > 0.f && !relief::traceRay(*field, place, glm::dvec3(local));
+std::optional<glm::dvec2> ReliefPlace::bumpAlong(const glm::vec3& direction) const {
+  if (!field) return std::nullopt;
+  return relief::traceRay(*field, place, glm::dvec3(glsl::to_local(frame, direction)));
+}
+
+glm::vec4 ReliefPlace::tangent() const {
+  return {frame.t, glm::dot(glm::cross(frame.n, frame.t), frame.b) < 0.f ? 1.f : -1.f};
+}
+
+glm::vec2 ReliefPlace::uv() const {
+  return glm::vec2((place + 0.5) / glm::dvec2(field->size()));
 }
 
 ReliefPlace reliefPlace(const relief::HeightField& field, const glm::vec2& uv, const glm::vec3& normal,

@@ -21,6 +21,9 @@
 namespace limn::reference {
 namespace {
 
+constexpr TermSet kBouncingTerms =
+    termsWhere([](const TermInfo& info) { return info.bounces != TermBounces::none; });
+
 using Clock = std::chrono::steady_clock;
 
 double secondsSince(Clock::time_point start) {
@@ -52,10 +55,14 @@ void checkBounces(const Request& r) {
   if (hasBounces(r.term))
     throw UsageError(fmt::format("reference: bounces {} is not in {} .. {} with the term {}", r.bounces,
                                  least, kMaxBounces, name(r.term)));
-  constexpr TermSet others =
-      termsWhere([](const TermInfo& info) { return info.bounces != TermBounces::none; });
   throw UsageError(fmt::format("reference: bounces {} with the term {}; only {} have bounces", r.bounces,
-                               name(r.term), joined(termNames(others))));
+                               name(r.term), joined(termNames(kBouncingTerms))));
+}
+
+void checkReliefPaths(const Request& r) {
+  if (r.reliefPaths == ReliefPaths::both || hasBounces(r.term)) return;
+  throw UsageError(fmt::format("reference: relief paths '{}' with the term {}; only {} have bounces",
+                               name(r.reliefPaths), name(r.term), joined(termNames(kBouncingTerms))));
 }
 
 void validate(const Request& r) {
@@ -74,6 +81,7 @@ void validate(const Request& r) {
     throw UsageError(fmt::format("reference: {} needs one light; {} is not in 0 .. {}", name(r.term), r.light,
                                  lights - 1));
   checkBounces(r);
+  checkReliefPaths(r);
   if (!acceptsInterfaces(r.term, r.interfaces))
     throw UsageError(fmt::format("reference: interfaces {} with the term {}; {}", r.interfaces, name(r.term),
                                  acceptedInterfaces(r.term)));

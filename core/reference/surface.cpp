@@ -41,38 +41,40 @@ struct TextureLookup {
   }
 };
 
-/// The frame in which the material's model is evaluated.
-glsl::Frame modelFrame(const Draw& draw, const Corner& corner, const glm::vec3& normal) {
-  if (!draw.tangents) return glsl::frame_around(normal);
-  return glsl::frame_along(normal, draw.tangentToWorld * glm::vec3(corner.blend(draw.tangents)));
-}
-
 /// The tangent in world space, with the sign of the bitangent there.
 glm::vec4 worldTangent(const Draw& draw, const Corner& corner) {
   const glm::vec4 tangent = corner.blend(draw.tangents);
   return {draw.tangentToWorld * glm::vec3(tangent), tangent.w * draw.orientation};
 }
 
+/// The normal that the material's normal map or else height map makes of an interpolated one, all in world
+/// space.
+glm::vec3 mappedNormal(const scene::Material& material, const TextureLookup& lookup, const glm::vec3& normal,
+                       const glm::vec4& tangent) {
+  if (lookup.has(material.normalTexture))
+    return glsl::mapped_normal(normal, tangent, glm::vec3(lookup(material.normalTexture)),
+                               material.normalScale);
+  if (material.height == scene::kNone) return normal;
+  return glsl::height_normal(normal, tangent, lookup.slope(material.height));
+}
+
 glm::vec3 shadingNormal(const Draw& draw, const Corner& corner, const TextureLookup& lookup,
                         const glm::vec3& geometricNormal) {
-  const scene::Material& material = *draw.material;
   const glm::vec3 interpolated = draw.normalToWorld * corner.blend(draw.normals);
   const float size = glm::length(interpolated);
   if (!(size > 0.f)) return geometricNormal;
   const glm::vec3 normal = interpolated / size;
   if (!lookup.hasUv || !draw.tangents) return normal;
-  if (lookup.has(material.normalTexture))
-    return glsl::mapped_normal(normal, worldTangent(draw, corner), glm::vec3(lookup(material.normalTexture)),
-                               material.normalScale);
-  if (material.height == scene::kNone) return normal;
-  return glsl::height_normal(normal, worldTangent(draw, corner), lookup.slope(material.height));
+  return mappedNormal(*draw.material, lookup, normal, worldTangent(draw, corner));
 }
 
-void fillMaterial(const Draw& draw, const Corner& corner, const TextureLookup& lookup,
-                  glsl::GBufferSurface& values) {
-  const scene::Material& material = *draw.material;
-  glm::vec4 base = material.baseColour * lookup(material.baseColourTexture);
-  if (!draw.primitive->colours.empty()) base *= corner.blend(draw.primitive->colours.data());
+/// Sets what the material says of the surface, whose normals and vertex colour are known. `tangent` (world,
+/// any length; 0: none) turns the frame in which a model is evaluated.
+void fillMaterial(const RayScene& rays, const TextureLookup& lookup, const glm::vec3& tangent,
+                  Surface& surface) {
+  const scene::Material& material = *rays.draws()[surface.draw].material;
+  glsl::GBufferSurface& values = surface.values;
+  const glm::vec4 base = material.baseColour * lookup(material.baseColourTexture) * surface.vertexColour;
   const glm::vec4 metalRough = lookup(material.metalRoughTexture);
   // The G-buffer's ranges.
   values.base_colour = glm::clamp(glm::vec3(base), 0.f, 1.f);
@@ -83,6 +85,12 @@ void fillMaterial(const Draw& draw, const Corner& corner, const TextureLookup& l
   values.ior = glm::clamp(material.ior, 1.f, 3.f);
   values.emission = material.emission * glm::vec3(lookup(material.emissiveTexture));
   values.flags = material.specularSurface() ? glsl::gbuffer_flag_specular : 0u;
+  surface.brdf = glsl::surface_brdf(values.base_colour, values.metallic, values.roughness,
+                                    values.specular_factor, values.specular_colour, values.ior);
+  if (!material.model) return;
+  surface.model = &*material.model;
+  surface.measured = &rays.scene().measured;
+  surface.frame = glsl::frame_along(values.normal, tangent);
 }
 
 /// The corners' positions in world space.
@@ -146,21 +154,15 @@ Surface seenFrom(const RayScene& rays, const Hit& hit, const glm::vec3& view,
     geometricNormal = -geometricNormal;
     normal = -normal;
   }
-  glsl::GBufferSurface& values = surface.values;
-  fillMaterial(draw, corner, lookup, values);
-  if (back && surface.specular()) values.flags |= glsl::gbuffer_flag_back;
-  values.normal = normal;
-  values.geometric_normal = geometricNormal;
+  const glm::vec4 tangent = draw.tangents ? worldTangent(draw, corner) : glm::vec4(0);
   if (draw.heights && !back)
-    surface.relief = reliefPlace(*draw.heights, lookup.uv, draw.normalToWorld * corner.blend(draw.normals),
-                                 worldTangent(draw, corner));
-  surface.brdf = glsl::surface_brdf(values.base_colour, values.metallic, values.roughness,
-                                    values.specular_factor, values.specular_colour, values.ior);
-  if (draw.material->model) {
-    surface.model = &*draw.material->model;
-    surface.measured = &rays.scene().measured;
-    surface.frame = modelFrame(draw, corner, normal);
-  }
+    surface.relief =
+        reliefPlace(*draw.heights, lookup.uv, draw.normalToWorld * corner.blend(draw.normals), tangent);
+  surface.values.normal = normal;
+  surface.values.geometric_normal = geometricNormal;
+  if (!primitive.colours.empty()) surface.vertexColour = corner.blend(primitive.colours.data());
+  fillMaterial(rays, lookup, glm::vec3(tangent), surface);
+  if (back && surface.specular()) surface.values.flags |= glsl::gbuffer_flag_back;
   return surface;
 }
 
@@ -168,6 +170,10 @@ Surface seenFrom(const RayScene& rays, const Hit& hit, const glm::vec3& view,
 
 glm::vec3 Surface::reflectance(const glm::vec3& direction) const {
   if (!(glm::dot(values.geometric_normal, direction) > 0.f)) return glm::vec3(0);
+  return reflectanceFromBump(direction);
+}
+
+glm::vec3 Surface::reflectanceFromBump(const glm::vec3& direction) const {
   if (model)
     return glsl::model_response(*measured, *model, glsl::to_local(frame, view),
                                 glsl::to_local(frame, direction));
@@ -214,6 +220,19 @@ std::optional<Surface> surfaceAlong(const RayScene& rays, const Hit& hit, const 
   bool back = false;
   const Surface surface = seenFrom(rays, hit, -direction, std::nullopt, back);
   if (back && !rays.draws()[hit.draw].material->doubleSided) return std::nullopt;
+  return surface;
+}
+
+Surface surfaceAtBump(const RayScene& rays, const Surface& from, const glm::dvec2& place,
+                      const glm::vec3& direction) {
+  Surface surface = from;
+  surface.view = -direction;
+  surface.depth = 0;
+  surface.relief.place = place;
+  const TextureLookup lookup{rays, true, surface.relief.uv(), std::nullopt};
+  surface.values.normal = mappedNormal(*rays.draws()[from.draw].material, lookup, surface.relief.frame.n,
+                                       surface.relief.tangent());
+  fillMaterial(rays, lookup, surface.relief.frame.t, surface);
   return surface;
 }
 

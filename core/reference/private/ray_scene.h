@@ -22,7 +22,8 @@ struct Draw {
   const glm::vec3* positions = nullptr;
   const glm::vec3* normals = nullptr;
   const glm::vec4* tangents = nullptr;  ///< null: none
-  /// The material's height map; null without one, and without the coordinates and tangents that it needs.
+  /// The material's height map; null without one, without the coordinates and tangents that it needs, and
+  /// where it is level: that is no bumps.
   const relief::HeightField* heights = nullptr;
   glm::mat4 toWorld{1};
   glm::mat3 normalToWorld{1};

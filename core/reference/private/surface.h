@@ -24,10 +24,14 @@ struct Surface {
   const std::vector<glm::vec3>* measured = nullptr;  ///< Scene::measured
   glsl::Frame frame{};  ///< around the shading normal, along the tangent; for models
   ReliefPlace relief;   ///< among the bumps of the front; the back has none
+  glm::vec4 vertexColour{1};
 
   bool specular() const { return (values.flags & glsl::gbuffer_flag_specular) != 0; }
   /// Returns f cos for light from `direction` (unit), 1/sr; 0 below either horizon.
   glm::vec3 reflectance(const glm::vec3& direction) const;
+  /// Returns the same with the shading normal's horizon alone, for light from bumps, which lie on either side
+  /// of the geometric one.
+  glm::vec3 reflectanceFromBump(const glm::vec3& direction) const;
   /// Returns f(towards, direction) of two unit vectors away from the surface, 1/sr, without the cosine; 0
   /// where `direction` is below the shading normal's horizon.
   glm::vec3 f(const glm::vec3& towards, const glm::vec3& direction) const;
@@ -54,6 +58,11 @@ Surface surfaceAt(const RayScene& rays, const Hit& hit, const glsl::FrameBlock& 
 /// Returns the surface at `hit`, met by a ray along `direction` (unit): textures at their full size. Returns
 /// nullopt where the ray met the back of a single-sided surface, which reflects nothing.
 std::optional<Surface> surfaceAlong(const RayScene& rays, const Hit& hit, const glm::vec3& direction);
+
+/// Returns the surface where a ray along `direction` (unit) from `from` meets the bumps at `place`: the
+/// base's point, with the field's normal and the textures at their full size as they are at the place.
+Surface surfaceAtBump(const RayScene& rays, const Surface& from, const glm::dvec2& place,
+                      const glm::vec3& direction);
 
 /// Holds the point where light meets a smooth interface, from either side.
 struct Interface {

@@ -91,6 +91,18 @@ TEST(ReferenceWork, ContentHashSeesEverythingThatMatters) {
   EXPECT_EQ(plain, contentHash(request));
   request.unshadowed = true;
   EXPECT_NE(plain, contentHash(request));
+  std::vector<std::string> hashes;
+  for (const ReliefPaths paths : {ReliefPaths::both, ReliefPaths::relief, ReliefPaths::others}) {
+    request = world.request(16, Term::indirect, 16);
+    request.bounces = 1;
+    if (paths == ReliefPaths::both) hashes.push_back(contentHash(request));
+    request.reliefPaths = paths;
+    hashes.push_back(contentHash(request));
+  }
+  EXPECT_EQ(hashes[0], hashes[1]) << "the default";
+  EXPECT_NE(hashes[1], hashes[2]);
+  EXPECT_NE(hashes[1], hashes[3]);
+  EXPECT_NE(hashes[2], hashes[3]);
   EXPECT_NE(plain, contentHash(world.request(16, Term::final, 16)));
   EXPECT_NE(plain, contentHash(world.request(16, Term::direct, 18)));
   EXPECT_NE(plain, contentHash(world.request(17, Term::direct, 16)));

@@ -107,12 +107,13 @@ World cornerWorld(const HeightField& floor, const HeightField& wall) {
   return world;
 }
 
-/// Compares pictures of the floor's light by way of the wall: with bumps that keep it off, `shadowed`, and
-/// with bumps that lie the other way round.
+/// Compares pictures of the floor's light by way of the wall alone: with bumps that keep it off, `shadowed`,
+/// and with bumps that lie the other way round.
 void expectKeptOff(const World& shadowed, const World& lit, Term term) {
   const auto picture = [&](const World& world) {
     Request request = world.request(kSide, term, 16);
     request.bounces = defaultBounces(term);
+    if (hasBounces(term)) request.reliefPaths = ReliefPaths::others;
     return render(request).image;
   };
   const Image dark = picture(shadowed), bright = picture(lit), flat = picture(flattened(lit));

@@ -34,6 +34,10 @@ TEST(ReferenceRequest, NonsenseIsRefusedByName) {
   EXPECT_NE(
       message([](Request& r) { r.term = Term::relief; }).find("relief needs one light; -1 is not in 0 .. 1"),
       std::string::npos);
+  EXPECT_NE(message([](Request& r) {
+              r.reliefPaths = ReliefPaths::others;
+            }).find("relief paths 'others' with the term direct; only final, indirect and specular have"),
+            std::string::npos);
   EXPECT_NE(message([](Request& r) { r.term = Term::environment; }).find("no picture shows"),
             std::string::npos);
 }
