@@ -143,6 +143,11 @@ constexpr QuestionField kFields[] = {
            "on: nothing keeps light from arriving in the reference (V = 1), so that the error of what is\n"
            "approximated without shadows can be told from their absence; techniques do not change")
         .changing(view),
+    choice("relief_paths", "--relief-paths", &Q::reliefPaths, kReliefPaths,
+           "Which paths the reference's indirect light takes: relief: those with light from bump to bump of\n"
+           "one height map; others: those without; both; techniques do not change")
+        .changing(view)
+        .labelled("relief paths"),
     real(
         "environment_lights", "--environment-lights", &Q::environmentLights, {1e-4, 0.5}, "",
         "Replace the environment by area lights, which techniques can shadow. The value is the least share "

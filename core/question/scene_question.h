@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/question/relief_paths.h"
 #include "core/question/term.h"
 
 namespace limn {
@@ -29,6 +30,7 @@ struct SceneQuestion {
   std::string environment = {};
   double environmentRotation = 0, environmentScale = 1;
   std::string unshadowed = "off";
+  std::string reliefPaths = name(ReliefPaths::both);
   double environmentLights = 0;
   int environmentResolution = 48;
   std::string environmentShape = "squares", environmentReflection = "area";

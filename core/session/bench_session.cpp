@@ -76,6 +76,7 @@ BenchSession::Loaded& BenchSession::load(const bench::Case& c) {
   View& view = loaded_->view;
   view.size = {c.width, c.height};
   view.unshadowed = c.unshadowed == "on";
+  view.reliefPaths = reliefPathsOf(c.reliefPaths);
   if (view.defaultLights) {
     moveTo(view, c, view.time);
     loaded_->renderer.setTime(view.time, view.animation);

@@ -199,6 +199,7 @@ View open(const SceneQuestion& question, const Warn& warn) {
   View view;
   view.size = {question.width, question.height};
   view.unshadowed = question.unshadowed == "on";
+  view.reliefPaths = reliefPathsOf(question.reliefPaths);
   view.scene = scene::load(findScene(question.scene));
   addEnvironment(question, view.scene);
   giveOwnMaterials(view.scene);
@@ -235,6 +236,7 @@ reference::Request referenceRequest(const View& view, const scene::Pose& pose,
   request.height = view.size.y;
   request.term = term;
   request.unshadowed = view.unshadowed;
+  request.reliefPaths = view.reliefPaths;
   request.light = view.light == scene::kNone ? reference::kAllLights : view.light;
   request.bounces = reference::defaultBounces(term);
   request.interfaces = reference::defaultInterfaces(term);

@@ -183,7 +183,8 @@ TEST(BenchSuite, ScenesMayBeChangedAsOnTheCommandLine) {
       parseSuite(start +
                      "set_light = [\"key.size=0.5\", \"key.intensity=3\"]\neye = \"0,1,3\"\ntarget = "
                      "\"0,0,0\"\nfov = 30\ndefault_lights = \"on\"\nenvironment_rotation = 90\n"
-                     "environment_scale = 2\nunshadowed = \"on\"\nanimation = \"walk\"\ngrid = \"smoke\"\n",
+                     "environment_scale = 2\nunshadowed = \"on\"\nrelief_paths = \"others\"\nanimation = "
+                     "\"walk\"\ngrid = \"smoke\"\n",
                  "s.toml")
           .cases[0];
   const SceneQuestion wanted{.scene = "lights",
@@ -198,6 +199,7 @@ TEST(BenchSuite, ScenesMayBeChangedAsOnTheCommandLine) {
                              .environmentRotation = 90,
                              .environmentScale = 2,
                              .unshadowed = "on",
+                             .reliefPaths = "others",
                              .grid = "smoke"};
   EXPECT_EQ(static_cast<const SceneQuestion&>(changed), wanted);
   EXPECT_NE(question(changed), question(plain));
