@@ -49,11 +49,6 @@ Result resultOf(const World& world, int side, int spp, int bounces, Term term = 
   return render(request);
 }
 
-dvec2 placeOf(const World& world, const HeightField& field, const Image& image, int x, int y) {
-  const dvec3 p = positionOf(world, image, x, y);
-  return field.place({0.5 + p.x, 0.5 - p.y});
-}
-
 double meanOf(const Image& image) {
   double sum = 0;
   for (int y = 0; y < image.height(); ++y)
