@@ -106,8 +106,8 @@ TEST(SceneQuestion, SuitesRefuseWhatIsOutOfRange) {
         expected = fmt::format("..{}", field.range.high);
         break;
       case QuestionKind::choice:
-        line = fmt::format("{} = \"other\"\n", keyInSuite(field));
-        expected = fmt::format("'other'; known are {}", field.choices.front());
+        line = fmt::format("{} = \"neither\"\n", keyInSuite(field));
+        expected = fmt::format("'neither'; known are {}", field.choices.front());
         break;
       default:
         continue;
