@@ -1,0 +1,63 @@
+// A floor with height maps under one light, as tests of bumps draw it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/gpu/render_test.h"
+#include "tests/support/test_scenes.h"
+
+namespace limn {
+
+/// Names all shapes of bump_horizon.
+inline const std::vector<std::string> kShapes{"moments", "published", "horizon_map", "march", "nearest"};
+
+class BumpFloorTest : public RenderTest {
+ protected:
+  static constexpr int kSide = 128;  ///< of pictures, pixels
+
+  /// A floor of 2 m x 2 m, one tile of `field`, under light that comes from `towards`.
+  static scene::Scene floorUnder(const glm::vec3& towards, std::vector<relief::HeightField> fields) {
+    scene::Scene scene;
+    scene.heights = std::move(fields);
+    scene::Material material;
+    material.metallic = 0;
+    material.specularFactor = 0;
+    if (!scene.heights.empty()) material.height = 0;
+    scene::Node node;
+    node.mesh = test::addMesh(scene, test::floorPrimitive(1, test::addMaterial(scene, material)));
+    scene.nodes.push_back(node);
+    scene::LightSource light;
+    light.type = glsl::light_directional;
+    light.intensity = 2;
+    scene::Node lamp;
+    const glm::vec3 up = std::abs(towards.z) > 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1);
+    lamp.transform.rotation = glm::quatLookAt(-glm::normalize(towards), up);
+    lamp.light = 0;
+    scene.lights.push_back(light);
+    scene.nodes.push_back(lamp);
+    return scene;
+  }
+
+  static scene::CameraPose camera() { return scene::lookAt({0, 2, 0.7f}, {0, 0, 0}, 0.7f); }
+
+  Image drawn(const scene::Scene& scene, Term term, const std::vector<render::TechniqueUse>& techniques,
+              std::vector<frame::PassReport>* passes = nullptr) {
+    render::Renderer renderer(device(), scene);
+    render::Settings asked = settings(kSide, kSide, term, techniques, term == Term::relief ? 0 : -1);
+    asked.channels = true;
+    renderer.configure(std::move(asked));
+    renderer.setCamera(camera());
+    renderer.render();
+    if (passes) *passes = renderer.explain();
+    return renderer.read();
+  }
+
+  static bool same(const Image& a, const Image& b) { return std::ranges::equal(a.data(), b.data()); }
+};
+
+}  // namespace limn
