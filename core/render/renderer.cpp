@@ -229,10 +229,21 @@ struct Renderer::Implementation {
     return nullptr;
   }
 
+  /// Whether the picture has light of a technique that reads where pixels lie in their height maps.
+  bool readsPlaces() const {
+    const bool indirect =
+        settings.term == Term::final || settings.term == Term::indirect || settings.term == Term::specular;
+    return gpuScene.hasHeights() && std::ranges::any_of(uses, [&](const Use& use) {
+             const bool answers =
+                 &use == bumps || (indirect && contains(termsOf(*use.settings), Term::indirect));
+             return answers && use.settings->plugin->info->places;
+           });
+  }
+
   frame::TextureHandle addRadiance() {
     Use* specular = answeringSpecular();
     matte = specular ? mattePass.add(*graph, gpuScene, handles, settings.size, scene::Surfaces::matte,
-                                     bumps != nullptr)
+                                     readsPlaces())
                      : gbuffer;
     const Deferred::Frame lit{*graph, handles, matte, settings.size};
     const Deferred::Frame frame{*graph, handles, gbuffer, settings.size};
@@ -310,7 +321,7 @@ struct Renderer::Implementation {
     bumps = answeringRelief();
     if (gpuScene.instanceCount() > 0)
       gbuffer =
-          gbufferPass.add(*graph, gpuScene, handles, settings.size, scene::Surfaces::all, bumps != nullptr);
+          gbufferPass.add(*graph, gpuScene, handles, settings.size, scene::Surfaces::all, readsPlaces());
     else
       graph->leaveOut("gbuffer", "core", "the scene has no geometry");
     askSurface();

@@ -51,6 +51,8 @@ struct TechniqueInfo {
   std::span<const Parameter> parameters;
   /// Holds extremes of the method itself; those that every technique meets are in core/bench/stress.h.
   std::span<const StressCase> stress;
+  /// Says whether its passes read GBuffer::places, which exist only where the scene has height maps.
+  bool places = false;
 };
 
 /// Holds what every technique receives.
@@ -86,8 +88,8 @@ struct TermRequest {
   std::span<const uint32_t> lights;
   /// Holds the texture to answer into. visibility: R16 array with one layer per entry of `lights`; the pass
   /// writes every pixel, and 1 where the pixel has no coverage or the light lies wholly behind the surface.
-  /// relief: the same texture for W, asked for only where the scene has height maps, with GBuffer::places in
-  /// TechniqueInputs::gbuffer; 1 where the pixel has no place in a height map.
+  /// relief: the same texture for W, asked for only where the scene has height maps; 1 where the pixel has no
+  /// place in a height map.
   /// specular: RGBA32F, radiance of TechniqueInputs::matte and the background behind it, to be read; the
   /// result is a separate texture, black where no specular surface is seen. Other terms: RGBA32F radiance to
   /// add to.

@@ -113,7 +113,8 @@ class BumpHorizon : public Technique {
           "Visibility; Max 1988, Horizon Mapping",
       .terms = termSet(Term::relief),
       .parameters = kParameters,
-      .stress = kStress};
+      .stress = kStress,
+      .places = true};
 };
 
 }  // namespace
