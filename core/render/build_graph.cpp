@@ -1,0 +1,257 @@
+// The frame graph of one picture: who answers which of its terms, and in which order their passes run.
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "core/render/private/implementation.h"
+#include "core/technique/bound.h"
+#include "core/technique/module.h"
+
+namespace limn::render {
+namespace {
+
+TermSet termsOf(const TechniqueUse& use) {
+  return use.plugin->info->terms;
+}
+
+}  // namespace
+
+void Renderer::Implementation::build() {
+  dropGraph();
+  noteEmitting();
+  graph = std::make_unique<frame::FrameGraph>();
+  for (const TechniqueUse& use : settings.techniques) {
+    mountTechnique(*use.plugin);
+    uses.push_back({&use, createTechnique(*use.plugin)});
+  }
+  gpuScene.setCulling(!forced(Saving::culling));
+  handles = gpuScene.import(*graph);
+  gbuffer = matte = {};
+  bumps = answeringRelief();
+  if (gpuScene.instanceCount() > 0)
+    gbuffer = gbufferPass.add(*graph, gpuScene, handles, settings.size, scene::Surfaces::all, readsPlaces());
+  else
+    graph->leaveOut("gbuffer", "core", "the scene has no geometry");
+  askSurface();
+  const auto building = services.begin(*graph, handles, pose);
+  output = isFactor(settings.term) ? addFactor() : addRadiance();
+  graph->output(output);
+  display = {};
+  if (settings.displayEv) {
+    display = deferred.addToneMapping({*graph, handles, gbuffer, settings.size}, output,
+                                      isFactor(settings.term), *settings.displayEv);
+    graph->output(display);
+  }
+  if (settings.channels && gbuffer.depth)
+    for (frame::TextureHandle kept : {gbuffer.depth, gbuffer.instance, gbuffer.albedo, gbuffer.normal})
+      graph->output(kept);
+  addInspector();
+  graph->prepare(device, shaders, pool, compileProgress);
+  pool.trim();
+}
+
+void Renderer::Implementation::mountTechnique(const TechniquePlugin& plugin) {
+  const std::string prefix = fmt::format("techniques/{}/", plugin.info->name);
+  if (std::find(mounted.begin(), mounted.end(), prefix) != mounted.end()) return;
+  shaders.mount(prefix, inTechnique(plugin, plugin.sources),
+                shaderOverride.empty() ? shaderOverride : shaderOverride / prefix);
+  mounted.push_back(prefix);
+}
+
+TechniqueInputs Renderer::Implementation::inputsOf(const Use& use, const GBuffer& seen) {
+  return {scene, pose, gpuScene, services, use.settings->parameters, handles, seen, settings.size};
+}
+
+frame::TextureHandle Renderer::Implementation::ask(Use& use, Term term, std::span<const uint32_t> lights,
+                                                   frame::TextureHandle target) {
+  const bool behind = term != Term::specular && term != Term::caustic && term != Term::media;
+  TechniqueInputs inputs = inputsOf(use, behind ? matte : gbuffer);
+  if (term == Term::specular) {
+    inputs.matte = matte;
+    inputs.environmentMap = deferred.environmentMap(*graph);
+  }
+  const TechniquePlugin& plugin = *use.settings->plugin;
+  inputs.bound = settings.bound && hasBound(plugin);
+  const frame::TextureHandle answer = inTechnique(plugin, [&] {
+    return use.technique->addPasses(*graph, inputs, {term, lights, target});
+  });
+  if (!answer)
+    throw Error(fmt::format("{}: it answers {} with nothing", described(plugin), limn::name(term)));
+  return answer;
+}
+
+void Renderer::Implementation::askSurface() {
+  Use* use = answering(Term::surface);
+  if (!use) return;
+  const TechniquePlugin& plugin = *use->settings->plugin;
+  if (handles.modelKinds == 0 || isFactor(settings.term) || !gbuffer.depth)
+    return graph->leaveOut("surface", plugin.info->name,
+                           handles.modelKinds == 0 ? "no material has a model" : "no light is reflected");
+  const TechniqueInputs inputs = inputsOf(*use, gbuffer);
+  scene::SurfaceAnswer answer = inTechnique(plugin, [&] { return use->technique->surface(*graph, inputs); });
+  if (answer.file.empty())
+    throw Error(fmt::format("{}: it answers {} with nothing", described(plugin), limn::name(Term::surface)));
+  handles.surface = std::make_shared<const scene::SurfaceAnswer>(std::move(answer));
+}
+
+Renderer::Implementation::Use* Renderer::Implementation::answering(Term term) {
+  for (Use& use : uses)
+    if (contains(termsOf(*use.settings), term)) return &use;
+  return nullptr;
+}
+
+void Renderer::Implementation::noteEmitting() {
+  emitting.resize(pose.lights.size());
+  for (size_t i = 0; i < emitting.size(); ++i) emitting[i] = emits(i);
+}
+
+std::vector<uint32_t> Renderer::Implementation::activeLights() {
+  std::vector<uint32_t> lights;
+  const bool replaced = settings.light < 0 && answering(Term::environment) != nullptr;
+  if (replaced && !scene.environment.lights.empty())
+    graph->leaveOut("lights of the environment", "core", "a technique answers the environment's light");
+  for (uint32_t i = 0; i < pose.lights.size(); ++i) {
+    if (settings.light >= 0 && static_cast<uint32_t>(settings.light) != i) continue;
+    if (replaced && (pose.lights[i].flags & glsl::light_flag_environment) != 0) continue;
+    if (!emits(i) && !isFactor(settings.term) && !forced(Saving::darkLights)) {
+      graph->leaveOut(fmt::format("light {}", pose.lightNames[i]), "core", "it emits nothing");
+      continue;
+    }
+    lights.push_back(i);
+  }
+  return lights;
+}
+
+frame::TextureHandle Renderer::Implementation::factorTarget(Term term, int layers) {
+  return graph->createTexture(limn::name(term),
+                              {GL_TEXTURE_2D_ARRAY, GL_R16, settings.size.x, settings.size.y, layers, 1});
+}
+
+frame::TextureHandle Renderer::Implementation::addDirect(const Deferred::Frame& frame,
+                                                         frame::TextureHandle radiance,
+                                                         std::span<const uint32_t> lights) {
+  if (Use* direct = answering(Term::direct)) return ask(*direct, Term::direct, lights, radiance);
+  const auto factor = [&](Term term, Use* use, std::span<const uint32_t> batch) {
+    return use ? ask(*use, term, batch, factorTarget(term, static_cast<int>(batch.size())))
+               : frame::TextureHandle{};
+  };
+  Use* shadowing = answering(Term::visibility);
+  for (size_t first = 0; first < lights.size(); first += kLightBatch) {
+    const auto batch = lights.subspan(first, std::min<size_t>(kLightBatch, lights.size() - first));
+    const Deferred::Factors factors{.visibility = factor(Term::visibility, shadowing, batch),
+                                    .relief = factor(Term::relief, bumps, batch)};
+    radiance = deferred.addLights(frame, radiance, batch, factors);
+  }
+  return radiance;
+}
+
+frame::TextureHandle Renderer::Implementation::addEnvironment(const Deferred::Frame& frame,
+                                                              frame::TextureHandle radiance) {
+  const char* why = nullptr;
+  if (!scene.environment && !forced(Saving::environment)) why = "no environment";
+  if (scene.environment && settings.light >= 0) why = "another light was chosen";
+  Use* use = answering(Term::environment);
+  if (!why && use) return ask(*use, Term::environment, {}, radiance);
+  if (!why && !scene.environment.lights.empty()) why = "lights stand for it";
+  if (!why) return deferred.addEnvironment(frame, radiance);
+  graph->leaveOut("environment light", "core", why);
+  return radiance;
+}
+
+Renderer::Implementation::Use* Renderer::Implementation::answeringSpecular() {
+  Use* use = answering(Term::specular);
+  if (!use || (settings.term != Term::final && settings.term != Term::specular)) return nullptr;
+  if (gpuScene.hasSpecular()) return use;
+  graph->leaveOut("specular surfaces", use->settings->plugin->info->name,
+                  "the scene has no specular surface");
+  return nullptr;
+}
+
+Renderer::Implementation::Use* Renderer::Implementation::answeringRelief() {
+  Use* use = answering(Term::relief);
+  if (!use) return nullptr;
+  const bool lit = settings.term == Term::final || settings.term == Term::direct ||
+                   settings.term == Term::specular || settings.term == Term::relief;
+  const char* why = !gpuScene.hasHeights() ? "no material has a height map"
+                    : !lit                 ? "no direct light is shown"
+                                           : nullptr;
+  if (!why) return use;
+  graph->leaveOut("relief", use->settings->plugin->info->name, why);
+  return nullptr;
+}
+
+bool Renderer::Implementation::readsPlaces() const {
+  const bool indirect =
+      settings.term == Term::final || settings.term == Term::indirect || settings.term == Term::specular;
+  return gpuScene.hasHeights() && std::ranges::any_of(uses, [&](const Use& use) {
+           const bool answers =
+               &use == bumps || (indirect && contains(termsOf(*use.settings), Term::indirect));
+           return answers && use.settings->plugin->info->places;
+         });
+}
+
+frame::TextureHandle Renderer::Implementation::addRadiance() {
+  Use* specular = answeringSpecular();
+  matte = specular
+              ? mattePass.add(*graph, gpuScene, handles, settings.size, scene::Surfaces::matte, readsPlaces())
+              : gbuffer;
+  const Deferred::Frame lit{*graph, handles, matte, settings.size};
+  const Deferred::Frame frame{*graph, handles, gbuffer, settings.size};
+  const bool all = settings.term == Term::final, whole = all || specular;
+  frame::TextureHandle radiance = deferred.start(lit, specular ? Deferred::Start::emission
+                                                      : all    ? Deferred::Start::emissionAndSpecular
+                                                               : Deferred::Start::black);
+  if (!gbuffer.depth) {
+    graph->leaveOut("lighting", "core", "the scene has no geometry");
+    return radiance;
+  }
+  const std::vector<uint32_t> lights = activeLights();
+  if (whole || settings.term == Term::direct) {
+    if (!lights.empty())
+      radiance = addDirect(lit, radiance, lights);
+    else
+      graph->leaveOut("lights", "core", "the scene has no light");
+    radiance = addEnvironment(lit, radiance);
+  }
+  const auto add = [&](Term term, bool wanted) {
+    for (Use& use : uses)
+      if (wanted && contains(termsOf(*use.settings), term)) radiance = ask(use, term, lights, radiance);
+  };
+  add(Term::indirect, whole || settings.term == Term::indirect);
+  if (specular) {
+    const frame::TextureHandle seen = ask(*specular, Term::specular, lights, radiance);
+    radiance = all ? deferred.addSpecular(frame, radiance, seen) : seen;
+  }
+  add(Term::caustic, all || settings.term == Term::caustic);
+  const char* clear = !scene.medium.present()        ? "the scene has no medium"
+                      : settings.term == Term::media ? "no surface is shown"
+                                                     : nullptr;
+  if (clear)
+    graph->leaveOut("transmittance", "core", clear);
+  else
+    radiance = deferred.addTransmittance(frame, radiance);
+  add(Term::media, all || settings.term == Term::media);
+  return radiance;
+}
+
+frame::TextureHandle Renderer::Implementation::addFactor() {
+  const Term term = settings.term;
+  const std::vector<uint32_t> lights = activeLights();
+  if (lights.size() != 1)
+    throw UsageError(
+        fmt::format("--output-term {} shows one light; choose it with --light", limn::name(term)));
+  if (!gbuffer.depth)
+    throw Error(fmt::format("{} has no surface to show: the scene has no geometry", limn::name(term)));
+  matte = gbuffer;
+  const frame::TextureHandle target = factorTarget(term, 1);
+  if (term == Term::relief && !bumps) return Deferred::clearFactor(*graph, target);
+  return ask(*answering(term), term, lights, target);
+}
+
+void Renderer::Implementation::addInspector() {
+  if (!settings.inspect) return;
+  const Inspection& wanted = *settings.inspect;
+  const frame::TextureHandle texture = graph->find(wanted.technique, wanted.pass, wanted.access);
+  if (texture) inspector = std::make_unique<TextureInspector>(*graph, texture, inspectionView);
+}
+
+}  // namespace limn::render

@@ -1,0 +1,110 @@
+// Internal: what a renderer holds, and the frame graph of one picture.
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/gpu_scene/gpu_scene.h"
+#include "core/render/private/deferred.h"
+#include "core/render/renderer.h"
+#include "core/render/services.h"
+
+namespace limn::render {
+
+struct Renderer::Implementation {
+  struct Use {
+    const TechniqueUse* settings;
+    std::unique_ptr<Technique> technique;
+  };
+
+  gpu::Device& device;
+  const scene::Scene& scene;
+  std::filesystem::path shaderOverride;
+  gpu::ShaderLibrary shaders;
+  frame::ResourcePool pool;
+  scene::GpuScene gpuScene;
+  FrameServices services;
+  Deferred deferred;
+  scene::GBufferPass gbufferPass, mattePass;
+  Settings settings;
+  scene::CameraPose camera;
+  scene::Pose pose;
+  double time = 0;
+  int animation = scene::kNone;
+  bool poseDirty = true;
+  uint32_t frameIndex = 0;
+  std::vector<bool> emitting;  ///< of each light, when the graph was built
+  std::vector<std::string> mounted;
+  std::vector<Use> uses;
+
+  // Handles of the current graph.
+  std::unique_ptr<frame::FrameGraph> graph;
+  SceneHandles handles;
+  Use* bumps = nullptr;    ///< answers relief for the current graph
+  GBuffer gbuffer, matte;  ///< matte: what is lit, the same or the surfaces behind the specular ones
+  frame::TextureHandle output, display;
+  InspectionView inspectionView;
+  std::unique_ptr<TextureInspector> inspector;
+  frame::FrameGraph::CompileProgress compileProgress;
+
+  Implementation(gpu::Device& gpuDevice, const scene::Scene& shown, std::filesystem::path overrideFolder)
+      : device(gpuDevice),
+        scene(shown),
+        shaderOverride(std::move(overrideFolder)),
+        shaders(gpuDevice),
+        pool(gpuDevice),
+        gpuScene(gpuDevice, shown),
+        services(makeServices(gpuDevice, gpuScene)),
+        deferred(gpuDevice, shown) {
+    shaders.mount("", embeddedSources(), shaderOverride);
+  }
+
+  ~Implementation() { dropGraph(); }
+
+  void dropGraph();
+  void refreshPose();
+  bool render(frame::Timing timing, const frame::FrameGraph::Cancelled& cancelled);
+  /// Returns whether a light was turned on or off: the graph leaves out what dark ones would need.
+  bool switched() const;
+
+  // In build_graph.cpp: who answers which terms of the picture, and in which order the passes run.
+  void build();
+  void mountTechnique(const TechniquePlugin& plugin);
+  TechniqueInputs inputsOf(const Use& use, const GBuffer& seen);
+  frame::TextureHandle ask(Use& use, Term term, std::span<const uint32_t> lights,
+                           frame::TextureHandle target);
+  /// Asks how materials reflect light, for all passes that reflect it.
+  void askSurface();
+  /// Returns the first technique that answers the term; null: none.
+  Use* answering(Term term);
+  bool forced(Saving saving) const {
+    return std::ranges::find(settings.forced, saving) != settings.forced.end();
+  }
+  bool emits(size_t light) const { return pose.lights[light].emission != glm::vec3(0); }
+  void noteEmitting();
+  /// Returns the lights that can contribute: the one asked for, or all that emit, without those whose place a
+  /// technique takes.
+  std::vector<uint32_t> activeLights();
+  frame::TextureHandle factorTarget(Term term, int layers);
+  frame::TextureHandle addDirect(const Deferred::Frame& frame, frame::TextureHandle radiance,
+                                 std::span<const uint32_t> lights);
+  frame::TextureHandle addEnvironment(const Deferred::Frame& frame, frame::TextureHandle radiance);
+  /// Returns the technique that shows the scene in its specular surfaces, if the picture has them.
+  Use* answeringSpecular();
+  /// Returns the technique that says what bumps leave of each light, if the picture has such light on height
+  /// maps.
+  Use* answeringRelief();
+  /// Returns whether the picture has light of a technique that reads where pixels lie in their height maps.
+  bool readsPlaces() const;
+  frame::TextureHandle addRadiance();
+  /// Adds V or W of one light.
+  frame::TextureHandle addFactor();
+  /// Comes behind everything else: the pass looked at may be any.
+  void addInspector();
+};
+
+}  // namespace limn::render
