@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/relief/ellipse.h"
 #include "core/relief/horizon.h"
+#include "glsl/relief/bounce_paths.glsl"
 #include "glsl/relief/horizon_map.glsl"
 
 namespace limn::relief_maps {
@@ -42,6 +43,8 @@ int64_t wordsOf(const relief::HeightField& field, const ReliefMapDesc& desc) {
       return texelsOf(field.size()) * glsl::relief_ellipse_words;
     case Table::horizons:
       return texelsOf(field.size()) * glsl::relief_horizon_words(desc.azimuths);
+    case Table::bounces:
+      return texelsOf(field.size()) * (glsl::bounce_path_plane + desc.paths);
     case Table::heights:
       break;
   }
@@ -121,6 +124,48 @@ void appendHeights(std::vector<uint32_t>& words, const relief::HeightField& fiel
       words.push_back(std::bit_cast<uint32_t>(static_cast<float>(field.texel({x, y}))));
 }
 
+uint32_t packedSlope(const glm::dvec2& slope) {
+  const auto largest = static_cast<double>(kLargestHalf);
+  return glm::packHalf2x16(glm::vec2(glm::clamp(slope, -largest, largest)));
+}
+
+/// Returns the number of the texel nearest to a place inside of the map.
+uint32_t nearestTexel(const relief::HeightField& field, const glm::vec2& place) {
+  return static_cast<uint32_t>(field.index(glm::ivec2(glm::floor(place + 0.5f))));
+}
+
+void appendBounces(std::vector<uint32_t>& words, const relief::HeightField& field,
+                   const ReliefMapDesc& desc) {
+  const size_t texels = field.texels(), first = words.size(), paths = static_cast<size_t>(desc.paths);
+  if (texels >= glsl::bounce_sky)
+    throw UsageError(
+        fmt::format("a height map of {} x {} texels is too large for light from bump to bump: "
+                    "less than 2^24 - 1 texels are accepted",
+                    field.size().x, field.size().y));
+  words.resize(first + static_cast<size_t>(wordsOf(field, desc)));
+  const auto word = [&](size_t plane, size_t texel) -> uint32_t& {
+    return words[first + plane * texels + texel];
+  };
+  for (int y = 0; y < field.size().y; ++y)
+    for (int x = 0; x < field.size().x; ++x)
+      word(glsl::bounce_slope_plane, field.index({x, y})) = packedSlope(field.slope({x, y}));
+  const relief::BouncePaths traced = relief::traceBounces(field, desc.bounceDirections, desc.paths);
+  for (size_t texel = 0; texel < texels; ++texel) {
+    const std::span list(traced.list.data() + texel * paths, paths);
+    const float largest = std::ranges::max(list, {}, &relief::BouncePath::weight).weight;
+    float sum = 0;
+    for (size_t i = 0; i < paths; ++i) {
+      const uint32_t packed = glsl::bounce_path_pack(
+          {.texel = list[i].hits() ? nearestTexel(field, list[i].place) : glsl::bounce_sky,
+           .weight = largest > 0 ? list[i].weight / largest : 0});
+      sum += glsl::bounce_path_unpack(packed).weight;
+      word(glsl::bounce_path_plane + i, texel) = packed;
+    }
+    const float scale = sum > 0 ? static_cast<float>(paths) / sum : 0;
+    word(glsl::bounce_scale_plane, texel) = std::bit_cast<uint32_t>(scale);
+  }
+}
+
 void appendField(std::vector<uint32_t>& words, const relief::HeightField& field, const ReliefMapDesc& desc) {
   switch (desc.table) {
     case Table::moments:
@@ -135,16 +180,32 @@ void appendField(std::vector<uint32_t>& words, const relief::HeightField& field,
       return appendHorizons(words, field, desc.azimuths);
     case Table::heights:
       return appendHeights(words, field);
+    case Table::bounces:
+      return appendBounces(words, field, desc);
   }
 }
 
 /// Returns the description with what its table does not depend on as by default.
 ReliefMapDesc plain(const ReliefMapDesc& desc) {
-  const ReliefMapDesc standard;
-  const bool byAzimuths = desc.table != Table::published && desc.table != Table::heights;
-  return {.table = desc.table,
-          .azimuths = byAzimuths ? desc.azimuths : standard.azimuths,
-          .directions = desc.table == Table::published ? desc.directions : standard.directions};
+  ReliefMapDesc result;
+  result.table = desc.table;
+  switch (desc.table) {
+    case Table::moments:
+    case Table::nearest:
+    case Table::horizons:
+      result.azimuths = desc.azimuths;
+      break;
+    case Table::published:
+      result.directions = desc.directions;
+      break;
+    case Table::bounces:
+      result.paths = desc.paths;
+      result.bounceDirections = desc.bounceDirections;
+      break;
+    case Table::heights:
+      break;
+  }
+  return result;
 }
 
 }  // namespace
@@ -186,7 +247,7 @@ ReliefMaps ReliefMapService::request(const ReliefMapDesc& asked) {
   if (bytes > device_.limits().maxStorageBlockBytes)
     throw UsageError(
         fmt::format("tables of height maps take {} MiB, more than the {} MiB of a storage buffer; "
-                    "ask for fewer azimuths or smaller maps",
+                    "ask for fewer azimuths or paths, or smaller maps",
                     bytes >> 20, device_.limits().maxStorageBlockBytes >> 20));
   auto found = entries_.find(desc);
   if (found == entries_.end()) {

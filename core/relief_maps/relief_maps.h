@@ -11,6 +11,7 @@
 
 #include "core/frame/frame_graph.h"
 #include "core/gpu/objects.h"
+#include "core/relief/interreflection.h"
 #include "core/scene/scene.h"
 #include "core/technique/frame_service.h"
 #include "glsl/relief/relief_field.glsl"
@@ -22,13 +23,16 @@ enum class Table : uint8_t {
   nearest,    ///< the ellipses that differ least from what the horizons leave (relief::nearestEllipse), too
   published,  ///< the published fit's ellipses (relief::fitPublished), as centres and covariances; one level
   horizons,   ///< tangents of the horizons' elevations (glsl/relief/horizon_map.glsl) as halfs
-  heights     ///< metres, floats
+  heights,    ///< metres, floats
+  bounces     ///< which texels light from bump to bump comes from (glsl/relief/bounce_paths.glsl)
 };
 
 struct ReliefMapDesc {
   Table table = Table::moments;
-  int azimuths = 32;     ///< of all but heights and the published fit
+  int azimuths = 32;     ///< of ellipses from horizons, and of horizons
   int directions = 256;  ///< of the published fit
+  int paths = 64;        ///< of bounces, to each texel
+  relief::BounceDirections bounceDirections = relief::BounceDirections::ownFrame;
   auto operator<=>(const ReliefMapDesc&) const = default;
 };
 
@@ -46,7 +50,7 @@ struct ReliefTable {
 
 /// Returns the words that a table of the fields takes.
 LIMN_API int64_t reliefTableWords(std::span<const relief::HeightField> fields, const ReliefMapDesc& desc);
-/// Computes a table of the fields.
+/// Computes a table of the fields. Throws UsageError for bounces of a field of 2^24 - 1 texels or more.
 LIMN_API ReliefTable makeReliefTable(std::span<const relief::HeightField> fields, const ReliefMapDesc& desc);
 
 class LIMN_API ReliefMapService : public FrameService {
@@ -57,7 +61,7 @@ class LIMN_API ReliefMapService : public FrameService {
   ~ReliefMapService() override;
 
   /// Returns a table of the scene's height maps, of which there is at least one. Throws UsageError when it
-  /// would take more memory than a storage buffer may.
+  /// would take more memory than a storage buffer may, and for bounces of a map of 2^24 - 1 texels or more.
   ReliefMaps request(const ReliefMapDesc& desc);
 
  private:

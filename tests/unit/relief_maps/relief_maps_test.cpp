@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/relief/ellipse.h"
 #include "core/relief/horizon.h"
+#include "glsl/relief/bounce_paths.glsl"
 #include "glsl/surface/gbuffer.glsl"
 #include "tests/unit/relief/fields.h"
 
@@ -28,8 +31,8 @@ TEST(ReliefMapsTest, TablesAreAsLargeAsTheySay) {
   const std::vector<HeightField> fields{flat({1, 1}), flat({1, 5}), flat({6, 3}),
                                         flat({4, 4}, relief::Wrap::clamped), relief::test::eggCrate(16)};
   for (const Table kind :
-       {Table::moments, Table::nearest, Table::published, Table::horizons, Table::heights}) {
-    const ReliefMapDesc desc{.table = kind, .azimuths = 9, .directions = 64};
+       {Table::moments, Table::nearest, Table::published, Table::horizons, Table::heights, Table::bounces}) {
+    const ReliefMapDesc desc{.table = kind, .azimuths = 9, .directions = 64, .paths = 5};
     const ReliefTable table = makeReliefTable(fields, desc);
     EXPECT_EQ(static_cast<int64_t>(table.values.size()), reliefTableWords(fields, desc));
     ASSERT_EQ(table.fields.size(), fields.size());
@@ -64,6 +67,68 @@ TEST(ReliefMapsTest, TheLastLevelIsTheMeanOfAllTexels) {
   EXPECT_NEAR(last.spread, mean.spread, 1e-4);
   EXPECT_NEAR(last.xx, mean.xx, 1e-4);
   EXPECT_NEAR(last.yy, mean.yy, 1e-4);
+}
+
+TEST(ReliefMapsTest, BouncesAreTheTracedPathsToTheNearestTexel) {
+  constexpr int kSize = 20, kPaths = 24;
+  const std::vector<HeightField> fields{flat({3, 2}), relief::test::bricks(kSize, 1.2)};
+  for (const relief::BounceDirections directions :
+       {relief::BounceDirections::ownFrame, relief::BounceDirections::shared,
+        relief::BounceDirections::published}) {
+    const ReliefTable table =
+        makeReliefTable(fields, {.table = Table::bounces, .paths = kPaths, .bounceDirections = directions});
+    const HeightField& field = fields[1];
+    const size_t texels = field.texels();
+    const uint32_t* const words = table.values.data() + table.fields[1].first;
+    const relief::BouncePaths traced = relief::traceBounces(field, directions, kPaths);
+    int hits = 0;
+    for (size_t texel = 0; texel < texels; ++texel) {
+      const glm::ivec2 at(static_cast<int>(texel) % kSize, static_cast<int>(texel) / kSize);
+      const glm::vec2 slope = glm::unpackHalf2x16(words[texel]);
+      EXPECT_NEAR(slope.x, field.slope(at).x, 1e-3);
+      EXPECT_NEAR(slope.y, field.slope(at).y, 1e-3);
+      const float scale = std::bit_cast<float>(words[glsl::bounce_scale_plane * texels + texel]);
+      float sum = 0;
+      for (size_t i = 0; i < kPaths; ++i) {
+        const glsl::BouncePath path =
+            glsl::bounce_path_unpack(words[(glsl::bounce_path_plane + i) * texels + texel]);
+        const relief::BouncePath& exact = traced.list[texel * kPaths + i];
+        // Weights add up to pi; steps are 1 / 255 of the largest, and there are as many as paths.
+        EXPECT_NEAR(path.weight * scale, exact.weight * kPaths / std::numbers::pi_v<float>, 0.1f);
+        ASSERT_EQ(path.texel != glsl::bounce_sky, exact.hits());
+        sum += path.weight * scale;
+        if (!exact.hits()) continue;
+        ++hits;
+        ASSERT_LT(path.texel, texels);
+        const glm::vec2 place(static_cast<float>(path.texel % kSize), static_cast<float>(path.texel / kSize));
+        glm::vec2 way = glm::abs(place - exact.place);
+        way = glm::min(way, static_cast<float>(kSize) - way);  // the field repeats
+        EXPECT_LE(std::max(way.x, way.y), 0.5f + 1e-4f);
+      }
+      EXPECT_NEAR(sum, kPaths, 1e-3);
+    }
+    EXPECT_GT(hits, 1000);
+    // On the flat field nothing is seen but the sky.
+    for (size_t word = glsl::bounce_path_plane * 6; word < table.fields[1].first; ++word)
+      if (glsl::bounce_path_unpack(table.values[word]).weight > 0) {
+        EXPECT_EQ(glsl::bounce_path_unpack(table.values[word]).texel, glsl::bounce_sky);
+      }
+  }
+}
+
+TEST(ReliefMapsTest, LightGoesOnByPathsOfTheSameNumber) {
+  for (const int paths : {1, 7, 64, 100})
+    for (const uint32_t texel : {0u, 1u, 12345u}) {
+      std::vector<int> next;
+      for (int i = 0; i < paths; ++i) next.push_back(glsl::bounce_next_path(i, texel, paths));
+      std::ranges::sort(next);
+      for (int i = 0; i < paths; ++i) EXPECT_EQ(next[static_cast<size_t>(i)], i) << paths;
+    }
+}
+
+TEST(ReliefMapsTest, MapsWhoseTexelsHaveNoNumberAreRefused) {
+  const std::vector<HeightField> fields{flat({4096, 4096})};
+  EXPECT_THROW(makeReliefTable(fields, {.table = Table::bounces, .paths = 1}), UsageError);
 }
 
 TEST(ReliefMapsTest, PackedEllipsesKeepFourDigits) {
