@@ -1,6 +1,7 @@
 // W of a batch of lights: whether bumps of a pixel's height map hide each light's centre, or which part of the light. One
 // layer per light; 1 where the pixel has no height map.
 // SHAPE 0: moment ellipses, 1: published fit, 2: horizon map (RELIEF_AZIMUTHS), 3: march. SOFT 1: lights have their size.
+#include "glsl/light/light_centre.glsl"
 #include "glsl/light/rectangle_light.glsl"
 #include "glsl/relief/relief_input.glsl"
 #include "glsl/relief/relief_maps.glsl"
@@ -12,16 +13,6 @@ uniform uint light_indices[LIGHT_COUNT];
 #if SHAPE == 3
 uniform int steps;
 #endif
-
-// Unit vector towards a light's centre; 0 where p is the centre.
-vec3 light_centre_direction(Light light, vec3 p) {
-  uint kind = light_kind(light);
-  vec3 offset = kind == light_kind_disc                ? -light.direction
-                : kind == light_kind_distant_rectangle ? light.position
-                                                       : light.position - p;
-  float size = length(offset);
-  return size > 0.0 ? offset / size : vec3(0.0);
-}
 
 // Sine of a light's angular radius; of rectangles that of the round light with the same solid angle.
 float light_radius_sine(Light light, vec3 p) {

@@ -1,0 +1,55 @@
+// What a pass that adds light from bump to bump asks of a pixel.
+#ifndef BUMP_PIXEL_GLSL
+#define BUMP_PIXEL_GLSL
+#include "glsl/light/light_centre.glsl"
+#include "glsl/light/light_texture.glsl"
+#include "glsl/numeric/sampling.glsl"
+#include "glsl/relief/relief_field.glsl"
+#include "glsl/relief/relief_input.glsl"
+#include "glsl/surface/brdf.glsl"
+#if MATERIAL_MODELS
+#include "glsl/materials/material_model.glsl"
+
+layout(std430) readonly buffer MaterialModels { MaterialModel material_models[]; };  // of each material
+#endif
+
+layout(rgba32f) uniform image2D radiance;
+layout(std430) readonly buffer Lights { Light lights[]; };
+#if VISIBILITY
+uniform sampler2DArray visibility;
+#endif
+#if FLAT_BASES
+layout(std430) readonly buffer BasesOfInstances { uint bases_of_instances[]; };
+#endif
+
+// Albedo of a pixel's Lambertian part; 0 of specular surfaces, which take no indirect light.
+vec3 pixel_albedo(ivec2 pixel) {
+  GBufferSurface s = pixel_surface(pixel);
+  if ((s.flags & gbuffer_flag_specular) != 0u) return vec3(0.0);
+#if MATERIAL_MODELS
+  MaterialModel model = material_models[instances[pixel_instance(pixel)].material];
+  if (model.kind != model_none) return model.kd;
+#endif
+  SurfaceBrdf brdf =
+      surface_brdf(s.base_colour, s.metallic, s.roughness, s.specular_factor, s.specular_colour, s.ior);
+  return brdf.diffuse * brdf_diffuse_weight(brdf, 1.0);
+}
+
+// Irradiance across the direction of a light that is number `layer` of its batch.
+vec3 arriving_light(Light light, vec3 position, ivec2 pixel, int layer) {
+  vec3 sent = light_centre_irradiance(light, position) * light_texture(light, position);
+#if VISIBILITY
+  sent *= texelFetch(visibility, ivec3(pixel, layer), 0).x;
+#endif
+  return sent;
+}
+
+// Where in the map the light of a pixel is looked up for the i-th time, in texels. size: of the pixel in the map, in texels.
+vec2 footprint_place(vec2 place, float size, int i) { return place + size * (r2_sequence(uint(i) + 1u) - 0.5); }
+
+uint nearest_texel(ivec2 size, bool clamped, vec2 place) {
+  ivec2 texel = ivec2(floor(place + 0.5));
+  return uint(size.x * relief_wrapped(texel.y, size.y, clamped) + relief_wrapped(texel.x, size.x, clamped));
+}
+
+#endif  // BUMP_PIXEL_GLSL
