@@ -1,6 +1,8 @@
 // Light from bump to bump of height maps, along paths that are traced once.
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -22,6 +24,8 @@ using relief_maps::ReliefMaps;
 
 constexpr const char* kDirections[] = {"own_frame", "shared", "published"};
 constexpr const char* kSpaces[] = {"pixel", "texture"};
+enum Shape { horizonMap, moments };
+constexpr const char* kShapes[] = {"horizon_map", "moments"};
 constexpr const char* kLookups[] = {"between", "nearest"};
 
 constexpr Parameter kParameters[] = {
@@ -34,9 +38,8 @@ constexpr Parameter kParameters[] = {
            "pixel: paths are followed for each pixel; texture: for each texel of flat surfaces under light "
            "from far away, and for each pixel elsewhere"),
     choice("lookup", 0, kLookups, "Between texels, or of the one nearest to a pixel's centre"),
-    integer("azimuths", 32, {8, 128}, "azimuths", "Of the horizons that the bumps' ellipses are made of")
-        .quality()
-        .logScale(),
+    choice("shape", horizonMap, kShapes, "What says which lights the bumps see"),
+    integer("azimuths", 16, {8, 128}, "azimuths", "Of the horizons of the bumps").quality().logScale(),
     boolean("shadows", true, "Other surfaces keep light from the bumps: one test of a shadow map per light"),
     shadow::shadowMapSizeParameter(),
     shadow::biasParameter(),
@@ -63,6 +66,12 @@ constexpr size_t kBatch = 8;
 constexpr std::array<const char*, kBatch> kLightIndexNames{
     "light_indices[0]", "light_indices[1]", "light_indices[2]", "light_indices[3]",
     "light_indices[4]", "light_indices[5]", "light_indices[6]", "light_indices[7]"};
+
+relief_maps::ReliefMapDesc lightsFor(const ParameterValues& parameters) {
+  using relief_maps::Table;
+  return {.table = parameters.choice("shape") == moments ? Table::moments : Table::horizons,
+          .azimuths = parameters.integer("azimuths")};
+}
 
 relief_maps::ReliefMapDesc bouncesFor(const ParameterValues& parameters) {
   using relief::BounceDirections;
@@ -108,8 +117,7 @@ class Passes {
         bases_(bases),
         baseBuffer_(baseBuffer),
         basesOfInstances_(basesOfInstances),
-        ellipses_(inputs.service<relief_maps::ReliefMapService>().request(
-            {.table = relief_maps::Table::moments, .azimuths = inputs.parameters.integer("azimuths")})),
+        lit_(inputs.service<relief_maps::ReliefMapService>().request(lightsFor(inputs.parameters))),
         bounces_(inputs.service<relief_maps::ReliefMapService>().request(bouncesFor(inputs.parameters))) {}
 
   /// Adds the light that a batch of lights sends from bump to bump to `target`, and returns it after that.
@@ -136,12 +144,14 @@ class Passes {
                                      shadow::visibilityPass(inputs_, request, kName));
   }
 
-  /// Declares what techniques/bump_interreflection/bump_texels.glsl reads.
-  void readTexels(frame::PassBuilder& pass) const {
-    pass.read(ellipses_.fields, Access::storageLoad, "ReliefFields", "sizes of height maps")
-        .read(ellipses_.values, Access::storageLoad, "ReliefValues", "what their texels see of lights")
+  /// Declares what techniques/bump_interreflection/bump_texels.glsl reads, and adds its defines.
+  void readTexels(frame::PassBuilder& pass, std::map<std::string, std::string>& defines) const {
+    pass.read(lit_.fields, Access::storageLoad, "ReliefFields", "sizes of height maps")
+        .read(lit_.values, Access::storageLoad, "ReliefValues", "what their texels see of lights")
         .read(bounces_.fields, Access::storageLoad, "BounceFields", "where the paths of height maps begin")
         .read(bounces_.values, Access::storageLoad, "BounceWords", "what their texels see of each other");
+    if (inputs_.parameters.choice("shape") == horizonMap)
+      defines["RELIEF_AZIMUTHS"] = std::to_string(inputs_.parameters.integer("azimuths"));
   }
 
   /// Declares what techniques/bump_interreflection/bump_pixel.glsl reads, and returns the program's defines.
@@ -175,7 +185,7 @@ class Passes {
     frame::PassBuilder pass = graph_.addPass("paths of pixels", kName);
     gpu::ProgramDesc program{.files = {"techniques/bump_interreflection/paths.comp.glsl"},
                              .defines = readPixels(pass, flatBases, visibility)};
-    readTexels(pass);
+    readTexels(pass, program.defines);
     const frame::TextureHandle result =
         pass.write(target, Access::imageLoadStore, "radiance", "light from bump to bump");
     program.defines["LIGHT_COUNT"] = std::to_string(batch.size());
@@ -222,15 +232,16 @@ class Passes {
 
   frame::BufferHandle addLitTexels(uint32_t light) {
     frame::PassBuilder pass = graph_.addPass("lit texels", kName);
-    readTexels(pass);
+    gpu::ProgramDesc program{.files = {"techniques/bump_interreflection/lit_texels.comp.glsl"},
+                             .defines = {}};
+    readTexels(pass, program.defines);
     pass.read(inputs_.handles.lights, Access::storageLoad, "Lights", "where light comes from")
         .read(inputs_.handles.instances, Access::storageLoad, "Instances", "frames of flat surfaces")
         .read(baseBuffer_, Access::storageLoad, "FlatBases", "flat surfaces with height maps")
         .cacheable();
     const frame::BufferHandle lit =
         pass.write(texelBuffer("lit texels"), Access::storageStore, "Lit", "light on each texel");
-    const auto kernel =
-        pass.program({.files = {"techniques/bump_interreflection/lit_texels.comp.glsl"}, .defines = {}});
+    const auto kernel = pass.program(std::move(program));
     pass.execute([kernel, light, dispatch = overBases()](frame::PassContext& context) {
       gpu::Program& bound = context.use(kernel);
       bound.set("light_index", light);
@@ -241,14 +252,15 @@ class Passes {
 
   frame::BufferHandle addGatheredTexels(frame::BufferHandle sent) {
     frame::PassBuilder pass = graph_.addPass("gathered texels", kName);
-    readTexels(pass);
+    gpu::ProgramDesc program{.files = {"techniques/bump_interreflection/gathered_texels.comp.glsl"},
+                             .defines = {}};
+    readTexels(pass, program.defines);
     pass.read(baseBuffer_, Access::storageLoad, "FlatBases", "flat surfaces with height maps")
         .read(sent, Access::storageLoad, "Sent", "light of the bounce before")
         .cacheable();
     const frame::BufferHandle gathered = pass.write(texelBuffer("gathered texels"), Access::storageStore,
                                                     "Gathered", "light from other texels");
-    const auto kernel =
-        pass.program({.files = {"techniques/bump_interreflection/gathered_texels.comp.glsl"}, .defines = {}});
+    const auto kernel = pass.program(std::move(program));
     pass.execute([kernel, paths = inputs_.parameters.integer("paths"),
                   dispatch = overBases()](frame::PassContext& context) {
       gpu::Program& bound = context.use(kernel);
@@ -263,7 +275,8 @@ class Passes {
     frame::PassBuilder pass = graph_.addPass("bumps of pixels", kName);
     gpu::ProgramDesc program{.files = {"techniques/bump_interreflection/lookup.comp.glsl"},
                              .defines = readPixels(pass, true, visibility)};
-    pass.read(ellipses_.fields, Access::storageLoad, "ReliefFields", "sizes of height maps")
+    pass.read(lit_.fields, Access::storageLoad, "ReliefFields", "sizes of height maps")
+        .read(lit_.values, Access::storageLoad, "ReliefValues", "the table that the sizes belong to")
         .read(baseBuffer_, Access::storageLoad, "FlatBases", "flat surfaces with height maps")
         .read(gathered, Access::storageLoad, "Gathered", "light from other texels");
     const frame::TextureHandle result =
@@ -284,7 +297,7 @@ class Passes {
   const TechniqueInputs& inputs_;
   const FlatBases* bases_;  ///< null: no light is answered for texel by texel
   frame::BufferHandle baseBuffer_, basesOfInstances_;
-  ReliefMaps ellipses_, bounces_;
+  ReliefMaps lit_, bounces_;
 };
 
 frame::TextureHandle BumpInterreflection::addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,

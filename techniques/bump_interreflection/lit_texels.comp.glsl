@@ -20,5 +20,5 @@ void main() {
   vec3 l = to_local(frame_of_field, light_centre_direction(lights[light_index], vec3(0.0)));
   BumpTexels texels = bump_texels(base.height);
   uint texel = uint(at.y * size.x + at.x);
-  lit[base.first + texel] = bump_irradiance(bump_normal(texels, texel), bump_ellipse(texels, texel), l);
+  lit[base.first + texel] = bump_irradiance(texels, texel, bump_normal(texels, texel), l, bump_light(l));
 }

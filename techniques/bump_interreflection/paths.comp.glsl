@@ -12,16 +12,16 @@ uniform int bounces;
 
 // Of each light: unit vector towards it, of the field's frame, and irradiance across that.
 vec3 towards_lights[LIGHT_COUNT];
+BumpLight light_places[LIGHT_COUNT];
 vec3 arriving[LIGHT_COUNT];
 
 // Sum over the lights of the irradiance on a texel.
 vec3 texel_irradiance(BumpTexels texels, uint texel) {
   vec3 normal = bump_normal(texels, texel);
-  ReliefEllipse ellipse = bump_ellipse(texels, texel);
   vec3 sum = vec3(0.0);
   int i = 0;
   do {  // the condition comes last: software renderers run a loop's body once more where it comes first
-    sum += arriving[i] * bump_irradiance(normal, ellipse, towards_lights[i]);
+    sum += arriving[i] * bump_irradiance(texels, texel, normal, towards_lights[i], light_places[i]);
   } while (++i < LIGHT_COUNT);
   return sum;
 }
@@ -40,10 +40,11 @@ void main() {
   for (int i = 0; i < LIGHT_COUNT; ++i) {
     Light light = lights[light_indices[i]];
     towards_lights[i] = to_local(here.frame, light_centre_direction(light, position));
+    light_places[i] = bump_light(towards_lights[i]);
     arriving[i] = arriving_light(light, position, pixel, i);
   }
-  ReliefField field = relief_fields[here.height];
   BumpTexels texels = bump_texels(here.height);
+  ReliefField field = texels.field;
   bool clamped = field.clamped != 0u;
   vec2 place = relief_place(here.uv, field.size);
 #if BETWEEN
