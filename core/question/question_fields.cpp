@@ -63,7 +63,7 @@ constexpr auto ofPicturedTerms(const char* TermInfo::*member) {
 
 constexpr auto kTerms = ofPicturedTerms(&TermInfo::name), kTermDocs = ofPicturedTerms(&TermInfo::help);
 constexpr const char* kWhenDefaultLights[] = {"auto", "on", "off"};
-constexpr const char* kUnshadowed[] = {"off", "on"};
+constexpr const char* kOffOn[] = {"off", "on"};
 constexpr const char* kShapes[] = {"squares", "rectangles"};
 constexpr const char* kReflections[] = {"area", "centre"};
 
@@ -139,7 +139,7 @@ constexpr QuestionField kFields[] = {
          "Factor on the environment's radiance")
         .changing(lights)
         .labelled("environment scale"),
-    choice("unshadowed", "--unshadowed", &Q::unshadowed, kUnshadowed,
+    choice("unshadowed", "--unshadowed", &Q::unshadowed, kOffOn,
            "on: nothing keeps light from arriving in the reference (V = 1), so that the error of what is\n"
            "approximated without shadows can be told from their absence; techniques do not change")
         .changing(view),
@@ -148,6 +148,10 @@ constexpr QuestionField kFields[] = {
            "one height map; others: those without; both; techniques do not change")
         .changing(view)
         .labelled("relief paths"),
+    choice("displaced", "--displaced", &Q::displaced, kOffOn,
+           "on: meshes take the place of height maps, in pictures and in the reference: what bump mapping\n"
+           "leaves out is the difference, which is no error of a technique")
+        .labelled("displaced"),
     real(
         "environment_lights", "--environment-lights", &Q::environmentLights, {1e-4, 0.5}, "",
         "Replace the environment by area lights, which techniques can shadow. The value is the least share "

@@ -31,6 +31,7 @@ struct SceneQuestion {
   double environmentRotation = 0, environmentScale = 1;
   std::string unshadowed = "off";
   std::string reliefPaths = name(ReliefPaths::both);
+  std::string displaced = "off";
   double environmentLights = 0;
   int environmentResolution = 48;
   std::string environmentShape = "squares", environmentReflection = "area";

@@ -10,6 +10,7 @@
 #include "core/base/text.h"
 #include "core/scene/camera.h"
 #include "core/scene/default_lights.h"
+#include "core/scene/displaced.h"
 #include "core/scene_io/density_grid_file.h"
 #include "core/scene_io/load.h"
 #include "core/session/find.h"
@@ -201,6 +202,7 @@ View open(const SceneQuestion& question, const Warn& warn) {
   view.unshadowed = question.unshadowed == "on";
   view.reliefPaths = reliefPathsOf(question.reliefPaths);
   view.scene = scene::load(findScene(question.scene));
+  if (question.displaced == "on") view.scene = scene::displaced(std::move(view.scene));
   addEnvironment(question, view.scene);
   giveOwnMaterials(view.scene);
   view.file = {

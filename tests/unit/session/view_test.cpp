@@ -63,6 +63,7 @@ std::pair<SceneQuestion, SceneQuestion> exampleOf(const QuestionField& field) {
   if (field.approximates && key != "environment_lights") without.environmentLights = 0.05;
   if (key == "g" || key == "grid") without.sigmaS = "0.1";
   if (key == "eye" || key == "target") without.eye = "3,2,1", without.target = "0,0.5,0";
+  if (key == "displaced") without.scene = "groove";
   if (key == "time") without.scene = "gem";
   if (key == "animation") without.scene = twoAnimations(), without.time = 0.5;
   SceneQuestion with = without;
