@@ -11,18 +11,22 @@ namespace {
 using namespace limn;
 using frame::Access;
 
-enum Shape { moments, published, horizonMap, march, nearest };
-constexpr const char* kShapes[] = {"moments", "published", "horizon_map", "march", "nearest"};
+enum Shape { moments, published, horizonMap, march, nearest, scan, ambient };
+constexpr const char* kShapes[] = {"moments", "published", "horizon_map", "march",
+                                   "nearest", "scan",      "ambient"};
 
 constexpr Parameter kParameters[] = {
     choice("shape", moments, kShapes, "What says which directions a texel sees"),
-    integer("azimuths", 32, {8, 128}, "azimuths", "Of the horizons, for moments, nearest and horizon_map")
+    integer("azimuths", 32, {8, 128}, "azimuths",
+            "Of the horizons, for moments, nearest, ambient and horizon_map")
         .quality()
         .logScale(),
     integer("directions", 256, {64, 4096}, "directions", "That the published fit is made of")
         .quality()
         .logScale(),
-    integer("steps", 16, {1, 256}, "steps", "Of a march to the highest level").quality().logScale(),
+    integer("steps", 16, {1, 256}, "steps", "Of a march to the highest level, or of a scan over half a tile")
+        .quality()
+        .logScale(),
     boolean("soft", false, "Lights have their size, for ellipses; else they are their centres"),
 };
 constexpr StressCase kStress[] = {
@@ -32,6 +36,7 @@ constexpr StressCase kStress[] = {
      .scene = "egg_crate",
      .settings = "shape=published directions=64",
      .factor = 2},
+    {.name = "scan of one step", .scene = "egg_crate", .settings = "shape=scan steps=1", .factor = 8},
     {.name = "march of one step", .scene = "bump_wall", .settings = "shape=march steps=1", .factor = 8},
     {.name = "soft lights", .scene = "bump_wall", .settings = "soft=true"},
     {.name = "grooves", .scene = "groove", .settings = "shape=horizon_map azimuths=128"},
@@ -58,8 +63,8 @@ constexpr std::array<const char*, 8> kLightIndexNames{
 
 relief_maps::ReliefMapDesc tableFor(const ParameterValues& parameters) {
   using relief_maps::Table;
-  constexpr std::array<Table, 5> tables{Table::moments, Table::published, Table::horizons, Table::heights,
-                                        Table::nearest};
+  constexpr std::array tables{Table::moments, Table::published, Table::horizons, Table::heights,
+                              Table::nearest, Table::heights,   Table::moments};
   return {.table = tables[static_cast<size_t>(parameters.choice("shape"))],
           .azimuths = parameters.integer("azimuths"),
           .directions = parameters.integer("directions")};
@@ -98,7 +103,7 @@ class BumpHorizon : public Technique {
                      frame::PassContext& context) {
       gpu::Program& bound = context.use(kernel);
       for (size_t i = 0; i < indices.size(); ++i) bound.set(kLightIndexNames.at(i), indices[i]);
-      if (shape == march) bound.set("steps", steps);
+      if (shape == march || shape == scan) bound.set("steps", steps);
       context.dispatch(size.x, size.y, 1, 8, 8);
     });
     return result;

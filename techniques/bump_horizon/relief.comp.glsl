@@ -1,6 +1,7 @@
 // W of a batch of lights: whether bumps of a pixel's height map hide each light's centre, or which part of the light. One
 // layer per light; 1 where the pixel has no height map.
-// SHAPE 0: moment ellipses, 1: published fit, 2: horizon map (RELIEF_AZIMUTHS), 3: march. SOFT 1: lights have their size.
+// SHAPE 0: moment ellipses, 1: published fit, 2: horizon map (RELIEF_AZIMUTHS), 3: march, 5: scan,
+// 6: ambient visibility alone. SOFT 1: lights have their size.
 #include "glsl/light/light_centre.glsl"
 #include "glsl/light/rectangle_light.glsl"
 #include "glsl/relief/relief_input.glsl"
@@ -10,7 +11,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(r16) writeonly uniform image2DArray relief;
 layout(std430) readonly buffer Lights { Light lights[]; };
 uniform uint light_indices[LIGHT_COUNT];
-#if SHAPE == 3
+#if SHAPE == 3 || SHAPE == 5
 uniform int steps;
 #endif
 
@@ -46,6 +47,23 @@ bool march_leaves(ReliefField f, vec2 place, float level, vec3 l) {
 }
 #endif
 
+#if SHAPE == 5
+// Tangent of the highest elevation that steps over half a tile along l meet (Bavoil, Sainz and Dimitrov 2008).
+float scanned_horizon(ReliefField f, vec2 place, float level, vec3 l) {
+  float across = length(vec2(l));
+  if (across == 0.0) return 0.0;
+  float reach = 0.5 * min(float(f.size.x) * f.spacing.x, float(f.size.y) * f.spacing.y);
+  vec2 way = vec2(l) * (reach / across) / f.spacing;
+  float horizon = 0.0;
+  int i = 0;
+  do {
+    float part = (float(i) + 1.0) / float(steps);
+    horizon = max(horizon, (relief_height(f, place + part * way) - level) / (part * reach));
+  } while (++i < steps);
+  return horizon;
+}
+#endif
+
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
@@ -56,7 +74,7 @@ void main() {
   }
   vec3 position = pixel_position(pixel, pixel_depth(pixel));
   ReliefField field = relief_fields[here.height];
-#if SHAPE == 0
+#if SHAPE == 0 || SHAPE == 6
   ReliefEllipse ellipse = relief_ellipse(field, here.uv, here.level);
 #elif SHAPE == 1
   ReliefEllipse ellipse = relief_nearest_ellipse(field, here.uv);
@@ -80,6 +98,10 @@ void main() {
 #endif
 #elif SHAPE == 2
     float w = horizon_lit(l, relief_horizon(field, texels, l)) ? 1.0 : 0.0;
+#elif SHAPE == 5
+    float w = horizon_lit(l, scanned_horizon(field, place, level, l)) ? 1.0 : 0.0;
+#elif SHAPE == 6
+    float w = l.z > 0.0 ? ellipse_ambient(ellipse) : 0.0;
 #else
     float w = march_leaves(field, place, level, l) ? 1.0 : 0.0;
 #endif

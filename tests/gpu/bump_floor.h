@@ -13,8 +13,9 @@
 
 namespace limn {
 
-/// Names all shapes of bump_horizon.
-inline const std::vector<std::string> kShapes{"moments", "published", "horizon_map", "march", "nearest"};
+/// Names the shapes of bump_horizon that say of each direction whether it is seen.
+inline const std::vector<std::string> kShapes{"moments", "published", "horizon_map",
+                                              "march",   "nearest",   "scan"};
 
 class BumpFloorTest : public RenderTest {
  protected:

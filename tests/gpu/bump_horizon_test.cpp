@@ -88,6 +88,27 @@ TEST_F(BumpHorizonTest, GroovesAreShadowedAsTheClosedFormSays) {
     }
 }
 
+/// Walls of 45 degrees: a point at a share x of the way from one crest to the next sees, across the grooves,
+/// from one crest to the other, and all along them. W is the same under any light above the base.
+TEST_F(BumpHorizonTest, AmbientVisibilityIsThatOfAGroove) {
+  const render::TechniqueUse ambient = technique("bump_horizon", {{"shape", "ambient"}, {"azimuths", "128"}});
+  const Image high = drawn(floorUnder({0, 1, 0.1f}, {groove()}), Term::relief, {ambient}),
+              low = drawn(floorUnder({1, 0.1f, 0}, {groove()}), Term::relief, {ambient});
+  double worst = 0;
+  forEachPoint(high, [&](float value, const glm::vec3& p) {
+    const float texel = 0.5f * (p.x + 1) * kTexels - 0.5f;
+    const float x = std::clamp(texel / kTexels, 0.f, 1.f), depth = std::min(x, 1 - x);
+    // Of an endless strip of sky the cosine-weighted share is half the sum of the sines of its half angles.
+    const float exact =
+        0.5f * (glm::normalize(glm::vec2(x, depth)).x + glm::normalize(glm::vec2(1 - x, depth)).x);
+    if (depth * kTexels > 2 && std::abs(0.5f - x) * kTexels > 2)
+      worst = std::max(worst, std::abs(static_cast<double>(value) - static_cast<double>(exact)));
+  });
+  EXPECT_LT(worst, 0.03);
+  EXPECT_GT(mean(high), 0.5);
+  forEachPoint(low, [&](float value, const glm::vec3&) { ASSERT_GT(value, 0.3f); });
+}
+
 TEST_F(BumpHorizonTest, LightOfAnyHeightIsFinite) {
   for (const float height : {1000.f, 0.5f, 1e-4f, 0.f, -0.5f}) {
     const scene::Scene scene = floorUnder({1, height, 0.2f}, {groove()});
