@@ -9,20 +9,28 @@
 #include <string_view>
 
 #include "core/base/export.h"
-#include "core/brdf/tabulated.h"
+#include "core/brdf/measured_file.h"
 
 namespace limn::brdf {
 
-/// The nodes that files are resampled to, where nothing else is said.
-inline constexpr glm::ivec3 kEpflNodes{90, 90, 90};
+/// What files are resampled to.
+struct EpflNodes {
+  glm::ivec3 angles{90, 90, 90};  ///< of isotropic materials, over half and difference angles
+  int texels = 40;                ///< a side of each square of directions, of anisotropic ones
+};
 
-/// Returns a table of an isotropic material, resampled from a file's content by
+/// Returns a table of a file's content, resampled by
 ///   f = rgb(u) ndf(h) / (4 sigma(l) cos(v)),
-/// where u in [0, 1]^2 is what the inverse of the visible normals' distribution, vndf, makes of h. Throws
-/// Error that begins with `name` where the content is no such file, lacks an array, has arrays whose sizes
-/// disagree or that hold what is no number or no density, or where the material is anisotropic.
-LIMN_API TabulatedBrdf decodeEpfl(std::span<const std::byte> bytes, std::string_view name,
-                                  const glm::ivec3& size = kEpflNodes);
-LIMN_API TabulatedBrdf readEpfl(const std::filesystem::path& path, const glm::ivec3& size = kEpflNodes);
+/// where u in [0, 1]^2 is what the inverse of the visible normals' distribution, vndf, makes of h. Files with
+/// more than two azimuths of l are anisotropic. What they leave out of the circle follows by symmetry: half a
+/// circle looks the same after half a turn, a quarter in mirrors at its ends as well. As measurements are not
+/// quite reciprocal, the table has the mean of f and of f with both directions swapped.
+///
+/// Throws Error that begins with `name` where the content is no such file, lacks an array, has arrays whose
+/// sizes disagree or that hold what is no number or no density, or azimuths of another part of the circle, or
+/// where f is no number at a texel of an anisotropic table.
+LIMN_API MeasuredBrdf decodeEpfl(std::span<const std::byte> bytes, std::string_view name,
+                                 const EpflNodes& nodes = {});
+LIMN_API MeasuredBrdf readEpfl(const std::filesystem::path& path, const EpflNodes& nodes = {});
 
 }  // namespace limn::brdf

@@ -160,6 +160,20 @@ AnisotropicTable tabulateAnisotropic(int size, const BrdfFunction& f) {
   return table;
 }
 
+AnisotropicTable tabulateReciprocal(int size, const BrdfFunction& f) {
+  AnisotropicTable table = tabulateAnisotropic(size, f);
+  const std::size_t directions = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
+  for (std::size_t v = 0; v < directions; ++v)
+    for (std::size_t l = 0; l <= v; ++l) {
+      glm::vec3 &one = table.values[v * directions + l], &other = table.values[l * directions + v];
+      if (!isValue(one)) one = other;
+      if (!isValue(one)) throw Error("a BRDF that is no number from 0 to 1e10 between two directions");
+      if (!isValue(other)) other = one;
+      one = other = 0.5f * (one + other);
+    }
+  return table;
+}
+
 glm::dvec3 albedo(const BrdfFunction& f, const glm::vec3& v, int steps) {
   glm::dvec3 sum(0);
   if (!(v.z > 0)) return sum;

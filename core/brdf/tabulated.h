@@ -84,6 +84,10 @@ struct LIMN_API AnisotropicTable {
 /// Returns `f` at the texels of a table of at least one texel a side.
 LIMN_API AnisotropicTable tabulateAnisotropic(int size, const BrdfFunction& f);
 
+/// Returns the same of the mean of f(l, v) and f(v, l), or of one of them where the other is negative, larger
+/// than kLargestValue or no number. Throws Error where both are.
+LIMN_API AnisotropicTable tabulateReciprocal(int size, const BrdfFunction& f);
+
 /// Returns the share of the light that arrives from v and is reflected anywhere, per channel: the integral of
 /// f(l, v) cos(l), by steps x steps midpoints over the half vectors, whose polar angle grows with the square
 /// of the step as highlights are narrow. 0 where v lies on or below the horizon.

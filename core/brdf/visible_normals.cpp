@@ -24,11 +24,10 @@ VisibleNormals::VisibleNormals(std::span<const double> densities, const GridSize
   }
 }
 
-glm::dvec2 VisibleNormals::invert(const glm::dvec2& place, const Cell& parameter) const {
+glm::dvec2 VisibleNormals::invert(const glm::dvec2& place, const Mix& mix) const {
   const Cell x(place.x, size_.width), y(place.y, size_.height);
   const auto mixed = [&](const std::vector<double>& of, std::size_t stride, std::size_t at) {
-    return (1 - parameter.share) * of[parameter.below * stride + at] +
-           parameter.share * of[parameter.above * stride + at];
+    return mix.of([&](std::size_t grid) { return of[grid * stride + at]; });
   };
   const auto node = [&](const std::vector<double>& of, std::size_t column, std::size_t row) {
     return mixed(of, size_.count(), row * size_.width + column);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
+#include <variant>
 
 #include "core/base/error.h"
 #include "core/brdf/epfl_file.h"
@@ -52,7 +53,12 @@ void requireTexels(const AnisotropicTable& table) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::byte> bytes = std::as_bytes(std::span(data, size));
   attempt([&] { requireNodes(limn::brdf::decodeMerl(bytes, "brdf", kNodes)); });
-  attempt([&] { requireNodes(limn::brdf::decodeEpfl(bytes, "brdf", kNodes)); });
+  attempt([&] {
+    const limn::brdf::MeasuredBrdf read =
+        limn::brdf::decodeEpfl(bytes, "brdf", {.angles = kNodes, .texels = 3});
+    if (const auto* isotropic = std::get_if<TabulatedBrdf>(&read)) return requireNodes(*isotropic);
+    requireTexels(std::get<AnisotropicTable>(read));
+  });
   attempt([&] { requireTexels(limn::brdf::decodeDiscPairs(bytes, "brdf")); });
   return 0;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <glm/glm.hpp>
@@ -26,6 +27,32 @@ struct Cell {
   }
 };
 
+/// A weighted mean of neighbours in a row of grids that stand for parameters.
+struct Mix {
+  std::array<std::size_t, 4> grids{};
+  std::array<double, 4> weights{};
+  std::size_t count = 2;
+
+  /// Between two grids.
+  Mix(const Cell& parameter)
+      : grids{parameter.below, parameter.above}, weights{1 - parameter.share, parameter.share} {}
+  /// Among the four around a place in two parameters, of which `fast` has `stride` nodes.
+  Mix(const Cell& slow, const Cell& fast, std::size_t stride)
+      : grids{slow.below * stride + fast.below, slow.below * stride + fast.above,
+              slow.above * stride + fast.below, slow.above * stride + fast.above},
+        weights{(1 - slow.share) * (1 - fast.share), (1 - slow.share) * fast.share,
+                slow.share * (1 - fast.share), slow.share * fast.share},
+        count(4) {}
+
+  /// Returns the mean of value(grid).
+  template <class Value>
+  double of(const Value& value) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i) sum += weights[i] * value(grids[i]);
+    return sum;
+  }
+};
+
 /// The sizes of a grid: x varies fastest.
 struct GridSize {
   std::size_t width = 0, height = 0;
@@ -42,7 +69,7 @@ double bilinear(std::span<const Number> grid, const GridSize& size, const Cell& 
   return (1 - y.share) * row(y.below) + y.share * row(y.above);
 }
 
-/// A density on the square for each of a row of parameters, linear between parameters.
+/// A density on the square for each node of one or two parameters, linear between nodes.
 class LIMN_API VisibleNormals {
  public:
   VisibleNormals() = default;
@@ -51,9 +78,8 @@ class LIMN_API VisibleNormals {
   VisibleNormals(std::span<const double> densities, const GridSize& size);
 
   /// Returns what a warp that makes the density from a uniform one would have made `place` from, for the mean
-  /// of two parameters' densities, of which the second has the weight `parameter.share`: y by the
-  /// distribution of rows, x within the row.
-  glm::dvec2 invert(const glm::dvec2& place, const Cell& parameter) const;
+  /// `mix` of densities: y by the distribution of rows, x within the row.
+  glm::dvec2 invert(const glm::dvec2& place, const Mix& mix) const;
 
  private:
   GridSize size_;
