@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "glsl/numeric/geometry.glsl"
+#include "tests/unit/glsl/random.h"
 
 namespace limn::glsl {
 
@@ -39,14 +40,14 @@ inline vec2 gridPoint(int i) {
 /// Surfaces seen at angles from the normal within a range, degrees.
 struct Views {
   double low, high;
-  std::mt19937 random{9};
+  Random random{9};
 
   std::pair<vec3, vec3> next() {
-    std::normal_distribution<float> normal;
     std::uniform_real_distribution<double> between(std::cos(high * M_PI / 180), std::cos(low * M_PI / 180)),
         turn(0, 2 * M_PI);
-    const vec3 n = normalize(vec3(normal(random), normal(random), normal(random)));
-    const double cosine = between(random), sine = std::sqrt(1 - cosine * cosine), azimuth = turn(random);
+    const vec3 n = random.direction();
+    const double cosine = between(random.engine), sine = std::sqrt(1 - cosine * cosine),
+                 azimuth = turn(random.engine);
     return {n, from_local(frame_around(n), vec3(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine))};
   }
 };
