@@ -11,6 +11,7 @@
 #include "core/shading/environment.h"
 #include "core/shading/ltc_table.h"
 #include "glsl/light/environment.glsl"
+#include "glsl/materials/material_model.glsl"
 #include "glsl/scene/blocks.glsl"
 #include "glsl/surface/gbuffer.glsl"
 
@@ -35,7 +36,7 @@ bool hasSpecularSurface(const scene::Scene& scene) {
 struct Deferred::Implementation {
   gpu::Device& device;
   const scene::Scene& scene;
-  gpu::Texture environmentMap, ltcTable, irradianceMap, filteredMap;
+  gpu::Texture environmentMap, ltcTable, irradianceMap, filteredMap, grazingMap;
   // Imports of the graph that start() was last called for.
   TextureHandle environmentHandle, ltcHandle;
 
@@ -58,24 +59,37 @@ struct Deferred::Implementation {
     return ltcHandle;
   }
 
-  /// Irradiance and radiance filtered by roughness, black without an environment; made at the first call.
+  /// The scene's environment, black without one.
+  const scene::Environment& light() const {
+    static const scene::Environment black = [] {
+      scene::Environment e;
+      e.width = e.height = 2;
+      e.texels.assign(4, glm::vec3(0));
+      return e;
+    }();
+    return scene.environment ? scene.environment : black;
+  }
+
+  /// Irradiance and radiance filtered by roughness; made at the first call.
   std::array<TextureHandle, 2> environmentLight(frame::FrameGraph& graph) {
     if (!irradianceMap) {
-      scene::Environment black;
-      black.width = black.height = 2;
-      black.texels.assign(4, glm::vec3(0));
-      const shading::FilteredEnvironment filtered =
-          shading::filterEnvironment(scene.environment ? scene.environment : black);
-      irradianceMap = shading::makeIrradianceTexture(device, filtered);
+      const shading::FilteredEnvironment filtered = shading::filterEnvironment(light());
+      irradianceMap = shading::makeIrradianceTexture(device, filtered.irradiance);
       filteredMap = shading::makeFilteredTexture(device, filtered);
     }
     return {graph.importTexture("environment irradiance", irradianceMap),
             graph.importTexture("filtered environment", filteredMap)};
   }
+
+  /// What grazes of the irradiance; made at the first call.
+  TextureHandle grazingLight(frame::FrameGraph& graph) {
+    if (!grazingMap) grazingMap = shading::makeIrradianceTexture(device, shading::filterGrazing(light()));
+    return graph.importTexture("grazing irradiance of the environment", grazingMap);
+  }
 };
 
 Deferred::Deferred(gpu::Device& device, const scene::Scene& scene)
-    : implementation_(new Implementation{device, scene, {}, {}, {}, {}, {}, {}}) {}
+    : implementation_(new Implementation{device, scene, {}, {}, {}, {}, {}, {}, {}}) {}
 Deferred::~Deferred() = default;
 
 TextureHandle Deferred::start(const Frame& frame, Start with) {
@@ -187,6 +201,9 @@ TextureHandle Deferred::addEnvironment(const Frame& frame, TextureHandle before)
   builder.read(maps[0], Access::sampled, "environment_irradiance", "diffuse light");
   builder.read(maps[1], Access::sampled, "environment_filtered", "glossy light");
   builder.read(ltc, Access::sampled, "ltc_table", "glossy reflectance");
+  if ((frame.handles.modelKinds & 1u << glsl::model_coated) != 0)
+    builder.read(implementation_->grazingLight(frame.graph), Access::sampled, "environment_grazing",
+                 "light that coats reflect");
   const TextureHandle radiance =
       builder.write(before, Access::imageLoadStore, "radiance", "light of the environment, V = 1");
   gpu::ProgramDesc desc{.files = {"glsl/deferred/environment.comp.glsl"},

@@ -71,7 +71,9 @@ FilteredMap resampled(const FilteredMap& source, int width, Rows rows) {
   });
 }
 
-FilteredMap convolvedWithCosine(const FilteredMap& source) {
+/// The sum of light times weight(cosine) over the hemisphere about each direction.
+template <class Weight>
+FilteredMap convolvedOverHemisphere(const FilteredMap& source, const Weight& weight) {
   struct Patch {
     vec3 direction;
     vec3 flux;  // radiance times solid angle
@@ -89,7 +91,7 @@ FilteredMap convolvedWithCosine(const FilteredMap& source) {
     dvec3 sum(0);
     for (const Patch& patch : patches) {
       const float cosine = glm::dot(n, patch.direction);
-      if (cosine > 0) sum += dvec3(cosine * patch.flux);
+      if (cosine > 0) sum += dvec3(weight(cosine) * patch.flux);
     }
     return vec3(sum);
   });
@@ -167,6 +169,11 @@ gpu::Texture upload(gpu::Device& device, std::string_view label, GLenum format,
   return texture;
 }
 
+FilteredMap sourceOf(const scene::Environment& environment) {
+  if (!environment) throw Error("environment: there is no map to filter");
+  return {environment.width, environment.height, environment.texels};
+}
+
 }  // namespace
 
 vec3 bilinear(const FilteredMap& map, vec2 uv) {
@@ -190,15 +197,15 @@ vec3 FilteredEnvironment::filtered(const vec3& direction, float alpha) const {
 }
 
 FilteredEnvironment filterEnvironment(const scene::Environment& environment) {
-  if (!environment) throw Error("environment: there is no map to filter");
-  const FilteredMap source{environment.width, environment.height, environment.texels};
+  const FilteredMap source = sourceOf(environment);
   std::vector<FilteredMap> chain{resampled(source, glsl::environment_filtered_width, Rows::inside)};
   while (chain.back().width > 8) {
     chain.push_back(resampled(chain.back(), chain.back().width / 2, Rows::inside));
   }
 
   FilteredEnvironment result;
-  result.irradiance = convolvedWithCosine(resampled(source, kIrradianceSourceWidth, Rows::inside));
+  result.irradiance = convolvedOverHemisphere(resampled(source, kIrradianceSourceWidth, Rows::inside),
+                                              [](float cosine) { return cosine; });
   result.radiance.push_back(resampled(source, glsl::environment_filtered_width, Rows::onPoles));
   for (int level = 1; level < glsl::environment_levels; ++level) {
     result.radiance.push_back(convolvedWithLobe(chain, level));
@@ -206,8 +213,13 @@ FilteredEnvironment filterEnvironment(const scene::Environment& environment) {
   return result;
 }
 
-gpu::Texture makeIrradianceTexture(gpu::Device& device, const FilteredEnvironment& environment) {
-  return upload(device, "environment irradiance", GL_RGBA32F, {&environment.irradiance, 1});
+FilteredMap filterGrazing(const scene::Environment& environment) {
+  return convolvedOverHemisphere(resampled(sourceOf(environment), kIrradianceSourceWidth, Rows::inside),
+                                 [](float cosine) { return cosine * glsl::schlick_weight(cosine); });
+}
+
+gpu::Texture makeIrradianceTexture(gpu::Device& device, const FilteredMap& irradiance) {
+  return upload(device, "environment irradiance", GL_RGBA32F, {&irradiance, 1});
 }
 
 gpu::Texture makeFilteredTexture(gpu::Device& device, const FilteredEnvironment& environment) {

@@ -41,9 +41,15 @@ struct FilteredEnvironment {
 /// Sampling). Takes a third of a second of one core. Throws Error without a map.
 LIMN_API FilteredEnvironment filterEnvironment(const scene::Environment& environment);
 
-/// Returns the irradiance texture: RGBA32F, bilinear, repeated around the horizon; "environment_irradiance"
-/// in glsl/light/environment.glsl.
-LIMN_API gpu::Texture makeIrradianceTexture(gpu::Device& device, const FilteredEnvironment& environment);
+/// Returns the part of the irradiance that grazes: of light weighted by (1 - n.l)^5, which smooth coats
+/// reflect (glsl/light/coated_environment.glsl). A map of the same size, summed likewise. Throws Error
+/// without a map.
+LIMN_API FilteredMap filterGrazing(const scene::Environment& environment);
+
+/// Returns the texture of such a map: RGBA32F, bilinear, repeated around the horizon;
+/// "environment_irradiance" in glsl/light/environment.glsl, "environment_grazing" in
+/// glsl/deferred/environment.comp.glsl.
+LIMN_API gpu::Texture makeIrradianceTexture(gpu::Device& device, const FilteredMap& irradiance);
 /// Returns the texture of glossy levels: RGBA16F, bilinear, one level per roughness; "environment_filtered"
 /// in glsl/light/environment.glsl.
 LIMN_API gpu::Texture makeFilteredTexture(gpu::Device& device, const FilteredEnvironment& environment);

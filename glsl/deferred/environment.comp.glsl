@@ -13,13 +13,16 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f) uniform image2D radiance;
 
 #if (MATERIAL_MODELS & 32) != 0
-// What enters the coat is that of uniform light of the same irradiance, as no map here has the part that grazes.
+uniform sampler2D environment_grazing;  // as environment_irradiance, of light weighted by schlick_weight(n.l)
+
 vec3 coated_reflection(MaterialModel m, vec3 n, vec3 v) {
   float n_dot_v = dot(n, v);
-  vec3 irradiance = environment_irradiance_towards(n, frame.environment_rotation, frame.environment_scale);
+  vec2 place = environment_irradiance_place(n, frame.environment_rotation);
+  vec3 irradiance = frame.environment_scale * textureLod(environment_irradiance, place, 0.0).rgb;
+  vec3 grazing = frame.environment_scale * textureLod(environment_grazing, place, 0.0).rgb;
   vec3 mirror = environment_lookup_direction(2.0 * n_dot_v * n - v, frame.environment_rotation);
   vec3 mirrored = frame.environment_scale * environment_filtered_level(mirror, 0);
-  return coated_environment(m, n_dot_v, irradiance, irradiance / 21.0, mirrored);
+  return coated_environment(m, n_dot_v, irradiance, grazing, mirrored);
 }
 #endif
 

@@ -61,9 +61,11 @@ vec3 environment_filtered_level(vec3 direction, int level) {
 }
 
 // rotation in radians about +Y and scale as in FrameBlock.environment.
+vec2 environment_irradiance_place(vec3 n, float rotation) {
+  return environment_place(environment_lookup_direction(n, rotation), environment_irradiance_width / 2);
+}
 vec3 environment_irradiance_towards(vec3 n, float rotation, float scale) {
-  vec2 place = environment_place(environment_lookup_direction(n, rotation), environment_irradiance_width / 2);
-  return scale * textureLod(environment_irradiance, place, 0.0).rgb;
+  return scale * textureLod(environment_irradiance, environment_irradiance_place(n, rotation), 0.0).rgb;
 }
 
 vec3 environment_light(SurfaceBrdf s, vec3 n, vec3 v, float rotation, float scale) {

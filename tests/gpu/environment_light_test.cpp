@@ -84,7 +84,7 @@ TEST_F(EnvironmentLight, GpuAgreesWithCpu) {
   const std::array<gpu::EmbeddedSource, 1> sources{{{"environment.comp.glsl", kShader}}};
   shaders().mount("test/", sources);
   const gpu::Texture table = shading::makeLtcTexture(device());
-  const gpu::Texture irradiance = shading::makeIrradianceTexture(device(), environment);
+  const gpu::Texture irradiance = shading::makeIrradianceTexture(device(), environment.irradiance);
   const gpu::Texture filtered = shading::makeFilteredTexture(device(), environment);
   const gpu::Buffer in = gpu::Buffer::of<Point>(device(), "points", points);
   const gpu::Buffer out(device(), "results", points.size() * sizeof(vec4));

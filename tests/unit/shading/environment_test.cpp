@@ -50,6 +50,19 @@ TEST(Environment, IrradianceOfALinearSkyIsTheClosedForm) {
   }
 }
 
+// L = 1 + d.a: pi / 21 of the constant part, pi / 84 of the linear one. Sums over texels err where the kernel
+// has its edge, at the horizon, which is that of irradiance: by the 3e-4 of pi that its map has.
+TEST(Environment, GrazingIrradianceOfALinearSkyIsTheClosedForm) {
+  const vec3 a = normalize(vec3(0.3f, 0.8f, -0.5f));
+  const FilteredMap grazing = filterGrazing(environmentOf(512, [&](vec3 d) { return vec3(1 + dot(d, a)); }));
+  EXPECT_EQ(grazing.width, glsl::environment_irradiance_width);
+  std::mt19937 random(1);
+  for (int i = 0; i < 1000; ++i) {
+    const vec3 n = randomDirection(random);
+    ASSERT_NEAR(grazing.sample(n).x, pi / 21 + pi / 84 * dot(n, a), 3e-4 * pi);
+  }
+}
+
 TEST(Environment, HalfASkyGivesHalfTheIrradianceAtTheHorizon) {
   const FilteredEnvironment f =
       filterEnvironment(environmentOf(512, [](vec3 d) { return vec3(d.y > 0 ? 1 : 0); }));
@@ -156,6 +169,7 @@ TEST(Environment, StructuredEnvironmentIsReflectedWithinTheStatedError) {
 
 TEST(Environment, WithoutAMapThereIsNothingToFilter) {
   EXPECT_THROW(filterEnvironment({}), Error);
+  EXPECT_THROW(filterGrazing({}), Error);
 }
 
 /// Mean and root mean square relative difference of the irradiance over pi from a map of it, over the sphere.
