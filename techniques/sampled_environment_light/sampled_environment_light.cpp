@@ -7,6 +7,7 @@
 #include "core/shadow/sample_batches.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
+#include "glsl/materials/material_model.glsl"
 
 namespace {
 
@@ -30,6 +31,8 @@ constexpr StressCase kStress[] = {
 class SampledEnvironmentLight : public Technique {
   std::vector<glm::vec3> directions_;  ///< of propagation
   gpu::Buffer irradiance_;             ///< of each sample on a surface that faces it, were it all: vec4
+  gpu::Buffer towards_;                ///< directions to all samples, and the map, for coats alone: vec4
+  gpu::Texture map_;
 
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
@@ -39,13 +42,13 @@ class SampledEnvironmentLight : public Technique {
       return request.target;
     }
     takeSamples(environment, inputs);
-    const frame::BufferHandle irradiance = graph.importBuffer("irradiance of the samples", irradiance_);
+    const Inputs samples = importInputs(graph, inputs);
     frame::TextureHandle target = request.target;
     for (const shadow::SampleBatch& batch :
          shadow::sampleBatches(inputs.parameters.integer("samples"),
                                {.each = 1, .size = inputs.parameters.integer("shadow_map_size")},
                                inputs.parameters.integer("memory")))
-      target = addBatch(graph, inputs, target, irradiance, batch);
+      target = addBatch(graph, inputs, target, samples, batch);
     return target;
   }
 
@@ -64,8 +67,29 @@ class SampledEnvironmentLight : public Technique {
         gpu::Buffer::of<glm::vec4>(inputs.gpuScene.device(), "irradiance of the samples", irradiance);
   }
 
+  /// What all batches read; the latter two are empty without coats, which mirror the map.
+  struct Inputs {
+    frame::BufferHandle irradiance, towards;
+    frame::TextureHandle map;
+  };
+  Inputs importInputs(frame::FrameGraph& graph, const TechniqueInputs& inputs) {
+    Inputs result{graph.importBuffer("irradiance of the samples", irradiance_), {}, {}};
+    if ((inputs.handles.modelKinds & 1u << glsl::model_coated) == 0) return result;
+    std::vector<glm::vec4> towards;
+    for (const glm::vec3& direction : directions_) towards.emplace_back(-direction, 0);
+    gpu::Device& device = inputs.gpuScene.device();
+    towards_ = gpu::Buffer::of<glm::vec4>(device, "directions of the samples", towards);
+    const scene::Environment& e = inputs.scene.environment;
+    map_ = gpu::Texture(device, "environment", {.format = GL_RGB32F, .width = e.width, .height = e.height});
+    map_.setSampling(GL_LINEAR, GL_LINEAR, GL_REPEAT, GL_CLAMP_TO_EDGE);
+    map_.upload(0, 0, GL_RGB, GL_FLOAT, e.texels.data());
+    result.towards = graph.importBuffer("directions of the samples", towards_);
+    result.map = graph.importTexture("environment", map_);
+    return result;
+  }
+
   frame::TextureHandle addBatch(frame::FrameGraph& graph, const TechniqueInputs& inputs,
-                                frame::TextureHandle target, frame::BufferHandle irradiance,
+                                frame::TextureHandle target, const Inputs& samples,
                                 const shadow::SampleBatch& batch) {
     const std::span<const glm::vec3> directions =
         std::span(directions_).subspan(static_cast<size_t>(batch.first), static_cast<size_t>(batch.count));
@@ -82,8 +106,12 @@ class SampledEnvironmentLight : public Technique {
         .reflects = true,
         .bind = [batch](frame::PassContext&, gpu::Program& program) { shadow::setBatch(program, batch); },
         .declare =
-            [irradiance](frame::PassBuilder& builder) {
-              builder.read(irradiance, Access::storageLoad, "Irradiance", "what each direction brings");
+            [samples](frame::PassBuilder& builder) {
+              builder.read(samples.irradiance, Access::storageLoad, "Irradiance",
+                           "what each direction brings");
+              if (!samples.map) return;
+              builder.read(samples.towards, Access::storageLoad, "Directions", "which stand for a mirror's")
+                  .read(samples.map, Access::sampled, "environment_map", "what coats mirror");
             },
         .accumulate = true};
     return shadow::addVisibilityPass(graph, inputs, target, std::move(pass));

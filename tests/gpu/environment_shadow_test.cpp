@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/reference/reference.h"
+#include "core/scene/material_model.h"
 #include "core/shading/environment_decomposition.h"
 #include "glsl/numeric/equirectangular.glsl"
 #include "tests/gpu/render_test.h"
@@ -169,6 +170,29 @@ TEST_F(EnvironmentShadowTest, AUniformSkyOverAPlaneGivesPiTimesItsRadiance) {
     const Image picture = this->picture(renderer, settings(16, 12, Term::direct));
     for (const float v : picture.data()) EXPECT_NEAR(v, 0.7f, 0.7f * error);
   }
+}
+
+/// A floor that is a perfect mirror shows the sky, and nothing under a roof that hides all of it.
+TEST_F(EnvironmentShadowTest, CoatsMirrorWhatIsNotHidden) {
+  for (const std::string& name : shadowingTechniques())
+    for (const bool roofed : {false, true}) {
+      scene::Scene scene = lit(floor(), uniform(2), 0);
+      glsl::MaterialModel mirror{};
+      mirror.kind = glsl::model_coated;
+      mirror.eta = vec3(1e-3f);
+      mirror.k = vec3(1000);
+      scene::setModel(scene.materials.front(), mirror);
+      if (roofed) {
+        scene::Node roof;
+        roof.mesh = 0;
+        roof.transform.translation = {0, 6, 0};
+        scene.nodes.push_back(roof);
+      }
+      render::Renderer renderer(device(), scene);
+      const Image picture =
+          this->picture(renderer, settings(16, 12, Term::direct, {technique(name, {{"samples", "64"}})}));
+      for (const float v : picture.data()) EXPECT_NEAR(v, roofed ? 0 : 2, 0.02f) << name << roofed;
+    }
 }
 
 TEST_F(EnvironmentShadowTest, LightsReflectedFromTheirCentresAreThePublishedApproximation) {
