@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/gtc/quaternion.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/scene/camera.h"
 #include "tests/gpu/render_test.h"
 #include "tests/support/test_scenes.h"
 
@@ -19,7 +21,8 @@ inline const std::vector<std::string> kShapes{"moments", "published", "horizon_m
 
 class BumpFloorTest : public RenderTest {
  protected:
-  static constexpr int kSide = 128;  ///< of pictures, pixels
+  static constexpr int kSide = 128;   ///< of pictures, pixels
+  static constexpr int kTexels = 64;  ///< of the grooves
 
   /// A floor of 2 m x 2 m, one tile of `field`, under light that comes from `towards`.
   static scene::Scene floorUnder(const glm::vec3& towards, std::vector<relief::HeightField> fields) {
@@ -56,6 +59,34 @@ class BumpFloorTest : public RenderTest {
     renderer.render();
     if (passes) *passes = renderer.explain();
     return renderer.read();
+  }
+
+  static relief::HeightField flat() { return {{4, 4}, std::vector<float>(16, 0.3f), glm::dvec2(2)}; }
+
+  /// V-shaped grooves with walls of 45 degrees across u, or across v: a crest at texel 0, a bottom in the
+  /// middle.
+  static relief::HeightField groove(bool acrossV = false) {
+    std::vector<float> values;
+    for (int i = 0; i < kTexels; ++i)
+      values.push_back(2 * static_cast<float>(std::abs(i - kTexels / 2)) / kTexels);
+    return {acrossV ? glm::ivec2(1, kTexels) : glm::ivec2(kTexels, 1), values, glm::dvec2(2)};
+  }
+
+  /// Calls f(value of the first channel, world position) for the pixels that show the floor.
+  static void forEachPoint(const Image& picture, const std::function<void(float, const glm::vec3&)>& f) {
+    scene::Bounds bounds;
+    bounds.add({-1, 0, -1});
+    bounds.add({1, 0, 1});
+    glsl::FrameBlock frame{};
+    scene::setCamera(frame, camera(), bounds, kSide, kSide);
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        const float depth = picture.at(x, y, picture.channel("Z"));
+        if (depth <= 0) continue;
+        const glm::vec3 ray(frame.view_ray_origin + static_cast<float>(x) * frame.view_ray_dx +
+                            static_cast<float>(kSide - 1 - y) * frame.view_ray_dy);
+        f(picture.at(x, y, 0), glm::vec3(frame.camera_position) + depth * ray);
+      }
   }
 
   static bool same(const Image& a, const Image& b) { return std::ranges::equal(a.data(), b.data()); }

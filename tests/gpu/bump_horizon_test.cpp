@@ -11,38 +11,8 @@
 namespace limn {
 namespace {
 
-constexpr int kTexels = 64;  // of the grooves
-
 class BumpHorizonTest : public BumpFloorTest {
  protected:
-  static relief::HeightField flat() { return {{4, 4}, std::vector<float>(16, 0.3f), glm::dvec2(2)}; }
-
-  /// V-shaped grooves with walls of 45 degrees across u, or across v: a crest at texel 0, a bottom in the
-  /// middle.
-  static relief::HeightField groove(bool acrossV = false) {
-    std::vector<float> values;
-    for (int i = 0; i < kTexels; ++i)
-      values.push_back(2 * static_cast<float>(std::abs(i - kTexels / 2)) / kTexels);
-    return {acrossV ? glm::ivec2(1, kTexels) : glm::ivec2(kTexels, 1), values, glm::dvec2(2)};
-  }
-
-  /// Calls f(W, world position) for the pixels that show the floor.
-  static void forEachPoint(const Image& picture, const std::function<void(float, const glm::vec3&)>& f) {
-    scene::Bounds bounds;
-    bounds.add({-1, 0, -1});
-    bounds.add({1, 0, 1});
-    glsl::FrameBlock frame{};
-    scene::setCamera(frame, camera(), bounds, kSide, kSide);
-    for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x) {
-        const float depth = picture.at(x, y, picture.channel("Z"));
-        if (depth <= 0) continue;
-        const glm::vec3 ray(frame.view_ray_origin + static_cast<float>(x) * frame.view_ray_dx +
-                            static_cast<float>(kSide - 1 - y) * frame.view_ray_dy);
-        f(picture.at(x, y, 0), glm::vec3(frame.camera_position) + depth * ray);
-      }
-  }
-
   /// The share of points whose W is not that of the closed form: under light that rises by 1/2 against walls
   /// that rise by 1, those are lit that lie at most a third of the way from a crest to the next one towards
   /// the light. `axis`: of the world, along which grooves repeat and light comes; `sign`: from which end.

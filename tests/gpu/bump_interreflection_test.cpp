@@ -1,0 +1,233 @@
+// Light from bump to bump against closed forms, the library's iteration and pictures without it.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "core/relief/interreflection.h"
+#include "tests/gpu/bump_floor.h"
+
+namespace limn {
+namespace {
+
+constexpr float kAlbedo = 0.7f;
+constexpr double kIrradiance = 2;  // of the floor's light
+const std::vector<std::string> kSpaces{"pixel", "texture"};
+
+class BumpInterreflectionTest : public BumpFloorTest {
+ protected:
+  using Values = std::vector<std::pair<std::string, std::string>>;
+
+  static scene::Scene bumps(const glm::vec3& towards, relief::HeightField field) {
+    scene::Scene scene = floorUnder(towards, {std::move(field)});
+    scene.materials[0].baseColour = glm::vec4(kAlbedo, kAlbedo, kAlbedo, 1);
+    return scene;
+  }
+
+  /// Bumps and dents in rows, 3 of each along an axis, whose RMS slope is 0.94.
+  static relief::HeightField eggCrate() {
+    constexpr int size = 32;
+    std::vector<float> values;
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x)
+        values.push_back(std::sin(6 * glsl::pi * (static_cast<float>(x) + 0.5f) / size) *
+                         std::sin(6 * glsl::pi * (static_cast<float>(y) + 0.5f) / size));
+    return {{size, size}, values, glm::dvec2(2), 0.141};
+  }
+
+  static glm::vec3 slantedLight() {
+    const float elevation = 35 * glsl::pi / 180;
+    return {std::cos(elevation) * std::cos(0.5f), std::sin(elevation), std::cos(elevation) * std::sin(0.5f)};
+  }
+
+  Image light(const scene::Scene& scene, const Values& values,
+              std::vector<frame::PassReport>* passes = nullptr) {
+    return drawn(scene, Term::indirect, {technique("bump_interreflection", values)}, passes);
+  }
+
+  /// The sum over the points of the floor.
+  static double sumOf(const Image& picture) {
+    double sum = 0;
+    forEachPoint(picture, [&](float value, const glm::vec3&) { sum += static_cast<double>(value); });
+    return sum;
+  }
+
+  struct Difference {
+    double rms;   ///< over the RMS of what is expected
+    double mean;  ///< over the mean of what is expected
+  };
+
+  /// Compares a picture with the radiance of texels, at pixels within 1/4 of a texel of a centre.
+  static Difference difference(const Image& picture, const relief::HeightField& field,
+                               const std::vector<double>& expected) {
+    double error = 0, power = 0, sum = 0, all = 0;
+    int counted = 0;
+    forEachPoint(picture, [&](float value, const glm::vec3& p) {
+      const glm::dvec2 place = field.place(0.5 * (glm::dvec2(p.x, p.z) + 1.0)), centre = glm::round(place);
+      if (std::max(std::abs(place.x - centre.x), std::abs(place.y - centre.y)) > 0.25) return;
+      const double wanted = expected[field.index(glm::ivec2(centre))], seen = static_cast<double>(value);
+      error += (seen - wanted) * (seen - wanted);
+      power += wanted * wanted;
+      sum += seen;
+      all += wanted;
+      ++counted;
+    });
+    EXPECT_GT(counted, 1500);
+    return {.rms = std::sqrt(error / power), .mean = sum / all};
+  }
+
+  /// What `bounces` bounces add to the direct light of the texels under slantedLight().
+  static std::vector<double> bounced(const relief::HeightField& field, relief::BounceDirections directions,
+                                     int paths, int bounces) {
+    const glm::dvec3 l(slantedLight());
+    const std::vector<double> direct =
+        relief::directRadiance(field, {l.x, l.z, l.y}, static_cast<double>(kAlbedo), kIrradiance);
+    std::vector<double> result = relief::bounce(field, relief::traceBounces(field, directions, paths), direct,
+                                                static_cast<double>(kAlbedo), 0, bounces);
+    for (size_t i = 0; i < result.size(); ++i) result[i] -= direct[i];
+    return result;
+  }
+};
+
+// What differs is that paths end at the nearest texel rather than between texels, which the page of the
+// method measures as sqrt(.142^2 - .137^2) = .04 of the bounce, and that shadows are those of 128 azimuths.
+TEST_F(BumpInterreflectionTest, IsTheLibrarysBounceTexelByTexel) {
+  const relief::HeightField field = eggCrate();
+  const scene::Scene scene = bumps(slantedLight(), field);
+  using relief::BounceDirections;
+  for (const auto& [name, directions] :
+       {std::pair("own_frame", BounceDirections::ownFrame), std::pair("shared", BounceDirections::shared),
+        std::pair("published", BounceDirections::published)})
+    for (const std::string& space : kSpaces) {
+      SCOPED_TRACE(name + (", " + space));
+      const Image picture =
+          light(scene, {{"directions", name}, {"space", space}, {"lookup", "nearest"}, {"azimuths", "128"}});
+      const Difference d = difference(picture, field, bounced(field, directions, 64, 1));
+      EXPECT_LT(d.rms, 0.08);
+      EXPECT_NEAR(d.mean, 1, 0.015);
+    }
+}
+
+TEST_F(BumpInterreflectionTest, BouncesAddUp) {
+  const relief::HeightField field = eggCrate();
+  const scene::Scene scene = bumps(slantedLight(), field);
+  const std::vector<double> expected = bounced(field, relief::BounceDirections::ownFrame, 64, 3);
+  for (const std::string& space : kSpaces) {
+    SCOPED_TRACE(space);
+    const Image picture =
+        light(scene, {{"space", space}, {"bounces", "3"}, {"lookup", "nearest"}, {"azimuths", "128"}});
+    const Difference d = difference(picture, field, expected);
+    // Of a pixel each path goes on by one path, as a random choice would: the later bounces are 0.15 of the
+    // light, and 64 random paths get 0.27 of a bounce wrong.
+    EXPECT_LT(d.rms, space == "texture" ? 0.08 : 0.1);
+    EXPECT_NEAR(d.mean, 1, 0.02);
+  }
+}
+
+TEST_F(BumpInterreflectionTest, SixtyFourPathsAreEnoughAndPublishedOnesLoseLight) {
+  const relief::HeightField field = eggCrate();
+  const scene::Scene scene = bumps(slantedLight(), field);
+  const std::vector<double> exact = bounced(field, relief::BounceDirections::ownFrame, 1024, 1);
+  for (const std::string& space : kSpaces) {
+    const Difference own = difference(light(scene, {{"space", space}}), field, exact);
+    EXPECT_LE(own.rms, 0.12) << space;  // 0.10 of the directions, and shadows of 16 azimuths
+    EXPECT_NEAR(own.mean, 1, 0.03) << space;
+    const Difference published = difference(
+        light(scene, {{"space", space}, {"directions", "published"}, {"paths", "512"}}), field, exact);
+    EXPECT_LT(published.mean, 0.8) << space;
+  }
+}
+
+// Under light from the zenith both walls are lit alike, so that a wall's mean is albedo times their form
+// factor times what they send.
+TEST_F(BumpInterreflectionTest, WallsOfAGrooveExchangeTheirFormFactor) {
+  const scene::Scene scene = bumps({0, 1, 0}, groove());
+  const double sent = kAlbedo / std::numbers::pi * kIrradiance * std::sqrt(0.5);
+  for (const std::string& space : kSpaces) {
+    double sum = 0;
+    int counted = 0;
+    forEachPoint(light(scene, {{"space", space}, {"paths", "256"}}), [&](float value, const glm::vec3&) {
+      sum += static_cast<double>(value);
+      ++counted;
+    });
+    ASSERT_GT(counted, 4000);
+    // The texels of crests and bottoms, 1 of 32, have a normal between the walls'.
+    EXPECT_NEAR(sum / counted / (kAlbedo * sent), 1 - std::sqrt(0.5), 0.015) << space;
+  }
+}
+
+TEST_F(BumpInterreflectionTest, FlatFieldsHaveNone) {
+  const relief::HeightField point({1, 1}, {0.5f}, glm::dvec2(2));
+  for (const relief::HeightField& field : {flat(), point})
+    for (const std::string& space : kSpaces) {
+      const scene::Scene scene = bumps({1, 1, 0.5f}, field);
+      EXPECT_EQ(sumOf(light(scene, {{"space", space}, {"bounces", "3"}})), 0) << space;
+      EXPECT_TRUE(same(drawn(scene, Term::final, {technique("bump_interreflection", {{"space", space}})}),
+                       drawn(scene, Term::final, {})))
+          << space;
+    }
+}
+
+TEST_F(BumpInterreflectionTest, ScenesWithoutHeightMapsAreLeftAlone) {
+  const scene::Scene scene = floorUnder({1, 1, 0.5f}, {});
+  std::vector<frame::PassReport> passes;
+  EXPECT_TRUE(same(drawn(scene, Term::final, {technique("bump_interreflection")}, &passes),
+                   drawn(scene, Term::final, {})));
+  bool said = false;
+  for (const frame::PassReport& pass : passes) {
+    for (const frame::AccessReport& access : pass.accesses) EXPECT_NE(access.resource, "tangent");
+    if (pass.technique != "bump_interreflection") continue;
+    EXPECT_EQ(pass.state, frame::PassState::leftOut);
+    said = said || pass.reason == "no material has a height map";
+  }
+  EXPECT_TRUE(said);
+}
+
+TEST_F(BumpInterreflectionTest, OtherSurfacesShadowIt) {
+  scene::Scene scene = bumps({0, 1, 0}, eggCrate());
+  // A roof above the camera, which looks from 2 m down.
+  scene::Node roof;
+  roof.mesh = test::addMesh(scene, test::floorPrimitive(3, test::addMaterial(scene)));
+  roof.transform.translation = {0, 4, 0};
+  scene.nodes.push_back(roof);
+  for (const std::string& space : kSpaces) {
+    EXPECT_EQ(sumOf(light(scene, {{"space", space}})), 0) << space;
+    EXPECT_GT(sumOf(light(scene, {{"space", space}, {"shadows", "false"}})), 0) << space;
+  }
+}
+
+TEST_F(BumpInterreflectionTest, ScalesWithTheLightAndAddsUpOverLights) {
+  const scene::Scene one = bumps(slantedLight(), eggCrate());
+  scene::Scene other = bumps({-1, 1, 0.3f}, eggCrate()), both = one;
+  both.lights.push_back(other.lights[0]);
+  both.nodes.push_back(other.nodes.back());
+  both.nodes.back().light = 1;
+  for (const std::string& space : kSpaces) {
+    const Image a = light(one, {{"space", space}}), b = light(other, {{"space", space}}),
+                sum = light(both, {{"space", space}});
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x)
+        ASSERT_NEAR(sum.at(x, y, 0), a.at(x, y, 0) + b.at(x, y, 0), 1e-5f) << space;
+    scene::Scene brighter = one;
+    brighter.lights[0].intensity *= 1e6f;
+    EXPECT_NEAR(sumOf(light(brighter, {{"space", space}})) / sumOf(a), 1e6, 10) << space;
+  }
+}
+
+TEST_F(BumpInterreflectionTest, LightOfAnyHeightIsFinite) {
+  for (const float height : {1000.f, 1e-4f, 0.f, -0.5f})
+    for (const std::string& space : kSpaces)
+      for (const std::string shape : {"horizon_map", "moments"}) {
+        const scene::Scene scene = bumps({1, height, 0.2f}, groove());
+        forEachPoint(light(scene, {{"space", space}, {"shape", shape}, {"bounces", "4"}}),
+                     [&](float value, const glm::vec3&) {
+                       ASSERT_TRUE(std::isfinite(value) && value >= 0);
+                       if (height < 0) {
+                         ASSERT_EQ(value, 0) << "from below the base";
+                       }
+                     });
+      }
+}
+
+}  // namespace
+}  // namespace limn
