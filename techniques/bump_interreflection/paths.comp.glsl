@@ -15,6 +15,16 @@ vec3 towards_lights[LIGHT_COUNT];
 BumpLight light_places[LIGHT_COUNT];
 vec3 arriving[LIGHT_COUNT];
 
+void find_lights(ivec2 pixel, Frame base) {
+  vec3 position = pixel_position(pixel, pixel_depth(pixel));
+  for (int i = 0; i < LIGHT_COUNT; ++i) {
+    Light light = lights[light_indices[i]];
+    towards_lights[i] = to_local(base, light_centre_direction(light, position));
+    light_places[i] = bump_light(towards_lights[i]);
+    arriving[i] = arriving_light(light, position, pixel, i);
+  }
+}
+
 // Sum over the lights of the irradiance on a texel.
 vec3 texel_irradiance(BumpTexels texels, uint texel) {
   vec3 normal = bump_normal(texels, texel);
@@ -36,13 +46,7 @@ void main() {
 #endif
   vec3 albedo = pixel_albedo(pixel);
   if (albedo == vec3(0.0)) return;
-  vec3 position = pixel_position(pixel, pixel_depth(pixel));
-  for (int i = 0; i < LIGHT_COUNT; ++i) {
-    Light light = lights[light_indices[i]];
-    towards_lights[i] = to_local(here.frame, light_centre_direction(light, position));
-    light_places[i] = bump_light(towards_lights[i]);
-    arriving[i] = arriving_light(light, position, pixel, i);
-  }
+  find_lights(pixel, here.frame);
   BumpTexels texels = bump_texels(here.height);
   ReliefField field = texels.field;
   bool clamped = field.clamped != 0u;
