@@ -33,7 +33,7 @@ class GoldenTest : public RenderTest {
   }
 
   /// Scenes side by side in one picture; those that answer the environment's light are lit by a sky alone,
-  /// and those that answer media, caustics, specular or relief have their own scenes.
+  /// and those that answer media, caustics or specular, or look into height maps, have their own scenes.
   Image strip(const std::vector<render::TechniqueUse>& techniques) {
     const auto answers = [&](Term term) {
       return std::ranges::any_of(techniques, [term](const render::TechniqueUse& use) {
@@ -44,7 +44,9 @@ class GoldenTest : public RenderTest {
     if (answers(Term::media) || answers(Term::caustic)) scenes = {"glass_sphere", "ring", "gem"};
     if (answers(Term::specular)) scenes = {"glassware", "ring", "gem"};
     if (answers(Term::surface)) scenes = {"torus_metal", "disk_and_sphere", "fresnel_spheres"};
-    if (answers(Term::relief)) scenes = {"bump_wall", "egg_crate", "bump_sphere"};
+    if (std::ranges::any_of(techniques,
+                            [](const render::TechniqueUse& use) { return use.plugin->info->places; }))
+      scenes = {"bump_wall", "egg_crate", "bump_sphere"};
     const bool outdoors = answers(Term::environment);
     Image whole(kWidth * int(scenes.size()), kHeight, {"R", "G", "B"});
     for (size_t s = 0; s < scenes.size(); ++s) {

@@ -59,7 +59,7 @@ class PermutationTest : public OncePerRenderer<RenderTest> {
       scenes = {"cornell_box", "lights", "stained_light", "glossy_sphere", "foliage_card"};
     if (answers(Term::surface))
       scenes.insert(scenes.end(), {"torus_metal", "disk_and_sphere", "teapot_groove"});
-    if (answers(Term::relief)) scenes.insert(scenes.end(), {"bump_wall", "egg_crate"});
+    if (registry().find(name).info->places) scenes = {"egg_crate", "bump_wall", "bump_sphere"};
     if (answers(Term::environment)) scenes.emplace_back("balls_sky");
     return scenes;
   }

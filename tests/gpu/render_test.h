@@ -67,6 +67,9 @@ class RenderTest : public GlTest {
     return names;
   }
 
+  /// Whether the technique has nothing to answer in scenes without height maps.
+  static bool lightsBumpsAlone(const std::string& name) { return registry().find(name).info->places; }
+
   /// Those with a picture of their own, and what shows it.
   static std::vector<std::pair<std::string, Term>> techniquesAndTerms() {
     std::vector<std::pair<std::string, Term>> all;
