@@ -59,6 +59,10 @@ void addMaterial(Hasher& h, const scene::Material& m) {
     addTexture(h, *texture);
   constexpr uint32_t heightFollows = 0x4e16;  // tells it from what else may follow
   if (m.height != scene::kNone) h.addAll(heightFollows, m.height);
+  constexpr uint32_t subsurfaceFollows = 0x5b55;
+  if (m.subsurface)
+    h.addAll(subsurfaceFollows, m.subsurface->extinction, m.subsurface->absorption,
+             m.subsurface->albedoFromBaseColour);
   if (m.model) h.add(*m.model);
   constexpr uint32_t coatsMirrorEnvironment = 0xc0a7;  // earlier results show their bases alone
   if (m.model && m.model->kind == glsl::model_coated) h.add(coatsMirrorEnvironment);

@@ -62,6 +62,17 @@ struct TextureRef {
   Wrap wrapS = Wrap::repeat, wrapT = Wrap::repeat;
 };
 
+/// Holds how light scatters below a surface, as a half space of uniform matter whose index is the material's
+/// `ior` (glsl/diffusion).
+struct Subsurface {
+  glm::vec3 extinction{1};  ///< sigma_t' = sigma_a + sigma_s', reduced, per metre: 1e-6 to 1e9
+  glm::vec3 absorption{0};  ///< sigma_a / sigma_t', 0 to 1
+  /// Says whether the base colour, with texture and vertex colours, is the share of entering light that
+  /// leaves again (glsl::walk_absorption); `absorption` is that of its factor alone. Otherwise the factor is
+  /// the share that follows from `absorption`.
+  bool albedoFromBaseColour = false;
+};
+
 struct Material {
   std::string name;
   glm::vec4 baseColour{1};
@@ -83,6 +94,9 @@ struct Material {
   /// `roughness` are then the metal that comes next to it, for what does not evaluate the model itself
   /// (radiosity, the flux of virtual lights).
   std::optional<glsl::MaterialModel> model;
+  /// Holds the scattering of a translucent material; there is none beside `model`, and `metallic` and
+  /// `transmission` are then 0.
+  std::optional<Subsurface> subsurface;
 
   /// Says whether the material has no specular part, whatever its textures hold (glsl::brdf_is_lambertian).
   bool lambertian() const { return metallic == 0 && specularFactor == 0 && !model; }

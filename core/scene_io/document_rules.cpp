@@ -137,6 +137,10 @@ Rules documentRules() {
       number("materials[].extensions.KHR_materials_volume.thicknessFactor"),
       number("materials[].extensions.KHR_materials_volume.attenuationDistance"),
       number("materials[].extensions.KHR_materials_volume.attenuationColor[3]"),
+      number("materials[].extensions.KHR_materials_scatter.multiscatterColorFactor[3]"),
+      number("materials[].extensions.KHR_materials_scatter.scatterAnisotropy"),
+      number("materials[].extensions.KHR_materials_volume_scatter.multiscatterColor[3]"),
+      number("materials[].extensions.KHR_materials_volume_scatter.scatterAnisotropy"),
   };
 }
 

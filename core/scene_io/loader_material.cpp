@@ -249,6 +249,7 @@ Material Loader::readMaterial(const tinygltf::Material& source, const std::strin
     applyModel(m, readModel(source.extras.Get("limn_material"), place), place);
     use.used = use.used || m.tangents();  // along rising u, where the file has no tangents
   }
+  applySubsurface(source, m, what);
   if (source.extras.IsObject() && source.extras.Has("limn_height")) {
     const std::string place = what + " limn_height";
     m.height = readHeight(source.extras.Get("limn_height"), use, place);

@@ -91,6 +91,21 @@ void heights(GltfBuilder& b) {
   b.triangle(material);
 }
 
+void translucent(GltfBuilder& b) {
+  const int coefficients =
+      b.append("materials",
+               {{"extras", {{"limn_subsurface", {{"sigma_a", {32, 170, 480}}, {"sigma_s_prime", 900}}}}}});
+  b.append("materials", {{"extras", {{"limn_subsurface", {{"mean_free_path", {0.003, 0.002, 0.001}}}}}}});
+  b.append("materials",
+           {{"extensions",
+             {{"KHR_materials_volume",
+               {{"thicknessFactor", 1}, {"attenuationDistance", 0.1}, {"attenuationColor", {0.5, 0.4, 0.3}}}},
+              {"KHR_materials_scatter", {{"multiscatterColorFactor", {0.9, 0.8, 0.7}}}},
+              {"KHR_materials_volume_scatter",
+               {{"multiscatterColor", {0.9, 0.8, 0.7}}, {"scatterAnisotropy", 0.5}}}}}});
+  b.triangle(coefficients);
+}
+
 void emissiveQuad(GltfBuilder& b) {
   const int material = b.append("materials", {{"emissiveFactor", {1, 1, 1}}});
   const int positions = b.vec3({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
@@ -136,6 +151,7 @@ int main(int count, char** arguments) {
       {"lights", lights},
       {"materials", materials},
       {"heights", heights},
+      {"translucent", translucent},
       {"quad", emissiveQuad},
       {"instances", instanced},
       {"sparse_strip", sparseStrip},

@@ -125,6 +125,17 @@ class Loader {
   void limitEnergy(glsl::MaterialModel& model, const std::string& what);
   void applyModel(Material& material, const glsl::MaterialModel& model, const std::string& what);
 
+  // loader_subsurface.cpp
+  /// Makes the material translucent where extras.limn_subsurface or a draft of Khronos says so.
+  void applySubsurface(const tinygltf::Material& source, Material& material, const std::string& what);
+  Subsurface readSubsurface(const tinygltf::Value& extras, const Material& material, const std::string& what);
+  /// Returns the scattering of KHR_materials_scatter or KHR_materials_volume_scatter; none, with a warning,
+  /// where the material says nothing of a volume.
+  std::optional<Subsurface> readScatterDraft(const tinygltf::Material& source, const Material& material,
+                                             const std::string& what);
+  /// Returns one number for all channels or three of them, none negative.
+  glm::vec3 readChannels(const tinygltf::Value& object, const char* key, const std::string& what);
+
   // loader_height.cpp
   /// Returns the index in Scene::heights of the map that extras.limn_height describes.
   int readHeight(const tinygltf::Value& extras, UvUse& use, const std::string& what);

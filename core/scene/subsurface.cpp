@@ -1,0 +1,28 @@
+#include "core/scene/subsurface.h"
+
+#include <algorithm>
+
+#include "glsl/diffusion/normalised.glsl"
+
+namespace limn::scene {
+namespace {
+
+glsl::WalkReflectance walkOf(float ior) {
+  return glsl::walk_reflectance(glsl::diffusion_boundary(std::clamp(ior, 1.f, 3.f)));
+}
+
+}  // namespace
+
+glm::vec3 subsurfaceAlbedo(const glm::vec3& absorption, float ior) {
+  const glsl::WalkReflectance walk = walkOf(ior);
+  return {glsl::walk_albedo(walk, absorption.x), glsl::walk_albedo(walk, absorption.y),
+          glsl::walk_albedo(walk, absorption.z)};
+}
+
+glm::vec3 subsurfaceAbsorption(const glm::vec3& albedo, float ior) {
+  const glsl::WalkReflectance walk = walkOf(ior);
+  return {glsl::walk_absorption(walk, albedo.x), glsl::walk_absorption(walk, albedo.y),
+          glsl::walk_absorption(walk, albedo.z)};
+}
+
+}  // namespace limn::scene
