@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 #include "core/render/private/implementation.h"
 #include "core/technique/bound.h"
+#include "core/technique/light_batch.h"
 #include "core/technique/module.h"
 
 namespace limn::render {
@@ -136,7 +137,7 @@ frame::TextureHandle Renderer::Implementation::addDirect(const Deferred::Frame& 
   };
   Use* shadowing = answering(Term::visibility);
   for (size_t first = 0; first < lights.size(); first += kLightBatch) {
-    const auto batch = lights.subspan(first, std::min<size_t>(kLightBatch, lights.size() - first));
+    const auto batch = lights.subspan(first, std::min(kLightBatch, lights.size() - first));
     const Deferred::Factors factors{.visibility = factor(Term::visibility, shadowing, batch),
                                     .relief = factor(Term::relief, bumps, batch)};
     radiance = deferred.addLights(frame, radiance, batch, factors);

@@ -10,6 +10,7 @@
 #include "core/gpu_scene/surface_input.h"
 #include "core/shading/environment.h"
 #include "core/shading/ltc_table.h"
+#include "core/technique/light_batch.h"
 #include "glsl/light/environment.glsl"
 #include "glsl/materials/material_model.glsl"
 #include "glsl/scene/blocks.glsl"
@@ -22,10 +23,6 @@ using frame::Access;
 using frame::TextureHandle;
 
 constexpr int kGroupSize = 8;
-
-constexpr std::array<const char*, kLightBatch> kLightIndexNames{
-    "light_indices[0]", "light_indices[1]", "light_indices[2]", "light_indices[3]",
-    "light_indices[4]", "light_indices[5]", "light_indices[6]", "light_indices[7]"};
 
 bool hasSpecularSurface(const scene::Scene& scene) {
   return std::ranges::any_of(scene.materials, &scene::Material::specularSurface);
@@ -171,7 +168,7 @@ TextureHandle Deferred::addLights(const Frame& frame, TextureHandle before, std:
   builder.execute([=, size = frame.size, indices = std::vector<uint32_t>(lights.begin(), lights.end())](
                       frame::PassContext& context) {
     gpu::Program& accumulate = context.use(program);
-    for (size_t i = 0; i < indices.size(); ++i) accumulate.set(kLightIndexNames[i], indices[i]);
+    setLightIndices(accumulate, indices);
     context.dispatch(size.x, size.y, 1, kGroupSize, kGroupSize);
   });
   return radiance;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/relief_maps/relief_maps.h"
+#include "core/technique/light_batch.h"
 #include "core/technique/technique.h"
 
 namespace {
@@ -56,11 +57,6 @@ constexpr StressCase kStress[] = {
      .scene = "bump_wall"},
 };
 
-/// Of the lights of a batch, of which there are at most 8.
-constexpr std::array<const char*, 8> kLightIndexNames{
-    "light_indices[0]", "light_indices[1]", "light_indices[2]", "light_indices[3]",
-    "light_indices[4]", "light_indices[5]", "light_indices[6]", "light_indices[7]"};
-
 relief_maps::ReliefMapDesc tableFor(const ParameterValues& parameters) {
   using relief_maps::Table;
   constexpr std::array tables{Table::moments, Table::published, Table::horizons, Table::heights,
@@ -102,7 +98,7 @@ class BumpHorizon : public Technique {
                   indices = std::vector<uint32_t>(request.lights.begin(), request.lights.end())](
                      frame::PassContext& context) {
       gpu::Program& bound = context.use(kernel);
-      for (size_t i = 0; i < indices.size(); ++i) bound.set(kLightIndexNames.at(i), indices[i]);
+      setLightIndices(bound, indices);
       if (shape == march || shape == scan) bound.set("steps", steps);
       context.dispatch(size.x, size.y, 1, 8, 8);
     });

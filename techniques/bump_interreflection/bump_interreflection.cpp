@@ -12,6 +12,7 @@
 #include "core/gpu_scene/light_textures.h"
 #include "core/relief_maps/relief_maps.h"
 #include "core/shadow/visibility_pass.h"
+#include "core/technique/light_batch.h"
 #include "core/technique/technique.h"
 #include "techniques/bump_interreflection/flat_bases.h"
 
@@ -60,12 +61,6 @@ constexpr StressCase kStress[] = {
      .amount = 1e4,
      .scene = "bump_wall"},
 };
-
-/// Limits the lights that a pass goes through, whose visibility is held at once.
-constexpr size_t kBatch = 8;
-constexpr std::array<const char*, kBatch> kLightIndexNames{
-    "light_indices[0]", "light_indices[1]", "light_indices[2]", "light_indices[3]",
-    "light_indices[4]", "light_indices[5]", "light_indices[6]", "light_indices[7]"};
 
 relief_maps::ReliefMapDesc lightsFor(const ParameterValues& parameters) {
   using relief_maps::Table;
@@ -194,7 +189,7 @@ class Passes {
                   bounces = inputs_.parameters.integer("bounces"),
                   indices = std::vector<uint32_t>(batch.begin(), batch.end())](frame::PassContext& context) {
       gpu::Program& bound = context.use(kernel);
-      for (size_t i = 0; i < indices.size(); ++i) bound.set(kLightIndexNames.at(i), indices[i]);
+      setLightIndices(bound, indices);
       bound.set("paths", paths);
       bound.set("bounces", bounces);
       context.dispatch(size.x, size.y, 1, 8, 8);
@@ -329,7 +324,7 @@ frame::TextureHandle BumpInterreflection::addPasses(frame::FrameGraph& graph, co
   frame::TextureHandle target = request.target;
   for (size_t first = 0, count = 0; first < lights.size(); first += count) {
     const bool texels = first < far;
-    count = std::min((texels ? far : lights.size()) - first, kBatch);
+    count = std::min((texels ? far : lights.size()) - first, kLightBatch);
     target = passes.add(std::span(lights).subspan(first, count), texels, target);
   }
   return target;

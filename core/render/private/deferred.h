@@ -12,9 +12,6 @@
 
 namespace limn::render {
 
-/// Limits the lights whose visibility, or relief, is held at once (layers of its texture).
-constexpr int kLightBatch = 8;
-
 class Deferred {
  public:
   /// Takes device and scene. Tables and environment maps are uploaded when a pass that needs them is first
