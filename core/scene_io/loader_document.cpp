@@ -22,12 +22,21 @@ using nlohmann::json;
 constexpr int kMaxDepth = 64;
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 34;
 
+// clang-format off
 constexpr std::array kSupportedExtensions = {
-    "KHR_lights_punctual",          "KHR_materials_ior",     "KHR_materials_specular",
-    "KHR_materials_transmission",   "KHR_materials_volume",  "KHR_materials_scatter",
-    "KHR_materials_volume_scatter", "KHR_texture_transform", "KHR_materials_emissive_strength",
-    "EXT_mesh_gpu_instancing",      "KHR_mesh_quantization",
+    "KHR_lights_punctual",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
+    "KHR_materials_scatter",
+    "KHR_materials_volume_scatter",
+    "KHR_texture_transform",
+    "KHR_materials_emissive_strength",
+    "EXT_mesh_gpu_instancing",
+    "KHR_mesh_quantization",
 };
+// clang-format on
 
 std::uint32_t word(std::span<const std::byte> bytes, std::size_t at) {
   std::uint32_t value = 0;
