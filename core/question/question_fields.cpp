@@ -150,8 +150,7 @@ constexpr QuestionField kFields[] = {
         .labelled("relief paths"),
     choice("displaced", "--displaced", &Q::displaced, kOffOn,
            "on: meshes take the place of height maps, in pictures and in the reference: what bump mapping\n"
-           "leaves out is the difference, which is no error of a technique")
-        .labelled("displaced"),
+           "leaves out is the difference, which is no error of a technique"),
     real(
         "environment_lights", "--environment-lights", &Q::environmentLights, {1e-4, 0.5}, "",
         "Replace the environment by area lights, which techniques can shadow. The value is the least share "

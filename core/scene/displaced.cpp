@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/scene/texture_lookup.h"
 #include "glsl/relief/height_normal.glsl"
 
 namespace limn::scene {
@@ -42,7 +43,7 @@ Polygon cut(const Polygon& polygon, int axis, double line, double sign) {
 class Displacement {
  public:
   Displacement(const Primitive& from, const relief::HeightField& field, bool bumpyNormals)
-      : from_(from), field_(field), bumpyNormals_(bumpyNormals) {
+      : from_(from), field_(field), slopes_(relief::slopeLevels(field)), bumpyNormals_(bumpyNormals) {
     result_.material = from.material;
     result_.emissiveParts = from.emissiveParts;
   }
@@ -111,25 +112,20 @@ class Displacement {
     const glm::vec3 normal = size > 0.f ? blended / size : from_.normals[corners_[0]];
     glm::vec4 tangent = blend(from_.tangents, weights);
     tangent.w = tangent.w < 0.f ? -1.f : 1.f;
+    const glm::vec2 uv = blend(from_.uvs, weights);
     result_.positions.push_back(blend(from_.positions, weights) +
                                 static_cast<float>(field_.height(corner.place)) * normal);
     result_.normals.push_back(
-        bumpyNormals_ ? glsl::height_normal(normal, tangent, glm::vec2(slope(corner.place))) : normal);
+        bumpyNormals_ ? glsl::height_normal(normal, tangent, sampleSlopes(slopes_, wrapOf(field_), uv, 0))
+                      : normal);
     result_.tangents.push_back(tangent);
-    result_.uvs.push_back(blend(from_.uvs, weights));
+    result_.uvs.push_back(uv);
     if (!from_.colours.empty()) result_.colours.push_back(blend(from_.colours, weights));
-  }
-
-  /// The slope that shading normals are made of, linear between texels.
-  glm::dvec2 slope(const glm::dvec2& place) const {
-    const glm::dvec2 corner = glm::floor(place), part = place - corner;
-    const glm::ivec2 at(corner), x(1, 0), y(0, 1);
-    return glm::mix(glm::mix(field_.slope(at), field_.slope(at + x), part.x),
-                    glm::mix(field_.slope(at + y), field_.slope(at + x + y), part.x), part.y);
   }
 
   const Primitive& from_;
   const relief::HeightField& field_;
+  std::vector<relief::SlopeLevel> slopes_;  ///< of the field, as shading normals have them
   bool bumpyNormals_;
   std::span<const uint32_t> corners_;  ///< vertices of the triangle at hand
   Primitive result_;

@@ -15,12 +15,14 @@ class BumpStabilityTest : public BumpFloorTest {
  protected:
   using Change = std::function<void(scene::Scene&)>;
 
-  static relief::HeightField noise(double slope, relief::Wrap wrap = relief::Wrap::periodic) {
+  /// The noise on one tile of the floor; a scale of 2 gives it that slope.
+  static relief::HeightField noise(double slope, relief::Wrap wrap = relief::Wrap::periodic,
+                                   double scale = 2) {
     const relief::HeightField field = relief::test::noise(kNoise, slope);
     std::vector<float> heights;
     for (int y = 0; y < kNoise; ++y)
       for (int x = 0; x < kNoise; ++x) heights.push_back(static_cast<float>(field.texel({x, y})));
-    return {field.size(), heights, glm::dvec2(2), 2, 0, wrap};
+    return {field.size(), heights, glm::dvec2(2), scale, 0, wrap};
   }
 
   /// Gives the floor's vertices the coordinates `uv` of theirs, and tangents that fit.
@@ -149,11 +151,7 @@ TEST_F(BumpStabilityTest, HeightsOfAnyScaleAndMapsOfAnySizeLeaveAPart) {
 
 /// Heights turned over are those of the negative scale.
 TEST_F(BumpStabilityTest, NegativeScalesTurnTheReliefOver) {
-  const relief::HeightField field = noise(0.6);
-  std::vector<float> heights;
-  for (int y = 0; y < kNoise; ++y)
-    for (int x = 0; x < kNoise; ++x) heights.push_back(static_cast<float>(field.texel({x, y})));
-  const scene::Scene scene = floorUnder({1, 0.35f, 0.4f}, {{field.size(), heights, glm::dvec2(2), -1}});
+  const scene::Scene scene = floorUnder({1, 0.35f, 0.4f}, {noise(0.6, relief::Wrap::periodic, -2)});
   EXPECT_LT(wrongShare(scene, "march"), 0.01);
 }
 
