@@ -17,8 +17,8 @@ tree, objects = scratch / "limn", scratch / "objects"
 
 # What shows an addition: the folders that read its table, and the tests of these tables as limn has them.
 LINKED = ["core/base/*.cpp", "core/question/*.cpp", "core/image/*.cpp", "core/brdf/*_file.cpp", "core/brdf/measured_model.cpp",
-          "core/brdf/tabulated.cpp", "core/brdf/visible_normals.cpp", "core/relief/height_field.cpp", "core/scene/*.cpp",
-          "core/scene_io/*.cpp",
+          "core/brdf/tabulated.cpp", "core/brdf/visible_normals.cpp", "core/relief/height_field.cpp", "core/relief/slopes.cpp",
+          "core/scene/*.cpp", "core/scene_io/*.cpp",
           *(f"core/bench/{name}.cpp" for name in (
               "columns", "comparison", "markdown", "question_json", "question_toml", "ratio", "report", "report_pictures", "row",
               "suite", "suite_toml", "tables", "toml_nesting", "toml_section")),
