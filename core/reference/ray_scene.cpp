@@ -189,6 +189,7 @@ struct RayScene::Hierarchy {
     const glm::vec3* positions;
   };
   std::map<std::pair<int, int>, SharedGeometry> sharedOf;  ///< by mesh and primitive
+  std::map<uint32_t, RTCScene> bodies;                     ///< translucent draws, each alone
 
   Hierarchy() {
     device = rtcNewDevice(nullptr);
@@ -197,6 +198,7 @@ struct RayScene::Hierarchy {
   }
   ~Hierarchy() {
     for (RTCScene scene : shared) rtcReleaseScene(scene);
+    for (const auto& [draw, scene] : bodies) rtcReleaseScene(scene);
     if (top) rtcReleaseScene(top);
     rtcReleaseDevice(device);
   }
@@ -262,6 +264,16 @@ struct RayScene::Hierarchy {
     fail(device, "attach an instance");
     return found->second.positions;
   }
+
+  /// Builds the hierarchy of a draw alone.
+  void addBody(uint32_t id, const Draw& draw, const std::vector<glm::vec3>& positions,
+               const glm::mat4& matrix) {
+    RTCScene scene = bodies.emplace(id, newScene()).first->second;
+    attach(scene, 0, *draw.primitive, positions, matrix,
+           {draw.primitive, draw.material, static_cast<int>(id), draw.orientation});
+    rtcCommitScene(scene);
+    fail(device, "build a body's hierarchy");
+  }
 };
 
 RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose, bool unshadowed)
@@ -275,7 +287,7 @@ RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose, bool unsh
   for (const auto& instance : pose.instances)
     if (instance.node != scene::kNone && instance.deformed == scene::kNone)
       ++uses[{instance.mesh, instance.primitive}];
-  h.users.reserve(pose.instances.size() + uses.size());
+  h.users.reserve(2 * pose.instances.size() + uses.size());
   draws_.reserve(pose.instances.size());
 
   for (const scene::DrawInstance& instance : pose.instances) {
@@ -301,6 +313,7 @@ RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose, bool unsh
       draw.toWorld = matrix;
       draw.positions =
           h.attachShared(id, key, primitive, matrix, {&primitive, draw.material, scene::kNone, 1.f});
+      if (draw.material->subsurface) h.addBody(id, draw, primitive.positions, matrix);
     } else {
       std::vector<glm::vec3> deformedPositions;
       const std::vector<glm::vec3>* positions = &primitive.positions;
@@ -315,6 +328,7 @@ RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose, bool unsh
       }
       draw.positions = h.attach(h.top, id, primitive, *positions, matrix,
                                 {&primitive, draw.material, static_cast<int>(id), draw.orientation});
+      if (draw.material->subsurface) h.addBody(id, draw, *positions, matrix);
     }
     if (draw.material->height != scene::kNone && !primitive.uvs.empty() && draw.tangents) {
       const relief::HeightField& heights = scene.heights[static_cast<size_t>(draw.material->height)];
@@ -364,6 +378,25 @@ bool RayScene::nearest(const glm::vec3& origin, const glm::vec3& direction, Hit&
   Context context(this);
   return intersect(hierarchy_->top, context,
                    rayFrom(origin, direction, 0.f, std::numeric_limits<float>::infinity()), hit);
+}
+
+bool RayScene::nearestOfBody(uint32_t draw, const glm::vec3& origin, const glm::vec3& direction, float from,
+                             Hit& hit) const {
+  Context context(this);
+  if (!intersect(hierarchy_->bodies.at(draw), context,
+                 rayFrom(origin, direction, from, std::numeric_limits<float>::infinity()), hit))
+    return false;
+  hit.draw = draw;
+  return true;
+}
+
+scene::Bounds RayScene::bodyBounds(uint32_t draw) const {
+  RTCBounds b{};
+  rtcGetSceneBounds(hierarchy_->bodies.at(draw), &b);
+  scene::Bounds bounds;
+  bounds.add({b.lower_x, b.lower_y, b.lower_z});
+  bounds.add({b.upper_x, b.upper_y, b.upper_z});
+  return bounds;
 }
 
 bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, float end) const {

@@ -87,6 +87,8 @@ void fillMaterial(const RayScene& rays, const TextureLookup& lookup, const glm::
   values.flags = material.specularSurface() ? glsl::gbuffer_flag_specular : 0u;
   surface.brdf = glsl::surface_brdf(values.base_colour, values.metallic, values.roughness,
                                     values.specular_factor, values.specular_colour, values.ior);
+  if (material.subsurface)
+    surface.below = {.boundary = glsl::diffusion_boundary(values.ior), .albedo = values.base_colour};
   if (!material.model) return;
   surface.model = &*material.model;
   surface.measured = &rays.scene().measured;
@@ -166,7 +168,31 @@ Surface seenFrom(const RayScene& rays, const Hit& hit, const glm::vec3& view,
   return surface;
 }
 
+glm::vec3 boundaryReflection(const Surface& surface, const glm::vec3& towards, const glm::vec3& direction) {
+  const glm::vec3& n = surface.values.normal;
+  const float light = glm::dot(n, direction);
+  if (!(light > 0.f)) return glm::vec3(0);
+  glsl::SurfaceBrdf mirror = surface.brdf;
+  mirror.diffuse = glm::vec3(0);
+  return glsl::brdf(mirror, n, towards, direction) + surface.below->f(glm::dot(n, towards), light);
+}
+
 }  // namespace
+
+Surface Surface::reflecting() const {
+  Surface surface = *this;
+  surface.brdf.diffuse = glm::vec3(0);
+  surface.below.reset();
+  return surface;
+}
+
+Surface Surface::entered() const {
+  Surface surface = *this;
+  surface.brdf = glsl::surface_brdf(glm::vec3(1), 0, 1, 0, glm::vec3(1), values.ior);
+  surface.below->albedo = glm::vec3(1);
+  surface.below->leaves = false;
+  return surface;
+}
 
 glm::vec3 Surface::reflectance(const glm::vec3& direction) const {
   if (!(glm::dot(values.geometric_normal, direction) > 0.f)) return glm::vec3(0);
@@ -178,10 +204,11 @@ glm::vec3 Surface::reflectanceFromBump(const glm::vec3& direction) const {
     return glsl::model_response(*measured, *model, glsl::to_local(frame, view),
                                 glsl::to_local(frame, direction));
   const float cosine = glm::dot(values.normal, direction);
-  return cosine > 0.f ? cosine * glsl::brdf(brdf, values.normal, view, direction) : glm::vec3(0);
+  return cosine > 0.f ? cosine * f(view, direction) : glm::vec3(0);
 }
 
 glm::vec3 Surface::f(const glm::vec3& towards, const glm::vec3& direction) const {
+  if (below) return boundaryReflection(*this, towards, direction);
   if (!model) return glsl::brdf(brdf, values.normal, towards, direction);
   const glm::vec3 local = glsl::to_local(frame, direction);
   if (!(local.z > 0.f)) return glm::vec3(0);
@@ -220,6 +247,14 @@ std::optional<Surface> surfaceAlong(const RayScene& rays, const Hit& hit, const 
   bool back = false;
   const Surface surface = seenFrom(rays, hit, -direction, std::nullopt, back);
   if (back && !rays.draws()[hit.draw].material->doubleSided) return std::nullopt;
+  return surface;
+}
+
+Surface frontAt(const RayScene& rays, const Hit& hit) {
+  bool back = false;
+  Surface surface = seenFrom(rays, hit, glm::vec3(0, 0, 1), std::nullopt, back);
+  if (back) surface = seenFrom(rays, hit, glm::vec3(0, 0, -1), std::nullopt, back);
+  surface.view = surface.values.normal;
   return surface;
 }
 

@@ -91,6 +91,14 @@ class RayScene {
   /// there is one; cut-out texels (of the full-size level) are passed through.
   bool nearest(const glm::vec3& origin, const glm::vec3& direction, Hit& hit) const;
 
+  /// Finds the nearest surface of one draw of a translucent material on origin + t * direction, t > `from`,
+  /// seen from either side, and returns whether there is one.
+  bool nearestOfBody(uint32_t draw, const glm::vec3& origin, const glm::vec3& direction, float from,
+                     Hit& hit) const;
+
+  /// Returns the bounds of a draw of a translucent material, world.
+  scene::Bounds bodyBounds(uint32_t draw) const;
+
   /// Returns whether anything but cut-out texels lies on origin + t * direction, 0 < t < end.
   bool occluded(const glm::vec3& origin, const glm::vec3& direction, float end) const;
 

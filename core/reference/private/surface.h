@@ -5,12 +5,27 @@
 
 #include "core/reference/private/ray_scene.h"
 #include "core/reference/private/relief_place.h"
+#include "glsl/diffusion/boundary.glsl"
 #include "glsl/materials/model.glsl"
 #include "glsl/numeric/geometry.glsl"
 #include "glsl/surface/brdf.glsl"
 #include "glsl/surface/gbuffer.glsl"
 
 namespace limn::reference {
+
+/// Holds the smooth boundary of a translucent surface, as a lobe of its reflection: `albedo` times what
+/// passes into the body and, where it leaves, out again.
+struct BoundaryLobe {
+  glsl::DiffusionBoundary boundary{};
+  glm::vec3 albedo{0};
+  bool leaves = true;  ///< F_t(n.l) F_t(n.v) / (pi (1 - F_de)); else F_t(n.l) / pi alone
+
+  /// Returns f of the lobe, 1/sr, from the cosines of the view and of the light, which is above 0.
+  glm::vec3 f(float view, float light) const {
+    const float out = leaves ? glsl::diffusion_exit(boundary, view) : glsl::inverse_pi;
+    return albedo * (glsl::diffusion_entry(boundary, light) * out);
+  }
+};
 
 struct Surface {
   glm::vec3 position{0};  ///< world, metres
@@ -19,13 +34,22 @@ struct Surface {
   float rayOffset = 0;    ///< Draw::rayOffset
   uint32_t draw = 0;
   glsl::GBufferSurface values{};
-  glsl::SurfaceBrdf brdf{};                    ///< metallic-roughness; of no account where there is a model
-  const glsl::MaterialModel* model = nullptr;  ///< null: metallic-roughness
+  glsl::SurfaceBrdf brdf{};  ///< metallic-roughness; of no account where there is a model
+  /// Takes the place of the diffuse part of `brdf`, which then only directs samples; translucent surfaces
+  /// have that of their local limit.
+  std::optional<BoundaryLobe> below;
+  const glsl::MaterialModel* model = nullptr;        ///< null: metallic-roughness
   const std::vector<glm::vec3>* measured = nullptr;  ///< Scene::measured
   glsl::Frame frame{};  ///< around the shading normal, along the tangent; for models
   ReliefPlace relief;   ///< among the bumps of the front; the back has none
   glm::vec4 vertexColour{1};
 
+  bool translucent() const { return below.has_value(); }
+  /// Returns a translucent surface without the light that enters it: what its boundary reflects.
+  Surface reflecting() const;
+  /// Returns a translucent surface that reflects what enters it, F_t / pi, and nothing else: its radiance
+  /// times pi is the irradiance that enters.
+  Surface entered() const;
   bool specular() const { return (values.flags & glsl::gbuffer_flag_specular) != 0; }
   /// Returns f cos for light from `direction` (unit), 1/sr; 0 below either horizon.
   glm::vec3 reflectance(const glm::vec3& direction) const;
@@ -58,6 +82,9 @@ Surface surfaceAt(const RayScene& rays, const Hit& hit, const glsl::FrameBlock& 
 /// Returns the surface at `hit`, met by a ray along `direction` (unit): textures at their full size. Returns
 /// nullopt where the ray met the back of a single-sided surface, which reflects nothing.
 std::optional<Surface> surfaceAlong(const RayScene& rays, const Hit& hit, const glm::vec3& direction);
+
+/// Returns the front of the surface at `hit`: textures at their full size, seen along the normal.
+Surface frontAt(const RayScene& rays, const Hit& hit);
 
 /// Returns the surface where a ray along `direction` (unit) from `from` meets the bumps at `place`: the
 /// base's point, with the field's normal and the textures at their full size as they are at the place.
