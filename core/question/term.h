@@ -24,7 +24,8 @@ enum class Term : uint32_t {
   specular = 64,
   final = 128,
   surface = 256,
-  relief = 512
+  relief = 512,
+  subsurface = 1024
 };
 using TermSet = uint32_t;
 constexpr TermSet operator|(Term a, Term b) {
@@ -65,7 +66,7 @@ enum class TermInterfaces : uint8_t {
 struct TermInfo {
   Term term;
   const char* name;        ///< in flags, suites, rows and pictures' metadata
-  const char* paths;       ///< of light, in Heckbert's notation; S and M: a smooth surface, the medium
+  const char* paths;       ///< of light, as Heckbert writes it; S, M, B: a smooth surface, the medium, a body
   const char* help;        ///< a phrase that says what a picture of it shows
   const char* unanswered;  ///< its value when no technique answers it
   bool answerable;         ///< techniques may answer it
@@ -102,6 +103,9 @@ inline constexpr TermInfo kTerms[] = {
     {Term::indirect, "indirect", "L D+ D E",
      "light that comes over other surfaces", "0",
      true, TermPicture::answered, nullptr, TermBounces::fromOne, TermInterfaces::none, false, 3},
+    {Term::subsurface, "subsurface", "L D* B E",
+     "light that entered translucent surfaces and left them again", "the local limit: it leaves where it entered",
+     true, TermPicture::answered, "light below surfaces", TermBounces::fromZero, TermInterfaces::none, false, 8},
     {Term::caustic, "caustic", "L S+ D E",
      "light that comes off mirrors and through glass", "0",
      true, TermPicture::answered, nullptr, TermBounces::none, TermInterfaces::light, false, 4},

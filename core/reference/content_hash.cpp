@@ -59,7 +59,7 @@ void addMaterial(Hasher& h, const scene::Material& m) {
     addTexture(h, *texture);
   constexpr uint32_t heightFollows = 0x4e16;  // tells it from what else may follow
   if (m.height != scene::kNone) h.addAll(heightFollows, m.height);
-  constexpr uint32_t subsurfaceFollows = 0x5b55;
+  constexpr uint32_t subsurfaceFollows = 0x5b56;
   if (m.subsurface)
     h.addAll(subsurfaceFollows, m.subsurface->extinction, m.subsurface->absorption,
              m.subsurface->albedoFromBaseColour);
@@ -138,6 +138,8 @@ void addWork(Hasher& h, const Request& r) {
   if (r.unshadowed) h.add(unshadowedFollows);
   constexpr uint32_t reliefPathsFollow = 0xb0b5;
   if (r.reliefPaths != ReliefPaths::both) h.addAll(reliefPathsFollow, r.reliefPaths);
+  constexpr uint32_t subsurfaceModelFollows = 0x5b5f;
+  if (r.subsurface != SubsurfaceModel::bssrdf) h.addAll(subsurfaceModelFollows, r.subsurface);
   constexpr uint32_t causticVersion = 2;
   const bool caustics = r.term == Term::final || r.term == Term::caustic || r.term == Term::media;
   if (caustics && std::ranges::any_of(r.scene.materials, &scene::Material::specularSurface))

@@ -4,12 +4,16 @@
 
 #include "core/reference/private/direct_light.h"
 #include "core/reference/private/specular_paths.h"
+#include "core/reference/private/subsurface_light.h"
 
 namespace limn::reference {
 namespace {
 
 /// From this bounce on a path goes on with a probability alone (Arvo and Kirk 1990, Russian roulette).
 constexpr int kFirstRoulette = 4;
+
+/// Random numbers of what enters translucent surfaces lie behind those of all other estimators of a pixel.
+constexpr uint32_t kFirstEntryPair = 1u << 31;
 
 /// A path from the camera, as far as it has got.
 struct Path {
@@ -24,9 +28,12 @@ class PathIntegrator final : public Integrator {
       : rays_(rays),
         light_(rays, request),
         withDirect_(request.term != Term::indirect),
+        withSubsurface_(contains(kSubsurfaceTerms, request.term)),
+        subsurfaceAlone_(request.term == Term::subsurface),
         specularAlone_(request.term == Term::specular),
         reliefPaths_(request.reliefPaths),
-        bounces_(request.bounces) {
+        bounces_(request.bounces),
+        subsurface_(rays, request.subsurface) {
     if (request.interfaces != 0) specular_.emplace(rays, request.interfaces);
   }
 
@@ -45,9 +52,45 @@ class PathIntegrator final : public Integrator {
  private:
   void addReflected(const Surface& surface, Sampler& sampler, uint32_t first, uint32_t count,
                     Sums& sums) const {
+    if (surface.translucent()) {
+      if (!subsurfaceAlone_) addReflectedAtBoundary(surface.reflecting(), sampler, first, count, sums);
+      if (withSubsurface_) addLightFromBelow(surface, sampler, first, count, sums);
+    } else if (!subsurfaceAlone_) {
+      addReflectedAtBoundary(surface, sampler, first, count, sums);
+    }
+  }
+
+  void addReflectedAtBoundary(const Surface& surface, Sampler& sampler, uint32_t first, uint32_t count,
+                              Sums& sums) const {
     if (withDirect_) light_.add(surface, {sampler, 0, first, count}, sums);
     if (bounces_ == 0) return;
-    for (uint32_t i = first; i < first + count; ++i) follow(surface, sampler, i, sums);
+    for (uint32_t i = first; i < first + count; ++i) follow(surface, {sampler, 0, i, 1}, sums);
+  }
+
+  void addLightFromBelow(const Surface& surface, Sampler& sampler, uint32_t first, uint32_t count,
+                         Sums& sums) const {
+    for (uint32_t i = first; i < first + count; ++i) {
+      sampler.startSample(i);
+      const glm::dvec3 value =
+          subsurface_.sample(surface, sampler, [&](const Surface& place, uint32_t entry) {
+            return entering(place, {sampler, kFirstEntryPair + entry * pairsOfPath(), i, 1});
+          });
+      for (int c = 0; c < 3; ++c) sums[static_cast<size_t>(c)] += value[c];
+    }
+  }
+
+  /// The irradiance that enters, direct and over other surfaces, in one sample.
+  glm::dvec3 entering(const Surface& place, const SampleRange& sample) const {
+    Sums light{};
+    light_.add(place, sample, light);
+    if (bounces_ > 0) follow(place, sample, light);
+    sample.sampler.startSample(sample.first);
+    return static_cast<double>(glsl::pi) * glm::dvec3(light[0], light[1], light[2]);
+  }
+
+  /// Pairs of random numbers of a surface's direct light and of one path from it.
+  uint32_t pairsOfPath() const {
+    return light_.pairs() + static_cast<uint32_t>(bounces_) * (2 + light_.pairs());
   }
 
   /// A specular surface takes no light itself: it shows that of others.
@@ -72,18 +115,19 @@ class PathIntegrator final : public Integrator {
       sums[static_cast<size_t>(c)] += end.throughput[c] * light[static_cast<size_t>(c)];
   }
 
-  /// One path. The random numbers of a bounce do not depend on how many there may be: one bounce more adds
-  /// its own light and changes nothing else.
-  void follow(const Surface& surface, Sampler& sampler, uint32_t sample, Sums& sums) const {
+  /// One path, with the random numbers behind those of direct light. The random numbers of a bounce do not
+  /// depend on how many there may be: one bounce more adds its own light and changes nothing else.
+  void follow(const Surface& surface, const SampleRange& sample, Sums& sums) const {
     Path path{.surface = surface};
-    uint32_t pair = light_.pairs();
+    Sampler& sampler = sample.sampler;
+    uint32_t pair = sample.pair + light_.pairs();
     for (int bounce = 1; bounce <= bounces_; ++bounce) {
-      sampler.startSample(sample);
+      sampler.startSample(sample.first);
       const glm::vec2 lobe = sampler.pair(pair + 1);
       if (!step(path, glm::vec3(sampler.pair(pair), lobe.x))) return;
       if (bounce >= kFirstRoulette && !survives(lobe.y, path.throughput)) return;
       if (reliefPaths_ != ReliefPaths::relief || path.metBump)
-        addLightAtEnd(path, {sampler, pair + 2, sample, 1}, sums);
+        addLightAtEnd(path, {sampler, pair + 2, sample.first, 1}, sums);
       pair += 2 + light_.pairs();
     }
   }
@@ -136,9 +180,10 @@ class PathIntegrator final : public Integrator {
   const RayScene& rays_;
   DirectLight light_;
   std::optional<SpecularPaths> specular_;
-  bool withDirect_, specularAlone_;
+  bool withDirect_, withSubsurface_, subsurfaceAlone_, specularAlone_;
   ReliefPaths reliefPaths_;
   int bounces_;
+  SubsurfaceLight subsurface_;
 };
 
 }  // namespace

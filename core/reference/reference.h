@@ -15,6 +15,7 @@
 #include "core/base/export.h"
 #include "core/image/image.h"
 #include "core/question/relief_paths.h"
+#include "core/question/subsurface_model.h"
 #include "core/question/term.h"
 #include "core/scene/scene.h"
 
@@ -34,6 +35,9 @@ constexpr int kAllInterfaces = -1;
 constexpr int kImageSpaceInterfaces = 2;
 /// Limits the bounces that can be asked for.
 constexpr int kMaxBounces = 1024;
+
+/// Holds the terms in which light below surfaces counts.
+constexpr TermSet kSubsurfaceTerms = Term::final | Term::subsurface | Term::specular;
 
 /// Selects all lights of the scene and the environment's map, but not the lights that stand for it.
 constexpr int kAllLights = -1;
@@ -67,14 +71,19 @@ struct Request {
   ///   the plane of the interpolated normal; 1 where V's picture is 1 for want of anything to see, on
   ///   surfaces without a height map, and on backs. Heights are those of the full-size map.
   /// - direct: light of all lights and the environment, or of one of them, V and W included; no technique
-  ///   stands for either.
-  /// - final: direct, indirect of up to `bounces`, caustic, media, specular or, without `interfaces`, only
+  ///   stands for either. Of translucent surfaces it is what their boundary reflects.
+  /// - final: direct, indirect and subsurface of up to `bounces`, caustic, media, specular or, without
+  /// `interfaces`, only
   ///   the environment in specular surfaces, emission that the camera sees, the environment as background.
-  /// - indirect: light over 1 to `bounces` other surfaces, other bumps of the seen one among them.
+  /// - indirect: light over 1 to `bounces` other surfaces, other bumps of the seen one among them; of
+  ///   translucent surfaces what their boundary reflects. Light comes from other translucent surfaces by the
+  ///   local limit, whatever `subsurface` says.
+  /// - subsurface: what leaves translucent surfaces of the light that entered them, direct or over up to
+  ///   `bounces` others.
   /// - caustic: light off a specular object, or through one (LS DE, LSS DE), or with kAllInterfaces over any
-  ///   number of interfaces.
+  ///   number of interfaces. Translucent surfaces show it by the local limit.
   /// - media: light as direct and as caustic have it.
-  /// - specular: emission, direct light, indirect of up to `bounces`, and the environment.
+  /// - specular: emission, direct light, indirect and subsurface of up to `bounces`, and the environment.
   Term term = Term::direct;
   /// Index into Pose::lights, or lights.size() for the environment; kAllLights for all (not with visibility
   /// and relief, which take one light of Pose::lights).
@@ -97,6 +106,16 @@ struct Request {
   /// samples and seed the light of both is the sum of that of relief and of others, up to rounding. A segment
   /// from bump to bump of a height map is a bounce as any other.
   ReliefPaths reliefPaths = ReliefPaths::both;
+  /// Says how light below translucent surfaces is followed, in the terms that hold it: subsurface, final and
+  /// specular. Where the mean free path is too short for single precision, all three have light leave where
+  /// it enters.
+  /// - bssrdf: the dipole's profile (glsl/diffusion/dipole.glsl) over the straight distance to every place of
+  ///   the same draw's fronts. Where materials vary, the root of the product of both places' profiles.
+  /// - walk: isotropic scattering with the reduced coefficients of the seen place, under the smooth boundary
+  ///   of a closed body of one draw. Light enters as diffuse light does; it leaves towards the camera
+  ///   exactly.
+  /// - local: the share that a half space reflects, of what enters at the seen place.
+  SubsurfaceModel subsurface = SubsurfaceModel::bssrdf;
   int spp = 64;  ///< samples per pixel and light, rounded up to an even number; the maximum if noise is given
   /// Target noise, RMS relative to the mean; 0: take spp samples. The noise is tested after 16, 32, 64, ...
   /// samples.
@@ -132,7 +151,8 @@ struct Result {
 LIMN_API Result render(const Request& request);
 
 /// Returns a hash (32 hexadecimal digits) of everything that determines the result: scene content with
-/// textures, pose, camera, size, term, light, bounces, paths, samples or noise, seed, version of this code.
+/// textures, pose, camera, size, term, light, bounces, paths, models, samples or noise, seed, version of this
+/// code.
 LIMN_API std::string contentHash(const Request& request);
 
 /// Keeps finished references on disk: one EXR per content hash. Their metadata has content_hash and seconds

@@ -65,6 +65,12 @@ void checkReliefPaths(const Request& r) {
                                name(r.reliefPaths), name(r.term), joined(termNames(kBouncingTerms))));
 }
 
+void checkSubsurface(const Request& r) {
+  if (r.subsurface == SubsurfaceModel::bssrdf || contains(kSubsurfaceTerms, r.term)) return;
+  throw UsageError(fmt::format("reference: subsurface '{}' with the term {}; only {} hold such light",
+                               name(r.subsurface), name(r.term), joined(termNames(kSubsurfaceTerms))));
+}
+
 void validate(const Request& r) {
   const int lights = static_cast<int>(r.pose.lights.size());
   if (r.aa < 1 || r.aa > 16) throw UsageError(fmt::format("reference: aa {} is not in 1 .. 16", r.aa));
@@ -82,6 +88,7 @@ void validate(const Request& r) {
                                  lights - 1));
   checkBounces(r);
   checkReliefPaths(r);
+  checkSubsurface(r);
   if (!acceptsInterfaces(r.term, r.interfaces))
     throw UsageError(fmt::format("reference: interfaces {} with the term {}; {}", r.interfaces, name(r.term),
                                  acceptedInterfaces(r.term)));

@@ -69,7 +69,7 @@ TEST(CommandLine, BouncesBelongToIndirectAndFinalLight) {
     return limn(all);
   };
   expectRefused(with({"--term", "direct", "--bounces", "2"}), 2,
-                {"bounces 2", "direct", "final, indirect and specular"});
+                {"bounces 2", "direct", "final, indirect, subsurface and specular"});
   expectRefused(with({"--term", "indirect", "--bounces", "0"}), 2, {"bounces 0", "1 .. 1024"});
   expectRefused(with({"--term", "indirect", "--bounces", "-1"}), 2, {"--bounces", "-1", "1024"});
   expectRefused(with({"--term", "indirekt"}), 2,

@@ -67,13 +67,13 @@ def add_metric():
 def add_term():
     term = Addition(tree, "A term")
     phrase = "light that crystals of snow throw back"
-    row = term.block({"caustic": "glint", "light that comes off mirrors and through glass": phrase, "nullptr": '"glints"', "4}": "8}"})
-    term.replace("core/question/term.h", "  relief = 512\n", "  relief = 512,\n  glint = 1024\n")
+    row = term.block({"caustic": "glint", "light that comes off mirrors and through glass": phrase, "nullptr": '"glints"', "4}": "9}"})
+    term.replace("core/question/term.h", "  subsurface = 1024\n", "  subsurface = 1024,\n  glint = 2048\n")
     term.before("core/question/term.h", "};\n// clang-format on\n", row)
     rows = re.findall(r"^\| `surface` \|.*\n", (tree / "docs/architecture.md").read_text(), re.MULTILINE)
     check(len(rows) == 1, f"docs/architecture.md has {len(rows)} rows for the term `surface`, expected 1")
     term.after("docs/architecture.md", rows[0], f"| `glint` | {phrase} | L S+ D E | 0 |\n")
-    term.after("docs/bench.md", "| `term` | `final`, `visibility`, `relief`, `direct`, `indirect`, `caustic`, `media`, `specular`", ", `glint`")
+    term.after("docs/bench.md", "| `term` | `final`, `visibility`, `relief`, `direct`, `indirect`, `subsurface`, `caustic`, `media`, `specular`", ", `glint`")
 
 
 def add_material_field():

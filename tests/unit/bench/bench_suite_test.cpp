@@ -318,8 +318,9 @@ TEST(BenchSuite, ErrorsNameFileLineAndColumn) {
                    "s.toml:1:6: unknown term 'shadow'; known are final, visibility");
   expectUsageError("reference={sp=1}\n" + good, "s.toml:1:12: unknown key 'sp' in reference; known are spp");
   expectUsageError("reference={bounces=0}\n" + good, "'bounces' must be a whole number in 1..1024");
-  expectUsageError("term='direct'\nreference={bounces=2}\n" + good,
-                   "s.toml:2:20: no scene asks for a term that has 'bounces': final, indirect, specular");
+  expectUsageError(
+      "term='direct'\nreference={bounces=2}\n" + good,
+      "s.toml:2:20: no scene asks for a term that has 'bounces': final, indirect, subsurface, specular");
   expectUsageError("reference={noise='low'}\n" + good, "'noise' must be a number in 0..1");
   expectUsageError(good + "camera='x'\n", "s.toml:7:1: unknown key 'camera' in [[techniques]]");
   expectUsageError(good + "parameters={a=[]}\n", "'c.a' has an empty list");

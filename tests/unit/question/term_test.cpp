@@ -116,7 +116,7 @@ TEST(Terms, ExcludeEachOtherWhereTheTableSaysSo) {
   EXPECT_EQ(exclusiveWith(termSet(Term::direct)), Term::visibility | Term::direct);
   EXPECT_EQ(exclusiveWith(Term::direct | Term::environment),
             Term::visibility | Term::direct | Term::environment);
-  for (const Term term : {Term::environment, Term::specular, Term::surface, Term::relief})
+  for (const Term term : {Term::environment, Term::specular, Term::surface, Term::relief, Term::subsurface})
     EXPECT_EQ(exclusiveWith(termSet(term)), termSet(term));
   for (const Term term : {Term::indirect, Term::caustic, Term::media})
     EXPECT_EQ(exclusiveWith(termSet(term)), 0u);
@@ -133,7 +133,7 @@ TEST(Terms, ReliefIsRefusedBesideDirectLight) {
 TEST(Terms, NumbersInHashesStay) {
   const std::pair<Term, int> numbers[] = {{Term::direct, 0},   {Term::visibility, 1}, {Term::final, 2},
                                           {Term::indirect, 3}, {Term::caustic, 4},    {Term::media, 5},
-                                          {Term::specular, 6}, {Term::relief, 7}};
+                                          {Term::specular, 6}, {Term::relief, 7},     {Term::subsurface, 8}};
   for (const auto& [term, number] : numbers) EXPECT_EQ(termInfo(term).hashed, number) << name(term);
 }
 

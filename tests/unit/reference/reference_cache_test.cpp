@@ -102,6 +102,15 @@ TEST(ReferenceWork, ContentHashSeesEverythingThatMatters) {
   EXPECT_NE(hashes[1], hashes[2]);
   EXPECT_NE(hashes[1], hashes[3]);
   EXPECT_NE(hashes[2], hashes[3]);
+  const auto following = [&](SubsurfaceModel model) {
+    Request final = world.request(16, Term::final, 16);
+    final.subsurface = model;
+    return contentHash(final);
+  };
+  EXPECT_EQ(following(SubsurfaceModel::bssrdf), contentHash(world.request(16, Term::final, 16)));
+  EXPECT_NE(following(SubsurfaceModel::bssrdf), following(SubsurfaceModel::walk));
+  EXPECT_NE(following(SubsurfaceModel::bssrdf), following(SubsurfaceModel::local));
+  EXPECT_NE(following(SubsurfaceModel::walk), following(SubsurfaceModel::local));
   EXPECT_NE(plain, contentHash(world.request(16, Term::final, 16)));
   EXPECT_NE(plain, contentHash(world.request(16, Term::direct, 18)));
   EXPECT_NE(plain, contentHash(world.request(17, Term::direct, 16)));

@@ -340,7 +340,8 @@ TEST(ReferencePath, BouncesAreRefusedWhereThereAreNone) {
   EXPECT_EQ(message(Term::indirect, 0), "reference: bounces 0 is not in 1 .. 1024 with the term indirect");
   EXPECT_EQ(message(Term::final, 1025), "reference: bounces 1025 is not in 0 .. 1024 with the term final");
   EXPECT_EQ(message(Term::direct, 2),
-            "reference: bounces 2 with the term direct; only final, indirect and specular have bounces");
+            "reference: bounces 2 with the term direct; only final, indirect, subsurface and specular have "
+            "bounces");
   EXPECT_EQ(message(Term::final, 0), "");
 }
 

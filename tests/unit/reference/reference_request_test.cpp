@@ -34,9 +34,13 @@ TEST(ReferenceRequest, NonsenseIsRefusedByName) {
   EXPECT_NE(
       message([](Request& r) { r.term = Term::relief; }).find("relief needs one light; -1 is not in 0 .. 1"),
       std::string::npos);
+  EXPECT_NE(message([](Request& r) { r.reliefPaths = ReliefPaths::others; })
+                .find("relief paths 'others' with the term direct; only final, indirect, subsurface and "
+                      "specular have"),
+            std::string::npos);
   EXPECT_NE(message([](Request& r) {
-              r.reliefPaths = ReliefPaths::others;
-            }).find("relief paths 'others' with the term direct; only final, indirect and specular have"),
+              r.subsurface = SubsurfaceModel::walk;
+            }).find("subsurface 'walk' with the term direct; only final, subsurface and specular hold"),
             std::string::npos);
   EXPECT_NE(message([](Request& r) { r.term = Term::environment; }).find("no picture shows"),
             std::string::npos);
@@ -49,10 +53,11 @@ TEST(ReferenceRequest, TermsHaveTheirBouncesAndInterfaces) {
     int defaultBounces, defaultInterfaces;
   };
   constexpr Expected terms[] = {
-      {Term::final, true, true, true, true, 0, 0},      {Term::visibility, false, true, false, false, 0, 0},
-      {Term::relief, false, true, false, false, 0, 0},  {Term::direct, false, true, false, false, 0, 0},
-      {Term::indirect, true, true, false, false, 1, 0}, {Term::caustic, false, true, false, true, 0, 0},
-      {Term::media, false, true, false, true, 0, 0},    {Term::specular, true, false, true, true, 0, 2}};
+      {Term::final, true, true, true, true, 0, 0},        {Term::visibility, false, true, false, false, 0, 0},
+      {Term::relief, false, true, false, false, 0, 0},    {Term::direct, false, true, false, false, 0, 0},
+      {Term::indirect, true, true, false, false, 1, 0},   {Term::caustic, false, true, false, true, 0, 0},
+      {Term::subsurface, true, true, false, false, 0, 0}, {Term::media, false, true, false, true, 0, 0},
+      {Term::specular, true, false, true, true, 0, 2}};
   for (const Expected& e : terms) {
     EXPECT_EQ(hasBounces(e.term), e.bounces) << name(e.term);
     EXPECT_EQ(acceptsInterfaces(e.term, 0), e.none) << name(e.term);
