@@ -148,6 +148,13 @@ constexpr QuestionField kFields[] = {
            "one height map; others: those without; both; techniques do not change")
         .changing(view)
         .labelled("relief paths"),
+    choice(
+        "subsurface", "--subsurface", &Q::subsurface, kSubsurfaceModels,
+        "How the reference follows light below translucent surfaces: bssrdf: by the dipole's profile over\n"
+        "the distance; walk: a random walk inside closed bodies; local: light leaves where it enters;\n"
+        "techniques do not change")
+        .changing(view)
+        .labelled("subsurface"),
     choice("displaced", "--displaced", &Q::displaced, kOffOn,
            "on: meshes take the place of height maps, in pictures and in the reference: what bump mapping\n"
            "leaves out is the difference, which is no error of a technique"),

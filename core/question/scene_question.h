@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/question/relief_paths.h"
+#include "core/question/subsurface_model.h"
 #include "core/question/term.h"
 
 namespace limn {
@@ -31,6 +32,7 @@ struct SceneQuestion {
   double environmentRotation = 0, environmentScale = 1;
   std::string unshadowed = "off";
   std::string reliefPaths = name(ReliefPaths::both);
+  std::string subsurface = name(SubsurfaceModel::bssrdf);
   std::string displaced = "off";
   double environmentLights = 0;
   int environmentResolution = 48;

@@ -77,6 +77,7 @@ BenchSession::Loaded& BenchSession::load(const bench::Case& c) {
   view.size = {c.width, c.height};
   view.unshadowed = c.unshadowed == "on";
   view.reliefPaths = reliefPathsOf(c.reliefPaths);
+  view.subsurface = subsurfaceModelOf(c.subsurface);
   if (view.defaultLights) {
     moveTo(view, c, view.time);
     loaded_->renderer.setTime(view.time, view.animation);

@@ -201,6 +201,7 @@ View open(const SceneQuestion& question, const Warn& warn) {
   view.size = {question.width, question.height};
   view.unshadowed = question.unshadowed == "on";
   view.reliefPaths = reliefPathsOf(question.reliefPaths);
+  view.subsurface = subsurfaceModelOf(question.subsurface);
   view.scene = scene::load(findScene(question.scene));
   if (question.displaced == "on") view.scene = scene::displaced(std::move(view.scene));
   addEnvironment(question, view.scene);
@@ -239,6 +240,7 @@ reference::Request referenceRequest(const View& view, const scene::Pose& pose,
   request.term = term;
   request.unshadowed = view.unshadowed;
   request.reliefPaths = view.reliefPaths;
+  request.subsurface = view.subsurface;
   request.light = view.light == scene::kNone ? reference::kAllLights : view.light;
   request.bounces = reference::defaultBounces(term);
   request.interfaces = reference::defaultInterfaces(term);

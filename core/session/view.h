@@ -35,8 +35,9 @@ struct View {
   scene::Pose pose;
   glm::ivec2 size;
   int light = scene::kNone;
-  bool unshadowed = false;                      ///< in the reference
-  ReliefPaths reliefPaths = ReliefPaths::both;  ///< in the reference
+  bool unshadowed = false;                               ///< in the reference
+  ReliefPaths reliefPaths = ReliefPaths::both;           ///< in the reference
+  SubsurfaceModel subsurface = SubsurfaceModel::bssrdf;  ///< in the reference
   FileLights file;
   /// Says whether the scene is lit by default lights. Their lights follow the camera; their environment,
   /// which the scene has unless it has one already, stands still.

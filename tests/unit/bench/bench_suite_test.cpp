@@ -183,7 +183,8 @@ TEST(BenchSuite, ScenesMayBeChangedAsOnTheCommandLine) {
       parseSuite(start +
                      "set_light = [\"key.size=0.5\", \"key.intensity=3\"]\neye = \"0,1,3\"\ntarget = "
                      "\"0,0,0\"\nfov = 30\ndefault_lights = \"on\"\nenvironment_rotation = 90\n"
-                     "environment_scale = 2\nunshadowed = \"on\"\nrelief_paths = \"others\"\nanimation = "
+                     "environment_scale = 2\nunshadowed = \"on\"\nrelief_paths = \"others\"\nsubsurface = "
+                     "\"walk\"\nanimation = "
                      "\"walk\"\ngrid = \"smoke\"\ndisplaced = \"on\"\n",
                  "s.toml")
           .cases[0];
@@ -200,6 +201,7 @@ TEST(BenchSuite, ScenesMayBeChangedAsOnTheCommandLine) {
                              .environmentScale = 2,
                              .unshadowed = "on",
                              .reliefPaths = "others",
+                             .subsurface = "walk",
                              .displaced = "on",
                              .grid = "smoke"};
   EXPECT_EQ(static_cast<const SceneQuestion&>(changed), wanted);
