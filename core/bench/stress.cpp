@@ -64,7 +64,7 @@ Term shown(Term answered, StressChange change) {
       return Term::final;
     case StressChange::radiance:
     case StressChange::albedo:
-      return answered == Term::indirect ? Term::indirect : Term::direct;
+      return answered == Term::indirect || answered == Term::subsurface ? answered : Term::direct;
     default:
       return partOfDirect(answered) ? Term::direct : answered;
   }

@@ -33,6 +33,7 @@ TEST(BenchStress, AsksForLightWhereVisibilityKnowsNothingOfTheCase) {
     EXPECT_THAT(asked(Term::visibility | Term::indirect | Term::environment, change),
                 ElementsAre("direct", "indirect", "environment"));
     EXPECT_THAT(asked(termSet(Term::specular), change), ElementsAre("specular"));
+    EXPECT_THAT(asked(termSet(Term::subsurface), change), ElementsAre("subsurface"));
   }
   EXPECT_THAT(asked(Term::visibility | Term::indirect | Term::environment, StressChange::noLight),
               ElementsAre("final"));
