@@ -18,6 +18,17 @@ namespace limn::test {
 /// is solved at Gauss nodes of the cosine, `nodes` on each side of the critical angle.
 double halfSpaceAlbedo(double albedo, double eta, int nodes = 16);
 
+/// Holds what of the light that comes from one direction outside, and enters, leaves again anywhere; by
+/// reciprocity also what leaves in that direction where the sky is even, over F_t times the sky's radiance.
+struct LeavingShare {
+  double cosine;  ///< outside
+  double share;   ///< 0 to 1
+  double weight;  ///< of the direction in the mean over diffuse light that enters
+};
+
+/// Returns those shares at the nodes of halfSpaceAlbedo, which is their mean.
+std::vector<LeavingShare> halfSpaceShares(double albedo, double eta, int nodes = 16);
+
 namespace half_space {
 
 struct Direction {
@@ -107,12 +118,12 @@ inline std::vector<double> chandrasekhar(const std::vector<Direction>& d, double
 
 }  // namespace half_space
 
-inline double halfSpaceAlbedo(double albedo, double eta, int nodes) {
+inline std::vector<LeavingShare> halfSpaceShares(double albedo, double eta, int nodes) {
   const auto d = half_space::directions(eta, nodes);
   const auto h = half_space::chandrasekhar(d, albedo);
   const size_t n = d.size();
   std::vector<std::vector<double>> matrix(n, std::vector<double>(n));
-  std::vector<double> upwards(n);  // radiance below the boundary
+  std::vector<double> upwards(n);  // radiance below the boundary, over that of the sky and eta^2
   double entering = 0;
   for (size_t i = 0; i < n; ++i) {
     entering += (1 - d[i].reflected) * d[i].cosine * d[i].weight;
@@ -124,9 +135,18 @@ inline double halfSpaceAlbedo(double albedo, double eta, int nodes) {
     }
   }
   upwards = half_space::solve(matrix, upwards);
+  std::vector<LeavingShare> shares;
+  for (size_t i = 0; i < n; ++i)
+    if (d[i].reflected < 1)
+      shares.push_back({std::sqrt(std::max(0., 1 - eta * eta * (1 - d[i].cosine * d[i].cosine))), upwards[i],
+                        (1 - d[i].reflected) * d[i].cosine * d[i].weight / entering});
+  return shares;
+}
+
+inline double halfSpaceAlbedo(double albedo, double eta, int nodes) {
   double leaving = 0;
-  for (size_t i = 0; i < n; ++i) leaving += (1 - d[i].reflected) * upwards[i] * d[i].cosine * d[i].weight;
-  return leaving / entering;
+  for (const LeavingShare& s : halfSpaceShares(albedo, eta, nodes)) leaving += s.share * s.weight;
+  return leaving;
 }
 
 }  // namespace limn::test

@@ -222,6 +222,19 @@ TEST(ReferenceSubsurface, WalkReflectsAsChandrasekharsHalfSpace) {
     }
 }
 
+/// More leaves towards grazing views, which look less deep: the walk knows it, the lobe of diffusion does
+/// not.
+TEST(ReferenceSubsurface, WalkLeavesInEachDirectionAsChandrasekharSays) {
+  for (const auto& [cosine, share, weight] : limn::test::halfSpaceShares(0.9, kIor, 4)) {
+    World world = planeUnder(1, vec3(1e8f), vec3(0.1f));
+    world.camera = distantCamera(static_cast<float>(cosine), 0.01f);
+    const Measured m = measured(picture(world, SubsurfaceModel::walk, 16, 512));
+    const double unit = entry(1) * exitAt(cosine);
+    EXPECT_NEAR(m.mean / unit, share, 2e-3 + 4 * m.deviation / unit) << cosine;
+    EXPECT_LT(m.deviation, 0.005 * unit);
+  }
+}
+
 /// Red light through skin, 2, 5 and 10 mm thick (skin1 of Jensen et al. 2001): what the walk lets pass, and
 /// the dipole's profile over both faces, as they were found with another program.
 TEST(ReferenceSubsurface, SlabsOfSkinPassLight) {
