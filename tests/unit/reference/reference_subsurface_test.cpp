@@ -117,6 +117,48 @@ TEST(ReferenceSubsurface, DipoleCrossesAShadowEdge) {
   EXPECT_LT(std::sqrt(variance / 24), 0.02 * total / 24);
 }
 
+/// Two colours that meet in a line, evenly lit: across it light follows the root of both profiles.
+TEST(ReferenceSubsurface, DipoleOfTwoColoursIsTheRootOfBoth) {
+  constexpr float kExtinction = 300, kDark = 0.3f, kBright = 0.8f;
+  World world = planeUnder(1, vec3(kExtinction), vec3(0));
+  scene::Material& material = world.scene.materials[0];
+  material.baseColour = glm::vec4(1);
+  material.subsurface->albedoFromBaseColour = true;
+  scene::Primitive& plane = world.scene.meshes[0].primitives[0];  // dark at x < 0
+  plane = World::quad({-1, 0, 0}, {2, 0, 0}, {0, 0, -4}, 0);
+  const scene::Primitive other = World::quad({1, 0, 0}, {2, 0, 0}, {0, 0, -4}, 0);
+  plane.positions.insert(plane.positions.end(), other.positions.begin(), other.positions.end());
+  plane.normals.insert(plane.normals.end(), other.normals.begin(), other.normals.end());
+  plane.uvs.clear();
+  plane.indices.insert(plane.indices.end(), {4, 5, 6, 4, 6, 7});
+  for (size_t i = 0; i < 8; ++i) plane.colours.emplace_back(vec3(i < 4 ? kDark : kBright), 1);
+  const glsl::WalkReflectance walk = glsl::walk_reflectance(glsl::diffusion_boundary(kIor));
+  const glsl::DiffusionDipole dark = dipole(glsl::walk_absorption(walk, kDark)),
+                              bright = dipole(glsl::walk_absorption(walk, kBright));
+  const float mean = 1 / kExtinction;
+  for (const float x : {-2 * mean, -0.5f * mean, 0.5f * mean, 2 * mean}) {
+    world.camera = scene::lookAt({x, 0.1f, 0}, {x, 0, 0}, 1e-4f);
+    const Measured m = measured(picture(world, SubsurfaceModel::bssrdf, 12, 1024));
+    const glsl::DiffusionDipole& own = x < 0 ? dark : bright;
+    const double edge = static_cast<double>(std::abs(x) * kExtinction);
+    double beyond = 0, across = 0;  // own profile and root over the other half, per mean free path
+    constexpr int kSteps = 20000;
+    for (int i = 0; i < kSteps; ++i) {
+      const double t = (i + 0.5) / kSteps, r = edge + t / (1 - t);
+      const double area = 2 * r * std::acos(edge / r) / (kSteps * (1 - t) * (1 - t));
+      const auto value = [&](const glsl::DiffusionDipole& d) {
+        return static_cast<double>(glsl::diffusion_dipole_profile(d, static_cast<float>(r)));
+      };
+      beyond += area * value(own);
+      across += area * std::sqrt(value(dark) * value(bright));
+    }
+    const double unit = entry(1) * exitAt(1);
+    const double expected = static_cast<double>(own.reflectance) - beyond + across;
+    EXPECT_NEAR(m.mean / unit, expected, 2e-3 + 4 * m.deviation / unit) << x;
+    EXPECT_LT(m.deviation, 0.01 * unit);
+  }
+}
+
 /// Radiosity of a sphere under parallel light along z, by quadrature over the lit half.
 double sphereRadiosity(const glsl::DiffusionDipole& profile, double extinction, const dvec3& x) {
   constexpr int kRings = 150, kTurns = 256;
