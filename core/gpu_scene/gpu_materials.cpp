@@ -35,6 +35,7 @@ glsl::Material packConstants(const Scene& scene, const Material& m) {
   if (m.emissiveTexture.image != kNone) flags |= glsl::material_has_emissive_texture;
   if (m.specularSurface()) flags |= glsl::material_specular_surface;
   if (m.model) flags |= glsl::material_has_model;
+  if (m.subsurface) flags |= glsl::material_translucent;
   if (m.height != kNone && m.normalTexture.image == kNone) flags |= glsl::material_has_height_normals;
   out.height = m.height;
   if (m.height != kNone) {

@@ -324,6 +324,11 @@ bool GpuScene::hasHeights() const {
                              [](const Material& material) { return material.height != kNone; });
 }
 
+bool GpuScene::hasTranslucent() const {
+  return std::ranges::any_of(implementation_->scene.materials,
+                             [](const Material& material) { return material.subsurface.has_value(); });
+}
+
 std::vector<SurfaceVariant> GpuScene::surfaceVariants() const {
   std::set<SurfaceVariant> variants;
   for (size_t i = 0; i < implementation_->scene.materials.size(); ++i)

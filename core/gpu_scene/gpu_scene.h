@@ -115,10 +115,11 @@ class LIMN_API GpuScene {
   uint64_t triangles() const;  ///< summed over all instances
   /// Says whether the instance's material is specular.
   bool specular(uint32_t instance) const;
-  bool hasSpecular() const;  ///< at least one instance is specular
-  bool hasMasked() const;    ///< at least one material has an alpha cutoff
-  bool hasColours() const;   ///< at least one primitive has vertex colours
-  bool hasHeights() const;   ///< at least one material has a height map
+  bool hasSpecular() const;     ///< at least one instance is specular
+  bool hasMasked() const;       ///< at least one material has an alpha cutoff
+  bool hasColours() const;      ///< at least one primitive has vertex colours
+  bool hasHeights() const;      ///< at least one material has a height map
+  bool hasTranslucent() const;  ///< at least one material is translucent
   /// Returns the variants of all materials of the scene, each once.
   std::vector<SurfaceVariant> surfaceVariants() const;
 

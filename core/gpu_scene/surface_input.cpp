@@ -17,7 +17,7 @@ void SurfaceInput::define(std::map<std::string, std::string>& defines) const {
 
 void SurfaceInput::declare(frame::PassBuilder& pass) const {
   readSurfaces(pass, gbuffer_);
-  if (handles_.modelKinds == 0) return;
+  if (!handles_.models) return;
   pass.read(gbuffer_.instance, Access::sampled, kGBufferNames.instance, "materials of surfaces")
       .read(handles_.instances, Access::storageLoad, "Instances", "materials of surfaces")
       .read(handles_.models, Access::storageLoad, "MaterialModels", "how materials reflect light");

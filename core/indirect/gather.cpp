@@ -50,7 +50,8 @@ Gather::Gather(frame::FrameGraph& graph, const TechniqueInputs& inputs, std::str
       technique_(technique),
       lights_(lights),
       settings_(settings),
-      specular_(!std::ranges::all_of(inputs.scene.materials, &scene::Material::lambertian)),
+      specular_(inputs.handles.modelKinds != 0 ||
+                !std::ranges::all_of(inputs.scene.materials, &scene::Material::lambertian)),
       residual_(settings.compensation && settings.clamp > 0),
       gbuffer_(inputs.gbuffer),
       size_(inputs.size) {

@@ -105,7 +105,7 @@ inline constexpr TermInfo kTerms[] = {
      true, TermPicture::answered, nullptr, TermBounces::fromOne, TermInterfaces::none, false, 3},
     {Term::subsurface, "subsurface", "L D* B E",
      "light that entered translucent surfaces and left them again", "the local limit: it leaves where it entered",
-     true, TermPicture::answered, "light below surfaces", TermBounces::fromZero, TermInterfaces::none, false, 8},
+     true, TermPicture::always, "light below surfaces", TermBounces::fromZero, TermInterfaces::none, false, 8},
     {Term::caustic, "caustic", "L S+ D E",
      "light that comes off mirrors and through glass", "0",
      true, TermPicture::answered, nullptr, TermBounces::none, TermInterfaces::light, false, 4},

@@ -84,7 +84,9 @@ void fillMaterial(const RayScene& rays, const TextureLookup& lookup, const glm::
   values.specular_colour = glm::clamp(material.specularColour, 0.f, 1.f);
   values.ior = glm::clamp(material.ior, 1.f, 3.f);
   values.emission = material.emission * glm::vec3(lookup(material.emissiveTexture));
-  values.flags = material.specularSurface() ? glsl::gbuffer_flag_specular : 0u;
+  values.flags = material.specularSurface() ? glsl::gbuffer_flag_specular
+                 : material.subsurface      ? glsl::gbuffer_flag_translucent
+                                            : 0u;
   surface.brdf = glsl::surface_brdf(values.base_colour, values.metallic, values.roughness,
                                     values.specular_factor, values.specular_colour, values.ior);
   if (material.subsurface)

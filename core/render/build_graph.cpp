@@ -6,6 +6,7 @@
 #include "core/technique/bound.h"
 #include "core/technique/light_batch.h"
 #include "core/technique/module.h"
+#include "glsl/materials/material_model.glsl"
 
 namespace limn::render {
 namespace {
@@ -58,14 +59,15 @@ void Renderer::Implementation::mountTechnique(const TechniquePlugin& plugin) {
   mounted.push_back(prefix);
 }
 
-TechniqueInputs Renderer::Implementation::inputsOf(const Use& use, const GBuffer& seen) {
-  return {scene, pose, gpuScene, services, use.settings->parameters, handles, seen, settings.size};
+TechniqueInputs Renderer::Implementation::inputsOf(const Use& use, const SceneHandles& resources,
+                                                   const GBuffer& seen) {
+  return {scene, pose, gpuScene, services, use.settings->parameters, resources, seen, settings.size};
 }
 
 frame::TextureHandle Renderer::Implementation::ask(Use& use, Term term, std::span<const uint32_t> lights,
-                                                   frame::TextureHandle target) {
-  const bool behind = term != Term::specular && term != Term::caustic && term != Term::media;
-  TechniqueInputs inputs = inputsOf(use, behind ? matte : gbuffer);
+                                                   const Lighting& lit, frame::TextureHandle entering) {
+  TechniqueInputs inputs = inputsOf(use, lit.handles, lit.gbuffer);
+  inputs.entering = entering;
   if (term == Term::specular) {
     inputs.matte = matte;
     inputs.environmentMap = deferred.environmentMap(*graph);
@@ -73,7 +75,7 @@ frame::TextureHandle Renderer::Implementation::ask(Use& use, Term term, std::spa
   const TechniquePlugin& plugin = *use.settings->plugin;
   inputs.bound = settings.bound && hasBound(plugin);
   const frame::TextureHandle answer = inTechnique(plugin, [&] {
-    return use.technique->addPasses(*graph, inputs, {term, lights, target});
+    return use.technique->addPasses(*graph, inputs, {term, lights, lit.radiance});
   });
   if (!answer)
     throw Error(fmt::format("{}: it answers {} with nothing", described(plugin), limn::name(term)));
@@ -87,7 +89,7 @@ void Renderer::Implementation::askSurface() {
   if (handles.modelKinds == 0 || isFactor(settings.term) || !gbuffer.depth)
     return graph->leaveOut("surface", plugin.info->name,
                            handles.modelKinds == 0 ? "no material has a model" : "no light is reflected");
-  const TechniqueInputs inputs = inputsOf(*use, gbuffer);
+  const TechniqueInputs inputs = inputsOf(*use, handles, gbuffer);
   scene::SurfaceAnswer answer = inTechnique(plugin, [&] { return use->technique->surface(*graph, inputs); });
   if (answer.file.empty())
     throw Error(fmt::format("{}: it answers {} with nothing", described(plugin), limn::name(Term::surface)));
@@ -127,35 +129,37 @@ frame::TextureHandle Renderer::Implementation::factorTarget(Term term, int layer
                               {GL_TEXTURE_2D_ARRAY, GL_R16, settings.size.x, settings.size.y, layers, 1});
 }
 
-frame::TextureHandle Renderer::Implementation::addDirect(const Deferred::Frame& frame,
-                                                         frame::TextureHandle radiance,
-                                                         std::span<const uint32_t> lights) {
-  if (Use* direct = answering(Term::direct)) return ask(*direct, Term::direct, lights, radiance);
+void Renderer::Implementation::addDirect(std::span<Lighting> lightings, std::span<const uint32_t> lights) {
+  if (Use* direct = answering(Term::direct)) {
+    for (Lighting& lit : lightings) lit.radiance = ask(*direct, Term::direct, lights, lit);
+    return;
+  }
   const auto factor = [&](Term term, Use* use, std::span<const uint32_t> batch) {
-    return use ? ask(*use, term, batch, factorTarget(term, static_cast<int>(batch.size())))
-               : frame::TextureHandle{};
+    if (!use) return frame::TextureHandle{};
+    const Lighting& first = lightings.front();
+    return ask(*use, term, batch,
+               {first.handles, first.gbuffer, factorTarget(term, static_cast<int>(batch.size()))});
   };
   Use* shadowing = answering(Term::visibility);
   for (size_t first = 0; first < lights.size(); first += kLightBatch) {
     const auto batch = lights.subspan(first, std::min(kLightBatch, lights.size() - first));
     const Deferred::Factors factors{.visibility = factor(Term::visibility, shadowing, batch),
                                     .relief = factor(Term::relief, bumps, batch)};
-    radiance = deferred.addLights(frame, radiance, batch, factors);
+    for (Lighting& lit : lightings)
+      lit.radiance = deferred.addLights(frameOf(lit), lit.radiance, batch, factors);
   }
-  return radiance;
 }
 
-frame::TextureHandle Renderer::Implementation::addEnvironment(const Deferred::Frame& frame,
-                                                              frame::TextureHandle radiance) {
+void Renderer::Implementation::addEnvironment(std::span<Lighting> lightings) {
   const char* why = nullptr;
   if (!scene.environment && !forced(Saving::environment)) why = "no environment";
   if (scene.environment && settings.light >= 0) why = "another light was chosen";
   Use* use = answering(Term::environment);
-  if (!why && use) return ask(*use, Term::environment, {}, radiance);
-  if (!why && !scene.environment.lights.empty()) why = "lights stand for it";
-  if (!why) return deferred.addEnvironment(frame, radiance);
-  graph->leaveOut("environment light", "core", why);
-  return radiance;
+  if (!why && !use && !scene.environment.lights.empty()) why = "lights stand for it";
+  if (why) return graph->leaveOut("environment light", "core", why);
+  for (Lighting& lit : lightings)
+    lit.radiance =
+        use ? ask(*use, Term::environment, {}, lit) : deferred.addEnvironment(frameOf(lit), lit.radiance);
 }
 
 Renderer::Implementation::Use* Renderer::Implementation::answeringSpecular() {
@@ -171,7 +175,8 @@ Renderer::Implementation::Use* Renderer::Implementation::answeringRelief() {
   Use* use = answering(Term::relief);
   if (!use) return nullptr;
   const bool lit = settings.term == Term::final || settings.term == Term::direct ||
-                   settings.term == Term::specular || settings.term == Term::relief;
+                   settings.term == Term::subsurface || settings.term == Term::specular ||
+                   settings.term == Term::relief;
   const char* why = !gpuScene.hasHeights() ? "no material has a height map"
                     : !lit                 ? "no direct light is shown"
                                            : nullptr;
@@ -181,8 +186,8 @@ Renderer::Implementation::Use* Renderer::Implementation::answeringRelief() {
 }
 
 bool Renderer::Implementation::readsPlaces() const {
-  const bool indirect =
-      settings.term == Term::final || settings.term == Term::indirect || settings.term == Term::specular;
+  const bool indirect = settings.term == Term::final || settings.term == Term::indirect ||
+                        settings.term == Term::subsurface || settings.term == Term::specular;
   return gpuScene.hasHeights() && std::ranges::any_of(uses, [&](const Use& use) {
            const bool answers =
                &use == bumps || (indirect && contains(termsOf(*use.settings), Term::indirect));
@@ -190,39 +195,89 @@ bool Renderer::Implementation::readsPlaces() const {
          });
 }
 
+std::vector<Renderer::Implementation::Lighting> Renderer::Implementation::lightings(
+    frame::TextureHandle radiance) {
+  const Lighting seen{handles, matte, radiance};
+  const bool reflected = settings.term != Term::subsurface && (summed & (Term::direct | Term::indirect)) != 0;
+  std::vector<Lighting> result;
+  if (reflected) result.push_back(seen);
+  if (!gpuScene.hasTranslucent()) {
+    if (const Use* use = answering(Term::subsurface))
+      graph->leaveOut("subsurface", use->settings->plugin->info->name, "no material is translucent");
+    return result;
+  }
+  if (reflected)
+    result.back().gbuffer = Deferred::addTranslucentView(frameOf(seen), Deferred::Boundary::reflecting);
+  if (!contains(summed, Term::subsurface)) return result;
+  Lighting entering{handles, Deferred::addTranslucentView(frameOf(seen), Deferred::Boundary::entering),
+                    Deferred::black(*graph, "entering light", settings.size), true};
+  entering.handles.modelKinds = 1u << glsl::model_entry;
+  entering.handles.models = entering.handles.measured = {};
+  entering.handles.surface = nullptr;
+  result.push_back(std::move(entering));
+  return result;
+}
+
+void Renderer::Implementation::addLight(std::span<Lighting> lightings, std::span<const uint32_t> lights) {
+  if (contains(summed, Term::direct)) {
+    if (!lights.empty())
+      addDirect(lightings, lights);
+    else
+      graph->leaveOut("lights", "core", "the scene has no light");
+    addEnvironment(lightings);
+  }
+  if (!contains(summed, Term::indirect)) return;
+  for (Use& use : uses) {
+    if (!contains(termsOf(*use.settings), Term::indirect)) continue;
+    for (Lighting& lit : lightings) lit.radiance = ask(use, Term::indirect, lights, lit);
+  }
+}
+
+frame::TextureHandle Renderer::Implementation::addSubsurface(frame::TextureHandle radiance,
+                                                             frame::TextureHandle entering,
+                                                             std::span<const uint32_t> lights) {
+  const Lighting seen{handles, matte, radiance};
+  Use* use = answering(Term::subsurface);
+  return use ? ask(*use, Term::subsurface, lights, seen, entering)
+             : Deferred::addLocalSubsurface(frameOf(seen), radiance, entering);
+}
+
 frame::TextureHandle Renderer::Implementation::addRadiance() {
   Use* specular = answeringSpecular();
   matte = specular
               ? mattePass.add(*graph, gpuScene, handles, settings.size, scene::Surfaces::matte, readsPlaces())
               : gbuffer;
-  const Deferred::Frame lit{*graph, handles, matte, settings.size};
-  const Deferred::Frame frame{*graph, handles, gbuffer, settings.size};
-  const bool all = settings.term == Term::final, whole = all || specular;
-  frame::TextureHandle radiance = deferred.start(lit, specular ? Deferred::Start::emission
-                                                      : all    ? Deferred::Start::emissionAndSpecular
-                                                               : Deferred::Start::black);
+  const bool all = settings.term == Term::final;
+  summed = all || specular                     ? kAnswerableTerms
+           : settings.term == Term::subsurface ? Term::direct | Term::indirect | Term::subsurface
+                                               : termSet(settings.term);
+  frame::TextureHandle radiance =
+      deferred.start({*graph, handles, matte, settings.size}, specular ? Deferred::Start::emission
+                                                              : all    ? Deferred::Start::emissionAndSpecular
+                                                                       : Deferred::Start::black);
   if (!gbuffer.depth) {
     graph->leaveOut("lighting", "core", "the scene has no geometry");
     return radiance;
   }
   const std::vector<uint32_t> lights = activeLights();
-  if (whole || settings.term == Term::direct) {
-    if (!lights.empty())
-      radiance = addDirect(lit, radiance, lights);
-    else
-      graph->leaveOut("lights", "core", "the scene has no light");
-    radiance = addEnvironment(lit, radiance);
+  std::vector<Lighting> lit = lightings(radiance);
+  if (!lit.empty()) {
+    addLight(lit, lights);
+    if (!lit.front().entering) radiance = lit.front().radiance;
+    if (lit.back().entering) radiance = addSubsurface(radiance, lit.back().radiance, lights);
   }
-  const auto add = [&](Term term, bool wanted) {
-    for (Use& use : uses)
-      if (wanted && contains(termsOf(*use.settings), term)) radiance = ask(use, term, lights, radiance);
-  };
-  add(Term::indirect, whole || settings.term == Term::indirect);
+  const Deferred::Frame frame{*graph, handles, gbuffer, settings.size};
   if (specular) {
-    const frame::TextureHandle seen = ask(*specular, Term::specular, lights, radiance);
+    const frame::TextureHandle seen = ask(*specular, Term::specular, lights, {handles, gbuffer, radiance});
     radiance = all ? deferred.addSpecular(frame, radiance, seen) : seen;
   }
-  add(Term::caustic, all || settings.term == Term::caustic);
+  const auto add = [&](Term term) {
+    if (!all && settings.term != term) return;
+    for (Use& use : uses)
+      if (contains(termsOf(*use.settings), term))
+        radiance = ask(use, term, lights, {handles, gbuffer, radiance});
+  };
+  add(Term::caustic);
   const char* clear = !scene.medium.present()        ? "the scene has no medium"
                       : settings.term == Term::media ? "no surface is shown"
                                                      : nullptr;
@@ -230,7 +285,7 @@ frame::TextureHandle Renderer::Implementation::addRadiance() {
     graph->leaveOut("transmittance", "core", clear);
   else
     radiance = deferred.addTransmittance(frame, radiance);
-  add(Term::media, all || settings.term == Term::media);
+  add(Term::media);
   return radiance;
 }
 
@@ -245,7 +300,7 @@ frame::TextureHandle Renderer::Implementation::addFactor() {
   matte = gbuffer;
   const frame::TextureHandle target = factorTarget(term, 1);
   if (term == Term::relief && !bumps) return Deferred::clearFactor(*graph, target);
-  return ask(*answering(term), term, lights, target);
+  return ask(*answering(term), term, lights, {handles, gbuffer, target});
 }
 
 void Renderer::Implementation::addInspector() {

@@ -24,6 +24,10 @@ using frame::TextureHandle;
 
 constexpr int kGroupSize = 8;
 
+TextureHandle createRadiance(frame::FrameGraph& graph, const char* name, glm::ivec2 size) {
+  return graph.createTexture(name, {.format = GL_RGBA32F, .width = size.x, .height = size.y});
+}
+
 bool hasSpecularSurface(const scene::Scene& scene) {
   return std::ranges::any_of(scene.materials, &scene::Material::specularSurface);
 }
@@ -92,19 +96,9 @@ Deferred::~Deferred() = default;
 TextureHandle Deferred::start(const Frame& frame, Start with) {
   frame::FrameGraph& graph = frame.graph;
   implementation_->environmentHandle = implementation_->ltcHandle = {};
-  const TextureHandle target =
-      graph.createTexture("radiance", {.format = GL_RGBA32F, .width = frame.size.x, .height = frame.size.y});
   const bool geometry = static_cast<bool>(frame.gbuffer.depth);
   const bool environment = static_cast<bool>(implementation_->scene.environment);
-  if (with == Start::black || (!geometry && !environment)) {
-    frame::PassBuilder clear = graph.addPass("clear radiance");
-    const TextureHandle cleared = clear.write(target, Access::copyTarget, "no light yet");
-    clear.execute([cleared](frame::PassContext& context) {
-      constexpr float black[4] = {0, 0, 0, 1};
-      context.gl().ClearTexImage(context.texture(cleared).id(), 0, GL_RGBA, GL_FLOAT, black);
-    });
-    return cleared;
-  }
+  if (with == Start::black || (!geometry && !environment)) return black(graph, "radiance", frame.size);
 
   frame::PassBuilder builder = graph.addPass("emission and background");
   builder.read(frame.handles.frame, Access::uniformBuffer, "FrameBlock", "camera");
@@ -126,12 +120,67 @@ TextureHandle Deferred::start(const Frame& frame, Start with) {
     builder.read(frame.gbuffer.emission, Access::sampled, kGBufferNames.emission, "emitted radiance");
   }
   const TextureHandle radiance =
-      builder.write(target, Access::imageStore, "radiance", "light the camera sees without reflection");
+      builder.write(createRadiance(graph, "radiance", frame.size), Access::imageStore, "radiance",
+                    "light the camera sees without reflection");
   const auto program = builder.program({.files = {"glsl/deferred/background.comp.glsl"},
                                         .defines = {{"GEOMETRY", geometry ? "1" : "0"},
                                                     {"ENVIRONMENT", environment ? "1" : "0"},
                                                     {"SPECULAR", specular ? "1" : "0"}}});
   builder.execute([=, size = frame.size](frame::PassContext& context) {
+    context.use(program);
+    context.dispatch(size.x, size.y, 1, kGroupSize, kGroupSize);
+  });
+  return radiance;
+}
+
+TextureHandle Deferred::black(frame::FrameGraph& graph, const char* name, glm::ivec2 size) {
+  frame::PassBuilder clear = graph.addPass(std::string("clear ") + name);
+  const TextureHandle cleared =
+      clear.write(createRadiance(graph, name, size), Access::copyTarget, "no light yet");
+  clear.execute([cleared](frame::PassContext& context) {
+    constexpr float nothing[4] = {0, 0, 0, 1};
+    context.gl().ClearTexImage(context.texture(cleared).id(), 0, GL_RGBA, GL_FLOAT, nothing);
+  });
+  return cleared;
+}
+
+GBuffer Deferred::addTranslucentView(const Frame& frame, Boundary boundary) {
+  const bool entering = boundary == Boundary::entering;
+  frame::PassBuilder builder = frame.graph.addPass(entering ? "entry gbuffer" : "boundary gbuffer");
+  builder.read(frame.handles.frame, Access::uniformBuffer, "FrameBlock", "size of the screen")
+      .read(frame.gbuffer.albedo, Access::sampled, kGBufferNames.albedo, "what other surfaces reflect")
+      .read(frame.gbuffer.material, Access::sampled, kGBufferNames.material,
+            "which surfaces are translucent");
+  GBuffer view = frame.gbuffer;
+  const auto write = [&](TextureHandle& texture, const char* title, const char* name, const char* why) {
+    texture = builder.write(frame.graph.createTexture(title, frame.graph.desc(texture)), Access::imageStore,
+                            name, why);
+  };
+  if (entering) {
+    write(view.albedo, "entry albedo", "albedo", "mean share of light that enters");
+    write(view.material, "entry material", "material", "which surfaces it enters");
+  } else {
+    write(view.albedo, "boundary albedo", "albedo", "without what lies below boundaries");
+  }
+  const auto program = builder.program({.files = {"glsl/deferred/translucent_view.comp.glsl"},
+                                        .defines = {{"ENTERING", entering ? "1" : "0"}}});
+  builder.execute([program, size = frame.size](frame::PassContext& context) {
+    context.use(program);
+    context.dispatch(size.x, size.y, 1, kGroupSize, kGroupSize);
+  });
+  return view;
+}
+
+TextureHandle Deferred::addLocalSubsurface(const Frame& frame, TextureHandle before, TextureHandle entering) {
+  frame::PassBuilder builder = frame.graph.addPass("local subsurface light");
+  builder.read(frame.handles.frame, Access::uniformBuffer, "FrameBlock", "camera");
+  readSurfaces(builder, frame.gbuffer);
+  builder.read(entering, Access::sampled, "entering", "light that enters bodies");
+  const TextureHandle radiance =
+      builder.write(before, Access::imageLoadStore, "radiance", "what leaves them, where it entered");
+  const auto program =
+      builder.program({.files = {"glsl/deferred/local_subsurface.comp.glsl"}, .defines = {}});
+  builder.execute([program, size = frame.size](frame::PassContext& context) {
     context.use(program);
     context.dispatch(size.x, size.y, 1, kGroupSize, kGroupSize);
   });
@@ -198,9 +247,10 @@ TextureHandle Deferred::addEnvironment(const Frame& frame, TextureHandle before)
   builder.read(maps[0], Access::sampled, "environment_irradiance", "diffuse light");
   builder.read(maps[1], Access::sampled, "environment_filtered", "glossy light");
   builder.read(ltc, Access::sampled, "ltc_table", "glossy reflectance");
-  if ((frame.handles.modelKinds & 1u << glsl::model_coated) != 0)
+  constexpr uint32_t entered = 1u << glsl::model_coated | 1u << glsl::model_entry;
+  if ((frame.handles.modelKinds & entered) != 0)
     builder.read(implementation_->grazingLight(frame.graph), Access::sampled, "environment_grazing",
-                 "light that coats reflect");
+                 "light that enters coats and bodies");
   const TextureHandle radiance =
       builder.write(before, Access::imageLoadStore, "radiance", "light of the environment, V = 1");
   gpu::ProgramDesc desc{.files = {"glsl/deferred/environment.comp.glsl"},
@@ -246,10 +296,9 @@ TextureHandle Deferred::addSpecular(const Frame& frame, TextureHandle before, Te
       .read(frame.gbuffer.emission, Access::sampled, kGBufferNames.emission, "their emission")
       .read(before, Access::sampled, "beside", "what is seen beside them")
       .read(seen, Access::sampled, "seen", "what is seen in them");
-  const TextureHandle radiance = builder.write(
-      frame.graph.createTexture("radiance with specular surfaces",
-                                {.format = GL_RGBA32F, .width = frame.size.x, .height = frame.size.y}),
-      Access::imageStore, "radiance", "both");
+  const TextureHandle radiance =
+      builder.write(createRadiance(frame.graph, "radiance with specular surfaces", frame.size),
+                    Access::imageStore, "radiance", "both");
   const auto program = builder.program({.files = {"glsl/deferred/specular.comp.glsl"}, .defines = {}});
   builder.execute([=, size = frame.size](frame::PassContext& context) {
     context.use(program);

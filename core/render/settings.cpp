@@ -61,7 +61,7 @@ void checkTechniques(const std::vector<TechniqueUse>& techniques, Term term) {
 }
 
 int bouncesOf(Term term, const std::vector<TechniqueUse>& techniques) {
-  if (term != Term::indirect && term != Term::final) return 0;
+  if (term != Term::indirect && term != Term::subsurface && term != Term::final) return 0;
   int bounces = term == Term::indirect ? 1 : 0;
   for (const TechniqueUse& use : techniques)
     if (contains(termsOf(use), Term::indirect)) bounces = std::max(bounces, parameterOr(use, "bounces", 1));

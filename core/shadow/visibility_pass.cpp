@@ -87,7 +87,7 @@ frame::TextureHandle addVisibilityPass(frame::FrameGraph& graph, const Technique
     builder.read(g.depth, Access::sampled, kGBufferNames.depth, "receivers")
         .read(g.geometricNormal, Access::sampled, kGBufferNames.geometricNormal, "tangent planes");
   }
-  if (!pass.reflects || scene.modelKinds == 0)
+  if (!pass.reflects || !scene.models)
     builder.read(g.instance, Access::sampled, kGBufferNames.instance, "a light does not see itself");
   readMaps(builder, inputs.gpuScene.device(), pass.maps, pass.program.defines);
   for (const SampledTexture& s : pass.sampled) builder.read(s.texture, Access::sampled, s.name, s.why);

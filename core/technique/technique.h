@@ -64,12 +64,17 @@ struct TechniqueInputs {
   const FrameServices& services;
   const ParameterValues& parameters;
   SceneHandles handles;
-  /// Holds the surfaces to light. When specular is answered: for visibility, relief, direct, environment and
-  /// indirect, the surfaces behind the specular ones.
+  /// Holds the surfaces to light. When specular is answered: for visibility, relief, direct, environment,
+  /// indirect and subsurface, the surfaces behind the specular ones. For direct, environment and indirect,
+  /// translucent surfaces reflect as their boundaries do; what enters them is asked for by a second request,
+  /// in whose G-buffer they reflect F_t / pi and nothing else reflects (glsl/materials/entry.glsl).
   GBuffer gbuffer;
   glm::ivec2 size;                        ///< pixels
   GBuffer matte{};                        ///< for specular: the G-buffer without specular surfaces
   frame::TextureHandle environmentMap{};  ///< for specular: equirectangular, RGB32F; empty: no environment
+  /// For subsurface: RGBA32F, E / pi in W/(sr m^2) at each translucent pixel, where E is the irradiance that
+  /// enters the body; 0 elsewhere.
+  frame::TextureHandle entering{};
   /// Says whether shadow::addVisibilityPass() runs the technique's bound (core/technique/bound.h).
   bool bound = false;
 
@@ -92,7 +97,7 @@ struct TermRequest {
   /// place in a height map.
   /// specular: RGBA32F, radiance of TechniqueInputs::matte and the background behind it, to be read; the
   /// result is a separate texture, black where no specular surface is seen. Other terms: RGBA32F radiance to
-  /// add to.
+  /// add to; subsurface is asked for only where the scene has translucent surfaces.
   frame::TextureHandle target;
 };
 
@@ -102,7 +107,8 @@ class Technique {
  public:
   virtual ~Technique() = default;
   /// Declares the passes that answer `request` and returns the target after them. Called once per batch of
-  /// lights. Passes that the scene does not need are not declared but reported with graph.leaveOut().
+  /// lights, and for direct, environment and indirect twice where the scene has translucent surfaces. Passes
+  /// that the scene does not need are not declared but reported with graph.leaveOut().
   virtual frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                          const TermRequest& request) = 0;
   /// Declares the passes that make what material_response() looks up, and returns how Term::surface is

@@ -74,7 +74,7 @@ void main() {
   s.specular_factor = material.specular_factor;
   s.specular_colour = material.specular_factor > 0.0 ? material.specular_colour / material.specular_factor : vec3(1.0);
   s.ior = material.ior;
-  s.flags = 0u;
+  s.flags = (material.flags & material_translucent) != 0u ? gbuffer_flag_translucent : 0u;
   if ((material.flags & material_specular_surface) != 0u) {
     s.flags = gbuffer_flag_specular | (gl_FrontFacing ? 0u : gbuffer_flag_back);
   }

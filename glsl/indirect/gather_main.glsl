@@ -104,7 +104,11 @@ void gather_from(VirtualPointLight light, uint pixel, Receiver r, float nearest2
 #if !LAMBERTIAN
   vec3 l = inversesqrt(max(sight.d2, 1e-37)) * sight.offset;
   BrdfParts parts = brdf_view_parts(r.brdf, l);
-#if MATERIAL_MODELS
+#if (MATERIAL_MODELS & 128) != 0
+  // Over the mean share, which the G-buffer holds as the base colour.
+  parts.diffuse = inverse_pi * entry_share(r.material.model, dot(r.normal, l)) / r.material.model.kd.x;
+  parts.specular = vec3(0.0);
+#elif MATERIAL_MODELS
   if (has_model(r.material)) {  // all of it: what is left of the surface without its specular part is black
     parts.diffuse = 0.0;
     parts.specular = surface_response(r.material, r.normal, r.to_viewer, l) / max(dot(r.normal, l), 1e-6);

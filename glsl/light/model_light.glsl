@@ -25,6 +25,28 @@ LIMN_FN vec3 model_rectangle(Rectangle r, MaterialModel m, Frame frame, vec3 ng,
   return sum / float(model_light_side * model_light_side);
 }
 
+#if (MATERIAL_MODELS & 128) != 0
+// The same of what enters a translucent surface: the exact irradiance, times the mean of F_t over the points.
+LIMN_FN vec3 entering_rectangle(Rectangle r, MaterialModel m, Frame frame, vec3 ng, vec3 v) {
+  float all = 0.0f;
+  float entering = 0.0f;
+  vec3 area = cross(r.u, r.v);
+  for (int i = 0; i < model_light_side * model_light_side; ++i) {
+    vec3 offset = rectangle_point(r, grid_point(i, model_light_side) - vec2(0.5f));
+    float d2 = dot(offset, offset);
+    if (!(d2 > 0.0f)) continue;
+    vec3 l = offset * inversesqrt(d2);
+    float cosine = dot(frame.n, l);
+    if (!(cosine > 0.0f) || dot(ng, l) <= 0.0f) continue;
+    float weight = cosine * abs(dot(area, l)) / d2;
+    all += weight;
+    entering += weight * entry_share(m, cosine);
+  }
+  SurfaceBrdf white = surface_brdf(vec3(1.0f), 0.0f, 1.0f, 0.0f, vec3(1.0f), m.eta.x);
+  return unshadowed_rectangle(r, white, frame.n, ng, v) * (all > 0.0f ? entering / all : m.kd.x);
+}
+#endif
+
 // As unshadowed_light(), for a model in its frame, whose n is the shading normal.
 LIMN_FN vec3 model_light(Light light, MaterialModel m, Frame frame, vec3 p, vec3 ng, vec3 v) {
   bool distant = light_is_distant_rectangle(light) && (light.flags & light_flag_centre) == 0u;
@@ -32,7 +54,11 @@ LIMN_FN vec3 model_light(Light light, MaterialModel m, Frame frame, vec3 p, vec3
     if (!rectangle_emits_towards(light, p)) return vec3(0.0f);
     float factor = receiver_factor(light, p);
     if (factor == 0.0f) return vec3(0.0f);
-    return rectangle_radiance(light) * (factor * model_rectangle(rectangle_from(light, p), m, frame, ng, v));
+    Rectangle r = rectangle_from(light, p);
+#if (MATERIAL_MODELS & 128) != 0
+    if (m.kind == model_entry) return rectangle_radiance(light) * (factor * entering_rectangle(r, m, frame, ng, v));
+#endif
+    return rectangle_radiance(light) * (factor * model_rectangle(r, m, frame, ng, v));
   }
   vec3 l = punctual_direction(light, p);
   if (!(dot(frame.n, l) > 0.0f) || dot(ng, l) <= 0.0f) return vec3(0.0f);

@@ -11,6 +11,7 @@ LIMN_CONST uint model_banks = 3u;
 LIMN_CONST uint model_phong = 4u;
 LIMN_CONST uint model_coated = 5u;
 LIMN_CONST uint model_measured = 6u;
+LIMN_CONST uint model_entry = 7u;  // of no material: what enters a translucent surface (glsl/materials/entry.glsl)
 
 LIMN_CONST uint model_option_gaussian = 1u;   // torrance_sparrow: D is a Gaussian of the angle, not Beckmann's
 LIMN_CONST uint model_option_product = 2u;    // torrance_sparrow, ward: masking and shadowing are independent

@@ -7,7 +7,7 @@
 #define LIMN_MODEL_GLSL
 #ifdef __cplusplus
 #include <vector>
-#define MATERIAL_MODELS 126
+#define MATERIAL_MODELS 254
 #endif
 #include "glsl/materials/material_model.glsl"
 #include "glsl/numeric/geometry.glsl"
@@ -28,6 +28,9 @@
 #endif
 #if (MATERIAL_MODELS & 64) != 0
 #include "glsl/materials/measured.glsl"
+#endif
+#if (MATERIAL_MODELS & 128) != 0
+#include "glsl/materials/entry.glsl"
 #endif
 LIMN_BEGIN
 
@@ -52,6 +55,9 @@ LIMN_FN vec3 model_response(MaterialModel m, vec3 v, vec3 l) {
 #endif
 #if (MATERIAL_MODELS & 64) != 0 && !defined(__cplusplus)
   if (m.kind == model_measured) return measured_response(m.table, m, v, l);
+#endif
+#if (MATERIAL_MODELS & 128) != 0
+  if (m.kind == model_entry) return entry_response(m, l);
 #endif
   return vec3(0.0f);
 }
@@ -125,6 +131,9 @@ LIMN_FN vec3 model_albedo(MaterialModel m) {
 #endif
 #if (MATERIAL_MODELS & 64) != 0
   if (m.kind == model_measured) return measured_albedo(m);
+#endif
+#if (MATERIAL_MODELS & 128) != 0
+  if (m.kind == model_entry) return m.kd;
 #endif
   return vec3(0.0f);
 }

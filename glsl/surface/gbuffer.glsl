@@ -26,6 +26,7 @@ LIMN_BEGIN
 
 LIMN_CONST uint gbuffer_flag_specular = 1u;  // specular surface: takes no direct and no indirect light
 LIMN_CONST uint gbuffer_flag_back = 2u;      // of a specular surface: its back is seen, from within the body
+LIMN_CONST uint gbuffer_flag_translucent = 4u;  // light enters; the base colour is the half space's albedo
 
 // A surface point before packing and after unpacking.
 struct GBufferSurface {
@@ -111,6 +112,10 @@ LIMN_FN GBufferPlace gbuffer_place_unpack(vec3 stored) {
   return p;
 }
 
+// Two of the constants that the material's texture holds.
+LIMN_FN float gbuffer_stored_ior(vec4 material) { return 1.0f + 2.0f * material.z; }
+LIMN_FN uint gbuffer_stored_flags(vec4 material) { return uint(material.w * 255.0f + 0.5f); }
+
 LIMN_FN GBufferTexels gbuffer_pack(GBufferSurface s) {
   GBufferTexels t;
   t.normal = octahedral_encode(s.normal);
@@ -131,9 +136,9 @@ LIMN_FN GBufferSurface gbuffer_unpack(GBufferTexels t) {
   s.roughness = t.material.x;
   s.specular_factor = t.material.y;
   s.specular_colour = colour_from_half_bits(t.emission.w);
-  s.ior = 1.0f + 2.0f * t.material.z;
+  s.ior = gbuffer_stored_ior(t.material);
   s.emission = vec3(t.emission);
-  s.flags = uint(t.material.w * 255.0f + 0.5f);
+  s.flags = gbuffer_stored_flags(t.material);
   return s;
 }
 

@@ -1,5 +1,6 @@
 // How the surface of a pixel reflects light, for every pass that reflects it: metallic-roughness, or the model of its
-// material. MATERIAL_MODELS: bit 1 << kind of each model of the scene; 0: the program knows metallic-roughness alone.
+// material. MATERIAL_MODELS: bit 1 << kind of each model of the scene; 0: the program knows metallic-roughness alone; 128: the
+// G-buffer is that of light which enters translucent surfaces (glsl/materials/entry.glsl).
 // SURFACE_TANGENTS 1: the G-buffer holds tangents; SURFACE_PLACES 1: and places in height maps. SURFACE_ANSWER: see
 // response.glsl.
 #ifndef LIMN_SURFACE_RESPONSE_GLSL
@@ -8,7 +9,8 @@
 #include "glsl/surface/gbuffer_input.glsl"
 #if MATERIAL_MODELS
 #include "glsl/materials/response.glsl"
-
+#endif
+#if (MATERIAL_MODELS & 127) != 0
 layout(std430) readonly buffer Instances { Instance instances[]; };
 layout(std430) readonly buffer MaterialModels { MaterialModel material_models[]; };  // of each material
 #if SURFACE_TANGENTS
@@ -37,7 +39,10 @@ SurfaceMaterial pixel_material(ivec2 pixel, GBufferSurface surface) {
   SurfaceMaterial m;
   m.brdf = surface_brdf(surface.base_colour, surface.metallic, surface.roughness, surface.specular_factor,
                         surface.specular_colour, surface.ior);
-#if MATERIAL_MODELS
+#if (MATERIAL_MODELS & 128) != 0
+  m.model = entry_model(surface.ior);
+  m.frame = frame_around(surface.normal);
+#elif MATERIAL_MODELS
   uint instance = pixel_instance(pixel);
   m.model.kind = model_none;
   if (instance != no_instance) m.model = material_models[instances[instance].material];

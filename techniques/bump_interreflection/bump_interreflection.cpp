@@ -160,12 +160,12 @@ class Passes {
         .read(inputs_.gbuffer.instance, Access::sampled, kGBufferNames.instance, "materials of surfaces")
         .read(scene.instances, Access::storageLoad, "Instances", "materials of surfaces")
         .read(scene.materials, Access::storageLoad, "Materials", "which height map they have");
-    if (scene.modelKinds != 0)
+    if (scene.models)
       pass.read(scene.models, Access::storageLoad, "MaterialModels", "albedo of material models");
     if (visibility) pass.read(visibility, Access::sampled, "visibility", "V of each light");
     if (flatBases) pass.read(basesOfInstances_, Access::storageLoad, "BasesOfInstances", "which are flat");
     std::map<std::string, std::string> defines{
-        {"MATERIAL_MODELS", scene.modelKinds != 0 ? "1" : "0"},
+        {"MATERIAL_MODELS", scene.models ? "1" : "0"},
         {"VISIBILITY", visibility ? "1" : "0"},
         {"FLAT_BASES", flatBases ? "1" : "0"},
         {"BETWEEN", inputs_.parameters.choice("lookup") == 0 ? "1" : "0"}};

@@ -5,7 +5,7 @@
 #if MATERIAL_MODELS
 #include "glsl/light/prefiltered_models.glsl"
 #endif
-#if (MATERIAL_MODELS & 32) != 0
+#if (MATERIAL_MODELS & 160) != 0
 #include "glsl/light/coated_environment.glsl"
 #endif
 #include "glsl/media/medium_input.glsl"
@@ -65,15 +65,20 @@ MicrofacetLobe microfacet_lobe_entry(float n_dot_v, float alpha) {
 }
 #endif
 
-#if (MATERIAL_MODELS & 32) != 0
+#if (MATERIAL_MODELS & 160) != 0
 uniform sampler2DArray grazing_map;  // as irradiance_map, of light weighted by schlick_weight(n.l)
 
+vec3 grazing_light(vec3 n) {
+  vec3 direction = environment_lookup_direction(n, frame.environment_rotation);
+  return frame.environment_scale * prefiltered_lookup(grazing_map, direction, 0);
+}
+#endif
+
+#if (MATERIAL_MODELS & 32) != 0
 vec3 coated_reflection(MaterialModel m, vec3 n, vec3 v) {
   vec3 towards = environment_lookup_direction(prefiltered_mirror(n, v), frame.environment_rotation);
   vec3 mirrored = frame.environment_scale * prefiltered_lookup(sharp_map, towards, 0);
-  vec3 grazing = frame.environment_scale *
-                 prefiltered_lookup(grazing_map, environment_lookup_direction(n, frame.environment_rotation), 0);
-  return coated_environment(m, dot(n, v), irradiance_towards(n), grazing, mirrored);
+  return coated_environment(m, dot(n, v), irradiance_towards(n), grazing_light(n), mirrored);
 }
 #endif
 
@@ -98,6 +103,9 @@ vec3 model_reflection(SurfaceMaterial s, vec3 n, vec3 v) {
 #endif
 #if (MATERIAL_MODELS & 32) != 0
   if (m.kind == model_coated) return coated_reflection(m, n, v);
+#endif
+#if (MATERIAL_MODELS & 128) != 0
+  return inverse_pi * entering_irradiance(m, vec3(1.0) - m.kd, irradiance_towards(n), grazing_light(n));
 #endif
   return brdf_reflection(nearest_brdf(s), n, v);
 }

@@ -60,7 +60,7 @@ static_assert(kFilteredLevels == glsl::power_levels);
 
 constexpr uint32_t kMicrofacetKinds = 1u << glsl::model_torrance_sparrow | 1u << glsl::model_ward;
 constexpr uint32_t kLobeKinds = kMicrofacetKinds | 1u << glsl::model_phong;
-constexpr uint32_t kCoatedKinds = 1u << glsl::model_coated;
+constexpr uint32_t kEnteredKinds = 1u << glsl::model_coated | 1u << glsl::model_entry;
 
 enum class Irradiance { whole, grazing };  ///< grazing: weighted by Schlick's (1 - cosine)^5
 enum class Lobes { ggx, power };
@@ -92,7 +92,7 @@ class PrefilteredEnvironment : public Technique {
     const uint32_t kinds = inputs.handles.modelKinds;
     if ((kinds & kLobeKinds) != 0) maps.power = filtering.addLobes(chain, Lobes::power);
     if ((kinds & kMicrofacetKinds) != 0) maps.microfacetLobes = filtering.addMicrofacetLobes();
-    if ((kinds & kCoatedKinds) != 0) maps.grazing = filtering.addIrradiance(chain, Irradiance::grazing);
+    if ((kinds & kEnteredKinds) != 0) maps.grazing = filtering.addIrradiance(chain, Irradiance::grazing);
     return addReflection(graph, inputs, request.target, maps);
   }
 
@@ -267,7 +267,7 @@ class PrefilteredEnvironment : public Technique {
     look(maps.filtered, "filtered_map", "glossy light");
     look(maps.power, "power_map", "light of models' lobes");
     look(maps.microfacetLobes, "microfacet_lobes", "where models look");
-    look(maps.grazing, "grazing_map", "light that coats reflect");
+    look(maps.grazing, "grazing_map", "light that enters coats and bodies");
     pass.read(graph.importTexture("table of linearly transformed cosines of the environment", ltcTable_),
               Access::sampled, "ltc_table", "glossy reflectance");
     const TextureHandle radiance =

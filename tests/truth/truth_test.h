@@ -23,7 +23,8 @@ struct Question {
   int spp = 2;                                        ///< of the reference
   int bounces = 0, interfaces = 0;                    ///< of the reference
   glm::ivec2 size{48, 48};
-  bool background = false;  ///< pixels without a surface are looked at, too
+  bool background = false;                               ///< pixels without a surface are looked at, too
+  SubsurfaceModel subsurface = SubsurfaceModel::bssrdf;  ///< of the reference
 };
 
 /// How far a picture is from a closed form, over the pixels for which there is one.
@@ -60,6 +61,7 @@ class TruthTest : public RenderTest {
     request.spp = q.spp;
     request.bounces = q.bounces;
     request.interfaces = q.interfaces;
+    request.subsurface = q.subsurface;
     return reference::render(request).image;
   }
 

@@ -1,5 +1,6 @@
 // Declares core's own passes of the frame: emission and background, unshadowed light times visibility,
-// environment light, and what is seen in specular surfaces, drawn over the rest.
+// environment light, what enters translucent surfaces, and what is seen in specular surfaces, drawn over the
+// rest.
 #pragma once
 
 #include <cstdint>
@@ -33,6 +34,16 @@ class Deferred {
     emissionAndSpecular  ///< also the environment in specular surfaces
   };
   frame::TextureHandle start(const Frame& frame, Start with);
+  /// Returns a new RGBA32F texture of that size and name, black.
+  static frame::TextureHandle black(frame::FrameGraph& graph, const char* name, glm::ivec2 size);
+  /// Says how light meets translucent surfaces.
+  enum class Boundary : uint8_t { reflecting, entering };
+  /// Returns the frame's G-buffer with translucent surfaces that reflect at their boundaries alone, or with
+  /// what enters them (glsl/deferred/translucent_view.comp.glsl).
+  static GBuffer addTranslucentView(const Frame& frame, Boundary boundary);
+  /// Adds the local limit of `entering`, RGBA32F, E / pi.
+  static frame::TextureHandle addLocalSubsurface(const Frame& frame, frame::TextureHandle radiance,
+                                                 frame::TextureHandle entering);
   /// Holds factors of a batch of lights: R16 arrays, layer per light; an empty handle stands for 1.
   struct Factors {
     frame::TextureHandle visibility, relief;

@@ -45,6 +45,7 @@ struct Renderer::Implementation {
   std::unique_ptr<frame::FrameGraph> graph;
   SceneHandles handles;
   Use* bumps = nullptr;    ///< answers relief for the current graph
+  TermSet summed = 0;      ///< terms that the radiance of the current graph holds
   GBuffer gbuffer, matte;  ///< matte: what is lit, the same or the surfaces behind the specular ones
   frame::TextureHandle output, display;
   InspectionView inspectionView;
@@ -74,9 +75,20 @@ struct Renderer::Implementation {
   // In build_graph.cpp: who answers which terms of the picture, and in which order the passes run.
   void build();
   void mountTechnique(const TechniquePlugin& plugin);
-  TechniqueInputs inputsOf(const Use& use, const GBuffer& seen);
-  frame::TextureHandle ask(Use& use, Term term, std::span<const uint32_t> lights,
-                           frame::TextureHandle target);
+  /// Holds light that is added up, and the surfaces that it falls on.
+  struct Lighting {
+    SceneHandles handles;
+    GBuffer gbuffer;
+    frame::TextureHandle radiance;
+    bool entering = false;  ///< into translucent surfaces: the radiance is E / pi
+  };
+  Deferred::Frame frameOf(const Lighting& lighting) {
+    return {*graph, lighting.handles, lighting.gbuffer, settings.size};
+  }
+  TechniqueInputs inputsOf(const Use& use, const SceneHandles& resources, const GBuffer& seen);
+  /// Asks for light on `lit`, whose radiance is the target.
+  frame::TextureHandle ask(Use& use, Term term, std::span<const uint32_t> lights, const Lighting& lit,
+                           frame::TextureHandle entering = {});
   /// Asks how materials reflect light, for all passes that reflect it.
   void askSurface();
   /// Returns the first technique that answers the term; null: none.
@@ -90,14 +102,21 @@ struct Renderer::Implementation {
   /// technique takes.
   std::vector<uint32_t> activeLights();
   frame::TextureHandle factorTarget(Term term, int layers);
-  frame::TextureHandle addDirect(const Deferred::Frame& frame, frame::TextureHandle radiance,
-                                 std::span<const uint32_t> lights);
-  frame::TextureHandle addEnvironment(const Deferred::Frame& frame, frame::TextureHandle radiance);
+  /// Adds the light of lamps to each lighting; V and W are the same for all.
+  void addDirect(std::span<Lighting> lightings, std::span<const uint32_t> lights);
+  void addEnvironment(std::span<Lighting> lightings);
+  /// Returns what the picture asks to be lit: the surfaces, and what enters the translucent ones.
+  std::vector<Lighting> lightings(frame::TextureHandle radiance);
+  /// Adds direct light, that of the environment and that over other surfaces, as far as the picture has them.
+  void addLight(std::span<Lighting> lightings, std::span<const uint32_t> lights);
   /// Returns the technique that shows the scene in its specular surfaces, if the picture has them.
   Use* answeringSpecular();
   /// Returns the technique that says what bumps leave of each light, if the picture has such light on height
   /// maps.
   Use* answeringRelief();
+  /// Adds what leaves translucent surfaces, by a technique or by its local limit.
+  frame::TextureHandle addSubsurface(frame::TextureHandle radiance, frame::TextureHandle entering,
+                                     std::span<const uint32_t> lights);
   /// Returns whether the picture has light of a technique that reads where pixels lie in their height maps.
   bool readsPlaces() const;
   frame::TextureHandle addRadiance();
