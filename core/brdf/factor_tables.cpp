@@ -161,12 +161,23 @@ double maskingOverCosine(const TorranceSparrow& material, double nDotL, double n
   return nDotL / (4 * (nDotL * nDotV + nDotV * fromL + nDotL * fromV));
 }
 
+namespace {
+
+/// Returns the largest D. The Gaussian of the angle has it at n; Beckmann's distribution, with 1 / (n.h)^2 =
+/// q, is q^2 exp(-(q - 1) / m^2), which rises away from n where the width m is above sqrt(1/2).
+double largestDistribution(const TorranceSparrow& material) {
+  const double m = clampedRoughness(material);
+  const bool wide = material.distribution == NormalDistribution::beckmann && 2 * m * m > 1;
+  return normalDistribution(material, wide ? std::sqrt(1 - 1 / (std::numbers::sqrt2 * m)) : 0);
+}
+
+}  // namespace
+
 FactoredBrdf torranceSparrowTables(const TorranceSparrow& material, int width, int height, bool warped,
                                    TableFormat format) {
   check(material, width, height);
   const bool bytes = format == TableFormat::byte;
-  // Both distributions are largest at n, and Fresnel's term is at most 1.
-  const double largest = normalDistribution(material, 0);
+  const double largest = largestDistribution(material);  // Fresnel's term is at most 1
   const double unit =
       bytes ? std::numbers::pi / 4 : 1;  // what T2 is divided by: G / (pi n.v) is what is clamped
   FactoredBrdf result;

@@ -205,6 +205,23 @@ TEST(FactorTables, HalfFloatsSufficeAndBytesWithTheClampDoNot) {
   }
 }
 
+// A Beckmann distribution wider than sqrt(1/2) is largest away from n; bytes end at the largest value.
+TEST(FactorTables, BytesHoldWideDistributionsUncut) {
+  constexpr int kTexels = 65;
+  for (double m : {0.5, 0.8, 1.0}) {
+    TorranceSparrow mirror = rough(m);
+    mirror.eta = dvec3(1e-3);
+    mirror.k = dvec3(1000);
+    const FactoredBrdf tables = torranceSparrowTables(mirror, 2, kTexels, true, TableFormat::byte);
+    const double largest = tables.scale.x / (std::numbers::pi / 4);
+    for (int y = 0; y < kTexels; ++y)
+      EXPECT_NEAR(largest * static_cast<double>(tables.tables[0].at(1, y, 0).x),
+                  normalDistribution(mirror, 1 - static_cast<double>(y) / (kTexels - 1)),
+                  largest * (0.5 / 255 + 1e-4))
+          << m << ' ' << y;
+  }
+}
+
 TEST(FactorTables, ExtremesAreFinite) {
   for (double m : {0.0, 1e-3, 1.0})
     for (double eta : {1.0, 1.0001, 200.0})
