@@ -23,6 +23,8 @@ void check(const FitSettings& settings) {
     throw UsageError(fmt::format("a fit has {} terms: 1 to 16 are possible", settings.terms));
   if (settings.samples < 100)
     throw UsageError(fmt::format("a fit has {} samples: at least 100 are needed", settings.samples));
+  if (settings.factorisation == Factorisation::slopes || settings.factorisation == Factorisation::fibres)
+    throw UsageError("slopes and fibres are tables of a model, not fits");
 }
 
 FactoredBrdf fitted(const Brdf& brdf, const std::vector<BrdfSample>& samples, const FitSettings& settings,
@@ -42,6 +44,8 @@ FactoredBrdf fitted(const Brdf& brdf, const std::vector<BrdfSample>& samples, co
     case Factorisation::dfg:
     case Factorisation::pqp:
     case Factorisation::pqp_disc:
+    case Factorisation::slopes:
+    case Factorisation::fibres:
       break;
   }
   return fitLogarithms(samples, settings, floor);

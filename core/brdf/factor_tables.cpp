@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/brdf/private/table_checks.h"
 #include "glsl/materials/factored.glsl"
 
 namespace limn::brdf {
@@ -45,31 +46,28 @@ double dawson(double x) {
   return sum;
 }
 
-/// The cosine times Smith's Lambda for Beckmann's distribution: finite at grazing angles, where Lambda is
-/// not.
-double cosineLambda(double cosine, double m) {
-  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-  if (sine == 0) return 0;
-  const double a = cosine / (m * sine);
-  return std::max(0.0, 0.5 * (m * sine * std::exp(-a * a) / kRootPi - cosine * std::erfc(a)));
-}
-
-void check(const TorranceSparrow& material, int width, int height) {
-  if (width < 2 || height < 2)
-    throw UsageError(fmt::format("factored tables need 2 x 2 texels or more, not {} x {}", width, height));
-  if (!(material.roughness >= 0 && material.roughness <= 1))
-    throw UsageError(fmt::format("roughness is {}: a number of [0, 1] is needed", material.roughness));
-  for (int c = 0; c < 3; ++c)
-    if (!(material.eta[c] > 0 && material.eta[c] < 1e6 && material.k[c] >= 0 && material.k[c] < 1e6))
-      throw UsageError(fmt::format("index of refraction {} + {} i: eta above 0 and k of 0 or more are needed",
-                                   material.eta[c], material.k[c]));
-}
-
 std::size_t formatBytes(TableFormat format) {
   return format == TableFormat::float32 ? 4 : format == TableFormat::half ? 2 : 1;
 }
 
 }  // namespace
+
+void checkTexels(int width, int height) {
+  if (width < 2 || height < 2)
+    throw UsageError(fmt::format("factored tables need 2 x 2 texels or more, not {} x {}", width, height));
+}
+
+void checkRoughness(double roughness) {
+  if (!(roughness >= 0 && roughness <= 1))
+    throw UsageError(fmt::format("roughness is {}: a number of [0, 1] is needed", roughness));
+}
+
+void checkRefraction(const dvec3& eta, const dvec3& k) {
+  for (int c = 0; c < 3; ++c)
+    if (!(eta[c] > 0 && eta[c] < 1e6 && k[c] >= 0 && k[c] < 1e6))
+      throw UsageError(fmt::format("index of refraction {} + {} i: eta above 0 and k of 0 or more are needed",
+                                   eta[c], k[c]));
+}
 
 FactorTable FactorTable::of(const ivec3& size, TableFormat format,
                             const std::function<dvec3(const dvec3& place)>& value) {
@@ -117,6 +115,13 @@ dvec3 FactoredBrdf::evaluate(const dvec3& l, const dvec3& v) const {
     case Factorisation::trilinear:
       product = glsl::factored_volume_response(tables[0], 0, tables[0].depth, view, light);
       break;
+    case Factorisation::slopes:
+      product =
+          glsl::factored_slopes_response(tables[0], tables[1], 0, alpha, independent, view, light, warped);
+      break;
+    case Factorisation::fibres:
+      product = glsl::factored_fibres_response(tables[0], 0, view, light);
+      break;
   }
   return scale * dvec3(product) + floor * l.z;
 }
@@ -153,6 +158,13 @@ double normalDistribution(const TorranceSparrow& material, double fromNormal) {
   return exponent < -700 ? 0 : std::exp(exponent) / (std::numbers::pi * m * m * cos2 * cos2);
 }
 
+double cosineLambda(double cosine, double roughness) {
+  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  if (sine == 0) return 0;
+  const double a = cosine / (roughness * sine);
+  return std::max(0.0, 0.5 * (roughness * sine * std::exp(-a * a) / kRootPi - cosine * std::erfc(a)));
+}
+
 double maskingOverCosine(const TorranceSparrow& material, double nDotL, double nDotV) {
   const double m = clampedRoughness(material);
   const double fromL = cosineLambda(nDotL, m), fromV = cosineLambda(nDotV, m);
@@ -175,7 +187,9 @@ double largestDistribution(const TorranceSparrow& material) {
 
 FactoredBrdf torranceSparrowTables(const TorranceSparrow& material, int width, int height, bool warped,
                                    TableFormat format) {
-  check(material, width, height);
+  checkTexels(width, height);
+  checkRoughness(material.roughness);
+  checkRefraction(material.eta, material.k);
   const bool bytes = format == TableFormat::byte;
   const double largest = largestDistribution(material);  // Fresnel's term is at most 1
   const double unit =

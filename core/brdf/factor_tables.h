@@ -56,17 +56,21 @@ enum class Factorisation {
   pqp,       ///< exp(p + q + p) over cosines, one table of two rows
   pqp_disc,  ///< the same over directions, one table of two layers
   svd,  ///< sum of products of a function of the half vector and one of the difference, two tables of layers
-  trilinear  ///< no factors: one table over half vector and difference
+  trilinear,  ///< no factors: one table over half vector and difference
+  slopes,     ///< D over the half vector's direction, and rows of Fresnel's term and masking: two tables
+  fibres      ///< one table over l.t and v.t
 };
 
 /// Is a BRDF as a shader reads it: f n.l is `scale` times the product of the tables, plus `floor` n.l.
 struct LIMN_API FactoredBrdf {
   Factorisation factorisation = Factorisation::tables;
-  bool warped = true;  ///< of `tables` and `pqp_disc`: texels lie over square roots
+  bool warped = true;  ///< of `tables`, `slopes` and `pqp_disc`: texels lie over square roots
   std::string name;    ///< method and sizes, for tables of results
   std::vector<FactorTable> tables;
   glm::dvec3 scale{1};
-  glm::dvec3 floor{0};  ///< the diffuse part of f, 1/sr
+  glm::dvec3 floor{0};       ///< the diffuse part of f, 1/sr
+  glm::vec2 alpha{1};        ///< of `slopes`: roughness along the tangent and across it
+  bool independent = false;  ///< of `slopes`: masking is the product of both directions'
   /// From what was fitted, over a picture under held-out lights (factor_fit_error.h); 0 where nothing was
   /// fitted.
   double error = 0;
@@ -101,6 +105,9 @@ LIMN_API double fresnelReflectance(double cosine, double eta, double k);
 /// Returns D (1/sr) where sqrt(1 - n.h) is `fromNormal`; the integral of D n.h is 1 (that of the Gaussian
 /// within 3e-6 up to m = 0.5, 1.8 % more at 1: its tail below the horizon counts as if it were not cut).
 LIMN_API double normalDistribution(const TorranceSparrow& material, double fromNormal);
+/// Returns n.w times Smith's Lambda for Gaussian slopes of width `roughness` where n.w is `cosine`: finite at
+/// grazing angles, where Lambda is not.
+LIMN_API double cosineLambda(double cosine, double roughness);
 /// Returns G / (4 n.v), with Smith's masking for Beckmann's distribution. It is finite where n.v = 0; where
 /// both cosines are 0 it is the limit along equal cosines.
 LIMN_API double maskingOverCosine(const TorranceSparrow& material, double nDotL, double nDotV);

@@ -167,5 +167,43 @@ LIMN_FN vec3 factored_volume_response(FACTORED_TABLE table, int first, int slice
          max(l.z, 0.0f);
 }
 
+// Ward's elliptical Gaussian turns with the tangent: D over the half vector's components along the tangent and across it.
+// By their square roots a lobe of width m is as wide as sqrt(m) in each; published: over the angle to n and the azimuth.
+LIMN_FN vec2 factored_slope_place(vec3 h, bool warped) {
+  vec2 along = abs(vec2(h.x, h.y));
+  if (warped) return min(sqrt(along), vec2(1.0f));
+  // At h = n, where no azimuth is, D is the same for all.
+  return 2.0f * inverse_pi * vec2(atan(length(along), max(h.z, 0.0f)), atan(along.y, max(along.x, 1e-20f)));
+}
+
+// n.w times Smith's Lambda, which is finite at grazing angles. Over `reach`, the length of n.w and the spread of slopes along
+// w's azimuth, it is a function of one ratio: the second row of `rows`.
+LIMN_FN float factored_cosine_lambda(FACTORED_TABLE rows, int layer, vec2 alpha, vec3 w) {
+  float cosine = max(w.z, 0.0f);
+  float reach = max(length(vec3(alpha * vec2(w), cosine)), 1e-6f);
+  return reach * factored_lookup(rows, vec2(cosine / reach, 1.0f), layer).x;
+}
+
+// f n.l = F D G / (4 n.v) from D's table, and the rows of Fresnel's term over h.l and of masking. alpha: the roughness along the
+// tangent and across it. independent: G is the product of both directions' masking. Local frame; l above the horizon.
+LIMN_FN vec3 factored_slopes_response(FACTORED_TABLE distribution, FACTORED_TABLE rows, int layer, vec2 alpha,
+                                      bool independent, vec3 v, vec3 l, bool warped) {
+  vec3 h = factored_half(vec3(0.0f, 0.0f, 1.0f), v, l);
+  if (!(l.z > 0.0f && h.z > 0.0f)) return vec3(0.0f);
+  float n_dot_v = max(v.z, 0.0f);
+  float from_v = factored_cosine_lambda(rows, layer, alpha, v);
+  float from_l = factored_cosine_lambda(rows, layer, alpha, l);
+  float both = n_dot_v * (l.z + from_l) + l.z * from_v + (independent ? from_l * from_v : 0.0f);
+  vec3 fresnel = factored_lookup(rows, vec2(factored_cosine_place(clamp(dot(l, h), 0.0f, 1.0f)), 0.0f), layer);
+  return factored_lookup(distribution, factored_slope_place(h, warped), layer) * fresnel *
+         (0.25f * l.z / max(both, 1e-30f));
+}
+
+// Fibres along the tangent (Banks 1994; Stalling, Zoeckler and Hege 1997) reflect by l.t and v.t alone. Local frame.
+LIMN_FN vec3 factored_fibres_response(FACTORED_TABLE table, int layer, vec3 v, vec3 l) {
+  vec2 place = clamp(vec2(0.5f) + 0.5f * vec2(l.x, v.x), vec2(0.0f), vec2(1.0f));
+  return factored_lookup(table, place, layer) * max(l.z, 0.0f);
+}
+
 LIMN_END
 #endif  // LIMN_FACTORED_GLSL
