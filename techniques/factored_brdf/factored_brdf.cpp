@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <vector>
 
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/technique/technique.h"
+#include "glsl/materials/material_model.glsl"
 #include "techniques/factored_brdf/material_fits.h"
 
 namespace {
@@ -25,23 +27,21 @@ constexpr GLenum kTextureFormats[] = {GL_RGBA32F, GL_RGBA16F, GL_RGBA8};
 constexpr int kSamples = 8000;
 
 constexpr Parameter kParameters[] = {
-    choice(
-        "fit", analytic, kFits,
-        "How models become tables. analytic: Torrance-Sparrow alone, by its formula; exact: none does; the "
-        "others fit every model that they can hold, when the graph is built"),
+    choice("fit", analytic, kFits,
+           "How models become tables. analytic: Torrance-Sparrow, Ward and Banks alone, by their formulas; "
+           "exact: "
+           "none does; the others fit every model that they can hold, when the graph is built"),
     integer("terms", 1, {1, 16}, "", "Products that svd takes the sum of"),
     integer(
         "fit_texels", 0, {0, 512}, "texels",
         "Texels along each axis of a fit (of trilinear along n.h, half of that along the others); svd has "
         "48 at most. 0: 64 for dfg and pqp, 32 for pqp_disc and trilinear, 24 for svd, 128 for tables"),
-    integer("texels", 128, {2, 2048}, "texels", "Width and height of both analytic tables")
-        .quality()
-        .logScale(),
+    integer("texels", 128, {2, 2048}, "texels", "Width and height of analytic tables").quality().logScale(),
     choice(
         "coordinates", 0, kCoordinates,
         "What the tables of analytic and tables lie over, and the discs of pqp_disc. warped: sqrt(1 - n.h) "
         "and roots of the cosines, in which a lobe is as wide as its roughness; published: the cosines, in "
-        "which it is as wide as the square of that"),
+        "which it is as wide as the square of that. ward: roots of |h.t| and |h.b|; angle and azimuth of h"),
     choice(
         "format", 1, kFormats,
         "What holds the values. byte clamps G / (pi n.v) of analytic tables to 1, as published tables of 8 "
@@ -57,6 +57,14 @@ constexpr StressCase kStress[] = {
      .scene = "torus_metal",
      .settings = "fit=trilinear fit_texels=2",
      .factor = 0},
+    {.name = "slopes and fibres of 2 texels",
+     .scene = "disk_and_sphere",
+     .settings = "texels=2 format=byte",
+     .factor = 100},
+    {.name = "published coordinates of slopes",
+     .scene = "disk_and_sphere",
+     .settings = "coordinates=published",
+     .factor = 100},
     {.name = "fits of other models", .scene = "disk_and_sphere", .settings = "fit=pqp_disc", .factor = 100},
 };
 
@@ -111,9 +119,34 @@ factored::FitChoice described(const ParameterValues& parameters) {
   return choice;
 }
 
+/// Is a texture of the tables of one kind of product.
+struct TableTexture {
+  Factorisation product;
+  std::size_t table;  ///< index in FactoredBrdf::tables
+  const char* sampler;
+  const char* name;
+};
+/// Analytic tables of several models stand beside each other; fits are of one kind.
+constexpr TableTexture kAnalyticTextures[] = {
+    {Factorisation::tables, 0, "factored_1", "factors"},
+    {Factorisation::tables, 1, "factored_2", "second factors"},
+    {Factorisation::slopes, 0, "factored_slopes", "distributions of slopes"},
+    {Factorisation::slopes, 1, "factored_slope_rows", "Fresnel's terms and masking"},
+    {Factorisation::fibres, 0, "factored_fibres", "fibres"}};
+
+/// Returns the mask, by kind of model, of analytic tables that there are.
+int kindsOf(const factored::MaterialFits& fits) {
+  int kinds = 0;
+  for (const brdf::FactoredBrdf& fit : fits.fits)
+    kinds |= 1 << (fit.factorisation == Factorisation::slopes   ? glsl::model_ward
+                   : fit.factorisation == Factorisation::fibres ? glsl::model_banks
+                                                                : glsl::model_torrance_sparrow);
+  return kinds;
+}
+
 class FactoredBrdf : public Technique {
-  gpu::Texture tables_[2];  ///< layers of each fit, behind each other; the second of two-table fits alone
-  gpu::Texture materials_;  ///< of each material, row 0: scale and fit (-1: none), row 1: floor
+  std::vector<gpu::Texture> tables_;  ///< layers of each fit, behind each other
+  gpu::Texture materials_;            ///< of each material, row 0: scale and fit (-1: none), row 1: floor
 
   frame::TextureHandle addPasses(frame::FrameGraph&, const TechniqueInputs&,
                                  const TermRequest& request) override {
@@ -135,25 +168,35 @@ class FactoredBrdf : public Technique {
       answer.defines = {{"FACTORED_FIT", "FACTORED_EXACT"}};
       return answer;
     }
-    upload(inputs.gpuScene.device(), fits);
     static constexpr const char* kProducts[] = {"TABLES", "DFG", "PQP", "PQP_DISC", "SVD", "TRILINEAR"};
-    const std::vector<brdf::FactorTable>& first = fits.fits.front().tables;
-    answer.defines = {
-        {"FACTORED_FIT", fmt::format("FACTORED_{}", kProducts[static_cast<int>(choice.fit.factorisation)])},
-        {"FACTORED_COMPLETE", fits.complete(inputs.scene) ? "1" : "0"},
-        {"FACTORED_WARPED", choice.fit.warped ? "true" : "false"},
-        {"FACTORED_LAYERS", fmt::format("{}", first.front().depth)}};
-    answer.textures = {{"factored_1", graph.importTexture("factors", tables_[0]), "what f is a product of"},
-                       {"factored_materials", graph.importTexture("tables of materials", materials_),
-                        "which tables a material has"}};
-    if (first.size() > 1)
-      answer.textures.push_back(
-          {"factored_2", graph.importTexture("second factors", tables_[1]), "what f is a product of"});
+    const char* product =
+        choice.analytic ? "ANALYTIC" : kProducts[static_cast<int>(choice.fit.factorisation)];
+    answer.defines = {{"FACTORED_FIT", fmt::format("FACTORED_{}", product)},
+                      {"FACTORED_COMPLETE", fits.complete(inputs.scene) ? "1" : "0"},
+                      {"FACTORED_WARPED", choice.fit.warped ? "true" : "false"},
+                      {"FACTORED_LAYERS", fmt::format("{}", fits.fits.front().tables.front().depth)}};
+    if (choice.analytic) answer.defines["FACTORED_KINDS"] = fmt::format("{}", kindsOf(fits));
+    upload(inputs.gpuScene.device(), graph, choice, fits, answer);
     return answer;
   }
 
-  void upload(gpu::Device& device, const factored::MaterialFits& fits) {
-    for (size_t t = 0; t < fits.fits.front().tables.size(); ++t) tables_[t] = layers(device, fits.fits, t);
+  /// Makes the textures and adds them to the answer.
+  void upload(gpu::Device& device, frame::FrameGraph& graph, const factored::FitChoice& choice,
+              const factored::MaterialFits& fits, scene::SurfaceAnswer& answer) {
+    std::vector<TableTexture> textures(std::begin(kAnalyticTextures), std::end(kAnalyticTextures));
+    if (!choice.analytic) {
+      textures.resize(fits.fits.front().tables.size());
+      for (TableTexture& texture : textures) texture.product = choice.fit.factorisation;
+    }
+    tables_.clear();
+    tables_.reserve(textures.size());  // the graph keeps references
+    for (const TableTexture& texture : textures) {
+      const std::vector<const brdf::FactoredBrdf*> own = fits.of(texture.product);
+      if (own.empty()) continue;
+      tables_.push_back(layers(device, texture, own));
+      answer.textures.push_back(
+          {texture.sampler, graph.importTexture(texture.name, tables_.back()), "what f is a product of"});
+    }
     std::vector<glm::vec4> rows;
     for (const factored::MaterialFits::Row& row : fits.rows)
       rows.emplace_back(row.scale, static_cast<float>(row.fit));
@@ -162,11 +205,14 @@ class FactoredBrdf : public Technique {
         gpu::Texture(device, "tables of materials",
                      {.format = GL_RGBA32F, .width = static_cast<int>(fits.rows.size()), .height = 2});
     materials_.upload(0, 0, GL_RGBA, GL_FLOAT, rows.data());
+    answer.textures.push_back({"factored_materials", graph.importTexture("tables of materials", materials_),
+                               "which tables a material has"});
   }
 
-  static gpu::Texture layers(gpu::Device& device, const std::vector<brdf::FactoredBrdf>& fits, size_t table) {
-    const brdf::FactorTable& first = fits.front().tables[table];
-    gpu::Texture texture(device, table == 0 ? "factors" : "second factors",
+  static gpu::Texture layers(gpu::Device& device, const TableTexture& which,
+                             const std::vector<const brdf::FactoredBrdf*>& fits) {
+    const brdf::FactorTable& first = fits.front()->tables[which.table];
+    gpu::Texture texture(device, which.name,
                          {.target = GL_TEXTURE_2D_ARRAY,
                           .format = kTextureFormats[static_cast<int>(first.format)],
                           .width = first.width,
@@ -176,7 +222,7 @@ class FactoredBrdf : public Technique {
     for (size_t i = 0; i < fits.size(); ++i)
       for (int z = 0; z < first.depth; ++z)
         texture.upload(0, static_cast<int>(i) * first.depth + z, GL_RGB, GL_FLOAT,
-                       &fits[i].tables[table].at(0, 0, z));
+                       &fits[i]->tables[which.table].at(0, 0, z));
     return texture;
   }
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/brdf/anisotropic_tables.h"
 #include "core/brdf/model_brdf.h"
 #include "glsl/materials/model.glsl"
 
@@ -15,38 +16,74 @@ using brdf::Factorisation;
 using glm::dvec3;
 using glm::vec3;
 
-brdf::TorranceSparrow described(const glsl::MaterialModel& m) {
-  using namespace glsl;
+brdf::Masking maskingOf(const glsl::MaterialModel& m) {
+  return (m.options & glsl::model_option_product) != 0 ? brdf::Masking::product : brdf::Masking::correlated;
+}
+
+brdf::TorranceSparrow torranceSparrow(const glsl::MaterialModel& m) {
   return {.eta = dvec3(m.eta),
           .k = dvec3(m.k),
           .roughness = static_cast<double>(m.roughness.x),
-          .distribution = (m.options & model_option_gaussian) != 0 ? brdf::NormalDistribution::gaussian
-                                                                   : brdf::NormalDistribution::beckmann,
-          .masking =
-              (m.options & model_option_product) != 0 ? brdf::Masking::product : brdf::Masking::correlated};
+          .distribution = (m.options & glsl::model_option_gaussian) != 0 ? brdf::NormalDistribution::gaussian
+                                                                         : brdf::NormalDistribution::beckmann,
+          .masking = maskingOf(m)};
 }
 
-/// Says whether two Torrance-Sparrow models have the same analytic tables, which hold neither kd nor ks.
+brdf::Ward ward(const glsl::MaterialModel& m) {
+  return {
+      .eta = dvec3(m.eta), .k = dvec3(m.k), .roughness = glm::dvec2(m.roughness), .masking = maskingOf(m)};
+}
+
+/// Says whether two models have the same analytic tables. Those of microfacets hold neither kd nor ks.
 bool sameAnalytic(const glsl::MaterialModel& a, const glsl::MaterialModel& b) {
-  return a.eta == b.eta && a.k == b.k && a.options == b.options && a.roughness.x == b.roughness.x;
+  if (a.kind != b.kind || a.options != b.options) return false;
+  if (a.kind == glsl::model_banks) return a.kd == b.kd && a.ks == b.ks && a.exponent == b.exponent;
+  return a.eta == b.eta && a.k == b.k && a.roughness.x == b.roughness.x &&
+         (a.kind == glsl::model_torrance_sparrow || a.roughness.y == b.roughness.y);
+}
+
+/// Says why analytic tables cannot hold a model; empty where they can.
+std::string reasonAgainstAnalytic(const glsl::MaterialModel& model) {
+  switch (model.kind) {
+    case glsl::model_torrance_sparrow:
+    case glsl::model_ward:
+      return "";
+    case glsl::model_banks:
+      return (model.options & glsl::model_option_printed) == 0
+                 ? ""
+                 : "Banks's lobe as printed is no function of l.t and v.t";
+    default:
+      return "analytic tables are Torrance-Sparrow's, Ward's and Banks's alone";
+  }
 }
 
 /// Says why a choice cannot hold a model; empty where it can.
 std::string reasonAgainst(const glsl::MaterialModel& model, const FitChoice& choice) {
-  if (choice.analytic)
-    return model.kind == glsl::model_torrance_sparrow ? "" : "analytic tables are Torrance-Sparrow's alone";
+  if (choice.analytic) return reasonAgainstAnalytic(model);
   const Factorisation kind = choice.fit.factorisation;
   if (glsl::model_anisotropic(model) && kind != Factorisation::pqp_disc && kind != Factorisation::svd)
     return "it turns with the tangent, which pqp_disc and svd alone can follow";
   return "";
 }
 
+brdf::FactoredBrdf analyticTables(const glsl::MaterialModel& model, const brdf::FitSettings& fit) {
+  switch (model.kind) {
+    case glsl::model_ward:
+      return brdf::wardTables(ward(model), fit.texels, fit.warped, fit.format);
+    case glsl::model_banks:
+      return brdf::banksTable(
+          {.kd = dvec3(model.kd), .ks = dvec3(model.ks), .exponent = static_cast<double>(model.exponent)},
+          fit.texels, fit.format);
+    default:
+      return brdf::torranceSparrowTables(torranceSparrow(model), fit.texels, fit.texels, fit.warped,
+                                         fit.format);
+  }
+}
+
 /// Returns the tables of a material; nothing where there is nothing to fit.
 std::optional<brdf::FactoredBrdf> fitted(const scene::Scene& scene, const scene::Material& material,
                                          const FitChoice& choice) {
-  if (choice.analytic)
-    return brdf::torranceSparrowTables(described(*material.model), choice.fit.texels, choice.fit.texels,
-                                       choice.fit.warped, choice.fit.format);
+  if (choice.analytic) return analyticTables(*material.model, choice.fit);
   try {
     return brdf::fitBrdf(brdf::modelBrdf(*material.model, scene.measured), choice.fit);
   } catch (const UsageError&) {
@@ -57,6 +94,13 @@ std::optional<brdf::FactoredBrdf> fitted(const scene::Scene& scene, const scene:
 }
 
 }  // namespace
+
+std::vector<const brdf::FactoredBrdf*> MaterialFits::of(Factorisation kind) const {
+  std::vector<const brdf::FactoredBrdf*> result;
+  for (const brdf::FactoredBrdf& fit : fits)
+    if (fit.factorisation == kind) result.push_back(&fit);
+  return result;
+}
 
 bool MaterialFits::complete(const scene::Scene& scene) const {
   for (size_t i = 0; i < rows.size(); ++i)
@@ -87,10 +131,18 @@ MaterialFits fitMaterials(const scene::Scene& scene, const FitChoice& choice) {
       result.fits.push_back(std::move(*fit));
       found = models.insert(models.end(), model);
     }
-    row.fit = static_cast<int>(found - models.begin());
-    const brdf::FactoredBrdf& fit = result.fits[static_cast<size_t>(row.fit)];
-    row.scale = vec3(fit.scale) * (choice.analytic ? model.ks : vec3(1));
-    row.floor = choice.analytic ? model.kd * std::numbers::inv_pi_v<float> : vec3(fit.floor);
+    const auto own = result.fits.begin() + (found - models.begin());
+    const brdf::FactoredBrdf& fit = *own;
+    // Those before it of the same kind.
+    row.fit = static_cast<int>(std::count_if(result.fits.begin(), own, [&](const brdf::FactoredBrdf& other) {
+      return other.factorisation == fit.factorisation;
+    }));
+    row.scale = vec3(fit.scale);
+    row.floor = vec3(fit.floor);
+    if (choice.analytic && model.kind != glsl::model_banks) {
+      row.scale *= model.ks;
+      row.floor = model.kd * std::numbers::inv_pi_v<float>;
+    }
   }
   return result;
 }

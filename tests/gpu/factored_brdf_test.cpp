@@ -3,6 +3,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "core/brdf/factor_fit.h"
 #include "core/scene/camera.h"
@@ -94,8 +95,32 @@ TEST_F(FactoredBrdfTest, WarpedTablesAreThePublishedOnesAFiftiethWrong) {
 }
 
 TEST_F(FactoredBrdfTest, OtherModelsAreExact) {
-  const scene::Scene scene = ball(0.3f, glsl::model_phong);
-  EXPECT_EQ(error(scene, {{"texels", "2"}}), 0);
+  EXPECT_EQ(error(ball(0.3f, glsl::model_phong), {{"texels", "2"}}), 0);
+  glsl::MaterialModel printed = copper(0.3f, glsl::model_banks);
+  printed.options = glsl::model_option_printed;
+  EXPECT_EQ(error(balls({printed}), {{"texels", "2"}}), 0);
+}
+
+/// Brushed metal and fibres, by tables of their own beside those of other models and behind each other.
+TEST_F(FactoredBrdfTest, ModelsThatTurnWithTheTangentHaveTables) {
+  glsl::MaterialModel brushed = copper(0.1f, glsl::model_ward), fibres = copper(0, glsl::model_banks);
+  brushed.roughness.y = 0.4f;
+  fibres.kd = glm::vec3(0.05f, 0.1f, 0.2f);
+  glsl::MaterialModel across = brushed, independent = brushed, hair = fibres;
+  std::swap(across.roughness.x, across.roughness.y);
+  independent.options = glsl::model_option_product;
+  hair.exponent = 4;
+  const scene::Scene mixed = balls({brushed, fibres, copper(0.3f), across, hair, copper(0.2f), independent,
+                                    copper(0.3f, glsl::model_phong)});
+  for (const char* format : {"float32", "half"}) {
+    EXPECT_LT(error(balls({brushed}), {{"format", format}}), 3e-3) << format;
+    EXPECT_LT(error(balls({fibres}), {{"format", format}}), 3e-3) << format;
+    EXPECT_LT(error(mixed, {{"format", format}}), 3e-3) << format;
+  }
+  EXPECT_GT(error(balls({brushed}), {{"texels", "32"}}), 5 * error(balls({brushed}), {{"texels", "128"}}));
+  EXPECT_LT(error(balls({brushed}), {{"coordinates", "published"}}), 0.01);
+  for (const char* coordinates : {"warped", "published"})
+    error(mixed, {{"texels", "2"}, {"format", "byte"}, {"coordinates", coordinates}});
 }
 
 TEST_F(FactoredBrdfTest, ExtremesAreFinite) {
