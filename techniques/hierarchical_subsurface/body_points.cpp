@@ -1,0 +1,120 @@
+#include "techniques/hierarchical_subsurface/body_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "glsl/scene/light.glsl"
+
+namespace limn::hierarchical_subsurface {
+namespace {
+
+/// Points of a mesh whose edges are halved down to L, times L^2 over its area: sides of triangles are then
+/// between L / 2 and L, and a point has the area of two triangles.
+constexpr float kPointsPerSquare = 2.3f;
+/// Distances to points of bodies without area do not matter.
+constexpr float kNoPoints = 1e9f;
+
+const scene::Material& materialOf(const scene::Scene& scene, const scene::DrawInstance& draw) {
+  const auto mesh = static_cast<size_t>(draw.mesh);
+  const int material = draw.node == scene::kNone
+                           ? scene.dynamic[mesh].material
+                           : scene.meshes[mesh].primitives[static_cast<size_t>(draw.primitive)].material;
+  return scene.materials[static_cast<size_t>(material)];
+}
+
+/// Sets the one draw of `own` to what it is in `pose`.
+void copyDraw(const scene::Pose& pose, uint32_t draw, scene::Pose& own) {
+  own.instances.assign(1, pose.instances[draw]);
+  scene::DrawInstance& copy = own.instances.front();
+  if (copy.node == scene::kNone) own.dynamic = pose.dynamic;
+  if (copy.deformed == scene::kNone) return;
+  own.deformed.assign(1, pose.deformed[static_cast<size_t>(copy.deformed)]);
+  copy.deformed = 0;
+}
+
+}  // namespace
+
+BodyPoints::BodyPoints(const scene::Scene& scene, const scene::Pose& pose, int count)
+    : scene_(scene), drawCount_(pose.instances.size()), bodies_(std::max<size_t>(drawCount_, 1)) {
+  for (uint32_t draw = 0; draw < drawCount_; ++draw)
+    if (materialOf(scene, pose.instances[draw]).subsurface) parts_.push_back(makeBody(draw, pose, count));
+  std::vector<const radiosity::Forest*> forests;
+  for (const Body& body : parts_) forests.push_back(&body.elements->forest());
+  tree_ = WalkTree(forests);
+  points_.resize(
+      tree_.leafCount(),
+      {.position = glm::vec3(0), .instance = glsl::no_instance, .normal = glm::vec3(0), .reach = 0});
+  for (size_t i = 0; i < parts_.size(); ++i) place(i);
+}
+
+bool BodyPoints::fits(const scene::Pose& pose) const {
+  if (pose.instances.size() != drawCount_) return false;
+  return std::ranges::all_of(parts_, [&](const Body& body) {
+    const scene::DrawInstance &now = pose.instances[body.draw], &known = body.pose.instances.front();
+    if (now.node != known.node || now.mesh != known.mesh || now.primitive != known.primitive) return false;
+    const auto mesh = static_cast<size_t>(now.mesh);
+    return now.node != scene::kNone || pose.dynamic[mesh].primitive == body.pose.dynamic[mesh].primitive;
+  });
+}
+
+void BodyPoints::update(const scene::Pose& pose) {
+  for (size_t i = 0; i < parts_.size(); ++i) {
+    copyDraw(pose, parts_[i].draw, parts_[i].pose);
+    parts_[i].elements->update(parts_[i].pose);
+    place(i);
+  }
+}
+
+BodyPoints::Body BodyPoints::makeBody(uint32_t draw, const scene::Pose& pose, int count) const {
+  Body body;
+  body.draw = draw;
+  copyDraw(pose, draw, body.pose);
+  body.pose.bounds = scene::instanceBounds(scene_, pose, pose.instances[draw]);
+  const auto create = [&](float longestEdge) {
+    body.elements = std::make_unique<radiosity::SceneElements>(scene_, body.pose, longestEdge,
+                                                               std::numeric_limits<uint32_t>::max());
+    const radiosity::Surfels& surfels = body.elements->surfels();
+    body.areas.assign(body.elements->forest().leafSlots(), 0);
+    float area = 0, square = 0;
+    for (size_t i = 0; i < surfels.size(); ++i) {
+      if (surfels.origins[surfels.firstOrigin[i]].side < 0) continue;
+      body.areas[body.elements->forest().leafOf()[i]] = surfels.areas[i];
+      area += surfels.areas[i];
+      square += surfels.areas[i] * surfels.areas[i];
+    }
+    body.spacing = area > 0 ? std::sqrt(square / area) : kNoPoints;
+    return area;
+  };
+  const float area = create(10);
+  const auto fewer = static_cast<float>(body.elements->surfels().size()) < static_cast<float>(count);
+  if (fewer && area > 0) create(std::sqrt(kPointsPerSquare * area / static_cast<float>(count)));
+  return body;
+}
+
+void BodyPoints::place(size_t index) {
+  const Body& part = parts_[index];
+  const radiosity::SceneElements& elements = *part.elements;
+  const radiosity::ElementSpace& space = elements.space();
+  tree_.place(index, elements.forest(), space, part.areas);
+  for (uint32_t slot = 0; slot < elements.forest().leafSlots(); ++slot) {
+    if (!(part.areas[slot] > 0)) continue;
+    const radiosity::Leaf& leaf = elements.leaves()[slot];
+    points_[tree_.node(index, 0, slot)] = {.position = glm::vec3(leaf.position),
+                                           .instance = part.draw,
+                                           .normal = glm::vec3(leaf.normal),
+                                           .reach = std::sqrt(part.areas[slot]) * space.radius()};
+  }
+  const scene::Material& material = materialOf(scene_, part.pose.instances.front());
+  bodies_[part.draw] = {.centre = space.centre(),
+                        .radius = space.radius(),
+                        .extinction = material.subsurface->extinction,
+                        .softening = part.spacing,
+                        .absorption = material.subsurface->absorption,
+                        .eta = std::clamp(material.ior, 1.f, 3.f),
+                        .first_node = tree_.first(index),
+                        .textured = material.subsurface->albedoFromBaseColour ? 1u : 0u,
+                        .unused = glm::uvec2(0)};
+}
+
+}  // namespace limn::hierarchical_subsurface
