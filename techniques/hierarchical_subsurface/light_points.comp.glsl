@@ -12,12 +12,12 @@
 #endif
 
 layout(local_size_x = 64) in;
-layout(std430) readonly buffer Bodies { ScatterBody bodies[]; };
 layout(std430) readonly buffer Points { ScatterPoint points[]; };
 layout(std430) writeonly buffer Entering { vec4 entering_light[]; };
 uniform sampler2D entering;  // E / pi
 uniform uint point_count;
 #if LIGHT_COUNT
+layout(std430) readonly buffer Bodies { ScatterBody bodies[]; };
 uniform float bias;  // texel footprints
 #endif
 

@@ -1,0 +1,158 @@
+// Laws that every technique of light below surfaces keeps: what it may not gain, what it comes to where light
+// goes nowhere, and that neither units nor the strength of lamps matter.
+#include <cmath>
+#include <limits>
+
+#include "core/scene/camera.h"
+#include "glsl/diffusion/normalised.glsl"
+#include "tests/gpu/render_test.h"
+#include "tests/support/scene_nodes.h"
+
+namespace limn {
+namespace {
+
+using glm::vec3;
+
+constexpr int kSide = 64;
+constexpr float kIor = 1.4f;
+
+class SubsurfaceTechniqueTest : public RenderTest {
+ protected:
+  static glm::vec4 albedo(const vec3& absorption, float ior) {
+    const glsl::WalkReflectance walk = glsl::walk_reflectance(glsl::diffusion_boundary(ior));
+    glm::vec4 all(1);
+    for (int c = 0; c < 3; ++c) all[c] = glsl::walk_albedo(walk, absorption[c]);
+    return all;
+  }
+
+  /// A ball of radius `size` on a floor of the same matter, seen from 4 radii, under a lamp.
+  static scene::Scene ball(float meanFreePath, float size = 1, float strength = 1) {
+    scene::Scene scene;
+    scene::Material matter = test::lambertian(1);
+    matter.ior = kIor;
+    const vec3 absorption(0.01f, 0.05f, 0.3f);
+    matter.subsurface =
+        scene::Subsurface{.extinction = vec3(1 / (meanFreePath * size)), .absorption = absorption};
+    matter.baseColour = albedo(absorption, kIor);
+    const int material = test::addMaterial(scene, matter);
+    test::show(scene, test::spherePrimitive(size, material));
+    test::show(scene, test::quad({0, -size, 0}, {8 * size, 0, 0}, {0, 0, -8 * size}, material));
+    test::shine(scene, test::lamp(glsl::light_point, 9 * size * size * strength), size * vec3(1.5f, 2.5f, 1));
+    return scene;
+  }
+
+  static Image drawn(const scene::Scene& scene, const std::vector<render::TechniqueUse>& techniques,
+                     float size = 1) {
+    render::Renderer renderer(device(), scene);
+    renderer.configure(settings(kSide, kSide, Term::subsurface, techniques));
+    renderer.setCamera(scene::lookAt(size * vec3(0.5f, 1.5f, 4), vec3(0), 0.7f));
+    renderer.render();
+    return renderer.read();
+  }
+
+  /// Those under test, whose light spreads as far as the half space's albedo says.
+  static std::vector<render::TechniqueUse> uses() {
+    std::vector<render::TechniqueUse> all;
+    for (const std::string& name : techniquesAnswering(Term::subsurface)) {
+      all.push_back(technique(name));
+      all.back().parameters.set("profile", "normalised_diffusion");
+    }
+    return all;
+  }
+
+  static double largestRatio(const Image& image, const Image& truth) {
+    double most = 0;
+    for (size_t i = 0; i < image.data().size(); ++i)
+      if (truth.data()[i] > 1e-6f)
+        most = std::max(most, std::abs(double(image.data()[i]) / double(truth.data()[i]) - 1));
+    return most;
+  }
+};
+
+/// Light that goes nowhere leaves where it entered.
+TEST_F(SubsurfaceTechniqueTest, ShortMeanFreePathsMeetTheLocalLimit) {
+  const Image local = drawn(ball(1e-7f), {});
+  EXPECT_GT(mean(local), 0.01);
+  for (const render::TechniqueUse& use : uses()) {
+    SCOPED_TRACE(use.plugin->info->name);
+    EXPECT_LT(largestRatio(drawn(ball(1e-7f), {use}), local), 1e-3);
+  }
+}
+
+/// Under light 1 from everywhere a body sends back no more than what enters it, times the half space's
+/// albedo.
+TEST_F(SubsurfaceTechniqueTest, BodiesGainNothing) {
+  for (const float meanFreePath : {0.003f, 0.03f, 0.3f, 3.f}) {
+    SCOPED_TRACE(meanFreePath);
+    scene::Scene scene = ball(meanFreePath, 1, 0);
+    scene.environment.width = 16;
+    scene.environment.height = 8;
+    scene.environment.texels.assign(128, vec3(1));
+    const Image local = drawn(scene, {});
+    for (const render::TechniqueUse& use : uses()) {
+      SCOPED_TRACE(use.plugin->info->name);
+      const Image image = drawn(scene, {use});
+      expectWithin(image, 0, 1);
+      double most = 0;
+      for (size_t i = 0; i < image.data().size(); ++i)
+        most = std::max(most, double(image.data()[i]) - double(local.data()[i]));
+      EXPECT_LT(most, 0.01) << "of 1";
+    }
+  }
+}
+
+TEST_F(SubsurfaceTechniqueTest, UnitsOfLengthDoNotMatter) {
+  for (const render::TechniqueUse& use : uses()) {
+    SCOPED_TRACE(use.plugin->info->name);
+    const Image one = drawn(ball(0.1f), {use});
+    for (const float size : {1e-4f, 1e4f}) {
+      const Image other = drawn(ball(0.1f, size), {use}, size);
+      EXPECT_LT(rmse(other, one), 0.01 * mean(one)) << size;
+    }
+  }
+}
+
+TEST_F(SubsurfaceTechniqueTest, LightScalesLinearlyOverTwelveDecades) {
+  for (const render::TechniqueUse& use : uses()) {
+    SCOPED_TRACE(use.plugin->info->name);
+    const double one = mean(drawn(ball(0.1f), {use}));
+    for (const float strength : {1e-6f, 1e6f})
+      EXPECT_NEAR(mean(drawn(ball(0.1f, 1, strength), {use})) / one / double(strength), 1, 1e-4);
+  }
+}
+
+/// Channels without scattering or without absorption, mean free paths beyond all sizes, and indices of 1
+/// and 3.
+TEST_F(SubsurfaceTechniqueTest, ExtremeMatterGivesFiniteLight) {
+  for (const float ior : {1.f, 3.f})
+    for (const float meanFreePath : {1e-6f, 1.f, 1e6f})
+      for (const vec3& absorption : {vec3(0, 0.5f, 1), vec3(0), vec3(1)}) {
+        scene::Scene scene = ball(meanFreePath);
+        scene.materials[0].ior = ior;
+        scene.materials[0].subsurface->absorption = absorption;
+        scene.materials[0].baseColour = albedo(absorption, ior);
+        for (const char* profile : {"dipole", "normalised_diffusion"})
+          for (render::TechniqueUse& use : uses()) {
+            SCOPED_TRACE(use.plugin->info->name);
+            use.parameters.set("profile", profile);
+            expectWithin(drawn(scene, {use}), 0, 100);
+          }
+      }
+}
+
+/// Without translucent surfaces techniques are not asked.
+TEST_F(SubsurfaceTechniqueTest, OpaqueScenesLeaveThemOut) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  for (const render::TechniqueUse& use : uses()) {
+    SCOPED_TRACE(use.plugin->info->name);
+    EXPECT_EQ(mean(picture(renderer, settings(32, 32, Term::subsurface, {use}))), 0);
+    int passes = 0;
+    for (const frame::PassReport& pass : renderer.explain())
+      passes += pass.technique == use.plugin->info->name && pass.state == frame::PassState::run;
+    EXPECT_EQ(passes, 0);
+  }
+}
+
+}  // namespace
+}  // namespace limn
