@@ -1,0 +1,102 @@
+// The profiles of glsl/diffusion for three channels at once, per unit of length: a channel's mean free path is 1 / extinction.
+// A channel that absorbs what it does not scatter at all (a' = 0) has a density, of a reflectance of 0.
+#ifndef LIMN_DIFFUSION_COLOURS_GLSL
+#define LIMN_DIFFUSION_COLOURS_GLSL
+#include "glsl/diffusion/dipole.glsl"
+#include "glsl/diffusion/normalised.glsl"
+LIMN_BEGIN
+
+LIMN_FN vec3 walk_absorption(WalkReflectance w, vec3 albedo) {
+  return vec3(walk_absorption(w, albedo.x), walk_absorption(w, albedo.y), walk_absorption(w, albedo.z));
+}
+
+// The mean distance between where light enters and where it leaves, by normalised diffusion, whose mean is finite at any
+// absorption: int 2 pi r^2 R dr / A = 2.5 d.
+LIMN_FN vec3 diffusion_reach(vec3 extinction, vec3 absorption, WalkReflectance walk) {
+  vec3 width = vec3(normalised_diffusion(absorption.x, walk).width, normalised_diffusion(absorption.y, walk).width,
+                    normalised_diffusion(absorption.z, walk).width);
+  return 2.5f * width / extinction;
+}
+
+// Of which channels points are drawn, as shares: of the one that reaches farthest alone, and of all where another reaches less
+// than a quarter as far, whose light few of the farthest one's points would meet.
+LIMN_FN vec3 diffusion_drawn_channels(vec3 reach) {
+  float farthest = max(reach.x, max(reach.y, reach.z));
+  float nearest = min(reach.x, min(reach.y, reach.z));
+  if (farthest > 4.0f * nearest) return vec3(1.0f / 3.0f);
+  if (reach.x == farthest) return vec3(1.0f, 0.0f, 0.0f);
+  return reach.y == farthest ? vec3(0.0f, 1.0f, 0.0f) : vec3(0.0f, 0.0f, 1.0f);
+}
+
+struct DipoleColours {
+  vec3 extinction;
+  float virtual_height;
+  vec3 decay;
+  vec3 real_share;
+  vec3 reflectance;
+};
+
+LIMN_FN DipoleColours dipole_colours(vec3 extinction, vec3 absorption, DiffusionBoundary boundary) {
+  DiffusionDipole x = diffusion_dipole(absorption.x, boundary);
+  DiffusionDipole y = diffusion_dipole(absorption.y, boundary);
+  DiffusionDipole z = diffusion_dipole(absorption.z, boundary);
+  DipoleColours c;
+  c.extinction = extinction;
+  c.virtual_height = x.virtual_height;
+  c.decay = vec3(x.decay, y.decay, z.decay);
+  c.real_share = vec3(x.real_share, y.real_share, z.real_share);
+  c.reflectance = vec3(x.reflectance, y.reflectance, z.reflectance);
+  return c;
+}
+
+// Share of each channel's light per area at distance r, and the radius within which the share xi of one channel's leaves.
+LIMN_FN vec3 diffusion_density(DipoleColours c, float r) {
+  vec3 away = min(r * c.extinction, vec3(1e10f));
+  float z = c.virtual_height;
+  vec3 from_real = sqrt(away * away + vec3(1.0f));
+  vec3 from_virtual = sqrt(away * away + vec3(z * z));
+  vec3 real = c.real_share * (vec3(1.0f) + c.decay * from_real) * exp(c.decay - c.decay * from_real) /
+              (from_real * from_real * from_real);
+  vec3 image = (vec3(1.0f) - c.real_share) * (vec3(1.0f) + c.decay * from_virtual) *
+               exp(c.decay * z - c.decay * from_virtual) * z / (from_virtual * from_virtual * from_virtual);
+  return 0.5f * inverse_pi * c.extinction * c.extinction * (real + image);
+}
+LIMN_FN float diffusion_radius(DipoleColours c, int channel, float xi) {
+  DiffusionDipole d;
+  d.decay = c.decay[channel];
+  d.virtual_height = c.virtual_height;
+  d.real_share = c.real_share[channel];
+  d.reflectance = c.reflectance[channel];
+  return diffusion_dipole_radius(d, xi) / c.extinction[channel];
+}
+
+struct NormalisedColours {
+  vec3 reflectance;
+  vec3 width;  // d
+};
+
+LIMN_FN NormalisedColours normalised_colours(vec3 extinction, vec3 absorption, DiffusionBoundary boundary) {
+  WalkReflectance walk = walk_reflectance(boundary);
+  NormalisedDiffusion x = normalised_diffusion(absorption.x, walk);
+  NormalisedDiffusion y = normalised_diffusion(absorption.y, walk);
+  NormalisedDiffusion z = normalised_diffusion(absorption.z, walk);
+  NormalisedColours c;
+  c.reflectance = vec3(x.reflectance, y.reflectance, z.reflectance);
+  c.width = vec3(x.width, y.width, z.width) / extinction;
+  return c;
+}
+
+// r > 0.
+LIMN_FN vec3 diffusion_density(NormalisedColours c, float r) {
+  vec3 wide = exp(vec3(-r / 3.0f) / c.width);
+  return 0.125f * inverse_pi * (wide * wide * wide + wide) / (r * c.width);
+}
+LIMN_FN float diffusion_radius(NormalisedColours c, int channel, float xi) {
+  NormalisedDiffusion n;
+  n.reflectance = c.reflectance[channel];
+  n.width = c.width[channel];
+  return normalised_diffusion_radius(n, xi);
+}
+
+LIMN_END
+#endif  // LIMN_DIFFUSION_COLOURS_GLSL

@@ -1,0 +1,27 @@
+// What becomes of sums over drawn points of the light that enters where they are.
+#ifndef LIMN_DIFFUSION_ENTRY_SUMS_GLSL
+#define LIMN_DIFFUSION_ENTRY_SUMS_GLSL
+#include "glsl/numeric/language.glsl"
+LIMN_BEGIN
+
+// How the sums become a mean of the entering light over the profile.
+LIMN_CONST int entry_normalise_none = 0;     // over all points, those without a hit included: what is seen of the integral
+LIMN_CONST int entry_normalise_count = 1;    // over the points with a hit, whose weights leave out how areas differ
+LIMN_CONST int entry_normalise_weights = 2;  // over the sum of the weights: never above the light that enters anywhere
+
+LIMN_FN float entry_ratio(float light, float weights, float otherwise) {
+  return weights > 1e-30f ? light / weights : otherwise;
+}
+
+// The mean from the sums of weight times light and of weights, the latter being profile over density. `here`: the light that
+// enters at the pixel itself, which is all that is known of a channel that no point tells of.
+LIMN_FN vec3 entry_mean(vec3 light, vec3 weights, float hits, float points, int normalise, vec3 here) {
+  if (hits == 0.0f) return here;
+  if (normalise == entry_normalise_none) return light / points;
+  if (normalise == entry_normalise_count) return light / hits;
+  return vec3(entry_ratio(light.x, weights.x, here.x), entry_ratio(light.y, weights.y, here.y),
+              entry_ratio(light.z, weights.z, here.z));
+}
+
+LIMN_END
+#endif  // LIMN_DIFFUSION_ENTRY_SUMS_GLSL
