@@ -7,6 +7,7 @@
 
 #include "core/scene/density_grid.h"
 #include "core/scene/material_model.h"
+#include "core/scene/subsurface.h"
 
 namespace limn::bench {
 namespace {
@@ -40,6 +41,17 @@ void addTriangles(scene::Scene& scene, const std::vector<glm::vec3>& corners) {
   scene.materials.push_back(material);
 }
 
+/// Brings what scatters below a surface to a base colour or an index that has changed.
+void followSurface(scene::Material& material, bool colourChanged) {
+  if (!material.subsurface) return;
+  scene::Subsurface& below = *material.subsurface;
+  if (colourChanged || below.albedoFromBaseColour)
+    below.absorption = scene::subsurfaceAbsorption(glm::vec3(material.baseColour), material.ior);
+  else
+    material.baseColour =
+        glm::vec4(scene::subsurfaceAlbedo(below.absorption, material.ior), material.baseColour.a);
+}
+
 /// Positions and sizes by `factor`, intensities by its square (directional lights keep their irradiance), so
 /// that the picture stays the same.
 void scale(scene::Scene& scene, float factor) {
@@ -62,6 +74,8 @@ void scale(scene::Scene& scene, float factor) {
     light.range *= factor;
   }
   for (scene::CameraLens& camera : scene.cameras) camera.near *= factor;
+  for (scene::Material& material : scene.materials)
+    if (material.subsurface) material.subsurface->extinction /= factor;
   scene.medium.sigmaA /= factor;
   scene.medium.sigmaS /= factor;
   if (scene.medium.grid) {
@@ -130,7 +144,10 @@ scene::Scene stressed(scene::Scene scene, StressChange change, double amount) {
     case StressChange::cameraNear:
       break;
     case StressChange::refraction:
-      for (scene::Material& material : scene.materials) material.ior = value;
+      for (scene::Material& material : scene.materials) {
+        material.ior = value;
+        followSurface(material, false);
+      }
       break;
     case StressChange::sceneScale:
       scale(scene, value);
@@ -162,6 +179,7 @@ scene::Scene stressed(scene::Scene scene, StressChange change, double amount) {
       for (scene::Material& material : scene.materials) {
         material.baseColour = glm::vec4(glm::vec3(value), material.baseColour.a);
         material.baseColourTexture = {};
+        followSurface(material, true);
       }
       break;
     case StressChange::noLight:

@@ -5,7 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/bench/private/stress_scene.h"
 #include "core/bench/stress.h"
+#include "core/scene/subsurface.h"
 
 namespace limn::bench {
 namespace {
@@ -38,6 +40,28 @@ TEST(BenchStress, AsksForLightWhereVisibilityKnowsNothingOfTheCase) {
   EXPECT_THAT(asked(Term::visibility | Term::indirect | Term::environment, StressChange::noLight),
               ElementsAre("final"));
   EXPECT_THAT(asked(Term::visibility | Term::media, StressChange::noLight), ElementsAre("final", "media"));
+}
+
+TEST(StressedScene, WhatScattersFollowsItsSurface) {
+  scene::Scene scene;
+  scene.materials.resize(2);
+  for (scene::Material& material : scene.materials)
+    material.subsurface = {.extinction = {800, 900, 1000}, .absorption = {0.1f, 0.2f, 0.3f}};
+  scene.materials[1].subsurface->albedoFromBaseColour = true;
+  scene.materials[1].baseColour = {0.5f, 0.6f, 0.7f, 1};
+
+  EXPECT_EQ(stressed(scene, StressChange::sceneScale, 100).materials[0].subsurface->extinction,
+            glm::vec3(8, 9, 10));
+  for (const scene::Material& m : stressed(scene, StressChange::albedo, 0.25).materials) {
+    EXPECT_EQ(m.baseColour, glm::vec4(0.25f, 0.25f, 0.25f, 1));
+    EXPECT_EQ(m.subsurface->absorption, scene::subsurfaceAbsorption(glm::vec3(0.25f), m.ior));
+  }
+  const scene::Scene bent = stressed(scene, StressChange::refraction, 3);
+  EXPECT_EQ(bent.materials[0].subsurface->absorption, glm::vec3(0.1f, 0.2f, 0.3f));
+  EXPECT_EQ(glm::vec3(bent.materials[0].baseColour), scene::subsurfaceAlbedo(glm::vec3(0.1f, 0.2f, 0.3f), 3));
+  EXPECT_EQ(bent.materials[1].baseColour, scene.materials[1].baseColour);
+  EXPECT_EQ(bent.materials[1].subsurface->absorption,
+            scene::subsurfaceAbsorption(glm::vec3(0.5f, 0.6f, 0.7f), 3));
 }
 
 StressResult severalTerms() {
