@@ -1,0 +1,101 @@
+#include "techniques/subsurface_scattering/bodies.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn::subsurface_scattering {
+namespace {
+
+using glsl::DiffusionBody;
+
+bool isTextured(const scene::Material& material, const scene::Primitive& primitive) {
+  return material.subsurface->albedoFromBaseColour &&
+         (material.baseColourTexture.image != scene::kNone || !primitive.colours.empty());
+}
+
+/// Returns how many of the samples are drawn from the disc.
+int fromDisc(const Drawing& drawing) {
+  return static_cast<int>(std::lround(drawing.uniformShare * static_cast<float>(drawing.samples)));
+}
+
+DiffusionBody makeBody(const scene::Material& material, bool textured, const Drawing& drawing) {
+  const scene::Subsurface& below = *material.subsurface;
+  const float eta = std::clamp(material.ior, 1.f, 3.f);
+  const glm::vec3 extinction = below.extinction / drawing.scale;
+  const glm::vec3 reach = glsl::diffusion_reach(extinction, below.absorption,
+                                                glsl::walk_reflectance(glsl::diffusion_boundary(eta)));
+  const float unit = std::max({reach.x, reach.y, reach.z});
+  return {.extinction = extinction * unit,
+          .unit = unit,
+          .absorption = below.absorption,
+          .eta = eta,
+          .channels = glsl::diffusion_drawn_channels(reach),
+          .uniform_share = static_cast<float>(fromDisc(drawing)) / static_cast<float>(drawing.samples),
+          .uniform_radius = drawing.uniformRadius,
+          .textured = textured ? 1u : 0u,
+          .first_point = 0,
+          .unused = 0};
+}
+
+bool alike(const DiffusionBody& a, const DiffusionBody& b) {
+  return a.extinction == b.extinction && a.unit == b.unit && a.absorption == b.absorption && a.eta == b.eta &&
+         a.textured == b.textured;
+}
+
+/// Calls `take` with what is random about each point, for each place in the pattern its samples.
+template <class Take>
+void forDraws(const Drawing& drawing, Take&& take) {
+  const int places = drawing.block * drawing.block, disc = fromDisc(drawing);
+  for (int place = 0; place < places; ++place) {
+    for (int i = 0; i < drawing.samples; ++i)
+      take(glsl::point_draw(static_cast<uint32_t>(i * places + place), i >= drawing.samples - disc));
+  }
+}
+
+template <class Colours>
+void addPoints(const DiffusionBody& body, const Colours& colours, const Drawing& drawing,
+               std::vector<glsl::DrawnPoint>& points) {
+  const glsl::PointSource source{body.channels, body.uniform_share, body.uniform_radius};
+  forDraws(drawing, [&](const glsl::PointDraw& draw) {
+    const float r = glsl::drawn_radius(colours, source, draw);
+    const float density = glsl::drawn_density(glsl::diffusion_density(colours, r), source, r);
+    points.push_back({.offset = r * draw.direction, .inverse_density = 1 / density, .unused = 0});
+  });
+}
+
+}  // namespace
+
+Bodies findBodies(const scene::Scene& scene, const scene::Pose& pose, const Drawing& drawing) {
+  Bodies result;
+  result.ofInstances.assign(pose.instances.size(), glsl::no_body);
+  for (size_t i = 0; i < pose.instances.size(); ++i) {
+    const scene::DrawInstance& instance = pose.instances[i];
+    if (instance.node == scene::kNone) continue;
+    const scene::Primitive& primitive =
+        scene.meshes[static_cast<size_t>(instance.mesh)].primitives[static_cast<size_t>(instance.primitive)];
+    const scene::Material& material = scene.materials[static_cast<size_t>(primitive.material)];
+    if (!material.subsurface) continue;
+    const DiffusionBody body = makeBody(material, isTextured(material, primitive), drawing);
+    const auto known =
+        std::ranges::find_if(result.bodies, [&](const DiffusionBody& other) { return alike(other, body); });
+    result.ofInstances[i] = static_cast<uint32_t>(known - result.bodies.begin());
+    if (known == result.bodies.end()) result.bodies.push_back(body);
+  }
+  bool textures = false;
+  for (DiffusionBody& body : result.bodies) {
+    textures = textures || body.textured != 0;
+    if (body.textured != 0) continue;
+    body.first_point = static_cast<uint32_t>(result.points.size());
+    const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(body.eta);
+    if (drawing.profile == Profile::dipole)
+      addPoints(body, glsl::dipole_colours(body.extinction, body.absorption, boundary), drawing,
+                result.points);
+    else
+      addPoints(body, glsl::normalised_colours(body.extinction, body.absorption, boundary), drawing,
+                result.points);
+  }
+  if (textures) forDraws(drawing, [&](const glsl::PointDraw& draw) { result.draws.push_back(draw); });
+  return result;
+}
+
+}  // namespace limn::subsurface_scattering

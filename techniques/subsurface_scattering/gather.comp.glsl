@@ -1,0 +1,175 @@
+// The mean over the profile of the light that enters around a pixel: points drawn around it in the plane that touches the
+// surface stand for the places that rays through them see. The work groups of one z draw the same points, every block^2-th of
+// the sequence, for the pixels of one place in a pattern of block x block.
+//
+// What it stores still lacks a factor that varies with the pixel's own colour (exit.comp.glsl): without textures C, with them
+// its root.
+//
+// SAMPLES: points of each pixel. NORMALISE: entry_normalise_*. PLANES 2: half of the points lie in the plane that faces the
+// camera. ROOT 1: at a border of two colours the profile is the root of both, else that of the pixel. POINT_COUNT: of all
+// points, where they fit a uniform block.
+#include "glsl/diffusion/entry_sums.glsl"
+#include "glsl/diffusion/eye_plane.glsl"
+#include "glsl/numeric/geometry.glsl"
+#include "techniques/subsurface_scattering/entry_texel.glsl"
+#include "techniques/subsurface_scattering/pixel_body.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+#if TEXTURED
+#define Point PointDraw
+#else
+#define Point DrawnPoint
+#endif
+#ifdef POINT_COUNT  // they fit a uniform block, from which all invocations load at once
+layout(std140) uniform Points { Point points[POINT_COUNT]; };
+#else
+layout(std430) readonly buffer Points { Point points[]; };
+#endif
+uniform usampler2D planes;
+uniform usampler2D lights;
+layout(rgba32f) writeonly uniform image2D gathered;
+uniform uint body_index;
+uniform int block;  // pixels
+
+vec3 entering_light(ivec2 pixel) { return uintBitsToFloat(entry_unpack(texelFetch(lights, pixel, 0).xy)); }
+
+// A plane around the pixel's place in which points are drawn.
+struct DrawingPlane {
+  vec3 plane;  // eye_plane
+  vec3 tangent, bitangent;              // m for a unit of length
+  vec3 screen_tangent, screen_bitangent;  // the same in homogeneous pixels
+};
+
+// From places, from the eye, to homogeneous pixels.
+mat3 screen_of_places() {
+  vec3 dx = frame.view_ray_dx.xyz, dy = frame.view_ray_dy.xyz, origin = frame.view_ray_origin.xyz;
+  vec3 x = cross(dy, origin), y = cross(origin, dx), z = cross(dx, dy);
+  return transpose(mat3(x, y, z) / dot(x, dx));
+}
+
+DrawingPlane drawing_plane(vec3 place, vec3 normal, vec3 own_plane, float unit, mat3 screen) {
+  Frame f = frame_around(normal);
+  DrawingPlane p;
+  p.plane = own_plane;
+  p.tangent = unit * f.t;
+  p.bitangent = unit * f.b;
+  p.screen_tangent = screen * p.tangent;
+  p.screen_bitangent = screen * p.bitangent;
+  return p;
+}
+
+// Share of the points' density that one plane brings, per area of what the ray `towards` meets. `place`: from the pixel's own.
+float plane_density(Colours colours, PointSource source, vec3 plane, float stretch, float r, float area) {
+  float density = drawn_density(diffusion_density(colours, r), source, r);
+#if NORMALISE == 1
+  return density;
+#else
+  return density * eye_plane_area(plane, stretch) / area;
+#endif
+}
+
+void main() {
+  uint sub_buffer = gl_WorkGroupID.z;
+  ivec2 pixel = block * ivec2(gl_GlobalInvocationID.xy) +
+                ivec2(int(sub_buffer) % block, int(sub_buffer) / block);
+  ivec2 size = ivec2(frame.frame_size);
+  if (any(greaterThanEqual(pixel, size))) return;
+  uvec4 own = texelFetch(planes, pixel, 0);
+  bool asked = own.w != no_instance && bodies_of_instances[own.w != no_instance ? own.w : 0u] == body_index;
+  // A loop of at most one round: software renderers run both sides of an `if`, but leave a loop that nobody is in.
+  while (asked) {
+    asked = false;
+    DiffusionBody body = bodies[body_index];
+    DiffusionBoundary boundary = diffusion_boundary(body.eta);
+    vec3 absorption = pixel_absorption(body, boundary, pixel);
+    Colours colours = matter_colours(body.extinction, absorption, boundary);
+#if TEXTURED || PLANES == 2
+    PointSource source = PointSource(body.channels, body.uniform_share, body.uniform_radius);
+#endif
+#if TEXTURED
+    source.channels = diffusion_drawn_channels(diffusion_reach(body.extinction, absorption, walk_reflectance(boundary)));
+#endif
+    float per_metre = 1.0 / body.unit;
+    vec3 own_plane = uintBitsToFloat(own.xyz);
+    vec3 place = pixel_ray(pixel) / dot(own_plane, pixel_ray(pixel));
+    mat3 screen = screen_of_places();
+    vec3 screen_place = screen * place;
+    float own_area = length(own_plane);
+    DrawingPlane drawing = drawing_plane(place, -own_plane / own_area, own_plane, body.unit, screen);
+#if PLANES == 2
+    vec3 facing_plane = place / dot(place, place);
+    DrawingPlane facing = drawing_plane(place, -normalize(place), facing_plane, body.unit, screen);
+#endif
+    vec3 light = vec3(0.0), weights = vec3(0.0);
+    float hits = 0.0;
+    uint index = body.first_point + sub_buffer * uint(SAMPLES);
+    for (int i = 0; i < SAMPLES; ++i, ++index) {
+      Point point = points[index];
+#if TEXTURED
+      float drawn = drawn_radius(colours, source, point);
+      vec2 at = drawn * point.direction;
+      vec3 drawn_densities = diffusion_density(colours, drawn);
+#else
+      vec2 at = point.offset;
+#endif
+#if PLANES == 2
+      bool faces = i % 2 == 1;
+      DrawingPlane p = faces ? facing : drawing;
+#else
+      DrawingPlane p = drawing;
+#endif
+      vec3 offset = at.x * p.tangent + at.y * p.bitangent;
+      vec3 towards = place + offset;
+      vec3 shown = screen_place + at.x * p.screen_tangent + at.y * p.screen_bitangent;
+      vec2 tap_at = shown.xy / max(shown.z, 1e-30) + 0.5;
+      bool inside = shown.z > 0.0 && all(greaterThanEqual(tap_at, vec2(0.0))) && all(lessThan(tap_at, vec2(size)));
+      ivec2 tap = inside ? ivec2(tap_at) : pixel;
+      uvec4 met = texelFetch(planes, tap, 0);
+      vec3 plane = uintBitsToFloat(met.xyz);
+      // On the pixel's own plane what is left of the way from the eye is exactly that of the offset.
+      float inverse = tap == pixel ? 1.0 + dot(own_plane, offset) : dot(plane, towards);
+      bool hit = inside && met.w == own.w && inverse > 1.0 / eye_plane_most_stretch;
+      float stretch = hit ? 1.0 / inverse : 1.0;
+      float r = max(per_metre * eye_plane_distance(offset, towards, stretch), 1e-12);
+      vec3 densities = diffusion_density(colours, r);
+      float area = eye_plane_area(plane, stretch);
+#if PLANES == 2
+      vec3 other_plane = faces ? own_plane : facing_plane;
+      float other_stretch = eye_plane_stretch(other_plane, towards);
+      float other_r = max(per_metre * eye_plane_distance(offset, towards, other_stretch), 1e-12);
+      float density = plane_density(colours, source, p.plane, 1.0, length(at), area);
+      float other = plane_density(colours, source, other_plane, other_stretch, other_r, area);
+      float share = float((SAMPLES + 1 - i % 2) / 2) / float(SAMPLES);  // of the points in this plane
+      density = share * density + (1.0 - share) * (other_stretch > 0.0 ? other : 0.0);
+      float inverse_density = 1.0 / density;
+#else
+#if TEXTURED
+      float inverse_density = 1.0 / drawn_density(drawn_densities, source, drawn);
+#else
+      float inverse_density = point.inverse_density;
+#endif
+#if NORMALISE != 1
+      inverse_density *= area / own_area;
+#endif
+#endif
+      vec3 weight = densities * inverse_density;
+#if TEXTURED && ROOT
+      Colours there = matter_colours(body.extinction, pixel_absorption(body, boundary, tap), boundary);
+      vec3 shared_weight = sqrt(densities * there.reflectance * diffusion_density(there, r)) * inverse_density;
+#else
+      vec3 shared_weight = weight;
+#endif
+      if (hit) {
+        light += shared_weight * entering_light(tap);
+        weights += weight;
+        hits += 1.0;
+      }
+    }
+    vec3 here = entering_light(pixel);
+#if TEXTURED && ROOT
+    here *= sqrt(colours.reflectance);
+#endif
+    vec3 mean = entry_mean(light, weights, hits, float(SAMPLES), NORMALISE, here);
+    imageStore(gathered, pixel, vec4(mean, 0.0));
+  }
+}

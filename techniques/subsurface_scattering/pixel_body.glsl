@@ -1,0 +1,29 @@
+// The matter below a pixel.
+// PROFILE 0: dipole, 1: normalised diffusion. TEXTURED 1: the base colour of pixels may say what absorbs.
+#ifndef PIXEL_BODY_GLSL
+#define PIXEL_BODY_GLSL
+#include "glsl/surface/gbuffer_input.glsl"
+#include "techniques/subsurface_scattering/diffusion_body.glsl"
+
+#if PROFILE == 0
+#define Colours DipoleColours
+#define matter_colours dipole_colours
+#else
+#define Colours NormalisedColours
+#define matter_colours normalised_colours
+#endif
+
+layout(std430) readonly buffer Bodies { DiffusionBody bodies[]; };
+layout(std430) readonly buffer BodiesOfInstances { uint bodies_of_instances[]; };
+
+vec3 pixel_absorption(DiffusionBody body, DiffusionBoundary boundary, ivec2 pixel) {
+#if TEXTURED
+  vec3 albedo = gbuffer_colour_decode(texelFetch(gbuffer_albedo, pixel, 0).rgb);
+  vec3 absorption = walk_absorption(walk_reflectance(boundary), albedo);
+  return body.textured != 0u ? absorption : body.absorption;
+#else
+  return body.absorption;
+#endif
+}
+
+#endif  // PIXEL_BODY_GLSL

@@ -1,0 +1,317 @@
+// Light below surfaces from points that are drawn in the plane that touches a surface and looked up in the
+// image.
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/frame/array_block.h"
+#include "core/gpu_scene/gpu_scene.h"
+#include "core/technique/technique.h"
+#include "glsl/diffusion/entry_sums.glsl"
+#include "techniques/subsurface_scattering/bodies.h"
+
+namespace {
+
+using namespace limn;
+using frame::Access;
+using frame::BufferHandle;
+using frame::TextureHandle;
+using subsurface_scattering::Bodies;
+
+constexpr const char* kProfiles[] = {"dipole", "normalised_diffusion"};
+constexpr const char* kNormalise[] = {"none", "count", "weights"};
+static_assert(glsl::entry_normalise_none == 0 && glsl::entry_normalise_count == 1 &&
+              glsl::entry_normalise_weights == 2);
+constexpr const char* kPlanes[] = {"tangent", "both"};
+constexpr const char* kMixing[] = {"root", "own"};
+
+constexpr Parameter kParameters[] = {
+    choice(
+        "profile", 0, kProfiles,
+        "Light over the distance from where it entered: the dipole of sources, or two exponentials with the "
+        "reflectance of a random walk"),
+    integer("samples", 16, {1, 1024}, "points", "Drawn around each pixel").quality().logScale(),
+    integer("block", 4, {1, 16}, "pixels",
+            "Side of the pattern of pixels that draw different points, over which the light is averaged"),
+    choice("normalise", glsl::entry_normalise_weights, kNormalise,
+           "none: the sum over the points is the integral over what is seen; count: its mean over the points "
+           "that see the body, without the change of area, as published; weights: its mean by the weights"),
+    choice("planes", 0, kPlanes,
+           "Points lie in the plane that touches the surface, or in the one that faces the camera, too"),
+    real("uniform_share", 0, {0, 1}, "",
+         "Part of the points that are drawn from a disc instead of the profile"),
+    real("uniform_radius", 3, {0.1, 100}, "mean distances",
+         "Of that disc, over how far the farthest channel's light gets in the mean")
+        .logScale(),
+    choice("mixing", 0, kMixing,
+           "Where textures vary what scatters: the root of both places' profiles, or the pixel's own, as "
+           "published"),
+    real("scale", 1, {1e-6, 1e6}, "", "Factor on all mean free paths").logScale(),
+};
+constexpr StressCase kStress[] = {
+    {.name = "one point", .scene = "translucent_edge", .settings = "samples=1", .factor = 4},
+    {.name = "points from a disc alone",
+     .scene = "translucent_edge",
+     .settings = "uniform_share=1",
+     .factor = 4},
+    {.name = "both planes", .scene = "translucent_spheres", .settings = "planes=both"},
+    {.name = "not normalised", .scene = "translucent_spheres", .settings = "normalise=none", .factor = 0},
+    {.name = "normalised by hits",
+     .scene = "translucent_spheres",
+     .settings = "normalise=count",
+     .factor = 0},
+    {.name = "light that stays within a texel",
+     .scene = "translucent_spheres",
+     .settings = "scale=1e-6",
+     .factor = 0},
+    {.name = "light that reaches beyond the body",
+     .scene = "translucent_spheres",
+     .settings = "scale=1e6",
+     .factor = 0},
+    {.name = "exponentials within a texel",
+     .scene = "translucent_spheres",
+     .settings = "profile=normalised_diffusion scale=1e-6",
+     .factor = 0},
+    {.name = "exponentials beyond the body",
+     .scene = "translucent_spheres",
+     .settings = "profile=normalised_diffusion scale=1e6",
+     .factor = 0},
+    {.name = "colours that vary", .scene = "translucent_checker", .settings = "mixing=own", .factor = 4},
+    {.name = "bodies that absorb nothing",
+     .change = StressChange::albedo,
+     .amount = 1,
+     .scene = "translucent_spheres",
+     .factor = 4},
+    {.name = "bodies that scatter nothing",
+     .change = StressChange::albedo,
+     .amount = 0,
+     .scene = "translucent_spheres"},
+    {.name = "index of refraction 1",
+     .change = StressChange::refraction,
+     .amount = 1,
+     .scene = "translucent_edge"},
+    {.name = "index of refraction 3",
+     .change = StressChange::refraction,
+     .amount = 3,
+     .scene = "translucent_edge",
+     .factor = 4},
+    {.name = "bodies of a scene of 1e-4",
+     .change = StressChange::sceneScale,
+     .amount = 1e-4,
+     .scene = "translucent_spheres"},
+    {.name = "bodies of a scene of 1e4",
+     .change = StressChange::sceneScale,
+     .amount = 1e4,
+     .scene = "translucent_spheres"},
+};
+
+constexpr int kGroup = 8;
+
+class SubsurfaceScattering : public Technique {
+  TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                          const TermRequest& request) override;
+
+ public:
+  static constexpr TechniqueInfo info{.name = "subsurface_scattering",
+                                      .title = "Subsurface scattering by points in the image",
+                                      .source =
+                                          "Mertens, Kautz, Bekaert, Van Reeth, Seidel 2003, Efficient "
+                                          "Rendering of Local Subsurface Scattering",
+                                      .terms = termSet(Term::subsurface),
+                                      .parameters = kParameters,
+                                      .stress = kStress};
+
+ private:
+  /// Holds the bodies on the GPU for as long as the graph that reads them.
+  struct BodyBuffers {
+    gpu::Buffer bodies, ofInstances, points, draws;
+  };
+  Bodies bodies_;
+  std::optional<BodyBuffers> buffers_;
+};
+
+subsurface_scattering::Drawing drawingFor(const ParameterValues& p) {
+  using subsurface_scattering::Profile;
+  return {.profile = p.choice("profile") == 0 ? Profile::dipole : Profile::normalisedDiffusion,
+          .samples = p.integer("samples"),
+          .block = p.integer("block"),
+          .uniformShare = p.real("uniform_share"),
+          .uniformRadius = p.real("uniform_radius"),
+          .scale = p.real("scale")};
+}
+
+/// Declares the passes of one graph.
+class Passes {
+ public:
+  struct Buffers {
+    BufferHandle bodies, ofInstances, points, draws;
+  };
+
+  Passes(frame::FrameGraph& graph, const TechniqueInputs& inputs, const Bodies& bodies,
+         const Buffers& buffers)
+      : graph_(graph), inputs_(inputs), bodies_(bodies), buffers_(buffers) {
+    addIrradiance();
+  }
+
+  /// Returns the mean of the light that enters around each pixel.
+  TextureHandle addGather() {
+    TextureHandle gathered = screen("entering light around pixels", GL_RGBA32F);
+    bool first = true;
+    for (const bool textured : {false, true}) {
+      std::vector<uint32_t> indices;
+      for (size_t i = 0; i < bodies_.bodies.size(); ++i)
+        if ((bodies_.bodies[i].textured != 0) == textured) indices.push_back(static_cast<uint32_t>(i));
+      if (indices.empty()) continue;
+      gathered = addGather(std::move(indices), textured, gathered, std::exchange(first, false));
+    }
+    return gathered;
+  }
+
+  /// Returns the mean over the pattern of interleaved pixels along rows or columns.
+  TextureHandle addBlur(const char* name, TextureHandle gathered, bool vertical) {
+    frame::PassBuilder pass = graph_.addPass(name, SubsurfaceScattering::info.name);
+    pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
+        .read(planes_, Access::sampled, "planes", "which surfaces are alike")
+        .read(gathered, Access::sampled, "gathered", "what is averaged");
+    const TextureHandle blurred =
+        pass.write(screen(name, GL_RGBA32F), Access::imageStore, "blurred", "means over like neighbours");
+    run(pass, {.files = {shader("blur")}, .defines = {{"VERTICAL", vertical ? "1" : "0"}}},
+        [block = block()](gpu::Program& program) { program.set("block", block); });
+    return blurred;
+  }
+
+  /// Adds the light that leaves to `target`. `blurred` is empty where there is no pattern.
+  TextureHandle addExit(TextureHandle gathered, TextureHandle blurred, TextureHandle target) {
+    const bool textured = anyTextured();
+    frame::PassBuilder pass = graph_.addPass("exit", SubsurfaceScattering::info.name);
+    gpu::ProgramDesc program{.files = {shader("exit")}, .defines = readBodies(pass, textured)};
+    program.defines["BLUR"] = blurred ? "1" : "0";
+    pass.read(inputs_.gbuffer.normal, Access::sampled, kGBufferNames.normal, "cosines towards the camera")
+        .read(gathered, Access::sampled, "gathered", "light that enters around pixels");
+    if (blurred) {
+      pass.read(blurred, Access::sampled, "blurred", "its mean over the pattern")
+          .read(inputs_.gbuffer.depth, Access::sampled, kGBufferNames.depth, "how far light gets in pixels");
+    }
+    const TextureHandle result =
+        pass.write(target, Access::imageLoadStore, "radiance", "light that left bodies");
+    run(pass, std::move(program), [](gpu::Program&) {});
+    return result;
+  }
+
+ private:
+  int block() const { return inputs_.parameters.integer("block"); }
+  bool anyTextured() const { return !bodies_.draws.empty(); }
+  static std::string shader(const char* name) {
+    return std::string("techniques/subsurface_scattering/") + name + ".comp.glsl";
+  }
+
+  TextureHandle screen(const char* name, GLenum format) {
+    return graph_.createTexture(name, {.format = format, .width = inputs_.size.x, .height = inputs_.size.y});
+  }
+
+  /// Lets the pass dispatch one invocation for each pixel.
+  template <class Bind>
+  void run(frame::PassBuilder& pass, gpu::ProgramDesc description, Bind bind) {
+    const auto program = pass.program(std::move(description));
+    pass.execute([program, bind, size = inputs_.size](frame::PassContext& context) {
+      gpu::Program& bound = context.use(program);
+      bind(bound);
+      context.dispatch(size.x, size.y, 1, kGroup, kGroup);
+    });
+  }
+
+  void addIrradiance() {
+    frame::PassBuilder pass = graph_.addPass("irradiance", SubsurfaceScattering::info.name);
+    const GBuffer& g = inputs_.gbuffer;
+    pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
+        .read(g.depth, Access::sampled, kGBufferNames.depth, "places")
+        .read(g.geometricNormal, Access::sampled, kGBufferNames.geometricNormal, "planes of surfaces")
+        .read(g.material, Access::sampled, kGBufferNames.material, "which surfaces are translucent")
+        .read(g.instance, Access::sampled, kGBufferNames.instance, "bodies")
+        .read(inputs_.entering, Access::sampled, "entering", "light that enters");
+    planes_ =
+        pass.write(screen("planes of bodies", GL_RGBA32UI), Access::imageStore, "planes", "what points meet");
+    lights_ = pass.write(screen("light that enters", GL_RG32UI), Access::imageStore, "lights",
+                         "what points find there");
+    run(pass, {.files = {shader("irradiance")}, .defines = {}}, [](gpu::Program&) {});
+  }
+
+  /// Declares what pixel_body.glsl reads besides the G-buffer's depth, and returns the program's defines.
+  std::map<std::string, std::string> readBodies(frame::PassBuilder& pass, bool textured) {
+    pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
+        .read(buffers_.bodies, Access::storageLoad, "Bodies", "what scatters")
+        .read(buffers_.ofInstances, Access::storageLoad, "BodiesOfInstances", "in which instances")
+        .read(planes_, Access::sampled, "planes", "surfaces and their instances");
+    if (textured) pass.read(inputs_.gbuffer.albedo, Access::sampled, kGBufferNames.albedo, "what absorbs");
+    return {{"PROFILE", std::to_string(inputs_.parameters.choice("profile"))},
+            {"TEXTURED", textured ? "1" : "0"},
+            {"ROOT", inputs_.parameters.choice("mixing") == 0 ? "1" : "0"}};
+  }
+
+  TextureHandle addGather(std::vector<uint32_t> indices, bool textured, TextureHandle gathered, bool first) {
+    const subsurface_scattering::Drawing drawing = drawingFor(inputs_.parameters);
+    frame::PassBuilder pass = graph_.addPass("gather", SubsurfaceScattering::info.name);
+    gpu::ProgramDesc description{.files = {shader("gather")}, .defines = readBodies(pass, textured)};
+    static_assert(sizeof(glsl::DrawnPoint) == sizeof(glsl::PointDraw));
+    const auto count = static_cast<int>(textured ? bodies_.draws.size() : bodies_.points.size());
+    const Access points = frame::arrayBlock<glsl::DrawnPoint>(inputs_.gpuScene.device().limits(), count,
+                                                              "POINT_COUNT", description.defines);
+    pass.read(textured ? buffers_.draws : buffers_.points, points, "Points", "points around pixels")
+        .read(lights_, Access::sampled, "lights", "light that enters");
+    gathered = pass.write(gathered, first ? Access::imageStore : Access::imageLoadStore, "gathered",
+                          "light that enters around pixels");
+    description.defines["SAMPLES"] = std::to_string(drawing.samples);
+    description.defines["NORMALISE"] = std::to_string(inputs_.parameters.choice("normalise"));
+    description.defines["PLANES"] = std::to_string(inputs_.parameters.choice("planes") + 1);
+    const auto program = pass.program(std::move(description));
+    pass.execute([program, indices = std::move(indices), block = drawing.block,
+                  size = inputs_.size](frame::PassContext& context) {
+      gpu::Program& kernel = context.use(program);
+      kernel.set("block", block);
+      const glm::ivec2 part = (size + block - 1) / block;
+      for (const uint32_t index : indices) {
+        kernel.set("body_index", index);
+        context.dispatch(part.x, part.y, block * block, kGroup, kGroup);
+      }
+    });
+    return gathered;
+  }
+
+  frame::FrameGraph& graph_;
+  const TechniqueInputs& inputs_;
+  const Bodies& bodies_;
+  Buffers buffers_;
+  TextureHandle planes_, lights_;
+};
+
+TextureHandle SubsurfaceScattering::addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                              const TermRequest& request) {
+  bodies_ = subsurface_scattering::findBodies(inputs.scene, inputs.pose, drawingFor(inputs.parameters));
+  if (bodies_.bodies.empty()) {
+    graph.leaveOut("gather", info.name, "no surface is translucent");
+    return request.target;
+  }
+  gpu::Device& device = inputs.gpuScene.device();
+  buffers_.emplace(gpu::Buffer::of<glsl::DiffusionBody>(device, "bodies", bodies_.bodies),
+                   gpu::Buffer::of<uint32_t>(device, "bodies of instances", bodies_.ofInstances),
+                   gpu::Buffer::of<glsl::DrawnPoint>(device, "points of bodies", bodies_.points),
+                   gpu::Buffer::of<glsl::PointDraw>(device, "draws of points", bodies_.draws));
+  Passes passes(graph, inputs, bodies_,
+                {.bodies = graph.importBuffer("bodies", buffers_->bodies),
+                 .ofInstances = graph.importBuffer("bodies of instances", buffers_->ofInstances),
+                 .points = graph.importBuffer("points of bodies", buffers_->points),
+                 .draws = graph.importBuffer("draws of points", buffers_->draws)});
+  const TextureHandle gathered = passes.addGather();
+  TextureHandle blurred;
+  if (inputs.parameters.integer("block") > 1) {
+    blurred = passes.addBlur("blur", passes.addBlur("blur along rows", gathered, false), true);
+  } else {
+    graph.leaveOut("blur", info.name, "all pixels draw the same points");
+  }
+  return passes.addExit(gathered, blurred, request.target);
+}
+
+}  // namespace
+
+LIMN_TECHNIQUE(SubsurfaceScattering::info, SubsurfaceScattering)
