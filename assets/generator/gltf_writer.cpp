@@ -62,6 +62,12 @@ json heightMap(const HeightMap& m) {
   return entry;
 }
 
+/// The object of extras.limn_subsurface.
+json subsurface(const Subsurface& s) {
+  if (s.meanFreePath) return {{"mean_free_path", shortest(*s.meanFreePath)}};
+  return {{"sigma_a", shortest(s.sigmaA)}, {"sigma_s_prime", shortest(s.sigmaSPrime)}};
+}
+
 /// Collects the binary chunk and the JSON that points into it.
 class Writer {
  public:
@@ -154,6 +160,7 @@ class Writer {
       }
       if (m.model) entry["extras"]["limn_material"] = reflectionModel(*m.model);
       if (m.height) entry["extras"]["limn_height"] = heightMap(*m.height);
+      if (m.subsurface) entry["extras"]["limn_subsurface"] = subsurface(*m.subsurface);
       root_["materials"].push_back(entry);
     }
   }

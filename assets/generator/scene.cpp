@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "glsl/diffusion/normalised.glsl"
+
 namespace limn::assets {
 namespace {
 
@@ -76,6 +78,13 @@ void Scene::addLight(std::string lightName, const Light& light, glm::vec3 positi
            .light = push(lights, light)});
 }
 
+void Scene::addSun(float elevation, glm::vec2 from, float intensity, glm::vec3 colour) {
+  const glm::vec2 away = std::cos(glm::radians(elevation)) * glm::normalize(from);
+  const glm::vec3 place(away.x, std::sin(glm::radians(elevation)), away.y);
+  addLight("key", {.type = Light::Type::directional, .colour = colour, .intensity = intensity}, 3.0f * place,
+           {0, 0, 0});
+}
+
 void Scene::addAreaLight(std::string lightName, glm::vec3 position, glm::vec3 target, glm::vec2 size,
                          float intensity, glm::vec3 colour, float coneDegrees) {
   Light light{.colour = colour, .intensity = intensity};
@@ -99,6 +108,17 @@ Material glass(std::string name, float ior, glm::vec3 tint) {
           .transmission = 1,
           .ior = ior,
           .thickness = 1};
+}
+
+Material translucent(std::string name, glm::vec3 sigmaA, glm::vec3 sigmaSPrime, float ior, float roughness) {
+  const glm::vec3 absorption = sigmaA / (sigmaA + sigmaSPrime);
+  const glsl::WalkReflectance walk = glsl::walk_reflectance(glsl::diffusion_boundary(ior));
+  glm::vec3 albedo;
+  for (int c = 0; c < 3; ++c) albedo[c] = glsl::walk_albedo(walk, absorption[c]);
+  Material material = glossy(std::move(name), albedo, roughness);
+  material.ior = ior;
+  material.subsurface = {.sigmaA = sigmaA, .sigmaSPrime = sigmaSPrime};
+  return material;
 }
 
 Material glossy(std::string name, glm::vec3 baseColour, float roughness, float metallic) {

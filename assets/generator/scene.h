@@ -1,6 +1,6 @@
 // A scene as the generator describes it: plain data, indices into the scene's own arrays (-1: none).
 // The conventions beyond glTF 2.0 (extras.limn_area, limn_angle, limn_environment, limn_height,
-// limn_material) are described in assets/README.md.
+// limn_material, limn_subsurface) are described in assets/README.md.
 #pragma once
 
 #include <optional>
@@ -33,6 +33,13 @@ struct HeightMap {
   glm::vec2 tile{1};            ///< metres per unit of u and v
 };
 
+/// extras.limn_subsurface: how light scatters below a surface. The mean free path, where it is set, stands in
+/// place of the coefficients, and the base colour is the albedo then.
+struct Subsurface {
+  glm::vec3 sigmaA{0}, sigmaSPrime{0};      ///< absorption and reduced scattering, per metre
+  std::optional<glm::vec3> meanFreePath{};  ///< reduced, metres
+};
+
 struct Material {
   std::string name;
   glm::vec4 baseColour{0.8f, 0.8f, 0.8f, 1};  ///< linear
@@ -51,6 +58,7 @@ struct Material {
   float thickness = 0;  ///< metres; > 0: bounds a body
   std::optional<ReflectionModel> model{};
   std::optional<HeightMap> height{};
+  std::optional<Subsurface> subsurface{};
 };
 
 struct Texture {
@@ -173,6 +181,8 @@ struct Scene {
   int add(std::string nodeName, Mesh mesh, int material);
   void addCamera(std::string cameraName, glm::vec3 eye, glm::vec3 target, float yfovDegrees);
   void addLight(std::string lightName, const Light& light, glm::vec3 position, glm::vec3 target);
+  /// The light "key", parallel, from `elevation` degrees above the ground, out of the direction (x, z).
+  void addSun(float elevation, glm::vec2 from, float intensity, glm::vec3 colour = glm::vec3(1));
   /// A one-sided Lambertian rectangle of `size` metres facing `target`; radiance = colour * intensity / area.
   /// It shines into a cone of `coneDegrees` half angle that fades from half of it on; 0: everywhere.
   void addAreaLight(std::string lightName, glm::vec3 position, glm::vec3 target, glm::vec2 size,
@@ -184,6 +194,10 @@ Material lambert(std::string name, glm::vec3 albedo);
 
 /// A body of clear glass or another transparent material.
 Material glass(std::string name, float ior, glm::vec3 tint = glm::vec3(1));
+
+/// A translucent body of those coefficients per metre. Its base colour, for viewers that do not know
+/// limn_subsurface, is what a half space of it reflects of the light that enters.
+Material translucent(std::string name, glm::vec3 sigmaA, glm::vec3 sigmaSPrime, float ior, float roughness);
 
 /// A dielectric or metal.
 Material glossy(std::string name, glm::vec3 baseColour, float roughness, float metallic = 0);

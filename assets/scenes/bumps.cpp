@@ -2,33 +2,17 @@
 // flat but for the sphere. All are Lambertian: what is seen is shape and light alone.
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <string>
 
 #include "assets/generator/shapes.h"
+#include "assets/scenes/relief.h"
 #include "assets/scenes/scenes.h"
 
 namespace limn::assets {
 namespace {
 
 constexpr double kPi = 3.14159265358979;
-
-/// Heights, in sides of the tile, over (u, v) in [0, 1]^2 of a tile that repeats.
-using Relief = std::function<double(double u, double v)>;
-
-/// Waves of 1 to 6 periods whose amplitude falls with the square of their frequency; the RMS slope is 0.26.
-double noise(double u, double v) {
-  constexpr int most = 6;
-  double sum = 0;
-  for (int i = 0; i <= most; ++i)
-    for (int j = -most; j <= most; ++j) {
-      const int square = i * i + j * j;
-      if (square == 0 || square > most * most) continue;
-      const double phase = std::fmod(37.77 * i + 71.13 * j + 5.1 * i * j + 9.7 * j * j, 2 * kPi);
-      sum += std::cos(2 * kPi * (i * u + j * v) + phase) / square;
-    }
-  return 0.0187 * sum;
-}
+constexpr glm::vec3 kSunlight(1, 0.97f, 0.92f);
 
 /// Bumps and dents in rows, 3 of each along an axis; the RMS slope is 0.47.
 double eggCrate(double u, double v) {
@@ -44,34 +28,10 @@ double bricks(double u, double v) {
   return 0.0352 * part * part * (3 - 2 * part);
 }
 
-/// Adds the picture of a relief on a tile of that size.
-HeightMap addHeights(Scene& scene, std::string name, glm::ivec2 texels, glm::vec2 tile,
-                     const Relief& relief) {
-  Image image = makeImage(texels.x, texels.y, [&](glm::vec2 uv) {
-    return glm::vec4(static_cast<float>(relief(static_cast<double>(uv.x), static_cast<double>(uv.y))));
-  });
-  const auto [low, high] =
-      std::ranges::minmax(image.pixels, {}, [](const glm::vec4& pixel) { return pixel.r; });
-  const float lowest = low.r, range = high.r - low.r, side = 0.5f * (tile.x + tile.y);
-  for (glm::vec4& pixel : image.pixels) pixel = (pixel - lowest) / range;
-  return {.texture = scene.addHeights(std::move(name), std::move(image)),
-          .scale = side * range,
-          .offset = side * lowest,
-          .tile = tile};
-}
-
 int bumpy(Scene& scene, std::string name, glm::vec3 albedo, const HeightMap& height) {
   Material material = lambert(std::move(name), albedo);
   material.height = height;
   return scene.addMaterial(std::move(material));
-}
-
-/// The sun from `elevation` degrees above the ground, out of the direction (x, z).
-void addSun(Scene& scene, float elevation, glm::vec2 from) {
-  const glm::vec2 away = std::cos(glm::radians(elevation)) * glm::normalize(from);
-  const glm::vec3 place(away.x, std::sin(glm::radians(elevation)), away.y);
-  scene.addLight("key", {.type = Light::Type::directional, .colour = {1, 0.97f, 0.92f}, .intensity = 3},
-                 3.0f * place, {0, 0, 0});
 }
 
 }  // namespace
@@ -108,12 +68,12 @@ Scene makeBumpSphere() {
   constexpr glm::vec2 repeats(5, 3);
   const glm::vec2 tile = glm::vec2(0.5f * pi * pi * radius, pi * radius) / repeats;
   const int stone =
-      bumpy(scene, "stone", {0.6f, 0.58f, 0.55f}, addHeights(scene, "noise", {128, 128}, tile, noise));
+      bumpy(scene, "stone", {0.6f, 0.58f, 0.55f}, addHeights(scene, "noise", {128, 128}, tile, noiseRelief));
   Mesh ball = sphere(radius, 64);
   scaleUv(ball, repeats);
   Node& node = scene.nodes[static_cast<std::size_t>(scene.add("sphere", std::move(ball), stone))];
   node.translation = {0, radius, 0};
-  addSun(scene, 35, {-1, 0.6f});
+  scene.addSun(35, {-1, 0.6f}, 3, kSunlight);
   scene.addCamera("main", {0, 0.9f, 2.2f}, {0, 0.45f, 0}, 36);
   scene.addCamera("close", {-0.3f, 0.8f, 1.2f}, {-0.1f, 0.55f, 0}, 36);
   return scene;
@@ -124,7 +84,7 @@ Scene makeEggCrate() {
   const int crate = bumpy(scene, "egg_crate", {0.6f, 0.6f, 0.58f},
                           addHeights(scene, "egg_crate", {64, 64}, {1, 1}, eggCrate));
   scene.add("plane", ground(1.5f, 1.5f, 1), crate);
-  addSun(scene, 30, {-1, -0.4f});
+  scene.addSun(30, {-1, -0.4f}, 3, kSunlight);
   scene.addCamera("main", {0, 2, 2.2f}, {0, 0, 0.1f}, 40);
   scene.addCamera("close", {0.2f, 0.7f, 0.9f}, {0, 0, 0.1f}, 40);
   return scene;
@@ -139,7 +99,7 @@ Scene makeGroove() {
   const int groove = bumpy(scene, "groove", {0.6f, 0.6f, 0.58f},
                            addHeights(scene, "groove", {texels, 1}, {0.25f, 0.25f}, walls));
   scene.add("plane", ground(1, 1, 0.25f), groove);
-  addSun(scene, 30, {-1, -0.4f});
+  scene.addSun(30, {-1, -0.4f}, 3, kSunlight);
   scene.addCamera("main", {0, 1.4f, 1.6f}, {0, 0, 0.1f}, 40);
   scene.addCamera("close", {0.1f, 0.4f, 0.6f}, {0, 0, 0.1f}, 40);
   return scene;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "assets/generator/shapes.h"
+#include "assets/scenes/rose_window.h"
 #include "assets/scenes/scenes.h"
 
 namespace limn::assets {
@@ -82,27 +83,6 @@ Scene gemUnder(int lights) {
   scene.addCamera("close", {0.2f, 1.2f, 2.4f}, {0.1f, 0.95f, 0}, 38);
   scene.addCamera("above", {0.2f, 3.6f, 2.4f}, {0, 0.6f, 0}, 38);
   return scene;
-}
-
-/// A round window of coloured glass in lead.
-Image roseWindow() {
-  constexpr int petals = 8;
-  return makeImage(256, 256, [](glm::vec2 uv) {
-    const glm::vec2 p = 2.f * uv - 1.f;
-    const float radius = glm::length(p), sector = (std::atan2(p.y, p.x) / kTurn + 0.5f) * petals;
-    const float across = std::abs(sector - std::floor(sector) - 0.5f) / petals * kTurn * radius;
-    const float half = kTurn * radius / (2 * petals);
-    const int petal = static_cast<int>(sector) % petals;
-    constexpr float rings[] = {0.16f, 0.5f, 0.86f};
-    float lead = half - across;  // to the nearest bar, where the unit is half the window's side
-    if (radius < rings[0]) lead = 1;
-    for (const float ring : rings) lead = std::min(lead, std::abs(radius - ring));
-    if (radius > rings[2] || lead < 0.02f) return glm::vec4(0, 0, 0, 1);
-    if (radius < rings[0]) return glm::vec4(1, 0.85f, 0.4f, 1);
-    constexpr glm::vec3 inner[] = {{1, 0.15f, 0.08f}, {1, 0.6f, 0.05f}},
-                        outer[] = {{0.08f, 0.2f, 1}, {0.1f, 0.8f, 0.25f}};
-    return glm::vec4(radius < rings[1] ? inner[petal % 2] : outer[petal % 2], 1);
-  });
 }
 
 }  // namespace
