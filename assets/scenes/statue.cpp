@@ -5,7 +5,10 @@
 
 #include "assets/generator/implicit.h"
 #include "assets/generator/shapes.h"
+#include "assets/generator/simplify.h"
+#include "assets/scenes/rose_window.h"
 #include "assets/scenes/scenes.h"
+#include "assets/scenes/translucent.h"
 
 namespace limn::assets {
 namespace {
@@ -212,6 +215,23 @@ Scene makeGlassStatue() {
       {-2.6f, 4.4f, 0.8f}, {0, 1.2f, 0});
   scene.addCamera("main", {0.4f, 1.6f, 5.6f}, {0.1f, 1.15f, 0}, 36);
   scene.addCamera("close", {0.3f, 1.5f, 2.8f}, {0.1f, 1.1f, 0}, 38);
+  return scene;
+}
+
+// A figurine: at the size of the statue light would hardly leave the place where it entered.
+Scene makeMarbleStatue() {
+  constexpr float scale = 0.12f;
+  Scene scene;
+  scene.add("floor", backdrop(0.7f, 0.5f, 0.35f, 0.6f, 1),
+            scene.addMaterial(lambert("floor", {0.3f, 0.3f, 0.32f})));
+  Mesh figure = transformed(simplified(dancer(0.02f), 60'000), scaling(glm::vec3(scale)));
+  const int statue = scene.add("statue", std::move(figure), scene.addMaterial(marble("marble")));
+  scene.nodes[static_cast<std::size_t>(statue)].translation = {0, 0.268f * scale, 0};
+  Light key{.type = Light::Type::spot, .intensity = 1.8f, .innerConeAngle = 0.3f, .outerConeAngle = 0.33f};
+  key.texture = scene.addTexture("window", roseWindow());
+  scene.addLight("key", key, {-0.36f, 0.42f, 0.42f}, {0, 0.14f, 0});
+  scene.addCamera("main", {0.11f, 0.2f, 0.6f}, {0.006f, 0.145f, 0}, 29);
+  scene.addCamera("close", {0.04f, 0.235f, 0.25f}, {-0.007f, 0.2f, 0}, 36);
   return scene;
 }
 

@@ -33,11 +33,13 @@ using limn::test::Vec4;
 
 // clang-format off
 const char* const kScenes[] = {
-    "atrium", "atrium_robots", "balls", "balls_sky", "bump_sphere", "bump_wall", "chess", "colonnade", "cornell_box", "cornell_horse",
-    "disk_and_sphere", "egg_crate", "flying_dragon", "foliage_card", "fresnel_spheres", "frog", "gem", "gem_2_lights",
-    "gem_4_lights", "glass_sphere", "glass_statue", "glassware", "glossy_sphere", "glossy_torus", "groove", "lights",
-    "measured_spheres", "metaballs", "monster", "patrol", "plant", "ring", "robot", "smoke", "soldiers", "stained_light",
-    "statue", "teapot", "teapot_coarse", "teapot_groove", "teapot_pattern", "torus_metal", "water", "white_furnace"};
+    "atrium", "atrium_robots", "balls", "balls_sky", "bump_sphere", "bump_wall", "chess", "colonnade", "cornell_box",
+    "cornell_horse", "disk_and_sphere", "egg_crate", "flying_dragon", "foliage_card", "fresnel_spheres", "frog", "gem",
+    "gem_2_lights", "gem_4_lights", "glass_sphere", "glass_statue", "glassware", "glossy_sphere", "glossy_torus",
+    "groove", "lights", "marble_statue", "measured_spheres", "metaballs", "milk", "monster", "patrol", "plant", "ring",
+    "robot", "smoke", "soldiers", "stained_light", "statue", "teapot", "teapot_coarse", "teapot_groove",
+    "teapot_pattern", "torus_metal", "translucent_checker", "translucent_ear", "translucent_edge", "translucent_head",
+    "translucent_spheres", "water", "white_furnace"};
 // clang-format on
 const std::set<std::string> kUnderEnvironments = {"balls_sky", "patrol", "white_furnace"};
 
