@@ -33,7 +33,8 @@ class GoldenTest : public RenderTest {
   }
 
   /// Scenes side by side in one picture; those that answer the environment's light are lit by a sky alone,
-  /// and those that answer media, caustics or specular, or look into height maps, have their own scenes.
+  /// and those that answer media, caustics, specular or subsurface, or look into height maps, have their own
+  /// scenes.
   Image strip(const std::vector<render::TechniqueUse>& techniques) {
     const auto answers = [&](Term term) {
       return std::ranges::any_of(techniques, [term](const render::TechniqueUse& use) {
@@ -47,6 +48,7 @@ class GoldenTest : public RenderTest {
     if (std::ranges::any_of(techniques,
                             [](const render::TechniqueUse& use) { return use.plugin->info->places; }))
       scenes = {"bump_wall", "egg_crate", "bump_sphere"};
+    if (answers(Term::subsurface)) scenes = {"marble_statue", "translucent_spheres", "translucent_head"};
     const bool outdoors = answers(Term::environment);
     Image whole(kWidth * int(scenes.size()), kHeight, {"R", "G", "B"});
     for (size_t s = 0; s < scenes.size(); ++s) {

@@ -60,6 +60,8 @@ class PermutationTest : public OncePerRenderer<RenderTest> {
     if (answers(Term::surface))
       scenes.insert(scenes.end(), {"torus_metal", "disk_and_sphere", "teapot_groove"});
     if (registry().find(name).info->places) scenes = {"egg_crate", "bump_wall", "bump_sphere"};
+    if (answers(Term::subsurface))
+      scenes = {"translucent_edge", "translucent_spheres", "translucent_checker"};
     if (answers(Term::environment)) scenes.emplace_back("balls_sky");
     return scenes;
   }
