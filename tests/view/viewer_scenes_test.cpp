@@ -64,6 +64,7 @@ std::string stageOf(const TechniqueInfo& info) {
   if (info.places) return "bump_wall";
   const TermSet terms = info.terms;
   if (terms == termSet(Term::environment)) return "balls --environment sky";
+  if (contains(terms, Term::subsurface)) return "translucent_spheres";
   if (contains(terms, Term::surface)) return "fresnel_spheres";
   if (contains(terms, Term::media) || contains(terms, Term::caustic) || contains(terms, Term::specular))
     return "gem";
@@ -99,8 +100,8 @@ TEST_P(ViewerTechniquesTest, SwitchesThemOnAndOff) {
   EXPECT_EQ(colours(picture("last.exr")), colours(picture("first.exr")));
 }
 
-constexpr const char* kStages[] = {"cornell_box", "teapot_pattern",  "balls --environment sky",
-                                   "gem",         "fresnel_spheres", "bump_wall"};
+constexpr const char* kStages[] = {"cornell_box",     "teapot_pattern", "balls --environment sky", "gem",
+                                   "fresnel_spheres", "bump_wall",      "translucent_spheres"};
 
 INSTANTIATE_TEST_SUITE_P(Stages, ViewerTechniquesTest, testing::ValuesIn(kStages));
 
