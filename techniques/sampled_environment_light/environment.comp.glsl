@@ -11,25 +11,21 @@ layout(rgba32f) uniform image2D radiance;
 layout(std430) readonly buffer Irradiance { vec4 irradiance[]; };  // on surfaces that face the sample, were it all
 
 #if (MATERIAL_MODELS & 32) != 0
-layout(std430) readonly buffer Directions { vec4 directions[]; };  // towards each sample; w unused
 uniform sampler2D environment_map;
+// The sums of mirror_weight() that a batch hands on to the next. MIRROR_FIRST, MIRROR_LAST: no batch is before this one, or after.
+#if !MIRROR_FIRST || !MIRROR_LAST
+layout(rg32f) uniform image2D mirror_sums;
+#endif
 
 // How much of the mirrored light's visibility a sample stands for: more samples, narrower. Its ends keep sums above 0 in floats.
-float mirror_weight(vec3 mirror, vec3 direction) {
-  return exp(clamp(0.25 * float(total_samples), 1.0, 40.0) * (dot(mirror, direction) - 1.0));
-}
+float mirror_weight(float sharpness, vec3 mirror, vec3 direction) { return exp(sharpness * (dot(mirror, direction) - 1.0)); }
 
-// What the coat mirrors, for samples of this batch whose weights have the sum `seen`, of those that are seen.
+// What the coat mirrors, of which `seen` is visible.
 vec3 mirrored_light(MaterialModel m, GBufferSurface s, vec3 v, vec3 mirror, float seen) {
   if (dot(s.geometric_normal, mirror) <= 0.0) return vec3(0.0);
-  float all = 0.0;
-  for (int i = 0; i < total_samples; ++i) {
-    vec3 direction = directions[i].xyz;
-    if (dot(s.normal, direction) > 0.0 && dot(s.geometric_normal, direction) > 0.0) all += mirror_weight(mirror, direction);
-  }
   vec2 uv = equirectangular_uv(environment_lookup_direction(mirror, frame.environment_rotation));
   vec3 light = frame.environment_scale * textureLod(environment_map, uv, 0.0).rgb;
-  return all > 0.0 ? coated_mirror(m, dot(s.normal, v)) * light * (seen / all) : vec3(0.0);
+  return coated_mirror(m, dot(s.normal, v)) * light * seen;
 }
 #endif
 
@@ -49,24 +45,38 @@ void main() {
   uint uncovered = 0u;
 #if (MATERIAL_MODELS & 32) != 0
   vec3 mirror = 2.0 * dot(s.normal, to_viewer) * s.normal - to_viewer;
-  float mirror_seen = 0.0;
+  float sharpness = clamp(0.25 * float(total_samples), 1.0, 40.0);
+#if MIRROR_FIRST
+  vec2 mirror_sum = vec2(0.0);  // weights of the samples above the horizon, and of those of them that are seen
+#else
+  vec2 mirror_sum = imageLoad(mirror_sums, pixel).xy;
+#endif
 #endif
   for (int i = 0; i < batch_samples; ++i) {
     ShadowLight maps = maps_at(uint(i));
     vec3 direction = maps.origin;
     float cosine = dot(s.normal, direction);
     if (cosine <= 0.0 || dot(q.normal, direction) <= 0.0) continue;
+#if (MATERIAL_MODELS & 32) != 0
+    float weight = mirror_weight(sharpness, mirror, direction);
+    mirror_sum.x += weight;
+#endif
     q.light.axis = -direction;
     if (!sample_visible(q, maps, uncovered)) continue;
     sum += surface_response(surface, s.normal, to_viewer, direction) * irradiance[first_sample + i].rgb;
 #if (MATERIAL_MODELS & 32) != 0
-    mirror_seen += mirror_weight(mirror, direction);
+    mirror_sum.y += weight;
 #endif
   }
   count_uncovered(uncovered);
   vec3 light = sum / float(total_samples);
 #if (MATERIAL_MODELS & 32) != 0
-  if (surface.model.kind == model_coated) light += mirrored_light(surface.model, s, to_viewer, mirror, mirror_seen);
+#if MIRROR_LAST
+  if (surface.model.kind == model_coated && mirror_sum.x > 0.0)
+    light += mirrored_light(surface.model, s, to_viewer, mirror, mirror_sum.y / mirror_sum.x);
+#else
+  imageStore(mirror_sums, pixel, vec4(mirror_sum, 0.0, 0.0));
+#endif
 #endif
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(light, 0.0));
 }

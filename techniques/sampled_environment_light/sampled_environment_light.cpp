@@ -1,5 +1,8 @@
 // The environment as many directions, each with a hard shadow map of its own: what its decomposition into
 // area lights is compared with on the GPU.
+#include <map>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/gpu_scene/gpu_scene.h"
@@ -31,8 +34,7 @@ constexpr StressCase kStress[] = {
 class SampledEnvironmentLight : public Technique {
   std::vector<glm::vec3> directions_;  ///< of propagation
   gpu::Buffer irradiance_;             ///< of each sample on a surface that faces it, were it all: vec4
-  gpu::Buffer towards_;                ///< directions to all samples, and the map, for coats alone: vec4
-  gpu::Texture map_;
+  gpu::Texture map_;                   ///< for coats alone
 
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
@@ -42,7 +44,7 @@ class SampledEnvironmentLight : public Technique {
       return request.target;
     }
     takeSamples(environment, inputs);
-    const Inputs samples = importInputs(graph, inputs);
+    Inputs samples = importInputs(graph, inputs);
     frame::TextureHandle target = request.target;
     for (const shadow::SampleBatch& batch :
          shadow::sampleBatches(inputs.parameters.integer("samples"),
@@ -67,38 +69,43 @@ class SampledEnvironmentLight : public Technique {
         gpu::Buffer::of<glm::vec4>(inputs.gpuScene.device(), "irradiance of the samples", irradiance);
   }
 
-  /// What all batches read; the latter two are empty without coats, which mirror the map.
+  /// What batches read, and what they hand on to the next; the latter two are empty without coats, which
+  /// mirror the map.
   struct Inputs {
-    frame::BufferHandle irradiance, towards;
+    frame::BufferHandle irradiance;
     frame::TextureHandle map;
+    frame::TextureHandle mirrorSums;  ///< also empty before the first batch
   };
   Inputs importInputs(frame::FrameGraph& graph, const TechniqueInputs& inputs) {
     Inputs result{graph.importBuffer("irradiance of the samples", irradiance_), {}, {}};
     if ((inputs.handles.modelKinds & 1u << glsl::model_coated) == 0) return result;
-    std::vector<glm::vec4> towards;
-    for (const glm::vec3& direction : directions_) towards.emplace_back(-direction, 0);
-    gpu::Device& device = inputs.gpuScene.device();
-    towards_ = gpu::Buffer::of<glm::vec4>(device, "directions of the samples", towards);
     const scene::Environment& e = inputs.scene.environment;
-    map_ = gpu::Texture(device, "environment", {.format = GL_RGB32F, .width = e.width, .height = e.height});
+    map_ = gpu::Texture(inputs.gpuScene.device(), "environment",
+                        {.format = GL_RGB32F, .width = e.width, .height = e.height});
     map_.setSampling(GL_LINEAR, GL_LINEAR, GL_REPEAT, GL_CLAMP_TO_EDGE);
     map_.upload(0, 0, GL_RGB, GL_FLOAT, e.texels.data());
-    result.towards = graph.importBuffer("directions of the samples", towards_);
     result.map = graph.importTexture("environment", map_);
     return result;
   }
 
   frame::TextureHandle addBatch(frame::FrameGraph& graph, const TechniqueInputs& inputs,
-                                frame::TextureHandle target, const Inputs& samples,
+                                frame::TextureHandle target, Inputs& samples,
                                 const shadow::SampleBatch& batch) {
     const std::span<const glm::vec3> directions =
         std::span(directions_).subspan(static_cast<size_t>(batch.first), static_cast<size_t>(batch.count));
     shadow::ShadowMapDesc desc = shadow::shadowMapDesc(inputs.parameters);
     desc.cacheable = batch.count == batch.total;
+    const bool first = batch.first == 0, last = batch.first + batch.count == batch.total;
+    if (samples.map && first && !last)
+      samples.mirrorSums = graph.createTexture(
+          "mirrored samples", {.format = GL_RG32F, .width = inputs.size.x, .height = inputs.size.y});
+    std::map<std::string, std::string> defines;
+    if (samples.map) defines = {{"MIRROR_FIRST", first ? "1" : "0"}, {"MIRROR_LAST", last ? "1" : "0"}};
     shadow::VisibilityPass pass{
         .name = "environment",
         .technique = info.name,
-        .program = {.files = {"techniques/sampled_environment_light/environment.comp.glsl"}, .defines = {}},
+        .program = {.files = {"techniques/sampled_environment_light/environment.comp.glsl"},
+                    .defines = std::move(defines)},
         .image = "radiance",
         .maps = inputs.service<shadow::ShadowMapService>().request(directions, desc),
         .bias = inputs.parameters.real("bias"),
@@ -106,12 +113,19 @@ class SampledEnvironmentLight : public Technique {
         .reflects = true,
         .bind = [batch](frame::PassContext&, gpu::Program& program) { shadow::setBatch(program, batch); },
         .declare =
-            [samples](frame::PassBuilder& builder) {
+            [&samples, first, last](frame::PassBuilder& builder) {
               builder.read(samples.irradiance, Access::storageLoad, "Irradiance",
                            "what each direction brings");
               if (!samples.map) return;
-              builder.read(samples.towards, Access::storageLoad, "Directions", "which stand for a mirror's")
-                  .read(samples.map, Access::sampled, "environment_map", "what coats mirror");
+              if (last) builder.read(samples.map, Access::sampled, "environment_map", "what coats mirror");
+              if (!samples.mirrorSums) return;
+              constexpr const char* why = "how much of a mirror's surroundings is seen";
+              if (last)
+                builder.read(samples.mirrorSums, Access::imageLoad, "mirror_sums", why);
+              else
+                samples.mirrorSums =
+                    builder.write(samples.mirrorSums, first ? Access::imageStore : Access::imageLoadStore,
+                                  "mirror_sums", why);
             },
         .accumulate = true};
     return shadow::addVisibilityPass(graph, inputs, target, std::move(pass));
