@@ -1,0 +1,15 @@
+// Stores what lines of taps look up, for the pixels of one material: entering light times the root of its reflectance, and the
+// depth of the pixel.
+#include "techniques/separable_subsurface/line_pixel.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+uniform sampler2D entering;  // E / pi
+layout(rgba32f) writeonly uniform image2D spread;
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
+  if (!is_of_dispatch(pixel_instance(pixel))) return;
+  vec3 light = texelFetch(entering, pixel, 0).rgb * root_reflectance(line_materials[line_material], pixel);
+  imageStore(spread, pixel, vec4(light, pixel_depth(pixel)));
+}

@@ -1,0 +1,54 @@
+// The translucent material that a dispatch is for, and which pixels have it. TEXTURED 1: the albedo of a material may be that of
+// the pixel. NORMALISED 1: its profile is that of normalised diffusion, 0: the dipole's.
+#ifndef LINE_PIXEL_GLSL
+#define LINE_PIXEL_GLSL
+#include "glsl/diffusion/boundary.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
+#include "techniques/separable_subsurface/line_tap.glsl"
+#if TEXTURED
+#include "glsl/diffusion/dipole.glsl"
+#include "glsl/diffusion/normalised.glsl"
+#endif
+
+#ifdef LINE_MATERIAL_COUNT  // they fit a uniform block, from which all invocations load at once
+layout(std140) uniform LineMaterials { LineMaterial line_materials[LINE_MATERIAL_COUNT]; };
+#else
+layout(std430) readonly buffer LineMaterials { LineMaterial line_materials[]; };
+#endif
+layout(std430) readonly buffer Instances { Instance instances[]; };
+layout(std430) readonly buffer LineMaterialRows { uint line_material_rows[]; };  // of each material of the scene
+uniform uint line_material;  // of the dispatch
+
+// Whether a pixel of this draw instance has the dispatch's material.
+bool is_of_dispatch(uint instance) {
+  if (instance == no_instance) return false;
+  return line_material_rows[instances[instance].material] == line_material;
+}
+
+DiffusionBoundary line_boundary(LineMaterial m) {
+  DiffusionBoundary b;
+  b.eta = m.eta;
+  b.entering = m.entering;
+  b.trapping = m.eta * m.eta / m.entering;
+  return b;
+}
+
+// Square root of C at a pixel. Light takes it once where it enters and once where it leaves, so that both ways between two
+// places lose the same.
+vec3 root_reflectance(LineMaterial m, ivec2 pixel) {
+  vec3 reflectance = m.reflectance;
+#if TEXTURED
+  if (m.textured != 0u) {
+    reflectance = gbuffer_colour_decode(texelFetch(gbuffer_albedo, pixel, 0).rgb);
+#if !NORMALISED
+    DiffusionBoundary boundary = line_boundary(m);
+    WalkReflectance walk = walk_reflectance(boundary);
+    for (int c = 0; c < 3; ++c)
+      reflectance[c] = diffusion_dipole(walk_absorption(walk, reflectance[c]), boundary).reflectance;
+#endif
+  }
+#endif
+  return sqrt(reflectance);
+}
+
+#endif  // LINE_PIXEL_GLSL

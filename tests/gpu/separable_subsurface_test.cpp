@@ -1,0 +1,186 @@
+// Light below surfaces along rows and columns: pictures against closed forms, quadratures and the local
+// limit.
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "glsl/diffusion/normalised.glsl"
+#include "techniques/separable_subsurface/line_kernel.h"
+#include "tests/gpu/bump_floor.h"
+
+namespace limn {
+namespace {
+
+using glm::vec3;
+using Values = std::vector<std::pair<std::string, std::string>>;
+
+constexpr float kIor = 1.3f;
+constexpr float kLit = 0.5f;   ///< radius of the spot's light on the floor, m
+constexpr float kHeight = 40;  ///< of the spot, m
+const std::vector<std::string> kProfiles{"dipole", "normalised_diffusion"};
+
+class SeparableSubsurfaceTest : public BumpFloorTest {
+ protected:
+  static scene::Material matter(float extinction, float absorption, float ior = kIor) {
+    const glsl::WalkReflectance walk = glsl::walk_reflectance(glsl::diffusion_boundary(ior));
+    scene::Material material;
+    material.metallic = 0;
+    material.specularFactor = 0;
+    material.ior = ior;
+    material.baseColour = glm::vec4(vec3(glsl::walk_albedo(walk, absorption)), 1);
+    material.subsurface = scene::Subsurface{.extinction = vec3(extinction), .absorption = vec3(absorption)};
+    return material;
+  }
+
+  /// A floor of 2 m x 2 m under a spot far above it, which lights a disc of that radius.
+  static scene::Scene lit(const scene::Material& material, float radius) {
+    scene::Scene scene = floorUnder({0, 1, 0}, {});
+    scene.materials[0] = material;
+    scene::LightSource& light = scene.lights[0];
+    light.type = glsl::light_spot;
+    light.intensity = kHeight * kHeight;
+    light.outerCone = std::atan(radius / kHeight);
+    light.innerCone = 0.9999f * light.outerCone;
+    scene.nodes.back().transform.translation = {0, kHeight, 0};
+    return scene;
+  }
+
+  Image below(const scene::Scene& scene, const Values& values = {}) {
+    return drawn(scene, Term::subsurface, {technique("separable_subsurface", values)});
+  }
+
+  /// The largest of |a / b / ratio - 1| over the points that b lights.
+  static double largestDifference(const Image& a, const Image& b, double ratio = 1) {
+    double largest = 0;
+    int counted = 0;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        const auto wanted = static_cast<double>(b.at(x, y, 0)) * ratio;
+        const auto seen = static_cast<double>(a.at(x, y, 0));
+        if (wanted == 0) {
+          EXPECT_EQ(seen, 0);
+          continue;
+        }
+        largest = std::max(largest, std::abs(seen / wanted - 1));
+        ++counted;
+      }
+    EXPECT_GT(counted, 1500);
+    return largest;
+  }
+
+  /// C of a profile over the albedo of the local limit.
+  static double reflectanceOverAlbedo(const scene::Material& material, bool normalised) {
+    const auto profile = separable_subsurface::profileOf(
+        material.subsurface->extinction, material.subsurface->absorption, material.ior, normalised);
+    return profile[0].reflectance / static_cast<double>(material.baseColour.x);
+  }
+};
+
+TEST_F(SeparableSubsurfaceTest, UniformLightLeavesByTheReflectance) {
+  for (const float absorption : {0.f, 0.04f}) {
+    const scene::Material material = matter(30, absorption);
+    const scene::Scene scene = lit(material, 5);
+    const Image local = drawn(scene, Term::subsurface, {});
+    for (const bool normalised : {false, true})
+      for (const char* missing : {"centre", "mean"})
+        EXPECT_LT(largestDifference(below(scene, {{"profile", kProfiles[normalised]}, {"missing", missing}}),
+                                    local, reflectanceOverAlbedo(material, normalised)),
+                  2e-3)  // the light falls by 1 / 800 towards the corners
+            << kProfiles[normalised] << ' ' << missing;
+  }
+}
+
+TEST_F(SeparableSubsurfaceTest, ShortPathsAreTheLocalLimit) {
+  const scene::Material material = matter(1e6f, 0.04f);
+  const scene::Scene scene = lit(material, kLit);
+  const Image local = drawn(scene, Term::subsurface, {});
+  for (const bool normalised : {false, true})
+    EXPECT_LT(largestDifference(below(scene, {{"profile", kProfiles[normalised]}}), local,
+                                reflectanceOverAlbedo(material, normalised)),
+              1e-3)  // the G-buffer's index is off by up to 0.004
+        << kProfiles[normalised];
+}
+
+TEST_F(SeparableSubsurfaceTest, EdgesOfShadowsSpreadAsLineIntegralsSay) {
+  // Light from straight above, half of which a plate above the camera takes away.
+  scene::Scene open = floorUnder({0, 1, 0}, {});
+  open.materials[0] = matter(60, 0.04f);
+  const Image whole = drawn(open, Term::subsurface, {});
+  for (const vec3 side : {vec3(1, 0, 0), vec3(0, 0, 1)}) {
+    scene::Scene scene = open;
+    scene::Node plate;
+    plate.mesh = test::addMesh(scene, test::floorPrimitive(2, test::addMaterial(scene)));
+    plate.transform.translation = vec3(0, 3, 0) - 2.f * side;
+    scene.nodes.push_back(plate);
+    for (const bool normalised : {false, true}) {
+      const auto profile = separable_subsurface::profileOf(vec3(60), vec3(0.04f), kIor, normalised)[0];
+      const double ratio = reflectanceOverAlbedo(scene.materials[0], normalised);
+      const Image seen =
+          drawn(scene, Term::subsurface,
+                {technique("hard_shadow_map", {{"shadow_map_size", "2048"}}),
+                 technique("separable_subsurface", {{"profile", kProfiles[normalised]}, {"taps", "51"}})});
+      std::vector<double> lit;
+      forEachPoint(whole, [&](float value, const vec3&) { lit.push_back(static_cast<double>(value)); });
+      double squares = 0;
+      size_t index = 0;
+      int counted = 0;
+      forEachPoint(seen, [&](float value, const vec3& p) {
+        const double all = lit[index++] * ratio, x = static_cast<double>(dot(p, side));
+        if (std::abs(p.x) > 0.45f || std::abs(p.z) > 0.45f) return;
+        const double wanted =
+            0.5 + std::copysign(0.5 * separable_subsurface::lineShare(profile, std::abs(x)), x);
+        const double error = static_cast<double>(value) / all - wanted;
+        squares += error * error;
+        ++counted;
+      });
+      // A tap holds up to 1/40 of the light, a pixel (12 mm) at the edge up to 1/12 and 1/6 of it.
+      EXPECT_GT(counted, 4000);
+      EXPECT_LT(std::sqrt(squares / counted), 0.01) << kProfiles[normalised] << ' ' << side.x;
+    }
+  }
+}
+
+TEST_F(SeparableSubsurfaceTest, OtherBodiesGetNoLight) {
+  // Two halves of a floor, of which the light of one ends where the other begins.
+  scene::Scene scene = lit(matter(30, 0.04f), 5);
+  const Image alone = below(scene);
+  scene.nodes.push_back(scene.nodes[0]);
+  scene.nodes[0].transform.translation = {-1, 0, 0};
+  scene.nodes.back().transform.translation = {1, 0, 0};
+  EXPECT_LT(largestDifference(below(scene), alone), 2e-3);
+}
+
+TEST_F(SeparableSubsurfaceTest, ExtremesStayWithinTheLightThatEnters) {
+  for (const float extinction : {1e-6f, 1.f, 1e9f})
+    for (const float absorption : {0.f, 1e-5f, 1.f})
+      for (const float ior : {1.f, 3.f}) {
+        scene::Material material = matter(extinction, absorption, ior);
+        material.baseColour = glm::vec4(1);
+        const scene::Scene scene = lit(material, kLit);
+        const Image entering = drawn(lit(material, 5), Term::subsurface, {});
+        for (const std::string& profile : kProfiles)
+          for (const char* footprint : {"tangent", "facing"}) {
+            const Image seen = below(scene, {{"profile", profile}, {"footprint", footprint}});
+            for (int y = 0; y < kSide; ++y)
+              for (int x = 0; x < kSide; ++x) {
+                EXPECT_GE(seen.at(x, y, 0), 0);
+                EXPECT_LE(seen.at(x, y, 0), 1.0001f * entering.at(x, y, 0));
+              }
+          }
+      }
+}
+
+TEST_F(SeparableSubsurfaceTest, ScenesWithoutTranslucentMaterialsAreLeftAlone) {
+  const scene::Scene scene = floorUnder({1, 1, 0.5f}, {});
+  std::vector<frame::PassReport> passes;
+  EXPECT_TRUE(same(drawn(scene, Term::final, {technique("separable_subsurface")}, &passes),
+                   drawn(scene, Term::final, {})));
+  for (const frame::PassReport& pass : passes)
+    if (pass.technique == "separable_subsurface") {
+      EXPECT_EQ(pass.state, frame::PassState::leftOut);
+    }
+}
+
+}  // namespace
+}  // namespace limn
