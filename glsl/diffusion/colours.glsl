@@ -34,6 +34,7 @@ struct DipoleColours {
   vec3 decay;
   vec3 real_share;
   vec3 reflectance;
+  vec3 strength;  // what both sources' densities have in common, per area
 };
 
 LIMN_FN DipoleColours dipole_colours(vec3 extinction, vec3 absorption, DiffusionBoundary boundary) {
@@ -46,6 +47,7 @@ LIMN_FN DipoleColours dipole_colours(vec3 extinction, vec3 absorption, Diffusion
   c.decay = vec3(x.decay, y.decay, z.decay);
   c.real_share = vec3(x.real_share, y.real_share, z.real_share);
   c.reflectance = vec3(x.reflectance, y.reflectance, z.reflectance);
+  c.strength = 0.5f * inverse_pi * extinction * extinction * c.real_share * exp(c.decay);
   return c;
 }
 
@@ -53,13 +55,14 @@ LIMN_FN DipoleColours dipole_colours(vec3 extinction, vec3 absorption, Diffusion
 LIMN_FN vec3 diffusion_density(DipoleColours c, float r) {
   vec3 away = min(r * c.extinction, vec3(1e10f));
   float z = c.virtual_height;
-  vec3 from_real = sqrt(away * away + vec3(1.0f));
-  vec3 from_virtual = sqrt(away * away + vec3(z * z));
-  vec3 real = c.real_share * (vec3(1.0f) + c.decay * from_real) * exp(c.decay - c.decay * from_real) /
-              (from_real * from_real * from_real);
-  vec3 image = (vec3(1.0f) - c.real_share) * (vec3(1.0f) + c.decay * from_virtual) *
-               exp(c.decay * z - c.decay * from_virtual) * z / (from_virtual * from_virtual * from_virtual);
-  return 0.5f * inverse_pi * c.extinction * c.extinction * (real + image);
+  vec3 real_squared = away * away + vec3(1.0f);
+  vec3 virtual_squared = away * away + vec3(z * z);
+  vec3 real = inversesqrt(real_squared);
+  vec3 image = inversesqrt(virtual_squared);
+  vec3 real_decay = c.decay * real_squared * real;
+  vec3 virtual_decay = c.decay * virtual_squared * image;
+  return c.strength * ((vec3(1.0f) + real_decay) * exp(-real_decay) * (real * real * real) +
+                       (vec3(1.0f) + virtual_decay) * exp(-virtual_decay) * (z * image * image * image));
 }
 LIMN_FN float diffusion_radius(DipoleColours c, int channel, float xi) {
   DiffusionDipole d;

@@ -18,17 +18,22 @@ struct Centre {
   uint instance;
   vec3 plane;
   vec3 place;
-  float inverse_distance;  // of the plane
+  float squared;  // of the plane
 };
 
+// Without roots and divisions: the place is the ray over q, and everything is compared times q and squared.
 bool counts(Centre c, ivec2 pixel) {
   if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return false;
   uvec4 texel = texelFetch(planes, pixel, 0);
   vec3 plane = uintBitsToFloat(texel.xyz);
-  vec3 place = pixel_ray(pixel) / dot(plane, pixel_ray(pixel));
-  vec3 way = place - c.place;
-  return texel.w == c.instance && dot(plane, c.plane) >= least_cosine * length(plane) * c.inverse_distance &&
-         abs(dot(c.plane, place) - 1.0) <= most_slope * length(way) * c.inverse_distance;
+  vec3 ray = pixel_ray(pixel);
+  float q = dot(plane, ray);
+  vec3 way = ray - q * c.place;
+  float rise = dot(c.plane, ray) - q;
+  float facing = dot(plane, c.plane);
+  return texel.w == c.instance && facing > 0.0 &&
+         facing * facing >= least_cosine * least_cosine * dot(plane, plane) * c.squared &&
+         rise * rise <= most_slope * most_slope * dot(way, way) * c.squared;
 }
 
 void main() {
@@ -40,7 +45,7 @@ void main() {
   centre.instance = own.w;
   centre.plane = uintBitsToFloat(own.xyz);
   centre.place = pixel_ray(pixel) / dot(centre.plane, pixel_ray(pixel));
-  centre.inverse_distance = length(centre.plane);
+  centre.squared = dot(centre.plane, centre.plane);
 #if VERTICAL
   const ivec2 axis = ivec2(0, 1);
 #else
