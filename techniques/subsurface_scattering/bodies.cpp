@@ -22,8 +22,9 @@ DiffusionBody makeBody(const scene::Material& material, bool textured, const Dra
   const scene::Subsurface& below = *material.subsurface;
   const float eta = std::clamp(material.ior, 1.f, 3.f);
   const glm::vec3 extinction = below.extinction / drawing.scale;
-  const glm::vec3 reach = glsl::diffusion_reach(extinction, below.absorption,
-                                                glsl::walk_reflectance(glsl::diffusion_boundary(eta)));
+  const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(eta);
+  const glm::vec3 reach =
+      glsl::diffusion_reach(extinction, below.absorption, glsl::walk_reflectance(boundary));
   const float unit = std::max({reach.x, reach.y, reach.z});
   return {.extinction = extinction * unit,
           .unit = unit,
@@ -34,7 +35,7 @@ DiffusionBody makeBody(const scene::Material& material, bool textured, const Dra
           .uniform_radius = drawing.uniformRadius,
           .textured = textured ? 1u : 0u,
           .first_point = 0,
-          .unused = 0};
+          .entering = boundary.entering};
 }
 
 bool alike(const DiffusionBody& a, const DiffusionBody& b) {
@@ -86,7 +87,7 @@ Bodies findBodies(const scene::Scene& scene, const scene::Pose& pose, const Draw
     textures = textures || body.textured != 0;
     if (body.textured != 0) continue;
     body.first_point = static_cast<uint32_t>(result.points.size());
-    const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(body.eta);
+    const glsl::DiffusionBoundary boundary = glsl::body_boundary(body);
     if (drawing.profile == Profile::dipole)
       addPoints(body, glsl::dipole_colours(body.extinction, body.absorption, boundary), drawing,
                 result.points);

@@ -15,10 +15,19 @@ struct DiffusionBody {
   float uniform_radius;  // units
   uint textured;         // 1: a texture or vertex colours replace the absorption
   uint first_point;      // of its points among those of all bodies
-  uint unused;
+  float entering;        // 1 - F_de
 };
 
 LIMN_CONST uint no_body = 0xffffffffu;
+
+// diffusion_boundary(body.eta).
+LIMN_FN DiffusionBoundary body_boundary(DiffusionBody body) {
+  DiffusionBoundary b;
+  b.eta = body.eta;
+  b.entering = body.entering;
+  b.trapping = body.eta * body.eta / body.entering;
+  return b;
+}
 
 LIMN_END
 #endif  // DIFFUSION_BODY_GLSL

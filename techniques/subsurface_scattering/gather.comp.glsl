@@ -80,7 +80,7 @@ void main() {
   while (asked) {
     asked = false;
     DiffusionBody body = bodies[body_index];
-    DiffusionBoundary boundary = diffusion_boundary(body.eta);
+    DiffusionBoundary boundary = body_boundary(body);
     vec3 absorption = pixel_absorption(body, boundary, pixel);
     Colours colours = matter_colours(body.extinction, absorption, boundary);
 #if TEXTURED || PLANES == 2
