@@ -1,0 +1,139 @@
+// Light below surfaces from points in the image: pictures against closed forms, line integrals and the local
+// limit.
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "glsl/diffusion/colours.glsl"
+#include "tests/gpu/bump_floor.h"
+
+namespace limn {
+namespace {
+
+using glm::vec3;
+using Values = std::vector<std::pair<std::string, std::string>>;
+
+constexpr float kIor = 1.3f;
+constexpr float kExtinction = 40;  ///< per metre; light gets 50 mm in the mean, 4 pixels
+constexpr float kAbsorption = 0.04f;
+const std::vector<std::string> kProfiles{"dipole", "normalised_diffusion"};
+
+class SubsurfaceScatteringTest : public BumpFloorTest {
+ protected:
+  /// A floor that absorbs that share of what it does not let through, under light from straight above.
+  static scene::Scene floor(float extinction, float absorption) {
+    scene::Scene scene = floorUnder({0, 1, 0}, {});
+    scene::Material& material = scene.materials[0];
+    material.ior = kIor;
+    material.baseColour = glm::vec4(vec3(albedo(absorption)), 1);
+    material.subsurface = scene::Subsurface{.extinction = vec3(extinction), .absorption = vec3(absorption)};
+    return scene;
+  }
+  static float albedo(float absorption) {
+    return glsl::walk_albedo(glsl::walk_reflectance(glsl::diffusion_boundary(kIor)), absorption);
+  }
+  /// C of a profile over the albedo of the local limit.
+  static double reflectanceOverAlbedo(size_t profile, float absorption) {
+    if (profile == 1) return 1;
+    const glsl::DiffusionDipole dipole = glsl::diffusion_dipole(absorption, glsl::diffusion_boundary(kIor));
+    return static_cast<double>(dipole.reflectance / albedo(absorption));
+  }
+  /// Share of the light at a distance into the lit side of an edge.
+  static double besideEdge(size_t profile, double x) {
+    const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(kIor);
+    const auto dipole = glsl::dipole_colours(vec3(kExtinction), vec3(kAbsorption), boundary);
+    const auto exponentials = glsl::normalised_colours(vec3(kExtinction), vec3(kAbsorption), boundary);
+    constexpr int kQuantiles = 200;
+    double sum = 0;
+    for (int i = 0; i < kQuantiles; ++i) {
+      const float xi = (static_cast<float>(i) + 0.5f) / kQuantiles;
+      const auto r = static_cast<double>(profile == 0 ? glsl::diffusion_radius(dipole, 0, xi)
+                                                      : glsl::diffusion_radius(exponentials, 0, xi));
+      sum += r <= std::abs(x) ? (x > 0 ? 1 : 0) : 1 - std::acos(x / r) / M_PI;
+    }
+    return sum / kQuantiles;
+  }
+  /// The largest of |a / b / ratio - 1| over the points of the floor.
+  static double largestDifference(const Image& a, const Image& b, double ratio) {
+    std::vector<double> wanted;
+    forEachPoint(b, [&](float value, const vec3&) { wanted.push_back(static_cast<double>(value) * ratio); });
+    double largest = 0;
+    size_t i = 0;
+    forEachPoint(a, [&](float value, const vec3&) {
+      largest = std::max(largest, std::abs(static_cast<double>(value) / wanted[i++] - 1));
+    });
+    EXPECT_GT(i, 1500u);
+    return largest;
+  }
+  Image below(const scene::Scene& scene, const Values& values) {
+    return drawn(scene, Term::subsurface,
+                 {technique("hard_shadow_map", {{"shadow_map_size", "2048"}}),
+                  technique("subsurface_scattering", values)});
+  }
+};
+
+TEST_F(SubsurfaceScatteringTest, UniformLightLeavesByTheReflectance) {
+  for (const float absorption : {0.f, kAbsorption}) {
+    const scene::Scene scene = floor(kExtinction, absorption);
+    const Image local = drawn(scene, Term::subsurface, {});
+    for (size_t profile = 0; profile < kProfiles.size(); ++profile)
+      for (const char* planes : {"tangent", "both"})
+        for (const char* share : {"0", "0.25"})
+          EXPECT_LT(largestDifference(below(scene, {{"profile", kProfiles[profile]},
+                                                    {"planes", planes},
+                                                    {"uniform_share", share}}),
+                                      local, reflectanceOverAlbedo(profile, absorption)),
+                    1e-3)
+              << kProfiles[profile] << ' ' << planes << ' ' << share;
+  }
+}
+
+TEST_F(SubsurfaceScatteringTest, ShortPathsAreTheLocalLimit) {
+  const scene::Scene scene = floor(1e6f, kAbsorption);
+  const Image local = drawn(scene, Term::subsurface, {});
+  for (const char* normalise : {"none", "count", "weights"})
+    EXPECT_LT(largestDifference(below(scene, {{"normalise", normalise}}), local,
+                                reflectanceOverAlbedo(0, kAbsorption)),
+              1e-3)
+        << normalise;
+}
+
+TEST_F(SubsurfaceScatteringTest, EdgesOfShadowsSpreadAsLineIntegralsSay) {
+  // A plate above the camera takes half of the light away.
+  const scene::Scene open = floor(kExtinction, kAbsorption);
+  scene::Scene scene = open;
+  scene::Node plate;
+  plate.mesh = test::addMesh(scene, test::floorPrimitive(2, test::addMaterial(scene)));
+  plate.transform.translation = {-2, 3, 0};
+  scene.nodes.push_back(plate);
+  for (size_t profile = 0; profile < kProfiles.size(); ++profile) {
+    std::vector<double> whole;
+    forEachPoint(drawn(open, Term::subsurface, {}), [&](float value, const vec3&) {
+      whole.push_back(static_cast<double>(value) * reflectanceOverAlbedo(profile, kAbsorption));
+    });
+    const auto error = [&](Values values) {
+      values.emplace_back("profile", kProfiles[profile]);
+      double squares = 0, sum = 0;
+      size_t index = 0;
+      int counted = 0;
+      forEachPoint(below(scene, values), [&](float value, const vec3& p) {
+        const double full = whole[index++];
+        if (std::abs(p.x) > 0.3f || std::abs(p.z) > 0.45f) return;
+        const double wanted = besideEdge(profile, static_cast<double>(p.x));
+        squares += std::pow(static_cast<double>(value) / full - wanted, 2);
+        sum += wanted;
+        ++counted;
+      });
+      EXPECT_GT(counted, 1500);
+      return std::sqrt(squares * counted) / sum;
+    };
+    const double usual = error({});
+    EXPECT_LT(usual, 0.06) << kProfiles[profile];
+    EXPECT_LT(error({{"block", "1"}, {"samples", "64"}}), 0.06) << kProfiles[profile];
+    EXPECT_GT(error({{"block", "1"}}), 2 * usual) << kProfiles[profile];
+  }
+}
+
+}  // namespace
+}  // namespace limn
