@@ -7,7 +7,7 @@
 #include "techniques/separable_subsurface/line_tap.glsl"
 #if TEXTURED
 #include "glsl/diffusion/dipole.glsl"
-#include "glsl/diffusion/normalised.glsl"
+#include "techniques/separable_subsurface/line_width.glsl"
 #endif
 
 #ifdef LINE_MATERIAL_COUNT  // they fit a uniform block, from which all invocations load at once
@@ -31,6 +31,18 @@ DiffusionBoundary line_boundary(LineMaterial m) {
   b.entering = m.entering;
   b.trapping = m.eta * m.eta / m.entering;
   return b;
+}
+
+// By how much light goes further below a pixel than taps say.
+float width_over_taps(LineMaterial m, ivec2 pixel) {
+#if TEXTURED
+  if (m.textured != 0u) {
+    vec3 albedo = gbuffer_colour_decode(texelFetch(gbuffer_albedo, pixel, 0).rgb);
+    float width = line_width(albedo, m.extinction, walk_reflectance(line_boundary(m)));
+    return min(width / max(m.width, 1e-30), 1e6);
+  }
+#endif
+  return 1.0;
 }
 
 // Square root of C at a pixel. Light takes it once where it enters and once where it leaves, so that both ways between two

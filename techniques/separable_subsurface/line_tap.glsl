@@ -10,8 +10,10 @@ struct LineTap {
 };
 
 struct LineMaterial {
-  vec3 reflectance;   // C: of all light that enters, what leaves; of the base colour's factor alone where textured is 1
+  vec3 reflectance;   // C: of all light that enters, what leaves; of the mean albedo where textured is 1
   float eta;          // index of refraction
+  vec3 extinction;    // sigma_t', 1/m
+  float width;        // line_width() of the mean albedo, m
   float entering;     // 1 - F_de (DiffusionBoundary)
   float depth_limit;  // m by which a tap may be off in depth before its light is not taken
   uint first_tap;

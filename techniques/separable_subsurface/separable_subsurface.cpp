@@ -32,8 +32,8 @@ constexpr Parameter kParameters[] = {
     boolean("follow_surface", true, "Taps that lie before or behind that plane are missing"),
     real("depth_limit", 4, {0.001, 1000}, "radii with half the light", "By which a followed tap may be off")
         .logScale(),
-    choice("missing", centre, kMissing,
-           "What stands for missing taps: the pixel's own light, or the mean of the rest"),
+    choice("missing", mean, kMissing,
+           "What stands for missing taps: the pixel's own light, or the mean of the others"),
 };
 constexpr StressCase kStress[] = {
     {.name = "one tap", .scene = "translucent_edge", .settings = "taps=1", .factor = 8},
@@ -42,7 +42,7 @@ constexpr StressCase kStress[] = {
      .scene = "translucent_head",
      .settings = "footprint=facing follow_surface=false",
      .factor = 4},
-    {.name = "the mean of what is there", .scene = "translucent_spheres", .settings = "missing=mean"},
+    {.name = "the light of the pixel", .scene = "translucent_spheres", .settings = "missing=centre"},
     {.name = "skin of a scene of 1e-4",
      .change = StressChange::sceneScale,
      .amount = 1e-4,
@@ -105,11 +105,10 @@ class Passes {
   }
 
   /// Declares what techniques/separable_subsurface/line_pixel.glsl reads, and returns the program's defines.
-  std::map<std::string, std::string> readPixels(frame::PassBuilder& pass, bool reflects) const {
+  std::map<std::string, std::string> readPixels(frame::PassBuilder& pass) const {
     const GBuffer& gbuffer = inputs_.gbuffer;
-    const bool textured = reflects && kernels_.textured;
     std::map<std::string, std::string> defines{
-        {"TEXTURED", textured ? "1" : "0"},
+        {"TEXTURED", kernels_.textured ? "1" : "0"},
         {"NORMALISED", inputs_.parameters.choice("profile") == normalisedDiffusion ? "1" : "0"}};
     const Access materials = frame::arrayBlock<glsl::LineMaterial>(
         inputs_.gpuScene.device().limits(), kernels_.count, "LINE_MATERIAL_COUNT", defines);
@@ -118,7 +117,8 @@ class Passes {
         .read(inputs_.handles.instances, Access::storageLoad, "Instances", "materials of bodies")
         .read(kernels_.rows, Access::storageLoad, "LineMaterialRows", "which materials are translucent")
         .read(kernels_.materials, materials, "LineMaterials", "what translucent materials reflect");
-    if (textured) pass.read(gbuffer.albedo, Access::sampled, kGBufferNames.albedo, "albedo of pixels");
+    if (kernels_.textured)
+      pass.read(gbuffer.albedo, Access::sampled, kGBufferNames.albedo, "albedo of pixels");
     return defines;
   }
 
@@ -138,7 +138,7 @@ class Passes {
   frame::TextureHandle addIrradiance() {
     frame::PassBuilder pass = graph_.addPass("irradiance", kName);
     gpu::ProgramDesc program{.files = {"techniques/separable_subsurface/irradiance.comp.glsl"},
-                             .defines = readPixels(pass, true)};
+                             .defines = readPixels(pass)};
     pass.read(inputs_.entering, Access::sampled, "entering", "light that enters")
         .read(inputs_.gbuffer.depth, Access::sampled, kGBufferNames.depth, "depth of pixels");
     const frame::TextureHandle result = pass.write(picture("light that enters"), Access::imageStore, "spread",
@@ -152,7 +152,7 @@ class Passes {
     const bool tangents = p.choice("footprint") == tangent;
     frame::PassBuilder pass = graph_.addPass(rows ? "rows" : "columns and exit", kName);
     gpu::ProgramDesc program{.files = {"techniques/separable_subsurface/spread.comp.glsl"},
-                             .defines = readPixels(pass, !rows)};
+                             .defines = readPixels(pass)};
     const Access taps = frame::arrayBlock<glsl::LineTap>(
         inputs_.gpuScene.device().limits(), kernels_.tapCount, "LINE_TAP_COUNT", program.defines);
     program.defines.merge(

@@ -74,13 +74,16 @@ void main() {
   vec4 here = texelFetch(entered, pixel, 0);
   p.light = here.rgb;
   p.depth = here.w;
-  p.limits = 1.0 / material.depth_limit;
+  float width = width_over_taps(material, pixel);
+  p.limits = 1.0 / max(width * material.depth_limit, 1e-30);
   vec3 ray_step = ROWS != 0 ? frame.view_ray_dx.xyz : frame.view_ray_dy.xyz;
 #if TANGENT
   p.footprint = tangent_footprint(pixel_geometric_normal(pixel), pixel_ray(pixel), ray_step, p.depth);
 #else
   p.footprint = facing_footprint(ray_step, p.depth);
 #endif
+  p.footprint.pixels *= width;
+  p.footprint.receding *= width;
   vec3 light = spread_light(p, material.first_tap);
 #if ROWS
   imageStore(spread, pixel, vec4(light, p.depth));

@@ -69,6 +69,18 @@ class SeparableSubsurfaceTest : public BumpFloorTest {
     return largest;
   }
 
+  /// RMS of a - b over that of b.
+  static double rmsDifference(const Image& a, const Image& b) {
+    double error = 0, power = 0;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        const auto wanted = static_cast<double>(b.at(x, y, 0));
+        error += std::pow(static_cast<double>(a.at(x, y, 0)) - wanted, 2);
+        power += wanted * wanted;
+      }
+    return std::sqrt(error / power);
+  }
+
   /// C of a profile over the albedo of the local limit.
   static double reflectanceOverAlbedo(const scene::Material& material, bool normalised) {
     const auto profile = separable_subsurface::profileOf(
@@ -137,6 +149,21 @@ TEST_F(SeparableSubsurfaceTest, EdgesOfShadowsSpreadAsLineIntegralsSay) {
       // A tap holds up to 1/40 of the light, a pixel (12 mm) at the edge up to 1/12 and 1/6 of it.
       EXPECT_GT(counted, 4000);
       EXPECT_LT(std::sqrt(squares / counted), 0.01) << kProfiles[normalised] << ' ' << side.x;
+    }
+  }
+}
+
+TEST_F(SeparableSubsurfaceTest, AlbedosOfTheBaseColourAreThoseOfCoefficients) {
+  for (const float absorption : {0.001f, 0.2f}) {
+    scene::Material material = matter(30, absorption);
+    const scene::Scene coefficients = lit(material, kLit);
+    material.subsurface->albedoFromBaseColour = true;
+    const scene::Scene albedo = lit(material, kLit);
+    for (const std::string& profile : kProfiles) {
+      const Image wanted = below(coefficients, {{"profile", profile}});
+      // Taps fall into other pixels where widths differ by rounding.
+      EXPECT_LT(rmsDifference(below(albedo, {{"profile", profile}}), wanted), 2e-3)
+          << profile << ' ' << absorption;
     }
   }
 }
