@@ -46,6 +46,29 @@ class SeparableSubsurfaceTest : public BumpFloorTest {
     return scene;
   }
 
+  /// Light from straight above a floor, none of which a plate above the camera lets through to where
+  /// dot(place, side) < edge. The whole scene is turned by `turn`.
+  static scene::Scene shadowed(const scene::Material& material, const vec3& side, float edge,
+                               const glm::quat& turn = glm::quat(1, 0, 0, 0)) {
+    scene::Scene scene = floorUnder({0, 1, 0}, {});
+    scene.materials[0] = material;
+    scene::Node plate;
+    plate.mesh = test::addMesh(scene, test::floorPrimitive(2, test::addMaterial(scene)));
+    plate.transform.translation = vec3(0, 3, 0) + (edge - 2) * side;
+    scene.nodes.push_back(plate);
+    for (scene::Node& node : scene.nodes) {
+      node.transform.translation = turn * node.transform.translation;
+      node.transform.rotation = turn * node.transform.rotation;
+    }
+    return scene;
+  }
+
+  Image belowShadow(const scene::Scene& scene, const Values& values = {}) {
+    return drawn(scene, Term::subsurface,
+                 {technique("hard_shadow_map", {{"shadow_map_size", "2048"}}),
+                  technique("separable_subsurface", values)});
+  }
+
   Image below(const scene::Scene& scene, const Values& values = {}) {
     return drawn(scene, Term::subsurface, {technique("separable_subsurface", values)});
   }
@@ -115,40 +138,38 @@ TEST_F(SeparableSubsurfaceTest, ShortPathsAreTheLocalLimit) {
 }
 
 TEST_F(SeparableSubsurfaceTest, EdgesOfShadowsSpreadAsLineIntegralsSay) {
-  // Light from straight above, half of which a plate above the camera takes away.
-  scene::Scene open = floorUnder({0, 1, 0}, {});
-  open.materials[0] = matter(60, 0.04f);
-  const Image whole = drawn(open, Term::subsurface, {});
-  for (const vec3 side : {vec3(1, 0, 0), vec3(0, 0, 1)}) {
-    scene::Scene scene = open;
-    scene::Node plate;
-    plate.mesh = test::addMesh(scene, test::floorPrimitive(2, test::addMaterial(scene)));
-    plate.transform.translation = vec3(0, 3, 0) - 2.f * side;
-    scene.nodes.push_back(plate);
-    for (const bool normalised : {false, true}) {
-      const auto profile = separable_subsurface::profileOf(vec3(60), vec3(0.04f), kIor, normalised)[0];
-      const double ratio = reflectanceOverAlbedo(scene.materials[0], normalised);
-      const Image seen =
-          drawn(scene, Term::subsurface,
-                {technique("hard_shadow_map", {{"shadow_map_size", "2048"}}),
-                 technique("separable_subsurface", {{"profile", kProfiles[normalised]}, {"taps", "51"}})});
+  const scene::Material material = matter(30, 0.04f);
+  for (const float degrees : {0.f, -35.f}) {  // seen at 19 and at 54 degrees
+    const glm::quat turn = glm::angleAxis(glm::radians(degrees), vec3(1, 0, 0));
+    for (const vec3 side : {vec3(1, 0, 0), vec3(0, 0, 1)}) {
+      const scene::Scene scene = shadowed(material, side, 0, turn);
+      const Image whole = drawn(scene, Term::subsurface, {});
       std::vector<double> lit;
       forEachPoint(whole, [&](float value, const vec3&) { lit.push_back(static_cast<double>(value)); });
-      double squares = 0;
-      size_t index = 0;
-      int counted = 0;
-      forEachPoint(seen, [&](float value, const vec3& p) {
-        const double all = lit[index++] * ratio, x = static_cast<double>(dot(p, side));
-        if (std::abs(p.x) > 0.45f || std::abs(p.z) > 0.45f) return;
-        const double wanted =
-            0.5 + std::copysign(0.5 * separable_subsurface::lineShare(profile, std::abs(x)), x);
-        const double error = static_cast<double>(value) / all - wanted;
-        squares += error * error;
-        ++counted;
-      });
-      // A tap holds up to 1/40 of the light, a pixel (12 mm) at the edge up to 1/12 and 1/6 of it.
-      EXPECT_GT(counted, 4000);
-      EXPECT_LT(std::sqrt(squares / counted), 0.01) << kProfiles[normalised] << ' ' << side.x;
+      for (const bool normalised : {false, true}) {
+        const auto profile = separable_subsurface::profileOf(
+            material.subsurface->extinction, material.subsurface->absorption, kIor, normalised)[0];
+        const double ratio = reflectanceOverAlbedo(material, normalised);
+        double squares = 0;
+        size_t index = 0;
+        int counted = 0;
+        forEachPoint(belowShadow(scene, {{"profile", kProfiles[normalised]}, {"taps", "51"}}),
+                     [&](float value, const vec3& p) {
+                       const double all = lit[index++] * ratio;
+                       const vec3 place = glm::inverse(turn) * p;
+                       const auto x = static_cast<double>(dot(place, side));
+                       if (std::abs(place.x) > 0.4f || std::abs(place.z) > 0.4f) return;
+                       const double share = separable_subsurface::lineShare(profile, std::abs(x));
+                       const double error =
+                           static_cast<double>(value) / all - 0.5 - std::copysign(0.5 * share, x);
+                       squares += error * error;
+                       ++counted;
+                     });
+        // A tap holds up to 1/40 of the light, a pixel at the edge, 12 to 20 mm wide, up to 1/10 of it.
+        EXPECT_GT(counted, 2000);
+        EXPECT_LT(std::sqrt(squares / counted), 0.01)
+            << kProfiles[normalised] << ' ' << side.x << ' ' << degrees;
+      }
     }
   }
 }
@@ -168,14 +189,37 @@ TEST_F(SeparableSubsurfaceTest, AlbedosOfTheBaseColourAreThoseOfCoefficients) {
   }
 }
 
+TEST_F(SeparableSubsurfaceTest, PixelsOfAnotherAlbedoAreWiderOrNarrower) {
+  // Taps are those of a white material, and the albedo is that of vertices. Profiles of normalised diffusion
+  // differ by their widths alone.
+  const Values values{{"profile", "normalised_diffusion"}};
+  scene::Material material = matter(30, 0.2f);
+  const Image wanted = belowShadow(shadowed(material, {1, 0, 0}, 0), values);
+  const glm::vec4 albedo = material.baseColour;
+  material.subsurface->albedoFromBaseColour = true;
+  material.subsurface->absorption = vec3(0);
+  material.baseColour = glm::vec4(1);
+  scene::Scene scene = shadowed(material, {1, 0, 0}, 0);
+  scene.meshes[0].primitives[0].colours.assign(scene.meshes[0].primitives[0].positions.size(), albedo);
+  EXPECT_LT(rmsDifference(belowShadow(scene, values), wanted), 0.01);
+}
+
 TEST_F(SeparableSubsurfaceTest, OtherBodiesGetNoLight) {
-  // Two halves of a floor, of which the light of one ends where the other begins.
-  scene::Scene scene = lit(matter(30, 0.04f), 5);
-  const Image alone = below(scene);
-  scene.nodes.push_back(scene.nodes[0]);
-  scene.nodes[0].transform.translation = {-1, 0, 0};
-  scene.nodes.back().transform.translation = {1, 0, 0};
-  EXPECT_LT(largestDifference(below(scene), alone), 2e-3);
+  // The shadow reaches a little further than the one of two bodies.
+  const scene::Scene scene = shadowed(matter(30, 0.04f), {1, 0, 0}, 0.05f);
+  scene::Scene halves = scene;
+  halves.nodes.push_back(halves.nodes[0]);
+  halves.nodes[0].transform.translation = {-1, 0, 0};
+  halves.nodes.back().transform.translation = {1, 0, 0};
+  const auto inTheDark = [&](const Image& picture) {
+    double sum = 0;
+    forEachPoint(picture, [&](float value, const vec3& p) {
+      if (p.x < -0.02f) sum += static_cast<double>(value);
+    });
+    return sum;
+  };
+  EXPECT_GT(inTheDark(belowShadow(scene)), 1);
+  EXPECT_EQ(inTheDark(belowShadow(halves)), 0);
 }
 
 TEST_F(SeparableSubsurfaceTest, ExtremesStayWithinTheLightThatEnters) {
