@@ -224,7 +224,7 @@ Scene makeMarbleStatue() {
   Scene scene;
   scene.add("floor", backdrop(0.7f, 0.5f, 0.35f, 0.6f, 1),
             scene.addMaterial(lambert("floor", {0.3f, 0.3f, 0.32f})));
-  Mesh figure = transformed(simplified(dancer(0.02f), 60'000), scaling(glm::vec3(scale)));
+  Mesh figure = transformed(simplified(dancer(0.02f), 80'000), scaling(glm::vec3(scale)));
   const int statue = scene.add("statue", std::move(figure), scene.addMaterial(marble("marble")));
   scene.nodes[static_cast<std::size_t>(statue)].translation = {0, 0.268f * scale, 0};
   Light key{.type = Light::Type::spot, .intensity = 1.8f, .innerConeAngle = 0.3f, .outerConeAngle = 0.33f};
