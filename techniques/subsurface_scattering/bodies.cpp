@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "glsl/numeric/srgb.glsl"
+
 namespace limn::subsurface_scattering {
 namespace {
 
@@ -13,22 +15,41 @@ bool isTextured(const scene::Material& material, const scene::Primitive& primiti
          (material.baseColourTexture.image != scene::kNone || !primitive.colours.empty());
 }
 
+/// Returns the largest albedo of each channel that a texture makes of the material's; vertex colours only
+/// make it smaller.
+glm::vec3 largestAlbedo(const scene::Scene& scene, const scene::Material& material) {
+  glm::vec3 largest(1);
+  if (const int index = material.baseColourTexture.image; index != scene::kNone) {
+    const scene::TextureImage& image = scene.images[static_cast<size_t>(index)];
+    glm::ivec3 most(image.levels.empty() ? 255 : 0);
+    if (!image.levels.empty())
+      for (size_t i = 0; i + 3 < image.levels[0].rgba.size(); i += 4)
+        for (int c = 0; c < 3; ++c)
+          most[c] = std::max<int>(most[c], image.levels[0].rgba[i + static_cast<size_t>(c)]);
+    largest = glm::vec3(most) / 255.f;
+    if (image.srgb) largest = glsl::srgb_decode(largest);
+  }
+  return glm::clamp(largest * glm::vec3(material.baseColour), 0.f, 1.f);
+}
+
 /// Returns how many of the samples are drawn from the disc.
 int fromDisc(const Drawing& drawing) {
   return static_cast<int>(std::lround(drawing.uniformShare * static_cast<float>(drawing.samples)));
 }
 
-DiffusionBody makeBody(const scene::Material& material, bool textured, const Drawing& drawing) {
-  const scene::Subsurface& below = *material.subsurface;
+DiffusionBody makeBody(const scene::Scene& scene, const scene::Material& material, bool textured,
+                       const Drawing& drawing) {
   const float eta = std::clamp(material.ior, 1.f, 3.f);
-  const glm::vec3 extinction = below.extinction / drawing.scale;
+  const glm::vec3 extinction = material.subsurface->extinction / drawing.scale;
   const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(eta);
-  const glm::vec3 reach =
-      glsl::diffusion_reach(extinction, below.absorption, glsl::walk_reflectance(boundary));
+  const glsl::WalkReflectance walk = glsl::walk_reflectance(boundary);
+  const glm::vec3 absorption = textured ? glsl::walk_absorption(walk, largestAlbedo(scene, material))
+                                        : material.subsurface->absorption;
+  const glm::vec3 reach = glsl::diffusion_reach(extinction, absorption, walk);
   const float unit = std::max({reach.x, reach.y, reach.z});
   return {.extinction = extinction * unit,
           .unit = unit,
-          .absorption = below.absorption,
+          .absorption = absorption,
           .eta = eta,
           .channels = glsl::diffusion_drawn_channels(reach),
           .uniform_share = static_cast<float>(fromDisc(drawing)) / static_cast<float>(drawing.samples),
@@ -76,7 +97,7 @@ Bodies findBodies(const scene::Scene& scene, const scene::Pose& pose, const Draw
         scene.meshes[static_cast<size_t>(instance.mesh)].primitives[static_cast<size_t>(instance.primitive)];
     const scene::Material& material = scene.materials[static_cast<size_t>(primitive.material)];
     if (!material.subsurface) continue;
-    const DiffusionBody body = makeBody(material, isTextured(material, primitive), drawing);
+    const DiffusionBody body = makeBody(scene, material, isTextured(material, primitive), drawing);
     const auto known =
         std::ranges::find_if(result.bodies, [&](const DiffusionBody& other) { return alike(other, body); });
     result.ofInstances[i] = static_cast<uint32_t>(known - result.bodies.begin());

@@ -8,7 +8,7 @@ LIMN_BEGIN
 struct DiffusionBody {
   vec3 extinction;  // of the channels, per unit of length
   float unit;       // m
-  vec3 absorption;  // 1 - a'
+  vec3 absorption;  // 1 - a'; where it is textured, the least
   float eta;
   vec3 channels;         // see PointSource
   float uniform_share;   // of points
@@ -19,6 +19,10 @@ struct DiffusionBody {
 };
 
 LIMN_CONST uint no_body = 0xffffffffu;
+
+// Where light gets less far than so many pixels, all pixels draw the same points: a blur over a pattern of points would take away
+// more than it is worth, and without it the pattern shows.
+LIMN_CONST float least_patterned_reach = 1.0f;
 
 // diffusion_boundary(body.eta).
 LIMN_FN DiffusionBoundary body_boundary(DiffusionBody body) {

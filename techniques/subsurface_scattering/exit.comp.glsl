@@ -11,7 +11,7 @@ uniform sampler2D blurred;
 layout(rgba32f) uniform image2D radiance;
 
 // Light that reaches less far than the first number of pixels is not blurred, beyond the second it is.
-const vec2 blurred_reach = vec2(1.0, 2.5);
+const vec2 blurred_reach = vec2(least_patterned_reach, 2.5);
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -24,8 +24,7 @@ void main() {
   Colours colours = matter_colours(body.extinction, absorption, boundary);
   vec3 mean = texelFetch(gathered, pixel, 0).rgb;
 #if BLUR
-  float pixels = body.unit / (pixel_depth(pixel) * length(frame.view_ray_dx.xyz));
-  vec3 reach = pixels * diffusion_reach(body.extinction, absorption, walk_reflectance(boundary));
+  vec3 reach = pixels_of_unit(body, pixel_depth(pixel)) * diffusion_reach(body.extinction, absorption, walk_reflectance(boundary));
   vec3 share = clamp((reach - blurred_reach.x) / (blurred_reach.y - blurred_reach.x), 0.0, 1.0);
   mean = mix(mean, texelFetch(blurred, pixel, 0).rgb, share);
 #endif

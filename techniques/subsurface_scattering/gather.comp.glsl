@@ -1,6 +1,6 @@
 // The mean over the profile of the light that enters around a pixel: points drawn around it in the plane that touches the
 // surface stand for the places that rays through them see. The work groups of one z draw the same points, every block^2-th of
-// the sequence, for the pixels of one place in a pattern of block x block.
+// the sequence, for the pixels of one place in a pattern of block x block; with a block of 1 all pixels draw the first ones.
 //
 // What it stores still lacks a factor that varies with the pixel's own colour (exit.comp.glsl): without textures C, with them
 // its root.
@@ -29,6 +29,9 @@ uniform usampler2D planes;
 uniform usampler2D lights;
 layout(rgba32f) writeonly uniform image2D gathered;
 uniform uint body_index;
+// Of the pixels that are answered: their light gets from the first to less than the second number of pixels far.
+uniform float least_reach;
+uniform float reach_end;
 uniform int block;  // pixels
 
 vec3 entering_light(ivec2 pixel) { return uintBitsToFloat(entry_unpack(texelFetch(lights, pixel, 0).xy)); }
@@ -58,9 +61,43 @@ DrawingPlane drawing_plane(vec3 place, vec3 normal, vec3 own_plane, float unit, 
   return p;
 }
 
-// Share of the points' density that one plane brings, per area of what the ray `towards` meets. `place`: from the pixel's own.
-float plane_density(Colours colours, PointSource source, vec3 plane, float stretch, float r, float area) {
-  float density = drawn_density(diffusion_density(colours, r), source, r);
+// What points are drawn from in a plane: the profile of the pixel's own colour, and with WIDEST also that of the body's least
+// absorbing one. The root of two profiles, which light between two colours goes by, is at most their mean, so that no point
+// weighs much however it was met.
+#define WIDEST (TEXTURED && ROOT)
+struct Drawing {
+  Colours colours;
+  PointSource source;
+#if WIDEST
+  Colours widest;
+  PointSource widest_source;
+#endif
+};
+
+const int widest_points = SAMPLES / 4 * 2 + max(SAMPLES % 4 - 2, 0);
+
+bool draws_widest(int i) { return (i & 2) != 0; }
+
+float radius_drawn(Drawing d, int i, PointDraw draw) {
+#if WIDEST
+  if (draws_widest(i)) return drawn_radius(d.widest, d.widest_source, draw);
+#endif
+  return drawn_radius(d.colours, d.source, draw);
+}
+
+// At distance r, per area of the plane.
+float density_drawn(Drawing d, float r) {
+  float density = drawn_density(diffusion_density(d.colours, r), d.source, r);
+#if WIDEST
+  float other = drawn_density(diffusion_density(d.widest, r), d.widest_source, r);
+  density = mix(density, other, float(widest_points) / float(SAMPLES));
+#endif
+  return density;
+}
+
+// The same per area of what the ray `towards` meets.
+float plane_density(Drawing d, vec3 plane, float stretch, float r, float area) {
+  float density = density_drawn(d, r);
 #if NORMALISE == 1
   return density;
 #else
@@ -75,23 +112,33 @@ void main() {
   ivec2 size = ivec2(frame.frame_size);
   if (any(greaterThanEqual(pixel, size))) return;
   uvec4 own = texelFetch(planes, pixel, 0);
-  bool asked = own.w != no_instance && bodies_of_instances[own.w != no_instance ? own.w : 0u] == body_index;
+  DiffusionBody body = bodies[body_index];
+  DiffusionBoundary boundary = body_boundary(body);
+  vec3 absorption = pixel_absorption(body, boundary, pixel);
+  vec3 own_plane = uintBitsToFloat(own.xyz);
+  float depth = 1.0 / dot(own_plane, pixel_ray(pixel));
+  float reach = min(farthest_reach(body, boundary, absorption) * pixels_of_unit(body, depth), 1e30);
+  bool asked = own.w != no_instance && bodies_of_instances[own.w != no_instance ? own.w : 0u] == body_index &&
+               reach >= least_reach && reach < reach_end;
   // A loop of at most one round: software renderers run both sides of an `if`, but leave a loop that nobody is in.
   while (asked) {
     asked = false;
-    DiffusionBody body = bodies[body_index];
-    DiffusionBoundary boundary = body_boundary(body);
-    vec3 absorption = pixel_absorption(body, boundary, pixel);
     Colours colours = matter_colours(body.extinction, absorption, boundary);
 #if TEXTURED || PLANES == 2
-    PointSource source = PointSource(body.channels, body.uniform_share, body.uniform_radius);
+    Drawing from;
+    from.colours = colours;
+    from.source = PointSource(body.channels, body.uniform_share, body.uniform_radius);
 #endif
 #if TEXTURED
-    source.channels = diffusion_drawn_channels(diffusion_reach(body.extinction, absorption, walk_reflectance(boundary)));
+    from.source.channels =
+        diffusion_drawn_channels(diffusion_reach(body.extinction, absorption, walk_reflectance(boundary)));
+#endif
+#if WIDEST
+    from.widest = matter_colours(body.extinction, body.absorption, boundary);
+    from.widest_source = PointSource(body.channels, body.uniform_share, body.uniform_radius);
 #endif
     float per_metre = 1.0 / body.unit;
-    vec3 own_plane = uintBitsToFloat(own.xyz);
-    vec3 place = pixel_ray(pixel) / dot(own_plane, pixel_ray(pixel));
+    vec3 place = depth * pixel_ray(pixel);
     mat3 screen = screen_of_places();
     vec3 screen_place = screen * place;
     float own_area = length(own_plane);
@@ -106,9 +153,8 @@ void main() {
     for (int i = 0; i < SAMPLES; ++i, ++index) {
       Point point = points[index];
 #if TEXTURED
-      float drawn = drawn_radius(colours, source, point);
+      float drawn = radius_drawn(from, i, point);
       vec2 at = drawn * point.direction;
-      vec3 drawn_densities = diffusion_density(colours, drawn);
 #else
       vec2 at = point.offset;
 #endif
@@ -137,14 +183,14 @@ void main() {
       vec3 other_plane = faces ? own_plane : facing_plane;
       float other_stretch = eye_plane_stretch(other_plane, towards);
       float other_r = max(per_metre * eye_plane_distance(offset, towards, other_stretch), 1e-12);
-      float density = plane_density(colours, source, p.plane, 1.0, length(at), area);
-      float other = plane_density(colours, source, other_plane, other_stretch, other_r, area);
+      float density = plane_density(from, p.plane, 1.0, length(at), area);
+      float other = plane_density(from, other_plane, other_stretch, other_r, area);
       float share = float((SAMPLES + 1 - i % 2) / 2) / float(SAMPLES);  // of the points in this plane
       density = share * density + (1.0 - share) * (other_stretch > 0.0 ? other : 0.0);
       float inverse_density = 1.0 / density;
 #else
 #if TEXTURED
-      float inverse_density = 1.0 / drawn_density(drawn_densities, source, drawn);
+      float inverse_density = 1.0 / density_drawn(from, drawn);
 #else
       float inverse_density = point.inverse_density;
 #endif

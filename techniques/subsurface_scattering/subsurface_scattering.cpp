@@ -1,5 +1,6 @@
 // Light below surfaces from points that are drawn in the plane that touches a surface and looked up in the
 // image.
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -268,12 +269,20 @@ class Passes {
     pass.execute([program, indices = std::move(indices), block = drawing.block,
                   size = inputs_.size](frame::PassContext& context) {
       gpu::Program& kernel = context.use(program);
-      kernel.set("block", block);
-      const glm::ivec2 part = (size + block - 1) / block;
-      for (const uint32_t index : indices) {
-        kernel.set("body_index", index);
-        context.dispatch(part.x, part.y, block * block, kGroup, kGroup);
-      }
+      const auto gather = [&](int side, float leastReach, float reachEnd) {
+        kernel.set("block", side);
+        kernel.set("least_reach", leastReach);
+        kernel.set("reach_end", reachEnd);
+        const glm::ivec2 part = (size + side - 1) / side;
+        for (const uint32_t index : indices) {
+          kernel.set("body_index", index);
+          context.dispatch(part.x, part.y, side * side, kGroup, kGroup);
+        }
+      };
+      constexpr float endless = std::numeric_limits<float>::infinity();
+      const float patterned = block > 1 ? glsl::least_patterned_reach : endless;
+      gather(1, 0, patterned);
+      if (block > 1) gather(block, patterned, endless);
     });
     return gathered;
   }
