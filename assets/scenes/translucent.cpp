@@ -124,6 +124,8 @@ Scene makeTranslucentEar() {
   Scene scene;
   const Mesh fine = polygonise(ear, {-0.028f, -0.04f, -0.014f}, {0.028f, 0.04f, 0.026f}, 0.0008f);
   scene.add("ear", simplified(fine, 24'000), scene.addMaterial(skin("skin", 0.5f)));
+  scene.add("table", transformed(ground(0.3f, 0.3f, 1), translation({0, -0.045f, 0})),
+            scene.addMaterial(lambert("table", {0.03f, 0.026f, 0.024f})));
   scene.addAreaLight("key", {0.03f, 0.05f, -0.16f}, {0, 0, 0}, {0.01f, 0.01f}, 0.6f, {1, 0.96f, 0.9f});
   scene.addCamera("main", {-0.04f, 0.01f, 0.24f}, {0, 0, 0.004f}, 18);
   scene.addCamera("close", {-0.02f, 0.03f, 0.12f}, {0, 0.012f, 0.004f}, 18);
