@@ -12,14 +12,20 @@ struct DiffusionBoundary {
   float trapping;  // 1 / (1 - F_dr), 1 or more
 };
 
+// For an index of 1 or more whose 1 - F_de is known.
+LIMN_FN DiffusionBoundary diffusion_boundary(float eta, float entering) {
+  DiffusionBoundary b;
+  b.eta = eta;
+  b.entering = entering;
+  b.trapping = eta * eta / entering;
+  return b;
+}
+
 // Exact up to rounding and to the 1e-5 of dielectric_mean_reflectance. The polynomial in eta that is often taken for F_dr makes
 // diffusion_mismatch 0.3 % too large at eta = 1 and 26 % at 3.
 LIMN_FN DiffusionBoundary diffusion_boundary(float eta) {
-  DiffusionBoundary b;
-  b.eta = max(eta, 1.0f);
-  b.entering = 1.0f - dielectric_mean_reflectance(b.eta);
-  b.trapping = b.eta * b.eta / b.entering;
-  return b;
+  float index = max(eta, 1.0f);
+  return diffusion_boundary(index, 1.0f - dielectric_mean_reflectance(index));
 }
 
 // A = (1 + F_dr) / (1 - F_dr): the fluence on the boundary is 2 A times the flux that leaves through a unit of its area.

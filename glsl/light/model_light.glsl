@@ -9,18 +9,28 @@ LIMN_BEGIN
 
 LIMN_CONST int model_light_side = 4;  // points along each side of a rectangle
 
+// One of the points that stand for a rectangle.
+struct RectangleSample {
+  vec3 l;        // unit, towards the point
+  float weight;  // solid angle that the rectangle would have, were it all there; 0: below the horizon of ng
+};
+
+LIMN_FN RectangleSample rectangle_sample(Rectangle r, vec3 ng, int i) {
+  RectangleSample s;
+  vec3 offset = rectangle_point(r, grid_point(i, model_light_side) - vec2(0.5f));
+  float d2 = dot(offset, offset);
+  s.l = offset * inversesqrt(d2 > 0.0f ? d2 : 1.0f);
+  s.weight = d2 > 0.0f && dot(ng, s.l) > 0.0f ? abs(dot(cross(r.u, r.v), s.l)) / d2 : 0.0f;
+  return s;
+}
+
 // Reflected radiance per unit of the rectangle's radiance. Arguments: as unshadowed_rectangle() has them.
 LIMN_FN vec3 model_rectangle(Rectangle r, MaterialModel m, Frame frame, vec3 ng, vec3 v) {
   vec3 sum = vec3(0.0f);
   vec3 to_viewer = to_local(frame, v);
-  vec3 area = cross(r.u, r.v);
   for (int i = 0; i < model_light_side * model_light_side; ++i) {
-    vec3 offset = rectangle_point(r, grid_point(i, model_light_side) - vec2(0.5f));
-    float d2 = dot(offset, offset);
-    if (!(d2 > 0.0f)) continue;
-    vec3 l = offset * inversesqrt(d2);
-    if (dot(ng, l) <= 0.0f) continue;
-    sum += material_response(m, to_viewer, to_local(frame, l)) * (abs(dot(area, l)) / d2);
+    RectangleSample s = rectangle_sample(r, ng, i);
+    if (s.weight > 0.0f) sum += material_response(m, to_viewer, to_local(frame, s.l)) * s.weight;
   }
   return sum / float(model_light_side * model_light_side);
 }
@@ -30,17 +40,11 @@ LIMN_FN vec3 model_rectangle(Rectangle r, MaterialModel m, Frame frame, vec3 ng,
 LIMN_FN vec3 entering_rectangle(Rectangle r, MaterialModel m, Frame frame, vec3 ng, vec3 v) {
   float all = 0.0f;
   float entering = 0.0f;
-  vec3 area = cross(r.u, r.v);
   for (int i = 0; i < model_light_side * model_light_side; ++i) {
-    vec3 offset = rectangle_point(r, grid_point(i, model_light_side) - vec2(0.5f));
-    float d2 = dot(offset, offset);
-    if (!(d2 > 0.0f)) continue;
-    vec3 l = offset * inversesqrt(d2);
-    float cosine = dot(frame.n, l);
-    if (!(cosine > 0.0f) || dot(ng, l) <= 0.0f) continue;
-    float weight = cosine * abs(dot(area, l)) / d2;
-    all += weight;
-    entering += weight * entry_share(m, cosine);
+    RectangleSample s = rectangle_sample(r, ng, i);
+    float cosine = max(dot(frame.n, s.l), 0.0f);
+    all += cosine * s.weight;
+    entering += cosine * s.weight * entry_share(m, cosine);
   }
   SurfaceBrdf white = surface_brdf(vec3(1.0f), 0.0f, 1.0f, 0.0f, vec3(1.0f), m.eta.x);
   return unshadowed_rectangle(r, white, frame.n, ng, v) * (all > 0.0f ? entering / all : m.kd.x);

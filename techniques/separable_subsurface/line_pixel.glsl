@@ -25,20 +25,12 @@ bool is_of_dispatch(uint instance) {
   return line_material_rows[instances[instance].material] == line_material;
 }
 
-DiffusionBoundary line_boundary(LineMaterial m) {
-  DiffusionBoundary b;
-  b.eta = m.eta;
-  b.entering = m.entering;
-  b.trapping = m.eta * m.eta / m.entering;
-  return b;
-}
-
 // By how much light goes further below a pixel than taps say.
 float width_over_taps(LineMaterial m, ivec2 pixel) {
 #if TEXTURED
   if (m.textured != 0u) {
     vec3 albedo = gbuffer_colour_decode(texelFetch(gbuffer_albedo, pixel, 0).rgb);
-    float width = line_width(albedo, m.extinction, walk_reflectance(line_boundary(m)));
+    float width = line_width(albedo, m.extinction, walk_reflectance(diffusion_boundary(m.eta, m.entering)));
     return min(width / max(m.width, 1e-30), 1e6);
   }
 #endif
@@ -53,7 +45,7 @@ vec3 root_reflectance(LineMaterial m, ivec2 pixel) {
   if (m.textured != 0u) {
     reflectance = gbuffer_colour_decode(texelFetch(gbuffer_albedo, pixel, 0).rgb);
 #if !NORMALISED
-    DiffusionBoundary boundary = line_boundary(m);
+    DiffusionBoundary boundary = diffusion_boundary(m.eta, m.entering);
     WalkReflectance walk = walk_reflectance(boundary);
     for (int c = 0; c < 3; ++c)
       reflectance[c] = diffusion_dipole(walk_absorption(walk, reflectance[c]), boundary).reflectance;

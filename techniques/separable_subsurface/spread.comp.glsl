@@ -89,7 +89,8 @@ void main() {
   imageStore(spread, pixel, vec4(light, p.depth));
 #else
   float cosine = max(-dot(pixel_normal(pixel), normalize(pixel_ray(pixel))), 0.0);
-  vec3 leaving = light * root_reflectance(material, pixel) * (pi * diffusion_exit(line_boundary(material), cosine));
+  DiffusionBoundary boundary = diffusion_boundary(material.eta, material.entering);
+  vec3 leaving = light * root_reflectance(material, pixel) * (pi * diffusion_exit(boundary, cosine));
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(leaving, 0.0));
 #endif
 }

@@ -108,7 +108,7 @@ Bodies findBodies(const scene::Scene& scene, const scene::Pose& pose, const Draw
     textures = textures || body.textured != 0;
     if (body.textured != 0) continue;
     body.first_point = static_cast<uint32_t>(result.points.size());
-    const glsl::DiffusionBoundary boundary = glsl::body_boundary(body);
+    const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(body.eta, body.entering);
     if (drawing.profile == Profile::dipole)
       addPoints(body, glsl::dipole_colours(body.extinction, body.absorption, boundary), drawing,
                 result.points);

@@ -24,14 +24,5 @@ LIMN_CONST uint no_body = 0xffffffffu;
 // more than it is worth, and without it the pattern shows.
 LIMN_CONST float least_patterned_reach = 1.0f;
 
-// diffusion_boundary(body.eta).
-LIMN_FN DiffusionBoundary body_boundary(DiffusionBody body) {
-  DiffusionBoundary b;
-  b.eta = body.eta;
-  b.entering = body.entering;
-  b.trapping = body.eta * body.eta / body.entering;
-  return b;
-}
-
 LIMN_END
 #endif  // DIFFUSION_BODY_GLSL

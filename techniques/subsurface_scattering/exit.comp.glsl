@@ -19,7 +19,7 @@ void main() {
   uint instance = texelFetch(planes, pixel, 0).w;
   if (instance == no_instance) return;
   DiffusionBody body = bodies[bodies_of_instances[instance]];
-  DiffusionBoundary boundary = body_boundary(body);
+  DiffusionBoundary boundary = diffusion_boundary(body.eta, body.entering);
   vec3 absorption = pixel_absorption(body, boundary, pixel);
   Colours colours = matter_colours(body.extinction, absorption, boundary);
   vec3 mean = texelFetch(gathered, pixel, 0).rgb;

@@ -113,7 +113,7 @@ void main() {
   if (any(greaterThanEqual(pixel, size))) return;
   uvec4 own = texelFetch(planes, pixel, 0);
   DiffusionBody body = bodies[body_index];
-  DiffusionBoundary boundary = body_boundary(body);
+  DiffusionBoundary boundary = diffusion_boundary(body.eta, body.entering);
   vec3 absorption = pixel_absorption(body, boundary, pixel);
   vec3 own_plane = uintBitsToFloat(own.xyz);
   float depth = 1.0 / dot(own_plane, pixel_ray(pixel));
