@@ -68,10 +68,7 @@ frame::TextureHandle Renderer::Implementation::ask(Use& use, Term term, std::spa
                                                    const Lighting& lit, frame::TextureHandle entering) {
   TechniqueInputs inputs = inputsOf(use, lit.handles, lit.gbuffer);
   inputs.entering = entering;
-  if (term == Term::specular) {
-    inputs.matte = matte;
-    inputs.environmentMap = deferred.environmentMap(*graph);
-  }
+  if (term == Term::specular) inputs.matte = matte;
   const TechniquePlugin& plugin = *use.settings->plugin;
   inputs.bound = settings.bound && hasBound(plugin);
   const frame::TextureHandle answer = inTechnique(plugin, [&] {

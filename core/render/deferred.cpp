@@ -1,18 +1,13 @@
 #include "core/render/private/deferred.h"
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <vector>
 
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/light_textures.h"
 #include "core/gpu_scene/surface_input.h"
-#include "core/shading/environment.h"
-#include "core/shading/ltc_table.h"
 #include "core/technique/light_batch.h"
-#include "glsl/light/environment.glsl"
-#include "glsl/materials/material_model.glsl"
 #include "glsl/scene/blocks.glsl"
 #include "glsl/surface/gbuffer.glsl"
 
@@ -34,81 +29,17 @@ bool hasSpecularSurface(const scene::Scene& scene) {
 
 }  // namespace
 
-struct Deferred::Implementation {
-  gpu::Device& device;
-  const scene::Scene& scene;
-  gpu::Texture environmentMap, ltcTable, irradianceMap, filteredMap, grazingMap;
-  // Imports of the graph that start() was last called for.
-  TextureHandle environmentHandle, ltcHandle;
-
-  /// The equirectangular map with bilinear filtering, repeated around the horizon.
-  TextureHandle environment(frame::FrameGraph& graph) {
-    if (!environmentMap) {
-      const scene::Environment& e = scene.environment;
-      environmentMap = gpu::Texture(device, "environment map",
-                                    {.format = GL_RGB32F, .width = e.width, .height = e.height});
-      environmentMap.setSampling(GL_LINEAR, GL_LINEAR, GL_REPEAT, GL_CLAMP_TO_EDGE);
-      environmentMap.upload(0, 0, GL_RGB, GL_FLOAT, e.texels.data());
-    }
-    if (!environmentHandle) environmentHandle = graph.importTexture("environment map", environmentMap);
-    return environmentHandle;
-  }
-
-  TextureHandle ltc(frame::FrameGraph& graph) {
-    if (!ltcTable) ltcTable = shading::makeLtcTexture(device);
-    if (!ltcHandle) ltcHandle = graph.importTexture("table of linearly transformed cosines", ltcTable);
-    return ltcHandle;
-  }
-
-  /// The scene's environment, black without one.
-  const scene::Environment& light() const {
-    static const scene::Environment black = [] {
-      scene::Environment e;
-      e.width = e.height = 2;
-      e.texels.assign(4, glm::vec3(0));
-      return e;
-    }();
-    return scene.environment ? scene.environment : black;
-  }
-
-  /// Irradiance and radiance filtered by roughness; made at the first call.
-  std::array<TextureHandle, 2> environmentLight(frame::FrameGraph& graph) {
-    if (!irradianceMap) {
-      const shading::FilteredEnvironment filtered = shading::filterEnvironment(light());
-      irradianceMap = shading::makeIrradianceTexture(device, filtered.irradiance);
-      filteredMap = shading::makeFilteredTexture(device, filtered);
-    }
-    return {graph.importTexture("environment irradiance", irradianceMap),
-            graph.importTexture("filtered environment", filteredMap)};
-  }
-
-  /// What grazes of the irradiance; made at the first call.
-  TextureHandle grazingLight(frame::FrameGraph& graph) {
-    if (!grazingMap) grazingMap = shading::makeIrradianceTexture(device, shading::filterGrazing(light()));
-    return graph.importTexture("grazing irradiance of the environment", grazingMap);
-  }
-};
-
-Deferred::Deferred(gpu::Device& device, const scene::Scene& scene)
-    : implementation_(new Implementation{device, scene, {}, {}, {}, {}, {}, {}, {}}) {}
-Deferred::~Deferred() = default;
-
 TextureHandle Deferred::start(const Frame& frame, Start with) {
   frame::FrameGraph& graph = frame.graph;
-  implementation_->environmentHandle = implementation_->ltcHandle = {};
   const bool geometry = static_cast<bool>(frame.gbuffer.depth);
-  const bool environment = static_cast<bool>(implementation_->scene.environment);
+  const bool environment = static_cast<bool>(scene_.environment);
   if (with == Start::black || (!geometry && !environment)) return black(graph, "radiance", frame.size);
 
   frame::PassBuilder builder = graph.addPass("emission and background");
   builder.read(frame.handles.frame, Access::uniformBuffer, "FrameBlock", "camera");
-  TextureHandle map;
-  if (environment) {
-    map = implementation_->environment(graph);
-    builder.read(map, Access::sampled, "environment_map", "background");
-  }
-  const bool specular = with == Start::emissionAndSpecular && geometry && environment &&
-                        hasSpecularSurface(implementation_->scene);
+  if (environment) builder.read(maps_.radiance(), Access::sampled, "environment_map", "background");
+  const bool specular =
+      with == Start::emissionAndSpecular && geometry && environment && hasSpecularSurface(scene_);
   if (specular) {
     readSurfaces(builder, frame.gbuffer);
     builder.read(frame.gbuffer.instance, Access::sampled, kGBufferNames.instance,
@@ -197,14 +128,13 @@ TextureHandle Deferred::addLights(const Frame& frame, TextureHandle before, std:
   const auto& [visibility, relief] = factors;
   if (visibility) builder.read(visibility, Access::sampled, "visibility", "V of each light");
   if (relief) builder.read(relief, Access::sampled, "relief", "W of each light");
-  const TextureHandle ltc = implementation_->ltc(frame.graph);
-  builder.read(ltc, Access::sampled, "ltc_table", "glossy light of rectangles");
+  builder.read(maps_.ltcTable(), Access::sampled, "ltc_table", "glossy light of rectangles");
   const TextureHandle radiance =
       builder.write(before, Access::imageLoadStore, "radiance", relief ? "sum of L_u V W" : "sum of L_u V");
   gpu::ProgramDesc desc{.files = {"glsl/deferred/light_accumulate.comp.glsl"},
                         .defines = {{"VISIBILITY", visibility ? "1" : "0"},
                                     {"RELIEF", relief ? "1" : "0"},
-                                    {"MEDIUM", implementation_->scene.medium.present() ? "1" : "0"},
+                                    {"MEDIUM", scene_.medium.present() ? "1" : "0"},
                                     {"LIGHT_COUNT", std::to_string(lights.size())}}};
   surfaces.define(desc.defines);
   const scene::MediumInput medium(frame.handles);
@@ -238,23 +168,15 @@ TextureHandle Deferred::addEnvironment(const Frame& frame, TextureHandle before)
     frame.graph.leaveOut("environment light", "core", "no geometry");
     return before;
   }
-  const std::array<TextureHandle, 2> maps = implementation_->environmentLight(frame.graph);
-  const TextureHandle ltc = implementation_->ltc(frame.graph);
   frame::PassBuilder builder = frame.graph.addPass("environment light");
   builder.read(frame.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, rotation, scale");
   const scene::SurfaceInput surfaces(frame.handles, frame.gbuffer);
   surfaces.declare(builder);
-  builder.read(maps[0], Access::sampled, "environment_irradiance", "diffuse light");
-  builder.read(maps[1], Access::sampled, "environment_filtered", "glossy light");
-  builder.read(ltc, Access::sampled, "ltc_table", "glossy reflectance");
-  constexpr uint32_t entered = 1u << glsl::model_coated | 1u << glsl::model_entry;
-  if ((frame.handles.modelKinds & entered) != 0)
-    builder.read(implementation_->grazingLight(frame.graph), Access::sampled, "environment_grazing",
-                 "light that enters coats and bodies");
+  maps_.readReflected(builder, frame.handles.modelKinds);
   const TextureHandle radiance =
       builder.write(before, Access::imageLoadStore, "radiance", "light of the environment, V = 1");
   gpu::ProgramDesc desc{.files = {"glsl/deferred/environment.comp.glsl"},
-                        .defines = {{"MEDIUM", implementation_->scene.medium.present() ? "1" : "0"}}};
+                        .defines = {{"MEDIUM", scene_.medium.present() ? "1" : "0"}}};
   surfaces.define(desc.defines);
   const scene::MediumInput medium(frame.handles);
   medium.define(desc.defines);
@@ -284,10 +206,6 @@ TextureHandle Deferred::addTransmittance(const Frame& frame, TextureHandle befor
     context.dispatch(size.x, size.y, 1, kGroupSize, kGroupSize);
   });
   return radiance;
-}
-
-TextureHandle Deferred::environmentMap(frame::FrameGraph& graph) {
-  return implementation_->scene.environment ? implementation_->environment(graph) : TextureHandle{};
 }
 
 TextureHandle Deferred::addSpecular(const Frame& frame, TextureHandle before, TextureHandle seen) {

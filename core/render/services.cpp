@@ -4,6 +4,7 @@
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/indirect/virtual_lights.h"
 #include "core/relief_maps/relief_maps.h"
+#include "core/shading_maps/shading_maps.h"
 #include "core/shadow/shadow_map.h"
 
 namespace limn::render {
@@ -15,6 +16,7 @@ FrameServices makeServices(gpu::Device& device, scene::GpuScene& scene) {
   services.add<indirect::VirtualLightService>();
   services.add<caustics::CausticRayService>(device, scene);
   services.add<relief_maps::ReliefMapService>(device, scene.scene());
+  services.add<shading_maps::ShadingMapService>(device, scene.scene());
   return services;
 }
 

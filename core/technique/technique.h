@@ -69,9 +69,8 @@ struct TechniqueInputs {
   /// translucent surfaces reflect as their boundaries do; what enters them is asked for by a second request,
   /// in whose G-buffer they reflect F_t / pi and nothing else reflects (glsl/materials/entry.glsl).
   GBuffer gbuffer;
-  glm::ivec2 size;                        ///< pixels
-  GBuffer matte{};                        ///< for specular: the G-buffer without specular surfaces
-  frame::TextureHandle environmentMap{};  ///< for specular: equirectangular, RGB32F; empty: no environment
+  glm::ivec2 size;  ///< pixels
+  GBuffer matte{};  ///< for specular: the G-buffer without specular surfaces
   /// For subsurface: RGBA32F, E / pi in W/(sr m^2) at each translucent pixel, where E is the irradiance that
   /// enters the body; 0 elsewhere.
   frame::TextureHandle entering{};

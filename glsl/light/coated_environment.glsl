@@ -3,6 +3,7 @@
 #ifndef LIMN_COATED_ENVIRONMENT_GLSL
 #define LIMN_COATED_ENVIRONMENT_GLSL
 #include "glsl/materials/coated.glsl"
+#include "glsl/surface/reflected_parts.glsl"
 LIMN_BEGIN
 
 // Irradiance that enters a boundary, int (1 - F) L cos, given all of it and the part that grazes: that of light weighted by
@@ -24,9 +25,12 @@ LIMN_FN vec3 coated_environment_base(MaterialModel m, float n_dot_v, vec3 irradi
   return passing * m.kd * inverse_pi * entering * coated_escape(m, mean) / (vec3(1.0f) - mean);
 }
 
-// Light of coat and base; mirrored: radiance from the mirror direction.
-LIMN_FN vec3 coated_environment(MaterialModel m, float n_dot_v, vec3 irradiance, vec3 grazing, vec3 mirrored) {
-  return coated_environment_base(m, n_dot_v, irradiance, grazing) + coated_mirror(m, n_dot_v) * mirrored;
+// Light of base and coat; mirrored: radiance from the mirror direction.
+LIMN_FN ReflectedParts coated_environment(MaterialModel m, float n_dot_v, vec3 irradiance, vec3 grazing, vec3 mirrored) {
+  ReflectedParts light;
+  light.diffuse = coated_environment_base(m, n_dot_v, irradiance, grazing);
+  light.lobe = coated_mirror(m, n_dot_v) * mirrored;
+  return light;
 }
 
 LIMN_END

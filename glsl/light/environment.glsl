@@ -10,6 +10,7 @@
 #include "glsl/numeric/equirectangular.glsl"
 #include "glsl/numeric/language.glsl"
 #include "glsl/light/ltc.glsl"
+#include "glsl/surface/reflected_parts.glsl"
 LIMN_BEGIN
 
 LIMN_CONST int environment_unit_irradiance = 9;
@@ -45,10 +46,14 @@ LIMN_FN vec3 environment_lobe_direction(LtcTerms terms, vec3 n, vec3 v, float al
 }
 
 // Reflected radiance. irradiance: at the shading normal; filtered: radiance at the lobe's middle and level.
-LIMN_FN vec3 environment_reflection(SurfaceBrdf s, LtcTerms terms, vec3 irradiance, vec3 filtered) {
-  vec3 diffuse = s.diffuse * irradiance * inverse_pi;
-  if (brdf_is_lambertian(s)) return diffuse;
-  return diffuse * ltc_diffuse_weight(s, terms) + filtered * ltc_specular_reflectance(s, terms);
+LIMN_FN ReflectedParts environment_reflection(SurfaceBrdf s, LtcTerms terms, vec3 irradiance, vec3 filtered) {
+  ReflectedParts light;
+  light.diffuse = s.diffuse * irradiance * inverse_pi;
+  light.lobe = vec3(0.0f);
+  if (brdf_is_lambertian(s)) return light;
+  light.diffuse *= ltc_diffuse_weight(s, terms);
+  light.lobe = filtered * ltc_specular_reflectance(s, terms);
+  return light;
 }
 
 #ifndef __cplusplus
@@ -68,7 +73,7 @@ vec3 environment_irradiance_towards(vec3 n, float rotation, float scale) {
   return scale * textureLod(environment_irradiance, environment_irradiance_place(n, rotation), 0.0).rgb;
 }
 
-vec3 environment_light(SurfaceBrdf s, vec3 n, vec3 v, float rotation, float scale) {
+ReflectedParts environment_light(SurfaceBrdf s, vec3 n, vec3 v, float rotation, float scale) {
   vec3 irradiance = environment_irradiance_towards(n, rotation, scale);
   LtcTerms terms = ltc_lookup(dot(n, v), s.alpha);
   vec3 filtered = vec3(0.0);

@@ -8,6 +8,7 @@
 #include "core/caustics/specular_buffers.h"
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/scene/camera.h"
+#include "core/shading_maps/shading_maps.h"
 #include "core/technique/technique.h"
 #include "glsl/scene/blocks.glsl"
 
@@ -136,8 +137,8 @@ class ImageSpaceRefraction : public Technique {
         .read(inputs.matte.depth, Access::sampled, "matte_depth", "what rays meet")
         .read(inputs.matte.geometricNormal, Access::sampled, "matte_normal", "what rays meet")
         .read(background, Access::sampled, "matte_radiance", "light of what rays meet");
-    if (inputs.environmentMap)
-      pass.read(inputs.environmentMap, Access::sampled, "environment_map", "rays that meet nothing");
+    const TextureHandle environment = inputs.service<shading_maps::ShadingMapService>().radiance();
+    if (environment) pass.read(environment, Access::sampled, "environment_map", "rays that meet nothing");
     const TextureHandle seen = pass.write(
         graph_->createTexture("seen in specular surfaces",
                               {.format = GL_RGBA32F, .width = inputs.size.x, .height = inputs.size.y}),
@@ -145,7 +146,7 @@ class ImageSpaceRefraction : public Technique {
     gpu::ProgramDesc desc{.files = {"techniques/image_space_refraction/refraction.comp.glsl"},
                           .defines = {{"INTERFACES", std::to_string(inputs.parameters.integer("interfaces"))},
                                       {"EXIT_STEPS", std::to_string(inputs.parameters.integer("exit_steps"))},
-                                      {"ENVIRONMENT", inputs.environmentMap ? "1" : "0"},
+                                      {"ENVIRONMENT", environment ? "1" : "0"},
                                       {"MEDIUM", inputs.scene.medium.present() ? "1" : "0"}}};
     const scene::MediumInput medium(inputs.handles, inputs.parameters.integer("medium_steps"));
     medium.define(desc.defines);

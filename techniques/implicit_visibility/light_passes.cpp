@@ -7,7 +7,7 @@
 
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/scene/environment_light.h"
-#include "core/shading/ltc_table.h"
+#include "core/shading_maps/shading_maps.h"
 
 namespace limn::implicit_visibility {
 
@@ -93,10 +93,9 @@ LightPasses::Sent LightPasses::directLight(const PassRequest& r, std::span<const
         .read(seen->indices, Access::storageLoad, "Indices", "which lights");
   if (sky && !glossy) pass.read(skyIrradiance, Access::storageLoad, "Sky", "irradiance of the environment");
   if (glossy) {
-    if (!ltcTable_) ltcTable_ = shading::makeLtcTexture(r.inputs.gpuScene.device());
     pass.read(elements_.materials, Access::storageLoad, "Materials", "BRDFs")
-        .read(r.graph.importTexture("lobes as linearly transformed cosines", ltcTable_), Access::sampled,
-              "ltc_table", "glossy light of rectangles");
+        .read(r.inputs.service<shading_maps::ShadingMapService>().ltcTable(), Access::sampled, "ltc_table",
+              "glossy light of rectangles");
   }
   const BufferHandle direct =
       pass.write(sent(r, "direct light"), Access::storageStore, "Direct", "reflected by leaves");

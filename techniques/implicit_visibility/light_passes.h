@@ -72,7 +72,6 @@ class LightPasses {
   std::deque<ProcessorGather> processorGathers_;  ///< the graph keeps their addresses
   std::optional<Gathered> sky_;
   gpu::Buffer environment_;
-  gpu::Texture ltcTable_;
 };
 
 }  // namespace limn::implicit_visibility

@@ -38,7 +38,7 @@ vec3 brdf_reflection(SurfaceBrdf s, vec3 n, vec3 v) {
   if (brdf_is_lambertian(s)) return s.diffuse * irradiance * inverse_pi;
   LtcTerms terms = ltc_lookup(dot(n, v), s.alpha);
   vec3 towards = prefiltered_direction(LOOKUP, terms, n, v, s.alpha);
-  return environment_reflection(s, terms, irradiance, filtered_radiance(towards, s.alpha));
+  return reflected_whole(environment_reflection(s, terms, irradiance, filtered_radiance(towards, s.alpha)));
 }
 
 #if (MATERIAL_MODELS & 22) != 0
@@ -78,7 +78,7 @@ vec3 grazing_light(vec3 n) {
 vec3 coated_reflection(MaterialModel m, vec3 n, vec3 v) {
   vec3 towards = environment_lookup_direction(prefiltered_mirror(n, v), frame.environment_rotation);
   vec3 mirrored = frame.environment_scale * prefiltered_lookup(sharp_map, towards, 0);
-  return coated_environment(m, dot(n, v), irradiance_towards(n), grazing_light(n), mirrored);
+  return reflected_whole(coated_environment(m, dot(n, v), irradiance_towards(n), grazing_light(n), mirrored));
 }
 #endif
 

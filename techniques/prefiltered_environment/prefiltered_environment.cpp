@@ -11,7 +11,7 @@
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/gpu_scene/surface_input.h"
 #include "core/scene/environment_light.h"
-#include "core/shading/ltc_table.h"
+#include "core/shading_maps/shading_maps.h"
 #include "core/technique/technique.h"
 #include "glsl/light/prefiltered_models.glsl"
 
@@ -72,7 +72,6 @@ struct Maps {
 };
 
 class PrefilteredEnvironment : public Technique {
-  gpu::Texture environment_, ltcTable_;
   gpu::Sampler sampler_;  ///< bilinear within a level, repeated around the horizon
 
   TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -81,10 +80,11 @@ class PrefilteredEnvironment : public Technique {
       graph.leaveOut("environment light", info.name, "the environment is black");
       return request.target;
     }
-    upload(inputs);
+    if (!sampler_)
+      sampler_ = gpu::Sampler(inputs.gpuScene.device(), GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR, GL_REPEAT);
     const Filtering filtering(graph, inputs.parameters, sampler_);
-    const TextureHandle chain =
-        filtering.addChain(graph.importTexture("environment", environment_), environment_.desc().width);
+    const TextureHandle chain = filtering.addChain(
+        inputs.service<shading_maps::ShadingMapService>().radiance(), inputs.scene.environment.width);
     Maps maps;
     maps.sharp = chain;
     maps.irradiance = filtering.addIrradiance(chain, Irradiance::whole);
@@ -94,17 +94,6 @@ class PrefilteredEnvironment : public Technique {
     if ((kinds & kMicrofacetKinds) != 0) maps.microfacetLobes = filtering.addMicrofacetLobes();
     if ((kinds & kEnteredKinds) != 0) maps.grazing = filtering.addIrradiance(chain, Irradiance::grazing);
     return addReflection(graph, inputs, request.target, maps);
-  }
-
-  void upload(const TechniqueInputs& inputs) {
-    gpu::Device& device = inputs.gpuScene.device();
-    const scene::Environment& e = inputs.scene.environment;
-    environment_ =
-        gpu::Texture(device, "environment", {.format = GL_RGB32F, .width = e.width, .height = e.height});
-    environment_.setSampling(GL_LINEAR, GL_LINEAR, GL_REPEAT, GL_CLAMP_TO_EDGE);
-    environment_.upload(0, 0, GL_RGB, GL_FLOAT, e.texels.data());
-    ltcTable_ = shading::makeLtcTexture(device);
-    sampler_ = gpu::Sampler(device, GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR, GL_REPEAT);
   }
 
   /// Declares the passes that filter the environment; they run again when it changes.
@@ -268,8 +257,8 @@ class PrefilteredEnvironment : public Technique {
     look(maps.power, "power_map", "light of models' lobes");
     look(maps.microfacetLobes, "microfacet_lobes", "where models look");
     look(maps.grazing, "grazing_map", "light that enters coats and bodies");
-    pass.read(graph.importTexture("table of linearly transformed cosines of the environment", ltcTable_),
-              Access::sampled, "ltc_table", "glossy reflectance");
+    pass.read(inputs.service<shading_maps::ShadingMapService>().ltcTable(), Access::sampled, "ltc_table",
+              "glossy reflectance");
     const TextureHandle radiance =
         pass.write(target, Access::imageLoadStore, "radiance", "light of the environment, V = 1");
     gpu::ProgramDesc desc =

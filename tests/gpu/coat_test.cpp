@@ -110,8 +110,9 @@ TEST_F(CoatTest, PhysicalBasesGetWhatEntersTheCoat) {
   const glsl::MaterialModel model = coat(vec3(0.8f), glsl::model_option_physical);
   expectOnBall(ball(model, environment(linear)), 0.5f, 0.003f, [&](vec3 n, vec3 v) {
     const vec3 slope = linear(n) - 1.f;
-    return glsl::coated_environment(model, glm::dot(n, v), glsl::pi * (1.f + 2.f / 3 * slope),
-                                    glsl::pi / 84 * (4.f + slope), linear(glm::reflect(-v, n)));
+    return glsl::reflected_whole(
+        glsl::coated_environment(model, glm::dot(n, v), glsl::pi * (1.f + 2.f / 3 * slope),
+                                 glsl::pi / 84 * (4.f + slope), linear(glm::reflect(-v, n))));
   });
 }
 

@@ -33,7 +33,7 @@ void main() {
   if (i >= uint(points.length())) return;
   Point p = points[i];
   SurfaceBrdf s = surface_brdf(p.base.rgb, p.base.w, p.surface.x, p.surface.y, vec3(1.0), p.surface.z);
-  results[i] = vec4(environment_light(s, p.normal.xyz, p.view.xyz, rotation, scale), 1.0);
+  results[i] = vec4(reflected_whole(environment_light(s, p.normal.xyz, p.view.xyz, rotation, scale)), 1.0);
 }
 )";
 
@@ -47,9 +47,10 @@ vec3 expected(const shading::FilteredEnvironment& environment, const Point& p) {
   const vec3 n(p.normal), v(p.view);
   const glsl::LtcTerms terms = glsl::ltc_lookup(dot(n, v), s.alpha);
   const auto turned = [](vec3 d) { return glsl::environment_lookup_direction(d, kRotation); };
-  return glsl::environment_reflection(
+  return glsl::reflected_whole(glsl::environment_reflection(
       s, terms, kScale * environment.irradiance.sample(turned(n)),
-      kScale * environment.filtered(turned(glsl::environment_lobe_direction(terms, n, v, s.alpha)), s.alpha));
+      kScale *
+          environment.filtered(turned(glsl::environment_lobe_direction(terms, n, v, s.alpha)), s.alpha)));
 }
 
 class EnvironmentLight : public GlTest {};

@@ -4,21 +4,18 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 
 #include "core/frame/frame_graph.h"
 #include "core/scene/scene.h"
+#include "core/shading_maps/shading_maps.h"
 #include "core/technique/technique.h"
 
 namespace limn::render {
 
 class Deferred {
  public:
-  /// Takes device and scene. Tables and environment maps are uploaded when a pass that needs them is first
-  /// declared.
-  Deferred(gpu::Device& device, const scene::Scene& scene);
-  ~Deferred();
+  Deferred(const scene::Scene& scene, shading_maps::ShadingMapService& maps) : scene_(scene), maps_(maps) {}
 
   struct Frame {
     frame::FrameGraph& graph;
@@ -57,8 +54,6 @@ class Deferred {
   frame::TextureHandle addTransmittance(const Frame& frame, frame::TextureHandle radiance);
   /// Adds the light of the environment, V = 1.
   frame::TextureHandle addEnvironment(const Frame& frame, frame::TextureHandle radiance);
-  /// Returns the scene's map, RGB32F, in the graph of the last start(); empty if the scene has none.
-  frame::TextureHandle environmentMap(frame::FrameGraph& graph);
   /// Returns a new texture: `seen` and their emission where the frame shows specular surfaces, `radiance`
   /// elsewhere.
   frame::TextureHandle addSpecular(const Frame& frame, frame::TextureHandle radiance,
@@ -69,8 +64,8 @@ class Deferred {
                                       float exposureEv);
 
  private:
-  struct Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  const scene::Scene& scene_;
+  shading_maps::ShadingMapService& maps_;
 };
 
 }  // namespace limn::render

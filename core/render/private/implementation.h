@@ -60,7 +60,7 @@ struct Renderer::Implementation {
         pool(gpuDevice),
         gpuScene(gpuDevice, shown),
         services(makeServices(gpuDevice, gpuScene)),
-        deferred(gpuDevice, shown) {
+        deferred(shown, services.get<shading_maps::ShadingMapService>()) {
     shaders.mount("", embeddedSources(), shaderOverride);
   }
 

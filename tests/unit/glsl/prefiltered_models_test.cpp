@@ -182,9 +182,9 @@ double coatedLight(const MaterialModel& m, const Sky& sky, const vec3& n, const 
   const double whole = irradiance(sky, n, [](float) { return 1; }),
                grazing = irradiance(sky, n, schlick_weight);
   const auto mirrored = static_cast<float>(sky.radiance(2 * dot(n, v) * n - v));
-  const vec3 light = coated_environment(m, dot(n, v), vec3(static_cast<float>(whole)),
-                                        vec3(static_cast<float>(grazing)), vec3(mirrored));
-  return static_cast<double>(light.x);
+  const ReflectedParts light = coated_environment(m, dot(n, v), vec3(static_cast<float>(whole)),
+                                                  vec3(static_cast<float>(grazing)), vec3(mirrored));
+  return static_cast<double>(reflected_whole(light).x);
 }
 
 double exactCoatedLight(const MaterialModel& m, const Sky& sky, const vec3& n, const vec3& v) {
@@ -218,9 +218,10 @@ TEST(PrefilteredModels, CoatsShowMirrorAndBase) {
 /// What reflects of uniform light.
 double coatedFurnace(float kd, uint options, double cosine) {
   const MaterialModel m = coatedModel(kd, 1.5f, options);
-  const vec3 light = coated_environment(m, static_cast<float>(cosine), vec3(static_cast<float>(M_PI)),
-                                        vec3(static_cast<float>(M_PI) / 21), vec3(1));
-  return static_cast<double>(light.x);
+  const ReflectedParts light =
+      coated_environment(m, static_cast<float>(cosine), vec3(static_cast<float>(M_PI)),
+                         vec3(static_cast<float>(M_PI) / 21), vec3(1));
+  return static_cast<double>(reflected_whole(light).x);
 }
 
 TEST(PrefilteredModels, SumsOfCoatAndBaseGainEnergyAndPhysicalOnesKeepIt) {

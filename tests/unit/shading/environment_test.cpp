@@ -115,9 +115,9 @@ TEST(Environment, LevelsAndWidthsAreInverse) {
 
 vec3 reflected(const FilteredEnvironment& f, const glsl::SurfaceBrdf& s, vec3 n, vec3 v) {
   const glsl::LtcTerms terms = glsl::ltc_lookup(dot(n, v), s.alpha);
-  return glsl::environment_reflection(
+  return glsl::reflected_whole(glsl::environment_reflection(
       s, terms, f.irradiance.sample(n),
-      f.filtered(glsl::environment_lobe_direction(terms, n, v, s.alpha), s.alpha));
+      f.filtered(glsl::environment_lobe_direction(terms, n, v, s.alpha), s.alpha)));
 }
 
 dvec3 integrated(const glsl::SurfaceBrdf& s, vec3 n, vec3 v, const std::function<vec3(vec3)>& radiance) {

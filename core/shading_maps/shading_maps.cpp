@@ -1,0 +1,73 @@
+#include "core/shading_maps/shading_maps.h"
+
+#include "core/shading/environment.h"
+#include "core/shading/ltc_table.h"
+#include "glsl/materials/material_model.glsl"
+
+namespace limn::shading_maps {
+
+using frame::Access;
+using frame::TextureHandle;
+
+ShadingMapService::ShadingMapService(gpu::Device& device, const scene::Scene& scene)
+    : device_(device), scene_(scene) {}
+ShadingMapService::~ShadingMapService() = default;
+
+void ShadingMapService::begin() {
+  for (Entry* entry : {&radiance_, &ltc_, &irradiance_, &filtered_, &grazing_}) entry->handle = {};
+}
+
+const scene::Environment& ShadingMapService::environment() const {
+  static const scene::Environment black = [] {
+    scene::Environment e;
+    e.width = e.height = 2;
+    e.texels.assign(4, glm::vec3(0));
+    return e;
+  }();
+  return scene_.environment ? scene_.environment : black;
+}
+
+template <class Make>
+TextureHandle ShadingMapService::import(Entry& entry, const char* name, Make make) {
+  if (!entry.texture) entry.texture = make();
+  if (!entry.handle) entry.handle = context().graph.importTexture(name, entry.texture);
+  return entry.handle;
+}
+
+TextureHandle ShadingMapService::radiance() {
+  if (!scene_.environment) return {};
+  return import(radiance_, "environment map", [&] {
+    const scene::Environment& e = scene_.environment;
+    gpu::Texture map(device_, "environment map", {.format = GL_RGB32F, .width = e.width, .height = e.height});
+    map.setSampling(GL_LINEAR, GL_LINEAR, GL_REPEAT, GL_CLAMP_TO_EDGE);
+    map.upload(0, 0, GL_RGB, GL_FLOAT, e.texels.data());
+    return map;
+  });
+}
+
+TextureHandle ShadingMapService::ltcTable() {
+  return import(ltc_, "table of linearly transformed cosines",
+                [&] { return shading::makeLtcTexture(device_); });
+}
+
+void ShadingMapService::readReflected(frame::PassBuilder& pass, uint32_t modelKinds) {
+  if (!irradiance_.texture) {
+    const shading::FilteredEnvironment filtered = shading::filterEnvironment(environment());
+    irradiance_.texture = shading::makeIrradianceTexture(device_, filtered.irradiance);
+    filtered_.texture = shading::makeFilteredTexture(device_, filtered);
+  }
+  const auto made = [] { return gpu::Texture(); };
+  pass.read(import(irradiance_, "environment irradiance", made), Access::sampled, "environment_irradiance",
+            "diffuse light")
+      .read(import(filtered_, "filtered environment", made), Access::sampled, "environment_filtered",
+            "glossy light")
+      .read(ltcTable(), Access::sampled, "ltc_table", "glossy reflectance");
+  constexpr uint32_t entered = 1u << glsl::model_coated | 1u << glsl::model_entry;
+  if ((modelKinds & entered) == 0) return;
+  const TextureHandle grazing = import(grazing_, "grazing irradiance of the environment", [&] {
+    return shading::makeIrradianceTexture(device_, shading::filterGrazing(environment()));
+  });
+  pass.read(grazing, Access::sampled, "environment_grazing", "light that enters coats and bodies");
+}
+
+}  // namespace limn::shading_maps
