@@ -23,6 +23,11 @@ std::vector<SampleBatch> sampleBatches(int total, const SampleLayers& layers, in
   return batches;
 }
 
+void SampleBatch::defineOrder(std::map<std::string, std::string>& defines) const {
+  defines["SAMPLES_FIRST"] = isFirst() ? "1" : "0";
+  defines["SAMPLES_LAST"] = isLast() ? "1" : "0";
+}
+
 void setBatch(gpu::Program& program, const SampleBatch& batch) {
   program.set("first_sample", batch.first);
   program.set("batch_samples", batch.count);

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "core/base/export.h"
@@ -16,6 +18,12 @@ namespace limn::shadow {
 /// Holds the samples first .. first + count - 1 of `total`.
 struct SampleBatch {
   int first = 0, count = 0, total = 0;
+
+  bool isFirst() const { return first == 0; }
+  bool isLast() const { return first + count == total; }
+  /// Adds SAMPLES_FIRST and SAMPLES_LAST, 1 where no batch is before this one, or after, for programs that
+  /// hand sums on from batch to batch.
+  LIMN_API void defineOrder(std::map<std::string, std::string>& defines) const;
 };
 
 constexpr Parameter memoryParameter() {

@@ -7,6 +7,7 @@
 #define LIMN_SURFACE_RESPONSE_GLSL
 #include "glsl/surface/brdf.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
+#include "glsl/surface/reflected_parts.glsl"
 #if MATERIAL_MODELS
 #include "glsl/materials/response.glsl"
 #endif
@@ -67,6 +68,31 @@ vec3 surface_response(SurfaceMaterial m, vec3 n, vec3 v, vec3 l) {
   if (m.model.kind != model_none) return material_response(m.model, to_local(m.frame, v), to_local(m.frame, l));
 #endif
   return brdf(m.brdf, n, v, l) * dot(n, l);
+}
+
+// The same in parts. Of a model the diffuse part is what kd alone would reflect, at most all of it, and what enters translucent
+// surfaces has no lobe.
+ReflectedParts surface_response_parts(SurfaceMaterial m, vec3 n, vec3 v, vec3 l) {
+  ReflectedParts response = ReflectedParts(vec3(0.0), vec3(0.0));
+  float n_dot_l = dot(n, l);
+  if (!(n_dot_l > 0.0)) return response;
+#if MATERIAL_MODELS
+  if (m.model.kind != model_none) {
+    vec3 whole = surface_response(m, n, v, l);
+    bool enters = m.model.kind == model_entry || m.model.kind == model_coated;
+    response.diffuse = enters ? whole : min(m.model.kd * (inverse_pi * n_dot_l), whole);
+    response.lobe = whole - response.diffuse;
+    return response;
+  }
+#endif
+  if (brdf_is_lambertian(m.brdf)) {
+    response.diffuse = m.brdf.diffuse * (inverse_pi * n_dot_l);
+    return response;
+  }
+  BrdfParts parts = brdf_parts(m.brdf, n, v, l);
+  response.diffuse = m.brdf.diffuse * (parts.diffuse * n_dot_l);
+  response.lobe = parts.specular * n_dot_l;
+  return response;
 }
 
 #if MATERIAL_MODELS

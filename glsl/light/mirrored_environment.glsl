@@ -1,0 +1,18 @@
+// What coats mirror of the environment, unoccluded.
+#ifndef LIMN_MIRRORED_ENVIRONMENT_GLSL
+#define LIMN_MIRRORED_ENVIRONMENT_GLSL
+#include "glsl/light/sampled_pixel.glsl"
+#include "glsl/numeric/equirectangular.glsl"
+
+uniform sampler2D environment_map;  // equirectangular radiance
+
+// p: of a coated surface. Black where the mirror direction lies below the horizon.
+vec3 mirrored_environment(SampledPixel p) {
+  float n_dot_v = dot(p.surface.normal, p.to_viewer);
+  vec3 mirror = 2.0 * n_dot_v * p.surface.normal - p.to_viewer;
+  if (dot(p.surface.geometric_normal, mirror) <= 0.0) return vec3(0.0);
+  vec2 uv = equirectangular_uv(environment_lookup_direction(mirror, frame.environment_rotation));
+  return coated_mirror(p.material.model, n_dot_v) * (frame.environment_scale * textureLod(environment_map, uv, 0.0).rgb);
+}
+
+#endif  // LIMN_MIRRORED_ENVIRONMENT_GLSL
