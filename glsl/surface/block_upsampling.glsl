@@ -1,0 +1,44 @@
+// Values of the items of a grid at each pixel (core/gpu_scene/pixel_blocks.h): the pixel's own, or the mean over the blocks
+// around it. BLOCK_SIDE: of a block, pixels.
+#ifndef LIMN_BLOCK_UPSAMPLING_GLSL
+#define LIMN_BLOCK_UPSAMPLING_GLSL
+#include "glsl/surface/block_surfaces.glsl"
+
+uniform usampler2D lone_items;
+
+struct BlockLookup {
+  bool own;  // the item `first` is the pixel's own
+  ivec2 first;
+  float weights[16];  // of the 4 x 4 items from `first` on, in rows; their sum is 1
+};
+
+BlockLookup block_lookup(ivec2 pixel, float depth) {
+  BlockLookup b;
+  uint item = texelFetch(lone_items, pixel, 0).x;
+  b.own = item != 0u;
+  if (b.own) {
+    int width = block_grid_width(ivec2(frame.frame_size), BLOCK_SIDE);
+    b.first = ivec2(int(item - 1u) % width, block_grid().y + int(item - 1u) / width);
+    return b;
+  }
+  float sum = block_weights(pixel, depth, b.first, b.weights);
+  // Where the list of lone pixels is full, the block that the pixel lies in stands for it.
+  if (sum < block_least_weight) {
+    b.own = true;
+    b.first = pixel / BLOCK_SIDE;
+    return b;
+  }
+  for (int i = 0; i < 16; ++i) b.weights[i] /= sum;
+  return b;
+}
+
+// values: a texel for each item.
+vec3 block_value(sampler2D values, BlockLookup b) {
+  if (b.own) return texelFetch(values, b.first, 0).rgb;
+  vec3 value = vec3(0.0);
+  for (int i = 0; i < 16; ++i)
+    if (b.weights[i] > 0.0) value += b.weights[i] * texelFetch(values, b.first + ivec2(i % 4, i / 4), 0).rgb;
+  return value;
+}
+
+#endif  // LIMN_BLOCK_UPSAMPLING_GLSL
