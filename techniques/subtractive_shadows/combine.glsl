@@ -1,0 +1,61 @@
+// How the unshadowed light U of a surface and what samples tell of its shadows make the shadowed light. COMBINE: how; DEMODULATE 1:
+// light is kept without the surface's colours, so that blocks of pixels may share it across a texture.
+//
+// The values of the shadow buffer are 0 where nothing is in shadow: the share that is hidden (by ratio), the hidden light
+// (subtract); but the light that is seen (add). With SAMPLE_PARTS 1 there are values for the diffuse part and for the lobe; always
+// so in scenes with coats, whose lobe has the hidden share of what they mirror.
+#ifndef LIMN_COMBINE_GLSL
+#define LIMN_COMBINE_GLSL
+
+#define COMBINE_SUBTRACT 0
+#define COMBINE_RATIO 1
+#define COMBINE_RATIO_SPLIT 2
+#define COMBINE_ADD 3
+#define COMBINE_BY_RATIO (COMBINE == COMBINE_RATIO || COMBINE == COMBINE_RATIO_SPLIT)
+#if COMBINE == COMBINE_ADD
+#define SAMPLE_TOTALS 0
+#else
+#define SAMPLE_TOTALS 1
+#endif
+#if COMBINE == COMBINE_RATIO_SPLIT || (DEMODULATE && !COMBINE_BY_RATIO) || (MATERIAL_MODELS & 32) != 0
+#define SAMPLE_PARTS 1
+#else
+#define SAMPLE_PARTS 0
+#endif
+#include "glsl/light/sampled_pixel.glsl"
+
+// The colours by which a surface's parts reflect: albedo, and Schlick's Fresnel term of the view.
+ReflectedParts surface_colours(SampledPixel p) {
+#if DEMODULATE
+  SurfaceBrdf s = p.material.brdf;
+#if MATERIAL_MODELS
+  if (has_model(p.material)) s = nearest_brdf(p.material);
+#endif
+  return ReflectedParts(s.diffuse, mix(s.f0, vec3(s.f90), schlick_weight(dot(p.surface.normal, p.to_viewer))));
+#else
+  return ReflectedParts(vec3(1.0), vec3(1.0));
+#endif
+}
+
+// The shadowed light of the pixel; unshadowed: its U; values: of the shadow buffer.
+vec3 shadowed_light(SampledPixel p, ReflectedParts unshadowed, ReflectedParts values) {
+#if COMBINE_BY_RATIO
+  vec3 lobe = SAMPLE_PARTS == 1 ? values.lobe : values.diffuse;
+  return unshadowed.diffuse * (vec3(1.0) - values.diffuse) + unshadowed.lobe * (vec3(1.0) - lobe);
+#else
+  ReflectedParts colours = surface_colours(p);
+  vec3 mirrored = vec3(0.0);
+  if (is_coated(p)) {
+    mirrored = unshadowed.lobe * (vec3(1.0) - values.lobe);
+    unshadowed.lobe = values.lobe = vec3(0.0);
+  }
+  vec3 light = values.diffuse * colours.diffuse;
+  if (SAMPLE_PARTS == 1) light += values.lobe * colours.lobe;
+#if COMBINE == COMBINE_SUBTRACT
+  light = max(reflected_whole(unshadowed) - light, vec3(0.0));
+#endif
+  return light + mirrored;
+#endif
+}
+
+#endif  // LIMN_COMBINE_GLSL

@@ -1,0 +1,25 @@
+// Brings the shadow buffer to the pixels, and adds to the radiance what shadows leave of the unshadowed light.
+#include "techniques/subtractive_shadows/unshadowed.glsl"
+#include "glsl/surface/block_upsampling.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(rgba32f) uniform image2D radiance;
+uniform sampler2D values;  // of each item of the grid
+#if SAMPLE_PARTS
+uniform sampler2D lobe_values;
+#endif
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, imageSize(radiance)))) return;
+  float depth = pixel_depth(pixel);
+  if (!pixel_is_lit(pixel, depth)) return;
+  BlockLookup blocks = block_lookup(pixel, depth);
+  ReflectedParts shadows = ReflectedParts(block_value(values, blocks), vec3(0.0));
+#if SAMPLE_PARTS
+  shadows.lobe = block_value(lobe_values, blocks);
+#endif
+  SampledPixel p = sampled_pixel(pixel, depth);
+  vec3 light = shadowed_light(p, unshadowed_light(p), shadows);
+  imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(light, 0.0));
+}

@@ -1,0 +1,272 @@
+// The environment's light as all that surfaces would reflect of it without shadows, less what is hidden of a
+// few samples, which blocks of pixels may share.
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/gpu_scene/gpu_medium.h"
+#include "core/gpu_scene/gpu_scene.h"
+#include "core/gpu_scene/pixel_blocks.h"
+#include "core/gpu_scene/surface_input.h"
+#include "core/scene/environment_light.h"
+#include "core/shading_maps/shading_maps.h"
+#include "core/shadow/environment_samples.h"
+#include "core/technique/technique.h"
+#include "glsl/materials/material_model.glsl"
+
+namespace {
+
+using namespace limn;
+using frame::Access;
+using frame::TextureHandle;
+
+enum Combine : int { subtract, ratio, ratioSplit, add };
+constexpr const char* kCombines[] = {"subtract", "ratio", "ratio_split", "add"};
+enum Unshadowed : int { prefiltered, lights };
+constexpr const char* kUnshadowed[] = {"prefiltered", "lights"};
+enum Sampling : int { importance, regions };
+constexpr const char* kSamplings[] = {"importance", "regions"};
+constexpr int kMostLights = 4096;
+
+constexpr Parameter kParameters[] = {
+    integer("lights", 25, {1, kMostLights}, "lights",
+            "Samples of the environment whose shadows are found, and shadow maps rendered for them")
+        .quality()
+        .logScale(),
+    integer("block", 4, {1, 32}, "pixels", "Side of the blocks of pixels that share shadows"),
+    choice(
+        "combine", ratioSplit, kCombines,
+        "How light and shadows are combined: the hidden light is subtracted, as published; the light is "
+        "reduced by the share of the samples' light that is hidden, of all light or of the diffuse part and "
+        "of the lobe apart; or the visible samples are added up, without the unshadowed light"),
+    boolean("demodulate", true,
+            "Without the surface's colours in what is subtracted or added, which blocks of pixels share"),
+    choice("unshadowed", prefiltered, kUnshadowed,
+           "Where the light without shadows comes from: filtered maps, or more samples than have shadows"),
+    integer("unshadowed_factor", 16, {1, 64}, "times",
+            "Samples of the light without shadows, over those that have shadows"),
+    choice("sampling", importance, kSamplings,
+           "What the samples are: points drawn by the environment's brightness, or the regions it is "
+           "decomposed into, each with all of its light"),
+    real("region_threshold", 0.015, {1e-4, 0.5}, "",
+         "Least share of the environment's light that a region has; it says how many there are")
+        .logScale(),
+    real("position_width", 2.2, {0.1, 100}, "blocks",
+         "Standard deviation of the distance within which a pixel takes shadows from a block")
+        .logScale(),
+    real("normal_width", 0.3, {0.01, 10}, "",
+         "Standard deviation of the difference of unit normals within which it does")
+        .logScale(),
+    shadow::shadowMapSizeParameter(512),
+    shadow::shadowMapFitParameter(),
+    shadow::biasParameter(),
+    shadow::memoryParameter(),
+};
+constexpr StressCase kStress[] = {
+    {.name = "one light", .settings = "lights=1", .factor = 8},
+    {.name = "4096 lights", .settings = "lights=4096,shadow_map_size=64", .factor = 2},
+    {.name = "blocks of 32 pixels", .settings = "block=32", .factor = 4},
+    {.name = "every pixel", .settings = "block=1"},
+    {.name = "subtracted", .settings = "combine=subtract", .factor = 4},
+    {.name = "added", .settings = "combine=add", .factor = 8},
+    {.name = "maps of 16 texels", .settings = "shadow_map_size=16", .factor = 8},
+    {.name = "batches of one map", .settings = "shadow_map_size=2048,memory=32"},
+};
+
+class SubtractiveShadows : public Technique {
+  shadow::EnvironmentSamples samples_, unshadowed_;
+
+  TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                          const TermRequest& request) override {
+    const scene::EnvironmentLight environment(inputs.scene.environment);
+    if (!environment.present()) {
+      graph.leaveOut("environment", info.name, "the environment is black");
+      return request.target;
+    }
+    takeSamples(environment, inputs);
+    const ParameterValues& p = inputs.parameters;
+    if (p.choice("combine") == add && p.integer("block") == 1)
+      return shadow::addSampledEnvironment(graph, inputs, info.name, samples_, request.target);
+    return Passes(graph, inputs, samples_, unshadowed_).add(request.target);
+  }
+
+  void takeSamples(const scene::EnvironmentLight& environment, const TechniqueInputs& inputs) {
+    if (samples_.count() > 0) return;
+    const ParameterValues& p = inputs.parameters;
+    gpu::Device& device = inputs.gpuScene.device();
+    const int count = p.integer("lights");
+    samples_ = p.choice("sampling") == regions
+                   ? shadow::EnvironmentSamples(device, inputs.scene.environment, p.real("region_threshold"))
+                   : shadow::EnvironmentSamples(device, environment, count);
+    if (p.choice("unshadowed") == lights)
+      unshadowed_ = shadow::EnvironmentSamples(device, environment, count * p.integer("unshadowed_factor"));
+  }
+
+  /// Declares the passes of one request.
+  class Passes {
+   public:
+    Passes(frame::FrameGraph& graph, const TechniqueInputs& inputs, const shadow::EnvironmentSamples& samples,
+           const shadow::EnvironmentSamples& unshadowed)
+        : graph_(graph),
+          inputs_(inputs),
+          samples_(samples),
+          unshadowed_(unshadowed),
+          combine_(static_cast<Combine>(inputs.parameters.choice("combine"))),
+          coats_((inputs.handles.modelKinds & 1u << glsl::model_coated) != 0),
+          parts_(coats_ || combine_ == ratioSplit || (demodulated() && !byRatio())),
+          blocks_(graph, inputs.handles, inputs.gbuffer, inputs.size,
+                  {.side = inputs.parameters.integer("block"),
+                   .positionWidth = inputs.parameters.real("position_width"),
+                   .normalWidth = inputs.parameters.real("normal_width")},
+                  info.name) {}
+
+    TextureHandle add(TextureHandle target) {
+      const bool everyPixel = inputs_.parameters.integer("block") == 1;
+      const frame::BufferHandle buffer = graph_.importBuffer("samples of the environment", samples_.buffer());
+      TechniqueInputs items = inputs_;
+      items.size = blocks_.grid();
+      for (const shadow::SampleBatch& batch : shadow::sampleBatches(samples_, inputs_.parameters)) {
+        shadow::VisibilityPass pass =
+            shadow::environmentSamplePass(inputs_, info.name, samples_, buffer, batch,
+                                          "techniques/subtractive_shadows/shadow_buffer.comp.glsl");
+        pass.name = "shadow buffer";
+        batch.defineOrder(pass.program.defines);
+        define(pass.program.defines);
+        pass.declare = [&, declare = std::move(pass.declare)](frame::PassBuilder& builder) {
+          declare(builder);
+          blocks_.readItems(builder);
+          handOn(builder, batch);
+          if (!batch.isLast()) return;
+          if (everyPixel)
+            readUnshadowed(builder);
+          else if (parts_)
+            lobeValues_ = builder.write(createItems("shadow buffer of lobes", valueFormat()),
+                                        Access::imageStore, "lobe_values", "shadows of lobes");
+        };
+        if (!batch.isLast()) {
+          addSums(items, std::move(pass), batch);
+        } else if (everyPixel) {
+          pass.image = "radiance";
+          pass.accumulate = true;
+          target = shadow::addVisibilityPass(graph_, items, target, std::move(pass));
+        } else {
+          pass.image = "values";
+          values_ = shadow::addVisibilityPass(graph_, items, createItems("shadow buffer", valueFormat()),
+                                              std::move(pass));
+        }
+      }
+      return everyPixel ? target : addResampling(target);
+    }
+
+   private:
+    bool demodulated() const { return inputs_.parameters.boolean("demodulate"); }
+    bool byRatio() const { return combine_ == ratio || combine_ == ratioSplit; }
+    /// Shares lie in [0, 1]; light knows no bound.
+    GLenum valueFormat() const { return byRatio() ? GL_RGBA16 : GL_RGBA32F; }
+
+    TextureHandle createItems(const char* name, GLenum format) {
+      return graph_.createTexture(name,
+                                  {.format = format, .width = blocks_.grid().x, .height = blocks_.grid().y});
+    }
+
+    void define(std::map<std::string, std::string>& defines) const {
+      blocks_.define(defines);
+      defines["COMBINE"] = std::to_string(combine_);
+      defines["DEMODULATE"] = demodulated() ? "1" : "0";
+      defines["UNSHADOWED"] = std::to_string(inputs_.parameters.choice("unshadowed"));
+      defines["VALUE_FORMAT"] = byRatio() ? "rgba16" : "rgba32f";
+    }
+
+    /// Declares the sums that batches hand on, but for those that the pass's target holds.
+    void handOn(frame::PassBuilder& builder, const shadow::SampleBatch& batch) {
+      if (batch.isFirst() && batch.isLast()) return;
+      constexpr const char* why = "sums over earlier samples";
+      const auto sums = [&](TextureHandle& texture, const char* name) {
+        if (batch.isFirst()) texture = createItems(name, GL_RGBA32F);
+        if (batch.isLast())
+          builder.read(texture, Access::imageLoad, name, why);
+        else
+          texture = builder.write(texture, batch.isFirst() ? Access::imageStore : Access::imageLoadStore,
+                                  name, why);
+      };
+      if (batch.isLast()) builder.read(seenSums_, Access::imageLoad, "seen_sums", why);
+      if (combine_ != Combine::add) sums(allSums_, "all_sums");
+      if (!parts_) return;
+      sums(seenLobeSums_, "seen_lobe_sums");
+      if (combine_ != Combine::add) sums(allLobeSums_, "all_lobe_sums");
+    }
+
+    void addSums(const TechniqueInputs& items, shadow::VisibilityPass pass,
+                 const shadow::SampleBatch& batch) {
+      pass.image = "seen_sums";
+      pass.accumulate = !batch.isFirst();
+      if (batch.isFirst()) seenSums_ = createItems("seen_sums", GL_RGBA32F);
+      seenSums_ = shadow::addVisibilityPass(graph_, items, seenSums_, std::move(pass));
+    }
+
+    /// Declares what unshadowed.glsl looks up.
+    void readUnshadowed(frame::PassBuilder& builder) {
+      auto& maps = inputs_.service<shading_maps::ShadingMapService>();
+      const bool byLights = inputs_.parameters.choice("unshadowed") == lights;
+      if (coats_ && (byLights || combine_ == Combine::add))
+        builder.read(maps.radiance(), Access::sampled, "environment_map", "what coats mirror");
+      if (combine_ == Combine::add) return;
+      if (byLights)
+        builder.read(graph_.importBuffer("samples of the unshadowed light", unshadowed_.buffer()),
+                     Access::storageLoad, "UnshadowedSamples", "light without shadows");
+      else
+        maps.readReflected(builder, inputs_.handles.modelKinds);
+    }
+
+    TextureHandle addResampling(TextureHandle target) {
+      frame::PassBuilder builder = graph_.addPass("resample and subtract", info.name);
+      builder.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, rotation, scale");
+      const scene::SurfaceInput surfaces(inputs_.handles, inputs_.gbuffer);
+      surfaces.declare(builder);
+      const scene::MediumInput medium(inputs_.handles);
+      medium.declare(builder);
+      blocks_.readUpsampling(builder);
+      builder.read(values_, Access::sampled, "values", "shadows of blocks");
+      if (parts_) builder.read(lobeValues_, Access::sampled, "lobe_values", "shadows of lobes");
+      readUnshadowed(builder);
+      const TextureHandle radiance = builder.write(target, Access::imageLoadStore, "radiance",
+                                                   "light of the environment, shadows included");
+      gpu::ProgramDesc desc{.files = {"techniques/subtractive_shadows/resample.comp.glsl"},
+                            .defines = {{"MEDIUM", inputs_.scene.medium.present() ? "1" : "0"}}};
+      define(desc.defines);
+      surfaces.define(desc.defines);
+      medium.define(desc.defines);
+      const auto program = builder.program(std::move(desc));
+      builder.execute([program, blocks = blocks_, size = inputs_.size](frame::PassContext& context) {
+        blocks.bind(context.use(program));
+        context.dispatch(size.x, size.y, 1, 8, 8);
+      });
+      return radiance;
+    }
+
+    frame::FrameGraph& graph_;
+    const TechniqueInputs& inputs_;
+    const shadow::EnvironmentSamples &samples_, &unshadowed_;
+    Combine combine_;
+    bool coats_, parts_;
+    scene::PixelBlocks blocks_;
+    TextureHandle seenSums_, allSums_, seenLobeSums_, allLobeSums_;
+    TextureHandle values_, lobeValues_;
+  };
+
+ public:
+  static constexpr TechniqueInfo info{
+      .name = "subtractive_shadows",
+      .title = "Subtractive shadows",
+      .source = "DeCoro and Rusinkiewicz 2008; Heitz, Hill, McGuire 2018 (ratio)",
+      .terms = termSet(Term::environment),
+      .parameters = kParameters,
+      .stress = kStress};
+};
+
+}  // namespace
+
+LIMN_TECHNIQUE(SubtractiveShadows::info, SubtractiveShadows)
