@@ -28,6 +28,7 @@ class LIMN_API PixelBlocks {
   PixelBlocks(frame::FrameGraph& graph, const SceneHandles& handles, const GBuffer& gbuffer, glm::ivec2 size,
               const PixelBlockDesc& desc, std::string_view technique);
 
+  int side() const { return desc_.side; }
   /// Returns the size of the grid, and of textures with a texel for each item. There is room for a lone pixel
   /// in four; those beyond are upsampled from what there is.
   glm::ivec2 grid() const { return grid_; }

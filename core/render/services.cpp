@@ -6,6 +6,7 @@
 #include "core/relief_maps/relief_maps.h"
 #include "core/shading_maps/shading_maps.h"
 #include "core/shadow/shadow_map.h"
+#include "core/technique/frame_budget.h"
 
 namespace limn::render {
 
@@ -17,6 +18,7 @@ FrameServices makeServices(gpu::Device& device, scene::GpuScene& scene) {
   services.add<caustics::CausticRayService>(device, scene);
   services.add<relief_maps::ReliefMapService>(device, scene.scene());
   services.add<shading_maps::ShadingMapService>(device, scene.scene());
+  services.add<FrameBudgetService>();
   return services;
 }
 

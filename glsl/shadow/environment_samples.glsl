@@ -2,12 +2,26 @@
 // reflects them by the whole BRDF.
 //
 // Define SAMPLE_TOTALS 1 for what all samples would bring, were they seen; SAMPLE_PARTS and MEDIUM: as in sampled_pixel.glsl.
+// SAMPLE_FADE 1: only the first active_samples count, the last of them in part.
 #ifndef LIMN_ENVIRONMENT_SAMPLES_GLSL
 #define LIMN_ENVIRONMENT_SAMPLES_GLSL
 #include "glsl/light/sampled_pixel.glsl"
 #include "glsl/shadow/shadow_samples.glsl"
 
 layout(std430) readonly buffer EnvironmentSamples { EnvironmentSample environment_samples[]; };
+
+#if SAMPLE_FADE
+uniform float active_samples;
+#endif
+
+// Samples that count.
+float counted_samples() {
+#if SAMPLE_FADE
+  return min(active_samples, float(total_samples));
+#else
+  return float(total_samples);
+#endif
+}
 
 struct SampleSums {
   ReflectedParts seen;  // of the samples that are seen
@@ -29,13 +43,21 @@ void add_samples(SampledPixel p, inout SampleSums sums) {
 #if (MATERIAL_MODELS & 32) != 0
   vec3 mirror = 2.0 * dot(p.surface.normal, p.to_viewer) * p.surface.normal - p.to_viewer;
   // How much of the mirrored light's visibility a sample stands for: more samples, narrower. Its ends keep sums above 0 in floats.
-  float sharpness = clamp(0.25 * float(total_samples), 1.0, 40.0);
+  float sharpness = clamp(0.25 * counted_samples(), 1.0, 40.0);
 #endif
   for (int i = 0; i < batch_samples; ++i) {
     EnvironmentSample light = environment_samples[first_sample + i];
     if (!above_horizon(p, light.direction)) continue;
+#if SAMPLE_FADE
+    float counted = clamp(active_samples - float(first_sample + i), 0.0, 1.0);
+    if (counted == 0.0) break;
+    light.irradiance *= counted;
+#endif
 #if (MATERIAL_MODELS & 32) != 0
     float weight = exp(sharpness * (dot(mirror, light.direction) - 1.0));
+#if SAMPLE_FADE
+    weight *= counted;
+#endif
     sums.mirror_all += weight;
 #endif
 #if SAMPLE_TOTALS

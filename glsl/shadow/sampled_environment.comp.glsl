@@ -3,6 +3,7 @@
 // in scenes with coats SAMPLES_FIRST and SAMPLES_LAST say that no batch is before this one, or after.
 #define SAMPLE_TOTALS 0
 #define SAMPLE_PARTS 0
+#define SAMPLE_FADE 0
 #include "glsl/shadow/environment_samples.glsl"
 
 layout(rgba32f) uniform image2D radiance;
@@ -30,7 +31,7 @@ void main() {
   sums.mirror_seen = mirror.y;
 #endif
   add_samples(p, sums);
-  vec3 light = sums.seen.diffuse / float(total_samples);
+  vec3 light = sums.seen.diffuse / counted_samples();
 #if (MATERIAL_MODELS & 32) != 0
 #if SAMPLES_LAST
   if (is_coated(p)) light += mirrored_environment(p) * mirror_share(sums, 0.0);

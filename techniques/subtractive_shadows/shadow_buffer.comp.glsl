@@ -72,7 +72,7 @@ vec3 without_colour(vec3 light, vec3 colour) {
 
 // From the sums over all samples.
 ReflectedParts shadow_values(SampledPixel p, SampleSums sums) {
-  float share = 1.0 / float(total_samples);
+  float share = 1.0 / counted_samples();
   ReflectedParts seen = scaled_parts(sums.seen, vec3(share)), all = scaled_parts(sums.all, vec3(share)), values;
 #if COMBINE == COMBINE_RATIO
   values.diffuse = values.lobe = hidden_share(reflected_whole(seen), reflected_whole(all), vec3(0.0));

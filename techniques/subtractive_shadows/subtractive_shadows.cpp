@@ -1,6 +1,7 @@
 // The environment's light as all that surfaces would reflect of it without shadows, less what is hidden of a
 // few samples, which blocks of pixels may share.
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,14 +15,17 @@
 #include "core/scene/environment_light.h"
 #include "core/shading_maps/shading_maps.h"
 #include "core/shadow/environment_samples.h"
+#include "core/technique/frame_budget.h"
 #include "core/technique/technique.h"
 #include "glsl/materials/material_model.glsl"
+#include "techniques/subtractive_shadows/levels.h"
 
 namespace {
 
 using namespace limn;
 using frame::Access;
 using frame::TextureHandle;
+using subtractive_shadows::Level;
 
 enum Combine : int { subtract, ratio, ratioSplit, add };
 constexpr const char* kCombines[] = {"subtract", "ratio", "ratio_split", "add"};
@@ -60,6 +64,10 @@ constexpr Parameter kParameters[] = {
     real("normal_width", 0.3, {0.01, 10}, "",
          "Standard deviation of the difference of unit normals within which it does")
         .logScale(),
+    real("frame_time", 0, {0, 1e4}, "ms",
+         "Time that a frame may take: lights become fewer, and blocks larger where that is not enough, until "
+         "it "
+         "does; 0: always all lights, as of regions"),
     shadow::shadowMapSizeParameter(512),
     shadow::shadowMapFitParameter(),
     shadow::biasParameter(),
@@ -78,6 +86,9 @@ constexpr StressCase kStress[] = {
 
 class SubtractiveShadows : public Technique {
   shadow::EnvironmentSamples samples_, unshadowed_;
+  std::vector<Level> levels_;
+  const FrameBudget* budget_ = nullptr;  ///< null: all lights, whatever it takes
+  int built_ = 0;                        ///< index of the level that the graph is built for
 
   TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                           const TermRequest& request) override {
@@ -86,55 +97,94 @@ class SubtractiveShadows : public Technique {
       graph.leaveOut("environment", info.name, "the environment is black");
       return request.target;
     }
-    takeSamples(environment, inputs);
     const ParameterValues& p = inputs.parameters;
-    if (p.choice("combine") == add && p.integer("block") == 1)
+    chooseLevel(inputs);
+    const Level& level = levels_[static_cast<size_t>(built_)];
+    takeSamples(environment, inputs, level.lights);
+    if (p.choice("combine") == add && level.block == 1 && !budget_)
       return shadow::addSampledEnvironment(graph, inputs, info.name, samples_, request.target);
-    return Passes(graph, inputs, samples_, unshadowed_).add(request.target);
+    return Passes(graph, inputs, *this, level.block).add(request.target);
   }
 
-  void takeSamples(const scene::EnvironmentLight& environment, const TechniqueInputs& inputs) {
+  void chooseLevel(const TechniqueInputs& inputs) {
+    const ParameterValues& p = inputs.parameters;
+    const Level best{p.integer("lights"), p.integer("block")};
+    const double time = p.choice("sampling") == importance ? p.real("frame_time") : 0;
+    levels_ = time > 0 ? subtractive_shadows::levelsBelow(best) : std::vector{best};
+    built_ = static_cast<int>(levels_.size()) - 1;
+    if (!(time > 0)) return;
+    std::vector<double> work;
+    for (const Level& level : levels_) work.push_back(level.work());
+    budget_ = &inputs.service<FrameBudgetService>().request(info.name, time, work);
+    built_ = budget_->dearest();
+  }
+
+  /// Maps are kept while lights fade out, and there before lights fade in.
+  bool update(const scene::Pose&) override {
+    if (!budget_) return false;
+    const bool settled = budget_->position() == budget_->target();
+    return budget_->dearest() > built_ || (settled && budget_->dearest() < built_);
+  }
+
+  /// Returns how many of the samples count in the next frame, the last of them in part.
+  float activeSamples() const {
+    const double position = std::min(budget_->position(), static_cast<double>(built_));
+    const auto lower = static_cast<size_t>(position);
+    const size_t upper = std::min(lower + 1, levels_.size() - 1);
+    return static_cast<float>(
+        std::lerp(levels_[lower].lights, levels_[upper].lights, position - static_cast<double>(lower)));
+  }
+
+  void takeSamples(const scene::EnvironmentLight& environment, const TechniqueInputs& inputs, int count) {
     if (samples_.count() > 0) return;
     const ParameterValues& p = inputs.parameters;
     gpu::Device& device = inputs.gpuScene.device();
-    const int count = p.integer("lights");
     samples_ = p.choice("sampling") == regions
                    ? shadow::EnvironmentSamples(device, inputs.scene.environment, p.real("region_threshold"))
                    : shadow::EnvironmentSamples(device, environment, count);
     if (p.choice("unshadowed") == lights)
-      unshadowed_ = shadow::EnvironmentSamples(device, environment, count * p.integer("unshadowed_factor"));
+      unshadowed_ = shadow::EnvironmentSamples(device, environment,
+                                               p.integer("lights") * p.integer("unshadowed_factor"));
   }
 
   /// Declares the passes of one request.
   class Passes {
    public:
-    Passes(frame::FrameGraph& graph, const TechniqueInputs& inputs, const shadow::EnvironmentSamples& samples,
-           const shadow::EnvironmentSamples& unshadowed)
+    Passes(frame::FrameGraph& graph, const TechniqueInputs& inputs, const SubtractiveShadows& technique,
+           int block)
         : graph_(graph),
           inputs_(inputs),
-          samples_(samples),
-          unshadowed_(unshadowed),
+          technique_(technique),
           combine_(static_cast<Combine>(inputs.parameters.choice("combine"))),
           coats_((inputs.handles.modelKinds & 1u << glsl::model_coated) != 0),
           parts_(coats_ || combine_ == ratioSplit || (demodulated() && !byRatio())),
           blocks_(graph, inputs.handles, inputs.gbuffer, inputs.size,
-                  {.side = inputs.parameters.integer("block"),
+                  {.side = block,
                    .positionWidth = inputs.parameters.real("position_width"),
                    .normalWidth = inputs.parameters.real("normal_width")},
                   info.name) {}
 
     TextureHandle add(TextureHandle target) {
-      const bool everyPixel = inputs_.parameters.integer("block") == 1;
-      const frame::BufferHandle buffer = graph_.importBuffer("samples of the environment", samples_.buffer());
+      const bool everyPixel = blocks_.side() == 1;
+      const frame::BufferHandle buffer =
+          graph_.importBuffer("samples of the environment", technique_.samples_.buffer());
       TechniqueInputs items = inputs_;
       items.size = blocks_.grid();
-      for (const shadow::SampleBatch& batch : shadow::sampleBatches(samples_, inputs_.parameters)) {
+      for (const shadow::SampleBatch& batch :
+           shadow::sampleBatches(technique_.samples_, inputs_.parameters)) {
         shadow::VisibilityPass pass =
-            shadow::environmentSamplePass(inputs_, info.name, samples_, buffer, batch,
+            shadow::environmentSamplePass(inputs_, info.name, technique_.samples_, buffer, batch,
                                           "techniques/subtractive_shadows/shadow_buffer.comp.glsl");
         pass.name = "shadow buffer";
         batch.defineOrder(pass.program.defines);
         define(pass.program.defines);
+        pass.program.defines["SAMPLE_FADE"] = technique_.budget_ ? "1" : "0";
+        if (technique_.budget_)
+          pass.bind = [&technique = technique_, bind = std::move(pass.bind)](frame::PassContext& context,
+                                                                             gpu::Program& program) {
+            bind(context, program);
+            program.set("active_samples", technique.activeSamples());
+          };
         pass.declare = [&, declare = std::move(pass.declare)](frame::PassBuilder& builder) {
           declare(builder);
           blocks_.readItems(builder);
@@ -215,7 +265,7 @@ class SubtractiveShadows : public Technique {
         builder.read(maps.radiance(), Access::sampled, "environment_map", "what coats mirror");
       if (combine_ == Combine::add) return;
       if (byLights)
-        builder.read(graph_.importBuffer("samples of the unshadowed light", unshadowed_.buffer()),
+        builder.read(graph_.importBuffer("samples of the unshadowed light", technique_.unshadowed_.buffer()),
                      Access::storageLoad, "UnshadowedSamples", "light without shadows");
       else
         maps.readReflected(builder, inputs_.handles.modelKinds);
@@ -249,7 +299,7 @@ class SubtractiveShadows : public Technique {
 
     frame::FrameGraph& graph_;
     const TechniqueInputs& inputs_;
-    const shadow::EnvironmentSamples &samples_, &unshadowed_;
+    const SubtractiveShadows& technique_;
     Combine combine_;
     bool coats_, parts_;
     scene::PixelBlocks blocks_;

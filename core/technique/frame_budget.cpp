@@ -1,0 +1,86 @@
+#include "core/technique/frame_budget.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace limn {
+
+namespace {
+
+/// A level is left for a cheaper one above this share of the budget, and for a dearer one that is expected
+/// below the other.
+constexpr double kTooDear = 1.1, kCheapEnough = 0.9;
+
+}  // namespace
+
+FrameBudget::FrameBudget(double milliseconds, std::vector<double> work)
+    : budget_(milliseconds),
+      work_(std::move(work)),
+      target_(static_cast<int>(work_.size()) - 1),
+      position_(target_),
+      tooDear_(static_cast<int>(work_.size())) {}
+
+int FrameBudget::dearest() const {
+  return std::max(target_, static_cast<int>(std::ceil(position_)));
+}
+
+void FrameBudget::addFrame(double milliseconds) {
+  if (caution_ > 0 && --caution_ == 0) tooDear_ = static_cast<int>(work_.size());
+  if (position_ != target_) {
+    position_ += step_;
+    const bool arrived = step_ > 0 ? position_ >= target_ : position_ <= target_;
+    if (arrived) position_ = target_;
+    return;
+  }
+  times_[static_cast<size_t>(timeCount_++)] = milliseconds;
+  if (timeCount_ < kMedianOf) return;
+  timeCount_ = 0;
+  std::ranges::nth_element(times_, times_.begin() + kMedianOf / 2);
+  choose(times_[kMedianOf / 2]);
+}
+
+void FrameBudget::choose(double median) {
+  const auto work = [&](int level) { return work_[static_cast<size_t>(level)]; };
+  if (median > kTooDear * budget_ && target_ > 0) {
+    tooDear_ = target_;
+    caution_ = kFramesOfCaution;
+    int level = target_ - 1;
+    while (level > 0 && work(level) > work(target_) * budget_ / median) --level;
+    goTo(level);
+  } else if (target_ + 1 < std::min(tooDear_, static_cast<int>(work_.size())) &&
+             median * work(target_ + 1) / work(target_) < kCheapEnough * budget_) {
+    goTo(target_ + 1);
+  }
+}
+
+void FrameBudget::goTo(int level) {
+  target_ = level;
+  step_ = (level - position_) / kFramesOfWay;
+}
+
+const FrameBudget& FrameBudgetService::request(std::string_view technique, double milliseconds,
+                                               const std::vector<double>& work) {
+  auto found = entries_.find(technique);
+  if (found != entries_.end() && found->second.milliseconds == milliseconds && found->second.work == work)
+    return found->second.budget;
+  if (found != entries_.end()) entries_.erase(found);
+  return entries_.emplace(std::string(technique), Entry{milliseconds, work, FrameBudget(milliseconds, work)})
+      .first->second.budget;
+}
+
+/// The first frame of a graph compiles and allocates.
+void FrameBudgetService::begin() {
+  last_.reset();
+}
+
+bool FrameBudgetService::update(frame::FrameGraph&, const scene::Pose&) {
+  const auto now = std::chrono::steady_clock::now();
+  if (last_)
+    for (auto& [technique, entry] : entries_)
+      entry.budget.addFrame(std::chrono::duration<double, std::milli>(now - *last_).count());
+  last_ = now;
+  return false;
+}
+
+}  // namespace limn

@@ -1,0 +1,76 @@
+// Declares budgets of frame time: a technique that can do with less work names its levels, and is told which
+// one keeps the time that a frame may take. Levels change by going over into each other, so that nothing
+// jumps.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/export.h"
+#include "core/technique/frame_service.h"
+
+namespace limn {
+
+/// Chooses a level by the times of frames. It starts at the dearest one.
+class LIMN_API FrameBudget {
+ public:
+  /// Takes the time that a frame may take, ms, and the work of each level, from the cheapest to the dearest,
+  /// in any unit: at least one, each positive and none below the one before.
+  FrameBudget(double milliseconds, std::vector<double> work);
+
+  /// Notes the time between the last two frames, ms, and moves position() on.
+  void addFrame(double milliseconds);
+  /// Returns the level that is gone to.
+  int target() const { return target_; }
+  /// Returns the level of the next frame, a whole number or on the way between two.
+  double position() const { return position_; }
+  /// Returns the dearest level that the next frames need: those that position() lies between, and target().
+  int dearest() const;
+
+ private:
+  void choose(double median);
+  void goTo(int level);
+
+  static constexpr int kMedianOf = 5;           ///< frames at a level before it is judged
+  static constexpr int kFramesOfWay = 16;       ///< from one level to another
+  static constexpr int kFramesOfCaution = 256;  ///< before a level that was too dear is tried again
+
+  double budget_;
+  std::vector<double> work_;
+  int target_;
+  double position_, step_ = 0;
+  std::array<double, kMedianOf> times_{};
+  int timeCount_ = 0;
+  int tooDear_;  ///< the cheapest level that is not tried for now
+  int caution_ = 0;
+};
+
+/// Holds the budgets of a renderer's techniques, from one graph to the next, and measures frames by the clock
+/// between their starts: on the frame path nothing waits for the GPU.
+class LIMN_API FrameBudgetService : public FrameService {
+ public:
+  static constexpr const char* serviceName = "frame budgets";
+
+  /// Returns the budget of a technique; another time or other levels start another one.
+  const FrameBudget& request(std::string_view technique, double milliseconds,
+                             const std::vector<double>& work);
+
+ private:
+  struct Entry {
+    double milliseconds;
+    std::vector<double> work;
+    FrameBudget budget;
+  };
+  void begin() override;
+  bool update(frame::FrameGraph& graph, const scene::Pose& pose) override;
+
+  std::map<std::string, Entry, std::less<>> entries_;
+  std::optional<std::chrono::steady_clock::time_point> last_;  ///< start of the last frame; none: not counted
+};
+
+}  // namespace limn

@@ -1,0 +1,125 @@
+// Fixture for tests of the environment's light: small skies, a floor below them, and the reference.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/reference/reference.h"
+#include "core/shading/environment_decomposition.h"
+#include "glsl/numeric/equirectangular.glsl"
+#include "tests/gpu/render_test.h"
+
+namespace limn {
+
+class EnvironmentTest : public RenderTest {
+ protected:
+  /// Techniques that sample the environment and leave the scene's own lights to others.
+  static std::vector<std::string> environmentTechniques() {
+    std::vector<std::string> names;
+    for (const std::string& name : techniquesAnswering(Term::environment))
+      if (registry().find(name).info->terms == termSet(Term::environment)) names.push_back(name);
+    return names;
+  }
+
+  /// One of them with so many samples, at every pixel, that converges as they grow.
+  static render::TechniqueUse sampled(const std::string& name, int samples) {
+    const std::string count = std::to_string(samples);
+    if (name == "subtractive_shadows")
+      return technique(name, {{"lights", count}, {"block", "1"}, {"unshadowed", "lights"}});
+    return technique(name, {{"samples", count}});
+  }
+
+  /// Those of them that shadow it: they render shadow maps.
+  static std::vector<std::string> shadowingTechniques() {
+    std::vector<std::string> names = environmentTechniques();
+    std::erase_if(names, [](const std::string& name) {
+      return std::ranges::none_of(registry().find(name).info->parameters, [](const Parameter& p) {
+        return std::string_view(p.name) == "shadow_map_size";
+      });
+    });
+    return names;
+  }
+
+  /// A bluish sky with a soft sun, a window's worth of light from one side, and a dark ground.
+  static scene::Environment sky() {
+    scene::Environment e;
+    e.width = 128;
+    e.height = 64;
+    const glm::vec3 sun = glm::normalize(glm::vec3(0.5f, 0.8f, 0.4f));
+    for (int y = 0; y < e.height; ++y) {
+      for (int x = 0; x < e.width; ++x) {
+        const glm::vec3 d = glsl::equirectangular_direction(
+            glm::vec2((static_cast<float>(x) + 0.5f) / 128, (static_cast<float>(y) + 0.5f) / 64));
+        glm::vec3 radiance = d.y > 0 ? glm::vec3(0.3f, 0.4f, 0.6f) : glm::vec3(0.1f);
+        if (glm::dot(d, sun) > 0.98f) radiance += glm::vec3(20, 18, 15);
+        if (d.x < -0.8f && std::abs(d.y) < 0.3f) radiance += glm::vec3(3);
+        e.texels.push_back(radiance);
+      }
+    }
+    return e;
+  }
+
+  static scene::Environment uniform(float radiance) {
+    scene::Environment e;
+    e.width = 32;
+    e.height = 16;
+    e.texels.assign(32 * 16, glm::vec3(radiance));
+    return e;
+  }
+
+  /// Without lights of its own, and with an environment in up to about `threshold` lights (0: not
+  /// decomposed).
+  static scene::Scene lit(scene::Scene scene, scene::Environment environment, double threshold) {
+    for (scene::Node& node : scene.nodes) node.light = scene::kNone;
+    scene.environment = std::move(environment);
+    if (threshold > 0)
+      scene.environment.lights =
+          shading::decomposeEnvironment(scene.environment, {.threshold = threshold, .resolution = 24}).lights;
+    return scene;
+  }
+
+  /// A white Lambertian floor that fills the picture.
+  static scene::Scene floor() {
+    scene::Scene scene;
+    scene::Material material;
+    material.metallic = 0;
+    material.specularFactor = 0;
+    scene.materials.push_back(material);
+    scene::Primitive p;
+    p.positions = {{-50, 0, 50}, {50, 0, 50}, {50, 0, -50}, {-50, 0, -50}};
+    p.normals.assign(4, {0, 1, 0});
+    p.indices = {0, 1, 2, 0, 2, 3};
+    p.material = 0;
+    for (const glm::vec3& v : p.positions) p.bounds.add(v);
+    scene.meshes.push_back({"floor", {p}, {}});
+    scene::Node node;
+    node.mesh = 0;
+    scene.nodes.push_back(node);
+    scene::Node camera;
+    camera.camera = 0;
+    camera.transform.translation = {0, 4, 0};
+    camera.transform.rotation = glm::angleAxis(-0.5f * glsl::pi, glm::vec3(1, 0, 0));
+    scene.cameras.emplace_back();
+    scene.nodes.push_back(camera);
+    return scene;
+  }
+
+  static Image reference(const scene::Scene& scene, const render::Settings& s, int spp) {
+    const scene::Pose pose = scene::evaluate(scene, 0);
+    reference::Request request{
+        .scene = scene, .pose = pose, .camera = pose.cameras.at(0), .progress = {}, .checkpoint = {}};
+    request.width = s.size.x;
+    request.height = s.size.y;
+    request.term = s.term;
+    request.light = s.light < 0 ? reference::kAllLights : s.light;
+    request.spp = spp;
+    return reference::render(request).image.select({"R", "G", "B"});
+  }
+};
+
+}  // namespace limn

@@ -1,0 +1,230 @@
+// Subtractive shadows: what holds to the bit, what lies between nothing and the unshadowed light, what blocks
+// of pixels cost, and levels of detail.
+#include <algorithm>
+#include <cmath>
+
+#include "core/shading_maps/shading_maps.h"
+#include "tests/gpu/environment_harness.h"
+
+namespace limn {
+namespace {
+
+using glm::vec3;
+
+constexpr const char* kCombines[] = {"subtract", "ratio", "ratio_split", "add"};
+
+class SubtractiveShadowsTest : public EnvironmentTest {
+ protected:
+  using Values = std::vector<std::pair<std::string, std::string>>;
+
+  static render::TechniqueUse shadows(const Values& values) {
+    return technique("subtractive_shadows", values);
+  }
+  Image direct(render::Renderer& renderer, int width, int height,
+               std::vector<render::TechniqueUse> techniques = {}) {
+    return picture(renderer, settings(width, height, Term::direct, std::move(techniques)));
+  }
+
+  /// The same floor in the middle of a closed room of 20 m, whose walls are seen as well.
+  static scene::Scene room() {
+    scene::Scene scene = floor();
+    const auto wall = [&](const glm::quat& turn, const vec3& middle) {
+      scene::Node node;
+      node.mesh = 0;
+      node.transform.rotation = turn;
+      node.transform.translation = middle;
+      scene.nodes.push_back(node);
+    };
+    constexpr float right = 0.5f * glsl::pi;
+    wall(glm::angleAxis(2 * right, vec3(1, 0, 0)), {0, 20, 0});
+    wall(glm::angleAxis(right, vec3(1, 0, 0)), {0, 10, -10});
+    wall(glm::angleAxis(-right, vec3(1, 0, 0)), {0, 10, 10});
+    wall(glm::angleAxis(right, vec3(0, 0, 1)), {10, 10, 0});
+    wall(glm::angleAxis(-right, vec3(0, 0, 1)), {-10, 10, 0});
+    return scene;
+  }
+
+  static double largestDifference(const Image& a, const Image& b) {
+    double largest = 0;
+    for (size_t i = 0; i < a.data().size(); ++i)
+      largest = std::max(largest, static_cast<double>(std::abs(a.data()[i] - b.data()[i])));
+    return largest;
+  }
+  static double largest(const Image& image) {
+    return static_cast<double>(*std::ranges::max_element(image.data()));
+  }
+};
+
+TEST_F(SubtractiveShadowsTest, WhereNothingIsHiddenTheLightIsTheUnshadowedOneToTheBit) {
+  const scene::Scene scene = lit(floor(), sky(), 0);
+  render::Renderer renderer(device(), scene);
+  const Image unshadowed = direct(renderer, 37, 23);
+  for (const char* combine : {"subtract", "ratio", "ratio_split"})
+    for (const char* block : {"1", "2", "4", "32"})
+      for (const char* lights : {"1", "25", "200"})
+        EXPECT_EQ(
+            largestDifference(direct(renderer, 37, 23,
+                                     {shadows({{"combine", combine}, {"block", block}, {"lights", lights}})}),
+                              unshadowed),
+            0)
+            << combine << ' ' << block << ' ' << lights;
+}
+
+TEST_F(SubtractiveShadowsTest, AddedAtEveryPixelItIsTheSampledEnvironment) {
+  const scene::Scene scene = lit(asset("balls"), sky(), 0);
+  render::Renderer renderer(device(), scene);
+  const Image added =
+      direct(renderer, 64, 48, {shadows({{"combine", "add"}, {"block", "1"}, {"lights", "40"}})});
+  EXPECT_EQ(largestDifference(added, direct(renderer, 64, 48,
+                                            {technique("sampled_environment_light", {{"samples", "40"}})})),
+            0);
+}
+
+TEST_F(SubtractiveShadowsTest, OfTheSameLightsTheDifferenceIsTheSum) {
+  const scene::Scene scene = lit(asset("balls"), sky(), 0);
+  render::Renderer renderer(device(), scene);
+  const auto with = [&](const char* combine) {
+    return direct(renderer, 64, 48,
+                  {shadows({{"combine", combine},
+                            {"block", "1"},
+                            {"lights", "40"},
+                            {"unshadowed", "lights"},
+                            {"unshadowed_factor", "1"}})});
+  };
+  const Image added = with("add");
+  for (const char* combine : {"subtract", "ratio", "ratio_split"})
+    EXPECT_LT(largestDifference(with(combine), added), 1e-5 * largest(added)) << combine;
+}
+
+TEST_F(SubtractiveShadowsTest, LightLiesBetweenNothingAndTheUnshadowedLight) {
+  for (const char* name : {"balls", "fresnel_spheres"}) {
+    const scene::Scene scene = lit(asset(name), sky(), 0);
+    render::Renderer renderer(device(), scene);
+    const Image unshadowed = direct(renderer, 64, 48);
+    for (const char* combine : {"subtract", "ratio", "ratio_split"})
+      for (const char* block : {"1", "4"})
+        for (const char* lights : {"1", "25"}) {
+          const Image picture = direct(
+              renderer, 64, 48, {shadows({{"combine", combine}, {"block", block}, {"lights", lights}})});
+          for (size_t i = 0; i < picture.data().size(); ++i) {
+            EXPECT_GE(picture.data()[i], 0) << name << combine << block;
+            EXPECT_LE(picture.data()[i], unshadowed.data()[i] * (1 + 1e-5f)) << name << combine << block;
+          }
+        }
+  }
+}
+
+TEST_F(SubtractiveShadowsTest, NoLightGetsIntoAClosedRoom) {
+  const scene::Scene scene = lit(room(), sky(), 0);
+  render::Renderer renderer(device(), scene);
+  const double unshadowed = largest(direct(renderer, 32, 24));
+  EXPECT_GT(unshadowed, 0.1);
+  for (const char* combine : {"ratio", "ratio_split", "add"})
+    for (const char* block : {"1", "4"})
+      EXPECT_LT(largest(direct(renderer, 32, 24, {shadows({{"combine", combine}, {"block", block}})})),
+                1e-5 * unshadowed)
+          << combine << ' ' << block;
+}
+
+TEST_F(SubtractiveShadowsTest, BatchesOfAnySizeGiveTheSamePicture) {
+  for (const char* name : {"balls", "fresnel_spheres"}) {
+    const scene::Scene scene = lit(asset(name), sky(), 0);
+    render::Renderer renderer(device(), scene);
+    for (const char* combine : kCombines)
+      for (const char* block : {"1", "4"}) {
+        const auto with = [&](const char* memory) {
+          return direct(renderer, 64, 48,
+                        {shadows({{"combine", combine},
+                                  {"block", block},
+                                  {"lights", "40"},
+                                  {"shadow_map_size", "256"},
+                                  {"memory", memory}})});
+        };
+        // Shares are kept in 16 bits.
+        EXPECT_LT(rmse(with("4"), with("256")), 2e-5) << name << combine << block;
+      }
+  }
+}
+
+TEST_F(SubtractiveShadowsTest, BlocksCostLittleWhereSurfacesAreSmooth) {
+  const scene::Scene scene = lit(asset("balls"), sky(), 0);
+  render::Renderer renderer(device(), scene);
+  const Image truth = reference(scene, settings(128, 96, Term::direct), 1024);
+  const auto error = [&](const char* combine, const char* block) {
+    return rmse(direct(renderer, 128, 96, {shadows({{"combine", combine}, {"block", block}})}), truth);
+  };
+  for (const char* combine : {"ratio", "ratio_split", "subtract"}) {
+    const double whole = error(combine, "1"), blocks = error(combine, "4");
+    RecordProperty(combine, std::to_string(whole) + " " + std::to_string(blocks));
+    EXPECT_LT(blocks, 1.3 * whole) << combine;
+  }
+}
+
+/// Pictures smaller than a block, one light, a single bright texel, mirrors as sharp as they get: nothing is
+/// infinite, and nothing is brighter than without shadows.
+TEST_F(SubtractiveShadowsTest, ExtremesStayFinite) {
+  scene::Environment spot = uniform(0);
+  spot.texels[32 * 4 + 7] = vec3(1e6f);
+  scene::Scene sharp = asset("balls");
+  for (scene::Material& material : sharp.materials) material.roughness = 0;
+  for (const scene::Environment& environment : {sky(), spot}) {
+    const scene::Scene scene = lit(sharp, environment, 0);
+    render::Renderer renderer(device(), scene);
+    const double most = largest(direct(renderer, 21, 13));
+    for (const char* combine : kCombines)
+      for (const char* block : {"1", "32"})
+        for (const char* lights : {"1", "4"}) {
+          const Image picture = direct(
+              renderer, 21, 13, {shadows({{"combine", combine}, {"block", block}, {"lights", lights}})});
+          for (const float v : picture.data()) EXPECT_TRUE(std::isfinite(v) && v >= 0) << combine << block;
+          const bool bounded = std::string_view(combine) != "add";
+          EXPECT_TRUE(!bounded || largest(picture) <= most * (1 + 1e-5)) << combine << block;
+        }
+  }
+}
+
+TEST_F(SubtractiveShadowsTest, RegionsStandForAllOfTheLight) {
+  const scene::Scene scene = lit(asset("balls"), sky(), 0);
+  render::Renderer renderer(device(), scene);
+  const Image truth = reference(scene, settings(96, 72, Term::direct), 1024);
+  for (const char* combine : {"add", "ratio_split"}) {
+    const Image picture =
+        direct(renderer, 96, 72, {shadows({{"combine", combine}, {"block", "1"}, {"sampling", "regions"}})});
+    EXPECT_NEAR(mean(picture), mean(truth), 0.03 * mean(truth)) << combine;
+  }
+}
+
+/// A budget that no frame keeps leads to the least level, by steps too small to see.
+TEST_F(SubtractiveShadowsTest, LevelsGoOverIntoEachOther) {
+  const scene::Scene scene = lit(asset("balls"), sky(), 0);
+  render::Renderer renderer(device(), scene);
+  const auto with = [&](const Values& more) {
+    Values values{{"shadow_map_size", "64"}};
+    values.insert(values.end(), more.begin(), more.end());
+    return settings(64, 48, Term::direct, {shadows(values)});
+  };
+  const Image best = picture(renderer, with({{"lights", "40"}}));
+  const Image least = picture(renderer, with({{"lights", "8"}, {"block", "16"}}));
+  renderer.configure(with({{"lights", "40"}, {"frame_time", "0.001"}}));
+  Image before;
+  double step = 0;
+  bool coarser = false;
+  for (int frame = 0; frame < 80; ++frame) {
+    renderer.render();
+    Image now = renderer.read();
+    if (frame == 0) {
+      EXPECT_LT(rmse(now, best), 1e-6);
+    } else {
+      step = std::max(step, rmse(now, before));
+    }
+    coarser = coarser || rmse(now, least) < 1e-6;
+    before = std::move(now);
+  }
+  EXPECT_TRUE(coarser);
+  RecordProperty("largest step over the whole way",
+                 std::to_string(step) + " " + std::to_string(rmse(best, least)));
+  EXPECT_LT(step, 0.6 * rmse(best, least));
+}
+
+}  // namespace
+}  // namespace limn
