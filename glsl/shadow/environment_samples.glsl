@@ -5,7 +5,7 @@
 // SAMPLE_FADE 1: only the first active_samples count, the last of them in part.
 #ifndef LIMN_ENVIRONMENT_SAMPLES_GLSL
 #define LIMN_ENVIRONMENT_SAMPLES_GLSL
-#include "glsl/light/sampled_pixel.glsl"
+#include "glsl/shadow/sampled_pixel.glsl"
 #include "glsl/shadow/shadow_samples.glsl"
 
 layout(std430) readonly buffer EnvironmentSamples { EnvironmentSample environment_samples[]; };

@@ -10,7 +10,7 @@ layout(rgba32f) uniform image2D radiance;
 
 #if (MATERIAL_MODELS & 32) != 0
 #if SAMPLES_LAST
-#include "glsl/light/mirrored_environment.glsl"
+#include "glsl/shadow/mirrored_environment.glsl"
 #endif
 #if !SAMPLES_FIRST || !SAMPLES_LAST
 layout(rg32f) uniform image2D mirror_sums;

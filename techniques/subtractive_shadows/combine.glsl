@@ -22,7 +22,7 @@
 #else
 #define SAMPLE_PARTS 0
 #endif
-#include "glsl/light/sampled_pixel.glsl"
+#include "glsl/shadow/sampled_pixel.glsl"
 
 // The colours by which a surface's parts reflect: albedo, and Schlick's Fresnel term of the view.
 ReflectedParts surface_colours(SampledPixel p) {

@@ -9,7 +9,7 @@
 #include "techniques/subtractive_shadows/combine.glsl"
 
 #if (MATERIAL_MODELS & 32) != 0 && (UNSHADOWED == UNSHADOWED_LIGHTS || COMBINE == COMBINE_ADD)
-#include "glsl/light/mirrored_environment.glsl"
+#include "glsl/shadow/mirrored_environment.glsl"
 
 vec3 mirrored_light(SampledPixel p) { return is_coated(p) ? mirrored_environment(p) : vec3(0.0); }
 #else

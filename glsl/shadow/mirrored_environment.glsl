@@ -1,7 +1,7 @@
 // What coats mirror of the environment, unoccluded.
 #ifndef LIMN_MIRRORED_ENVIRONMENT_GLSL
 #define LIMN_MIRRORED_ENVIRONMENT_GLSL
-#include "glsl/light/sampled_pixel.glsl"
+#include "glsl/shadow/sampled_pixel.glsl"
 #include "glsl/numeric/equirectangular.glsl"
 
 uniform sampler2D environment_map;  // equirectangular radiance
