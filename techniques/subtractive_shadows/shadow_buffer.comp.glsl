@@ -5,7 +5,8 @@
 #include "glsl/surface/block_items.glsl"
 
 #if !SAMPLES_LAST || !SAMPLES_FIRST
-// What a batch hands on to the next; the sums of weights for mirrors in the last lanes of seen_sums and seen_lobe_sums.
+// What a batch hands on to the next, shares of the mean over all samples; the sums of weights for mirrors in the last lanes of
+// seen_sums and seen_lobe_sums.
 layout(rgba32f) uniform image2D seen_sums;
 #if SAMPLE_TOTALS
 layout(rgba32f) uniform image2D all_sums;
@@ -70,10 +71,9 @@ vec3 without_colour(vec3 light, vec3 colour) {
   return mix(vec3(0.0), light / max(colour, vec3(1e-6)), greaterThan(colour, vec3(0.0)));
 }
 
-// From the sums over all samples.
+// From the means over all samples.
 ReflectedParts shadow_values(SampledPixel p, SampleSums sums) {
-  float share = 1.0 / counted_samples();
-  ReflectedParts seen = scaled_parts(sums.seen, vec3(share)), all = scaled_parts(sums.all, vec3(share)), values;
+  ReflectedParts seen = sums.seen, all = sums.all, values;
 #if COMBINE == COMBINE_RATIO
   values.diffuse = values.lobe = hidden_share(reflected_whole(seen), reflected_whole(all), vec3(0.0));
 #elif COMBINE == COMBINE_RATIO_SPLIT
@@ -99,12 +99,18 @@ void main() {
   if (depth == 0.0) return;
   SampledPixel p = sampled_pixel(pixel, depth);
   if ((p.surface.flags & gbuffer_flag_specular) != 0u) return;
-#if SAMPLES_FIRST
   SampleSums sums = no_samples();
-#else
-  SampleSums sums = load_sums(item);
-#endif
   add_samples(p, sums);
+  vec3 share = vec3(1.0 / counted_samples());
+  sums.seen = scaled_parts(sums.seen, share);
+  sums.all = scaled_parts(sums.all, share);
+#if !SAMPLES_FIRST
+  SampleSums earlier = load_sums(item);
+  add_parts(sums.seen, earlier.seen);
+  add_parts(sums.all, earlier.all);
+  sums.mirror_all += earlier.mirror_all;
+  sums.mirror_seen += earlier.mirror_seen;
+#endif
 #if !SAMPLES_LAST
   store_sums(item, sums);
 #elif BLOCK_SIDE > 1
