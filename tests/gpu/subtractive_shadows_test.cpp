@@ -132,6 +132,8 @@ TEST_F(SubtractiveShadowsTest, BatchesOfAnySizeGiveTheSamePicture) {
     render::Renderer renderer(device(), scene);
     for (const char* combine : kCombines)
       for (const char* block : {"1", "4"}) {
+        // Of coats one way to combine is enough: all hand on the same sums.
+        if (name != std::string_view("balls") && combine != std::string_view("ratio_split")) continue;
         const auto with = [&](const char* memory) {
           return direct(renderer, 64, 48,
                         {shadows({{"combine", combine},
@@ -147,7 +149,7 @@ TEST_F(SubtractiveShadowsTest, BatchesOfAnySizeGiveTheSamePicture) {
 }
 
 TEST_F(SubtractiveShadowsTest, BlocksCostLittleWhereSurfacesAreSmooth) {
-  const scene::Scene scene = lit(asset("balls"), sky(), 0);
+  const scene::Scene scene = asset("nine_spheres");
   render::Renderer renderer(device(), scene);
   const Image truth = reference(scene, settings(256, 192, Term::direct), 256);
   const auto error = [&](const char* combine, const char* block) {
@@ -192,7 +194,8 @@ TEST_F(SubtractiveShadowsTest, RegionsStandForAllOfTheLight) {
   };
   const scene::Scene plane = lit(floor(), uniform(0.7f), 0);
   render::Renderer above(device(), plane);
-  for (const float v : direct(above, 16, 12, {combined("add")}).data()) EXPECT_NEAR(v, 0.7f, 0.02f * 0.7f);
+  const Image open = direct(above, 16, 12, {combined("add")});
+  for (const float v : open.data()) EXPECT_NEAR(v, 0.7f, 0.02f * 0.7f);
   const scene::Scene scene = lit(asset("balls"), sky(), 0);
   render::Renderer renderer(device(), scene);
   const Image truth = reference(scene, settings(96, 72, Term::direct), 1024);
