@@ -137,15 +137,18 @@ Image tileImage(int size, int tiles, glm::vec3 even, glm::vec3 odd, glm::vec3 jo
   });
 }
 
-Image tileNormalImage(int size, int tiles) {
+Image normalImage(int size, const std::function<float(glm::vec2)>& height) {
   const float h = 1 / static_cast<float>(size);
   return makeImage(size, size, [&](glm::vec2 uv) {
-    const float du = tileHeight(uv + glm::vec2(h, 0), tiles) - tileHeight(uv - glm::vec2(h, 0), tiles);
-    const float dv = tileHeight(uv + glm::vec2(0, h), tiles) - tileHeight(uv - glm::vec2(0, h), tiles);
-    // Height in units of the repeat; green points up the picture, against v.
+    const float du = height(uv + glm::vec2(h, 0)) - height(uv - glm::vec2(h, 0));
+    const float dv = height(uv + glm::vec2(0, h)) - height(uv - glm::vec2(0, h));
     const glm::vec3 n = glm::normalize(glm::vec3(-du / (2 * h), dv / (2 * h), 1));
     return glm::vec4(0.5f * n + 0.5f, 1);
   });
+}
+
+Image tileNormalImage(int size, int tiles) {
+  return normalImage(size, [tiles](glm::vec2 uv) { return tileHeight(uv, tiles); });
 }
 
 Image woodImage(int size, int boards, glm::vec3 light, glm::vec3 dark) {

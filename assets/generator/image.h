@@ -29,6 +29,10 @@ float periodicNoise(glm::vec2 at, int period, std::uint32_t seed);
 /// Sum of `octaves` of it, each twice as fine and half as strong, in [0, 1].
 float periodicFractal(glm::vec2 at, int period, int octaves, std::uint32_t seed);
 
+/// The tangent-space normal map of heights that repeat, in units of the repeat; green points up the picture,
+/// against v.
+Image normalImage(int size, const std::function<float(glm::vec2)>& height);
+
 /// Square stone tiles with joints, `tiles` a side, alternating between two colours.
 Image tileImage(int size, int tiles, glm::vec3 even, glm::vec3 odd, glm::vec3 joint);
 /// The tangent-space normal map of those tiles: bevelled edges, slightly rough faces.

@@ -1,6 +1,7 @@
 // A robot that dances: skeleton, inverse kinematics for feet that stay on the floor, and the scene around it.
 #include "assets/scenes/robot.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -12,7 +13,6 @@ namespace limn::assets {
 namespace robot {
 namespace {
 
-constexpr float kLoop = 4;  ///< seconds; eight beats of half a second
 constexpr int kKeys = 96;
 
 glm::quat turn(float radians, glm::vec3 axis) {
@@ -89,6 +89,33 @@ Pose danceAt(float time) {
   return pose;
 }
 
+/// The same loop, begun later. The last key repeats the first.
+void delay(Channel& channel, int keys) {
+  const auto shift = [keys](auto& values) {
+    if (values.empty()) return;
+    values.pop_back();
+    std::rotate(values.begin(), values.begin() + keys % static_cast<int>(values.size()), values.end());
+    values.push_back(values.front());
+  };
+  shift(channel.rotations);
+  shift(channel.translations);
+}
+
+/// The loop several times.
+void repeat(Channel& channel, int loops) {
+  const auto again = [](auto& values, std::size_t keys, auto&& moved) {
+    if (values.empty()) return;
+    for (std::size_t k = 1; k < keys; ++k) values.push_back(moved(values[k]));
+  };
+  const std::size_t keys = channel.times.size();
+  const auto same = [](const auto& value) { return value; };
+  for (int loop = 1; loop < loops; ++loop) {
+    again(channel.times, keys, [=](float time) { return time + kLoop * static_cast<float>(loop); });
+    again(channel.rotations, keys, same);
+    again(channel.translations, keys, same);
+  }
+}
+
 }  // namespace
 
 Animation buildDance(int firstNode) {
@@ -128,6 +155,27 @@ int addRobot(Scene& scene, int mesh) {
   scene.skins.push_back(std::move(skin));
   scene.addNode({.name = "robot", .mesh = mesh, .skin = static_cast<int>(scene.skins.size()) - 1});
   return first;
+}
+
+void untwist(Channel& channel) {
+  for (std::size_t k = 1; k < channel.rotations.size(); ++k)
+    if (glm::dot(channel.rotations[k], channel.rotations[k - 1]) < 0)
+      channel.rotations[k] = -channel.rotations[k];
+}
+
+int addDancer(Scene& scene, int mesh, const Dancer& dancer, Animation& animation) {
+  const int first = addRobot(scene, mesh);
+  const int place = scene.addNode({.name = "place",
+                                   .translation = {dancer.at.x, 0, dancer.at.y},
+                                   .rotation = turn(glm::radians(dancer.degrees), kY),
+                                   .children = {first}});
+  for (Channel& channel : buildDance(first).channels) {
+    delay(channel, dancer.delay);
+    repeat(channel, dancer.loops);
+    untwist(channel);
+    animation.channels.push_back(std::move(channel));
+  }
+  return place;
 }
 
 }  // namespace robot

@@ -4,6 +4,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "assets/generator/shapes.h"
+#include "assets/generator/simplify.h"
 #include "assets/scenes/robot.h"
 
 namespace limn::assets::robot {
@@ -247,6 +248,15 @@ std::vector<Primitive> buildBody(Scene& scene) {
   std::vector<Primitive> primitives;
   for (std::size_t i = 0; i < body.parts.size(); ++i)
     primitives.push_back({std::move(body.parts[i]), scene.addMaterial(materials[i])});
+  return primitives;
+}
+
+std::vector<Primitive> buildBody(Scene& scene, std::size_t triangles) {
+  std::vector<Primitive> primitives = buildBody(scene);
+  std::size_t all = 0;
+  for (const Primitive& p : primitives) all += p.mesh.triangleCount();
+  for (Primitive& p : primitives)
+    p.mesh = creased(simplified(welded(p.mesh), triangles * p.mesh.triangleCount() / all), 42);
   return primitives;
 }
 
