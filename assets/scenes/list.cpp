@@ -4,6 +4,7 @@ namespace limn::assets {
 
 const std::vector<SceneEntry>& allScenes() {
   static const std::vector<SceneEntry> scenes = {
+      {"arcade_dark", makeArcadeDark},
       {"atrium", makeAtrium},
       {"atrium_robots", makeAtriumRobots},
       {"balls", makeBalls},
@@ -11,6 +12,7 @@ const std::vector<SceneEntry>& allScenes() {
       {"bump_sphere", makeBumpSphere},
       {"bump_wall", makeBumpWall},
       {"chess", makeChess},
+      {"closed_box", makeClosedBox},
       {"colonnade", makeColonnade},
       {"cornell_box", makeCornellBox},
       {"cornell_horse", makeCornellHorse},
@@ -35,10 +37,15 @@ const std::vector<SceneEntry>& allScenes() {
       {"metaballs", makeMetaballs},
       {"milk", makeMilk},
       {"monster", makeMonster},
+      {"nine_spheres", makeNineSpheres},
+      {"nine_spheres_bump", makeNineSpheresBump},
+      {"nine_spheres_glossy", makeNineSpheresGlossy},
+      {"nine_spheres_metal", makeNineSpheresMetal},
       {"patrol", makePatrol},
       {"plant", makePlant},
       {"ring", makeRing},
       {"robot", makeRobot},
+      {"robot_brdfs", makeRobotBrdfs},
       {"smoke", makeSmoke},
       {"soldiers", makeSoldiers},
       {"stained_light", makeStainedLight},

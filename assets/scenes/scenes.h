@@ -8,6 +8,7 @@
 
 namespace limn::assets {
 
+Scene makeArcadeDark();
 Scene makeAtrium();
 Scene makeAtriumRobots();
 Scene makeBalls();
@@ -15,6 +16,7 @@ Scene makeBallsSky();
 Scene makeBumpSphere();
 Scene makeBumpWall();
 Scene makeChess();
+Scene makeClosedBox();
 Scene makeColonnade();
 Scene makeCornellBox();
 Scene makeCornellHorse();
@@ -39,10 +41,15 @@ Scene makeMeasuredSpheres();
 Scene makeMetaballs();
 Scene makeMilk();
 Scene makeMonster();
+Scene makeNineSpheres();
+Scene makeNineSpheresBump();
+Scene makeNineSpheresGlossy();
+Scene makeNineSpheresMetal();
 Scene makePatrol();
 Scene makePlant();
 Scene makeRing();
 Scene makeRobot();
+Scene makeRobotBrdfs();
 Scene makeSmoke();
 Scene makeSoldiers();
 Scene makeStainedLight();

@@ -33,15 +33,18 @@ using limn::test::Vec4;
 
 // clang-format off
 const char* const kScenes[] = {
-    "atrium", "atrium_robots", "balls", "balls_sky", "bump_sphere", "bump_wall", "chess", "colonnade", "cornell_box",
-    "cornell_horse", "disk_and_sphere", "egg_crate", "flying_dragon", "foliage_card", "fresnel_spheres", "frog", "gem",
-    "gem_2_lights", "gem_4_lights", "glass_sphere", "glass_statue", "glassware", "glossy_sphere", "glossy_torus",
-    "groove", "lights", "marble_statue", "measured_spheres", "metaballs", "milk", "monster", "patrol", "plant", "ring",
-    "robot", "smoke", "soldiers", "stained_light", "statue", "teapot", "teapot_coarse", "teapot_groove",
-    "teapot_pattern", "torus_metal", "translucent_checker", "translucent_ear", "translucent_edge", "translucent_head",
-    "translucent_spheres", "water", "white_furnace"};
+    "arcade_dark", "atrium", "atrium_robots", "balls", "balls_sky", "bump_sphere", "bump_wall", "chess", "closed_box",
+    "colonnade", "cornell_box", "cornell_horse", "disk_and_sphere", "egg_crate", "flying_dragon", "foliage_card",
+    "fresnel_spheres", "frog", "gem", "gem_2_lights", "gem_4_lights", "glass_sphere", "glass_statue", "glassware",
+    "glossy_sphere", "glossy_torus", "groove", "lights", "marble_statue", "measured_spheres", "metaballs", "milk",
+    "monster", "nine_spheres", "nine_spheres_bump", "nine_spheres_glossy", "nine_spheres_metal", "patrol", "plant",
+    "ring", "robot", "robot_brdfs", "smoke", "soldiers", "stained_light", "statue", "teapot", "teapot_coarse",
+    "teapot_groove", "teapot_pattern", "torus_metal", "translucent_checker", "translucent_ear", "translucent_edge",
+    "translucent_head", "translucent_spheres", "water", "white_furnace"};
 // clang-format on
-const std::set<std::string> kUnderEnvironments = {"balls_sky", "patrol", "white_furnace"};
+const std::set<std::string> kUnderEnvironments = {
+    "arcade_dark",        "balls_sky", "nine_spheres", "nine_spheres_bump", "nine_spheres_glossy",
+    "nine_spheres_metal", "patrol",    "robot_brdfs",  "white_furnace"};
 
 /// Of the scenes that are not lit by an environment.
 std::size_t lightsOf(const std::string& scene) {
@@ -239,6 +242,12 @@ TEST(Assets, ScenesOfIndirectLightMoveTheirSpotAndLoop) {
     EXPECT_TRUE(lightMoves(glb)) << scene;
   }
   EXPECT_EQ(Glb("atrium_robots").root["skins"].size(), 5u);
+}
+
+TEST(Assets, RobotsOfFourMaterialsTurnOnceInThreeDances) {
+  const Glb glb("robot_brdfs");
+  EXPECT_EQ(glb.root["skins"].size(), 4u);
+  expectLoops(glb, 12);
 }
 
 TEST(Assets, MetaballsHaveAboutFiveThousandTrianglesInEveryFrame) {

@@ -22,8 +22,8 @@ namespace {
 
 using nlohmann::json;
 
-const char* const kScenes[] = {"disk_and_sphere",  "fresnel_spheres", "glossy_torus",
-                               "measured_spheres", "teapot_groove",   "torus_metal"};
+const char* const kScenes[] = {"disk_and_sphere", "fresnel_spheres", "glossy_torus", "measured_spheres",
+                               "robot_brdfs",     "teapot_groove",   "torus_metal"};
 
 /// The object of a material's extras, or null.
 json modelOf(const json& material) {
