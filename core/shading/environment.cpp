@@ -169,9 +169,54 @@ gpu::Texture upload(gpu::Device& device, std::string_view label, GLenum format,
   return texture;
 }
 
-FilteredMap sourceOf(const scene::Environment& environment) {
+void requireMap(const scene::Environment& environment) {
   if (!environment) throw Error("environment: there is no map to filter");
+}
+
+FilteredMap sourceOf(const scene::Environment& environment) {
+  requireMap(environment);
   return {environment.width, environment.height, environment.texels};
+}
+
+/// One of the texels that a coarser one covers, along one axis.
+struct Share {
+  int index;
+  double weight;
+};
+
+/// The part of `count` texels along an axis that texel `i` of `coarse` covers; measure(place) integrates the
+/// weight from 0 to a place in texels.
+template <class Measure>
+std::vector<Share> covered(int i, int coarse, int count, const Measure& measure) {
+  const double step = static_cast<double>(count) / coarse, begin = i * step, end = (i + 1) * step;
+  std::vector<Share> shares;
+  for (int k = static_cast<int>(begin); k < count && k < end; ++k)
+    shares.push_back({k, measure(std::min(k + 1.0, end)) - measure(std::max<double>(k, begin))});
+  return shares;
+}
+
+FilteredMap halved(int width, int height, const std::vector<vec3>& texels) {
+  FilteredMap half{std::max(width / 2, 1), std::max(height / 2, 1), {}};
+  half.texels.resize(static_cast<size_t>(half.width) * static_cast<size_t>(half.height));
+  tbb::parallel_for(0, half.height, [&](int y) {
+    const auto rows = covered(y, half.height, height,
+                              [&](double place) { return -std::cos(std::numbers::pi * place / height); });
+    for (int x = 0; x < half.width; ++x) {
+      dvec3 sum(0);
+      double weights = 0;
+      for (const Share& column : covered(x, half.width, width, [](double place) { return place; })) {
+        for (const Share& row : rows) {
+          const double weight = row.weight * column.weight;
+          sum += weight * dvec3(texels[static_cast<size_t>(row.index) * static_cast<size_t>(width) +
+                                       static_cast<size_t>(column.index)]);
+          weights += weight;
+        }
+      }
+      half.texels[static_cast<size_t>(y) * static_cast<size_t>(half.width) + static_cast<size_t>(x)] =
+          vec3(sum / weights);
+    }
+  });
+  return half;
 }
 
 }  // namespace
@@ -218,12 +263,38 @@ FilteredMap filterGrazing(const scene::Environment& environment) {
                                  [](float cosine) { return cosine * glsl::schlick_weight(cosine); });
 }
 
+std::vector<FilteredMap> radianceLevels(const scene::Environment& environment) {
+  requireMap(environment);
+  std::vector<FilteredMap> levels;
+  int width = environment.width, height = environment.height;
+  const std::vector<vec3>* texels = &environment.texels;
+  while (width > 1 || height > 1) {
+    levels.push_back(halved(width, height, *texels));
+    width = levels.back().width;
+    height = levels.back().height;
+    texels = &levels.back().texels;
+  }
+  return levels;
+}
+
 gpu::Texture makeIrradianceTexture(gpu::Device& device, const FilteredMap& irradiance) {
   return upload(device, "environment irradiance", GL_RGBA32F, {&irradiance, 1});
 }
 
 gpu::Texture makeFilteredTexture(gpu::Device& device, const FilteredEnvironment& environment) {
   return upload(device, "filtered environment", GL_RGBA16F, environment.radiance);
+}
+
+gpu::Texture makeRadianceTexture(gpu::Device& device, const scene::Environment& environment) {
+  const std::vector<FilteredMap> levels = radianceLevels(environment);
+  gpu::Texture texture(
+      device, "levels of the environment's map",
+      {.format = GL_RGB32F, .width = environment.width, .height = environment.height, .levels = 0});
+  texture.setSampling(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, GL_REPEAT, GL_CLAMP_TO_EDGE);
+  texture.upload(0, 0, GL_RGB, GL_FLOAT, environment.texels.data());
+  for (size_t i = 0; i < levels.size(); ++i)
+    texture.upload(static_cast<int>(i) + 1, 0, GL_RGB, GL_FLOAT, levels[i].texels.data());
+  return texture;
 }
 
 }  // namespace limn::shading

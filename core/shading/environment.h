@@ -46,6 +46,11 @@ LIMN_API FilteredEnvironment filterEnvironment(const scene::Environment& environ
 /// without a map.
 LIMN_API FilteredMap filterGrazing(const scene::Environment& environment);
 
+/// Returns the levels above a map itself, each half as large in both directions (rounded down, at least 1),
+/// up to one texel: mean radiance over each texel of the level before, weighted by the exact solid angle, so
+/// that every level holds the same light. Throws Error without a map.
+LIMN_API std::vector<FilteredMap> radianceLevels(const scene::Environment& environment);
+
 /// Returns the texture of such a map: RGBA32F, bilinear, repeated around the horizon;
 /// "environment_irradiance" in glsl/light/environment.glsl, "environment_grazing" in
 /// glsl/deferred/environment.comp.glsl.
@@ -53,5 +58,8 @@ LIMN_API gpu::Texture makeIrradianceTexture(gpu::Device& device, const FilteredM
 /// Returns the texture of glossy levels: RGBA16F, bilinear, one level per roughness; "environment_filtered"
 /// in glsl/light/environment.glsl.
 LIMN_API gpu::Texture makeFilteredTexture(gpu::Device& device, const FilteredEnvironment& environment);
+/// Returns the texture of the map and its radianceLevels(): RGB32F, trilinear, repeated around the horizon;
+/// "environment_levels_map" in glsl/light/radiance_levels.glsl. Throws Error without a map.
+LIMN_API gpu::Texture makeRadianceTexture(gpu::Device& device, const scene::Environment& environment);
 
 }  // namespace limn::shading

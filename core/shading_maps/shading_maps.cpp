@@ -14,7 +14,7 @@ ShadingMapService::ShadingMapService(gpu::Device& device, const scene::Scene& sc
 ShadingMapService::~ShadingMapService() = default;
 
 void ShadingMapService::begin() {
-  for (Entry* entry : {&radiance_, &ltc_, &irradiance_, &filtered_, &grazing_}) entry->handle = {};
+  for (Entry* entry : {&radiance_, &levels_, &ltc_, &irradiance_, &filtered_, &grazing_}) entry->handle = {};
 }
 
 const scene::Environment& ShadingMapService::environment() const {
@@ -43,6 +43,11 @@ TextureHandle ShadingMapService::radiance() {
     map.upload(0, 0, GL_RGB, GL_FLOAT, e.texels.data());
     return map;
   });
+}
+
+TextureHandle ShadingMapService::radianceLevels() {
+  return import(levels_, "levels of the environment's map",
+                [&] { return shading::makeRadianceTexture(device_, environment()); });
 }
 
 TextureHandle ShadingMapService::ltcTable() {

@@ -1,6 +1,6 @@
 // Declares the service that holds what shading looks up on the GPU, whoever asks: the environment's map, the
-// same filtered for surfaces, and the table of linearly transformed cosines. Each is made and uploaded when
-// a pass that needs it is first declared, and kept.
+// same with coarser levels and filtered for surfaces, and the table of linearly transformed cosines. Each is
+// made and uploaded when a pass that needs it is first declared, and kept.
 #pragma once
 
 #include "core/frame/frame_graph.h"
@@ -22,6 +22,9 @@ class LIMN_API ShadingMapService : public FrameService {
   /// Returns the equirectangular map of the scene's environment, RGB32F, W/(sr m^2), in the environment's own
   /// frame and without its scale: bilinear, repeated around the horizon. Empty without an environment.
   frame::TextureHandle radiance();
+  /// Returns the same with coarser levels, each the mean over solid angle of the one before, and trilinear; a
+  /// black one without an environment. For glsl/light/radiance_levels.glsl.
+  frame::TextureHandle radianceLevels();
   /// Returns the table of linearly transformed cosines ("ltc_table" in glsl/light/ltc.glsl).
   frame::TextureHandle ltcTable();
   /// Declares what glsl/light/reflected_environment.glsl looks up of the environment, for a pass that reads
@@ -41,7 +44,7 @@ class LIMN_API ShadingMapService : public FrameService {
 
   gpu::Device& device_;
   const scene::Scene& scene_;
-  Entry radiance_, ltc_, irradiance_, filtered_, grazing_;
+  Entry radiance_, levels_, ltc_, irradiance_, filtered_, grazing_;
 };
 
 }  // namespace limn::shading_maps

@@ -37,6 +37,49 @@ TEST(Environment, UniformRadianceStaysUniform) {
   }
 }
 
+/// The sum of a map's light, by exact solid angles.
+dvec3 totalLight(int width, int height, const std::vector<vec3>& texels) {
+  dvec3 sum(0);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      sum += double(glsl::equirectangular_pixel_solid_angle(y, width, height)) *
+             dvec3(texels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)]);
+  return sum;
+}
+
+scene::Environment noise(int width, int height) {
+  scene::Environment e;
+  e.width = width;
+  e.height = height;
+  std::mt19937 random(3);
+  std::exponential_distribution<float> radiance(1);
+  for (int i = 0; i < width * height; ++i)
+    e.texels.emplace_back(radiance(random), radiance(random), radiance(random));
+  return e;
+}
+
+TEST(RadianceLevels, EveryLevelHoldsTheLightOfTheMap) {
+  for (const glm::ivec2 size : {glm::ivec2(64, 32), glm::ivec2(50, 25), glm::ivec2(7, 1), glm::ivec2(1, 9)}) {
+    const scene::Environment e = noise(size.x, size.y);
+    const dvec3 expected = totalLight(e.width, e.height, e.texels);
+    int width = e.width, height = e.height;
+    for (const FilteredMap& level : radianceLevels(e)) {
+      width = std::max(width / 2, 1);
+      height = std::max(height / 2, 1);
+      ASSERT_EQ(level.width, width);
+      ASSERT_EQ(level.height, height);
+      const dvec3 light = totalLight(level.width, level.height, level.texels);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(light[c], expected[c], 1e-5 * expected[c]) << width;
+    }
+    EXPECT_EQ(width * height, 1);
+  }
+}
+
+TEST(RadianceLevels, NeedAMap) {
+  EXPECT_THROW(radianceLevels({}), Error);
+  EXPECT_TRUE(radianceLevels(noise(1, 1)).empty());
+}
+
 // L = 1 + d.a: the cosine convolution keeps the linear part by 2/3.
 TEST(Environment, IrradianceOfALinearSkyIsTheClosedForm) {
   const vec3 a = normalize(vec3(0.3f, 0.8f, -0.5f));
