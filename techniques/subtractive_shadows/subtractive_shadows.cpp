@@ -29,8 +29,8 @@ using subtractive_shadows::Level;
 
 enum Combine : int { subtract, ratio, ratioSplit, add };
 constexpr const char* kCombines[] = {"subtract", "ratio", "ratio_split", "add"};
-enum Unshadowed : int { prefiltered, lights };
-constexpr const char* kUnshadowed[] = {"prefiltered", "lights"};
+enum Unshadowed : int { prefiltered, brdfSamples, lights };
+constexpr const char* kUnshadowed[] = {"prefiltered", "brdf_samples", "lights"};
 enum Sampling : int { importance, regions };
 constexpr const char* kSamplings[] = {"importance", "regions"};
 constexpr int kMostLights = 4096;
@@ -49,7 +49,11 @@ constexpr Parameter kParameters[] = {
     boolean("demodulate", true,
             "Without the surface's colours in what is subtracted or added, which blocks of pixels share"),
     choice("unshadowed", prefiltered, kUnshadowed,
-           "Where the light without shadows comes from: filtered maps, or more samples than have shadows"),
+           "Where the light without shadows comes from: filtered maps, samples of each pixel's lobe, or more "
+           "samples of the environment than have shadows"),
+    integer("brdf_samples", 32, {1, 1024}, "samples",
+            "Samples of a pixel's lobe for the light without shadows")
+        .logScale(),
     integer("unshadowed_factor", 16, {1, 64}, "times",
             "Samples of the light without shadows, over those that have shadows"),
     choice("sampling", importance, kSamplings,
@@ -179,12 +183,13 @@ class SubtractiveShadows : public Technique {
         batch.defineOrder(pass.program.defines);
         define(pass.program.defines);
         pass.program.defines["SAMPLE_FADE"] = technique_.budget_ ? "1" : "0";
-        if (technique_.budget_)
-          pass.bind = [&technique = technique_, bind = std::move(pass.bind)](frame::PassContext& context,
-                                                                             gpu::Program& program) {
-            bind(context, program);
-            program.set("active_samples", technique.activeSamples());
-          };
+        pass.bind = [&technique = technique_, bind = std::move(pass.bind),
+                     samples = everyPixel && batch.isLast() ? lobeSamples() : 0](frame::PassContext& context,
+                                                                                 gpu::Program& program) {
+          bind(context, program);
+          if (technique.budget_) program.set("active_samples", technique.activeSamples());
+          if (samples > 0) program.set("brdf_samples", samples);
+        };
         pass.declare = [&, declare = std::move(pass.declare)](frame::PassBuilder& builder) {
           declare(builder);
           blocks_.readItems(builder);
@@ -269,6 +274,16 @@ class SubtractiveShadows : public Technique {
                      Access::storageLoad, "UnshadowedSamples", "light without shadows");
       else
         maps.readReflected(builder, inputs_.handles.modelKinds);
+      if (lobeSamples() > 0)
+        builder.read(maps.radianceLevels(), Access::sampled, "environment_levels_map", "light of lobes");
+    }
+
+    /// Returns how many samples of a lobe passes with the unshadowed light take, 0: none.
+    int lobeSamples() const {
+      const bool entry = (inputs_.handles.modelKinds & 1u << glsl::model_entry) != 0;
+      if (combine_ == Combine::add || inputs_.parameters.choice("unshadowed") != brdfSamples || entry)
+        return 0;
+      return inputs_.parameters.integer("brdf_samples");
     }
 
     TextureHandle addResampling(TextureHandle target) {
@@ -290,8 +305,11 @@ class SubtractiveShadows : public Technique {
       surfaces.define(desc.defines);
       medium.define(desc.defines);
       const auto program = builder.program(std::move(desc));
-      builder.execute([program, blocks = blocks_, size = inputs_.size](frame::PassContext& context) {
-        blocks.bind(context.use(program));
+      builder.execute([program, blocks = blocks_, samples = lobeSamples(),
+                       size = inputs_.size](frame::PassContext& context) {
+        gpu::Program& used = context.use(program);
+        blocks.bind(used);
+        if (samples > 0) used.set("brdf_samples", samples);
         context.dispatch(size.x, size.y, 1, 8, 8);
       });
       return radiance;

@@ -4,7 +4,8 @@
 #define LIMN_UNSHADOWED_GLSL
 
 #define UNSHADOWED_PREFILTERED 0
-#define UNSHADOWED_LIGHTS 1
+#define UNSHADOWED_BRDF_SAMPLES 1
+#define UNSHADOWED_LIGHTS 2
 
 #include "techniques/subtractive_shadows/combine.glsl"
 
@@ -20,11 +21,19 @@ vec3 mirrored_light(SampledPixel p) { return vec3(0.0); }
 
 ReflectedParts unshadowed_light(SampledPixel p) { return ReflectedParts(vec3(0.0), mirrored_light(p)); }
 
-#elif UNSHADOWED == UNSHADOWED_PREFILTERED
+#elif UNSHADOWED != UNSHADOWED_LIGHTS
+#if UNSHADOWED == UNSHADOWED_BRDF_SAMPLES
+#include "techniques/subtractive_shadows/brdf_samples.glsl"
+#else
 #include "glsl/light/reflected_environment.glsl"
+#endif
 
 ReflectedParts unshadowed_light(SampledPixel p) {
+#if UNSHADOWED == UNSHADOWED_BRDF_SAMPLES
+  ReflectedParts light = sampled_environment(p);
+#else
   ReflectedParts light = reflected_environment(p.material, p.surface.normal, p.to_viewer);
+#endif
 #if MEDIUM
   Medium medium = scene_medium();
   light = scaled_parts(
