@@ -1,0 +1,147 @@
+#include "core/radiosity/directional_tree.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/radiosity/private/unit_cell.h"
+
+namespace limn::radiosity {
+namespace {
+
+using Node = DirectionalTree::Node;
+
+/// Steps from the corner of a footprint to its taps, in edges of the cell.
+constexpr float kTapReach = 0.5f;
+
+/// Adds a value to all cells below a node.
+void addConstant(std::vector<Node>& nodes, uint32_t node, const glm::vec3& value) {
+  nodes[node].value += value;
+  const uint32_t child = nodes[node].child;
+  for (uint32_t k = 0; child != 0 && k < 4; ++k) addConstant(nodes, child + k, value);
+}
+
+/// Looks for the bounds over a cone.
+struct ConeSearch {
+  std::span<const Node> nodes;
+  glm::vec3 axis;
+  float cosine, sine;
+  bool any = false;
+  DirectionBounds found;
+
+  /// Whether the cone meets the circle around the cell's corners.
+  bool meets(const UnitCell& cell) const {
+    const glm::vec3 centre = cell.centre();
+    float least = 1;
+    for (const glm::vec3& corner : cell.corners) least = std::min(least, glm::dot(centre, corner));
+    const float reach = std::sqrt(std::max(1 - least * least, 0.f));
+    if (cosine < -least) return true;  // together they are more than half a turn
+    return glm::dot(axis, centre) >= cosine * least - sine * reach;
+  }
+  void visit(uint32_t node, const UnitCell& cell) {
+    if (!meets(cell)) return;
+    const Node& own = nodes[node];
+    if (own.child == 0) {
+      found.low = any ? glm::min(found.low, own.value) : own.value;
+      found.high = any ? glm::max(found.high, own.value) : own.value;
+      any = true;
+      return;
+    }
+    glm::vec3 middles[3];
+    cell.middles(middles);
+    for (uint32_t k = 0; k < 4; ++k) visit(own.child + k, cell.child(k, middles));
+  }
+};
+
+}  // namespace
+
+float cellWeight(DirectionDomain domain, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+  return domain == DirectionDomain::hemisphere ? std::abs(glsl::triangle_projected_angle(a, b, c).z)
+                                               : glsl::triangle_solid_angle(a, b, c);
+}
+
+void DirectionalTree::assign(DirectionDomain domain, std::span<const Node> nodes) {
+  domain_ = domain;
+  nodes_.assign(nodes.begin(), nodes.end());
+}
+
+size_t DirectionalTree::cellCount() const {
+  return empty() ? 0 : faces() + 3 * ((nodes_.size() - faces()) / 4);
+}
+
+glm::vec3 DirectionalTree::value(const glm::vec3& w) const {
+  uint32_t node = glsl::octahedral_face(w);
+  if (empty() || node >= faces()) return glm::vec3(0);
+  glm::vec3 place = glsl::octahedral_place(w);
+  while (nodes_[node].child != 0) node = nodes_[node].child + glsl::octahedral_descend(place);
+  return nodes_[node].value;
+}
+
+glm::vec3 DirectionalTree::smoothValue(const glm::vec3& w) const {
+  const uint32_t face = glsl::octahedral_face(w);
+  if (empty() || face >= faces()) return glm::vec3(0);
+  const glm::vec3 signs = glsl::octahedral_signs(face), place = glsl::octahedral_place(w);
+  glm::vec3 inside = place;
+  float edge = 1;
+  for (uint32_t node = face; nodes_[node].child != 0; edge *= 0.5f)
+    node = nodes_[node].child + glsl::octahedral_descend(inside);
+  // Steps over an edge of the octant lead to negative places, which are those of the octant behind it. The
+  // horizon mirrors.
+  glm::vec3 sum(0);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      if (i == j) continue;
+      glm::vec3 tap = place;
+      tap[i] += kTapReach * edge;
+      tap[j] -= kTapReach * edge;
+      tap *= signs;
+      if (domain_ == DirectionDomain::hemisphere) tap.z = std::abs(tap.z);
+      sum += value(tap);
+    }
+  return sum / 6.f;
+}
+
+DirectionBounds DirectionalTree::bounds(const glm::vec3& axis, float cosine) const {
+  if (empty()) return {};
+  ConeSearch search{nodes_, axis, cosine, std::sqrt(std::max(1 - cosine * cosine, 0.f)), false, {}};
+  for (uint32_t face = 0; face < faces(); ++face) search.visit(face, UnitCell::face(face));
+  return search.found;
+}
+
+glm::vec3 DirectionalTree::flux() const {
+  glm::vec3 sum(0);
+  if (empty()) return sum;
+  for (uint32_t face = 0; face < faces(); ++face) sum += nodes_[face].value;
+  return sum * (domain_ == DirectionDomain::hemisphere ? 0.25f * glsl::pi : 0.5f * glsl::pi);
+}
+
+void DirectionalTree::scale(const glm::vec3& factor) {
+  for (Node& node : nodes_) node.value *= factor;
+}
+
+void DirectionalTree::add(const DirectionalTree& other, float weight) {
+  if (other.empty()) return;
+  if (empty()) {
+    assign(other.domain_, other.nodes_);
+    scale(glm::vec3(weight));
+    return;
+  }
+  for (uint32_t face = 0; face < faces(); ++face) addBelow(face, other, face, weight);
+}
+
+void DirectionalTree::addBelow(uint32_t node, const DirectionalTree& other, uint32_t otherNode,
+                               float weight) {
+  const Node& theirs = other.nodes_[otherNode];
+  if (theirs.child == 0) {
+    addConstant(nodes_, node, weight * theirs.value);
+    return;
+  }
+  if (nodes_[node].child == 0) {
+    const auto child = static_cast<uint32_t>(nodes_.size());
+    nodes_[node].child = child;
+    nodes_.insert(nodes_.end(), 4, {nodes_[node].value, 0});
+  }
+  nodes_[node].value += weight * theirs.value;
+  for (uint32_t k = 0; k < 4; ++k) addBelow(nodes_[node].child + k, other, theirs.child + k, weight);
+}
+
+}  // namespace limn::radiosity

@@ -1,0 +1,73 @@
+// Declares light that leaves an element as an adaptive tree over directions: a Haar basis on the octahedron
+// (Stamminger et al. 1999, Efficient Glossy Global Illumination with Interactive Viewing).
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "core/base/export.h"
+
+namespace limn::radiosity {
+
+/// Says which directions a tree covers.
+enum class DirectionDomain : uint8_t {
+  hemisphere,  ///< around +z, by 4 faces: radiance of a leaf, whose normal is +z; weighted by the cosine
+  sphere,      ///< by 8 faces: intensity of a cluster; weighted by solid angle
+};
+
+/// Returns how much a triangle of unit directions weighs: its projected solid angle or its solid angle, sr.
+LIMN_API float cellWeight(DirectionDomain domain, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
+
+/// Holds the least and the greatest value over some directions, per channel.
+struct DirectionBounds {
+  glm::vec3 low{0}, high{0};
+};
+
+/// A function over directions, constant in each cell of a tree of triangles
+/// (glsl/numeric/octahedral_cells.glsl). Without nodes it is 0 everywhere.
+class LIMN_API DirectionalTree {
+ public:
+  /// Holds a cell: the mean over its directions by the domain's weight.
+  struct Node {
+    glm::vec3 value{0};
+    uint32_t child = 0;  ///< the first of its four children; 0: none
+  };
+
+  explicit DirectionalTree(DirectionDomain domain = DirectionDomain::hemisphere) : domain_(domain) {}
+  /// Takes a tree's nodes: the faces first, children in runs of four behind their parents. Memory is kept
+  /// where it suffices.
+  void assign(DirectionDomain domain, std::span<const Node> nodes);
+  void clear() { nodes_.clear(); }
+
+  DirectionDomain domain() const { return domain_; }
+  bool empty() const { return nodes_.empty(); }
+  std::span<const Node> nodes() const { return nodes_; }
+  /// Returns the number of faces that the domain has.
+  uint32_t faces() const { return domain_ == DirectionDomain::hemisphere ? 4 : 8; }
+  /// Returns the number of cells without children.
+  size_t cellCount() const;
+
+  /// Returns the value in direction w (any length but 0); 0 outside the domain.
+  glm::vec3 value(const glm::vec3& w) const;
+  /// Returns the mean of six values around w, over the footprint of its cell.
+  glm::vec3 smoothValue(const glm::vec3& w) const;
+  /// Returns the bounds over the directions (of the domain) less than an angle from `axis` (unit), by that
+  /// angle's cosine, and over no more than the cells that these lie in.
+  DirectionBounds bounds(const glm::vec3& axis, float cosine) const;
+  /// Returns the integral over the domain by its weight: radiosity of radiance, power of intensity.
+  glm::vec3 flux() const;
+
+  void scale(const glm::vec3& factor);
+  /// Adds `weight` times a tree over the same domain and in the same frame. The result has the cells of both.
+  void add(const DirectionalTree& other, float weight = 1);
+
+ private:
+  void addBelow(uint32_t node, const DirectionalTree& other, uint32_t otherNode, float weight);
+
+  DirectionDomain domain_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace limn::radiosity

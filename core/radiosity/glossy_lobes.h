@@ -1,0 +1,65 @@
+// Declares the lobes by which a point's incident light leaves it.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "core/base/export.h"
+#include "glsl/indirect/illumination_sample.glsl"
+#include "glsl/materials/material_model.glsl"
+#include "glsl/surface/brdf.glsl"
+
+namespace limn::radiosity {
+
+/// The sum of one lobe per incident light: L(w) = sum f(w_k, w) (n.w_k)+ E_k, in the frame n = +z, for the
+/// specular part of the BRDF or for a material's model. Lobes of lights that spread are widened, and keep
+/// their energy.
+class LIMN_API GlossyLobes {
+ public:
+  /// Sets the lobes of the specular part. Directions are in the local frame; lights below the horizon and
+  /// black ones get no lobe. `widen`: see glsl::widened_alpha; 0: none. Memory is kept.
+  void set(const glsl::SurfaceBrdf& surface, std::span<const glsl::IncidentLight> lights, float widen);
+  /// Sets the lobes of a material's model, whose tangent is +x, with its diffuse part as it stands there.
+  /// Roughness along and across is widened where the model has it (Torrance-Sparrow and Ward). The model and
+  /// the tables (Scene::measured) must outlive the use of the lobes.
+  void set(const glsl::MaterialModel& model, const std::vector<glm::vec3>& measured,
+           std::span<const glsl::IncidentLight> lights, float widen);
+
+  size_t size() const { return count_; }
+  /// Returns the lobes' sum in direction w, unit, w.z > 0.
+  glm::vec3 radiance(const glm::vec3& w) const;
+  /// Returns what the lobes carry together, W/m^2: by the reflectance of the LTC table; of a model: 0, not
+  /// known.
+  const glm::vec3& flux() const { return flux_; }
+  /// Returns whether flux() is known.
+  bool fluxKnown() const { return model_ == nullptr; }
+
+  /// Evaluates some lobes in direction w, unit, w.z > 0: channel c of lobe which[i] is put in values[c *
+  /// stride + i]. All are `padded` to a multiple of four: lanes behind the last index take 0 for one. Returns
+  /// the sum over `count` of them.
+  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t> which, float* values, size_t stride) const;
+
+  /// Returns the mirror direction of a lobe.
+  glm::vec3 mirror(size_t k) const { return {-x_[k], -y_[k], z_[k]}; }
+  /// Returns the GGX width of a lobe.
+  float alpha(size_t k) const { return alpha_[k]; }
+  /// Returns what a lobe carries, luminance, W/m^2 (of a model: what arrives).
+  float brightness(size_t k) const { return brightness_[k]; }
+
+ private:
+  void clear();
+
+  size_t count_ = 0;
+  // One entry per lobe, and zeros up to a multiple of four.
+  std::vector<float> x_, y_, z_, alpha_, root_, brightness_;
+  std::vector<float> low_[3], high_[3];  ///< per channel E cos a(alpha)/a(alpha_k), times f0 and f90
+  std::vector<glm::vec3> irradiance_;
+  std::vector<glsl::MaterialModel> widened_;
+  const glsl::MaterialModel* model_ = nullptr;
+  const std::vector<glm::vec3>* measured_ = nullptr;
+  glm::vec3 flux_{0};
+};
+
+}  // namespace limn::radiosity

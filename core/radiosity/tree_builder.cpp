@@ -1,0 +1,432 @@
+#include "core/radiosity/tree_builder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/radiosity/private/unit_cell.h"
+#include "glsl/numeric/srgb.glsl"
+
+namespace limn::radiosity {
+namespace {
+
+/// Directions nearer to the horizon are evaluated here: the light ends at the horizon, and cells that see the
+/// end would split without limit.
+constexpr float kLeastHeight = 1e-3f;
+/// Peaks are found whatever the samples of a cell say, but for the least lobes that together have less than
+/// this part of the squared error that is asked for.
+constexpr float kMissedPeaks = 0.25f;
+/// A lobe is linear over a cell where its centre is off by less than this part of the tree's RMS per lobe.
+constexpr float kLinear = 0.05f;
+/// Cells of the deepest level may have more error than is asked for. Then the others are split until they
+/// have this part of it.
+constexpr double kReducible = 0.1;
+/// Part of the squared mean that the squared radiance of a direction counts for at least (display).
+constexpr double kDarkest = 0.1;
+
+/// One cell while the tree is built. Points 0 to 2 are the corners, point 3 is the centre.
+struct Cell {
+  UnitCell shape;
+  glm::vec3 totals[4];  ///< all lobes at the points
+  glm::vec3 linear[3];  ///< of lobes that are no longer evaluated, at the corners
+  size_t blocks[4];     ///< where the points' blocks of single lobes begin
+  size_t first;         ///< of the list of lobes that are evaluated
+  uint32_t count;       ///< and its length
+  uint32_t child;
+  float weight;
+  int level;
+
+  glm::vec3 value() const { return 0.75f * totals[3] + (totals[0] + totals[1] + totals[2]) / 12.f; }
+  /// The estimate of the squared error over the cell, of luminance.
+  float variance() const {
+    const float a = glsl::luminance(totals[0]), b = glsl::luminance(totals[1]),
+                c = glsl::luminance(totals[2]);
+    const float bend = glsl::luminance(totals[3]) - (a + b + c) / 3;
+    return ((a - b) * (a - b) + (b - c) * (b - c) + (c - a) * (c - a)) / 36 + 0.25f * bend * bend;
+  }
+  /// Whether the published test asks for more.
+  bool varies(float most) const {
+    float low = glsl::luminance(totals[3]), high = low;
+    for (int i = 0; i < 3; ++i) {
+      low = std::min(low, glsl::luminance(totals[i]));
+      high = std::max(high, glsl::luminance(totals[i]));
+    }
+    return high - low > most * glsl::luminance(totals[3]);
+  }
+  /// The longest edge, rad.
+  float edge() const {
+    float least = 1;
+    for (int i = 0; i < 3; ++i)
+      least = std::min(least, glm::dot(shape.corners[i], shape.corners[(i + 1) % 3]));
+    return std::acos(std::max(least, -1.f));
+  }
+};
+
+/// Memory from which pieces are taken and which is given back all at once.
+template <class T>
+class Arena {
+ public:
+  void reset() { used_ = 0; }
+  size_t take(size_t count) {
+    const size_t first = used_;
+    used_ += count;
+    if (used_ > values_.size()) values_.resize(2 * used_);
+    return first;
+  }
+  T* at(size_t first) { return values_.data() + first; }
+
+ private:
+  std::vector<T> values_;
+  size_t used_ = 0;
+};
+
+/// A cell that may be split, or a lobe whose peak may be sought.
+struct Candidate {
+  double priority;
+  uint32_t index;
+  bool operator<(const Candidate& other) const {
+    return priority != other.priority ? priority < other.priority : index > other.index;
+  }
+};
+
+/// Lobes as what a tree is made of.
+struct LobeSource {
+  const GlossyLobes& lobes;
+
+  uint32_t size() const { return static_cast<uint32_t>(lobes.size()); }
+  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t> which, float* values,
+                     size_t stride) const {
+    return lobes.evaluate(w, which, values, stride);
+  }
+  uint64_t cost(size_t count) const { return count; }
+  glm::vec3 mirror(uint32_t k) const { return lobes.mirror(k); }
+  float alpha(uint32_t k) const { return lobes.alpha(k); }
+  /// About its integral over directions.
+  double squaredRadiance(uint32_t k) const {
+    const double ratio = double(lobes.brightness(k)) / double(lobes.alpha(k));
+    return ratio * ratio;
+  }
+};
+
+/// A function has no lobes: nothing is kept for single ones.
+struct FunctionSource {
+  const TreeBuilder::Function& function;
+
+  uint32_t size() const { return 0; }
+  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t>, float*, size_t) const {
+    return function(w);
+  }
+  uint64_t cost(size_t) const { return 1; }
+  glm::vec3 mirror(uint32_t) const { return {}; }
+  float alpha(uint32_t) const { return 1; }
+  double squaredRadiance(uint32_t) const { return 0; }
+};
+
+size_t strideOf(size_t count) {
+  return (count + 3) / 4 * 4;
+}
+
+}  // namespace
+
+struct TreeBuilder::Scratch {
+  std::vector<Cell> cells;
+  std::vector<Candidate> heap;
+  std::vector<DirectionalTree::Node> nodes;
+  std::vector<Candidate> brightest;
+  Arena<uint32_t> lists;
+  Arena<float> values;
+  uint64_t evaluations = 0;
+
+  TreeSettings settings;
+  DirectionDomain domain = DirectionDomain::hemisphere;
+  /// Of the cells without children: the sums of weight times squared luminance and of weight times variance.
+  double power = 0, error = 0;
+  double stuck = 0;    ///< the part of the error that is in cells of the deepest level
+  double darkest = 0;  ///< display: what is added to squared luminance
+
+  /// Evaluates lobes into a block that begins at `block`.
+  template <class Source>
+  glm::vec3 evaluate(const Source& source, glm::vec3 w, size_t list, uint32_t count, size_t block) {
+    if (domain == DirectionDomain::hemisphere) w.z = std::max(w.z, kLeastHeight);
+    evaluations += source.cost(count);
+    return source.evaluate(w, {lists.at(list), count}, values.at(block), strideOf(count));
+  }
+
+  double squaredError(const Cell& cell) const {
+    const double area = double(cell.weight) * double(cell.variance());
+    if (settings.criterion != TreeSettings::Criterion::display) return area;
+    const double value = glsl::luminance(cell.value());
+    return area / std::max(value * value + darkest, 1e-300);
+  }
+  void count(const Cell& cell, double sign) {
+    const double value = glsl::luminance(cell.value());
+    power += sign * double(cell.weight) * value * value;
+    const double part = sign * squaredError(cell);
+    error += part;
+    if (cell.level >= settings.maxLevel) stuck += part;
+  }
+
+  /// Sums up all cells, with a mean that is now known.
+  void recount() {
+    double mean = 0, area = 0;
+    for (const Cell& cell : cells) {
+      if (cell.child != 0) continue;
+      mean += double(cell.weight) * double(glsl::luminance(cell.value()));
+      area += double(cell.weight);
+    }
+    darkest = kDarkest * (mean / area) * (mean / area);
+    power = error = stuck = 0;
+    for (const Cell& cell : cells)
+      if (cell.child == 0) count(cell, 1);
+  }
+
+  template <class Source>
+  void begin(const Source& source, DirectionDomain over, const TreeSettings& how) {
+    settings = how;
+    domain = over;
+    cells.clear();
+    lists.reset();
+    values.reset();
+    power = error = stuck = 0;
+    const uint32_t count = source.size();
+    const size_t list = lists.take(strideOf(count));
+    for (uint32_t k = 0; k < count; ++k) lists.at(list)[k] = k;
+    const uint32_t faces = domain == DirectionDomain::hemisphere ? 4 : 8;
+    for (uint32_t face = 0; face < faces; ++face) {
+      Cell cell{};
+      cell.shape = UnitCell::face(face);
+      cell.first = list;
+      cell.count = count;
+      for (uint32_t i = 0; i < 4; ++i) {
+        cell.blocks[i] = values.take(3 * strideOf(count));
+        const glm::vec3 w = i < 3 ? cell.shape.corners[i] : cell.shape.centre();
+        cell.totals[i] = evaluate(source, w, list, count, cell.blocks[i]);
+      }
+      cell.weight = domain == DirectionDomain::hemisphere ? 0.25f * glsl::pi : 0.5f * glsl::pi;
+      cells.push_back(cell);
+    }
+  }
+
+  /// Whether a lobe may change over the cell in ways that its points do not show.
+  template <class Source>
+  bool hides(const Source& source, const Cell& cell, uint32_t lobe, float edge) const {
+    const float peak = 2 * source.alpha(lobe);
+    if (edge <= peak) return false;
+    return glm::dot(source.mirror(lobe), cell.shape.centre()) > std::cos(std::min(edge, 3.f));
+  }
+
+  /// Moves lobes that are linear over the cell from its list to its linear part.
+  template <class Source>
+  void freeze(const Source& source, Cell& cell) {
+    if (cell.count == 0) return;
+    const float limit = kLinear * static_cast<float>(std::sqrt(std::max(power, 0.0) / double(glsl::pi))) /
+                        static_cast<float>(source.size());
+    const float edge = cell.edge();
+    const size_t stride = strideOf(cell.count);
+    const uint32_t* list = lists.at(cell.first);
+    const size_t keptList = lists.take(stride);
+    list = lists.at(cell.first);
+    uint32_t* kept = lists.at(keptList);
+    uint32_t keptCount = 0;
+    const auto at = [&](int point, int channel, uint32_t i) {
+      return values.at(cell.blocks[point])[static_cast<size_t>(channel) * stride + i];
+    };
+    const auto colour = [&](int point, uint32_t i) {
+      return glm::vec3(at(point, 0, i), at(point, 1, i), at(point, 2, i));
+    };
+    for (uint32_t i = 0; i < cell.count; ++i) {
+      const glm::vec3 corners[3] = {colour(0, i), colour(1, i), colour(2, i)};
+      const glm::vec3 bend = colour(3, i) - (corners[0] + corners[1] + corners[2]) / 3.f;
+      if (std::abs(glsl::luminance(bend)) < limit && !hides(source, cell, list[i], edge)) {
+        for (int p = 0; p < 3; ++p) cell.linear[p] += corners[p];
+      } else {
+        kept[keptCount++] = i;
+      }
+    }
+    if (keptCount == cell.count) return;
+    const size_t keptStride = strideOf(keptCount);
+    for (int p = 0; p < 4; ++p) {
+      const size_t block = values.take(3 * keptStride);
+      for (size_t c = 0; c < 3; ++c)
+        for (uint32_t i = 0; i < keptCount; ++i)
+          values.at(block)[c * keptStride + i] = values.at(cell.blocks[p])[c * stride + kept[i]];
+      cell.blocks[p] = block;
+    }
+    for (uint32_t i = 0; i < keptCount; ++i) kept[i] = list[kept[i]];
+    cell.first = keptList;
+    cell.count = keptCount;
+  }
+
+  template <class Source>
+  void split(const Source& source, uint32_t index) {
+    count(cells[index], -1);
+    if (settings.frozen) freeze(source, cells[index]);
+    Cell parent = cells[index];
+    const auto firstChild = static_cast<uint32_t>(cells.size());
+    cells[index].child = firstChild;
+    const size_t blockSize = 3 * strideOf(parent.count);
+    glm::vec3 middles[3], middleTotals[3], middleLinear[3];
+    size_t middleBlocks[3];
+    parent.shape.middles(middles);
+    for (int i = 0; i < 3; ++i) {
+      middleBlocks[i] = values.take(blockSize);
+      middleLinear[i] = 0.5f * (parent.linear[(i + 1) % 3] + parent.linear[(i + 2) % 3]);
+      middleTotals[i] =
+          middleLinear[i] + evaluate(source, middles[i], parent.first, parent.count, middleBlocks[i]);
+    }
+    float left = parent.weight;
+    for (uint32_t k = 0; k < 4; ++k) {
+      Cell child{};
+      child.shape = parent.shape.child(k, middles);
+      child.first = parent.first;
+      child.count = parent.count;
+      child.level = parent.level + 1;
+      for (uint32_t i = 0; i < 3; ++i) {
+        const bool own = k < 3 && i == k;
+        const uint32_t middle = k == 3 ? i : 3 - i - k;
+        child.totals[i] = own ? parent.totals[i] : middleTotals[middle];
+        child.linear[i] = own ? parent.linear[i] : middleLinear[middle];
+        child.blocks[i] = own ? parent.blocks[i] : middleBlocks[middle];
+      }
+      if (k == 3) {
+        child.blocks[3] = parent.blocks[3];
+        child.totals[3] = parent.totals[3];
+        child.weight = std::max(left, 0.f);
+      } else {
+        child.blocks[3] = values.take(blockSize);
+        child.totals[3] = (child.linear[0] + child.linear[1] + child.linear[2]) / 3.f +
+                          evaluate(source, child.shape.centre(), child.first, child.count, child.blocks[3]);
+        child.weight =
+            cellWeight(domain, child.shape.corners[0], child.shape.corners[1], child.shape.corners[2]);
+        left -= child.weight;
+      }
+      cells.push_back(child);
+    }
+    for (uint32_t k = 0; k < 4; ++k) count(cells[firstChild + k], 1);
+  }
+
+  /// Splits what holds the mirror directions of lobes until its edges are as long as the lobes' cores.
+  template <class Source>
+  void findPeaks(const Source& source) {
+    brightest.clear();
+    double all = 0;
+    for (uint32_t k = 0; k < source.size(); ++k) {
+      brightest.push_back({source.squaredRadiance(k), k});
+      all += brightest.back().priority;
+    }
+    std::sort(brightest.begin(), brightest.end());
+    double missed = 0;
+    const double mayMiss = kMissedPeaks * double(settings.error) * double(settings.error) * all;
+    for (const Candidate& lobe : brightest) {
+      missed += lobe.priority;
+      if (missed > mayMiss) splitAround(source, lobe.index);
+    }
+  }
+
+  template <class Source>
+  void splitAround(const Source& source, uint32_t lobe) {
+    const glm::vec3 mirror = source.mirror(lobe);
+    const float core = 2 * source.alpha(lobe);
+    glm::vec3 place = glsl::octahedral_place(mirror);
+    uint32_t cell = glsl::octahedral_face(mirror);
+    while (true) {
+      if (cells[cell].child == 0) {
+        if (cells[cell].level >= settings.maxLevel || cells[cell].edge() <= core) return;
+        split(source, cell);
+      }
+      cell = cells[cell].child + glsl::octahedral_descend(place);
+    }
+  }
+
+  /// Whether the error is small enough, or what splits could still take from it does not matter.
+  bool good() const {
+    const double eps2 = double(settings.error) * double(settings.error);
+    const double limit =
+        eps2 * (settings.criterion == TreeSettings::Criterion::display ? double(glsl::pi) : power);
+    return error <= limit || error - stuck <= kReducible * stuck;
+  }
+
+  void offer(uint32_t cell) {
+    if (cells[cell].level >= settings.maxLevel) return;
+    const double priority = squaredError(cells[cell]);
+    if (!(priority > 0)) return;
+    heap.push_back({priority, cell});
+    std::push_heap(heap.begin(), heap.end());
+  }
+
+  template <class Source>
+  void refineWorst(const Source& source) {
+    heap.clear();
+    for (uint32_t i = 0; i < cells.size(); ++i)
+      if (cells[i].child == 0) offer(i);
+    while (!heap.empty() && !good()) {
+      const uint32_t worst = heap.front().index;
+      std::pop_heap(heap.begin(), heap.end());
+      heap.pop_back();
+      split(source, worst);
+      for (uint32_t k = 0; k < 4; ++k) offer(cells[worst].child + k);
+    }
+  }
+
+  template <class Source>
+  void refine(const Source& source) {
+    for (const Cell& cell : cells) count(cell, 1);
+    for (uint32_t i = 0; i < cells.size(); ++i)
+      if (cells[i].level < settings.minLevel) split(source, i);
+    recount();
+    if (settings.criterion == TreeSettings::Criterion::relative) {
+      for (uint32_t i = 0; i < cells.size(); ++i)
+        if (cells[i].child == 0 && cells[i].level < settings.maxLevel && cells[i].varies(settings.error))
+          split(source, i);
+      return;
+    }
+    findPeaks(source);
+    refineWorst(source);
+  }
+
+  /// Values of inner cells are the means of their children's.
+  void finish(DirectionalTree& tree) {
+    nodes.resize(cells.size());
+    for (size_t i = cells.size(); i-- > 0;) {
+      const uint32_t child = cells[i].child;
+      nodes[i] = {cells[i].value(), child};
+      if (child == 0) continue;
+      glm::vec3 sum(0);
+      for (uint32_t k = 0; k < 4; ++k) sum += cells[child + k].weight * nodes[child + k].value;
+      nodes[i].value = sum / cells[i].weight;
+    }
+    tree.assign(domain, nodes);
+  }
+};
+
+TreeBuilder::TreeBuilder() : scratch_(std::make_unique<Scratch>()) {}
+TreeBuilder::~TreeBuilder() = default;
+TreeBuilder::TreeBuilder(TreeBuilder&&) noexcept = default;
+TreeBuilder& TreeBuilder::operator=(TreeBuilder&&) noexcept = default;
+
+uint64_t TreeBuilder::evaluations() const {
+  return scratch_->evaluations;
+}
+
+void TreeBuilder::build(const GlossyLobes& lobes, const TreeSettings& settings, DirectionalTree& tree) {
+  if (lobes.size() == 0) return tree.clear();
+  const LobeSource source{lobes};
+  scratch_->begin(source, DirectionDomain::hemisphere, settings);
+  scratch_->refine(source);
+  scratch_->finish(tree);
+  if (!lobes.fluxKnown()) return;
+  const glm::vec3 flux = tree.flux(), wanted = lobes.flux();
+  glm::vec3 factor(1);
+  for (int c = 0; c < 3; ++c)
+    if (flux[c] > 0) factor[c] = wanted[c] / flux[c];
+  tree.scale(factor);
+}
+
+void TreeBuilder::build(const Function& function, DirectionDomain domain, const TreeSettings& settings,
+                        DirectionalTree& tree) {
+  const FunctionSource source{function};
+  scratch_->begin(source, domain, settings);
+  scratch_->refine(source);
+  scratch_->finish(tree);
+}
+
+}  // namespace limn::radiosity

@@ -1,0 +1,54 @@
+// Declares how directional trees are made: refined where the light changes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <memory>
+
+#include "core/base/export.h"
+#include "core/radiosity/directional_tree.h"
+#include "core/radiosity/glossy_lobes.h"
+
+namespace limn::radiosity {
+
+struct TreeSettings {
+  /// Says which cell is split next, and when it is enough.
+  enum class Criterion : uint8_t {
+    transport,  ///< the worst first, until the relative L2 error of the radiance is below `error`
+    display,    ///< the same, with errors relative to the radiance of their direction
+    relative,   ///< each while (max - min) / centre of its samples exceeds `error` (as published, with 0.5)
+  };
+  Criterion criterion = Criterion::transport;
+  float error = 0.1f;  ///< more than 0
+  int minLevel = 2;    ///< every cell has this level at least; 0 to maxLevel
+  int maxLevel = 8;    ///< no cell has more; 0 to 10. The same as minLevel: one level
+  bool frozen = true;  ///< lobes that are linear over a cell are no longer evaluated in it
+  bool operator==(const TreeSettings&) const = default;
+};
+
+/// Builds trees. Keeps its working memory, so that a thread should use one for many trees.
+class LIMN_API TreeBuilder {
+ public:
+  TreeBuilder();
+  ~TreeBuilder();
+  TreeBuilder(TreeBuilder&&) noexcept;
+  TreeBuilder& operator=(TreeBuilder&&) noexcept;
+
+  /// Builds the tree of the lobes over the hemisphere, with their flux exactly where it is known.
+  void build(const GlossyLobes& lobes, const TreeSettings& settings, DirectionalTree& tree);
+
+  using Function = std::function<glm::vec3(const glm::vec3& direction)>;
+  /// Builds the tree of a function of unit directions.
+  void build(const Function& function, DirectionDomain domain, const TreeSettings& settings,
+             DirectionalTree& tree);
+
+  /// Returns how many lobes (or functions) were evaluated since the builder was made, each direction for one.
+  uint64_t evaluations() const;
+
+ private:
+  struct Scratch;
+  std::unique_ptr<Scratch> scratch_;
+};
+
+}  // namespace limn::radiosity

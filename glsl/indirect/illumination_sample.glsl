@@ -1,0 +1,48 @@
+// Illumination samples: small area lights that links leave at the elements they light (Stamminger, Scheel, Granier,
+// Perez-Cazorla, Drettakis and Sillion 1999, Efficient Glossy Global Illumination with Interactive Viewing).
+#ifndef LIMN_ILLUMINATION_SAMPLE_GLSL
+#define LIMN_ILLUMINATION_SAMPLE_GLSL
+#include "glsl/geometry/vertex.glsl"
+#include "glsl/numeric/language.glsl"
+LIMN_BEGIN
+
+// Element of a storage buffer, 32 bytes.
+struct IlluminationSample {
+  vec3 position;  // y, in the units of the elements
+  float area;     // A, in those units squared
+  vec3 radiance;  // g, the mean of radiance times visibility over the link, W/(m^2 sr)
+  uint normal;    // n: vertex_pack_normal
+};
+
+// What arrives of a sample at a point. Nothing arrives behind the sample.
+struct IncidentLight {
+  vec3 direction;   // w, unit, towards the sample
+  float spread;     // delta, about the sample's extent, rad
+  vec3 irradiance;  // E, on a surface that faces it, W/m^2
+};
+
+// The widest sample that a single direction stands for, rad.
+LIMN_CONST float incident_max_spread = 1.5f;
+
+// E = g A c / (d^2 + A c / pi): the sample is taken as a disc, whose irradiance this is on its axis. `x`: the point.
+LIMN_FN IncidentLight incident_light(IlluminationSample s, vec3 x) {
+  vec3 way = s.position - x;
+  float distance2 = dot(way, way);
+  float per_distance = 1.0f / sqrt(max(distance2, 1e-30f));
+  IncidentLight r;
+  r.direction = per_distance * way;
+  float facing = s.area * max(-dot(r.direction, vertex_unpack_normal(s.normal)), 0.0f);
+  r.irradiance = s.radiance * (facing > 0.0f ? facing / (distance2 + inverse_pi * facing) : 0.0f);
+  r.spread = min(sqrt(s.area) * per_distance, incident_max_spread);
+  return r;
+}
+
+// The GGX width of the lobe that stands for a surface of width alpha lit by a light of some spread at the cosine n_dot_l;
+// `widen`: standard deviations of the light per spread, about. Without it every light shows as a highlight of its own.
+LIMN_FN float widened_alpha(float alpha, float spread, float n_dot_l, float widen) {
+  float by = widen * spread / max(n_dot_l, 0.1f);
+  return min(sqrt(alpha * alpha + by * by), 1.0f);
+}
+
+LIMN_END
+#endif  // LIMN_ILLUMINATION_SAMPLE_GLSL
