@@ -4,14 +4,12 @@
 #include <cmath>
 
 #include "core/radiosity/private/unit_cell.h"
+#include "glsl/indirect/packed_tree.glsl"
 
 namespace limn::radiosity {
 namespace {
 
 using Node = DirectionalTree::Node;
-
-/// Steps from the corner of a footprint to its taps, in edges of the cell.
-constexpr float kTapReach = 0.5f;
 
 /// Adds a value to all cells below a node.
 void addConstant(std::vector<Node>& nodes, uint32_t node, const glm::vec3& value) {
@@ -84,19 +82,12 @@ glm::vec3 DirectionalTree::smoothValue(const glm::vec3& w) const {
   float edge = 1;
   for (uint32_t node = face; nodes_[node].child != 0; edge *= 0.5f)
     node = nodes_[node].child + glsl::octahedral_descend(inside);
-  // Steps over an edge of the octant lead to negative places, which are those of the octant behind it. The
-  // horizon mirrors.
   glm::vec3 sum(0);
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      if (i == j) continue;
-      glm::vec3 tap = place;
-      tap[i] += kTapReach * edge;
-      tap[j] -= kTapReach * edge;
-      tap *= signs;
-      if (domain_ == DirectionDomain::hemisphere) tap.z = std::abs(tap.z);
-      sum += value(tap);
-    }
+  for (uint32_t i = 0; i < 6; ++i) {
+    glm::vec3 tap = glsl::octahedral_tap(place, signs, edge, i);
+    if (domain_ == DirectionDomain::hemisphere) tap.z = std::abs(tap.z);  // the horizon mirrors
+    sum += value(tap);
+  }
   return sum / 6.f;
 }
 
@@ -112,6 +103,16 @@ glm::vec3 DirectionalTree::flux() const {
   if (empty()) return sum;
   for (uint32_t face = 0; face < faces(); ++face) sum += nodes_[face].value;
   return sum * (domain_ == DirectionDomain::hemisphere ? 0.25f * glsl::pi : 0.5f * glsl::pi);
+}
+
+float DirectionalTree::pack(std::vector<glm::uvec2>& nodes) const {
+  float brightest = 0;
+  for (const Node& node : nodes_) brightest = std::max({brightest, node.value.x, node.value.y, node.value.z});
+  // Never so small that dividing by it overflows.
+  const float scale = std::max(brightest / glsl::packed_tree_brightest, 1e-37f);
+  for (const Node& node : nodes_)
+    nodes.emplace_back(node.child, glsl::shared_exponent_encode(node.value / scale));
+  return scale;
 }
 
 void DirectionalTree::scale(const glm::vec3& factor) {

@@ -59,6 +59,10 @@ class LIMN_API DirectionalTree {
   /// Returns the integral over the domain by its weight: radiosity of radiance, power of intensity.
   glm::vec3 flux() const;
 
+  /// Appends the nodes as the GPU has them (glsl/indirect/packed_tree.glsl); returns the scale of their
+  /// values. Negative values become 0.
+  float pack(std::vector<glm::uvec2>& nodes) const;
+
   void scale(const glm::vec3& factor);
   /// Adds `weight` times a tree over the same domain and in the same frame. The result has the cells of both.
   void add(const DirectionalTree& other, float weight = 1);

@@ -15,8 +15,12 @@ constexpr float kLeastHeight = 1e-3f;
 /// Peaks are found whatever the samples of a cell say, but for the least lobes that together have less than
 /// this part of the squared error that is asked for.
 constexpr float kMissedPeaks = 0.25f;
-/// A lobe is linear over a cell where its centre is off by less than this part of the tree's RMS per lobe.
-constexpr float kLinear = 0.05f;
+/// Lobes are linear over a cell as long as together they are off at its centre by less than this part of the
+/// error that is asked for, so that the tree's error grows by few percent; and each by no more than that over
+/// the root of their number.
+constexpr float kLinear = 0.3f;
+/// The error that the published test is taken to ask for.
+constexpr float kPublishedError = 0.1f;
 /// Cells of the deepest level may have more error than is asked for. Then the others are split until they
 /// have this part of it.
 constexpr double kReducible = 0.1;
@@ -28,6 +32,7 @@ struct Cell {
   UnitCell shape;
   glm::vec3 totals[4];  ///< all lobes at the points
   glm::vec3 linear[3];  ///< of lobes that are no longer evaluated, at the corners
+  float bent;           ///< by how much these are off at the centres of the cells that took them, luminance
   size_t blocks[4];     ///< where the points' blocks of single lobes begin
   size_t first;         ///< of the list of lobes that are evaluated
   uint32_t count;       ///< and its length
@@ -109,20 +114,77 @@ struct LobeSource {
 
 /// A function has no lobes: nothing is kept for single ones.
 struct FunctionSource {
-  const TreeBuilder::Function& function;
-
   uint32_t size() const { return 0; }
-  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t>, float*, size_t) const {
-    return function(w);
-  }
   uint64_t cost(size_t) const { return 1; }
   glm::vec3 mirror(uint32_t) const { return {}; }
   float alpha(uint32_t) const { return 1; }
   double squaredRadiance(uint32_t) const { return 0; }
 };
 
+struct GivenSource : FunctionSource {
+  const TreeBuilder::Function& function;
+
+  explicit GivenSource(const TreeBuilder::Function& given) : function(given) {}
+  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t>, float*, size_t) const {
+    return function(w);
+  }
+};
+
+/// Whether directions have the same coordinates in two frames, but for less than cells resolve.
+bool agree(const glsl::Frame& a, const glsl::Frame& b) {
+  constexpr float kTurn = 2e-3f;
+  return glm::distance(a.n, b.n) < kTurn && glm::distance(a.t, b.t) < kTurn;
+}
+
+/// What parts of a surface send where, per area of all.
+struct SurfaceSource : FunctionSource {
+  /// The most by which light of a part counts where the surface is seen at a more grazing angle.
+  static constexpr float kSteepest = 2;
+  std::span<const TreePart> parts;
+  const glsl::Frame& frame;
+  float area;
+
+  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t>, float*, size_t) const {
+    const glm::vec3 out = glsl::from_local(frame, w);
+    glm::vec3 sum(0);
+    for (const TreePart& part : parts) {
+      const glm::vec3 local = glsl::to_local(part.frame, out);
+      if (local.z > 0) sum += part.area * std::min(local.z / w.z, kSteepest) * part.tree->value(local);
+    }
+    return sum / area;
+  }
+};
+
+/// What surfaces and clusters send where together.
+struct ClusterSource : FunctionSource {
+  std::span<const TreePart> parts;
+  const glsl::Frame& frame;
+
+  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t>, float*, size_t) const {
+    const glm::vec3 out = glsl::from_local(frame, w);
+    glm::vec3 sum(0);
+    for (const TreePart& part : parts) {
+      const glm::vec3 local = glsl::to_local(part.frame, out);
+      if (part.tree->domain() == DirectionDomain::sphere)
+        sum += part.area * part.tree->value(local);
+      else if (local.z > 0)
+        sum += part.area * local.z * (part.tree->value(local) + part.diffuse);
+    }
+    return sum;
+  }
+};
+
 size_t strideOf(size_t count) {
   return (count + 3) / 4 * 4;
+}
+
+/// Scales each channel that the tree has at all.
+void scaleToFlux(DirectionalTree& tree, const glm::vec3& wanted) {
+  const glm::vec3 flux = tree.flux();
+  glm::vec3 factor(1);
+  for (int c = 0; c < 3; ++c)
+    if (flux[c] > 0) factor[c] = wanted[c] / flux[c];
+  tree.scale(factor);
 }
 
 }  // namespace
@@ -218,8 +280,11 @@ struct TreeBuilder::Scratch {
   template <class Source>
   void freeze(const Source& source, Cell& cell) {
     if (cell.count == 0) return;
-    const float limit = kLinear * static_cast<float>(std::sqrt(std::max(power, 0.0) / double(glsl::pi))) /
-                        static_cast<float>(source.size());
+    const float asked =
+        settings.criterion == TreeSettings::Criterion::relative ? kPublishedError : settings.error;
+    const float together =
+        kLinear * asked * static_cast<float>(std::sqrt(std::max(power, 0.0) / double(glsl::pi)));
+    const float limit = together / std::sqrt(static_cast<float>(source.size()));
     const float edge = cell.edge();
     const size_t stride = strideOf(cell.count);
     const uint32_t* list = lists.at(cell.first);
@@ -236,7 +301,10 @@ struct TreeBuilder::Scratch {
     for (uint32_t i = 0; i < cell.count; ++i) {
       const glm::vec3 corners[3] = {colour(0, i), colour(1, i), colour(2, i)};
       const glm::vec3 bend = colour(3, i) - (corners[0] + corners[1] + corners[2]) / 3.f;
-      if (std::abs(glsl::luminance(bend)) < limit && !hides(source, cell, list[i], edge)) {
+      const float bent = glsl::luminance(bend);
+      if (std::abs(bent) < limit && std::abs(cell.bent + bent) < together &&
+          !hides(source, cell, list[i], edge)) {
+        cell.bent += bent;
         for (int p = 0; p < 3; ++p) cell.linear[p] += corners[p];
       } else {
         kept[keptCount++] = i;
@@ -280,6 +348,7 @@ struct TreeBuilder::Scratch {
       child.first = parent.first;
       child.count = parent.count;
       child.level = parent.level + 1;
+      child.bent = parent.bent;
       for (uint32_t i = 0; i < 3; ++i) {
         const bool own = k < 3 && i == k;
         const uint32_t middle = k == 3 ? i : 3 - i - k;
@@ -383,6 +452,13 @@ struct TreeBuilder::Scratch {
     refineWorst(source);
   }
 
+  template <class Source>
+  void build(const Source& source, DirectionDomain over, const TreeSettings& how, DirectionalTree& tree) {
+    begin(source, over, how);
+    refine(source);
+    finish(tree);
+  }
+
   /// Values of inner cells are the means of their children's.
   void finish(DirectionalTree& tree) {
     nodes.resize(cells.size());
@@ -407,26 +483,54 @@ uint64_t TreeBuilder::evaluations() const {
   return scratch_->evaluations;
 }
 
+double TreeBuilder::estimatedError() const {
+  const Scratch& s = *scratch_;
+  const bool display = s.settings.criterion == TreeSettings::Criterion::display;
+  return std::sqrt(std::max(s.error, 0.0) / std::max(display ? double(glsl::pi) : s.power, 1e-300));
+}
+
 void TreeBuilder::build(const GlossyLobes& lobes, const TreeSettings& settings, DirectionalTree& tree) {
   if (lobes.size() == 0) return tree.clear();
-  const LobeSource source{lobes};
-  scratch_->begin(source, DirectionDomain::hemisphere, settings);
-  scratch_->refine(source);
-  scratch_->finish(tree);
-  if (!lobes.fluxKnown()) return;
-  const glm::vec3 flux = tree.flux(), wanted = lobes.flux();
-  glm::vec3 factor(1);
-  for (int c = 0; c < 3; ++c)
-    if (flux[c] > 0) factor[c] = wanted[c] / flux[c];
-  tree.scale(factor);
+  scratch_->build(LobeSource{lobes}, DirectionDomain::hemisphere, settings, tree);
+  if (lobes.fluxKnown()) scaleToFlux(tree, lobes.flux());
 }
 
 void TreeBuilder::build(const Function& function, DirectionDomain domain, const TreeSettings& settings,
                         DirectionalTree& tree) {
-  const FunctionSource source{function};
-  scratch_->begin(source, domain, settings);
-  scratch_->refine(source);
-  scratch_->finish(tree);
+  scratch_->build(GivenSource(function), domain, settings, tree);
+}
+
+void TreeBuilder::pull(std::span<const TreePart> parts, const glsl::Frame& frame,
+                       const TreeSettings& settings, DirectionalTree& tree) {
+  tree.clear();
+  float area = 0;
+  bool same = true, dark = true;
+  glm::vec3 flux(0);
+  for (const TreePart& part : parts) {
+    area += part.area;
+    flux += part.area * part.tree->flux();
+    if (part.tree->empty()) continue;
+    dark = false;
+    same = same && agree(part.frame, frame);
+  }
+  if (dark || !(area > 0)) return;
+  if (same) {
+    for (const TreePart& part : parts) tree.add(*part.tree, part.area / area);
+    return;
+  }
+  scratch_->build(SurfaceSource{{}, parts, frame, area}, DirectionDomain::hemisphere, settings, tree);
+  scaleToFlux(tree, flux / area);
+}
+
+void TreeBuilder::intensity(std::span<const TreePart> parts, const glsl::Frame& frame,
+                            const TreeSettings& settings, DirectionalTree& tree) {
+  glm::vec3 power(0);
+  for (const TreePart& part : parts) {
+    const bool surface = part.tree->domain() == DirectionDomain::hemisphere;
+    power += part.area * (part.tree->flux() + (surface ? glsl::pi * part.diffuse : glm::vec3(0)));
+  }
+  scratch_->build(ClusterSource{{}, parts, frame}, DirectionDomain::sphere, settings, tree);
+  scaleToFlux(tree, power);
 }
 
 }  // namespace limn::radiosity

@@ -5,10 +5,12 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
+#include <span>
 
 #include "core/base/export.h"
 #include "core/radiosity/directional_tree.h"
 #include "core/radiosity/glossy_lobes.h"
+#include "glsl/numeric/geometry.glsl"
 
 namespace limn::radiosity {
 
@@ -27,6 +29,14 @@ struct TreeSettings {
   bool operator==(const TreeSettings&) const = default;
 };
 
+/// One of the surfaces (or clusters of them) whose light is summed up.
+struct TreePart {
+  const DirectionalTree* tree;
+  glsl::Frame frame;     ///< of the tree's directions; n: the normal
+  float area;            ///< of the surface; of a cluster, whose tree is an intensity: 1
+  glm::vec3 diffuse{0};  ///< radiance beside the tree's, the same in all directions above the surface
+};
+
 /// Builds trees. Keeps its working memory, so that a thread should use one for many trees.
 class LIMN_API TreeBuilder {
  public:
@@ -43,6 +53,18 @@ class LIMN_API TreeBuilder {
   void build(const Function& function, DirectionDomain domain, const TreeSettings& settings,
              DirectionalTree& tree);
 
+  /// Builds the radiance that stands for all parts of a surface whose normals about agree: its flux is
+  /// theirs. `frame`: of the result; diffuse radiance is left out. Parts in that same frame give their cells,
+  /// of others the light (times its cosine) is sampled anew.
+  void pull(std::span<const TreePart> parts, const glsl::Frame& frame, const TreeSettings& settings,
+            DirectionalTree& tree);
+  /// Builds the intensity of a cluster, J(w) = sum A L(w) (n.w)+ over surfaces plus that of clusters in it,
+  /// over the sphere in the frame's directions.
+  void intensity(std::span<const TreePart> parts, const glsl::Frame& frame, const TreeSettings& settings,
+                 DirectionalTree& tree);
+
+  /// Returns the estimate of the relative error of the last tree that was built, by the criterion's measure.
+  double estimatedError() const;
   /// Returns how many lobes (or functions) were evaluated since the builder was made, each direction for one.
   uint64_t evaluations() const;
 

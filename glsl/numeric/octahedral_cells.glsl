@@ -76,6 +76,18 @@ LIMN_FN vec3 octahedral_centre(OctahedralCell c, vec3 signs) {
   return normalize(signs * (c.base + vec3(c.scale / 3.0f)));
 }
 
+// Steps from the middle of a footprint to its taps, in edges of the cell.
+LIMN_CONST float octahedral_tap_reach = 0.5f;
+
+// The direction (any length) of tap i, 0 to 5, around a place of a face: a hexagon as large as a cell whose edge is the part
+// `edge` of the face's. Steps over an edge of the octant give negative places, which are those of the octant behind it.
+LIMN_FN vec3 octahedral_tap(vec3 place, vec3 signs, float edge, uint i) {
+  float step = (i < 3u ? octahedral_tap_reach : -octahedral_tap_reach) * edge;
+  uint axis = i % 3u;
+  vec3 way = axis == 0u ? vec3(step, -step, 0.0f) : axis == 1u ? vec3(0.0f, step, -step) : vec3(-step, 0.0f, step);
+  return signs * (place + way);
+}
+
 // Solid angle (sr) of the triangle between three unit directions (van Oosterom and Strackee 1983).
 LIMN_FN float triangle_solid_angle(vec3 a, vec3 b, vec3 c) {
   float volume = abs(dot(a, cross(b - a, c - a)));

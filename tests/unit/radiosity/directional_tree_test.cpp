@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <vector>
 
 #include "core/radiosity/tree_builder.h"
+#include "glsl/indirect/packed_tree.glsl"
 #include "glsl/numeric/srgb.glsl"
 #include "tests/unit/glsl/random.h"
 
@@ -52,6 +54,19 @@ double errorOf(const DirectionalTree& tree, const GlossyLobes& lobes, int n = 25
   return errorOf([&](const glm::vec3& w) { return tree.value(w); }, radianceOf(lobes), n);
 }
 
+TEST(TreeBuilder, MeetsTheErrorThatIsAskedFor) {
+  TreeBuilder builder;
+  DirectionalTree tree;
+  for (const float roughness : {0.3f, 0.5f}) {
+    const GlossyLobes lobes = lobesOf(roughness, {lightFrom(45)});
+    for (const float error : {0.05f, 0.1f, 0.2f}) {
+      builder.build(lobes, {.error = error}, tree);
+      EXPECT_LE(builder.estimatedError(), double(error));
+      EXPECT_NEAR(errorOf(tree, lobes), double(error), 0.12 * double(error)) << roughness;
+    }
+  }
+}
+
 TEST(GlossyLobes, AreTheBrdf) {
   glsl::Random random(5);
   for (const float roughness : {0.05f, 0.3f, 1.f}) {
@@ -82,6 +97,175 @@ TEST(DirectionalTree, KeepsTheFluxOfLobes) {
     builder.build(lobes, {}, tree);
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(tree.flux()[c], lobes.flux()[c], 1e-5f * lobes.flux()[c]) << roughness;
+  }
+}
+
+/// A tree with cells of many sizes.
+DirectionalTree glossyTree(float roughness = 0.3f) {
+  TreeBuilder builder;
+  DirectionalTree tree;
+  builder.build(lobesOf(roughness, {lightFrom(20), lightFrom(60, {2, 1, 0.5f})}), {}, tree);
+  return tree;
+}
+
+TEST(DirectionalTree, IsZeroBelowTheHorizonAndWithoutLight) {
+  const DirectionalTree tree = glossyTree(), none;
+  EXPECT_EQ(tree.value({0.1f, 0.2f, -0.9f}), glm::vec3(0));
+  EXPECT_EQ(tree.smoothValue({0.1f, 0.2f, -0.9f}), glm::vec3(0));
+  EXPECT_GT(tree.value({0.1f, 0.2f, 0.001f}).x, 0);
+  EXPECT_EQ(none.value({0, 0, 1}), glm::vec3(0));
+  EXPECT_EQ(none.flux(), glm::vec3(0));
+  EXPECT_EQ(none.bounds({0, 0, 1}, 0).high, glm::vec3(0));
+  EXPECT_EQ(none.cellCount(), 0u);
+  TreeBuilder builder;
+  DirectionalTree built = glossyTree();
+  builder.build(GlossyLobes(), {}, built);
+  EXPECT_TRUE(built.empty());
+}
+
+TEST(DirectionalTree, BoundsHoldForEveryDirectionOfACone) {
+  const DirectionalTree tree = glossyTree();
+  glsl::Random random(11);
+  double tightness = 0;
+  for (int i = 0; i < 300; ++i) {
+    glm::vec3 axis = random.direction();
+    axis.z = std::abs(axis.z);
+    const float angle = random(0.01f, 0.8f);
+    const DirectionBounds bounds = tree.bounds(axis, std::cos(angle));
+    const glsl::Frame frame = glsl::frame_around(axis);
+    float most = 0;
+    for (int k = 0; k < 300; ++k) {
+      const float off = angle * std::sqrt(random(0, 0.999f)), turn = random(0, 2 * glsl::pi);
+      const glm::vec3 w = glsl::from_local(
+          frame, {std::sin(off) * std::cos(turn), std::sin(off) * std::sin(turn), std::cos(off)});
+      if (!(w.z > 0)) continue;
+      const glm::vec3 value = tree.value(w);
+      most = std::max(most, value.x);
+      for (int c = 0; c < 3; ++c) {
+        ASSERT_LE(bounds.low[c], value[c]);
+        ASSERT_GE(bounds.high[c], value[c]);
+      }
+    }
+    tightness += double(bounds.high.x / std::max(most, 1e-20f)) / 300;
+  }
+  EXPECT_LT(tightness, 1.4);  // 300 directions do not find all there is
+}
+
+TEST(DirectionalTree, SumsAndScalesAreThoseOfTheFunctions) {
+  DirectionalTree a = glossyTree(0.3f);
+  const DirectionalTree b = glossyTree(0.5f), before = a;
+  a.add(b, 0.25f);
+  a.scale({1, 2, 3});
+  glsl::Random random(2);
+  for (int i = 0; i < 1000; ++i) {
+    const glm::vec3 w = random.direction();
+    const glm::vec3 expected = (before.value(w) + 0.25f * b.value(w)) * glm::vec3(1, 2, 3);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(a.value(w)[c], expected[c], 1e-5f * expected[c]);
+  }
+  const glm::vec3 flux = (before.flux() + 0.25f * b.flux()) * glm::vec3(1, 2, 3);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(a.flux()[c], flux[c], 1e-5f * flux[c]);
+  DirectionalTree sum;
+  sum.add(b, 2);
+  EXPECT_EQ(sum.flux(), 2.f * b.flux());
+}
+
+TEST(DirectionalTree, InnerCellsAreMeansByProjectedAngle) {
+  const DirectionalTree tree = glossyTree();
+  // The flux by value() against that of the faces.
+  double sum = 0;
+  constexpr int kSide = 1024;
+  for (int i = 0; i < kSide; ++i)
+    for (int j = 0; j < kSide; ++j)
+      sum += double(
+          tree.value(glsl::sample_cosine((glm::vec2(float(i), float(j)) + glm::vec2(0.5f)) / float(kSide)))
+              .x);
+  const double flux = sum * double(glsl::pi) / (kSide * kSide);
+  EXPECT_NEAR(double(tree.flux().x), flux, 1e-3 * flux);
+}
+
+TEST(DirectionalTree, PullsKeepTheFlux) {
+  const DirectionalTree first = glossyTree(0.3f), second = glossyTree(0.5f), dark;
+  TreeBuilder builder;
+  DirectionalTree pulled;
+  const auto frameAt = [](float angle) {
+    return glsl::frame_around(glm::normalize(glm::vec3(std::sin(angle), 0.1f, std::cos(angle))));
+  };
+  // In one frame cells are merged, in others light is sampled anew.
+  for (const float tilt : {0.f, 0.05f, 0.2f}) {
+    const TreePart parts[] = {{&first, frameAt(0), 1}, {&second, frameAt(tilt), 3}, {&dark, frameAt(1), 4}};
+    builder.pull(parts, frameAt(0), {}, pulled);
+    const glm::vec3 flux = (first.flux() + 3.f * second.flux()) / 8.f;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(pulled.flux()[c], flux[c], 1e-5f * flux[c]) << tilt;
+  }
+  const TreePart dim[] = {{&dark, frameAt(0), 1}};
+  builder.pull(dim, frameAt(0), {}, pulled);
+  EXPECT_TRUE(pulled.empty());
+}
+
+TEST(DirectionalTree, PullsIntoATurnedFrameKeepTheLight) {
+  const DirectionalTree tree = glossyTree();
+  const glsl::Frame from = glsl::frame_around(glm::vec3(0, 0, 1));
+  const glsl::Frame to = glsl::frame_turned(glm::vec3(0, 0, 1), 0.15f);
+  const TreePart parts[] = {{&tree, from, 1}};
+  TreeBuilder builder;
+  DirectionalTree pulled;
+  builder.pull(parts, to, {}, pulled);
+  const double error = errorOf([&](const glm::vec3& w) { return pulled.value(glsl::to_local(to, w)); },
+                               [&](const glm::vec3& w) { return tree.value(w); }, 256);
+  std::printf("turned pull: error %.3f, cells %zu of %zu\n", error, pulled.cellCount(), tree.cellCount());
+  EXPECT_LT(error, 0.14);
+}
+
+TEST(DirectionalTree, IntensityIsTheSumOfWhatSurfacesSend) {
+  const DirectionalTree glossy = glossyTree(), dark;
+  const glsl::Frame up = glsl::frame_around(glm::normalize(glm::vec3(0.2f, 0.3f, 0.9f)));
+  const glsl::Frame side = glsl::frame_around(glm::vec3(1, 0, 0));
+  const glsl::Frame world{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  TreeBuilder builder;
+  DirectionalTree inner, outer;
+  const TreePart surfaces[] = {{&glossy, up, 2}, {&dark, side, 1, glm::vec3(0.2f)}};
+  builder.intensity(surfaces, world, {}, inner);
+  const glm::vec3 power = 2.f * glossy.flux() + glsl::pi * glm::vec3(0.2f);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(inner.flux()[c], power[c], 1e-5f * power[c]);
+  double error = 0, all = 0;
+  glsl::Random random(9);
+  for (int i = 0; i < 20000; ++i) {
+    const glm::vec3 w = random.direction();
+    const float cosine = glsl::to_local(up, w).z;
+    const double exact =
+        double(2 * std::max(cosine, 0.f) * glossy.value(glsl::to_local(up, w)).x + 0.2f * std::max(w.x, 0.f));
+    error += (double(inner.value(w).x) - exact) * (double(inner.value(w).x) - exact);
+    all += exact * exact;
+  }
+  std::printf("intensity: error %.3f, cells %zu\n", std::sqrt(error / all), inner.cellCount());
+  EXPECT_LT(std::sqrt(error / all), 0.14);
+  // Clusters in clusters.
+  const TreePart clusters[] = {{&inner, world, 1}, {&glossy, side, 1}};
+  builder.intensity(clusters, world, {}, outer);
+  const glm::vec3 both = inner.flux() + glossy.flux();
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(outer.flux()[c], both[c], 1e-5f * both[c]);
+}
+
+TEST(PackedTree, IsTheTree) {
+  for (const float light : {1e-20f, 1.f, 1e20f}) {
+    DirectionalTree tree = glossyTree();
+    tree.scale(glm::vec3(light));
+    std::vector<glm::uvec2> nodes(7);  // of other trees
+    const float scale = tree.pack(nodes);
+    ASSERT_EQ(nodes.size(), 7 + tree.nodes().size());
+    glsl::Random random(4);
+    for (int i = 0; i < 2000; ++i) {
+      glm::vec3 w = random.direction();
+      w.z = std::abs(w.z);
+      const glm::vec3 found[] = {scale * glsl::packed_tree_value(nodes.data() + 7, w, false),
+                                 scale * glsl::packed_tree_value(nodes.data() + 7, w, true)};
+      const glm::vec3 exact[] = {tree.value(w), tree.smoothValue(w)};
+      for (int k = 0; k < 2; ++k)
+        for (int c = 0; c < 3; ++c) {
+          const float largest = std::max({exact[k].x, exact[k].y, exact[k].z});
+          ASSERT_NEAR(found[k][c], exact[k][c], 1.01f / 512 * largest) << light;
+        }
+    }
   }
 }
 
