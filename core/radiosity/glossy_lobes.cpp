@@ -10,22 +10,33 @@
 namespace limn::radiosity {
 namespace {
 
-Float4 gathered(const std::vector<float>& values, const uint32_t* which) {
-  return Float4{values[which[0]], values[which[1]], values[which[2]], values[which[3]]};
-}
+/// The width at which peaks of models without a roughness are sought.
+constexpr float kModelAlpha = 0.1f;
 
 float sumOf(Float4 v) {
   return (v[0] + v[2]) + (v[1] + v[3]);
 }
 
+/// Whether light arrives from above the horizon.
+bool arrives(const glsl::IncidentLight& light) {
+  return light.direction.z > 0 && glsl::largest_channel(light.irradiance) > 0;
+}
+
+glm::vec3 mirrored(const glm::vec3& direction) {
+  return {-direction.x, -direction.y, direction.z};
+}
+
 }  // namespace
 
-void GlossyLobes::clear() {
+void GlossyLobes::clear(std::span<const glsl::IncidentLight> lights) {
   count_ = 0;
-  for (std::vector<float>* values : {&x_, &y_, &z_, &alpha_, &root_, &brightness_}) values->clear();
-  for (int c = 0; c < 3; ++c) low_[c].clear(), high_[c].clear();
+  lobes_.clear();
+  all_.clear();
   irradiance_.clear();
   widened_.clear();
+  const auto lobes = static_cast<size_t>(std::count_if(lights.begin(), lights.end(), arrives));
+  lobes_.reserve(lobes);
+  rowLength_ = stride(lobes);
   model_ = nullptr;
   measured_ = nullptr;
   flux_ = glm::vec3(0);
@@ -33,113 +44,112 @@ void GlossyLobes::clear() {
 
 void GlossyLobes::set(const glsl::SurfaceBrdf& surface, std::span<const glsl::IncidentLight> lights,
                       float widen) {
-  clear();
+  clear(lights);
   if (glsl::brdf_is_lambertian(surface)) return;
+  rows_.assign(kRows * rowLength_, 0);
+  // Lanes of no lobe are lobes of no light.
+  for (const size_t row : {2, 3, 4}) std::fill_n(rows_.begin() + long(row * rowLength_), rowLength_, 1.f);
   for (const glsl::IncidentLight& light : lights) {
+    if (!arrives(light)) continue;
     const float cosine = light.direction.z;
-    const glm::vec3 arriving = cosine * light.irradiance;
-    if (!(cosine > 0) || !(glsl::largest_channel(arriving) > 0)) continue;
-    const float alpha = glsl::widened_alpha(surface.alpha, light.spread, cosine, widen);
+    glsl::SurfaceBrdf wider = surface;
+    wider.alpha = glsl::widened_alpha(surface.alpha, light.spread, cosine, widen);
     const glm::vec3 reflectance =
         glsl::ltc_specular_reflectance(surface, glsl::ltc_lookup(cosine, surface.alpha));
-    glsl::SurfaceBrdf wider = surface;
-    wider.alpha = alpha;
-    const glm::vec3 kept =
-        reflectance /
-        glm::max(glsl::ltc_specular_reflectance(wider, glsl::ltc_lookup(cosine, alpha)), 1e-20f);
-    x_.push_back(light.direction.x);
-    y_.push_back(light.direction.y);
-    z_.push_back(cosine);
-    alpha_.push_back(alpha);
-    root_.push_back(std::sqrt(cosine * cosine * (1 - alpha * alpha) + alpha * alpha));
-    for (int c = 0; c < 3; ++c) {
-      low_[c].push_back(arriving[c] * kept[c] * surface.f0[c]);
-      high_[c].push_back(arriving[c] * kept[c] * surface.f90);
+    const glm::vec3 widerReflectance =
+        glsl::ltc_specular_reflectance(wider, glsl::ltc_lookup(cosine, wider.alpha));
+    const glm::vec3 arriving = cosine * light.irradiance;
+    const glm::vec3 weight = arriving * reflectance / glm::max(widerReflectance, 1e-20f);
+    const float a2 = wider.alpha * wider.alpha;
+    float* row = rows_.data() + count_;
+    for (const float value :
+         {light.direction.x, light.direction.y, cosine, a2, std::sqrt(cosine * cosine * (1 - a2) + a2),
+          weight.x * surface.f0.x, weight.y * surface.f0.y, weight.z * surface.f0.z, weight.x * surface.f90,
+          weight.y * surface.f90, weight.z * surface.f90}) {
+      *row = value;
+      row += rowLength_;
     }
-    brightness_.push_back(glsl::luminance(arriving * reflectance));
+    lobes_.push_back({mirrored(light.direction), wider.alpha, glsl::luminance(arriving * reflectance)});
     flux_ += arriving * reflectance;
-    ++count_;
+    all_.push_back(static_cast<uint32_t>(count_++));
   }
-  // Lanes that stand for no lobe still divide.
-  const size_t padded = (count_ + 3) / 4 * 4;
-  x_.resize(padded), y_.resize(padded), z_.resize(padded, 1), alpha_.resize(padded, 1),
-      root_.resize(padded, 1);
-  for (int c = 0; c < 3; ++c) low_[c].resize(padded), high_[c].resize(padded);
 }
 
 void GlossyLobes::set(const glsl::MaterialModel& model, const std::vector<glm::vec3>& measured,
                       std::span<const glsl::IncidentLight> lights, float widen) {
-  clear();
+  clear(lights);
   model_ = &model;
   measured_ = &measured;
   const bool rough = model.kind == glsl::model_torrance_sparrow || model.kind == glsl::model_ward;
   for (const glsl::IncidentLight& light : lights) {
+    if (!arrives(light)) continue;
     const float cosine = light.direction.z;
-    const glm::vec3 arriving = cosine * light.irradiance;
-    if (!(cosine > 0) || !(glsl::largest_channel(arriving) > 0)) continue;
     glsl::MaterialModel wider = model;
     if (rough)
       for (int k = 0; k < 2; ++k)
         wider.roughness[k] = glsl::widened_alpha(model.roughness[k], light.spread, cosine, widen);
-    x_.push_back(light.direction.x);
-    y_.push_back(light.direction.y);
-    z_.push_back(cosine);
-    alpha_.push_back(rough ? std::min(wider.roughness.x, wider.roughness.y) : 0.1f);
     irradiance_.push_back(light.irradiance);
     widened_.push_back(wider);
-    brightness_.push_back(glsl::luminance(arriving));
-    ++count_;
+    lobes_.push_back({mirrored(light.direction),
+                      rough ? std::min(wider.roughness.x, wider.roughness.y) : kModelAlpha,
+                      glsl::luminance(cosine * light.irradiance)});
+    all_.push_back(static_cast<uint32_t>(count_++));
   }
 }
 
 glm::vec3 GlossyLobes::radiance(const glm::vec3& w) const {
-  glm::vec3 sum(0);
-  for (uint32_t k = 0; k < count_; ++k) {
-    float values[12];
-    sum += evaluate(w, {&k, 1}, values, 4);
-  }
-  return sum;
+  return evaluate(w, all_, rows_.data(), nullptr);
 }
 
-glm::vec3 GlossyLobes::evaluate(const glm::vec3& w, std::span<const uint32_t> which, float* values,
-                                size_t stride) const {
+void GlossyLobes::describe(std::span<const uint32_t> which, float* rows) const {
+  if (model_) return;
+  const size_t length = stride(which.size());
+  for (size_t r = 0; r < kRows; ++r, rows += length) {
+    const float* row = rows_.data() + r * rowLength_;
+    for (size_t i = 0; i < which.size(); ++i) rows[i] = row[which[i]];
+    std::fill(rows + which.size(), rows + length, r < 2 || r > 4 ? 0.f : 1.f);
+  }
+}
+
+glm::vec3 GlossyLobes::evaluate(const glm::vec3& w, std::span<const uint32_t> which, const float* rows,
+                                float* values) const {
+  const size_t length = stride(which.size());
   if (model_) {
     glm::vec3 sum(0);
     for (size_t i = 0; i < which.size(); ++i) {
       const uint32_t k = which[i];
       const glm::vec3 value =
-          irradiance_[k] * glsl::model_response(*measured_, widened_[k], w, glm::vec3(x_[k], y_[k], z_[k]));
-      for (int c = 0; c < 3; ++c) values[static_cast<size_t>(c) * stride + i] = value[c];
+          irradiance_[k] * glsl::model_response(*measured_, widened_[k], w, mirrored(lobes_[k].mirror));
       sum += value;
+      if (values)
+        for (int c = 0; c < 3; ++c) values[static_cast<size_t>(c) * length + i] = value[c];
     }
     return sum;
   }
   // glsl::brdf_parts for four lobes at once, multiplied out: one division.
-  const Float4 wx = splat(w.x), wy = splat(w.y), wz = splat(w.z), one = splat(1), half = splat(0.5f);
-  Float4 sums[3] = {};
-  for (size_t i = 0; i < which.size(); i += 4) {
-    const size_t lanes = std::min<size_t>(4, which.size() - i);
-    uint32_t index[4];
-    for (size_t k = 0; k < 4; ++k) index[k] = which[i + std::min(k, lanes - 1)];
-    const Float4 lx = gathered(x_, index), ly = gathered(y_, index), lz = gathered(z_, index);
-    const Float4 alpha = gathered(alpha_, index), root4 = gathered(root_, index);
-    const Float4 a2 = alpha * alpha;
-    const Float4 hx = wx + lx, hy = wy + ly, hz = wz + lz;
+  const Float4 wx = splat(w.x), wy = splat(w.y), wz = splat(w.z), one = splat(1), zero = splat(0);
+  const Float4 wz2 = wz * wz, scale = splat(0.5f * glsl::inverse_pi), half = splat(0.5f);
+  Float4 red = zero, green = zero, blue = zero;
+  for (size_t i = 0; i < length; i += 4) {
+    const auto row = [&](size_t r) { return load(rows + r * length + i); };
+    const Float4 lz = row(2), a2 = row(3);
+    const Float4 hx = wx + row(0), hy = wy + row(1), hz = wz + lz;
     const Float4 across = hx * hx + hy * hy, up = hz * hz, size2 = across + up;
     const Float4 q = a2 * up + across;
-    const Float4 shadowing = lz * root(wz * wz * (one - a2) + a2) + wz * root4;
-    const Float4 lobe = splat(0.5f * glsl::inverse_pi) * a2 * size2 * size2 / (q * q * shadowing);
-    const Float4 vDotH = half * root(size2);
-    const Float4 m = greater(one - vDotH, splat(0)), m2 = m * m;
-    const Float4 toHigh = lobe * m2 * m2 * m, toLow = lobe - toHigh;
-    for (int c = 0; c < 3; ++c) {
-      Float4 value = toLow * gathered(low_[c], index) + toHigh * gathered(high_[c], index);
-      for (size_t k = lanes; k < 4; ++k) value[k] = 0;
-      store(values + static_cast<size_t>(c) * stride + i, value);
-      sums[c] += value;
-    }
+    const Float4 shadowing = lz * root(wz2 * (one - a2) + a2) + wz * row(4);
+    const Float4 lobe = scale * a2 * size2 * size2 / (q * q * shadowing);
+    const Float4 m = greater(one - half * root(size2), zero), m2 = m * m;
+    const Float4 high = lobe * (m2 * m2 * m), low = lobe - high;
+    const Float4 r = low * row(5) + high * row(8);
+    const Float4 g = low * row(6) + high * row(9);
+    const Float4 b = low * row(7) + high * row(10);
+    red += r, green += g, blue += b;
+    if (!values) continue;
+    store(values + i, r);
+    store(values + length + i, g);
+    store(values + 2 * length + i, b);
   }
-  return {sumOf(sums[0]), sumOf(sums[1]), sumOf(sums[2])};
+  return {sumOf(red), sumOf(green), sumOf(blue)};
 }
 
 }  // namespace limn::radiosity

@@ -36,25 +36,39 @@ class LIMN_API GlossyLobes {
   /// Returns whether flux() is known.
   bool fluxKnown() const { return model_ == nullptr; }
 
-  /// Evaluates some lobes in direction w, unit, w.z > 0: channel c of lobe which[i] is put in values[c *
-  /// stride + i]. All are `padded` to a multiple of four: lanes behind the last index take 0 for one. Returns
-  /// the sum over `count` of them.
-  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t> which, float* values, size_t stride) const;
+  /// Returns the length of the rows in which numbers of lobes stand: a multiple of four.
+  static size_t stride(size_t count) { return (count + 3) / 4 * 4; }
+  /// Returns the number of rows that describe lobes.
+  size_t rows() const { return model_ ? 0 : kRows; }
+  /// Describes some lobes in rows() rows of stride(which.size()) numbers.
+  void describe(std::span<const uint32_t> which, float* rows) const;
+  /// Returns the sum of some lobes in direction w, unit, w.z > 0, which describe() has described. Puts their
+  /// values in `values`, if not null: a row for each channel.
+  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t> which, const float* rows,
+                     float* values) const;
 
   /// Returns the mirror direction of a lobe.
-  glm::vec3 mirror(size_t k) const { return {-x_[k], -y_[k], z_[k]}; }
+  const glm::vec3& mirror(size_t k) const { return lobes_[k].mirror; }
   /// Returns the GGX width of a lobe.
-  float alpha(size_t k) const { return alpha_[k]; }
+  float alpha(size_t k) const { return lobes_[k].alpha; }
   /// Returns what a lobe carries, luminance, W/m^2 (of a model: what arrives).
-  float brightness(size_t k) const { return brightness_[k]; }
+  float brightness(size_t k) const { return lobes_[k].brightness; }
 
  private:
-  void clear();
+  /// x, y, z of the light, alpha^2, sqrt(z^2 (1 - alpha^2) + alpha^2), and for each channel E z a(alpha) /
+  /// a(alpha_k) times f0 and times f90.
+  static constexpr size_t kRows = 11;
+  struct Lobe {
+    glm::vec3 mirror;
+    float alpha, brightness;
+  };
+  void clear(std::span<const glsl::IncidentLight> lights);
 
   size_t count_ = 0;
-  // One entry per lobe, and zeros up to a multiple of four.
-  std::vector<float> x_, y_, z_, alpha_, root_, brightness_;
-  std::vector<float> low_[3], high_[3];  ///< per channel E cos a(alpha)/a(alpha_k), times f0 and f90
+  std::vector<Lobe> lobes_;
+  std::vector<uint32_t> all_;  ///< 0, 1, 2, ...
+  std::vector<float> rows_;    ///< of all lobes, in rows of rowLength_
+  size_t rowLength_ = 0;
   std::vector<glm::vec3> irradiance_;
   std::vector<glsl::MaterialModel> widened_;
   const glsl::MaterialModel* model_ = nullptr;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/radiosity/private/float4.h"
 #include "core/radiosity/private/unit_cell.h"
 #include "glsl/numeric/srgb.glsl"
 
@@ -19,6 +20,8 @@ constexpr float kMissedPeaks = 0.25f;
 /// error that is asked for, so that the tree's error grows by few percent; and each by no more than that over
 /// the root of their number.
 constexpr float kLinear = 0.3f;
+/// Lobes are frozen where at least this part of those of a cell can be: the others have to be moved.
+constexpr float kWorthFreezing = 0.25f;
 /// The error that the published test is taken to ask for.
 constexpr float kPublishedError = 0.1f;
 /// Cells of the deepest level may have more error than is asked for. Then the others are split until they
@@ -27,18 +30,24 @@ constexpr double kReducible = 0.1;
 /// Part of the squared mean that the squared radiance of a direction counts for at least (display).
 constexpr double kDarkest = 0.1;
 
+/// The lobes that are still evaluated: where in the arenas their numbers and their descriptions begin.
+struct LobeSet {
+  size_t list, rows;
+  uint32_t count;
+};
+
 /// One cell while the tree is built. Points 0 to 2 are the corners, point 3 is the centre.
 struct Cell {
   UnitCell shape;
   glm::vec3 totals[4];  ///< all lobes at the points
   glm::vec3 linear[3];  ///< of lobes that are no longer evaluated, at the corners
   float bent;           ///< by how much these are off at the centres of the cells that took them, luminance
-  size_t blocks[4];     ///< where the points' blocks of single lobes begin
-  size_t first;         ///< of the list of lobes that are evaluated
-  uint32_t count;       ///< and its length
+  LobeSet lobes;        ///< the others
+  size_t blocks[4];     ///< and where their values at the points begin
   uint32_t child;
-  float weight;
   int level;
+  float weight;
+  double power, error;  ///< weight times squared luminance, and squared error by the criterion's measure
 
   glm::vec3 value() const { return 0.75f * totals[3] + (totals[0] + totals[1] + totals[2]) / 12.f; }
   /// The estimate of the squared error over the cell, of luminance.
@@ -98,9 +107,11 @@ struct LobeSource {
   const GlossyLobes& lobes;
 
   uint32_t size() const { return static_cast<uint32_t>(lobes.size()); }
-  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t> which, float* values,
-                     size_t stride) const {
-    return lobes.evaluate(w, which, values, stride);
+  size_t rows() const { return lobes.rows(); }
+  void describe(std::span<const uint32_t> which, float* to) const { lobes.describe(which, to); }
+  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t> which, const float* descriptions,
+                     float* values) const {
+    return lobes.evaluate(w, which, descriptions, values);
   }
   uint64_t cost(size_t count) const { return count; }
   glm::vec3 mirror(uint32_t k) const { return lobes.mirror(k); }
@@ -115,6 +126,8 @@ struct LobeSource {
 /// A function has no lobes: nothing is kept for single ones.
 struct FunctionSource {
   uint32_t size() const { return 0; }
+  size_t rows() const { return 0; }
+  void describe(std::span<const uint32_t>, float*) const {}
   uint64_t cost(size_t) const { return 1; }
   glm::vec3 mirror(uint32_t) const { return {}; }
   float alpha(uint32_t) const { return 1; }
@@ -125,7 +138,7 @@ struct GivenSource : FunctionSource {
   const TreeBuilder::Function& function;
 
   explicit GivenSource(const TreeBuilder::Function& given) : function(given) {}
-  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t>, float*, size_t) const {
+  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t>, const float*, float*) const {
     return function(w);
   }
 };
@@ -144,7 +157,7 @@ struct SurfaceSource : FunctionSource {
   const glsl::Frame& frame;
   float area;
 
-  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t>, float*, size_t) const {
+  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t>, const float*, float*) const {
     const glm::vec3 out = glsl::from_local(frame, w);
     glm::vec3 sum(0);
     for (const TreePart& part : parts) {
@@ -160,7 +173,7 @@ struct ClusterSource : FunctionSource {
   std::span<const TreePart> parts;
   const glsl::Frame& frame;
 
-  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t>, float*, size_t) const {
+  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t>, const float*, float*) const {
     const glm::vec3 out = glsl::from_local(frame, w);
     glm::vec3 sum(0);
     for (const TreePart& part : parts) {
@@ -173,10 +186,6 @@ struct ClusterSource : FunctionSource {
     return sum;
   }
 };
-
-size_t strideOf(size_t count) {
-  return (count + 3) / 4 * 4;
-}
 
 /// Scales each channel that the tree has at all.
 void scaleToFlux(DirectionalTree& tree, const glm::vec3& wanted) {
@@ -191,42 +200,45 @@ void scaleToFlux(DirectionalTree& tree, const glm::vec3& wanted) {
 
 struct TreeBuilder::Scratch {
   std::vector<Cell> cells;
-  std::vector<Candidate> heap;
+  std::vector<Candidate> heap, brightest;
   std::vector<DirectionalTree::Node> nodes;
-  std::vector<Candidate> brightest;
+  std::vector<float> bends;
   Arena<uint32_t> lists;
   Arena<float> values;
   uint64_t evaluations = 0;
 
   TreeSettings settings;
   DirectionDomain domain = DirectionDomain::hemisphere;
-  /// Of the cells without children: the sums of weight times squared luminance and of weight times variance.
+  bool keeps = false;  ///< single lobes' values are kept
+  /// Sums over the cells without children.
   double power = 0, error = 0;
   double stuck = 0;    ///< the part of the error that is in cells of the deepest level
-  double darkest = 0;  ///< display: what is added to squared luminance
+  double darkest = 0;  ///< display: squared luminance that counts at least
 
-  /// Evaluates lobes into a block that begins at `block`.
+  /// Evaluates lobes, and keeps their values where `block` says.
   template <class Source>
-  glm::vec3 evaluate(const Source& source, glm::vec3 w, size_t list, uint32_t count, size_t block) {
+  glm::vec3 evaluate(const Source& source, glm::vec3 w, const LobeSet& lobes, size_t& block) {
     if (domain == DirectionDomain::hemisphere) w.z = std::max(w.z, kLeastHeight);
-    evaluations += source.cost(count);
-    return source.evaluate(w, {lists.at(list), count}, values.at(block), strideOf(count));
+    if (keeps) block = values.take(3 * GlossyLobes::stride(lobes.count));
+    evaluations += source.cost(lobes.count);
+    return source.evaluate(w, {lists.at(lobes.list), lobes.count}, values.at(lobes.rows),
+                           keeps ? values.at(block) : nullptr);
   }
 
-  double squaredError(const Cell& cell) const {
-    const double area = double(cell.weight) * double(cell.variance());
-    if (settings.criterion != TreeSettings::Criterion::display) return area;
-    const double value = glsl::luminance(cell.value());
-    return area / std::max(value * value + darkest, 1e-300);
+  /// Measures a cell that has its values and adds it to the sums.
+  void measure(Cell& cell) {
+    const double value = double(glsl::luminance(cell.value()));
+    cell.power = double(cell.weight) * value * value;
+    cell.error = double(cell.weight) * double(cell.variance());
+    if (settings.criterion == TreeSettings::Criterion::display)
+      cell.error /= std::max(value * value + darkest, 1e-300);
+    count(cell, 1);
   }
   void count(const Cell& cell, double sign) {
-    const double value = glsl::luminance(cell.value());
-    power += sign * double(cell.weight) * value * value;
-    const double part = sign * squaredError(cell);
-    error += part;
-    if (cell.level >= settings.maxLevel) stuck += part;
+    power += sign * cell.power;
+    error += sign * cell.error;
+    if (cell.level >= settings.maxLevel) stuck += sign * cell.error;
   }
-
   /// Sums up all cells, with a mean that is now known.
   void recount() {
     double mean = 0, area = 0;
@@ -237,140 +249,159 @@ struct TreeBuilder::Scratch {
     }
     darkest = kDarkest * (mean / area) * (mean / area);
     power = error = stuck = 0;
-    for (const Cell& cell : cells)
-      if (cell.child == 0) count(cell, 1);
+    for (Cell& cell : cells)
+      if (cell.child == 0) measure(cell);
+  }
+
+  template <class Source>
+  LobeSet takeSet(const Source& source, size_t list, uint32_t count) {
+    const size_t rows = values.take(source.rows() * GlossyLobes::stride(count));
+    source.describe({lists.at(list), count}, values.at(rows));
+    return {list, rows, count};
   }
 
   template <class Source>
   void begin(const Source& source, DirectionDomain over, const TreeSettings& how) {
     settings = how;
     domain = over;
+    keeps = settings.frozen && source.size() > 0;
     cells.clear();
     lists.reset();
     values.reset();
-    power = error = stuck = 0;
-    const uint32_t count = source.size();
-    const size_t list = lists.take(strideOf(count));
-    for (uint32_t k = 0; k < count; ++k) lists.at(list)[k] = k;
-    const uint32_t faces = domain == DirectionDomain::hemisphere ? 4 : 8;
-    for (uint32_t face = 0; face < faces; ++face) {
+    power = error = stuck = darkest = 0;
+    const size_t list = lists.take(source.size());
+    for (uint32_t k = 0; k < source.size(); ++k) lists.at(list)[k] = k;
+    const LobeSet all = takeSet(source, list, source.size());
+    const bool half = domain == DirectionDomain::hemisphere;
+    for (uint32_t face = 0; face < (half ? 4 : 8); ++face) {
       Cell cell{};
       cell.shape = UnitCell::face(face);
-      cell.first = list;
-      cell.count = count;
+      cell.lobes = all;
       for (uint32_t i = 0; i < 4; ++i) {
-        cell.blocks[i] = values.take(3 * strideOf(count));
         const glm::vec3 w = i < 3 ? cell.shape.corners[i] : cell.shape.centre();
-        cell.totals[i] = evaluate(source, w, list, count, cell.blocks[i]);
+        cell.totals[i] = evaluate(source, w, all, cell.blocks[i]);
       }
-      cell.weight = domain == DirectionDomain::hemisphere ? 0.25f * glsl::pi : 0.5f * glsl::pi;
+      cell.weight = half ? 0.25f * glsl::pi : 0.5f * glsl::pi;
+      measure(cell);
       cells.push_back(cell);
     }
   }
 
   /// Whether a lobe may change over the cell in ways that its points do not show.
   template <class Source>
-  bool hides(const Source& source, const Cell& cell, uint32_t lobe, float edge) const {
-    const float peak = 2 * source.alpha(lobe);
-    if (edge <= peak) return false;
-    return glm::dot(source.mirror(lobe), cell.shape.centre()) > std::cos(std::min(edge, 3.f));
+  bool hides(const Source& source, const Cell& cell, uint32_t lobe, float edge, float cosEdge) const {
+    return edge > 2 * source.alpha(lobe) && glm::dot(source.mirror(lobe), cell.shape.centre()) > cosEdge;
   }
 
-  /// Moves lobes that are linear over the cell from its list to its linear part.
+  /// Sets by how much each lobe of a cell is off at the centre of a linear function, luminance.
+  void findBends(const Cell& cell) {
+    const size_t length = GlossyLobes::stride(cell.lobes.count);
+    bends.resize(std::max(bends.size(), length));
+    const glm::vec3 weights(glsl::luminance({1, 0, 0}), glsl::luminance({0, 1, 0}),
+                            glsl::luminance({0, 0, 1}));
+    const float* points[4];
+    for (int p = 0; p < 4; ++p) points[p] = values.at(cell.blocks[p]);
+    for (size_t i = 0; i < length; i += 4) {
+      Float4 bend = splat(0);
+      for (size_t c = 0; c < 3; ++c) {
+        const auto at = [&](int p) { return load(points[p] + c * length + i); };
+        bend += splat(weights[static_cast<int>(c)]) * (at(3) - splat(1 / 3.f) * (at(0) + at(1) + at(2)));
+      }
+      store(bends.data() + i, bend);
+    }
+  }
+
+  /// Moves lobes that are linear over the cell from its set to its linear part.
   template <class Source>
   void freeze(const Source& source, Cell& cell) {
-    if (cell.count == 0) return;
+    const uint32_t count = cell.lobes.count;
+    if (count == 0) return;
+    findBends(cell);
     const float asked =
         settings.criterion == TreeSettings::Criterion::relative ? kPublishedError : settings.error;
     const float together =
         kLinear * asked * static_cast<float>(std::sqrt(std::max(power, 0.0) / double(glsl::pi)));
-    const float limit = together / std::sqrt(static_cast<float>(source.size()));
-    const float edge = cell.edge();
-    const size_t stride = strideOf(cell.count);
-    const uint32_t* list = lists.at(cell.first);
-    const size_t keptList = lists.take(stride);
-    list = lists.at(cell.first);
+    const float single = together / std::sqrt(static_cast<float>(source.size()));
+    const float edge = std::min(cell.edge(), 3.f), cosEdge = std::cos(edge);
+    const size_t length = GlossyLobes::stride(count), keptList = lists.take(2 * count);
+    const uint32_t* list = lists.at(cell.lobes.list);
     uint32_t* kept = lists.at(keptList);
-    uint32_t keptCount = 0;
-    const auto at = [&](int point, int channel, uint32_t i) {
-      return values.at(cell.blocks[point])[static_cast<size_t>(channel) * stride + i];
-    };
-    const auto colour = [&](int point, uint32_t i) {
-      return glm::vec3(at(point, 0, i), at(point, 1, i), at(point, 2, i));
-    };
-    for (uint32_t i = 0; i < cell.count; ++i) {
-      const glm::vec3 corners[3] = {colour(0, i), colour(1, i), colour(2, i)};
-      const glm::vec3 bend = colour(3, i) - (corners[0] + corners[1] + corners[2]) / 3.f;
-      const float bent = glsl::luminance(bend);
-      if (std::abs(bent) < limit && std::abs(cell.bent + bent) < together &&
-          !hides(source, cell, list[i], edge)) {
-        cell.bent += bent;
-        for (int p = 0; p < 3; ++p) cell.linear[p] += corners[p];
+    uint32_t* frozen = kept + count;
+    uint32_t keptCount = 0, frozenCount = 0;
+    float bent = cell.bent;
+    for (uint32_t i = 0; i < count; ++i) {
+      if (std::abs(bends[i]) < single && std::abs(bent + bends[i]) < together &&
+          !hides(source, cell, list[i], edge, cosEdge)) {
+        bent += bends[i];
+        frozen[frozenCount++] = i;
       } else {
         kept[keptCount++] = i;
       }
     }
-    if (keptCount == cell.count) return;
-    const size_t keptStride = strideOf(keptCount);
-    for (int p = 0; p < 4; ++p) {
-      const size_t block = values.take(3 * keptStride);
+    if (frozenCount < kWorthFreezing * static_cast<float>(count)) return;
+    cell.bent = bent;
+    for (int p = 0; p < 3; ++p) {
+      const float* value = values.at(cell.blocks[p]);
+      for (uint32_t k = 0; k < frozenCount; ++k) {
+        const uint32_t i = frozen[k];
+        cell.linear[p] += glm::vec3(value[i], value[length + i], value[2 * length + i]);
+      }
+    }
+    const size_t keptLength = GlossyLobes::stride(keptCount);
+    for (size_t& block : cell.blocks) {
+      const size_t shorter = values.take(3 * keptLength);
+      const float* from = values.at(block);
+      float* to = values.at(shorter);
       for (size_t c = 0; c < 3; ++c)
-        for (uint32_t i = 0; i < keptCount; ++i)
-          values.at(block)[c * keptStride + i] = values.at(cell.blocks[p])[c * stride + kept[i]];
-      cell.blocks[p] = block;
+        for (uint32_t i = 0; i < keptCount; ++i) to[c * keptLength + i] = from[c * length + kept[i]];
+      block = shorter;
     }
     for (uint32_t i = 0; i < keptCount; ++i) kept[i] = list[kept[i]];
-    cell.first = keptList;
-    cell.count = keptCount;
+    cell.lobes = takeSet(source, keptList, keptCount);
   }
 
   template <class Source>
   void split(const Source& source, uint32_t index) {
     count(cells[index], -1);
-    if (settings.frozen) freeze(source, cells[index]);
-    Cell parent = cells[index];
+    if (keeps) freeze(source, cells[index]);
     const auto firstChild = static_cast<uint32_t>(cells.size());
     cells[index].child = firstChild;
-    const size_t blockSize = 3 * strideOf(parent.count);
-    glm::vec3 middles[3], middleTotals[3], middleLinear[3];
-    size_t middleBlocks[3];
+    const Cell parent = cells[index];
+    glm::vec3 middles[3], totals[3], linear[3];
+    size_t blocks[3] = {};
     parent.shape.middles(middles);
     for (int i = 0; i < 3; ++i) {
-      middleBlocks[i] = values.take(blockSize);
-      middleLinear[i] = 0.5f * (parent.linear[(i + 1) % 3] + parent.linear[(i + 2) % 3]);
-      middleTotals[i] =
-          middleLinear[i] + evaluate(source, middles[i], parent.first, parent.count, middleBlocks[i]);
+      linear[i] = 0.5f * (parent.linear[(i + 1) % 3] + parent.linear[(i + 2) % 3]);
+      totals[i] = linear[i] + evaluate(source, middles[i], parent.lobes, blocks[i]);
     }
-    float left = parent.weight;
+    float weightLeft = parent.weight;
     for (uint32_t k = 0; k < 4; ++k) {
       Cell child{};
       child.shape = parent.shape.child(k, middles);
-      child.first = parent.first;
-      child.count = parent.count;
-      child.level = parent.level + 1;
+      child.lobes = parent.lobes;
       child.bent = parent.bent;
+      child.level = parent.level + 1;
       for (uint32_t i = 0; i < 3; ++i) {
-        const bool own = k < 3 && i == k;
+        const bool own = k == i;
         const uint32_t middle = k == 3 ? i : 3 - i - k;
-        child.totals[i] = own ? parent.totals[i] : middleTotals[middle];
-        child.linear[i] = own ? parent.linear[i] : middleLinear[middle];
-        child.blocks[i] = own ? parent.blocks[i] : middleBlocks[middle];
+        child.totals[i] = own ? parent.totals[i] : totals[middle];
+        child.linear[i] = own ? parent.linear[i] : linear[middle];
+        child.blocks[i] = own ? parent.blocks[i] : blocks[middle];
       }
-      if (k == 3) {
+      if (k == 3) {  // shares the centre
         child.blocks[3] = parent.blocks[3];
         child.totals[3] = parent.totals[3];
-        child.weight = std::max(left, 0.f);
+        child.weight = std::max(weightLeft, 0.f);
       } else {
-        child.blocks[3] = values.take(blockSize);
+        const glm::vec3(&corners)[3] = child.shape.corners;
         child.totals[3] = (child.linear[0] + child.linear[1] + child.linear[2]) / 3.f +
-                          evaluate(source, child.shape.centre(), child.first, child.count, child.blocks[3]);
-        child.weight =
-            cellWeight(domain, child.shape.corners[0], child.shape.corners[1], child.shape.corners[2]);
-        left -= child.weight;
+                          evaluate(source, child.shape.centre(), child.lobes, child.blocks[3]);
+        child.weight = cellWeight(domain, corners[0], corners[1], corners[2]);
+        weightLeft -= child.weight;
       }
+      measure(child);
       cells.push_back(child);
     }
-    for (uint32_t k = 0; k < 4; ++k) count(cells[firstChild + k], 1);
   }
 
   /// Splits what holds the mirror directions of lobes until its edges are as long as the lobes' cores.
@@ -416,7 +447,7 @@ struct TreeBuilder::Scratch {
 
   void offer(uint32_t cell) {
     if (cells[cell].level >= settings.maxLevel) return;
-    const double priority = squaredError(cells[cell]);
+    const double priority = cells[cell].error;
     if (!(priority > 0)) return;
     heap.push_back({priority, cell});
     std::push_heap(heap.begin(), heap.end());
@@ -438,7 +469,6 @@ struct TreeBuilder::Scratch {
 
   template <class Source>
   void refine(const Source& source) {
-    for (const Cell& cell : cells) count(cell, 1);
     for (uint32_t i = 0; i < cells.size(); ++i)
       if (cells[i].level < settings.minLevel) split(source, i);
     recount();
