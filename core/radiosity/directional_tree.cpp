@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/radiosity/private/corner_level.h"
 #include "core/radiosity/private/unit_cell.h"
 #include "glsl/indirect/packed_tree.glsl"
+#include "glsl/materials/material_model.glsl"
 
 namespace limn::radiosity {
 namespace {
@@ -60,15 +62,29 @@ float cellWeight(DirectionDomain domain, const glm::vec3& a, const glm::vec3& b,
 void DirectionalTree::assign(DirectionDomain domain, std::span<const Node> nodes) {
   domain_ = domain;
   nodes_.assign(nodes.begin(), nodes.end());
+  corners_.clear();
+}
+
+void DirectionalTree::assignUniform(DirectionDomain domain, int level, std::span<const glm::vec3> corners) {
+  domain_ = domain;
+  level_ = level;
+  corners_.assign(corners.begin(), corners.end());
+  nodes_.clear();
 }
 
 size_t DirectionalTree::cellCount() const {
+  if (uniform()) return size_t{faces()} << (2 * level_);
   return empty() ? 0 : faces() + 3 * ((nodes_.size() - faces()) / 4);
 }
 
 glm::vec3 DirectionalTree::value(const glm::vec3& w) const {
   uint32_t node = glsl::octahedral_face(w);
   if (empty() || node >= faces()) return glm::vec3(0);
+  if (uniform()) {
+    const glsl::OctahedralGridPlace at = glsl::octahedral_grid_place(w, 1u << level_);
+    return at.weight.x * corners_[at.corner.x] + at.weight.y * corners_[at.corner.y] +
+           at.weight.z * corners_[at.corner.z];
+  }
   glm::vec3 place = glsl::octahedral_place(w);
   while (nodes_[node].child != 0) node = nodes_[node].child + glsl::octahedral_descend(place);
   return nodes_[node].value;
@@ -76,7 +92,7 @@ glm::vec3 DirectionalTree::value(const glm::vec3& w) const {
 
 glm::vec3 DirectionalTree::smoothValue(const glm::vec3& w) const {
   const uint32_t face = glsl::octahedral_face(w);
-  if (empty() || face >= faces()) return glm::vec3(0);
+  if (nodes_.empty() || face >= faces()) return value(w);
   const glm::vec3 signs = glsl::octahedral_signs(face), place = glsl::octahedral_place(w);
   glm::vec3 inside = place;
   float edge = 1;
@@ -92,14 +108,37 @@ glm::vec3 DirectionalTree::smoothValue(const glm::vec3& w) const {
 }
 
 DirectionBounds DirectionalTree::bounds(const glm::vec3& axis, float cosine) const {
+  if (uniform()) return uniformBounds(axis, cosine);
   if (empty()) return {};
   ConeSearch search{nodes_, axis, cosine, std::sqrt(std::max(1 - cosine * cosine, 0.f)), false, {}};
   for (uint32_t face = 0; face < faces(); ++face) search.visit(face, UnitCell::face(face));
   return search.found;
 }
 
+DirectionBounds DirectionalTree::uniformBounds(const glm::vec3& axis, float cosine) const {
+  const CornerLevel& level = cornerLevel(domain_, level_);
+  // Corners of cells that the cone meets are at most an edge away from it.
+  const float sine = std::sqrt(std::max(1 - cosine * cosine, 0.f));
+  const float edgeSine = std::sqrt(1 - level.edgeCosine * level.edgeCosine);
+  const float least = cosine < -level.edgeCosine ? -1 : cosine * level.edgeCosine - sine * edgeSine;
+  DirectionBounds found;
+  bool any = false;
+  for (size_t i = 0; i < corners_.size(); ++i) {
+    if (glm::dot(axis, level.directions[i]) < least) continue;
+    found.low = any ? glm::min(found.low, corners_[i]) : corners_[i];
+    found.high = any ? glm::max(found.high, corners_[i]) : corners_[i];
+    any = true;
+  }
+  return found;
+}
+
 glm::vec3 DirectionalTree::flux() const {
   glm::vec3 sum(0);
+  if (uniform()) {
+    const CornerLevel& level = cornerLevel(domain_, level_);
+    for (size_t i = 0; i < corners_.size(); ++i) sum += level.weights[i] * corners_[i];
+    return sum;
+  }
   if (empty()) return sum;
   for (uint32_t face = 0; face < faces(); ++face) sum += nodes_[face].value;
   return sum * (domain_ == DirectionDomain::hemisphere ? 0.25f * glsl::pi : 0.5f * glsl::pi);
@@ -107,25 +146,32 @@ glm::vec3 DirectionalTree::flux() const {
 
 float DirectionalTree::pack(std::vector<glm::uvec2>& nodes) const {
   float brightest = 0;
-  for (const Node& node : nodes_) brightest = std::max({brightest, node.value.x, node.value.y, node.value.z});
+  for (const Node& node : nodes_) brightest = std::max(brightest, glsl::largest_channel(node.value));
+  for (const glm::vec3& corner : corners_) brightest = std::max(brightest, glsl::largest_channel(corner));
   // Never so small that dividing by it overflows.
   const float scale = std::max(brightest / glsl::packed_tree_brightest, 1e-37f);
   for (const Node& node : nodes_)
     nodes.emplace_back(node.child, glsl::shared_exponent_encode(node.value / scale));
+  for (size_t i = 0; i < corners_.size(); i += 2)
+    nodes.emplace_back(glsl::shared_exponent_encode(corners_[i] / scale),
+                       i + 1 < corners_.size() ? glsl::shared_exponent_encode(corners_[i + 1] / scale) : 0);
   return scale;
 }
 
 void DirectionalTree::scale(const glm::vec3& factor) {
   for (Node& node : nodes_) node.value *= factor;
+  for (glm::vec3& corner : corners_) corner *= factor;
 }
 
 void DirectionalTree::add(const DirectionalTree& other, float weight) {
   if (other.empty()) return;
   if (empty()) {
-    assign(other.domain_, other.nodes_);
+    *this = other;
     scale(glm::vec3(weight));
     return;
   }
+  for (size_t i = 0; i < corners_.size(); ++i) corners_[i] += weight * other.corners_[i];
+  if (uniform()) return;
   for (uint32_t face = 0; face < faces(); ++face) addBelow(face, other, face, weight);
 }
 

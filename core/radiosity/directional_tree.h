@@ -1,5 +1,6 @@
 // Declares light that leaves an element as an adaptive tree over directions: a Haar basis on the octahedron
-// (Stamminger et al. 1999, Efficient Glossy Global Illumination with Interactive Viewing).
+// (Stamminger et al. 1999, Efficient Glossy Global Illumination with Interactive Viewing), or in a uniform
+// basis.
 #pragma once
 
 #include <cstdint>
@@ -39,19 +40,30 @@ class LIMN_API DirectionalTree {
   /// Takes a tree's nodes: the faces first, children in runs of four behind their parents. Memory is kept
   /// where it suffices.
   void assign(DirectionDomain domain, std::span<const Node> nodes);
-  void clear() { nodes_.clear(); }
+  /// Takes values at the corners of a level, 0 to kMaxUniformLevel (glsl/numeric/octahedral_grid.glsl).
+  void assignUniform(DirectionDomain domain, int level, std::span<const glm::vec3> corners);
+  static constexpr int kMaxUniformLevel = 8;
+  void clear() {
+    nodes_.clear();
+    corners_.clear();
+  }
 
   DirectionDomain domain() const { return domain_; }
-  bool empty() const { return nodes_.empty(); }
+  bool empty() const { return nodes_.empty() && corners_.empty(); }
+  bool uniform() const { return !corners_.empty(); }
+  /// Returns the level of a uniform basis.
+  int level() const { return level_; }
   std::span<const Node> nodes() const { return nodes_; }
   /// Returns the number of faces that the domain has.
   uint32_t faces() const { return domain_ == DirectionDomain::hemisphere ? 4 : 8; }
   /// Returns the number of cells without children.
   size_t cellCount() const;
+  /// Returns the memory that the values take, bytes.
+  size_t memory() const { return nodes_.size() * sizeof(Node) + corners_.size() * sizeof(glm::vec3); }
 
   /// Returns the value in direction w (any length but 0); 0 outside the domain.
   glm::vec3 value(const glm::vec3& w) const;
-  /// Returns the mean of six values around w, over the footprint of its cell.
+  /// Returns the mean of six values around w, over the footprint of its cell; uniform: the value.
   glm::vec3 smoothValue(const glm::vec3& w) const;
   /// Returns the bounds over the directions (of the domain) less than an angle from `axis` (unit), by that
   /// angle's cosine, and over no more than the cells that these lie in.
@@ -64,14 +76,18 @@ class LIMN_API DirectionalTree {
   float pack(std::vector<glm::uvec2>& nodes) const;
 
   void scale(const glm::vec3& factor);
-  /// Adds `weight` times a tree over the same domain and in the same frame. The result has the cells of both.
+  /// Adds `weight` times a tree over the same domain, in the same frame and of the same basis and level. The
+  /// result has the cells of both.
   void add(const DirectionalTree& other, float weight = 1);
 
  private:
+  DirectionBounds uniformBounds(const glm::vec3& axis, float cosine) const;
   void addBelow(uint32_t node, const DirectionalTree& other, uint32_t otherNode, float weight);
 
   DirectionDomain domain_;
   std::vector<Node> nodes_;
+  int level_ = 0;
+  std::vector<glm::vec3> corners_;
 };
 
 }  // namespace limn::radiosity

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/radiosity/private/corner_level.h"
 #include "core/radiosity/private/float4.h"
 #include "core/radiosity/private/unit_cell.h"
 #include "glsl/numeric/srgb.glsl"
@@ -203,6 +204,7 @@ struct TreeBuilder::Scratch {
   std::vector<Candidate> heap, brightest;
   std::vector<DirectionalTree::Node> nodes;
   std::vector<float> bends;
+  std::vector<glm::vec3> cornerValues;
   Arena<uint32_t> lists;
   Arena<float> values;
   uint64_t evaluations = 0;
@@ -260,18 +262,29 @@ struct TreeBuilder::Scratch {
     return {list, rows, count};
   }
 
-  template <class Source>
-  void begin(const Source& source, DirectionDomain over, const TreeSettings& how) {
+  /// Forgets the last tree.
+  void clear(DirectionDomain over, const TreeSettings& how) {
     settings = how;
     domain = over;
-    keeps = settings.frozen && source.size() > 0;
+    keeps = false;
     cells.clear();
     lists.reset();
     values.reset();
     power = error = stuck = darkest = 0;
+  }
+
+  template <class Source>
+  LobeSet allOf(const Source& source) {
     const size_t list = lists.take(source.size());
     for (uint32_t k = 0; k < source.size(); ++k) lists.at(list)[k] = k;
-    const LobeSet all = takeSet(source, list, source.size());
+    return takeSet(source, list, source.size());
+  }
+
+  template <class Source>
+  void begin(const Source& source, DirectionDomain over, const TreeSettings& how) {
+    clear(over, how);
+    keeps = settings.frozen && source.size() > 0;
+    const LobeSet all = allOf(source);
     const bool half = domain == DirectionDomain::hemisphere;
     for (uint32_t face = 0; face < (half ? 4 : 8); ++face) {
       Cell cell{};
@@ -483,7 +496,21 @@ struct TreeBuilder::Scratch {
   }
 
   template <class Source>
+  void buildUniform(const Source& source, DirectionDomain over, const TreeSettings& how,
+                    DirectionalTree& tree) {
+    clear(over, how);
+    const int level = std::min(settings.maxLevel, DirectionalTree::kMaxUniformLevel);
+    const LobeSet all = allOf(source);
+    cornerValues.clear();
+    size_t block = 0;
+    for (const glm::vec3& w : cornerLevel(domain, level).directions)
+      cornerValues.push_back(evaluate(source, w, all, block));
+    tree.assignUniform(domain, level, cornerValues);
+  }
+
+  template <class Source>
   void build(const Source& source, DirectionDomain over, const TreeSettings& how, DirectionalTree& tree) {
+    if (how.basis == TreeSettings::Basis::uniform) return buildUniform(source, over, how, tree);
     begin(source, over, how);
     refine(source);
     finish(tree);

@@ -21,6 +21,12 @@ struct TreeSettings {
     display,    ///< the same, with errors relative to the radiance of their direction
     relative,   ///< each while (max - min) / centre of its samples exceeds `error` (as published, with 0.5)
   };
+  /// Says what values stand for.
+  enum class Basis : uint8_t {
+    haar,     ///< cells, as many as the criterion asks for
+    uniform,  ///< corners of level maxLevel, at most DirectionalTree::kMaxUniformLevel; nothing else counts
+  };
+  Basis basis = Basis::haar;
   Criterion criterion = Criterion::transport;
   float error = 0.1f;  ///< more than 0
   int minLevel = 2;    ///< every cell has this level at least; 0 to maxLevel

@@ -1,9 +1,11 @@
 // Light over directions as a tree of triangles (core/radiosity/directional_tree.h), 8 bytes a node: its first child, counted
 // from the tree's first node, 0 for none, and its value over the tree's scale (shared_exponent_encode). The four faces of the
-// hemisphere around the normal come first, or all eight.
+// hemisphere around the normal come first, or all eight. In the uniform basis there are the values at the corners of a level
+// instead, two in the place of a node.
 #ifndef LIMN_PACKED_TREE_GLSL
 #define LIMN_PACKED_TREE_GLSL
 #include "glsl/numeric/octahedral_cells.glsl"
+#include "glsl/numeric/octahedral_grid.glsl"
 #include "glsl/numeric/shared_exponent.glsl"
 LIMN_BEGIN
 
@@ -48,6 +50,17 @@ LIMN_FN vec3 packed_tree_value(PackedTree tree, vec3 w, bool smoothed) {
     sum += shared_exponent_decode(packed_tree_cell(tree, vec3(tap.x, tap.y, abs(tap.z)), unused).y);
   }
   return sum / 6.0f;
+}
+
+// The same in the uniform basis, linear between the corners of the level with n = 2^level.
+LIMN_FN vec3 packed_grid_value(PackedTree tree, uint n, vec3 w) {
+  OctahedralGridPlace place = octahedral_grid_place(w, n);
+  vec3 sum = vec3(0.0f);
+  for (int k = 0; k < 3; ++k) {
+    uvec2 pair = packed_node(tree, place.corner[k] / 2u);
+    sum += place.weight[k] * shared_exponent_decode((place.corner[k] & 1u) == 0u ? pair.x : pair.y);
+  }
+  return sum;
 }
 
 LIMN_END

@@ -246,6 +246,81 @@ TEST(DirectionalTree, IntensityIsTheSumOfWhatSurfacesSend) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(outer.flux()[c], both[c], 1e-5f * both[c]);
 }
 
+/// What is not refined.
+TreeSettings uniformBasis(int level) {
+  return {.basis = TreeSettings::Basis::uniform, .maxLevel = level};
+}
+TreeSettings levelOnly(int level) {
+  return {.minLevel = level, .maxLevel = level, .frozen = false};
+}
+
+TEST(UniformBasis, IsLinearBetweenCorners) {
+  const GlossyLobes lobes = lobesOf(0.5f, {lightFrom(20), lightFrom(60, {2, 1, 0.5f})});
+  TreeBuilder builder;
+  DirectionalTree tree, cells;
+  double last = 1;
+  for (int level = 2; level <= 6; ++level) {
+    builder.build(lobes, uniformBasis(level), tree);
+    builder.build(lobes, levelOnly(level), cells);
+    EXPECT_EQ(tree.cellCount(), cells.cellCount());
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(tree.flux()[c], lobes.flux()[c], 1e-5f * lobes.flux()[c]);
+    const double error = errorOf(tree, lobes);
+    EXPECT_LT(error, (level == 2 ? 1.0 : 0.4) * last);  // about a quarter
+    EXPECT_LT(error, (level == 2 ? 1.2 : level == 3 ? 0.8 : 0.5) * errorOf(cells, lobes));
+    std::printf("uniform, level %d: error %.4f, of cells %.4f\n", level, error, errorOf(cells, lobes));
+    last = error;
+  }
+  // The flux by value() against that of the corners.
+  builder.build(lobes, uniformBasis(5), tree);
+  double sum = 0;
+  constexpr int kSide = 256;
+  for (int i = 0; i < kSide; ++i)
+    for (int j = 0; j < kSide; ++j)
+      sum += double(
+          tree.value(glsl::sample_cosine((glm::vec2(float(i), float(j)) + glm::vec2(0.5f)) / float(kSide)))
+              .x);
+  const double flux = sum * double(glsl::pi) / (kSide * kSide);
+  EXPECT_NEAR(double(tree.flux().x), flux, 3e-3 * flux);
+}
+
+TEST(UniformBasis, HasTheSameOperations) {
+  const GlossyLobes lobes = lobesOf(0.3f, {lightFrom(20), lightFrom(60, {2, 1, 0.5f})});
+  TreeBuilder builder;
+  DirectionalTree tree, pulled, cluster;
+  builder.build(lobes, uniformBasis(4), tree);
+  std::vector<glm::uvec2> nodes;
+  const float scale = tree.pack(nodes);
+  EXPECT_EQ(nodes.size(), (2 * 16 * 17 + 1 + 1) / 2u);
+  glsl::Random random(6);
+  for (int i = 0; i < 500; ++i) {
+    glm::vec3 axis = random.direction(), w = random.direction();
+    axis.z = std::abs(axis.z);
+    w.z = std::abs(w.z);
+    const glm::vec3 value = tree.value(w);
+    const DirectionBounds bounds = tree.bounds(axis, glm::dot(w, axis) - 1e-4f);
+    const glm::vec3 packed = scale * glsl::packed_grid_value(nodes.data(), 16, w);
+    for (int c = 0; c < 3; ++c) {
+      ASSERT_LE(bounds.low[c], value[c] * 1.00001f);
+      ASSERT_GE(bounds.high[c], value[c] * 0.99999f);
+      ASSERT_NEAR(packed[c], value[c], 0.003f * std::max({value.x, value.y, value.z}));
+    }
+  }
+  const glsl::Frame up = glsl::frame_around(glm::vec3(0, 0, 1));
+  const glsl::Frame turned = glsl::frame_turned(glm::vec3(0, 0, 1), 0.1f);
+  const TreePart parts[] = {{&tree, up, 1}, {&tree, turned, 1}};
+  builder.pull(parts, up, uniformBasis(4), pulled);
+  builder.intensity(parts, up, uniformBasis(4), cluster);
+  EXPECT_TRUE(pulled.uniform() && cluster.uniform());
+  EXPECT_EQ(cluster.cellCount(), 2048u);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(pulled.flux()[c], tree.flux()[c], 1e-5f * tree.flux()[c]);
+    EXPECT_NEAR(cluster.flux()[c], 2 * tree.flux()[c], 1e-5f * tree.flux()[c]);
+  }
+  const TreePart same[] = {{&tree, up, 1}, {&tree, up, 2}};
+  builder.pull(same, up, uniformBasis(4), pulled);
+  EXPECT_NEAR(pulled.value({0.1f, 0.2f, 0.9f}).x, tree.value({0.1f, 0.2f, 0.9f}).x, 1e-6f);
+}
+
 TEST(PackedTree, IsTheTree) {
   for (const float light : {1e-20f, 1.f, 1e20f}) {
     DirectionalTree tree = glossyTree();
