@@ -15,6 +15,7 @@
 #include "glsl/scene/light.glsl"
 #include "glsl/light/ltc.glsl"
 #include "glsl/light/rectangle_light.glsl"
+#include "glsl/surface/reflected_parts.glsl"
 LIMN_BEGIN
 
 LIMN_FN vec3 unit_or(vec3 v, vec3 otherwise) {
@@ -30,26 +31,34 @@ LIMN_FN vec3 punctual_direction(Light light, vec3 p) {
 }
 
 // Reflected radiance per unit of the rectangle's radiance; v: to the viewer.
-LIMN_FN vec3 unshadowed_rectangle(Rectangle r, SurfaceBrdf s, vec3 n, vec3 ng, vec3 v) {
+LIMN_FN ReflectedParts unshadowed_rectangle_parts(Rectangle r, SurfaceBrdf s, vec3 n, vec3 ng, vec3 v) {
+  ReflectedParts light;
+  light.diffuse = vec3(0.0f);
+  light.lobe = vec3(0.0f);
   RectanglePart part = rectangle_part_above(r, rectangle_above(r, ng), n);
-  if (part.count == 0) return vec3(0.0f);
+  if (part.count == 0) return light;
   vec3 towards = rectangle_vector_irradiance(r, part);
   float irradiance = dot(towards, n);
   if (irradiance < 0.0f) {  // seen from the back of a two-sided light
     towards = -towards;
     irradiance = -irradiance;
   }
-  vec3 diffuse = s.diffuse * (inverse_pi * min(irradiance, pi));
-  if (brdf_is_lambertian(s)) return diffuse;
+  light.diffuse = s.diffuse * (inverse_pi * min(irradiance, pi));
+  if (brdf_is_lambertian(s)) return light;
   LtcTerms terms = ltc_lookup(dot(n, v), s.alpha);
   float weight = brdf_diffuse_weight(s, half_vector(n, v, unit_or(towards, n)).v_dot_h);
-  diffuse *= mix(weight, ltc_diffuse_weight(s, terms), inverse_pi * min(irradiance, pi));
+  light.diffuse *= mix(weight, ltc_diffuse_weight(s, terms), inverse_pi * min(irradiance, pi));
 
   LtcIntegral glossy = ltc_rectangle(ltc_transform(terms, n, v, s.alpha), terms, r, part);
   float schlick = schlick_weight(half_vector(n, v, unit_or(glossy.mean, n)).v_dot_h);
   float total = terms.reflectance.x + terms.reflectance.y;
   schlick = mix(schlick, terms.reflectance.y / total, glossy.share);
-  return diffuse + glossy.share * total * mix(s.f0, vec3(s.f90), schlick);
+  light.lobe = glossy.share * total * mix(s.f0, vec3(s.f90), schlick);
+  return light;
+}
+
+LIMN_FN vec3 unshadowed_rectangle(Rectangle r, SurfaceBrdf s, vec3 n, vec3 ng, vec3 v) {
+  return reflected_whole(unshadowed_rectangle_parts(r, s, n, ng, v));
 }
 
 // p: the point; n: shading normal; ng: geometric normal on the viewer's side; v: unit, to the viewer.

@@ -37,19 +37,16 @@ ReflectedParts surface_colours(SampledPixel p) {
 #endif
 }
 
-// What is seen where that share is hidden; means over blocks may exceed 1 by rounding.
-vec3 seen_of(vec3 hidden) { return max(vec3(1.0) - hidden, vec3(0.0)); }
-
 // The shadowed light of the pixel; unshadowed: its U; values: of the shadow buffer.
 vec3 shadowed_light(SampledPixel p, ReflectedParts unshadowed, ReflectedParts values) {
 #if COMBINE_BY_RATIO
-  vec3 lobe = SAMPLE_PARTS == 1 ? values.lobe : values.diffuse;
-  return unshadowed.diffuse * seen_of(values.diffuse) + unshadowed.lobe * seen_of(lobe);
+  if (SAMPLE_PARTS == 0) values.lobe = values.diffuse;
+  return reflected_left(unshadowed, values);
 #else
   ReflectedParts colours = surface_colours(p);
   vec3 mirrored = vec3(0.0);
   if (is_coated(p)) {
-    mirrored = unshadowed.lobe * seen_of(values.lobe);
+    mirrored = unshadowed.lobe * share_left(values.lobe);
     unshadowed.lobe = values.lobe = vec3(0.0);
   }
   vec3 light = values.diffuse * colours.diffuse;

@@ -62,11 +62,6 @@ layout(VALUE_FORMAT) writeonly uniform image2D lobe_values;
 layout(rgba32f) uniform image2D radiance;
 #endif
 
-// What is hidden of what there is, [0, 1]; of channels in which nothing arrives, `otherwise`.
-vec3 hidden_share(vec3 seen, vec3 all, vec3 otherwise) {
-  return mix(otherwise, vec3(1.0) - min(seen / max(all, vec3(1e-37)), vec3(1.0)), greaterThan(all, vec3(1e-37)));
-}
-
 vec3 without_colour(vec3 light, vec3 colour) {
   return mix(vec3(0.0), light / max(colour, vec3(1e-6)), greaterThan(colour, vec3(0.0)));
 }
@@ -77,8 +72,7 @@ ReflectedParts shadow_values(SampledPixel p, SampleSums sums) {
 #if COMBINE == COMBINE_RATIO
   values.diffuse = values.lobe = hidden_share(reflected_whole(seen), reflected_whole(all), vec3(0.0));
 #elif COMBINE == COMBINE_RATIO_SPLIT
-  values.diffuse = hidden_share(seen.diffuse, all.diffuse, vec3(0.0));
-  values.lobe = hidden_share(seen.lobe, all.lobe, values.diffuse);
+  values = hidden_parts(seen, all);
 #else
   if (SAMPLE_TOTALS == 1) seen = ReflectedParts(all.diffuse - seen.diffuse, all.lobe - seen.lobe);
   ReflectedParts colours = surface_colours(p);
