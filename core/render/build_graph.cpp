@@ -126,25 +126,47 @@ frame::TextureHandle Renderer::Implementation::factorTarget(Term term, int layer
                               {GL_TEXTURE_2D_ARRAY, GL_R16, settings.size.x, settings.size.y, layers, 1});
 }
 
+size_t Renderer::Implementation::lightsByRatio(std::span<const uint32_t> lights) {
+  if (!scene.environment.shadowedByRatio || settings.light >= 0) return 0;
+  return static_cast<size_t>(std::ranges::count_if(lights, [&](uint32_t light) {
+    return (pose.lights[light].flags & glsl::light_flag_environment) != 0;
+  }));
+}
+
 void Renderer::Implementation::addDirect(std::span<Lighting> lightings, std::span<const uint32_t> lights) {
+  const size_t byRatio = lightsByRatio(lights);
   if (Use* direct = answering(Term::direct)) {
+    if (byRatio > 0)
+      graph->leaveOut("environment light by ratio", "core", "a technique answers direct light");
     for (Lighting& lit : lightings) lit.radiance = ask(*direct, Term::direct, lights, lit);
     return;
   }
+  Use* shadowing = answering(Term::visibility);
   const auto factor = [&](Term term, Use* use, std::span<const uint32_t> batch) {
     if (!use) return frame::TextureHandle{};
     const Lighting& first = lightings.front();
     return ask(*use, term, batch,
                {first.handles, first.gbuffer, factorTarget(term, static_cast<int>(batch.size()))});
   };
-  Use* shadowing = answering(Term::visibility);
-  for (size_t first = 0; first < lights.size(); first += kLightBatch) {
-    const auto batch = lights.subspan(first, std::min(kLightBatch, lights.size() - first));
-    const Deferred::Factors factors{.visibility = factor(Term::visibility, shadowing, batch),
-                                    .relief = factor(Term::relief, bumps, batch)};
-    for (Lighting& lit : lightings)
-      lit.radiance = deferred.addLights(frameOf(lit), lit.radiance, batch, factors);
-  }
+  const auto inBatches = [&](std::span<const uint32_t> some, auto add) {
+    for (size_t first = 0; first < some.size(); first += kLightBatch) {
+      const auto batch = some.subspan(first, std::min(kLightBatch, some.size() - first));
+      add(Deferred::Batch{.lights = batch,
+                          .visibility = factor(Term::visibility, shadowing, batch),
+                          .relief = factor(Term::relief, bumps, batch)},
+          first + batch.size() == some.size());
+    }
+  };
+  // The environment's lights come after all others.
+  inBatches(lights.first(lights.size() - byRatio), [&](const Deferred::Batch& batch, bool /*last*/) {
+    for (Lighting& lit : lightings) lit.radiance = deferred.addLights(frameOf(lit), lit.radiance, batch);
+  });
+  std::vector<Deferred::EnvironmentSums> sums(lightings.size());
+  inBatches(lights.last(byRatio), [&](const Deferred::Batch& batch, bool last) {
+    for (size_t i = 0; i < lightings.size(); ++i)
+      lightings[i].radiance =
+          deferred.addEnvironmentShare(frameOf(lightings[i]), lightings[i].radiance, batch, sums[i], last);
+  });
 }
 
 void Renderer::Implementation::addEnvironment(std::span<Lighting> lightings) {

@@ -1,7 +1,9 @@
 #include "core/render/private/deferred.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "core/gpu_scene/gpu_medium.h"
@@ -118,38 +120,81 @@ TextureHandle Deferred::addLocalSubsurface(const Frame& frame, TextureHandle bef
   return radiance;
 }
 
-TextureHandle Deferred::addLights(const Frame& frame, TextureHandle before, std::span<const uint32_t> lights,
-                                  const Factors& factors) {
-  frame::PassBuilder builder = frame.graph.addPass("accumulate lights");
+gpu::ProgramDesc Deferred::readLights(frame::PassBuilder& builder, const Frame& frame, const char* file,
+                                      const Batch& batch) {
   builder.read(frame.handles.frame, Access::uniformBuffer, "FrameBlock", "camera");
   builder.read(frame.handles.lights, Access::storageLoad, "Lights", "lights");
   const scene::SurfaceInput surfaces(frame.handles, frame.gbuffer);
   surfaces.declare(builder);
-  const auto& [visibility, relief] = factors;
-  if (visibility) builder.read(visibility, Access::sampled, "visibility", "V of each light");
-  if (relief) builder.read(relief, Access::sampled, "relief", "W of each light");
-  builder.read(maps_.ltcTable(), Access::sampled, "ltc_table", "glossy light of rectangles");
-  const TextureHandle radiance =
-      builder.write(before, Access::imageLoadStore, "radiance", relief ? "sum of L_u V W" : "sum of L_u V");
-  gpu::ProgramDesc desc{.files = {"glsl/deferred/light_accumulate.comp.glsl"},
-                        .defines = {{"VISIBILITY", visibility ? "1" : "0"},
-                                    {"RELIEF", relief ? "1" : "0"},
+  if (batch.visibility) builder.read(batch.visibility, Access::sampled, "visibility", "V of each light");
+  if (batch.relief) builder.read(batch.relief, Access::sampled, "relief", "W of each light");
+  gpu::ProgramDesc desc{.files = {file},
+                        .defines = {{"VISIBILITY", batch.visibility ? "1" : "0"},
+                                    {"RELIEF", batch.relief ? "1" : "0"},
                                     {"MEDIUM", scene_.medium.present() ? "1" : "0"},
-                                    {"LIGHT_COUNT", std::to_string(lights.size())}}};
+                                    {"LIGHT_COUNT", std::to_string(batch.lights.size())}}};
   surfaces.define(desc.defines);
   const scene::MediumInput medium(frame.handles);
   medium.define(desc.defines);
   medium.declare(builder);
+  return desc;
+}
+
+void Deferred::shadeLights(frame::PassBuilder& builder, gpu::ProgramDesc desc, const Batch& batch,
+                           glm::ivec2 size) {
+  const auto program = builder.program(std::move(desc));
+  builder.execute([=, indices = std::vector<uint32_t>(batch.lights.begin(), batch.lights.end())](
+                      frame::PassContext& context) {
+    setLightIndices(context.use(program), indices);
+    context.dispatch(size.x, size.y, 1, kGroupSize, kGroupSize);
+  });
+}
+
+TextureHandle Deferred::addLights(const Frame& frame, TextureHandle before, const Batch& batch) {
+  frame::PassBuilder builder = frame.graph.addPass("accumulate lights");
+  gpu::ProgramDesc desc = readLights(builder, frame, "glsl/deferred/light_accumulate.comp.glsl", batch);
+  builder.read(maps_.ltcTable(), Access::sampled, "ltc_table", "glossy light of rectangles");
+  const TextureHandle radiance = builder.write(before, Access::imageLoadStore, "radiance",
+                                               batch.relief ? "sum of L_u V W" : "sum of L_u V");
   const scene::LightTextureInput textures(frame.handles);
   textures.define(desc.defines);
   textures.declare(builder);
-  const auto program = builder.program(std::move(desc));
-  builder.execute([=, size = frame.size, indices = std::vector<uint32_t>(lights.begin(), lights.end())](
-                      frame::PassContext& context) {
-    gpu::Program& accumulate = context.use(program);
-    setLightIndices(accumulate, indices);
-    context.dispatch(size.x, size.y, 1, kGroupSize, kGroupSize);
-  });
+  shadeLights(builder, std::move(desc), batch, frame.size);
+  return radiance;
+}
+
+TextureHandle Deferred::addEnvironmentShare(const Frame& frame, TextureHandle before, const Batch& batch,
+                                            EnvironmentSums& sums, bool last) {
+  frame::PassBuilder builder =
+      frame.graph.addPass(last ? "environment light by ratio" : "accumulate lights of the environment");
+  // Maps are filtered for metallic-roughness surfaces, whoever answers how models reflect light.
+  SceneHandles handles = frame.handles;
+  handles.surface = nullptr;
+  gpu::ProgramDesc desc = readLights(builder, {frame.graph, handles, frame.gbuffer, frame.size},
+                                     "glsl/deferred/environment_share.comp.glsl", batch);
+  const bool first = !sums.front();
+  desc.defines["LIGHTS_FIRST"] = first ? "1" : "0";
+  desc.defines["LIGHTS_LAST"] = last ? "1" : "0";
+  constexpr std::array<const char*, std::tuple_size_v<EnvironmentSums>> names{"seen_sums", "seen_lobe_sums",
+                                                                              "all_sums", "all_lobe_sums"};
+  for (size_t i = 0; i < names.size() && !(first && last); ++i) {
+    constexpr const char* why = "what arrives, and what would";
+    if (last) {
+      builder.read(sums[i], Access::imageLoad, names[i], why);
+      continue;
+    }
+    if (first) sums[i] = createRadiance(frame.graph, names[i], frame.size);
+    sums[i] = builder.write(sums[i], first ? Access::imageStore : Access::imageLoadStore, names[i], why);
+  }
+  TextureHandle radiance = before;
+  if (last) {
+    maps_.readReflected(builder, frame.handles.modelKinds);
+    radiance = builder.write(before, Access::imageLoadStore, "radiance",
+                             "light of the environment, as far as its lights are seen");
+  } else {
+    builder.read(maps_.ltcTable(), Access::sampled, "ltc_table", "glossy light of rectangles");
+  }
+  shadeLights(builder, std::move(desc), batch, frame.size);
   return radiance;
 }
 

@@ -238,6 +238,9 @@ struct Environment {
   /// Says whether each of `lights` is reflected as if its light came from its centre (as published) instead
   /// of from its area.
   bool reflectCentres = false;
+  /// Says whether the light of the map is reflected as far as that of `lights` is seen, diffuse part and lobe
+  /// apart, instead of the light of `lights` itself. Pictures of one light alone do not change.
+  bool shadowedByRatio = false;
   explicit operator bool() const { return width > 0; }
 };
 

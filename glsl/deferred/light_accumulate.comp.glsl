@@ -3,7 +3,7 @@
 // the light's centre.
 #include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/light/light_texture.glsl"
-#include "glsl/media/medium_input.glsl"
+#include "glsl/deferred/light_batch.glsl"
 #include "glsl/light/unshadowed_light.glsl"
 #include "glsl/surface/surface_response.glsl"
 #if MATERIAL_MODELS
@@ -12,25 +12,6 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f) uniform image2D radiance;
-layout(std430) readonly buffer Lights { Light lights[]; };
-#if VISIBILITY
-uniform sampler2DArray visibility;
-#endif
-#if RELIEF
-uniform sampler2DArray relief;
-#endif
-uniform uint light_indices[LIGHT_COUNT];
-
-#if MEDIUM
-// T_l: of the medium, from a light to a surface point.
-vec3 light_transmittance(Light light, vec3 position) {
-  Medium medium = scene_medium();
-  float inside = light.type == light_directional
-                     ? medium_length(medium, position, -light.direction, 3.0e38)
-                     : medium_length_between(medium, light.position, position);
-  return medium_transmittance(medium, inside);
-}
-#endif
 
 // L_u.
 vec3 unshadowed(Light light, SurfaceMaterial material, vec3 position, GBufferSurface surface, vec3 v) {
@@ -54,16 +35,7 @@ void main() {
   vec3 sum = vec3(0.0);
   int i = 0;
   do {  // the condition comes last: software renderers run a loop's body once more where it comes first
-#if VISIBILITY
-    float lit = texelFetch(visibility, ivec3(pixel, i), 0).x;
-#elif RELIEF
-    float lit = 1.0;
-#else
-    const float lit = 1.0;
-#endif
-#if RELIEF
-    lit *= texelFetch(relief, ivec3(pixel, i), 0).x;
-#endif
+    float lit = light_factor(pixel, i);
     if (lit > 0.0) {
       vec3 arriving = unshadowed(lights[light_indices[i]], material, position, surface, v) *
                       light_texture(lights[light_indices[i]], position);

@@ -3,6 +3,7 @@
 // rest.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -41,13 +42,21 @@ class Deferred {
   /// Adds the local limit of `entering`, RGBA32F, E / pi.
   static frame::TextureHandle addLocalSubsurface(const Frame& frame, frame::TextureHandle radiance,
                                                  frame::TextureHandle entering);
-  /// Holds factors of a batch of lights: R16 arrays, layer per light; an empty handle stands for 1.
-  struct Factors {
+  /// Holds at most kLightBatch lights and their factors: R16 arrays, layer per light; an empty handle stands
+  /// for 1.
+  struct Batch {
+    std::span<const uint32_t> lights;
     frame::TextureHandle visibility, relief;
   };
-  /// Adds the sum of L_u V W over `lights` (at most kLightBatch).
-  frame::TextureHandle addLights(const Frame& frame, frame::TextureHandle radiance,
-                                 std::span<const uint32_t> lights, const Factors& factors);
+  /// Adds the sum of L_u V W over the batch.
+  frame::TextureHandle addLights(const Frame& frame, frame::TextureHandle radiance, const Batch& batch);
+  /// Holds, over the batches so far, what surfaces reflect of the environment's lights and what they would
+  /// without shadows, diffuse parts and lobes apart, RGBA32F; empty handles before the first batch.
+  using EnvironmentSums = std::array<frame::TextureHandle, 4>;
+  /// Adds a batch of the environment's lights to `sums`; after the last one, adds the light of the
+  /// environment, as far as these lights are seen, to the radiance that it returns.
+  frame::TextureHandle addEnvironmentShare(const Frame& frame, frame::TextureHandle radiance,
+                                           const Batch& batch, EnvironmentSums& sums, bool last);
   /// Returns `factor`, an array of one layer, as 1 everywhere.
   static frame::TextureHandle clearFactor(frame::FrameGraph& graph, frame::TextureHandle factor);
   /// Multiplies the radiance by the transmittance of the medium from what each pixel shows to the camera.
@@ -64,6 +73,14 @@ class Deferred {
                                       float exposureEv);
 
  private:
+  /// Declares what passes over a batch of lights read (glsl/deferred/light_batch.glsl and
+  /// glsl/surface/surface_response.glsl), and returns the program of `file` with its defines.
+  gpu::ProgramDesc readLights(frame::PassBuilder& builder, const Frame& frame, const char* file,
+                              const Batch& batch);
+  /// Lets the pass run the program over a picture of that size.
+  static void shadeLights(frame::PassBuilder& builder, gpu::ProgramDesc desc, const Batch& batch,
+                          glm::ivec2 size);
+
   const scene::Scene& scene_;
   shading_maps::ShadingMapService& maps_;
 };

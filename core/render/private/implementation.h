@@ -102,6 +102,8 @@ struct Renderer::Implementation {
   /// technique takes.
   std::vector<uint32_t> activeLights();
   frame::TextureHandle factorTarget(Term term, int layers);
+  /// Returns how many lights, the last ones, stand for the environment whose light has the shadows of theirs.
+  size_t lightsByRatio(std::span<const uint32_t> lights);
   /// Adds the light of lamps to each lighting; V and W are the same for all.
   void addDirect(std::span<Lighting> lightings, std::span<const uint32_t> lights);
   void addEnvironment(std::span<Lighting> lightings);
