@@ -6,6 +6,7 @@
 
 #include "apps/view/viewer_style.h"
 #include "apps/view/viewer_window.h"
+#include "core/question/question_fields.h"
 #include "core/question/term.h"
 
 namespace limn::app {
@@ -142,9 +143,19 @@ void ViewerWindow::environmentPanel() {
     if (ImGui::IsItemDeactivatedAfterEdit())
       wanted.environmentLights = environmentThreshold_ < 1e-3f ? 0 : environmentThreshold_;
   }
+  if (state_.scene.environmentLights > 0) {
+    const QuestionField& combine = questionField("environment_combine");
+    nameCell("combined by", combine.doc);
+    if (ImGui::BeginCombo("##combine", state_.scene.environmentCombine.c_str())) {
+      for (const char* way : combine.choices)
+        if (ImGui::Selectable(way, state_.scene.environmentCombine == way)) wanted.environmentCombine = way;
+      ImGui::EndCombo();
+    }
+  }
   endRows();
   if (wanted.environment != state_.scene.environment ||
-      wanted.environmentLights != state_.scene.environmentLights) {
+      wanted.environmentLights != state_.scene.environmentLights ||
+      wanted.environmentCombine != state_.scene.environmentCombine) {
     if (wanted.environment.empty()) wanted.environmentLights = 0;
     open(wanted);
   }

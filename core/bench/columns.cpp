@@ -37,6 +37,7 @@ std::string parameterText(const Case& c) {
     text +=
         fmt::format("{}environment lights {} of {}^2 {} {}", text.empty() ? "" : ", ", c.environmentLights,
                     c.environmentResolution, c.environmentShape, c.environmentReflection);
+  if (c.environmentLights > 0 && c.environmentCombine != "add") text += " by " + c.environmentCombine;
   return text;
 }
 

@@ -59,14 +59,13 @@ void addQuestion(Json& json, const SceneQuestion& question) {
 SceneQuestion questionFromJson(const Json& json) {
   SceneQuestion question;
   for (const QuestionField& field : questionFields()) {
-    if (field.group == QuestionGroup::subject) {
-      if (!field.addedLater || json.contains(field.key)) read(json.at(keyInRow(field)), question, field);
-      continue;
-    }
+    const char* key = keyInRow(field);
+    const bool beside = field.group == QuestionGroup::subject;
     const auto object = json.find(name(field.group));
-    if (object == json.end()) continue;  // rows of earlier versions lack it
-    if (writtenAlways(field.group) || object->contains(keyInRow(field)))
-      read(object->at(keyInRow(field)), question, field);
+    if (!beside && object == json.end()) continue;  // rows of earlier versions lack it
+    const Json& values = beside ? json : *object;
+    const bool always = writtenAlways(field.group) && !field.addedLater;
+    if (always || values.contains(key)) read(values.at(key), question, field);
   }
   return question;
 }

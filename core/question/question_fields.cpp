@@ -66,6 +66,7 @@ constexpr const char* kWhenDefaultLights[] = {"auto", "on", "off"};
 constexpr const char* kOffOn[] = {"off", "on"};
 constexpr const char* kShapes[] = {"squares", "rectangles"};
 constexpr const char* kReflections[] = {"area", "centre"};
+constexpr const char* kCombines[] = {"add", "ratio"};
 
 constexpr QuestionGroup kSubject = QuestionGroup::subject, kEnvironment = QuestionGroup::environment,
                         kMedium = QuestionGroup::medium;
@@ -184,6 +185,16 @@ constexpr QuestionField kFields[] = {
         "from the centre")
         .in(kEnvironment)
         .storedAs("reflection")
+        .approximating(),
+    choice(
+        "environment_combine", "--environment-combine", &Q::environmentCombine, kCombines,
+        "What surfaces reflect of the environment's area lights: add: the sum of them; ratio: the map "
+        "itself,\n"
+        "as far as the lights are seen, so that highlights show the map. It takes a technique that answers\n"
+        "visibility; where one answers environment or direct, or of one light alone, nothing changes")
+        .in(kEnvironment)
+        .storedAs("combine")
+        .later()
         .approximating(),
     coefficient("sigma_a", "--sigma-a", &Q::sigmaA,
                 "Absorption coefficient of the medium per metre: one number or red,green,blue")
@@ -345,7 +356,7 @@ std::string describeEnvironmentLights(const SceneQuestion& question) {
   if (!(question.environmentLights > 0)) return {};
   std::vector<std::string> words;
   for (const QuestionField& field : kFields)
-    if (field.approximates)
+    if (field.approximates && !(field.addedLater && isDefault(field, question)))
       for (std::string& value : printed(field, question)) words.push_back(std::move(value));
   return fmt::format("{}", fmt::join(words, " "));
 }

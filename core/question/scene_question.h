@@ -36,7 +36,7 @@ struct SceneQuestion {
   std::string displaced = "off";
   double environmentLights = 0;
   int environmentResolution = 48;
-  std::string environmentShape = "squares", environmentReflection = "area";
+  std::string environmentShape = "squares", environmentReflection = "area", environmentCombine = "add";
   std::string sigmaA = {}, sigmaS = {};
   std::optional<double> g = {};
   std::string grid = {};

@@ -142,6 +142,7 @@ void addEnvironment(const SceneQuestion& question, scene::Scene& scene) {
     scene.environment.lights =
         shading::decomposeEnvironment(scene.environment, decompositionSettings(question)).lights;
     scene.environment.reflectCentres = question.environmentReflection == "centre";
+    scene.environment.shadowedByRatio = question.environmentCombine == "ratio";
   }
 }
 

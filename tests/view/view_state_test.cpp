@@ -103,6 +103,7 @@ TEST_F(ViewStateTest, SuitesKeepEverySetting) {
   s.environmentResolution = 24;
   s.environmentShape = "rectangles";
   s.environmentReflection = "centre";
+  s.environmentCombine = "ratio";
   s.animation = "walk";
   s.lightSettings = {"key.size=1,2", "key.intensity=3"};
   s.sigmaA = "0.1,0.2,0.3";

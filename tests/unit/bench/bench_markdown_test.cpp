@@ -138,7 +138,7 @@ Row hostileRow(const std::string& text) {
   c.parameters = {{text, text}};
   c.environment = text;
   c.environmentLights = 0.1;
-  c.environmentShape = c.environmentReflection = text;
+  c.environmentShape = c.environmentReflection = c.environmentCombine = text;
   c.sigmaA = c.sigmaS = text;
   c.animation = c.grid = text;
   c.lightSettings = {text};

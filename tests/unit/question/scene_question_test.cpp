@@ -130,13 +130,29 @@ TEST(SceneQuestion, FieldsAreReadFromRows) {
   }
 }
 
+TEST(SceneQuestion, RowsOfEarlierVersionsLackLaterFields) {
+  SceneQuestion question;
+  question.scene = "balls";
+  int later = 0;
+  for (const QuestionField& field : questionFields()) {
+    if (!field.addedLater) continue;
+    ++later;
+    auto row = nlohmann::json::parse(toJson(bench::test::exampleRow(caseOf(question))));
+    const bool beside = field.group == QuestionGroup::subject;
+    auto& values = beside ? row : row.at(name(field.group));
+    EXPECT_EQ(values.erase(keyInRow(field)), 1u) << field.key;
+    EXPECT_EQ(asked(bench::rowFromJson(row.dump()).what), question) << field.key;
+  }
+  EXPECT_GE(later, 2);
+}
+
 TEST(SceneQuestion, RowsLeaveOutWhatIsNotChanged) {
   SceneQuestion question;
   question.scene = "balls";
   const auto plain = nlohmann::json::parse(toJson(bench::test::exampleRow(caseOf(question))));
   EXPECT_TRUE(plain.at("medium").empty());
   EXPECT_TRUE(plain.at("changes").empty());
-  EXPECT_EQ(plain.at("environment").size(), 5u);
+  EXPECT_EQ(plain.at("environment").size(), 6u);
   for (const QuestionField& field : questionFields()) {
     if (field.group != QuestionGroup::medium && field.group != QuestionGroup::changes) continue;
     test::setSample(field, question);
