@@ -20,6 +20,6 @@ void main() {
   shadows.lobe = block_value(lobe_values, blocks);
 #endif
   SampledPixel p = sampled_pixel(pixel, depth);
-  vec3 light = shadowed_light(p, unshadowed_light(p), shadows);
+  vec3 light = shadowed_light(p, unshadowed_light(pixel, p), shadows);
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(light, 0.0));
 }

@@ -114,7 +114,7 @@ void main() {
   imageStore(lobe_values, item, vec4(shadows.lobe, 0.0));
 #endif
 #else
-  vec3 light = shadowed_light(p, unshadowed_light(p), shadow_values(p, sums));
+  vec3 light = shadowed_light(p, unshadowed_light(pixel, p), shadow_values(p, sums));
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(light, 0.0));
 #endif
 }

@@ -19,6 +19,7 @@
 #include "core/technique/technique.h"
 #include "glsl/materials/material_model.glsl"
 #include "techniques/subtractive_shadows/levels.h"
+#include "techniques/subtractive_shadows/radiance_cache.h"
 
 namespace {
 
@@ -26,11 +27,12 @@ using namespace limn;
 using frame::Access;
 using frame::TextureHandle;
 using subtractive_shadows::Level;
+using subtractive_shadows::RadianceCache;
 
 enum Combine : int { subtract, ratio, ratioSplit, add };
 constexpr const char* kCombines[] = {"subtract", "ratio", "ratio_split", "add"};
-enum Unshadowed : int { prefiltered, brdfSamples, lights };
-constexpr const char* kUnshadowed[] = {"prefiltered", "brdf_samples", "lights"};
+enum Unshadowed : int { prefiltered, brdfSamples, cache, lights };
+constexpr const char* kUnshadowed[] = {"prefiltered", "brdf_samples", "cache", "lights"};
 enum Sampling : int { importance, regions };
 constexpr const char* kSamplings[] = {"importance", "regions"};
 constexpr int kMostLights = 4096;
@@ -49,10 +51,11 @@ constexpr Parameter kParameters[] = {
     boolean("demodulate", true,
             "Without the surface's colours in what is subtracted or added, which blocks of pixels share"),
     choice("unshadowed", prefiltered, kUnshadowed,
-           "Where the light without shadows comes from: filtered maps, samples of each pixel's lobe, or more "
-           "samples of the environment than have shadows"),
+           "Where the light without shadows comes from: filtered maps, samples of each pixel's lobe, a "
+           "cache of what materials reflect by normal, as published, or more samples of the environment than "
+           "have shadows"),
     integer("brdf_samples", 32, {1, 1024}, "samples",
-            "Samples of a pixel's lobe for the light without shadows")
+            "Samples of a lobe for the light without shadows, of a pixel or a texel of the cache")
         .logScale(),
     integer("unshadowed_factor", 16, {1, 64}, "times",
             "Samples of the light without shadows, over those that have shadows"),
@@ -83,6 +86,9 @@ constexpr StressCase kStress[] = {
     {.name = "blocks of 32 pixels", .settings = "block=32", .factor = 4},
     {.name = "every pixel", .settings = "block=1"},
     {.name = "subtracted", .settings = "combine=subtract", .factor = 4},
+    {.name = "one sample of each lobe", .settings = "unshadowed=brdf_samples,brdf_samples=1", .factor = 4},
+    {.name = "1024 samples of each lobe", .settings = "unshadowed=brdf_samples,brdf_samples=1024"},
+    {.name = "radiance cache", .settings = "unshadowed=cache", .factor = 4},
     {.name = "added", .settings = "combine=add", .factor = 8},
     {.name = "maps of 16 texels", .settings = "shadow_map_size=16", .factor = 8},
     {.name = "batches of one map", .settings = "shadow_map_size=2048,memory=32"},
@@ -90,6 +96,7 @@ constexpr StressCase kStress[] = {
 
 class SubtractiveShadows : public Technique {
   shadow::EnvironmentSamples samples_, unshadowed_;
+  RadianceCache cache_;
   std::vector<Level> levels_;
   const FrameBudget* budget_ = nullptr;  ///< null: all lights, whatever it takes
   int built_ = 0;                        ///< index of the level that the graph is built for
@@ -107,7 +114,7 @@ class SubtractiveShadows : public Technique {
     takeSamples(environment, inputs, level.lights);
     if (p.choice("combine") == add && level.block == 1 && !budget_)
       return shadow::addSampledEnvironment(graph, inputs, info.name, samples_, request.target);
-    return Passes(graph, inputs, *this, level.block).add(request.target);
+    return Passes(graph, inputs, *this, level.block, findUnshadowed(graph, inputs)).add(request.target);
   }
 
   void chooseLevel(const TechniqueInputs& inputs) {
@@ -151,14 +158,28 @@ class SubtractiveShadows : public Technique {
                                                p.integer("lights") * p.integer("unshadowed_factor"));
   }
 
+  /// Returns where the unshadowed light of a request comes from, and makes the cache where it comes from
+  /// there. What has no lobes has its light from filtered maps in every case.
+  Unshadowed findUnshadowed(frame::FrameGraph& graph, const TechniqueInputs& inputs) {
+    const ParameterValues& p = inputs.parameters;
+    const auto asked = static_cast<Unshadowed>(p.choice("unshadowed"));
+    if (asked == lights) return lights;
+    if ((inputs.handles.modelKinds & 1u << glsl::model_entry) != 0 || p.choice("combine") == add)
+      return prefiltered;
+    if (asked == cache && !cache_.add(graph, inputs, info.name, p.integer("brdf_samples")))
+      return prefiltered;
+    return asked;
+  }
+
   /// Declares the passes of one request.
   class Passes {
    public:
     Passes(frame::FrameGraph& graph, const TechniqueInputs& inputs, const SubtractiveShadows& technique,
-           int block)
+           int block, Unshadowed unshadowed)
         : graph_(graph),
           inputs_(inputs),
           technique_(technique),
+          unshadowed_(unshadowed),
           combine_(static_cast<Combine>(inputs.parameters.choice("combine"))),
           coats_((inputs.handles.modelKinds & 1u << glsl::model_coated) != 0),
           parts_(coats_ || combine_ == ratioSplit || (demodulated() && !byRatio())),
@@ -231,7 +252,7 @@ class SubtractiveShadows : public Technique {
       blocks_.define(defines);
       defines["COMBINE"] = std::to_string(combine_);
       defines["DEMODULATE"] = demodulated() ? "1" : "0";
-      defines["UNSHADOWED"] = std::to_string(inputs_.parameters.choice("unshadowed"));
+      defines["UNSHADOWED"] = std::to_string(unshadowed_);
       defines["VALUE_FORMAT"] = byRatio() ? "rgba16" : "rgba32f";
     }
 
@@ -265,25 +286,22 @@ class SubtractiveShadows : public Technique {
     /// Declares what unshadowed.glsl looks up.
     void readUnshadowed(frame::PassBuilder& builder) {
       auto& maps = inputs_.service<shading_maps::ShadingMapService>();
-      const bool byLights = inputs_.parameters.choice("unshadowed") == lights;
-      if (coats_ && (byLights || combine_ == Combine::add))
+      if (coats_ && (unshadowed_ == lights || combine_ == Combine::add))
         builder.read(maps.radiance(), Access::sampled, "environment_map", "what coats mirror");
       if (combine_ == Combine::add) return;
-      if (byLights)
+      if (unshadowed_ == lights)
         builder.read(graph_.importBuffer("samples of the unshadowed light", technique_.unshadowed_.buffer()),
                      Access::storageLoad, "UnshadowedSamples", "light without shadows");
       else
         maps.readReflected(builder, inputs_.handles.modelKinds);
-      if (lobeSamples() > 0)
+      if (unshadowed_ == brdfSamples)
         builder.read(maps.radianceLevels(), Access::sampled, "environment_levels_map", "light of lobes");
+      if (unshadowed_ == cache) technique_.cache_.read(builder, inputs_, blocks_.side() > 1);
     }
 
     /// Returns how many samples of a lobe passes with the unshadowed light take, 0: none.
     int lobeSamples() const {
-      const bool entry = (inputs_.handles.modelKinds & 1u << glsl::model_entry) != 0;
-      if (combine_ == Combine::add || inputs_.parameters.choice("unshadowed") != brdfSamples || entry)
-        return 0;
-      return inputs_.parameters.integer("brdf_samples");
+      return unshadowed_ == brdfSamples ? inputs_.parameters.integer("brdf_samples") : 0;
     }
 
     TextureHandle addResampling(TextureHandle target) {
@@ -318,6 +336,7 @@ class SubtractiveShadows : public Technique {
     frame::FrameGraph& graph_;
     const TechniqueInputs& inputs_;
     const SubtractiveShadows& technique_;
+    Unshadowed unshadowed_;
     Combine combine_;
     bool coats_, parts_;
     scene::PixelBlocks blocks_;

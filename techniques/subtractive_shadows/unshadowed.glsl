@@ -5,7 +5,8 @@
 
 #define UNSHADOWED_PREFILTERED 0
 #define UNSHADOWED_BRDF_SAMPLES 1
-#define UNSHADOWED_LIGHTS 2
+#define UNSHADOWED_CACHE 2
+#define UNSHADOWED_LIGHTS 3
 
 #include "techniques/subtractive_shadows/combine.glsl"
 
@@ -19,18 +20,22 @@ vec3 mirrored_light(SampledPixel p) { return vec3(0.0); }
 
 #if COMBINE == COMBINE_ADD
 
-ReflectedParts unshadowed_light(SampledPixel p) { return ReflectedParts(vec3(0.0), mirrored_light(p)); }
+ReflectedParts unshadowed_light(ivec2 pixel, SampledPixel p) { return ReflectedParts(vec3(0.0), mirrored_light(p)); }
 
 #elif UNSHADOWED != UNSHADOWED_LIGHTS
 #if UNSHADOWED == UNSHADOWED_BRDF_SAMPLES
 #include "techniques/subtractive_shadows/brdf_samples.glsl"
+#elif UNSHADOWED == UNSHADOWED_CACHE
+#include "techniques/subtractive_shadows/cached_environment.glsl"
 #else
 #include "glsl/light/reflected_environment.glsl"
 #endif
 
-ReflectedParts unshadowed_light(SampledPixel p) {
+ReflectedParts unshadowed_light(ivec2 pixel, SampledPixel p) {
 #if UNSHADOWED == UNSHADOWED_BRDF_SAMPLES
   ReflectedParts light = sampled_environment(p);
+#elif UNSHADOWED == UNSHADOWED_CACHE
+  ReflectedParts light = cached_environment(pixel, p);
 #else
   ReflectedParts light = reflected_environment(p.material, p.surface.normal, p.to_viewer);
 #endif
@@ -45,7 +50,7 @@ ReflectedParts unshadowed_light(SampledPixel p) {
 #else
 layout(std430) readonly buffer UnshadowedSamples { EnvironmentSample unshadowed_samples[]; };
 
-ReflectedParts unshadowed_light(SampledPixel p) {
+ReflectedParts unshadowed_light(ivec2 pixel, SampledPixel p) {
   ReflectedParts sum = ReflectedParts(vec3(0.0), vec3(0.0));
   int count = unshadowed_samples.length();
   for (int i = 0; i < count; ++i)
