@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/frame/frame_graph.h"
-#include "core/gpu/objects.h"
 #include "core/scene/scene.h"
 #include "core/technique/technique.h"
 
