@@ -451,7 +451,7 @@ struct TreeBuilder::Scratch {
     const glm::vec3 place = glsl::octahedral_place(mirror);
     const glm::vec3 signs = glsl::octahedral_signs(glsl::octahedral_face(mirror));
     for (uint32_t i = 0; i < 12; ++i) {
-      const glm::vec3 tap = glsl::octahedral_tap(place, signs, i < 6 ? core : 2 * core, i % 6);
+      const glm::vec3 tap = glsl::octahedral_tap(place, signs, i < 6 ? 2 * core : 4 * core, i % 6);
       if (tap.z > 0) splitAt(source, tap, core);
     }
   }
