@@ -37,6 +37,11 @@ LobeLight sampled_lobe(float alpha, vec3 n, vec3 g, vec3 v) {
     light.facing += weight.x * radiance;
     light.grazing += weight.y * radiance;
   }
+  if (weights == vec2(0.0)) {
+    // All samples lie below the horizon, as the only one of a wide lobe may: the hemisphere stands for the lobe.
+    light.facing = light.grazing = radiance_of_sample(n, 2.0 * pi, n);
+    return light;
+  }
   light.facing /= max(weights.x, 1e-30);
   light.grazing /= max(weights.y, 1e-30);
   return light;

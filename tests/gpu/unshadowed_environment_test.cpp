@@ -1,0 +1,221 @@
+// The light without shadows that subtractive_shadows starts from, by samples of lobes and by its cache, where
+// nothing hides the environment: against closed forms, against sums of the same lobes, and at extremes.
+#include <cmath>
+
+#include "core/scene/camera.h"
+#include "core/scene/material_model.h"
+#include "glsl/light/ltc.glsl"
+#include "glsl/surface/lobe_samples.glsl"
+#include "tests/gpu/environment_harness.h"
+#include "tests/support/test_scenes.h"
+
+namespace limn {
+namespace {
+
+using glm::vec2;
+using glm::vec3;
+
+constexpr int kWidth = 33, kHeight = 25;  // odd: the pixel in the middle looks along the normal
+constexpr float kSmooth = 13 / 255.f;     // the smoothest metal that takes light
+const std::vector<float> kRoughnesses{kSmooth, 153 / 255.f, 1};  // exact in the G-buffer
+
+class UnshadowedEnvironmentTest : public EnvironmentTest {
+ protected:
+  using Values = std::vector<std::pair<std::string, std::string>>;
+
+  static scene::Material metal(float roughness, vec3 colour = {1, 0.5f, 0.2f}) {
+    scene::Material material;
+    material.baseColour = glm::vec4(colour, 1);
+    material.roughness = roughness;
+    return material;
+  }
+
+  /// A floor that nothing hides the sky from.
+  static scene::Scene floorOf(const scene::Material& material, scene::Environment environment) {
+    scene::Scene scene = lit(floor(), std::move(environment), 0);
+    scene.materials[0] = material;
+    return scene;
+  }
+
+  template <class Radiance>
+  static scene::Environment skyOf(int width, int height, const Radiance& radiance) {
+    scene::Environment e;
+    e.width = width;
+    e.height = height;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        e.texels.push_back(radiance(
+            glsl::equirectangular_direction((vec2(x, y) + 0.5f) / vec2(static_cast<float>(width), height))));
+    return e;
+  }
+  static vec3 linear(vec3 d) { return 1.f + 0.8f * d; }
+
+  static Image light(render::Renderer& renderer, const std::string& unshadowed, Values values = {}) {
+    values.emplace_back("unshadowed", unshadowed);
+    values.emplace_back("shadow_map_size", "16");
+    if (values.front().first != "lights") values.emplace_back("lights", "1");
+    return picture(renderer,
+                   settings(kWidth, kHeight, Term::direct, {technique("subtractive_shadows", values)}));
+  }
+  static vec3 middle(const Image& image) {
+    return {image.at(kWidth / 2, kHeight / 2, 0), image.at(kWidth / 2, kHeight / 2, 1),
+            image.at(kWidth / 2, kHeight / 2, 2)};
+  }
+  static void expectNear(vec3 value, vec3 expected, float tolerance) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(value[c], expected[c], tolerance * expected[c]) << c;
+  }
+  static glsl::SurfaceBrdf brdfOf(const scene::Material& m) {
+    return glsl::surface_brdf(vec3(m.baseColour), m.metallic, m.roughness, m.specularFactor, m.specularColour,
+                              m.ior);
+  }
+};
+
+TEST_F(UnshadowedEnvironmentTest, UniformLightGivesTheReflectance) {
+  for (const float roughness : kRoughnesses) {
+    const scene::Material material = metal(roughness);
+    const scene::Scene scene = floorOf(material, uniform(2));
+    render::Renderer renderer(device(), scene);
+    const glsl::SurfaceBrdf s = brdfOf(material);
+    const vec3 expected = 2.f * glsl::ltc_specular_reflectance(s, glsl::ltc_lookup(1, s.alpha));
+    for (const char* samples : {"1", "32"}) {
+      expectNear(middle(light(renderer, "brdf_samples", {{"brdf_samples", samples}})), expected, 2e-3f);
+      expectNear(middle(light(renderer, "cache", {{"brdf_samples", samples}})), expected, 2e-3f);
+    }
+  }
+}
+
+/// The smoothest metal shows the light along the mirror direction, a rougher one the sum over its lobe.
+/// Texels that cover as much as one of 32 samples of the widest lobe blur the slope of the light by 6 % of
+/// all light.
+TEST_F(UnshadowedEnvironmentTest, LinearLightGivesTheLobesMean) {
+  constexpr int kSum = 8192;
+  for (const float roughness : kRoughnesses) {
+    const scene::Material material = metal(roughness, vec3(1));
+    const glsl::SurfaceBrdf s = brdfOf(material);
+    float up = 0;  // integral of the lobe times the cosine with the normal
+    float all = 0;
+    for (int i = 0; i < kSum; ++i) {
+      const glsl::LobeSample l =
+          glsl::lobe_sample(s.alpha, vec3(0, 0, 1), vec2(glsl::lobe_point(i, kSum)), kSum);
+      up += l.weight * l.direction.z / kSum;
+      all += l.weight / kSum;
+    }
+    if (roughness == kSmooth) {
+      EXPECT_NEAR(up, 1, 1e-3f);
+    }
+    const vec3 expected = vec3(all) + vec3(0, 0.8f * up, 0);
+    const scene::Scene scene = floorOf(material, skyOf(512, 256, linear));
+    render::Renderer renderer(device(), scene);
+    for (const char* unshadowed : {"brdf_samples", "cache"})
+      expectNear(middle(light(renderer, unshadowed)), expected, 0.01f + 0.06f * s.alpha);
+  }
+}
+
+TEST_F(UnshadowedEnvironmentTest, SurfacesWithoutALobeHaveTheLightOfFilteredMaps) {
+  scene::Material matte = metal(1);
+  matte.metallic = 0;
+  matte.specularFactor = 0;
+  const scene::Scene scene = floorOf(matte, sky());
+  render::Renderer renderer(device(), scene);
+  const Image expected = light(renderer, "prefiltered");
+  for (const char* unshadowed : {"brdf_samples", "cache"})
+    EXPECT_EQ(rmse(light(renderer, unshadowed), expected), 0);
+}
+
+TEST_F(UnshadowedEnvironmentTest, MoreSamplesConverge) {
+  for (const float roughness : {51 / 255.f, 153 / 255.f}) {
+    const scene::Scene scene = floorOf(metal(roughness), sky());
+    render::Renderer renderer(device(), scene);
+    const auto sampled = [&](const char* samples) {
+      return light(renderer, "brdf_samples", {{"brdf_samples", samples}});
+    };
+    const Image exact = sampled("1024");
+    const double few = rmse(sampled("8"), exact), some = rmse(sampled("32"), exact),
+                 many = rmse(sampled("128"), exact);
+    EXPECT_LT(some, few);
+    EXPECT_LT(many, some);
+    EXPECT_LT(many, 0.05 * mean(exact));
+  }
+}
+
+/// Against samples of the environment, which know no lobes.
+TEST_F(UnshadowedEnvironmentTest, LobesOfModelsConvergeToSamplesOfTheEnvironment) {
+  const auto model = [](uint32_t kind) {
+    glsl::MaterialModel m{};
+    m.kind = kind;
+    m.kd = vec3(0.3f, 0.2f, 0.1f);
+    m.ks = vec3(0.5f);
+    m.eta = vec3(1.5f);
+    m.k = vec3(3);
+    m.exponent = 12;
+    m.roughness = vec2(0.4f, 0.4f);
+    return m;
+  };
+  for (const uint32_t kind : {glsl::model_torrance_sparrow, glsl::model_ward, glsl::model_phong}) {
+    scene::Material material;
+    scene::setModel(material, model(kind));
+    const scene::Scene scene = floorOf(material, sky());
+    render::Renderer renderer(device(), scene);
+    const Image exact = light(renderer, "lights", {{"lights", "64"}, {"unshadowed_factor", "64"}});
+    EXPECT_LT(rmse(light(renderer, "brdf_samples", {{"brdf_samples", "256"}}), exact), 0.02 * mean(exact))
+        << kind;
+    expectNear(middle(light(renderer, "cache", {{"brdf_samples", "256"}})), middle(exact), 0.03f);
+  }
+}
+
+/// One texel of 1e6, also next to a pole, and maps of one texel: samples look beyond the last level, or at
+/// the first.
+TEST_F(UnshadowedEnvironmentTest, ExtremesStayFinite) {
+  std::vector<scene::Environment> environments{skyOf(1, 1, [](vec3) { return vec3(1e6f); })};
+  for (const int row : {0, 20}) {
+    environments.push_back(skyOf(256, 128, [](vec3) { return vec3(0); }));
+    environments.back().texels[static_cast<size_t>(row) * 256 + 77] = vec3(1e6f);
+  }
+  for (const scene::Environment& environment : environments) {
+    for (const float roughness : {kSmooth, 1.f}) {
+      const scene::Scene scene = floorOf(metal(roughness), environment);
+      render::Renderer renderer(device(), scene);
+      for (const char* samples : {"1", "256"})
+        for (const char* unshadowed : {"brdf_samples", "cache"})
+          expectWithin(light(renderer, unshadowed, {{"brdf_samples", samples}}), 0, 1.01e6f);
+    }
+  }
+}
+
+/// What the cache leaves out is that all surfaces have the view in the middle of the picture: from far away
+/// they do.
+TEST_F(UnshadowedEnvironmentTest, TheCacheIsExactForDistantViews) {
+  scene::Scene scene;
+  scene::Node node;
+  node.mesh = test::addMesh(scene, test::spherePrimitive(1, test::addMaterial(scene, metal(153 / 255.f))));
+  scene.nodes.push_back(node);
+  scene.environment = sky();
+  const auto seenFrom = [&](float distance, const char* unshadowed) {
+    render::Renderer renderer(device(), scene);
+    renderer.configure(settings(
+        kWidth, kWidth, Term::direct,
+        {technique("subtractive_shadows", {{"unshadowed", unshadowed}, {"lights", "1"}, {"bias", "64"}})}));
+    renderer.setCamera(scene::lookAt({0, 0, distance}, {0, 0, 0}, 2.2f / distance));
+    renderer.render();
+    return renderer.read();
+  };
+  const auto error = [&](float distance) {
+    const Image exact = seenFrom(distance, "brdf_samples");
+    return rmse(seenFrom(distance, "cache"), exact) / mean(exact);
+  };
+  EXPECT_LT(error(100), 0.05);
+  EXPECT_GT(error(3), 2 * error(100));
+}
+
+TEST_F(UnshadowedEnvironmentTest, MaterialsThatDoNotFitTheCacheHaveTheLightOfFilteredMaps) {
+  scene::Scene scene = floorOf(metal(51 / 255.f), sky());
+  scene.materials.insert(scene.materials.begin(), 128, metal(51 / 255.f));
+  for (const int material : {127, 128}) {
+    scene.meshes[0].primitives[0].material = material;
+    render::Renderer renderer(device(), scene);
+    EXPECT_EQ(rmse(light(renderer, "cache"), light(renderer, "prefiltered")) == 0, material == 128);
+  }
+}
+
+}  // namespace
+}  // namespace limn
