@@ -153,7 +153,8 @@ bool agree(const glsl::Frame& a, const glsl::Frame& b) {
   return glm::distance(a.n, b.n) < kTurn && glm::distance(a.t, b.t) < kTurn;
 }
 
-/// What parts of a surface send where, per area of all.
+/// What parts of a surface send where, per area of all. Smooth values are sampled, as for clusters: the error
+/// is that of the cells' own with a third fewer cells, since their edges are none of the light's.
 struct SurfaceSource : FunctionSource {
   /// The most by which light of a part counts where the surface is seen at a more grazing angle.
   static constexpr float kSteepest = 2;
@@ -166,7 +167,7 @@ struct SurfaceSource : FunctionSource {
     glm::vec3 sum(0);
     for (const TreePart& part : parts) {
       const glm::vec3 local = glsl::to_local(part.frame, out);
-      if (local.z > 0) sum += part.area * std::min(local.z / w.z, kSteepest) * part.tree->value(local);
+      if (local.z > 0) sum += part.area * std::min(local.z / w.z, kSteepest) * part.tree->smoothValue(local);
     }
     return sum / area;
   }
@@ -183,9 +184,9 @@ struct ClusterSource : FunctionSource {
     for (const TreePart& part : parts) {
       const glm::vec3 local = glsl::to_local(part.frame, out);
       if (part.tree->domain() == DirectionDomain::sphere)
-        sum += part.area * part.tree->value(local);
+        sum += part.area * part.tree->smoothValue(local);
       else if (local.z > 0)
-        sum += part.area * local.z * (part.tree->value(local) + part.diffuse);
+        sum += part.area * local.z * (part.tree->smoothValue(local) + part.diffuse);
     }
     return sum;
   }
