@@ -82,16 +82,16 @@ constexpr Parameter kParameters[] = {
 };
 constexpr StressCase kStress[] = {
     {.name = "one light", .settings = "lights=1", .factor = 8},
-    {.name = "4096 lights", .settings = "lights=4096,shadow_map_size=64", .factor = 2},
+    {.name = "4096 lights", .settings = "lights=4096 shadow_map_size=64", .factor = 2},
     {.name = "blocks of 32 pixels", .settings = "block=32", .factor = 4},
     {.name = "every pixel", .settings = "block=1"},
     {.name = "subtracted", .settings = "combine=subtract", .factor = 4},
-    {.name = "one sample of each lobe", .settings = "unshadowed=brdf_samples,brdf_samples=1", .factor = 4},
-    {.name = "1024 samples of each lobe", .settings = "unshadowed=brdf_samples,brdf_samples=1024"},
+    {.name = "one sample of each lobe", .settings = "unshadowed=brdf_samples brdf_samples=1", .factor = 4},
+    {.name = "1024 samples of each lobe", .settings = "unshadowed=brdf_samples brdf_samples=1024"},
     {.name = "radiance cache", .settings = "unshadowed=cache", .factor = 4},
     {.name = "added", .settings = "combine=add", .factor = 8},
     {.name = "maps of 16 texels", .settings = "shadow_map_size=16", .factor = 8},
-    {.name = "batches of one map", .settings = "shadow_map_size=2048,memory=32"},
+    {.name = "batches of one map", .settings = "shadow_map_size=2048 memory=32"},
 };
 
 class SubtractiveShadows : public Technique {
