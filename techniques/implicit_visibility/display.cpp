@@ -2,48 +2,14 @@
 
 #include <utility>
 
-#include "core/gpu_scene/gpu_scene.h"
-
 namespace limn::implicit_visibility {
 
 using frame::Access;
 
 frame::TextureHandle Display::lookup(const PassRequest& r) {
-  if (lookup_) return lookup_;
-  frame::PassBuilder pass = r.graph.addPass("surface lookup", technique_);
-  pass.role(frame::PassRole::map)
-      .read(r.inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
-      .read(r.inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "which surface is seen")
-      .read(elements_.leaves, Access::storageLoad, "Leaves", "vertices")
-      .read(elements_.corners, Access::storageLoad, "Corners", "triangles");
-  const auto create = [&](const char* name, GLenum format) {
-    return r.graph.createTexture(name,
-                                 {.format = format, .width = r.inputs.size.x, .height = r.inputs.size.y});
-  };
-  lookup_ = pass.write(create("surface lookup", GL_RGBA32UI), Access::colourAttachment, "leaves and weights");
-  const frame::TextureHandle depth = pass.write(create("surface lookup z", GL_DEPTH_COMPONENT32F),
-                                                Access::depthAttachment, "hidden-surface removal");
-  const auto kernelHandle = pass.program({.files = {"techniques/implicit_visibility/lookup.vert.glsl",
-                                                    "techniques/implicit_visibility/lookup.frag.glsl"},
-                                          .defines = {}});
-  vertexArray_ = gpu::VertexArray(r.inputs.gpuScene.device(), {});
-  pass.execute([this, kernelHandle, depth, &scene = r.inputs.gpuScene](frame::PassContext& context) {
-    const gl::Functions& gl = context.gl();
-    context.bindFramebuffer({{lookup_}}, {depth});
-    constexpr GLuint nobody[4] = {glsl::no_link, 0, 0, 0};
-    constexpr GLfloat far = 0;
-    gl.ClearBufferuiv(GL_COLOR, 0, nobody);
-    gl.ClearBufferfv(GL_DEPTH, 0, &far);
-    context.use(kernelHandle).set("near_plane", scene.camera().near);
-    gl.BindVertexArray(vertexArray_.id());
-    gl.Enable(GL_CULL_FACE);
-    gl.Enable(GL_DEPTH_TEST);
-    gl.DepthFunc(GL_GREATER);
-    const size_t count = elements_.elements().triangles().size();
-    gl.DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(count));
-    context.countTriangles(count / 3);
-  });
-  return lookup_;
+  return lookup_.texture(r.graph, r.inputs,
+                         {elements_.leaves, elements_.corners, elements_.elements().triangles().size()},
+                         technique_);
 }
 
 frame::TextureHandle Display::visibility(const PassRequest& r, frame::BufferHandle seen) {

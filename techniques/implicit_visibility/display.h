@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#include "core/indirect/surface_lookup.h"
 #include "techniques/implicit_visibility/element_passes.h"
 
 namespace limn::implicit_visibility {
@@ -27,8 +28,7 @@ class Display {
 
   const ElementPasses& elements_;
   std::string_view technique_;
-  frame::TextureHandle lookup_;
-  gpu::VertexArray vertexArray_;
+  indirect::SurfaceLookup lookup_;
 };
 
 }  // namespace limn::implicit_visibility

@@ -4,16 +4,7 @@
 #define LIMN_IMPLICIT_VISIBILITY_ELEMENTS_GLSL
 #include "glsl/surface/brdf.glsl"
 #include "glsl/indirect/direction_bins.glsl"
-
-// limn::radiosity::Leaf, metres.
-struct Leaf {
-  vec3 vertex;
-  float used;  // 0 where the slot is not in use
-  vec4 position;
-  vec4 normal;
-  vec3 albedo;
-  float unused;
-};
+#include "glsl/indirect/surface_leaf.glsl"
 
 // limn::radiosity::LeafMaterial.
 struct LeafMaterial {

@@ -1,9 +1,9 @@
 // Per-pixel gathering: the BRDF of the pixel's own normal and view over the bins of the leaves around it. SKY as in
 // gather.comp.glsl. Leaves whose links are not bound are left to the passes that have them.
+#include "glsl/indirect/surface_lookup.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/surface/brdf.glsl"
 #include "techniques/implicit_visibility/bin_reflection.glsl"
-#include "techniques/implicit_visibility/surface_lookup.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f) uniform image2D radiance;

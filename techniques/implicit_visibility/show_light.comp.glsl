@@ -1,7 +1,7 @@
 // Adds what surfaces reflect of the irradiance interpolated between leaves.
+#include "glsl/indirect/surface_lookup.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/surface/reflectance.glsl"
-#include "techniques/implicit_visibility/surface_lookup.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f) uniform image2D radiance;

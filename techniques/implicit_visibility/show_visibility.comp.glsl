@@ -1,6 +1,6 @@
 // V of each light of a batch: the mean of the leaves around the pixel.
+#include "glsl/indirect/surface_lookup.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
-#include "techniques/implicit_visibility/surface_lookup.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(r16) writeonly uniform image2DArray visibility;

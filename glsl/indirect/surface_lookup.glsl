@@ -1,6 +1,6 @@
-// The leaves around a pixel.
-#ifndef LIMN_IMPLICIT_VISIBILITY_LOOKUP_GLSL
-#define LIMN_IMPLICIT_VISIBILITY_LOOKUP_GLSL
+// The surface elements (leaves) around a pixel, as limn::indirect::SurfaceLookup finds them.
+#ifndef LIMN_SURFACE_LOOKUP_GLSL
+#define LIMN_SURFACE_LOOKUP_GLSL
 
 uniform usampler2D surface_lookup;
 

@@ -1,14 +1,7 @@
 // The triangles between surfels, as the camera sees them: which leaves lie around a pixel. Clip depth as in the G-buffer.
+#include "glsl/indirect/surface_leaf.glsl"
 #include "glsl/scene/blocks.glsl"
 
-struct Leaf {
-  vec3 vertex;
-  float used;
-  vec4 position;
-  vec4 normal;
-  vec3 albedo;
-  float unused;
-};
 layout(std430) readonly buffer Leaves { Leaf leaves[]; };
 layout(std430) readonly buffer Corners { uint corners[]; };
 uniform float near_plane;
