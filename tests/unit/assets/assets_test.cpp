@@ -33,13 +33,15 @@ using limn::test::Vec4;
 
 // clang-format off
 const char* const kScenes[] = {
-    "arcade_dark", "atrium", "atrium_robots", "balls", "balls_sky", "bump_sphere", "bump_wall", "chess", "closed_box",
-    "colonnade", "cornell_box", "cornell_horse", "disk_and_sphere", "egg_crate", "flying_dragon", "foliage_card",
-    "fresnel_spheres", "frog", "gem", "gem_2_lights", "gem_4_lights", "glass_sphere", "glass_statue", "glassware",
-    "glossy_sphere", "glossy_torus", "groove", "lights", "marble_statue", "measured_spheres", "metaballs", "milk",
-    "monster", "nine_spheres", "nine_spheres_bump", "nine_spheres_glossy", "nine_spheres_metal", "patrol", "plant",
-    "ring", "robot", "robot_brdfs", "smoke", "soldiers", "stained_light", "statue", "teapot", "teapot_coarse",
-    "teapot_groove", "teapot_pattern", "torus_metal", "translucent_checker", "translucent_ear", "translucent_edge",
+    "arcade_dark", "atrium", "atrium_robots", "balls", "balls_sky", "bump_sphere", "bump_wall", "chess",
+    "closed_box", "colonnade", "cornell_box", "cornell_horse", "disk_and_sphere", "egg_crate", "flying_dragon",
+    "foliage_card", "fresnel_spheres", "frog", "gem", "gem_2_lights", "gem_4_lights", "glass_sphere",
+    "glass_statue", "glassware", "glossy_furnace", "glossy_globe", "glossy_room", "glossy_sphere", "glossy_torus",
+    "groove", "lights", "marble_statue", "measured_spheres", "metaballs", "milk", "monster", "nine_spheres",
+    "nine_spheres_bump", "nine_spheres_glossy", "nine_spheres_metal", "patrol", "plant", "ring", "robot",
+    "robot_brdfs", "smoke", "soda_corner", "soldiers", "stained_light", "statue", "teapot", "teapot_coarse",
+    "teapot_groove", "teapot_pattern", "three_lights", "torus_metal", "translucent_checker", "translucent_ear",
+    "translucent_edge",
     "translucent_head", "translucent_spheres", "water", "white_furnace"};
 // clang-format on
 const std::set<std::string> kUnderEnvironments = {
@@ -49,9 +51,9 @@ const std::set<std::string> kUnderEnvironments = {
 /// Of the scenes that are not lit by an environment.
 std::size_t lightsOf(const std::string& scene) {
   const std::map<std::string, std::size_t> several = {
-      {"disk_and_sphere", 3},  {"fresnel_spheres", 3}, {"gem_2_lights", 2},
-      {"gem_4_lights", 4},     {"glossy_torus", 4},    {"lights", 5},
-      {"measured_spheres", 3}, {"teapot_groove", 2},   {"torus_metal", 5}};
+      {"disk_and_sphere", 3}, {"fresnel_spheres", 3}, {"gem_2_lights", 2},     {"gem_4_lights", 4},
+      {"glossy_torus", 4},    {"lights", 5},          {"measured_spheres", 3}, {"teapot_groove", 2},
+      {"three_lights", 3},    {"torus_metal", 5}};
   const auto found = several.find(scene);
   return found == several.end() ? 1 : found->second;
 }
