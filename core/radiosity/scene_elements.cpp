@@ -70,8 +70,8 @@ SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose,
     triangles += instance.primitive->indices.size() / 3;
   }
   const auto refuse = [&](const std::string& what) {
-    throw UsageError(fmt::format(
-        "implicit visibility: {}; at most {} surface elements fit the memory allowed", what, maxElements));
+    throw UsageError(
+        fmt::format("surface elements: {}; at most {} of them fit the memory allowed", what, maxElements));
   };
   // A closed mesh has half as many vertices as triangles.
   if (triangles / 4 > maxElements) refuse(fmt::format("the scene has {} triangles", triangles));

@@ -1,0 +1,34 @@
+// Declares the light of lights at surface elements: what illumination samples begin with.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "core/base/export.h"
+#include "core/radiosity/occlusion.h"
+#include "core/radiosity/sample_solver.h"
+#include "glsl/scene/light.glsl"
+
+namespace limn::radiosity {
+
+/// Holds a place that lights shine on, in world space.
+struct LitPlace {
+  glm::vec3 position{0}, normal{0, 0, 1};
+  float alpha = 1;      ///< of its lobe: lights that are wide for it are taken in pieces
+  float clearance = 0;  ///< of rays, m
+  uint32_t seed = 0;    ///< of the places that rays end at
+};
+
+/// Holds the light of lights at a place, in world space.
+struct LightAtPlace {
+  glm::vec3 irradiance{0};
+  std::vector<glsl::IncidentLight> incident;
+};
+
+/// Adds the light of a light: exact where nothing hides it, and hidden by `rays` rays or more to an extended
+/// light, to strata of its area. Light below the horizon does not arrive.
+LIMN_API void addLight(const glsl::Light& light, const LitPlace& place, const Occlusion& occlusion, int rays,
+                       LightAtPlace& sum);
+
+}  // namespace limn::radiosity

@@ -1,0 +1,110 @@
+// The light of lights at surface elements, against closed forms and with something in its way.
+#include "core/radiosity/light_samples.h"
+
+#include <gtest/gtest.h>
+
+#include "glsl/light/unshadowed_light.glsl"
+
+namespace limn::radiosity {
+namespace {
+
+/// Everything with x below a number is out of sight: a ray that ends there, or goes there, is blocked.
+class Curtain final : public Occlusion {
+ public:
+  explicit Curtain(float x) : x_(x) {}
+  bool blocked(const glm::vec3& origin, const glm::vec3& direction, float end) const override {
+    return std::isfinite(end) ? origin.x + direction.x * end < x_ : direction.x < x_;
+  }
+
+ private:
+  float x_;
+};
+
+glsl::Light rectangle(float width) {
+  glsl::Light light{};
+  light.type = glsl::light_rectangle;
+  light.position = {0, 0, 2};
+  light.direction = {0, 0, -1};
+  light.axis_u = {1, 0, 0};
+  light.axis_v = {0, 1, 0};
+  light.length_u = light.length_v = width;
+  light.emission = {1, 2, 3};
+  light.own_instance = glsl::no_instance;
+  return light;
+}
+
+glsl::Light point() {
+  glsl::Light light{};
+  light.type = glsl::light_point;
+  light.position = {0, 3, 4};
+  light.emission = glm::vec3(50);
+  return light;
+}
+
+LightAtPlace lightAt(const glsl::Light& light, float alpha, float curtain) {
+  LightAtPlace sum;
+  addLight(light, {.alpha = alpha, .seed = 7}, Curtain(curtain), 16, sum);
+  return sum;
+}
+
+/// What the pieces bring together.
+glm::vec3 total(const LightAtPlace& light) {
+  glm::vec3 sum(0);
+  for (const glsl::IncidentLight& incident : light.incident)
+    sum += incident.irradiance * incident.direction.z;
+  return sum;
+}
+
+TEST(LightSamplesTest, APointLightIsOneDirection) {
+  const LightAtPlace seen = lightAt(point(), 1, -10);
+  ASSERT_EQ(seen.incident.size(), 1u);
+  EXPECT_NEAR(seen.irradiance.x, 50.0 / 25 * 0.8, 1e-5);
+  EXPECT_NEAR(glm::length(seen.incident[0].direction - glm::vec3(0, 0.6f, 0.8f)), 0, 1e-6);
+  EXPECT_NEAR(seen.incident[0].irradiance.x, 2, 1e-5);
+  EXPECT_EQ(seen.incident[0].spread, 0);
+  EXPECT_TRUE(lightAt(point(), 1, 10).incident.empty());
+  glsl::Light below = point();
+  below.position.z = -4;
+  EXPECT_EQ(lightAt(below, 1, -10).irradiance, glm::vec3(0));
+}
+
+TEST(LightSamplesTest, RectanglesAreExactWhereNothingHidesThem) {
+  for (const float width : {0.1f, 1.f, 5.f})
+    for (const float alpha : {1.f, 0.1f, 0.01f}) {
+      const glsl::Light light = rectangle(width);
+      const LightAtPlace seen = lightAt(light, alpha, -100);
+      const glsl::Rectangle r = glsl::rectangle_from(light, {0, 0, 0});
+      const float exact = glm::dot(glsl::rectangle_vector_irradiance(r, glsl::rectangle_whole()), {0, 0, 1});
+      EXPECT_NEAR(seen.irradiance.x / exact, 1, 1e-5);
+      EXPECT_NEAR(total(seen).z / (3 * exact), 1, 1e-4);
+      const bool wide = width / 2 > 2.5f * alpha;
+      EXPECT_EQ(seen.incident.size() > 1, wide) << "in pieces where it is wide for the lobe";
+      EXPECT_LE(seen.incident.size(), 64u);
+    }
+}
+
+TEST(LightSamplesTest, HalfOfALightIsHiddenByACurtain) {
+  for (const float alpha : {1.f, 0.05f}) {
+    const LightAtPlace whole = lightAt(rectangle(1), alpha, -100), half = lightAt(rectangle(1), alpha, 0);
+    EXPECT_NEAR(half.irradiance.x / whole.irradiance.x, 0.5, 0.07);
+    EXPECT_NEAR(total(half).x / half.irradiance.x, 1, 1e-4);
+    for (const glsl::IncidentLight& incident : half.incident) EXPECT_GT(incident.direction.x, 0);
+  }
+}
+
+TEST(LightSamplesTest, ASunHasItsIrradianceWhateverItsAngle) {
+  for (const float angle : {0.f, 0.01f, 0.5f}) {
+    glsl::Light sun{};
+    sun.type = glsl::light_directional;
+    sun.direction = {0, -0.6f, -0.8f};
+    sun.emission = glm::vec3(2);
+    sun.angular_diameter = angle;
+    const LightAtPlace seen = lightAt(sun, 1, -10);
+    EXPECT_NEAR(seen.irradiance.x, 1.6, 1e-4);
+    EXPECT_NEAR(total(seen).x, 1.6, 1e-3);
+    EXPECT_EQ(lightAt(sun, 1, 10).irradiance, glm::vec3(0));
+  }
+}
+
+}  // namespace
+}  // namespace limn::radiosity

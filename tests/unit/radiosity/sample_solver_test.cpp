@@ -1,0 +1,335 @@
+// Illumination samples against closed forms: plates, furnaces, bounces; and what must not happen.
+#include "core/radiosity/sample_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "core/base/error.h"
+#include "tests/support/radiosity_meshes.h"
+
+namespace limn::radiosity {
+namespace {
+
+class Nothing final : public Occlusion {
+ public:
+  bool blocked(const glm::vec3&, const glm::vec3&, float) const override { return false; }
+};
+
+/// A plane of constant x that blocks everything.
+class Wall final : public Occlusion {
+ public:
+  explicit Wall(float x) : x_(x) {}
+  bool blocked(const glm::vec3& origin, const glm::vec3& direction, float end) const override {
+    const float t = (x_ - origin.x) / direction.x;
+    return t > 0 && t < end;
+  }
+
+ private:
+  float x_;
+};
+
+LeafMaterial diffuse(float albedo) {
+  LeafMaterial m;
+  m.diffuse = glm::vec3(albedo);
+  m.alpha = 1;
+  return m;
+}
+
+LeafMaterial metal(float roughness) {
+  LeafMaterial m;
+  m.alpha = roughness * roughness;
+  m.f0 = glm::vec3(0.75f);
+  m.f90 = 1;
+  return m;
+}
+
+/// Elements of meshes, each with a material.
+struct World {
+  ElementSpace space;
+  Surfels surfels;
+  Forest forest;
+  std::vector<LeafMaterial> materials;
+  std::unique_ptr<SampleSolver> solver;
+
+  World(const std::vector<TriangleMesh>& meshes, const std::vector<LeafMaterial>& ofObject,
+        const SampleSettings& settings = {}, float longestEdge = 1e9f)
+      : space(spaceOf(meshes)), surfels(surfelsOf(meshes, longestEdge)), forest(surfels) {
+    materials.resize(forest.leafSlots());
+    for (size_t i = 0; i < surfels.size(); ++i) materials[forest.leafOf()[i]] = ofObject[surfels.objects[i]];
+    solver = std::make_unique<SampleSolver>(surfels, forest, space, materials, settings);
+  }
+
+  /// Lights the objects with these irradiances, without directions.
+  void light(const std::vector<float>& ofObject) {
+    for (size_t i = 0; i < surfels.size(); ++i)
+      solver->light(forest.leafOf()[i], glm::vec3(ofObject[surfels.objects[i]]), {});
+  }
+  /// Mean over an object's area.
+  double mean(uint32_t object) const {
+    double sum = 0, area = 0;
+    for (size_t i = 0; i < surfels.size(); ++i) {
+      if (surfels.objects[i] != object) continue;
+      sum += double(solver->irradiance()[forest.leafOf()[i]].x) * surfels.areas[i];
+      area += surfels.areas[i];
+    }
+    return sum / area;
+  }
+};
+
+/// The form factor of two parallel squares of side 1 at distance 1.
+constexpr double kSquares = 0.19982;
+
+std::vector<TriangleMesh> plates(int n) {
+  return {rectangleMesh({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, n),
+          rectangleMesh({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, n)};
+}
+
+TEST(SampleSolverTest, ParallelPlatesExchangeTheirFormFactor) {
+  for (const int n : {4, 12, 24}) {
+    World world(plates(n), {diffuse(0.8f), diffuse(0.5f)});
+    world.light({1, 0});
+    world.solver->reflect();
+    const ShootCounts counts = world.solver->shoot(Nothing());
+    std::printf("plates of %d x %d: %.2f %% off, %zu pairs, %zu links\n", n, n,
+                100 * (world.mean(1) / (0.8 * kSquares) - 1), size_t(counts.pairs), size_t(counts.links));
+    EXPECT_NEAR(world.mean(1) / (0.8 * kSquares), 1, 0.02);
+    EXPECT_EQ(world.mean(0), 0);
+    world.solver->reflect();
+    world.solver->shoot(Nothing());
+    EXPECT_NEAR(world.mean(0) / (0.8 * kSquares * 0.5 * kSquares), 1, 0.04);
+  }
+}
+
+TEST(SampleSolverTest, LinksFollowTheErrorAllowed) {
+  uint64_t before = 0;
+  for (const float error : {0.3f, 0.03f, 0.003f}) {
+    World world(plates(24), {diffuse(0.8f), diffuse(0.5f)}, {.linkError = error});
+    world.light({1, 0});
+    world.solver->reflect();
+    const uint64_t links = world.solver->shoot(Nothing()).links;
+    EXPECT_GT(links, before);
+    before = links;
+    EXPECT_NEAR(world.mean(1) / (0.8 * kSquares), 1, 0.03);
+  }
+}
+
+TEST(SampleSolverTest, FurnacesAreAsBrightAsTheyReflect) {
+  for (const bool round : {true, false}) {
+    World world({round ? sphereMesh({0, 0, 0}, 1, 24, -1) : roomMesh(12)}, {diffuse(0.5f)});
+    world.light({1});
+    world.solver->reflect();
+    world.solver->shoot(Nothing());
+    double expected = 0.5;
+    std::printf("%s: irradiance %.2f %% off\n", round ? "sphere" : "room",
+                100 * (world.mean(0) / expected - 1));
+    EXPECT_NEAR(world.mean(0) / expected, 1, 0.01);
+    for (int bounce = 2; bounce <= 7; ++bounce) {
+      world.solver->reflect();
+      world.solver->shoot(Nothing());
+      expected += std::pow(0.5, bounce);
+    }
+    EXPECT_NEAR(world.mean(0) / expected, 1, 0.015) << "what is unshot after 7 rounds is below 1 %";
+  }
+}
+
+TEST(SampleSolverTest, GlossyElementsInAFurnaceReflectTheirReflectance) {
+  for (const float roughness : {0.3f, 0.5f}) {
+    // The floor alone is metal, and does not see itself.
+    std::vector<TriangleMesh> meshes{rectangleMesh({-1, -1, -1}, {0, 0, 2}, {2, 0, 0}, 8)};
+    TriangleMesh rest = roomMesh(12);
+    std::vector<uint32_t> kept;
+    for (size_t t = 0; t < rest.indices.size(); t += 3)
+      if (rest.normals[rest.indices[t]].y < 0.5f)
+        kept.insert(kept.end(), rest.indices.begin() + std::ptrdiff_t(t),
+                    rest.indices.begin() + std::ptrdiff_t(t) + 3);
+    rest.indices = kept;
+    meshes.push_back(rest);
+    World world(meshes, {metal(roughness), diffuse(0.5f)});
+    world.light({0, glsl::pi});
+    world.solver->reflect();
+    world.solver->shoot(Nothing());
+    EXPECT_NEAR(world.mean(0) / (0.5 * glsl::pi), 1, 0.01);
+    world.solver->reflect();
+    for (const double degrees : {0.0, 45.0, 80.0}) {
+      double sum = 0, count = 0;
+      for (size_t i = 0; i < world.surfels.size(); ++i) {
+        const uint32_t leaf = world.forest.leafOf()[i];
+        if (world.surfels.objects[i] != 0) continue;
+        if (glm::length(world.surfels.positions[i] - world.surfels.positions[40]) > 0.3f) continue;
+        const glsl::Frame frame = glsl::frame_around(world.surfels.normals[i]);
+        for (int turn = 0; turn < 8; ++turn) {
+          const double azimuth = turn * glsl::pi / 4, polar = degrees * glsl::pi / 180;
+          const glm::vec3 v =
+              glsl::from_local(frame, glm::vec3(std::sin(polar) * std::cos(azimuth),
+                                                std::sin(polar) * std::sin(azimuth), std::cos(polar)));
+          sum += world.solver->unshot(leaf, v).x;
+          ++count;
+        }
+      }
+      const glsl::SurfaceBrdf brdf = world.solver->brdf(world.forest.leafOf()[0]);
+      const float cosine = static_cast<float>(std::cos(degrees * glsl::pi / 180));
+      const double expected =
+          0.5 * glsl::ltc_specular_reflectance(brdf, glsl::ltc_lookup(cosine, brdf.alpha)).x;
+      std::printf("roughness %.1f at %.0f degrees: %.1f %% off\n", double(roughness), degrees,
+                  100 * (sum / count / expected - 1));
+      EXPECT_NEAR(sum / count / expected, 1, degrees < 50 ? 0.06 : 0.3);
+    }
+  }
+}
+
+TEST(SampleSolverTest, WhatIsHiddenIsDark) {
+  // Two pairs of plates beside each other: light would go across the wall between them.
+  std::vector<TriangleMesh> meshes = plates(6);
+  for (TriangleMesh mesh : plates(6)) {
+    for (glm::vec3& p : mesh.positions) p.x += 1.5f;
+    meshes.push_back(mesh);
+  }
+  World world(meshes, {diffuse(0.8f), diffuse(0.8f), diffuse(0.8f), diffuse(0.8f)});
+  world.light({1, 0, 0, 0});
+  world.solver->reflect();
+  world.solver->shoot(Wall(1.25f));
+  EXPECT_NEAR(world.mean(1) / (0.8 * kSquares), 1, 0.02);
+  EXPECT_EQ(world.mean(3), 0);
+  world.solver->begin();
+  world.light({1, 0, 0, 0});
+  world.solver->reflect();
+  world.solver->shoot(Nothing());
+  EXPECT_GT(world.mean(3), 0.01);
+}
+
+TEST(SampleSolverTest, TheSameSceneGivesTheSameLightAgain) {
+  World world({sphereMesh({0, 0, 0}, 1, 16, -1)}, {diffuse(0.5f)});
+  std::vector<glm::vec3> before;
+  for (int turn = 0; turn < 2; ++turn) {
+    world.solver->begin();
+    world.light({1});
+    world.solver->reflect();
+    world.solver->shoot(Nothing());
+    const auto now = world.solver->irradiance();
+    if (turn == 1) {
+      EXPECT_TRUE(std::equal(now.begin(), now.end(), before.begin()));
+    }
+    before.assign(now.begin(), now.end());
+  }
+}
+
+TEST(SampleSolverTest, DiffuseScenesMakeNoTree) {
+  World world(plates(6), {diffuse(0.8f), diffuse(0.8f)});
+  world.light({1, 0});
+  for (int bounce = 0; bounce < 2; ++bounce) {
+    world.solver->reflect();
+    EXPECT_EQ(world.solver->cellCount(), 0u);
+    world.solver->shoot(Nothing());
+  }
+  world.solver->project({});
+  for (const DirectionalTree& tree : world.solver->shown()) EXPECT_TRUE(tree.empty());
+  EXPECT_EQ(world.solver->evaluations(), 0u);
+}
+
+/// A plate of satin that a narrow light shines on throws it to where a mirror would.
+struct Throw {
+  World world;
+  double where = 0, sum = 0;
+  uint64_t cells = 0;
+
+  explicit Throw(const SampleSettings& settings, float roughness = 0.2f)
+      : world(meshes(), {metal(roughness), diffuse(0.8f)}, settings) {
+    for (size_t i = 0; i < world.surfels.size(); ++i) {
+      if (world.surfels.objects[i] != 0) continue;
+      const glsl::IncidentLight light{world.space.direction(glm::normalize(glm::vec3(0, 1, 1))), 0.05f,
+                                      glm::vec3(1)};
+      world.solver->light(world.forest.leafOf()[i], glm::vec3(0.7f), {&light, 1});
+    }
+    world.solver->reflect();
+    cells = world.solver->cellCount();
+    world.solver->shoot(Nothing());
+    for (size_t i = 0; i < world.surfels.size(); ++i) {
+      if (world.surfels.objects[i] != 1) continue;
+      const double light =
+          double(world.solver->irradiance()[world.forest.leafOf()[i]].x) * world.surfels.areas[i];
+      sum += light;
+      where += light * world.space.worldPoint(world.surfels.positions[i]).y;
+    }
+    where /= sum;
+  }
+  /// A plate of 0.4 a side, and a wall 1 behind it that is 2 high.
+  static std::vector<TriangleMesh> meshes() {
+    return {rectangleMesh({-0.2f, 0, 0.2f}, {0.4f, 0, 0}, {0, 0, -0.4f}, 8),
+            rectangleMesh({-1, 0.01f, -1}, {2, 0, 0}, {0, 2, 0}, 20)};
+  }
+};
+
+TEST(SampleSolverTest, GlossyElementsThrowLightWhereMirrorsWould) {
+  const Throw exact({.linkError = 3e-4f, .tree = {.error = 0.02f}});
+  EXPECT_NEAR(exact.where, 1, 0.1);
+  const Throw fast({});
+  std::printf("a plate's light: height %.3f, flux %.2f %% off; %zu cells\n", fast.where,
+              100 * (fast.sum / exact.sum - 1), size_t(fast.cells));
+  EXPECT_NEAR(fast.where, exact.where, 0.02);
+  EXPECT_NEAR(fast.sum / exact.sum, 1, 0.03);
+}
+
+TEST(SampleSolverTest, CellsOfOneLevelTakeMoreOfThemForTheSameLight) {
+  const Throw adaptive({});
+  for (const bool relative : {true, false}) {
+    TreeSettings settings{.minLevel = 5, .maxLevel = 5};
+    if (relative)
+      settings = {
+          .criterion = TreeSettings::Criterion::relative, .error = 0.5f, .minLevel = 1, .maxLevel = 6};
+    const Throw other({.tree = settings});
+    std::printf("%s: flux %.2f %% off, %zu cells; by error %zu\n", relative ? "as published" : "one level",
+                100 * (other.sum / adaptive.sum - 1), size_t(other.cells), size_t(adaptive.cells));
+    EXPECT_NEAR(other.sum / adaptive.sum, 1, 0.05);
+  }
+}
+
+TEST(SampleSolverTest, SamplesReflectedTogetherOrEachByItselfAreTheSameLight) {
+  double light[2];
+  uint64_t evaluations[2];
+  for (const bool immediate : {false, true}) {
+    World world(plates(8), {diffuse(0.8f), metal(0.5f)},
+                {.tree = {.criterion = TreeSettings::Criterion::relative,
+                          .error = 0.5f,
+                          .minLevel = 1,
+                          .maxLevel = 4},
+                 .immediate = immediate});
+    world.light({1, 0});
+    for (int bounce = 0; bounce < 2; ++bounce) {
+      world.solver->reflect();
+      world.solver->shoot(Nothing());
+    }
+    light[immediate] = world.mean(0);
+    evaluations[immediate] = world.solver->evaluations();
+  }
+  std::printf("evaluations: %zu together, %zu each by itself\n", size_t(evaluations[0]),
+              size_t(evaluations[1]));
+  EXPECT_NEAR(light[1] / light[0], 1, 0.05);
+  EXPECT_LT(evaluations[0], evaluations[1]);
+}
+
+TEST(SampleSolverTest, DarknessAndSingleTrianglesAreHarmless) {
+  TriangleMesh triangle;
+  triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  triangle.normals.assign(3, {0, 0, 1});
+  triangle.indices = {0, 1, 2};
+  World one({triangle}, {metal(0.2f)});
+  for (const float irradiance : {0.f, 1.f}) {
+    one.solver->begin();
+    one.light({irradiance});
+    one.solver->reflect();
+    EXPECT_EQ(one.solver->shoot(Nothing()).links, 0u);
+    EXPECT_EQ(one.mean(0), 0);
+  }
+}
+
+TEST(SampleSolverTest, ScenesThatTakeTooMuchMemoryAreRefused) {
+  World world(plates(24), {diffuse(0.8f), diffuse(0.5f)}, {.linkError = 1e-4f, .memory = 1000});
+  world.light({1, 1});
+  world.solver->reflect();
+  EXPECT_THROW(world.solver->shoot(Nothing()), UsageError);
+}
+
+}  // namespace
+}  // namespace limn::radiosity
