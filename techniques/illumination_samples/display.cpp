@@ -1,0 +1,74 @@
+#include "techniques/illumination_samples/display.h"
+
+#include <algorithm>
+#include <string>
+
+#include "core/gpu_scene/gpu_scene.h"
+#include "core/shading_maps/shading_maps.h"
+
+namespace limn::illumination_samples {
+
+using frame::Access;
+
+frame::TextureHandle Display::show(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                   const Solution& solution, frame::TextureHandle target) {
+  const frame::TextureHandle around = lookup_.texture(
+      graph, inputs, {elements_.leaves, elements_.corners, elements_.elements().triangles().size()},
+      technique_);
+  const frame::BufferHandle towards =
+      shown_ == Shown::vertices ? towardsEye(graph, inputs, solution) : frame::BufferHandle{};
+  frame::PassBuilder pass =
+      graph.addPass(shown_ == Shown::gathered ? "gather per pixel" : "interpolate", technique_);
+  pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
+      .read(around, Access::sampled, "surface_lookup", "leaves around pixels")
+      .read(solution.irradiance, Access::storageLoad, "Irradiance", "diffuse light");
+  readSurfaces(pass, inputs.gbuffer);
+  if (shown_ == Shown::vertices) {
+    pass.read(towards, Access::storageLoad, "Towards", "specular light towards the eye");
+  } else if (shown_ == Shown::pixels) {
+    readTrees(pass, solution);
+  } else {
+    pass.read(solution.ranges, Access::storageLoad, "Ranges", "which samples")
+        .read(solution.samples, Access::storageLoad, "Samples", "light by directions")
+        .read(elements_.parents, Access::storageLoad, "Parents", "elements above leaves")
+        .read(inputs.service<shading_maps::ShadingMapService>().ltcTable(), Access::sampled, "ltc_table",
+              "energy of lobes");
+  }
+  const frame::TextureHandle result =
+      pass.write(target, Access::imageLoadStore, "radiance", "reflected light");
+  const auto kernel = pass.program({.files = {"techniques/illumination_samples/show.comp.glsl"},
+                                    .defines = {{"DISPLAY", std::to_string(static_cast<int>(shown_))}}});
+  pass.execute([kernel, size = inputs.size, gathered = shown_ == Shown::gathered,
+                widen = inputs.parameters.real("widen")](frame::PassContext& context) {
+    gpu::Program& program = context.use(kernel);
+    if (gathered) program.set("widen", widen);
+    context.dispatch(size.x, size.y, 1, 8, 8);
+  });
+  return result;
+}
+
+void Display::readTrees(frame::PassBuilder& pass, const Solution& solution) const {
+  pass.read(elements_.leaves, Access::storageLoad, "Leaves", "normals")
+      .read(solution.trees, Access::storageLoad, "Trees", "where trees begin")
+      .read(solution.nodes, Access::storageLoad, "DirectionNodes", "light by directions");
+}
+
+frame::BufferHandle Display::towardsEye(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                        const Solution& solution) {
+  const uint32_t count = elements_.elements().forest().leafSlots();
+  frame::PassBuilder pass = graph.addPass("towards the eye", technique_);
+  pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera");
+  readTrees(pass, solution);
+  const frame::BufferHandle towards =
+      pass.write(graph.createBuffer("light towards the eye", {std::max(count, 1u) * sizeof(glm::vec4)}),
+                 Access::storageStore, "Towards", "of leaves");
+  const auto kernel =
+      pass.program({.files = {"techniques/illumination_samples/towards_eye.comp.glsl"}, .defines = {}});
+  pass.execute([kernel, count](frame::PassContext& context) {
+    context.use(kernel).set("leaf_count", count);
+    context.dispatch(static_cast<int>(count), 1, 1, 64, 1);
+  });
+  return towards;
+}
+
+}  // namespace limn::illumination_samples

@@ -1,0 +1,126 @@
+// Glossy global illumination: links between surface elements leave illumination samples, which leaves reflect
+// once.
+#include <algorithm>
+#include <deque>
+#include <memory>
+
+#include "core/scene/scene.h"
+#include "core/technique/technique.h"
+#include "techniques/illumination_samples/display.h"
+#include "techniques/illumination_samples/solution.h"
+
+namespace {
+
+using namespace limn;
+using illumination_samples::Display;
+using illumination_samples::Elements;
+using illumination_samples::Shown;
+using illumination_samples::Solution;
+using illumination_samples::SolutionSettings;
+
+constexpr const char* kSwitch[] = {"off", "on"};
+constexpr const char* kCriteria[] = {"error", "relative"};
+constexpr const char* kBases[] = {"haar", "uniform"};
+constexpr const char* kReflections[] = {"delayed", "immediate"};
+constexpr const char* kDisplays[] = {"pixel", "vertex", "gather"};
+constexpr Parameter kParameters[] = {
+    integer("bounces", 1, {1, 16}, "bounces", "Surfaces that reflect light before the one that is seen"),
+    real("link_error", radiosity::SampleSettings{}.linkError, {1e-4, 1}, "of the lights' mean irradiance",
+         "How much the light of a link may vary")
+        .quality()
+        .logScale(),
+    real("widen", radiosity::SampleSettings{}.widen, {0, 1}, "of a sample's extent",
+         "By how much a sample's extent widens the lobe that reflects it; 0: as published"),
+    choice("receiver", 1, kSwitch, "Whether links are refined for narrow lobes at their receivers"),
+    real("direction_error", 0.1, {1e-3, 4}, "", "Relative error of light by directions; 0.5 as published")
+        .quality()
+        .logScale(),
+    integer("min_level", 2, {0, 6}, "", "Level that cells of directions have at least; 1 as published"),
+    integer("max_level", 8, {0, 10}, "", "Level that they have at most; 3 to 5 as published"),
+    choice("criterion", 0, kCriteria,
+           "Cells are split while their error counts, or while their light varies, as published"),
+    choice("basis", 0, kBases, "Cells of many levels, or all of max_level"),
+    choice("reflection", 0, kReflections,
+           "All samples of an element together, or each pushed into it by itself (Sillion et al. 1995)"),
+    choice("display", 0, kDisplays,
+           "Light of elements towards the pixel, towards the eye from each element (as published), or their "
+           "samples reflected at the pixel"),
+    integer("light_rays", 16, {1, 1024}, "rays", "To each extended light, from each element").logScale(),
+    real("longest_edge", 0.03, {0.005, 10}, "scene radii", "Longer edges of triangles are halved")
+        .quality()
+        .logScale(),
+    integer("memory", 1024, {1, 16384}, "MiB", "Scenes whose samples take more are refused"),
+};
+constexpr StressCase kStress[] = {
+    {.name = "coarse links", .scene = "cornell_box", .settings = "link_error=0.5", .factor = 8},
+    {.name = "one point for each light", .scene = "cornell_box", .settings = "light_rays=1", .factor = 2},
+    {.name = "narrow samples", .scene = "cornell_box", .settings = "widen=0"},
+    {.name = "no receiver's refinement", .scene = "cornell_box", .settings = "receiver=off"},
+    {.name = "coarse mesh", .scene = "cornell_box", .settings = "longest_edge=10", .factor = 8},
+    {.name = "three bounces", .scene = "cornell_box", .settings = "bounces=3", .factor = 4},
+};
+
+class IlluminationSamples : public Technique {
+ public:
+  static constexpr TechniqueInfo info{
+      .name = "illumination_samples",
+      .title = "Illumination samples",
+      .source = "Stamminger, Scheel, Granier, Perez-Cazorla, Drettakis, Sillion 1999",
+      .terms = termSet(Term::indirect),
+      .parameters = kParameters,
+      .stress = kStress};
+
+ private:
+  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                 const TermRequest& request) override {
+    if (request.lights.empty()) {
+      graph.leaveOut("indirect light", info.name, "the scene has no light");
+      return request.target;
+    }
+    const ParameterValues& p = inputs.parameters;
+    using Criterion = radiosity::TreeSettings::Criterion;
+    const bool relative = p.choice("criterion") == 1;
+    radiosity::TreeSettings tree{
+        .criterion = relative ? Criterion::relative : Criterion::transport,
+        .error = p.real("direction_error"),
+        .minLevel = p.choice("basis") == 1 ? p.integer("max_level") : p.integer("min_level"),
+        .maxLevel = p.integer("max_level")};
+    tree.minLevel = std::min(tree.minLevel, tree.maxLevel);
+    radiosity::TreeSettings shownTree = tree;
+    if (!relative) shownTree.criterion = Criterion::display;
+    const auto shown = static_cast<Shown>(p.choice("display"));
+    const SolutionSettings settings{.samples = {.linkError = p.real("link_error"),
+                                                .widen = p.real("widen"),
+                                                .receiver = p.choice("receiver") == 1,
+                                                .tree = tree,
+                                                .immediate = p.choice("reflection") == 1,
+                                                .memory = uint64_t(p.integer("memory")) << 20},
+                                    .shownTree = shownTree,
+                                    .shown = shown,
+                                    .bounces = p.integer("bounces"),
+                                    .lightRays = p.integer("light_rays"),
+                                    .longestEdge = p.real("longest_edge"),
+                                    .technique = info.name};
+    if (!elements_) {
+      elements_ = std::make_unique<Elements>(graph, inputs, settings);
+      display_ = std::make_unique<Display>(*elements_, shown, info.name);
+    }
+    auto known = std::ranges::find_if(
+        solutions_, [&](const Solution& s) { return std::ranges::equal(s.lights(), request.lights); });
+    if (known == solutions_.end()) {
+      solutions_.emplace_back(graph, inputs, *elements_, request.lights, settings);
+      known = std::prev(solutions_.end());
+    }
+    return display_->show(graph, inputs, *known, request.target);
+  }
+
+  bool update(const scene::Pose& pose) override { return elements_ && !elements_->fits(pose); }
+
+  std::unique_ptr<Elements> elements_;
+  std::deque<Solution> solutions_;
+  std::unique_ptr<Display> display_;
+};
+
+}  // namespace
+
+LIMN_TECHNIQUE(IlluminationSamples::info, IlluminationSamples)

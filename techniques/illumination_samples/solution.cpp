@@ -1,0 +1,204 @@
+#include "techniques/illumination_samples/solution.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/gpu_scene/gpu_scene.h"
+
+namespace limn::illumination_samples {
+
+using frame::Access;
+
+namespace {
+
+/// What an element takes at least: its place in all levels, and some samples.
+constexpr uint64_t kBytesPerElement = 512;
+
+uint32_t mostElements(const SolutionSettings& settings) {
+  return static_cast<uint32_t>(
+      std::min<uint64_t>(settings.samples.memory / kBytesPerElement, uint64_t{1} << 28));
+}
+
+}  // namespace
+
+Elements::Elements(frame::FrameGraph& graph, const TechniqueInputs& inputs, const SolutionSettings& settings)
+    : scene_(inputs.scene),
+      pose_(inputs.pose),
+      elements_(inputs.scene, inputs.pose, settings.longestEdge, mostElements(settings)) {
+  gpu::Device& device = inputs.gpuScene.device();
+  leafBuffer_ = gpu::Buffer(device, "leaves", elements_.leaves().size_bytes(), gpu::BufferUse::updated);
+  cornerBuffer_ = gpu::Buffer::of(device, "triangles between leaves", elements_.triangles());
+  parentBuffer_ = gpu::Buffer::of(device, "parents of element groups", elements_.forest().parents());
+  leaves = graph.importBuffer("leaves", leafBuffer_);
+  corners = graph.importBuffer("triangles between leaves", cornerBuffer_);
+  parents = graph.importBuffer("parents of element groups", parentBuffer_);
+  frame::PassBuilder pass = graph.addPass("update elements", settings.technique);
+  pass.read(inputs.handles.geometry, Access::storageLoad, "vertices, which the CPU moves as well")
+      .cacheable();
+  leaves = pass.write(leaves, Access::copyTarget, "vertices and normals");
+  pass.execute([this](frame::PassContext&) {
+    elements_.update(pose_);
+    occlusion_ = radiosity::sceneOcclusion(scene_, pose_);
+    leafBuffer_.update(0, elements_.leaves().data(), elements_.leaves().size_bytes());
+  });
+}
+
+Solution::Solution(frame::FrameGraph& graph, const TechniqueInputs& inputs, const Elements& elements,
+                   std::span<const uint32_t> lights, const SolutionSettings& settings)
+    : elements_(elements),
+      settings_(settings),
+      lights_(lights.begin(), lights.end()),
+      solver_(elements.elements().surfels(), elements.elements().forest(), elements.elements().space(),
+              elements.elements().materials(), settings.samples) {
+  gpu::Device& device = inputs.gpuScene.device();
+  irradianceNow_.resize(elements.elements().forest().leafSlots());
+  addLights(graph, inputs);
+  irradiance = lit_;
+  for (int bounce = 0; bounce < settings.bounces; ++bounce) addBounce(graph, device);
+  if (settings.shown == Shown::gathered)
+    addSamples(graph, device);
+  else
+    addTrees(graph, device);
+}
+
+void Solution::addLights(frame::FrameGraph& graph, const TechniqueInputs& inputs) {
+  litBuffer_ = gpu::Buffer(inputs.gpuScene.device(), "light of lights", 16, gpu::BufferUse::updated);
+  frame::PassBuilder pass = graph.addPass("light samples", settings_.technique);
+  pass.read(elements_.leaves, Access::copySource, "elements, in the CPU's memory as well")
+      .read(inputs.handles.lights, Access::storageLoad, "lights, which the CPU has as well")
+      .cacheable();
+  lit_ = pass.write(graph.importBuffer("light of lights", litBuffer_), Access::copyTarget,
+                    "stands for the light at leaves, which stays in the CPU's memory");
+  pass.execute([this, &pose = inputs.pose](frame::PassContext&) { light(pose); });
+}
+
+void Solution::light(const scene::Pose& pose) {
+  solver_.begin();
+  const radiosity::SceneElements& elements = elements_.elements();
+  const radiosity::ElementSpace& space = elements.space();
+  tbb::parallel_for(size_t{0}, elements.leaves().size(), [&](size_t i) {
+    const radiosity::Leaf& leaf = elements.leaves()[i];
+    if (!(leaf.used > 0)) return;
+    const auto slot = static_cast<uint32_t>(i);
+    const radiosity::LitPlace place{.position = leaf.position,
+                                    .normal = leaf.normal,
+                                    .alpha = solver_.glossy(slot) ? solver_.brdf(slot).alpha : 1,
+                                    .clearance = space.radius() * solver_.clearance(slot),
+                                    .seed = slot};
+    radiosity::LightAtPlace sum;
+    for (const uint32_t index : lights_)
+      radiosity::addLight(pose.lights[index], place, elements_.occlusion(), settings_.lightRays, sum);
+    for (glsl::IncidentLight& incident : sum.incident)
+      incident.direction = space.direction(incident.direction);
+    solver_.light(slot, sum.irradiance, sum.incident);
+  });
+}
+
+void Solution::addBounce(frame::FrameGraph& graph, gpu::Device& device) {
+  gpu::Buffer& buffer =
+      irradianceBuffers_.emplace_back(device, fmt::format("irradiance {}", irradianceBuffers_.size() + 1),
+                                      irradianceNow_.size() * sizeof(glm::vec4), gpu::BufferUse::updated);
+  frame::PassBuilder pass = graph.addPass("shoot", settings_.technique);
+  pass.read(irradiance, Access::copySource, "light that arrived, in the CPU's memory as well").cacheable();
+  irradiance = pass.write(
+      graph.importBuffer(fmt::format("irradiance over {} surfaces", irradianceBuffers_.size()), buffer),
+      Access::copyTarget, "of leaves");
+  pass.execute([this, &buffer](frame::PassContext&) {
+    solver_.reflect();
+    solver_.shoot(elements_.occlusion());
+    std::ranges::transform(solver_.irradiance(), irradianceNow_.begin(),
+                           [](const glm::vec3& e) { return glm::vec4(e, 0); });
+    buffer.update(0, irradianceNow_.data(), irradianceNow_.size() * sizeof(glm::vec4));
+  });
+}
+
+void Solution::addSamples(frame::FrameGraph& graph, gpu::Device& device) {
+  rangesNow_.resize(elements_.elements().forest().slots());
+  rangeBuffer_ = gpu::Buffer(device, "ranges of samples", rangesNow_.size() * sizeof(glm::uvec2),
+                             gpu::BufferUse::updated);
+  sampleBuffer_ =
+      gpu::Buffer(device, "illumination samples", sizeof(glsl::IlluminationSample), gpu::BufferUse::updated);
+  frame::PassBuilder pass = graph.addPass("upload", settings_.technique);
+  pass.read(irradiance, Access::copySource, "samples, in the CPU's memory").cacheable();
+  ranges = pass.write(graph.importBuffer("ranges of samples", rangeBuffer_), Access::copyTarget,
+                      "which samples an element has");
+  samples = pass.write(graph.importBuffer("illumination samples", sampleBuffer_), Access::copyTarget,
+                       "of all elements");
+  pass.execute([this, &device](frame::PassContext&) { uploadSamples(device); });
+}
+
+void Solution::addTrees(frame::FrameGraph& graph, gpu::Device& device) {
+  treesNow_.resize(elements_.elements().forest().leafSlots());
+  treeBuffer_ =
+      gpu::Buffer(device, "trees of leaves", treesNow_.size() * sizeof(LeafTree), gpu::BufferUse::updated);
+  nodeBuffer_ = gpu::Buffer(device, "nodes of trees", sizeof(glm::uvec2), gpu::BufferUse::updated);
+  frame::PassBuilder pass = graph.addPass("project", settings_.technique);
+  pass.read(irradiance, Access::copySource, "samples, in the CPU's memory").cacheable();
+  trees =
+      pass.write(graph.importBuffer("trees of leaves", treeBuffer_), Access::copyTarget, "where they begin");
+  nodes = pass.write(graph.importBuffer("nodes of trees", nodeBuffer_), Access::copyTarget,
+                     "what leaves reflect of their samples, by directions");
+  pass.execute([this, &device](frame::PassContext&) {
+    solver_.project(settings_.shownTree);
+    uploadTrees(device);
+  });
+}
+
+namespace {
+
+/// Grows a buffer to at least `bytes`. Throws UsageError for what no storage block of the device holds.
+void reserve(gpu::Device& device, gpu::Buffer& buffer, const char* what, size_t bytes) {
+  const auto most = static_cast<size_t>(device.limits().maxStorageBlockBytes);
+  if (bytes > most)
+    throw UsageError(
+        fmt::format("illumination_samples: {} take {} MiB; a storage block holds {}: a larger link_error, "
+                    "direction_error or longest_edge makes fewer",
+                    what, bytes >> 20, most >> 20));
+  if (buffer.size() < bytes) buffer = gpu::Buffer(device, what, bytes, gpu::BufferUse::updated);
+}
+
+}  // namespace
+
+void Solution::uploadTrees(gpu::Device& device) {
+  nodesNow_.clear();
+  const auto shown = solver_.shown();
+  for (size_t leaf = 0; leaf < shown.size(); ++leaf) {
+    treesNow_[leaf] = {};
+    if (shown[leaf].empty()) continue;
+    treesNow_[leaf].first = static_cast<uint32_t>(nodesNow_.size());
+    treesNow_[leaf].scale = shown[leaf].pack(nodesNow_);
+  }
+  const size_t bytes = nodesNow_.size() * sizeof(glm::uvec2);
+  reserve(device, nodeBuffer_, "nodes of trees", bytes);
+  treeBuffer_.update(0, treesNow_.data(), treesNow_.size() * sizeof(LeafTree));
+  nodeBuffer_.update(0, nodesNow_.data(), bytes);
+}
+
+void Solution::uploadSamples(gpu::Device& device) {
+  const size_t bytes = solver_.sampleCount() * sizeof(glsl::IlluminationSample);
+  reserve(device, sampleBuffer_, "illumination samples", bytes);
+  const radiosity::ElementSpace& space = elements_.elements().space();
+  const auto groups = elements_.elements().forest().groups();
+  const float unit2 = space.radius() * space.radius();
+  samplesNow_.clear();
+  for (uint32_t slot = 0; slot < rangesNow_.size(); ++slot) {
+    const auto own = solver_.samples(slot);
+    rangesNow_[slot] = {static_cast<uint32_t>(samplesNow_.size()), static_cast<uint32_t>(own.size())};
+    for (const radiosity::SampleAtElement& sample : own) {
+      const glsl::ElementGroup& g = groups[sample.sender / 4];
+      const int k = static_cast<int>(sample.sender % 4);
+      samplesNow_.push_back(
+          {.position = space.worldPoint({g.x[k], g.y[k], g.z[k]}),
+           .area = unit2 * g.area[k],
+           .radiance = sample.radiance,
+           .normal = glsl::vertex_pack_normal(space.worldDirection({g.nx[k], g.ny[k], g.nz[k]}))});
+    }
+  }
+  rangeBuffer_.update(0, rangesNow_.data(), rangesNow_.size() * sizeof(glm::uvec2));
+  sampleBuffer_.update(0, samplesNow_.data(), bytes);
+}
+
+}  // namespace limn::illumination_samples

@@ -1,0 +1,156 @@
+// What illumination samples promise beyond what every technique does.
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/reference/reference.h"
+#include "tests/gpu/render_test.h"
+
+namespace limn {
+namespace {
+
+class IlluminationSamplesTest : public RenderTest {
+ protected:
+  using Values = std::vector<std::pair<std::string, std::string>>;
+
+  static Image indirect(render::Renderer& renderer, const Values& values) {
+    return picture(renderer, settings(96, 72, Term::indirect, {technique("illumination_samples", values)}));
+  }
+
+  static Image truth(render::Renderer& renderer, const scene::Scene& scene, int bounces = 1) {
+    reference::Request request{.scene = scene,
+                               .pose = renderer.pose(),
+                               .camera = renderer.pose().cameras.at(0),
+                               .width = 96,
+                               .height = 72};
+    request.term = Term::indirect;
+    request.bounces = bounces;
+    request.spp = 256;
+    return reference::render(request).image;
+  }
+
+  struct Error {
+    double rmse = 0, mean = 0;
+    double relative() const { return rmse / mean; }
+  };
+  /// Over the pixels that show an instance.
+  static Error errorOn(int instance, const Image& image, const Image& truth) {
+    double sum = 0, light = 0, count = 0;
+    for (int y = 0; y < image.height(); ++y)
+      for (int x = 0; x < image.width(); ++x) {
+        if (truth.at(x, y, truth.channel("id")) != static_cast<float>(instance)) continue;
+        for (int c = 0; c < 3; ++c) {
+          sum += std::pow(double(image.at(x, y, c)) - truth.at(x, y, c), 2);
+          light += truth.at(x, y, c);
+        }
+        count += 3;
+      }
+    return {std::sqrt(sum / count), light / count};
+  }
+};
+
+/// The plate sends three spots of light to the wall: its own light by directions is what they need.
+TEST_F(IlluminationSamplesTest, APlateThrowsTheLightOfThreeLampsOntoAWall) {
+  const scene::Scene scene = asset("three_lights");
+  render::Renderer renderer(device(), scene);
+  const Image exact = truth(renderer, scene);
+  for (const char* display : {"pixel", "vertex", "gather"}) {
+    const Error error = errorOn(1, indirect(renderer, {{"display", display}}), exact);
+    std::printf("three_lights, %s: RMSE of the wall %.1f %% of its mean\n", display, 100 * error.relative());
+    EXPECT_LT(error.relative(), 0.1);
+  }
+}
+
+/// A satin cap of a sphere that is evenly lit: it sends what it reflects of light from all round.
+TEST_F(IlluminationSamplesTest, ACapInAFurnaceReflectsItsReflectance) {
+  const scene::Scene scene = asset("glossy_furnace");
+  render::Renderer renderer(device(), scene);
+  const Image exact = truth(renderer, scene);
+  for (const char* display : {"pixel", "gather"}) {
+    const Error error =
+        errorOn(1, indirect(renderer, {{"display", display}, {"longest_edge", "0.05"}}), exact);
+    std::printf("glossy_furnace, %s: RMSE %.1f %%\n", display, 100 * error.relative());
+    EXPECT_LT(error.relative(), 0.1);
+  }
+}
+
+TEST_F(IlluminationSamplesTest, SamplesReflectedAtPixelsAreWhatTreesShow) {
+  const scene::Scene scene = asset("glossy_room");
+  render::Renderer renderer(device(), scene);
+  const Values coarse{{"longest_edge", "0.1"}};
+  const auto shown = [&](const char* display) {
+    Values values = coarse;
+    values.emplace_back("display", display);
+    return indirect(renderer, values);
+  };
+  const Image gathered = shown("gather"), pixels = shown("pixel"), vertices = shown("vertex");
+  std::printf("glossy_room: RMSE gathered - per pixel %.4f, gathered - per vertex %.4f, mean %.4f\n",
+              rmse(gathered, pixels), rmse(gathered, vertices), mean(gathered));
+  EXPECT_LT(rmse(gathered, pixels), 0.2 * mean(gathered));
+  EXPECT_LT(rmse(gathered, vertices), 0.2 * mean(gathered));
+  EXPECT_GT(mean(gathered), 0);
+}
+
+/// In a closed box of albedo 0.99 light is lost at the bounces asked for alone.
+TEST_F(IlluminationSamplesTest, ManyBouncesBetweenWhiteWallsGainNoLight) {
+  scene::Scene scene = asset("cornell_box");
+  for (scene::Material& material : scene.materials)
+    if (material.emission == glm::vec3(0)) material.baseColour = glm::vec4(0.99f, 0.99f, 0.99f, 1);
+  render::Renderer renderer(device(), scene);
+  const Image exact = truth(renderer, scene, 8);
+  const Image image = indirect(renderer, {{"bounces", "8"}, {"longest_edge", "0.1"}});
+  double sum = 0;
+  for (int y = 0; y < exact.height(); ++y)
+    for (int x = 0; x < exact.width(); ++x)
+      for (int c = 0; c < 3; ++c) sum += exact.at(x, y, c);
+  const double wanted = sum / (3.0 * exact.width() * exact.height());
+  double got = 0;
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x)
+      for (int c = 0; c < 3; ++c) got += image.at(x, y, c);
+  got /= 3.0 * image.width() * image.height();
+  std::printf("cornell_box, albedo 0.99, 8 bounces: %.1f %% off\n", 100 * (got / wanted - 1));
+  EXPECT_NEAR(got / wanted, 1, 0.05);
+}
+
+/// Extremes of lobes, cells and elements give numbers, none of them negative.
+TEST_F(IlluminationSamplesTest, ExtremesGiveNumbers) {
+  scene::Scene scene = asset("three_lights");
+  for (const float roughness : {0.05f, 0.1f, 1.f}) {
+    for (scene::Material& material : scene.materials)
+      if (material.metallic > 0) material.roughness = roughness;
+    render::Renderer renderer(device(), scene);
+    for (const Values& values :
+         std::vector<Values>{{{"display", "gather"}},
+                             {{"direction_error", "0.5"}},
+                             {{"max_level", "2"}},
+                             {{"max_level", "3"}, {"basis", "uniform"}},
+                             {{"criterion", "relative"}, {"direction_error", "0.5"}, {"max_level", "5"}},
+                             {{"reflection", "immediate"}, {"max_level", "4"}},
+                             {{"longest_edge", "10"}},
+                             {{"bounces", "3"}}}) {
+      Values coarse{{"longest_edge", "0.1"}};
+      coarse.insert(coarse.end(), values.begin(), values.end());
+      expectWithin(indirect(renderer, coarse), 0, 1e4f);
+    }
+  }
+}
+
+TEST_F(IlluminationSamplesTest, DarkScenesAreDark) {
+  scene::Scene scene = asset("glossy_room");
+  for (scene::LightSource& light : scene.lights) light.intensity = 0;
+  render::Renderer renderer(device(), scene);
+  EXPECT_EQ(mean(indirect(renderer, {{"longest_edge", "0.2"}})), 0);
+}
+
+TEST_F(IlluminationSamplesTest, ScenesThatTakeTooMuchMemoryAreRefused) {
+  const scene::Scene scene = asset("glossy_room");
+  render::Renderer renderer(device(), scene);
+  EXPECT_THROW(indirect(renderer, {{"memory", "1"}, {"longest_edge", "0.01"}}), UsageError);
+  EXPECT_THROW(indirect(renderer, {{"memory", "1"}, {"link_error", "0.0001"}}), UsageError);
+}
+
+}  // namespace
+}  // namespace limn
