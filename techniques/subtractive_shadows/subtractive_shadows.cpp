@@ -50,7 +50,7 @@ constexpr Parameter kParameters[] = {
         "of the lobe apart; or the visible samples are added up, without the unshadowed light"),
     boolean("demodulate", true,
             "Without the surface's colours in what is subtracted or added, which blocks of pixels share"),
-    choice("unshadowed", prefiltered, kUnshadowed,
+    choice("unshadowed", brdfSamples, kUnshadowed,
            "Where the light without shadows comes from: filtered maps, samples of each pixel's lobe, a "
            "cache of what materials reflect by normal, as published, or more samples of the environment than "
            "have shadows"),
@@ -86,8 +86,9 @@ constexpr StressCase kStress[] = {
     {.name = "blocks of 32 pixels", .settings = "block=32", .factor = 4},
     {.name = "every pixel", .settings = "block=1"},
     {.name = "subtracted", .settings = "combine=subtract", .factor = 4},
-    {.name = "one sample of each lobe", .settings = "unshadowed=brdf_samples brdf_samples=1", .factor = 4},
-    {.name = "1024 samples of each lobe", .settings = "unshadowed=brdf_samples brdf_samples=1024"},
+    {.name = "one sample of each lobe", .settings = "brdf_samples=1", .factor = 4},
+    {.name = "1024 samples of each lobe", .settings = "brdf_samples=1024"},
+    {.name = "filtered maps", .settings = "unshadowed=prefiltered", .factor = 4},
     {.name = "radiance cache", .settings = "unshadowed=cache", .factor = 4},
     {.name = "added", .settings = "combine=add", .factor = 8},
     {.name = "maps of 16 texels", .settings = "shadow_map_size=16", .factor = 8},

@@ -17,8 +17,11 @@ class SubtractiveShadowsTest : public EnvironmentTest {
  protected:
   using Values = std::vector<std::pair<std::string, std::string>>;
 
+  /// With the unshadowed light that core has, unless the values say otherwise.
   static render::TechniqueUse shadows(const Values& values) {
-    return technique("subtractive_shadows", values);
+    Values all{{"unshadowed", "prefiltered"}};
+    all.insert(all.end(), values.begin(), values.end());
+    return technique("subtractive_shadows", all);
   }
   Image direct(render::Renderer& renderer, int width, int height,
                std::vector<render::TechniqueUse> techniques = {}) {
