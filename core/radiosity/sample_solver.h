@@ -31,7 +31,7 @@ struct SampleSettings {
   /// smaller error.
   bool receiver = true;
   /// How the light that glossy elements send is resolved by directions.
-  TreeSettings tree;
+  TreeSettings tree = {};
   /// Whether each sample is reflected by itself and pushed into the tree of every leaf below at once, as
   /// Sillion, Drettakis and Soler 1995 do, instead of all samples of a leaf together.
   bool immediate = false;
