@@ -62,7 +62,7 @@ Scene makeThreeLights() {
     scene.addAreaLight(light.name, {light.x, 0.5f, 0.45f}, {0.3f * light.x, 0, 0}, {0.12f, 0.12f}, 1.2f,
                        light.colour, 40);
   scene.addCamera("main", {0.35f, 0.6f, 1.3f}, {0, 0.3f, -0.1f}, 36);
-  scene.addCamera("wall", {0, 0.42f, 1.0f}, {0, 0.42f, -0.3f}, 34);
+  scene.addCamera("close", {0, 0.42f, 1.0f}, {0, 0.42f, -0.3f}, 34);
   return scene;
 }
 
@@ -149,7 +149,7 @@ Scene makeGlossyFurnace() {
   scene.add("cap", innerCap(1, 0, cap, 6, 90), scene.addMaterial(glossy("satin", kSatin, 0.3f, 1)));
   scene.addLight("key", {.intensity = 2}, {0, 0, 0}, {0, -1, 0});
   scene.addCamera("main", {0, -0.1f, 0}, {0.05f, -1, 0}, 40);
-  scene.addCamera("oblique", {0.62f, -0.62f, 0}, {0, -1, 0}, 30);
+  scene.addCamera("close", {0.62f, -0.62f, 0}, {0, -1, 0}, 30);
   return scene;
 }
 
