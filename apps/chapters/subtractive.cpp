@@ -15,7 +15,8 @@ int main(int argc, char** argv) {
        "subtractive_shadows.combine=subtract subtractive_shadows.block=1",
        "The sky's own highlights come back. Too much may be subtracted: metals have dark spots."},
       {"As published: 1/16", "subtractive_shadows",
-       "subtractive_shadows.combine=subtract subtractive_shadows.demodulate=false",
+       "subtractive_shadows.combine=subtract subtractive_shadows.demodulate=false "
+       "subtractive_shadows.unshadowed=prefiltered",
        "One pixel in 16 has shadows of its own, with the surface's colours in them: the table's and the "
        "floor's are blurred. The inspector shows the pass 'shadow buffer'."},
       {"Shadows without colours", "subtractive_shadows", "subtractive_shadows.combine=subtract",
