@@ -224,7 +224,7 @@ void SampleSolver::reflect(Worker& worker, uint32_t leaf, const TreeSettings& se
 }
 
 void SampleSolver::count(const DirectionalTree& tree) {
-  if ((treeBytes_ += tree.nodes().size_bytes()) > settings_.memory)
+  if ((treeBytes_ += tree.memory()) > settings_.memory)
     throw UsageError(
         fmt::format("light over directions takes more than the {} MiB allowed: a larger direction_error or "
                     "longest_edge, or "

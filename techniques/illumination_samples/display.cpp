@@ -14,18 +14,18 @@ frame::TextureHandle Display::show(frame::FrameGraph& graph, const TechniqueInpu
                                    const Solution& solution, frame::TextureHandle target) {
   const frame::TextureHandle around = lookup_.texture(
       graph, inputs, {elements_.leaves, elements_.corners, elements_.elements().triangles().size()},
-      technique_);
+      settings_.technique);
   const frame::BufferHandle towards =
-      shown_ == Shown::vertices ? towardsEye(graph, inputs, solution) : frame::BufferHandle{};
-  frame::PassBuilder pass =
-      graph.addPass(shown_ == Shown::gathered ? "gather per pixel" : "interpolate", technique_);
+      settings_.shown == Shown::vertices ? towardsEye(graph, inputs, solution) : frame::BufferHandle{};
+  frame::PassBuilder pass = graph.addPass(
+      settings_.shown == Shown::gathered ? "gather per pixel" : "interpolate", settings_.technique);
   pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
       .read(around, Access::sampled, "surface_lookup", "leaves around pixels")
       .read(solution.irradiance, Access::storageLoad, "Irradiance", "diffuse light");
   readSurfaces(pass, inputs.gbuffer);
-  if (shown_ == Shown::vertices) {
+  if (settings_.shown == Shown::vertices) {
     pass.read(towards, Access::storageLoad, "Towards", "specular light towards the eye");
-  } else if (shown_ == Shown::pixels) {
+  } else if (settings_.shown == Shown::pixels) {
     readTrees(pass, solution);
   } else {
     pass.read(solution.ranges, Access::storageLoad, "Ranges", "which samples")
@@ -36,12 +36,13 @@ frame::TextureHandle Display::show(frame::FrameGraph& graph, const TechniqueInpu
   }
   const frame::TextureHandle result =
       pass.write(target, Access::imageLoadStore, "radiance", "reflected light");
-  const auto kernel = pass.program({.files = {"techniques/illumination_samples/show.comp.glsl"},
-                                    .defines = {{"DISPLAY", std::to_string(static_cast<int>(shown_))}}});
-  pass.execute([kernel, size = inputs.size, gathered = shown_ == Shown::gathered,
-                widen = inputs.parameters.real("widen")](frame::PassContext& context) {
+  const auto kernel =
+      pass.program({.files = {"techniques/illumination_samples/show.comp.glsl"},
+                    .defines = {{"DISPLAY", std::to_string(static_cast<int>(settings_.shown))}}});
+  pass.execute([this, kernel, size = inputs.size](frame::PassContext& context) {
     gpu::Program& program = context.use(kernel);
-    if (gathered) program.set("widen", widen);
+    if (settings_.shown == Shown::gathered) program.set("widen", settings_.samples.widen);
+    if (settings_.shown == Shown::pixels) setTrees(program);
     context.dispatch(size.x, size.y, 1, 8, 8);
   });
   return result;
@@ -53,10 +54,15 @@ void Display::readTrees(frame::PassBuilder& pass, const Solution& solution) cons
       .read(solution.nodes, Access::storageLoad, "DirectionNodes", "light by directions");
 }
 
+void Display::setTrees(gpu::Program& program) const {
+  const bool uniform = settings_.shownTree.basis == radiosity::TreeSettings::Basis::uniform;
+  program.set("grid", uniform ? 1u << settings_.shownTree.maxLevel : 0u);
+}
+
 frame::BufferHandle Display::towardsEye(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                         const Solution& solution) {
   const uint32_t count = elements_.elements().forest().leafSlots();
-  frame::PassBuilder pass = graph.addPass("towards the eye", technique_);
+  frame::PassBuilder pass = graph.addPass("towards the eye", settings_.technique);
   pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera");
   readTrees(pass, solution);
   const frame::BufferHandle towards =
@@ -64,8 +70,10 @@ frame::BufferHandle Display::towardsEye(frame::FrameGraph& graph, const Techniqu
                  Access::storageStore, "Towards", "of leaves");
   const auto kernel =
       pass.program({.files = {"techniques/illumination_samples/towards_eye.comp.glsl"}, .defines = {}});
-  pass.execute([kernel, count](frame::PassContext& context) {
-    context.use(kernel).set("leaf_count", count);
+  pass.execute([this, kernel, count](frame::PassContext& context) {
+    gpu::Program& program = context.use(kernel);
+    setTrees(program);
+    program.set("leaf_count", count);
     context.dispatch(static_cast<int>(count), 1, 1, 64, 1);
   });
   return towards;

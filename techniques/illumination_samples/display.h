@@ -1,8 +1,6 @@
 // Shows the solution as a picture.
 #pragma once
 
-#include <string_view>
-
 #include "core/indirect/surface_lookup.h"
 #include "techniques/illumination_samples/solution.h"
 
@@ -11,8 +9,8 @@ namespace limn::illumination_samples {
 /// Declares the passes that show light. The object must outlive the graph.
 class Display {
  public:
-  Display(const Elements& elements, Shown shown, std::string_view technique)
-      : elements_(elements), shown_(shown), technique_(technique) {}
+  Display(const Elements& elements, const SolutionSettings& settings)
+      : elements_(elements), settings_(settings) {}
 
   /// Adds the light of a solution to `target` and returns it.
   frame::TextureHandle show(frame::FrameGraph& graph, const TechniqueInputs& inputs, const Solution& solution,
@@ -20,13 +18,13 @@ class Display {
 
  private:
   void readTrees(frame::PassBuilder& pass, const Solution& solution) const;
+  void setTrees(gpu::Program& program) const;
   /// Declares the pass that looks the trees of leaves up towards the eye.
   frame::BufferHandle towardsEye(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const Solution& solution);
 
   const Elements& elements_;
-  Shown shown_;
-  std::string_view technique_;
+  SolutionSettings settings_;
   indirect::SurfaceLookup lookup_;
 };
 

@@ -39,7 +39,7 @@ constexpr Parameter kParameters[] = {
     integer("max_level", 8, {0, 10}, "", "Level that they have at most; 3 to 5 as published"),
     choice("criterion", 0, kCriteria,
            "Cells are split while their error counts, or while their light varies, as published"),
-    choice("basis", 0, kBases, "Cells of many levels, or all of max_level"),
+    choice("basis", 0, kBases, "Cells of many levels, or linear between the corners of max_level, at most 8"),
     choice("reflection", 0, kReflections,
            "All samples of an element together, or each pushed into it by itself (Sillion et al. 1995)"),
     choice("display", 0, kDisplays,
@@ -80,12 +80,14 @@ class IlluminationSamples : public Technique {
     const ParameterValues& p = inputs.parameters;
     using Criterion = radiosity::TreeSettings::Criterion;
     const bool relative = p.choice("criterion") == 1;
-    radiosity::TreeSettings tree{
-        .criterion = relative ? Criterion::relative : Criterion::transport,
-        .error = p.real("direction_error"),
-        .minLevel = p.choice("basis") == 1 ? p.integer("max_level") : p.integer("min_level"),
-        .maxLevel = p.integer("max_level")};
-    tree.minLevel = std::min(tree.minLevel, tree.maxLevel);
+    radiosity::TreeSettings tree{.criterion = relative ? Criterion::relative : Criterion::transport,
+                                 .error = p.real("direction_error"),
+                                 .minLevel = std::min(p.integer("min_level"), p.integer("max_level")),
+                                 .maxLevel = p.integer("max_level")};
+    if (p.choice("basis") == 1) {
+      tree.basis = radiosity::TreeSettings::Basis::uniform;
+      tree.maxLevel = std::min(tree.maxLevel, radiosity::DirectionalTree::kMaxUniformLevel);
+    }
     radiosity::TreeSettings shownTree = tree;
     if (!relative) shownTree.criterion = Criterion::display;
     const auto shown = static_cast<Shown>(p.choice("display"));
@@ -103,7 +105,7 @@ class IlluminationSamples : public Technique {
                                     .technique = info.name};
     if (!elements_) {
       elements_ = std::make_unique<Elements>(graph, inputs, settings);
-      display_ = std::make_unique<Display>(*elements_, shown, info.name);
+      display_ = std::make_unique<Display>(*elements_, settings);
     }
     auto known = std::ranges::find_if(
         solutions_, [&](const Solution& s) { return std::ranges::equal(s.lights(), request.lights); });

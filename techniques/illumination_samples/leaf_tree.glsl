@@ -13,18 +13,18 @@ struct LeafTree {
 layout(std430) readonly buffer Leaves { Leaf leaves[]; };
 layout(std430) readonly buffer Trees { LeafTree trees[]; };
 
+// Of a uniform basis: 2^level; 0: cells.
+uniform uint grid;
+
 const uint no_tree = 0xffffffffu;
 
-// Lobes of at least this width (roughness 0.3) are looked up smoothly: narrower ones would be blurred.
-const float smooth_alpha = 0.09;
-
-// Radiance that a leaf sends towards `view` (unit, world); alpha: the GGX width of what is seen.
-vec3 leaf_radiance(uint slot, vec3 view, float alpha) {
+// Radiance that a leaf sends towards `view` (unit, world).
+vec3 leaf_radiance(uint slot, vec3 view) {
   LeafTree tree = trees[slot];
   if (tree.first == no_tree) return vec3(0.0);
   vec3 w = to_local(frame_around(leaves[slot].normal.xyz), view);
   w.z = max(w.z, 1e-3);
-  return tree.scale * packed_tree_value(tree.first, w, alpha >= smooth_alpha);
+  return tree.scale * (grid > 0u ? packed_grid_value(tree.first, grid, w) : packed_tree_value(tree.first, w, true));
 }
 
 #endif  // LIMN_LEAF_TREE_GLSL

@@ -25,7 +25,7 @@ struct Pixel {
 vec3 specular(Pixel at, Around a) {
   vec3 sum = vec3(0.0);
   for (int k = 0; k < 3; ++k)
-    if (a.weights[k] > 0.0) sum += a.weights[k] * leaf_radiance(a.slots[k], at.view, at.material.alpha);
+    if (a.weights[k] > 0.0) sum += a.weights[k] * leaf_radiance(a.slots[k], at.view);
   return sum;
 }
 

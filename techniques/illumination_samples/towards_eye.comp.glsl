@@ -10,6 +10,5 @@ void main() {
   uint slot = gl_GlobalInvocationID.x;
   if (slot >= leaf_count) return;
   vec3 view = normalize(frame.camera_position.xyz - leaves[slot].vertex);
-  // As wide as any: what is interpolated between leaves is smooth.
-  towards[slot] = vec4(leaf_radiance(slot, view, 1.0), 0.0);
+  towards[slot] = vec4(leaf_radiance(slot, view), 0.0);
 }

@@ -19,15 +19,16 @@ class IlluminationSamplesTest : public RenderTest {
     return picture(renderer, settings(96, 72, Term::indirect, {technique("illumination_samples", values)}));
   }
 
-  static Image truth(render::Renderer& renderer, const scene::Scene& scene, int bounces = 1) {
+  static Image truth(render::Renderer& renderer, const scene::Scene& scene, int bounces = 1,
+                     glm::ivec2 size = {96, 72}, int samples = 256) {
     reference::Request request{.scene = scene,
                                .pose = renderer.pose(),
                                .camera = renderer.pose().cameras.at(0),
-                               .width = 96,
-                               .height = 72};
+                               .width = size.x,
+                               .height = size.y};
     request.term = Term::indirect;
     request.bounces = bounces;
-    request.spp = 256;
+    request.spp = samples;
     return reference::render(request).image;
   }
 
@@ -51,16 +52,28 @@ class IlluminationSamplesTest : public RenderTest {
   }
 };
 
-/// The plate sends three spots of light to the wall: its own light by directions is what they need.
+/// The plate sends three spots of light to the wall: its own light by directions is what they need. Paths
+/// from the camera rarely find the lamps by it: the truth has noise of an eighth of the mean.
 TEST_F(IlluminationSamplesTest, APlateThrowsTheLightOfThreeLampsOntoAWall) {
   const scene::Scene scene = asset("three_lights");
   render::Renderer renderer(device(), scene);
-  const Image exact = truth(renderer, scene);
-  for (const char* display : {"pixel", "vertex", "gather"}) {
-    const Error error = errorOn(1, indirect(renderer, {{"display", display}}), exact);
-    std::printf("three_lights, %s: RMSE of the wall %.1f %% of its mean\n", display, 100 * error.relative());
-    EXPECT_LT(error.relative(), 0.1);
+  const Image exact = truth(renderer, scene, 1, {32, 24}, 8192);
+  const auto shown = [&](const Values& values) {
+    return errorOn(
+        1, picture(renderer, settings(32, 24, Term::indirect, {technique("illumination_samples", values)})),
+        exact);
+  };
+  for (const char* cells : {"haar", "uniform"}) {
+    const Error error =
+        shown({{"longest_edge", "0.04"}, {"display", "gather"}, {"basis", cells}, {"max_level", "5"}});
+    std::printf("three_lights, %s: RMSE of the wall %.1f %% of its mean, with the truth's noise\n", cells,
+                100 * error.relative());
+    EXPECT_LT(error.relative(), 0.2);
   }
+  const Error coarse =
+      shown({{"longest_edge", "0.04"}, {"display", "gather"}, {"basis", "uniform"}, {"max_level", "2"}});
+  std::printf("three_lights, 16 cells a face: %.1f %%\n", 100 * coarse.relative());
+  EXPECT_GT(coarse.relative(), 0.25) << "directions matter";
 }
 
 /// A satin cap of a sphere that is evenly lit: it sends what it reflects of light from all round.
@@ -93,11 +106,14 @@ TEST_F(IlluminationSamplesTest, SamplesReflectedAtPixelsAreWhatTreesShow) {
   EXPECT_GT(mean(gathered), 0);
 }
 
-/// In a closed box of albedo 0.99 light is lost at the bounces asked for alone.
+/// White walls lose light through the open side of their box alone. (Coarse elements lose some along the
+/// blocks, too, which are left out.)
 TEST_F(IlluminationSamplesTest, ManyBouncesBetweenWhiteWallsGainNoLight) {
   scene::Scene scene = asset("cornell_box");
   for (scene::Material& material : scene.materials)
     if (material.emission == glm::vec3(0)) material.baseColour = glm::vec4(0.99f, 0.99f, 0.99f, 1);
+  for (scene::Node& node : scene.nodes)
+    if (node.name.find("block") != std::string::npos) node.mesh = scene::kNone;
   render::Renderer renderer(device(), scene);
   const Image exact = truth(renderer, scene, 8);
   const Image image = indirect(renderer, {{"bounces", "8"}, {"longest_edge", "0.1"}});
@@ -112,7 +128,7 @@ TEST_F(IlluminationSamplesTest, ManyBouncesBetweenWhiteWallsGainNoLight) {
       for (int c = 0; c < 3; ++c) got += image.at(x, y, c);
   got /= 3.0 * image.width() * image.height();
   std::printf("cornell_box, albedo 0.99, 8 bounces: %.1f %% off\n", 100 * (got / wanted - 1));
-  EXPECT_NEAR(got / wanted, 1, 0.05);
+  EXPECT_NEAR(got / wanted, 1, 0.03);
 }
 
 /// Extremes of lobes, cells and elements give numbers, none of them negative.
