@@ -17,28 +17,29 @@ bool pixel_is_lit(ivec2 pixel, float depth) {
   return depth != 0.0 && (flags & gbuffer_flag_specular) == 0u;
 }
 
-// Weights of the 4 x 4 blocks around a pixel, in rows; outside the picture and where nothing is lit 0. Returns their sum.
-float block_weights(ivec2 pixel, float depth, out ivec2 first, out float weights[16]) {
-  vec3 position = pixel_position(pixel, depth);
-  vec3 normal = pixel_normal(pixel);
-  float block_width = depth * length(frame.view_ray_dx.xyz) * float(BLOCK_SIDE);
-  BlockTents tents = block_tents(pixel, BLOCK_SIDE);
-  first = tents.first;
-  ivec2 grid = block_grid();
-  float sum = 0.0;
-  for (int i = 0; i < 16; ++i) {
-    ivec2 block = first + ivec2(i % 4, i / 4);
-    weights[i] = 0.0;
-    if (any(lessThan(block, ivec2(0))) || any(greaterThanEqual(block, grid))) continue;
-    uvec4 stored = texelFetch(block_surfaces, block, 0);
-    if (stored.x == no_block_surface) continue;
-    float apart = length(position - uintBitsToFloat(stored.xyz)) / block_width;
-    vec3 other = octahedral_decode(unpackSnorm2x16(stored.w));
-    float likeness = block_likeness(apart, normal, other, block_position_width, block_normal_width);
-    weights[i] = tents.across[i % 4] * tents.down[i / 4] * likeness;
-    sum += weights[i];
-  }
-  return sum;
+// A pixel that takes values from the 4 x 4 blocks around it.
+struct BlockReceiver {
+  vec3 position;
+  vec3 normal;
+  float block_width;  // metres, at the pixel's depth
+  BlockTents tents;
+};
+
+BlockReceiver block_receiver(ivec2 pixel, float depth) {
+  return BlockReceiver(pixel_position(pixel, depth), pixel_normal(pixel),
+                       depth * length(frame.view_ray_dx.xyz) * float(BLOCK_SIDE), block_tents(pixel, BLOCK_SIDE));
+}
+
+// Weight of the i-th of the 16 blocks, in rows; outside the picture and where nothing is lit 0.
+float block_weight(BlockReceiver r, int i) {
+  ivec2 block = r.tents.first + ivec2(i % 4, i / 4);
+  float tent = r.tents.across[i % 4] * r.tents.down[i / 4];
+  if (tent == 0.0 || any(lessThan(block, ivec2(0))) || any(greaterThanEqual(block, block_grid()))) return 0.0;
+  uvec4 stored = texelFetch(block_surfaces, block, 0);
+  if (stored.x == no_block_surface) return 0.0;
+  float apart = length(r.position - uintBitsToFloat(stored.xyz)) / r.block_width;
+  vec3 other = octahedral_decode(unpackSnorm2x16(stored.w));
+  return tent * block_likeness(apart, r.normal, other, block_position_width, block_normal_width);
 }
 
 #endif  // LIMN_BLOCK_SURFACES_GLSL

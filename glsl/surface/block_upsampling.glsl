@@ -21,7 +21,13 @@ BlockLookup block_lookup(ivec2 pixel, float depth) {
     b.first = ivec2(int(item - 1u) % width, block_grid().y + int(item - 1u) / width);
     return b;
   }
-  float sum = block_weights(pixel, depth, b.first, b.weights);
+  BlockReceiver receiver = block_receiver(pixel, depth);
+  b.first = receiver.tents.first;
+  float sum = 0.0;
+  for (int i = 0; i < 16; ++i) {
+    b.weights[i] = block_weight(receiver, i);
+    sum += b.weights[i];
+  }
   // Where the list of lone pixels is full, the block that the pixel lies in stands for it.
   if (sum < block_least_weight) {
     b.own = true;

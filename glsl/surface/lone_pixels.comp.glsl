@@ -5,11 +5,19 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(r32ui) writeonly uniform uimage2D lone_items;  // place in the list + 1; 0: upsampled
 layout(std430) buffer LonePixels { uint lone_count; uint lone_pixels[]; };
 
+bool is_middle(int i) { return i == 5 || i == 6 || i == 9 || i == 10; }
+
+// Looks at the four blocks in the middle first, which most pixels are like.
 bool is_alone(ivec2 pixel, float depth) {
   if (!pixel_is_lit(pixel, depth)) return false;
-  ivec2 first;
-  float weights[16];
-  return block_weights(pixel, depth, first, weights) < block_least_weight;
+  BlockReceiver receiver = block_receiver(pixel, depth);
+  float sum = 0.0;
+  for (int i = 5; i <= 10; ++i)
+    if (is_middle(i)) sum += block_weight(receiver, i);
+  if (sum >= block_least_weight) return false;
+  for (int i = 0; i < 16; ++i)
+    if (!is_middle(i)) sum += block_weight(receiver, i);
+  return sum < block_least_weight;
 }
 
 void main() {
