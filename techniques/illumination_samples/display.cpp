@@ -31,6 +31,7 @@ frame::TextureHandle Display::show(frame::FrameGraph& graph, const TechniqueInpu
     pass.read(solution.ranges, Access::storageLoad, "Ranges", "which samples")
         .read(solution.samples, Access::storageLoad, "Samples", "light by directions")
         .read(elements_.parents, Access::storageLoad, "Parents", "elements above leaves")
+        .read(elements_.leaves, Access::storageLoad, "Leaves", "places that near samples are seen from")
         .read(inputs.service<shading_maps::ShadingMapService>().ltcTable(), Access::sampled, "ltc_table",
               "energy of lobes");
   }

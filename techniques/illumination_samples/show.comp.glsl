@@ -2,6 +2,7 @@
 // 0: what these leaves' trees send towards the eye, 1: the same, looked up for each leaf before, 2: what the pixel's own
 // material reflects of their samples.
 #include "glsl/indirect/sample_reflection.glsl"
+#include "glsl/indirect/surface_leaf.glsl"
 #include "glsl/indirect/surface_lookup.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
 #if DISPLAY == 0
@@ -43,16 +44,22 @@ vec3 specular(Pixel at, Around a) {
 layout(std430) readonly buffer Ranges { uvec2 ranges[]; };  // of elements: the first sample, and how many
 layout(std430) readonly buffer Samples { IlluminationSample samples[]; };
 layout(std430) readonly buffer Parents { uint parents[]; };  // of groups of four elements
+layout(std430) readonly buffer Leaves { Leaf leaves[]; };
 uniform float widen;
 
 const uint nobody = 0xffffffffu;
 
-// Sum over the samples of one element.
-vec3 reflected(Pixel at, uint element) {
+// Samples that span more are taken from the leaf, radians: a pixel beside a wall would look along it past the middle of its
+// lowest element, which stands for all of that.
+const float near_spread = 0.5;
+
+// Sum over the samples of one element, of which a leaf around the pixel is a part.
+vec3 reflected(Pixel at, uint element, uint leaf) {
   uvec2 range = ranges[element];
   vec3 sum = vec3(0.0);
   for (uint i = range.x; i < range.x + range.y; ++i) {
     IncidentLight light = incident_light(samples[i], at.position);
+    if (light.spread > near_spread) light = incident_light(samples[i], leaves[leaf].position.xyz);
     if (dot(light.direction, at.geometric_normal) > 0.0)
       sum += reflected_specular(at.material, at.normal, at.view, light, widen);
   }
@@ -70,7 +77,7 @@ vec3 specular(Pixel at, Around a) {
     if (elements.z == elements.x) weights = vec3(weights.x + weights.z, weights.y, 0.0);
     for (int k = 0; k < 3; ++k) {
       if (weights[k] == 0.0) continue;
-      sum += weights[k] * reflected(at, elements[k]);
+      sum += weights[k] * reflected(at, elements[k], a.slots[k]);
       elements[k] = parents[elements[k] / 4u];
       if (elements[k] == nobody) weights[k] = 0.0;
     }
