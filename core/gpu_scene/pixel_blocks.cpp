@@ -1,7 +1,5 @@
 #include "core/gpu_scene/pixel_blocks.h"
 
-#include <algorithm>
-
 #include "glsl/surface/pixel_blocks.glsl"
 
 namespace limn::scene {
@@ -11,7 +9,6 @@ using frame::Access;
 namespace {
 
 constexpr int kGroupSize = 8;
-constexpr int kPixelsPerLoneOne = 4;
 
 }  // namespace
 
@@ -20,10 +17,7 @@ PixelBlocks::PixelBlocks(frame::FrameGraph& graph, const SceneHandles& handles, 
     : desc_(desc), grid_(size) {
   if (desc.side == 1) return;
   const glm::ivec2 blocks = glsl::block_count(size, desc.side);
-  const int64_t lone = std::max<int64_t>(int64_t{size.x} * size.y / kPixelsPerLoneOne, 1);
-  const int width = glsl::block_grid_width(size, desc.side);
-  const int rows = static_cast<int>((lone + width - 1) / width);
-  grid_ = {width, blocks.y + rows};
+  grid_ = {size.x, blocks.y + size.y};
   std::map<std::string, std::string> defines;
   define(defines);
 
@@ -35,7 +29,7 @@ PixelBlocks::PixelBlocks(frame::FrameGraph& graph, const SceneHandles& handles, 
   surfaces_ = surfaces.write(
       graph.createTexture("block gbuffer", {.format = GL_RGBA32UI, .width = blocks.x, .height = blocks.y}),
       Access::imageStore, "surfaces", "what each block is shaded at");
-  const size_t words = 1 + static_cast<size_t>(rows) * static_cast<size_t>(width);
+  const size_t words = 1 + static_cast<size_t>(size.x) * static_cast<size_t>(size.y);
   lonePixels_ = surfaces.write(graph.createBuffer("lone pixels", {words * sizeof(uint32_t)}),
                                Access::storageStore, "LonePixels", "none yet");
   const auto surfaceProgram =

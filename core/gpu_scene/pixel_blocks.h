@@ -29,8 +29,8 @@ class LIMN_API PixelBlocks {
               const PixelBlockDesc& desc, std::string_view technique);
 
   int side() const { return desc_.side; }
-  /// Returns the size of the grid, and of textures with a texel for each item. There is room for a lone pixel
-  /// in four; those beyond are upsampled from what there is.
+  /// Returns the size of the grid, and of textures with a texel for each item: there is room for every pixel,
+  /// should it be a lone one.
   glm::ivec2 grid() const { return grid_; }
   /// Adds BLOCK_SIDE.
   void define(std::map<std::string, std::string>& defines) const;

@@ -4,6 +4,7 @@
 #include "glsl/shadow/sampled_pixel.glsl"
 #include "glsl/numeric/equirectangular.glsl"
 
+#if (MATERIAL_MODELS & 32) != 0
 uniform sampler2D environment_map;  // equirectangular radiance
 
 // p: of a coated surface. Black where the mirror direction lies below the horizon.
@@ -14,5 +15,6 @@ vec3 mirrored_environment(SampledPixel p) {
   vec2 uv = equirectangular_uv(environment_lookup_direction(mirror, frame.environment_rotation));
   return coated_mirror(p.material.model, n_dot_v) * (frame.environment_scale * textureLod(environment_map, uv, 0.0).rgb);
 }
+#endif
 
 #endif  // LIMN_MIRRORED_ENVIRONMENT_GLSL

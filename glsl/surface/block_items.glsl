@@ -16,10 +16,9 @@ bool item_pixel(ivec2 item, out ivec2 pixel) {
   ivec2 blocks = block_count(size, BLOCK_SIDE);
   pixel = block_middle(item, BLOCK_SIDE, size);
   if (item.y < blocks.y) return item.x < blocks.x;
-  int width = block_grid_width(size, BLOCK_SIDE);
-  if (item.x >= width) return false;
-  uint place = uint((item.y - blocks.y) * width + item.x);
-  if (place >= min(lone_count, uint(lone_pixels.length()))) return false;
+  if (item.x >= size.x) return false;
+  uint place = uint((item.y - blocks.y) * size.x + item.x);
+  if (place >= lone_count) return false;
   pixel = ivec2(lone_pixels[place] & 0xffffu, lone_pixels[place] >> 16u);
   return true;
 #else

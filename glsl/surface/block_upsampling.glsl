@@ -17,7 +17,7 @@ BlockLookup block_lookup(ivec2 pixel, float depth) {
   uint item = texelFetch(lone_items, pixel, 0).x;
   b.own = item != 0u;
   if (b.own) {
-    int width = block_grid_width(ivec2(frame.frame_size), BLOCK_SIDE);
+    int width = int(frame.frame_size.x);
     b.first = ivec2(int(item - 1u) % width, block_grid().y + int(item - 1u) / width);
     return b;
   }
@@ -27,12 +27,6 @@ BlockLookup block_lookup(ivec2 pixel, float depth) {
   for (int i = 0; i < 16; ++i) {
     b.weights[i] = block_weight(receiver, i);
     sum += b.weights[i];
-  }
-  // Where the list of lone pixels is full, the block that the pixel lies in stands for it.
-  if (sum < block_least_weight) {
-    b.own = true;
-    b.first = pixel / BLOCK_SIDE;
-    return b;
   }
   for (int i = 0; i < 16; ++i) b.weights[i] /= sum;
   return b;

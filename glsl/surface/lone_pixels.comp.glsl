@@ -1,4 +1,4 @@
-// Lists the pixels whose surface none of the blocks around them sees. Where the list is full, they are none. BLOCK_SIDE: pixels.
+// Lists the pixels whose surface none of the blocks around them sees. BLOCK_SIDE: pixels.
 #include "glsl/surface/block_surfaces.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -26,10 +26,8 @@ void main() {
   uint item = 0u;
   if (is_alone(pixel, pixel_depth(pixel))) {
     uint place = atomicAdd(lone_count, 1u);
-    if (place < uint(lone_pixels.length())) {
-      lone_pixels[place] = uint(pixel.x) | uint(pixel.y) << 16u;
-      item = place + 1u;
-    }
+    lone_pixels[place] = uint(pixel.x) | uint(pixel.y) << 16u;
+    item = place + 1u;
   }
   imageStore(lone_items, pixel, uvec4(item, 0u, 0u, 0u));
 }

@@ -15,9 +15,6 @@ LIMN_CONST float block_least_weight = 1e-3f;
 // Blocks that cover a picture of `size` pixels.
 LIMN_FN ivec2 block_count(ivec2 size, int side) { return (size + ivec2(side - 1)) / side; }
 
-// Items in each row of the grid, which keeps it from growing tall.
-LIMN_FN int block_grid_width(ivec2 size, int side) { return max(block_count(size, side).x, (size.x + 1) / 2); }
-
 // Pixel that a block is shaded at. side: of a block, pixels; size: of the picture.
 LIMN_FN ivec2 block_middle(ivec2 block, int side, ivec2 size) {
   return min(block * side + ivec2(side / 2), size - ivec2(1));
