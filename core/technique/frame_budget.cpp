@@ -56,7 +56,7 @@ void FrameBudget::choose(double median) {
 
 void FrameBudget::goTo(int level) {
   target_ = level;
-  step_ = (level - position_) / kFramesOfWay;
+  step_ = (level > position_ ? 1.0 : -1.0) / kFramesOfLevel;
 }
 
 const FrameBudget& FrameBudgetService::request(std::string_view technique, double milliseconds,

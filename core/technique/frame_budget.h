@@ -1,6 +1,6 @@
 // Declares budgets of frame time: a technique that can do with less work names its levels, and is told which
-// one keeps the time that a frame may take. Levels change by going over into each other, so that nothing
-// jumps.
+// one keeps the time that a frame may take. On the way from one level to the next it stands between them, for
+// techniques that can fade.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ class LIMN_API FrameBudget {
   void goTo(int level);
 
   static constexpr int kMedianOf = 5;           ///< frames at a level before it is judged
-  static constexpr int kFramesOfWay = 16;       ///< from one level to another
+  static constexpr int kFramesOfLevel = 8;      ///< from one level to the next
   static constexpr int kFramesOfCaution = 256;  ///< before a level that was too dear is tried again
 
   double budget_;
