@@ -21,11 +21,15 @@ PixelBlocks::PixelBlocks(frame::FrameGraph& graph, const SceneHandles& handles, 
   std::map<std::string, std::string> defines;
   define(defines);
 
+  const auto readPixels = [&](frame::PassBuilder& pass) {
+    pass.read(handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
+        .read(gbuffer.depth, Access::sampled, kGBufferNames.depth, "positions")
+        .read(gbuffer.normal, Access::sampled, kGBufferNames.normal, "normals")
+        .read(gbuffer.material, Access::sampled, kGBufferNames.material, "what is lit");
+  };
+
   frame::PassBuilder surfaces = graph.addPass("block gbuffer", technique);
-  surfaces.read(handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
-      .read(gbuffer.depth, Access::sampled, kGBufferNames.depth, "positions")
-      .read(gbuffer.normal, Access::sampled, kGBufferNames.normal, "normals")
-      .read(gbuffer.material, Access::sampled, kGBufferNames.material, "what is lit");
+  readPixels(surfaces);
   surfaces_ = surfaces.write(
       graph.createTexture("block gbuffer", {.format = GL_RGBA32UI, .width = blocks.x, .height = blocks.y}),
       Access::imageStore, "surfaces", "what each block is shaded at");
@@ -40,11 +44,8 @@ PixelBlocks::PixelBlocks(frame::FrameGraph& graph, const SceneHandles& handles, 
   });
 
   frame::PassBuilder alone = graph.addPass("lone pixels", technique);
-  alone.read(handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
-      .read(gbuffer.depth, Access::sampled, kGBufferNames.depth, "positions")
-      .read(gbuffer.normal, Access::sampled, kGBufferNames.normal, "normals")
-      .read(gbuffer.material, Access::sampled, kGBufferNames.material, "what is lit")
-      .read(surfaces_, Access::sampled, "block_surfaces", "what blocks see");
+  readPixels(alone);
+  alone.read(surfaces_, Access::sampled, "block_surfaces", "what blocks see");
   lonePixels_ = alone.write(lonePixels_, Access::storageLoadStore, "LonePixels", "what no block sees");
   loneItems_ =
       alone.write(graph.createTexture("lone items", {.format = GL_R32UI, .width = size.x, .height = size.y}),

@@ -11,7 +11,8 @@
 namespace limn::radiosity {
 namespace {
 
-/// A light is taken in pieces that span at most this many widths of the lobe, in at most so many a side.
+/// A light is taken in pieces that span at most this many widths of the lobe, in at most a fixed number a
+/// side.
 constexpr float kLobeWidths = 2.5f;
 constexpr int kMostPieces = 8;
 

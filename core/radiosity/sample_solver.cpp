@@ -25,8 +25,8 @@ constexpr float kNegligible = 1e-3f;
 /// Links into lobes are refined until the sender spans less than this many of the lobe's widths.
 constexpr float kLobeWidths = 2.5f;
 
-/// Light of lobes may vary over the directions and places of a link by so many times the error allowed: these
-/// are bounds, and what rays find is far less; without them narrow lobes pass between the rays.
+/// Light of lobes may vary over the directions and places of a link by this multiple of the error allowed:
+/// these are bounds, and what rays find is far less; without them narrow lobes pass between the rays.
 constexpr float kLobeVariation = 8;
 
 /// Senders nearer than this many square roots of their area are made to transport what a disc does.

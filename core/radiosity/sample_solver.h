@@ -60,7 +60,7 @@ class LIMN_API SampleSolver {
   SampleSolver(const Surfels& surfels, const Forest& forest, const ElementSpace& space,
                std::span<const LeafMaterial> materials, const SampleSettings& settings);
 
-  /// Begins anew, after elements moved or lights changed.
+  /// Begins again, after elements moved or lights changed.
   void begin();
   /// Sets the light of lights at a leaf: its irradiance, W/m^2, and the same by directions, of which only
   /// leaves that are glossy() want any, in the space of the elements. Leaves may be lit by many threads at

@@ -61,7 +61,7 @@ class LIMN_API TreeBuilder {
 
   /// Builds the radiance that stands for all parts of a surface whose normals about agree: its flux is
   /// theirs. `frame`: of the result; diffuse radiance is left out. Parts in that same frame give their cells,
-  /// of others the light (times its cosine) is sampled anew.
+  /// of others the light (times its cosine) is sampled again.
   void pull(std::span<const TreePart> parts, const glsl::Frame& frame, const TreeSettings& settings,
             DirectionalTree& tree);
   /// Builds the intensity of a cluster, J(w) = sum A L(w) (n.w)+ over surfaces plus that of clusters in it,

@@ -30,6 +30,10 @@ const scene::Environment& ShadingMapService::environment() const {
 template <class Make>
 TextureHandle ShadingMapService::import(Entry& entry, const char* name, Make make) {
   if (!entry.texture) entry.texture = make();
+  return handleOf(entry, name);
+}
+
+TextureHandle ShadingMapService::handleOf(Entry& entry, const char* name) {
   if (!entry.handle) entry.handle = context().graph.importTexture(name, entry.texture);
   return entry.handle;
 }
@@ -61,10 +65,9 @@ void ShadingMapService::readReflected(frame::PassBuilder& pass, uint32_t modelKi
     irradiance_.texture = shading::makeIrradianceTexture(device_, filtered.irradiance);
     filtered_.texture = shading::makeFilteredTexture(device_, filtered);
   }
-  const auto made = [] { return gpu::Texture(); };
-  pass.read(import(irradiance_, "environment irradiance", made), Access::sampled, "environment_irradiance",
+  pass.read(handleOf(irradiance_, "environment irradiance"), Access::sampled, "environment_irradiance",
             "diffuse light")
-      .read(import(filtered_, "filtered environment", made), Access::sampled, "environment_filtered",
+      .read(handleOf(filtered_, "filtered environment"), Access::sampled, "environment_filtered",
             "glossy light")
       .read(ltcTable(), Access::sampled, "ltc_table", "glossy reflectance");
   constexpr uint32_t entered = 1u << glsl::model_coated | 1u << glsl::model_entry;

@@ -37,6 +37,9 @@ class LIMN_API ShadingMapService : public FrameService {
     frame::TextureHandle handle;  ///< in the graph that is being built; empty: not asked for
   };
   void begin() override;
+  /// Returns the entry's texture, which is there, in the graph that is being built.
+  frame::TextureHandle handleOf(Entry& entry, const char* name);
+  /// Returns the same, and makes the texture first where it is not there.
   template <class Make>
   frame::TextureHandle import(Entry& entry, const char* name, Make make);
   /// Returns the scene's environment, or a black one.

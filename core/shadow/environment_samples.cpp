@@ -1,6 +1,5 @@
 #include "core/shadow/environment_samples.h"
 
-#include <map>
 #include <utility>
 
 #include "core/gpu_scene/gpu_medium.h"
@@ -56,6 +55,7 @@ VisibilityPass environmentSamplePass(const TechniqueInputs& inputs, std::string_
   desc.cacheable = batch.count == batch.total;
   const std::span<const glm::vec3> directions =
       samples.directions().subspan(static_cast<size_t>(batch.first), static_cast<size_t>(batch.count));
+  const scene::MediumInput medium(inputs.handles);
   VisibilityPass pass{
       .name = "environment",
       .technique = technique,
@@ -67,11 +67,11 @@ VisibilityPass environmentSamplePass(const TechniqueInputs& inputs, std::string_
       .reflects = true,
       .bind = [batch](frame::PassContext&, gpu::Program& program) { setBatch(program, batch); },
       .declare =
-          [handle, medium = scene::MediumInput(inputs.handles)](frame::PassBuilder& builder) {
+          [handle, medium](frame::PassBuilder& builder) {
             builder.read(handle, Access::storageLoad, "EnvironmentSamples", "what each direction brings");
             medium.declare(builder);
           }};
-  scene::MediumInput(inputs.handles).define(pass.program.defines);
+  medium.define(pass.program.defines);
   return pass;
 }
 

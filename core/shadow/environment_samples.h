@@ -2,7 +2,7 @@
 // surfaces reflect with their whole BRDF.
 #pragma once
 
-#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>

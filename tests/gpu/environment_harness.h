@@ -26,7 +26,7 @@ class EnvironmentTest : public RenderTest {
     return names;
   }
 
-  /// One of them with so many samples, at every pixel, that converges as they grow.
+  /// Returns one of them with that number of samples, at every pixel; it converges as they grow.
   static render::TechniqueUse sampled(const std::string& name, int samples) {
     const std::string count = std::to_string(samples);
     if (name == "subtractive_shadows")

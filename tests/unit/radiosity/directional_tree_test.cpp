@@ -467,7 +467,7 @@ TEST(DirectionalTree, PullsKeepTheFlux) {
   const auto frameAt = [](float angle) {
     return glsl::frame_around(glm::normalize(glm::vec3(std::sin(angle), 0.1f, std::cos(angle))));
   };
-  // In one frame cells are merged, in others light is sampled anew.
+  // In one frame cells are merged, in others light is sampled again.
   for (const float tilt : {0.f, 0.05f, 0.2f}) {
     const TreePart parts[] = {{&first, frameAt(0), 1}, {&second, frameAt(tilt), 3}, {&dark, frameAt(1), 4}};
     builder.pull(parts, frameAt(0), {}, pulled);
