@@ -144,12 +144,16 @@ glm::vec3 DirectionalTree::flux() const {
   return sum * (domain_ == DirectionDomain::hemisphere ? 0.25f * glsl::pi : 0.5f * glsl::pi);
 }
 
+float DirectionalTree::greatest() const {
+  float most = 0;
+  for (const Node& node : nodes_) most = std::max(most, glsl::largest_channel(node.value));
+  for (const glm::vec3& corner : corners_) most = std::max(most, glsl::largest_channel(corner));
+  return most;
+}
+
 float DirectionalTree::pack(std::vector<glm::uvec2>& nodes) const {
-  float brightest = 0;
-  for (const Node& node : nodes_) brightest = std::max(brightest, glsl::largest_channel(node.value));
-  for (const glm::vec3& corner : corners_) brightest = std::max(brightest, glsl::largest_channel(corner));
   // Never so small that dividing by it overflows.
-  const float scale = std::max(brightest / glsl::packed_tree_brightest, 1e-37f);
+  const float scale = std::max(greatest() / glsl::packed_tree_brightest, 1e-37f);
   for (const Node& node : nodes_)
     nodes.emplace_back(node.child, glsl::shared_exponent_encode(node.value / scale));
   for (size_t i = 0; i < corners_.size(); i += 2)

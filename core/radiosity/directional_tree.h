@@ -54,6 +54,8 @@ class LIMN_API DirectionalTree {
   /// Returns the level of a uniform basis.
   int level() const { return level_; }
   std::span<const Node> nodes() const { return nodes_; }
+  /// Returns the values of a uniform basis.
+  std::span<const glm::vec3> corners() const { return corners_; }
   /// Returns the number of faces that the domain has.
   uint32_t faces() const { return domain_ == DirectionDomain::hemisphere ? 4 : 8; }
   /// Returns the number of cells without children.
@@ -68,6 +70,8 @@ class LIMN_API DirectionalTree {
   /// Returns the bounds over the directions (of the domain) less than an angle from `axis` (unit), by that
   /// angle's cosine, and over no more than the cells that these lie in.
   DirectionBounds bounds(const glm::vec3& axis, float cosine) const;
+  /// Returns the greatest value of any channel, 0 without nodes.
+  float greatest() const;
   /// Returns the integral over the domain by its weight: radiosity of radiance, power of intensity.
   glm::vec3 flux() const;
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/export.h"
+#include "core/radiosity/direction_caps.h"
 #include "core/radiosity/forest.h"
 #include "core/radiosity/occlusion.h"
 #include "core/radiosity/scene_elements.h"
@@ -112,6 +113,7 @@ class LIMN_API SampleSolver {
     float reach = 0;      ///< radius of a ball around the position that holds all of the element
     float spread = 0;     ///< at most the length of (normal of a leaf - normal)
     float alpha = 1;      ///< the narrowest lobe of its leaves
+    float tolerance = 1;  ///< the least part of the error allowed that its leaves' lobes allow
     bool glossy = false;  ///< one of its leaves is
     uint32_t firstChild = glsl::no_link, childCount = 0;
     uint32_t surfel = glsl::no_link;  ///< of a leaf
@@ -125,11 +127,14 @@ class LIMN_API SampleSolver {
   template <class First, class Visit>
   void visitSamples(uint32_t leaf, const First& first, const Visit& visit) const;
   void collect(uint32_t leaf, bool freshOnly, std::vector<glsl::IncidentLight>& lights) const;
-  void reflect(Worker& worker, uint32_t leaf, const TreeSettings& settings, DirectionalTree& tree);
+  /// Makes a leaf's tree of the worker's lights; `diffuse` is radiance that leaves beside it.
+  void reflect(Worker& worker, uint32_t leaf, const glm::vec3& diffuse, const TreeSettings& settings,
+               DirectionalTree& tree);
   void count(const DirectionalTree& tree);
   void pullTree(Worker& worker, uint32_t slot);
   glm::vec3 treeValue(uint32_t slot, uint32_t leaf, const glm::vec3& direction) const;
-  float treeMost(uint32_t slot, const glm::vec3& axis, float cosine, float& least) const;
+  /// Returns whether one tree stands for all that a slot sends.
+  bool flat(uint32_t slot) const;
 
   const Surfels& surfels_;
   const Forest& forest_;
@@ -145,8 +150,9 @@ class LIMN_API SampleSolver {
   std::vector<glm::vec3> fresh_;  ///< irradiance of leaves that reflect() has yet to see
   std::vector<std::vector<glsl::IncidentLight>> lights_;  ///< of lights, the same by directions, local
   std::vector<glm::vec3> unshot_;       ///< diffuse radiance of slots that shoot() has yet to send
-  std::vector<float> most_;             ///< the most of it that a leaf of a slot has, largest channel
   std::vector<DirectionalTree> trees_;  ///< specular radiance of slots that shoot() has yet to send
+  std::vector<float> most_;             ///< the most diffuse radiance of a slot's leaves, largest channel
+  std::vector<DirectionCaps> caps_;     ///< the most specular radiance of a slot's leaves
   std::vector<DirectionalTree> shown_;  ///< specular radiance of leaves by all samples
   std::vector<glm::vec3> irradiance_;
   std::vector<std::vector<SampleAtElement>> samples_;

@@ -60,14 +60,14 @@ struct Cell {
     const float bend = glsl::luminance(totals[3]) - (a + b + c) / 3;
     return ((a - b) * (a - b) + (b - c) * (b - c) + (c - a) * (c - a)) / 36 + 0.25f * bend * bend;
   }
-  /// Whether the published test asks for more.
-  bool varies(float most) const {
+  /// Whether the published test asks for more; `beside`: luminance beside the cell's.
+  bool varies(float most, float beside) const {
     float low = glsl::luminance(totals[3]), high = low;
     for (int i = 0; i < 3; ++i) {
       low = std::min(low, glsl::luminance(totals[i]));
       high = std::max(high, glsl::luminance(totals[i]));
     }
-    return high - low > most * glsl::luminance(totals[3]);
+    return high - low > most * (glsl::luminance(totals[3]) + beside);
   }
   /// The longest edge, rad.
   float edge() const {
@@ -216,6 +216,7 @@ struct TreeBuilder::Scratch {
   TreeSettings settings;
   DirectionDomain domain = DirectionDomain::hemisphere;
   bool keeps = false;  ///< single lobes' values are kept
+  double beside = 0;   ///< luminance of light that is not in the tree
   /// Sums over the cells without children.
   double power = 0, error = 0;
   double stuck = 0;    ///< the part of the error that is in cells of the deepest level
@@ -233,7 +234,7 @@ struct TreeBuilder::Scratch {
 
   /// Measures a cell that has its values and adds it to the sums.
   void measure(Cell& cell) {
-    const double value = double(glsl::luminance(cell.value()));
+    const double value = double(glsl::luminance(cell.value())) + beside;
     cell.power = double(cell.weight) * value * value;
     cell.error = double(cell.weight) * double(cell.variance());
     if (settings.criterion == TreeSettings::Criterion::display)
@@ -250,7 +251,7 @@ struct TreeBuilder::Scratch {
     double mean = 0, area = 0;
     for (const Cell& cell : cells) {
       if (cell.child != 0) continue;
-      mean += double(cell.weight) * double(glsl::luminance(cell.value()));
+      mean += double(cell.weight) * (double(glsl::luminance(cell.value())) + beside);
       area += double(cell.weight);
     }
     darkest = kDarkest * (mean / area) * (mean / area);
@@ -267,8 +268,9 @@ struct TreeBuilder::Scratch {
   }
 
   /// Forgets the last tree.
-  void clear(DirectionDomain over, const TreeSettings& how) {
+  void clear(DirectionDomain over, const TreeSettings& how, double otherLight) {
     settings = how;
+    beside = otherLight;
     domain = over;
     keeps = false;
     cells.clear();
@@ -285,8 +287,8 @@ struct TreeBuilder::Scratch {
   }
 
   template <class Source>
-  void begin(const Source& source, DirectionDomain over, const TreeSettings& how) {
-    clear(over, how);
+  void begin(const Source& source, DirectionDomain over, const TreeSettings& how, double otherLight) {
+    clear(over, how, otherLight);
     keeps = settings.frozen && source.size() > 0;
     const LobeSet all = allOf(source);
     const bool half = domain == DirectionDomain::hemisphere;
@@ -337,7 +339,7 @@ struct TreeBuilder::Scratch {
     const float asked =
         settings.criterion == TreeSettings::Criterion::relative ? kPublishedError : settings.error;
     const bool display = settings.criterion == TreeSettings::Criterion::display;
-    const double local = double(glsl::luminance(cell.value()));
+    const double local = double(glsl::luminance(cell.value())) + beside;
     const double squared = display ? local * local + darkest : power / double(glsl::pi);
     const float together = kLinear * asked * static_cast<float>(std::sqrt(std::max(squared, 0.0)));
     const float single = kSingle * together / std::sqrt(static_cast<float>(source.size()));
@@ -499,6 +501,15 @@ struct TreeBuilder::Scratch {
     }
   }
 
+  /// Whether all lobes together have less light than the error asked for: one value for each face is enough.
+  template <class Source>
+  bool faint(const Source& source) const {
+    if (!(beside > 0) || source.size() == 0) return false;
+    double most = 0;  // of the root of the squared light: that of the sum is at most the sum
+    for (uint32_t k = 0; k < source.size(); ++k) most += std::sqrt(source.power(k));
+    return most < double(settings.error) * std::sqrt(double(glsl::pi)) * beside;
+  }
+
   template <class Source>
   void refine(const Source& source) {
     for (uint32_t i = 0; i < cells.size(); ++i)
@@ -506,7 +517,8 @@ struct TreeBuilder::Scratch {
     recount();
     if (settings.criterion == TreeSettings::Criterion::relative) {
       for (uint32_t i = 0; i < cells.size(); ++i)
-        if (cells[i].child == 0 && cells[i].level < settings.maxLevel && cells[i].varies(settings.error))
+        if (cells[i].child == 0 && cells[i].level < settings.maxLevel &&
+            cells[i].varies(settings.error, static_cast<float>(beside)))
           split(source, i);
       return;
     }
@@ -517,7 +529,7 @@ struct TreeBuilder::Scratch {
   template <class Source>
   void buildUniform(const Source& source, DirectionDomain over, const TreeSettings& how,
                     DirectionalTree& tree) {
-    clear(over, how);
+    clear(over, how, 0);
     const int level = std::min(settings.maxLevel, DirectionalTree::kMaxUniformLevel);
     const LobeSet all = allOf(source);
     cornerValues.clear();
@@ -528,10 +540,11 @@ struct TreeBuilder::Scratch {
   }
 
   template <class Source>
-  void build(const Source& source, DirectionDomain over, const TreeSettings& how, DirectionalTree& tree) {
+  void build(const Source& source, DirectionDomain over, const TreeSettings& how, DirectionalTree& tree,
+             double otherLight = 0) {
     if (how.basis == TreeSettings::Basis::uniform) return buildUniform(source, over, how, tree);
-    begin(source, over, how);
-    refine(source);
+    begin(source, over, how, otherLight);
+    if (!faint(source)) refine(source);
     finish(tree);
   }
 
@@ -565,9 +578,10 @@ double TreeBuilder::estimatedError() const {
   return std::sqrt(std::max(s.error, 0.0) / std::max(display ? double(glsl::pi) : s.power, 1e-300));
 }
 
-void TreeBuilder::build(const GlossyLobes& lobes, const TreeSettings& settings, DirectionalTree& tree) {
+void TreeBuilder::build(const GlossyLobes& lobes, const TreeSettings& settings, DirectionalTree& tree,
+                        float beside) {
   if (lobes.size() == 0) return tree.clear();
-  scratch_->build(LobeSource{lobes}, DirectionDomain::hemisphere, settings, tree);
+  scratch_->build(LobeSource{lobes}, DirectionDomain::hemisphere, settings, tree, double(beside));
   if (lobes.fluxKnown()) scaleToFlux(tree, lobes.flux());
 }
 
@@ -581,9 +595,10 @@ void TreeBuilder::pull(std::span<const TreePart> parts, const glsl::Frame& frame
   tree.clear();
   float area = 0;
   bool same = true, dark = true;
-  glm::vec3 flux(0);
+  glm::vec3 flux(0), diffuse(0);
   for (const TreePart& part : parts) {
     area += part.area;
+    diffuse += part.area * part.diffuse;
     flux += part.area * part.tree->flux();
     if (part.tree->empty()) continue;
     dark = false;
@@ -594,7 +609,8 @@ void TreeBuilder::pull(std::span<const TreePart> parts, const glsl::Frame& frame
     for (const TreePart& part : parts) tree.add(*part.tree, part.area / area);
     return;
   }
-  scratch_->build(SurfaceSource{{}, parts, frame, area}, DirectionDomain::hemisphere, settings, tree);
+  scratch_->build(SurfaceSource{{}, parts, frame, area}, DirectionDomain::hemisphere, settings, tree,
+                  double(glsl::luminance(diffuse / area)));
   scaleToFlux(tree, flux / area);
 }
 

@@ -51,8 +51,10 @@ class LIMN_API TreeBuilder {
   TreeBuilder(TreeBuilder&&) noexcept;
   TreeBuilder& operator=(TreeBuilder&&) noexcept;
 
-  /// Builds the tree of the lobes over the hemisphere, with their flux exactly where it is known.
-  void build(const GlossyLobes& lobes, const TreeSettings& settings, DirectionalTree& tree);
+  /// Builds the tree of the lobes over the hemisphere, with their flux exactly where it is known. Errors are
+  /// relative to this light and what leaves `beside` it, the same in all directions (luminance, W/(sr m^2)):
+  /// the gloss of bright paint needs fewer cells than that of metal.
+  void build(const GlossyLobes& lobes, const TreeSettings& settings, DirectionalTree& tree, float beside = 0);
 
   using Function = std::function<glm::vec3(const glm::vec3& direction)>;
   /// Builds the tree of a function of unit directions.
@@ -60,8 +62,8 @@ class LIMN_API TreeBuilder {
              DirectionalTree& tree);
 
   /// Builds the radiance that stands for all parts of a surface whose normals about agree: its flux is
-  /// theirs. `frame`: of the result; diffuse radiance is left out. Parts in that same frame give their cells,
-  /// of others the light (times its cosine) is sampled again.
+  /// theirs. `frame`: of the result; diffuse radiance is left out, but counts for errors. Parts in that same
+  /// frame give their cells, of others the light (times its cosine) is sampled again.
   void pull(std::span<const TreePart> parts, const glsl::Frame& frame, const TreeSettings& settings,
             DirectionalTree& tree);
   /// Builds the intensity of a cluster, J(w) = sum A L(w) (n.w)+ over surfaces plus that of clusters in it,

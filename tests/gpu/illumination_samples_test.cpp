@@ -1,8 +1,6 @@
 // What illumination samples promise beyond what every technique does.
-#include <algorithm>
 #include <cstdio>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,14 +13,6 @@ namespace {
 
 class IlluminationSamplesTest : public RenderTest {
  protected:
-  void SetUp() override {
-    RenderTest::SetUp();
-    if (!std::ranges::any_of(registry().all(), [](const TechniquePlugin* plugin) {
-          return std::string_view(plugin->info->name) == "illumination_samples";
-        }))
-      GTEST_SKIP() << "illumination_samples is not built";
-  }
-
   using Values = std::vector<std::pair<std::string, std::string>>;
 
   static Image indirect(render::Renderer& renderer, const Values& values) {
