@@ -2,7 +2,7 @@
 // reflects them by the whole BRDF.
 //
 // Define SAMPLE_TOTALS 1 for what all samples would bring, were they seen; SAMPLE_PARTS and MEDIUM: as in sampled_pixel.glsl.
-// SAMPLE_FADE 1: only the first active_samples count, the last of them in part.
+// SAMPLE_FADE 1: a picture lies between those of two numbers of samples, both prefixes of all; share_of_more is of the larger one.
 #ifndef LIMN_ENVIRONMENT_SAMPLES_GLSL
 #define LIMN_ENVIRONMENT_SAMPLES_GLSL
 #include "glsl/shadow/sampled_pixel.glsl"
@@ -11,13 +11,30 @@
 layout(std430) readonly buffer EnvironmentSamples { EnvironmentSample environment_samples[]; };
 
 #if SAMPLE_FADE
-uniform float active_samples;
+#define SAMPLE_LEVELS 2
+uniform int fewer_samples;
+uniform int more_samples;
+uniform float share_of_more;
+#else
+#define SAMPLE_LEVELS 1
 #endif
 
-// Samples that count.
-float counted_samples() {
+// Number of the samples that a level, below SAMPLE_LEVELS, is the mean of.
+int level_samples(int level) {
 #if SAMPLE_FADE
-  return min(active_samples, float(total_samples));
+  return min(level == 0 ? fewer_samples : more_samples, total_samples);
+#else
+  return total_samples;
+#endif
+}
+
+// The first sample of this batch that the level is without, counted in the batch.
+int level_end(int level) { return clamp(level_samples(level) - first_sample, 0, batch_samples); }
+
+// How many samples tell what a coat's mirror sees.
+float mirror_samples() {
+#if SAMPLE_FADE
+  return mix(float(fewer_samples), float(more_samples), share_of_more);
 #else
   return float(total_samples);
 #endif
@@ -34,8 +51,8 @@ SampleSums no_samples() {
   return SampleSums(ReflectedParts(vec3(0.0), vec3(0.0)), ReflectedParts(vec3(0.0), vec3(0.0)), 0.0, 0.0);
 }
 
-// Adds the samples of this batch.
-void add_samples(SampledPixel p, inout SampleSums sums) {
+// Adds the samples first .. end - 1 of this batch.
+void add_samples(SampledPixel p, int first, int end, inout SampleSums sums) {
   VisibilityQuery q;
   q.position = p.position;
   q.normal = p.surface.geometric_normal;
@@ -43,21 +60,13 @@ void add_samples(SampledPixel p, inout SampleSums sums) {
 #if (MATERIAL_MODELS & 32) != 0
   vec3 mirror = 2.0 * dot(p.surface.normal, p.to_viewer) * p.surface.normal - p.to_viewer;
   // How much of the mirrored light's visibility a sample stands for: more samples, narrower. Its ends keep sums above 0 in floats.
-  float sharpness = clamp(0.25 * counted_samples(), 1.0, 40.0);
+  float sharpness = clamp(0.25 * mirror_samples(), 1.0, 40.0);
 #endif
-  for (int i = 0; i < batch_samples; ++i) {
+  for (int i = first; i < end; ++i) {
     EnvironmentSample light = environment_samples[first_sample + i];
     if (!above_horizon(p, light.direction)) continue;
-#if SAMPLE_FADE
-    float counted = clamp(active_samples - float(first_sample + i), 0.0, 1.0);
-    if (counted == 0.0) break;
-    light.irradiance *= counted;
-#endif
 #if (MATERIAL_MODELS & 32) != 0
     float weight = exp(sharpness * (dot(mirror, light.direction) - 1.0));
-#if SAMPLE_FADE
-    weight *= counted;
-#endif
     sums.mirror_all += weight;
 #endif
 #if SAMPLE_TOTALS

@@ -30,8 +30,8 @@ void main() {
   sums.mirror_all = mirror.x;
   sums.mirror_seen = mirror.y;
 #endif
-  add_samples(p, sums);
-  vec3 light = sums.seen.diffuse / counted_samples();
+  add_samples(p, 0, batch_samples, sums);
+  vec3 light = sums.seen.diffuse / float(total_samples);
 #if (MATERIAL_MODELS & 32) != 0
 #if SAMPLES_LAST
   if (is_coated(p)) light += mirrored_environment(p) * mirror_share(sums, 0.0);

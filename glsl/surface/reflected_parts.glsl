@@ -22,6 +22,12 @@ LIMN_FN ReflectedParts scaled_parts(ReflectedParts p, vec3 factor) {
   return p;
 }
 
+LIMN_FN ReflectedParts mixed_parts(ReflectedParts a, ReflectedParts b, float share) {
+  a.diffuse = mix(a.diffuse, b.diffuse, share);
+  a.lobe = mix(a.lobe, b.lobe, share);
+  return a;
+}
+
 // The share that is hidden, [0, 1], where `seen` is left of `all`; where there is nothing to be hidden, `otherwise`.
 LIMN_FN float hidden_share(float seen, float all, float otherwise) {
   return all > 1e-37f ? 1.0f - min(seen / all, 1.0f) : otherwise;

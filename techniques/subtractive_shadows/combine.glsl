@@ -37,6 +37,13 @@ ReflectedParts surface_colours(SampledPixel p) {
 #endif
 }
 
+// Of a picture that fades into one with other blocks, this one's share.
+#if SAMPLE_FADE
+uniform float picture_share;
+#else
+const float picture_share = 1.0;
+#endif
+
 // The shadowed light of the pixel; unshadowed: its U; values: of the shadow buffer.
 vec3 shadowed_light(SampledPixel p, ReflectedParts unshadowed, ReflectedParts values) {
 #if COMBINE_BY_RATIO

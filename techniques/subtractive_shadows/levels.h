@@ -33,4 +33,18 @@ inline std::vector<Level> levelsBelow(const Level& best) {
   return levels;
 }
 
+/// Says what a frame shows: a picture between those of two levels, or of one level twice.
+struct Fade {
+  Level fewer, more;
+  float shareOfMore = 0;
+};
+
+/// Returns what a frame at `position` on the way to level `target` shows. On the way `more` is the level
+/// above even where none of it is shown yet.
+inline Fade fadeAt(const std::vector<Level>& levels, double position, int target) {
+  const auto lower = static_cast<size_t>(position);
+  const size_t upper = position == target ? lower : std::min(lower + 1, levels.size() - 1);
+  return {levels[lower], levels[upper], static_cast<float>(position - static_cast<double>(lower))};
+}
+
 }  // namespace limn::subtractive_shadows

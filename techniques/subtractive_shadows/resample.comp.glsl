@@ -21,5 +21,5 @@ void main() {
 #endif
   SampledPixel p = sampled_pixel(pixel, depth);
   vec3 light = shadowed_light(p, unshadowed_light(pixel, p), shadows);
-  imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(light, 0.0));
+  imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(picture_share * light, 0.0));
 }

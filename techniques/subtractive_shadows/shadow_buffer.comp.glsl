@@ -5,8 +5,8 @@
 #include "glsl/surface/block_items.glsl"
 
 #if !SAMPLES_LAST || !SAMPLES_FIRST
-// What a batch hands on to the next, shares of the mean over all samples; the sums of weights for mirrors in the last lanes of
-// seen_sums and seen_lobe_sums.
+// What a batch hands on to the next, shares of the mean over a level's samples, the second level's below the first one's; the
+// sums of weights for mirrors in the last lanes of seen_sums and seen_lobe_sums.
 layout(rgba32f) uniform image2D seen_sums;
 #if SAMPLE_TOTALS
 layout(rgba32f) uniform image2D all_sums;
@@ -18,34 +18,42 @@ layout(rgba32f) uniform image2D all_lobe_sums;
 #endif
 #endif
 
-SampleSums load_sums(ivec2 item) {
+ivec2 sums_place(ivec2 item, int level) { return item + ivec2(0, level * (imageSize(seen_sums).y / SAMPLE_LEVELS)); }
+#endif
+
+// What earlier batches hand on.
+SampleSums earlier_sums(ivec2 item, int level) {
   SampleSums sums = no_samples();
-  vec4 seen = imageLoad(seen_sums, item);
+#if !SAMPLES_FIRST
+  ivec2 place = sums_place(item, level);
+  vec4 seen = imageLoad(seen_sums, place);
   sums.seen.diffuse = seen.rgb;
   sums.mirror_seen = seen.a;
 #if SAMPLE_TOTALS
-  sums.all.diffuse = imageLoad(all_sums, item).rgb;
+  sums.all.diffuse = imageLoad(all_sums, place).rgb;
 #endif
 #if SAMPLE_PARTS
-  vec4 lobe = imageLoad(seen_lobe_sums, item);
+  vec4 lobe = imageLoad(seen_lobe_sums, place);
   sums.seen.lobe = lobe.rgb;
   sums.mirror_all = lobe.a;
 #if SAMPLE_TOTALS
-  sums.all.lobe = imageLoad(all_lobe_sums, item).rgb;
+  sums.all.lobe = imageLoad(all_lobe_sums, place).rgb;
+#endif
 #endif
 #endif
   return sums;
 }
 
-void store_sums(ivec2 item, SampleSums sums) {
-  imageStore(seen_sums, item, vec4(sums.seen.diffuse, sums.mirror_seen));
+#if !SAMPLES_LAST
+void store_sums(ivec2 place, SampleSums sums) {
+  imageStore(seen_sums, place, vec4(sums.seen.diffuse, sums.mirror_seen));
 #if SAMPLE_TOTALS
-  imageStore(all_sums, item, vec4(sums.all.diffuse, 0.0));
+  imageStore(all_sums, place, vec4(sums.all.diffuse, 0.0));
 #endif
 #if SAMPLE_PARTS
-  imageStore(seen_lobe_sums, item, vec4(sums.seen.lobe, sums.mirror_all));
+  imageStore(seen_lobe_sums, place, vec4(sums.seen.lobe, sums.mirror_all));
 #if SAMPLE_TOTALS
-  imageStore(all_lobe_sums, item, vec4(sums.all.lobe, 0.0));
+  imageStore(all_lobe_sums, place, vec4(sums.all.lobe, 0.0));
 #endif
 #endif
 }
@@ -66,7 +74,7 @@ vec3 without_colour(vec3 light, vec3 colour) {
   return mix(vec3(0.0), light / max(colour, vec3(1e-6)), greaterThan(colour, vec3(0.0)));
 }
 
-// From the means over all samples.
+// From the means over a level's samples.
 ReflectedParts shadow_values(SampledPixel p, SampleSums sums) {
   ReflectedParts seen = sums.seen, all = sums.all, values;
 #if COMBINE == COMBINE_RATIO
@@ -93,28 +101,34 @@ void main() {
   if (depth == 0.0) return;
   SampledPixel p = sampled_pixel(pixel, depth);
   if ((p.surface.flags & gbuffer_flag_specular) != 0u) return;
-  SampleSums sums = no_samples();
-  add_samples(p, sums);
-  vec3 share = vec3(1.0 / counted_samples());
-  sums.seen = scaled_parts(sums.seen, share);
-  sums.all = scaled_parts(sums.all, share);
-#if !SAMPLES_FIRST
-  SampleSums earlier = load_sums(item);
-  add_parts(sums.seen, earlier.seen);
-  add_parts(sums.all, earlier.all);
-  sums.mirror_all += earlier.mirror_all;
-  sums.mirror_seen += earlier.mirror_seen;
-#endif
+  SampleSums here = no_samples();
+  ReflectedParts shadows = ReflectedParts(vec3(0.0), vec3(0.0));
+  int first = 0;
+  for (int level = 0; level < SAMPLE_LEVELS; ++level) {
+    int end = level_end(level);
+    add_samples(p, first, end, here);
+    first = end;
+    SampleSums sums = earlier_sums(item, level);
+    vec3 share = vec3(1.0 / float(level_samples(level)));
+    add_parts(sums.seen, scaled_parts(here.seen, share));
+    add_parts(sums.all, scaled_parts(here.all, share));
+    sums.mirror_all += here.mirror_all;
+    sums.mirror_seen += here.mirror_seen;
 #if !SAMPLES_LAST
-  store_sums(item, sums);
-#elif BLOCK_SIDE > 1
-  ReflectedParts shadows = shadow_values(p, sums);
+    store_sums(sums_place(item, level), sums);
+#elif SAMPLE_FADE
+    shadows = mixed_parts(shadows, shadow_values(p, sums), level == 0 ? 1.0 : share_of_more);
+#else
+    shadows = shadow_values(p, sums);
+#endif
+  }
+#if SAMPLES_LAST && BLOCK_SIDE > 1
   imageStore(values, item, vec4(shadows.diffuse, 0.0));
 #if SAMPLE_PARTS
   imageStore(lobe_values, item, vec4(shadows.lobe, 0.0));
 #endif
-#else
-  vec3 light = shadowed_light(p, unshadowed_light(pixel, p), shadow_values(p, sums));
-  imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(light, 0.0));
+#elif SAMPLES_LAST
+  vec3 light = shadowed_light(p, unshadowed_light(pixel, p), shadows);
+  imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(picture_share * light, 0.0));
 #endif
 }

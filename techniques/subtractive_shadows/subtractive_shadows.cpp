@@ -26,6 +26,7 @@ namespace {
 using namespace limn;
 using frame::Access;
 using frame::TextureHandle;
+using subtractive_shadows::Fade;
 using subtractive_shadows::Level;
 using subtractive_shadows::RadianceCache;
 
@@ -73,8 +74,7 @@ constexpr Parameter kParameters[] = {
         .logScale(),
     real("frame_time", 0, {0, 1e4}, "ms",
          "Time that a frame may take: lights become fewer, and blocks larger where that is not enough, until "
-         "it "
-         "does; 0: always all lights, as of regions"),
+         "it does; 0: always all lights, as of regions"),
     shadow::shadowMapSizeParameter(512),
     shadow::shadowMapFitParameter(),
     shadow::biasParameter(),
@@ -97,10 +97,12 @@ constexpr StressCase kStress[] = {
 
 class SubtractiveShadows : public Technique {
   shadow::EnvironmentSamples samples_, unshadowed_;
+  frame::BufferHandle samplesHandle_, unshadowedHandle_;
   RadianceCache cache_;
   std::vector<Level> levels_;
   const FrameBudget* budget_ = nullptr;  ///< null: all lights, whatever it takes
-  int built_ = 0;                        ///< index of the level that the graph is built for
+  int lights_ = 0;                       ///< that the graph is built for
+  Fade built_;                           ///< whose blocks the graph has
 
   TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                           const TermRequest& request) override {
@@ -110,41 +112,63 @@ class SubtractiveShadows : public Technique {
       return request.target;
     }
     const ParameterValues& p = inputs.parameters;
-    chooseLevel(inputs);
-    const Level& level = levels_[static_cast<size_t>(built_)];
-    takeSamples(environment, inputs, level.lights);
-    if (p.choice("combine") == add && level.block == 1 && !budget_)
+    chooseLevels(inputs);
+    takeSamples(environment, inputs, lights_);
+    if (p.choice("combine") == add && built_.more.block == 1 && !budget_)
       return shadow::addSampledEnvironment(graph, inputs, info.name, samples_, request.target);
-    return Passes(graph, inputs, *this, level.block, findUnshadowed(graph, inputs)).add(request.target);
+    const Unshadowed unshadowed = findUnshadowed(graph, inputs);
+    samplesHandle_ = graph.importBuffer("samples of the environment", samples_.buffer());
+    if (unshadowed == lights)
+      unshadowedHandle_ = graph.importBuffer("samples of the unshadowed light", unshadowed_.buffer());
+    const TextureHandle target =
+        Passes(graph, inputs, *this, built_.more.block, unshadowed).add(request.target);
+    if (built_.fewer.block == built_.more.block) return target;
+    return Passes(graph, inputs, *this, built_.fewer.block, unshadowed).add(target);
   }
 
-  void chooseLevel(const TechniqueInputs& inputs) {
+  void chooseLevels(const TechniqueInputs& inputs) {
     const ParameterValues& p = inputs.parameters;
     const Level best{p.integer("lights"), p.integer("block")};
     const double time = p.choice("sampling") == importance ? p.real("frame_time") : 0;
     levels_ = time > 0 ? subtractive_shadows::levelsBelow(best) : std::vector{best};
-    built_ = static_cast<int>(levels_.size()) - 1;
+    lights_ = best.lights;
+    built_ = {best, best};
     if (!(time > 0)) return;
     std::vector<double> work;
     for (const Level& level : levels_) work.push_back(level.work());
     budget_ = &inputs.service<FrameBudgetService>().request(info.name, time, work);
-    built_ = budget_->dearest();
+    lights_ = neededLights();
+    built_ = fade();
   }
 
-  /// Maps are kept while lights fade out, and there before lights fade in.
+  int neededLights() const { return levels_[static_cast<size_t>(budget_->dearest())].lights; }
+  Fade fade() const { return subtractive_shadows::fadeAt(levels_, budget_->position(), budget_->target()); }
+
+  /// Maps are kept while lights fade out, and there before lights fade in; of blocks there are both sizes
+  /// while one fades into the other.
   bool update(const scene::Pose&) override {
     if (!budget_) return false;
+    const Fade now = fade();
+    if (now.fewer.block != built_.fewer.block || now.more.block != built_.more.block) return true;
     const bool settled = budget_->position() == budget_->target();
-    return budget_->dearest() > built_ || (settled && budget_->dearest() < built_);
+    return neededLights() > lights_ || (settled && neededLights() < lights_);
   }
 
-  /// Returns how many of the samples count in the next frame, the last of them in part.
-  float activeSamples() const {
-    const double position = std::min(budget_->position(), static_cast<double>(built_));
-    const auto lower = static_cast<size_t>(position);
-    const size_t upper = std::min(lower + 1, levels_.size() - 1);
-    return static_cast<float>(
-        std::lerp(levels_[lower].lights, levels_[upper].lights, position - static_cast<double>(lower)));
+  /// Sets what glsl/shadow/environment_samples.glsl fades by; sums of one batch alone know nothing of shares.
+  void setLights(gpu::Program& program, bool shares) const {
+    if (!budget_) return;
+    const Fade now = fade();
+    program.set("fewer_samples", now.fewer.lights);
+    program.set("more_samples", now.more.lights);
+    if (shares) program.set("share_of_more", now.shareOfMore);
+  }
+
+  /// Sets the share of a picture with blocks of that side.
+  void setPictureShare(gpu::Program& program, int block) const {
+    if (!budget_) return;
+    const Fade now = fade();
+    const bool alone = now.fewer.block == now.more.block;
+    program.set("picture_share", alone ? 1 : block == now.more.block ? now.shareOfMore : 1 - now.shareOfMore);
   }
 
   void takeSamples(const scene::EnvironmentLight& environment, const TechniqueInputs& inputs, int count) {
@@ -192,24 +216,23 @@ class SubtractiveShadows : public Technique {
 
     TextureHandle add(TextureHandle target) {
       const bool everyPixel = blocks_.side() == 1;
-      const frame::BufferHandle buffer =
-          graph_.importBuffer("samples of the environment", technique_.samples_.buffer());
       TechniqueInputs items = inputs_;
       items.size = blocks_.grid();
       for (const shadow::SampleBatch& batch :
            shadow::sampleBatches(technique_.samples_, inputs_.parameters)) {
         shadow::VisibilityPass pass =
-            shadow::environmentSamplePass(inputs_, info.name, technique_.samples_, buffer, batch,
-                                          "techniques/subtractive_shadows/shadow_buffer.comp.glsl");
+            shadow::environmentSamplePass(inputs_, info.name, technique_.samples_, technique_.samplesHandle_,
+                                          batch, "techniques/subtractive_shadows/shadow_buffer.comp.glsl");
         pass.name = "shadow buffer";
         batch.defineOrder(pass.program.defines);
         define(pass.program.defines);
-        pass.program.defines["SAMPLE_FADE"] = technique_.budget_ ? "1" : "0";
         pass.bind = [&technique = technique_, bind = std::move(pass.bind),
-                     samples = everyPixel && batch.isLast() ? lobeSamples() : 0](frame::PassContext& context,
-                                                                                 gpu::Program& program) {
+                     light = everyPixel && batch.isLast(), shares = coats_ || batch.isLast(),
+                     samples = lobeSamples()](frame::PassContext& context, gpu::Program& program) {
           bind(context, program);
-          if (technique.budget_) program.set("active_samples", technique.activeSamples());
+          technique.setLights(program, shares);
+          if (!light) return;
+          technique.setPictureShare(program, 1);
           if (samples > 0) program.set("brdf_samples", samples);
         };
         pass.declare = [&, declare = std::move(pass.declare)](frame::PassBuilder& builder) {
@@ -244,15 +267,20 @@ class SubtractiveShadows : public Technique {
     /// Shares lie in [0, 1]; light knows no bound.
     GLenum valueFormat() const { return byRatio() ? GL_RGBA16 : GL_RGBA32F; }
 
-    TextureHandle createItems(const char* name, GLenum format) {
-      return graph_.createTexture(name,
-                                  {.format = format, .width = blocks_.grid().x, .height = blocks_.grid().y});
+    TextureHandle createItems(const char* name, GLenum format, int levels = 1) {
+      return graph_.createTexture(
+          name, {.format = format, .width = blocks_.grid().x, .height = levels * blocks_.grid().y});
+    }
+    /// Between two numbers of lights both have their sums.
+    TextureHandle createSums(const char* name) {
+      return createItems(name, GL_RGBA32F, technique_.budget_ ? 2 : 1);
     }
 
     void define(std::map<std::string, std::string>& defines) const {
       blocks_.define(defines);
       defines["COMBINE"] = std::to_string(combine_);
       defines["DEMODULATE"] = demodulated() ? "1" : "0";
+      defines["SAMPLE_FADE"] = technique_.budget_ ? "1" : "0";
       defines["UNSHADOWED"] = std::to_string(unshadowed_);
       defines["VALUE_FORMAT"] = byRatio() ? "rgba16" : "rgba32f";
     }
@@ -262,7 +290,7 @@ class SubtractiveShadows : public Technique {
       if (batch.isFirst() && batch.isLast()) return;
       constexpr const char* why = "sums over earlier samples";
       const auto sums = [&](TextureHandle& texture, const char* name) {
-        if (batch.isFirst()) texture = createItems(name, GL_RGBA32F);
+        if (batch.isFirst()) texture = createSums(name);
         if (batch.isLast())
           builder.read(texture, Access::imageLoad, name, why);
         else
@@ -280,7 +308,7 @@ class SubtractiveShadows : public Technique {
                  const shadow::SampleBatch& batch) {
       pass.image = "seen_sums";
       pass.accumulate = !batch.isFirst();
-      if (batch.isFirst()) seenSums_ = createItems("seen_sums", GL_RGBA32F);
+      if (batch.isFirst()) seenSums_ = createSums("seen_sums");
       seenSums_ = shadow::addVisibilityPass(graph_, items, seenSums_, std::move(pass));
     }
 
@@ -291,8 +319,8 @@ class SubtractiveShadows : public Technique {
         builder.read(maps.radiance(), Access::sampled, "environment_map", "what coats mirror");
       if (combine_ == Combine::add) return;
       if (unshadowed_ == lights)
-        builder.read(graph_.importBuffer("samples of the unshadowed light", technique_.unshadowed_.buffer()),
-                     Access::storageLoad, "UnshadowedSamples", "light without shadows");
+        builder.read(technique_.unshadowedHandle_, Access::storageLoad, "UnshadowedSamples",
+                     "light without shadows");
       else
         maps.readReflected(builder, inputs_.handles.modelKinds);
       if (unshadowed_ == brdfSamples)
@@ -324,10 +352,11 @@ class SubtractiveShadows : public Technique {
       surfaces.define(desc.defines);
       medium.define(desc.defines);
       const auto program = builder.program(std::move(desc));
-      builder.execute([program, blocks = blocks_, samples = lobeSamples(),
+      builder.execute([&technique = technique_, program, blocks = blocks_, samples = lobeSamples(),
                        size = inputs_.size](frame::PassContext& context) {
         gpu::Program& used = context.use(program);
         blocks.bind(used);
+        technique.setPictureShare(used, blocks.side());
         if (samples > 0) used.set("brdf_samples", samples);
         context.dispatch(size.x, size.y, 1, 8, 8);
       });

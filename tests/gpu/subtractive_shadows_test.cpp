@@ -227,5 +227,47 @@ TEST_F(SubtractiveShadowsTest, LevelsBeginAtTheBestAndEndAtTheLeast) {
   EXPECT_LT(rmse(renderer.read(), least), 1e-6);
 }
 
+/// On the way from one level to the next, lights or blocks, each of eight frames changes the picture by an
+/// eighth of what the level changes, whichever pixels tell the lights apart, and whichever batch they are in.
+/// Light that is subtracted changes by an eighth before negative light is cut off, and what coats see changes
+/// with the width of their mirrors besides.
+TEST_F(SubtractiveShadowsTest, NoFrameChangesMoreThanItsShareOfALevel) {
+  constexpr int kFramesOfLevel = 8;
+  constexpr std::pair<const char*, const char*> kLevels[] = {
+      {"14", "2"}, {"9", "2"}, {"8", "2"}, {"8", "4"}, {"8", "8"}};
+  const auto fading = [&](const std::string& name, const Values& common, double clamped = 1) {
+    const scene::Scene scene = lit(asset(name), sky(), 0);
+    render::Renderer renderer(device(), scene);
+    const auto with = [&](const std::pair<const char*, const char*>& level, const char* time) {
+      Values values{
+          {"shadow_map_size", "128"}, {"lights", level.first}, {"block", level.second}, {"frame_time", time}};
+      values.insert(values.end(), common.begin(), common.end());
+      return settings(48, 36, Term::direct, {shadows(values)});
+    };
+    std::vector<Image> levels;
+    for (const auto& level : kLevels) levels.push_back(picture(renderer, with(level, "0")));
+    const double rounding = 5e-5 * largest(levels.front());
+    size_t level = 0;
+    double most = 0;
+    renderer.configure(with(kLevels[0], "0.001"));
+    Image before = levels.front();
+    for (int frame = 0; frame < 100 && level + 1 < levels.size(); ++frame) {
+      renderer.render();
+      Image now = renderer.read();
+      const double whole = largestDifference(levels[level], levels[level + 1]);
+      EXPECT_LT(largestDifference(now, before), clamped * whole / kFramesOfLevel + rounding)
+          << name << " from level " << level << " at frame " << frame;
+      most = std::max(most, largestDifference(now, before) / whole);
+      if (largestDifference(now, levels[level + 1]) < rounding) ++level;
+      before = std::move(now);
+    }
+    EXPECT_EQ(level + 1, levels.size()) << name;
+    return std::to_string(most);
+  };
+  RecordProperty("subtract", fading("balls", {{"combine", "subtract"}}, 2));
+  RecordProperty("ratios, in batches", fading("balls", {{"combine", "ratio_split"}, {"memory", "1"}}));
+  RecordProperty("coats", fading("fresnel_spheres", {{"combine", "ratio_split"}}, 1.2));
+}
+
 }  // namespace
 }  // namespace limn

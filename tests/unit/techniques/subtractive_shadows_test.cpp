@@ -15,5 +15,24 @@ TEST(SubtractiveLevels, GoFromFewLightsAndLargeBlocksToAll) {
   }
 }
 
+TEST(SubtractiveLevels, FadeOnTheWayFromOneToTheNext) {
+  const auto levels = levelsBelow({25, 4});
+  const int last = static_cast<int>(levels.size()) - 1;
+  for (int target : {0, last}) {
+    const Fade settled = fadeAt(levels, target, target);
+    EXPECT_EQ(settled.fewer, levels[static_cast<size_t>(target)]);
+    EXPECT_EQ(settled.more, settled.fewer);
+    EXPECT_EQ(settled.shareOfMore, 0);
+  }
+  const Fade lights = fadeAt(levels, 4.25, 0);
+  EXPECT_EQ(lights.fewer, (Level{17, 4}));
+  EXPECT_EQ(lights.more, (Level{25, 4}));
+  EXPECT_EQ(lights.shareOfMore, 0.25f);
+  // What is gone to or left has its blocks from the first frame to the last one.
+  EXPECT_EQ(fadeAt(levels, 1, 2).more, levels[2]);
+  EXPECT_EQ(fadeAt(levels, 1, 0).more, levels[2]);
+  EXPECT_EQ(fadeAt(levels, last, 0).more, levels.back());
+}
+
 }  // namespace
 }  // namespace limn::subtractive_shadows
