@@ -222,6 +222,7 @@ bool GpuScene::update(const Pose& pose, const CameraPose& camera, glm::ivec2 siz
 
   Bounds seen = pose.bounds;
   seen.add(s.bounds);
+  glsl::FrameBlock before = s.frame;
   s.camera = camera;
   s.nearPlane = fitDepthRange(camera, seen).near;
   setCamera(s.frame, camera, seen, size.x, size.y);
@@ -235,7 +236,8 @@ bool GpuScene::update(const Pose& pose, const CameraPose& camera, glm::ivec2 siz
   s.frame.frame_index = frameIndex;
   setMedium(s.frame, s.scene.medium, pose.bounds);
   s.frameBuffer.update(0, &s.frame, sizeof(s.frame));
-  s.touch(&SceneHandles::frame);
+  before.frame_index = frameIndex;  // what is kept from frame to frame does not depend on it
+  if (std::memcmp(&before, &s.frame, sizeof(before)) != 0) s.touch(&SceneHandles::frame);
   return !first && (deformedBefore != s.deformedPrimitives.size() || lightsBefore != s.lights.size());
 }
 

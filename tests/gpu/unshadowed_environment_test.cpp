@@ -207,6 +207,27 @@ TEST_F(UnshadowedEnvironmentTest, TheCacheIsExactForDistantViews) {
   EXPECT_GT(error(3), 2 * error(100));
 }
 
+TEST_F(UnshadowedEnvironmentTest, TheCacheIsKeptUntilTheViewChanges) {
+  const scene::Scene scene = floorOf(metal(153 / 255.f), sky());
+  render::Renderer renderer(device(), scene);
+  render::Settings kept = settings(
+      kWidth, kHeight, Term::direct,
+      {technique("subtractive_shadows", {{"unshadowed", "cache"}, {"lights", "1"}, {"block", "2"}})});
+  kept.dynamic = false;
+  renderer.configure(kept);
+  const auto state = [&] {
+    renderer.render();
+    for (const frame::PassReport& row : renderer.explain())
+      if (row.name == "radiance cache") return row.state;
+    return frame::PassState::leftOut;
+  };
+  EXPECT_EQ(state(), frame::PassState::run);
+  EXPECT_EQ(state(), frame::PassState::cached);
+  renderer.setCamera(scene::lookAt({0, 3, 1}, {0, 0, 0}, 1));
+  EXPECT_EQ(state(), frame::PassState::run);
+  EXPECT_EQ(state(), frame::PassState::cached);
+}
+
 TEST_F(UnshadowedEnvironmentTest, MaterialsThatDoNotFitTheCacheHaveTheLightOfFilteredMaps) {
   scene::Scene scene = floorOf(metal(51 / 255.f), sky());
   scene.materials.insert(scene.materials.begin(), 128, metal(51 / 255.f));
