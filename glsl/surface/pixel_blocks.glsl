@@ -9,8 +9,8 @@
 #include "glsl/numeric/language.glsl"
 LIMN_BEGIN
 
-// Below this sum of weights a pixel is alone.
-LIMN_CONST float block_least_weight = 1e-3f;
+// Below this sum of weights, 4 where all surfaces are alike, a pixel is alone: limbs and leaves narrower than blocks are.
+LIMN_CONST float block_least_weight = 0.3f;
 
 // Blocks that cover a picture of `size` pixels.
 LIMN_FN ivec2 block_count(ivec2 size, int side) { return (size + ivec2(side - 1)) / side; }

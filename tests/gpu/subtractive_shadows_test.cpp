@@ -269,5 +269,43 @@ TEST_F(SubtractiveShadowsTest, NoFrameChangesMoreThanItsShareOfALevel) {
   RecordProperty("coats", fading("fresnel_spheres", {{"combine", "ratio_split"}}, 1.2));
 }
 
+/// Light comes from the same directions wherever the camera is: as it moves by a pixel a frame, the shadows
+/// of 8 lights lie where they were, and those of blocks nearly so.
+TEST_F(SubtractiveShadowsTest, ShadowsStandStillWhereTheCameraMoves) {
+  constexpr int kWidth = 64, kHeight = 48;
+  scene::Scene scene = lit(floor(), sky(), 0);
+  scene::Node slab;  // above the camera
+  slab.mesh = 0;
+  slab.transform.translation = {0.5f, 5, 0.5f};
+  slab.transform.scale = vec3(0.02f);
+  scene.nodes.push_back(slab);
+  render::Renderer renderer(device(), scene);
+  const auto change = [&](const char* block) {
+    renderer.configure(
+        settings(kWidth, kHeight, Term::direct, {shadows({{"lights", "8"}, {"block", block}})}));
+    scene::CameraPose camera = scene::evaluate(scene, 0).cameras.at(0);
+    const float pixel = 2 * 4 * std::tan(0.5f * camera.yfov) / static_cast<float>(kHeight);
+    Image before;
+    double squares = 0, light = 0;
+    for (int frame = 0; frame <= 4; ++frame) {
+      renderer.setCamera(camera);
+      renderer.render();
+      const Image now = renderer.read();
+      for (int y = 0; frame > 0 && y < kHeight; ++y)
+        for (int x = 0; x + 1 < kWidth; ++x) {
+          const double difference = static_cast<double>(now.at(x, y, 1) - before.at(x + 1, y, 1));
+          squares += difference * difference;
+          light += static_cast<double>(now.at(x, y, 1) * now.at(x, y, 1));
+        }
+      before = now;
+      camera.worldToView[3].x -= pixel;
+    }
+    RecordProperty(block, std::to_string(std::sqrt(squares / light)));
+    return std::sqrt(squares / light);
+  };
+  EXPECT_LT(change("1"), 0.005);
+  EXPECT_LT(change("4"), 0.05);
+}
+
 }  // namespace
 }  // namespace limn
