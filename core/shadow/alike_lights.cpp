@@ -24,6 +24,9 @@ void AlikeLights::define(std::map<std::string, std::string>& defines) const {
   defines["SHADOW_PROJECTION"] = std::to_string(layout->projection);
   defines["SHADOW_FACES"] = std::to_string(layout->faces);
   defines["LIGHT_KIND"] = std::to_string(layout->kind);
+  if (layout->parts() == 1) return;
+  defines["LIGHT_PARTS_U"] = std::to_string(layout->partsU);
+  defines["LIGHT_PARTS_V"] = std::to_string(layout->partsV);
 }
 
 void AlikeLights::bind(gpu::Program& program) const {
@@ -49,6 +52,7 @@ void readMaps(frame::PassBuilder& pass, const gpu::Device& device, const ShadowM
       frame::arrayBlock<glsl::ShadowView>(device.limits(), maps.layers, "SHADOW_VIEW_COUNT", defines);
   const Access lights =
       frame::arrayBlock<glsl::ShadowLight>(device.limits(), maps.lightSamples, "SHADOW_LIGHT_COUNT", defines);
+  if (maps.stride > 1) defines["SHADOW_LIGHT_STRIDE"] = std::to_string(maps.stride);
   pass.read(maps.depth, Access::sampled, "shadow_depth", "shadow maps")
       .read(maps.views, views, "ShadowViews", "projections")
       .read(maps.lights, lights, "ShadowLights", "layers of each light");

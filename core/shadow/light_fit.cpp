@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/shadow/private/window_fit.h"
+#include "glsl/light/light_part.glsl"
 #include "glsl/light/light_view.glsl"
 #include "glsl/numeric/geometry.glsl"
 
@@ -193,6 +194,11 @@ vec3 spreadOf(const glsl::Light& light, const Axes& axes, float size) {
   return {half.x / along, half.y / along, 0};
 }
 
+/// The window in the axes of the view backwards.
+MapWindow swapped(const MapWindow& w) {
+  return {{w.low.y, w.low.x}, {w.high.y, w.high.x}, w.near, w.far};
+}
+
 /// What a map is fitted to besides the boxes: null, or what the camera sees, for all points of the light as
 /// far as `spread` says.
 struct ViewFit {
@@ -277,14 +283,8 @@ MapWindow wholeWindow(const glsl::Light& light, const vec3& origin, const Axes& 
   return square(tangent, widened(pyramidRange(origin, axes, count, step, tangent, boxes)));
 }
 
-}  // namespace
-
-std::vector<glm::vec2> samplesOf(const glsl::Light& light, const ShadowMapDesc& desc) {
-  if (desc.samples.empty()) return {glm::vec2(0.5f)};
-  return glsl::light_has_extent(light) ? desc.samples : std::vector<glm::vec2>{glm::vec2(0.5f)};
-}
-
-LightLayout fitLayout(const glsl::Light& light, std::span<const Bounds> boxes, const ShadowMapDesc& desc) {
+/// The layout of a light that is not cut.
+LightLayout fitWhole(const glsl::Light& light, std::span<const Bounds> boxes, const ShadowMapDesc& desc) {
   const uint32_t kind = glsl::light_kind(light);
   if (light.type == glsl::light_directional)
     return {glsl::shadow_orthographic, glsl::shadow_faces_single, kind};
@@ -307,10 +307,10 @@ LightLayout fitLayout(const glsl::Light& light, std::span<const Bounds> boxes, c
   return both ? cube : LightLayout{glsl::shadow_perspective, glsl::shadow_faces_hemicube, kind};
 }
 
-void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayout& layout,
-                 std::span<const Bounds> boxes, const ShadowMapDesc& desc, const VisibleScene* visible,
-                 std::vector<glsl::ShadowView>& views, std::vector<glsl::ShadowLight>& lights) {
-  Writer out{lightIndex, desc.size, views, lights};
+/// Appends the views of a light, or of a part of one, whose perspective views have the window `given`.
+void appendWhole(const glsl::Light& light, const LightLayout& layout, std::span<const Bounds> boxes,
+                 const ShadowMapDesc& desc, const VisibleScene* visible, Writer& out,
+                 const std::optional<MapWindow>& given = {}) {
   const Axes axes = axesOf(light);
   const uint32_t count = glsl::shadow_face_count(layout.faces);
   const std::vector<glm::vec2> samples = samplesOf(light, desc);
@@ -324,7 +324,7 @@ void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayou
   std::optional<MapWindow> window, receivers;
   if (fit.visible != nullptr && perspective) {
     const vec3 origin(light.position);
-    const MapWindow whole = wholeWindow(light, origin, axes, layout, boxes, desc);
+    const MapWindow whole = given ? *given : wholeWindow(light, origin, axes, layout, boxes, desc);
     MapWindow fitted, seen;
     if (fitWindow({origin, axes, true, fit.spread}, *fit.visible, light.own_instance, whole, fitted, seen)) {
       window = fitted;
@@ -347,7 +347,7 @@ void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayou
         out.view(glsl::shadow_paraboloid, origin, faceAxes(axes, face * step), square(1, radial));
       continue;
     }
-    const MapWindow whole = wholeWindow(light, origin, axes, layout, boxes, desc);
+    const MapWindow whole = given ? *given : wholeWindow(light, origin, axes, layout, boxes, desc);
     if (window) {
       const vec3 r = origin - light.position;
       MapWindow own =
@@ -357,10 +357,108 @@ void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayou
       continue;
     }
     for (uint32_t face = 0; face < count; ++face)
-      out.view(glsl::shadow_perspective, origin, faceAxes(axes, face * step), whole);
+      out.view(glsl::shadow_perspective, origin, faceAxes(axes, face * step),
+               face * step == 5 ? swapped(whole) : whole);
   }
-  for (size_t shared = samples.size(); shared < desc.samples.size(); ++shared)
-    lights.push_back(lights.back());
+}
+
+/// Parts along each side of a light, as many as its views make.
+glm::uvec2 partsAlongSides(const glsl::Light& light, const ShadowMapDesc& desc, uint32_t views) {
+  if (glsl::light_kind(light) == glsl::light_kind_disc) return glm::uvec2(views);
+  const glm::vec2 sides = glsl::light_sides(light, glsl::light_kind(light), desc.lightSize);
+  const float longer = std::max(sides.x, sides.y);
+  if (!(longer > 0)) return glm::uvec2(1);
+  return glm::uvec2(glm::max(glm::ceil(static_cast<float>(views) * sides / longer - 1e-3f), 1.f));
+}
+
+/// Whether each of several views may have a part of the light.
+bool isDivisible(const glsl::Light& light, const ShadowMapDesc& desc) {
+  return desc.views != 1 && desc.samples.empty() && desc.projection != Projection::paraboloid &&
+         glsl::light_has_extent(light) && desc.lightSize != 0;
+}
+
+/// The width of the light's kernel, texels, before blockers half way between it and the middle of the scene.
+float kernelTexels(const glsl::Light& light, const LightLayout& layout, std::span<const Bounds> boxes,
+                   const ShadowMapDesc& desc) {
+  const vec3 spread = spreadOf(light, axesOf(light), desc.lightSize);
+  const float width = 2 * std::max(spread.x, spread.y);
+  const auto size = static_cast<float>(desc.size);
+  // The scene is as deep as the map is wide.
+  if (layout.projection == glsl::shadow_orthographic) return 0.5f * size * width;
+  Bounds all;
+  for (const Bounds& box : boxes) all.add(box);
+  if (all.empty()) return 0;
+  const vec3 origin(light.position);
+  const float tangent = wholeWindow(light, origin, axesOf(light), layout, boxes, desc).high.x;
+  return size * width / (2 * tangent * glm::distance(origin, all.centre()));
+}
+
+/// The views of a light that chooses their number. Lights that stand for an environment are many, and each is
+/// a part already; the maps of cubes would be twenty and more.
+uint32_t viewsOf(const glsl::Light& light, const LightLayout& layout, std::span<const Bounds> boxes,
+                 const ShadowMapDesc& desc) {
+  if ((light.flags & glsl::light_flag_environment) != 0 || glsl::shadow_face_count(layout.faces) > 2)
+    return 1;
+  return kernelTexels(light, layout, boxes, desc) > kWideKernel ? 2 : 1;
+}
+
+/// Of one perspective view, or two, of a part: what the light's own hold from an eighth of their depth on.
+/// Nearer to the light only parts on the receiver's side are sure to see it: the others do not count there.
+std::optional<MapWindow> partWindow(const glsl::Light& light, const glsl::Light& part,
+                                    const LightLayout& layout, std::span<const Bounds> boxes,
+                                    const ShadowMapDesc& desc) {
+  const uint32_t count = glsl::shadow_face_count(layout.faces);
+  if (layout.projection != glsl::shadow_perspective || count > 2) return {};
+  const Axes axes = axesOf(light);
+  const MapWindow whole = wholeWindow(light, light.position, axes, layout, boxes, desc);
+  const vec3 r = part.position - light.position;
+  const glm::vec2 shift =
+      glm::vec2(glm::dot(axes.x, r), glm::dot(axes.y, r)) / std::max(whole.near, 0.125f * whole.far);
+  const glm::vec2 low = whole.low - glm::max(shift, 0.f);
+  const glm::vec2 high = low + (whole.high - whole.low) + std::max(std::abs(shift.x), std::abs(shift.y));
+  const float tangent = std::max({-low.x, -low.y, high.x, high.y});
+  const Range range = widened(pyramidRange(part.position, axes, count, 5, tangent, boxes));
+  return MapWindow{low, high, range.near, range.far};
+}
+
+std::vector<glsl::Light> partsOf(const glsl::Light& light, const LightLayout& layout,
+                                 const ShadowMapDesc& desc) {
+  if (layout.parts() == 1) return {light};
+  std::vector<glsl::Light> parts;
+  for (uint32_t i = 0; i < layout.parts(); ++i)
+    parts.push_back(glsl::light_part(light, layout.kind, desc.lightSize, {layout.partsU, layout.partsV}, i));
+  return parts;
+}
+
+}  // namespace
+
+std::vector<glm::vec2> samplesOf(const glsl::Light& light, const ShadowMapDesc& desc) {
+  if (desc.samples.empty()) return {glm::vec2(0.5f)};
+  return glsl::light_has_extent(light) ? desc.samples : std::vector<glm::vec2>{glm::vec2(0.5f)};
+}
+
+LightLayout fitLayout(const glsl::Light& light, std::span<const Bounds> boxes, const ShadowMapDesc& desc) {
+  LightLayout layout = fitWhole(light, boxes, desc);
+  if (!isDivisible(light, desc)) return layout;
+  const auto views = desc.views > 0 ? static_cast<uint32_t>(desc.views) : viewsOf(light, layout, boxes, desc);
+  const glm::uvec2 parts = partsAlongSides(light, desc, views);
+  layout.partsU = parts.x;
+  layout.partsV = parts.y;
+  return layout;
+}
+
+void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayout& layout,
+                 std::span<const Bounds> boxes, const ShadowMapDesc& desc, const VisibleScene* visible,
+                 std::vector<glsl::ShadowView>& views, std::vector<glsl::ShadowLight>& lights) {
+  Writer out{lightIndex, desc.size, views, lights};
+  if (layout.parts() == 1) {
+    appendWhole(light, layout, boxes, desc, visible, out);
+    return;
+  }
+  ShadowMapDesc own = desc;
+  own.lightSize = -1;
+  for (const glsl::Light& part : partsOf(light, layout, desc))
+    appendWhole(part, layout, boxes, own, visible, out, partWindow(light, part, layout, boxes, desc));
 }
 
 scene::CullVolume cullVolume(const glsl::ShadowView& view) {

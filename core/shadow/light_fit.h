@@ -18,14 +18,17 @@ constexpr float kLargestHalfAngle = 75.f * glsl::pi / 180.f;
 /// Limits the ratio of near to far from below.
 constexpr float kLeastNear = 1e-4f;
 
+/// Limits the kernels of a light that is not cut where it chooses (ShadowMapDesc::views), texels.
+constexpr float kWideKernel = 48;
+
 /// Returns the layout of one light. `boxes` are the world bounds of everything that casts or receives
 /// shadows.
 LIMN_API LightLayout fitLayout(const glsl::Light& light, std::span<const scene::Bounds> boxes,
                                const ShadowMapDesc& desc);
 
-/// Appends the views of one light, for each sample of `desc` in turn, with layers numbered from views.size(),
-/// and one ShadowLight per sample. With MapFit::view, maps of one view per sample are fitted to `visible`;
-/// when it is null, to the boxes.
+/// Appends the views of one light, for each sample of `desc` or each part in turn, with layers numbered from
+/// views.size(), and one ShadowLight per sample or part. With MapFit::view, maps of one view per sample are
+/// fitted to `visible`; when it is null, to the boxes.
 LIMN_API void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayout& layout,
                           std::span<const scene::Bounds> boxes, const ShadowMapDesc& desc,
                           const VisibleScene* visible, std::vector<glsl::ShadowView>& views,

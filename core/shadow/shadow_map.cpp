@@ -38,13 +38,20 @@ struct Request {
   ShadowMapDesc desc;
   ShadowMaps maps;
   bool kept = false;
-  std::vector<LightLayout> layouts;
+  std::vector<LightLayout> layouts;  ///< once they are known
   std::vector<glsl::ShadowView> views;
   std::vector<glsl::ShadowLight> shadowLights;
   std::vector<scene::DepthView> depthViews;
   gpu::Buffer viewBuffer, lightBuffer;
   frame::BufferHandle importedViews, importedLights;
   scene::DrawList drawList;
+
+  /// Entries of `shadowLights` for each light.
+  size_t stride() const {
+    size_t most = std::max<size_t>(desc.samples.size(), 1);
+    for (const LightLayout& layout : layouts) most = std::max<size_t>(most, layout.parts());
+    return most;
+  }
 };
 
 struct KnownFourierMaps {
@@ -117,18 +124,35 @@ struct ShadowMapService::Implementation {
     parallel.own_instance = glsl::no_instance;
     return parallel;
   }
+  int layersOf(const glsl::Light& ofLight, const LightLayout& layout, const ShadowMapDesc& desc) const {
+    return static_cast<int>(glsl::shadow_face_count(layout.faces) * layout.parts() *
+                            samplesOf(ofLight, desc).size());
+  }
+  /// Lights that choose the number of their parts are cut as long as all maps of the request can be kept.
   std::vector<LightLayout> layoutsOf(const Request& request) const {
     std::vector<LightLayout> layouts;
+    int64_t layers = 0;
     for (size_t i = 0; i < countOf(request); ++i) {
       const glsl::Light l = lightOf(request, i);
-      layouts.push_back(fitLayout(l, boxesFor(l), request.desc));
+      const std::vector<scene::Bounds> around = boxesFor(l);
+      layouts.push_back(fitLayout(l, around, request.desc));
+      layers += layersOf(l, layouts.back(), request.desc);
+      const int64_t bytes = layers * request.desc.size * request.desc.size * bytesPerTexel(request.desc);
+      if (request.desc.views != 0 || layouts.back().parts() == 1 || bytes <= kKeptLimit) continue;
+      layers -= layersOf(l, layouts.back(), request.desc);
+      ShadowMapDesc whole = request.desc;
+      whole.views = 1;
+      layouts.back() = fitLayout(l, around, whole);
+      layers += layersOf(l, layouts.back(), whole);
     }
     return layouts;
   }
   bool cacheable(const ShadowMaps& maps) const { return requests.at(maps.index)->kept; }
+  static int64_t bytesPerTexel(const ShadowMapDesc& desc) {
+    return kKeptBytesPerTexel + (desc.reflective ? kReflectiveBytesPerTexel : 0);
+  }
   int64_t bytesOf(const Request& request) const {
-    const int64_t texel = kKeptBytesPerTexel + (request.desc.reflective ? kReflectiveBytesPerTexel : 0);
-    return int64_t{request.maps.size} * request.maps.size * request.maps.layers * texel;
+    return int64_t{request.maps.size} * request.maps.size * request.maps.layers * bytesPerTexel(request.desc);
   }
   int64_t keptBytes() const {
     int64_t bytes = 0;
@@ -150,6 +174,7 @@ bool ShadowMapService::Implementation::fit(Request& request) const {
     const glsl::Light l = lightOf(request, i);
     appendViews(l, request.directions.empty() ? request.lights[i] : glsl::no_light, request.layouts[i],
                 boxesFor(l), request.desc, visible.get(), views, shadowLights);
+    shadowLights.resize((i + 1) * request.stride(), shadowLights.back());
   }
   request.depthViews.clear();
   for (const glsl::ShadowView& view : views) {
@@ -238,6 +263,7 @@ ShadowMaps ShadowMapService::request(std::span<const glm::vec3> directions, cons
   made->directions.assign(directions.begin(), directions.end());
   made->desc = desc;
   made->desc.samples.clear();
+  made->desc.views = 1;
   return s.add(std::move(made), context());
 }
 
@@ -245,8 +271,7 @@ ShadowMaps ShadowMapService::Implementation::add(std::unique_ptr<Request> made, 
   made->layouts = layoutsOf(*made);
   size_t layers = 0;
   for (size_t i = 0; i < countOf(*made); ++i)
-    layers +=
-        glsl::shadow_face_count(made->layouts[i].faces) * samplesOf(lightOf(*made, i), made->desc).size();
+    layers += static_cast<size_t>(layersOf(lightOf(*made, i), made->layouts[i], made->desc));
   check(*made, layers);
   if (made->desc.fit == MapFit::view && !watching) {
     watching = true;
@@ -259,6 +284,7 @@ ShadowMaps ShadowMapService::Implementation::add(std::unique_ptr<Request> made, 
                                                          gpu::BufferUse::updated);
   made->maps.layers = static_cast<int>(made->views.size());
   made->maps.lightSamples = static_cast<int>(made->shadowLights.size());
+  made->maps.stride = static_cast<int>(made->stride());
   made->maps.size = made->desc.size;
   made->maps.index = static_cast<uint32_t>(requests.size());
   const int64_t before = keptBytes();
@@ -333,8 +359,7 @@ bool ShadowMapService::update(frame::FrameGraph& graph, const scene::Pose& pose)
 int ShadowMapService::layersOf(uint32_t light, const ShadowMapDesc& desc) const {
   const Implementation& s = *implementation_;
   const glsl::Light& l = s.light(light);
-  const LightLayout layout = fitLayout(l, s.boxesFor(l), desc);
-  return static_cast<int>(glsl::shadow_face_count(layout.faces) * samplesOf(l, desc).size());
+  return s.layersOf(l, fitLayout(l, s.boxesFor(l), desc), desc);
 }
 
 frame::BufferHandle& ShadowMapService::uncoveredCounter() {
@@ -367,15 +392,15 @@ std::vector<ShadowMapStats> ShadowMapService::stats() const {
                      .layers = request->maps.layers,
                      .near = request->views.front().near,
                      .far = request->views.front().far});
-    const size_t samples = std::max<size_t>(request->desc.samples.size(), 1);
+    const size_t stride = request->stride();
     for (size_t i = 0; i < request->lights.size(); ++i) {
       const LightLayout& layout = request->layouts[i];
-      const glsl::ShadowView& view = request->views[request->shadowLights[i * samples].first_layer];
+      const glsl::ShadowView& view = request->views[request->shadowLights[i * stride].first_layer];
       const bool perspective = layout.projection == glsl::shadow_perspective;
-      const auto maps = samplesOf(implementation_->light(request->lights[i]), request->desc).size();
       all.push_back({.light = implementation_->lightNames[request->lights[i]],
                      .projection = std::string(projectionName(layout)),
-                     .layers = static_cast<int>(glsl::shadow_face_count(layout.faces) * maps),
+                     .layers = implementation_->layersOf(implementation_->light(request->lights[i]), layout,
+                                                         request->desc),
                      .near = view.near,
                      .far = view.far,
                      .halfAngle = perspective ? std::atan(0.5f / view.scale) : 0.f});

@@ -45,6 +45,10 @@ struct ShadowMapDesc {
   /// takes them; (1/2, 1/2) is the centre. Empty: the centre alone. Lights without extent have one map, which
   /// all samples share.
   std::vector<glm::vec2> samples = {};
+  /// Holds the number of parts along the longer side of each light with extent, and along the shorter one in
+  /// proportion: each has maps of its own, from its centre (glsl/light/light_part.glsl). 1: the light is
+  /// whole; 0: as many as the light's size asks for (LightLayout says how many). Not together with samples.
+  int views = 1;
   /// Says whether the maps are kept while nothing changes, as long as all kept maps fit a limit of memory.
   /// False when many batches of maps share one piece of memory.
   bool cacheable = true;
@@ -54,13 +58,13 @@ struct ShadowMapDesc {
   /// Says whether specular surfaces are in the maps.
   bool specular = true;
   MapFit fit = MapFit::scene;
-  /// Holds the size of the lights for MapFit::view, as light_view() takes it; < 0: the scene's.
+  /// Holds the size of the lights for MapFit::view and parts, as light_view() takes it; < 0: the scene's.
   float lightSize = -1;
   bool operator==(const ShadowMapDesc&) const = default;
 };
 
-/// Holds the maps of a request. `lights` holds one glsl::ShadowLight per light and sample, light-major: the
-/// place of its layers.
+/// Holds the maps of a request. `lights` holds one glsl::ShadowLight per light and sample, or part,
+/// light-major: the place of its layers. Lights with fewer than others repeat their last one.
 struct ShadowMaps {
   frame::TextureHandle depth;   ///< R32F array
   frame::TextureHandle normal;  ///< reflective: RG16_SNORM array, geometric normal on the light's side
@@ -69,6 +73,7 @@ struct ShadowMaps {
   frame::BufferHandle lights;   ///< glsl::ShadowLight
   int layers = 0;
   int lightSamples = 0;  ///< length of `lights`
+  int stride = 1;        ///< entries of `lights` for each light
   int size = 0;
   uint32_t index = 0;  ///< of the request, for the functions below
 };
@@ -78,6 +83,8 @@ struct LightLayout {
   uint32_t projection = glsl::shadow_perspective;
   uint32_t faces = glsl::shadow_faces_single;
   uint32_t kind = glsl::light_kind_rectangle;
+  uint32_t partsU = 1, partsV = 1;  ///< parts along each side
+  uint32_t parts() const { return partsU * partsV; }
   auto operator<=>(const LightLayout&) const = default;
 };
 

@@ -51,9 +51,9 @@ void runBound(VisibilityPass& pass, std::span<const LightLayout> layouts) {
 
 ShadowMapDesc shadowMapDesc(const ParameterValues& parameters) {
   ShadowMapDesc desc{.size = parameters.integer("shadow_map_size")};
-  if (!parameters.has("shadow_map_fit") || parameters.choice("shadow_map_fit") == 0) return desc;
-  desc.fit = MapFit::view;
-  desc.lightSize = lightSize(parameters);
+  if (parameters.has("shadow_map_fit") && parameters.choice("shadow_map_fit") != 0) desc.fit = MapFit::view;
+  if (parameters.has("views")) desc.views = parameters.integer("views");
+  if (desc.fit == MapFit::view || desc.views != 1) desc.lightSize = lightSize(parameters);
   return desc;
 }
 

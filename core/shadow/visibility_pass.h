@@ -39,6 +39,13 @@ constexpr Parameter lightSizeParameter() {
               "Side of every light (directional: angular diameter in radians); negative: the scene's");
 }
 
+constexpr Parameter viewsParameter(int perSide = 1) {
+  return integer("views", perSide, {0, 8}, "per side",
+                 "Parts of a light along its longer side, each filtered by itself in a shadow map from its "
+                 "centre; 1: the light as a whole, as published; 0: chosen by the size of the light")
+      .quality();
+}
+
 /// Names a texture that a pass samples in addition to its maps.
 struct SampledTexture {
   frame::ShaderName name;  ///< of the sampler
@@ -47,7 +54,7 @@ struct SampledTexture {
 };
 
 /// Returns the description of the maps of a technique that declares shadow_map_size, and optionally
-/// shadow_map_fit (default: scene) and light_size.
+/// shadow_map_fit (default: scene), views (default: 1) and light_size.
 LIMN_API ShadowMapDesc shadowMapDesc(const ParameterValues& parameters);
 
 struct VisibilityPass {
@@ -69,8 +76,8 @@ struct VisibilityPass {
   bool accumulate = false;
 };
 
-/// Returns the pass of a technique that declares the parameters above (shadow_map_fit and light_size are
-/// optional), with maps of the request's lights and the program of techniques/NAME/visibility.comp.glsl.
+/// Returns the pass of a technique that declares the parameters above (shadow_map_fit, views and light_size
+/// are optional), with maps of the request's lights and the program of techniques/NAME/visibility.comp.glsl.
 LIMN_API VisibilityPass visibilityPass(const TechniqueInputs& inputs, const TermRequest& request,
                                        std::string_view technique,
                                        std::map<std::string, std::string> defines = {});

@@ -1,6 +1,7 @@
 // Shadow maps and the lights of one dispatch, which are alike: core/shadow/alike_lights.h makes the dispatches, and defines
 // what their lights have in common, so that no loop asks for it again: SHADOW_PROJECTION (shadow_perspective, ...),
-// SHADOW_FACES (shadow_faces_*) and LIGHT_KIND (light_kind_*) as numbers. Where they are undefined, each light says it.
+// SHADOW_FACES (shadow_faces_*) and LIGHT_KIND (light_kind_*) as numbers. Where they are undefined, each light says it. Lights
+// that are cut (glsl/light/light_part.glsl) have LIGHT_PARTS_U x LIGHT_PARTS_V parts, each with maps of its own.
 #ifndef LIMN_ALIKE_LIGHTS_GLSL
 #define LIMN_ALIKE_LIGHTS_GLSL
 #include "glsl/scene/light.glsl"
@@ -13,6 +14,15 @@
 #undef ONE_VIEW
 #define ONE_VIEW 1
 #endif
+#endif
+
+#ifndef LIGHT_PARTS_U
+#define LIGHT_PARTS_U 1
+#define LIGHT_PARTS_V 1
+#endif
+// Entries of shadow_lights for each light.
+#ifndef SHADOW_LIGHT_STRIDE
+#define SHADOW_LIGHT_STRIDE 1
 #endif
 
 uniform sampler2DArray shadow_depth;

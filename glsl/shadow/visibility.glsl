@@ -164,12 +164,9 @@ float shadow_tap_2x2(ShadowCursor cursor, vec3 p) {
   return lit;
 }
 
-// Pixels whose receiver no map of the light covers have V = 1 and are counted.
+// Whether the maps of the light hold the receiver. Where they do not, V = 1 and the pixel is counted.
 bool shadow_covers_receiver(ShadowCursor cursor, VisibilityQuery q) {
-  vec2 place = shadow_place(cursor, q.position);
-  if (map_holds(cursor.view, place)) return true;
-  atomicAdd(uncovered_pixels, 1u);
-  return false;
+  return map_holds(cursor.view, shadow_place(cursor, q.position));
 }
 
 // From the receiver to the near plane along the light's axis, metres: the gap of the initial kernel as published. The

@@ -17,6 +17,7 @@ void add_patch(PatchProjection projection, MicroPatch found) {
 bool patches_suffice() { return covered >= counted; }
 
 float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
+  covered = 0.0;
   counted = counted_share(cursor.view, q.light, square_of_disc);
   int answer = walk_patches(cursor, q);
   if (answer != search_partial) return answer == search_lit ? 1.0 : 0.0;
