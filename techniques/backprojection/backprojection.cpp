@@ -18,6 +18,7 @@ constexpr Parameter kParameters[] = {
         .quality(),
     shadow::shadowMapSizeParameter(),
     shadow::shadowMapFitParameter(),
+    shadow::viewsParameter(),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };

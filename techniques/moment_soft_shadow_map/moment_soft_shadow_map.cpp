@@ -29,6 +29,7 @@ constexpr Parameter kParameters[] = {
             "Of each moment of a texel, 10 to 20; 0: by the size of the shadow map"),
     shadow::shadowMapSizeParameter(),
     shadow::shadowMapFitParameter(),
+    shadow::viewsParameter(),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };

@@ -23,6 +23,7 @@ constexpr Parameter kParameters[] = {
             "How often the nearest depth in the search kernel narrows it; search=narrowed"),
     shadow::shadowMapSizeParameter(),
     shadow::shadowMapFitParameter(),
+    shadow::viewsParameter(),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };

@@ -23,6 +23,7 @@ constexpr Parameter kParameters[] = {
     integer("sat_words", 2, {1, 2}, "32-bit words", "Per moment; 1: squares rounded, as published"),
     shadow::shadowMapSizeParameter(),
     shadow::shadowMapFitParameter(),
+    shadow::viewsParameter(),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };

@@ -108,6 +108,13 @@ float exactVisibility(const glsl::Light& light, const vec3& p, const Hides& hide
   return static_cast<float>(lit) / static_cast<float>(std::max(above, 1));
 }
 
+/// Whether the ball of a BallScene of scale 1 hides what lies at from + to.
+bool ballHides(const vec3& from, const vec3& to) {
+  const vec3 d = glm::normalize(to), ball(0, 1, 0);
+  const float along = glm::dot(ball - from, d);
+  return along > 0 && along < glm::length(to) && glm::distance(ball, from + along * d) < 0.5f;
+}
+
 struct Errors {
   double rms = 0, worst = 0;
   int penumbra = 0;
@@ -302,28 +309,59 @@ TEST_F(ShadowTechniqueTest, ParallelPlanesAreExactWithPcss) {
 
 TEST_F(ShadowTechniqueTest, PcssOfABallIsCloseToTheTruth) {
   const BallScene s;
-  const auto hides = [](const vec3& from, const vec3& to) {
-    const vec3 d = glm::normalize(to), ball(0, 1, 0);
-    const float along = glm::dot(ball - from, d);
-    return along > 0 && along < glm::length(to) && glm::distance(ball, from + along * d) < 0.5f;
-  };
   const Answer v = visibility("pcss", {{"shadow_map_size", "512"}}, s.scene, s.pose, s.camera);
   keep(v, "pcss");
   keep(visibility("pcss", {{"search", "near"}, {"pattern", "grid"}}, s.scene, s.pose, s.camera), "pcss_near");
   for (size_t light = 2; light < v.lights.size(); ++light) {
-    const Errors e = floorErrors(s, v, light, hides);
+    const Errors e = floorErrors(s, v, light, ballHides);
     EXPECT_GT(e.penumbra, 50) << light;
     EXPECT_LT(e.rms, 0.1) << light;
   }
 }
 
+/// The ball under a point light, a disc, a long light, one that the floor cuts, and a wide one.
+BallScene wideLights(bool ball) {
+  BallScene s(1, ball);
+  s.pose.lights = {s.pose.lights[0], s.pose.lights[2]};
+  s.pose.lightNames.resize(2);
+  addLight(s.pose, rectangleLight({0, 3, 0}, {0, -1, 0}, 2.4f, 0.3f));
+  addLight(s.pose, rectangleLight({2, 1, 0}, {-1, 0, 0}, 3, 3));
+  addLight(s.pose, rectangleLight({0, 4, 0}, {0, -1, 0}, 2.5f, 2.5f));
+  return s;
+}
+
+TEST_F(ShadowTechniqueTest, PartsOfALightAddUp) {
+  const BallScene bare = wideLights(false), s = wideLights(true);
+  for (const TechniquePlugin* plugin : techniques()) {
+    if (!has(*plugin, "views")) continue;
+    const char* name = plugin->info->name;
+    auto settings = quick(*plugin);
+    const auto draw = [&](const BallScene& scene, const char* views) {
+      settings["views"] = views;
+      return visibility(name, settings, scene.scene, scene.pose, scene.camera);
+    };
+    const Answer unoccluded = draw(bare, "2");
+    EXPECT_EQ(unoccluded.uncovered, 0u) << name;
+    for (size_t l = 0; l < unoccluded.lights.size(); ++l)
+      EXPECT_GT(*std::ranges::min_element(unoccluded.lights[l]), 0.999f) << name << " light " << l;
+    const Answer cut = draw(s, "2"), whole = draw(s, "1"), chosen = draw(s, "0");
+    EXPECT_EQ(cut.lights[0], whole.lights[0]) << name << ": a point";
+    EXPECT_EQ(chosen.lights[0], whole.lights[0]) << name << ": a point";
+    EXPECT_EQ(chosen.lights[1], whole.lights[1]) << name << ": a small disc";
+    EXPECT_EQ(chosen.lights[4], cut.lights[4]) << name << ": a wide light";
+    for (size_t l = 1; l < cut.lights.size(); ++l) EXPECT_NE(cut.lights[l], whole.lights[l]) << name << l;
+    for (const uint32_t light : {3u, 4u}) {
+      const Errors one = floorErrors(s, whole, light, ballHides),
+                   four = floorErrors(s, cut, light, ballHides);
+      EXPECT_GT(one.penumbra, 150);
+      EXPECT_LT(four.rms, 0.8 * one.rms) << name << " light " << light;
+      EXPECT_LT(four.rms, 0.1) << name << " light " << light;
+    }
+  }
+}
+
 TEST_F(ShadowTechniqueTest, SamplesOfAnAreaLightConverge) {
   const BallScene s;
-  const auto hides = [](const vec3& from, const vec3& to) {
-    const vec3 d = glm::normalize(to), ball(0, 1, 0);
-    const float along = glm::dot(ball - from, d);
-    return along > 0 && along < glm::length(to) && glm::distance(ball, from + along * d) < 0.5f;
-  };
   const std::vector<uint32_t> extended{2, 3, 4, 5};
   std::vector<double> previous(s.pose.lights.size(), 1);
   for (const char* samples : {"4", "16", "64"}) {
@@ -332,7 +370,7 @@ TEST_F(ShadowTechniqueTest, SamplesOfAnAreaLightConverge) {
     keep(v, std::string("sampled_") + samples);
     v.lights.insert(v.lights.begin(), 2, {});
     for (const uint32_t light : extended) {
-      const Errors e = floorErrors(s, v, light, hides);
+      const Errors e = floorErrors(s, v, light, ballHides);
       EXPECT_LT(e.rms, 0.75 * previous[light]) << samples << " samples, light " << light;
       previous[light] = e.rms;
     }
