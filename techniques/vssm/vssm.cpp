@@ -46,6 +46,7 @@ constexpr Parameter kParameters[] = {
     integer("sat_words", 2, {1, 2}, "32-bit words", "Per moment; 1: squares rounded, as published"),
     shadow::shadowMapSizeParameter(),
     shadow::shadowMapFitParameter(),
+    shadow::viewsParameter(0),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
 };
@@ -60,6 +61,11 @@ constexpr StressCase kStress[] = {
     {.name = "no second pass", .settings = "passes=8 pass_gap=0"},
     {.name = "blockers in contact", .settings = "least_gap=0.001"},
     {.name = "blockers all at the kernel", .settings = "least_gap=1"},
+    {.name = "parts of a light cut by the horizon", .change = StressChange::edgeOn, .settings = "views=2"},
+    {.name = "parts of a light of 3 scene radii",
+     .change = StressChange::lightSize,
+     .amount = 3,
+     .settings = "views=3"},
 };
 
 /// Whether the sum of depths over the largest sub-kernel may exceed one word.
