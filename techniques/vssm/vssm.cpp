@@ -51,8 +51,8 @@ constexpr Parameter kParameters[] = {
     shadow::lightSizeParameter(),
 };
 constexpr StressCase kStress[] = {
-    {.name = "map of 64 texels", .settings = "shadow_map_size=64", .factor = 4},
-    {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
+    {.name = "map of 64 texels", .settings = "shadow_map_size=64", .factor = 6},
+    {.name = "map of 8192 texels", .settings = "shadow_map_size=8192", .factor = 2.5},
     {.name = "adaptive subdivision in foliage", .scene = "plant", .settings = "subdivision=adaptive"},
     {.name = "published subdivision in foliage",
      .scene = "plant",
@@ -61,11 +61,19 @@ constexpr StressCase kStress[] = {
     {.name = "no second pass", .settings = "passes=8 pass_gap=0"},
     {.name = "blockers in contact", .settings = "least_gap=0.001"},
     {.name = "blockers all at the kernel", .settings = "least_gap=1"},
-    {.name = "parts of a light cut by the horizon", .change = StressChange::edgeOn, .settings = "views=2"},
+    {.name = "parts of a light cut by the horizon",
+     .change = StressChange::edgeOn,
+     .settings = "views=2",
+     .factor = 16},
+    {.name = "a light cut by the horizon, whole",
+     .change = StressChange::edgeOn,
+     .settings = "views=1",
+     .factor = 16},
     {.name = "parts of a light of 3 scene radii",
      .change = StressChange::lightSize,
      .amount = 3,
-     .settings = "views=3"},
+     .settings = "views=3",
+     .factor = 8},
 };
 
 /// Whether the sum of depths over the largest sub-kernel may exceed one word.
