@@ -31,6 +31,13 @@ std::string_view projectionName(const LightLayout& layout) {
   return layout.faces == glsl::shadow_faces_hemicube ? "hemicube" : "perspective";
 }
 
+/// What a description asks of maps of lights that are not cut.
+ShadowMapDesc ofWholeLights(ShadowMapDesc desc) {
+  desc.views = 1;
+  if (desc.fit == MapFit::scene) desc.lightSize = -1;
+  return desc;
+}
+
 /// One set of maps and what draws it.
 struct Request {
   std::vector<uint32_t> lights;
@@ -38,7 +45,7 @@ struct Request {
   ShadowMapDesc desc;
   ShadowMaps maps;
   bool kept = false;
-  std::vector<LightLayout> layouts;  ///< once they are known
+  std::vector<LightLayout> layouts;
   std::vector<glsl::ShadowView> views;
   std::vector<glsl::ShadowLight> shadowLights;
   std::vector<scene::DepthView> depthViews;
@@ -46,6 +53,10 @@ struct Request {
   frame::BufferHandle importedViews, importedLights;
   scene::DrawList drawList;
 
+  /// Whether a light has parts.
+  bool cuts() const {
+    return std::ranges::any_of(layouts, [](const LightLayout& layout) { return layout.parts() > 1; });
+  }
   /// Entries of `shadowLights` for each light.
   size_t stride() const {
     size_t most = std::max<size_t>(desc.samples.size(), 1);
@@ -160,6 +171,7 @@ struct ShadowMapService::Implementation {
       if (request->kept) bytes += bytesOf(*request);
     return bytes;
   }
+  /// Adds a request of known lights and layouts.
   ShadowMaps add(std::unique_ptr<Request> made, const FrameContext& context);
   bool fit(Request& request) const;
   void check(const Request& request, size_t layers) const;
@@ -243,13 +255,17 @@ void ShadowMapService::begin() {
 
 ShadowMaps ShadowMapService::request(std::span<const uint32_t> lights, const ShadowMapDesc& desc) {
   Implementation& s = *implementation_;
-  for (const auto& known : s.requests) {
-    if (known->desc == desc && known->directions.empty() && std::ranges::equal(known->lights, lights))
-      return known->maps;
-  }
   auto made = std::make_unique<Request>();
   made->lights.assign(lights.begin(), lights.end());
   made->desc = desc;
+  made->layouts = s.layoutsOf(*made);
+  for (const auto& known : s.requests) {
+    if (!known->directions.empty() || !std::ranges::equal(known->lights, lights)) continue;
+    if (known->desc == desc) return known->maps;
+    if (made->cuts() || known->cuts() || ofWholeLights(known->desc) != ofWholeLights(desc)) continue;
+    if (desc.views == 0) known->desc = desc;  // update() has the graph built again once a light is to be cut
+    return known->maps;
+  }
   return s.add(std::move(made), context());
 }
 
@@ -264,11 +280,11 @@ ShadowMaps ShadowMapService::request(std::span<const glm::vec3> directions, cons
   made->desc = desc;
   made->desc.samples.clear();
   made->desc.views = 1;
+  made->layouts = s.layoutsOf(*made);
   return s.add(std::move(made), context());
 }
 
 ShadowMaps ShadowMapService::Implementation::add(std::unique_ptr<Request> made, const FrameContext& context) {
-  made->layouts = layoutsOf(*made);
   size_t layers = 0;
   for (size_t i = 0; i < countOf(*made); ++i)
     layers += static_cast<size_t>(layersOf(lightOf(*made, i), made->layouts[i], made->desc));
