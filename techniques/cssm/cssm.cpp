@@ -41,7 +41,10 @@ constexpr StressCase kStress[] = {
     {.name = "8-bit basis", .settings = "filter=mip"},
     {.name = "published kernel in foliage", .scene = "plant", .settings = "splits=1 contact=sharpened"},
     {.name = "map of 64 texels", .settings = "shadow_map_size=64", .factor = 4},
-    {.name = "parts of a light cut by the horizon", .change = StressChange::edgeOn, .settings = "views=2"},
+    {.name = "parts of a light cut by the horizon",
+     .change = StressChange::edgeOn,
+     .settings = "views=2",
+     .factor = 4},
     {.name = "map of 8192 texels", .settings = "shadow_map_size=8192"},
 };
 
