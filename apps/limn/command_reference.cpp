@@ -9,6 +9,7 @@
 #include "apps/limn/interruption.h"
 #include "apps/limn/options.h"
 #include "apps/limn/provenance.h"
+#include "apps/limn/tone_flags.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/file_lock.h"
@@ -23,7 +24,8 @@ namespace {
 struct Options {
   SceneQuestion scene{.term = name(Term::direct)};
   int spp = 256, threads = 0, aa = 1;
-  double noise = 0, exposure = 0;
+  double noise = 0;
+  ToneFlags tone;
   uint64_t seed = 0;
   std::optional<int> bounces;
   std::string interfaces;
@@ -100,7 +102,7 @@ int run(const Options& options) {
     throw Interrupted{interruption.signal(), std::string(stopped.what()) + "; the same command goes on"};
   }
   sign(result.image);
-  writeImage(options.out, result.image, static_cast<float>(options.exposure));
+  writePicture(options.out, result.image, options.tone.toneMapping(options.out, result.image));
   fmt::print("{}: {} samples per pixel, noise {:.5f} of the mean\n", options.out.string(), result.spp,
              result.noiseRms);
   return 0;
@@ -146,8 +148,7 @@ Action addReferenceCommand(CLI::App& command) {
       ->check(CLI::Range(1, 16));
   command.add_option("--seed", options->seed, "Seed of the random numbers");
   command.add_option("--threads", options->threads, "0: all cores")->check(CLI::Range(0, 1024));
-  command.add_option("--exposure", options->exposure, "Exposure of a .png output, EV")
-      ->check(CLI::Range(-60.0, 60.0));
+  options->tone.addTo(command);
   command.add_option("--cache", options->cache,
                      "Folder in which finished references are kept, and reused for the same request");
   command

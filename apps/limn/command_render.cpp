@@ -8,6 +8,7 @@
 #include "apps/limn/interruption.h"
 #include "apps/limn/options.h"
 #include "apps/limn/provenance.h"
+#include "apps/limn/tone_flags.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
@@ -24,7 +25,8 @@ struct Options {
   session::TechniqueChoice technique;
   BackendOptions backend;
   std::string frames;
-  double fps = 30, exposure = 0;
+  double fps = 30;
+  ToneFlags tone;
   int repeat = 0;
   bool dynamicFrames = false, staticFrames = false, explain = false;
   fs::path out, stats, graph, shaders;
@@ -81,17 +83,22 @@ void checkFinite(const Image& picture, const Options& options) {
                     first.x, first.y));
 }
 
-/// What was rendered, whose values are finite.
-Image finitePicture(const render::Renderer& renderer, const Options& options) {
-  Image picture = renderer.read();
-  checkFinite(picture, options);
-  return picture;
-}
+/// Writes pictures whose values are finite; all with the exposure of the first.
+class Writer {
+ public:
+  explicit Writer(const Options& options) : options_(options) {}
 
-void write(const Options& options, const fs::path& file, Image picture) {
-  sign(picture);
-  writeImage(file, picture, static_cast<float>(options.exposure));
-}
+  void write(const fs::path& file, Image picture) {
+    checkFinite(picture, options_);
+    if (!tone_) tone_ = options_.tone.toneMapping(file, picture);
+    sign(picture);
+    writePicture(file, picture, *tone_);
+  }
+
+ private:
+  const Options& options_;
+  std::optional<ToneMapping> tone_;
+};
 
 void writeText(const fs::path& file, const std::string& text) {
   writeTextFile(file, text);
@@ -148,6 +155,7 @@ int run(const Options& options) {
   renderer.setCamera(view.camera);
   renderer.setTime(view.time, view.animation);
 
+  Writer writer(options);
   if (frames) {
     Progress progress("rendering");
     LastWords words("interrupted; no frame was written");
@@ -159,14 +167,14 @@ int run(const Options& options) {
       renderer.setTime(view.time, view.animation);
       renderer.setCamera(view.camera);
       renderer.render();
-      write(options, numbered(options.out, frame), finitePicture(renderer, options));
+      writer.write(numbered(options.out, frame), renderer.read());
       progress.update(double(frame - frames->first + 1) / (frames->last - frames->first + 1));
     }
     sayWritten(fmt::format("{} to {}", numbered(options.out, frames->first).string(),
                            numbered(options.out, frames->last).string()));
   } else {
     renderWithProgress(renderer);
-    write(options, options.out, finitePicture(renderer, options));
+    writer.write(options.out, renderer.read());
     sayWritten(options.out);
   }
 
@@ -197,8 +205,7 @@ Action addRenderCommand(CLI::App& command) {
   command.add_option("--fps", options->fps, "Frames per second of the animation")
       ->capture_default_str()
       ->check(CLI::Range(0.001, 1e5));
-  command.add_option("--exposure", options->exposure, "Exposure of a .png output, EV")
-      ->check(CLI::Range(-60.0, 60.0));
+  options->tone.addTo(command);
   command.add_option("--repeat", options->repeat, "After the picture, time this many frames")
       ->check(CLI::Range(1, 100000));
   auto* dynamicFlag = command.add_flag("--dynamic", options->dynamicFrames,

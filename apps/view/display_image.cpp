@@ -7,20 +7,6 @@
 
 namespace limn::app {
 
-Image8 toneMapped(const Image& image, float exposureEv) {
-  Image8 result{image.width(), image.height(), {}};
-  result.data.reserve(static_cast<size_t>(result.width) * static_cast<size_t>(result.height) * 4);
-  for (int y = 0; y < result.height; ++y) {
-    for (int x = 0; x < result.width; ++x) {
-      for (int c = 0; c < 3; ++c)
-        result.data.push_back(
-            static_cast<uint8_t>(std::lround(255 * glsl::tone_map(image.at(x, y, c), exposureEv))));
-      result.data.push_back(255);
-    }
-  }
-  return result;
-}
-
 std::shared_ptr<const Image8> readBack(const gpu::Texture& texture) {
   auto image = std::make_shared<Image8>(Image8{texture.desc().width, texture.desc().height, {}});
   const size_t row = static_cast<size_t>(image->width) * 4;

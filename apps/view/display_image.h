@@ -11,10 +11,6 @@
 
 namespace limn::app {
 
-/// Returns R, G, B as the window shows them: clamp(2^EV * value), then sRGB, as PNG files are written. The
-/// result is opaque.
-Image8 toneMapped(const Image& image, float exposureEv);
-
 /// Returns level 0 of an RGBA8 texture as it is stored. Waits for the GPU.
 std::shared_ptr<const Image8> readBack(const gpu::Texture& texture);
 

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/limn/options.h"
+#include "apps/limn/tone_flags.h"
 #include "apps/view/viewer.h"
 #include "core/base/version.h"
 #include "core/base/whereabouts.h"
@@ -20,7 +21,8 @@ int main(int argc, char** argv) {
     addSceneFlags(program, options.scene);
     addSceneFlag(program, options.scene, "term");
     addTechniqueFlags(program, options.techniques);
-    program.add_option("--exposure", options.exposure, "EV")->check(CLI::Range(-60.0, 60.0));
+    program.add_option("--exposure", options.tone.exposureEv, "EV")->check(CLI::Range(-60.0, 60.0));
+    addToneCurveFlag(program, options.tone.curve);
     program.add_option("--shaders", options.shaders,
                        "Folder with glsl/ and techniques/ whose shaders replace the embedded ones; reloaded "
                        "when a file changes");

@@ -38,7 +38,7 @@ struct PictureOrder {
       of;               ///< the scene it is a picture of; not of one that was opened meanwhile
   SceneQuestion scene;  ///< what is chosen of that: camera, time, lights
   std::vector<render::TechniqueUse> techniques, others;
-  float exposure = 0;  ///< EV
+  ToneMapping tone;
   glm::ivec2 size{0};  ///< pixels; 0: none is wanted, the window is minimised
   Beside beside = Beside::nothing;
   bool moving = false;  ///< something moves: a smaller picture now is better than a whole one later

@@ -29,7 +29,7 @@ render::Settings settingsOf(const PictureOrder& order, int reduction, int light)
   settings.size = glm::max(order.size / reduction, glm::ivec2(1));
   settings.term = parseTerm(order.scene.term);
   settings.light = light;
-  settings.displayEv = order.exposure;
+  settings.display = order.tone;
   settings.techniques = order.techniques;
   return settings;
 }

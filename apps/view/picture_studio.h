@@ -66,8 +66,8 @@ class PictureStudio {
   ReferenceWorker reference_;
   std::string truthKey_;  ///< what the reference was asked
   std::optional<Image> truth_;
-  float truthExposure_ = 0;  ///< EV, with which it is shown
-  bool compared_ = false;    ///< the metrics are of what is shown
+  ToneMapping truthTone_;  ///< with which it is shown
+  bool compared_ = false;  ///< the metrics are of what is shown
   std::optional<Sequence> sequence_;
   PictureFacts facts_;
   uint64_t printed_ = 0;  ///< facts_.messages when one was last printed

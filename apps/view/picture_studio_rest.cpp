@@ -65,9 +65,9 @@ bool PictureStudio::followReference(const PictureOrder& order) {
   std::optional<Image> finer = reference_.take();
   const bool fresh = finer && !truthKey_.empty();
   if (fresh) truth_ = std::move(finer);
-  if (truth_ && (fresh || truthExposure_ != order.exposure)) {
-    truthExposure_ = order.exposure;
-    facts_.truth = std::make_shared<const Image8>(toneMapped(*truth_, order.exposure));
+  if (truth_ && (fresh || truthTone_ != order.tone)) {
+    truthTone_ = order.tone;
+    facts_.truth = std::make_shared<const Image8>(toneMapped(*truth_, order.tone));
     compared_ = false;
   }
   const ReferenceWorker::State before = std::exchange(facts_.reference, reference_.state());
@@ -94,8 +94,8 @@ bool PictureStudio::compare(const PictureOrder& order) {
   try {
     const Image image = picture_->read();
     const Image against = order.beside == Beside::reference ? *truth_ : other_->read();
-    facts_.metrics =
-        compareImages(image, against, {.exposureEv = order.exposure, .useMask = false, .maskTermRange = {}});
+    facts_.metrics = compareImages(
+        image, against, {.exposureEv = order.tone.exposureEv, .useMask = false, .maskTermRange = {}});
     facts_.difference = std::make_shared<const Image8>(signedDifference(image, against, {}));
     facts_.whyNoMetrics.clear();
   } catch (const Error& error) {
@@ -169,7 +169,7 @@ void PictureStudio::write(const SaveOrder& order, const std::filesystem::path& f
   Image image = picture_->read();
   if (!order.command.empty()) sign(image, order.command);
   if (file.has_parent_path()) createFolder(file.parent_path());
-  writeImage(file, image, order.picture.exposure);
+  writePicture(file, image, order.picture.tone);
 }
 
 void PictureStudio::saveNext() {

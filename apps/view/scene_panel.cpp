@@ -92,8 +92,17 @@ void ViewerWindow::scenePanel() {
     cameraChooser();
     nameCell("shows", "The whole light, or one part of it; visibility is that of one light");
     if (termChooser(state_.scene.term)) moved();
-    nameCell("exposure", "The picture is shown as clamp(2^EV L), sRGB-encoded");
-    if (ImGui::SliderFloat("##exposure", &state_.exposure, -10, 10, "%.2f EV")) moved();
+    nameCell("exposure", "Light is multiplied by 2^EV before it is shown");
+    if (ImGui::SliderFloat("##exposure", &state_.tone.exposureEv, -10, 10, "%.2f EV")) moved();
+    nameCell(
+        "tone curve",
+        "none clamps and keeps values comparable, neutral keeps base colours, agx keeps detail in what is "
+        "very bright");
+    auto curve = static_cast<int>(state_.tone.curve);
+    if (ImGui::Combo("##tone curve", &curve, kToneCurves.data(), static_cast<int>(kToneCurves.size()))) {
+      state_.tone.curve = static_cast<ToneCurve>(curve);
+      moved();
+    }
     if (facts_->scene->animated) timePanel();
   }
   endRows();

@@ -10,7 +10,7 @@ namespace limn::app {
 namespace {
 
 bool same(const render::Settings& a, const render::Settings& b) {
-  return a.size == b.size && a.term == b.term && a.light == b.light && a.displayEv == b.displayEv &&
+  return a.size == b.size && a.term == b.term && a.light == b.light && a.display == b.display &&
          a.inspect == b.inspect && app::same(a.techniques, b.techniques);
 }
 

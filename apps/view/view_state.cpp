@@ -93,7 +93,8 @@ std::string renderCommand(const ViewState& state, const std::filesystem::path& o
   for (const QuestionField& field : questionFields().subspan(1))  // the scene stands before them
     if (!isDefault(field, question))
       for (const std::string& value : printed(field, question)) line.add(field.flag, value);
-  line.add("--exposure", state.exposure, 0.f);
+  line.add("--exposure", state.tone.exposureEv, 0.f);
+  line.add("--tonemap", kToneCurves[static_cast<size_t>(state.tone.curve)], kToneCurves[0]);
   return line.add("--out", out.string()).text();
 }
 

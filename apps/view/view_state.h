@@ -15,7 +15,7 @@ namespace limn::app {
 struct ViewState {
   SceneQuestion scene;  ///< width and height are those of the saved picture; the window shows its own
   std::vector<render::TechniqueUse> techniques;
-  float exposure = 0;  ///< EV
+  ToneMapping tone;
 };
 
 /// Puts the orbit's camera into the options, so that whatever reads them gets it bit for bit.
@@ -29,7 +29,7 @@ void dropRivals(std::vector<render::TechniqueUse>& techniques, const TechniquePl
 std::string renderCommand(const ViewState& state, const std::filesystem::path& out);
 
 /// Returns a suite for `limn bench` that measures the state's techniques in its scene: all of the state
-/// except the exposure.
+/// except the tone mapping.
 std::string benchSuite(const ViewState& state);
 
 }  // namespace limn::app

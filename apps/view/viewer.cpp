@@ -44,7 +44,7 @@ void setText(TextField& target, const std::string& text) {
 ViewerWindow::ViewerWindow(const ViewerOptions& options)
     : options_(options), registry_(TechniqueRegistry::defaultFolders(), warn) {
   state_.scene = options.scene;
-  state_.exposure = static_cast<float>(options.exposure);
+  state_.tone = options.tone;
   state_.techniques = options.techniques.resolve(registry_);
   context_ = Context::create({.backend = Backend::glfw,
                               .debug = options.debug,
@@ -157,7 +157,7 @@ PictureOrder ViewerWindow::order() const {
   order.scene = state_.scene;
   order.techniques = state_.techniques;
   order.others = otherTechniques_;
-  order.exposure = state_.exposure;
+  order.tone = state_.tone;
   order.size = minimised() ? glm::ivec2(0) : area_;
   order.beside = beside_;
   order.moving = moving();

@@ -23,7 +23,7 @@ struct ViewerOptions {
   std::string title = "limn";
   SceneQuestion scene;
   session::TechniqueChoice techniques;
-  double exposure = 0;
+  ToneMapping tone;
   std::vector<ViewerStep> steps;                           ///< may be empty
   std::vector<std::string> panels{"scene", "techniques"};  ///< open at first
   std::string compareWith;                                 ///< at first: nothing (empty), techniques or truth

@@ -38,9 +38,9 @@ void Renderer::Implementation::build() {
   output = isFactor(settings.term) ? addFactor() : addRadiance();
   graph->output(output);
   display = {};
-  if (settings.displayEv) {
+  if (settings.display) {
     display = deferred.addToneMapping({*graph, handles, gbuffer, settings.size}, output,
-                                      isFactor(settings.term), *settings.displayEv);
+                                      isFactor(settings.term), *settings.display);
     graph->output(display);
   }
   if (settings.channels && gbuffer.depth)

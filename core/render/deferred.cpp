@@ -271,7 +271,7 @@ TextureHandle Deferred::addSpecular(const Frame& frame, TextureHandle before, Te
 }
 
 TextureHandle Deferred::addToneMapping(const Frame& frame, TextureHandle picture, bool layered,
-                                       float exposureEv) {
+                                       const ToneMapping& tone) {
   frame::PassBuilder builder = frame.graph.addPass("tone mapping");
   builder.read(picture, Access::sampled, layered ? "visibility" : "radiance", "linear picture");
   const TextureHandle display =
@@ -281,7 +281,9 @@ TextureHandle Deferred::addToneMapping(const Frame& frame, TextureHandle picture
   const auto program = builder.program(
       {.files = {"glsl/deferred/tone_map.comp.glsl"}, .defines = {{"VISIBILITY", layered ? "1" : "0"}}});
   builder.execute([=, size = frame.size](frame::PassContext& context) {
-    context.use(program).set("exposure_ev", exposureEv);
+    gpu::Program& used = context.use(program);
+    used.set("exposure_ev", tone.exposureEv);
+    used.set("tone_curve", static_cast<uint32_t>(tone.curve));
     context.dispatch(size.x, size.y, 1, kGroupSize, kGroupSize);
   });
   return display;

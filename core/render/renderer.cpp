@@ -71,7 +71,7 @@ bool Renderer::render(frame::Timing timing, const frame::FrameGraph::Cancelled& 
 
 const gpu::Texture& Renderer::display() const {
   const Implementation& self = *implementation_;
-  if (!self.display || !self.graph) throw Error("nothing to display: Settings::displayEv was not set");
+  if (!self.display || !self.graph) throw Error("nothing to display: Settings::display was not set");
   return self.graph->texture(self.display);
 }
 

@@ -17,6 +17,7 @@
 
 #include "core/frame/frame_graph.h"
 #include "core/image/image.h"
+#include "core/image/tone_mapping.h"
 #include "core/question/term.h"
 #include "core/render/frame_stats.h"
 #include "core/render/inspector.h"
@@ -48,8 +49,8 @@ struct Settings {
   bool dynamic = true;
   /// Keep depth, coverage, instance id, albedo and normal for read().
   bool channels = false;
-  /// Tone-map the picture for display(): clamp(2^EV * picture), then sRGB, as PNG files are written.
-  std::optional<float> displayEv = {};
+  /// Tone-map the picture for display(), as writePicture() does for PNG files.
+  std::optional<ToneMapping> display = {};
   /// A texture to inspect, if the frame has it: see inspector(). A pass that would be left out runs for it.
   std::optional<Inspection> inspect = {};
   /// Work that is done although it could be left out, to measure what leaving it out saves
@@ -95,7 +96,7 @@ class LIMN_API Renderer {
   /// coverage, id (-1: nothing seen), albedo.*, N.*. Waits for the GPU.
   Image read() const;
 
-  /// Returns the last frame, tone-mapped (Settings::displayEv): RGBA8, bottom row first. Throws Error without
+  /// Returns the last frame, tone-mapped (Settings::display): RGBA8, bottom row first. Throws Error without
   /// one.
   const gpu::Texture& display() const;
 

@@ -1,5 +1,5 @@
-// Radiance to what a display shows: clamp(2^exposure L), then sRGB (glsl/numeric/srgb.glsl).
-#include "glsl/numeric/srgb.glsl"
+// Radiance to what a display shows: exposure, tone curve, sRGB (glsl/numeric/tone_curve.glsl).
+#include "glsl/numeric/tone_curve.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 #if VISIBILITY
@@ -9,6 +9,7 @@ uniform sampler2D radiance;
 #endif
 layout(rgba8) writeonly uniform image2D display;
 uniform float exposure_ev;
+uniform uint tone_curve;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -18,5 +19,5 @@ void main() {
 #else
   vec3 value = texelFetch(radiance, pixel, 0).rgb;
 #endif
-  imageStore(display, pixel, vec4(tone_map(value, exposure_ev), 1.0));
+  imageStore(display, pixel, vec4(tone_map(value, exposure_ev, tone_curve), 1.0));
 }

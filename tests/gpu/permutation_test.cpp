@@ -71,7 +71,7 @@ class PermutationTest : public OncePerRenderer<RenderTest> {
   static void compile(render::Renderer& renderer, Term term, const render::TechniqueUse& use,
                       int* refusals = nullptr) {
     render::Settings asked = settings(48, 36, term, {use}, isFactor(term) ? 0 : -1);
-    asked.displayEv = 0.f;
+    asked.display.emplace();
     renderer.configure(std::move(asked));
     renderer.setCamera(renderer.pose().cameras.at(0));
     bool whole = false;

@@ -36,12 +36,13 @@ TEST_F(ViewStateTest, CommandsSayOnlyWhatIsNotTheDefault) {
   state_.scene.height = 200;
   EXPECT_EQ(renderCommand(state_, "a.png"), "limn render cornell_box --size 320x200 --out a.png");
   use("pcss,clustered_visibility", {"pcss.filter_samples=16", "clustered_visibility.vals=5"});
-  state_.exposure = -1.5f;
+  state_.tone = {-1.5f, ToneCurve::agx};
   state_.scene.term = "direct";
   EXPECT_EQ(
       renderCommand(state_, "a.png"),
       "limn render cornell_box --technique pcss,clustered_visibility --set pcss.filter_samples=16 --set "
-      "clustered_visibility.vals=5 --size 320x200 --output-term direct --exposure -1.5 --out a.png");
+      "clustered_visibility.vals=5 --size 320x200 --output-term direct --exposure -1.5 --tonemap agx --out "
+      "a.png");
 }
 
 TEST_F(ViewStateTest, NamesAreQuotedForTheShell) {
@@ -171,7 +172,7 @@ TEST(DisplayImage, IsWhatPngFilesHold) {
   image.at(0, 0, 0) = 0.25f;
   image.at(0, 0, 1) = 7;
   image.at(0, 0, 2) = -1;
-  const Image8 shown = toneMapped(image, 1);
+  const Image8 shown = toneMapped(image, {1});
   EXPECT_EQ(shown.data[0], std::lround(255 * glsl::srgb_encode(0.5f)));
   EXPECT_EQ(shown.data[1], 255);
   EXPECT_EQ(shown.data[2], 0);

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/frame/frame_graph.h"
+#include "core/image/tone_mapping.h"
 #include "core/scene/scene.h"
 #include "core/shading_maps/shading_maps.h"
 #include "core/technique/technique.h"
@@ -67,10 +68,10 @@ class Deferred {
   /// elsewhere.
   frame::TextureHandle addSpecular(const Frame& frame, frame::TextureHandle radiance,
                                    frame::TextureHandle seen);
-  /// Returns what the window shows: RGBA8 of clamp(2^EV * picture), then sRGB. `layered` says that the
-  /// picture is a factor of a light.
+  /// Returns what the window shows: RGBA8 of the tone-mapped picture. `layered` says that the picture is a
+  /// factor of a light.
   frame::TextureHandle addToneMapping(const Frame& frame, frame::TextureHandle picture, bool layered,
-                                      float exposureEv);
+                                      const ToneMapping& tone);
 
  private:
   /// Declares what passes over a batch of lights read (glsl/deferred/light_batch.glsl and

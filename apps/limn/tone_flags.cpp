@@ -1,0 +1,59 @@
+#include "apps/limn/tone_flags.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cstdio>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+
+namespace limn::app {
+namespace {
+
+constexpr double kMostEv = 60;
+constexpr const char* kAutomatic = "auto";
+
+/// Empty where the text is accepted.
+std::string exposureProblem(const std::string& text) {
+  const std::optional<double> ev = parseNumber(text);
+  if (text == kAutomatic || (ev && *ev >= -kMostEv && *ev <= kMostEv)) return {};
+  return fmt::format("'{}' is not accepted; expected a number from {} to {}, or {}", text, -kMostEv, kMostEv,
+                     kAutomatic);
+}
+
+}  // namespace
+
+void addToneCurveFlag(CLI::App& command, ToneCurve& curve) {
+  command
+      .add_option_function<std::string>(
+          "--tonemap", [&curve](const std::string& name) { curve = parseToneCurve(name); },
+          "Tone curve of a .png output: none: clamped, the only one that keeps values comparable;\n"
+          "neutral: Khronos PBR Neutral, which keeps base colours; agx: AgX, which keeps detail in what is\n"
+          "very bright")
+      ->type_name(fmt::format("{{{}}}", fmt::join(kToneCurves, ",")))
+      ->default_str(kToneCurves[static_cast<size_t>(curve)]);
+}
+
+void ToneFlags::addTo(CLI::App& command) {
+  addToneCurveFlag(command, curve);
+  command
+      .add_option(
+          "--exposure", exposure,
+          "Exposure of a .png output, EV; or auto: the geometric mean of the first picture's luminance\n"
+          "becomes middle grey, 0.18 (pixels without light and 5 % at both ends do not count)")
+      ->check(
+          CLI::Validator(exposureProblem, fmt::format("[{:g} - {:g}] or {}", -kMostEv, kMostEv, kAutomatic)))
+      ->capture_default_str();
+}
+
+ToneMapping ToneFlags::toneMapping(const std::filesystem::path& file, const Image& picture) const {
+  if (exposure != kAutomatic) return {static_cast<float>(parseNumber(exposure).value()), curve};
+  const ToneMapping tone{automaticExposure(picture), curve};
+  if (file.extension() == ".png")
+    std::fputs(fmt::format("exposure {:.3f} EV\n", tone.exposureEv).c_str(), stderr);
+  return tone;
+}
+
+}  // namespace limn::app

@@ -1,0 +1,25 @@
+// Declares the options that say how a .png shows linear values.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+
+#include "core/image/tone_mapping.h"
+
+namespace limn::app {
+
+/// Gives the command --tonemap.
+void addToneCurveFlag(CLI::App& command, ToneCurve& curve);
+
+/// Holds --tonemap and --exposure, of which the exposure may depend on the picture.
+struct ToneFlags {
+  ToneCurve curve = ToneCurve::none;
+  std::string exposure = "0";  ///< EV, or "auto"
+
+  void addTo(CLI::App& command);
+  /// Returns what a file of that name is written with. Says the automatic exposure of a .png on stderr.
+  ToneMapping toneMapping(const std::filesystem::path& file, const Image& picture) const;
+};
+
+}  // namespace limn::app
