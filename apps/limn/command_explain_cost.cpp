@@ -51,6 +51,8 @@ int run(const Options& options) {
   settings.term = parseTerm(options.scene.term);
   render::checkTechniques(settings.techniques, settings.term);
   const session::View view = session::open(options.scene, warn);
+  if (view.aa > 1)
+    throw UsageError(fmt::format("--aa {}: explain-cost compares single frames; 1 is accepted", view.aa));
   settings.size = view.size;
   settings.light = view.light;
   Image reference;

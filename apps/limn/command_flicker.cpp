@@ -12,6 +12,7 @@
 #include "core/image/flicker.h"
 #include "core/reference/reference.h"
 #include "core/render/renderer.h"
+#include "core/render/supersample.h"
 #include "core/session/view.h"
 
 namespace limn::app {
@@ -78,9 +79,7 @@ class Sequence {
   Frame at(double time) {
     renderer_.setTime(time, view_.animation);
     const scene::CameraPose camera = session::chooseCamera(options_.scene, renderer_.pose());
-    renderer_.setCamera(camera);
-    renderer_.render();
-    return {renderer_.read(), truth(camera, 0), truth(camera, 1)};
+    return {render::supersample(renderer_, camera, view_.size, view_.aa), truth(camera, 0), truth(camera, 1)};
   }
 
  private:

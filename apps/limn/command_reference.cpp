@@ -23,7 +23,7 @@ namespace {
 
 struct Options {
   SceneQuestion scene{.term = name(Term::direct)};
-  int spp = 256, threads = 0, aa = 1;
+  int spp = 256, threads = 0;
   double noise = 0;
   ToneFlags tone;
   uint64_t seed = 0;
@@ -54,7 +54,6 @@ reference::Request makeRequest(const Options& options, const session::View& view
   request.bounces = options.bounces.value_or(request.bounces);
   if (!options.interfaces.empty()) request.interfaces = parseInterfaces(options.interfaces);
   request.seed = options.seed;
-  request.aa = options.aa;
   request.threads = options.threads;
   return request;
 }
@@ -144,8 +143,6 @@ Action addReferenceCommand(CLI::App& command) {
                   "With --at-vertices: halve triangle edges longer than this, in scene radii")
       ->capture_default_str()
       ->check(CLI::Range(0.005, 1e3));
-  command.add_option("--aa", options->aa, "N x N samples in each pixel (both renderers or neither)")
-      ->check(CLI::Range(1, 16));
   command.add_option("--seed", options->seed, "Seed of the random numbers");
   command.add_option("--threads", options->threads, "0: all cores")->check(CLI::Range(0, 1024));
   options->tone.addTo(command);

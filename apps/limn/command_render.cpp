@@ -14,6 +14,7 @@
 #include "core/base/text.h"
 #include "core/gpu/device.h"
 #include "core/render/renderer.h"
+#include "core/render/supersample.h"
 #include "core/session/view.h"
 
 namespace limn::app {
@@ -55,6 +56,9 @@ void printStats(const render::FrameStats& stats) {
       stats.renderer, stats.frameMs.median, stats.frameMs.q1, stats.frameMs.q3, stats.frameMs.n,
       stats.dynamic ? "dynamic" : "static", stats.passSumMs,
       static_cast<double>(stats.memoryBytes) / (1 << 20));
+  if (stats.framesPerPicture > 1)
+    fmt::print("a picture takes {} frames: {:.3f} ms\n", stats.framesPerPicture,
+               stats.framesPerPicture * stats.frameMs.median);
   constexpr double allowed = 0.15;  // else the passes' times do not explain the frame's
   if (std::abs(stats.passSumMs - stats.frameMs.median) > allowed * stats.frameMs.median)
     fmt::print(stderr,
@@ -105,15 +109,15 @@ void writeText(const fs::path& file, const std::string& text) {
   sayWritten(file);
 }
 
-/// One frame that says which program it compiles and which pass it is in. What was asked for is waited for
-/// before each pass, so that the bar tells where the time goes.
-void renderWithProgress(render::Renderer& renderer) {
-  constexpr double patience = 1, compiling = 0.5;  // seconds; share of the bar
-  Progress progress("rendering", patience);
-  const LastWords words("interrupted; no picture was written");
+/// One frame of `frames` that says which program it compiles and which pass it is in. What was asked for is
+/// waited for before each pass, so that the bar tells where the time goes.
+void renderWithProgress(render::Renderer& renderer, Progress& progress, int frame, int frames) {
+  const double compiling = frame == 0 ? 0.5 : 0;  // share of the frame's part of the bar
+  const auto update = [&](double fraction, const std::string& note) {
+    progress.update((frame + fraction) / frames, note);
+  };
   renderer.setCompileProgress([&](int compiled, int wanted) {
-    progress.update(compiling * compiled / std::max(1, wanted),
-                    fmt::format("program {} of {}", compiled + 1, wanted));
+    update(compiling * compiled / std::max(1, wanted), fmt::format("program {} of {}", compiled + 1, wanted));
   });
   std::vector<frame::PassReport> passes;
   std::size_t next = 0;
@@ -124,7 +128,7 @@ void renderWithProgress(render::Renderer& renderer) {
     }
     renderer.finish();
     if (next < passes.size())
-      progress.update(compiling + (1 - compiling) * double(next) / double(passes.size()), passes[next].name);
+      update(compiling + (1 - compiling) * double(next) / double(passes.size()), passes[next].name);
     ++next;
     return false;
   });
@@ -152,7 +156,6 @@ int run(const Options& options) {
   gpu::Device device(*context);
   render::Renderer renderer(device, view.scene, options.shaders);
   renderer.configure(settings);
-  renderer.setCamera(view.camera);
   renderer.setTime(view.time, view.animation);
 
   Writer writer(options);
@@ -165,16 +168,24 @@ int run(const Options& options) {
                               frames->first, frame - 1, frame, frames->last));
       session::moveTo(view, options.scene, frame / options.fps);
       renderer.setTime(view.time, view.animation);
-      renderer.setCamera(view.camera);
-      renderer.render();
-      writer.write(numbered(options.out, frame), renderer.read());
+      writer.write(numbered(options.out, frame),
+                   render::supersample(renderer, view.camera, view.size, view.aa));
       progress.update(double(frame - frames->first + 1) / (frames->last - frames->first + 1));
     }
     sayWritten(fmt::format("{} to {}", numbered(options.out, frames->first).string(),
                            numbered(options.out, frames->last).string()));
   } else {
-    renderWithProgress(renderer);
-    writer.write(options.out, renderer.read());
+    constexpr double patience = 1;  // seconds
+    Image picture;
+    {
+      const LastWords words("interrupted; no picture was written");
+      Progress progress("rendering", patience);
+      int rendered = 0;
+      picture = render::supersample(renderer, view.camera, view.size, view.aa, [&] {
+        renderWithProgress(renderer, progress, rendered++, view.aa * view.aa);
+      });
+    }
+    writer.write(options.out, std::move(picture));
     sayWritten(options.out);
   }
 
@@ -183,6 +194,7 @@ int run(const Options& options) {
   if (repeat > 0) {
     stats = render::measure(renderer, repeat);
     stats->scene = options.scene.scene;
+    stats->framesPerPicture = view.aa * view.aa;
     printStats(*stats);
   }
   if (options.explain) printExplanation(renderer.explain(), stats ? &*stats : nullptr);

@@ -166,7 +166,9 @@ void PictureStudio::write(const SaveOrder& order, const std::filesystem::path& f
     rendered_.reset();
     if (render(order.picture) != Outcome::done) throw Error(facts_.picture.problem);
   }
-  Image image = picture_->read();
+  const int aa = order.picture.scene.aa;
+  if (aa > 1) rendered_.reset();  // the renderer ends with another frame than the one that is shown
+  Image image = picture_->read(view_->camera, aa);
   if (!order.command.empty()) sign(image, order.command);
   if (file.has_parent_path()) createFolder(file.parent_path());
   writePicture(file, image, order.picture.tone);

@@ -5,6 +5,7 @@
 
 #include "apps/view/picture_order.h"
 #include "core/base/error.h"
+#include "core/render/supersample.h"
 
 namespace limn::app {
 namespace {
@@ -50,6 +51,10 @@ ShownPicture::Outcome ShownPicture::render(const scene::CameraPose& camera, doub
     configured_ = shown_ = false;
     return Outcome::failed;
   }
+}
+
+Image ShownPicture::read(const scene::CameraPose& camera, int aa) {
+  return aa == 1 ? read() : render::supersample(renderer_, camera, settings_.size, aa);
 }
 
 bool ShownPicture::reloadShaders() {

@@ -35,6 +35,8 @@ class ShownPicture {
   /// Returns the tone-mapped picture, bottom row first; null before the first one.
   const gpu::Texture* display() const { return shown_ ? &renderer_.display() : nullptr; }
   Image read() const { return renderer_.read(); }
+  /// Returns the picture as seen by `camera` with aa x aa samples in each pixel (render::supersample).
+  Image read(const scene::CameraPose& camera, int aa);
   glm::ivec2 size() const { return settings_.size; }
   const std::string& problem() const { return problem_; }
   const std::string& shaderProblem() const { return shaderProblem_; }

@@ -95,6 +95,11 @@ constexpr QuestionField kFields[] = {
         .changing(view)
         .sweptAs("sizes")
         .placed(6),
+    integer(
+        "aa", "--aa", &Q::aa, {1, 16}, "",
+        "N x N samples in each pixel, averaged in linear light, in pictures and references alike: a picture\n"
+        "takes N x N frames")
+        .changing(view),
     choice("term", "--output-term", &Q::term, kTerms, "Which part of the light the picture shows")
         .meaning(kTermDocs)
         .in(kSubject)

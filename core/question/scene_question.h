@@ -22,6 +22,7 @@ struct SceneQuestion {
   double fov = 0;
   std::string light = {};
   int width = 1280, height = 720;
+  int aa = 1;
   std::string term = name(Term::final);
   double time = 0;
   std::string animation = {};

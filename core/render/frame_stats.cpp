@@ -179,6 +179,7 @@ std::string toJson(const FrameStats& stats) {
               {"timer", frame::name(stats.timer)},
               {"dynamic", stats.dynamic},
               {"size", {stats.width, stats.height}},
+              {"frames_per_picture", stats.framesPerPicture},
               {"scene", stats.scene},
               {"technique", stats.technique},
               {"parameters", parameters},
@@ -203,6 +204,7 @@ FrameStats frameStatsFromJson(const std::string& text) {
     stats.dynamic = json.at("dynamic");
     stats.width = json.at("size").at(0);
     stats.height = json.at("size").at(1);
+    stats.framesPerPicture = json.value("frames_per_picture", 1);
     stats.scene = json.at("scene");
     stats.technique = json.at("technique");
     for (const auto& [name, value] : json.at("parameters").items())

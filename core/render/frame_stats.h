@@ -50,6 +50,7 @@ struct FrameStats {
   bool software = false;
   bool dynamic = true;
   int width = 0, height = 0;
+  int framesPerPicture = 1;  ///< that supersample() averages; all times are those of one
   std::string scene, technique;
   std::vector<std::pair<std::string, std::string>> parameters;  ///< "technique.parameter", value
   Quartiles frameMs;  ///< wall clock between two glFinish, in a run of its own without pass timing

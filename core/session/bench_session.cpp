@@ -10,6 +10,7 @@
 #include "core/bench/machine.h"
 #include "core/question/question_fields.h"
 #include "core/render/frame_stats.h"
+#include "core/render/supersample.h"
 #include "core/session/view.h"
 #include "core/technique/bound.h"
 
@@ -75,6 +76,7 @@ BenchSession::Loaded& BenchSession::load(const bench::Case& c) {
   }
   View& view = loaded_->view;
   view.size = {c.width, c.height};
+  view.aa = c.aa;
   view.unshadowed = c.unshadowed == "on";
   view.reliefPaths = reliefPathsOf(c.reliefPaths);
   view.subsurface = subsurfaceModelOf(c.subsurface);
@@ -121,9 +123,7 @@ std::string BenchSession::keepPicture(const std::string& name, const Image& imag
 Image BenchSession::unshadowed(const bench::Case& c, int light) {
   Loaded& loaded = load(c);
   loaded.renderer.configure(baseSettings(loaded.view, Term::direct, light));
-  loaded.renderer.setCamera(loaded.view.camera);
-  loaded.renderer.render();
-  return loaded.renderer.read();
+  return render::supersample(loaded.renderer, loaded.view.camera, loaded.view.size, loaded.view.aa);
 }
 
 /// Sum over the lights of L_u * V_reference: what no visibility technique can beat.
@@ -214,14 +214,14 @@ bench::Measurement BenchSession::measure(const bench::Case& c) {
   render::Settings settings = settingsOf(c);
   settings.channels = true;
   loaded.renderer.configure(settings);
-  loaded.renderer.setCamera(loaded.view.camera);
-  loaded.renderer.render();
-  bench::Measurement result{loaded.renderer.read(), {}};
+  bench::Measurement result{
+      render::supersample(loaded.renderer, loaded.view.camera, loaded.view.size, loaded.view.aa), {}};
 
   configureTimed(loaded, c, settings);
   render::FrameStats stats = render::measure(loaded.renderer, c.frames, c.warmup, playback(loaded, c));
   loaded.renderer.setTime(loaded.view.time, loaded.view.animation);
   stats.scene = c.scene;
+  stats.framesPerPicture = c.aa * c.aa;
   result.cost.renderer = stats.renderer;
   result.cost.backend = stats.backend;
   result.cost.timer = frame::name(stats.timer);

@@ -200,6 +200,7 @@ static void chooseGrid(const std::string& grid, scene::Scene& scene) {
 View open(const SceneQuestion& question, const Warn& warn) {
   View view;
   view.size = {question.width, question.height};
+  view.aa = question.aa;
   view.unshadowed = question.unshadowed == "on";
   view.reliefPaths = reliefPathsOf(question.reliefPaths);
   view.subsurface = subsurfaceModelOf(question.subsurface);
@@ -238,6 +239,7 @@ reference::Request referenceRequest(const View& view, const scene::Pose& pose,
       .scene = view.scene, .pose = pose, .camera = camera, .progress = {}, .checkpoint = {}};
   request.width = view.size.x;
   request.height = view.size.y;
+  request.aa = view.aa;
   request.term = term;
   request.unshadowed = view.unshadowed;
   request.reliefPaths = view.reliefPaths;

@@ -34,6 +34,7 @@ struct View {
   scene::CameraPose camera;
   scene::Pose pose;
   glm::ivec2 size;
+  int aa = 1;  ///< x aa samples in each pixel
   int light = scene::kNone;
   bool unshadowed = false;                               ///< in the reference
   ReliefPaths reliefPaths = ReliefPaths::both;           ///< in the reference

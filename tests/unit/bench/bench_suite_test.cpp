@@ -180,13 +180,14 @@ TEST(BenchSuite, ScenesMayBeChangedAsOnTheCommandLine) {
   const SceneQuestion asked{.scene = "lights", .width = 8, .height = 8};
   EXPECT_EQ(static_cast<const SceneQuestion&>(plain), asked);
   const Case changed =
-      parseSuite(start +
-                     "set_light = [\"key.size=0.5\", \"key.intensity=3\"]\neye = \"0,1,3\"\ntarget = "
-                     "\"0,0,0\"\nfov = 30\ndefault_lights = \"on\"\nenvironment_rotation = 90\n"
-                     "environment_scale = 2\nunshadowed = \"on\"\nrelief_paths = \"others\"\nsubsurface = "
-                     "\"walk\"\nanimation = "
-                     "\"walk\"\ngrid = \"smoke\"\ndisplaced = \"on\"\n",
-                 "s.toml")
+      parseSuite(
+          start +
+              "set_light = [\"key.size=0.5\", \"key.intensity=3\"]\neye = \"0,1,3\"\ntarget = "
+              "\"0,0,0\"\nfov = 30\ndefault_lights = \"on\"\nenvironment_rotation = 90\n"
+              "environment_scale = 2\naa = 2\nunshadowed = \"on\"\nrelief_paths = \"others\"\nsubsurface = "
+              "\"walk\"\nanimation = "
+              "\"walk\"\ngrid = \"smoke\"\ndisplaced = \"on\"\n",
+          "s.toml")
           .cases[0];
   const SceneQuestion wanted{.scene = "lights",
                              .eye = "0,1,3",
@@ -194,6 +195,7 @@ TEST(BenchSuite, ScenesMayBeChangedAsOnTheCommandLine) {
                              .fov = 30,
                              .width = 8,
                              .height = 8,
+                             .aa = 2,
                              .animation = "walk",
                              .lightSettings = {"key.size=0.5", "key.intensity=3"},
                              .defaultLights = "on",

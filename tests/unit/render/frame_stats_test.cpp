@@ -31,6 +31,7 @@ TEST(FrameStats, SurviveTheirJson) {
   stats.dynamic = false;
   stats.width = 3;
   stats.height = 5;
+  stats.framesPerPicture = 4;
   stats.parameters = {{"pcss.bias", "1.5"}};
   stats.frameMs = {2, 1, 3, 7};
   stats.passes.push_back(

@@ -1,0 +1,118 @@
+// Pixels as means over their areas, against the area that a straight edge leaves in closed form.
+#include "core/render/supersample.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/reference/reference.h"
+#include "core/scene/camera.h"
+#include "tests/gpu/render_test.h"
+#include "tests/support/gltf_builder.h"
+
+namespace limn {
+namespace {
+
+constexpr int kSide = 16;
+
+/// The part of a unit square at (x, y) in which a u + b v < c: the square clipped by the line.
+double areaBelow(double x, double y, double a, double b, double c) {
+  const std::array<glm::dvec2, 4> square{glm::dvec2(x, y), {x + 1, y}, {x + 1, y + 1}, {x, y + 1}};
+  const auto inside = [&](glm::dvec2 p) { return c - a * p.x - b * p.y; };
+  std::vector<glm::dvec2> clipped;
+  for (size_t i = 0; i < 4; ++i) {
+    const glm::dvec2 p = square[i], q = square[(i + 1) % 4];
+    const double sp = inside(p), sq = inside(q);
+    if (sp > 0) clipped.push_back(p);
+    if (sp * sq < 0) clipped.push_back(p + (q - p) * (sp / (sp - sq)));
+  }
+  double twice = 0;
+  for (size_t i = 0; i < clipped.size(); ++i) {
+    const glm::dvec2 p = clipped[i], q = clipped[(i + 1) % clipped.size()];
+    twice += p.x * q.y - p.y * q.x;
+  }
+  return 0.5 * std::abs(twice);
+}
+
+class SupersampleTest : public RenderTest {
+ protected:
+  /// A triangle in z = 0 of radiance 1, whose edge crosses the picture: x + 2 y = 0.3 in the square from -1
+  /// to 1 that the camera sees.
+  SupersampleTest() {
+    test::GltfBuilder b;
+    b.append("materials",
+             {{"emissiveFactor", {1, 1, 1}}, {"pbrMetallicRoughness", {{"baseColorFactor", {0, 0, 0, 1}}}}});
+    const int positions = b.vec3({{-5.7f, 3, 0}, {-5.7f, -3, 0}, {6.3f, -3, 0}});
+    b.meshNode(b.mesh({{"POSITION", positions}}, -1, 0));
+    scene_ = scene::loadMemory(b.glb(), {});
+    camera_ = scene::lookAt({0, 0, 5}, glm::vec3(0), static_cast<float>(2 * std::atan(0.2)));
+  }
+
+  static double area(int x, int yFromTop) {
+    const double pixel = 2.0 / kSide;
+    return areaBelow(x, kSide - 1 - yFromTop, pixel, 2 * pixel, 0.3 + 3);  // with u, v from the lower left
+  }
+
+  scene::Scene scene_;
+  scene::CameraPose camera_;
+};
+
+TEST_F(SupersampleTest, AnEdgeShowsTheAreaBesideIt) {
+  render::Renderer renderer(device(), scene_);
+  renderer.configure(settings(kSide, kSide, Term::final));
+  double before = 1;
+  for (const int aa : {1, 2, 4, 8}) {
+    const Image picture = render::supersample(renderer, camera_, {kSide, kSide}, aa);
+    double worst = 0, sum = 0;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        const double error = static_cast<double>(picture.at(x, y, 0)) - area(x, y);
+        worst = std::max(worst, std::abs(error));
+        sum += error;
+      }
+    EXPECT_LT(worst, 0.6 / aa) << aa;
+    EXPECT_LT(worst, before) << aa;
+    EXPECT_LE(std::abs(sum), 0.5 * kSide / aa) << aa << ": in each column half the distance of two samples";
+    before = worst;
+  }
+}
+
+TEST_F(SupersampleTest, TheReferenceHasTheSameSamples) {
+  render::Renderer renderer(device(), scene_);
+  render::Settings s = settings(kSide, kSide, Term::final);
+  s.channels = true;
+  renderer.configure(s);
+  for (const int aa : {2, 3}) {
+    const Image picture = render::supersample(renderer, camera_, {kSide, kSide}, aa);
+    const scene::Pose pose = scene::evaluate(scene_, 0);
+    reference::Request request{.scene = scene_, .pose = pose, .camera = camera_};
+    request.width = request.height = kSide;
+    request.term = Term::final;
+    request.spp = 1;
+    request.aa = aa;
+    const Image truth = reference::render(request).image;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        EXPECT_NEAR(picture.at(x, y, 0), truth.at(x, y, 0), 1e-6f) << aa << ' ' << x << ' ' << y;
+        for (const char* channel : {"coverage", "id"})
+          EXPECT_EQ(picture.at(x, y, picture.channel(channel)), truth.at(x, y, truth.channel(channel)))
+              << channel << ' ' << aa << ' ' << x << ' ' << y;
+      }
+  }
+}
+
+TEST_F(SupersampleTest, OneSampleIsTheFrameToTheBit) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  render::Settings s = settings(24, 16, Term::final, {quick("pcss")});
+  s.channels = true;
+  const Image frame = picture(renderer, s);
+  const Image single = render::supersample(renderer, renderer.pose().cameras.at(0), s.size, 1);
+  EXPECT_TRUE(std::ranges::equal(frame.data(), single.data()));
+  // And after several samples the renderer has its camera again.
+  render::supersample(renderer, renderer.pose().cameras.at(0), s.size, 2);
+  renderer.render();
+  EXPECT_TRUE(std::ranges::equal(frame.data(), renderer.read().data()));
+}
+
+}  // namespace
+}  // namespace limn
