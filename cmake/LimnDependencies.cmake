@@ -7,6 +7,7 @@ find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(TinyGLTF REQUIRED)
+find_package(meshoptimizer REQUIRED)
 find_package(OpenImageIO REQUIRED)
 find_package(embree 3 REQUIRED)
 find_package(TBB REQUIRED)
@@ -25,5 +26,7 @@ set(LIMN_OPENVDB_OPTIONS -fvisibility=default -fno-visibility-inlines-hidden)
 find_program(LIMN_ESBUILD esbuild REQUIRED)
 find_path(LIMN_NODE_MODULES d3-scale/package.json PATHS /usr/share/nodejs REQUIRED)
 
+# How meshoptimizer was built is nothing that those who use it need on every command line.
+set_target_properties(meshoptimizer::meshoptimizer PROPERTIES INTERFACE_COMPILE_DEFINITIONS "")
 # Debian's OpenImageIO target names opencv's include folder, which limn does not need and may not exist.
 set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "")

@@ -46,6 +46,16 @@ Rules documentRules() {
       size("bufferViews[].byteOffset"),
       size("bufferViews[].byteLength!"),
       {"bufferViews[].byteStride", Type::whole, 0, 252},
+      // EXT_meshopt_compression
+      flag("buffers[].extensions.EXT_meshopt_compression.fallback"),
+      index("bufferViews[].extensions.EXT_meshopt_compression.buffer!"),
+      size("bufferViews[].extensions.EXT_meshopt_compression.byteOffset"),
+      size("bufferViews[].extensions.EXT_meshopt_compression.byteLength!"),
+      {"bufferViews[].extensions.EXT_meshopt_compression.byteStride!", Type::whole, 1, 256},
+      size("bufferViews[].extensions.EXT_meshopt_compression.count!"),
+      text("bufferViews[].extensions.EXT_meshopt_compression.mode!", {"ATTRIBUTES", "TRIANGLES", "INDICES"}),
+      text("bufferViews[].extensions.EXT_meshopt_compression.filter",
+           {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"}),
       index("accessors[].bufferView"),
       size("accessors[].byteOffset"),
       code("accessors[].componentType!", {"5120", "5121", "5122", "5123", "5125", "5126"}),
@@ -131,6 +141,10 @@ Rules documentRules() {
       // KHR_materials_...
       number("materials[].extensions.KHR_materials_emissive_strength.emissiveStrength"),
       number("materials[].extensions.KHR_materials_ior.ior"),
+      object("materials[].extensions.KHR_materials_unlit"),
+      number("materials[].extensions.KHR_materials_pbrSpecularGlossiness.diffuseFactor[4]"),
+      number("materials[].extensions.KHR_materials_pbrSpecularGlossiness.specularFactor[3]"),
+      number("materials[].extensions.KHR_materials_pbrSpecularGlossiness.glossinessFactor"),
       number("materials[].extensions.KHR_materials_specular.specularFactor"),
       number("materials[].extensions.KHR_materials_specular.specularColorFactor[3]"),
       number("materials[].extensions.KHR_materials_transmission.transmissionFactor"),
@@ -148,7 +162,8 @@ Rules documentRules() {
 void addTextureRules(Rules& rules) {
   for (const char* place :
        {"pbrMetallicRoughness.baseColorTexture", "pbrMetallicRoughness.metallicRoughnessTexture",
-        "normalTexture", "emissiveTexture"}) {
+        "normalTexture", "emissiveTexture", "extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture",
+        "extensions.KHR_materials_pbrSpecularGlossiness.specularGlossinessTexture"}) {
     const std::string info = std::string("materials[].") + place;
     const std::string transform = info + ".extensions.KHR_texture_transform";
     rules.push_back(index(info + ".index!"));

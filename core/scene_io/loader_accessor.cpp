@@ -74,18 +74,24 @@ const tinygltf::Accessor& Loader::accessorAt(int index, const std::string& what)
   return accessor;
 }
 
+std::span<const std::byte> Loader::bufferBytes(int index, std::uint64_t offset, std::uint64_t length,
+                                               const std::string& what) const {
+  if (index < 0 || static_cast<std::size_t>(index) >= buffers_.size())
+    fail(fmt::format("{}: buffer {} does not exist; there are {}", what, index, buffers_.size()));
+  const std::span<const std::byte> buffer = buffers_[static_cast<std::size_t>(index)];
+  if (offset > buffer.size() || length > buffer.size() - offset)
+    fail(fmt::format("{} covers {} bytes from {}, buffer {} has {}", what, length, offset, index,
+                     buffer.size()));
+  return buffer.subspan(offset, length);
+}
+
 std::span<const std::byte> Loader::viewBytes(int view, const std::string& what) const {
   if (view < 0 || static_cast<std::size_t>(view) >= model_->bufferViews.size())
     fail(fmt::format("{}: buffer view {} does not exist; there are {}", what, view,
                      model_->bufferViews.size()));
   const tinygltf::BufferView& source = model_->bufferViews[static_cast<std::size_t>(view)];
-  if (source.buffer < 0 || static_cast<std::size_t>(source.buffer) >= buffers_.size())
-    fail(fmt::format("{}: buffer {} does not exist; there are {}", what, source.buffer, buffers_.size()));
-  const std::span<const std::byte> buffer = buffers_[static_cast<std::size_t>(source.buffer)];
-  if (source.byteOffset > buffer.size() || source.byteLength > buffer.size() - source.byteOffset)
-    fail(fmt::format("{}: buffer view {} covers {} bytes from {}, buffer {} has {}", what, view,
-                     source.byteLength, source.byteOffset, source.buffer, buffer.size()));
-  return buffer.subspan(source.byteOffset, source.byteLength);
+  return bufferBytes(source.buffer, source.byteOffset, source.byteLength,
+                     fmt::format("{}: buffer view {}", what, view));
 }
 
 template <class Store>

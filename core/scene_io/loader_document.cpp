@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/scene_io/private/document.h"
 #include "core/scene_io/private/document_schema.h"
 #include "core/scene_io/private/loader.h"
 
@@ -35,6 +36,9 @@ constexpr std::array kSupportedExtensions = {
     "KHR_materials_emissive_strength",
     "EXT_mesh_gpu_instancing",
     "KHR_mesh_quantization",
+    "KHR_materials_unlit",
+    "KHR_materials_pbrSpecularGlossiness",
+    "EXT_meshopt_compression",
 };
 // clang-format on
 
@@ -167,8 +171,10 @@ class DocumentCheck {
       const std::string& extension = entry.get_ref<const std::string&>();
       if (std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), extension) ==
           kSupportedExtensions.end()) {
-        return fmt::format("needs the extension {}, which is not supported; save the file without it",
-                           oneLine(extension));
+        return fmt::format(
+            "needs the extension {}, which is not supported; save the file without it, for example "
+            "with gltf-transform",
+            oneLine(extension));
       }
     }
     return {};
@@ -178,10 +184,6 @@ class DocumentCheck {
 };
 
 }  // namespace
-
-struct Loader::Document {
-  json root;
-};
 
 namespace {
 
@@ -209,6 +211,7 @@ void Loader::parse(const Container& container, tinygltf::Model& model) {
     cleanNames(root[lights]);
   takeBuffers(document, container.binary);
   takeImages(document);
+  decodeViews(document);
 
   const std::string text = root.dump();
   if (text.size() > std::numeric_limits<unsigned>::max()) fail("more than 4 GiB of JSON");
@@ -234,6 +237,10 @@ void Loader::takeBuffers(Document& document, std::span<const std::byte> binary) 
     const auto bytes = buffer.at("byteLength").get<std::uint64_t>();
     const auto uri = buffer.find("uri");
     std::span<const std::byte> content = binary;
+    if (buffer.value(json::json_pointer("/extensions/EXT_meshopt_compression/fallback"), false)) {
+      buffers_.emplace_back();  // stands for what is decoded instead
+      continue;
+    }
     if (uri != buffer.end()) {
       bufferStorage_.push_back(readUri(uri->get<std::string>(), what, kMaxFileBytes));
       content = bufferStorage_.back();

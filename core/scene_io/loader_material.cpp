@@ -52,10 +52,8 @@ std::span<const std::byte> Loader::imageBytes(const ImageSource& source, const s
   return storage;
 }
 
-int Loader::readImage(int index, bool srgb, const std::string& what) {
+std::optional<Image8> Loader::decodeImage(int index, const std::string& what) {
   const ImageSource& source = imageAt(index, what);
-  const auto known = imageIndex_.find({index, srgb});
-  if (known != imageIndex_.end()) return known->second;
   const std::string label = imageLabel(index);
 
   std::vector<std::byte> storage;
@@ -63,7 +61,7 @@ int Loader::readImage(int index, bool srgb, const std::string& what) {
   // One damaged picture is no reason to show nothing: the factors of what it is for stand alone.
   const auto withoutImage = [&](const std::string& problem) {
     warn(fmt::format("{}; {} goes without it", problem, what));
-    return imageIndex_[{index, srgb}] = kNone;
+    return std::nullopt;
   };
   Image8 decoded;
   try {
@@ -81,16 +79,25 @@ int Loader::readImage(int index, bool srgb, const std::string& what) {
   texels_ += static_cast<std::uint64_t>(decoded.width) * static_cast<std::uint64_t>(decoded.height);
   if (texels_ > limits_.imageTexels)
     fail(fmt::format("image {}: more than {} texels in all images", index, limits_.imageTexels));
+  return decoded;
+}
 
+int Loader::addImage(int index, bool srgb, Image8 decoded) {
+  const std::string& name = imageSources_[static_cast<std::size_t>(index)].name;
   TextureImage image;
-  image.name = source.name.empty() ? fmt::format("#{}", index) : source.name;
+  image.name = name.empty() ? fmt::format("#{}", index) : name;
   image.srgb = srgb;
   image.levels.push_back({decoded.width, decoded.height, std::move(decoded.data)});
   buildMipChain(image);
-  const int result = static_cast<int>(scene_.images.size());
   scene_.images.push_back(std::move(image));
-  imageIndex_[{index, srgb}] = result;
-  return result;
+  return static_cast<int>(scene_.images.size()) - 1;
+}
+
+int Loader::readImage(int index, bool srgb, const std::string& what) {
+  const auto known = imageIndex_.find({index, srgb});
+  if (known != imageIndex_.end()) return known->second;
+  std::optional<Image8> decoded = decodeImage(index, what);
+  return imageIndex_[{index, srgb}] = decoded ? addImage(index, srgb, *std::move(decoded)) : kNone;
 }
 
 /// PNG and JPEG state their size early: a picture beyond the limits is refused before a decoder sees it.
@@ -236,14 +243,16 @@ Material Loader::readMaterial(const tinygltf::Material& source, const std::strin
     return readTexture(info.index, info.texCoord, extension(info.extensions, "KHR_texture_transform"), srgb,
                        use, what + " " + slot);
   };
-  m.baseColourTexture = texture(pbr.baseColorTexture, true, "baseColorTexture");
-  m.metalRoughTexture = texture(pbr.metallicRoughnessTexture, false, "metallicRoughnessTexture");
+  const tinygltf::Value* glossy = extension(source.extensions, "KHR_materials_pbrSpecularGlossiness");
+  if (glossy == nullptr) {
+    m.baseColourTexture = texture(pbr.baseColorTexture, true, "baseColorTexture");
+    m.metalRoughTexture = texture(pbr.metallicRoughnessTexture, false, "metallicRoughnessTexture");
+  }
   m.normalTexture = texture(source.normalTexture, false, "normalTexture");
   m.normalScale = number(source.normalTexture.scale, what + " normalTexture scale");
   m.emissiveTexture = texture(source.emissiveTexture, true, "emissiveTexture");
   readMaterialExtensions(source, m, what);
-  if (source.extensions.contains("KHR_materials_pbrSpecularGlossiness"))
-    warn(what + ": KHR_materials_pbrSpecularGlossiness is ignored");
+  if (glossy != nullptr) applySpecularGlossiness(*glossy, m, use, what);
   if (source.extras.IsObject() && source.extras.Has("limn_material")) {
     const std::string place = what + " limn_material";
     applyModel(m, readModel(source.extras.Get("limn_material"), place), place);
@@ -256,8 +265,26 @@ Material Loader::readMaterial(const tinygltf::Material& source, const std::strin
     if (m.normalTexture.image != kNone)
       warn(place + ": there is a normalTexture too, from which normals are taken");
   }
+  if (source.extensions.contains("KHR_materials_unlit")) applyUnlit(m, what);
   uvUses_.push_back(use);
   return m;
+}
+
+void Loader::applyUnlit(Material& m, const std::string& what) {
+  if (m.model || m.subsurface || m.transmission > 0)
+    warn(what + ": KHR_materials_unlit; what else the material says of light is ignored");
+  Material unlit;
+  unlit.name = m.name;
+  unlit.baseColour = glm::vec4(0, 0, 0, m.baseColour.w);
+  unlit.baseColourTexture = m.baseColourTexture;  // for its alpha
+  unlit.emission = glm::vec3(m.baseColour);
+  unlit.emissiveTexture = m.baseColourTexture;
+  unlit.metallic = 0;
+  unlit.specularFactor = 0;
+  unlit.alphaCutoff = m.alphaCutoff;
+  unlit.doubleSided = m.doubleSided;
+  m = unlit;
+  unlit_.insert(static_cast<int>(scene_.materials.size()));
 }
 
 void Loader::readMaterials() {

@@ -1,4 +1,6 @@
 // Writes the fuzzer's seed corpus: one small file per feature of the loader. Usage: limn_scene_seeds FOLDER
+#include <meshoptimizer.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -134,6 +136,34 @@ void sparseStrip(GltfBuilder& b) {
   b.root["meshes"][0]["primitives"][0]["mode"] = 5;
 }
 
+/// Positions that meshoptimizer compressed.
+void meshoptCompressed(GltfBuilder& b) {
+  const std::vector<glm::vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  std::vector<unsigned char> bytes(meshopt_encodeVertexBufferBound(3, sizeof(glm::vec3)));
+  bytes.resize(meshopt_encodeVertexBuffer(bytes.data(), bytes.size(), corners.data(), 3, sizeof(glm::vec3)));
+  b.meshNode(b.mesh({{"POSITION", b.vec3(corners)}}));
+  const int view = b.view(bytes.data(), bytes.size());
+  json& views = b.root["bufferViews"];
+  views[0]["extensions"]["EXT_meshopt_compression"] = {
+      {"buffer", 0},      {"byteOffset", views[static_cast<std::size_t>(view)]["byteOffset"]},
+      {"byteStride", 12}, {"byteLength", bytes.size()},
+      {"count", 3},       {"mode", "ATTRIBUTES"},
+      {"filter", "NONE"}};
+}
+
+void otherMaterials(GltfBuilder& b) {
+  b.texturedMaterial(
+      {reinterpret_cast<const std::byte*>(kPng), reinterpret_cast<const std::byte*>(kPng) + sizeof kPng});
+  b.root["materials"][0]["extensions"]["KHR_materials_unlit"] = json::object();
+  b.append("materials", {{"extensions",
+                          {{"KHR_materials_pbrSpecularGlossiness",
+                            {{"diffuseFactor", {1, 0.5, 0.25, 1}},
+                             {"specularFactor", {0.2, 0.3, 0.4}},
+                             {"glossinessFactor", 0.5},
+                             {"specularGlossinessTexture", {{"index", 0}}}}}}}});
+  b.triangle(1);
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -155,6 +185,8 @@ int main(int count, char** arguments) {
       {"quad", emissiveQuad},
       {"instances", instanced},
       {"sparse_strip", sparseStrip},
+      {"meshopt", meshoptCompressed},
+      {"other_materials", otherMaterials},
   };
   for (const auto& [name, fill] : seeds) {
     GltfBuilder builder;

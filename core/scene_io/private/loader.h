@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -16,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/image/image.h"
 #include "core/scene/metaballs.h"
 #include "core/scene/scene.h"
 #include "core/scene_io/load.h"
@@ -95,6 +97,9 @@ class Loader {
   void takeBuffers(Document& document, std::span<const std::byte> binary);
   void takeImages(Document& document);
 
+  // loader_compressed.cpp
+  void decodeViews(Document& document);
+
   // loader_accessor.cpp
   /// Returns the accessor's values, which are finite. `expected` is the count that it must have; negative:
   /// any.
@@ -104,6 +109,8 @@ class Loader {
                                           const std::string& what);
   const tinygltf::Accessor& accessorAt(int index, const std::string& what) const;
   std::span<const std::byte> viewBytes(int view, const std::string& what) const;
+  std::span<const std::byte> bufferBytes(int buffer, std::uint64_t offset, std::uint64_t length,
+                                         const std::string& what) const;
   /// Calls store(element, pointer to its first component) for every element, sparse ones last.
   template <class Store>
   void forEachElement(const tinygltf::Accessor& accessor, int components, std::int64_t expected,
@@ -116,6 +123,13 @@ class Loader {
   void readMaterials();
   Material readMaterial(const tinygltf::Material& source, const std::string& what);
   void readMaterialExtensions(const tinygltf::Material& source, Material& material, const std::string& what);
+  /// Makes the surface show its base colour whatever lights it (KHR_materials_unlit).
+  void applyUnlit(Material& material, const std::string& what);
+  // loader_specular_glossiness.cpp
+  /// Replaces the material's metallic-roughness by KHR_materials_pbrSpecularGlossiness.
+  void applySpecularGlossiness(const tinygltf::Value& extension, Material& material, UvUse& use,
+                               const std::string& what);
+  int readGlossiness(int image, float glossiness, glm::vec3& meanSpecular, const std::string& what);
   // loader_material_model.cpp
   /// Returns the model that extras.limn_material describes.
   glsl::MaterialModel readModel(const tinygltf::Value& extras, const std::string& what);
@@ -157,6 +171,10 @@ class Loader {
                                         std::vector<std::byte>& storage) const;
   /// Returns the index of the image in Scene::images, or none, with a warning, when it cannot be read.
   int readImage(int index, bool srgb, const std::string& what);
+  /// Returns the image as stored, or nothing, with a warning, when it cannot be read.
+  std::optional<Image8> decodeImage(int index, const std::string& what);
+  /// Appends the image, with its smaller levels, to Scene::images and returns its index.
+  int addImage(int index, bool srgb, Image8 image);
   void checkImageSize(std::span<const std::byte> bytes, const std::string& label) const;
 
   // loader_mesh.cpp
@@ -237,6 +255,7 @@ class Loader {
 
   int defaultMaterial_ = kNone;  ///< for primitives that name none
   std::vector<UvUse> uvUses_;    ///< parallel to Scene::materials
+  std::set<int> unlit_;          ///< materials that emit without being lights
   std::vector<int> newIndex_;    ///< file's node index to Scene::nodes
   std::vector<int> fileIndex_;
   std::vector<int> cameraIndex_;  ///< file's camera index to Scene::cameras, or none

@@ -1,0 +1,96 @@
+// KHR_materials_pbrSpecularGlossiness, which glTF has archived, as metallic-roughness: the diffuse colour is
+// the base colour of a dielectric whose reflectance at normal incidence is the specular colour, as an index
+// of refraction of 0 in KHR_materials_ior allows it, and roughness is 1 - glossiness.
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/scene_io/private/loader.h"
+#include "glsl/numeric/srgb.glsl"
+
+namespace limn::scene {
+namespace {
+
+int indexOf(const tinygltf::Value& info, const char* key, int absent) {
+  const tinygltf::Value& value = info.Get(key);
+  return value.IsNumber() ? value.GetNumberAsInt() : absent;
+}
+
+const tinygltf::Value* transformOf(const tinygltf::Value& info) {
+  if (!info.Has("extensions") || !info.Get("extensions").IsObject()) return nullptr;
+  const tinygltf::Value& extensions = info.Get("extensions");
+  return extensions.Has("KHR_texture_transform") && extensions.Get("KHR_texture_transform").IsObject()
+             ? &extensions.Get("KHR_texture_transform")
+             : nullptr;
+}
+
+}  // namespace
+
+int Loader::readGlossiness(int index, float glossiness, glm::vec3& meanSpecular, const std::string& what) {
+  std::optional<Image8> image = decodeImage(index, what);
+  if (!image) return kNone;
+  glm::dvec3 sum(0);
+  bool varies = false;
+  for (std::size_t i = 0; i < image->data.size(); i += 4) {
+    std::uint8_t* texel = &image->data[i];
+    for (int c = 0; c < 3; ++c) {
+      sum[c] += static_cast<double>(glsl::srgb_decode(static_cast<float>(texel[c]) / 255.f));
+      varies = varies || texel[c] != image->data[static_cast<std::size_t>(c)];
+    }
+    // Roughness stands in the green channel of metallic-roughness, metalness, whose factor is 0, in the blue
+    // one.
+    const float roughness = 1 - glossiness * static_cast<float>(texel[3]) / 255.f;
+    texel[0] = texel[2] = 0;
+    texel[1] = static_cast<std::uint8_t>(std::lround(255.f * roughness));
+    texel[3] = 255;
+  }
+  meanSpecular = glm::vec3(4.0 / static_cast<double>(image->data.size()) * sum);
+  if (varies) warn(what + ": the mean of its specular colours is used");
+  return addImage(index, false, *std::move(image));
+}
+
+void Loader::applySpecularGlossiness(const tinygltf::Value& e, Material& m, UvUse& use,
+                                     const std::string& what) {
+  warn(what + ": KHR_materials_pbrSpecularGlossiness is converted to metallic-roughness");
+  const auto factor = [&](const char* key, std::size_t count, float* out) {
+    if (!e.Has(key)) return;
+    const std::string place = fmt::format("{} {}", what, key);
+    const std::vector<float> values = numbers(e.Get(key), count, place);
+    for (std::size_t i = 0; i < count; ++i) out[i] = ranged(static_cast<double>(values[i]), 0, 1, place);
+  };
+  m.baseColour = glm::vec4(1);
+  m.specularColour = glm::vec3(1);
+  factor("diffuseFactor", 4, &m.baseColour.x);
+  factor("specularFactor", 3, &m.specularColour.x);
+  const tinygltf::Value& gloss = e.Get("glossinessFactor");
+  const float glossiness =
+      gloss.IsNumber() ? ranged(gloss.GetNumberAsDouble(), 0, 1, what + " glossinessFactor") : 1.f;
+  m.metallic = 0;
+  m.roughness = 1 - glossiness;
+  m.ior = 1000;  // reflects all but 0.4 % of the specular colour
+  m.specularFactor = 1;
+  if (e.Has("diffuseTexture")) {
+    const tinygltf::Value& info = e.Get("diffuseTexture");
+    m.baseColourTexture = readTexture(indexOf(info, "index", -1), indexOf(info, "texCoord", 0),
+                                      transformOf(info), true, use, what + " diffuseTexture");
+  }
+  if (!e.Has("specularGlossinessTexture")) return;
+  const std::string place = what + " specularGlossinessTexture";
+  const tinygltf::Value& info = e.Get("specularGlossinessTexture");
+  const tinygltf::Texture& texture = textureAt(indexOf(info, "index", -1), place);
+  if (texture.source == -1) {
+    warn(place + " has no PNG or JPEG image and is ignored");
+    return;
+  }
+  glm::vec3 mean(1);
+  const int image = readGlossiness(texture.source, glossiness, mean, place);
+  if (image == kNone) return;
+  const auto [wrapS, wrapT] = wrapsOf(texture, place);
+  m.metalRoughTexture = {image, wrapS, wrapT};
+  m.roughness = 1;
+  m.specularColour *= mean;
+  takeUvs(indexOf(info, "texCoord", 0), transformOf(info), use, place);
+}
+
+}  // namespace limn::scene
