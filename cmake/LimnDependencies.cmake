@@ -22,6 +22,7 @@ find_library(LIMN_OPENVDB_LIBRARY openvdb REQUIRED)
 find_package(Imath REQUIRED)  # whose numbers it holds
 # Its templates' static members must be one with the library's own: hidden, they crash it.
 set(LIMN_OPENVDB_OPTIONS -fvisibility=default -fno-visibility-inlines-hidden)
+find_program(LIMN_HELP2MAN help2man REQUIRED)
 # The report page: D3's modules, and the bundler that joins them.
 find_program(LIMN_ESBUILD esbuild REQUIRED)
 find_path(LIMN_NODE_MODULES d3-scale/package.json PATHS /usr/share/nodejs REQUIRED)

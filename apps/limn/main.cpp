@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "apps/limn/commands.h"
+#include "apps/limn/completion.h"
 #include "apps/limn/interruption.h"
 #include "apps/limn/options.h"
 #include "core/base/error.h"
@@ -93,6 +94,14 @@ int main(int argc, char** argv) {
   add("reproduction", "Compare the thesis's ratios with those of bench results; write a Markdown page",
       addReproductionCommand);
   add("view", "Open a window on a scene; accepts the options of limn-view", addViewCommand);
+  limn.add_subcommand("completion",
+                      "Print a script that completes this command line in bash: source <(limn completion)")
+      ->callback([&] {
+        action = [&limn] {
+          std::fputs(bashCompletion(limn).c_str(), stdout);
+          return 0;
+        };
+      });
 
   return guarded([&] {
     if (argc > 1 && argv[1][0] != '-') checkCommand(limn, argv[1]);

@@ -1,0 +1,44 @@
+// limn completion: what bash offers at the cursor.
+#include "tests/cli/limn_program.h"
+
+namespace limn::test {
+namespace {
+
+/// What bash completes the last of the words to, a line each.
+std::vector<std::string> completed(const std::vector<std::string>& words) {
+  std::string script =
+      "PATH=" + std::string(kBinaryDir) + "/bin:$PATH; source <(limn completion); COMP_WORDS=(";
+  for (const std::string& word : words) script += "'" + word + "' ";
+  script +=
+      ") COMP_CWORD=" + std::to_string(words.size() - 1) + "; _limn; printf '%s\\n' \"${COMPREPLY[@]}\"";
+  const Outcome outcome = run({"/bin/bash", "-c", script});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  std::vector<std::string> lines;
+  std::istringstream text(outcome.out);
+  for (std::string line; std::getline(text, line);)
+    if (!line.empty()) lines.push_back(line);
+  return lines;
+}
+
+TEST(Completion, KnowsCommandsOptionsAndChoices) {
+  using testing::Contains;
+  using testing::ElementsAre;
+  EXPECT_THAT(completed({"limn", "ren"}), ElementsAre("render"));
+  EXPECT_THAT(completed({"limn", ""}), testing::AllOf(Contains("bench"), Contains("--version")));
+  EXPECT_THAT(completed({"limn", "render", "--tone"}), ElementsAre("--tonemap"));
+  EXPECT_THAT(completed({"limn", "render", "--tonemap", ""}), ElementsAre("none", "neutral", "agx"));
+  EXPECT_THAT(completed({"limn", "reference", "x.glb", "--term", "ind"}), ElementsAre("indirect"));
+  EXPECT_THAT(completed({"limn", "compare", "--tone"}), testing::IsEmpty());
+  EXPECT_THAT(completed({"limn", "brdf", "simu"}), ElementsAre("simulate"));
+}
+
+TEST(Completion, OffersFilesElsewhere) {
+  TemporaryFolder folder;
+  std::ofstream(folder / "scene.glb") << ' ';
+  const std::string start = (folder / "sce").string();
+  EXPECT_THAT(completed({"limn", "render", start}), testing::ElementsAre(start + "ne.glb"));
+}
+
+}  // namespace
+}  // namespace limn::test
