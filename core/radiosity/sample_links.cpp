@@ -17,6 +17,10 @@ namespace {
 
 constexpr int kRays = 4;  ///< of a link
 
+/// Rays of a link that cannot be refined further where these vary too much: between elements next to each
+/// other, whose directions cover many lobes.
+constexpr int kMostRays = 32;
+
 /// Links that would transport less than this part of the error allowed are not made.
 constexpr float kNegligible = 1e-3f;
 
@@ -140,8 +144,11 @@ class SampleSolver::Shooting {
 
     // What transports less than a part of the error allowed is known well enough by as many rays fewer.
     const int count = static_cast<int>(std::ceil(kRays * std::clamp(bounds.most / allowed, 0x1p-10f, 1.f)));
-    const Rays rays = trace(pair, r, s, count, counts);
-    if (divisible && bounds.most > allowed && rays.varies > allowed) return split(receiver, sender);
+    Rays rays = trace(pair, r, s, count, counts);
+    if (bounds.most > allowed && rays.varies > allowed) {
+      if (divisible) return split(receiver, sender);
+      rays = trace(pair, r, s, kMostRays, counts);
+    }
     sample.radiance = rays.radiance;
     return sample.radiance == glm::vec3(0) ? Verdict::none : Verdict::link;
   }
@@ -176,10 +183,10 @@ class SampleSolver::Shooting {
     return bounds;
   }
 
-  /// Takes the light along rays of a link, at most kRays.
+  /// Takes the light along rays of a link, at most kMostRays.
   Rays trace(const Pair& pair, uint32_t r, uint32_t s, int count, ShootCounts& counts) const {
     const uint32_t seed = mixed(r + mixed(s));
-    std::array<End, kRays> from;
+    std::array<End, kMostRays> from;
     glm::vec3 brought(0);
     float low = 1e30f, high = 0, whole = 0;
     for (int i = 0; i < count; ++i) {

@@ -38,6 +38,9 @@ class RenderTest : public GlTest {
       // Of surface elements: as long as may be without losing whole objects.
       if (p.type == ParameterType::real && unit == "scene radii" && p.defaultValue < 0.1)
         use.parameters.set(p.name, "0.1");
+      // Errors that are asked for: ten times as large.
+      if (p.type == ParameterType::real && std::string_view(p.name).ends_with("_error"))
+        use.parameters.set(p.name, std::to_string(std::min(10 * p.defaultValue, p.range.high)));
       if (p.type != ParameterType::integer) continue;
       const double most = unit == "texels" ? 512 : unit == "lights" ? lights : unit == "bins" ? 8 : 16;
       if (p.defaultValue > most && p.range.low <= most) use.parameters.set(p.name, std::to_string(int(most)));

@@ -71,18 +71,18 @@ TEST_F(ViewerInputTest, ChoosesEnvironments) {
 /// Every slider of a technique goes from one end of its range to the other, and each x brings a default back.
 TEST_F(ViewerInputTest, MovesSliders) {
   std::string sliders, resets;
-  for (const char* row : {"86", "109", "178", "201", "247", "270"}) {
+  for (const char* row : {"86", "109", "178", "201", "247", "270", "293"}) {
     const std::string y = row;
     sliders += "point 270 " + y + "; xdotool mousedown 1; frames 2; point 183 " + y + "; point 360 " + y +
                "; point 240 " + y + "; xdotool mouseup 1; frames 2\n";
     resets += "click 375 " + y + "\n";
   }
-  const Outcome outcome = view("cornell_box --technique pcss --size 500x300 --open techniques --save a.exr",
+  const Outcome outcome = view("cornell_box --technique pcss --size 500x330 --open techniques --save a.exr",
                                "save first.exr\n" + sliders + "save moved.exr\n" + resets + "save reset.exr");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
-  for (const char* parameter :
-       {"blocker_samples", "filter_samples", "search_rounds", "shadow_map_size", "bias", "light_size"})
+  for (const char* parameter : {"blocker_samples", "filter_samples", "search_rounds", "shadow_map_size",
+                                "views", "bias", "light_size"})
     EXPECT_THAT(command("moved.exr"), testing::HasSubstr(std::string("--set pcss.") + parameter));
   EXPECT_THAT(command("reset.exr"), testing::Not(testing::HasSubstr("--set ")));
   EXPECT_EQ(colours(picture("reset.exr")), colours(picture("first.exr")));
