@@ -26,7 +26,7 @@ struct CapPlaces {
         const UnitCell cell = whole.child(k, middles);
         const glm::vec3 centre = cell.centre();
         x[count] = centre.x, y[count] = centre.y, z[count] = centre.z;
-        for (const glm::vec3& corner : cell.corners) cosine = std::min(cosine, glm::dot(centre, corner));
+        cosine = std::min(cosine, cell.cornerCosine(centre));
       }
     }
     sine = std::sqrt(1 - cosine * cosine);
@@ -72,9 +72,8 @@ struct Descent {
     const DirectionalTree::Node& own = nodes[node];
     if (own.child == 0) {
       const glm::vec3 centre = cell.centre();
-      float cosine = 1;
-      for (const glm::vec3& corner : cell.corners) cosine = std::min(cosine, glm::dot(centre, corner));
-      raise(most, glsl::from_local(frame, centre), cosine, glsl::largest_channel(own.value));
+      raise(most, glsl::from_local(frame, centre), cell.cornerCosine(centre),
+            glsl::largest_channel(own.value));
       return;
     }
     glm::vec3 middles[3];

@@ -31,8 +31,7 @@ struct ConeSearch {
   /// Whether the cone meets the circle around the cell's corners.
   bool meets(const UnitCell& cell) const {
     const glm::vec3 centre = cell.centre();
-    float least = 1;
-    for (const glm::vec3& corner : cell.corners) least = std::min(least, glm::dot(centre, corner));
+    const float least = cell.cornerCosine(centre);
     const float reach = std::sqrt(std::max(1 - least * least, 0.f));
     if (cosine < -least) return true;  // together they are more than half a turn
     return glm::dot(axis, centre) >= cosine * least - sine * reach;
@@ -144,16 +143,12 @@ glm::vec3 DirectionalTree::flux() const {
   return sum * (domain_ == DirectionDomain::hemisphere ? 0.25f * glsl::pi : 0.5f * glsl::pi);
 }
 
-float DirectionalTree::greatest() const {
-  float most = 0;
-  for (const Node& node : nodes_) most = std::max(most, glsl::largest_channel(node.value));
-  for (const glm::vec3& corner : corners_) most = std::max(most, glsl::largest_channel(corner));
-  return most;
-}
-
 float DirectionalTree::pack(std::vector<glm::uvec2>& nodes) const {
+  float brightest = 0;
+  for (const Node& node : nodes_) brightest = std::max(brightest, glsl::largest_channel(node.value));
+  for (const glm::vec3& corner : corners_) brightest = std::max(brightest, glsl::largest_channel(corner));
   // Never so small that dividing by it overflows.
-  const float scale = std::max(greatest() / glsl::packed_tree_brightest, 1e-37f);
+  const float scale = std::max(brightest / glsl::packed_tree_brightest, 1e-37f);
   for (const Node& node : nodes_)
     nodes.emplace_back(node.child, glsl::shared_exponent_encode(node.value / scale));
   for (size_t i = 0; i < corners_.size(); i += 2)

@@ -70,8 +70,6 @@ class LIMN_API DirectionalTree {
   /// Returns the bounds over the directions (of the domain) less than an angle from `axis` (unit), by that
   /// angle's cosine, and over no more than the cells that these lie in.
   DirectionBounds bounds(const glm::vec3& axis, float cosine) const;
-  /// Returns the greatest value of any channel, 0 without nodes.
-  float greatest() const;
   /// Returns the integral over the domain by its weight: radiosity of radiance, power of intensity.
   glm::vec3 flux() const;
 

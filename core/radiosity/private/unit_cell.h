@@ -1,6 +1,8 @@
 // Internal to directional trees: a cell with its corners' directions, which its children share.
 #pragma once
 
+#include <algorithm>
+
 #include "glsl/numeric/octahedral_cells.glsl"
 
 namespace limn::radiosity {
@@ -28,6 +30,12 @@ struct UnitCell {
     return r;
   }
   glm::vec3 centre() const { return glsl::octahedral_centre(cell, signs); }
+  /// Returns the cosine of the cone around the cell's centre that holds its corners.
+  float cornerCosine(const glm::vec3& centre) const {
+    float least = 1;
+    for (const glm::vec3& corner : corners) least = std::min(least, glm::dot(centre, corner));
+    return least;
+  }
 };
 
 }  // namespace limn::radiosity
