@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "core/base/shell.h"
 #include "core/question/question_fields.h"
+#include "core/question/render_command.h"
 
 namespace limn::app {
 namespace {
@@ -48,26 +48,6 @@ std::string techniqueNames(const std::vector<render::TechniqueUse>& uses) {
   return names;
 }
 
-class CommandLine {
- public:
-  explicit CommandLine(const std::string& start) : text_(start) {}
-  /// Left out where `value` is empty.
-  CommandLine& add(const char* option, const std::string& value) {
-    if (!value.empty()) text_ += fmt::format(" {} {}", option, shellQuoted(value));
-    return *this;
-  }
-  /// Left out where `value` is `standard`.
-  template <class T>
-  CommandLine& add(const char* option, const T& value, const T& standard) {
-    if (!(value == standard)) text_ += fmt::format(" {} {}", option, shellQuoted(fmt::format("{}", value)));
-    return *this;
-  }
-  std::string text() const { return text_; }
-
- private:
-  std::string text_;
-};
-
 }  // namespace
 
 void setCamera(SceneQuestion& options, const Orbit& orbit, const glm::dvec3& origin) {
@@ -84,18 +64,16 @@ void dropRivals(std::vector<render::TechniqueUse>& techniques, const TechniquePl
 }
 
 std::string renderCommand(const ViewState& state, const std::filesystem::path& out) {
-  const SceneQuestion& question = state.scene;
-  CommandLine line("limn render " + shellQuoted(question.scene));
-  line.add("--technique", techniqueNames(state.techniques));
+  std::vector<std::pair<std::string, std::string>> settings;
   for (const render::TechniqueUse& use : state.techniques)
     for (const auto& [name, value] : changed(use))
-      line.add("--set", fmt::format("{}.{}={}", use.plugin->info->name, name, value));
-  for (const QuestionField& field : questionFields().subspan(1))  // the scene stands before them
-    if (!isDefault(field, question))
-      for (const std::string& value : printed(field, question)) line.add(field.flag, value);
-  line.add("--exposure", state.tone.exposureEv, 0.f);
-  line.add("--tonemap", kToneCurves[static_cast<size_t>(state.tone.curve)], kToneCurves[0]);
-  return line.add("--out", out.string()).text();
+      settings.emplace_back(fmt::format("{}.{}", use.plugin->info->name, name), value);
+  std::string line = limn::renderCommand(state.scene, techniqueNames(state.techniques), settings);
+  if (state.tone.exposureEv != 0)
+    line += commandOption("--exposure", fmt::format("{}", state.tone.exposureEv));
+  if (state.tone.curve != ToneCurve::none)
+    line += commandOption("--tonemap", kToneCurves[static_cast<size_t>(state.tone.curve)]);
+  return line + commandOption("--out", out.string());
 }
 
 namespace {

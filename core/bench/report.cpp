@@ -16,6 +16,7 @@
 #include "core/bench/tables.h"
 #include "core/gpu/shader_source.h"
 #include "core/question/question_fields.h"
+#include "core/question/render_command.h"
 #include "core/render/frame_stats.h"
 
 namespace limn::bench {
@@ -58,6 +59,8 @@ Json timesAsFast(const Row* baseline, const Row& row) {
 Json rowJson(const Row& row, const std::vector<Window>& windows, EmbeddedPictures& pictures) {
   const Json line = Json::parse(toJson(row));
   Json json = {{"name", rowName(row)}};
+  if (row.failure.empty() && row.what.technique != kSeparationFloor)
+    json["command"] = renderCommand(row.what, row.what.technique, row.what.parameters) + " --out picture.png";
   for (const char* key : {"key", "technique", "title", "parameters", "baseline", "error", "penumbra",
                           "misjudged", "spectrum", "failure"})
     json[key] = known(line, key);
