@@ -21,3 +21,4 @@ configure_package_config_file(cmake/limnConfig.cmake.in ${CMAKE_BINARY_DIR}/limn
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/limnConfigVersion.cmake COMPATIBILITY ExactVersion)
 install(FILES ${CMAKE_BINARY_DIR}/limnConfig.cmake ${CMAKE_BINARY_DIR}/limnConfigVersion.cmake
   cmake/LimnTechnique.cmake cmake/embed.py cmake/module_headers.py cmake/module_headers.txt DESTINATION ${LIMN_INSTALL_CMAKE})
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)

@@ -1,0 +1,21 @@
+# A Debian package of what `cmake --install` installs: `cpack -G DEB` in the build folder.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME limn)
+set(CPACK_PACKAGE_VENDOR "The limn authors")
+set(CPACK_PACKAGE_CONTACT "The limn authors <limn@localhost>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/package)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Real-time shadows and global illumination, with their error and their cost
+ A core, techniques as plug-ins, a viewer, and a bench that measures error against
+ time beside a path-traced reference.")
+# Linked libraries are found; those of OpenGL are opened at run time, the software renderer through them.
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libgl1-mesa-dri")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libosmesa6, bash-completion")
+# Modules are built against the installed headers.
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "cmake, g++, python3, libglm-dev, libfmt-dev, ffmpeg")
+include(CPack)
