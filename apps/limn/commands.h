@@ -24,6 +24,7 @@ Action addFlickerCommand(CLI::App& command);
 Action addExplainCostCommand(CLI::App& command);
 Action addReportCommand(CLI::App& command);
 Action addReproductionCommand(CLI::App& command);
+Action addSchemaCommand(CLI::App& command);
 Action addViewCommand(CLI::App& command);
 
 }  // namespace limn::app

@@ -93,6 +93,7 @@ int main(int argc, char** argv) {
   add("report", "Write the tables and the report of finished benches again", addReportCommand);
   add("reproduction", "Compare the thesis's ratios with those of bench results; write a Markdown page",
       addReproductionCommand);
+  add("schema", "Print the JSON Schema of rows of results or of frame statistics", addSchemaCommand);
   add("view", "Open a window on a scene; accepts the options of limn-view", addViewCommand);
   limn.add_subcommand("completion",
                       "Print a script that completes this command line in bash: source <(limn completion)")
