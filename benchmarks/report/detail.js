@@ -1,19 +1,17 @@
 // The setting that is looked at: what it is, what it costs, how wrong it is, and its pictures.
 import {breakable, el, milliseconds, number} from "./dom.js";
 import {METRICS, TIMES, errorText, isNumber} from "./metrics.js";
+import {command} from "./command.js";
+import {enlarge} from "./enlarge.js";
 import {ownName, settings} from "./series.js";
 
-/** The picture with the magnified windows drawn on it. */
-export function framed(uri, text, table) {
+/** Picture `shown` of a list with the magnified windows drawn on it; pressed, it is enlarged and flips to the others. */
+export function framed(table, pictures, shown) {
   const [width, height] = table.size;
   const boxes = table.windows.map(([x, y, w, h], i) => el("span", {class: `window-${i}`, "aria-hidden": "true",
     style: {left: `${100 * x / width}%`, top: `${100 * y / height}%`, width: `${100 * w / width}%`, height: `${100 * h / height}%`}}));
-  return el("div", {class: "framed"}, el("img", {src: uri, alt: text}), boxes);
-}
-
-function picture(page, index, table, caption, text) {
-  if (!(index >= 0)) return null;
-  return el("figure", {}, framed(page.pictures[index], text, table), el("figcaption", {}, caption));
+  return el("button", {type: "button", class: "framed", title: "Enlarge", click: () => enlarge(pictures, shown)},
+    el("img", {src: pictures[shown].uri, alt: pictures[shown].text}), boxes);
 }
 
 function facts(row) {
@@ -32,14 +30,16 @@ function facts(row) {
 /** All but its name. */
 export function detail(page, table, row) {
   const pictures = [
-    picture(page, row.picture, table, row.name, `Picture by ${row.name}`),
-    picture(page, row.difference, table, "FLIP difference: black equal, light yellow wholly different",
-      `Difference between ${row.name} and the reference`),
-    picture(page, table.reference.picture, table, "reference", "Picture of the reference"),
-  ].filter(Boolean);
+    {index: row.picture, name: "picture", caption: row.name, text: `Picture by ${row.name}`},
+    {index: row.difference, name: "difference", caption: "FLIP difference: black equal, light yellow wholly different",
+     text: `Difference between ${row.name} and the reference`},
+    {index: table.reference.picture, name: "reference", caption: "reference", text: "Picture of the reference"},
+  ].filter(({index}) => index >= 0).map((picture) => ({...picture, uri: page.pictures[picture.index]}));
   return [
-    pictures.length ? el("div", {class: "pictures"}, pictures)
+    pictures.length ? el("div", {class: "pictures"}, pictures.map(({caption}, i) =>
+      el("figure", {}, framed(table, pictures, i), el("figcaption", {}, caption))))
       : el("p", {class: "note"}, "No pictures were kept; a suite with pictures = true keeps them."),
     row.failure ? el("p", {}, `Failed: ${row.failure}`) : facts(row),
-  ];
+    command(row),
+  ].filter(Boolean);
 }

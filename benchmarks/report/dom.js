@@ -40,3 +40,22 @@ export function number(value) {
 export function milliseconds(value) {
   return value === null ? "not timed" : `${number(value)} ms`;
 }
+
+/**
+ * A slider over the logarithm of `values`, which lie above zero, with its value beside it as `text(value)` says it. It begins at
+ * `start`; `onValue(value)` is told that and every move.
+ */
+export function slider(label, values, start, text, onValue) {
+  const low = Math.log(Math.min(...values)), high = Math.log(Math.max(...values));
+  const output = el("output", {});
+  const show = () => {
+    const value = Math.exp(low + (high - low) * input.value / 100);
+    output.textContent = text(value);
+    input.setAttribute("aria-valuetext", text(value));
+    onValue(value);
+  };
+  const input = el("input", {type: "range", min: 0, max: 100, step: 1, input: show,
+    value: high > low ? Math.round(100 * (Math.log(start) - low) / (high - low)) : 0});
+  show();
+  return el("label", {class: "chooser"}, el("span", {}, label), el("span", {class: "slider"}, input, output));
+}

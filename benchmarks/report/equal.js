@@ -1,5 +1,5 @@
 // Pictures at equal time and at equal error, as comparisons are printed: the same magnified windows of each technique.
-import {breakable, el, milliseconds, number} from "./dom.js";
+import {breakable, el, milliseconds, number, slider} from "./dom.js";
 import {framed} from "./detail.js";
 import {errorText, measured} from "./metrics.js";
 import {ownName, settings} from "./series.js";
@@ -52,15 +52,6 @@ function strip(page, table, points, metric) {
   return el("div", {class: "strip"}, reference, shown);
 }
 
-/** A slider over the logarithm of the values that `key` takes. */
-function slider(label, values, target, onTarget) {
-  const low = Math.log(Math.min(...values)), high = Math.log(Math.max(...values));
-  const input = el("input", {type: "range", min: 0, max: 100, step: 1,
-    value: high > low ? Math.round(100 * (Math.log(target) - low) / (high - low)) : 0,
-    input: () => onTarget(Math.exp(low + (high - low) * input.value / 100), input)});
-  return el("label", {class: "chooser"}, el("span", {}, label), input);
-}
-
 /** One row of pictures with the slider that chooses its target. */
 function equalRow(page, table, curves, metric, time, kind) {
   const key = kind.key;
@@ -68,18 +59,16 @@ function equalRow(page, table, curves, metric, time, kind) {
     .filter((value) => value > 0);
   if (values.length === 0) return null;
   const body = el("div");
-  const show = (target, input = null) => {
+  const show = (target) => {
     const {found, missing} = nearest(curves, metric, time, key, target);
     found.sort((a, b) => (key === "ms" ? a.bound - b.bound : a.ms - b.ms));
     const text = `${kind.name(metric, time)} ${kind.text(target)}`;
-    if (input) input.setAttribute("aria-valuetext", kind.text(target));
     body.replaceChildren(el("p", {class: "note", "aria-live": "polite"},
       `${text}, within a factor of ${NEAR}, ${key === "ms" ? "least error" : "quickest"} first.` +
       (missing.length ? ` Not near it: ${missing.join(", ")}.` : "")), strip(page, table, found, metric));
   };
   const target = commonTarget(curves, metric, time, key);
-  show(target);
-  return el("div", {class: `equal equal-${key}`}, el("h3", {}, kind.title), slider(kind.label, values, target, show), body);
+  return el("div", {class: `equal equal-${key}`}, el("h3", {}, kind.title), slider(kind.label, values, target, kind.text, show), body);
 }
 
 const KINDS = [
@@ -97,7 +86,7 @@ export function equalRows(page, table, curves, metric, time) {
   const rows = KINDS.map((kind) => equalRow(page, table, curves, metric, time, kind)).filter(Boolean);
   if (rows.length === 0) rows.push(allRows(page, table, curves, metric));
   const whole = table.reference.picture >= 0
-    ? el("figure", {class: "overview"}, framed(page.pictures[table.reference.picture], "Reference", table),
+    ? el("figure", {class: "overview"}, framed(table, [{uri: page.pictures[table.reference.picture], name: "reference", text: "Reference"}], 0),
         el("figcaption", {}, "The reference; the frames are where the techniques' errors differ most.")) : null;
   return [whole, ...rows].filter(Boolean);
 }

@@ -1,9 +1,10 @@
 // The report of a bench: reads what `limn bench` put into the page and shows it, a section per subject.
 import "./licence.js";
-import {Section, subjectName} from "./section.js";
+import {Section, conditions, subjectName} from "./section.js";
 import {el} from "./dom.js";
 import {page} from "./page.js";
 import {stability} from "./stability.js";
+import {takeOverAll} from "./take.js";
 
 const main = document.getElementById("results");
 
@@ -35,11 +36,34 @@ for (const table of page.tables) {
 const sections = [...bySubject.values()].map((tables, i) => new Section(page, tables, `subject-${i}`));
 main.replaceChildren(
   ...summary(page.tables),
-  ...(page.reduction > 1 ? [el("p", {class: "note"}, `Whole pictures are reduced ${page.reduction} times in both directions ` +
-    "to keep this file small; magnified windows are not, and pictures/ beside it has them all.")] : []),
+  ...(page.compressed ? [el("p", {class: "note"}, "To keep this file small, whole pictures are compressed with loss (WebP)" +
+    (page.reduction > 1 ? ` and reduced ${page.reduction} times in both directions` : "") +
+    "; magnified windows are not, and pictures/ beside it has all of them whole.")] : []),
+  ...[takeOverAll(page.tables, {
+    name: (table) => subjectName(table.subject), question: (table) => `${table.term}, ${conditions(table)}`,
+    onVisit: (table, row) => sections.find((section) => section.tables.includes(table)).goTo(table, row)})].filter(Boolean),
   ...(sections.length > 1 ? [el("nav", {"aria-label": "Scenes"}, el("ul", {class: "contents"}, sections.map((section, i) =>
-    el("li", {}, el("a", {href: `#subject-${i}`}, subjectName([...bySubject.values()][i][0].subject))))))] : []),
+    el("li", {}, el("a", {href: `#subject-${i}`, click: () => section.open()},
+      subjectName([...bySubject.values()][i][0].subject))))))] : []),
   ...(sections.length ? sections.map((section) => section.element) : [el("p", {}, "No rows yet.")]),
   ...stability(page.stability));
-for (const section of sections) section.drawCharts();
-document.documentElement.dataset.ready = "yes";
+
+// What is near the window is made at once, the rest while nothing else happens: the page answers before it is whole.
+const near = new IntersectionObserver((entries) => {
+  for (const entry of entries.filter(({isIntersecting}) => isIntersecting)) {
+    near.unobserve(entry.target);
+    sections.find((section) => section.element === entry.target).open();
+  }
+}, {rootMargin: "100%"});
+for (const section of sections) near.observe(section.element);
+const openAll = () => sections.forEach((section) => section.open());
+addEventListener("beforeprint", openAll);
+document.documentElement.dataset.ready = "no";
+const idle = window.requestIdleCallback ?? ((callback) => setTimeout(callback, 50));
+function openNext() {
+  const next = sections.find((section) => !section.table);
+  next?.open();
+  if (next) idle(openNext);
+  else document.documentElement.dataset.ready = "yes";
+}
+idle(openNext);

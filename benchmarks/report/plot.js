@@ -39,6 +39,17 @@ function levelLine(svg, y, value, width, name, label) {
   group.append("text").attr("x", width - MARGIN.right - 4).attr("y", y(value) - 4).attr("text-anchor", "end").text(label);
 }
 
+/** Where a budget of time or error lies: a line across the chart. */
+function budgetLine(group, x, y, width, height, key, value) {
+  const [low, high] = (key === "ms" ? x : y).domain();
+  const inside = value >= low && value <= high;
+  group.style("display", inside ? null : "none");
+  if (!inside) return;
+  const across = key === "ms" ? [x(value), x(value), MARGIN.top, height - MARGIN.bottom]
+    : [MARGIN.left, width - MARGIN.right, y(value), y(value)];
+  ["x1", "x2", "y1", "y2"].forEach((name, i) => group.select("line").attr(name, across[i]));
+}
+
 /** The reference's own method, whose error falls with the square root of its time. */
 function tracedLine(svg, x, y, {ms, sigma}) {
   const error = (time) => sigma * Math.sqrt(ms / time), time = (value) => ms * (sigma / value) ** 2;
@@ -70,7 +81,8 @@ function neighbour(points, current, key) {
 }
 
 /**
- * Draws the chart into `container` and returns {mark(row)}, which shows a row as the current one.
+ * Draws the chart into `container` and returns {mark(row), budget(key, value)}: what shows a row as the current one, and where
+ * the budget of time ("ms") or error lies.
  * `level`: the separation floor. `traced`: {ms, sigma} of the reference, where its time may be set beside the rows'.
  * `onCurrent(row)` is told when a point is hovered, touched or focused.
  */
@@ -78,7 +90,7 @@ export function drawPlot(container, {curves, rows, metric, time, level, traced, 
   const points = curves.flatMap((curve) => measured(curve.rows, metric, time).map((point) => ({...point, curve})));
   if (points.length === 0) {
     container.replaceChildren("No row has both a time and this error.");
-    return {mark() {}};
+    return {mark() {}, budget() {}};
   }
   const width = Math.max(280, container.clientWidth), height = Math.min(460, Math.max(300, width * 0.62));
   const front = paretoFront(points);
@@ -100,6 +112,8 @@ export function drawPlot(container, {curves, rows, metric, time, level, traced, 
   if (level > 0) levelLine(svg, y, level, width, "separation", "separation floor");
   if (traced) tracedLine(svg, x, y, traced);
   svg.append("path").attr("class", "front").attr("d", frontLine(front, x, place));
+  const bound = svg.append("g").attr("class", "level budget").style("display", "none");
+  bound.append("line");
 
   for (const curve of curves) {
     const path = polyline().x((point) => x(point.ms)).y((point) => place(point.error));
@@ -169,5 +183,6 @@ export function drawPlot(container, {curves, rows, metric, time, level, traced, 
         .attr("aria-pressed", (point) => String(point.row === row))
         .attr("tabindex", (point, i) => (any ? point.row === row : i === 0) ? 0 : -1);
     },
+    budget(key, value) { budgetLine(bound, x, y, width, height, key, value); },
   };
 }

@@ -9,6 +9,7 @@ import {detail} from "./detail.js";
 import {drawPlot} from "./plot.js";
 import {drawSpectrum} from "./spectrum.js";
 import {swatch} from "./marks.js";
+import {takeOne} from "./take.js";
 
 export function subjectName({scene, camera, light, light_size: size, environment, time, fps,
   medium, changes}) {
@@ -18,7 +19,7 @@ export function subjectName({scene, camera, light, light_size: size, environment
 }
 
 /** Size, mode and renderer: what a table is measured under. */
-function conditions(table) {
+export function conditions(table) {
   const timed = table.time_size.join("x") === table.size.join("x") ? "" : `, times at ${table.time_size.join(" x ")}`;
   return `${table.size.join(" x ")}${timed}, ${table.dynamic ? "dynamic" : "static"}, ${table.renderer} ` +
     `(${table.software ? "software" : "hardware"})`;
@@ -26,6 +27,7 @@ function conditions(table) {
 
 const unique = (values) => [...new Set(values)];
 
+/** Has a place on the page from the beginning and content once it is opened, so that long reports are read at once. */
 export class Section {
   constructor(page, tables, id) {
     this.page = page;
@@ -33,9 +35,14 @@ export class Section {
     this.tools = el("div", {class: "tools"});
     this.body = el("div");
     this.element = el("section", {id, "aria-labelledby": `${id}-name`},
-      el("h2", {id: `${id}-name`}, subjectName(tables[0].subject)), this.tools, this.body);
+      el("h2", {id: `${id}-name`, tabindex: -1}, subjectName(tables[0].subject)), this.tools, this.body);
     this.time = TIMES[0];
-    this.choose(tables[0]);
+  }
+
+  /** Makes the content, once. */
+  open() {
+    if (this.table) return;
+    this.choose(this.tables[0]);
     let width = 0;  // charts are drawn for a width: anew when it changes
     new ResizeObserver(([entry]) => {
       if (entry.contentRect.width === width) return;
@@ -92,7 +99,9 @@ export class Section {
     const noise = isNumber(table.reference.noise_rms) ? `, noise ${(100 * table.reference.noise_rms).toPrecision(2)} % of the mean` : "";
     const others = this.tables.filter((other) => other.term === table.term && other.renderer === table.renderer &&
       other.dynamic === table.dynamic);
+    this.budget = null;
     this.body.replaceChildren(...[
+      takeOne(curves, metric, time, (...budget) => { this.budget = budget; this.plot?.budget(...budget); }),
       el("p", {class: "note"}, `Term: ${table.term}. ${conditions(table)}. Reference: ${spp}${noise}. ${metric.label}: ${metric.help}.`),
       el("div", {class: "columns"},
         el("div", {}, this.chart, legend,
@@ -116,6 +125,7 @@ export class Section {
     const focused = this.chart.contains(document.activeElement);
     this.plot = drawPlot(this.chart, {curves, rows: table.rows, metric, time, level: floor && metric.read(floor),
       traced: tracedBy(table, metric, time), onCurrent: (row) => { if (row !== this.current) this.select(row); }});
+    if (this.budget) this.plot.budget(...this.budget);
     this.select(this.current);
     if (focused) this.chart.querySelector(".current")?.focus();
   }
@@ -124,6 +134,15 @@ export class Section {
   visit(row) {
     this.select(row);
     this.detail.scrollIntoView({block: "nearest"});
+  }
+
+  /** From elsewhere on the page: one of the section's tables, and a row of it if there is one. */
+  goTo(table, row) {
+    this.open();
+    if (this.table !== table) this.choose(table);
+    if (row) this.select(row);
+    this.element.scrollIntoView();
+    this.element.querySelector("h2").focus();
   }
 
   select(row) {

@@ -233,6 +233,7 @@ std::string reportData(std::span<const Row> rows, const std::filesystem::path& f
   Json json = {{"metrics", pageMetrics()}, {"columns", pageColumns()}, {"tables", Json::array()}};
   for (const Table& table : makeTables(rows)) json["tables"].push_back(tableJson(table, pictures));
   json["pictures"] = pictures.uris();
+  json["compressed"] = pictures.compressed();
   json["reduction"] = pictures.reduction();
   json["stability"] = stability(folder);
   // ASCII alone: no line separator (U+2028) or mark of direction stands in the page as itself.

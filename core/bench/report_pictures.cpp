@@ -147,7 +147,9 @@ EmbeddedPictures::EmbeddedPictures(const fs::path& folder, std::span<const std::
   for (const std::string& file : std::set<std::string>(files.begin(), files.end())) {
     if (const fs::path path = inside(folder_, file); !path.empty()) bytes += fs::file_size(path);
   }
-  constexpr std::uintmax_t kShrinks = 4;  // a picture of half the width and height takes a quarter
+  constexpr std::uintmax_t kWebp = 5, kShrinks = 4;  // of half the width and height: a quarter
+  compressed_ = bytes > budget;
+  if (compressed_) bytes /= kWebp;
   for (; bytes > budget; bytes /= kShrinks) reduction_ *= 2;
 }
 
@@ -160,8 +162,8 @@ Image EmbeddedPictures::read(const std::string& file) const {
   }
 }
 
-int EmbeddedPictures::add(const std::string& name, std::span<const std::uint8_t> png) {
-  uris_.push_back("data:image/png;base64," + base64(png));
+int EmbeddedPictures::add(const std::string& name, const char* type, std::span<const std::uint8_t> file) {
+  uris_.push_back(fmt::format("data:image/{};base64,{}", type, base64(file)));
   return known_[name] = static_cast<int>(uris_.size()) - 1;
 }
 
@@ -169,13 +171,14 @@ int EmbeddedPictures::whole(const std::string& file) {
   if (const auto found = known_.find(file); found != known_.end()) return found->second;
   const fs::path path = inside(folder_, file);
   if (path.empty()) return known_[file] = -1;
-  if (reduction_ > 1) {
+  if (compressed_) {
     const Image image = read(file);
-    return image.empty() ? known_[file] = -1 : add(file, encodePng(reduced(image, reduction_), file));
+    if (image.empty()) return known_[file] = -1;
+    return add(file, "webp", encodeWebp(reduction_ > 1 ? reduced(image, reduction_) : image, file));
   }
   const std::string png = readTextFile(path);
   if (!png.starts_with("\x89PNG")) return known_[file] = -1;
-  return add(file, {reinterpret_cast<const std::uint8_t*>(png.data()), png.size()});
+  return add(file, "png", {reinterpret_cast<const std::uint8_t*>(png.data()), png.size()});
 }
 
 int EmbeddedPictures::window(const std::string& file, const Window& w) {
@@ -184,7 +187,7 @@ int EmbeddedPictures::window(const std::string& file, const Window& w) {
   const Image image = read(file);
   if (image.empty() || w.x < 0 || w.y < 0 || w.x + w.width > image.width() || w.y + w.height > image.height())
     return known_[name] = -1;
-  return add(name, encodePng(cut(image, w), name));
+  return add(name, "png", encodePng(cut(image, w), name));
 }
 
 }  // namespace limn::bench

@@ -323,6 +323,28 @@ std::vector<std::uint8_t> encode(const std::string& name, const char* encoder, c
   return memory.buffer();
 }
 
+/// R, G, B as a display shows them.
+std::vector<std::uint8_t> displayValues(const Image& image, const std::string& name, float exposureEv) {
+  if (image.empty()) throw Error(fmt::format("{}: cannot write an empty image", name));
+  const std::array<int, 3> rgb = image.rgbChannels(name);
+  std::vector<std::uint8_t> pixels;
+  pixels.reserve(image.pixelCount() * 3);
+  const std::size_t channels = static_cast<std::size_t>(image.channelCount());
+  for (std::size_t i = 0; i < image.pixelCount(); ++i) {
+    for (const int c : rgb) {
+      const float value = image.data()[i * channels + static_cast<std::size_t>(c)];
+      pixels.push_back(static_cast<std::uint8_t>(std::lround(255.0f * glsl::tone_map(value, exposureEv))));
+    }
+  }
+  return pixels;
+}
+
+OIIO::ImageSpec displaySpec(const Image& image) {
+  OIIO::ImageSpec spec(image.width(), image.height(), 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  return spec;
+}
+
 }  // namespace
 
 Image readImageMemory(std::span<const std::byte> bytes, const std::string& name) {
@@ -360,21 +382,17 @@ void writeExr(const std::filesystem::path& path, const Image& image) {
 }
 
 std::vector<std::uint8_t> encodePng(const Image& image, const std::string& name, float exposureEv) {
-  if (image.empty()) throw Error(fmt::format("{}: cannot write an empty image", name));
-  const std::array<int, 3> rgb = image.rgbChannels(name);
-  std::vector<std::uint8_t> pixels;
-  pixels.reserve(image.pixelCount() * 3);
-  const std::size_t channels = static_cast<std::size_t>(image.channelCount());
-  for (std::size_t i = 0; i < image.pixelCount(); ++i) {
-    for (const int c : rgb) {
-      const float value = image.data()[i * channels + static_cast<std::size_t>(c)];
-      pixels.push_back(static_cast<std::uint8_t>(std::lround(255.0f * glsl::tone_map(value, exposureEv))));
-    }
-  }
-  OIIO::ImageSpec spec(image.width(), image.height(), 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
+  const std::vector<std::uint8_t> pixels = displayValues(image, name, exposureEv);
+  OIIO::ImageSpec spec = displaySpec(image);
   addMetadata(spec, image);
   return guarded(name, [&] { return encode(name, "png", spec, OIIO::TypeDesc::UINT8, pixels.data()); });
+}
+
+std::vector<std::uint8_t> encodeWebp(const Image& image, const std::string& name) {
+  const std::vector<std::uint8_t> pixels = displayValues(image, name, 0);
+  OIIO::ImageSpec spec = displaySpec(image);
+  spec.attribute("compression", "webp:90");
+  return guarded(name, [&] { return encode(name, "webp", spec, OIIO::TypeDesc::UINT8, pixels.data()); });
 }
 
 void writePng(const std::filesystem::path& path, const Image& image, float exposureEv) {

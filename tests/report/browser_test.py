@@ -150,6 +150,73 @@ def reacts(browser):
     check("sampled_area_light" in browser.evaluate(HEADING), "the table's button shows nothing")
 
 
+def slide(browser, where, position):
+    browser.evaluate(f"""(s => {{ s.value = {position}; s.dispatchEvent(new Event('input')); }})(
+        document.querySelector('{where} input[type=range]'))""")
+
+
+def answers_for_a_budget(browser):
+    """The setting to take: of least error in a time, or quickest at an error; with its command, for one scene and over several."""
+    rows = [json.loads(line) for line in results.read_text().splitlines()]
+    time = lambda row: row["stats"]["frame_ms"]["median"]
+    error = lambda row: row["penumbra"]["rmse"]
+    setting = lambda row: row.get("title") or row["technique"]
+    browser.open(page)
+    check(browser.evaluate("document.querySelector('#take')") is None, "an overview of one scene")
+    for position, best in ((0, min(rows, key=time)), (100, min(rows, key=error))):
+        slide(browser, ".take", position)
+        text = browser.evaluate("document.querySelector('.take p strong').textContent")
+        check(setting(best) in text, f"at {position} % {text} is taken instead of {setting(best)}")
+    shown = browser.evaluate("document.querySelector('.take code').textContent")
+    check(shown.startswith("limn render balls --technique ") and shown.endswith("--out picture.png"), f"the command is {shown}")
+    check(browser.evaluate("document.querySelector('g.level.budget').style.display") != "none", "no line at the budget")
+    browser.evaluate("document.querySelector('.take .command button').click()")
+    browser.settle()
+    check(browser.evaluate("document.querySelector('.take .command button').textContent") in ("Copied", "Selected"), "nothing is copied")
+    limn(*shown.replace("picture.png", str(out / "command.png")).split()[1:])
+    check((out / "command.png").is_file(), "the command does not render")
+
+    others = [json.loads(json.dumps(row)) for row in rows]
+    for row in others:
+        row.update(scene="elsewhere", key=row["key"] + "e")
+    with reported([*rows, *others]):
+        browser.open(page)
+        slide(browser, "#take", 100)
+        lines = browser.evaluate("[...document.querySelectorAll('#take table')[0].tBodies[0].rows].map(r => r.cells[1].textContent)")
+        check(lines == [setting(min(rows, key=error))] * 2, f"over both scenes {lines}")
+        best = browser.evaluate("[...document.querySelectorAll('#take table')[1].tBodies[0].rows[0].cells].map(c => c.textContent)")
+        check(best[:2] == [min(rows, key=error)["technique"], "2"] and best[3] == "2", f"of two scenes {best}")
+        browser.evaluate("[...document.querySelectorAll('#take th button')].at(-1).click()")
+        browser.settle()
+        check(browser.evaluate("Math.abs(document.querySelector('#subject-1').getBoundingClientRect().top) < 60"), "it does not go there")
+        browser.evaluate("""(s => { s.value = 'error'; s.dispatchEvent(new Event('change')); })(
+            [...document.querySelectorAll('#take .chooser')].find(c => c.firstChild.textContent === 'Budget').querySelector('select'))""")
+        slide(browser, "#take", 100)
+        lines = browser.evaluate("[...document.querySelectorAll('#take table')[0].tBodies[0].rows].map(r => r.cells[1].textContent)")
+        check(lines == [setting(min(rows, key=time))] * 2, f"of any error {lines}")
+
+
+def enlarges_and_flips(browser):
+    """A picture over the window, which the keys flip in place."""
+    browser.open(page)
+    source = "document.querySelector('dialog img').src"
+    pictures = browser.evaluate("[...document.querySelectorAll('.detail img')].map(i => i.src)")
+    browser.evaluate("document.querySelector('.detail button.framed').focus()")
+    browser.evaluate("document.activeElement.click()")
+    check(browser.evaluate("document.querySelector('dialog').open && document.querySelector('dialog').contains(document.activeElement)"),
+          "no dialog has the focus")
+    seen = [browser.evaluate(source)]
+    for key in ("ArrowRight", "ArrowRight", " ", " ", "ArrowRight", "ArrowLeft"):
+        browser.press(key)
+        seen.append(browser.evaluate(source))
+    expected = [pictures[i] for i in (0, 1, 2, 1, 2, 0, 2)]
+    check(seen == expected, f"the keys flip to {[pictures.index(s) for s in seen]}")
+    browser.evaluate("document.querySelector('dialog [data-close]').click()")
+    browser.settle()
+    check(browser.evaluate("document.querySelector('dialog') === null && document.activeElement.matches('.detail button.framed')"),
+          "closing does not go back")
+
+
 def is_painted(browser):
     """Every marker has its curve's colour on the screen, and stands off the ground by 3:1, in both schemes."""
     contrast = """(a, b) => { const level = c => { const [r, g, b] = c.map(v => v / 255)
@@ -271,7 +338,7 @@ def withstands_foreign_rows(browser):
         check(part in text, f"{part!r} is not shown")
     measured = "[...document.querySelectorAll('.chooser')].filter(c => c.firstChild.textContent === 'Measured').length"
     check(browser.evaluate(measured) == 1, "software and hardware are not told apart")
-    check(browser.evaluate("document.querySelectorAll('section')[0].querySelectorAll('g.point').length") == POINTS,
+    check(browser.evaluate("document.querySelector('#subject-0').querySelectorAll('g.point').length") == POINTS,
           "software and hardware share a chart")
 
     results.write_text("")
@@ -366,8 +433,9 @@ def is_shut_by_its_policy(browser):
 
 bench()
 with Browser(options.chromium) as browser:
-    for step in (shows_points_and_pictures, reacts, tells_close_points_apart, is_painted, is_accessible, sets_the_reference_beside,
-                 shows_hostile_names_literally, is_shut_by_its_policy, withstands_foreign_rows):
+    for step in (shows_points_and_pictures, reacts, answers_for_a_budget, enlarges_and_flips, tells_close_points_apart, is_painted,
+                 is_accessible, sets_the_reference_beside, shows_hostile_names_literally, is_shut_by_its_policy,
+                 withstands_foreign_rows):
         step(browser)
         check(not browser.problems, f"{step.__name__}: {browser.problems}")
 print("the report page shows and does what it should")

@@ -83,13 +83,15 @@ class Browser:
         return result["result"].get("value")
 
     def open(self, file, width=1200, height=900, scheme="light"):
-        """Loads a file and waits until its scripts and its pictures are done."""
+        """Loads a file and waits until its scripts and its pictures are done; a page that says when it is whole is waited for."""
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600)
         self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
         self.loaded = False
         self.call("Page.navigate", url=file.as_uri())
         while not self.loaded:
             self.note(self.receive())
+        self.evaluate("""new Promise(done => { const wait = () => document.documentElement.dataset.ready === 'no'
+            ? setTimeout(wait, 10) : done(); wait(); })""")
         self.settle()
 
     def settle(self):

@@ -40,11 +40,12 @@ class LIMN_API WindowChooser {
   std::vector<double> sum_, squares_;  // of the errors
 };
 
-/// Holds pictures as data URIs, each file once. PNG files that together exceed `budget` bytes are halved in
-/// both directions until they do not; their windows stay at full resolution.
+/// Holds pictures as data URIs, each file once. Whole pictures are PNG where their files together have at
+/// most `budget` bytes, and lossy WebP, a fifth of that, where they do not; beyond that they are halved in
+/// both directions until they fit. Windows are always PNG at full resolution.
 class LIMN_API EmbeddedPictures {
  public:
-  static constexpr std::uintmax_t kBudget = std::uintmax_t{32} << 20;
+  static constexpr std::uintmax_t kBudget = std::uintmax_t{8} << 20;
 
   /// Takes `files`, the names in the rows, relative to `folder`. Only files inside that folder are read.
   EmbeddedPictures(const std::filesystem::path& folder, std::span<const std::string> files,
@@ -57,12 +58,14 @@ class LIMN_API EmbeddedPictures {
   Image read(const std::string& file) const;
 
   const std::vector<std::string>& uris() const { return uris_; }
-  int reduction() const { return reduction_; }  ///< 1, 2, 4, ...: pixels of the file per embedded pixel
+  bool compressed() const { return compressed_; }  ///< whether whole pictures are WebP
+  int reduction() const { return reduction_; }     ///< 1, 2, 4, ...: pixels of the file per embedded pixel
 
  private:
-  int add(const std::string& name, std::span<const std::uint8_t> png);
+  int add(const std::string& name, const char* type, std::span<const std::uint8_t> file);
 
   std::filesystem::path folder_;
+  bool compressed_ = false;
   int reduction_ = 1;
   std::vector<std::string> uris_;
   std::map<std::string, int> known_;

@@ -64,6 +64,8 @@ TEST_F(BenchReport, HoldsRowsPicturesAndWindows) {
   EXPECT_EQ(table["software"], true);
   EXPECT_EQ(table["rows"][0]["spectrum"].size(), 3u);
   EXPECT_EQ(table["rows"][0]["difference"], -1) << "none was kept";
+  EXPECT_EQ(table["rows"][0]["command"],
+            "limn render balls --technique pcss --size 48x32 --output-term visibility --out picture.png");
   for (const int index : {table["rows"][1]["picture"].get<int>(), table["rows"][1]["windows"][1].get<int>(),
                           table["reference"]["picture"].get<int>()}) {
     const std::string uri = page["pictures"].at(static_cast<std::size_t>(index));
@@ -122,14 +124,23 @@ TEST_F(BenchReport, BrokenPictureLeavesTheReportWhole) {
   EXPECT_TRUE(table["windows"].empty());
 }
 
-TEST_F(BenchReport, PicturesBeyondTheBudgetAreReduced) {
+TEST_F(BenchReport, PicturesBeyondTheBudgetAreCompressedThenReduced) {
   const std::vector<std::string> files = {row("pcss", 0.5f).picture};
-  EXPECT_EQ(EmbeddedPictures(results(), files).reduction(), 1);
-  EmbeddedPictures small(results(), files, fs::file_size(results() / files[0]) / 2);
+  const auto bytes = fs::file_size(results() / files[0]);
+  EmbeddedPictures exact(results(), files);
+  EXPECT_EQ(exact.reduction(), 1);
+  EXPECT_EQ(exact.whole(files[0]), 0);
+  EXPECT_TRUE(exact.uris()[0].starts_with("data:image/png;base64,"));
+  EmbeddedPictures smaller(results(), files, bytes / 2);
+  EXPECT_TRUE(smaller.compressed());
+  EXPECT_EQ(smaller.reduction(), 1);
+  EmbeddedPictures small(results(), files, bytes / 8);
   EXPECT_EQ(small.reduction(), 2);
   EXPECT_EQ(small.whole(files[0]), 0);
   EXPECT_EQ(small.whole(files[0]), 0) << "each picture once";
+  EXPECT_TRUE(small.uris()[0].starts_with("data:image/webp;base64,UklGR")) << small.uris()[0].substr(0, 40);
   EXPECT_EQ(small.window(files[0], {0, 0, 8, 8}), 1);
+  EXPECT_TRUE(small.uris()[1].starts_with("data:image/png;base64,")) << "windows are exact";
   EXPECT_EQ(small.window(files[0], {44, 0, 8, 8}), -1) << "beyond the picture";
 }
 
