@@ -23,6 +23,7 @@ Action addStressCommand(CLI::App& command);
 Action addFlickerCommand(CLI::App& command);
 Action addExplainCostCommand(CLI::App& command);
 Action addReportCommand(CLI::App& command);
+Action addMergeCommand(CLI::App& command);
 Action addReproductionCommand(CLI::App& command);
 Action addSchemaCommand(CLI::App& command);
 Action addViewCommand(CLI::App& command);

@@ -91,6 +91,8 @@ int main(int argc, char** argv) {
       "times (ms), memory (MiB) and pictures",
       addExplainCostCommand);
   add("report", "Write the tables and the report of finished benches again", addReportCommand);
+  add("merge", "Put the rows of several benches into one folder; write its tables and its report",
+      addMergeCommand);
   add("reproduction", "Compare the thesis's ratios with those of bench results; write a Markdown page",
       addReproductionCommand);
   add("schema", "Print the JSON Schema of rows of results or of frame statistics", addSchemaCommand);

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/bench/private/file_in_folder.h"
 #include "glsl/numeric/srgb.glsl"
 
 namespace limn::bench {
@@ -22,14 +23,10 @@ double luminance(const Image& image, int x, int y, const std::array<int, 3>& rgb
   return glsl::luminance({image.at(x, y, rgb[0]), image.at(x, y, rgb[1]), image.at(x, y, rgb[2])});
 }
 
-/// The file if it lies in the folder, whatever the row says; "" otherwise.
+/// The picture if it lies in the folder, whatever the row says; "" otherwise.
 fs::path inside(const fs::path& folder, const std::string& file) {
-  std::error_code error;
-  const fs::path root = fs::weakly_canonical(folder, error);
-  const fs::path path = fs::weakly_canonical(folder / file, error);
-  if (file.empty() || error || path.extension() != ".png" || !fs::is_regular_file(path, error)) return {};
-  const auto [end, ignored] = std::mismatch(root.begin(), root.end(), path.begin(), path.end());
-  return end == root.end() ? path : fs::path();
+  const fs::path path = fileInFolder(folder, file);
+  return path.extension() == ".png" ? path : fs::path();
 }
 
 std::string base64(std::span<const std::uint8_t> bytes) {

@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/bench/merge.h"
 #include "core/bench/results_file.h"
 #include "core/bench/row.h"
 #include "core/bench/runner.h"
@@ -429,6 +430,30 @@ TEST_F(BenchResults, TablesAreWritten) {
   writeTables(rows, folder_);
   EXPECT_NE(readTextFile(folder_ / "tables.md").find("## cornell_box"), std::string::npos);
   EXPECT_TRUE(fs::exists(folder_ / makeTables(rows).front().fileName));
+}
+
+/// Rows of two folders in one: none twice, good ones instead of failures, with the files that they name.
+TEST_F(BenchResults, FoldersAreMerged) {
+  const fs::path a = folder_ / "a", b = folder_ / "b", all = folder_ / "all";
+  for (const fs::path& folder : {a, b, all}) fs::create_directories(folder / "references");
+  Row both = exampleRow(exampleCase("pcss", 4)), failed = exampleRow(exampleCase("pcss", 16)),
+      good = exampleRow(exampleCase("pcss", 16)), stray = exampleRow(exampleCase("pcss", 64));
+  failed.failure = "it crashed";
+  stray.picture = "../secret.png";
+  writeTextFile(folder_ / "secret.png", "secret");
+  writeTextFile(b / "references/a.exr", "a reference");
+  ResultsFile(a / "results.jsonl").append(both);
+  ResultsFile(a / "results.jsonl").append(failed);
+  for (const Row& row : {both, good, stray}) ResultsFile(b / "results.jsonl").append(row);
+  EXPECT_EQ(mergeResults(a, all), 2);
+  EXPECT_EQ(mergeResults(b, all), 2);
+  EXPECT_EQ(mergeResults(a, all) + mergeResults(b, all), 0) << "merging again adds nothing";
+  const std::vector<Row> rows = readRows(all / "results.jsonl");
+  ASSERT_EQ(rows.size(), 3u);
+  for (const Row& row : rows) EXPECT_EQ(row.failure, "");
+  EXPECT_EQ(readTextFile(all / "references/a.exr"), "a reference");
+  EXPECT_EQ(std::distance(fs::recursive_directory_iterator(all), fs::recursive_directory_iterator()), 3)
+      << "results.jsonl, references/ and the reference: nothing from outside of the folders";
 }
 
 }  // namespace

@@ -1,0 +1,50 @@
+// limn merge: results of several folders as those of one.
+#include <fmt/format.h>
+
+#include "apps/limn/commands.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/file_lock.h"
+#include "core/bench/merge.h"
+#include "core/bench/report.h"
+#include "core/bench/results_file.h"
+#include "core/bench/tables.h"
+
+namespace limn::app {
+namespace fs = std::filesystem;
+namespace {
+
+int run(const std::vector<fs::path>& folders, const fs::path& out) {
+  for (const fs::path& folder : folders) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(folder / "results.jsonl", ignored))
+      throw Error(fmt::format("{} does not exist; expected a folder that limn bench wrote",
+                              (folder / "results.jsonl").string()));
+  }
+  createFolder(out);
+  const FileLock lock(out / ".lock", fmt::format("folder {}", out.string()));
+  int added = 0;
+  for (const fs::path& folder : folders) added += bench::mergeResults(folder, out);
+  const std::vector<bench::Row> rows = bench::readRows(out / "results.jsonl");
+  bench::writeTables(rows, out);
+  bench::writeReport(rows, out);
+  fmt::print("{} rows added; {} has {} of {} that did not fail\n", added, (out / "results.jsonl").string(),
+             std::ranges::count(rows, "", &bench::Row::failure), rows.size());
+  return 0;
+}
+
+}  // namespace
+
+Action addMergeCommand(CLI::App& command) {
+  auto folders = std::make_shared<std::vector<fs::path>>();
+  auto out = std::make_shared<fs::path>();
+  command.add_option("folders", *folders, "Result folders of limn bench, such as those of its --shard")
+      ->required();
+  command
+      .add_option("-o,--out", *out,
+                  "Folder for the rows of all of them, beside its own, with tables and report")
+      ->required();
+  return [folders, out] { return run(*folders, *out); };
+}
+
+}  // namespace limn::app
