@@ -23,7 +23,7 @@ function summary(tables) {
         all("drivers").map((driver) => `Driver: ${driver}. `), machines.map((machine) => `Machine: ${machine}. `),
         `${rows} row${rows === 1 ? "" : "s"}${failed ? `, ${failed} failed` : ""}; `,
         `medians of ${counts("frames")} frames a turn (turns: ${counts("turns")}), after ${counts("warmup")} to warm up.`),
-      machines.length > 1 ? el("p", {class: "note"}, "Rows of several machines: compare times only within one.") : null,
+      machines.length > 1 ? el("p", {class: "note"}, "Rows of several machines: each has charts and tables of its own.") : null,
       software ? el("p", {class: "note"}, "Software rendering says nothing about the times of a GPU.") : null);
   });
 }

@@ -7,6 +7,7 @@ import {commonTarget, equalRows, nearest} from "./equal.js";
 import {errorTable, framesPerSecond, passTable} from "./tables.js";
 import {detail} from "./detail.js";
 import {drawPlot} from "./plot.js";
+import {page} from "./page.js";
 import {drawSpectrum} from "./spectrum.js";
 import {swatch} from "./marks.js";
 import {takeOne} from "./take.js";
@@ -18,11 +19,15 @@ export function subjectName({scene, camera, light, light_size: size, environment
     .filter(Boolean).join(", ");
 }
 
+/** Machines have tables of their own; their names are long, and stand only where there are several. */
+const severalMachines = (table) => new Set(page.tables.filter(({renderer}) => renderer === table.renderer)
+  .flatMap(({machines}) => machines)).size > 1;
+
 /** Size, mode and renderer: what a table is measured under. */
 export function conditions(table) {
   const timed = table.time_size.join("x") === table.size.join("x") ? "" : `, times at ${table.time_size.join(" x ")}`;
   return `${table.size.join(" x ")}${timed}, ${table.dynamic ? "dynamic" : "static"}, ${table.renderer} ` +
-    `(${table.software ? "software" : "hardware"})`;
+    `(${table.software ? "software" : "hardware"})${severalMachines(table) ? `, ${table.machines.join(", ")}` : ""}`;
 }
 
 const unique = (values) => [...new Set(values)];

@@ -100,12 +100,23 @@ std::string csvLine(const std::vector<std::string>& fields) {
 }  // namespace
 
 std::vector<Table> makeTables(std::span<const Row> rows) {
+  // The machines of each question in their order. Rows that do not say theirs (failures, rows of earlier
+  // versions) stand with the first.
+  std::map<std::string, std::vector<std::string>> machines;
+  for (const Row& row : rows) {
+    std::vector<std::string>& known = machines[tableKey(row)];
+    if (!row.cost.machine.empty() && std::ranges::find(known, row.cost.machine) == known.end())
+      known.push_back(row.cost.machine);
+  }
   std::vector<Table> tables;
-  std::map<std::string, std::size_t> byKey;
+  std::map<std::pair<std::string, std::string>, std::size_t> byKey;
   std::set<std::string> names;
   for (const Row& row : rows) {
-    const auto [place, isNew] = byKey.emplace(tableKey(row), tables.size());
-    if (isNew) tables.push_back({tableTitle(row), "", {}});
+    const std::string key = tableKey(row);
+    const std::vector<std::string>& known = machines[key];
+    const std::string machine = row.cost.machine.empty() && !known.empty() ? known.front() : row.cost.machine;
+    const auto [place, isNew] = byKey.emplace(std::pair(key, machine), tables.size());
+    if (isNew) tables.push_back({tableTitle(row) + (known.size() > 1 ? ", " + machine : ""), "", {}});
     tables[place->second].rows.push_back(row);
   }
   std::stable_sort(tables.begin(), tables.end(), [](const Table& a, const Table& b) {

@@ -1,4 +1,4 @@
-// Makes tables of error and time: one per question, renderer and mode, never mixed.
+// Makes tables of error and time: one per question, renderer, machine and mode, never mixed.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,8 @@
 
 namespace limn::bench {
 
-/// Holds rows that may be compared: same scene, camera, light, term, time, size, mode (dynamic or static) and
-/// renderer.
+/// Holds rows that may be compared: same scene, camera, light, term, time, size, mode (dynamic or static),
+/// renderer and machine. Rows that do not say their machine stand with those of the question's first.
 struct Table {
   std::string title;     ///< for people
   std::string fileName;  ///< of the CSV, unique among the tables of one makeTables

@@ -37,6 +37,21 @@ TEST(BenchTables, NeverMixModesRenderersOrQuestions) {
   EXPECT_EQ(names.size(), 5u);
 }
 
+TEST(BenchTables, NeverMixMachines) {
+  std::vector<Row> rows(4, exampleRow(exampleCase()));
+  rows[1].cost.machine = "a";
+  rows[2].cost.machine = "b";
+  rows[3].cost.machine = "a";
+  rows[0].cost.machine = "";
+  rows[0].failure = "it crashed";
+  const std::vector<Table> tables = makeTables(rows);
+  ASSERT_EQ(tables.size(), 2u);
+  EXPECT_EQ(tables[0].rows.size(), 3u) << "a row that does not say its machine stands with the first";
+  EXPECT_EQ(tables[1].rows.size(), 1u);
+  EXPECT_TRUE(tables[0].title.ends_with(", a")) << tables[0].title;
+  EXPECT_TRUE(tables[1].title.ends_with(", b")) << tables[1].title;
+}
+
 TEST(BenchTables, TitlesTellTablesApart) {
   std::vector<Row> rows(4, exampleRow(exampleCase()));
   rows[1].what.g = -0.7;
