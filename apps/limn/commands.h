@@ -19,6 +19,7 @@ Action addEnvironmentCommand(CLI::App& command);
 Action addBrdfCommand(CLI::App& command);
 Action addCompareCommand(CLI::App& command);
 Action addBenchCommand(CLI::App& command);
+Action addTuneCommand(CLI::App& command);
 Action addStressCommand(CLI::App& command);
 Action addFlickerCommand(CLI::App& command);
 Action addExplainCostCommand(CLI::App& command);

@@ -82,6 +82,8 @@ int main(int argc, char** argv) {
   add("brdf", "Show, simulate and factorise BRDFs: measured data, models, materials of scenes",
       addBrdfCommand);
   add("bench", "Measure error and time of every case of a suite; write tables and a report", addBenchCommand);
+  add("tune", "Search techniques and their parameters: the least error in a given time, or the least time",
+      addTuneCommand);
   add("stress", "Test the stability of every technique on extreme cases: pass, degraded or refused",
       addStressCommand);
   add("flicker", "Measure how much more a technique changes from frame to frame than the reference does",

@@ -2,163 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <set>
+#include <algorithm>
 
-#include "apps/limn/worker.h"
+#include "apps/limn/results_folder.h"
 #include "core/base/error.h"
-#include "core/base/file.h"
-#include "core/base/file_lock.h"
-#include "core/bench/report.h"
-#include "core/bench/tables.h"
-#include "core/session/bench_session.h"
-#include "core/session/case_origins.h"
-#include "core/session/suite_check.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
-
-namespace {
-
-/// A suite's cases on their way into a folder of results.
-class SuiteWork {
- public:
-  SuiteWork(const std::vector<bench::Case>& cases, const fs::path& out, const BackendOptions& backend,
-            double stallTimeout)
-      : cases_(cases),
-        out_(out),
-        file_(out / "results.jsonl"),
-        backend_(backend),
-        stallTimeout_(stallTimeout),
-        report_(cases.size()) {
-    for (std::size_t i = 0; i < cases.size(); ++i) left_.push_back(i);
-  }
-
-  /// Throws UsageError when something is missing that a case without a row needs; it says the last such
-  /// thing, stderr the others.
-  void check() {
-    // What crashes here crashes in its own row again.
-    runInWorker(report_, stallTimeout_, [&] {
-      const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
-      const auto missing = session::missingThings(
-          unanswered(), registry, [&] { report_.alive(); }, warn);
-      for (std::size_t i = 0; i + 1 < missing.size(); ++i) fmt::print(stderr, "limn: {}\n", missing[i]);
-      if (!missing.empty()) throw UsageError(missing.back());
-    });
-  }
-
-  bench::Summary run() {
-    while (!left_.empty()) {
-      const auto crash = runInWorker(report_, stallTimeout_, [&] { measure(); });
-      if (!crash) break;
-      recordCrash(crash->what);
-    }
-    bench::Summary summary;
-    for (std::size_t i = 0; i < cases_.size(); ++i) {
-      const WorkerReport::State state = report_.state(i);
-      ++(state == WorkerReport::State::skipped ? summary.skipped
-         : state == WorkerReport::State::done  ? summary.done
-                                               : summary.failed);
-    }
-    return summary;
-  }
-
- private:
-  /// Those without a row of any renderer.
-  std::vector<bench::Case> unanswered() const {
-    std::set<std::string> answered;
-    if (fs::exists(file_))
-      for (const bench::Row& row : bench::readRows(file_))
-        if (row.failure.empty()) answered.insert(bench::rowKey(row.what, ""));
-    std::vector<bench::Case> cases;
-    for (const bench::Case& c : cases_)
-      if (!answered.contains(bench::rowKey(c, ""))) cases.push_back(c);
-    return cases;
-  }
-
-  /// In the worker: measures what there is no row for.
-  void measure() {
-    bench::ResultsFile results(file_);
-    session::BenchSession benchSession(
-        backend_.contextOptions(), out_, [this] { report_.alive(); }, warn);
-    session::CaseOrigins origins(benchSession.registry());
-    report_.renderer(benchSession.rendererName());
-    std::vector<bench::Case> cases;
-    for (const std::size_t i : left_) cases.push_back(cases_[i]);
-    const auto provenance = [&](const bench::Case& c) { return origins.of(c); };
-    if (left_.size() == cases_.size())  // not after a crash, when it has been said
-      sayStale(bench::staleRows(cases, benchSession.rendererName(), results, provenance));
-    Progress bar("bench");
-    bench::Callbacks callbacks;
-    callbacks.provenance = provenance;
-    callbacks.reference = [&](const bench::Case& c) { return benchSession.reference(c); };
-    callbacks.measure = [&](const bench::Case& c) { return benchSession.measure(c); };
-    callbacks.time = [&](const bench::Case& c) { return benchSession.time(c); };
-    callbacks.bound = [&](const bench::Case& c) { return benchSession.bound(c); };
-    callbacks.keepPicture = [&](const std::string& name, const Image& image) {
-      return benchSession.keepPicture(name, image);
-    };
-    callbacks.progress = [&](const bench::Progress& progress) {
-      tell(progress);
-      bar.update((progress.turn - 1 + double(progress.index) / progress.count) / progress.turns,
-                 bench::label(progress.what));
-      if (progress.state != bench::Progress::State::failed) return;
-      benchSession.forgetScene();
-      fmt::print(stderr, "limn: {}: {}\n", bench::label(progress.what), progress.failure);
-    };
-    bench::runCases(cases, benchSession.rendererName(), results, callbacks);
-  }
-
-  static void sayStale(const std::map<std::string, int>& reasons) {
-    if (reasons.empty()) return;
-    int count = 0;
-    std::string why;
-    for (const auto& [reason, rows] : reasons) {
-      count += rows;
-      why += fmt::format("{}{} ({})", why.empty() ? "" : ", ", reason, rows);
-    }
-    fmt::print(stderr, "limn: {} rows are measured again: {}\n", count, why);
-  }
-
-  void tell(const bench::Progress& progress) {
-    using State = bench::Progress::State;
-    const std::size_t index = left_[static_cast<std::size_t>(progress.index)];
-    if (progress.state == State::started) return report_.started(index);
-    if (progress.turn > 1) return;  // a turn that fails leaves the row as it is
-    report_.finished(index, progress.state == State::skipped ? WorkerReport::State::skipped
-                            : progress.state == State::done  ? WorkerReport::State::done
-                                                             : WorkerReport::State::failed);
-  }
-
-  /// A row for the case that ended the worker, unless it has a good one. Neither it nor what failed before it
-  /// is tried again in this run.
-  void recordCrash(const std::string& what) {
-    const auto current = report_.current();
-    if (!current) throw Error("no case could be started by the process that measures: " + what);
-    const bench::Case& c = cases_[*current];
-    fmt::print(stderr, "limn: {}: {}\n", bench::label(c), what);
-    std::erase_if(left_, [&](std::size_t i) {
-      return i == *current || report_.state(i) == WorkerReport::State::failed;
-    });
-    const WorkerReport::State state = report_.state(*current);
-    if (state == WorkerReport::State::done || state == WorkerReport::State::skipped) return;
-    bench::Row row;
-    row.what = c;
-    row.key = bench::rowKey(c, report_.renderer());
-    row.failure = what;
-    row.cost.renderer = report_.renderer();
-    bench::ResultsFile(file_).append(row);
-  }
-
-  const std::vector<bench::Case>& cases_;
-  const fs::path& out_;
-  const fs::path file_;
-  const BackendOptions& backend_;
-  const double stallTimeout_;
-  WorkerReport report_;
-  std::vector<std::size_t> left_;  ///< indices of the cases that are still to be looked at
-};
-
-}  // namespace
 
 bench::Summary runSuite(const fs::path& suite, const fs::path& out, const BackendOptions& backend,
                         const SuiteRun& run) {
@@ -166,23 +16,17 @@ bench::Summary runSuite(const fs::path& suite, const fs::path& out, const Backen
   const auto cases = bench::selectCases(asked.cases, run.filters, run.shard);
   if (cases.empty())
     throw UsageError(fmt::format("suite {} has no case that fits the filter", suite.string()));
-  createFolder(out);
-  const FileLock lock(out / ".lock", fmt::format("folder {}", out.string()));
-  for (const fs::path& folder : {out, out / "pictures", out / "references"}) removeAbandonedFiles(folder);
-  const fs::path file = out / "results.jsonl";
+  ResultsFolder folder(out, backend, run.stallTimeout.value_or(asked.stallTimeout));
   if (asked.minutes > 0)
     fmt::print(
         stderr,
         "limn: suite {} takes about {} minutes in all on 2 cores without a GPU; {} of its {} cases are asked "
         "for, the folder holds {} rows\n",
         asked.name, asked.minutes, cases.size(), asked.cases.size(),
-        fs::exists(file) ? std::ranges::count(bench::readRows(file), "", &bench::Row::failure) : 0);
-  SuiteWork work(cases, out, backend, run.stallTimeout.value_or(asked.stallTimeout));
-  work.check();
-  const bench::Summary summary = work.run();
-  const std::vector<bench::Row> rows = bench::readRows(file);
-  bench::writeTables(rows, out);
-  bench::writeReport(rows, out);
+        std::ranges::count(folder.rows(), "", &bench::Row::failure));
+  folder.check(cases);
+  const bench::Summary summary = folder.measure(cases, "bench");
+  folder.writeReport();
   return summary;
 }
 

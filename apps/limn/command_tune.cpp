@@ -1,0 +1,398 @@
+// limn tune: the settings with the least error in a given time, or the least time at a given error.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "apps/limn/commands.h"
+#include "apps/limn/interruption.h"
+#include "apps/limn/results_folder.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/text.h"
+#include "core/bench/suite_text.h"
+#include "core/bench/tune.h"
+#include "core/image/metric_table.h"
+#include "core/question/render_command.h"
+#include "core/reference/reference.h"
+
+namespace limn::app {
+namespace fs = std::filesystem;
+namespace {
+
+struct Options {
+  SceneQuestion scene;
+  bool termGiven = false;
+  std::optional<double> maxMs;
+  std::string maxError, metric = "rmse";
+  std::string techniques;
+  std::vector<std::string> settings;
+  int steps = 2, spp = 256, frames = 10, turns = 5;
+  std::optional<int> bounces;
+  double maskedShare = 0.005, stallTimeout = 1800;
+  bool exhaustive = false;
+  fs::path out;
+  BackendOptions backend;
+};
+
+using Parameters = std::vector<std::pair<std::string, std::string>>;
+
+/// The metric by its key in results. Throws UsageError for another text.
+const MetricInfo& findMetric(const std::string& key) {
+  std::vector<std::string> known;
+  for (const MetricInfo& metric : kMetrics) {
+    if (metric.kind == MetricKind::basis) continue;
+    if (metric.key == key) return metric;
+    known.emplace_back(metric.key);
+  }
+  throw UsageError(
+      fmt::format("unknown metric '{}'{}; known are {}", key, didYouMean(key, known), joined(known)));
+}
+
+/// What is asked: the metric, and the limit of the error or of the time.
+struct Goal {
+  const MetricInfo& metric;
+  double limit = 0;  ///< milliseconds, or a value of the metric
+  bool ofTime = false;
+
+  bench::TuneLimit tuneLimit() const {
+    if (ofTime) return {.ms = limit};
+    return {.error = bench::badness(metric, limit)};
+  }
+  /// Continues "a setting".
+  std::string text() const {
+    return ofTime ? fmt::format("takes at most {} ms", limit)
+                  : fmt::format("has a {} of at {} {}", metric.label,
+                                metric.kind == MetricKind::likeness ? "least" : "most", limit);
+  }
+};
+
+Goal goalOf(const Options& options) {
+  if (options.maxMs.has_value() == !options.maxError.empty())
+    throw UsageError("tune needs a limit: either --max-ms or --max-error");
+  if (options.maxMs) return {findMetric(options.metric), *options.maxMs, true};
+  const std::size_t sign = options.maxError.find('=');
+  const auto value =
+      sign == std::string::npos ? std::nullopt : parseNumber(options.maxError.substr(sign + 1));
+  if (!value || *value <= 0)
+    throw UsageError(
+        fmt::format("--max-error '{}' is not accepted; expected METRIC=X with X > 0, such as "
+                    "rmse=0.01",
+                    options.maxError));
+  return {findMetric(options.maxError.substr(0, sign)), *value, false};
+}
+
+/// The terms of which a technique must answer one to change a picture of `term`.
+TermSet answering(Term term) {
+  constexpr TermSet light = Term::direct | Term::visibility;
+  return term == Term::direct || term == Term::final ? light : termSet(term);
+}
+
+std::vector<const TechniquePlugin*> chosenTechniques(const TechniqueRegistry& registry,
+                                                     const Options& options, Term term) {
+  std::vector<const TechniquePlugin*> chosen;
+  if (options.techniques.empty()) {
+    for (const TechniquePlugin* plugin : registry.all())
+      if (plugin->info->terms & answering(term)) chosen.push_back(plugin);
+    if (chosen.empty()) throw UsageError(fmt::format("no technique answers {}", name(term)));
+    return chosen;
+  }
+  for (const std::string& name : CLI::detail::split(options.techniques, ',')) {
+    chosen.push_back(&registry.find(name));
+    render::checkTechniques({{chosen.back(), {}}}, term);
+  }
+  return chosen;
+}
+
+/// What --set says of each technique, and the bounces of those that have them.
+Parameters fixedParameters(const TechniqueInfo& technique, const Options& options, int bounces) {
+  Parameters fixed;
+  const std::string own = std::string(technique.name) + ".";
+  for (const std::string& setting : options.settings)
+    if (const std::size_t sign = setting.find('='); setting.starts_with(own) && sign != std::string::npos)
+      fixed.emplace_back(setting.substr(0, sign), setting.substr(sign + 1));
+  const std::string key = own + "bounces";
+  if (bounces > 0 && std::ranges::none_of(fixed, [&](const auto& p) { return p.first == key; }))
+    for (const Parameter& parameter : technique.parameters)
+      if (key == own + parameter.name && parameter.defaultValue != bounces)
+        fixed.emplace_back(key, fmt::format("{}", bounces));
+  return fixed;
+}
+
+session::TechniqueChoice choiceOf(const std::string& technique, const Parameters& parameters) {
+  session::TechniqueChoice choice{technique, {}};
+  for (const auto& [name, value] : parameters) choice.settings.push_back(fmt::format("{}={}", name, value));
+  return choice;
+}
+
+/// A technique's settings: what is searched, and what --set fixes.
+struct Space {
+  bench::TuneSpace searched;
+  Parameters fixed;
+};
+
+std::vector<Space> spacesOf(const TechniqueRegistry& registry, const Options& options, Term term,
+                            int bounces) {
+  const std::vector<const TechniquePlugin*> techniques = chosenTechniques(registry, options, term);
+  for (const std::string& setting : options.settings)
+    if (std::ranges::none_of(techniques, [&](const TechniquePlugin* plugin) {
+          return setting.starts_with(std::string(plugin->info->name) + ".");
+        }))
+      throw UsageError(fmt::format("--set '{}' names none of the techniques that are searched", setting));
+  std::vector<Space> spaces;
+  for (const TechniquePlugin* plugin : techniques) {
+    const TechniqueInfo& info = *plugin->info;
+    Space space{{info.name, {}}, fixedParameters(info, options, bounces)};
+    choiceOf(info.name, space.fixed).resolve(registry);  // for its errors
+    for (const Parameter& parameter : info.parameters) {
+      if (!parameter.tradesErrorForTime) continue;
+      bench::TuneAxis axis = bench::tuneAxis(info.name, parameter, options.steps);
+      if (std::ranges::none_of(space.fixed, [&](const auto& p) { return p.first == axis.parameter; }))
+        space.searched.axes.push_back(std::move(axis));
+    }
+    spaces.push_back(std::move(space));
+  }
+  return spaces;
+}
+
+/// Measures settings as rows of a bench, and says what became of them.
+class Tuning {
+ public:
+  explicit Tuning(const Options& options)
+      : options_(options),
+        goal_(goalOf(options)),
+        term_(parseTerm(options.scene.term)),
+        bounces_(reference::hasBounces(term_) ? options.bounces.value_or(reference::defaultBounces(term_))
+                                              : 0) {
+    if (options.bounces && bounces_ == 0)
+      throw UsageError(fmt::format("--bounces: the term {} has none", options.scene.term));
+    if (isFactor(term_) && options.scene.light.empty())
+      throw UsageError(
+          fmt::format("the term {} is that of one light: name it with --light", options.scene.term));
+    const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
+    spaces_ = spacesOf(registry, options, term_, bounces_);
+    for (const Space& space : spaces_) searched_.push_back(space.searched);
+  }
+
+  void run() {
+    folder_.emplace(options_.out, options_.backend, options_.stallTimeout);
+    plan_ = bench::tunePlan(options_.scene.width, options_.scene.height, options_.frames, options_.turns);
+    checkFirst();
+    const auto measure = [this](std::span<const bench::TuneSetting> settings,
+                                const bench::TuneEffort& effort) { return measured(settings, effort); };
+    const bench::TuneResult result =
+        options_.exhaustive ? bench::tuneExhaustively(searched_, goal_.tuneLimit(), plan_.full, measure)
+                            : bench::tune(searched_, goal_.tuneLimit(), plan_, measure);
+    folder_->writeReport();
+    say(result);
+  }
+
+ private:
+  /// The suite that measures these settings in full.
+  std::string suiteText(std::span<const bench::TuneSetting> settings) const {
+    std::string text = fmt::format(
+        "# Written by limn tune: `limn bench` on this file measures the answer and the runner-up.\n"
+        "name = \"tuned\"\n{}reference = {{spp = {}{}}}\nframes = {}\nwarmup = {}\nturns = {}\n\n{}"
+        "max_masked_share = {}\n",
+        bench::subjectToml(options_.scene), options_.spp,
+        bounces_ > 0 ? fmt::format(", bounces = {}", bounces_) : "", plan_.full.frames, plan_.full.warmup,
+        plan_.full.turns, bench::sceneToml(options_.scene), options_.maskedShare);
+    for (const bench::TuneSetting& setting : settings)
+      text += "\n" + bench::techniqueToml(techniqueOf(setting), parametersOf(setting));
+    return text;
+  }
+
+  /// Throws UsageError where the scene, or what the question names of it, does not exist.
+  void checkFirst() {
+    const bench::TuneSetting first{0, startOf(searched_.front())};
+    base_ = bench::parseSuite(suiteText(std::span(&first, 1)), "the question").cases.front();
+    folder_->check({base_});
+  }
+
+  static std::vector<std::size_t> startOf(const bench::TuneSpace& space) {
+    std::vector<std::size_t> at;
+    for (const bench::TuneAxis& axis : space.axes) at.push_back(axis.start);
+    return at;
+  }
+
+  const std::string& techniqueOf(const bench::TuneSetting& setting) const {
+    return searched_[setting.space].technique;
+  }
+
+  Parameters parametersOf(const bench::TuneSetting& setting) const {
+    Parameters parameters = spaces_[setting.space].fixed;
+    const Parameters changed = bench::changedParameters(searched_[setting.space], setting);
+    parameters.insert(parameters.end(), changed.begin(), changed.end());
+    return parameters;
+  }
+
+  bench::Case caseOf(const bench::TuneSetting& setting, const bench::TuneEffort& effort) const {
+    bench::Case c = base_;
+    c.technique = techniqueOf(setting);
+    c.parameters = parametersOf(setting);
+    c.width = std::max(1, c.width / effort.divisor);
+    c.height = std::max(1, c.height / effort.divisor);
+    c.frames = effort.frames;
+    c.warmup = effort.warmup;
+    c.turns = effort.turns;
+    // Silhouettes, where pixels are masked, are a share of the picture that grows as its sides shrink.
+    c.maxMaskedShare = std::min(1.0, c.maxMaskedShare * effort.divisor);
+    return c;
+  }
+
+  std::vector<bench::TuneFigures> measured(std::span<const bench::TuneSetting> settings,
+                                           const bench::TuneEffort& effort) {
+    std::vector<bench::Case> cases;
+    for (const bench::TuneSetting& setting : settings) cases.push_back(caseOf(setting, effort));
+    const char* what = effort.divisor > 1 || effort.turns < plan_.full.turns ? "tune, trying" : "tune";
+    folder_->measure(cases, fmt::format("{} {} settings", what, cases.size()));
+    for (bench::Row& row : folder_->rows()) rows_[row.key] = std::move(row);
+    std::vector<bench::TuneFigures> figures;
+    for (const bench::Case& c : cases) figures.push_back(figuresOf(c));
+    return figures;
+  }
+
+  bench::TuneFigures figuresOf(const bench::Case& c) {
+    const bench::Row& row = rowOf(c);
+    const auto value = row.failure.empty() ? metricValue(goal_.metric, row.error) : std::nullopt;
+    if (!value) {
+      if (failure_.empty()) failure_ = fmt::format("{}: {}", bench::label(c), row.failure);
+      return {0, 0, true};
+    }
+    const double pixels = double(base_.width) * base_.height / (double(c.width) * c.height);
+    return {bench::badness(goal_.metric, *value), bench::msAtPixels(row, pixels), false};
+  }
+
+  const bench::Row& rowOf(const bench::Case& c) const {
+    return rows_.at(bench::rowKey(c, folder_->renderer()));
+  }
+
+  /// Error and time of what was measured in full.
+  std::string figuresText(const bench::TuneSetting& setting) const {
+    const bench::Row& row = rowOf(caseOf(setting, plan_.full));
+    const bench::Ratio ms = bench::frameMsInterval(row);
+    return fmt::format("{} {}, {:.3f} ms a frame ({:.3f} to {:.3f})", goal_.metric.label,
+                       shownText(goal_.metric, row.error), ms.value, ms.low, ms.high);
+  }
+
+  std::string commandOf(const bench::TuneSetting& setting) const {
+    return renderCommand(options_.scene, techniqueOf(setting), parametersOf(setting)) + " --out tuned.png";
+  }
+
+  /// The best setting of another technique; where there is none, the second best.
+  static std::optional<bench::TuneSetting> runnerUp(const std::vector<bench::TuneSetting>& answers) {
+    const auto other = std::ranges::find_if(
+        answers, [&](const bench::TuneSetting& setting) { return setting.space != answers.front().space; });
+    if (other != answers.end()) return *other;
+    return answers.size() > 1 ? std::optional(answers[1]) : std::nullopt;
+  }
+
+  void say(const bench::TuneResult& result) const {
+    if (!result.nearest) throw Error(fmt::format("no setting could be measured: {}", failure_));
+    if (result.answers.empty())
+      throw Error(fmt::format("no setting {}; the nearest is {} with {}", goal_.text(),
+                              bench::label(caseOf(*result.nearest, plan_.full)),
+                              figuresText(*result.nearest)));
+    std::vector<bench::TuneSetting> chosen{result.answers.front()};
+    if (const auto second = runnerUp(result.answers)) chosen.push_back(*second);
+    const fs::path suite = options_.out / "tuned.toml";
+    writeTextFile(suite, suiteText(chosen));
+    fmt::print("{}\n    {}\n", commandOf(chosen.front()), figuresText(chosen.front()));
+    if (chosen.size() > 1)
+      fmt::print("runner-up: {}\n    {}\n", commandOf(chosen.back()), figuresText(chosen.back()));
+    fmt::print(stderr, "limn: {} settings of {} techniques tried, {} of them again, {} measured\n",
+               result.looked, spaces_.size(), result.checked, result.measured);
+    sayWritten(suite);
+    sayWritten(options_.out / "index.html");
+  }
+
+  const Options& options_;
+  Goal goal_;
+  Term term_;
+  int bounces_;  ///< of the reference; 0: the term has none
+  std::vector<Space> spaces_;
+  std::vector<bench::TuneSpace> searched_;
+  bench::TunePlan plan_;
+  bench::Case base_;
+  std::optional<ResultsFolder> folder_;
+  std::map<std::string, bench::Row> rows_;
+  std::string failure_;  ///< the first one
+};
+
+int run(Options options) {
+  if (!options.termGiven)
+    options.scene.term = name(options.scene.light.empty() ? Term::direct : Term::visibility);
+  const LastWords words(fmt::format("interrupted; the rows so far are kept in {}, the same command goes on",
+                                    (options.out / "results.jsonl").string()));
+  Tuning(options).run();
+  return 0;
+}
+
+}  // namespace
+
+Action addTuneCommand(CLI::App& command) {
+  auto options = std::make_shared<Options>();
+  addSceneFlags(command, options->scene);
+  CLI::Option* term = addSceneFlag(command, options->scene, "term", "--term");
+  term->default_str("direct, or visibility with --light");
+  CLI::Option* maxMs =
+      command
+          .add_option("--max-ms", options->maxMs,
+                      "Milliseconds of a frame that the answer may take; it is the one with the least error")
+          ->check(CLI::Range(1e-6, 1e9));
+  command
+      .add_option("--max-error", options->maxError,
+                  "METRIC=X, such as rmse=0.01: the error that the answer may have (PSNR: must reach); it is "
+                  "the quickest one")
+      ->excludes(maxMs);
+  command.add_option("--metric", options->metric, "The error that --max-ms makes least, a field of results")
+      ->capture_default_str();
+  command.add_option("--techniques", options->techniques,
+                     "Techniques to choose from, comma-separated; default: all that answer the term, for "
+                     "direct and final those that answer direct or visibility");
+  command
+      .add_option("--set", options->settings,
+                  "TECHNIQUE.PARAMETER=VALUE, repeatable: a parameter that is not searched")
+      ->take_all();
+  command
+      .add_option("--steps", options->steps,
+                  "Most steps from a parameter's default in each direction, by factors of 2")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 12));
+  command.add_option("--spp", options->spp, "Samples per pixel of the references")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1 << 24));
+  command.add_option("--bounces", options->bounces, "Bounces of indirect light; default: the term's")
+      ->check(CLI::Range(1, reference::kMaxBounces));
+  command.add_option("--frames", options->frames, "Timed frames of a turn of the last settings")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  command.add_option("--turns", options->turns, "Turns in which the last settings are timed one by one")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  command
+      .add_option("--max-masked-share", options->maskedShare,
+                  "Share of pixels that may differ in coverage, instance or depth and are left out")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  command.add_flag("--exhaustive", options->exhaustive, "Measure every setting in full instead of searching");
+  command
+      .add_option("-o,--out", options->out,
+                  "Folder for results.jsonl, index.html, references and the suite tuned.toml; a search that "
+                  "is in it already goes on")
+      ->required();
+  command
+      .add_option("--stall-timeout", options->stallTimeout,
+                  "Seconds without a frame or a pass of a reference after which a setting is given up; 0: "
+                  "never")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1e6));
+  options->backend.addTo(command);
+  return [options, term] {
+    options->termGiven = term->count() > 0;
+    return run(*options);
+  };
+}
+
+}  // namespace limn::app

@@ -1,0 +1,47 @@
+// Measures cases of a bench into a folder of results, each in a process that may crash.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/limn/options.h"
+#include "core/base/file_lock.h"
+#include "core/bench/runner.h"
+
+namespace limn::app {
+
+/// Holds a folder with results.jsonl, references, pictures, tables and report while cases are measured into
+/// it.
+class ResultsFolder {
+ public:
+  /// Creates the folder where it is missing, and keeps other processes out of it. Throws Error when another
+  /// one works in it. A case that shows no sign of life for `stallTimeout` seconds is ended (0: never).
+  ResultsFolder(std::filesystem::path folder, BackendOptions backend, double stallTimeout);
+
+  /// Throws UsageError when something does not exist that a case without a row needs; it says the last such
+  /// thing, stderr the others.
+  void check(const std::vector<bench::Case>& cases);
+  /// Measures the cases for which there is no row yet, or whose row was measured with something that has
+  /// changed since, with a progress bar of that name. Measures in a separate process: a case that crashes, or
+  /// that stalls, loses only its own row. No thread and no OpenGL context may exist. Returns how many rows
+  /// were measured, found and failed.
+  bench::Summary measure(const std::vector<bench::Case>& cases, const std::string& progressName);
+  /// Returns the renderer of the last rows that were measured or found; "" before.
+  const std::string& renderer() const { return renderer_; }
+  /// Returns all rows of the folder.
+  std::vector<bench::Row> rows() const;
+  /// Writes tables and report of all rows.
+  void writeReport() const;
+
+ private:
+  std::filesystem::path file() const { return folder_ / "results.jsonl"; }
+
+  std::filesystem::path folder_;
+  BackendOptions backend_;
+  double stallTimeout_;
+  FileLock lock_;
+  std::string renderer_;
+};
+
+}  // namespace limn::app

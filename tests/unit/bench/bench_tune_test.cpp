@@ -1,0 +1,227 @@
+// The search for settings, on models of error and cost whose best answer is known.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/bench/tune.h"
+#include "tests/unit/bench/bench_rows.h"
+
+namespace limn::bench {
+namespace {
+
+using testing::ElementsAre;
+using testing::Pair;
+
+TEST(TuneAxis, StepsByFactorsOfTwoAroundTheDefaultAndEndsAtTheRange) {
+  const TuneAxis samples = tuneAxis("pcss", integer("samples", 32, {1, 4096}, "", ""), 2);
+  EXPECT_EQ(samples.parameter, "pcss.samples");
+  EXPECT_THAT(samples.values, ElementsAre("8", "16", "32", "64", "128"));
+  EXPECT_EQ(samples.start, 2u);
+  const TuneAxis height = tuneAxis("vssm", integer("tree_height", 3, {1, 5}, "", ""), 2);
+  EXPECT_THAT(height.values, ElementsAre("1", "2", "3", "5"));
+  EXPECT_EQ(height.start, 2u);
+  const TuneAxis views = tuneAxis("vssm", integer("views", 0, {0, 8}, "", ""), 2);
+  EXPECT_THAT(views.values, ElementsAre("0", "1", "2"));
+  EXPECT_EQ(views.start, 0u);
+  const TuneAxis tolerance = tuneAxis("t", real("tolerance", 0.1, {0.06, 1}, "", ""), 2);
+  EXPECT_THAT(tolerance.values, ElementsAre("0.06", "0.1", "0.2", "0.4"));
+  static constexpr const char* kPoints[] = {"64", "128", "256"};
+  const TuneAxis points = tuneAxis("t", choice("points", 1, kPoints, ""), 1);
+  EXPECT_THAT(points.values, ElementsAre("64", "128", "256"));
+  EXPECT_EQ(points.start, 1u);
+}
+
+TEST(TuneSpace, NamesOnlyWhatIsNotTheDefault) {
+  const TuneSpace space{"t", {{"t.a", {"1", "2", "4"}, 1}, {"t.b", {"8", "16"}, 0}}};
+  EXPECT_EQ(settingCount(space), 6u);
+  EXPECT_THAT(changedParameters(space, {0, {1, 0}}), testing::IsEmpty());
+  EXPECT_THAT(changedParameters(space, {0, {2, 1}}), ElementsAre(Pair("t.a", "4"), Pair("t.b", "16")));
+}
+
+TEST(TunePlan, LooksAtSmallPicturesThatAreNotMostlySilhouettes) {
+  EXPECT_EQ(tunePlan(1280, 720, 10, 5).look.divisor, 4);
+  EXPECT_EQ(tunePlan(128, 96, 10, 5).look.divisor, 2);
+  EXPECT_EQ(tunePlan(64, 48, 10, 5).look.divisor, 1);
+  EXPECT_EQ(tunePlan(64, 48, 2, 1).check.frames, 2);
+  EXPECT_EQ(tunePlan(64, 48, 2, 1).check.turns, 1);
+}
+
+TEST(TuneFigures, AreSmallerForBetterPictures) {
+  const auto metric = [](double Metrics::*member) -> const MetricInfo& { return metricInfo(member); };
+  EXPECT_DOUBLE_EQ(badness(metric(&Metrics::rmse), 0.25), 0.25);
+  EXPECT_DOUBLE_EQ(badness(metric(&Metrics::bias), -0.25), 0.25);
+  EXPECT_NEAR(badness(metric(&Metrics::psnr), 40), 0.01, 1e-15);
+  EXPECT_EQ(badness(metric(&Metrics::psnr), std::numeric_limits<double>::infinity()), 0);
+}
+
+TEST(TuneFigures, OnlyWhatGrowsWithPixelsIsScaled) {
+  Row row = test::exampleRow(test::exampleCase(), 0.1, 8);
+  row.cost.split = {3, 1, 3, 1};
+  EXPECT_DOUBLE_EQ(msAtPixels(row, 1), 8);
+  EXPECT_DOUBLE_EQ(msAtPixels(row, 16), 4 + 4 * 16);
+  const Ratio interval = frameMsInterval(row);
+  EXPECT_DOUBLE_EQ(interval.value, 8);
+  EXPECT_LT(interval.low, 8);
+  EXPECT_GT(interval.high, 8);
+}
+
+/// A number from -1 to 1, the same for the same setting and effort.
+double scatter(const TuneSetting& setting, const TuneEffort& effort) {
+  unsigned hash = 2166136261u;
+  const auto mix = [&](std::size_t value) { hash = (hash ^ static_cast<unsigned>(value)) * 16777619u; };
+  mix(setting.space);
+  for (const std::size_t at : setting.at) mix(at);
+  mix(static_cast<std::size_t>(effort.frames * effort.turns));
+  hash ^= hash >> 15;
+  hash *= 2246822519u;
+  hash ^= hash >> 13;
+  return static_cast<double>(hash) / 2147483648.0 - 1;
+}
+
+/// Techniques whose error falls and whose time grows with each parameter, as soft-shadow techniques do: each
+/// parameter takes its part of the error away to a power, and costs a share of the frame.
+class Model {
+ public:
+  struct Parameter {
+    double error, power, ms;
+  };
+  struct Technique {
+    double floor, base;  ///< error and milliseconds that no parameter changes
+    std::vector<Parameter> parameters;
+  };
+
+  explicit Model(std::vector<Technique> techniques) : techniques_(std::move(techniques)) {
+    for (const Technique& technique : techniques_) {
+      TuneSpace& space = spaces_.emplace_back();
+      space.technique = "t";
+      for (std::size_t i = 0; i < technique.parameters.size(); ++i)
+        space.axes.push_back({"t.p", {"1/4", "1/2", "1", "2", "4"}, 2});
+    }
+  }
+
+  TuneFigures truth(const TuneSetting& setting) const {
+    const Technique& technique = techniques_[setting.space];
+    double squared = technique.floor * technique.floor, ms = technique.base;
+    for (std::size_t i = 0; i < setting.at.size(); ++i) {
+      const Parameter& parameter = technique.parameters[i];
+      const double value = std::exp2(static_cast<double>(setting.at[i]) - 2);
+      squared += std::pow(parameter.error * std::pow(value, -parameter.power), 2);
+      ms += parameter.ms * value;
+    }
+    return {std::sqrt(squared), ms};
+  }
+
+  /// The same as it is measured: times scatter, and small pictures mislead.
+  std::vector<TuneFigures> measure(std::span<const TuneSetting> settings, const TuneEffort& effort) {
+    std::vector<TuneFigures> figures;
+    const double spread = 0.3 / std::sqrt(effort.frames * effort.turns);
+    for (const TuneSetting& setting : settings) {
+      TuneFigures f = truth(setting);
+      const double frames =
+          1 + effort.warmup + 2 * effort.frames + (effort.turns - 1) * (effort.warmup + effort.frames);
+      const double pixels = 1.0 / (effort.divisor * effort.divisor);
+      cost_ += frames * f.ms * (0.5 + 0.5 * pixels);  // half of a frame is maps
+      f.ms *= 1 + spread * scatter(setting, effort);
+      if (effort.divisor > 1) f.error *= 1 + 0.1 * scatter({setting.space, {}}, effort);
+      figures.push_back(f);
+    }
+    return figures;
+  }
+
+  std::span<const TuneSpace> spaces() const { return spaces_; }
+  double cost() const { return cost_; }
+
+ private:
+  std::vector<Technique> techniques_;
+  std::vector<TuneSpace> spaces_;
+  double cost_ = 0;
+};
+
+Model softShadows() {
+  return Model({{0.004, 6, {{0.004, 0.5, 2}, {0.012, 0.5, 6}, {0.006, 1, 3}}},
+                {0.012, 5, {{0.006, 0.5, 1}, {0.01, 1, 4}, {0.004, 0.7, 2}}},
+                {0.02, 4, {{0.02, 0.5, 1}}},
+                {0.002, 5, {{0.03, 0.8, 40}, {0.004, 1, 20}}},
+                {0.006, 8, {{0.01, 0.3, 2}, {0.008, 0.5, 2}, {0.005, 1, 4}, {0.003, 0.5, 1}}}});
+}
+
+/// The best figure of the exhaustive grid, and its cost.
+std::pair<double, double> bestOfGrid(const TuneLimit& limit, const TuneEffort& full) {
+  Model model = softShadows();
+  const auto exactly = [&](std::span<const TuneSetting> settings, const TuneEffort& effort) {
+    model.measure(settings, effort);
+    std::vector<TuneFigures> figures;
+    for (const TuneSetting& setting : settings) figures.push_back(model.truth(setting));
+    return figures;
+  };
+  const TuneResult grid = tuneExhaustively(model.spaces(), limit, full, exactly);
+  const TuneFigures best = model.truth(grid.answers.at(0));
+  return {limit.ms ? best.error : best.ms, model.cost()};
+}
+
+void expectNearTheGrid(const TuneLimit& limit) {
+  const TunePlan plan = tunePlan(640, 480, 10, 5);
+  const auto [best, gridCost] = bestOfGrid(limit, plan.full);
+  Model model = softShadows();
+  const auto measured = [&](std::span<const TuneSetting> settings, const TuneEffort& effort) {
+    return model.measure(settings, effort);
+  };
+  const TuneResult result = tune(model.spaces(), limit, plan, measured);
+  ASSERT_FALSE(result.answers.empty());
+  const TuneFigures answer = model.truth(result.answers.front());
+  EXPECT_LE(limit.ms ? answer.error : answer.ms, 1.1 * best) << limit.ms.value_or(0) << " ms";
+  // What is measured in full still scatters by a few percent.
+  if (limit.ms)
+    EXPECT_LE(answer.ms, 1.05 * *limit.ms);
+  else
+    EXPECT_LE(answer.error, *limit.error);
+  EXPECT_LE(model.cost(), 0.15 * gridCost)
+      << result.looked << " " << result.checked << " " << result.measured;
+}
+
+TEST(Tune, FindsTheLeastErrorOfTheGridAtASmallPartOfItsCost) {
+  for (const double ms : {8.0, 12.0, 20.0, 40.0, 100.0}) expectNearTheGrid({.ms = ms});
+}
+
+TEST(Tune, FindsTheLeastTimeOfTheGridAtASmallPartOfItsCost) {
+  for (const double error : {0.009, 0.012, 0.015, 0.02, 0.03}) expectNearTheGrid({.error = error});
+}
+
+TEST(Tune, SaysWhatComesNearestWhereNothingKeepsTheLimit) {
+  Model model = softShadows();
+  const auto measured = [&](std::span<const TuneSetting> settings, const TuneEffort& effort) {
+    return model.measure(settings, effort);
+  };
+  const TuneResult result = tune(model.spaces(), {.ms = 1}, tunePlan(640, 480, 10, 5), measured);
+  EXPECT_TRUE(result.answers.empty());
+  ASSERT_TRUE(result.nearest.has_value());
+  EXPECT_LT(model.truth(*result.nearest).ms, 6);
+}
+
+TEST(Tune, SettingsThatFailAreLeftOut) {
+  const std::vector<TuneSpace> spaces = {{"a", {{"a.p", {"1", "2", "4"}, 1}}}, {"b", {}}};
+  const auto measured = [](std::span<const TuneSetting> settings, const TuneEffort&) {
+    std::vector<TuneFigures> figures;
+    for (const TuneSetting& s : settings)
+      figures.push_back(s.space == 1        ? TuneFigures{0, 0, true}
+                        : s.at.front() == 2 ? TuneFigures{0.1, 9, false}
+                                            : TuneFigures{0.2, 5, false});
+    return figures;
+  };
+  const TuneResult result = tune(spaces, {.ms = 10}, tunePlan(64, 48, 10, 5), measured);
+  ASSERT_FALSE(result.answers.empty());
+  EXPECT_EQ(result.answers.front(), (TuneSetting{0, {2}}));
+  EXPECT_EQ(result.looked, 4u);
+  const auto failing = [](std::span<const TuneSetting> settings, const TuneEffort&) {
+    return std::vector<TuneFigures>(settings.size(), TuneFigures{0, 0, true});
+  };
+  const TuneResult nothing = tune(spaces, {.error = 1}, tunePlan(64, 48, 10, 5), failing);
+  EXPECT_TRUE(nothing.answers.empty());
+  EXPECT_FALSE(nothing.nearest.has_value());
+}
+
+}  // namespace
+}  // namespace limn::bench
