@@ -55,7 +55,8 @@ void dropRivals(std::vector<render::TechniqueUse>& techniques, const TechniquePl
 std::string renderCommand(const ViewState& state, const std::filesystem::path& out) {
   std::string line =
       limn::renderCommand(state.scene, techniqueNames(state.techniques), changed(state.techniques));
-  if (state.tone.exposureEv != 0) line += commandOption("--exposure", fmt::format("{}", state.tone.exposureEv));
+  if (state.tone.exposureEv != 0)
+    line += commandOption("--exposure", fmt::format("{}", state.tone.exposureEv));
   if (state.tone.curve != ToneCurve::none)
     line += commandOption("--tonemap", kToneCurves[static_cast<size_t>(state.tone.curve)]);
   return line + commandOption("--out", out.string());

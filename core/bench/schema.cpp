@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/bench/private/misjudged_table.h"
-#include "core/frame/frame_graph.h"
 #include "core/image/metric_table.h"
 #include "core/question/question_fields.h"
+#include "core/render/frame_stats.h"
 
 namespace limn::bench {
 namespace {
