@@ -16,6 +16,7 @@ sizes = ["40x30"]
 frames = 2
 warmup = 0
 pictures = true
+bound = true
 reference = {spp = 4}
 term = "visibility"
 [[scenes]]
@@ -29,7 +30,6 @@ g = 0.5
 max_masked_share = 0.2
 [[techniques]]
 technique = "pcf"
-bound = true
 [[techniques]]
 technique = "airlight"
 """
