@@ -6,6 +6,7 @@
 
 #include "apps/limn/commands.h"
 #include "apps/limn/interruption.h"
+#include "apps/limn/movie.h"
 #include "apps/limn/options.h"
 #include "apps/limn/provenance.h"
 #include "apps/limn/tone_flags.h"
@@ -33,10 +34,18 @@ struct Options {
   fs::path out, stats, graph, shaders;
 };
 
-void checkOutputName(const fs::path& out) {
+void checkOutputName(const Options& options) {
+  const fs::path& out = options.out;
+  if (isMovie(out)) {
+    if (options.frames.empty())
+      throw UsageError(fmt::format("--out '{}' is a movie and needs --frames", out.string()));
+    return checkMovieProgram();
+  }
   if (out.extension() != ".png" && out.extension() != ".exr")
-    throw UsageError(
-        fmt::format("--out '{}' is not accepted; expected a name ending in .exr or .png", out.string()));
+    throw UsageError(fmt::format(
+        "--out '{}' is not accepted; expected a name ending in .exr or .png, or in .mp4, .webm or .gif with "
+        "--frames",
+        out.string()));
 }
 
 void printExplanation(const std::vector<frame::PassReport>& passes, const render::FrameStats* stats) {
@@ -92,6 +101,13 @@ class Writer {
  public:
   explicit Writer(const Options& options) : options_(options) {}
 
+  void add(Movie& movie, const Image& picture) {
+    checkFinite(picture, options_);
+    // The exposure of what a display shows, as of a .png.
+    if (!tone_) tone_ = options_.tone.toneMapping(fs::path(options_.out).replace_extension(".png"), picture);
+    movie.add(toneMapped(picture, *tone_));
+  }
+
   void write(const fs::path& file, Image picture) {
     checkFinite(picture, options_);
     if (!tone_) tone_ = options_.tone.toneMapping(file, picture);
@@ -136,8 +152,35 @@ void renderWithProgress(render::Renderer& renderer, Progress& progress, int fram
   renderer.finish();
 }
 
+template <class FrameAt>
+void writeFrames(const Options& options, const FrameRange& frames, Writer& writer, FrameAt frameAt) {
+  LastWords words("interrupted; no frame was written");
+  for (int frame = frames.first; frame <= frames.last; ++frame) {
+    if (frame > frames.first)
+      words.say(fmt::format("interrupted; the frames {}:{} are written, --frames {}:{} goes on", frames.first,
+                            frame - 1, frame, frames.last));
+    writer.write(numbered(options.out, frame), frameAt(frame));
+  }
+  sayWritten(fmt::format("{} to {}", numbered(options.out, frames.first).string(),
+                         numbered(options.out, frames.last).string()));
+}
+
+template <class FrameAt>
+void writeMovie(const Options& options, const FrameRange& frames, Writer& writer, FrameAt frameAt) {
+  const std::string words = "interrupted; no movie was written";
+  const LastWords lastWords(words);
+  const Interruption interruption;  // what is half-written goes before the program
+  Movie movie(options.out, options.fps, commandLine());
+  for (int frame = frames.first; frame <= frames.last; ++frame) {
+    writer.add(movie, frameAt(frame));
+    if (interruption.asked()) throw Interrupted{interruption.signal(), words};
+  }
+  movie.finish();
+  sayWritten(options.out);
+}
+
 int run(const Options& options) {
-  checkOutputName(options.out);
+  checkOutputName(options);
   for (const fs::path& file : {options.out, options.stats, options.graph})
     if (!file.empty()) checkWritable(file);
   const auto frames = parseFrames(options.frames);
@@ -161,19 +204,17 @@ int run(const Options& options) {
   Writer writer(options);
   if (frames) {
     Progress progress("rendering");
-    LastWords words("interrupted; no frame was written");
-    for (int frame = frames->first; frame <= frames->last; ++frame) {
-      if (frame > frames->first)
-        words.say(fmt::format("interrupted; the frames {}:{} are written, --frames {}:{} goes on",
-                              frames->first, frame - 1, frame, frames->last));
+    const auto frameAt = [&](int frame) {
       session::moveTo(view, options.scene, frame / options.fps);
       renderer.setTime(view.time, view.animation);
-      writer.write(numbered(options.out, frame),
-                   render::supersample(renderer, view.camera, view.size, view.aa));
+      Image picture = render::supersample(renderer, view.camera, view.size, view.aa);
       progress.update(double(frame - frames->first + 1) / (frames->last - frames->first + 1));
-    }
-    sayWritten(fmt::format("{} to {}", numbered(options.out, frames->first).string(),
-                           numbered(options.out, frames->last).string()));
+      return picture;
+    };
+    if (isMovie(options.out))
+      writeMovie(options, *frames, writer, frameAt);
+    else
+      writeFrames(options, *frames, writer, frameAt);
   } else {
     constexpr double patience = 1;  // seconds
     Image picture;
@@ -212,8 +253,10 @@ Action addRenderCommand(CLI::App& command) {
   addSceneFlag(command, options->scene, "term");
   addTechniqueFlags(command, options->technique);
   options->backend.addTo(command);
-  command.add_option("--frames", options->frames,
-                     "Render frames a:b of the animation, both included, to NAME.0000.png and so on");
+  command.add_option(
+      "--frames", options->frames,
+      "Render frames a:b of the animation, both included, or the first N, to NAME.0000.png and "
+      "so on, or to a movie");
   command.add_option("--fps", options->fps, "Frames per second of the animation")
       ->capture_default_str()
       ->check(CLI::Range(0.001, 1e5));
@@ -225,7 +268,9 @@ Action addRenderCommand(CLI::App& command) {
   command.add_flag("--static", options->staticFrames, "Reuse unchanged results in timed frames")
       ->excludes(dynamicFlag);
   command
-      .add_option("-o,--out", options->out, "Picture: .exr (linear, with depth, id, albedo, normal) or .png")
+      .add_option("-o,--out", options->out,
+                  "Picture: .exr (linear, with depth, id, albedo, normal) or .png; with --frames also a "
+                  "movie: .mp4, .webm or .gif, which needs the program ffmpeg")
       ->required();
   command.add_flag(
       "--explain", options->explain,

@@ -30,14 +30,15 @@ void checkWritable(const fs::path& file) {
 std::optional<FrameRange> parseFrames(const std::string& text) {
   if (text.empty()) return std::nullopt;
   const size_t colon = text.find(':');
-  const auto first =
-      colon == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(0, colon));
-  const auto last =
-      colon == std::string::npos ? std::nullopt : parseNumber(std::string_view(text).substr(colon + 1));
+  const bool count = colon == std::string::npos;
+  const auto first = count ? std::optional(0.0) : parseNumber(std::string_view(text).substr(0, colon));
+  auto last = parseNumber(std::string_view(text).substr(count ? 0 : colon + 1));
+  if (count && last) last = *last - 1;
   const auto whole = [](double v) { return v == std::floor(v) && v >= 0 && v <= 1e6; };
   if (!first || !last || !whole(*first) || !whole(*last) || *first > *last)
-    throw UsageError(
-        fmt::format("--frames '{}' is not accepted; expected a:b with 0 <= a <= b <= 1000000", text));
+    throw UsageError(fmt::format(
+        "--frames '{}' is not accepted; expected a:b with 0 <= a <= b <= 1000000, or a number of frames",
+        text));
   return FrameRange{static_cast<int>(*first), static_cast<int>(*last)};
 }
 

@@ -28,7 +28,8 @@ void checkWritable(const std::filesystem::path& file);
 struct FrameRange {
   int first, last;  // inclusive
 };
-/// Parses "a:b"; returns nullopt for an empty text. Throws UsageError for any other text.
+/// Parses "a:b", or "n" for the first n frames; returns nullopt for an empty text. Throws UsageError for any
+/// other text.
 std::optional<FrameRange> parseFrames(const std::string& text);
 /// Returns the file name of one frame: picture.png, frame 7 -> picture.0007.png.
 std::filesystem::path numbered(const std::filesystem::path& out, int frame);

@@ -1,10 +1,8 @@
 // Declares how limn runs its helper programs, which do work that may crash, hang or grow without bound, each
 // in a process of its own.
 //
-// Such a program is started by posix_spawn, not by fork alone: a process with threads and OpenGL contexts may
-// do almost nothing between fork and exec, and must call exec. The program inherits no thread, no lock and no
-// file except the three standard ones; it limits itself before it reads its input, and answers on its
-// standard output.
+// Such a program is started by core/base/spawn.h: it inherits no thread, no lock and no file except the three
+// standard ones. It limits itself before it reads its input, and answers on its standard output.
 #pragma once
 
 #include <chrono>

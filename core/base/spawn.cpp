@@ -1,0 +1,84 @@
+#include "core/base/spawn.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+
+#include "core/base/error.h"
+
+namespace limn {
+
+pid_t startProgram(const std::string& program, const std::vector<std::string>& arguments,
+                   const StandardFiles& standard) {
+  posix_spawn_file_actions_t files;
+  posix_spawnattr_t attributes;
+  sigset_t defaults, blocked;
+  sigfillset(&defaults);
+  sigemptyset(&blocked);
+  for (const int interruption : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) sigaddset(&blocked, interruption);
+  std::vector<char*> pointers{const_cast<char*>(program.c_str())};
+  for (const std::string& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
+  pointers.push_back(nullptr);
+
+  int error = posix_spawn_file_actions_init(&files);
+  if (error != 0) throw Error(fmt::format("{} cannot be started: {}", program, std::strerror(error)));
+  error = posix_spawnattr_init(&attributes);
+  pid_t child = 0;
+  const auto attempt = [&](int result) {
+    if (error == 0) error = result;
+  };
+  const auto give = [&](int file, int as, int mode) {
+    attempt(file >= 0 ? posix_spawn_file_actions_adddup2(&files, file, as)
+                      : posix_spawn_file_actions_addopen(&files, as, "/dev/null", mode, 0));
+  };
+  give(standard.in, STDIN_FILENO, O_RDONLY);
+  give(standard.out, STDOUT_FILENO, O_WRONLY);
+  give(standard.err, STDERR_FILENO, O_WRONLY);
+  attempt(posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1));
+  attempt(posix_spawnattr_setsigdefault(&attributes, &defaults));
+  attempt(posix_spawnattr_setsigmask(&attributes, &blocked));
+  attempt(posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK));
+  if (error == 0)
+    error = posix_spawnp(&child, program.c_str(), &files, &attributes, pointers.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&files);
+  if (error != 0) throw Error(fmt::format("{} cannot be started: {}", program, std::strerror(error)));
+  return child;
+}
+
+bool programExists(const std::string& name) {
+  const char* folders = std::getenv("PATH");
+  std::istringstream text(folders ? folders : "/bin:/usr/bin");
+  for (std::string folder; std::getline(text, folder, ':');)
+    if (access((std::filesystem::path(folder) / name).c_str(), X_OK) == 0) return true;
+  return false;
+}
+
+std::string awaitProgram(pid_t process) {
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0)
+    if (errno != EINTR) return {};  // where nobody waits for children (SIGCHLD ignored) the answer must do
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    if (signal == SIGXCPU || signal == SIGALRM) return "it takes too long";
+    const char* what = sigdescr_np(signal);
+    return fmt::format("it crashed: {}", what ? what : fmt::format("signal {}", signal));
+  }
+  return WEXITSTATUS(status) == 0 ? "" : fmt::format("it ended with status {}", WEXITSTATUS(status));
+}
+
+std::string endProgram(pid_t process) {
+  kill(process, SIGKILL);
+  return awaitProgram(process);
+}
+
+}  // namespace limn

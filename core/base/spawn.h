@@ -1,0 +1,37 @@
+// Declares how limn starts other programs: by posix_spawn, since a process with threads and OpenGL contexts
+// may do almost nothing between fork and exec.
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+#include "core/base/export.h"
+
+namespace limn {
+
+/// Holds the file descriptors of a program's standard files; -1: /dev/null.
+struct StandardFiles {
+  int in = -1, out = -1, err = -1;
+};
+
+/// Starts a program, which is a path or, without '/', the name of one in the folders of PATH, with these
+/// arguments after its name. No shell reads them. The program inherits no other file and handles signals as
+/// by default, but an interrupt from the keyboard does not reach it. Returns its process, to be given to
+/// awaitProgram() or endProgram(). Throws Error if it cannot be started.
+LIMN_API pid_t startProgram(const std::string& program, const std::vector<std::string>& arguments,
+                            const StandardFiles& files);
+
+/// Returns whether startProgram() finds a program of that name in the folders of PATH.
+LIMN_API bool programExists(const std::string& name);
+
+/// Waits until the program has ended and says how it failed: "it ended with status 1", "it crashed:
+/// Segmentation fault", "it takes too long" for a program that ended itself by a limit of time. Returns ""
+/// after exit status 0.
+LIMN_API std::string awaitProgram(pid_t process);
+
+/// Ends the program, if it has not ended, and does what awaitProgram() does.
+LIMN_API std::string endProgram(pid_t process);
+
+}  // namespace limn
