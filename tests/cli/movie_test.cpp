@@ -40,7 +40,7 @@ TEST_F(EncodedMovie, EveryKindIsWrittenWhole) {
 }
 
 TEST_F(EncodedMovie, NothingIsLeftWhereTheDiskIsFull) {
-  constexpr rlim_t room = 64;
+  constexpr rlim_t room = 1024;  // enough for what is said, not for a movie
   const Outcome outcome = run(command("a.mp4", "3"), {}, room);
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.err, testing::HasSubstr("a.mp4: ffmpeg failed"));

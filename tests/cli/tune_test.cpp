@@ -1,0 +1,80 @@
+// The search for settings from outside.
+#include <fstream>
+
+#include "tests/cli/limn_program.h"
+
+namespace limn::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TuneCommand : public testing::Test {
+ protected:
+  std::vector<std::string> command(std::vector<std::string> more) const {
+    std::vector<std::string> arguments = {
+        "tune",    "cornell_box", "--size", "64x48",         "--steps",
+        "1",       "--spp",       "4",      "--frames",      "2",
+        "--turns", "2",           "--out",  folder_ / "out", "--max-masked-share",
+        "0.2"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  Outcome tune(std::vector<std::string> more) const { return limn(command(std::move(more))); }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(TuneCommand, AnswersWithACommandItsErrorAndItsTime) {
+  const std::vector<std::string> question = {"--light",     "#0",    "--techniques", "hard_shadow_map,pcf",
+                                             "--max-error", "rmse=1"};
+  const Outcome first = tune(question);
+  ASSERT_EQ(first.status, 0) << first.err;
+  EXPECT_THAT(first.out, testing::MatchesRegex(
+                             "limn render cornell_box --technique [^\n]*--light '#0'[^\n]*--out tuned.png\n"
+                             "    RMSE [^\n]*, [0-9.]+ ms a frame \\([0-9.]+ to [0-9.]+\\)\n"
+                             "runner-up: limn render cornell_box --technique [^\n]*\n    RMSE [^\n]*\n"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/index.html"));
+  // The suite asks for rows that are there.
+  const Outcome bench = limn({"bench", folder_ / "out/tuned.toml", "--out", folder_ / "out"});
+  EXPECT_EQ(bench.status, 0) << bench.err;
+  EXPECT_THAT(bench.out, testing::HasSubstr("0 rows measured, 2 were there already, 0 failed"));
+  // The same question is answered from the same rows.
+  const std::string rows = contents(folder_ / "out/results.jsonl");
+  EXPECT_EQ(tune(question).out, first.out);
+  EXPECT_EQ(contents(folder_ / "out/results.jsonl"), rows);
+  // What was interrupted in the middle of a row goes on behind the one before.
+  fs::resize_file(folder_ / "out/results.jsonl", rows.size() / 2);
+  const std::string whole = rows.substr(0, rows.rfind('\n', rows.size() / 2) + 1);
+  EXPECT_EQ(tune(question).status, 0);
+  EXPECT_EQ(contents(folder_ / "out/results.jsonl").substr(0, whole.size()), whole);
+}
+
+TEST_F(TuneCommand, SaysWhatComesNearestToALimitThatNothingKeeps) {
+  const Outcome outcome = tune({"--techniques", "hard_shadow_map", "--set",
+                                "hard_shadow_map.shadow_map_size=64", "--max-ms", "0.001", "-q"});
+  EXPECT_EQ(outcome.status, 1);
+  const Outcome loud = tune({"--techniques", "hard_shadow_map", "--set", "hard_shadow_map.shadow_map_size=64",
+                             "--max-ms", "0.001"});
+  EXPECT_THAT(loud.err,
+              testing::AllOf(testing::HasSubstr("no setting takes at most 0.001 ms"),
+                             testing::HasSubstr("shadow_map_size=64"), testing::HasSubstr("direct")));
+  EXPECT_FALSE(fs::exists(folder_ / "out/tuned.toml"));
+}
+
+TEST_F(TuneCommand, QuestionsThatCannotBeAskedAreRefusedAtOnce) {
+  expectRefused(tune({}), 2, {"--max-ms", "--max-error"});
+  expectRefused(tune({"--max-ms", "10", "--max-error", "rmse=0.1"}), 2, {"excludes"});
+  expectRefused(tune({"--max-error", "rsme=0.1"}), 2, {"rsme", "did you mean rmse"});
+  expectRefused(tune({"--max-error", "rmse"}), 2, {"METRIC=X"});
+  expectRefused(tune({"--max-ms", "10", "--metric", "pixels"}), 2, {"pixels", "known are"});
+  expectRefused(tune({"--max-ms", "10", "--techniques", "pcs"}), 2, {"pcs", "pcss"});
+  expectRefused(tune({"--max-ms", "10", "--techniques", "pcf", "--term", "indirect"}), 2, {"indirect"});
+  expectRefused(tune({"--max-ms", "10", "--term", "visibility"}), 2, {"--light"});
+  expectRefused(tune({"--max-ms", "10", "--bounces", "2"}), 2, {"--bounces", "direct"});
+  expectRefused(tune({"--max-ms", "10", "--techniques", "pcf", "--set", "pcss.bias=1"}), 2, {"pcss.bias"});
+  expectRefused(tune({"--max-ms", "10", "--techniques", "pcf", "--set", "pcf.kernel=1000"}), 2, {"kernel"});
+  EXPECT_FALSE(fs::exists(folder_ / "out/results.jsonl"));
+}
+
+}  // namespace
+}  // namespace limn::test
