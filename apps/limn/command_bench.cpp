@@ -6,6 +6,7 @@
 #include "apps/limn/commands.h"
 #include "apps/limn/interruption.h"
 #include "apps/limn/run_suite.h"
+#include "apps/limn/slurm.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/bench/regression.h"
@@ -20,6 +21,8 @@ struct Options {
   std::vector<std::string> filters;
   std::string shard;
   std::optional<double> stallTimeout;
+  bool slurm = false;
+  SlurmJob job;
   BackendOptions backend;
 };
 
@@ -39,16 +42,30 @@ bool reportRegressions(const std::vector<bench::Row>& before, const fs::path& ou
   return regression.found();
 }
 
+/// The options as arguments.
+std::vector<std::string> printed(const BackendOptions& backend) {
+  std::vector<std::string> arguments{"--backend", backend.backend};
+  if (backend.device >= 0) arguments.insert(arguments.end(), {"--device", std::to_string(backend.device)});
+  if (backend.debug) arguments.push_back("--gl-debug");
+  return arguments;
+}
+
 int run(const Options& options) {
+  const SuiteRun asked{.filters = options.filters,
+                       .shard = options.shard.empty() ? bench::Shard{} : bench::parseShard(options.shard),
+                       .stallTimeout = options.stallTimeout};
+  if (options.slurm) {
+    SlurmJob job = options.job;
+    job.arguments = printed(options.backend);
+    fmt::print("{}\n", submitSuite(session::findSuite(options.suite), options.out, asked, job));
+    return 0;
+  }
   std::optional<std::vector<bench::Row>> before;
   if (!options.against.empty()) before = earlierRows(options.against);
   const LastWords words(fmt::format("interrupted; the rows so far are kept in {}, the same command goes on",
                                     (options.out / "results.jsonl").string()));
   const bench::Summary summary =
-      runSuite(session::findSuite(options.suite), options.out, options.backend,
-               {.filters = options.filters,
-                .shard = options.shard.empty() ? bench::Shard{} : bench::parseShard(options.shard),
-                .stallTimeout = options.stallTimeout});
+      runSuite(session::findSuite(options.suite), options.out, options.backend, asked);
   fmt::print("{} rows measured, {} were there already, {} failed; the report is {}, tables are in {}\n",
              summary.done, summary.skipped, summary.failed, (options.out / "index.html").string(),
              (options.out / "tables.md").string());
@@ -68,11 +85,22 @@ Action addBenchCommand(CLI::App& command) {
       ->required();
   command.add_option("--filter", options->filters, "Only cases whose label contains this text; repeatable")
       ->take_all();
-  command.add_option(
+  CLI::Option* against = command.add_option(
       "--against", options->against,
       "Folder of an earlier result: says what got slower or worse beyond noise, exit status 1 if "
       "anything did");
-  command.add_option("--shard", options->shard, "i/n: the i-th of n parts; each into a folder of its own");
+  CLI::Option* shard = command.add_option(
+      "--shard", options->shard, "i/n: the i-th of n parts; each into a folder of its own, see limn merge");
+  CLI::Option* slurm = command.add_flag("--slurm", options->slurm,
+                                        "Submit the rows that are missing to Slurm, in parts on nodes of "
+                                        "their own, and their merging; the same\n"
+                                        "command goes on (docs/cluster.md)");
+  slurm->excludes(shard)->excludes(against);
+  command.add_option("--partition", options->job.partition, "Of Slurm; default: Slurm's own")->needs(slurm);
+  command.add_option("--nodes", options->job.nodes, "That work at once")
+      ->needs(slurm)
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
   command
       .add_option("--stall-timeout", options->stallTimeout,
                   "Seconds without a frame or a pass of a reference after which a case is ended and fails;\n"

@@ -79,6 +79,7 @@ Json quartiles(std::string_view description) {
 Json passSchema() {
   using Role = frame::PassRole;
   using State = frame::PassState;
+  static constexpr const char* kAddedLater[] = {"role", "triangles"};
   return object(
       "a pass of the frame",
       {{"name", text("name of the pass")},
@@ -89,7 +90,8 @@ Json passSchema() {
        {"reason", text("why it was left out or kept; empty otherwise")},
        {"ms", quartiles("time of the pass")},
        {"bytes", integer("GPU memory of what it writes")},
-       {"triangles", integer("drawn in a frame, views counted")}});
+       {"triangles", integer("drawn in a frame, views counted")}},
+      kAddedLater);
 }
 
 Json shadowMapSchema() {

@@ -1,0 +1,155 @@
+#include "apps/limn/slurm.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <set>
+
+#include "apps/limn/results_folder.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/shell.h"
+#include "core/base/spawn.h"
+#include "core/bench/merge.h"
+#include "core/bench/results_file.h"
+
+namespace limn::app {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kPartsPerNode = 4;  // so that nodes that are done early have more to do
+
+/// What a program prints, without the last line's end.
+std::string output(const std::string& program, const std::vector<std::string>& arguments) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) throw Error("no pipe to " + program);
+  const pid_t process = startProgram(program, arguments, {.out = ends[1], .err = STDERR_FILENO});
+  close(ends[1]);
+  std::string text;
+  char buffer[4096];
+  for (ssize_t count; (count = read(ends[0], buffer, sizeof buffer)) > 0;)
+    text.append(buffer, static_cast<std::size_t>(count));
+  close(ends[0]);
+  if (const std::string failure = awaitProgram(process); !failure.empty())
+    throw Error(fmt::format("{} {}: {}", program, fmt::join(arguments, " "), failure));
+  while (text.ends_with('\n')) text.pop_back();
+  return text;
+}
+
+/// The folders of parts that have rows.
+std::vector<fs::path> finishedParts(const fs::path& out) {
+  std::vector<fs::path> folders;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(out / "parts", ignored))
+    if (fs::exists(entry.path() / "results.jsonl", ignored)) folders.push_back(entry.path());
+  std::ranges::sort(folders);
+  return folders;
+}
+
+std::set<std::string> answered(const fs::path& out) {
+  std::set<std::string> keys;
+  if (fs::exists(out / "results.jsonl"))
+    for (const bench::Row& row : bench::readRows(out / "results.jsonl"))
+      if (row.failure.empty()) keys.insert(bench::rowKey(row.what, ""));
+  return keys;
+}
+
+/// A shell script for one task of the array: the part of its number. What a signal ended is queued again.
+std::string taskScript(const fs::path& suite, const fs::path& out, int parts, const SuiteRun& run,
+                       const SlurmJob& job) {
+  std::string filters;
+  for (const std::string& filter : run.filters) filters += " --filter " + shellQuoted(filter);
+  std::string more;
+  for (const std::string& argument : job.arguments) more += " " + shellQuoted(argument);
+  if (run.stallTimeout) more += fmt::format(" --stall-timeout {}", *run.stallTimeout);
+  return fmt::format(
+      "#!/bin/sh\n"
+      "part=$SLURM_ARRAY_TASK_ID\n"
+      "{} bench {} --out {}/parts/$part-of-{} --shard $part/{}{}{}\n"
+      "status=$?\n"
+      "if [ $status -ge 128 ] && [ \"${{SLURM_RESTART_COUNT:-0}}\" -lt 3 ]; then\n"
+      "  scontrol requeue \"${{SLURM_ARRAY_JOB_ID}}_$part\"\n"
+      "fi\n"
+      "exit $status\n",
+      shellQuoted(fs::read_symlink("/proc/self/exe").string()), shellQuoted(suite.string()),
+      shellQuoted(out.string()), parts, parts, filters, more);
+}
+
+/// The job that merges is the last one: while Slurm knows it, the parts or it are waiting or running.
+void refuseWhileRunning(const fs::path& out) {
+  const fs::path file = out / "slurm" / "job";
+  if (!fs::exists(file)) return;
+  const std::string job = readTextFile(file);
+  const std::string queued = "\n" + output("squeue", {"--noheader", "--format=%A", "--me"}) + "\n";
+  if (queued.find("\n" + job + "\n") != std::string::npos)
+    throw Error(
+        fmt::format("job {} of folder {} is not finished; squeue --job {} shows it, scancel {} ends it", job,
+                    out.string(), job, job));
+}
+
+}  // namespace
+
+std::string submitSuite(const fs::path& suiteFile, const fs::path& folder, const SuiteRun& run,
+                        const SlurmJob& job) {
+  if (!programExists("sbatch"))
+    throw Error(
+        "--slurm: there is no sbatch; on a machine without Slurm, --shard i/n and limn merge do by hand "
+        "what it would do");
+  const fs::path suite = fs::absolute(suiteFile), out = fs::absolute(folder);
+  const bench::Suite asked = bench::readSuite(suite);
+  const auto cases = bench::selectCases(asked.cases, run.filters);
+  if (cases.empty())
+    throw UsageError(fmt::format("suite {} has no case that fits the filter", suite.string()));
+  ResultsFolder results(out, {}, 0);
+  refuseWhileRunning(out);
+  for (const fs::path& part : finishedParts(out)) bench::mergeResults(part, out);
+  results.check(cases);
+
+  std::set<std::string> questions;
+  for (const bench::Case& c : cases) questions.insert(bench::question(c));
+  const int parts = std::min(static_cast<int>(questions.size()), kPartsPerNode * job.nodes);
+  const std::set<std::string> known = answered(out);
+  std::vector<int> open;
+  std::size_t missing = 0;
+  for (int part = 1; part <= parts; ++part) {
+    const auto count =
+        std::ranges::count_if(bench::selectCases(asked.cases, run.filters, {part, parts}),
+                              [&](const bench::Case& c) { return !known.contains(bench::rowKey(c, "")); });
+    missing += static_cast<std::size_t>(count);
+    if (count > 0) open.push_back(part);
+  }
+  if (open.empty()) {
+    results.writeReport();
+    return fmt::format("all {} rows are there; the report is {}", cases.size(),
+                       (out / "index.html").string());
+  }
+
+  const fs::path script = out / "slurm" / "part.sh";
+  createFolder(script.parent_path());
+  writeTextFile(script, taskScript(suite, out, parts, run, job));
+  std::vector<std::string> common = {"--parsable", "--nodes=1", "--requeue", "--open-mode=append",
+                                     "--job-name=limn-" + asked.name};
+  if (!job.partition.empty()) common.push_back("--partition=" + job.partition);
+  const auto submit = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), common.begin(), common.end());
+    const std::string printed = output("sbatch", arguments);
+    return printed.substr(0, printed.find(';'));  // "JOB;CLUSTER"
+  };
+  const std::string array =
+      submit({"--exclusive", fmt::format("--array={}%{}", fmt::join(open, ","), job.nodes),
+              "--output=" + (out / "slurm" / "part-%a.log").string(), script.string()});
+  std::string merge = shellQuoted(fs::read_symlink("/proc/self/exe").string()) + " merge " +
+                      shellQuoted((out / "parts").string()) + "/* --out " + shellQuoted(out.string());
+  const std::string last = submit({"--dependency=afterany:" + array,
+                                   "--output=" + (out / "slurm" / "merge.log").string(), "--wrap=" + merge});
+  writeTextFile(out / "slurm" / "job", last);
+  return fmt::format(
+      "{} of {} rows are missing: job {} measures them in {} parts on {} nodes, job {} merges them; "
+      "the same command goes on with what is missing then",
+      missing, cases.size(), array, open.size(), job.nodes, last);
+}
+
+}  // namespace limn::app
