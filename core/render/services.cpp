@@ -3,6 +3,7 @@
 #include "core/caustics/caustic_rays.h"
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/indirect/virtual_lights.h"
+#include "core/rays/ray_geometry.h"
 #include "core/relief_maps/relief_maps.h"
 #include "core/shading_maps/shading_maps.h"
 #include "core/shadow/shadow_map.h"
@@ -16,6 +17,7 @@ FrameServices makeServices(gpu::Device& device, scene::GpuScene& scene) {
   services.add<shadow::ShadowMapService>(device, scene);
   services.add<indirect::VirtualLightService>();
   services.add<caustics::CausticRayService>(device, scene);
+  services.add<rays::RayGeometryService>(device, scene.scene());
   services.add<relief_maps::ReliefMapService>(device, scene.scene());
   services.add<shading_maps::ShadingMapService>(device, scene.scene());
   services.add<FrameBudgetService>();
