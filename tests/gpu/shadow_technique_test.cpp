@@ -379,6 +379,25 @@ TEST_F(ShadowTechniqueTest, SamplesOfAnAreaLightConverge) {
     EXPECT_LT(previous[light], 0.04) << "light " << light;
 }
 
+/// Tracing has no texels: what is left is the number of rays, and the facets of the ball.
+TEST_F(ShadowTechniqueTest, ShadowRaysConverge) {
+  const BallScene s;
+  const std::vector<uint32_t> extended{2, 3, 4, 5};
+  std::vector<double> previous(s.pose.lights.size(), 1);
+  for (const char* rays : {"1", "8", "64"}) {
+    Answer v = visibility("ray_traced_area_light", {{"rays", rays}}, s.scene, s.pose, s.camera, extended);
+    keep(v, std::string("rays_") + rays);
+    v.lights.insert(v.lights.begin(), 2, {});
+    for (const uint32_t light : extended) {
+      const Errors e = floorErrors(s, v, light, ballHides);
+      EXPECT_LT(e.rms, 0.5 * previous[light]) << rays << " rays, light " << light;
+      previous[light] = e.rms;
+    }
+  }
+  for (size_t light = 2; light < previous.size(); ++light)
+    EXPECT_LT(previous[light], 0.02) << "light " << light;
+}
+
 TEST_F(ShadowTechniqueTest, BatchesOfSamplesAddUp) {
   const BallScene s;
   for (const Term term : {Term::visibility, Term::direct}) {

@@ -88,7 +88,7 @@ TEST_P(ViewerTechniquesTest, SwitchesThemOnAndOff) {
         "click 200 66; click 100 " + std::to_string(y) + "; save " + chosen.back() + ".exr; click 348 66\n";
   }
   ASSERT_FALSE(chosen.empty());
-  const Outcome outcome = view(std::string(GetParam()) + " --size 512x700 --open techniques --save a.exr",
+  const Outcome outcome = view(std::string(GetParam()) + " --size 512x720 --open techniques --save a.exr",
                                script + "save last.exr");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");

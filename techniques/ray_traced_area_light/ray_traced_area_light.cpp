@@ -1,0 +1,93 @@
+// Shadow rays through a hierarchy in buffers, n to each pixel: what soft shadows are made of where there is
+// the time, or hardware, for rays.
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "core/gpu_scene/gpu_scene.h"
+#include "core/rays/blue_noise.h"
+#include "core/rays/ray_geometry.h"
+#include "core/technique/light_batch.h"
+#include "core/technique/technique.h"
+
+namespace {
+
+using namespace limn;
+using frame::Access;
+
+constexpr Parameter kParameters[] = {
+    integer("rays", 4, {1, 256}, "rays", "Shadow rays of a pixel to each light that has an extent")
+        .quality()
+        .logScale(),
+};
+constexpr StressCase kStress[] = {
+    {.name = "one ray", .settings = "rays=1", .factor = 4},
+    {.name = "most rays", .settings = "rays=256", .factor = 1.5},
+};
+
+constexpr int kNoiseSide = 64;
+
+/// Returns a tile of shifts: thresholds of their own along both axes.
+const std::vector<glm::vec2>& shifts() {
+  static const std::vector<glm::vec2> tile = [] {
+    const std::vector<float> u = rays::blueNoise(kNoiseSide, 1), v = rays::blueNoise(kNoiseSide, 2);
+    std::vector<glm::vec2> both;
+    for (size_t i = 0; i < u.size(); ++i) both.emplace_back(u[i], v[i]);
+    return both;
+  }();
+  return tile;
+}
+
+class RayTracedAreaLight : public Technique {
+  frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                 const TermRequest& request) override {
+    const rays::RayGeometry& geometry = inputs.service<rays::RayGeometryService>().request();
+    frame::PassBuilder pass = graph.addPass("visibility", info.name);
+    pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
+        .read(inputs.handles.lights, Access::storageLoad, "Lights", "where rays go")
+        .read(inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "receivers")
+        .read(inputs.gbuffer.geometricNormal, Access::sampled, kGBufferNames.geometricNormal,
+              "which part of a light counts")
+        .read(inputs.gbuffer.instance, Access::sampled, kGBufferNames.instance, "a light does not see itself")
+        .constant("blue_noise", noise(inputs));
+    geometry.declare(pass);
+    gpu::ProgramDesc program{.files = {"techniques/ray_traced_area_light/visibility.comp.glsl"},
+                             .defines = {{"LIGHT_COUNT", std::to_string(request.lights.size())}}};
+    geometry.define(program.defines);
+    const frame::TextureHandle target =
+        pass.write(request.target, Access::imageStore, "visibility", "visibility, one layer per light");
+    const frame::ProgramHandle handle = pass.program(std::move(program));
+    pass.execute([handle, size = inputs.size, rays = inputs.parameters.integer("rays"),
+                  lights = std::vector<uint32_t>(request.lights.begin(), request.lights.end())](
+                     frame::PassContext& context) {
+      gpu::Program& kernel = context.use(handle);
+      setLightIndices(kernel, lights);
+      kernel.set("rays", rays);
+      context.dispatch(size.x, size.y, static_cast<int>(lights.size()), 8, 8);
+    });
+    return target;
+  }
+
+  const gpu::Texture& noise(const TechniqueInputs& inputs) {
+    if (!noise_) {
+      noise_ = gpu::Texture(inputs.gpuScene.device(), "shifts of rays",
+                            {.format = GL_RG32F, .width = kNoiseSide, .height = kNoiseSide});
+      noise_.upload(0, 0, GL_RG, GL_FLOAT, shifts().data());
+    }
+    return noise_;
+  }
+
+  gpu::Texture noise_;
+
+ public:
+  static constexpr TechniqueInfo info{.name = "ray_traced_area_light",
+                                      .title = "Ray-traced area lights",
+                                      .source = "Ylitie et al. 2017, Efficient Incoherent Ray Traversal",
+                                      .terms = termSet(Term::visibility),
+                                      .parameters = kParameters,
+                                      .stress = kStress};
+};
+
+}  // namespace
+
+LIMN_TECHNIQUE(RayTracedAreaLight::info, RayTracedAreaLight)

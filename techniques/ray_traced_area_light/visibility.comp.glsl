@@ -1,0 +1,83 @@
+// V as the share of a light's points that shadow rays reach: the points of the R2 sequence, shifted on the torus by blue noise.
+#include "glsl/light/light_view.glsl"
+#include "glsl/numeric/sampling.glsl"
+#include "glsl/rays/ray_trace.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(std430) readonly buffer Lights { Light lights[]; };
+layout(r16) writeonly uniform image2DArray visibility;
+uniform sampler2D blue_noise;
+uniform uint light_indices[LIGHT_COUNT];
+uniform int rays;
+
+// How far rays start above the receiver and end before the light, of the largest coordinate: depth and position of a pixel are
+// known to some 2^-21 of it.
+const float ray_clearance = 7.62939453125e-6;  // 2^-17
+const float unlimited = 3.0e38;
+
+float largest(vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
+
+// What the rays of a pixel towards one light have in common.
+struct ShadowRays {
+  vec3 position;
+  vec3 origin;     // clear of the receiver
+  vec3 clearance;  // from a point of the light to where its ray ends
+  bool finite;
+  float depth;  // of the receiver, m: what slopes are multiples of; 1 for directions
+  uint itself;  // instance that the light is
+};
+
+bool blocked(ShadowRays r, vec3 slope) {
+  if (!r.finite) return ray_occluded(r.origin, slope, unlimited, r.itself);
+  vec3 target = r.position + r.depth * slope + r.clearance;
+  return ray_occluded(r.origin, target - r.origin, 1.0, r.itself);
+}
+
+float lit_share(LightView view, ShadowRays r, vec2 shift) {
+  if (!view.extended) return blocked(r, view.centre) ? 0.0 : 1.0;
+  int lit = 0, sent = 0;
+  // Of the box around the part above the horizon at least a third is that part.
+  for (int i = 0; i < 4 * rays && sent < rays; ++i) {
+    vec2 u = fract(r2_sequence(uint(i)) + shift);
+    vec3 slope = view.centre;
+    if (view.whole) {
+      slope = light_view_point(view, u);
+    } else if (!light_view_sample(view, u, slope)) {
+      continue;
+    }
+    ++sent;
+    if (!blocked(r, slope)) ++lit;
+  }
+  return sent == 0 ? 1.0 : float(lit) / float(sent);
+}
+
+void main() {
+  ivec3 at = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(at, imageSize(visibility)))) return;
+  Light light = lights[light_indices[at.z]];
+  float v = 1.0;
+  float depth = pixel_depth(at.xy);
+  bool itself = light.own_instance != no_instance && pixel_instance(at.xy) == light.own_instance;
+  if (depth > 0.0 && !itself) {
+    vec3 position = pixel_position(at.xy, depth);
+    vec3 normal = pixel_geometric_normal(at.xy);
+    LightView view = light_view(light, position, normal, -1.0);
+    if (!view.masked) {
+      ShadowRays r;
+      r.position = position;
+      r.origin = position + normal * (ray_clearance * max(largest(position), length(position - frame.camera_position.xyz)));
+      r.finite = light.type != light_directional;
+      r.depth = r.finite ? view.depth : 1.0;
+      r.itself = light.own_instance;
+      r.clearance = vec3(0.0);
+      if (light.type == light_rectangle) {
+        float reach = largest(abs(light.position) + abs(light.axis_u) * light.length_u + abs(light.axis_v) * light.length_v);
+        r.clearance = light.direction * (ray_clearance * reach * rectangle_side(light, position));
+      }
+      v = lit_share(view, r, texelFetch(blue_noise, at.xy % textureSize(blue_noise, 0), 0).xy);
+    }
+  }
+  imageStore(visibility, at, vec4(v));
+}

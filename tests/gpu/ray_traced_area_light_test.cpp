@@ -1,0 +1,118 @@
+// Shadow rays on the GPU against those of the reference: what is static, instanced, masked, skinned, or new
+// in every frame.
+#include <algorithm>
+#include <cstdio>
+
+#include "core/reference/reference.h"
+#include "tests/gpu/render_test.h"
+
+namespace limn {
+namespace {
+
+class RayTracedAreaLightTest : public RenderTest {
+ protected:
+  static constexpr int kWidth = 96, kHeight = 72;
+
+  static render::Settings rays(int count, int light = 0) {
+    render::Settings s =
+        settings(kWidth, kHeight, Term::visibility,
+                 {technique("ray_traced_area_light", {{"rays", std::to_string(count)}})}, light);
+    s.channels = true;
+    return s;
+  }
+
+  static Image at(render::Renderer& renderer, double time) {
+    renderer.setTime(time, scene::kNone);
+    renderer.setCamera(renderer.pose().cameras.at(0));
+    renderer.render();
+    return renderer.read();
+  }
+
+  /// V where both pictures show the same surface, root mean square of the difference.
+  static double difference(const Image& image, const Image& truth) {
+    double sum = 0, count = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const float z = truth.at(x, y, truth.channel("Z"));
+        if (image.at(x, y, image.channel("id")) != truth.at(x, y, truth.channel("id")) ||
+            std::abs(image.at(x, y, image.channel("Z")) - z) > 1e-3f * z)
+          continue;
+        sum += std::pow(double(image.at(x, y, 0)) - truth.at(x, y, 0), 2);
+        ++count;
+      }
+    }
+    EXPECT_GT(count, kWidth * kHeight / 2);
+    return std::sqrt(sum / count);
+  }
+
+  static std::vector<float> values(const Image& image) { return {image.data().begin(), image.data().end()}; }
+
+  static Image truth(render::Renderer& renderer, const scene::Scene& scene, int light) {
+    reference::Request request{.scene = scene,
+                               .pose = renderer.pose(),
+                               .camera = renderer.pose().cameras.at(0),
+                               .width = kWidth,
+                               .height = kHeight};
+    request.term = Term::visibility;
+    request.light = light;
+    request.spp = 128;
+    return reference::render(request).image;
+  }
+};
+
+TEST_F(RayTracedAreaLightTest, ConvergesToTheReference) {
+  struct Case {
+    const char* scene;
+    double time;
+    int light;
+  };
+  for (const Case& c : {Case{"balls", 0, 0},
+                        {"plant", 0, 0},
+                        {"foliage_card", 0, 0},
+                        {"robot", 0.4, 0},
+                        {"cornell_horse", 1.3, 0},
+                        {"metaballs", 0.7, 0},
+                        {"lights", 0, 0},
+                        {"lights", 0, 1},
+                        {"lights", 0, 2},
+                        {"lights", 0, 3}}) {
+    SCOPED_TRACE(c.scene);
+    const scene::Scene scene = asset(c.scene);
+    render::Renderer renderer(device(), scene);
+    if (c.light >= static_cast<int>(renderer.pose().lights.size())) continue;
+    double error[2];
+    for (const int many : {0, 1}) {
+      renderer.configure(rays(many != 0 ? 128 : 4, c.light));
+      const Image image = at(renderer, c.time);
+      error[many] = difference(image, truth(renderer, scene, c.light));
+    }
+    std::printf("%s at %.1f s, light %d: RMSE of V %.4f with 4 rays, %.4f with 128\n", c.scene, c.time,
+                c.light, error[0], error[1]);
+    EXPECT_LT(error[0], 0.1);
+    EXPECT_LT(error[1], 0.025);
+  }
+}
+
+TEST_F(RayTracedAreaLightTest, WhatMovedIsWhatAFreshStartSees) {
+  for (const char* name : {"robot", "cornell_horse", "metaballs", "flying_dragon"}) {
+    SCOPED_TRACE(name);
+    const scene::Scene scene = asset(name);
+    render::Renderer moved(device(), scene), fresh(device(), scene);
+    moved.configure(rays(2));
+    fresh.configure(rays(2));
+    at(moved, 0);
+    at(moved, 2.1);
+    EXPECT_EQ(values(at(moved, 0.9)), values(at(fresh, 0.9)));
+  }
+}
+
+TEST_F(RayTracedAreaLightTest, FramesOfWhatStandsStillAreAlike) {
+  const scene::Scene scene = asset("robot");
+  render::Renderer renderer(device(), scene);
+  renderer.configure(rays(3));
+  const Image first = at(renderer, 0.5);
+  EXPECT_EQ(values(at(renderer, 0.5)), values(first));
+}
+
+}  // namespace
+}  // namespace limn
