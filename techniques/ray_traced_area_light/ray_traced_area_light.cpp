@@ -15,13 +15,19 @@ namespace {
 using namespace limn;
 using frame::Access;
 
+enum Filter { kNone, kSpatial };
+constexpr const char* kFilters[] = {"none", "spatial"};
 constexpr Parameter kParameters[] = {
     integer("rays", 4, {1, 256}, "rays", "Shadow rays of a pixel to each light that has an extent")
         .quality()
         .logScale(),
+    choice("filter", kNone, kFilters,
+           "What becomes of the noise: none: it stays; spatial: it is averaged over 7 x 7 pixels of the same "
+           "surface, as far as the rays' own variance explains the differences"),
 };
 constexpr StressCase kStress[] = {
     {.name = "one ray", .settings = "rays=1", .factor = 4},
+    {.name = "one ray, filtered", .settings = "rays=1,filter=spatial", .factor = 4},
     {.name = "most rays", .settings = "rays=256", .factor = 1.5},
 };
 
@@ -41,6 +47,29 @@ const std::vector<glm::vec2>& shifts() {
 class RayTracedAreaLight : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
+    if (inputs.parameters.choice("filter") == kNone) return trace(graph, inputs, request, request.target);
+    const frame::TextureHandle traced =
+        trace(graph, inputs, request, graph.createTexture("traced", graph.desc(request.target)));
+    frame::PassBuilder pass = graph.addPass("filter", info.name);
+    pass.role(frame::PassRole::filter)
+        .read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
+        .read(inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "neighbours on the same surface")
+        .read(inputs.gbuffer.geometricNormal, Access::sampled, kGBufferNames.geometricNormal, "its plane")
+        .read(traced, Access::sampled, "traced", "V with noise");
+    const frame::TextureHandle target =
+        pass.write(request.target, Access::imageStore, "visibility", "visibility, one layer per light");
+    const frame::ProgramHandle program =
+        pass.program({.files = {"techniques/ray_traced_area_light/filter.comp.glsl"}, .defines = {}});
+    pass.execute([program, size = inputs.size, rays = inputs.parameters.integer("rays"),
+                  layers = static_cast<int>(request.lights.size())](frame::PassContext& context) {
+      context.use(program).set("rays", rays);
+      context.dispatch(size.x, size.y, layers, 8, 8);
+    });
+    return target;
+  }
+
+  frame::TextureHandle trace(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                             const TermRequest& request, frame::TextureHandle into) {
     const rays::RayGeometry& geometry = inputs.service<rays::RayGeometryService>().request();
     frame::PassBuilder pass = graph.addPass("visibility", info.name);
     pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
@@ -55,7 +84,7 @@ class RayTracedAreaLight : public Technique {
                              .defines = {{"LIGHT_COUNT", std::to_string(request.lights.size())}}};
     geometry.define(program.defines);
     const frame::TextureHandle target =
-        pass.write(request.target, Access::imageStore, "visibility", "visibility, one layer per light");
+        pass.write(into, Access::imageStore, "visibility", "visibility, one layer per light");
     const frame::ProgramHandle handle = pass.program(std::move(program));
     pass.execute([handle, size = inputs.size, rays = inputs.parameters.integer("rays"),
                   lights = std::vector<uint32_t>(request.lights.begin(), request.lights.end())](

@@ -1,0 +1,44 @@
+// V without the noise of few rays: the mean over neighbours on the same surface, and of what a pixel differs from it as much as
+// the noise does not explain (Lee 1980, with the variance of the rays of each pixel as that of the noise).
+#include "glsl/surface/gbuffer_input.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(r16) writeonly uniform image2DArray visibility;
+uniform sampler2DArray traced;
+uniform int rays;
+
+const int reach = 3;  // pixels: the wavelengths of the shifts' blue noise lie within
+
+void main() {
+  ivec3 at = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(at, imageSize(visibility)))) return;
+  float here = texelFetch(traced, at, 0).r;
+  float depth = pixel_depth(at.xy);
+  vec3 position = pixel_position(at.xy, depth);
+  vec3 normal = pixel_geometric_normal(at.xy);
+  float footprint = depth * length(frame.view_ray_dx.xyz);
+  float weights = 0.0, sum = 0.0, squares = 0.0, within = 0.0;
+  for (int y = -reach; y <= reach; ++y) {
+    for (int x = -reach; x <= reach; ++x) {
+      ivec2 pixel = clamp(at.xy + ivec2(x, y), ivec2(0), imageSize(visibility).xy - 1);
+      float v = texelFetch(traced, ivec3(pixel, at.z), 0).r;
+      float d = pixel_depth(pixel);
+      float height = abs(dot(normal, pixel_position(pixel, d) - position));
+      float w = d > 0.0 && height <= footprint ? exp(-0.125 * float(x * x + y * y)) : 0.0;
+      weights += w;
+      sum += w * v;
+      squares += w * v * v;
+      within += w * v * (1.0 - v);
+    }
+  }
+  float result = here;
+  if (depth > 0.0 && weights > 0.0) {
+    float mean = sum / weights;
+    float spread = max(squares / weights - mean * mean, 0.0);
+    // One ray does not say how much it may be off: all that differs is noise then.
+    float noise = rays > 1 ? within / (weights * float(rays - 1)) : spread;
+    result = mean + (here - mean) * max(spread - noise, 0.0) / max(spread, 1e-6);
+  }
+  imageStore(visibility, at, vec4(result));
+}
