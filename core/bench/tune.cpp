@@ -278,7 +278,7 @@ TunePlan tunePlan(int width, int height, int frames, int turns) {
   int divisor = 4;
   while (divisor > 1 && std::min(width, height) / divisor < least) divisor /= 2;
   // Rows are known by size, frames and warm-up: those of different efforts must not be taken for each other.
-  return {{divisor, 3, 1, 1}, {1, std::min(frames, 5), 2, std::min(turns, 2)}, {1, frames, 3, turns}};
+  return {{divisor, 3, 1, 1}, {1, (frames + 1) / 2, 2, (turns + 2) / 3}, {1, frames, 3, turns}};
 }
 
 double badness(const MetricInfo& metric, double value) {

@@ -45,8 +45,15 @@ TEST(TunePlan, LooksAtSmallPicturesThatAreNotMostlySilhouettes) {
   EXPECT_EQ(tunePlan(1280, 720, 10, 5).look.divisor, 4);
   EXPECT_EQ(tunePlan(128, 96, 10, 5).look.divisor, 2);
   EXPECT_EQ(tunePlan(64, 48, 10, 5).look.divisor, 1);
-  EXPECT_EQ(tunePlan(64, 48, 2, 1).check.frames, 2);
-  EXPECT_EQ(tunePlan(64, 48, 2, 1).check.turns, 1);
+}
+
+TEST(TunePlan, ChecksTakeAFractionOfTheFullEffort) {
+  EXPECT_EQ(tunePlan(64, 48, 10, 5).check.frames, 5);
+  EXPECT_EQ(tunePlan(64, 48, 10, 5).check.turns, 2);
+  EXPECT_EQ(tunePlan(64, 48, 5, 3).check.frames, 3);
+  EXPECT_EQ(tunePlan(64, 48, 5, 3).check.turns, 1);
+  EXPECT_EQ(tunePlan(64, 48, 1, 1).check.frames, 1);
+  EXPECT_EQ(tunePlan(64, 48, 1, 1).check.turns, 1);
 }
 
 TEST(TuneFigures, AreSmallerForBetterPictures) {
