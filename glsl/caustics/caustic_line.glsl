@@ -65,5 +65,27 @@ LIMN_FN float caustic_even_weight(float away, float focal, bool rectangles) {
   return focal / (away * (rectangles ? 0.25f * pi : 0.70710678f));
 }
 
+// The integral of two boxes of unit area and these widths, one after the other (a trapezoid), from the middle to x, times
+// the greater width. wide >= narrow >= 0.
+LIMN_FN float caustic_trapezoid_part(float wide, float narrow, float x) {
+  float level = 0.5f * (wide - narrow);
+  float distance = abs(x);
+  float slope = clamp(distance - level, 0.0f, narrow);
+  float part = min(distance, level) + slope * (1.0f - 0.5f * slope / max(narrow, 1e-20f));
+  return x < 0.0f ? -part : part;
+}
+
+// How bright a pixel is across a beam, over the beam's flux per pixel of width, 1/pixels: the beam is a parallelogram whose
+// sides are a and b pixels wide across its line, and `away` is the pixel's distance from that line. The picture of a
+// parallelogram is one box after another, and the pixel's mean another box yet. Of all profiles this one alone lets the beams
+// between the points of a lattice add up to the same everywhere.
+LIMN_FN float caustic_beam_profile(float a, float b, float away) {
+  float wide = max(max(a, b), 1e-3f);
+  float narrow = min(a, b);
+  float distance = abs(away);
+  return (caustic_trapezoid_part(wide, narrow, distance + 0.5f) - caustic_trapezoid_part(wide, narrow, distance - 0.5f)) /
+         wide;
+}
+
 LIMN_END
 #endif  // LIMN_CAUSTIC_LINE_GLSL

@@ -11,7 +11,7 @@ layout(location = 1) flat in vec3 line_origin;
 layout(location = 2) flat in vec3 line_direction;
 layout(location = 3) flat in vec2 line_axis;
 layout(location = 4) flat in vec3 line_range;
-layout(location = 5) in vec2 line_width;
+layout(location = 5) in vec3 line_width;
 
 uniform sampler2D gbuffer_depth;
 layout(std430) readonly buffer Rays { CausticRay rays[]; };
@@ -24,6 +24,12 @@ struct LineFragment {
   float share;  // of the piece that the fragment stands for: what belongs to the line and is seen; 0: nothing
 };
 
+// Of the pixel's centre, on the view plane at distance 1.
+vec2 pixel_slope() {
+  return (gl_FragCoord.xy - 0.5 * vec2(frame.frame_size)) *
+         vec2(length(frame.view_ray_dx.xyz), length(frame.view_ray_dy.xyz));
+}
+
 // A fragment stands for the piece of its line between two columns of pixels (or rows, or across a beam), as far as the line
 // reaches and the surface at the pixel's centre does not hide it.
 LineFragment line_fragment() {
@@ -35,8 +41,7 @@ LineFragment line_fragment() {
   f.place = line_origin + f.along * line_direction;
   f.share = depth > 0.0 && f.place.z > depth ? 0.0 : 1.0;
 #else
-  vec2 slope = (gl_FragCoord.xy - 0.5 * vec2(frame.frame_size)) * vec2(pixel, length(frame.view_ray_dy.xyz));
-  float middle = dot(line_axis, slope);
+  float middle = dot(line_axis, pixel_slope());
   vec2 part = caustic_line_part(line_origin, line_direction, line_axis, line_range.xy, depth,
                                 vec2(middle - 0.5 * pixel, middle + 0.5 * pixel));
   float at = caustic_line_position(line_origin, line_direction, line_axis, line_axis * (0.5 * (part.x + part.y)));
@@ -62,9 +67,13 @@ float line_weight(LineFragment f) {
   return f.share * line_range.z;
 #else
   float rate = dot(caustic_line_rate(f.place, line_direction), line_axis);
-  float weight = f.share * caustic_line_weight(f.place, rate, 1.0 / length(frame.view_ray_dx.xyz));
+  float focal = 1.0 / length(frame.view_ray_dx.xyz);
+  float weight = f.share * caustic_line_weight(f.place, rate, focal);
 #if KIND == 2
-  weight *= line_width.y / line_width.x;
+  vec2 across = vec2(-line_axis.y, line_axis.x);
+  float away = focal * (dot(across, pixel_slope()) - caustic_line_picture(f.place, across));
+  vec2 widths = abs(line_width.xy) / line_width.z;
+  weight *= caustic_beam_profile(widths.x, widths.y, away);
 #endif
   return weight;
 #endif

@@ -10,7 +10,7 @@ layout(location = 1) flat out vec3 line_origin;     // camera space, metres
 layout(location = 2) flat out vec3 line_direction;
 layout(location = 3) flat out vec2 line_axis;       // unit, on the view plane: along the line, or along its larger component
 layout(location = 4) flat out vec3 line_range;      // x, y: from and to, metres along the ray; z: weight of a point
-layout(location = 5) out vec2 line_width;  // width in pixels times depth, and depth: their ratio is linear on the screen
+layout(location = 5) out vec3 line_width;  // x, y: beam_widths() times depth, and z: depth, all three linear along the ray
 
 const float widest_point = 64.0;
 
@@ -48,7 +48,7 @@ void main() {
   line_direction = piece.direction;
   line_axis = piece.axis;
   line_range = vec3(piece.range, 0.0);
-  line_width = vec2(1.0);
+  line_width = vec3(1.0);
 
 #if KIND == 0
   vec2 forwards = vec2(piece.axis.x < 0.0 ? -1.0 : 1.0, piece.axis.y < 0.0 ? -1.0 : 1.0);
@@ -91,8 +91,9 @@ void main() {
     share = sum_u < sum_v ? at_u : at_v;
   }
   vec3 corner = mix(a, b, share);
-  float size = max(beam_width(beam, piece, share), 1.0);
-  line_width = vec2(size * corner.z, corner.z);
+  vec2 widths = beam_widths(beam, piece, share);
+  float size = abs(widths.x) + abs(widths.y) + 1.0;  // as far as caustic_beam_profile() reaches
+  line_width = vec3(widths * corner.z, corner.z);
   float side = (gl_VertexID & 1) == 0 ? 0.5 : -0.5;
   vec2 across = vec2(-piece.axis.y, piece.axis.x);
   vec2 beyond = piece.axis * (0.5 * float(column - 1));

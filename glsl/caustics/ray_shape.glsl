@@ -76,18 +76,24 @@ RayBeam ray_beam(int index, CausticRay ray, RayPiece p) {
   return beam;
 }
 
-// Width of the beam in pixels, at a share of the way from a to b.
-float beam_width(RayBeam beam, RayPiece p, float share) {
+// Widths in pixels of the beam's sides u and v, at a share of the way from a to b; each goes through 0 to below where the side
+// turns over.
+vec2 beam_widths(RayBeam beam, RayPiece p, float share) {
   vec3 u = mix(beam.u_near, beam.u_far, share);
   vec3 v = mix(beam.v_near, beam.v_far, share);
   vec3 x = mix(p.a, p.b, share);
   vec3 normal = cross(p.direction, x);
   float size = length(normal);
-  if (!(size > 0.0)) return 0.0;
+  if (!(size > 0.0)) return vec2(0.0);
   normal /= size;
   vec2 across = vec2(-p.axis.y, p.axis.x);
   float per_metre = abs(dot(caustic_line_rate(x, normal), across)) * focal_length() / x.z;
-  return (abs(dot(u, normal)) + abs(dot(v, normal))) * per_metre;
+  return vec2(dot(u, normal), dot(v, normal)) * per_metre;
+}
+
+float beam_width(RayBeam beam, RayPiece p, float share) {
+  vec2 widths = abs(beam_widths(beam, p, share));
+  return widths.x + widths.y;
 }
 
 #endif

@@ -321,5 +321,57 @@ TEST(CausticLine, TheEvenWeightScattersAsMuchFromLinesInAllDirections) {
     }
 }
 
+/// The widths of beams' sides in pixels, from none over parts of a pixel to many pixels.
+constexpr float kWidths[] = {0, 1e-6f, 0.01f, 0.3f, 1, 2.7f, 40, 1000};
+
+/// Pixels lie next to each other, so that whatever lies between them is counted once.
+TEST(CausticBeam, ThePixelsAcrossABeamHaveAllItsLight) {
+  for (const float a : kWidths)
+    for (const float b : kWidths)
+      for (const float shift : {0.f, 0.2f, 0.5f, 0.93f}) {
+        const int reach = int(0.5f * (a + b)) + 3;
+        double sum = 0;
+        for (int i = -reach; i <= reach; ++i) {
+          const float profile = caustic_beam_profile(a, b, float(i) + shift);
+          ASSERT_GE(profile, 0);
+          if (std::abs(float(i) + shift) > 0.501f * (a + b + 1)) {
+            ASSERT_LT(profile, 1e-6f);
+          }
+          sum += double(profile);
+        }
+        EXPECT_NEAR(sum, 1, 2e-3) << a << " " << b << " " << shift;
+      }
+}
+
+/// Along either side of a lattice, whatever the other one is: each beam holds the light of a parallelogram,
+/// and there is one for every `step` pixels.
+TEST(CausticBeam, BeamsOfALatticeAddUpToTheSameEverywhere) {
+  for (const float step : kWidths) {
+    if (step < 0.01f) continue;  // the sum has no end
+    for (const float other : kWidths)
+      for (const float place : {0.f, 0.13f, 0.5f, 0.77f}) {
+        const int reach = int(0.5f * (step + other + 1) / step) + 3;
+        double first = 0, second = 0;
+        for (int i = -reach; i <= reach; ++i) {
+          const float away = (float(i) - place) * step;
+          first += double(caustic_beam_profile(step, other, away) * step);
+          second += double(caustic_beam_profile(other, step, away) * step);
+        }
+        EXPECT_NEAR(first, 1, 2e-3) << step << " " << other << " " << place;
+        EXPECT_NEAR(second, first, 1e-6) << step << " " << other << " " << place;
+      }
+  }
+}
+
+/// One box of both widths, which has the same light, does not: this is what drew lines between beams.
+TEST(CausticBeam, ABeamIsATrapezoidBeforePixelsBlurIt) {
+  EXPECT_NEAR(caustic_beam_profile(100, 40, 0), 1.f / 100, 1e-6f);
+  EXPECT_NEAR(caustic_beam_profile(100, 40, 29), 1.f / 100, 1e-6f);
+  EXPECT_NEAR(caustic_beam_profile(100, 40, 50), 0.5f / 100, 1e-6f);
+  EXPECT_NEAR(caustic_beam_profile(100, 40, -60), 0.25f / 100, 1e-6f);
+  EXPECT_EQ(caustic_beam_profile(0, 0, 0.49f), 1);
+  EXPECT_EQ(caustic_beam_profile(0, 0, 0.51f), 0);
+}
+
 }  // namespace
 }  // namespace limn::glsl
