@@ -144,6 +144,9 @@ void addWork(Hasher& h, const Request& r) {
   const bool caustics = r.term == Term::final || r.term == Term::caustic || r.term == Term::media;
   if (caustics && std::ranges::any_of(r.scene.materials, &scene::Material::specularSurface))
     h.add(causticVersion);
+  constexpr uint32_t airlightVersion = 0xa162;
+  const bool air = r.term == Term::final || r.term == Term::media;
+  if (air && r.scene.medium.sigmaS != glm::vec3(0) && r.scene.environment) h.add(airlightVersion);
 }
 
 }  // namespace

@@ -8,13 +8,6 @@
 namespace limn::reference {
 namespace {
 
-/// Weight of a strategy of density `own` beside one of density `other` (Veach 1997, power heuristic with
-/// exponent 2).
-float powerHeuristic(float own, float other) {
-  const float ratio = other / own;
-  return 1.f / (1.f + ratio * ratio);
-}
-
 /// One light at one surface.
 struct Estimate {
   const RayScene& rays;

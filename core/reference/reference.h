@@ -82,7 +82,7 @@ struct Request {
   ///   `bounces` others.
   /// - caustic: light off a specular object, or through one (LS DE, LSS DE), or with kAllInterfaces over any
   ///   number of interfaces. Translucent surfaces show it by the local limit.
-  /// - media: light as direct and as caustic have it.
+  /// - media: light as direct and as caustic have it; caustic has none of the environment's.
   /// - specular: emission, direct light, indirect and subsurface of up to `bounces`, and the environment.
   Term term = Term::direct;
   /// Index into Pose::lights, or lights.size() for the environment; kAllLights for all (not with visibility

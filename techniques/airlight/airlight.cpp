@@ -33,14 +33,14 @@ constexpr StressCase kStress[] = {
 class Airlight : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
-    std::vector<uint32_t> lights;
-    std::ranges::copy_if(request.lights, std::back_inserter(lights), [&](uint32_t light) {
-      return (inputs.pose.lights[light].flags & glsl::light_flag_environment) == 0;
-    });
+    const std::span<const uint32_t> lights = request.lights;
     const char* dark = nullptr;
     if (inputs.scene.medium.sigmaS == glm::vec3(0)) dark = "no medium scatters light";
-    if (inputs.scene.environment && !dark)
-      graph.leaveOut("airlight of the environment", info.name, "only lamps light the medium");
+    if (inputs.scene.environment && !dark && std::ranges::none_of(lights, [&](uint32_t light) {
+          return (inputs.pose.lights[light].flags & glsl::light_flag_environment) != 0;
+        }))
+      graph.leaveOut("airlight of the environment", info.name,
+                     "no lights stand for it (--environment-lights)");
     if (lights.empty()) dark = "the scene has no light";
     if (dark) {
       graph.leaveOut("airlight", info.name, dark);

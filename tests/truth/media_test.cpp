@@ -1,4 +1,5 @@
 // Light that fog scatters once, against quadrature of its equation.
+#include "core/shading/environment_decomposition.h"
 #include "tests/truth/truth_test.h"
 
 namespace limn {
@@ -46,6 +47,67 @@ TEST_F(MediaTruth, AirlightOfALampMeetsQuadrature) {
       return scattered * intensity * sum * end / steps;
     };
     expectBoth(scene, q, expected, {.average = 0.03});
+  }
+}
+
+/// Light of radiance 1 comes from everywhere, and nothing but the fog itself, a ball of radius R, is in its
+/// way: at a place p it scatters L = sigma_s int phase exp(-sigma_t d) dw towards the eye, where d is the way
+/// from p to the border.
+TEST_F(MediaTruth, FogInAWhiteFurnaceMeetsQuadrature) {
+  constexpr double absorbed = 0.1, scattered = 0.5;
+  const dvec3 eye(0, 0.3, 2.4);
+  scene::Scene scene;
+  const int grey = test::addMaterial(scene, test::lambertian(0.5f));
+  for (const float side : {-1.f, 1.f})  // the box of the scene, whose corners lie on the fog's border
+    test::show(scene, test::quad(side * vec3(1), {1e-3f, 0, 0}, {0, 1e-3f, 0}, grey));
+  scene.environment.width = 16;
+  scene.environment.height = 8;
+  scene.environment.texels.assign(128, vec3(1));
+  scene.medium.sigmaA = vec3(float(absorbed));
+  scene.medium.sigmaS = vec3(float(scattered));
+  scene.environment.lights = shading::decomposeEnvironment(scene.environment, {0.02, 16}).lights;
+  const scene::Bounds bounds = scene::evaluate(scene, 0).bounds;
+  const double radius2 = std::pow(double(bounds.radius()), 2);
+  EXPECT_NEAR(radius2, 3, 0.01);
+  const auto inside = [&](const dvec3& p, const dvec3& w) {  // metres to the border
+    const double b = glm::dot(p, w);
+    return -b + std::sqrt(std::max(b * b - glm::dot(p, p) + radius2, 0.0));
+  };
+  for (const double g : {-0.4, 0.0, 0.9}) {
+    SCOPED_TRACE(g);
+    scene.medium.g = float(g);
+    const auto expected = [&](const dvec3&, const dvec3& w) {
+      const dvec3 u = glm::normalize(glm::cross(w, dvec3(0, 1, 0))), v = glm::cross(u, w);
+      const double nearest = -glm::dot(eye, w), across2 = glm::dot(eye, eye) - nearest * nearest;
+      if (across2 > radius2) return nothing;
+      const double half = std::sqrt(radius2 - across2), begin = std::max(nearest - half, 0.0),
+                   end = nearest + half;
+      constexpr int steps = 32, polar = 96, azimuths = 12;
+      double sum = 0;
+      for (int i = 0; i < steps; ++i) {
+        const double t = begin + (i + 0.5) * (end - begin) / steps;
+        const dvec3 p = eye + t * w;
+        for (int j = 0; j < polar; ++j)
+          for (int k = 0; k < azimuths; ++k) {
+            // By the phase function's own distribution of cosines (Henyey and Greenstein 1941).
+            const double x = 2 * (j + 0.5) / polar - 1, s = (1 - g * g) / (1 + g * x);
+            const double cosine = g != 0 ? (1 + g * g - s * s) / (2 * g) : x;
+            const double sine = std::sqrt(1 - cosine * cosine), angle = 2 * M_PI * (k + 0.5) / azimuths;
+            const dvec3 from = cosine * w + sine * (std::cos(angle) * u + std::sin(angle) * v);
+            sum += std::exp(-(absorbed + scattered) * (t - begin + inside(p, from)));
+          }
+      }
+      return scattered * sum * (end - begin) / (steps * polar * azimuths);
+    };
+    const Question q{.camera = scene::lookAt(vec3(eye), {0, 0, 0}, 0.7f),
+                     .term = Term::media,
+                     .techniques = {technique("hard_shadow_map"), technique("airlight")},
+                     .spp = 512,
+                     .size = {20, 20},
+                     .background = true};
+    expectReference(scene, q, expected, {.mean = 3e-3, .average = 0.012, .pixels = 350});
+    // The lights that stand for it shine from the directions of their centres alone: 1 % too bright.
+    if (g == 0) expectPicture(scene, q, expected, {.mean = 0.02, .average = 0.02, .pixels = 350});
   }
 }
 

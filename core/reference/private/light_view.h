@@ -93,6 +93,13 @@ class EnvironmentView {
   const scene::EnvironmentLight& environment_;
 };
 
+/// Returns the weight of a strategy of density `own` > 0 beside one of density `other` (Veach 1997, power
+/// heuristic with exponent 2).
+inline float powerHeuristic(float own, float other) {
+  const float ratio = other / own;
+  return 1.f / (1.f + ratio * ratio);
+}
+
 /// Returns whether a light has a single direction for every receiver.
 bool isPunctual(const glsl::Light& light);
 

@@ -26,6 +26,8 @@ class RayMedium {
   /// medium.
   const glsl::Medium& medium() const { return medium_; }
 
+  bool homogeneous() const { return !grid_; }
+
   /// Returns the density at a place in the ball.
   float density(const glm::vec3& place) const { return grid_ ? scene::densityAt(*grid_, place) : 1.f; }
 
