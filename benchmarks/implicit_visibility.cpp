@@ -48,7 +48,7 @@ LinkSettings settingsOf(const benchmark::State& state) {
 void update(benchmark::State& state) {
   const Surfels surfels = bodyOverFloor(static_cast<int>(state.range(0)));
   Forest forest(surfels);
-  for (auto _ : state) forest.refit(surfels.positions, surfels.normals);
+  for (auto _ : state) forest.refit(surfels);
 }
 
 double median(std::vector<double> values) {

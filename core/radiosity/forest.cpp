@@ -82,7 +82,7 @@ glm::vec3 ElementSpace::worldDirection(const glm::vec3& direction) const {
   return glm::transpose(turn()) * direction;
 }
 
-Forest::Forest(const Surfels& surfels) : leafOf_(surfels.size()) {
+Forest::Forest(const Surfels& surfels, LeafShape shape) : shape_(shape), leafOf_(surfels.size()) {
   std::vector<std::vector<uint32_t>> clusters(surfels.clusterCount);
   for (uint32_t i = 0; i < surfels.size(); ++i) clusters[surfels.clusters[i]].push_back(i);
   // A cluster's elements per level, down to one; a level's groups hold them four by four.
@@ -130,10 +130,46 @@ Forest::Forest(const Surfels& surfels) : leafOf_(surfels.size()) {
     group.area[static_cast<int>(leafOf_[i] % 4)] = surfels.areas[i];
     group.disc[static_cast<int>(leafOf_[i] % 4)] = surfels.discs[i];
   }
-  refit(surfels.positions, surfels.normals);
+  placeTriangles(surfels);
+  refit(surfels);
 }
 
-void Forest::refit(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals) {
+void Forest::placeTriangles(const Surfels& surfels) {
+  vertices_.assign(leafSlots(), glm::vec3(0));
+  firstTriangle_.assign(leafSlots() + 1, 0);
+  const auto ownerOf = [&](size_t triangle) {
+    const auto leaf = [&](size_t k) { return leafOf_[surfels.triangles[triangle + k]]; };
+    return std::min({leaf(0), leaf(1), leaf(2)});
+  };
+  for (size_t t = 0; t < surfels.triangles.size(); t += 3) ++firstTriangle_[ownerOf(t) + 1];
+  std::partial_sum(firstTriangle_.begin(), firstTriangle_.end(), firstTriangle_.begin());
+  triangles_.resize(surfels.triangles.size());
+  std::vector<uint32_t> next(firstTriangle_.begin(), firstTriangle_.end());
+  for (size_t t = 0; t < surfels.triangles.size(); t += 3) {
+    const size_t place = size_t{3} * next[ownerOf(t)]++;
+    for (size_t k = 0; k < 3; ++k) triangles_[place + k] = leafOf_[surfels.triangles[t + k]];
+  }
+  if (shape_ == LeafShape::triangles) packTriangles();
+}
+
+void Forest::packTriangles() {
+  firstPack_.assign(1, 0);
+  for (uint32_t g = 0; g < levels_.front().count; ++g) {
+    const uint32_t count = firstTriangle_[4 * g + 4] - firstTriangle_[4 * g];
+    firstPack_.push_back(firstPack_.back() + quarter(count));
+  }
+  packs_.assign(firstPack_.back(), {});
+  for (uint32_t leaf = 0; leaf < leafSlots(); ++leaf)
+    for (uint32_t t = firstTriangle_[leaf]; t < firstTriangle_[leaf + 1]; ++t) {
+      const uint32_t place = t - firstTriangle_[leaf / 4 * 4];
+      TrianglePack& pack = packs_[firstPack_[leaf / 4] + place / 4];
+      for (uint32_t k = 0; k < 3; ++k) pack.leaves[k][static_cast<int>(place % 4)] = triangles_[3 * t + k];
+      pack.owners[static_cast<int>(place % 4)] = 1u << leaf % 4;
+    }
+}
+
+void Forest::refit(const Surfels& surfels) {
+  const auto &positions = surfels.positions, &normals = surfels.normals;
   tbb::parallel_for(size_t{0}, leafOf_.size(), [&](size_t i) {
     glsl::ElementGroup& group = groups_[leafOf_[i] / 4];
     const int lane = static_cast<int>(leafOf_[i] % 4);
@@ -143,10 +179,45 @@ void Forest::refit(std::span<const glm::vec3> positions, std::span<const glm::ve
     group.nx[lane] = normals[i].x;
     group.ny[lane] = normals[i].y;
     group.nz[lane] = normals[i].z;
+    vertices_[leafOf_[i]] = surfels.vertices[i];
   });
+  if (shape_ == LeafShape::triangles)
+    tbb::parallel_for(0u, levels_.front().count, [&](uint32_t g) {
+      refitPacks(g);
+      for (uint32_t leaf = 4 * g; leaf < 4 * g + 4; ++leaf) boundTriangles(leaf);
+    });
   for (size_t level = 1; level < levels_.size(); ++level)
     tbb::parallel_for(levels_[level].first, levels_[level].first + levels_[level].count,
                       [&](uint32_t g) { refitGroup(groups_[g]); });
+}
+
+void Forest::refitPacks(uint32_t group) {
+  for (uint32_t p = firstPack_[group]; p < firstPack_[group + 1]; ++p)
+    for (int k = 0; k < 3; ++k)
+      for (int lane = 0; lane < 4; ++lane) {
+        const glm::vec3& corner = vertices_[packs_[p].leaves[k][lane]];
+        packs_[p].x[k][lane] = corner.x;
+        packs_[p].y[k][lane] = corner.y;
+        packs_[p].z[k][lane] = corner.z;
+      }
+}
+
+void Forest::boundTriangles(uint32_t leaf) {
+  glsl::ElementGroup& group = groups_[leaf / 4];
+  const int lane = static_cast<int>(leaf % 4);
+  const glm::vec3 position(group.x[lane], group.y[lane], group.z[lane]),
+      normal(group.nx[lane], group.ny[lane], group.nz[lane]);
+  float radius = 0, spread = 0;
+  for (uint32_t t = firstTriangle_[leaf]; t < firstTriangle_[leaf + 1]; ++t) {
+    const auto corner = [&](uint32_t k) { return vertices_[triangles_[3 * t + k]]; };
+    const glm::vec3 across = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+    const float area = glm::length(across);
+    if (area == 0) continue;
+    radius = std::max(radius, std::abs(glm::dot(corner(0) - position, across / area)));
+    spread = std::max(spread, glm::length(across / area - normal));
+  }
+  group.radius[lane] = radius;
+  group.spread[lane] = std::min(spread, 2.f);
 }
 
 void Forest::refitGroup(glsl::ElementGroup& group) {

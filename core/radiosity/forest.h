@@ -34,6 +34,19 @@ class LIMN_API ElementSpace {
   float radius_ = 1;
 };
 
+/// Holds the corners of up to four triangles between leaves, for arithmetic with four at once.
+struct TrianglePack {
+  glm::vec4 x[3], y[3], z[3];  ///< of each corner
+  glm::uvec4 leaves[3];        ///< of each corner: its slot
+  glm::uvec4 owners{0};        ///< 1 << the lane of the leaf that it belongs to; 0: no triangle
+};
+
+/// Says what bounds of leaves hold.
+enum class LeafShape {
+  disc,       ///< their centres: leaves are discs to other elements
+  triangles,  ///< the triangles that they own, which are seen in their place (Fill::triangles)
+};
+
 /// Holds the elements of all levels in groups of four siblings: leaves first, then level after level, the
 /// clusters of a level one after the other. It needs no pointers: the children of lane k of a group are group
 /// children + k. Unused lanes have no area.
@@ -41,7 +54,7 @@ class LIMN_API Forest {
  public:
   Forest() = default;
   /// Builds the hierarchy. Positions and areas of `surfels` are in the space of the elements.
-  explicit Forest(const Surfels& surfels);
+  explicit Forest(const Surfels& surfels, LeafShape shape = LeafShape::disc);
 
   /// Returns the number of leaf slots: 4 per group, including unused ones. Every level's elements follow
   /// those of the level below.
@@ -62,15 +75,33 @@ class LIMN_API Forest {
   /// Returns, for each group, the element whose children it holds, or no_link.
   std::span<const uint32_t> parents() const { return parents_; }
 
-  /// Sets new positions and normals, one per surfel; areas stay. Uses all cores; allocates nothing.
-  void refit(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals);
+  LeafShape shape() const { return shape_; }
+  /// Returns the mesh between the surfels: 3 leaf slots per triangle, front faces counter-clockwise. Each
+  /// belongs to its corner with the lowest slot, and those of a leaf follow each other.
+  std::span<const uint32_t> triangles() const { return triangles_; }
+  /// Returns the number of the first triangle of each leaf slot, and behind the last that of all triangles.
+  std::span<const uint32_t> firstTriangle() const { return firstTriangle_; }
+  /// Returns the same triangles, with those of a group's leaves together, and the number of each leaf
+  /// group's first pack; behind the last that of all packs. None but for LeafShape::triangles.
+  std::span<const TrianglePack> packs() const { return packs_; }
+  std::span<const uint32_t> firstPack() const { return firstPack_; }
+
+  /// Sets the positions, normals and vertices of `surfels`; areas stay. Uses all cores; allocates nothing.
+  void refit(const Surfels& surfels);
 
  private:
+  void placeTriangles(const Surfels& surfels);
+  void packTriangles();
+  void refitPacks(uint32_t group);
+  void boundTriangles(uint32_t leaf);
   void refitGroup(glsl::ElementGroup& group);
 
+  LeafShape shape_ = LeafShape::disc;
   std::vector<glsl::ElementGroup> groups_;
   std::vector<Level> levels_{1};
-  std::vector<uint32_t> roots_, leafOf_, parents_;
+  std::vector<uint32_t> roots_, leafOf_, parents_, triangles_, firstTriangle_, firstPack_;
+  std::vector<TrianglePack> packs_;
+  std::vector<glm::vec3> vertices_;  ///< of each leaf slot
 };
 
 }  // namespace limn::radiosity

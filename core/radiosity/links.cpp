@@ -73,7 +73,8 @@ template <int N>
 class Traversal {
  public:
   Traversal(const Forest& forest, const LinkSettings& settings, uint32_t* out)
-      : groups_(forest.groups()),
+      : forest_(forest),
+        groups_(forest.groups()),
         test_(settings),
         filler_(settings),
         sharing_(static_cast<float>(settings.sharing)),
@@ -95,7 +96,10 @@ class Traversal {
       const uint32_t g = entry >> 4;
       const glsl::ElementGroup& group = groups_[g];
       const Decision decision = test_.decide<leaf>(receiver, group);
-      link(bins, group, g, decision, decision.link & entry);
+      if (test_.seenAsTriangles(group))
+        linkTriangles<leaf>(bins, receiver, g, decision, decision.link & entry);
+      else
+        link(bins, group, g, decision, decision.link & entry);
       for (uint32_t open = decision.open & entry & 15; open != 0; open &= open - 1)
         stack.push_back(waiting(group.children + static_cast<uint32_t>(std::countr_zero(open)), 15));
       if constexpr (!leaf) {
@@ -145,7 +149,10 @@ class Traversal {
     bins.margin = belowHorizon_;
     for (uint32_t g = 0; g < leafGroups; ++g) {
       const Decision decision = test_.decide<true>(receiver, groups_[g]);
-      link(bins, groups_[g], g, decision, decision.link);
+      if (test_.seenAsTriangles(groups_[g]))
+        linkTriangles<true>(bins, receiver, g, decision, decision.link);
+      else
+        link(bins, groups_[g], g, decision, decision.link);
     }
     filler_.close(bins);
   }
@@ -169,6 +176,19 @@ class Traversal {
     filler_.fill(bins, c, lanes);
   }
 
+  /// Links what leaves' triangles cover. Backs are met as those of discs are.
+  template <bool leaf>
+  [[gnu::noinline]] void linkTriangles(const Bins& bins, const Receiver& receiver, uint32_t g,
+                                       const Decision& d, uint32_t lanes) const {
+    lanes &= 15;
+    if (lanes == 0) return;
+    const uint32_t backs = groups_[g].backs != 0 ? laneMask(LinkTest::behind(d, groups_[g])) : 0;
+    for (uint32_t p = forest_.firstPack()[g]; p < forest_.firstPack()[g + 1]; ++p)
+      filler_.fill(bins, SeenTriangles(forest_.packs()[p], receiver.position, receiver.normal,
+                                       leaf ? 0 : receiver.radius, leaf ? 0 : receiver.spread, lanes, backs));
+  }
+
+  const Forest& forest_;
   std::span<const glsl::ElementGroup> groups_;
   LinkTest test_;
   BinFiller<N> filler_;
@@ -203,6 +223,8 @@ Links& Links::operator=(Links&&) noexcept = default;
 void Links::prepare(const Forest& forest, const LinkSettings& settings) {
   if (settings.resolution < 4 || settings.resolution > 32)
     throw UsageError(fmt::format("radiosity: {} bins per side are not in 4 .. 32", settings.resolution));
+  if (settings.fill == Fill::triangles && forest.shape() != LeafShape::triangles)
+    throw UsageError("radiosity: links to leaves' triangles take a forest of LeafShape::triangles");
   resolution_ = settings.resolution;
   links_.resize(forest.leafSlots() * binCount());
 }

@@ -17,6 +17,9 @@ namespace limn::radiosity {
 enum class Fill {
   centre,     ///< the one in which its centre lies, wholly (as published)
   footprint,  ///< those whose centres its disc covers
+  /// Of a leaf: those whose centres its triangles cover, each bin for the corner that is nearest to what it
+  /// meets; of elements above: as footprint. Takes a forest of LeafShape::triangles.
+  triangles,
 };
 
 struct LinkSettings {

@@ -59,7 +59,7 @@ const scene::Primitive* primitiveOf(const scene::Scene& scene, const scene::Pose
 }  // namespace
 
 SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose, float longestEdge,
-                             uint32_t maxElements, double lift)
+                             uint32_t maxElements, double lift, LeafShape shape)
     : scene_(scene), space_(pose.bounds.centre(), pose.bounds.radius()) {
   uint64_t triangles = 0;
   for (const scene::DrawInstance& draw : pose.instances) {
@@ -93,8 +93,7 @@ SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose,
   if (surfels_.size() > maxElements)
     refuse(fmt::format("the scene has {} surface elements", surfels_.size()));
   bodies_ = Bodies(surfels_, lift);
-  forest_ = Forest(surfels_);
-  for (const uint32_t corner : surfels_.triangles) triangles_.push_back(forest_.leafOf()[corner]);
+  forest_ = Forest(surfels_, shape);
   leaves_.resize(forest_.leafSlots());
   materials_.resize(forest_.leafSlots());
   setMaterials();
@@ -113,7 +112,7 @@ bool SceneElements::fits(const scene::Pose& pose) const {
 void SceneElements::update(const scene::Pose& pose) {
   moveInstances(pose);
   moveSurfels();
-  forest_.refit(surfels_.positions, surfels_.normals);
+  forest_.refit(surfels_);
 }
 
 void SceneElements::moveInstances(const scene::Pose& pose) {

@@ -44,9 +44,9 @@ class LIMN_API SceneElements {
  public:
   /// Makes the elements. Edges of triangles longer than `longestEdge`, in radii of the scene, are halved. All
   /// lengths are in units of the radius that the scene has now. Object i is instance i of the pose. `lift` is
-  /// as Bodies has it. Throws UsageError beyond `maxElements` leaves.
+  /// as Bodies has it, `shape` as Forest. Throws UsageError beyond `maxElements` leaves.
   SceneElements(const scene::Scene& scene, const scene::Pose& pose, float longestEdge, uint32_t maxElements,
-                double lift = kDefaultLift);
+                double lift = kDefaultLift, LeafShape shape = LeafShape::disc);
   ~SceneElements();
 
   /// Returns whether `pose` differs only in where vertices are.
@@ -63,7 +63,7 @@ class LIMN_API SceneElements {
   std::span<const LeafMaterial> materials() const { return materials_; }
   /// Returns the mesh between the surfels: 3 leaf slots per triangle, front faces counter-clockwise;
   /// double-sided surfaces have one for each side.
-  std::span<const uint32_t> triangles() const { return triangles_; }
+  std::span<const uint32_t> triangles() const { return forest_.triangles(); }
 
  private:
   struct Instance;
@@ -79,7 +79,6 @@ class LIMN_API SceneElements {
   Forest forest_;
   std::vector<Leaf> leaves_;
   std::vector<LeafMaterial> materials_;
-  std::vector<uint32_t> triangles_;
 };
 
 }  // namespace limn::radiosity

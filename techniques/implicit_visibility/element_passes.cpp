@@ -35,7 +35,9 @@ ElementPasses::ElementPasses(frame::FrameGraph& graph, const TechniqueInputs& in
                              const ElementSettings& settings)
     : settings_(settings),
       pose_(inputs.pose),
-      elements_(inputs.scene, inputs.pose, settings.longestEdge, mostElements(settings), settings.lift) {
+      elements_(inputs.scene, inputs.pose, settings.longestEdge, mostElements(settings), settings.lift,
+                settings.links.fill == radiosity::Fill::triangles ? radiosity::LeafShape::triangles
+                                                                  : radiosity::LeafShape::disc) {
   createBuffers(inputs.gpuScene.device());
   groups = graph.importBuffer("element groups", groupBuffer_);
   leaves = graph.importBuffer("leaves", leafBuffer_);
@@ -45,6 +47,7 @@ ElementPasses::ElementPasses(frame::FrameGraph& graph, const TechniqueInputs& in
   addUpdate(graph, inputs);
   if (settings.onGpu) {
     roots_ = graph.importBuffer("roots of clusters", rootBuffer_);
+    firstTriangles_ = graph.importBuffer("first triangles of leaves", firstTriangleBuffer_);
     addGpuLinks(graph);
   } else {
     addLinks(graph);
@@ -59,7 +62,11 @@ void ElementPasses::createBuffers(gpu::Device& device) {
   binTable_ = radiosity::binTable(settings_.links.resolution);
   directions_ = gpu::Buffer::of<glm::vec4>(device, "directions of bins", binTable_);
   software_ = device.software();
-  if (settings_.onGpu) rootBuffer_ = gpu::Buffer::of(device, "roots of clusters", elements_.forest().roots());
+  if (settings_.onGpu) {
+    rootBuffer_ = gpu::Buffer::of(device, "roots of clusters", elements_.forest().roots());
+    firstTriangleBuffer_ =
+        gpu::Buffer::of(device, "first triangles of leaves", elements_.forest().firstTriangle());
+  }
   if (glossy()) {
     materialBuffer_ = gpu::Buffer::of(device, "materials of leaves", elements_.materials());
     const size_t bytes = size_t{slots()} * sentCount() * sizeof(glm::vec4);
@@ -125,16 +132,22 @@ void ElementPasses::addGpuLinks(frame::FrameGraph& graph) {
 
 void ElementPasses::addGpuLinks(frame::FrameGraph& graph, LinkChunk& chunk) const {
   frame::BufferHandle lengths = graph.createBuffer("lengths of links", {chunk.count * rowBytes(settings_)});
-  const bool footprint = settings_.links.fill == radiosity::Fill::footprint;
+  const bool footprint = settings_.links.fill != radiosity::Fill::centre,
+             triangles = settings_.links.fill == radiosity::Fill::triangles;
   const auto addStep = [&](const char* name, const char* file, Access access, glm::ivec2 size,
                            glm::uvec2 someRoots) {
     frame::PassBuilder pass = graph.addPass(name, settings_.technique);
     pass.read(groups, Access::storageLoad, "elements").cacheable();
     if (someRoots.y > 0) pass.also("Groups").read(roots_, Access::storageLoad, "Roots", "where to begin");
+    if (someRoots.y > 0 && triangles)
+      pass.read(leaves, Access::storageLoad, "Leaves", "vertices")
+          .read(corners, Access::storageLoad, "Triangles", "their leaves")
+          .read(firstTriangles_, Access::storageLoad, "FirstTriangle", "those of each leaf");
     chunk.links = pass.write(chunk.links, access, "Links", "the nearest element in each bin of each leaf");
     lengths = pass.write(lengths, access, "Distances", "how far it is");
-    const auto kernelHandle = program(pass, file, {{"FOOTPRINT", footprint ? "1" : "0"}});
-    pass.execute([this, kernelHandle, own = chunk, someRoots, size](frame::PassContext& context) {
+    const auto kernelHandle =
+        program(pass, file, {{"FILL", fmt::format("{}", static_cast<int>(settings_.links.fill))}});
+    pass.execute([this, kernelHandle, own = chunk, someRoots, size, triangles](frame::PassContext& context) {
       gpu::Program& kernel = context.use(kernelHandle);
       kernel.set("leaf_count", own.count);
       if (someRoots.y > 0) {
@@ -142,6 +155,10 @@ void ElementPasses::addGpuLinks(frame::FrameGraph& graph, LinkChunk& chunk) cons
         kernel.set("first_root", someRoots.x);
         kernel.set("root_count", someRoots.y);
         kernel.set("opening", settings_.links.opening);
+        if (triangles) {
+          kernel.set("unit", elements_.space().radius());
+          setSpace(kernel);
+        }
       }
       context.dispatch(size.x, size.y, 1, 1, 1);
     });

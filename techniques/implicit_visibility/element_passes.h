@@ -108,9 +108,10 @@ class ElementPasses {
   radiosity::SceneElements elements_;
   radiosity::Links links_;
   std::vector<glm::vec4> binTable_;
-  gpu::Buffer groupBuffer_, leafBuffer_, cornerBuffer_, directions_, materialBuffer_, rootBuffer_;
+  gpu::Buffer groupBuffer_, leafBuffer_, cornerBuffer_, directions_, materialBuffer_, rootBuffer_,
+      firstTriangleBuffer_;
   bool software_ = false;
-  frame::BufferHandle roots_;
+  frame::BufferHandle roots_, firstTriangles_;
   std::deque<gpu::Buffer> linkBuffers_;  ///< the graph keeps their addresses
 };
 

@@ -20,16 +20,16 @@ using implicit_visibility::PassRequest;
 
 constexpr const char* kStructures[] = {"hierarchical", "flat"};
 constexpr const char* kMakers[] = {"cpu", "gpu"};
-constexpr const char* kFills[] = {"centre", "footprint"};
+constexpr const char* kFills[] = {"centre", "footprint", "triangles"};
 constexpr const char* kDisplays[] = {"vertex", "pixel"};
 constexpr Parameter kParameters[] = {
     integer("bins", 16, {4, 32}, "bins", "N of the 6 x N x N bins of directions").quality().logScale(),
     integer("bounces", 1, {1, 16}, "bounces", "Surfaces that reflect light before the one that is seen"),
     choice("structure", 0, kStructures, "Links through the hierarchy, or every pair of surface elements"),
     choice("links", 0, kMakers, "Where links are made: on all cores of the CPU, as published, or on the GPU"),
-    choice(
-        "fill", 1, kFills,
-        "Bins that an element fills: the one of its centre, as published, or those whose centres it covers"),
+    choice("fill", 1, kFills,
+           "Bins that an element fills: the one of its centre, as published, those whose centres its disc "
+           "covers, or, of an element at a vertex, its triangles"),
     real("opening", radiosity::LinkSettings{}.opening, {0.05, 16}, "bins",
          "Solid angle above which elements are opened; 1: as published")
         .logScale(),
@@ -61,6 +61,7 @@ constexpr StressCase kStress[] = {
     {.name = "4 bins", .scene = "cornell_box", .settings = "bins=4", .factor = 4},
     {.name = "32 bins", .scene = "cornell_box", .settings = "bins=32"},
     {.name = "as published", .scene = "cornell_box", .settings = "fill=centre", .factor = 2},
+    {.name = "triangles", .scene = "cornell_box", .settings = "fill=triangles bins=8", .factor = 4},
     {.name = "every pair", .scene = "cornell_box", .settings = "structure=flat"},
     {.name = "links shared by many", .scene = "cornell_box", .settings = "sharing=1 bins=8", .factor = 4},
     {.name = "hardly a link shared", .scene = "cornell_box", .settings = "sharing=0.01 bins=8", .factor = 4},

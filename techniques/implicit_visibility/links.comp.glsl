@@ -1,15 +1,25 @@
 // Links made on the GPU: each leaf goes down the hierarchy by itself, opens elements that are larger than its bins and keeps
-// the shortest link of each bin, as radiosity::Links does for leaves; no links are shared between receivers. FOOTPRINT 1: an
-// element fills the bins whose centres its disc covers; 0: that of its centre. The bins are clear to begin with.
+// the shortest link of each bin, as radiosity::Links does for leaves; no links are shared between receivers. FILL is
+// radiosity::Fill: an element fills the bin of its centre (0), or those whose centres its disc covers (1), or, of a leaf, its
+// triangles (2). The bins are clear to begin with.
 //
 // One loop does everything, a step at a time: the threads of a GPU's or processor's vector then wait for the longest of their
 // sums of steps, not for the sum of the longest. llvmpipe leaves all loops of a thread after 65,535 steps in all: the roots
 // come in batches.
 #include "techniques/implicit_visibility/elements.glsl"
+#if FILL == 2
+#include "glsl/indirect/seen_triangle.glsl"
+#endif
 
 layout(local_size_x = 64) in;
 layout(std430) readonly buffer Groups { ElementGroup groups[]; };
 layout(std430) readonly buffer Roots { uint roots[]; };
+#if FILL == 2
+layout(std430) readonly buffer Leaves { Leaf leaves[]; };
+layout(std430) readonly buffer Triangles { uint corners[]; };  // three leaves each
+layout(std430) readonly buffer FirstTriangle { uint first_triangle[]; };  // of each leaf
+uniform float unit;  // metres
+#endif
 layout(std430) buffer Links { uint links[]; };
 layout(std430) buffer Distances { float distances[]; };  // squared
 uniform uint first_leaf;
@@ -54,6 +64,42 @@ ivec4 box_on_face(vec3 d, vec3 normal, float radius) {
   return ivec4(below(low.x), below(low.y), min(n, below(high.x)) - 1, min(n, below(high.y)) - 1);
 }
 
+#if FILL == 2
+// Rows (x, y), the last included, of a face that a triangle may cover; its corners are in the face's axes.
+ivec2 rows_on_face(mat3 corners) {
+  const float nearest = 1e-3;
+  ivec2 nothing = ivec2(1, 0);
+  vec3 majors = vec3(corners[0].x, corners[1].x, corners[2].x);
+  vec3 across = vec3(corners[0].y, corners[1].y, corners[2].y);
+  vec3 along = vec3(corners[0].z, corners[1].z, corners[2].z);
+  if (all(lessThanEqual(majors, vec3(0.0))) || all(greaterThan(across, majors)) || all(greaterThan(-across, majors)) ||
+      all(greaterThan(along, majors)) || all(greaterThan(-along, majors)))
+    return nothing;
+  if (any(lessThanEqual(majors, nearest * (abs(across) + abs(along))))) return ivec2(0, n - 1);
+  vec3 places = along / majors;
+  float low = min(places.x, min(places.y, places.z));
+  float high = max(places.x, max(places.y, places.z));
+  return ivec2(below(low), min(n, below(high)) - 1);
+}
+
+// Columns of a row, the last included, where all of w + u * slope are at least 0: u of the columns' centres.
+ivec2 columns_of_row(vec3 w, vec3 slope) {
+  float low = -1.0;
+  float high = 1.0;
+  for (int k = 0; k < 3; ++k) {
+    if (slope[k] == 0.0) {
+      if (w[k] < 0.0) return ivec2(1, 0);
+    } else if (slope[k] > 0.0) {
+      low = max(low, -w[k] / slope[k]);
+    } else {
+      high = min(high, -w[k] / slope[k]);
+    }
+  }
+  if (low > high) return ivec2(1, 0);
+  return ivec2(below(low), min(n, below(high)) - 1);
+}
+#endif
+
 void keep(uint bin, float distance2, uint link) {
   if (distance2 < distances[bin]) {
     distances[bin] = distance2;
@@ -87,9 +133,43 @@ void main() {
   float height = 0.0;
   float radius = 0.0;
   uint link = no_link;
+#if FILL == 2
+  // The triangles to come of the leaf in work, and the one in work: weights, as rows, and corners in the axes of the bins.
+  uint triangle = 0u;
+  uint last_triangle = 0u;
+  bool sees_back = false;
+  bool by_triangle = false;
+  mat3 weights = mat3(0.0);
+  mat3 offsets = mat3(0.0);
+  uvec3 links_of_corners = uvec3(0u);
+#endif
 
   bool busy = true;
   while (busy) {
+#if FILL == 2
+    if (by_triangle && at.y <= box.w) {
+      mat3 w = mat3(turned(weights[0], face), turned(weights[1], face), turned(weights[2], face));
+      vec3 major = vec3(w[0].x, w[1].x, w[2].x) + centre(at.y) * vec3(w[0].z, w[1].z, w[2].z);
+      vec3 slope = vec3(w[0].y, w[1].y, w[2].y);
+      if (at.x > box.z) {
+        ++at.y;
+        if (at.y <= box.w) {
+          ivec2 span = columns_of_row(vec3(w[0].x, w[1].x, w[2].x) + centre(at.y) * vec3(w[0].z, w[1].z, w[2].z), slope);
+          at.x = span.x;
+          box.z = span.y;
+        }
+      } else {
+        vec3 ray = vec3(1.0, centre(at.x), centre(at.y));
+        vec3 at_corners = major + slope * ray.y;
+        float t = height / dot(turned(normal, face), ray);
+        uint nearest = at_corners.x >= max(at_corners.y, at_corners.z) ? links_of_corners.x
+                       : at_corners.y >= at_corners.z                  ? links_of_corners.y
+                                                                       : links_of_corners.z;
+        if (t > 0.0) keep(first_bin + uint((int(face) * n + at.y) * n + at.x), t * t * dot(ray, ray), nearest);
+        ++at.x;
+      }
+    } else
+#endif
     if (at.y <= box.w) {
       vec3 d = turned(offset, face);
       vec3 ray = vec3(1.0, centre(at.x), centre(at.y));
@@ -104,8 +184,36 @@ void main() {
     } else if (faces != 0u) {
       face = uint(findLSB(faces));
       faces &= faces - 1u;
+#if FILL == 2
+      if (by_triangle) {
+        ivec2 rows =
+            rows_on_face(mat3(turned(offsets[0], face), turned(offsets[1], face), turned(offsets[2], face)));
+        // Before the first row, at its end.
+        box = ivec4(0, rows.x, -1, rows.y);
+        at = ivec2(0, rows.x <= rows.y ? rows.x - 1 : n);
+        continue;
+      }
+#endif
       box = box_on_face(turned(offset, face), turned(normal, face), radius);
       at = box.x <= box.z ? box.xy : ivec2(0, n);
+#if FILL == 2
+    } else if (triangle < last_triangle) {
+      uvec3 slots = uvec3(corners[3u * triangle], corners[3u * triangle + 1u], corners[3u * triangle + 2u]);
+      ++triangle;
+      vec3 from = leaves[first_leaf + row].position.xyz;
+      for (int k = 0; k < 3; ++k) offsets[k] = to_bins(leaves[slots[k]].vertex - from) / unit;
+      SeenTriangle seen = seen_triangle(offsets[0], offsets[1], offsets[2]);
+      bool below = below_horizon(offsets[0], up, 0.0, 0.0) && below_horizon(offsets[1], up, 0.0, 0.0) &&
+                   below_horizon(offsets[2], up, 0.0, 0.0);
+      if (seen.height > 0.0 && !below && (sees_back || !seen.back)) {
+        weights = mat3(seen.weight_a, seen.weight_b, seen.weight_c);
+        normal = seen.normal;
+        height = seen.height;
+        links_of_corners = slots | (seen.back ? link_back : 0u);
+        by_triangle = true;
+        faces = 63u;
+      }
+#endif
     } else if (lanes != 0u) {
       int k = findLSB(lanes);
       lanes &= lanes - 1u;
@@ -116,7 +224,11 @@ void main() {
       float distance2 = dot(offset, offset);
       float distance = sqrt(distance2);
       float reach = g.radius[k];
-      bool facing = dot(offset, up) + reach - grazing * distance > 0.0;
+      float rise = reach;
+#if FILL == 2
+      if (g.children == no_link) rise += 2.0 * g.disc[k];  // of its triangles above its centre, at most
+#endif
+      bool facing = dot(offset, up) + rise - grazing * distance > 0.0;
       if (g.backs == 0u) facing = facing && reach + (g.spread[k] - grazing) * distance > height;
       vec3 size = abs(offset);
       float major = max(size.x, max(size.y, size.z));
@@ -125,14 +237,24 @@ void main() {
       float shown = min(abs(height) + g.spread[k] * distance, distance);
       bool open = g.children != no_link && extent * shown >= limit;
       bool linked = facing && !open && distance2 > 1e-14;
-      if (g.backs != 0u) linked = linked && (height <= 0.0 || height > max(0.1 * distance, g.disc[k]));
+      bool behind = g.backs != 0u && height > max(0.1 * distance, g.disc[k]);
+#if FILL == 2
+      if (linked && g.children == no_link) {
+        triangle = first_triangle[4u * group + uint(k)];
+        last_triangle = first_triangle[4u * group + uint(k) + 1u];
+        sees_back = behind;
+        linked = false;
+      }
+      by_triangle = false;
+#endif
+      if (g.backs != 0u) linked = linked && (height <= 0.0 || behind);
       radius = g.disc[k];
       link = (4u * group + uint(k)) | (g.backs != 0u && height > 0.0 ? link_back : 0u);
       if (facing && open && top < most_waiting) {
         waiting[top] = g.children + uint(k);
         ++top;
       }
-#if FOOTPRINT
+#if FILL != 0
       vec2 place;
       uint towards = bin_face(offset, place);
       if (linked && abs(height) >= coplanar * radius) faces = radius < 0.5 * major ? 1u << towards : 63u;

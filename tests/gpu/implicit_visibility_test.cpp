@@ -82,7 +82,7 @@ TEST_F(ImplicitVisibilityTest, LinksMadeOnTheGpuSeeWhatThoseOfTheCpuSee) {
   for (const char* name : {"cornell_box", "lights"}) {
     const scene::Scene scene = asset(name);
     render::Renderer renderer(device(), scene);
-    for (const char* fill : {"footprint", "centre"}) {
+    for (const char* fill : {"triangles", "footprint", "centre"}) {
       const auto final = [&](const char* parameter, const char* value) {
         return picture(
             renderer,

@@ -10,6 +10,7 @@
 
 #include "core/radiosity/links.h"
 #include "core/radiosity/private/face_discs.h"
+#include "core/radiosity/private/triangle_rays.h"
 #include "glsl/indirect/direction_bins.glsl"
 
 namespace limn::radiosity {
@@ -26,7 +27,7 @@ class BinFiller {
         half_(0.5f * static_cast<float>(n())),
         width_(1 / half_),
         nearer2_(static_cast<float>(settings.closing * settings.closing)),
-        footprint_(settings.fill == Fill::footprint) {
+        footprint_(settings.fill != Fill::centre) {
     for (size_t i = 0; i < static_cast<size_t>(n()); ++i) {
       const float at = (static_cast<float>(i) + 0.5f) * width_ - 1;
       centres_[i] = at;
@@ -90,6 +91,23 @@ class BinFiller {
     if (several != 0) fillFaces(bins, c, several);
   }
 
+  /// Fills the bins whose centres triangles cover.
+  [[gnu::always_inline]] inline void fill(const Bins& bins, const SeenTriangles& triangles) const {
+    if (triangles.seen == 0) return;
+    const TrianglesOnFaces on(triangles);
+    const Boxes boxes{firstBin(on.u.low), lastBin(on.u.high), firstBin(on.v.low), lastBin(on.v.high)};
+    // Over the edges of the face, as far as the first bins' centres on the next.
+    const float next = half_ / (half_ - 0.5f);
+    const uint32_t several = triangles.seen & (~laneMask(on.bounded) | on.u.over(next) | on.v.over(next));
+    uint32_t lanes = triangles.seen & ~several & laneMask((boxes.x0 <= boxes.x1) & (boxes.y0 <= boxes.y1));
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int k = std::countr_zero(lanes);
+      const auto face = static_cast<uint32_t>(on.face[k]);
+      raster(bins, TriangleRays(triangles, k, face), face, boxes, k);
+    }
+    if (several != 0) fillFaces(bins, triangles, several);
+  }
+
  private:
   /// Fills the parts of discs that lie on one face each.
   [[gnu::noinline]] void fillFace(const Bins& bins, const Candidates& c, const OnFaces& on,
@@ -100,7 +118,7 @@ class BinFiller {
     for (lanes &= laneMask((boxes.x0 <= boxes.x1) & (boxes.y0 <= boxes.y1)); lanes != 0; lanes &= lanes - 1) {
       const int k = std::countr_zero(lanes);
       if (boxes.x1[k] - boxes.x0[k] < 4)
-        raster(bins, c, on, boxes, k);
+        raster(bins, DiscRays(c, on, k), static_cast<uint32_t>(on.face[k]), boxes, k);
       else
         rasterWide(bins, c, on, boxes, k);
     }
@@ -240,15 +258,29 @@ class BinFiller {
       }
   }
 
-  /// Fills the bins whose centres lie on the disc, in a box of up to four columns. Works in squares of four
-  /// bins, which may extend beyond a narrower box; the disc does not lie there.
-  void raster(const Bins& bins, const Candidates& c, const OnFaces& on, const Boxes& boxes, int k) const {
-    const DiscRays rays(c, on, k);
-    const size_t row = static_cast<size_t>(n()), first = index(static_cast<uint32_t>(on.face[k]), 0, 0);
+  /// Fills the bins of triangles that lie in front of several faces each.
+  [[gnu::noinline]] void fillFaces(const Bins& bins, const SeenTriangles& triangles, uint32_t lanes) const {
+    for (; lanes != 0; lanes &= lanes - 1)
+      for (uint32_t face = 0; face < 6; ++face) {
+        const TriangleCorners corners(triangles, std::countr_zero(lanes), face);
+        if (corners.beside()) continue;
+        const Float4 box = corners.box();
+        const Int4 first = firstBin(box), last = first - 1;
+        if (first[0] < first[2] && first[1] < first[3])
+          raster(bins, TriangleRays(triangles, std::countr_zero(lanes), face), face,
+                 {first, Int4{} + last[2], Int4{} + first[1], Int4{} + last[3]}, 0);
+      }
+  }
+
+  /// Fills the bins of box k whose centres lie on a disc or triangle. Works in squares of four bins, which
+  /// may extend beyond the box; the disc or triangle does not.
+  template <class Rays>
+  void raster(const Bins& bins, const Rays& rays, uint32_t face, const Boxes& boxes, int k) const {
+    const size_t row = static_cast<size_t>(n()), first = index(face, 0, 0);
     const int x1 = boxes.x1[k], y0 = boxes.y0[k], y1 = boxes.y1[k];
     for (int left = boxes.x0[k]; left <= x1; left += 2) {
       const int x = std::min(left, n() - 2);
-      const DiscRays::Columns columns = rays.columns(squareColumns_[static_cast<size_t>(x)]);
+      const auto columns = rays.columns(squareColumns_[static_cast<size_t>(x)]);
       for (int top = y0; top <= y1; top += 2) {
         const int y = std::min(top, n() - 2);
         rays.fillSquare(bins, first + static_cast<size_t>(y * n() + x), row, columns,
@@ -289,12 +321,6 @@ class BinFiller {
           rays.fill(bins, index(face, first, y), rays.columns(places(first)), splat(centre(y)));
         }
     }
-  }
-
-  /// Returns a vector in the axes of a face: major, column, row.
-  static glm::vec3 onFace(const glm::vec3& v, uint32_t face) {
-    const int axis = static_cast<int>(face / 2);
-    return {face % 2 != 0 ? -v[axis] : v[axis], v[(axis + 1) % 3], v[(axis + 2) % 3]};
   }
 
   /// Returns the position of a column's or row's centre.

@@ -25,6 +25,14 @@ struct Bins {
   }
 };
 
+/// Returns a vector in the axes of a face: major, column, row.
+inline glm::vec3 onFace(const glm::vec3& v, uint32_t face) {
+  const float sign = face % 2 != 0 ? -1.f : 1.f;
+  if (face < 2) return {sign * v.x, v.y, v.z};
+  if (face < 4) return {sign * v.y, v.z, v.x};
+  return {sign * v.z, v.x, v.y};
+}
+
 /// Holds up to four siblings at the other ends of links: offsets from the receiver, unit normals, heights
 /// along these.
 struct Candidates {

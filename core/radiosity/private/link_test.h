@@ -41,7 +41,7 @@ struct Decision {
 
 class LinkTest {
  public:
-  explicit LinkTest(const LinkSettings& settings) {
+  explicit LinkTest(const LinkSettings& settings) : triangles_(settings.fill == Fill::triangles) {
     const float n = static_cast<float>(settings.resolution);
     const float angle = settings.opening * 4 / (n * n);
     angle2_ = angle * angle;
@@ -62,7 +62,9 @@ class LinkTest {
     const Float4 distance = root(d.distance2);
     const Float4 reach = leaf ? lanes(g.radius) : lanes(g.radius) + r.radius;
     constexpr float grazing = 1e-4f;
-    Int4 facing = above + reach + (leaf ? -grazing : r.spread - grazing) * distance > 0.f;
+    // A leaf's triangles rise above its centre by no more than twice what the disc of a third of them does.
+    const Float4 rise = seenAsTriangles(g) ? reach + 2.f * lanes(g.disc) : reach;
+    Int4 facing = above + rise + (leaf ? -grazing : r.spread - grazing) * distance > 0.f;
     if (g.backs == 0) facing &= reach + (lanes(g.spread) - grazing) * distance > d.height;
     const uint32_t visible = laneMask(facing) & ((1u << g.lanes) - 1);
     if (visible == 0) return d;
@@ -84,15 +86,22 @@ class LinkTest {
     }
     const Int4 apart = d.distance2 > 1e-14f;
     d.link = visible & ~d.open & ~d.defer & laneMask(apart);
-    if (g.backs != 0) {
-      // Neighbours on one surface may seem to show their backs where normals bend more than triangles do.
-      const Int4 behind = (d.height > 0.1f * distance) & (d.height > lanes(g.disc));
-      d.link &= laneMask((d.height <= 0.f) | behind);
-    }
+    if (g.backs != 0 && !seenAsTriangles(g)) d.link &= laneMask((d.height <= 0.f) | behind(d, g));
     return d;
   }
 
+  /// Returns whether the group's elements are leaves that fill bins by their triangles.
+  bool seenAsTriangles(const glsl::ElementGroup& g) const {
+    return triangles_ && g.children == glsl::no_link;
+  }
+  /// Returns where a receiver is so far behind the discs that it sees their backs. Nearer than that,
+  /// neighbours on one surface may seem to show them where normals bend more than triangles do.
+  static Int4 behind(const Decision& d, const glsl::ElementGroup& g) {
+    return (d.height > 0.1f * root(d.distance2)) & (d.height > lanes(g.disc));
+  }
+
  private:
+  bool triangles_;
   float angle2_;
 };
 

@@ -23,7 +23,8 @@ struct World {
 
   explicit World(std::vector<TriangleMesh> meshes, const LinkSettings& settings = {.opening = kPublished},
                  bool flat = false, float longestEdge = 1e9f)
-      : surfels(surfelsOf(std::move(meshes), longestEdge)), forest(surfels) {
+      : surfels(surfelsOf(std::move(meshes), longestEdge)),
+        forest(surfels, settings.fill == Fill::triangles ? LeafShape::triangles : LeafShape::disc) {
     if (flat)
       links.buildFlat(forest, settings);
     else
@@ -314,6 +315,75 @@ TEST(RadiosityTest, WhatLiesWithinAClosedBodyTakesTheLightAroundIt) {
   EXPECT_GT(within, 16u);
 }
 
+/// Whether a ray from `p` meets one of the triangles of object 0 (Moller and Trumbore 1997).
+bool hidden(const Surfels& surfels, const glm::dvec3& p, const glm::dvec3& ray) {
+  for (size_t t = 0; t < surfels.triangles.size(); t += 3) {
+    if (surfels.objects[surfels.triangles[t]] != 0) break;
+    const auto corner = [&](size_t k) { return glm::dvec3(surfels.vertices[surfels.triangles[t + k]]); };
+    const glm::dvec3 a = corner(0), ab = corner(1) - a, ac = corner(2) - a, across = glm::cross(ray, ac);
+    const double det = glm::dot(ab, across);
+    if (std::abs(det) < 1e-14) continue;
+    const double u = glm::dot(p - a, across) / det;
+    const glm::dvec3 q = glm::cross(p - a, ab);
+    const double v = glm::dot(ray, q) / det, at = glm::dot(ac, q) / det;
+    if (u >= 0 && v >= 0 && u + v <= 1 && at > 1e-9) return true;
+  }
+  return false;
+}
+
+/// How wrong the part of the sky is that elements of object 1 see within `radius` of the origin, in the plane
+/// of a floor: the greatest error.
+double contactError(const std::vector<TriangleMesh>& meshes, const LinkSettings& settings, double radius) {
+  const World world(meshes, settings);
+  const ElementSpace space = spaceOf(meshes);
+  const std::vector<float> sky = world.received({0, 0}, 1);
+  const std::vector<glm::vec4> table = binTable(settings.resolution);
+  double most = 0;
+  size_t elements = 0;
+  for (size_t i = 0; i < sky.size(); ++i) {
+    const glm::vec3 place = space.worldPoint(world.surfels.positions[i]);
+    if (world.surfels.objects[i] != 1 || glm::length(glm::dvec2(place.x, place.z)) > radius) continue;
+    const glm::dvec3 p(world.surfels.positions[i]), up(world.surfels.normals[i]);
+    double seen = 0, weights = 0;
+    for (const glm::vec4& bin : table) {
+      const double weight = bin.w * glm::dot(glm::dvec3(bin), up);
+      if (weight <= 0) continue;
+      weights += weight;
+      if (!hidden(world.surfels, p, glm::dvec3(bin))) seen += weight;
+    }
+    most = std::max(most, std::abs(sky[i] - seen / weights));
+    ++elements;
+  }
+  EXPECT_GT(elements, 8u);
+  return most;
+}
+
+/// Where a sphere or a block rests on a floor, elements near the contact see the sphere's or the block's
+/// nearest triangles, whose discs would lie edge-on.
+TEST(RadiosityTest, ElementsAtContactsAreHidden) {
+  const TriangleMesh floor = rectangleMesh({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, 60);
+  TriangleMesh block = roomMesh(8);
+  for (size_t t = 0; t < block.indices.size(); t += 3) std::swap(block.indices[t + 1], block.indices[t + 2]);
+  for (glm::vec3& n : block.normals) n = -n;
+  for (glm::vec3& p : block.positions) p = 0.5f * p + glm::vec3(0.017f, 0.5f, 0.009f);
+  const struct {
+    const char* name;
+    TriangleMesh body;
+    double radius;
+  } cases[] = {{"sphere", sphereMesh({0.017f, 0.5f, 0.009f}, 0.5f, 24), 0.5},
+               {"coarse sphere", sphereMesh({0.017f, 0.5f, 0.009f}, 0.5f, 10), 0.5},
+               {"block", block, 0.9}};
+  for (const auto& [name, body, radius] : cases) {
+    const auto error = [&](Fill fill) {
+      return contactError({body, floor}, {.resolution = 16, .fill = fill}, radius);
+    };
+    const double discs = error(Fill::footprint), triangles = error(Fill::triangles);
+    std::printf("under a %s: error of the sky %.4f by discs, %.4f by triangles\n", name, discs, triangles);
+    EXPECT_LE(triangles, 0.02);
+    EXPECT_LT(triangles, 0.25 * discs);
+  }
+}
+
 /// What of a bright sky gets into closed bodies, whose elements do not cover all directions: nothing should.
 TEST(RadiosityTest, CoarseMeshesLeakLittle) {
   for (const int n : {4, 8, 16, 24}) {
@@ -414,7 +484,8 @@ TEST(RadiosityTest, WhatIsNotGivenToGatherIsDark) {
   gather(world.forest, world.links, table, {}, {}, irradiance);
   EXPECT_EQ(irradiance, nothing);
   // Leaves without a normal see no bin.
-  world.forest.refit(world.surfels.positions, std::vector<glm::vec3>(world.surfels.size(), glm::vec3(0)));
+  std::ranges::fill(world.surfels.normals, glm::vec3(0));
+  world.forest.refit(world.surfels);
   gather(world.forest, world.links, table, {}, sky, irradiance);
   EXPECT_EQ(irradiance, nothing);
 }
