@@ -301,8 +301,11 @@ class Tuning {
     fmt::print("{}\n    {}\n", commandOf(chosen.front()), figuresText(chosen.front()));
     if (chosen.size() > 1)
       fmt::print("runner-up: {}\n    {}\n", commandOf(chosen.back()), figuresText(chosen.back()));
-    fmt::print(stderr, "limn: {} settings of {} techniques tried, {} of them again, {} measured\n",
-               result.looked, spaces_.size(), result.checked, result.measured);
+    const std::string tried = result.looked > 0 ? fmt::format("{} settings tried, {} of them checked, ",
+                                                              result.looked, result.checked)
+                                                : std::string();
+    fmt::print(stderr, "limn: {} techniques: {}{} settings measured\n", spaces_.size(), tried,
+               result.measured);
     sayWritten(suite);
     sayWritten(options_.out / "index.html");
   }
