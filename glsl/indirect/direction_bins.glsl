@@ -84,5 +84,11 @@ LIMN_FN float bin_solid_angle(uint bin, uint n) {
          bin_corner_angle(u + width, v) + bin_corner_angle(u, v);
 }
 
+// Width alpha (GGX) of a lobe that is looked up at the centres of bins: no narrower than bins, between whose centres it would
+// be lost. Half vectors turn half as far as directions.
+LIMN_FN float binned_alpha(float alpha, uint n) {
+  return max(alpha, 0.25f * pi / float(n));
+}
+
 LIMN_END
 #endif  // LIMN_DIRECTION_BINS_GLSL

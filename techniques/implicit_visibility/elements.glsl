@@ -55,12 +55,12 @@ vec3 sent_direction(uint sent) {
 #endif
 }
 
-// Lobes are no narrower than bins, between whose middles they would be lost: half vectors turn half as far as directions.
+// Lobes are no narrower than the coarser of the bins that light comes from and is sent into.
 SurfaceBrdf binned_brdf(LeafMaterial m) {
   SurfaceBrdf s;
   s.diffuse = m.diffuse;
 #if GLOSSY
-  s.alpha = max(m.alpha, 0.25 * pi / float(min(BINS, uint(GLOSSY))));
+  s.alpha = binned_alpha(m.alpha, min(BINS, uint(GLOSSY)));
 #else
   s.alpha = m.alpha;
 #endif

@@ -20,6 +20,7 @@ void main() {
   if (!a.found) return;
   SurfaceBrdf material = surface_brdf(surface.base_colour, surface.metallic, surface.roughness, surface.specular_factor,
                                       surface.specular_colour, surface.ior);
+  material.alpha = binned_alpha(material.alpha, BINS);
   vec3 n = to_bins(surface.normal);
   vec3 v = to_bins(-normalize(pixel_ray(pixel)));
   vec3 sum = vec3(0.0);

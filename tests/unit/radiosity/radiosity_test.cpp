@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/radiosity/illumination.h"
+#include "glsl/surface/brdf.glsl"
 #include "tests/support/radiosity_meshes.h"
 
 namespace limn::radiosity {
@@ -88,6 +89,46 @@ TEST(RadiosityTest, BinsAreWhereTheirDirectionsPointAndFillTheSphere) {
       sphere += glsl::bin_solid_angle(bin, n);
     }
     EXPECT_NEAR(sphere, 4 * glsl::pi, 1e-4);
+  }
+}
+
+/// What a white metal reflects of a uniform sky by looking its lobe up at the bins' centres, which
+/// display=pixel does, for normals and views all over the sphere: as many bins see it, no more and no less.
+TEST(RadiosityTest, LobesAtTheCentresOfBinsKeepTheirEnergy) {
+  for (const uint32_t resolution : {8u, 12u, 16u}) {
+    const std::vector<glm::vec4> table = binTable(static_cast<int>(resolution));
+    const auto reflected = [&](const glm::vec3& n, const glm::vec3& v, float alpha) {
+      glsl::SurfaceBrdf metal = glsl::surface_brdf(glm::vec3(1), 1, 1, 1, glm::vec3(1), 1.5f);
+      metal.alpha = alpha;
+      float sum = 0, weights = 0;
+      for (const glm::vec4& bin : table) {
+        const float weight = bin.w * glm::dot(n, glm::vec3(bin));
+        if (weight <= 0) continue;
+        weights += weight;
+        sum += weight * glsl::brdf(metal, n, v, glm::vec3(bin)).x;
+      }
+      return glsl::pi * sum / weights;
+    };
+    constexpr float alpha = 0.15f * 0.15f;  // roughness 0.15
+    glm::vec2 narrow(1e9f, 0), wide(1e9f, 0);
+    for (int i = 0; i < 400; ++i) {
+      // Spiral points, and views up to 45 degrees from the normal.
+      const float z = 1 - (static_cast<float>(i) + 0.5f) / 200, turn = 2.39996323f * static_cast<float>(i);
+      const float r = std::sqrt(1 - z * z);
+      const glm::vec3 n(r * std::cos(turn), r * std::sin(turn), z);
+      const glm::vec3 across = glm::normalize(glm::cross(n, glm::vec3(0.3f, 0.5f, 0.8f)));
+      const float tilt = static_cast<float>(i % 10) / 10 * glsl::pi / 4;
+      const glm::vec3 v = std::cos(tilt) * n + std::sin(tilt) * across;
+      const auto extend = [](glm::vec2& range, float value) {
+        range = {std::min(range.x, value), std::max(range.y, value)};
+      };
+      extend(narrow, reflected(n, v, alpha));
+      extend(wide, reflected(n, v, glsl::binned_alpha(alpha, resolution)));
+    }
+    std::printf("%u bins, roughness 0.15: %.2f to %.2f of the energy as it is, %.2f to %.2f widened\n",
+                resolution, double(narrow.x), double(narrow.y), double(wide.x), double(wide.y));
+    EXPECT_GT(wide.x, 0.85f);
+    EXPECT_LT(wide.y, 1.15f);
   }
 }
 
