@@ -111,6 +111,44 @@ TEST_F(MediaTruth, FogInAWhiteFurnaceMeetsQuadrature) {
   }
 }
 
+/// Asked for one by one, the lights that stand for an even environment scatter as much as the environment
+/// does, of which a floor hides the lower half from fog below it.
+TEST_F(MediaTruth, TheLightsOfAnEvenEnvironmentScatterAllItsLight) {
+  scene::Scene scene;
+  test::show(scene,
+             test::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}, test::addMaterial(scene, test::lambertian(0.5f))));
+  scene.environment.width = 16;
+  scene.environment.height = 8;
+  scene.environment.texels.assign(128, vec3(1));
+  scene.environment.lights = shading::decomposeEnvironment(scene.environment, {0.02, 16}).lights;
+  scene.medium.sigmaA = vec3(0.1f);
+  scene.medium.sigmaS = vec3(0.4f);
+  scene.medium.g = 0.3f;
+  const scene::Pose pose = scene::evaluate(scene, 0);
+  reference::Request request{.scene = scene,
+                             .pose = pose,
+                             .camera = scene::lookAt({0, 1, 2.4f}, {0, 0.5f, 0}, 0.7f),
+                             .progress = {},
+                             .checkpoint = {}};
+  request.width = request.height = 8;
+  request.term = Term::media;
+  request.spp = 256;
+  const auto light = [&](int index) {
+    request.light = index;
+    const Image image = reference::render(request).image;
+    double sum = 0;
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 8; ++x) sum += double(image.at(x, y, 0));
+    return sum;
+  };
+  const int count = static_cast<int>(pose.lights.size());
+  ASSERT_GT(count, 1);
+  double sum = 0;
+  for (int i = 0; i < count; ++i) sum += light(i);
+  EXPECT_NEAR(sum / light(reference::kAllLights), 1, 0.01);
+  EXPECT_NEAR(light(count) / light(reference::kAllLights), 1, 1e-6);
+}
+
 /// Where light from the point `from` reaches p through a mirror on [0, 2]^2 in the plane of points whose
 /// `axis` is 0.
 bool passesMirror(const dvec3& from, const dvec3& p, int axis) {
