@@ -1,11 +1,14 @@
 // V without the noise of few rays: the mean over neighbours on the same surface, and of what a pixel differs from it as much as
 // the noise does not explain (Lee 1980, with the variance of the rays of each pixel as that of the noise).
+#include "glsl/scene/light.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
+layout(std430) readonly buffer Lights { Light lights[]; };
 layout(r16) writeonly uniform image2DArray visibility;
 uniform sampler2DArray traced;
+uniform uint light_indices[LIGHT_COUNT];
 uniform int rays;
 
 const int reach = 3;  // pixels: the wavelengths of the shifts' blue noise lie within
@@ -15,6 +18,10 @@ void main() {
   if (any(greaterThanEqual(at, imageSize(visibility)))) return;
   float here = texelFetch(traced, at, 0).r;
   float depth = pixel_depth(at.xy);
+  if (depth == 0.0 || !light_has_extent(lights[light_indices[at.z]])) {
+    imageStore(visibility, at, vec4(here));  // one ray is exact
+    return;
+  }
   vec3 position = pixel_position(at.xy, depth);
   vec3 normal = pixel_geometric_normal(at.xy);
   float footprint = depth * length(frame.view_ray_dx.xyz);
@@ -32,13 +39,9 @@ void main() {
       within += w * v * (1.0 - v);
     }
   }
-  float result = here;
-  if (depth > 0.0 && weights > 0.0) {
-    float mean = sum / weights;
-    float spread = max(squares / weights - mean * mean, 0.0);
-    // One ray does not say how much it may be off: all that differs is noise then.
-    float noise = rays > 1 ? within / (weights * float(rays - 1)) : spread;
-    result = mean + (here - mean) * max(spread - noise, 0.0) / max(spread, 1e-6);
-  }
-  imageStore(visibility, at, vec4(result));
+  float mean = sum / weights;  // the pixel itself has a weight
+  float spread = max(squares / weights - mean * mean, 0.0);
+  // One ray does not say how much it may be off: all that differs is noise then.
+  float noise = rays > 1 ? within / (weights * float(rays - 1)) : spread;
+  imageStore(visibility, at, vec4(mean + (here - mean) * max(spread - noise, 0.0) / max(spread, 1e-6)));
 }

@@ -1,5 +1,6 @@
 // Shadow rays through a hierarchy in buffers, n to each pixel: what soft shadows are made of where there is
 // the time, or hardware, for rays.
+#include <functional>
 #include <glm/glm.hpp>
 #include <string>
 #include <vector>
@@ -27,7 +28,7 @@ constexpr Parameter kParameters[] = {
 };
 constexpr StressCase kStress[] = {
     {.name = "one ray", .settings = "rays=1", .factor = 4},
-    {.name = "one ray, filtered", .settings = "rays=1,filter=spatial", .factor = 4},
+    {.name = "one ray, filtered", .settings = "rays=1 filter=spatial", .factor = 4},
     {.name = "most rays", .settings = "rays=256", .factor = 1.5},
 };
 
@@ -55,16 +56,14 @@ class RayTracedAreaLight : public Technique {
         .read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
         .read(inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "neighbours on the same surface")
         .read(inputs.gbuffer.geometricNormal, Access::sampled, kGBufferNames.geometricNormal, "its plane")
+        .read(inputs.handles.lights, Access::storageLoad, "Lights", "which of them leave noise")
         .read(traced, Access::sampled, "traced", "V with noise");
     const frame::TextureHandle target =
         pass.write(request.target, Access::imageStore, "visibility", "visibility, one layer per light");
     const frame::ProgramHandle program =
-        pass.program({.files = {"techniques/ray_traced_area_light/filter.comp.glsl"}, .defines = {}});
-    pass.execute([program, size = inputs.size, rays = inputs.parameters.integer("rays"),
-                  layers = static_cast<int>(request.lights.size())](frame::PassContext& context) {
-      context.use(program).set("rays", rays);
-      context.dispatch(size.x, size.y, layers, 8, 8);
-    });
+        pass.program({.files = {"techniques/ray_traced_area_light/filter.comp.glsl"},
+                      .defines = {{"LIGHT_COUNT", std::to_string(request.lights.size())}}});
+    pass.execute(dispatch(program, inputs, request));
     return target;
   }
 
@@ -86,15 +85,22 @@ class RayTracedAreaLight : public Technique {
     const frame::TextureHandle target =
         pass.write(into, Access::imageStore, "visibility", "visibility, one layer per light");
     const frame::ProgramHandle handle = pass.program(std::move(program));
-    pass.execute([handle, size = inputs.size, rays = inputs.parameters.integer("rays"),
-                  lights = std::vector<uint32_t>(request.lights.begin(), request.lights.end())](
-                     frame::PassContext& context) {
-      gpu::Program& kernel = context.use(handle);
+    pass.execute(dispatch(handle, inputs, request));
+    return target;
+  }
+
+  /// Returns what runs a program for every pixel and light.
+  static std::function<void(frame::PassContext&)> dispatch(frame::ProgramHandle program,
+                                                           const TechniqueInputs& inputs,
+                                                           const TermRequest& request) {
+    return [program, size = inputs.size, rays = inputs.parameters.integer("rays"),
+            lights = std::vector<uint32_t>(request.lights.begin(), request.lights.end())](
+               frame::PassContext& context) {
+      gpu::Program& kernel = context.use(program);
       setLightIndices(kernel, lights);
       kernel.set("rays", rays);
       context.dispatch(size.x, size.y, static_cast<int>(lights.size()), 8, 8);
-    });
-    return target;
+    };
   }
 
   const gpu::Texture& noise(const TechniqueInputs& inputs) {
