@@ -13,10 +13,10 @@ class RayTracedAreaLightTest : public RenderTest {
  protected:
   static constexpr int kWidth = 96, kHeight = 72;
 
-  static render::Settings rays(int count, int light = 0) {
-    render::Settings s =
-        settings(kWidth, kHeight, Term::visibility,
-                 {technique("ray_traced_area_light", {{"rays", std::to_string(count)}})}, light);
+  static render::Settings rays(int count, int light = 0, const char* filter = "none") {
+    render::Settings s = settings(
+        kWidth, kHeight, Term::visibility,
+        {technique("ray_traced_area_light", {{"rays", std::to_string(count)}, {"filter", filter}})}, light);
     s.channels = true;
     return s;
   }
@@ -90,6 +90,34 @@ TEST_F(RayTracedAreaLightTest, ConvergesToTheReference) {
     EXPECT_LT(error[0], 0.1);
     EXPECT_LT(error[1], 0.025);
   }
+}
+
+/// The filter takes noise away and leaves what many rays have found, and hard shadows.
+TEST_F(RayTracedAreaLightTest, TheFilterErrsLessWithFewRaysAndLittleMoreWithMany) {
+  const scene::Scene scene = asset("balls");
+  render::Renderer renderer(device(), scene);
+  renderer.configure(rays(4));
+  const Image few = at(renderer, 0);
+  const Image exact = truth(renderer, scene, 0);
+  const auto filtered = [&](int count) {
+    renderer.configure(rays(count, 0, "spatial"));
+    return difference(at(renderer, 0), exact);
+  };
+  EXPECT_LT(filtered(4), 0.9 * difference(few, exact));
+  EXPECT_LT(filtered(128), 0.01);
+}
+
+TEST_F(RayTracedAreaLightTest, LightsWithoutExtentPassTheFilter) {
+  const scene::Scene scene = asset("lights");
+  render::Renderer renderer(device(), scene);
+  const scene::Pose& pose = renderer.pose();
+  const auto found = std::ranges::find_if_not(pose.lights, glsl::light_has_extent);
+  ASSERT_NE(found, pose.lights.end());
+  const int light = static_cast<int>(found - pose.lights.begin());
+  renderer.configure(rays(1, light));
+  const Image plain = at(renderer, 0);
+  renderer.configure(rays(1, light, "spatial"));
+  EXPECT_EQ(values(at(renderer, 0)), values(plain));
 }
 
 TEST_F(RayTracedAreaLightTest, WhatMovedIsWhatAFreshStartSees) {
