@@ -13,6 +13,7 @@ using Action = std::function<int()>;  ///< returns the exit status; may throw li
 /// line has been parsed.
 Action addListCommand(CLI::App& command);
 Action addInfoCommand(CLI::App& command);
+Action addImportCommand(CLI::App& command);
 Action addRenderCommand(CLI::App& command);
 Action addReferenceCommand(CLI::App& command);
 Action addEnvironmentCommand(CLI::App& command);

@@ -75,6 +75,7 @@ int main(int argc, char** argv) {
   add("list", "List the techniques, the terms they answer and their parameters", addListCommand);
   add("info", "Show the OpenGL back ends, devices and limits of this machine, and the technique modules",
       addInfoCommand);
+  add("import", "Convert a model of another format to a scene, by assimp", addImportCommand);
   add("render", "Render a scene with techniques to a file", addRenderCommand);
   add("reference", "Compute the ground truth of a term on the CPU", addReferenceCommand);
   add("compare", "Measure how far an image is from its reference", addCompareCommand);

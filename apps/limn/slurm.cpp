@@ -1,9 +1,7 @@
 #include "apps/limn/slurm.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <set>
@@ -22,21 +20,12 @@ namespace {
 
 constexpr int kPartsPerNode = 4;  // so that nodes that are done early have more to do
 
-/// What a program prints, without the last line's end.
+/// What a program of Slurm prints.
 std::string output(const std::string& program, const std::vector<std::string>& arguments) {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw Error("no pipe to " + program);
-  const pid_t process = startProgram(program, arguments, {.out = ends[1], .err = STDERR_FILENO});
-  close(ends[1]);
-  std::string text;
-  char buffer[4096];
-  for (ssize_t count; (count = read(ends[0], buffer, sizeof buffer)) > 0;)
-    text.append(buffer, static_cast<std::size_t>(count));
-  close(ends[0]);
-  if (const std::string failure = awaitProgram(process); !failure.empty())
-    throw Error(fmt::format("{} {}: {}", program, fmt::join(arguments, " "), failure));
-  while (text.ends_with('\n')) text.pop_back();
-  return text;
+  ProgramOutput output = programOutput(program, arguments, true);
+  if (!output.failure.empty())
+    throw Error(fmt::format("{} {}: {}", program, fmt::join(arguments, " "), output.failure));
+  return output.text;
 }
 
 /// The folders of parts that have rows.

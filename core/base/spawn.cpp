@@ -81,4 +81,30 @@ std::string endProgram(pid_t process) {
   return awaitProgram(process);
 }
 
+ProgramOutput programOutput(const std::string& program, const std::vector<std::string>& arguments,
+                            bool talks) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    throw Error(fmt::format("{} cannot be started: {}", program, std::strerror(errno)));
+  pid_t process = 0;
+  try {
+    process = startProgram(program, arguments, {.out = ends[1], .err = talks ? STDERR_FILENO : -1});
+  } catch (...) {
+    close(ends[0]);
+    close(ends[1]);
+    throw;
+  }
+  close(ends[1]);
+  ProgramOutput output;
+  char buffer[4096];
+  for (ssize_t count = 1; count > 0 || (count < 0 && errno == EINTR);) {
+    count = read(ends[0], buffer, sizeof buffer);
+    if (count > 0) output.text.append(buffer, static_cast<size_t>(count));
+  }
+  close(ends[0]);
+  output.failure = awaitProgram(process);
+  while (output.text.ends_with('\n')) output.text.pop_back();
+  return output;
+}
+
 }  // namespace limn

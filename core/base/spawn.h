@@ -26,6 +26,16 @@ LIMN_API pid_t startProgram(const std::string& program, const std::vector<std::s
 /// Returns whether startProgram() finds a program of that name in the folders of PATH.
 LIMN_API bool programExists(const std::string& name);
 
+struct ProgramOutput {
+  std::string text;     ///< what it printed on standard output, without the last line's end
+  std::string failure;  ///< as awaitProgram() says it
+};
+
+/// Runs a program, as startProgram() does, to its end. What it says on standard error goes to limn's where
+/// `talks`, nowhere otherwise. Throws Error if it cannot be started.
+LIMN_API ProgramOutput programOutput(const std::string& program, const std::vector<std::string>& arguments,
+                                     bool talks = false);
+
 /// Waits until the program has ended and says how it failed: "it ended with status 1", "it crashed:
 /// Segmentation fault", "it takes too long" for a program that ended itself by a limit of time. Returns ""
 /// after exit status 0.

@@ -73,8 +73,8 @@ constexpr QuestionGroup kSubject = QuestionGroup::subject, kEnvironment = Questi
 
 constexpr QuestionField kFields[] = {
     text("scene", "scene", &Q::scene,
-         "glTF 2.0 scene (.gltf, .glb), or the name of one of limn's own; convert other formats\n"
-         "beforehand, e.g. with assimp")
+         "glTF 2.0 scene (.gltf, .glb), or the name of one of limn's own; limn import converts other\n"
+         "formats")
         .in(kSubject)
         .placed(1),
     text("camera", "--camera", &Q::camera, "Camera by name or #index")

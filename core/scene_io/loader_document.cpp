@@ -89,7 +89,7 @@ Container openContainer(std::span<const std::byte> bytes, const std::string& nam
     if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
     const std::size_t first = text.find_first_not_of(" \t\r\n");
     if (first == std::string_view::npos || text[first] != '{')
-      fail("not a glTF 2.0 file (.gltf or .glb); convert other formats beforehand, for example with assimp");
+      fail("not a glTF 2.0 file (.gltf or .glb); limn import converts other formats, by assimp");
     return {text, {}};
   }
   if (bytes.size() < 20) fail(fmt::format("truncated GLB: {} bytes, a header has 20", bytes.size()));

@@ -2,9 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <string>
 
 #include "core/base/error.h"
@@ -13,15 +11,16 @@ namespace limn {
 namespace {
 
 TEST(Spawn, ArgumentsReachTheProgramAsTheyAre) {
-  int ends[2];
-  ASSERT_EQ(pipe(ends), 0);
-  const pid_t process = startProgram("printf", {"%s|", "a b", "$HOME", "'"}, {-1, ends[1], -1});
-  close(ends[1]);
-  std::string text(100, '\0');
-  text.resize(static_cast<size_t>(std::max<ssize_t>(0, read(ends[0], text.data(), text.size()))));
-  close(ends[0]);
-  EXPECT_EQ(awaitProgram(process), "");
-  EXPECT_EQ(text, "a b|$HOME|'|");
+  const ProgramOutput output = programOutput("printf", {"%s|", "a b", "$HOME", "'"});
+  EXPECT_EQ(output.failure, "");
+  EXPECT_EQ(output.text, "a b|$HOME|'|");
+}
+
+TEST(Spawn, OutputIsWholeAndFailuresAreSaid) {
+  const ProgramOutput output = programOutput("sh", {"-c", "yes | head -c 100000; echo; echo; exit 3"});
+  EXPECT_EQ(output.text.size(), 99999u) << "without the ends of the last lines";
+  EXPECT_EQ(output.failure, "it ended with status 3");
+  EXPECT_THROW(programOutput("no-such-program-of-limn", {}), Error);
 }
 
 TEST(Spawn, SaysHowAProgramEnded) {

@@ -1,0 +1,125 @@
+// limn import: models of other formats as glTF, by assimp.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "apps/limn/commands.h"
+#include "apps/limn/interruption.h"
+#include "apps/limn/options.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/spawn.h"
+#include "core/base/text.h"
+#include "core/scene_io/load.h"
+
+namespace limn::app {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kProgram = "assimp";
+
+/// A file that is gone when its work is done, unless it was given its name.
+class PartFile {
+ public:
+  explicit PartFile(const fs::path& whole) : path_(beside(whole, fmt::format(".{}.part.glb", getpid()))) {}
+  ~PartFile() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+  }
+  PartFile(const PartFile&) = delete;
+  PartFile& operator=(const PartFile&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// What assimp says went wrong, or how it ended.
+std::string reason(const ProgramOutput& output) {
+  constexpr std::string_view mark = "ERROR: ";
+  const std::size_t at = output.text.find(mark);
+  if (at == std::string::npos) return kProgram + (" failed: " + output.failure);
+  const std::size_t start = at + mark.size();
+  return oneLine(output.text.substr(start, output.text.find('\n', start) - start));
+}
+
+std::string assimp(const std::vector<std::string>& arguments, const fs::path& model) {
+  const ProgramOutput output = programOutput(kProgram, arguments);
+  if (!output.failure.empty() || output.text.find("ERROR: ") != std::string::npos)
+    throw Error(fmt::format("{}: {}", model.string(), reason(output)));
+  return output.text;
+}
+
+/// How many of a kind the model has, by what assimp says of it.
+std::size_t countOf(const std::string& information, const std::string& kind) {
+  const std::size_t at = information.find("\n" + kind + ":");
+  return at == std::string::npos ? 0 : std::strtoul(information.c_str() + at + kind.size() + 2, nullptr, 10);
+}
+
+std::string size(const scene::Bounds& bounds) {
+  if (bounds.empty()) return "nothing to draw";
+  const glm::vec3 side = bounds.high - bounds.low;
+  return fmt::format("{:.4g} x {:.4g} x {:.4g} m", side.x, side.y, side.z);
+}
+
+int run(const fs::path& model, fs::path out) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(model, ignored)) throw UsageError(fmt::format("{}: no such file", model.string()));
+  if (out.empty()) {
+    out = fs::path(model).replace_extension(".glb");
+    if (fs::exists(out, ignored))
+      throw UsageError(fmt::format("{} is there already; --out names another file", out.string()));
+  }
+  if (out.extension() != ".glb")
+    throw UsageError(fmt::format("--out {}: a file with the extension .glb is written", out.string()));
+  if (!programExists(kProgram))
+    throw Error(
+        "models of other formats are read by assimp, which is not installed: apt-get install assimp-utils");
+
+  const LastWords words("interrupted; no scene was written");
+  const std::string information = assimp({"info", model.string()}, model);
+  const PartFile part(out);
+  assimp({"export", model.string(), part.path().string(), "-fglb2", "-tri", "-gsn"}, model);
+  scene::Scene scene;
+  try {
+    scene = scene::load(part.path());
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: what assimp makes of it cannot be read: {}", model.string(), error.what()));
+  }
+  const std::string partName = part.path().filename().string();
+  for (std::string warning : scene.warnings) {
+    if (const std::size_t at = warning.find(partName); at != std::string::npos)
+      warning.replace(at, partName.size(), out.filename().string());
+    warn(warning);
+  }
+  fs::rename(part.path(), out);
+
+  const std::pair<const char*, std::pair<std::size_t, std::size_t>> kinds[] = {
+      {"Cameras", {countOf(information, "Cameras"), scene.cameras.size()}},
+      {"Lights", {countOf(information, "Lights"), scene.lights.size()}},
+      {"Animations", {countOf(information, "Animations"), scene.animations.size()}},
+      {"Materials", {countOf(information, "Materials"), scene.materials.size()}}};
+  std::vector<std::string> lost;
+  for (const auto& [kind, counts] : kinds)
+    if (counts.first > counts.second)
+      lost.push_back(fmt::format("{} of {} {}", counts.first - counts.second, counts.first,
+                                 std::string(kind).replace(0, 1, 1, static_cast<char>(std::tolower(*kind)))));
+  fmt::print("{}: {} triangles, {} materials, {} textures, {} animations, {}; {}\n", out.string(),
+             scene.triangles(), scene.materials.size(), scene.images.size(), scene.animations.size(),
+             size(evaluate(scene, 0).bounds),
+             lost.empty() ? std::string("nothing that is counted was lost") : "lost: " + joined(lost));
+  return 0;
+}
+
+}  // namespace
+
+Action addImportCommand(CLI::App& command) {
+  const auto model = std::make_shared<fs::path>(), out = std::make_shared<fs::path>();
+  command
+      .add_option("model", *model, "A file that assimp reads: OBJ, PLY, STL, FBX, COLLADA, 3DS, Blender ...")
+      ->required();
+  command.add_option("-o,--out", *out,
+                     "The scene, a .glb file; default: beside the model, where its textures are");
+  return [model, out] { return run(*model, *out); };
+}
+
+}  // namespace limn::app

@@ -1,0 +1,75 @@
+// Models of other formats through assimp; what needs it is skipped where it is not installed.
+#include "tests/cli/limn_program.h"
+
+namespace limn::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kObject = "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n";
+
+constexpr const char* kCollada =
+    R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="meter" meter="1"/><up_axis>Y_UP</up_axis></asset>
+<library_lights><light id="L"><technique_common><point><color>1 1 1</color></point></technique_common></light>
+</library_lights><library_geometries><geometry id="G"><mesh><source id="P"><float_array id="A" count="9">
+0 0 0 1 0 0 0 1 0</float_array><technique_common><accessor source="#A" count="3" stride="3">
+<param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor>
+</technique_common></source><vertices id="V"><input semantic="POSITION" source="#P"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#V" offset="0"/><p>0 1 2</p></triangles></mesh></geometry>
+</library_geometries><library_visual_scenes><visual_scene id="S"><node id="n"><instance_geometry url="#G"/></node>
+<node id="l"><instance_light url="#L"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#S"/></scene></COLLADA>)";
+
+class ImportTest : public testing::Test {
+ protected:
+  fs::path model(const std::string& name, const std::string& content) const {
+    std::ofstream(folder_ / name) << content;
+    return folder_ / name;
+  }
+
+  const TemporaryFolder folder_;
+};
+
+class AssimpTest : public ImportTest {
+ protected:
+  void SetUp() override {
+    if (run({"/bin/sh", "-c", "command -v assimp"}).status != 0) GTEST_SKIP() << "assimp is not installed";
+  }
+};
+
+TEST_F(AssimpTest, WritesASceneThatRenders) {
+  const Outcome outcome = limn({"import", model("a.obj", kObject)});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::HasSubstr("a.glb: 4 triangles"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("1 x 2 x 3 m; nothing that is counted was lost"));
+  const Outcome rendered = limn({"render", folder_ / "a.glb", "--size", "16x12", "--out", folder_ / "a.png"});
+  EXPECT_EQ(rendered.status, 0) << rendered.err;
+  EXPECT_EQ(listing(folder_.path()), (std::vector<std::string>{"a.glb", "a.obj", "a.png"}));
+  expectRefused(limn({"import", folder_ / "a.obj"}), 2, {"a.glb is there already", "--out"});
+}
+
+TEST_F(AssimpTest, SaysWhatWasLost) {
+  const Outcome outcome = limn({"import", model("a.dae", kCollada), "--out", folder_ / "b.glb"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::HasSubstr("b.glb: 1 triangles"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("lost: 1 of 1 lights"));
+}
+
+TEST_F(AssimpTest, NothingIsLeftOfWhatCannotBeRead) {
+  expectRefused(limn({"import", model("a.obj", "nonsense")}), 1, {"a.obj"});
+  expectRefused(limn({"import", model("a.fbx", "nonsense")}), 1, {"a.fbx"});
+  EXPECT_EQ(listing(folder_.path()), (std::vector<std::string>{"a.fbx", "a.obj"}));
+}
+
+TEST_F(ImportTest, RefusesInOneLine) {
+  expectRefused(limn({"import", folder_ / "no.obj"}), 2, {"no.obj", "no such file"});
+  const fs::path file = model("a.obj", kObject);
+  expectRefused(limn({"import", file, "--out", folder_ / "a.png"}), 2, {"a.png", ".glb"});
+  expectRefused(run({kLimnBinary, "import", file}, {{"PATH", folder_.path()}}), 1,
+                {"assimp", "apt-get install assimp-utils"});
+  EXPECT_EQ(listing(folder_.path()), std::vector<std::string>{"a.obj"});
+}
+
+}  // namespace
+}  // namespace limn::test
