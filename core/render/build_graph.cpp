@@ -9,13 +9,6 @@
 #include "glsl/materials/material_model.glsl"
 
 namespace limn::render {
-namespace {
-
-TermSet termsOf(const TechniqueUse& use) {
-  return use.plugin->info->terms;
-}
-
-}  // namespace
 
 void Renderer::Implementation::build() {
   dropGraph();

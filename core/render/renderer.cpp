@@ -126,11 +126,10 @@ FrameStats Renderer::describe() const {
   stats.width = self.settings.size.x;
   stats.height = self.settings.size.y;
   stats.scene = self.scene.file.string();
-  for (const TechniqueUse& use : self.settings.techniques) {
-    stats.technique += (stats.technique.empty() ? "" : ",") + std::string(use.plugin->info->name);
+  stats.technique = namesOf(self.settings.techniques);
+  for (const TechniqueUse& use : self.settings.techniques)
     for (const auto& [parameter, value] : use.parameters.printed())
       stats.parameters.emplace_back(fmt::format("{}.{}", use.plugin->info->name, parameter), value);
-  }
   return stats;
 }
 

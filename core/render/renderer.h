@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/frame/frame_graph.h"
@@ -29,7 +30,16 @@ namespace limn::render {
 struct TechniqueUse {
   const TechniquePlugin* plugin = nullptr;
   ParameterValues parameters;
+  TermSet terms = kAnswerableTerms;  ///< that it is asked for, of those it answers
 };
+
+/// Returns the terms that the picture has of the technique: those it answers and is asked for.
+LIMN_API TermSet termsOf(const TechniqueUse& use);
+
+/// Returns how people name the use: NAME, or NAME:TERM+TERM where it is not asked for all that it answers.
+LIMN_API std::string nameOf(const TechniqueUse& use);
+/// Returns the names of all, joined by `separator`.
+LIMN_API std::string namesOf(const std::vector<TechniqueUse>& uses, std::string_view separator = ",");
 
 /// Names work that core leaves out of a frame because it would not change the picture.
 enum class Saving : uint8_t {

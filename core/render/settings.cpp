@@ -1,7 +1,9 @@
 // What a renderer is asked for: which techniques go together, and which terms they can show.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/render/renderer.h"
@@ -9,8 +11,15 @@
 namespace limn::render {
 namespace {
 
-TermSet termsOf(const TechniqueUse& use) {
-  return use.plugin->info->terms;
+/// Returns ", or ..." that names the terms for which one of two techniques can stand beside the other;
+/// nothing where they share all of theirs.
+std::string orOtherTerms(const TechniqueUse& first, const TechniqueUse& second) {
+  for (const auto& [one, other] : {std::pair(&second, &first), std::pair(&first, &second)}) {
+    TechniqueUse rest = *one;
+    rest.terms = termsOf(*one) & ~refusedBeside(termsOf(*other));
+    if (rest.terms != 0) return fmt::format(", or {}", nameOf(rest));
+  }
+  return {};
 }
 
 /// Throws UsageError where two techniques answer any of the terms, which `what` sums up.
@@ -20,8 +29,9 @@ void refuseTwo(const std::vector<TechniqueUse>& techniques, TermSet terms, const
   if (first == techniques.end()) return;
   const auto second = std::find_if(first + 1, techniques.end(), claims);
   if (second != techniques.end())
-    throw UsageError(fmt::format("techniques {} and {} both answer {}; name one of them",
-                                 first->plugin->info->name, second->plugin->info->name, what));
+    throw UsageError(fmt::format("techniques {} and {} both answer {}; name one of them{}",
+                                 first->plugin->info->name, second->plugin->info->name, what,
+                                 orOtherTerms(*first, *second)));
 }
 
 /// Throws UsageError where one technique answers relief and another direct light.
@@ -31,8 +41,18 @@ void refuseReliefBesideDirect(const std::vector<TechniqueUse>& techniques) {
       if (&bumps != &other && contains(termsOf(bumps), Term::relief) &&
           contains(termsOf(other), Term::direct))
         throw UsageError(fmt::format(
-            "technique {} answers relief, for which the direct light of {} has no place; name one of them",
-            bumps.plugin->info->name, other.plugin->info->name));
+            "technique {} answers relief, for which the direct light of {} has no place; name one of them{}",
+            bumps.plugin->info->name, other.plugin->info->name, orOtherTerms(bumps, other)));
+}
+
+/// Throws the UsageError of a picture of `term`, which no technique answers.
+[[noreturn]] void refuseUnanswered(const std::vector<TechniqueUse>& techniques, Term term) {
+  for (const TechniqueUse& use : techniques)
+    if (contains(use.plugin->info->terms, term))
+      throw UsageError(fmt::format("technique {} is not asked for {}, which it answers, too", nameOf(use),
+                                   limn::name(term)));
+  throw UsageError(
+      fmt::format("no technique given answers the term {}; limn list says which do", limn::name(term)));
 }
 
 /// Returns the parameter of that name, or `otherwise` for techniques that have none.
@@ -41,6 +61,22 @@ int parameterOr(const TechniqueUse& use, std::string_view parameter, int otherwi
 }
 
 }  // namespace
+
+TermSet termsOf(const TechniqueUse& use) {
+  return use.plugin->info->terms & use.terms;
+}
+
+std::string nameOf(const TechniqueUse& use) {
+  const TechniqueInfo& info = *use.plugin->info;
+  if (termsOf(use) == info.terms) return info.name;
+  return fmt::format("{}:{}", info.name, fmt::join(termNames(termsOf(use)), "+"));
+}
+
+std::string namesOf(const std::vector<TechniqueUse>& uses, std::string_view separator) {
+  std::string names;
+  for (const TechniqueUse& use : uses) names += (names.empty() ? "" : std::string(separator)) + nameOf(use);
+  return names;
+}
 
 void checkTechniques(const std::vector<TechniqueUse>& techniques, Term term) {
   for (const TermInfo& info : kTerms)
@@ -51,9 +87,7 @@ void checkTechniques(const std::vector<TechniqueUse>& techniques, Term term) {
     case TermPicture::none:
       throw UsageError(fmt::format("no picture shows the term {} alone", name(term)));
     case TermPicture::answered:
-      if (std::ranges::none_of(techniques, answers))
-        throw UsageError(
-            fmt::format("no technique given answers the term {}; limn list says which do", name(term)));
+      if (std::ranges::none_of(techniques, answers)) refuseUnanswered(techniques, term);
       break;
     case TermPicture::always:
       break;

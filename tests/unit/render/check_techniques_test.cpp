@@ -45,7 +45,11 @@ TEST(CheckTechniques, ExclusiveTermsAreRefusedWhereTwoClaimThem) {
             ? fmt::format("techniques one and other both answer {}; name one of them", info.exclusive)
             : "";
     EXPECT_EQ(refusal(terms, terms), expected) << info.name;
-    EXPECT_EQ(refusal(terms | Term::indirect, terms | Term::media), expected) << info.name;
+    EXPECT_EQ(refusal(terms | Term::indirect, terms | Term::media),
+              info.exclusive ? expected + ", or other:media" : "")
+        << info.name;
+    EXPECT_EQ(refusal(terms | Term::indirect, terms), info.exclusive ? expected + ", or one:indirect" : "")
+        << info.name;
   }
 }
 
@@ -63,9 +67,43 @@ TEST(CheckTechniques, ReliefIsRefusedBesideDirectLight) {
       "technique one answers relief, for which the direct light of other has no place; name one of them");
   EXPECT_EQ(
       refusal(Term::visibility | Term::direct, termSet(Term::relief)),
-      "technique other answers relief, for which the direct light of one has no place; name one of them");
+      "technique other answers relief, for which the direct light of one has no place; name one of them, or "
+      "one:visibility");
   EXPECT_EQ(refusal(termSet(Term::relief), termSet(Term::visibility)), "");
   EXPECT_EQ(refusal(Term::relief | Term::direct, termSet(Term::indirect)), "");
+}
+
+TEST(CheckTechniques, OnlyTermsThatAreAskedForAreClaims) {
+  const Claimant one("one", Term::visibility | Term::indirect),
+      other("other", Term::visibility | Term::media);
+  TechniqueUse part = one.use();
+  part.terms = termSet(Term::indirect);
+  EXPECT_THROW(checkTechniques({one.use(), other.use()}, Term::final), UsageError);
+  EXPECT_NO_THROW(checkTechniques({part, other.use()}, Term::final));
+  EXPECT_NO_THROW(checkTechniques({part, other.use()}, Term::visibility));
+  try {
+    checkTechniques({part}, Term::visibility);
+    ADD_FAILURE() << "there is no such picture";
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(), "technique one:indirect is not asked for visibility, which it answers, too");
+  }
+  part.terms = termSet(Term::visibility);
+  EXPECT_EQ(bouncesOf(Term::final, {one.use()}), 1);
+  EXPECT_EQ(bouncesOf(Term::final, {part}), 0);
+}
+
+TEST(NameOf, SaysTheTermsWhereTheyAreNotAll) {
+  const Claimant one("one", Term::visibility | Term::indirect | Term::media),
+      other("other", termSet(Term::media));
+  TechniqueUse use = one.use();
+  EXPECT_EQ(nameOf(use), "one");
+  use.terms = one.info.terms;
+  EXPECT_EQ(nameOf(use), "one");
+  use.terms = Term::media | Term::indirect;
+  EXPECT_EQ(nameOf(use), "one:indirect+media");
+  EXPECT_EQ(namesOf({other.use(), use}), "other,one:indirect+media");
+  EXPECT_EQ(namesOf({other.use(), use}, ", "), "other, one:indirect+media");
+  EXPECT_EQ(namesOf({}), "");
 }
 
 TEST(CheckTechniques, PicturesNeedAnAnswerUnlessTheTableSaysOtherwise) {
