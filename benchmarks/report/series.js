@@ -9,7 +9,8 @@ export function settings(row) {
 
 /** A technique's own parameters go without its name before them. */
 export function ownName(row, name) {
-  return name.startsWith(row.technique + ".") ? name.slice(row.technique.length + 1) : name;
+  const own = row.technique.split(":", 1)[0] + ".";
+  return name.startsWith(own) && !row.technique.includes(",") ? name.slice(own.length) : name;
 }
 
 /** "samples=16 bias=2" */

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/bench/private/markdown.h"
+#include "core/question/technique_names.h"
 
 namespace limn::bench {
 namespace {
@@ -96,11 +97,8 @@ std::string rowName(const Row& row) {
 
 std::string settingsName(const Row& row) {
   std::string name = row.what.technique;
-  for (const auto& [parameter, value] : row.what.parameters) {
-    const std::string prefix = row.what.technique + ".";
-    const bool own = parameter.compare(0, prefix.size(), prefix) == 0;
-    name += fmt::format(" {}={}", own ? parameter.substr(prefix.size()) : parameter, value);
-  }
+  for (const auto& [parameter, value] : row.what.parameters)
+    name += fmt::format(" {}={}", shortParameter(row.what.technique, parameter), value);
   return name;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/question/question_fields.h"
+#include "core/question/technique_names.h"
 
 namespace limn::bench {
 namespace {
@@ -35,8 +36,9 @@ std::string shortName(const std::string& name) {
 
 /// Whether the row's technique, or one of a combination, is the parameter's.
 bool declares(const Row& row, const std::string& name) {
-  const std::string technique = name.substr(0, name.find('.'));
-  return fmt::format(",{},", row.what.technique).find(fmt::format(",{},", technique)) != std::string::npos;
+  return std::ranges::any_of(namedTechniques(row.what.technique), [&](const NamedTechnique& named) {
+    return named.name == std::string_view(name).substr(0, name.find('.'));
+  });
 }
 
 /// The other side's parameter of that name that is not of the first side's techniques.

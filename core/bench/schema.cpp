@@ -114,7 +114,7 @@ Json statsProperties() {
           {"size", pairOf("width and height of the frames, pixels")},
           {"frames_per_picture", integer("frames that a picture averages; times are those of one")},
           {"scene", text("the scene")},
-          {"technique", text("names joined by commas")},
+          {"technique", text("names joined by commas; NAME:TERM+TERM is asked for these terms alone")},
           {"parameters", parameters()},
           {"frame_ms", quartiles("wall clock of whole frames, without pass timing")},
           {"frame_samples_ms", listOf({{"type", "number"}}, "each of them, in the order measured")},
@@ -235,7 +235,7 @@ Json rowProperties() {
   Json properties = questionProperties();
   properties.update(Json{
       {"fps", number("frames per second of the scene's time; 0: it stands still")},
-      {"technique", text("names joined by commas, or separation_floor")},
+      {"technique", text("names joined by commas, with terms as in --technique, or separation_floor")},
       {"parameters", parameters()},
       {"dynamic", boolean("whether timed frames compute everything again")},
       {"frames", integer("timed frames of a turn")},

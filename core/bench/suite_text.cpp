@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/question/question_fields.h"
+#include "core/question/technique_names.h"
 
 namespace limn::bench {
 namespace {
@@ -61,11 +62,11 @@ std::string sceneToml(const SceneQuestion& question) {
 std::string techniqueToml(const std::string& technique,
                           std::span<const std::pair<std::string, std::string>> parameters) {
   std::string text = fmt::format("[[techniques]]\ntechnique = {}\n", tomlText(technique));
-  const std::string own = technique + ".";
   std::vector<std::string> values;
-  for (const auto& [name, value] : parameters)
-    values.push_back(fmt::format(
-        "{} = [{}]", name.starts_with(own) ? name.substr(own.size()) : tomlText(name), tomlText(value)));
+  for (const auto& [name, value] : parameters) {
+    const std::string key(shortParameter(technique, name));
+    values.push_back(fmt::format("{} = [{}]", key == name ? tomlText(name) : key, tomlText(value)));
+  }
   if (!values.empty()) text += fmt::format("parameters = {{{}}}\n", fmt::join(values, ", "));
   return text;
 }

@@ -14,6 +14,7 @@
 #include "core/bench/private/toml_nesting.h"
 #include "core/bench/private/toml_section.h"
 #include "core/bench/suite.h"
+#include "core/question/technique_names.h"
 #include "core/question/term.h"
 #include "core/reference/reference.h"
 
@@ -130,7 +131,8 @@ SweptTechnique parseTechnique(const std::string& file, const toml::table& table)
         failAt(file, key.source(),
                fmt::format("parameter '{}' of a combination must be written \"technique.parameter\"", name));
       }
-      name = fmt::format("{}.{}", technique.name, name);
+      const std::vector<NamedTechnique> named = namedTechniques(technique.name);
+      name = fmt::format("{}.{}", named.empty() ? "" : named.front().name, name);
     }
     std::vector<std::string> values;
     if (const toml::array* list = node.as_array()) {

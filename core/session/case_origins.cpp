@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/base/version.h"
+#include "core/question/technique_names.h"
 #include "core/reference/reference.h"
 #include "core/scene_io/load.h"
 #include "core/session/find.h"
@@ -77,9 +77,8 @@ bench::Provenance::Module CaseOrigins::module(const std::string& technique) {
 bench::Provenance CaseOrigins::of(const bench::Case& c) {
   bench::Provenance result{program_, sceneHash(c), {}};
   if (c.technique == bench::kSeparationFloor) return result;
-  std::istringstream names(c.technique);
-  for (std::string name; std::getline(names, name, ',');)
-    if (!name.empty()) result.modules.push_back(module(name));
+  for (const NamedTechnique& named : namedTechniques(c.technique))
+    if (!named.name.empty()) result.modules.push_back(module(std::string(named.name)));
   return result;
 }
 

@@ -1,25 +1,61 @@
 #include "core/session/technique_choice.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <string_view>
+#include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/question/technique_names.h"
 
 namespace limn::session {
+namespace {
+
+/// Throws UsageError where the last of the uses is of a technique that is there already.
+void refuseTwice(const std::vector<render::TechniqueUse>& uses) {
+  const render::TechniqueUse& last = uses.back();
+  const auto first = std::ranges::find(uses, last.plugin, &render::TechniqueUse::plugin);
+  if (&*first == &last) return;
+  render::TechniqueUse both = last;
+  both.terms |= first->terms;
+  const bool parts = nameOf(*first) != nameOf(last);
+  throw UsageError(fmt::format("technique {} is named twice; once is enough{}", last.plugin->info->name,
+                               parts ? ": " + nameOf(both) : ""));
+}
+
+}  // namespace
+
+TermSet askedFor(const TechniqueInfo& info, std::span<const std::string_view> terms) {
+  const std::vector<std::string> answers = termNames(info.terms);
+  TermSet asked = 0;
+  for (const std::string_view term : terms) {
+    if (term.empty())
+      throw UsageError(fmt::format("technique '{}:{}' lacks a term; {} answers {}", info.name,
+                                   fmt::join(terms, "+"), info.name, joined(answers)));
+    const auto known =
+        std::ranges::find_if(kTerms, [&](const TermInfo& candidate) { return term == candidate.name; });
+    if (known == std::end(kTerms))
+      throw UsageError(fmt::format("unknown term '{}' of technique {}{}; it answers {}", term, info.name,
+                                   didYouMean(term, answers), joined(answers)));
+    if (!contains(info.terms, known->term))
+      throw UsageError(
+          fmt::format("technique {} does not answer {}; it answers {}", info.name, term, joined(answers)));
+    if (contains(asked, known->term))
+      throw UsageError(
+          fmt::format("term {} of technique {} is named twice; once is enough", term, info.name));
+    asked = asked | known->term;
+  }
+  return asked;
+}
 
 std::vector<render::TechniqueUse> TechniqueChoice::resolve(const TechniqueRegistry& registry) const {
   std::vector<render::TechniqueUse> uses;
-  std::string_view rest = techniques;
-  while (!rest.empty()) {
-    const size_t comma = rest.find(',');
-    const std::string_view name = rest.substr(0, comma);
-    const TechniquePlugin& plugin = registry.find(name);
-    for (const auto& use : uses)
-      if (use.plugin == &plugin)
-        throw UsageError(fmt::format("technique {} is named twice; once is enough", name));
-    uses.push_back({&plugin, ParameterValues(std::string(name), plugin.info->parameters)});
-    rest = comma == std::string_view::npos ? std::string_view() : rest.substr(comma + 1);
+  for (const NamedTechnique& named : namedTechniques(techniques)) {
+    const TechniquePlugin& plugin = registry.find(named.name);
+    uses.push_back({&plugin, ParameterValues(std::string(named.name), plugin.info->parameters)});
+    if (named.terms) uses.back().terms = askedFor(*plugin.info, *named.terms);
+    refuseTwice(uses);
   }
   for (const std::string& setting : settings) {
     const size_t dot = setting.find('.'), equals = setting.find('=');

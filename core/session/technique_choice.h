@@ -1,7 +1,9 @@
 // Declares techniques and their parameters as people write them, and their translation for a renderer.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/export.h"
@@ -10,13 +12,17 @@
 
 namespace limn::session {
 
+/// Returns the set of these terms, by name. Throws UsageError for what is no term, an empty name, a term that
+/// the technique does not answer, and one that is named twice.
+LIMN_API TermSet askedFor(const TechniqueInfo& info, std::span<const std::string_view> terms);
+
 /// Says which techniques are used, and with which parameters.
 struct TechniqueChoice {
-  std::string techniques;             ///< comma-separated
+  std::string techniques;             ///< comma-separated; NAME:TERM+TERM: asked for these terms alone
   std::vector<std::string> settings;  ///< TECHNIQUE.PARAMETER=VALUE
 
-  /// Returns the modules with their parameters. Throws UsageError for what is unknown, named twice or out of
-  /// range, and Error for a module that is refused.
+  /// Returns the modules with their parameters. Throws UsageError for what is unknown, named twice, out of
+  /// range or not answered, and Error for a module that is refused.
   LIMN_API std::vector<render::TechniqueUse> resolve(const TechniqueRegistry& registry) const;
 };
 

@@ -203,6 +203,25 @@ TEST_F(Render, RefusesWhatItDoesNotUnderstand) {
   EXPECT_TRUE(listing(folder_.path()).empty());
 }
 
+TEST_F(Render, AsksTechniquesForSomeOfTheirTerms) {
+  const auto by = [&](const char* techniques) { return limn(command({"--technique", techniques})); };
+  expectRefused(by("vssm,implicit_visibility"), 2,
+                {"both answer direct light", "or implicit_visibility:environment+indirect"});
+  expectRefused(by("vssm,implicit_visibility:indrect"), 2,
+                {"unknown term 'indrect'", "did you mean indirect?", "visibility, environment and indirect"});
+  expectRefused(by("vssm:indirect"), 2, {"vssm does not answer indirect", "it answers visibility"});
+  expectRefused(by("vssm,implicit_visibility:"), 2, {"'implicit_visibility:' lacks a term"});
+  expectRefused(by("vssm,vssm"), 2, {"vssm is named twice"});
+  expectRefused(by("implicit_visibility:visibility,implicit_visibility:indirect"), 2,
+                {"implicit_visibility is named twice", "implicit_visibility:visibility+indirect"});
+  const auto stats = folder_ / "stats.json";
+  const Outcome both =
+      limn(command({"--technique", "vssm,implicit_visibility:indirect", "--set", "vssm.shadow_map_size=128",
+                    "--set", "implicit_visibility.bins=8", "--stats", stats.string()}));
+  ASSERT_EQ(both.status, 0) << both.err;
+  EXPECT_EQ(nlohmann::json::parse(contents(stats))["technique"], "vssm,implicit_visibility:indirect");
+}
+
 TEST_F(Render, SaysSoWhenThereIsNoDriver) {
   expectRefused(limn(command({}), {{"__EGL_VENDOR_LIBRARY_DIRS", "/nonexistent"}}), 1, {"EGL"});
 }

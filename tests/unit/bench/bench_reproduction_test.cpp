@@ -204,6 +204,13 @@ TEST(Reproduction, SharedSettingsOfCombinationsKeepTheirTechnique) {
   EXPECT_EQ(differingSettings(first, second), "airlight.steps 2 / 5");
 }
 
+TEST(Reproduction, SettingsAreOfATechniqueWhateverTermsItIsAskedFor) {
+  Row first = row("vssm:visibility", 30, "cells"), second = row("vssm", 2);
+  first.what.parameters = {{"vssm.cells", "1"}};
+  second.what.parameters = {{"vssm.cells", "3"}};
+  EXPECT_EQ(differingSettings(first, second), "cells 1 / 3");
+}
+
 TEST(Reproduction, WhatIsNotReproducedSaysWhy) {
   const std::string missing = "[[claims]]\nwhere = \"7.6, table\"\nwhat = \"curves\"\n";
   const std::string shown = line({}, missing + "because = \"limn draws none\"\n");

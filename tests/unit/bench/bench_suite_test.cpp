@@ -335,6 +335,18 @@ TEST(BenchSuite, ErrorsNameFileLineAndColumn) {
   expectUsageError(good + "[[techniques]]\ntechnique='c'\n", "the same case twice");
 }
 
+TEST(BenchSuite, TermsOfATechniqueAreNoPartOfItsParametersNames) {
+  const std::string head = "name='a'\nsizes='8x8'\n[[scenes]]\nscene='b'\n[[techniques]]\n";
+  const Suite one = parseSuite(head + "technique='c:indirect+media'\nparameters={x=1}\n", "s.toml");
+  ASSERT_EQ(one.cases.size(), 1u);
+  EXPECT_EQ(one.cases[0].technique, "c:indirect+media");
+  EXPECT_EQ(one.cases[0].parameters.at(0).first, "c.x");
+  const Suite two = parseSuite(head + "technique='d,c:indirect'\nparameters={\"c.x\"=1}\n", "s.toml");
+  EXPECT_EQ(two.cases.at(0).technique, "d,c:indirect");
+  const Suite all = parseSuite(head + "technique='d,c'\nparameters={\"c.x\"=1}\n", "s.toml");
+  EXPECT_NE(rowKey(two.cases[0], ""), rowKey(all.cases.at(0), ""));
+}
+
 TEST(BenchSuite, RefusesExplosions) {
   std::string text =
       "name='a'\nsizes='8x8'\n[[scenes]]\nscene='b'\n[[techniques]]\ntechnique='c'\n[techniques.parameters]"

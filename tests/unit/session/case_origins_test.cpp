@@ -56,6 +56,13 @@ TEST_F(CaseOriginsTest, SayWhatIsMissing) {
   EXPECT_EQ(origin.modules[1].hash, "missing");
 }
 
+TEST_F(CaseOriginsTest, ModulesAreNamedWithoutTheTermsTheyAreAskedFor) {
+  const bench::Provenance origin = origins_.of(gem("first,second:direct+media"));
+  ASSERT_THAT(origin.modules, SizeIs(2));
+  EXPECT_EQ(origin.modules[0].technique, "first");
+  EXPECT_EQ(origin.modules[1].technique, "second");
+}
+
 TEST_F(CaseOriginsTest, ASeparationFloorHasNoModules) {
   EXPECT_THAT(origins_.of(gem(bench::kSeparationFloor)).modules, IsEmpty());
 }
