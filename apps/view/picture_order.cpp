@@ -6,7 +6,8 @@ namespace limn::app {
 
 bool same(const std::vector<render::TechniqueUse>& a, const std::vector<render::TechniqueUse>& b) {
   return std::ranges::equal(a, b, [](const render::TechniqueUse& x, const render::TechniqueUse& y) {
-    return x.plugin == y.plugin && x.parameters.printed() == y.parameters.printed();
+    return x.plugin == y.plugin && termsOf(x) == termsOf(y) &&
+           x.parameters.printed() == y.parameters.printed();
   });
 }
 

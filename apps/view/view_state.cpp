@@ -30,13 +30,6 @@ std::vector<std::pair<std::string, std::string>> changed(const std::vector<rende
   return result;
 }
 
-std::string techniqueNames(const std::vector<render::TechniqueUse>& uses) {
-  std::string names;
-  for (const render::TechniqueUse& use : uses)
-    names += (names.empty() ? "" : ",") + std::string(use.plugin->info->name);
-  return names;
-}
-
 }  // namespace
 
 void setCamera(SceneQuestion& options, const Orbit& orbit, const glm::dvec3& origin) {
@@ -47,14 +40,13 @@ void setCamera(SceneQuestion& options, const Orbit& orbit, const glm::dvec3& ori
 void dropRivals(std::vector<render::TechniqueUse>& techniques, const TechniquePlugin& added) {
   const TermSet claimed = refusedBeside(added.info->terms);
   const auto rivals = [&](const render::TechniqueUse& use) {
-    return use.plugin != &added && (use.plugin->info->terms & claimed) != 0;
+    return use.plugin != &added && (termsOf(use) & claimed) != 0;
   };
   std::erase_if(techniques, rivals);
 }
 
 std::string renderCommand(const ViewState& state, const std::filesystem::path& out) {
-  std::string line =
-      limn::renderCommand(state.scene, techniqueNames(state.techniques), changed(state.techniques));
+  std::string line = limn::renderCommand(state.scene, namesOf(state.techniques), changed(state.techniques));
   if (state.tone.exposureEv != 0)
     line += commandOption("--exposure", fmt::format("{}", state.tone.exposureEv));
   if (state.tone.curve != ToneCurve::none)
@@ -73,7 +65,7 @@ std::string benchSuite(const ViewState& state) {
       bench::subjectToml(question), bounces > 0 ? fmt::format(", bounces = {}", bounces) : "",
       interfaces > 0 ? fmt::format(", interfaces = {}", interfaces) : "", bench::sceneToml(question));
   if (!state.techniques.empty())
-    text += "\n" + bench::techniqueToml(techniqueNames(state.techniques), changed(state.techniques));
+    text += "\n" + bench::techniqueToml(namesOf(state.techniques), changed(state.techniques));
   return text;
 }
 

@@ -121,7 +121,7 @@ void ViewerWindow::techniquePanel(std::vector<render::TechniqueUse>& uses) {
     const TechniqueInfo& info = *uses[i].plugin->info;
     ImGui::PushID(info.name);
     ImGui::SetNextItemOpen(true, ImGuiCond_Once);
-    const bool open = ImGui::TreeNodeEx(info.name, ImGuiTreeNodeFlags_AllowItemOverlap);
+    const bool open = ImGui::TreeNodeEx(nameOf(uses[i]).c_str(), ImGuiTreeNodeFlags_AllowItemOverlap);
     tip(fmt::format("{}\nAnswers: {}\n{}", info.title, termsOf(info), info.source));
     ImGui::SameLine(ImGui::GetContentRegionMax().x - 52);
     const bool keep = !ImGui::SmallButton("remove");

@@ -37,11 +37,8 @@ void label(glm::vec2 place, const std::string& text) {
   draw.AddText(im(place), 0xffffffff, text.c_str());
 }
 
-std::string namesOf(const std::vector<render::TechniqueUse>& uses) {
-  std::string names;
-  for (const render::TechniqueUse& use : uses)
-    names += (names.empty() ? "" : ", ") + std::string(use.plugin->info->name);
-  return names.empty() ? "unshadowed" : names;
+std::string caption(const std::vector<render::TechniqueUse>& uses) {
+  return uses.empty() ? "unshadowed" : namesOf(uses, ", ");
 }
 
 }  // namespace
@@ -105,8 +102,14 @@ void ViewerWindow::handleMouse() {
 void ViewerWindow::nextTechnique() {
   const TermSet alone = exclusiveWith(termSet(Term::direct));
   std::vector<const TechniquePlugin*> candidates;
-  for (const TechniquePlugin* plugin : registry_.all())
-    if ((plugin->info->terms & alone) != 0) candidates.push_back(plugin);
+  const auto claims = [&](const render::TechniqueUse& use) { return (termsOf(use) & alone) != 0; };
+  for (const TechniquePlugin* plugin : registry_.all()) {
+    const auto forOthers = [&](const render::TechniqueUse& use) {
+      return use.plugin == plugin && !claims(use);
+    };
+    if ((plugin->info->terms & alone) != 0 && std::ranges::none_of(state_.techniques, forOthers))
+      candidates.push_back(plugin);
+  }
   size_t next = 0;
   for (const render::TechniqueUse& use : state_.techniques)
     for (size_t i = 0; i < candidates.size(); ++i)
@@ -164,9 +167,9 @@ void ViewerWindow::drawPictures(glm::vec2 corner, glm::vec2 size) {
   draw.AddLine({x - 1, corner.y}, {x - 1, corner.y + size.y}, 0x80000000, 3);
   draw.AddLine({x, corner.y}, {x, corner.y + size.y}, 0xffffffff);
   const std::string other = difference                      ? "difference"
-                            : beside_ == Beside::techniques ? namesOf(otherTechniques_)
+                            : beside_ == Beside::techniques ? caption(otherTechniques_)
                                                             : "truth";
-  const std::string mine = namesOf(state_.techniques);
+  const std::string mine = caption(state_.techniques);
   label({x - ImGui::CalcTextSize(mine.c_str()).x - 12, corner.y + 8}, mine);
   label({x + 12, corner.y + 8}, other);
   if (difference) drawColourBar(corner + glm::vec2(14, size.y - 46), std::min(size.x - 28, 420.f));

@@ -74,6 +74,19 @@ TEST_F(ViewStateTest, TechniquesThatClaimTheSameReplaceEachOther) {
   EXPECT_STREQ(state_.techniques[1].plugin->info->name, "vssm");
 }
 
+TEST_F(ViewStateTest, TermsThatATechniqueIsAskedForAreKept) {
+  use("vssm,implicit_visibility:indirect", {"implicit_visibility.bins=8"});
+  EXPECT_THAT(
+      renderCommand(state_, "a.png"),
+      testing::HasSubstr("--technique vssm,implicit_visibility:indirect --set implicit_visibility.bins=8 "));
+  EXPECT_EQ(bench::parseSuite(benchSuite(state_), "view.toml").cases.at(0).technique,
+            "vssm,implicit_visibility:indirect");
+  const TechniquePlugin& pcss = registry_.find("pcss");
+  state_.techniques.push_back({&pcss, ParameterValues("pcss", pcss.info->parameters)});
+  dropRivals(state_.techniques, pcss);
+  EXPECT_EQ(namesOf(state_.techniques), "implicit_visibility:indirect,pcss");
+}
+
 TEST_F(ViewStateTest, SuitesAreSuites) {
   use("vssm,clustered_visibility", {"vssm.shadow_map_size=512"});
   state_.scene.width = 96;
