@@ -129,11 +129,17 @@ class ImplicitVisibility : public Technique {
 
   bool update(const scene::Pose& pose) override { return elements_ && !elements_->fits(pose); }
 
-  /// Whether no light of the scene's own is left out: then the environment is asked for, too.
+  /// Whether no light of the scene's own is left out: then the environment is asked for, too, unless lights
+  /// stand for it.
   static bool asksForAll(const TechniqueInputs& inputs, const TermRequest& request) {
-    const auto own = [](const glsl::Light& light) {
-      return (light.flags & glsl::light_flag_environment) == 0 && light.emission != glm::vec3(0);
+    const auto ofEnvironment = [](const glsl::Light& light) {
+      return (light.flags & glsl::light_flag_environment) != 0;
     };
+    const auto own = [&](const glsl::Light& light) {
+      return !ofEnvironment(light) && light.emission != glm::vec3(0);
+    };
+    const auto standsForIt = [&](uint32_t light) { return ofEnvironment(inputs.pose.lights[light]); };
+    if (std::ranges::any_of(request.lights, standsForIt)) return false;
     return static_cast<std::ptrdiff_t>(request.lights.size()) >=
            std::ranges::count_if(inputs.pose.lights, own);
   }
