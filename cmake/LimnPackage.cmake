@@ -11,10 +11,10 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Real-time shadows and global illumination, with their error and their cost
  A core, techniques as plug-ins, a viewer, and a bench that measures error against
  time beside a path-traced reference.")
-# Linked libraries are found; those of OpenGL are opened at run time, the software renderer through them.
+# Linked libraries are found; the software renderer is opened at run time.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libgl1-mesa-dri")
+set(CPACK_DEBIAN_PACKAGE_DEPENDS libgl1-mesa-dri)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libosmesa6, bash-completion")
 # Modules are built against the installed headers.
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "cmake, g++, python3, libglm-dev, libfmt-dev, ffmpeg")
