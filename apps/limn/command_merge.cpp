@@ -2,13 +2,9 @@
 #include <fmt/format.h>
 
 #include "apps/limn/commands.h"
+#include "apps/limn/results_folder.h"
 #include "core/base/error.h"
-#include "core/base/file.h"
-#include "core/base/file_lock.h"
 #include "core/bench/merge.h"
-#include "core/bench/report.h"
-#include "core/bench/results_file.h"
-#include "core/bench/tables.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
@@ -21,13 +17,11 @@ int run(const std::vector<fs::path>& folders, const fs::path& out) {
       throw Error(fmt::format("{} does not exist; expected a folder that limn bench wrote",
                               (folder / "results.jsonl").string()));
   }
-  createFolder(out);
-  const FileLock lock(out / ".lock", fmt::format("folder {}", out.string()));
+  const ResultsFolder results(out, {}, 0);
   int added = 0;
   for (const fs::path& folder : folders) added += bench::mergeResults(folder, out);
-  const std::vector<bench::Row> rows = bench::readRows(out / "results.jsonl");
-  bench::writeTables(rows, out);
-  bench::writeReport(rows, out);
+  results.writeReport();
+  const std::vector<bench::Row> rows = results.rows();
   fmt::print("{} rows added; {} has {} of {} that did not fail\n", added, (out / "results.jsonl").string(),
              std::ranges::count(rows, "", &bench::Row::failure), rows.size());
   return 0;

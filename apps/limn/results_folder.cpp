@@ -40,7 +40,7 @@ class CaseWork {
     runInWorker(report_, stallTimeout_, [&] {
       const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
       const auto missing = session::missingThings(
-          unanswered(), registry, [&] { report_.alive(); }, warn);
+          unanswered(cases_, file_), registry, [&] { report_.alive(); }, warn);
       for (std::size_t i = 0; i + 1 < missing.size(); ++i) fmt::print(stderr, "limn: {}\n", missing[i]);
       if (!missing.empty()) throw UsageError(missing.back());
     });
@@ -65,18 +65,6 @@ class CaseWork {
   std::string renderer() const { return report_.renderer(); }
 
  private:
-  /// Those without a row of any renderer.
-  std::vector<bench::Case> unanswered() const {
-    std::set<std::string> answered;
-    if (fs::exists(file_))
-      for (const bench::Row& row : bench::readRows(file_))
-        if (row.failure.empty()) answered.insert(bench::rowKey(row.what, ""));
-    std::vector<bench::Case> cases;
-    for (const bench::Case& c : cases_)
-      if (!answered.contains(bench::rowKey(c, ""))) cases.push_back(c);
-    return cases;
-  }
-
   /// In the worker: measures what there is no row for.
   void measure() {
     bench::ResultsFile results(file_);
@@ -168,6 +156,17 @@ fs::path created(const fs::path& folder) {
 }
 
 }  // namespace
+
+std::vector<bench::Case> unanswered(const std::vector<bench::Case>& cases, const fs::path& file) {
+  std::set<std::string> answered;
+  if (fs::exists(file))
+    for (const bench::Row& row : bench::readRows(file))
+      if (row.failure.empty()) answered.insert(bench::rowKey(row.what, ""));
+  std::vector<bench::Case> left;
+  for (const bench::Case& c : cases)
+    if (!answered.contains(bench::rowKey(c, ""))) left.push_back(c);
+  return left;
+}
 
 ResultsFolder::ResultsFolder(fs::path folder, BackendOptions backend, double stallTimeout)
     : folder_(created(folder)),

@@ -11,6 +11,10 @@
 
 namespace limn::app {
 
+/// Returns the cases for which the results in `file` hold no good row of any renderer; all of them where
+/// there is no such file.
+std::vector<bench::Case> unanswered(const std::vector<bench::Case>& cases, const std::filesystem::path& file);
+
 /// Holds a folder with results.jsonl, references, pictures, tables and report while cases are measured into
 /// it.
 class ResultsFolder {

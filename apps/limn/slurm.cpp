@@ -12,7 +12,6 @@
 #include "core/base/shell.h"
 #include "core/base/spawn.h"
 #include "core/bench/merge.h"
-#include "core/bench/results_file.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
@@ -38,12 +37,9 @@ std::vector<fs::path> finishedParts(const fs::path& out) {
   return folders;
 }
 
-std::set<std::string> answered(const fs::path& out) {
-  std::set<std::string> keys;
-  if (fs::exists(out / "results.jsonl"))
-    for (const bench::Row& row : bench::readRows(out / "results.jsonl"))
-      if (row.failure.empty()) keys.insert(bench::rowKey(row.what, ""));
-  return keys;
+/// This program, as a word for a shell.
+std::string thisProgram() {
+  return shellQuoted(fs::read_symlink("/proc/self/exe").string());
 }
 
 /// A shell script for one task of the array: the part of its number. What a signal ended is queued again.
@@ -63,8 +59,7 @@ std::string taskScript(const fs::path& suite, const fs::path& out, int parts, co
       "  scontrol requeue \"${{SLURM_ARRAY_JOB_ID}}_$part\"\n"
       "fi\n"
       "exit $status\n",
-      shellQuoted(fs::read_symlink("/proc/self/exe").string()), shellQuoted(suite.string()),
-      shellQuoted(out.string()), parts, parts, filters, more);
+      thisProgram(), shellQuoted(suite.string()), shellQuoted(out.string()), parts, parts, filters, more);
 }
 
 /// The job that merges is the last one: while Slurm knows it, the parts or it are waiting or running.
@@ -100,14 +95,12 @@ std::string submitSuite(const fs::path& suiteFile, const fs::path& folder, const
   std::set<std::string> questions;
   for (const bench::Case& c : cases) questions.insert(bench::question(c));
   const int parts = std::min(static_cast<int>(questions.size()), kPartsPerNode * job.nodes);
-  const std::set<std::string> known = answered(out);
   std::vector<int> open;
   std::size_t missing = 0;
   for (int part = 1; part <= parts; ++part) {
-    const auto count =
-        std::ranges::count_if(bench::selectCases(asked.cases, run.filters, {part, parts}),
-                              [&](const bench::Case& c) { return !known.contains(bench::rowKey(c, "")); });
-    missing += static_cast<std::size_t>(count);
+    const std::size_t count =
+        unanswered(bench::selectCases(asked.cases, run.filters, {part, parts}), out / "results.jsonl").size();
+    missing += count;
     if (count > 0) open.push_back(part);
   }
   if (open.empty()) {
@@ -130,8 +123,8 @@ std::string submitSuite(const fs::path& suiteFile, const fs::path& folder, const
   const std::string array =
       submit({"--exclusive", fmt::format("--array={}%{}", fmt::join(open, ","), job.nodes),
               "--output=" + (out / "slurm" / "part-%a.log").string(), script.string()});
-  std::string merge = shellQuoted(fs::read_symlink("/proc/self/exe").string()) + " merge " +
-                      shellQuoted((out / "parts").string()) + "/* --out " + shellQuoted(out.string());
+  std::string merge = thisProgram() + " merge " + shellQuoted((out / "parts").string()) + "/* --out " +
+                      shellQuoted(out.string());
   const std::string last = submit({"--dependency=afterany:" + array,
                                    "--output=" + (out / "slurm" / "merge.log").string(), "--wrap=" + merge});
   writeTextFile(out / "slurm" / "job", last);

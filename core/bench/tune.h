@@ -66,7 +66,7 @@ struct TunePlan {
   TuneEffort look, check, full;
 };
 
-/// Returns the plan for pictures of that size whose full effort has so many frames and turns. Looks take a
+/// Returns the plan for pictures of that size whose full effort has these frames and turns. Looks take a
 /// quarter of width and height, as far as 48 pixels are left.
 LIMN_API TunePlan tunePlan(int width, int height, int frames, int turns);
 
