@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -33,6 +34,25 @@ class File {
  private:
   int number_;
 };
+
+/// Returns the number of a file in memory that holds these bytes and is read from its beginning; -1 with
+/// errno where there is none.
+int fileOf(std::span<const std::byte> bytes) {
+  const int file = memfd_create("limn", MFD_CLOEXEC);
+  std::size_t done = 0;
+  while (file >= 0 && done < bytes.size()) {
+    const ssize_t count = ::pwrite(file, bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) {
+      const int error = errno;
+      ::close(file);
+      errno = error;
+      return -1;
+    }
+    done += static_cast<std::size_t>(count);
+  }
+  return file;
+}
 
 /// Reads what the helper writes until it closes its output; returns why it is to be stopped before, or
 /// nothing.
@@ -69,14 +89,18 @@ std::filesystem::path libraryFolder() {
 }
 
 HelperAnswer runHelper(const std::string& name, const std::vector<std::string>& arguments,
-                       const HelperLimits& limits) {
+                       const HelperLimits& limits, std::span<const std::byte> input) {
   const std::string program = (libraryFolder() / "limn" / name).string();
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0)
+  const auto refuse = [&] {
     throw Error(fmt::format("{} cannot be started: {}", program, std::strerror(errno)));
+  };
+  const File given(input.empty() ? -1 : fileOf(input));
+  if (!input.empty() && given.number() < 0) refuse();
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) refuse();
   const File in(ends[0]);
   File out(ends[1]);
-  const pid_t child = startProgram(program, arguments, {-1, out.number(), -1});
+  const pid_t child = startProgram(program, arguments, {given.number(), out.number(), -1});
   out.close();
   HelperAnswer answer;
   try {

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,9 +31,10 @@ struct HelperAnswer {
   std::string failure;  ///< how it failed, "it crashed: Segmentation fault"; empty after exit status 0
 };
 
-/// Runs the program `name` from the folder limn/ beside liblimn, waits for it and returns its answer. An
-/// interrupt from the keyboard does not reach the program. Throws Error if it cannot be started.
+/// Runs the program `name` from the folder limn/ beside liblimn, waits for it and returns its answer. Its
+/// standard input is a file in memory that holds `input`. An interrupt from the keyboard does not reach the
+/// program. Throws Error if it cannot be started.
 LIMN_API HelperAnswer runHelper(const std::string& name, const std::vector<std::string>& arguments,
-                                const HelperLimits& limits);
+                                const HelperLimits& limits, std::span<const std::byte> input = {});
 
 }  // namespace limn

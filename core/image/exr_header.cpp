@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "core/image/image.h"
+
 namespace limn {
 namespace {
 
@@ -103,6 +105,19 @@ bool fillsItsAttribute(std::string_view type, std::span<const std::byte> value) 
   return known == std::end(sizes) || known->second == value.size();
 }
 
+/// Returns what is wrong with the window of pixels that a file holds, or nothing.
+std::string windowProblem(Cursor window) {
+  std::int64_t corners[4];
+  for (std::int64_t& corner : corners) {
+    const auto number = window.number();
+    if (!number) return "truncated or damaged OpenEXR header";
+    corner = static_cast<std::int32_t>(*number);
+  }
+  const std::int64_t width = corners[2] - corners[0] + 1, height = corners[3] - corners[1] + 1;
+  if (width <= kMaxImageSide && height <= kMaxImageSide) return {};
+  return fmt::format("{}x{} pixels; at most {} per side are accepted", width, height, kMaxImageSide);
+}
+
 }  // namespace
 
 std::string exrHeaderProblem(std::span<const std::byte> bytes) {
@@ -122,6 +137,8 @@ std::string exrHeaderProblem(std::span<const std::byte> bytes) {
       const auto value = size ? cursor.take(*size) : std::nullopt;
       if (!value || !fillsItsAttribute(*type, *value)) return tooShort;
       if (*name == "channels") channels = std::max(channels, channelCount(Cursor(*value)).value_or(0));
+      if (*name == "dataWindow")
+        if (std::string problem = windowProblem(Cursor(*value)); !problem.empty()) return problem;
       if (*name == "tiles") {
         Cursor tile(*value);
         const auto w = tile.number(), h = tile.number();

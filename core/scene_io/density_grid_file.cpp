@@ -1,4 +1,4 @@
-// Density grids from files: asks limn-read-grid (core/scene_io/vdb_reader) and checks what it answers.
+// Density grids from files: asks limn-read-grid (core/scene_io/readers) and checks what it answers.
 #include "core/scene_io/density_grid_file.h"
 
 #include <fmt/format.h>

@@ -92,6 +92,9 @@ Rules documentRules() {
       index("meshes[].primitives[].material"),
       {"meshes[].primitives[].mode", Type::whole, 0, 6},
       index("meshes[].primitives[].targets[]{}"),
+      // KHR_draco_mesh_compression
+      index("meshes[].primitives[].extensions.KHR_draco_mesh_compression.bufferView!"),
+      index("meshes[].primitives[].extensions.KHR_draco_mesh_compression.attributes!{}"),
       text("skins[].name"),
       index("skins[].joints![]"),
       index("skins[].inverseBindMatrices"),

@@ -39,6 +39,7 @@ constexpr std::array kSupportedExtensions = {
     "KHR_materials_unlit",
     "KHR_materials_pbrSpecularGlossiness",
     "EXT_meshopt_compression",
+    "KHR_draco_mesh_compression",
 };
 // clang-format on
 
@@ -212,6 +213,7 @@ void Loader::parse(const Container& container, tinygltf::Model& model) {
   takeBuffers(document, container.binary);
   takeImages(document);
   decodeViews(document);
+  decodeDraco(document);
 
   const std::string text = root.dump();
   if (text.size() > std::numeric_limits<unsigned>::max()) fail("more than 4 GiB of JSON");

@@ -11,7 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/scene_io/private/grid_message.h"
-#include "core/scene_io/vdb_reader/vdb_grid.h"
+#include "core/scene_io/readers/vdb_grid.h"
 
 namespace {
 

@@ -14,9 +14,9 @@ namespace limn {
 inline constexpr std::uint64_t kMaxTileValues = std::uint64_t{1} << 24;
 
 /// Returns an empty string, or what is wrong with the header of a file that starts with OpenEXR's magic
-/// number: an attribute that is longer than the file or not as long as a value of its type, or tiles larger
-/// than the limit. Everything else is left to the library. Layout: "OpenEXR File Layout", sections "Header"
-/// and "Predefined attribute types".
+/// number: an attribute that is longer than the file or not as long as a value of its type, or sides or tiles
+/// larger than their limits. Everything else is left to the library. Layout: "OpenEXR File Layout", sections
+/// "Header" and "Predefined attribute types".
 std::string exrHeaderProblem(std::span<const std::byte> bytes);
 
 }  // namespace limn

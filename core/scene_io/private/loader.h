@@ -100,6 +100,10 @@ class Loader {
   // loader_compressed.cpp
   void decodeViews(Document& document);
 
+  // loader_draco.cpp
+  /// Gives the primitives that are compressed by Draco accessors of their own, which hold what was decoded.
+  void decodeDraco(Document& document);
+
   // loader_accessor.cpp
   /// Returns the accessor's values, which are finite. `expected` is the count that it must have; negative:
   /// any.

@@ -1,9 +1,10 @@
-#include "core/scene_io/vdb_reader/confine.h"
+#include "core/scene_io/readers/confine.h"
 
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 
 namespace limn {
@@ -30,6 +31,16 @@ bool confine(std::uint64_t memory, unsigned seconds) {
   static_cast<void>(memory);
 #endif
   return granted;
+}
+
+bool writeAnswer(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t done = ::write(STDOUT_FILENO, bytes.data(), bytes.size());
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(done));
+  }
+  return true;
 }
 
 }  // namespace limn

@@ -4,7 +4,6 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <charconv>
 #include <cstdio>
 #include <limits>
@@ -13,37 +12,26 @@
 
 #include "core/base/error.h"
 #include "core/scene_io/private/grid_message.h"
-#include "core/scene_io/vdb_reader/confine.h"
-#include "core/scene_io/vdb_reader/vdb_grid.h"
+#include "core/scene_io/readers/confine.h"
+#include "core/scene_io/readers/vdb_grid.h"
 
 namespace {
 
 using namespace limn::scene;
 
-bool write(const void* data, std::size_t size) {
-  const char* bytes = static_cast<const char*>(data);
-  while (size > 0) {
-    const ssize_t done = ::write(STDOUT_FILENO, bytes, size);
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) return false;
-    bytes += done;
-    size -= static_cast<std::size_t>(done);
-  }
-  return true;
-}
-
-bool answer(const GridHeader& header, const void* data) {
-  return write(&header, sizeof header) && write(data, header.bytes);
+bool answer(const GridHeader& header, std::span<const std::byte> content) {
+  return limn::writeAnswer(std::as_bytes(std::span(&header, 1))) &&
+         limn::writeAnswer(content.first(header.bytes));
 }
 
 bool refuse(std::string_view reason) {
-  return answer(headerOf(reason), reason.data());
+  return answer(headerOf(reason), std::as_bytes(std::span(reason)));
 }
 
 bool work(const char* file, std::uint64_t memory, const GridLimits& limits, const glm::dvec3& origin) {
   try {
     const DensityGrid grid = readVdbGrid(file, limits, origin);
-    return answer(headerOf(grid), grid.values.data());
+    return answer(headerOf(grid), std::as_bytes(std::span(grid.values)));
   } catch (const limn::Error& error) {
     return refuse(error.what());
   } catch (const std::bad_alloc&) {

@@ -1,5 +1,5 @@
 // The one place that sees OpenVDB's headers.
-#include "core/scene_io/vdb_reader/vdb_grid.h"
+#include "core/scene_io/readers/vdb_grid.h"
 
 #include <fmt/format.h>
 #include <openvdb/tools/Dense.h>
