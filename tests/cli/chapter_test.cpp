@@ -39,7 +39,7 @@ TEST(Chapters, FiltersThatNothingFitsAreRefused) {
   const TemporaryFolder folder;
   for (const char* name : {"ch4-implicit-visibility", "ch5-convolution-soft-shadows",
                            "ch6-clustered-visibility", "ch7-variance-soft-shadows", "ch8-volume-caustics",
-                           "materials", "bumps", "subsurface", "subtractive"}) {
+                           "materials", "bumps", "subsurface", "subtractive", "illumination-samples"}) {
     const Outcome outcome = chapter(name, {"--out", folder / "out", "--filter", "no such case"});
     expectRefused(outcome, 2, {name, "fits the filter"});
     EXPECT_FALSE(std::filesystem::exists(folder / "out"));
