@@ -24,9 +24,10 @@ constexpr Parameter shadowMapSizeParameter(int texels = 1024) {
       .logScale();
 }
 constexpr const char* kMapFits[] = {"scene", "view"};
-constexpr Parameter shadowMapFitParameter() {
+/// `fit`: the default, an index into kMapFits.
+constexpr Parameter shadowMapFitParameter(int fit = 0) {
   return choice(
-      "shadow_map_fit", 0, kMapFits,
+      "shadow_map_fit", fit, kMapFits,
       "What maps of one view cover: scene: all that the light reaches; view: what the camera sees of it, "
       "and what may block light from there");
 }

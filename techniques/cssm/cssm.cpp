@@ -30,7 +30,7 @@ constexpr Parameter kParameters[] = {
     integer("splits", 4, {1, 8}, "parts", "Parts of a kernel per axis, each with its own depth threshold")
         .quality(),
     shadow::shadowMapSizeParameter(),
-    shadow::shadowMapFitParameter(),
+    shadow::shadowMapFitParameter(1),
     shadow::viewsParameter(),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),

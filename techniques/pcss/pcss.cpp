@@ -22,7 +22,7 @@ constexpr Parameter kParameters[] = {
     integer("search_rounds", 5, {0, 8}, "rounds",
             "How often the nearest depth in the search kernel narrows it; search=narrowed"),
     shadow::shadowMapSizeParameter(),
-    shadow::shadowMapFitParameter(),
+    shadow::shadowMapFitParameter(1),
     shadow::viewsParameter(),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),

@@ -22,7 +22,7 @@ constexpr Parameter kParameters[] = {
     integer("sat_bits", 16, {8, 24}, "bits", "Of a depth in the summed-area table"),
     integer("sat_words", 2, {1, 2}, "32-bit words", "Per moment; 1: squares rounded, as published"),
     shadow::shadowMapSizeParameter(),
-    shadow::shadowMapFitParameter(),
+    shadow::shadowMapFitParameter(1),
     shadow::viewsParameter(),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),
