@@ -1,10 +1,12 @@
-// limn list: what techniques there are.
+// limn list: what techniques, scenes, environments and suites there are.
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "apps/limn/commands.h"
 #include "apps/limn/options.h"
+#include "core/session/find.h"
 #include "core/technique/registry.h"
 
 namespace limn::app {
@@ -80,16 +82,43 @@ void printText(const TechniqueRegistry& registry) {
     fmt::print(stderr, "limn: technique {} was refused: {}\n", refusal.name, refusal.reason);
 }
 
+struct Options {
+  std::string what = "techniques";
+  bool json = false;
+};
+
+/// What comes with limn beside its techniques.
+const std::map<std::string, std::vector<std::string> (*)()> kNames{
+    {"scenes", session::sceneNames},
+    {"environments", session::environmentNames},
+    {"suites", session::suiteNames}};
+
+int run(const Options& options) {
+  if (const auto names = kNames.find(options.what); names != kNames.end()) {
+    const std::vector<std::string> found = names->second();
+    if (options.json)
+      fmt::print("{}\n", nlohmann::ordered_json{{options.what, found}}.dump(2));
+    else
+      for (const std::string& name : found) fmt::print("{}\n", name);
+    return 0;
+  }
+  const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
+  options.json ? printJson(registry) : printText(registry);
+  return 0;
+}
+
 }  // namespace
 
 Action addListCommand(CLI::App& command) {
-  auto json = std::make_shared<bool>(false);
-  command.add_flag("--json", *json, "Print JSON");
-  return [json] {
-    const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
-    *json ? printJson(registry) : printText(registry);
-    return 0;
-  };
+  auto options = std::make_shared<Options>();
+  command
+      .add_option(
+          "what", options->what,
+          "techniques with their parameters, or the names of limn's own scenes, environments or suites")
+      ->check(CLI::IsMember({"techniques", "scenes", "environments", "suites"}))
+      ->capture_default_str();
+  command.add_flag("--json", options->json, "Print JSON");
+  return [options] { return run(*options); };
 }
 
 }  // namespace limn::app

@@ -72,7 +72,7 @@ int main(int argc, char** argv) {
     if (command->get_prefix_command()) return;  // what follows is another program's
     command->add_flag("-q,--quiet", quiet, "Print only results and errors: no progress, notes or warnings");
   };
-  add("list", "List the techniques, the terms they answer and their parameters", addListCommand);
+  add("list", "List the techniques and their parameters, or scenes, environments, suites", addListCommand);
   add("info", "Show the OpenGL back ends, devices and limits of this machine, and the technique modules",
       addInfoCommand);
   add("import", "Convert a model of another format to a scene, by assimp", addImportCommand);

@@ -24,8 +24,8 @@ class GlfwContext final : public Context {
   explicit GlfwContext(const ContextOptions& options) {
     if (!glfwInit()) {
       throw Error(
-          fmt::format("no window can be opened ({}): a display is needed, or choose another back end "
-                      "(--backend egl)",
+          fmt::format("no window can be opened ({}): a display is needed; limn render makes pictures "
+                      "without one (--backend egl)",
                       lastProblem()));
     }
     glfwDefaultWindowHints();

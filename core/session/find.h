@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "core/base/export.h"
 
@@ -22,6 +24,12 @@ LIMN_API std::filesystem::path findDefaultEnvironment();
 /// Returns the file itself, or the suite of that name that came with limn. Throws Error when there is
 /// neither.
 LIMN_API std::filesystem::path findSuite(const std::filesystem::path& nameOrFile);
+
+/// Returns the names of the scenes, environment maps and suites that were built or installed with limn,
+/// sorted.
+LIMN_API std::vector<std::string> sceneNames();
+LIMN_API std::vector<std::string> environmentNames();
+LIMN_API std::vector<std::string> suiteNames();
 
 /// Returns the path of `file` in `folder` of what was built or installed with limn; empty when it does not
 /// exist.
