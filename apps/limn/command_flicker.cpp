@@ -78,7 +78,7 @@ class Sequence {
 
   Frame at(double time) {
     renderer_.setTime(time, view_.animation);
-    const scene::CameraPose camera = session::chooseCamera(options_.scene, renderer_.pose());
+    const scene::CameraPose camera = session::chooseCamera(options_.scene, renderer_.pose(), view_.framing);
     return {render::supersample(renderer_, camera, view_.size, view_.aa), truth(camera, 0), truth(camera, 1)};
   }
 

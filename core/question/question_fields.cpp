@@ -164,6 +164,10 @@ constexpr QuestionField kFields[] = {
     choice("displaced", "--displaced", &Q::displaced, kOffOn,
            "on: meshes take the place of height maps, in pictures and in the reference: what bump mapping\n"
            "leaves out is the difference, which is no error of a technique"),
+    choice(
+        "floor", "--floor", &Q::floor, kOffOn,
+        "on: a diffuse square below the scene, 8 radii wide, that receives its shadows, in pictures and in\n"
+        "the reference"),
     real(
         "environment_lights", "--environment-lights", &Q::environmentLights, {1e-4, 0.5}, "",
         "Replace the environment by area lights, which techniques can shadow. The value is the least share "

@@ -34,7 +34,7 @@ struct SceneQuestion {
   std::string unshadowed = "off";
   std::string reliefPaths = name(ReliefPaths::both);
   std::string subsurface = name(SubsurfaceModel::bssrdf);
-  std::string displaced = "off";
+  std::string displaced = "off", floor = "off";
   double environmentLights = 0;
   int environmentResolution = 48;
   std::string environmentShape = "squares", environmentReflection = "area", environmentCombine = "add";

@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "core/base/error.h"
+#include "core/scene/framing.h"
 
 namespace limn::scene {
 namespace {
@@ -92,22 +93,9 @@ CameraPose lookAt(const glm::vec3& eye, const glm::vec3& target, float yfov) {
 }
 
 CameraPose frameBounds(const Bounds& bounds, float yfov) {
-  const glm::vec3 centre = bounds.centre();
-  const float radius = std::max(bounds.radius(), 1e-20f);
-  const glm::vec3 direction = glm::normalize(glm::vec3(0.3f, 0.35f, 1.f));
-  CameraPose camera = lookAt(centre + radius * direction, centre, yfov);
-  // Nearest place along `direction` from which every corner falls into the middle 90 % of a square picture.
-  const float tangent = 0.9f * std::tan(0.5f * yfov);
-  const glm::mat3 toView(camera.worldToView);
-  float distance = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 p((corner & 1) ? bounds.high.x : bounds.low.x,
-                      (corner & 2) ? bounds.high.y : bounds.low.y,
-                      (corner & 4) ? bounds.high.z : bounds.low.z);
-    const glm::vec3 v = bounds.empty() ? glm::vec3(0) : toView * (p - centre);
-    distance = std::max(distance, v.z + std::max(std::abs(v.x), std::abs(v.y)) / tangent);
-  }
-  return lookAt(centre + std::max(distance, 1.01f * radius) * direction, centre, yfov);
+  Framing framing({0.3f, 0.35f, 1.f}, yfov);
+  framing.add(bounds);
+  return framing.camera();
 }
 
 }  // namespace limn::scene

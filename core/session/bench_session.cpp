@@ -84,7 +84,7 @@ BenchSession::Loaded& BenchSession::load(const bench::Case& c) {
     moveTo(view, c, view.time);
     loaded_->renderer.setTime(view.time, view.animation);
   } else {
-    view.camera = chooseCamera(c, view.pose);
+    view.camera = chooseCamera(c, view.pose, view.framing);
   }
   view.light = c.light.empty() ? scene::kNone : findNamed("light", c.light, view.pose.lightNames);
   return *loaded_;

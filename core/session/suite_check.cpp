@@ -73,7 +73,7 @@ void checkViews(const std::vector<const bench::Case*>& cases, Lines& lines, cons
   });
   if (!opened) return;
   for (const bench::Case* c : cases) {
-    lines.find(where, [&] { chooseCamera(*c, view.pose); });
+    lines.find(where, [&] { chooseCamera(*c, view.pose, view.framing); });
     if (!c->light.empty()) lines.find(where, [&] { findNamed("light", c->light, view.pose.lightNames); });
   }
 }

@@ -11,6 +11,8 @@
 #include "core/scene/camera.h"
 #include "core/scene/default_lights.h"
 #include "core/scene/displaced.h"
+#include "core/scene/floor.h"
+#include "core/scene/framing.h"
 #include "core/scene_io/density_grid_file.h"
 #include "core/scene_io/load.h"
 #include "core/session/find.h"
@@ -74,8 +76,9 @@ int findNamed(const std::string& what, const std::string& text, const std::vecto
                   names.size() > listed ? fmt::format(" and {} more", names.size() - listed) : ""));
 }
 
-scene::CameraPose chooseCamera(const SceneQuestion& question, const scene::Pose& pose) {
-  scene::CameraPose camera = pose.cameras.empty() ? scene::frameBounds(pose.bounds) : pose.cameras.front();
+scene::CameraPose chooseCamera(const SceneQuestion& question, const scene::Pose& pose,
+                               const scene::CameraPose& framing) {
+  scene::CameraPose camera = pose.cameras.empty() ? framing : pose.cameras.front();
   if (!question.camera.empty())
     camera = pose.cameras[static_cast<size_t>(findNamed("camera", question.camera, cameraNames(pose)))];
   if (!question.eye.empty() || !question.target.empty()) {
@@ -163,7 +166,7 @@ void relight(View& view, const SceneQuestion& question) {
   if (scene.environment.scale != scale) scene.environment.scale = scale;
   if (question.lightSize > 0) resizeLights(scene, question.lightSize);
   scene::evaluate(scene, view.time, view.animation, view.pose);
-  view.camera = chooseCamera(question, view.pose);
+  view.camera = chooseCamera(question, view.pose, view.framing);
   if (view.defaultLights) {
     scene::addDefaultLights(scene, view.camera, view.pose.bounds);
     scene::evaluate(scene, view.time, view.animation, view.pose);
@@ -180,7 +183,7 @@ void moveTo(View& view, const SceneQuestion& question, double time) {
     return;
   }
   scene::evaluate(view.scene, view.time, view.animation, view.pose);
-  view.camera = chooseCamera(question, view.pose);
+  view.camera = chooseCamera(question, view.pose, view.framing);
 }
 
 /// --grid.
@@ -197,6 +200,13 @@ static void chooseGrid(const std::string& grid, scene::Scene& scene) {
     scene::setGrid(scene.medium, scene::readDensityGrid(grid, {}, scene.origin));
 }
 
+/// The camera of a scene without one, which looks at what stands on the floor, and --floor.
+static void frame(const SceneQuestion& question, View& view) {
+  const scene::Pose start = scene::evaluate(view.scene, 0, view.animation);
+  if (start.cameras.empty()) view.framing = scene::frameScene(view.scene, view.animation);
+  if (question.floor == "on") scene::addFloor(view.scene, scene::vertexBounds(view.scene, start));
+}
+
 View open(const SceneQuestion& question, const Warn& warn) {
   View view;
   view.size = {question.width, question.height};
@@ -207,22 +217,23 @@ View open(const SceneQuestion& question, const Warn& warn) {
   view.scene = scene::load(findScene(question.scene));
   if (question.displaced == "on") view.scene = scene::displaced(std::move(view.scene));
   addEnvironment(question, view.scene);
-  giveOwnMaterials(view.scene);
-  view.file = {
-      view.scene.nodes, view.scene.lights, {}, view.scene.environment.rotation, view.scene.environment.scale};
-  for (const scene::Material& material : view.scene.materials)
-    view.file.emission.push_back(material.emission);
   if (!question.sigmaA.empty()) view.scene.medium.sigmaA = parseCoefficient("--sigma-a", question.sigmaA);
   if (!question.sigmaS.empty()) view.scene.medium.sigmaS = parseCoefficient("--sigma-s", question.sigmaS);
   if (question.g) view.scene.medium.g = static_cast<float>(*question.g);
   if (!question.grid.empty()) chooseGrid(question.grid, view.scene);
-  if (warn)
-    for (const std::string& warning : view.scene.warnings) warn(warning);
   if (!question.animation.empty()) {
     std::vector<std::string> names;
     for (const auto& animation : view.scene.animations) names.push_back(animation.name);
     view.animation = findNamed("animation", question.animation, names);
   }
+  frame(question, view);
+  giveOwnMaterials(view.scene);
+  view.file = {
+      view.scene.nodes, view.scene.lights, {}, view.scene.environment.rotation, view.scene.environment.scale};
+  for (const scene::Material& material : view.scene.materials)
+    view.file.emission.push_back(material.emission);
+  if (warn)
+    for (const std::string& warning : view.scene.warnings) warn(warning);
   view.time = question.time;
   view.pose = scene::evaluate(view.scene, view.time, view.animation);
   view.defaultLights = wantsDefaultLights(question, view, warn);

@@ -32,6 +32,7 @@ struct View {
   int animation = scene::kNone;
   double time = 0;
   scene::CameraPose camera;
+  scene::CameraPose framing;  ///< the camera of a scene that has none, the same at all times
   scene::Pose pose;
   glm::ivec2 size;
   int aa = 1;  ///< x aa samples in each pixel
@@ -71,8 +72,9 @@ LIMN_API reference::Request referenceRequest(const View& view, const scene::Pose
 LIMN_API int findNamed(const std::string& what, const std::string& text,
                        const std::vector<std::string>& names);
 
-/// Returns the camera of the pose that the question names, moved to --eye and --target and given --fov.
-/// Throws UsageError for a camera that does not exist.
-LIMN_API scene::CameraPose chooseCamera(const SceneQuestion& question, const scene::Pose& pose);
+/// Returns the camera of the pose that the question names, or `framing` where the pose has none, moved to
+/// --eye and --target and given --fov. Throws UsageError for a camera that does not exist.
+LIMN_API scene::CameraPose chooseCamera(const SceneQuestion& question, const scene::Pose& pose,
+                                        const scene::CameraPose& framing);
 
 }  // namespace limn::session

@@ -60,7 +60,7 @@ TEST_F(ViewStateTest, CamerasSurviveTheCommandLine) {
   setCamera(state_.scene, orbit, glm::dvec3(0));
   scene::Pose pose;
   pose.cameras.push_back(scene::lookAt({0, 0, 5}, glm::vec3(0), 0.7f));
-  EXPECT_EQ(session::chooseCamera(state_.scene, pose).worldToView,
+  EXPECT_EQ(session::chooseCamera(state_.scene, pose, {}).worldToView,
             scene::lookAt(orbit.eye(), orbit.target(), 0.7f).worldToView);
 }
 

@@ -1,12 +1,14 @@
 // What the table of questions says of each field's effect is true of the scene that is opened.
 #include "core/session/view.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/question/question_fields.h"
 #include "core/scene_io/load.h"
@@ -119,6 +121,30 @@ SceneQuestion unlit() {
   question.scene = testing::TempDir() + "unlit.glb";
   writeFile(question.scene, builder.glb());
   return question;
+}
+
+/// A scene without a camera is looked at from one place whatever its time, with a floor as without.
+TEST(Framing, IsTheSameAtAllTimesAndWithAFloor) {
+  SceneQuestion question = unlit();
+  const View view = open(question);
+  question.time = 0.5;
+  EXPECT_EQ(open(question).camera.worldToView, view.camera.worldToView);
+  question.floor = "on";
+  const View floor = open(question);
+  EXPECT_EQ(floor.camera.worldToView, view.camera.worldToView);
+  EXPECT_EQ(floor.pose.instances.size(), view.pose.instances.size() + 1);
+  EXPECT_LT(floor.pose.bounds.low.y, view.pose.bounds.low.y);
+}
+
+TEST(Find, KnowsTheNamesOfWhatCameWithLimn) {
+  EXPECT_THAT(sceneNames(), testing::IsSupersetOf({"balls", "cornell_box", "robot"}));
+  EXPECT_THAT(environmentNames(), testing::IsSupersetOf({"sky", "studio"}));
+  try {
+    findScene("robt");
+    ADD_FAILURE() << "it was found";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("did you mean robot"));
+  }
 }
 
 TEST(DefaultLights, BringAnEnvironmentToScenesThatHaveNone) {
