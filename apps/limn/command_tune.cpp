@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "apps/limn/commands.h"
@@ -23,7 +24,7 @@ namespace {
 
 struct Options {
   SceneQuestion scene;
-  bool termGiven = false;
+  bool termGiven = false, json = false;
   std::optional<double> maxMs;
   std::string maxError, metric = "rmse";
   std::string techniques;
@@ -298,9 +299,10 @@ class Tuning {
     if (const auto second = runnerUp(result.answers)) chosen.push_back(*second);
     const fs::path suite = options_.out / "tuned.toml";
     writeTextFile(suite, suiteText(chosen));
-    fmt::print("{}\n    {}\n", commandOf(chosen.front()), figuresText(chosen.front()));
-    if (chosen.size() > 1)
-      fmt::print("runner-up: {}\n    {}\n", commandOf(chosen.back()), figuresText(chosen.back()));
+    if (options_.json)
+      fmt::print("{}\n", describe(result, chosen).dump(2));
+    else
+      sayChosen(chosen);
     const std::string tried = result.looked > 0 ? fmt::format("{} settings tried, {} of them checked, ",
                                                               result.looked, result.checked)
                                                 : std::string();
@@ -308,6 +310,38 @@ class Tuning {
                result.measured);
     sayWritten(suite);
     sayWritten(options_.out / "index.html");
+  }
+
+  void sayChosen(const std::vector<bench::TuneSetting>& chosen) const {
+    fmt::print("{}\n    {}\n", commandOf(chosen.front()), figuresText(chosen.front()));
+    if (chosen.size() > 1)
+      fmt::print("runner-up: {}\n    {}\n", commandOf(chosen.back()), figuresText(chosen.back()));
+  }
+
+  nlohmann::ordered_json describe(const bench::TuneSetting& setting) const {
+    const bench::Row& row = rowOf(caseOf(setting, plan_.full));
+    const bench::Ratio ms = bench::frameMsInterval(row);
+    nlohmann::ordered_json json{{"technique", techniqueOf(setting)},
+                                {"parameters", nlohmann::ordered_json::object()},
+                                {"command", commandOf(setting)},
+                                {"error", *metricValue(goal_.metric, row.error)},
+                                {"ms", ms.value},
+                                {"ms_interval", {ms.low, ms.high}}};
+    for (const auto& [name, value] : parametersOf(setting)) json["parameters"][name] = value;
+    return json;
+  }
+
+  /// What --json prints.
+  nlohmann::ordered_json describe(const bench::TuneResult& result,
+                                  const std::vector<bench::TuneSetting>& chosen) const {
+    nlohmann::ordered_json json{{"metric", goal_.metric.key},
+                                {goal_.ofTime ? "max_ms" : "max_error", goal_.limit},
+                                {"renderer", folder_->renderer()},
+                                {"answer", describe(chosen.front())}};
+    if (chosen.size() > 1) json["runner_up"] = describe(chosen.back());
+    json["settings_tried"] = result.looked;
+    json["settings_measured"] = result.measured;
+    return json;
   }
 
   const Options& options_;
@@ -379,6 +413,7 @@ Action addTuneCommand(CLI::App& command) {
                   "Share of pixels that may differ in coverage, instance or depth and are left out")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
+  command.add_flag("--json", options->json, "Print the answer and the runner-up as JSON");
   command.add_flag("--exhaustive", options->exhaustive, "Measure every setting in full instead of searching");
   command
       .add_option("-o,--out", options->out,
