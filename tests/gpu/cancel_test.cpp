@@ -6,7 +6,7 @@
 namespace limn {
 namespace {
 
-class CancelTest : public OncePerRenderer<RenderTest> {
+class CancelTest : public RenderTest {
  protected:
   static std::vector<float> rgb(const render::Renderer& renderer) {
     const Image image = renderer.read().select({"R", "G", "B"});

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 constexpr int kWidth = 128, kHeight = 96;
 constexpr float kAllowed = 1.01f / 255;  // of the sRGB-encoded value
 
-class GoldenTest : public RenderTest {
+class GoldenTest : public PictureTest {
  protected:
   /// A grey sky with a window of light in it.
   static scene::Environment sky() {

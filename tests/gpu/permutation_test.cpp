@@ -17,7 +17,7 @@ namespace {
 /// of the same kind.
 constexpr double kLargestNumber = 64;
 
-class PermutationTest : public OncePerRenderer<RenderTest> {
+class PermutationTest : public RenderTest {
  protected:
   using Uses = std::vector<render::TechniqueUse>;
 

@@ -15,7 +15,8 @@
 
 namespace limn {
 
-class RenderTest : public GlTest {
+/// Makes pictures, under each back end.
+class PictureTest : public GlTest {
  protected:
   /// A scene of assets/, as built.
   static scene::Scene asset(const std::string& name) {
@@ -119,5 +120,7 @@ class RenderTest : public GlTest {
     EXPECT_EQ(bad, 0) << "values outside [" << low << ", " << high << "] or NaN";
   }
 };
+
+using RenderTest = OncePerRenderer<PictureTest>;
 
 }  // namespace limn

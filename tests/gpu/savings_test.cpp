@@ -13,7 +13,7 @@ namespace {
 
 using bench::SavingResult;
 
-class SavingsTest : public OncePerRenderer<RenderTest> {
+class SavingsTest : public RenderTest {
  protected:
   /// Balls with a second light that emits nothing.
   static scene::Scene ballsWithDarkLight() {

@@ -27,7 +27,7 @@ struct Answer {
   }
 };
 
-class TechniqueTest : public GlTest {
+class TechniqueTest : public OncePerRenderer<GlTest> {
  protected:
   static constexpr int side = 128;
   bool bound = false;  ///< the technique's bound answers in its place, where it has one

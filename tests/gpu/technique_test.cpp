@@ -10,7 +10,7 @@
 namespace limn {
 namespace {
 
-using TechniqueTest = OncePerRenderer<RenderTest>;
+using TechniqueTest = RenderTest;
 
 TEST_F(TechniqueTest, EveryTechniqueAnswersEveryLightAlone) {
   const scene::Scene scene = asset("lights");
