@@ -76,10 +76,12 @@ CameraPose Framing::camera() const {
   glm::dvec3 eye(0, 0, 1);
   double depth = 1;
   if (!view_.empty()) {
-    const double radius = std::max<double>(view_.radius(), 1e-20);
+    // Of a point, so far that the eye is another one in single precision.
+    const double nearest =
+        std::max({0.01 * view_.radius(), 1e-4 * glm::length(glm::dvec3(view_.centre())), 1e-20});
     const glm::dvec2 least = 0.5 * (right_ + left_) / tangent_;
     eye = glm::dvec3(0.5 * (right_ - left_),
-                     std::max({least.x, least.y, static_cast<double>(view_.high.z) + 0.01 * radius}));
+                     std::max({least.x, least.y, static_cast<double>(view_.high.z) + nearest}));
     depth = eye.z - view_.centre().z;
   }
   const glm::dmat3 toWorld = glm::transpose(toView_);
