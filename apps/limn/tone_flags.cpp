@@ -13,14 +13,13 @@ namespace limn::app {
 namespace {
 
 constexpr double kMostEv = 60;
-constexpr const char* kAutomatic = "auto";
 
 /// Empty where the text is accepted.
 std::string exposureProblem(const std::string& text) {
   const std::optional<double> ev = parseNumber(text);
-  if (text == kAutomatic || (ev && *ev >= -kMostEv && *ev <= kMostEv)) return {};
+  if (text == kAutomaticExposure || (ev && *ev >= -kMostEv && *ev <= kMostEv)) return {};
   return fmt::format("'{}' is not accepted; expected a number from {} to {}, or {}", text, -kMostEv, kMostEv,
-                     kAutomatic);
+                     kAutomaticExposure);
 }
 
 }  // namespace
@@ -43,13 +42,17 @@ void ToneFlags::addTo(CLI::App& command) {
           "--exposure", exposure,
           "Exposure of a .png output, EV; or auto: the geometric mean of the first picture's luminance\n"
           "becomes middle grey, 0.18 (pixels without light and 5 % at both ends do not count)")
-      ->check(
-          CLI::Validator(exposureProblem, fmt::format("[{:g} - {:g}] or {}", -kMostEv, kMostEv, kAutomatic)))
+      ->check(CLI::Validator(exposureProblem,
+                             fmt::format("[{:g} - {:g}] or {}", -kMostEv, kMostEv, kAutomaticExposure)))
       ->capture_default_str();
 }
 
+ToneMapping ToneFlags::fixed() const {
+  return {automatic() ? 0.f : static_cast<float>(parseNumber(exposure).value()), curve};
+}
+
 ToneMapping ToneFlags::toneMapping(const std::filesystem::path& file, const Image& picture) const {
-  if (exposure != kAutomatic) return {static_cast<float>(parseNumber(exposure).value()), curve};
+  if (!automatic()) return fixed();
   const ToneMapping tone{automaticExposure(picture), curve};
   if (file.extension() == ".png")
     std::fputs(fmt::format("exposure {:.3f} EV\n", tone.exposureEv).c_str(), stderr);

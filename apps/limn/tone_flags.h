@@ -9,6 +9,9 @@
 
 namespace limn::app {
 
+/// Holds the value of --exposure that leaves it to the picture.
+inline constexpr const char* kAutomaticExposure = "auto";
+
 /// Gives the command --tonemap.
 void addToneCurveFlag(CLI::App& command, ToneCurve& curve);
 
@@ -18,6 +21,9 @@ struct ToneFlags {
   std::string exposure = "0";  ///< EV, or "auto"
 
   void addTo(CLI::App& command);
+  bool automatic() const { return exposure == kAutomaticExposure; }
+  /// Returns the exposure and the curve; EV 0 where the exposure is automatic.
+  ToneMapping fixed() const;
   /// Returns what a file of that name is written with. Says the automatic exposure of a .png on stderr.
   ToneMapping toneMapping(const std::filesystem::path& file, const Image& picture) const;
 };

@@ -115,7 +115,7 @@ void ViewerWindow::framePanel() {
       fmt::format("{} passes, {:.2f} ms; {}", frame.times.size(), sum, bytesText(frame.memoryBytes)).c_str());
   tip("Passes that ran in the last frame. Click one to look at its textures");
   if (!ImGui::BeginTable("passes", 2)) return;
-  ImGui::TableSetupColumn("time", ImGuiTableColumnFlags_WidthFixed, 84);
+  ImGui::TableSetupColumn("time", ImGuiTableColumnFlags_WidthFixed, scaled(84));
   ImGui::TableSetupColumn("pass", ImGuiTableColumnFlags_WidthStretch);
   for (const frame::PassReport& pass : frame.passes) {
     const auto time = std::ranges::find_if(frame.times, [&](const frame::PassTime& t) {

@@ -151,8 +151,8 @@ void ViewerWindow::inspectorWindow() {
   const auto pass = std::ranges::find_if(passes, [&](const frame::PassReport& p) {
     return p.technique == inspection_->texture.technique && p.name == inspection_->texture.pass;
   });
-  const float width = std::min(460.f, static_cast<float>(area_.x) - 20);
-  ImGui::SetNextWindowPos({corner_.x + static_cast<float>(area_.x) - width - 10, corner_.y + 34},
+  const float width = std::min(scaled(460), static_cast<float>(area_.x) - 20);
+  ImGui::SetNextWindowPos({corner_.x + static_cast<float>(area_.x) - width - 10, corner_.y + scaled(34)},
                           ImGuiCond_Appearing);
   ImGui::SetNextWindowSize({width, std::max(static_cast<float>(area_.y) - 60, 80.f)}, ImGuiCond_Appearing);
   ImGui::SetNextWindowBgAlpha(0.96f);

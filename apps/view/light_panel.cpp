@@ -101,7 +101,7 @@ void ViewerWindow::lightPanel() {
   }
   const float row = ImGui::GetTextLineHeightWithSpacing();
   const auto rows = static_cast<float>(std::min<size_t>(lights.size(), 6));
-  ImGui::BeginChild("list", {0, rows * row + 14}, true);
+  ImGui::BeginChild("list", {0, rows * row + scaled(14)}, true);
   for (int i = 0; i < static_cast<int>(lights.size()); ++i) {
     const LightFacts& light = lights[static_cast<size_t>(i)];
     ImGui::PushID(i);
@@ -109,7 +109,7 @@ void ViewerWindow::lightPanel() {
     if (ImGui::Selectable(title.c_str(), i == chosenLight_))
       chooseLight(i == chosenLight_ ? scene::kNone : i);
     tip("Choose it to move, turn and change it; its handles are in the picture. *: changed");
-    ImGui::SameLine(ImGui::GetContentRegionMax().x - 90);
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - scaled(90));
     ImGui::TextDisabled("%s", kindOf(light));
     ImGui::PopID();
   }

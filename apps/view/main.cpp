@@ -2,7 +2,6 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/limn/options.h"
-#include "apps/limn/tone_flags.h"
 #include "apps/view/viewer.h"
 #include "core/base/version.h"
 #include "core/base/whereabouts.h"
@@ -19,13 +18,17 @@ int main(int argc, char** argv) {
     ViewerOptions options;
     options.title = "limn";
     addSceneFlags(program, options.scene);
+    program.get_option("scene")->required(false);  // it can be chosen in the window
     addSceneFlag(program, options.scene, "term");
     addTechniqueFlags(program, options.techniques);
-    program.add_option("--exposure", options.tone.exposureEv, "EV")->check(CLI::Range(-60.0, 60.0));
-    addToneCurveFlag(program, options.tone.curve);
+    options.tone.addTo(program);
     program.add_option("--shaders", options.shaders,
                        "Folder with glsl/ and techniques/ whose shaders replace the embedded ones; reloaded "
                        "when a file changes");
+    program
+        .add_option("--scale", options.scale,
+                    "Size of text and widgets; by default that of the monitor (1 at 96 dots per inch)")
+        ->check(CLI::Range(0.5, 8.0));
     program.add_flag("--debug", options.debug, "Use an OpenGL debug context: OpenGL errors end the program");
     program.add_option("--save", options.save, "File to which F5 saves the picture (.exr or .png)")
         ->capture_default_str();
@@ -36,10 +39,10 @@ int main(int argc, char** argv) {
     program
         .add_option("--open", options.panels,
                     "Panels open at first, comma-separated: scene, techniques, lights, environment, compare, "
-                    "frame, save, keys")
+                    "budget, frame, save, keys")
         ->delimiter(',')
         ->check(CLI::IsMember(
-            {"scene", "techniques", "lights", "environment", "compare", "frame", "save", "keys"}))
+            {"scene", "techniques", "lights", "environment", "compare", "budget", "frame", "save", "keys"}))
         ->capture_default_str();
     program
         .add_option("--compare", options.compareWith, "Show beside the picture at first: techniques or truth")

@@ -12,7 +12,8 @@ bool same(const std::vector<render::TechniqueUse>& a, const std::vector<render::
 }
 
 bool same(const PictureOrder& a, const PictureOrder& b) {
-  return a.of == b.of && a.scene == b.scene && a.tone == b.tone && a.size == b.size && a.beside == b.beside &&
+  return a.of == b.of && a.scene == b.scene && a.tone == b.tone &&
+         a.automaticExposure == b.automaticExposure && a.size == b.size && a.beside == b.beside &&
          a.moving == b.moving && a.timed == b.timed && a.inspect == b.inspect &&
          same(a.techniques, b.techniques) && same(a.others, b.others);
 }

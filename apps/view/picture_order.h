@@ -20,7 +20,7 @@
 namespace limn::app {
 
 /// Says what the right part of the picture shows.
-enum class Beside { nothing, techniques, reference };
+enum class Beside { nothing, reference, techniques };
 
 /// Declares which texture of the frame is inspected.
 struct InspectionOrder {
@@ -39,7 +39,8 @@ struct PictureOrder {
   SceneQuestion scene;  ///< what is chosen of that: camera, time, lights
   std::vector<render::TechniqueUse> techniques, others;
   ToneMapping tone;
-  glm::ivec2 size{0};  ///< pixels; 0: none is wanted, the window is minimised
+  bool automaticExposure = false;  ///< the picture determines tone.exposureEv
+  glm::ivec2 size{0};              ///< pixels; 0: none is wanted, the window is minimised
   Beside beside = Beside::nothing;
   bool moving = false;  ///< something moves: a smaller picture now is better than a whole one later
   bool timed = false;   ///< passes are timed
@@ -110,6 +111,7 @@ struct PictureFacts {
   std::shared_ptr<const FrameFacts> frame;
   std::optional<InspectedFacts> inspected;
   std::shared_ptr<const Image8> truth, difference;
+  float exposureEv = 0;  ///< of the picture
   ReferenceWorker::State reference;
   std::optional<Metrics> metrics;
   std::string whyNoMetrics;  ///< empty where nothing is compared
@@ -118,6 +120,7 @@ struct PictureFacts {
   std::string job;                  ///< what is going on besides the picture: "frame 3 of 60"; empty: nothing
   double jobFraction = 0;
   std::string message;       ///< the last result or problem
+  bool problem = false;      ///< the message is one
   uint64_t messages = 0;     ///< messages so far
   uint64_t pictures = 0;     ///< rendered so far
   bool settled = false;      ///< the newest order is shown, and it stands still

@@ -77,8 +77,9 @@ void PictureStudio::publish() {
   std::fflush(stdout);
 }
 
-void PictureStudio::say(std::string message) {
+void PictureStudio::say(std::string message, bool problem) {
   facts_.message = std::move(message);
+  facts_.problem = problem;
   ++facts_.messages;
 }
 
@@ -92,8 +93,7 @@ std::unique_ptr<ShownPicture> PictureStudio::makePicture(const session::View& vi
   return picture;
 }
 
-/// Replaces what is shown; leaves everything as it is when that fails.
-void PictureStudio::open(const SceneQuestion& wanted) {
+void PictureStudio::open(const SceneQuestion& wanted, bool needed) {
   facts_.job = "opening " + std::filesystem::path(wanted.scene).filename().string();
   publish();
   facts_.job.clear();
@@ -112,8 +112,8 @@ void PictureStudio::open(const SceneQuestion& wanted) {
     facts_.scene = factsOf(*view_, wanted);
     say("opened " + wanted.scene);
   } catch (const std::exception& error) {
-    if (!facts_.scene) facts_.fatal = std::current_exception();
-    say(error.what());
+    if (needed) facts_.fatal = std::current_exception();
+    say(error.what(), true);
   }
   publish();
 }
@@ -126,8 +126,10 @@ void PictureStudio::reloadShaders() {
   if (!changed) return;
   facts_.shaderProblem = picture_->shaderProblem();
   if (facts_.shaderProblem.empty() && other_) facts_.shaderProblem = other_->shaderProblem();
-  say(facts_.shaderProblem.empty() ? "shaders read again"
-                                   : "shaders read again, one does not compile: its last version goes on");
+  if (facts_.shaderProblem.empty())
+    say("shaders read again");
+  else
+    say("shaders read again, one does not compile: its last version goes on", true);
   rendered_.reset();
 }
 
@@ -154,6 +156,7 @@ void PictureStudio::place(const PictureOrder& order) {
       if (other_) other_->forget();
     }
   }
+  view_->aa = s.aa;
   view_->light =
       s.light.empty() ? scene::kNone : session::findNamed("light", s.light, view_->pose.lightNames);
 }
@@ -177,6 +180,8 @@ PictureStudio::Outcome PictureStudio::renderShot(ShownPicture& picture, const re
 /// Where it failed, facts_ say why; where it was cancelled, they are what they were.
 PictureStudio::Outcome PictureStudio::render(const PictureOrder& order,
                                              const std::function<bool()>& cancelled) {
+  smooth_.reset();
+  smoothOther_.reset();
   try {
     place(order);
   } catch (const Error& error) {
@@ -243,8 +248,9 @@ bool PictureStudio::follow(const PictureOrder& order, const std::function<bool()
   rendered_ = order;
   reduction_ = wanted;
   if (!again) return false;
-  facts_.settled = compared_ = false;
+  facts_.settled = compared_ = metered_ = false;
   facts_.metrics.reset();
+  facts_.exposureEv = order.tone.exposureEv;
   const double start = now();
   const auto milliseconds = [&] { return 1000 * (now() - start); };
   const bool smallest = order.moving && reduction_ == kLargestReduction;
@@ -258,13 +264,22 @@ bool PictureStudio::follow(const PictureOrder& order, const std::function<bool()
   return true;
 }
 
-void PictureStudio::step(const PictureOrder& order, const std::function<bool()>& outdated) {
-  if (!view_ || order.of != facts_.scene || order.size.x < 1 || order.size.y < 1) return;
+void PictureStudio::step(const PictureOrder& wanted, const std::function<bool()>& outdated) {
+  if (!view_ || wanted.of != facts_.scene || wanted.size.x < 1 || wanted.size.y < 1) return;
   reloadShaders();
+  PictureOrder order = exposed(wanted);
   bool changed = follow(order, outdated);
   if (!rendered_) return;  // given up
+  if (meter(order)) {
+    order = exposed(wanted);
+    changed |= follow(order, outdated);
+    metered_ = true;  // light is the same, whatever it is multiplied by
+    if (!rendered_) return;
+  }
   changed |= followReference(order);
   changed |= inspectAtRest(order);
+  changed |= smooth(order, outdated);
+  if (!rendered_) return;
   changed |= compare(order);
   if (!changed && facts_.settled != order.moving) return;
   facts_.settled = !order.moving;

@@ -18,7 +18,8 @@ class PictureStudio {
   PictureStudio(gpu::Device& device, std::filesystem::path shaders, std::filesystem::path cache,
                 std::function<void(const PictureFacts&)> publish, std::function<void()> news);
 
-  void open(const SceneQuestion& wanted);
+  /// Opens another scene. Where that fails the old one goes on; the program ends if the scene is `needed`.
+  void open(const SceneQuestion& wanted, bool needed);
   /// Shows what is ordered, as far as it need not wait for anything. When `outdated` says that something else
   /// is wanted, a frame that has begun is abandoned between two of its passes. If every frame is outdated
   /// because things move, the picture is made smaller; the smallest one is never abandoned.
@@ -34,7 +35,7 @@ class PictureStudio {
     SaveOrder order;
     int frame;
   };
-  void say(std::string message);
+  void say(std::string message, bool problem = false);
   void publish();
   std::unique_ptr<ShownPicture> makePicture(const session::View& view);
   void reloadShaders();
@@ -50,8 +51,11 @@ class PictureStudio {
   bool followReference(const PictureOrder& order);
   bool noMetrics(const char* why);
   bool compare(const PictureOrder& order);
+  PictureOrder exposed(PictureOrder order) const;
+  bool meter(const PictureOrder& order);
+  bool smooth(const PictureOrder& order, const std::function<bool()>& outdated);
   void write(const SaveOrder& order, const std::filesystem::path& file);
-  void finishSaving(std::string message);
+  void finishSaving(std::string message, bool problem = false);
 
   gpu::Device& device_;
   std::filesystem::path shaders_;
@@ -66,9 +70,13 @@ class PictureStudio {
   ReferenceWorker reference_;
   std::string truthKey_;  ///< what the reference was asked
   std::optional<Image> truth_;
-  ToneMapping truthTone_;  ///< with which it is shown
-  bool compared_ = false;  ///< the metrics are of what is shown
+  ToneMapping truthTone_;                      ///< with which it is shown
+  float exposureEv_ = 0;                       ///< the automatic one
+  bool metered_ = false;                       ///< exposureEv_ is that of what is shown
+  std::optional<Image> smooth_, smoothOther_;  ///< what is shown, with several samples in each pixel
+  bool compared_ = false;                      ///< the metrics are of what is shown
   std::optional<Sequence> sequence_;
+  std::optional<float> sequenceEv_;  ///< the automatic exposure of its first picture
   PictureFacts facts_;
   uint64_t printed_ = 0;  ///< facts_.messages when one was last printed
 };

@@ -58,7 +58,7 @@ bool PictureStudio::followReference(const PictureOrder& order) {
   if (wanted && truthKey_.empty() && !reference_.busy()) {
     truthKey_ = key;
     const Term term = parseTerm(order.scene.term);
-    reference_.start({view_, view_->pose, view_->camera, order.size, term, view_->light,
+    reference_.start({view_, view_->pose, view_->camera, order.size, order.scene.aa, term, view_->light,
                       render::bouncesOf(term, order.techniques),
                       render::interfacesOf(term, order.techniques)});
   }
@@ -92,8 +92,10 @@ bool PictureStudio::compare(const PictureOrder& order) {
   if (compared_) return false;
   compared_ = true;
   try {
-    const Image image = picture_->read();
-    const Image against = order.beside == Beside::reference ? *truth_ : other_->read();
+    const Image image = smooth_ ? *smooth_ : picture_->read();
+    const Image against = order.beside == Beside::reference ? *truth_
+                          : smoothOther_                    ? *smoothOther_
+                                                            : other_->read();
     facts_.metrics = compareImages(
         image, against, {.exposureEv = order.tone.exposureEv, .useMask = false, .maskTermRange = {}});
     facts_.difference = std::make_shared<const Image8>(signedDifference(image, against, {}));
@@ -101,6 +103,40 @@ bool PictureStudio::compare(const PictureOrder& order) {
   } catch (const Error& error) {
     noMetrics(error.what());
   }
+  return true;
+}
+
+/// The order with the automatic exposure, if that is wanted.
+PictureOrder PictureStudio::exposed(PictureOrder order) const {
+  if (order.automaticExposure) order.tone.exposureEv = exposureEv_;
+  return order;
+}
+
+/// Finds the automatic exposure of a picture at rest; true if it is another one than before.
+bool PictureStudio::meter(const PictureOrder& order) {
+  if (!order.automaticExposure || order.moving || metered_ || !facts_.picture.problem.empty()) return false;
+  metered_ = true;
+  return std::exchange(exposureEv_, automaticExposure(picture_->read())) != exposureEv_;
+}
+
+/// Shows a picture at rest with all its samples in each pixel. Where `outdated` says that something else is
+/// wanted it is given up, and there is no rendered picture any more.
+bool PictureStudio::smooth(const PictureOrder& order, const std::function<bool()>& outdated) {
+  const int aa = order.scene.aa;
+  if (aa == 1 || order.moving || smooth_ || !facts_.picture.problem.empty() || !facts_.other.problem.empty())
+    return false;
+  const auto read = [&](ShownPicture& picture, std::optional<Image>& image, Shot& shot) {
+    image = picture.read(view_->camera, aa, outdated);
+    if (!image) return false;
+    shot.image = std::make_shared<const Image8>(toneMapped(*image, order.tone));
+    return true;
+  };
+  if (!read(*picture_, smooth_, facts_.picture) ||
+      (order.beside == Beside::techniques && !read(*other_, smoothOther_, facts_.other))) {
+    rendered_.reset();
+    return false;
+  }
+  compared_ = false;
   return true;
 }
 
@@ -147,6 +183,7 @@ void PictureStudio::save(const SaveOrder& order) {
   if (!view_) return;
   if (order.frames) {
     finishSaving("");
+    sequenceEv_.reset();
     sequence_ = {order, order.frames->first};
     return;
   }
@@ -154,24 +191,28 @@ void PictureStudio::save(const SaveOrder& order) {
     write(order, order.file);
     finishSaving("wrote " + order.file.string());
   } catch (const std::exception& error) {
-    finishSaving(error.what());
+    finishSaving(error.what(), true);
   }
 }
 
 void PictureStudio::write(const SaveOrder& order, const std::filesystem::path& file) {
-  if (order.picture.of != facts_.scene) throw Error("not saved: another scene was opened meanwhile");
-  if (!rendered_ || !same(*rendered_, order.picture) || !facts_.picture.whole ||
-      !facts_.picture.problem.empty()) {
+  const PictureOrder picture = exposed(order.picture);
+  if (picture.of != facts_.scene) throw Error("not saved: another scene was opened meanwhile");
+  const bool shown = rendered_ && same(*rendered_, picture) && facts_.picture.whole;
+  if (!shown || !facts_.picture.problem.empty()) {
     reduction_ = 1;
     rendered_.reset();
-    if (render(order.picture) != Outcome::done) throw Error(facts_.picture.problem);
+    if (render(picture) != Outcome::done) throw Error(facts_.picture.problem);
   }
-  const int aa = order.picture.scene.aa;
-  if (aa > 1) rendered_.reset();  // the renderer ends with another frame than the one that is shown
-  Image image = picture_->read(view_->camera, aa);
+  const int aa = picture.scene.aa;
+  if (aa > 1 && !smooth_) rendered_.reset();  // the renderer ends with another frame than the one shown
+  Image image = smooth_ ? *smooth_ : *picture_->read(view_->camera, aa);
   if (!order.command.empty()) sign(image, order.command);
   if (file.has_parent_path()) createFolder(file.parent_path());
-  writePicture(file, image, order.picture.tone);
+  ToneMapping tone = picture.tone;
+  if (picture.automaticExposure) tone.exposureEv = sequenceEv_.value_or(automaticExposure(image));
+  if (sequence_) sequenceEv_ = tone.exposureEv;  // the first picture's is that of all
+  writePicture(file, image, tone);
 }
 
 void PictureStudio::saveNext() {
@@ -181,7 +222,7 @@ void PictureStudio::saveNext() {
     sequence_->order.picture.scene.time = frame / sequence_->order.fps;
     write(sequence_->order, numbered(sequence_->order.file, frame));
   } catch (const std::exception& error) {
-    finishSaving(fmt::format("frame {}: {}", frame, error.what()));
+    finishSaving(fmt::format("frame {}: {}", frame, error.what()), true);
     return;
   }
   const int done = frame - range.first + 1, all = range.last - range.first + 1;
@@ -197,10 +238,11 @@ void PictureStudio::cancelSaving() {
   finishSaving(fmt::format("stopped before frame {} of {}", sequence_->frame, sequence_->order.frames->last));
 }
 
-void PictureStudio::finishSaving(std::string message) {
+void PictureStudio::finishSaving(std::string message, bool problem) {
   sequence_.reset();
+  sequenceEv_.reset();
   facts_.job.clear();
-  if (!message.empty()) say(std::move(message));
+  if (!message.empty()) say(std::move(message), problem);
   publish();
 }
 

@@ -36,7 +36,7 @@ class PictureThread {
   /// Replaces the previous order.
   void show(PictureOrder order);
   /// Replaces the scene, unless that fails.
-  void open(SceneQuestion scene);
+  void open(SceneQuestion scene, bool needed = false);
   void save(SaveOrder order);
   /// Ends a sequence that is being saved.
   void cancelSaving();

@@ -83,6 +83,7 @@ void ReferenceWorker::work(const std::stop_token& stop, const Task& task) {
       .scene = task.view->scene, .pose = task.pose, .camera = task.camera, .progress = {}, .checkpoint = {}};
   request.width = task.size.x;
   request.height = task.size.y;
+  request.aa = task.aa;
   request.term = task.term;
   request.light = task.light == scene::kNone ? reference::kAllLights : task.light;
   request.bounces = task.bounces;

@@ -27,6 +27,7 @@ class ReferenceWorker {
     scene::Pose pose;
     scene::CameraPose camera;
     glm::ivec2 size{0};
+    int aa = 1;  ///< x aa samples in each pixel
     Term term = Term::direct;
     int light = scene::kNone, bounces = 0, interfaces = 0;
   };

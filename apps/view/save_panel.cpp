@@ -33,7 +33,7 @@ void ViewerWindow::saveSequence() {
     playing_ = false;
     thread_->save(std::move(wanted));
   } catch (const Error& error) {
-    message_ = error.what();
+    say(error.what(), true);
   }
 }
 
@@ -43,15 +43,15 @@ void ViewerWindow::saveSuite() {
   try {
     if (file.has_parent_path()) createFolder(file.parent_path());
     writeTextFile(file, benchSuite(state_));
-    message_ = "wrote " + file.string();
+    say("wrote " + file.string());
   } catch (const Error& error) {
-    message_ = error.what();
+    say(error.what(), true);
   }
 }
 
 void ViewerWindow::copyCommand() {
   ImGui::SetClipboardText(renderCommand(state_, saveText_).c_str());
-  message_ = "the command is on the clipboard";
+  say("the command is on the clipboard");
 }
 
 void ViewerWindow::savePanel() {
@@ -79,7 +79,7 @@ void ViewerWindow::savePanel() {
   if (ImGui::Button("Command")) copyCommand();
   tip("The command below goes to the clipboard (F7)");
   if (!facts_->job.empty()) {
-    ImGui::ProgressBar(static_cast<float>(facts_->jobFraction), {-60, 0}, facts_->job.c_str());
+    ImGui::ProgressBar(static_cast<float>(facts_->jobFraction), {-scaled(60), 0}, facts_->job.c_str());
     ImGui::SameLine();
     if (ImGui::Button("Stop")) thread_->cancelSaving();
   }

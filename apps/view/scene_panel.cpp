@@ -65,7 +65,7 @@ void ViewerWindow::cameraChooser() {
 
 void ViewerWindow::timePanel() {
   nameCell("time", "Of the animation, seconds; space plays and pauses");
-  if (ImGui::Button(playing_ ? "Pause" : "Play", {56, 0})) {
+  if (ImGui::Button(playing_ ? "Pause" : "Play", {scaled(56), 0})) {
     playing_ = !playing_;
     moved();
   }
@@ -77,6 +77,47 @@ void ViewerWindow::timePanel() {
     state_.scene.time = time;
     moved();
   }
+}
+
+void ViewerWindow::exposureRow() {
+  nameCell(
+      "exposure",
+      "Light is multiplied by 2^EV before it is shown; auto: the geometric mean of the picture's luminance "
+      "becomes middle grey");
+  if (ImGui::Checkbox("auto", &state_.automaticExposure)) {
+    if (!state_.automaticExposure) state_.tone.exposureEv = facts_->exposureEv;
+    moved();
+  }
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(-1);
+  ImGui::BeginDisabled(state_.automaticExposure);
+  float ev = state_.automaticExposure ? facts_->exposureEv : state_.tone.exposureEv;
+  if (ImGui::SliderFloat("##exposure", &ev, -10, 10, "%.2f EV")) {
+    state_.tone.exposureEv = ev;
+    moved();
+  }
+  ImGui::EndDisabled();
+}
+
+void ViewerWindow::samplesRow() {
+  nameCell("samples", "In each pixel (--aa); taken when the picture stands still, and in what is saved");
+  const auto title = [](int aa) { return aa == 1 ? std::string("1") : fmt::format("{0} x {0}", aa); };
+  if (!ImGui::BeginCombo("##samples", title(state_.scene.aa).c_str())) return;
+  for (const int aa : {1, 2, 3, 4, 8}) {
+    if (!ImGui::Selectable(title(aa).c_str(), aa == state_.scene.aa)) continue;
+    state_.scene.aa = aa;
+    moved();
+  }
+  ImGui::EndCombo();
+}
+
+void ViewerWindow::floorRow() {
+  nameCell("floor", questionField("floor").doc);
+  bool floor = state_.scene.floor == "on";
+  if (!ImGui::Checkbox("##floor", &floor)) return;
+  SceneQuestion wanted = state_.scene;
+  wanted.floor = floor ? "on" : "off";
+  open(wanted);
 }
 
 void ViewerWindow::scenePanel() {
@@ -92,8 +133,7 @@ void ViewerWindow::scenePanel() {
     cameraChooser();
     nameCell("shows", "The whole light, or one part of it; visibility is that of one light");
     if (termChooser(state_.scene.term)) moved();
-    nameCell("exposure", "Light is multiplied by 2^EV before it is shown");
-    if (ImGui::SliderFloat("##exposure", &state_.tone.exposureEv, -10, 10, "%.2f EV")) moved();
+    exposureRow();
     nameCell(
         "tone curve",
         "none clamps and keeps values comparable, neutral keeps base colours, agx keeps detail in what is "
@@ -103,6 +143,8 @@ void ViewerWindow::scenePanel() {
       state_.tone.curve = static_cast<ToneCurve>(curve);
       moved();
     }
+    samplesRow();
+    floorRow();
     if (facts_->scene->animated) timePanel();
   }
   endRows();

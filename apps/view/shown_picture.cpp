@@ -53,8 +53,18 @@ ShownPicture::Outcome ShownPicture::render(const scene::CameraPose& camera, doub
   }
 }
 
-Image ShownPicture::read(const scene::CameraPose& camera, int aa) {
-  return aa == 1 ? read() : render::supersample(renderer_, camera, settings_.size, aa);
+std::optional<Image> ShownPicture::read(const scene::CameraPose& camera, int aa,
+                                        const std::function<bool()>& cancelled) {
+  if (aa == 1) return read();
+  struct Cancelled {};
+  try {
+    return render::supersample(renderer_, camera, settings_.size, aa, [&] {
+      if (cancelled && cancelled()) throw Cancelled();
+      renderer_.render();
+    });
+  } catch (const Cancelled&) {
+    return std::nullopt;
+  }
 }
 
 bool ShownPicture::reloadShaders() {

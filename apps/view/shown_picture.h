@@ -1,7 +1,9 @@
 // Holds one picture of the view: a renderer and what the panels show about its last frame.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,8 +37,10 @@ class ShownPicture {
   /// Returns the tone-mapped picture, bottom row first; null before the first one.
   const gpu::Texture* display() const { return shown_ ? &renderer_.display() : nullptr; }
   Image read() const { return renderer_.read(); }
-  /// Returns the picture as seen by `camera` with aa x aa samples in each pixel (render::supersample).
-  Image read(const scene::CameraPose& camera, int aa);
+  /// Returns the picture as seen by `camera` with aa x aa samples in each pixel (render::supersample);
+  /// nothing where `cancelled`, asked before each of its frames, said so.
+  std::optional<Image> read(const scene::CameraPose& camera, int aa,
+                            const std::function<bool()>& cancelled = {});
   glm::ivec2 size() const { return settings_.size; }
   const std::string& problem() const { return problem_; }
   const std::string& shaderProblem() const { return shaderProblem_; }

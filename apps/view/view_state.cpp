@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "apps/limn/tone_flags.h"
 #include "core/bench/suite_text.h"
 #include "core/question/render_command.h"
 
@@ -45,9 +46,34 @@ void dropRivals(std::vector<render::TechniqueUse>& techniques, const TechniquePl
   std::erase_if(techniques, rivals);
 }
 
+void useNextTechnique(std::vector<render::TechniqueUse>& techniques, const TechniqueRegistry& registry) {
+  const TermSet alone = exclusiveWith(termSet(Term::direct));
+  std::vector<const TechniquePlugin*> candidates;
+  const auto claims = [&](const render::TechniqueUse& use) { return (termsOf(use) & alone) != 0; };
+  for (const TechniquePlugin* plugin : registry.all()) {
+    const auto forOthers = [&](const render::TechniqueUse& use) {
+      return use.plugin == plugin && !claims(use);
+    };
+    if ((plugin->info->terms & alone) != 0 && std::ranges::none_of(techniques, forOthers))
+      candidates.push_back(plugin);
+  }
+  size_t next = 0;
+  for (const render::TechniqueUse& use : techniques)
+    for (size_t i = 0; i < candidates.size(); ++i)
+      if (use.plugin == candidates[i]) next = (i + 1) % candidates.size();
+  const auto inUse = [&](const render::TechniqueUse& use) { return use.plugin == candidates[next]; };
+  if (candidates.empty() || std::ranges::any_of(techniques, inUse)) return;
+  const TechniquePlugin& plugin = *candidates[next];
+  techniques.insert(techniques.begin(),
+                    {&plugin, ParameterValues(plugin.info->name, plugin.info->parameters)});
+  dropRivals(techniques, plugin);
+}
+
 std::string renderCommand(const ViewState& state, const std::filesystem::path& out) {
   std::string line = limn::renderCommand(state.scene, namesOf(state.techniques), changed(state.techniques));
-  if (state.tone.exposureEv != 0)
+  if (state.automaticExposure)
+    line += commandOption("--exposure", kAutomaticExposure);
+  else if (state.tone.exposureEv != 0)
     line += commandOption("--exposure", fmt::format("{}", state.tone.exposureEv));
   if (state.tone.curve != ToneCurve::none)
     line += commandOption("--tonemap", kToneCurves[static_cast<size_t>(state.tone.curve)]);

@@ -9,6 +9,7 @@
 #include "apps/view/orbit.h"
 #include "core/question/scene_question.h"
 #include "core/render/renderer.h"
+#include "core/technique/registry.h"
 
 namespace limn::app {
 
@@ -16,6 +17,7 @@ struct ViewState {
   SceneQuestion scene;  ///< width and height are those of the saved picture; the window shows its own
   std::vector<render::TechniqueUse> techniques;
   ToneMapping tone;
+  bool automaticExposure = false;  ///< in place of tone.exposureEv, from the picture: --exposure auto
 };
 
 /// Puts the orbit's camera into the options, so that whatever reads them gets it bit for bit.
@@ -23,6 +25,10 @@ void setCamera(SceneQuestion& options, const Orbit& orbit, const glm::dvec3& ori
 
 /// Removes the techniques that `added`, itself one of them, excludes (refusedBeside).
 void dropRivals(std::vector<render::TechniqueUse>& techniques, const TechniquePlugin& added);
+
+/// Replaces the technique that claims what only one may of direct light by the next one of the registry that
+/// does, with its defaults.
+void useNextTechnique(std::vector<render::TechniqueUse>& techniques, const TechniqueRegistry& registry);
 
 /// Returns the command that renders the state to `out`: one line for a shell, with arguments quoted where
 /// needed.

@@ -16,6 +16,7 @@
 #include "apps/view/viewer_window.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/session/find.h"
 
 namespace limn::app {
 namespace {
@@ -23,6 +24,7 @@ namespace {
 constexpr double kRestAfter = 0.25;        // seconds without a change
 constexpr double kFrameSeconds = 1. / 60;  // of the window, while something moves
 constexpr double kIdleSeconds = 0.25;      // while nothing does
+constexpr double kMessageSeconds = 5;      // for which a result is said
 
 /// Resident memory of the process, MiB.
 double residentMiB() {
@@ -35,6 +37,29 @@ Beside besideNamed(const std::string& name) {
   return name == "techniques" ? Beside::techniques : name == "truth" ? Beside::reference : Beside::nothing;
 }
 
+/// Of text and widgets, for windows on the first monitor.
+float monitorScale() {
+  float x = 1, y = 1;
+  GLFWmonitor* monitor = glfwInit() ? glfwGetPrimaryMonitor() : nullptr;
+  if (monitor != nullptr) glfwGetMonitorContentScale(monitor, &x, &y);
+  return std::max(x, 1.f);
+}
+
+/// The size of a window, as far as the first monitor has room for it.
+glm::ivec2 fitted(glm::ivec2 window) {
+  glm::ivec2 corner(0), room(0);
+  GLFWmonitor* monitor = glfwInit() ? glfwGetPrimaryMonitor() : nullptr;
+  if (monitor != nullptr) glfwGetMonitorWorkarea(monitor, &corner.x, &corner.y, &room.x, &room.y);
+  return room.x > 0 && room.y > 0 ? glm::min(window, room) : window;
+}
+
+/// The letter that the keyboard's layout has on a key, else the key.
+int letterOf(int key, int scancode) {
+  const char* name = glfwGetKeyName(key, scancode);
+  const bool letter = name != nullptr && *name >= 'a' && *name <= 'z' && name[1] == 0;
+  return letter ? GLFW_KEY_A + (*name - 'a') : key;
+}
+
 }  // namespace
 
 void setText(TextField& target, const std::string& text) {
@@ -44,27 +69,34 @@ void setText(TextField& target, const std::string& text) {
 ViewerWindow::ViewerWindow(const ViewerOptions& options)
     : options_(options), registry_(TechniqueRegistry::defaultFolders(), warn) {
   state_.scene = options.scene;
-  state_.tone = options.tone;
+  state_.tone = options.tone.fixed();
+  state_.automaticExposure = options.tone.automatic();
   state_.techniques = options.techniques.resolve(registry_);
+  IMGUI_CHECKVERSION();
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr;  // the layout is fixed: nothing to remember
+  setStyle(options.scale > 0 ? static_cast<float>(options.scale) : monitorScale());
+  panelWidth_ = scaled(kPanelWidth);
+  const glm::ivec2 beside(scaled(kPanelWidth), scaled(kStatusHeight));
+  const glm::ivec2 size = fitted(glm::ivec2(options.scene.width, options.scene.height) + beside);
   context_ = Context::create({.backend = Backend::glfw,
                               .debug = options.debug,
-                              .width = options.scene.width,
-                              .height = options.scene.height,
+                              .width = size.x,
+                              .height = size.y,
                               .title = options.title});
   device_ = std::make_unique<gpu::Device>(*context_);
   textures_ = std::make_unique<WindowTextures>(*device_);
   thread_ =
       std::make_unique<PictureThread>(PictureThreadOptions{options.debug, options.shaders, options.cache});
-  thread_->open(state_.scene);
+  if (state_.scene.scene.empty())
+    ownScenes_ = session::sceneNames();
+  else
+    thread_->open(state_.scene, true);
   if (!options_.steps.empty()) chooseStep(0);
   compareWith(besideNamed(options.compareWith));
   setText(sceneText_, options.scene.scene);
   setText(saveText_, options.save.string());
   listen();
-  IMGUI_CHECKVERSION();
-  ImGui::CreateContext();
-  ImGui::GetIO().IniFilename = nullptr;  // the layout is fixed: nothing to remember
-  setStyle();
   ImGui_ImplGlfw_InitForOpenGL(context_->window(), true);
   ImGui_ImplOpenGL3_Init("#version 450 core");
 }
@@ -79,11 +111,15 @@ void ViewerWindow::listen() {
   GLFWwindow* window = context_->window();
   glfwSetWindowUserPointer(window, this);
   // ImGui knows only whether a key is down when a frame begins; taps may be shorter than a frame.
-  glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int modifiers) {
+  glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int modifiers) {
     auto& self = *static_cast<ViewerWindow*>(glfwGetWindowUserPointer(w));
-    if (action != GLFW_PRESS) return;
-    if (key == GLFW_KEY_Q && (modifiers & GLFW_MOD_CONTROL) != 0) glfwSetWindowShouldClose(w, GLFW_TRUE);
-    self.pressed_.push_back(key);
+    if (action == GLFW_RELEASE) return;
+    const KeyPress pressed{letterOf(key, scancode), (modifiers & GLFW_MOD_CONTROL) != 0,
+                           (modifiers & GLFW_MOD_SHIFT) != 0};
+    const bool again = pressed.control && pressed.key == GLFW_KEY_Z;  // while it is held
+    if (action == GLFW_REPEAT && !again) return;
+    if (pressed.control && pressed.key == GLFW_KEY_Q) glfwSetWindowShouldClose(w, GLFW_TRUE);
+    self.pressed_.push_back(pressed);
   });
   glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** files) {
     auto& self = *static_cast<ViewerWindow*>(glfwGetWindowUserPointer(w));
@@ -100,6 +136,7 @@ void ViewerWindow::openFile(const std::filesystem::path& file) {
   } else {
     wanted = SceneQuestion();
     wanted.scene = file.string();
+    wanted.aa = state_.scene.aa;
     wanted.width = state_.scene.width;
     wanted.height = state_.scene.height;
   }
@@ -122,10 +159,37 @@ void ViewerWindow::adopt(const SceneFacts& scene) {
   orbit_ = Orbit(scene.camera, scene.bounds);
   lightEdits_ = session::parseLightEdits(scene.options.lightSettings);
   chosenLight_ = scene::kNone;
+  measured_.clear();
   lightsNew_ = true;
   drag_.reset();
   setText(sceneText_, scene.options.scene);
+  glfwSetWindowTitle(
+      context_->window(),
+      fmt::format("{} - {}", std::filesystem::path(scene.options.scene).filename().string(), options_.title)
+          .c_str());
   moved();
+  history_.restart({state_, orbit_, otherTechniques_});
+}
+
+/// What undo or redo brings back; nothing where there is nothing more.
+void ViewerWindow::restore(const Edit* edit) {
+  if (edit == nullptr) return;
+  const int width = state_.scene.width, height = state_.scene.height;
+  state_ = edit->state;
+  state_.scene.width = width;
+  state_.scene.height = height;
+  orbit_ = edit->orbit;
+  otherTechniques_ = edit->others;
+  lightEdits_ = session::parseLightEdits(state_.scene.lightSettings);
+  drag_.reset();
+  playing_ = false;
+  moved();
+}
+
+void ViewerWindow::say(std::string message, bool problem) {
+  message_ = std::move(message);
+  messageIsProblem_ = problem;
+  messageAt_ = glfwGetTime();
 }
 
 void ViewerWindow::takeFacts() {
@@ -135,12 +199,13 @@ void ViewerWindow::takeFacts() {
   facts_ = std::move(newest);
   if (facts_->fatal) std::rethrow_exception(facts_->fatal);
   if (facts_->scene && facts_->scene != shown) adopt(*facts_->scene);
-  if (facts_->messages != messagesSeen_) message_ = facts_->message;
+  if (facts_->messages != messagesSeen_) say(facts_->message, facts_->problem);
   messagesSeen_ = facts_->messages;
 }
 
 void ViewerWindow::moved() {
   lastChange_ = glfwGetTime();
+  unnoted_ = true;
 }
 
 bool ViewerWindow::moving() const {
@@ -158,6 +223,7 @@ PictureOrder ViewerWindow::order() const {
   order.techniques = state_.techniques;
   order.others = otherTechniques_;
   order.tone = state_.tone;
+  order.automaticExposure = state_.automaticExposure;
   order.size = minimised() ? glm::ivec2(0) : area_;
   order.beside = beside_;
   order.moving = moving();
@@ -182,12 +248,17 @@ void ViewerWindow::frame() {
     if (seconds > 0) state_.scene.time = std::fmod(state_.scene.time, seconds);
   }
   lastFrame_ = now;
+  if (!messageIsProblem_ && now - messageAt_ > kMessageSeconds) message_.clear();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
   panels();
   pictureArea();
   if (inspection_) inspectorWindow();
+  if (unnoted_ && facts_->scene && !moving() && !ImGui::IsAnyItemActive()) {
+    history_.note({state_, orbit_, otherTechniques_});
+    unnoted_ = false;
+  }
   ImGui::Render();
   postOrder();
   glm::ivec2 size(0);
@@ -236,7 +307,8 @@ void ViewerWindow::run() {
     const double woken = glfwGetTime();
     lively = woken - start < kIdleSeconds ? settling : lively - 1;
     frame();
-    if (facts_->settled && posted_ && !posted_->moving) ++shown;
+    const bool whole = facts_->settled && posted_ && !posted_->moving;
+    if (whole || state_.scene.scene.empty()) ++shown;
     last = finished(shown);
     if (last && !options_.screenshot.empty()) saveScreenshot(options_.screenshot);
     glfwSwapBuffers(window);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/limn/tone_flags.h"
 #include "core/question/scene_question.h"
 #include "core/render/renderer.h"
 #include "core/session/technique_choice.h"
@@ -21,14 +22,15 @@ struct ViewerStep {
 
 struct ViewerOptions {
   std::string title = "limn";
-  SceneQuestion scene;
+  SceneQuestion scene;  ///< its size is that of the picture; without a name, the window says how to open one
   session::TechniqueChoice techniques;
-  ToneMapping tone;
+  ToneFlags tone;
   std::vector<ViewerStep> steps;                           ///< may be empty
   std::vector<std::string> panels{"scene", "techniques"};  ///< open at first
   std::string compareWith;                                 ///< at first: nothing (empty), techniques or truth
   bool debug = false;                                      ///< OpenGL errors end the program
   std::filesystem::path shaders;  ///< folder that overrides the embedded ones, watched for changes
+  double scale = 0;               ///< of text and widgets; 0: the monitor's
   std::filesystem::path save = "out/view.png";     ///< where pictures are saved at first
   std::filesystem::path cache = "out/references";  ///< of reference pictures; empty: none are kept
   int frames = 0;                                  ///< with the whole picture, then it closes; 0: stays

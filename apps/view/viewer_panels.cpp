@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "apps/view/parameter_widgets.h"
 #include "apps/view/viewer_style.h"
@@ -15,7 +16,7 @@
 namespace limn::app {
 namespace {
 
-constexpr const char* kBesides[] = {"nothing", "other techniques", "the truth"};
+constexpr const char* kBesides[] = {"nothing", "the truth", "other techniques"};
 
 std::string termsOf(const TechniqueInfo& info) {
   return fmt::format("{}", fmt::join(termNames(info.terms), ", "));
@@ -41,8 +42,9 @@ void helpPanel() {
                                      {"W A S D Q E", "fly"},
                                      {"space", "play, pause"},
                                      {"F2", "the next technique of the same kind"},
-                                     {"F3", "compare with nothing, others, the truth"},
+                                     {"F3", "compare with nothing, the truth, others"},
                                      {"F4", "open the scene anew"},
+                                     {"ctrl Z, ctrl shift Z", "undo, redo"},
                                      {"F5 F6 F7", "save picture, suite; copy command"},
                                      {"F8", "look at the frame's next texture"},
                                      {"F9", "difference instead of the right part"},
@@ -51,7 +53,7 @@ void helpPanel() {
                                      {"page down, up", "next, previous step of the guide"},
                                      {"ctrl Q", "close"}};
   if (!ImGui::BeginTable("keys", 2)) return;
-  ImGui::TableSetupColumn("key", ImGuiTableColumnFlags_WidthFixed, 120);
+  ImGui::TableSetupColumn("key", ImGuiTableColumnFlags_WidthFixed, scaled(150));
   ImGui::TableSetupColumn("does", ImGuiTableColumnFlags_WidthStretch);
   for (const auto& [key, does] : keys) {
     ImGui::TableNextColumn();
@@ -66,10 +68,13 @@ void helpPanel() {
 
 void ViewerWindow::panels() {
   ImGui::SetNextWindowPos({0, 0});
-  ImGui::SetNextWindowSize({kPanelWidth, std::max(ImGui::GetIO().DisplaySize.y, 1.f)});
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
+  const float height = std::max(window.y, 1.f), most = std::numeric_limits<float>::max();
+  ImGui::SetNextWindowSize({panelWidth_, height});
+  ImGui::SetNextWindowSizeConstraints({scaled(kPanelWidth) / 2, height}, {most, height});
   ImGui::Begin("limn", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoSavedSettings);
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+  panelWidth_ = ImGui::GetWindowWidth();  // its edge can be dragged
   if (!options_.steps.empty()) guidePanel();
   const auto section = [&](const char* title, const char* option) {
     const bool open = std::ranges::find(options_.panels, option) != options_.panels.end();
@@ -86,9 +91,10 @@ void ViewerWindow::panels() {
   if (lightPanelOpen_) lightPanel();
   if (section("Environment", "environment")) environmentPanel();
   if (section("Compare", "compare")) comparePanel();
+  if (section("Budget", "budget") && facts_->scene) budgetPanel();
   framePanelOpen_ = section("Frame", "frame");
   if (framePanelOpen_) framePanel();
-  if (section("Save", "save")) savePanel();
+  if (section("Save", "save") && facts_->scene) savePanel();
   if (section("Keys", "keys")) helpPanel();
   ImGui::End();
 }
@@ -123,7 +129,7 @@ void ViewerWindow::techniquePanel(std::vector<render::TechniqueUse>& uses) {
     ImGui::SetNextItemOpen(true, ImGuiCond_Once);
     const bool open = ImGui::TreeNodeEx(nameOf(uses[i]).c_str(), ImGuiTreeNodeFlags_AllowItemOverlap);
     tip(fmt::format("{}\nAnswers: {}\n{}", info.title, termsOf(info), info.source));
-    ImGui::SameLine(ImGui::GetContentRegionMax().x - 52);
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - scaled(52));
     const bool keep = !ImGui::SmallButton("remove");
     if (open) {
       changed |= parameterWidgets(uses[i].parameters, ParameterValues(info.name, info.parameters));
@@ -143,7 +149,7 @@ void ViewerWindow::techniquePanel(std::vector<render::TechniqueUse>& uses) {
       if (used) continue;
       const bool chosen = ImGui::Selectable(plugin->info->name);
       tip(plugin->info->title);
-      ImGui::SameLine(250);
+      ImGui::SameLine(scaled(250));
       ImGui::TextDisabled("%s", termsOf(*plugin->info).c_str());
       if (!chosen) continue;
       uses.push_back({plugin, ParameterValues(plugin->info->name, plugin->info->parameters)});
@@ -158,7 +164,10 @@ void ViewerWindow::techniquePanel(std::vector<render::TechniqueUse>& uses) {
 
 void ViewerWindow::compareWith(Beside what) {
   beside_ = what;
-  if (what == Beside::techniques && otherTechniques_.empty()) otherTechniques_ = state_.techniques;
+  if (what == Beside::techniques && otherTechniques_.empty()) {
+    otherTechniques_ = state_.techniques;
+    useNextTechnique(otherTechniques_, registry_);
+  }
   moved();
 }
 

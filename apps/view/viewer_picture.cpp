@@ -15,8 +15,7 @@
 namespace limn::app {
 namespace {
 
-constexpr float kStatusHeight = 28, kBarHeight = 18;  // pixels
-constexpr float kGrabPixels = 6;                      // of the line between two pictures
+constexpr float kGrabPixels = 6;  // of the line between two pictures
 
 ImVec2 im(glm::vec2 v) {
   return {v.x, v.y};
@@ -46,19 +45,20 @@ std::string caption(const std::vector<render::TechniqueUse>& uses) {
 void ViewerWindow::drawColourBar(glm::vec2 corner, float width) const {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   constexpr int cells = 64;
-  draw.AddRectFilled(im(corner - glm::vec2(6, 6)), im(corner + glm::vec2(width + 6, 2 * kBarHeight + 2)),
-                     0xa0000000, 3);
+  const float height = scaled(18), margin = scaled(6);
+  draw.AddRectFilled(im(corner - margin), im(corner + glm::vec2(width + margin, 2 * height + 2)), 0xa0000000,
+                     3);
   for (int i = 0; i < cells; ++i) {
     const glm::vec3 c = differenceColour(2 * (static_cast<float>(i) + 0.5f) / cells - 1);
     const float left = width * static_cast<float>(i) / cells,
                 right = width * static_cast<float>(i + 1) / cells;
-    draw.AddRectFilled(im(corner + glm::vec2(left, 0)), im(corner + glm::vec2(right, kBarHeight)),
+    draw.AddRectFilled(im(corner + glm::vec2(left, 0)), im(corner + glm::vec2(right, height)),
                        ImGui::ColorConvertFloat4ToU32({c.x, c.y, c.z, 1}));
   }
   const DifferenceScale scale;
   const auto number = [&](float part, const std::string& text) {
     const float wide = ImGui::CalcTextSize(text.c_str()).x;
-    draw.AddText(im(corner + glm::vec2(std::clamp(part * width - wide / 2, 0.f, width - wide), kBarHeight)),
+    draw.AddText(im(corner + glm::vec2(std::clamp(part * width - wide / 2, 0.f, width - wide), height)),
                  0xffffffff, text.c_str());
   };
   number(0, fmt::format("-{:g} too dark", scale.most));
@@ -98,37 +98,24 @@ void ViewerWindow::handleMouse() {
   moved();
 }
 
-/// The technique that claims what only one may is replaced by the next one that does.
-void ViewerWindow::nextTechnique() {
-  const TermSet alone = exclusiveWith(termSet(Term::direct));
-  std::vector<const TechniquePlugin*> candidates;
-  const auto claims = [&](const render::TechniqueUse& use) { return (termsOf(use) & alone) != 0; };
-  for (const TechniquePlugin* plugin : registry_.all()) {
-    const auto forOthers = [&](const render::TechniqueUse& use) {
-      return use.plugin == plugin && !claims(use);
-    };
-    if ((plugin->info->terms & alone) != 0 && std::ranges::none_of(state_.techniques, forOthers))
-      candidates.push_back(plugin);
+void ViewerWindow::press(const KeyPress& pressed) {
+  const int key = pressed.key;
+  if (pressed.control) {
+    const bool back = key == GLFW_KEY_Z && !pressed.shift;
+    if (back || key == GLFW_KEY_Z || key == GLFW_KEY_Y) {
+      history_.note({state_, orbit_, otherTechniques_});
+      restore(back ? history_.undo() : history_.redo());
+    }
+    return;
   }
-  size_t next = 0;
-  for (const render::TechniqueUse& use : state_.techniques)
-    for (size_t i = 0; i < candidates.size(); ++i)
-      if (use.plugin == candidates[i]) next = (i + 1) % candidates.size();
-  const auto inUse = [&](const render::TechniqueUse& use) { return use.plugin == candidates[next]; };
-  if (candidates.empty() || std::ranges::any_of(state_.techniques, inUse)) return;
-  const TechniquePlugin& plugin = *candidates[next];
-  state_.techniques.insert(state_.techniques.begin(),
-                           {&plugin, ParameterValues(plugin.info->name, plugin.info->parameters)});
-  dropRivals(state_.techniques, plugin);
-  moved();
-}
-
-void ViewerWindow::press(int key) {
   if (key == GLFW_KEY_SPACE && facts_->scene && facts_->scene->animated) {
     playing_ = !playing_;
     moved();
   }
-  if (key == GLFW_KEY_F2) nextTechnique();
+  if (key == GLFW_KEY_F2) {
+    useNextTechnique(state_.techniques, registry_);
+    moved();
+  }
   if (key == GLFW_KEY_F3) compareWith(static_cast<Beside>((static_cast<int>(beside_) + 1) % 3));
   if (key == GLFW_KEY_F4) open(state_.scene);
   if (key == GLFW_KEY_F5) save();
@@ -137,7 +124,10 @@ void ViewerWindow::press(int key) {
   if (key == GLFW_KEY_F8) inspectNext();
   if (key == GLFW_KEY_F9) showDifference_ = !showDifference_;
   if (key == GLFW_KEY_F10) saveSequence();
-  if (key == GLFW_KEY_ESCAPE) inspection_.reset();
+  if (key == GLFW_KEY_ESCAPE) {
+    inspection_.reset();
+    message_.clear();
+  }
   if (key == GLFW_KEY_PAGE_DOWN && step_ + 1 < options_.steps.size()) chooseStep(step_ + 1);
   if (key == GLFW_KEY_PAGE_UP && step_ > 0) chooseStep(step_ - 1);
 }
@@ -146,7 +136,7 @@ void ViewerWindow::press(int key) {
 void ViewerWindow::handleKeys() {
   if (!facts_->scene) return;
   if (!ImGui::GetIO().WantTextInput)
-    for (const int key : pressed_) press(key);
+    for (const KeyPress& key : pressed_) press(key);
   pressed_.clear();
 }
 
@@ -172,7 +162,9 @@ void ViewerWindow::drawPictures(glm::vec2 corner, glm::vec2 size) {
   const std::string mine = caption(state_.techniques);
   label({x - ImGui::CalcTextSize(mine.c_str()).x - 12, corner.y + 8}, mine);
   label({x + 12, corner.y + 8}, other);
-  if (difference) drawColourBar(corner + glm::vec2(14, size.y - 46), std::min(size.x - 28, 420.f));
+  if (difference)
+    drawColourBar(corner + glm::vec2(scaled(14), size.y - scaled(46)),
+                  std::min(size.x - scaled(28), scaled(420)));
 }
 
 void ViewerWindow::statusLine(glm::vec2 corner, float width) const {
@@ -186,25 +178,40 @@ void ViewerWindow::statusLine(glm::vec2 corner, float width) const {
                         facts.metrics->bias, facts.metrics->flip);
   if (facts.toCompile > 0) text += fmt::format("   compiling {} of {}", facts.compiled + 1, facts.toCompile);
   if (!facts.job.empty()) text += "   " + facts.job;
-  if (!message_.empty()) text += "   " + message_;
   ImGui::SetCursorScreenPos(im(corner));
-  ImGui::PushClipRect(im(corner), im(corner + glm::vec2(width, kStatusHeight)), true);
-  ImGui::TextUnformatted(text.c_str());
-  ImGui::PopClipRect();
-  tip(message_);
+  std::string shown = text;
+  while (!shown.empty() && ImGui::CalcTextSize((shown + "...").c_str()).x > width) shown.pop_back();
+  const bool cut = ImGui::CalcTextSize(text.c_str()).x > width;
+  ImGui::TextUnformatted(cut ? (shown + "...").c_str() : text.c_str());
+  if (cut) tip(text);
+}
+
+/// The last message, above the picture's lower edge, as high as it takes.
+void ViewerWindow::messageBox(glm::vec2 lowest, float width) {
+  const float padding = scaled(6), room = width - 2 * padding;
+  if (message_.empty() || room < padding) return;
+  const ImVec2 size = ImGui::CalcTextSize(message_.c_str(), nullptr, false, room);
+  const glm::vec2 corner = lowest - glm::vec2(0, size.y + 2 * padding);
+  ImGui::GetWindowDrawList()->AddRectFilled(im(corner), im(corner + glm::vec2(size.x, size.y) + 2 * padding),
+                                            0xc8000000, scaled(3));
+  ImGui::SetCursorScreenPos(im(corner + padding));
+  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + room);
+  ImGui::TextColored(messageIsProblem_ ? kProblemColour : ImVec4(1, 1, 1, 1), "%s", message_.c_str());
+  ImGui::PopTextWrapPos();
 }
 
 void ViewerWindow::pictureArea() {
   const ImVec2 window = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({kPanelWidth, 0});
-  ImGui::SetNextWindowSize({std::max(window.x - kPanelWidth, 1.f), std::max(window.y, 1.f)});
+  const float statusHeight = scaled(kStatusHeight);
+  ImGui::SetNextWindowPos({panelWidth_, 0});
+  ImGui::SetNextWindowSize({std::max(window.x - panelWidth_, 1.f), std::max(window.y, 1.f)});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
   ImGui::Begin("picture", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
   ImGui::PopStyleVar();
   const ImVec2 place = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
-  const glm::vec2 size(room.x, room.y - kStatusHeight);
+  const glm::vec2 size(room.x, room.y - statusHeight);
   corner_ = {place.x, place.y};
   const glm::ivec2 area = glm::max(glm::ivec2(size), glm::ivec2(0));
   if (area != area_) moved();
@@ -225,13 +232,15 @@ void ViewerWindow::pictureArea() {
     for (const std::string& other : {facts.other.problem, facts.shaderProblem})
       if (!other.empty()) problem += (problem.empty() ? "" : "\n") + other;
     if (!problem.empty()) {
-      ImGui::SetCursorScreenPos(im(corner_ + glm::vec2(12)));
-      ImGui::PushTextWrapPos(size.x - 12);
-      ImGui::TextColored({1, 0.55f, 0.45f, 1}, "%s", problem.c_str());
+      ImGui::SetCursorScreenPos(im(corner_ + scaled(12)));
+      ImGui::PushTextWrapPos(size.x - scaled(12));
+      ImGui::TextColored(kProblemColour, "%s", problem.c_str());
       ImGui::PopTextWrapPos();
     }
+    if (state_.scene.scene.empty()) startPage();
+    messageBox(corner_ + glm::vec2(scaled(8), size.y - scaled(8)), size.x - scaled(16));
   }
-  statusLine({place.x + 10, place.y + room.y - kStatusHeight + 7}, size.x - 20);
+  statusLine({place.x + scaled(10), place.y + room.y - statusHeight + scaled(7)}, size.x - scaled(20));
   ImGui::End();
 }
 

@@ -2,9 +2,26 @@
 
 #include <imgui.h>
 
+#include <cmath>
+
 namespace limn::app {
 
-void setStyle() {
+namespace {
+
+float scale = 1;  // of everything; there is one window
+
+}  // namespace
+
+float scaled(float pixels) {
+  return std::round(scale * pixels);
+}
+
+void setStyle(float wanted) {
+  scale = wanted;
+  constexpr float fontPixels = 13;
+  ImFontConfig font;
+  font.SizePixels = scaled(fontPixels);
+  ImGui::GetIO().Fonts->AddFontDefault(&font);
   ImGui::StyleColorsDark();
   ImGuiStyle& style = ImGui::GetStyle();
   style.WindowPadding = {10, 8};
@@ -28,12 +45,13 @@ void setStyle() {
                                       {ImGuiCol_Header, quiet},
                                       {ImGuiCol_HeaderHovered, livelier},
                                       {ImGuiCol_HeaderActive, active},
-                                      {ImGuiCol_SliderGrab, ImVec4(0.45f, 0.62f, 0.82f, 1)},
+                                      {ImGuiCol_SliderGrab, ImVec4(0.23f, 0.38f, 0.56f, 1)},
                                       {ImGuiCol_PlotHistogram, active},
                                       {ImGuiCol_SliderGrabActive, active},
                                       {ImGuiCol_TitleBgActive, ImVec4(0.16f, 0.20f, 0.26f, 1)},
                                       {ImGuiCol_PopupBg, ImVec4(0.13f, 0.14f, 0.16f, 1)}})
     style.Colors[colour] = value;
+  style.ScaleAllSizes(scale);
 }
 
 void wrapped(const std::string& text) {
@@ -43,7 +61,7 @@ void wrapped(const std::string& text) {
 }
 
 void complaint(const std::string& text) {
-  ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1, 0.55f, 0.45f, 1));
+  ImGui::PushStyleColor(ImGuiCol_Text, kProblemColour);
   wrapped(text);
   ImGui::PopStyleColor();
 }
@@ -59,7 +77,7 @@ void tip(const std::string& text) {
 
 bool beginRows(const char* name) {
   if (!ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingStretchProp)) return false;
-  ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, 90);
+  ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, scaled(90));
   ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);
   return true;
 }

@@ -1,6 +1,8 @@
 // Declares the style of the viewer's widgets, and the few widgets that ImGui lacks.
 #pragma once
 
+#include <imgui.h>
+
 #include <glm/vec2.hpp>
 #include <string>
 
@@ -8,8 +10,17 @@
 
 namespace limn::app {
 
-/// Sets the style. Called once, after ImGui's context has been created.
-void setStyle();
+/// Sets the style with text and widgets of that size (1: at 96 dots per inch). Called once, after ImGui's
+/// context has been created.
+void setStyle(float scale);
+/// Returns whole pixels for a length that is stated in those of a monitor with 96 dots per inch.
+float scaled(float pixels);
+
+/// Hold the panel's width at first and the height of the line below the picture, before scaled().
+inline constexpr float kPanelWidth = 400, kStatusHeight = 28;
+
+/// Holds the colour of text that says what is wrong.
+inline const ImVec4 kProblemColour(1, 0.55f, 0.45f, 1);
 
 /// Shows text that wraps at the panel's edge.
 void wrapped(const std::string& text);

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/view/budget.h"
+#include "apps/view/edit_history.h"
 #include "apps/view/gizmo.h"
 #include "apps/view/orbit.h"
 #include "apps/view/picture_thread.h"
@@ -20,7 +22,11 @@ struct ImDrawList;
 
 namespace limn::app {
 
-inline constexpr float kPanelWidth = 400;  ///< pixels
+/// Declares a key that was pressed, and what was held with it.
+struct KeyPress {
+  int key;  ///< of GLFW; letters as the keyboard's layout has them
+  bool control = false, shift = false;
+};
 
 /// Holds the text of a text field.
 using TextField = char[1024];
@@ -40,6 +46,8 @@ class ViewerWindow {
   void frame();
   void takeFacts();
   void adopt(const SceneFacts& scene);
+  void restore(const Edit* edit);
+  void say(std::string message, bool problem = false);
   void openFile(const std::filesystem::path& file);
   void open(const SceneQuestion& wanted);
   void moved();  ///< something changed what is seen
@@ -55,12 +63,15 @@ class ViewerWindow {
   void pictureArea();
   void handleMouse();
   void handleKeys();
-  void press(int key);
-  void nextTechnique();
+  void press(const KeyPress& pressed);
   void drawPictures(glm::vec2 corner, glm::vec2 size);
   bool dragSplit();
   void drawColourBar(glm::vec2 corner, float width) const;
   void statusLine(glm::vec2 corner, float width) const;
+  void messageBox(glm::vec2 lowest, float width);
+
+  // --- start_page.cpp
+  void startPage();
 
   // --- light_gizmo.cpp: lights in the picture
   ScreenCamera screen() const;
@@ -74,12 +85,18 @@ class ViewerWindow {
   void scenePanel();
   void cameraChooser();
   void environmentPanel();
+  void exposureRow();
+  void samplesRow();
+  void floorRow();
   void timePanel();
   void techniquePanel(std::vector<render::TechniqueUse>& uses);
   void lightPanel();
   void lightEditor(const LightFacts& light);
   void comparePanel();
   void compareWith(Beside what);
+  void budgetPanel();
+  void budgetSetting(const char* rank, const MeasuredSetting& setting);
+  void readBudget();
   void framePanel();
   void passRow(const frame::PassReport& pass, const frame::PassTime* time, double longest);
   void inspectorWindow();
@@ -108,6 +125,9 @@ class ViewerWindow {
 
   std::vector<render::TechniqueUse> otherTechniques_;
   Orbit orbit_;
+  EditHistory history_;
+  bool unnoted_ = false;  ///< something has changed that history_ does not know yet
+  std::vector<std::string> ownScenes_;
   Beside beside_ = Beside::nothing;
   float split_ = 0.5f;  ///< of the picture's width
   bool splitDragged_ = false;
@@ -119,13 +139,16 @@ class ViewerWindow {
   GizmoMode gizmoMode_ = GizmoMode::move;
   std::optional<GizmoDrag> drag_;
 
-  glm::vec2 corner_{0};  ///< of the picture's place in the window, pixels
-  glm::ivec2 area_{0};   ///< its size
+  float panelWidth_ = 0;  ///< pixels, as all that follows
+  glm::vec2 corner_{0};   ///< of the picture's place in the window
+  glm::ivec2 area_{0};    ///< its size
   double lastChange_ = 0, lastFrame_ = 0;
   bool playing_ = false, framePanelOpen_ = false, lightPanelOpen_ = false;
-  std::vector<int> pressed_;  ///< GLFW keys since the last frame
+  std::vector<KeyPress> pressed_;  ///< since the last frame
   size_t step_ = 0;
-  std::string message_;  ///< the last problem or result
+  std::string message_;  ///< the last problem, or a result of the last seconds
+  bool messageIsProblem_ = false;
+  double messageAt_ = 0;
   /// Sums the times of the window's frames, without the time in which it waits for events.
   struct FrameTimes {
     int frames = 0;
@@ -138,6 +161,10 @@ class ViewerWindow {
   } frameTimes_;
   TextField sceneText_ = "", saveText_ = "", framesText_ = "0:29";
   float fps_ = 30;
+  TextField budgetText_ = "out/tune";
+  std::vector<MeasuredQuestion> measured_;  ///< in that folder
+  size_t measuredChosen_ = 0;
+  float budgetMs_ = 16;
   float environmentThreshold_ = 0;  ///< while its slider is held
 };
 

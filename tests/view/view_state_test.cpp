@@ -45,6 +45,23 @@ TEST_F(ViewStateTest, CommandsSayOnlyWhatIsNotTheDefault) {
       "a.png");
 }
 
+TEST_F(ViewStateTest, SamplesFloorAndAutomaticExposureAreInTheCommand) {
+  state_.scene.aa = 3;
+  state_.scene.floor = "on";
+  state_.tone.exposureEv = 2;
+  state_.automaticExposure = true;
+  EXPECT_EQ(renderCommand(state_, "a.png"),
+            "limn render cornell_box --aa 3 --floor on --exposure auto --out a.png");
+}
+
+TEST_F(ViewStateTest, TheNextTechniqueIsAnother) {
+  use("vssm,clustered_visibility");
+  std::vector<render::TechniqueUse> others = state_.techniques;
+  useNextTechnique(others, registry_);
+  EXPECT_NE(namesOf(others), namesOf(state_.techniques));
+  EXPECT_THAT(namesOf(others), testing::EndsWith(",clustered_visibility"));
+}
+
 TEST_F(ViewStateTest, NamesAreQuotedForTheShell) {
   state_.scene.scene = "it's my scene.glb";
   EXPECT_THAT(renderCommand(state_, "$HOME/a b.png"),

@@ -1,4 +1,9 @@
 // What comes from outside the window: files dropped on it, a window manager, the mouse on its panels.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/session/find.h"
 #include "tests/view/viewer_window_test.h"
 
 namespace limn::test {
@@ -12,7 +17,7 @@ TEST_F(ViewerInputTest, TakesWhatIsDroppedOnIt) {
   const std::string assets = std::string(kBinaryDir) + "/assets/";
   std::filesystem::copy_file(assets + "environments/sky.exr", folder_ / "sky.exr");
   const Outcome outcome =
-      view("cornell_box --technique hard_shadow_map --size 560x160 --save a.exr",
+      view("cornell_box --technique hard_shadow_map --size 160x132 --save a.exr",
            "save first.exr; echo broken > broken.glb; drop broken.glb; hear broken.glb 1; save same.exr\n"
            "drop " +
                assets +
@@ -31,7 +36,7 @@ TEST_F(ViewerInputTest, RestsWhileMinimised) {
     GTEST_SKIP() << "needs a window manager (9wm) and xprop";
   const std::string script =
       "ticks() { set -- $(cat /proc/$viewer/stat); echo $((${14} + ${15})); }\n"
-      "visible() { xdotool search --onlyvisible --name '^limn$'; }\n"
+      "visible() { xdotool search --onlyvisible --name 'limn$'; }\n"
       "9wm 2> 9wm.log &\n"
       "until xprop -id $window WM_STATE | grep -q state:; do sleep .1; done  # it manages the window\n"
       "focused; save first.exr; xdotool key space; sleep 2; frames 1\n"
@@ -39,7 +44,7 @@ TEST_F(ViewerInputTest, RestsWhileMinimised) {
       "for i in $(seq 600); do [ -z \"$(visible)\" ] && break; sleep .1; done; visible > visible\n"
       "sleep 1; ticks > before; sleep 4; ticks > after\n"
       "xdotool windowmap $window; focused; frames 1; xdotool key space; save last.exr\n";
-  const Outcome outcome = view("metaballs --technique pcss --size 560x240 --save a.exr", script);
+  const Outcome outcome = view("metaballs --technique pcss --size 160x212 --save a.exr", script);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(contents(folder_ / "visible"), "");
   const double ticks = std::stod(contents(folder_ / "after")) - std::stod(contents(folder_ / "before"));
@@ -59,13 +64,72 @@ TEST_F(ViewerInputTest, ChoosesEnvironments) {
   for (const auto& [entry, name] : {std::pair(3, "seen"), {1, "sky"}, {0, "last"}})
     script += choose(entry) + "save " + name + ".exr\n";
   const Outcome outcome =
-      view("cornell_box --technique hard_shadow_map --size 560x340 --open environment --save a.exr", script);
+      view("cornell_box --technique hard_shadow_map --size 160x312 --open environment --save a.exr", script);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(command("seen.exr"), testing::HasSubstr("--environment ./0.exr"));
   EXPECT_THAT(command("sky.exr"), testing::HasSubstr("--environment sky"));
   EXPECT_EQ(colours(picture("seen.exr")), colours(picture("sky.exr"))) << "the same map";
   EXPECT_NE(colours(picture("sky.exr")), colours(picture("none.exr")));
   EXPECT_EQ(colours(picture("last.exr")), colours(picture("none.exr")));
+}
+
+/// Without a scene the window says how to open one; one of limn's is chosen from its list, of two columns
+/// here, and stands in the title then.
+TEST_F(ViewerInputTest, StartsWithoutAScene) {
+  const std::vector<std::string> names = session::sceneNames();
+  const auto entry = std::ranges::find(names, "cornell_box") - names.begin();
+  const std::string place = fmt::format("{} {}", 440 + 226 * (entry % 2), 88 + 17 * (entry / 2));
+  const Outcome outcome = view("--size 500x420 --technique hard_shadow_map --save a.exr",
+                               "sleep 1; xdotool mousemove " + place +
+                                   "; sleep 1; xdotool click 1; hear opened 1\n"
+                                   "save first.exr; xdotool getwindowname $window > title");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(contents(folder_ / "title"), "cornell_box - limn\n");
+  EXPECT_THAT(command("first.exr"), testing::HasSubstr("limn render cornell_box"));
+  EXPECT_EQ(picture("first.exr").width(), 500);
+  EXPECT_EQ(picture("first.exr").height(), 420);
+}
+
+TEST_F(ViewerInputTest, WithoutADisplayAdvisesWhatWorks) {
+  const Outcome outcome = run({kBinaries + "limn-view", "balls"}, {{"DISPLAY", ""}});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, testing::HasSubstr("limn render"));
+}
+
+/// The picture keeps its size where text and widgets are larger, and the panel's edge is dragged.
+TEST_F(ViewerInputTest, PicturesHaveTheSizeThatIsLeft) {
+  const Outcome outcome = view(
+      "cornell_box --technique hard_shadow_map --size 160x132 --scale 1.5 --save a.exr --screenshot "
+      "window.png",
+      "save first.exr; point 599 50; xdotool mousedown 1; frames 2; point 559 50; xdotool mouseup 1; frames "
+      "2\n"
+      "save wider.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(picture("first.exr").width(), 160);
+  EXPECT_EQ(picture("first.exr").height(), 132);
+  EXPECT_EQ(picture("wider.exr").width(), 200);
+  EXPECT_EQ(picture("window.png").width(), 600 + 160);
+  EXPECT_EQ(picture("window.png").height(), 42 + 132);
+}
+
+/// Techniques, cameras and what is compared with come back, and go again.
+TEST_F(ViewerInputTest, UndoesAndRedoes) {
+  const Outcome outcome = view(
+      "cornell_box --technique pcss --size 160x132 --save a.exr",
+      "save first.exr; xdotool key F2; save other.exr; sleep .5\n"
+      "point 470 60; xdotool mousedown 1; frames 2; point 500 70; xdotool mouseup 1; frames 2; sleep .5\n"
+      "save turned.exr; xdotool key ctrl+z; save once.exr; xdotool key ctrl+z; save twice.exr\n"
+      "xdotool key ctrl+z; save first_of_all.exr; xdotool key ctrl+shift+z ctrl+y; save again.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_NE(command("turned.exr"), command("other.exr"));
+  EXPECT_EQ(command("once.exr"), command("other.exr"));
+  EXPECT_EQ(command("twice.exr"), command("first.exr"));
+  EXPECT_EQ(command("first_of_all.exr"), command("first.exr"));
+  EXPECT_EQ(command("again.exr"), command("turned.exr"));
+  EXPECT_EQ(colours(picture("twice.exr")), colours(picture("first.exr")));
+  EXPECT_EQ(colours(picture("again.exr")), colours(picture("turned.exr")));
 }
 
 /// Every slider of a technique goes from one end of its range to the other, and each x brings a default back.
@@ -77,7 +141,7 @@ TEST_F(ViewerInputTest, MovesSliders) {
                "; point 240 " + y + "; xdotool mouseup 1; frames 2\n";
     resets += "click 375 " + y + "\n";
   }
-  const Outcome outcome = view("cornell_box --technique pcss --size 500x330 --open techniques --save a.exr",
+  const Outcome outcome = view("cornell_box --technique pcss --size 100x302 --open techniques --save a.exr",
                                "save first.exr\n" + sliders + "save moved.exr\n" + resets + "save reset.exr");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");

@@ -31,7 +31,7 @@ class ViewerScenesTest : public ViewerWindowTest {
     for (const auto& file : files)
       script += "drop " + file.string() + "; hear opened " + std::to_string(++opened) + "; save " +
                 file.stem().string() + ".exr\n";
-    const Outcome outcome = view("gem --technique hard_shadow_map --size 460x120 --save a.exr", script);
+    const Outcome outcome = view("gem --technique hard_shadow_map --size 60x92 --save a.exr", script);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
     for (const auto& file : files) {
@@ -88,7 +88,7 @@ TEST_P(ViewerTechniquesTest, SwitchesThemOnAndOff) {
         "click 200 66; click 100 " + std::to_string(y) + "; save " + chosen.back() + ".exr; click 348 66\n";
   }
   ASSERT_FALSE(chosen.empty());
-  const Outcome outcome = view(std::string(GetParam()) + " --size 512x720 --open techniques --save a.exr",
+  const Outcome outcome = view(std::string(GetParam()) + " --size 112x692 --open techniques --save a.exr",
                                script + "save last.exr");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");

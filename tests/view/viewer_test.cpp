@@ -21,7 +21,7 @@ TEST_F(ViewerTest, SurvivesABrokenSceneAndEveryTechnique) {
   std::filesystem::copy_file(std::string(kBinaryDir) + "/assets/lights/lights.glb", folder_ / "mine.glb");
   std::string script = "save first.exr; echo broken > mine.glb; xdotool key F4; hear mine.glb 2\n";
   for (int i = 0; i < 16; ++i) script += "xdotool key F2; save " + std::to_string(i) + ".exr\n";
-  const Outcome outcome = view("mine.glb --size 500x128 --save a.exr", script);
+  const Outcome outcome = view("mine.glb --size 100x100 --save a.exr", script);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(picture("15.exr").width(), 100);
@@ -31,7 +31,7 @@ TEST_F(ViewerTest, SurvivesABrokenSceneAndEveryTechnique) {
 /// Moved from one size to another, hidden and shown, as small as a window gets.
 TEST_F(ViewerTest, ResizesHidesAndComparesWithTheTruth) {
   const Outcome outcome =
-      view("cornell_box --technique hard_shadow_map --size 500x120 --save a.exr",
+      view("cornell_box --technique hard_shadow_map --size 100x92 --save a.exr",
            "xdotool key F3; save beside.exr; xdotool key F3; save truth.exr\n"
            "xdotool windowsize --sync $window 620 400; frames 2; save b.exr\n"
            "xdotool windowunmap --sync $window windowmap --sync $window; focused; frames 2\n"
@@ -51,7 +51,7 @@ TEST_F(ViewerTest, ReloadsShaders) {
                           std::filesystem::copy_options::recursive);
   const std::string shader = "techniques/hard_shadow_map/visibility.comp.glsl";
   const Outcome outcome =
-      view("cornell_box --technique hard_shadow_map --size 500x120 --shaders . --save a.exr",
+      view("cornell_box --technique hard_shadow_map --size 100x92 --shaders . --save a.exr",
            "save first.exr\ncp " + shader + " good; echo 'not a shader' >> " + shader +
                "; hear 'does not compile' 1; save broken.exr\nsed 's/? 0.0 : 1.0/? 0.0 : 0.5/' good > half; "
                "mv half " +
@@ -66,7 +66,7 @@ TEST_F(ViewerTest, ReloadsShaders) {
 TEST_F(ViewerTest, InspectsEveryTexture) {
   std::string script = "save first.exr\n";
   for (int i = 0; i < 24; ++i) script += "xdotool key F8; save seen.exr\n";
-  const Outcome outcome = view("cornell_box --technique vssm --size 480x140 --open frame --save a.exr",
+  const Outcome outcome = view("cornell_box --technique vssm --size 80x112 --open frame --save a.exr",
                                script + "save last.exr; xdotool key Escape; frames 2");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
@@ -75,7 +75,7 @@ TEST_F(ViewerTest, InspectsEveryTexture) {
 
 /// The frames of a sequence are those of limn render.
 TEST_F(ViewerTest, SavesSequences) {
-  const Outcome outcome = view("metaballs --technique hard_shadow_map --size 500x120 --save a.exr",
+  const Outcome outcome = view("metaballs --technique hard_shadow_map --size 100x92 --save a.exr",
                                "xdotool key F10; await a.0029.exr");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
@@ -96,7 +96,7 @@ TEST_F(ViewerTest, KeepsTheTruthOnDisk) {
                                            : 0;
   };
   const Outcome outcome =
-      view("cornell_box --technique hard_shadow_map --size 500x120 --compare truth --save a.exr",
+      view("cornell_box --technique hard_shadow_map --size 100x92 --compare truth --save a.exr",
            "for i in $(seq 300); do ls out/references/*.exr > files 2> none && break; sleep .1; done\n"
            "save b.exr");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -118,7 +118,7 @@ TEST_F(ViewerTest, StaysResponsive) {
   for (int i = 0; i < 12; ++i)
     script += "xdotool key F2 mousemove 600 200 mousedown 1 mousemove_relative 20 5 mouseup 1; sleep .7\n";
   const Outcome outcome =
-      view("robot --technique vssm --size 900x600 --compare truth --open frame --stats stats.json", script);
+      view("robot --technique vssm --size 500x572 --compare truth --open frame --stats stats.json", script);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_LT(number("longest_ms"), kLongestMs) << contents(folder_ / "stats.json");
   EXPECT_GE(number("pictures"), 2);
@@ -141,7 +141,7 @@ TEST_F(ViewerTest, DoesNotGrow) {
               "xdotool key Escape F4; hear opened " +
               std::to_string(i + 2) + "\nsave seen.exr; cut -d ' ' -f 2 /proc/$viewer/statm >> pages\n";
   const Outcome outcome = view(
-      "cornell_box --technique pcss --size 560x160 --open frame --cache '' --save a.exr", script, 1200,
+      "cornell_box --technique pcss --size 160x132 --open frame --cache '' --save a.exr", script, 1200,
       {{"MALLOC_ARENA_MAX", "1"}, {"MALLOC_TRIM_THRESHOLD_", "65536"}, {"MALLOC_MMAP_THRESHOLD_", "65536"}});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(command("seen.exr"), testing::HasSubstr("pcss"));

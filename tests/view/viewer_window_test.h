@@ -51,10 +51,10 @@ class ViewerWindowTest : public ::testing::Test {
         "drop() { '" + kBinaryDir +
         "/tests/limn_drop_files' $window \"$1\" || echo $1 was not taken >&2; }\n" + "'" + kBinaries +
         "limn-view' " + arguments + " --debug > said & viewer=$!\n" +
-        "window=$(timeout 60 xdotool search --sync --onlyvisible --name '^limn$' | head -n 1)\n" +
+        "window=$(timeout 60 xdotool search --sync --onlyvisible --name 'limn$' | head -n 1)\n" +
         "focused\n" + script + "\nxdotool key ctrl+q\nwait $viewer\n";
     return run({"/usr/bin/timeout", std::to_string(seconds), "/usr/bin/xvfb-run", "-a", "-s",
-                "-screen 0 1000x700x24", "/bin/sh", "-c", text},
+                "-screen 0 1000x760x24", "/bin/sh", "-c", text},
                environment);
   }
   /// The picture that the window shows after `script` is the one that the command kept in it renders.

@@ -1,0 +1,40 @@
+#include "apps/view/edit_history.h"
+
+#include <utility>
+
+#include "apps/view/picture_order.h"
+
+namespace limn::app {
+
+bool same(const Edit& a, const Edit& b) {
+  SceneQuestion scene = a.state.scene;
+  scene.width = b.state.scene.width;
+  scene.height = b.state.scene.height;
+  return scene == b.state.scene && a.state.tone == b.state.tone &&
+         a.state.automaticExposure == b.state.automaticExposure &&
+         same(a.state.techniques, b.state.techniques) && same(a.others, b.others);
+}
+
+void EditHistory::restart(Edit present) {
+  edits_.clear();
+  edits_.push_back(std::move(present));
+  present_ = 0;
+}
+
+void EditHistory::note(const Edit& present) {
+  if (!edits_.empty() && same(edits_[present_], present)) return;
+  if (!edits_.empty()) edits_.resize(present_ + 1);
+  if (edits_.size() == kMost) edits_.erase(edits_.begin());
+  edits_.push_back(present);
+  present_ = edits_.size() - 1;
+}
+
+const Edit* EditHistory::undo() {
+  return present_ > 0 ? &edits_[--present_] : nullptr;
+}
+
+const Edit* EditHistory::redo() {
+  return present_ + 1 < edits_.size() ? &edits_[++present_] : nullptr;
+}
+
+}  // namespace limn::app

@@ -1,0 +1,33 @@
+// What the window shows before a scene is opened: how to open one.
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "apps/view/viewer_style.h"
+#include "apps/view/viewer_window.h"
+
+namespace limn::app {
+
+void ViewerWindow::startPage() {
+  ImGui::SetCursorScreenPos({corner_.x + scaled(24), corner_.y + scaled(20)});
+  ImGui::BeginChild("start",
+                    {static_cast<float>(area_.x) - scaled(48), static_cast<float>(area_.y) - scaled(24)});
+  wrapped("Drop a .gltf or .glb file on this window, or type its name into Scene, file.");
+  wrapped("Models in other formats: limn import MODEL --out model.glb");
+  ImGui::Spacing();
+  wrapped(ownScenes_.empty() ? "limn's own scenes are not installed." : "Or take one of limn's own scenes:");
+  const float column = scaled(200);
+  const int columns = std::max(1, static_cast<int>(ImGui::GetContentRegionAvail().x / column));
+  ImGui::BeginDisabled(!facts_->job.empty());  // one is being opened
+  if (!ownScenes_.empty() && ImGui::BeginTable("scenes", columns)) {
+    for (const std::string& name : ownScenes_) {
+      ImGui::TableNextColumn();
+      if (ImGui::Selectable(name.c_str())) openFile(name);
+    }
+    ImGui::EndTable();
+  }
+  ImGui::EndDisabled();
+  ImGui::EndChild();
+}
+
+}  // namespace limn::app

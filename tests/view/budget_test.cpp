@@ -1,0 +1,78 @@
+// The best setting within a time, from rows of a bench.
+#include "apps/view/budget.h"
+
+#include <gmock/gmock.h>
+
+namespace limn::app {
+namespace {
+
+bench::Row row(const std::string& technique, double rmse, double ms, const std::string& scene = "balls") {
+  bench::Row row;
+  row.what.scene = scene;
+  row.what.technique = technique;
+  row.error.rmse = rmse;
+  row.cost.renderer = "a card";
+  row.cost.frameMs = {.median = ms, .q1 = ms, .q3 = ms, .n = 5, .samples = {}};
+  return row;
+}
+
+TEST(Budget, TakesTheLeastErrorThatIsQuickEnough) {
+  std::vector<bench::Row> rows{row("hard_shadow_map", 0.09, 1), row("pcss", 0.02, 8), row("pcss", 0.01, 20),
+                               row("vssm", 0.03, 6), row("vssm", 0.001, 100)};
+  rows[1].what.parameters = {{"pcss.views", "4"}};
+  const auto questions = measuredQuestions(rows, "/somewhere/balls.glb");
+  ASSERT_EQ(questions.size(), 1u);
+  EXPECT_EQ(questions.front().renderer, "a card");
+  const BudgetAnswer answer = bestWithin(questions.front(), 10);
+  EXPECT_EQ(answer.best->text(), "pcss  views=4");
+  EXPECT_THAT(answer.best->choice().settings, testing::ElementsAre("pcss.views=4"));
+  EXPECT_EQ(answer.runnerUp->technique, "vssm") << "another technique";
+  EXPECT_EQ(answer.runnerUp->ms, 6);
+  EXPECT_EQ(bestWithin(questions.front(), 1).best->technique, "hard_shadow_map");
+  EXPECT_FALSE(bestWithin(questions.front(), 1).runnerUp);
+  EXPECT_FALSE(bestWithin(questions.front(), 0.5).best);
+}
+
+TEST(Budget, TheRunnerUpMayBeOfTheSameTechniqueWhereThereIsNoOther) {
+  const std::vector<bench::Row> rows{row("pcss", 0.02, 8), row("pcss", 0.01, 20)};
+  const BudgetAnswer answer = bestWithin(measuredQuestions(rows, "balls").front(), 50);
+  EXPECT_EQ(answer.best->ms, 20);
+  EXPECT_EQ(answer.runnerUp->ms, 8);
+}
+
+/// Other scenes, failures, rows without a time and bounds that no technique reaches do not count; other
+/// sizes, machines and sizes of timed frames are other questions.
+TEST(Budget, ComparesWhatCanBeCompared) {
+  std::vector<bench::Row> rows{row("pcss", 1, 1),
+                               row("vssm", 1, 1),
+                               row("pcf", 1, 1),
+                               row("pcss", 1, 1),
+                               row("pcss", 1, 1),
+                               row("pcss", 1, 1, "robot"),
+                               row("separation_floor", 1, 1)};
+  rows[0].what.width = rows[0].what.height = 64;
+  rows[2].failure = "no picture";
+  rows[3].cost.frameMs.n = 0;
+  rows[4].cost.machine = "another";
+  auto timedElsewhere = row("pcss", 1, 1);
+  timedElsewhere.what.timeWidth = timedElsewhere.what.timeHeight = 32;
+  rows.push_back(timedElsewhere);
+  const auto questions = measuredQuestions(rows, "balls");
+  ASSERT_EQ(questions.size(), 4u);
+  EXPECT_EQ(questions.back().pixels, 64 * 64) << "the smallest pictures come last";
+  for (const MeasuredQuestion& question : questions) EXPECT_EQ(question.settings.size(), 1u);
+}
+
+TEST(Budget, SaysHowToMeasure) {
+  SceneQuestion question;
+  question.scene = "balls";
+  question.light = "key";
+  question.term = "visibility";
+  EXPECT_EQ(tuneCommand(question, 16, "out/a b"),
+            "limn tune balls --light key --term visibility --max-ms 16 --out 'out/a b'");
+  question.term = "final";
+  EXPECT_EQ(tuneCommand(question, 2.5, "out"), "limn tune balls --light key --max-ms 2.5 --out out");
+}
+
+}  // namespace
+}  // namespace limn::app

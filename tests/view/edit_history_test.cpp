@@ -1,0 +1,66 @@
+// Undo and redo.
+#include "apps/view/edit_history.h"
+
+#include <gtest/gtest.h>
+
+namespace limn::app {
+namespace {
+
+Edit withTime(double time) {
+  Edit edit;
+  edit.state.scene.time = time;
+  return edit;
+}
+
+TEST(EditHistory, GoesBackAndForth) {
+  EditHistory history;
+  EXPECT_EQ(history.undo(), nullptr) << "nothing is known yet";
+  history.restart(withTime(0));
+  for (const double time : {1., 2., 3.}) history.note(withTime(time));
+  EXPECT_EQ(history.redo(), nullptr);
+  EXPECT_EQ(history.undo()->state.scene.time, 2);
+  EXPECT_EQ(history.undo()->state.scene.time, 1);
+  EXPECT_EQ(history.redo()->state.scene.time, 2);
+  history.note(withTime(2));
+  EXPECT_EQ(history.redo()->state.scene.time, 3) << "what is there already adds nothing";
+}
+
+TEST(EditHistory, WhatWasUndoneIsForgottenWithTheNextChange) {
+  EditHistory history;
+  history.restart(withTime(0));
+  history.note(withTime(1));
+  history.undo();
+  history.note(withTime(5));
+  EXPECT_EQ(history.redo(), nullptr);
+  EXPECT_EQ(history.undo()->state.scene.time, 0);
+  EXPECT_EQ(history.undo(), nullptr);
+}
+
+TEST(EditHistory, TheSizeOfTheWindowIsNoChange) {
+  EditHistory history;
+  history.restart(withTime(0));
+  Edit larger = withTime(0);
+  larger.state.scene.width = 999;
+  history.note(larger);
+  EXPECT_EQ(history.undo(), nullptr);
+}
+
+TEST(EditHistory, ToneAndExposureAreChanges) {
+  Edit tone = withTime(0), automatic = withTime(0);
+  tone.state.tone.curve = ToneCurve::agx;
+  automatic.state.automaticExposure = true;
+  EXPECT_FALSE(same(withTime(0), tone));
+  EXPECT_FALSE(same(withTime(0), automatic));
+}
+
+TEST(EditHistory, ForgetsTheOldestOfVeryMany) {
+  EditHistory history;
+  history.restart(withTime(0));
+  for (int i = 1; i <= 2000; ++i) history.note(withTime(i));
+  int undone = 0;
+  while (history.undo() != nullptr) ++undone;
+  EXPECT_EQ(undone, 499);
+}
+
+}  // namespace
+}  // namespace limn::app
