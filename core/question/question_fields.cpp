@@ -166,7 +166,7 @@ constexpr QuestionField kFields[] = {
            "leaves out is the difference, which is no error of a technique"),
     choice(
         "floor", "--floor", &Q::floor, kOffOn,
-        "on: a diffuse square below the scene, 8 radii wide, that receives its shadows, in pictures and in\n"
+        "on: a diffuse square below the scene, 7 radii wide, that receives its shadows, in pictures and in\n"
         "the reference"),
     real(
         "environment_lights", "--environment-lights", &Q::environmentLights, {1e-4, 0.5}, "",

@@ -93,7 +93,7 @@ CameraPose lookAt(const glm::vec3& eye, const glm::vec3& target, float yfov) {
 }
 
 CameraPose frameBounds(const Bounds& bounds, float yfov) {
-  Framing framing({0.3f, 0.35f, 1.f}, yfov);
+  Framing framing(kSeenFrom, yfov);
   framing.add(bounds);
   return framing.camera();
 }

@@ -1,12 +1,15 @@
 #include "core/scene/floor.h"
 
+#include <cmath>
 #include <utility>
+
+#include "core/scene/framing.h"
 
 namespace limn::scene {
 namespace {
 
-constexpr float kHalfSide = 4;   // radii of the bounds: as far as shadows of a low sun reach
-constexpr float kBelow = 1e-4f;  // radii: what stands on it does not lie in its plane
+constexpr float kHalfSide = 3.5f;  // radii of the bounds: as far as shadows of a low sun reach
+constexpr float kBelow = 1e-4f;    // radii: what stands on it does not lie in its plane
 constexpr float kReflectance = 0.5f;
 
 }  // namespace
@@ -32,6 +35,8 @@ void addFloor(Scene& scene, const Bounds& bounds) {
   node.name = "floor";
   node.transform.translation = {bounds.centre().x, bounds.low.y - kBelow * bounds.radius(),
                                 bounds.centre().z};
+  // For the camera of scenes without one its far side is level.
+  node.transform.rotation = glm::angleAxis(std::atan2(kSeenFrom.x, kSeenFrom.z), glm::vec3(0, 1, 0));
   node.base = scene.origin;
   node.mesh = static_cast<int>(scene.meshes.size());
 

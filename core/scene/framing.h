@@ -8,12 +8,14 @@
 
 namespace limn::scene {
 
+/// Holds the direction from which scenes without a camera are seen: the front, slightly from above.
+inline constexpr glm::vec3 kSeenFrom{0.3f, 0.35f, 1.f};
+
 /// Collects points, and finds the nearest camera of one direction that sees all of them.
 class LIMN_API Framing {
  public:
-  /// Prepares a camera that looks along -`back`, from slightly above the front by default, with world +Y up;
-  /// `yfov` is in radians.
-  explicit Framing(const glm::vec3& back = {0.3f, 0.35f, 1.f}, float yfov = 0.8f);
+  /// Prepares a camera that looks along -`back` with world +Y up; `yfov` is in radians.
+  explicit Framing(const glm::vec3& back = kSeenFrom, float yfov = 0.8f);
 
   void add(const glm::vec3& point);
   void add(const Bounds& bounds);

@@ -78,8 +78,8 @@ TEST_F(ViewerInputTest, ChoosesEnvironments) {
 TEST_F(ViewerInputTest, StartsWithoutAScene) {
   const std::vector<std::string> names = session::sceneNames();
   const auto entry = std::ranges::find(names, "cornell_box") - names.begin();
-  const std::string place = fmt::format("{} {}", 440 + 226 * (entry % 2), 88 + 17 * (entry / 2));
-  const Outcome outcome = view("--size 500x420 --technique hard_shadow_map --save a.exr",
+  const std::string place = fmt::format("{} {}", 440 + 276 * (entry % 2), 88 + 17 * (entry / 2));
+  const Outcome outcome = view("--size 600x420 --technique hard_shadow_map --save a.exr",
                                "sleep 1; xdotool mousemove " + place +
                                    "; sleep 1; xdotool click 1; hear opened 1\n"
                                    "save first.exr; xdotool getwindowname $window > title");
@@ -87,7 +87,7 @@ TEST_F(ViewerInputTest, StartsWithoutAScene) {
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(contents(folder_ / "title"), "cornell_box - limn\n");
   EXPECT_THAT(command("first.exr"), testing::HasSubstr("limn render cornell_box"));
-  EXPECT_EQ(picture("first.exr").width(), 500);
+  EXPECT_EQ(picture("first.exr").width(), 600);
   EXPECT_EQ(picture("first.exr").height(), 420);
 }
 
