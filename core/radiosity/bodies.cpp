@@ -6,17 +6,25 @@
 #include <cmath>
 
 #include "core/radiosity/surfels.h"
+#include "glsl/numeric/language.glsl"
 
 namespace limn::radiosity {
 namespace {
 
 constexpr float kMostCells = 64;  // of a grid over a body, along each axis
+/// Pieces of less volume, as a part of their bounds' diagonal cubed, are no bodies: rooms and flat ones.
+constexpr double kLeastVolume = 1e-4;
+/// Elements look for their own body from this part of the way from their vertex to their disc's centre: the
+/// vertex of an edge lies in the plane of the face beyond it, the centre on a hollow surface lies below it.
+constexpr float kOffTheEdge = 0.1f;
+
+using Corners = std::array<glm::vec3, 3>;
 
 /// How often a triangle turns around a point of the plane, -1, 0 or 1. Half-open, so that of triangles that
 /// share an edge exactly one has a point on it.
-int turns(const glm::vec2& p, const glm::vec3 (&corners)[3]) {
+int turns(const glm::vec2& p, const Corners& corners) {
   int result = 0;
-  for (int k = 0; k < 3; ++k) {
+  for (size_t k = 0; k < 3; ++k) {
     const glm::dvec2 a(corners[k]), b(corners[(k + 1) % 3]), q(p);
     const bool up = b.y > q.y;
     if ((a.y > q.y) == up) continue;
@@ -29,45 +37,134 @@ int turns(const glm::vec2& p, const glm::vec3 (&corners)[3]) {
 }
 
 /// Height of a triangle's plane over a point of its inside.
-double heightAt(const glm::vec2& p, const glm::vec3 (&corners)[3]) {
+double heightAt(const glm::vec2& p, const Corners& corners) {
   const glm::dvec3 a(corners[0]), n = glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
   return n.z == 0 ? a.z : a.z - (n.x * (p.x - a.x) + n.y * (p.y - a.y)) / n.z;
+}
+
+/// Returns the solid angle of a triangle, sr: positive where its front turns away from `p` (van Oosterom and
+/// Strackee 1983).
+double solidAngle(const glm::vec3& p, const Corners& corners) {
+  const glm::dvec3 a(corners[0] - p), b(corners[1] - p), c(corners[2] - p);
+  const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+  return 2 * std::atan2(glm::dot(a, glm::cross(b, c)),
+                        la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
+}
+
+/// What is known of an element, as bits.
+enum : unsigned char {
+  kOutside = 0,
+  kInOther = 1,   ///< within a closed body that it is no part of
+  kCentreIn = 2,  ///< its centre lies within its own body
+  kVertexIn = 4,  ///< as does its vertex, of which nobody asks otherwise
+  kWaiting = 8,   ///< for a neighbour's place
+};
+
+/// Returns a point above which an element sees what its vertex sees.
+glm::vec3 nearVertex(const Surfels& surfels, uint32_t i) {
+  return glm::mix(surfels.vertices[i], surfels.positions[i], kOffTheEdge);
 }
 
 }  // namespace
 
 Bodies::Bodies(const Surfels& surfels, double lift)
-    : lift_(static_cast<float>(lift)), objects_(surfels.backless.size()), enclosed_(surfels.size()) {
-  const auto extend = [](Range& range, size_t i) {
-    if (range.end == 0) range.first = static_cast<uint32_t>(i);
-    range.end = static_cast<uint32_t>(i) + 1;
-  };
-  for (size_t i = 0; i < surfels.size(); ++i) extend(objects_[surfels.objects[i]].surfels, i);
-  for (size_t i = 0; i < surfels.triangles.size(); ++i)
-    extend(objects_[surfels.objects[surfels.triangles[i]]].triangles, i);
-  for (size_t i = 0; i < objects_.size(); ++i) objects_[i].closed = surfels.backless[i] != 0;
+    : lift_(static_cast<float>(lift)),
+      pieces_(surfels.pieceCount),
+      holes_(surfels.holeCount),
+      enclosed_(surfels.size()) {
+  gatherPieces(surfels);
+  update(surfels);
+  for (Piece& piece : pieces_) {
+    const glm::dvec3 size = glm::dvec3(piece.bounds.high) - glm::dvec3(piece.bounds.low);
+    piece.solid = piece.solid && volume(surfels, piece) > kLeastVolume * std::pow(glm::length(size), 3);
+  }
+}
+
+void Bodies::gatherPieces(const Surfels& surfels) {
+  std::vector<std::vector<uint32_t>> members(pieces_.size());
+  std::vector<std::vector<Triangle>> triangles(pieces_.size());
+  for (uint32_t i = 0; i < surfels.size(); ++i) members[surfels.pieces[i]].push_back(i);
+  for (size_t t = 0; t < surfels.triangles.size(); t += 3)
+    triangles[surfels.pieces[surfels.triangles[t]]].push_back(
+        {surfels.triangles[t], surfels.triangles[t + 1], surfels.triangles[t + 2]});
+  for (const Surfels::Rim& rim : surfels.rims) {
+    rims_.push_back({rim.from, rim.hole});
+    const uint32_t piece = surfels.pieces[rim.from];
+    triangles[piece].push_back({rim.from, rim.to, static_cast<uint32_t>(surfels.size()) + rim.hole});
+  }
+  std::vector<uint32_t> holes(pieces_.size(), 0);
+  for (const Surfels::Rim& rim : surfels.rims) ++holes[surfels.pieces[rim.from]];
+  for (size_t i = 0; i < pieces_.size(); ++i) {
+    pieces_[i].solid = surfels.doubleSided[surfels.objects[members[i].front()]] == 0;
+    const auto append = [](auto& to, const auto& from) {
+      const auto first = static_cast<uint32_t>(to.size());
+      to.insert(to.end(), from.begin(), from.end());
+      return Range{first, static_cast<uint32_t>(to.size())};
+    };
+    pieces_[i].surfels = append(order_, members[i]);
+    pieces_[i].triangles = append(triangles_, triangles[i]);
+    pieces_[i].firstOfHoles = pieces_[i].triangles.end - holes[i];
+    fromLeft_.push_back(static_cast<uint32_t>(i));
+  }
+}
+
+/// Sets the bounds of pieces and the middles of holes.
+void Bodies::update(const Surfels& surfels) {
+  tbb::parallel_for(size_t{0}, pieces_.size(), [&](size_t i) {
+    Piece& piece = pieces_[i];
+    piece.bounds = {glm::vec3(1e30f), glm::vec3(-1e30f)};
+    for (uint32_t k = piece.surfels.first; k < piece.surfels.end; ++k) {
+      piece.bounds.low = glm::min(piece.bounds.low, surfels.vertices[order_[k]]);
+      piece.bounds.high = glm::max(piece.bounds.high, surfels.vertices[order_[k]]);
+    }
+  });
+  std::ranges::fill(holes_, glm::vec4(0));
+  for (const Rim& rim : rims_) holes_[rim.hole] += glm::vec4(surfels.vertices[rim.surfel], 1);
+  std::ranges::sort(fromLeft_, {}, [&](uint32_t i) { return pieces_[i].bounds.low.x; });
+}
+
+std::array<glm::vec3, 3> Bodies::corners(const Surfels& surfels, uint32_t triangle) const {
+  Corners result;
+  for (size_t k = 0; k < 3; ++k) {
+    const uint32_t index = triangles_[triangle][k];
+    result[k] = index < surfels.size()
+                    ? surfels.vertices[index]
+                    : glm::vec3(holes_[index - surfels.size()]) / holes_[index - surfels.size()].w;
+  }
+  return result;
+}
+
+double Bodies::volume(const Surfels& surfels, const Piece& piece) const {
+  double sum = 0;
+  const glm::dvec3 origin(piece.bounds.low);
+  for (uint32_t t = piece.triangles.first; t < piece.triangles.end; ++t) {
+    const auto [a, b, c] = corners(surfels, t);
+    sum += glm::dot(glm::dvec3(a) - origin, glm::cross(glm::dvec3(b) - origin, glm::dvec3(c) - origin)) / 6;
+  }
+  return sum;
 }
 
 void Bodies::leave(Surfels& surfels) {
-  tbb::parallel_for(size_t{0}, objects_.size(), [&](size_t i) {
-    Object& o = objects_[i];
-    o.bounds = {glm::vec3(1e30f), glm::vec3(-1e30f)};
-    for (uint32_t k = o.surfels.first; k < o.surfels.end; ++k) {
-      o.bounds.low = glm::min(o.bounds.low, surfels.vertices[k]);
-      o.bounds.high = glm::max(o.bounds.high, surfels.vertices[k]);
-    }
+  update(surfels);
+  tbb::parallel_for(size_t{0}, pieces_.size(), [&](size_t i) {
+    pieces_[i].inside.clear();
+    if (pieces_[i].solid) find(surfels, pieces_[i]);
   });
-  tbb::parallel_for(size_t{0}, objects_.size(), [&](size_t i) {
-    objects_[i].queries.clear();
-    if (objects_[i].closed) find(surfels, objects_[i]);
-  });
+  for (const Piece& body : pieces_)
+    for (const Query& q : body.inside) enclosed_[q.surfel] |= q.bit;
   waiting_.clear();
-  for (const Object& body : objects_)
-    for (const Query& q : body.queries)
-      if (q.winding > 0 && enclosed_[q.surfel] == 0) {
-        enclosed_[q.surfel] = 1;
+  for (const Piece& body : pieces_)
+    for (const Query& q : body.inside) {
+      unsigned char& state = enclosed_[q.surfel];
+      if (state == kOutside || state == kWaiting) continue;
+      if (state == kCentreIn) {
+        surfels.positions[q.surfel] = nearVertex(surfels, q.surfel);
+        state = kOutside;
+      } else {
+        state = kWaiting;
         waiting_.push_back(q.surfel);
       }
+    }
   // From the bodies' outlines inwards, a ring of neighbours at a time.
   do {
     moves_.clear();
@@ -89,21 +186,49 @@ void Bodies::leave(Surfels& surfels) {
   for (const uint32_t i : waiting_) enclosed_[i] = 0;
 }
 
-void Bodies::find(const Surfels& surfels, Object& body) const {
+void Bodies::find(const Surfels& surfels, Piece& body) const {
   const auto apart = [](const Box& a, const Box& b) {
     return glm::any(glm::lessThan(a.high, b.low)) || glm::any(glm::lessThan(b.high, a.low));
   };
-  for (const Object& other : objects_) {
-    if (&other == &body || apart(other.bounds, body.bounds)) continue;
-    for (uint32_t i = other.surfels.first; i < other.surfels.end; ++i) {
-      const glm::vec3 p = surfels.positions[i] + lift_ * surfels.discs[i] * surfels.normals[i];
-      if (!apart({p, p}, body.bounds)) body.queries.push_back({glm::vec2(p), p.z, i, 0});
-    }
+  const auto ask = [&](uint32_t i, const glm::vec3& from, unsigned char bit) {
+    const glm::vec3 p = from + lift_ * surfels.discs[i] * surfels.normals[i];
+    if (!apart({p, p}, body.bounds)) body.queries.push_back({glm::vec2(p), p.z, i, 0, bit});
+  };
+  const auto answer = [&] {
+    if (body.queries.empty()) return;
+    wind(surfels, body);
+    if (body.open()) leaveHoles(surfels, body);
+    std::erase_if(body.queries, [](const Query& q) { return q.winding <= 0; });
+    body.inside.insert(body.inside.end(), body.queries.begin(), body.queries.end());
+    body.queries.clear();
+  };
+  for (const uint32_t other : fromLeft_) {
+    const Piece& piece = pieces_[other];
+    if (piece.bounds.low.x > body.bounds.high.x) break;
+    const bool own = &piece == &body;
+    if ((!own && body.open()) || apart(piece.bounds, body.bounds)) continue;
+    for (uint32_t k = piece.surfels.first; k < piece.surfels.end; ++k)
+      ask(order_[k], surfels.positions[order_[k]], own ? kCentreIn : kInOther);
   }
-  if (!body.queries.empty()) wind(surfels, body);
+  answer();
+  for (const Query& q : body.inside)
+    if (q.bit == kCentreIn) ask(q.surfel, nearVertex(surfels, q.surfel), kVertexIn);
+  answer();
 }
 
-void Bodies::wind(const Surfels& surfels, Object& body) {
+/// Lets out what lies where the generalized winding number of an open body, which is that of the body with
+/// its holes closed but for what the holes take of the sphere of directions, is at most a half.
+void Bodies::leaveHoles(const Surfels& surfels, Piece& body) const {
+  for (Query& q : body.queries) {
+    if (q.winding <= 0) continue;
+    double sphere = 0;
+    for (uint32_t t = body.firstOfHoles; t < body.triangles.end; ++t)
+      sphere += solidAngle(glm::vec3(q.place, q.height), corners(surfels, t)) / (4 * glsl::pi);
+    if (q.winding - sphere <= 0.5) q.winding = 0;
+  }
+}
+
+void Bodies::wind(const Surfels& surfels, Piece& body) const {
   const glm::vec2 low(body.bounds.low), size = glm::max(glm::vec2(body.bounds.high) - low, glm::vec2(1e-30f));
   const float n = std::clamp(std::floor(std::sqrt(static_cast<float>(body.queries.size()))), 1.f, kMostCells);
   const auto side = static_cast<uint32_t>(n);
@@ -121,17 +246,17 @@ void Bodies::wind(const Surfels& surfels, Object& body) {
   // Each cell's first has become the next one's.
   const auto firstOf = [&](uint32_t cell) { return cell == 0 ? 0 : body.firstOfCell[cell - 1]; };
 
-  for (uint32_t t = body.triangles.first; t < body.triangles.end; t += 3) {
-    const glm::vec3 corners[3] = {surfels.vertices[surfels.triangles[t]],
-                                  surfels.vertices[surfels.triangles[t + 1]],
-                                  surfels.vertices[surfels.triangles[t + 2]]};
-    const glm::uvec2 first = cellOf(glm::min(glm::min(corners[0], corners[1]), corners[2])),
-                     last = cellOf(glm::max(glm::max(corners[0], corners[1]), corners[2]));
+  for (uint32_t t = body.triangles.first; t < body.triangles.end; ++t) {
+    const Corners at = corners(surfels, t);
+    const glm::vec2 from = glm::min(glm::min(at[0], at[1]), at[2]),
+                    to = glm::max(glm::max(at[0], at[1]), at[2]);
+    const glm::uvec2 first = cellOf(from), last = cellOf(to);
     for (uint32_t y = first.y; y <= last.y; ++y)
       for (uint32_t i = firstOf(y * side + first.x); i < body.firstOfCell[y * side + last.x]; ++i) {
         Query& q = body.queries[i];
-        const int around = turns(q.place, corners);
-        if (around != 0 && heightAt(q.place, corners) > q.height) q.winding += around;
+        if (q.place.x < from.x || q.place.x > to.x || q.place.y < from.y || q.place.y > to.y) continue;
+        const int around = turns(q.place, at);
+        if (around != 0 && heightAt(q.place, at) > q.height) q.winding += around;
       }
   }
 }

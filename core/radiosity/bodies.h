@@ -1,10 +1,9 @@
-// Handles surface elements within closed bodies of other objects, such as those of a floor below a block that
-// stands on it.
+// Handles surface elements within bodies, such as those of a floor below a block that stands on it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <span>
 #include <vector>
 
 #include "core/base/export.h"
@@ -17,17 +16,24 @@ struct Surfels;
 /// floors with a face of their own in the same plane.
 inline constexpr double kDefaultLift = 0.02;
 
-/// Finds the surface elements within closed bodies and moves them out. Closed bodies have no backs, so that
-/// an element inside one would see the light outside, and light interpolated between vertices would shine out
+/// Finds the surface elements within bodies and moves them out. Closed bodies have no backs, so that an
+/// element inside one would see the light outside, and light interpolated between vertices would shine out
 /// along the edge where the body stands. These elements are never visible; they take the place of the nearest
 /// ones outside along the mesh, and so their light, as lightmaps are dilated.
+///
+/// A body is a connected piece of a single-sided object that has volume. It may enclose elements of its own,
+/// as where a limb grows out of a body: of those whose centre lies within and whose vertex does not, as in a
+/// crease, the place is that of the vertex. Open pieces enclose only their own: other elements within them
+/// see backs, which are black, and are meant to. Their inside is where the generalized winding number is more
+/// than a half (Jacobson et al. 2013).
 class LIMN_API Bodies {
  public:
   Bodies() = default;
-  /// Takes the topology alone from the surfels. `lift` is in radii of an element's disc.
+  /// Takes the topology from the surfels, and from where they are which pieces have volume. `lift` is in
+  /// radii of an element's disc.
   explicit Bodies(const Surfels& surfels, double lift = kDefaultLift);
-  /// Moves the positions of enclosed elements to those of neighbours outside. Elements of an object that is
-  /// enclosed as a whole stay. Uses all cores; allocates nothing once it has seen as many enclosed elements.
+  /// Moves the positions of enclosed elements out. Elements of a piece that is enclosed as a whole stay. Uses
+  /// all cores; allocates nothing once it has seen as many enclosed elements.
   void leave(Surfels& surfels);
 
  private:
@@ -43,20 +49,43 @@ class LIMN_API Bodies {
     float height;
     uint32_t surfel;
     int winding;
+    unsigned char bit;  ///< what of the element it is, if within
   };
-  struct Object {
-    Range surfels, triangles;  ///< triangles: of their corners
-    bool closed = false;
+  struct Piece {
+    Range surfels;              ///< of order_
+    Range triangles;            ///< of triangles_
+    uint32_t firstOfHoles = 0;  ///< of the triangles that close holes
+    bool solid = false;
     Box bounds;
     std::vector<Query> queries, sorted;
+    std::vector<Query> inside;  ///< of all queries those that lie in the body
     std::vector<uint32_t> firstOfCell;
+
+    bool open() const { return firstOfHoles < triangles.end; }
   };
-  void find(const Surfels& surfels, Object& body) const;
-  static void wind(const Surfels& surfels, Object& body);
+  /// Holds corners: surfels, or behind them all the middles of holes.
+  using Triangle = std::array<uint32_t, 3>;
+
+  void gatherPieces(const Surfels& surfels);
+  void update(const Surfels& surfels);
+  double volume(const Surfels& surfels, const Piece& piece) const;
+  std::array<glm::vec3, 3> corners(const Surfels& surfels, uint32_t triangle) const;
+  void find(const Surfels& surfels, Piece& body) const;
+  void wind(const Surfels& surfels, Piece& body) const;
+  void leaveHoles(const Surfels& surfels, Piece& body) const;
 
   float lift_ = 0;  ///< radii of an element's disc
-  std::vector<Object> objects_;
-  std::vector<unsigned char> enclosed_;  ///< of each surfel
+  std::vector<Piece> pieces_;
+  std::vector<uint32_t> order_;  ///< surfels, those of a piece together
+  std::vector<Triangle> triangles_;
+  /// Holds a vertex of a hole's outline.
+  struct Rim {
+    uint32_t surfel, hole;
+  };
+  std::vector<Rim> rims_;
+  std::vector<glm::vec4> holes_;         ///< sums of their outlines' vertices, and how many
+  std::vector<uint32_t> fromLeft_;       ///< pieces by their bounds' low x
+  std::vector<unsigned char> enclosed_;  ///< of each surfel: what is known of it
   struct Move {
     uint32_t from, to;
   };

@@ -72,16 +72,41 @@ class Builder {
     }
   }
 
-  /// Whether every edge has a neighbour in the opposite direction.
-  bool closed() const {
-    std::map<std::pair<uint32_t, uint32_t>, int> edges;
+  /// Adds the connected pieces and their holes. Returns whether there is no hole: every edge has a neighbour
+  /// in the opposite direction.
+  bool addPieces() {
+    std::map<std::pair<uint32_t, uint32_t>, int> edges;  // between surfels that stand for their places
+    std::vector<uint32_t> standsFor(places_ + 1, 0);
+    for (size_t i = out_.size(); i-- > first_;)
+      standsFor[place_[i - first_]] = static_cast<uint32_t>(i - first_);
+    Sets pieces(out_.size() - first_), holes(out_.size() - first_);
     for (size_t t = firstTriangle_; t < out_.triangles.size(); t += 3)
       for (size_t k = 0; k < 3; ++k) {
-        const uint32_t a = place_[out_.triangles[t + k] - first_];
-        const uint32_t b = place_[out_.triangles[t + (k + 1) % 3] - first_];
+        const uint32_t a = standsFor[place_[out_.triangles[t + k] - first_]];
+        const uint32_t b = standsFor[place_[out_.triangles[t + (k + 1) % 3] - first_]];
         edges[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+        pieces.join(a, b);
       }
-    return std::ranges::all_of(edges, [](const auto& edge) { return edge.second == 0; });
+    std::map<uint32_t, uint32_t> names;
+    for (const uint32_t place : place_) {
+      const auto [found, isNew] = names.emplace(pieces.find(standsFor[place]), out_.pieceCount);
+      out_.pieceCount += isNew ? 1 : 0;
+      out_.pieces.push_back(found->second);
+    }
+    for (const auto& [edge, count] : edges)
+      if (count != 0) holes.join(edge.first, edge.second);
+    names.clear();
+    bool closed = true;
+    for (const auto& [edge, count] : edges) {
+      if (count == 0) continue;
+      closed = false;
+      const auto [found, isNew] = names.emplace(holes.find(edge.first), out_.holeCount);
+      out_.holeCount += isNew ? 1 : 0;
+      const uint32_t from = first_ + (count > 0 ? edge.second : edge.first),
+                     to = first_ + (count > 0 ? edge.first : edge.second);
+      for (int i = 0; i < std::abs(count); ++i) out_.rims.push_back({from, to, found->second});
+    }
+    return closed;
   }
 
   void addClusters() {
@@ -313,9 +338,11 @@ Surfels createSurfels(std::span<const TriangleMesh> objects, float longestEdge, 
       Builder builder(surfels, mesh, object, side);
       builder.addTriangles(longestEdge);
       builder.addClusters();
-      if (!mesh.doubleSided) closed = builder.closed();
+      const bool whole = builder.addPieces();
+      if (!mesh.doubleSided) closed = whole;
     }
     surfels.backless.push_back(closed ? 1 : 0);
+    surfels.doubleSided.push_back(mesh.doubleSided ? 1 : 0);
   }
   surfels.firstOrigin.push_back(static_cast<uint32_t>(surfels.origins.size()));
   addNeighbours(surfels);

@@ -45,7 +45,17 @@ struct Surfels {
   std::vector<uint32_t> triangles;  ///< 3 surfels each; those of backs have the winding of backs
   std::vector<unsigned char>
       backless;  ///< of each object: closed or double-sided, so that no ray meets a back
+  std::vector<unsigned char> doubleSided;  ///< of each object
   uint32_t clusterCount = 0;
+  std::vector<uint32_t> pieces;  ///< of each surfel: the connected piece of its object that it is part of
+  uint32_t pieceCount = 0;
+  /// Holds an edge of a piece's outline, as a triangle that closed the hole would have it.
+  struct Rim {
+    uint32_t from = 0, to = 0;  ///< surfels
+    uint32_t hole = 0;          ///< of holeCount: edges that are connected bound one hole
+  };
+  std::vector<Rim> rims;
+  uint32_t holeCount = 0;
   /// Holds a neighbour; those of surfel i are [firstNeighbour[i], firstNeighbour[i + 1]).
   struct Neighbour {
     uint32_t surfel = 0;

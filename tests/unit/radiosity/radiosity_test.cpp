@@ -356,6 +356,50 @@ TEST(RadiosityTest, WhatLiesWithinAClosedBodyTakesTheLightAroundIt) {
   EXPECT_GT(within, 16u);
 }
 
+/// Two balls that are one object, as a limb that is sunk into a body: no element sees from within.
+TEST(RadiosityTest, WhatLiesWithinAPieceOfItsOwnObjectSeesFromOutside) {
+  const glm::vec3 centres[2] = {{0, 0, 0}, {0.8f, 0.1f, 0.05f}};
+  const float radii[2] = {1, 0.5f};
+  TriangleMesh both = sphereMesh(centres[0], radii[0], 16);
+  const TriangleMesh limb = sphereMesh(centres[1], radii[1], 12);
+  const auto first = static_cast<uint32_t>(both.positions.size());
+  both.positions.insert(both.positions.end(), limb.positions.begin(), limb.positions.end());
+  both.normals.insert(both.normals.end(), limb.normals.begin(), limb.normals.end());
+  for (const uint32_t i : limb.indices) both.indices.push_back(first + i);
+  const Surfels surfels = surfelsOf({both});
+  const ElementSpace space = spaceOf({both});
+  EXPECT_EQ(surfels.pieceCount, 2u);
+  EXPECT_TRUE(surfels.rims.empty());
+  size_t moved = 0;
+  for (size_t i = 0; i < surfels.size(); ++i) {
+    const size_t other = 1 - surfels.pieces[i];
+    const auto within = [&](const glm::vec3& p) {
+      return glm::length(space.worldPoint(p) - centres[other]) < 0.97f * radii[other];
+    };
+    EXPECT_FALSE(within(surfels.positions[i]));
+    if (within(surfels.vertices[i])) ++moved;
+  }
+  EXPECT_GT(moved, 20u);
+}
+
+/// What lies within an open piece of another object sees its back, which is black; a floor is no body.
+TEST(RadiosityTest, OpenPiecesEncloseNothingOfOthers) {
+  TriangleMesh bowl = sphereMesh({0, 0, 0}, 1, 16);
+  std::vector<uint32_t> lower;
+  for (size_t t = 0; t < bowl.indices.size(); t += 3) {
+    const auto height = [&](size_t k) { return bowl.positions[bowl.indices[t + k]].y; };
+    if (std::max({height(0), height(1), height(2)}) < 0.1f)
+      lower.insert(lower.end(), bowl.indices.begin() + static_cast<std::ptrdiff_t>(t),
+                   bowl.indices.begin() + static_cast<std::ptrdiff_t>(t) + 3);
+  }
+  bowl.indices = lower;
+  const Surfels surfels = surfelsOf({bowl, rectangleMesh({-2, -0.5f, -2}, {0, 0, 4}, {4, 0, 0}, 21)});
+  EXPECT_EQ(surfels.pieceCount, 2u);
+  EXPECT_EQ(surfels.holeCount, 2u);
+  for (size_t i = 0; i < surfels.size(); ++i)
+    EXPECT_EQ(surfels.positions[i], surfels.centre(i, surfels.vertices, surfels.normals[i]));
+}
+
 /// Whether a ray from `p` meets one of the triangles of object 0 (Moller and Trumbore 1997).
 bool hidden(const Surfels& surfels, const glm::dvec3& p, const glm::dvec3& ray) {
   for (size_t t = 0; t < surfels.triangles.size(); t += 3) {
