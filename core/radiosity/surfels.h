@@ -2,6 +2,7 @@
 // to the meshes'.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -68,12 +69,18 @@ struct Surfels {
   /// Returns the centre of surfel i for other positions of the vertices: the centroid of its third of the
   /// adjacent triangles, moved along the normal into the vertex's tangent plane. On smooth surfaces that is
   /// nearly the vertex; at the edge of a wall it lies inside the wall's face instead of on the next wall,
-  /// where half of what it saw would lie behind that one.
+  /// where half of what it saw would lie behind that one. Where triangles rise above the tangent plane, in
+  /// hollows and on saddles, it lies as high as they do on average, in front of them: from behind it would
+  /// see what is outside.
   glm::vec3 centre(size_t i, std::span<const glm::vec3> at, const glm::vec3& normal) const {
     glm::vec3 offset(0);
-    for (uint32_t k = firstNeighbour[i]; k < firstNeighbour[i + 1]; ++k)
-      offset += neighbours[k].weight * (at[neighbours[k].surfel] - at[i]);
-    return at[i] + offset - glm::dot(offset, normal) * normal;
+    float rise = 0;
+    for (uint32_t k = firstNeighbour[i]; k < firstNeighbour[i + 1]; ++k) {
+      const glm::vec3 to = neighbours[k].weight * (at[neighbours[k].surfel] - at[i]);
+      offset += to;
+      rise += std::max(glm::dot(to, normal), 0.f);
+    }
+    return at[i] + offset + (rise - glm::dot(offset, normal)) * normal;
   }
 };
 
