@@ -9,7 +9,7 @@
 #include "apps/view/orbit.h"
 #include "core/question/scene_question.h"
 #include "core/render/renderer.h"
-#include "core/technique/registry.h"
+#include "core/session/technique_choice.h"
 
 namespace limn::app {
 
