@@ -2,6 +2,7 @@
 
 #include "core/caustics/caustic_rays.h"
 #include "core/gpu_scene/gpu_scene.h"
+#include "core/history/frame_history.h"
 #include "core/indirect/virtual_lights.h"
 #include "core/rays/ray_geometry.h"
 #include "core/relief_maps/relief_maps.h"
@@ -15,6 +16,7 @@ namespace limn::render {
 FrameServices makeServices(gpu::Device& device, scene::GpuScene& scene) {
   FrameServices services;
   services.add<shadow::ShadowMapService>(device, scene);
+  services.add<history::FrameHistoryService>(scene);
   services.add<indirect::VirtualLightService>();
   services.add<caustics::CausticRayService>(device, scene);
   services.add<rays::RayGeometryService>(device, scene.scene());

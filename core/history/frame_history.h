@@ -1,0 +1,52 @@
+// Declares what frames leave to those after them: the light of a term, averaged over the last frames as far
+// as they show the same surfaces.
+//
+// Each of the last k frames has a layer of its own, with its view. A place is followed into each of them by
+// that frame's camera and by where its instance was then, and counts as far as the same surface is seen
+// there. Light is thus fetched from the frame that made it, never from what was fetched before: it does not
+// spread from frame to frame, and what no longer holds is gone after k - 1 frames. Surfaces that deform
+// (skins, morph targets) are followed as their instances are.
+//
+// A technique whose samples of frame i are set i % k of k sets averages all sets wherever nothing was
+// hidden: where neither light nor surfaces change, pictures do not change from frame to frame.
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "core/base/export.h"
+#include "core/frame/frame_graph.h"
+#include "core/gpu_scene/gpu_scene.h"
+#include "core/technique/frame_service.h"
+
+namespace limn::history {
+
+/// Keeps frames. Those of a graph are forgotten when the next one is built.
+class LIMN_API FrameHistoryService : public FrameService {
+ public:
+  static constexpr const char* serviceName = "frame history";
+  static constexpr int kMostFrames = 16;
+
+  /// `scene` must outlive the service.
+  explicit FrameHistoryService(scene::GpuScene& scene);
+  ~FrameHistoryService() override;
+
+  /// Declares passes that average `light` over this frame and up to `frames` - 1 before it, and returns the
+  /// result: an RGBA32F array of as many layers, rgb the sum over the frames that count and a their number, 0
+  /// where nothing is lit. `light` is an RGBA32F array as large as the surfaces of `gbuffer`, of which rgb /
+  /// a is the value and a is 0 where there is none. `technique` owns the passes. Throws Error where the
+  /// frames exceed the device's limits.
+  frame::TextureHandle average(const GBuffer& gbuffer, frame::TextureHandle light, int frames,
+                               std::string_view technique);
+
+ private:
+  struct Kept;
+  void begin() override;
+  bool update(frame::FrameGraph& graph, const scene::Pose& pose) override;
+
+  scene::GpuScene& scene_;
+  std::vector<std::unique_ptr<Kept>> kept_;
+};
+
+}  // namespace limn::history

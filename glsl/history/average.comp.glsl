@@ -1,0 +1,105 @@
+// The mean of this frame's light and of that which frames before it left at the same surfaces. A frame counts at a pixel as
+// far as the bilinear neighbours of where it had the pixel's place show that place: the same draw instance, a like normal, and
+// no farther from its tangent plane than a pixel is wide.
+//
+// PARTS: layers of the light. MOVES 1: instances move; what moves with one is found where the instance was.
+#include "glsl/history/history_frame.glsl"
+#include "glsl/surface/gbuffer_input.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(std430) readonly buffer HistoryFrames { HistoryFrame frames[]; };
+#if MOVES
+layout(std430) readonly buffer Instances { Instance instances[]; };
+layout(std430) readonly buffer InstancesBefore { Instance instances_before[]; };
+uniform int instance_count;
+#endif
+uniform sampler2DArray light;  // rgb / a is the value; a: 0 where there is none
+uniform sampler2DArray history_light;
+uniform usampler2DArray history_surfaces;
+layout(rgba32f) writeonly uniform image2DArray averaged;  // rgb: sum over frames; a: their number
+uniform int frame_count;  // before this one
+
+const float least_cosine = 0.8;    // of the angle between normals
+const float least_weight = 0.1;    // of neighbours that show the same place, for a frame to count
+const float whole_pixel = 1.0 / 64.0;  // pixels: nearer to a pixel's centre than that is at it
+
+// A place as a frame before this one has it.
+struct PlaceBefore {
+  vec3 position;
+  vec3 normal;
+  uint instance;
+  float reach;  // m, that its neighbours may lie off the tangent plane
+};
+
+void add_neighbour(HistoryFrame f, ivec2 pixel, float weight, PlaceBefore place, inout vec4 sums[PARTS]) {
+  if (weight <= 0.0 || any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
+  uvec2 surface = texelFetch(history_surfaces, ivec3(pixel, f.slot), 0).xy;
+  vec3 ray = f.view_ray_origin.xyz + float(pixel.x) * f.view_ray_dx.xyz + float(pixel.y) * f.view_ray_dy.xyz;
+  vec3 position = f.camera_position.xyz + history_depth(surface) * ray;
+  bool same = history_depth(surface) > 0.0 && history_same_instance(surface, place.instance) &&
+              dot(history_normal(surface), place.normal) >= least_cosine &&
+              abs(dot(place.normal, position - place.position)) <= place.reach;
+  if (!same) return;
+  for (int part = 0; part < PARTS; ++part)
+    sums[part] += weight * texelFetch(history_light, ivec3(pixel, int(f.slot) * PARTS + part), 0);
+}
+
+void add_frame(HistoryFrame f, PlaceBefore place, inout vec4 totals[PARTS]) {
+  vec4 clip = f.world_to_clip * vec4(place.position, 1.0);
+  if (!(clip.w > 0.0)) return;
+  vec2 at = (clip.xy / clip.w * 0.5 + 0.5) * vec2(frame.frame_size) - 0.5;
+  if (!(all(greaterThan(at, vec2(-1.0))) && all(lessThan(at, vec2(frame.frame_size))))) return;
+  ivec2 pixel = ivec2(floor(at + whole_pixel));
+  vec2 share = max(at - vec2(pixel), vec2(0.0));
+  share = mix(share, vec2(0.0), lessThan(share, vec2(whole_pixel)));
+  place.reach *= clip.w;
+  vec4 sums[PARTS];
+  for (int part = 0; part < PARTS; ++part) sums[part] = vec4(0.0);
+  add_neighbour(f, pixel, (1.0 - share.x) * (1.0 - share.y), place, sums);
+  add_neighbour(f, pixel + ivec2(1, 0), share.x * (1.0 - share.y), place, sums);
+  add_neighbour(f, pixel + ivec2(0, 1), (1.0 - share.x) * share.y, place, sums);
+  add_neighbour(f, pixel + ivec2(1, 1), share.x * share.y, place, sums);
+  for (int part = 0; part < PARTS; ++part)
+    if (sums[part].a >= least_weight) totals[part] += vec4(sums[part].rgb / sums[part].a, 1.0);
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
+  vec4 totals[PARTS];
+  bool lit = false;
+  for (int part = 0; part < PARTS; ++part) {
+    vec4 sum = texelFetch(light, ivec3(pixel, part), 0);
+    totals[part] = sum.a > 0.0 ? vec4(sum.rgb / sum.a, 1.0) : vec4(0.0);
+    lit = lit || sum.a > 0.0;
+  }
+  float depth = pixel_depth(pixel);
+  uint instance = pixel_instance(pixel);
+  vec3 position = pixel_position(pixel, depth);
+  vec3 normal = pixel_geometric_normal(pixel);
+#if MOVES
+  instance = min(instance, uint(instance_count - 1));
+  mat4 now = instances[instance].object_to_world;
+  mat3 from_world = inverse(mat3(now));
+  vec3 own_position = from_world * (position - now[3].xyz);
+  vec3 own_normal = transpose(mat3(now)) * normal;
+#endif
+  for (int i = 0; lit && i < frame_count; ++i) {
+    HistoryFrame f = frames[i];
+    PlaceBefore place = PlaceBefore(position, normal, instance, length(frame.view_ray_dx.xyz));
+#if MOVES
+    mat4 before = instances_before[int(f.slot) * instance_count + int(instance)].object_to_world;
+    place.position = mat3(before) * own_position + before[3].xyz;
+    place.normal = normalize(transpose(inverse(mat3(before))) * own_normal);
+    add_frame(f, place, totals);
+#else
+    if (f.still == 0u) {
+      add_frame(f, place, totals);
+    } else {
+      for (int part = 0; part < PARTS; ++part)
+        totals[part] += texelFetch(history_light, ivec3(pixel, int(f.slot) * PARTS + part), 0);
+    }
+#endif
+  }
+  for (int part = 0; part < PARTS; ++part) imageStore(averaged, ivec3(pixel, part), totals[part]);
+}
