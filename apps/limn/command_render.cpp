@@ -201,6 +201,7 @@ int run(const Options& options) {
   renderer.configure(settings);
   renderer.setTime(view.time, view.animation);
 
+  const int framesPerPicture = view.aa * view.aa + render::historyOf(settings.techniques) - 1;
   Writer writer(options);
   if (frames) {
     Progress progress("rendering");
@@ -223,7 +224,7 @@ int run(const Options& options) {
       Progress progress("rendering", patience);
       int rendered = 0;
       picture = render::supersample(renderer, view.camera, view.size, view.aa, [&] {
-        renderWithProgress(renderer, progress, rendered++, view.aa * view.aa);
+        renderWithProgress(renderer, progress, rendered++, framesPerPicture);
       });
     }
     writer.write(options.out, std::move(picture));
@@ -235,7 +236,7 @@ int run(const Options& options) {
   if (repeat > 0) {
     stats = render::measure(renderer, repeat);
     stats->scene = options.scene.scene;
-    stats->framesPerPicture = view.aa * view.aa;
+    stats->framesPerPicture = framesPerPicture;
     printStats(*stats);
   }
   if (options.explain) printExplanation(renderer.explain(), stats ? &*stats : nullptr);

@@ -53,6 +53,7 @@ void Renderer::configure(Settings settings) {
   Implementation& self = *implementation_;
   self.dropGraph();
   self.settings = std::move(settings);
+  self.frameIndex = 0;
 }
 
 void Renderer::setCamera(const scene::CameraPose& camera) {
@@ -67,6 +68,10 @@ void Renderer::setTime(double seconds, int animation) {
 
 bool Renderer::render(frame::Timing timing, const frame::FrameGraph::Cancelled& cancelled) {
   return implementation_->render(timing, cancelled);
+}
+
+int Renderer::framesOfPicture() const {
+  return implementation_->frameIndex == 0 ? historyOf(implementation_->settings.techniques) : 1;
 }
 
 const gpu::Texture& Renderer::display() const {

@@ -85,6 +85,10 @@ LIMN_API int bouncesOf(Term term, const std::vector<TechniqueUse>& techniques);
 /// it; 0 where none answers or the picture shows no specular surfaces.
 LIMN_API int interfacesOf(Term term, const std::vector<TechniqueUse>& techniques);
 
+/// Returns over how many frames the picture averages: the most that a technique does, its parameter
+/// `history`, or 1.
+LIMN_API int historyOf(const std::vector<TechniqueUse>& techniques);
+
 class LIMN_API Renderer {
  public:
   /// Uploads the scene. `scene` and `device` must outlive the renderer.
@@ -93,7 +97,8 @@ class LIMN_API Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Chooses what to render. The graph is built at the next render().
+  /// Chooses what to render. The graph is built at the next render(), whose frame is the first of a sequence:
+  /// nothing of frames before it counts.
   void configure(Settings settings);
   void setCamera(const scene::CameraPose& camera);
   void setTime(double seconds, int animation = scene::kNone);
@@ -101,6 +106,10 @@ class LIMN_API Renderer {
   /// Renders one frame. Throws Error (shader errors, memory, sizes). Returns false when it was cancelled
   /// between two passes (frame::FrameGraph::execute); then there is no picture.
   bool render(frame::Timing timing = frame::Timing::off, const frame::FrameGraph::Cancelled& cancelled = {});
+
+  /// Returns how many frames to render for the next picture: in a sequence one, and at its start as many as
+  /// the techniques average (historyOf()), so that the first picture is as good as those after it.
+  int framesOfPicture() const;
 
   /// Returns the last frame: R, G, B (visibility: three equal channels), and with Settings::channels Z,
   /// coverage, id (-1: nothing seen), albedo.*, N.*. Waits for the GPU.

@@ -102,6 +102,12 @@ int bouncesOf(Term term, const std::vector<TechniqueUse>& techniques) {
   return bounces;
 }
 
+int historyOf(const std::vector<TechniqueUse>& techniques) {
+  int frames = 1;
+  for (const TechniqueUse& use : techniques) frames = std::max(frames, parameterOr(use, "history", 1));
+  return frames;
+}
+
 int interfacesOf(Term term, const std::vector<TechniqueUse>& techniques) {
   const TermInterfaces taken = termInfo(term).interfaces;
   if (taken != TermInterfaces::fromZero && taken != TermInterfaces::fromOne) return 0;

@@ -18,9 +18,12 @@ scene::CameraPose shifted(const scene::CameraPose& camera, const glm::dvec2& off
 
 Image supersample(Renderer& renderer, const scene::CameraPose& camera, glm::ivec2 size, int aa,
                   const std::function<void()>& renderFrame) {
+  const auto renderFrames = [&] {
+    for (int frames = renderer.framesOfPicture(); frames > 0; --frames) renderFrame();
+  };
   if (aa == 1) {
     renderer.setCamera(camera);
-    renderFrame();
+    renderFrames();
     return renderer.read();
   }
   Image picture;
@@ -29,7 +32,7 @@ Image supersample(Renderer& renderer, const scene::CameraPose& camera, glm::ivec
     for (int column = 0; column < aa; ++column) {
       const glm::dvec2 offset((column + 0.5) / aa - 0.5, 0.5 - (row + 0.5) / aa);
       renderer.setCamera(shifted(camera, offset, size));
-      renderFrame();
+      renderFrames();
       Image sample = renderer.read();
       const auto channels = static_cast<size_t>(sample.channelCount());
       sums.resize(3 * sample.pixelCount());

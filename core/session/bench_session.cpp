@@ -221,7 +221,7 @@ bench::Measurement BenchSession::measure(const bench::Case& c) {
   render::FrameStats stats = render::measure(loaded.renderer, c.frames, c.warmup, playback(loaded, c));
   loaded.renderer.setTime(loaded.view.time, loaded.view.animation);
   stats.scene = c.scene;
-  stats.framesPerPicture = c.aa * c.aa;
+  stats.framesPerPicture = c.aa * c.aa + render::historyOf(settings.techniques) - 1;
   result.cost.renderer = stats.renderer;
   result.cost.backend = stats.backend;
   result.cost.timer = frame::name(stats.timer);
