@@ -31,6 +31,7 @@ GatherSettings gatherSettings(const ParameterValues& p) {
           .interleaving = static_cast<Interleaving>(p.choice("interleaving")),
           .clamp = p.real("clamp"),
           .compensation = p.boolean("compensation"),
+          .history = p.integer("history"),
           .blur = p.boolean("blur"),
           .blurPosition = p.real("blur_position"),
           .blurPlane = p.real("blur_plane"),
@@ -40,7 +41,9 @@ GatherSettings gatherSettings(const ParameterValues& p) {
 VirtualLightDesc virtualLightDesc(const ParameterValues& p) {
   return {.count = p.integer("vpls"),
           .mapSize = p.integer("rsm_size"),
-          .lightSamples = p.integer("light_samples")};
+          .lightSamples = p.integer("light_samples"),
+          .sets = p.integer("history"),
+          .block = p.integer("history") > 1 ? usableBlock(p.integer("block"), p.integer("vpls")) : 1};
 }
 
 Gather::Gather(frame::FrameGraph& graph, const TechniqueInputs& inputs, std::string_view technique,
@@ -56,24 +59,26 @@ Gather::Gather(frame::FrameGraph& graph, const TechniqueInputs& inputs, std::str
       gbuffer_(inputs.gbuffer),
       size_(inputs.size) {
   settings_.block = usableBlock(settings.block, lights.count);
+  blurred_ = settings_.blur && settings_.block > 1;
+  falling_ = blurred_ && !residual_ && settings_.history > 1 && settings_.clamp > 0;
   if (settings_.interleaving == Interleaving::split && settings_.block > 1) {
     size_ = (inputs.size + settings_.block - 1) / settings_.block * settings_.block;
     gbuffer_ = split();
   }
-  shaded_ = screen("shaded", size_);
+  shaded_ = screen("shaded", size_, parts());
 }
 
-TextureHandle Gather::screen(std::string_view name, glm::ivec2 size) const {
+TextureHandle Gather::screen(std::string_view name, glm::ivec2 size, int layers) const {
   return graph_.createTexture(name, {.target = GL_TEXTURE_2D_ARRAY,
                                      .format = GL_RGBA32F,
                                      .width = size.x,
                                      .height = size.y,
-                                     .layers = parts()});
+                                     .layers = layers});
 }
 
 void Gather::defineParts(gpu::ProgramDesc& program) const {
   program.defines["GATHER_SPECULAR"] = specular_ ? "1" : "0";
-  program.defines["GATHER_RESIDUAL"] = residual_ ? "1" : "0";
+  program.defines["GATHER_RESIDUAL"] = residual_ || falling_ ? "1" : "0";
 }
 
 GBuffer Gather::split() {
@@ -121,18 +126,22 @@ void Gather::shade(ShadePass shade) {
   defineParts(shade.program);
   const bool splitting = gbuffer_.depth != inputs_.gbuffer.depth;
   shade.program.defines["SPLIT"] = splitting ? "1" : "0";
+  shade.program.defines["GATHER_FALLING"] = falling_ ? "1" : "0";
   shade.program.defines["ACCUMULATE"] = accumulate ? "1" : "0";
   shade.program.defines["LAMBERTIAN"] = specular_ ? "0" : "1";
   const auto program = pass.program(shade.program);
   pass.execute([program, shade = std::move(shade), lightCount = lights_.count, settings = settings_,
-                size = inputs_.size](frame::PassContext& context) {
+                size = inputs_.size, falling = falling_, glossy = specular_](frame::PassContext& context) {
     gpu::Program& kernel = context.use(program);
     const auto block = static_cast<unsigned>(settings.block);
     kernel.set("vpl_count", static_cast<unsigned>(lightCount));
     kernel.set("batch_first", static_cast<unsigned>(shade.first));
     kernel.set("batch_count", static_cast<unsigned>(shade.count));
     kernel.set("block", block);
-    kernel.set("nearest", settings.clamp);
+    const float least = settings.clamp / std::sqrt(static_cast<float>(settings.history));
+    kernel.set("nearest", falling ? least * static_cast<float>(settings.block) : least);
+    if (falling) kernel.set("least_nearest", least);
+    if (falling && glossy) kernel.set("glossy_nearest", settings.clamp);
     if (shade.bind) shade.bind(kernel);
     const glm::ivec2 part = (size + settings.block - 1) / settings.block;
     context.dispatch(part.x, part.y, settings.block * settings.block, 2 * kGroup, 2 * kGroup);
@@ -143,8 +152,8 @@ TextureHandle Gather::merge(TextureHandle shaded) {
   frame::PassBuilder pass = graph_.addPass("merge", technique_);
   pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "size of the screen")
       .read(shaded, Access::sampled, "split", "sub-buffers");
-  const TextureHandle merged =
-      pass.write(screen("merged", inputs_.size), Access::imageStore, "merged", "pixels in their places");
+  const TextureHandle merged = pass.write(screen("merged", inputs_.size, parts()), Access::imageStore,
+                                          "merged", "pixels in their places");
   gpu::ProgramDesc description{.files = {"glsl/indirect/merge.comp.glsl"}, .defines = {}};
   defineParts(description);
   const auto program = pass.program(description);
@@ -157,16 +166,17 @@ TextureHandle Gather::merge(TextureHandle shaded) {
 }
 
 TextureHandle Gather::blurOnce(std::string_view name, TextureHandle from, int width, int stride,
-                               int firstPart, int endPart, bool vertical) {
+                               int firstPart, int endPart, bool vertical, bool fold) {
   frame::PassBuilder pass = graph_.addPass(name, technique_);
   pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, scene extent")
       .read(inputs_.gbuffer.depth, Access::sampled, kGBufferNames.depth, "positions")
       .read(inputs_.gbuffer.normal, Access::sampled, kGBufferNames.normal, "normals")
       .read(from, Access::sampled, "gathered", "what is averaged");
-  const TextureHandle to =
-      pass.write(screen(name, inputs_.size), Access::imageStore, "blurred", "sums over like neighbours");
+  const TextureHandle to = pass.write(screen(name, inputs_.size, fold ? parts() - 1 : parts()),
+                                      Access::imageStore, "blurred", "sums over like neighbours");
   gpu::ProgramDesc description{.files = {"glsl/indirect/blur.comp.glsl"},
                                .defines = {{"VERTICAL", vertical ? "1" : "0"},
+                                           {"FOLD", fold ? "1" : "0"},
                                            {"PARTS_FIRST", std::to_string(firstPart)},
                                            {"PARTS_END", std::to_string(endPart)}}};
   defineParts(description);
@@ -185,22 +195,27 @@ TextureHandle Gather::blurOnce(std::string_view name, TextureHandle from, int wi
 
 TextureHandle Gather::blur(std::string_view name, TextureHandle from, int width, int stride, int firstPart,
                            int endPart) {
-  const TextureHandle rows = blurOnce(name, from, width, stride, firstPart, endPart, false);
-  return blurOnce(name, rows, width, stride, firstPart, endPart, true);
+  const TextureHandle rows = blurOnce(name, from, width, stride, firstPart, endPart, false, false);
+  return blurOnce(name, rows, width, stride, firstPart, endPart, true, falling_);
 }
 
 TextureHandle Gather::finish(TextureHandle target) {
   TextureHandle gathered = shaded_;
   if (gbuffer_.depth != inputs_.gbuffer.depth) gathered = merge(gathered);
-  const bool blurred = settings_.blur && settings_.block > 1;
-  if (blurred) {
+  if (blurred_) {
     gathered = blur("blur", gathered, settings_.block, 1, 0, parts());
   } else {
     graph_.leaveOut("blur", technique_,
                     settings_.blur ? "every pixel has all virtual lights" : "blur is off");
   }
+  if (settings_.history > 1) {
+    gathered = inputs_.service<history::FrameHistoryService>().average(inputs_.gbuffer, gathered,
+                                                                       settings_.history, technique_);
+  } else {
+    graph_.leaveOut("average frames", technique_, "history is 1");
+  }
   TextureHandle spread = gathered;
-  int reach = blurred ? settings_.block : 1;  // pixels; taps lie closer than what they see is smooth
+  int reach = blurred_ ? settings_.block : 1;  // pixels; taps lie closer than what they see is smooth
   for (bool more = residual_; more; more = reach < inputs_.size.y / kSpreadShare) {
     const int stride = std::max(1, reach / 2);
     spread = blur("spread residual", spread, kSpreadWidth, stride, parts() - 1, parts());
@@ -213,8 +228,9 @@ TextureHandle Gather::finish(TextureHandle target) {
   if (residual_) pass.read(spread, Access::sampled, "spread", "what the clamp took away");
   readSurfaces(pass, inputs_.gbuffer);
   const TextureHandle result = pass.write(target, Access::imageLoadStore, "radiance", "indirect light");
-  gpu::ProgramDesc description{.files = {"glsl/indirect/reflect.comp.glsl"}, .defines = {}};
-  defineParts(description);
+  gpu::ProgramDesc description{
+      .files = {"glsl/indirect/reflect.comp.glsl"},
+      .defines = {{"GATHER_SPECULAR", specular_ ? "1" : "0"}, {"GATHER_RESIDUAL", residual_ ? "1" : "0"}}};
   const auto program = pass.program(description);
   pass.execute([program, size = inputs_.size](frame::PassContext& context) {
     context.use(program);

@@ -4,7 +4,8 @@
 // Segovia et al. 2006): the G-buffer is split into block x block sub-buffers, each pixel shades N / block^2
 // virtual lights, the sub-buffers are merged and blurred, and the result is reflected by the surfaces. With
 // Interleaving::addressed the shade pass finds its pixels itself, so that nothing is split or merged; the
-// picture is identical to the bit.
+// picture is identical to the bit. With a history (core/history/frame_history.h) each frame has a set of
+// virtual lights of its own, and what the surfaces reflect is the mean over the last frames.
 #pragma once
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "core/frame/frame_graph.h"
+#include "core/history/frame_history.h"
 #include "core/indirect/virtual_lights.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
@@ -30,9 +32,9 @@ inline constexpr const char* kInterleavingNames[] = {"addressed", "split"};
 /// Returns the parameters of a technique with virtual lights: their number, its own, and those that all such
 /// techniques share. `block` is the default of the side of the pattern of interleaved pixels.
 template <size_t N = 0>
-constexpr std::array<Parameter, N + 11> gatherParameters(const std::array<Parameter, N>& own = {},
+constexpr std::array<Parameter, N + 12> gatherParameters(const std::array<Parameter, N>& own = {},
                                                          int block = 8) {
-  std::array<Parameter, N + 11> all{
+  std::array<Parameter, N + 12> all{
       integer("vpls", 1024, {1, 65536}, "lights", "Number of virtual point lights, over all lights")
           .quality()
           .logScale()};
@@ -48,9 +50,13 @@ constexpr std::array<Parameter, N + 11> gatherParameters(const std::array<Parame
               "lights"),
       choice("interleaving", 0, kInterleavingNames,
              "addressed: pixels are found by address; split: the G-buffer is split and the result merged"),
-      real("clamp", 0.03, {0, 1}, "scene extents",
-           "Least distance that is used for a virtual light; 0: no clamping"),
+      real(
+          "clamp", 0.03, {0, 1}, "scene extents",
+          "Least distance that is used for a virtual light; 0: no clamping. With a history of n frames it is "
+          "this over the root of n where the blur covers the pattern, and more where it does not"),
       boolean("compensation", false, "Spread the light that the clamp removes over neighbouring pixels"),
+      integer("history", 1, {1, history::FrameHistoryService::kMostFrames}, "frames",
+              "Frames whose light is averaged, each with virtual lights of its own; 1: this frame's alone"),
       boolean("blur", true, "Average over the pattern of interleaved pixels, not across edges"),
       real("blur_position", 0.1, {0, 1}, "scene extents", "Pixels farther apart than this are not averaged"),
       real("blur_plane", 0.01, {0, 1}, "scene extents",
@@ -69,6 +75,7 @@ struct GatherSettings {
   Interleaving interleaving = Interleaving::addressed;
   float clamp = 0;
   bool compensation = false;
+  int history = 1;
   bool blur = false;
   float blurPosition = 0.1f, blurPlane = 0.01f, blurNormal = 0.8f;
 };
@@ -98,15 +105,15 @@ class LIMN_API Gather {
   frame::TextureHandle finish(frame::TextureHandle target);
 
  private:
-  int parts() const { return 1 + (specular_ ? 1 : 0) + (residual_ ? 1 : 0); }
-  frame::TextureHandle screen(std::string_view name, glm::ivec2 size) const;
+  int parts() const { return 1 + (specular_ ? 1 : 0) + (residual_ || falling_ ? 1 : 0); }
+  frame::TextureHandle screen(std::string_view name, glm::ivec2 size, int layers) const;
   void defineParts(gpu::ProgramDesc& program) const;
   GBuffer split();
   frame::TextureHandle merge(frame::TextureHandle shaded);
   frame::TextureHandle blur(std::string_view name, frame::TextureHandle from, int width, int stride,
                             int firstPart, int endPart);
   frame::TextureHandle blurOnce(std::string_view name, frame::TextureHandle from, int width, int stride,
-                                int firstPart, int endPart, bool vertical);
+                                int firstPart, int endPart, bool vertical, bool fold);
 
   frame::FrameGraph& graph_;
   TechniqueInputs inputs_;
@@ -114,8 +121,10 @@ class LIMN_API Gather {
   VirtualLights lights_;
   GatherSettings settings_;
   bool specular_, residual_;
-  GBuffer gbuffer_;  ///< split if the settings say so
-  glm::ivec2 size_;  ///< of the shaded screen: whole sub-buffers
+  bool blurred_ = false;
+  bool falling_ = false;  ///< the clamp of a pixel falls with the lights of which the blur makes it the mean
+  GBuffer gbuffer_;       ///< split if the settings say so
+  glm::ivec2 size_;       ///< of the shaded screen: whole sub-buffers
   frame::TextureHandle shaded_;
 };
 

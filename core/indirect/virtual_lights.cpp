@@ -30,13 +30,13 @@ struct Builder {
   BufferHandle perLayer(const char* name) const {
     return buffer(name, static_cast<size_t>(maps.layers), sizeof(glm::vec4));
   }
-  void readMaps(frame::PassBuilder& pass) const {
+  void readMaps(frame::PassBuilder& pass, bool cacheable) const {
     pass.read(maps.depth, Access::sampled, "reflective_depth", "where light arrives")
         .read(maps.normal, Access::sampled, "reflective_normal", "which way surfaces face")
         .read(maps.albedo, Access::sampled, "reflective_albedo", "what is reflected")
         .read(maps.views, Access::storageLoad, "Views", "projections")
-        .read(handles.lights, Access::storageLoad, "Lights", "what lights send")
-        .cacheable();
+        .read(handles.lights, Access::storageLoad, "Lights", "what lights send");
+    if (cacheable) pass.cacheable();
     scene::LightTextureInput(handles).declare(pass);
   }
   /// Of the shaders that read the maps' texels.
@@ -64,7 +64,7 @@ void setGroups(gpu::Program& kernel, int layers, size_t lightCount, int lightSam
 BufferHandle Builder::tileFlux() const {
   const int across = tilesPerSide(maps.size);
   frame::PassBuilder pass = graph.addPass("reflected flux", "indirect");
-  readMaps(pass);
+  readMaps(pass, true);
   const BufferHandle tiles = pass.write(
       buffer("flux of tiles", static_cast<size_t>(across) * across * maps.layers, sizeof(glm::vec4)),
       Access::storageStore, "Tiles", "sums of reflected flux");
@@ -95,18 +95,21 @@ BufferHandle Builder::layerFlux(BufferHandle values, bool sampled, uint32_t coun
 
 BufferHandle Builder::sample(BufferHandle reflected) const {
   frame::PassBuilder pass = graph.addPass("virtual lights", "indirect");
-  readMaps(pass);
+  readMaps(pass, desc.sets == 1);
+  if (desc.sets > 1) pass.read(handles.frame, Access::uniformBuffer, "FrameBlock", "which set it is");
   pass.read(reflected, Access::storageLoad, "LayerFlux", "how many samples a map deserves")
       .read(maps.lights, Access::storageLoad, "MapLights", "which maps belong together");
   const BufferHandle lights =
       pass.write(buffer("virtual lights", static_cast<size_t>(desc.count), sizeof(glsl::VirtualPointLight)),
                  Access::storageStore, "VirtualLights", "samples of the maps");
-  const auto program = pass.program(texelProgram("glsl/indirect/sample_maps.comp.glsl", {}));
+  const auto program = pass.program(
+      texelProgram("glsl/indirect/sample_maps.comp.glsl", {{"SETS", std::to_string(desc.sets)}}));
   pass.execute(
       [program, layers = maps.layers, desc = desc, lightCount = lightCount](frame::PassContext& context) {
         gpu::Program& kernel = context.use(program);
         kernel.set("count", static_cast<unsigned>(desc.count));
         kernel.set("light_samples", desc.lightSamples);
+        if (desc.sets > 1) kernel.set("block", static_cast<unsigned>(desc.block));
         setGroups(kernel, layers, lightCount, desc.lightSamples);
         context.dispatch(desc.count, 1, 1, kGroup, 1);
       });

@@ -24,6 +24,10 @@ struct VirtualLightDesc {
   int count = 1024;      ///< N
   int mapSize = 256;     ///< texels per side of each layer of the reflective shadow maps
   int lightSamples = 1;  ///< points on each light with extent that maps are drawn from; 1: its centre
+  int sets = 1;          ///< frame i has set i % sets of as many disjoint sets; 1: all have the same lights
+  /// Side of the pattern of interleaved pixels (glsl/indirect/gather.glsl). The sets of each sub-buffer are
+  /// consecutive, as though it had the lights of all sets.
+  int block = 1;
   bool operator==(const VirtualLightDesc&) const = default;
 };
 

@@ -6,6 +6,9 @@
 // counts once: 1 - t / width at t, and t / width at t - width. Where one of these two does not count, the other does in
 // full.
 //
+// FOLD 1: the residual goes to the diffuse part, as far as the pattern's places count. A pixel is thus lit as with a bound of the
+// inverse square that falls with the root of the number of lights of which it is the mean: 1 / bound^2 is linear in it.
+//
 // PARTS_FIRST, PARTS_END: the parts blurred. VERTICAL 1: along columns.
 #include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/indirect/gather_parts.glsl"
@@ -67,6 +70,9 @@ void main() {
       sums[part - PARTS_FIRST] += sum;
     }
   }
-  for (int part = PARTS_FIRST; part < PARTS_END; ++part)
+#if FOLD
+  sums[gather_part_diffuse].rgb += sums[gather_part_diffuse].a / float(width) * sums[gather_part_residual].rgb;
+#endif
+  for (int part = PARTS_FIRST; part < PARTS_END - FOLD; ++part)
     imageStore(blurred, ivec3(pixel, part), sums[part - PARTS_FIRST] / float(width));
 }

@@ -13,8 +13,7 @@ uniform uint block;  // side of the pattern of sub-buffers
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= light_count) return;
-  uint sub_buffer = i * block * block / light_count;
-  while (gather_begin(sub_buffer + 1u, light_count, block) <= i) ++sub_buffer;
+  uint sub_buffer = gather_sub_buffer(i, light_count, block);
   uint first = gather_begin(sub_buffer, light_count, block);
   uint end = gather_begin(sub_buffer + 1u, light_count, block);
   uint cluster = mapping[i];

@@ -38,5 +38,12 @@ LIMN_FN float gather_residual(float d2, float nearest2, float least) {
 // which a low-discrepancy sequence spreads over all lit surfaces.
 LIMN_FN uint gather_begin(uint sub_buffer, uint count, uint block) { return sub_buffer * count / (block * block); }
 
+// The sub-buffer that has a light.
+LIMN_FN uint gather_sub_buffer(uint light, uint count, uint block) {
+  uint sub_buffer = light * block * block / count;
+  while (gather_begin(sub_buffer + 1u, count, block) <= light) ++sub_buffer;
+  return sub_buffer;
+}
+
 LIMN_END
 #endif  // LIMN_GATHER_GLSL

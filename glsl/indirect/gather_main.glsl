@@ -3,6 +3,9 @@
 // sub-buffer; 0: both are screens. PARTS: layers of the result (gather_part_*). LAMBERTIAN 1: no material has a specular
 // part. MATERIAL_MODELS, SURFACE_TANGENTS: see surface_response.glsl. ACCUMULATE 1: adds to what other batches of lights left. VIRTUAL_LIGHT_COUNT: of lights, where they fit a uniform block.
 //
+// GATHER_FALLING 1: the residual is what lies between the bound of a pixel that is the mean of nothing but its own lights and that
+// of one that is the mean of all sub-buffers' (blur.comp.glsl); the specular part has a bound of its own.
+//
 // A thread shades four pixels of its sub-buffer, so that a light is loaded once for them: one in each quarter of what its work
 // group shades, so that neighbouring threads shade neighbours. They have names of their own in what follows: compilers keep
 // what a loop indexes in memory.
@@ -45,6 +48,10 @@ uniform uint batch_first;  // virtual lights that this pass may use
 uniform uint batch_count;
 uniform uint block;        // pixels
 uniform float nearest;     // part of the scene's extent
+#if GATHER_FALLING
+uniform float least_nearest;   // the same, where a pixel is the mean of all sub-buffers: the residual is what lies between
+uniform float glossy_nearest;  // the same, of the specular part
+#endif
 
 struct Receiver {
   vec3 position;
@@ -57,7 +64,10 @@ struct Receiver {
   SurfaceMaterial material;
   vec3 to_viewer;
 #endif
-  float least;            // m^2 of the pixel on the surface, over pi
+  float least;            // m^2: of the pixel on the surface, over pi, or the square of the least bound
+#if GATHER_FALLING
+  float glossy_least;     // m^2
+#endif
 };
 
 // A virtual light as a receiver sees it.
@@ -114,7 +124,12 @@ void gather_from(VirtualPointLight light, uint pixel, Receiver r, float nearest2
     parts.specular = surface_response(r.material, r.normal, r.to_viewer, l) / max(dot(r.normal, l), 1e-6);
   }
 #endif
-  sum.specular += (share * parts.specular) * light.flux.rgb;
+#if GATHER_FALLING
+  float glossy = share * (1.0 + gather_residual(sight.d2, nearest2, r.glossy_least));
+#else
+  float glossy = share;
+#endif
+  sum.specular += (glossy * parts.specular) * light.flux.rgb;
   share *= parts.diffuse;
 #endif
   sum.diffuse += share * light.flux.rgb;
@@ -154,8 +169,15 @@ GatherPixel gather_pixel(ivec2 pixel, out Receiver r) {
   r.to_viewer = to_viewer;
 #endif
 #endif
+#if GATHER_FALLING
+  float bound = least_nearest * gather_extent();
+  r.least = bound * bound;
+  bound = glossy_nearest * gather_extent();
+  r.glossy_least = bound * bound;
+#else
   float footprint = depth * length(frame.view_ray_dx.xyz);
   r.least = footprint * footprint * inverse_pi;
+#endif
   return p;
 }
 

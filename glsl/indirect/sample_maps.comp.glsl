@@ -1,20 +1,38 @@
 // Virtual point lights at Halton points of reflective shadow maps. The third coordinate chooses the layer, in proportion
 // to the flux it reflects, group by group; the other two the texel. Such a light carries the flux of 1 / (N p) of its
 // layer, where p is the layer's share of all flux. Its flux.w is the group's first layer: what conserve_flux needs.
+//
+// SETS: frame i has set i % SETS; 1: all frames have the same. The sets of a sub-buffer of interleaved pixels follow each other
+// in the sequence, so that over all sets it has the points that it would have of SETS times as many lights.
 #include "glsl/numeric/halton.glsl"
 #include "glsl/indirect/map_groups.glsl"
 #include "glsl/indirect/reflective_texel.glsl"
 #include "glsl/indirect/virtual_light.glsl"
+#if SETS > 1
+#include "glsl/indirect/gather.glsl"
+#include "glsl/scene/blocks.glsl"
+#endif
 
 layout(local_size_x = 64) in;
 layout(std430) readonly buffer LayerFlux { vec4 layer_flux[]; };
 layout(std430) writeonly buffer VirtualLights { VirtualPointLight virtual_lights[]; };
 uniform uint count;  // of virtual lights
+#if SETS > 1
+uniform uint block;  // side of the pattern of sub-buffers
+#endif
 
 void main() {
   uint index = gl_GlobalInvocationID.x;
   if (index >= count) return;
-  vec3 at = halton_point(index + 1u);
+#if SETS > 1
+  uint sub_buffer = gather_sub_buffer(index, count, block);
+  uint first = gather_begin(sub_buffer, count, block);
+  uint points = gather_begin(sub_buffer + 1u, count, block) - first;
+  uint number = uint(SETS) * first + frame.frame_index % uint(SETS) * points + index - first;
+#else
+  uint number = index;
+#endif
+  vec3 at = halton_point(number + 1u);
   float total = 0.0;
   for (uint l = 0u; l < layers; ++l) total += flux_weight(layer_flux[l].rgb);
   float wanted = at.z * total;

@@ -1,0 +1,147 @@
+// What the frames that indirect light is averaged over promise.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "core/render/supersample.h"
+#include "tests/gpu/render_test.h"
+
+namespace limn {
+namespace {
+
+class FrameHistoryTest : public RenderTest {
+ protected:
+  static constexpr int kFrames = 4;
+  static constexpr glm::ivec2 kSize{64, 48};
+
+  static render::Settings gathered(int lights, int history) {
+    return settings(kSize.x, kSize.y, Term::indirect,
+                    {technique("reflective_shadow_map", {{"vpls", std::to_string(lights)},
+                                                         {"block", "1"},
+                                                         {"rsm_size", "64"},
+                                                         {"history", std::to_string(history)}})});
+  }
+  static Image next(render::Renderer& renderer, const scene::CameraPose& camera) {
+    renderer.setCamera(camera);
+    renderer.render();
+    return renderer.read();
+  }
+  /// The camera, turned to the right.
+  static scene::CameraPose turned(scene::CameraPose camera, float degrees) {
+    camera.worldToView =
+        glm::rotate(glm::mat4(1), glm::radians(degrees), glm::vec3(0, 1, 0)) * camera.worldToView;
+    return camera;
+  }
+  static Image still(render::Renderer& renderer, render::Settings s, const scene::CameraPose& camera) {
+    renderer.configure(std::move(s));
+    return render::supersample(renderer, camera, kSize, 1);
+  }
+};
+
+TEST_F(FrameHistoryTest, APictureIsTheMeanOfAllSets) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  const scene::CameraPose camera = renderer.pose().cameras.at(0);
+  // The clamp of both: that of n frames is smaller by their root.
+  render::Settings once = gathered(64 * kFrames, 1);
+  once.techniques[0].parameters.set("clamp", "0.015");
+  const Image many = still(renderer, once, camera);
+  once = gathered(64, 1);
+  once.techniques[0].parameters.set("clamp", "0.015");
+  const double one = rmse(still(renderer, once, camera), many);
+  const double all = rmse(still(renderer, gathered(64, kFrames), camera), many);
+  EXPECT_LT(all, 0.2 * one);
+}
+
+TEST_F(FrameHistoryTest, StillPicturesStayAsTheyAre) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  const scene::CameraPose camera = renderer.pose().cameras.at(0);
+  const Image first = still(renderer, gathered(64, kFrames), camera);
+  expectWithin(first, 0, 1e3f);
+  for (int frame = 0; frame < kFrames + 1; ++frame)
+    EXPECT_LT(rmse(next(renderer, camera), first), 1e-6 * mean(first)) << frame;
+}
+
+TEST_F(FrameHistoryTest, SequencesOfTheSameFramesAreTheSameToTheBit) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  const scene::CameraPose camera = renderer.pose().cameras.at(0);
+  const auto sequence = [&] {
+    renderer.configure(gathered(64, kFrames));
+    Image last;
+    for (int frame = 0; frame < kFrames; ++frame)
+      last = next(renderer, turned(camera, static_cast<float>(frame)));
+    return last;
+  };
+  const Image before = sequence();
+  EXPECT_TRUE(std::ranges::equal(before.data(), sequence().data()));
+}
+
+/// Half as far from what all sets together give as this frame's set alone.
+TEST_F(FrameHistoryTest, LightIsFollowedAsTheCameraTurns) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  const scene::CameraPose camera = renderer.pose().cameras.at(0);
+  const scene::CameraPose last = turned(camera, 2);
+  const Image all = still(renderer, gathered(64, kFrames), last);
+  renderer.configure(gathered(64, kFrames));
+  for (int frame = 0; frame < kFrames; ++frame)
+    next(renderer, turned(camera, 2.f * static_cast<float>(frame + 1) / kFrames));
+  const double followed = rmse(renderer.read(), all);
+  renderer.configure(gathered(64, kFrames));
+  const double alone = rmse(next(renderer, last), all);
+  EXPECT_LT(followed, 0.5 * alone);
+}
+
+TEST_F(FrameHistoryTest, WhereNothingWasSeenBeforeTheFrameStandsAlone) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  scene::CameraPose inside = renderer.pose().cameras.at(0);
+  const glm::vec3 middle(0.5f * (renderer.pose().bounds.low + renderer.pose().bounds.high));
+  inside.worldToView = glm::lookAt(middle, middle + glm::vec3(1, 0, 0), glm::vec3(0, 1, 0));
+  scene::CameraPose other = inside;
+  other.worldToView = glm::lookAt(middle, middle - glm::vec3(1, 0, 0), glm::vec3(0, 1, 0));
+  renderer.configure(gathered(64, kFrames));
+  const Image fresh = next(renderer, other);
+  renderer.configure(gathered(64, kFrames));
+  for (int frame = 0; frame < kFrames; ++frame) next(renderer, inside);
+  EXPECT_TRUE(std::ranges::equal(next(renderer, other).data(), fresh.data()));
+  EXPECT_GT(mean(fresh), 0);
+}
+
+TEST_F(FrameHistoryTest, OneFrameHasNoPassAndNoTextureForIt) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  next(renderer, renderer.pose().cameras.at(0));
+  renderer.configure(gathered(64, 1));
+  next(renderer, renderer.pose().cameras.at(0));
+  for (const frame::PassReport& pass : renderer.explain()) {
+    EXPECT_NE(pass.name, "keep frame");
+    if (pass.name == "average frames") {
+      EXPECT_EQ(pass.state, frame::PassState::leftOut);
+    }
+  }
+}
+
+/// Metaballs change their topology, robots walk: light is finite and of the same amount.
+TEST_F(FrameHistoryTest, WhatMovesKeepsItsLight) {
+  for (const char* name : {"metaballs", "atrium_robots"}) {
+    const scene::Scene scene = asset(name);
+    render::Renderer renderer(device(), scene);
+    const auto at = [&](int frame) {
+      renderer.setTime(frame / 30.0, scene.animations.empty() ? scene::kNone : 0);
+      return next(renderer, renderer.pose().cameras.at(0));
+    };
+    renderer.configure(gathered(256, kFrames));
+    for (int frame = 0; frame < kFrames; ++frame) at(frame);
+    const Image moved = at(kFrames);
+    expectWithin(moved, 0, 1e4f);
+    renderer.configure(gathered(1024, 1));
+    EXPECT_NEAR(mean(moved) / mean(at(kFrames)), 1, 0.1) << name;
+  }
+}
+
+}  // namespace
+}  // namespace limn
