@@ -26,7 +26,8 @@ glsl::HistoryFrame viewOf(const glsl::FrameBlock& frame) {
           .view_ray_dy = frame.view_ray_dy,
           .slot = 0,
           .still = 0,
-          .unused = {}};
+          .age = 0,
+          .unused = 0};
 }
 
 }  // namespace
@@ -41,7 +42,7 @@ struct FrameHistoryService::Kept {
   int frames = 0, parts = 0;
   bool moves = false;
   std::array<std::optional<Slot>, kMostFrames> slots;
-  std::array<glsl::HistoryFrame, kMostFrames> found{};  ///< those before this frame, the youngest first
+  std::array<glsl::HistoryFrame, kMostFrames> found{};  ///< those before this frame, the oldest first
   int count = 0;
   gpu::Texture light, surfaces;
   gpu::Buffer views, instances;
@@ -54,7 +55,7 @@ struct FrameHistoryService::Kept {
 void FrameHistoryService::Kept::find(const glsl::FrameBlock& now) {
   count = 0;
   glsl::HistoryFrame view = viewOf(now);
-  for (uint32_t age = 1; age < static_cast<uint32_t>(frames) && age <= now.frame_index; ++age) {
+  for (uint32_t age = std::min(static_cast<uint32_t>(frames), now.frame_index); age > 0; --age) {
     const int slot = slotOf(now.frame_index - age);
     const std::optional<Slot>& held = slots.at(static_cast<size_t>(slot));
     if (!held || held->frame != now.frame_index - age) continue;
@@ -63,6 +64,7 @@ void FrameHistoryService::Kept::find(const glsl::FrameBlock& now) {
     before = held->view;
     before.slot = static_cast<uint32_t>(slot);
     before.still = still ? 1 : 0;
+    before.age = age;
   }
   if (count > 0) views.update(0, found.data(), static_cast<size_t>(count) * sizeof(found[0]));
 }
@@ -128,6 +130,7 @@ frame::TextureHandle FrameHistoryService::average(const GBuffer& gbuffer, frame:
   average.execute([averaging, size, instanceCount, &kept](frame::PassContext& context) {
     gpu::Program& kernel = context.use(averaging);
     kernel.set("frame_count", kept.count);
+    kernel.set("frames_kept", kept.frames);
     if (kept.moves) kernel.set("instance_count", instanceCount);
     context.dispatch(size.x, size.y, 1, kGroup, kGroup);
     kept.count = 0;  // a graph that runs again without update() knows none

@@ -8,7 +8,9 @@
 // (skins, morph targets) are followed as their instances are.
 //
 // A technique whose samples of frame i are set i % k of k sets averages all sets wherever nothing was
-// hidden: where neither light nor surfaces change, pictures do not change from frame to frame.
+// hidden: where neither light nor surfaces change, pictures do not change from frame to frame. The frame
+// before the last k had the samples of this one. What differs between the two is therefore no noise but light
+// that changed, and the more it is, the less older frames count.
 #pragma once
 
 #include <memory>

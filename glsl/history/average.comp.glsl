@@ -2,6 +2,9 @@
 // far as the bilinear neighbours of where it had the pixel's place show that place: the same draw instance, a like normal, and
 // no farther from its tangent plane than a pixel is wide.
 //
+// The frame before the first of them had the samples of this one, so that what differs between the two is no noise: light that
+// changed, for which older frames count less.
+//
 // PARTS: layers of the light. MOVES 1: instances move; what moves with one is found where the instance was.
 #include "glsl/history/history_frame.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
@@ -17,10 +20,12 @@ uniform sampler2DArray light;  // rgb / a is the value; a: 0 where there is none
 uniform sampler2DArray history_light;
 uniform usampler2DArray history_surfaces;
 layout(rgba32f) writeonly uniform image2DArray averaged;  // rgb: sum over frames; a: their number
-uniform int frame_count;  // before this one
+uniform int frame_count;  // before this one, the oldest first
+uniform int frames_kept;  // of so many frames a picture is the mean; the frame of that age had the samples of this one
 
 const float least_cosine = 0.8;    // of the angle between normals
 const float least_weight = 0.1;    // of neighbours that show the same place, for a frame to count
+const float fade_of_change = 8.0;  // of weights per relative change: what changes by all of itself has an eighth of the frames
 const float whole_pixel = 1.0 / 64.0;  // pixels: nearer to a pixel's centre than that is at it
 
 // A place as a frame before this one has it.
@@ -44,7 +49,8 @@ void add_neighbour(HistoryFrame f, ivec2 pixel, float weight, PlaceBefore place,
     sums[part] += weight * texelFetch(history_light, ivec3(pixel, int(f.slot) * PARTS + part), 0);
 }
 
-void add_frame(HistoryFrame f, PlaceBefore place, inout vec4 totals[PARTS]) {
+// What the frame holds of the place: values, a: 1, or 0 where it does not show it.
+void find_place(HistoryFrame f, PlaceBefore place, inout vec4 values[PARTS]) {
   vec4 clip = f.world_to_clip * vec4(place.position, 1.0);
   if (!(clip.w > 0.0)) return;
   vec2 at = (clip.xy / clip.w * 0.5 + 0.5) * vec2(frame.frame_size) - 0.5;
@@ -60,7 +66,19 @@ void add_frame(HistoryFrame f, PlaceBefore place, inout vec4 totals[PARTS]) {
   add_neighbour(f, pixel + ivec2(0, 1), (1.0 - share.x) * share.y, place, sums);
   add_neighbour(f, pixel + ivec2(1, 1), share.x * share.y, place, sums);
   for (int part = 0; part < PARTS; ++part)
-    if (sums[part].a >= least_weight) totals[part] += vec4(sums[part].rgb / sums[part].a, 1.0);
+    if (sums[part].a >= least_weight) values[part] = vec4(sums[part].rgb / sums[part].a, 1.0);
+}
+
+// Relative change of the light between two frames with the same samples: of all parts together, 0 where the place was not seen.
+float change(vec4 now[PARTS], vec4 before[PARTS]) {
+  vec3 difference = vec3(0.0), most = vec3(0.0);
+  for (int part = 0; part < PARTS; ++part) {
+    if (now[part].a == 0.0 || before[part].a == 0.0) continue;
+    difference += abs(now[part].rgb - before[part].rgb);
+    most += max(now[part].rgb, before[part].rgb);
+  }
+  float all = most.r + most.g + most.b;
+  return all > 0.0 ? (difference.r + difference.g + difference.b) / all : 0.0;
 }
 
 void main() {
@@ -84,22 +102,31 @@ void main() {
   vec3 own_position = from_world * (position - now[3].xyz);
   vec3 own_normal = transpose(mat3(now)) * normal;
 #endif
+  float fade = 0.0;  // of a frame's weight, per frame that it is old
   for (int i = 0; lit && i < frame_count; ++i) {
     HistoryFrame f = frames[i];
+    vec4 values[PARTS];
+    for (int part = 0; part < PARTS; ++part) values[part] = vec4(0.0);
     PlaceBefore place = PlaceBefore(position, normal, instance, length(frame.view_ray_dx.xyz));
 #if MOVES
     mat4 before = instances_before[int(f.slot) * instance_count + int(instance)].object_to_world;
     place.position = mat3(before) * own_position + before[3].xyz;
     place.normal = normalize(transpose(inverse(mat3(before))) * own_normal);
-    add_frame(f, place, totals);
+    find_place(f, place, values);
 #else
     if (f.still == 0u) {
-      add_frame(f, place, totals);
+      find_place(f, place, values);
     } else {
       for (int part = 0; part < PARTS; ++part)
-        totals[part] += texelFetch(history_light, ivec3(pixel, int(f.slot) * PARTS + part), 0);
+        values[part] = texelFetch(history_light, ivec3(pixel, int(f.slot) * PARTS + part), 0);
     }
 #endif
+    if (int(f.age) == frames_kept) {
+      fade = fade_of_change * change(totals, values) / float(frames_kept);
+    } else {
+      float weight = max(1.0 - fade * float(f.age), 0.0);
+      for (int part = 0; part < PARTS; ++part) totals[part] += weight * values[part];
+    }
   }
   for (int part = 0; part < PARTS; ++part) imageStore(averaged, ivec3(pixel, part), totals[part]);
 }

@@ -14,7 +14,8 @@ struct HistoryFrame {
   vec4 view_ray_dy;
   uint slot;  // where its light lies
   uint still;  // 1 where the view is that of this frame
-  uvec2 unused;
+  uint age;   // frames since
+  uint unused;
 };
 
 // A surface as it is kept: view depth in metres, its geometric normal (two times 12 bits) and the low 8 bits of its
