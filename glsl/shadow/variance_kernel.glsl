@@ -102,40 +102,6 @@ LIMN_FN float threshold_gap(ShadowThresholds t, vec2 texel, float depth) {
   return t.gap.x + t.gap.y * (t.inverse ? depth * v : depth + v);
 }
 
-// Radians: what normals of the G-buffer are off by at most, half a diagonal step of their 16 bits times the octahedral map's
-// largest stretch, 3.
-LIMN_CONST float stored_normal_error = 6.5e-5f;
-
-// How far before a tangent plane the surface that it was taken from may lie, if the normal is off by stored_normal_error.
-struct PlaneSlack {
-  vec3 receiver;  // in the view's axes, metres
-  vec2 first;     // of the view's axes, per metre of depth or (orthographic) metres: at texel 0
-  float texel;    // per texel
-  float share;    // of the distance from the receiver (perspective: over depth) that the value may be off by
-};
-
-// height: as for shadow_thresholds(). A plane n through the receiver r has the value n.b / n.r in the direction b; one whose
-// normal is off by e differs from it by e.(b - value r) / (n + e).r. Orthographic: depth differs by e.(r - p) / (n + e).z at p.
-LIMN_FN PlaneSlack plane_slack(ShadowView view, ShadowReceiver receiver, vec3 local, float height) {
-  PlaneSlack slack;
-  slack.receiver = local;
-  slack.first = -view.middle / view.scale;
-  slack.texel = 1.0f / (view.scale * float(view.size));
-  float e = stored_normal_error;
-  float least = view.projection == shadow_perspective ? abs(height) - e * length(local) : abs(receiver.normal.z) - e;
-  slack.share = e / max(least, 1e-30f);
-  return slack;
-}
-
-// By how much the value of the plane may be greater.
-LIMN_FN float plane_slack_at(ShadowThresholds t, PlaneSlack slack, vec2 texel) {
-  float value = threshold_value(t.plane, texel);
-  vec2 across = slack.first + slack.texel * texel;
-  vec3 apart = t.inverse ? value * slack.receiver - vec3(across.x, across.y, 1.0f)
-                         : slack.receiver - vec3(across.x, across.y, -value);
-  return slack.share * length(apart);
-}
-
 // Depths at a place, quanta: of unoccluded texels, of the greatest depth that blocks, and the square of the change of the
 // former per texel along u and v.
 struct PlaceThresholds {

@@ -2,6 +2,8 @@
 // receiver of a pixel and the light of a layer.
 //
 // shadow::addVisibilityPass() defines what all lights of a dispatch have in common: glsl/shadow/alike_lights.glsl.
+//
+// Define WHOLE_BIAS 1 before including this to keep the whole bias where a light with extent grazes.
 #ifndef LIMN_VISIBILITY_GLSL
 #define LIMN_VISIBILITY_GLSL
 #include "glsl/surface/gbuffer_input.glsl"
@@ -10,6 +12,10 @@
 #include "glsl/shadow/map_space.glsl"
 #include "glsl/shadow/shadow_kernel.glsl"
 #include "glsl/shadow/shadow_view.glsl"
+
+#ifndef WHOLE_BIAS
+#define WHOLE_BIAS 0
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -61,6 +67,7 @@ VisibilityQuery visibility_query(ivec2 at, uint maps) {
 // so that nothing blocks. But the slope is in the plane already: twice `bias` along the rays suffices (up to 60 degrees
 // nothing changes), and of that a little for what depths and normals are rounded to.
 float bias_share(ShadowView view, VisibilityQuery q) {
+  if (WHOLE_BIAS == 1 && q.light.extended) return 1.0;
   vec3 r = q.position - view.origin;
   float cosine = view.projection == shadow_orthographic ? dot(q.normal, view.axis_z)
                                                         : dot(q.normal, r) / max(length(r), 1e-30);

@@ -3,6 +3,9 @@
 // 0: V as it is; 1: sharpened, as published; 2: normalised by what a blocker at the mean depth of the part gives.
 //
 // Loops end in their condition: software renderers run a body once more where it comes first.
+//
+// Without the whole bias planes that a hemicube light grazes shadow themselves, V down to 0.06.
+#define WHOLE_BIAS 1
 #include "glsl/shadow/blocker_search.glsl"
 #include "glsl/shadow/fourier_lookup.glsl"
 #include "glsl/shadow/visibility_main.glsl"
@@ -21,7 +24,6 @@ const float least_response = max(0.02, 8.0 * FOURIER_NOISE);
 // What all parts of a kernel share.
 struct KernelView {
   ShadowThresholds thresholds;
-  PlaneSlack slack;
   FourierRange range;
   int layer;
   float size;        // texels per side of the map
@@ -39,9 +41,8 @@ struct Contents {
 KernelView kernel_view(ShadowCursor cursor, VisibilityQuery q, float gap) {
   KernelView k;
   vec3 local = shadow_local(cursor.view, q.position);
-  float height = dot(cursor.receiver.normal, local);
-  k.thresholds = shadow_thresholds(cursor.view, cursor.receiver, height, cursor.view.far, 1.0);
-  k.slack = plane_slack(cursor.view, cursor.receiver, local, height);
+  k.thresholds = shadow_thresholds(cursor.view, cursor.receiver, dot(cursor.receiver.normal, local),
+                                   cursor.view.far, 1.0);
   k.range = fourier_ranges[cursor.layer];
   k.layer = int(cursor.layer);
   k.size = float(cursor.view.size);
@@ -53,21 +54,11 @@ KernelView kernel_view(ShadowCursor cursor, VisibilityQuery q, float gap) {
   return k;
 }
 
-// Series depth below which what lies at a place blocks, where the tangent plane lies no nearer to the light than at `plane`.
-float series_depth(KernelView k, vec2 texel, float plane) {
-  ShadowThresholds t = k.thresholds;
-  float depth = threshold_depth(t, max(plane, threshold_value(t.axis, texel)));
-  return fourier_depth(k.range, texel / k.size, min((depth - t.near) * t.quanta, 1.0));
-}
-
-// The same, of the plane as it is stored and of what the surface itself may reach.
+// Series depth below which what lies at a place blocks.
 float series_threshold(KernelView k, vec2 texel) {
-  return series_depth(k, texel, threshold_value(k.thresholds.biased, texel));
-}
-float series_least(KernelView k, vec2 texel) {
   ShadowThresholds t = k.thresholds;
-  float nearest = threshold_value(t.plane, texel) + plane_slack_at(t, k.slack, texel);
-  return series_depth(k, texel, max(threshold_value(t.biased, texel), nearest));
+  float depth = threshold_depth(t, max(threshold_value(t.biased, texel), threshold_value(t.axis, texel)));
+  return fourier_depth(k.range, texel / k.size, min((depth - t.near) * t.quanta, 1.0));
 }
 
 // How the series takes a box of texels.
@@ -80,17 +71,16 @@ struct PartDepths {
 PartDepths part_depths(ShadowCursor cursor, KernelView k, vec2 low, vec2 high) {
   PartDepths part;
   // The threshold varies over the part, which takes but one: the middle one, unless a lit plane would then span more
-  // depth within the part than ringing suppression absorbs. A lit surface lies as far before it as its own plane at the
-  // texels' edges, half a texel from where their depths are taken, and as the normal that was rounded lets it. least bounds
-  // convex thresholds as well: tangent planes in perspective.
+  // depth within the part than ringing suppression absorbs. least bounds convex thresholds as well: tangent planes in
+  // perspective.
   vec2 centre = 0.5 * (low + high);
   float middle = series_threshold(k, centre);
-  float t00 = series_least(k, low);
-  float t10 = series_least(k, vec2(high.x, low.y));
-  float t01 = series_least(k, vec2(low.x, high.y));
-  float t11 = series_least(k, high);
-  float most = max(max(t00, t10), max(t01, t11));
-  float least = min(min(min(t00, t10), min(t01, t11)), 2.0 * series_least(k, centre) - most);
+  float t00 = series_threshold(k, low);
+  float t10 = series_threshold(k, vec2(high.x, low.y));
+  float t01 = series_threshold(k, vec2(low.x, high.y));
+  float t11 = series_threshold(k, high);
+  float most = max(max(max(t00, t10), max(t01, t11)), middle);
+  float least = min(min(min(t00, t10), min(t01, t11)), 2.0 * middle - most);
   float before = min(middle - least, FOURIER_TOLERANCE);
   part.threshold = clamp(least + before, 0.0, FOURIER_RANGE);
   vec2 bounds = kernel_depth_bounds(cursor, ShadowKernel(low, high, 1.0));
