@@ -7,7 +7,6 @@
 #include "core/image/image.h"
 #include "core/scene_io/density_grid_file.h"
 #include "core/scene_io/load.h"
-#include "core/scene_io/private/draco_meshes.h"
 
 namespace limn {
 
@@ -50,14 +49,6 @@ DensityGrid readDensityGrid(const std::filesystem::path& file, const GridLimits&
 }
 
 void setGrid(Medium&, DensityGrid) {}
-
-DracoArrays decodeDracoMeshes(std::span<const DracoMesh> meshes, const DracoLimits&) {
-  constexpr std::size_t most = 1 << 16;
-  std::size_t bytes = 0;
-  for (const DracoMesh& mesh : meshes) bytes += mesh.answerBytes();
-  if (bytes > most) throw Error("it crashed");
-  return {std::vector<std::byte>(bytes), 0, meshes.front().bytes.size() % 7 == 0 ? "damaged" : ""};
-}
 
 }  // namespace scene
 }  // namespace limn

@@ -151,6 +151,18 @@ void meshoptCompressed(GltfBuilder& b) {
       {"filter", "NONE"}};
 }
 
+/// A triangle that Draco would decode.
+void dracoCompressed(GltfBuilder& b) {
+  const int indices =
+      b.append("accessors", {{"componentType", GltfBuilder::kUshort}, {"count", 3}, {"type", "SCALAR"}});
+  const int positions =
+      b.append("accessors", {{"componentType", GltfBuilder::kFloat}, {"count", 3}, {"type", "VEC3"}});
+  b.meshNode(b.mesh({{"POSITION", positions}}, indices));
+  const char bytes[] = "DRACO";
+  b.root["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
+      {"bufferView", b.view(bytes, sizeof bytes)}, {"attributes", {{"POSITION", 0}}}};
+}
+
 void otherMaterials(GltfBuilder& b) {
   b.texturedMaterial(
       {reinterpret_cast<const std::byte*>(kPng), reinterpret_cast<const std::byte*>(kPng) + sizeof kPng});
@@ -186,6 +198,7 @@ int main(int count, char** arguments) {
       {"instances", instanced},
       {"sparse_strip", sparseStrip},
       {"meshopt", meshoptCompressed},
+      {"draco", dracoCompressed},
       {"other_materials", otherMaterials},
   };
   for (const auto& [name, fill] : seeds) {
