@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/gpu_scene/gpu_scene.h"
+#include "core/history/frame_history.h"
 #include "core/rays/blue_noise.h"
 #include "core/rays/ray_geometry.h"
 #include "core/technique/light_batch.h"
@@ -25,10 +26,14 @@ constexpr Parameter kParameters[] = {
     choice("filter", kSpatial, kFilters,
            "What becomes of the noise: none: it stays; spatial: it is averaged over 7 x 7 pixels of the same "
            "surface, as far as the rays' own variance explains the differences"),
+    integer("history", 1, {1, history::FrameHistoryService::kMostFrames}, "frames",
+            "Frames whose V is averaged where they show the same surface, each with rays of its own; 1: this "
+            "frame's alone"),
 };
 constexpr StressCase kStress[] = {
     {.name = "one ray", .settings = "rays=1", .factor = 4},
     {.name = "one ray, unfiltered", .settings = "rays=1 filter=none", .factor = 4},
+    {.name = "four frames", .settings = "history=4"},
     {.name = "most rays", .settings = "rays=256", .factor = 1.5},
 };
 
@@ -48,9 +53,22 @@ const std::vector<glm::vec2>& shifts() {
 class RayTracedAreaLight : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
-    if (inputs.parameters.choice("filter") == kNone) return trace(graph, inputs, request, request.target);
-    const frame::TextureHandle traced =
-        trace(graph, inputs, request, graph.createTexture("traced", graph.desc(request.target)));
+    const int frames = inputs.parameters.integer("history");
+    const bool spatial = inputs.parameters.choice("filter") == kSpatial;
+    if (frames == 1) graph.leaveOut("average frames", info.name, "history is 1");
+    if (frames == 1 && !spatial) return trace(graph, inputs, request, request.target);
+    gpu::TextureDesc desc = graph.desc(request.target);
+    if (frames > 1) desc.format = GL_RGBA32F;
+    frame::TextureHandle traced = trace(graph, inputs, request, graph.createTexture("traced", desc));
+    if (frames > 1)
+      traced =
+          inputs.service<history::FrameHistoryService>().average(inputs.gbuffer, traced, frames, info.name);
+    return spatial ? filter(graph, inputs, request, traced) : mean(graph, inputs, request, traced);
+  }
+
+  /// V without the noise of few rays.
+  static frame::TextureHandle filter(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                     const TermRequest& request, frame::TextureHandle traced) {
     frame::PassBuilder pass = graph.addPass("filter", info.name);
     pass.role(frame::PassRole::filter)
         .read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
@@ -62,8 +80,25 @@ class RayTracedAreaLight : public Technique {
         pass.write(request.target, Access::imageStore, "visibility", "visibility, one layer per light");
     const frame::ProgramHandle program =
         pass.program({.files = {"techniques/ray_traced_area_light/filter.comp.glsl"},
-                      .defines = {{"LIGHT_COUNT", std::to_string(request.lights.size())}}});
+                      .defines = {{"LIGHT_COUNT", std::to_string(request.lights.size())},
+                                  {"FRAMES", std::to_string(inputs.parameters.integer("history"))}}});
     pass.execute(dispatch(program, inputs, request));
+    return target;
+  }
+
+  /// V of several frames with all its noise.
+  static frame::TextureHandle mean(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                   const TermRequest& request, frame::TextureHandle traced) {
+    frame::PassBuilder pass = graph.addPass("mean of frames", info.name);
+    pass.role(frame::PassRole::filter).read(traced, Access::sampled, "traced", "sums over frames");
+    const frame::TextureHandle target =
+        pass.write(request.target, Access::imageStore, "visibility", "visibility, one layer per light");
+    const frame::ProgramHandle program =
+        pass.program({.files = {"techniques/ray_traced_area_light/mean.comp.glsl"}, .defines = {}});
+    pass.execute([program, size = inputs.size, lights = request.lights.size()](frame::PassContext& context) {
+      context.use(program);
+      context.dispatch(size.x, size.y, static_cast<int>(lights), 8, 8);
+    });
     return target;
   }
 
@@ -79,8 +114,11 @@ class RayTracedAreaLight : public Technique {
         .read(inputs.gbuffer.instance, Access::sampled, kGBufferNames.instance, "a light does not see itself")
         .constant("blue_noise", noise(inputs));
     geometry.declare(pass);
+    const int frames = inputs.parameters.integer("history");
     gpu::ProgramDesc program{.files = {"techniques/ray_traced_area_light/visibility.comp.glsl"},
-                             .defines = {{"LIGHT_COUNT", std::to_string(request.lights.size())}}};
+                             .defines = {{"LIGHT_COUNT", std::to_string(request.lights.size())},
+                                         {"FRAMES", std::to_string(frames)},
+                                         {"TRACED", frames > 1 ? "rgba32f" : "r16"}}};
     geometry.define(program.defines);
     const frame::TextureHandle target =
         pass.write(into, Access::imageStore, "visibility", "visibility, one layer per light");

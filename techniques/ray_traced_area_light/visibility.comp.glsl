@@ -1,4 +1,7 @@
 // V as the share of a light's points that shadow rays reach: the points of the R2 sequence, shifted on the torus by blue noise.
+//
+// FRAMES: frame i sends its rays to set i % FRAMES of as many sets of points, which follow each other in the sequence. TRACED:
+// format of the result; of four channels rgb is V and a is 1 where something is seen.
 #include "glsl/light/light_view.glsl"
 #include "glsl/numeric/sampling.glsl"
 #include "glsl/rays/ray_trace.glsl"
@@ -7,7 +10,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std430) readonly buffer Lights { Light lights[]; };
-layout(r16) writeonly uniform image2DArray visibility;
+layout(TRACED) writeonly uniform image2DArray visibility;
 uniform sampler2D blue_noise;
 uniform uint light_indices[LIGHT_COUNT];
 uniform int rays;
@@ -39,8 +42,10 @@ float lit_share(LightView view, ShadowRays r, vec2 shift) {
   if (!view.extended) return blocked(r, view.centre) ? 0.0 : 1.0;
   int lit = 0, sent = 0;
   // Of the box around the part above the horizon at least a third is that part.
-  for (int i = 0; i < 4 * rays && sent < rays; ++i) {
-    vec2 u = fract(r2_sequence(uint(i)) + shift);
+  int most = view.whole ? rays : 4 * rays;
+  uint first = FRAMES > 1 ? frame.frame_index % uint(FRAMES) * uint(most) : 0u;
+  for (int i = 0; i < most && sent < rays; ++i) {
+    vec2 u = fract(r2_sequence(first + uint(i)) + shift);
     vec3 slope = view.centre;
     if (view.whole) {
       slope = light_view_point(view, u);
@@ -79,5 +84,5 @@ void main() {
       v = lit_share(view, r, texelFetch(blue_noise, at.xy % textureSize(blue_noise, 0), 0).xy);
     }
   }
-  imageStore(visibility, at, vec4(v));
+  imageStore(visibility, at, vec4(vec3(v), depth > 0.0 ? 1.0 : 0.0));
 }

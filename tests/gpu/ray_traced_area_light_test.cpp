@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core/reference/reference.h"
+#include "core/render/supersample.h"
 #include "tests/gpu/render_test.h"
 
 namespace limn {
@@ -105,6 +106,25 @@ TEST_F(RayTracedAreaLightTest, TheFilterErrsLessWithFewRaysAndLittleMoreWithMany
   };
   EXPECT_LT(filtered(4), 0.9 * difference(few, exact));
   EXPECT_LT(filtered(128), 0.01);
+}
+
+/// Four frames of four rays are the sixteen rays of one frame.
+TEST_F(RayTracedAreaLightTest, FramesOfAHistoryAddTheirRays) {
+  const scene::Scene scene = asset("balls");
+  render::Renderer renderer(device(), scene);
+  const auto picture = [&](int count, const char* history, const char* filter) {
+    render::Settings s = rays(count, 0, filter);
+    s.techniques[0].parameters.set("history", history);
+    renderer.configure(std::move(s));
+    return render::supersample(renderer, renderer.pose().cameras.at(0), {kWidth, kHeight}, 1);
+  };
+  const Image exact = truth(renderer, scene, 0);
+  for (const char* filter : {"none", "spatial"}) {
+    const Image frames = picture(4, "4", filter);
+    EXPECT_NEAR(difference(frames, exact), difference(picture(16, "1", filter), exact), 0.003) << filter;
+    renderer.render();  // the fifth frame has the rays of the first
+    EXPECT_LT(difference(renderer.read(), frames), 1e-4) << filter;
+  }
 }
 
 TEST_F(RayTracedAreaLightTest, LightsWithoutExtentPassTheFilter) {
