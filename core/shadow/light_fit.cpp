@@ -228,7 +228,8 @@ void appendOrthographic(const glsl::Light& light, const vec3& direction, std::sp
   const vec3 origin = centre + middle.x * axes.x + middle.y * axes.y + (middle.z - 0.6f * depth) * axes.z;
   out.light(-direction, false, glsl::shadow_faces_single);
   const MapWindow whole = square(0.5f * width, {0.0999f * depth, 1.1001f * depth});
-  MapWindow window, receivers;
+  MapWindow window;
+  std::vector<vec3> receivers;
   const bool fitted = fit.visible != nullptr && fitWindow({origin, axes, false, fit.spread}, *fit.visible,
                                                           light.own_instance, whole, window, receivers);
   out.view(glsl::shadow_orthographic, origin, axes, fitted ? steadyWindow(window, whole, out.size) : whole);
@@ -321,15 +322,15 @@ void appendWhole(const glsl::Light& light, const LightLayout& layout, std::span<
     fit.visible = visible;
   const bool sampled = !desc.samples.empty();
   if (!sampled || perspective) fit.spread = spreadOf(light, axes, desc.lightSize);
-  std::optional<MapWindow> window, receivers;
+  std::optional<MapWindow> window;
+  std::vector<vec3> receivers;
   if (fit.visible != nullptr && perspective) {
     const vec3 origin(light.position);
     const MapWindow whole = given ? *given : wholeWindow(light, origin, axes, layout, boxes, desc);
-    MapWindow fitted, seen;
-    if (fitWindow({origin, axes, true, fit.spread}, *fit.visible, light.own_instance, whole, fitted, seen)) {
+    MapWindow fitted;
+    if (fitWindow({origin, axes, true, fit.spread}, *fit.visible, light.own_instance, whole, fitted,
+                  receivers))
       window = fitted;
-      receivers = seen;
-    }
   }
   for (const glm::vec2& sample : samples) {
     if (layout.projection == glsl::shadow_orthographic) {
@@ -351,7 +352,9 @@ void appendWhole(const glsl::Light& light, const LightLayout& layout, std::span<
     if (window) {
       const vec3 r = origin - light.position;
       MapWindow own =
-          sampled ? shiftedWindow(*receivers, {glm::dot(axes.x, r), glm::dot(axes.y, r)}) : *window;
+          sampled ? shiftedWindow(receivers, {glm::dot(axes.x, r), glm::dot(axes.y, r)}) : *window;
+      own.low = glm::max(own.low, whole.low);
+      own.high = glm::min(own.high, whole.high);
       own.near = window->near;
       out.view(glsl::shadow_perspective, origin, axes, steadyWindow(own, whole, desc.size));
       continue;

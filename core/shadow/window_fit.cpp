@@ -56,14 +56,12 @@ void clipTo(Convex& solid, const Wedge& wedge, float near, float far) {
   for (const vec4& plane : wedge.planes) clip(plane);
 }
 
-void add(MapWindow& window, const MapEye& eye, const Convex& solid) {
-  for (const vec3& p : solid.corners()) {
-    const vec2 at = eye.perspective ? vec2(p) / p.z : vec2(p);
-    window.low = glm::min(window.low, at);
-    window.high = glm::max(window.high, at);
-    window.near = std::min(window.near, p.z);
-    window.far = std::max(window.far, p.z);
-  }
+void add(MapWindow& window, bool perspective, const vec3& p) {
+  const vec2 at = perspective ? vec2(p) / p.z : vec2(p);
+  window.low = glm::min(window.low, at);
+  window.high = glm::max(window.high, at);
+  window.near = std::min(window.near, p.z);
+  window.far = std::max(window.far, p.z);
 }
 
 MapWindow nothing() {
@@ -73,43 +71,42 @@ MapWindow nothing() {
 }  // namespace
 
 bool fitWindow(const MapEye& eye, const VisibleScene& scene, uint32_t skip, const MapWindow& whole,
-               MapWindow& window, MapWindow& receivers) {
+               MapWindow& window, std::vector<vec3>& receivers) {
   const auto local = [&](const vec3& p) {
     const vec3 r = p - eye.origin;
     return vec3(glm::dot(eye.axes.x, r), glm::dot(eye.axes.y, r), glm::dot(eye.axes.z, r));
   };
   const float near = eye.perspective ? kLeastDepth * whole.far : whole.near;
   Convex solid;
-  receivers = nothing();
+  receivers.clear();
   const Wedge limits = pyramid(eye, whole);
   for (const VisiblePart& part : scene.visible()) {
     if (part.instance == skip) continue;
     solid.assign(part.solid, local);
     clipTo(solid, limits, near, whole.far);
-    add(receivers, eye, solid);
+    receivers.insert(receivers.end(), solid.corners().begin(), solid.corners().end());
   }
-  if (!(receivers.far > 0 && receivers.low.x <= receivers.high.x)) return false;
-  window = receivers;
-  const Wedge lines = linesToLight(eye, receivers);
+  window = nothing();
+  for (const vec3& p : receivers) add(window, eye.perspective, p);
+  if (!(window.far > 0 && window.low.x <= window.high.x)) return false;
+  const float far = window.far;
+  const Wedge lines = linesToLight(eye, window);
   for (const ScenePart& part : scene.parts()) {
     if (part.instance == skip) continue;
     std::array<vec3, 8> corners = boxCorners(part.bounds);
     for (vec3& p : corners) p = local(p);
     solid.setBox(corners);
-    clipTo(solid, lines, near, receivers.far);
-    add(window, eye, solid);
+    clipTo(solid, lines, near, far);
+    for (const vec3& p : solid.corners()) add(window, eye.perspective, p);
   }
   window.low = glm::max(window.low, whole.low);
   window.high = glm::min(window.high, whole.high);
   return true;
 }
 
-MapWindow shiftedWindow(const MapWindow& receivers, const vec2& offset) {
-  MapWindow shifted = receivers;
-  // A point at tangent t and depth z lies at t - offset / z.
-  const vec2 a = offset / receivers.near, b = offset / receivers.far;
-  shifted.low -= glm::max(a, b);
-  shifted.high -= glm::min(a, b);
+MapWindow shiftedWindow(std::span<const vec3> receivers, const vec2& offset) {
+  MapWindow shifted = nothing();
+  for (const vec3& p : receivers) add(shifted, true, {vec2(p) - offset, p.z});
   return shifted;
 }
 

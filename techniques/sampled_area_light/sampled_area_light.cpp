@@ -15,7 +15,7 @@ constexpr Parameter kParameters[] = {
         .quality()
         .logScale(),
     shadow::shadowMapSizeParameter(512),
-    shadow::shadowMapFitParameter(),
+    shadow::shadowMapFitParameter(1),
     shadow::biasParameter(),
     shadow::memoryParameter(),
 };

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <span>
+#include <vector>
 
 #include "core/base/export.h"
 #include "core/shadow/visible_scene.h"
@@ -33,15 +35,15 @@ struct MapWindow {
 
 /// Finds the rectangle and the depths that hold all receivers that the camera sees, and every blocker with a
 /// part on a line from such a receiver to the light. The result is conservative: it relies on the boxes of
-/// `scene` and never misses any. Only what lies in `whole` counts. `receivers` becomes the same for the
-/// receivers alone. `skip` is an instance that neither blocks nor receives, or glsl::no_instance. Returns
-/// false when no receiver lies in `whole`.
+/// `scene` and never misses any. Only what lies in `whole` counts. `receivers` becomes points, relative to
+/// the origin in the map's axes, in whose convex hulls all the receivers lie. `skip` is an instance that
+/// neither blocks nor receives, or glsl::no_instance. Returns false when no receiver lies in `whole`.
 LIMN_API bool fitWindow(const MapEye& eye, const VisibleScene& scene, uint32_t skip, const MapWindow& whole,
-                        MapWindow& window, MapWindow& receivers);
+                        MapWindow& window, std::vector<glm::vec3>& receivers);
 
-/// Returns the rectangle that holds the same receivers in a perspective map from another point of the light.
-/// `offset` is that point's offset, metres along x and y.
-LIMN_API MapWindow shiftedWindow(const MapWindow& receivers, const glm::vec2& offset);
+/// Returns the rectangle that holds the receivers in a perspective map from another point of the light, and
+/// their depths. `offset` is that point's offset, metres along x and y.
+LIMN_API MapWindow shiftedWindow(std::span<const glm::vec3> receivers, const glm::vec2& offset);
 
 /// Returns the square around the window with a margin at its edges of two texels of a map of `size` texels
 /// per side, and a little more, so that square and depths stay the same while the camera moves little.
