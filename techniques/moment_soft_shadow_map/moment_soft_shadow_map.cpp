@@ -28,7 +28,7 @@ constexpr Parameter kParameters[] = {
     integer("moment_bits", 0, {0, 20}, "bits",
             "Of each moment of a texel, 10 to 20; 0: by the size of the shadow map"),
     shadow::shadowMapSizeParameter(),
-    shadow::shadowMapFitParameter(1),
+    shadow::shadowMapFitParameter(),
     shadow::viewsParameter(),
     shadow::biasParameter(),
     shadow::lightSizeParameter(),

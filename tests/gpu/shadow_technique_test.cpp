@@ -273,7 +273,8 @@ TEST_F(ShadowTechniqueTest, MapsFittedToTheViewLoseNoShadow) {
 
 TEST_F(ShadowTechniqueTest, LightsWithoutSizeGiveHardShadows) {
   const BallScene s;
-  const Answer hard = visibility("hard_shadow_map", {{"shadow_map_size", "256"}}, s.scene, s.pose, s.camera);
+  const Answer hard = visibility("hard_shadow_map", {{"shadow_map_size", "256"}, {"shadow_map_fit", "view"}},
+                                 s.scene, s.pose, s.camera);
   const Answer soft =
       visibility("pcss", {{"light_size", "0"}, {"shadow_map_size", "256"}}, s.scene, s.pose, s.camera);
   EXPECT_EQ(soft.lights, hard.lights);
@@ -293,10 +294,13 @@ TEST_F(ShadowTechniqueTest, ParallelPlanesAreExactWithPcss) {
   };
   for (const char* search : {"near", "narrowed"}) {
     for (const char* pattern : {"grid", "r2"}) {
-      const Answer v = visibility(
-          "pcss",
-          {{"pattern", pattern}, {"blocker_samples", "256"}, {"filter_samples", "576"}, {"search", search}},
-          s.scene, s.pose, s.camera, {3});
+      const Answer v = visibility("pcss",
+                                  {{"pattern", pattern},
+                                   {"blocker_samples", "256"},
+                                   {"filter_samples", "576"},
+                                   {"search", search},
+                                   {"shadow_map_fit", "scene"}},
+                                  s.scene, s.pose, s.camera, {3});
       Answer four = v;
       four.lights.insert(four.lights.begin(), 3, {});
       const Errors e = floorErrors(s, four, 3, hides);
