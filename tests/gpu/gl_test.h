@@ -106,9 +106,9 @@ class GlTest : public ::testing::Test {
   gpu::Counters before_;
 };
 
-/// Laws of techniques take minutes and say of one renderer the same twice: under OSMesa they are skipped where
-/// EGL has that renderer, too, unless LIMN_TEST_EVERYTHING is set. Contexts, resources, shadow maps, the frame
-/// graph and every technique's golden picture are tested with both.
+/// Laws of techniques take minutes and say of one renderer the same twice: under OSMesa they are skipped
+/// where EGL has that renderer, too, unless LIMN_TEST_EVERYTHING is set. Contexts, resources, shadow maps,
+/// the frame graph and every technique's golden picture are tested with both.
 template <class Base>
 class OncePerRenderer : public Base {
  protected:
