@@ -17,6 +17,7 @@
 #include "core/image/metric_table.h"
 #include "core/question/render_command.h"
 #include "core/reference/reference.h"
+#include "core/session/technique_choice.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
@@ -121,12 +122,6 @@ Parameters fixedParameters(const TechniqueInfo& technique, const Options& option
   return fixed;
 }
 
-session::TechniqueChoice choiceOf(const std::string& technique, const Parameters& parameters) {
-  session::TechniqueChoice choice{technique, {}};
-  for (const auto& [name, value] : parameters) choice.settings.push_back(fmt::format("{}={}", name, value));
-  return choice;
-}
-
 /// A technique's settings: what is searched, and what --set fixes.
 struct Space {
   bench::TuneSpace searched;
@@ -145,7 +140,7 @@ std::vector<Space> spacesOf(const TechniqueRegistry& registry, const Options& op
   for (const TechniquePlugin* plugin : techniques) {
     const TechniqueInfo& info = *plugin->info;
     Space space{{info.name, {}}, fixedParameters(info, options, bounces)};
-    choiceOf(info.name, space.fixed).resolve(registry);  // for its errors
+    session::choiceOf(info.name, space.fixed).resolve(registry);  // for its errors
     for (const Parameter& parameter : info.parameters) {
       if (!parameter.tradesErrorForTime) continue;
       bench::TuneAxis axis = bench::tuneAxis(info.name, parameter, options.steps);

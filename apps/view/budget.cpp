@@ -20,12 +20,6 @@ std::string sceneName(const std::string& scene) {
 
 }  // namespace
 
-session::TechniqueChoice MeasuredSetting::choice() const {
-  session::TechniqueChoice choice{technique, {}};
-  for (const auto& [name, value] : parameters) choice.settings.push_back(fmt::format("{}={}", name, value));
-  return choice;
-}
-
 std::string MeasuredSetting::text() const {
   std::string line = technique.empty() ? "unshadowed" : technique;
   for (const auto& [name, value] : parameters)

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/bench/row.h"
-#include "core/session/technique_choice.h"
 
 namespace limn::app {
 
@@ -19,7 +18,6 @@ struct MeasuredSetting {
   std::vector<std::pair<std::string, std::string>> parameters;  ///< "technique.parameter", value
   double rmse = 0, ms = 0;
 
-  session::TechniqueChoice choice() const;
   /// Returns technique and parameters on one line.
   std::string text() const;
 };

@@ -8,6 +8,7 @@
 #include "apps/view/viewer_window.h"
 #include "core/base/error.h"
 #include "core/bench/results_file.h"
+#include "core/session/technique_choice.h"
 
 namespace limn::app {
 
@@ -32,7 +33,7 @@ void ViewerWindow::budgetSetting(const char* rank, const MeasuredSetting& settin
   ImGui::SameLine(ImGui::GetContentRegionMax().x - scaled(44));
   if (ImGui::SmallButton("take")) {
     try {
-      state_.techniques = setting.choice().resolve(registry_);
+      state_.techniques = session::choiceOf(setting.technique, setting.parameters).resolve(registry_);
       moved();
     } catch (const Error& error) {
       say(error.what(), true);

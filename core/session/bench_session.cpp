@@ -27,10 +27,7 @@ struct BenchSession::Loaded {
 };
 
 TechniqueChoice techniqueChoice(const bench::Case& c) {
-  TechniqueChoice choice;
-  choice.techniques = c.technique;
-  for (const auto& [name, value] : c.parameters) choice.settings.push_back(fmt::format("{}={}", name, value));
-  return choice;
+  return choiceOf(c.technique, c.parameters);
 }
 
 namespace {

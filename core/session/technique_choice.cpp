@@ -76,4 +76,11 @@ std::vector<render::TechniqueUse> TechniqueChoice::resolve(const TechniqueRegist
   return uses;
 }
 
+TechniqueChoice choiceOf(const std::string& techniques,
+                         std::span<const std::pair<std::string, std::string>> parameters) {
+  TechniqueChoice choice{techniques, {}};
+  for (const auto& [name, value] : parameters) choice.settings.push_back(fmt::format("{}={}", name, value));
+  return choice;
+}
+
 }  // namespace limn::session

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/base/export.h"
@@ -25,5 +26,9 @@ struct TechniqueChoice {
   /// range or not answered, and Error for a module that is refused.
   LIMN_API std::vector<render::TechniqueUse> resolve(const TechniqueRegistry& registry) const;
 };
+
+/// Returns the choice of techniques with parameters as rows hold them: TECHNIQUE.PARAMETER, and its value.
+LIMN_API TechniqueChoice choiceOf(const std::string& techniques,
+                                  std::span<const std::pair<std::string, std::string>> parameters);
 
 }  // namespace limn::session

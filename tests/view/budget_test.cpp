@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include "core/session/technique_choice.h"
+
 namespace limn::app {
 namespace {
 
@@ -25,7 +27,8 @@ TEST(Budget, TakesTheLeastErrorThatIsQuickEnough) {
   EXPECT_EQ(questions.front().renderer, "a card");
   const BudgetAnswer answer = bestWithin(questions.front(), 10);
   EXPECT_EQ(answer.best->text(), "pcss  views=4");
-  EXPECT_THAT(answer.best->choice().settings, testing::ElementsAre("pcss.views=4"));
+  EXPECT_THAT(session::choiceOf(answer.best->technique, answer.best->parameters).settings,
+              testing::ElementsAre("pcss.views=4"));
   EXPECT_EQ(answer.runnerUp->technique, "vssm") << "another technique";
   EXPECT_EQ(answer.runnerUp->ms, 6);
   EXPECT_EQ(bestWithin(questions.front(), 1).best->technique, "hard_shadow_map");
