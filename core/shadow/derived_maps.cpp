@@ -120,29 +120,20 @@ SatDesc resolved(SatDesc desc, bool software) {
   return desc;
 }
 
-struct TableFormat {
-  GLenum gl;
-  const char* glsl;
-};
-
-TableFormat tableFormat(const SatDesc& desc) {
+GLenum tableFormat(const SatDesc& desc) {
   const int words = desc.words * (desc.moments == SatMoments::z ? 1 : 2);
-  if (words == 1) return {GL_R32UI, "r32ui"};
-  return words == 2 ? TableFormat{GL_RG32UI, "rg32ui"} : TableFormat{GL_RGBA32UI, "rgba32ui"};
+  if (words == 1) return GL_R32UI;
+  return words == 2 ? GL_RG32UI : GL_RGBA32UI;
 }
 
 SummedAreaTable addTable(frame::FrameGraph& graph, TextureHandle source, const SatDesc& desc,
                          bool cacheable) {
-  const TableFormat format = tableFormat(desc);
   const uint32_t layout =
       glsl::sat_format(static_cast<uint32_t>(desc.bits), static_cast<uint32_t>(desc.words),
                        desc.moments == SatMoments::zAndSquare ? 1 : 0);
-  return {addSummedAreaPasses(graph, source,
+  return {addSummedAreaPasses(graph, source, tableFormat(desc),
                               {.name = "summed-area table",
-                               .format = format.gl,
-                               .defines = {{"IMAGE_FORMAT", format.glsl},
-                                           {"TABLE_FORMAT", fmt::format("{}u", layout)},
-                                           {"MOMENT_BITS", "0"}},
+                               .defines = {{"CONTENTS", "0"}, {"TABLE_FORMAT", fmt::format("{}u", layout)}},
                                .shared = desc.method == SatMethod::sharedMemory,
                                .cacheable = cacheable}),
           layout};

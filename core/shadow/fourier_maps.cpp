@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/shadow/private/summed_area_passes.h"
 #include "glsl/shadow/fourier_shadow.glsl"
 
 namespace limn::shadow {
@@ -121,12 +122,6 @@ void addMips(frame::FrameGraph& graph, frame::TextureHandle source, bool cacheab
   }
 }
 
-/// Work groups for so many rows or columns; how many one takes is as in the shader.
-int lineGroups(int lines, bool shared, bool vertical) {
-  const int perGroup = shared && !vertical ? 4 : 16;
-  return (lines + perGroup - 1) / perGroup;
-}
-
 void addRows(frame::FrameGraph& graph, frame::TextureHandle source, bool cacheable, bool shared,
              FourierMaps& maps) {
   const gpu::TextureDesc desc = graph.desc(maps.depth);
@@ -138,9 +133,8 @@ void addRows(frame::FrameGraph& graph, frame::TextureHandle source, bool cacheab
   maps.depthBasis = pass.write(maps.depthBasis, Access::imageStore, "depth_basis", "sums along rows");
   maps.depth = pass.write(maps.depth, Access::imageStore, "plain_depth", "sums along rows");
   const int groups = maps.groups(), perThread = std::min(groups, kChunk);
-  const frame::ProgramHandle program = pass.program({.files = {"glsl/shadow/fourier_sums.comp.glsl"},
-                                                     .defines = {{"VERTICAL", "0"},
-                                                                 {"SHARED", shared ? "1" : "0"},
+  const frame::ProgramHandle program = pass.program({.files = {"glsl/shadow/fourier_rows.comp.glsl"},
+                                                     .defines = {{"SHARED", shared ? "1" : "0"},
                                                                  {"GROUPS", std::to_string(groups)},
                                                                  {"CHUNK", std::to_string(perThread)}}});
   if (cacheable) pass.cacheable();
@@ -148,34 +142,6 @@ void addRows(frame::FrameGraph& graph, frame::TextureHandle source, bool cacheab
     context.use(program).set("span", span);
     const int chunks = (groups + perThread - 1) / perThread;
     context.dispatch(lineGroups(desc.height, shared, false), 1, desc.layers * chunks, 1, 1);
-  });
-}
-
-void addColumns(frame::FrameGraph& graph, bool cacheable, bool shared, FourierMaps& maps) {
-  frame::PassBuilder pass = graph.addPass("Fourier sums columns", "shadow");
-  pass.role(frame::PassRole::filter);
-  maps.basis = pass.write(maps.basis, Access::imageLoadStore, "sums along columns, in place");
-  maps.depthBasis = pass.write(maps.depthBasis, Access::imageLoadStore, "sums along columns, in place");
-  maps.depth = pass.write(maps.depth, Access::imageLoadStore, "sums along columns, in place");
-  const frame::SlotHandle table = pass.slot("table");
-  const auto program = [&](const char* format) {
-    return pass.program(
-        {.files = {"glsl/shadow/fourier_sums.comp.glsl"},
-         .defines = {{"VERTICAL", "1"}, {"SHARED", shared ? "1" : "0"}, {"IMAGE_FORMAT", format}}});
-  };
-  const frame::ProgramHandle four = program("rgba32i"), one = program("r32i");
-  const gpu::TextureDesc basis = graph.desc(maps.basis), depth = graph.desc(maps.depth);
-  if (cacheable) pass.cacheable();
-  pass.execute([=, maps = maps](frame::PassContext& context) {
-    const int columns = lineGroups(basis.width, shared, true);
-    context.use(four);
-    for (const frame::TextureHandle image : {maps.basis, maps.depthBasis}) {
-      context.bind(table, image);
-      context.dispatch(columns, 1, basis.layers, 1, 1);
-    }
-    context.use(one);
-    context.bind(table, maps.depth);
-    context.dispatch(columns, 1, depth.layers, 1, 1);
   });
 }
 
@@ -222,7 +188,9 @@ FourierMaps addFourierMaps(frame::FrameGraph& graph, const gpu::Device& device, 
   const bool shared = desc.method == SatMethod::sharedMemory;
   if (sums) {
     addRows(graph, depth, cacheable, shared, maps);
-    addColumns(graph, cacheable, shared, maps);
+    addColumnSums(
+        graph, {&maps.basis, &maps.depthBasis, &maps.depth},
+        {.name = "Fourier sums", .defines = {{"CONTENTS", "2"}}, .shared = shared, .cacheable = cacheable});
   } else {
     addMips(graph, depth, cacheable, maps);
   }

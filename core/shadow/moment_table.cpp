@@ -18,13 +18,11 @@ MomentTable addMomentTable(frame::FrameGraph& graph, frame::TextureHandle source
                            bool shared) {
   if (bits < 10 || bits > 20)
     throw UsageError(fmt::format("moments of {} bits: accepted are 10 to 20", bits));
-  return {addSummedAreaPasses(
-              graph, source,
-              {.name = "moment table",
-               .format = GL_RGBA32UI,
-               .defines = {{"IMAGE_FORMAT", "rgba32ui"}, {"MOMENT_BITS", fmt::format("{}", bits)}},
-               .shared = shared,
-               .cacheable = cacheable}),
+  return {addSummedAreaPasses(graph, source, GL_RGBA32UI,
+                              {.name = "moment table",
+                               .defines = {{"CONTENTS", "1"}, {"MOMENT_BITS", fmt::format("{}", bits)}},
+                               .shared = shared,
+                               .cacheable = cacheable}),
           bits};
 }
 

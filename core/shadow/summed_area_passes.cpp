@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "core/base/error.h"
 
 namespace limn::shadow {
@@ -21,13 +23,44 @@ void checkBytes(std::string_view what, const gpu::TextureDesc& desc) {
       what, desc.layers, desc.width, desc.height, bytes >> 20, kMemoryLimit >> 20));
 }
 
-/// Work groups for so many rows or columns; how many one takes is as in the shader.
+const char* imageFormat(GLenum format) {
+  switch (format) {
+    case GL_R32UI:
+      return "r32ui";
+    case GL_RG32UI:
+      return "rg32ui";
+    case GL_RGBA32UI:
+      return "rgba32ui";
+    case GL_R32I:
+      return "r32i";
+    default:
+      return "rgba32i";
+  }
+}
+
+frame::ProgramHandle sumProgram(frame::PassBuilder& pass, const SummedAreaPasses& desc, GLenum format,
+                                bool vertical) {
+  std::map<std::string, std::string> defines = desc.defines;
+  defines["IMAGE_FORMAT"] = imageFormat(format);
+  defines["SHARED"] = desc.shared ? "1" : "0";
+  defines["VERTICAL"] = vertical ? "1" : "0";
+  return pass.program({.files = {"glsl/shadow/summed_area_table.comp.glsl"}, .defines = std::move(defines)});
+}
+
+frame::PassBuilder addPass(frame::FrameGraph& graph, const SummedAreaPasses& desc,
+                           std::string_view direction) {
+  frame::PassBuilder pass = graph.addPass(fmt::format("{} {}", desc.name, direction), "shadow");
+  pass.role(frame::PassRole::filter);
+  if (desc.cacheable) pass.cacheable();
+  return pass;
+}
+
+}  // namespace
+
 int lineGroups(int lines, bool shared, bool vertical) {
   const int perGroup = shared && !vertical ? 4 : 16;
   return (lines + perGroup - 1) / perGroup;
 }
-
-}  // namespace
 
 gpu::TextureDesc derivedDesc(const frame::FrameGraph& graph, TextureHandle source, std::string_view what,
                              GLenum format, int levels, int slices) {
@@ -42,30 +75,45 @@ gpu::TextureDesc derivedDesc(const frame::FrameGraph& graph, TextureHandle sourc
   return desc;
 }
 
-TextureHandle addSummedAreaPasses(frame::FrameGraph& graph, TextureHandle source,
+TextureHandle addSummedAreaPasses(frame::FrameGraph& graph, TextureHandle source, GLenum format,
                                   const SummedAreaPasses& desc) {
-  const gpu::TextureDesc texture = derivedDesc(graph, source, desc.name, desc.format, 1);
-  TextureHandle table = graph.createTexture(desc.name, texture);
-  for (const bool vertical : {false, true}) {
-    frame::PassBuilder pass =
-        graph.addPass(fmt::format("{} {}", desc.name, vertical ? "columns" : "rows"), "shadow");
-    pass.role(frame::PassRole::filter);
-    if (!vertical) pass.read(source, Access::sampled, "depth", "shadow maps");
-    table = pass.write(table, vertical ? Access::imageLoadStore : Access::imageStore, "table",
-                       vertical ? "sums along columns, in place" : "sums along rows");
-    std::map<std::string, std::string> defines = desc.defines;
-    defines["SHARED"] = desc.shared ? "1" : "0";
-    defines["VERTICAL"] = vertical ? "1" : "0";
-    const frame::ProgramHandle program =
-        pass.program({.files = {"glsl/shadow/summed_area_table.comp.glsl"}, .defines = std::move(defines)});
-    if (desc.cacheable) pass.cacheable();
-    pass.execute([program, vertical, shared = desc.shared, texture](frame::PassContext& context) {
-      context.use(program);
-      const int groups = lineGroups(vertical ? texture.width : texture.height, shared, vertical);
-      context.dispatch(groups, 1, texture.layers, 1, 1);
-    });
-  }
+  const gpu::TextureDesc texture = derivedDesc(graph, source, desc.name, format, 1);
+  frame::PassBuilder pass = addPass(graph, desc, "rows");
+  pass.read(source, Access::sampled, "depth", "shadow maps");
+  TextureHandle table =
+      pass.write(graph.createTexture(desc.name, texture), Access::imageStore, "table", "sums along rows");
+  const frame::ProgramHandle program = sumProgram(pass, desc, format, false);
+  pass.execute([program, texture, shared = desc.shared](frame::PassContext& context) {
+    context.use(program);
+    context.dispatch(lineGroups(texture.height, shared, false), 1, texture.layers, 1, 1);
+  });
+  addColumnSums(graph, {&table}, desc);
   return table;
+}
+
+void addColumnSums(frame::FrameGraph& graph, const std::vector<TextureHandle*>& tables,
+                   const SummedAreaPasses& desc) {
+  frame::PassBuilder pass = addPass(graph, desc, "columns");
+  const frame::SlotHandle slot = pass.slot("table");
+  struct Columns {
+    TextureHandle table;
+    frame::ProgramHandle program;
+    int groups, layers;
+  };
+  std::vector<Columns> all;
+  for (TextureHandle* table : tables) {
+    *table = pass.write(*table, Access::imageLoadStore, "sums along columns, in place");
+    const gpu::TextureDesc& texture = graph.desc(*table);
+    all.push_back({*table, sumProgram(pass, desc, texture.format, true),
+                   lineGroups(texture.width, desc.shared, true), texture.layers});
+  }
+  pass.execute([slot, all = std::move(all)](frame::PassContext& context) {
+    for (const Columns& columns : all) {
+      context.use(columns.program);
+      context.bind(slot, columns.table);
+      context.dispatch(columns.groups, 1, columns.layers, 1, 1);
+    }
+  });
 }
 
 }  // namespace limn::shadow

@@ -125,7 +125,7 @@ FourierMeans fourier_means(vec2 low, vec2 high, ivec2 size, int layer) {
 vec2 fourier_shadow(FourierMeans means, float receiver) {
   vec2 result = vec2(0.5, 0.5 * means.depth);
   vec2 phase = fourier_phase(1, receiver - FOURIER_DELTA);
-  vec2 step = vec2(phase.x * phase.x - phase.y * phase.y, 2.0 * phase.x * phase.y);
+  vec2 step = fourier_phase_step(phase);
   for (int g = 0; g < FOURIER_GROUPS; ++g) {
     vec2 next = fourier_next_phase(phase, step);
     vec2 weights = vec2(fourier_weights[2 * g], fourier_weights[2 * g + 1]);
@@ -139,7 +139,7 @@ vec2 fourier_shadow(FourierMeans means, float receiver) {
 // The series itself at depth x behind the point where it is taken: what fourier_lit gives where all lies there.
 float fourier_step(float x) {
   vec2 phase = fourier_phase(1, x + FOURIER_DELTA);
-  vec2 step = vec2(phase.x * phase.x - phase.y * phase.y, 2.0 * phase.x * phase.y);
+  vec2 step = fourier_phase_step(phase);
   float lit = 0.5;
   for (int k = 0; k < 2 * FOURIER_GROUPS; ++k) {
     lit += fourier_weights[k] * phase.y;

@@ -18,7 +18,7 @@ void write_level(ivec3 at, ivec2 size) {
   vec2 uv = (vec2(at.xy) + 0.5) / vec2(size);
   float z = fourier_texel_depth(ranges[at.z], uv, texelFetch(depth, at, 0).r, span);
   vec2 phase = fourier_phase(1, z);
-  vec2 step = vec2(phase.x * phase.x - phase.y * phase.y, 2.0 * phase.x * phase.y);
+  vec2 step = fourier_phase_step(phase);
   for (int g = 0; g < GROUPS; ++g) {
     vec2 next = fourier_next_phase(phase, step);
     // z times what is stored, not what was meant: both reconstructions then see the same series.

@@ -68,6 +68,11 @@ LIMN_FN vec2 fourier_phase(int k, float x) {
   return vec2(cos(angle), sin(angle));
 }
 
+// (cos, sin) of 2 pi x, from those of c_1 x: what lies between c_k x and c_(k+1) x.
+LIMN_FN vec2 fourier_phase_step(vec2 first) {
+  return vec2(first.x * first.x - first.y * first.y, 2.0f * first.x * first.y);
+}
+
 // From c_k x to c_(k+1) x, step = (cos, sin) of 2 pi x.
 LIMN_FN vec2 fourier_next_phase(vec2 phase, vec2 step) {
   return vec2(phase.x * step.x - phase.y * step.y, phase.x * step.y + phase.y * step.x);

@@ -1,9 +1,10 @@
-// Declares the two passes that build every summed-area table of shadow maps.
+// Declares the passes that build the summed-area tables of shadow maps.
 #pragma once
 
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/frame/frame_graph.h"
 
@@ -16,16 +17,23 @@ gpu::TextureDesc derivedDesc(const frame::FrameGraph& graph, frame::TextureHandl
 
 struct SummedAreaPasses {
   std::string_view name;  ///< of the table
-  GLenum format;          ///< an integer format
-  /// Holds definitions for glsl/shadow/summed_area_table.comp.glsl: which quantity is summed, and the image's
-  /// format.
+  /// Holds definitions for glsl/shadow/summed_area_table.comp.glsl: which quantity is summed.
   std::map<std::string, std::string> defines;
   bool shared;     ///< scans in shared memory instead of one thread per line
   bool cacheable;  ///< kept while nothing changes
 };
 
-/// Declares the passes that sum the R32F array `source` along rows, then along columns. Returns the table.
-frame::TextureHandle addSummedAreaPasses(frame::FrameGraph& graph, frame::TextureHandle source,
+/// Declares the passes that sum the R32F array `source` along rows, then along columns. Returns the table,
+/// which is of `format`, one of integers.
+frame::TextureHandle addSummedAreaPasses(frame::FrameGraph& graph, frame::TextureHandle source, GLenum format,
                                          const SummedAreaPasses& desc);
+
+/// Declares the pass that sums `tables`, which hold sums along rows, along columns in place. They become the
+/// versions after it.
+void addColumnSums(frame::FrameGraph& graph, const std::vector<frame::TextureHandle*>& tables,
+                   const SummedAreaPasses& desc);
+
+/// Returns how many work groups take so many rows or columns (glsl/shadow/line_scan.glsl).
+int lineGroups(int lines, bool shared, bool vertical);
 
 }  // namespace limn::shadow
