@@ -8,6 +8,7 @@
 #define WHOLE_BIAS 1
 #include "glsl/shadow/blocker_search.glsl"
 #include "glsl/shadow/fourier_lookup.glsl"
+#include "glsl/shadow/light_kernels.glsl"
 #include "glsl/shadow/visibility_main.glsl"
 
 uniform int search_rounds;
@@ -28,14 +29,6 @@ struct KernelView {
   int layer;
   float size;        // texels per side of the map
   float sharpening;  // exponent of V, CONTACT 1
-};
-
-// What a kernel holds: texels blocked as the series sees them, times the gap of the blockers in metres; texels blocked
-// after ringing suppression and contact.
-struct Contents {
-  float blocked;
-  float gap;
-  float shadowed;
 };
 
 KernelView kernel_view(ShadowCursor cursor, VisibilityQuery q, float gap) {
@@ -94,8 +87,10 @@ PartDepths part_depths(ShadowCursor cursor, KernelView k, vec2 low, vec2 high) {
   return part;
 }
 
-// Adds `texels` texels about `centre`.
-void add_part(inout Contents contents, KernelView k, PartDepths part, FourierMeans means, vec2 centre, float texels) {
+// Adds `texels` texels about `centre`: to a search those that block as the series sees them, to V those that hide light after
+// ringing suppression and contact.
+void add_part(inout KernelBlockers blockers, KernelView k, PartDepths part, FourierMeans means, vec2 centre, float texels,
+              int use) {
   vec2 sums = fourier_shadow(means, part.threshold);
   float blocked = 1.0 - sums.x;
   float depth = clamp(sums.y / max(blocked, 1e-6), part.least, part.threshold);
@@ -103,8 +98,6 @@ void add_part(inout Contents contents, KernelView k, PartDepths part, FourierMea
   float counted = blocked > 1.0 - part.dip ? texels * blocked : 0.0;
   float stored = fourier_stored(k.range, centre / k.size, depth);
   float gap = threshold_gap(k.thresholds, centre, k.thresholds.near + stored / k.thresholds.quanta);
-  contents.blocked += counted;
-  contents.gap += counted * max(gap, 0.0);
   // Stage 3.
   float gain = 0.5 / (part.dip - 0.5);
   float v = fourier_visibility(sums.x, gain);
@@ -113,14 +106,17 @@ void add_part(inout Contents contents, KernelView k, PartDepths part, FourierMea
 #elif CONTACT == 2
   v = fourier_normalised(v, fourier_visibility(fourier_step(depth - part.threshold), gain), least_response);
 #endif
-  contents.shadowed += texels * (1.0 - v);
+  float hidden = use == kernel_search ? counted : texels * (1.0 - v);
+  blockers.texels += hidden;
+  blockers.gap += hidden * max(gap, 0.0);
 }
 
-// The parts of a kernel in one view. whole: what it holds is wanted, not how much of it.
-Contents kernel_contents(ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap, bool whole) {
-  Contents contents = Contents(0.0, 0.0, 0.0);
+// The parts of a kernel in one view.
+KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, inout ShadowKernel kernel, float gap, int use) {
+  KernelBlockers blockers = KernelBlockers(0.0, 0.0);
   KernelView k = kernel_view(cursor, q, gap);
   ivec2 size = ivec2(cursor.view.size);
+  bool whole = use == kernel_search;
   FourierAxis x = fourier_axis(kernel.low.x, kernel.high.x, size.x, splits, whole);
   FourierAxis y = fourier_axis(kernel.low.y, kernel.high.y, size.y, splits, whole);
   int cut = whole ? 0 : fourier_cut;
@@ -148,34 +144,11 @@ Contents kernel_contents(ShadowCursor cursor, VisibilityQuery q, ShadowKernel ke
 #else
       FourierMeans means = fourier_means(low, high, size, k.layer);
 #endif
-      add_part(contents, k, part_depths(cursor, k, low, high), means, 0.5 * (low + high),
-               texels * weight * fourier_part_weight(y, j));
+      add_part(blockers, k, part_depths(cursor, k, low, high), means, 0.5 * (low + high),
+               texels * weight * fourier_part_weight(y, j), use);
     } while (++j < y.parts + cut);
   } while (++i < x.parts + cut);
-  return contents;
-}
-
-// Over all faces, per area of the kernel.
-Contents contents_at(inout ShadowCursor cursor, VisibilityQuery q, float gap, bool whole, bool wanted) {
-  Contents sum = Contents(0.0, 0.0, 0.0);
-  float weights = 0.0;
-  uint faces = wanted ? shadow_face_count(q.maps.faces) : 0u;
-  uint face = 0u;
-  do {
-    ShadowKernel kernel;
-    bool seen = shadow_kernel_in_face(cursor, q, face, gap, kernel) && wanted;
-    if (seen) {
-      Contents contents = kernel_contents(cursor, q, kernel, gap, whole);
-      vec2 extent = kernel.high - kernel.low;
-      float share = kernel.weight / max(extent.x * extent.y, 1e-20);
-      sum.blocked += share * contents.blocked;
-      sum.gap += share * contents.gap;
-      sum.shadowed += share * contents.shadowed;
-      weights += kernel.weight;
-    }
-  } while (++face < faces);
-  sum.shadowed = weights > 0.0 ? sum.shadowed / weights : 0.0;
-  return sum;
+  return blockers;
 }
 
 float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
@@ -186,10 +159,10 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   int pass = 0;
   do {
     bool last = pass == blocker_passes;
-    Contents contents = contents_at(cursor, q, gap, !last, open);
-    if (open && last) v = clamp(1.0 - contents.shadowed, 0.0, 1.0);
-    open = open && contents.blocked > 0.0 && !last;
-    gap = open ? clamp(contents.gap / contents.blocked, 0.0, gap) : gap;
+    Blockers found = blockers_at(cursor, q, gap, last ? kernel_filter : kernel_search, open);
+    if (open && last) v = clamp(1.0 - found.share, 0.0, 1.0);
+    open = open && found.texels > 0.0 && !last;
+    gap = open ? found.gap : gap;
   } while (open && ++pass <= blocker_passes);
   return v;
 }

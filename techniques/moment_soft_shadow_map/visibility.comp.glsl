@@ -1,6 +1,7 @@
 // Moment soft shadow maps (Peters and Klein 2015, Peters et al. 2017): percentage-closer soft shadows of which both
 // steps, the mean depth of the blockers and the share of light, come from four moments of depth in a summed-area table.
 #include "glsl/shadow/blocker_search.glsl"
+#include "glsl/shadow/light_kernels.glsl"
 #include "glsl/shadow/moment_shadow.glsl"
 #include "glsl/shadow/variance_kernel.glsl"
 #include "glsl/shadow/visibility_main.glsl"
@@ -21,12 +22,6 @@ uniform float search_blur;
 // no more exact.
 uniform float least_gap;
 
-// What blocks in a kernel.
-struct KernelBlockers {
-  float texels;  // of the kernel that hide as much of the light
-  float gap;     // sum of their distances to the receiver along the light's axis, metres
-};
-
 // A part of a kernel, in the map. The threshold is the least one in it, so that no plane blocks itself.
 MomentBlockers cell_blockers(ShadowCursor cursor, ShadowKernel cell) {
   float d = map_threshold_range(cursor.view, cursor.in_map, cell.low, cell.high).x;
@@ -36,10 +31,6 @@ MomentBlockers cell_blockers(ShadowCursor cursor, ShadowKernel cell) {
   vec4 t = moment_lookup(moment_table, cell.low, cell.high, int(cursor.layer), moment_bits);
   return moment_blockers(t, d, depths.x, moment_bias);
 }
-
-// What a kernel is looked at for.
-const int kernel_search = 0;  // steps 1 and 2: how far away the blockers are; all texels that it touches
-const int kernel_filter = 1;  // steps 3 and 4: how much they hide; what lies in it
 
 // How many texels of low..high lie in the cone to the light where they are, `own_gap` before the receiver.
 float texels_in_cone(ShadowCursor cursor, VisibilityQuery q, vec2 low, vec2 high, float own_gap) {
@@ -63,7 +54,7 @@ void add_blockers(inout KernelBlockers blockers, ShadowCursor cursor, Visibility
 
 // The kernel at `gap` in cells x cells parts, or as many as sums of the table stay exact in. What lies outside the map is
 // unoccluded.
-KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap, int use) {
+KernelBlockers cells_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap, int use) {
   vec2 size = vec2(cursor.view.size);
   vec2 a = clamp(kernel.low, vec2(0.0), size);
   vec2 b = clamp(kernel.high, vec2(0.0), size);
@@ -102,66 +93,45 @@ KernelBlockers texel_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKern
   return blockers;
 }
 
-// What hides the light.
-struct Blockers {
-  float share;   // of the light
-  float gap;     // their mean distance to the receiver along the light's axis, metres
-  float texels;  // of all kernels
-};
-
-// Those in the kernel at `gap`.
-Blockers blockers_at(inout ShadowCursor cursor, VisibilityQuery q, float gap, int use) {
-  Blockers all = Blockers(0.0, 0.0, 0.0);
-  float total = 0.0;
-  for (uint face = 0u; face < shadow_face_count(q.maps.faces); ++face) {
-    ShadowKernel kernel;
-    if (!shadow_kernel_in_face(cursor, q, face, gap, kernel)) continue;
-    if (use == kernel_search) {
-      kernel.low = floor(kernel.low);
-      kernel.high = max(ceil(kernel.high), kernel.low + 1.0);
-    } else {
-      // A kernel within a texel would make the texels' edges visible.
-      vec2 widen = max(0.5 * (1.0 - (kernel.high - kernel.low)), vec2(0.0));
-      kernel.low -= widen;
-      kernel.high += widen;
-    }
-    vec2 extent = kernel.high - kernel.low;
-    // From texels to moments by degrees, between direct_texels and a quarter more: the two answers differ.
-    float direct = use == kernel_filter && direct_texels > 0
-                       ? clamp(5.0 - 4.0 * max(extent.x, extent.y) / float(direct_texels), 0.0, 1.0)
-                       : 0.0;
-    KernelBlockers found = KernelBlockers(0.0, 0.0);
-    if (direct < 1.0) found = kernel_blockers(cursor, q, kernel, gap, use);
-    if (direct > 0.0) {
-      KernelBlockers texels = texel_blockers(cursor, q, kernel, gap);
-      found.texels = mix(found.texels, texels.texels, direct);
-      found.gap = mix(found.gap, texels.gap, direct);
-    }
-    float weight = kernel.weight / (extent.x * extent.y);
-    all.share += weight * found.texels;
-    all.gap += weight * found.gap;
-    all.texels += found.texels;
-    total += kernel.weight;
+KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, inout ShadowKernel kernel, float gap, int use) {
+  if (use == kernel_search) {
+    kernel.low = floor(kernel.low);
+    kernel.high = max(ceil(kernel.high), kernel.low + 1.0);
+  } else {
+    // A kernel within a texel would make the texels' edges visible.
+    vec2 widen = max(0.5 * (1.0 - (kernel.high - kernel.low)), vec2(0.0));
+    kernel.low -= widen;
+    kernel.high += widen;
   }
-  all.gap = clamp(all.gap / max(all.share, 1e-30), 0.0, gap);
-  all.share /= max(total, 1e-30);
-  return all;
+  vec2 extent = kernel.high - kernel.low;
+  // From texels to moments by degrees, between direct_texels and a quarter more: the two answers differ.
+  float direct = use == kernel_filter && direct_texels > 0
+                     ? clamp(5.0 - 4.0 * max(extent.x, extent.y) / float(direct_texels), 0.0, 1.0)
+                     : 0.0;
+  KernelBlockers found = KernelBlockers(0.0, 0.0);
+  if (direct < 1.0) found = cells_blockers(cursor, q, kernel, gap, use);
+  if (direct > 0.0) {
+    KernelBlockers texels = texel_blockers(cursor, q, kernel, gap);
+    found.texels = mix(found.texels, texels.texels, direct);
+    found.gap = mix(found.gap, texels.gap, direct);
+  }
+  return found;
 }
 
 float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   BlockerSearch search = blocker_search(cursor, q, search_rounds);
   if (search.answer == search_lit) return 1.0;
   if (search.answer == search_umbra) return 0.0;
-  Blockers found = blockers_at(cursor, q, search.gap, kernel_search);
+  Blockers found = blockers_at(cursor, q, search.gap, kernel_search, true);
   if (found.texels < 0.5) return 1.0;
   float gap = found.gap;
-  found = blockers_at(cursor, q, gap, kernel_filter);
+  found = blockers_at(cursor, q, gap, kernel_filter, true);
   for (int pass = 1; pass < passes; ++pass) {
     // By degrees between 0.9 and 0.7 of the distance before: neighbouring pixels would part there.
     float nearer = clamp(4.5 - 5.0 * found.gap / gap, 0.0, 1.0);
     if (nearer == 0.0) break;
     gap = found.gap;
-    Blockers next = blockers_at(cursor, q, gap, kernel_filter);
+    Blockers next = blockers_at(cursor, q, gap, kernel_filter, true);
     found.share = mix(found.share, next.share, nearer);
     found.gap = mix(found.gap, next.gap, nearer);
   }

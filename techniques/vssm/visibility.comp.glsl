@@ -5,6 +5,7 @@
 // the same. BLOCKERS_ADAPTIVE and VISIBILITY_ADAPTIVE: which subdivision. CONTACT 1: narrow penumbrae from jittered bilinear
 // texels.
 #include "glsl/numeric/sampling.glsl"
+#include "glsl/shadow/kernel_blockers.glsl"
 #include "glsl/shadow/sub_kernels.glsl"
 #include "glsl/shadow/visibility_main.glsl"
 
@@ -16,18 +17,11 @@ uniform int visibility_cells;
 uniform int tree_height;
 uniform float contact_texels;
 
-// What a kernel holds, over all faces: (share blocked, metres to the blockers times that share, texels blocked).
-struct Contents {
-  float blocked;
-  float gap;
-  float texels;
-};
-
-// Adds those of one view; the weight of its kernel goes to `weights`.
-void add_contents(inout Contents contents, inout float weights, KernelFamily f, float gap, float deepest, bool blockers,
-                  bool wanted) {
+// Adds what blocks in one view.
+void add_blockers(inout BlockerSums sums, KernelFamily f, float gap, float deepest, int use, bool wanted) {
   ShadowKernel kernel;
   bool seen = family_kernel(f, gap, kernel) && wanted;
+  bool blockers = use == kernel_search;
   KernelTally tally = KernelTally(gap, kernel.low, kernel.high, 0.0, 0.0, vec4(0.0));
   if (blockers) {
     tally.low = floor(kernel.low);
@@ -46,21 +40,15 @@ void add_contents(inout Contents contents, inout float weights, KernelFamily f, 
   tally_adaptive(tally, f, axes, tree_height, open);
 #endif
   tally_pooled(tally);
-  vec2 extent = kernel.high - kernel.low;
-  float share = kernel.weight / (extent.x * extent.y);
-  weights += seen ? kernel.weight : 0.0;
-  contents.blocked += seen ? share * tally.blocked : 0.0;
-  contents.gap += seen ? share * tally.reach : 0.0;
-  contents.texels += seen ? tally.blocked : 0.0;
+  if (seen) add_kernel(sums, kernel, KernelBlockers(tally.blocked, tally.reach));
 }
 
 // The light's views in turn.
-Contents kernel_contents(inout ShadowCursor cursor, VisibilityQuery q, inout KernelFamily f, float gap, float deepest,
-                         bool blockers, bool wanted) {
-  Contents contents = Contents(0.0, 0.0, 0.0);
-  float weights = 0.0;
+Blockers blockers_at(inout ShadowCursor cursor, VisibilityQuery q, inout KernelFamily f, float gap, float deepest, int use,
+                     bool wanted) {
+  BlockerSums sums = no_blockers();
 #if SIMILAR_KERNELS
-  add_contents(contents, weights, f, gap, deepest, blockers, wanted);
+  add_blockers(sums, f, gap, deepest, use, wanted);
 #else
   uint faces = wanted ? shadow_face_count(q.maps.faces) : 0u;
   uint face = 0u;
@@ -69,13 +57,10 @@ Contents kernel_contents(inout ShadowCursor cursor, VisibilityQuery q, inout Ker
       cursor = shadow_cursor_at(q, face);
       f = kernel_family(cursor, q);
     }
-    add_contents(contents, weights, f, gap, deepest, blockers, wanted);
+    add_blockers(sums, f, gap, deepest, use, wanted);
   } while (++face < faces);
 #endif
-  float inverse = weights > 0.0 ? 1.0 / weights : 0.0;
-  contents.blocked *= inverse;
-  contents.gap *= inverse;
-  return contents;
+  return mean_blockers(sums, gap);
 }
 
 struct Search {
@@ -179,12 +164,11 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   int pass = 0;
   do {
     bool searching = pass == 0;
-    Contents contents = kernel_contents(cursor, q, f, gap, search.deepest, searching, open);
-    float found = clamp(contents.gap / max(contents.blocked, 1e-30), 0.0, gap);
-    if (open && !searching) v = clamp(1.0 - contents.blocked, 0.0, 1.0);
-    bool none = contents.texels < (searching ? 0.5 : 1e-3);
-    open = open && !none && (searching || found < pass_gap * gap);
-    gap = open ? found : gap;
+    Blockers found = blockers_at(cursor, q, f, gap, search.deepest, searching ? kernel_search : kernel_filter, open);
+    if (open && !searching) v = clamp(1.0 - found.share, 0.0, 1.0);
+    bool none = found.texels < (searching ? 0.5 : 1e-3);
+    open = open && !none && (searching || found.gap < pass_gap * gap);
+    gap = open ? found.gap : gap;
 #if CONTACT
 #if SIMILAR_KERNELS
     narrow = narrow || (open && contact(f, gap));
