@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/shadow/private/pyramid_fit.h"
 #include "core/shadow/private/window_fit.h"
 #include "glsl/light/light_part.glsl"
 #include "glsl/light/light_view.glsl"
@@ -30,100 +31,6 @@ Axes axesOf(const glsl::Light& light) {
   return {frame.t, frame.b, z};
 }
 
-/// The frames of shadow_face's faces, in its order.
-Axes faceAxes(const Axes& a, uint32_t face) {
-  switch (face) {
-    case 1:
-      return {a.y, a.z, a.x};
-    case 2:
-      return {a.z, a.y, -a.x};
-    case 3:
-      return {a.z, a.x, a.y};
-    case 4:
-      return {a.x, a.z, -a.y};
-    case 5:
-      return {a.y, a.x, -a.z};
-    default:
-      return a;
-  }
-}
-
-/// The eight corners relative to `origin`, in the frame.
-std::array<vec3, 8> corners(const Bounds& box, const vec3& origin, const Axes& axes) {
-  std::array<vec3, 8> out = boxCorners(box);
-  for (vec3& p : out) {
-    p -= origin;
-    p = {glm::dot(axes.x, p), glm::dot(axes.y, p), glm::dot(axes.z, p)};
-  }
-  return out;
-}
-
-/// Tangent of the half angle of the square pyramid around the corners; infinite where the box reaches beside
-/// or behind the origin, 0 where it lies wholly behind.
-float tangentOf(const std::array<vec3, 8>& box) {
-  float tangent = 0, nearest = box[0].z, farthest = box[0].z;
-  for (const vec3& p : box) {
-    nearest = std::min(nearest, p.z);
-    farthest = std::max(farthest, p.z);
-  }
-  if (!(farthest > 0)) return 0;
-  if (!(nearest > 1e-6f * farthest)) return std::numeric_limits<float>::infinity();
-  for (const vec3& p : box) tangent = std::max(tangent, std::max(std::abs(p.x), std::abs(p.y)) / p.z);
-  return tangent;
-}
-
-float fittedTangent(const vec3& origin, const Axes& axes, std::span<const Bounds> boxes) {
-  float tangent = 0;
-  for (const Bounds& box : boxes) {
-    if (!box.empty()) tangent = std::max(tangent, tangentOf(corners(box, origin, axes)));
-  }
-  return tangent;
-}
-
-struct Range {
-  float near = std::numeric_limits<float>::max(), far = 0;
-};
-
-/// Widens `range` by the depths of the part of the box inside the pyramid.
-void addBox(const std::array<vec3, 8>& box, float tangent, Convex& solid, Range& range) {
-  float low = box[0].z, high = box[0].z;
-  for (const vec3& p : box) {
-    low = std::min(low, p.z);
-    high = std::max(high, p.z);
-  }
-  if (high <= 0 || (low >= range.near && high <= range.far)) return;
-  solid.setBox(box);
-  for (const glm::vec4& plane : {glm::vec4(1, 0, tangent, 0), glm::vec4(-1, 0, tangent, 0),
-                                 glm::vec4(0, 1, tangent, 0), glm::vec4(0, -1, tangent, 0)})
-    solid.clip(plane);
-  for (const vec3& p : solid.corners()) {
-    range.near = std::min(range.near, std::max(p.z, 0.f));
-    range.far = std::max(range.far, p.z);
-  }
-}
-
-/// Depths of everything inside the pyramids of `faces`; with the origin inside a box, from 0 on.
-Range pyramidRange(const vec3& origin, const Axes& axes, uint32_t faceCount, uint32_t step, float tangent,
-                   std::span<const Bounds> boxes) {
-  Range range;
-  Convex solid;
-  for (uint32_t face = 0; face < faceCount; ++face) {
-    const Axes frame = faceAxes(axes, face * step);
-    for (const Bounds& box : boxes) {
-      if (!box.empty()) addBox(corners(box, origin, frame), tangent, solid, range);
-    }
-  }
-  return range;
-}
-
-/// A little room at both ends, so that what touches them is not cut by rounding; never empty.
-Range widened(Range range) {
-  if (!(range.far > 0)) return {kLeastNear, 1};
-  range.far *= 1.0001f;
-  range.near = std::max(0.9999f * range.near, kLeastNear * range.far);
-  return range;
-}
-
 glsl::ShadowView makeView(uint32_t projection, const vec3& origin, const Axes& axes, const MapWindow& window,
                           int size, uint32_t layer, uint32_t light) {
   const float scale = 1 / (window.high.x - window.low.x);
@@ -146,7 +53,7 @@ glsl::ShadowView makeView(uint32_t projection, const vec3& origin, const Axes& a
           .light = light};
 }
 
-MapWindow square(float half, const Range& range) {
+MapWindow square(float half, const DepthRange& range) {
   return {glm::vec2(-half), glm::vec2(half), range.near, range.far};
 }
 
@@ -342,8 +249,8 @@ void appendWhole(const glsl::Light& light, const LightLayout& layout, std::span<
     // The second view of a pair looks backwards.
     const uint32_t step = layout.faces == glsl::shadow_faces_pair ? 5 : 1;
     if (layout.projection == glsl::shadow_paraboloid) {
-      const Range range = widened(pyramidRange(origin, axes, 6, 1, 1, boxes));
-      const Range radial{0.5f * range.near, std::sqrt(3.f) * range.far};  // corners of the cube faces
+      const DepthRange range = widened(pyramidRange(origin, axes, 6, 1, 1, boxes));
+      const DepthRange radial{0.5f * range.near, std::sqrt(3.f) * range.far};  // corners of the cube faces
       for (uint32_t face = 0; face < count; ++face)
         out.view(glsl::shadow_paraboloid, origin, faceAxes(axes, face * step), square(1, radial));
       continue;
@@ -420,7 +327,7 @@ std::optional<MapWindow> partWindow(const glsl::Light& light, const glsl::Light&
   const glm::vec2 low = whole.low - glm::max(shift, 0.f);
   const glm::vec2 high = low + (whole.high - whole.low) + std::max(std::abs(shift.x), std::abs(shift.y));
   const float tangent = std::max({-low.x, -low.y, high.x, high.y});
-  const Range range = widened(pyramidRange(part.position, axes, count, 5, tangent, boxes));
+  const DepthRange range = widened(pyramidRange(part.position, axes, count, 5, tangent, boxes));
   return MapWindow{low, high, range.near, range.far};
 }
 
