@@ -59,7 +59,7 @@ std::vector<Case> chosenCases(const TechniqueRegistry& registry, const Options& 
 }
 
 bool hasFailed(const bench::StressResult& result) {
-  return result.worst().verdict == bench::Verdict::failed;
+  return result.worst().verdict == bench::StressVerdict::failed;
 }
 
 /// The results in a folder: written after every case, so that a run that was stopped goes on where it was.

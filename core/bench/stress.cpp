@@ -263,12 +263,12 @@ StressAnswer StressRun::answer(const TechniquePlugin& technique, const StressCas
     const bool unchanged = c.change == StressChange::none && *c.settings == '\0';
     answer.error = unchanged ? answer.benign : error(technique, c, asked);
     answer.factor = answer.error / std::max(answer.benign, kBenignFloor);
-    answer.verdict = c.factor > 0 && answer.factor > c.factor ? Verdict::degraded : Verdict::pass;
+    answer.verdict = c.factor > 0 && answer.factor > c.factor ? StressVerdict::degraded : StressVerdict::pass;
   } catch (const std::range_error& bad) {
-    answer.verdict = Verdict::failed;
+    answer.verdict = StressVerdict::failed;
     answer.message = bad.what();
   } catch (const Error& refusal) {
-    answer.verdict = Verdict::refused;
+    answer.verdict = StressVerdict::refused;
     answer.message = refusal.what();
   }
   return answer;

@@ -24,18 +24,18 @@ struct Scene;
 namespace limn::bench {
 
 /// From the best to the worst.
-enum class Verdict {
+enum class StressVerdict {
   pass,
   degraded,  ///< the error is above what the case allows
   refused,   ///< ended with a message
   failed,    ///< a value that is not finite, a visibility outside [0, 1] or a negative radiance
 };
-LIMN_API const char* name(Verdict verdict);
+LIMN_API const char* name(StressVerdict verdict);
 
 /// Says how a technique did in one term that it answers.
 struct StressAnswer {
   std::string term;  ///< as StressRun::terms() names it
-  Verdict verdict = Verdict::pass;
+  StressVerdict verdict = StressVerdict::pass;
   double error = 0;          ///< RMSE of V; of radiance, relative to the reference's mean
   double benign = 0;         ///< of the unchanged scene with default parameters
   double factor = 0;         ///< error / max(benign, 0.01); degraded above what the case allows

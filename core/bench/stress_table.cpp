@@ -15,14 +15,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Verdict verdictFrom(const std::string& text) {
-  for (const Verdict verdict : {Verdict::pass, Verdict::degraded, Verdict::refused, Verdict::failed})
+StressVerdict verdictFrom(const std::string& text) {
+  for (const StressVerdict verdict :
+       {StressVerdict::pass, StressVerdict::degraded, StressVerdict::refused, StressVerdict::failed})
     if (text == name(verdict)) return verdict;
   throw Error(fmt::format("verdict '{}' is unknown; expected pass, degraded, refused or failed", text));
 }
 
 bool isMeasured(const StressAnswer& answer) {
-  return answer.verdict == Verdict::pass || answer.verdict == Verdict::degraded;
+  return answer.verdict == StressVerdict::pass || answer.verdict == StressVerdict::degraded;
 }
 
 /// The factor, or the verdict where there is none.
@@ -82,15 +83,15 @@ StressAnswer answerFrom(const Json& json) {
 
 }  // namespace
 
-const char* name(Verdict verdict) {
+const char* name(StressVerdict verdict) {
   switch (verdict) {
-    case Verdict::pass:
+    case StressVerdict::pass:
       return "pass";
-    case Verdict::degraded:
+    case StressVerdict::degraded:
       return "degraded";
-    case Verdict::refused:
+    case StressVerdict::refused:
       return "refused";
-    case Verdict::failed:
+    case StressVerdict::failed:
       break;
   }
   return "failed";

@@ -16,7 +16,7 @@ namespace limn {
 namespace {
 
 using bench::StressResult;
-using bench::Verdict;
+using bench::StressVerdict;
 
 /// How far chance may lift a factor in pictures of 48 x 36. Of n errors that lie in a share s of the pixels
 /// the fourth moment over the square of the second is about 3 / s, so that their RMSE has a relative standard
@@ -57,7 +57,8 @@ TEST_F(StressTest, DeclaredCasesEndInAPictureThatErrsNoMoreThanTheyAllow) {
       SCOPED_TRACE(result.technique + ", " + result.name);
       for (const bench::StressAnswer& answer : result.answers) {
         SCOPED_TRACE(answer.term);
-        EXPECT_TRUE(answer.verdict == Verdict::pass || answer.verdict == Verdict::degraded) << answer.message;
+        EXPECT_TRUE(answer.verdict == StressVerdict::pass || answer.verdict == StressVerdict::degraded)
+            << answer.message;
         if (result.allowed > 0) {
           EXPECT_LE(answer.factor, mostFactor(result));
         }
@@ -74,7 +75,7 @@ TEST_F(StressTest, CommonCasesAskEveryTechniqueSomethingItAnswers) {
     const StressResult result = run.run(*plugin, *triangle, false);
     std::vector<std::string> asked;
     for (const bench::StressAnswer& answer : result.answers) {
-      EXPECT_NE(answer.verdict, Verdict::refused)
+      EXPECT_NE(answer.verdict, StressVerdict::refused)
           << result.technique << ", " << answer.term << ": " << answer.message;
       asked.push_back(answer.term);
     }
@@ -87,14 +88,14 @@ TEST_F(StressTest, VerdictsFollowWhatHappened) {
   bench::StressRun run = stressRun();
   const TechniquePlugin& hard = registry().find("hard_shadow_map");
   const StressResult plain = run.run(hard, {.name = "plain"}, false);
-  EXPECT_EQ(plain.worst().verdict, Verdict::pass);
+  EXPECT_EQ(plain.worst().verdict, StressVerdict::pass);
   EXPECT_EQ(plain.worst().factor, 1);
   EXPECT_GT(plain.worst().error, 0);
   const StressResult strict = run.run(hard, {.name = "strict", .factor = 0.5}, false);
-  EXPECT_EQ(strict.worst().verdict, Verdict::degraded);
+  EXPECT_EQ(strict.worst().verdict, StressVerdict::degraded);
   const StressResult invalid =
       run.run(hard, {.name = "invalid", .change = StressChange::invalidVertices}, false);
-  EXPECT_EQ(invalid.worst().verdict, Verdict::refused);
+  EXPECT_EQ(invalid.worst().verdict, StressVerdict::refused);
   EXPECT_THAT(invalid.worst().message, testing::HasSubstr("not finite"));
   EXPECT_THAT(run.run(hard, {.name = "typo", .settings = "biass=1"}, false).worst().message,
               testing::HasSubstr("bias"));

@@ -81,12 +81,12 @@ TEST(BenchStress, ARowShowsTheWorstTermAndNamesTheOthers) {
               testing::EndsWith("| t | three bounces (bounces=3) | box | pass | indirect (visibility 1.00) "
                                 "| 0.5 | 0.25 | 2.00 | 4.0 |\n"));
   StressResult refused = severalTerms();
-  refused.answers[0].verdict = Verdict::refused;
+  refused.answers[0].verdict = StressVerdict::refused;
   refused.answers[0].message = "too much";
   const StressResult others[] = {refused};
   EXPECT_THAT(toMarkdown(others),
               testing::HasSubstr("| refused: too much | indirect (visibility 1.00) | - |"));
-  EXPECT_EQ(StressResult{}.worst().verdict, Verdict::pass) << "nothing was asked";
+  EXPECT_EQ(StressResult{}.worst().verdict, StressVerdict::pass) << "nothing was asked";
 }
 
 TEST(BenchStress, JsonKeepsEveryTermAndLeavesOutResultsOfOne) {
