@@ -49,10 +49,10 @@ struct Format {
 };
 constexpr std::array kFormats{Format{"half", TableFormat::half}, Format{"float32", TableFormat::float32}};
 
-template <class Row, std::size_t count>
-const Row& rowNamed(const std::array<Row, count>& rows, const std::string& name, const char* flag) {
+template <class FitRow, std::size_t count>
+const FitRow& rowNamed(const std::array<FitRow, count>& rows, const std::string& name, const char* flag) {
   std::vector<std::string> known;
-  for (const Row& row : rows) {
+  for (const FitRow& row : rows) {
     if (name == row.name) return row;
     known.emplace_back(row.name);
   }
@@ -60,7 +60,7 @@ const Row& rowNamed(const std::array<Row, count>& rows, const std::string& name,
                                didYouMean(name, known), joined(known)));
 }
 
-struct Options {
+struct BrdfFitsArguments {
   BrdfChoice choice;
   std::string kind;
   int texels = 0, terms = 0;
@@ -68,7 +68,7 @@ struct Options {
   std::string format = "half";
 };
 
-brdf::FitSettings settingsOf(const Kind& kind, const Options& options) {
+brdf::FitSettings settingsOf(const Kind& kind, const BrdfFitsArguments& options) {
   brdf::FitSettings settings;
   settings.factorisation = kind.factorisation;
   settings.texels = options.texels > 0 ? options.texels : kind.texels;
@@ -81,7 +81,7 @@ brdf::FitSettings settingsOf(const Kind& kind, const Options& options) {
 }
 
 /// What is asked for: one fit, or all kinds, with the coordinates and terms that they are compared with.
-std::vector<brdf::FitSettings> settingsOf(const Options& options) {
+std::vector<brdf::FitSettings> settingsOf(const BrdfFitsArguments& options) {
   if (!options.kind.empty()) return {settingsOf(rowNamed(kKinds, options.kind, "--fit"), options)};
   std::vector<brdf::FitSettings> all;
   for (const Kind& kind : kKinds) {
@@ -108,16 +108,16 @@ std::vector<glm::dvec3> albedosOf(const brdf::Response& response, bool isotropic
   return albedos;
 }
 
-struct Row {
+struct FitRow {
   std::string name;
   double error = 0, albedo = 0, deviation = 0;
   std::size_t bytes = 0;
 };
 
-Row rowOf(std::string name, const brdf::Response& response, double error, std::size_t bytes,
-          const std::vector<glm::dvec3>& exact, bool isotropic) {
+FitRow rowOf(std::string name, const brdf::Response& response, double error, std::size_t bytes,
+             const std::vector<glm::dvec3>& exact, bool isotropic) {
   const std::vector<glm::dvec3> albedos = albedosOf(response, isotropic);
-  Row row{.name = std::move(name), .error = error, .bytes = bytes};
+  FitRow row{.name = std::move(name), .error = error, .bytes = bytes};
   for (std::size_t i = 0; i < albedos.size(); ++i)
     for (int channel = 0; channel < 3; ++channel) {
       row.albedo = std::max(row.albedo, albedos[i][channel]);
@@ -127,7 +127,7 @@ Row rowOf(std::string name, const brdf::Response& response, double error, std::s
 }
 
 /// The rival of factors where azimuths matter: a table over both directions.
-Row pairsOf(const brdf::Brdf& exact, const std::vector<glm::dvec3>& albedos) {
+FitRow pairsOf(const brdf::Brdf& exact, const std::vector<glm::dvec3>& albedos) {
   constexpr int kSide = 20;
   const brdf::AnisotropicTable table = brdf::tabulateAnisotropic(
       kSide,
@@ -139,10 +139,10 @@ Row pairsOf(const brdf::Brdf& exact, const std::vector<glm::dvec3>& albedos) {
                brdf::SpherePicture(exact).errorOf(response), table.values.size() * 6, albedos, false);
 }
 
-nlohmann::ordered_json toJson(const BrdfSource& source, const std::vector<Row>& rows) {
+nlohmann::ordered_json toJson(const BrdfSource& source, const std::vector<FitRow>& rows) {
   nlohmann::ordered_json json = {
       {"source", source.name}, {"kind", source.kind}, {"fits", nlohmann::ordered_json::array()}};
-  for (const Row& row : rows)
+  for (const FitRow& row : rows)
     json["fits"].push_back({{"fit", row.name},
                             {"error", row.error},
                             {"largest_albedo", row.albedo},
@@ -151,19 +151,19 @@ nlohmann::ordered_json toJson(const BrdfSource& source, const std::vector<Row>& 
   return json;
 }
 
-void printTable(const std::vector<Row>& rows) {
+void printFits(const std::vector<FitRow>& rows) {
   fmt::print("{:<34} {:>8} {:>8} {:>10} {:>9}\n", "fit", "error", "albedo", "deviation", "bytes");
-  for (const Row& row : rows)
+  for (const FitRow& row : rows)
     fmt::print("{:<34} {:>8.4f} {:>8.3f} {:>10.4f} {:>9}\n", row.name, row.error, row.albedo, row.deviation,
                row.bytes);
 }
 
-int run(const Options& options) {
+int runBrdfFits(const BrdfFitsArguments& options) {
   const std::vector<brdf::FitSettings> fits = settingsOf(options);
   const BrdfSource source = openBrdf(options.choice);
   const std::vector<glm::dvec3> exact = albedosOf(brdf::responseOf(source.f), source.isotropic);
   Progress progress("fits of " + source.name, 2);
-  std::vector<Row> rows;
+  std::vector<FitRow> rows;
   for (const brdf::FitSettings& settings : fits) {
     progress.update(static_cast<double>(rows.size()) / static_cast<double>(fits.size()));
     const brdf::FactoredBrdf fit = brdf::fitBrdf(source.f, settings);
@@ -177,7 +177,7 @@ int run(const Options& options) {
                toJson(source, rows).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   } else {
     fmt::print("{}: {}\n", source.name, source.kind);
-    printTable(rows);
+    printFits(rows);
   }
   return 0;
 }
@@ -196,7 +196,7 @@ std::string kindsHelp() {
 }  // namespace
 
 std::function<int()> addBrdfFit(CLI::App& command) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BrdfFitsArguments>();
   options->choice.addTo(command);
   command.add_option("--fit", options->kind, "Kind of fit, see below; without it all kinds");
   command.add_option("--texels", options->texels, "Texels along an axis of a factor")
@@ -210,7 +210,7 @@ std::function<int()> addBrdfFit(CLI::App& command) {
       ->capture_default_str();
   command.add_flag("--json", options->json, "Print JSON instead of a table");
   command.footer(kindsHelp());
-  return [options] { return run(*options); };
+  return [options] { return runBrdfFits(*options); };
 }
 
 }  // namespace limn::app

@@ -16,7 +16,7 @@ namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
 
-struct Options {
+struct BenchArguments {
   fs::path suite, out, against;
   std::vector<std::string> filters;
   std::string shard;
@@ -50,7 +50,7 @@ std::vector<std::string> printed(const BackendOptions& backend) {
   return arguments;
 }
 
-int run(const Options& options) {
+int runBench(const BenchArguments& options) {
   const SuiteRun asked{.filters = options.filters,
                        .shard = options.shard.empty() ? bench::Shard{} : bench::parseShard(options.shard),
                        .stallTimeout = options.stallTimeout};
@@ -76,7 +76,7 @@ int run(const Options& options) {
 }  // namespace
 
 Action addBenchCommand(CLI::App& command) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BenchArguments>();
   command.add_option("suite", options->suite, "TOML file, or the name of one of limn's suites")->required();
   command
       .add_option("-o,--out", options->out,
@@ -107,7 +107,7 @@ Action addBenchCommand(CLI::App& command) {
                   "0: never; default: the suite's, which is 1800 unless it says otherwise")
       ->check(CLI::Range(0.0, 1e6));
   options->backend.addTo(command);
-  return [options] { return run(*options); };
+  return [options] { return runBench(*options); };
 }
 
 }  // namespace limn::app

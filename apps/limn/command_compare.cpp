@@ -13,7 +13,7 @@
 namespace limn::app {
 namespace {
 
-struct Options {
+struct CompareArguments {
   std::string image, reference, diff, maskTermRange;
   double exposure = 0;
   double maxMasked = 0.5;  // percent
@@ -32,7 +32,7 @@ std::optional<std::pair<float, float>> parseTermRange(const std::string& text) {
   return std::pair(static_cast<float>(*low), static_cast<float>(*high));
 }
 
-int run(const Options& options) {
+int runCompare(const CompareArguments& options) {
   CompareOptions compare;
   compare.exposureEv = static_cast<float>(options.exposure);
   compare.maxMaskedShare = options.maxMasked / 100;
@@ -55,7 +55,7 @@ int run(const Options& options) {
 }  // namespace
 
 Action addCompareCommand(CLI::App& command) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareArguments>();
   command.add_option("image", options->image, "EXR, HDR or PNG")->required();
   command.add_option("reference", options->reference, "Reference image: EXR, HDR or PNG")->required();
   command.add_flag("--json", options->json, "Print JSON");
@@ -70,7 +70,7 @@ Action addCompareCommand(CLI::App& command) {
       ->capture_default_str()
       ->check(CLI::Range(0.0, 100.0));
   command.footer(metricsHelp());
-  return [options] { return run(*options); };
+  return [options] { return runCompare(*options); };
 }
 
 }  // namespace limn::app

@@ -20,7 +20,7 @@ namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
 
-struct Options {
+struct EnvironmentArguments {
   fs::path map;
   SceneQuestion lights{.environmentLights = 0.015};
   fs::path overlay;
@@ -32,18 +32,18 @@ struct Options {
 constexpr double kDegrees = 180 / 3.14159265358979323846;
 
 /// One light as people read it.
-struct Row {
+struct LightRow {
   double azimuth, elevation;  ///< of its centre, degrees; azimuth from -z towards +x
   glm::vec2 size;             ///< angles across its centre, degrees
   glm::vec3 irradiance;
   double share;  ///< of the luminance of all
 };
 
-std::vector<Row> rowsOf(const shading::EnvironmentDecomposition& decomposition) {
+std::vector<LightRow> rowsOf(const shading::EnvironmentDecomposition& decomposition) {
   double total = 0;
   for (const auto& light : decomposition.lights)
     total += static_cast<double>(glsl::luminance(light.irradiance));
-  std::vector<Row> rows;
+  std::vector<LightRow> rows;
   for (const scene::DistantRectangle& light : decomposition.lights) {
     const glm::dvec3 d = glm::normalize(glm::dvec3(light.centre));
     const auto across = [&](const glm::vec3& axis, float side) {
@@ -61,18 +61,19 @@ std::vector<Row> rowsOf(const shading::EnvironmentDecomposition& decomposition) 
   return rows;
 }
 
-void printTable(const std::vector<Row>& rows) {
+void printLights(const std::vector<LightRow>& rows) {
   fmt::print("{:<9} {:>8} {:>9} {:>13} {:>32} {:>8}\n", "light", "azimuth", "elevation", "size",
              "irradiance RGB, W/m^2", "share");
   for (size_t i = 0; i < rows.size(); ++i) {
-    const Row& r = rows[i];
+    const LightRow& r = rows[i];
     fmt::print("{:<9} {:>7.1f}° {:>8.1f}° {:>6.1f}x{:<5.1f}° {:>10.4g} {:>10.4g} {:>10.4g} {:>7.2f}%\n",
                fmt::format("env#{}", i), r.azimuth, r.elevation, r.size.x, r.size.y, r.irradiance.x,
                r.irradiance.y, r.irradiance.z, 100 * r.share);
   }
 }
 
-std::string toJson(const std::vector<Row>& rows, const Options& options, double milliseconds) {
+std::string toJson(const std::vector<LightRow>& rows, const EnvironmentArguments& options,
+                   double milliseconds) {
   nlohmann::ordered_json json = {{"map", options.map.string()},
                                  {"threshold", options.lights.environmentLights},
                                  {"resolution", options.lights.environmentResolution},
@@ -80,7 +81,7 @@ std::string toJson(const std::vector<Row>& rows, const Options& options, double 
                                  {"milliseconds", milliseconds},
                                  {"lights", nlohmann::ordered_json::array()}};
   for (size_t i = 0; i < rows.size(); ++i) {
-    const Row& r = rows[i];
+    const LightRow& r = rows[i];
     json["lights"].push_back({{"name", fmt::format("env#{}", i)},
                               {"azimuth", r.azimuth},
                               {"elevation", r.elevation},
@@ -91,7 +92,7 @@ std::string toJson(const std::vector<Row>& rows, const Options& options, double 
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-int run(const Options& options) {
+int runEnvironment(const EnvironmentArguments& options) {
   if (!options.overlay.empty()) {
     if (options.overlay.extension() != ".png" && options.overlay.extension() != ".exr")
       throw UsageError(fmt::format("--overlay '{}' is not accepted; expected a name ending in .png or .exr",
@@ -106,11 +107,11 @@ int run(const Options& options) {
       shading::decomposeEnvironment(map, session::decompositionSettings(options.lights));
   const double milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  const std::vector<Row> rows = rowsOf(lights);
+  const std::vector<LightRow> rows = rowsOf(lights);
   if (options.json) {
     fmt::print("{}\n", toJson(rows, options, milliseconds));
   } else {
-    printTable(rows);
+    printLights(rows);
     fmt::print("{}: {} lights in {:.1f} ms\n", options.map.string(), rows.size(), milliseconds);
   }
   if (!options.overlay.empty()) {
@@ -126,7 +127,7 @@ int run(const Options& options) {
 }  // namespace
 
 Action addEnvironmentCommand(CLI::App& command) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EnvironmentArguments>();
   command.add_option("map", options->map, questionField("environment").doc)->required();
   addSceneFlag(command, options->lights, "environment_lights", "--lights");
   addSceneFlag(command, options->lights, "environment_resolution", "--resolution");
@@ -138,7 +139,7 @@ Action addEnvironmentCommand(CLI::App& command) {
   command.add_option("--exposure", options->exposure, "Exposure of the overlay, EV")
       ->check(CLI::Range(-60.0, 60.0));
   command.add_flag("--json", options->json, "Print JSON instead of a table");
-  return [options] { return run(*options); };
+  return [options] { return runEnvironment(*options); };
 }
 
 }  // namespace limn::app

@@ -18,7 +18,7 @@ namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
 
-struct Options {
+struct ExplainCostArguments {
   SceneQuestion scene;
   session::TechniqueChoice technique;
   BackendOptions backend;
@@ -29,7 +29,7 @@ struct Options {
 
 constexpr double kPatience = 1;  // seconds without a word where there is no terminal
 
-Image referenceImage(const Options& options, const session::View& view, int interfaces) {
+Image referenceImage(const ExplainCostArguments& options, const session::View& view, int interfaces) {
   reference::Request request =
       session::referenceRequest(view, view.pose, view.camera, parseTerm(options.scene.term));
   request.spp = options.spp;
@@ -42,7 +42,7 @@ Image referenceImage(const Options& options, const session::View& view, int inte
   return reference::render(request).image;
 }
 
-int run(const Options& options) {
+int runExplainCost(const ExplainCostArguments& options) {
   for (const fs::path& file : {options.out, options.json})
     if (!file.empty()) checkWritable(file);
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
@@ -89,7 +89,7 @@ int run(const Options& options) {
 }  // namespace
 
 Action addExplainCostCommand(CLI::App& command) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExplainCostArguments>();
   addSceneFlags(command, options->scene);
   addSceneFlag(command, options->scene, "term");
   addTechniqueFlags(command, options->technique);
@@ -105,7 +105,7 @@ Action addExplainCostCommand(CLI::App& command) {
       ->check(CLI::Range(1, 1 << 22));
   command.add_option("-o,--out", options->out, "Also write the table to this Markdown file");
   command.add_option("--json", options->json, "Write all time samples to this JSON file");
-  return [options] { return run(*options); };
+  return [options] { return runExplainCost(*options); };
 }
 
 }  // namespace limn::app

@@ -18,7 +18,7 @@
 namespace limn::app {
 namespace {
 
-struct Options {
+struct FlickerArguments {
   SceneQuestion scene{.term = name(Term::indirect)};
   session::TechniqueChoice technique;
   BackendOptions backend;
@@ -60,7 +60,7 @@ struct Sums {
 
 class Sequence {
  public:
-  Sequence(const Options& options, const std::vector<render::TechniqueUse>& techniques)
+  Sequence(const FlickerArguments& options, const std::vector<render::TechniqueUse>& techniques)
       : options_(options),
         view_(session::open(options.scene, warn)),
         context_(Context::create(options.backend.contextOptions())),
@@ -93,7 +93,7 @@ class Sequence {
     return reference::render(request).image;
   }
 
-  const Options& options_;
+  const FlickerArguments& options_;
   int interfaces_ = 0;
   session::View view_;
   std::unique_ptr<Context> context_;
@@ -101,7 +101,7 @@ class Sequence {
   render::Renderer renderer_;
 };
 
-void print(const Options& options, int frames, const Sums& sums, double ratio) {
+void print(const FlickerArguments& options, int frames, const Sums& sums, double ratio) {
   if (options.json) {
     fmt::print("{}\n", nlohmann::json{{"frames", frames},
                                       {"change", sums.picture.mean()},
@@ -117,7 +117,7 @@ void print(const Options& options, int frames, const Sums& sums, double ratio) {
       frames, sums.picture.mean(), sums.trueChange(), sums.noiseOfTruth(), ratio);
 }
 
-int run(const Options& options) {
+int runFlicker(const FlickerArguments& options) {
   const auto range = parseFrames(options.frames);
   if (!range || range->first == range->last)
     throw UsageError(fmt::format("--frames '{}' is not accepted; expected a:b with a < b", options.frames));
@@ -151,7 +151,7 @@ int run(const Options& options) {
 }  // namespace
 
 Action addFlickerCommand(CLI::App& command) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<FlickerArguments>();
   addSceneFlags(command, options->scene);
   addSceneFlag(command, options->scene, "term");
   addTechniqueFlags(command, options->technique);
@@ -171,7 +171,7 @@ Action addFlickerCommand(CLI::App& command) {
   command.add_option("--at-most", options->atMost, "Exit with status 1 if the ratio exceeds this value")
       ->check(CLI::Range(0.0, 1e9));
   command.add_flag("--json", options->json, "Print JSON");
-  return [options] { return run(*options); };
+  return [options] { return runFlicker(*options); };
 }
 
 }  // namespace limn::app

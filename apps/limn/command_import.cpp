@@ -15,7 +15,7 @@ namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kProgram = "assimp";
+constexpr const char* kConverter = "assimp";
 
 /// A file that is gone when its work is done, unless it was given its name.
 class PartFile {
@@ -37,13 +37,13 @@ class PartFile {
 std::string reason(const ProgramOutput& output) {
   constexpr std::string_view mark = "ERROR: ";
   const std::size_t at = output.text.find(mark);
-  if (at == std::string::npos) return kProgram + (" failed: " + output.failure);
+  if (at == std::string::npos) return kConverter + (" failed: " + output.failure);
   const std::size_t start = at + mark.size();
   return oneLine(output.text.substr(start, output.text.find('\n', start) - start));
 }
 
 std::string assimp(const std::vector<std::string>& arguments, const fs::path& model) {
-  const ProgramOutput output = programOutput(kProgram, arguments);
+  const ProgramOutput output = programOutput(kConverter, arguments);
   if (!output.failure.empty() || output.text.find("ERROR: ") != std::string::npos)
     throw Error(fmt::format("{}: {}", model.string(), reason(output)));
   return output.text;
@@ -71,7 +71,7 @@ int run(const fs::path& model, fs::path out) {
   }
   if (out.extension() != ".glb")
     throw UsageError(fmt::format("--out {}: a file with the extension .glb is written", out.string()));
-  if (!programExists(kProgram))
+  if (!programExists(kConverter))
     throw Error(
         "models of other formats are read by assimp, which is not installed: apt-get install assimp-utils");
 

@@ -82,7 +82,7 @@ void printText(const TechniqueRegistry& registry) {
     fmt::print(stderr, "limn: technique {} was refused: {}\n", refusal.name, refusal.reason);
 }
 
-struct Options {
+struct ListArguments {
   std::string what = "techniques";
   bool json = false;
 };
@@ -93,7 +93,7 @@ const std::map<std::string, std::vector<std::string> (*)()> kNames{
     {"environments", session::environmentNames},
     {"suites", session::suiteNames}};
 
-int run(const Options& options) {
+int runList(const ListArguments& options) {
   if (const auto names = kNames.find(options.what); names != kNames.end()) {
     const std::vector<std::string> found = names->second();
     if (options.json)
@@ -110,7 +110,7 @@ int run(const Options& options) {
 }  // namespace
 
 Action addListCommand(CLI::App& command) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ListArguments>();
   command
       .add_option(
           "what", options->what,
@@ -118,7 +118,7 @@ Action addListCommand(CLI::App& command) {
       ->check(CLI::IsMember({"techniques", "scenes", "environments", "suites"}))
       ->capture_default_str();
   command.add_flag("--json", options->json, "Print JSON");
-  return [options] { return run(*options); };
+  return [options] { return runList(*options); };
 }
 
 }  // namespace limn::app

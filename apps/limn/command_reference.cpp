@@ -21,7 +21,7 @@ namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
 
-struct Options {
+struct ReferenceArguments {
   SceneQuestion scene{.term = name(Term::direct)};
   int spp = 256, threads = 0;
   double noise = 0;
@@ -46,7 +46,7 @@ int parseInterfaces(const std::string& text) {
   return value;
 }
 
-reference::Request makeRequest(const Options& options, const session::View& view) {
+reference::Request makeRequest(const ReferenceArguments& options, const session::View& view) {
   reference::Request request =
       session::referenceRequest(view, view.pose, view.camera, parseTerm(options.scene.term));
   request.spp = options.spp;
@@ -59,7 +59,7 @@ reference::Request makeRequest(const Options& options, const session::View& view
 }
 
 /// Irradiance of vertices, as a list in the shape of a picture.
-int runAtVertices(const Options& options, const session::View& view, reference::Request request) {
+int runAtVertices(const ReferenceArguments& options, const session::View& view, reference::Request request) {
   if (options.out.extension() != ".exr")
     throw UsageError("--at-vertices writes a list; --out takes a name ending in .exr");
   const auto points = reference::vertexPoints(view.scene, view.pose, static_cast<float>(options.longestEdge));
@@ -71,7 +71,7 @@ int runAtVertices(const Options& options, const session::View& view, reference::
   return 0;
 }
 
-int run(const Options& options) {
+int runReference(const ReferenceArguments& options) {
   if (options.out.extension() != ".exr" && options.out.extension() != ".png")
     throw UsageError(fmt::format("--out '{}' is not accepted; expected a name ending in .exr or .png",
                                  options.out.string()));
@@ -110,7 +110,7 @@ int run(const Options& options) {
 }  // namespace
 
 Action addReferenceCommand(CLI::App& command) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReferenceArguments>();
   addSceneFlags(command, options->scene);
   addSceneFlag(command, options->scene, "term", "--term");
   command.add_option("--spp", options->spp, "Samples per pixel and light; with --noise the maximum")
@@ -152,7 +152,7 @@ Action addReferenceCommand(CLI::App& command) {
       .add_option("-o,--out", options->out,
                   "Picture (.exr with all channels, or .png); interrupted work is kept beside it")
       ->required();
-  return [options] { return run(*options); };
+  return [options] { return runReference(*options); };
 }
 
 }  // namespace limn::app

@@ -22,7 +22,7 @@ namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
 
-struct Options {
+struct RenderArguments {
   SceneQuestion scene;
   session::TechniqueChoice technique;
   BackendOptions backend;
@@ -34,7 +34,7 @@ struct Options {
   fs::path out, stats, graph, shaders;
 };
 
-void checkOutputName(const Options& options) {
+void checkOutputName(const RenderArguments& options) {
   const fs::path& out = options.out;
   if (isMovie(out)) {
     if (options.frames.empty())
@@ -79,7 +79,7 @@ void printStats(const render::FrameStats& stats) {
 
 /// Throws Error for a picture with values that are not finite, which no file should be taken for a result
 /// with.
-void checkFinite(const Image& picture, const Options& options) {
+void checkFinite(const Image& picture, const RenderArguments& options) {
   size_t count = 0;
   glm::ivec2 first(0);
   for (int y = 0; y < picture.height(); ++y)
@@ -99,7 +99,7 @@ void checkFinite(const Image& picture, const Options& options) {
 /// Writes pictures whose values are finite; all with the exposure of the first.
 class Writer {
  public:
-  explicit Writer(const Options& options) : options_(options) {}
+  explicit Writer(const RenderArguments& options) : options_(options) {}
 
   void add(Movie& movie, const Image& picture) {
     checkFinite(picture, options_);
@@ -116,7 +116,7 @@ class Writer {
   }
 
  private:
-  const Options& options_;
+  const RenderArguments& options_;
   std::optional<ToneMapping> tone_;
 };
 
@@ -153,7 +153,7 @@ void renderWithProgress(render::Renderer& renderer, Progress& progress, int fram
 }
 
 template <class FrameAt>
-void writeFrames(const Options& options, const FrameRange& frames, Writer& writer, FrameAt frameAt) {
+void writeFrames(const RenderArguments& options, const FrameRange& frames, Writer& writer, FrameAt frameAt) {
   LastWords words("interrupted; no frame was written");
   for (int frame = frames.first; frame <= frames.last; ++frame) {
     if (frame > frames.first)
@@ -166,7 +166,7 @@ void writeFrames(const Options& options, const FrameRange& frames, Writer& write
 }
 
 template <class FrameAt>
-void writeMovie(const Options& options, const FrameRange& frames, Writer& writer, FrameAt frameAt) {
+void writeMovie(const RenderArguments& options, const FrameRange& frames, Writer& writer, FrameAt frameAt) {
   const std::string words = "interrupted; no movie was written";
   const LastWords lastWords(words);
   const Interruption interruption;  // what is half-written goes before the program
@@ -179,7 +179,7 @@ void writeMovie(const Options& options, const FrameRange& frames, Writer& writer
   sayWritten(options.out);
 }
 
-int run(const Options& options) {
+int runRender(const RenderArguments& options) {
   checkOutputName(options);
   for (const fs::path& file : {options.out, options.stats, options.graph})
     if (!file.empty()) checkWritable(file);
@@ -249,7 +249,7 @@ int run(const Options& options) {
 }  // namespace
 
 Action addRenderCommand(CLI::App& command) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RenderArguments>();
   addSceneFlags(command, options->scene);
   addSceneFlag(command, options->scene, "term");
   addTechniqueFlags(command, options->technique);
@@ -280,7 +280,7 @@ Action addRenderCommand(CLI::App& command) {
   command.add_option("--graph", options->graph, "Write the frame graph to this Graphviz file");
   command.add_option("--shaders", options->shaders,
                      "Folder with glsl/ and techniques/ whose shaders replace the embedded ones");
-  return [options] { return run(*options); };
+  return [options] { return runRender(*options); };
 }
 
 }  // namespace limn::app

@@ -13,12 +13,12 @@ namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
 
-struct Options {
+struct ReproductionArguments {
   std::vector<fs::path> results;
   fs::path claims, out;
 };
 
-int run(const Options& options) {
+int runReproduction(const ReproductionArguments& options) {
   fs::path claims = options.claims;
   if (claims.empty()) claims = session::findShared("benchmarks", "reproduction.claims");
   if (claims.empty())
@@ -40,11 +40,11 @@ int run(const Options& options) {
 }  // namespace
 
 Action addReproductionCommand(CLI::App& command) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReproductionArguments>();
   command.add_option("results", options->results, "Result folders of limn bench (its --out)")->required();
   command.add_option("-o,--out", options->out, "Markdown file")->required();
   command.add_option("--claims", options->claims, "TOML file; default: the thesis's");
-  return [options] { return run(*options); };
+  return [options] { return runReproduction(*options); };
 }
 
 }  // namespace limn::app

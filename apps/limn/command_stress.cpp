@@ -19,7 +19,7 @@ namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
 
-struct Options {
+struct StressArguments {
   std::string techniques, filter;
   fs::path out;
   BackendOptions backend;
@@ -43,7 +43,7 @@ bool declares(const TechniquePlugin& technique, std::string_view name) {
   return std::ranges::any_of(technique.info->stress, [&](const StressCase& c) { return name == c.name; });
 }
 
-std::vector<Case> chosenCases(const TechniqueRegistry& registry, const Options& options) {
+std::vector<Case> chosenCases(const TechniqueRegistry& registry, const StressArguments& options) {
   std::vector<Case> cases;
   const auto add = [&](const TechniquePlugin* technique, const StressCase& c, bool own) {
     if (std::string_view(c.name).find(options.filter) != std::string_view::npos)
@@ -111,7 +111,7 @@ class Table {
   std::vector<bench::StressResult> results_;
 };
 
-int run(const Options& options) {
+int runStress(const StressArguments& options) {
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
   const std::vector<Case> cases = chosenCases(registry, options);
   const auto context = Context::create(options.backend.contextOptions());
@@ -141,13 +141,13 @@ int run(const Options& options) {
 }  // namespace
 
 Action addStressCommand(CLI::App& command) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<StressArguments>();
   command.add_option("--technique", options->techniques, "Techniques, comma-separated; default: all");
   command.add_option("--filter", options->filter, "Only cases whose name contains this text");
   command.add_option("-o,--out", options->out,
                      "Folder for stress.md and stress.json; cases that are already in it are skipped");
   options->backend.addTo(command);
-  return [options] { return run(*options); };
+  return [options] { return runStress(*options); };
 }
 
 }  // namespace limn::app

@@ -23,7 +23,7 @@ namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
 
-struct Options {
+struct TuneArguments {
   SceneQuestion scene;
   bool termGiven = false, json = false;
   std::optional<double> maxMs;
@@ -70,7 +70,7 @@ struct Goal {
   }
 };
 
-Goal goalOf(const Options& options) {
+Goal goalOf(const TuneArguments& options) {
   if (options.maxMs.has_value() == !options.maxError.empty())
     throw UsageError("tune needs a limit: either --max-ms or --max-error");
   if (options.maxMs) return {findMetric(options.metric), *options.maxMs, true};
@@ -92,7 +92,7 @@ TermSet answering(Term term) {
 }
 
 std::vector<const TechniquePlugin*> chosenTechniques(const TechniqueRegistry& registry,
-                                                     const Options& options, Term term) {
+                                                     const TuneArguments& options, Term term) {
   std::vector<const TechniquePlugin*> chosen;
   if (options.techniques.empty()) {
     for (const TechniquePlugin* plugin : registry.all())
@@ -108,7 +108,7 @@ std::vector<const TechniquePlugin*> chosenTechniques(const TechniqueRegistry& re
 }
 
 /// What --set says of each technique, and the bounces of those that have them.
-Parameters fixedParameters(const TechniqueInfo& technique, const Options& options, int bounces) {
+Parameters fixedParameters(const TechniqueInfo& technique, const TuneArguments& options, int bounces) {
   Parameters fixed;
   const std::string own = std::string(technique.name) + ".";
   for (const std::string& setting : options.settings)
@@ -128,7 +128,7 @@ struct Space {
   Parameters fixed;
 };
 
-std::vector<Space> spacesOf(const TechniqueRegistry& registry, const Options& options, Term term,
+std::vector<Space> spacesOf(const TechniqueRegistry& registry, const TuneArguments& options, Term term,
                             int bounces) {
   const std::vector<const TechniquePlugin*> techniques = chosenTechniques(registry, options, term);
   for (const std::string& setting : options.settings)
@@ -155,7 +155,7 @@ std::vector<Space> spacesOf(const TechniqueRegistry& registry, const Options& op
 /// Measures settings as rows of a bench, and says what became of them.
 class Tuning {
  public:
-  explicit Tuning(const Options& options)
+  explicit Tuning(const TuneArguments& options)
       : options_(options),
         goal_(goalOf(options)),
         term_(parseTerm(options.scene.term)),
@@ -339,7 +339,7 @@ class Tuning {
     return json;
   }
 
-  const Options& options_;
+  const TuneArguments& options_;
   Goal goal_;
   Term term_;
   int bounces_;  ///< of the reference; 0: the term has none
@@ -352,7 +352,7 @@ class Tuning {
   std::string failure_;  ///< the first one
 };
 
-int run(Options options) {
+int runTune(TuneArguments options) {
   if (!options.termGiven)
     options.scene.term = name(options.scene.light.empty() ? Term::direct : Term::visibility);
   const LastWords words(fmt::format("interrupted; the rows so far are kept in {}, the same command goes on",
@@ -364,7 +364,7 @@ int run(Options options) {
 }  // namespace
 
 Action addTuneCommand(CLI::App& command) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TuneArguments>();
   addSceneFlags(command, options->scene);
   CLI::Option* term = addSceneFlag(command, options->scene, "term", "--term");
   term->default_str("direct, or visibility with --light");
@@ -424,7 +424,7 @@ Action addTuneCommand(CLI::App& command) {
   options->backend.addTo(command);
   return [options, term] {
     options->termGiven = term->count() > 0;
-    return run(*options);
+    return runTune(*options);
   };
 }
 

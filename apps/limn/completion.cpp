@@ -17,7 +17,7 @@ std::vector<std::string> choicesOf(const CLI::Option& option) {
 }
 
 /// A command's words and the choices of its options, with those of its own commands.
-struct Table {
+struct OptionTable {
   std::vector<std::string> words;
   std::string choices;  ///< branches of a case over the word before
 
@@ -45,7 +45,7 @@ std::string bashCompletion(const CLI::App& program) {
   std::string branches;
   for (const CLI::App* command : program.get_subcommands({})) {
     commands.push_back(command->get_name());
-    Table table;
+    OptionTable table;
     table.add(*command);
     branches += fmt::format("    {})\n      words='{}'\n      case $before in\n{}      esac ;;\n",
                             command->get_name(), fmt::join(table.words, " "), table.choices);

@@ -19,7 +19,7 @@ namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kProgram = "ffmpeg";
+constexpr const char* kEncoder = "ffmpeg";
 
 /// What a kind of file needs of ffmpeg.
 struct MovieKind {
@@ -74,7 +74,7 @@ bool isMovie(const fs::path& file) {
 }
 
 void checkMovieProgram() {
-  if (!programExists(kProgram))
+  if (!programExists(kEncoder))
     throw Error("movies are written by ffmpeg, which is not installed: apt-get install ffmpeg");
 }
 
@@ -124,7 +124,7 @@ void Movie::start(int width, int height) {
   arguments.insert(arguments.end(), of.begin(), of.end());
   arguments.push_back("file:" + part_.string());
   try {
-    process_ = startProgram(kProgram, arguments, {ends[1], -1, words_});
+    process_ = startProgram(kEncoder, arguments, {ends[1], -1, words_});
   } catch (...) {
     close(ends[1]);
     throw;

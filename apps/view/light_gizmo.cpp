@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/view/viewer_style.h"
 #include "apps/view/viewer_window.h"
 
 namespace limn::app {
@@ -12,10 +13,6 @@ namespace {
 constexpr float kMarkPixels = 7;
 constexpr ImU32 kAxisColours[3] = {0xff5a5af0, 0xff5ad05a, 0xfff0965a};  // red, green, blue
 constexpr ImU32 kHeldColour = 0xff40e0ff, kMarkColour = 0xff80e8ff;
-
-ImVec2 im(glm::vec2 v) {
-  return {v.x, v.y};
-}
 
 bool isDirectional(const LightFacts& light) {
   return light.light.type == glsl::light_directional;

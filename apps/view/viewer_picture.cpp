@@ -15,11 +15,7 @@
 namespace limn::app {
 namespace {
 
-constexpr float kGrabPixels = 6;  // of the line between two pictures
-
-ImVec2 im(glm::vec2 v) {
-  return {v.x, v.y};
-}
+constexpr float kSplitPixels = 6;  // of the line between two pictures
 
 /// The columns from `from` to `to` (parts of the width) of a picture that fills the area.
 void drawColumns(const gpu::Texture& texture, glm::vec2 corner, glm::vec2 size, float from, float to) {
@@ -249,7 +245,7 @@ bool ViewerWindow::dragSplit() {
   if (beside_ == Beside::nothing || area_.x < 1) return false;
   const ImGuiIO& io = ImGui::GetIO();
   const float x = corner_.x + split_ * static_cast<float>(area_.x);
-  const bool near = ImGui::IsItemHovered() && std::abs(io.MousePos.x - x) < kGrabPixels;
+  const bool near = ImGui::IsItemHovered() && std::abs(io.MousePos.x - x) < kSplitPixels;
   if (near || splitDragged_) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
   if (near && ImGui::IsMouseClicked(0)) splitDragged_ = true;
   if (!io.MouseDown[0]) splitDragged_ = false;

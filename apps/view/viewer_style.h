@@ -16,6 +16,11 @@ void setStyle(float scale);
 /// Returns whole pixels for a length that is stated in those of a monitor with 96 dots per inch.
 float scaled(float pixels);
 
+/// Returns the place as ImGui has it, pixels.
+inline ImVec2 im(glm::vec2 place) {
+  return {place.x, place.y};
+}
+
 /// Hold the panel's width at first and the height of the line below the picture, before scaled().
 inline constexpr float kPanelWidth = 400, kStatusHeight = 28;
 

@@ -167,6 +167,10 @@ class Polygoniser {
 
 }  // namespace
 
+glm::vec3 mirrored(glm::vec3 p) {
+  return {p.x, p.y, std::abs(p.z)};
+}
+
 float roundCone(glm::vec3 p, glm::vec3 a, glm::vec3 b, float ra, float rb) {
   const glm::vec3 ab = b - a;
   const float t = glm::clamp(glm::dot(p - a, ab) / glm::dot(ab, ab), 0.0f, 1.0f);

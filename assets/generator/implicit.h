@@ -7,6 +7,8 @@ namespace limn::assets {
 
 using Distance = std::function<float(glm::vec3)>;
 
+/// The place on the side z >= 0 that stands for `p` where both sides of a solid are alike.
+glm::vec3 mirrored(glm::vec3 p);
 /// Distance to the cone with spherical ends `a` (radius ra) and `b` (radius rb); exact where the radii are
 /// equal.
 float roundCone(glm::vec3 p, glm::vec3 a, glm::vec3 b, float ra, float rb);

@@ -10,27 +10,29 @@ namespace limn::assets {
 namespace {
 
 constexpr int kBays = 5;
-constexpr float kBay = 2, kHalfLength = 0.5f * kBays * kBay;
-constexpr float kHalfDepth = 1.0f, kWall = 0.3f;             // of the walk, and of its walls
-constexpr float kSpring = 2.2f, kTop = 3.25f, kRise = 0.5f;  // heights of the arches, the walls and the vault
-constexpr float kTurn = -72;  // degrees about the vertical: the sun shines in aslant
+constexpr float kArchWidth = 2, kHalfLength = 0.5f * kBays * kArchWidth;
+constexpr float kHalfDepth = 1.0f, kWall = 0.3f;  // of the walk, and of its walls
+constexpr float kArchSpring = 2.2f, kWallTop = 3.25f,
+                kRise = 0.5f;    // heights of the arches, the walls and the vault
+constexpr float kSunTurn = -72;  // degrees about the vertical: the sun shines in aslant
 
 /// Arches on columns along the walk's open side.
 void addArches(Mesh& stone) {
   const float z = kHalfDepth + 0.5f * kWall;
-  const Mesh wall = atrium::archedWall(kBay, kTop - kSpring, kWall, 0.86f),
-             column = atrium::plainColumn(kSpring, 0.13f);
+  const Mesh wall = atrium::archedWall(kArchWidth, kWallTop - kArchSpring, kWall, 0.86f),
+             column = atrium::plainColumn(kArchSpring, 0.13f);
   for (int bay = 0; bay < kBays; ++bay)
-    append(stone, wall, translation({kBay * (static_cast<float>(bay) + 0.5f) - kHalfLength, kSpring, z}));
+    append(stone, wall,
+           translation({kArchWidth * (static_cast<float>(bay) + 0.5f) - kHalfLength, kArchSpring, z}));
   for (int axis = 1; axis < kBays; ++axis)
-    append(stone, column, translation({kBay * static_cast<float>(axis) - kHalfLength, 0, z}));
+    append(stone, column, translation({kArchWidth * static_cast<float>(axis) - kHalfLength, 0, z}));
 }
 
 /// The inside of the barrel vault, or its outside, `thickness` away, which keeps light from its edges.
 Mesh vault(float thickness) {
   Mesh mesh = surface(1, 24, [=](glm::vec2 uv) {
     const float angle = glm::pi<float>() * (thickness > 0 ? 1 - uv.y : uv.y);
-    return glm::vec3((kHalfLength + kWall) * (2 * uv.x - 1), kTop + (kRise + thickness) * std::sin(angle),
+    return glm::vec3((kHalfLength + kWall) * (2 * uv.x - 1), kWallTop + (kRise + thickness) * std::sin(angle),
                      -(kHalfDepth + thickness) * std::cos(angle));
   });
   scaleUv(mesh, {2 * (kHalfLength + kWall), 4});
@@ -41,7 +43,7 @@ Mesh vault(float thickness) {
 
 Scene makeArcadeDark() {
   Scene scene;
-  const glm::mat4 turn = rotation(kTurn, {0, 1, 0});
+  const glm::mat4 turn = rotation(kSunTurn, {0, 1, 0});
   const auto at = [&](glm::vec3 p) { return glm::vec3(turn * glm::vec4(p, 1)); };
   const auto add = [&](const char* name, const Mesh& mesh, const Material& material) {
     scene.add(name, transformed(mesh, turn), scene.addMaterial(material));
@@ -57,11 +59,11 @@ Scene makeArcadeDark() {
   Mesh stone;
   addArches(stone);
   add("arches", stone, lambert("limestone", {0.66f, 0.62f, 0.54f}));
-  Mesh walls =
-      box({0, 0.5f * kTop, -kHalfDepth - 0.5f * kWall}, 0.5f * glm::vec3(2 * kHalfLength, kTop, kWall));
+  Mesh walls = box({0, 0.5f * kWallTop, -kHalfDepth - 0.5f * kWall},
+                   0.5f * glm::vec3(2 * kHalfLength, kWallTop, kWall));
   for (const float end : {-1.0f, 1.0f})
-    append(walls, box({end * (kHalfLength + 0.5f * kWall), 0.5f * (kTop + kRise) + kWall, 0},
-                      0.5f * glm::vec3(kWall, kTop + kRise + 2 * kWall, 2 * (kHalfDepth + kWall))));
+    append(walls, box({end * (kHalfLength + 0.5f * kWall), 0.5f * (kWallTop + kRise) + kWall, 0},
+                      0.5f * glm::vec3(kWall, kWallTop + kRise + 2 * kWall, 2 * (kHalfDepth + kWall))));
   append(walls, vault(0));
   append(walls, vault(kWall));
   add("walls", walls, plaster);

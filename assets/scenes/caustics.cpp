@@ -11,7 +11,7 @@
 namespace limn::assets {
 namespace {
 
-constexpr float kTurn = 2 * glm::pi<float>();
+constexpr float kWholeTurn = 2 * glm::pi<float>();
 
 /// A full turn about `axis` in `seconds`.
 Animation turning(int node, glm::vec3 axis, float seconds) {
@@ -20,7 +20,7 @@ Animation turning(int node, glm::vec3 axis, float seconds) {
   for (int i = 0; i <= parts; ++i) {
     const float share = static_cast<float>(i) / parts;
     animation.channels[0].times.push_back(share * seconds);
-    animation.channels[0].rotations.push_back(glm::angleAxis(share * kTurn, axis));
+    animation.channels[0].rotations.push_back(glm::angleAxis(share * kWholeTurn, axis));
   }
   return animation;
 }
@@ -53,7 +53,7 @@ void addFacet(Mesh& mesh, std::initializer_list<glm::vec3> corners) {
 Mesh gemstone(int sides) {
   Mesh mesh;
   const auto at = [&](float radius, float height, int i) {
-    const float angle = kTurn * static_cast<float>(i % sides) / static_cast<float>(sides);
+    const float angle = kWholeTurn * static_cast<float>(i % sides) / static_cast<float>(sides);
     return glm::vec3(radius * std::sin(angle), height, radius * std::cos(angle));
   };
   constexpr float table = 0.56f, top = 0.34f, girdle = 0.03f, depth = -0.86f;

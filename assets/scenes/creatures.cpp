@@ -11,11 +11,6 @@
 namespace limn::assets {
 namespace {
 
-/// Both sides alike.
-glm::vec3 mirrored(glm::vec3 p) {
-  return {p.x, p.y, std::abs(p.z)};
-}
-
 /// A limb through points (position, radius), its segments run into each other.
 float limb(glm::vec3 p, std::initializer_list<glm::vec4> joints, float blend = 0.04f) {
   float d = 1e9f;

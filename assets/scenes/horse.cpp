@@ -32,11 +32,6 @@ struct Limb {
   }
 };
 
-/// The distance to both of a pair, one at each side.
-glm::vec3 mirrored(glm::vec3 p) {
-  return {p.x, p.y, std::abs(p.z)};
-}
-
 float trunk(glm::vec3 p) {
   const glm::vec3 q = mirrored(p);
   float d = ellipsoid(p, {-0.02f, 1.2f, 0}, {0.66f, 0.33f, 0.29f});                       // barrel

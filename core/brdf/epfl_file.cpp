@@ -19,7 +19,6 @@
 namespace limn::brdf {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 /// Files of isotropic materials have one azimuth of l, or two that say the same.
 constexpr std::size_t kMostIsotropic = 2;
 /// A whole turn, radians, and the rounding of its ends.
@@ -27,10 +26,10 @@ constexpr float kLargestAngle = 6.3f;
 
 // The square of directions: x is sqrt(theta / (pi/2)), y counts the azimuth from -pi.
 double polar(double theta) {
-  return std::sqrt(theta * (2 / kPi));
+  return std::sqrt(theta * (2 / std::numbers::pi));
 }
 double azimuthal(double phi) {
-  const double y = (phi + kPi) / (2 * kPi);
+  const double y = (phi + std::numbers::pi) / (2 * std::numbers::pi);
   return y - std::floor(y);
 }
 
@@ -59,11 +58,11 @@ class Azimuths {
                                 i, phi_[i]));
     // Rounded, as the format's own readers do: a circle may end a step before it closes.
     const float span = phi_.back() - phi_.front();
-    const double parts = std::rint(2 * kPi / static_cast<double>(span));
+    const double parts = std::rint(2 * std::numbers::pi / static_cast<double>(span));
     if (!(span < kLargestAngle) || (parts != 1 && parts != 2 && parts != 4))
       throw Error(fmt::format(
           "{}: phi_i spans {:.3g} radians; a circle, a half or a quarter of one are accepted", name, span));
-    period_ = parts == 1 ? 2 * kPi : kPi;
+    period_ = parts == 1 ? 2 * std::numbers::pi : std::numbers::pi;
     mirrored_ = parts == 4;
   }
 
@@ -83,13 +82,13 @@ class Azimuths {
     const auto first = static_cast<double>(phi_.front());
     const double turn = period_ * std::floor((at.l - first) / period_);
     at = {.l = at.l - turn, .h = at.h - turn};
-    if (!mirrored_ || at.l <= first + kPi / 2) return at;
-    return {.l = 2 * first + kPi - at.l, .h = 2 * first + kPi - at.h};
+    if (!mirrored_ || at.l <= first + std::numbers::pi / 2) return at;
+    return {.l = 2 * first + std::numbers::pi - at.l, .h = 2 * first + std::numbers::pi - at.h};
   }
 
  private:
   std::vector<float> phi_;  ///< phi_i, radians
-  double period_ = 2 * kPi;
+  double period_ = 2 * std::numbers::pi;
   bool mirrored_ = false;
 };
 

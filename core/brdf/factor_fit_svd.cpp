@@ -35,9 +35,9 @@ std::vector<dvec3> discDirections(int side, bool warped) {
 
 /// A matrix of half vectors (rows) by differences (columns), of which some entries are unknown. Rows and
 /// columns without any known entry are 0, and so are their factors: they have no part in the others'.
-class Matrix {
+class PartialMatrix {
  public:
-  explicit Matrix(std::size_t side) : side_(side), values_(side * side, 0), known_(side * side, 0) {}
+  explicit PartialMatrix(std::size_t side) : side_(side), values_(side * side, 0), known_(side * side, 0) {}
 
   void set(std::size_t row, std::size_t column, double value) {
     values_[row * side_ + column] = value;
@@ -188,7 +188,7 @@ FactoredBrdf fitSvd(const Brdf& brdf, const FitSettings& settings, const dvec3& 
   const std::vector<dvec3> halves = discDirections(settings.texels, true);
   const std::vector<dvec3> differences = discDirections(settings.texels, false);
   const std::size_t side = halves.size();
-  std::vector<Matrix> matrices(3, Matrix(side));
+  std::vector<PartialMatrix> matrices(3, PartialMatrix(side));
   for (std::size_t i = 0; i < side; ++i)
     for (std::size_t j = 0; j < side; ++j) {
       dvec3 l, v;

@@ -8,9 +8,9 @@ namespace limn::brdf {
 namespace {
 
 /// A dense symmetric positive definite matrix.
-class Matrix {
+class GramMatrix {
  public:
-  explicit Matrix(std::size_t size) : size_(size), values_(size * size) {}
+  explicit GramMatrix(std::size_t size) : size_(size), values_(size * size) {}
   double& at(std::size_t row, std::size_t column) { return values_[row * size_ + column]; }
 
   /// Replaces the matrix by its inverse, by Cholesky's factors M = L L^T.
@@ -65,7 +65,7 @@ GrooveBrdf::GrooveBrdf(const Groove& groove)
     // Radiosity B = R (E + K B), with K_ij = F_ij, so that B = r (A - r A K r)^-1 r (A E), where A holds the
     // lengths and r = sqrt(R): A K is symmetric, and by the rule of crossed strings it is exact (Hottel
     // 1954).
-    Matrix matrix(count);
+    GramMatrix matrix(count);
     for (std::size_t i = 0; i < count; ++i) matrix.at(i, i) = length;
     for (std::size_t i = 0; i < strips_; ++i)
       for (std::size_t j = 0; j < strips_; ++j) {

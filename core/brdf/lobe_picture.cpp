@@ -16,10 +16,9 @@ using glm::dvec2;
 using glm::dvec3;
 using glm::ivec2;
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kLobes = static_cast<int>(std::size(kLobeAngles));
 /// Azimuths of the light: -x and -y.
-constexpr double kFrom[] = {kPi, -kPi / 2};
+constexpr double kFrom[] = {std::numbers::pi, -std::numbers::pi / 2};
 /// Degrees between the views of the furnace, the last of which is just above the horizon.
 constexpr int kFurnaceStep = 3;
 constexpr double kLastView = 89.5;
@@ -146,7 +145,7 @@ class Strip {
 }  // namespace
 
 dvec3 directionAt(double degrees, double azimuth) {
-  const double theta = degrees * kPi / 180;
+  const double theta = degrees * std::numbers::pi / 180;
   return {std::sin(theta) * std::cos(azimuth), std::sin(theta) * std::sin(azimuth), std::cos(theta)};
 }
 
@@ -158,7 +157,7 @@ double reciprocityDefect(const Brdf& brdf) {
   double differences = 0, squares = 0;
   for (int degrees = 5; degrees <= 80; degrees += 15)
     for (int azimuth = 0; azimuth < 4; ++azimuth) {
-      const dvec3 view = directionAt(degrees, azimuth * kPi / 4 + 0.1);
+      const dvec3 view = directionAt(degrees, azimuth * std::numbers::pi / 4 + 0.1);
       const double weight = view.z * std::sqrt(1 - view.z * view.z);
       const dvec3 sums = directionalAlbedo(
           [&](const dvec3& l, const dvec3& v) {
@@ -192,7 +191,7 @@ Image lobePicture(const Brdf& brdf, bool isotropic, int discPixels) {
     drawLight(picture, corner, discPixels, l);
   });
 
-  const Furnace along(response, 0), across(response, isotropic ? 0 : kPi / 2);
+  const Furnace along(response, 0), across(response, isotropic ? 0 : std::numbers::pi / 2);
   Strip furnace(picture, rows * cell + margin, strip, std::max({1.1, along.largest(), across.largest()}));
   if (!isotropic) furnace.draw(across, 0.2);
   furnace.draw(along, 1);

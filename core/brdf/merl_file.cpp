@@ -18,11 +18,6 @@ using Header = std::array<std::int32_t, 3>;
 constexpr std::array<double, 3> kScales{1.0 / 1500, 1.15 / 1500, 1.66 / 1500};
 constexpr std::array<std::string_view, 3> kChannels{"red", "green", "blue"};
 
-std::size_t nodeCount(const glm::ivec3& size) {
-  return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
-         static_cast<std::size_t>(size.z);
-}
-
 std::size_t fileSize(const glm::ivec3& size) {
   return sizeof(Header) + 3 * nodeCount(size) * sizeof(double);
 }

@@ -12,15 +12,8 @@
 namespace limn::brdf {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
 /// Nodes this near to the horizon take their values from neighbours: a BRDF may have a pole there.
 constexpr float kLeastCosine = 1e-4f;
-
-std::size_t nodeCount(const glm::ivec3& size) {
-  return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
-         static_cast<std::size_t>(size.z);
-}
 
 bool isValue(const glm::vec3& f) {
   for (int channel = 0; channel < 3; ++channel)
@@ -72,7 +65,8 @@ DirectionPair directions(const HalfDifference& angles) {
 
 HalfDifference TabulatedBrdf::node(int i, int j, int k) const {
   const glm::vec3 share = glm::vec3(i, j, k) / glm::vec3(size);
-  return {0.5f * kPi * share.x * share.x, 0.5f * kPi * share.y, kPi * share.z};
+  return {0.5f * std::numbers::pi_v<float> * share.x * share.x, 0.5f * std::numbers::pi_v<float> * share.y,
+          std::numbers::pi_v<float> * share.z};
 }
 
 glm::vec3 TabulatedBrdf::evaluate(const glm::vec3& l, const glm::vec3& v) const {
@@ -116,6 +110,11 @@ bool fillInvalid(TabulatedBrdf& table) {
     for (const std::size_t node : front) queueAround(node);
   }
   return any;
+}
+
+std::size_t nodeCount(const glm::ivec3& size) {
+  return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
+         static_cast<std::size_t>(size.z);
 }
 
 TabulatedBrdf tabulate(const glm::ivec3& size, const BrdfFunction& f) {

@@ -5,6 +5,7 @@
 // light, v to the viewer.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <glm/glm.hpp>
 #include <vector>
@@ -52,6 +53,9 @@ struct LIMN_API TabulatedBrdf {
   /// Returns the angles of a node.
   HalfDifference node(int i, int j, int k) const;
 };
+
+/// Returns the number of nodes of a table of this size.
+std::size_t nodeCount(const glm::ivec3& size);
 
 /// Returns `f` at the nodes of a table with at least one node a side: the mean of f(l, v) and f(v, l), which
 /// is what a table of these coordinates can hold. Nodes with a direction below the horizon, or at which f is

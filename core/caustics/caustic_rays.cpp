@@ -24,7 +24,7 @@ namespace {
 using frame::Access;
 using frame::TextureHandle;
 
-constexpr int kGroup = 8;
+constexpr int kGroupSide = 8;
 
 /// The light as its map of the specular objects sees it: finite lights look at the middle of the objects.
 glsl::Light aimed(const glsl::Light& light, const glm::vec3& origin, const scene::Bounds& objects) {
@@ -159,7 +159,7 @@ frame::BufferHandle CausticRayService::Implementation::trace(const Request& requ
     gpu::Program& kernel = context.use(program);
     kernel.set("light_samples", desc.lightSamples);
     kernel.set("steps", desc.steps);
-    context.dispatch(desc.size, desc.size, layers, kGroup, kGroup);
+    context.dispatch(desc.size, desc.size, layers, kGroupSide, kGroupSide);
   });
   return rays;
 }

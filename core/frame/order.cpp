@@ -5,20 +5,12 @@
 #include <queue>
 #include <set>
 
+#include "core/base/text.h"
 #include "core/frame/private/access.h"
 #include "core/frame/private/graph_data.h"
 
 namespace limn::frame {
 namespace {
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
-    text += names[i];
-  }
-  return text;
-}
 
 void addUnique(std::vector<std::string>& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);

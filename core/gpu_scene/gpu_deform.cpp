@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint32_t kSkinWords = 6;    // 4 x 16-bit joints, 4 float weights
 constexpr uint32_t kMorphFloats = 9;  // deltas of position, normal, tangent
-constexpr int kGroupSize = 64;
+constexpr int kVerticesPerGroup = 64;
 
 /// Rewrites a buffer, growing it to the next power of two when it must.
 void store(gpu::Device& device, gpu::Buffer& buffer, const char* label, const void* data, size_t bytes) {
@@ -158,7 +158,7 @@ frame::BufferHandle GpuDeform::addPass(frame::FrameGraph& graph, const GpuGeomet
     gpu::Program& deform = context.use(program);
     for (size_t job = 0; job < jobs_.size(); ++job) {
       deform.set("job_index", static_cast<unsigned>(job));
-      context.dispatch(static_cast<int>(jobs_[job].vertices), 1, 1, kGroupSize, 1);
+      context.dispatch(static_cast<int>(jobs_[job].vertices), 1, 1, kVerticesPerGroup, 1);
     }
   });
   return deformed;

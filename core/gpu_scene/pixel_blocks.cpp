@@ -8,7 +8,7 @@ using frame::Access;
 
 namespace {
 
-constexpr int kGroupSize = 8;
+constexpr int kBlocksPerSide = 8;
 
 }  // namespace
 
@@ -40,7 +40,7 @@ PixelBlocks::PixelBlocks(frame::FrameGraph& graph, const SceneHandles& handles, 
       surfaces.program({.files = {"glsl/surface/block_surfaces.comp.glsl"}, .defines = defines});
   surfaces.execute([=](frame::PassContext& context) {
     context.use(surfaceProgram);
-    context.dispatch(blocks.x, blocks.y, 1, kGroupSize, kGroupSize);
+    context.dispatch(blocks.x, blocks.y, 1, kBlocksPerSide, kBlocksPerSide);
   });
 
   frame::PassBuilder alone = graph.addPass("lone pixels", technique);
@@ -54,7 +54,7 @@ PixelBlocks::PixelBlocks(frame::FrameGraph& graph, const SceneHandles& handles, 
       alone.program({.files = {"glsl/surface/lone_pixels.comp.glsl"}, .defines = std::move(defines)});
   alone.execute([aloneProgram, size, blocks = *this](frame::PassContext& context) {
     blocks.bind(context.use(aloneProgram));
-    context.dispatch(size.x, size.y, 1, kGroupSize, kGroupSize);
+    context.dispatch(size.x, size.y, 1, kBlocksPerSide, kBlocksPerSide);
   });
 }
 

@@ -11,15 +11,15 @@ namespace {
 using frame::Access;
 using frame::BufferHandle;
 
-constexpr int kGroup = 64;
+constexpr int kLightsPerGroup = 64;
 
 /// Diagonal of the scene's bounds, m.
-float extentOf(const scene::GpuScene& scene) {
+float diagonalOf(const scene::GpuScene& scene) {
   const scene::Bounds& box = scene.bounds();
   return box.empty() ? 1.f : std::max(glm::length(box.high - box.low), 1e-30f);
 }
 
-struct Builder {
+struct AreaBuilder {
   frame::FrameGraph& graph;
   const scene::GpuScene& scene;
   const VirtualAreaDesc& desc;
@@ -42,7 +42,7 @@ struct Builder {
       context.dispatch(groups, 1, 1, 1, 1);
     });
   }
-  static int groupsOf(int count) { return (count + kGroup - 1) / kGroup; }
+  static int groupsOf(int count) { return (count + kLightsPerGroup - 1) / kLightsPerGroup; }
 
   void start();
   void assign(const char* name);
@@ -51,7 +51,7 @@ struct Builder {
   void sort();
 };
 
-void Builder::start() {
+void AreaBuilder::start() {
   frame::PassBuilder builder = pass("cluster start");
   clusters = graph.createBuffer("clusters", {clusterCount * sizeof(glsl::VirtualAreaLight)});
   clusters =
@@ -61,7 +61,7 @@ void Builder::start() {
       [m = clusterCount](gpu::Program& kernel) { kernel.set("cluster_count", static_cast<unsigned>(m)); });
 }
 
-void Builder::assign(const char* name) {
+void AreaBuilder::assign(const char* name) {
   frame::PassBuilder builder = pass(name);
   builder.read(clusters, Access::storageLoad, "Clusters", "centres");
   if (!mapping) mapping = graph.createBuffer("cluster mapping", {lightCount * sizeof(uint32_t)});
@@ -69,13 +69,13 @@ void Builder::assign(const char* name) {
   execute(builder, "glsl/indirect/cluster_assign.comp.glsl", groupsOf(lightCount),
           [m = clusterCount, d = desc, scene = &scene](gpu::Program& kernel) {
             kernel.set("cluster_count", static_cast<unsigned>(m));
-            kernel.set("per_extent", 1 / extentOf(*scene));
+            kernel.set("per_extent", 1 / diagonalOf(*scene));
             kernel.set("weight_position", d.weightPosition);
             kernel.set("weight_angle", d.weightAngle);
           });
 }
 
-void Builder::average() {
+void AreaBuilder::average() {
   frame::PassBuilder builder = pass("cluster average");
   builder.read(mapping, Access::storageLoad, "Mapping", "members");
   clusters =
@@ -83,7 +83,7 @@ void Builder::average() {
   execute(builder, "glsl/indirect/cluster_average.comp.glsl", clusterCount, {});
 }
 
-void Builder::area() {
+void AreaBuilder::area() {
   frame::PassBuilder builder = pass("cluster area");
   builder.read(mapping, Access::storageLoad, "Mapping", "members");
   clusters = builder.write(clusters, Access::storageLoadStore, "Clusters", "rectangle around the members");
@@ -91,14 +91,14 @@ void Builder::area() {
   views = builder.write(views, Access::storageStore, "Views", "hemispheres of the maps");
   execute(builder, "glsl/indirect/cluster_area.comp.glsl", clusterCount,
           [d = desc, scene = &scene](gpu::Program& kernel) {
-            const float extent = extentOf(*scene);
+            const float extent = diagonalOf(*scene);
             kernel.set("near", d.near * extent);
             kernel.set("far", 1.01f * extent);
             kernel.set("map_size", static_cast<unsigned>(d.mapSize));
           });
 }
 
-void Builder::sort() {
+void AreaBuilder::sort() {
   frame::PassBuilder builder = pass("cluster sort");
   builder.read(mapping, Access::storageLoad, "Mapping", "clusters");
   sorted = graph.createBuffer("sorted virtual lights", {lightCount * sizeof(glsl::VirtualPointLight)});
@@ -111,7 +111,7 @@ void Builder::sort() {
 
 VirtualAreas addVirtualAreas(frame::FrameGraph& graph, const scene::GpuScene& scene,
                              frame::BufferHandle lights, int count, const VirtualAreaDesc& desc) {
-  Builder build{graph, scene, desc, lights, count, std::clamp(desc.count, 1, count)};
+  AreaBuilder build{graph, scene, desc, lights, count, std::clamp(desc.count, 1, count)};
   build.start();
   for (int i = 0; i < desc.iterations; ++i) {
     build.assign("cluster assignment");

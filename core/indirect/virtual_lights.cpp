@@ -15,9 +15,9 @@ using frame::Access;
 using frame::BufferHandle;
 
 constexpr int kTile = 64;  // texels
-constexpr int kGroup = 64;
+constexpr int kThreads = 64;
 
-struct Builder {
+struct LightBuilder {
   frame::FrameGraph& graph;
   const SceneHandles& handles;
   const shadow::ShadowMaps& maps;
@@ -61,7 +61,7 @@ void setGroups(gpu::Program& kernel, int layers, size_t lightCount, int lightSam
   kernel.set("points_listed", static_cast<unsigned>(std::max(lightSamples, 1)));
 }
 
-BufferHandle Builder::tileFlux() const {
+BufferHandle LightBuilder::tileFlux() const {
   const int across = tilesPerSide(maps.size);
   frame::PassBuilder pass = graph.addPass("reflected flux", "indirect");
   readMaps(pass, true);
@@ -77,7 +77,7 @@ BufferHandle Builder::tileFlux() const {
   return tiles;
 }
 
-BufferHandle Builder::layerFlux(BufferHandle values, bool sampled, uint32_t count) const {
+BufferHandle LightBuilder::layerFlux(BufferHandle values, bool sampled, uint32_t count) const {
   frame::PassBuilder pass = graph.addPass(sampled ? "sampled flux" : "flux of maps", "indirect");
   pass.read(values, Access::storageLoad, sampled ? "VirtualLights" : "Tiles",
             sampled ? "virtual lights" : "tiles")
@@ -93,7 +93,7 @@ BufferHandle Builder::layerFlux(BufferHandle values, bool sampled, uint32_t coun
   return flux;
 }
 
-BufferHandle Builder::sample(BufferHandle reflected) const {
+BufferHandle LightBuilder::sample(BufferHandle reflected) const {
   frame::PassBuilder pass = graph.addPass("virtual lights", "indirect");
   readMaps(pass, desc.sets == 1);
   if (desc.sets > 1) pass.read(handles.frame, Access::uniformBuffer, "FrameBlock", "which set it is");
@@ -111,12 +111,12 @@ BufferHandle Builder::sample(BufferHandle reflected) const {
         kernel.set("light_samples", desc.lightSamples);
         if (desc.sets > 1) kernel.set("block", static_cast<unsigned>(desc.block));
         setGroups(kernel, layers, lightCount, desc.lightSamples);
-        context.dispatch(desc.count, 1, 1, kGroup, 1);
+        context.dispatch(desc.count, 1, 1, kThreads, 1);
       });
   return lights;
 }
 
-BufferHandle Builder::conserve(BufferHandle before, BufferHandle reflected, BufferHandle sampled) const {
+BufferHandle LightBuilder::conserve(BufferHandle before, BufferHandle reflected, BufferHandle sampled) const {
   frame::PassBuilder pass = graph.addPass("conserve flux", "indirect");
   pass.read(reflected, Access::storageLoad, "Reflected", "what the maps reflect")
       .read(sampled, Access::storageLoad, "Sampled", "what the samples carry")
@@ -130,7 +130,7 @@ BufferHandle Builder::conserve(BufferHandle before, BufferHandle reflected, Buff
         gpu::Program& kernel = context.use(program);
         kernel.set("count", static_cast<unsigned>(desc.count));
         setGroups(kernel, layers, lightCount, desc.lightSamples);
-        context.dispatch(desc.count, 1, 1, kGroup, 1);
+        context.dispatch(desc.count, 1, 1, kThreads, 1);
       });
   return lights;
 }
@@ -151,7 +151,7 @@ VirtualLights VirtualLightService::request(std::span<const uint32_t> lights, con
   VirtualLights made;
   made.maps = context().services.get<shadow::ShadowMapService>().request(lights, mapDesc);
   made.count = desc.count;
-  const Builder build{context().graph, context().handles, made.maps, desc, lights.size()};
+  const LightBuilder build{context().graph, context().handles, made.maps, desc, lights.size()};
   const int across = tilesPerSide(desc.mapSize);
   made.reflected = build.layerFlux(build.tileFlux(), false, static_cast<uint32_t>(across * across));
   const BufferHandle sampled = build.sample(made.reflected);

@@ -61,7 +61,7 @@ constexpr auto ofPicturedTerms(const char* TermInfo::*member) {
   return texts;
 }
 
-constexpr auto kTerms = ofPicturedTerms(&TermInfo::name), kTermDocs = ofPicturedTerms(&TermInfo::help);
+constexpr auto kTermNames = ofPicturedTerms(&TermInfo::name), kTermDocs = ofPicturedTerms(&TermInfo::help);
 constexpr const char* kWhenDefaultLights[] = {"auto", "on", "off"};
 constexpr const char* kOffOn[] = {"off", "on"};
 constexpr const char* kShapes[] = {"squares", "rectangles"};
@@ -100,7 +100,7 @@ constexpr QuestionField kFields[] = {
         "N x N samples in each pixel, averaged in linear light, in pictures and references alike: a picture\n"
         "takes N x N frames")
         .changing(view),
-    choice("term", "--output-term", &Q::term, kTerms, "Which part of the light the picture shows")
+    choice("term", "--output-term", &Q::term, kTermNames, "Which part of the light the picture shows")
         .meaning(kTermDocs)
         .in(kSubject)
         .changing(view)

@@ -13,7 +13,7 @@ namespace {
 
 /// A light is taken in pieces that span at most this many widths of the lobe, in at most a fixed number a
 /// side.
-constexpr float kLobeWidths = 2.5f;
+constexpr float kPieceLobeWidths = 2.5f;
 constexpr int kMostPieces = 8;
 
 /// Rays to finite lights end this part of the way before them: emissive quads do not hide themselves.
@@ -72,7 +72,7 @@ void addLight(const glsl::Light& light, const LitPlace& place, const Occlusion& 
   const float across = std::sqrt(glm::length(view.side_u) * glm::length(view.side_v)) *
                        (view.cone ? glsl::light_view_cone_scale(view, 1) : 1);
   const float spread = std::min(across / glm::length(view.centre), glsl::incident_max_spread);
-  const float width = kLobeWidths * place.alpha * std::max(glm::dot(towards, place.normal), 0.1f);
+  const float width = kPieceLobeWidths * place.alpha * std::max(glm::dot(towards, place.normal), 0.1f);
   const int side = std::clamp(static_cast<int>(std::ceil(spread / width)), 1, kMostPieces);
   const int each = std::max((rays + side * side - 1) / (side * side), 1);
   const glm::vec3 turn = glsl::pixel_noise(place.seed, 0, 0);

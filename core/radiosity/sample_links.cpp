@@ -25,7 +25,7 @@ constexpr int kMostRays = 32;
 constexpr float kNegligible = 1e-3f;
 
 /// Links into lobes are refined until the sender spans less than this many of the lobe's widths.
-constexpr float kLobeWidths = 2.5f;
+constexpr float kSenderLobeWidths = 2.5f;
 
 /// Light may vary over the directions and places of a link, by lobes or because a horizon cuts an end, by
 /// this multiple of the error allowed: these are bounds, and what rays find is far less; without them narrow
@@ -157,7 +157,7 @@ class SampleSolver::Shooting {
   static bool wide(const Pair& pair) {
     const float up = glm::dot(pair.offset, pair.receiver.normal) / std::max(pair.distance, 1e-20f);
     return sampleSpread(pair.sender.area, pair.distance * pair.distance) >
-           kLobeWidths * pair.receiver.alpha * std::max(up, 0.1f);
+           kSenderLobeWidths * pair.receiver.alpha * std::max(up, 0.1f);
   }
 
   /// Bounds the irradiance that a link brings: the most, and how much it may vary over the directions and

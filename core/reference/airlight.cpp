@@ -13,7 +13,7 @@ namespace limn::reference {
 namespace {
 
 /// Random numbers of airlight lie behind those of all other estimators of a pixel.
-constexpr uint32_t kFirstPair = 1u << 20;
+constexpr uint32_t kFirstLightPair = 1u << 20;
 
 /// A distant rectangle as parallel light from the direction of one point on it, which is even over its area.
 glsl::Light fromPointOf(const glsl::Light& light, glm::vec2 u) {
@@ -74,7 +74,7 @@ glm::dvec3 Airlight::sample(const glm::vec3& eye, const glm::vec3& direction, fl
   const Piece piece{eye, direction, std::max(range.x, 0.f), std::min(range.y, end)};
   glm::dvec3 sum(0);
   if (!(piece.from < piece.to)) return sum;
-  uint32_t pair = kFirstPair;
+  uint32_t pair = kFirstLightPair;
   for (const glsl::Light& light : lights_) {
     sum += ofLight(piece, light, sampler, pair);
     pair += 2;

@@ -18,9 +18,6 @@ namespace {
 
 constexpr int kScatterPoints = 4;            // on each segment in the medium
 constexpr size_t kMostFilmPixels = 1 << 22;  // of all films together, unless two are more
-constexpr float kLeastCosine = 1e-4f;        // as in trace_rays.comp.glsl
-constexpr int kMostEvents = 512;             // of a chain without limit
-constexpr uint32_t kFirstRoulette = 8;       // from this event on it goes on with a probability alone
 
 /// Flux that arrives from a light in the direction of the objects, per sample, before the light's own
 /// directional factors.
@@ -202,7 +199,7 @@ void LightTracer::wander(const Path& path, const Sampler& sampler, Film& film) c
     const float probability = largest(reflected) / both;
     const bool mirrored = u.x < probability;
     flux *= mirrored ? reflected / probability : passing / (1 - probability);
-    if (i >= kFirstRoulette) {
+    if (i >= kFirstEventRoulette) {
       const float survival = std::min(largest(flux) / sent, 1.f);
       if (u.y >= survival) return;
       flux /= survival;

@@ -10,10 +10,6 @@
 namespace limn::reference {
 namespace {
 
-constexpr float kLeastCosine = 1e-4f;   // as in refraction.comp.glsl
-constexpr int kMostEvents = 512;        // of a path without limit
-constexpr uint32_t kFirstRoulette = 8;  // from this event on it goes on with a probability alone
-
 glm::dvec3 doubles(const glm::vec3& v) {
   return glm::dvec3(v);
 }
@@ -121,7 +117,7 @@ SpecularEnd SpecularPaths::sample(const Surface& seen, const Sampler& sampler) c
     const bool mirrored = static_cast<double>(u.x) < probability;
     ray.throughput *= mirrored ? reflected / probability : passing / (1 - probability);
     ray.direction = mirrored ? event.reflected : event.refracted;
-    if (i >= kFirstRoulette) {
+    if (i >= kFirstEventRoulette) {
       const double survival = std::min(largest(ray.throughput), 1.0);
       if (static_cast<double>(u.y) >= survival) return {};
       ray.throughput /= survival;

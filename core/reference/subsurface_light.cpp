@@ -12,7 +12,7 @@ namespace limn::reference {
 namespace {
 
 /// Random numbers of light below surfaces lie behind those of what the surface reflects.
-constexpr uint32_t kFirstPair = 1u << 28;
+constexpr uint32_t kFirstWalkPair = 1u << 28;
 constexpr uint32_t kPairsOfWalk = 1u << 22;
 /// Limits the places that one line meets.
 constexpr uint32_t kMostPlaces = 256;
@@ -140,7 +140,7 @@ glm::dvec3 SubsurfaceLight::probedLight(const Surface& surface, const Sampler& s
   if (here != glm::dvec3(0)) radiosity += here * entering(surface.entered(), 0);
   if (probes.channelCount == 0) return radiosity;
 
-  const glm::vec2 choice = sampler.pair(kFirstPair), disc = sampler.pair(kFirstPair + 1);
+  const glm::vec2 choice = sampler.pair(kFirstWalkPair), disc = sampler.pair(kFirstWalkPair + 1);
   const size_t axis = choice.x < 0.5f ? 0 : choice.x < 0.75f ? 1 : 2;
   const glm::dvec3 &along = probes.axes[axis], &s = probes.axes[(axis + 1) % 3],
                    &t = probes.axes[(axis + 2) % 3];
@@ -180,7 +180,7 @@ glm::dvec3 SubsurfaceLight::walkedLight(const Surface& surface, const Sampler& s
   for (int c = 0; c < 3; ++c) {
     if ((c > 0 && alike(c, 0)) || (c > 1 && alike(c, 1))) continue;
     const auto entry = static_cast<uint32_t>(c);
-    const uint32_t pair = kFirstPair + entry * kPairsOfWalk;
+    const uint32_t pair = kFirstWalkPair + entry * kPairsOfWalk;
     const WalkMatter walked{.extinction = static_cast<double>(matter.extinction[c]),
                             .albedo = 1 - static_cast<double>(matter.absorption[c]),
                             .eta = static_cast<double>(matter.boundary.eta)};

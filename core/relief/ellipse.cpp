@@ -15,8 +15,6 @@
 namespace limn::relief {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 glsl::ReliefEllipse ellipseOf(const glm::dvec2& centre, const glm::dvec3& covariance, double spread) {
   return {.centre = centre,
           .xx = static_cast<float>(covariance.x),
@@ -53,7 +51,7 @@ using Numbers = std::array<double, 5>;
 class Region {
  public:
   explicit Region(std::span<const double> rho) : rho_(rho) {
-    const double step = 2 * kPi / static_cast<double>(rho.size());
+    const double step = 2 * std::numbers::pi / static_cast<double>(rho.size());
     for (std::size_t i = 0; i < rho.size(); ++i)
       directions_.emplace_back(std::cos(step * static_cast<double>(i)),
                                std::sin(step * static_cast<double>(i)));
@@ -113,7 +111,7 @@ int score(const glsl::FittedEllipse& ellipse, std::span<const glm::vec2> directi
 glsl::ReliefEllipse momentEllipse(std::span<const double> rho) {
   if (rho.size() < 3)
     throw UsageError(fmt::format("moments of {} azimuths: at least 3 are needed", rho.size()));
-  const double step = 2 * kPi / static_cast<double>(rho.size());
+  const double step = 2 * std::numbers::pi / static_cast<double>(rho.size());
   double area = 0;
   glm::dvec2 first(0);
   glm::dvec3 second(0);
@@ -184,7 +182,8 @@ std::vector<glsl::ReliefEllipse> nearestEllipses(const Horizons& horizons) {
 
 void EllipseMean::add(const glsl::ReliefEllipse& ellipse) {
   const glm::dvec2 centre = ellipse.centre;
-  const double product = static_cast<double>(glsl::ellipse_ambient(ellipse)), area = kPi * product;
+  const double product = static_cast<double>(glsl::ellipse_ambient(ellipse)),
+               area = std::numbers::pi * product;
   count_ += 1;
   area_ += area;
   size_ += std::sqrt(product);

@@ -13,8 +13,6 @@
 namespace limn::relief {
 namespace {
 
-constexpr double kFarthestSizes = 64;
-
 double largestSide(const HeightField& field) {
   const glm::dvec2 side = glm::dvec2(field.size()) * field.spacing();
   return std::max(side.x, side.y);

@@ -15,9 +15,6 @@
 namespace limn::relief {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kFarthestSizes = 64;
-
 /// Returns the smallest t of [0, end] from which c0 + c1 t + c2 t^2 is negative, where c0 >= 0.
 std::optional<double> firstFall(double c0, double c1, double c2, double end) {
   if (c0 == 0 && (c1 < 0 || (c1 == 0 && c2 < 0))) return 0;
@@ -61,7 +58,7 @@ std::vector<glm::vec3> sharedDirections(BounceDirections kind, int paths, double
       continue;
     }
     const double z = kind == BounceDirections::published ? uniform() : glm::mix(lowest, 1.0, uniform());
-    const double sine = std::sqrt(1 - z * z), angle = 2 * kPi * uniform();
+    const double sine = std::sqrt(1 - z * z), angle = 2 * std::numbers::pi * uniform();
     result.emplace_back(sine * std::cos(angle), sine * std::sin(angle), z);
   }
   return result;
@@ -120,7 +117,7 @@ BouncePaths traceBounces(const HeightField& field, BounceDirections directions, 
       first[i].weight = static_cast<float>(cosine);
       sum += cosine;
     }
-    for (int i = 0; i < paths && sum > 0; ++i) first[i].weight *= static_cast<float>(kPi / sum);
+    for (int i = 0; i < paths && sum > 0; ++i) first[i].weight *= static_cast<float>(std::numbers::pi / sum);
   });
   return result;
 }
@@ -133,7 +130,7 @@ std::vector<double> gather(const HeightField& field, const BouncePaths& paths,
     double sum = 0;
     for (const BouncePath* path = first; path != first + paths.paths; ++path)
       sum += static_cast<double>(path->weight) * (path->hits() ? between(field, radiance, path->place) : sky);
-    result[number] = sum / kPi;
+    result[number] = sum / std::numbers::pi;
   });
   return result;
 }
@@ -155,7 +152,7 @@ std::vector<double> directRadiance(const HeightField& field, const glm::dvec3& l
   forTexels(field, [&](const glm::ivec2& texel, std::size_t number) {
     const double cosine = glm::dot(field.normal(texel), l);
     if (l.z > 0 && cosine > 0 && !traceRay(field, texel, l))
-      result[number] = albedo / kPi * cosine * irradiance;
+      result[number] = albedo / std::numbers::pi * cosine * irradiance;
   });
   return result;
 }

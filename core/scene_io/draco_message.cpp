@@ -7,13 +7,12 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/scene_io/private/refusal.h"
 
 namespace limn::scene {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'l', 'i', 'm', 'n', 'd', 'r', 'a', 'c'};
-constexpr std::size_t kMostReasonBytes = 4096;
-
 struct RequestHeader {
   std::array<char, 8> magic = kMagic;
   std::uint64_t meshes = 0;

@@ -9,11 +9,10 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/scene_io/private/refusal.h"
 
 namespace limn::scene {
 namespace {
-
-constexpr std::uint64_t kMostReasonBytes = 4096;
 
 std::uint64_t voxels(const std::array<std::int32_t, 3>& size, const GridLimits& limits) {
   std::uint64_t count = 1;
@@ -43,7 +42,7 @@ GridHeader headerOf(std::string_view reason) {
 }
 
 std::uint64_t largestGridMessage(const GridLimits& limits) {
-  return sizeof(GridHeader) + std::max(limits.voxels * sizeof(float), kMostReasonBytes);
+  return sizeof(GridHeader) + std::max<std::uint64_t>(limits.voxels * sizeof(float), kMostReasonBytes);
 }
 
 DensityGrid decodeGridMessage(std::span<const std::byte> message, const GridLimits& limits) {

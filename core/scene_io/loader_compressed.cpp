@@ -11,10 +11,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kExtension = "EXT_meshopt_compression";
+constexpr const char* kMeshoptExtension = "EXT_meshopt_compression";
 
 /// What the extension says of one view.
-struct Compressed {
+struct PackedView {
   std::span<const std::byte> bytes;
   std::size_t count = 0, stride = 0;
   std::string mode, filter;
@@ -25,7 +25,7 @@ struct Compressed {
 /// What is not allowed; empty if all is well. A stream that is shorter than the least one of so many elements
 /// is refused before memory is taken: a triangle and an index take a byte, and 16 bytes of an attribute, the
 /// same in as many elements, take 2 bits.
-std::string problemOf(const Compressed& c) {
+std::string problemOf(const PackedView& c) {
   constexpr std::size_t kDensest = 64;
   const bool attributes = c.mode == "ATTRIBUTES";
   if (attributes ? c.stride % 4 != 0 : c.stride != 2 && c.stride != 4)
@@ -48,7 +48,7 @@ std::string problemOf(const Compressed& c) {
 }
 
 /// Returns whether the bytes could be decoded.
-bool decode(const Compressed& c, std::vector<std::byte>& out) {
+bool decode(const PackedView& c, std::vector<std::byte>& out) {
   if (c.mode == "TRIANGLES")
     return meshopt_decodeIndexBuffer(out.data(), c.count, c.stride, c.data(), c.bytes.size()) == 0;
   if (c.mode == "INDICES")
@@ -67,11 +67,11 @@ void Loader::decodeViews(Document& document) {
   if (views == document.root.end()) return;
   for (std::size_t i = 0; i < views->size(); ++i) {
     json& view = (*views)[i];
-    const json::json_pointer place(std::string("/extensions/") + kExtension);
+    const json::json_pointer place(std::string("/extensions/") + kMeshoptExtension);
     if (!view.contains(place)) continue;
     const json& source = view[place];
-    const std::string what = fmt::format("buffer view {} {}", i, kExtension);
-    Compressed compressed;
+    const std::string what = fmt::format("buffer view {} {}", i, kMeshoptExtension);
+    PackedView compressed;
     compressed.bytes =
         bufferBytes(source.at("buffer").get<int>(), source.value("byteOffset", std::uint64_t{0}),
                     source.at("byteLength").get<std::uint64_t>(), what);
@@ -90,7 +90,7 @@ void Loader::decodeViews(Document& document) {
     bufferStorage_.push_back(std::move(decoded));
     view["buffer"] = buffers_.size();
     view["byteOffset"] = 0;
-    view["extensions"].erase(kExtension);
+    view["extensions"].erase(kMeshoptExtension);
     buffers_.push_back(bufferStorage_.back());
   }
 }

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kExtension = "KHR_draco_mesh_compression";
+constexpr const char* kDracoExtension = "KHR_draco_mesh_compression";
 
 /// Where an array of a decoded mesh goes: the accessor that describes it, and the key that shall name the one
 /// which holds it.
@@ -51,7 +51,7 @@ class Primitives {
     const json& indices = target(out, primitive["indices"]);
     out.mesh.indices = indices.at("count").get<std::uint64_t>();
     json& attributes = primitive.at("attributes");
-    for (const auto& [name, id] : primitive["extensions"][kExtension].at("attributes").items()) {
+    for (const auto& [name, id] : primitive["extensions"][kDracoExtension].at("attributes").items()) {
       if (!attributes.contains(name)) throw Error(fmt::format("the primitive has no {}", oneLine(name, 60)));
       const json& accessor = target(out, attributes[name]);
       const DracoAttribute wanted{id.get<std::uint32_t>(), accessor.at("componentType").get<std::uint32_t>(),
@@ -114,9 +114,9 @@ void Loader::decodeDraco(Document& document) {
   for (std::size_t m = 0; m < root["meshes"].size(); ++m) {
     json& list = root["meshes"][m]["primitives"];
     for (std::size_t p = 0; p < list.size(); ++p) {
-      const json::json_pointer place(std::string("/extensions/") + kExtension);
+      const json::json_pointer place(std::string("/extensions/") + kDracoExtension);
       if (!list[p].contains(place) || plainToo(list[p], root)) continue;
-      const std::string what = fmt::format("mesh {} primitive {} {}", m, p, kExtension);
+      const std::string what = fmt::format("mesh {} primitive {} {}", m, p, kDracoExtension);
       const json& views = root["bufferViews"];
       const auto view = list[p][place].at("bufferView").get<std::size_t>();
       if (view >= views.size())
@@ -144,7 +144,7 @@ void Loader::decodeDraco(Document& document) {
     if (!arrays.reason.empty()) problem = fmt::format("{}: {}", found[arrays.refused].what, arrays.reason);
     bufferStorage_.push_back(std::move(arrays.bytes));
   } catch (const Error& error) {
-    problem = fmt::format("{}: {}", kExtension, error.what());
+    problem = fmt::format("{}: {}", kDracoExtension, error.what());
   }
   if (!problem.empty()) fail(problem);
   std::uint64_t offset = 0;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/shadow/private/map_memory.h"
 #include "core/shadow/private/summed_area_passes.h"
 #include "glsl/shadow/fourier_shadow.glsl"
 
@@ -14,8 +15,7 @@ namespace {
 
 using frame::Access;
 
-constexpr int64_t kMemoryLimit = int64_t{4} << 30;  // bytes of all maps of one request
-constexpr int kChunk = 2;                           // groups that a thread sums at once
+constexpr int kChunk = 2;  // groups that a thread sums at once
 
 struct Formats {
   GLenum basis, depthBasis, depth;

@@ -8,14 +8,14 @@
 #include "core/base/error.h"
 #include "core/shading/ltc_table.h"
 #include "core/shadow/light_fit.h"
+#include "core/shadow/private/map_memory.h"
 #include "core/shadow/private/map_raster.h"
 
 namespace limn::shadow {
 namespace {
 
-constexpr int64_t kMemoryLimit = int64_t{4} << 30;  // bytes of one request
-constexpr int64_t kKeptBytesPerTexel = 8;           // linear depth, and rasterised depth beside it
-constexpr int64_t kReflectiveBytesPerTexel = 8;     // normal and albedo on top
+constexpr int64_t kKeptBytesPerTexel = 8;        // linear depth, and rasterised depth beside it
+constexpr int64_t kReflectiveBytesPerTexel = 8;  // normal and albedo on top
 constexpr int64_t kKeptLimit = int64_t{256}
                                << 20;  // bytes of all maps that are kept; what is derived comes on top
 

@@ -5,14 +5,13 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/shadow/private/map_memory.h"
 
 namespace limn::shadow {
 namespace {
 
 using frame::Access;
 using frame::TextureHandle;
-
-constexpr int64_t kMemoryLimit = int64_t{4} << 30;  // bytes of one derived map
 
 void checkBytes(std::string_view what, const gpu::TextureDesc& desc) {
   const int64_t bytes = gpu::textureBytes(desc);

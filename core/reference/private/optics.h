@@ -1,12 +1,17 @@
 // Computes the optics of a material where light meets it.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 
 #include "core/scene/scene.h"
 #include "glsl/scene/media.glsl"
 
 namespace limn::reference {
+
+constexpr float kLeastCosine = 1e-4f;        ///< of directions to a smooth surface, as in the shaders
+constexpr int kMostEvents = 512;             ///< reflections and refractions of a path without limit
+constexpr uint32_t kFirstEventRoulette = 8;  ///< from this event on a path goes on with a probability alone
 
 /// Returns the optics with a surface's own base colour, in [0, 1], and metallic.
 inline glsl::Optics opticsOf(const scene::Material& m, const glm::vec3& base, float metallic) {

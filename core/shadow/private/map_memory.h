@@ -1,0 +1,10 @@
+// Limits the memory of shadow maps and of what is derived from them.
+#pragma once
+
+#include <cstdint>
+
+namespace limn::shadow {
+
+inline constexpr int64_t kMemoryLimit = int64_t{4} << 30;  ///< bytes of all maps of one request
+
+}  // namespace limn::shadow
