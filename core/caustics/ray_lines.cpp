@@ -5,6 +5,7 @@
 
 #include "core/caustics/ray_lists.h"
 #include "core/gpu_scene/gpu_medium.h"
+#include "glsl/caustics/caustic_line.glsl"
 
 namespace limn::caustics {
 namespace {
@@ -23,12 +24,18 @@ const char* whyNoRays(const TechniqueInputs& inputs, const TermRequest& request)
 }
 
 /// Which rays are drawn as lines, points and quads.
-RayLists addLists(frame::FrameGraph& graph, const TechniqueInputs& inputs, const CausticRays& rays,
-                  const scene::MediumInput& medium, const LineDraw& draw) {
+struct Shapes {
+  RayLists lists;
+  frame::BufferHandle beams;  ///< of glsl::RayBeam, one per ray, of which those of quads are made
+};
+
+Shapes addShapes(frame::FrameGraph& graph, const TechniqueInputs& inputs, const CausticRays& rays,
+                 const scene::MediumInput& medium, const LineDraw& draw) {
+  Shapes shapes;
   gpu::ProgramDesc program{.files = {"glsl/caustics/line_kinds.comp.glsl"},
                            .defines = {{"BEAMS", draw.beams ? "1" : "0"}}};
   medium.define(program.defines);
-  return addRayLists(
+  shapes.lists = addRayLists(
       graph, rays,
       {.technique = draw.technique,
        .program = std::move(program),
@@ -37,6 +44,10 @@ RayLists addLists(frame::FrameGraph& graph, const TechniqueInputs& inputs, const
            [&](frame::PassBuilder& pass) {
              pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera");
              medium.declare(pass);
+             if (draw.beams)
+               shapes.beams = pass.write(graph.createBuffer("ray beams", {static_cast<size_t>(rays.count()) *
+                                                                          sizeof(glsl::RayBeam)}),
+                                         Access::storageStore, "RayBeams", "beams of quads");
            },
        .bind =
            [&scene = inputs.gpuScene, beams = draw.beams, cosine = draw.beamCosine,
@@ -46,6 +57,7 @@ RayLists addLists(frame::FrameGraph& graph, const TechniqueInputs& inputs, const
              kernel.set("buffer_size", size);
              kernel.set("beam_cosine", cosine);
            }});
+  return shapes;
 }
 
 }  // namespace
@@ -98,13 +110,14 @@ frame::TextureHandle RayLines::add(frame::FrameGraph& graph, const TechniqueInpu
   if (!empty_) empty_ = gpu::VertexArray(inputs.gpuScene.device(), {});
   const frame::BufferHandle rule = addRule(graph, draw.technique);
   const scene::MediumInput medium(inputs.handles, draw.mediumSteps);
-  const RayLists lists = addLists(graph, inputs, rays, medium, draw);
+  const Shapes shapes = addShapes(graph, inputs, rays, medium, draw);
   frame::PassBuilder pass = graph.addPass("caustic lines", draw.technique);
   pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, medium")
       .read(rays.rays, Access::storageLoad, "Rays", "lines")
       .read(rule, Access::storageLoad, "LineRule", "what a fragment stands for")
       .read(inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "what hides lines");
-  declareRayLists(pass, lists);
+  declareRayLists(pass, shapes.lists);
+  if (draw.beams) pass.read(shapes.beams, Access::storageLoad, "RayBeams", "beams of quads");
   medium.declare(pass);
   const frame::TextureHandle result = pass.write(target, Access::colourBlend, "light of the lines");
   std::vector<frame::ProgramHandle> programs;
@@ -127,11 +140,13 @@ frame::TextureHandle RayLines::add(frame::FrameGraph& graph, const TechniqueInpu
     constexpr GLenum primitives[] = {GL_LINES, GL_POINTS, GL_TRIANGLE_STRIP};
     for (unsigned kind = 0; kind < programs.size(); ++kind) {
       gpu::Program& program = context.use(programs[kind]);
-      program.set("near_plane", scene.camera().near);
-      if (beams || primitives[kind] == GL_LINES) program.set("buffer_size", size);
-      if (beams && primitives[kind] != GL_LINES) program.set("beam_cosine", cosine);
+      const GLenum primitive = primitives[kind];
+      // Quads are drawn as "ray kinds" shaped them.
+      if (primitive != GL_TRIANGLE_STRIP) program.set("near_plane", scene.camera().near);
+      if (primitive == GL_LINES || (beams && primitive == GL_POINTS)) program.set("buffer_size", size);
+      if (beams && primitive == GL_POINTS) program.set("beam_cosine", cosine);
       if (bind) bind(program);
-      drawRays(context, lists, kind, primitives[kind]);
+      drawRays(context, shapes.lists, kind, primitive);
     }
     gl.Disable(GL_PROGRAM_POINT_SIZE);
   });

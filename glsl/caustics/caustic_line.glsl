@@ -87,5 +87,23 @@ LIMN_FN float caustic_beam_profile(float a, float b, float away) {
          wide;
 }
 
+// A beam as it is drawn: made once for each ray that is one, and read by each of its corners. Storage buffer element.
+struct RayBeam {
+  vec2 range;       // of the piece that the camera can see, metres along the ray from and to
+  float narrowest;  // share of the way between
+  float unused;
+  vec4 sides;       // u and v at the near end, u and v at the far end: how far they reach across the line in the picture, metres
+};
+
+// Where a beam's picture is narrowest, as a share of the way between its ends: u and v reach so far across the line at both ends,
+// and change evenly in between, through 0 where they turn over.
+LIMN_FN float caustic_beam_narrowest(vec2 u, vec2 v) {
+  float at_u = u.x != u.y ? clamp(u.x / (u.x - u.y), 0.0f, 1.0f) : 0.5f;
+  float at_v = v.x != v.y ? clamp(v.x / (v.x - v.y), 0.0f, 1.0f) : 0.5f;
+  float sum_u = abs(mix(u.x, u.y, at_u)) + abs(mix(v.x, v.y, at_u));
+  float sum_v = abs(mix(u.x, u.y, at_v)) + abs(mix(v.x, v.y, at_v));
+  return sum_u < sum_v ? at_u : at_v;
+}
+
 LIMN_END
 #endif  // LIMN_CAUSTIC_LINE_GLSL

@@ -5,6 +5,10 @@
 #include "glsl/caustics/listed_ray.glsl"
 #include "glsl/caustics/ray_shape.glsl"
 
+#if KIND == 2
+layout(std430) readonly buffer RayBeams { RayBeam beams[]; };
+#endif
+
 layout(location = 0) flat out int ray_index;
 layout(location = 1) flat out vec3 line_origin;     // camera space, metres
 layout(location = 2) flat out vec3 line_direction;
@@ -39,7 +43,12 @@ void main() {
   int column = gl_VertexID >> 1;
 #endif
   CausticRay ray = rays[index];
-  RayPiece piece = ray_piece(ray);
+#if KIND == 2
+  RayBeam beam = beams[index];
+  RayPiece piece = ray_piece(ray, beam.range);
+#else
+  RayPiece piece = ray_piece(ray, ray_range(ray));
+#endif
   vec3 a = piece.a;
   vec3 b = piece.b;
   float focal = focal_length();
@@ -68,28 +77,17 @@ void main() {
   vec3 middle = 0.5 * (a + b);
   float size = 1.0;
 #if BEAMS
-  RayBeam beam = ray_beam(index, ray, piece);
-  vec3 u = 0.5 * (beam.u_near + beam.u_far);
-  vec3 v = 0.5 * (beam.v_near + beam.v_far);
+  BeamSides sides = beam_sides(index, ray, piece);
+  vec3 u = 0.5 * (sides.u_near + sides.u_far);
+  vec3 v = 0.5 * (sides.v_near + sides.v_far);
   size = clamp(sqrt(length(cross(u, v))) * focal / middle.z, 1.0, widest_point);
 #endif
   line_range.z = caustic_point_weight(a, b, focal) / (size * size);
   gl_PointSize = size;
   gl_Position = clip_position(middle.xy / middle.z, middle.z);
-#elif BEAMS
-  RayBeam beam = ray_beam(index, ray, piece);
+#else
   // Three columns of two corners: the ends, half a pixel further, and where the beam is narrowest.
-  float share = column == 0 ? 0.0 : 1.0;
-  if (column == 1) {
-    vec3 normal = normalize(cross(line_direction, 0.5 * (a + b)));
-    vec2 u = vec2(dot(beam.u_near, normal), dot(beam.u_far, normal));
-    vec2 v = vec2(dot(beam.v_near, normal), dot(beam.v_far, normal));
-    float at_u = u.x != u.y ? clamp(u.x / (u.x - u.y), 0.0, 1.0) : 0.5;
-    float at_v = v.x != v.y ? clamp(v.x / (v.x - v.y), 0.0, 1.0) : 0.5;
-    float sum_u = abs(mix(u.x, u.y, at_u)) + abs(mix(v.x, v.y, at_u));
-    float sum_v = abs(mix(u.x, u.y, at_v)) + abs(mix(v.x, v.y, at_v));
-    share = sum_u < sum_v ? at_u : at_v;
-  }
+  float share = column == 0 ? 0.0 : column == 1 ? beam.narrowest : 1.0;
   vec3 corner = mix(a, b, share);
   vec2 widths = beam_widths(beam, piece, share);
   float size = abs(widths.x) + abs(widths.y) + 1.0;  // as far as caustic_beam_profile() reaches

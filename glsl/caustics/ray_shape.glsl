@@ -34,20 +34,28 @@ struct RayPiece {
   float pixels;    // between them
 };
 
-RayPiece ray_piece(CausticRay ray) {
+// Metres along the ray, from and to; from >= to: there is nothing to see.
+vec2 ray_range(CausticRay ray) {
+  vec3 origin = camera_space(ray.start);
+  vec3 direction = camera_direction(ray.direction);
+  vec2 range = ray.kind == caustic_ray_none ? vec2(0.0) : vec2(0.0, ray.segment_length);
+  // The part beyond the near plane.
+  float to_near = (near_plane - origin.z) / direction.z;
+  if (direction.z > 0.0) range.x = max(range.x, to_near);
+  if (direction.z < 0.0) range.y = min(range.y, to_near);
+  if (direction.z == 0.0 && origin.z < near_plane) range = vec2(0.0);
+#if MEDIUM_STEPS > 0
+  vec2 medium = medium_range(scene_medium(), ray.start, ray.direction);
+  range = vec2(max(range.x, medium.x), min(range.y, medium.y));
+#endif
+  return range;
+}
+
+RayPiece ray_piece(CausticRay ray, vec2 range) {
   RayPiece p;
   p.origin = camera_space(ray.start);
   p.direction = camera_direction(ray.direction);
-  p.range = ray.kind == caustic_ray_none ? vec2(0.0) : vec2(0.0, ray.segment_length);
-  // The part beyond the near plane.
-  float to_near = (near_plane - p.origin.z) / p.direction.z;
-  if (p.direction.z > 0.0) p.range.x = max(p.range.x, to_near);
-  if (p.direction.z < 0.0) p.range.y = min(p.range.y, to_near);
-  if (p.direction.z == 0.0 && p.origin.z < near_plane) p.range = vec2(0.0);
-#if MEDIUM_STEPS > 0
-  vec2 medium = medium_range(scene_medium(), ray.start, ray.direction);
-  p.range = vec2(max(p.range.x, medium.x), min(p.range.y, medium.y));
-#endif
+  p.range = range;
   p.a = p.origin + p.range.x * p.direction;
   p.b = p.origin + p.range.y * p.direction;
   vec2 along = p.b.xy / p.b.z - p.a.xy / p.a.z;
@@ -59,36 +67,44 @@ RayPiece ray_piece(CausticRay ray) {
 #if BEAMS
 
 // Sides of the beam at the ends of the piece, camera space.
-struct RayBeam {
+struct BeamSides {
   vec3 u_near;
   vec3 v_near;
   vec3 u_far;
   vec3 v_far;
 };
 
-RayBeam ray_beam(int index, CausticRay ray, RayPiece p) {
+BeamSides beam_sides(int index, CausticRay ray, RayPiece p) {
   BeamNeighbours to = beam_neighbours(index);
-  RayBeam beam;
-  beam.u_near = camera_direction(beam_side(ray, to.beside, p.range.x));
-  beam.v_near = camera_direction(beam_side(ray, to.above, p.range.x));
-  beam.u_far = camera_direction(beam_side(ray, to.beside, p.range.y));
-  beam.v_far = camera_direction(beam_side(ray, to.above, p.range.y));
-  return beam;
+  BeamSides sides;
+  sides.u_near = camera_direction(beam_side(ray, to.beside, p.range.x));
+  sides.v_near = camera_direction(beam_side(ray, to.above, p.range.x));
+  sides.u_far = camera_direction(beam_side(ray, to.beside, p.range.y));
+  sides.v_far = camera_direction(beam_side(ray, to.above, p.range.y));
+  return sides;
+}
+
+// Unit, perpendicular to the plane through the eye and the line; 0: the line goes through the eye.
+vec3 line_normal(RayPiece p) {
+  vec3 normal = cross(p.direction, 0.5 * (p.a + p.b));
+  float size = length(normal);
+  return size > 0.0 ? normal / size : vec3(0.0);
+}
+
+RayBeam ray_beam(BeamSides sides, RayPiece p) {
+  vec3 normal = line_normal(p);
+  vec2 u = vec2(dot(sides.u_near, normal), dot(sides.u_far, normal));
+  vec2 v = vec2(dot(sides.v_near, normal), dot(sides.v_far, normal));
+  return RayBeam(p.range, caustic_beam_narrowest(u, v), 0.0, vec4(u.x, v.x, u.y, v.y));
 }
 
 // Widths in pixels of the beam's sides u and v, at a share of the way from a to b; each goes through 0 to below where the side
 // turns over.
 vec2 beam_widths(RayBeam beam, RayPiece p, float share) {
-  vec3 u = mix(beam.u_near, beam.u_far, share);
-  vec3 v = mix(beam.v_near, beam.v_far, share);
   vec3 x = mix(p.a, p.b, share);
-  vec3 normal = cross(p.direction, x);
-  float size = length(normal);
-  if (!(size > 0.0)) return vec2(0.0);
-  normal /= size;
   vec2 across = vec2(-p.axis.y, p.axis.x);
-  float per_metre = abs(dot(caustic_line_rate(x, normal), across)) * focal_length() / x.z;
-  return vec2(dot(u, normal), dot(v, normal)) * per_metre;
+  float per_metre = abs(dot(caustic_line_rate(x, line_normal(p)), across)) * focal_length() / x.z;
+  return mix(beam.sides.xy, beam.sides.zw, share) * per_metre;
 }
 
 float beam_width(RayBeam beam, RayPiece p, float share) {

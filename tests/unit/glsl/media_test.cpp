@@ -363,6 +363,25 @@ TEST(CausticBeam, BeamsOfALatticeAddUpToTheSameEverywhere) {
   }
 }
 
+/// Sides that keep their length, shrink, turn over, or vanish, in all pairs, against places all along the
+/// beam.
+TEST(CausticBeam, NoPlaceIsNarrowerThanTheNarrowest) {
+  constexpr vec2 kSides[] = {{0, 0},  {1, 1},     {1, 2},  {3, 0.5f},
+                             {-1, 2}, {2, -0.1f}, {0, -4}, {1e-6f, -1e-6f}};
+  const auto width = [](const vec2& u, const vec2& v, float share) {
+    return abs(mix(u.x, u.y, share)) + abs(mix(v.x, v.y, share));
+  };
+  for (const vec2& u : kSides)
+    for (const vec2& v : kSides) {
+      const float narrowest = caustic_beam_narrowest(u, v);
+      ASSERT_GE(narrowest, 0);
+      ASSERT_LE(narrowest, 1);
+      for (int i = 0; i <= 1000; ++i)
+        ASSERT_LE(width(u, v, narrowest), width(u, v, float(i) / 1000) + 1e-6f)
+            << u.x << " " << u.y << " " << v.x << " " << v.y << " " << i;
+    }
+}
+
 /// One box of both widths, which has the same light, does not: this is what drew lines between beams.
 TEST(CausticBeam, ABeamIsATrapezoidBeforePixelsBlurIt) {
   EXPECT_NEAR(caustic_beam_profile(100, 40, 0), 1.f / 100, 1e-6f);
