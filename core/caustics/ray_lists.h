@@ -14,8 +14,8 @@
 namespace limn::caustics {
 
 /// The number of rays that one dispatch can list: every device dispatches 65535 work groups in a row, and a
-/// group takes 64 runs of rays.
-inline constexpr int64_t kMostListedRays = int64_t{65535} * 64 * glsl::rays_per_run;
+/// group takes glsl::runs_per_group runs of rays.
+inline constexpr int64_t kMostListedRays = int64_t{65535} * glsl::runs_per_group * glsl::rays_per_run;
 
 /// Says how the rays of one kind are drawn.
 struct RayKind {
@@ -39,6 +39,7 @@ struct RaySorting {
   std::function<void(gpu::Program&)> bind = {};           ///< sets its uniforms
 };
 
+/// Declares the passes that list `rays`, of which there must be some.
 LIMN_API RayLists addRayLists(frame::FrameGraph& graph, const CausticRays& rays, const RaySorting& sorting);
 
 /// Declares in `pass` the reads of a pass that draws the lists.

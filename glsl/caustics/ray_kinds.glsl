@@ -1,14 +1,16 @@
 // Main function of the pass that sorts rays by kind. Include behind `uint ray_kind(int index)`, 0 to 2 or ray_kind_none.
 #include "glsl/caustics/ray_runs.glsl"
 
-layout(local_size_x = 64) in;
+#define LENGTH int(runs_per_group)
+#include "glsl/caustics/ray_scan.glsl"
+
 layout(std430) writeonly buffer RayRuns { RayRun runs[]; };
+layout(std430) writeonly buffer RayGroups { RayGroup groups[]; };
 uniform int ray_count;
 
 void main() {
   uint run = gl_GlobalInvocationID.x;
   uint first = run * rays_per_run;
-  if (first >= uint(ray_count)) return;
   uvec3 counts = uvec3(0u);
   uint kinds = 0u;
   for (uint i = 0u; i < rays_per_run; ++i) {
@@ -16,5 +18,8 @@ void main() {
     counts += uvec3(equal(uvec3(kind), uvec3(0u, 1u, 2u)));
     kinds |= kind << (2u * i);
   }
-  runs[run] = RayRun(counts, kinds);
+  uvec3 all;
+  uvec3 before = scan_line(counts, all);
+  if (first < uint(ray_count)) runs[run] = RayRun(kinds, pack_counts(before));
+  if (gl_LocalInvocationIndex == 0u) groups[gl_WorkGroupID.x] = RayGroup(all, 0u);
 }

@@ -26,12 +26,15 @@ TEST_F(RayListsTest, HoldEachRayOnceByKindAndInOrder) {
   const gpu::EmbeddedSource kSources[] = {{"kind.comp.glsl", kKindShader}};
   shaders().mount("test/", kSources);
   std::mt19937 random(3);
-  // Sides of buffers: one ray, less than a run, more runs than one work group sums one by one. Highest kinds:
-  // 0: all rays are of the first, 3: of each kind, or not drawn; 4: none is drawn.
-  for (const int side : {1, 3, 31, 301})
+  constexpr int kRun = glsl::rays_per_run, kGroup = kRun * glsl::runs_per_group;
+  // What a single work group of 256 threads adds up in one go.
+  constexpr int kPart = 256 * kGroup;
+  // Highest kinds: 0: all rays are of the first, 3: of each kind, or not drawn; 4: none is drawn.
+  for (const int count : {1, kRun - 1, kRun, kRun + 1, kGroup - 1, kGroup, kGroup + 1, 90601, kPart - 1,
+                          kPart, kPart + 1, 2 * kPart + 12345})
     for (const uint32_t highest : {0u, 3u, 4u}) {
-      SCOPED_TRACE(fmt::format("{} x {} rays, kinds up to {}", side, side, highest));
-      std::vector<glsl::CausticRay> rays(static_cast<size_t>(side) * static_cast<size_t>(side));
+      SCOPED_TRACE(fmt::format("{} rays, kinds up to {}", count, highest));
+      std::vector<glsl::CausticRay> rays(static_cast<size_t>(count));
       std::array<std::vector<uint32_t>, glsl::ray_kinds> expected;
       for (uint32_t i = 0; i < rays.size(); ++i) {
         const uint32_t kind = highest == 4 ? 3 : std::uniform_int_distribution<uint32_t>(0, highest)(random);
@@ -42,8 +45,8 @@ TEST_F(RayListsTest, HoldEachRayOnceByKindAndInOrder) {
       frame::FrameGraph graph;
       CausticRays made;
       made.rays = graph.importBuffer("rays", buffer);
-      made.layers = made.paths = 1;
-      made.size = side;
+      made.size = made.paths = 1;
+      made.layers = count;
       const RayLists lists =
           addRayLists(graph, made,
                       {.technique = "test",
