@@ -15,6 +15,7 @@ find_package(TBB REQUIRED)
 find_package(glfw3 3.3 REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp)
 pkg_check_modules(KISSFFT REQUIRED IMPORTED_TARGET kissfft-float)
 find_library(LIMN_EGL_LIBRARY EGL REQUIRED)
 # Debian's OpenVDB has no CMake package of its own.

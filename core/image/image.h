@@ -101,8 +101,8 @@ struct Image8 {
   std::vector<std::uint8_t> data;  ///< width * height * 4
 };
 
-/// Returns the image in an EXR (first part, all channels), HDR, PNG or JPEG file. The result is linear: 8-
-/// and 16-bit PNG and JPEG colours are decoded from sRGB (alpha is not), float formats are not converted;
+/// Returns the image in an EXR (first part, all channels), HDR, PNG, JPEG or still WebP file. The result is
+/// linear: 8- and 16-bit colours are decoded from sRGB (alpha is not), float formats are not converted;
 /// one- and three-channel files get channels Y and R, G, B. Throws Error with one line naming the file if it
 /// is missing, truncated, not an image, or larger than the limits (checked before anything is allocated): at
 /// most kMaxReadValues values; above 256 MiB of them also at most 256 bytes for each byte of the file, so
@@ -127,7 +127,7 @@ struct ImageChannel {
 LIMN_API ImageChannel readFirstChannelMemory(std::span<const std::byte> bytes, const std::string& name,
                                              std::uint64_t mostPixels);
 
-/// Returns a texture as 8-bit RGBA (PNG or JPEG; 16-bit values are rounded), from memory or a file.
+/// Returns a texture as 8-bit RGBA (PNG, JPEG, still WebP; 16-bit values are rounded), from memory or a file.
 LIMN_API Image8 readImage8Memory(std::span<const std::byte> bytes, const std::string& name);
 LIMN_API Image8 readImage8(const std::filesystem::path& path);
 

@@ -1,5 +1,5 @@
-// Reading and writing picture files. OpenImageIO decodes and encodes in memory; files are read and written
-// whole.
+// Reading and writing picture files. OpenImageIO decodes and encodes in memory, but for WebP, which libwebp
+// decodes; files are read and written whole.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
@@ -17,6 +17,7 @@
 #include "core/base/text.h"
 #include "core/image/image.h"
 #include "core/image/private/exr_header.h"
+#include "core/image/private/webp.h"
 #include "glsl/numeric/srgb.glsl"
 
 namespace limn {
@@ -53,7 +54,7 @@ Format detectFormat(std::span<const std::byte> bytes, const std::string& name) {
   if (startsWith("\x89PNG\r\n\x1a\n")) return Format::png;
   if (startsWith("\xff\xd8\xff")) return Format::jpeg;
   if (startsWith("#?")) return Format::hdr;
-  throw Error(fmt::format("{}: not a picture; EXR, HDR, PNG or JPEG is accepted", name));
+  throw Error(fmt::format("{}: not a picture; EXR, HDR, PNG, JPEG or WebP is accepted", name));
 }
 
 /// Each scan of a progressive JPEG is a pass over the whole picture, however little it says; encoders make
@@ -144,6 +145,26 @@ class MemoryFile : public OIIO::Filesystem::IOMemReader {
   }
 };
 
+/// Throws Error where a picture of a file of `file` bytes exceeds the limits.
+void checkSize(std::int64_t width, std::int64_t height, std::int64_t channels, std::size_t file,
+               const std::string& name) {
+  if (width < 1 || height < 1 || channels < 1 || width > kMaxImageSide || height > kMaxImageSide ||
+      channels > kMaxImageChannels || width * height > kMaxImagePixels ||
+      width * height * channels > kMaxReadValues) {
+    throw Error(fmt::format(
+        "{}: {}x{} pixels of {} channels; at most {} per side, {} pixels, {} channels, {} values are "
+        "accepted",
+        name, width, height, channels, kMaxImageSide, kMaxImagePixels, kMaxImageChannels, kMaxReadValues));
+  }
+  const std::int64_t bytes = width * height * channels * std::int64_t{sizeof(float)};
+  if (bytes > kUnfoldedBytes && bytes / kUnfoldedRatio > static_cast<std::int64_t>(file)) {
+    throw Error(fmt::format(
+        "{}: {}x{} pixels of {} channels in {} bytes; more than {} MiB of values are accepted from "
+        "files of at least a {}th of that",
+        name, width, height, channels, file, kUnfoldedBytes >> 20, kUnfoldedRatio));
+  }
+}
+
 /// An opened decoder whose size has been checked against the limits; nothing of that size is allocated yet.
 class Decoder {
  public:
@@ -176,22 +197,8 @@ class Decoder {
   }
 
   void checkSize() const {
-    const std::int64_t width = spec_.width, height = spec_.height, channels = spec_.nchannels;
     if (spec_.deep || spec_.depth > 1) fail("deep and volume pictures are not accepted");
-    if (width < 1 || height < 1 || channels < 1 || width > kMaxImageSide || height > kMaxImageSide ||
-        channels > kMaxImageChannels || width * height > kMaxImagePixels ||
-        width * height * channels > kMaxReadValues) {
-      fail(fmt::format(
-          "{}x{} pixels of {} channels; at most {} per side, {} pixels, {} channels, {} values are accepted",
-          width, height, channels, kMaxImageSide, kMaxImagePixels, kMaxImageChannels, kMaxReadValues));
-    }
-    const std::int64_t file = memory_.size(), bytes = width * height * channels * std::int64_t{sizeof(float)};
-    if (bytes > kUnfoldedBytes && bytes / kUnfoldedRatio > file) {
-      fail(
-          fmt::format("{}x{} pixels of {} channels in {} bytes; more than {} MiB of values are accepted from "
-                      "files of at least a {}th of that",
-                      width, height, channels, file, kUnfoldedBytes >> 20, kUnfoldedRatio));
-    }
+    limn::checkSize(spec_.width, spec_.height, spec_.nchannels, memory_.size(), name_);
   }
 
   std::string name_;
@@ -238,7 +245,27 @@ void decodeSrgb(Image& image) {
   }
 }
 
+/// A still WebP as it is stored, and whether its alpha says anything.
+std::pair<Image8, bool> decodeWebp8(std::span<const std::byte> bytes, const std::string& name) {
+  const WebpHeader header = readWebpHeader(bytes, name);
+  checkSize(header.width, header.height, 4, bytes.size(), name);
+  Image8 image{header.width, header.height, {}};
+  image.data.resize(4 * static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height));
+  decodeWebp(bytes, header, image.data, name);
+  return {std::move(image), header.alpha};
+}
+
+Image decodeLinearWebp(std::span<const std::byte> bytes, const std::string& name) {
+  const auto [stored, alpha] = decodeWebp8(bytes, name);
+  Image image(stored.width, stored.height, {"R", "G", "B", "A"});
+  for (std::size_t i = 0; i < stored.data.size(); ++i)
+    image.data()[i] = static_cast<float>(stored.data[i]) / 255.0f;
+  decodeSrgb(image);
+  return alpha ? std::move(image) : image.select({"R", "G", "B"});
+}
+
 Image decode(std::span<const std::byte> bytes, const std::string& name) {
+  if (isWebp(bytes)) return decodeLinearWebp(bytes, name);
   Decoder decoder(bytes, name);
   const std::vector<std::string> names = channelNames(decoder);
   if (names.size() != static_cast<std::size_t>(decoder.spec().nchannels)) {
@@ -263,10 +290,11 @@ Image decode(std::span<const std::byte> bytes, const std::string& name) {
 }
 
 Image8 decode8(std::span<const std::byte> bytes, const std::string& name) {
+  if (isWebp(bytes)) return decodeWebp8(bytes, name).first;
   Decoder decoder(bytes, name);
   const std::size_t channels = static_cast<std::size_t>(decoder.spec().nchannels);
   if (!decoder.isSrgb() || channels > 4) {
-    throw Error(fmt::format("{}: an 8-bit texture must be PNG or JPEG with 1 to 4 channels", name));
+    throw Error(fmt::format("{}: an 8-bit texture must be PNG, JPEG or WebP with 1 to 4 channels", name));
   }
   const std::size_t pixels =
       static_cast<std::size_t>(decoder.spec().width) * static_cast<std::size_t>(decoder.spec().height);

@@ -101,6 +101,7 @@ Rules documentRules() {
       // 3.8 Texture data
       index("textures[].sampler"),
       index("textures[].source"),
+      index("textures[].extensions.EXT_texture_webp.source"),
       text("images[].name"),
       text("images[].uri"),
       index("images[].bufferView"),

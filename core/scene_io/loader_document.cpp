@@ -40,6 +40,7 @@ constexpr std::array kSupportedExtensions = {
     "KHR_materials_pbrSpecularGlossiness",
     "EXT_meshopt_compression",
     "KHR_draco_mesh_compression",
+    "EXT_texture_webp",
 };
 // clang-format on
 

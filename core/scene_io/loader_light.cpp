@@ -50,7 +50,7 @@ int Loader::readLightTexture(const tinygltf::Value& index, uint32_t type, const 
   const double given = index.IsNumber() ? index.GetNumberAsDouble() : -1;
   if (!(given >= 0 && given < static_cast<double>(model_->textures.size())))
     fail(fmt::format("{}: the index of one of the {} textures is accepted", what, model_->textures.size()));
-  const int image = readImage(model_->textures[static_cast<std::size_t>(given)].source, true, what);
+  const int image = readTextureImage(model_->textures[static_cast<std::size_t>(given)], true, what);
   if (image == kNone) return kNone;
   const auto known = lightTextureIndex_.find(image);
   if (known != lightTextureIndex_.end()) return known->second;

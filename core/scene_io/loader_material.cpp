@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/image/image.h"
+#include "core/image/stated_size.h"
 #include "core/scene/mip_chain.h"
 #include "core/scene_io/private/loader.h"
 
@@ -52,7 +53,7 @@ std::span<const std::byte> Loader::imageBytes(const ImageSource& source, const s
   return storage;
 }
 
-std::optional<Image8> Loader::decodeImage(int index, const std::string& what) {
+std::optional<Image8> Loader::decodeImage(int index, bool another, const std::string& what) {
   const ImageSource& source = imageAt(index, what);
   const std::string label = imageLabel(index);
 
@@ -60,13 +61,13 @@ std::optional<Image8> Loader::decodeImage(int index, const std::string& what) {
   std::span<const std::byte> bytes;
   // One damaged picture is no reason to show nothing: the factors of what it is for stand alone.
   const auto withoutImage = [&](const std::string& problem) {
-    warn(fmt::format("{}; {} goes without it", problem, what));
+    warn(fmt::format("{}; {} {}", problem, what, another ? "takes its other image" : "goes without it"));
     return std::nullopt;
   };
   Image8 decoded;
   try {
     bytes = imageBytes(source, label, storage);
-    if (bytes.empty()) throw Error(label + ": it is empty; PNG or JPEG is accepted");
+    if (bytes.empty()) throw Error(label + ": it is empty; PNG, JPEG or WebP is accepted");
   } catch (const Error& error) {
     return withoutImage(error.what());
   }
@@ -93,35 +94,33 @@ int Loader::addImage(int index, bool srgb, Image8 decoded) {
   return static_cast<int>(scene_.images.size()) - 1;
 }
 
-int Loader::readImage(int index, bool srgb, const std::string& what) {
+int Loader::readImage(int index, bool another, bool srgb, const std::string& what) {
   const auto known = imageIndex_.find({index, srgb});
   if (known != imageIndex_.end()) return known->second;
-  std::optional<Image8> decoded = decodeImage(index, what);
+  std::optional<Image8> decoded = decodeImage(index, another, what);
   return imageIndex_[{index, srgb}] = decoded ? addImage(index, srgb, *std::move(decoded)) : kNone;
 }
 
-/// PNG and JPEG state their size early: a picture beyond the limits is refused before a decoder sees it.
+int Loader::firstImage(const tinygltf::Texture& texture, const std::string& what,
+                       const std::function<int(int image, bool another)>& read) {
+  const tinygltf::Value* webp = extension(texture.extensions, "EXT_texture_webp");
+  const int preferred = webp != nullptr && webp->Has("source") ? webp->Get("source").GetNumberAsInt() : kNone;
+  const bool another = texture.source != kNone;
+  if (preferred == kNone && !another) warn(what + ": its texture has no PNG, JPEG or WebP image");
+  int image = kNone;
+  if (preferred != kNone) image = read(preferred, another);
+  if (image == kNone && another) image = read(texture.source, false);
+  return image;
+}
+
+int Loader::readTextureImage(const tinygltf::Texture& texture, bool srgb, const std::string& what) {
+  return firstImage(texture, what,
+                    [&](int index, bool another) { return readImage(index, another, srgb, what); });
+}
+
+/// A picture that states a size beyond the limits is refused before a decoder sees it.
 void Loader::checkImageSize(std::span<const std::byte> bytes, const std::string& label) const {
-  const auto at = [&](std::size_t i) { return std::to_integer<std::uint64_t>(bytes[i]); };
-  std::uint64_t width = 0, height = 0;
-  if (bytes.size() >= 24 && at(0) == 0x89 && at(1) == 'P') {
-    for (std::size_t i = 0; i < 4; ++i) {
-      width = width << 8 | at(16 + i);
-      height = height << 8 | at(20 + i);
-    }
-  } else if (bytes.size() >= 4 && at(0) == 0xff && at(1) == 0xd8) {
-    for (std::size_t i = 2; i + 9 < bytes.size() && at(i) == 0xff;) {
-      const std::uint64_t marker = at(i + 1);
-      const bool frame =
-          marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
-      if (frame) {
-        height = at(i + 5) << 8 | at(i + 6);
-        width = at(i + 7) << 8 | at(i + 8);
-        break;
-      }
-      i += marker == 0xff ? 1 : 2 + (at(i + 2) << 8 | at(i + 3));
-    }
-  }
+  const auto [width, height] = statedSize(bytes);
   if (width > static_cast<std::uint64_t>(kMaxImageSide) ||
       height > static_cast<std::uint64_t>(kMaxImageSide) ||
       width * height > limits_.imageTexels - std::min(texels_, limits_.imageTexels)) {
@@ -173,12 +172,8 @@ TextureRef Loader::readTexture(int index, int texCoord, const tinygltf::Value* t
   TextureRef out;
   if (index == -1) return out;
   const tinygltf::Texture& texture = textureAt(index, what);
-  if (texture.source == -1) {
-    warn(fmt::format("{}: texture {} has no PNG or JPEG image and is ignored", what, index));
-    return out;
-  }
   std::tie(out.wrapS, out.wrapT) = wrapsOf(texture, what);
-  out.image = readImage(texture.source, srgb, what);
+  out.image = readTextureImage(texture, srgb, what);
   if (out.image == kNone) return {};
   takeUvs(texCoord, transform, use, what);
   return out;

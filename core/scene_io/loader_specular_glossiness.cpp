@@ -27,8 +27,9 @@ const tinygltf::Value* transformOf(const tinygltf::Value& info) {
 
 }  // namespace
 
-int Loader::readGlossiness(int index, float glossiness, glm::vec3& meanSpecular, const std::string& what) {
-  std::optional<Image8> image = decodeImage(index, what);
+int Loader::readGlossiness(int index, bool another, float glossiness, glm::vec3& meanSpecular,
+                           const std::string& what) {
+  std::optional<Image8> image = decodeImage(index, another, what);
   if (!image) return kNone;
   glm::dvec3 sum(0);
   bool varies = false;
@@ -79,12 +80,10 @@ void Loader::applySpecularGlossiness(const tinygltf::Value& e, Material& m, UvUs
   const std::string place = what + " specularGlossinessTexture";
   const tinygltf::Value& info = e.Get("specularGlossinessTexture");
   const tinygltf::Texture& texture = textureAt(indexOf(info, "index", -1), place);
-  if (texture.source == -1) {
-    warn(place + " has no PNG or JPEG image and is ignored");
-    return;
-  }
   glm::vec3 mean(1);
-  const int image = readGlossiness(texture.source, glossiness, mean, place);
+  const int image = firstImage(texture, place, [&](int index, bool another) {
+    return readGlossiness(index, another, glossiness, mean, place);
+  });
   if (image == kNone) return;
   const auto [wrapS, wrapT] = wrapsOf(texture, place);
   m.metalRoughTexture = {image, wrapS, wrapT};

@@ -30,7 +30,7 @@ LINKED = ["core/base/*.cpp", "core/question/*.cpp", "core/image/*.cpp", "core/br
 COMPILED = ["core/gpu_scene/gpu_materials.cpp", "core/reference/surface.cpp"]  # which draw and trace: not linked
 PRECOMPILED = ["fmt/format.h", "glm/glm.hpp", "gmock/gmock.h", "gtest/gtest.h", "nlohmann/json.hpp"]
 LIBRARIES = ["gtest_main", "gtest", "gmock", "fmt", "spdlog", "tinygltf", "meshoptimizer", "OpenImageIO",
-             "OpenImageIO_Util", "tbb", "xxhash", "kissfft-float", "tomlplusplus", "dl"]
+             "OpenImageIO_Util", "tbb", "xxhash", "kissfft-float", "webp", "tomlplusplus", "dl"]
 
 
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
 #include <map>
 #include <optional>
@@ -133,7 +134,8 @@ class Loader {
   /// Replaces the material's metallic-roughness by KHR_materials_pbrSpecularGlossiness.
   void applySpecularGlossiness(const tinygltf::Value& extension, Material& material, UvUse& use,
                                const std::string& what);
-  int readGlossiness(int image, float glossiness, glm::vec3& meanSpecular, const std::string& what);
+  int readGlossiness(int image, bool another, float glossiness, glm::vec3& meanSpecular,
+                     const std::string& what);
   // loader_material_model.cpp
   /// Returns the model that extras.limn_material describes.
   glsl::MaterialModel readModel(const tinygltf::Value& extras, const std::string& what);
@@ -163,6 +165,11 @@ class Loader {
   TextureRef readTexture(int index, int texCoord, const tinygltf::Value* transform, bool srgb, UvUse& use,
                          const std::string& what);
   const tinygltf::Texture& textureAt(int index, const std::string& what) const;
+  /// Returns the first result other than none of read(image, another): of the texture's WebP image
+  /// (EXT_texture_webp), where it has one, with `another` saying whether there is one to fall back on, and
+  /// then of that. Warns where the texture has no image that can be read.
+  int firstImage(const tinygltf::Texture& texture, const std::string& what,
+                 const std::function<int(int image, bool another)>& read);
   /// Returns how a texture goes on beyond its edges, along u and v.
   std::pair<Wrap, Wrap> wrapsOf(const tinygltf::Texture& texture, const std::string& what) const;
   /// Makes these the texture coordinates of the material, or warns that it has others.
@@ -173,10 +180,13 @@ class Loader {
   /// without the scene's name when they cannot be read.
   std::span<const std::byte> imageBytes(const ImageSource& source, const std::string& label,
                                         std::vector<std::byte>& storage) const;
-  /// Returns the index of the image in Scene::images, or none, with a warning, when it cannot be read.
-  int readImage(int index, bool srgb, const std::string& what);
+  /// Returns the index in Scene::images of the texture's image, or none, with a warning, when it cannot be
+  /// read.
+  int readTextureImage(const tinygltf::Texture& texture, bool srgb, const std::string& what);
+  /// Returns the same of an image; `another` says that there is another one to take instead.
+  int readImage(int index, bool another, bool srgb, const std::string& what);
   /// Returns the image as stored, or nothing, with a warning, when it cannot be read.
-  std::optional<Image8> decodeImage(int index, const std::string& what);
+  std::optional<Image8> decodeImage(int index, bool another, const std::string& what);
   /// Appends the image, with its smaller levels, to Scene::images and returns its index.
   int addImage(int index, bool srgb, Image8 image);
   void checkImageSize(std::span<const std::byte> bytes, const std::string& label) const;

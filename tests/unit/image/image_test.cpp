@@ -257,7 +257,7 @@ TEST_F(ImageFile, RefusesWhatIsNotAPicture) {
   writeTextFile(folder_ / "empty.exr", "");
   expectRefusal([&] { readImage(folder_ / "empty.exr"); }, "empty.exr");
   writeExr(folder_ / "float.exr", Image::rgb(2, 2));
-  expectRefusal([&] { readImage8(folder_ / "float.exr"); }, "PNG or JPEG");
+  expectRefusal([&] { readImage8(folder_ / "float.exr"); }, "PNG, JPEG or WebP");
 }
 
 TEST_F(ImageFile, RefusesTruncatedPicturesOfEveryFormat) {

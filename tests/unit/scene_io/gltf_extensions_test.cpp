@@ -7,6 +7,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/png.h"
 #include "tests/support/scene_files.h"
+#include "tests/support/webp.h"
 
 namespace limn::test {
 namespace {
@@ -188,6 +189,58 @@ TEST(UnlitMaterials, SayWhatTheyLeaveOut) {
       b.vec3(std::vector<glm::vec3>(3, glm::vec3(1)));
   EXPECT_THAT(loadBuilt(b).warnings,
               ElementsAre(HasSubstr("KHR_materials_unlit"), HasSubstr("COLOR_0 is ignored")));
+}
+
+/// A material whose texture is one in WebP, `webp`, and, where `other` is not empty, one for programs that
+/// read none.
+GltfBuilder webpMaterial(const std::vector<std::byte>& webp, const std::vector<std::byte>& other = {}) {
+  GltfBuilder b;
+  json texture = {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}};
+  b.append("images", {{"bufferView", b.view(webp.data(), webp.size())}, {"mimeType", "image/webp"}});
+  if (!other.empty()) {
+    b.append("images", {{"bufferView", b.view(other.data(), other.size())}, {"mimeType", "image/png"}});
+    texture["source"] = 1;
+  }
+  b.append("textures", std::move(texture));
+  b.append("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  return b;
+}
+
+TEST(WebpTextures, AreReadAsTheyAreStored) {
+  const std::vector<std::uint8_t> rgba = {200, 100, 50, 3, 1, 2, 3, 255};
+  GltfBuilder b = webpMaterial(losslessWebp(2, 1, rgba));
+  b.root["extensionsRequired"] = {"EXT_texture_webp"};
+  const Scene scene = loadBuilt(b);
+  const Material& m = scene.materials.at(0);
+  EXPECT_EQ(scene.images.at(at(m.baseColourTexture.image)).levels[0].rgba, rgba);
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(WebpTextures, OthersStandInWhereTheyCannotBeRead) {
+  const std::vector<std::byte> webp = losslessWebp(1, 1, {10, 20, 30, 40}),
+                               other = png(1, 1, {50, 60, 70, 80});
+  const auto shown = [](const Scene& scene) {
+    return scene.images.at(at(scene.materials.at(0).baseColourTexture.image)).levels[0].rgba;
+  };
+  EXPECT_THAT(shown(loadBuilt(webpMaterial(webp, other))), ElementsAre(10, 20, 30, 40))
+      << "WebP is preferred";
+  std::vector<std::byte> damaged = webp;
+  damaged.resize(20);
+  const Scene scene = loadBuilt(webpMaterial(damaged, other));
+  EXPECT_THAT(shown(scene), ElementsAre(50, 60, 70, 80));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre(AllOf(HasSubstr("truncated or damaged WebP"), HasSubstr("takes its other image"))));
+  const Scene none = loadBuilt(webpMaterial(damaged));
+  EXPECT_EQ(none.materials.at(0).baseColourTexture.image, scene::kNone);
+  EXPECT_THAT(none.warnings, ElementsAre(HasSubstr("goes without it")));
+}
+
+TEST(WebpTextures, OtherFormatsWithoutAnImageToFallBackOnAreLeftOut) {
+  GltfBuilder b = webpMaterial(losslessWebp(1, 1, {10, 20, 30, 40}));
+  b.root["textures"][0]["extensions"] = {{"KHR_texture_basisu", {{"source", 0}}}};
+  EXPECT_THAT(loadBuilt(b).warnings, ElementsAre(HasSubstr("no PNG, JPEG or WebP image")));
+  b.root["textures"][0]["extensions"] = {{"EXT_texture_webp", {{"source", 7}}}};
+  EXPECT_THAT(loadError(b.glb()), HasSubstr("image 7 does not exist"));
 }
 
 GltfBuilder glossy(json extension) {

@@ -298,7 +298,7 @@ TEST(SceneBadInput, References) {
 }
 
 TEST(SceneBadInput, RequiredExtensions) {
-  for (const char* name : {"KHR_texture_basisu", "EXT_texture_webp"}) {
+  for (const char* name : {"KHR_texture_basisu", "KHR_materials_sheen"}) {
     GltfBuilder b;
     b.root["extensionsRequired"] = {name};
     EXPECT_THAT(loadError(b.glb()), AllOf(HasSubstr(name), HasSubstr("not supported")));
@@ -325,6 +325,10 @@ TEST(SceneBadInput, Images) {
   scene::LoadLimits limits;
   limits.imageTexels = 3;
   EXPECT_THAT(loadError(many.glb(), limits), HasSubstr("2x2 texels"));
+  GltfBuilder webp;  // lossless, 16384 x 4096
+  webp.texturedMaterial(GltfBuilder::toBytes(
+      std::string("RIFF\x16\0\0\0WEBPVP8L\x0a\0\0\0/\xff\xff\xff\x03", 25) + std::string(5, '\0')));
+  EXPECT_THAT(loadError(webp.glb(), limits), AllOf(HasSubstr("image 0"), HasSubstr("16384x4096 texels")));
 }
 
 TEST(SceneBadInput, WrongTypes) {
