@@ -100,12 +100,14 @@ class Model {
     std::vector<Parameter> parameters;
   };
 
-  explicit Model(std::vector<Technique> techniques) : techniques_(std::move(techniques)) {
+  /// Numbers have their default and `steps` values on each side.
+  explicit Model(std::vector<Technique> techniques, int steps = 2)
+      : techniques_(std::move(techniques)), steps_(steps) {
     for (const Technique& technique : techniques_) {
       TuneSpace& space = spaces_.emplace_back();
       space.technique = "t";
       for (std::size_t i = 0; i < technique.parameters.size(); ++i)
-        space.axes.push_back({"t.p", {"1/4", "1/2", "1", "2", "4"}, 2});
+        space.axes.push_back({"t.p", std::vector<std::string>(at(2 * steps + 1), "value"), at(steps)});
     }
   }
 
@@ -114,7 +116,7 @@ class Model {
     double squared = technique.floor * technique.floor, ms = technique.base;
     for (std::size_t i = 0; i < setting.at.size(); ++i) {
       const Parameter& parameter = technique.parameters[i];
-      const double value = std::exp2(static_cast<double>(setting.at[i]) - 2);
+      const double value = std::exp2(static_cast<double>(setting.at[i]) - steps_);
       squared += std::pow(parameter.error * std::pow(value, -parameter.power), 2);
       ms += parameter.ms * value;
     }
@@ -142,22 +144,26 @@ class Model {
   double cost() const { return cost_; }
 
  private:
+  static std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
   std::vector<Technique> techniques_;
+  int steps_;
   std::vector<TuneSpace> spaces_;
   double cost_ = 0;
 };
 
-Model softShadows() {
+Model softShadows(int steps) {
   return Model({{0.004, 6, {{0.004, 0.5, 2}, {0.012, 0.5, 6}, {0.006, 1, 3}}},
                 {0.012, 5, {{0.006, 0.5, 1}, {0.01, 1, 4}, {0.004, 0.7, 2}}},
                 {0.02, 4, {{0.02, 0.5, 1}}},
                 {0.002, 5, {{0.03, 0.8, 40}, {0.004, 1, 20}}},
-                {0.006, 8, {{0.01, 0.3, 2}, {0.008, 0.5, 2}, {0.005, 1, 4}, {0.003, 0.5, 1}}}});
+                {0.006, 8, {{0.01, 0.3, 2}, {0.008, 0.5, 2}, {0.005, 1, 4}, {0.003, 0.5, 1}}}},
+               steps);
 }
 
 /// The best figure of the exhaustive grid, and its cost.
-std::pair<double, double> bestOfGrid(const TuneLimit& limit, const TuneEffort& full) {
-  Model model = softShadows();
+std::pair<double, double> bestOfGrid(const TuneLimit& limit, const TuneEffort& full, int steps) {
+  Model model = softShadows(steps);
   const auto exactly = [&](std::span<const TuneSetting> settings, const TuneEffort& effort) {
     model.measure(settings, effort);
     std::vector<TuneFigures> figures;
@@ -169,17 +175,18 @@ std::pair<double, double> bestOfGrid(const TuneLimit& limit, const TuneEffort& f
   return {limit.ms ? best.error : best.ms, model.cost()};
 }
 
-void expectNearTheGrid(const TuneLimit& limit) {
-  const TunePlan plan = tunePlan(640, 480, 10, 5);
-  const auto [best, gridCost] = bestOfGrid(limit, plan.full);
-  Model model = softShadows();
+void expectNearTheGrid(const TuneLimit& limit, const TunePlan& plan = tunePlan(640, 480, 10, 5),
+                       int steps = 2, double most = 1.1) {
+  const auto [best, gridCost] = bestOfGrid(limit, plan.full, steps);
+  Model model = softShadows(steps);
   const auto measured = [&](std::span<const TuneSetting> settings, const TuneEffort& effort) {
     return model.measure(settings, effort);
   };
   const TuneResult result = tune(model.spaces(), limit, plan, measured);
   ASSERT_FALSE(result.answers.empty());
   const TuneFigures answer = model.truth(result.answers.front());
-  EXPECT_LE(limit.ms ? answer.error : answer.ms, 1.1 * best) << limit.ms.value_or(0) << " ms";
+  EXPECT_LE(limit.ms ? answer.error : answer.ms, most * best)
+      << limit.ms.value_or(0) << " ms, error " << limit.error.value_or(0);
   // What is measured in full still scatters by a few percent.
   if (limit.ms)
     EXPECT_LE(answer.ms, 1.05 * *limit.ms);
@@ -197,8 +204,20 @@ TEST(Tune, FindsTheLeastTimeOfTheGridAtASmallPartOfItsCost) {
   for (const double error : {0.009, 0.012, 0.015, 0.02, 0.03}) expectNearTheGrid({.error = error});
 }
 
+// Of 147 settings, whose checks cost nearly half as much as full measurements do. Times of 3 frames in 2
+// turns scatter by 12 % themselves.
+TEST(Tune, KeepsToASmallPartOfTheCostOfSmallGridsToo) {
+  for (const double error : {0.012, 0.015, 0.02, 0.025, 0.03}) {
+    expectNearTheGrid({.error = error}, tunePlan(128, 96, 10, 5), 1);
+    expectNearTheGrid({.error = error}, tunePlan(128, 96, 5, 3), 1);
+    expectNearTheGrid({.error = error}, tunePlan(128, 96, 3, 2), 1, 1.3);
+  }
+  for (const double ms : {12.0, 20.0, 40.0, 100.0})
+    expectNearTheGrid({.ms = ms}, tunePlan(128, 96, 10, 5), 1);
+}
+
 TEST(Tune, SaysWhatComesNearestWhereNothingKeepsTheLimit) {
-  Model model = softShadows();
+  Model model = softShadows(2);
   const auto measured = [&](std::span<const TuneSetting> settings, const TuneEffort& effort) {
     return model.measure(settings, effort);
   };
