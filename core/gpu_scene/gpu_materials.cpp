@@ -29,6 +29,7 @@ glsl::Material packConstants(const Scene& scene, const Material& m) {
   out.attenuation = m.attenuationColour;
   uint32_t flags = 0;
   if (m.doubleSided) flags |= glsl::material_double_sided;
+  if (m.unlit) flags |= glsl::material_unlit;
   if (m.baseColourTexture.image != kNone) flags |= glsl::material_has_base_colour_texture;
   if (m.metalRoughTexture.image != kNone) flags |= glsl::material_has_metal_rough_texture;
   if (m.normalTexture.image != kNone) flags |= glsl::material_has_normal_texture;

@@ -63,6 +63,8 @@ void addMaterial(Hasher& h, const scene::Material& m) {
   if (m.subsurface)
     h.addAll(subsurfaceFollows, m.subsurface->extinction, m.subsurface->absorption,
              m.subsurface->albedoFromBaseColour);
+  constexpr uint32_t unlitFollows = 0x0117;
+  if (m.unlit) h.add(unlitFollows);
   if (m.model) h.add(*m.model);
   constexpr uint32_t coatsMirrorEnvironment = 0xc0a7;  // earlier results show their bases alone
   if (m.model && m.model->kind == glsl::model_coated) h.add(coatsMirrorEnvironment);

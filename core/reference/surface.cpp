@@ -84,6 +84,7 @@ void fillMaterial(const RayScene& rays, const TextureLookup& lookup, const glm::
   values.specular_colour = glm::clamp(material.specularColour, 0.f, 1.f);
   values.ior = glm::clamp(material.ior, 1.f, 3.f);
   values.emission = material.emission * glm::vec3(lookup(material.emissiveTexture));
+  if (material.unlit) values.emission *= glm::vec3(surface.vertexColour);
   values.flags = material.specularSurface() ? glsl::gbuffer_flag_specular
                  : material.subsurface      ? glsl::gbuffer_flag_translucent
                                             : 0u;

@@ -81,6 +81,7 @@ struct Material {
   glm::vec3 emission{0};  ///< emissiveFactor * emissive_strength
   float alphaCutoff = 0;  ///< 0: opaque; MASK's cutoff; BLEND counts as 0.5
   bool doubleSided = false;
+  bool unlit = false;  ///< vertex colours are a factor on `emission`, too (KHR_materials_unlit)
   float ior = 1.5f;
   float specularFactor = 1;
   glm::vec3 specularColour{1};

@@ -278,8 +278,8 @@ void Loader::applyUnlit(Material& m, const std::string& what) {
   unlit.specularFactor = 0;
   unlit.alphaCutoff = m.alphaCutoff;
   unlit.doubleSided = m.doubleSided;
+  unlit.unlit = true;
   m = unlit;
-  unlit_.insert(static_cast<int>(scene_.materials.size()));
 }
 
 void Loader::readMaterials() {

@@ -125,8 +125,6 @@ void Loader::readAttributes(const tinygltf::Primitive& source, Primitive& out, c
     out.tangents = toVec4(readFloats(tangent, {4}, count, what + " TANGENT"));
   if (const int colour = attribute(attributes, "COLOR_0"); colour != kNone)
     out.colours = toVec4(readFloats(colour, {3, 4}, count, what + " COLOR_0"));
-  if (!out.colours.empty() && unlit_.contains(out.material))
-    warn(what + ": COLOR_0 is ignored where KHR_materials_unlit is");
   readUvs(source, out, what);
   readSkinAttributes(source, out, what);
 }
@@ -274,7 +272,7 @@ void Loader::completePrimitive(Primitive& out, const std::string& what) {
   }
   computeBounds(out);
   checkHeightUvs(out);
-  if (material.emission == glm::vec3(0) || unlit_.contains(out.material)) return;
+  if (material.emission == glm::vec3(0) || material.unlit) return;
   if (const auto quad = material.alphaCutoff > 0 ? std::nullopt : findRectangle(out))
     out.emissiveParts = emissiveParts(scene_, out, *quad);
   if (out.emissiveParts.empty())

@@ -67,6 +67,9 @@ void main() {
   vec2 metal_rough = surface_metal_rough(uv_dx, uv_dy);
   s.emission = material.emission;
   if ((textures & material_has_emissive_texture) != 0u) s.emission *= texel(emissive_texture, uv_dx, uv_dy).rgb;
+#if COLOURS
+  if ((material.flags & material_unlit) != 0u) s.emission *= surface_colour.rgb;
+#endif
 
   s.base_colour = base.rgb;
   s.metallic = metal_rough.x;

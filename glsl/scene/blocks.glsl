@@ -81,6 +81,7 @@ LIMN_CONST uint material_has_model = 64u;  // the constants are those of the met
 LIMN_CONST uint material_has_height_normals = 128u;  // from a height map: there is no normal texture
 LIMN_CONST uint material_height_clamped = 256u;  // the height map's last texels go on for ever; else it is periodic
 LIMN_CONST uint material_translucent = 512u;     // light scatters below the surface
+LIMN_CONST uint material_unlit = 1024u;          // vertex colours are a factor on the emission, too
 
 LIMN_FN Optics material_optics(Material m) {
   Optics o;

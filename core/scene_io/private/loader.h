@@ -269,7 +269,6 @@ class Loader {
 
   int defaultMaterial_ = kNone;  ///< for primitives that name none
   std::vector<UvUse> uvUses_;    ///< parallel to Scene::materials
-  std::set<int> unlit_;          ///< materials that emit without being lights
   std::vector<int> newIndex_;    ///< file's node index to Scene::nodes
   std::vector<int> fileIndex_;
   std::vector<int> cameraIndex_;  ///< file's camera index to Scene::cameras, or none

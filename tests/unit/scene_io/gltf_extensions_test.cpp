@@ -185,10 +185,22 @@ TEST(UnlitMaterials, SayWhatTheyLeaveOut) {
                           {{"KHR_materials_unlit", json::object()},
                            {"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}});
   b.triangle(0);
-  b.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
-      b.vec3(std::vector<glm::vec3>(3, glm::vec3(1)));
-  EXPECT_THAT(loadBuilt(b).warnings,
-              ElementsAre(HasSubstr("KHR_materials_unlit"), HasSubstr("COLOR_0 is ignored")));
+  EXPECT_THAT(loadBuilt(b).warnings, ElementsAre(HasSubstr("KHR_materials_unlit")));
+}
+
+TEST(UnlitMaterials, AreTintedByVertexColours) {
+  GltfBuilder b;
+  b.append("materials", {{"extensions", {{"KHR_materials_unlit", json::object()}}}});
+  b.append("materials", {{"emissiveFactor", {1, 1, 1}}});
+  const std::vector<glm::vec3> colours{{1, 0.5f, 0}, {0, 1, 0.5f}, {0.5f, 0, 1}};
+  for (const int material : {0, 1}) {
+    b.triangle(material);
+    b.root["meshes"].back()["primitives"][0]["attributes"]["COLOR_0"] = b.vec3(colours);
+  }
+  const Scene scene = loadBuilt(b);
+  EXPECT_TRUE(scene.materials.at(0).unlit);
+  EXPECT_FALSE(scene.materials.at(1).unlit) << "colours are a factor on the base colour alone";
+  expectNear(glm::vec3(onlyPrimitive(scene).colours.at(0)), colours[0]);
 }
 
 /// A material whose texture is one in WebP, `webp`, and, where `other` is not empty, one for programs that
