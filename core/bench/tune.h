@@ -3,7 +3,8 @@
 //
 // The search walks from each technique's defaults to neighbouring settings that nothing clearly beats and
 // that lie near the limit, all with little effort. The best third is measured with more effort, and the best
-// third of those in full: successive halving (Jamieson and Talwalkar 2016) with thirds.
+// third of those in full: successive halving (Jamieson and Talwalkar 2016) with thirds, of which there are as
+// many as fit into a share of what measuring every setting in full would cost.
 #pragma once
 
 #include <compare>
