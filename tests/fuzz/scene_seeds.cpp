@@ -167,6 +167,7 @@ void otherMaterials(GltfBuilder& b) {
   b.texturedMaterial(
       {reinterpret_cast<const std::byte*>(kPng), reinterpret_cast<const std::byte*>(kPng) + sizeof kPng});
   b.root["materials"][0]["extensions"]["KHR_materials_unlit"] = json::object();
+  b.root["textures"][0]["extensions"]["EXT_texture_webp"]["source"] = 0;
   b.append("materials", {{"extensions",
                           {{"KHR_materials_pbrSpecularGlossiness",
                             {{"diffuseFactor", {1, 0.5, 0.25, 1}},
