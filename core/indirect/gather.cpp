@@ -20,6 +20,10 @@ constexpr int kGroup = 8;
 constexpr int kSpreadWidth = 8;  // taps to either side of each tent that spreads the residual
 constexpr int kSpreadShare = 8;  // it reaches at least this part of the picture's height
 
+bool bounded(const GatherSettings& settings) {
+  return settings.clamp > 0 || settings.bound == Bound::patch;
+}
+
 }  // namespace
 
 int usableBlock(int block, int lights) {
@@ -30,6 +34,7 @@ GatherSettings gatherSettings(const ParameterValues& p) {
   return {.block = p.integer("block"),
           .interleaving = static_cast<Interleaving>(p.choice("interleaving")),
           .clamp = p.real("clamp"),
+          .bound = static_cast<Bound>(p.choice("bound")),
           .compensation = p.boolean("compensation"),
           .history = p.integer("history"),
           .blur = p.boolean("blur"),
@@ -55,12 +60,12 @@ Gather::Gather(frame::FrameGraph& graph, const TechniqueInputs& inputs, std::str
       settings_(settings),
       specular_(inputs.handles.modelKinds != 0 ||
                 !std::ranges::all_of(inputs.scene.materials, &scene::Material::lambertian)),
-      residual_(settings.compensation && settings.clamp > 0),
+      residual_(settings.compensation && bounded(settings)),
       gbuffer_(inputs.gbuffer),
       size_(inputs.size) {
   settings_.block = usableBlock(settings.block, lights.count);
   blurred_ = settings_.blur && settings_.block > 1;
-  falling_ = blurred_ && !residual_ && settings_.history > 1 && settings_.clamp > 0;
+  falling_ = blurred_ && !residual_ && settings_.history > 1 && bounded(settings_);
   if (settings_.interleaving == Interleaving::split && settings_.block > 1) {
     size_ = (inputs.size + settings_.block - 1) / settings_.block * settings_.block;
     gbuffer_ = split();
@@ -127,6 +132,7 @@ void Gather::shade(ShadePass shade) {
   const bool splitting = gbuffer_.depth != inputs_.gbuffer.depth;
   shade.program.defines["SPLIT"] = splitting ? "1" : "0";
   shade.program.defines["GATHER_FALLING"] = falling_ ? "1" : "0";
+  shade.program.defines["GATHER_PATCH"] = settings_.bound == Bound::patch ? "1" : "0";
   shade.program.defines["ACCUMULATE"] = accumulate ? "1" : "0";
   shade.program.defines["LAMBERTIAN"] = specular_ ? "0" : "1";
   const auto program = pass.program(shade.program);
@@ -138,10 +144,11 @@ void Gather::shade(ShadePass shade) {
     kernel.set("batch_first", static_cast<unsigned>(shade.first));
     kernel.set("batch_count", static_cast<unsigned>(shade.count));
     kernel.set("block", block);
-    const float least = settings.clamp / std::sqrt(static_cast<float>(settings.history));
+    const float widest = settings.bound == Bound::patch ? std::sqrt(glsl::inverse_pi) : settings.clamp;
+    const float least = widest / std::sqrt(static_cast<float>(settings.history));
     kernel.set("nearest", falling ? least * static_cast<float>(settings.block) : least);
     if (falling) kernel.set("least_nearest", least);
-    if (falling && glossy) kernel.set("glossy_nearest", settings.clamp);
+    if (falling && glossy) kernel.set("glossy_nearest", widest);
     if (shade.bind) shade.bind(kernel);
     const glm::ivec2 part = (size + settings.block - 1) / settings.block;
     context.dispatch(part.x, part.y, settings.block * settings.block, 2 * kGroup, 2 * kGroup);

@@ -29,12 +29,19 @@ enum class Interleaving {
 };
 inline constexpr const char* kInterleavingNames[] = {"addressed", "split"};
 
+/// How the inverse square of the distance to a virtual light is bounded.
+enum class Bound {
+  distance,  ///< no light counts as nearer than the clamp
+  patch,     ///< 1 / (d^2 + A / pi) of the surface A that the light stands for
+};
+inline constexpr const char* kBoundNames[] = {"distance", "patch"};
+
 /// Returns the parameters of a technique with virtual lights: their number, its own, and those that all such
 /// techniques share. `block` is the default of the side of the pattern of interleaved pixels.
 template <size_t N = 0>
-constexpr std::array<Parameter, N + 12> gatherParameters(const std::array<Parameter, N>& own = {},
+constexpr std::array<Parameter, N + 13> gatherParameters(const std::array<Parameter, N>& own = {},
                                                          int block = 8) {
-  std::array<Parameter, N + 12> all{
+  std::array<Parameter, N + 13> all{
       integer("vpls", 1024, {1, 65536}, "lights", "Number of virtual point lights, over all lights")
           .quality()
           .logScale()};
@@ -54,6 +61,9 @@ constexpr std::array<Parameter, N + 12> gatherParameters(const std::array<Parame
           "clamp", 0.03, {0, 1}, "scene extents",
           "Least distance that is used for a virtual light; 0: no clamping. With a history of n frames it is "
           "this over the root of n where the blur covers the pattern, and more where it does not"),
+      choice(
+          "bound", 0, kBoundNames,
+          "distance: by clamp; patch: by the surface that each virtual light stands for, whatever clamp is"),
       boolean("compensation", false, "Spread the light that the clamp removes over neighbouring pixels"),
       integer("history", 1, {1, history::FrameHistoryService::kMostFrames}, "frames",
               "Frames whose light is averaged, each with virtual lights of its own; 1: this frame's alone"),
@@ -74,6 +84,7 @@ struct GatherSettings {
   int block = 1;
   Interleaving interleaving = Interleaving::addressed;
   float clamp = 0;
+  Bound bound = Bound::distance;
   bool compensation = false;
   int history = 1;
   bool blur = false;

@@ -15,7 +15,7 @@ vec3 some_normal() {
     if (member(i)) first = min(first, float(i));
   }
   first = least(vec4(first)).x;
-  return first < 3.0e38 ? virtual_lights[uint(first)].normal.xyz : vec3(0.0, 0.0, 1.0);
+  return first < 3.0e38 ? virtual_lights[uint(first)].normal : vec3(0.0, 0.0, 1.0);
 }
 
 void main() {

@@ -10,7 +10,7 @@ void main() {
   for (uint i = gl_LocalInvocationIndex; i < light_count; i += THREADS) {
     if (!member(i)) continue;
     offsets += vec4(virtual_lights[i].position - cluster.position, 1.0);
-    normals += vec4(virtual_lights[i].normal.xyz, 0.0);
+    normals += vec4(virtual_lights[i].normal, 0.0);
   }
   offsets = total(offsets);
   normals = total(normals);

@@ -16,7 +16,7 @@ void main() {
     if (!virtual_light_shines(virtual_lights[i])) continue;
     cluster.position = virtual_lights[i].position;
     cluster.count = 0.0;
-    cluster.normal = vec4(virtual_lights[i].normal.xyz, 0.0);
+    cluster.normal = vec4(virtual_lights[i].normal, 0.0);
     break;
   }
   clusters[k] = cluster;

@@ -33,6 +33,18 @@ LIMN_FN float gather_residual(float d2, float nearest2, float least) {
   return max(max(d2, nearest2) / max(d2, least) - 1.0f, 0.0f);
 }
 
+// --- The same for lights that stand for a patch of `area` m^2 as wide as they are high: 1 / (d^2 + area / pi), which is exact
+// above the middle of a disc. patch2: area / pi, of so many lights as a pixel is the mean of ---
+
+LIMN_FN float gather_patch_geometry(float towards_light, float towards_receiver, float d2, float patch2) {
+  return towards_light * towards_receiver / max(d2 * (d2 + patch2), 1e-37f);
+}
+
+// What a smaller patch, or footprint^2 / pi of a receiver, adds to that of patch2, over it.
+LIMN_FN float gather_patch_residual(float d2, float patch2, float least) {
+  return max((d2 + patch2) / max(d2 + least, 1e-37f) - 1.0f, 0.0f);
+}
+
 // Virtual lights of a pixel in block x block interleaved pixels (Segovia et al. 2006, Non-interleaved Deferred Shading of
 // Interleaved Sample Patterns): sub-buffer k of block^2 has the consecutive lights [k N / block^2, (k + 1) N / block^2),
 // which a low-discrepancy sequence spreads over all lit surfaces.

@@ -10,6 +10,8 @@
 // group shades, so that neighbouring threads shade neighbours. They have names of their own in what follows: compilers keep
 // what a loop indexes in memory.
 //
+// GATHER_PATCH 1: the inverse square is bounded by the patch that a light stands for instead of by a part of the scene's extent.
+//
 // Define GATHER_PIXELS 1 before including this where a thread shades one pixel: where visibility takes more than the light, so
 // that a loop over lights does better with few values to keep.
 //
@@ -47,7 +49,7 @@ uniform uint vpl_count;    // N
 uniform uint batch_first;  // virtual lights that this pass may use
 uniform uint batch_count;
 uniform uint block;        // pixels
-uniform float nearest;     // part of the scene's extent
+uniform float nearest;     // part of the scene's extent; GATHER_PATCH: of the root of a light's area
 #if GATHER_FALLING
 uniform float least_nearest;   // the same, where a pixel is the mean of all sub-buffers: the residual is what lies between
 uniform float glossy_nearest;  // the same, of the specular part
@@ -93,15 +95,38 @@ struct Gathered {
   vec3 residual;  // of the diffuse part
 };
 
+// The square of a bound on distances: m^2, or GATHER_PATCH: of a light that stands for 1 m^2.
+float squared_bound(float bound) {
+#if !GATHER_PATCH
+  bound *= gather_extent();
+#endif
+  return bound * bound;
+}
+
+#if GATHER_PATCH
+#define GATHER_GEOMETRY gather_patch_geometry
+#define GATHER_RESIDUE gather_patch_residual
+#else
+#define GATHER_GEOMETRY gather_geometry
+#define GATHER_RESIDUE gather_residual
+#endif
+
 void gather_from(VirtualPointLight light, uint pixel, Receiver r, float nearest2, inout Gathered sum) {
+#if GATHER_PATCH
+  nearest2 *= light.area;
+#if GATHER_FALLING
+  r.least *= light.area;
+  r.glossy_least *= light.area;
+#endif
+#endif
   VplSight sight;
   sight.offset = light.position - r.position;
   sight.d2 = dot(sight.offset, sight.offset);
   sight.above = dot(r.geometric_normal, sight.offset);
-  sight.towards_receiver = -dot(light.normal.xyz, sight.offset);
+  sight.towards_receiver = -dot(light.normal, sight.offset);
   float towards_light = dot(r.normal, sight.offset);
   bool lit = towards_light > 0.0 && sight.above > 0.0 && sight.towards_receiver > 0.0;
-  float share = lit ? gather_geometry(towards_light, sight.towards_receiver, sight.d2, nearest2) : 0.0;
+  float share = lit ? GATHER_GEOMETRY(towards_light, sight.towards_receiver, sight.d2, nearest2) : 0.0;
 #if VPL_SHADOWS
   float visibility = 1.0;
   // A loop of at most one round: software renderers run both sides of an `if`, but leave a loop that nobody is in.
@@ -125,7 +150,7 @@ void gather_from(VirtualPointLight light, uint pixel, Receiver r, float nearest2
   }
 #endif
 #if GATHER_FALLING
-  float glossy = share * (1.0 + gather_residual(sight.d2, nearest2, r.glossy_least));
+  float glossy = share * (1.0 + GATHER_RESIDUE(sight.d2, nearest2, r.glossy_least));
 #else
   float glossy = share;
 #endif
@@ -134,7 +159,7 @@ void gather_from(VirtualPointLight light, uint pixel, Receiver r, float nearest2
 #endif
   sum.diffuse += share * light.flux.rgb;
 #if GATHER_RESIDUAL
-  sum.residual += (share * gather_residual(sight.d2, nearest2, r.least)) * light.flux.rgb;
+  sum.residual += (share * GATHER_RESIDUE(sight.d2, nearest2, r.least)) * light.flux.rgb;
 #endif
 }
 
@@ -170,10 +195,8 @@ GatherPixel gather_pixel(ivec2 pixel, out Receiver r) {
 #endif
 #endif
 #if GATHER_FALLING
-  float bound = least_nearest * gather_extent();
-  r.least = bound * bound;
-  bound = glossy_nearest * gather_extent();
-  r.glossy_least = bound * bound;
+  r.least = squared_bound(least_nearest);
+  r.glossy_least = squared_bound(glossy_nearest);
 #else
   float footprint = depth * length(frame.view_ray_dx.xyz);
   r.least = footprint * footprint * inverse_pi;
@@ -229,12 +252,11 @@ void main() {
   covered = covered || p10.covered || p01.covered || p11.covered;
 #endif
   if (covered && first < end) {
-    float least_distance = nearest * gather_extent();
-    float nearest2 = least_distance * least_distance;
+    float nearest2 = squared_bound(nearest);
     uint i = first;
     do {  // the condition comes last: software renderers run a loop's body once more where it comes first
       VirtualPointLight light = virtual_lights[i];
-      if (!virtual_light_shines(light)) light.normal = vec4(0.0);  // so that no receiver is lit
+      if (!virtual_light_shines(light)) light.normal = vec3(0.0);  // so that no receiver is lit
 #if VPL_SHADOWS
       vpl_begin(i, light);
 #endif

@@ -28,7 +28,7 @@ LIMN_FN LightMaps light_maps(float extent, uint texels) {
 
 // A light without flux looks out of the scene: nothing is drawn for it.
 LIMN_FN ShadowView light_map_view(VirtualPointLight light, LightMaps maps, uint layer) {
-  vec3 normal = vec3(light.normal);
+  vec3 normal = light.normal;
   float lift = virtual_light_shines(light) ? maps.lift : 1e7f * maps.lift;
   return paraboloid_view(light.position + lift * normal, normal, maps.near, maps.near + maps.depth, layer,
                          uint(maps.texels));

@@ -1,6 +1,7 @@
 // Virtual point lights at Halton points of reflective shadow maps. The third coordinate chooses the layer, in proportion
 // to the flux it reflects, group by group; the other two the texel. Such a light carries the flux of 1 / (N p) of its
-// layer, where p is the layer's share of all flux. Its flux.w is the group's first layer: what conserve_flux needs.
+// layer, where p is the layer's share of all flux, and stands for as much of the surfaces that the layer sees. Its flux.w
+// is the group's first layer: what conserve_flux needs.
 //
 // SETS: frame i has set i % SETS; 1: all frames have the same. The sets of a sub-buffer of interleaved pixels follow each other
 // in the sequence, so that over all sets it has the points that it would have of SETS times as many lights.
@@ -62,7 +63,13 @@ void main() {
   VirtualPointLight light;
   light.position = t.position;
   light.cluster = 0.0;
-  light.normal = vec4(t.normal, 0.0);
+  vec3 ray = t.position - view.origin;
+  bool parallel = view.projection == shadow_orthographic;
+  float lengthened = parallel ? 1.0 : dot(ray, ray);  // m^2 across the light per unit of its measure
+  float slant = max(abs(dot(parallel ? view.axis_z : normalize(ray), t.normal)), reflective_map_least_cosine);
+  float measure = reflective_map_measure(view, (vec2(texel) + 0.5) / float(view.size));
+  light.area = weight > 0.0 ? measure * lengthened / slant * (total / (weight * float(count))) : 0.0;
+  light.normal = t.normal;
   light.flux = vec4(weight > 0.0 ? t.flux * (total / (weight * float(count))) : vec3(0.0), float(group));
   virtual_lights[index] = light;
 }

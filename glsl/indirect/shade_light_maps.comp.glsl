@@ -13,7 +13,7 @@ int layer;
 
 void vpl_begin(uint vpl, VirtualPointLight light) {
   all_maps = light_maps(extent, uint(textureSize(maps, 0).x));
-  axes = light_map_axes(light.normal.xyz);
+  axes = light_map_axes(light.normal);
   layer = int(vpl - batch_first);
 }
 

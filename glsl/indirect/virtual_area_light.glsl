@@ -29,7 +29,7 @@ LIMN_FN float cluster_distance(VirtualPointLight light, VirtualAreaLight cluster
                                float weight_angle) {
   vec3 offset = light.position - cluster.position;
   return weight_position * per_extent * length(offset) +
-         weight_angle * cluster_angle(vec3(light.normal), vec3(cluster.normal));
+         weight_angle * cluster_angle(light.normal, vec3(cluster.normal));
 }
 
 // The light that cluster k of `clusters` starts from: floor(k N / M), the same in every frame.

@@ -10,7 +10,8 @@ LIMN_BEGIN
 struct VirtualPointLight {
   vec3 position;  // world, m
   float cluster;  // that the light belongs to, in a sorted list
-  vec4 normal;    // unit, on the side the light came from
+  vec3 normal;    // unit, on the side the light came from
+  float area;     // of the surface that it stands for, m^2
   vec4 flux;      // reflected, W
 };
 

@@ -23,7 +23,7 @@ void main() {
   VirtualPointLight here;
   here.position = pixel_position(pixel, depth);
   here.cluster = 0.0;
-  here.normal = vec4(pixel_geometric_normal(pixel), 0.0);
+  here.normal = pixel_geometric_normal(pixel);
   uint nearest = 0u;
   float least = 3.0e38;
   for (uint k = 0u; k < uint(clusters.length()); ++k) {

@@ -39,6 +39,7 @@ constexpr StressCase kStress[] = {
     {.name = "maps of 8 texels", .scene = "cornell_box", .settings = "map_size=8", .factor = 4},
     {.name = "maps of odd size", .scene = "cornell_box", .settings = "map_size=37", .factor = 2},
     {.name = "holes filled", .scene = "cornell_box", .settings = "fill_levels=2", .factor = 2},
+    {.name = "bound by patches", .scene = "cornell_box", .settings = "bound=patch", .factor = 2},
     {.name = "no bias", .scene = "cornell_box", .settings = "bias=0", .factor = 2},
     {.name = "11.5 million triangles", .scene = "soldiers"},
 };

@@ -239,7 +239,8 @@ TEST_F(SharedGlslTest, fourierRangesHaveOneLayout) {
 TEST_F(SharedGlslTest, virtualPointLightsHaveOneLayout) {
   expectElement("VirtualPointLight", "position[0]", sizeof(glsl::VirtualPointLight),
                 {LIMN_MEMBER(VirtualPointLight, position), LIMN_MEMBER(VirtualPointLight, cluster),
-                 LIMN_MEMBER(VirtualPointLight, normal), LIMN_MEMBER(VirtualPointLight, flux)},
+                 LIMN_MEMBER(VirtualPointLight, normal), LIMN_MEMBER(VirtualPointLight, area),
+                 LIMN_MEMBER(VirtualPointLight, flux)},
                 "glsl/indirect/virtual_light.glsl");
 }
 

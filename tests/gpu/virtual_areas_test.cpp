@@ -19,7 +19,7 @@ using glm::vec3;
 using Lights = std::vector<glsl::VirtualPointLight>;
 
 glsl::VirtualPointLight light(vec3 position, vec3 normal, float flux = 1) {
-  return {position, 1, {normal, 0}, {flux, flux, flux, 0}};
+  return {position, 1, normal, 0, {flux, flux, flux, 0}};
 }
 
 struct Clusters {
@@ -45,7 +45,7 @@ struct Reference {
         if (!glsl::virtual_light_shines(lights[i])) continue;
         areas[k].position = lights[i].position;
         areas[k].count = 0;
-        areas[k].normal = glm::vec4(vec3(lights[i].normal), 0);
+        areas[k].normal = glm::vec4(lights[i].normal, 0);
         break;
       }
     }
@@ -194,7 +194,7 @@ TEST_F(VirtualAreasTest, OfASinglePlaneAndOfOneLightEach) {
   Lights plane = room(300);
   for (auto& l : plane) {
     l.position.y = 0.25f;
-    l.normal = {0, 1, 0, 0};
+    l.normal = {0, 1, 0};
   }
   const Clusters few = cluster(plane, {.count = 9});
   for (const auto& area : few.areas) {

@@ -61,7 +61,7 @@ class VirtualLightTest : public GlTest {
     for (const glsl::VirtualPointLight& light : out.lights) {
       out.flux += vec3(light.flux);
       EXPECT_TRUE(glm::all(glm::greaterThanEqual(vec3(light.flux), vec3(0))));
-      EXPECT_NEAR(glm::length(vec3(light.normal)), 1, 1e-4f);
+      EXPECT_NEAR(glm::length(light.normal), 1, 1e-4f);
       EXPECT_FALSE(glm::any(glm::isnan(light.position)));
     }
     gpuScene.forget();
@@ -121,6 +121,17 @@ TEST_F(VirtualLightTest, PointLightInABox) {
     SCOPED_TRACE(count);
     expectFlux(sample(scene, pose, {.count = count}), colour * 4.f * kPi, 0.01f);
   }
+}
+
+TEST_F(VirtualLightTest, StandForTheSurfacesThatTheLightSees) {
+  scene::Scene scene;
+  scene::Pose pose;
+  addBox(scene, pose, addMaterial(scene, lambert(colour)));
+  addLight(pose, pointLight({0.3f, -0.2f, 0.5f}));
+  const Sampled s = sample(scene, pose, {.count = 4096});
+  double area = 0;
+  for (const glsl::VirtualPointLight& light : s.lights) area += light.area;
+  EXPECT_NEAR(area, 6 * 4, 0.02 * 6 * 4);
 }
 
 TEST_F(VirtualLightTest, LightsThatSeeOnlyBackFacesReflectNothing) {
@@ -217,7 +228,7 @@ TEST_F(VirtualLightTest, PointsOfOneLightAddLittleNoise) {
         const float d2 = glm::dot(to, to);
         if (d2 > 0)
           sum += light.flux.x / kPi * std::max(glm::dot(normal, to), 0.f) *
-                 std::max(-glm::dot(vec3(light.normal), to), 0.f) / (d2 * std::max(d2, 0.01f));
+                 std::max(-glm::dot(light.normal, to), 0.f) / (d2 * std::max(d2, 0.01f));
       }
       out.push_back(sum);
     }

@@ -43,6 +43,23 @@ TEST_F(VirtualLightLoops, GeometryIsTheCosinesOverTheBoundedSquare) {
   EXPECT_EQ(gather_geometry(0, 0, 0, 0), 0);
 }
 
+/// A Lambertian disc of unit radiance and area A gives a receiver above its middle that faces it
+/// pi R^2 / (d^2 + R^2); a light of its flux, pi A, sends A along its normal.
+TEST_F(VirtualLightLoops, APatchIsExactAboveTheMiddleOfADisc) {
+  for (int i = 0; i < 1000; ++i) {
+    const float radius = std::exp(uniform(-7, 7)), d = std::exp(uniform(-7, 7));
+    const float area = pi * radius * radius;
+    const double exact = double(pi) * radius * radius / (double(d) * d + double(radius) * radius);
+    const float share = gather_patch_geometry(d, d, d * d, inverse_pi * area);
+    EXPECT_NEAR(area * share, exact, 1e-5 * exact);
+    const float least = uniform(0, 1) * inverse_pi * area;
+    EXPECT_NEAR(share * (1 + gather_patch_residual(d * d, inverse_pi * area, least)),
+                gather_patch_geometry(d, d, d * d, least), 1e-5f / (d * d + least));
+  }
+  EXPECT_TRUE(std::isfinite(gather_patch_geometry(1e-30f, 1e-30f, 1e-30f, 0)));
+  EXPECT_TRUE(std::isfinite(gather_patch_residual(0, 1, 0)));
+}
+
 TEST_F(VirtualLightLoops, ThePartsOfTheBrdfAreTheGeneralOnes) {
   int upward = 0;
   for (int i = 0; i < 50000; ++i) {
@@ -84,12 +101,12 @@ class LightMap : public VirtualLightLoops {
     do {
       c.light.position = 2.f * vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
       c.light.cluster = 0;
-      c.light.normal = vec4(direction(), 0);
+      c.light.normal = direction();
       c.light.flux = vec4(1);
       c.receiver = c.light.position + uniform(0.1f, 5) * direction();
       c.normal = direction();
       c.from = c.receiver - c.light.position;
-      c.height = dot(vec3(c.light.normal), c.from);
+      c.height = dot(c.light.normal, c.from);
     } while (c.height <= 0 || dot(c.normal, c.from) >= 0);
     c.view = light_map_view(c.light, c.maps, 3);
     return c;
@@ -100,7 +117,7 @@ TEST_F(LightMap, PlacesAreTheViews) {
   int inside = 0;
   for (int i = 0; i < 20000; ++i) {
     const MapCase c = someCase();
-    const LightMapAxes axes = light_map_axes(vec3(c.light.normal));
+    const LightMapAxes axes = light_map_axes(c.light.normal);
     const LightMapPlace place = light_map_place(c.maps, axes, c.from, c.height);
     const vec3 local = shadow_local(c.view, c.receiver);
     EXPECT_LT(length(place.local - local), 1e-5f);
@@ -121,7 +138,7 @@ TEST_F(LightMap, ATexelBlocksWhereTheGeneralTestSaysSo) {
   int blocking = 0, tested = 0;
   for (int i = 0; i < 50000; ++i) {
     const MapCase c = someCase();
-    const LightMapAxes axes = light_map_axes(vec3(c.light.normal));
+    const LightMapAxes axes = light_map_axes(c.light.normal);
     const LightMapPlace place = light_map_place(c.maps, axes, c.from, c.height);
     if (!place.inside) continue;
     const float bias = uniform(0, 2);
