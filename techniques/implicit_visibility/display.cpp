@@ -12,19 +12,36 @@ frame::TextureHandle Display::lookup(const PassRequest& r) {
                          technique_);
 }
 
-frame::TextureHandle Display::visibility(const PassRequest& r, frame::BufferHandle seen) {
+frame::TextureHandle Display::visibility(const PassRequest& r, const SeenLights& seen,
+                                         const std::optional<OutlineLists>& lists) {
   const frame::TextureHandle around = lookup(r);
   frame::PassBuilder pass = r.graph.addPass("visibility", technique_);
   pass.read(r.inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
       .read(r.inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "where surfaces are")
       .read(around, Access::sampled, "surface_lookup", "leaves around pixels")
-      .read(seen, Access::storageLoad, "Seen", "V of leaves");
+      .read(seen.seen, Access::storageLoad, "Seen", "V of leaves");
+  if (lists) {
+    pass.read(r.inputs.gbuffer.geometricNormal, Access::sampled, kGBufferNames.geometricNormal,
+              "tangent planes")
+        .read(r.inputs.handles.lights, Access::storageLoad, "Lights", "lights")
+        .read(seen.indices, Access::storageLoad, "Indices", "which lights")
+        .read(elements_.leaves, Access::storageLoad, "Leaves", "vertices")
+        .read(elements_.corners, Access::storageLoad, "Corners", "triangles")
+        .read(lists->ranges, Access::storageLoad, "Ranges", "where the leaves' lists lie")
+        .read(lists->triangles, Access::storageLoad, "Lists", "what may hide a light");
+  }
   const frame::TextureHandle result =
       pass.write(r.target, Access::imageStore, "visibility", "visibility, one layer per light");
-  const auto kernelHandle = elements_.program(pass, "show_visibility.comp.glsl");
-  pass.execute([this, kernelHandle, size = r.inputs.size,
-                layers = r.graph.desc(r.target).layers](frame::PassContext& context) {
-    context.use(kernelHandle).set("slots", elements_.leafSlots());
+  const auto kernelHandle =
+      elements_.program(pass, "show_visibility.comp.glsl", {{"LISTED", lists ? "1" : "0"}});
+  pass.execute([this, kernelHandle, size = r.inputs.size, layers = r.graph.desc(r.target).layers,
+                listed = lists.has_value(), &parameters = r.inputs.parameters](frame::PassContext& context) {
+    gpu::Program& kernel = context.use(kernelHandle);
+    kernel.set("slots", elements_.leafSlots());
+    if (listed) {
+      kernel.set("reach", parameters.real("reach"));
+      kernel.set("unit", elements_.elements().space().radius());
+    }
     context.dispatch(size.x, size.y, layers, 8, 8);
   });
   return result;

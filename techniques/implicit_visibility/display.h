@@ -1,10 +1,12 @@
 // Shows what leaves know as a picture: interpolated over the triangles between them, or gathered per pixel.
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "core/indirect/surface_lookup.h"
 #include "techniques/implicit_visibility/element_passes.h"
+#include "techniques/implicit_visibility/outlines.h"
 
 namespace limn::implicit_visibility {
 
@@ -14,8 +16,9 @@ class Display {
   Display(const ElementPasses& elements, std::string_view technique)
       : elements_(elements), technique_(technique) {}
 
-  /// Writes V of a batch of lights; `seen` holds V of each leaf, light after light.
-  frame::TextureHandle visibility(const PassRequest& r, frame::BufferHandle seen);
+  /// Writes V of a batch of lights: `seen`, and where `lists` has lists, V of the pixels themselves.
+  frame::TextureHandle visibility(const PassRequest& r, const SeenLights& seen,
+                                  const std::optional<OutlineLists>& lists);
   /// Adds reflected light, by the technique's parameter `display`.
   frame::TextureHandle light(const PassRequest& r, const Gathered& light);
 

@@ -40,6 +40,11 @@ struct PassRequest {
   frame::TextureHandle target;
 };
 
+/// Holds V of some lights at all leaves, light after light, and which lights they are.
+struct SeenLights {
+  frame::BufferHandle seen, indices;
+};
+
 /// Holds what arrives at leaves, and where it comes from: radiance of elements, or of bins.
 struct Gathered {
   frame::BufferHandle irradiance, source;
@@ -74,6 +79,8 @@ class ElementPasses {
   std::span<const glm::vec4> binTable() const { return binTable_; }
   /// Returns the links that the processor made; none where they are made on the GPU.
   const radiosity::Links& links() const { return links_; }
+  /// Says whether the processor makes the links.
+  bool linksOnProcessor() const { return !settings_.onGpu; }
   /// Says whether leaves gather on the processor: on software renderers, where it has made the links, and
   /// elements send evenly.
   bool gathersOnProcessor() const { return software_ && !settings_.onGpu && !glossy(); }

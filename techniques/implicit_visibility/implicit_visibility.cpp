@@ -2,6 +2,8 @@
 // say what a surface element sees.
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <span>
 
 #include "core/base/error.h"
 #include "core/scene/scene.h"
@@ -9,6 +11,7 @@
 #include "techniques/implicit_visibility/display.h"
 #include "techniques/implicit_visibility/element_passes.h"
 #include "techniques/implicit_visibility/light_passes.h"
+#include "techniques/implicit_visibility/outlines.h"
 
 namespace {
 
@@ -16,12 +19,15 @@ using namespace limn;
 using implicit_visibility::Display;
 using implicit_visibility::ElementPasses;
 using implicit_visibility::LightPasses;
+using implicit_visibility::OutlineLists;
+using implicit_visibility::Outlines;
 using implicit_visibility::PassRequest;
 
 constexpr const char* kStructures[] = {"hierarchical", "flat"};
 constexpr const char* kMakers[] = {"cpu", "gpu"};
 constexpr const char* kFills[] = {"centre", "footprint", "triangles"};
 constexpr const char* kDisplays[] = {"vertex", "pixel"};
+constexpr const char* kOutlines[] = {"vertex", "pixel"};
 constexpr Parameter kParameters[] = {
     integer("bins", 16, {4, 32}, "bins", "N of the 6 x N x N bins of directions").quality().logScale(),
     integer("bounces", 1, {1, 16}, "bounces", "Surfaces that reflect light before the one that is seen"),
@@ -48,6 +54,9 @@ constexpr Parameter kParameters[] = {
          "Height over an element from which it is looked for within bodies of other objects"),
     choice("display", 0, kDisplays,
            "Irradiance of vertices, interpolated, or bins gathered with the BRDF per pixel"),
+    choice("outlines", 1, kOutlines,
+           "Visibility of lights at vertices, interpolated, or of pixels, by lists of the triangles that may "
+           "hide a light from the surface around a vertex"),
     integer("glossy_bins", 0, {0, 16}, "bins",
             "N of the 6 x N x N bins that glossy surfaces send light into; 0: they send it evenly")
         .quality(),
@@ -93,6 +102,10 @@ constexpr StressCase kStress[] = {
      .factor = 0},
     {.name = "coarse mesh", .scene = "cornell_box", .settings = "longest_edge=10", .factor = 8},
     {.name = "per pixel", .scene = "cornell_box", .settings = "display=pixel bins=8", .factor = 2},
+    {.name = "outlines of vertices",
+     .scene = "cornell_box",
+     .settings = "outlines=vertex bins=8",
+     .factor = 4},
     {.name = "links made on the GPU", .scene = "cornell_box", .settings = "links=gpu bins=8", .factor = 2},
     {.name = "glossy interreflection",
      .scene = "cornell_box",
@@ -121,10 +134,16 @@ class ImplicitVisibility : public Technique {
       return request.target;
     }
     begin(graph, inputs);
-    if (request.term == Term::visibility) return display_->visibility(r, light_->seenBy(r, request.lights));
+    if (request.term == Term::visibility) return visibility(r, request.lights);
     if (request.term == Term::environment) return display_->light(r, light_->sky(r));
     return display_->light(r,
                            light_->reflected(r, request.lights, sky, inputs.parameters.integer("bounces")));
+  }
+
+  frame::TextureHandle visibility(const PassRequest& r, std::span<const uint32_t> lights) {
+    std::optional<OutlineLists> lists;
+    if (r.inputs.parameters.choice("outlines") == 1) lists = outlines_->lists(r, lights);
+    return display_->visibility(r, light_->seenBy(r, lights), lists);
   }
 
   bool update(const scene::Pose& pose) override { return elements_ && !elements_->fits(pose); }
@@ -166,11 +185,13 @@ class ImplicitVisibility : public Technique {
                                              .glossy = p.integer("glossy_bins"),
                                              .memory = int64_t{p.integer("memory")} << 20,
                                              .technique = info.name});
+    outlines_ = std::make_unique<Outlines>(*elements_, info.name);
     light_ = std::make_unique<LightPasses>(*elements_, info.name);
     display_ = std::make_unique<Display>(*elements_, info.name);
   }
 
   std::unique_ptr<ElementPasses> elements_;
+  std::unique_ptr<Outlines> outlines_;
   std::unique_ptr<LightPasses> light_;
   std::unique_ptr<Display> display_;
 };

@@ -17,8 +17,8 @@ using frame::BufferHandle;
 LightPasses::LightPasses(const ElementPasses& elements, std::string_view technique)
     : elements_(elements), technique_(technique) {}
 
-frame::BufferHandle LightPasses::seenBy(const PassRequest& r, std::span<const uint32_t> lights) {
-  return seen(r, lights).seen;
+SeenLights LightPasses::seenBy(const PassRequest& r, std::span<const uint32_t> lights) {
+  return seen(r, lights).handles;
 }
 
 Gathered LightPasses::reflected(const PassRequest& r, std::span<const uint32_t> lights, bool sky,
@@ -51,17 +51,17 @@ const LightPasses::Seen& LightPasses::seen(const PassRequest& r, std::span<const
   s.lights.assign(lights.begin(), lights.end());
   s.indexBuffer =
       gpu::Buffer::of(r.inputs.gpuScene.device(), "lights asked for", std::span<const uint32_t>(s.lights));
-  s.indices = r.graph.importBuffer(fmt::format("lights asked for {}", seen_.size()), s.indexBuffer);
+  s.handles.indices = r.graph.importBuffer(fmt::format("lights asked for {}", seen_.size()), s.indexBuffer);
   frame::PassBuilder pass = r.graph.addPass("light visibility", technique_);
   pass.read(elements_.leaves, Access::storageLoad, "Leaves", "normals and albedos");
   const frame::SlotHandle links = elements_.readLinks(pass);
   pass.read(r.inputs.handles.lights, Access::storageLoad, "Lights", "lights")
       .read(elements_.groups, Access::storageLoad, "Groups", "how far elements are")
-      .read(s.indices, Access::storageLoad, "Indices", "which lights")
+      .read(s.handles.indices, Access::storageLoad, "Indices", "which lights")
       .cacheable();
   const size_t bytes = std::max<size_t>(lights.size() * elements_.leafSlots(), 4) * sizeof(float);
-  s.seen = pass.write(r.graph.createBuffer("visibility of lights", {bytes}), Access::storageStore, "Seen",
-                      "V of each leaf");
+  s.handles.seen = pass.write(r.graph.createBuffer("visibility of lights", {bytes}), Access::storageStore,
+                              "Seen", "V of each leaf");
   const auto kernelHandle = elements_.program(pass, "light_visibility.comp.glsl");
   pass.execute([this, kernelHandle, links, count = static_cast<int>(lights.size()),
                 samples = r.inputs.parameters.integer("light_samples"),
@@ -89,8 +89,8 @@ LightPasses::Sent LightPasses::directLight(const PassRequest& r, std::span<const
       .read(elements_.leaves, Access::storageLoad, "Leaves", "normals and albedos")
       .cacheable();
   if (seen)
-    pass.read(seen->seen, Access::storageLoad, "Seen", "V of each light")
-        .read(seen->indices, Access::storageLoad, "Indices", "which lights");
+    pass.read(seen->handles.seen, Access::storageLoad, "Seen", "V of each light")
+        .read(seen->handles.indices, Access::storageLoad, "Indices", "which lights");
   if (sky && !glossy) pass.read(skyIrradiance, Access::storageLoad, "Sky", "irradiance of the environment");
   if (glossy) {
     pass.read(elements_.materials, Access::storageLoad, "Materials", "BRDFs")

@@ -19,8 +19,8 @@ class LightPasses {
  public:
   LightPasses(const ElementPasses& elements, std::string_view technique);
 
-  /// Returns V of each leaf, light after light.
-  frame::BufferHandle seenBy(const PassRequest& r, std::span<const uint32_t> lights);
+  /// Returns V of each leaf.
+  SeenLights seenBy(const PassRequest& r, std::span<const uint32_t> lights);
   /// Returns the light of the environment in the leaves' empty bins.
   const Gathered& sky(const PassRequest& r);
   /// Returns the light that arrives over 1 to `bounces` surfaces, from lights and, if `sky`, the environment.
@@ -31,7 +31,7 @@ class LightPasses {
   struct Seen {
     std::vector<uint32_t> lights;
     gpu::Buffer indexBuffer;
-    frame::BufferHandle indices, seen;
+    SeenLights handles;
   };
   /// Holds two buffers of what leaves send: one to keep, and one to be pulled up.
   using Sent = std::pair<frame::BufferHandle, frame::BufferHandle>;

@@ -1,0 +1,89 @@
+// Lists the triangles that may hide a light from the surface around an element, so that V can be found for
+// pixels there, whose outlines are finer than elements and bins.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "core/base/export.h"
+#include "core/radiosity/links.h"
+#include "core/radiosity/scene_elements.h"
+#include "glsl/scene/light.glsl"
+
+namespace limn::radiosity {
+
+/// Bounds the points of a light, in world space.
+struct LightBounds {
+  glm::vec3 centre{0};  ///< of a sphere, m; of a distant light: the unit vector towards it
+  float radius = 0;     ///< of the sphere, m; of a distant light: the sine of half the angle it spans
+  bool distant = false;
+  std::array<glm::vec3, 2> halves{};    ///< halves of a rectangle's sides, m; of others 0
+  uint32_t object = glsl::no_instance;  ///< that the light is, which does not hide it
+
+  LIMN_API static LightBounds of(const glsl::Light& light);
+};
+
+/// Holds, for each light and leaf, the triangles between leaves that may lie on a way from the leaf's part of
+/// the surface to the light. That part is where no other leaf has a greater weight in interpolation.
+class LIMN_API BlockerLists {
+ public:
+  /// Holds where a leaf's list lies among all.
+  struct Range {
+    uint32_t first = 0;
+    uint32_t count = kUnlisted;
+  };
+  /// Stands for the number of triangles of a leaf that has no list: it is turned away from the light or in
+  /// full shadow, its list would be longer than kLongest, or there was no room.
+  static constexpr uint32_t kUnlisted = ~0u;
+  static constexpr uint32_t kLongest = 1024;
+
+  /// Makes the lists, which hold at most `capacity` triangles in all. Of closed and double-sided objects they
+  /// have only what a way may enter, since it enters whatever it leaves. Where `links` are given, leaves
+  /// without a list are also those in full shadow: all bins around the light are filled, at them and at their
+  /// neighbours. Uses all cores; the result does not depend on their number. Allocates nothing once it has
+  /// seen lists as long.
+  void build(const SceneElements& elements, const Links* links, std::span<const LightBounds> lights,
+             size_t capacity);
+
+  /// Returns the ranges of all leaf slots, light after light.
+  std::span<const Range> ranges() const { return ranges_; }
+  /// Returns the lists: numbers of triangles as Forest::triangles() has them.
+  std::span<const uint32_t> triangles() const { return triangles_; }
+
+ private:
+  struct Shaft;
+  struct Walk;
+
+  void bound(const SceneElements& elements);
+  void findHidden(const SceneElements& elements, const Links& links, const LightBounds& light);
+  void findReceivers(const SceneElements& elements, const LightBounds& light);
+  void list(const SceneElements& elements, const LightBounds& light, uint32_t leaf, Walk& walk,
+            std::vector<uint32_t>& out) const;
+
+  /// Bounds a triangle by a sphere, and holds its plane.
+  struct Triangle {
+    glm::vec4 sphere;
+    glm::vec3 normal;  ///< unit, or 0
+    float offset;      ///< dot(normal, a point of the plane)
+  };
+
+  std::vector<Triangle> shapes_;   ///< of all triangles
+  std::vector<glm::vec4> bounds_;  ///< of each slot's triangles: a sphere; radius < 0: none
+  /// Holds the extent of a leaf's part of the surface around its vertex, m.
+  struct Receiver {
+    float reach = 0;   ///< in all directions
+    float height = 0;  ///< along the leaf's normal, either way
+    bool listed = false;
+  };
+  std::vector<Receiver> receivers_;    ///< of each leaf
+  std::vector<unsigned char> hidden_;  ///< whether all bins around the light are filled, of each leaf
+  std::vector<Range> ranges_;
+  std::vector<uint32_t> triangles_;
+  std::vector<std::vector<uint32_t>> parts_;  ///< lists of kPart leaves each
+};
+
+}  // namespace limn::radiosity
