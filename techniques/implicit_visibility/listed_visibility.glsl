@@ -102,14 +102,16 @@ float listed_visibility(Light light, vec3 position, vec3 normal, uvec2 range) {
   }
   if (total == 0) return 1.0;
 
-  float size = max(max(abs(position.x), abs(position.y)), abs(position.z)) + unit;
+  // In units of the scene: cubes of metres may be too small.
+  float scaled = 1.0 / unit;
+  float size = max(max(abs(position.x), abs(position.y)), abs(position.z)) * scaled + 1.0;
   float clearance2 = listed_clearance * listed_clearance * size * size;
-  float limit = reach * v.depth;
+  float limit = reach * min(v.depth * scaled, 1e30);
   for (uint t = range.x; t < range.x + range.y && any_open != 0u; ++t) {
     uint corner = 3u * lists[t];
-    vec3 a = leaves[corners[corner]].vertex - position;
-    vec3 b = leaves[corners[corner + 1u]].vertex - position;
-    vec3 c = leaves[corners[corner + 2u]].vertex - position;
+    vec3 a = scaled * (leaves[corners[corner]].vertex - position);
+    vec3 b = scaled * (leaves[corners[corner + 1u]].vertex - position);
+    vec3 c = scaled * (leaves[corners[corner + 2u]].vertex - position);
     vec3 ab = cross(a, b);
     vec3 bc = cross(b, c);
     vec3 ca = cross(c, a);

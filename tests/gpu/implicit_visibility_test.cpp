@@ -117,6 +117,42 @@ TEST_F(ImplicitVisibilityTest, TheProcessorGathersWhatShadersGather) {
   }
 }
 
+/// Lists of what may hide a light find outlines that vertices do not; where links are made does not matter.
+TEST_F(ImplicitVisibilityTest, PixelsFindOutlines) {
+  const scene::Scene scene = asset("frog");
+  render::Renderer renderer(device(), scene);
+  reference::Request request{.scene = scene,
+                             .pose = renderer.pose(),
+                             .camera = renderer.pose().cameras.at(0),
+                             .width = 96,
+                             .height = 72};
+  request.term = Term::visibility;
+  request.spp = 256;
+  const Image truth = reference::render(request).image;
+  const auto error = [&](const char* outlines, const char* links) {
+    render::Settings asked =
+        settings(96, 72, Term::visibility,
+                 {technique("implicit_visibility", {{"outlines", outlines}, {"links", links}})}, 0);
+    asked.channels = true;
+    const Image v = picture(renderer, asked);
+    double sum = 0, count = 0;
+    for (int y = 0; y < v.height(); ++y)
+      for (int x = 0; x < v.width(); ++x) {
+        const float id = truth.at(x, y, truth.channel("id"));
+        if (v.at(x, y, v.channel("id")) != id || truth.at(x, y, truth.channel("coverage")) == 0) continue;
+        sum += std::pow(double(v.at(x, y, 0)) - truth.at(x, y, 0), 2);
+        ++count;
+      }
+    EXPECT_GT(count, 96 * 72 / 2);
+    return std::sqrt(sum / count);
+  };
+  const double vertices = error("vertex", "cpu"), pixels = error("pixel", "cpu"), gpu = error("pixel", "gpu");
+  std::printf("frog: RMSE of V of vertices %.4f, of pixels %.4f, with links of the GPU %.4f\n", vertices,
+              pixels, gpu);
+  EXPECT_LT(pixels, 0.5 * vertices);
+  EXPECT_LT(gpu, 0.5 * vertices);
+}
+
 TEST_F(ImplicitVisibilityTest, EveryPairIsNotTriedOnTheGpu) {
   const scene::Scene scene = asset("cornell_box");
   render::Renderer renderer(device(), scene);
