@@ -84,12 +84,12 @@ TEST_F(ImplicitVisibilityTest, LinksMadeOnTheGpuSeeWhatThoseOfTheCpuSee) {
     render::Renderer renderer(device(), scene);
     for (const char* fill : {"triangles", "footprint", "centre"}) {
       const auto final = [&](const char* parameter, const char* value) {
-        return picture(
-            renderer,
-            settings(
-                96, 72, Term::final,
-                {technique("implicit_visibility",
-                           {{"bins", "8"}, {"fill", fill}, {"longest_edge", "0.1"}, {parameter, value}})}));
+        return picture(renderer, settings(96, 72, Term::final,
+                                          {technique("implicit_visibility", {{"bins", "8"},
+                                                                             {"fill", fill},
+                                                                             {"longest_edge", "0.1"},
+                                                                             {"outlines", "vertex"},
+                                                                             {parameter, value}})}));
       };
       const Image cpu = final("links", "cpu"), gpu = final("links", "gpu"), flat = final("structure", "flat");
       std::printf("%s, %s: RMSE GPU - CPU %.4f, GPU - every pair %.4f, CPU - every pair %.4f; mean %.4f\n",
