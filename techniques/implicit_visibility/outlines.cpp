@@ -12,7 +12,8 @@ using frame::Access;
 using radiosity::BlockerLists;
 using radiosity::LightBounds;
 
-OutlineLists Outlines::lists(const PassRequest& r, std::span<const uint32_t> lights) {
+std::optional<OutlineLists> Outlines::lists(const PassRequest& r, std::span<const uint32_t> lights) {
+  if (r.inputs.pose.lights.size() > kMostLights) return std::nullopt;
   gpu::Device& device = r.inputs.gpuScene.device();
   Lists& own = lists_.emplace_back();
   own.lights.assign(lights.begin(), lights.end());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -23,10 +24,13 @@ class Outlines {
   Outlines(const ElementPasses& elements, std::string_view technique)
       : elements_(elements), technique_(technique) {}
 
-  /// Returns the lists of `lights`, for as many triangles as kPerLeaf leaves room for.
-  OutlineLists lists(const PassRequest& r, std::span<const uint32_t> lights);
+  /// Returns lists of `lights`, with room for kPerLeaf triangles of each leaf and light. In scenes of more
+  /// than kMostLights there are none: each light matters little there and takes as much time as one alone.
+  std::optional<OutlineLists> lists(const PassRequest& r, std::span<const uint32_t> lights);
 
  private:
+  /// Lights of a scene, those not asked for included.
+  static constexpr size_t kMostLights = 16;
   /// Triangles of each leaf's list and light that there is room for, on average over all leaves.
   static constexpr size_t kPerLeaf = 128;
 

@@ -127,6 +127,7 @@ TEST_F(ImplicitVisibilityTest, PixelsFindOutlines) {
                              .width = 96,
                              .height = 72};
   request.term = Term::visibility;
+  request.light = 0;
   request.spp = 256;
   const Image truth = reference::render(request).image;
   const auto error = [&](const char* outlines, const char* links) {
