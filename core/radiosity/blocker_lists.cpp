@@ -1,6 +1,5 @@
 #include "core/radiosity/blocker_lists.h"
 
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -79,7 +78,6 @@ LightBounds LightBounds::of(const glsl::Light& light) {
   return b;
 }
 
-/// The ways from a sphere to a light: spheres whose radius grows along an axis.
 /// The ways from a leaf's part of the surface to a light: spheres whose radius grows along an axis,
 /// within the planes through the sides of a rectangle that touch the first sphere.
 struct BlockerLists::Shaft {
@@ -149,10 +147,6 @@ struct BlockerLists::Shaft {
     if (here + extent > 0 && there <= light.radius) return true;
     return backs && here - extent < -clearance && there >= -light.radius;
   }
-};
-
-struct BlockerLists::Walk {
-  std::vector<uint32_t> stack;  ///< groups
 };
 
 void BlockerLists::bound(const SceneElements& elements) {
@@ -241,23 +235,24 @@ void BlockerLists::findReceivers(const SceneElements& elements, const LightBound
   }
 }
 
-void BlockerLists::list(const SceneElements& elements, const LightBounds& light, uint32_t leaf, Walk& walk,
-                        std::vector<uint32_t>& out) const {
+void BlockerLists::list(const SceneElements& elements, const LightBounds& light, uint32_t leaf,
+                        Part& part) const {
+  auto& [out, waiting] = part;
   const Forest& forest = elements.forest();
   const Shaft shaft(elements.leaves()[leaf], receivers_[leaf], light, elements.space().radius());
   const uint32_t leafGroups = forest.levels().front().count;
   const size_t most = out.size() + kLongest;
-  walk.stack.assign(forest.roots().begin(), forest.roots().end());
-  while (!walk.stack.empty() && out.size() <= most) {
-    const uint32_t g = walk.stack.back();
-    walk.stack.pop_back();
+  waiting.assign(forest.roots().begin(), forest.roots().end());
+  while (!waiting.empty() && out.size() <= most) {
+    const uint32_t g = waiting.back();
+    waiting.pop_back();
     const glsl::ElementGroup& group = forest.groups()[g];
     if (group.object == light.object) continue;
     for (uint32_t lane = 0; lane < group.lanes; ++lane) {
       const uint32_t slot = 4 * g + lane;
       if (bounds_[slot].w < 0 || !shaft.meets(bounds_[slot])) continue;
       if (g >= leafGroups) {
-        walk.stack.push_back(group.children + lane);
+        waiting.push_back(group.children + lane);
         continue;
       }
       for (uint32_t t = forest.firstTriangle()[slot]; t < forest.firstTriangle()[slot + 1]; ++t) {
@@ -277,20 +272,19 @@ void BlockerLists::build(const SceneElements& elements, const Links* links,
   if (leaves == 0) return;
   bound(elements);
   parts_.resize(parts);
-  tbb::enumerable_thread_specific<Walk> walks;
   hidden_.assign(leaves, 0);
   for (size_t l = 0; l < lights.size(); ++l) {
     if (links) findHidden(elements, *links, lights[l]);
     findReceivers(elements, lights[l]);
     const std::span<Range> ranges = std::span(ranges_).subspan(l * leaves, leaves);
     tbb::parallel_for(0u, parts, [&](uint32_t part) {
-      std::vector<uint32_t>& out = parts_[part];
+      std::vector<uint32_t>& out = parts_[part].triangles;
       out.clear();
       for (uint32_t leaf = kPart * part; leaf < std::min(kPart * (part + 1), leaves); ++leaf) {
         const size_t first = out.size();
         ranges[leaf] = {};
         if (!receivers_[leaf].listed) continue;
-        list(elements, lights[l], leaf, walks.local(), out);
+        list(elements, lights[l], leaf, parts_[part]);
         const size_t count = out.size() - first;
         if (count <= kLongest)
           ranges[leaf] = {static_cast<uint32_t>(first), static_cast<uint32_t>(count)};
@@ -299,7 +293,8 @@ void BlockerLists::build(const SceneElements& elements, const Links* links,
       }
     });
     for (uint32_t part = 0; part < parts; ++part) {
-      const bool room = triangles_.size() + parts_[part].size() <= capacity;
+      const std::vector<uint32_t>& own = parts_[part].triangles;
+      const bool room = triangles_.size() + own.size() <= capacity;
       for (uint32_t leaf = kPart * part; leaf < std::min(kPart * (part + 1), leaves); ++leaf) {
         if (ranges[leaf].count == kUnlisted) continue;
         if (ranges[leaf].count == 0)
@@ -309,7 +304,7 @@ void BlockerLists::build(const SceneElements& elements, const Links* links,
         else
           ranges[leaf] = {};
       }
-      if (room) triangles_.insert(triangles_.end(), parts_[part].begin(), parts_[part].end());
+      if (room) triangles_.insert(triangles_.end(), own.begin(), own.end());
     }
   }
 }

@@ -56,13 +56,15 @@ class LIMN_API BlockerLists {
 
  private:
   struct Shaft;
-  struct Walk;
+  /// Holds the lists of some leaves, one after the other, and the groups that a walk still has to visit.
+  struct Part {
+    std::vector<uint32_t> triangles, waiting;
+  };
 
   void bound(const SceneElements& elements);
   void findHidden(const SceneElements& elements, const Links& links, const LightBounds& light);
   void findReceivers(const SceneElements& elements, const LightBounds& light);
-  void list(const SceneElements& elements, const LightBounds& light, uint32_t leaf, Walk& walk,
-            std::vector<uint32_t>& out) const;
+  void list(const SceneElements& elements, const LightBounds& light, uint32_t leaf, Part& part) const;
 
   /// Bounds a triangle by a sphere, and holds its plane.
   struct Triangle {
@@ -83,7 +85,7 @@ class LIMN_API BlockerLists {
   std::vector<unsigned char> hidden_;  ///< whether all bins around the light are filled, of each leaf
   std::vector<Range> ranges_;
   std::vector<uint32_t> triangles_;
-  std::vector<std::vector<uint32_t>> parts_;  ///< lists of kPart leaves each
+  std::vector<Part> parts_;  ///< of kPart leaves each
 };
 
 }  // namespace limn::radiosity
