@@ -2,6 +2,9 @@
 // share.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <string>
@@ -13,33 +16,30 @@
 
 namespace limn::caustics {
 
-/// Names the values of the parameter `paths`. The functions below declare the parameters of every technique
-/// that requests caustic rays.
+/// Names the values of the parameter `paths`.
 constexpr const char* kPathNames[] = {"reflection", "refraction", "both"};
-constexpr Parameter bufferSizeParameter() {
-  return integer("buffer_size", 256, {1, 2048}, "texels",
-                 "Width and height of the specular and caustic-ray buffers")
-      .quality()
-      .logScale();
-}
-constexpr Parameter sceneMapSizeParameter() {
-  return integer("scene_map_size", 512, {16, 8192}, "texels",
-                 "Width and height of the lights' depth maps without specular objects")
-      .quality()
-      .logScale();
-}
-constexpr Parameter pathsParameter() {
-  return choice("paths", 2, kPathNames, "Paths that are traced: one reflection, two refractions, or both");
-}
-constexpr Parameter lightSamplesParameter() {
-  return integer("light_samples", 1, {1, 64}, "points",
-                 "Points on each light with extent, each with its own rays; 1: its centre")
-      .quality();
-}
-constexpr Parameter rayStepsParameter() {
-  return integer("ray_steps", 64, {1, 4096}, "points",
-                 "Of the search for the place where a ray meets the scene")
-      .logScale();
+/// Returns the parameters of a technique that requests caustic rays: those that all of them share, then its
+/// own.
+template <size_t N>
+constexpr std::array<Parameter, N + 6> rayParameters(const std::array<Parameter, N>& own) {
+  std::array<Parameter, N + 6> all{
+      integer("buffer_size", 256, {1, 2048}, "texels",
+              "Width and height of the specular and caustic-ray buffers")
+          .quality()
+          .logScale(),
+      integer("scene_map_size", 512, {16, 8192}, "texels",
+              "Width and height of the lights' depth maps without specular objects")
+          .quality()
+          .logScale(),
+      choice("paths", 2, kPathNames, "Paths that are traced: one reflection, two refractions, or both"),
+      integer("light_samples", 1, {1, 64}, "points",
+              "Points on each light with extent, each with its own rays; 1: its centre")
+          .quality(),
+      integer("ray_steps", 64, {1, 4096}, "points", "Of the search for the place where a ray meets the scene")
+          .logScale(),
+      exitStepsParameter()};
+  std::copy(own.begin(), own.end(), all.begin() + 6);
+  return all;
 }
 /// Returns the parameter of techniques that draw beams. It is no parameter of the rays.
 constexpr Parameter beamCosineParameter() {

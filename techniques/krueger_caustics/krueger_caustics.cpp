@@ -1,5 +1,6 @@
 // Lines of light without a physical model: the baseline of chapter 8.
 #include <algorithm>
+#include <array>
 
 #include "core/caustics/ray_lines.h"
 #include "core/gpu_scene/gpu_medium.h"
@@ -9,13 +10,7 @@ namespace {
 
 using namespace limn;
 
-constexpr Parameter kParameters[] = {
-    caustics::bufferSizeParameter(),
-    caustics::sceneMapSizeParameter(),
-    caustics::pathsParameter(),
-    caustics::lightSamplesParameter(),
-    caustics::rayStepsParameter(),
-    caustics::exitStepsParameter(),
+constexpr auto kParameters = caustics::rayParameters(std::to_array<Parameter>({
     boolean("attenuation", true,
             "The medium takes light along the lines and on the way to the eye, as the thesis adds it; false: "
             "as published"),
@@ -23,7 +18,7 @@ constexpr Parameter kParameters[] = {
     real("scale", 1, {0, 1e6}, "",
          "Factor on the brightness of lines, which is derived for lines in all directions at the distance of "
          "the specular objects"),
-};
+}));
 constexpr StressCase kStress[] = {
     {.name = "buffer of 1 texel", .settings = "buffer_size=1", .factor = 0},
     {.name = "one point of each search", .settings = "ray_steps=1 exit_steps=1", .factor = 0},

@@ -1,5 +1,6 @@
 // Surface caustics: light that specular objects reflect or refract onto other surfaces, as photons splatted
 // on the screen, or into a caustic map of the light.
+#include <array>
 #include <utility>
 
 #include "core/caustics/ray_lines.h"
@@ -15,20 +16,14 @@ using frame::Access;
 constexpr const char* kSplatNames[] = {"screen", "light"};
 constexpr int kSplatLight = 1;
 
-constexpr Parameter kParameters[] = {
-    caustics::bufferSizeParameter(),
-    caustics::sceneMapSizeParameter(),
-    caustics::pathsParameter(),
-    caustics::lightSamplesParameter(),
-    caustics::rayStepsParameter(),
-    caustics::exitStepsParameter(),
+constexpr auto kParameters = caustics::rayParameters(std::to_array<Parameter>({
     caustics::beamCosineParameter(),
     scene::mediumStepsParameter(),
     real("kernel", 1.5, {0.25, 16}, "photon distances", "Half-diameters of a photon's kernel"),
     choice("splat", 0, kSplatNames,
            "Where photons are gathered: on the screen, or in a map of the light, as large as the scene map, "
            "which surfaces look up (as published)"),
-};
+}));
 constexpr StressCase kStress[] = {
     {.name = "buffer of 1 texel", .settings = "buffer_size=1", .factor = 0},
     {.name = "buffer of 16 texels", .settings = "buffer_size=16", .factor = 6},

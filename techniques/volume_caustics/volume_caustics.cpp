@@ -1,4 +1,6 @@
 // Volume caustics: light that specular objects reflect or refract into the medium, as lines.
+#include <array>
+
 #include "core/caustics/ray_lines.h"
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/technique/technique.h"
@@ -7,13 +9,7 @@ namespace {
 
 using namespace limn;
 
-constexpr Parameter kParameters[] = {
-    caustics::bufferSizeParameter(),
-    caustics::sceneMapSizeParameter(),
-    caustics::pathsParameter(),
-    caustics::lightSamplesParameter(),
-    caustics::rayStepsParameter(),
-    caustics::exitStepsParameter(),
+constexpr auto kParameters = caustics::rayParameters(std::to_array<Parameter>({
     boolean("beams", true,
             "Lines whose beam is wider than a pixel become quads of that width; false: lines alone, as "
             "published"),
@@ -23,7 +19,7 @@ constexpr Parameter kParameters[] = {
     real("step", 0.02, {1e-4, 1}, "scene radii", "Distance between these points"),
     scene::mediumStepsParameter(),
     real("filter_radius", 1, {0.1, 8}, "steps", "Radius of the Gaussian by which they share"),
-};
+}));
 constexpr StressCase kStress[] = {
     {.name = "buffer of 1 texel", .settings = "buffer_size=1", .factor = 0},
     {.name = "buffer of 16 texels", .settings = "buffer_size=16", .factor = 6},
