@@ -47,6 +47,25 @@ frame::TextureHandle Display::visibility(const PassRequest& r, const SeenLights&
   return result;
 }
 
+frame::TextureHandle Display::colours(const PassRequest& r, frame::BufferHandle colours) {
+  const frame::TextureHandle around = lookup(r);
+  frame::PassBuilder pass = r.graph.addPass("show colours", technique_);
+  pass.read(r.inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
+      .read(r.inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "where surfaces are")
+      .read(r.inputs.gbuffer.geometricNormal, Access::sampled, kGBufferNames.geometricNormal,
+            "which way they face")
+      .read(around, Access::sampled, "surface_lookup", "leaves around pixels")
+      .read(colours, Access::storageLoad, "Colours", "of leaves");
+  const frame::TextureHandle result =
+      pass.write(r.target, Access::imageLoadStore, "radiance", "colours of elements");
+  const auto kernelHandle = elements_.program(pass, "show_colours.comp.glsl");
+  pass.execute([kernelHandle, size = r.inputs.size](frame::PassContext& context) {
+    context.use(kernelHandle);
+    context.dispatch(size.x, size.y, 1, 8, 8);
+  });
+  return result;
+}
+
 frame::TextureHandle Display::light(const PassRequest& r, const Gathered& light) {
   if (r.inputs.parameters.choice("display") == 0) return show(r, light, nullptr);
   frame::TextureHandle target = r.target;

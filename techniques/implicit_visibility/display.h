@@ -19,6 +19,8 @@ class Display {
   /// Writes V of a batch of lights: `seen`, and where `lists` has lists, V of the pixels themselves.
   frame::TextureHandle visibility(const PassRequest& r, const SeenLights& seen,
                                   const std::optional<OutlineLists>& lists);
+  /// Writes a picture of the leaves' colours instead of light.
+  frame::TextureHandle colours(const PassRequest& r, frame::BufferHandle colours);
   /// Adds reflected light, by the technique's parameter `display`.
   frame::TextureHandle light(const PassRequest& r, const Gathered& light);
 

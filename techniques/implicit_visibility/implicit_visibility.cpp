@@ -9,6 +9,7 @@
 #include "core/scene/scene.h"
 #include "core/technique/technique.h"
 #include "techniques/implicit_visibility/display.h"
+#include "techniques/implicit_visibility/element_colours.h"
 #include "techniques/implicit_visibility/element_passes.h"
 #include "techniques/implicit_visibility/light_passes.h"
 #include "techniques/implicit_visibility/outlines.h"
@@ -17,11 +18,13 @@ namespace {
 
 using namespace limn;
 using implicit_visibility::Display;
+using implicit_visibility::ElementColours;
 using implicit_visibility::ElementPasses;
 using implicit_visibility::LightPasses;
 using implicit_visibility::OutlineLists;
 using implicit_visibility::Outlines;
 using implicit_visibility::PassRequest;
+using implicit_visibility::Shown;
 
 constexpr const char* kStructures[] = {"hierarchical", "flat"};
 constexpr const char* kMakers[] = {"cpu", "gpu"};
@@ -64,6 +67,10 @@ constexpr Parameter kParameters[] = {
         .logScale(),
     real("reach", 0.98, {0, 1}, "of the way",
          "Links that are shorter than this hide a point of a light: those at the light itself are not to"),
+    choice("show", 0, implicit_visibility::kShownNames,
+           "In place of light over other surfaces, elements in colours: those of a level of the hierarchy, "
+           "those that the element in the middle of the picture is linked to, or its bins"),
+    integer("show_level", 2, {0, 32}, "levels", "Above the leaves, of the elements that show=level shows"),
     integer("memory", 1024, {1, 16384}, "MiB", "Scenes whose links take more are refused"),
 };
 constexpr StressCase kStress[] = {
@@ -112,6 +119,8 @@ constexpr StressCase kStress[] = {
      .settings = "glossy_bins=4 bins=8",
      .factor = 2},
     {.name = "three bounces", .scene = "cornell_box", .settings = "bounces=3", .factor = 4},
+    {.name = "levels in colours", .scene = "cornell_box", .settings = "show=level bins=8", .factor = 0},
+    {.name = "links in colours", .scene = "cornell_box", .settings = "show=links bins=8", .factor = 0},
 };
 
 class ImplicitVisibility : public Technique {
@@ -136,6 +145,9 @@ class ImplicitVisibility : public Technique {
     begin(graph, inputs);
     if (request.term == Term::visibility) return visibility(r, request.lights);
     if (request.term == Term::environment) return display_->light(r, light_->sky(r));
+    const auto shown = static_cast<Shown>(inputs.parameters.choice("show"));
+    if (shown != Shown::light)
+      return display_->colours(r, colours_->colours(r, shown, inputs.parameters.integer("show_level")));
     return display_->light(r,
                            light_->reflected(r, request.lights, sky, inputs.parameters.integer("bounces")));
   }
@@ -187,12 +199,14 @@ class ImplicitVisibility : public Technique {
                                              .technique = info.name});
     outlines_ = std::make_unique<Outlines>(*elements_, info.name);
     light_ = std::make_unique<LightPasses>(*elements_, info.name);
+    colours_ = std::make_unique<ElementColours>(*elements_, info.name);
     display_ = std::make_unique<Display>(*elements_, info.name);
   }
 
   std::unique_ptr<ElementPasses> elements_;
   std::unique_ptr<Outlines> outlines_;
   std::unique_ptr<LightPasses> light_;
+  std::unique_ptr<ElementColours> colours_;
   std::unique_ptr<Display> display_;
 };
 

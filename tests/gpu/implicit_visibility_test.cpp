@@ -1,7 +1,10 @@
 // What implicit visibility promises beyond what every technique does.
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/reference/reference.h"
@@ -162,6 +165,41 @@ TEST_F(ImplicitVisibilityTest, EveryPairIsNotTriedOnTheGpu) {
               settings(8, 8, Term::final,
                        {technique("implicit_visibility", {{"links", "gpu"}, {"structure", "flat"}})})),
       UsageError);
+}
+
+/// Figure 4.2 of the thesis: higher levels have fewer colours, and the element in the middle is white among
+/// those that it is linked to.
+TEST_F(ImplicitVisibilityTest, HierarchyAndLinksAreShownInColours) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  const auto shown = [&](const char* show, const char* level) {
+    return indirect(renderer,
+                    {{"bins", "8"}, {"longest_edge", "0.1"}, {"show", show}, {"show_level", level}});
+  };
+  const auto hues = [](const Image& image) {  // of colours that differ in more than their brightness
+    std::set<std::pair<int, int>> all;
+    for (int y = 0; y < image.height(); ++y)
+      for (int x = 0; x < image.width(); ++x)
+        if (const float red = image.at(x, y, 0); red > 0)
+          all.insert(
+              {std::lround(100 * image.at(x, y, 1) / red), std::lround(100 * image.at(x, y, 2) / red)});
+    return all.size();
+  };
+  const size_t leaves = hues(shown("level", "0")), third = hues(shown("level", "3")),
+               roots = hues(shown("level", "32"));
+  std::printf("hues: %zu of leaves, %zu three levels above, %zu of roots\n", leaves, third, roots);
+  EXPECT_GT(leaves, 4 * third);
+  EXPECT_GT(third, roots);
+  EXPECT_GT(roots, 1u);
+  for (const char* show : {"links", "bins"}) {
+    const Image image = shown(show, "0");
+    const float middle = image.at(48, 36, 0);
+    EXPECT_GE(middle, 0.4f) << show;
+    EXPECT_EQ(image.at(48, 36, 1), middle) << show;
+    EXPECT_EQ(image.at(48, 36, 2), middle) << show;
+    EXPECT_GT(hues(image), 16u) << show;
+  }
+  EXPECT_THROW(indirect(renderer, {{"bins", "8"}, {"links", "gpu"}, {"show", "links"}}), UsageError);
 }
 
 /// Where nothing is glossy, bins of directions hold what is sent evenly.
