@@ -15,6 +15,18 @@ layout(std430) readonly buffer Indices { uint indices[]; };
 #endif
 uniform uint slots;
 
+#if LISTED
+// Whether a pixel shows the surface between the leaves around it: at outlines they may be those of another, for which their
+// lists do not hold.
+bool is_between(Around a, vec3 position, float depth) {
+  vec3 place = a.weights.x * leaves[a.slots.x].vertex + a.weights.y * leaves[a.slots.y].vertex +
+               a.weights.z * leaves[a.slots.z].vertex;
+  float footprint = 0.25 * depth * length(frame.view_ray_dx.xyz);
+  vec3 off = place - position;
+  return dot(off, off) <= footprint * footprint;
+}
+#endif
+
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID.xy, gl_WorkGroupID.z);
   if (any(greaterThanEqual(at, imageSize(visibility)))) return;
@@ -25,10 +37,11 @@ void main() {
     uvec3 from = uint(at.z) * slots + a.slots;
     if (a.found) v = dot(a.weights, vec3(seen[from.x], seen[from.y], seen[from.z]));
 #if LISTED
+    vec3 position = pixel_position(at.xy, depth);
     int second = a.weights.y > a.weights.x ? 1 : 0;
     uvec2 range = a.found ? ranges[from[a.weights.z > a.weights[second] ? 2 : second]] : uvec2(0u, unlisted);
-    if (range.y != unlisted)
-      v = listed_visibility(lights[indices[at.z]], pixel_position(at.xy, depth), pixel_geometric_normal(at.xy), range);
+    if (range.y != unlisted && is_between(a, position, depth))
+      v = listed_visibility(lights[indices[at.z]], position, pixel_geometric_normal(at.xy), range);
 #endif
   }
   imageStore(visibility, at, vec4(v));
