@@ -257,8 +257,9 @@ void BlockerLists::list(const SceneElements& elements, const LightBounds& light,
       }
       for (uint32_t t = forest.firstTriangle()[slot]; t < forest.firstTriangle()[slot + 1]; ++t) {
         const Triangle& triangle = shapes_[t];
-        if (shaft.crosses(triangle, light, group.backs != 0) && shaft.meets(triangle.sphere))
-          out.push_back(t);
+        const bool backs = group.backs != 0;
+        if (shaft.crosses(triangle, light, backs) && shaft.meets(triangle.sphere))
+          out.push_back(backs ? t | kBothSides : t);
       }
     }
   }

@@ -40,6 +40,8 @@ class LIMN_API BlockerLists {
   /// full shadow, its list would be longer than kLongest, or there was no room.
   static constexpr uint32_t kUnlisted = ~0u;
   static constexpr uint32_t kLongest = 1024;
+  /// Marks a triangle in a list that hides from both sides; of the others only the front does.
+  static constexpr uint32_t kBothSides = 1u << 31;
 
   /// Makes the lists, which hold at most `capacity` triangles in all. Of closed and double-sided objects they
   /// have only what a way may enter, since it enters whatever it leaves. Where `links` are given, leaves
@@ -51,7 +53,7 @@ class LIMN_API BlockerLists {
 
   /// Returns the ranges of all leaf slots, light after light.
   std::span<const Range> ranges() const { return ranges_; }
-  /// Returns the lists: numbers of triangles as Forest::triangles() has them.
+  /// Returns the lists: numbers of triangles as Forest::triangles() has them, some marked by kBothSides.
   std::span<const uint32_t> triangles() const { return triangles_; }
 
  private:

@@ -14,6 +14,7 @@ uniform float reach;  // as light_visibility.comp.glsl has it
 uniform float unit;   // metres
 
 const uint unlisted = 0xffffffffu;
+const uint both_sides = 0x80000000u;  // of a triangle in a list: its back hides, too
 const int light_rows = 8;
 const int light_columns = 32;  // bits of a row
 
@@ -108,7 +109,7 @@ float listed_visibility(Light light, vec3 position, vec3 normal, uvec2 range) {
   float clearance2 = listed_clearance * listed_clearance * size * size;
   float limit = reach * min(v.depth * scaled, 1e30);
   for (uint t = range.x; t < range.x + range.y && any_open != 0u; ++t) {
-    uint corner = 3u * lists[t];
+    uint corner = 3u * (lists[t] & ~both_sides);
     vec3 a = scaled * (leaves[corners[corner]].vertex - position);
     vec3 b = scaled * (leaves[corners[corner + 1u]].vertex - position);
     vec3 c = scaled * (leaves[corners[corner + 2u]].vertex - position);
@@ -118,6 +119,8 @@ float listed_visibility(Light light, vec3 position, vec3 normal, uvec2 range) {
     vec3 across = ab + bc + ca;
     float volume = dot(a, bc);
     if (volume * volume <= clearance2 * dot(across, across)) continue;
+    // From within a body, where rounding may put a place on its surface, ways only leave: nothing hides there.
+    if (volume > 0.0 && (lists[t] & both_sides) == 0u) continue;
     float side = volume < 0.0 ? -1.0 : 1.0;
     // Within the three edges, and nearer than the light: a ray of slope s meets the plane at depth volume / dot(across, s).
     vec4 at = side * vec4(dot(ab, square.low), dot(bc, square.low), dot(ca, square.low), dot(across, square.low));
