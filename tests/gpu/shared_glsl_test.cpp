@@ -98,21 +98,25 @@ TEST_F(SharedGlslTest, everyHeaderCompilesAlone) {
                        path.ends_with(".frag.glsl") || path.ends_with(".geom.glsl");
     if (stage) continue;
     SCOPED_TRACE(path);
+    const bool vertex = brings(source, "gl_Position");
     const bool fragment = brings(source, "gl_FragCoord") || brings(source, "gl_PrimitiveID");
+    const bool compute = !vertex && !fragment;
     const std::string text =
         "#include \"" + path + "\"\n" +
-        (fragment || brings(source, "local_size_x") ? "" : "layout(local_size_x = 1) in;\n") +
+        (!compute || brings(source, "local_size_x") ? "" : "layout(local_size_x = 1) in;\n") +
         (brings(source, "void main()") ? "" : "void main() {}\n");
-    const gpu::EmbeddedSource user[] = {{fragment ? "main.frag.glsl" : "main.comp.glsl", text.c_str()},
-                                        {"main.vert.glsl", "void main() { gl_Position = vec4(0); }\n"}};
+    const gpu::EmbeddedSource user[] = {
+        {"main.vert.glsl", vertex ? text.c_str() : "void main() { gl_Position = vec4(0); }\n"},
+        {"main.frag.glsl", fragment ? text.c_str() : "void main() {}\n"},
+        {"main.comp.glsl", text.c_str()}};
     gpu::ShaderLibrary library(device());
     library.mount("", embeddedSources());
     library.mount("test/", user);
     try {
-      if (fragment)
-        library.program({{"test/main.vert.glsl", "test/main.frag.glsl"}, {}});
-      else
+      if (compute)
         library.program({{"test/main.comp.glsl"}, {}});
+      else
+        library.program({{"test/main.vert.glsl", "test/main.frag.glsl"}, {}});
     } catch (const Error& error) {
       // A header of a permutation lacks its macro, whose name is in capitals, a main program its function;
       // anything else is broken.
