@@ -7,7 +7,7 @@
 
 namespace limn::relief {
 
-/// Limits how far a line is followed: so many times the larger side of the field.
+/// Limits how far a line is followed, in larger sides of the field.
 constexpr double kFarthestSizes = 64;
 
 /// Visits the cells that the line `start + s direction`, s >= 0, crosses, in texels, one after the other:

@@ -33,7 +33,7 @@ frame::TextureHandle addSummedAreaPasses(frame::FrameGraph& graph, frame::Textur
 void addColumnSums(frame::FrameGraph& graph, const std::vector<frame::TextureHandle*>& tables,
                    const SummedAreaPasses& desc);
 
-/// Returns how many work groups take so many rows or columns (glsl/shadow/line_scan.glsl).
+/// Returns how many work groups take that many rows or columns (glsl/shadow/line_scan.glsl).
 int lineGroups(int lines, bool shared, bool vertical);
 
 }  // namespace limn::shadow
