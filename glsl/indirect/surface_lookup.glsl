@@ -10,6 +10,12 @@ struct Around {
   bool found;
 };
 
+// Which of the leaves weighs most.
+int nearest_corner(Around a) {
+  int second = a.weights.y > a.weights.x ? 1 : 0;
+  return a.weights.z > a.weights[second] ? 2 : second;
+}
+
 Around around_texel(ivec2 pixel) {
   uvec4 texel = texelFetch(surface_lookup, pixel, 0);
   Around a;

@@ -12,10 +12,8 @@ void main() {
   vec3 colour = vec3(0.0);
   if (pixel_depth(pixel) > 0.0) {
     Around a = around_pixel(pixel);
-    int second = a.weights.y > a.weights.x ? 1 : 0;
-    uint nearest = a.slots[a.weights.z > a.weights[second] ? 2 : second];
     float facing = abs(dot(pixel_geometric_normal(pixel), normalize(pixel_ray(pixel))));
-    if (a.found) colour = mix(0.4, 1.0, facing) * colours[nearest].rgb;
+    if (a.found) colour = mix(0.4, 1.0, facing) * colours[a.slots[nearest_corner(a)]].rgb;
   }
   imageStore(radiance, pixel, vec4(colour, 1.0));
 }

@@ -38,8 +38,7 @@ void main() {
     if (a.found) v = dot(a.weights, vec3(seen[from.x], seen[from.y], seen[from.z]));
 #if LISTED
     vec3 position = pixel_position(at.xy, depth);
-    int second = a.weights.y > a.weights.x ? 1 : 0;
-    uvec2 range = a.found ? ranges[from[a.weights.z > a.weights[second] ? 2 : second]] : uvec2(0u, unlisted);
+    uvec2 range = a.found ? ranges[from[nearest_corner(a)]] : uvec2(0u, unlisted);
     if (range.y != unlisted && is_between(a, position, depth))
       v = listed_visibility(lights[indices[at.z]], position, pixel_geometric_normal(at.xy), range);
 #endif
