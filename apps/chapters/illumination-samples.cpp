@@ -11,6 +11,9 @@ int main(int argc, char** argv) {
       {"Illumination samples", "pcss,illumination_samples", "",
        "One bounce, from trees of directions: walk, and only the last passes run again (the inspector shows "
        "them)."},
+      {"A tree of directions", "pcss,illumination_samples", "illumination_samples.show=tree",
+       "What the element in the middle of the picture reflects, on a disc in the corner: walk, and look at "
+       "another."},
       {"Gathered at pixels", "pcss,illumination_samples", "illumination_samples.display=gather",
        "The samples themselves, reflected at each pixel: highlights are round, and walking costs more."},
       {"At vertices, as published", "pcss,illumination_samples",

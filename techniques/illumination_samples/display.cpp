@@ -46,6 +46,24 @@ frame::TextureHandle Display::show(frame::FrameGraph& graph, const TechniqueInpu
     if (settings_.shown == Shown::pixels) setTrees(program);
     context.dispatch(size.x, size.y, 1, 8, 8);
   });
+  return settings_.drawTree ? drawTree(graph, inputs, solution, around, result) : result;
+}
+
+frame::TextureHandle Display::drawTree(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                       const Solution& solution, frame::TextureHandle around,
+                                       frame::TextureHandle picture) const {
+  frame::PassBuilder pass = graph.addPass("draw a tree", settings_.technique);
+  pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
+      .read(around, Access::sampled, "surface_lookup", "the leaf in the middle");
+  readTrees(pass, solution);
+  const frame::TextureHandle result =
+      pass.write(picture, Access::imageLoadStore, "radiance", "the tree in a corner");
+  const auto kernel =
+      pass.program({.files = {"techniques/illumination_samples/show_tree.comp.glsl"}, .defines = {}});
+  pass.execute([this, kernel, size = inputs.size](frame::PassContext& context) {
+    setTrees(context.use(kernel));
+    context.dispatch(size.x, size.y, 1, 8, 8);
+  });
   return result;
 }
 

@@ -19,6 +19,10 @@ class Display {
  private:
   void readTrees(frame::PassBuilder& pass, const Solution& solution) const;
   void setTrees(gpu::Program& program) const;
+  /// Declares the pass that draws the tree of the leaf in the middle over the picture.
+  frame::TextureHandle drawTree(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                const Solution& solution, frame::TextureHandle around,
+                                frame::TextureHandle picture) const;
   /// Declares the pass that looks the trees of leaves up towards the eye.
   frame::BufferHandle towardsEye(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const Solution& solution);

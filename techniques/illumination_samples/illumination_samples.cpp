@@ -4,6 +4,7 @@
 #include <deque>
 #include <memory>
 
+#include "core/base/error.h"
 #include "core/scene/scene.h"
 #include "core/technique/technique.h"
 #include "techniques/illumination_samples/display.h"
@@ -23,6 +24,7 @@ constexpr const char* kCriteria[] = {"error", "relative"};
 constexpr const char* kBases[] = {"haar", "uniform"};
 constexpr const char* kReflections[] = {"delayed", "immediate"};
 constexpr const char* kDisplays[] = {"pixel", "vertex", "gather"};
+constexpr const char* kShows[] = {"light", "tree"};
 constexpr Parameter kParameters[] = {
     integer("bounces", 1, {1, 16}, "bounces", "Surfaces that reflect light before the one that is seen"),
     real("link_error", radiosity::SampleSettings{}.linkError, {1e-4, 1}, "of the lights' mean irradiance",
@@ -45,6 +47,8 @@ constexpr Parameter kParameters[] = {
     choice("display", 0, kDisplays,
            "Light of elements towards the pixel, towards the eye from each element (as published), or their "
            "samples reflected at the pixel"),
+    choice("show", 0, kShows,
+           "Indirect light, with the tree of the element in the middle of the picture in a corner or not"),
     integer("light_rays", 16, {1, 1024}, "rays", "To each extended light, from each element").logScale(),
     real("longest_edge", 0.03, {0.005, 10}, "scene radii", "Longer edges of triangles are halved")
         .quality()
@@ -57,6 +61,7 @@ constexpr StressCase kStress[] = {
     {.name = "narrow samples", .scene = "cornell_box", .settings = "widen=0"},
     {.name = "no receiver's refinement", .scene = "cornell_box", .settings = "receiver=off"},
     {.name = "coarse mesh", .scene = "cornell_box", .settings = "longest_edge=10", .factor = 8},
+    {.name = "a tree in the corner", .scene = "glossy_room", .settings = "show=tree", .factor = 0},
     {.name = "three bounces", .scene = "cornell_box", .settings = "bounces=3", .factor = 4},
 };
 
@@ -91,6 +96,9 @@ class IlluminationSamples : public Technique {
     radiosity::TreeSettings shownTree = tree;
     if (!relative) shownTree.criterion = Criterion::display;
     const auto shown = static_cast<Shown>(p.choice("display"));
+    const bool drawTree = p.choice("show") == 1;
+    if (drawTree && shown == Shown::gathered)
+      throw UsageError("illumination_samples: show=tree goes with display=pixel and display=vertex");
     const SolutionSettings settings{.samples = {.linkError = p.real("link_error"),
                                                 .widen = p.real("widen"),
                                                 .receiver = p.choice("receiver") == 1,
@@ -99,6 +107,7 @@ class IlluminationSamples : public Technique {
                                                 .memory = uint64_t(p.integer("memory")) << 20},
                                     .shownTree = shownTree,
                                     .shown = shown,
+                                    .drawTree = drawTree,
                                     .bounces = p.integer("bounces"),
                                     .lightRays = p.integer("light_rays"),
                                     .longestEdge = p.real("longest_edge"),

@@ -27,6 +27,7 @@ struct SolutionSettings {
   radiosity::SampleSettings samples;
   radiosity::TreeSettings shownTree;  ///< of leaves, for the viewer
   Shown shown = Shown::pixels;
+  bool drawTree = false;  ///< that of the leaf in the middle of the picture, in a corner
   int bounces = 1;
   int lightRays = 16;         ///< to each extended light
   float longestEdge = 0.03f;  ///< radii of the scene

@@ -1,4 +1,7 @@
 // What illumination samples promise beyond what every technique does.
+#include <gmock/gmock.h>
+
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -152,6 +155,42 @@ TEST_F(IlluminationSamplesTest, ExtremesGiveNumbers) {
       expectWithin(indirect(renderer, coarse), 0, 1e4f);
     }
   }
+}
+
+/// Nothing but a corner and a ring in the middle changes, and the corner holds light.
+TEST_F(IlluminationSamplesTest, ATreeIsDrawnInACorner) {
+  const scene::Scene scene = asset("glossy_room");
+  render::Renderer renderer(device(), scene);
+  for (const char* basis : {"haar", "uniform"}) {
+    const auto shown = [&](const char* show) {
+      renderer.configure(settings(
+          96, 72, Term::indirect,
+          {technique("illumination_samples",
+                     {{"longest_edge", "0.1"}, {"basis", basis}, {"max_level", "5"}, {"show", show}})}));
+      renderer.setCamera(renderer.pose().cameras.at(1));  // the satin floor
+      renderer.render();
+      return renderer.read();
+    };
+    const Image plain = shown("light"), drawn = shown("tree");
+    double inCorner = 0;
+    for (int y = 0; y < 72; ++y)
+      for (int x = 0; x < 96; ++x) {
+        const bool corner = x < 32 && y >= 40;
+        const bool ring = std::hypot(x - 48, y - 36) < 6;
+        for (int c = 0; c < 3; ++c) {
+          if (corner) inCorner += drawn.at(x, y, c);
+          if (corner || ring) continue;
+          ASSERT_EQ(drawn.at(x, y, c), plain.at(x, y, c)) << basis << ' ' << x << ' ' << y;
+        }
+      }
+    EXPECT_GT(inCorner, 10) << basis;
+    expectWithin(drawn, 0, 1e4f);
+  }
+  EXPECT_THAT(errorOf([&] {
+                render::Renderer refused(device(), scene);
+                indirect(refused, {{"display", "gather"}, {"show", "tree"}});
+              }),
+              testing::HasSubstr("show=tree goes with display=pixel"));
 }
 
 TEST_F(IlluminationSamplesTest, DarkScenesAreDark) {
