@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/gpu/render_test.h"
+#include "tests/gpu/environment_harness.h"
 
 namespace limn {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 /// of the same kind.
 constexpr double kLargestNumber = 64;
 
-class PermutationTest : public RenderTest {
+class PermutationTest : public EnvironmentTest {
  protected:
   using Uses = std::vector<render::TechniqueUse>;
 
@@ -68,9 +68,8 @@ class PermutationTest : public RenderTest {
 
   /// Compiles what the technique needs, unless it refuses values that do not go together, which `refusals`
   /// counts then.
-  static void compile(render::Renderer& renderer, Term term, const render::TechniqueUse& use,
-                      int* refusals = nullptr) {
-    render::Settings asked = settings(48, 36, term, {use}, isFactor(term) ? 0 : -1);
+  static void compile(render::Renderer& renderer, Term term, const Uses& uses, int* refusals = nullptr) {
+    render::Settings asked = settings(48, 36, term, uses, isFactor(term) ? 0 : -1);
     asked.display.emplace();
     renderer.configure(std::move(asked));
     renderer.setCamera(renderer.pose().cameras.at(0));
@@ -96,17 +95,33 @@ TEST_F(PermutationTest, EveryProgramCompiles) {
       SCOPED_TRACE(file);
       const scene::Scene scene = asset(file);
       render::Renderer renderer(device(), scene);
-      compile(renderer, Term::final, technique(name));
+      compile(renderer, Term::final, {technique(name)});
       if (contains(plugin->info->terms, Term::visibility) && !renderer.pose().lights.empty())
-        compile(renderer, Term::visibility, technique(name));
+        compile(renderer, Term::visibility, {technique(name)});
       if (file != scenes.front()) continue;
       Uses uses = combinations(name);
       std::ranges::move(ends(name), std::back_inserter(uses));
       int refusals = 0;
-      for (const render::TechniqueUse& use : uses) compile(renderer, Term::final, use, &refusals);
+      for (const render::TechniqueUse& use : uses) compile(renderer, Term::final, {use}, &refusals);
       EXPECT_LT(refusals, static_cast<int>(uses.size()) / 2);
     }
   }
+}
+
+/// Of core: the environment's own light with the shadows of the lights that stand for it, in one batch of
+/// them and in several, with shadows and without.
+TEST_F(PermutationTest, EveryProgramOfEnvironmentSharesCompiles) {
+  for (const char* file :
+       {"balls_sky", "torus_metal", "fresnel_spheres", "translucent_spheres", "bump_sphere"})
+    for (const double share : {0.001, 0.05}) {
+      SCOPED_TRACE(file);
+      scene::Scene scene = lit(asset(file), sky(), share);
+      scene.environment.shadowedByRatio = true;
+      render::Renderer renderer(device(), scene);
+      compile(renderer, Term::final, {});
+      compile(renderer, Term::final, {technique("hard_shadow_map")});
+      compile(renderer, Term::final, {technique("hard_shadow_map"), technique("bump_horizon")});
+    }
 }
 
 }  // namespace
