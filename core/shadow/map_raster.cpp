@@ -11,6 +11,7 @@ using frame::Access;
 using frame::TextureHandle;
 
 constexpr GLfloat kNothing[4] = {1, 1, 1, 1}, kFarthest = 0;
+constexpr GLuint kNobody[4] = {glsl::no_instance, 0, 0, 0};
 
 TextureHandle createMaps(const MapRaster& raster, const ShadowMaps& maps, const char* name, GLenum format) {
   return raster.graph.createTexture(name, {.target = GL_TEXTURE_2D_ARRAY,
@@ -55,14 +56,16 @@ void addDepthPass(const MapRaster& raster, bool paraboloid, ShadowMaps& maps) {
       });
 }
 
-void addReflectivePass(const MapRaster& raster, TextureHandle ltc, ShadowMaps& maps) {
+void addReflectivePass(const MapRaster& raster, TextureHandle ltc, bool instances, ShadowMaps& maps) {
   frame::PassBuilder pass = raster.graph.addPass("reflective shadow maps", "shadow");
   pass.role(frame::PassRole::map);
   const bool together = layered(raster.device);
   const scene::SurfacePrograms programs = raster.scene.declareSurfaces(
       pass, raster.handles,
       {.files = {"glsl/shadow/reflective.vert.glsl", "glsl/shadow/reflective.frag.glsl"},
-       .defines = {{"LAYERED", together ? "1" : "0"}, {"LAMBERTIAN", ltc ? "0" : "1"}}});
+       .defines = {{"LAYERED", together ? "1" : "0"},
+                   {"LAMBERTIAN", ltc ? "0" : "1"},
+                   {"INSTANCES", instances ? "1" : "0"}}});
   pass.read(maps.views, Access::storageLoad, "Views", "projections");
   if (ltc) pass.read(ltc, Access::sampled, "ltc_table", "diffuse albedo below a specular layer");
   const auto write = [&](const char* name, GLenum format, const char* why) {
@@ -71,21 +74,29 @@ void addReflectivePass(const MapRaster& raster, TextureHandle ltc, ShadowMaps& m
   maps.depth = write("reflective depth", GL_R32F, "linear depth");
   maps.normal = write("reflective normal", GL_RG16_SNORM, "normal of the triangle");
   maps.albedo = write("reflective albedo", GL_RGB10_A2, "diffuse albedo");
+  if (instances) maps.instance = write("reflective instance", GL_R32UI, "draw instance");
   const TextureHandle zbuffer = pass.write(createMaps(raster, maps, "reflective z", GL_DEPTH_COMPONENT32F),
                                            Access::depthAttachment, "hidden-surface removal");
   if (raster.cacheable) pass.cacheable();
   pass.execute([raster, zbuffer, together, programs, depth = maps.depth, normal = maps.normal,
-                albedo = maps.albedo](frame::PassContext& context) {
+                albedo = maps.albedo, instance = maps.instance](frame::PassContext& context) {
     const gl::Functions& gl = context.gl();
     const auto bind = [&](int layer) {
-      context.bindFramebuffer({{depth, 0, layer}, {normal, 0, layer}, {albedo, 0, layer}},
-                              {zbuffer, 0, layer});
+      if (instance) {
+        context.bindFramebuffer(
+            {{depth, 0, layer}, {normal, 0, layer}, {albedo, 0, layer}, {instance, 0, layer}},
+            {zbuffer, 0, layer});
+      } else {
+        context.bindFramebuffer({{depth, 0, layer}, {normal, 0, layer}, {albedo, 0, layer}},
+                                {zbuffer, 0, layer});
+      }
     };
     bind(-1);
     constexpr GLfloat black[4] = {0, 0, 0, 0};
     gl.ClearBufferfv(GL_COLOR, 0, kNothing);
     gl.ClearBufferfv(GL_COLOR, 1, black);
     gl.ClearBufferfv(GL_COLOR, 2, black);
+    if (instance) gl.ClearBufferuiv(GL_COLOR, 3, kNobody);
     gl.ClearBufferfv(GL_DEPTH, 0, &kFarthest);
     raster.scene.drawSurfaces(context, programs, raster.views, raster.list, together,
                               [&](const scene::DepthView& view) { bind(view.layer); });

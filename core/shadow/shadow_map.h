@@ -55,6 +55,8 @@ struct ShadowMapDesc {
   /// Says whether the maps also hold what reflects the light: glsl/indirect/reflective_map.glsl. Not for
   /// paraboloids.
   bool reflective = false;
+  /// Says whether reflective maps also hold which draw instance a texel shows.
+  bool instances = false;
   /// Says whether specular surfaces are in the maps.
   bool specular = true;
   MapFit fit = MapFit::scene;
@@ -69,8 +71,11 @@ struct ShadowMaps {
   frame::TextureHandle depth;   ///< R32F array
   frame::TextureHandle normal;  ///< reflective: RG16_SNORM array, geometric normal on the light's side
   frame::TextureHandle albedo;  ///< reflective: RGB10_A2 array, square root of the diffuse albedo
-  frame::BufferHandle views;    ///< glsl::ShadowView, index = layer
-  frame::BufferHandle lights;   ///< glsl::ShadowLight
+  /// With instances: R32UI array, draw instance; no_instance for nothing and for the backs of surfaces that
+  /// have one side.
+  frame::TextureHandle instance;
+  frame::BufferHandle views;   ///< glsl::ShadowView, index = layer
+  frame::BufferHandle lights;  ///< glsl::ShadowLight
   int layers = 0;
   int lightSamples = 0;  ///< length of `lights`
   int stride = 1;        ///< entries of `lights` for each light

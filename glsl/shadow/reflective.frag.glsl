@@ -1,5 +1,6 @@
 // A texel of a reflective shadow map (glsl/indirect/reflective_map.glsl): depth as in shadow maps, geometric normal on the light's
-// side, diffuse albedo. LAMBERTIAN 1: no material of the scene has a specular part.
+// side, diffuse albedo. LAMBERTIAN 1: no material of the scene has a specular part. INSTANCES 1: also the draw instance, and
+// no_instance on the backs of surfaces that have one side.
 // MASKED, TEXTURES, COLOURS: see surface_input.glsl.
 #include "glsl/surface/gbuffer.glsl"
 #include "glsl/geometry/surface_input.glsl"
@@ -14,6 +15,9 @@ layout(location = 1) in vec3 from_light;
 layout(location = 0) out float stored_depth;
 layout(location = 1) out vec2 stored_normal;
 layout(location = 2) out vec4 stored_albedo;
+#if INSTANCES
+layout(location = 3) out uint stored_instance;
+#endif
 
 #if MASKED
 // At texture level 0, as in shadow maps.
@@ -57,4 +61,7 @@ void main() {
   stored_depth = linear_depth < 1.0 ? max(linear_depth, 0.0) : 1.0;  // NaN: nothing there
   stored_normal = octahedral_encode(normal);
   stored_albedo = vec4(gbuffer_colour_encode(albedo), 1.0);
+#if INSTANCES
+  stored_instance = back ? no_instance : surface_instance.x;
+#endif
 }
