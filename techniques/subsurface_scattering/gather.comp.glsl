@@ -7,7 +7,7 @@
 //
 // SAMPLES: points of each pixel. NORMALISE: entry_normalise_*. PLANES 2: half of the points lie in the plane that faces the
 // camera. ROOT 1: at a border of two colours the profile is the root of both, else that of the pixel. POINT_COUNT: of all
-// points, where they fit a uniform block.
+// points, where they fit a uniform block. LIGHT_VIEWS 1: light also enters where the camera does not look (light_views.glsl).
 #include "glsl/diffusion/entry_sums.glsl"
 #include "glsl/diffusion/eye_plane.glsl"
 #include "glsl/numeric/geometry.glsl"
@@ -26,7 +26,7 @@ layout(std140) uniform Points { Point points[POINT_COUNT]; };
 layout(std430) readonly buffer Points { Point points[]; };
 #endif
 uniform usampler2D planes;
-uniform usampler2D lights;
+uniform usampler2D entries;
 layout(rgba32f) writeonly uniform image2D gathered;
 uniform uint body_index;
 // Of the pixels that are answered: their light gets from the first to less than the second number of pixels far.
@@ -34,7 +34,7 @@ uniform float least_reach;
 uniform float reach_end;
 uniform int block;  // pixels
 
-vec3 entering_light(ivec2 pixel) { return uintBitsToFloat(entry_unpack(texelFetch(lights, pixel, 0).xy)); }
+vec3 entering_light(ivec2 pixel) { return uintBitsToFloat(entry_unpack(texelFetch(entries, pixel, 0).xy)); }
 
 // A plane around the pixel's place in which points are drawn.
 struct DrawingPlane {
@@ -105,6 +105,21 @@ float plane_density(Drawing d, vec3 plane, float stretch, float r, float area) {
 #endif
 }
 
+// Point i of the pixel, which is number `index` of all.
+DrawnPoint drawn_point(Drawing d, int i, uint index) {
+#if TEXTURED
+  PointDraw draw = points[index];
+  float r = radius_drawn(d, i, draw);
+  return DrawnPoint(r * draw.direction, 1.0 / density_drawn(d, r), 0.0);
+#else
+  return points[index];
+#endif
+}
+
+#if LIGHT_VIEWS
+#include "techniques/subsurface_scattering/light_views.glsl"
+#endif
+
 void main() {
   uint sub_buffer = gl_WorkGroupID.z;
   ivec2 pixel = block * ivec2(gl_GlobalInvocationID.xy) +
@@ -124,11 +139,9 @@ void main() {
   while (asked) {
     asked = false;
     Colours colours = matter_colours(body.extinction, absorption, boundary);
-#if TEXTURED || PLANES == 2
     Drawing from;
     from.colours = colours;
     from.source = PointSource(body.channels, body.uniform_share, body.uniform_radius);
-#endif
 #if TEXTURED
     from.source.channels =
         diffusion_drawn_channels(diffusion_reach(body.extinction, absorption, walk_reflectance(boundary)));
@@ -148,16 +161,11 @@ void main() {
     DrawingPlane facing = drawing_plane(place, -normalize(place), facing_plane, body.unit, screen);
 #endif
     vec3 light = vec3(0.0), weights = vec3(0.0);
-    float hits = 0.0;
+    float hits = 0.0, inside_picture = 0.0;
     uint index = body.first_point + sub_buffer * uint(SAMPLES);
     for (int i = 0; i < SAMPLES; ++i, ++index) {
-      Point point = points[index];
-#if TEXTURED
-      float drawn = radius_drawn(from, i, point);
-      vec2 at = drawn * point.direction;
-#else
+      DrawnPoint point = drawn_point(from, i, index);
       vec2 at = point.offset;
-#endif
 #if PLANES == 2
       bool faces = i % 2 == 1;
       DrawingPlane p = faces ? facing : drawing;
@@ -189,11 +197,7 @@ void main() {
       density = share * density + (1.0 - share) * (other_stretch > 0.0 ? other : 0.0);
       float inverse_density = 1.0 / density;
 #else
-#if TEXTURED
-      float inverse_density = 1.0 / density_drawn(from, drawn);
-#else
       float inverse_density = point.inverse_density;
-#endif
 #if NORMALISE != 1
       inverse_density *= area / own_area;
 #endif
@@ -205,6 +209,7 @@ void main() {
 #else
       vec3 shared_weight = weight;
 #endif
+      if (inside) inside_picture += 1.0;
       if (hit) {
         light += shared_weight * entering_light(tap);
         weights += weight;
@@ -216,6 +221,18 @@ void main() {
     here *= sqrt(colours.reflectance);
 #endif
     vec3 mean = entry_mean(light, weights, hits, float(SAMPLES), NORMALISE, here);
+#if LIGHT_VIEWS
+#if NORMALISE == 2
+    // What is seen no longer stands for what is hidden, but still for what lies beside the picture. Its share of the profile is
+    // the mean of the weights; where they are noisy it is no less than the share of the points that met the body.
+    if (inside_picture > 0.0) mean *= clamp(weights, vec3(hits), vec3(inside_picture)) / inside_picture;
+#endif
+    vec3 hidden = hidden_light(from, body, boundary, place, own.w, body.first_point + sub_buffer * uint(SAMPLES), screen);
+#if TEXTURED && ROOT
+    hidden *= sqrt(colours.reflectance);
+#endif
+    mean += hidden;
+#endif
     imageStore(gathered, pixel, vec4(mean, 0.0));
   }
 }

@@ -6,7 +6,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 uniform sampler2D entering;
 layout(rgba32ui) writeonly uniform uimage2D planes;
-layout(rg32ui) writeonly uniform uimage2D lights;
+layout(rg32ui) writeonly uniform uimage2D entries;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -18,5 +18,5 @@ void main() {
   uint instance = translucent ? pixel_instance(pixel) : no_instance;
   vec3 light = max(texelFetch(entering, pixel, 0).rgb, vec3(0.0));
   imageStore(planes, pixel, uvec4(floatBitsToUint(plane), instance));
-  imageStore(lights, pixel, uvec4(entry_pack(floatBitsToUint(light)), 0u, 0u));
+  imageStore(entries, pixel, uvec4(entry_pack(floatBitsToUint(light)), 0u, 0u));
 }

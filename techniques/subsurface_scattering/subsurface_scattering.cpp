@@ -3,13 +3,18 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "core/frame/array_block.h"
+#include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/gpu_scene.h"
+#include "core/gpu_scene/light_textures.h"
+#include "core/shadow/shadow_map.h"
 #include "core/technique/technique.h"
 #include "glsl/diffusion/entry_sums.glsl"
+#include "glsl/numeric/sampling.glsl"
 #include "techniques/subsurface_scattering/bodies.h"
 
 namespace {
@@ -48,6 +53,14 @@ constexpr Parameter kParameters[] = {
     choice("mixing", 0, kMixing,
            "Where textures vary what scatters: the root of both places' profiles, or the pixel's own, as "
            "published"),
+    integer(
+        "light_views", 0, {0, 16}, "points",
+        "Points on each light with extent from which maps show where its light enters that the camera does "
+        "not see; 0: light enters only where the camera looks")
+        .quality(),
+    integer("light_view_size", 512, {16, 4096}, "texels", "Width and height of those maps")
+        .quality()
+        .logScale(),
     real("scale", 1, {1e-6, 1e6}, "", "Factor on all mean free paths").logScale(),
 };
 constexpr StressCase kStress[] = {
@@ -78,6 +91,13 @@ constexpr StressCase kStress[] = {
      .scene = "translucent_spheres",
      .settings = "profile=normalised_diffusion scale=1e6",
      .factor = 0},
+    {.name = "light that the camera does not see enter",
+     .scene = "translucent_spheres",
+     .settings = "light_views=1"},
+    {.name = "fewer points than maps of few texels",
+     .scene = "translucent_spheres",
+     .settings = "light_views=16 light_view_size=16 samples=4",
+     .factor = 4},
     {.name = "colours that vary", .scene = "translucent_checker", .settings = "mixing=own", .factor = 4},
     {.name = "bodies that absorb nothing",
      .change = StressChange::albedo,
@@ -149,10 +169,12 @@ class Passes {
     BufferHandle bodies, ofInstances, points, draws;
   };
 
+  /// `lights`: of the request.
   Passes(frame::FrameGraph& graph, const TechniqueInputs& inputs, const Bodies& bodies,
-         const Buffers& buffers)
+         const Buffers& buffers, std::span<const uint32_t> lights)
       : graph_(graph), inputs_(inputs), bodies_(bodies), buffers_(buffers) {
     addIrradiance();
+    addLightViews(lights);
   }
 
   /// Returns the mean of the light that enters around each pixel.
@@ -233,9 +255,47 @@ class Passes {
         .read(inputs_.entering, Access::sampled, "entering", "light that enters");
     planes_ =
         pass.write(screen("planes of bodies", GL_RGBA32UI), Access::imageStore, "planes", "what points meet");
-    lights_ = pass.write(screen("light that enters", GL_RG32UI), Access::imageStore, "lights",
-                         "what points find there");
+    entries_ = pass.write(screen("light that enters", GL_RG32UI), Access::imageStore, "entries",
+                          "what points find there");
     run(pass, {.files = {shader("irradiance")}, .defines = {}}, [](gpu::Program&) {});
+  }
+
+  /// Requests maps of the lights if light is to enter where the camera does not look.
+  void addLightViews(std::span<const uint32_t> lights) {
+    const int points = inputs_.parameters.integer("light_views");
+    if (points == 0) return;
+    constexpr const char* name = "light views";
+    if (inputs_.scene.environment && inputs_.scene.environment.lights.empty())
+      graph_.leaveOut(name, SubsurfaceScattering::info.name, "of the environment, which has no maps");
+    if (lights.empty()) {
+      graph_.leaveOut(name, SubsurfaceScattering::info.name, "the scene has no light");
+      return;
+    }
+    shadow::ShadowMapDesc desc{
+        .size = inputs_.parameters.integer("light_view_size"), .reflective = true, .instances = true};
+    for (int i = 0; points > 1 && i < points; ++i)
+      desc.samples.push_back(glsl::r2_sequence(static_cast<uint32_t>(i) + 1));
+    lightViews_ = inputs_.service<shadow::ShadowMapService>().request(lights, desc);
+    lightCount_ = static_cast<int>(lights.size());
+  }
+
+  /// Declares what light_views.glsl reads, and adds to the program's defines.
+  void readLightViews(frame::PassBuilder& pass, std::map<std::string, std::string>& defines) {
+    const shadow::ShadowMaps& maps = *lightViews_;
+    pass.read(maps.depth, Access::sampled, "reflective_depth", "where light arrives")
+        .read(maps.normal, Access::sampled, "reflective_normal", "which way surfaces face")
+        .read(maps.instance, Access::sampled, "reflective_instance", "which bodies they are of")
+        .read(maps.views, Access::storageLoad, "Views", "projections")
+        .read(maps.lights, Access::storageLoad, "MapLights", "which maps belong together")
+        .read(inputs_.handles.lights, Access::storageLoad, "Lights", "what lights send");
+    const scene::LightTextureInput textures(inputs_.handles);
+    textures.define(defines);
+    textures.declare(pass);
+    defines["MEDIUM"] = inputs_.scene.medium.present() ? "1" : "0";
+    const scene::MediumInput medium(inputs_.handles);
+    medium.define(defines);
+    medium.declare(pass);
+    defines["MAP_POINTS"] = std::to_string(maps.stride);
   }
 
   /// Declares what pixel_body.glsl reads besides the G-buffer's depth, and returns the program's defines.
@@ -259,16 +319,22 @@ class Passes {
     const Access points = frame::arrayBlock<glsl::DrawnPoint>(inputs_.gpuScene.device().limits(), count,
                                                               "POINT_COUNT", description.defines);
     pass.read(textured ? buffers_.draws : buffers_.points, points, "Points", "points around pixels")
-        .read(lights_, Access::sampled, "lights", "light that enters");
+        .read(entries_, Access::sampled, "entries", "light that enters");
     gathered = pass.write(gathered, first ? Access::imageStore : Access::imageLoadStore, "gathered",
                           "light that enters around pixels");
     description.defines["SAMPLES"] = std::to_string(drawing.samples);
     description.defines["NORMALISE"] = std::to_string(inputs_.parameters.choice("normalise"));
+    description.defines["LIGHT_VIEWS"] = lightViews_ ? "1" : "0";
+    if (lightViews_) readLightViews(pass, description.defines);
     description.defines["PLANES"] = std::to_string(inputs_.parameters.choice("planes") + 1);
     const auto program = pass.program(std::move(description));
-    pass.execute([program, indices = std::move(indices), block = drawing.block,
-                  size = inputs_.size](frame::PassContext& context) {
+    pass.execute([program, indices = std::move(indices), block = drawing.block, size = inputs_.size,
+                  lights = lightCount_](frame::PassContext& context) {
       gpu::Program& kernel = context.use(program);
+      if (lights > 0) {
+        kernel.set("map_light_count", lights);
+        kernel.set("light_samples", 1);
+      }
       const auto gather = [&](int side, float leastReach, float reachEnd) {
         kernel.set("block", side);
         kernel.set("least_reach", leastReach);
@@ -291,7 +357,9 @@ class Passes {
   const TechniqueInputs& inputs_;
   const Bodies& bodies_;
   Buffers buffers_;
-  TextureHandle planes_, lights_;
+  TextureHandle planes_, entries_;
+  std::optional<shadow::ShadowMaps> lightViews_;  ///< empty: light enters only where the camera looks
+  int lightCount_ = 0;                            ///< in those maps
 };
 
 TextureHandle SubsurfaceScattering::addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -310,7 +378,8 @@ TextureHandle SubsurfaceScattering::addPasses(frame::FrameGraph& graph, const Te
                 {.bodies = graph.importBuffer("bodies", buffers_->bodies),
                  .ofInstances = graph.importBuffer("bodies of instances", buffers_->ofInstances),
                  .points = graph.importBuffer("points of bodies", buffers_->points),
-                 .draws = graph.importBuffer("draws of points", buffers_->draws)});
+                 .draws = graph.importBuffer("draws of points", buffers_->draws)},
+                request.lights);
   const TextureHandle gathered = passes.addGather();
   TextureHandle blurred;
   if (inputs.parameters.integer("block") > 1) {

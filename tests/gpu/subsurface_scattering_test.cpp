@@ -7,6 +7,7 @@
 
 #include "glsl/diffusion/colours.glsl"
 #include "tests/gpu/bump_floor.h"
+#include "tests/support/scene_nodes.h"
 
 namespace limn {
 namespace {
@@ -29,6 +30,26 @@ class SubsurfaceScatteringTest : public BumpFloorTest {
     material.baseColour = glm::vec4(vec3(albedo(absorption)), 1);
     material.subsurface = scene::Subsurface{.extinction = vec3(extinction), .absorption = vec3(absorption)};
     return scene;
+  }
+  /// A plate of the same matter, thick in metres and without sides, under light along `direction`.
+  static scene::Scene plate(float thickness, const vec3& direction) {
+    scene::Scene scene = floor(kExtinction, kAbsorption);
+    scene.nodes[0].mesh = test::addMesh(
+        scene, test::finish(test::joined(test::quad({0, 0, 0}, {2, 0, 0}, {0, 0, -2}, 0),
+                                         test::quad({0, -thickness, 0}, {2, 0, 0}, {0, 0, 2}, 0))));
+    scene.nodes[1].transform.rotation = glm::quatLookAt(direction, vec3(0, 0, 1));
+    return scene;
+  }
+  /// Share of the light that enters a face far and wide that leaves the other one, by the same profile over
+  /// the distance: of the light that leaves at a distance, what does so farther away than the thickness.
+  static double throughPlate(size_t profile, float thickness) {
+    const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(kIor);
+    const float r = thickness * kExtinction;
+    return 1 - static_cast<double>(
+                   profile == 0
+                       ? glsl::diffusion_dipole_share(glsl::diffusion_dipole(kAbsorption, boundary), r)
+                       : glsl::normalised_diffusion_share(
+                             glsl::normalised_diffusion(kAbsorption, glsl::walk_reflectance(boundary)), r));
   }
   static float albedo(float absorption) {
     return glsl::walk_albedo(glsl::walk_reflectance(glsl::diffusion_boundary(kIor)), absorption);
@@ -133,6 +154,87 @@ TEST_F(SubsurfaceScatteringTest, EdgesOfShadowsSpreadAsLineIntegralsSay) {
     EXPECT_LT(error({{"block", "1"}, {"samples", "64"}}), 0.06) << kProfiles[profile];
     EXPECT_GT(error({{"block", "1"}}), 2 * usual) << kProfiles[profile];
   }
+}
+
+TEST_F(SubsurfaceScatteringTest, LightFromBehindComesThrough) {
+  const Image local = drawn(plate(0.05f, {0, -1, 0}), Term::subsurface, {});
+  for (const float thickness : {0.02f, 0.1f}) {
+    const scene::Scene scene = plate(thickness, {0, 1, 0});
+    for (size_t profile = 0; profile < kProfiles.size(); ++profile) {
+      SCOPED_TRACE(kProfiles[profile] + ' ' + std::to_string(thickness));
+      const double through = reflectanceOverAlbedo(profile, kAbsorption) * throughPlate(profile, thickness);
+      Values values{{"profile", kProfiles[profile]}, {"samples", "64"}};
+      forEachPoint(below(scene, values), [](float value, const vec3&) { ASSERT_EQ(value, 0); });
+      values.emplace_back("light_views", "1");
+      std::vector<double> wanted;
+      forEachPoint(local, [&](float value, const vec3&) { wanted.push_back(double(value) * through); });
+      double sum = 0, squares = 0;
+      size_t index = 0;
+      int counted = 0;
+      forEachPoint(below(scene, values), [&](float value, const vec3& p) {
+        const double ratio = double(value) / wanted[index++];
+        if (std::abs(p.x) > 0.5f || std::abs(p.z) > 0.5f) return;
+        sum += ratio;
+        squares += (ratio - 1) * (ratio - 1);
+        ++counted;
+      });
+      ASSERT_GT(counted, 1500);
+      EXPECT_NEAR(sum / counted, 1, 0.02);
+      EXPECT_LT(std::sqrt(squares / counted), 0.05);
+    }
+  }
+}
+
+/// What the camera sees is not added a second time, at the picture's border neither, and nor are opaque
+/// neighbours and the undersides of what has one side.
+TEST_F(SubsurfaceScatteringTest, LightViewsAddWhatIsHiddenAlone) {
+  const scene::Scene lit = plate(0.02f, glm::normalize(vec3(0.4f, -1, 0.2f)));
+  const Image seen = below(lit, {});
+  EXPECT_LT(largestDifference(below(lit, {{"light_views", "1"}}), seen, 1), 1e-4);
+
+  scene::Scene behind = plate(0.02f, {0, 1, 0});
+  scene::Node shield;
+  shield.mesh = test::addMesh(
+      behind, test::finish(test::quad({0, -0.021f, 0}, {2, 0, 0}, {0, 0, 2}, test::addMaterial(behind))));
+  behind.nodes.push_back(shield);
+  forEachPoint(below(behind, {{"light_views", "1"}}), [](float value, const vec3&) { ASSERT_EQ(value, 0); });
+
+  const scene::Scene back = SubsurfaceScatteringTest::floor(kExtinction, kAbsorption);
+  scene::Scene under = back;
+  under.nodes[1].transform.rotation = glm::quatLookAt(vec3(0, 1, 0), vec3(0, 0, 1));
+  forEachPoint(below(under, {{"light_views", "1"}}), [](float value, const vec3&) { ASSERT_EQ(value, 0); });
+}
+
+/// Lamps within, on and far beside a ball, small and large, shared and single points, in all variants.
+TEST_F(SubsurfaceScatteringTest, LightViewsOfAnyLampGiveFiniteLight) {
+  for (const vec3& place : {vec3(0, -0.5f, 0), vec3(0, -0.3f, 0), vec3(0, -0.1f, 0.3f), vec3(0, -900, 0)})
+    for (const float size : {0.f, 1e-4f, 3.f, 1e4f}) {
+      scene::Scene scene = floor(kExtinction, kAbsorption);
+      scene.nodes[0].mesh = test::addMesh(scene, test::spherePrimitive(0.3f, 0, 16));
+      scene.lights[0].type = glsl::light_point;
+      scene.nodes[1].transform.translation = place;
+      if (size > 0) {
+        scene.nodes.pop_back();
+        scene.lights.clear();
+        scene::Material emitter = test::lambertian(0);
+        emitter.emission = vec3(1);
+        emitter.doubleSided = true;
+        test::show(scene, test::quad(place, {size, 0, 0}, {0, 0, -size}, test::addMaterial(scene, emitter)));
+      }
+      for (const Values& values : {Values{{"light_views", "1"}, {"light_view_size", "16"}},
+                                   Values{{"light_views", "3"}, {"samples", "2"}, {"light_view_size", "64"}},
+                                   Values{{"light_views", "1"}, {"scale", "1e6"}, {"planes", "both"}},
+                                   Values{{"light_views", "1"}, {"scale", "1e-6"}, {"normalise", "none"}}}) {
+        SCOPED_TRACE(size);
+        const Image image = below(scene, values);
+        for (int y = 0; y < image.height(); ++y)
+          for (int x = 0; x < image.width(); ++x)
+            for (int c = 0; c < 3; ++c) {
+              ASSERT_TRUE(std::isfinite(image.at(x, y, c)));
+              ASSERT_GE(image.at(x, y, c), 0);
+            }
+      }
+    }
 }
 
 }  // namespace
