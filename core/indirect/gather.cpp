@@ -40,7 +40,8 @@ GatherSettings gatherSettings(const ParameterValues& p) {
           .blur = p.boolean("blur"),
           .blurPosition = p.real("blur_position"),
           .blurPlane = p.real("blur_plane"),
-          .blurNormal = p.real("blur_normal")};
+          .blurNormal = p.real("blur_normal"),
+          .edges = p.real("edges")};
 }
 
 VirtualLightDesc virtualLightDesc(const ParameterValues& p) {
@@ -113,46 +114,84 @@ GBuffer Gather::split() {
   return to;
 }
 
-void Gather::shade(ShadePass shade) {
-  if (shade.count == 0) shade.count = lights_.count;
-  const bool accumulate = shade.first > 0;
-  frame::PassBuilder pass = graph_.addPass("shade", technique_);
+/// Declares what a program that shades reads of lights and of the surfaces in `from`, and completes it.
+void Gather::declareShading(frame::PassBuilder& pass, ShadePass& shade, const GBuffer& from) const {
   const Access lights = frame::arrayBlock<glsl::VirtualPointLight>(
       inputs_.gpuScene.device().limits(), lights_.count, "VIRTUAL_LIGHT_COUNT", shade.program.defines);
   pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
       .read(lights_.lights, lights, "VirtualLights", "virtual lights");
-  const scene::SurfaceInput surfaces(inputs_.handles, gbuffer_);
+  const scene::SurfaceInput surfaces(inputs_.handles, from);
   surfaces.define(shade.program.defines);
   surfaces.declare(pass);
   for (const shadow::SampledTexture& s : shade.sampled) pass.read(s.texture, Access::sampled, s.name, s.why);
   if (shade.declare) shade.declare(pass);
-  shaded_ = pass.write(shaded_, accumulate ? Access::imageLoadStore : Access::imageStore, "gathered",
-                       "light from every block^2-th part of the virtual lights");
   defineParts(shade.program);
-  const bool splitting = gbuffer_.depth != inputs_.gbuffer.depth;
-  shade.program.defines["SPLIT"] = splitting ? "1" : "0";
   shade.program.defines["GATHER_FALLING"] = falling_ ? "1" : "0";
   shade.program.defines["GATHER_PATCH"] = settings_.bound == Bound::patch ? "1" : "0";
-  shade.program.defines["ACCUMULATE"] = accumulate ? "1" : "0";
   shade.program.defines["LAMBERTIAN"] = specular_ ? "0" : "1";
-  const auto program = pass.program(shade.program);
-  pass.execute([program, shade = std::move(shade), lightCount = lights_.count, settings = settings_,
-                size = inputs_.size, falling = falling_, glossy = specular_](frame::PassContext& context) {
-    gpu::Program& kernel = context.use(program);
-    const auto block = static_cast<unsigned>(settings.block);
+}
+
+/// Returns what sets the uniforms of a program that shades.
+std::function<void(gpu::Program&)> Gather::shadingUniforms(const ShadePass& shade) const {
+  return [bind = shade.bind, lightCount = lights_.count, settings = settings_, falling = falling_,
+          glossy = specular_](gpu::Program& kernel) {
     kernel.set("vpl_count", static_cast<unsigned>(lightCount));
-    kernel.set("batch_first", static_cast<unsigned>(shade.first));
-    kernel.set("batch_count", static_cast<unsigned>(shade.count));
-    kernel.set("block", block);
     const float widest = settings.bound == Bound::patch ? std::sqrt(glsl::inverse_pi) : settings.clamp;
     const float least = widest / std::sqrt(static_cast<float>(settings.history));
     kernel.set("nearest", falling ? least * static_cast<float>(settings.block) : least);
     if (falling) kernel.set("least_nearest", least);
     if (falling && glossy) kernel.set("glossy_nearest", widest);
-    if (shade.bind) shade.bind(kernel);
-    const glm::ivec2 part = (size + settings.block - 1) / settings.block;
-    context.dispatch(part.x, part.y, settings.block * settings.block, 2 * kGroup, 2 * kGroup);
+    if (bind) bind(kernel);
+  };
+}
+
+void Gather::shade(ShadePass shade) {
+  if (shade.count == 0) shade.count = lights_.count;
+  if (shade.count == lights_.count && blurred_ && settings_.edges > 0) edges_ = shade;
+  const bool accumulate = shade.first > 0;
+  frame::PassBuilder pass = graph_.addPass("shade", technique_);
+  declareShading(pass, shade, gbuffer_);
+  shaded_ = pass.write(shaded_, accumulate ? Access::imageLoadStore : Access::imageStore, "gathered",
+                       "light from every block^2-th part of the virtual lights");
+  const bool splitting = gbuffer_.depth != inputs_.gbuffer.depth;
+  shade.program.defines["SPLIT"] = splitting ? "1" : "0";
+  shade.program.defines["GATHER_EDGES"] = "0";
+  shade.program.defines["ACCUMULATE"] = accumulate ? "1" : "0";
+  const auto program = pass.program(shade.program);
+  pass.execute([program, uniforms = shadingUniforms(shade), first = shade.first, count = shade.count,
+                block = settings_.block, size = inputs_.size](frame::PassContext& context) {
+    gpu::Program& kernel = context.use(program);
+    uniforms(kernel);
+    kernel.set("block", static_cast<unsigned>(block));
+    kernel.set("batch_first", static_cast<unsigned>(first));
+    kernel.set("batch_count", static_cast<unsigned>(count));
+    const glm::ivec2 part = (size + block - 1) / block;
+    context.dispatch(part.x, part.y, block * block, 2 * kGroup, 2 * kGroup);
   });
+}
+
+/// Declares the pass that gives all virtual lights to the pixels that the blur serves badly.
+TextureHandle Gather::shadeEdges(TextureHandle rows, TextureHandle columns, TextureHandle blurred) {
+  ShadePass shade = *edges_;
+  frame::PassBuilder pass = graph_.addPass("shade edges", technique_);
+  declareShading(pass, shade, inputs_.gbuffer);
+  pass.read(blurred, Access::sampled, "blurred", "light of the other pixels")
+      .read(rows, Access::sampled, "rows", "where it is of other lines")
+      .read(columns, Access::sampled, "columns", "the same across");
+  const TextureHandle shaded = pass.write(screen("edges shaded", inputs_.size, graph_.desc(blurred).layers),
+                                          Access::imageStore, "gathered", "edges by all virtual lights");
+  shade.program.defines["SPLIT"] = "0";
+  shade.program.defines["GATHER_EDGES"] = "1";
+  shade.program.defines["ACCUMULATE"] = "0";
+  const auto program = pass.program(shade.program);
+  pass.execute([program, uniforms = shadingUniforms(shade), edges = settings_.edges,
+                size = inputs_.size](frame::PassContext& context) {
+    gpu::Program& kernel = context.use(program);
+    uniforms(kernel);
+    kernel.set("edges", edges);
+    context.dispatch(size.x, size.y, 1, 2 * kGroup, 2 * kGroup);
+  });
+  return shaded;
 }
 
 TextureHandle Gather::merge(TextureHandle shaded) {
@@ -172,8 +211,8 @@ TextureHandle Gather::merge(TextureHandle shaded) {
   return merged;
 }
 
-TextureHandle Gather::blurOnce(std::string_view name, TextureHandle from, int width, int stride,
-                               int firstPart, int endPart, bool vertical, bool fold) {
+TextureHandle Gather::blur(std::string_view name, TextureHandle from, int width, int stride, int firstPart,
+                           int endPart, bool vertical, bool fold) {
   frame::PassBuilder pass = graph_.addPass(name, technique_);
   pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, scene extent")
       .read(inputs_.gbuffer.depth, Access::sampled, kGBufferNames.depth, "positions")
@@ -200,20 +239,27 @@ TextureHandle Gather::blurOnce(std::string_view name, TextureHandle from, int wi
   return to;
 }
 
-TextureHandle Gather::blur(std::string_view name, TextureHandle from, int width, int stride, int firstPart,
-                           int endPart) {
-  const TextureHandle rows = blurOnce(name, from, width, stride, firstPart, endPart, false, false);
-  return blurOnce(name, rows, width, stride, firstPart, endPart, true, falling_);
-}
-
 TextureHandle Gather::finish(TextureHandle target) {
   TextureHandle gathered = shaded_;
   if (gbuffer_.depth != inputs_.gbuffer.depth) gathered = merge(gathered);
   if (blurred_) {
-    gathered = blur("blur", gathered, settings_.block, 1, 0, parts());
+    const TextureHandle interleaved = gathered;
+    const int width = settings_.block;
+    const TextureHandle rows = blur("blur", interleaved, width, 1, 0, parts(), false, false);
+    gathered = blur("blur", rows, width, 1, 0, parts(), true, falling_);
+    if (edges_) {
+      const TextureHandle columns = blur("blur", interleaved, width, 1, 0, parts(), true, false);
+      gathered = shadeEdges(rows, columns, gathered);
+    }
   } else {
     graph_.leaveOut("blur", technique_,
                     settings_.blur ? "every pixel has all virtual lights" : "blur is off");
+  }
+  if (!edges_) {
+    graph_.leaveOut("shade edges", technique_,
+                    !blurred_             ? "nothing is blurred"
+                    : settings_.edges > 0 ? "virtual lights come in batches"
+                                          : "edges is 0");
   }
   if (settings_.history > 1) {
     gathered = inputs_.service<history::FrameHistoryService>().average(inputs_.gbuffer, gathered,
@@ -225,7 +271,8 @@ TextureHandle Gather::finish(TextureHandle target) {
   int reach = blurred_ ? settings_.block : 1;  // pixels; taps lie closer than what they see is smooth
   for (bool more = residual_; more; more = reach < inputs_.size.y / kSpreadShare) {
     const int stride = std::max(1, reach / 2);
-    spread = blur("spread residual", spread, kSpreadWidth, stride, parts() - 1, parts());
+    for (const bool vertical : {false, true})
+      spread = blur("spread residual", spread, kSpreadWidth, stride, parts() - 1, parts(), vertical, false);
     reach += kSpreadWidth * stride;
   }
 

@@ -2,7 +2,8 @@
 //
 // The stages are those of Real-time indirect illumination with clustered visibility (thesis, chapter 6.5;
 // Segovia et al. 2006): the G-buffer is split into block x block sub-buffers, each pixel shades N / block^2
-// virtual lights, the sub-buffers are merged and blurred, and the result is reflected by the surfaces. With
+// virtual lights, the sub-buffers are merged and blurred, and the result is reflected by the surfaces. Pixels
+// that the blur serves badly get all virtual lights (GatherSettings::edges). With
 // Interleaving::addressed the shade pass finds its pixels itself, so that nothing is split or merged; the
 // picture is identical to the bit. With a history (core/history/frame_history.h) each frame has a set of
 // virtual lights of its own, and what the surfaces reflect is the mean over the last frames.
@@ -12,6 +13,7 @@
 #include <array>
 #include <functional>
 #include <iterator>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -39,9 +41,9 @@ inline constexpr const char* kBoundNames[] = {"distance", "patch"};
 /// Returns the parameters of a technique with virtual lights: their number, its own, and those that all such
 /// techniques share. `block` is the default of the side of the pattern of interleaved pixels.
 template <size_t N = 0>
-constexpr std::array<Parameter, N + 13> gatherParameters(const std::array<Parameter, N>& own = {},
+constexpr std::array<Parameter, N + 14> gatherParameters(const std::array<Parameter, N>& own = {},
                                                          int block = 8) {
-  std::array<Parameter, N + 13> all{
+  std::array<Parameter, N + 14> all{
       integer("vpls", 1024, {1, 65536}, "lights", "Number of virtual point lights, over all lights")
           .quality()
           .logScale()};
@@ -73,6 +75,11 @@ constexpr std::array<Parameter, N + 13> gatherParameters(const std::array<Parame
            "Pixels farther than this from each other's tangent planes are not averaged; 1: as published"),
       real("blur_normal", 0.8, {-1, 1}, "cosine",
            "Pixels are not averaged where the cosine between their normals is below this"),
+      real(
+          "edges", 0, {0, 100}, "",
+          "Pixels get all virtual lights where the blur finds less than a quarter of the pattern, or mixes "
+          "lines of pixels whose light differs by more than this share of the picture's mean; 0: none do, as "
+          "published"),
   };
   std::copy(own.begin(), own.end(), all.begin() + 1);
   std::copy(std::begin(shared), std::end(shared), all.begin() + 1 + N);
@@ -89,6 +96,7 @@ struct GatherSettings {
   int history = 1;
   bool blur = false;
   float blurPosition = 0.1f, blurPlane = 0.01f, blurNormal = 0.8f;
+  float edges = 0;  ///< shares of the picture's mean light; 0: no pixels get all virtual lights
 };
 LIMN_API GatherSettings gatherSettings(const ParameterValues& parameters);
 LIMN_API VirtualLightDesc virtualLightDesc(const ParameterValues& parameters);
@@ -119,12 +127,14 @@ class LIMN_API Gather {
   int parts() const { return 1 + (specular_ ? 1 : 0) + (residual_ || falling_ ? 1 : 0); }
   frame::TextureHandle screen(std::string_view name, glm::ivec2 size, int layers) const;
   void defineParts(gpu::ProgramDesc& program) const;
+  void declareShading(frame::PassBuilder& pass, ShadePass& shade, const GBuffer& from) const;
+  std::function<void(gpu::Program&)> shadingUniforms(const ShadePass& shade) const;
   GBuffer split();
   frame::TextureHandle merge(frame::TextureHandle shaded);
+  frame::TextureHandle shadeEdges(frame::TextureHandle rows, frame::TextureHandle columns,
+                                  frame::TextureHandle blurred);
   frame::TextureHandle blur(std::string_view name, frame::TextureHandle from, int width, int stride,
-                            int firstPart, int endPart);
-  frame::TextureHandle blurOnce(std::string_view name, frame::TextureHandle from, int width, int stride,
-                                int firstPart, int endPart, bool vertical, bool fold);
+                            int firstPart, int endPart, bool vertical, bool fold);
 
   frame::FrameGraph& graph_;
   TechniqueInputs inputs_;
@@ -137,6 +147,7 @@ class LIMN_API Gather {
   GBuffer gbuffer_;       ///< split if the settings say so
   glm::ivec2 size_;       ///< of the shaded screen: whole sub-buffers
   frame::TextureHandle shaded_;
+  std::optional<ShadePass> edges_;  ///< what shades edges: the pass that has all virtual lights
 };
 
 }  // namespace limn::indirect

@@ -12,6 +12,9 @@
 //
 // GATHER_PATCH 1: the inverse square is bounded by the patch that a light stands for instead of by a part of the scene's extent.
 //
+// GATHER_EDGES 1: after the blur, the pixels that it does not serve get all virtual lights (on_edge()). A thread shades one of
+// them.
+//
 // Define GATHER_PIXELS 1 before including this where a thread shades one pixel: where visibility takes more than the light, so
 // that a loop over lights does better with few values to keep.
 //
@@ -25,6 +28,12 @@
 #include "glsl/indirect/gather_parts.glsl"
 #include "glsl/indirect/virtual_light.glsl"
 
+#if GATHER_EDGES
+#undef GATHER_PIXELS
+#define GATHER_PIXELS 1
+#define THREADS 256
+#include "glsl/numeric/work_group.glsl"
+#endif
 #ifndef GATHER_PIXELS
 #define GATHER_PIXELS 4
 #endif
@@ -46,13 +55,26 @@ layout(rgba32f) uniform image2DArray gathered;
 layout(rgba32f) writeonly uniform image2DArray gathered;
 #endif
 uniform uint vpl_count;    // N
+#if GATHER_EDGES
+const uint batch_first = 0u;
+#else
 uniform uint batch_first;  // virtual lights that this pass may use
 uniform uint batch_count;
-uniform uint block;        // pixels
+#endif
+#if !GATHER_EDGES
+uniform uint block;  // pixels
+#endif
 uniform float nearest;     // part of the scene's extent; GATHER_PATCH: of the root of a light's area
 #if GATHER_FALLING
 uniform float least_nearest;   // the same, where a pixel is the mean of all sub-buffers: the residual is what lies between
 uniform float glossy_nearest;  // the same, of the specular part
+#endif
+
+#if GATHER_EDGES
+uniform sampler2DArray blurred;  // along both axes, along rows alone, along columns alone
+uniform sampler2DArray rows;
+uniform sampler2DArray columns;
+uniform float edges;  // share of the picture's mean by which these may differ
 #endif
 
 struct Receiver {
@@ -163,6 +185,16 @@ void gather_from(VirtualPointLight light, uint pixel, Receiver r, float nearest2
 #endif
 }
 
+// Light i, for gather_from() of all pixels.
+VirtualPointLight begin_light(uint i) {
+  VirtualPointLight light = virtual_lights[i];
+  if (!virtual_light_shines(light)) light.normal = vec3(0.0);  // so that no receiver is lit
+#if VPL_SHADOWS
+  vpl_begin(i, light);
+#endif
+  return light;
+}
+
 struct GatherPixel {
   ivec2 texel;   // in the G-buffer and the result
   bool inside;   // the picture
@@ -204,6 +236,37 @@ GatherPixel gather_pixel(ivec2 pixel, out Receiver r) {
   return p;
 }
 
+#if GATHER_EDGES
+const float least_share = 0.25;  // of the pattern that the blur must find
+
+float brightness(vec3 light) { return light.r + light.g + light.b; }
+
+float blurred_light(ivec2 pixel) {
+  vec4 sum = texelFetch(blurred, ivec3(pixel, gather_part_diffuse), 0);
+  return sum.a > 0.0 ? brightness(sum.rgb) / sum.a : 0.0;
+}
+
+// What was blurred along one axis; the same as blurred_light() where light is even along the other.
+float line_light(sampler2DArray lines, ivec2 pixel) {
+  vec4 sum = texelFetch(lines, ivec3(pixel, gather_part_diffuse), 0);
+  float light = sum.a > 0.0 ? brightness(sum.rgb) / sum.a : 0.0;
+#if GATHER_FALLING
+  light += brightness(texelFetch(lines, ivec3(pixel, gather_part_residual), 0).rgb);
+#endif
+  return light;
+}
+
+// Whether the blur serves a pixel badly: it found less of the pattern than least_share, or mixes a line of pixels with others that
+// get `most` more or less light, as in a slit.
+bool on_edge(ivec2 pixel, float most) {
+  float share = texelFetch(blurred, ivec3(pixel, gather_part_diffuse), 0).a;
+  if (!(pixel_depth(pixel) > 0.0 && share > 0.0)) return false;
+  float light = blurred_light(pixel);
+  float off = max(abs(line_light(rows, pixel) - light), abs(line_light(columns, pixel) - light));
+  return share < least_share || off > most;
+}
+#endif
+
 void store_part(ivec3 at, vec4 value) {
 #if ACCUMULATE
   value.rgb += imageLoad(gathered, at).rgb;
@@ -212,9 +275,16 @@ void store_part(ivec3 at, vec4 value) {
 }
 
 void store(GatherPixel p, Gathered sum) {
+#if GATHER_EDGES
+  float scale = inverse_pi;
+#if GATHER_FALLING
+  sum.diffuse += sum.residual;
+#endif
+#else
   if (!p.inside) return;
   // For the lights that other sub-buffers have; a light of the flux F sends F / pi along its normal.
   float scale = float(block * block) * inverse_pi;
+#endif
   float weight = p.covered ? 1.0 : 0.0;
 #if LAMBERTIAN
   float diffuse = scale * inverse_pi;
@@ -225,11 +295,46 @@ void store(GatherPixel p, Gathered sum) {
 #if GATHER_SPECULAR
   store_part(ivec3(p.texel, gather_part_specular), vec4(scale * sum.specular, weight));
 #endif
-#if GATHER_RESIDUAL
+#if GATHER_RESIDUAL && !(GATHER_EDGES && GATHER_FALLING)
   store_part(ivec3(p.texel, gather_part_residual), vec4(diffuse * sum.residual, weight));
 #endif
 }
 
+#if GATHER_EDGES
+shared uint edge_pixels[THREADS];  // x and y, 16 bits each
+shared uint edge_count;
+
+void main() {
+  // The picture's mean: of a thread's pixel each.
+  ivec2 size = ivec2(frame.frame_size);
+  float sample_light = blurred_light(ivec2((vec2(gl_LocalInvocationID.xy) + 0.5) / 16.0 * vec2(size)));
+  float most = edges * total(vec4(sample_light)).x / float(THREADS);
+  if (gl_LocalInvocationIndex == 0u) edge_count = 0u;
+  barrier();
+  ivec2 own = ivec2(gl_GlobalInvocationID.xy);
+  if (all(lessThan(own, size))) {
+    if (on_edge(own, most)) {
+      edge_pixels[atomicAdd(edge_count, 1u)] = uint(own.x) | uint(own.y) << 16;
+    } else {
+      for (int part = 0; part < gather_parts - GATHER_FALLING; ++part)
+        imageStore(gathered, ivec3(own, part), texelFetch(blurred, ivec3(own, part), 0));
+    }
+  }
+  barrier();
+  if (gl_LocalInvocationIndex >= edge_count) return;
+  uint packed_pixel = edge_pixels[gl_LocalInvocationIndex];
+  Receiver r;
+  GatherPixel p = gather_pixel(ivec2(packed_pixel & 0xffffu, packed_pixel >> 16), r);
+  Gathered sum = Gathered(vec3(0.0), vec3(0.0), vec3(0.0));
+  float nearest2 = squared_bound(nearest);
+  uint i = 0u;
+  do {
+    VirtualPointLight light = begin_light(i);
+    gather_from(light, 0u, r, nearest2, sum);
+  } while (++i < vpl_count);
+  store(p, sum);
+}
+#else
 void main() {
   uint sub_buffer = gl_WorkGroupID.z;
   int step = 8 * int(block);
@@ -255,11 +360,7 @@ void main() {
     float nearest2 = squared_bound(nearest);
     uint i = first;
     do {  // the condition comes last: software renderers run a loop's body once more where it comes first
-      VirtualPointLight light = virtual_lights[i];
-      if (!virtual_light_shines(light)) light.normal = vec3(0.0);  // so that no receiver is lit
-#if VPL_SHADOWS
-      vpl_begin(i, light);
-#endif
+      VirtualPointLight light = begin_light(i);
       gather_from(light, 0u, r00, nearest2, sum00);
 #if GATHER_PIXELS == 4
       gather_from(light, 1u, r10, nearest2, sum10);
@@ -275,5 +376,7 @@ void main() {
   store(p11, sum11);
 #endif
 }
+
+#endif
 
 #endif  // LIMN_GATHER_MAIN_GLSL

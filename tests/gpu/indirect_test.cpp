@@ -122,6 +122,40 @@ TEST_F(IndirectPictureTest, InterleavingKeepsTheMean) {
   EXPECT_NEAR(mean("1", "8", "false") / mean("1", "1", "false"), 1, 1e-6) << "no more pixels than lights";
 }
 
+/// Pixels at edges are lit as though nothing were interleaved; where nothing is, there are none.
+TEST_F(IndirectPictureTest, EdgesGetAllVirtualLights) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  const auto lit = [&](const char* block, const char* edges, std::pair<std::string, std::string> other) {
+    return indirect(renderer, "instant_radiosity",
+                    {{"vpls", "256"}, {"map_size", "64"}, {"block", block}, {"edges", edges}, other});
+  };
+  const auto same = [](const Image& a, const Image& b) { return std::ranges::equal(a.data(), b.data()); };
+  const std::pair<std::string, std::string> plain("history", "1");
+  const Image all = lit("1", "0", plain), none = lit("8", "0", plain);
+  EXPECT_TRUE(same(all, lit("1", "0.01", plain))) << "nothing is interleaved";
+  EXPECT_TRUE(same(lit("8", "0", {"blur", "false"}), lit("8", "0.01", {"blur", "false"})))
+      << "nothing is blurred";
+  const Image some = lit("8", "0.1", plain);
+  EXPECT_LT(rmse(some, all), 0.7 * rmse(none, all));
+  EXPECT_TRUE(same(some, lit("8", "0.1", {"interleaving", "split"})));
+  EXPECT_LT(rmse(lit("8", "1e-6", plain), all), 0.1 * rmse(none, all)) << "nearly all pixels are edges";
+  for (const char* bound : {"distance", "patch"})
+    for (const char* compensation : {"false", "true"}) {
+      const auto also = [&](const char* block, const char* edges) {
+        return indirect(renderer, "instant_radiosity",
+                        {{"vpls", "256"},
+                         {"map_size", "64"},
+                         {"block", block},
+                         {"edges", edges},
+                         {"bound", bound},
+                         {"compensation", compensation}});
+      };
+      const Image truth = also("1", "0");
+      EXPECT_LT(rmse(also("8", "1e-6"), truth), 0.5 * rmse(also("8", "0"), truth)) << bound << compensation;
+    }
+}
+
 TEST_F(IndirectPictureTest, CompensationGivesBackWhatTheClampTakes) {
   const scene::Scene scene = asset("cornell_box");
   render::Renderer renderer(device(), scene);
