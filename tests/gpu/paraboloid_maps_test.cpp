@@ -2,7 +2,12 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
+#include <span>
+
 #include "core/base/error.h"
+#include "core/indirect/point_maps.h"
 #include "tests/gpu/gl_test.h"
 #include "tests/support/test_scenes.h"
 
@@ -32,27 +37,48 @@ struct Drawn {
 
 class ParaboloidMapsTest : public GlTest {
  protected:
-  Drawn draw(const scene::Scene& scene, const scene::Pose& pose, std::vector<glsl::ShadowView> views,
-             indirect::ParaboloidDesc desc) {
+  using Views = std::vector<glsl::ShadowView>;
+
+  /// What `add` declares for the maps of some views.
+  template <class Add>
+  Drawn make(const scene::Scene& scene, const scene::Pose& pose, const Views& views, const Add& add) {
     scene::GpuScene gpuScene(device(), scene);
     gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
     frame::ResourcePool pool(device());
     frame::FrameGraph graph;
     const gpu::Buffer buffer = gpu::Buffer::of<glsl::ShadowView>(device(), "views", views);
-    indirect::ParaboloidMapPass pass;
     const SceneHandles handles = gpuScene.import(graph);
-    const indirect::ParaboloidMaps maps =
-        pass.add(graph, gpuScene, handles, graph.importBuffer("views", buffer), desc);
+    const indirect::ParaboloidMaps maps = add(graph, gpuScene, handles, graph.importBuffer("views", buffer));
     graph.output(maps.depth);
     graph.prepare(device(), shaders(), pool);
     graph.execute();
-    Drawn out{.views = {views.begin() + desc.first, views.begin() + desc.first + desc.count},
-              .size = desc.size};
-    out.depth.resize(static_cast<size_t>(desc.count * desc.size * desc.size));
+    Drawn out{.views = {views.begin() + maps.first, views.begin() + maps.first + maps.count},
+              .size = maps.size};
+    out.depth.resize(static_cast<size_t>(maps.count * maps.size * maps.size));
     graph.texture(maps.depth).read(0, GL_RED, GL_FLOAT, out.depth.data(), out.depth.size() * sizeof(float));
     for (const frame::PassReport& row : graph.explain()) out.triangles += row.triangles;
     gpuScene.forget();
     return out;
+  }
+
+  Drawn draw(const scene::Scene& scene, const scene::Pose& pose, const Views& views,
+             const indirect::ParaboloidDesc& desc) {
+    indirect::ParaboloidMapPass pass;
+    return make(scene, pose, views,
+                [&](frame::FrameGraph& graph, scene::GpuScene& gpuScene, const SceneHandles& handles,
+                    frame::BufferHandle handle) { return pass.add(graph, gpuScene, handles, handle, desc); });
+  }
+
+  /// The same from points, of which each of the first `windows` maps has its own.
+  Drawn splat(const scene::Scene& scene, const scene::Pose& pose, const Views& views,
+              const indirect::PointMapDesc& desc, int windows = 1) {
+    indirect::PointMapPass pass(device(), scene, pose, desc.points, windows);
+    return make(scene, pose, views,
+                [&](frame::FrameGraph& graph, scene::GpuScene&, const SceneHandles& handles,
+                    frame::BufferHandle handle) {
+                  pass.place(graph, handles, "indirect");
+                  return pass.add(graph, device(), handle, desc);
+                });
   }
 };
 
@@ -108,6 +134,55 @@ TEST_F(ParaboloidMapsTest, ARoomOfLargeTrianglesIsExactFromEveryView) {
               << "map " << map << " texel " << x << "," << y;
         }
   }
+}
+
+/// What points show of a room is the room, as their discs lie in its walls; where none lies, nothing is.
+/// Holes are closed as far as the levels reach, in maps of more than one tile, too.
+TEST_F(ParaboloidMapsTest, PointsShowTheRoomBetweenHolesThatFillingCloses) {
+  const vec3 half(2, 1.5f, 1);
+  scene::Scene scene;
+  addMesh(scene, boxPrimitive(half, addMaterial(scene)));
+  scene::Pose pose;
+  addInstance(scene, pose, 0);
+  const glsl::ShadowView view = glsl::paraboloid_view({0.3f, -1.2f, 0.1f}, {0, 1, 0}, 1e-4f, 10, 0, 96);
+  struct Shares {
+    double holes = 0, wrong = 0;  ///< of the texels within the disc
+  };
+  const auto sharesOf = [&](const Drawn& drawn, int map) {
+    Shares found;
+    int texels = 0;
+    for (int y = 0; y < 96; ++y)
+      for (int x = 0; x < 96; ++x) {
+        if (glm::length(drawn.place(x, y)) > 0.95f) continue;
+        ++texels;
+        const float stored = drawn.stored(map, x, y);
+        const float expected =
+            glsl::shadow_normalise(view, leaves(view.origin, drawn.direction(map, x, y), half));
+        if (stored == 1)
+          ++found.holes;
+        else if (std::abs(stored - expected) > 1e-3f)
+          ++found.wrong;
+      }
+    return Shares{found.holes / texels, found.wrong / texels};
+  };
+  const std::vector<glsl::ShadowView> views(2, view);
+  const indirect::PointMapDesc desc{.count = 2, .size = 96, .points = 8192, .splat = 16, .fillDepth = 0.02f};
+  const Drawn open = splat(scene, pose, views, desc, 2);
+  EXPECT_EQ(open.triangles, 0u);
+  const Shares ofOpen = sharesOf(open, 0);
+  EXPECT_GT(ofOpen.holes, 0.02);
+  EXPECT_LT(ofOpen.holes, 0.4);
+  EXPECT_LT(ofOpen.wrong, 0.08) << "discs that reach over the edges of walls are seen in holes";
+  EXPECT_FALSE(std::ranges::equal(std::span(open.depth).first(96 * 96), std::span(open.depth).last(96 * 96)))
+      << "each map has points of its own";
+  indirect::PointMapDesc filling = desc;
+  filling.fillLevels = 3;
+  const Drawn filled = splat(scene, pose, views, filling, 2);
+  EXPECT_LT(sharesOf(filled, 1).holes, 1e-3);
+  for (size_t i = 0; i < open.depth.size(); ++i)
+    if (open.depth[i] < 1) {
+      ASSERT_EQ(filled.depth[i], open.depth[i]) << "what is known stays";
+    }
 }
 
 TEST_F(ParaboloidMapsTest, ASphereOfSmallTriangles) {
@@ -183,6 +258,8 @@ TEST_F(ParaboloidMapsTest, BatchesFitTheDevice) {
   const std::vector<glsl::ShadowView> views(4);
   EXPECT_THROW(draw(scene, pose, views, {.count = 0, .size = 16}), UsageError);
   EXPECT_THROW(draw(scene, pose, views, {.count = 1 << 20, .size = 256}), UsageError);
+  EXPECT_THROW(splat(scene, pose, views, {.count = 0, .size = 16}), UsageError);
+  EXPECT_THROW(splat(scene, pose, views, {.count = 1 << 20, .size = 256}), UsageError);
 }
 
 }  // namespace

@@ -1,15 +1,15 @@
-#include "techniques/imperfect_shadow_maps/scene_points.h"
+#include "core/indirect/scene_points.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "glsl/numeric/sampling.glsl"
 
-namespace limn::imperfect {
+namespace limn::indirect {
 namespace {
 
 /// Index of the first element above `u` times the last one.
-uint32_t choice(std::span<const float> upTo, float u) {
+uint32_t indexAt(std::span<const float> upTo, float u) {
   auto found = std::upper_bound(upTo.begin(), upTo.end(), u * upTo.back());
   if (found == upTo.end()) found = std::lower_bound(upTo.begin(), upTo.end(), upTo.back());
   return static_cast<uint32_t>(found - upTo.begin());
@@ -29,7 +29,7 @@ void AreaTable::fill(std::span<const glm::vec3> positions, std::span<const uint3
 }
 
 uint32_t AreaTable::triangle(float u) const {
-  return choice(upTo, u);
+  return indexAt(upTo, u);
 }
 
 ScenePoints::ScenePoints(gpu::Device& device, const scene::Scene& scene, const scene::Pose& pose, int count)
@@ -114,7 +114,7 @@ void ScenePoints::choose(const scene::Pose& pose) {
   for (size_t i = 0; i < points_.size(); ++i) {
     // Each instance has a sequence of its own: of one sequence for all, a small instance would get a thin
     // slice, whose points cluster.
-    const uint32_t instance = choice(upTo_, glsl::r2_sequence(static_cast<uint32_t>(i) + 1).x);
+    const uint32_t instance = indexAt(upTo_, glsl::r2_sequence(static_cast<uint32_t>(i) + 1).x);
     const glm::vec3 u = glsl::r3_sequence(++chosen_[instance]);
     const uint32_t triangle = tables_[instance]->triangle(u.x);
     const scene::Primitive& p = primitive(pose, pose.instances[instance]);
@@ -127,4 +127,4 @@ void ScenePoints::choose(const scene::Pose& pose) {
   }
 }
 
-}  // namespace limn::imperfect
+}  // namespace limn::indirect

@@ -1,6 +1,6 @@
 // Where the points of the scene are now.
 #include "glsl/scene/blocks.glsl"
-#include "techniques/imperfect_shadow_maps/scene_point.glsl"
+#include "glsl/indirect/scene_point.glsl"
 
 layout(local_size_x = 64) in;
 layout(std430) readonly buffer Points { ScenePoint points[]; };

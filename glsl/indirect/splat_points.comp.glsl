@@ -1,7 +1,7 @@
 // Splats the discs of some points into each map: the nearest depth of every texel whose centre a disc covers. Each map has
 // its own points, which follow each other in the pool.
 #include "glsl/shadow/paraboloid.glsl"
-#include "techniques/imperfect_shadow_maps/scene_point.glsl"
+#include "glsl/indirect/scene_point.glsl"
 
 layout(local_size_x = 64) in;
 layout(std430) readonly buffer Placed { PlacedPoint placed[]; };

@@ -8,9 +8,9 @@
 
 #include "core/frame/frame_graph.h"
 #include "core/scene/scene.h"
-#include "techniques/imperfect_shadow_maps/scene_point.glsl"
+#include "glsl/indirect/scene_point.glsl"
 
-namespace limn::imperfect {
+namespace limn::indirect {
 
 /// Holds the running sum of the areas of a list of triangles.
 struct AreaTable {
@@ -23,6 +23,7 @@ struct AreaTable {
   uint32_t triangle(float u) const;
 };
 
+/// Holds points on the surfaces of a scene.
 class ScenePoints {
  public:
   /// Chooses `count` points in proportion to area at `pose`. Any run of consecutive points is spread evenly,
@@ -54,4 +55,4 @@ class ScenePoints {
   float area_ = 0;
 };
 
-}  // namespace limn::imperfect
+}  // namespace limn::indirect
