@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/frame/array_block.h"
 #include "core/indirect/gather.h"
 #include "core/indirect/paraboloid_maps.h"
+#include "core/indirect/point_maps.h"
 #include "core/indirect/virtual_areas.h"
 #include "core/shadow/derived_maps.h"
 #include "core/shadow/fourier_maps.h"
@@ -18,6 +21,10 @@ namespace {
 using namespace limn;
 using frame::Access;
 
+constexpr int kWindows = 16;         // the pool of points holds as many times what one map takes
+constexpr float kFillDepth = 0.05f;  // scene extents: depths farther apart are not averaged in holes
+
+constexpr const char* kMaps[] = {"triangles", "points"};
 constexpr const char* kKernels[] = {"exact", "thesis"};
 constexpr const char* kSearches[] = {"solid_angle", "nearest"};
 constexpr const char* kFits[] = {"map", "range"};
@@ -32,6 +39,11 @@ constexpr auto kParameters = indirect::gatherParameters(std::to_array<Parameter>
     integer("map_size", 256, {16, 2048}, "texels", "Width and height of each area light's paraboloid map")
         .quality()
         .logScale(),
+    choice("maps", 0, kMaps, "What the maps are filled from: triangles, as published, or points on them"),
+    integer("points", 16384, {64, 65536}, "points", "Splatted into each map").quality().logScale(),
+    real("splat", 8, {0.5, 64}, "texels", "Radius of the largest splat"),
+    integer("fill_levels", 0, {0, 6}, "levels",
+            "Holes between splats up to 2 to this power texels wide are closed"),
     integer("terms", 4, {1, 16}, "terms", "Of the Fourier series").quality().logScale(),
     choice("depth_fit", 0, kFits,
            "Depths that the series spans: the scene's extent, or those that are in the map"),
@@ -64,6 +76,12 @@ constexpr StressCase kStress[] = {
      .scene = "cornell_box",
      .settings = "vpls=8 vals=8 rsm_size=16",
      .factor = 20},
+    {.name = "maps of points", .scene = "cornell_box", .settings = "maps=points", .factor = 2},
+    {.name = "few points",
+     .scene = "cornell_box",
+     .settings = "maps=points points=64 fill_levels=6",
+     .factor = 8},
+    {.name = "all lights at edges", .scene = "cornell_box", .settings = "edges=1", .factor = 2},
     {.name = "map of 16 texels", .scene = "cornell_box", .settings = "map_size=16", .factor = 2},
     {.name = "thin occluders", .scene = "plant", .settings = "vals=10"},
 };
@@ -71,7 +89,29 @@ constexpr StressCase kStress[] = {
 class ClusteredVisibility : public Technique {
   std::optional<shadow::DerivedMaps> derived_;
   gpu::Sampler trilinear_;
-  indirect::ParaboloidMapPass mapPass_;
+  indirect::ParaboloidMapPass trianglePass_;
+  std::vector<std::unique_ptr<indirect::PointMapPass>> pointPasses_;  ///< one for each request
+
+  indirect::ParaboloidMaps addMaps(frame::FrameGraph& graph, const TechniqueInputs& inputs,
+                                   const indirect::VirtualAreas& areas) {
+    const ParameterValues& p = inputs.parameters;
+    const int size = p.integer("map_size");
+    if (p.choice("maps") == 0)
+      return trianglePass_.add(graph, inputs.gpuScene, inputs.handles, areas.views,
+                               {.count = areas.count, .size = size, .technique = info.name});
+    const int points = p.integer("points");
+    indirect::PointMapPass& pass = *pointPasses_.emplace_back(std::make_unique<indirect::PointMapPass>(
+        inputs.gpuScene.device(), inputs.scene, inputs.pose, points, kWindows));
+    pass.place(graph, inputs.handles, info.name);
+    return pass.add(graph, inputs.gpuScene.device(), areas.views,
+                    {.count = areas.count,
+                     .size = size,
+                     .points = points,
+                     .splat = p.real("splat"),
+                     .fillLevels = p.integer("fill_levels"),
+                     .fillDepth = kFillDepth,
+                     .technique = info.name});
+  }
 
   /// The picture of the clusters, instead of light.
   static frame::TextureHandle showClusters(frame::FrameGraph& graph, const TechniqueInputs& inputs,
@@ -111,9 +151,7 @@ class ClusteredVisibility : public Technique {
                                 const indirect::VirtualAreas& areas) {
     const ParameterValues& p = inputs.parameters;
     gpu::Device& device = inputs.gpuScene.device();
-    const indirect::ParaboloidMaps maps =
-        mapPass_.add(graph, inputs.gpuScene, inputs.handles, areas.views,
-                     {.count = areas.count, .size = p.integer("map_size"), .technique = info.name});
+    const indirect::ParaboloidMaps maps = addMaps(graph, inputs, areas);
     derived_.emplace(device);
     const shadow::MinMaxPyramid pyramid = derived_->minMaxPyramid(graph, maps.depth, true);
     const shadow::FourierMaps fourier = fourierMaps(graph, device, maps.depth, pyramid, p);
@@ -170,6 +208,11 @@ class ClusteredVisibility : public Technique {
     indirect::Gather gather(graph, inputs, info.name, lights, settings);
     gather.shade(shadePass(graph, inputs, areas));
     return gather.finish(request.target);
+  }
+
+  bool update(const scene::Pose& pose) override {
+    for (const auto& pass : pointPasses_) pass->update(pose);
+    return false;
   }
 
  public:

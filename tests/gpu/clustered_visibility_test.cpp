@@ -47,6 +47,28 @@ TEST_F(ClusteredVisibilityTest, APlateHidesASpeckFromTheWall) {
                      {0.06f, 0.02f, 0.07f, 300});
 }
 
+/// Between the discs of points light leaks, and at outlines they stand out: what a shadow takes on the whole
+/// is right.
+TEST_F(ClusteredVisibilityTest, APlateOfPointsHidesASpeckFromTheWall) {
+  const Corner s = withPlate(0.05f);
+  const Answer all = answer("reflective_shadow_map", s, {{"vpls", "64"}});
+  for (const char* vals : {"1", "4", "64"}) {
+    const Answer seen =
+        answer("clustered_visibility", s, {{"vpls", "64"}, {"vals", vals}, {"maps", "points"}});
+    double hidden = 0, leaked = 0, lit = 0, open = 0;
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) {
+        if (all.instance[static_cast<size_t>(y * side + x)] != 1) continue;
+        const glm::vec3 p = s.position(all, x, y);
+        const float outside = std::max(std::abs(0.5f * p.y - 0.4f), std::abs(0.5f * p.z)) - 0.15f;
+        if (outside < -0.07f) hidden += double(all.at(0, x, y)), leaked += double(seen.at(0, x, y));
+        if (outside > 0.07f) open += double(all.at(0, x, y)), lit += double(seen.at(0, x, y));
+      }
+    EXPECT_LT(leaked, 0.3 * hidden) << vals;
+    EXPECT_NEAR(lit / open, 1, 0.03) << vals;
+  }
+}
+
 /// 2 cm before the wall, where a series of four terms cannot tell the plate from it.
 TEST_F(ClusteredVisibilityTest, APlateJustBeforeTheWallHidesIt) {
   Corner s;
