@@ -156,6 +156,17 @@ TEST_F(IndirectPictureTest, EdgesGetAllVirtualLights) {
     }
 }
 
+/// With highlights, too: their part is not blurred away from what all lights give.
+TEST_F(IndirectPictureTest, EdgesOfGlossySurfacesGetAllVirtualLights) {
+  const scene::Scene scene = asset("glossy_sphere");
+  render::Renderer renderer(device(), scene);
+  const auto lit = [&](const char* block, const char* edges) {
+    return indirect(renderer, "imperfect_shadow_maps", {{"vpls", "128"}, {"block", block}, {"edges", edges}});
+  };
+  const Image all = lit("1", "0");
+  EXPECT_LT(rmse(lit("8", "1e-6"), all), 0.5 * rmse(lit("8", "0"), all));
+}
+
 TEST_F(IndirectPictureTest, CompensationGivesBackWhatTheClampTakes) {
   const scene::Scene scene = asset("cornell_box");
   render::Renderer renderer(device(), scene);
