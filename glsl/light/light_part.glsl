@@ -66,5 +66,12 @@ LIMN_FN float light_view_share(LightView v) {
   return clamp(height < 0.0f ? less : 1.0f - less, 0.0f, 1.0f);
 }
 
+// How much of the box around the counted part (LightView::low, high) lies above the tangent plane; of a rectangle, half or
+// more.
+LIMN_FN float light_view_box_share(LightView v) {
+  vec2 box = v.high - v.low;
+  return clamp(light_view_share(v) / max(box.x * box.y, 1e-20f), v.cone ? 1e-3f : 0.5f, 1.0f);
+}
+
 LIMN_END
 #endif  // LIMN_LIGHT_PART_GLSL

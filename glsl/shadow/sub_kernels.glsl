@@ -44,9 +44,10 @@ struct KernelFamily {
   vec3 receiver;
   bool whole;  // the view is the light's only one
 #endif
-  int size;   // texels per side of the map
+  float nearest;  // stored in its kernels, quanta
+  int size;       // texels per side of the map
   int layer;
-  bool unblocked;  // nothing blocks: the light's centre lies below the tangent plane of a receiver that a perspective map sees
+  bool beneath;  // a perspective map's origin lies beneath the tangent plane: only texels tell what blocks
 };
 
 KernelFamily kernel_family(ShadowCursor cursor, VisibilityQuery q) {
@@ -68,9 +69,10 @@ KernelFamily kernel_family(ShadowCursor cursor, VisibilityQuery q) {
   f.receiver = q.position;
   f.whole = q.maps.faces == shadow_faces_single;
 #endif
+  f.nearest = 0.0;
   f.size = int(cursor.view.size);
   f.layer = int(cursor.layer);
-  f.unblocked = cursor.view.projection == shadow_perspective && cursor.receiver.height >= 0.0;
+  f.beneath = cursor.view.projection == shadow_perspective && cursor.receiver.height >= 0.0;
   return f;
 }
 
@@ -224,7 +226,12 @@ bool tally_box(inout KernelTally tally, KernelFamily f, TexelBox box, uvec4 s11,
   bool some = min(extent.x, extent.y) > 0 && box.weight > 0.0;
   int kind = some ? sub_kernel_kind(s) : sub_kernel_lit;
   bool in_range = plane_in_range(f.thresholds, centre, vec2(extent));
-  if (kind == sub_kernel_blocked && !in_range) kind = sub_kernel_mixed;
+  bool told = in_range && !f.beneath;
+#if !POOLED
+  told = told && !sub_kernel_contradicts(s, d - f.nearest);
+#endif
+  if (kind == sub_kernel_blocked && !told) kind = sub_kernel_mixed;
+  if (some && f.beneath) kind = sub_kernel_mixed;
   if (kind == sub_kernel_blocked) tally_moments(tally, f, box, s, d);
   return kind == sub_kernel_mixed;
 }
@@ -340,8 +347,8 @@ void tally_adaptive(inout KernelTally tally, KernelFamily f, KernelAxes axes, in
 struct KernelBounds {
   bool lit;
   bool umbra;
-  float gap;      // no blocker in the kernel is farther from the receiver, metres
-  float deepest;  // stored in the kernel, metres
+  float gap;    // no blocker in the kernel is farther from the receiver, metres
+  vec2 depths;  // least and greatest stored in the kernel, metres
 };
 
 KernelBounds family_bounds(KernelFamily f, ShadowCursor cursor, ShadowKernel kernel) {
@@ -353,10 +360,10 @@ KernelBounds family_bounds(KernelFamily f, ShadowCursor cursor, ShadowKernel ker
   vec2 plane = threshold_range(t.biased, centres.low, centres.high);
   vec2 axis = threshold_range(t.axis, centres.low, centres.high);
   KernelBounds bounds;
-  bounds.lit = f.unblocked || stored.x >= 1.0 || !threshold_nearer(t, least, max(plane.x, axis.x));
-  bounds.umbra = !f.unblocked && stored.y < 1.0 && threshold_nearer(t, greatest, max(plane.y, axis.y));
+  bounds.lit = stored.x >= 1.0 || !threshold_nearer(t, least, max(plane.x, axis.x));
+  bounds.umbra = !f.beneath && stored.y < 1.0 && threshold_nearer(t, greatest, max(plane.y, axis.y));
   bounds.gap = t.gap.x + t.gap.y * (t.inverse ? least * axis.x : least + axis.x);
-  bounds.deepest = greatest;
+  bounds.depths = vec2(least, greatest);
   return bounds;
 }
 

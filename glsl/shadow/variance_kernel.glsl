@@ -19,6 +19,9 @@ struct ShadowThresholds {
   vec3 plane;     // the receiver's tangent plane
   vec3 biased;    // the same, raised by the bias
   vec3 axis;      // where the light's axis has the receiver's depth
+  vec4 beneath;   // of a perspective view whose origin lies beneath `biased`, whose rays come up through it: what blocks is
+                  // deeper. xyz: their rise along the normal per metre of depth, w: from where on it blocks, metres.
+                  // Else 0 and -1
   float least;    // of all of these: the far plane's
   float deepest;  // of the plane's where the axis is nearer: nothing unoccluded lies deeper
   float near;     // metres
@@ -48,6 +51,7 @@ LIMN_FN ShadowThresholds shadow_thresholds(ShadowView view, ShadowReceiver recei
     along.x += a.z;
     t.plane = across / min(height, edge);
     t.biased = across / min(receiver.height, edge);
+    t.beneath = receiver.height < 0.0f ? vec4(0.0f, 0.0f, 0.0f, -1.0f) : vec4(across, receiver.height);
     t.axis = along / receiver.depth;
     t.least = 1.0f / view.far;
     t.deepest = 1.0f / deepest;
@@ -56,6 +60,7 @@ LIMN_FN ShadowThresholds shadow_thresholds(ShadowView view, ShadowReceiver recei
     float slope = min(n.z, -1e-6f);
     t.plane = (across - vec3(height, 0.0f, 0.0f)) / slope;
     t.biased = (across - vec3(receiver.height, 0.0f, 0.0f)) / slope;
+    t.beneath = vec4(0.0f, 0.0f, 0.0f, -1.0f);
     t.axis = (along - vec3(receiver.depth, 0.0f, 0.0f)) / a.z;
     t.least = -view.far;
     t.deepest = -deepest;
@@ -65,6 +70,7 @@ LIMN_FN ShadowThresholds shadow_thresholds(ShadowView view, ShadowReceiver recei
   t.plane *= per_texel;
   t.biased *= per_texel;
   t.axis *= per_texel;
+  t.beneath *= vec4(per_texel, 1.0f);
   return t;
 }
 
@@ -93,7 +99,8 @@ LIMN_FN bool threshold_nearer(ShadowThresholds t, float depth, float value) {
 
 // Whether what is stored at a place, `depth` metres, blocks.
 LIMN_FN bool threshold_blocks(ShadowThresholds t, vec2 texel, float depth) {
-  return threshold_nearer(t, depth, max(threshold_value(t.biased, texel), threshold_value(t.axis, texel)));
+  bool nearer = threshold_nearer(t, depth, max(threshold_value(t.biased, texel), threshold_value(t.axis, texel)));
+  return nearer && depth * threshold_value(vec3(t.beneath), texel) > t.beneath.w;
 }
 
 // Metres along the light's axis from what lies at a place and `depth` to the receiver.
@@ -159,8 +166,8 @@ LIMN_FN SubKernel sub_kernel(PlaceThresholds at, vec2 extent, float first, float
 }
 
 // VSSM, section 7.4: by the mean, and by the variance for what Chebyshev's inequality on the other side, P(z < d) <=
-// sigma^2 / (sigma^2 + (mu - d)^2), proves lit. The tangent plane itself is no variance, quantisation is. Means within a quantum of the
-// threshold tell nothing.
+// sigma^2 / (sigma^2 + (mu - d)^2), proves lit. The tangent plane itself is no variance, quantisation is. Means within a
+// quantum of the threshold tell nothing.
 LIMN_FN int sub_kernel_kind(SubKernel s) {
   float mean = s.first / s.texels;
   float margin = s.shift - mean;
@@ -175,6 +182,14 @@ LIMN_FN float sub_kernel_second(SubKernel s) {
   float lit = max(s.texels - s.first * s.first / max(s.second, 1e-30f), 0.0f);
   float least = s.first * s.first / s.texels;
   return max(s.second - lit * s.slope, least) + s.texels * s.noise;
+}
+
+// Whether what Chebyshev's inequality takes for the blockers would lie nearer than anything stored, `reach` quanta before d.
+// Then there are not the two depths that it needs, one of them d: unoccluded texels lie behind the tangent plane, as where
+// the receiver's surface curves away from it or ends, and their variance passes for blockers that are few and far away.
+// Depths are good to a quantum.
+LIMN_FN bool sub_kernel_contradicts(SubKernel s, float reach) {
+  return sub_kernel_second(s) > (s.first + s.texels) * (reach + 1.0f + sqrt(s.slope + s.noise));
 }
 
 // Texels that block, from pooled sums: n (1 - P) with P = 1 - m1^2 / m2, Chebyshev's bound.

@@ -18,7 +18,7 @@ uniform int tree_height;
 uniform float contact_texels;
 
 // Adds what blocks in one view.
-void add_blockers(inout BlockerSums sums, KernelFamily f, float gap, float deepest, int use, bool wanted) {
+void add_blockers(inout BlockerSums sums, KernelFamily f, float gap, vec2 depths, int use, bool wanted) {
   ShadowKernel kernel;
   bool seen = family_kernel(f, gap, kernel) && wanted;
   bool blockers = use == kernel_search;
@@ -27,7 +27,8 @@ void add_blockers(inout BlockerSums sums, KernelFamily f, float gap, float deepe
     tally.low = floor(kernel.low);
     tally.high = ceil(kernel.high);
   }
-  f.thresholds.deepest = f.thresholds.inverse ? 1.0 / deepest : -deepest;
+  f.nearest = threshold_quanta(f.thresholds, depths.x);
+  f.thresholds.deepest = f.thresholds.inverse ? 1.0 / depths.y : -depths.y;
   KernelAxes axes = kernel_axes(kernel, f.size, blockers);
   bool adaptive = blockers ? BLOCKERS_ADAPTIVE == 1 : VISIBILITY_ADAPTIVE == 1;
 #if VISIBILITY_ADAPTIVE
@@ -44,11 +45,11 @@ void add_blockers(inout BlockerSums sums, KernelFamily f, float gap, float deepe
 }
 
 // The light's views in turn.
-Blockers blockers_at(inout ShadowCursor cursor, VisibilityQuery q, inout KernelFamily f, float gap, float deepest, int use,
+Blockers blockers_at(inout ShadowCursor cursor, VisibilityQuery q, inout KernelFamily f, float gap, vec2 depths, int use,
                      bool wanted) {
   BlockerSums sums = no_blockers();
 #if SIMILAR_KERNELS
-  add_blockers(sums, f, gap, deepest, use, wanted);
+  add_blockers(sums, f, gap, depths, use, wanted);
 #else
   uint faces = wanted ? shadow_face_count(q.maps.faces) : 0u;
   uint face = 0u;
@@ -57,7 +58,7 @@ Blockers blockers_at(inout ShadowCursor cursor, VisibilityQuery q, inout KernelF
       cursor = shadow_cursor_at(q, face);
       f = kernel_family(cursor, q);
     }
-    add_blockers(sums, f, gap, deepest, use, wanted);
+    add_blockers(sums, f, gap, depths, use, wanted);
   } while (++face < faces);
 #endif
   return mean_blockers(sums, gap);
@@ -68,7 +69,7 @@ struct Search {
   bool umbra;     // likewise
   bool open;      // there is more to compute
   float gap;      // of the search kernel, metres
-  float deepest;  // stored in it
+  vec2 depths;    // least and greatest stored in it, metres
 };
 
 // The search kernel starts at the near plane; `search_rounds` times it moves to the nearest depth that was found in it.
@@ -83,7 +84,7 @@ Search search_kernel(inout ShadowCursor cursor, VisibilityQuery q, inout KernelF
   do {
     search.lit = true;
     search.umbra = true;
-    search.deepest = 0.0;
+    search.depths = vec2(3.0e38, 0.0);
     float widest = 0.0;
     ShadowKernel kernel;
 #if SIMILAR_KERNELS
@@ -91,7 +92,7 @@ Search search_kernel(inout ShadowCursor cursor, VisibilityQuery q, inout KernelF
     KernelBounds bounds = family_bounds(f, cursor, kernel);
     search.lit = bounds.lit;
     search.umbra = bounds.umbra;
-    search.deepest = bounds.deepest;
+    search.depths = bounds.depths;
     widest = bounds.gap;
 #else
     uint face = 0u;
@@ -104,7 +105,8 @@ Search search_kernel(inout ShadowCursor cursor, VisibilityQuery q, inout KernelF
       KernelBounds bounds = family_bounds(f, cursor, kernel);
       search.lit = search.lit && (bounds.lit || !seen);
       search.umbra = search.umbra && (bounds.umbra || !seen);
-      search.deepest = max(search.deepest, seen ? bounds.deepest : 0.0);
+      search.depths.x = min(search.depths.x, seen ? bounds.depths.x : search.depths.x);
+      search.depths.y = max(search.depths.y, seen ? bounds.depths.y : 0.0);
       widest = max(widest, seen ? bounds.gap : 0.0);
     } while (++face < shadow_face_count(q.maps.faces));
 #endif
@@ -112,7 +114,7 @@ Search search_kernel(inout ShadowCursor cursor, VisibilityQuery q, inout KernelF
 #if !EARLY_OUT
     lit = lit || (search.lit && !umbra);
     umbra = umbra || (search.umbra && !lit);
-    search.open = !f.unblocked;
+    search.open = true;
 #endif
     search.gap = search.open ? clamp(widest, 0.0, search.gap) : search.gap;
   } while (search.open && ++round <= search_rounds);
@@ -164,8 +166,9 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   int pass = 0;
   do {
     bool searching = pass == 0;
-    Blockers found = blockers_at(cursor, q, f, gap, search.deepest, searching ? kernel_search : kernel_filter, open);
-    if (open && !searching) v = clamp(1.0 - found.share, 0.0, 1.0);
+    Blockers found = blockers_at(cursor, q, f, gap, search.depths, searching ? kernel_search : kernel_filter, open);
+    // The kernel is a box around what of the light counts; what blocks hides none of the rest.
+    if (open && !searching) v = clamp(1.0 - found.share / light_view_box_share(q.light), 0.0, 1.0);
     bool none = found.texels < (searching ? 0.5 : 1e-3);
     open = open && !none && (searching || found.gap < pass_gap * gap);
     gap = open ? found.gap : gap;

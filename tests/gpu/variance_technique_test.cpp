@@ -176,6 +176,31 @@ TEST_F(VarianceTechniqueTest, ReceiversSeenEdgeOnByTheLightAreFinite) {
   answer(s, {}, "savsm");
 }
 
+TEST_F(VarianceTechniqueTest, WhatStandsAboveATangentPlaneBlocksAlthoughTheLightsCentreIsBeneath) {
+  // A wall that has a third of the light before it, and a roof that reaches from the wall over all the rest.
+  for (const bool roof : {false, true}) {
+    Planes s;
+    s.addPlane(1, at(0.15f, 1, 0) * glm::rotate(glm::mat4(1), -glsl::pi / 2, {0, 0, 1}));
+    if (roof) s.addPlane(1, at(1.15f, 3, 0));
+    s.camera = scene::lookAt({4, 1, 0}, {0.15f, 1, 0}, 0.4f);
+    for (const char* views : {"1", "2"}) {
+      const Answer v = answer(s, {{"views", views}});
+      int onWall = 0;
+      double sum = 0;
+      for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+          const vec3 p = s.position(v, x, y);
+          if (v.instance[static_cast<size_t>(y * side + x)] != 1 || std::abs(p.z) > 0.4f) continue;
+          ++onWall;
+          sum += v.at(0, x, y);
+        }
+      }
+      EXPECT_GT(onWall, 100);
+      EXPECT_NEAR(sum / onWall, roof ? 0 : 1, 0.03) << "views " << views;
+    }
+  }
+}
+
 TEST_F(VarianceTechniqueTest, FacesOfAHemicubeCutNoHolesOrPatchesIntoShadows) {
   // A box of walls so near the light that its maps are a hemicube, and a panel whose shadow falls across
   // their edges.

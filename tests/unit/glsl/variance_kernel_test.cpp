@@ -20,6 +20,7 @@ TEST(VarianceKernel, TwoParallelPlanesAreExactAtEveryShare) {
     EXPECT_EQ(sub_kernel_kind(s), sub_kernel_blocked);
     EXPECT_NEAR(chebyshev_blocked(n, s.first, sub_kernel_second(s)), blocked, 1e-3f * blocked);
     EXPECT_NEAR(blocker_distance(s.first, sub_kernel_second(s)), delta, 1e-3f * delta);
+    EXPECT_FALSE(sub_kernel_contradicts(s, delta));
   }
 }
 
@@ -93,6 +94,51 @@ TEST(VarianceKernel, ThresholdsAreThoseOfShadowKernels) {
     if (stored < 1e-3f || stored > 0.999f) continue;
     EXPECT_TRUE(threshold_blocks(t, texel, metres * 0.9999f));
     EXPECT_FALSE(threshold_blocks(t, texel, metres * 1.0001f));
+  }
+}
+
+TEST(VarianceKernel, ThresholdsHoldWhereverTheLightStands) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  int beneath = 0, blocked = 0;
+  for (int i = 0; i < 40000; ++i) {
+    ShadowView view{};
+    view.axis_x = vec3(1, 0, 0);
+    view.axis_y = vec3(0, 1, 0);
+    view.axis_z = vec3(0, 0, 1);
+    view.near = 0.5f;
+    view.far = 20;
+    view.scale = 0.625f;
+    view.footprint = 1 / (0.625f * 256);
+    view.middle = vec2(0.5f);
+    view.projection = shadow_perspective;
+    view.size = 256;
+    const vec3 p(2 * uniform(random), 2 * uniform(random), 8);
+    const vec3 normal = normalize(vec3(uniform(random), uniform(random), 0.2f * uniform(random)));
+    const ShadowReceiver r = shadow_receiver(view, p, normal, vec3(0, 0, 1), 1);
+    const ShadowThresholds t = shadow_thresholds(view, r, dot(normal, p), 20, 65535);
+    const vec2 texel(128 + 128 * uniform(random), 128 + 128 * uniform(random));
+    const float depth = 5.25f + 4.75f * uniform(random);
+    const vec3 b = shadow_unproject_local(view, texel / 256.f, depth);
+    // Where rounding decides, and where the origin lies in the plane.
+    if (std::abs(dot(normal, b) - r.height) < 1e-4f || std::abs(r.height) < 1e-3f) continue;
+    EXPECT_EQ(threshold_blocks(t, texel, depth), shadow_blocks(r, b));
+    blocked += r.height > 0 && shadow_blocks(r, b);
+    beneath += r.height > 0;
+  }
+  EXPECT_GT(beneath, 10000);
+  EXPECT_GT(blocked, 500);
+}
+
+TEST(VarianceKernel, TexelsBehindThePlaneContradictItsTwoDepths) {
+  // Half the texels block at 100 quanta, the others lie from 60 to 95 behind the plane: few seem to block,
+  // from afar.
+  for (float behind = 60; behind < 96; behind += 5) {
+    const PlaceThresholds at{1000, 999, vec2(0)};
+    const SubKernel s = sub_kernel(at, vec2(8), 32 * (100 - behind), 32 * (100 * 100 + behind * behind));
+    EXPECT_EQ(sub_kernel_kind(s), sub_kernel_blocked);
+    EXPECT_LT(chebyshev_blocked(64, s.first, sub_kernel_second(s)), 5);
+    EXPECT_TRUE(sub_kernel_contradicts(s, 100));
   }
 }
 
