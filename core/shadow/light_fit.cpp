@@ -304,11 +304,10 @@ float kernelTexels(const glsl::Light& light, const LightLayout& layout, std::spa
 }
 
 /// The views of a light that chooses their number. Lights that stand for an environment are many, and each is
-/// a part already; the maps of cubes would be twenty and more.
+/// a part already.
 uint32_t viewsOf(const glsl::Light& light, const LightLayout& layout, std::span<const Bounds> boxes,
                  const ShadowMapDesc& desc) {
-  if ((light.flags & glsl::light_flag_environment) != 0 || glsl::shadow_face_count(layout.faces) > 2)
-    return 1;
+  if ((light.flags & glsl::light_flag_environment) != 0) return 1;
   return kernelTexels(light, layout, boxes, desc) > kWideKernel ? 2 : 1;
 }
 

@@ -245,10 +245,10 @@ TEST_F(ShadowMapTest, StaticMapsAreCachedAndSharedAndFollowWhatMoves) {
   const std::vector<uint32_t> lights{0};
   const shadow::ShadowMaps maps = service.request(lights, {.size = 64});
   EXPECT_EQ(service.request(lights, {.size = 64}).depth, maps.depth);
-  const shadow::ShadowMaps small = service.request(lights, {.size = 32});
+  const shadow::ShadowMaps small = service.request(lights, {.size = 16});
   EXPECT_NE(small.depth, maps.depth);
-  EXPECT_EQ(service.request(lights, {.size = 32, .views = 0}).depth, small.depth) << "too small to be cut";
-  EXPECT_NE(service.request(lights, {.size = 32, .views = 2}).depth, small.depth);
+  EXPECT_EQ(service.request(lights, {.size = 16, .views = 0}).depth, small.depth) << "too small to be cut";
+  EXPECT_NE(service.request(lights, {.size = 16, .views = 2}).depth, small.depth);
   graph.output(maps.depth);
   graph.prepare(device(), shaders(), pool);
   const auto state = [&] {
