@@ -18,8 +18,8 @@ constexpr float kLargestHalfAngle = 75.f * glsl::pi / 180.f;
 /// Limits the ratio of near to far from below.
 constexpr float kLeastNear = 1e-4f;
 
-/// Limits the kernels of a light that is not cut where it chooses (ShadowMapDesc::views), texels. In wider ones
-/// each of 2 x 2 parts has 3 x 3 sub-kernels of 2 x 2 texels, as many as single tests of texels take.
+/// Limits the kernels of a light that is not cut where it chooses (ShadowMapDesc::views), texels. In wider
+/// ones each of 2 x 2 parts has 3 x 3 sub-kernels of 2 x 2 texels, as many as single tests of texels take.
 constexpr float kWideKernel = 12;
 
 /// Returns the layout of one light. `boxes` are the world bounds of everything that casts or receives

@@ -19,9 +19,9 @@ struct ShadowThresholds {
   vec3 plane;     // the receiver's tangent plane
   vec3 biased;    // the same, raised by the bias
   vec3 axis;      // where the light's axis has the receiver's depth
-  vec4 beneath;   // of a perspective view whose origin lies beneath `biased`, whose rays come up through it: what blocks is
-                  // deeper. xyz: their rise along the normal per metre of depth, w: from where on it blocks, metres.
-                  // Else 0 and -1
+  vec3 rise;      // of rays along the normal per metre of depth, where a perspective view's origin lies beneath `biased`: they
+                  // come up through it, and what blocks is deeper
+  float beneath;  // how far, metres; elsewhere -1 without a rise
   float least;    // of all of these: the far plane's
   float deepest;  // of the plane's where the axis is nearer: nothing unoccluded lies deeper
   float near;     // metres
@@ -51,7 +51,9 @@ LIMN_FN ShadowThresholds shadow_thresholds(ShadowView view, ShadowReceiver recei
     along.x += a.z;
     t.plane = across / min(height, edge);
     t.biased = across / min(receiver.height, edge);
-    t.beneath = receiver.height < 0.0f ? vec4(0.0f, 0.0f, 0.0f, -1.0f) : vec4(across, receiver.height);
+    bool beneath = receiver.height >= 0.0f;
+    t.rise = beneath ? across : vec3(0.0f);
+    t.beneath = beneath ? receiver.height : -1.0f;
     t.axis = along / receiver.depth;
     t.least = 1.0f / view.far;
     t.deepest = 1.0f / deepest;
@@ -60,7 +62,8 @@ LIMN_FN ShadowThresholds shadow_thresholds(ShadowView view, ShadowReceiver recei
     float slope = min(n.z, -1e-6f);
     t.plane = (across - vec3(height, 0.0f, 0.0f)) / slope;
     t.biased = (across - vec3(receiver.height, 0.0f, 0.0f)) / slope;
-    t.beneath = vec4(0.0f, 0.0f, 0.0f, -1.0f);
+    t.rise = vec3(0.0f);
+    t.beneath = -1.0f;
     t.axis = (along - vec3(receiver.depth, 0.0f, 0.0f)) / a.z;
     t.least = -view.far;
     t.deepest = -deepest;
@@ -70,7 +73,7 @@ LIMN_FN ShadowThresholds shadow_thresholds(ShadowView view, ShadowReceiver recei
   t.plane *= per_texel;
   t.biased *= per_texel;
   t.axis *= per_texel;
-  t.beneath *= vec4(per_texel, 1.0f);
+  t.rise *= per_texel;
   return t;
 }
 
@@ -100,7 +103,7 @@ LIMN_FN bool threshold_nearer(ShadowThresholds t, float depth, float value) {
 // Whether what is stored at a place, `depth` metres, blocks.
 LIMN_FN bool threshold_blocks(ShadowThresholds t, vec2 texel, float depth) {
   bool nearer = threshold_nearer(t, depth, max(threshold_value(t.biased, texel), threshold_value(t.axis, texel)));
-  return nearer && depth * threshold_value(vec3(t.beneath), texel) > t.beneath.w;
+  return nearer && depth * threshold_value(t.rise, texel) > t.beneath;
 }
 
 // Metres along the light's axis from what lies at a place and `depth` to the receiver.
