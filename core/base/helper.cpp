@@ -1,7 +1,6 @@
 #include "core/base/helper.h"
 
 #include <dlfcn.h>
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/mman.h>
@@ -10,7 +9,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/spawn.h"
@@ -23,13 +21,12 @@ using Clock = std::chrono::steady_clock;
 class File {
  public:
   explicit File(int number) : number_(number) {}
-  ~File() { close(); }
+  ~File() {
+    if (number_ >= 0) ::close(number_);
+  }
   File(const File&) = delete;
   File& operator=(const File&) = delete;
   int number() const { return number_; }
-  void close() {
-    if (number_ >= 0) ::close(std::exchange(number_, -1));
-  }
 
  private:
   int number_;
@@ -91,26 +88,20 @@ std::filesystem::path libraryFolder() {
 HelperAnswer runHelper(const std::string& name, const std::vector<std::string>& arguments,
                        const HelperLimits& limits, std::span<const std::byte> input) {
   const std::string program = (libraryFolder() / "limn" / name).string();
-  const auto refuse = [&] {
-    throw Error(fmt::format("{} cannot be started: {}", program, std::strerror(errno)));
-  };
   const File given(input.empty() ? -1 : fileOf(input));
-  if (!input.empty() && given.number() < 0) refuse();
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) refuse();
-  const File in(ends[0]);
-  File out(ends[1]);
-  const pid_t child = startProgram(program, arguments, {given.number(), out.number(), -1});
-  out.close();
+  if (!input.empty() && given.number() < 0)
+    throw Error(fmt::format("{} cannot be started: {}", program, std::strerror(errno)));
+  const PipedProgram child = startPiped(program, arguments, {.in = given.number()}, &StandardFiles::out);
+  const File in(child.output);
   HelperAnswer answer;
   try {
     answer.failure = receive(in.number(), limits, answer.bytes);
   } catch (...) {
-    endProgram(child);
+    endProgram(child.process);
     throw;
   }
   // One that has closed its output is about to end, which a signal no longer changes.
-  const std::string ending = endProgram(child);
+  const std::string ending = endProgram(child.process);
   if (answer.failure.empty()) answer.failure = ending;
   return answer;
 }

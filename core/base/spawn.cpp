@@ -18,13 +18,14 @@
 namespace limn {
 
 pid_t startProgram(const std::string& program, const std::vector<std::string>& arguments,
-                   const StandardFiles& standard) {
+                   const StandardFiles& standard, Interrupts interrupts) {
   posix_spawn_file_actions_t files;
   posix_spawnattr_t attributes;
   sigset_t defaults, blocked;
   sigfillset(&defaults);
   sigemptyset(&blocked);
-  for (const int interruption : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) sigaddset(&blocked, interruption);
+  if (interrupts == Interrupts::blocked)
+    for (const int interruption : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) sigaddset(&blocked, interruption);
   std::vector<char*> pointers{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
   pointers.push_back(nullptr);
@@ -55,6 +56,24 @@ pid_t startProgram(const std::string& program, const std::vector<std::string>& a
   return child;
 }
 
+PipedProgram startPiped(const std::string& program, const std::vector<std::string>& arguments,
+                        StandardFiles files, int StandardFiles::*piped, Interrupts interrupts) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    throw Error(fmt::format("{} cannot be started: {}", program, std::strerror(errno)));
+  files.*piped = ends[1];
+  PipedProgram started{0, ends[0]};
+  try {
+    started.process = startProgram(program, arguments, files, interrupts);
+  } catch (...) {
+    close(ends[0]);
+    close(ends[1]);
+    throw;
+  }
+  close(ends[1]);
+  return started;
+}
+
 bool programExists(const std::string& name) {
   const char* folders = std::getenv("PATH");
   std::istringstream text(folders ? folders : "/bin:/usr/bin");
@@ -83,26 +102,16 @@ std::string endProgram(pid_t process) {
 
 ProgramOutput programOutput(const std::string& program, const std::vector<std::string>& arguments,
                             bool talks) {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0)
-    throw Error(fmt::format("{} cannot be started: {}", program, std::strerror(errno)));
-  pid_t process = 0;
-  try {
-    process = startProgram(program, arguments, {.out = ends[1], .err = talks ? STDERR_FILENO : -1});
-  } catch (...) {
-    close(ends[0]);
-    close(ends[1]);
-    throw;
-  }
-  close(ends[1]);
+  const PipedProgram started =
+      startPiped(program, arguments, {.err = talks ? STDERR_FILENO : -1}, &StandardFiles::out);
   ProgramOutput output;
   char buffer[4096];
   for (ssize_t count = 1; count > 0 || (count < 0 && errno == EINTR);) {
-    count = read(ends[0], buffer, sizeof buffer);
+    count = read(started.output, buffer, sizeof buffer);
     if (count > 0) output.text.append(buffer, static_cast<size_t>(count));
   }
-  close(ends[0]);
-  output.failure = awaitProgram(process);
+  close(started.output);
+  output.failure = awaitProgram(started.process);
   while (output.text.ends_with('\n')) output.text.pop_back();
   return output;
 }

@@ -16,12 +16,27 @@ struct StandardFiles {
   int in = -1, out = -1, err = -1;
 };
 
+/// Says whether SIGINT (from the keyboard, too), SIGTERM, SIGHUP and SIGQUIT reach a program.
+enum class Interrupts : bool { blocked, reach };
+
 /// Starts a program, which is a path or, without '/', the name of one in the folders of PATH, with these
 /// arguments after its name. No shell reads them. The program inherits no other file and handles signals as
-/// by default, but an interrupt from the keyboard does not reach it. Returns its process, to be given to
-/// awaitProgram() or endProgram(). Throws Error if it cannot be started.
+/// by default. Returns its process, to be given to awaitProgram() or endProgram(). Throws Error if it cannot
+/// be started.
 LIMN_API pid_t startProgram(const std::string& program, const std::vector<std::string>& arguments,
-                            const StandardFiles& files);
+                            const StandardFiles& files, Interrupts interrupts = Interrupts::blocked);
+
+/// Holds a program that writes into a pipe.
+struct PipedProgram {
+  pid_t process = 0;
+  int output = -1;  ///< the pipe's other end, to be read and closed; it ends when the program does
+};
+
+/// Does what startProgram() does, with a pipe as the standard file `piped`. A program whose pipe was closed
+/// ends when it writes (SIGPIPE).
+LIMN_API PipedProgram startPiped(const std::string& program, const std::vector<std::string>& arguments,
+                                 StandardFiles files, int StandardFiles::*piped,
+                                 Interrupts interrupts = Interrupts::blocked);
 
 /// Returns whether startProgram() finds a program of that name in the folders of PATH.
 LIMN_API bool programExists(const std::string& name);

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <string>
 
@@ -28,6 +29,23 @@ TEST(Spawn, SaysHowAProgramEnded) {
   EXPECT_EQ(awaitProgram(startProgram("false", {}, {})), "it ended with status 1");
   EXPECT_EQ(awaitProgram(startProgram("sh", {"-c", "kill -SEGV $$"}, {})), "it crashed: Segmentation fault");
   EXPECT_EQ(endProgram(startProgram("sleep", {"1000"}, {})), "it crashed: Killed");
+}
+
+/// SIGTERM ends a program that interrupts reach, and no other.
+TEST(Spawn, InterruptsReachAProgramThatIsToTakeThem) {
+  EXPECT_EQ(awaitProgram(startProgram("sh", {"-c", "kill -TERM $$; exit 3"}, {})), "it ended with status 3");
+  EXPECT_EQ(awaitProgram(startProgram("sh", {"-c", "kill -TERM $$; exit 3"}, {}, Interrupts::reach)),
+            "it crashed: Terminated");
+}
+
+TEST(Spawn, APipeGetsTheStandardFileThatIsNamed) {
+  const PipedProgram started = startPiped("sh", {"-c", "echo out; echo err >&2"}, {}, &StandardFiles::err);
+  char text[16] = {};
+  EXPECT_EQ(awaitProgram(started.process), "");
+  EXPECT_EQ(read(started.output, text, sizeof text), 4);
+  EXPECT_STREQ(text, "err\n");
+  EXPECT_EQ(read(started.output, text, sizeof text), 0) << "it ends with the program";
+  close(started.output);
 }
 
 TEST(Spawn, AProgramThatDoesNotExistIsAnError) {
