@@ -4,11 +4,16 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/base/export.h"
 #include "core/question/scene_question.h"
 
 namespace limn {
+
+/// Returns the question's flags, each followed by its value: those that are not the default. The scene, which
+/// has no flag, is not among them.
+LIMN_API std::vector<std::string> questionFlags(const SceneQuestion& question);
 
 /// Returns the command that renders the question's picture by `techniques` (names joined by ",", or nothing),
 /// as a line for a shell without --out. `settings` are pairs of "technique.parameter" and value. Flags are

@@ -30,5 +30,16 @@ TEST(RenderCommand, QuotesForTheShell) {
             "limn render '$(rm -rf .).glb' --technique 'a;b' --set 'a.x=1 2'");
 }
 
+TEST(RenderCommand, FlagsForAProgramAreNotQuoted) {
+  SceneQuestion question;
+  question.scene = "balls";
+  EXPECT_TRUE(questionFlags(question).empty());
+  question.light = "a b";
+  question.lightSettings = {"key.position=-1,2,3", "key.intensity=2"};
+  EXPECT_EQ(questionFlags(question),
+            (std::vector<std::string>{"--light", "a b", "--set-light", "key.position=-1,2,3", "--set-light",
+                                      "key.intensity=2"}));
+}
+
 }  // namespace
 }  // namespace limn
