@@ -13,9 +13,7 @@ namespace limn::app {
 namespace {
 
 int run(const CLI::App& command) {
-  std::error_code unknown;
-  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", unknown);
-  const std::string program = (self.parent_path() / "limn-view").string();
+  const std::string program = programBeside("limn-view").string();
   std::vector<std::string> arguments = command.remaining();
   std::vector<char*> pointers{const_cast<char*>(program.c_str())};
   for (std::string& argument : arguments) pointers.push_back(argument.data());

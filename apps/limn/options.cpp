@@ -18,6 +18,11 @@
 namespace limn::app {
 namespace fs = std::filesystem;
 
+fs::path programBeside(const std::string& name) {
+  std::error_code unknown;
+  return fs::read_symlink("/proc/self/exe", unknown).parent_path() / name;
+}
+
 void checkWritable(const fs::path& file) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored))
@@ -92,6 +97,11 @@ int guarded(const std::function<int()>& work) {
     say(currentFailure());
   }
   return 1;
+}
+
+void sayInTerminal(const std::string& line) {
+  std::fputs((line + "\n").c_str(), stdout);
+  std::fflush(stdout);
 }
 
 void sayWritten(const fs::path& file) {

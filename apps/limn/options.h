@@ -21,6 +21,9 @@ void addSceneFlags(CLI::App& command, SceneQuestion& question);
 CLI::Option* addSceneFlag(CLI::App& command, SceneQuestion& question, std::string_view key,
                           const std::string& flag = {});
 
+/// Returns the path of another of limn's programs, which lie in one folder.
+std::filesystem::path programBeside(const std::string& name);
+
 /// Throws Error unless files can be written beside `file`. It is called before long work, whose result would
 /// be lost otherwise.
 void checkWritable(const std::filesystem::path& file);
@@ -52,6 +55,9 @@ void warn(const std::string& message);
 /// Runs `work`, reports what it throws (including Interrupted) in one line on stderr, and returns the exit
 /// status.
 int guarded(const std::function<int()>& work);
+
+/// Says a line on stdout at once, for whoever started the program from a terminal.
+void sayInTerminal(const std::string& line);
 
 /// Says on stderr that the file has been written.
 void sayWritten(const std::filesystem::path& file);

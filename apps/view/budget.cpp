@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 #include <map>
 
+#include "core/base/shell.h"
 #include "core/question/question_fields.h"
 #include "core/question/render_command.h"
 #include "core/question/technique_names.h"
@@ -20,6 +21,10 @@ std::string sceneName(const std::string& scene) {
 
 }  // namespace
 
+bool sameScene(const std::string& a, const std::string& b) {
+  return sceneName(a) == sceneName(b);
+}
+
 std::string MeasuredSetting::text() const {
   std::string line = technique.empty() ? "unshadowed" : technique;
   for (const auto& [name, value] : parameters)
@@ -29,11 +34,10 @@ std::string MeasuredSetting::text() const {
 
 std::vector<MeasuredQuestion> measuredQuestions(std::span<const bench::Row> rows, const std::string& scene) {
   std::vector<MeasuredQuestion> questions;
-  std::map<std::string, std::size_t> places;
+  std::map<std::string, std::size_t> places, settingPlaces;
   for (const bench::Row& row : rows) {
     if (row.what.technique == bench::kSeparationFloor) continue;  // no technique can be as good
-    if (!row.failure.empty() || row.cost.frameMs.n == 0 || sceneName(row.what.scene) != sceneName(scene))
-      continue;
+    if (!row.failure.empty() || row.cost.frameMs.n == 0 || !sameScene(row.what.scene, scene)) continue;
     const SceneQuestion& question = row.what;
     const glm::ivec2 timed(row.what.timeWidth, row.what.timeHeight);
     const std::string times = timed.x > 0 ? fmt::format(", times at {}x{}", timed.x, timed.y) : "";
@@ -41,12 +45,20 @@ std::vector<MeasuredQuestion> measuredQuestions(std::span<const bench::Row> rows
         fmt::format("{}{}|{}|{}", questionText(question), times, row.cost.renderer, row.cost.machine);
     const auto [place, added] = places.emplace(key, questions.size());
     if (added)
-      questions.push_back({.text = subjectText(question, QuestionWording::label) + times,
+      questions.push_back({.question = question,
+                           .text = subjectText(question, QuestionWording::label) + times,
                            .renderer = row.cost.renderer,
                            .pixels = std::int64_t{question.width} * question.height,
                            .settings = {}});
-    questions[place->second].settings.push_back(
-        {row.what.technique, row.what.parameters, row.error.rmse, row.cost.frameMs.median});
+    const MeasuredSetting setting{row.what.technique, row.what.parameters, row.error.rmse,
+                                  row.cost.frameMs.median, row.cost.frameMs.n};
+    std::vector<MeasuredSetting>& settings = questions[place->second].settings;
+    const auto [known, first] = settingPlaces.emplace(
+        fmt::format("{}|{}|{}", key, setting.text(), row.what.dynamic), settings.size());
+    if (first)
+      settings.push_back(setting);
+    else if (setting.frames >= settings[known->second].frames)
+      settings[known->second] = setting;
   }
   std::ranges::stable_sort(questions, [](const MeasuredQuestion& a, const MeasuredQuestion& b) {
     return std::pair(a.pixels, a.settings.size()) > std::pair(b.pixels, b.settings.size());
@@ -72,14 +84,42 @@ BudgetAnswer bestWithin(const MeasuredQuestion& question, double ms) {
   return answer;
 }
 
-std::string tuneCommand(const SceneQuestion& question, double ms, const std::string& folder) {
-  SceneQuestion asked = question;
-  asked.term = SceneQuestion().term;
-  std::string command = renderCommand(asked, "", {});
-  const std::string render = "limn render";
-  command.replace(0, render.size(), "limn tune");
-  if (question.term != asked.term) command += commandOption("--term", question.term);
-  return command + fmt::format(" --max-ms {:.3g}", ms) + commandOption("--out", folder);
+SceneQuestion TuneOrder::questionOf(const SceneQuestion& shown) {
+  SceneQuestion question = shown;
+  if (question.term == name(Term::final))
+    question.term = name(question.light.empty() ? Term::direct : Term::visibility);
+  return question;
+}
+
+std::vector<std::string> tuneArguments(const TuneOrder& order) {
+  SceneQuestion rest = order.question;
+  rest.term = SceneQuestion().term;  // tune has a flag of its own for it
+  std::vector<std::string> words{"tune", rest.scene};
+  const auto add = [&](const std::vector<std::string>& more) {
+    words.insert(words.end(), more.begin(), more.end());
+  };
+  add(questionFlags(rest));
+  add({"--term", order.question.term});
+  if (!order.techniques.empty()) add({"--techniques", order.techniques});
+  add({"--steps", fmt::format("{}", order.steps), "--max-ms", fmt::format("{:.3g}", order.ms), "--out",
+       order.folder});
+  return words;
+}
+
+std::string tuneCommand(const TuneOrder& order) {
+  std::string command = "limn";
+  for (const std::string& word : tuneArguments(order)) command += " " + shellQuoted(word);
+  return command;
+}
+
+std::size_t placeOf(const SceneQuestion& question, std::span<const MeasuredQuestion> measured) {
+  const auto same = [&](const MeasuredQuestion& other) {
+    SceneQuestion of = other.question;
+    of.scene = question.scene;  // sameScene() has been asked
+    return of == question;
+  };
+  const auto found = std::ranges::find_if(measured, same);
+  return found == measured.end() ? 0 : static_cast<std::size_t>(found - measured.begin());
 }
 
 }  // namespace limn::app

@@ -1,6 +1,7 @@
 // Finds the best setting for a time among those that limn tune or limn bench measured of a scene.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -17,6 +18,7 @@ struct MeasuredSetting {
   std::string technique;
   std::vector<std::pair<std::string, std::string>> parameters;  ///< "technique.parameter", value
   double rmse = 0, ms = 0;
+  int frames = 0;  ///< that ms is the median of
 
   /// Returns technique and parameters on one line.
   std::string text() const;
@@ -24,14 +26,19 @@ struct MeasuredSetting {
 
 /// Holds what was measured on one machine for one question about a scene, which makes it comparable.
 struct MeasuredQuestion {
+  SceneQuestion question;
   std::string text;  ///< camera, light, term and size
   std::string renderer;
   std::int64_t pixels = 0;
   std::vector<MeasuredSetting> settings;
 };
 
-/// Returns what the rows hold of `scene`, by its name or that of its file: the largest pictures first, then
-/// the questions with the most settings. Rows without a picture or a time do not count.
+/// Says whether both name the same scene: by its name or by that of its file.
+bool sameScene(const std::string& a, const std::string& b);
+
+/// Returns what the rows hold of `scene`: the largest pictures first, then the questions with the most
+/// settings. Rows without a picture or a time do not count; of rows of one setting the one with the most
+/// frames does, since a search times what it checks for a shorter time.
 std::vector<MeasuredQuestion> measuredQuestions(std::span<const bench::Row> rows, const std::string& scene);
 
 struct BudgetAnswer {
@@ -43,7 +50,25 @@ struct BudgetAnswer {
 /// Returns the settings with the least error among those whose frames take no longer than `ms`.
 BudgetAnswer bestWithin(const MeasuredQuestion& question, double ms);
 
-/// Returns the command that measures settings for the question into `folder`, for a shell.
-std::string tuneCommand(const SceneQuestion& question, double ms, const std::string& folder);
+/// Declares a search of limn tune.
+struct TuneOrder {
+  SceneQuestion question;
+  double ms = 16;               ///< that a frame may take
+  std::string techniques = {};  ///< comma-separated; empty: all that answer the term
+  int steps = 1;                ///< from a parameter's default in each direction
+  std::string folder;
+
+  /// Returns what is asked of techniques for a picture that the window shows: of the whole picture only the
+  /// part that they compete for, direct light, or the visibility of its only light.
+  static SceneQuestion questionOf(const SceneQuestion& shown);
+};
+
+/// Returns what limn is started with.
+std::vector<std::string> tuneArguments(const TuneOrder& order);
+/// Returns the same as a command for a shell.
+std::string tuneCommand(const TuneOrder& order);
+
+/// Returns the index of the question among what was measured of its scene; 0 where it is not there.
+std::size_t placeOf(const SceneQuestion& question, std::span<const MeasuredQuestion> measured);
 
 }  // namespace limn::app

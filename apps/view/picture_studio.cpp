@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <utility>
 
+#include "apps/limn/options.h"
 #include "apps/view/display_image.h"
 #include "core/base/error.h"
 #include "core/question/question_fields.h"
@@ -73,8 +73,7 @@ PictureStudio::PictureStudio(gpu::Device& device, std::filesystem::path shaders,
 void PictureStudio::publish() {
   publish_(facts_);
   if (std::exchange(printed_, facts_.messages) == facts_.messages) return;
-  std::puts(facts_.message.c_str());  // for whoever started the program from a terminal
-  std::fflush(stdout);
+  sayInTerminal(facts_.message);
 }
 
 void PictureStudio::say(std::string message, bool problem) {

@@ -83,9 +83,7 @@ void ViewerWindow::savePanel() {
     ImGui::SameLine();
     if (ImGui::Button("Stop")) thread_->cancelSaving();
   }
-  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-  wrapped(renderCommand(state_, saveText_));
-  ImGui::PopStyleColor();
+  remark(renderCommand(state_, saveText_));
 }
 
 }  // namespace limn::app

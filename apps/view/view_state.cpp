@@ -69,6 +69,17 @@ void useNextTechnique(std::vector<render::TechniqueUse>& techniques, const Techn
   dropRivals(techniques, plugin);
 }
 
+void takeMeasured(std::vector<render::TechniqueUse>& techniques, std::vector<render::TechniqueUse> measured,
+                  Term term) {
+  TermSet replaced = term == Term::final ? kAnswerableTerms : exclusiveWith(termSet(term)) | term;
+  for (const render::TechniqueUse& taken : measured) replaced |= refusedBeside(termsOf(taken));
+  std::erase_if(techniques, [&](const render::TechniqueUse& use) {
+    return (termsOf(use) & replaced) != 0 ||
+           std::ranges::any_of(measured, [&](const auto& taken) { return taken.plugin == use.plugin; });
+  });
+  techniques.insert(techniques.begin(), measured.begin(), measured.end());
+}
+
 std::string renderCommand(const ViewState& state, const std::filesystem::path& out) {
   std::string line = limn::renderCommand(state.scene, namesOf(state.techniques), changed(state.techniques));
   if (state.automaticExposure)

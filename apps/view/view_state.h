@@ -30,6 +30,11 @@ void dropRivals(std::vector<render::TechniqueUse>& techniques, const TechniquePl
 /// does, with its defaults.
 void useNextTechnique(std::vector<render::TechniqueUse>& techniques, const TechniqueRegistry& registry);
 
+/// Puts techniques that were measured for `term` in place of those that answer it, and keeps the others as
+/// far as they may stand beside them.
+void takeMeasured(std::vector<render::TechniqueUse>& techniques, std::vector<render::TechniqueUse> measured,
+                  Term term);
+
 /// Returns the command that renders the state to `out`: one line for a shell, with arguments quoted where
 /// needed.
 std::string renderCommand(const ViewState& state, const std::filesystem::path& out);

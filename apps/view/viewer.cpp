@@ -160,6 +160,7 @@ void ViewerWindow::adopt(const SceneFacts& scene) {
   lightEdits_ = session::parseLightEdits(scene.options.lightSettings);
   chosenLight_ = scene::kNone;
   measured_.clear();
+  tuneProblem_.clear();
   lightsNew_ = true;
   drag_.reset();
   setText(sceneText_, scene.options.scene);
@@ -241,6 +242,7 @@ void ViewerWindow::postOrder() {
 
 void ViewerWindow::frame() {
   takeFacts();
+  budgetNews();
   const double now = glfwGetTime();
   if (playing_) {
     state_.scene.time += now - lastFrame_;

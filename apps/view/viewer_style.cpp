@@ -10,6 +10,12 @@ namespace {
 
 float scale = 1;  // of everything; there is one window
 
+void wrappedIn(const ImVec4& colour, const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, colour);
+  wrapped(text);
+  ImGui::PopStyleColor();
+}
+
 }  // namespace
 
 float scaled(float pixels) {
@@ -60,10 +66,12 @@ void wrapped(const std::string& text) {
   ImGui::PopTextWrapPos();
 }
 
+void remark(const std::string& text) {
+  wrappedIn(ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled), text);
+}
+
 void complaint(const std::string& text) {
-  ImGui::PushStyleColor(ImGuiCol_Text, kProblemColour);
-  wrapped(text);
-  ImGui::PopStyleColor();
+  wrappedIn(kProblemColour, text);
 }
 
 void tip(const std::string& text) {

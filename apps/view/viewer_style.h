@@ -29,6 +29,8 @@ inline const ImVec4 kProblemColour(1, 0.55f, 0.45f, 1);
 
 /// Shows text that wraps at the panel's edge.
 void wrapped(const std::string& text);
+/// Shows wrapped text that explains.
+void remark(const std::string& text);
 /// Shows wrapped text in the colour of errors.
 void complaint(const std::string& text);
 /// Gives the previous widget a tooltip.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "apps/view/gizmo.h"
 #include "apps/view/orbit.h"
 #include "apps/view/picture_thread.h"
+#include "apps/view/tune_search.h"
 #include "apps/view/view_state.h"
 #include "apps/view/viewer.h"
 #include "apps/view/window_textures.h"
@@ -95,8 +97,14 @@ class ViewerWindow {
   void comparePanel();
   void compareWith(Beside what);
   void budgetPanel();
-  void budgetSetting(const char* rank, const MeasuredSetting& setting);
-  void readBudget();
+  void budgetRows();
+  void budgetAnswer();
+  void budgetSetting(const char* rank, const MeasuredSetting& setting, Term term);
+  TuneOrder tuneOrder() const;
+  void tunePanel();
+  void startTune();
+  void budgetNews();
+  void readBudget(const SceneQuestion& question);
   void framePanel();
   void passRow(const frame::PassReport& pass, const frame::PassTime* time, double longest);
   void inspectorWindow();
@@ -161,10 +169,16 @@ class ViewerWindow {
   } frameTimes_;
   TextField sceneText_ = "", saveText_ = "", framesText_ = "0:29";
   float fps_ = 30;
-  TextField budgetText_ = "out/tune";
+  TextField budgetText_ = "out/tune", tuneTechniques_ = "";
   std::vector<MeasuredQuestion> measured_;  ///< in that folder
   size_t measuredChosen_ = 0;
   float budgetMs_ = 16;
+  int tuneSteps_ = 1;
+  TuneOrder tuned_;                   ///< what the search looks for
+  std::unique_ptr<TuneSearch> tune_;  ///< the last search
+  std::string tuneProblem_;
+  SceneQuestion readOf_;  ///< which of the measured questions is to be shown
+  std::future<std::vector<MeasuredQuestion>> reading_;
   float environmentThreshold_ = 0;  ///< while its slider is held
 };
 

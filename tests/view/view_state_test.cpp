@@ -104,6 +104,22 @@ TEST_F(ViewStateTest, TermsThatATechniqueIsAskedForAreKept) {
   EXPECT_EQ(namesOf(state_.techniques), "implicit_visibility:indirect,pcss");
 }
 
+/// What was measured for a term replaces what answers it.
+TEST_F(ViewStateTest, MeasuredTechniquesLeaveThoseOfOtherTerms) {
+  const auto after = [&](const char* shown, const char* measured, Term term) {
+    use(shown);
+    session::TechniqueChoice choice;
+    choice.techniques = measured;
+    takeMeasured(state_.techniques, choice.resolve(registry_), term);
+    return namesOf(state_.techniques);
+  };
+  EXPECT_EQ(after("vssm,clustered_visibility", "pcss", Term::direct), "pcss,clustered_visibility");
+  EXPECT_EQ(after("vssm,clustered_visibility", "vssm", Term::visibility), "vssm,clustered_visibility");
+  EXPECT_EQ(after("vssm,clustered_visibility", "pcss", Term::final), "pcss");
+  EXPECT_EQ(after("pcss,clustered_visibility", "implicit_visibility:indirect", Term::indirect),
+            "implicit_visibility:indirect,pcss");
+}
+
 TEST_F(ViewStateTest, SuitesAreSuites) {
   use("vssm,clustered_visibility", {"vssm.shadow_map_size=512"});
   state_.scene.width = 96;
