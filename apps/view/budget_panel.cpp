@@ -110,7 +110,10 @@ void ViewerWindow::budgetRows() {
       ImGui::InputText("##folder", budgetText_, sizeof budgetText_, ImGuiInputTextFlags_EnterReturnsTrue);
   ImGui::SameLine();
   read |= ImGui::Button("Read", {-1, 0});
-  if (read) readBudget(TuneOrder::questionOf(state_.scene));
+  if (read) {
+    tuneProblem_.clear();
+    readBudget(TuneOrder::questionOf(state_.scene));
+  }
   if (measured_.size() > 1) {
     nameCell("of", "Camera, light, term and size; times of one size do not hold for another");
     const auto text = [&](size_t i) {
