@@ -22,12 +22,23 @@ void ViewerWindow::readBudget(const SceneQuestion& question) {
   measured_.clear();
   measuredChosen_ = 0;
   readOf_ = question;
+  readUnasked_ = false;
   reading_ = std::async(std::launch::async, [folder = std::filesystem::path(budgetText_), question] {
     const std::filesystem::path file = folder / "results.jsonl";
     auto measured = measuredQuestions(bench::readRows(file), question.scene);
     if (measured.empty()) throw Error(file.string() + " has no row of this scene");
     return measured;
   });
+}
+
+/// Reads the folder when the panel is first shown for a scene.
+void ViewerWindow::readBudgetUnasked() {
+  if (budgetOf_ == state_.scene.scene || reading_.valid()) return;
+  budgetOf_ = state_.scene.scene;
+  std::error_code unknown;
+  if (!std::filesystem::exists(std::filesystem::path(budgetText_) / "results.jsonl", unknown)) return;
+  readBudget(TuneOrder::questionOf(state_.scene));
+  readUnasked_ = true;
 }
 
 TuneOrder ViewerWindow::tuneOrder() const {
@@ -74,7 +85,7 @@ void ViewerWindow::budgetNews() {
     measured_ = std::move(measured);
     measuredChosen_ = placeOf(readOf_, measured_);
   } catch (const Error& error) {
-    if (tuneProblem_.empty()) say(error.what(), true);
+    if (tuneProblem_.empty() && !readUnasked_) say(error.what(), true);
   }
 }
 
@@ -183,6 +194,7 @@ void ViewerWindow::budgetAnswer() {
 }
 
 void ViewerWindow::budgetPanel() {
+  readBudgetUnasked();
   budgetRows();
   tunePanel();
   if (!measured_.empty()) budgetAnswer();

@@ -97,6 +97,7 @@ class ViewerWindow {
   void comparePanel();
   void compareWith(Beside what);
   void budgetPanel();
+  void readBudgetUnasked();
   void budgetRows();
   void budgetAnswer();
   void budgetSetting(const char* rank, const MeasuredSetting& setting, Term term);
@@ -177,7 +178,9 @@ class ViewerWindow {
   TuneOrder tuned_;                   ///< what the search looks for
   std::unique_ptr<TuneSearch> tune_;  ///< the last search
   std::string tuneProblem_;
-  SceneQuestion readOf_;  ///< which of the measured questions is to be shown
+  SceneQuestion readOf_;      ///< which of the measured questions is to be shown
+  bool readUnasked_ = false;  ///< nobody is told what cannot be read
+  std::string budgetOf_;      ///< the scene for which the panel was shown
   std::future<std::vector<MeasuredQuestion>> reading_;
   float environmentThreshold_ = 0;  ///< while its slider is held
 };

@@ -49,6 +49,9 @@ TEST_F(ViewerBudgetTest, SearchesWhatItShowsAndTakesTheAnswer) {
   EXPECT_EQ(contents(folder_ / "left"), "");
   EXPECT_THAT(command("meanwhile.exr"), testing::HasSubstr("--technique vssm"));
   EXPECT_THAT(command("taken.exr"), testing::HasSubstr("--technique hard_shadow_map"));
+  // Another window finds what was measured.
+  ASSERT_EQ(view(kArguments, "frames 2; sleep 2; click 375 210; click 355 383; save again.exr").status, 0);
+  EXPECT_THAT(command("again.exr"), testing::HasSubstr("--technique hard_shadow_map"));
 }
 
 /// No process is left behind, whether a search is cancelled or the window is closed; what is cancelled can be
