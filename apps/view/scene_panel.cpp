@@ -120,14 +120,40 @@ void ViewerWindow::floorRow() {
   open(wanted);
 }
 
+/// An entry for a file that was opened before; true where it is chosen.
+bool ViewerWindow::recentScene(const fs::path& file) {
+  ImGui::PushID(file.c_str());
+  const bool chosen = ImGui::Selectable(file.filename().c_str());
+  ImGui::PopID();
+  tip(file.string());
+  if (chosen) openFile(file);
+  return chosen;
+}
+
+/// What was opened before, and limn's own scenes.
+void ViewerWindow::sceneChooser() {
+  constexpr int kArrow =
+      ImGuiComboFlags_NoPreview | ImGuiComboFlags_PopupAlignLeft | ImGuiComboFlags_HeightLarge;
+  if (!ImGui::BeginCombo("##scenes", "", kArrow)) return;
+  for (const fs::path& file : recentScenes_)
+    if (recentScene(file)) break;
+  if (!recentScenes_.empty() && !ownScenes_.empty()) ImGui::Separator();
+  for (const std::string& name : ownScenes_)
+    if (ImGui::Selectable(name.c_str())) openFile(name);
+  ImGui::EndCombo();
+}
+
 void ViewerWindow::scenePanel() {
   if (!beginRows("scene")) return;
   nameCell("file",
            "A glTF file or one of limn's scenes by name; enter opens it, and so does a file dropped on "
            "the window. F4 reads it again");
+  ImGui::SetNextItemWidth(-scaled(26));
   if (ImGui::InputText("##file", sceneText_, sizeof sceneText_, ImGuiInputTextFlags_EnterReturnsTrue) &&
       *sceneText_ != 0)
     openFile(sceneText_);
+  ImGui::SameLine();
+  sceneChooser();
   if (facts_->scene) {
     nameCell("camera", "Of the scene; turning and flying makes it free");
     cameraChooser();

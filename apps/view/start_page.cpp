@@ -14,11 +14,17 @@ void ViewerWindow::startPage() {
                     {static_cast<float>(area_.x) - scaled(48), static_cast<float>(area_.y) - scaled(24)});
   wrapped("Drop a .gltf or .glb file on this window, or type its name into Scene, file.");
   wrapped("Models in other formats: limn import MODEL --out model.glb");
+  ImGui::BeginDisabled(!facts_->job.empty());  // one is being opened
+  if (!recentScenes_.empty()) {
+    ImGui::Spacing();
+    wrapped("Or take what was opened before:");
+    for (const std::filesystem::path& file : recentScenes_)
+      if (recentScene(file)) break;
+  }
   ImGui::Spacing();
   wrapped(ownScenes_.empty() ? "limn's own scenes are not installed." : "Or take one of limn's own scenes:");
   const float column = scaled(200);
   const int columns = std::max(1, static_cast<int>(ImGui::GetContentRegionAvail().x / column));
-  ImGui::BeginDisabled(!facts_->job.empty());  // one is being opened
   if (!ownScenes_.empty() && ImGui::BeginTable("scenes", columns)) {
     for (const std::string& name : ownScenes_) {
       ImGui::TableNextColumn();

@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "apps/view/display_image.h"
+#include "apps/view/recent_scenes.h"
 #include "apps/view/viewer_style.h"
 #include "apps/view/viewer_window.h"
 #include "core/base/error.h"
@@ -88,10 +89,9 @@ ViewerWindow::ViewerWindow(const ViewerOptions& options)
   textures_ = std::make_unique<WindowTextures>(*device_);
   thread_ =
       std::make_unique<PictureThread>(PictureThreadOptions{options.debug, options.shaders, options.cache});
-  if (state_.scene.scene.empty())
-    ownScenes_ = session::sceneNames();
-  else
-    thread_->open(state_.scene, true);
+  ownScenes_ = session::sceneNames();
+  recentScenes_ = recentScenes();
+  if (!state_.scene.scene.empty()) thread_->open(state_.scene, true);
   if (!options_.steps.empty()) chooseStep(0);
   compareWith(besideNamed(options.compareWith));
   setText(sceneText_, options.scene.scene);
@@ -156,6 +156,8 @@ void ViewerWindow::adopt(const SceneFacts& scene) {
   state_.scene.width = width;
   state_.scene.height = height;
   state_.scene.term = term;
+  noteRecentScene(scene.options.scene);
+  recentScenes_ = recentScenes();
   orbit_ = Orbit(scene.camera, scene.bounds);
   lightEdits_ = session::parseLightEdits(scene.options.lightSettings);
   chosenLight_ = scene::kNone;

@@ -85,6 +85,8 @@ class ViewerWindow {
   // --- panels
   void panels();
   void scenePanel();
+  void sceneChooser();
+  bool recentScene(const std::filesystem::path& file);
   void cameraChooser();
   void environmentPanel();
   void exposureRow();
@@ -137,6 +139,7 @@ class ViewerWindow {
   EditHistory history_;
   bool unnoted_ = false;  ///< something has changed that history_ does not know yet
   std::vector<std::string> ownScenes_;
+  std::vector<std::filesystem::path> recentScenes_;
   Beside beside_ = Beside::nothing;
   float split_ = 0.5f;  ///< of the picture's width
   bool splitDragged_ = false;

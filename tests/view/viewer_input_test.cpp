@@ -17,16 +17,20 @@ TEST_F(ViewerInputTest, TakesWhatIsDroppedOnIt) {
   const std::string assets = std::string(kBinaryDir) + "/assets/";
   std::filesystem::copy_file(assets + "environments/sky.exr", folder_ / "sky.exr");
   const Outcome outcome =
-      view("cornell_box --technique hard_shadow_map --size 160x132 --save a.exr",
+      view("cornell_box --technique hard_shadow_map --size 160x432 --save a.exr",
            "save first.exr; echo broken > broken.glb; drop broken.glb; hear broken.glb 1; save same.exr\n"
            "drop " +
                assets +
                "teapot/teapot.glb; hear opened 2; save teapot.exr\n"
-               "drop missing.glb; hear missing.glb 1; drop sky.exr; hear opened 3; save sky.exr");
+               "drop missing.glb; hear missing.glb 1; drop sky.exr; hear opened 3; save sky.exr\n"
+               "click 372 44; click 290 68; hear opened 4; save again.exr");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(colours(picture("same.exr")), colours(picture("first.exr")));
   EXPECT_THAT(command("same.exr"), testing::HasSubstr("cornell_box"));
   EXPECT_THAT(command("teapot.exr"), testing::HasSubstr("teapot.glb"));
+  EXPECT_THAT(contents(folder_ / "state/limn/scenes"), testing::EndsWith("/teapot/teapot.glb\n"))
+      << "it is offered from now on";
+  EXPECT_EQ(colours(picture("again.exr")), colours(picture("teapot.exr")));
 }
 
 /// Minimised by a window manager and restored: no picture is made meanwhile, though the animation plays, and

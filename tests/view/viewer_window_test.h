@@ -34,7 +34,7 @@ class ViewerWindowTest : public ::testing::Test {
   Outcome view(const std::string& arguments, const std::string& script, int seconds = 400,
                const std::map<std::string, std::string>& environment = {}) {
     const std::string text =
-        "cd '" + folder_.path().string() + "' || exit 9\n" +  //
+        "cd '" + folder_.path().string() + "' || exit 9\nexport XDG_STATE_HOME=\"$PWD/state\"\n" +  //
         "alive() { kill -0 $viewer 2> none || exit 8; }\n" +
         "await() { for i in $(seq 1200); do [ -e \"$1\" ] && return; alive; sleep .05; done; echo no $1 >&2; "
         "}\n" +
