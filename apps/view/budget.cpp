@@ -101,7 +101,7 @@ std::vector<std::string> tuneArguments(const TuneOrder& order) {
   add(questionFlags(rest));
   add({"--term", order.question.term});
   if (!order.techniques.empty()) add({"--techniques", order.techniques});
-  add({"--steps", fmt::format("{}", order.steps), "--max-ms", fmt::format("{:.3g}", order.ms), "--out",
+  add({"--steps", fmt::format("{}", order.steps), "--max-ms", fmt::format("{:.4g}", order.ms), "--out",
        order.folder});
   return words;
 }

@@ -140,7 +140,7 @@ void ViewerWindow::budgetRows() {
     }
   }
   nameCell("at most", "Milliseconds that a frame may take");
-  ImGui::SliderFloat("##ms", &budgetMs_, 0.1f, 1000, "%.3g ms", ImGuiSliderFlags_Logarithmic);
+  ImGui::SliderFloat("##ms", &budgetMs_, 0.1f, 1000, "%.4g ms", ImGuiSliderFlags_Logarithmic);
   nameCell("among",
            "Techniques that a search chooses from, separated by commas; empty: all that answer the term");
   ImGui::InputTextWithHint("##among", "all that answer the term", tuneTechniques_, sizeof tuneTechniques_);
