@@ -43,7 +43,7 @@ constexpr Parameter lightSizeParameter() {
 constexpr Parameter viewsParameter(int perSide = 1) {
   return integer("views", perSide, {0, 8}, "per side",
                  "Parts of a light along its longer side, each filtered by itself in a shadow map from its "
-                 "centre; 1: the light as a whole, as published; 0: chosen by the size of the light")
+                 "centre; 1: the light as a whole, as published; 0: 2 where its kernels are wide, else 1")
       .quality();
 }
 
