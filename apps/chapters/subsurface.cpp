@@ -28,6 +28,8 @@ int main(int argc, char** argv) {
       {"Normalised diffusion", "hard_shadow_map,subsurface_scattering",
        "subsurface_scattering.profile=normalised_diffusion",
        "The profile of a random walk instead of the dipole's: light stays nearer to where it entered."},
+      {"Light from behind", "hard_shadow_map,subsurface_scattering", "subsurface_scattering.light_views=1",
+       "Light also enters where the lights look and the camera does not: look at translucent_ear."},
       {"A separable kernel", "hard_shadow_map,separable_subsurface", "",
        "Two blurs of the picture, along rows and columns, stand for the profile."},
       {"Points on the whole surface", "hard_shadow_map,hierarchical_subsurface", "",
