@@ -1,7 +1,8 @@
 // The shade pass of techniques that gather indirect light from virtual point lights. The work groups of one z shade the
 // pixels of one sub-buffer, which all have the same virtual lights. SPLIT 1: the G-buffer and the result lie sub-buffer by
 // sub-buffer; 0: both are screens. PARTS: layers of the result (gather_part_*). LAMBERTIAN 1: no material has a specular
-// part. MATERIAL_MODELS, SURFACE_TANGENTS: see surface_response.glsl. ACCUMULATE 1: adds to what other batches of lights left. VIRTUAL_LIGHT_COUNT: of lights, where they fit a uniform block.
+// part. MATERIAL_MODELS, SURFACE_TANGENTS: see surface_response.glsl. ACCUMULATE 1: adds to what other batches of lights left.
+// VIRTUAL_LIGHT_COUNT: of lights, where they fit a uniform block.
 //
 // GATHER_FALLING 1: the residual is what lies between the bound of a pixel that is the mean of nothing but its own lights and that
 // of one that is the mean of all sub-buffers' (blur.comp.glsl); the specular part has a bound of its own.
@@ -54,23 +55,19 @@ layout(rgba32f) uniform image2DArray gathered;
 #else
 layout(rgba32f) writeonly uniform image2DArray gathered;
 #endif
-uniform uint vpl_count;    // N
-#if GATHER_EDGES
-const uint batch_first = 0u;
-#else
-uniform uint batch_first;  // virtual lights that this pass may use
-uniform uint batch_count;
-#endif
-#if !GATHER_EDGES
-uniform uint block;  // pixels
-#endif
-uniform float nearest;     // part of the scene's extent; GATHER_PATCH: of the root of a light's area
+uniform uint vpl_count;  // N
+uniform float nearest;   // part of the scene's extent; GATHER_PATCH: of the root of a light's area
 #if GATHER_FALLING
 uniform float least_nearest;   // the same, where a pixel is the mean of all sub-buffers: the residual is what lies between
 uniform float glossy_nearest;  // the same, of the specular part
 #endif
 
-#if GATHER_EDGES
+#if !GATHER_EDGES
+uniform uint block;        // pixels
+uniform uint batch_first;  // virtual lights that this pass may use
+uniform uint batch_count;
+#else
+const uint batch_first = 0u;     // this pass uses all virtual lights
 uniform sampler2DArray blurred;  // along both axes, along rows alone, along columns alone
 uniform sampler2DArray rows;
 uniform sampler2DArray columns;
