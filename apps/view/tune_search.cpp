@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <utility>
 
@@ -15,8 +16,9 @@
 namespace limn::app {
 namespace {
 
-constexpr size_t kLongestLine = 1000;  // bytes of what is shown in a panel
-constexpr int kPatienceMs = 5000;      // for a program that was asked to end
+constexpr int kMostReads = 16;                // at once, of a program that does not fall silent
+constexpr size_t kLongestLine = 1000;         // bytes of what is shown in a panel
+constexpr std::chrono::seconds kPatience{5};  // with a program that was asked to end
 
 }  // namespace
 
@@ -29,10 +31,19 @@ TuneSearch::TuneSearch(const std::string& program, const std::vector<std::string
 }
 
 TuneSearch::~TuneSearch() {
+  using Clock = std::chrono::steady_clock;
   cancel();
+  // One that goes on talking is not waited for any longer than a silent one.
+  const Clock::time_point until = Clock::now() + kPatience;
   while (poll()) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now()).count();
+    if (left <= 0) {
+      kill(process_, SIGKILL);
+      end();  // whatever programs of its own still hold the pipe
+      break;
+    }
     pollfd more{output_, POLLIN, 0};
-    if (::poll(&more, 1, kPatienceMs) == 0) kill(process_, SIGKILL);
+    ::poll(&more, 1, static_cast<int>(left));
   }
 }
 
@@ -44,16 +55,16 @@ void TuneSearch::cancel() {
 
 bool TuneSearch::poll() {
   char buffer[4096];
-  while (process_ != 0) {
+  for (int i = 0; i < kMostReads && process_ != 0; ++i) {
     const ssize_t count = read(output_, buffer, sizeof buffer);
     if (count > 0)
       hear({buffer, static_cast<size_t>(count)});
     else if (count < 0 && errno == EAGAIN)
-      return true;
+      break;
     else if (count == 0 || errno != EINTR)
       end();
   }
-  return false;
+  return process_ != 0;
 }
 
 void TuneSearch::hear(const std::string& text) {
@@ -66,7 +77,7 @@ void TuneSearch::hear(const std::string& text) {
   }
 }
 
-/// The pipe is closed: the program has ended.
+/// The program has ended, as it does when it closes the pipe, or is about to.
 void TuneSearch::end() {
   close(std::exchange(output_, -1));
   const std::string failure = awaitProgram(std::exchange(process_, 0));

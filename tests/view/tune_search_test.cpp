@@ -69,13 +69,13 @@ TEST(TuneSearch, IsCancelled) {
   search.cancel();  // has nothing to end
 }
 
-/// Even one that does not heed it: its child closes the pipe with it.
+/// Nor one that does not heed it and goes on talking.
 TEST(TuneSearch, LeavesNoProcess) {
   { const TuneSearch search("sleep", {"1000"}); }
   EXPECT_FALSE(hasChildren());
   {
     TuneSearch stubborn("sh",
-                        {"-c", "trap '' TERM; echo begun >&2; while :; do sleep .01 2> /dev/null; done"});
+                        {"-c", "trap '' TERM; while :; do echo begun >&2; sleep .01 2> /dev/null; done"});
     ASSERT_TRUE(awaited(stubborn, "begun"));
   }
   EXPECT_FALSE(hasChildren());
