@@ -162,6 +162,7 @@ void ViewerWindow::adopt(const SceneFacts& scene) {
   lightEdits_ = session::parseLightEdits(scene.options.lightSettings);
   chosenLight_ = scene::kNone;
   measured_.clear();
+  budgetOf_.clear();  // also where the same file is shown again: with another floor, or read anew
   tuneProblem_.clear();
   lightsNew_ = true;
   drag_.reset();
