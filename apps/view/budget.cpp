@@ -46,6 +46,7 @@ std::vector<MeasuredQuestion> measuredQuestions(std::span<const bench::Row> rows
     const auto [place, added] = places.emplace(key, questions.size());
     if (added)
       questions.push_back({.question = question,
+                           .term = parseTerm(question.term),
                            .text = subjectText(question, QuestionWording::label) + times,
                            .renderer = row.cost.renderer,
                            .pixels = std::int64_t{question.width} * question.height,

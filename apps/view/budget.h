@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/bench/row.h"
+#include "core/question/term.h"
 
 namespace limn::app {
 
@@ -27,7 +28,8 @@ struct MeasuredSetting {
 /// Holds what was measured on one machine for one question about a scene, which makes it comparable.
 struct MeasuredQuestion {
   SceneQuestion question;
-  std::string text;  ///< camera, light, term and size
+  Term term = Term::final;  ///< the question's
+  std::string text;         ///< camera, light, term and size
   std::string renderer;
   std::int64_t pixels = 0;
   std::vector<MeasuredSetting> settings;
@@ -38,7 +40,8 @@ bool sameScene(const std::string& a, const std::string& b);
 
 /// Returns what the rows hold of `scene`: the largest pictures first, then the questions with the most
 /// settings. Rows without a picture or a time do not count; of rows of one setting the one with the most
-/// frames does, since a search times what it checks for a shorter time.
+/// frames does, since a search times what it checks for a shorter time. Throws UsageError for a row of a term
+/// that there is not.
 std::vector<MeasuredQuestion> measuredQuestions(std::span<const bench::Row> rows, const std::string& scene);
 
 struct BudgetAnswer {

@@ -181,15 +181,14 @@ void ViewerWindow::tunePanel() {
 /// What was measured says this.
 void ViewerWindow::budgetAnswer() {
   const MeasuredQuestion& question = measured_[measuredChosen_];
-  const Term term = parseTerm(question.question.term);
   const BudgetAnswer answer = bestWithin(question, static_cast<double>(budgetMs_));
   if (answer.best)
-    budgetSetting("best", *answer.best, term);
+    budgetSetting("best", *answer.best, question.term);
   else
     wrapped(fmt::format("None of {} settings is that quick; the quickest takes {:.3g} ms.",
                         question.settings.size(),
                         std::ranges::min_element(question.settings, {}, &MeasuredSetting::ms)->ms));
-  if (answer.runnerUp) budgetSetting("runner-up", *answer.runnerUp, term);
+  if (answer.runnerUp) budgetSetting("runner-up", *answer.runnerUp, question.term);
   remark(fmt::format("{}, on {}", question.text, question.renderer));
 }
 

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "core/base/error.h"
 #include "core/session/technique_choice.h"
 
 namespace limn::app {
@@ -75,6 +76,14 @@ TEST(Budget, TheLongestMeasurementOfASettingCounts) {
   const auto questions = measuredQuestions(rows, "balls");
   ASSERT_EQ(questions.front().settings.size(), 1u);
   EXPECT_EQ(questions.front().settings.front().ms, 10);
+}
+
+/// As in the rows of a version that has other terms.
+TEST(Budget, RowsOfUnknownTermsAreAnError) {
+  std::vector<bench::Row> rows{row("pcss", 1, 1)};
+  rows[0].what.term = "glow";
+  EXPECT_THROW(measuredQuestions(rows, "balls"), UsageError);
+  EXPECT_TRUE(measuredQuestions(rows, "another").empty());
 }
 
 TEST(Budget, FindsTheQuestionThatWasAsked) {
