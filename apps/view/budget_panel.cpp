@@ -62,7 +62,8 @@ void ViewerWindow::startTune() {
 
 /// Takes in what the search and the thread that reads have done.
 void ViewerWindow::budgetNews() {
-  if (tune_ && !tune_->poll()) {
+  // A search that ends while the folder is read would not be read itself: it ends after that.
+  if (tune_ && !reading_.valid() && !tune_->poll()) {
     tuneProblem_ = tune_->problem();
     const bool cancelled = tune_->cancelled(), shown = sameScene(tuned_.question.scene, state_.scene.scene);
     tune_.reset();
