@@ -22,7 +22,7 @@ using namespace limn;
 using frame::Access;
 
 constexpr int kWindows = 16;         // the pool of points holds as many times what one map takes
-constexpr float kFillDepth = 0.05f;  // scene extents: depths farther apart are not averaged in holes
+constexpr float kFillDepth = 0.05f;  // of far - near: depths farther apart are not averaged in holes
 
 constexpr const char* kMaps[] = {"triangles", "points"};
 constexpr const char* kKernels[] = {"exact", "thesis"};

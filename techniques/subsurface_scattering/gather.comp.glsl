@@ -222,11 +222,7 @@ void main() {
 #endif
     vec3 mean = entry_mean(light, weights, hits, float(SAMPLES), NORMALISE, here);
 #if LIGHT_VIEWS
-#if NORMALISE == 2
-    // What is seen no longer stands for what is hidden, but still for what lies beside the picture. Its share of the profile is
-    // the mean of the weights; where they are noisy it is no less than the share of the points that met the body.
-    if (inside_picture > 0.0) mean *= clamp(weights, vec3(hits), vec3(inside_picture)) / inside_picture;
-#endif
+    mean *= entry_seen_share(weights, hits, inside_picture, NORMALISE);
     vec3 hidden = hidden_light(from, body, boundary, place, own.w, body.first_point + sub_buffer * uint(SAMPLES), screen);
 #if TEXTURED && ROOT
     hidden *= sqrt(colours.reflectance);

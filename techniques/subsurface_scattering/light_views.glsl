@@ -7,7 +7,8 @@
 //     dw = |x - o| / |p' - o|^3 dA',   B(x) / C = 1/N sum R(|x - p|) / q(|x - p'|) F_t I |x - o| / |p' - o|^3
 // For parallel light I is its irradiance, and the last factor is 1; there |x - p| >= |x - p'|, so that points drawn from the
 // profile have weights of 1 at most. Each place of the body is counted once: by the points in the image where the camera shows it,
-// else here, once for each light. Means by weights (NORMALISE 2) already stand for what would be seen beside the picture.
+// else here, once for each light. Means over hits and by weights (NORMALISE 1 and 2) already stand for what would be seen beside
+// the picture.
 //
 // It needs of its includer: planes, points, Drawing and drawn_point().
 // MAP_POINTS: points on each light that maps are drawn from; the points around a pixel are dealt out to them. MEDIUM 1: the medium
@@ -78,7 +79,7 @@ bool is_shown(LitPlace p, uint instance, mat3 screen) {
   uvec4 met = texelFetch(planes, inside ? ivec2(at) : ivec2(0), 0);
   float farther = dot(uintBitsToFloat(met.xyz), from_eye);
   bool nearest = met.w == instance && farther < 1.0 + same_surface * length(frame.view_ray_dx.xyz);
-  return dot(p.normal, from_eye) < 0.0 && (inside ? nearest : NORMALISE == 2);
+  return dot(p.normal, from_eye) < 0.0 && (inside ? nearest : NORMALISE != 0);
 }
 
 // The part of the mean of E / pi over the profile that the camera does not show, around `place`, from the eye. `first_point`: the

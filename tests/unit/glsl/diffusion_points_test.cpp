@@ -143,5 +143,17 @@ TEST(EntryMean, NormalisesAsNamed) {
     EXPECT_EQ(entry_mean(vec3(0), vec3(0), 0, 10, normalise, here), here);
 }
 
+/// Where hidden places are added, the mean stands for its share of the profile alone.
+TEST(EntryMean, IsScaledByWhatIsSeen) {
+  const vec3 weights(4, 2, 20);  // 2 is less than the hits, 20 more than all points
+  EXPECT_EQ(entry_seen_share(weights, 3, 10, entry_normalise_none), vec3(1));
+  EXPECT_EQ(entry_seen_share(weights, 3, 10, entry_normalise_count), vec3(0.3f));
+  EXPECT_EQ(entry_seen_share(weights, 3, 10, entry_normalise_weights), vec3(0.4f, 0.3f, 1));
+  for (int normalise = 0; normalise < 3; ++normalise) {
+    EXPECT_EQ(entry_seen_share(vec3(0), 0, 10, normalise), vec3(1)) << "the pixel's own light";
+    EXPECT_EQ(entry_seen_share(vec3(0), 0, 0, normalise), vec3(1)) << "all points beside the picture";
+  }
+}
+
 }  // namespace
 }  // namespace limn::glsl
