@@ -1,6 +1,13 @@
 // limn reproduction: what the thesis found, beside what bench results say.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "apps/limn/commands.h"
 #include "apps/limn/options.h"
 #include "core/base/error.h"
@@ -24,8 +31,13 @@ int runReproduction(const ReproductionArguments& options) {
   if (claims.empty())
     throw Error("reproduction.claims was not built or installed with limn; name a file with --claims");
   std::vector<bench::Row> rows;
-  for (const fs::path& folder : options.results)
-    for (bench::Row& row : bench::readRows(folder / "results.jsonl")) rows.push_back(std::move(row));
+  for (const fs::path& folder : options.results) {
+    std::vector<bench::Row> later = bench::readRows(folder / "results.jsonl");
+    std::set<std::string> measuredAgain;
+    for (const bench::Row& row : later) measuredAgain.insert(label(row.what));
+    std::erase_if(rows, [&](const bench::Row& row) { return measuredAgain.contains(label(row.what)); });
+    std::ranges::move(later, std::back_inserter(rows));
+  }
   const std::string page =
       "# What the thesis found, and what is measured here\n\n"
       "The thesis measured on GPUs of 2006 and 2009: its frame rates beside those of another renderer would "
@@ -41,7 +53,11 @@ int runReproduction(const ReproductionArguments& options) {
 
 Action addReproductionCommand(CLI::App& command) {
   auto options = std::make_shared<ReproductionArguments>();
-  command.add_option("results", options->results, "Result folders of limn bench (its --out)")->required();
+  command
+      .add_option(
+          "results", options->results,
+          "Result folders of limn bench (its --out); of rows that several hold, those of the last one count")
+      ->required();
   command.add_option("-o,--out", options->out, "Markdown file")->required();
   command.add_option("--claims", options->claims, "TOML file; default: the thesis's");
   return [options] { return runReproduction(*options); };
