@@ -24,6 +24,7 @@ Action addTuneCommand(CLI::App& command);
 Action addStressCommand(CLI::App& command);
 Action addFlickerCommand(CLI::App& command);
 Action addExplainCostCommand(CLI::App& command);
+Action addPassesCommand(CLI::App& command);
 Action addReportCommand(CLI::App& command);
 Action addMergeCommand(CLI::App& command);
 Action addReproductionCommand(CLI::App& command);

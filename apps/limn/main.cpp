@@ -93,6 +93,9 @@ int main(int argc, char** argv) {
       "Measure what it saves to leave out work that a scene does not need: force each kind in; compare frame "
       "times (ms), memory (MiB) and pictures",
       addExplainCostCommand);
+  add("passes",
+      "Write the programs of a frame's passes, with what each binds, sets and dispatches, for another engine",
+      addPassesCommand);
   add("report", "Write the tables and the report of finished benches again", addReportCommand);
   add("merge", "Put the rows of several benches into one folder; write its tables and its report",
       addMergeCommand);

@@ -109,6 +109,7 @@ bool executePasses(Graph& graph, Timing timing, const FrameGraph::Cancelled& can
   for (size_t i = 0; i < graph.order.size(); ++i) {
     Pass& pass = graph.passes[graph.order[i]];
     pass.triangles = 0;
+    for (const uint32_t program : pass.programs) graph.programs[program].dispatches = 0;
     barriers |= pass.barriers;  // those of a pass that is skipped are left to the next that runs
     if (!pass.run) continue;
     if (cancelled && cancelled()) {

@@ -232,6 +232,7 @@ struct AccessReport {
   bool write = false;
   std::string why;
   std::optional<gpu::TextureDesc> texture;  ///< nothing: a buffer
+  int64_t bytes = 0;                        ///< of the texture or the buffer, as declared
   /// Returns "name (access): why".
   LIMN_API std::string text() const;
 };
@@ -247,6 +248,8 @@ struct PassReport {
   std::vector<AccessReport> accesses;  ///< as they were declared
   GLbitfield barriers = 0;             ///< glMemoryBarrier bits issued before the pass
 };
+
+struct ProgramReport;  // core/frame/program_report.h
 
 /// Says how the passes of a frame are timed.
 enum class Timing {
@@ -328,7 +331,9 @@ class LIMN_API FrameGraph {
   /// for tests and `--explain`.
   void plan();
   std::vector<PassReport> explain() const;  ///< in execution order, left-out passes last
-  std::string graphviz() const;             ///< the planned graph in the language of Graphviz
+  /// Returns the programs of the passes that are kept, in execution order. Needs prepare().
+  std::vector<ProgramReport> programs() const;
+  std::string graphviz() const;  ///< the planned graph in the language of Graphviz
   /// Returns the glMemoryBarrier bits issued after the last pass, so that outputs and imported resources that
   /// shaders wrote can be used outside the graph in any way.
   GLbitfield finalBarriers() const;

@@ -132,7 +132,13 @@ void PassContext::countTriangles(uint64_t triangles) const {
 
 void PassContext::dispatch(int width, int height, int depth, int groupX, int groupY, int groupZ) const {
   const auto groups = [](int size, int group) { return static_cast<GLuint>((size + group - 1) / group); };
-  gl().DispatchCompute(groups(width, groupX), groups(height, groupY), groups(depth, groupZ));
+  const std::array<GLuint, 3> counts{groups(width, groupX), groups(height, groupY), groups(depth, groupZ)};
+  Graph& graph = *graph_.implementation_;
+  if (graph.program != kNoIndex) {
+    graph.programs[graph.program].groups = counts;
+    ++graph.programs[graph.program].dispatches;
+  }
+  gl().DispatchCompute(counts[0], counts[1], counts[2]);
 }
 
 }  // namespace limn::frame

@@ -8,25 +8,12 @@
 #include "core/base/text.h"
 #include "core/frame/private/access.h"
 #include "core/frame/private/graph_data.h"
+#include "core/frame/program_report.h"
 
 namespace limn::frame {
 namespace {
 
 using Kind = gpu::ShaderResource::Kind;
-
-const char* nameOf(Kind kind) {
-  switch (kind) {
-    case Kind::sampler:
-      return "sampler";
-    case Kind::image:
-      return "image";
-    case Kind::uniformBlock:
-      return "uniform block";
-    case Kind::storageBlock:
-      return "storage block";
-  }
-  return "";
-}
 
 /// What stands for an access in GLSL.
 Kind kindOf(Access access) {
@@ -133,14 +120,13 @@ void findPlaces(Graph& graph, ProgramUse& use, std::vector<std::string>& problem
     const auto found = std::ranges::find(pass.names, resource.name, &NamedResource::name);
     if (found == pass.names.end()) {
       problems.push_back(fmt::format("{} uses the {} '{}', but pass '{}' names {}", use.program->label(),
-                                     nameOf(resource.kind), resource.name, graph.title(use.pass),
+                                     name(resource.kind), resource.name, graph.title(use.pass),
                                      namesOf(pass)));
     } else if (!fits(pass, *found, resource.kind)) {
-      problems.push_back(
-          fmt::format("'{}' is a {} in {}, but {} in pass '{}'", resource.name, nameOf(resource.kind),
-                      use.program->label(),
-                      found->access == kNoIndex ? "a constant" : name(pass.accesses[found->access].access),
-                      graph.title(use.pass)));
+      problems.push_back(fmt::format(
+          "'{}' is a {} in {}, but {} in pass '{}'", resource.name, name(resource.kind), use.program->label(),
+          found->access == kNoIndex ? "a constant" : name(pass.accesses[found->access].access),
+          graph.title(use.pass)));
     } else {
       use.places.push_back({resource.kind, resource.unit, static_cast<uint32_t>(found - pass.names.begin())});
     }

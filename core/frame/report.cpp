@@ -1,18 +1,63 @@
-// What the graph says about itself: --explain and Graphviz.
+// What the graph says about itself: --explain, Graphviz, and the programs of its passes.
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "core/base/error.h"
 #include "core/frame/private/graph_data.h"
+#include "core/frame/program_report.h"
 
 namespace limn::frame {
 namespace {
 
+/// The declared bytes: those of an imported object, or of the description.
+int64_t bytesOf(const Resource& r) {
+  if (r.importedTexture != nullptr) return gpu::textureBytes(r.importedTexture->desc());
+  if (r.importedBuffer != nullptr) return static_cast<int64_t>(r.importedBuffer->size());
+  return r.texture ? gpu::textureBytes(r.textureDesc) : static_cast<int64_t>(r.bufferDesc.bytes);
+}
+
 AccessReport described(const Graph& graph, const ResourceAccess& a) {
   const Resource& r = graph.resources[a.resource];
-  AccessReport report{r.name, a.access, a.write(), a.why, {}};
+  AccessReport report{r.name, a.access, a.write(), a.why, {}, bytesOf(r)};
   if (r.texture) report.texture = r.importedTexture ? r.importedTexture->desc() : r.textureDesc;
+  return report;
+}
+
+SamplingReport samplingOf(const gl::Functions& gl, const gpu::Texture& texture, const gpu::Sampler* sampler) {
+  const auto parameter = [&](GLenum which) {
+    GLint value = 0;
+    if (sampler != nullptr)
+      gl.GetSamplerParameteriv(sampler->id(), which, &value);
+    else
+      gl.GetTextureParameteriv(texture.id(), which, &value);
+    return static_cast<GLenum>(value);
+  };
+  return {parameter(GL_TEXTURE_MIN_FILTER), parameter(GL_TEXTURE_MAG_FILTER), parameter(GL_TEXTURE_WRAP_S)};
+}
+
+NameReport described(const Graph& graph, const Pass& pass, const Place& place) {
+  const NamedResource& named = pass.names[place.name];
+  NameReport report;
+  report.kind = place.kind;
+  report.name = named.name;
+  report.level = named.level;
+  report.layer = named.layer;
+  report.texture = named.texture;
+  report.buffer = named.buffer;
+  if (named.access != kNoIndex) {
+    const Resource& resource = graph.resources[pass.accesses[named.access].resource];
+    report.access = named.access;
+    report.texture = resource.textureObject;
+    report.buffer = resource.bufferObject;
+    report.bytes = bytesOf(resource);
+  } else if (named.texture != nullptr) {
+    report.bytes = gpu::textureBytes(named.texture->desc());
+  } else if (named.buffer != nullptr) {
+    report.bytes = static_cast<int64_t>(named.buffer->size());
+  }
+  if (place.kind == gpu::ShaderResource::Kind::sampler && report.texture != nullptr)
+    report.sampling = samplingOf(graph.device->gl(), *report.texture, named.sampler);
   return report;
 }
 
@@ -162,6 +207,41 @@ std::vector<PassReport> FrameGraph::explain() const {
     row.reason = entry.reason;
   }
   return rows;
+}
+
+std::string_view name(gpu::ShaderResource::Kind kind) {
+  using Kind = gpu::ShaderResource::Kind;
+  switch (kind) {
+    case Kind::sampler:
+      return "sampler";
+    case Kind::image:
+      return "image";
+    case Kind::uniformBlock:
+      return "uniform block";
+    case Kind::storageBlock:
+      return "storage block";
+  }
+  return "unknown";
+}
+
+std::vector<ProgramReport> FrameGraph::programs() const {
+  const Graph& graph = *implementation_;
+  if (graph.device == nullptr) throw Error("frame graph: programs() before prepare()");
+  std::vector<ProgramReport> reports;
+  for (size_t position = 0; position < graph.order.size(); ++position) {
+    const Pass& pass = graph.passes[graph.order[position]];
+    for (const uint32_t index : pass.programs) {
+      const ProgramUse& use = graph.programs[index];
+      ProgramReport& report = reports.emplace_back();
+      report.pass = position;
+      report.desc = use.desc;
+      report.program = use.program;
+      for (const Place& place : use.places) report.names.push_back(described(graph, pass, place));
+      report.dispatches = use.dispatches;
+      report.groups = use.groups;
+    }
+  }
+  return reports;
 }
 
 std::string FrameGraph::graphviz() const {

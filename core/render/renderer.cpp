@@ -110,6 +110,9 @@ Image Renderer::read() const {
 frame::FrameGraph& Renderer::graph() {
   return *implementation_->graph;
 }
+std::string Renderer::shaderText(const gpu::ProgramDesc& desc, std::string_view file) const {
+  return implementation_->shaders.standalone(desc, file);
+}
 std::vector<frame::PassReport> Renderer::explain() const {
   return implementation_->graph->explain();
 }

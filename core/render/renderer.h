@@ -134,6 +134,9 @@ class LIMN_API Renderer {
   /// Returns the state of the scene at the time set.
   const scene::Pose& pose();
   frame::FrameGraph& graph();
+  /// Returns the text of a stage of a program, as another engine could compile it
+  /// (gpu::ShaderLibrary::standalone).
+  std::string shaderText(const gpu::ProgramDesc& desc, std::string_view file) const;
   std::vector<frame::PassReport> explain() const;
   /// Returns the part of FrameStats that is known without measuring.
   FrameStats describe() const;

@@ -104,7 +104,7 @@ TEST(CommandLine, FlickerComparesAnimationsWithTheTruth) {
 TEST(CommandLine, HelpOfEveryCommandIsComplete) {
   for (const char* command :
        {"list", "info", "render", "reference", "environment", "brdf", "compare", "flicker", "bench", "stress",
-        "explain-cost", "report", "reproduction", "view"}) {
+        "explain-cost", "passes", "report", "reproduction", "view"}) {
     const Outcome outcome = limn({command, "--help"});
     EXPECT_EQ(outcome.status, 0) << command;
     EXPECT_THAT(outcome.out, HasSubstr("--help")) << command;

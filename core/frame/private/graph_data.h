@@ -118,6 +118,8 @@ struct ProgramUse {
   // After prepare().
   GLuint placesOf = 0;  ///< the program object they were asked of: another one after shaders were reloaded
   std::vector<Place> places;  ///< slots among them
+  int dispatches = 0;         ///< in the last frame
+  std::array<GLuint, 3> groups = {};
 };
 
 struct LeftOut {

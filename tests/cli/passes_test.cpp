@@ -1,0 +1,71 @@
+// limn passes: what it writes, and where it refuses to.
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/limn_program.h"
+
+namespace limn::test {
+namespace {
+
+using nlohmann::json;
+
+class Passes : public testing::Test {
+ protected:
+  Outcome passes(std::vector<std::string> more = {}, const std::string& technique = "pcss") {
+    std::vector<std::string> all{"passes", kCornellBox, "--technique", technique,
+                                 "--size", "32x24",     "--out",       out_.string()};
+    all.insert(all.end(), more.begin(), more.end());
+    return limn(all);
+  }
+  json written() const { return json::parse(std::ifstream(out_ / "passes.json"))["passes"]; }
+
+  TemporaryFolder folder_;
+  std::filesystem::path out_ = folder_ / "passes";
+};
+
+TEST_F(Passes, SayWhatAShaderIsGiven) {
+  ASSERT_EQ(passes({"--set", "pcss.filter_samples=7"}).status, 0);
+  json found;
+  for (const json& pass : written())
+    if (pass["technique"] == "pcss") found = pass;
+  ASSERT_EQ(found["pass"], "visibility");
+  const json program = found["programs"][0];
+  EXPECT_EQ(program["groups"], json({4, 3, 1}));
+  EXPECT_EQ(program["files"][0], "techniques/pcss/visibility.comp.glsl");
+  EXPECT_TRUE(std::filesystem::is_regular_file(out_ / "shaders" / std::string(program["shaders"][0])));
+  const auto has = [](const json& list, const json& wanted) {
+    return std::ranges::any_of(list, [&](const json& entry) {
+      return std::ranges::all_of(wanted.items(),
+                                 [&](const auto& item) { return entry[item.key()] == item.value(); });
+    });
+  };
+  EXPECT_TRUE(has(program["uniforms"], {{"name", "filter_samples"}, {"type", "int"}, {"value", "7"}}));
+  EXPECT_TRUE(has(program["names"], {{"name", "shadow_depth"}, {"kind", "sampler"}, {"written", false}}));
+  EXPECT_TRUE(has(program["names"], {{"name", "visibility"}, {"kind", "image"}, {"written", true}}));
+}
+
+TEST_F(Passes, AnEarlierFolderIsWrittenAgain) {
+  ASSERT_EQ(passes({"--contents", "pcss/visibility"}).status, 0);
+  EXPECT_EQ(listing(out_), (std::vector<std::string>{"README.md", "contents", "passes.json", "shaders"}));
+  ASSERT_EQ(passes({}, "hard_shadow_map").status, 0);
+  EXPECT_EQ(listing(out_), (std::vector<std::string>{"README.md", "passes.json", "shaders"}));
+  for (const std::string& shader : listing(out_ / "shaders"))
+    EXPECT_EQ(shader.find("pcss"), std::string::npos);
+}
+
+TEST_F(Passes, OtherFoldersAndUnknownPassesAreRefused) {
+  std::filesystem::create_directories(out_);
+  std::ofstream(out_ / "mine.txt") << "mine";
+  expectRefused(passes(), 2, {"--out", "holds other files"});
+  EXPECT_EQ(listing(out_), std::vector<std::string>{"mine.txt"});
+  out_ = out_ / "mine.txt";
+  expectRefused(passes(), 2, {"is a file"});
+  out_ = folder_ / "new";
+  expectRefused(passes({"--contents", "pcss/visibilty"}), 2,
+                {"'pcss/visibilty'", "did you mean pcss/visibility"});
+  EXPECT_FALSE(std::filesystem::exists(out_));
+  expectRefused(passes({}, "pcs"), 2, {"'pcs'"});
+}
+
+}  // namespace
+}  // namespace limn::test
