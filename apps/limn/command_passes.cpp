@@ -59,6 +59,8 @@ int runPasses(const PassesArguments& options) {
   settings.term = parseTerm(options.scene.term);
   render::checkTechniques(settings.techniques, settings.term);
   const session::View view = session::open(options.scene, warn);
+  if (view.aa > 1)
+    throw UsageError(fmt::format("--aa {}: passes describes a single frame; 1 is accepted", view.aa));
   settings.size = view.size;
   settings.light = view.light;
   checkFolder(options.out);

@@ -49,6 +49,7 @@ TEST_F(FinishedPictures, RefuseWhatTheyDoNotKnow) {
   expectRefused(render({"--exposure", "61"}, "a.png"), 2, {"--exposure"});
   expectRefused(render({"--aa", "17"}, "a.png"), 2, {"--aa"});
   expectRefused(limn({"explain-cost", kCornellBox, "--aa", "2"}), 2, {"--aa 2: explain-cost"});
+  expectRefused(limn({"passes", kCornellBox, "--aa", "2", "--out", "passes"}), 2, {"--aa 2: passes"});
 }
 
 TEST_F(FinishedPictures, StatsCountTheFramesOfAPicture) {
