@@ -29,13 +29,15 @@ technique = "hard_shadow_map"
 technique = "pcf"
 """
 ROWS = 6
+# Seconds that a credential lasts, and that Slurm waits before it starts again what was queued again (120 by default).
+EXPIRY = 20
 CONF = """
 ClusterName=limn
 SlurmctldHost={host}
 SlurmctldPort={port}
 SlurmdPort={next}
 AuthType=auth/munge
-AuthInfo=socket={scratch}/munge.socket
+AuthInfo=socket={scratch}/munge.socket,cred_expire={expiry}
 CredType=cred/munge
 SlurmUser=root
 StateSaveLocation={scratch}/state
@@ -122,7 +124,7 @@ def start_cluster():
         port = free.getsockname()[1]
     conf = scratch / "slurm.conf"
     conf.write_text(CONF.format(host=socket.gethostname().split(".")[0], port=port, next=port + 1, scratch=scratch,
-                                cpus=os.cpu_count()))
+                                cpus=os.cpu_count(), expiry=EXPIRY))
     os.environ["SLURM_CONF"] = str(conf)
     os.environ["PATH"] += ":/usr/sbin"
     start("slurmctld", "-D")
@@ -157,7 +159,6 @@ try:
     wait_for("a task", 120, measuring)
     for process in measuring():
         os.kill(process, signal.SIGKILL)  # as a node that is lost, or a kernel out of memory
-    # Slurm waits for about two minutes before it starts again what was queued again.
     wait_for("the end of all jobs", 900, lambda: not said("squeue", "--noheader").strip())
     check((out / "results.jsonl").is_file(), "nothing was merged")
     found = rows()
