@@ -11,7 +11,10 @@
 namespace limn::relief {
 namespace {
 
+/// Returns the texel of an axis that stands for texel `i`, which most often is one itself: a division takes
+/// longer than all else that a height is made of.
 int wrapped(int i, int size, Wrap wrap) {
+  if (i >= 0 && i < size) return i;
   if (wrap == Wrap::clamped) return std::clamp(i, 0, size - 1);
   const int rest = i % size;
   return rest < 0 ? rest + size : rest;
@@ -50,8 +53,12 @@ std::size_t HeightField::index(const glm::ivec2& at) const {
 }
 
 Patch HeightField::patch(const glm::ivec2& cell) const {
-  const double z00 = texel(cell), z10 = texel(cell + glm::ivec2(1, 0));
-  const double z01 = texel(cell + glm::ivec2(0, 1)), z11 = texel(cell + glm::ivec2(1, 1));
+  const auto row = [this](int y) {
+    return heights_.begin() + static_cast<std::ptrdiff_t>(wrapped(y, size_.y, wrap_)) * size_.x;
+  };
+  const auto low = row(cell.y), high = row(cell.y + 1);
+  const int left = wrapped(cell.x, size_.x, wrap_), right = wrapped(cell.x + 1, size_.x, wrap_);
+  const double z00 = low[left], z10 = low[right], z01 = high[left], z11 = high[right];
   return {.corner = z00, .slope = {z10 - z00, z01 - z00}, .twist = z11 - z10 - (z01 - z00)};
 }
 
