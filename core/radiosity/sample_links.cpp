@@ -172,7 +172,10 @@ class SampleSolver::Shooting {
       const float cosine = sine < 1 ? std::sqrt(1 - sine * sine) : 0;
       const float lobes = solver_.caps_[s].most(towards, cosine);
       bounds = {(diffuse + lobes) * pair.transport, lobes * pair.transport};
-      if (bounds.most > allowed && solver_.flat(s)) {
+      // A pair that a horizon cuts is divided for its diffuse light alone, whatever the lobes send.
+      const bool divided =
+          pair.cut && diffuse * pair.transport > std::max(kBoundsExcess * allowed, kNegligible * error_);
+      if (bounds.most > allowed && !divided && solver_.flat(s)) {
         const DirectionBounds closer =
             solver_.trees_[s].bounds(glsl::to_local(solver_.frames_[s], towards), cosine);
         const float high = glsl::largest_channel(closer.high), low = glsl::largest_channel(closer.low);
