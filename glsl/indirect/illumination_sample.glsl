@@ -38,9 +38,11 @@ LIMN_FN IncidentLight incident_light(IlluminationSample s, vec3 x) {
 }
 
 // The GGX width of the lobe that stands for a surface of width alpha lit by a light of some spread at the cosine n_dot_l;
-// `widen`: standard deviations of the light per spread, about. Without it every light shows as a highlight of its own.
+// `widen`: standard deviations of the light per spread, about. Half vectors spread as the light does along its plane of
+// incidence, and 1 / n_dot_l times as much across: an isotropic lobe takes the geometric mean. Without it every light shows
+// as a highlight of its own.
 LIMN_FN float widened_alpha(float alpha, float spread, float n_dot_l, float widen) {
-  float by = widen * spread / max(n_dot_l, 0.1f);
+  float by = widen * spread / sqrt(max(n_dot_l, 0.1f));
   return min(sqrt(alpha * alpha + by * by), 1.0f);
 }
 
