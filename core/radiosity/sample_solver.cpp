@@ -136,6 +136,47 @@ void SampleSolver::measure() {
   });
 }
 
+Sender SampleSolver::sender(uint32_t slot) const {
+  const Element& e = elements_[slot];
+  if (e.surfel == glsl::no_link) return {e.position, e.normal, std::sqrt(e.area) * frames_[slot].t, e.area};
+  // Leaves lie a little above their surface, so that what touches it would lie behind them.
+  const float above = std::max(glm::dot(e.position - surfels_.vertices[e.surfel], e.normal), 0.f);
+  return {e.position - above * e.normal, e.normal, longSide(slot), e.area};
+}
+
+glm::vec3 SampleSolver::longSide(uint32_t leaf) const {
+  const Element& e = elements_[leaf];
+  const glsl::Frame& frame = frames_[leaf];
+  // Twice the sums over triangles of area, and of places from the vertex and their products times area.
+  float whole = 0;
+  glm::vec2 place(0);
+  glm::vec3 products(0);  // xx, yy, xy
+  for (uint32_t f = firstFan_[e.surfel]; f < firstFan_[e.surfel + 1]; ++f) {
+    const glm::vec3 &a = surfels_.vertices[e.surfel], &b = surfels_.vertices[fans_[f].second],
+                    &c = surfels_.vertices[fans_[f].third];
+    const glm::vec3 middle = (b + c - 2.f * a) / 3.f;
+    for (const glm::vec3& edge : {0.5f * (b - a), 0.5f * (c - a)}) {
+      const glm::vec2 p(glm::dot(edge, frame.t), glm::dot(edge, frame.b));
+      const glm::vec2 q(glm::dot(middle, frame.t), glm::dot(middle, frame.b));
+      const float area = glm::length(glm::cross(edge, middle));
+      whole += area;
+      place += area / 3 * (p + q);
+      // Over a triangle with a corner at 0: area / 12 (p p + q q + s s), s = p + q.
+      for (const glm::vec2& corner : {p, q, p + q})
+        products += area / 12 * glm::vec3(corner.x * corner.x, corner.y * corner.y, corner.x * corner.y);
+    }
+  }
+  if (!(whole > 0)) return std::sqrt(e.area) * frame.t;
+  place /= whole;
+  products = products / whole - glm::vec3(place.x * place.x, place.y * place.y, place.x * place.y);
+  const float mean = 0.5f * (products.x + products.y), half = 0.5f * (products.x - products.y);
+  const float root = std::sqrt(half * half + products.z * products.z);
+  const float angle = 0.5f * std::atan2(products.z, half);
+  // Sides are as the roots of the moments along them, at most eight to one.
+  const float aspect = std::sqrt((mean + root) / std::max(mean - root, (mean + root) / 64));
+  return std::sqrt(e.area * aspect) * (std::cos(angle) * frame.t + std::sin(angle) * frame.b);
+}
+
 void SampleSolver::light(uint32_t leaf, const glm::vec3& irradiance,
                          std::span<const glsl::IncidentLight> incident) {
   fresh_[leaf] = irradiance;

@@ -46,6 +46,15 @@ struct SampleAtElement {
   glm::vec3 radiance{0};  ///< mean over the link, what is hidden taken off, W/(sr m^2)
 };
 
+/// Holds the area light that stands for an element: a rectangle that lies as it does, in the space of the
+/// elements.
+struct Sender {
+  glm::vec3 position{0};  ///< of the middle
+  glm::vec3 normal{0};    ///< unit, to where it shines
+  glm::vec3 side{0};      ///< one side: the other is at right angles to it and the normal, as `area` says
+  float area = 0;
+};
+
 /// Counts what a round of shooting took.
 struct ShootCounts {
   uint64_t pairs = 0;  ///< of elements that were looked at
@@ -84,6 +93,8 @@ class LIMN_API SampleSolver {
   std::span<const glm::vec3> irradiance() const { return irradiance_; }
   /// Returns the samples that all rounds left at an element; a leaf has those of all elements above it, too.
   std::span<const SampleAtElement> samples(uint32_t slot) const { return samples_[slot]; }
+  /// Returns what stands for an element as the sender of a sample.
+  Sender sender(uint32_t slot) const;
   uint64_t sampleCount() const { return sampleCount_; }
   /// Returns the radiance that a leaf has yet to send towards a direction (unit, in the space of the
   /// elements), W/(sr m^2).
@@ -122,6 +133,9 @@ class LIMN_API SampleSolver {
   };
 
   void measure();
+  /// Returns the long side of a rectangle of a leaf's area whose second moments are about those of the leaf's
+  /// third of the triangles around its vertex.
+  glm::vec3 longSide(uint32_t leaf) const;
   void gather(uint32_t leaf);
   /// Calls `visit` with all samples of a leaf, from that of each element on that `first` says.
   template <class First, class Visit>

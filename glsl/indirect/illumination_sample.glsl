@@ -6,11 +6,17 @@
 #include "glsl/numeric/language.glsl"
 LIMN_BEGIN
 
-// Element of a storage buffer, 32 bytes.
+// Element of a storage buffer, 16 bytes.
 struct IlluminationSample {
+  vec3 radiance;  // g, the mean of radiance times visibility over the link, W/(m^2 sr)
+  uint sender;    // which SampleSender
+};
+
+// The place of a sample's light. Element of a storage buffer, 32 bytes.
+struct SampleSender {
   vec3 position;  // y, in the units of the elements
   float area;     // A, in those units squared
-  vec3 radiance;  // g, the mean of radiance times visibility over the link, W/(m^2 sr)
+  vec3 side;      // one side of a rectangle of that area that lies as the sender does
   uint normal;    // n: vertex_pack_normal
 };
 
@@ -24,15 +30,16 @@ struct IncidentLight {
 // The widest sample that a single direction stands for, rad.
 LIMN_CONST float incident_max_spread = 1.5f;
 
-// E = g A c / (d^2 + A c / pi): the sample is taken as a disc, whose irradiance this is on its axis. `x`: the point.
-LIMN_FN IncidentLight incident_light(IlluminationSample s, vec3 x) {
+// E = g A c / (d^2 + A c / pi): the sample is taken as a disc, whose irradiance this is on its axis. `radiance`: g; `x`: the
+// point.
+LIMN_FN IncidentLight incident_light(SampleSender s, vec3 radiance, vec3 x) {
   vec3 way = s.position - x;
   float distance2 = dot(way, way);
   float per_distance = 1.0f / sqrt(max(distance2, 1e-30f));
   IncidentLight r;
   r.direction = per_distance * way;
   float facing = s.area * max(-dot(r.direction, vertex_unpack_normal(s.normal)), 0.0f);
-  r.irradiance = s.radiance * (facing > 0.0f ? facing / (distance2 + inverse_pi * facing) : 0.0f);
+  r.irradiance = radiance * (facing > 0.0f ? facing / (distance2 + inverse_pi * facing) : 0.0f);
   r.spread = min(sqrt(s.area) * per_distance, incident_max_spread);
   return r;
 }

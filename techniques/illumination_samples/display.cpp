@@ -30,8 +30,9 @@ frame::TextureHandle Display::show(frame::FrameGraph& graph, const TechniqueInpu
   } else {
     pass.read(solution.ranges, Access::storageLoad, "Ranges", "which samples")
         .read(solution.samples, Access::storageLoad, "Samples", "light by directions")
-        .read(elements_.parents, Access::storageLoad, "Parents", "elements above leaves")
         .read(elements_.leaves, Access::storageLoad, "Leaves", "places that near samples are seen from")
+        .read(elements_.parents, Access::storageLoad, "Parents", "elements above leaves")
+        .read(solution.senders, Access::storageLoad, "Senders", "where that light comes from")
         .read(inputs.service<shading_maps::ShadingMapService>().ltcTable(), Access::sampled, "ltc_table",
               "energy of lobes");
   }

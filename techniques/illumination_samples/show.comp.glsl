@@ -43,24 +43,34 @@ vec3 specular(Pixel at, Around a) {
 
 layout(std430) readonly buffer Ranges { uvec2 ranges[]; };  // of elements: the first sample, and how many
 layout(std430) readonly buffer Samples { IlluminationSample samples[]; };
+layout(std430) readonly buffer Senders { SampleSender senders[]; };
 layout(std430) readonly buffer Parents { uint parents[]; };  // of groups of four elements
 layout(std430) readonly buffer Leaves { Leaf leaves[]; };
 uniform float widen;
 
 const uint nobody = 0xffffffffu;
 
-// Samples that span more are taken from the leaf, radians: a pixel beside a wall would look along it past the middle of its
-// lowest element, which stands for all of that.
+// Samples that span more are taken from the leaf, radians: what stands for the shapes of elements leaves gaps that a pixel
+// beside a wall would look through.
 const float near_spread = 0.5;
+
+// Of the others, those that span more of the lobe's width than this are reflected in their whole extent.
+const float narrow_lobe = 1.0;
 
 // Sum over the samples of one element, of which a leaf around the pixel is a part.
 vec3 reflected(Pixel at, uint element, uint leaf) {
   uvec2 range = ranges[element];
   vec3 sum = vec3(0.0);
   for (uint i = range.x; i < range.x + range.y; ++i) {
-    IncidentLight light = incident_light(samples[i], at.position);
-    if (light.spread > near_spread) light = incident_light(samples[i], leaves[leaf].position.xyz);
-    if (dot(light.direction, at.geometric_normal) > 0.0)
+    IlluminationSample from = samples[i];
+    SampleSender sender = senders[from.sender];
+    IncidentLight light = incident_light(sender, from.radiance, at.position);
+    bool near = light.spread > near_spread;
+    if (near) light = incident_light(sender, from.radiance, leaves[leaf].position.xyz);
+    float n_dot_l = max(dot(light.direction, at.normal), 0.0);
+    if (!near && widen > 0.0 && light.spread > narrow_lobe * at.material.alpha * n_dot_l)
+      sum += reflected_extent(at.material, at.position, at.normal, at.geometric_normal, at.view, sender, from.radiance);
+    else if (dot(light.direction, at.geometric_normal) > 0.0)
       sum += reflected_specular(at.material, at.normal, at.view, light, widen);
   }
   return sum;

@@ -121,12 +121,17 @@ void Solution::addSamples(frame::FrameGraph& graph, gpu::Device& device) {
                              gpu::BufferUse::updated);
   sampleBuffer_ =
       gpu::Buffer(device, "illumination samples", sizeof(glsl::IlluminationSample), gpu::BufferUse::updated);
+  sendersNow_.resize(rangesNow_.size());
+  senderBuffer_ = gpu::Buffer(device, "senders of samples", sendersNow_.size() * sizeof(glsl::SampleSender),
+                              gpu::BufferUse::updated);
   frame::PassBuilder pass = graph.addPass("upload", settings_.technique);
   pass.read(irradiance, Access::copySource, "samples, in the CPU's memory").cacheable();
   ranges = pass.write(graph.importBuffer("ranges of samples", rangeBuffer_), Access::copyTarget,
                       "which samples an element has");
   samples = pass.write(graph.importBuffer("illumination samples", sampleBuffer_), Access::copyTarget,
                        "of all elements");
+  senders = pass.write(graph.importBuffer("senders of samples", senderBuffer_), Access::copyTarget,
+                       "where elements are");
   pass.execute([this, &device](frame::PassContext&) { uploadSamples(device); });
 }
 
@@ -181,22 +186,19 @@ void Solution::uploadSamples(gpu::Device& device) {
   const size_t bytes = solver_.sampleCount() * sizeof(glsl::IlluminationSample);
   reserve(device, sampleBuffer_, "illumination samples", bytes);
   const radiosity::ElementSpace& space = elements_.elements().space();
-  const auto groups = elements_.elements().forest().groups();
-  const float unit2 = space.radius() * space.radius();
   samplesNow_.clear();
   for (uint32_t slot = 0; slot < rangesNow_.size(); ++slot) {
     const auto own = solver_.samples(slot);
     rangesNow_[slot] = {static_cast<uint32_t>(samplesNow_.size()), static_cast<uint32_t>(own.size())};
-    for (const radiosity::SampleAtElement& sample : own) {
-      const glsl::ElementGroup& g = groups[sample.sender / 4];
-      const int k = static_cast<int>(sample.sender % 4);
-      samplesNow_.push_back(
-          {.position = space.worldPoint({g.x[k], g.y[k], g.z[k]}),
-           .area = unit2 * g.area[k],
-           .radiance = sample.radiance,
-           .normal = glsl::vertex_pack_normal(space.worldDirection({g.nx[k], g.ny[k], g.nz[k]}))});
-    }
+    for (const radiosity::SampleAtElement& sample : own)
+      samplesNow_.push_back({.radiance = sample.radiance, .sender = sample.sender});
+    const radiosity::Sender sender = solver_.sender(slot);
+    sendersNow_[slot] = {.position = space.worldPoint(sender.position),
+                         .area = space.radius() * space.radius() * sender.area,
+                         .side = space.radius() * space.worldDirection(sender.side),
+                         .normal = glsl::vertex_pack_normal(space.worldDirection(sender.normal))};
   }
+  senderBuffer_.update(0, sendersNow_.data(), sendersNow_.size() * sizeof(glsl::SampleSender));
   rangeBuffer_.update(0, rangesNow_.data(), rangesNow_.size() * sizeof(glm::uvec2));
   sampleBuffer_.update(0, samplesNow_.data(), bytes);
 }

@@ -67,7 +67,8 @@ class Solution {
 
   frame::BufferHandle irradiance;  ///< of leaf slots, W/m^2
   frame::BufferHandle ranges;      ///< of slots: the first sample, and how many; gathered
-  frame::BufferHandle samples;     ///< of glsl::IlluminationSample, world; gathered
+  frame::BufferHandle samples;     ///< of glsl::IlluminationSample; gathered
+  frame::BufferHandle senders;     ///< of slots: glsl::SampleSender, world; gathered
   frame::BufferHandle trees;       ///< of leaf slots: where their nodes begin, and their scale; else
   frame::BufferHandle nodes;       ///< of all trees, as glsl/indirect/packed_tree.glsl has them
 
@@ -89,11 +90,12 @@ class Solution {
   std::vector<uint32_t> lights_;
   radiosity::SampleSolver solver_;
   frame::BufferHandle lit_;
-  gpu::Buffer litBuffer_, rangeBuffer_, sampleBuffer_, treeBuffer_, nodeBuffer_;
+  gpu::Buffer litBuffer_, rangeBuffer_, sampleBuffer_, senderBuffer_, treeBuffer_, nodeBuffer_;
   std::deque<gpu::Buffer> irradianceBuffers_;  ///< the graph keeps their addresses
   std::vector<glm::vec4> irradianceNow_;
   std::vector<glm::uvec2> rangesNow_;
   std::vector<glsl::IlluminationSample> samplesNow_;
+  std::vector<glsl::SampleSender> sendersNow_;
   std::vector<LeafTree> treesNow_;
   std::vector<glm::uvec2> nodesNow_;
 };

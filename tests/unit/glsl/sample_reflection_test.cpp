@@ -49,6 +49,29 @@ TEST(SampleReflectionTest, PointsAreReflectedByTheBrdf) {
   EXPECT_EQ(reflected_specular(s, n, v, below, 0.22f), vec3(0));
 }
 
+/// A sender in its whole extent against many points of it, beside its foot and above its middle.
+TEST(SampleReflectionTest, SendersAreReflectedInTheirWholeExtent) {
+  const SurfaceBrdf s = satin(0.3f);
+  const vec3 n(0, 0, 1), v = normalize(vec3(-0.8f, 0, 0.6f));
+  const SampleSender wall{vec3(0.5f, 0, 0.5f), 2, vec3(0, 2, 0), vertex_pack_normal(vec3(-1, 0, 0))};
+  for (const float away : {0.1f, 0.5f, 2.f}) {
+    const vec3 x(0.5f - away, 0, 0);
+    constexpr int side = 200;
+    float expected = 0;
+    for (int i = 0; i < side; ++i)
+      for (int j = 0; j < side; ++j) {
+        SampleSender piece = wall;
+        piece.position = vec3(0.5f, 2 * (float(i) + 0.5f) / side - 1, (float(j) + 0.5f) / side);
+        piece.area = wall.area / (side * side);
+        expected += reflected_specular(s, n, v, incident_light(piece, vec3(1), x), 0).x;
+      }
+    EXPECT_NEAR(reflected_extent(s, x, n, n, v, wall, vec3(1)).x / expected, 1, 0.1f) << away;
+  }
+  const vec3 behind(0.6f, 0, 0), touching(0.5f, 0, 0);
+  EXPECT_EQ(reflected_extent(s, behind, n, n, v, wall, vec3(1)), vec3(0));
+  EXPECT_GT(reflected_extent(s, touching, n, n, v, wall, vec3(1)).x, 0.3f);
+}
+
 TEST(SampleReflectionTest, DiffusePartsAreWhatDielectricsLeave) {
   EXPECT_EQ(diffuse_albedo(satin(0.3f)), vec3(0));
   const SurfaceBrdf plastic = surface_brdf(vec3(0.5f), 0, 0.3f, 1, vec3(1), 1.5f);

@@ -236,10 +236,10 @@ TEST(GlossyLobes, WideningStandsForASquare) {
       for (int j = 0; j < side; ++j) {
         const glm::vec2 at =
             0.6f * ((glm::vec2(float(i), float(j)) + glm::vec2(0.5f)) / float(side) - glm::vec2(0.5f));
-        const glsl::IlluminationSample sample{towards + at.x * frame.t + at.y * frame.b,
-                                              0.36f / float(side * side), glm::vec3(1),
-                                              glsl::vertex_pack_normal(-towards)};
-        lights.push_back(glsl::incident_light(sample, glm::vec3(0)));
+        const float piece = 0.6f / float(side);
+        const glsl::SampleSender sender{towards + at.x * frame.t + at.y * frame.b, piece * piece,
+                                        piece * frame.t, glsl::vertex_pack_normal(-towards)};
+        lights.push_back(glsl::incident_light(sender, glm::vec3(1), glm::vec3(0)));
       }
     return lights;
   };
