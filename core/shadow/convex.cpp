@@ -28,7 +28,14 @@ void Convex::setBox(const std::array<vec3, 8>& box) {
 
 void Convex::clip(const glm::vec4& plane) {
   const auto height = [&](const vec3& p) { return glm::dot(vec3(plane), p) + plane.w; };
-  if (std::ranges::all_of(corners_, [&](const vec3& p) { return height(p) >= 0; })) return;
+  const auto kept =
+      static_cast<size_t>(std::ranges::count_if(corners_, [&](const vec3& p) { return height(p) >= 0; }));
+  if (kept == corners_.size()) return;
+  if (kept == 0) {
+    corners_.clear();
+    ends_.clear();
+    return;
+  }
   nextCorners_.clear();
   nextEnds_.clear();
   cutCorners_.clear();

@@ -215,6 +215,43 @@ LightLayout fitWhole(const glsl::Light& light, std::span<const Bounds> boxes, co
   return both ? cube : LightLayout{glsl::shadow_perspective, glsl::shadow_faces_hemicube, kind};
 }
 
+/// Appends the faces of the cubes or half cubes of a light's samples, fitted to the view: what blocks a
+/// receiver's light lies in its direction. A face that needs to show nothing looks at depths behind all that
+/// is there, so that nothing is drawn in it.
+void appendFaces(const glsl::Light& light, const LightLayout& layout, std::span<const Bounds> boxes,
+                 const ShadowMapDesc& desc, const VisibleScene& visible, Writer& out) {
+  const Axes axes = axesOf(light);
+  const uint32_t faces = glsl::shadow_face_count(layout.faces);
+  const std::vector<glm::vec2> samples = samplesOf(light, desc);
+  const auto offsetOf = [&](const glm::vec2& sample, const Axes& along) {
+    const vec3 r = samplePoint(light, sample) - light.position;
+    return vec3(glm::dot(along.x, r), glm::dot(along.y, r), glm::dot(along.z, r));
+  };
+  vec3 reach(0);
+  for (const glm::vec2& sample : samples) reach = glm::max(reach, glm::abs(offsetOf(sample, axes)));
+  const MapWindow around = wholeWindow(light, light.position, axes, layout, boxes, desc);
+  FaceReceivers receivers;
+  const bool some =
+      findFaceReceivers(light.position, axes, visible, light.own_instance, faces, reach, around, receivers);
+  for (const glm::vec2& sample : samples) {
+    const vec3 origin = samplePoint(light, sample);
+    out.light(origin, true, layout.faces);
+    const MapWindow whole = wholeWindow(light, origin, axes, layout, boxes, desc);
+    for (uint32_t face = 0; face < faces; ++face) {
+      const Axes own = faceAxes(axes, face);
+      MapWindow window = whole;
+      if (some) window = shiftedFaceWindow(receivers[face], offsetOf(sample, own), whole);
+      if (window.low.x <= window.high.x && window.low.y <= window.high.y) {
+        window.near = whole.near;
+        window = steadyWindow(window, whole, desc.size);
+      } else {
+        window = {whole.low, whole.high, whole.far, 2 * whole.far};
+      }
+      out.view(glsl::shadow_perspective, origin, own, window);
+    }
+  }
+}
+
 /// Appends the views of a light, or of a part of one, whose perspective views have the window `given`.
 void appendWhole(const glsl::Light& light, const LightLayout& layout, std::span<const Bounds> boxes,
                  const ShadowMapDesc& desc, const VisibleScene* visible, Writer& out,
@@ -224,9 +261,8 @@ void appendWhole(const glsl::Light& light, const LightLayout& layout, std::span<
   const std::vector<glm::vec2> samples = samplesOf(light, desc);
   const bool perspective = layout.projection == glsl::shadow_perspective;
   ViewFit fit;
-  if (desc.fit == MapFit::view && layout.faces == glsl::shadow_faces_single &&
-      layout.projection != glsl::shadow_paraboloid)
-    fit.visible = visible;
+  const bool toView = desc.fit == MapFit::view && layout.projection != glsl::shadow_paraboloid;
+  if (toView && layout.faces == glsl::shadow_faces_single) fit.visible = visible;
   const bool sampled = !desc.samples.empty();
   if (!sampled || perspective) fit.spread = spreadOf(light, axes, desc.lightSize);
   std::optional<MapWindow> window;
@@ -238,6 +274,10 @@ void appendWhole(const glsl::Light& light, const LightLayout& layout, std::span<
     if (fitWindow({origin, axes, true, fit.spread}, *fit.visible, light.own_instance, whole, fitted,
                   receivers))
       window = fitted;
+  }
+  if (toView && sampled && visible != nullptr && count > 2) {
+    appendFaces(light, layout, boxes, desc, *visible, out);
+    return;
   }
   for (const glm::vec2& sample : samples) {
     if (layout.projection == glsl::shadow_orthographic) {

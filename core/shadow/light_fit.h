@@ -28,8 +28,8 @@ LIMN_API LightLayout fitLayout(const glsl::Light& light, std::span<const scene::
                                const ShadowMapDesc& desc);
 
 /// Appends the views of one light, for each sample of `desc` or each part in turn, with layers numbered from
-/// views.size(), and one ShadowLight per sample or part. With MapFit::view, maps of one view per sample are
-/// fitted to `visible`; when it is null, to the boxes.
+/// views.size(), and one ShadowLight per sample or part. With MapFit::view, maps of one view per sample and
+/// the faces of samples' cubes and hemicubes are fitted to `visible`; when it is null, to the boxes.
 LIMN_API void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayout& layout,
                           std::span<const scene::Bounds> boxes, const ShadowMapDesc& desc,
                           const VisibleScene* visible, std::vector<glsl::ShadowView>& views,

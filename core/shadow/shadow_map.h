@@ -32,7 +32,8 @@ enum class Projection {
   paraboloid,  ///< one layer per hemisphere (two for point lights); radial depth
 };
 
-/// Says what maps of one view cover; cubes, hemicubes, pairs and paraboloids cover the whole scene.
+/// Says what maps of one view, and faces of samples' cubes and hemicubes, cover; others cover the whole
+/// scene.
 enum class MapFit {
   scene,  ///< everything that a light reaches, independent of the camera
   view,   ///< what the camera sees of it and what may block its light: redrawn when that changes

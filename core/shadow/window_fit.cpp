@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/shadow/private/pyramid_fit.h"
+
 namespace limn::shadow {
 namespace {
 
@@ -68,6 +70,17 @@ MapWindow nothing() {
   return {vec2(kInfinite), vec2(-kInfinite), kInfinite, -kInfinite};
 }
 
+vec3 inAxes(const MapAxes& axes, const vec3& r) {
+  return {glm::dot(axes.x, r), glm::dot(axes.y, r), glm::dot(axes.z, r)};
+}
+
+constexpr MapAxes kOwnAxes{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+
+/// What lies before the light, in the axes of a face of its half cube.
+vec4 beforeLight(uint32_t face) {
+  return vec4(inAxes(faceAxes(kOwnAxes, face), kOwnAxes.z), 0);
+}
+
 }  // namespace
 
 bool fitWindow(const MapEye& eye, const VisibleScene& scene, uint32_t skip, const MapWindow& whole,
@@ -102,6 +115,41 @@ bool fitWindow(const MapEye& eye, const VisibleScene& scene, uint32_t skip, cons
   window.low = glm::max(window.low, whole.low);
   window.high = glm::min(window.high, whole.high);
   return true;
+}
+
+bool findFaceReceivers(const vec3& origin, const MapAxes& axes, const VisibleScene& scene, uint32_t skip,
+                       uint32_t faces, const vec3& reach, const MapWindow& whole, FaceReceivers& receivers) {
+  Convex solid;
+  bool some = false;
+  for (uint32_t face = 0; face < faces; ++face) {
+    const MapAxes turned = faceAxes(kOwnAxes, face), own = faceAxes(axes, face);
+    const vec3 around = inAxes({glm::abs(turned.x), glm::abs(turned.y), glm::abs(turned.z)}, reach);
+    // |x| <= z wherever in reach the pyramid's apex lies.
+    Wedge limits = pyramid({origin, own}, whole);
+    for (size_t i = 0; i < 4; ++i) limits.planes[i].w += (i < 2 ? around.x : around.y) + around.z;
+    receivers[face].clear();
+    for (const VisiblePart& part : scene.visible()) {
+      if (part.instance == skip) continue;
+      solid.assign(part.solid, [&](const vec3& p) { return inAxes(own, p - origin); });
+      clipTo(solid, limits, kLeastDepth * whole.far - around.z, whole.far + around.z);
+      if (faces == 5 && !solid.empty()) solid.clip(beforeLight(face));
+      receivers[face].insert(receivers[face].end(), solid.corners().begin(), solid.corners().end());
+    }
+    some = some || !receivers[face].empty();
+  }
+  return some;
+}
+
+MapWindow shiftedFaceWindow(std::span<const vec3> receivers, const vec3& offset, const MapWindow& whole) {
+  MapWindow shifted = nothing();
+  for (const vec3& p : receivers) {
+    // Beside the point the tangents of what lies between corners have no bounds.
+    if (p.z - offset.z < kLeastDepth * whole.far) return whole;
+    add(shifted, true, p - offset);
+  }
+  shifted.low = glm::max(shifted.low, whole.low);
+  shifted.high = glm::min(shifted.high, whole.high);
+  return shifted;
 }
 
 MapWindow shiftedWindow(std::span<const vec3> receivers, const vec2& offset) {

@@ -2,6 +2,8 @@
 // sees, and what lies between them and the light. No OpenGL.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -44,6 +46,22 @@ LIMN_API bool fitWindow(const MapEye& eye, const VisibleScene& scene, uint32_t s
 /// Returns the rectangle that holds the receivers in a perspective map from another point of the light, and
 /// their depths. `offset` is that point's offset, metres along x and y.
 LIMN_API MapWindow shiftedWindow(std::span<const glm::vec3> receivers, const glm::vec2& offset);
+
+/// Holds, for each face of a cube or half cube, points in its axes, relative to the origin, in whose convex
+/// hulls its receivers lie.
+using FaceReceivers = std::array<std::vector<glm::vec3>, 6>;
+
+/// Finds the receivers that the camera sees in each of the first `faces` faces of shadow_face() about any
+/// point of the light at most `reach` from `origin` along each of the axes. Of half cubes (faces: 5) only
+/// what lies before the light counts. Depths are up to that of `whole`. Returns false when there are none.
+LIMN_API bool findFaceReceivers(const glm::vec3& origin, const MapAxes& axes, const VisibleScene& scene,
+                                uint32_t skip, uint32_t faces, const glm::vec3& reach, const MapWindow& whole,
+                                FaceReceivers& receivers);
+
+/// Returns the rectangle that holds the receivers of one face seen from another point of the light, and their
+/// depths; low > high where it holds none. `offset` is that point's, in the face's axes.
+LIMN_API MapWindow shiftedFaceWindow(std::span<const glm::vec3> receivers, const glm::vec3& offset,
+                                     const MapWindow& whole);
 
 /// Returns the square around the window with a margin at its edges of two texels of a map of `size` texels
 /// per side, and a little more, so that square and depths stay the same while the camera moves little.

@@ -234,6 +234,85 @@ TEST_P(WindowFit, ScalesWithTheScene) {
 
 INSTANTIATE_TEST_SUITE_P(Lights, WindowFit, ::testing::Range(0, 4));
 
+/// A half cube, a cube of a point light, and one of a rectangle that shines both ways.
+glsl::Light lightOfFaces(int kind) {
+  glsl::Light light = rectangleLight({-0.4f, 3.6f, 0.3f}, {0.05f, -1, 0.03f}, 0.8f, 0.5f);
+  if (kind == 1) light = pointLight({-0.4f, 3.6f, 0.3f});
+  if (kind == 2) light.flags |= glsl::light_flag_two_sided;
+  return light;
+}
+
+/// The view of a light that sees p.
+const glsl::ShadowView& viewOf(const Fitted& fitted, const glsl::ShadowLight& light, const vec3& p) {
+  return fitted.views[light.first_layer + glsl::shadow_face(light.faces, fitted.views[light.first_layer], p)];
+}
+
+TEST(WindowFitOf, FacesOfSamplesHoldEveryReceiverAndWhatBlocksIt) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  for (int kind = 0; kind < 3; ++kind) {
+    const glsl::Light l = lightOfFaces(kind);
+    int receivers = 0, blockers = 0;
+    int smaller = 0;  // or empty
+    for (uint32_t seed = 1; seed <= 6; ++seed) {
+      const Cloud cloud(seed);
+      VisibleScene visible(cloud.scene);
+      const scene::CameraPose camera = scene::lookAt(
+          {3 * uniform(random) - 1.5f, 0.6f + uniform(random), 3.5f}, {uniform(random), 0.2f, 0}, 0.5f);
+      visible.update(cloud.pose, cloud.boxes, camera, 1.3f);
+      ShadowMapDesc desc{.size = 256, .fit = MapFit::view};
+      for (int i = 0; i < 5; ++i) desc.samples.emplace_back(uniform(random), uniform(random));
+      const Fitted cut = fit(cloud, l, desc, &visible);
+      ASSERT_EQ(cut.views.size(), kind == 0 ? 25u : kind == 1 ? 6u : 30u);
+      for (const glsl::ShadowView& view : cut.views)
+        smaller += sideOf(view) < 1.8f || view.near >= 0.5f * view.far ? 1 : 0;
+      for (int i = 0; i < 4000; ++i) {
+        const auto& t = cloud.triangles[i % 8 == 0 ? static_cast<size_t>(i / 8) % 2
+                                                   : static_cast<size_t>(i) % cloud.triangles.size()];
+        const float a = std::sqrt(uniform(random)), b = uniform(random);
+        const vec3 p = t[0] + a * (1 - b) * (t[1] - t[0]) + a * b * (t[2] - t[0]);
+        if (!seenBy(camera, 1.3f, p)) continue;
+        if (glsl::light_view(l, p, glm::normalize(l.position - p), -1).masked) continue;
+        ++receivers;
+        for (const glsl::ShadowLight& sample : cut.lights) {
+          const glsl::ShadowView& view = viewOf(cut, sample, p);
+          EXPECT_TRUE(glsl::shadow_inside(glsl::shadow_project(view, p))) << kind;
+          if (i % 4 != 1) continue;
+          for (const auto& blocker : cloud.triangles) {
+            const std::optional<vec3> at = hit(blocker, p + 1e-3f * (sample.origin - p), sample.origin);
+            if (!at || glm::distance(*at, vec3(sample.origin)) < 0.01f) continue;
+            ++blockers;
+            const glsl::ShadowPoint q = glsl::shadow_project(view, *at);
+            EXPECT_TRUE(glsl::shadow_inside(q)) << kind << ": " << q.uv.x << " " << q.uv.y;
+            EXPECT_GE(q.depth, view.near);
+            EXPECT_LE(q.depth, view.far);
+          }
+        }
+      }
+    }
+    EXPECT_GT(receivers, 500);
+    EXPECT_GT(blockers, 20);
+    EXPECT_GE(smaller, 20);
+  }
+}
+
+TEST(WindowFitOf, FacesStayWhatTheyAreWhileTheCameraMovesLittle) {
+  const Cloud cloud(1);
+  VisibleScene visible(cloud.scene);
+  std::optional<Fitted> before;
+  int changes = 0;
+  for (int i = 0; i < 50; ++i) {
+    const float x = 0.001f * static_cast<float>(i);
+    visible.update(cloud.pose, cloud.boxes, scene::lookAt({x, 1.2f, 3.5f}, {x, 0.2f, 0}, 0.5f), 1.3f);
+    const Fitted now =
+        fit(cloud, lightOfFaces(0), {.size = 256, .samples = {{0.3f, 0.6f}}, .fit = MapFit::view}, &visible);
+    if (before && std::memcmp(now.views.data(), before->views.data(), 5 * sizeof(glsl::ShadowView)) != 0)
+      ++changes;
+    before = now;
+  }
+  EXPECT_LE(changes, 15);
+}
+
 TEST(WindowFitOf, CubesAndWhatSeesEverythingCoversTheScene) {
   const Cloud cloud(1);
   VisibleScene visible(cloud.scene);
