@@ -78,8 +78,8 @@ constexpr std::array<Parameter, N + 14> gatherParameters(const std::array<Parame
       real(
           "edges", 0, {0, 100}, "",
           "Pixels get all virtual lights where the blur finds less than a quarter of the pattern, or mixes "
-          "lines of pixels whose light differs by more than this share of the picture's mean; 0: none do, as "
-          "published"),
+          "lines of pixels whose light differs by more than this times the mean of 16 x 16 pixels around; 0: "
+          "none do, as published"),
   };
   std::copy(own.begin(), own.end(), all.begin() + 1);
   std::copy(std::begin(shared), std::end(shared), all.begin() + 1 + N);
@@ -96,7 +96,7 @@ struct GatherSettings {
   int history = 1;
   bool blur = false;
   float blurPosition = 0.1f, blurPlane = 0.01f, blurNormal = 0.8f;
-  float edges = 0;  ///< shares of the picture's mean light; 0: no pixels get all virtual lights
+  float edges = 0;  ///< means of the light of 16 x 16 pixels; 0: no pixels get all virtual lights
 };
 LIMN_API GatherSettings gatherSettings(const ParameterValues& parameters);
 LIMN_API VirtualLightDesc virtualLightDesc(const ParameterValues& parameters);

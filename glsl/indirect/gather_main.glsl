@@ -71,7 +71,7 @@ const uint batch_first = 0u;     // this pass uses all virtual lights
 uniform sampler2DArray blurred;  // along both axes, along rows alone, along columns alone
 uniform sampler2DArray rows;
 uniform sampler2DArray columns;
-uniform float edges;  // share of the picture's mean by which these may differ
+uniform float edges;  // by which these may differ, in means of the work group's pixels
 #endif
 
 struct Receiver {
@@ -238,6 +238,9 @@ const float least_share = 0.25;  // of the pattern that the blur must find
 
 float brightness(vec3 light) { return light.r + light.g + light.b; }
 
+// Of the pattern that the blur found.
+float blurred_share(ivec2 pixel) { return texelFetch(blurred, ivec3(pixel, gather_part_diffuse), 0).a; }
+
 float blurred_light(ivec2 pixel) {
   vec4 sum = texelFetch(blurred, ivec3(pixel, gather_part_diffuse), 0);
   return sum.a > 0.0 ? brightness(sum.rgb) / sum.a : 0.0;
@@ -256,7 +259,7 @@ float line_light(sampler2DArray lines, ivec2 pixel) {
 // Whether the blur serves a pixel badly: it found less of the pattern than least_share, or mixes a line of pixels with others that
 // get `most` more or less light, as in a slit.
 bool on_edge(ivec2 pixel, float most) {
-  float share = texelFetch(blurred, ivec3(pixel, gather_part_diffuse), 0).a;
+  float share = blurred_share(pixel);
   if (!(pixel_depth(pixel) > 0.0 && share > 0.0)) return false;
   float light = blurred_light(pixel);
   float off = max(abs(line_light(rows, pixel) - light), abs(line_light(columns, pixel) - light));
@@ -302,14 +305,15 @@ shared uint edge_pixels[THREADS];  // x and y, 16 bits each
 shared uint edge_count;
 
 void main() {
-  // The picture's mean: of a thread's pixel each.
   ivec2 size = ivec2(frame.frame_size);
-  float sample_light = blurred_light(ivec2((vec2(gl_LocalInvocationID.xy) + 0.5) / 16.0 * vec2(size)));
-  float most = edges * total(vec4(sample_light)).x / float(THREADS);
+  ivec2 own = ivec2(gl_GlobalInvocationID.xy);
+  bool inside = all(lessThan(own, size));
+  vec4 light = inside ? vec4(blurred_light(own), blurred_share(own) > 0.0 ? 1.0 : 0.0, 0.0, 0.0) : vec4(0.0);
+  light = total(light);
+  float most = edges * light.x / max(light.y, 1.0);
   if (gl_LocalInvocationIndex == 0u) edge_count = 0u;
   barrier();
-  ivec2 own = ivec2(gl_GlobalInvocationID.xy);
-  if (all(lessThan(own, size))) {
+  if (inside) {
     if (on_edge(own, most)) {
       edge_pixels[atomicAdd(edge_count, 1u)] = uint(own.x) | uint(own.y) << 16;
     } else {
