@@ -20,7 +20,8 @@
 // that a loop over lights does better with few values to keep.
 //
 // Define VPL_SHADOWS 1 before including this where virtual lights have shadows: vpl_begin() and vpl_visibility() are then the
-// technique's.
+// technique's. Define VPL_AREAS 1 instead, with GATHER_PIXELS 1, where the lights of an area (`cluster`) share a shadow, and lights
+// of one area follow each other: vpl_area_visibility() is then the technique's, and is asked once for all of them.
 #ifndef LIMN_GATHER_MAIN_GLSL
 #define LIMN_GATHER_MAIN_GLSL
 #include "glsl/surface/brdf_view.glsl"
@@ -37,6 +38,9 @@
 #endif
 #ifndef GATHER_PIXELS
 #define GATHER_PIXELS 4
+#endif
+#ifndef VPL_AREAS
+#define VPL_AREAS 0
 #endif
 
 // A work group shades 16 x 16 pixels of a sub-buffer.
@@ -75,6 +79,9 @@ uniform float edges;  // by which these may differ, in means of the work group's
 #endif
 
 struct Receiver {
+#if VPL_AREAS
+  float seen;             // share of the area whose lights are gathered
+#endif
   vec3 position;
   vec3 normal;            // shading; 0 where there is nothing to light
   vec3 geometric_normal;
@@ -105,6 +112,9 @@ void vpl_begin(uint vpl, VirtualPointLight light);
 
 // Whether pixel 0 to 3 of the thread sees the light: 1, or does not: 0. Asked only where it matters.
 float vpl_visibility(VirtualPointLight light, uint pixel, Receiver r, VplSight sight);
+#elif VPL_AREAS
+// The share of an area light that the receiver sees.
+float vpl_area_visibility(uint area, Receiver r);
 #endif
 
 // Sums over lights, of which constant factors are left out.
@@ -154,6 +164,8 @@ void gather_from(VirtualPointLight light, uint pixel, Receiver r, float nearest2
     visibility = vpl_visibility(light, pixel, r, sight);
   }
   share *= visibility;
+#elif VPL_AREAS
+  share *= r.seen;
 #endif
 #if !LAMBERTIAN
   vec3 l = inversesqrt(max(sight.d2, 1e-37)) * sight.offset;
@@ -191,6 +203,32 @@ VirtualPointLight begin_light(uint i) {
 #endif
   return light;
 }
+
+#if GATHER_PIXELS == 1
+// Lights first to end - 1, at least one, for one pixel. Conditions of loops come last: software renderers run a loop's body once
+// more where it comes first, wanted or not. That is why areas have a loop of their own around that over lights.
+void gather_lights(uint first, uint end, inout Receiver r, inout Gathered sum) {
+  float nearest2 = squared_bound(nearest);
+  uint i = first;
+#if VPL_AREAS
+  float area = virtual_lights[i].cluster;
+  do {
+    float this_area = area;
+    r.seen = vpl_area_visibility(uint(area), r);
+    do {
+      VirtualPointLight light = begin_light(i);
+      gather_from(light, 0u, r, nearest2, sum);
+      area = virtual_lights[min(++i, end - 1u)].cluster;
+    } while (i < end && area == this_area);
+  } while (i < end);
+#else
+  do {
+    VirtualPointLight light = begin_light(i);
+    gather_from(light, 0u, r, nearest2, sum);
+  } while (++i < end);
+#endif
+}
+#endif
 
 struct GatherPixel {
   ivec2 texel;   // in the G-buffer and the result
@@ -327,12 +365,7 @@ void main() {
   Receiver r;
   GatherPixel p = gather_pixel(ivec2(packed_pixel & 0xffffu, packed_pixel >> 16), r);
   Gathered sum = Gathered(vec3(0.0), vec3(0.0), vec3(0.0));
-  float nearest2 = squared_bound(nearest);
-  uint i = 0u;
-  do {
-    VirtualPointLight light = begin_light(i);
-    gather_from(light, 0u, r, nearest2, sum);
-  } while (++i < vpl_count);
+  gather_lights(0u, vpl_count, r, sum);
   store(p, sum);
 }
 #else
@@ -358,17 +391,19 @@ void main() {
   covered = covered || p10.covered || p01.covered || p11.covered;
 #endif
   if (covered && first < end) {
+#if GATHER_PIXELS == 1
+    gather_lights(first, end, r00, sum00);
+#else
     float nearest2 = squared_bound(nearest);
     uint i = first;
     do {  // the condition comes last: software renderers run a loop's body once more where it comes first
       VirtualPointLight light = begin_light(i);
       gather_from(light, 0u, r00, nearest2, sum00);
-#if GATHER_PIXELS == 4
       gather_from(light, 1u, r10, nearest2, sum10);
       gather_from(light, 2u, r01, nearest2, sum01);
       gather_from(light, 3u, r11, nearest2, sum11);
-#endif
     } while (++i < end);
+#endif
   }
   store(p00, sum00);
 #if GATHER_PIXELS == 4
