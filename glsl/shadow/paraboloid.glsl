@@ -163,15 +163,17 @@ LIMN_FN ParaboloidKernel paraboloid_kernel_thesis(vec3 direction, float alpha) {
 // map's side. The sender is foreshortened towards the receiver: by cos(theta) along the meridian.
 LIMN_FN vec4 paraboloid_rectangle_kernel(vec3 direction, vec2 sides, float d, float z) {
   vec3 w = direction;
-  float k = max(d - z, 0.0f) / (d * z);
+  float k = max(d - z, 0.0f) / max(d * z, 1e-30f);
   vec2 p = paraboloid_map(w);
   // What the map's differential makes of the sides; over the scale: radians.
   vec2 side_x = sides.x * (vec2(1.0f - w.x * w.x, -w.x * w.y) + w.x * w.z * p);
   vec2 side_y = sides.y * (vec2(-w.y * w.x, 1.0f - w.y * w.y) + w.y * w.z * p);
-  float half_x = atan(0.5f * k * sqrt(side_x.x * side_x.x + side_y.x * side_y.x));
-  float half_y = atan(0.5f * k * sqrt(side_x.y * side_x.y + side_y.y * side_y.y));
-  float divisor = w.z + cos(max(half_x, half_y));
-  return vec4(w.x / divisor, w.y / divisor, sin(half_x) / divisor, sin(half_y) / divisor);
+  // Tangents of half the angles, and their cosines.
+  vec2 t = 0.5f * k * vec2(sqrt(side_x.x * side_x.x + side_y.x * side_y.x), sqrt(side_x.y * side_x.y + side_y.y * side_y.y));
+  t = min(t, vec2(1e15f));
+  vec2 c = vec2(1.0f / sqrt(1.0f + t.x * t.x), 1.0f / sqrt(1.0f + t.y * t.y));
+  float inverse = 1.0f / (w.z + min(c.x, c.y));
+  return inverse * vec4(w.x, w.y, t.x * c.x, t.y * c.y);
 }
 
 // The same as published: the sender always seen head-on, angles as if spread evenly over the map.

@@ -137,6 +137,10 @@ TEST(Paraboloid, RectangleKernelHasTheMomentsOfThePenumbra) {
               paraboloid_kernel(vec3(0, 0, 1), paraboloid_penumbra_angle(0.3f, 3, 2)).width, 1e-6f);
   EXPECT_NEAR(paraboloid_rectangle_kernel_thesis(vec3(0, 0, 1), vec2(0.3f), 3, 2).z,
               paraboloid_kernel_thesis(vec3(0, 0, 1), paraboloid_penumbra_angle(0.3f, 3, 2)).width, 1e-6f);
+  // A blocker in the sender's plane hides half of the sphere, and a point has no kernel, whatever is before
+  // it.
+  EXPECT_NEAR(paraboloid_rectangle_kernel(vec3(0, 0, 1), vec2(0.3f), 3, 0).z, 1, 1e-6f);
+  EXPECT_EQ(paraboloid_rectangle_kernel(vec3(0, 0, 1), vec2(0), 3, 0).z, 0);
 }
 
 TEST(Paraboloid, BoundsHoldWhatTheHemisphereSees) {
