@@ -105,35 +105,56 @@ const int fourier_cut = 0;
 float fourier_part(FourierAxis axis, int i) { return mix(axis.low, axis.high, float(i) / float(axis.parts)); }
 float fourier_part_weight(FourierAxis axis, int i) { return 1.0; }
 
+// A box of texels as a trilinear fetch sees it: its middle's uv, and the level of detail.
+vec3 fourier_box(vec2 low, vec2 high, ivec2 size) {
+  vec2 extent = high - low;
+  return vec3(0.5 * (low + high) / vec2(size), fourier_lod(sqrt(0.5 * dot(extent, extent))));
+}
+
+// The means that fourier_lit() needs alone, and those that fourier_blocker_depth() does.
+void fourier_basis_means(vec3 box, int layer, out vec4 basis[FOURIER_GROUPS]) {
+  for (int g = 0; g < FOURIER_GROUPS; ++g)
+    basis[g] = textureLod(fourier_basis_maps, vec3(box.xy, FOURIER_GROUPS * layer + g), box.z);
+}
+float fourier_depth_means(vec3 box, int layer, out vec4 depth_basis[FOURIER_GROUPS]) {
+  for (int g = 0; g < FOURIER_GROUPS; ++g)
+    depth_basis[g] = textureLod(fourier_depth_basis_maps, vec3(box.xy, FOURIER_GROUPS * layer + g), box.z);
+  return textureLod(fourier_depth_maps, vec3(box.xy, layer), box.z).x;
+}
+
 FourierMeans fourier_means(vec2 low, vec2 high, ivec2 size, int layer) {
   FourierMeans means;
-  vec2 uv = 0.5 * (low + high) / vec2(size);
-  vec2 extent = high - low;
-  float lod = fourier_lod(sqrt(0.5 * dot(extent, extent)));
-  for (int g = 0; g < FOURIER_GROUPS; ++g) {
-    vec3 at = vec3(uv, FOURIER_GROUPS * layer + g);
-    means.basis[g] = textureLod(fourier_basis_maps, at, lod);
-    means.depth_basis[g] = textureLod(fourier_depth_basis_maps, at, lod);
-  }
-  means.depth = textureLod(fourier_depth_maps, vec3(uv, layer), lod).x;
+  vec3 box = fourier_box(low, high, size);
+  fourier_basis_means(box, layer, means.basis);
+  means.depth = fourier_depth_means(box, layer, means.depth_basis);
   return means;
 }
 #endif
 
-// (s, n): the share that lies at or behind the receiver's depth; the mean of depth, where blockers count with their depth
-// and all else with 0.
-vec2 fourier_shadow(FourierMeans means, float receiver) {
-  vec2 result = vec2(0.5, 0.5 * means.depth);
+// What the images of a kind add up to at the receiver's depth: to s - 1/2, or taken from n.
+float fourier_sum(vec4 images[FOURIER_GROUPS], float receiver) {
+  float sum = 0.0;
   vec2 phase = fourier_phase(1, receiver - FOURIER_DELTA);
   vec2 step = fourier_phase_step(phase);
   for (int g = 0; g < FOURIER_GROUPS; ++g) {
     vec2 next = fourier_next_phase(phase, step);
-    vec2 weights = vec2(fourier_weights[2 * g], fourier_weights[2 * g + 1]);
-    result += vec2(1.0, -1.0) * vec2(fourier_terms(means.basis[g], phase, next, weights),
-                                     fourier_terms(means.depth_basis[g], phase, next, weights));
+    sum += fourier_terms(images[g], phase, next, vec2(fourier_weights[2 * g], fourier_weights[2 * g + 1]));
     phase = fourier_next_phase(next, step);
   }
-  return result;
+  return sum;
+}
+
+// s: the share that lies at or behind the receiver's depth.
+float fourier_lit(vec4 basis[FOURIER_GROUPS], float receiver) { return 0.5 + fourier_sum(basis, receiver); }
+
+// n: the mean of depth, where blockers count with their depth and all else with 0.
+float fourier_blocker_depth(vec4 depth_basis[FOURIER_GROUPS], float depth, float receiver) {
+  return 0.5 * depth - fourier_sum(depth_basis, receiver);
+}
+
+// (s, n).
+vec2 fourier_shadow(FourierMeans means, float receiver) {
+  return vec2(fourier_lit(means.basis, receiver), fourier_blocker_depth(means.depth_basis, means.depth, receiver));
 }
 
 // The series itself at depth x behind the point where it is taken: what fourier_lit gives where all lies there.

@@ -3,7 +3,8 @@
 //
 // KERNEL_THESIS 1: widths as published. SEARCH_NEAREST 1: the first kernel starts from the nearest depth there is; 0: it is
 // the light's own solid angle, as published. AREA_DIP: least s of what is lit. SPLITS: parts of a kernel per axis, each with
-// a threshold of its own. CONTACT 1: blockers whose penumbrae are narrow are found in the map itself.
+// a threshold of its own. WHOLE_LEVELS 1: lookups take the nearest level of the mip maps, 0: they lie between two. CONTACT 1:
+// blockers whose penumbrae are narrow are found in the map itself.
 #ifndef LIMN_AREA_VISIBILITY_GLSL
 #define LIMN_AREA_VISIBILITY_GLSL
 #include "glsl/shadow/fourier_lookup.glsl"
@@ -44,26 +45,26 @@ AreaLight area_light(uint area) {
 struct AreaReceiver {
   ShadowView view;
   FourierRange range;
-  vec3 direction;  // unit, in the view's axes
-  vec3 normal;
-  float height;    // of the tangent plane over the view's origin, raised by the bias, m; < 0: the origin lies above it
-  float limit;     // radial distance beyond which nothing blocks, m
-  float d;         // radial distance, m
-  vec2 sides;      // of the light
+  vec3 direction;      // unit, in the view's axes
+  vec3 plane;          // of the tangent plane, raised by the bias: inverse radial distance along w is dot(plane, w), 1/m; 0 where
+                       // the view's origin lies above it
+  float inverse_limit; // of the radial distance beyond which nothing blocks, 1/m
+  float d;             // radial distance, m
+  vec2 sides;          // of the light
 };
 
-// Radial distance, m, below which what lies at uv blocks: what is nearer to the light than the receiver, and above its
-// tangent plane.
-float blocking_limit(AreaReceiver r, vec2 uv) {
-  float facing = dot(r.normal, paraboloid_direction(2.0 * uv - 1.0));
-  bool bounded = r.height < 0.0 && facing < 0.0;
-  return bounded ? min(r.height / facing, r.limit) : r.limit;
+// Inverse radial distance, 1/m, above which what lies at a place in texels blocks: what is nearer to the light than the
+// receiver, and above its tangent plane.
+float inverse_blocking_limit(AreaReceiver r, vec2 texel) {
+  vec2 p = 2.0 / float(r.view.size) * texel - 1.0;
+  float rho2 = dot(p, p);
+  // paraboloid_direction(p), with one division.
+  return max((2.0 * dot(r.plane.xy, p) + r.plane.z * (1.0 - rho2)) / (1.0 + rho2), r.inverse_limit);
 }
 
-// The same as a depth of the series, at a place in texels.
-float series_threshold(AreaReceiver r, vec2 texel) {
-  vec2 uv = texel / float(r.view.size);
-  return fourier_depth(r.range, uv, shadow_normalise(r.view, blocking_limit(r, uv)));
+// A radial distance, m, as a depth of the series.
+float series_depth(AreaReceiver r, float metres) {
+  return fourier_depth(r.range, vec2(0.5), shadow_normalise(r.view, metres));
 }
 
 struct SeriesPart {
@@ -74,12 +75,11 @@ struct SeriesPart {
 // The threshold of a box of texels is the middle one, unless a lit plane would then span more depth within the box than
 // ringing suppression absorbs.
 SeriesPart series_part(AreaReceiver r, vec2 low, vec2 high) {
-  float middle = series_threshold(r, 0.5 * (low + high));
-  float t00 = series_threshold(r, low);
-  float t10 = series_threshold(r, vec2(high.x, low.y));
-  float t01 = series_threshold(r, vec2(low.x, high.y));
-  float t11 = series_threshold(r, high);
-  float least = min(min(min(t00, t10), min(t01, t11)), middle);
+  float centre = inverse_blocking_limit(r, 0.5 * (low + high));
+  float corners = max(max(inverse_blocking_limit(r, low), inverse_blocking_limit(r, vec2(high.x, low.y))),
+                      max(inverse_blocking_limit(r, vec2(low.x, high.y)), inverse_blocking_limit(r, high)));
+  float middle = series_depth(r, 1.0 / centre);
+  float least = series_depth(r, 1.0 / max(corners, centre));
   float before = min(middle - least, FOURIER_TOLERANCE);
   SeriesPart part;
   part.threshold = clamp(least + before, 0.0, FOURIER_RANGE);
@@ -115,6 +115,15 @@ vec4 search_kernel(AreaReceiver r) {
 #endif
 }
 
+// A box of texels in the basis images. One level serves as well as two between which a trilinear lookup lies, at half the work.
+vec3 area_box(AreaReceiver r, vec2 low, vec2 high) {
+  vec3 box = fourier_box(low, high, ivec2(r.view.size));
+#if WHOLE_LEVELS
+  box.z = floor(box.z + 0.5);
+#endif
+  return box;
+}
+
 // Stages 1 and 2: mean radial distance of the blockers in the kernel; as far as the receiver where there are none.
 float mean_blocker(AreaReceiver r, vec4 kernel) {
   int layer = int(r.view.layer);
@@ -125,12 +134,16 @@ float mean_blocker(AreaReceiver r, vec4 kernel) {
   do {
     vec2 low = kernel.xy + vec2(i % SPLITS, i / SPLITS) * part_size;
     SeriesPart part = series_part(r, low, low + part_size);
-    FourierMeans means = fourier_means(low, low + part_size, ivec2(r.view.size), layer);
-    vec2 sums = fourier_shadow(means, part.threshold);
-    float share = 1.0 - sums.x;
+    vec3 box = area_box(r, low, low + part_size);
+    vec4 basis[FOURIER_GROUPS];
+    fourier_basis_means(box, layer, basis);
+    float share = 1.0 - fourier_lit(basis, part.threshold);
     if (share > 1.0 - part.dip) {
+      vec4 depth_basis[FOURIER_GROUPS];
+      float depth = fourier_depth_means(box, layer, depth_basis);
+      depth = fourier_blocker_depth(depth_basis, depth, part.threshold);
       blocked += share;
-      depths += share * clamp(sums.y / share, 0.0, part.threshold);
+      depths += share * clamp(depth / share, 0.0, part.threshold);
     }
   } while (++i < SPLITS * SPLITS);
   return blocked > 0.0 ? min(stored_metres(r, depths / blocked), r.d) : r.d;
@@ -140,15 +153,16 @@ float mean_blocker(AreaReceiver r, vec4 kernel) {
 float penumbra_visibility(AreaReceiver r, vec4 kernel, float z) {
   int layer = int(r.view.layer);
   vec2 part_size = (kernel.zw - kernel.xy) / float(SPLITS);
-  float depth = fourier_depth(r.range, vec2(0.5), shadow_normalise(r.view, z));
+  float depth = series_depth(r, z);
   float sum = 0.0;
   int i = 0;
   do {
     vec2 low = kernel.xy + vec2(i % SPLITS, i / SPLITS) * part_size;
     SeriesPart part = series_part(r, low, low + part_size);
-    FourierMeans means = fourier_means(low, low + part_size, ivec2(r.view.size), layer);
+    vec4 basis[FOURIER_GROUPS];
+    fourier_basis_means(area_box(r, low, low + part_size), layer, basis);
     float gain = 0.5 / (part.dip - 0.5);
-    float v = fourier_visibility(fourier_shadow(means, part.threshold).x, gain);
+    float v = fourier_visibility(fourier_lit(basis, part.threshold), gain);
     float blocked = fourier_visibility(fourier_step(min(depth - part.threshold, 0.0)), gain);
     sum += fourier_normalised(v, blocked, least_response);
   } while (++i < SPLITS * SPLITS);
@@ -167,8 +181,8 @@ float contact_visibility(AreaReceiver r) {
   // Penumbrae of `sides` s are s (d - z) / (d z) radians wide.
   float angle = contact_texels * r.view.footprint;
   float nearest = r.d / (1.0 + angle * r.d / max(max(r.sides.x, r.sides.y), 1e-30));
-  vec4 limit = vec4(blocking_limit(r, (corner + vec2(0.5, 1.5)) / size), blocking_limit(r, (corner + vec2(1.5, 1.5)) / size),
-                    blocking_limit(r, (corner + vec2(1.5, 0.5)) / size), blocking_limit(r, (corner + vec2(0.5, 0.5)) / size));
+  vec4 limit = 1.0 / vec4(inverse_blocking_limit(r, corner + vec2(0.5, 1.5)), inverse_blocking_limit(r, corner + vec2(1.5, 1.5)),
+                          inverse_blocking_limit(r, corner + vec2(1.5, 0.5)), inverse_blocking_limit(r, corner + vec2(0.5, 0.5)));
   vec4 depth = vec4(shadow_metres(r.view, stored.x), shadow_metres(r.view, stored.y), shadow_metres(r.view, stored.z),
                     shadow_metres(r.view, stored.w));
   vec4 lit = 1.0 - vec4(lessThan(depth, limit)) * vec4(greaterThan(depth, vec4(nearest)));
@@ -184,10 +198,11 @@ AreaReceiver area_receiver(AreaLight light, vec3 p, vec3 normal) {
   r.d = max(length(local), 1e-30);
   r.direction = local / r.d;
   r.direction.z = max(r.direction.z, 0.0);
-  r.normal = shadow_view_axes(r.view, normal);
+  vec3 axis = shadow_view_axes(r.view, normal);
   float raised = bias * r.view.footprint * r.d;
-  r.height = dot(r.normal, local) + raised;
-  r.limit = max(r.d - raised, 0.0);
+  float height = dot(axis, local) + raised;
+  r.plane = height < 0.0 ? axis / height : vec3(0.0);
+  r.inverse_limit = 1.0 / max(r.d - raised, 1e-30);
   r.range = light.range;
   r.sides = light.sides;
   return r;
@@ -198,7 +213,8 @@ float area_visibility(AreaLight light, vec3 p, vec3 normal) {
   AreaReceiver r = area_receiver(light, p, normal);
   float above = dot(r.view.axis_z, p - r.view.origin);
   float z = mean_blocker(r, search_kernel(r));
-  float v = z < r.d ? penumbra_visibility(r, kernel_texels(r, z), z) : 1.0;
+  float v = 1.0;
+  if (z < r.d) v = penumbra_visibility(r, kernel_texels(r, z), z);
 #if CONTACT
   v = min(v, contact_visibility(r));
 #endif
