@@ -49,10 +49,10 @@ TEST_F(EnvironmentCombineTest, WhereNothingIsHiddenTheLightIsThatOfTheMap) {
   for (const char* name :
        {"balls_sky", "torus_metal", "fresnel_spheres", "measured_spheres", "translucent_spheres"})
     for (const bool centres : {false, true}) {
-      scene::Scene parts = byRatio(lit(asset(name), sky(), 0.05));
+      scene::Scene parts = byRatio(lit(coarse(name), sky(), 0.05));
       parts.environment.reflectCentres = centres;
       render::Renderer renderer(device(), parts);
-      const scene::Scene map = lit(asset(name), sky(), 0);
+      const scene::Scene map = lit(coarse(name), sky(), 0);
       render::Renderer unshadowed(device(), map);
       const render::Settings s = settings(64, 48, Term::final);
       const Image expected = picture(unshadowed, s);
@@ -95,7 +95,7 @@ TEST_F(EnvironmentCombineTest, GlossySurfacesShowTheMapInsteadOfItsLights) {
 
 /// However the lights fall into batches, with lamps beside them or without.
 TEST_F(EnvironmentCombineTest, BatchesDoNotMatter) {
-  const scene::Scene lamps = asset("balls");
+  const scene::Scene lamps = coarse("balls");
   scene::Scene scene = byRatio(lit(lamps, sky(), 0.05));
   ASSERT_GT(scene.environment.lights.size(), 16u);
   const Image forwards = direct(scene, {hard()});
@@ -130,9 +130,9 @@ TEST_F(EnvironmentCombineTest, MediaAttenuateWhatArrives) {
 }
 
 TEST_F(EnvironmentCombineTest, NothingElseChanges) {
-  const scene::Scene sum = lit(asset("balls"), sky(), 0.05), ratio = byRatio(sum);
+  const scene::Scene sum = lit(coarse("balls"), sky(), 0.05), ratio = byRatio(sum);
   EXPECT_EQ(rmse(direct(sum, {hard()}, 3), direct(ratio, {hard()}, 3)), 0) << "a light alone";
-  const scene::Scene lamps = asset("balls"), flagged = byRatio(lamps);
+  const scene::Scene lamps = coarse("balls"), flagged = byRatio(lamps);
   EXPECT_EQ(rmse(direct(lamps, {hard()}), direct(flagged, {hard()})), 0) << "no light of an environment";
   for (const char* answer : {"sampled_environment_light", "implicit_visibility"})
     EXPECT_EQ(rmse(direct(sum, {quick(answer)}), direct(ratio, {quick(answer)})), 0) << answer;

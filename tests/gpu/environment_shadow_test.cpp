@@ -13,7 +13,7 @@ using glm::vec3;
 using EnvironmentShadowTest = EnvironmentTest;
 
 TEST_F(EnvironmentShadowTest, PosesHoldTheLightsOfTheEnvironmentBehindTheirOwn) {
-  scene::Scene scene = asset("balls");
+  scene::Scene scene = coarse("balls");
   const size_t own = scene::evaluate(scene, 0).lights.size();
   scene.environment = sky();
   scene.environment.rotation = 0.5f;
@@ -128,7 +128,7 @@ TEST_F(EnvironmentShadowTest, ManyLightsAreMoreExactThanNoShadows) {
 
 TEST_F(EnvironmentShadowTest, MemoryIsBoundedByBatches) {
   const auto bytes = [&](size_t lights, bool dynamic) {
-    scene::Scene scene = lit(asset("balls"), sky(), 0.2);
+    scene::Scene scene = lit(coarse("balls"), sky(), 0.2);
     EXPECT_GE(scene.environment.lights.size(), lights);
     scene.environment.lights.resize(lights);
     render::Renderer renderer(device(), scene);
@@ -145,7 +145,7 @@ TEST_F(EnvironmentShadowTest, MemoryIsBoundedByBatches) {
 TEST_F(EnvironmentShadowTest, ATechniqueTakesThePlaceOfTheLights) {
   for (const std::string& name : environmentTechniques()) {
     SCOPED_TRACE(name);
-    const scene::Scene whole = lit(asset("balls"), sky(), 0), parts = lit(asset("balls"), sky(), 0.05);
+    const scene::Scene whole = lit(coarse("balls"), sky(), 0), parts = lit(coarse("balls"), sky(), 0.05);
     render::Renderer a(device(), whole), b(device(), parts);
     const render::Settings s = settings(64, 48, Term::direct, {quick(name), technique("hard_shadow_map")});
     const Image first = picture(a, s), second = picture(b, s);
@@ -188,7 +188,7 @@ TEST_F(EnvironmentShadowTest, EveryTechniqueGivesTheClosedFormOverAPlane) {
 TEST_F(EnvironmentShadowTest, TechniquesLeaveScenesWithoutEnvironmentAlone) {
   for (const std::string& name : environmentTechniques()) {
     SCOPED_TRACE(name);
-    const scene::Scene scene = asset("balls"), black = lit(asset("balls"), uniform(0), 0);
+    const scene::Scene scene = coarse("balls"), black = lit(coarse("balls"), uniform(0), 0);
     render::Renderer renderer(device(), scene), dark(device(), black);
     EXPECT_EQ(rmse(picture(renderer, settings(64, 48, Term::direct, {quick(name)})),
                    picture(renderer, settings(64, 48, Term::direct))),
@@ -200,7 +200,7 @@ TEST_F(EnvironmentShadowTest, TechniquesLeaveScenesWithoutEnvironmentAlone) {
 /// Also of coats, whose mirrors are seen as far as the samples of all batches are.
 TEST_F(EnvironmentShadowTest, BatchesOfAnySizeGiveTheSamePicture) {
   for (const char* name : {"balls", "fresnel_spheres"}) {
-    const scene::Scene scene = lit(asset(name), sky(), 0);
+    const scene::Scene scene = lit(coarse(name), sky(), 0);
     render::Renderer renderer(device(), scene);
     const auto with = [&](const char* memory) {
       return picture(

@@ -1,9 +1,12 @@
 // Fixture for tests that render whole frames with technique plug-ins.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,6 +24,15 @@ class PictureTest : public GlTest {
   /// A scene of assets/, as built.
   static scene::Scene asset(const std::string& name) {
     return scene::load(std::filesystem::path(test::kBinaryDir) / "assets" / name / (name + ".glb"));
+  }
+
+  /// A scene of assets/ with about 20 vertices from side to side of each mesh that has more. Pictures of a
+  /// few thousand pixels show hardly less, and many shadow maps of it are drawn in a fraction of the time.
+  static scene::Scene coarse(const std::string& name) {
+    scene::Scene scene = asset(name);
+    for (scene::Mesh& mesh : scene.meshes)
+      for (scene::Primitive& primitive : mesh.primitives) coarsen(primitive);
+    return scene;
   }
 
   static const TechniqueRegistry& registry() {
@@ -118,6 +130,28 @@ class PictureTest : public GlTest {
     int bad = 0;
     for (float v : image.data()) bad += !(v >= low && v <= high);  // NaN counts
     EXPECT_EQ(bad, 0) << "values outside [" << low << ", " << high << "] or NaN";
+  }
+
+ private:
+  /// Moves corners of triangles to the first vertex in their cell of a grid, and drops triangles that vanish.
+  static void coarsen(scene::Primitive& primitive) {
+    constexpr float cells = 20;
+    const glm::vec3 sides = primitive.bounds.high - primitive.bounds.low;
+    const float cell = std::max({sides.x, sides.y, sides.z}) / cells;
+    if (primitive.indices.size() < 3 * 3000 || !(cell > 0)) return;
+    std::map<std::array<int, 3>, uint32_t> first;
+    const auto moved = [&](uint32_t vertex) {
+      const glm::ivec3 at((primitive.positions[vertex] - primitive.bounds.low) / cell);
+      return first.try_emplace({at.x, at.y, at.z}, vertex).first->second;
+    };
+    std::vector<uint32_t> kept;
+    for (size_t i = 0; i < primitive.indices.size(); i += 3) {
+      const std::array<uint32_t, 3> corners{moved(primitive.indices[i]), moved(primitive.indices[i + 1]),
+                                            moved(primitive.indices[i + 2])};
+      if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
+        kept.insert(kept.end(), corners.begin(), corners.end());
+    }
+    primitive.indices = std::move(kept);
   }
 };
 

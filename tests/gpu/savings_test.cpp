@@ -17,7 +17,7 @@ class SavingsTest : public RenderTest {
  protected:
   /// Balls with a second light that emits nothing.
   static scene::Scene ballsWithDarkLight() {
-    scene::Scene scene = asset("balls");
+    scene::Scene scene = coarse("balls");
     scene::Node node = *std::ranges::find_if(scene.nodes, [](const scene::Node& n) { return n.light == 0; });
     scene::LightSource dark = scene.lights.at(0);
     node.name = dark.name = "dark";
@@ -52,7 +52,7 @@ TEST_F(SavingsTest, WholePassesLeaveEveryTechniquesPictureAsItIs) {
 }
 
 TEST_F(SavingsTest, FindWhatASceneDoesNotNeed) {
-  const scene::Scene withDark = ballsWithDarkLight(), balls = asset("balls");
+  const scene::Scene withDark = ballsWithDarkLight(), balls = coarse("balls");
   render::Renderer renderer(device(), withDark), litRenderer(device(), balls);
   const auto results = savings(renderer, "hard_shadow_map", 3);
   const SavingResult& dark = named(results, "dark lights");

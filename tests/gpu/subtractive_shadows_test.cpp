@@ -74,7 +74,7 @@ TEST_F(SubtractiveShadowsTest, WhereNothingIsHiddenTheLightIsTheUnshadowedOneToT
 }
 
 TEST_F(SubtractiveShadowsTest, AddedAtEveryPixelItIsTheSampledEnvironment) {
-  const scene::Scene scene = lit(asset("balls"), sky(), 0);
+  const scene::Scene scene = lit(coarse("balls"), sky(), 0);
   render::Renderer renderer(device(), scene);
   const Image added =
       direct(renderer, 64, 48, {shadows({{"combine", "add"}, {"block", "1"}, {"lights", "40"}})});
@@ -84,7 +84,7 @@ TEST_F(SubtractiveShadowsTest, AddedAtEveryPixelItIsTheSampledEnvironment) {
 }
 
 TEST_F(SubtractiveShadowsTest, OfTheSameLightsTheDifferenceIsTheSum) {
-  const scene::Scene scene = lit(asset("balls"), sky(), 0);
+  const scene::Scene scene = lit(coarse("balls"), sky(), 0);
   render::Renderer renderer(device(), scene);
   const auto with = [&](const char* combine) {
     return direct(renderer, 64, 48,
@@ -101,7 +101,7 @@ TEST_F(SubtractiveShadowsTest, OfTheSameLightsTheDifferenceIsTheSum) {
 
 TEST_F(SubtractiveShadowsTest, LightLiesBetweenNothingAndTheUnshadowedLight) {
   for (const char* name : {"balls", "fresnel_spheres"}) {
-    const scene::Scene scene = lit(asset(name), sky(), 0);
+    const scene::Scene scene = lit(coarse(name), sky(), 0);
     render::Renderer renderer(device(), scene);
     const Image unshadowed = direct(renderer, 64, 48);
     for (const char* combine : {"subtract", "ratio", "ratio_split"})
@@ -131,7 +131,7 @@ TEST_F(SubtractiveShadowsTest, NoLightGetsIntoAClosedRoom) {
 
 TEST_F(SubtractiveShadowsTest, BatchesOfAnySizeGiveTheSamePicture) {
   for (const char* name : {"balls", "fresnel_spheres"}) {
-    const scene::Scene scene = lit(asset(name), sky(), 0);
+    const scene::Scene scene = lit(coarse(name), sky(), 0);
     render::Renderer renderer(device(), scene);
     for (const char* combine : kCombines)
       for (const char* block : {"1", "4"}) {
@@ -170,7 +170,7 @@ TEST_F(SubtractiveShadowsTest, BlocksCostLittleWhereSurfacesAreSmooth) {
 TEST_F(SubtractiveShadowsTest, ExtremesStayFinite) {
   scene::Environment spot = uniform(0);
   spot.texels[32 * 4 + 7] = vec3(1e6f);
-  scene::Scene sharp = asset("balls");
+  scene::Scene sharp = coarse("balls");
   for (scene::Material& material : sharp.materials) material.roughness = 0;
   for (const scene::Environment& environment : {sky(), spot}) {
     const scene::Scene scene = lit(sharp, environment, 0);
@@ -209,7 +209,7 @@ TEST_F(SubtractiveShadowsTest, RegionsStandForAllOfTheLight) {
 
 /// A budget that no frame keeps leads from the best level to the least one.
 TEST_F(SubtractiveShadowsTest, LevelsBeginAtTheBestAndEndAtTheLeast) {
-  const scene::Scene scene = lit(asset("balls"), sky(), 0);
+  const scene::Scene scene = lit(coarse("balls"), sky(), 0);
   render::Renderer renderer(device(), scene);
   const auto with = [&](const char* lights, const char* time) {
     return settings(64, 48, Term::direct,
