@@ -102,6 +102,34 @@ TEST(SampleSolverTest, ParallelPlatesExchangeTheirFormFactor) {
   }
 }
 
+/// What stands for elements near by lies in their plane, and is as large and about as long as they are.
+TEST(SampleSolverTest, SendersAreRectanglesOfTheirElements) {
+  // Cells that are three times as long as wide.
+  World world({rectangleMesh({0, 0, 0}, {0, 0, 1}, {3, 0, 0}, 8)}, {diffuse(0.5f)});
+  const float unit = world.space.radius();
+  const glm::vec3 along = world.space.direction({1, 0, 0});
+  double area = 0, inner = 0;
+  for (size_t i = 0; i < world.surfels.size(); ++i) {
+    const Sender sender = world.solver->sender(world.forest.leafOf()[i]);
+    area += double(sender.area) * unit * unit;
+    EXPECT_NEAR(glm::dot(sender.side, sender.normal), 0, 1e-5);
+    const glm::vec3 at = world.space.worldPoint(sender.position);
+    EXPECT_NEAR(at.y, 0, 1e-5) << "on the surface, not above it";
+    if (at.x < 0.4f || at.x > 2.6f || at.z < 0.13f || at.z > 0.87f) continue;
+    ++inner;
+    EXPECT_GT(std::abs(glm::dot(glm::normalize(sender.side), along)), 0.9f);
+    const float aspect = glm::dot(sender.side, sender.side) / sender.area;
+    EXPECT_GT(aspect, 2);
+    EXPECT_LT(aspect, 5);
+  }
+  EXPECT_NEAR(area, 3, 1e-3);
+  EXPECT_GT(inner, 0);
+  for (uint32_t slot = world.forest.leafSlots(); slot < world.forest.slots(); ++slot) {
+    const Sender sender = world.solver->sender(slot);
+    EXPECT_NEAR(glm::dot(sender.side, sender.side), sender.area, 1e-4 * sender.area);
+  }
+}
+
 TEST(SampleSolverTest, LinksFollowTheErrorAllowed) {
   uint64_t before = 0;
   for (const float error : {0.3f, 0.03f, 0.003f}) {
