@@ -201,7 +201,7 @@ AreaReceiver area_receiver(AreaLight light, vec3 p, vec3 normal) {
   vec3 axis = shadow_view_axes(r.view, normal);
   float raised = bias * r.view.footprint * r.d;
   float height = dot(axis, local) + raised;
-  r.plane = height < 0.0 ? axis / height : vec3(0.0);
+  r.plane = height < -1e-30 ? axis / height : vec3(0.0);
   r.inverse_limit = 1.0 / max(r.d - raised, 1e-30);
   r.range = light.range;
   r.sides = light.sides;
