@@ -158,11 +158,7 @@ void gather_from(VirtualPointLight light, uint pixel, Receiver r, float nearest2
   float share = lit ? GATHER_GEOMETRY(towards_light, sight.towards_receiver, sight.d2, nearest2) : 0.0;
 #if VPL_SHADOWS
   float visibility = 1.0;
-  // A loop of at most one round: software renderers run both sides of an `if`, but leave a loop that nobody is in.
-  while (lit) {
-    lit = false;
-    visibility = vpl_visibility(light, pixel, r, sight);
-  }
+  if (lit) visibility = vpl_visibility(light, pixel, r, sight);
   share *= visibility;
 #elif VPL_AREAS
   share *= r.seen;

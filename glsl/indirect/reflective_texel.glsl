@@ -22,11 +22,8 @@ struct ReflectiveTexel {
 vec3 texel_intensity(uint index, vec3 origin, ReflectiveTexel t) {
   Light light = lights[index];
   vec3 intensity = reflective_map_intensity(light, t.position, light_samples);
-  bool rectangle = light.type == light_rectangle;
-  while (rectangle) {  // once: software renderers run both sides of an `if`, but leave a loop that nobody is in
+  if (light.type == light_rectangle)
     intensity = reflective_map_rectangle_intensity(light, origin, t.position, t.normal, light_samples);
-    rectangle = false;
-  }
   return intensity * light_texture(light, t.position);
 }
 

@@ -74,7 +74,7 @@ ReliefEllipse relief_ellipse(ReliefField f, vec2 uv, float level) {
     first += uint(relief_ellipse_words * size.x * size.y);
   }
   ReliefEllipse sum = relief_ellipse_unpack(uvec3(0u));
-  // A loop of one or two rounds: software renderers run both sides of an `if`, but leave a loop that nobody is in.
+  // A loop of one or two rounds: software renderers run both sides of an `if`, but no round that nobody is in.
   int i = 0;
   do {
     ivec2 size = relief_level_size(f.size, lower + i);

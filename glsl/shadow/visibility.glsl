@@ -136,8 +136,8 @@ vec2 shadow_place(ShadowCursor cursor, vec3 p) {
 // The texel that holds the direction of world point p.
 ShadowTap shadow_tap(inout ShadowCursor cursor, VisibilityQuery q, vec3 p) {
 #if !ONE_VIEW
-  // A loop of at most one round: software renderers run both sides of an `if`, but leave a loop that nobody is in.
-  for (uint face = shadow_face(q.maps.faces, q.first, p); face != cursor.face;) cursor = shadow_cursor_at(q, face);
+  uint face = shadow_face(q.maps.faces, q.first, p);
+  if (face != cursor.face) cursor = shadow_cursor_at(q, face);
 #endif
   return shadow_tap_at(cursor, shadow_place(cursor, p));
 }

@@ -135,9 +135,7 @@ void main() {
   float reach = min(farthest_reach(body, boundary, absorption) * pixels_of_unit(body, depth), 1e30);
   bool asked = own.w != no_instance && bodies_of_instances[own.w != no_instance ? own.w : 0u] == body_index &&
                reach >= least_reach && reach < reach_end;
-  // A loop of at most one round: software renderers run both sides of an `if`, but leave a loop that nobody is in.
-  while (asked) {
-    asked = false;
+  if (asked) {
     Colours colours = matter_colours(body.extinction, absorption, boundary);
     Drawing from;
     from.colours = colours;

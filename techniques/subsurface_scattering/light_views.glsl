@@ -100,10 +100,7 @@ vec3 hidden_light(Drawing from, DiffusionBody body, DiffusionBoundary boundary, 
         vec3 drawn = x + body.unit * (point.offset.x * plane.t + point.offset.y * plane.b);
         ShadowView view = first;
         uint face = shadow_face(maps.faces, first, drawn);
-        while (face != 0u) {  // at most once: software renderers run both sides of an `if`, but leave a loop that nobody is in
-          view = views[maps.first_layer + face];
-          face = 0u;
-        }
+        if (face != 0u) view = views[maps.first_layer + face];
         LitPlace p = lit_place(view, drawn, across, instance, boundary);
         if (!p.met || is_shown(p, instance, screen)) continue;
         float r = max(distance(p.position, x) / body.unit, 1e-12);
