@@ -266,7 +266,7 @@ void BlockerLists::list(const SceneElements& elements, const LightBounds& light,
 }
 
 void BlockerLists::build(const SceneElements& elements, const Links* links,
-                         std::span<const LightBounds> lights, size_t capacity) {
+                         std::span<const LightBounds> lights, size_t perLight) {
   const uint32_t leaves = elements.forest().leafSlots(), parts = (leaves + kPart - 1) / kPart;
   ranges_.resize(lights.size() * leaves);
   triangles_.clear();
@@ -293,9 +293,10 @@ void BlockerLists::build(const SceneElements& elements, const Links* links,
           out.resize(first);
       }
     });
+    const size_t before = triangles_.size();
     for (uint32_t part = 0; part < parts; ++part) {
       const std::vector<uint32_t>& own = parts_[part].triangles;
-      const bool room = triangles_.size() + own.size() <= capacity;
+      const bool room = triangles_.size() - before + own.size() <= perLight;
       for (uint32_t leaf = kPart * part; leaf < std::min(kPart * (part + 1), leaves); ++leaf) {
         if (ranges[leaf].count == kUnlisted) continue;
         if (ranges[leaf].count == 0)

@@ -43,13 +43,13 @@ class LIMN_API BlockerLists {
   /// Marks a triangle in a list that hides from both sides; of the others only the front does.
   static constexpr uint32_t kBothSides = 1u << 31;
 
-  /// Makes the lists, which hold at most `capacity` triangles in all. Of closed and double-sided objects they
-  /// have only what a way may enter, since it enters whatever it leaves. Where `links` are given, leaves
-  /// without a list are also those in full shadow: all bins around the light are filled, at them and at their
-  /// neighbours. Uses all cores; the result does not depend on their number. Allocates nothing once it has
-  /// seen lists as long.
+  /// Makes the lists, which hold at most `perLight` triangles of each light: those of one do not depend on
+  /// what other lights there are. Of closed and double-sided objects they have only what a way may enter,
+  /// since it enters whatever it leaves. Where `links` are given, leaves without a list are also those in
+  /// full shadow: all bins around the light are filled, at them and at their neighbours. Uses all cores; the
+  /// result does not depend on their number. Allocates nothing once it has seen lists as long.
   void build(const SceneElements& elements, const Links* links, std::span<const LightBounds> lights,
-             size_t capacity);
+             size_t perLight);
 
   /// Returns the ranges of all leaf slots, light after light.
   std::span<const Range> ranges() const { return ranges_; }
