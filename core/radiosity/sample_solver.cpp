@@ -173,6 +173,7 @@ glm::vec3 SampleSolver::longSide(uint32_t leaf) const {
   const float root = std::sqrt(half * half + products.z * products.z);
   const float angle = 0.5f * std::atan2(products.z, half);
   // Sides are as the roots of the moments along them, at most eight to one.
+  if (!(mean + root > 0)) return std::sqrt(e.area) * frame.t;
   const float aspect = std::sqrt((mean + root) / std::max(mean - root, (mean + root) / 64));
   return std::sqrt(e.area * aspect) * (std::cos(angle) * frame.t + std::sin(angle) * frame.b);
 }

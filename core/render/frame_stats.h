@@ -40,7 +40,7 @@ struct ShadowMapFit {
   std::string light;
   std::string projection;  ///< perspective, orthographic, cube, hemicube or paraboloid
   int layers = 0;
-  double near = 0, far = 0;  ///< metres, of the first layer
+  double near = 0, far = 0;  ///< metres, of the first layer that shows something
   double halfAngle = 0;      ///< radians; perspective only
 };
 

@@ -215,9 +215,14 @@ LightLayout fitWhole(const glsl::Light& light, std::span<const Bounds> boxes, co
   return both ? cube : LightLayout{glsl::shadow_perspective, glsl::shadow_faces_hemicube, kind};
 }
 
+/// The window of a face that needs to show nothing: past all of its directions and behind all that is there.
+MapWindow emptyWindow(const MapWindow& whole) {
+  return {2.f * whole.high, 3.f * whole.high, whole.far, 2 * whole.far};
+}
+
 /// Appends the faces of the cubes or half cubes of a light's samples, fitted to the view: what blocks a
-/// receiver's light lies in its direction. A face that needs to show nothing looks at depths behind all that
-/// is there, so that nothing is drawn in it.
+/// receiver's light lies in its direction. In an empty face nothing is drawn, and a receiver that it should
+/// have shown would count as uncovered.
 void appendFaces(const glsl::Light& light, const LightLayout& layout, std::span<const Bounds> boxes,
                  const ShadowMapDesc& desc, const VisibleScene& visible, Writer& out) {
   const Axes axes = axesOf(light);
@@ -241,11 +246,13 @@ void appendFaces(const glsl::Light& light, const LightLayout& layout, std::span<
       const Axes own = faceAxes(axes, face);
       MapWindow window = whole;
       if (some) window = shiftedFaceWindow(receivers[face], offsetOf(sample, own), whole);
-      if (window.low.x <= window.high.x && window.low.y <= window.high.y) {
+      const bool shows =
+          window.low.x <= window.high.x && window.low.y <= window.high.y && window.far > whole.near;
+      if (shows) {
         window.near = whole.near;
         window = steadyWindow(window, whole, desc.size);
       } else {
-        window = {whole.low, whole.high, whole.far, 2 * whole.far};
+        window = emptyWindow(whole);
       }
       out.view(glsl::shadow_perspective, origin, own, window);
     }
@@ -394,6 +401,11 @@ LightLayout fitLayout(const glsl::Light& light, std::span<const Bounds> boxes, c
   layout.partsU = parts.x;
   layout.partsV = parts.y;
   return layout;
+}
+
+bool showsNothing(const glsl::ShadowView& view) {
+  // That of emptyWindow(), whose depths and place no window of receivers has together.
+  return view.far == 2 * view.near && view.middle.x < -1.5f && view.middle.y < -1.5f;
 }
 
 void appendViews(const glsl::Light& light, uint32_t lightIndex, const LightLayout& layout,

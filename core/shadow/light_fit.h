@@ -27,6 +27,10 @@ constexpr float kWideKernel = 12;
 LIMN_API LightLayout fitLayout(const glsl::Light& light, std::span<const scene::Bounds> boxes,
                                const ShadowMapDesc& desc);
 
+/// Returns whether the view is that of a face of a cube or half cube in which appendViews() has nothing to
+/// show.
+LIMN_API bool showsNothing(const glsl::ShadowView& view);
+
 /// Appends the views of one light, for each sample of `desc` or each part in turn, with layers numbered from
 /// views.size(), and one ShadowLight per sample or part. With MapFit::view, maps of one view per sample and
 /// the faces of samples' cubes and hemicubes are fitted to `visible`; when it is null, to the boxes.

@@ -414,7 +414,11 @@ std::vector<ShadowMapStats> ShadowMapService::stats() const {
     const size_t stride = request->stride();
     for (size_t i = 0; i < request->lights.size(); ++i) {
       const LightLayout& layout = request->layouts[i];
-      const glsl::ShadowView& view = request->views[request->shadowLights[i * stride].first_layer];
+      const uint32_t first = request->shadowLights[i * stride].first_layer;
+      const std::span<const glsl::ShadowView> faces =
+          std::span(request->views).subspan(first, glsl::shadow_face_count(layout.faces));
+      const auto shown = std::ranges::find_if_not(faces, showsNothing);
+      const glsl::ShadowView& view = shown != faces.end() ? *shown : faces.front();
       const bool perspective = layout.projection == glsl::shadow_perspective;
       all.push_back({.light = implementation_->lightNames[request->lights[i]],
                      .projection = std::string(projectionName(layout)),

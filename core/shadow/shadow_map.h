@@ -99,7 +99,7 @@ struct ShadowMapStats {
   std::string light;
   std::string projection;  ///< perspective, orthographic, cube, hemicube, paraboloid
   int layers = 0;
-  float near = 0, far = 0;  ///< metres, of the first layer
+  float near = 0, far = 0;  ///< metres, of the first layer that shows something
   float halfAngle = 0;      ///< radians, perspective only
 };
 

@@ -28,8 +28,8 @@ constexpr const char* kMapFits[] = {"scene", "view"};
 constexpr Parameter shadowMapFitParameter(int fit = 0) {
   return choice(
       "shadow_map_fit", fit, kMapFits,
-      "What maps of one view cover: scene: all that the light reaches; view: what the camera sees of it, "
-      "and what may block light from there");
+      "What maps of one view cover, and the faces of half cubes of sampled lights: scene: all that the "
+      "light reaches; view: what the camera sees of it, and what may block light from there");
 }
 constexpr Parameter biasParameter() {
   return real("bias", 1, {0, 64}, "texel footprints",

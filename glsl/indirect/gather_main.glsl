@@ -161,7 +161,7 @@ void gather_from(VirtualPointLight light, uint pixel, Receiver r, float nearest2
   if (lit) visibility = vpl_visibility(light, pixel, r, sight);
   share *= visibility;
 #elif VPL_AREAS
-  share *= r.seen;
+  if (lit) share *= r.seen;
 #endif
 #if !LAMBERTIAN
   vec3 l = inversesqrt(max(sight.d2, 1e-37)) * sight.offset;

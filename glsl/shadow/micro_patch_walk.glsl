@@ -231,11 +231,8 @@ int walk_patches(inout ShadowCursor cursor, VisibilityQuery q) {
   for (uint face = 0u; face < faces; ++face) {
     bool some = true;
     bool all;
-    // A loop of at most one round, as in shadow_tap(): what a single view gave is still there.
-    for (; faces > 1u; faces = faces) {
-      some = blocker_box(cursor, q, face, gap, box, projection, aligned, all);
-      break;
-    }
+    // What a single view gave is still there.
+    if (faces > 1u) some = blocker_box(cursor, q, face, gap, box, projection, aligned, all);
     if (some) walk_box(cursor, projection, aligned, box);
   }
   return search_partial;

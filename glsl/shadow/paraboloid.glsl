@@ -129,7 +129,7 @@ LIMN_FN float paraboloid_hit(vec3 a, vec3 b, vec3 c, vec3 direction, LIMN_OUT(ve
 // Angle that the penumbra of a sender `size` metres wide spans seen from its centre, radians: blockers at radial distance
 // z, receiver at d. The receiver's slope cancels: p cos(beta) = size (d - z) / z and alpha = 2 atan(p cos(beta) / (2 d)).
 LIMN_FN float paraboloid_penumbra_angle(float size, float d, float z) {
-  return 2.0f * atan(size * max(d - z, 0.0f) / (2.0f * d * z));
+  return 2.0f * atan(size * max(d - z, 0.0f) / max(2.0f * d * z, 1e-30f));
 }
 
 // A disc on the map.

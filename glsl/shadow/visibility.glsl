@@ -188,7 +188,7 @@ float shadow_near_gap(ShadowCursor cursor, VisibilityQuery q) {
 bool shadow_kernel_in_face(inout ShadowCursor cursor, VisibilityQuery q, uint face, float gap,
                            out ShadowKernel kernel) {
 #if !ONE_VIEW
-  while (face != cursor.face) cursor = shadow_cursor_at(q, face);
+  if (face != cursor.face) cursor = shadow_cursor_at(q, face);
 #endif
   return shadow_kernel(cursor.view, q.light, q.position, gap, q.maps.faces == shadow_faces_single, kernel);
 }

@@ -42,9 +42,7 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   int all = 0;
   for (int i = 0; i < WORDS; ++i) {
     uint counted = 0xffffffffu;
-    // A loop of at most one round, as in shadow_tap().
-    for (int round = 0; round < 1 && (q.light.cone || !q.light.whole); ++round)
-      counted = counted_samples(q.light, height, i);
+    if (q.light.cone || !q.light.whole) counted = counted_samples(q.light, height, i);
     seen += bitCount(counted & ~covered[i]);
     all += bitCount(counted);
   }

@@ -62,7 +62,7 @@ float inverse_blocking_limit(AreaReceiver r, vec2 texel) {
   return max((2.0 * dot(r.plane.xy, p) + r.plane.z * (1.0 - rho2)) / (1.0 + rho2), r.inverse_limit);
 }
 
-// A radial distance, m, as a depth of the series.
+// A radial distance, m, as a depth of the series, whose range is the same in the whole map (FourierFit::map, ::range).
 float series_depth(AreaReceiver r, float metres) {
   return fourier_depth(r.range, vec2(0.5), shadow_normalise(r.view, metres));
 }

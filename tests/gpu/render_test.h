@@ -26,8 +26,9 @@ class PictureTest : public GlTest {
     return scene::load(std::filesystem::path(test::kBinaryDir) / "assets" / name / (name + ".glb"));
   }
 
-  /// A scene of assets/ with about 20 vertices from side to side of each mesh that has more. Pictures of a
-  /// few thousand pixels show hardly less, and many shadow maps of it are drawn in a fraction of the time.
+  /// A scene of assets/ with about 20 vertices from side to side of each mesh of 3000 triangles or more.
+  /// Pictures of a few thousand pixels show hardly less, and many shadow maps of it are drawn in a fraction
+  /// of the time.
   static scene::Scene coarse(const std::string& name) {
     scene::Scene scene = asset(name);
     for (scene::Mesh& mesh : scene.meshes)

@@ -296,6 +296,36 @@ TEST(WindowFitOf, FacesOfSamplesHoldEveryReceiverAndWhatBlocksIt) {
   }
 }
 
+TEST(WindowFitOf, FacesScaleWithTheScene) {
+  const Cloud cloud(1);
+  VisibleScene visible(cloud.scene);
+  const auto fitted = [&](const Cloud& world, int kind, float scale) {
+    visible.update(world.pose, world.boxes,
+                   scene::lookAt(scale * vec3(0, 1.2f, 3.5f), scale * vec3(0, 0.2f, 0), 0.5f), 1.3f);
+    glsl::Light l = lightOfFaces(kind);
+    for (int i = 0; i < 3; ++i) l.position[i] *= scale;
+    l.length_u *= scale;
+    l.length_v *= scale;
+    return fit(world, l, {.size = 256, .samples = {{0.3f, 0.6f}}, .fit = MapFit::view}, &visible).views;
+  };
+  for (int kind = 0; kind < 3; ++kind) {
+    const std::vector<glsl::ShadowView> one = fitted(cloud, kind, 1);
+    for (const float scale : {1e-3f, 1e3f}) {
+      Cloud scaled = cloud;
+      for (scene::DrawInstance& drawn : scaled.pose.instances)
+        drawn.objectToWorld = glm::scale(glm::mat4(1), vec3(scale)) * drawn.objectToWorld;
+      for (scene::Bounds& box : scaled.boxes) box = {scale * box.low, scale * box.high};
+      const std::vector<glsl::ShadowView> views = fitted(scaled, kind, scale);
+      ASSERT_EQ(views.size(), one.size());
+      for (size_t i = 0; i < views.size(); ++i) {
+        EXPECT_EQ(showsNothing(views[i]), showsNothing(one[i])) << kind << ", face " << i;
+        EXPECT_NEAR(views[i].middle.x, one[i].middle.x, 1e-2f) << kind << ", face " << i;
+        EXPECT_NEAR(views[i].near / scale, one[i].near, 1e-3f * one[i].near) << kind << ", face " << i;
+      }
+    }
+  }
+}
+
 TEST(WindowFitOf, FacesStayWhatTheyAreWhileTheCameraMovesLittle) {
   const Cloud cloud(1);
   VisibleScene visible(cloud.scene);
