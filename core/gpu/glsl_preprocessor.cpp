@@ -136,4 +136,42 @@ ExpandedSource expandGlsl(const std::string& entry, const std::map<std::string, 
   return Expander(lookup).run(entry, defines);
 }
 
+std::string standaloneGlsl(const ExpandedSource& source) {
+  enum class Branch {
+    glsl,
+    cpp,
+    other
+  };  // of an open #if: what GLSL reads, what C++ reads, a condition on anything else
+  std::vector<Branch> open;
+  const auto dropped = [&] { return std::ranges::find(open, Branch::cpp) != open.end(); };
+  std::string text;
+  size_t current = source.files.size(), shown = current;
+  for (const GlslLine& line : GlslFile(source.text).lines) {
+    if (line.directive == "line") {
+      current = std::stoul(line.argument.substr(line.argument.find(' ')));
+      continue;
+    }
+    bool keep = !dropped();
+    if (line.directive.starts_with("if")) {
+      const bool cpp = line.argument == "__cplusplus" && line.directive != "if";
+      open.push_back(!cpp ? Branch::other : line.directive == "ifdef" ? Branch::cpp : Branch::glsl);
+      keep = keep && !cpp;
+    } else if (line.directive == "else" && !open.empty() && open.back() != Branch::other) {
+      open.back() = open.back() == Branch::cpp ? Branch::glsl : Branch::cpp;
+      keep = false;
+    } else if (line.directive == "endif" && !open.empty()) {
+      keep = keep && open.back() == Branch::other;
+      open.pop_back();
+    }
+    if (!keep) continue;
+    const bool content =
+        line.directive.empty() && line.text.find_first_not_of(" \t") != std::string_view::npos;
+    if (content && current != shown && current < source.files.size())
+      text += fmt::format("// ---- {}\n", source.files[current]);
+    if (content) shown = current;
+    text.append(line.text).push_back('\n');
+  }
+  return text;
+}
+
 }  // namespace limn::gpu

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <optional>
 #include <set>
-#include <sstream>
 
 #include "core/base/error.h"
 #include "core/gpu/private/glsl_preprocessor.h"
@@ -202,18 +200,7 @@ std::string ShaderLibrary::expanded(const ProgramDesc& desc, std::string_view fi
 
 std::string ShaderLibrary::standalone(const ProgramDesc& desc, std::string_view file) const {
   std::map<fs::path, Stamp> visited;
-  const ExpandedSource source = implementation_->expand(desc, std::string(file), visited);
-  std::istringstream lines(source.text);
-  std::string text, line;
-  std::set<size_t> begun;
-  while (std::getline(lines, line)) {
-    size_t number = 0, string = 0;
-    if (std::sscanf(line.c_str(), "#line %zu %zu", &number, &string) != 2)
-      text += line + '\n';
-    else if (begun.insert(string).second)
-      text += fmt::format("// ---- {}\n", source.files[string]);
-  }
-  return text;
+  return standaloneGlsl(implementation_->expand(desc, std::string(file), visited));
 }
 
 }  // namespace limn::gpu

@@ -70,8 +70,8 @@ class LIMN_API ShaderLibrary {
 
   /// Returns the text from which a stage is compiled, for tests and diagnosis.
   std::string expanded(const ProgramDesc& desc, std::string_view file) const;
-  /// Returns the same text for other engines: in place of #line directives, a comment with its path begins
-  /// each file.
+  /// Returns the same text for other engines: without what only C++ reads, and with comments in place of
+  /// #line directives that say which file lines are from.
   std::string standalone(const ProgramDesc& desc, std::string_view file) const;
 
  private:

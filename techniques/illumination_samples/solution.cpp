@@ -193,6 +193,7 @@ void Solution::uploadSamples(gpu::Device& device) {
     for (const radiosity::SampleAtElement& sample : own)
       samplesNow_.push_back({.radiance = sample.radiance, .sender = sample.sender});
     const radiosity::Sender sender = solver_.sender(slot);
+    if (!(sender.area > 0)) continue;  // an unused lane, which sends nothing
     sendersNow_[slot] = {.position = space.worldPoint(sender.position),
                          .area = space.radius() * space.radius() * sender.area,
                          .side = space.radius() * space.worldDirection(sender.side),

@@ -112,6 +112,7 @@ TEST_F(ProgramReportTest, StandaloneTextCompilesByItself) {
   const std::string text = shaders().standalone(desc_, desc_.files[0]);
   EXPECT_TRUE(text.starts_with("#version 450 core\n#define LIMN_VALUE 1\n")) << text;
   EXPECT_THAT(text, HasSubstr("// ---- techniques/report/half.glsl\nfloat half_of(float x)"));
+  EXPECT_THAT(text, HasSubstr("// ---- techniques/report/report.comp.glsl\nlayout("));
   EXPECT_THAT(text, Not(HasSubstr("#line")));
   EXPECT_THAT(text, Not(HasSubstr("#include")));
   const gl::Functions& gl = device().gl();

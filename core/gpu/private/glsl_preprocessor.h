@@ -36,6 +36,10 @@ LIMN_API ExpandedSource expandGlsl(const std::string& entry,
                                    const std::map<std::string, std::string>& defines,
                                    const SourceLookup& lookup);
 
+/// Returns the text for a compiler elsewhere: without what only C++ reads (#ifdef __cplusplus), and in place
+/// of #line directives with a comment, "// ---- PATH", wherever lines of another file begin.
+LIMN_API std::string standaloneGlsl(const ExpandedSource& source);
+
 struct LIMN_API ShaderDiagnostic {
   std::string file;  ///< path as in ExpandedSource::files
   int line = 0;

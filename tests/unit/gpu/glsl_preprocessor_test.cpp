@@ -164,5 +164,24 @@ TEST(GlslPreprocessor, readsTheLogsOfThreeCompilers) {
   EXPECT_THAT(parse("Vertex info\n-----------\n9:1(1): error: of no known file\n"), IsEmpty());
 }
 
+TEST(StandaloneGlsl, SaysWhereLinesAreFrom) {
+  const std::string text = standaloneGlsl(expand(
+      {{"main.comp.glsl", "#include \"a.glsl\"\nvoid main() { f(); }\n"}, {"a.glsl", "void f() {}\n"}}));
+  EXPECT_EQ(text,
+            "#version 450 core\n#ifndef LIMN_INCLUDED_1\n#define LIMN_INCLUDED_1\n// ---- a.glsl\nvoid f() "
+            "{}\n#endif\n"
+            "// ---- main.comp.glsl\nvoid main() { f(); }\n");
+}
+
+TEST(StandaloneGlsl, LeavesOutWhatOnlyCppReads) {
+  const std::string text =
+      standaloneGlsl(expand({{"main.comp.glsl",
+                              "#ifdef __cplusplus\n#include <cmath>\n#if A\nint x;\n#else\nint y;\n#endif\n"
+                              "#else  // GLSL\n#if B\nint z;\n#endif\n#endif\n"
+                              "#ifndef __cplusplus\nvoid main() {}\n#else\nint w;\n#endif\nint last;\n"}}));
+  EXPECT_EQ(text,
+            "#version 450 core\n#if B\n// ---- main.comp.glsl\nint z;\n#endif\nvoid main() {}\nint last;\n");
+}
+
 }  // namespace
 }  // namespace limn::gpu
