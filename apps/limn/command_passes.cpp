@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <map>
-#include <type_traits>
+#include <optional>
+#include <vector>
 
 #include "apps/limn/commands.h"
 #include "apps/limn/options.h"
@@ -28,28 +28,49 @@ struct PassesArguments {
 
 constexpr const char* kJsonName = "passes.json";
 
-/// Throws UsageError for a folder with anything in it but what an earlier run wrote.
-void checkFolder(const fs::path& folder) {
-  if (fs::exists(folder) && !fs::is_directory(folder))
+/// The files that an earlier run wrote to the folder. Throws UsageError for a folder with anything else in
+/// it.
+std::vector<std::string> earlierFiles(const fs::path& folder) {
+  if (!fs::exists(folder)) return {};
+  if (!fs::is_directory(folder))
     throw UsageError(fmt::format("--out '{}' is a file; a folder is accepted", folder.string()));
-  if (fs::exists(folder) && !fs::is_empty(folder) && !fs::exists(folder / kJsonName))
+  if (fs::is_empty(folder)) return {};
+  std::optional<std::vector<std::string>> files;
+  if (fs::is_regular_file(folder / kJsonName)) files = filesOf(readTextFile(folder / kJsonName));
+  if (!files)
     throw UsageError(
-        fmt::format("--out '{}' holds other files; accepted are a new or empty folder, or one with an "
-                    "earlier {}",
+        fmt::format("--out '{}' holds other files; accepted are a new or empty folder, or one with the {} of "
+                    "an earlier run",
                     folder.string(), kJsonName));
+  return *files;
 }
 
-/// Writes the files, and removes what an earlier run left in the folder beside them.
-template <class Content>
-void writeFolder(const fs::path& folder, const std::map<std::string, Content>& files) {
-  fs::remove_all(folder);
-  for (const auto& [name, content] : files) {
-    createFolder((folder / name).parent_path());
-    if constexpr (std::is_same_v<Content, std::string>)
-      writeTextFile(folder / name, content);
-    else
-      writeFile(folder / name, content);
-  }
+/// Whether a path stays within the folder that it is relative to.
+bool isWithin(const fs::path& path) {
+  const fs::path normal = path.lexically_normal();
+  return !normal.empty() && normal.is_relative() && *normal.begin() != "..";
+}
+
+void removeFiles(const fs::path& folder, const std::vector<std::string>& files) {
+  for (const std::string& file : files)
+    if (isWithin(file) && fs::is_regular_file(fs::symlink_status(folder / file))) fs::remove(folder / file);
+  std::error_code error;  // folders that hold something else stay
+  for (const char* name : {"contents/before", "contents/after", "contents", "shaders"})
+    fs::remove(folder / name, error);
+}
+
+void write(const fs::path& folder, const FrameRecord& frame, const std::string& title) {
+  std::vector<std::string> files{"README.md"};
+  for (const auto& [name, text] : frame.shaders) files.push_back("shaders/" + name);
+  for (const auto& [name, bytes] : frame.contents) files.push_back("contents/" + name);
+  createFolder(folder);
+  // What a run that is cut short leaves is known to the next.
+  writeTextFile(folder / kJsonName, toJson(frame, files, false));
+  for (const std::string& file : files) createFolder((folder / file).parent_path());
+  for (const auto& [name, text] : frame.shaders) writeTextFile(folder / "shaders" / name, text);
+  for (const auto& [name, bytes] : frame.contents) writeFile(folder / "contents" / name, bytes);
+  writeTextFile(folder / "README.md", toMarkdown(frame, title));
+  writeTextFile(folder / kJsonName, toJson(frame, files, true));
 }
 
 int runPasses(const PassesArguments& options) {
@@ -63,7 +84,7 @@ int runPasses(const PassesArguments& options) {
     throw UsageError(fmt::format("--aa {}: passes describes a single frame; 1 is accepted", view.aa));
   settings.size = view.size;
   settings.light = view.light;
-  checkFolder(options.out);
+  const std::vector<std::string> earlier = earlierFiles(options.out);
 
   const auto context = Context::create(options.backend.contextOptions());
   gpu::Device device(*context);
@@ -73,18 +94,14 @@ int runPasses(const PassesArguments& options) {
   renderer.setTime(view.time, view.animation);
   const FrameRecord frame = recordFrame(renderer, options.contents);
 
-  createFolder(options.out);
-  writeTextFile(options.out / kJsonName,
-                toJson(frame));  // first: it marks the folder as one that may be written to again
-  writeFolder(options.out / "shaders", frame.shaders);
-  writeFolder(options.out / "contents", frame.contents);
-  const std::string title =
-      fmt::format("Passes of {}: {}, {} x {}, {}", fs::path(options.scene.scene).filename().string(),
-                  options.technique.techniques.empty() ? "no technique" : options.technique.techniques,
-                  view.size.x, view.size.y, options.scene.term);
-  writeTextFile(options.out / "README.md", toMarkdown(frame, title));
-  sayWritten(options.out / "README.md");
   for (const std::string& error : context->takeErrors()) throw Error("OpenGL: " + error);
+
+  removeFiles(options.out, earlier);
+  write(options.out, frame,
+        fmt::format("Passes of {}: {}, {} x {}, {}", fs::path(options.scene.scene).filename().string(),
+                    options.technique.techniques.empty() ? "no technique" : options.technique.techniques,
+                    view.size.x, view.size.y, options.scene.term));
+  sayWritten(options.out / "README.md");
   return 0;
 }
 

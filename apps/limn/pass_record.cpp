@@ -16,6 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kGenerator = "limn passes";
+
 std::string glName(GLenum value) {
   switch (value) {
 #define LIMN_NAME(NAME) \
@@ -57,7 +59,9 @@ std::string barrierNames(GLbitfield bits) {
   std::vector<const char*> names;
   for (const auto& [bit, text] : kBits)
     if ((bits & bit) != 0) names.push_back(text);
-  return fmt::format("{}", fmt::join(names, " | "));
+  std::string all = fmt::format("{}", fmt::join(names, " | "));
+  for (const auto& [bit, text] : kBits) bits &= ~bit;
+  return bits == 0 ? all : fmt::format("{}{}{:#x}", all, all.empty() ? "" : " | ", bits);
 }
 
 /// "RGBA32F 640 x 480", "R32F GL_TEXTURE_2D_ARRAY 512 x 512 x 3, 10 levels", "1024 bytes".
@@ -78,7 +82,7 @@ std::string shapeOf(const frame::NameReport& name) {
 
 std::string samplingText(const frame::SamplingReport& sampling) {
   return fmt::format("{}, {}, {}", glName(sampling.minFilter), glName(sampling.magFilter),
-                     glName(sampling.wrap));
+                     glName(sampling.wrap[0]));
 }
 
 /// Letters and digits; anything else becomes a '-'.
@@ -109,22 +113,35 @@ std::vector<std::byte> contentsOf(const gpu::Texture& texture, int level) {
   return bytes;
 }
 
+enum class Moment { before, after };
+
 class Recorder {
  public:
   Recorder(render::Renderer& renderer, std::string wanted)
       : renderer_(renderer), wanted_(std::move(wanted)) {}
 
   FrameRecord run() {
+    renderer_.render();  // passes bind to slots while they run
+    std::optional<size_t> wanted;
+    if (!wanted_.empty()) wanted = find();
     // Between two passes a program still has the values that the first of them set, and a resource what it
     // left there.
+    size_t begun = 0;
+    const auto between = [&] {
+      if (begun > 0) readUniforms(begun - 1);
+      if (wanted && begun == *wanted) keepContents(*wanted, Moment::before);
+      if (wanted && begun == *wanted + 1) keepContents(*wanted, Moment::after);
+      ++begun;
+    };
     renderer_.render(frame::Timing::off, [&] {
-      finishPass();
-      beginPass();
+      between();
       return false;
     });
-    finishPass();
+    between();
     for (const frame::PassReport& report : renderer_.explain()) frame_.passes.push_back({report, {}});
-    if (!wanted_.empty() && frame_.contents.empty()) refuse();
+    if (wanted && frame_.contents.empty())
+      throw UsageError(
+          fmt::format("pass '{}' binds nothing to a name in a shader: it has no contents", wanted_));
     const std::vector<frame::ProgramReport> programs = renderer_.graph().programs();
     for (size_t i = 0; i < programs.size(); ++i)
       frame_.passes[programs[i].pass].programs.push_back(record(programs[i], uniforms_[i]));
@@ -132,40 +149,34 @@ class Recorder {
   }
 
  private:
-  [[noreturn]] void refuse() const {
+  /// The index of the wanted pass.
+  size_t find() const {
     std::vector<std::string> known;
-    for (const PassRecord& pass : frame_.passes)
-      if (pass.report.state != frame::PassState::leftOut) known.push_back(titleOf(pass.report));
-    throw UsageError(fmt::format("pass '{}' is not in the frame{}; there are {}", wanted_,
-                                 didYouMean(wanted_, known), joined(known)));
+    for (const frame::PassReport& pass : renderer_.explain())
+      if (pass.state != frame::PassState::leftOut) known.push_back(pass.technique + "/" + pass.name);
+    const auto found = std::ranges::find(known, wanted_);
+    if (found == known.end())
+      throw UsageError(fmt::format("pass '{}' is not in the frame{}; there are {}", wanted_,
+                                   didYouMean(wanted_, known), joined(known)));
+    return static_cast<size_t>(found - known.begin());
   }
 
-  static std::string titleOf(const frame::PassReport& pass) { return pass.technique + "/" + pass.name; }
-
-  void beginPass() {
-    if (titleOf(renderer_.explain()[begun_]) == wanted_) keepContents("before");
-    ++begun_;
-  }
-
-  /// Reads what the programs of the pass hold that has just run.
-  void finishPass() {
-    if (begun_ == 0) return;
+  void readUniforms(size_t pass) {
     const std::vector<frame::ProgramReport> programs = renderer_.graph().programs();
     uniforms_.resize(programs.size());
     for (size_t i = 0; i < programs.size(); ++i)
-      if (programs[i].pass == begun_ - 1) uniforms_[i] = gpu::uniformValues(*programs[i].program);
-    if (titleOf(renderer_.explain()[begun_ - 1]) == wanted_) keepContents("after");
+      if (programs[i].pass == pass) uniforms_[i] = gpu::uniformValues(*programs[i].program);
   }
 
-  /// Keeps what the next pass reads ("before"), or what the one before it wrote.
-  void keepContents(const std::string& folder) {
-    const size_t pass = folder == "before" ? begun_ : begun_ - 1;
+  /// Keeps what a pass reads or, after it, what it wrote.
+  void keepContents(size_t pass, Moment moment) {
     const frame::PassReport report = renderer_.explain()[pass];
+    const std::string folder = moment == Moment::before ? "before/" : "after/";
     for (const frame::ProgramReport& program : renderer_.graph().programs()) {
       if (program.pass != pass) continue;
       for (const frame::NameReport& name : program.names) {
         const bool written = name.access && report.accesses[*name.access].write;
-        if (folder == "before" || written) keepContents(folder + "/" + name.name, name);
+        if (moment == Moment::before || written) keepContents(folder + name.name, name);
       }
     }
   }
@@ -174,7 +185,7 @@ class Recorder {
     if (name.buffer != nullptr) {
       std::vector<std::byte>& bytes = frame_.contents[file];
       bytes.resize(static_cast<size_t>(name.bytes));
-      if (!bytes.empty()) name.buffer->read(0, bytes.data(), bytes.size());
+      if (!bytes.empty()) name.buffer->read(name.offset, bytes.data(), bytes.size());
     }
     if (name.texture == nullptr) return;
     for (int level = 0; level < name.texture->desc().levels; ++level)
@@ -201,7 +212,6 @@ class Recorder {
   render::Renderer& renderer_;
   std::string wanted_;
   FrameRecord frame_;
-  size_t begun_ = 0;                                      // passes
   std::vector<std::vector<gpu::UniformValue>> uniforms_;  // by program
   std::map<gpu::ProgramDesc, std::vector<std::string>> files_;
 };
@@ -219,8 +229,25 @@ Json textureJson(const gpu::TextureDesc& declared) {
           {"pixel_type", format.clientType}};
 }
 
-Json nameJson(const frame::NameReport& name, const frame::PassReport& pass) {
-  Json json{{"name", name.name}, {"kind", frame::name(name.kind)}};
+/// Numbers textures and buffers in the order in which they are first met.
+class Objects {
+ public:
+  size_t numberOf(const frame::NameReport& name) {
+    const void* object = name.texture != nullptr ? static_cast<const void*>(name.texture) : name.buffer;
+    return numbers_.try_emplace({object, name.offset}, numbers_.size()).first->second;
+  }
+
+ private:
+  std::map<std::pair<const void*, size_t>, size_t> numbers_;
+};
+
+bool bound(const frame::NameReport& name) {
+  return name.texture != nullptr || name.buffer != nullptr;
+}
+
+Json nameJson(const frame::NameReport& name, const frame::PassReport& pass, Objects& objects) {
+  Json json{{"name", name.name}, {"kind", frame::name(name.kind)}, {"slot", name.slot}};
+  if (bound(name)) json["object"] = objects.numberOf(name);
   if (name.access) {
     json["resource"] = pass.accesses[*name.access].resource;
     json["written"] = pass.accesses[*name.access].write;
@@ -232,15 +259,18 @@ Json nameJson(const frame::NameReport& name, const frame::PassReport& pass) {
     json["layer"] = name.layer;
   }
   if (name.sampling)
-    json["sampling"] = {{"min_filter", glName(name.sampling->minFilter)},
-                        {"mag_filter", glName(name.sampling->magFilter)},
-                        {"wrap", glName(name.sampling->wrap)}};
+    json["sampling"] = {
+        {"min_filter", glName(name.sampling->minFilter)},
+        {"mag_filter", glName(name.sampling->magFilter)},
+        {"wrap",
+         {glName(name.sampling->wrap[0]), glName(name.sampling->wrap[1]), glName(name.sampling->wrap[2])}}};
   return json;
 }
 
 Json programJson(const ProgramRecord& program, const frame::PassReport& pass) {
   Json names = Json::array(), uniforms = Json::array();
-  for (const frame::NameReport& name : program.report.names) names.push_back(nameJson(name, pass));
+  Objects objects;
+  for (const frame::NameReport& name : program.report.names) names.push_back(nameJson(name, pass, objects));
   for (const gpu::UniformValue& uniform : program.uniforms)
     uniforms.push_back({{"name", uniform.name}, {"type", uniform.type}, {"value", uniform.value}});
   return {{"files", program.report.desc.files},
@@ -285,6 +315,7 @@ std::string workOf(const PassRecord& pass) {
                        ? groups + " groups"
                        : fmt::format("{} dispatches, the last of {} groups", report.dispatches, groups));
   }
+  if (work.empty() && pass.programs.empty()) return "no program: a clear, a copy, or work on the processor";
   return fmt::format("{}", fmt::join(work, "; "));
 }
 
@@ -311,16 +342,25 @@ std::string programMarkdown(const ProgramRecord& program, const frame::PassRepor
     text += fmt::format("[`{0}`](shaders/{0}): {1}\n\n", program.shaders[i], program.report.desc.files[i]);
   if (!program.report.names.empty()) {
     text += "| name | kind | bound to it | shape | how, why |\n| --- | --- | --- | --- | --- |\n";
+    std::map<size_t, std::string> firsts;  // names of objects
+    Objects objects;
     for (const frame::NameReport& name : program.report.names) {
       std::vector<std::string> how;
       if (name.access) how.push_back(pass.accesses[*name.access].why);
-      if (name.level > 0) how.push_back(fmt::format("level {}", name.level));
+      if (name.slot && bound(name)) how.push_back("bound for each draw or dispatch: the last");
+      const auto same =
+          bound(name) ? firsts.try_emplace(objects.numberOf(name), name.name).first : firsts.end();
+      if (same != firsts.end() && same->second != name.name)
+        how.push_back(fmt::format("the same as `{}`", same->second));
+      const bool image = name.kind == gpu::ShaderResource::Kind::image;
+      if (image && name.texture != nullptr && name.texture->desc().levels > 1)
+        how.push_back(fmt::format("level {}", name.level));
       if (name.layer >= 0) how.push_back(fmt::format("layer {}", name.layer));
       if (name.sampling) how.push_back(samplingText(*name.sampling));
-      const std::string bound = name.access                   ? pass.accesses[*name.access].resource
-                                : name.texture || name.buffer ? "a constant of the pass"
-                                                              : "something else for each draw";
-      text += fmt::format("| `{}` | {} | {} | {} | {} |\n", name.name, frame::name(name.kind), bound,
+      const std::string holder = name.access   ? pass.accesses[*name.access].resource
+                                 : bound(name) ? "a resource outside the graph"
+                                               : "nothing in this frame";
+      text += fmt::format("| `{}` | {} | {} | {} | {} |\n", name.name, frame::name(name.kind), holder,
                           shapeOf(name), fmt::join(how, "; "));
     }
     text += "\n";
@@ -339,7 +379,7 @@ std::string namelessMarkdown(const PassRecord& pass) {
     });
     if (!named) text += fmt::format("- {}, {}\n", access.text(), shapeOf(access.texture, access.bytes));
   }
-  return text.empty() ? text : "Without a name:\n\n" + text + "\n";
+  return text.empty() ? text : "Attachments, and what shaders have no name for:\n\n" + text + "\n";
 }
 
 std::string passMarkdown(const PassRecord& pass, size_t number) {
@@ -359,10 +399,21 @@ FrameRecord recordFrame(render::Renderer& renderer, const std::string& contentsO
   return Recorder(renderer, contentsOf).run();
 }
 
-std::string toJson(const FrameRecord& frame) {
+std::string toJson(const FrameRecord& frame, const std::vector<std::string>& files, bool complete) {
   Json passes = Json::array();
   for (const PassRecord& pass : frame.passes) passes.push_back(passJson(pass));
-  return Json{{"passes", passes}}.dump(2) + "\n";
+  return Json{{"generator", kGenerator}, {"complete", complete}, {"files", files}, {"passes", passes}}.dump(
+             2) +
+         "\n";
+}
+
+std::optional<std::vector<std::string>> filesOf(const std::string& json) {
+  const Json read = Json::parse(json, nullptr, false);
+  if (!read.is_object() || read.value("generator", Json()) != kGenerator) return std::nullopt;
+  std::vector<std::string> files;
+  for (const Json& file : read.value("files", Json::array()))
+    if (file.is_string()) files.push_back(file);
+  return files;
 }
 
 std::string toMarkdown(const FrameRecord& frame, const std::string& title) {

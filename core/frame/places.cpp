@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -98,16 +97,16 @@ void bindPlace(Graph& graph, const Pass& pass, const Place& place) {
   }
 }
 
-/// Where the program in use has the slot; nothing where it has no such name.
-std::optional<Place> placeOf(const Graph& graph, SlotHandle slot) {
+/// Where the program in use has the slot; null where it has no such name.
+Place* placeOf(Graph& graph, SlotHandle slot) {
   if (graph.program == kNoIndex || graph.programs[graph.program].pass != graph.current ||
       slot.index >= graph.passes[graph.current].names.size()) {
     throw Error(fmt::format("pass '{}' fills a slot without a program, or one that it did not announce",
                             graph.title(graph.current)));
   }
-  for (const Place& place : graph.programs[graph.program].places)
-    if (place.name == slot.index) return place;
-  return {};
+  for (Place& place : graph.programs[graph.program].places)
+    if (place.name == slot.index) return &place;
+  return nullptr;
 }
 
 }  // namespace
@@ -128,7 +127,8 @@ void findPlaces(Graph& graph, ProgramUse& use, std::vector<std::string>& problem
           found->access == kNoIndex ? "a constant" : name(pass.accesses[found->access].access),
           graph.title(use.pass)));
     } else {
-      use.places.push_back({resource.kind, resource.unit, static_cast<uint32_t>(found - pass.names.begin())});
+      use.places.push_back(
+          {resource.kind, resource.unit, static_cast<uint32_t>(found - pass.names.begin()), {}});
     }
   }
 }
@@ -176,24 +176,32 @@ gpu::Program& PassContext::use(ProgramHandle handle) const {
 
 void PassContext::bind(SlotHandle slot, TextureHandle handle, int level, int layer) const {
   Graph& graph = *graph_.implementation_;
-  const std::optional<Place> place = placeOf(graph, slot);
-  if (!place) return;
+  Place* place = placeOf(graph, slot);
+  if (place == nullptr) return;
   texture(handle);  // refuses what was not declared
   const Resource& resource = graph.resources[handle.resource];
   const Pass& pass = graph.passes[graph.current];
   const auto access = std::ranges::find(pass.accesses, handle.resource, &ResourceAccess::resource);
+  place->slot = {.access = static_cast<uint32_t>(access - pass.accesses.begin()),
+                 .texture = resource.textureObject,
+                 .level = level,
+                 .layer = layer};
   if (place->kind == Kind::sampler) return placeSampler(gl(), place->unit, resource.id(), nullptr);
   placeImage(gl(), place->unit, resource, access->access, level, layer);
 }
 
 void PassContext::bind(SlotHandle slot, const gpu::Texture& texture, const gpu::Sampler* sampler) const {
-  const std::optional<Place> place = placeOf(*graph_.implementation_, slot);
-  if (place) placeSampler(gl(), place->unit, texture.id(), sampler);
+  Place* place = placeOf(*graph_.implementation_, slot);
+  if (place == nullptr) return;
+  place->slot = {.texture = &texture, .sampler = sampler};
+  placeSampler(gl(), place->unit, texture.id(), sampler);
 }
 
 void PassContext::bind(SlotHandle slot, const gpu::Buffer& buffer, size_t offset, size_t bytes) const {
-  const std::optional<Place> place = placeOf(*graph_.implementation_, slot);
-  if (place) placeBlock(gl(), place->kind, place->unit, buffer.id(), offset, bytes);
+  Place* place = placeOf(*graph_.implementation_, slot);
+  if (place == nullptr) return;
+  place->slot = {.buffer = &buffer, .offset = offset, .bytes = bytes};
+  placeBlock(gl(), place->kind, place->unit, buffer.id(), offset, bytes);
 }
 
 }  // namespace limn::frame

@@ -14,20 +14,21 @@ namespace limn::frame {
 
 /// Says how a texture is filtered where a sampler reads it.
 struct SamplingReport {
-  GLenum minFilter = GL_NEAREST, magFilter = GL_NEAREST,
-         wrap = GL_CLAMP_TO_EDGE;  ///< wrap: along the first axis
+  GLenum minFilter = GL_NEAREST, magFilter = GL_NEAREST;
+  std::array<GLenum, 3> wrap = {};  ///< along each axis
 };
 
-/// Describes one name of a program and what the pass has bound to it.
+/// Describes one name of a program and what the pass binds to it.
 struct NameReport {
   gpu::ShaderResource::Kind kind = gpu::ShaderResource::Kind::sampler;
   std::string name;
-  /// Index into PassReport::accesses. Nothing: a constant of the pass, or, with neither texture nor buffer,
-  /// something else for each draw.
-  std::optional<size_t> access;
+  bool slot = false;  ///< the pass binds something for each draw or dispatch; what follows was the last
+  std::optional<size_t>
+      access;  ///< index into PassReport::accesses; nothing: a resource outside the graph, or none yet
   const gpu::Texture* texture = nullptr;  ///< lives, like the buffer, as long as the graph
   const gpu::Buffer* buffer = nullptr;
-  int64_t bytes = 0;                       ///< of the texture or the buffer, as declared
+  size_t offset = 0;                       ///< of the part of the buffer, bytes
+  int64_t bytes = 0;                       ///< of the texture, or of the part of the buffer, as declared
   int level = 0, layer = -1;               ///< of an image; layer -1: all
   std::optional<SamplingReport> sampling;  ///< of a sampler
 };
@@ -36,7 +37,7 @@ struct NameReport {
 struct ProgramReport {
   size_t pass = 0;  ///< index into what explain() returns
   gpu::ProgramDesc desc;
-  const gpu::Program* program = nullptr;  ///< lives as long as the shader library
+  gpu::Program* program = nullptr;  ///< lives as long as the shader library
   std::vector<NameReport> names;
   int dispatches = 0;                 ///< in the last frame
   std::array<GLuint, 3> groups = {};  ///< work groups of the last of them

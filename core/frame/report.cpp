@@ -33,31 +33,38 @@ SamplingReport samplingOf(const gl::Functions& gl, const gpu::Texture& texture, 
       gl.GetTextureParameteriv(texture.id(), which, &value);
     return static_cast<GLenum>(value);
   };
-  return {parameter(GL_TEXTURE_MIN_FILTER), parameter(GL_TEXTURE_MAG_FILTER), parameter(GL_TEXTURE_WRAP_S)};
+  return {parameter(GL_TEXTURE_MIN_FILTER),
+          parameter(GL_TEXTURE_MAG_FILTER),
+          {parameter(GL_TEXTURE_WRAP_S), parameter(GL_TEXTURE_WRAP_T), parameter(GL_TEXTURE_WRAP_R)}};
 }
 
 NameReport described(const Graph& graph, const Pass& pass, const Place& place) {
   const NamedResource& named = pass.names[place.name];
+  const bool slot = named.slot();
   NameReport report;
   report.kind = place.kind;
   report.name = named.name;
-  report.level = named.level;
-  report.layer = named.layer;
-  report.texture = named.texture;
-  report.buffer = named.buffer;
-  if (named.access != kNoIndex) {
-    const Resource& resource = graph.resources[pass.accesses[named.access].resource];
-    report.access = named.access;
+  report.slot = slot;
+  report.level = slot ? place.slot.level : named.level;
+  report.layer = slot ? place.slot.layer : named.layer;
+  report.texture = slot ? place.slot.texture : named.texture;
+  report.buffer = slot ? place.slot.buffer : named.buffer;
+  report.offset = place.slot.offset;
+  const uint32_t access = slot ? place.slot.access : named.access;
+  if (access != kNoIndex) {
+    const Resource& resource = graph.resources[pass.accesses[access].resource];
+    report.access = access;
     report.texture = resource.textureObject;
     report.buffer = resource.bufferObject;
     report.bytes = bytesOf(resource);
-  } else if (named.texture != nullptr) {
-    report.bytes = gpu::textureBytes(named.texture->desc());
-  } else if (named.buffer != nullptr) {
-    report.bytes = static_cast<int64_t>(named.buffer->size());
+  } else if (report.texture != nullptr) {
+    report.bytes = gpu::textureBytes(report.texture->desc());
+  } else if (report.buffer != nullptr) {
+    report.bytes = static_cast<int64_t>(place.slot.bytes > 0 ? place.slot.bytes : report.buffer->size());
   }
   if (place.kind == gpu::ShaderResource::Kind::sampler && report.texture != nullptr)
-    report.sampling = samplingOf(graph.device->gl(), *report.texture, named.sampler);
+    report.sampling =
+        samplingOf(graph.device->gl(), *report.texture, slot ? place.slot.sampler : named.sampler);
   return report;
 }
 

@@ -53,33 +53,53 @@ std::string valueAt(const gl::Functions& gl, GLuint program, GLint location, con
   return {};
 }
 
+struct Active {
+  std::string name;  // without the index of an array
+  GLenum type = 0;
+  GLint elements = 0;
+  bool array = false;
+};
+
+/// Whether the name is that of a sampler or an image.
+bool isOpaque(Program& program, const std::string& name) {
+  const std::vector<ShaderResource>& all = program.resources();
+  return std::ranges::find(all, name, &ShaderResource::name) != all.end();
+}
+
 }  // namespace
 
-std::vector<UniformValue> uniformValues(const Program& program) {
+std::vector<UniformValue> uniformValues(Program& program) {
   const gl::Functions& gl = program.device().gl();
   GLint count = 0, longest = 0;
   gl.GetProgramiv(program.id(), GL_ACTIVE_UNIFORMS, &count);
   gl.GetProgramiv(program.id(), GL_ACTIVE_UNIFORM_MAX_LENGTH, &longest);
-  std::vector<UniformValue> values;
+  std::vector<Active> found;
   for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
     std::string name(static_cast<size_t>(longest), 0);
     GLsizei length = 0;
-    GLint elements = 0;
-    GLenum kind = 0;
-    gl.GetActiveUniform(program.id(), i, longest, &length, &elements, &kind, name.data());
+    Active active;
+    gl.GetActiveUniform(program.id(), i, longest, &length, &active.elements, &active.type, name.data());
     name.resize(static_cast<size_t>(length));
-    const auto type = std::ranges::find(kTypes, kind, &UniformType::type);
-    if (type == kTypes.end()) continue;                                   // a sampler or an image
-    if (gl.GetUniformLocation(program.id(), name.c_str()) < 0) continue;  // a member of a block
-    const bool array = name.ends_with("[0]");
-    if (array) name.resize(name.size() - 3);
-    for (GLint element = 0; element < elements; ++element) {
-      const std::string one = array ? fmt::format("{}[{}]", name, element) : name;
-      const GLint location = gl.GetUniformLocation(program.id(), one.c_str());
-      if (location >= 0) values.push_back({one, type->name, valueAt(gl, program.id(), location, *type)});
+    const bool plain = gl.GetUniformLocation(program.id(), name.c_str()) >= 0;  // no member of a block
+    if (!plain || isOpaque(program, name)) continue;
+    active.array = name.ends_with("[0]");
+    if (active.array) name.resize(name.size() - 3);
+    active.name = std::move(name);
+    found.push_back(std::move(active));
+  }
+  std::ranges::sort(found, {}, &Active::name);
+  std::vector<UniformValue> values;
+  for (const Active& active : found) {
+    const auto type = std::ranges::find(kTypes, active.type, &UniformType::type);
+    for (GLint element = 0; element < active.elements; ++element) {
+      const std::string name = active.array ? fmt::format("{}[{}]", active.name, element) : active.name;
+      const GLint location = gl.GetUniformLocation(program.id(), name.c_str());
+      if (type == kTypes.end())
+        values.push_back({name, fmt::format("{:#x}", active.type), ""});
+      else if (location >= 0)
+        values.push_back({name, type->name, valueAt(gl, program.id(), location, *type)});
     }
   }
-  std::ranges::stable_sort(values, {}, &UniformValue::name);
   return values;
 }
 

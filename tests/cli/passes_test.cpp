@@ -53,6 +53,20 @@ TEST_F(Passes, AnEarlierFolderIsWrittenAgain) {
     EXPECT_EQ(shader.find("pcss"), std::string::npos);
 }
 
+TEST_F(Passes, OnlyWhatAnEarlierRunWroteIsRemoved) {
+  std::filesystem::create_directories(out_ / "shaders");
+  std::ofstream(out_ / "shaders" / "mine.glsl") << "mine";
+  std::ofstream(out_ / "passes.json") << R"({"passes": []})";
+  expectRefused(passes(), 2, {"--out", "holds other files"});
+  std::ofstream(folder_ / "precious") << "mine";
+  std::ofstream(out_ / "passes.json")
+      << R"({"generator": "limn passes", "files": ["../precious", "README.md", 3]})";
+  ASSERT_EQ(passes().status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "precious"));
+  EXPECT_TRUE(std::filesystem::exists(out_ / "shaders" / "mine.glsl"));
+  EXPECT_EQ(json::parse(std::ifstream(out_ / "passes.json"))["complete"], true);
+}
+
 TEST_F(Passes, OtherFoldersAndUnknownPassesAreRefused) {
   std::filesystem::create_directories(out_);
   std::ofstream(out_ / "mine.txt") << "mine";
@@ -64,6 +78,7 @@ TEST_F(Passes, OtherFoldersAndUnknownPassesAreRefused) {
   expectRefused(passes({"--contents", "pcss/visibilty"}), 2,
                 {"'pcss/visibilty'", "did you mean pcss/visibility"});
   EXPECT_FALSE(std::filesystem::exists(out_));
+  expectRefused(passes({"--contents", "core/clear uncovered pixels"}), 2, {"binds nothing to a name"});
   expectRefused(passes({}, "pcs"), 2, {"'pcs'"});
 }
 

@@ -10,6 +10,8 @@ import tempfile
 # Storage blocks, uniform blocks, arrays of textures, mip levels, image reads; hidden and lit pixels in each.
 PASSES = [("robot", "pcss", "pcss/visibility"),
           ("robot", "vssm", "shadow/summed-area table rows"),
+          ("robot", "vssm", "shadow/summed-area table columns"),  # a slot
+          ("robot", "vssm", "shadow/min-max windows level 1"),     # two levels of one texture
           ("robot", "vssm", "vssm/visibility"),
           ("cornell_box", "clustered_visibility", "clustered_visibility/shade"),
           ("cornell_box", "clustered_visibility", "clustered_visibility/blur"),

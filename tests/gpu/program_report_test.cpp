@@ -75,7 +75,7 @@ TEST_F(ProgramReportTest, SaysWhatIsBoundToEachName) {
   ASSERT_TRUE(source.access && source.sampling);
   EXPECT_EQ(pass.accesses[*source.access].resource, "start");
   EXPECT_EQ(source.sampling->minFilter, GLenum{GL_LINEAR});
-  EXPECT_EQ(source.sampling->wrap, GLenum{GL_REPEAT});
+  EXPECT_EQ(source.sampling->wrap[0], GLenum{GL_REPEAT});
   EXPECT_EQ(target.name, "target");
   EXPECT_EQ(name(target.kind), "image");
   EXPECT_TRUE(pass.accesses[*target.access].write);

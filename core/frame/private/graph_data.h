@@ -103,11 +103,22 @@ struct Pass {
   double milliseconds = 0;
 };
 
+/// Holds what a pass bound last to a slot.
+struct SlotBinding {
+  uint32_t access = kNoIndex;  ///< of the pass
+  const gpu::Texture* texture = nullptr;
+  const gpu::Buffer* buffer = nullptr;
+  size_t offset = 0, bytes = 0;  ///< of a buffer; bytes 0: all of it
+  int level = 0, layer = -1;
+  const gpu::Sampler* sampler = nullptr;
+};
+
 /// Holds the unit at which a program expects what a pass named.
 struct Place {
   gpu::ShaderResource::Kind kind;
   GLuint unit;
-  uint32_t name;  ///< of the pass
+  uint32_t name;     ///< of the pass
+  SlotBinding slot;  ///< where the name is a slot
 };
 
 struct ProgramUse {
