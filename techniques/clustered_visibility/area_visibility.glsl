@@ -115,8 +115,9 @@ vec4 search_kernel(AreaReceiver r) {
 #endif
 }
 
-// A box of texels in the basis images. One level serves as well as two between which a trilinear lookup lies, at half the work.
-vec3 area_box(AreaReceiver r, vec2 low, vec2 high) {
+// A box of texels in the basis images, where blockers are sought: one level serves that as well as two between which a
+// trilinear lookup lies, at half the work.
+vec3 search_box(AreaReceiver r, vec2 low, vec2 high) {
   vec3 box = fourier_box(low, high, ivec2(r.view.size));
 #if WHOLE_LEVELS
   box.z = floor(box.z + 0.5);
@@ -134,7 +135,7 @@ float mean_blocker(AreaReceiver r, vec4 kernel) {
   do {
     vec2 low = kernel.xy + vec2(i % SPLITS, i / SPLITS) * part_size;
     SeriesPart part = series_part(r, low, low + part_size);
-    vec3 box = area_box(r, low, low + part_size);
+    vec3 box = search_box(r, low, low + part_size);
     vec4 basis[FOURIER_GROUPS];
     fourier_basis_means(box, layer, basis);
     float share = 1.0 - fourier_lit(basis, part.threshold);
@@ -160,7 +161,7 @@ float penumbra_visibility(AreaReceiver r, vec4 kernel, float z) {
     vec2 low = kernel.xy + vec2(i % SPLITS, i / SPLITS) * part_size;
     SeriesPart part = series_part(r, low, low + part_size);
     vec4 basis[FOURIER_GROUPS];
-    fourier_basis_means(area_box(r, low, low + part_size), layer, basis);
+    fourier_basis_means(fourier_box(low, low + part_size, ivec2(r.view.size)), layer, basis);
     float gain = 0.5 / (part.dip - 0.5);
     float v = fourier_visibility(fourier_lit(basis, part.threshold), gain);
     float blocked = fourier_visibility(fourier_step(min(depth - part.threshold, 0.0)), gain);
