@@ -59,7 +59,7 @@ void removeFiles(const fs::path& folder, const std::vector<std::string>& files) 
     fs::remove(folder / name, error);
 }
 
-void write(const fs::path& folder, const FrameRecord& frame, const std::string& title) {
+void writeFolder(const fs::path& folder, const FrameRecord& frame, const std::string& title) {
   std::vector<std::string> files{"README.md"};
   for (const auto& [name, text] : frame.shaders) files.push_back("shaders/" + name);
   for (const auto& [name, bytes] : frame.contents) files.push_back("contents/" + name);
@@ -97,10 +97,11 @@ int runPasses(const PassesArguments& options) {
   for (const std::string& error : context->takeErrors()) throw Error("OpenGL: " + error);
 
   removeFiles(options.out, earlier);
-  write(options.out, frame,
-        fmt::format("Passes of {}: {}, {} x {}, {}", fs::path(options.scene.scene).filename().string(),
-                    options.technique.techniques.empty() ? "no technique" : options.technique.techniques,
-                    view.size.x, view.size.y, options.scene.term));
+  writeFolder(
+      options.out, frame,
+      fmt::format("Passes of {}: {}, {} x {}, {}", fs::path(options.scene.scene).filename().string(),
+                  options.technique.techniques.empty() ? "no technique" : options.technique.techniques,
+                  view.size.x, view.size.y, options.scene.term));
   sayWritten(options.out / "README.md");
   return 0;
 }
