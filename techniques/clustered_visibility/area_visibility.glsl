@@ -3,8 +3,7 @@
 //
 // KERNEL_THESIS 1: widths as published. SEARCH_NEAREST 1: the first kernel starts from the nearest depth there is; 0: it is
 // the light's own solid angle, as published. AREA_DIP: least s of what is lit. SPLITS: parts of a kernel per axis, each with
-// a threshold of its own. WHOLE_LEVELS 1: lookups take the nearest level of the mip maps, 0: they lie between two. CONTACT 1:
-// blockers whose penumbrae are narrow are found in the map itself.
+// a threshold of its own. CONTACT 1: blockers whose penumbrae are narrow are found in the map itself.
 #ifndef LIMN_AREA_VISIBILITY_GLSL
 #define LIMN_AREA_VISIBILITY_GLSL
 #include "glsl/shadow/fourier_lookup.glsl"
@@ -115,16 +114,6 @@ vec4 search_kernel(AreaReceiver r) {
 #endif
 }
 
-// A box of texels in the basis images, where blockers are sought: one level serves that as well as two between which a
-// trilinear lookup lies, at half the work.
-vec3 search_box(AreaReceiver r, vec2 low, vec2 high) {
-  vec3 box = fourier_box(low, high, ivec2(r.view.size));
-#if WHOLE_LEVELS
-  box.z = floor(box.z + 0.5);
-#endif
-  return box;
-}
-
 // Stages 1 and 2: mean radial distance of the blockers in the kernel; as far as the receiver where there are none.
 float mean_blocker(AreaReceiver r, vec4 kernel) {
   int layer = int(r.view.layer);
@@ -135,7 +124,7 @@ float mean_blocker(AreaReceiver r, vec4 kernel) {
   do {
     vec2 low = kernel.xy + vec2(i % SPLITS, i / SPLITS) * part_size;
     SeriesPart part = series_part(r, low, low + part_size);
-    vec3 box = search_box(r, low, low + part_size);
+    vec3 box = fourier_box(low, low + part_size, ivec2(r.view.size));
     vec4 basis[FOURIER_GROUPS];
     fourier_basis_means(box, layer, basis);
     float share = 1.0 - fourier_lit(basis, part.threshold);

@@ -28,7 +28,6 @@ constexpr const char* kMaps[] = {"triangles", "points"};
 constexpr const char* kKernels[] = {"exact", "thesis"};
 constexpr const char* kSearches[] = {"solid_angle", "nearest"};
 constexpr const char* kFits[] = {"map", "range"};
-constexpr const char* kFilters[] = {"level", "trilinear"};
 constexpr const char* kShows[] = {"light", "clusters"};
 constexpr auto kParameters = indirect::gatherParameters(std::to_array<Parameter>({
     integer("vals", 30, {1, 1024}, "lights", "Virtual area lights, which the virtual point lights share")
@@ -52,9 +51,6 @@ constexpr auto kParameters = indirect::gatherParameters(std::to_array<Parameter>
     choice(
         "search", 0, kSearches,
         "Where blockers are sought: in the light's solid angle, as published, or from the nearest depth on"),
-    choice(
-        "filter", 0, kFilters,
-        "Lookups in the mip maps of the Fourier series: in the nearest level, or between two, as published"),
     integer("splits", 1, {1, 4}, "parts", "Parts of a kernel per axis, each with its own depth threshold")
         .quality(),
     real("bias", 0.25, {0, 64}, "texel footprints",
@@ -85,7 +81,6 @@ constexpr StressCase kStress[] = {
      .scene = "cornell_box",
      .settings = "maps=points points=64 fill_levels=6",
      .factor = 8},
-    {.name = "lookups between levels", .scene = "cornell_box", .settings = "filter=trilinear"},
     {.name = "all lights at edges", .scene = "cornell_box", .settings = "edges=1", .factor = 2},
     {.name = "map of 16 texels", .scene = "cornell_box", .settings = "map_size=16", .factor = 2},
     {.name = "thin occluders", .scene = "plant", .settings = "vals=10"},
@@ -165,7 +160,6 @@ class ClusteredVisibility : public Technique {
     pass.program.defines["KERNEL_THESIS"] = std::to_string(p.choice("kernel"));
     pass.program.defines["SEARCH_NEAREST"] = std::to_string(p.choice("search"));
     pass.program.defines["SPLITS"] = std::to_string(p.integer("splits"));
-    pass.program.defines["WHOLE_LEVELS"] = p.choice("filter") == 0 ? "1" : "0";
     pass.program.defines["AREA_DIP"] = fmt::format("{:.9e}", fourier.constants.dip);
     const float contact = p.real("contact_texels");
     pass.program.defines["CONTACT"] = contact > 0 ? "1" : "0";

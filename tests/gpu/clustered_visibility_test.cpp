@@ -27,13 +27,13 @@ TEST_F(ClusteredVisibilityTest, NothingBetweenMeansNoShadow) {
   const Corner s(lambert(Corner::albedo), 0.5f);
   const Answer all = answer("reflective_shadow_map", s, {{"vpls", "256"}});
   for (const char* vals : {"1", "8", "30"}) {
-    for (const auto& [name, value] :
-         {std::pair("kernel", "exact"), std::pair("kernel", "thesis"), std::pair("filter", "trilinear")}) {
-      const Answer seen = answer("clustered_visibility", s, {{"vpls", "256"}, {"vals", vals}, {name, value}});
+    for (const char* kernel : {"exact", "thesis"}) {
+      const Answer seen =
+          answer("clustered_visibility", s, {{"vpls", "256"}, {"vals", vals}, {"kernel", kernel}});
       for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x)
           ASSERT_NEAR(seen.at(0, x, y), all.at(0, x, y), 0.01f * all.at(0, x, y) + 1e-4f)
-              << vals << " area lights, " << name << " " << value << ", " << x << "," << y;
+              << vals << " area lights, " << kernel << " kernel, " << x << "," << y;
     }
   }
 }
