@@ -207,6 +207,14 @@ TEST_P(WindowFit, StaysWhatItIsWhileTheCameraMovesLittle) {
   EXPECT_LE(changes, 6);
 }
 
+Cloud scaledBy(const Cloud& cloud, float scale) {
+  Cloud scaled = cloud;
+  for (scene::DrawInstance& drawn : scaled.pose.instances)
+    drawn.objectToWorld = glm::scale(glm::mat4(1), vec3(scale)) * drawn.objectToWorld;
+  for (scene::Bounds& box : scaled.boxes) box = {scale * box.low, scale * box.high};
+  return scaled;
+}
+
 TEST_P(WindowFit, ScalesWithTheScene) {
   const Cloud cloud(1);
   const scene::CameraPose camera = scene::lookAt({0, 1.2f, 3.5f}, {0, 0.2f, 0}, 0.5f);
@@ -214,10 +222,7 @@ TEST_P(WindowFit, ScalesWithTheScene) {
   visible.update(cloud.pose, cloud.boxes, camera, 1.3f);
   const glsl::ShadowView one = fit(cloud, light(), {.size = 256, .fit = MapFit::view}, &visible).views[0];
   for (const float scale : {1e-3f, 1e3f}) {
-    Cloud scaled = cloud;
-    for (scene::DrawInstance& drawn : scaled.pose.instances)
-      drawn.objectToWorld = glm::scale(glm::mat4(1), vec3(scale)) * drawn.objectToWorld;
-    for (scene::Bounds& box : scaled.boxes) box = {scale * box.low, scale * box.high};
+    const Cloud scaled = scaledBy(cloud, scale);
     visible.update(scaled.pose, scaled.boxes,
                    scene::lookAt(scale * vec3(0, 1.2f, 3.5f), scale * vec3(0, 0.2f, 0), 0.5f), 1.3f);
     glsl::Light l = light();
@@ -311,11 +316,7 @@ TEST(WindowFitOf, FacesScaleWithTheScene) {
   for (int kind = 0; kind < 3; ++kind) {
     const std::vector<glsl::ShadowView> one = fitted(cloud, kind, 1);
     for (const float scale : {1e-3f, 1e3f}) {
-      Cloud scaled = cloud;
-      for (scene::DrawInstance& drawn : scaled.pose.instances)
-        drawn.objectToWorld = glm::scale(glm::mat4(1), vec3(scale)) * drawn.objectToWorld;
-      for (scene::Bounds& box : scaled.boxes) box = {scale * box.low, scale * box.high};
-      const std::vector<glsl::ShadowView> views = fitted(scaled, kind, scale);
+      const std::vector<glsl::ShadowView> views = fitted(scaledBy(cloud, scale), kind, scale);
       ASSERT_EQ(views.size(), one.size());
       for (size_t i = 0; i < views.size(); ++i) {
         EXPECT_EQ(showsNothing(views[i]), showsNothing(one[i])) << kind << ", face " << i;
