@@ -40,14 +40,7 @@ struct BallScene {
     camera = scene::lookAt(s * vec3(0, 6, 3), s * vec3(0, 0.2f, 0), 0.8f);
   }
 
-  vec3 position(const Answer& v, int x, int y) const {
-    glsl::FrameBlock frame{};
-    scene::setCamera(frame, camera, pose.bounds, v.width, v.height);
-    return vec3(frame.camera_position) +
-           v.depth[static_cast<size_t>(y * v.width + x)] *
-               (vec3(frame.view_ray_origin) + static_cast<float>(x) * vec3(frame.view_ray_dx) +
-                static_cast<float>(y) * vec3(frame.view_ray_dy));
-  }
+  vec3 position(const Answer& v, int x, int y) const { return positionOf(v, camera, pose.bounds, x, y); }
 };
 
 /// Whether the technique has that parameter.
@@ -94,7 +87,7 @@ inline bool ballHides(const vec3& from, const vec3& to) {
   return along > 0 && along < glm::length(to) && glm::distance(ball, from + along * d) < 0.5f;
 }
 
-/// Of V: root of the mean square and largest, over so many pixels of the penumbra.
+/// The errors of V in the penumbra: their root mean square, the largest, and the number of pixels there.
 struct Errors {
   double rms = 0, worst = 0;
   int penumbra = 0;

@@ -50,14 +50,7 @@ struct Corner {
     addInstance(scene, pose, addMesh(scene, floorPrimitive(0.15f, 0)),
                 glm::translate(glm::mat4(1), {x, 0.4f, 0}) * upright());
   }
-  glm::vec3 position(const Answer& v, int x, int y) const {
-    glsl::FrameBlock frame{};
-    scene::setCamera(frame, camera, pose.bounds, v.width, v.height);
-    return glm::vec3(frame.camera_position) +
-           v.depth[static_cast<size_t>(y * v.width + x)] *
-               (glm::vec3(frame.view_ray_origin) + static_cast<float>(x) * glm::vec3(frame.view_ray_dx) +
-                static_cast<float>(y) * glm::vec3(frame.view_ray_dy));
-  }
+  glm::vec3 position(const Answer& v, int x, int y) const { return positionOf(v, camera, pose.bounds, x, y); }
 
  private:
   static glm::mat4 upright() { return glm::rotate(glm::mat4(1), 0.5f * glsl::pi, glm::vec3(0, 0, 1)); }

@@ -7,6 +7,7 @@
 
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/render/services.h"
+#include "core/scene/camera.h"
 #include "core/shadow/shadow_map.h"
 #include "core/technique/registry.h"
 #include "core/technique/technique.h"
@@ -26,6 +27,18 @@ struct Answer {
     return lights[light][static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
   }
 };
+
+/// Where a pixel of an answer lies in the world, m, on the surface that `camera` sees there. `bounds`: the
+/// scene's.
+inline glm::vec3 positionOf(const Answer& v, const scene::CameraPose& camera, const scene::Bounds& bounds,
+                            int x, int y) {
+  glsl::FrameBlock frame{};
+  scene::setCamera(frame, camera, bounds, v.width, v.height);
+  return glm::vec3(frame.camera_position) +
+         v.depth[static_cast<size_t>(y * v.width + x)] *
+             (glm::vec3(frame.view_ray_origin) + static_cast<float>(x) * glm::vec3(frame.view_ray_dx) +
+              static_cast<float>(y) * glm::vec3(frame.view_ray_dy));
+}
 
 class TechniqueTest : public OncePerRenderer<GlTest> {
  protected:

@@ -31,14 +31,7 @@ struct Planes {
     addMesh(scene, floorPrimitive(half, 0));
     addInstance(scene, pose, static_cast<int>(scene.meshes.size()) - 1, place);
   }
-  vec3 position(const Answer& v, int x, int y) const {
-    glsl::FrameBlock frame{};
-    scene::setCamera(frame, camera, pose.bounds, v.width, v.height);
-    return vec3(frame.camera_position) +
-           v.depth[static_cast<size_t>(y * v.width + x)] *
-               (vec3(frame.view_ray_origin) + static_cast<float>(x) * vec3(frame.view_ray_dx) +
-                static_cast<float>(y) * vec3(frame.view_ray_dy));
-  }
+  vec3 position(const Answer& v, int x, int y) const { return positionOf(v, camera, pose.bounds, x, y); }
 };
 
 using Settings = std::map<std::string, std::string>;
