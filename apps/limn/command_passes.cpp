@@ -45,16 +45,10 @@ std::vector<std::string> earlierFiles(const fs::path& folder) {
   return *files;
 }
 
-/// Whether a path stays within the folder that it is relative to.
-bool isWithin(const fs::path& path) {
-  const fs::path normal = path.lexically_normal();
-  return !normal.empty() && normal.is_relative() && *normal.begin() != "..";
-}
-
 void removeFiles(const fs::path& folder, const std::vector<std::string>& files) {
-  for (const std::string& file : files)
-    if (isWithin(file) && fs::is_regular_file(fs::symlink_status(folder / file))) fs::remove(folder / file);
   std::error_code error;  // folders that hold something else stay
+  for (const std::string& file : files)
+    if (const fs::path path = fileInFolder(folder, file); !path.empty()) fs::remove(path, error);
   for (const char* name : {"contents/before", "contents/after", "contents", "shaders"})
     fs::remove(folder / name, error);
 }

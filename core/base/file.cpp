@@ -8,6 +8,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -149,6 +150,15 @@ void removeAbandonedFiles(const std::filesystem::path& folder) {
     if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlink(entry.path().c_str());
     ::close(file);
   }
+}
+
+std::filesystem::path fileInFolder(const std::filesystem::path& folder, const std::string& file) {
+  std::error_code error;
+  const std::filesystem::path root = std::filesystem::weakly_canonical(folder, error);
+  const std::filesystem::path path = std::filesystem::weakly_canonical(folder / file, error);
+  if (file.empty() || error || !std::filesystem::is_regular_file(path, error)) return {};
+  const auto [end, ignored] = std::mismatch(root.begin(), root.end(), path.begin(), path.end());
+  return end == root.end() ? path : std::filesystem::path();
 }
 
 void createFolder(const std::filesystem::path& folder) {

@@ -30,6 +30,10 @@ LIMN_API void writeTextFile(const std::filesystem::path& path, std::string_view 
 /// that no living writer holds. Leaves other files alone, and does nothing when the folder does not exist.
 LIMN_API void removeAbandonedFiles(const std::filesystem::path& folder);
 
+/// Returns where the regular file `file` of `folder` lies, or nothing where there is none or where it lies
+/// outside of the folder, links followed: what a list of names may be allowed to read or remove.
+LIMN_API std::filesystem::path fileInFolder(const std::filesystem::path& folder, const std::string& file);
+
 /// Creates the folder and all folders above it; does nothing where it exists. Throws Error when that fails.
 LIMN_API void createFolder(const std::filesystem::path& folder);
 

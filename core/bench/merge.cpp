@@ -1,7 +1,6 @@
 #include "core/bench/merge.h"
 
 #include "core/base/file.h"
-#include "core/bench/private/file_in_folder.h"
 #include "core/bench/results_file.h"
 
 namespace limn::bench {

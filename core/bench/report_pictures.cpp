@@ -8,7 +8,6 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/bench/private/file_in_folder.h"
 #include "glsl/numeric/srgb.glsl"
 
 namespace limn::bench {

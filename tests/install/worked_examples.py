@@ -20,7 +20,7 @@ LINKED = ["core/base/*.cpp", "core/question/*.cpp", "core/image/*.cpp", "core/br
           "core/brdf/tabulated.cpp", "core/brdf/visible_normals.cpp", "core/relief/height_field.cpp", "core/relief/slopes.cpp",
           "core/scene/*.cpp", "core/scene_io/*.cpp",
           *(f"core/bench/{name}.cpp" for name in (
-              "columns", "comparison", "file_in_folder", "markdown", "question_json", "question_toml", "ratio", "report",
+              "columns", "comparison", "markdown", "question_json", "question_toml", "ratio", "report",
               "report_pictures", "row", "suite", "suite_toml", "tables", "toml_nesting", "toml_section")),
           *(f"core/session/{name}.cpp" for name in ("find", "light_edits", "mesh_light", "view")),
           "core/shading/environment.cpp", "core/shading/environment_decomposition.cpp", "core/reference/content_hash.cpp",

@@ -126,6 +126,20 @@ TEST_F(FileTest, ALockNamesItsHolderAndDiesWithIt) {
   const FileLock lock(path, "x");
 }
 
+TEST_F(FileTest, NamesOfAFolderDoNotLeadOutOfIt) {
+  const fs::path root = folder_ / "results";
+  createFolder(root / "pictures");
+  writeTextFile(root / "pictures" / "a.png", "a");
+  writeTextFile(folder_ / "secret", "s");
+  fs::create_symlink(folder_ / "secret", root / "out");
+  fs::create_symlink("pictures/a.png", root / "in");
+  EXPECT_EQ(fileInFolder(root, "pictures/a.png"), fs::canonical(root / "pictures" / "a.png"));
+  EXPECT_EQ(fileInFolder(root, "in"), fs::canonical(root / "pictures" / "a.png"));
+  for (const char* name : {"", ".", "pictures", "missing", "../secret", "pictures/../../secret", "out"})
+    EXPECT_EQ(fileInFolder(root, name), fs::path()) << name;
+  EXPECT_EQ(fileInFolder(root, (folder_ / "secret").string()), fs::path());
+}
+
 TEST_F(FileTest, WhereNoLockCanBeMadeNothingIsGuarded) {
   const FileLock lock(folder_ / "missing" / ".lock", "x");
   SUCCEED();
