@@ -130,7 +130,7 @@ vec2 box_moments(uvec4 s11, uvec4 s01, uvec4 s10, uvec4 s00, uint texels, float 
   SatBox box = sat_box(sat_unpack(s11, table_format), sat_unpack(s01, table_format), sat_unpack(s10, table_format),
                        sat_unpack(s00, table_format), texels, table_format);
 #if WIDE_Z
-  SatMoments m = sat_accumulated(SatMoments(0.0, 0.0, 0.0), box, 1.0, receiver);
+  SatMoments m = sat_accumulated(SatMoments(0.0, 0.0, 0.0), box, 1.0, receiver, table_format);
 #else
   // Sums of z fit one word.
   uint all = texels * receiver;
@@ -140,7 +140,7 @@ vec2 box_moments(uvec4 s11, uvec4 s01, uvec4 s10, uvec4 s00, uint texels, float 
   uvec2 second = wide_add(wide_multiply(twice, receiver), box.zz);
   SatMoments m;
   m.first = before ? float(first) : -float(0u - first);
-  m.second = wide_unsigned_float(second);
+  m.second = sat_second(second, m.first, texels, table_format);
 #endif
   float n = float(texels);
   return vec2(m.first + n * rest, m.second + rest * (2.0 * m.first + n * rest));

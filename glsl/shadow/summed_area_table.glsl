@@ -152,15 +152,23 @@ struct SatMoments {
   float second;
 };
 
+// The sum of (D - Z)^2 over `texels` texels as a number; `first`: that of D - Z. Where squares were rounded to one word it
+// may come out less than any depths have, even below 0: it is no less than first^2 / texels.
+LIMN_FN float sat_second(uvec2 second, float first, uint texels, uint format) {
+  if (sat_two_words(format)) return wide_unsigned_float(second);
+  return max(wide_signed_float(second), first * first / float(max(texels, 1u)));
+}
+
 // sum (D - Z) = n D - SZ and sum (D - Z)^2 = n D^2 - 2 D SZ + SZZ, in integers.
-LIMN_FN SatMoments sat_accumulated(SatMoments moments, SatBox box, float weight, uint receiver) {
+LIMN_FN SatMoments sat_accumulated(SatMoments moments, SatBox box, float weight, uint receiver, uint format) {
   uvec2 all = wide_multiply(uvec2(box.texels, 0u), receiver);
   uvec2 first = wide_subtract(all, box.z);
   // D (n D - 2 SZ) + SZZ
   uvec2 second = wide_add(wide_multiply(wide_subtract(first, box.z), receiver), box.zz);
+  float sum = wide_signed_float(first);
   moments.weight += weight * float(box.texels);
-  moments.first += weight * wide_signed_float(first);
-  moments.second += weight * wide_unsigned_float(second);
+  moments.first += weight * sum;
+  moments.second += weight * sat_second(second, sum, box.texels, format);
   return moments;
 }
 
@@ -247,7 +255,7 @@ vec2 sat_lookup_moments(usampler2DArray table, vec2 lo, vec2 hi, int layer, floa
       if (weight <= 0.0) continue;
       SatBox box = sat_kernel_box(below[i + 1], below[i], above[i + 1], above[i], ivec2(ax.edges[i], ay.edges[j]),
                                   ivec2(ax.edges[i + 1], ay.edges[j + 1]), size, format);
-      moments = sat_accumulated(moments, box, weight, receiver);
+      moments = sat_accumulated(moments, box, weight, receiver, format);
     }
     above = below;
   }

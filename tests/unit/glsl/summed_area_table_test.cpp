@@ -107,7 +107,7 @@ struct Table {
     for (int j = 0; j < 3; ++j) {
       for (int i = 0; i < 3; ++i) {
         m = sat_accumulated(m, box({x.edges[i], y.edges[j]}, {x.edges[i + 1], y.edges[j + 1]}),
-                            x.weights[i] * y.weights[j], receiver);
+                            x.weights[i] * y.weights[j], receiver, format);
       }
     }
     return sat_moments(m, d, receiver, format);
@@ -206,6 +206,20 @@ TEST(SummedAreaTable, OfAConstantMapTheVarianceIsZero) {
       const vec2 m = table.moments({3.25f, 4.5f}, {40.125f, 60.75f}, d);
       EXPECT_NEAR(m.x, d - quantised, 1.3e-7);
       EXPECT_NEAR(m.y, m.x * m.x, 4e-7 * m.y + 1e-14);
+    }
+  }
+}
+
+TEST(SummedAreaTable, RoundedSquaresLeaveNoNegativeVarianceAndLittleOfIt) {
+  const uint format = sat_format(16, 1, 1);
+  for (uint z = 1; z <= sat_scale(format); z += 977) {
+    const float depth = static_cast<float>(z) / 65535.f;
+    const Table table(format, 8, 8, std::vector<float>(64, depth));
+    for (const float behind : {0.f, 0.4f, 1.f, 2.f, 50.3f, 180.f, 3000.f}) {
+      const vec2 m = table.moments({1, 1}, {7, 6.5f}, depth + behind / 65535.f);
+      // A square is off by up to half of a quantum.
+      ASSERT_GE(m.y, m.x * m.x * (1 - 1e-5f) - 1e-14f) << z << " quanta, " << behind << " behind";
+      ASSERT_LE(m.y, m.x * m.x * (1 + 1e-5f) + 0.5001f / 65535.f) << z << " quanta, " << behind << " behind";
     }
   }
 }
