@@ -206,8 +206,8 @@ LIMN_FN float blocker_distance(float first, float second) { return second / firs
 
 // --- The cone from receiver to light, cut at any gap ---
 
-// Kernels of one receiver and light: all have the receiver's own texel in common, and the one at gap g is
-// g / (depth + g towards) times as large as the one ... scaled
+// Kernels of one receiver and light: the one at gap g lies about the receiver's own place in the map and is
+// g / (depth + g towards) times as large as the one at unit scale.
 struct KernelCone {
   vec2 apex;  // texels
   vec2 low;   // edges of the kernel at unit scale, relative to the apex
