@@ -139,10 +139,7 @@ LIMN_FN float shadow_depth_of(ShadowView view, vec3 r) {
 }
 
 // Depth of a point, metres: what shadow_project gives for points the view sees.
-LIMN_FN float shadow_view_depth(ShadowView view, vec3 p) {
-  vec3 r = shadow_local(view, p);
-  return view.projection == shadow_paraboloid ? sqrt(dot(r, r)) : r.z;
-}
+LIMN_FN float shadow_view_depth(ShadowView view, vec3 p) { return shadow_depth_of(view, shadow_local(view, p)); }
 
 // Metres to what the map stores, and back.
 LIMN_FN float shadow_normalise(ShadowView view, float depth) {
