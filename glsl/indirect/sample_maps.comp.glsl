@@ -66,7 +66,8 @@ void main() {
   vec3 ray = t.position - view.origin;
   bool parallel = view.projection == shadow_orthographic;
   float lengthened = parallel ? 1.0 : dot(ray, ray);  // m^2 across the light per unit of its measure
-  float slant = max(abs(dot(parallel ? view.axis_z : normalize(ray), t.normal)), reflective_map_least_cosine);
+  vec3 towards = parallel || lengthened <= 0.0 ? view.axis_z : normalize(ray);  // no ray: the texel holds nothing
+  float slant = max(abs(dot(towards, t.normal)), reflective_map_least_cosine);
   float measure = reflective_map_measure(view, (vec2(texel) + 0.5) / float(view.size));
   light.area = weight > 0.0 ? measure * lengthened / slant * (total / (weight * float(count))) : 0.0;
   light.normal = t.normal;
