@@ -36,7 +36,8 @@ Misjudged misjudged(const Image& image, const Reference& reference, const std::v
                                                static_cast<std::size_t>(r)];
     const float value =
         image.data()[i * static_cast<std::size_t>(image.channelCount()) + static_cast<std::size_t>(v)];
-    const bool umbra = truth<Misjudged::kUmbra, lit = truth> Misjudged::kLit;
+    const bool umbra = truth < Misjudged::kUmbra;
+    const bool lit = truth > Misjudged::kLit;
     count.umbra += umbra;
     count.litInUmbra += umbra && value > Misjudged::kTolerance;
     count.lit += lit;
