@@ -11,7 +11,6 @@
 namespace limn::render {
 
 void Renderer::Implementation::build() {
-  dropGraph();
   noteEmitting();
   graph = std::make_unique<frame::FrameGraph>();
   for (const TechniqueUse& use : settings.techniques) {

@@ -31,6 +31,16 @@ void Renderer::Implementation::refreshPose() {
   poseDirty = false;
 }
 
+void Renderer::Implementation::rebuildGraph() {
+  dropGraph();
+  try {
+    build();
+  } catch (...) {
+    dropGraph();
+    throw;
+  }
+}
+
 bool Renderer::Implementation::render(frame::Timing timing, const frame::FrameGraph::Cancelled& cancelled) {
   refreshPose();
   bool rebuild = gpuScene.update(pose, camera, settings.size, frameIndex++) || !graph || switched();
@@ -39,7 +49,7 @@ bool Renderer::Implementation::render(frame::Timing timing, const frame::FrameGr
     for (Use& use : uses)
       rebuild = inTechnique(*use.settings->plugin, [&] { return use.technique->update(pose); }) || rebuild;
   }
-  if (rebuild) build();
+  if (rebuild) rebuildGraph();
   if (settings.dynamic) graph->invalidate();
   return graph->execute(timing, cancelled);
 }

@@ -1,6 +1,10 @@
-// Frames that are given up between two passes leave nothing behind that a later frame could see.
+// Frames that are given up leave nothing behind that a later frame could see.
 #include <gmock/gmock.h>
+#include <unistd.h>
 
+#include <fstream>
+
+#include "core/base/error.h"
 #include "tests/gpu/render_test.h"
 
 namespace limn {
@@ -66,6 +70,26 @@ TEST_F(CancelTest, leavesNoTrace) {
           << name << " given up before pass " << passes;
     }
   }
+}
+
+TEST_F(CancelTest, aFrameAfterOneThatDidNotCompileIsBuiltAgain) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("limn-override-" + std::to_string(getpid()));
+  const std::filesystem::path file = folder / "glsl/geometry/gbuffer.frag.glsl";
+  std::filesystem::create_directories(file.parent_path());
+  std::ofstream(file) << "int f() { return undeclared; }\n";
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene, folder);
+  renderer.configure(settings(8, 6, Term::direct));
+  renderer.setCamera(renderer.pose().cameras.at(0));
+  for (int frame = 0; frame < 2; ++frame) {
+    EXPECT_THAT([&] { renderer.render(); },
+                ::testing::ThrowsMessage<Error>(::testing::HasSubstr("gbuffer.frag.glsl:1")))
+        << "frame " << frame;
+  }
+  std::filesystem::remove_all(folder);
+  renderer.reloadShaders();
+  EXPECT_TRUE(renderer.render());
 }
 
 }  // namespace

@@ -67,6 +67,8 @@ struct Renderer::Implementation {
   ~Implementation() { dropGraph(); }
 
   void dropGraph();
+  /// Where that fails there is no graph: the next frame builds one again.
+  void rebuildGraph();
   void refreshPose();
   bool render(frame::Timing timing, const frame::FrameGraph::Cancelled& cancelled);
   /// Returns whether a light was turned on or off: the graph leaves out what dark ones would need.
