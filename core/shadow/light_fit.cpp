@@ -153,14 +153,18 @@ vec3 sampleDirection(const glsl::Light& light, const glm::vec2& sample) {
   return -glm::normalize(glsl::light_view_point(view, sample));
 }
 
-float spotTangent(const glsl::Light& light, int size) {
-  const float angle = std::acos(std::clamp(light.cos_outer, -1.f, 1.f));
-  return angle <= kLargestHalfAngle ? std::tan(angle) * (1 + 4 / static_cast<float>(size)) : 2;
+float outerHalfAngle(const glsl::Light& light) {
+  return std::acos(std::clamp(light.cos_outer, -1.f, 1.f));
 }
 
+/// Whether the light has a cone that one perspective view can hold.
 bool hasCone(const glsl::Light& light) {
-  return (light.flags & glsl::light_flag_cone) != 0 &&
-         std::acos(std::clamp(light.cos_outer, -1.f, 1.f)) <= kLargestHalfAngle;
+  return (light.flags & glsl::light_flag_cone) != 0 && outerHalfAngle(light) <= kLargestHalfAngle;
+}
+
+/// Of a light with hasCone(): half the width of its map at unit distance, two texels more on each side.
+float coneTangent(const glsl::Light& light, int size) {
+  return std::tan(outerHalfAngle(light)) * (1 + 4 / static_cast<float>(size));
 }
 
 bool twoSided(const glsl::Light& light) {
@@ -181,10 +185,10 @@ MapWindow wholeWindow(const glsl::Light& light, const vec3& origin, const Axes& 
   float tangent = 1;
   if (count <= 2) {
     tangent =
-        light.type == glsl::light_spot ? spotTangent(light, desc.size) : fittedTangent(origin, axes, boxes);
+        light.type == glsl::light_spot ? coneTangent(light, desc.size) : fittedTangent(origin, axes, boxes);
     if (count == 2) tangent = std::max(tangent, fittedTangent(origin, faceAxes(axes, 5), boxes));
     if (light.type != glsl::light_spot) tangent *= 1 + 4 / static_cast<float>(desc.size);
-    if (hasCone(light) && count == 1) tangent = std::min(tangent, spotTangent(light, desc.size));
+    if (hasCone(light) && count == 1) tangent = std::min(tangent, coneTangent(light, desc.size));
     if (!(tangent > 0)) tangent = 1;
   }
   const uint32_t step = layout.faces == glsl::shadow_faces_pair ? 5 : 1;
