@@ -274,15 +274,15 @@ ShadowMaps ShadowMapService::request(std::span<const uint32_t> lights, const Sha
 
 ShadowMaps ShadowMapService::request(std::span<const glm::vec3> directions, const ShadowMapDesc& desc) {
   Implementation& s = *implementation_;
-  for (const auto& known : s.requests) {
-    if (known->desc == desc && !directions.empty() && std::ranges::equal(known->directions, directions))
-      return known->maps;
-  }
   auto made = std::make_unique<Request>();
   made->directions.assign(directions.begin(), directions.end());
   made->desc = desc;
   made->desc.samples.clear();
   made->desc.views = 1;
+  for (const auto& known : s.requests) {
+    if (known->desc == made->desc && !directions.empty() && std::ranges::equal(known->directions, directions))
+      return known->maps;
+  }
   made->layouts = s.layoutsOf(*made);
   return s.add(std::move(made), context());
 }
