@@ -6,6 +6,7 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +32,7 @@ constexpr double kMessageSeconds = 5;      // for which a result is said
 double residentMiB() {
   long total = 0, resident = 0;
   std::ifstream("/proc/self/statm") >> total >> resident;
-  return static_cast<double>(resident) * 4096 / (1 << 20);
+  return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
 }
 
 Beside besideNamed(const std::string& name) {
