@@ -41,6 +41,11 @@ void Renderer::Implementation::rebuildGraph() {
   }
 }
 
+frame::FrameGraph& Renderer::Implementation::builtGraph() const {
+  if (!graph) throw Error("there is no frame yet: render() comes first");
+  return *graph;
+}
+
 bool Renderer::Implementation::render(frame::Timing timing, const frame::FrameGraph::Cancelled& cancelled) {
   refreshPose();
   bool rebuild = gpuScene.update(pose, camera, settings.size, frameIndex++) || !graph || switched();
@@ -114,17 +119,17 @@ const scene::Pose& Renderer::pose() {
 Image Renderer::read() const {
   const Implementation& self = *implementation_;
   const bool channels = self.settings.channels && self.gbuffer.depth;
-  return readPicture(*self.graph, self.settings, self.output, channels ? &self.gbuffer : nullptr);
+  return readPicture(self.builtGraph(), self.settings, self.output, channels ? &self.gbuffer : nullptr);
 }
 
 frame::FrameGraph& Renderer::graph() {
-  return *implementation_->graph;
+  return implementation_->builtGraph();
 }
 std::string Renderer::shaderText(const gpu::ProgramDesc& desc, std::string_view file) const {
   return implementation_->shaders.standalone(desc, file);
 }
 std::vector<frame::PassReport> Renderer::explain() const {
-  return implementation_->graph->explain();
+  return implementation_->builtGraph().explain();
 }
 
 int64_t Renderer::memoryBytes() const {

@@ -112,7 +112,7 @@ class LIMN_API Renderer {
   int framesOfPicture() const;
 
   /// Returns the last frame: R, G, B (visibility: three equal channels), and with Settings::channels Z,
-  /// coverage, id (-1: nothing seen), albedo.*, N.*. Waits for the GPU.
+  /// coverage, id (-1: nothing seen), albedo.*, N.*. Waits for the GPU. Throws Error without one.
   Image read() const;
 
   /// Returns the last frame, tone-mapped (Settings::display): RGBA8, bottom row first. Throws Error without
@@ -133,10 +133,13 @@ class LIMN_API Renderer {
 
   /// Returns the state of the scene at the time set.
   const scene::Pose& pose();
+  /// Returns the graph of the last frame, until configure() or a frame that has another. Throws Error without
+  /// one, as explain() does.
   frame::FrameGraph& graph();
   /// Returns the text of a stage of a program, as another engine could compile it
   /// (gpu::ShaderLibrary::standalone).
   std::string shaderText(const gpu::ProgramDesc& desc, std::string_view file) const;
+  /// Returns what the last frame did and what it left out.
   std::vector<frame::PassReport> explain() const;
   /// Returns the part of FrameStats that is known without measuring.
   FrameStats describe() const;

@@ -87,6 +87,7 @@ TEST_F(CancelTest, aFrameAfterOneThatDidNotCompileIsBuiltAgain) {
                 ::testing::ThrowsMessage<Error>(::testing::HasSubstr("gbuffer.frag.glsl:1")))
         << "frame " << frame;
   }
+  EXPECT_THROW(renderer.explain(), Error) << "there is no frame";
   std::filesystem::remove_all(folder);
   renderer.reloadShaders();
   EXPECT_TRUE(renderer.render());

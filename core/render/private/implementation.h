@@ -69,6 +69,8 @@ struct Renderer::Implementation {
   void dropGraph();
   /// Where that fails there is no graph: the next frame builds one again.
   void rebuildGraph();
+  /// Throws Error before the first frame, and after one whose graph could not be built.
+  frame::FrameGraph& builtGraph() const;
   void refreshPose();
   bool render(frame::Timing timing, const frame::FrameGraph::Cancelled& cancelled);
   /// Returns whether a light was turned on or off: the graph leaves out what dark ones would need.
