@@ -127,7 +127,8 @@ uint32_t BvhBuilder::areaSplit(const Range& range, int axis, float low, float hi
   const float scale = static_cast<float>(kBins) / (high - low);
   const auto binOf = [&](uint32_t item) {
     const float place = (centre(boxes_[item], axis) - low) * scale;
-    return std::clamp(static_cast<int>(place), 0, kBins - 1);
+    // Of centres so close that `scale` is infinite, place may be no number.
+    return place > 0 ? static_cast<int>(std::min(place, static_cast<float>(kBins - 1))) : 0;
   };
   std::array<Bin, kBins> bins;
   for (uint32_t i = range.first; i < range.end; ++i)
