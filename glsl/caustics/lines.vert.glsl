@@ -4,6 +4,7 @@
 #include "glsl/caustics/line_rule.glsl"
 #include "glsl/caustics/listed_ray.glsl"
 #include "glsl/caustics/ray_shape.glsl"
+#include "glsl/numeric/sampling.glsl"
 
 #if KIND == 2
 layout(std430) readonly buffer RayBeams { RayBeam beams[]; };
@@ -21,7 +22,7 @@ const float widest_point = 64.0;
 #if KIND == 0
 // In [-1/2, 1/2), even among rays that are neighbours in the buffer (Roberts 2018, as r2_sequence).
 float share_of_column(int index) {
-  uint at = uint(index % buffer_size) * 3242174889u + uint(index / buffer_size) * 2447445414u;
+  uint at = uint(index % buffer_size) * r2_step.x + uint(index / buffer_size) * r2_step.y;
   return float(at >> 8) * 5.9604644775390625e-8 - 0.5;
 }
 #endif

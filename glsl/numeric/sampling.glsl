@@ -6,16 +6,16 @@ LIMN_BEGIN
 
 // Additive recurrences on the generalised golden ratio (Roberts 2018, The Unreasonable Effectiveness of Quasirandom
 // Sequences), in fixed point so that they stay exact for all i: multiples of 2^32 / g^k.
+LIMN_CONST uvec2 r2_step = uvec2(3242174889u, 2447445414u);
 LIMN_FN vec2 r2_sequence(uint i) {
-  return vec2(float((i * 3242174889u) >> 8), float((i * 2447445414u) >> 8)) * 5.9604644775390625e-8f;
+  return vec2(float((i * r2_step.x) >> 8), float((i * r2_step.y) >> 8)) * 5.9604644775390625e-8f;
 }
 LIMN_FN vec3 r3_sequence(uint i) {
   return vec3(float((i * 3518319155u) >> 8), float((i * 2882110345u) >> 8), float((i * 2360945575u) >> 8)) *
          5.9604644775390625e-8f;
 }
 
-// The same one after the other, for loops: numbers in fixed point, of which 2^32 stand for 1.
-LIMN_CONST uvec2 r2_step = uvec2(3242174889u, 2447445414u);
+// Points of these one after the other, for loops that add steps: numbers in fixed point, of which 2^32 stand for 1.
 LIMN_CONST uint r3_step_z = 2360945575u;
 LIMN_FN uint fixed_point(float x) { return uint(x * 16777216.0f) << 8u; }
 LIMN_FN float fixed_point_value(uint x) { return float(int(x >> 8u)) * 5.9604644775390625e-8f; }
