@@ -46,6 +46,31 @@ std::string valueText(const render::InspectedValues& values, int x, int y) {
   return text;
 }
 
+/// `shown`: how the picture there is shows the texture; null: there is none.
+void rangeRow(InspectionOrder& wanted, const render::InspectionView* shown) {
+  nameCell("range",
+           "Values shown black and white; automatic: the least and the greatest there are, when the "
+           "picture stands still");
+  const bool wasAutomatic = wanted.automatic;
+  ImGui::Checkbox("automatic", &wanted.automatic);
+  ImGui::SameLine();
+  if (wanted.automatic && shown != nullptr) {
+    ImGui::TextDisabled("%.5g to %.5g", static_cast<double>(shown->low), static_cast<double>(shown->high));
+    return;
+  }
+  if (wasAutomatic && shown != nullptr) {
+    wanted.view.low = shown->low;
+    wanted.view.high = shown->high;
+  }
+  float range[2] = {wanted.view.low, wanted.view.high};
+  const float step = std::max(std::abs(range[1] - range[0]) * 0.005f, 1e-6f);
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::DragFloat2("##range", range, step, 0, 0, "%.5g")) {
+    wanted.view.low = range[0];
+    wanted.view.high = range[1];
+  }
+}
+
 }  // namespace
 
 /// Texture, level, layer, channel and range.
@@ -89,27 +114,7 @@ void ViewerWindow::inspectorChoices(const frame::PassReport& pass) {
       if (ImGui::RadioButton(kChannels[c], wanted.view.channel == c)) wanted.view.channel = c;
     }
   }
-  nameCell("range",
-           "Values shown black and white; automatic: the least and the greatest there are, when the "
-           "picture stands still");
-  ImGui::Checkbox("automatic", &wanted.automatic);
-  ImGui::SameLine();
-  if (wanted.automatic && facts_->inspected) {
-    ImGui::TextDisabled("%.5g to %.5g", static_cast<double>(facts_->inspected->view.low),
-                        static_cast<double>(facts_->inspected->view.high));
-  } else {
-    if (before.automatic && facts_->inspected) {
-      wanted.view.low = facts_->inspected->view.low;
-      wanted.view.high = facts_->inspected->view.high;
-    }
-    float range[2] = {wanted.view.low, wanted.view.high};
-    const float step = std::max(std::abs(range[1] - range[0]) * 0.005f, 1e-6f);
-    ImGui::SetNextItemWidth(-1);
-    if (ImGui::DragFloat2("##range", range, step, 0, 0, "%.5g")) {
-      wanted.view.low = range[0];
-      wanted.view.high = range[1];
-    }
-  }
+  rangeRow(wanted, facts_->inspected ? &facts_->inspected->view : nullptr);
   if (!(wanted == before)) moved();
 }
 

@@ -176,6 +176,30 @@ void ViewerWindow::scenePanel() {
   endRows();
 }
 
+/// How lights stand for the environment, if they do.
+void ViewerWindow::environmentLightRows(SceneQuestion& wanted) {
+  if (!state_.scene.environment.empty()) {
+    nameCell("as lights",
+             "Area lights at infinity stand for it, so that every technique shadows it: how much "
+             "of a light's energy a row of texels must add for it to grow; smaller: more lights");
+    auto threshold = static_cast<float>(state_.scene.environmentLights);
+    ImGui::SliderFloat("##threshold", &threshold, 0, 0.1f, threshold > 0 ? "%.3f" : "no",
+                       ImGuiSliderFlags_AlwaysClamp);
+    environmentThreshold_ = ImGui::IsItemActive() ? threshold : environmentThreshold_;
+    if (ImGui::IsItemDeactivatedAfterEdit())
+      wanted.environmentLights = environmentThreshold_ < 1e-3f ? 0 : environmentThreshold_;
+  }
+  if (state_.scene.environmentLights > 0) {
+    const QuestionField& combine = questionField("environment_combine");
+    nameCell("combined by", combine.doc);
+    if (ImGui::BeginCombo("##combine", state_.scene.environmentCombine.c_str())) {
+      for (const char* way : combine.choices)
+        if (ImGui::Selectable(way, state_.scene.environmentCombine == way)) wanted.environmentCombine = way;
+      ImGui::EndCombo();
+    }
+  }
+}
+
 void ViewerWindow::environmentPanel() {
   SceneQuestion wanted = state_.scene;
   if (!beginRows("environment")) return;
@@ -209,26 +233,7 @@ void ViewerWindow::environmentPanel() {
       moved();
     }
   }
-  if (!now.empty()) {
-    nameCell("as lights",
-             "Area lights at infinity stand for it, so that every technique shadows it: how much "
-             "of a light's energy a row of texels must add for it to grow; smaller: more lights");
-    auto threshold = static_cast<float>(state_.scene.environmentLights);
-    ImGui::SliderFloat("##threshold", &threshold, 0, 0.1f, threshold > 0 ? "%.3f" : "no",
-                       ImGuiSliderFlags_AlwaysClamp);
-    environmentThreshold_ = ImGui::IsItemActive() ? threshold : environmentThreshold_;
-    if (ImGui::IsItemDeactivatedAfterEdit())
-      wanted.environmentLights = environmentThreshold_ < 1e-3f ? 0 : environmentThreshold_;
-  }
-  if (state_.scene.environmentLights > 0) {
-    const QuestionField& combine = questionField("environment_combine");
-    nameCell("combined by", combine.doc);
-    if (ImGui::BeginCombo("##combine", state_.scene.environmentCombine.c_str())) {
-      for (const char* way : combine.choices)
-        if (ImGui::Selectable(way, state_.scene.environmentCombine == way)) wanted.environmentCombine = way;
-      ImGui::EndCombo();
-    }
-  }
+  environmentLightRows(wanted);
   endRows();
   if (wanted.environment != state_.scene.environment ||
       wanted.environmentLights != state_.scene.environmentLights ||

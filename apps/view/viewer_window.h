@@ -89,6 +89,7 @@ class ViewerWindow {
   bool recentScene(const std::filesystem::path& file);
   void cameraChooser();
   void environmentPanel();
+  void environmentLightRows(SceneQuestion& wanted);
   void exposureRow();
   void samplesRow();
   void floorRow();
