@@ -6,6 +6,7 @@
 #ifndef LIMN_SMOKE_GLSL
 #define LIMN_SMOKE_GLSL
 #include "glsl/numeric/language.glsl"
+#include "glsl/numeric/sampling.glsl"
 LIMN_BEGIN
 
 LIMN_UNIFORM_BLOCK(SmokeBlock)
@@ -17,22 +18,9 @@ uvec3 voxels;  // of the grid that it is looked up in
 uint seed;
 LIMN_END_UNIFORM_BLOCK(smoke)
 
-// Three numbers from three (pcg3d; Jarzynski and Olano 2020, Hash Functions for GPU Rendering).
-LIMN_FN uvec3 smoke_hash(uvec3 v) {
-  v = v * 1664525u + 1013904223u;
-  v.x += v.y * v.z;
-  v.y += v.z * v.x;
-  v.z += v.x * v.y;
-  v = v ^ (v >> 16u);
-  v.x += v.y * v.z;
-  v.y += v.z * v.x;
-  v.z += v.x * v.y;
-  return v;
-}
-
 // Gradient at a point of the lattice, in [-1, 1]^3, times the way from there.
 LIMN_FN float smoke_slope(ivec3 point, vec3 away, uint seed) {
-  uvec3 bits = smoke_hash(uvec3(point) + uvec3(seed));
+  uvec3 bits = pcg3d(uvec3(point) + uvec3(seed));
   vec3 gradient = vec3(bits >> 8u) * (2.0f / 16777215.0f) - 1.0f;
   return dot(gradient, away);
 }

@@ -25,9 +25,9 @@ LIMN_FN vec2 grid_point(int i, int side) {
   return vec2((float(i % side) + 0.5f) / float(side), (float(i / side) + 0.5f) / float(side));
 }
 
-// Three independent numbers in [0, 1) for a pixel (pcg3d; Jarzynski and Olano 2020, Hash Functions for GPU Rendering).
-LIMN_FN vec3 pixel_noise(uint x, uint y, uint seed) {
-  uvec3 v = uvec3(x, y, seed) * 1664525u + 1013904223u;
+// Three numbers of 32 bits from three (Jarzynski and Olano 2020, Hash Functions for GPU Rendering).
+LIMN_FN uvec3 pcg3d(uvec3 v) {
+  v = v * 1664525u + 1013904223u;
   v.x += v.y * v.z;
   v.y += v.z * v.x;
   v.z += v.x * v.y;
@@ -35,6 +35,12 @@ LIMN_FN vec3 pixel_noise(uint x, uint y, uint seed) {
   v.x += v.y * v.z;
   v.y += v.z * v.x;
   v.z += v.x * v.y;
+  return v;
+}
+
+// Three independent numbers in [0, 1) for a pixel.
+LIMN_FN vec3 pixel_noise(uint x, uint y, uint seed) {
+  uvec3 v = pcg3d(uvec3(x, y, seed));
   return vec3(float(v.x >> 8), float(v.y >> 8), float(v.z >> 8)) * 5.9604644775390625e-8f;
 }
 
