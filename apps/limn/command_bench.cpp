@@ -96,8 +96,10 @@ Action addBenchCommand(CLI::App& command) {
                                         "their own, and their merging; the same\n"
                                         "command goes on (docs/cluster.md)");
   slurm->excludes(shard)->excludes(against);
-  command.add_option("--partition", options->job.partition, "Of Slurm; default: Slurm's own")->needs(slurm);
-  command.add_option("--nodes", options->job.nodes, "That work at once")
+  command
+      .add_option("--partition", options->job.partition, "Slurm's partition; default: that of Slurm itself")
+      ->needs(slurm);
+  command.add_option("--nodes", options->job.nodes, "Nodes that work at once")
       ->needs(slurm)
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
