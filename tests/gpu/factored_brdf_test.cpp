@@ -70,8 +70,7 @@ class FactoredBrdfTest : public RenderTest {
   }
 
   /// RMS of the difference over RMS of the exact picture.
-  double error(const scene::Scene& scene, const Values& values) {
-    const Image exact = drawn(scene, {}), tables = drawn(scene, {technique("factored_brdf", values)});
+  static double errorOf(const Image& tables, const Image& exact) {
     double difference = 0, sum = 0;
     for (size_t i = 0; i < exact.data().size(); ++i) {
       const double d = static_cast<double>(tables.data()[i]) - static_cast<double>(exact.data()[i]);
@@ -81,6 +80,9 @@ class FactoredBrdfTest : public RenderTest {
     }
     EXPECT_GT(sum, 0);
     return std::sqrt(difference / sum);
+  }
+  double error(const scene::Scene& scene, const Values& values) {
+    return errorOf(drawn(scene, {technique("factored_brdf", values)}), drawn(scene, {}));
   }
 };
 
@@ -92,6 +94,37 @@ TEST_F(FactoredBrdfTest, WarpedTablesAreThePublishedOnesAFiftiethWrong) {
   EXPECT_LT(warped, 3e-3);
   EXPECT_GT(published, 50 * warped);
   EXPECT_LT(error(scene, {{"texels", "128"}, {"format", "half"}}), 3e-3);
+}
+
+/// A ball hides the side light from half of a highlight, and a rectangle lights the scene by points.
+TEST_F(FactoredBrdfTest, TablesErrAsLittleUnderEveryShadowTechnique) {
+  glsl::MaterialModel brushed = copper(0.1f, glsl::model_ward);
+  brushed.roughness.y = 0.4f;
+  scene::Scene scene = balls({copper(0.1f), brushed});
+  scene::Node blocker, lamp;
+  blocker.mesh = test::addMesh(scene, test::spherePrimitive(0.2f, 0));
+  blocker.transform.translation = {0.31f, 0.87f, 0.4f};
+  scene.nodes.push_back(blocker);
+  scene::LightSource rectangle;
+  rectangle.type = glsl::light_point;
+  rectangle.intensity = 20;
+  lamp.limnArea = {1, 0.6f};
+  lamp.transform.translation = {2, 1.5f, 1};
+  lamp.transform.rotation = glm::quatLookAt(glm::normalize(glm::vec3(-2, -1.5f, -1)), glm::vec3(0, 1, 0));
+  lamp.light = static_cast<int>(scene.lights.size());
+  scene.lights.push_back(rectangle);
+  scene.nodes.push_back(lamp);
+  const double unshadowed = mean(drawn(scene, {}));
+  for (const Term term : {Term::visibility, Term::direct})
+    for (const std::string& name : techniquesAnswering(term)) {
+      const Image exact = drawn(scene, {quick(name)});
+      const double shadowed = errorOf(drawn(scene, {quick(name), technique("factored_brdf")}), exact);
+      RecordProperty(name, std::to_string(shadowed) + " " + std::to_string(mean(exact) / unshadowed));
+      EXPECT_LT(shadowed, 3e-3) << name;
+      if (term == Term::visibility) {
+        EXPECT_LT(mean(exact), 0.97 * unshadowed) << name;
+      }
+    }
 }
 
 TEST_F(FactoredBrdfTest, OtherModelsAreExact) {
