@@ -215,6 +215,25 @@ TEST(PrefilteredModels, CoatsShowMirrorAndBase) {
       }
 }
 
+/// The other two ways to combine coat and base, against the physical one at an index of 1.5: the sum keeps in
+/// the base what the coat mirrors, and both are too bright below an albedo of 1.
+TEST(PrefilteredModels, CoatsThatAreNotPhysicalErrByTheirBase) {
+  for (const Sky& sky : kSkies)
+    for (const float kd : {0.2f, 0.5f, 0.8f, 1.f}) {
+      RelativeError sum, blend;
+      Views views{0, 90};
+      for (int i = 0; i < kViews; ++i) {
+        const auto [n, v] = views.next();
+        const double exact = exactCoatedLight(coatedModel(kd, 1.5f, model_option_physical), sky, n, v);
+        sum.add(exactCoatedLight(coatedModel(kd, 1.5f, 0), sky, n, v), exact);
+        blend.add(exactCoatedLight(coatedModel(kd, 1.5f, model_option_blend), sky, n, v), exact);
+      }
+      const std::string name = sky.name + " kd " + std::to_string(kd);
+      RecordProperty(name, std::to_string(sum.value()) + " " + std::to_string(blend.value()));
+      EXPECT_GT(sum.value(), blend.value()) << name;
+    }
+}
+
 /// What reflects of uniform light.
 double coatedFurnace(float kd, uint options, double cosine) {
   const MaterialModel m = coatedModel(kd, 1.5f, options);
