@@ -104,6 +104,7 @@ DirectionMap cosineMap() {
 DirectionMap lobeMap(const MaterialModel& m, const vec3& v) {
   switch (m.kind) {
     case model_torrance_sparrow:
+    case model_measured:
       return halfVectorMap(dvec2(std::max(m.roughness.x, 1e-3f)), v);
     case model_ward:
       return halfVectorMap(max(m.roughness, vec2(1e-3f)), v);
