@@ -108,6 +108,43 @@ TEST_F(IlluminationSamplesTest, FloorsReflectWallsDownToTheirFoot) {
   }
 }
 
+/// As above, with a floor of another roughness.
+scene::Scene roomWithFloor(scene::Scene scene, float roughness) {
+  for (scene::Material& material : scene.materials)
+    if (material.metallic > 0) material.roughness = roughness;
+  return scene;
+}
+
+TEST_F(IlluminationSamplesTest, ThreeBouncesOverARoughFloor) {
+  const scene::Scene scene = roomWithFloor(asset("glossy_room"), 0.5f);
+  render::Renderer renderer(device(), scene);
+  const Image exact = truth(renderer, scene, 3, {64, 48}, 1024);
+  const Values values{{"longest_edge", "0.0722"}, {"bounces", "3"}};
+  const Image shown =
+      picture(renderer, settings(64, 48, Term::indirect, {technique("illumination_samples", values)}));
+  const Error error = errorOn(0, shown, exact);
+  std::printf("glossy_room, roughness 0.5, three bounces: RMSE of the floor %.1f %%\n",
+              100 * error.relative());
+  EXPECT_LT(error.relative(), 0.12);
+}
+
+/// As points, the elements of the walls show as highlights in a floor of narrow lobes.
+TEST_F(IlluminationSamplesTest, WideningTakesHighlightsOfElementsAway) {
+  const scene::Scene scene = roomWithFloor(asset("glossy_room"), 0.2f);
+  render::Renderer renderer(device(), scene);
+  const Image exact = truth(renderer, scene, 1, {64, 48}, 1024);
+  const auto shown = [&](const char* widen) {
+    const Values values{{"longest_edge", "0.0722"}, {"display", "gather"}, {"widen", widen}};
+    return errorOn(
+        0, picture(renderer, settings(64, 48, Term::indirect, {technique("illumination_samples", values)})),
+        exact);
+  };
+  const Error widened = shown("0.22"), points = shown("0");
+  std::printf("glossy_room, roughness 0.2, gathered: RMSE of the floor %.1f %%, of points %.1f %%\n",
+              100 * widened.relative(), 100 * points.relative());
+  EXPECT_LT(2.5 * widened.relative(), points.relative());
+}
+
 TEST_F(IlluminationSamplesTest, SamplesReflectedAtPixelsAreWhatTreesShow) {
   const scene::Scene scene = asset("glossy_room");
   render::Renderer renderer(device(), scene);

@@ -57,5 +57,19 @@ TEST(DiscTransportTest, OnePointIsExactOnTheAxisAndNeverTooBright) {
   EXPECT_FLOAT_EQ(sampleSpread(0.01f, 1), 0.1f);
 }
 
+/// What A cos / d^2 alone, without the disc's own extent in it, makes of a disc at some of its radii.
+TEST(DiscTransportTest, PointsForDiscsAreTooBrightNearBy) {
+  struct Row {
+    float radii;
+    double tooBright;
+  };
+  for (const Row& row : {Row{2, 0.25}, Row{5, 0.04}, Row{10, 0.01}}) {
+    const float disc = facing({0, 0, row.radii}, 1);
+    const double point = double(glsl::pi) / double(row.radii * row.radii);
+    EXPECT_NEAR(point / double(disc) - 1, row.tooBright, 0.006) << row.radii;
+    EXPECT_NEAR(double(axisTransport(glsl::pi, 1, row.radii * row.radii) / disc), 1, 0.005) << row.radii;
+  }
+}
+
 }  // namespace
 }  // namespace limn::radiosity

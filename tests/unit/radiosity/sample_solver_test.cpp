@@ -4,18 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <memory>
 
 #include "core/base/error.h"
-#include "tests/support/radiosity_meshes.h"
+#include "tests/unit/radiosity/sample_world.h"
 
 namespace limn::radiosity {
 namespace {
-
-class Nothing final : public Occlusion {
- public:
-  bool blocked(const glm::vec3&, const glm::vec3&, float) const override { return false; }
-};
 
 /// A plane of constant x that blocks everything.
 class Wall final : public Occlusion {
@@ -30,74 +24,21 @@ class Wall final : public Occlusion {
   float x_;
 };
 
-LeafMaterial diffuse(float albedo) {
-  LeafMaterial m;
-  m.diffuse = glm::vec3(albedo);
-  m.alpha = 1;
-  return m;
-}
-
-LeafMaterial metal(float roughness) {
-  LeafMaterial m;
-  m.alpha = roughness * roughness;
-  m.f0 = glm::vec3(0.75f);
-  m.f90 = 1;
-  return m;
-}
-
-/// Elements of meshes, each with a material.
-struct World {
-  ElementSpace space;
-  Surfels surfels;
-  Forest forest;
-  std::vector<LeafMaterial> materials;
-  std::unique_ptr<SampleSolver> solver;
-
-  World(const std::vector<TriangleMesh>& meshes, const std::vector<LeafMaterial>& ofObject,
-        const SampleSettings& settings = {}, float longestEdge = 1e9f)
-      : space(spaceOf(meshes)), surfels(surfelsOf(meshes, longestEdge)), forest(surfels) {
-    materials.resize(forest.leafSlots());
-    for (size_t i = 0; i < surfels.size(); ++i) materials[forest.leafOf()[i]] = ofObject[surfels.objects[i]];
-    solver = std::make_unique<SampleSolver>(surfels, forest, space, materials, settings);
-  }
-
-  /// Lights the objects with these irradiances, without directions.
-  void light(const std::vector<float>& ofObject) {
-    for (size_t i = 0; i < surfels.size(); ++i)
-      solver->light(forest.leafOf()[i], glm::vec3(ofObject[surfels.objects[i]]), {});
-  }
-  /// Mean over an object's area.
-  double mean(uint32_t object) const {
-    double sum = 0, area = 0;
-    for (size_t i = 0; i < surfels.size(); ++i) {
-      if (surfels.objects[i] != object) continue;
-      sum += double(solver->irradiance()[forest.leafOf()[i]].x) * surfels.areas[i];
-      area += surfels.areas[i];
-    }
-    return sum / area;
-  }
-};
-
 /// The form factor of two parallel squares of side 1 at distance 1.
 constexpr double kSquares = 0.19982;
 
-std::vector<TriangleMesh> plates(int n) {
-  return {rectangleMesh({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, n),
-          rectangleMesh({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, n)};
-}
-
 TEST(SampleSolverTest, ParallelPlatesExchangeTheirFormFactor) {
   for (const int n : {4, 12, 24}) {
-    World world(plates(n), {diffuse(0.8f), diffuse(0.5f)});
+    SampleWorld world(facingPlates(n), {diffuseLeaf(0.8f), diffuseLeaf(0.5f)});
     world.light({1, 0});
     world.solver->reflect();
-    const ShootCounts counts = world.solver->shoot(Nothing());
+    const ShootCounts counts = world.solver->shoot(FreeSight());
     std::printf("plates of %d x %d: %.2f %% off, %zu pairs, %zu links\n", n, n,
                 100 * (world.mean(1) / (0.8 * kSquares) - 1), size_t(counts.pairs), size_t(counts.links));
     EXPECT_NEAR(world.mean(1) / (0.8 * kSquares), 1, 0.02);
     EXPECT_EQ(world.mean(0), 0);
     world.solver->reflect();
-    world.solver->shoot(Nothing());
+    world.solver->shoot(FreeSight());
     EXPECT_NEAR(world.mean(0) / (0.8 * kSquares * 0.5 * kSquares), 1, 0.04);
   }
 }
@@ -105,7 +46,7 @@ TEST(SampleSolverTest, ParallelPlatesExchangeTheirFormFactor) {
 /// What stands for elements near by lies in their plane, and is as large and about as long as they are.
 TEST(SampleSolverTest, SendersAreRectanglesOfTheirElements) {
   // Cells that are three times as long as wide.
-  World world({rectangleMesh({0, 0, 0}, {0, 0, 1}, {3, 0, 0}, 8)}, {diffuse(0.5f)});
+  SampleWorld world({rectangleMesh({0, 0, 0}, {0, 0, 1}, {3, 0, 0}, 8)}, {diffuseLeaf(0.5f)});
   const float unit = world.space.radius();
   const glm::vec3 along = world.space.direction({1, 0, 0});
   double area = 0, inner = 0;
@@ -133,10 +74,10 @@ TEST(SampleSolverTest, SendersAreRectanglesOfTheirElements) {
 TEST(SampleSolverTest, LinksFollowTheErrorAllowed) {
   uint64_t before = 0;
   for (const float error : {0.3f, 0.03f, 0.003f}) {
-    World world(plates(24), {diffuse(0.8f), diffuse(0.5f)}, {.linkError = error});
+    SampleWorld world(facingPlates(24), {diffuseLeaf(0.8f), diffuseLeaf(0.5f)}, {.linkError = error});
     world.light({1, 0});
     world.solver->reflect();
-    const uint64_t links = world.solver->shoot(Nothing()).links;
+    const uint64_t links = world.solver->shoot(FreeSight()).links;
     EXPECT_GT(links, before);
     before = links;
     EXPECT_NEAR(world.mean(1) / (0.8 * kSquares), 1, 0.03);
@@ -145,17 +86,17 @@ TEST(SampleSolverTest, LinksFollowTheErrorAllowed) {
 
 TEST(SampleSolverTest, FurnacesAreAsBrightAsTheyReflect) {
   for (const bool round : {true, false}) {
-    World world({round ? sphereMesh({0, 0, 0}, 1, 24, -1) : roomMesh(12)}, {diffuse(0.5f)});
+    SampleWorld world({round ? sphereMesh({0, 0, 0}, 1, 24, -1) : roomMesh(12)}, {diffuseLeaf(0.5f)});
     world.light({1});
     world.solver->reflect();
-    world.solver->shoot(Nothing());
+    world.solver->shoot(FreeSight());
     double expected = 0.5;
     std::printf("%s: irradiance %.2f %% off\n", round ? "sphere" : "room",
                 100 * (world.mean(0) / expected - 1));
     EXPECT_NEAR(world.mean(0) / expected, 1, 0.01);
     for (int bounce = 2; bounce <= 7; ++bounce) {
       world.solver->reflect();
-      world.solver->shoot(Nothing());
+      world.solver->shoot(FreeSight());
       expected += std::pow(0.5, bounce);
     }
     EXPECT_NEAR(world.mean(0) / expected, 1, 0.015) << "what is unshot after 7 rounds is below 1 %";
@@ -165,19 +106,10 @@ TEST(SampleSolverTest, FurnacesAreAsBrightAsTheyReflect) {
 TEST(SampleSolverTest, GlossyElementsInAFurnaceReflectTheirReflectance) {
   for (const float roughness : {0.3f, 0.5f}) {
     // The floor alone is metal, and does not see itself.
-    std::vector<TriangleMesh> meshes{rectangleMesh({-1, -1, -1}, {0, 0, 2}, {2, 0, 0}, 8)};
-    TriangleMesh rest = roomMesh(12);
-    std::vector<uint32_t> kept;
-    for (size_t t = 0; t < rest.indices.size(); t += 3)
-      if (rest.normals[rest.indices[t]].y < 0.5f)
-        kept.insert(kept.end(), rest.indices.begin() + std::ptrdiff_t(t),
-                    rest.indices.begin() + std::ptrdiff_t(t) + 3);
-    rest.indices = kept;
-    meshes.push_back(rest);
-    World world(meshes, {metal(roughness), diffuse(0.5f)});
+    SampleWorld world(floorAndRoom(8, 12), {metalLeaf(roughness), diffuseLeaf(0.5f)});
     world.light({0, glsl::pi});
     world.solver->reflect();
-    world.solver->shoot(Nothing());
+    world.solver->shoot(FreeSight());
     EXPECT_NEAR(world.mean(0) / (0.5 * glsl::pi), 1, 0.01);
     world.solver->reflect();
     for (const double degrees : {0.0, 45.0, 80.0}) {
@@ -209,12 +141,12 @@ TEST(SampleSolverTest, GlossyElementsInAFurnaceReflectTheirReflectance) {
 
 TEST(SampleSolverTest, WhatIsHiddenIsDark) {
   // Two pairs of plates beside each other: light would go across the wall between them.
-  std::vector<TriangleMesh> meshes = plates(6);
-  for (TriangleMesh mesh : plates(6)) {
+  std::vector<TriangleMesh> meshes = facingPlates(6);
+  for (TriangleMesh mesh : facingPlates(6)) {
     for (glm::vec3& p : mesh.positions) p.x += 1.5f;
     meshes.push_back(mesh);
   }
-  World world(meshes, {diffuse(0.8f), diffuse(0.8f), diffuse(0.8f), diffuse(0.8f)});
+  SampleWorld world(meshes, {diffuseLeaf(0.8f), diffuseLeaf(0.8f), diffuseLeaf(0.8f), diffuseLeaf(0.8f)});
   world.light({1, 0, 0, 0});
   world.solver->reflect();
   world.solver->shoot(Wall(1.25f));
@@ -223,18 +155,18 @@ TEST(SampleSolverTest, WhatIsHiddenIsDark) {
   world.solver->begin();
   world.light({1, 0, 0, 0});
   world.solver->reflect();
-  world.solver->shoot(Nothing());
+  world.solver->shoot(FreeSight());
   EXPECT_GT(world.mean(3), 0.01);
 }
 
 TEST(SampleSolverTest, TheSameSceneGivesTheSameLightAgain) {
-  World world({sphereMesh({0, 0, 0}, 1, 16, -1)}, {diffuse(0.5f)});
+  SampleWorld world({sphereMesh({0, 0, 0}, 1, 16, -1)}, {diffuseLeaf(0.5f)});
   std::vector<glm::vec3> before;
   for (int turn = 0; turn < 2; ++turn) {
     world.solver->begin();
     world.light({1});
     world.solver->reflect();
-    world.solver->shoot(Nothing());
+    world.solver->shoot(FreeSight());
     const auto now = world.solver->irradiance();
     if (turn == 1) {
       EXPECT_TRUE(std::equal(now.begin(), now.end(), before.begin()));
@@ -244,12 +176,12 @@ TEST(SampleSolverTest, TheSameSceneGivesTheSameLightAgain) {
 }
 
 TEST(SampleSolverTest, DiffuseScenesMakeNoTree) {
-  World world(plates(6), {diffuse(0.8f), diffuse(0.8f)});
+  SampleWorld world(facingPlates(6), {diffuseLeaf(0.8f), diffuseLeaf(0.8f)});
   world.light({1, 0});
   for (int bounce = 0; bounce < 2; ++bounce) {
     world.solver->reflect();
     EXPECT_EQ(world.solver->cellCount(), 0u);
-    world.solver->shoot(Nothing());
+    world.solver->shoot(FreeSight());
   }
   world.solver->project({});
   for (const DirectionalTree& tree : world.solver->shown()) EXPECT_TRUE(tree.empty());
@@ -258,12 +190,12 @@ TEST(SampleSolverTest, DiffuseScenesMakeNoTree) {
 
 /// A plate of satin that a narrow light shines on throws it to where a mirror would.
 struct Throw {
-  World world;
+  SampleWorld world;
   double where = 0, sum = 0;
   uint64_t cells = 0;
 
   explicit Throw(const SampleSettings& settings, float roughness = 0.2f)
-      : world(meshes(), {metal(roughness), diffuse(0.8f)}, settings) {
+      : world(meshes(), {metalLeaf(roughness), diffuseLeaf(0.8f)}, settings) {
     for (size_t i = 0; i < world.surfels.size(); ++i) {
       if (world.surfels.objects[i] != 0) continue;
       const glsl::IncidentLight light{world.space.direction(glm::normalize(glm::vec3(0, 1, 1))), 0.05f,
@@ -272,7 +204,7 @@ struct Throw {
     }
     world.solver->reflect();
     cells = world.solver->cellCount();
-    world.solver->shoot(Nothing());
+    world.solver->shoot(FreeSight());
     for (size_t i = 0; i < world.surfels.size(); ++i) {
       if (world.surfels.objects[i] != 1) continue;
       const double light =
@@ -317,16 +249,16 @@ TEST(SampleSolverTest, SamplesReflectedTogetherOrEachByItselfAreTheSameLight) {
   double light[2];
   uint64_t evaluations[2];
   for (const bool immediate : {false, true}) {
-    World world(plates(8), {diffuse(0.8f), metal(0.5f)},
-                {.tree = {.criterion = TreeSettings::Criterion::relative,
-                          .error = 0.5f,
-                          .minLevel = 1,
-                          .maxLevel = 4},
-                 .immediate = immediate});
+    SampleWorld world(facingPlates(8), {diffuseLeaf(0.8f), metalLeaf(0.5f)},
+                      {.tree = {.criterion = TreeSettings::Criterion::relative,
+                                .error = 0.5f,
+                                .minLevel = 1,
+                                .maxLevel = 4},
+                       .immediate = immediate});
     world.light({1, 0});
     for (int bounce = 0; bounce < 2; ++bounce) {
       world.solver->reflect();
-      world.solver->shoot(Nothing());
+      world.solver->shoot(FreeSight());
     }
     light[immediate] = world.mean(0);
     evaluations[immediate] = world.solver->evaluations();
@@ -342,21 +274,22 @@ TEST(SampleSolverTest, DarknessAndSingleTrianglesAreHarmless) {
   triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   triangle.normals.assign(3, {0, 0, 1});
   triangle.indices = {0, 1, 2};
-  World one({triangle}, {metal(0.2f)});
+  SampleWorld one({triangle}, {metalLeaf(0.2f)});
   for (const float irradiance : {0.f, 1.f}) {
     one.solver->begin();
     one.light({irradiance});
     one.solver->reflect();
-    EXPECT_EQ(one.solver->shoot(Nothing()).links, 0u);
+    EXPECT_EQ(one.solver->shoot(FreeSight()).links, 0u);
     EXPECT_EQ(one.mean(0), 0);
   }
 }
 
 TEST(SampleSolverTest, ScenesThatTakeTooMuchMemoryAreRefused) {
-  World world(plates(24), {diffuse(0.8f), diffuse(0.5f)}, {.linkError = 1e-4f, .memory = 1000});
+  SampleWorld world(facingPlates(24), {diffuseLeaf(0.8f), diffuseLeaf(0.5f)},
+                    {.linkError = 1e-4f, .memory = 1000});
   world.light({1, 1});
   world.solver->reflect();
-  EXPECT_THROW(world.solver->shoot(Nothing()), UsageError);
+  EXPECT_THROW(world.solver->shoot(FreeSight()), UsageError);
 }
 
 }  // namespace

@@ -1,0 +1,77 @@
+// What trees of directions and lobes are built as they are against: axes that do not follow the surface, and
+// wide light along it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "tests/unit/radiosity/lobes.h"
+
+namespace limn::radiosity {
+namespace {
+
+/// A surface whose horizon is no edge of cells splits those that it crosses.
+TEST(TreeTraps, AxesThatDoNotFollowTheSurfaceTakeMoreCells) {
+  TreeBuilder builder;
+  DirectionalTree tree;
+  double most = 0;
+  for (const float roughness : {0.3f, 0.5f, 0.8f}) {
+    const GlossyLobes lobes = lobesOf(roughness, {lightFrom(30)});
+    builder.build(radianceOf(lobes), DirectionDomain::hemisphere, {}, tree);
+    const size_t own = tree.cellCount();
+    for (const glm::vec3& normal : {glm::vec3(1, 2, 3), glm::vec3(1, 1, 0.2f), glm::vec3(0.3f, 0.1f, 1)}) {
+      const glsl::Frame frame = glsl::frame_around(glm::normalize(normal));
+      builder.build(
+          [&](const glm::vec3& w) {
+            const glm::vec3 local = glsl::to_local(frame, w);
+            // Intensity over area, which the sphere's weights are for.
+            return local.z > 0 ? lobes.radiance(local) * local.z : glm::vec3(0);
+          },
+          DirectionDomain::sphere, {}, tree);
+      std::printf("roughness %.1f: %zu cells in axes of the surface, %zu in others\n", double(roughness), own,
+                  tree.cellCount());
+      most = std::max(most, double(tree.cellCount()) / double(own));
+    }
+  }
+  EXPECT_GT(most, 1.5);
+}
+
+/// A square of 0.6 rad close to the horizon, as one sample.
+TEST(TreeTraps, GrazingSamplesThatAreNotWidenedAreTooBright) {
+  const glm::vec3 towards = lightFrom(80).direction;
+  const glsl::Frame frame = glsl::frame_around(towards);
+  const auto square = [&](int side) {
+    std::vector<glsl::IncidentLight> lights;
+    for (int i = 0; i < side; ++i)
+      for (int j = 0; j < side; ++j) {
+        const glm::vec2 at =
+            0.6f * ((glm::vec2(float(i), float(j)) + glm::vec2(0.5f)) / float(side) - glm::vec2(0.5f));
+        const float piece = 0.6f / float(side);
+        const glsl::SampleSender sender{towards + at.x * frame.t + at.y * frame.b, piece * piece,
+                                        piece * frame.t, glsl::vertex_pack_normal(-towards)};
+        lights.push_back(glsl::incident_light(sender, glm::vec3(1), glm::vec3(0)));
+      }
+    return lights;
+  };
+  const auto brightest = [](const GlossyLobes& lobes) {
+    float most = 0;
+    for (int i = 0; i < 160; ++i)
+      for (int j = 0; j < 160; ++j)
+        most = std::max(
+            most,
+            lobes.radiance(glsl::sample_cosine((glm::vec2(float(i), float(j)) + glm::vec2(0.5f)) / 160.f)).x);
+    return double(most);
+  };
+  for (const float roughness : {0.2f, 0.3f}) {
+    const double exact = brightest(lobesOf(roughness, square(32)));
+    const double plain = brightest(lobesOf(roughness, square(1))) / exact;
+    const double widened = brightest(lobesOf(roughness, square(1), 0.22f)) / exact;
+    std::printf("square at 80 degrees, roughness %.1f: %.1f times as bright, widened %.2f\n",
+                double(roughness), plain, widened);
+    EXPECT_GT(plain, 5);
+    EXPECT_LT(widened, 2);
+  }
+}
+
+}  // namespace
+}  // namespace limn::radiosity
