@@ -15,7 +15,7 @@ namespace limn::radiosity {
 /// Says which directions a tree covers.
 enum class DirectionDomain : uint8_t {
   hemisphere,  ///< around +z, by 4 faces: radiance of a leaf, whose normal is +z; weighted by the cosine
-  sphere,      ///< by 8 faces: intensity of a cluster; weighted by solid angle
+  sphere,      ///< by 8 faces: intensity; weighted by solid angle
 };
 
 /// Returns how much a triangle of unit directions weighs: its projected solid angle or its solid angle, sr.

@@ -74,15 +74,4 @@ void TreeBuilder::pull(std::span<const TreePart> parts, const glsl::Frame& frame
   scaleToFlux(tree, flux / area);
 }
 
-void TreeBuilder::intensity(std::span<const TreePart> parts, const glsl::Frame& frame,
-                            const TreeSettings& settings, DirectionalTree& tree) {
-  glm::vec3 power(0);
-  for (const TreePart& part : parts) {
-    const bool surface = part.tree->domain() == DirectionDomain::hemisphere;
-    power += part.area * (part.tree->flux() + (surface ? glsl::pi * part.diffuse : glm::vec3(0)));
-  }
-  scratch_->build(ClusterSource{{}, parts, frame}, DirectionDomain::sphere, settings, tree);
-  scaleToFlux(tree, power);
-}
-
 }  // namespace limn::radiosity

@@ -35,11 +35,11 @@ struct TreeSettings {
   bool operator==(const TreeSettings&) const = default;
 };
 
-/// One of the surfaces (or clusters of them) whose light is summed up.
+/// One of the surfaces whose light is summed up.
 struct TreePart {
   const DirectionalTree* tree;
   glsl::Frame frame;     ///< of the tree's directions; n: the normal
-  float area;            ///< of the surface; of a cluster, whose tree is an intensity: 1
+  float area;            ///< of the surface
   glm::vec3 diffuse{0};  ///< radiance beside the tree's, the same in all directions above the surface
 };
 
@@ -66,10 +66,6 @@ class LIMN_API TreeBuilder {
   /// frame give their cells, of others the light (times its cosine) is sampled again.
   void pull(std::span<const TreePart> parts, const glsl::Frame& frame, const TreeSettings& settings,
             DirectionalTree& tree);
-  /// Builds the intensity of a cluster, J(w) = sum A L(w) (n.w)+ over surfaces plus that of clusters in it,
-  /// over the sphere in the frame's directions.
-  void intensity(std::span<const TreePart> parts, const glsl::Frame& frame, const TreeSettings& settings,
-                 DirectionalTree& tree);
 
   /// Returns the estimate of the relative error of the last tree that was built, by the criterion's measure.
   double estimatedError() const;

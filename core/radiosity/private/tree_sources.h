@@ -1,5 +1,5 @@
-// Declares what directional trees are made of: lobes, functions, and the trees of parts of a surface or
-// cluster. A source says how much light goes where, and what is known of its lobes.
+// Declares what directional trees are made of: lobes, functions, and the trees of parts of a surface. A
+// source says how much light goes where, and what is known of its lobes.
 #pragma once
 
 #include <algorithm>
@@ -61,8 +61,8 @@ inline bool agree(const glsl::Frame& a, const glsl::Frame& b) {
   return glm::distance(a.n, b.n) < kTurn && glm::distance(a.t, b.t) < kTurn;
 }
 
-/// What parts of a surface send where, per area of all. Smooth values are sampled, as for clusters: the error
-/// is that of the cells' own with a third fewer cells, since their edges are none of the light's.
+/// What parts of a surface send where, per area of all. Smooth values are sampled: the error is that of
+/// the cells' own with a third fewer cells, since their edges are none of the light's.
 struct SurfaceSource : FunctionSource {
   /// The most by which light of a part counts where the surface is seen at a more grazing angle.
   static constexpr float kSteepest = 2;
@@ -78,25 +78,6 @@ struct SurfaceSource : FunctionSource {
       if (local.z > 0) sum += part.area * std::min(local.z / w.z, kSteepest) * part.tree->smoothValue(local);
     }
     return sum / area;
-  }
-};
-
-/// What surfaces and clusters send where together.
-struct ClusterSource : FunctionSource {
-  std::span<const TreePart> parts;
-  const glsl::Frame& frame;
-
-  glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t>, const float*, float*) const {
-    const glm::vec3 out = glsl::from_local(frame, w);
-    glm::vec3 sum(0);
-    for (const TreePart& part : parts) {
-      const glm::vec3 local = glsl::to_local(part.frame, out);
-      if (part.tree->domain() == DirectionDomain::sphere)
-        sum += part.area * part.tree->smoothValue(local);
-      else if (local.z > 0)
-        sum += part.area * local.z * (part.tree->smoothValue(local) + part.diffuse);
-    }
-    return sum;
   }
 };
 

@@ -131,36 +131,6 @@ TEST(DirectionalTree, PullsIntoATurnedFrameKeepTheLight) {
   EXPECT_LT(error, 0.16);
 }
 
-TEST(DirectionalTree, IntensityIsTheSumOfWhatSurfacesSend) {
-  const DirectionalTree glossy = glossyTree(), dark;
-  const glsl::Frame up = glsl::frame_around(glm::normalize(glm::vec3(0.2f, 0.3f, 0.9f)));
-  const glsl::Frame side = glsl::frame_around(glm::vec3(1, 0, 0));
-  const glsl::Frame world{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  TreeBuilder builder;
-  DirectionalTree inner, outer;
-  const TreePart surfaces[] = {{&glossy, up, 2}, {&dark, side, 1, glm::vec3(0.2f)}};
-  builder.intensity(surfaces, world, {}, inner);
-  const glm::vec3 power = 2.f * glossy.flux() + glsl::pi * glm::vec3(0.2f);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(inner.flux()[c], power[c], 1e-5f * power[c]);
-  double error = 0, all = 0;
-  glsl::Random random(9);
-  for (int i = 0; i < 20000; ++i) {
-    const glm::vec3 w = random.direction();
-    const float cosine = glsl::to_local(up, w).z;
-    const double exact =
-        double(2 * std::max(cosine, 0.f) * glossy.value(glsl::to_local(up, w)).x + 0.2f * std::max(w.x, 0.f));
-    error += (double(inner.value(w).x) - exact) * (double(inner.value(w).x) - exact);
-    all += exact * exact;
-  }
-  std::printf("intensity: error %.3f, cells %zu\n", std::sqrt(error / all), inner.cellCount());
-  EXPECT_LT(std::sqrt(error / all), 0.16);
-  // Clusters in clusters.
-  const TreePart clusters[] = {{&inner, world, 1}, {&glossy, side, 1}};
-  builder.intensity(clusters, world, {}, outer);
-  const glm::vec3 both = inner.flux() + glossy.flux();
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(outer.flux()[c], both[c], 1e-5f * both[c]);
-}
-
 TEST(UniformBasis, IsLinearBetweenCorners) {
   const GlossyLobes lobes = lobesOf(0.5f, {lightFrom(20), lightFrom(60, {2, 1, 0.5f})});
   TreeBuilder builder;
@@ -193,7 +163,7 @@ TEST(UniformBasis, IsLinearBetweenCorners) {
 TEST(UniformBasis, HasTheSameOperations) {
   const GlossyLobes lobes = lobesOf(0.3f, {lightFrom(20), lightFrom(60, {2, 1, 0.5f})});
   TreeBuilder builder;
-  DirectionalTree tree, pulled, cluster;
+  DirectionalTree tree, pulled;
   builder.build(lobes, uniformBasis(4), tree);
   std::vector<glm::uvec2> nodes;
   const float scale = tree.pack(nodes);
@@ -216,13 +186,8 @@ TEST(UniformBasis, HasTheSameOperations) {
   const glsl::Frame turned = glsl::frame_turned(glm::vec3(0, 0, 1), 0.1f);
   const TreePart parts[] = {{&tree, up, 1}, {&tree, turned, 1}};
   builder.pull(parts, up, uniformBasis(4), pulled);
-  builder.intensity(parts, up, uniformBasis(4), cluster);
-  EXPECT_TRUE(pulled.uniform() && cluster.uniform());
-  EXPECT_EQ(cluster.cellCount(), 2048u);
-  for (int c = 0; c < 3; ++c) {
-    EXPECT_NEAR(pulled.flux()[c], tree.flux()[c], 1e-5f * tree.flux()[c]);
-    EXPECT_NEAR(cluster.flux()[c], 2 * tree.flux()[c], 1e-5f * tree.flux()[c]);
-  }
+  EXPECT_TRUE(pulled.uniform());
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(pulled.flux()[c], tree.flux()[c], 1e-5f * tree.flux()[c]);
   const TreePart same[] = {{&tree, up, 1}, {&tree, up, 2}};
   builder.pull(same, up, uniformBasis(4), pulled);
   EXPECT_NEAR(pulled.value({0.1f, 0.2f, 0.9f}).x, tree.value({0.1f, 0.2f, 0.9f}).x, 1e-6f);
