@@ -23,11 +23,14 @@
 namespace limn::radiosity {
 
 struct SampleSettings {
+  /// Defaults as decimal numbers, which is how parameters show them.
+  static constexpr double kLinkError = 0.003, kWiden = 0.22;
+
   /// Links are refined while what they transport varies by more than this part of the mean irradiance of the
   /// lights; more than 0.
-  float linkError = 0.003f;
+  float linkError = static_cast<float>(kLinkError);
   /// As glsl::widened_alpha() has it.
-  float widen = 0.22f;
+  float widen = static_cast<float>(kWiden);
   /// Whether links into narrow lobes are refined further: by their size in units of the lobe's, and by a
   /// smaller error.
   bool receiver = true;

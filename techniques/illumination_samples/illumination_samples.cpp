@@ -27,11 +27,11 @@ constexpr const char* kDisplays[] = {"pixel", "vertex", "gather"};
 constexpr const char* kShows[] = {"light", "tree"};
 constexpr Parameter kParameters[] = {
     integer("bounces", 1, {1, 16}, "bounces", "Surfaces that reflect light before the one that is seen"),
-    real("link_error", radiosity::SampleSettings{}.linkError, {1e-4, 1}, "of the lights' mean irradiance",
+    real("link_error", radiosity::SampleSettings::kLinkError, {1e-4, 1}, "of the lights' mean irradiance",
          "How much the light of a link may vary")
         .quality()
         .logScale(),
-    real("widen", radiosity::SampleSettings{}.widen, {0, 1}, "of a sample's extent",
+    real("widen", radiosity::SampleSettings::kWiden, {0, 1}, "of a sample's extent",
          "By how much a sample's extent widens the lobe that reflects it; 0: as published"),
     choice("receiver", 1, kSwitch, "Whether links are refined for narrow lobes at their receivers"),
     real("direction_error", 0.1, {1e-3, 4}, "", "Relative error of light by directions; 0.5 as published")
