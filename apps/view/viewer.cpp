@@ -13,6 +13,7 @@
 #include <fstream>
 
 #include "apps/view/display_image.h"
+#include "apps/view/pace.h"
 #include "apps/view/recent_scenes.h"
 #include "apps/view/viewer_style.h"
 #include "apps/view/viewer_window.h"
@@ -23,10 +24,8 @@
 namespace limn::app {
 namespace {
 
-constexpr double kRestAfter = 0.25;        // seconds without a change
-constexpr double kFrameSeconds = 1. / 60;  // of the window, while something moves
-constexpr double kIdleSeconds = 0.25;      // while nothing does
-constexpr double kMessageSeconds = 5;      // for which a result is said
+constexpr double kRestAfter = 0.25;    // seconds without a change
+constexpr double kMessageSeconds = 5;  // for which a result is said
 
 /// Resident memory of the process, MiB.
 double residentMiB() {
@@ -304,14 +303,14 @@ bool ViewerWindow::finished(int shown) const {
 
 void ViewerWindow::run() {
   GLFWwindow* window = context_->window();
-  constexpr int settling = 3;  // frames that ImGui takes to answer an event
-  int lively = settling, shown = 0;
+  Pace pace;
+  int shown = 0;
   for (bool last = false; !last;) {
-    const bool busy = !minimised() && (lively > 0 || moving() || drag_ || options_.frames > 0);
+    const double patience = pace.patience(moving() || drag_ || options_.frames > 0, minimised());
     const double start = glfwGetTime();
-    glfwWaitEventsTimeout(busy ? kFrameSeconds : kIdleSeconds);
+    glfwWaitEventsTimeout(patience);
     const double woken = glfwGetTime();
-    lively = woken - start < kIdleSeconds ? settling : lively - 1;
+    pace.waited(woken - start);
     frame();
     const bool whole = facts_->settled && posted_ && !posted_->moving;
     if (whole || state_.scene.scene.empty()) ++shown;
