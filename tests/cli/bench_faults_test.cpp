@@ -164,8 +164,8 @@ TEST_F(BenchFaults, WhatHasChangedIsMeasuredAgain) {
          std::map<std::string, nlohmann::json> whole;
          std::istringstream lines(text);
          for (std::string line; std::getline(lines, line);) {
-           const auto json = nlohmann::json::parse(line);
-           whole[json["key"]] = json;
+           const auto parsed = nlohmann::json::parse(line);
+           whole[parsed["key"]] = parsed;
          }
          return whole;
        }()) {

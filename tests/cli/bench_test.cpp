@@ -111,10 +111,10 @@ TEST_F(BenchCommand, StressWritesATable) {
   EXPECT_THAT(stress.out, testing::HasSubstr("| hard_shadow_map | scale 1e4 | balls | pass |"));
   EXPECT_EQ(contents(folder_ / "stress" / "stress.md"), stress.out);
   // A folder keeps what it holds, but for cases that failed, and takes more.
-  std::string json = contents(folder_ / "stress" / "stress.json");
-  const std::size_t verdict = json.rfind("\"pass\"");
+  std::string verdicts = contents(folder_ / "stress" / "stress.json");
+  const std::size_t verdict = verdicts.rfind("\"pass\"");
   ASSERT_NE(verdict, std::string::npos);
-  std::ofstream(folder_ / "stress" / "stress.json") << json.replace(verdict, 6, "\"failed\"");
+  std::ofstream(folder_ / "stress" / "stress.json") << verdicts.replace(verdict, 6, "\"failed\"");
   const Outcome more = limn(
       {"stress", "--technique", "hard_shadow_map", "--filter", "one triangle", "--out", folder_ / "stress"});
   EXPECT_EQ(more.status, 0) << more.err;

@@ -93,9 +93,9 @@ TEST(CommandLine, FlickerComparesAnimationsWithTheTruth) {
   EXPECT_THAT(still.err, HasSubstr("does not change beyond its noise"));
   const Outcome moving = flicker("cornell_horse", {"--frames", "0:2", "--fps", "5", "--json"});
   ASSERT_EQ(moving.status, 0) << moving.err;
-  const auto json = nlohmann::json::parse(moving.out);
-  EXPECT_EQ(json["frames"], 3);
-  EXPECT_GT(json["ratio"].get<double>(), 0);
+  const auto parsed = nlohmann::json::parse(moving.out);
+  EXPECT_EQ(parsed["frames"], 3);
+  EXPECT_GT(parsed["ratio"].get<double>(), 0);
   const Outcome strict = flicker("cornell_horse", {"--frames", "0:1", "--fps", "5", "--at-most", "0.001"});
   EXPECT_EQ(strict.status, 1);
   EXPECT_THAT(strict.err, HasSubstr("at most 0.001"));
@@ -116,15 +116,15 @@ TEST(CommandLine, HelpOfEveryCommandIsComplete) {
 
 TEST(CommandLine, ExplainCostComparesWithAndWithout) {
   TemporaryFolder folder;
-  const std::filesystem::path table = folder / "cost.md", json = folder / "cost.json";
+  const std::filesystem::path table = folder / "cost.md", figures = folder / "cost.json";
   const Outcome outcome =
       limn({"explain-cost", kCornellBox, "--technique", "vssm", "--set", "vssm.shadow_map_size=128", "--size",
             "32x24", "--repeat", "3", "--output-term", "direct", "--spp", "4", "--out", table.string(),
-            "--json", json.string()});
+            "--json", figures.string()});
   EXPECT_EQ(outcome.status, 0) << outcome.err << outcome.out;
   EXPECT_THAT(outcome.out, HasSubstr("| vssm.early_out |"));
   EXPECT_TRUE(std::filesystem::exists(table));
-  std::ifstream file(json);
+  std::ifstream file(figures);
   const auto report = nlohmann::json::parse(file);
   for (const auto& saving : report.at("savings"))
     if (saving.at("applies")) {
@@ -141,10 +141,10 @@ TEST(CommandLine, ExplainCostComparesWithAndWithout) {
 TEST(CommandLine, ListNamesEveryTechniqueWithItsParameters) {
   const Outcome outcome = limn({"list", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto json = nlohmann::json::parse(outcome.out);
-  EXPECT_TRUE(json["refused"].empty()) << json["refused"].dump();
-  EXPECT_FALSE(json["techniques"].empty());
-  for (const auto& technique : json["techniques"]) {
+  const auto parsed = nlohmann::json::parse(outcome.out);
+  EXPECT_TRUE(parsed["refused"].empty()) << parsed["refused"].dump();
+  EXPECT_FALSE(parsed["techniques"].empty());
+  for (const auto& technique : parsed["techniques"]) {
     EXPECT_FALSE(technique["terms"].empty()) << technique["name"];
     for (const auto& parameter : technique["parameters"])
       EXPECT_FALSE(parameter["doc"].get<std::string>().empty());
@@ -154,8 +154,8 @@ TEST(CommandLine, ListNamesEveryTechniqueWithItsParameters) {
 TEST(CommandLine, InfoTellsARendererOrWhyThereIsNone) {
   const Outcome outcome = limn({"info", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto json = nlohmann::json::parse(outcome.out);
-  for (const auto& device : json["devices"])
+  const auto parsed = nlohmann::json::parse(outcome.out);
+  for (const auto& device : parsed["devices"])
     EXPECT_TRUE(device.contains("renderer") || device.contains("problem"));
 }
 
@@ -164,10 +164,10 @@ TEST_F(Render, WritesAPictureWithChannelsAndStatistics) {
   const Outcome outcome = limn(command({"--stats", stats.string(), "--repeat", "2", "--explain"}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_TRUE(std::filesystem::exists(out_));
-  const auto json = nlohmann::json::parse(contents(stats));
-  EXPECT_EQ(json["size"], nlohmann::json::array({32, 24}));
-  EXPECT_EQ(json["frame_ms"]["n"], 2);
-  EXPECT_FALSE(json["passes"].empty());
+  const auto parsed = nlohmann::json::parse(contents(stats));
+  EXPECT_EQ(parsed["size"], nlohmann::json::array({32, 24}));
+  EXPECT_EQ(parsed["frame_ms"]["n"], 2);
+  EXPECT_FALSE(parsed["passes"].empty());
 }
 
 TEST_F(Render, SaysWhatItWroteUnlessQuiet) {

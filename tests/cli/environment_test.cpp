@@ -23,16 +23,16 @@ class EnvironmentCommand : public testing::Test {
 TEST_F(EnvironmentCommand, ListsLightsThatHoldTheEnergyOfTheMap) {
   const Outcome outcome = limn({"environment", map(), "--lights", "0.02", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto json = nlohmann::json::parse(outcome.out);
-  ASSERT_GE(json["lights"].size(), 7u);
+  const auto parsed = nlohmann::json::parse(outcome.out);
+  ASSERT_GE(parsed["lights"].size(), 7u);
   double share = 0, irradiance = 0;
-  for (const auto& light : json["lights"]) {
+  for (const auto& light : parsed["lights"]) {
     share += light["share"].get<double>();
     irradiance += light["irradiance"][1].get<double>();
   }
   EXPECT_NEAR(share, 1, 1e-6);
   EXPECT_GT(irradiance, 4 * 3.14159);
-  EXPECT_EQ(json["lights"][0]["name"], "env#0");
+  EXPECT_EQ(parsed["lights"][0]["name"], "env#0");
 }
 
 TEST_F(EnvironmentCommand, WritesTheOverlayAndRefusesWhatMakesNoSense) {

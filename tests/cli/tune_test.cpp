@@ -44,12 +44,12 @@ TEST_F(TuneCommand, AnswersWithACommandItsErrorAndItsTime) {
   EXPECT_EQ(tune(question).out, first.out);
   std::vector<std::string> asJson = question;
   asJson.push_back("--json");
-  const auto json = nlohmann::json::parse(tune(asJson).out);
-  const std::string command = json["answer"]["command"];
+  const auto parsed = nlohmann::json::parse(tune(asJson).out);
+  const std::string command = parsed["answer"]["command"];
   EXPECT_EQ(first.out.substr(0, first.out.find('\n')), command);
-  EXPECT_LE(json["answer"]["ms_interval"][0], json["answer"]["ms"]);
-  EXPECT_LE(json["answer"]["error"], json["max_error"]);
-  EXPECT_TRUE(json["runner_up"]["parameters"].is_object());
+  EXPECT_LE(parsed["answer"]["ms_interval"][0], parsed["answer"]["ms"]);
+  EXPECT_LE(parsed["answer"]["error"], parsed["max_error"]);
+  EXPECT_TRUE(parsed["runner_up"]["parameters"].is_object());
   EXPECT_EQ(contents(folder_ / "out/results.jsonl"), rows);
   // What was interrupted in the middle of a row goes on behind the one before.
   fs::resize_file(folder_ / "out/results.jsonl", rows.size() / 2);

@@ -15,7 +15,7 @@
 namespace limn {
 namespace {
 
-using Values = std::vector<std::pair<std::string, std::string>>;
+using Choice = std::vector<std::pair<std::string, std::string>>;
 
 class FactoredBrdfTest : public RenderTest {
  protected:
@@ -81,7 +81,7 @@ class FactoredBrdfTest : public RenderTest {
     EXPECT_GT(sum, 0);
     return std::sqrt(difference / sum);
   }
-  double error(const scene::Scene& scene, const Values& values) {
+  double error(const scene::Scene& scene, const Choice& values) {
     return errorOf(drawn(scene, {technique("factored_brdf", values)}), drawn(scene, {}));
   }
 };

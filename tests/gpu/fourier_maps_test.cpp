@@ -18,7 +18,7 @@
 namespace limn::shadow {
 namespace {
 
-constexpr int kWidth = 100, kHeight = 77, kLayers = 3;
+constexpr int kMapWidth = 100, kMapHeight = 77, kLayers = 3;
 
 constexpr const char* kLookupShader = R"(
 #include "glsl/shadow/fourier_lookup.glsl"
@@ -65,17 +65,17 @@ class FourierMapsTest : public GlTest {
     pool_.emplace(device());
     std::mt19937 random(1);
     std::uniform_real_distribution<float> value(-0.1f, 1.1f);
-    depth_.resize(size_t{kWidth} * kHeight * kLayers);
+    depth_.resize(size_t{kMapWidth} * kMapHeight * kLayers);
     for (float& z : depth_) z = std::clamp(value(random), 0.f, 1.f);
     source_ = gpu::Texture(device(), "source",
                            {.target = GL_TEXTURE_2D_ARRAY,
                             .format = GL_R32F,
-                            .width = kWidth,
-                            .height = kHeight,
+                            .width = kMapWidth,
+                            .height = kMapHeight,
                             .layers = kLayers});
     for (int i = 0; i < kLayers; ++i)
       source_.upload(0, i, GL_RED, GL_FLOAT,
-                     depth_.data() + size_t{kWidth} * kHeight * static_cast<size_t>(i));
+                     depth_.data() + size_t{kMapWidth} * kMapHeight * static_cast<size_t>(i));
   }
   void TearDown() override {
     pool_.reset();
@@ -84,7 +84,7 @@ class FourierMapsTest : public GlTest {
   }
 
   float depth(int x, int y, int layer) const {
-    return depth_[static_cast<size_t>((layer * kHeight + y) * kWidth + x)];
+    return depth_[static_cast<size_t>((layer * kMapHeight + y) * kMapWidth + x)];
   }
 
   /// Builds the maps in `graph` and runs it.
@@ -115,13 +115,13 @@ class FourierMapsTest : public GlTest {
     std::uniform_real_distribution<float> unit(0.f, 1.f);
     std::vector<Kernel> kernels(300);
     for (Kernel& k : kernels) {
-      const glm::vec2 extent(kWidth, kHeight), a = extent * glm::vec2(unit(random), unit(random)),
-                                               b = extent * glm::vec2(unit(random), unit(random));
+      const glm::vec2 extent(kMapWidth, kMapHeight), a = extent * glm::vec2(unit(random), unit(random)),
+                                                     b = extent * glm::vec2(unit(random), unit(random));
       k.box = {glm::min(a, b), glm::max(a, b) + 0.01f};
-      k.box.z = std::min(k.box.z, float(kWidth)), k.box.w = std::min(k.box.w, float(kHeight));
+      k.box.z = std::min(k.box.z, float(kMapWidth)), k.box.w = std::min(k.box.w, float(kMapHeight));
       k.receiver = {std::floor(unit(random) * kLayers), unit(random) * range, 0, 0};
     }
-    kernels[0].box = {0, 0, kWidth, kHeight};
+    kernels[0].box = {0, 0, kMapWidth, kMapHeight};
     kernels[1].receiver.y = 0;
     kernels[2].receiver.y = range;
     return kernels;
@@ -187,8 +187,8 @@ TEST_F(FourierMapsTest, KernelsOfSumsAreTheMeansOfTheirTexels) {
       for (size_t i = 0; i < kernels.size(); ++i) {
         const auto& [box, receiver] = kernels[i];
         double lit = 0, blocked = 0, weights = 0;
-        for (int y = int(box.y); y < std::min(int(std::ceil(box.w)), kHeight); ++y) {
-          for (int x = int(box.x); x < std::min(int(std::ceil(box.z)), kWidth); ++x) {
+        for (int y = int(box.y); y < std::min(int(std::ceil(box.w)), kMapHeight); ++y) {
+          for (int x = int(box.x); x < std::min(int(std::ceil(box.z)), kMapWidth); ++x) {
             const double w = (std::min<double>(box.z, x + 1) - std::max<double>(box.x, x)) *
                              (std::min<double>(box.w, y + 1) - std::max<double>(box.y, y));
             const double z = range * depth(x, y, int(receiver.x)),
@@ -215,15 +215,15 @@ TEST_F(FourierMapsTest, TheCoarsestMipLevelIsTheMeanOfTheMap) {
     const auto results = lookUp(graph, maps, kernels);
     for (size_t i = 0; i < kernels.size(); ++i) {
       double lit = 0;
-      for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
+      for (int y = 0; y < kMapHeight; ++y) {
+        for (int x = 0; x < kMapWidth; ++x) {
           lit += fourierSeries(maps.constants.range * depth(x, y, int(kernels[i].receiver.x)) -
                                    double{kernels[i].receiver.y} + maps.constants.delta,
                                order, FourierWindow::none);
         }
       }
       // Each of seven levels rounds to 8 bits once.
-      ASSERT_NEAR(results[i].x, lit / (kWidth * kHeight), 4 * maps.noise) << i;
+      ASSERT_NEAR(results[i].x, lit / (kMapWidth * kMapHeight), 4 * maps.noise) << i;
     }
   }
 }
@@ -232,25 +232,25 @@ TEST_F(FourierMapsTest, RangesHoldAllThatIsThere) {
   for (const FourierFit fit : {FourierFit::map, FourierFit::range, FourierFit::plane}) {
     // A tilted plane with something before it, and nothing in one corner.
     for (int layer = 0; layer < kLayers; ++layer) {
-      for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
-          float z = 0.4f + 0.3f * float(x) / kWidth + 0.1f * float(y) / kHeight;
+      for (int y = 0; y < kMapHeight; ++y) {
+        for (int x = 0; x < kMapWidth; ++x) {
+          float z = 0.4f + 0.3f * float(x) / kMapWidth + 0.1f * float(y) / kMapHeight;
           if (x > 30 && x < 40 && y > 30) z -= 0.1f;
-          depth_[static_cast<size_t>((layer * kHeight + y) * kWidth + x)] = x < 5 && y < 5 ? 1.f : z;
+          depth_[static_cast<size_t>((layer * kMapHeight + y) * kMapWidth + x)] = x < 5 && y < 5 ? 1.f : z;
         }
       }
       source_.upload(0, layer, GL_RED, GL_FLOAT,
-                     depth_.data() + size_t{kWidth} * kHeight * static_cast<size_t>(layer));
+                     depth_.data() + size_t{kMapWidth} * kMapHeight * static_cast<size_t>(layer));
     }
     frame::FrameGraph graph;
     const FourierMaps maps = build(graph, {.fit = fit});
     glsl::FourierRange range{};
     graph.buffer(maps.ranges).read(0, &range, sizeof range);
     const auto most = float(maps.constants.range);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
+    for (int y = 0; y < kMapHeight; ++y) {
+      for (int x = 0; x < kMapWidth; ++x) {
         if (depth(x, y, 0) == 1) continue;
-        const glm::vec2 uv((float(x) + 0.5f) / kWidth, (float(y) + 0.5f) / kHeight);
+        const glm::vec2 uv((float(x) + 0.5f) / kMapWidth, (float(y) + 0.5f) / kMapHeight);
         const float d = glsl::fourier_depth(range, uv, depth(x, y, 0));
         ASSERT_GE(d, -1e-5f);
         ASSERT_LE(d, most + 1e-5f);

@@ -17,7 +17,7 @@ namespace {
 constexpr int kSize = 8;
 const gpu::TextureDesc kDesc{.format = GL_R32F, .width = kSize, .height = kSize};
 
-constexpr gpu::EmbeddedSource kSources[] = {
+constexpr gpu::EmbeddedSource kRandomSources[] = {
     {"sum.comp.glsl",
      "layout(local_size_x = 8, local_size_y = 8) in;\n"
      "layout(r32f) uniform image2D target;\n"
@@ -160,7 +160,7 @@ class FrameGraphRandom : public GlTest {
 
 TEST_F(FrameGraphRandom, framesHoldWhatTheirDeclarationsMean) {
   ResourcePool pool(device());
-  shaders().mount("techniques/test/", kSources);
+  shaders().mount("techniques/test/", kRandomSources);
   int graphs = 0, cached = 0, shared = 0, cancelled = 0;
   for (unsigned seed = 0; seed < 120; ++seed) {
     std::mt19937 engine(seed);

@@ -13,12 +13,12 @@ namespace limn {
 namespace {
 
 using glm::vec3;
-using Values = std::vector<std::pair<std::string, std::string>>;
+using Choices = std::vector<std::pair<std::string, std::string>>;
 
-constexpr float kIor = 1.3f;
+constexpr float kMatterIor = 1.3f;
 constexpr float kExtinction = 40;  ///< per metre; light gets 50 mm in the mean, 4 pixels
 constexpr float kAbsorption = 0.04f;
-const std::vector<std::string> kProfiles{"dipole", "normalised_diffusion"};
+const std::vector<std::string> kProfileNames{"dipole", "normalised_diffusion"};
 
 class SubsurfaceScatteringTest : public BumpFloorTest {
  protected:
@@ -26,7 +26,7 @@ class SubsurfaceScatteringTest : public BumpFloorTest {
   static scene::Scene floor(float extinction, float absorption) {
     scene::Scene scene = floorUnder({0, 1, 0}, {});
     scene::Material& material = scene.materials[0];
-    material.ior = kIor;
+    material.ior = kMatterIor;
     material.baseColour = glm::vec4(vec3(albedo(absorption)), 1);
     material.subsurface = scene::Subsurface{.extinction = vec3(extinction), .absorption = vec3(absorption)};
     return scene;
@@ -43,7 +43,7 @@ class SubsurfaceScatteringTest : public BumpFloorTest {
   /// Share of the light that enters a face far and wide that leaves the other one, by the same profile over
   /// the distance: of the light that leaves at a distance, what does so farther away than the thickness.
   static double throughPlate(size_t profile, float thickness) {
-    const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(kIor);
+    const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(kMatterIor);
     const float r = thickness * kExtinction;
     return 1 - static_cast<double>(
                    profile == 0
@@ -52,17 +52,18 @@ class SubsurfaceScatteringTest : public BumpFloorTest {
                              glsl::normalised_diffusion(kAbsorption, glsl::walk_reflectance(boundary)), r));
   }
   static float albedo(float absorption) {
-    return glsl::walk_albedo(glsl::walk_reflectance(glsl::diffusion_boundary(kIor)), absorption);
+    return glsl::walk_albedo(glsl::walk_reflectance(glsl::diffusion_boundary(kMatterIor)), absorption);
   }
   /// C of a profile over the albedo of the local limit.
   static double reflectanceOverAlbedo(size_t profile, float absorption) {
     if (profile == 1) return 1;
-    const glsl::DiffusionDipole dipole = glsl::diffusion_dipole(absorption, glsl::diffusion_boundary(kIor));
+    const glsl::DiffusionDipole dipole =
+        glsl::diffusion_dipole(absorption, glsl::diffusion_boundary(kMatterIor));
     return static_cast<double>(dipole.reflectance / albedo(absorption));
   }
   /// Share of the light at a distance into the lit side of an edge.
   static double besideEdge(size_t profile, double x) {
-    const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(kIor);
+    const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(kMatterIor);
     const auto dipole = glsl::dipole_colours(vec3(kExtinction), vec3(kAbsorption), boundary);
     const auto exponentials = glsl::normalised_colours(vec3(kExtinction), vec3(kAbsorption), boundary);
     constexpr int kQuantiles = 200;
@@ -87,7 +88,7 @@ class SubsurfaceScatteringTest : public BumpFloorTest {
     EXPECT_GT(i, 1500u);
     return largest;
   }
-  Image below(const scene::Scene& scene, const Values& values) {
+  Image below(const scene::Scene& scene, const Choices& values) {
     return drawn(scene, Term::subsurface,
                  {technique("hard_shadow_map", {{"shadow_map_size", "2048"}}),
                   technique("subsurface_scattering", values)});
@@ -98,15 +99,15 @@ TEST_F(SubsurfaceScatteringTest, UniformLightLeavesByTheReflectance) {
   for (const float absorption : {0.f, kAbsorption}) {
     const scene::Scene scene = floor(kExtinction, absorption);
     const Image local = drawn(scene, Term::subsurface, {});
-    for (size_t profile = 0; profile < kProfiles.size(); ++profile)
+    for (size_t profile = 0; profile < kProfileNames.size(); ++profile)
       for (const char* planes : {"tangent", "both"})
         for (const char* share : {"0", "0.25"})
-          EXPECT_LT(largestDifference(below(scene, {{"profile", kProfiles[profile]},
+          EXPECT_LT(largestDifference(below(scene, {{"profile", kProfileNames[profile]},
                                                     {"planes", planes},
                                                     {"uniform_share", share}}),
                                       local, reflectanceOverAlbedo(profile, absorption)),
                     1e-3)
-              << kProfiles[profile] << ' ' << planes << ' ' << share;
+              << kProfileNames[profile] << ' ' << planes << ' ' << share;
   }
 }
 
@@ -128,13 +129,13 @@ TEST_F(SubsurfaceScatteringTest, EdgesOfShadowsSpreadAsLineIntegralsSay) {
   plate.mesh = test::addMesh(scene, test::floorPrimitive(2, test::addMaterial(scene)));
   plate.transform.translation = {-2, 3, 0};
   scene.nodes.push_back(plate);
-  for (size_t profile = 0; profile < kProfiles.size(); ++profile) {
+  for (size_t profile = 0; profile < kProfileNames.size(); ++profile) {
     std::vector<double> whole;
     forEachPoint(drawn(open, Term::subsurface, {}), [&](float value, const vec3&) {
       whole.push_back(static_cast<double>(value) * reflectanceOverAlbedo(profile, kAbsorption));
     });
-    const auto error = [&](Values values) {
-      values.emplace_back("profile", kProfiles[profile]);
+    const auto error = [&](Choices values) {
+      values.emplace_back("profile", kProfileNames[profile]);
       double squares = 0, sum = 0;
       size_t index = 0;
       int counted = 0;
@@ -150,9 +151,9 @@ TEST_F(SubsurfaceScatteringTest, EdgesOfShadowsSpreadAsLineIntegralsSay) {
       return std::sqrt(squares * counted) / sum;
     };
     const double usual = error({});
-    EXPECT_LT(usual, 0.06) << kProfiles[profile];
-    EXPECT_LT(error({{"block", "1"}, {"samples", "64"}}), 0.06) << kProfiles[profile];
-    EXPECT_GT(error({{"block", "1"}}), 2 * usual) << kProfiles[profile];
+    EXPECT_LT(usual, 0.06) << kProfileNames[profile];
+    EXPECT_LT(error({{"block", "1"}, {"samples", "64"}}), 0.06) << kProfileNames[profile];
+    EXPECT_GT(error({{"block", "1"}}), 2 * usual) << kProfileNames[profile];
   }
 }
 
@@ -160,10 +161,10 @@ TEST_F(SubsurfaceScatteringTest, LightFromBehindComesThrough) {
   const Image local = drawn(plate(0.05f, {0, -1, 0}), Term::subsurface, {});
   for (const float thickness : {0.02f, 0.1f}) {
     const scene::Scene scene = plate(thickness, {0, 1, 0});
-    for (size_t profile = 0; profile < kProfiles.size(); ++profile) {
-      SCOPED_TRACE(kProfiles[profile] + ' ' + std::to_string(thickness));
+    for (size_t profile = 0; profile < kProfileNames.size(); ++profile) {
+      SCOPED_TRACE(kProfileNames[profile] + ' ' + std::to_string(thickness));
       const double through = reflectanceOverAlbedo(profile, kAbsorption) * throughPlate(profile, thickness);
-      Values values{{"profile", kProfiles[profile]}, {"samples", "64"}};
+      Choices values{{"profile", kProfileNames[profile]}, {"samples", "64"}};
       forEachPoint(below(scene, values), [](float value, const vec3&) { ASSERT_EQ(value, 0); });
       values.emplace_back("light_views", "1");
       std::vector<double> wanted;
@@ -224,10 +225,11 @@ TEST_F(SubsurfaceScatteringTest, LightViewsOfAnyLampGiveFiniteLight) {
         emitter.doubleSided = true;
         test::show(scene, test::quad(place, {size, 0, 0}, {0, 0, -size}, test::addMaterial(scene, emitter)));
       }
-      for (const Values& values : {Values{{"light_views", "1"}, {"light_view_size", "16"}},
-                                   Values{{"light_views", "3"}, {"samples", "2"}, {"light_view_size", "64"}},
-                                   Values{{"light_views", "1"}, {"scale", "1e6"}, {"planes", "both"}},
-                                   Values{{"light_views", "1"}, {"scale", "1e-6"}, {"normalise", "none"}}}) {
+      for (const Choices& values :
+           {Choices{{"light_views", "1"}, {"light_view_size", "16"}},
+            Choices{{"light_views", "3"}, {"samples", "2"}, {"light_view_size", "64"}},
+            Choices{{"light_views", "1"}, {"scale", "1e6"}, {"planes", "both"}},
+            Choices{{"light_views", "1"}, {"scale", "1e-6"}, {"normalise", "none"}}}) {
         SCOPED_TRACE(size);
         const Image image = below(scene, values);
         for (int y = 0; y < image.height(); ++y)

@@ -13,8 +13,8 @@ namespace {
 
 using glm::vec3;
 
-constexpr int kSide = 64;
-constexpr float kIor = 1.4f;
+constexpr int kPictureSide = 64;
+constexpr float kTermIor = 1.4f;
 
 class SubsurfaceTechniqueTest : public RenderTest {
  protected:
@@ -29,11 +29,11 @@ class SubsurfaceTechniqueTest : public RenderTest {
   static scene::Scene ball(float meanFreePath, float size = 1, float strength = 1) {
     scene::Scene scene;
     scene::Material matter = test::lambertian(1);
-    matter.ior = kIor;
+    matter.ior = kTermIor;
     const vec3 absorption(0.01f, 0.05f, 0.3f);
     matter.subsurface =
         scene::Subsurface{.extinction = vec3(1 / (meanFreePath * size)), .absorption = absorption};
-    matter.baseColour = albedo(absorption, kIor);
+    matter.baseColour = albedo(absorption, kTermIor);
     const int material = test::addMaterial(scene, matter);
     test::show(scene, test::spherePrimitive(size, material));
     test::show(scene, test::quad({0, -size, 0}, {8 * size, 0, 0}, {0, 0, -8 * size}, material));
@@ -44,7 +44,7 @@ class SubsurfaceTechniqueTest : public RenderTest {
   static Image drawn(const scene::Scene& scene, const std::vector<render::TechniqueUse>& techniques,
                      float size = 1) {
     render::Renderer renderer(device(), scene);
-    renderer.configure(settings(kSide, kSide, Term::subsurface, techniques));
+    renderer.configure(settings(kPictureSide, kPictureSide, Term::subsurface, techniques));
     renderer.setCamera(scene::lookAt(size * vec3(0.5f, 1.5f, 4), vec3(0), 0.7f));
     renderer.render();
     return renderer.read();

@@ -12,7 +12,7 @@
 namespace limn {
 namespace {
 
-constexpr int kSide = 16;
+constexpr int kSquare = 16;
 
 /// The part of a unit square at (x, y) in which a u + b v < c: the square clipped by the line.
 double areaBelow(double x, double y, double a, double b, double c) {
@@ -48,8 +48,8 @@ class SupersampleTest : public RenderTest {
   }
 
   static double area(int x, int yFromTop) {
-    const double pixel = 2.0 / kSide;
-    return areaBelow(x, kSide - 1 - yFromTop, pixel, 2 * pixel, 0.3 + 3);  // with u, v from the lower left
+    const double pixel = 2.0 / kSquare;
+    return areaBelow(x, kSquare - 1 - yFromTop, pixel, 2 * pixel, 0.3 + 3);  // with u, v from the lower left
   }
 
   scene::Scene scene_;
@@ -58,40 +58,40 @@ class SupersampleTest : public RenderTest {
 
 TEST_F(SupersampleTest, AnEdgeShowsTheAreaBesideIt) {
   render::Renderer renderer(device(), scene_);
-  renderer.configure(settings(kSide, kSide, Term::final));
+  renderer.configure(settings(kSquare, kSquare, Term::final));
   double before = 1;
   for (const int aa : {1, 2, 4, 8}) {
-    const Image picture = render::supersample(renderer, camera_, {kSide, kSide}, aa);
+    const Image picture = render::supersample(renderer, camera_, {kSquare, kSquare}, aa);
     double worst = 0, sum = 0;
-    for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x) {
+    for (int y = 0; y < kSquare; ++y)
+      for (int x = 0; x < kSquare; ++x) {
         const double error = static_cast<double>(picture.at(x, y, 0)) - area(x, y);
         worst = std::max(worst, std::abs(error));
         sum += error;
       }
     EXPECT_LT(worst, 0.6 / aa) << aa;
     EXPECT_LT(worst, before) << aa;
-    EXPECT_LE(std::abs(sum), 0.5 * kSide / aa) << aa << ": in each column half the distance of two samples";
+    EXPECT_LE(std::abs(sum), 0.5 * kSquare / aa) << aa << ": in each column half the distance of two samples";
     before = worst;
   }
 }
 
 TEST_F(SupersampleTest, TheReferenceHasTheSameSamples) {
   render::Renderer renderer(device(), scene_);
-  render::Settings s = settings(kSide, kSide, Term::final);
+  render::Settings s = settings(kSquare, kSquare, Term::final);
   s.channels = true;
   renderer.configure(s);
   for (const int aa : {2, 3}) {
-    const Image picture = render::supersample(renderer, camera_, {kSide, kSide}, aa);
+    const Image picture = render::supersample(renderer, camera_, {kSquare, kSquare}, aa);
     const scene::Pose pose = scene::evaluate(scene_, 0);
     reference::Request request{.scene = scene_, .pose = pose, .camera = camera_};
-    request.width = request.height = kSide;
+    request.width = request.height = kSquare;
     request.term = Term::final;
     request.spp = 1;
     request.aa = aa;
     const Image truth = reference::render(request).image;
-    for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x) {
+    for (int y = 0; y < kSquare; ++y)
+      for (int x = 0; x < kSquare; ++x) {
         EXPECT_NEAR(picture.at(x, y, 0), truth.at(x, y, 0), 1e-6f) << aa << ' ' << x << ' ' << y;
         for (const char* channel : {"coverage", "id"})
           EXPECT_EQ(picture.at(x, y, picture.channel(channel)), truth.at(x, y, truth.channel(channel)))

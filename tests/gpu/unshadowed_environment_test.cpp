@@ -15,8 +15,8 @@ namespace {
 using glm::vec2;
 using glm::vec3;
 
-constexpr int kWidth = 33, kHeight = 25;  // odd: the pixel in the middle looks along the normal
-constexpr float kSmooth = 13 / 255.f;     // the smoothest metal that takes light
+constexpr int kOddWidth = 33, kOddHeight = 25;  // odd: the pixel in the middle looks along the normal
+constexpr float kSmooth = 13 / 255.f;           // the smoothest metal that takes light
 const std::vector<float> kRoughnesses{kSmooth, 153 / 255.f, 1};  // exact in the G-buffer
 
 class UnshadowedEnvironmentTest : public EnvironmentTest {
@@ -55,11 +55,11 @@ class UnshadowedEnvironmentTest : public EnvironmentTest {
     values.emplace_back("shadow_map_size", "16");
     if (values.front().first != "lights") values.emplace_back("lights", "1");
     return picture(renderer,
-                   settings(kWidth, kHeight, Term::direct, {technique("subtractive_shadows", values)}));
+                   settings(kOddWidth, kOddHeight, Term::direct, {technique("subtractive_shadows", values)}));
   }
   static vec3 middle(const Image& image) {
-    return {image.at(kWidth / 2, kHeight / 2, 0), image.at(kWidth / 2, kHeight / 2, 1),
-            image.at(kWidth / 2, kHeight / 2, 2)};
+    return {image.at(kOddWidth / 2, kOddHeight / 2, 0), image.at(kOddWidth / 2, kOddHeight / 2, 1),
+            image.at(kOddWidth / 2, kOddHeight / 2, 2)};
   }
   static void expectNear(vec3 value, vec3 expected, float tolerance) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(value[c], expected[c], tolerance * expected[c]) << c;
@@ -193,7 +193,7 @@ TEST_F(UnshadowedEnvironmentTest, TheCacheIsExactForDistantViews) {
   const auto seenFrom = [&](float distance, const char* unshadowed) {
     render::Renderer renderer(device(), scene);
     renderer.configure(settings(
-        kWidth, kWidth, Term::direct,
+        kOddWidth, kOddWidth, Term::direct,
         {technique("subtractive_shadows", {{"unshadowed", unshadowed}, {"lights", "1"}, {"bias", "64"}})}));
     renderer.setCamera(scene::lookAt({0, 0, distance}, {0, 0, 0}, 2.2f / distance));
     renderer.render();
@@ -211,7 +211,7 @@ TEST_F(UnshadowedEnvironmentTest, TheCacheIsKeptUntilTheViewChanges) {
   const scene::Scene scene = floorOf(metal(153 / 255.f), sky());
   render::Renderer renderer(device(), scene);
   render::Settings kept = settings(
-      kWidth, kHeight, Term::direct,
+      kOddWidth, kOddHeight, Term::direct,
       {technique("subtractive_shadows", {{"unshadowed", "cache"}, {"lights", "1"}, {"block", "2"}})});
   kept.dynamic = false;
   renderer.configure(kept);

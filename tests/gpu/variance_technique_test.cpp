@@ -36,7 +36,7 @@ struct Planes {
 
 using Settings = std::map<std::string, std::string>;
 
-class VarianceTechniqueTest : public TechniqueTest {
+class VarianceTechniqueTest : public limn::test::TechniqueTest {
  protected:
   Answer answer(const Planes& s, Settings settings = {}, const std::string& name = "vssm") {
     settings.try_emplace("shadow_map_size", "256");

@@ -7,7 +7,7 @@ namespace {
 using glm::dvec3;
 using glm::vec3;
 
-constexpr double kAlbedo = 0.6, kSun = 2;  // W/m^2 across its light
+constexpr double kGround = 0.6, kSun = 2;  // W/m^2 across its light
 
 /// The normal +z turned about y, towards +x by `angle`.
 dvec3 tilted(double angle) {
@@ -25,7 +25,7 @@ class CausticTruth : public TruthTest {
   /// passes it and lights it, too.
   static void addWall(scene::Scene& scene, const dvec3& normal) {
     scene::Primitive wall = test::quad({1.2f, 0, 2}, {0, 4, 0}, {0, 0, -4},
-                                       test::addMaterial(scene, test::lambertian(float(kAlbedo))));
+                                       test::addMaterial(scene, test::lambertian(float(kGround))));
     wall.normals.assign(4, vec3(normal));
     test::show(scene, wall);
   }
@@ -47,10 +47,10 @@ class CausticTruth : public TruthTest {
 /// radiance is kept, so that a place which sees all of the sun in it is lit as by the sun from there. The
 /// same holds for a receiver whose own normals are tilted: radiance = albedo / pi * E * cosine with them.
 TEST_F(CausticTruth, AMirrorWithTiltedNormalsIsAsBrightAsTheSun) {
-  struct Case {
+  struct Tilt {
     double mirror, receiver;  ///< radians
   };
-  for (const Case& c : {Case{0, 0}, Case{0.15, 0}, Case{-0.15, 0}, Case{0, 0.4}, Case{0.15, -0.4}}) {
+  for (const Tilt& c : {Tilt{0, 0}, Tilt{0.15, 0}, Tilt{-0.15, 0}, Tilt{0, 0.4}, Tilt{0.15, -0.4}}) {
     SCOPED_TRACE("mirror " + std::to_string(c.mirror) + ", receiver " + std::to_string(c.receiver));
     const dvec3 light = glm::normalize(dvec3(1, 0, -1)), normal = tilted(c.mirror);
     const dvec3 leaves = test::mirrored(light, normal), facing = tilted(c.receiver - 0.5 * M_PI);
@@ -62,7 +62,7 @@ TEST_F(CausticTruth, AMirrorWithTiltedNormalsIsAsBrightAsTheSun) {
     addWall(scene, facing);
     test::shine(scene, test::lamp(glsl::light_directional, float(kSun)), vec3(0), vec3(light));
     const auto expected = [&](const dvec3& p, const dvec3&) {
-      return fullyLit(p, leaves) ? kAlbedo / M_PI * kSun * -glm::dot(facing, leaves) : nothing;
+      return fullyLit(p, leaves) ? kGround / M_PI * kSun * -glm::dot(facing, leaves) : nothing;
     };
     const Question q = question(towardsWall(leaves), 128);
     expectPicture(scene, q, expected, {.average = 0.02, .pixels = 300});
@@ -95,14 +95,14 @@ TEST_F(CausticTruth, GlassPassesWhatFresnelAndBeerLeave) {
     plate.normals.assign(4, vec3(front));
     test::show(scene, test::joined(plate, test::quad({0, 0, 0.5f}, {2, 0, 0}, {0, -2, 0}, glass)));
     test::show(scene, test::quad({0, 0, 0}, {6, 0, 0}, {0, 6, 0},
-                                 test::addMaterial(scene, test::lambertian(float(kAlbedo)))));
+                                 test::addMaterial(scene, test::lambertian(float(kGround)))));
     test::shine(scene, test::lamp(glsl::light_directional, float(kSun)), vec3(0), vec3(light));
     const dvec3 middle = 0.2 * within / -within.z + 0.5 * leaves / -leaves.z;
     Question q = question(scene::lookAt({float(middle.x), -2, 0.42f}, {float(middle.x), 0, 0}, 0.6f), 192);
     const auto expected = [&](double transmitted) {
       return [=](const dvec3& p, const dvec3&) {
         const bool whole = std::abs(p.z) < 1e-3 && std::abs(p.x - middle.x) < 0.5 && std::abs(p.y) < 0.5;
-        return whole ? kAlbedo / M_PI * kSun * transmitted * -leaves.z : nothing;
+        return whole ? kGround / M_PI * kSun * transmitted * -leaves.z : nothing;
       };
     };
     expectPicture(scene, q, expected(once), {.average = 0.02, .pixels = 300});
@@ -125,7 +125,7 @@ TEST_F(CausticTruth, AMirrorCornerIsLitByThreeImages) {
   test::show(scene, test::quad({0, 1, 1}, {0, 2, 0}, {0, 0, 2}, silver));  // x = 0, facing +x
   test::show(scene, test::quad({1, 0, 1}, {0, 0, 2}, {2, 0, 0}, silver));  // y = 0, facing +y
   test::show(scene, test::quad({1, 1, 0}, {2, 0, 0}, {0, 2, 0},
-                               test::addMaterial(scene, test::lambertian(float(kAlbedo)))));
+                               test::addMaterial(scene, test::lambertian(float(kGround)))));
   test::shine(scene, test::lamp(glsl::light_point, float(intensity)), vec3(lamp));
   const auto expected = [&](bool both) {
     return [=](const dvec3& p, const dvec3&) {
@@ -136,7 +136,7 @@ TEST_F(CausticTruth, AMirrorCornerIsLitByThreeImages) {
         const dvec3 towards = dvec3(x, y, 1) * lamp - p;
         sum += intensity * towards.z / std::pow(glm::length(towards), 3);
       }
-      return kAlbedo / M_PI * sum;
+      return kGround / M_PI * sum;
     };
   };
   Question q = question(scene::lookAt({1.6f, 1.7f, 1.9f}, {0.7f, 0.7f, 0}, 0.7f), 256);

@@ -7,7 +7,7 @@ namespace {
 using glm::dvec3;
 using glm::vec3;
 
-constexpr double kAlbedo = 1;  // 8 bits hold it exactly
+constexpr double kWhite = 1;  // 8 bits hold it exactly
 
 class LightTruth : public TruthTest {
  protected:
@@ -15,7 +15,7 @@ class LightTruth : public TruthTest {
   static scene::Scene floor() {
     scene::Scene scene;
     test::show(scene, test::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4},
-                                 test::addMaterial(scene, test::lambertian(float(kAlbedo)))));
+                                 test::addMaterial(scene, test::lambertian(float(kWhite)))));
     return scene;
   }
   static Question question(int spp = 2) {
@@ -24,7 +24,7 @@ class LightTruth : public TruthTest {
   /// Lambert's radiance of the irradiance at a place.
   template <class Irradiance>
   static auto reflected(Irradiance irradiance) {
-    return [=](const dvec3& p, const dvec3&) { return kAlbedo / M_PI * irradiance(p); };
+    return [=](const dvec3& p, const dvec3&) { return kWhite / M_PI * irradiance(p); };
   }
 };
 

@@ -15,7 +15,7 @@ using glm::vec3;
 using json = nlohmann::json;
 
 constexpr int kTexels = 64;
-constexpr double kAlbedo = 0.8, kIrradiance = 3;
+constexpr double kGrey = 0.8, kIrradiance = 3;
 
 /// Gradient of bumps h = 0.03 sin(2 pi x) + 0.05 cos(2 pi y) + 0.02 sin(2 pi (x + y)), in sides of the quad,
 /// over the place (x to the right, y up) on the upright picture; lopsided, so that no two ways of turning it
@@ -76,10 +76,9 @@ scene::Scene bumps(const Setting& s, Map map, const vec3& towardsLight) {
   test::GltfBuilder b;
   const int material = b.texturedMaterial(map == Map::heights ? heightMap() : normalMap());
   json& entry = b.root["materials"][static_cast<size_t>(material)];
-  entry = {
-      {"pbrMetallicRoughness",
-       {{"baseColorFactor", {kAlbedo, kAlbedo, kAlbedo, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
-      {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}};
+  entry = {{"pbrMetallicRoughness",
+            {{"baseColorFactor", {kGrey, kGrey, kGrey, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
+           {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}};
   if (map == Map::heights)
     entry["extras"]["limn_height"] = {
         {"texture", {{"index", 0}}}, {"scale", kScale}, {"offset", -kScale / 2}};
@@ -129,7 +128,7 @@ void NormalMapTruth::expectTheSurface(Map map) {
                    const dvec2 way(double(s.scale.x) * (s.mirroredTexture ? -1 : 1), double(s.scale.y));
                    const dvec2 gradient = way * slope(way * dvec2(p) + 0.5);
                    const dvec3 n = glm::normalize(dvec3(-gradient, 1));
-                   return kAlbedo / M_PI * kIrradiance * std::max(glm::dot(n, dvec3(light)), 0.0);
+                   return kGrey / M_PI * kIrradiance * std::max(glm::dot(n, dvec3(light)), 0.0);
                  },
                  {.pixels = 1500});
     }
@@ -154,7 +153,7 @@ TEST_F(NormalMapTruth, ASlopeAlongVIsBrighterFromTheSideThatItFaces) {
   b.root["textures"][0]["sampler"] = 0;
   b.root["materials"][0] = {
       {"pbrMetallicRoughness",
-       {{"baseColorFactor", {kAlbedo, kAlbedo, kAlbedo, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
+       {{"baseColorFactor", {kGrey, kGrey, kGrey, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
       {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}},
       {"extras", {{"limn_height", {{"texture", {{"index", 0}}}, {"scale", rise * 65535 / 65536}}}}}};
   const json attributes = {
@@ -173,7 +172,7 @@ TEST_F(NormalMapTruth, ASlopeAlongVIsBrighterFromTheSideThatItFaces) {
                  if (std::max(std::abs(p.x), std::abs(p.y)) > 0.47)
                    return nothing;  // half slopes at the edge
                  const dvec3 n = glm::normalize(dvec3(0, rise, 1));
-                 return kAlbedo / M_PI * kIrradiance * std::max(glm::dot(n, dvec3(light)), 0.0);
+                 return kGrey / M_PI * kIrradiance * std::max(glm::dot(n, dvec3(light)), 0.0);
                },
                {.pixels = 1500});
   }

@@ -22,8 +22,9 @@ namespace {
 
 using nlohmann::json;
 
-const char* const kScenes[] = {"disk_and_sphere", "fresnel_spheres", "glossy_torus", "measured_spheres",
-                               "robot_brdfs",     "teapot_groove",   "torus_metal"};
+const char* const kMaterialScenes[] = {"disk_and_sphere",  "fresnel_spheres", "glossy_torus",
+                                       "measured_spheres", "robot_brdfs",     "teapot_groove",
+                                       "torus_metal"};
 
 /// The object of a material's extras, or null.
 json modelOf(const json& material) {
@@ -86,7 +87,7 @@ const std::map<std::string, Rule>& rules() {
 
 TEST(MaterialScenes, ModelsAreDescribedAsTheReadmeSays) {
   std::set<std::string> models;
-  for (const char* scene : kScenes) {
+  for (const char* scene : kMaterialScenes) {
     const Glb glb(scene);
     for (const json& m : glb.root.at("materials")) {
       const json model = modelOf(m);
@@ -119,7 +120,7 @@ TEST(MaterialScenes, ModelsAreDescribedAsTheReadmeSays) {
 // Viewers that do not know the extras show the metal of the same colour, or the dielectric of the same index.
 TEST(MaterialScenes, GltfValuesComeNextToTheModels) {
   int metals = 0, dielectrics = 0;
-  for (const char* scene : kScenes) {
+  for (const char* scene : kMaterialScenes) {
     const Glb glb(scene);
     for (const json& m : glb.root.at("materials")) {
       const json model = modelOf(m);
@@ -160,7 +161,7 @@ TEST(MaterialScenes, GltfValuesComeNextToTheModels) {
 
 TEST(MaterialScenes, AnisotropicMaterialsHaveTangents) {
   int checked = 0;
-  for (const char* scene : kScenes) {
+  for (const char* scene : kMaterialScenes) {
     const Glb glb(scene);
     for (const json& mesh : glb.root.at("meshes")) {
       SCOPED_TRACE(std::string(scene) + " " + mesh.at("name").get<std::string>());

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr const char* kHostile = "</script><img src=x onerror=alert(1)>";
+constexpr const char* kScript = "</script><img src=x onerror=alert(1)>";
 
 class BenchReport : public testing::Test {
  protected:
@@ -85,15 +85,15 @@ TEST_F(BenchReport, SoftwareAndHardwareHaveTablesOfTheirOwn) {
 
 TEST_F(BenchReport, TextsCannotLeaveTheScript) {
   Row bad = row("pcss", 0.5f);
-  bad.what.scene = bad.what.title = bad.cost.renderer = bad.cost.machine = kHostile;
+  bad.what.scene = bad.what.title = bad.cost.renderer = bad.cost.machine = kScript;
   Row failed = bad;
-  failed.failure = std::string(kHostile) + "\xff<!-- \xe2\x80\xa8 \xe2\x80\xae";  // line separator, direction
-  failed.what.light = kHostile;
+  failed.failure = std::string(kScript) + "\xff<!-- \xe2\x80\xa8 \xe2\x80\xae";  // line separator, direction
+  failed.what.light = kScript;
   const std::vector<Row> rows = {bad, failed};
   const std::string text = reportData(rows, results());
   EXPECT_EQ(text.find('<'), std::string::npos);
   EXPECT_TRUE(std::ranges::all_of(text, [](unsigned char c) { return c < 0x80; }));
-  EXPECT_EQ(Json::parse(text)["tables"][0]["subject"]["scene"], kHostile);
+  EXPECT_EQ(Json::parse(text)["tables"][0]["subject"]["scene"], kScript);
   writeReport(rows, results());
   const std::string page = readTextFile(results() / "index.html");
   EXPECT_EQ(page.find("<img"), std::string::npos);

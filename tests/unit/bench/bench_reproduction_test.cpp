@@ -231,7 +231,7 @@ TEST(Reproduction, BrokenClaimsNameTheirPlace) {
 
 /// Of everything that `limn bench thesis` measures, in one folder, in the turns that its suites ask for.
 TEST(Reproduction, TheThesissSuiteMeasuresEveryClaimOnce) {
-  const std::filesystem::path folder = std::filesystem::path(test::kSourceDir) / "benchmarks";
+  const std::filesystem::path folder = std::filesystem::path(limn::test::kSourceDir) / "benchmarks";
   const auto claims = readClaims(folder / "reproduction.claims");
   EXPECT_GE(std::ranges::count_if(claims, [](const Claim& claim) { return claim.because.empty(); }), 25);
   std::vector<Row> rows;

@@ -408,7 +408,7 @@ TEST(BenchSuite, BouncesAreOneForIndirectLightAndNoneForFinalPicturesUnlessGiven
 }
 
 TEST(BenchSuite, ChapterSixAsksEveryTechniqueWhereVisibilityMatters) {
-  const std::filesystem::path folder = std::filesystem::path(test::kSourceDir) / "benchmarks";
+  const std::filesystem::path folder = std::filesystem::path(limn::test::kSourceDir) / "benchmarks";
   using Parameters = std::vector<std::pair<std::string, std::string>>;
   const std::pair<std::string, Parameters> expected[] = {
       {"clustered_visibility", {{"clustered_visibility.vals", "30"}}},
@@ -431,7 +431,7 @@ TEST(BenchSuite, ChapterSixAsksEveryTechniqueWhereVisibilityMatters) {
 }
 
 TEST(BenchSuite, ReadsEverySuiteOfTheRepository) {
-  const std::filesystem::path root(test::kSourceDir);
+  const std::filesystem::path root(limn::test::kSourceDir);
   int chapters = 0, techniques = 0;
   for (const auto& entry : std::filesystem::directory_iterator(root / "benchmarks")) {
     if (entry.path().extension() != ".toml") continue;

@@ -108,7 +108,7 @@ struct Brushed {
   }
 };
 
-dvec3 direction(double theta, double phi) {
+dvec3 spherical(double theta, double phi) {
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
@@ -116,7 +116,7 @@ dvec3 direction(double theta, double phi) {
 Arrays brushedFile(const Brushed& metal, int parts) {
   constexpr std::uint64_t kPolars = 24, kGrid = 33, kNdf = 129;
   const auto azimuthCount = static_cast<std::uint64_t>(64 / parts + 1);
-  const auto onSquare = [](double x, double y) { return direction(kPi / 2 * x * x, (2 * y - 1) * kPi); };
+  const auto onSquare = [](double x, double y) { return spherical(kPi / 2 * x * x, (2 * y - 1) * kPi); };
   const auto above = [](dvec3 d) { return glm::normalize(dvec3(d.x, d.y, std::max(d.z, 1e-2))); };
   const auto projected = [&](const dvec3& l) { return l.z * (1 + metal.masked(l)); };
   Arrays arrays;
@@ -131,7 +131,7 @@ Arrays brushedFile(const Brushed& metal, int parts) {
   arrays["vndf"] = {{azimuthCount, kPolars, 2, 2}, std::vector<float>(azimuthCount * kPolars * 4, 1)};
   arrays["rgb"] = filled({azimuthCount, kPolars, 3, kGrid, kGrid}, [&](auto& i) {
     const double phi = kPi * (2 * onGrid(i[0], azimuthCount) / parts - 1);
-    const dvec3 l = above(direction(kPi / 2 * onGrid(i[1], kPolars), phi));
+    const dvec3 l = above(spherical(kPi / 2 * onGrid(i[1], kPolars), phi));
     const dvec3 h = onSquare(onGrid(i[4], kGrid), onGrid(i[3], kGrid)), v = 2 * glm::dot(h, l) * h - l;
     return v.z <= 1e-3 ? 0 : (1 + metal.masked(l)) / (1 + metal.masked(l) + metal.masked(v));
   });
@@ -167,7 +167,7 @@ TEST(EpflAnisotropic, IsAModelOverPairsOfDirections) {
   EXPECT_TRUE(glsl::model_anisotropic(model));
 }
 
-std::string refusal(const Arrays& arrays) {
+std::string refusedArrays(const Arrays& arrays) {
   try {
     decodeEpfl(tensorFile(arrays), "satin.bsdf", {.texels = 4});
   } catch (const Error& error) {
@@ -179,11 +179,11 @@ std::string refusal(const Arrays& arrays) {
 }
 
 TEST(EpflAnisotropic, OtherAzimuthsEndInOneLine) {
-  EXPECT_EQ(refusal(part(4)), "read");
+  EXPECT_EQ(refusedArrays(part(4)), "read");
   const auto at = [](std::vector<float> phi) {
     Arrays arrays = part(1);
     arrays["phi_i"].values = std::move(phi);
-    return refusal(arrays);
+    return refusedArrays(arrays);
   };
   EXPECT_THAT(at({-3, -1, -0.9f}), HasSubstr("phi_i spans 2.1 radians; a circle, a half or a quarter"));
   EXPECT_THAT(at({0, 0.1f, 0.2f}), HasSubstr("phi_i spans 0.2 radians"));
@@ -193,10 +193,11 @@ TEST(EpflAnisotropic, OtherAzimuthsEndInOneLine) {
     EXPECT_THAT(at({-3, 0, value}), HasSubstr("phi_i[2] is"));
   Arrays arrays = part(2);
   arrays["rgb"].shape = {1, 2, 9, 2, 2};
-  EXPECT_THAT(refusal(arrays), HasSubstr("array 'rgb' is 1 x 2 grids of 2 x 2; 3 x 2 (phi_i, theta_i)"));
+  EXPECT_THAT(refusedArrays(arrays),
+              HasSubstr("array 'rgb' is 1 x 2 grids of 2 x 2; 3 x 2 (phi_i, theta_i)"));
   arrays = part(2);
   arrays["sigma"].values = {0, 0};
-  EXPECT_THAT(refusal(arrays), HasSubstr("no number from 0 to 1e10 between two directions"));
+  EXPECT_THAT(refusedArrays(arrays), HasSubstr("no number from 0 to 1e10 between two directions"));
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ double errorOf(const SpherePicture& picture, const FactoredBrdf& tables) {
   return picture.errorOf([&](const dvec3& l, const dvec3& v) { return tables.evaluate(l, v); });
 }
 
-dvec3 direction(double cosine, double azimuth) {
+dvec3 towards(double cosine, double azimuth) {
   const double sine = std::sqrt(1 - cosine * cosine);
   return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
 }
@@ -115,8 +115,8 @@ TEST(FactorTables, FineTablesAreTheModel) {
     const Brdf exact = exactTorranceSparrow(material);
     const FactoredBrdf tables = torranceSparrowTables(material, 512, 512, true, TableFormat::float32);
     for (int i = 0; i < 2000; ++i) {
-      const dvec3 l = direction(0.05 + 0.95 * uniform(random), 6.28 * uniform(random));
-      const dvec3 v = direction(0.05 + 0.95 * uniform(random), 6.28 * uniform(random));
+      const dvec3 l = towards(0.05 + 0.95 * uniform(random), 6.28 * uniform(random));
+      const dvec3 v = towards(0.05 + 0.95 * uniform(random), 6.28 * uniform(random));
       const dvec3 expected = exact(l, v) * l.z, found = tables.evaluate(l, v);
       const double largest = exact({0, 0, 1}, {0, 0, 1}).x;
       for (int c = 0; c < 3; ++c)
@@ -133,8 +133,8 @@ TEST(FactorTables, DistanceFromTheNormalKeepsItsDigits) {
   const TorranceSparrow narrow = rough(0.01);
   double byDistance = 0, byCosine = 0;
   for (int i = 0; i < 20000; ++i) {
-    const dvec3 n = direction(2 * uniform(random) - 1, 6.28 * uniform(random));
-    const dvec3 across = glm::normalize(glm::cross(n, direction(0.3, 6.28 * uniform(random))));
+    const dvec3 n = towards(2 * uniform(random) - 1, 6.28 * uniform(random));
+    const dvec3 across = glm::normalize(glm::cross(n, towards(0.3, 6.28 * uniform(random))));
     const double angle = 0.02 * uniform(random);
     const dvec3 h = n * std::cos(angle) + across * std::sin(angle);
     const double exact = normalDistribution(narrow, std::numbers::sqrt2 * std::sin(angle / 2));
@@ -232,8 +232,8 @@ TEST(FactorTables, ExtremesAreFinite) {
             material.eta = dvec3(eta);
             material.distribution = distribution;
             const FactoredBrdf tables = torranceSparrowTables(material, 2, 2, warped, format);
-            const dvec3 up(0, 0, 1), along(1, 0, 0), low = direction(1e-6, 0),
-                                                     back = direction(1e-6, std::numbers::pi);
+            const dvec3 up(0, 0, 1), along(1, 0, 0), low = towards(1e-6, 0),
+                                                     back = towards(1e-6, std::numbers::pi);
             for (const dvec3& l : {up, along, low, back, -up})
               for (const dvec3& v : {up, along, low, back, -up}) {
                 const dvec3 f = tables.evaluate(l, v);
@@ -253,8 +253,8 @@ TEST(FactorTables, LayersOfOtherBrdfsAreNotLookedUp) {
   second.depth = 8;  // others' layers before
   second.texels.insert(second.texels.begin(), own.texels.size(), glm::vec3(7));
   for (int i = 0; i < 100; ++i) {
-    const glm::vec3 l(direction(uniform(random), 6.28 * uniform(random)));
-    const glm::vec3 v(direction(uniform(random), 6.28 * uniform(random)));
+    const glm::vec3 l(towards(uniform(random), 6.28 * uniform(random)));
+    const glm::vec3 v(towards(uniform(random), 6.28 * uniform(random)));
     const glsl::FactoredAngles a = glsl::factored_angles({0, 0, 1}, v, l);
     EXPECT_EQ(glsl::factored_response(second, second, 4, a, true),
               glsl::factored_response(own, own, 0, a, true));
@@ -276,13 +276,13 @@ TEST(FactorTables, VolumesAreLinearBetweenSlices) {
   std::mt19937 random(13);
   std::uniform_real_distribution<double> uniform(0, 1);
   for (int i = 0; i < 100; ++i) {
-    const glm::vec3 l(direction(0.1 + 0.9 * uniform(random), 6.28 * uniform(random)));
-    const glm::vec3 v(direction(uniform(random), 6.28 * uniform(random)));
+    const glm::vec3 l(towards(0.1 + 0.9 * uniform(random), 6.28 * uniform(random)));
+    const glm::vec3 v(towards(uniform(random), 6.28 * uniform(random)));
     const glm::vec3 place = glsl::factored_volume_place(v, l);
     const glm::vec3 found = glsl::factored_volume_response(table, 0, 5, v, l) / l.z;
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], place[c], 1e-5f);
   }
-  const glm::vec3 up(0, 0, 1), aside(direction(0.5, 0));
+  const glm::vec3 up(0, 0, 1), aside(towards(0.5, 0));
   EXPECT_NEAR(glsl::factored_volume_response(table, 0, 5, up, up).x, 1, 1e-6);
   EXPECT_TRUE(std::isfinite(glsl::factored_volume_response(table, 0, 5, aside, up).z));
 }

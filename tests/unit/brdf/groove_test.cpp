@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-glm::dvec3 direction(double theta, double phi) {
+glm::dvec3 atAngles(double theta, double phi) {
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
@@ -24,7 +24,7 @@ BrdfFunction function(const GrooveBrdf& groove) {
 TEST(GrooveBrdf, ShallowGrooveIsLambertian) {
   const GrooveBrdf flat({.slope = 1e-6f, .rising = glm::vec3(0.2f), .falling = glm::vec3(0.6f), .strips = 4});
   for (const double theta : {0.0, 0.5, 1.2})
-    EXPECT_NEAR(flat.evaluate(direction(theta, 1), direction(0.7, 4)).x, 0.4 / kPi, 1e-5);
+    EXPECT_NEAR(flat.evaluate(atAngles(theta, 1), atAngles(0.7, 4)).x, 0.4 / kPi, 1e-5);
 }
 
 // One strip a wall sees the other with F = 1 - cos(slope), head-on both are lit alike:
@@ -53,7 +53,7 @@ TEST(GrooveBrdf, SingleReflectionOffOneWall) {
   for (const double a : {0.1, 0.6, 1.1, 1.4})
     for (const double b : {0.2, 0.9, 1.3})
       for (const double phi : {0.0, 0.8, 2.2, 3.1}) {
-        const glm::dvec3 l = direction(a, phi), v = direction(b, 3.5 - phi);
+        const glm::dvec3 l = atAngles(a, phi), v = atAngles(b, 3.5 - phi);
         const double part = 1 - std::max(lowest(l), lowest(v));
         const double whole = 0.5 / kPi * std::max(glm::dot(n, l), 0.0) * std::max(glm::dot(n, v), 0.0) /
                              (l.z * v.z) * 0.5 / std::cos(slope);
@@ -68,7 +68,7 @@ TEST(GrooveBrdf, WhiteGrooveReflectsAll) {
   for (const float slope : {0.3f, 0.785f, 1.3f}) {
     const GrooveBrdf white({.slope = slope, .rising = glm::vec3(1), .falling = glm::vec3(1), .strips = 48});
     for (const double theta : {0.0, 0.6, 1.3}) {
-      const glm::dvec3 share = albedo(function(white), glm::vec3(direction(theta, 0.4)), 96);
+      const glm::dvec3 share = albedo(function(white), glm::vec3(atAngles(theta, 0.4)), 96);
       EXPECT_NEAR(share.x, 1, 2e-3) << slope << " at " << theta;
     }
   }
@@ -80,8 +80,8 @@ TEST(GrooveBrdf, IsReciprocal) {
   std::uniform_real_distribution<double> theta(0, 1.57), phi(0, 2 * kPi);
   double most = 0;
   for (int i = 0; i < 500; ++i) {
-    const glm::dvec3 l = direction(theta(generator), phi(generator)),
-                     v = direction(theta(generator), phi(generator));
+    const glm::dvec3 l = atAngles(theta(generator), phi(generator)),
+                     v = atAngles(theta(generator), phi(generator));
     const glm::dvec3 there = groove.evaluate(l, v), back = groove.evaluate(v, l);
     for (int c = 0; c < 3; ++c)
       most = std::max(most, std::abs(there[c] - back[c]) / std::max(there[c], 1e-300));
@@ -93,20 +93,20 @@ TEST(GrooveBrdf, IsReciprocal) {
 TEST(GrooveBrdf, ColourTellsTheSide) {
   const GrooveBrdf groove(Groove{});
   const glm::dvec3 n(0, 0, 1);
-  const glm::dvec3 left = groove.evaluate(n, direction(1.0, kPi)),
-                   right = groove.evaluate(n, direction(1.0, 0));
+  const glm::dvec3 left = groove.evaluate(n, atAngles(1.0, kPi)),
+                   right = groove.evaluate(n, atAngles(1.0, 0));
   EXPECT_GT(left.z, 3 * left.x);    // seen from -x the wall that faces -x: blue
   EXPECT_GT(right.x, 3 * right.z);  // red
   // Turned by a half turn with its walls swapped it is the same.
   const GrooveBrdf swapped({.rising = Groove{}.falling, .falling = Groove{}.rising});
-  const glm::dvec3 l = direction(0.7, 0.3), v = direction(1.1, 2.0);
+  const glm::dvec3 l = atAngles(0.7, 0.3), v = atAngles(1.1, 2.0);
   const glm::dvec3 turned = swapped.evaluate({-l.x, -l.y, l.z}, {-v.x, -v.y, v.z});
   EXPECT_LT(glm::length(turned - groove.evaluate(l, v)), 1e-12);
   EXPECT_EQ(groove.evaluate({1, 0, 0}, n), glm::dvec3(0));
 }
 
 TEST(GrooveBrdf, MoreStripsConverge) {
-  const glm::dvec3 l = direction(0.9, 0.2), v = direction(0.8, 2.9);
+  const glm::dvec3 l = atAngles(0.9, 0.2), v = atAngles(0.8, 2.9);
   const auto f = [&](int strips) { return GrooveBrdf({.strips = strips}).evaluate(l, v).x; };
   const double fine = f(192);
   EXPECT_NEAR(f(48), fine, 0.02 * fine);

@@ -28,7 +28,7 @@ AnisotropicTable counted(int size) {
   return table;
 }
 
-std::string refusal(const std::vector<std::byte>& bytes, std::string_view name = "cloth.bsdf") {
+std::string refusedTable(const std::vector<std::byte>& bytes, std::string_view name = "cloth.bsdf") {
   try {
     decodeMeasured(bytes, name);
   } catch (const Error& error) {
@@ -103,14 +103,14 @@ TEST(MeasuredFile, FilesAppearWholeAndAreToldApart) {
   std::filesystem::remove_all(folder);
 
   // Without the array it is a file of the RGL, or a broken one.
-  EXPECT_THAT(refusal(tensorFile({{"phi_i", {{1}, {0}}}})), HasSubstr("without the array 'theta_i'"));
-  EXPECT_THAT(refusal({}), HasSubstr("'tensor_file'"));
-  EXPECT_THAT(refusal({}, "paint.binary"), HasSubstr("too short for a MERL BRDF"));
+  EXPECT_THAT(refusedTable(tensorFile({{"phi_i", {{1}, {0}}}})), HasSubstr("without the array 'theta_i'"));
+  EXPECT_THAT(refusedTable({}), HasSubstr("'tensor_file'"));
+  EXPECT_THAT(refusedTable({}, "paint.binary"), HasSubstr("too short for a MERL BRDF"));
 }
 
 TEST(MeasuredFile, WrongDimensionsEndInOneLine) {
   const auto shaped = [](const std::vector<std::uint64_t>& shape, std::size_t count) {
-    return refusal(tensorFile({{"disc_pairs", {shape, std::vector<float>(count, 1)}}}));
+    return refusedTable(tensorFile({{"disc_pairs", {shape, std::vector<float>(count, 1)}}}));
   };
   EXPECT_EQ(shaped({1, 1, 1, 1, 3}, 3), "read");
   EXPECT_THAT(shaped({2, 2, 2, 2}, 16), HasSubstr("array 'disc_pairs' has 4 dimensions of type 10"));
@@ -126,21 +126,22 @@ TEST(MeasuredFile, WrongDimensionsEndInOneLine) {
 
 TEST(MeasuredFile, ShortFilesAndOtherTypesEndInOneLine) {
   const std::vector<std::byte> good = encodeMeasured(counted(2));
-  EXPECT_EQ(refusal(good), "read");
+  EXPECT_EQ(refusedTable(good), "read");
   for (std::size_t length = 0; length < good.size(); ++length)
-    EXPECT_NE(refusal({good.begin(), good.begin() + static_cast<std::ptrdiff_t>(length)}), "read") << length;
+    EXPECT_NE(refusedTable({good.begin(), good.begin() + static_cast<std::ptrdiff_t>(length)}), "read")
+        << length;
   // The type stands behind magic, version, count, name and dimensions.
   const std::size_t type = 12 + 2 + 4 + 2 + 10 + 2;
   std::vector<std::byte> bytes = good;
   ASSERT_EQ(bytes[type], std::byte{9});
   bytes[type] = std::byte{4};  // of as many bytes
-  EXPECT_THAT(refusal(bytes), HasSubstr("of type 4 and 96 bytes"));
+  EXPECT_THAT(refusedTable(bytes), HasSubstr("of type 4 and 96 bytes"));
 }
 
 TEST(MeasuredFile, ValuesThatAreNoneEndInOneLine) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   for (const float value : {std::nanf(""), infinity, -infinity, -1e-6f, 1.01e10f}) {
-    EXPECT_THAT(refusal(tensorFile({{"disc_pairs", {{1, 1, 1, 1, 3}, {1, value, 1}}}})),
+    EXPECT_THAT(refusedTable(tensorFile({{"disc_pairs", {{1, 1, 1, 1, 3}, {1, value, 1}}}})),
                 HasSubstr("array 'disc_pairs' holds"));
     AnisotropicTable table = counted(1);
     table.values[0].y = value;
@@ -151,7 +152,7 @@ TEST(MeasuredFile, ValuesThatAreNoneEndInOneLine) {
   for (const std::uint16_t value : {0x7c00, 0x7e01, 0xbc00}) {
     std::vector<std::byte> bytes = encodeMeasured(counted(1));
     std::memcpy(bytes.data() + bytes.size() - 4, &value, sizeof value);
-    EXPECT_THAT(refusal(bytes), HasSubstr("array 'disc_pairs' holds"));
+    EXPECT_THAT(refusedTable(bytes), HasSubstr("array 'disc_pairs' holds"));
   }
   AnisotropicTable bright = counted(1);
   bright.values[0].x = 65505;

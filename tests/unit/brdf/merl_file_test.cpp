@@ -30,7 +30,7 @@ void put(std::vector<std::byte>& bytes, std::size_t number, double value) {
   std::memcpy(bytes.data() + 12 + 8 * number, &value, sizeof value);
 }
 
-std::string refusal(const std::vector<std::byte>& bytes, const glm::ivec3& size = kSmall) {
+std::string refusedMerl(const std::vector<std::byte>& bytes, const glm::ivec3& size = kSmall) {
   try {
     decodeMerl(bytes, "paint.binary", size);
   } catch (const Error& error) {
@@ -87,32 +87,32 @@ TEST(MerlFile, NegativeNumbersAreGaps) {
   EXPECT_NEAR(table.values[5].y, whole.values[5].y, 1e-6f);
   for (const glm::vec3& f : table.values) EXPECT_GE(f.x, 0);
   for (std::size_t i = 0; i < 24; ++i) put(bytes, 48 + i, -1e300);
-  EXPECT_THAT(refusal(bytes), HasSubstr("without any measured node"));
+  EXPECT_THAT(refusedMerl(bytes), HasSubstr("without any measured node"));
 }
 
 TEST(MerlFile, BrokenFilesEndInOneLine) {
   const std::vector<std::byte> good = smallFile();
-  EXPECT_EQ(refusal(good), "read");
-  EXPECT_THAT(refusal({}), HasSubstr("0 bytes, too short for a MERL BRDF of 4 x 3 x 2"));
-  EXPECT_THAT(refusal({good.begin(), good.begin() + 11}), HasSubstr("11 bytes"));
-  EXPECT_THAT(refusal({good.begin(), good.end() - 1}),
+  EXPECT_EQ(refusedMerl(good), "read");
+  EXPECT_THAT(refusedMerl({}), HasSubstr("0 bytes, too short for a MERL BRDF of 4 x 3 x 2"));
+  EXPECT_THAT(refusedMerl({good.begin(), good.begin() + 11}), HasSubstr("11 bytes"));
+  EXPECT_THAT(refusedMerl({good.begin(), good.end() - 1}),
               HasSubstr("587 bytes; a MERL BRDF of 4 x 3 x 2 nodes has 588"));
   std::vector<std::byte> bytes = good;
   bytes.push_back({});
-  EXPECT_THAT(refusal(bytes), HasSubstr("589 bytes"));
+  EXPECT_THAT(refusedMerl(bytes), HasSubstr("589 bytes"));
   // A header that promises other nodes, or none, or more than there is memory.
-  EXPECT_THAT(refusal(good, kMerlSize),
+  EXPECT_THAT(refusedMerl(good, kMerlSize),
               HasSubstr("not a MERL BRDF: 4 x 3 x 2 nodes; 90 x 90 x 180 are accepted"));
   for (const std::int32_t side : {0, -3, 2147483647, -2147483647 - 1}) {
     bytes = good;
     std::memcpy(bytes.data() + 4, &side, sizeof side);
-    EXPECT_THAT(refusal(bytes), HasSubstr("4 x 3 x 2 are accepted"));
+    EXPECT_THAT(refusedMerl(bytes), HasSubstr("4 x 3 x 2 are accepted"));
   }
   constexpr double infinity = std::numeric_limits<double>::infinity();
   for (const double number : {std::nan(""), infinity, -infinity, 1e300, 1.6e13}) {
     bytes = good;
     put(bytes, 24 + 3, number);
-    EXPECT_THAT(refusal(bytes), HasSubstr("at node 3 of green: f from 0 to 1e+10"));
+    EXPECT_THAT(refusedMerl(bytes), HasSubstr("at node 3 of green: f from 0 to 1e+10"));
   }
 }
 

@@ -12,12 +12,12 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-const gpu::TextureDesc kColour{.format = GL_RGBA16F, .width = 64, .height = 32};
+const gpu::TextureDesc kResult{.format = GL_RGBA16F, .width = 64, .height = 32};
 constexpr int64_t kColourBytes = 64 * 32 * 8;
 
 /// A pass that turns `input` (if any) into a new texture.
 TextureHandle filter(FrameGraph& graph, const char* name, TextureHandle input = {}) {
-  const TextureHandle target = graph.createTexture(std::string(name) + " result", kColour);
+  const TextureHandle target = graph.createTexture(std::string(name) + " result", kResult);
   PassBuilder pass = graph.addPass(name);
   if (input) pass.read(input, Access::sampled, "input");
   return pass.write(target, Access::imageStore, "result");
@@ -56,13 +56,13 @@ TEST(FrameGraphOrder, IndependentPassesKeepTheOrderOfDeclaration) {
 
 TEST(FrameGraphOrder, AReaderOfAnOlderVersionRunsBeforeTheOverwriter) {
   FrameGraph graph;
-  const TextureHandle shared = graph.createTexture("shared", kColour);
+  const TextureHandle shared = graph.createTexture("shared", kResult);
   const TextureHandle first = graph.addPass("first").write(shared, Access::imageStore, "");
   PassBuilder second = graph.addPass("second");
   const TextureHandle overwritten = second.write(first, Access::imageStore, "");
   PassBuilder reader = graph.addPass("reader");
   reader.read(first, Access::sampled, "the first contents");
-  graph.output(reader.write(graph.createTexture("seen", kColour), Access::imageStore, ""));
+  graph.output(reader.write(graph.createTexture("seen", kResult), Access::imageStore, ""));
   graph.output(overwritten);
   graph.plan();
   EXPECT_THAT(orderOf(graph), ElementsAre("first", "reader", "second"));
@@ -71,12 +71,12 @@ TEST(FrameGraphOrder, AReaderOfAnOlderVersionRunsBeforeTheOverwriter) {
 TEST(FrameGraphOrder, AnOverwriterOfALeftOutPassStillWaitsForReadersBefore) {
   FrameGraph graph;
   const TextureHandle v1 =
-      graph.addPass("first").write(graph.createTexture("shared", kColour), Access::imageStore, "");
+      graph.addPass("first").write(graph.createTexture("shared", kResult), Access::imageStore, "");
   const TextureHandle v2 = graph.addPass("unread").write(v1, Access::imageStore, "");
   graph.output(graph.addPass("last").write(v2, Access::imageStore, ""));
   PassBuilder reader = graph.addPass("reader");
   reader.read(v1, Access::sampled, "");
-  graph.output(reader.write(graph.createTexture("seen", kColour), Access::imageStore, ""));
+  graph.output(reader.write(graph.createTexture("seen", kResult), Access::imageStore, ""));
   graph.plan();
   EXPECT_THAT(orderOf(graph), ElementsAre("first", "reader", "last"));
   EXPECT_EQ(reasonOf(graph, "unread"), "nothing reads shared");
@@ -127,7 +127,7 @@ TEST(FrameGraphCulling, BlendingNeedsTheContentsBeforeAndOverwritingDoesNot) {
   for (const Access access : {Access::colourBlend, Access::colourAttachment}) {
     FrameGraph graph;
     const TextureHandle cleared =
-        graph.addPass("clear").write(graph.createTexture("sum", kColour), Access::colourAttachment, "");
+        graph.addPass("clear").write(graph.createTexture("sum", kResult), Access::colourAttachment, "");
     graph.output(graph.addPass("draw").write(cleared, access, ""));
     graph.plan();
     if (access == Access::colourBlend) {
@@ -180,7 +180,7 @@ TEST(FrameGraphRoles, AreReadFromTheirNames) {
 TEST(FrameGraphProblems, ContentsNobodyWroteAreNamedWithTheirUse) {
   FrameGraph graph;
   graph.addPass("blur", "vssm")
-      .read(graph.createTexture("moments", kColour), Access::sampled, "moments")
+      .read(graph.createTexture("moments", kResult), Access::sampled, "moments")
       .sideEffect();
   EXPECT_EQ(problemsOf(graph),
             "frame graph: pass 'vssm/blur' reads 'moments' as sampled (moments) before any pass wrote it");
@@ -188,13 +188,13 @@ TEST(FrameGraphProblems, ContentsNobodyWroteAreNamedWithTheirUse) {
 
 TEST(FrameGraphProblems, BlendingOnNothingIsAProblem) {
   FrameGraph graph;
-  graph.output(graph.addPass("draw").write(graph.createTexture("sum", kColour), Access::colourBlend, "sum"));
+  graph.output(graph.addPass("draw").write(graph.createTexture("sum", kResult), Access::colourBlend, "sum"));
   EXPECT_THAT(problemsOf(graph), HasSubstr("reads 'sum' as colourBlend (sum) before any pass wrote it"));
 }
 
 TEST(FrameGraphProblems, TwoWritersOfOneVersionAreBothNamed) {
   FrameGraph graph;
-  const TextureHandle target = graph.createTexture("target", kColour);
+  const TextureHandle target = graph.createTexture("target", kResult);
   graph.output(graph.addPass("a").write(target, Access::imageStore, ""));
   graph.output(graph.addPass("b").write(target, Access::imageStore, ""));
   EXPECT_THAT(problemsOf(graph), HasSubstr("passes 'a' and 'b' both write on top of version 0 of 'target'"));
@@ -202,7 +202,7 @@ TEST(FrameGraphProblems, TwoWritersOfOneVersionAreBothNamed) {
 
 TEST(FrameGraphProblems, AreAllReportedAtOnceInOneLine) {
   FrameGraph graph, other;
-  const TextureHandle foreign = other.createTexture("foreign", kColour);
+  const TextureHandle foreign = other.createTexture("foreign", kResult);
   const BufferHandle buffer = graph.createBuffer("buffer", {64});
   graph.addPass("a").read(foreign, Access::sampled, "colour").sideEffect();
   graph.addPass("b").read(TextureHandle{}, Access::sampled, "depth").sideEffect();
@@ -223,10 +223,10 @@ TEST(FrameGraphProblems, AreAllReportedAtOnceInOneLine) {
 
 TEST(FrameGraphProblems, PassesThatNeedEachOtherHaveNoOrder) {
   FrameGraph graph;
-  const TextureHandle x = graph.addPass("x").write(graph.createTexture("x", kColour), Access::imageStore, "");
+  const TextureHandle x = graph.addPass("x").write(graph.createTexture("x", kResult), Access::imageStore, "");
   PassBuilder overwriter = graph.addPass("overwriter");
   const TextureHandle x2 = overwriter.write(x, Access::imageStore, "");
-  const TextureHandle y = overwriter.write(graph.createTexture("y", kColour), Access::imageStore, "");
+  const TextureHandle y = overwriter.write(graph.createTexture("y", kResult), Access::imageStore, "");
   PassBuilder reader = graph.addPass("reader");
   reader.read(x, Access::sampled, "").read(y, Access::sampled, "").sideEffect();
   graph.output(x2);
@@ -235,7 +235,7 @@ TEST(FrameGraphProblems, PassesThatNeedEachOtherHaveNoOrder) {
 
 TEST(FrameGraphProblems, AnOutputThatIsOverwrittenIsRefused) {
   FrameGraph graph;
-  const TextureHandle a = graph.addPass("a").write(graph.createTexture("x", kColour), Access::imageStore, "");
+  const TextureHandle a = graph.addPass("a").write(graph.createTexture("x", kResult), Access::imageStore, "");
   graph.output(a);
   graph.output(graph.addPass("b").write(a, Access::imageLoadStore, ""));
   EXPECT_THAT(problemsOf(graph), HasSubstr("output 'x' (version 1) is overwritten by pass 'b'"));
@@ -251,7 +251,7 @@ TEST(FrameGraphProblems, OneObjectIsImportedOnce) {
 
 TEST(FrameGraphProblems, OnlyImportedResourcesAreTouched) {
   FrameGraph graph;
-  const TextureHandle own = graph.createTexture("own", kColour);
+  const TextureHandle own = graph.createTexture("own", kResult);
   EXPECT_THROW(graph.touch(own), Error);
   EXPECT_THROW(graph.touch(BufferHandle{}), Error);
 }
@@ -281,7 +281,7 @@ TEST(FrameGraphMemory, DifferentDescriptionsDoNotShare) {
   FrameGraph graph;
   const TextureHandle a = filter(graph, "a");
   graph.addPass("use a").read(a, Access::sampled, "").sideEffect();
-  gpu::TextureDesc wider = kColour;
+  gpu::TextureDesc wider = kResult;
   wider.width = 128;
   const TextureHandle b = graph.addPass("b").write(graph.createTexture("b", wider), Access::imageStore, "");
   graph.addPass("use b").read(b, Access::sampled, "").sideEffect();
@@ -291,7 +291,7 @@ TEST(FrameGraphMemory, DifferentDescriptionsDoNotShare) {
 
 TEST(FrameGraphMemory, ResultsOfCacheablePassesAreNeverShared) {
   FrameGraph graph;
-  const TextureHandle kept = graph.createTexture("kept", kColour);
+  const TextureHandle kept = graph.createTexture("kept", kResult);
   PassBuilder fill = graph.addPass("fill");
   const TextureHandle filled = fill.cacheable().write(kept, Access::imageStore, "");
   graph.addPass("use").read(filled, Access::sampled, "").sideEffect();
@@ -316,14 +316,14 @@ TEST(FrameGraphMemory, BuffersShareBySizeClass) {
 
 TEST(FrameGraphMemory, MipChainsAreResolvedInTheDescription) {
   FrameGraph graph;
-  gpu::TextureDesc full = kColour;
+  gpu::TextureDesc full = kResult;
   full.levels = 0;
   EXPECT_EQ(graph.desc(graph.createTexture("chain", full)).levels, 7);
 }
 
 TEST(FrameGraphReport, BytesCountWithTheFirstWriter) {
   FrameGraph graph;
-  const TextureHandle cleared = graph.addPass("clear").write(graph.createTexture("sum", kColour),
+  const TextureHandle cleared = graph.addPass("clear").write(graph.createTexture("sum", kResult),
                                                              Access::colourAttachment, "cleared sum");
   graph.output(graph.addPass("draw").write(cleared, Access::colourBlend, "more light"));
   graph.plan();
@@ -333,7 +333,7 @@ TEST(FrameGraphReport, BytesCountWithTheFirstWriter) {
   ASSERT_EQ(rows[1].accesses.size(), 1u);
   EXPECT_EQ(rows[1].accesses[0].text(), "sum (colourBlend): more light");
   EXPECT_TRUE(rows[1].accesses[0].write);
-  EXPECT_EQ(rows[1].accesses[0].texture, kColour);
+  EXPECT_EQ(rows[1].accesses[0].texture, kResult);
 }
 
 TEST(FrameGraphReport, GraphvizQuotesNamesAndDashesWhatIsLeftOut) {

@@ -153,7 +153,7 @@ TEST_P(AirlightPathTest, AStretchOfNoLengthHasNoLight) {
   EXPECT_NEAR(nodes.shares.y, gauss_node, 1e-6f);
 }
 
-std::string kindName(const ::testing::TestParamInfo<uint32_t>& kind) {
+std::string lightKindName(const ::testing::TestParamInfo<uint32_t>& kind) {
   constexpr const char* names[] = {"Point", "Disc", "DistantRectangle", "Rectangle"};
   return names[kind.param];
 }
@@ -161,7 +161,7 @@ std::string kindName(const ::testing::TestParamInfo<uint32_t>& kind) {
 INSTANTIATE_TEST_SUITE_P(Kinds, AirlightPathTest,
                          ::testing::Values(light_kind_point, light_kind_disc, light_kind_distant_rectangle,
                                            light_kind_rectangle),
-                         kindName);
+                         lightKindName);
 
 }  // namespace
 }  // namespace limn::glsl

@@ -12,7 +12,7 @@
 namespace limn::glsl {
 namespace {
 
-vec3 direction(float cosine, float azimuth) {
+vec3 atCosine(float cosine, float azimuth) {
   const float sine = std::sqrt(std::max(0.f, 1 - cosine * cosine));
   return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
 }
@@ -42,7 +42,7 @@ TEST(Ltc, ReflectancesMatchIntegrationBetweenTexels) {
     for (float cosine : {0.01f, 0.03f, 0.07f, 0.15f, 0.33f, 0.61f, 0.87f, 0.99f}) {
       const float alpha = roughness * roughness;
       const LtcTerms terms = ltc_lookup(cosine, alpha);
-      const Reflectance expected = reflectance(alpha, direction(cosine, 0));
+      const Reflectance expected = reflectance(alpha, atCosine(cosine, 0));
       const double error =
           std::max(std::abs(terms.reflectance.x - expected.a), std::abs(terms.reflectance.y - expected.b));
       worst = std::max(worst, error);
@@ -54,7 +54,7 @@ TEST(Ltc, ReflectancesMatchIntegrationBetweenTexels) {
 
 TEST(Ltc, DiffuseFresnelMeanMatchesIntegration) {
   for (float cosine : {0.01f, 0.1f, 0.3f, 0.6f, 0.95f}) {
-    const vec3 v = direction(cosine, 0);
+    const vec3 v = atCosine(cosine, 0);
     double sum = 0;
     const int side = 200;
     for (int i = 0; i < side * side; ++i) {
@@ -71,7 +71,7 @@ TEST(Ltc, WholeSkyHoldsTheWholeLobe) {
   for (float roughness : {0.1f, 0.4f, 0.8f, 1.f}) {
     for (float cosine : {0.1f, 0.4f, 0.7f, 0.99f}) {
       const float alpha = roughness * roughness;
-      const vec3 v = direction(cosine, 0.7f);
+      const vec3 v = atCosine(cosine, 0.7f);
       const LtcTerms terms = ltc_lookup(cosine, alpha);
       const float share =
           ltc_rectangle(ltc_transform(terms, n, v, alpha), terms, sky, rectangle_above(sky, n)).share;
@@ -112,7 +112,7 @@ TEST(Ltc, RectanglesMatchIntegrationWithinTheStatedError) {
     std::vector<double> errors;
     double squares = 0;
     for (int i = 0; i < 150; ++i) {
-      const vec3 v = direction(0.05f + 0.95f * unit(random), 6.28f * unit(random));
+      const vec3 v = atCosine(0.05f + 0.95f * unit(random), 6.28f * unit(random));
       const vec3 mirror(-v.x, -v.y, v.z);
       const vec3 spread(unit(random) - 0.5f, unit(random) - 0.5f, unit(random) - 0.5f);
       Rectangle r;

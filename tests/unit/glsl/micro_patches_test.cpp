@@ -8,7 +8,7 @@
 namespace limn::glsl {
 namespace {
 
-constexpr int kTexels = 64;
+constexpr int kMapTexels = 64;
 
 Light lightWith(uint32_t type, const vec3& direction, float u, float v) {
   const Frame frame = frame_around(-direction);
@@ -35,12 +35,12 @@ ShadowView viewOf(const Light& light, uint32_t kind, const vec3& direction) {
   view.axis_x = frame.t;
   view.scale = scale;
   view.axis_y = frame.b;
-  view.footprint = 1 / (scale * kTexels);
+  view.footprint = 1 / (scale * kMapTexels);
   view.axis_z = direction;
   view.far = 20;
   view.middle = vec2(0.5f, 0.5f);
   view.projection = kind;
-  view.size = kTexels;
+  view.size = kMapTexels;
   return view;
 }
 
@@ -62,7 +62,7 @@ struct Setting {
 
   /// Where the ray through a point of the map at depth z meets the light's box, in the projection's order.
   vec2 point(vec2 texel, float z) const {
-    const vec3 b = shadow_unproject_local(view, texel / float(kTexels), z);
+    const vec3 b = shadow_unproject_local(view, texel / float(kMapTexels), z);
     const vec3 to = view.origin + shadow_world_offset(view, b) - p;
     const vec3 slope = to / -dot(seen.axis, to) - seen.centre;
     vec3 u, v;
@@ -97,12 +97,13 @@ TEST(MicroPatches, EndsOfAPatchAreThoseOfItsMiddleLines) {
   for (const Setting& s : settings()) {
     int compared = 0;
     for (int i = 0; i < 10000; ++i) {
-      const vec2 centre(std::floor(kTexels * uniform(random)) + 0.5f,
-                        std::floor(kTexels * uniform(random)) + 0.5f);
+      const vec2 centre(std::floor(kMapTexels * uniform(random)) + 0.5f,
+                        std::floor(kMapTexels * uniform(random)) + 0.5f);
       const float z = 0.05f + 7 * uniform(random);
       const MicroPatch patch = micro_patch(s.projection, centre, 1, z, 0);
-      const vec3 b = shadow_unproject_local(s.view, centre / float(kTexels), z);
-      const float gap = shadow_gap(s.view, s.receiver, centre / float(kTexels), shadow_normalise(s.view, z));
+      const vec3 b = shadow_unproject_local(s.view, centre / float(kMapTexels), z);
+      const float gap =
+          shadow_gap(s.view, s.receiver, centre / float(kMapTexels), shadow_normalise(s.view, z));
       const bool before = s.seen.cone || gap < s.seen.depth;
       EXPECT_EQ(patch.blocks, before && shadow_blocks(s.receiver, b)) << i;
       if (!patch.blocks || gap < 0.5f) continue;
@@ -134,8 +135,8 @@ TEST(MicroPatches, TexelsOfAPlaneCoverTheLightOnce) {
     view.footprint = view.footprint;
     const Setting s(light, view, vec3(0.4f, 0, 0.3f));
     float area = 0;
-    for (int i = 0; i < kTexels * kTexels; ++i) {
-      const vec2 centre(float(i % kTexels) + 0.5f, float(i / kTexels) + 0.5f);
+    for (int i = 0; i < kMapTexels * kMapTexels; ++i) {
+      const vec2 centre(float(i % kMapTexels) + 0.5f, float(i / kMapTexels) + 0.5f);
       const MicroPatch patch = micro_patch(s.projection, centre, 1, 0.7f, 0);
       EXPECT_TRUE(patch.blocks);
       const vec2 size = clamp(patch.high, vec2(0), vec2(1)) - clamp(patch.low, vec2(0), vec2(1));
@@ -151,7 +152,7 @@ TEST(MicroPatches, BoxesThatMayNotBlockDoNot) {
   for (const Setting& s : settings()) {
     int dismissed = 0, blocking = 0;
     for (int i = 0; i < 4000; ++i) {
-      const vec2 low(kTexels * uniform(random), kTexels * uniform(random));
+      const vec2 low(kMapTexels * uniform(random), kMapTexels * uniform(random));
       const vec2 high = low + vec2(12 * uniform(random), 12 * uniform(random));
       const float z = 0.05f + 7 * uniform(random);
       const vec2 depths(z, z + uniform(random));
@@ -161,7 +162,7 @@ TEST(MicroPatches, BoxesThatMayNotBlockDoNot) {
       for (int j = 0; j < 20; ++j) {
         const vec2 at = mix(low, high, vec2(uniform(random), uniform(random)));
         const float depth = mix(depths.x, depths.y, uniform(random));
-        const vec3 b = shadow_unproject_local(s.view, at / float(kTexels), depth);
+        const vec3 b = shadow_unproject_local(s.view, at / float(kMapTexels), depth);
         const vec2 on = s.point(at, depth);
         const float found = s.receiver.depth - dot(s.receiver.axis, b);
         const bool before = s.seen.cone || found < s.seen.depth;

@@ -18,26 +18,26 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-constexpr int kWidth = 37, kHeight = 19;
+constexpr int kPictureWidth = 37, kPictureHeight = 19;
 
 /// Any colours under alphas from 1 to 255, or a smooth opaque ramp.
 std::vector<std::uint8_t> noise() {
   std::mt19937 generator(3);
-  std::vector<std::uint8_t> rgba(std::size_t{4} * kWidth * kHeight);
+  std::vector<std::uint8_t> rgba(std::size_t{4} * kPictureWidth * kPictureHeight);
   for (std::size_t i = 0; i < rgba.size(); ++i)
     rgba[i] = static_cast<std::uint8_t>(i % 4 == 3 ? 1 + generator() % 255 : generator() % 256);
   return rgba;
 }
 std::vector<std::uint8_t> ramp() {
   std::vector<std::uint8_t> rgba;
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x)
+  for (int y = 0; y < kPictureHeight; ++y)
+    for (int x = 0; x < kPictureWidth; ++x)
       for (const int value : {60 + 3 * x, 50 + 3 * x, 40 + 3 * x, 255})
         rgba.push_back(static_cast<std::uint8_t>(value));
   return rgba;
 }
 
-std::string refusal(std::span<const std::byte> bytes) {
+std::string webpRefusal(std::span<const std::byte> bytes) {
   try {
     readImage8Memory(bytes, "texture 3");
   } catch (const Error& error) {
@@ -73,19 +73,19 @@ std::vector<std::byte> lossless(unsigned width, unsigned height) {
 
 TEST(Webp, KeepsColoursUnderLowAlpha) {
   const std::vector<std::uint8_t> rgba = noise();
-  const Image8 image = readImage8Memory(losslessWebp(kWidth, kHeight, rgba), "a");
-  EXPECT_EQ(image.width, kWidth);
-  EXPECT_EQ(image.height, kHeight);
+  const Image8 image = readImage8Memory(losslessWebp(kPictureWidth, kPictureHeight, rgba), "a");
+  EXPECT_EQ(image.width, kPictureWidth);
+  EXPECT_EQ(image.height, kPictureHeight);
   EXPECT_EQ(image.data, rgba);
 }
 
 TEST(Webp, ReadsAsALinearPictureToo) {
   const std::vector<std::uint8_t> rgba = noise();
-  const Image image = readImageMemory(losslessWebp(kWidth, kHeight, rgba), "a");
+  const Image image = readImageMemory(losslessWebp(kPictureWidth, kPictureHeight, rgba), "a");
   ASSERT_EQ(image.channels(), (std::vector<std::string>{"R", "G", "B", "A"}));
   EXPECT_FLOAT_EQ(image.data()[5], glsl::srgb_decode(static_cast<float>(rgba[5]) / 255.0f));
   EXPECT_FLOAT_EQ(image.data()[7], static_cast<float>(rgba[7]) / 255.0f);  // alpha is linear already
-  const Image opaque = readImageMemory(losslessWebp(kWidth, kHeight, ramp()), "a");
+  const Image opaque = readImageMemory(losslessWebp(kPictureWidth, kPictureHeight, ramp()), "a");
   EXPECT_EQ(opaque.channels(), (std::vector<std::string>{"R", "G", "B"}));
   EXPECT_FLOAT_EQ(opaque.at(2, 1, 1), glsl::srgb_decode(56.0f / 255.0f));
 }
@@ -94,32 +94,33 @@ TEST(Webp, LossyPicturesAreCloseAndKeepTheirAlpha) {
   std::vector<std::uint8_t> rgba = ramp();
   for (std::size_t i = 3; i < rgba.size(); i += 4)
     rgba[i] = static_cast<std::uint8_t>(i % 7 == 0 ? 255 : 128);
-  const Image8 image = readImage8Memory(lossyWebp(kWidth, kHeight, rgba), "a");
+  const Image8 image = readImage8Memory(lossyWebp(kPictureWidth, kPictureHeight, rgba), "a");
   ASSERT_EQ(image.data.size(), rgba.size());
   for (std::size_t i = 0; i < rgba.size(); ++i) ASSERT_NEAR(image.data[i], rgba[i], i % 4 == 3 ? 0 : 8) << i;
 }
 
 TEST(Webp, RefusesWhatIsTruncatedOrDamaged) {
-  for (const std::vector<std::byte>& whole :
-       {losslessWebp(kWidth, kHeight, noise()), lossyWebp(kWidth, kHeight, noise())}) {
-    ASSERT_EQ(refusal(whole), "");
+  for (const std::vector<std::byte>& whole : {losslessWebp(kPictureWidth, kPictureHeight, noise()),
+                                              lossyWebp(kPictureWidth, kPictureHeight, noise())}) {
+    ASSERT_EQ(webpRefusal(whole), "");
     for (const std::size_t size : {std::size_t{12}, std::size_t{20}, whole.size() / 2, whole.size() - 4})
-      EXPECT_EQ(refusal(std::span(whole).first(size)), "texture 3: truncated or damaged WebP") << size;
+      EXPECT_EQ(webpRefusal(std::span(whole).first(size)), "texture 3: truncated or damaged WebP") << size;
     std::vector<std::byte> damaged = whole;
     for (std::size_t i = 20; i < damaged.size(); ++i) damaged[i] = std::byte{0xff};
-    EXPECT_THAT(refusal(damaged), AllOf(StartsWith("texture 3: "), Not(HasSubstr("\n"))));
+    EXPECT_THAT(webpRefusal(damaged), AllOf(StartsWith("texture 3: "), Not(HasSubstr("\n"))));
   }
-  EXPECT_THAT(refusal(bytesOf({'R', 'I', 'F', 'F', 4, 0, 0, 0, 'W', 'E', 'B'})), HasSubstr("not a picture"));
+  EXPECT_THAT(webpRefusal(bytesOf({'R', 'I', 'F', 'F', 4, 0, 0, 0, 'W', 'E', 'B'})),
+              HasSubstr("not a picture"));
 }
 
 TEST(Webp, RefusesAnimations) {
-  EXPECT_EQ(refusal(canvas(2, 4, 4)), "texture 3: animated WebP pictures are not accepted");
+  EXPECT_EQ(webpRefusal(canvas(2, 4, 4)), "texture 3: animated WebP pictures are not accepted");
 }
 
 TEST(Webp, ChecksSidesBeforeTakingMemory) {
-  EXPECT_THAT(refusal(lossless(16383, 16384)), HasSubstr("16383x16384 pixels of 4 channels"));
-  EXPECT_THAT(refusal(lossless(8192, 8192)), HasSubstr("8192x8192 pixels of 4 channels in 48 bytes"));
-  EXPECT_THAT(refusal(canvas(0, 40000, 20000)), StartsWith("texture 3: "));
+  EXPECT_THAT(webpRefusal(lossless(16383, 16384)), HasSubstr("16383x16384 pixels of 4 channels"));
+  EXPECT_THAT(webpRefusal(lossless(8192, 8192)), HasSubstr("8192x8192 pixels of 4 channels in 48 bytes"));
+  EXPECT_THAT(webpRefusal(canvas(0, 40000, 20000)), StartsWith("texture 3: "));
 }
 
 }  // namespace

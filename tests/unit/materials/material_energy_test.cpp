@@ -11,7 +11,7 @@
 namespace limn::glsl {
 namespace {
 
-const std::vector<double> kCosines = {0.01, 0.05, 0.2, 0.6, 1};
+const std::vector<double> kEnergyCosines = {0.01, 0.05, 0.2, 0.6, 1};
 
 /// The model with kd and ks as the loader limits them.
 MaterialModel limited(MaterialModel m) {
@@ -31,7 +31,7 @@ TEST(MaterialEnergy, NoModelReflectsMoreThanArrives) {
   for (const NamedModel& named : allModels()) {
     const MaterialModel m = limited(named.model);
     for (const double azimuth : {0.0, 1.2})
-      for (const double c : kCosines)
+      for (const double c : kEnergyCosines)
         if (azimuth == 0 || model_anisotropic(m)) {
           EXPECT_LE(furnace(m, directionAt(c, azimuth)), allowed(m))
               << named.name << ' ' << c << ' ' << azimuth;
@@ -183,7 +183,7 @@ TEST(MaterialEnergy, ExcessOfBanksIsABound) {
 /// 1 with the mirror for a white base (physical), F more (sum); the ratios of the three at albedo 1/2.
 TEST(MaterialEnergy, CoatsHaveTheirClosedForms) {
   for (const float eta : {1.f, 1.0001f, 1.5f, 5.f, 200.f})
-    for (const double c : kCosines) {
+    for (const double c : kEnergyCosines) {
       const vec3 v = directionAt(c, 0);
       const double mirror = double(coated_mirror(coatedModel(1, eta, 0), v.z).x);
       EXPECT_NEAR(furnace(coatedModel(1, eta, model_option_physical), v) + mirror, 1, 1e-3)

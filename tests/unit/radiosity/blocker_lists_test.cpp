@@ -19,8 +19,8 @@ namespace {
 constexpr size_t kPlenty = size_t{1} << 24;
 
 /// A closed sphere and an open square above a floor.
-struct World {
-  World() {
+struct BlockedWorld {
+  BlockedWorld() {
     const int material = test::addMaterial(scene);
     const int floor = test::addMesh(scene, test::floorPrimitive(1, material)),
               sphere = test::addMesh(scene, test::spherePrimitive(0.25f, material, 12)),
@@ -72,7 +72,7 @@ bool crosses(const std::array<glm::vec3, 3>& corners, const glm::vec3& from, con
 /// What a way from a random point of each leaf's part to one of the light meets is in the leaf's list, at
 /// least one triangle of each closed body.
 void expectComplete(const glsl::Light& light) {
-  const World world;
+  const BlockedWorld world;
   const SceneElements& elements = *world.elements;
   const std::array bounds{LightBounds::of(light)};
   BlockerLists lists;
@@ -147,7 +147,7 @@ TEST(BlockerLists, AreEmptyWhereNothingIsInTheWay) {
 }
 
 TEST(BlockerLists, KeepToTheirRoomAndLeaveOutFullShadow) {
-  const World world;
+  const BlockedWorld world;
   const SceneElements& elements = *world.elements;
   const std::array bounds{LightBounds::of(square(0.05f))};
   BlockerLists all, few, partly;

@@ -15,7 +15,7 @@ using namespace test;
 using glm::vec3;
 
 /// The material as clear glass.
-int addGlass(World& world, float ior) {
+int addClearGlass(World& world, float ior) {
   const int material = world.addMaterial(vec3(1));
   scene::Material& glass = world.scene.materials.back();
   glass.specularFactor = 1;
@@ -60,7 +60,7 @@ TEST(ReferenceMedia, ARampAttenuatesByItsIntegral) {
 
 TEST(ReferenceMedia, AGridOfOneDensityIsHomogeneous) {
   World world = floorWorld();
-  world.addInstance(world.addMesh(World::sphere(64, addGlass(world, 1.5f))),
+  world.addInstance(world.addMesh(World::sphere(64, addClearGlass(world, 1.5f))),
                     glm::translate(glm::mat4(1), vec3(0, 1, 0)) * glm::scale(glm::mat4(1), vec3(0.3f)));
   world.addLight(glsl::light_point, {0.3f, 2.2f, 0.1f}, {0, -1, 0}, vec3(3));
   world.scene.medium.g = 0.4f;
@@ -190,7 +190,7 @@ TEST(ReferenceMedia, AirlightOfAPointSourceMeetsQuadrature) {
 /// A sphere of radius 1 and index 1.5 in a thin beam along +x from far away, seen from the side.
 TEST(ReferenceMedia, ASphereFocusesWhereALensMakersFormulaSays) {
   World world;
-  world.addInstance(world.addMesh(World::sphere(512, addGlass(world, 1.5f))));
+  world.addInstance(world.addMesh(World::sphere(512, addClearGlass(world, 1.5f))));
   glsl::Light& light = world.addLight(glsl::light_spot, {-50, 0, 0}, {1, 0, 0}, vec3(1e4f));
   light.flags = glsl::light_flag_cone;
   light.cos_inner = std::cos(0.2f / 50);
@@ -232,7 +232,7 @@ TEST(ReferenceCaustic, EnergyThroughASphereIsWhatFresnelLeaves) {
   for (const float ior : {1.0001f, 1.5f}) {
     World world;
     world.addQuad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}, world.addMaterial(vec3(1)));
-    world.addInstance(world.addMesh(World::sphere(256, addGlass(world, ior))),
+    world.addInstance(world.addMesh(World::sphere(256, addClearGlass(world, ior))),
                       glm::translate(glm::mat4(1), vec3(0, 1, 0)) * glm::scale(glm::mat4(1), vec3(0.3f)));
     world.addLight(glsl::light_directional, {0, 0, 0}, {0, -1, 0}, vec3(2));
     world.camera = scene::lookAt({0, 4, 5}, {0, 0, 0}, 0.9f);
@@ -261,13 +261,13 @@ TEST(ReferenceCaustic, ThereIsNoneWithoutSpecularSurfacesOrLight) {
   world.addLight(glsl::light_point, {0, 1, 0}, {0, -1, 0}, vec3(1));
   for (const float v : {render(world.request(8, Term::caustic, 2)).image.at(4, 4, 0)}) EXPECT_EQ(v, 0);
   World dark = floorWorld();
-  dark.addInstance(dark.addMesh(World::sphere(16, addGlass(dark, 1.5f))));
+  dark.addInstance(dark.addMesh(World::sphere(16, addClearGlass(dark, 1.5f))));
   EXPECT_EQ(render(dark.request(8, Term::caustic, 2)).image.at(4, 4, 0), 0);
 }
 
 TEST(ReferenceMedia, ThreadsAndInterruptionsDoNotChangeThePicture) {
   World world = floorWorld();
-  world.addInstance(world.addMesh(World::sphere(32, addGlass(world, 1.5f))),
+  world.addInstance(world.addMesh(World::sphere(32, addClearGlass(world, 1.5f))),
                     glm::translate(glm::mat4(1), vec3(0, 1, 0)) * glm::scale(glm::mat4(1), vec3(0.3f)));
   world.addLight(glsl::light_point, {0, 2, 0}, {0, -1, 0}, vec3(1));
   world.scene.medium.sigmaS = vec3(0.2f);

@@ -14,9 +14,9 @@ namespace {
 
 using namespace test;
 
-constexpr double kBound = 0.005;
+constexpr double kPathBound = 0.005;
 constexpr double kBoundOfMean = 0.003;
-constexpr double kSkip = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSkipped = std::numeric_limits<double>::quiet_NaN();
 
 Result traced(const World& world, Term term, int bounces, int spp = 256, int size = 16) {
   Request request = world.request(size, term, spp);
@@ -129,7 +129,7 @@ World wallOverFloor() {
 
 /// What the wall sends to the floor and the floor to the eye, by quadrature over the wall. NaN on the wall.
 double fromWallOverFloor(const glm::dvec3& x, const glsl::SurfaceBrdf& floor, const glsl::SurfaceBrdf& wall) {
-  if (x.y > 1e-3) return kSkip;
+  if (x.y > 1e-3) return kSkipped;
   const int n = 48;
   const glm::vec3 up(0, 1, 0), front(0, 0, 1);
   double sum = 0;
@@ -152,7 +152,7 @@ TEST(ReferencePath, OneBounceBetweenTwoPatches) {
   const glsl::SurfaceBrdf wall = glsl::surface_brdf(glm::vec3(0.8f), 0, 1, 0, glm::vec3(1), 1.5f);
   EXPECT_LT(meanRelativeError(world, traced(world, Term::indirect, 1, 1 << 16, 8).image, "R",
                               [&](const glm::dvec3& x) { return fromWallOverFloor(x, floor, wall); }),
-            kBound);
+            kPathBound);
 }
 
 TEST(ReferencePath, OneBounceBetweenTwoGlossyPatches) {
@@ -164,7 +164,7 @@ TEST(ReferencePath, OneBounceBetweenTwoGlossyPatches) {
   const glsl::SurfaceBrdf wall = glsl::surface_brdf(glm::vec3(0.8f), 1, 0.6f, 1, glm::vec3(1), 1.5f);
   EXPECT_LT(meanRelativeError(world, traced(world, Term::indirect, 1, 1 << 16, 8).image, "R",
                               [&](const glm::dvec3& x) { return fromWallOverFloor(x, floor, wall); }),
-            kBound);
+            kPathBound);
 }
 
 /// Light that reaches the floor over the wall, all pixels together.
@@ -266,7 +266,7 @@ TEST(ReferencePath, LightsAddUp) {
     return value;
   };
   for (const int light : {0, 1, 2}) sum += total(light);
-  EXPECT_NEAR(sum / total(kAllLights), 1, kBound);
+  EXPECT_NEAR(sum / total(kAllLights), 1, kPathBound);
 }
 
 TEST(ReferencePath, ScaleDoesNotMatter) {

@@ -12,12 +12,12 @@ namespace {
 using namespace test;
 using glm::vec3;
 
-constexpr float kIor = 1.4f;
+constexpr float kTermsIor = 1.4f;
 
 /// A translucent ball beside a white wall, with a highlight, lamps and a sky.
 World mixedWorld() {
   World world = busyWorld();
-  const int material = addTranslucent(world, vec3(20, 30, 40), {0.02f, 0.1f, 0.3f}, kIor);
+  const int material = addTranslucent(world, vec3(20, 30, 40), {0.02f, 0.1f, 0.3f}, kTermsIor);
   world.scene.materials[static_cast<size_t>(material)].specularFactor = 1;
   world.scene.materials[static_cast<size_t>(material)].roughness = 0.4f;
   world.scene.meshes[1].primitives[0].material = material;
@@ -110,7 +110,7 @@ TEST(ReferenceSubsurfaceTerms, OpaqueScenesAreTheSameToTheBit) {
 /// Other bodies cast shadows and hand on no light from below.
 TEST(ReferenceSubsurfaceTerms, LightStaysInItsBody) {
   World world;
-  const int material = addTranslucent(world, vec3(2), vec3(0.05f), kIor);
+  const int material = addTranslucent(world, vec3(2), vec3(0.05f), kTermsIor);
   const int ball = world.addMesh(World::sphere(48, material));
   world.addInstance(ball);
   world.addLight(glsl::light_directional, vec3(0), {0, 0, -1}, vec3(1));

@@ -281,11 +281,12 @@ TEST(ReferenceSubsurface, WalkLeavesInEachDirectionAsChandrasekharSays) {
 /// the dipole's profile over both faces, as they were found with another program.
 TEST(ReferenceSubsurface, SlabsOfSkinPassLight) {
   constexpr float kScattered = 740, kAbsorbed = 32;  // per metre
-  struct Slab {
+  struct SkinSlab {
     float thickness;
     double walk, dipole;
   };
-  for (const Slab& slab : {Slab{0.002f, 0.452, 0.222}, {0.005f, 0.193, 0.075}, {0.01f, 0.050, 0.014}}) {
+  for (const SkinSlab& slab :
+       {SkinSlab{0.002f, 0.452, 0.222}, {0.005f, 0.193, 0.075}, {0.01f, 0.050, 0.014}}) {
     World world;
     const int material =
         addTranslucent(world, vec3(kScattered + kAbsorbed), vec3(kAbsorbed / (kScattered + kAbsorbed)), kIor);

@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-constexpr int kSize = 96;
+constexpr int kFieldSize = 96;
 constexpr double kDegree = std::numbers::pi / 180;
 
 glm::vec3 towards(double azimuth, double elevation) {
@@ -46,9 +46,9 @@ void forSomeTexels(const HeightField& field, int step, const Function& function)
 }
 
 std::vector<NamedField> threeFields(double factor = 1) {
-  return {{"noise", noise(kSize, 0.26 * factor)},
-          {"egg-crate", eggCrate(kSize, 0.47 * factor)},
-          {"bricks", bricks(kSize, 0.76 * factor)}};
+  return {{"noise", noise(kFieldSize, 0.26 * factor)},
+          {"egg-crate", eggCrate(kFieldSize, 0.47 * factor)},
+          {"bricks", bricks(kFieldSize, 0.76 * factor)}};
 }
 
 TEST(ReliefEllipseAccuracyTest, MomentsGetFewDirectionsWrong) {
@@ -90,7 +90,7 @@ TEST(ReliefEllipseAccuracyTest, AmbientVisibilityIsThatOfTheHorizon) {
 
 TEST(ReliefEllipseAccuracyTest, SixteenAzimuthsHaveHalfTheErrors) {
   for (const auto& [name, field] :
-       {NamedField{"bricks", bricks(kSize)}, NamedField{"egg-crate x2", eggCrate(kSize, 0.94)}}) {
+       {NamedField{"bricks", bricks(kFieldSize)}, NamedField{"egg-crate x2", eggCrate(kFieldSize, 0.94)}}) {
     const Horizons eight = exactHorizons(field, 8), sixteen = exactHorizons(field, 16);
     const std::vector<glsl::ReliefEllipse> moments = momentEllipses(sweepHorizons(field, 64));
     for (const double elevation : {10.0, 20.0, 30.0, 45.0}) {
@@ -134,12 +134,12 @@ TEST(ReliefEllipseAccuracyTest, CentresAndCovariancesAreWhatToInterpolate) {
   std::mt19937 engine(3);
   const auto uniform = [&] { return (static_cast<double>(engine()) + 0.5) / 4294967296.0; };
   for (const auto& [name, field] :
-       {NamedField{"egg-crate", eggCrate(kSize)}, NamedField{"bricks", bricks(kSize)},
-        NamedField{"noise x2", noise(kSize, 0.52)}}) {
+       {NamedField{"egg-crate", eggCrate(kFieldSize)}, NamedField{"bricks", bricks(kFieldSize)},
+        NamedField{"noise x2", noise(kFieldSize, 0.52)}}) {
     const std::vector<glsl::ReliefEllipse> moments = momentEllipses(sweepHorizons(field, 64));
     Share nearest, naive, ours;
     for (int k = 0; k < 15000; ++k) {
-      const glm::dvec2 place = static_cast<double>(kSize) * glm::dvec2(uniform(), uniform());
+      const glm::dvec2 place = static_cast<double>(kFieldSize) * glm::dvec2(uniform(), uniform());
       const glm::vec3 l = towards(2 * std::numbers::pi * uniform(), (15 + 20 * uniform()) * kDegree);
       const bool truth = sees(field, place, l);
       const glm::ivec2 cell(glm::floor(place));
@@ -174,8 +174,8 @@ TEST(ReliefEllipseAccuracyTest, CentresAndCovariancesAreWhatToInterpolate) {
 TEST(ReliefEllipseAccuracyTest, SoftLightsAreCutByTheEdge) {
   constexpr double kSine = 0.15;
   for (const auto& [name, field] :
-       {NamedField{"egg-crate x2", eggCrate(kSize, 0.94)}, NamedField{"bricks", bricks(kSize)},
-        NamedField{"noise x2", noise(kSize, 0.52)}}) {
+       {NamedField{"egg-crate x2", eggCrate(kFieldSize, 0.94)}, NamedField{"bricks", bricks(kFieldSize)},
+        NamedField{"noise x2", noise(kFieldSize, 0.52)}}) {
     const std::vector<glsl::ReliefEllipse> moments = momentEllipses(sweepHorizons(field, 64));
     double hard = 0, soft = 0, count = 0;
     forSomeTexels(field, 13, [&](const glm::ivec2& texel) {

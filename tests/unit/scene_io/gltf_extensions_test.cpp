@@ -21,7 +21,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const Primitive& onlyPrimitive(const Scene& s) {
+const Primitive& firstPrimitive(const Scene& s) {
   return s.meshes.at(0).primitives.at(0);
 }
 
@@ -56,22 +56,23 @@ std::vector<unsigned char> encodedVertices(const std::vector<T>& values) {
 }
 
 const std::vector<glm::vec3> kCorners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.25f}};
-const std::vector<std::uint32_t> kIndices{0, 1, 2, 2, 1, 3};
+const std::vector<std::uint32_t> kCornerIndices{0, 1, 2, 2, 1, 3};
 
 /// Two triangles whose positions and indices are compressed.
 GltfBuilder compressedQuad(const char* mode = "TRIANGLES") {
   GltfBuilder b;
-  const int positions = b.vec3(kCorners), indices = b.indices(kIndices);
+  const int positions = b.vec3(kCorners), indices = b.indices(kCornerIndices);
   b.meshNode(b.mesh({{"POSITION", positions}}, indices));
   compress(b, positions, encodedVertices(kCorners), kCorners.size(), sizeof(glm::vec3), "ATTRIBUTES");
   const bool triangles = std::string(mode) == "TRIANGLES";
-  std::vector<unsigned char> bytes(triangles
-                                       ? meshopt_encodeIndexBufferBound(kIndices.size(), kCorners.size())
-                                       : meshopt_encodeIndexSequenceBound(kIndices.size(), kCorners.size()));
-  bytes.resize(
-      triangles ? meshopt_encodeIndexBuffer(bytes.data(), bytes.size(), kIndices.data(), kIndices.size())
-                : meshopt_encodeIndexSequence(bytes.data(), bytes.size(), kIndices.data(), kIndices.size()));
-  compress(b, indices, bytes, kIndices.size(), 4, mode);
+  std::vector<unsigned char> bytes(
+      triangles ? meshopt_encodeIndexBufferBound(kCornerIndices.size(), kCorners.size())
+                : meshopt_encodeIndexSequenceBound(kCornerIndices.size(), kCorners.size()));
+  bytes.resize(triangles ? meshopt_encodeIndexBuffer(bytes.data(), bytes.size(), kCornerIndices.data(),
+                                                     kCornerIndices.size())
+                         : meshopt_encodeIndexSequence(bytes.data(), bytes.size(), kCornerIndices.data(),
+                                                       kCornerIndices.size()));
+  compress(b, indices, bytes, kCornerIndices.size(), 4, mode);
   b.root["extensionsRequired"] = {"EXT_meshopt_compression"};
   return b;
 }
@@ -82,7 +83,7 @@ TEST(MeshoptCompression, GivesBackWhatWasCompressed) {
     EXPECT_EQ(scene.triangles(), 2u) << mode;
     // Without normals the triangles are split: six vertices, in the order of the indices but for its
     // rotation.
-    const Primitive& p = onlyPrimitive(scene);
+    const Primitive& p = firstPrimitive(scene);
     ASSERT_EQ(p.positions.size(), 6u) << mode;
     for (const glm::vec3& corner : kCorners) EXPECT_THAT(p.positions, Contains(corner)) << mode;
     EXPECT_TRUE(scene.warnings.empty());
@@ -105,7 +106,7 @@ TEST(MeshoptCompression, FiltersAreUndone) {
   std::vector<glm::uvec3> exponential(3);
   meshopt_encodeFilterExp(exponential.data(), 3, 12, 15, &places[0].x);
   compress(b, positions, encodedVertices(exponential), 3, 12, "ATTRIBUTES", "EXPONENTIAL");
-  const Primitive p = onlyPrimitive(loadBuilt(b));
+  const Primitive p = firstPrimitive(loadBuilt(b));
   for (std::size_t i = 0; i < 3; ++i) {
     expectNear(p.normals[i], normals[i], 0.02f);
     expectNear(p.positions[i], places[i], 0.05f);
@@ -200,7 +201,7 @@ TEST(UnlitMaterials, AreTintedByVertexColours) {
   const Scene scene = loadBuilt(b);
   EXPECT_TRUE(scene.materials.at(0).unlit);
   EXPECT_FALSE(scene.materials.at(1).unlit) << "colours are a factor on the base colour alone";
-  expectNear(glm::vec3(onlyPrimitive(scene).colours.at(0)), colours[0]);
+  expectNear(glm::vec3(firstPrimitive(scene).colours.at(0)), colours[0]);
 }
 
 /// A material whose texture is one in WebP, `webp`, and, where `other` is not empty, one for programs that

@@ -39,7 +39,7 @@ GltfBuilder withSampler(int wrapS, int wrapT) {
   return b;
 }
 
-std::string refusal(const json& height) {
+std::string refusedHeight(const json& height) {
   return loadError(withHeight(height).glb());
 }
 
@@ -108,23 +108,28 @@ TEST(SceneHeightMap, ExistsOnceWhereAllIsTheSame) {
 
 TEST(SceneHeightMap, RefusesWhatItDoesNotKnowInOneLine) {
   const std::string place = "material 0 'wall' limn_height";
-  EXPECT_THAT(refusal(3), HasSubstr(place + ": an object {texture, scale, offset, tile} is accepted"));
+  EXPECT_THAT(refusedHeight(3), HasSubstr(place + ": an object {texture, scale, offset, tile} is accepted"));
   // Objects without members are not there: the library that reads glTF leaves them out.
-  EXPECT_EQ(refusal(json::object()), "");
-  EXPECT_THAT(refusal({{"scale", 1}}), HasSubstr(place + " texture: glTF's object {index, texCoord}"));
+  EXPECT_EQ(refusedHeight(json::object()), "");
+  EXPECT_THAT(refusedHeight({{"scale", 1}}), HasSubstr(place + " texture: glTF's object {index, texCoord}"));
   for (const json& info : {json(0), json{{"texCoord", 0}}, json{{"index", "a"}}, json{{"index", 0.5}},
                            json{{"index", 0}, {"texCoord", -1}}, json{{"index", 0}, {"texCoord", "b"}}})
-    EXPECT_THAT(refusal({{"texture", info}}), HasSubstr(place + " texture: glTF's object")) << info;
-  EXPECT_THAT(refusal(heightOf(7)), HasSubstr(place + " texture: texture 7 does not exist; there are 1"));
-  EXPECT_THAT(refusal(heightOf(-1)), HasSubstr(place + " texture: texture -1 does not exist"));
-  EXPECT_THAT(refusal(heightOf(0, {{"scale", "high"}})), HasSubstr(place + " scale: one number (metres)"));
-  EXPECT_THAT(refusal(heightOf(0, {{"scale", 1e200}})), HasSubstr("scale: 1e+200 is not a finite number"));
-  EXPECT_THAT(refusal(heightOf(0, {{"scale", 3e38}, {"offset", 3e38}})),
+    EXPECT_THAT(refusedHeight({{"texture", info}}), HasSubstr(place + " texture: glTF's object")) << info;
+  EXPECT_THAT(refusedHeight(heightOf(7)),
+              HasSubstr(place + " texture: texture 7 does not exist; there are 1"));
+  EXPECT_THAT(refusedHeight(heightOf(-1)), HasSubstr(place + " texture: texture -1 does not exist"));
+  EXPECT_THAT(refusedHeight(heightOf(0, {{"scale", "high"}})),
+              HasSubstr(place + " scale: one number (metres)"));
+  EXPECT_THAT(refusedHeight(heightOf(0, {{"scale", 1e200}})),
+              HasSubstr("scale: 1e+200 is not a finite number"));
+  EXPECT_THAT(refusedHeight(heightOf(0, {{"scale", 3e38}, {"offset", 3e38}})),
               AllOf(HasSubstr(place), HasSubstr("finite 32-bit heights are needed")));
-  EXPECT_THAT(refusal(heightOf(0, {{"offset", {1}}})), HasSubstr(place + " offset: one number (metres)"));
-  EXPECT_THAT(refusal(heightOf(0, {{"tile", 1}})), HasSubstr("tile (metres per unit of u and v): 2 numbers"));
+  EXPECT_THAT(refusedHeight(heightOf(0, {{"offset", {1}}})),
+              HasSubstr(place + " offset: one number (metres)"));
+  EXPECT_THAT(refusedHeight(heightOf(0, {{"tile", 1}})),
+              HasSubstr("tile (metres per unit of u and v): 2 numbers"));
   for (const json& tile : {json{0, 1}, json{1, -1}})
-    EXPECT_THAT(refusal(heightOf(0, {{"tile", tile}})),
+    EXPECT_THAT(refusedHeight(heightOf(0, {{"tile", tile}})),
                 AllOf(HasSubstr(place), HasSubstr("both must be above 0 and finite")));
 }
 

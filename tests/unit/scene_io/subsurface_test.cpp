@@ -34,7 +34,7 @@ json drafted(const char* name, const json& scatter) {
             {name, scatter}}}};
 }
 
-std::string refusal(const json& subsurface) {
+std::string refusedSubsurface(const json& subsurface) {
   return loadError(withMaterial(translucent(subsurface)).glb());
 }
 
@@ -79,20 +79,20 @@ TEST(SceneSubsurface, AMeanFreePathTakesTheAlbedoFromTheBaseColour) {
 TEST(SceneSubsurface, BadValuesAreRefused) {
   const std::string place = "material 0 'wax' limn_subsurface";
   const std::string accepted = ": an object {sigma_a, sigma_s_prime} or {mean_free_path} is accepted";
-  EXPECT_THAT(refusal(7), HasSubstr(place + accepted));
-  EXPECT_THAT(refusal({{"sigma_s", 1}}), HasSubstr(place + accepted));
-  EXPECT_THAT(refusal({{"sigma_a", 1}}), HasSubstr(place + accepted));
-  EXPECT_THAT(refusal({{"sigma_a", 1}, {"mean_free_path", 1}}), HasSubstr(place + accepted));
-  EXPECT_THAT(refusal({{"sigma_a", 1}, {"sigma_s_prime", 1}, {"mean_free_path", 1}}),
+  EXPECT_THAT(refusedSubsurface(7), HasSubstr(place + accepted));
+  EXPECT_THAT(refusedSubsurface({{"sigma_s", 1}}), HasSubstr(place + accepted));
+  EXPECT_THAT(refusedSubsurface({{"sigma_a", 1}}), HasSubstr(place + accepted));
+  EXPECT_THAT(refusedSubsurface({{"sigma_a", 1}, {"mean_free_path", 1}}), HasSubstr(place + accepted));
+  EXPECT_THAT(refusedSubsurface({{"sigma_a", 1}, {"sigma_s_prime", 1}, {"mean_free_path", 1}}),
               HasSubstr(place + accepted));
-  EXPECT_THAT(refusal({{"sigma_a", {1, 2}}, {"sigma_s_prime", 1}}),
+  EXPECT_THAT(refusedSubsurface({{"sigma_a", {1, 2}}, {"sigma_s_prime", 1}}),
               HasSubstr(place + " sigma_a: 3 numbers are accepted"));
-  EXPECT_THAT(refusal({{"sigma_a", -1}, {"sigma_s_prime", 1}}),
+  EXPECT_THAT(refusedSubsurface({{"sigma_a", -1}, {"sigma_s_prime", 1}}),
               HasSubstr(place + " sigma_a: it must not be negative"));
-  EXPECT_THAT(refusal({{"sigma_a", 0}, {"sigma_s_prime", {1, 0, 1}}}),
+  EXPECT_THAT(refusedSubsurface({{"sigma_a", 0}, {"sigma_s_prime", {1, 0, 1}}}),
               HasSubstr("is 0 per metre; 1e-06 to 1000000000 are accepted"));
-  EXPECT_THAT(refusal({{"mean_free_path", 0}}), HasSubstr("per metre; "));
-  EXPECT_THAT(refusal({{"mean_free_path", "thick"}}), HasSubstr(place + " mean_free_path"));
+  EXPECT_THAT(refusedSubsurface({{"mean_free_path", 0}}), HasSubstr("per metre; "));
+  EXPECT_THAT(refusedSubsurface({{"mean_free_path", "thick"}}), HasSubstr(place + " mean_free_path"));
 }
 
 TEST(SceneSubsurface, AModelAndAnUnusedTextureAreWarnedOf) {

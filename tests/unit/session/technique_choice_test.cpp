@@ -20,7 +20,7 @@ TermSet asked(std::string_view text) {
   return askedFor(kSeveral, *namedTechniques(text).at(0).terms);
 }
 
-std::string refusal(std::string_view text) {
+std::string refusedChoice(std::string_view text) {
   try {
     asked(text);
   } catch (const UsageError& error) {
@@ -36,20 +36,20 @@ TEST(AskedFor, IsTheSetOfTheTerms) {
 }
 
 TEST(AskedFor, RefusesWhatTheTechniqueDoesNotAnswer) {
-  EXPECT_EQ(refusal("several:indrect"),
+  EXPECT_EQ(refusedChoice("several:indrect"),
             "unknown term 'indrect' of technique several (did you mean indirect?); it answers visibility, "
             "environment and indirect");
-  EXPECT_EQ(refusal("several:media"),
+  EXPECT_EQ(refusedChoice("several:media"),
             "technique several does not answer media; it answers visibility, environment and indirect");
-  EXPECT_EQ(refusal("several:final"),
+  EXPECT_EQ(refusedChoice("several:final"),
             "technique several does not answer final; it answers visibility, environment and indirect");
 }
 
 TEST(AskedFor, RefusesListsThatLackATermOrRepeatOne) {
   const std::string lacks = "lacks a term; several answers visibility, environment and indirect";
   for (const std::string text : {"several:", "several:+", "several:indirect+", "several:+indirect"})
-    EXPECT_EQ(refusal(text), "technique '" + text + "' " + lacks);
-  EXPECT_EQ(refusal("several:indirect+indirect"),
+    EXPECT_EQ(refusedChoice(text), "technique '" + text + "' " + lacks);
+  EXPECT_EQ(refusedChoice("several:indirect+indirect"),
             "term indirect of technique several is named twice; once is enough");
 }
 

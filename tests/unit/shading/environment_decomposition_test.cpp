@@ -24,7 +24,7 @@ using glm::vec3;
 using glsl::pi;
 using test::environmentOf;
 
-scene::Environment noise(int width, int seed) {
+scene::Environment noisySky(int width, int seed) {
   std::mt19937 random(static_cast<unsigned>(seed));
   std::lognormal_distribution<float> brightness(0, 3);
   return environmentOf(
@@ -121,7 +121,7 @@ TEST(EnvironmentDecomposition, CubeMapsKeepTheEnergyOfTheMapAndItsPlaces) {
 }
 
 TEST(EnvironmentDecomposition, EnergyIsConservedForEveryMapAndSetting) {
-  for (const scene::Environment& e : {sunnySky(256), noise(64, 1), noise(128, 2)}) {
+  for (const scene::Environment& e : {sunnySky(256), noisySky(64, 1), noisySky(128, 2)}) {
     for (const RegionShape shape : {RegionShape::squares, RegionShape::rectangles}) {
       for (const double threshold : {0.01, 0.1}) {
         for (const int resolution : {1, 7, 32}) {
@@ -147,7 +147,7 @@ TEST(EnvironmentDecomposition, EnergyIsConservedForEveryMapAndSetting) {
 }
 
 TEST(EnvironmentDecomposition, EveryTexelThatEmitsIsCovered) {
-  const scene::Environment e = noise(128, 3);
+  const scene::Environment e = noisySky(128, 3);
   const EnvironmentDecomposition d = decomposeEnvironment(e, {0.02, 16, RegionShape::squares});
   std::array<std::array<bool, 256>, 6> covered{};
   for (size_t i = 0; i < d.regions.size(); ++i)
@@ -236,7 +236,7 @@ TEST(EnvironmentDecomposition, NothingComesOfBlackAndBrokenPixelsCountAsBlack) {
 }
 
 TEST(EnvironmentDecomposition, TheSameEveryTime) {
-  const scene::Environment e = noise(128, 4);
+  const scene::Environment e = noisySky(128, 4);
   const EnvironmentDecomposition a = decomposeEnvironment(e, {0.02, 32, RegionShape::squares}),
                                  b = decomposeEnvironment(e, {0.02, 32, RegionShape::squares});
   ASSERT_EQ(a.lights.size(), b.lights.size());
@@ -247,7 +247,7 @@ TEST(EnvironmentDecomposition, TheSameEveryTime) {
 }
 
 TEST(EnvironmentDecomposition, SettingsOutOfRangeAreRefused) {
-  const scene::Environment e = noise(64, 5);
+  const scene::Environment e = noisySky(64, 5);
   EXPECT_THROW(decomposeEnvironment(e, {0, 64, RegionShape::squares}), UsageError);
   EXPECT_THROW(decomposeEnvironment(e, {1, 64, RegionShape::squares}), UsageError);
   EXPECT_THROW(decomposeEnvironment(e, {NAN, 64, RegionShape::squares}), UsageError);
