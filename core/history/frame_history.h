@@ -10,7 +10,8 @@
 // A technique whose samples of frame i are set i % k of k sets averages all sets wherever nothing was
 // hidden: where neither light nor surfaces change, pictures do not change from frame to frame. The frame
 // before the last k had the samples of this one. What differs between the two is therefore no noise but light
-// that changed, and the more it is, the less older frames count.
+// that changed, and the more it is, the less older frames count. Where a pixel has a part of a frame's
+// samples, this holds only as long as the camera stands still.
 #pragma once
 
 #include <memory>
@@ -37,8 +38,9 @@ class LIMN_API FrameHistoryService : public FrameService {
   /// Declares passes that average `light` over this frame and up to `frames` - 1 before it, and returns the
   /// result: an RGBA32F array of as many layers, rgb the sum over the frames that count and a their number, 0
   /// where nothing is lit. `light` is an RGBA32F array as large as the surfaces of `gbuffer`, of which rgb /
-  /// a is the value and a is 0 where there is none. `technique` owns the passes. Throws Error where the
-  /// frames exceed the device's limits.
+  /// a is the value and a is 0 where there is none, and below 1 in the first layer where it is of a part of
+  /// the frame's samples. `technique` owns the passes. Throws Error where the frames exceed the device's
+  /// limits.
   frame::TextureHandle average(const GBuffer& gbuffer, frame::TextureHandle light, int frames,
                                std::string_view technique);
 

@@ -3,7 +3,8 @@
 // no farther from its tangent plane than a pixel is wide.
 //
 // The frame before the first of them had the samples of this one, so that what differs between the two is no noise: light that
-// changed, for which older frames count less.
+// changed, for which older frames count less. A pixel that has a part of a frame's samples has others of them wherever the camera
+// moves: what differs there says nothing of the light.
 //
 // PARTS: layers of the light. MOVES 1: instances move; what moves with one is found where the instance was.
 #include "glsl/history/history_frame.glsl"
@@ -16,7 +17,7 @@ layout(std430) readonly buffer Instances { Instance instances[]; };
 layout(std430) readonly buffer InstancesBefore { Instance instances_before[]; };
 uniform int instance_count;
 #endif
-uniform sampler2DArray light;  // rgb / a is the value; a: 0 where there is none
+uniform sampler2DArray light;  // rgb / a is the value; a: 0 where there is none, of part 0 below 1 for a part of the samples
 uniform sampler2DArray history_light;
 uniform usampler2DArray history_surfaces;
 layout(rgba32f) writeonly uniform image2DArray averaged;  // rgb: sum over frames; a: their number
@@ -25,6 +26,7 @@ uniform int frames_kept;  // of so many frames a picture is the mean; the frame 
 
 const float least_cosine = 0.8;    // of the angle between normals
 const float least_weight = 0.1;    // of neighbours that show the same place, for a frame to count
+const float whole_share = 0.99;    // of a frame's samples, less rounding
 const float fade_of_change = 8.0;  // of weights per relative change: what changes by all of itself has an eighth of the frames
 const float whole_pixel = 1.0 / 64.0;  // pixels: nearer to a pixel's centre than that is at it
 
@@ -86,6 +88,7 @@ void main() {
   if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
   vec4 totals[PARTS];
   bool lit = false;
+  bool whole = texelFetch(light, ivec3(pixel, 0), 0).a >= whole_share;
   for (int part = 0; part < PARTS; ++part) {
     vec4 sum = texelFetch(light, ivec3(pixel, part), 0);
     totals[part] = sum.a > 0.0 ? vec4(sum.rgb / sum.a, 1.0) : vec4(0.0);
@@ -122,7 +125,7 @@ void main() {
     }
 #endif
     if (int(f.age) == frames_kept) {
-      fade = fade_of_change * change(totals, values) / float(frames_kept);
+      if (whole || f.still != 0u) fade = fade_of_change * change(totals, values) / float(frames_kept);
     } else {
       float weight = max(1.0 - fade * float(f.age), 0.0);
       for (int part = 0; part < PARTS; ++part) totals[part] += weight * values[part];
