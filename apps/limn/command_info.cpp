@@ -1,4 +1,4 @@
-// limn info: what this machine offers, and which technique modules limn uses.
+// limn info: what this machine offers, and which technique modules limn uses; or what a scene holds.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -11,6 +11,8 @@
 #include "core/base/error.h"
 #include "core/base/version.h"
 #include "core/gpu/device.h"
+#include "core/scene_io/load.h"
+#include "core/session/find.h"
 #include "core/technique/registry.h"
 
 namespace limn::app {
@@ -90,12 +92,98 @@ void printModules(const nlohmann::ordered_json& modules) {
   }
 }
 
+const char* lightTypeName(const glsl::Light& light) {
+  switch (light.type) {
+    case glsl::light_rectangle:
+      return "rectangle";
+    case glsl::light_directional:
+      return "directional";
+    case glsl::light_spot:
+      return "spot";
+    default:
+      return "point";
+  }
+}
+
+/// What the scene's file holds that options name.
+nlohmann::ordered_json describe(const scene::Scene& scene) {
+  const scene::Pose pose = scene::evaluate(scene, 0);
+  nlohmann::ordered_json json{{"file", scene.file.string()},
+                              {"triangles", scene.triangles()},
+                              {"materials", scene.materials.size()},
+                              {"textures", scene.images.size()},
+                              {"size_m", nlohmann::ordered_json::array()}};
+  const glm::vec3 side = pose.bounds.empty() ? glm::vec3(0) : pose.bounds.high - pose.bounds.low;
+  for (int axis = 0; axis < 3; ++axis) json["size_m"].push_back(side[axis]);
+  for (const char* key : {"cameras", "lights", "animations"}) json[key] = nlohmann::ordered_json::array();
+  for (const scene::CameraPose& camera : pose.cameras) json["cameras"].push_back(camera.name);
+  for (std::size_t i = 0; i < pose.lights.size(); ++i) {
+    const glsl::Light& light = pose.lights[i];
+    nlohmann::ordered_json one{{"name", pose.lightNames[i]}, {"type", lightTypeName(light)}};
+    if (light.type == glsl::light_rectangle) one["sides_m"] = {light.length_u, light.length_v};
+    json["lights"].push_back(std::move(one));
+  }
+  for (const scene::Animation& animation : scene.animations)
+    json["animations"].push_back({{"name", animation.name}, {"seconds", animation.duration}});
+  json["environment"] = static_cast<bool>(scene.environment);
+  json["medium"] = scene.medium.present();
+  return json;
+}
+
+/// Names with what is said of each in brackets, on one line.
+std::string namesText(const nlohmann::ordered_json& things) {
+  std::string text;
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    const auto& thing = things[i];
+    const std::string given = thing.is_string() ? thing : thing["name"];
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", given.empty() ? fmt::format("#{}", i) : given);
+    if (thing.contains("sides_m"))
+      text += fmt::format(" (rectangle, {:.4g} x {:.4g} m)", thing["sides_m"][0].get<double>(),
+                          thing["sides_m"][1].get<double>());
+    else if (thing.contains("type"))
+      text += fmt::format(" ({})", thing["type"].get<std::string>());
+    else if (thing.contains("seconds"))
+      text += fmt::format(" ({:.4g} s)", thing["seconds"].get<double>());
+  }
+  return text.empty() ? "none" : text;
+}
+
+void printScene(const nlohmann::ordered_json& scene) {
+  const auto side = [&](std::size_t axis) { return scene["size_m"][axis].get<double>(); };
+  fmt::print("{}: {} triangles, {} materials, {} textures, {:.4g} x {:.4g} x {:.4g} m\n",
+             scene["file"].get<std::string>(), scene["triangles"].get<std::uint64_t>(),
+             scene["materials"].get<std::size_t>(), scene["textures"].get<std::size_t>(), side(0), side(1),
+             side(2));
+  for (const char* key : {"cameras", "lights", "animations"})
+    fmt::print("{}: {}\n", key, namesText(scene[key]));
+  for (const char* key : {"environment", "medium"})
+    fmt::print("{}: {}\n", key, scene[key].get<bool>() ? "the scene's own" : "none");
+}
+
+void runScene(const std::string& nameOrFile, bool json) {
+  const scene::Scene scene = scene::load(session::findScene(nameOrFile));
+  for (const std::string& warning : scene.warnings) warn(warning);
+  const nlohmann::ordered_json described = describe(scene);
+  if (json)
+    fmt::print("{}\n", described.dump(2));
+  else
+    printScene(described);
+}
+
 }  // namespace
 
 Action addInfoCommand(CLI::App& command) {
   auto json = std::make_shared<bool>(false);
+  auto scene = std::make_shared<std::string>();
+  command.add_option("scene", *scene,
+                     "Say what this scene holds instead: cameras, lights and animations by the "
+                     "names that options take, and its size");
   command.add_flag("--json", *json, "Print JSON");
-  return [json] {
+  return [json, scene] {
+    if (!scene->empty()) {
+      runScene(*scene, *json);
+      return 0;
+    }
     nlohmann::ordered_json devices = nlohmann::ordered_json::array();
     for (const DeviceDescription& device : listDevices()) devices.push_back(describe(device));
     const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);

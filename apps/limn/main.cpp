@@ -73,7 +73,9 @@ int main(int argc, char** argv) {
     command->add_flag("-q,--quiet", quiet, "Print only results and errors: no progress, notes or warnings");
   };
   add("list", "List the techniques and their parameters, or scenes, environments, suites", addListCommand);
-  add("info", "Show the OpenGL back ends, devices and limits of this machine, and the technique modules",
+  add("info",
+      "Show the OpenGL back ends, devices and limits of this machine and the technique modules, or what a "
+      "scene holds",
       addInfoCommand);
   add("import", "Convert a model of another format to a scene, by assimp", addImportCommand);
   add("render", "Render a scene with techniques to a file", addRenderCommand);

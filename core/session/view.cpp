@@ -136,6 +136,22 @@ bool wantsDefaultLights(const SceneQuestion& question, const View& view, const W
   return true;
 }
 
+/// Warns of a medium that hides the scene: coefficients are per metre, and scenes may be large.
+void warnOfOpaqueMedium(const View& view, const Warn& warn) {
+  constexpr double kDepth = 20;  // over the diameter: what is seen in the middle has e^-20 of its light left
+  const scene::Medium& medium = view.scene.medium;
+  if (!warn || !medium.present() || medium.inhomogeneous()) return;
+  const glm::vec3 extinction = medium.sigmaA + medium.sigmaS;
+  const double least = std::min({extinction.x, extinction.y, extinction.z});
+  const double diameter = 2.0 * view.pose.bounds.radius();
+  if (least * diameter > kDepth)
+    warn(
+        fmt::format("the medium's optical depth is {:.3g} over the {:.3g} m of the scene, so that little "
+                    "or nothing is seen; --sigma-a and --sigma-s are per metre, {:.3g} of both together is a "
+                    "depth of 1",
+                    least * diameter, diameter, 1 / diameter));
+}
+
 void addEnvironment(const SceneQuestion& question, scene::Scene& scene) {
   if (!question.environment.empty())
     scene.environment = scene::loadEnvironment(findEnvironment(question.environment), scene.warnings);
@@ -240,6 +256,7 @@ View open(const SceneQuestion& question, const Warn& warn) {
   if (view.defaultLights && !view.scene.environment)
     view.scene.environment = scene::loadEnvironment(findDefaultEnvironment(), view.scene.warnings);
   relight(view, question);
+  warnOfOpaqueMedium(view, warn);
   if (!question.light.empty()) view.light = findNamed("light", question.light, view.pose.lightNames);
   return view;
 }

@@ -163,6 +163,24 @@ TEST(DefaultLights, BringAnEnvironmentToScenesThatHaveNone) {
   EXPECT_NE(referenceHash(unlit()), referenceHash(off));
 }
 
+/// Coefficients are per metre: what is haze in a room hides a valley.
+TEST(Medium, IsWarnedOfWhereItHidesTheScene) {
+  SceneQuestion question;
+  question.scene = "balls";
+  const double diameter = 2 * open(question).pose.bounds.radius();
+  const auto said = [&](double depth) {
+    question.sigmaS = std::to_string(0.25 * depth / diameter);
+    question.sigmaA = std::to_string(0.75 * depth / diameter);
+    std::string lines;
+    open(question, [&](const std::string& line) { lines += line; });
+    return lines;
+  };
+  EXPECT_EQ(said(19).find("optical depth"), std::string::npos);
+  EXPECT_THAT(said(40), testing::HasSubstr("optical depth is 40 over"));
+  question.grid = "smoke";  // its density is less than 1 nearly everywhere
+  EXPECT_EQ(said(40).find("optical depth"), std::string::npos);
+}
+
 TEST(DefaultLights, LeaveScenesAsTheyAreLitUnlessAskedFor) {
   SceneQuestion gem;
   gem.scene = "gem";
