@@ -16,6 +16,6 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
 set(CPACK_DEBIAN_PACKAGE_DEPENDS libgl1-mesa-dri)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libosmesa6, bash-completion")
-# Modules are built against the installed headers.
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "cmake, g++, python3, libglm-dev, libfmt-dev, ffmpeg")
+# Modules are built against the installed headers; movies and models of other formats are other programs' work.
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "cmake, make, g++, python3, libglm-dev, libfmt-dev, libegl-dev, ffmpeg, assimp-utils")
 include(CPack)
