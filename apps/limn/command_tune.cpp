@@ -237,13 +237,26 @@ class Tuning {
     return c;
   }
 
+  /// Measures how many times as long a frame's G-buffer and shading take in full size as in a look.
+  void measureRest(const bench::TuneSetting& setting) {
+    const bench::Case large = caseOf(setting, bench::scaleOf(plan_)), small = caseOf(setting, plan_.look);
+    measureCases({small, large}, "tune, comparing sizes");
+    const bench::CostSplit &above = rowOf(large).cost.split, &below = rowOf(small).cost.split;
+    rest_ = below.rest > 0 ? std::max(1.0, above.rest / below.rest) : pixelsOver(small);
+  }
+
+  void measureCases(const std::vector<bench::Case>& cases, const std::string& progressName) {
+    folder_->measure(cases, progressName);
+    for (bench::Row& row : folder_->rows()) rows_[row.key] = std::move(row);
+  }
+
   std::vector<bench::TuneFigures> measured(std::span<const bench::TuneSetting> settings,
                                            const bench::TuneEffort& effort) {
+    if (effort.divisor > 1 && !rest_) measureRest(settings.front());
     std::vector<bench::Case> cases;
     for (const bench::TuneSetting& setting : settings) cases.push_back(caseOf(setting, effort));
     const char* what = effort.divisor > 1 || effort.turns < plan_.full.turns ? "tune, trying" : "tune";
-    folder_->measure(cases, fmt::format("{} {} settings", what, cases.size()));
-    for (bench::Row& row : folder_->rows()) rows_[row.key] = std::move(row);
+    measureCases(cases, fmt::format("{} {} settings", what, cases.size()));
     std::vector<bench::TuneFigures> figures;
     for (const bench::Case& c : cases) figures.push_back(figuresOf(c));
     return figures;
@@ -256,8 +269,13 @@ class Tuning {
       if (failure_.empty()) failure_ = fmt::format("{}: {}", bench::label(c), row.failure);
       return {0, 0, true};
     }
-    const double pixels = double(base_.width) * base_.height / (double(c.width) * c.height);
-    return {bench::badness(goal_.metric, *value), bench::msAtPixels(row, pixels), false};
+    return {bench::badness(goal_.metric, *value), bench::msAtPixels(row, pixelsOver(c), rest_.value_or(1)),
+            false};
+  }
+
+  /// How many times as many pixels the picture has that is asked for.
+  double pixelsOver(const bench::Case& c) const {
+    return double(base_.width) * base_.height / (double(c.width) * c.height);
   }
 
   const bench::Row& rowOf(const bench::Case& c) const {
@@ -349,7 +367,8 @@ class Tuning {
   bench::Case base_;
   std::optional<ResultsFolder> folder_;
   std::map<std::string, bench::Row> rows_;
-  std::string failure_;  ///< the first one
+  std::optional<double> rest_;  ///< factor of the time of what is not the technique's, nor maps, in full size
+  std::string failure_;         ///< the first one
 };
 
 int runTune(TuneArguments options) {

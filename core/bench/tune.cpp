@@ -72,13 +72,20 @@ std::vector<std::pair<std::string, std::string>> changedParameters(const TuneSpa
 }
 
 TunePlan tunePlan(int width, int height, int frames, int turns) {
-  constexpr int least = 48;  // pixels of the shorter side: fewer would be mostly silhouettes
+  // Pixels of the shorter side: pictures with fewer are mostly silhouettes and take as long as larger ones.
+  constexpr int least = 96;
   int divisor = 4;
   while (divisor > 1 && std::min(width, height) / divisor < least) divisor /= 2;
   // Rows are known by size, frames and warm-up: those of different efforts must not be taken for each other.
   return {{divisor, std::min(3, (frames + 2) / 3), 1, 1},
           {1, (frames + 1) / 2, 2, (turns + 2) / 3},
           {1, frames, 3, turns}};
+}
+
+TuneEffort scaleOf(const TunePlan& plan) {
+  TuneEffort effort = plan.look;
+  effort.divisor = 1;
+  return effort;
 }
 
 double badness(const MetricInfo& metric, double value) {
@@ -94,11 +101,11 @@ double badness(const MetricInfo& metric, double value) {
   return value;
 }
 
-double msAtPixels(const Row& row, double pixels) {
+double msAtPixels(const Row& row, double pixels, double rest) {
   const CostSplit& split = row.cost.split;
-  const double fixed = split.maps + split.filters, growing = split.technique + split.rest;
-  const double now = row.cost.frameMs.median;
-  return fixed + growing > 0 ? now * (fixed + growing * pixels) / (fixed + growing) : now * pixels;
+  const double now = split.maps + split.filters + split.technique + split.rest;
+  const double then = split.maps + split.filters + split.technique * pixels + split.rest * rest;
+  return row.cost.frameMs.median * (now > 0 ? then / now : pixels);
 }
 
 Ratio frameMsInterval(const Row& row) {

@@ -68,8 +68,11 @@ struct TunePlan {
 };
 
 /// Returns the plan for pictures of that size whose full effort has these frames and turns. Looks take a
-/// quarter of width and height, as far as 48 pixels are left.
+/// quarter of width and height, as far as 96 pixels are left.
 LIMN_API TunePlan tunePlan(int width, int height, int frames, int turns);
+
+/// Returns the effort of a picture of full size that says what times of looks at small ones are worth.
+LIMN_API TuneEffort scaleOf(const TunePlan& plan);
 
 /// Holds what was measured of a setting.
 struct TuneFigures {
@@ -83,8 +86,9 @@ struct TuneFigures {
 LIMN_API double badness(const MetricInfo& metric, double value);
 
 /// Returns the median time of the row's frames at `pixels` times as many pixels: maps and filters take as
-/// long as before, everything else grows with the pixels.
-LIMN_API double msAtPixels(const Row& row, double pixels);
+/// long as before, the technique's own passes grow with the pixels, and the rest, whose G-buffer is bound by
+/// triangles in small pictures, takes `rest` times as long.
+LIMN_API double msAtPixels(const Row& row, double pixels, double rest);
 
 /// Returns the median time of the row's frames with its interval of 95 %, as that of ratios.
 LIMN_API Ratio frameMsInterval(const Row& row);

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 
+#include "core/bench/private/tune_allowance.h"
 #include "core/bench/tune.h"
 
 namespace limn::bench {
@@ -11,64 +12,18 @@ namespace {
 // Tuned on the model of tests/unit/bench/bench_tune_test.cpp and on balls and robot (docs/tune.md).
 constexpr double kClearlyFaster = 0.9, kClearlyBetter = 0.97;  // a few frames scatter by about a tenth
 constexpr double kHopeless = 3;           // another technique is better by this factor in both figures
+constexpr double kBehind = 0.8;           // another technique keeps the limit and is better by this factor
 constexpr double kNearBelow = 2;          // how far from the limit a walk spreads
 constexpr double kNearAbove = 2;          // the same above it
 constexpr double kLookReach = 1.5;        // how far above the limit a look may be wrong
 constexpr double kCheckReach = 1.1;       // the same of a check
 constexpr std::size_t kLeastLeading = 2;  // settings of a technique that a walk goes on from
-constexpr std::size_t kLeastChecked = 6, kLeastMeasured = 3, kMostMeasured = 12;
-constexpr double kShare = 0.14;          // of the exhaustive grid's cost that a search may take
-constexpr double kMeasuredShare = 0.06;  // of the settings that are measured in full
-constexpr double kCheckedShare = 0.55;   // of what is left for checks and looks
-constexpr double kCheapCheck = 1.0 / 3;  // of a full measurement's cost: dearer checks save nothing
-constexpr double kOnceFrames = 2;    // frames that take as long as what each setting costs once: its shaders
-constexpr double kFixedShare = 0.5;  // of a frame that does not grow with the pixels: its maps
+constexpr std::size_t kMostMeasured = 12;
 
 constexpr double kLeast = 1e-12;  // figures below are taken for it
 
 double logOf(double value) {
   return std::log(std::max(value, kLeast));
-}
-
-/// What a measurement costs, in frames of the full size: one is compared, then come the turns, of which the
-/// first has its frames twice, as a whole and by passes.
-double costOf(const TuneEffort& effort) {
-  const double frames =
-      1.0 + effort.warmup + 2 * effort.frames + (effort.turns - 1) * (effort.warmup + effort.frames);
-  return kOnceFrames + frames * (kFixedShare + (1 - kFixedShare) / (effort.divisor * effort.divisor));
-}
-
-/// How many settings a search may measure with each effort, each as dear as the mean of all.
-struct Allowance {
-  std::size_t looks = 0, checks = 0, measured = 0;
-};
-
-/// Settings that differ from the defaults on one axis at most: with less than that, nothing is known of a
-/// space.
-std::size_t starCount(const TuneSpace& space) {
-  std::size_t count = 1;
-  for (const TuneAxis& axis : space.axes) count += axis.values.size() - 1;
-  return count;
-}
-
-Allowance allowanceOf(std::span<const TuneSpace> spaces, const TunePlan& plan) {
-  double settings = 0;
-  std::size_t star = 0;
-  for (const TuneSpace& space : spaces) {
-    settings += static_cast<double>(settingCount(space));
-    star += starCount(space);
-  }
-  const double look = costOf(plan.look), check = costOf(plan.check), full = costOf(plan.full);
-  const auto whole = [](double count) { return static_cast<std::size_t>(std::clamp(count, 0.0, 1e9)); };
-  Allowance allowance;
-  allowance.measured = std::max(kLeastMeasured, whole(kMeasuredShare * settings));
-  double left = kShare * settings * full - static_cast<double>(allowance.measured) * full;
-  if (check < kCheapCheck * full) {
-    allowance.checks = std::max(kLeastChecked, whole(kCheckedShare * left / check));
-    left *= 1 - kCheckedShare;
-  }
-  allowance.looks = std::max(star, whole(left / look));
-  return allowance;
 }
 
 /// What is known of one setting.
@@ -308,27 +263,62 @@ class Search {
     return f;
   }
 
-  /// Those that cost no more together than `count` of mean time: first those of which nothing can be
-  /// predicted, then the best by what is.
+  /// Whether a setting of another technique keeps the limit, and this one misses it by far or is worse: steps
+  /// from here come last.
+  bool isBehind(std::size_t space, const TuneFigures& f) const {
+    return std::ranges::any_of(known_, [&](const auto& entry) {
+      const auto& [other, known] = entry;
+      return other.space != space && !known.figures.failed && keeps(known.figures) &&
+             (constrained(f) > kNearAbove * bound() || objective(known.figures) < kBehind * objective(f));
+    });
+  }
+
+  /// How little is to be expected of steps from a setting: the objective where it keeps the limit, and after
+  /// those how far it misses it.
+  std::pair<bool, double> lateness(const TuneFigures& f) const {
+    return keeps(f) ? std::pair(false, objective(f)) : std::pair(true, distance(f));
+  }
+
+  /// Settings by the objective that is expected of them, which counts for less where they miss the limit.
+  std::vector<TuneSetting> byPromise(const std::map<TuneSetting, TuneFigures>& expected) const {
+    std::vector<TuneSetting> settings;
+    for (const auto& [setting, figures] : expected) settings.push_back(setting);
+    std::ranges::stable_sort(settings, {}, [&](const TuneSetting& setting) {
+      const TuneFigures& f = expected.at(setting);
+      const double excess = std::max(1.0, constrained(f) / bound());
+      return std::pair(excess > kLookReach, objective(f) * excess * excess);
+    });
+    return settings;
+  }
+
+  /// Those that cost no more together than `count` of mean time: steps of which nothing can be predicted, in
+  /// techniques that none is ahead of; then the best by what is predicted; then the other steps.
   std::vector<TuneSetting> likeliest(const std::map<TuneSetting, Step>& settings, double count) const {
-    std::vector<TuneSetting> chosen;
-    std::map<TuneSetting, Known> expected;
+    std::map<TuneSetting, TuneFigures> expected;
+    std::vector<TuneSetting> ahead, behind;
     for (const auto& [setting, step] : settings) {
-      const std::optional<TuneFigures> figures = predicted(setting, step);
-      if (figures) {
-        expected[setting] = {*figures};
-      } else if (count >= 1) {
-        chosen.push_back(setting);
-        --count;
-      }
+      const TuneFigures& from = known_.at(step.from).figures;
+      if (const std::optional<TuneFigures> figures = predicted(setting, step))
+        expected[setting] = *figures;
+      else
+        (isBehind(setting.space, from) ? behind : ahead).push_back(setting);
     }
+    std::ranges::stable_sort(ahead, {}, [&](const TuneSetting& setting) {
+      return lateness(known_.at(settings.at(setting).from).figures);
+    });
     const double mean = meanMs();
-    const auto all = [](const Known&) { return true; };
-    for (const TuneSetting& setting : best(expected, expected.size(), all, kLookReach)) {
-      count -= priceOf(expected.at(setting).figures, mean);
-      if (count < 0) break;
-      chosen.push_back(setting);
-    }
+    std::vector<TuneSetting> chosen;
+    const auto add = [&](const std::vector<TuneSetting>& more, auto price) {
+      for (const TuneSetting& setting : more) {
+        count -= price(setting);
+        if (count < 0) return;
+        chosen.push_back(setting);
+      }
+    };
+    const auto one = [](const TuneSetting&) { return 1.0; };
+    add(ahead, one);
+    add(byPromise(expected), [&](const TuneSetting& s) { return priceOf(expected.at(s), mean); });
+    add(behind, one);
     return chosen;
   }
 
@@ -372,7 +362,7 @@ class Search {
 TuneResult tune(std::span<const TuneSpace> spaces, const TuneLimit& limit, const TunePlan& plan,
                 const TuneMeasure& measure) {
   Search search(spaces, limit, measure);
-  const Allowance allowance = allowanceOf(spaces, plan);
+  const TuneAllowance allowance = allowanceOf(spaces, plan);
   search.walk(plan.look, allowance.looks);
   search.check(plan.check, allowance.checks);
   search.measureBest(plan.full, allowance.measured);
