@@ -21,6 +21,23 @@ inline glsl::IncidentLight lightFrom(float degrees, const glm::vec3& irradiance 
           irradiance};
 }
 
+/// A square of 0.6 rad, `degrees` from the normal, that faces the surface, in side x side samples.
+inline std::vector<glsl::IncidentLight> squareOfLights(float degrees, int side) {
+  const glm::vec3 towards = lightFrom(degrees).direction;
+  const glsl::Frame frame = glsl::frame_around(towards);
+  const float piece = 0.6f / float(side);
+  std::vector<glsl::IncidentLight> lights;
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j) {
+      const glm::vec2 at =
+          0.6f * ((glm::vec2(float(i), float(j)) + glm::vec2(0.5f)) / float(side) - glm::vec2(0.5f));
+      const glsl::SampleSender sender{towards + at.x * frame.t + at.y * frame.b, piece * piece,
+                                      piece * frame.t, glsl::vertex_pack_normal(-towards)};
+      lights.push_back(glsl::incident_light(sender, glm::vec3(1), glm::vec3(0)));
+    }
+  return lights;
+}
+
 inline GlossyLobes lobesOf(float roughness, const std::vector<glsl::IncidentLight>& lights, float widen = 0) {
   GlossyLobes lobes;
   lobes.set(metal(roughness), lights, widen);

@@ -228,21 +228,7 @@ TEST(GlossyLobes, WideningStandsForASquare) {
     float roughness;
     double plain, widened;
   };
-  const glm::vec3 towards = lightFrom(40).direction;
-  const glsl::Frame frame = glsl::frame_around(towards);
-  const auto square = [&](int side) {
-    std::vector<glsl::IncidentLight> lights;
-    for (int i = 0; i < side; ++i)
-      for (int j = 0; j < side; ++j) {
-        const glm::vec2 at =
-            0.6f * ((glm::vec2(float(i), float(j)) + glm::vec2(0.5f)) / float(side) - glm::vec2(0.5f));
-        const float piece = 0.6f / float(side);
-        const glsl::SampleSender sender{towards + at.x * frame.t + at.y * frame.b, piece * piece,
-                                        piece * frame.t, glsl::vertex_pack_normal(-towards)};
-        lights.push_back(glsl::incident_light(sender, glm::vec3(1), glm::vec3(0)));
-      }
-    return lights;
-  };
+  const auto square = [](int side) { return squareOfLights(40, side); };
   for (const Row& row :
        {Row{0.1f, 10.8, 0.53}, Row{0.2f, 2.9, 0.41}, Row{0.3f, 1.2, 0.27}, Row{0.5f, 0.25, 0.085}}) {
     const GlossyLobes exact = lobesOf(row.roughness, square(row.roughness < 0.15f ? 64 : 32));

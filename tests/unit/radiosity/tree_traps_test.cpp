@@ -38,21 +38,7 @@ TEST(TreeTraps, AxesThatDoNotFollowTheSurfaceTakeMoreCells) {
 
 /// A square of 0.6 rad close to the horizon, as one sample.
 TEST(TreeTraps, GrazingSamplesThatAreNotWidenedAreTooBright) {
-  const glm::vec3 towards = lightFrom(80).direction;
-  const glsl::Frame frame = glsl::frame_around(towards);
-  const auto square = [&](int side) {
-    std::vector<glsl::IncidentLight> lights;
-    for (int i = 0; i < side; ++i)
-      for (int j = 0; j < side; ++j) {
-        const glm::vec2 at =
-            0.6f * ((glm::vec2(float(i), float(j)) + glm::vec2(0.5f)) / float(side) - glm::vec2(0.5f));
-        const float piece = 0.6f / float(side);
-        const glsl::SampleSender sender{towards + at.x * frame.t + at.y * frame.b, piece * piece,
-                                        piece * frame.t, glsl::vertex_pack_normal(-towards)};
-        lights.push_back(glsl::incident_light(sender, glm::vec3(1), glm::vec3(0)));
-      }
-    return lights;
-  };
+  const auto square = [](int side) { return squareOfLights(80, side); };
   const auto brightest = [](const GlossyLobes& lobes) {
     float most = 0;
     for (int i = 0; i < 160; ++i)
