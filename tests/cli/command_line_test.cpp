@@ -162,13 +162,13 @@ TEST(CommandLine, InfoTellsARendererOrWhyThereIsNone) {
 TEST(CommandLine, InfoOfASceneNamesWhatOptionsTake) {
   const Outcome outcome = limn({"info", "gem", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto json = nlohmann::json::parse(outcome.out);
-  EXPECT_GT(json["triangles"], 0);
-  EXPECT_EQ(json["size_m"].size(), 3u);
+  const auto scene = nlohmann::json::parse(outcome.out);
+  EXPECT_GT(scene["triangles"], 0);
+  EXPECT_EQ(scene["size_m"].size(), 3u);
   std::vector<std::string> options = {"render", "gem", "--size", "16x12", "--out", "/dev/null/none.exr"};
   for (const auto& [option, name] :
-       {std::pair("--camera", json["cameras"].at(0)), std::pair("--light", json["lights"].at(0)["name"]),
-        std::pair("--animation", json["animations"].at(0)["name"])})
+       {std::pair("--camera", scene["cameras"].at(0)), std::pair("--light", scene["lights"].at(0)["name"]),
+        std::pair("--animation", scene["animations"].at(0)["name"])})
     options.insert(options.end(), {option, name});
   EXPECT_THAT(limn(options).err, HasSubstr("/dev/null")) << "the names exist, the folder does not";
   EXPECT_THAT(limn({"info", "balls"}).out, testing::MatchesRegex("[^\n]*balls.glb: [0-9]+ triangles[^\n]*\n"
