@@ -1,4 +1,5 @@
-# Unity builds: a folder's sources compiled as one, in half the time. scripts/build asks for it where there are no tests.
+# Unity builds: a folder's sources compiled as one, in half the time. scripts/build asks for it where there are no tests, since some
+# of these need commands of single sources.
 # limn_unite(TARGET GROUP SOURCES...): makes the sources of TARGET such a group. The test structure.unity compiles them so.
 option(LIMN_UNITY "Compile the sources of each folder at once" OFF)
 

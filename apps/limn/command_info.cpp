@@ -105,6 +105,11 @@ const char* lightTypeName(const glsl::Light& light) {
   }
 }
 
+/// What options take for a camera, light or animation.
+std::string nameOf(const std::string& given, std::size_t index) {
+  return given.empty() ? fmt::format("#{}", index) : given;
+}
+
 /// What the scene's file holds that options name.
 nlohmann::ordered_json describe(const scene::Scene& scene) {
   const scene::Pose pose = scene::evaluate(scene, 0);
@@ -116,15 +121,17 @@ nlohmann::ordered_json describe(const scene::Scene& scene) {
   const glm::vec3 side = pose.bounds.empty() ? glm::vec3(0) : pose.bounds.high - pose.bounds.low;
   for (int axis = 0; axis < 3; ++axis) json["size_m"].push_back(side[axis]);
   for (const char* key : {"cameras", "lights", "animations"}) json[key] = nlohmann::ordered_json::array();
-  for (const scene::CameraPose& camera : pose.cameras) json["cameras"].push_back(camera.name);
+  for (std::size_t i = 0; i < pose.cameras.size(); ++i)
+    json["cameras"].push_back(nameOf(pose.cameras[i].name, i));
   for (std::size_t i = 0; i < pose.lights.size(); ++i) {
     const glsl::Light& light = pose.lights[i];
-    nlohmann::ordered_json one{{"name", pose.lightNames[i]}, {"type", lightTypeName(light)}};
+    nlohmann::ordered_json one{{"name", nameOf(pose.lightNames[i], i)}, {"type", lightTypeName(light)}};
     if (light.type == glsl::light_rectangle) one["sides_m"] = {light.length_u, light.length_v};
     json["lights"].push_back(std::move(one));
   }
-  for (const scene::Animation& animation : scene.animations)
-    json["animations"].push_back({{"name", animation.name}, {"seconds", animation.duration}});
+  for (std::size_t i = 0; i < scene.animations.size(); ++i)
+    json["animations"].push_back(
+        {{"name", nameOf(scene.animations[i].name, i)}, {"seconds", scene.animations[i].duration}});
   json["environment"] = static_cast<bool>(scene.environment);
   json["medium"] = scene.medium.present();
   return json;
@@ -133,10 +140,9 @@ nlohmann::ordered_json describe(const scene::Scene& scene) {
 /// Names with what is said of each in brackets, on one line.
 std::string namesText(const nlohmann::ordered_json& things) {
   std::string text;
-  for (std::size_t i = 0; i < things.size(); ++i) {
-    const auto& thing = things[i];
-    const std::string given = thing.is_string() ? thing : thing["name"];
-    text += fmt::format("{}{}", text.empty() ? "" : ", ", given.empty() ? fmt::format("#{}", i) : given);
+  for (const auto& thing : things) {
+    const std::string name = thing.is_string() ? thing : thing["name"];
+    text += (text.empty() ? "" : ", ") + name;
     if (thing.contains("sides_m"))
       text += fmt::format(" (rectangle, {:.4g} x {:.4g} m)", thing["sides_m"][0].get<double>(),
                           thing["sides_m"][1].get<double>());

@@ -46,9 +46,9 @@ std::vector<std::string> earlierFiles(const fs::path& folder) {
 }
 
 void removeFiles(const fs::path& folder, const std::vector<std::string>& files) {
-  std::error_code error;  // folders that hold something else stay
   for (const std::string& file : files)
-    if (const fs::path path = fileInFolder(folder, file); !path.empty()) fs::remove(path, error);
+    if (!fileInFolder(folder, file).empty()) fs::remove(folder / file);
+  std::error_code error;  // folders that hold something else stay
   for (const char* name : {"contents/before", "contents/after", "contents", "shaders"})
     fs::remove(folder / name, error);
 }

@@ -242,7 +242,7 @@ class Tuning {
     const bench::Case large = caseOf(setting, bench::scaleOf(plan_)), small = caseOf(setting, plan_.look);
     measureCases({small, large}, "tune, comparing sizes");
     const bench::CostSplit &above = rowOf(large).cost.split, &below = rowOf(small).cost.split;
-    rest_ = below.rest > 0 ? std::max(1.0, above.rest / below.rest) : pixelsOver(small);
+    rest_ = below.rest > 0 && above.rest > 0 ? std::max(1.0, above.rest / below.rest) : pixelsOver(small);
   }
 
   void measureCases(const std::vector<bench::Case>& cases, const std::string& progressName) {

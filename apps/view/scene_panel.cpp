@@ -181,7 +181,7 @@ void ViewerWindow::environmentLightRows(SceneQuestion& wanted) {
   if (!state_.scene.environment.empty()) {
     nameCell("as lights",
              "Area lights at infinity stand for it, so that every technique shadows it: how much "
-             "of a light's energy a row of texels must add for it to grow; smaller: more lights");
+             "of a light's energy a row of texels must add for it to grow; smaller: fewer lights");
     auto threshold = static_cast<float>(state_.scene.environmentLights);
     ImGui::SliderFloat("##threshold", &threshold, 0, 0.1f, threshold > 0 ? "%.3f" : "no",
                        ImGuiSliderFlags_AlwaysClamp);

@@ -5,6 +5,7 @@
 namespace limn::bench {
 namespace {
 
+// Tuned like the constants of tune_search.cpp.
 constexpr double kShare = 0.15;          // of the exhaustive grid's cost that a search may take
 constexpr double kMeasuredShare = 0.06;  // of the settings that are measured in full
 constexpr double kCheckedShare = 0.55;   // of what is left for checks and looks

@@ -9,7 +9,7 @@
 namespace limn::bench {
 namespace {
 
-// Tuned on the model of tests/unit/bench/bench_tune_test.cpp and on balls and robot (docs/tune.md).
+// Tuned on the model of tests/unit/bench/bench_tune_test.cpp and on the grid of balls (docs/tune.md).
 constexpr double kClearlyFaster = 0.9, kClearlyBetter = 0.97;  // a few frames scatter by about a tenth
 constexpr double kHopeless = 3;           // another technique is better by this factor in both figures
 constexpr double kBehind = 0.8;           // another technique keeps the limit and is better by this factor

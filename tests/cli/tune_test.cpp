@@ -1,5 +1,6 @@
 // The search for settings from outside.
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/limn_program.h"
@@ -56,6 +57,21 @@ TEST_F(TuneCommand, AnswersWithACommandItsErrorAndItsTime) {
   const std::string whole = rows.substr(0, rows.rfind('\n', rows.size() / 2) + 1);
   EXPECT_EQ(tune(question).status, 0);
   EXPECT_EQ(contents(folder_ / "out/results.jsonl").substr(0, whole.size()), whole);
+}
+
+/// Times of small pictures are brought to the full size by one setting that is tried in both.
+TEST_F(TuneCommand, LargePicturesAreTriedInSmallOnes) {
+  const Outcome outcome = limn({"tune", "cornell_box", "--size", "256x192", "--steps", "1", "--spp", "1",
+                                "--frames", "1", "--turns", "1", "--techniques", "hard_shadow_map",
+                                "--max-error", "rmse=1", "--out", folder_ / "out", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::map<std::string, int> tried;  // rows with the warm-up of tries, by size
+  std::ifstream rows(folder_ / "out/results.jsonl");
+  for (std::string line; std::getline(rows, line);)
+    if (const auto row = nlohmann::json::parse(line); row["warmup"] == 1) ++tried[row["size"].dump()];
+  EXPECT_GT(tried["[128,96]"], 1);
+  EXPECT_EQ(tried["[256,192]"], 1);
+  EXPECT_GT(nlohmann::json::parse(outcome.out)["answer"]["ms"], 0);
 }
 
 TEST_F(TuneCommand, SaysWhatComesNearestToALimitThatNothingKeeps) {

@@ -6,12 +6,13 @@
 namespace limn::app {
 namespace {
 
-/// Frames drawn within `seconds` in which no event comes, each in no time; waits are `late` seconds longer
-/// than asked.
-int framesWithoutEvents(Pace& pace, double seconds, bool moving, bool minimised, double late = 1e-4) {
+constexpr double kLate = 1e-4;  ///< seconds that waits are longer than asked
+
+/// Frames drawn within `seconds` in which no event comes, each in no time.
+int framesWithoutEvents(Pace& pace, double seconds, bool moving, bool minimised) {
   int frames = 0;
   for (double now = 0; now < seconds; ++frames) {
-    const double wait = pace.patience(moving, minimised) + late;
+    const double wait = pace.patience(moving, minimised) + kLate;
     pace.waited(wait);
     now += wait;
   }
