@@ -14,8 +14,8 @@
 namespace limn::frame {
 namespace {
 
-constexpr int kSize = 8;
-const gpu::TextureDesc kDesc{.format = GL_R32F, .width = kSize, .height = kSize};
+constexpr int kRandomSide = 8;
+const gpu::TextureDesc kDesc{.format = GL_R32F, .width = kRandomSide, .height = kRandomSide};
 
 constexpr gpu::EmbeddedSource kRandomSources[] = {
     {"sum.comp.glsl",
@@ -117,7 +117,7 @@ class FrameGraphRandom : public GlTest {
     float weight[4] = {0, 0, step.keepsOld ? 1.0f : 0.0f, step.constant};
     for (size_t i = 0; i < step.sources.size(); ++i) weight[i] = 1;
     context.use(program).set4("weight", weight);
-    context.dispatch(kSize, kSize, 1, 8, 8);
+    context.dispatch(kRandomSide, kRandomSide, 1, 8, 8);
   }
 
   /// What a version holds in this frame.
@@ -151,7 +151,7 @@ class FrameGraphRandom : public GlTest {
   }
 
   static float texel(const gpu::Texture& texture) {
-    std::vector<float> values(kSize * kSize);
+    std::vector<float> values(kRandomSide * kRandomSide);
     texture.read(0, GL_RED, GL_FLOAT, values.data(), values.size() * sizeof(float));
     EXPECT_THAT(values, ::testing::Each(values.front()));
     return values.front();
