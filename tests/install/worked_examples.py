@@ -94,8 +94,7 @@ def add_material_field():
 
 
 def commands():
-    """The build's own commands by their source, relative to the source tree: (words, object). Tests compiled several at once
-    (LIMN_UNITE_TESTS) have none."""
+    """The build's own commands by their source, relative to the source tree: (words, object)."""
     found = {}
     for entry in json.loads((BUILD / "compile_commands.json").read_text()):
         file = pathlib.Path(entry["file"])
@@ -108,7 +107,7 @@ def commands():
 def flags(known, sources):
     """What the build compiles these sources with, less optimisation and precompiled headers, and with the copy's folders."""
     chosen = []
-    for source in (s for s in sources if s in known or not s.startswith("tests/")):
+    for source in sources:
         words = iter(known[source][0][1:])
         for word in words:
             pair = [word, next(words)] if word in ("-include", "-isystem", "-o", "-c") else [word]
@@ -157,7 +156,7 @@ def build_check():
                      .replace("@PROJECT_SOURCE_DIR@", str(tree)).replace("@CMAKE_BINARY_DIR@", str(BUILD)))
     linked = [str(file.relative_to(tree)) for pattern in LINKED for file in sorted(tree.glob(pattern))]
     known, free = commands(), unaffected()
-    kept = [source for source in linked if source in known and known[source][1] in free]
+    kept = [source for source in linked if known[source][1] in free]
     changed = [source for source in linked if source not in kept] + COMPILED
     compiled = compile_all([HERE / "check.cpp", paths, *(tree / source for source in changed)], flags(known, linked + COMPILED))
     program = scratch / "bin/check"  # which finds scenes as limn does: beside the folder it is in
