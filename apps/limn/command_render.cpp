@@ -188,13 +188,16 @@ int runRender(const RenderArguments& options) {
   render::Settings settings;
   settings.techniques = options.technique.resolve(registry);
   settings.term = parseTerm(options.scene.term);
-  settings.dynamic = !options.staticFrames;
   settings.channels = options.out.extension() == ".exr";
   render::checkTechniques(settings.techniques, settings.term);
 
   session::View view = session::open(options.scene, warn);
   settings.size = view.size;
   settings.light = view.light;
+  // The frames of an anti-aliased picture differ in the camera alone; what does not depend on it is found
+  // once.
+  const bool timed = options.repeat > 0 || !options.stats.empty();
+  settings.dynamic = !options.staticFrames && (timed || view.aa == 1);
   const auto context = Context::create(options.backend.contextOptions());
   gpu::Device device(*context);
   render::Renderer renderer(device, view.scene, options.shaders);
