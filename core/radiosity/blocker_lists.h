@@ -39,7 +39,7 @@ class LIMN_API BlockerLists {
   /// Stands for the number of triangles of a leaf that has no list: it is turned away from the light or in
   /// full shadow, its list would be longer than kLongest, or there was no room.
   static constexpr uint32_t kUnlisted = ~0u;
-  static constexpr uint32_t kLongest = 1024;
+  static constexpr uint32_t kLongest = 4096;
   /// Marks a triangle in a list that hides from both sides; of the others only the front does.
   static constexpr uint32_t kBothSides = 1u << 31;
 
