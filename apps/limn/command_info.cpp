@@ -105,11 +105,6 @@ const char* lightTypeName(const glsl::Light& light) {
   }
 }
 
-/// What options take for a camera, light or animation.
-std::string nameOf(const std::string& given, std::size_t index) {
-  return given.empty() ? fmt::format("#{}", index) : given;
-}
-
 /// What the scene's file holds that options name.
 nlohmann::ordered_json describe(const scene::Scene& scene) {
   const scene::Pose pose = scene::evaluate(scene, 0);
@@ -121,17 +116,18 @@ nlohmann::ordered_json describe(const scene::Scene& scene) {
   const glm::vec3 side = pose.bounds.empty() ? glm::vec3(0) : pose.bounds.high - pose.bounds.low;
   for (int axis = 0; axis < 3; ++axis) json["size_m"].push_back(side[axis]);
   for (const char* key : {"cameras", "lights", "animations"}) json[key] = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < pose.cameras.size(); ++i)
-    json["cameras"].push_back(nameOf(pose.cameras[i].name, i));
+  for (const scene::CameraPose& camera : pose.cameras) json["cameras"].push_back(camera.name);
   for (std::size_t i = 0; i < pose.lights.size(); ++i) {
     const glsl::Light& light = pose.lights[i];
-    nlohmann::ordered_json one{{"name", nameOf(pose.lightNames[i], i)}, {"type", lightTypeName(light)}};
+    nlohmann::ordered_json one{{"name", pose.lightNames[i]}, {"type", lightTypeName(light)}};
     if (light.type == glsl::light_rectangle) one["sides_m"] = {light.length_u, light.length_v};
     json["lights"].push_back(std::move(one));
   }
-  for (std::size_t i = 0; i < scene.animations.size(); ++i)
-    json["animations"].push_back(
-        {{"name", nameOf(scene.animations[i].name, i)}, {"seconds", scene.animations[i].duration}});
+  for (std::size_t i = 0; i < scene.animations.size(); ++i) {
+    const scene::Animation& animation = scene.animations[i];  // poses name cameras and lights, not these
+    json["animations"].push_back({{"name", animation.name.empty() ? fmt::format("#{}", i) : animation.name},
+                                  {"seconds", animation.duration}});
+  }
   json["environment"] = static_cast<bool>(scene.environment);
   json["medium"] = scene.medium.present();
   return json;
