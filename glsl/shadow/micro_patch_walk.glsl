@@ -50,7 +50,7 @@ struct TexelBox {
 // The least level at which no side of the box takes more than `most` cells.
 int box_level(TexelBox box, int most) {
   ivec2 extent = box.high - box.low;
-  int level = max(findMSB(uint(max(extent.x, extent.y) / most)), 0);
+  int level = findMSB(uint(max(max(extent.x, extent.y) / most, 1)));
   for (int i = 0; i < 2; ++i) {
     ivec2 cells = (box.high >> level) - (box.low >> level);
     if (max(cells.x, cells.y) >= most) ++level;

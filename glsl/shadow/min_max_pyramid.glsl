@@ -9,7 +9,7 @@ LIMN_BEGIN
 // The lowest level of which 2 x 2 texels cover any box of this many texels along its longer side:
 // ceil(log2(extent)). One texel of any level would not be conservative.
 LIMN_FN int min_max_level(int extent, int levels) {
-  return min(findMSB(uint(max(extent, 1) - 1)) + 1, levels - 1);
+  return min(findMSB(uint(2 * max(extent, 1) - 1)), levels - 1);
 }
 
 // The texel of `level` that covers texel x of a map of `size` texels, 0 <= x < size.

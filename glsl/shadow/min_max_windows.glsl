@@ -15,7 +15,7 @@ LIMN_FN int min_max_window(int level) { return 1 << (level + min_max_overlap); }
 // The least level at which two windows cover this many texels where they begin with a window: further ones start in time
 // only at the next.
 LIMN_FN int min_max_windows_level(int extent) {
-  return max(findMSB(uint(max(extent, 1) - 1)) - min_max_overlap, 0);
+  return max(findMSB(uint(max(extent - 1, 1))) - min_max_overlap, 0);
 }
 
 // Levels of a map of `size` texels along its longer side: what the largest box in it needs.

@@ -6,8 +6,9 @@
 #include "glsl/numeric/language.glsl"
 LIMN_BEGIN
 
-// The lowest level of which two windows cover this many texels: ceil(log2(extent)) - 1, but not below 0.
-LIMN_FN int n_buffer_level(int extent) { return max(findMSB(uint(max(extent, 1) - 1)), 0); }
+// The lowest level of which two windows cover this many texels: ceil(log2(extent)) - 1, but not below 0. findMSB() is never
+// asked for 0, here and elsewhere: its -1 passes for a large unsigned number in NVIDIA's compiler, and max() with 0 keeps it.
+LIMN_FN int n_buffer_level(int extent) { return findMSB(uint(max(extent - 1, 1))); }
 
 // Levels of a map of `size` texels along its longer side: what the largest box in it needs.
 LIMN_FN int n_buffer_levels(int size) { return n_buffer_level(size) + 1; }
