@@ -126,6 +126,20 @@ LIMN_FN float airlight_between(vec2 a, vec2 b, float share) {
   return airlight_place_of(a + b + share * (b - a));
 }
 
+// The tangent and the arc tangent with their relative precision at 0 (within 1e-7): GLSL promises none, and 0 for a small angle
+// would be divided by.
+LIMN_FN float airlight_tangent(float x) {
+  if (abs(x) > 0.25f) return tan(x);
+  float x2 = x * x;
+  return x * (1.0f + x2 / 3.0f * (1.0f + 0.4f * x2 * (1.0f + 17.0f / 42.0f * x2 * (1.0f + 62.0f / 153.0f * x2))));
+}
+LIMN_FN float airlight_arc_tangent(float x) {
+  if (abs(x) > 0.25f) return atan(x);
+  float x2 = x * x;
+  float tail = 1.0f / 7.0f - x2 * (1.0f / 9.0f - x2 / 11.0f);
+  return x * (1.0f - x2 * (1.0f / 3.0f - x2 * (1.0f / 5.0f - x2 * tail)));
+}
+
 // The rule over a part of a stretch.
 struct AirlightNodes {
   vec2 shares;   // of both nodes, as airlight_between() takes them
@@ -136,13 +150,13 @@ struct AirlightNodes {
 LIMN_FN AirlightNodes airlight_nodes(uint kind, float half_stretch, float from, float to) {
   bool parallel = airlight_parallel(kind);
   float reach = max(half_stretch, 1e-20f);
-  float scale = parallel ? reach : tan(reach);
-  float a = parallel ? scale * from : atan(scale * from);
-  float b = parallel ? scale * to : atan(scale * to);
+  float scale = parallel ? reach : airlight_tangent(reach);
+  float a = parallel ? scale * from : airlight_arc_tangent(scale * from);
+  float b = parallel ? scale * to : airlight_arc_tangent(scale * to);
   AirlightNodes nodes;
   nodes.weight = 0.5f * (b - a);
   vec2 at = vec2(0.5f * (a + b)) + (gauss_node * nodes.weight) * vec2(-1.0f, 1.0f);
-  if (!parallel) at = vec2(tan(at.x), tan(at.y));
+  if (!parallel) at = vec2(airlight_tangent(at.x), airlight_tangent(at.y));
   nodes.shares = at / scale;
   return nodes;
 }
