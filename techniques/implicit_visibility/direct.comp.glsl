@@ -32,7 +32,6 @@ void main() {
   vec3 view = from_bins(sent_direction(item % sent_count));
   bool sends = leaf.used > 0.0 && dot(view, n) > 0.0;
 #else
-  // Lambertian by its literals, so that no compiler keeps the table of glossy lobes, which the pass has with GLOSSY alone.
   SurfaceBrdf surface = SurfaceBrdf(leaf.albedo, 1.0, vec3(0.0), 0.0, 0.0, 0.0);
   vec3 view = n;
   bool sends = leaf.used > 0.0;
@@ -47,5 +46,6 @@ void main() {
     sum += leaf.albedo * sky[slot].rgb * inverse_pi;
 #endif
   }
-  direct[item] = outgoing[item] = vec4(sum, 0.0);
+  direct[item] = vec4(sum, 0.0);
+  outgoing[item] = vec4(sum, 0.0);
 }

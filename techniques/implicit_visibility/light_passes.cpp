@@ -92,11 +92,11 @@ LightPasses::Sent LightPasses::directLight(const PassRequest& r, std::span<const
     pass.read(seen->handles.seen, Access::storageLoad, "Seen", "V of each light")
         .read(seen->handles.indices, Access::storageLoad, "Indices", "which lights");
   if (sky && !glossy) pass.read(skyIrradiance, Access::storageLoad, "Sky", "irradiance of the environment");
-  if (glossy) {
-    pass.read(elements_.materials, Access::storageLoad, "Materials", "BRDFs")
-        .read(r.inputs.service<shading_maps::ShadingMapService>().ltcTable(), Access::sampled, "ltc_table",
+  if (glossy) pass.read(elements_.materials, Access::storageLoad, "Materials", "BRDFs");
+  // Some compilers keep what only glossy surfaces would look up.
+  if (glossy || seen)
+    pass.read(r.inputs.service<shading_maps::ShadingMapService>().ltcTable(), Access::sampled, "ltc_table",
               "glossy light of rectangles");
-  }
   const BufferHandle direct =
       pass.write(sent(r, "direct light"), Access::storageStore, "Direct", "reflected by leaves");
   const BufferHandle outgoing =
