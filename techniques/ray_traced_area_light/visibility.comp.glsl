@@ -15,9 +15,9 @@ uniform sampler2D blue_noise;
 uniform uint light_indices[LIGHT_COUNT];
 uniform int rays;
 
-// How far rays start above the receiver and end before the light, of the largest coordinate: depth and position of a pixel are
-// known to some 2^-21 of it.
-const float ray_clearance = 7.62939453125e-6;  // 2^-17
+// How far rays start above the receiver and end before the light, of the largest coordinate: GPUs snap vertices to a 256th of a
+// pixel, so that a pixel's depth is known to some 2e-5 of it.
+const float ray_clearance = 6.103515625e-5;  // 2^-14
 const float unlimited = 3.0e38;
 
 float largest(vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
