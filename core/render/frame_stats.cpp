@@ -15,6 +15,13 @@ namespace limn::render {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+// A GPU that was idle is several times as slow until its clock has risen, and waiting for it takes as long as
+// some frames do.
+constexpr double kLeastWarmUpMs = 300;
+constexpr double kLeastSampleMs = 20;
+constexpr int kMostFramesOfSample = 256;
 
 Json toJsonValue(const Quartiles& q) {
   return {{"median", q.median}, {"q1", q.q1}, {"q3", q.q3}, {"n", q.n}};
@@ -36,11 +43,23 @@ frame::Timing timingFrom(const std::string& text) {
   throw Error(fmt::format("timer '{}' is unknown; expected off, query or finish", text));
 }
 
+double millisecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
 double frameMilliseconds(Renderer& renderer, frame::Timing timing) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   renderer.render(timing);
   renderer.finish();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return millisecondsSince(start);
+}
+
+/// The mean of `frames` frames that follow each other as in a program that shows them.
+double meanMilliseconds(Renderer& renderer, int frames) {
+  const auto start = Clock::now();
+  for (int i = 0; i < frames; ++i) renderer.render();
+  renderer.finish();
+  return millisecondsSince(start) / frames;
 }
 
 void show(Renderer& renderer, const Playback& playback, int frame) {
@@ -48,12 +67,22 @@ void show(Renderer& renderer, const Playback& playback, int frame) {
   if (playback.fps > 0) renderer.setTime(playback.start + frame / playback.fps, playback.animation);
 }
 
-void warmUp(Renderer& renderer, int frames, const Playback& playback) {
+/// Returns what a frame takes at the end, on a GPU; else 0.
+double warmUp(Renderer& renderer, int frames, const Playback& playback) {
+  const auto start = Clock::now();
   for (int i = 0; i < frames; ++i) {
     show(renderer, playback, i);
     renderer.render();
   }
   renderer.finish();
+  if (renderer.describe().software) return 0;
+  double ms = 0;
+  int together = 1;
+  do {
+    ms = meanMilliseconds(renderer, together);
+    together = std::min(2 * together, 32);
+  } while (millisecondsSince(start) < kLeastWarmUpMs);
+  return ms;
 }
 
 double ofSorted(const std::vector<double>& samples, double p) {
@@ -95,11 +124,14 @@ double quantile(std::vector<double> samples, double p) {
 }
 
 std::vector<double> timeFrames(Renderer& renderer, int frames, int warmup, const Playback& playback) {
-  warmUp(renderer, warmup, playback);
+  const double ms = warmUp(renderer, warmup, playback);
+  const bool single = ms == 0 || playback.fps > 0;
+  const int together =
+      single ? 1 : static_cast<int>(std::clamp(kLeastSampleMs / ms, 1.0, 1.0 * kMostFramesOfSample));
   std::vector<double> samples;
   for (int i = 0; i < frames; ++i) {
     show(renderer, playback, i);
-    samples.push_back(frameMilliseconds(renderer, frame::Timing::off));
+    samples.push_back(meanMilliseconds(renderer, together));
   }
   return samples;
 }

@@ -53,7 +53,7 @@ struct FrameStats {
   int framesPerPicture = 1;  ///< that supersample() averages; all times are those of one
   std::string scene, technique;
   std::vector<std::pair<std::string, std::string>> parameters;  ///< "technique.parameter", value
-  Quartiles frameMs;  ///< wall clock between two glFinish, in a run of its own without pass timing
+  Quartiles frameMs;                   ///< as timeFrames(), in a run of its own without pass timing
   std::vector<double> frameSamplesMs;  ///< what frameMs comes from, in the order measured
   double passSumMs = 0;                ///< median over frames of the passes' sum, in the run with pass timing
   int64_t memoryBytes = 0;
@@ -68,11 +68,13 @@ struct Playback {
   double fps = 0;                ///< frames per second of the scene's time; 0: it stands still, at whatever
                                  ///< Renderer::setTime said
   int animation = scene::kNone;  ///< as Renderer::setTime
-  std::function<void()> beforeFrame{};  ///< called before each frame, outside of its time; may be empty
+  std::function<void()> beforeFrame{};  ///< called before each sample, outside of its time; may be empty
 };
 
 /// Returns the wall-clock milliseconds of each of `frames` frames between two glFinish, after `warmup`
-/// others, which show the same times as the first timed ones.
+/// others, which show the same times as the first timed ones. On a GPU the others are at least as many as
+/// take 300 ms, which is when its clock has risen, and where the scene stands still each sample is the mean
+/// of as many frames as fill 20 ms, one after the other without waiting for the GPU, as a program shows them.
 LIMN_API std::vector<double> timeFrames(Renderer& renderer, int frames, int warmup,
                                         const Playback& playback = {});
 
