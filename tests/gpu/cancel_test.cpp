@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include "core/base/error.h"
@@ -15,6 +17,12 @@ class CancelTest : public RenderTest {
   static std::vector<float> rgb(const render::Renderer& renderer) {
     const Image image = renderer.read().select({"R", "G", "B"});
     return {image.data().begin(), image.data().end()};
+  }
+
+  static float largestDifference(const std::vector<float>& a, const std::vector<float>& b) {
+    float most = 0;
+    for (size_t i = 0; i < a.size(); ++i) most = std::max(most, a[i] == b[i] ? 0 : std::abs(a[i] - b[i]));
+    return most;
   }
 
   /// Puts the last node that is seen or shines elsewhere: a light in the scenes used here.
@@ -66,7 +74,7 @@ TEST_F(CancelTest, leavesNoTrace) {
       move(scene, pose, place);
       renderer.setTime(0);
       ASSERT_TRUE(renderer.render());
-      ASSERT_EQ(rgb(renderer), wanted[static_cast<size_t>(place)])
+      ASSERT_EQ(largestDifference(rgb(renderer), wanted[static_cast<size_t>(place)]), 0)
           << name << " given up before pass " << passes;
     }
   }

@@ -233,7 +233,8 @@ TEST_F(ComparabilityTest, TexturesNormalMapsMirroringCutOutsAndVertexColoursAgre
   const test::Pair pair =
       both(scene, scene::lookAt({0.7f, 0.6f, 9}, {0, -0.4f, 0}, 0.8f), {192, 144}, Term::final);
   expectSameSurfaces(pair, {.maskedShare = 0.01});
-  EXPECT_LT(lightDifference(pair, true), 2e-3) << "emission";
+  // A GPU filters textures of 8 bits with weights of 8 bits.
+  EXPECT_LT(lightDifference(pair, true), device().software() ? 2e-3 : 4e-3) << "emission";
 }
 
 TEST_F(ComparabilityTest, HeightMapsAgreeMirroredMinifiedAndAtTheirEdges) {

@@ -5,9 +5,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <fstream>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/gpu/objects.h"
@@ -37,6 +39,21 @@ float drawnValue(Context& context, float value) {
   return pixels[4 * 63];
 }
 
+bool hasOsmesa() {
+  const std::vector<DeviceDescription> devices = listDevices();
+  return std::ranges::any_of(devices, [](const DeviceDescription& device) {
+    return device.backend == Backend::osmesa && device.problem.empty();
+  });
+}
+
+/// Of machines with a GPU some have no Mesa.
+class BackEndsTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!hasOsmesa()) GTEST_SKIP() << "OSMesa is not installed";
+  }
+};
+
 TEST(ContextTest, everyBackEndHasItsNameAndNoOther) {
   for (const Backend backend : {Backend::egl, Backend::osmesa, Backend::glfw}) {
     EXPECT_EQ(parseBackend(name(backend)), backend);
@@ -53,7 +70,7 @@ TEST(ContextTest, everyBackEndHasItsNameAndNoOther) {
       UsageError);
 }
 
-TEST(ContextTest, saysWhatItIs) {
+TEST_F(BackEndsTest, saysWhatItIs) {
   for (const Backend backend : {Backend::egl, Backend::osmesa}) {
     const auto context = Context::create({.backend = backend});
     EXPECT_TRUE(context->isCurrent());
@@ -65,7 +82,7 @@ TEST(ContextTest, saysWhatItIs) {
 }
 
 // A pitfall of Mesa: an OSMesa context that replaces a current EGL one without a release leaves no dispatch.
-TEST(ContextTest, backEndsAlternateInOneProcess) {
+TEST_F(BackEndsTest, backEndsAlternateInOneProcess) {
   for (int i = 0; i < 20; ++i) {
     const auto context =
         Context::create({.backend = i % 2 == 0 ? Backend::egl : Backend::osmesa, .debug = true});
@@ -76,7 +93,7 @@ TEST(ContextTest, backEndsAlternateInOneProcess) {
   }
 }
 
-TEST(ContextTest, liveContextsOfSeveralBackEndsTakeTurns) {
+TEST_F(BackEndsTest, liveContextsOfSeveralBackEndsTakeTurns) {
   const auto egl = Context::create({.backend = Backend::egl, .debug = true});
   const auto osmesa = Context::create({.backend = Backend::osmesa, .debug = true});
   const auto secondEgl = Context::create({.backend = Backend::egl, .debug = true});
@@ -91,7 +108,7 @@ TEST(ContextTest, liveContextsOfSeveralBackEndsTakeTurns) {
   for (Context* context : contexts) EXPECT_THAT(context->takeErrors(), IsEmpty());
 }
 
-TEST(ContextTest, destroyingOneLeavesAnotherBackEndsContextWorking) {
+TEST_F(BackEndsTest, destroyingOneLeavesAnotherBackEndsContextWorking) {
   const auto egl = Context::create({.backend = Backend::egl});
   auto osmesa = Context::create({.backend = Backend::osmesa});
   egl->makeCurrent();
@@ -101,7 +118,7 @@ TEST(ContextTest, destroyingOneLeavesAnotherBackEndsContextWorking) {
   EXPECT_EQ(drawnValue(*egl, 3), 3);
 }
 
-TEST(ContextTest, objectsDieInTheirOwnContext) {
+TEST_F(BackEndsTest, objectsDieInTheirOwnContext) {
   const auto egl = Context::create({.backend = Backend::egl, .debug = true});
   gpu::Device eglDevice(*egl);
   gpu::Buffer first(eglDevice, "first", 64);
@@ -148,14 +165,12 @@ TEST(ContextTest, errorsOfTheDriverAreCollectedOnce) {
 
 TEST(ContextTest, listsWhatThisMachineOffers) {
   const auto context = Context::create({.backend = Backend::egl});
-  bool osmesa = false, egl = false;
+  bool egl = false;
   for (const DeviceDescription& device : listDevices()) {
     EXPECT_NE(device.description.empty(), device.problem.empty());
     egl |= device.backend == Backend::egl && device.problem.empty();
-    osmesa |= device.backend == Backend::osmesa && device.problem.empty();
   }
   EXPECT_TRUE(egl);
-  EXPECT_TRUE(osmesa);
   EXPECT_TRUE(context->isCurrent());
   EXPECT_THAT(rendererOf(*context), Not(IsEmpty()));
 }
@@ -165,6 +180,7 @@ TEST(ContextDeathTest, aMachineWithoutEglIsToldSo) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
       {
+        unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");
         setenv("__EGL_VENDOR_LIBRARY_DIRS", "/nonexistent", 1);
         try {
           Context::create({.backend = Backend::egl});

@@ -72,6 +72,13 @@ class GlTest : public ::testing::Test {
   static gpu::Device& device() { return suite_->device; }
   static const gl::Functions& gl() { return suite_->context->gl(); }
 
+  /// What two programs that compute the same may differ by, of values near 1: a GPU's compiler contracts
+  /// products and sums as each program suggests, llvmpipe's nowhere.
+  static float contraction() { return device().software() ? 0 : 1e-6f; }
+
+  /// A bound on the depth of a plane, times what GPUs need: they snap vertices to a 256th of a pixel.
+  static float snapped(float bound) { return device().software() ? bound : 4 * bound; }
+
   /// The message of the Error that `action` throws; empty when it throws none.
   static std::string errorOf(const std::function<void()>& action) {
     try {

@@ -1,7 +1,9 @@
 // Each technique's picture against the one committed in its folder (techniques/NAME/golden.png; the core's
 // own in tests/golden/unshadowed.png). llvmpipe renders the same bits everywhere, so the bound is one 8-bit
-// step for differences between compilers. LIMN_UPDATE_GOLDEN=NAME writes a new one of that technique (or
-// unshadowed), =1 of all: look at them before committing.
+// step for differences between compilers. GPUs filter textures with weights of 8 bits, and where an edge
+// passes through the middle of a pixel rounding decides who has it: two steps, but for one value in a
+// thousand. LIMN_UPDATE_GOLDEN=NAME writes a new one of that technique (or unshadowed), =1 of all: look at
+// them before committing.
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kWidth = 128, kHeight = 96;
-constexpr float kAllowed = 1.01f / 255;  // of the sRGB-encoded value
+constexpr float kStep = 1.01f / 255;  // of the sRGB-encoded value
 
 class GoldenTest : public PictureTest {
  protected:
@@ -92,11 +94,18 @@ class GoldenTest : public PictureTest {
     }
     const Image8 a = readImage8(ownFile), b = readImage8(golden);
     ASSERT_EQ(a.data.size(), b.data.size());
+    const bool software = device().software();
     float worst = 0;
-    for (size_t i = 0; i < a.data.size(); ++i)
-      worst = std::max(worst, std::abs(a.data[i] - b.data[i]) / 255.f);
-    EXPECT_LE(worst, kAllowed) << "see " << failed << "/" << name << ".{actual,expected,difference}.png";
-    if (worst <= kAllowed) {
+    size_t off = 0;
+    for (size_t i = 0; i < a.data.size(); ++i) {
+      const float difference = std::abs(a.data[i] - b.data[i]) / 255.f;
+      worst = std::max(worst, difference);
+      off += difference > (software ? kStep : 2 * kStep) ? 1 : 0;
+    }
+    const size_t allowed = software ? 0 : a.data.size() / 1000;
+    EXPECT_LE(off, allowed) << "by up to " << worst << ", see " << failed << "/" << name
+                            << ".{actual,expected,difference}.png";
+    if (off <= allowed) {
       fs::remove(ownFile);
       return;
     }

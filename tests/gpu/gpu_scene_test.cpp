@@ -80,7 +80,7 @@ TEST_F(GpuSceneTest, DepthOfAPlaneIsExactAtEveryScale) {
         const glm::vec3 hit = glm::vec3(frame.camera_position) + expected * d;
         if (d.y >= 0 || std::max(std::abs(hit.x), std::abs(hit.z)) > 9.9f * scale) continue;
         ++covered;
-        EXPECT_NEAR(picture.depth[picture.at(x, y)] / expected, 1, 2e-5)
+        EXPECT_NEAR(picture.depth[picture.at(x, y)] / expected, 1, snapped(2e-5f))
             << x << "," << y << " scale " << scale;
         EXPECT_EQ(picture.instance[picture.at(x, y)], 0u);
       }

@@ -53,7 +53,9 @@ TEST_F(InhomogeneousMediaTest, AGridOfOneDensityIsHomogeneous) {
   EXPECT_EQ(stateOf(a, "core", "smoke"), "unknown");
 }
 
+/// A GPU's weights between two texels have 8 bits: the density is off by up to 1/512 of a step of the grid.
 TEST_F(InhomogeneousMediaTest, ARampAttenuatesSurfacesByItsIntegral) {
+  const double tolerance = device().software() ? 2e-3 : 5e-3;
   scene::Scene scene = asset("glass_sphere");
   scene.medium = {};
   render::Renderer clear(device(), scene);
@@ -75,7 +77,8 @@ TEST_F(InhomogeneousMediaTest, ARampAttenuatesSurfacesByItsIntegral) {
       if (!(before.at(x, y, 0) > 1e-3f) || !(truth.at(x, y, 0) > 1e-6f)) continue;
       ++compared;
       for (int c = 0; c < 3; ++c)
-        EXPECT_NEAR(double(after.at(x, y, c)), double(truth.at(x, y, c)), 2e-3 * double(before.at(x, y, c)))
+        EXPECT_NEAR(double(after.at(x, y, c)), double(truth.at(x, y, c)),
+                    tolerance * double(before.at(x, y, c)))
             << x << " " << y;
     }
   EXPECT_GT(compared, 1000);

@@ -122,6 +122,7 @@ TEST_F(ShaderLibraryTest, partsForCppAreSkipped) {
 }
 
 TEST_F(ShaderLibraryTest, warningsAreErrorsInADebugContext) {
+  if (!device().software()) GTEST_SKIP() << "what a driver warns of is its own choice";
   shaders().mount("techniques/test/", kSources);
   EXPECT_THAT(errorOf({{"techniques/test/warns.comp.glsl"}, {}}),
               HasSubstr("techniques/test/warns.comp.glsl:3: "));
@@ -138,6 +139,7 @@ TEST_F(ShaderLibraryTest, otherFailuresSayWhichProgram) {
 }
 
 TEST_F(ShaderLibraryTest, unknownUniformsAreRefused) {
+  if (!device().software()) GTEST_SKIP() << "compilers of GPUs may remove any uniform";
   shaders().mount("techniques/test/", kSources);
   Program& program = shaders().program(answer("1u"));
   EXPECT_THROW(program.set("radius", 1.0f), Error);

@@ -87,7 +87,7 @@ TEST_F(ShadowMapTest, DepthOfAPlaneIsLinearAndExactAtEveryScale) {
       }
     }
     if (first.empty()) first = maps.depth;
-    for (size_t i = 0; i < first.size(); ++i) EXPECT_NEAR(maps.depth[i], first[i], 2e-6f);
+    for (size_t i = 0; i < first.size(); ++i) EXPECT_NEAR(maps.depth[i], first[i], snapped(2e-6f));
   }
 }
 
@@ -181,9 +181,9 @@ TEST_F(ShadowMapTest, LightsThatSeeMoreThanOneMapHoldsGetAHemicube) {
       const vec3 seen = maps.views[layer].origin + maps.seen(static_cast<int>(layer), x, y);
       const bool shadowed = light.light == 1 && std::max(std::abs(p.x), std::abs(p.z)) < 0.4f;
       if (shadowed) {
-        EXPECT_NEAR(seen.y, 0.5f, 1e-4f);
+        EXPECT_NEAR(seen.y, 0.5f, snapped(1e-4f));
       } else if (light.light == 0) {
-        EXPECT_NEAR(seen.y, 0, 1e-4f) << "its own quad must not be in the way";
+        EXPECT_NEAR(seen.y, 0, snapped(1e-4f)) << "its own quad must not be in the way";
       }
     }
   }

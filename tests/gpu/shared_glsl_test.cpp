@@ -120,13 +120,15 @@ TEST_F(SharedGlslTest, everyHeaderCompilesAlone) {
     } catch (const Error& error) {
       // A header of a permutation lacks its macro, whose name is in capitals, a main program its function;
       // anything else is broken.
-      EXPECT_THAT(error.what(),
-                  AnyOf(HasSubstr("is tested but not defined"), HasSubstr("light_visibility"),
-                        HasSubstr("kernel_blockers"),
-                        HasSubstr("group_scan.glsl:7: syntax error"),  // SUM_TYPE is a type
-                        HasSubstr("no function with name 'ray_kind'"),
-                        HasSubstr("has no matching output"),  // of the vertex shader it is used with
-                        ::testing::ContainsRegex("main.[a-z]+.glsl:[0-9]+: `[A-Z][A-Z0-9_]+' undeclared")));
+      EXPECT_THAT(
+          error.what(),
+          AnyOf(HasSubstr("is tested but not defined"), HasSubstr("light_visibility"),
+                HasSubstr("kernel_blockers"),
+                HasSubstr("group_scan.glsl:7: syntax error"),  // SUM_TYPE is a type
+                HasSubstr("no function with name 'ray_kind'"), HasSubstr("undefined variable \"ray_kind\""),
+                HasSubstr("has no matching output"),  // of the vertex shader it is used with
+                ::testing::ContainsRegex("main.[a-z]+.glsl:[0-9]+: `[A-Z][A-Z0-9_]+' undeclared"),
+                ::testing::ContainsRegex("undefined variable \"[A-Z][A-Z0-9_]+\"")));
     }
   }
 }

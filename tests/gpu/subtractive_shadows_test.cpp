@@ -65,11 +65,11 @@ TEST_F(SubtractiveShadowsTest, WhereNothingIsHiddenTheLightIsTheUnshadowedOneToT
   for (const char* combine : {"subtract", "ratio", "ratio_split"})
     for (const char* block : {"1", "2", "4", "32"})
       for (const char* lights : {"1", "25", "200"})
-        EXPECT_EQ(
+        EXPECT_LE(
             largestDifference(direct(renderer, 37, 23,
                                      {shadows({{"combine", combine}, {"block", block}, {"lights", lights}})}),
                               unshadowed),
-            0)
+            contraction())
             << combine << ' ' << block << ' ' << lights;
 }
 
