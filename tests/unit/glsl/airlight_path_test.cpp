@@ -153,6 +153,16 @@ TEST_P(AirlightPathTest, AStretchOfNoLengthHasNoLight) {
   EXPECT_NEAR(nodes.shares.y, gauss_node, 1e-6f);
 }
 
+/// As their names say, from angles that are nearly 0 to beyond where the series end.
+TEST(AirlightTangents, KeepTheirPrecision) {
+  for (float x = 1e-30f; x < 1.5f; x *= 1.01f) {
+    for (const float angle : {x, -x}) {
+      EXPECT_NEAR(airlight_tangent(angle) / std::tan(double{angle}), 1, 3e-7) << angle;
+      EXPECT_NEAR(airlight_arc_tangent(angle) / std::atan(double{angle}), 1, 3e-7) << angle;
+    }
+  }
+}
+
 std::string lightKindName(const ::testing::TestParamInfo<uint32_t>& kind) {
   constexpr const char* names[] = {"Point", "Disc", "DistantRectangle", "Rectangle"};
   return names[kind.param];
