@@ -20,6 +20,10 @@ constexpr double kCheckReach = 1.1;       // the same of a check
 constexpr std::size_t kLeastLeading = 2;  // settings of a technique that a walk goes on from
 constexpr std::size_t kMostMeasured = 12;
 
+// A predicted setting that misses the limit by a factor x counts as x to this power: errors are predicted
+// more exactly than times.
+constexpr double kLateWeight = 2, kWrongWeight = 4;
+
 constexpr double kLeast = 1e-12;  // figures below are taken for it
 
 double logOf(double value) {
@@ -279,20 +283,22 @@ class Search {
     return keeps(f) ? std::pair(false, objective(f)) : std::pair(true, distance(f));
   }
 
-  /// Settings by the objective that is expected of them, which counts for less where they miss the limit.
+  /// Settings by the objective that is expected of them, which counts for far less where they miss the limit.
   std::vector<TuneSetting> byPromise(const std::map<TuneSetting, TuneFigures>& expected) const {
     std::vector<TuneSetting> settings;
     for (const auto& [setting, figures] : expected) settings.push_back(setting);
     std::ranges::stable_sort(settings, {}, [&](const TuneSetting& setting) {
       const TuneFigures& f = expected.at(setting);
       const double excess = std::max(1.0, constrained(f) / bound());
-      return std::pair(excess > kLookReach, objective(f) * excess * excess);
+      return std::pair(excess > kLookReach,
+                       objective(f) * std::pow(excess, limit_.ms ? kLateWeight : kWrongWeight));
     });
     return settings;
   }
 
-  /// Those that cost no more together than `count` of mean time: steps of which nothing can be predicted, in
-  /// techniques that none is ahead of; then the best by what is predicted; then the other steps.
+  /// Those that cost no more together than `count` of mean time: single steps from the defaults of which
+  /// nothing can be predicted, in techniques that none is ahead of; then the best by what is predicted; where
+  /// there is neither, other steps of which nothing can be predicted.
   std::vector<TuneSetting> likeliest(const std::map<TuneSetting, Step>& settings, double count) const {
     std::map<TuneSetting, TuneFigures> expected;
     std::vector<TuneSetting> ahead, behind;
@@ -301,7 +307,7 @@ class Search {
       if (const std::optional<TuneFigures> figures = predicted(setting, step))
         expected[setting] = *figures;
       else
-        (isBehind(setting.space, from) ? behind : ahead).push_back(setting);
+        (isOfStar(setting) && !isBehind(setting.space, from) ? ahead : behind).push_back(setting);
     }
     std::ranges::stable_sort(ahead, {}, [&](const TuneSetting& setting) {
       return lateness(known_.at(settings.at(setting).from).figures);
@@ -310,15 +316,18 @@ class Search {
     std::vector<TuneSetting> chosen;
     const auto add = [&](const std::vector<TuneSetting>& more, auto price) {
       for (const TuneSetting& setting : more) {
-        count -= price(setting);
-        if (count < 0) return;
+        const double cost = price(setting);
+        if (cost > count) continue;  // a cheaper one may fit
+        count -= cost;
         chosen.push_back(setting);
       }
     };
-    const auto one = [](const TuneSetting&) { return 1.0; };
-    add(ahead, one);
+    const auto asBefore = [&](const TuneSetting& s) {
+      return priceOf(known_.at(settings.at(s).from).figures, mean);
+    };
+    add(ahead, asBefore);
     add(byPromise(expected), [&](const TuneSetting& s) { return priceOf(expected.at(s), mean); });
-    add(behind, one);
+    if (chosen.empty()) add(behind, asBefore);
     return chosen;
   }
 

@@ -218,6 +218,44 @@ TEST(Tune, KeepsToASmallPartOfTheCostOfSmallGridsToo) {
     expectNearTheGrid({.ms = ms}, tunePlan(128, 96, 10, 5), 1);
 }
 
+// As in chess: one step is slow and alone keeps the limit, another one is quick, and only together are they
+// the answer, while quick settings abound that miss the limit.
+TEST(Tune, CombinesASlowStepThatKeepsTheLimitWithAQuickOne) {
+  struct Change {
+    double ms, error;
+  };
+  struct Kind {
+    Change base;
+    std::vector<std::vector<Change>> axes;  // of each value; the default changes nothing
+  };
+  const std::vector<Change> size{{0.41, 0.99}, {1, 1}, {3.3, 1}}, views{{1, 1}, {3, 0.746}};
+  const std::vector<Kind> kinds{
+      {{90, 0.1387}, {{{0.95, 1.09}, {1, 1}, {1.2, 0.946}}, {{0.95, 1.01}, {1, 1}, {1.05, 1}}, size, views}},
+      {{58, 0.1495}, {{{0.93, 1.004}, {1, 1}, {1.16, 1}}, size, views}},
+      {{9, 0.209}, {{{0.79, 1.006}, {1, 1}, {1.95, 1}}}}};
+  std::vector<TuneSpace> spaces;
+  for (const Kind& kind : kinds) {
+    TuneSpace& space = spaces.emplace_back();
+    for (const std::vector<Change>& axis : kind.axes)
+      space.axes.push_back(
+          {"t.p", std::vector<std::string>(axis.size(), "value"), axis.size() == 3 ? 1u : 0u});
+  }
+  const auto truth = [&](std::span<const TuneSetting> settings, const TuneEffort&) {
+    std::vector<TuneFigures> figures;
+    for (const TuneSetting& s : settings) {
+      TuneFigures& f = figures.emplace_back(kinds[s.space].base.error, kinds[s.space].base.ms);
+      for (std::size_t i = 0; i < s.at.size(); ++i) {
+        f.error *= kinds[s.space].axes[i][s.at[i]].error;
+        f.ms *= kinds[s.space].axes[i][s.at[i]].ms;
+      }
+    }
+    return figures;
+  };
+  const TuneResult result = tune(spaces, {.error = 0.1057}, tunePlan(128, 96, 3, 2), truth);
+  ASSERT_FALSE(result.answers.empty());
+  EXPECT_LT(truth({&result.answers.front(), 1}, {}).front().ms, 1.1 * 90 * 0.41 * 3);
+}
+
 TEST(Tune, SaysWhatComesNearestWhereNothingKeepsTheLimit) {
   Model model = softShadows(2);
   const auto measured = [&](std::span<const TuneSetting> settings, const TuneEffort& effort) {
