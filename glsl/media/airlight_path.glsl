@@ -126,7 +126,7 @@ LIMN_FN float airlight_between(vec2 a, vec2 b, float share) {
   return airlight_place_of(a + b + share * (b - a));
 }
 
-// The tangent and the arc tangent with their relative precision at 0 (within 1e-7): GLSL promises none, and 0 for a small angle
+// The tangent and the arc tangent with their relative precision at 0 (within 3e-7): GLSL promises none, and 0 for a small angle
 // would be divided by.
 LIMN_FN float airlight_tangent(float x) {
   if (abs(x) > 0.25f) return tan(x);

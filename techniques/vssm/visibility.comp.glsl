@@ -4,7 +4,7 @@
 // What the bounds of the search kernel prove lit or dark is so, whatever the moments say. EARLY_OUT 0: the rest is computed all
 // the same. BLOCKERS_ADAPTIVE and VISIBILITY_ADAPTIVE: which subdivision. CONTACT 1: narrow penumbrae from jittered bilinear
 // texels.
-// NVIDIA's compiler would write the loops over a light's views out, which takes it minutes and makes nothing quicker.
+// NVIDIA's compiler would write the loops over a light's views out, which takes it minutes. Frames of one view take as long.
 #pragma optionNV(unroll none)
 #include "glsl/numeric/sampling.glsl"
 #include "glsl/shadow/kernel_blockers.glsl"
