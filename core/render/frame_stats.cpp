@@ -47,13 +47,6 @@ double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-double frameMilliseconds(Renderer& renderer, frame::Timing timing) {
-  const auto start = Clock::now();
-  renderer.render(timing);
-  renderer.finish();
-  return millisecondsSince(start);
-}
-
 /// The mean of `frames` frames that follow each other as in a program that shows them.
 double meanMilliseconds(Renderer& renderer, int frames) {
   const auto start = Clock::now();
@@ -143,7 +136,8 @@ std::vector<double> timeOwnPasses(Renderer& renderer, std::string_view technique
   std::vector<double> samples;
   for (int i = 0; i < frames; ++i) {
     show(renderer, playback, i);
-    frameMilliseconds(renderer, timer);
+    renderer.render(timer);
+    renderer.finish();
     double sum = 0;
     for (const frame::PassTime& pass : renderer.graph().passTimes())
       if (pass.technique == technique && pass.role == frame::PassRole::technique) sum += pass.milliseconds;
@@ -164,7 +158,8 @@ FrameStats measure(Renderer& renderer, int frames, int warmup, const Playback& p
   std::map<std::pair<std::string, std::string>, size_t> position;
   for (int i = 0; i < frames; ++i) {
     show(renderer, playback, i);
-    frameMilliseconds(renderer, stats.timer);
+    renderer.render(stats.timer);
+    renderer.finish();
     const auto times = renderer.graph().passTimes();
     if (i == 0)
       for (size_t p = 0; p < times.size(); ++p) position[{times[p].technique, times[p].name}] = p;

@@ -245,7 +245,8 @@ TEST_F(ParaboloidMapsTest, ABatchOfManyViewsInSixteenBits) {
       draw(scene, pose, views, {.count = batch, .first = batch, .size = 16, .format = GL_R16});
   const Drawn first = draw(scene, pose, views, {.count = batch, .size = 16});
   EXPECT_NE(fine.depth, first.depth);
-  for (size_t i = 0; i < fine.depth.size(); ++i) ASSERT_NEAR(fine.depth[i], coarse.depth[i], 0.6f / 65535);
+  const float steps = device().software() ? 0.51f : 0.6f;
+  for (size_t i = 0; i < fine.depth.size(); ++i) ASSERT_NEAR(fine.depth[i], coarse.depth[i], steps / 65535);
 }
 
 TEST_F(ParaboloidMapsTest, BatchesFitTheDevice) {
