@@ -31,13 +31,15 @@ void add_patch(PatchProjection projection, MicroPatch found);
 // Whether no further patch can change the answer.
 bool patches_suffice();
 
+const float no_neighbour = 3.0e38;  // where one ends that does not block
+
 // A patch's left or lower side (its own are `low` and `high`), moved to where the neighbour ends if that blocks, too: no
 // light leaks between texels of one blocker, and without LIMN_PATCH_UNION what both cover counts once.
-float side_or_neighbour(float low, float high, bool blocks, float neighbour) {
+float side_or_neighbour(float low, float high, float neighbour) {
 #if LIMN_PATCH_UNION
-  return blocks ? min(neighbour, low) : low;
+  return min(neighbour, low);
 #else
-  return blocks ? min(neighbour, high) : low;
+  return neighbour < no_neighbour ? min(neighbour, high) : low;
 #endif
 }
 
@@ -182,28 +184,26 @@ void walk_box(ShadowCursor cursor, PatchProjection projection, AlignedPatches al
   do {
     PatchLine rows[strip + 1];
     for (int i = 0; i <= strip; ++i) rows[i] = cell_row(cursor, cells, y + i - 1);
-    bool counts[strip];
-    for (int i = 0; i < strip; ++i) counts[i] = y + i <= high.y;
     PatchLine column = cell_column(cursor, cells, low.x - 1);
-    MicroPatch left[strip];
+    float left[strip];  // where the neighbours of each row end
     for (int i = 0; i < strip; ++i) {
-      left[i] = fetched_patch(cursor, cells, column, rows[i + 1]);
-      left[i].blocks = left[i].blocks && low.x > 0;
+      MicroPatch beside = fetched_patch(cursor, cells, column, rows[i + 1]);
+      left[i] = beside.blocks && low.x > 0 ? beside.high.x : no_neighbour;
     }
     int x = low.x;
     do {
       column = cell_column(cursor, cells, x);
-      MicroPatch below = fetched_patch(cursor, cells, column, rows[0]);
-      below.blocks = below.blocks && y > 0;
+      MicroPatch beside = fetched_patch(cursor, cells, column, rows[0]);
+      float below = beside.blocks && y > 0 ? beside.high.y : no_neighbour;
       for (int i = 0; i < strip; ++i) {
         MicroPatch own = fetched_patch(cursor, cells, column, rows[i + 1]);
         MicroPatch found = own;
-        found.blocks = own.blocks && counts[i];
-        found.low.x = side_or_neighbour(own.low.x, own.high.x, left[i].blocks, left[i].high.x);
-        found.low.y = side_or_neighbour(own.low.y, own.high.y, below.blocks, below.high.y);
+        found.blocks = own.blocks && y + i <= high.y;
+        found.low.x = side_or_neighbour(own.low.x, own.high.x, left[i]);
+        found.low.y = side_or_neighbour(own.low.y, own.high.y, below);
         add_patch(projection, found);
-        left[i] = own;
-        below = own;
+        left[i] = own.blocks ? own.high.x : no_neighbour;
+        below = own.blocks ? own.high.y : no_neighbour;
       }
     } while (++x <= high.x);
     y += strip;

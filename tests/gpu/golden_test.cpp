@@ -1,9 +1,9 @@
 // Each technique's picture against the one committed in its folder (techniques/NAME/golden.png; the core's
 // own in tests/golden/unshadowed.png). llvmpipe renders the same bits everywhere, so the bound is one 8-bit
-// step for differences between compilers. GPUs filter textures with weights of 8 bits, and where an edge
-// passes through the middle of a pixel rounding decides who has it: two steps, but for one value in a
-// thousand. LIMN_UPDATE_GOLDEN=NAME writes a new one of that technique (or unshadowed), =1 of all: look at
-// them before committing.
+// step for differences between compilers. Mesa's zink generates other code for the same processor, and GPUs
+// filter textures with weights of 8 bits, and where an edge passes through the middle of a pixel rounding
+// decides who has it: two steps, but for one value in a thousand. LIMN_UPDATE_GOLDEN=NAME writes a new one of
+// that technique (or unshadowed), =1 of all: look at them before committing.
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,6 +23,8 @@ constexpr float kStep = 1.01f / 255;  // of the sRGB-encoded value
 
 class GoldenTest : public PictureTest {
  protected:
+  static bool overZink() { return context().info().renderer.starts_with("zink"); }
+
   /// A grey sky with a window of light in it.
   static scene::Environment sky() {
     scene::Environment e;
@@ -94,15 +96,15 @@ class GoldenTest : public PictureTest {
     }
     const Image8 a = readImage8(ownFile), b = readImage8(golden);
     ASSERT_EQ(a.data.size(), b.data.size());
-    const bool software = device().software();
+    const bool sameBits = device().software() && !overZink();
     float worst = 0;
     size_t off = 0;
     for (size_t i = 0; i < a.data.size(); ++i) {
       const float difference = std::abs(a.data[i] - b.data[i]) / 255.f;
       worst = std::max(worst, difference);
-      off += difference > (software ? kStep : 2 * kStep) ? 1 : 0;
+      off += difference > (sameBits ? kStep : 2 * kStep) ? 1 : 0;
     }
-    const size_t allowed = software ? 0 : a.data.size() / 1000;
+    const size_t allowed = sameBits ? 0 : a.data.size() / 1000;
     EXPECT_LE(off, allowed) << "by up to " << worst << ", see " << failed << "/" << name
                             << ".{actual,expected,difference}.png";
     if (off <= allowed) {
@@ -120,9 +122,12 @@ TEST_F(GoldenTest, Unshadowed) {
 }
 
 TEST_F(GoldenTest, EveryTechnique) {
-  for (const TechniquePlugin* plugin : testedTechniques())
+  for (const TechniquePlugin* plugin : testedTechniques()) {
+    // The Vulkan driver beneath zink (lavapipe of Mesa 22.3) crashes in this one's pass "light points".
+    if (overZink() && plugin->info->name == std::string_view("hierarchical_subsurface")) continue;
     check(plugin->info->name, {technique(plugin->info->name)},
           fs::path(test::kSourceDir) / "techniques" / plugin->info->name / "golden.png");
+  }
 }
 
 }  // namespace
