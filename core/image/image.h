@@ -1,8 +1,9 @@
 // Declares pictures in memory and on disk, with any number of named float channels of linear values.
 //
-// Channel names are those of EXR. limn writes: R, G, B (linear radiance, or the term asked for), A, Z
-// (distance from the camera plane, metres), coverage (0 or 1), id (instance index, -1 where there is none;
-// exact in float up to 2^24), albedo.R/G/B, N.X/Y/Z (world space shading normal).
+// Channel names are those of EXR. limn writes: R, G, B (linear radiance, or the term asked for), A (the share
+// of the pixel that shows a surface or a background), Z (distance from the camera plane, metres), coverage (1
+// where its middle shows a surface), id (instance index, -1 where there is none; exact in float up to 2^24),
+// albedo.R/G/B, N.X/Y/Z (world space shading normal).
 #pragma once
 
 #include <array>

@@ -161,6 +161,11 @@ constexpr bool isFactor(Term term) {
   return term == Term::visibility || term == Term::relief;
 }
 
+/// Returns whether a picture of the term shows something where no surface is seen.
+constexpr bool showsBackground(Term term, bool environment, bool medium) {
+  return (term == Term::final && (environment || medium)) || (term == Term::media && medium);
+}
+
 /// Returns the row of one term. Throws std::logic_error for a value that is not a term.
 LIMN_API const TermInfo& termInfo(Term term);
 LIMN_API const char* name(Term term);

@@ -79,21 +79,25 @@ std::vector<std::string> channelNames(Term term) {
                                  "albedo.R", "albedo.G", "albedo.B", "N.X",      "N.Y", "N.Z"};
   if (term == Term::visibility) names.insert(names.end(), {"V", "Vw", "masked"});
   if (term == Term::relief) names.insert(names.end(), {"W", "Ww", "masked"});
+  names.emplace_back("A");
   return names;
 }
 
-Image renderFeatures(const View& view, Term term, const std::stop_token& stop,
+Image renderFeatures(const View& view, Term term, bool background, const std::stop_token& stop,
                      std::vector<unsigned char>& covered) {
   Image image(view.width, view.height, channelNames(term));
   covered.assign(view.pixelCount(), 0);
   tbb::parallel_for(size_t{0}, view.pixelCount(), [&](size_t pixel) {
     if (stop.stop_requested()) return;
+    const std::span<float> out = imagePixel(view, image, pixel);
     Surface surface;
     if (!view.surface(pixel, surface)) {
-      imagePixel(view, image, pixel)[6] = -1.f;  // id: nobody
+      out[6] = -1.f;  // id: nobody
+      out.back() = background ? 1.f : 0.f;
       return;
     }
     covered[pixel] = 1;
+    out.back() = 1;
     const glsl::GBufferSurface& values = surface.values;
     const std::array<float, 9> features{surface.depth,
                                         1.f,
@@ -104,7 +108,7 @@ Image renderFeatures(const View& view, Term term, const std::stop_token& stop,
                                         values.normal.x,
                                         values.normal.y,
                                         values.normal.z};
-    std::copy(features.begin(), features.end(), imagePixel(view, image, pixel).begin() + 4);
+    std::copy(features.begin(), features.end(), out.begin() + 4);
   });
   return image;
 }
@@ -160,7 +164,11 @@ Image downsample(const Image& image, int aa) {
   if (aa == 1) return image;
   Image result(image.width() / aa, image.height() / aa, image.channels());
   result.metadata() = image.metadata();
-  const auto averaged = [&](size_t channel) { return channel < 4 || channel == 13 || channel == 14; };
+  const size_t last = static_cast<size_t>(image.channelCount()) - 1;
+  // R, G, B, variance, V and Vw or W and Ww, and A.
+  const auto averaged = [&](size_t channel) {
+    return channel < 4 || channel == 13 || channel == 14 || channel == last;
+  };
   for (int y = 0; y < result.height(); ++y)
     for (int x = 0; x < result.width(); ++x) {
       const std::span<float> out = result.pixel(x, y);

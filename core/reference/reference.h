@@ -121,8 +121,8 @@ struct Request {
   /// samples.
   double noise = 0;
   uint64_t seed = 0;
-  int aa =
-      1;  ///< aa x aa samples per pixel, on a regular grid and equally weighted; other channels: the centre's
+  int aa = 1;  ///< aa x aa samples per pixel, on a regular grid and equally weighted, as A; other channels:
+               ///< the centre's
   int threads = 0;  ///< 0: all cores
   ProgressCallback progress{};
   /// File with the state of unfinished work, resumed if it fits the request; empty: none.
@@ -136,8 +136,8 @@ struct Request {
 /// Holds the result of a request. Channels: R, G, B (radiance in W/(sr m^2); V or W three times for these),
 /// variance (of the mean of R, G, B, estimated), Z, coverage, id (-1: nothing seen), albedo.R/G/B, N.X/Y/Z;
 /// for visibility also V, Vw (V weighted by irradiance) and masked (1 where no part of the light lies above
-/// the geometric tangent plane: V = 1); for relief W, Ww and masked. Metadata: noise_rms, spp, seed, term,
-/// light, bounces, interfaces.
+/// the geometric tangent plane: V = 1); for relief W, Ww and masked; and A (1 where a surface or a background
+/// is seen). Metadata: noise_rms, spp, seed, term, light, bounces, interfaces.
 struct Result {
   Image image;
   double noiseRms =

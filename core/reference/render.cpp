@@ -116,7 +116,9 @@ class Work {
         needed_(static_cast<uint32_t>(request.spp + 1) / 2) {
     scene::setCamera(view_.frame, request.camera, request.pose.bounds, view_.width, view_.height);
     scene::setMedium(view_.frame, request.scene.medium, request.pose.bounds);
-    image_ = renderFeatures(view_, request.term, request.stop, covered_);
+    const bool background = showsBackground(request.term, static_cast<bool>(request.scene.environment),
+                                            request.scene.medium.present());
+    image_ = renderFeatures(view_, request.term, background, request.stop, covered_);
     checkStop();
     state_.sums.resize(2 * view_.pixelCount());
     prepareMedia();

@@ -24,7 +24,7 @@ struct Reader {
       for (int x = 0; x < size.x; ++x) f(image.pixel(x, size.y - 1 - y), static_cast<size_t>(y) * size.x + x);
   }
 
-  void channels(const GBuffer& gbuffer, Image& image) const {
+  void channels(const GBuffer& gbuffer, bool background, Image& image) const {
     const auto depth = texture<float>(gbuffer.depth, GL_RED, GL_FLOAT, 1);
     const auto instance = texture<uint32_t>(gbuffer.instance, GL_RED_INTEGER, GL_UNSIGNED_INT, 1);
     const auto albedo = texture<float>(gbuffer.albedo, GL_RGBA, GL_FLOAT, 4);
@@ -34,6 +34,7 @@ struct Reader {
       pixel[3] = depth[i];
       pixel[4] = covered ? 1.f : 0.f;
       pixel[5] = covered ? static_cast<float>(instance[i]) : -1.f;
+      pixel[12] = covered || background ? 1.f : 0.f;
       if (!covered) return;
       const glm::vec3 colour =
           glsl::gbuffer_colour_decode(glm::vec3(albedo[4 * i], albedo[4 * i + 1], albedo[4 * i + 2]));
@@ -49,12 +50,12 @@ struct Reader {
 }  // namespace
 
 Image readPicture(const frame::FrameGraph& graph, const Settings& settings, frame::TextureHandle picture,
-                  const GBuffer* gbuffer) {
+                  const GBuffer* gbuffer, bool background) {
   const Reader reader{graph, settings.size};
   std::vector<std::string> names{"R", "G", "B"};
   if (gbuffer)
     names.insert(names.end(),
-                 {"Z", "coverage", "id", "albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z"});
+                 {"Z", "coverage", "id", "albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z", "A"});
   Image image(settings.size.x, settings.size.y, names);
   if (isFactor(settings.term)) {
     const auto v = reader.texture<float>(picture, GL_RED, GL_FLOAT, 1);
@@ -66,7 +67,7 @@ Image readPicture(const frame::FrameGraph& graph, const Settings& settings, fram
       for (size_t c = 0; c < 3; ++c) pixel[c] = rgba[4 * i + c];
     });
   }
-  if (gbuffer) reader.channels(*gbuffer, image);
+  if (gbuffer) reader.channels(*gbuffer, background, image);
   return image;
 }
 

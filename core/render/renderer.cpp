@@ -119,7 +119,10 @@ const scene::Pose& Renderer::pose() {
 Image Renderer::read() const {
   const Implementation& self = *implementation_;
   const bool channels = self.settings.channels && self.gbuffer.depth;
-  return readPicture(self.builtGraph(), self.settings, self.output, channels ? &self.gbuffer : nullptr);
+  const bool background = showsBackground(self.settings.term, static_cast<bool>(self.scene.environment),
+                                          self.scene.medium.present());
+  return readPicture(self.builtGraph(), self.settings, self.output, channels ? &self.gbuffer : nullptr,
+                     background);
 }
 
 frame::FrameGraph& Renderer::graph() {

@@ -112,7 +112,8 @@ class LIMN_API Renderer {
   int framesOfPicture() const;
 
   /// Returns the last frame: R, G, B (visibility: three equal channels), and with Settings::channels Z,
-  /// coverage, id (-1: nothing seen), albedo.*, N.*. Waits for the GPU. Throws Error without one.
+  /// coverage, id (-1: nothing seen), albedo.*, N.*, A (1 where a surface or a background is seen). Waits for
+  /// the GPU. Throws Error without one.
   Image read() const;
 
   /// Returns the last frame, tone-mapped (Settings::display): RGBA8, bottom row first. Throws Error without

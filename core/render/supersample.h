@@ -21,8 +21,8 @@ LIMN_API scene::CameraPose shifted(const scene::CameraPose& camera, const glm::d
 /// Returns a picture of which each pixel is the mean of aa x aa samples at the centres of the aa x aa parts
 /// of its area, as reference::Request::aa has them: the renderer's frames of as many cameras. `renderFrame`
 /// renders each of them, with the camera set; at the start of a sequence (Renderer::framesOfPicture()) the
-/// first of them several times. R, G, B are averaged; the other channels are those of one
-/// sample, the reference's. With aa = 1 it is the frame itself. The renderer is left with `camera`.
+/// first of them several times. R, G, B and A are averaged; the other channels are those of
+/// one sample, the reference's. With aa = 1 it is the frame itself. The renderer is left with `camera`.
 LIMN_API Image supersample(Renderer& renderer, const scene::CameraPose& camera, glm::ivec2 size, int aa,
                            const std::function<void()>& renderFrame);
 /// Does the same with Renderer::render().

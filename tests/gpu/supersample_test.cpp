@@ -93,7 +93,8 @@ TEST_F(SupersampleTest, TheReferenceHasTheSameSamples) {
     for (int y = 0; y < kSquare; ++y)
       for (int x = 0; x < kSquare; ++x) {
         EXPECT_NEAR(picture.at(x, y, 0), truth.at(x, y, 0), 1e-6f) << aa << ' ' << x << ' ' << y;
-        for (const char* channel : {"coverage", "id"})
+        EXPECT_NEAR(picture.at(x, y, picture.channel("A")), picture.at(x, y, 0), 1e-6f) << "of radiance 1";
+        for (const char* channel : {"coverage", "id", "A"})
           EXPECT_EQ(picture.at(x, y, picture.channel(channel)), truth.at(x, y, truth.channel(channel)))
               << channel << ' ' << aa << ' ' << x << ' ' << y;
       }

@@ -34,9 +34,10 @@ struct View {
 std::vector<std::string> channelNames(Term term);
 
 /// Returns which pixels show a surface, and the values that the G-buffer would hold for it: Z, coverage, id,
-/// albedo, normal, rows from the top, behind empty channels R, G, B and variance. When asked to stop, it
-/// returns what is finished.
-Image renderFeatures(const View& view, Term term, const std::stop_token& stop,
+/// albedo, normal, rows from the top, behind empty channels R, G, B and variance; and A, the last channel,
+/// where `background` says whether something shows without a surface. When asked to stop, it returns what is
+/// finished.
+Image renderFeatures(const View& view, Term term, bool background, const std::stop_token& stop,
                      std::vector<unsigned char>& covered);
 
 /// Returns the RMS of the standard deviation of the mean over the pixels that count (for factors of a light:
@@ -48,7 +49,8 @@ double noiseOf(const Integrator& integrator, Term term, const Accumulators& stat
 void develop(const Integrator& integrator, const View& view, const Request& request,
              const Accumulators& state, const std::vector<unsigned char>& covered, Image& image);
 
-/// Averages aa x aa pixels; the G-buffer's channels are those of the centre pixel (of four: the upper right).
+/// Averages aa x aa pixels; the G-buffer's channels other than A are those of the centre pixel (of four: the
+/// upper right).
 Image downsample(const Image& image, int aa);
 
 }  // namespace limn::reference

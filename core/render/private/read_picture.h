@@ -8,8 +8,8 @@
 namespace limn::render {
 
 /// Returns R, G, B of `picture`, top row first; with `gbuffer` also the channels that Renderer::read()
-/// promises. Waits for the GPU.
+/// promises, where `background` says whether something shows where no surface is seen. Waits for the GPU.
 Image readPicture(const frame::FrameGraph& graph, const Settings& settings, frame::TextureHandle picture,
-                  const GBuffer* gbuffer);
+                  const GBuffer* gbuffer, bool background);
 
 }  // namespace limn::render

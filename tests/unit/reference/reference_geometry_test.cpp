@@ -107,6 +107,8 @@ TEST(ReferenceGeometry, FeaturesAreThoseOfTheSurface) {
   EXPECT_EQ(value("N.Y", 16, 30), 1.f);
   EXPECT_EQ(value("albedo.R", 16, 30), 0.5f);
   EXPECT_EQ(value("coverage", 0, 0), 0.f);
+  EXPECT_EQ(value("A", 16, 30), 1.f);
+  EXPECT_EQ(value("A", 0, 0), 0.f);
   EXPECT_NEAR(positionOf(world, image, 16, 30).y, 0, 1e-5);
 }
 
@@ -120,9 +122,11 @@ TEST(ReferenceGeometry, SupersamplingAverages) {
   ASSERT_EQ(coarse.width(), 12);
   for (int y = 0; y < 12; ++y)
     for (int x = 0; x < 12; ++x) {
-      const float mean = 0.25f * (fine.at(2 * x, 2 * y, 0) + fine.at(2 * x + 1, 2 * y, 0) +
-                                  fine.at(2 * x, 2 * y + 1, 0) + fine.at(2 * x + 1, 2 * y + 1, 0));
-      EXPECT_NEAR(coarse.at(x, y, 0), mean, 1e-5f * (1 + mean));
+      for (const int c : {0, fine.channel("A")}) {
+        const float mean = 0.25f * (fine.at(2 * x, 2 * y, c) + fine.at(2 * x + 1, 2 * y, c) +
+                                    fine.at(2 * x, 2 * y + 1, c) + fine.at(2 * x + 1, 2 * y + 1, c));
+        EXPECT_NEAR(coarse.at(x, y, c), mean, 1e-5f * (1 + mean)) << x << ' ' << y << ' ' << c;
+      }
     }
 }
 
