@@ -2,7 +2,7 @@
 """Holds the answers of `limn tune` against the grid of all settings, and prints a table for docs/tune.md.
 
 In each scene every setting is measured (`--exhaustive`), and two questions are asked: the quickest setting whose error a quarter
-of the grid keeps, and the least error in a time that half of the grid keeps. A last bench times both answers and those of the
+of the grid keeps, and the least error in a time that about half of the grid keeps. A last bench times both answers and those of the
 grid that may be better in turns one after the other, since times of the grid and of a search are minutes apart. The same command
 goes on where it was interrupted.
 """
@@ -103,13 +103,22 @@ def ratio(above, below):
     return math.exp(middle), math.exp(middle - half), math.exp(middle + half)
 
 
+def middle_gap(values):
+    """Returns the middle of the widest gap between values of the middle third: where settings take as long as the limit, noise
+    decides which of them keep it."""
+    values = sorted(values)
+    middle = values[len(values) // 3:len(values) - len(values) // 3]
+    low, high = max(zip(middle, middle[1:]), key=lambda pair: pair[1] / pair[0])
+    return math.sqrt(low * high)
+
+
 def judged(limn, scene, out):
     """Returns the lines of the table that a scene has: their cells, the ratio to the grid's best and the share of the cost."""
     out.mkdir(parents=True, exist_ok=True)
     grid = tune(limn, scene, out / "grid", "--max-error", "rmse=1e9", "--exhaustive")
     every = rows(out / "grid")
     most_error = float(f"{sorted(map(error, every.values()))[len(every) // 4]:.4g}")
-    most_ms = float(f"{statistics.median(map(ms, every.values())):.4g}")
+    most_ms = float(f"{middle_gap(map(ms, every.values())):.4g}")
     quick = tune(limn, scene, out / "quickest", "--max-error", f"rmse={most_error}")
     good = tune(limn, scene, out / "best", "--max-ms", f"{most_ms}")
     quickest, best = setting(quick["answer"]), setting(good["answer"])

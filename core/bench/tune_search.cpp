@@ -9,7 +9,8 @@
 namespace limn::bench {
 namespace {
 
-// Tuned on the model of tests/unit/bench/bench_tune_test.cpp and on the grid of balls (docs/tune.md).
+// Tuned on the model of tests/unit/bench/bench_tune_test.cpp and on grids of balls, chess and frog
+// (docs/tune.md).
 constexpr double kClearlyFaster = 0.9, kClearlyBetter = 0.97;  // a few frames scatter by about a tenth
 constexpr double kHopeless = 3;           // another technique is better by this factor in both figures
 constexpr double kBehind = 0.8;           // another technique keeps the limit and is better by this factor
@@ -24,7 +25,8 @@ constexpr std::size_t kMostMeasured = 12;
 // more exactly than times.
 constexpr double kLateWeight = 2, kWrongWeight = 4;
 
-constexpr double kLeast = 1e-12;  // figures below are taken for it
+constexpr double kLeast = 1e-12;    // figures below are taken for it
+constexpr double kRounding = 1e-9;  // of costs: those that fit exactly do fit
 
 double logOf(double value) {
   return std::log(std::max(value, kLeast));
@@ -180,19 +182,27 @@ class Search {
     return constrained(f) >= bound() / kNearBelow && constrained(f) <= bound() * kNearAbove;
   }
 
-  /// The mean time of all settings: of each space that of the settings of its star that are known.
+  /// The mean time of all settings, taking the factors that single steps from the defaults change it by to
+  /// multiply where steps are combined. Axes of which no step is known count as if they changed nothing.
   double meanMs() const {
     double sum = 0, settings = 0;
-    for (std::size_t i = 0; i < spaces_.size(); ++i) {
-      double star = 0, known = 0;
-      for (const auto& [setting, k] : known_)
-        if (setting.space == i && !k.figures.failed && isOfStar(setting)) {
-          star += k.figures.ms;
-          ++known;
-        }
-      if (known == 0) continue;
-      sum += static_cast<double>(settingCount(spaces_[i])) * star / known;
-      settings += static_cast<double>(settingCount(spaces_[i]));
+    for (std::size_t space = 0; space < spaces_.size(); ++space) {
+      const TuneFigures* defaults = figuresOf(start(space));
+      if (defaults == nullptr) continue;
+      const double before = std::max(defaults->ms, kLeast);
+      double ms = before;
+      for (std::size_t axis = 0; axis < spaces_[space].axes.size(); ++axis) {
+        double factors = 0, known = 0;
+        for (std::size_t at = 0; at < spaces_[space].axes[axis].values.size(); ++at)
+          if (const TuneFigures* f = alone(space, axis, at)) {
+            factors += f->ms / before;
+            ++known;
+          }
+        ms *= factors / known;
+      }
+      const auto count = static_cast<double>(settingCount(spaces_[space]));
+      sum += count * ms;
+      settings += count;
     }
     return settings > 0 ? std::max(sum / settings, kLeast) : 1;
   }
@@ -205,9 +215,10 @@ class Search {
     return differing <= 1;
   }
 
-  /// What a measurement costs, in those of a setting of the mean time: never less than what each costs once.
+  /// What a measurement costs, in those of a setting of the mean time: never less than what each costs once,
+  /// which is a third of a look (tune_allowance.cpp).
   static double priceOf(const TuneFigures& f, double mean) {
-    constexpr double once = 0.5;
+    constexpr double once = 1.0 / 3;
     return f.failed ? 1 : std::max(f.ms / mean, once);
   }
 
@@ -232,27 +243,46 @@ class Search {
     return settings;
   }
 
-  /// Settings one step from those that the walk goes on from, and which of these.
+  /// Settings one step from those that the walk goes on from, and which of these; of all others that are
+  /// known, those of which something can be predicted: a quick setting far from the limit may be one step
+  /// from the answer. The defaults remain among the former, beaten or not: what single steps change is what
+  /// all predictions are made of.
   std::map<TuneSetting, Step> neighbours() const {
     std::map<TuneSetting, Step> next;
-    for (const TuneSetting& setting : leading())
+    const auto addFrom = [&](const TuneSetting& setting, auto wanted) {
       for (std::size_t axis = 0; axis < setting.at.size(); ++axis)
         for (const bool up : {false, true}) {
           TuneSetting other = setting;
           std::size_t& at = other.at[axis];
           if (up ? at + 1 == spaces_[setting.space].axes[axis].values.size() : at == 0) continue;
           at = up ? at + 1 : at - 1;
-          if (!known_.contains(other)) next.emplace(std::move(other), Step{setting, axis});
+          const Step step{setting, axis};
+          if (!known_.contains(other) && wanted(other, step)) next.emplace(std::move(other), step);
         }
+    };
+    const auto any = [](const TuneSetting&, const Step&) { return true; };
+    for (const TuneSetting& setting : leading()) addFrom(setting, any);
+    for (std::size_t space = 0; space < spaces_.size(); ++space)
+      if (const TuneFigures* f = figuresOf(start(space)); f != nullptr && !isBehind(space, *f))
+        addFrom(start(space), any);
+    for (const auto& [setting, known] : known_)
+      if (!known.figures.failed)
+        addFrom(setting,
+                [&](const TuneSetting& to, const Step& step) { return predicted(to, step).has_value(); });
     return next;
   }
 
-  /// The defaults but for one axis, where figures are known of them.
+  /// What is known of a setting; null where nothing is or it failed.
+  const TuneFigures* figuresOf(const TuneSetting& setting) const {
+    const auto found = known_.find(setting);
+    return found != known_.end() && !found->second.figures.failed ? &found->second.figures : nullptr;
+  }
+
+  /// The same of the defaults but for one axis.
   const TuneFigures* alone(std::size_t space, std::size_t axis, std::size_t at) const {
     TuneSetting setting = start(space);
     setting.at[axis] = at;
-    const auto found = known_.find(setting);
-    return found != known_.end() && !found->second.figures.failed ? &found->second.figures : nullptr;
+    return figuresOf(setting);
   }
 
   /// What a step changes beside the defaults, it is taken to change elsewhere; nothing where that is not
@@ -317,7 +347,7 @@ class Search {
     const auto add = [&](const std::vector<TuneSetting>& more, auto price) {
       for (const TuneSetting& setting : more) {
         const double cost = price(setting);
-        if (cost > count) continue;  // a cheaper one may fit
+        if (cost > (1 + kRounding) * count) continue;  // a cheaper one may fit
         count -= cost;
         chosen.push_back(setting);
       }
