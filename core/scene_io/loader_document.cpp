@@ -44,6 +44,25 @@ constexpr std::array kSupportedExtensions = {
 };
 // clang-format on
 
+bool isSupported(std::string_view extension) {
+  return std::ranges::find(kSupportedExtensions, extension) != kSupportedExtensions.end();
+}
+
+/// The names in extensionsUsed of what is not read, a few of them; empty if there is nothing of that kind.
+std::string unreadExtensions(const json& root) {
+  constexpr std::size_t most = 8;
+  std::string names;
+  const auto used = root.find("extensionsUsed");
+  if (used == root.end() || !used->is_array()) return names;
+  std::size_t count = 0;
+  for (const json& entry : *used) {
+    if (!entry.is_string() || isSupported(entry.get_ref<const std::string&>())) continue;
+    if (++count > most) return names + " and others";
+    names += (count == 1 ? "" : ", ") + entry.get_ref<const std::string&>();
+  }
+  return names;
+}
+
 std::uint32_t word(std::span<const std::byte> bytes, std::size_t at) {
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < 4; ++i) value |= std::to_integer<std::uint32_t>(bytes[at + i]) << (8 * i);
@@ -171,8 +190,7 @@ class DocumentCheck {
     for (const json& entry : *required) {
       if (!entry.is_string()) return "'extensionsRequired' does not hold names";
       const std::string& extension = entry.get_ref<const std::string&>();
-      if (std::find(kSupportedExtensions.begin(), kSupportedExtensions.end(), extension) ==
-          kSupportedExtensions.end()) {
+      if (!isSupported(extension)) {
         return fmt::format(
             "needs the extension {}, which is not supported; save the file without it, for example "
             "with gltf-transform",
@@ -207,6 +225,8 @@ void Loader::parse(const Container& container, tinygltf::Model& model) {
     fail(fmt::format("not valid JSON: {}", oneLine(error.what())));
   }
   if (const std::string problem = DocumentCheck(limits_).check(root); !problem.empty()) fail(problem);
+  if (const std::string names = unreadExtensions(root); !names.empty())
+    warn(fmt::format("what these extensions add is not read: {}", names));
   for (const char* list : {"animations", "cameras", "images", "materials", "meshes", "nodes", "skins"})
     if (const auto entries = root.find(list); entries != root.end()) cleanNames(*entries);
   if (const json::json_pointer lights("/extensions/KHR_lights_punctual/lights"); root.contains(lights))

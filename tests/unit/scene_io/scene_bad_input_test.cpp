@@ -202,6 +202,21 @@ TEST(SceneBadInput, RequiredExtensions) {
     b.root["extensionsUsed"] = {name};
     b.root.erase("extensionsRequired");
     EXPECT_EQ(loadError(b.glb()), "");
+    EXPECT_THAT(loadBuilt(b).warnings, testing::Contains(HasSubstr("not read: " + std::string(name))));
+  }
+}
+
+TEST(SceneBadInput, ExtensionsThatAreUsedAndNotReadAreNamedInOneLine) {
+  GltfBuilder b;
+  b.triangle();
+  b.root["extensionsUsed"] = {"KHR_materials_sheen", "KHR_materials_unlit", "KHR_materials_clearcoat"};
+  EXPECT_THAT(loadBuilt(b).warnings,
+              testing::ElementsAre(testing::EndsWith("KHR_materials_sheen, KHR_materials_clearcoat")));
+  for (int i = 0; i < 20; ++i) b.root["extensionsUsed"].push_back("VENDOR_" + std::to_string(i));
+  EXPECT_THAT(loadBuilt(b).warnings, testing::ElementsAre(testing::EndsWith("VENDOR_5 and others")));
+  for (const nlohmann::json& odd : {nlohmann::json(7), nlohmann::json::array({1, nullptr, {{"a", 2}}})}) {
+    b.root["extensionsUsed"] = odd;
+    EXPECT_THAT(loadError(b.glb()), testing::Not(HasSubstr("not read")));
   }
 }
 
