@@ -18,7 +18,7 @@ function facts(row) {
   const entries = Object.entries(settings(row)).map(([name, value]) => [ownName(row, name), value]);
   for (const time of TIMES) {
     const ms = time.read(row);
-    if (isNumber(ms)) entries.push([`time, ${time.label}`, milliseconds(ms)]);
+    if (isNumber(ms)) entries.push([`time, ${time.label}${time.note ?? ""}`, milliseconds(ms)]);
   }
   for (const metric of METRICS) {
     if (isNumber(metric.read(row))) entries.push([metric.label, errorText(metric, row)]);

@@ -18,7 +18,7 @@ export const METRICS = page.metrics.map((metric) => ({...metric, read: reader(me
 export const TIMES = [
   {key: "frame", label: "whole frame", read: (row) => (row.frame_ms?.n > 0 ? row.frame_ms.median : null),
    spread: (row) => [row.frame_ms.q1, row.frame_ms.q3]},
-  {key: "shadows", label: "maps, filters and the technique's passes",
+  {key: "shadows", label: "maps, filters and the technique's passes", note: " (other frames, timed pass by pass)",
    read: (row) => {
      const split = row.frame_ms?.n > 0 ? row.split_ms : null;
      return split ? split.maps + split.filters + split.technique : null;
