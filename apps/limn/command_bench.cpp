@@ -83,7 +83,9 @@ Action addBenchCommand(CLI::App& command) {
                   "Folder for results.jsonl, index.html, tables and references; a run that is in it already "
                   "is resumed")
       ->required();
-  command.add_option("--filter", options->filters, "Only cases whose label contains this text; repeatable")
+  command
+      .add_option("--filter", options->filters,
+                  "Only cases whose label contains this text; of several, all of them")
       ->take_all();
   CLI::Option* against = command.add_option(
       "--against", options->against,

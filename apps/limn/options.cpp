@@ -54,7 +54,7 @@ fs::path numbered(const fs::path& out, int frame) {
 void addTechniqueFlags(CLI::App& command, session::TechniqueChoice& choice) {
   command.add_option("--technique", choice.techniques,
                      "Techniques, comma-separated (see limn list); NAME:TERM+TERM asks one for these of its "
-                     "terms alone; none: unshadowed");
+                     "terms alone; without this option: unshadowed");
   command.add_option("--set", choice.settings, "TECHNIQUE.PARAMETER=VALUE, repeatable")->take_all();
 }
 
