@@ -1,6 +1,7 @@
 // limn-view: the window as a program.
 #include <CLI/CLI.hpp>
 
+#include "apps/limn/completion.h"
 #include "apps/limn/options.h"
 #include "apps/view/viewer.h"
 #include "core/base/version.h"
@@ -15,6 +16,7 @@ int main(int argc, char** argv) {
     program.failure_message([](const CLI::App*, const CLI::Error& error) {
       return std::string("limn-view: ") + error.what() + "; see limn-view --help\n";
     });
+    addCompletionFlag(program);
     ViewerOptions options;
     options.title = "limn";
     addSceneFlags(program, options.scene);

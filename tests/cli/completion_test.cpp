@@ -5,12 +5,14 @@ namespace limn::test {
 namespace {
 
 /// What bash completes the last of the words to, a line each.
-std::vector<std::string> completed(const std::vector<std::string>& words) {
+std::vector<std::string> completed(const std::vector<std::string>& words,
+                                   const std::string& source = "limn completion",
+                                   const std::string& function = "_limn") {
   std::string script =
-      "PATH=" + std::string(kBinaryDir) + "/bin:$PATH; source <(limn completion); COMP_WORDS=(";
+      "PATH=" + std::string(kBinaryDir) + "/bin:$PATH; source <(" + source + "); COMP_WORDS=(";
   for (const std::string& word : words) script += "'" + word + "' ";
-  script +=
-      ") COMP_CWORD=" + std::to_string(words.size() - 1) + "; _limn; printf '%s\\n' \"${COMPREPLY[@]}\"";
+  script += ") COMP_CWORD=" + std::to_string(words.size() - 1) + "; " + function +
+            "; printf '%s\\n' \"${COMPREPLY[@]}\"";
   const Outcome outcome = run({"/bin/bash", "-c", script});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
@@ -31,6 +33,20 @@ TEST(Completion, KnowsCommandsOptionsAndChoices) {
   EXPECT_THAT(completed({"limn", "reference", "x.glb", "--term", "ind"}), ElementsAre("indirect"));
   EXPECT_THAT(completed({"limn", "compare", "--tone"}), testing::IsEmpty());
   EXPECT_THAT(completed({"limn", "brdf", "simu"}), ElementsAre("simulate"));
+}
+
+// limn view hands its words to limn-view, and so does its completion.
+TEST(Completion, ProgramsWithAWindowCompleteTheirOwn) {
+  using testing::ElementsAre;
+  EXPECT_THAT(completed({"limn", "view", "x.glb", "--screens"}), ElementsAre("--screenshot"));
+  EXPECT_THAT(completed({"limn", "view", "--compare", "tr"}), ElementsAre("truth"));
+  EXPECT_THAT(completed({"limn-view", "--tonemap", "a"}, "limn-view --completion", "_limn_view"),
+              ElementsAre("agx"));
+  const std::string chapter = "ch7-variance-soft-shadows";
+  EXPECT_THAT(completed({chapter, "--headl"}, chapter + " --completion", "_ch7_variance_soft_shadows"),
+              ElementsAre("--headless"));
+  EXPECT_THAT(run({kBinaryDir + std::string("/bin/limn-view"), "--help"}).out,
+              testing::Not(testing::HasSubstr("--completion")));
 }
 
 TEST(Completion, OffersFilesElsewhere) {

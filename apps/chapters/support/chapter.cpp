@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "apps/limn/completion.h"
 #include "apps/limn/options.h"
 #include "apps/limn/run_suite.h"
 #include "apps/view/viewer.h"
@@ -74,6 +75,7 @@ int runChapter(const Chapter& chapter, int argc, char** argv) {
     program.failure_message([&](const CLI::App*, const CLI::Error& error) {
       return fmt::format("{}: {}; see {} --help\n", chapter.name, error.what(), chapter.name);
     });
+    addCompletionFlag(program);
     fs::path out = fs::path("out") / chapter.name;
     std::vector<std::string> filters;
     bool headless = false;
