@@ -103,6 +103,12 @@ def ratio(above, below):
     return math.exp(middle), math.exp(middle - half), math.exp(middle + half)
 
 
+def rounded_up(value):
+    """Returns a number of four digits that is not below the value: a limit that the setting with that error keeps."""
+    step = 10 ** (math.floor(math.log10(value)) - 3)
+    return float(f"{math.ceil(value / step) * step:.4g}")
+
+
 def middle_gap(values):
     """Returns the middle of the widest gap between values of the middle third: where settings take as long as the limit, noise
     decides which of them keep it."""
@@ -117,7 +123,7 @@ def judged(limn, scene, out):
     out.mkdir(parents=True, exist_ok=True)
     grid = tune(limn, scene, out / "grid", "--max-error", "rmse=1e9", "--exhaustive")
     every = rows(out / "grid")
-    most_error = float(f"{sorted(map(error, every.values()))[len(every) // 4]:.4g}")
+    most_error = rounded_up(sorted(map(error, every.values()))[len(every) // 4])
     most_ms = float(f"{middle_gap(map(ms, every.values())):.4g}")
     quick = tune(limn, scene, out / "quickest", "--max-error", f"rmse={most_error}")
     good = tune(limn, scene, out / "best", "--max-ms", f"{most_ms}")
