@@ -12,9 +12,9 @@ run("cmake", "--install", options.build, "--prefix", SCRATCH / "prefix")
 check(techniques(), "the installed limn lists no technique")
 
 # What the program says of itself is installed beside it.
-for program in ("limn", "limn-view", "ch7-variance-soft-shadows"):
+for program, option in {"limn": "--tonemap", "limn-view": "--tonemap", "ch7-variance-soft-shadows": "--headless"}.items():
     completion = (PREFIX / f"share/bash-completion/completions/{program}").read_text()
-    check("--size" in completion, f"the completion of {program} does not know --size")
+    check(option in completion, f"the completion of {program} does not know {option}")
 for page in ("limn", "limn-render", "limn-bench", "limn-explain-cost", "limn-view", "ch7-variance-soft-shadows"):
     manual = PREFIX / f"share/man/man1/{page}.1"
     check(manual.is_file() and "SEE ALSO" in manual.read_text(), f"there is no manual page {page}")
