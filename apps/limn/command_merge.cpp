@@ -1,25 +1,38 @@
 // limn merge: results of several folders as those of one.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "apps/limn/commands.h"
+#include "apps/limn/options.h"
 #include "apps/limn/results_folder.h"
 #include "core/base/error.h"
 #include "core/bench/merge.h"
+#include "core/session/case_origins.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
 
 int run(const std::vector<fs::path>& folders, const fs::path& out) {
+  std::vector<fs::path> measured;
   for (const fs::path& folder : folders) {
     std::error_code ignored;
-    if (!fs::is_regular_file(folder / "results.jsonl", ignored))
-      throw Error(fmt::format("{} does not exist; expected a folder that limn bench wrote",
-                              (folder / "results.jsonl").string()));
+    if (fs::is_regular_file(folder / "results.jsonl", ignored)) measured.push_back(folder);
   }
+  if (measured.empty())
+    throw Error(fmt::format("{} does not exist; expected a folder that limn bench wrote",
+                            (folders.front() / "results.jsonl").string()));
+  for (const fs::path& folder : folders)  // a part that died early leaves none, and must not cost the others
+    if (std::ranges::find(measured, folder) == measured.end())
+      warn(fmt::format("{} does not exist; its folder is left out", (folder / "results.jsonl").string()));
   const ResultsFolder results(out, {}, 0);
+  const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
+  session::CaseOrigins origins(registry);
   int added = 0;
-  for (const fs::path& folder : folders) added += bench::mergeResults(folder, out);
+  for (const fs::path& folder : measured)
+    added += bench::mergeResults(folder, out, [&](const bench::Case& c) { return origins.of(c); });
   results.writeReport();
   const std::vector<bench::Row> rows = results.rows();
   fmt::print("{} rows added; {} has {} of {} that did not fail\n", added, (out / "results.jsonl").string(),

@@ -34,8 +34,9 @@ int runReproduction(const ReproductionArguments& options) {
   for (const fs::path& folder : options.results) {
     std::vector<bench::Row> later = bench::readRows(folder / "results.jsonl");
     std::set<std::string> measuredAgain;
-    for (const bench::Row& row : later) measuredAgain.insert(label(row.what));
-    std::erase_if(rows, [&](const bench::Row& row) { return measuredAgain.contains(label(row.what)); });
+    for (const bench::Row& row : later)
+      if (row.failure.empty()) measuredAgain.insert(row.key);
+    std::erase_if(rows, [&](const bench::Row& row) { return measuredAgain.contains(row.key); });
     std::ranges::move(later, std::back_inserter(rows));
   }
   const std::string page =
@@ -54,9 +55,9 @@ int runReproduction(const ReproductionArguments& options) {
 Action addReproductionCommand(CLI::App& command) {
   auto options = std::make_shared<ReproductionArguments>();
   command
-      .add_option(
-          "results", options->results,
-          "Result folders of limn bench (its --out); of rows that several hold, those of the last one count")
+      .add_option("results", options->results,
+                  "Result folders of limn bench (its --out); of good rows that several hold, those of the "
+                  "last one count")
       ->required();
   command.add_option("-o,--out", options->out, "Markdown file")->required();
   command.add_option("--claims", options->claims, "TOML file; default: the thesis's");

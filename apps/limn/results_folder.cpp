@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <set>
-
 #include "apps/limn/worker.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -33,14 +31,18 @@ class CaseWork {
     for (std::size_t i = 0; i < cases.size(); ++i) left_.push_back(i);
   }
 
-  /// Throws UsageError when something is missing that a case without a row needs; it says the last such
-  /// thing, stderr the others.
+  /// Throws UsageError when something is missing that an unfinished case needs; it says the last such thing,
+  /// stderr the others.
   void check() {
     // What crashes here crashes in its own row again.
     runInWorker(report_, stallTimeout_, [&] {
       const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
+      session::CaseOrigins origins(registry);
+      const auto rows = fs::exists(file_) ? bench::readRows(file_) : std::vector<bench::Row>();
+      const auto unfinished =
+          bench::unfinishedCases(cases_, rows, [&](const bench::Case& c) { return origins.of(c); });
       const auto missing = session::missingThings(
-          unanswered(cases_, file_), registry, [&] { report_.alive(); }, warn);
+          unfinished, registry, [&] { report_.alive(); }, warn);
       for (std::size_t i = 0; i + 1 < missing.size(); ++i) fmt::print(stderr, "limn: {}\n", missing[i]);
       if (!missing.empty()) throw UsageError(missing.back());
     });
@@ -119,8 +121,8 @@ class CaseWork {
                                                              : WorkerReport::State::failed);
   }
 
-  /// A row for the case that ended the worker, unless it has a good one. Neither it nor what failed before it
-  /// is tried again in this run.
+  /// A row for the case that ended the worker, unless it has a good one of this program. Neither it nor what
+  /// failed before it is tried again in this run.
   void recordCrash(const std::string& what) {
     const auto current = report_.current();
     if (!current) throw Error("no case could be started by the process that measures: " + what);
@@ -136,7 +138,13 @@ class CaseWork {
     row.key = bench::rowKey(c, report_.renderer());
     row.failure = what;
     row.cost.renderer = report_.renderer();
-    bench::ResultsFile(file_).append(row);
+    // Reading the scene's files may be what crashes.
+    const auto crash = runInWorker(report_, stallTimeout_, [&] {
+      const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
+      row.provenance = session::CaseOrigins(registry).of(c);
+      bench::ResultsFile(file_).append(row);
+    });
+    if (crash) bench::ResultsFile(file_).append(row);
   }
 
   const std::vector<bench::Case>& cases_;
@@ -156,17 +164,6 @@ fs::path created(const fs::path& folder) {
 }
 
 }  // namespace
-
-std::vector<bench::Case> unanswered(const std::vector<bench::Case>& cases, const fs::path& file) {
-  std::set<std::string> answered;
-  if (fs::exists(file))
-    for (const bench::Row& row : bench::readRows(file))
-      if (row.failure.empty()) answered.insert(bench::rowKey(row.what, ""));
-  std::vector<bench::Case> left;
-  for (const bench::Case& c : cases)
-    if (!answered.contains(bench::rowKey(c, ""))) left.push_back(c);
-  return left;
-}
 
 ResultsFolder::ResultsFolder(fs::path folder, BackendOptions backend, double stallTimeout)
     : folder_(created(folder)),

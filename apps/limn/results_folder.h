@@ -11,10 +11,6 @@
 
 namespace limn::app {
 
-/// Returns the cases for which the results in `file` hold no good row of any renderer; all of them where
-/// there is no such file.
-std::vector<bench::Case> unanswered(const std::vector<bench::Case>& cases, const std::filesystem::path& file);
-
 /// Holds a folder with results.jsonl, references, pictures, tables and report while cases are measured into
 /// it.
 class ResultsFolder {
@@ -23,7 +19,7 @@ class ResultsFolder {
   /// one works in it. A case that shows no sign of life for `stallTimeout` seconds is ended (0: never).
   ResultsFolder(std::filesystem::path folder, BackendOptions backend, double stallTimeout);
 
-  /// Throws UsageError when something does not exist that a case without a row needs; it says the last such
+  /// Throws UsageError when something does not exist that an unfinished case needs; it says the last such
   /// thing, stderr the others.
   void check(const std::vector<bench::Case>& cases);
   /// Measures the cases for which there is no row yet, or whose row was measured with something that has

@@ -12,6 +12,7 @@
 #include "core/base/shell.h"
 #include "core/base/spawn.h"
 #include "core/bench/merge.h"
+#include "core/session/case_origins.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
@@ -42,7 +43,8 @@ std::string thisProgram() {
   return shellQuoted(fs::read_symlink("/proc/self/exe").string());
 }
 
-/// A shell script for one task of the array: the part of its number. What a signal ended is queued again.
+/// A script for one task of the array: the part of its number. What a signal ended is queued again. Words may
+/// be quoted as $'...', which bash reads and not every sh.
 std::string taskScript(const fs::path& suite, const fs::path& out, int parts, const SuiteRun& run,
                        const SlurmJob& job) {
   std::string filters;
@@ -51,7 +53,7 @@ std::string taskScript(const fs::path& suite, const fs::path& out, int parts, co
   for (const std::string& argument : job.arguments) more += " " + shellQuoted(argument);
   if (run.stallTimeout) more += fmt::format(" --stall-timeout {}", *run.stallTimeout);
   return fmt::format(
-      "#!/bin/sh\n"
+      "#!/usr/bin/env bash\n"
       "part=$SLURM_ARRAY_TASK_ID\n"
       "{} bench {} --out {}/parts/$part-of-{} --shard $part/{}{}{}\n"
       "status=$?\n"
@@ -89,7 +91,10 @@ std::string submitSuite(const fs::path& suiteFile, const fs::path& folder, const
     throw UsageError(fmt::format("suite {} has no case that fits the filter", suite.string()));
   ResultsFolder results(out, {}, 0);
   refuseWhileRunning(out);
-  for (const fs::path& part : finishedParts(out)) bench::mergeResults(part, out);
+  const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
+  session::CaseOrigins origins(registry);
+  const auto provenance = [&](const bench::Case& c) { return origins.of(c); };
+  for (const fs::path& part : finishedParts(out)) bench::mergeResults(part, out, provenance);
   results.check(cases);
 
   std::set<std::string> questions;
@@ -97,9 +102,11 @@ std::string submitSuite(const fs::path& suiteFile, const fs::path& folder, const
   const int parts = std::min(static_cast<int>(questions.size()), kPartsPerNode * job.nodes);
   std::vector<int> open;
   std::size_t missing = 0;
+  const std::vector<bench::Row> rows = results.rows();
   for (int part = 1; part <= parts; ++part) {
     const std::size_t count =
-        unanswered(bench::selectCases(asked.cases, run.filters, {part, parts}), out / "results.jsonl").size();
+        bench::unfinishedCases(bench::selectCases(asked.cases, run.filters, {part, parts}), rows, provenance)
+            .size();
     missing += count;
     if (count > 0) open.push_back(part);
   }
@@ -123,14 +130,15 @@ std::string submitSuite(const fs::path& suiteFile, const fs::path& folder, const
   const std::string array =
       submit({"--exclusive", fmt::format("--array={}%{}", fmt::join(open, ","), job.nodes),
               "--output=" + (out / "slurm" / "part-%a.log").string(), script.string()});
-  std::string merge = thisProgram() + " merge " + shellQuoted((out / "parts").string()) + "/* --out " +
-                      shellQuoted(out.string());
-  const std::string last = submit({"--dependency=afterany:" + array,
-                                   "--output=" + (out / "slurm" / "merge.log").string(), "--wrap=" + merge});
+  const std::string merge = thisProgram() + " merge " + shellQuoted((out / "parts").string()) + "/* --out " +
+                            shellQuoted(out.string());
+  const std::string last =
+      submit({"--dependency=afterany:" + array, "--output=" + (out / "slurm" / "merge.log").string(),
+              "--wrap=bash -c " + shellQuoted(merge)});
   writeTextFile(out / "slurm" / "job", last);
   return fmt::format(
-      "{} of {} rows are missing: job {} measures them in {} parts on {} nodes, job {} merges them; "
-      "the same command goes on with what is missing then",
+      "{} of {} rows are missing or to be measured again: job {} measures them in {} parts on {} nodes, "
+      "job {} merges them; the same command goes on with what is left then",
       missing, cases.size(), array, open.size(), job.nodes, last);
 }
 

@@ -7,29 +7,43 @@ namespace limn::bench {
 namespace fs = std::filesystem;
 namespace {
 
-/// Copies a file that a row names, whole or not at all, unless it is there: its name comes from what is in it
-/// or from the row's key.
+/// Copies a file that a row names, whole or not at all.
 void bring(const fs::path& from, const fs::path& into, const std::string& name) {
   const fs::path source = fileInFolder(from, name);
-  std::error_code error;
   const fs::path relative = fs::path(name).lexically_normal();
-  if (source.empty() || relative.is_absolute() || *relative.begin() == ".." ||
-      fs::exists(into / relative, error))
-    return;
+  if (source.empty() || relative.is_absolute() || *relative.begin() == "..") return;
   createFolder((into / relative).parent_path());
   writeFile(into / relative, readFile(source));
 }
 
+/// Whether `row` is to take the place of `known`. Each such step leads to a row that is valid where the one
+/// before was not, else to a good one, else to one of more turns, so that merging again changes nothing. Of
+/// two good rows that others than the present program measured, nothing says which is newer.
+bool replaces(const Row& row, const Row& known, const std::function<Provenance(const Case&)>& provenance) {
+  const bool sameOrigin = staleness(known.provenance, row.provenance).empty();
+  if (!sameOrigin && provenance) {
+    const Provenance now = provenance(row.what);
+    const bool valid = staleness(row.provenance, now).empty();
+    if (valid != staleness(known.provenance, now).empty()) return valid;
+  }
+  if (!row.failure.empty()) return false;
+  return !known.failure.empty() || (sameOrigin && row.cost.frameMs.turns > known.cost.frameMs.turns);
+}
+
 }  // namespace
 
-int mergeResults(const fs::path& from, const fs::path& into) {
+int mergeResults(const fs::path& from, const fs::path& into,
+                 const std::function<Provenance(const Case&)>& provenance) {
   ResultsFile results(into / "results.jsonl");
   int appended = 0;
   for (const Row& row : readRows(from / "results.jsonl")) {
     const Row* known = results.find(row.key);
-    if (known != nullptr && (known->failure.empty() || !row.failure.empty())) continue;
-    for (const std::string& file : {row.referenceFile, row.picture, row.difference, referencePicture(row)})
-      bring(from, into, file);
+    if (known != nullptr && !replaces(row, *known, provenance)) continue;
+    std::error_code error;
+    // References have names by what is in them, pictures by the row's key.
+    for (const std::string& file : {row.referenceFile, referencePicture(row)})
+      if (!fs::exists(into / file, error)) bring(from, into, file);
+    for (const std::string& file : {row.picture, row.difference}) bring(from, into, file);
     results.append(row);
     ++appended;
   }

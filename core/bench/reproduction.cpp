@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <ranges>
 #include <set>
 
 #include "core/base/error.h"
@@ -34,14 +35,15 @@ bool contains(const std::string& name, std::string_view part) {
   return name.find(part) != std::string::npos;
 }
 
-/// A row with the rows that answer the same question on the same renderer; null where there is no such row.
+/// A row with the rows that answer the same question on the same renderer and machine.
 struct Found {
   const Row* row = nullptr;
   const Table* table = nullptr;
 };
 
-Found find(std::span<const Table> tables, const std::vector<std::string>& parts) {
-  Found found;
+/// Every row that fits; all have one label, which names neither renderer nor machine.
+std::vector<Found> find(std::span<const Table> tables, const std::vector<std::string>& parts) {
+  std::vector<Found> found;
   for (const Table& table : tables) {
     for (const Row& row : table.rows) {
       const std::string name = label(row.what);
@@ -49,12 +51,32 @@ Found find(std::span<const Table> tables, const std::vector<std::string>& parts)
                           return contains(name, part);
                         });
       if (!fits) continue;
-      if (found.row != nullptr && label(found.row->what) != name)
-        throw Error(fmt::format("two rows fit one claim: {} and {}", label(found.row->what), name));
-      found = {&row, &table};
+      if (!found.empty() && label(found.front().row->what) != name)
+        throw Error(fmt::format("two rows fit one claim: {} and {}", label(found.front().row->what), name));
+      found.push_back({&row, &table});
     }
   }
   return found;
+}
+
+/// As in tables, a row of an earlier version, which does not say its machine, stands with any.
+bool sameMachine(const Row& a, const Row& b) {
+  return a.cost.renderer == b.cost.renderer &&
+         (a.cost.machine == b.cost.machine || a.cost.machine.empty() || b.cost.machine.empty());
+}
+
+struct Sides {
+  Found slow, fast;
+};
+
+/// The last row that fits the second side and has a first side of the same renderer and machine, with the
+/// last of these; nothing where there are no such two.
+std::optional<Sides> findSides(const Claim& claim, std::span<const Table> tables) {
+  const std::vector<Found> slow = find(tables, claim.slow), fast = find(tables, claim.fast);
+  for (const Found& second : fast | std::views::reverse)
+    for (const Found& first : slow | std::views::reverse)
+      if (sameMachine(*first.row, *second.row)) return Sides{first, second};
+  return std::nullopt;
 }
 
 constexpr int kFewestTurns = 2;
@@ -132,9 +154,9 @@ Answer answer(const Claim& claim, std::span<const Table> tables) {
         .claim = claim,
         .verdict = fmt::format("{}, because {}", verdictInfo(Verdict::notReproduced).name, claim.because)};
   }
-  const Found slow = find(tables, claim.slow), fast = find(tables, claim.fast);
-  if (slow.row == nullptr || fast.row == nullptr)
-    return {.claim = claim, .verdict = verdictInfo(Verdict::notMeasured).name};
+  const std::optional<Sides> sides = findSides(claim, tables);
+  if (!sides) return {.claim = claim, .verdict = verdictInfo(Verdict::notMeasured).name};
+  const auto& [slow, fast] = *sides;
   const auto measure = claim.measure == ClaimMeasure::memory ? byMemory : byFrames;
   const Pair pair = measure(claim.thesis, *slow.row, *fast.row);
   const EqualError equal = atEqualError(claim, *slow.row, fast);

@@ -51,8 +51,9 @@ LIMN_API std::vector<Claim> readClaims(const std::filesystem::path& path);
 /// Returns Markdown: how to read it, with the rule of each verdict; a table per chapter (the part of `where`
 /// before the first dot) with the ratio measured at the suite's settings, the number of turns behind it and
 /// its interval, the errors of both sides, what they differ in, the ratio at equal error, and the verdict;
-/// and the commands that measure it. A claim without its two rows is "not measured". Throws Error naming the
-/// rows when several fit, since the claim is then ambiguous.
+/// and the commands that measure it. A claim without its two rows, of one renderer and one machine, is "not
+/// measured"; of several such, the last count. Throws Error naming the rows when rows of several labels fit,
+/// since the claim is then ambiguous.
 LIMN_API std::string reproductionMarkdown(std::span<const Claim> claims, std::span<const Row> rows);
 
 }  // namespace limn::bench

@@ -15,14 +15,18 @@ namespace limn::bench {
 
 namespace {
 
-/// For each key the last row that did not fail, else the last one, in the order of their first appearance.
+/// For each key the last row, in the order of their first appearance. A failure replaces a good row only
+/// where it records that something else was measured than then: an old answer would hide it.
 void remember(std::vector<Row>& rows, std::map<std::string, std::size_t>& position, Row row) {
   const auto [known, isNew] = position.emplace(row.key, rows.size());
   if (isNew) {
     rows.push_back(std::move(row));
-  } else if (Row& before = rows[known->second]; row.failure.empty() || !before.failure.empty()) {
-    before = std::move(row);
+    return;
   }
+  Row& before = rows[known->second];
+  if (row.failure.empty() || !before.failure.empty() ||
+      (!row.provenance.program.empty() && !staleness(before.provenance, row.provenance).empty()))
+    before = std::move(row);
 }
 
 /// Hands every whole line's row to `take`; gives the bytes of whole lines. What follows them is torn: every

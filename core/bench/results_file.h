@@ -12,9 +12,9 @@
 
 namespace limn::bench {
 
-/// Returns the rows of a file: for each key the last one that did not fail, else the last one, in the order
-/// of their first appearance. The file is not changed. A torn last line is skipped. Throws Error naming file
-/// and line for a broken line elsewhere.
+/// Returns the rows of a file: for each key the one that ResultsFile::find() gives, in the order of their
+/// first appearance. The file is not changed. A torn last line is skipped. Throws Error naming file and line
+/// for a broken line elsewhere.
 LIMN_API std::vector<Row> readRows(const std::filesystem::path& path);
 
 class LIMN_API ResultsFile {
@@ -28,8 +28,8 @@ class LIMN_API ResultsFile {
 
   /// Returns whether there is a successful row of that key; failed ones are to be tried again.
   bool contains(const std::string& key) const;
-  /// Returns the row of that key, null if there is none: the last one, but a failure never replaces a good
-  /// row.
+  /// Returns the row of that key, null if there is none: the last one, but a failure replaces a good row only
+  /// where it records another provenance.
   const Row* find(const std::string& key) const;
   /// Writes one whole line and flushes it to the disk. Throws Error if that fails; the file then still ends
   /// in a whole line.

@@ -1,9 +1,15 @@
 #include "core/bench/runner.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "core/base/error.h"
 #include "core/base/failure.h"
 #include "core/image/error_spectrum.h"
+#include "core/image/metric_table.h"
 #include "core/question/term.h"
 #include "core/render/frame_stats.h"
 
@@ -11,13 +17,14 @@ namespace limn::bench {
 namespace {
 
 /// Over penumbra pixels alone, since lit pixels hide the error of a visibility technique; nullopt where the
-/// reference has none.
-std::optional<Metrics> penumbraMetrics(const Image& image, const Reference& reference,
-                                       CompareOptions options) {
+/// reference has none that is compared.
+std::optional<Metrics> penumbraMetrics(const Image& image, const Reference& reference, CompareOptions options,
+                                       const std::vector<unsigned char>& mask) {
   constexpr float kLow = Misjudged::kUmbra, kHigh = Misjudged::kLit;
   const int red = reference.image.rgbChannels()[0];
   bool any = false;
-  for (std::size_t i = 0; i < reference.image.pixelCount() && !any; ++i) {
+  for (std::size_t i = 0; i < mask.size() && !any; ++i) {
+    if (mask[i] == 0) continue;
     const float value = reference.image.data()[i * static_cast<std::size_t>(reference.image.channelCount()) +
                                                static_cast<std::size_t>(red)];
     any = value > kLow && value < kHigh;
@@ -46,6 +53,17 @@ Misjudged misjudged(const Image& image, const Reference& reference, const std::v
   return count;
 }
 
+/// Values near the largest float square to infinity, which JSON cannot hold: the row could not be read again.
+void requireFinite(std::string_view what, double value) {
+  if (!std::isfinite(value))
+    throw Error(fmt::format("the {} is not finite; the picture has values too large to be compared", what));
+}
+
+void requireFinite(const Metrics& metrics) {
+  for (const MetricInfo& info : kMetrics)
+    if (!info.unbounded) requireFinite(info.label, metricValue(info, metrics).value_or(0));
+}
+
 std::optional<BoundTime> boundTurn(const Case& c, const Callbacks& callbacks) {
   return c.bound && callbacks.bound ? callbacks.bound(c) : std::nullopt;
 }
@@ -65,9 +83,12 @@ Row measureRow(const Case& c, const std::string& key, const Reference& reference
   row.error = comparison.metrics;
   row.spectrum = errorSpectrum(measurement.image, reference.image, comparison.mask);
   if (c.term == name(Term::visibility)) {
-    row.penumbra = penumbraMetrics(measurement.image, reference, options);
+    row.penumbra = penumbraMetrics(measurement.image, reference, options, comparison.mask);
     row.misjudged = misjudged(measurement.image, reference, comparison.mask);
   }
+  requireFinite(row.error);
+  if (row.penumbra) requireFinite(*row.penumbra);
+  for (const double power : row.spectrum) requireFinite("spectrum of the error", power);
   if (c.picture && callbacks.keepPicture) {
     row.picture = callbacks.keepPicture(key, measurement.image);
     row.difference = callbacks.keepPicture(key + ".difference",
@@ -94,6 +115,11 @@ Row withTurn(Row row, const std::vector<double>& ms, const std::optional<BoundTi
   const render::Quartiles all = render::quartiles(time.samples);
   time = {all.median, all.q1, all.q3, all.n, std::move(time.samples), time.turns + 1};
   return row;
+}
+
+/// Whether the row is good and was measured with what the case is measured with now.
+bool isValid(const Row& row, const Case& c, const std::function<Provenance(const Case&)>& provenance) {
+  return row.failure.empty() && (!provenance || staleness(row.provenance, provenance(c)).empty());
 }
 
 class Run {
@@ -131,9 +157,8 @@ class Run {
 
   /// The row that holds for the case as it is now, null if there is none.
   const Row* finished(const Case& c, const std::string& key) const {
-    const Row* row = results_.contains(key) ? results_.find(key) : nullptr;
-    return row && (!callbacks_.provenance || staleness(row->provenance, provenanceOf(c)).empty()) ? row
-                                                                                                  : nullptr;
+    const Row* row = results_.find(key);
+    return row && isValid(*row, c, callbacks_.provenance) ? row : nullptr;
   }
 
   void measure(std::size_t i) {
@@ -204,6 +229,22 @@ std::map<std::string, int> staleRows(std::span<const Case> cases, const std::str
     if (!reason.empty()) ++counts[reason];
   }
   return counts;
+}
+
+std::vector<Case> unfinishedCases(std::span<const Case> cases, std::span<const Row> rows,
+                                  const std::function<Provenance(const Case&)>& provenance) {
+  std::multimap<std::string, const Row*> known;
+  for (const Row& row : rows) known.emplace(rowKey(row.what, ""), &row);
+  std::vector<Case> left;
+  for (const Case& c : cases) {
+    const auto [begin, end] = known.equal_range(rowKey(c, ""));
+    const bool finished = std::any_of(begin, end, [&](const auto& entry) {
+      const FrameTime& time = entry.second->cost.frameMs;
+      return isValid(*entry.second, c, provenance) && (time.n == 0 || time.turns >= c.turns);
+    });
+    if (!finished) left.push_back(c);
+  }
+  return left;
 }
 
 Summary runCases(std::span<const Case> cases, const std::string& renderer, ResultsFile& results,

@@ -65,6 +65,11 @@ LIMN_API std::map<std::string, int> staleRows(std::span<const Case> cases, const
                                               const ResultsFile& results,
                                               const std::function<Provenance(const Case&)>& provenance);
 
+/// Returns the cases for which no renderer has a row that is finished: good, measured with what `provenance`
+/// gives now, and timed in all turns that the case asks for.
+LIMN_API std::vector<Case> unfinishedCases(std::span<const Case> cases, std::span<const Row> rows,
+                                           const std::function<Provenance(const Case&)>& provenance);
+
 /// Runs all cases first, then further turns of timing, each of which replaces the rows by longer ones.
 /// `renderer` is recorded in the rows and part of their keys: results of another renderer are measured again.
 /// Whatever a callback other than `progress` and `provenance` throws is recorded in the case's row, and the

@@ -178,6 +178,24 @@ TEST_F(BenchFaults, WhatHasChangedIsMeasuredAgain) {
   EXPECT_THAT(bench().err, HasSubstr("an earlier version did not record what it used (2)"));
 }
 
+TEST_F(BenchFaults, ACrashOfANewerModuleIsNotHiddenByTheRowOfTheOlder) {
+  const fs::path modules = folder_ / "modules", trigger = folder_ / "trigger";
+  fs::create_directory(modules);
+  fs::copy_file(std::string(kBinaryDir) + "/tests/misbehaver/misbehaver.so", modules / "misbehaver.so");
+  environment_["LIMN_TECHNIQUE_PATH"] = modules;
+  environment_["LIMN_TEST_TRIGGER"] = trigger;
+  suite(technique("misbehaver", "way = 'once_there'") + shadows());
+  ASSERT_EQ(bench().status, 0);
+  fs::copy(folder_ / "out", folder_ / "before", fs::copy_options::recursive);
+  std::ofstream(modules / "misbehaver.so", std::ios::app) << "later";  // as if it had been built anew
+  std::ofstream(trigger) << "crash";
+  const Outcome outcome = bench({"--against", folder_ / "before"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.out, HasSubstr("0 rows measured, 1 were there already, 1 failed"));
+  EXPECT_THAT(outcome.out, HasSubstr("2 rows compared: 0 slower, 0 worse, 1 failed"));
+  EXPECT_THAT(contents(folder_ / "out/tables.md"), HasSubstr("failed: crashed: Aborted"));
+}
+
 TEST_F(BenchFaults, KilledAtAnyMomentItGoesOnWhereItWas) {
   suite(shadows("[16, 17, 18, 19, 20, 21]"), "turns = 2\npictures = true");
   using Clock = std::chrono::steady_clock;

@@ -104,6 +104,30 @@ TEST_F(BenchCommand, AFullDiskLosesOnlyWhatDidNotFit) {
     EXPECT_THAT(file.path().string(), testing::Not(testing::EndsWith(".part")));
 }
 
+TEST_F(BenchCommand, AFailureInALaterFolderLeavesTheEarlierRowToTheReproduction) {
+  std::ofstream(folder_ / "suite.toml", std::ios::app)
+      << "[[techniques]]\ntechnique = \"hard_shadow_map\"\nparameters = {shadow_map_size = 128}\n";
+  std::ofstream(folder_ / "claims.toml")
+      << "[[claims]]\nwhere = \"7.6, table\"\nwhat = \"sizes\"\nmeasure = \"memory\"\nthesis = 2\n"
+         "suite = \"tiny\"\nslow = [\"size=128$\"]\nfast = [\"size=64$\"]\n";
+  ASSERT_EQ(bench("first").status, 0);
+  fs::create_directory(folder_ / "later");
+  fs::copy(folder_ / "first" / "results.jsonl", folder_ / "later");
+  // The rows become failures.
+  rewrite("later", "\"error\":", "\"failure\":\"lost\",\"renderer\":\"llvmpipe\",\"error\":");
+  const auto reproduced = [&](const std::vector<std::string>& folders) {
+    std::vector<std::string> arguments = {"reproduction", "--claims", folder_ / "claims.toml", "--out",
+                                          folder_ / "page.md"};
+    for (const std::string& folder : folders) arguments.push_back(folder_ / folder);
+    const Outcome outcome = limn(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const std::string page = contents(folder_ / "page.md");
+    return page.substr(page.find("| 7.6, table |"));
+  };
+  EXPECT_THAT(reproduced({"later"}), testing::HasSubstr("| not measured |"));
+  EXPECT_THAT(reproduced({"first", "later"}), testing::Not(testing::HasSubstr("| not measured |")));
+}
+
 TEST_F(BenchCommand, StressWritesATable) {
   const Outcome stress =
       limn({"stress", "--technique", "hard_shadow_map", "--filter", "scale", "--out", folder_ / "stress"});

@@ -86,6 +86,25 @@ TEST(Reproduction, AmbiguousClaimsAreAnError) {
   EXPECT_THROW(reproductionMarkdown(parseClaims(kClaim, "c"), rows), Error);
 }
 
+TEST(Reproduction, BothSidesAreOfOneRendererAndMachine) {
+  const auto on = [](Row row, const std::string& renderer, const std::string& machine) {
+    row.cost.renderer = renderer;
+    row.cost.machine = machine;
+    return row;
+  };
+  const Row slow = row("pcss", 30, "samples"), fast = row("vssm", 2);
+  const Row slowHere = on(slow, "llvmpipe", "here"), fastHere = on(fast, "llvmpipe", "here");
+  EXPECT_THAT(line({slowHere, on(fast, "a GPU", "here")}), HasSubstr("| not measured |"));
+  EXPECT_THAT(line({slowHere, on(fast, "llvmpipe", "there")}), HasSubstr("| not measured |"));
+  EXPECT_THAT(line({slow, fastHere}), HasSubstr("| 15.00 (15.00 to 15.00) |")) << "an earlier version's row";
+  const Row slowGpu = on(row("pcss", 8, "samples"), "a GPU", "here"),
+            fastGpu = on(row("vssm", 1), "a GPU", "here");
+  for (const auto& rows : {std::vector{slowHere, slowGpu, fastHere}, {slowHere, fastHere, fastGpu}})
+    EXPECT_THAT(line(rows), HasSubstr("| 15.00 (15.00 to 15.00) |")) << "one side of another renderer";
+  EXPECT_THAT(line({slowHere, fastHere, slowGpu, fastGpu}), HasSubstr("| 8.00 (8.00 to 8.00) |"))
+      << "the last";
+}
+
 TEST(Reproduction, BeginningAndEndOfALabelCanBeMeant) {
   Row sky = row("vssm", 1);
   sky.what.environment = "sky";  // its label does not begin with the scene

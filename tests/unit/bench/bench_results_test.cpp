@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/bench/merge.h"
+#include "core/bench/regression.h"
 #include "core/bench/results_file.h"
 #include "core/bench/row.h"
 #include "core/bench/runner.h"
@@ -311,6 +312,52 @@ TEST_F(BenchResults, RunnerKeepsPicturesThatAreWanted) {
       << shown;
 }
 
+/// JSON has no infinity: a row with one could not be read again, and its file neither.
+TEST_F(BenchResults, ErrorsThatAreNotFiniteFailTheirRow) {
+  const std::vector<Case> cases = {exampleCase("pcss"), exampleCase("overflow"), exampleCase("spectrum")};
+  Fakes fakes;
+  Callbacks callbacks = fakes.callbacks();
+  callbacks.measure = [measure = callbacks.measure](const Case& c) {
+    Measurement m = measure(c);
+    if (c.technique == "overflow") std::ranges::fill(m.image.data(), 3e38f);
+    if (c.technique == "spectrum") std::ranges::fill(m.image.data(), 1e37f);
+    return m;
+  };
+  {
+    ResultsFile results(path_);
+    const Summary summary = runCases(cases, "x", results, callbacks);
+    EXPECT_EQ(summary.done, 1);
+    EXPECT_EQ(summary.failed, 2);
+  }
+  const std::vector<Row> rows = readRows(path_);
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0].failure, "");
+  EXPECT_EQ(rows[1].failure,
+            "the structured error is not finite; the picture has values too large to be compared");
+  EXPECT_EQ(rows[2].failure,
+            "the spectrum of the error is not finite; the picture has values too large to be compared");
+}
+
+TEST_F(BenchResults, APenumbraThatIsMaskedIsNone) {
+  const std::vector<Case> cases = {exampleCase("pcss")};
+  Fakes fakes;
+  Callbacks callbacks = fakes.callbacks();
+  callbacks.reference = [](const Case& c) {
+    Reference reference{Image::rgb(c.width, c.height), "reference.exr", 0.001, std::nullopt};
+    std::ranges::fill(reference.image.data(), 1.0f);
+    for (int channel = 0; channel < 3; ++channel) reference.image.at(3, 2, channel) = 0.5f;
+    reference.image.addChannel("masked");
+    reference.image.at(3, 2, reference.image.channel("masked")) = 1.0f;
+    return reference;
+  };
+  ResultsFile results(path_);
+  runCases(cases, "x", results, callbacks);
+  const Row& row = results.rows().at(0);
+  EXPECT_EQ(row.failure, "");
+  EXPECT_FALSE(row.penumbra);
+  EXPECT_NEAR(row.error.rmse, 0.4, 1e-6);
+}
+
 TEST_F(BenchResults, WhateverACaseThrowsLosesItsOwnRowOnly) {
   struct Thrown {
     const char* technique;
@@ -375,6 +422,59 @@ TEST_F(BenchResults, AFailureNeverReplacesAGoodRow) {
   const std::vector<Case> cases = {exampleCase()};
   EXPECT_EQ(runCases(cases, "llvmpipe", results, fakes.callbacks()).skipped, 1);
   EXPECT_EQ(fakes.measurements, 0);
+}
+
+TEST_F(BenchResults, AFailureOfAnotherProgramReplacesAGoodRow) {
+  Row good = exampleRow(exampleCase()), failed = good;
+  good.provenance = failed.provenance = {"program 1", "scene", {}};
+  failed.failure = "crashed: Segmentation fault";
+  ResultsFile(path_).append(good);
+  ResultsFile(path_).append(failed);
+  EXPECT_EQ(readRows(path_)[0].failure, "") << "the same program";
+  failed.provenance = {};
+  ResultsFile(path_).append(failed);
+  EXPECT_EQ(readRows(path_)[0].failure, "") << "nothing says that it was another";
+  failed.provenance = {"program 2", "scene", {}};
+  ResultsFile(path_).append(failed);
+  const std::vector<Row> now = readRows(path_);
+  ASSERT_EQ(now.size(), 1u);
+  EXPECT_EQ(now[0].failure, failed.failure);
+  EXPECT_FALSE(ResultsFile(path_).contains(good.key));
+  writeTables(now, folder_);
+  EXPECT_NE(readTextFile(folder_ / "tables.md").find("failed: crashed"), std::string::npos);
+  EXPECT_TRUE(compareResults(std::vector{good}, now).found());
+  good.provenance = failed.provenance;
+  ResultsFile(path_).append(good);
+  EXPECT_EQ(readRows(path_)[0].failure, "");
+}
+
+TEST_F(BenchResults, UnfinishedIsWhatLacksAValidRowOfAllTurns) {
+  const Provenance now{"program 2", "scene", {}};
+  Case twice = exampleCase("pcss", 16);
+  twice.turns = 2;
+  const auto left = [&](const Case& c, const Row& row) {
+    const std::vector<Row> rows = {exampleRow(exampleCase("vssm")), row};
+    return unfinishedCases(std::vector{c}, rows, [&](const Case&) { return now; }).size();
+  };
+  Row row = exampleRow(twice);
+  row.provenance = now;
+  EXPECT_EQ(left(twice, row), 1u) << "a turn is missing";
+  EXPECT_EQ(left(exampleCase("pcss", 16), row), 0u);
+  EXPECT_EQ(left(exampleCase("pcss", 64), row), 1u) << "another case";
+  row.cost.frameMs.turns = 2;
+  EXPECT_EQ(left(twice, row), 0u);
+  row.cost.renderer = "another GPU";
+  row.key = rowKey(twice, "another GPU");
+  EXPECT_EQ(left(twice, row), 0u) << "any renderer";
+  row.provenance.program = "program 1";
+  EXPECT_EQ(left(twice, row), 1u) << "stale";
+  row.provenance = now;
+  row.failure = "lost";
+  EXPECT_EQ(left(twice, row), 1u);
+  Row untimed = exampleRow(twice);
+  untimed.provenance = now;
+  untimed.cost.frameMs = {};
+  EXPECT_EQ(left(twice, untimed), 0u) << "there are no turns of what is not timed";
 }
 
 TEST_F(BenchResults, WhatWasMeasuredWithSomethingElseIsMeasuredAgain) {
@@ -445,15 +545,63 @@ TEST_F(BenchResults, FoldersAreMerged) {
   ResultsFile(a / "results.jsonl").append(both);
   ResultsFile(a / "results.jsonl").append(failed);
   for (const Row& row : {both, good, stray}) ResultsFile(b / "results.jsonl").append(row);
-  EXPECT_EQ(mergeResults(a, all), 2);
-  EXPECT_EQ(mergeResults(b, all), 2);
-  EXPECT_EQ(mergeResults(a, all) + mergeResults(b, all), 0) << "merging again adds nothing";
+  EXPECT_EQ(mergeResults(a, all, {}), 2);
+  EXPECT_EQ(mergeResults(b, all, {}), 2);
+  EXPECT_EQ(mergeResults(a, all, {}) + mergeResults(b, all, {}), 0) << "merging again adds nothing";
   const std::vector<Row> rows = readRows(all / "results.jsonl");
   ASSERT_EQ(rows.size(), 3u);
   for (const Row& row : rows) EXPECT_EQ(row.failure, "");
   EXPECT_EQ(readTextFile(all / "references/a.exr"), "a reference");
   EXPECT_EQ(std::distance(fs::recursive_directory_iterator(all), fs::recursive_directory_iterator()), 3)
       << "results.jsonl, references/ and the reference: nothing from outside of the folders";
+}
+
+/// Parts measured at different times and by different programs: the order of merging does not count.
+TEST_F(BenchResults, MergingTakesWhatIsValidNowAndOfMoreTurns) {
+  const Provenance then{"program 1", "scene", {}}, now{"program 2", "scene", {}};
+  const auto make = [&](const std::string& name, const Provenance& provenance, int turns,
+                        const std::string& failure = {}) {
+    const fs::path folder = folder_ / name;
+    fs::create_directories(folder / "pictures");
+    Row row = exampleRow(exampleCase());
+    row.provenance = provenance;
+    row.cost.frameMs.turns = turns;
+    row.failure = failure;
+    if (failure.empty()) {
+      row.picture = "pictures/" + row.key + ".png";
+      row.difference = "pictures/" + row.key + ".difference.png";
+      writeTextFile(folder / row.picture, name);
+      writeTextFile(folder / row.difference, name);
+    }
+    ResultsFile(folder / "results.jsonl").append(row);
+    return folder;
+  };
+  const std::vector<fs::path> parts = {make("old, one turn", then, 1), make("old, 3 turns", then, 3),
+                                       make("new, failed", now, 1, "lost"), make("new, one turn", now, 1),
+                                       make("new, 2 turns", now, 2)};
+  const auto merge = [&](const fs::path& part, const fs::path& into) {
+    return mergeResults(part, into, [&](const Case&) { return now; });
+  };
+  const fs::path up = folder_ / "up", down = folder_ / "down";
+  for (const fs::path& folder : {up, down}) fs::create_directories(folder);
+  for (const fs::path& part : parts) EXPECT_EQ(merge(part, up), 1) << part;
+  EXPECT_EQ(merge(parts.back(), down), 1);
+  for (const fs::path& folder : {up, down}) {
+    for (const fs::path& part : parts) EXPECT_EQ(merge(part, folder), 0) << part;
+    const std::vector<Row> rows = readRows(folder / "results.jsonl");
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_EQ(rows[0].provenance.program, "program 2");
+    EXPECT_EQ(rows[0].cost.frameMs.turns, 2);
+    EXPECT_EQ(readTextFile(folder / rows[0].picture), "new, 2 turns");
+    EXPECT_EQ(readTextFile(folder / rows[0].difference), "new, 2 turns");
+  }
+  // Of good rows of two other programs nothing says which is newer: the folder keeps its own.
+  const fs::path older = make("older, 9 turns", {"program 0", "scene", {}}, 9);
+  EXPECT_EQ(merge(older, parts[0]), 0);
+  EXPECT_EQ(merge(parts[0], older), 0);
+  const fs::path failed = make("old, failed", then, 1, "lost");
+  EXPECT_EQ(merge(failed, older), 0);
+  EXPECT_EQ(merge(older, failed), 1);
 }
 
 }  // namespace
