@@ -139,12 +139,13 @@ std::string referenceTimeText(const Row& row) {
   return time ? fmt::format("{}{:.4g}", time->atLeast ? ">" : "", time->ms) : "-";
 }
 
-/// Nobody is at least as good in both error and time, and better in one.
+/// Nobody is at least as good in both error and time, and better in one. Errors below the noise are alike.
 bool onParetoFront(const Row& row, std::span<const Row> rows) {
   if (!isTimed(row)) return false;
+  constexpr const MetricInfo& rmse = metricInfo(&Metrics::rmse);
   return std::none_of(rows.begin(), rows.end(), [&](const Row& other) {
     if (!isTimed(other)) return false;
-    const double de = other.error.rmse - row.error.rmse,
+    const double de = *boundedError(rmse, other.error) - *boundedError(rmse, row.error),
                  dt = other.cost.frameMs.median - row.cost.frameMs.median;
     return de <= 0 && dt <= 0 && (de < 0 || dt < 0);
   });

@@ -74,7 +74,7 @@ const Row* quickest(std::span<const Row> rows, const std::string& technique, con
                     std::optional<double> limit) {
   const Row* best = nullptr;
   for (const Row& row : rows) {
-    if (!isTimed(row) || row.what.technique != technique || metricValue(error, errorOf(row)) > limit)
+    if (!isTimed(row) || row.what.technique != technique || boundedError(error, errorOf(row)) > limit)
       continue;
     if (best == nullptr || row.cost.frameMs.median < best->cost.frameMs.median) best = &row;
   }
@@ -132,7 +132,7 @@ std::string comparisonMarkdown(std::span<const Row> rows) {
     if (!other(row)) continue;
     Cells cells = ratioCells(row, *baseline, row);
     for (const MetricInfo* error : kCompared)
-      appendAtEqual(cells, quickest(rows, technique, *error, metricValue(*error, errorOf(row))), row);
+      appendAtEqual(cells, quickest(rows, technique, *error, boundedError(*error, errorOf(row))), row);
     text += markdownRow(cells);
   }
   return text;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -94,30 +95,6 @@ void show(render::Renderer& renderer, const scene::CameraPose& camera, const Set
 Image secondFrame(render::Renderer& renderer) {
   renderer.render();
   return renderer.read();
-}
-
-void comparePictures(SavingResult& result, const Image& forced, const Image& without,
-                     const Image* reference) {
-  const auto value = [](const Image& image, std::size_t pixel, int channel) {
-    return double{
-        image.data()[pixel * static_cast<std::size_t>(image.channelCount()) +
-                     static_cast<std::size_t>(image.rgbChannels()[static_cast<std::size_t>(channel)])]};
-  };
-  std::size_t apart = 0;
-  for (std::size_t i = 0; i < forced.pixelCount(); ++i) {
-    double largest = 0;
-    for (int c = 0; c < 3; ++c)
-      largest = std::max(largest, std::abs(value(forced, i, c) - value(without, i, c)));
-    result.largestDifference = std::max(result.largestDifference, largest);
-    if (largest <= kApart) continue;
-    ++apart;
-    for (int c = 0; reference && c < 3; ++c) {
-      const double truth = value(*reference, i, c);
-      result.forced.squaresApart += std::pow(value(forced, i, c) - truth, 2);
-      result.without.squaresApart += std::pow(value(without, i, c) - truth, 2);
-    }
-  }
-  result.shareApart = static_cast<double>(apart) / static_cast<double>(forced.pixelCount());
 }
 
 /// What differs between the sides; nothing is timed yet.
@@ -227,6 +204,34 @@ nlohmann::ordered_json toJsonValue(const SavingSide& side) {
 }
 
 }  // namespace
+
+void comparePictures(SavingResult& result, const Image& forced, const Image& without,
+                     const Image* reference) {
+  const auto value = [](const Image& image, std::size_t pixel, int channel) {
+    return double{
+        image.data()[pixel * static_cast<std::size_t>(image.channelCount()) +
+                     static_cast<std::size_t>(image.rgbChannels()[static_cast<std::size_t>(channel)])]};
+  };
+  std::size_t apart = 0;
+  for (std::size_t i = 0; i < forced.pixelCount(); ++i) {
+    double largest = 0;
+    for (int c = 0; c < 3; ++c) {
+      const double difference = std::abs(value(forced, i, c) - value(without, i, c));
+      // NaN is above nothing: pictures of it would be called equal.
+      largest =
+          std::max(largest, std::isnan(difference) ? std::numeric_limits<double>::infinity() : difference);
+    }
+    result.largestDifference = std::max(result.largestDifference, largest);
+    if (largest <= kApart) continue;
+    ++apart;
+    for (int c = 0; reference && c < 3; ++c) {
+      const double truth = value(*reference, i, c);
+      result.forced.squaresApart += std::pow(value(forced, i, c) - truth, 2);
+      result.without.squaresApart += std::pow(value(without, i, c) - truth, 2);
+    }
+  }
+  result.shareApart = static_cast<double>(apart) / static_cast<double>(forced.pixelCount());
+}
 
 bool SavingResult::holds() const {
   if (!applies || largestDifference == 0) return true;

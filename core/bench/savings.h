@@ -32,7 +32,7 @@ struct SavingResult {
   std::vector<std::string> passes = {};  ///< that are missing unless forced
   SavingSide forced = {}, without = {};
   Ratio ratio = {};              ///< frame time forced in / left out
-  double largestDifference = 0;  ///< between the two pictures, in any channel
+  double largestDifference = 0;  ///< between the two pictures, in any channel; infinite where one has NaN
   double shareApart = 0;         ///< of the pixels that are more than 1/255 apart
   /// Returns whether the pictures agree as required. Where an early-out is more than 1/255 apart, it must be
   /// nearer to the reference: bounds detect an umbra in which an estimator may leave some light.
@@ -47,6 +47,10 @@ struct SavingOptions {
   std::function<void(double fraction, const std::string& name)> progress = {};
 };
 
+/// Fills in how far the pictures of the two sides lie apart, and their errors there; `reference` may be null.
+LIMN_API void comparePictures(SavingResult& result, const Image& forced, const Image& without,
+                              const Image* reference);
+
 /// Measures every kind of work that can be left out. `settings` says what is rendered; its `dynamic` and
 /// `forced` are ignored. `reference` may be null: then no errors are reported. Throws what rendering throws.
 LIMN_API std::vector<SavingResult> measureSavings(render::Renderer& renderer, const scene::CameraPose& camera,
@@ -56,7 +60,8 @@ LIMN_API std::vector<SavingResult> measureSavings(render::Renderer& renderer, co
 /// Returns a table with a line for each result.
 LIMN_API std::string toMarkdown(std::span<const SavingResult> results);
 /// Returns {"savings": [{"name", "how", "exact", "applies", "passes", "forced": {"frame_ms", "memory_bytes",
-/// "rmse"}, "without": ..., "ratio": [value, low, high], "largest_difference", "share_apart", "holds"}]}.
+/// "rmse"}, "without": ..., "ratio": [value, low, high], "largest_difference" (null: infinite),
+/// "share_apart", "holds"}]}.
 LIMN_API std::string toJson(std::span<const SavingResult> results);
 
 }  // namespace limn::bench

@@ -1,5 +1,6 @@
 #include "core/image/metric_json.h"
 
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -53,6 +54,8 @@ Metrics metricsFromJson(const Json& json) {
   Metrics metrics;
   for (const MetricInfo& info : kMetrics)
     std::visit([&](auto member) { read(metrics.*member, json, info); }, info.member);
+  // null is both infinities: +inf of equal pictures, -inf of others, whose reference is black.
+  if (std::isinf(metrics.psnr) && metrics.rmse != 0) metrics.psnr = -std::numeric_limits<double>::infinity();
   return metrics;
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace limn {
 namespace {
 
@@ -50,6 +52,11 @@ std::string labelWithUnit(const MetricInfo& info) {
 
 std::optional<double> metricValue(const MetricInfo& info, const Metrics& metrics) {
   return std::visit([&](auto member) { return asDouble(metrics.*member); }, info.member);
+}
+
+std::optional<double> boundedError(const MetricInfo& info, const Metrics& metrics) {
+  const std::optional<double> value = metricValue(info, metrics);
+  return info.floored && value ? std::max(*value, metrics.noise_floor.value_or(*value)) : value;
 }
 
 std::string exactText(const MetricInfo& info, const Metrics& metrics) {

@@ -57,8 +57,8 @@ inline constexpr MetricInfo kMetrics[] = {
      &Metrics::structured,
      "RMS of the error after a 9 x 9 Gaussian (sigma 2 pixels): banding survives it, noise does not"},
     {"noise_floor", "noise floor", "", "", "{:.3g}", MetricKind::basis, false, false, &Metrics::noise_floor,
-     "three times the RMS noise of the reference, in the unit of the pictures; a smaller RMSE cannot be told "
-     "from noise"},
+     "three times the RMS noise of the reference over the compared pixels, in the unit of the pictures; a "
+     "smaller RMSE cannot be told from noise"},
     {"masked_share", "masked share", "", "", "{:.3g}", MetricKind::basis, false, false,
      &Metrics::masked_share,
      "share of the covered pixels that differ in coverage, instance or depth, and are left out"},
@@ -79,6 +79,10 @@ LIMN_API std::string labelWithUnit(const MetricInfo& info);
 
 /// Returns the value, whatever the member's type; nullopt if it is not known.
 LIMN_API std::optional<double> metricValue(const MetricInfo& info, const Metrics& metrics);
+
+/// Returns the value, but no less than the noise floor where the metric is floored: smaller errors are no
+/// difference, and none ranks before another. Returns nullopt if it is not known.
+LIMN_API std::optional<double> boundedError(const MetricInfo& info, const Metrics& metrics);
 
 /// Returns the value in full precision; "" if it is not known.
 LIMN_API std::string exactText(const MetricInfo& info, const Metrics& metrics);

@@ -173,7 +173,7 @@ class ErrorSums {
     std::vector<float> errors, peaks;
     collectLuminance(errors, peaks);
     metrics.p999 = percentile(errors, 0.999);
-    metrics.psnr = 20.0 * std::log10(percentile(peaks, 0.999) / metrics.rmse);
+    metrics.psnr = 20.0 * std::log10(std::max(percentile(peaks, 0.999), 0.0) / metrics.rmse);
     if (metrics.rmse == 0.0) metrics.psnr = std::numeric_limits<double>::infinity();
     metrics.structured = std::sqrt(structuredSquares() / values);
   }
@@ -277,7 +277,29 @@ void evaluateFlip(const std::vector<float>& image, const std::vector<float>& ref
   result.metrics.flip = total / static_cast<double>(result.metrics.pixels);
 }
 
-std::optional<double> noiseFloor(const Image& reference, std::span<const float> rgb) {
+/// The mean of the channel over the compared pixels.
+double meanVariance(const Image& reference, int channel, const Comparison& result) {
+  const double sum = sumRows<double>(reference.height(), [&](int y) {
+    double row = 0;
+    const auto first = static_cast<std::size_t>(y) * static_cast<std::size_t>(reference.width());
+    for (int x = 0; x < reference.width(); ++x) {
+      if (!result.mask[first + static_cast<std::size_t>(x)]) continue;
+      const double value = reference.at(x, y, channel);
+      row += value >= 0 ? value : std::numeric_limits<double>::quiet_NaN();
+    }
+    return row;
+  });
+  if (!std::isfinite(sum))
+    throw Error("compare: the reference's channel 'variance' has other values than numbers >= 0");
+  return sum / static_cast<double>(result.metrics.pixels);
+}
+
+/// Noise differs between the parts of a picture: that of the compared pixels counts where the reference says
+/// it of each. A picture of another program may say it of the whole alone.
+std::optional<double> noiseFloor(const Image& reference, std::span<const float> rgb,
+                                 const Comparison& result) {
+  if (const std::optional<int> variance = reference.findChannel("variance"))
+    return 3.0 * std::sqrt(meanVariance(reference, *variance, result));
   const auto found = reference.metadata().find("noise_rms");
   if (found == reference.metadata().end()) return std::nullopt;
   char* end = nullptr;
@@ -314,7 +336,7 @@ Comparison compareImagesDetailed(const Image& image, const Image& reference, con
   if (result.metrics.pixels == 0) throw Error("compare: no pixel is left to compare");
   ErrorSums(x, r, image.width(), image.height(), result.mask).evaluate(result.metrics);
   evaluateFlip(x, r, image.width(), image.height(), options.exposureEv, result);
-  result.metrics.noise_floor = noiseFloor(reference, r);
+  result.metrics.noise_floor = noiseFloor(reference, r, result);
   return result;
 }
 

@@ -17,14 +17,15 @@ struct Metrics {
   double rel_mse = 0;  ///< mean((x - r)^2 / (r^2 + 1e-2 mean(r)^2)), per channel; mean(r) over all channels
   double bias = 0;     ///< mean of x - r over R, G, B (signed)
   double p999 = 0;     ///< 99.9th percentile of |x - r| in luminance (Rec. 709)
-  double psnr = 0;     ///< 20 log10(peak / rmse), peak = 99.9th percentile of r; infinite for equal images
+  double psnr = 0;     ///< 20 log10(peak / rmse), peak = 99.9th percentile of r; +inf for equal images
   double flip = 0;     ///< mean LDR-FLIP of the tone-mapped pictures, in [0, 1]
   double structured = 0;  ///< RMS of the error after a 9 x 9 Gaussian (sigma 2 pixels, renormalised at masks)
   std::size_t pixels = 0;  ///< pixels compared
   /// Share, among the pixels covered in either picture, of those that differ in coverage, id or depth.
   double masked_share = 0;
-  /// Three times the reference's own noise, in image units: a smaller rmse is no difference. Known where the
-  /// reference's metadata has "noise_rms" (RMS relative to the mean).
+  /// Three times the reference's own noise over the compared pixels, in image units: a smaller rmse is no
+  /// difference. Known where the reference has a channel "variance" (of the mean of R, G, B), or metadata
+  /// "noise_rms" (RMS relative to the mean), which is then taken for that of every part of the picture.
   std::optional<double> noise_floor;
 };
 
@@ -47,9 +48,10 @@ struct Comparison {
 /// Compares the unmasked pixels of two pictures; compareImages() returns the metrics alone. Where only one
 /// picture has a coverage channel, that one decides which pixels are dropped; pixels whose channel "masked"
 /// is 1 in either picture (where a term is undefined) are dropped without being counted. A ratio whose
-/// denominator is 0 (rel_mse, psnr of a black reference) is infinite. Throws Error if the sizes differ, a
-/// value of R, G, B is NaN or infinite (masked or not), no pixel is left, or the masked share exceeds its
-/// limit.
+/// denominator is 0 (rel_mse of a black reference) is infinite; the psnr of a black reference is -infinity
+/// unless the images are equal. Throws Error if the sizes differ, a value of R, G, B is NaN or infinite
+/// (masked or not), a compared value of the reference's channel variance is no number >= 0, no pixel is left,
+/// or the masked share exceeds its limit.
 LIMN_API Comparison compareImagesDetailed(const Image& image, const Image& reference,
                                           const CompareOptions& options = {});
 LIMN_API Metrics compareImages(const Image& image, const Image& reference,

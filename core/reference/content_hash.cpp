@@ -163,6 +163,9 @@ std::string contentHash(const Request& request) {
   Hasher hasher;
   addWork(hasher, request);
   hasher.addAll(request.spp, request.noise);
+  constexpr uint32_t noiseVersion =
+      2;  // earlier results have that of single samples of aa, or found no light
+  if (request.aa > 1 || (request.noise > 0 && request.term == Term::caustic)) hasher.add(noiseVersion);
   return hasher.digest();
 }
 

@@ -11,6 +11,9 @@
 namespace limn::reference {
 namespace {
 
+// Positions in channelNames(). Factors of a light have three more before A, which is the last.
+constexpr size_t kVariance = 3, kDepth = 4, kId = 6, kFactor = 13, kWeightedFactor = 14, kMasked = 15;
+
 struct Mean {
   glm::dvec3 value{0}, deviation{0};  ///< deviation: half the difference of the two halves
 };
@@ -42,7 +45,7 @@ std::span<float> imagePixel(const View& view, Image& image, size_t pixel) {
 
 void writeColour(std::span<float> out, const glm::dvec3& colour, double variance) {
   for (int c = 0; c < 3; ++c) out[static_cast<size_t>(c)] = static_cast<float>(colour[c]);
-  out[3] = static_cast<float>(variance);
+  out[kVariance] = static_cast<float>(variance);
 }
 
 }  // namespace
@@ -92,7 +95,7 @@ Image renderFeatures(const View& view, Term term, bool background, const std::st
     const std::span<float> out = imagePixel(view, image, pixel);
     Surface surface;
     if (!view.surface(pixel, surface)) {
-      out[6] = -1.f;  // id: nobody
+      out[kId] = -1.f;  // nobody
       out.back() = background ? 1.f : 0.f;
       return;
     }
@@ -108,26 +111,28 @@ Image renderFeatures(const View& view, Term term, bool background, const std::st
                                         values.normal.x,
                                         values.normal.y,
                                         values.normal.z};
-    std::copy(features.begin(), features.end(), out.begin() + 4);
+    std::copy(features.begin(), features.end(), out.begin() + kDepth);
   });
   return image;
 }
 
-double noiseOf(const Integrator& integrator, Term term, const Accumulators& state,
-               const std::vector<unsigned char>& counts) {
+std::optional<double> noiseOf(const Integrator& integrator, const Request& request, const Accumulators& state,
+                              const std::vector<unsigned char>& counts) {
   glm::dvec3 sum(0), squares(0);
   size_t count = 0;
   for (size_t pixel = 0; pixel < counts.size(); ++pixel) {
-    if (!counts[pixel] || (isLightFactor(term) && isMaskedPixel(state, pixel))) continue;
+    if (!counts[pixel] || (isLightFactor(request.term) && isMaskedPixel(state, pixel))) continue;
     const Mean mean = meanOf(integrator, state, pixel);
     sum += mean.value;
     squares += mean.deviation * mean.deviation;
     ++count;
   }
+  if (count == 0) return 0;
   const double total = sum.x + sum.y + sum.z;
-  if (count == 0 || !(total > 0)) return 0;
+  if (!(total > 0)) return std::nullopt;
   const double values = 3.0 * static_cast<double>(count);
-  return std::sqrt((squares.x + squares.y + squares.z) / values) / (total / values);
+  // The aa x aa of a pixel of the result are independent.
+  return std::sqrt((squares.x + squares.y + squares.z) / values) / (total / values) / request.aa;
 }
 
 void develop(const Integrator& integrator, const View& view, const Request& request,
@@ -139,9 +144,9 @@ void develop(const Integrator& integrator, const View& view, const Request& requ
       const double v = ratioOf(state, pixel, 0);
       const glm::dvec3 deviation = meanOf(integrator, state, pixel).deviation;
       writeColour(out, glm::dvec3(v), deviation.x * deviation.x);
-      out[13] = static_cast<float>(v);
-      out[14] = static_cast<float>(ratioOf(state, pixel, 2));
-      out[15] = isMaskedPixel(state, pixel) ? 1.f : 0.f;
+      out[kFactor] = static_cast<float>(v);
+      out[kWeightedFactor] = static_cast<float>(ratioOf(state, pixel, 2));
+      out[kMasked] = isMaskedPixel(state, pixel) ? 1.f : 0.f;
       return;
     }
     Mean mean = meanOf(integrator, state, pixel);
@@ -154,7 +159,7 @@ void develop(const Integrator& integrator, const View& view, const Request& requ
         seen = surface.values.emission;
       else
         seen = cameraRadiance(surface, *view.rays.draws()[surface.draw].material, environment);
-      mean.value += glm::dvec3(seen * view.transmittance(pixel, out[4]));
+      mean.value += glm::dvec3(seen * view.transmittance(pixel, out[kDepth]));
     }
     writeColour(out, mean.value, glm::dot(mean.deviation, mean.deviation) / 3);
   });
@@ -165,9 +170,8 @@ Image downsample(const Image& image, int aa) {
   Image result(image.width() / aa, image.height() / aa, image.channels());
   result.metadata() = image.metadata();
   const size_t last = static_cast<size_t>(image.channelCount()) - 1;
-  // R, G, B, variance, V and Vw or W and Ww, and A.
   const auto averaged = [&](size_t channel) {
-    return channel < 4 || channel == 13 || channel == 14 || channel == last;
+    return channel <= kVariance || channel == kFactor || channel == kWeightedFactor || channel == last;
   };
   for (int y = 0; y < result.height(); ++y)
     for (int x = 0; x < result.width(); ++x) {
@@ -178,7 +182,7 @@ Image downsample(const Image& image, int aa) {
         for (int i = 0; i < aa * aa; ++i)
           sum += image.at(x * aa + i % aa, y * aa + i / aa, static_cast<int>(c));
         const double mean = sum / (aa * aa);
-        out[c] = averaged(c) ? static_cast<float>(c == 3 ? mean / (aa * aa) : mean) : centre[c];
+        out[c] = averaged(c) ? static_cast<float>(c == kVariance ? mean / (aa * aa) : mean) : centre[c];
       }
     }
   return result;

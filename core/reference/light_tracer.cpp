@@ -98,10 +98,9 @@ void LightTracer::trace(uint32_t first, uint32_t count, std::vector<Sums>& sums)
     Film film{films_[f]};
     const uint32_t half = f % 2;
     const size_t part = f / 2;
-    Sampler sampler(request_.seed, ~uint64_t{0}, half);
     for (uint64_t i = start + paths * part / perHalf; i < start + paths * (part + 1) / perHalf; ++i) {
       if (request_.stop.stop_requested()) return;
-      sampler.startSample(static_cast<uint32_t>(i));
+      const Sampler sampler = pathSampler(request_.seed, half, i);
       Path path;
       if (!emit(sampler, i, path)) continue;
       if (request_.interfaces == kAllInterfaces)

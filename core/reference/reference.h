@@ -117,8 +117,9 @@ struct Request {
   /// - local: the share that a half space reflects, of what enters at the seen place.
   SubsurfaceModel subsurface = SubsurfaceModel::bssrdf;
   int spp = 64;  ///< samples per pixel and light, rounded up to an even number; the maximum if noise is given
-  /// Target noise, RMS relative to the mean; 0: take spp samples. The noise is tested after 16, 32, 64, ...
-  /// samples.
+  /// Target noise, RMS relative to the mean, 0 to 1; 0: take spp samples. The noise is tested after 16, 32,
+  /// 64, ... samples. Nothing is known of it while the picture is black, since light may not have been found
+  /// yet: a black picture is finished after 4096 samples, or at once where nothing is traced.
   double noise = 0;
   uint64_t seed = 0;
   int aa = 1;  ///< aa x aa samples per pixel, on a regular grid and equally weighted, as A; other channels:

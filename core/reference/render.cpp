@@ -24,6 +24,9 @@ namespace {
 constexpr TermSet kBouncingTerms =
     termsWhere([](const TermInfo& info) { return info.bounces != TermBounces::none; });
 
+/// Samples per pixel after which a picture that is still black is taken for one without light.
+constexpr uint32_t kFewestBlack = 4096;
+
 using Clock = std::chrono::steady_clock;
 
 double secondsSince(Clock::time_point start) {
@@ -79,8 +82,8 @@ void validate(const Request& r) {
                                  r.height, r.aa, kMaxImageSide));
   if (r.spp < 1 || r.spp > (1 << 24))
     throw UsageError(fmt::format("reference: spp {} is not in 1 .. 2^24", r.spp));
-  if (!(r.noise >= 0 && r.noise < 1))
-    throw UsageError(fmt::format("reference: noise {} is not in [0, 1) (0: take spp samples)", r.noise));
+  if (!(r.noise >= 0 && r.noise <= 1))
+    throw UsageError(fmt::format("reference: noise {} is not in 0 .. 1 (0: take spp samples)", r.noise));
   if (!contains(kPicturedTerms, r.term))
     throw UsageError(fmt::format("reference: no picture shows the term {} alone", name(r.term)));
   if (isLightFactor(r.term) && (r.light < 0 || r.light >= lights))
@@ -173,7 +176,7 @@ class Work {
     found.sums.resize(state_.sums.size());
     if (!loadCheckpoint(request_.checkpoint, hash_, found) || found.samples > needed_) return;
     state_ = std::move(found);
-    noise_ = noiseOf(*integrator_, request_.term, state_, counts_);
+    noise_ = noise().value_or(0);
   }
 
   /// A disk that is full ends no work that may still succeed: only the last save, of stopped work, must.
@@ -207,8 +210,7 @@ class Work {
     if (tracer_) tracer_->trace(state_.samples, count, state_.sums);
     checkStop();
     state_.samples += count;
-    if (std::has_single_bit(state_.samples) || state_.samples == needed_)
-      noise_ = noiseOf(*integrator_, request_.term, state_, counts_);
+    if (std::has_single_bit(state_.samples) || state_.samples == needed_) noise_ = noise().value_or(0);
   }
 
   void checkStop() const {
@@ -217,8 +219,7 @@ class Work {
 
   void samplePixel(size_t pixel, uint32_t count) {
     Surface surface;
-    const bool reflects = request_.term != Term::media && request_.term != Term::caustic;
-    const bool seen = reflects && covered_[pixel] && view_.surface(pixel, surface);
+    const bool seen = reflects() && covered_[pixel] && view_.surface(pixel, surface);
     if (!seen && !airlight_) return;
     const float depth = depths_[pixel];
     const glm::vec3 passes = view_.transmittance(pixel, depth);
@@ -248,9 +249,16 @@ class Work {
 
   bool finished() const {
     if (state_.samples >= needed_) return true;
-    return request_.noise > 0 && state_.samples >= 8 && std::has_single_bit(state_.samples) &&
-           noiseOf(*integrator_, request_.term, state_, counts_) <= request_.noise;
+    if (!(request_.noise > 0) || state_.samples < 8 || !std::has_single_bit(state_.samples)) return false;
+    if (const std::optional<double> reached = noise()) return *reached <= request_.noise;
+    const bool traces = tracer_ || airlight_ || reflects();
+    return !traces || 2 * state_.samples >= kFewestBlack;
   }
+
+  std::optional<double> noise() const { return noiseOf(*integrator_, request_, state_, counts_); }
+
+  /// Whether samples start at what the camera sees.
+  bool reflects() const { return request_.term != Term::media && request_.term != Term::caustic; }
 
   Progress progress(double secondsPerSample) const {
     double wanted = needed_;
@@ -266,7 +274,7 @@ class Work {
 
   Result finish() {
     Result result;
-    result.noiseRms = noiseOf(*integrator_, request_.term, state_, counts_);
+    result.noiseRms = noise().value_or(0);
     result.spp = static_cast<int>(2 * state_.samples);
     develop(*integrator_, view_, request_, state_, covered_, image_);
     auto& metadata = image_.metadata();

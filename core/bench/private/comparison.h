@@ -48,8 +48,8 @@ LIMN_API std::string ratioText(double ratio);
 /// Returns the same with the interval: "2.10 (1.80 to 2.40)".
 LIMN_API std::string ratioText(const Ratio& ratio);
 
-/// Returns the quickest timed row of the technique whose error is not above `limit` (in the penumbra, where
-/// that is known); null if there is none.
+/// Returns the quickest timed row of the technique whose boundedError() is not above `limit` (in the
+/// penumbra, where that is known); null if there is none.
 LIMN_API const Row* quickest(std::span<const Row> rows, const std::string& technique, const MetricInfo& error,
                              std::optional<double> limit);
 

@@ -1,6 +1,7 @@
 // Turns accumulated samples into pictures.
 #pragma once
 
+#include <optional>
 #include <stop_token>
 #include <vector>
 
@@ -40,10 +41,11 @@ std::vector<std::string> channelNames(Term term);
 Image renderFeatures(const View& view, Term term, bool background, const std::stop_token& stop,
                      std::vector<unsigned char>& covered);
 
-/// Returns the RMS of the standard deviation of the mean over the pixels that count (for factors of a light:
-/// those not masked) and channels, relative to the mean; 0 where the mean is 0.
-double noiseOf(const Integrator& integrator, Term term, const Accumulators& state,
-               const std::vector<unsigned char>& counts);
+/// Returns the RMS of the standard deviation of the mean of the result's pixels, over those that count (for
+/// factors of a light: those not masked) and channels, relative to the mean; 0 where none counts, nullopt
+/// where the mean is 0.
+std::optional<double> noiseOf(const Integrator& integrator, const Request& request, const Accumulators& state,
+                              const std::vector<unsigned char>& counts);
 
 /// Writes the channels that the samples determine into the features' image.
 void develop(const Integrator& integrator, const View& view, const Request& request,

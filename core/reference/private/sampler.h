@@ -68,4 +68,12 @@ class Sampler {
   uint32_t index_ = 0;
 };
 
+/// Returns the random numbers of light path `path`, of one half of the samples. They belong to no pixel. A
+/// sampler has numbers for 2^32 samples: each 2^32 paths have one of their own, so that none repeats another.
+inline Sampler pathSampler(uint64_t seed, uint32_t half, uint64_t path) {
+  Sampler sampler(seed, ~(path >> 32), half);
+  sampler.startSample(static_cast<uint32_t>(path));
+  return sampler;
+}
+
 }  // namespace limn::reference

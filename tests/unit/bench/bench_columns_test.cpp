@@ -125,7 +125,7 @@ TEST(BenchColumns, CsvHasErrorsAndCostInFullPrecision) {
     EXPECT_EQ(text.empty() ? std::nullopt : std::optional(std::stod(text)), value) << info.key;
   }
   EXPECT_EQ(cells.at("rmse"), "0.30000000000000004");
-  EXPECT_EQ(cells.at("psnr"), "inf");
+  EXPECT_EQ(cells.at("psnr"), "-inf");
   EXPECT_EQ(number(cells, "penumbra_rmse"), row.penumbra->rmse);
   EXPECT_EQ(number(cells, "penumbra_structured"), row.penumbra->structured);
   EXPECT_EQ(cells.at("umbra"), "200");

@@ -118,7 +118,7 @@ TEST(BenchMarkdown, ControlCharactersAndForeignBytesAreSeen) {
 
 TEST(BenchMarkdown, NamesOfParametersStayReadable) {
   for (const char* text : {"pcss.shadow_map_size=1024", "balls, light env#0: direct, 64x48", "<0.003",
-                           "1.00 (0.90 to 1.10)", "*", "-", "+0.01", "inf"})
+                           "1.00 (0.90 to 1.10)", "*", "-", "+0.01", "inf", "-inf"})
     EXPECT_EQ(markdownText(text), text);
 }
 

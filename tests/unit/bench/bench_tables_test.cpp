@@ -72,7 +72,7 @@ TEST(BenchTables, MarkdownShowsErrorTimeNoiseFloorAndFront) {
                                  exampleRow(exampleCase("beaten"), 0.3, 1.5),
                                  exampleRow(exampleCase("good"), 0.002, 9.0)};
   const std::string text = toMarkdown(makeTables(rows).front());
-  EXPECT_NE(text.find("| fast | fast.samples=16 | 0.25 | 0.1 | -0.01 | 0.7 | inf | 0.1250 | 0.03 | 0.25 | "
+  EXPECT_NE(text.find("| fast | fast.samples=16 | 0.25 | 0.1 | -0.01 | 0.7 | -inf | 0.1250 | 0.03 | 0.25 | "
                       "5.00 | 1.00 | 1.000 | 0.750 | "
                       "1.250 | 1.49 | 5 | 1000.0 | 0.12 | 0.50 | 0.25 | 0.25 | 3.0 | * |"),
             std::string::npos)
@@ -91,6 +91,25 @@ TEST(BenchTables, MarkdownShowsErrorTimeNoiseFloorAndFront) {
     if (bars == 0) bars = count;
     EXPECT_EQ(count, bars) << line;
   }
+}
+
+/// As the report page has it: what differs by less than the reference's noise is equally good.
+TEST(BenchTables, NothingRanksBelowTheNoise) {
+  std::vector<Row> rows = {exampleRow(exampleCase("pcss", 1024), 0.001, 8),
+                           exampleRow(exampleCase("pcss", 16), 0.002, 2),
+                           exampleRow(exampleCase("vssm"), 0.0015, 4)};
+  rows[0].what.baseline = true;
+  const std::string text = toMarkdown(makeTables(rows).front());
+  const auto line = [&](const std::string& start) {
+    const std::size_t at = text.find(start);
+    return at == std::string::npos ? std::string() : text.substr(at, text.find('\n', at) - at);
+  };
+  EXPECT_TRUE(line("| pcss | pcss.samples=16 |").ends_with("| * |")) << text;
+  EXPECT_TRUE(line("| vssm | ").ends_with("|  |")) << text;
+  EXPECT_TRUE(line("| pcss | pcss.samples=1024 |").ends_with("|  |")) << text;
+  const std::string compared = line("| vssm samples=16 |");
+  EXPECT_NE(compared.find("| pcss samples=16 |"), std::string::npos) << text;
+  EXPECT_EQ(compared.find("samples=1024"), std::string::npos) << text;
 }
 
 TEST(BenchTables, ReferencesTakeLongerForLess) {

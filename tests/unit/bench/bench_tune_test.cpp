@@ -64,6 +64,8 @@ TEST(TuneFigures, AreSmallerForBetterPictures) {
   EXPECT_DOUBLE_EQ(badness(metric(&Metrics::bias), -0.25), 0.25);
   EXPECT_NEAR(badness(metric(&Metrics::psnr), 40), 0.01, 1e-15);
   EXPECT_EQ(badness(metric(&Metrics::psnr), std::numeric_limits<double>::infinity()), 0);
+  EXPECT_EQ(badness(metric(&Metrics::psnr), -std::numeric_limits<double>::infinity()),
+            std::numeric_limits<double>::infinity());
 }
 
 TEST(TuneFigures, OnlyWhatGrowsWithPixelsIsScaled) {

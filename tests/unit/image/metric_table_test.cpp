@@ -51,14 +51,37 @@ TEST(MetricTable, EveryMetricSurvivesJson) {
 
 TEST(MetricTable, JsonIsWrittenAsEver) {
   Metrics metrics = distinctMetrics();
+  metrics.rmse = 0;
   metrics.psnr = std::numeric_limits<double>::infinity();
   EXPECT_EQ(metricsToJson(metrics).dump(),
-            R"({"rmse":1.0,"rel_mse":2.0,"bias":3.0,"p999":4.0,"psnr":null,"flip":6.0,"structured":7.0,)"
+            R"({"rmse":0.0,"rel_mse":2.0,"bias":3.0,"p999":4.0,"psnr":null,"flip":6.0,"structured":7.0,)"
             R"("masked_share":9.0,"pixels":10,"noise_floor":8.0})");
   EXPECT_EQ(metricsFromJson(metricsToJson(metrics)).psnr, metrics.psnr);
   metrics.noise_floor.reset();
   EXPECT_FALSE(metricsToJson(metrics).contains("noise_floor"));
   EXPECT_FALSE(metricsFromJson(metricsToJson(metrics)).noise_floor);
+}
+
+/// JSON has one null for both infinities.
+TEST(MetricTable, ThePsnrOfABlackReferenceStaysTheWorst) {
+  Metrics metrics = distinctMetrics();
+  metrics.psnr = -std::numeric_limits<double>::infinity();
+  const auto json = nlohmann::ordered_json::parse(metricsToJson(metrics).dump());
+  EXPECT_TRUE(json["psnr"].is_null());
+  EXPECT_EQ(metricsFromJson(json).psnr, metrics.psnr);
+  EXPECT_EQ(shownText(metricInfo(&Metrics::psnr), metrics), "-inf");
+}
+
+TEST(MetricTable, ErrorsBelowTheNoiseAreAlike) {
+  const MetricInfo &rmse = metricInfo(&Metrics::rmse), &flip = metricInfo(&Metrics::flip);
+  Metrics metrics;
+  metrics.rmse = metrics.flip = 0.25;
+  EXPECT_EQ(boundedError(rmse, metrics), 0.25) << "the noise is not known";
+  metrics.noise_floor = 0.5;
+  EXPECT_EQ(boundedError(rmse, metrics), 0.5);
+  EXPECT_EQ(boundedError(flip, metrics), 0.25) << "the floor is that of the RMSE";
+  metrics.rmse = 0.75;
+  EXPECT_EQ(boundedError(rmse, metrics), 0.75);
 }
 
 TEST(MetricTable, JsonThatLacksSomethingIsRefused) {

@@ -73,6 +73,12 @@ TEST(Metrics, BlackPicturesAreDefined) {
   EXPECT_EQ(compareImages(filled(8, 8, 0.0f), filled(8, 8, 0.0f)).rel_mse, 0.0);
   EXPECT_EQ(compareImages(filled(8, 8, 0.1f), filled(8, 8, 0.0f)).rel_mse,
             std::numeric_limits<double>::infinity());
+  EXPECT_EQ(compareImages(filled(8, 8, 0.0f), filled(8, 8, 0.0f)).psnr,
+            std::numeric_limits<double>::infinity());
+  for (const float peak : {0.0f, -0.5f})
+    EXPECT_EQ(compareImages(filled(8, 8, 0.1f), filled(8, 8, peak)).psnr,
+              -std::numeric_limits<double>::infinity())
+        << peak;
 }
 
 TEST(Metrics, OneWrongChannel) {
@@ -235,6 +241,41 @@ TEST(Metrics, ReadsTheNoiseOfTheReference) {
   EXPECT_NE(metricsTable(metrics).find("within it"), std::string::npos);
   reference.metadata()["noise_rms"] = "little";
   expectError([&] { compareImages(reference, reference); }, "'little'");
+}
+
+/// Half of the picture is lit and known exactly, the other half is penumbra with noise.
+TEST(Metrics, NoiseFloorIsThatOfTheComparedPixels) {
+  Image reference = filled(16, 8, 1.0f);
+  reference.metadata()["noise_rms"] = "0.5";  // of the whole picture: less is known by it
+  reference.addChannel("variance");
+  const int variance = reference.channel("variance");
+  for (int y = 0; y < 8; ++y)
+    for (int x = 8; x < 16; ++x) {
+      for (int c = 0; c < 3; ++c) reference.at(x, y, c) = 0.5f;
+      reference.at(x, y, variance) = x % 2 == 0 ? 0.0001f : 0.0003f;
+    }
+  const Image image = withNoise(filled(16, 8, 0.6f), 0.1f);
+  CompareOptions penumbra;
+  penumbra.maskTermRange = {0.02f, 0.98f};
+  const Metrics whole = compareImages(image, reference), part = compareImages(image, reference, penumbra);
+  ASSERT_TRUE(whole.noise_floor && part.noise_floor);
+  EXPECT_NEAR(*whole.noise_floor, 3 * 0.01, 1e-8);
+  EXPECT_NEAR(*part.noise_floor, 3 * std::sqrt(0.0002), 1e-8);
+
+  // It bounds the RMSE of what differs from the reference by its noise alone.
+  std::mt19937 generator(7);
+  Image twin = reference;
+  for (int y = 0; y < 8; ++y)
+    for (int x = 8; x < 16; ++x)
+      for (int c = 0; c < 3; ++c)
+        twin.at(x, y, c) +=
+            std::normal_distribution<float>(0.0f, std::sqrt(reference.at(x, y, variance)))(generator);
+  EXPECT_NEAR(compareImages(twin, reference, penumbra).rmse, *part.noise_floor / 3,
+              0.2 * *part.noise_floor / 3);
+
+  reference.at(0, 0, variance) = -1.0f;
+  expectError([&] { compareImages(image, reference); }, "channel 'variance'");
+  EXPECT_NO_THROW(compareImages(image, reference, penumbra)) << "that pixel is not compared";
 }
 
 TEST(Metrics, DifferencePictureIsDarkWhereEqual) {

@@ -44,6 +44,16 @@ TEST(ReferenceEnvironment, DensityIntegratesToOneAndFollowsTheRadiance) {
   EXPECT_NEAR(estimate / energy, 1, 2e-3);
 }
 
+TEST(ReferenceSampler, LightPathsBeyond32BitsDoNotRepeat) {
+  constexpr uint64_t kBlock = uint64_t{1} << 32;
+  const auto numbers = [](uint64_t path) { return pathSampler(3, 1, path).pair(0); };
+  EXPECT_EQ(numbers(kBlock + 7), numbers(kBlock + 7));
+  for (uint64_t path = 0; path < 64; ++path) {
+    EXPECT_NE(numbers(path), numbers(path + kBlock)) << path;
+    EXPECT_NE(numbers(path + kBlock), numbers(path + 2 * kBlock)) << path;
+  }
+}
+
 TEST(ReferenceTexture, WrapsFiltersAndBlendsLevels) {
   scene::Scene scene;
   auto& image = scene.images.emplace_back();

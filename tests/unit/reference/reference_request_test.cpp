@@ -26,7 +26,9 @@ TEST(ReferenceRequest, NonsenseIsRefusedByName) {
   };
   EXPECT_NE(message([](Request& r) { r.width = 0; }).find("size 0x16"), std::string::npos);
   EXPECT_NE(message([](Request& r) { r.spp = 0; }).find("spp 0"), std::string::npos);
-  EXPECT_NE(message([](Request& r) { r.noise = -1; }).find("noise -1"), std::string::npos);
+  for (const double noise : {-1.0, 1.5})
+    EXPECT_NE(message([&](Request& r) { r.noise = noise; }).find("is not in 0 .. 1"), std::string::npos);
+  EXPECT_EQ(message([](Request& r) { r.noise = 1; }), "") << "as suites and --noise accept";
   EXPECT_NE(message([](Request& r) { r.aa = 99; }).find("aa 99"), std::string::npos);
   EXPECT_NE(message([](Request& r) { r.light = 3; }).find("light 3"), std::string::npos);
   EXPECT_NE(message([](Request& r) { r.term = Term::visibility; }).find("visibility needs one light"),

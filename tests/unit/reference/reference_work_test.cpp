@@ -1,4 +1,5 @@
 // How the reference does its work: noise estimate, determinism, resuming, stopping.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -46,6 +47,55 @@ TEST(ReferenceWork, NoiseTargetIsMet) {
   EXPECT_LE(result.noiseRms, 0.02);
   EXPECT_LT(result.spp, 4096);
   EXPECT_GE(result.spp, 16);
+}
+
+TEST(ReferenceWork, NoiseIsThatOfThePicturesPixels) {
+  World world = floorWorld();
+  world.addRectangle({-1, 0.2f, 0}, {0, 0, 1.5f}, {0, 1.2f, 0}, 5);
+  for (const int aa : {1, 3}) {
+    Request request = world.request(16, Term::direct, 32);
+    request.aa = aa;
+    const Result result = render(request);
+    double variance = 0, sum = 0;
+    const int channel = result.image.channel("variance");
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 16; ++x) {
+        variance += static_cast<double>(result.image.at(x, y, channel)) / 256;
+        sum += static_cast<double>(result.image.at(x, y, 0)) / 256;
+      }
+    EXPECT_NEAR(result.noiseRms, std::sqrt(variance) / sum, 1e-4 * result.noiseRms) << aa;
+    EXPECT_EQ(result.image.metadata().at("noise_rms"), fmt::format("{}", result.noiseRms));
+  }
+}
+
+/// The light comes through a slit that sees 1/2500 of it: the first samples find none.
+TEST(ReferenceWork, BlackIsNotTakenForFinished) {
+  World world = floorWorld();
+  world.addRectangle({0, 1, 0}, {1, 0, 0}, {0, 0, -1}, 5);
+  const int material = world.addMaterial(glm::vec3(0.5f), true);
+  constexpr float kSlit = 0.0002f;
+  for (const float side : {-1.f, 1.f})
+    world.addQuad({side * (1 + 0.5f * kSlit), 0.5f, 0}, {2, 0, 0}, {0, 0, -4}, material);
+  world.camera = scene::lookAt({0, 0.4f, 0.01f}, {0, 0, 0}, 0.1f);
+  Request request = world.request(2, Term::visibility, 16);
+  request.light = 0;
+  const auto mean = [](const Image& image) {
+    return (image.at(0, 0, 0) + image.at(1, 0, 0) + image.at(0, 1, 0) + image.at(1, 1, 0)) / 4;
+  };
+  ASSERT_EQ(mean(render(request).image), 0.f);
+  request.spp = 1 << 20;
+  request.noise = 0.3;
+  const Result found = render(request);
+  EXPECT_GT(found.spp, 16);
+  EXPECT_LE(found.noiseRms, 0.3);
+  EXPECT_NEAR(mean(found.image), 2 * kSlit, kSlit) << "a few samples of four pixels found the light";
+
+  World dark = floorWorld();
+  Request nothing = dark.request(2, Term::direct, 1 << 14);
+  nothing.noise = 0.5;
+  EXPECT_EQ(render(nothing).spp, 4096);
+  nothing.term = Term::caustic;  // of no specular object
+  EXPECT_EQ(render(nothing).spp, 16);
 }
 
 TEST(ReferenceWork, SameBitsForASeedWhateverTheThreads) {
