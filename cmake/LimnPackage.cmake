@@ -14,7 +14,7 @@ set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Real-time shadows and global illumination,
 # Linked libraries are found; the software renderer is opened at run time.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
-set(CPACK_DEBIAN_PACKAGE_DEPENDS libgl1-mesa-dri)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libgl1-mesa-dri, fonts-dejavu-core")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libosmesa6, bash-completion")
 # Modules are built against the installed headers; movies and models of other formats are other programs' work.
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "cmake, make, g++, python3, libglm-dev, libfmt-dev, libegl-dev, ffmpeg, assimp-utils")

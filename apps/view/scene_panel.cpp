@@ -14,20 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool isEnvironment(const fs::path& file) {
-  return file.extension() == ".hdr" || file.extension() == ".exr";
-}
-
-/// The maps in a folder, by name.
-std::vector<fs::path> environmentsIn(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored))
-    if (isEnvironment(entry.path())) files.push_back(entry.path());
-  std::ranges::sort(files);
-  return files;
-}
-
 /// Returns true where another term was chosen.
 bool termChooser(std::string& term) {
   if (!ImGui::BeginCombo("##shows", term.c_str())) return false;
@@ -148,10 +134,13 @@ void ViewerWindow::scenePanel() {
   nameCell("file",
            "A glTF file or one of limn's scenes by name; enter opens it, and so does a file dropped on "
            "the window. F4 reads it again");
-  ImGui::SetNextItemWidth(-scaled(26));
+  ImGui::SetNextItemWidth(-scaled(60));
   if (ImGui::InputText("##file", sceneText_, sizeof sceneText_, ImGuiInputTextFlags_EnterReturnsTrue) &&
       *sceneText_ != 0)
     openFile(sceneText_);
+  ImGui::SameLine();
+  if (ImGui::Button("...", {scaled(28), 0})) browse();
+  tip("Chooses a file (Ctrl+O)");
   ImGui::SameLine();
   sceneChooser();
   if (facts_->scene) {
@@ -216,7 +205,8 @@ void ViewerWindow::environmentPanel() {
     offer("none", {});
     for (const char* own : {"sky", "studio"}) offer(own, own);
     const fs::path folder = now.has_parent_path() ? now.parent_path() : fs::path(".");
-    for (const fs::path& file : environmentsIn(folder)) offer(file.filename().string(), file);
+    for (const fs::path& name : listFolder(folder).files)
+      if (isEnvironment(name)) offer(name.string(), folder / name);
     ImGui::EndCombo();
   }
   bool turned = false;

@@ -12,7 +12,10 @@ void ViewerWindow::startPage() {
   ImGui::SetCursorScreenPos({corner_.x + scaled(24), corner_.y + scaled(20)});
   ImGui::BeginChild("start",
                     {static_cast<float>(area_.x) - scaled(48), static_cast<float>(area_.y) - scaled(24)});
-  wrapped("Drop a .gltf or .glb file on this window, or type its name into Scene, file.");
+  if (ImGui::Button("Open a file")) browse();
+  ImGui::SameLine();
+  ImGui::AlignTextToFramePadding();
+  wrapped("(Ctrl+O), or drop a .gltf or .glb file on this window.");
   wrapped("Models in other formats: limn import MODEL --out model.glb");
   ImGui::BeginDisabled(!facts_->job.empty());  // one is being opened
   if (!recentScenes_.empty()) {

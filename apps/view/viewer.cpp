@@ -87,8 +87,8 @@ ViewerWindow::ViewerWindow(const ViewerOptions& options)
                               .title = options.title});
   device_ = std::make_unique<gpu::Device>(*context_);
   textures_ = std::make_unique<WindowTextures>(*device_);
-  thread_ =
-      std::make_unique<PictureThread>(PictureThreadOptions{options.debug, options.shaders, options.cache});
+  thread_ = std::make_unique<PictureThread>(
+      PictureThreadOptions{options.device, options.debug, options.shaders, options.cache});
   ownScenes_ = session::sceneNames();
   recentScenes_ = recentScenes();
   if (!state_.scene.scene.empty()) thread_->open(state_.scene, true);
@@ -119,6 +119,7 @@ void ViewerWindow::listen() {
     const bool again = pressed.control && pressed.key == GLFW_KEY_Z;  // while it is held
     if (action == GLFW_REPEAT && !again) return;
     if (pressed.control && pressed.key == GLFW_KEY_Q) glfwSetWindowShouldClose(w, GLFW_TRUE);
+    if (pressed.control && pressed.key == GLFW_KEY_O) self.browse();
     self.pressed_.push_back(pressed);
   });
   glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** files) {
@@ -129,9 +130,8 @@ void ViewerWindow::listen() {
 
 /// A scene, or an environment for the one that is shown.
 void ViewerWindow::openFile(const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
   SceneQuestion wanted = state_.scene;
-  if (extension == ".hdr" || extension == ".exr") {
+  if (isEnvironment(file)) {
     wanted.environment = file.string();
   } else {
     wanted = SceneQuestion();
@@ -260,6 +260,7 @@ void ViewerWindow::frame() {
   panels();
   pictureArea();
   if (inspection_) inspectorWindow();
+  openDialog();
   if (unnoted_ && facts_->scene && !moving() && !ImGui::IsAnyItemActive()) {
     history_.note({state_, orbit_, otherTechniques_});
     unnoted_ = false;
@@ -319,8 +320,7 @@ void ViewerWindow::run() {
     glfwSwapBuffers(window);
     const double ms = 1000 * (glfwGetTime() - woken);
     if (!last) frameTimes_.add(ms);  // the last one may write the screenshot
-    const std::vector<std::string> errors = context_->takeErrors();
-    if (!errors.empty()) throw Error("OpenGL: " + errors.front());
+    context_->throwErrors();
   }
   if (!options_.stats.empty()) writeStats();
 }

@@ -44,6 +44,7 @@ void helpPanel() {
                                      {"F2", "the next technique of the same kind"},
                                      {"F3", "compare with nothing, the truth, others"},
                                      {"F4", "open the scene anew"},
+                                     {"ctrl O", "choose a file to open"},
                                      {"ctrl Z, ctrl shift Z", "undo, redo"},
                                      {"F5 F6 F7", "save picture, suite; copy command"},
                                      {"F8", "look at the frame's next texture"},

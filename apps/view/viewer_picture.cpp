@@ -80,7 +80,7 @@ void ViewerWindow::handleMouse() {
     orbit_.approach(std::pow(0.9f, io.MouseWheel));
     changed = true;
   }
-  if (!io.WantTextInput && !io.KeyCtrl) {
+  if (!io.WantTextInput && !io.KeyCtrl && !browsing_) {
     const float step = 0.6f * std::min(io.DeltaTime, 0.1f);
     const auto held = [&](char key) { return ImGui::IsKeyDown(key) ? step : 0.f; };
     const glm::vec3 flight(held('D') - held('A'), held('E') - held('Q'), held('W') - held('S'));

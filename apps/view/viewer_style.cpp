@@ -3,12 +3,26 @@
 #include <imgui.h>
 
 #include <cmath>
+#include <fstream>
 
 namespace limn::app {
 
 namespace {
 
 float scale = 1;  // of everything; there is one window
+
+/// The font of Debian's fonts-dejavu-core, sharp at any scale; ImGui's own of 13 pixels where there is none.
+void setFont() {
+  constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+  constexpr float kPixels = 13;
+  ImFontConfig font;
+  font.SizePixels = scaled(kPixels);
+  ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
+  if (std::ifstream(kFont))  // ImGui ends the program where it cannot be read
+    fonts.AddFontFromFileTTF(kFont, font.SizePixels, &font);
+  else
+    fonts.AddFontDefault(&font);
+}
 
 void wrappedIn(const ImVec4& colour, const std::string& text) {
   ImGui::PushStyleColor(ImGuiCol_Text, colour);
@@ -24,10 +38,7 @@ float scaled(float pixels) {
 
 void setStyle(float wanted) {
   scale = wanted;
-  constexpr float fontPixels = 13;
-  ImFontConfig font;
-  font.SizePixels = scaled(fontPixels);
-  ImGui::GetIO().Fonts->AddFontDefault(&font);
+  setFont();
   ImGui::StyleColorsDark();
   ImGuiStyle& style = ImGui::GetStyle();
   style.WindowPadding = {10, 8};

@@ -11,6 +11,7 @@
 
 #include "apps/view/budget.h"
 #include "apps/view/edit_history.h"
+#include "apps/view/folder_listing.h"
 #include "apps/view/gizmo.h"
 #include "apps/view/orbit.h"
 #include "apps/view/picture_thread.h"
@@ -74,6 +75,12 @@ class ViewerWindow {
 
   // --- start_page.cpp
   void startPage();
+
+  // --- open_dialog.cpp
+  void browse();
+  void browse(const std::filesystem::path& folder);
+  void browsedEntries();
+  void openDialog();
 
   // --- light_gizmo.cpp: lights in the picture
   ScreenCamera screen() const;
@@ -141,6 +148,7 @@ class ViewerWindow {
   bool unnoted_ = false;  ///< something has changed that history_ does not know yet
   std::vector<std::string> ownScenes_;
   std::vector<std::filesystem::path> recentScenes_;
+  std::optional<FolderListing> browsing_;  ///< what the dialog shows while it is open
   Beside beside_ = Beside::nothing;
   float split_ = 0.5f;  ///< of the picture's width
   bool splitDragged_ = false;
@@ -172,7 +180,7 @@ class ViewerWindow {
       longestMs = std::max(longestMs, ms);
     }
   } frameTimes_;
-  TextField sceneText_ = "", saveText_ = "", framesText_ = "0:29";
+  TextField sceneText_ = "", saveText_ = "", framesText_ = "0:29", folderText_ = "";
   float fps_ = 30;
   TextField budgetText_ = "out/tune", tuneTechniques_ = "";
   std::vector<MeasuredQuestion> measured_;  ///< in that folder
