@@ -399,7 +399,7 @@ Action addTuneCommand(CLI::App& command) {
       ->excludes(maxMs);
   command.add_option("--metric", options->metric, "The error that --max-ms makes least, a field of results")
       ->capture_default_str();
-  command.add_option("--techniques", options->techniques,
+  command.add_option("--techniques,--technique", options->techniques,
                      "Techniques to choose from, comma-separated; default: all that answer the term, for "
                      "direct and final those that answer direct or visibility");
   command

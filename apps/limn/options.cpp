@@ -52,16 +52,20 @@ fs::path numbered(const fs::path& out, int frame) {
 }
 
 void addTechniqueFlags(CLI::App& command, session::TechniqueChoice& choice) {
-  command.add_option("--technique", choice.techniques,
+  command.add_option("--technique,--techniques", choice.techniques,
                      "Techniques, comma-separated (see limn list); NAME:TERM+TERM asks one for these of its "
                      "terms alone; without this option: unshadowed");
   command.add_option("--set", choice.settings, "TECHNIQUE.PARAMETER=VALUE, repeatable")->take_all();
 }
 
-void BackendOptions::addTo(CLI::App& command) {
-  command.add_option("--backend", backend, "egl or osmesa")->capture_default_str();
+void addDeviceFlags(CLI::App& command, int& device, bool& debug) {
   command.add_option("--device", device, "EGL device index, see limn info")->check(CLI::Range(0, 255));
   command.add_flag("--gl-debug", debug, "Use an OpenGL debug context: driver errors end the run");
+}
+
+void BackendOptions::addTo(CLI::App& command) {
+  command.add_option("--backend", backend, "egl or osmesa")->capture_default_str();
+  addDeviceFlags(command, device, debug);
 }
 
 ContextOptions BackendOptions::contextOptions() const {

@@ -40,6 +40,9 @@ std::filesystem::path numbered(const std::filesystem::path& out, int frame);
 /// Gives the command --technique and --set.
 void addTechniqueFlags(CLI::App& command, session::TechniqueChoice& choice);
 
+/// Gives the command --device and --gl-debug.
+void addDeviceFlags(CLI::App& command, int& device, bool& debug);
+
 struct BackendOptions {
   std::string backend = "egl";
   int device = -1;

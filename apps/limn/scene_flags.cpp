@@ -43,9 +43,10 @@ CLI::Validator oneOf(const QuestionField& field) {
 }  // namespace
 
 CLI::Option* addSceneFlag(CLI::App& command, SceneQuestion& question, std::string_view key,
-                          const std::string& otherFlag) {
+                          const std::string& chosenFlag) {
   const QuestionField& field = questionField(key);
-  const std::string flag = otherFlag.empty() ? field.flag : otherFlag;
+  std::string flag = chosenFlag.empty() ? field.flag : chosenFlag;
+  if (*field.otherFlag != 0) flag += std::string(",") + (flag == field.flag ? field.otherFlag : field.flag);
   const std::string help = helpOf(field);
   const auto add = [&](auto member) -> CLI::Option* {
     if constexpr (std::is_same_v<decltype(member), QuestionSizeMember>)

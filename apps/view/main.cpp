@@ -31,7 +31,8 @@ int main(int argc, char** argv) {
         .add_option("--scale", options.scale,
                     "Size of text and widgets; by default that of the monitor (1 at 96 dots per inch)")
         ->check(CLI::Range(0.5, 8.0));
-    program.add_flag("--debug", options.debug, "Use an OpenGL debug context: OpenGL errors end the program");
+    addDeviceFlags(program, options.device, options.debug);
+    program.add_flag("--debug", options.debug)->group("");  // the same, from before limn's name for it
     program.add_option("--save", options.save, "File to which F5 saves the picture (.exr or .png)")
         ->capture_default_str();
     program

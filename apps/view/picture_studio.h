@@ -54,7 +54,9 @@ class PictureStudio {
   PictureOrder exposed(PictureOrder order) const;
   bool meter(const PictureOrder& order);
   bool smooth(const PictureOrder& order, const std::function<bool()>& outdated);
-  void write(const SaveOrder& order, const std::filesystem::path& file);
+  Image renderWhole(const PictureOrder& order);
+  Image renderNext(const PictureOrder& order);
+  void write(const SaveOrder& order, const std::filesystem::path& file, bool follows = false);
   void finishSaving(std::string message, bool problem = false);
 
   gpu::Device& device_;

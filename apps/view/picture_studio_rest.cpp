@@ -11,6 +11,7 @@
 #include "apps/view/picture_studio.h"
 #include "apps/view/view_state.h"
 #include "core/base/error.h"
+#include "core/base/failure.h"
 #include "core/base/file.h"
 #include "core/question/question_fields.h"
 
@@ -59,8 +60,8 @@ bool PictureStudio::followReference(const PictureOrder& order) {
     truthKey_ = key;
     const Term term = parseTerm(order.scene.term);
     reference_.start({view_, view_->pose, view_->camera, order.size, order.scene.aa, term, view_->light,
-                      render::bouncesOf(term, order.techniques),
-                      render::interfacesOf(term, order.techniques)});
+                      render::bouncesOf(term, order.techniques), render::interfacesOf(term, order.techniques),
+                      view_->unshadowed, view_->reliefPaths, view_->subsurface});
   }
   std::optional<Image> finer = reference_.take();
   const bool fresh = finer && !truthKey_.empty();
@@ -119,20 +120,22 @@ bool PictureStudio::meter(const PictureOrder& order) {
   return std::exchange(exposureEv_, automaticExposure(picture_->read())) != exposureEv_;
 }
 
-/// Shows a picture at rest with all its samples in each pixel. Where `outdated` says that something else is
-/// wanted it is given up, and there is no rendered picture any more.
+/// Shows a picture at rest with all its samples in each pixel and all frames over which techniques average.
+/// Where `outdated` says that something else is wanted it is given up, and there is no rendered picture any
+/// more.
 bool PictureStudio::smooth(const PictureOrder& order, const std::function<bool()>& outdated) {
-  const int aa = order.scene.aa;
-  if (aa == 1 || order.moving || smooth_ || !facts_.picture.problem.empty() || !facts_.other.problem.empty())
+  if (order.moving || smooth_ || !facts_.picture.problem.empty() || !facts_.other.problem.empty())
     return false;
+  const int aa = order.scene.aa;
+  const bool beside = order.beside == Beside::techniques;
+  if (!picture_->takesMoreFrames(aa) && !(beside && other_->takesMoreFrames(aa))) return false;
   const auto read = [&](ShownPicture& picture, std::optional<Image>& image, Shot& shot) {
     image = picture.read(view_->camera, aa, outdated);
     if (!image) return false;
     shot.image = std::make_shared<const Image8>(toneMapped(*image, order.tone));
     return true;
   };
-  if (!read(*picture_, smooth_, facts_.picture) ||
-      (order.beside == Beside::techniques && !read(*other_, smoothOther_, facts_.other))) {
+  if (!read(*picture_, smooth_, facts_.picture) || (beside && !read(*other_, smoothOther_, facts_.other))) {
     rendered_.reset();
     return false;
   }
@@ -160,13 +163,23 @@ void PictureStudio::inspect(const PictureOrder& order) {
   facts.layers = inspector->layersOf(facts.view.level);
   facts.view.layer = std::clamp(facts.view.layer, 0, facts.layers - 1);
   facts.size = inspector->sizeOf(facts.view.level);
-  facts.image = readBack(inspector->display());
+  try {
+    facts.image = readBack(inspector->display());
+  } catch (const std::exception&) {
+    facts.problem = fmt::format("the texture cannot be shown: {}", currentFailure());
+  }
 }
 
 bool PictureStudio::inspectAtRest(const PictureOrder& order) {
   if (order.moving || !facts_.inspected || facts_.inspected->values || !facts_.inspected->problem.empty())
     return false;
-  auto values = std::make_shared<render::InspectedValues>(picture_->renderer().inspector()->read());
+  std::shared_ptr<render::InspectedValues> values;
+  try {
+    values = std::make_shared<render::InspectedValues>(picture_->renderer().inspector()->read());
+  } catch (const std::exception&) {  // OpenGL or the memory has a limit
+    facts_.inspected->problem = fmt::format("the values cannot be read: {}", currentFailure());
+    return true;
+  }
   if (order.inspect->automatic) {
     const auto [low, high] = displayRange(*values, order.inspect->view.channel);
     if (low != facts_.inspected->view.low || high != facts_.inspected->view.high) {
@@ -195,18 +208,37 @@ void PictureStudio::save(const SaveOrder& order) {
   }
 }
 
-void PictureStudio::write(const SaveOrder& order, const std::filesystem::path& file) {
-  const PictureOrder picture = exposed(order.picture);
-  if (picture.of != facts_.scene) throw Error("not saved: another scene was opened meanwhile");
-  const bool shown = rendered_ && same(*rendered_, picture) && facts_.picture.whole;
+/// Returns the picture at its whole size, as limn render makes it. It is not rendered anew where it is shown.
+Image PictureStudio::renderWhole(const PictureOrder& order) {
+  const bool shown = rendered_ && same(*rendered_, order) && facts_.picture.whole;
   if (!shown || !facts_.picture.problem.empty()) {
     reduction_ = 1;
     rendered_.reset();
-    if (render(picture) != Outcome::done) throw Error(facts_.picture.problem);
+    if (render(order) != Outcome::done) throw Error(facts_.picture.problem);
   }
-  const int aa = picture.scene.aa;
-  if (aa > 1 && !smooth_) rendered_.reset();  // the renderer ends with another frame than the one shown
-  Image image = smooth_ ? *smooth_ : *picture_->read(view_->camera, aa);
+  if (smooth_) return *smooth_;
+  const int aa = order.scene.aa;
+  // The renderer ends with another frame than the one shown.
+  if (picture_->takesMoreFrames(aa)) rendered_.reset();
+  return *picture_->read(view_->camera, aa);
+}
+
+/// Returns and shows the picture of a sequence that follows the last one: what techniques average goes on.
+Image PictureStudio::renderNext(const PictureOrder& order) {
+  rendered_.reset();
+  place(order);
+  Image image = picture_->next(view_->camera, view_->time, view_->animation, order.scene.aa);
+  facts_.picture.image = std::make_shared<const Image8>(toneMapped(image, order.tone));
+  ++facts_.pictures;
+  describe();
+  return image;
+}
+
+/// Writes the picture; in a sequence it `follows` the one that was written last.
+void PictureStudio::write(const SaveOrder& order, const std::filesystem::path& file, bool follows) {
+  const PictureOrder picture = exposed(order.picture);
+  if (picture.of != facts_.scene) throw Error("not saved: another scene was opened meanwhile");
+  Image image = follows ? renderNext(picture) : renderWhole(picture);
   if (!order.command.empty()) sign(image, order.command);
   if (file.has_parent_path()) createFolder(file.parent_path());
   ToneMapping tone = picture.tone;
@@ -220,7 +252,7 @@ void PictureStudio::saveNext() {
   const int frame = sequence_->frame++;
   try {
     sequence_->order.picture.scene.time = frame / sequence_->order.fps;
-    write(sequence_->order, numbered(sequence_->order.file, frame));
+    write(sequence_->order, numbered(sequence_->order.file, frame), frame > range.first);
   } catch (const std::exception& error) {
     finishSaving(fmt::format("frame {}: {}", frame, error.what()), true);
     return;

@@ -59,7 +59,7 @@ PictureThread::PictureThread(const PictureThreadOptions& options)
     : options_(options), mailbox_(std::make_unique<Mailbox>()) {
   {
     const ContextScope none(nullptr);  // gives the caller its own back
-    context_ = Context::create({.backend = Backend::egl, .debug = options.debug});
+    context_ = Context::create({.backend = Backend::egl, .device = options.device, .debug = options.debug});
     device_ = std::make_unique<gpu::Device>(*context_);
   }
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
@@ -99,8 +99,7 @@ void PictureThread::run(const std::stop_token& stop) {
         if (std::holds_alternative<Mailbox::Cancel>(job)) studio.cancelSaving();
       }
       studio.saving() ? studio.saveNext() : studio.step(order, outdated);
-      const std::vector<std::string> errors = context_->takeErrors();
-      if (!errors.empty()) throw Error("OpenGL: " + errors.front());
+      context_->throwErrors();
     }
   } catch (...) {
     PictureFacts failed;

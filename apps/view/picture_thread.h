@@ -18,6 +18,7 @@
 namespace limn::app {
 
 struct PictureThreadOptions {
+  int device = -1;                ///< as in ContextOptions
   bool debug = false;             ///< OpenGL errors are fatal
   std::filesystem::path shaders;  ///< folder that overrides the embedded ones, watched for changes
   std::filesystem::path cache;    ///< of references; empty: none

@@ -85,6 +85,9 @@ void ReferenceWorker::work(const std::stop_token& stop, const Task& task) {
   request.height = task.size.y;
   request.aa = task.aa;
   request.term = task.term;
+  request.unshadowed = task.unshadowed;
+  request.reliefPaths = task.reliefPaths;
+  request.subsurface = task.subsurface;
   request.light = task.light == scene::kNone ? reference::kAllLights : task.light;
   request.bounces = task.bounces;
   request.interfaces = task.interfaces;

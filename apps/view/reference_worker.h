@@ -30,6 +30,9 @@ class ReferenceWorker {
     int aa = 1;  ///< x aa samples in each pixel
     Term term = Term::direct;
     int light = scene::kNone, bounces = 0, interfaces = 0;
+    bool unshadowed = false;
+    ReliefPaths reliefPaths = ReliefPaths::both;
+    SubsurfaceModel subsurface = SubsurfaceModel::bssrdf;
   };
 
   /// Takes `cache`, a folder (empty for none), and `news`, which is called from any thread when state()

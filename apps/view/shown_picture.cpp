@@ -53,11 +53,16 @@ ShownPicture::Outcome ShownPicture::render(const scene::CameraPose& camera, doub
   }
 }
 
+bool ShownPicture::takesMoreFrames(int aa) const {
+  return aa > 1 || render::historyOf(settings_.techniques) > 1;
+}
+
 std::optional<Image> ShownPicture::read(const scene::CameraPose& camera, int aa,
                                         const std::function<bool()>& cancelled) {
-  if (aa == 1) return read();
+  if (!takesMoreFrames(aa)) return read();
   struct Cancelled {};
   try {
+    renderer_.configure(settings_);  // the first frame of a sequence, as in limn render
     return render::supersample(renderer_, camera, settings_.size, aa, [&] {
       if (cancelled && cancelled()) throw Cancelled();
       renderer_.render();
@@ -65,6 +70,11 @@ std::optional<Image> ShownPicture::read(const scene::CameraPose& camera, int aa,
   } catch (const Cancelled&) {
     return std::nullopt;
   }
+}
+
+Image ShownPicture::next(const scene::CameraPose& camera, double time, int animation, int aa) {
+  renderer_.setTime(time, animation);
+  return render::supersample(renderer_, camera, settings_.size, aa);
 }
 
 bool ShownPicture::reloadShaders() {

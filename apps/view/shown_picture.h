@@ -37,10 +37,15 @@ class ShownPicture {
   /// Returns the tone-mapped picture, bottom row first; null before the first one.
   const gpu::Texture* display() const { return shown_ ? &renderer_.display() : nullptr; }
   Image read() const { return renderer_.read(); }
-  /// Returns the picture as seen by `camera` with aa x aa samples in each pixel (render::supersample);
-  /// nothing where `cancelled`, asked before each of its frames, said so.
+  /// Returns whether a picture with aa x aa samples in each pixel takes more than the frame of render():
+  /// also where techniques average over several frames.
+  bool takesMoreFrames(int aa) const;
+  /// Returns the picture as seen by `camera` with aa x aa samples in each pixel (render::supersample), the
+  /// first of a sequence; nothing where `cancelled`, asked before each of its frames, said so.
   std::optional<Image> read(const scene::CameraPose& camera, int aa,
                             const std::function<bool()>& cancelled = {});
+  /// Renders and returns the picture of a sequence that follows the one of read() or next() before.
+  Image next(const scene::CameraPose& camera, double time, int animation, int aa);
   glm::ivec2 size() const { return settings_.size; }
   const std::string& problem() const { return problem_; }
   const std::string& shaderProblem() const { return shaderProblem_; }

@@ -28,6 +28,7 @@ struct ViewerOptions {
   std::vector<ViewerStep> steps;                           ///< may be empty
   std::vector<std::string> panels{"scene", "techniques"};  ///< open at first
   std::string compareWith;                                 ///< at first: nothing (empty), techniques or truth
+  int device = -1;                                         ///< of the pictures, as in ContextOptions
   bool debug = false;                                      ///< OpenGL errors end the program
   std::filesystem::path shaders;  ///< folder that overrides the embedded ones, watched for changes
   double scale = 0;               ///< of text and widgets; 0: the monitor's

@@ -70,6 +70,7 @@ struct QuestionField {
   const char* doc;
   QuestionGroup group = QuestionGroup::changes;
   QuestionEffect effect = QuestionEffect::scene;
+  const char* otherFlag = "";  ///< also accepted on the command line; empty: none
   ParameterRange range{0, 0};  ///< of numbers; coefficients: of a number in a suite
   const char* unit = "";
   std::span<const char* const> choices = {};
@@ -98,6 +99,9 @@ struct QuestionField {
   }
   constexpr QuestionField in(QuestionGroup other) const { return with(&QuestionField::group, other); }
   constexpr QuestionField changing(QuestionEffect what) const { return with(&QuestionField::effect, what); }
+  constexpr QuestionField alsoGivenBy(const char* flagToo) const {
+    return with(&QuestionField::otherFlag, flagToo);
+  }
   constexpr QuestionField within(ParameterRange accepted, const char* of) const {
     return with(&QuestionField::range, accepted).with(&QuestionField::unit, of);
   }

@@ -28,16 +28,16 @@ bool isDepth(gpu::FormatClass kind) {
   return kind == gpu::FormatClass::depth || kind == gpu::FormatClass::depthStencil;
 }
 
-/// The lower left corner of one channel's texels as four components each.
+/// The lower left corner of the texels.
 template <class T>
 std::vector<T> cropped(const std::vector<T>& all, int width, glm::ivec2 size, size_t components) {
-  std::vector<T> part(4 * static_cast<size_t>(size.x) * static_cast<size_t>(size.y));
+  std::vector<T> part(components * static_cast<size_t>(size.x) * static_cast<size_t>(size.y));
   for (int y = 0; y < size.y; ++y) {
     for (int x = 0; x < size.x; ++x) {
       const auto from = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
       const auto to = static_cast<size_t>(y) * static_cast<size_t>(size.x) + static_cast<size_t>(x);
       std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(components * from), components,
-                  part.begin() + static_cast<std::ptrdiff_t>(4 * to));
+                  part.begin() + static_cast<std::ptrdiff_t>(components * to));
     }
   }
   return part;
@@ -47,8 +47,8 @@ std::vector<T> cropped(const std::vector<T>& all, int width, glm::ivec2 size, si
 
 double InspectedValues::at(int x, int y, int component) const {
   if (component >= components) return 0;
-  const auto i = 4 * (static_cast<size_t>(y) * static_cast<size_t>(size.x) + static_cast<size_t>(x)) +
-                 static_cast<size_t>(component);
+  const auto texel = static_cast<size_t>(y) * static_cast<size_t>(size.x) + static_cast<size_t>(x);
+  const size_t i = static_cast<size_t>(components) * texel + static_cast<size_t>(component);
   if (kind == gpu::FormatClass::unsignedInteger) return integers[i];
   if (kind == gpu::FormatClass::signedInteger) return static_cast<int32_t>(integers[i]);
   return static_cast<double>(reals[i]);
@@ -133,18 +133,19 @@ InspectedValues TextureInspector::read() const {
                          .kind = info.kind,
                          .reals = {},
                          .integers = {}};
-  const size_t components = isDepth(info.kind) ? 1 : 4;
+  // No more than the texture has: OpenGL reads at most 2 GiB at once.
+  const GLenum format = isDepth(info.kind) ? GL_DEPTH_COMPONENT : info.clientFormat;
+  const auto components = static_cast<size_t>(values.components);
   const size_t count = components * static_cast<size_t>(desc_.width) * static_cast<size_t>(desc_.height);
   const gpu::Texture& texture = graph_.texture(copy_);
   if (isInteger(info.kind)) {
     std::vector<uint32_t> all(count);
-    texture.read(0, GL_RGBA_INTEGER, info.kind == gpu::FormatClass::signedInteger ? GL_INT : GL_UNSIGNED_INT,
+    texture.read(0, format, info.kind == gpu::FormatClass::signedInteger ? GL_INT : GL_UNSIGNED_INT,
                  all.data(), count * sizeof(uint32_t));
     values.integers = cropped(all, desc_.width, values.size, components);
   } else {
     std::vector<float> all(count);
-    texture.read(0, isDepth(info.kind) ? GL_DEPTH_COMPONENT : GL_RGBA, GL_FLOAT, all.data(),
-                 count * sizeof(float));
+    texture.read(0, format, GL_FLOAT, all.data(), count * sizeof(float));
     values.reals = cropped(all, desc_.width, values.size, components);
   }
   return values;

@@ -27,8 +27,8 @@ struct InspectionView {
   bool operator==(const InspectionView&) const = default;
 };
 
-/// Holds one level of one layer, on the CPU: rows from the bottom, four components per texel. Integers are in
-/// `integers`, everything else in `reals`.
+/// Holds one level of one layer, on the CPU: rows from the bottom, `components` values per texel. Integers
+/// are in `integers`, everything else in `reals`.
 struct InspectedValues {
   glm::ivec2 size{0};
   int components = 0;  ///< of the format

@@ -46,5 +46,17 @@ TEST(Chapters, FiltersThatNothingFitsAreRefused) {
   }
 }
 
+TEST(Chapters, OptionsOfTheWindowAreRefusedWithoutOne) {
+  const TemporaryFolder folder;
+  const std::vector<std::vector<std::string>> options{
+      {"--scene", "balls"}, {"--size", "64x48"}, {"--frames", "3"}};
+  for (const auto& option : options) {
+    const Outcome outcome =
+        chapter("ch7-variance-soft-shadows", {"--out", folder / "out", option[0], option[1]});
+    expectRefused(outcome, 2, {option[0], "for the window"});
+    EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+  }
+}
+
 }  // namespace
 }  // namespace limn::test

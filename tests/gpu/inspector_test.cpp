@@ -114,6 +114,10 @@ TEST_F(InspectorTest, integerAndDepthFormats) {
   const int32_t below[4] = {-5, 6, -7, 8};
   const InspectedValues four = look32(GL_RGBA16I, GL_RGBA_INTEGER, GL_INT, below);
   for (int c = 0; c < 4; ++c) EXPECT_EQ(four.at(1, 2, c), below[c]);
+  const InspectedValues two = look32(GL_RG16I, GL_RG_INTEGER, GL_INT, below);
+  EXPECT_EQ(two.integers.size(), 2u * 4 * 4) << "no more than the texture has";
+  EXPECT_EQ(two.at(3, 3, 1), 6);
+  EXPECT_EQ(two.at(3, 3, 2), 0) << "it has none";
   const float half = 0.5f;
   for (const GLenum depth : {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT32F}) {
     const InspectedValues values = look32(depth, GL_DEPTH_COMPONENT, GL_FLOAT, &half);

@@ -35,6 +35,19 @@ TEST(SceneFlags, FieldsAreReadFromTheCommandLine) {
   }
 }
 
+/// Commands name the term and the techniques in two ways each; all take both.
+TEST(SceneFlags, BothNamesOfTermAndTechniquesAreTaken) {
+  EXPECT_EQ(parsed({"balls", "--term", "direct"}).term, "direct");
+  CLI::App program;
+  SceneQuestion question;
+  session::TechniqueChoice choice;
+  addSceneFlag(program, question, "term", "--term");
+  addTechniqueFlags(program, choice);
+  program.parse("--output-term indirect --techniques pcss,ssao");
+  EXPECT_EQ(question.term, "indirect");
+  EXPECT_EQ(choice.techniques, "pcss,ssao");
+}
+
 TEST(SceneFlags, WhatIsOutOfRangeIsRefusedWithFlagValueAndRange) {
   for (const QuestionField& field : questionFields()) {
     std::string value, accepted;

@@ -82,7 +82,7 @@ TEST_F(ViewerInputTest, ChoosesEnvironments) {
 TEST_F(ViewerInputTest, StartsWithoutAScene) {
   const std::vector<std::string> names = session::sceneNames();
   const auto entry = std::ranges::find(names, "cornell_box") - names.begin();
-  const std::string place = fmt::format("{} {}", 440 + 276 * (entry % 2), 88 + 17 * (entry / 2));
+  const std::string place = fmt::format("{} {}", 440 + 276 * (entry % 2), 94 + 17 * (entry / 2));
   const Outcome outcome = view("--size 600x420 --technique hard_shadow_map --save a.exr",
                                "sleep 1; xdotool mousemove " + place +
                                    "; sleep 1; xdotool click 1; hear opened 1\n"
@@ -95,10 +95,53 @@ TEST_F(ViewerInputTest, StartsWithoutAScene) {
   EXPECT_EQ(picture("first.exr").height(), 420);
 }
 
+/// Through a folder to a scene, and back; Escape closes the dialog.
+TEST_F(ViewerInputTest, WalksThroughFoldersToAFile) {
+  const std::string assets = std::string(kBinaryDir) + "/assets/";
+  std::filesystem::create_directory(folder_ / "models");
+  std::filesystem::copy_file(assets + "gem/gem.glb", folder_ / "models/gem.glb");
+  std::filesystem::copy_file(assets + "environments/sky.exr", folder_ / "models/sky.exr");
+  // Rows: the folder above, then what the folder holds.
+  const auto row = [](int i) {
+    return "xdotool mousemove 300 " + std::to_string(80 + 18 * i) + "; sleep 1; xdotool click 1; sleep 1\n";
+  };
+  const Outcome outcome = view("--size 600x420 --technique hard_shadow_map --save a.exr",
+                               "sleep 1; xdotool key ctrl+o; sleep 1\n" + row(1) + row(1) +
+                                   "hear opened 1; save gem.exr; xdotool key ctrl+o; frames 2\n" + row(2) +
+                                   "hear opened 2; save lit.exr; xdotool key ctrl+o; frames 2\n"
+                                   "xdotool key Escape; frames 2; save closed.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_THAT(command("gem.exr"), testing::HasSubstr("models/gem.glb"));
+  EXPECT_THAT(command("lit.exr"), testing::HasSubstr("models/sky.exr"));
+  EXPECT_EQ(colours(picture("closed.exr")), colours(picture("lit.exr")));
+}
+
 TEST_F(ViewerInputTest, WithoutADisplayAdvisesWhatWorks) {
-  const Outcome outcome = run({kBinaries + "limn-view", "balls"}, {{"DISPLAY", ""}});
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.err, testing::HasSubstr("limn render"));
+  for (const char* name : {"--gl-debug", "--debug"}) {
+    const Outcome outcome = run({kBinaries + "limn-view", "balls", name}, {{"DISPLAY", ""}});
+    EXPECT_EQ(outcome.status, 1) << name;
+    EXPECT_THAT(outcome.err, testing::HasSubstr("limn render"));
+  }
+}
+
+/// Options that the window does not use are refused, and the device is the one that was named.
+TEST_F(ViewerInputTest, RefusesOptionsThatItDoesNotUse) {
+  const auto window = [](std::vector<std::string> command) {
+    command.insert(command.begin(), {"/usr/bin/timeout", "60", "/usr/bin/xvfb-run", "-a"});
+    return run(command);
+  };
+  const std::string chapter = kBinaries + "ch7-variance-soft-shadows";
+  for (const char* option : {"--filter", "--backend"}) {
+    const Outcome outcome = window({chapter, option, "egl"});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, testing::AllOf(testing::HasSubstr(option), testing::HasSubstr("--headless")));
+  }
+  for (const std::string& program : {kBinaries + "limn-view", chapter}) {
+    const Outcome outcome = window({program, "--device", "250"});
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_THAT(outcome.err, testing::HasSubstr("EGL device 250 does not exist"));
+  }
 }
 
 /// The picture keeps its size where text and widgets are larger, and the panel's edge is dragged.

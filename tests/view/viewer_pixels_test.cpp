@@ -17,6 +17,15 @@ TEST_F(ViewerPixelsTest, ShowsTheSamplesThatRenderTakes) {
   expectSamePixels("gem --technique hard_shadow_map --aa 3 --floor on --size 120x90", kDrag, "--aa 3");
 }
 
+/// Frames over which techniques average, alone and with several samples in each pixel.
+TEST_F(ViewerPixelsTest, ShowsTheFramesThatRenderAverages) {
+  const std::string arguments =
+      "cornell_box --technique instant_radiosity --set instant_radiosity.vpls=16 --set "
+      "instant_radiosity.history=4 --size 120x90";
+  expectSamePixels(arguments, kDrag, "history=4");
+  expectSamePixels(arguments + " --aa 2", kDrag, "--aa 2");
+}
+
 /// The exposure that the picture determines is that of limn render.
 TEST_F(ViewerPixelsTest, ExposesAsRenderDoes) {
   const std::string question = "cornell_box --technique pcss --exposure auto --tonemap agx --size 160x132";

@@ -15,7 +15,32 @@ constexpr double kLongestMs = 2000;
 constexpr double kGrowthMiB =
     24;  // over three rounds; what a leak of one picture or program in each would exceed
 
-class ViewerTest : public ViewerWindowTest {};
+class ViewerTest : public ViewerWindowTest {
+ protected:
+  /// What the window computes of the truth is what `limn reference` finds in the same cache.
+  void expectTheSameTruth(const std::string& question) {
+    const auto kept = [&] {
+      const std::filesystem::path folder = folder_ / "out/references";
+      return std::filesystem::exists(folder) ? std::distance(std::filesystem::directory_iterator(folder), {})
+                                             : 0;
+    };
+    const Outcome outcome =
+        view(question + " --technique hard_shadow_map --size 100x92 --compare truth --save a.exr",
+             "for i in $(seq 300); do ls out/references/*.exr > files 2> none && break; sleep .1; done\n"
+             "save b.exr");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    ASSERT_GT(kept(), 0);
+    const auto before = kept();
+    const Image shown = picture("b.exr");
+    const Outcome reference =
+        run({"/bin/sh", "-c",
+             "cd '" + folder_.path().string() + "' && '" + kBinaries + "limn' reference " + question +
+                 " --term final --size " + std::to_string(shown.width()) + "x" +
+                 std::to_string(shown.height()) + " --spp 64 --cache out/references --out c.exr"});
+    ASSERT_EQ(reference.status, 0) << reference.err;
+    EXPECT_EQ(kept(), before) << "it was found";
+  }
+};
 
 TEST_F(ViewerTest, SurvivesABrokenSceneAndEveryTechnique) {
   std::filesystem::copy_file(std::string(kBinaryDir) + "/assets/lights/lights.glb", folder_ / "mine.glb");
@@ -73,43 +98,38 @@ TEST_F(ViewerTest, InspectsEveryTexture) {
   EXPECT_EQ(colours(picture("first.exr")), colours(picture("last.exr")));
 }
 
-/// The frames of a sequence are those of limn render.
+/// The frames of a sequence are those of limn render, also where techniques average over several of them.
 TEST_F(ViewerTest, SavesSequences) {
-  const Outcome outcome = view("metaballs --technique hard_shadow_map --size 100x92 --save a.exr",
-                               "xdotool key F10; await a.0029.exr");
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "");
-  const Image frame = picture("a.0007.exr");
-  const Outcome rendered =
-      run({kBinaries + "limn", "render", "metaballs", "--technique", "hard_shadow_map", "--size",
-           std::to_string(frame.width()) + "x" + std::to_string(frame.height()), "--frames", "7:7", "--out",
-           (folder_ / "b.exr").string()});
-  ASSERT_EQ(rendered.status, 0) << rendered.err;
-  EXPECT_EQ(colours(frame), colours(picture("b.0007.exr")));
+  const auto expectSameFrames = [&](const std::string& question, const std::string& frames) {
+    const Outcome outcome =
+        view(question + " --size 100x92 --save a.exr", "xdotool key F10; await a.0029.exr");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    const Image frame = picture("a.0007.exr");
+    const Outcome rendered =
+        run({"/bin/sh", "-c",
+             "cd '" + folder_.path().string() + "' && '" + kBinaries + "limn' render " + question +
+                 " --size " + std::to_string(frame.width()) + "x" + std::to_string(frame.height()) +
+                 " --frames " + frames + " --out b.exr"});
+    ASSERT_EQ(rendered.status, 0) << rendered.err;
+    EXPECT_EQ(colours(frame), colours(picture("b.0007.exr")));
+  };
+  expectSameFrames("metaballs --technique hard_shadow_map", "7:7");
+  for (const auto& file : std::filesystem::directory_iterator(folder_.path()))
+    if (file.path().extension() == ".exr") std::filesystem::remove(file);
+  expectSameFrames(
+      "metaballs --technique instant_radiosity --set instant_radiosity.vpls=16 --set "
+      "instant_radiosity.history=3 --aa 2",
+      "0:7");
 }
 
-/// What the window computed of the truth is what `limn reference` finds in the same cache.
 TEST_F(ViewerTest, KeepsTheTruthOnDisk) {
-  const auto kept = [&] {
-    const std::filesystem::path folder = folder_ / "out/references";
-    return std::filesystem::exists(folder) ? std::distance(std::filesystem::directory_iterator(folder), {})
-                                           : 0;
-  };
-  const Outcome outcome =
-      view("cornell_box --technique hard_shadow_map --size 100x92 --compare truth --save a.exr",
-           "for i in $(seq 300); do ls out/references/*.exr > files 2> none && break; sleep .1; done\n"
-           "save b.exr");
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  ASSERT_GT(kept(), 0);
-  const auto before = kept();
-  const Image shown = picture("b.exr");
-  const Outcome reference =
-      run({"/bin/sh", "-c",
-           "cd '" + folder_.path().string() + "' && '" + kBinaries +
-               "limn' reference cornell_box --term final --size " + std::to_string(shown.width()) + "x" +
-               std::to_string(shown.height()) + " --spp 64 --cache out/references --out c.exr"});
-  ASSERT_EQ(reference.status, 0) << reference.err;
-  EXPECT_EQ(kept(), before) << "it was found";
+  expectTheSameTruth("cornell_box");
+}
+
+/// What the truth leaves out, or follows in another way.
+TEST_F(ViewerTest, TheTruthIsTheOneThatWasAskedFor) {
+  expectTheSameTruth("milk --environment sky --subsurface local --unshadowed on --relief-paths others");
 }
 
 /// Input is answered while techniques compile, slow pictures are rendered and the truth is computed.

@@ -50,7 +50,7 @@ class ViewerWindowTest : public ::testing::Test {
         "click() { point $1 $2; xdotool click 1; frames 4; }\n" +  //
         "drop() { '" + kBinaryDir +
         "/tests/limn_drop_files' $window \"$1\" || echo $1 was not taken >&2; }\n" + "'" + kBinaries +
-        "limn-view' " + arguments + " --debug > said & viewer=$!\n" +
+        "limn-view' " + arguments + " --gl-debug > said & viewer=$!\n" +
         "window=$(timeout 60 xdotool search --sync --onlyvisible --name 'limn$' | head -n 1)\n" +
         "focused\n" + script + "\nxdotool key ctrl+q\nwait $viewer\n";
     return run({"/usr/bin/timeout", std::to_string(seconds), "/usr/bin/xvfb-run", "-a", "-s",

@@ -66,6 +66,12 @@ std::vector<ViewerStep> stepsOf(const Chapter& chapter) {
   return steps;
 }
 
+/// Throws UsageError if one of these options was given, of which the program makes no use as it runs now.
+void refuseGiven(const CLI::App& program, std::initializer_list<const char*> options, const char* use) {
+  for (const char* option : options)
+    if (program.count(option) > 0) throw UsageError(fmt::format("{} is {}", option, use));
+}
+
 }  // namespace
 
 int runChapter(const Chapter& chapter, int argc, char** argv) {
@@ -102,11 +108,16 @@ int runChapter(const Chapter& chapter, int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
       return program.exit(error) == 0 ? 0 : 2;
     }
-    if (headless || !canOpenWindow()) return writeFiles(chapter, out, backend, filters);
+    if (headless || !canOpenWindow()) {
+      refuseGiven(program, {"--scene", "--size", "--frames"}, "for the window, which is not opened");
+      return writeFiles(chapter, out, backend, filters);
+    }
+    refuseGiven(program, {"--filter", "--backend"}, "for pictures and tables, which --headless writes");
     ViewerOptions viewer;
     viewer.title = chapter.title;
     viewer.scene = scene;
     viewer.steps = stepsOf(chapter);
+    viewer.device = backend.device;
     viewer.debug = backend.debug;
     viewer.save = out / "view.png";
     viewer.cache = out / "references";
