@@ -188,7 +188,9 @@ MapWindow wholeWindow(const glsl::Light& light, const vec3& origin, const Axes& 
         light.type == glsl::light_spot ? coneTangent(light, desc.size) : fittedTangent(origin, axes, boxes);
     if (count == 2) tangent = std::max(tangent, fittedTangent(origin, faceAxes(axes, 5), boxes));
     if (light.type != glsl::light_spot) tangent *= 1 + 4 / static_cast<float>(desc.size);
-    if (hasCone(light) && count == 1) tangent = std::min(tangent, coneTangent(light, desc.size));
+    // The cone is that of the light's centre: a sample aside of it sees what lies in it at a wider angle.
+    if (hasCone(light) && count == 1 && desc.samples.empty())
+      tangent = std::min(tangent, coneTangent(light, desc.size));
     if (!(tangent > 0)) tangent = 1;
   }
   const uint32_t step = layout.faces == glsl::shadow_faces_pair ? 5 : 1;

@@ -5,11 +5,13 @@
 namespace limn::shadow {
 
 std::vector<SampleBatch> sampleBatches(int total, const SampleLayers& layers, int mebibytes) {
+  // Without maps of their own samples take no room, however much is shared.
+  if (layers.each == 0) return {{0, total, total}};
   constexpr int64_t bytesPerTexel = 8;  // rasterised and linear depth
   constexpr int64_t mostLayers = 2048;  // OpenGL 4.5, table 23.54
   const int64_t fit = (int64_t{mebibytes} << 20) / (int64_t{layers.size} * layers.size * bytesPerTexel);
   const int64_t left = std::min(fit, mostLayers) - layers.shared;
-  const int most = static_cast<int>(std::clamp<int64_t>(left / std::max<int64_t>(layers.each, 1), 1, 4096));
+  const int most = static_cast<int>(std::clamp<int64_t>(left / layers.each, 1, 4096));
   // Batches of one size take one piece of memory in turn, a smaller one would take another: up to twice as
   // many as are needed, where that divides the samples evenly.
   const int least = (total + most - 1) / most;

@@ -57,8 +57,9 @@ LIMN_FN float map_gap(ShadowView view, MapReceiver receiver, vec2 texel, float d
   return receiver.depth - map_dot(view, receiver.axis, texel, depth);
 }
 
-// shadow_threshold() at a place, texels (of which a texel's middle is at its number + 1/2).
-LIMN_FN float map_threshold(ShadowView view, MapReceiver receiver, vec2 place) {
+// Metres of depth at a place, texels (of which a texel's middle is at its number + 1/2): where the tangent plane, raised by the
+// bias, lies there, and where the light's axis has the receiver's depth.
+LIMN_FN vec2 map_limits(ShadowView view, MapReceiver receiver, vec2 place) {
   float x = place.x - 0.5f;
   float y = place.y - 0.5f;
   float along = receiver.axis.x * x + (receiver.axis.y * y + receiver.axis.z);
@@ -71,19 +72,29 @@ LIMN_FN float map_threshold(ShadowView view, MapReceiver receiver, vec2 place) {
     along = receiver.axis.w;
     rise = receiver.plane.w;
   }
-  float limit = along > 0.0f ? min(view.far, behind / along) : view.far;
-  if (rise < 0.0f) limit = min(limit, above / rise);
-  if (rise >= 0.0f && above >= 0.0f) limit = view.near;
-  return clamp(shadow_normalise(view, limit), 0.0f, 1.0f);
+  float plane = view.far;
+  if (rise < 0.0f) plane = min(plane, above / rise);
+  if (rise >= 0.0f && above >= 0.0f) plane = view.near;
+  return vec2(plane, along > 0.0f ? min(view.far, behind / along) : view.far);
 }
 
-// Least and greatest at the corners of a box of places: of a plane's, those of the whole box.
+// shadow_threshold() at a place.
+LIMN_FN float map_threshold(ShadowView view, MapReceiver receiver, vec2 place) {
+  vec2 limits = map_limits(view, receiver, place);
+  return clamp(shadow_normalise(view, min(limits.x, limits.y)), 0.0f, 1.0f);
+}
+
+// Bounds of the thresholds in a box of places. The two planes may slope against each other, so that the lesser of them is
+// greatest inside the box: each has its own range, which its values at the corners give.
 LIMN_FN vec2 map_threshold_range(ShadowView view, MapReceiver receiver, vec2 low, vec2 high) {
-  float a = map_threshold(view, receiver, low);
-  float b = map_threshold(view, receiver, vec2(high.x, low.y));
-  float c = map_threshold(view, receiver, vec2(low.x, high.y));
-  float d = map_threshold(view, receiver, high);
-  return vec2(min(min(a, b), min(c, d)), max(max(a, b), max(c, d)));
+  vec2 a = map_limits(view, receiver, low);
+  vec2 b = map_limits(view, receiver, vec2(high.x, low.y));
+  vec2 c = map_limits(view, receiver, vec2(low.x, high.y));
+  vec2 d = map_limits(view, receiver, high);
+  vec2 least = min(min(a, b), min(c, d));
+  vec2 most = max(max(a, b), max(c, d));
+  return clamp(vec2(shadow_normalise(view, min(least.x, least.y)), shadow_normalise(view, min(most.x, most.y))),
+               vec2(0.0f), vec2(1.0f));
 }
 
 // The widest gap of anything in the box that lies `least` metres deep or deeper.

@@ -17,6 +17,16 @@ struct ShadowKernel {
 // Half the side, relative to light_view_cone_scale(v, 1), of the square as large as the disc.
 LIMN_CONST float square_of_disc = 0.886226925f;
 
+// Lights so narrow that rounding leaves their kernels no width still have what lies in their texel: a thousandth of a texel
+// is about the least that places in the largest maps resolve.
+LIMN_CONST float least_kernel_width = 1e-3f;
+
+LIMN_FN void widen_kernel(LIMN_INOUT(ShadowKernel) kernel) {
+  vec2 widen = max(0.5f * (vec2(least_kernel_width) - (kernel.high - kernel.low)), vec2(0.0f));
+  kernel.low -= widen;
+  kernel.high += widen;
+}
+
 // The kernel `gap` metres nearer to the light than the receiver, along the light's axis: the counted part of the light
 // (LightView::low, high) scaled down by gap / depth, projected, and boxed (framework, steps 1 and 3). False: nothing of
 // it lies in this view. whole: the view is the light's only one, so what lies beyond its edge is unoccluded.
@@ -43,6 +53,7 @@ LIMN_FN bool shadow_kernel(ShadowView view, LightView light, vec3 receiver, floa
                       sqrt(reach_u.y * reach_u.y + reach_v.y * reach_v.y));
     kernel.low = texel - reach;
     kernel.high = texel + reach;
+    widen_kernel(kernel);
     return true;
   }
   bool seen = false;
@@ -57,6 +68,7 @@ LIMN_FN bool shadow_kernel(ShadowView view, LightView light, vec3 receiver, floa
     kernel.high = max(kernel.high, texel);
   }
   if (!seen) return false;
+  widen_kernel(kernel);
   if (!whole) {
     kernel.low = max(kernel.low, vec2(0.0f));
     kernel.high = min(kernel.high, vec2(size));
@@ -70,10 +82,9 @@ LIMN_FN bool shadow_kernel(ShadowView view, LightView light, vec3 receiver, floa
   return true;
 }
 
-// The stored depth below which a texel at uv blocks the receiver: the lesser of the tangent plane's, raised by the bias,
-// and the receiver's own along the light's axis. In [0, 1]. shadow_blocks() says the same of a point, but for what
-// little of a light lies above the tangent plane when its centre lies below: there nothing blocks.
-LIMN_FN float shadow_threshold(ShadowView view, ShadowReceiver receiver, vec2 uv) {
+// Metres of depth at uv: where the tangent plane, raised by the bias, lies there, and where the light's axis has the
+// receiver's depth.
+LIMN_FN vec2 shadow_limits(ShadowView view, ShadowReceiver receiver, vec2 uv) {
   // Points behind uv are start + depth * step.
   vec3 start = vec3(0.0f);
   vec3 step = shadow_unproject_local(view, uv, 1.0f);
@@ -81,15 +92,23 @@ LIMN_FN float shadow_threshold(ShadowView view, ShadowReceiver receiver, vec2 uv
     start = vec3(step.x, step.y, 0.0f);
     step = vec3(0.0f, 0.0f, 1.0f);
   }
-  float far = view.far;
-  float limit = far;
+  float axis = view.far;
   float along = dot(receiver.axis, step);
-  if (along > 0.0f) limit = min(limit, (receiver.depth - dot(receiver.axis, start)) / along);
+  if (along > 0.0f) axis = min(axis, (receiver.depth - dot(receiver.axis, start)) / along);
+  float plane = view.far;
   float above = receiver.height - dot(receiver.normal, start);  // plane: dot(plane.xyz, step) depth > above
   float rise = dot(receiver.normal, step);
-  if (rise < 0.0f) limit = min(limit, above / rise);
-  if (rise >= 0.0f && above >= 0.0f) limit = view.near;
-  return clamp(shadow_normalise(view, limit), 0.0f, 1.0f);
+  if (rise < 0.0f) plane = min(plane, above / rise);
+  if (rise >= 0.0f && above >= 0.0f) plane = view.near;
+  return vec2(plane, axis);
+}
+
+// The stored depth below which a texel at uv blocks the receiver: the lesser of the tangent plane's, raised by the bias,
+// and the receiver's own along the light's axis. In [0, 1]. shadow_blocks() says the same of a point, but for what
+// little of a light lies above the tangent plane when its centre lies below: there nothing blocks.
+LIMN_FN float shadow_threshold(ShadowView view, ShadowReceiver receiver, vec2 uv) {
+  vec2 limits = shadow_limits(view, receiver, uv);
+  return clamp(shadow_normalise(view, min(limits.x, limits.y)), 0.0f, 1.0f);
 }
 
 // Metres along the light's axis from what is stored at uv to the receiver.
@@ -97,16 +116,19 @@ LIMN_FN float shadow_gap(ShadowView view, ShadowReceiver receiver, vec2 uv, floa
   return receiver.depth - dot(receiver.axis, shadow_unproject_local(view, uv, shadow_metres(view, stored)));
 }
 
-// Least and greatest threshold at the corners of a kernel: of a plane's, those of the whole kernel.
+// Bounds of the thresholds in a kernel: as map_threshold_range() (glsl/shadow/map_space.glsl), for each plane by itself.
 LIMN_FN vec2 shadow_threshold_range(ShadowView view, ShadowReceiver receiver, ShadowKernel kernel) {
   float size = float(view.size);
-  vec2 range = vec2(1.0f, 0.0f);
+  vec2 least = vec2(view.far);
+  vec2 most = vec2(-view.far);
   for (int i = 0; i < 4; ++i) {
     vec2 at = vec2((i & 1) == 0 ? kernel.low.x : kernel.high.x, (i & 2) == 0 ? kernel.low.y : kernel.high.y);
-    float t = shadow_threshold(view, receiver, at / size);
-    range = vec2(min(range.x, t), max(range.y, t));
+    vec2 limits = shadow_limits(view, receiver, at / size);
+    least = min(least, limits);
+    most = max(most, limits);
   }
-  return range;
+  return clamp(vec2(shadow_normalise(view, min(least.x, least.y)), shadow_normalise(view, min(most.x, most.y))),
+               vec2(0.0f), vec2(1.0f));
 }
 
 // The widest gap of anything in the kernel that is stored at `least` or farther.

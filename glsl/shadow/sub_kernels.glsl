@@ -80,6 +80,7 @@ KernelFamily kernel_family(ShadowCursor cursor, VisibilityQuery q) {
 bool family_kernel(KernelFamily f, float gap, out ShadowKernel kernel) {
   float scale = kernel_cone_scale(f.cone, gap);
   ShadowKernel scaled = ShadowKernel(f.cone.apex + scale * f.cone.low, f.cone.apex + scale * f.cone.high, 1.0);
+  widen_kernel(scaled);
   kernel = scaled;
 #if !SIMILAR_KERNELS
   bool seen = shadow_kernel(f.view, f.light, f.receiver, gap, f.whole, kernel);
@@ -125,7 +126,7 @@ struct TexelBox {
 
 // Sums over `texels` texels of d - z and (d - z)^2, from the table's at (high.x, high.y), (low.x, high.y), ...; d in quanta.
 vec2 box_moments(uvec4 s11, uvec4 s01, uvec4 s10, uvec4 s00, uint texels, float d) {
-  uint receiver = uint(d + 0.5);
+  uint receiver = sat_nearest(d, table_format);
   float rest = d - float(receiver);
   SatBox box = sat_box(sat_unpack(s11, table_format), sat_unpack(s01, table_format), sat_unpack(s10, table_format),
                        sat_unpack(s00, table_format), texels, table_format);

@@ -75,6 +75,9 @@ LIMN_FN uint sat_quantise(float z, uint format) {
   return min(whole + uint(rest >= 0.5f), sat_scale(format));
 }
 
+// Nearest Z to a depth in quanta, >= 0. Adding 1/2 to the largest of 24 bits rounds to more than Z may be.
+LIMN_FN uint sat_nearest(float quanta, uint format) { return min(uint(quanta + 0.5f), sat_scale(format)); }
+
 // --- Sums: (z low, z^2 low, z^2 high, z high) while they are computed, packed as `format` says when stored ---
 
 // The sums over one texel.

@@ -1,4 +1,6 @@
 // Light from bump to bump of height maps, along paths that are traced once.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -8,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/gpu_scene/light_textures.h"
 #include "core/relief_maps/relief_maps.h"
@@ -309,6 +312,12 @@ frame::TextureHandle BumpInterreflection::addPasses(frame::FrameGraph& graph, co
     bases_ = bump_interreflection::flatBases(inputs.scene, inputs.pose);
     if (!bases_.bases.empty()) {
       gpu::Device& device = inputs.gpuScene.device();
+      const auto bytes = static_cast<int64_t>(bases_.texels * sizeof(float));
+      if (bytes > device.limits().maxStorageBlockBytes)
+        throw UsageError(
+            fmt::format("the texels of flat surfaces with height maps take {} MiB, more than the {} MiB of a "
+                        "storage buffer; ask for space=pixel, or smaller maps",
+                        bytes >> 20, device.limits().maxStorageBlockBytes >> 20));
       baseBuffers_.emplace(gpu::Buffer::of<glsl::FlatBase>(device, "flat bases", bases_.bases),
                            gpu::Buffer::of<uint32_t>(device, "bases of instances", bases_.ofInstances));
       bases = graph.importBuffer("flat bases", baseBuffers_->bases);

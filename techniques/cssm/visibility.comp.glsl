@@ -160,7 +160,8 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   do {
     bool last = pass == blocker_passes;
     Blockers found = blockers_at(cursor, q, gap, last ? kernel_filter : kernel_search, open);
-    if (open && last) v = clamp(1.0 - found.share, 0.0, 1.0);
+    // The kernel is a box around what of the light counts; what blocks hides none of the rest.
+    if (open && last) v = clamp(1.0 - found.share / light_view_box_share(q.light), 0.0, 1.0);
     open = open && found.texels > 0.0 && !last;
     gap = open ? found.gap : gap;
   } while (open && ++pass <= blocker_passes);

@@ -135,7 +135,9 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
     found.share = mix(found.share, next.share, nearer);
     found.gap = mix(found.gap, next.gap, nearer);
   }
+  // The kernel is a box around what of the light counts; what blocks hides none of the rest.
+  float hidden = found.share / light_view_box_share(q.light);
   // What rounding and bias leave of nothing and of everything.
   const float rest = 1.0 / 256.0;
-  return clamp((1.0 - found.share - rest) / (1.0 - 2.0 * rest), 0.0, 1.0);
+  return clamp((1.0 - hidden - rest) / (1.0 - 2.0 * rest), 0.0, 1.0);
 }

@@ -15,9 +15,11 @@ uniform sampler2D blue_noise;
 uniform uint light_indices[LIGHT_COUNT];
 uniform int rays;
 
-// How far rays start above the receiver and end before the light, of the largest coordinate: GPUs snap vertices to a 256th of a
-// pixel, so that a pixel's depth is known to some 2e-5 of it.
-const float ray_clearance = 6.103515625e-5;  // 2^-14
+// How far rays start above the receiver: of its distance to the camera, because GPUs snap vertices to a 256th of a pixel, so
+// that a pixel's depth is known to some 2e-5 of it; and no less than coordinates round by, of the largest. Before the light, of
+// which no depth was drawn, rays end by the latter.
+const float snapping_clearance = 6.103515625e-5;      // 2^-14
+const float rounding_clearance = 9.5367431640625e-7;  // 2^-20
 const float unlimited = 3.0e38;
 
 float largest(vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
@@ -72,14 +74,15 @@ void main() {
     if (!view.masked) {
       ShadowRays r;
       r.position = position;
-      r.origin = position + normal * (ray_clearance * max(largest(position), length(position - frame.camera_position.xyz)));
+      r.origin = position + normal * max(snapping_clearance * length(position - frame.camera_position.xyz),
+                                         rounding_clearance * largest(position));
       r.finite = light.type != light_directional;
       r.depth = r.finite ? view.depth : 1.0;
       r.itself = light.own_instance;
       r.clearance = vec3(0.0);
       if (light.type == light_rectangle) {
         float reach = largest(abs(light.position) + abs(light.axis_u) * light.length_u + abs(light.axis_v) * light.length_v);
-        r.clearance = light.direction * (ray_clearance * reach * rectangle_side(light, position));
+        r.clearance = light.direction * (rounding_clearance * reach * rectangle_side(light, position));
       }
       v = lit_share(view, r, texelFetch(blue_noise, at.xy % textureSize(blue_noise, 0), 0).xy);
     }

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/base/error.h"
 #include "core/relief/interreflection.h"
 #include "tests/gpu/bump_floor.h"
 
@@ -95,6 +96,21 @@ class BumpInterreflectionTest : public BumpFloorTest {
     return result;
   }
 };
+
+/// The texels of each floor count, though they share the height map.
+TEST_F(BumpInterreflectionTest, MoreTexelsThanAStorageBufferHoldsAreRefused) {
+  constexpr int size = 256;
+  scene::Scene scene = bumps(slantedLight(), {{size, size}, std::vector<float>(size * size), glm::dvec2(2)});
+  const scene::Node floor = scene.nodes[0];
+  const int64_t most = device().limits().maxStorageBlockBytes / (int64_t{size} * size * 4);
+  if (most > 4096) GTEST_SKIP() << "storage buffers hold the texels of " << most << " floors";
+  for (int64_t i = 0; i < most; ++i) scene.nodes.push_back(floor);
+  const auto drawn = [&](const std::string& space) {
+    return light(scene, {{"space", space}, {"paths", "1"}, {"azimuths", "8"}, {"shadows", "false"}});
+  };
+  EXPECT_THROW(drawn("texture"), UsageError);
+  EXPECT_NO_THROW(drawn("pixel"));
+}
 
 // What differs is that shadows are those of 128 azimuths, which get 0.001 of directions wrong, up to 0.01 of
 // texels at 35 degrees, and that weights are stored in 8 bits.

@@ -6,6 +6,8 @@
 #include "core/reference/reference.h"
 #include "core/render/supersample.h"
 #include "tests/gpu/render_test.h"
+#include "tests/gpu/technique_harness.h"
+#include "tests/support/test_scenes.h"
 
 namespace limn {
 namespace {
@@ -159,6 +161,35 @@ TEST_F(RayTracedAreaLightTest, FramesOfWhatStandsStillAreAlike) {
   renderer.configure(rays(3));
   const Image first = at(renderer, 0.5);
   EXPECT_EQ(values(at(renderer, 0.5)), values(first));
+}
+
+using RayClearanceTest = test::TechniqueTest;
+
+/// Far from the origin coordinates round by less than rays must start above what a distant camera sees.
+TEST_F(RayClearanceTest, LeavesCloseToTheCameraShadeTheirFloorFarFromTheOrigin) {
+  using glm::vec3;
+  constexpr float far = 1000;  // m; of which a millionth is a millimetre
+  scene::Scene scene;
+  scene::Pose pose;
+  test::addMesh(scene, test::floorPrimitive(4, test::addMaterial(scene)));
+  test::addMesh(scene, test::floorPrimitive(0.5f, 0));
+  test::addInstance(scene, pose, 0, test::at(far, 0, 0));
+  test::addInstance(scene, pose, 1, test::at(far, 0.03f, 0));
+  test::addLight(pose, test::rectangleLight({far, 4, 0}, {0, -1, 0}, 0.8f, 0.8f));
+  // Between the floor and the leaf.
+  const scene::CameraPose camera = scene::lookAt({far, 0.015f, 0.45f}, {far, 0, 0}, 0.8f);
+  const test::Answer v = visibility("ray_traced_area_light", {{"filter", "none"}}, scene, pose, camera);
+  int below = 0;
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      if (v.instance[static_cast<size_t>(y * side + x)] != 0) continue;
+      const vec3 p = positionOf(v, camera, pose.bounds, x, y);
+      if (std::max(std::abs(p.x - far), std::abs(p.z)) > 0.4f) continue;
+      ++below;
+      EXPECT_EQ(v.at(0, x, y), 0) << p.x << " " << p.z;
+    }
+  }
+  EXPECT_GT(below, 100);
 }
 
 }  // namespace

@@ -147,8 +147,9 @@ TEST_F(TechniqueTest, CameraInsideAnObjectGivesAFinitePicture) {
   }
 }
 
-/// With the same maps: what is fitted to the view depends on the light's size.
-TEST_F(TechniqueTest, LightsOfSizeZeroGiveTheHardShadowBitForBit) {
+/// With the same maps: what is fitted to the view depends on the light's size. Kernels of lights that are all
+/// but points are narrower than places in a map resolve, and still hold the receiver's texel.
+TEST_F(TechniqueTest, LightsOfSizeZeroGiveTheHardShadowBitForBitAndTinyOnesNearly) {
   for (const char* name : {"balls", "lights"}) {
     const scene::Scene scene = asset(name);
     render::Renderer renderer(device(), scene);
@@ -162,12 +163,15 @@ TEST_F(TechniqueTest, LightsOfSizeZeroGiveTheHardShadowBitForBit) {
       };
       if (!declares("light_size") || !declares("shadow_map_size")) continue;
       SCOPED_TRACE(soft + " on " + name);
-      std::vector<std::pair<std::string, std::string>> values{{"light_size", "0"},
-                                                              {"shadow_map_size", "512"}};
-      if (declares("shadow_map_fit")) values.emplace_back("shadow_map_fit", "scene");
-      const Image point =
-          picture(renderer, settings(128, 96, Term::visibility, {technique(soft, values)}, 0));
+      const auto ofSize = [&](const char* side) {
+        std::vector<std::pair<std::string, std::string>> values{{"light_size", side},
+                                                                {"shadow_map_size", "512"}};
+        if (declares("shadow_map_fit")) values.emplace_back("shadow_map_fit", "scene");
+        return picture(renderer, settings(128, 96, Term::visibility, {technique(soft, values)}, 0));
+      };
+      const Image point = ofSize("0");
       EXPECT_TRUE(std::equal(hard.data().begin(), hard.data().end(), point.data().begin()));
+      EXPECT_LT(rmse(hard, ofSize("1e-8")), 0.15) << "no shadow at all: 0.23 and more";
     }
   }
 }

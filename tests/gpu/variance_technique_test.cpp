@@ -99,6 +99,33 @@ TEST_F(VarianceTechniqueTest, KernelsThatAreAllLitOrAllBlockedAreExact) {
   }
 }
 
+/// The horizon of a wall cuts the light along its diagonal: what blocks hides a part of the kernel, all of
+/// what counts. cssm and moment_soft_shadow_map have a threshold for each part of the kernel, so that parts
+/// that the horizon cuts let light through.
+TEST_F(VarianceTechniqueTest, WhatBlocksHidesTheLightAboveTheHorizon) {
+  Planes s;
+  s.addPlane(3, at(0, 3, 0));
+  const vec3 normal = glm::normalize(vec3(1, 0, 1));
+  // Half of the light's diagonal is 0.57 m.
+  const glm::mat4 wall = at(0, 1, 0) * glm::translate(glm::mat4(1), -0.15f * normal) *
+                         glm::rotate(glm::mat4(1), glm::half_pi<float>(), glm::normalize(vec3(1, 0, -1)));
+  s.addPlane(0.8f, wall);
+  s.camera = scene::lookAt({2, 1, 2}, {0, 1, 0}, 0.8f);
+  for (const auto& [name, most] : {std::pair("vssm", 0.03), std::pair("savsm", 0.03), std::pair("cssm", 0.2),
+                                   std::pair("moment_soft_shadow_map", 0.6)}) {
+    const Answer v = answer(s, {{"shadow_map_size", "512"}, {"views", "1"}}, name);
+    double sum = 0;
+    int count = 0;
+    for (size_t i = 0; i < v.instance.size(); ++i) {
+      if (v.instance[i] != 2) continue;
+      sum += double{v.lights[0][i]};
+      ++count;
+    }
+    EXPECT_GT(count, 1000);
+    EXPECT_LT(sum / count, most) << name;
+  }
+}
+
 TEST_F(VarianceTechniqueTest, LightsLargerThanTheSceneGiveFaintShadows) {
   Planes s(100, 4);
   s.addPlane(0.5f, at(0, 1, 0));

@@ -210,6 +210,41 @@ TEST_P(MapSpace, ThresholdsAndGapsOfBoxesAreTheGeneralOnes) {
   EXPECT_LT(unsteady_, 200) << "of 20000: a corner where the plane is seen edge-on";
 }
 
+/// Where the tangent plane and the receiver's depth slope against each other, the greatest threshold lies
+/// inside.
+TEST_P(MapSpace, NoPlaceInABoxHasAThresholdBeyondItsRange) {
+  int inside = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Case c = someCase();
+    ShadowKernel kernel;
+    kernel.low = vec2(uniform(0, 400), uniform(0, 400));
+    kernel.high = kernel.low + vec2(uniform(0, 100), uniform(0, 100));
+    kernel.weight = 1;
+    const vec2 range = map_threshold_range(c.view, c.in_map, kernel.low, kernel.high);
+    const vec2 general = shadow_threshold_range(c.view, c.general, kernel);
+    float corners = 0;
+    for (const vec2& corner :
+         {kernel.low, kernel.high, vec2(kernel.low.x, kernel.high.y), vec2(kernel.high.x, kernel.low.y)})
+      corners = max(corners, map_threshold(c.view, c.in_map, corner));
+    for (int k = 0; k < 8; ++k) {
+      const vec2 place = mix(kernel.low, kernel.high, vec2(uniform(0, 1), uniform(0, 1)));
+      const float at = map_threshold(c.view, c.in_map, place);
+      constexpr float rounding = 1e-4f;
+      EXPECT_LE(at, range.y + rounding) << i;
+      EXPECT_GE(at, range.x - rounding) << i;
+      inside += at > corners + rounding ? 1 : 0;
+      // A plane seen edge-on has its depth from the quotient of two small numbers.
+      const float same = shadow_threshold(c.view, c.general, place / 512.f);
+      if (std::abs(same - at) < rounding) {
+        EXPECT_LE(same, general.y + 0.01f) << i;
+        EXPECT_GE(same, general.x - 0.01f) << i;
+      }
+    }
+  }
+  // The axis of other lights is the view's: the receiver's depth is one over the whole map.
+  if (GetParam() == light_kind_point) EXPECT_GT(inside, 100) << "corners alone do not bound it";
+}
+
 /// Of rectangles: the sides of other lights need not be the map's.
 class MapBoxes : public MapSpace {};
 

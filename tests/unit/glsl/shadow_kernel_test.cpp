@@ -68,6 +68,28 @@ TEST(ShadowKernel, CollapsesToTheReceiversTexelAtTheReceiver) {
   }
 }
 
+TEST(ShadowKernel, LightsNarrowerThanRoundingKeepAKernelAboutTheReceiver) {
+  for (const uint32_t kind : {shadow_perspective, shadow_orthographic, shadow_paraboloid}) {
+    const Light light = squareLight(1e-8f, vec3(0, 10, 0), vec3(0, -1, 0));
+    const ShadowView view = viewOf(light, kind, 0.8f, 1024);
+    const vec3 receiver(1.5f, 5, -2);
+    const LightView seen = light_view(light, receiver, vec3(0, 1, 0), -1);
+    const vec2 at = 1024.f * shadow_project(view, receiver).uv;
+    for (const bool whole : {true, false}) {
+      ShadowKernel kernel;
+      ASSERT_TRUE(shadow_kernel(view, seen, receiver, 0.05f, whole, kernel)) << kind;
+      for (int c = 0; c < 2; ++c) {
+        EXPECT_GT(kernel.high[c] - kernel.low[c], 0.5f * least_kernel_width);
+        EXPECT_LT(kernel.high[c] - kernel.low[c], 2 * least_kernel_width);
+        if (kind == shadow_perspective) {
+          EXPECT_NEAR(0.5f * (kernel.low[c] + kernel.high[c]), at[c], 1e-2f);
+        }
+      }
+      EXPECT_GT(kernel.weight, 0);
+    }
+  }
+}
+
 TEST(ShadowKernel, ThresholdIsWhereATexelStopsBlocking) {
   std::mt19937 random(11);
   std::uniform_real_distribution<float> uniform(0, 1);

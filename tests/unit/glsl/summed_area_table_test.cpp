@@ -55,6 +55,15 @@ TEST(SummedAreaTable, QuantisesToTheNearestAndStaysInRange) {
   }
 }
 
+TEST(SummedAreaTable, NearestQuantaStayInRange) {
+  for (const uint bits : {8u, 16u, 24u}) {
+    const uint format = sat_format(bits, 2, 1), scale = sat_scale(format);
+    EXPECT_EQ(sat_nearest(static_cast<float>(scale), format), scale) << "256 times that fits one word";
+    EXPECT_EQ(sat_nearest(0.4f, format), 0u);
+    EXPECT_EQ(sat_nearest(100.6f, format), 101u);
+  }
+}
+
 TEST(SummedAreaTable, RoundedSquaresAreTheNearest) {
   for (const uint bits : {8u, 16u, 24u}) {
     const uint format = sat_format(bits, 1, 1), scale = sat_scale(format);

@@ -40,5 +40,11 @@ TEST(SampleBatches, OneSampleIsHeldHoweverLittleMemoryThereIs) {
   EXPECT_EQ(sampleBatches(3, {.each = 6, .size = 4096}, 1).size(), 3u);
 }
 
+TEST(SampleBatches, SamplesWithoutMapsAreOneBatch) {
+  // Lights without extent: the maps that all samples share would be drawn again for each further batch.
+  EXPECT_EQ(sampleBatches(1024, {.each = 0, .shared = 6, .size = 512}, 256).size(), 1u);
+  EXPECT_EQ(sampleBatches(1024, {.each = 0, .shared = 6, .size = 4096}, 1).size(), 1u);
+}
+
 }  // namespace
 }  // namespace limn::shadow
