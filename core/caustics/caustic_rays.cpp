@@ -50,8 +50,8 @@ struct Request {
   CausticRayDesc desc;
   CausticRays made;
   std::vector<glm::vec2> samples;  ///< as ShadowMapDesc has them
-  std::vector<glsl::ShadowView> views;
-  std::vector<glsl::CausticLayer> layers;  ///< of the pass that traces
+  std::vector<glsl::ShadowView> views, lastViews;
+  std::vector<glsl::CausticLayer> layers, lastLayers;  ///< of the pass that traces
   SpecularBuffers buffers;
   gpu::Buffer viewBuffer, layerBuffer;
   frame::BufferHandle importedViews;
@@ -88,16 +88,18 @@ void CausticRayService::Implementation::fit(Request& request) const {
   request.layers.clear();
   float mapIndex = 0;
   const shadow::ShadowMapDesc samplesDesc{.samples = request.samples};
+  shadow::ShadowMapDesc desc{.size = request.desc.size, .samples = {glm::vec2(0)}};
+  std::vector<glsl::ShadowLight> unused;
   for (const uint32_t index : request.lights) {
     const glsl::Light& light = lights[index];
     const std::vector<glm::vec2> points = shadow::samplesOf(light, samplesDesc);
     for (const glm::vec2& point : points) {
-      const shadow::ShadowMapDesc desc{.size = request.desc.size, .samples = {point}};
+      desc.samples[0] = point;
       const glm::vec2 ab = point - 0.5f;
       const glm::vec3 origin =
           light.position + ab.x * light.length_u * light.axis_u + ab.y * light.length_v * light.axis_v;
       const glsl::Light eye = aimed(light, origin, objects);
-      std::vector<glsl::ShadowLight> unused;
+      unused.clear();
       shadow::appendViews(eye, index, shadow::fitLayout(eye, boxes, desc), boxes, desc, nullptr,
                           request.views, unused);
       request.layers.resize(
@@ -233,13 +235,14 @@ bool CausticRayService::update(frame::FrameGraph& graph, const scene::Pose& pose
   if (lightsCameOrWent || some == s.boxes.empty()) return true;
   for (const auto& request : s.requests) {
     if (request->views.empty()) continue;
-    const std::vector<glsl::ShadowView> views = request->views;
-    const std::vector<glsl::CausticLayer> layers = request->layers;
+    std::vector<glsl::ShadowView>&views = request->views, &last = request->lastViews;
+    std::vector<glsl::CausticLayer>&layers = request->layers, &lastLayers = request->lastLayers;
+    views.swap(last);
+    layers.swap(lastLayers);
     s.fit(*request);
-    if (request->views.size() != views.size()) return true;
-    const bool same =
-        std::memcmp(views.data(), request->views.data(), views.size() * sizeof(views[0])) == 0 &&
-        std::memcmp(layers.data(), request->layers.data(), layers.size() * sizeof(layers[0])) == 0;
+    if (views.size() != last.size()) return true;
+    const bool same = std::memcmp(views.data(), last.data(), views.size() * sizeof(views[0])) == 0 &&
+                      std::memcmp(layers.data(), lastLayers.data(), layers.size() * sizeof(layers[0])) == 0;
     if (same) continue;
     s.upload(*request);
     graph.touch(request->importedViews);

@@ -15,15 +15,26 @@ uint32_t indexAt(std::span<const float> upTo, float u) {
   return static_cast<uint32_t>(found - upTo.begin());
 }
 
+/// Whether `m` changes the lengths of all vectors, and so all areas, by one factor.
+bool scalesAlike(const glm::dmat3& m) {
+  const glm::dmat3 products = glm::transpose(m) * m;
+  constexpr double rounding = 1e-5;  // of a matrix of floats
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (std::abs(products[i][j] - (i == j ? products[0][0] : 0)) > rounding * products[0][0]) return false;
+  return true;
+}
+
 }  // namespace
 
-void AreaTable::fill(std::span<const glm::vec3> positions, std::span<const uint32_t> indices) {
+void AreaTable::fill(std::span<const glm::vec3> positions, std::span<const uint32_t> indices,
+                     const glm::dmat3& toWorld) {
   upTo.resize(indices.size() / 3);
   double sum = 0;
   for (size_t i = 0; i < upTo.size(); ++i) {
     const glm::dvec3 a(positions[indices[3 * i]]), b(positions[indices[3 * i + 1]]),
         c(positions[indices[3 * i + 2]]);
-    sum += 0.5 * glm::length(glm::cross(b - a, c - a));
+    sum += 0.5 * glm::length(glm::cross(toWorld * (b - a), toWorld * (c - a)));
     upTo[i] = static_cast<float>(sum);
   }
 }
@@ -82,7 +93,10 @@ void ScenePoints::measure(const scene::Pose& pose) {
     dynamic_[i].fill(known_[i]->positions, known_[i]->indices);
   }
   tables_.resize(pose.instances.size());
+  stretched_.resize(pose.instances.size());
   upTo_.resize(pose.instances.size());
+  std::vector<glm::vec3> positions, normals;
+  std::vector<glm::vec4> tangents;
   double sum = 0;
   for (size_t i = 0; i < pose.instances.size(); ++i) {
     const scene::DrawInstance& drawn = pose.instances[i];
@@ -97,7 +111,16 @@ void ScenePoints::measure(const scene::Pose& pose) {
       if (table.upTo.empty()) table.fill(p.positions, p.indices);
       tables_[i] = &table;
     }
-    const double scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(drawn.objectToWorld))));
+    const glm::dmat3 toWorld{glm::dmat4(drawn.objectToWorld)};
+    double scale = std::cbrt(std::abs(glm::determinant(toWorld)));
+    if (!scalesAlike(toWorld)) {
+      const scene::Primitive& p = primitive(pose, drawn);
+      if (drawn.deformed != scene::kNone)
+        scene::deform(p, pose.deformed[static_cast<size_t>(drawn.deformed)], positions, normals, tangents);
+      stretched_[i].fill(drawn.deformed != scene::kNone ? positions : p.positions, p.indices, toWorld);
+      tables_[i] = &stretched_[i];
+      scale = 1;
+    }
     sum += tables_[i]->total() * scale * scale;
     upTo_[i] = static_cast<float>(sum);
   }

@@ -15,8 +15,10 @@ namespace limn::indirect {
 /// Holds the running sum of the areas of a list of triangles.
 struct AreaTable {
   std::vector<float> upTo;  ///< m^2 of the triangles 0 to i
-  /// Fills the table; `indices` holds the 3 corners of each triangle and is not empty.
-  void fill(std::span<const glm::vec3> positions, std::span<const uint32_t> indices);
+  /// Fills the table; `indices` holds the 3 corners of each triangle and is not empty. `toWorld` maps edges
+  /// to those whose areas count.
+  void fill(std::span<const glm::vec3> positions, std::span<const uint32_t> indices,
+            const glm::dmat3& toWorld = glm::dmat3(1));
   float total() const { return upTo.empty() ? 0.f : upTo.back(); }
   /// Returns the triangle in which the fraction `u` in [0, 1) of the area lies; only for a table with an area
   /// above 0.
@@ -27,8 +29,8 @@ struct AreaTable {
 class ScenePoints {
  public:
   /// Chooses `count` points in proportion to area at `pose`. Any run of consecutive points is spread evenly,
-  /// too. Where instances are scaled by different factors along their axes, or move so that their size
-  /// changes, the density follows the size at the pose of the choice.
+  /// too. Where instances move so that their size changes, the density follows the size at the pose of the
+  /// choice.
   ScenePoints(gpu::Device& device, const scene::Scene& scene, const scene::Pose& pose, int count);
   /// Chooses again if triangles were added or removed.
   void update(const scene::Pose& pose);
@@ -43,6 +45,7 @@ class ScenePoints {
 
   const scene::Scene& scene_;
   std::vector<AreaTable> fixed_, deformed_, dynamic_;
+  std::vector<AreaTable> stretched_;      ///< of each instance whose triangles do not all change alike
   std::vector<size_t> firstOfMesh_;       ///< index of each mesh's first table in fixed_
   std::vector<const AreaTable*> tables_;  ///< of each instance
   std::vector<float> upTo_;               ///< m^2 of the instances 0 to i

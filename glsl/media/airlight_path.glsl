@@ -28,8 +28,8 @@ struct AirlightPath {
   vec2 ramp;           // the root of the cone's factor before it is clamped: .x cosine + .y
   float window;        // 1 / range^4 of the light; 0: unlimited
   float two_sided;     // 1, or 0
-  vec2 ball;           // square of the distance from the middle of the medium's ball: .x + q (.y + q)
-  float ball_axis;     // dot(base from there, from the source to it); parallel light: the light's direction instead
+  vec3 from_eye;       // from the middle of the medium's ball to the eye
+  vec3 across;         // from the source to the base; parallel light: its direction instead
   float radius2;       // of the ball, m^2
   float before;        // metres of ball between the eye and the base, less than 0 where it begins behind the base
 };
@@ -61,9 +61,8 @@ LIMN_FN AirlightPath airlight_path(Medium m, Light light, uint kind, AirlightRay
   p.ramp = (light.flags & light_flag_cone) != 0u ? vec2(slope, -slope * light.cos_outer) : vec2(0.0f, 1.0f);
   float inverse = light.range > 0.0f ? 1.0f / light.range : 0.0f;
   p.window = inverse * inverse * inverse * inverse;
-  vec3 from_ball = p.base - m.ball.centre;
-  p.ball = vec2(dot(from_ball, from_ball), 2.0f * dot(from_ball, ray.direction));
-  p.ball_axis = dot(from_ball, parallel ? light.direction : across);
+  p.from_eye = ray.eye - m.ball.centre;
+  p.across = parallel ? light.direction : across;
   p.radius2 = m.ball.radius * m.ball.radius;
   p.before = p.nearest - max(ball_range(m.ball, ray.eye, ray.direction).x, 0.0f);
   return p;
@@ -95,13 +94,15 @@ LIMN_FN float airlight_path_factor(AirlightPath p, uint kind, float q) {
   return factor * cone * cone * clamp(1.0f - p.window * square * square, 0.0f, 1.0f);
 }
 
-// Metres of the medium's ball between light, the place at q, which lies in it, and eye.
+// Metres of the medium's ball between light, the place at q, which lies in it, and eye. The place is taken from the middle of
+// the ball: of squares of its distances from the base, which may lie far outside, rounding would be more than the ball's.
 LIMN_FN float airlight_path_length(AirlightPath p, uint kind, float q) {
   float distance = sqrt(max(p.across2 + q * q, 1e-30f));
+  vec3 from_ball = p.from_eye + (p.nearest + q) * p.direction;
   // The way back to where the light enters the ball.
   bool parallel = airlight_parallel(kind);
-  float middle = parallel ? p.ball_axis + q * p.axial.y : (p.ball_axis + q * (0.5f * p.ball.y + q)) / distance;
-  float inside = p.radius2 - (p.ball.x + q * (p.ball.y + q));
+  float middle = parallel ? dot(from_ball, p.across) : dot(from_ball, p.across + q * p.direction) / distance;
+  float inside = p.radius2 - dot(from_ball, from_ball);
   float way = max(middle + sqrt(max(middle * middle + inside, 0.0f)), 0.0f);
   return (parallel ? way : min(way, distance)) + p.before + q;
 }

@@ -1,6 +1,8 @@
 // Airlight: each viewing ray is cut into stretches that are even in the angle from the light; of each, the part that the
 // light reaches is integrated (glsl/media/airlight_path.glsl). In a medium with a grid, what it takes on the way to the eye is
 // summed along the stretches, and what it takes on the way from the light is looked up at each node.
+//
+// A dispatch adds a part: of the maps of its lights, one after another, or of the stretches under one of them.
 #include "glsl/media/airlight_path.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/light/light_texture.glsl"
@@ -10,9 +12,13 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f) uniform image2D radiance;
-uniform int light_count;  // of the dispatch
 uniform int light_samples;
-uniform int steps;
+uniform int steps;  // stretches of a ray
+// Of the part: the first one, and the one after the last.
+uniform int first_map;
+uniform int end_map;
+uniform int first_stretch;
+uniform int end_stretch;
 
 const int refinements = 6;  // of the place where a ray enters or leaves a shadow
 
@@ -97,18 +103,23 @@ vec3 airlight(Medium medium, Light light, ShadowLight maps, vec3 direction, floa
   float stretch = (to - from) / float(steps);
   AirlightNodes whole = airlight_nodes(ray.kind, 0.5 * stretch, -1.0, 1.0);
   vec3 sum = vec3(0.0);
-  vec2 start = airlight_end(ray.path, ray.kind, from);
+  vec2 start = airlight_end(ray.path, ray.kind, from + float(first_stretch) * stretch);
   bool start_lit = lit_at(ray, airlight_place_of(start));
   float before = 0.0;
 #if MEDIUM_STEPS > 0
   before = medium_length(medium, frame.camera_position.xyz, direction, a);  // between the eye and the stretch
+  for (int i = 0; i < first_stretch; ++i) {
+    vec2 earlier = airlight_end(ray.path, ray.kind, from + float(i) * stretch);
+    vec2 later = airlight_end(ray.path, ray.kind, from + float(i + 1) * stretch);
+    before += stretch_length(ray.path, airlight_place_of(earlier), airlight_place_of(later));
+  }
 #endif
   vec2 end = start;
   // Two loops, whole stretches up to the next border and then the border: in one, each border of one ray would hold up all rays
   // that are followed at once.
-  for (int i = 0; i < steps;) {
+  for (int i = first_stretch; i < end_stretch;) {
     bool border = false;
-    while (i < steps) {
+    while (i < end_stretch) {
       ++i;
       end = airlight_end(ray.path, ray.kind, i < steps ? from + float(i) * stretch : to);
       border = lit_at(ray, airlight_place_of(end)) != start_lit;
@@ -151,7 +162,7 @@ void main() {
   range.x = max(range.x, 0.0);
   if (!(range.x < range.y)) return;
   vec3 sum = vec3(0.0);
-  for (int i = 0; i < light_count * light_samples; ++i) {
+  for (int i = first_map; i < end_map; ++i) {
     ShadowLight maps = maps_at(uint(light_layers[i / light_samples] * light_samples + i % light_samples));
     Light light = lights[maps.light];
     if (!light_has_extent(light) && i % light_samples != 0) continue;  // one map for all samples

@@ -1,5 +1,6 @@
 // Airlight: what the medium scatters of the lights' direct light, with its shadows.
 #include <algorithm>
+#include <vector>
 
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/light_textures.h"
@@ -30,6 +31,31 @@ constexpr StressCase kStress[] = {
     {.name = "map of 16 texels", .settings = "shadow_map_size=16", .factor = 20},
 };
 
+/// Holds what a pass adds: of the maps of its lights, and of the stretches of each ray, the first one and the
+/// one after the last.
+struct Part {
+  int firstMap, endMap, firstStretch, endStretch;
+};
+
+/// Returns the passes for `maps` maps: one, but for software renderers. llvmpipe leaves all loops of a thread
+/// after 65,535 steps in all. `way`: steps at most that a way through a grid takes; 0: there is none.
+std::vector<Part> partsOf(bool software, int maps, int steps, int way) {
+  if (!software) return {{0, maps, 0, steps}};
+  constexpr int most = 65535;
+  // Eight rays are followed at once, and may wait for each other at all of their borders of shadows. Each
+  // stretch is a step of both loops over stretches, may have 6 refinements, and has two nodes.
+  const int ofStretch = 8 * (8 + 2 * way);
+  // Each map is a step, and has the way to the eye and the stretches before the part.
+  const int ofMap = 1 + way + (way > 0 ? steps : 0);
+  const int stretches = std::clamp((most - ofMap) / ofStretch, 1, steps);
+  const int together = stretches < steps ? 1 : std::max(most / (ofMap + steps * ofStretch), 1);
+  std::vector<Part> parts;
+  for (int map = 0; map < maps; map += together)
+    for (int stretch = 0; stretch < steps; stretch += stretches)
+      parts.push_back({map, std::min(map + together, maps), stretch, std::min(stretch + stretches, steps)});
+  return parts;
+}
+
 class Airlight : public Technique {
   frame::TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                  const TermRequest& request) override {
@@ -53,16 +79,21 @@ class Airlight : public Technique {
       desc.samples.push_back(glsl::r2_sequence(static_cast<uint32_t>(i) + 1));
     const shadow::ShadowMaps maps = inputs.service<shadow::ShadowMapService>().request(lights, desc);
     frame::TextureHandle target = request.target;
+    // Of the loops in medium_length(): its points, and the axes of the grid's box.
+    const int way = inputs.handles.density ? 2 * p.integer("medium_steps") + 3 : 0;
     for (const shadow::AlikeLights& alike :
          shadow::alikeLights(inputs.service<shadow::ShadowMapService>().layouts(maps)))
-      target = addPass(graph, inputs, maps, alike, target);
+      for (const Part& part :
+           partsOf(inputs.gpuScene.device().software(), static_cast<int>(alike.layers.size()) * samples,
+                   p.integer("steps"), way))
+        target = addPass(graph, inputs, maps, alike, part, target);
     return target;
   }
 
-  /// Adds the light of lights that are alike to `target`, and returns it after that.
+  /// Adds a part of the light of lights that are alike to `target`, and returns it after that.
   static frame::TextureHandle addPass(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                       const shadow::ShadowMaps& maps, const shadow::AlikeLights& lights,
-                                      frame::TextureHandle target) {
+                                      const Part& part, frame::TextureHandle target) {
     const ParameterValues& p = inputs.parameters;
     frame::PassBuilder pass = graph.addPass("airlight", info.name);
     pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera, medium")
@@ -80,12 +111,15 @@ class Airlight : public Technique {
     textures.define(source.defines);
     textures.declare(pass);
     const auto program = pass.program(std::move(source));
-    pass.execute([program, lights, samples = p.integer("light_samples"), size = inputs.size,
+    pass.execute([program, lights, part, samples = p.integer("light_samples"), size = inputs.size,
                   steps = p.integer("steps")](frame::PassContext& context) {
       gpu::Program& kernel = context.use(program);
-      kernel.set("light_count", static_cast<int>(lights.layers.size()));
       kernel.set("light_samples", samples);
       kernel.set("steps", steps);
+      kernel.set("first_map", part.firstMap);
+      kernel.set("end_map", part.endMap);
+      kernel.set("first_stretch", part.firstStretch);
+      kernel.set("end_stretch", part.endStretch);
       lights.bind(kernel);
       context.dispatch(size.x, size.y, 1, 8, 8);
     });

@@ -92,10 +92,13 @@ Bodies findBodies(const scene::Scene& scene, const scene::Pose& pose, const Draw
   result.ofInstances.assign(pose.instances.size(), glsl::no_body);
   for (size_t i = 0; i < pose.instances.size(); ++i) {
     const scene::DrawInstance& instance = pose.instances[i];
-    if (instance.node == scene::kNone) continue;
+    const auto mesh = static_cast<size_t>(instance.mesh);
+    const bool dynamic = instance.node == scene::kNone;
     const scene::Primitive& primitive =
-        scene.meshes[static_cast<size_t>(instance.mesh)].primitives[static_cast<size_t>(instance.primitive)];
-    const scene::Material& material = scene.materials[static_cast<size_t>(primitive.material)];
+        dynamic ? *pose.dynamic[mesh].primitive
+                : scene.meshes[mesh].primitives[static_cast<size_t>(instance.primitive)];
+    const int index = dynamic ? scene.dynamic[mesh].material : primitive.material;
+    const scene::Material& material = scene.materials[static_cast<size_t>(index)];
     if (!material.subsurface) continue;
     const DiffusionBody body = makeBody(scene, material, isTextured(material, primitive), drawing);
     const auto known =

@@ -18,7 +18,9 @@ void main() {
   if (any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
   uint instance = texelFetch(planes, pixel, 0).w;
   if (instance == no_instance) return;
-  DiffusionBody body = bodies[bodies_of_instances[instance]];
+  uint body_index = bodies_of_instances[instance];
+  if (body_index == no_body) return;
+  DiffusionBody body = bodies[body_index];
   DiffusionBoundary boundary = diffusion_boundary(body.eta, body.entering);
   vec3 absorption = pixel_absorption(body, boundary, pixel);
   Colours colours = matter_colours(body.extinction, absorption, boundary);

@@ -116,6 +116,19 @@ TEST_F(InhomogeneousMediaTest, MoreStepsComeNearerToTheTruth) {
   EXPECT_LT(last, 0.02);
 }
 
+/// Stretches of a ray with ways through a grid at their nodes, of which one pass holds a part in software.
+TEST_F(InhomogeneousMediaTest, AirlightOfManyStretchesAndStepsIsAllThere) {
+  const scene::Scene scene = asset("smoke");
+  render::Renderer renderer(device(), scene);
+  const auto scattered = [&](const char* steps, const char* mediumSteps) {
+    return picture(renderer,
+                   settings(16, 12, Term::media,
+                            {technique("airlight", {{"steps", steps}, {"medium_steps", mediumSteps}})}));
+  };
+  const Image few = scattered("128", "64"), many = scattered("1024", "256");
+  EXPECT_LT(rmseOf(many, few) / mean(few), 0.02);
+}
+
 TEST_F(InhomogeneousMediaTest, SmokeIsMadeAnewWhenTimeGoesOnAndNotElse) {
   const scene::Scene scene = asset("smoke");
   render::Renderer renderer(device(), scene);

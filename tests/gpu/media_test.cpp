@@ -129,6 +129,28 @@ TEST_F(MediaTest, AirlightNeedsFewStretches) {
   }
 }
 
+/// Eight lamps shine as one of eight times the light does, however many steps the loops over them take: of a
+/// thread, llvmpipe leaves all loops after 65,535.
+TEST_F(MediaTest, AirlightOfManyPointsAndStretchesIsAllThere) {
+  scene::Scene one = asset("glass_sphere");
+  const auto lamp =
+      std::ranges::find_if(one.nodes, [](const scene::Node& node) { return node.light != scene::kNone; });
+  ASSERT_NE(lamp, one.nodes.end());
+  lamp->limnArea = {0.2f, 0.2f};
+  scene::Scene eight = one;
+  for (int i = 1; i < 8; ++i) eight.nodes.push_back(*lamp);
+  for (scene::LightSource& light : one.lights) light.intensity *= 8;
+  const auto brightness = [&](const scene::Scene& scene) {
+    render::Renderer renderer(device(), scene);
+    return mean(picture(
+        renderer,
+        settings(12, 9, Term::media,
+                 {technique("airlight",
+                            {{"steps", "1024"}, {"light_samples", "16"}, {"shadow_map_size", "64"}})})));
+  };
+  EXPECT_NEAR(brightness(eight) / brightness(one), 1, 1e-4);
+}
+
 /// All of the floor is seen by the light. Where the ring's caustic is thinner than a pixel, photons on the
 /// screen are wider than those in the map: a kernel has at least a pixel, or a texel.
 TEST_F(MediaTest, CausticMapsShowWhatPhotonsOnTheScreenDo) {

@@ -185,6 +185,27 @@ TEST_F(ParaboloidMapsTest, PointsShowTheRoomBetweenHolesThatFillingCloses) {
     }
 }
 
+/// Points lie as densely on what its node stretches, or makes flat, as on the same triangles in the world.
+TEST_F(ParaboloidMapsTest, PointsAreSpreadByAreasInTheWorld) {
+  const auto depths = [&](const vec3& room, float plate, bool stretched) {
+    scene::Scene scene;
+    const int material = addMaterial(scene);
+    addMesh(scene, boxPrimitive(room, material));
+    addMesh(scene, floorPrimitive(plate, material));
+    const glm::mat4 one(1), raised = glm::translate(one, {0, 0.5f, 0});
+    scene::Pose pose;
+    addInstance(scene, pose, 0, stretched ? glm::scale(one, vec3(2, 1.5f, 1)) : one);
+    addInstance(scene, pose, 1, stretched ? glm::scale(raised, vec3(4, 0, 4)) : raised);
+    const Views views = {glsl::paraboloid_view({0.3f, -1.2f, 0.1f}, {0, 1, 0}, 1e-4f, 10, 0, 96)};
+    return splat(scene, pose, views, {.count = 1, .size = 96, .points = 8192, .splat = 16}).depth;
+  };
+  const std::vector<float> expected = depths({2, 1.5f, 1}, 0.5f, false),
+                           found = depths(vec3(1), 0.125f, true);
+  int other = 0;
+  for (size_t i = 0; i < expected.size(); ++i) other += std::abs(found[i] - expected[i]) > 1e-5f ? 1 : 0;
+  EXPECT_LT(other, 10) << "texels, at the rims of splats";
+}
+
 TEST_F(ParaboloidMapsTest, ASphereOfSmallTriangles) {
   scene::Scene scene;
   addMesh(scene, spherePrimitive(1, addMaterial(scene), 96));

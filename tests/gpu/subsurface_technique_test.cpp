@@ -2,6 +2,8 @@
 // goes nowhere, and that neither units nor the strength of lamps matter.
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "core/scene/camera.h"
 #include "glsl/diffusion/normalised.glsl"
@@ -15,6 +17,17 @@ using glm::vec3;
 
 constexpr int kPictureSide = 64;
 constexpr float kTermIor = 1.4f;
+
+/// Triangles of a source, which never change.
+class StillSource : public scene::GeometrySource {
+ public:
+  explicit StillSource(scene::Primitive primitive)
+      : primitive_(std::make_shared<const scene::Primitive>(std::move(primitive))) {}
+  std::shared_ptr<const scene::Primitive> at(double) override { return primitive_; }
+
+ private:
+  std::shared_ptr<const scene::Primitive> primitive_;
+};
 
 class SubsurfaceTechniqueTest : public RenderTest {
  protected:
@@ -138,6 +151,26 @@ TEST_F(SubsurfaceTechniqueTest, ExtremeMatterGivesFiniteLight) {
             expectWithin(drawn(scene, {use}), 0, 100);
           }
       }
+}
+
+/// Geometry of a source, as metaballs are, scatters what the same mesh does, alone and beside a mesh.
+TEST_F(SubsurfaceTechniqueTest, SourcesScatterAsMeshesDo) {
+  for (const bool alone : {true, false}) {
+    scene::Scene mesh = ball(0.1f);
+    if (alone) mesh.nodes[1].mesh = scene::kNone;
+    scene::Scene source = mesh;
+    source.nodes[0].mesh = scene::kNone;
+    source.dynamic.push_back({"ball", std::make_shared<StillSource>(mesh.meshes[0].primitives[0]),
+                              mesh.meshes[0].primitives[0].material});
+    const Image local = drawn(mesh, {});
+    for (const render::TechniqueUse& use : uses()) {
+      SCOPED_TRACE(use.plugin->info->name);
+      const Image expected = drawn(mesh, {use}), found = drawn(source, {use});
+      expectWithin(found, 0, 100);
+      EXPECT_GT(rmse(expected, local), 0.02 * mean(expected)) << "light gets nowhere";
+      EXPECT_LT(rmse(found, expected), 0.01 * mean(expected)) << (alone ? "alone" : "beside a mesh");
+    }
+  }
 }
 
 /// Without translucent surfaces techniques are not asked.

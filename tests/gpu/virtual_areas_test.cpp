@@ -8,6 +8,7 @@
 
 #include "glsl/indirect/gather.glsl"
 #include "glsl/shadow/shadow_view.glsl"
+#include "tests/gpu/bind_by_name.h"
 #include "tests/gpu/gl_test.h"
 #include "tests/support/test_scenes.h"
 
@@ -244,6 +245,31 @@ TEST_F(VirtualAreasTest, SortedByClusterWithinEachSubBuffer) {
       EXPECT_TRUE(index >= first && index < end) << "lights stay in their sub-buffer";
     }
   }
+}
+
+/// The first lights of as many as there may be: only the last one is of a cluster before theirs.
+TEST_F(VirtualAreasTest, SortsAsManyLightsAsThereMayBe) {
+  constexpr uint32_t count = 65536, group = 64;
+  Lights lights(count);
+  for (uint32_t i = 0; i < count; ++i) lights[i].flux.x = static_cast<float>(i);
+  std::vector<uint32_t> mapping(count, 1);
+  mapping.back() = 0;
+  const gpu::Buffer in = gpu::Buffer::of<glsl::VirtualPointLight>(device(), "lights", lights),
+                    clusters = gpu::Buffer::of<uint32_t>(device(), "mapping", mapping),
+                    out = gpu::Buffer::of<glsl::VirtualPointLight>(device(), "sorted", Lights(count));
+  gpu::Program& program =
+      shaders().program({.files = {"glsl/indirect/cluster_sort.comp.glsl"}, .defines = {}});
+  program.use();
+  program.set("light_count", count);
+  program.set("block", 1u);
+  bindByName(gl(), program, "VirtualLights", in);
+  bindByName(gl(), program, "Mapping", clusters);
+  bindByName(gl(), program, "Sorted", out);
+  gl().DispatchCompute(1, 1, 1);
+  gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  Lights sorted(group + 1);
+  out.read(0, sorted.data(), sorted.size() * sizeof(sorted[0]));
+  for (uint32_t i = 0; i < group; ++i) EXPECT_EQ(sorted[i + 1].flux.x, lights[i].flux.x);
 }
 
 /// The scene far from the origin, and moved a little: the clusters follow.

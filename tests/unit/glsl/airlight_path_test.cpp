@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 #include <string>
 
@@ -62,9 +64,7 @@ class AirlightPathTest : public ::testing::TestWithParam<uint32_t> {
   }
 
   Case someCase(float g) {
-    Case c;
-    c.medium = {vec3(0.1f, 0.2f, 0.3f), vec3(0.1f, 0.1f, 0.2f), g, {somewhere(1), 4}};
-    c.light = someLight();
+    Case c = begun(g);
     const vec3 source = GetParam() == light_kind_rectangle
                             ? c.light.position + uniform(-0.5f, 0.5f) * c.light.length_u * c.light.axis_u
                             : c.light.position;
@@ -75,8 +75,24 @@ class AirlightPathTest : public ::testing::TestWithParam<uint32_t> {
       c.range = ball_range(c.medium.ball, eye, way);
       c.range.x = max(c.range.x, 0.f);
     } while (!(c.range.x + 0.1f < c.range.y));
-    c.ray = airlight_ray(c.medium, c.light, source, airlight_part(c.light, kSamples), eye, way);
-    c.path = airlight_path(c.medium, c.light, GetParam(), c.ray, kSamples);
+    finish(c, source, eye, way);
+    return c;
+  }
+
+  /// A case whose lamp or, if `camera`, whose eye is `distance` metres away; the lamp shines everywhere.
+  Case farCase(float distance, bool camera) {
+    Case c = begun(0);
+    c.light.flags &= ~light_flag_cone;
+    c.light.range = 0;
+    if (!camera) c.light.position = distance * direction();
+    vec3 eye, way;
+    do {
+      eye = camera ? distance * direction() : somewhere(8);
+      way = normalize(c.medium.ball.centre + somewhere(4) - eye);
+      c.range = ball_range(c.medium.ball, eye, way);
+      c.range.x = max(c.range.x, 0.f);
+    } while (!(c.range.x + 0.1f < c.range.y));
+    finish(c, c.light.position, eye, way);
     return c;
   }
 
@@ -87,7 +103,39 @@ class AirlightPathTest : public ::testing::TestWithParam<uint32_t> {
                           medium_transmittance(c.medium, airlight_path_length(c.path, GetParam(), q)));
   }
 
+  /// Returns metres of the ball between `from` and `end` metres along the unit vector `way`.
+  static double inBall(const Ball& ball, const glm::dvec3& from, const glm::dvec3& way, double end) {
+    const glm::dvec3 offset = from - glm::dvec3(ball.centre);
+    const double nearest = -glm::dot(offset, way), radius{ball.radius};
+    const glm::dvec3 across = offset + nearest * way;
+    const double square = radius * radius - glm::dot(across, across);
+    if (square <= 0) return 0;
+    const double half = std::sqrt(square);
+    return std::max(std::min(nearest + half, end) - std::max(nearest - half, 0.0), 0.0);
+  }
+  /// Returns those between light, the place `t` metres from the eye, and eye.
+  static double trueLength(const Case& c, float t) {
+    const glm::dvec3 eye(c.ray.eye), way = glm::normalize(glm::dvec3(c.ray.direction)),
+                                     place = eye + double{t} * way;
+    const glm::dvec3 offset = place - glm::dvec3(c.ray.source);
+    const bool parallel = airlight_parallel(GetParam());
+    const glm::dvec3 from = glm::normalize(parallel ? glm::dvec3(c.light.direction) : offset);
+    return inBall(c.medium.ball, eye, way, double{t}) +
+           inBall(c.medium.ball, place, -from, parallel ? 1e30 : glm::length(offset));
+  }
+
  private:
+  Case begun(float g) {
+    Case c;
+    c.medium = {vec3(0.1f, 0.2f, 0.3f), vec3(0.1f, 0.1f, 0.2f), g, {somewhere(1), 4}};
+    c.light = someLight();
+    return c;
+  }
+  static void finish(Case& c, const vec3& source, const vec3& eye, const vec3& way) {
+    c.ray = airlight_ray(c.medium, c.light, source, airlight_part(c.light, kSamples), eye, way);
+    c.path = airlight_path(c.medium, c.light, GetParam(), c.ray, kSamples);
+  }
+
   std::mt19937 random_{23};
 };
 
@@ -142,6 +190,29 @@ TEST_P(AirlightPathTest, StretchesAreIntegratedAsTheyAre) {
       // Rounding of the angle, 2e-7, over that of the shortest part, and on the ramp of the cone.
       EXPECT_NEAR(found.y, expected.y, 1e-3f * expected.y + 2e-5f * nodes.weight * c.path.sent.y)
           << i << " " << shares.x << " " << shares.y;
+    }
+  }
+}
+
+/// Each of the roundings of places and directions, some eight of half an ulp, moves the place by 2^-24 of
+/// the distance at most, and their sum by `moved`. Where a way grazes the ball of radius 4, the root of the
+/// square of half its length grows by sqrt(4 * 4 moved) of it, and there are two ways.
+TEST_P(AirlightPathTest, LampsAndCamerasFarAwayKeepTheLength) {
+  for (const float distance : {4e3f, 4e4f}) {
+    for (const bool camera : {true, false}) {
+      const double moved = double{distance} * 0x1p-21;
+      double sum = 0, most = 0;
+      constexpr int kCases = 2000;
+      for (int i = 0; i < kCases; ++i) {
+        const Case c = farCase(distance, camera);
+        const float t = mix(c.range.x, c.range.y, uniform(0.001f, 0.999f));
+        const auto found = static_cast<double>(airlight_path_length(c.path, GetParam(), t - c.path.nearest));
+        const double error = std::abs(found - trueLength(c, t));
+        sum += error;
+        most = std::max(most, error);
+      }
+      EXPECT_LT(sum / kCases, 4 * moved) << distance << (camera ? " camera" : " lamp");
+      EXPECT_LT(most, 2 * (moved + std::sqrt(16 * moved))) << distance << (camera ? " camera" : " lamp");
     }
   }
 }
