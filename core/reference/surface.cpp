@@ -82,7 +82,7 @@ void fillMaterial(const RayScene& rays, const TextureLookup& lookup, const glm::
   values.roughness = glm::clamp(material.roughness * metalRough.g, 0.f, 1.f);
   values.specular_factor = glm::clamp(material.specularFactor, 0.f, 1.f);
   values.specular_colour = glm::clamp(material.specularColour, 0.f, 1.f);
-  values.ior = glm::clamp(material.ior, 1.f, 3.f);
+  values.ior = glm::clamp(material.ior, 1.f, 1000.f);
   values.emission = material.emission * glm::vec3(lookup(material.emissiveTexture));
   if (material.unlit) values.emission *= glm::vec3(surface.vertexColour);
   values.flags = material.specularSurface() ? glsl::gbuffer_flag_specular

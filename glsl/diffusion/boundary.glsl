@@ -24,7 +24,7 @@ LIMN_FN DiffusionBoundary diffusion_boundary(float eta, float entering) {
 // Exact up to rounding and to the 1e-5 of dielectric_mean_reflectance. The polynomial in eta that is often taken for F_dr makes
 // diffusion_mismatch 0.3 % too large at eta = 1 and 26 % at 3.
 LIMN_FN DiffusionBoundary diffusion_boundary(float eta) {
-  float index = max(eta, 1.0f);
+  float index = clamp(eta, 1.0f, 3.0f);  // no body that light enters has more
   return diffusion_boundary(index, 1.0f - dielectric_mean_reflectance(index));
 }
 

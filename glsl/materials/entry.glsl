@@ -6,14 +6,15 @@
 #include "glsl/materials/material_model.glsl"
 LIMN_BEGIN
 
-// ior: of the body, 1 or more. kd is the share of diffuse light that enters, 1 - F_de.
+// ior: of the body, held in [1, 3] as in diffusion_boundary(). kd is the share of diffuse light that enters, 1 - F_de.
 LIMN_FN MaterialModel entry_model(float ior) {
   MaterialModel m;
-  m.eta = vec3(ior);
+  float eta = clamp(ior, 1.0f, 3.0f);
+  m.eta = vec3(eta);
   m.kind = model_entry;
   m.k = vec3(0.0f);
   m.exponent = 0.0f;
-  m.kd = vec3(1.0f - dielectric_mean_reflectance(ior));
+  m.kd = vec3(1.0f - dielectric_mean_reflectance(eta));
   m.options = 0u;
   m.ks = vec3(0.0f);
   m.material = 0u;

@@ -5,7 +5,7 @@
 //   normal            RG16_SNORM  shading normal, octahedral
 //   geometric normal  RG16_SNORM  normal of the triangle, facing the camera, octahedral
 //   albedo            RGBA16      rgb: square root of the base colour; a: metallic
-//   material          RGBA8       r: perceptual roughness; g: specularFactor; b: (ior - 1) / 2; a: flags / 255
+//   material          RGBA8       r: perceptual roughness; g: specularFactor; b: ior, gbuffer_ior_encode(); a: flags / 255
 //   emission          RGBA16F     rgb: emitted radiance; a: specularColour, 31 levels per channel as bits
 //   instance id       R32UI       index of the draw instance; 0xffffffff: none
 //   tangent           R16         turn of the tangent about the normal as read back (frame_turned()), 1e-4 radians a
@@ -17,8 +17,8 @@
 //
 // Quantisation (half a step): base colour sqrt(base colour) / 65536, which is 0.02 % of 0.005 and 0.002 % of 0.5 (8 bits
 // would be wrong by up to 3.6 and 0.6 %, the same for every pixel of a wall: a bias); metallic 8e-6; roughness and
-// specularFactor 0.002; ior 0.004; specularColour 0.017; emission 2^-11 relative, up to 65504. Normals: 6.5e-5 radians, reached at the
-// centres of the octahedron's faces, where the map stretches by 3 along one diagonal.
+// specularFactor 0.002; ior 0.005 up to 3, of which two decimals are exact; specularColour 0.017; emission 2^-11 relative, up to 65504.
+// Normals: 6.5e-5 radians, reached at the centres of the octahedron's faces, where the map stretches by 3 along one diagonal.
 #ifndef LIMN_GBUFFER_GLSL
 #define LIMN_GBUFFER_GLSL
 #include "glsl/numeric/language.glsl"
@@ -37,7 +37,7 @@ struct GBufferSurface {
   float roughness;        // perceptual, [0, 1]
   float specular_factor;  // KHR_materials_specular specularFactor, [0, 1]
   vec3 specular_colour;   // KHR_materials_specular specularColorFactor, clamped to [0, 1]
-  float ior;              // clamped to [1, 3]
+  float ior;              // clamped to [1, 999]: metals of other material systems, which reflect all of specular_colour
   vec3 emission;          // radiance, W/(sr m^2)
   uint flags;             // gbuffer_flag_*
 };
@@ -112,8 +112,20 @@ LIMN_FN GBufferPlace gbuffer_place_unpack(vec3 stored) {
   return p;
 }
 
+// Steps of 0.01 up to 3, then even steps of (ior - 1) / (ior + 1), whose square is the reflectance, up to 0.998. In [0, 1].
+LIMN_FN float gbuffer_ior_encode(float ior) {
+  float ratio = 1.0f - 2.0f / (max(ior, 1.0f) + 1.0f);
+  float code = ior < 3.0f ? 100.0f * max(ior - 1.0f, 0.0f) : 200.0f + 55.0f / 0.498f * (min(ratio, 0.998f) - 0.5f);
+  return code / 255.0f;
+}
+LIMN_FN float gbuffer_ior_decode(float stored) {
+  float code = 255.0f * stored;
+  float ratio = 0.5f + 0.498f / 55.0f * (code - 200.0f);
+  return code < 200.5f ? 1.0f + 0.01f * code : (1.0f + ratio) / (1.0f - ratio);
+}
+
 // Two of the constants that the material's texture holds.
-LIMN_FN float gbuffer_stored_ior(vec4 material) { return 1.0f + 2.0f * material.z; }
+LIMN_FN float gbuffer_stored_ior(vec4 material) { return gbuffer_ior_decode(material.z); }
 LIMN_FN uint gbuffer_stored_flags(vec4 material) { return uint(material.w * 255.0f + 0.5f); }
 
 LIMN_FN GBufferTexels gbuffer_pack(GBufferSurface s) {
@@ -121,8 +133,7 @@ LIMN_FN GBufferTexels gbuffer_pack(GBufferSurface s) {
   t.normal = octahedral_encode(s.normal);
   t.geometric_normal = octahedral_encode(s.geometric_normal);
   t.albedo = vec4(gbuffer_colour_encode(s.base_colour), s.metallic);
-  float ior = clamp(0.5f * (s.ior - 1.0f), 0.0f, 1.0f);
-  t.material = vec4(s.roughness, s.specular_factor, ior, float(s.flags) / 255.0f);
+  t.material = vec4(s.roughness, s.specular_factor, gbuffer_ior_encode(s.ior), float(s.flags) / 255.0f);
   t.emission = vec4(min(s.emission, vec3(65504.0f)), colour_to_half_bits(s.specular_colour));
   return t;
 }

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
+
+#include "glsl/surface/brdf.glsl"
 
 namespace limn::glsl {
 namespace {
@@ -83,9 +86,28 @@ TEST(GBuffer, SurfaceSurvivesTheTexturesWithinHalfAStep) {
     ASSERT_NEAR(r.metallic, s.metallic, 0.51f / 65535);
     ASSERT_NEAR(r.roughness, s.roughness, 0.501f / 255);
     ASSERT_NEAR(r.specular_factor, s.specular_factor, 0.501f / 255);
-    ASSERT_NEAR(r.ior, s.ior, 2 * 0.501f / 255);
+    ASSERT_NEAR(r.ior, s.ior, 0.00501f);
     ASSERT_EQ(r.flags, s.flags);
   }
+}
+
+/// Those of glass, water and skin are exact; materials that were converted from a specular colour reflect all
+/// of it.
+TEST(GBuffer, IndicesOfRefractionReachThoseOfMetals) {
+  const auto stored = [](float ior) {
+    GBufferSurface s{};
+    s.normal = s.geometric_normal = {0, 0, 1};
+    s.ior = ior;
+    GBufferTexels t = gbuffer_pack(s);
+    t.material = asUnorm8(t.material);
+    return gbuffer_unpack(t).ior;
+  };
+  for (const float ior : {1.f, 1.33f, 1.4f, 1.5f, 2.42f, 3.f}) EXPECT_NEAR(stored(ior), ior, 1e-6f);
+  for (const float ior : {3.01f, 5.f, 20.f, 100.f}) {
+    const auto reflectance = [](float n) { return std::pow((n - 1) / (n + 1), 2.f); };
+    EXPECT_NEAR(reflectance(stored(ior)), reflectance(ior), 0.0091f) << ior;
+  }
+  EXPECT_GT(surface_brdf(vec3(0.5f), 0, 0.5f, 1, vec3(1), stored(1000)).f0.x, 0.99f);
 }
 
 TEST(GBuffer, SpecularColourIsExactAtBothEnds) {
