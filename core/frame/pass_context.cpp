@@ -141,4 +141,11 @@ void PassContext::dispatch(int width, int height, int depth, int groupX, int gro
   gl().DispatchCompute(counts[0], counts[1], counts[2]);
 }
 
+void PassContext::dispatchRows(int64_t groups) const {
+  constexpr int64_t kLongest = 32768;
+  const int64_t length = std::min(groups, kLongest);
+  if (length > 0)
+    dispatch(static_cast<int>(length), static_cast<int>((groups + length - 1) / length), 1, 1, 1);
+}
+
 }  // namespace limn::frame

@@ -158,7 +158,7 @@ frame::BufferHandle GpuDeform::addPass(frame::FrameGraph& graph, const GpuGeomet
     gpu::Program& deform = context.use(program);
     for (size_t job = 0; job < jobs_.size(); ++job) {
       deform.set("job_index", static_cast<unsigned>(job));
-      context.dispatch(static_cast<int>(jobs_[job].vertices), 1, 1, kVerticesPerGroup, 1);
+      context.dispatchRows((int64_t{jobs_[job].vertices} + kVerticesPerGroup - 1) / kVerticesPerGroup);
     }
   });
   return deformed;

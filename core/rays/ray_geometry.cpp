@@ -64,12 +64,6 @@ bool same(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
-/// Dispatches groups of 64 in rows, of which there may be more than one dispatch has along an axis.
-void dispatchItems(const frame::PassContext& context, uint32_t items) {
-  const uint32_t groups = (items + 63) / 64, width = std::min(groups, 32768u);
-  context.dispatch(static_cast<int>(width), static_cast<int>((groups + width - 1) / width), 1, 1, 1);
-}
-
 }  // namespace
 
 void RayGeometry::declare(frame::PassBuilder& pass) const {
@@ -377,7 +371,7 @@ void RayGeometryService::addRefits(const FrameContext& building) {
     gpu::Program& kernel = context.use(fetcher);
     kernel.set("first_triangle", first);
     kernel.set("triangles", count);
-    dispatchItems(context, count);
+    context.dispatchRows((count + 63) / 64);
   });
   uint32_t firstNode = 0;
   for (const uint32_t count : refitCounts_) {
@@ -394,7 +388,7 @@ void RayGeometryService::addRefits(const FrameContext& building) {
       gpu::Program& kernel = context.use(refitter);
       kernel.set("first_node", firstNode);
       kernel.set("node_count", count);
-      dispatchItems(context, count);
+      context.dispatchRows((count + 63) / 64);
     });
     firstNode += count;
   }

@@ -1,6 +1,7 @@
 // Morphs, then skins, the vertices of one primitive instance: from their range at rest into their own range.
 #include "glsl/geometry/deform.glsl"
 #include "glsl/geometry/vertex.glsl"
+#include "glsl/numeric/work_items.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -27,7 +28,7 @@ vec3 delta(uint at) { return vec3(deltas[at], deltas[at + 1u], deltas[at + 2u]);
 
 void main() {
   Job job = jobs[job_index];
-  uint vertex = gl_GlobalInvocationID.x;
+  uint vertex = work_item_index();
   if (vertex >= job.vertices) return;
   uint source = job.first_rest + vertex;
   vec3 position = vec3(positions[3u * source], positions[3u * source + 1u], positions[3u * source + 2u]);

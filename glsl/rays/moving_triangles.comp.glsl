@@ -1,4 +1,5 @@
 // Fetches the vertices of triangles that are skinned or morphed, in the order of the hierarchy's leaves.
+#include "glsl/numeric/work_items.glsl"
 #include "glsl/rays/ray_node.glsl"
 #include "glsl/scene/blocks.glsl"
 
@@ -13,7 +14,7 @@ uniform uint first_triangle;
 uniform uint triangles;
 
 void main() {
-  uint i = gl_GlobalInvocationID.x + gl_NumWorkGroups.x * gl_WorkGroupSize.x * gl_GlobalInvocationID.y;
+  uint i = work_item_index();
   if (i >= triangles) return;
   RayCorners c = corners[i];
   for (uint k = 0u; k < 3u; ++k) {

@@ -1,4 +1,5 @@
 // Boxes of one level of hierarchies whose triangles have moved, from the triangles and from the nodes below.
+#include "glsl/numeric/work_items.glsl"
 #include "glsl/rays/ray_node.glsl"
 
 layout(local_size_x = 64) in;
@@ -23,7 +24,7 @@ RayBox box_below(uint child) {
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x + gl_NumWorkGroups.x * gl_WorkGroupSize.x * gl_GlobalInvocationID.y;
+  uint i = work_item_index();
   if (i >= node_count) return;
   uint number = refit_nodes[first_node + i];
   uvec4 children = ray_nodes[number].child;

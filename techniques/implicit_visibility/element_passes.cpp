@@ -134,7 +134,7 @@ void ElementPasses::addGpuLinks(frame::FrameGraph& graph, LinkChunk& chunk) cons
   frame::BufferHandle lengths = graph.createBuffer("lengths of links", {chunk.count * rowBytes(settings_)});
   const bool footprint = settings_.links.fill != radiosity::Fill::centre,
              triangles = settings_.links.fill == radiosity::Fill::triangles;
-  const auto addStep = [&](const char* name, const char* file, Access access, glm::ivec2 size,
+  const auto addStep = [&](const char* name, const char* file, Access access, int64_t groupCount,
                            glm::uvec2 someRoots) {
     frame::PassBuilder pass = graph.addPass(name, settings_.technique);
     pass.read(groups, Access::storageLoad, "elements").cacheable();
@@ -147,32 +147,33 @@ void ElementPasses::addGpuLinks(frame::FrameGraph& graph, LinkChunk& chunk) cons
     lengths = pass.write(lengths, access, "Distances", "how far it is");
     const auto kernelHandle =
         program(pass, file, {{"FILL", fmt::format("{}", static_cast<int>(settings_.links.fill))}});
-    pass.execute([this, kernelHandle, own = chunk, someRoots, size, triangles](frame::PassContext& context) {
-      gpu::Program& kernel = context.use(kernelHandle);
-      kernel.set("leaf_count", own.count);
-      if (someRoots.y > 0) {
-        kernel.set("first_leaf", own.first);
-        kernel.set("first_root", someRoots.x);
-        kernel.set("root_count", someRoots.y);
-        kernel.set("opening", settings_.links.opening);
-        if (triangles) {
-          kernel.set("unit", elements_.space().radius());
-          setSpace(kernel);
-        }
-      }
-      context.dispatch(size.x, size.y, 1, 1, 1);
-    });
+    pass.execute(
+        [this, kernelHandle, own = chunk, someRoots, groupCount, triangles](frame::PassContext& context) {
+          gpu::Program& kernel = context.use(kernelHandle);
+          kernel.set("leaf_count", own.count);
+          if (someRoots.y > 0) {
+            kernel.set("first_leaf", own.first);
+            kernel.set("first_root", someRoots.x);
+            kernel.set("root_count", someRoots.y);
+            kernel.set("opening", settings_.links.opening);
+            if (triangles) {
+              kernel.set("unit", elements_.space().radius());
+              setSpace(kernel);
+            }
+          }
+          context.dispatchRows(groupCount);
+        });
   };
-  const int leafCount = static_cast<int>(chunk.count);
-  addStep("clear links", "clear_links.comp.glsl", Access::storageStore, workGroups(leafCount), {0, 0});
+  const auto leafCount = static_cast<int64_t>(chunk.count);
+  addStep("clear links", "clear_links.comp.glsl", Access::storageStore, leafCount, {0, 0});
   const auto rootCount = static_cast<uint32_t>(elements_.forest().roots().size());
   const uint32_t batch = software_ ? 16 : std::max(rootCount, 1u);
   for (uint32_t first = 0; first < rootCount; first += batch)
-    addStep("links", "links.comp.glsl", Access::storageLoadStore, {(leafCount + 63) / 64, 1},
+    addStep("links", "links.comp.glsl", Access::storageLoadStore, (leafCount + 63) / 64,
             {first, std::min(batch, rootCount - first)});
   if (footprint)
-    addStep("close links", "close_links.comp.glsl", Access::storageLoadStore,
-            workGroups((6 * leafCount + 63) / 64), {0, 0});
+    addStep("close links", "close_links.comp.glsl", Access::storageLoadStore, (6 * leafCount + 63) / 64,
+            {0, 0});
 }
 
 frame::ProgramHandle ElementPasses::program(frame::PassBuilder& pass, const char* file,

@@ -60,13 +60,6 @@ class ElementPasses {
 
   bool fits(const scene::Pose& pose) const { return elements_.fits(pose); }
   const radiosity::SceneElements& elements() const { return elements_; }
-  /// Returns `count` work groups in rows that every device accepts, numbered by work_group_index() in
-  /// elements.glsl.
-  static glm::ivec2 workGroups(int64_t count) {
-    constexpr int64_t most = 32768;  // in a row
-    return {std::min(count, most), (count + most - 1) / most};
-  }
-
   uint32_t slots() const { return elements_.forest().slots(); }
   uint32_t leafSlots() const { return elements_.forest().leafSlots(); }
   /// Returns the number of radiance values that each element sends.

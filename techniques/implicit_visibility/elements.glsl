@@ -2,6 +2,7 @@
 // send: GLOSSY 0: the same in all directions; else: into the 6 x GLOSSY x GLOSSY bins of directions.
 #ifndef LIMN_IMPLICIT_VISIBILITY_ELEMENTS_GLSL
 #define LIMN_IMPLICIT_VISIBILITY_ELEMENTS_GLSL
+#include "glsl/numeric/work_items.glsl"
 #include "glsl/surface/brdf.glsl"
 #include "glsl/indirect/direction_bins.glsl"
 #include "glsl/indirect/surface_leaf.glsl"
@@ -32,10 +33,6 @@ uniform vec4 bins_z;
 
 vec3 to_bins(vec3 world) { return vec3(dot(bins_x.xyz, world), dot(bins_y.xyz, world), dot(bins_z.xyz, world)); }
 vec3 from_bins(vec3 d) { return d.x * bins_x.xyz + d.y * bins_y.xyz + d.z * bins_z.xyz; }
-
-// Numbers of a work group and of a work item, 64 in a group, where ElementPasses::workGroups puts them in rows.
-uint work_group_index() { return gl_WorkGroupID.y * 32768u + gl_WorkGroupID.x; }
-uint work_item_index() { return 64u * work_group_index() + gl_LocalInvocationIndex; }
 
 // Where the radiance is that an element sends towards a direction (in the space of the bins).
 uint sent_index(uint element, vec3 direction) {

@@ -40,8 +40,7 @@ BufferHandle LightPasses::sent(const PassRequest& r, const char* name) const {
   return perSlot(r, name, elements_.sentCount());
 }
 void LightPasses::dispatchSent(const frame::PassContext& context, uint32_t slots) const {
-  const glm::ivec2 groups = ElementPasses::workGroups((int64_t{slots} * elements_.sentCount() + 63) / 64);
-  context.dispatch(groups.x, groups.y, 1, 1, 1);
+  context.dispatchRows((int64_t{slots} * elements_.sentCount() + 63) / 64);
 }
 
 const LightPasses::Seen& LightPasses::seen(const PassRequest& r, std::span<const uint32_t> lights) {
@@ -209,8 +208,7 @@ void LightPasses::gatherChunks(frame::PassContext& context, frame::ProgramHandle
   elements_.setSpace(kernel);
   for (const LinkChunk& chunk : elements_.chunks) {
     ElementPasses::bind(context, kernel, links, chunk);
-    const glm::ivec2 groups = ElementPasses::workGroups(chunk.count);
-    context.dispatch(groups.x, groups.y, 1, 1, 1);
+    context.dispatchRows(chunk.count);
   }
 }
 

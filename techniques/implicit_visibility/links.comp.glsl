@@ -108,7 +108,7 @@ void keep(uint bin, float distance2, uint link) {
 }
 
 void main() {
-  uint row = gl_GlobalInvocationID.x;
+  uint row = work_item_index();
   if (row >= leaf_count) return;
   ElementGroup own = groups[(first_leaf + row) / 4u];
   uint self = (first_leaf + row) % 4u;
