@@ -71,6 +71,7 @@ int runExplainCost(const ExplainCostArguments& options) {
     results = bench::measureSavings(renderer, view.camera, settings, options.spp > 0 ? &reference : nullptr,
                                     savings);
   }
+  context->throwErrors();
   const std::string text = fmt::format(
       "{}, {}, {}, {}x{}, {}\n\n{}", std::filesystem::path(options.scene.scene).filename().string(),
       options.technique.techniques.empty() ? "no technique" : options.technique.techniques,

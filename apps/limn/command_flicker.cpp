@@ -79,7 +79,9 @@ class Sequence {
   Frame at(double time) {
     renderer_.setTime(time, view_.animation);
     const scene::CameraPose camera = session::chooseCamera(options_.scene, renderer_.pose(), view_.framing);
-    return {render::supersample(renderer_, camera, view_.size, view_.aa), truth(camera, 0), truth(camera, 1)};
+    Image picture = render::supersample(renderer_, camera, view_.size, view_.aa);
+    context_->throwErrors();
+    return {std::move(picture), truth(camera, 0), truth(camera, 1)};
   }
 
  private:

@@ -88,7 +88,7 @@ int runPasses(const PassesArguments& options) {
   renderer.setTime(view.time, view.animation);
   const FrameRecord frame = recordFrame(renderer, options.contents);
 
-  for (const std::string& error : context->takeErrors()) throw Error("OpenGL: " + error);
+  context->throwErrors();
 
   removeFiles(options.out, earlier);
   writeFolder(

@@ -23,7 +23,8 @@ namespace {
 
 struct ReferenceArguments {
   SceneQuestion scene{.term = name(Term::direct)};
-  int spp = 256, threads = 0;
+  std::optional<int> spp;
+  int threads = 0;
   double noise = 0;
   ToneFlags tone;
   uint64_t seed = 0;
@@ -49,7 +50,7 @@ int parseInterfaces(const std::string& text) {
 reference::Request makeRequest(const ReferenceArguments& options, const session::View& view) {
   reference::Request request =
       session::referenceRequest(view, view.pose, view.camera, parseTerm(options.scene.term));
-  request.spp = options.spp;
+  request.spp = options.spp.value_or(options.noise > 0 ? 1 << 20 : 256);
   request.noise = options.noise;
   request.bounces = options.bounces.value_or(request.bounces);
   if (!options.interfaces.empty()) request.interfaces = parseInterfaces(options.interfaces);
@@ -113,9 +114,10 @@ Action addReferenceCommand(CLI::App& command) {
   auto options = std::make_shared<ReferenceArguments>();
   addSceneFlags(command, options->scene);
   addSceneFlag(command, options->scene, "term", "--term");
-  command.add_option("--spp", options->spp, "Samples per pixel and light; with --noise the maximum")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1 << 22));
+  command
+      .add_option("--spp", options->spp,
+                  "Samples per pixel and light (default 256); with --noise the maximum (default 1048576)")
+      ->check(CLI::Range(1, 1 << 24));
   command
       .add_option(
           "--bounces", options->bounces,
@@ -134,13 +136,14 @@ Action addReferenceCommand(CLI::App& command) {
       .add_option("--noise", options->noise,
                   "Stop when the noise (RMS relative to the mean) falls to this value")
       ->check(CLI::Range(0.0, 1.0));
-  command.add_flag(
+  CLI::Option* atVertices = command.add_flag(
       "--at-vertices", options->atVertices,
       "Irradiance at the vertices of the scene instead of a picture: rows of 1024 of them, with positions\n"
       "P and normals N, as implicit_visibility sees them; far from the origin P + P.rest is the position");
   command
       .add_option("--longest-edge", options->longestEdge,
                   "With --at-vertices: halve triangle edges longer than this, in scene radii")
+      ->needs(atVertices)
       ->capture_default_str()
       ->check(CLI::Range(0.005, 1e3));
   command.add_option("--seed", options->seed, "Seed of the random numbers");
@@ -152,6 +155,8 @@ Action addReferenceCommand(CLI::App& command) {
       .add_option("-o,--out", options->out,
                   "Picture (.exr with all channels, or .png); interrupted work is kept beside it")
       ->required();
+  for (const char* ofPictures : {"--noise", "--aa", "--exposure", "--tonemap", "--cache"})
+    atVertices->excludes(command.get_option(ofPictures));
   return [options] { return runReference(*options); };
 }
 

@@ -245,7 +245,7 @@ int runRender(const RenderArguments& options) {
   if (options.explain) printExplanation(renderer.explain(), stats ? &*stats : nullptr);
   if (!options.stats.empty()) writeText(options.stats, render::toJson(*stats) + "\n");
   if (!options.graph.empty()) writeText(options.graph, renderer.graph().graphviz());
-  for (const std::string& error : context->takeErrors()) throw Error("OpenGL: " + error);
+  context->throwErrors();
   return 0;
 }
 
@@ -257,11 +257,15 @@ Action addRenderCommand(CLI::App& command) {
   addSceneFlag(command, options->scene, "term");
   addTechniqueFlags(command, options->technique);
   options->backend.addTo(command);
-  command.add_option(
-      "--frames", options->frames,
-      "Render frames a:b of the animation, both included, or the first N, to NAME.0000.png and "
-      "so on, or to a movie");
-  command.add_option("--fps", options->fps, "Frames per second of the animation")
+  CLI::Option* frames =
+      command
+          .add_option(
+              "--frames", options->frames,
+              "Render frames a:b of the animation, both included, or the first N, to NAME.0000.png and "
+              "so on, or to a movie; their times take the place of --time")
+          ->excludes(command.get_option("--time"));
+  command.add_option("--fps", options->fps, "With --frames: frames per second of the animation")
+      ->needs(frames)
       ->capture_default_str()
       ->check(CLI::Range(0.001, 1e5));
   options->tone.addTo(command);

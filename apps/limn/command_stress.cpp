@@ -130,7 +130,10 @@ int runStress(const StressArguments& options) {
       const Case& c = cases[i];
       progress.update(double(i) / double(cases.size()),
                       fmt::format("{}: {}", c.technique->info->name, c.stressCase->name));
-      if (!table.holds(c)) table.add(stress.run(*c.technique, *c.stressCase, c.own));
+      if (table.holds(c)) continue;
+      bench::StressResult result = stress.run(*c.technique, *c.stressCase, c.own);
+      context->throwErrors();
+      table.add(std::move(result));
     }
   }
   table.write();  // also where the folder held everything
@@ -142,7 +145,8 @@ int runStress(const StressArguments& options) {
 
 Action addStressCommand(CLI::App& command) {
   auto options = std::make_shared<StressArguments>();
-  command.add_option("--technique", options->techniques, "Techniques, comma-separated; default: all");
+  command.add_option("--technique,--techniques", options->techniques,
+                     "Techniques, comma-separated; default: all");
   command.add_option("--filter", options->filter, "Only cases whose name contains this text");
   command.add_option("-o,--out", options->out,
                      "Folder for stress.md and stress.json; cases that are already in it are skipped");

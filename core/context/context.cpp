@@ -163,6 +163,10 @@ std::vector<std::string> Context::takeErrors() {
   return std::exchange(debugLog_->errors, {});
 }
 
+void Context::throwErrors() {
+  for (const std::string& error : takeErrors()) throw Error("OpenGL: " + error);
+}
+
 ContextScope::ContextScope(Context* context) : previous_(currentContext), context_(context) {
   if (context == nullptr) {
     Context::release();

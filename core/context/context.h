@@ -72,6 +72,8 @@ class LIMN_API Context {
   /// Returns the errors that KHR_debug reported since the last call (type error or severity high), one line
   /// each. Always empty without ContextOptions::debug.
   std::vector<std::string> takeErrors();
+  /// Throws Error with the first of these errors, if there are any.
+  void throwErrors();
 
   /// Returns the window of a GLFW context, otherwise null.
   virtual GLFWwindow* window() const { return nullptr; }

@@ -154,9 +154,11 @@ class EglContext final : public Context {
                                  EGL_NONE};
     context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, attributes);
     if (context_ == EGL_NO_CONTEXT) {
-      fail(fmt::format("EGL makes no OpenGL 4.5 core context on {} ({})",
-                       options.device < 0 ? "the default device" : fmt::format("device {}", options.device),
-                       errorName(eglGetError())));
+      fail(
+          fmt::format("EGL makes no OpenGL 4.5 core context on {} ({}); limn info lists devices, --device "
+                      "chooses one",
+                      options.device < 0 ? "the default device" : fmt::format("device {}", options.device),
+                      errorName(eglGetError())));
     }
   }
 

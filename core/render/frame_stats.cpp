@@ -85,17 +85,16 @@ double ofSorted(const std::vector<double>& samples, double p) {
   return std::lerp(samples[low], samples[high], position - static_cast<double>(low));
 }
 
-/// Samples of each pass by its position in execution order.
+/// Samples of each pass by technique and name: frames may differ in which passes they run.
 struct PassSamples {
-  std::vector<std::vector<double>> ms;
+  std::map<std::pair<std::string, std::string>, std::vector<double>> ms;
   std::vector<double> sums;
 
   void add(const std::vector<frame::PassTime>& times) {
-    ms.resize(std::max(ms.size(), times.size()));
     double sum = 0;
-    for (size_t i = 0; i < times.size(); ++i) {
-      ms[i].push_back(times[i].milliseconds);
-      sum += times[i].milliseconds;
+    for (const frame::PassTime& time : times) {
+      ms[{time.technique, time.name}].push_back(time.milliseconds);
+      sum += time.milliseconds;
     }
     sums.push_back(sum);
   }
@@ -155,23 +154,19 @@ FrameStats measure(Renderer& renderer, int frames, int warmup, const Playback& p
   stats.frameSamplesMs = wall;
 
   PassSamples samples;
-  std::map<std::pair<std::string, std::string>, size_t> position;
   for (int i = 0; i < frames; ++i) {
     show(renderer, playback, i);
     renderer.render(stats.timer);
     renderer.finish();
-    const auto times = renderer.graph().passTimes();
-    if (i == 0)
-      for (size_t p = 0; p < times.size(); ++p) position[{times[p].technique, times[p].name}] = p;
-    samples.add(times);
+    samples.add(renderer.graph().passTimes());
   }
   stats.passSumMs = quartiles(samples.sums).median;
   for (const frame::PassReport& report : renderer.explain()) {
     PassStats pass{report.name, report.technique, report.role,     report.state, report.reason,
                    {},          report.bytes,     report.triangles};
-    const auto found = position.find({report.technique, report.name});
-    if (report.state == frame::PassState::run && found != position.end())
-      pass.ms = quartiles(samples.ms[found->second]);
+    const auto found = samples.ms.find({report.technique, report.name});
+    if (report.state == frame::PassState::run && found != samples.ms.end())
+      pass.ms = quartiles(found->second);
     stats.passes.push_back(std::move(pass));
   }
   stats.memoryBytes = renderer.memoryBytes();

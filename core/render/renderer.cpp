@@ -65,6 +65,10 @@ Renderer::~Renderer() = default;
 
 void Renderer::configure(Settings settings) {
   checkTechniques(settings.techniques, settings.term);
+  constexpr int64_t kMostPixels = (1 << 27) - 1;  // OpenGL reads less than 2 GiB at once, here 16 bytes each
+  if (int64_t{settings.size.x} * settings.size.y > kMostPixels)
+    throw UsageError(fmt::format("a picture of {}x{} pixels is not accepted: at most {} in all can be read",
+                                 settings.size.x, settings.size.y, kMostPixels));
   Implementation& self = *implementation_;
   self.dropGraph();
   self.settings = std::move(settings);
@@ -168,6 +172,7 @@ void Renderer::describeShadowMaps(FrameStats& stats) const {
 
 Renderer::Reload Renderer::reloadShaders() {
   gpu::ShaderLibrary::ReloadResult result = implementation_->shaders.reload();
+  if (result.reloaded > 0 && implementation_->graph) implementation_->graph->invalidate();
   return {result.changed, result.reloaded, std::move(result.errors)};
 }
 

@@ -98,7 +98,8 @@ class LIMN_API Renderer {
   Renderer& operator=(const Renderer&) = delete;
 
   /// Chooses what to render. The graph is built at the next render(), whose frame is the first of a sequence:
-  /// nothing of frames before it counts.
+  /// nothing of frames before it counts. Throws UsageError for techniques that do not go together and for
+  /// pictures of 2^27 pixels or more, which cannot be read.
   void configure(Settings settings);
   void setCamera(const scene::CameraPose& camera);
   void setTime(double seconds, int animation = scene::kNone);

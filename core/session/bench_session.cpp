@@ -171,6 +171,7 @@ std::vector<double> BenchSession::time(const bench::Case& c) {
   Loaded& loaded = load(c);
   configureTimed(loaded, c, settings);
   std::vector<double> samples = render::timeFrames(loaded.renderer, c.frames, c.warmup, playback(loaded, c));
+  context_->throwErrors();
   loaded.renderer.setTime(loaded.view.time, loaded.view.animation);
   return samples;
 }
@@ -196,6 +197,7 @@ std::optional<bench::BoundTime> BenchSession::bound(const bench::Case& c) {
   settings.bound = false;
   configureTimed(loaded, c, settings);
   time.own = timed(found->technique, c.frames, std::max(c.warmup, 1));
+  context_->throwErrors();
   loaded.renderer.setTime(loaded.view.time, loaded.view.animation);
   return time;
 }
@@ -216,6 +218,7 @@ bench::Measurement BenchSession::measure(const bench::Case& c) {
 
   configureTimed(loaded, c, settings);
   render::FrameStats stats = render::measure(loaded.renderer, c.frames, c.warmup, playback(loaded, c));
+  context_->throwErrors();
   loaded.renderer.setTime(loaded.view.time, loaded.view.animation);
   stats.scene = c.scene;
   stats.framesPerPicture = c.aa * c.aa + render::historyOf(settings.techniques) - 1;

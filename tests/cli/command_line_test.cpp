@@ -79,6 +79,32 @@ TEST(CommandLine, BouncesBelongToIndirectAndFinalLight) {
   EXPECT_EQ(with({"--term", "final", "--bounces", "1", "--light", "key"}).status, 0);
 }
 
+/// More than the 256 samples that are taken where no noise is asked for.
+TEST(CommandLine, ReferencesGoOnUntilTheyHaveTheNoiseThatIsAskedFor) {
+  TemporaryFolder folder;
+  const Outcome outcome = limn({"reference", kCornellBox, "--term", "direct", "--size", "16x12", "--noise",
+                                "0.0002", "--out", (folder / "r.exr").string()});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const size_t colon = outcome.out.find(": "), noise = outcome.out.find("noise ");
+  ASSERT_NE(noise, std::string::npos) << outcome.out;
+  EXPECT_GT(std::stoi(outcome.out.substr(colon + 2)), 256);
+  EXPECT_LE(std::stod(outcome.out.substr(noise + 6)), 0.0002);
+}
+
+TEST(CommandLine, OptionsThatWouldDoNothingAreRefused) {
+  TemporaryFolder folder;
+  const auto refused = [&](const char* command, const std::vector<std::string>& options) {
+    std::vector<std::string> all{command, kCornellBox, "--out", (folder / "r.exr").string()};
+    all.insert(all.end(), options.begin(), options.end());
+    expectRefused(limn(all), 2, {options.at(0)});
+  };
+  refused("render", {"--fps", "5"});
+  refused("render", {"--time", "1", "--frames", "0:1"});
+  refused("reference", {"--longest-edge", "0.1"});
+  for (const char* ofPictures : {"--noise", "--aa", "--exposure"})
+    refused("reference", {ofPictures, "1", "--at-vertices"});
+}
+
 TEST(CommandLine, FlickerComparesAnimationsWithTheTruth) {
   const auto flicker = [](const std::string& scene, std::vector<std::string> more) {
     std::vector<std::string> all{"flicker", scene,   "--technique", "reflective_shadow_map",

@@ -161,6 +161,10 @@ TEST(ContextTest, errorsOfTheDriverAreCollectedOnce) {
   EXPECT_THAT(errors[0], HasSubstr("OpenGL (API): "));
   EXPECT_THAT(errors[0], Not(HasSubstr("\n")));
   EXPECT_THAT(context->takeErrors(), IsEmpty());
+  EXPECT_NO_THROW(context->throwErrors());
+  context->gl().Enable(GL_TEXTURE_2D);
+  EXPECT_THROW(context->throwErrors(), Error);
+  EXPECT_NO_THROW(context->throwErrors());
 }
 
 TEST(ContextTest, listsWhatThisMachineOffers) {
