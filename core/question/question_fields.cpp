@@ -101,6 +101,7 @@ constexpr QuestionField kFields[] = {
         "takes N x N frames")
         .changing(view),
     choice("term", "--output-term", &Q::term, kTermNames, "Which part of the light the picture shows")
+        .alsoGivenBy("--term")
         .meaning(kTermDocs)
         .in(kSubject)
         .changing(view)
@@ -205,12 +206,15 @@ constexpr QuestionField kFields[] = {
         .storedAs("combine")
         .later()
         .approximating(),
-    coefficient("sigma_a", "--sigma-a", &Q::sigmaA,
-                "Absorption coefficient of the medium per metre: one number or red,green,blue")
-        .in(kMedium),
     coefficient(
-        "sigma_s", "--sigma-s", &Q::sigmaS,
-        "Scattering coefficient of the medium per metre: one number or red,green,blue; 0: no scattering")
+        "sigma_a", "--sigma-a", &Q::sigmaA,
+        "Absorption coefficient of the medium per metre: one number or red,green,blue.\n"
+        "With /scene behind it per diameter of the scene: 0.5/scene is an optical depth of 0.5 across it")
+        .in(kMedium),
+    coefficient("sigma_s", "--sigma-s", &Q::sigmaS,
+                "Scattering coefficient of the medium per metre, or with /scene per diameter of the scene: "
+                "one number\n"
+                "or red,green,blue; 0: no scattering")
         .in(kMedium),
     optionalReal("g", "--g", &Q::g, {-0.999, 0.999},
                  "Mean cosine of the medium's phase function (Henyey-Greenstein); > 0: forward")

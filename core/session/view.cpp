@@ -41,15 +41,25 @@ glm::dvec3 parseVector(const char* option, const std::string& text,
   return v;
 }
 
-/// One number, or three.
-glm::vec3 parseCoefficient(const char* option, const std::string& text) {
-  const auto number = parseNumber(text);
+/// One number, or three, per metre or, followed by /scene, per `diameter` of the scene in metres (0: nothing
+/// to fill).
+glm::vec3 parseCoefficient(const char* option, const std::string& text, double diameter) {
+  constexpr std::string_view kPerScene = "/scene";
+  const bool perScene = text.ends_with(kPerScene);
+  const std::string numbers = perScene ? text.substr(0, text.size() - kPerScene.size()) : text;
+  const auto number = parseNumber(numbers);
   const bool alone = number && *number <= 1e30;
-  const glm::vec3 v = alone ? glm::vec3(static_cast<float>(*number))
-                            : glm::vec3(parseVector(option, text, "one number or red,green,blue per metre"));
+  glm::dvec3 v = alone ? glm::dvec3(*number)
+                       : parseVector(option, numbers,
+                                     "one number or red,green,blue per metre, or these with /scene behind "
+                                     "them, per diameter of the scene");
   if (v.x < 0 || v.y < 0 || v.z < 0)
     throw UsageError(fmt::format("{} '{}' is not accepted; coefficients must not be negative", option, text));
-  return v;
+  if (perScene) v = diameter > 0 ? v / diameter : glm::dvec3(0);
+  if (std::max({v.x, v.y, v.z}) > 1e30)
+    throw UsageError(
+        fmt::format("{} '{}' is not accepted; the scene is {:.3g} m wide", option, text, diameter));
+  return glm::vec3(v);
 }
 
 std::vector<std::string> cameraNames(const scene::Pose& pose) {
@@ -147,8 +157,8 @@ void warnOfOpaqueMedium(const View& view, const Warn& warn) {
   if (least * diameter > kDepth)
     warn(
         fmt::format("the medium's optical depth is {:.3g} over the {:.3g} m of the scene, so that little "
-                    "or nothing is seen; --sigma-a and --sigma-s are per metre, {:.3g} of both together is a "
-                    "depth of 1",
+                    "or nothing is seen; --sigma-a and --sigma-s are per metre, {:.3g} of both together or "
+                    "1/scene is a depth of 1",
                     least * diameter, diameter, 1 / diameter));
 }
 
@@ -202,6 +212,18 @@ void moveTo(View& view, const SceneQuestion& question, double time) {
   view.camera = chooseCamera(question, view.pose, view.framing);
 }
 
+/// --sigma-a, --sigma-s and --g.
+static void fillMedium(const SceneQuestion& question, scene::Scene& scene) {
+  scene::Medium& medium = scene.medium;
+  if (!question.sigmaA.empty() || !question.sigmaS.empty()) {
+    const scene::Bounds bounds = scene::evaluate(scene, 0).bounds;
+    const double diameter = bounds.empty() ? 0 : 2.0 * bounds.radius();
+    if (!question.sigmaA.empty()) medium.sigmaA = parseCoefficient("--sigma-a", question.sigmaA, diameter);
+    if (!question.sigmaS.empty()) medium.sigmaS = parseCoefficient("--sigma-s", question.sigmaS, diameter);
+  }
+  if (question.g) medium.g = static_cast<float>(*question.g);
+}
+
 /// --grid.
 static void chooseGrid(const std::string& grid, scene::Scene& scene) {
   if (!scene.medium.present())
@@ -233,9 +255,7 @@ View open(const SceneQuestion& question, const Warn& warn) {
   view.scene = scene::load(findScene(question.scene));
   if (question.displaced == "on") view.scene = scene::displaced(std::move(view.scene));
   addEnvironment(question, view.scene);
-  if (!question.sigmaA.empty()) view.scene.medium.sigmaA = parseCoefficient("--sigma-a", question.sigmaA);
-  if (!question.sigmaS.empty()) view.scene.medium.sigmaS = parseCoefficient("--sigma-s", question.sigmaS);
-  if (question.g) view.scene.medium.g = static_cast<float>(*question.g);
+  fillMedium(question, view.scene);
   if (!question.grid.empty()) chooseGrid(question.grid, view.scene);
   if (!question.animation.empty()) {
     std::vector<std::string> names;

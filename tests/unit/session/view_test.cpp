@@ -181,6 +181,23 @@ TEST(Medium, IsWarnedOfWhereItHidesTheScene) {
   EXPECT_EQ(said(40).find("optical depth"), std::string::npos);
 }
 
+TEST(Medium, CoefficientsPerSceneAreOpticalDepths) {
+  SceneQuestion question;
+  question.scene = "balls";
+  const double diameter = 2 * open(question).pose.bounds.radius();
+  question.sigmaS = "0.5/scene";
+  question.sigmaA = "1,2,0/scene";
+  const scene::Medium medium = open(question).scene.medium;
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(medium.sigmaS[i] * diameter, 0.5, 1e-6);
+  EXPECT_NEAR(medium.sigmaA.x * diameter, 1, 1e-6);
+  EXPECT_NEAR(medium.sigmaA.y * diameter, 2, 1e-6);
+  EXPECT_EQ(medium.sigmaA.z, 0);
+  for (const char* wrong : {"/scene", "1 /scene ", "-1/scene", "1/2/scene", "1,2/scene", "nan/scene"}) {
+    question.sigmaS = wrong;
+    EXPECT_THROW(open(question), UsageError) << wrong;
+  }
+}
+
 TEST(DefaultLights, LeaveScenesAsTheyAreLitUnlessAskedFor) {
   SceneQuestion gem;
   gem.scene = "gem";
