@@ -57,10 +57,10 @@ std::string functionOf(std::string program) {
 
 /// Completes the words behind a command that hands them to a program of its own, as that program does.
 std::string handOver(const std::string& program) {
-  return fmt::format(R"(declare -F {0} > /dev/null || source <({1} --completion 2> /dev/null)
+  return fmt::format(R"(type {0} > /dev/null 2>&1 || source <({1} --completion 2> /dev/null)
   COMP_WORDS=({1} "${{COMP_WORDS[@]:2}}")
   COMP_CWORD=$((COMP_CWORD - 1))
-  declare -F {0} > /dev/null && {0}
+  type {0} > /dev/null 2>&1 && {0}
   return)",
                      functionOf(program), program);
 }
@@ -77,11 +77,11 @@ std::string commandScript(const CLI::App& program) {
                                                   : OptionTable(*command).script());
   }
   return fmt::format(R"(if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W '{} --help --version' -- "$word")
-    return
-  fi
+    values='{} --help --version'
+  else
   case ${{COMP_WORDS[1]}} in
-{}  esac)",
+{}  esac
+  fi)",
                      fmt::join(commands, " "), branches);
 }
 
@@ -89,15 +89,13 @@ std::string commandScript(const CLI::App& program) {
 
 std::string bashCompletion(const CLI::App& program) {
   return fmt::format(
-      R"(# Completes the command line of {0} in bash, from its own tables.
+      R"(# Completes the command line of {0} in bash, and in zsh with bashcompinit, from its own tables.
 {1}() {{
-  local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} words='' values=''
+  local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} words='' values='' line
+  COMPREPLY=()
   {2}
-  if [ -n "$values" ]; then
-    mapfile -t COMPREPLY < <(compgen -W "$values" -- "$word")
-  else
-    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word"; compgen -f -- "$word")
-  fi
+  while IFS= read -r line; do COMPREPLY+=("$line"); done < <(
+    if [ -n "$values" ]; then compgen -W "$values" -- "$word"; else compgen -W "$words" -- "$word"; compgen -f -- "$word"; fi)
 }}
 complete -o filenames -F {1} {0}
 )",

@@ -56,5 +56,23 @@ TEST(Completion, OffersFilesElsewhere) {
   EXPECT_THAT(completed({"limn", "render", start}), testing::ElementsAre(start + "ne.glb"));
 }
 
+/// In an interactive zsh, at a tab: the line is completed as far as one answer goes.
+TEST(Completion, ZshCompletesByTheSameScript) {
+  if (run({"/bin/sh", "-c", "command -v zsh"}).status != 0) GTEST_SKIP() << "needs zsh";
+  TemporaryFolder folder;
+  std::ofstream(folder / "script.zsh") << R"(zmodload zsh/zpty
+zpty z zsh -f -i
+zpty -w z 'autoload -Uz compinit bashcompinit; compinit -u -d zcompdump; bashcompinit; source <(limn completion)'
+zpty -w -n z $'limn ren\t--tonem\tagx --sigma-s\t > words; print rea''dy\n'
+zpty -r z seen '*ready*'
+)";
+  std::ofstream(folder / "limn") << "#!/bin/sh\n[ \"$1\" = completion ] && exec '" << kLimnBinary
+                                 << "' completion\necho \"$@\"\n";
+  const Outcome outcome = run({"/bin/sh", "-c",
+                               "cd '" + folder.path().string() +
+                                   "'; chmod +x limn; PATH=\"$PWD:$PATH\" timeout 60 zsh -f script.zsh"});
+  EXPECT_EQ(contents(folder / "words"), "render --tonemap agx --sigma-s\n") << outcome.out << outcome.err;
+}
+
 }  // namespace
 }  // namespace limn::test
