@@ -1,10 +1,12 @@
 // limn info: what this machine offers, and which technique modules limn uses; or what a scene holds.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "apps/limn/commands.h"
 #include "apps/limn/options.h"
@@ -105,6 +107,17 @@ const char* lightTypeName(const glsl::Light& light) {
   }
 }
 
+/// Where a camera stands and looks, in the world of the file.
+nlohmann::ordered_json describe(const scene::CameraPose& camera, const glm::dvec3& origin) {
+  const glm::dmat4 toWorld = glm::inverse(glm::dmat4(camera.worldToView));
+  const auto vector = [](const glm::dvec3& v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
+  return {{"name", camera.name},
+          {"eye_m", vector(glm::dvec3(toWorld[3]) + origin)},
+          {"direction", vector(-glm::dvec3(toWorld[2]))},
+          {"up", vector(glm::dvec3(toWorld[1]))},
+          {"vertical_fov_degrees", glm::degrees(static_cast<double>(camera.yfov))}};
+}
+
 /// What the scene's file holds that options name.
 nlohmann::ordered_json describe(const scene::Scene& scene) {
   const scene::Pose pose = scene::evaluate(scene, 0);
@@ -116,7 +129,8 @@ nlohmann::ordered_json describe(const scene::Scene& scene) {
   const glm::vec3 side = pose.bounds.empty() ? glm::vec3(0) : pose.bounds.high - pose.bounds.low;
   for (int axis = 0; axis < 3; ++axis) json["size_m"].push_back(side[axis]);
   for (const char* key : {"cameras", "lights", "animations"}) json[key] = nlohmann::ordered_json::array();
-  for (const scene::CameraPose& camera : pose.cameras) json["cameras"].push_back(camera.name);
+  for (const scene::CameraPose& camera : pose.cameras)
+    json["cameras"].push_back(describe(camera, pose.origin));
   for (std::size_t i = 0; i < pose.lights.size(); ++i) {
     const glsl::Light& light = pose.lights[i];
     nlohmann::ordered_json one{{"name", pose.lightNames[i]}, {"type", lightTypeName(light)}};
@@ -137,9 +151,13 @@ nlohmann::ordered_json describe(const scene::Scene& scene) {
 std::string namesText(const nlohmann::ordered_json& things) {
   std::string text;
   for (const auto& thing : things) {
-    const std::string name = thing.is_string() ? thing : thing["name"];
-    text += (text.empty() ? "" : ", ") + name;
-    if (thing.contains("sides_m"))
+    text += (text.empty() ? "" : ", ") + thing["name"].get<std::string>();
+    if (thing.contains("eye_m"))
+      text += fmt::format(
+          " (at {:.5g}, {}, {:.4g} degrees)", fmt::join(thing["eye_m"].get<std::vector<double>>(), ","),
+          fmt::format("towards {:.4g}", fmt::join(thing["direction"].get<std::vector<double>>(), ",")),
+          thing["vertical_fov_degrees"].get<double>());
+    else if (thing.contains("sides_m"))
       text += fmt::format(" (rectangle, {:.4g} x {:.4g} m)", thing["sides_m"][0].get<double>(),
                           thing["sides_m"][1].get<double>());
     else if (thing.contains("type"))
@@ -179,7 +197,7 @@ Action addInfoCommand(CLI::App& command) {
   auto scene = std::make_shared<std::string>();
   command.add_option("scene", *scene,
                      "Say what this scene holds instead: cameras, lights and animations by the "
-                     "names that options take, and its size");
+                     "names that options take, where cameras stand and look, and its size");
   command.add_flag("--json", *json, "Print JSON");
   return [json, scene] {
     if (!scene->empty()) {

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/base/shell.h"
+#include "core/bench/tune.h"
 #include "core/question/question_fields.h"
 #include "core/question/render_command.h"
 #include "core/question/technique_names.h"
@@ -51,8 +52,8 @@ std::vector<MeasuredQuestion> measuredQuestions(std::span<const bench::Row> rows
                            .renderer = row.cost.renderer,
                            .pixels = std::int64_t{question.width} * question.height,
                            .settings = {}});
-    const MeasuredSetting setting{row.what.technique, row.what.parameters, row.error.rmse,
-                                  row.cost.frameMs.median, row.cost.frameMs.n};
+    const MeasuredSetting setting{row.what.technique, row.what.parameters, row.error, row.cost.frameMs.median,
+                                  row.cost.frameMs.n};
     std::vector<MeasuredSetting>& settings = questions[place->second].settings;
     const auto [known, first] = settingPlaces.emplace(
         fmt::format("{}|{}|{}", key, setting.text(), row.what.dynamic), settings.size());
@@ -67,12 +68,15 @@ std::vector<MeasuredQuestion> measuredQuestions(std::span<const bench::Row> rows
   return questions;
 }
 
-BudgetAnswer bestWithin(const MeasuredQuestion& question, double ms) {
+BudgetAnswer bestWithin(const MeasuredQuestion& question, double ms, const MetricInfo& metric) {
+  const auto badness = [&](const MeasuredSetting& setting) {
+    return bench::badness(metric, metricValue(metric, setting.error).value());
+  };
   std::vector<const MeasuredSetting*> quick;
   for (const MeasuredSetting& setting : question.settings)
     if (setting.ms <= ms) quick.push_back(&setting);
-  std::ranges::stable_sort(quick, [](const MeasuredSetting* a, const MeasuredSetting* b) {
-    return std::pair(a->rmse, a->ms) < std::pair(b->rmse, b->ms);
+  std::ranges::stable_sort(quick, [&](const MeasuredSetting* a, const MeasuredSetting* b) {
+    return std::pair(badness(*a), a->ms) < std::pair(badness(*b), b->ms);
   });
   if (quick.empty()) return {};
   BudgetAnswer answer{*quick.front(), {}};
@@ -102,6 +106,10 @@ std::vector<std::string> tuneArguments(const TuneOrder& order) {
   add(questionFlags(rest));
   add({"--term", order.question.term});
   if (!order.techniques.empty()) add({"--techniques", order.techniques});
+  const TuneOrder usual;
+  if (order.metric != usual.metric) add({"--metric", std::string(order.metric->key)});
+  if (order.maskedShare != usual.maskedShare)
+    add({"--max-masked-share", fmt::format("{:.4g}", order.maskedShare)});
   add({"--steps", fmt::format("{}", order.steps), "--max-ms", fmt::format("{:.4g}", order.ms), "--out",
        order.folder});
   return words;

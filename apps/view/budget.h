@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/bench/row.h"
+#include "core/image/metric_table.h"
 #include "core/question/term.h"
 
 namespace limn::app {
@@ -18,7 +19,8 @@ namespace limn::app {
 struct MeasuredSetting {
   std::string technique;
   std::vector<std::pair<std::string, std::string>> parameters;  ///< "technique.parameter", value
-  double rmse = 0, ms = 0;
+  Metrics error;
+  double ms = 0;
   int frames = 0;  ///< that ms is the median of
 
   /// Returns technique and parameters on one line.
@@ -50,8 +52,9 @@ struct BudgetAnswer {
   std::optional<MeasuredSetting> runnerUp;
 };
 
-/// Returns the settings with the least error among those whose frames take no longer than `ms`.
-BudgetAnswer bestWithin(const MeasuredQuestion& question, double ms);
+/// Returns the settings that are best by `metric`, which is no basis, among those whose frames take no longer
+/// than `ms`.
+BudgetAnswer bestWithin(const MeasuredQuestion& question, double ms, const MetricInfo& metric);
 
 /// Declares a search of limn tune.
 struct TuneOrder {
@@ -59,6 +62,8 @@ struct TuneOrder {
   double ms = 16;               ///< that a frame may take
   std::string techniques = {};  ///< comma-separated; empty: all that answer the term
   int steps = 1;                ///< from a parameter's default in each direction
+  const MetricInfo* metric = &metricInfo(&Metrics::rmse);  ///< that is to be best
+  double maskedShare = CompareOptions().maxMaskedShare;    ///< of the pixels that may be left out
   std::string folder;
 
   /// Returns what is asked of techniques for a picture that the window shows: of the whole picture only the

@@ -46,6 +46,8 @@ TuneOrder ViewerWindow::tuneOrder() const {
           .ms = static_cast<double>(budgetMs_),
           .techniques = tuneTechniques_,
           .steps = tuneSteps_,
+          .metric = tuneMetric_,
+          .maskedShare = static_cast<double>(tuneMaskedPercent_) / 100,
           .folder = budgetText_};
 }
 
@@ -95,7 +97,9 @@ void ViewerWindow::budgetSetting(const char* rank, const MeasuredSetting& settin
   ImGui::PushID(rank);
   ImGui::TextDisabled("%s", rank);
   wrapped(setting.text());
-  ImGui::TextUnformatted(fmt::format("RMSE {:.4g}, {:.4g} ms", setting.rmse, setting.ms).c_str());
+  ImGui::TextUnformatted(
+      fmt::format("{} {}, {:.4g} ms", tuneMetric_->label, shownText(*tuneMetric_, setting.error), setting.ms)
+          .c_str());
   ImGui::SameLine(ImGui::GetContentRegionMax().x - scaled(44));
   if (ImGui::SmallButton("take")) {
     try {
@@ -147,6 +151,21 @@ void ViewerWindow::budgetRows() {
   ImGui::InputTextWithHint("##among", "all that answer the term", tuneTechniques_, sizeof tuneTechniques_);
   nameCell("steps", "How many steps from each parameter's default a search tries in each direction");
   ImGui::SliderInt("##steps", &tuneSteps_, 0, 4, "%d", ImGuiSliderFlags_AlwaysClamp);
+  nameCell("best by", tuneMetric_->help.data());
+  if (ImGui::BeginCombo("##metric", tuneMetric_->label.data())) {
+    for (const MetricInfo& metric : kMetrics) {
+      if (metric.kind == MetricKind::basis) continue;
+      if (ImGui::Selectable(metric.label.data(), &metric == tuneMetric_)) tuneMetric_ = &metric;
+      tip(metric.help.data());
+    }
+    ImGui::EndCombo();
+  }
+  nameCell(
+      "left out",
+      "Per cent of the pixels that may differ in coverage, instance or depth from the reference; a search "
+      "does not count them");
+  ImGui::SliderFloat("##masked", &tuneMaskedPercent_, 0, 100, "at most %.3g %%",
+                     ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
   endRows();
 }
 
@@ -182,7 +201,7 @@ void ViewerWindow::tunePanel() {
 /// What was measured says this.
 void ViewerWindow::budgetAnswer() {
   const MeasuredQuestion& question = measured_[measuredChosen_];
-  const BudgetAnswer answer = bestWithin(question, static_cast<double>(budgetMs_));
+  const BudgetAnswer answer = bestWithin(question, static_cast<double>(budgetMs_), *tuneMetric_);
   if (answer.best)
     budgetSetting("best", *answer.best, question.term);
   else

@@ -187,6 +187,8 @@ class ViewerWindow {
   size_t measuredChosen_ = 0;
   float budgetMs_ = 16;
   int tuneSteps_ = 1;
+  const MetricInfo* tuneMetric_ = TuneOrder().metric;
+  float tuneMaskedPercent_ = static_cast<float>(100 * TuneOrder().maskedShare);
   TuneOrder tuned_;                   ///< what the search looks for
   std::unique_ptr<TuneSearch> tune_;  ///< the last search
   std::string tuneProblem_;

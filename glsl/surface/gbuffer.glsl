@@ -17,8 +17,9 @@
 //
 // Quantisation (half a step): base colour sqrt(base colour) / 65536, which is 0.02 % of 0.005 and 0.002 % of 0.5 (8 bits
 // would be wrong by up to 3.6 and 0.6 %, the same for every pixel of a wall: a bias); metallic 8e-6; roughness and
-// specularFactor 0.002; ior 0.005 up to 3, of which two decimals are exact; specularColour 0.017; emission 2^-11 relative, up to 65504.
-// Normals: 6.5e-5 radians, reached at the centres of the octahedron's faces, where the map stretches by 3 along one diagonal.
+// specularFactor 0.002; ior 0.005 up to 3, of which two decimals are exact; specularColour 0.017; emission 2^-11 relative, up
+// to 65504. Normals: 6.5e-5 radians, reached at the centres of the octahedron's faces, where the map stretches by 3 along one
+// diagonal.
 #ifndef LIMN_GBUFFER_GLSL
 #define LIMN_GBUFFER_GLSL
 #include "glsl/numeric/language.glsl"

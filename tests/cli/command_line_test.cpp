@@ -1,5 +1,7 @@
 // The command line as a person meets it: what is wrong is said in one line, and the exit status tells whose
 // fault it is.
+#include <fmt/format.h>
+
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -193,17 +195,33 @@ TEST(CommandLine, InfoOfASceneNamesWhatOptionsTake) {
   EXPECT_GT(scene["triangles"], 0);
   EXPECT_EQ(scene["size_m"].size(), 3u);
   std::vector<std::string> options = {"render", "gem", "--size", "16x12", "-q", "--out", folder / "gem.exr"};
-  for (const auto& [option, name] :
-       {std::pair("--camera", scene["cameras"].at(0)), std::pair("--light", scene["lights"].at(0)["name"]),
-        std::pair("--animation", scene["animations"].at(0)["name"])})
+  for (const auto& [option, name] : {std::pair("--camera", scene["cameras"].at(0)["name"]),
+                                     std::pair("--light", scene["lights"].at(0)["name"]),
+                                     std::pair("--animation", scene["animations"].at(0)["name"])})
     options.insert(options.end(), {option, name});
   const Outcome rendered = limn(options);
   EXPECT_EQ(rendered.status, 0) << rendered.err;
   EXPECT_THAT(limn({"info", "balls"}).out, testing::MatchesRegex("[^\n]*balls.glb: [0-9]+ triangles[^\n]*\n"
-                                                                 "cameras: main, [^\n]*\n"
+                                                                 "cameras: main \\(at [^\n]*\n"
                                                                  "lights: key \\(rectangle, [^\n]*\n"
                                                                  "animations: none\n"
                                                                  "environment: none\nmedium: none\n"));
+  // What a camera's numbers say renders the same picture.
+  const auto& camera = scene["cameras"].at(0);
+  const auto list = [](const nlohmann::json& v) {
+    return fmt::format("{},{},{}", v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
+  };
+  nlohmann::json target = camera["eye_m"];
+  for (size_t i = 0; i < 3; ++i) target[i] = target[i].get<double>() + camera["direction"][i].get<double>();
+  const std::string file = folder / "eye.exr";
+  EXPECT_EQ(limn({"render", "gem", "--size", "16x12", "-q", "--eye", list(camera["eye_m"]), "--target",
+                  list(target), "--fov", fmt::format("{}", camera["vertical_fov_degrees"].get<double>()),
+                  "--out", file})
+                .status,
+            0);
+  EXPECT_EQ(limn({"render", "gem", "--size", "16x12", "-q", "--out", folder / "named.exr"}).status, 0);
+  const auto compared = nlohmann::json::parse(limn({"compare", file, folder / "named.exr", "--json"}).out);
+  EXPECT_LT(compared["rmse"], 1e-3);
   expectRefused(limn({"info", "robt"}), 1, {"robot"});
 }
 

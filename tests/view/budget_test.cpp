@@ -19,6 +19,8 @@ bench::Row row(const std::string& technique, double rmse, double ms, const std::
   return row;
 }
 
+const MetricInfo& kRmse = metricInfo(&Metrics::rmse);
+
 TEST(Budget, TakesTheLeastErrorThatIsQuickEnough) {
   std::vector<bench::Row> rows{row("hard_shadow_map", 0.09, 1), row("pcss", 0.02, 8), row("pcss", 0.01, 20),
                                row("vssm", 0.03, 6), row("vssm", 0.001, 100)};
@@ -27,21 +29,30 @@ TEST(Budget, TakesTheLeastErrorThatIsQuickEnough) {
   const auto questions = measuredQuestions(rows, "/somewhere/balls.glb");
   ASSERT_EQ(questions.size(), 1u);
   EXPECT_EQ(questions.front().renderer, "a card");
-  const BudgetAnswer answer = bestWithin(questions.front(), 10);
+  const BudgetAnswer answer = bestWithin(questions.front(), 10, kRmse);
   EXPECT_EQ(answer.best->text(), "pcss  views=4");
   EXPECT_THAT(session::choiceOf(answer.best->technique, answer.best->parameters).settings,
               testing::ElementsAre("pcss.views=4"));
   EXPECT_EQ(answer.runnerUp->technique, "vssm") << "another technique";
   EXPECT_EQ(answer.runnerUp->ms, 6);
-  EXPECT_EQ(bestWithin(questions.front(), 1).best->technique, "hard_shadow_map");
-  EXPECT_FALSE(bestWithin(questions.front(), 1).runnerUp);
-  EXPECT_FALSE(bestWithin(questions.front(), 0.5).best);
+  EXPECT_EQ(bestWithin(questions.front(), 1, kRmse).best->technique, "hard_shadow_map");
+  EXPECT_FALSE(bestWithin(questions.front(), 1, kRmse).runnerUp);
+  EXPECT_FALSE(bestWithin(questions.front(), 0.5, kRmse).best);
+}
+
+/// A PSNR is the better the larger it is.
+TEST(Budget, WhatIsBestDependsOnTheMetric) {
+  std::vector<bench::Row> rows{row("pcss", 0.02, 8), row("vssm", 0.03, 8)};
+  rows[0].error.psnr = 30, rows[1].error.psnr = 40;
+  const MeasuredQuestion question = measuredQuestions(rows, "balls").front();
+  EXPECT_EQ(bestWithin(question, 10, kRmse).best->technique, "pcss");
+  EXPECT_EQ(bestWithin(question, 10, metricInfo(&Metrics::psnr)).best->technique, "vssm");
 }
 
 TEST(Budget, TheRunnerUpMayBeOfTheSameTechniqueWhereThereIsNoOther) {
   std::vector<bench::Row> rows{row("pcss", 0.02, 8), row("pcss", 0.01, 20)};
   rows[1].what.parameters = {{"pcss.views", "4"}};
-  const BudgetAnswer answer = bestWithin(measuredQuestions(rows, "balls").front(), 50);
+  const BudgetAnswer answer = bestWithin(measuredQuestions(rows, "balls").front(), 50, kRmse);
   EXPECT_EQ(answer.best->ms, 20);
   EXPECT_EQ(answer.runnerUp->ms, 8);
 }
@@ -117,6 +128,11 @@ TEST(Budget, SaysHowToMeasure) {
            .folder = "out"};
   EXPECT_EQ(tuneCommand(order),
             "limn tune balls --term direct --techniques pcss,vssm --steps 0 --max-ms 2.5 --out out");
+  order.metric = &metricInfo(&Metrics::flip);
+  order.maskedShare = 0.02;
+  EXPECT_EQ(tuneCommand(order),
+            "limn tune balls --term direct --techniques pcss,vssm --metric flip --max-masked-share 0.02 "
+            "--steps 0 --max-ms 2.5 --out out");
   shown.term = "indirect";
   EXPECT_EQ(TuneOrder::questionOf(shown), shown);
 }

@@ -18,7 +18,7 @@ class ViewerBudgetTest : public ViewerWindowTest {
   }
   /// Starts the search; `tune` holds its process then, and `command` its arguments.
   static std::string search() {
-    return "click 37 258; pgrep -P $viewer > tune; tr '\\0' ' ' < /proc/$(cat tune)/cmdline > command\n";
+    return "click 37 304; pgrep -P $viewer > tune; tr '\\0' ' ' < /proc/$(cat tune)/cmdline > command\n";
   }
   /// Waits until the search measures, in a process of its own, which `worker` holds then.
   static std::string measures() {
@@ -38,7 +38,7 @@ TEST_F(ViewerBudgetTest, SearchesWhatItShowsAndTakesTheAnswer) {
       std::string(kArguments) + " --set-light key.intensity=3",
       kDrag + choose("hard_shadow_map") + "click 375 187\n" + search() +
           "frames 2; save meanwhile.exr; hear 'searched cornell_box, into out/tune$' 1; frames 2; sleep 2\n"
-          "pgrep -P $viewer > left; click 355 383; save taken.exr");
+          "pgrep -P $viewer > left; click 355 416; save taken.exr");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   EXPECT_THAT(
@@ -51,7 +51,7 @@ TEST_F(ViewerBudgetTest, SearchesWhatItShowsAndTakesTheAnswer) {
   EXPECT_THAT(command("meanwhile.exr"), testing::HasSubstr("--technique vssm"));
   EXPECT_THAT(command("taken.exr"), testing::HasSubstr("--technique hard_shadow_map"));
   // Another window finds what was measured.
-  ASSERT_EQ(view(kArguments, "frames 2; sleep 2; click 375 210; click 355 383; save again.exr").status, 0);
+  ASSERT_EQ(view(kArguments, "frames 2; sleep 2; click 375 210; click 355 416; save again.exr").status, 0);
   EXPECT_THAT(command("again.exr"), testing::HasSubstr("--technique hard_shadow_map"));
 }
 
@@ -60,7 +60,7 @@ TEST_F(ViewerBudgetTest, SearchesWhatItShowsAndTakesTheAnswer) {
 TEST_F(ViewerBudgetTest, CancellingAndLeavingEndTheSearch) {
   const Outcome outcome =
       view(kArguments, search() + measures() +
-                           "frames 2; click 37 258; hear 'stopped; Search goes on in out/tune$' 1\n"
+                           "frames 2; click 37 304; hear 'stopped; Search goes on in out/tune$' 1\n"
                            "pgrep -P $viewer > left; mv tune tune1; mv worker worker1\n" +
                            search() + measures());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
