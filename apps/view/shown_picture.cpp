@@ -62,7 +62,8 @@ std::optional<Image> ShownPicture::read(const scene::CameraPose& camera, int aa,
   if (!takesMoreFrames(aa)) return read();
   struct Cancelled {};
   try {
-    renderer_.configure(settings_);  // the first frame of a sequence, as in limn render
+    // The first frame of a sequence, as in limn render; without a history frames are what they are.
+    if (render::historyOf(settings_.techniques) > 1) renderer_.configure(settings_);
     return render::supersample(renderer_, camera, settings_.size, aa, [&] {
       if (cancelled && cancelled()) throw Cancelled();
       renderer_.render();
