@@ -206,15 +206,13 @@ constexpr QuestionField kFields[] = {
         .storedAs("combine")
         .later()
         .approximating(),
-    coefficient(
-        "sigma_a", "--sigma-a", &Q::sigmaA,
-        "Absorption coefficient of the medium per metre: one number or red,green,blue.\n"
-        "With /scene behind it per diameter of the scene: 0.5/scene is an optical depth of 0.5 across it")
+    coefficient("sigma_a", "--sigma-a", &Q::sigmaA,
+                "Absorption coefficient of the medium per metre: one number or red,green,blue.\n"
+                "With /scene behind it per diameter of the scene: 0.5/scene is an optical depth\n"
+                "of 0.5 across it")
         .in(kMedium),
     coefficient("sigma_s", "--sigma-s", &Q::sigmaS,
-                "Scattering coefficient of the medium per metre, or with /scene per diameter of the scene: "
-                "one number\n"
-                "or red,green,blue; 0: no scattering")
+                "Scattering coefficient of the medium, likewise; 0: no scattering")
         .in(kMedium),
     optionalReal("g", "--g", &Q::g, {-0.999, 0.999},
                  "Mean cosine of the medium's phase function (Henyey-Greenstein); > 0: forward")
