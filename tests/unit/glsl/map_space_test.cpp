@@ -242,7 +242,9 @@ TEST_P(MapSpace, NoPlaceInABoxHasAThresholdBeyondItsRange) {
     }
   }
   // The axis of other lights is the view's: the receiver's depth is one over the whole map.
-  if (GetParam() == light_kind_point) EXPECT_GT(inside, 100) << "corners alone do not bound it";
+  if (GetParam() == light_kind_point) {
+    EXPECT_GT(inside, 100) << "corners alone do not bound it";
+  }
 }
 
 /// Of rectangles: the sides of other lights need not be the map's.
