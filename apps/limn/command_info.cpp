@@ -153,10 +153,10 @@ std::string namesText(const nlohmann::ordered_json& things) {
   for (const auto& thing : things) {
     text += (text.empty() ? "" : ", ") + thing["name"].get<std::string>();
     if (thing.contains("eye_m"))
-      text += fmt::format(
-          " (at {:.5g}, {}, {:.4g} degrees)", fmt::join(thing["eye_m"].get<std::vector<double>>(), ","),
-          fmt::format("towards {:.4g}", fmt::join(thing["direction"].get<std::vector<double>>(), ",")),
-          thing["vertical_fov_degrees"].get<double>());
+      text += fmt::format(" (at {:.5g}, towards {:.4g}, {:.4g} degrees)",
+                          fmt::join(thing["eye_m"].get<std::vector<double>>(), ","),
+                          fmt::join(thing["direction"].get<std::vector<double>>(), ","),
+                          thing["vertical_fov_degrees"].get<double>());
     else if (thing.contains("sides_m"))
       text += fmt::format(" (rectangle, {:.4g} x {:.4g} m)", thing["sides_m"][0].get<double>(),
                           thing["sides_m"][1].get<double>());

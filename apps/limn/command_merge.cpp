@@ -16,17 +16,16 @@ namespace fs = std::filesystem;
 namespace {
 
 int run(const std::vector<fs::path>& folders, const fs::path& out) {
-  std::vector<fs::path> measured;
+  std::vector<fs::path> measured, without;
   for (const fs::path& folder : folders) {
     std::error_code ignored;
-    if (fs::is_regular_file(folder / "results.jsonl", ignored)) measured.push_back(folder);
+    (fs::is_regular_file(folder / "results.jsonl", ignored) ? measured : without).push_back(folder);
   }
   if (measured.empty())
     throw Error(fmt::format("{} does not exist; expected a folder that limn bench wrote",
                             (folders.front() / "results.jsonl").string()));
-  for (const fs::path& folder : folders)  // a part that died early leaves none, and must not cost the others
-    if (std::ranges::find(measured, folder) == measured.end())
-      warn(fmt::format("{} does not exist; its folder is left out", (folder / "results.jsonl").string()));
+  for (const fs::path& folder : without)  // a part that died early leaves none, and must not cost the others
+    warn(fmt::format("{} does not exist; its folder is left out", (folder / "results.jsonl").string()));
   const ResultsFolder results(out, {}, 0);
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders());
   session::CaseOrigins origins(registry);

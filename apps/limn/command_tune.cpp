@@ -269,10 +269,8 @@ class Tuning {
       if (failure_.empty()) failure_ = fmt::format("{}: {}", bench::label(c), row.failure);
       return {0, 0, true};
     }
-    const double pixels = pixelsOver(c);  // 1: the time is measured, not reckoned
-    const double ms =
-        pixels > 1 ? bench::msAtPixels(row, pixels, rest_.value_or(1)) : row.cost.frameMs.median;
-    return {bench::badness(goal_.metric, *value), ms, false};
+    return {bench::badness(goal_.metric, *value), bench::msAtPixels(row, pixelsOver(c), rest_.value_or(1)),
+            false};
   }
 
   /// How many times as many pixels the picture has that is asked for.

@@ -102,6 +102,7 @@ double badness(const MetricInfo& metric, double value) {
 }
 
 double msAtPixels(const Row& row, double pixels, double rest) {
+  if (pixels == 1) return row.cost.frameMs.median;
   const CostSplit& split = row.cost.split;
   const double now = split.maps + split.filters + split.technique + split.rest;
   const double then = split.maps + split.filters + split.technique * pixels + split.rest * rest;

@@ -87,7 +87,7 @@ LIMN_API double badness(const MetricInfo& metric, double value);
 
 /// Returns the median time of the row's frames at `pixels` times as many pixels: maps and filters take as
 /// long as before, the technique's own passes grow with the pixels, and the rest, whose G-buffer is bound by
-/// triangles in small pictures, takes `rest` times as long.
+/// triangles in small pictures, takes `rest` times as long. At one times as many it is the time as measured.
 LIMN_API double msAtPixels(const Row& row, double pixels, double rest);
 
 /// Returns the median time of the row's frames with its interval of 95 %, as that of ratios.

@@ -162,8 +162,8 @@ class LIMN_API PassContext {
   void countTriangles(uint64_t triangles) const;
   /// Calls glDispatchCompute with ceil(size / group) groups.
   void dispatch(int width, int height, int depth, int groupX, int groupY, int groupZ = 1) const;
-  /// Calls glDispatchCompute with at least so many groups, in rows of equal length, since a driver may take
-  /// no more than 65535 along an axis; glsl/numeric/work_items.glsl numbers them.
+  /// Calls glDispatchCompute with `groups` work groups, or a few more, in rows of equal length: a driver need
+  /// not take more than 65535 along an axis. glsl/numeric/work_items.glsl numbers them.
   void dispatchRows(int64_t groups) const;
 
  private:

@@ -73,6 +73,7 @@ TEST(TuneFigures, OnlyWhatGrowsWithPixelsIsScaled) {
   row.cost.split = {3, 1, 3, 1};
   EXPECT_DOUBLE_EQ(msAtPixels(row, 1, 1), 8);
   EXPECT_DOUBLE_EQ(msAtPixels(row, 16, 2), 4 + 3 * 16 + 2);
+  EXPECT_DOUBLE_EQ(msAtPixels(row, 1, 16), 8) << "measured as it is asked for";
   const Ratio interval = frameMsInterval(row);
   EXPECT_DOUBLE_EQ(interval.value, 8);
   EXPECT_LT(interval.low, 8);
