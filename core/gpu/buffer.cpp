@@ -11,6 +11,9 @@ namespace {
 
 constexpr size_t kMinimumBytes = 16;
 
+constexpr ObjectKind kBufferKind{[](const gl::Functions& gl, GLuint id) { gl.DeleteBuffers(1, &id); },
+                                 &Counters::buffers, &Counters::bufferBytes};
+
 size_t storageBytes(size_t bytes) {
   return bytes == 0 ? kMinimumBytes : bytes;
 }
@@ -25,41 +28,19 @@ void checkRange(const char* what, size_t offset, size_t bytes, size_t size) {
 }  // namespace
 
 Buffer::Buffer(Device& device, std::string_view label, size_t bytes, BufferUse use, const void* data)
-    : Object(device, 0), bytes_(bytes), use_(use) {
+    : Object(device, kBufferKind), bytes_(bytes), use_(use) {
   if (bytes > static_cast<size_t>(std::numeric_limits<GLsizeiptr>::max())) {
     throw Error(fmt::format("buffer '{}' of {} bytes is larger than memory can be", label, bytes));
   }
   const gl::Functions& gl = device.gl();
   const auto storage = static_cast<GLsizeiptr>(storageBytes(bytes));
   gl.CreateBuffers(1, &id_);
+  count(storage);
   gl.NamedBufferStorage(id_, storage, bytes == 0 ? nullptr : data,
                         use == BufferUse::updated ? GL_DYNAMIC_STORAGE_BIT : 0);
-  if (outOfMemory(gl)) {
-    gl.DeleteBuffers(1, &id_);
+  if (outOfMemory(gl))
     throw Error(fmt::format("out of GPU memory for buffer '{}' of {} bytes", label, bytes));
-  }
   setLabel(GL_BUFFER, label);
-  ++device.mutableCounters().buffers;
-  device.mutableCounters().bufferBytes += storage;
-}
-
-Buffer::Buffer(Buffer&& other) noexcept
-    : Object(std::move(other)), bytes_(std::exchange(other.bytes_, 0)), use_(other.use_) {}
-
-Buffer& Buffer::operator=(Buffer&& other) noexcept {
-  Buffer moved(std::move(other));
-  swap(moved);
-  std::swap(bytes_, moved.bytes_);
-  std::swap(use_, moved.use_);
-  return *this;
-}
-
-Buffer::~Buffer() {
-  if (id_ == 0) return;
-  const ContextScope scope(&device_->context());
-  device_->gl().DeleteBuffers(1, &id_);
-  --device_->mutableCounters().buffers;
-  device_->mutableCounters().bufferBytes -= static_cast<int64_t>(storageBytes(bytes_));
 }
 
 void Buffer::update(size_t offset, const void* data, size_t bytes) {

@@ -7,6 +7,9 @@
 namespace limn::gpu {
 namespace {
 
+constexpr ObjectKind kFramebufferKind{
+    [](const gl::Functions& gl, GLuint id) { gl.DeleteFramebuffers(1, &id); }, &Counters::framebuffers};
+
 std::string_view statusName(GLenum status) {
   switch (status) {
     case GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT:
@@ -57,7 +60,7 @@ void checkAttachment(std::string_view label, const Attachment& attachment) {
 
 Framebuffer::Framebuffer(Device& device, std::string_view label, std::span<const Attachment> colours,
                          Attachment depth, int width, int height)
-    : Object(device, 0) {
+    : Object(device, kFramebufferKind) {
   if (colours.size() > static_cast<size_t>(device.limits().maxColourAttachments)) {
     throw Error(fmt::format("framebuffer '{}' has {} colours: this device takes {}", label, colours.size(),
                             device.limits().maxColourAttachments));
@@ -67,6 +70,7 @@ Framebuffer::Framebuffer(Device& device, std::string_view label, std::span<const
 
   const gl::Functions& gl = device.gl();
   gl.CreateFramebuffers(1, &id_);
+  count();
   std::vector<GLenum> drawBuffers;
   for (const Attachment& colour : colours) {
     drawBuffers.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(drawBuffers.size()));
@@ -84,27 +88,9 @@ Framebuffer::Framebuffer(Device& device, std::string_view label, std::span<const
     gl.NamedFramebufferParameteri(id_, GL_FRAMEBUFFER_DEFAULT_HEIGHT, height);
   }
   const GLenum status = gl.CheckNamedFramebufferStatus(id_, GL_DRAW_FRAMEBUFFER);
-  if (status != GL_FRAMEBUFFER_COMPLETE) {
-    gl.DeleteFramebuffers(1, &id_);
+  if (status != GL_FRAMEBUFFER_COMPLETE)
     throw Error(fmt::format("framebuffer '{}' is incomplete: {}", label, statusName(status)));
-  }
   setLabel(GL_FRAMEBUFFER, label);
-  ++device.mutableCounters().framebuffers;
-}
-
-Framebuffer::Framebuffer(Framebuffer&& other) noexcept = default;
-
-Framebuffer& Framebuffer::operator=(Framebuffer&& other) noexcept {
-  Framebuffer moved(std::move(other));
-  swap(moved);
-  return *this;
-}
-
-Framebuffer::~Framebuffer() {
-  if (id_ == 0) return;
-  const ContextScope scope(&device_->context());
-  device_->gl().DeleteFramebuffers(1, &id_);
-  --device_->mutableCounters().framebuffers;
 }
 
 }  // namespace limn::gpu

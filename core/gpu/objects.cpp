@@ -7,6 +7,49 @@
 #include "core/base/error.h"
 
 namespace limn::gpu {
+namespace {
+
+constexpr ObjectKind kSamplerKind{[](const gl::Functions& gl, GLuint id) { gl.DeleteSamplers(1, &id); },
+                                  &Counters::samplers};
+constexpr ObjectKind kVertexArrayKind{
+    [](const gl::Functions& gl, GLuint id) { gl.DeleteVertexArrays(1, &id); }, &Counters::vertexArrays};
+constexpr ObjectKind kQueryKind{[](const gl::Functions& gl, GLuint id) { gl.DeleteQueries(1, &id); },
+                                &Counters::queries};
+constexpr ObjectKind kProgramKind{[](const gl::Functions& gl, GLuint id) { gl.DeleteProgram(id); },
+                                  &Counters::programs};
+
+}  // namespace
+
+Object::Object(Object&& other) noexcept
+    : device_(std::exchange(other.device_, nullptr)),
+      id_(std::exchange(other.id_, 0u)),
+      kind_(other.kind_),
+      counted_(other.counted_) {}
+
+Object& Object::operator=(Object&& other) noexcept {
+  Object moved(std::move(other));
+  std::swap(device_, moved.device_);
+  std::swap(id_, moved.id_);
+  std::swap(kind_, moved.kind_);
+  std::swap(counted_, moved.counted_);
+  return *this;
+}
+
+Object::~Object() {
+  if (id_ == 0) return;
+  const ContextScope scope(&device_->context());
+  kind_->remove(device_->gl(), id_);
+  Counters& counters = device_->mutableCounters();
+  --(counters.*kind_->count);
+  if (kind_->bytes != nullptr) counters.*kind_->bytes -= counted_;
+}
+
+void Object::count(int64_t bytes) {
+  Counters& counters = device_->mutableCounters();
+  ++(counters.*kind_->count);
+  if (kind_->bytes != nullptr) counters.*kind_->bytes += bytes;
+  counted_ = bytes;
+}
 
 void Object::setLabel(GLenum kind, std::string_view label) const {
   constexpr size_t longestLabel = 255;  // GL_MAX_LABEL_LENGTH is at least 256, the terminator included
@@ -14,35 +57,23 @@ void Object::setLabel(GLenum kind, std::string_view label) const {
   device_->gl().ObjectLabel(kind, id_, static_cast<GLsizei>(length), label.data());
 }
 
-Sampler::Sampler(Device& device, GLenum minFilter, GLenum magFilter, GLenum wrap) : Object(device, 0) {
+Sampler::Sampler(Device& device, GLenum minFilter, GLenum magFilter, GLenum wrap)
+    : Object(device, kSamplerKind) {
   const gl::Functions& gl = device.gl();
   gl.CreateSamplers(1, &id_);
+  count();
   gl.SamplerParameteri(id_, GL_TEXTURE_MIN_FILTER, static_cast<GLint>(minFilter));
   gl.SamplerParameteri(id_, GL_TEXTURE_MAG_FILTER, static_cast<GLint>(magFilter));
   for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
     gl.SamplerParameteri(id_, axis, static_cast<GLint>(wrap));
   }
-  ++device.mutableCounters().samplers;
 }
 
-Sampler::Sampler(Sampler&& other) noexcept = default;
-
-Sampler& Sampler::operator=(Sampler&& other) noexcept {
-  Sampler moved(std::move(other));
-  swap(moved);
-  return *this;
-}
-
-Sampler::~Sampler() {
-  if (id_ == 0) return;
-  const ContextScope scope(&device_->context());
-  device_->gl().DeleteSamplers(1, &id_);
-  --device_->mutableCounters().samplers;
-}
-
-VertexArray::VertexArray(Device& device, std::span<const VertexAttribute> attributes) : Object(device, 0) {
+VertexArray::VertexArray(Device& device, std::span<const VertexAttribute> attributes)
+    : Object(device, kVertexArrayKind) {
   const gl::Functions& gl = device.gl();
   gl.CreateVertexArrays(1, &id_);
+  count();
   for (const VertexAttribute& a : attributes) {
     gl.EnableVertexArrayAttrib(id_, a.location);
     if (a.integer) {
@@ -53,43 +84,11 @@ VertexArray::VertexArray(Device& device, std::span<const VertexAttribute> attrib
     }
     gl.VertexArrayAttribBinding(id_, a.location, a.binding);
   }
-  ++device.mutableCounters().vertexArrays;
 }
 
-VertexArray::VertexArray(VertexArray&& other) noexcept = default;
-
-VertexArray& VertexArray::operator=(VertexArray&& other) noexcept {
-  VertexArray moved(std::move(other));
-  swap(moved);
-  return *this;
-}
-
-VertexArray::~VertexArray() {
-  if (id_ == 0) return;
-  const ContextScope scope(&device_->context());
-  device_->gl().DeleteVertexArrays(1, &id_);
-  --device_->mutableCounters().vertexArrays;
-}
-
-Query::Query(Device& device, GLenum target) : Object(device, 0), target_(target) {
+Query::Query(Device& device, GLenum target) : Object(device, kQueryKind), target_(target) {
   device.gl().CreateQueries(target, 1, &id_);
-  ++device.mutableCounters().queries;
-}
-
-Query::Query(Query&& other) noexcept = default;
-
-Query& Query::operator=(Query&& other) noexcept {
-  Query moved(std::move(other));
-  swap(moved);
-  std::swap(target_, moved.target_);
-  return *this;
-}
-
-Query::~Query() {
-  if (id_ == 0) return;
-  const ContextScope scope(&device_->context());
-  device_->gl().DeleteQueries(1, &id_);
-  --device_->mutableCounters().queries;
+  count();
 }
 
 void Query::begin() {
@@ -113,27 +112,10 @@ uint64_t Query::result() const {
 }
 
 Program::Program(Device& device, GLuint program, std::string label)
-    : Object(device, program), label_(std::move(label)) {
+    : Object(device, kProgramKind), label_(std::move(label)) {
+  id_ = program;
+  count();
   setLabel(GL_PROGRAM, label_);
-  ++device.mutableCounters().programs;
-}
-
-Program::Program(Program&& other) noexcept = default;
-
-Program& Program::operator=(Program&& other) noexcept {
-  Program moved(std::move(other));
-  swap(moved);
-  std::swap(label_, moved.label_);
-  std::swap(resources_, moved.resources_);
-  std::swap(locations_, moved.locations_);
-  return *this;
-}
-
-Program::~Program() {
-  if (id_ == 0) return;
-  const ContextScope scope(&device_->context());
-  device_->gl().DeleteProgram(id_);
-  --device_->mutableCounters().programs;
 }
 
 void Program::use() const {

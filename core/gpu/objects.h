@@ -15,7 +15,15 @@
 
 namespace limn::gpu {
 
-/// Holds what all owners share: the device and the object's name, which move together.
+/// Says how objects of one kind are deleted, and where the device counts them.
+struct ObjectKind {
+  void (*remove)(const gl::Functions& gl, GLuint id);
+  int Counters::*count;
+  int64_t Counters::*bytes = nullptr;  ///< null: of kinds whose memory is not counted
+};
+
+/// Holds what all owners share: the device, the object's name and its kind, which move together. Deletes the
+/// object in its own context.
 class LIMN_API Object {
  public:
   GLuint id() const { return id_; }
@@ -24,18 +32,21 @@ class LIMN_API Object {
 
  protected:
   Object() = default;
-  Object(Device& device, GLuint id) : device_(&device), id_(id) {}
-  ~Object() = default;
-  Object(Object&& other) noexcept
-      : device_(std::exchange(other.device_, nullptr)), id_(std::exchange(other.id_, 0u)) {}
-  void swap(Object& other) noexcept {
-    std::swap(device_, other.device_);
-    std::swap(id_, other.id_);
-  }
+  Object(Device& device, const ObjectKind& kind) : device_(&device), kind_(&kind) {}
+  Object(Object&& other) noexcept;
+  Object& operator=(Object&& other) noexcept;
+  ~Object();
+  /// Counts the object, which takes `bytes`. To be called as soon as id_ is set, so that a constructor that
+  /// throws later deletes what is counted.
+  void count(int64_t bytes = 0);
   void setLabel(GLenum kind, std::string_view label) const;
 
   Device* device_ = nullptr;
   GLuint id_ = 0;
+
+ private:
+  const ObjectKind* kind_ = nullptr;
+  int64_t counted_ = 0;  ///< bytes
 };
 
 enum class BufferUse {
@@ -50,9 +61,6 @@ class LIMN_API Buffer : public Object {
   /// size() is 0). Throws Error when out of memory.
   Buffer(Device& device, std::string_view label, size_t bytes, BufferUse use = BufferUse::fixed,
          const void* data = nullptr);
-  Buffer(Buffer&& other) noexcept;
-  Buffer& operator=(Buffer&& other) noexcept;
-  ~Buffer();
 
   size_t size() const { return bytes_; }
   /// Writes part of a buffer made with BufferUse::updated. Throws Error beyond the end, as read() does.
@@ -101,9 +109,6 @@ class LIMN_API Texture : public Object {
   /// are clamped, unless setSampling() changes that; passes that filter bind a Sampler or set this at
   /// creation.
   Texture(Device& device, std::string_view label, const TextureDesc& desc);
-  Texture(Texture&& other) noexcept;
-  Texture& operator=(Texture&& other) noexcept;
-  ~Texture();
 
   const TextureDesc& desc() const { return desc_; }  ///< levels resolved
   /// Returns the layers (depth of a 3D texture) of one level.
@@ -140,18 +145,12 @@ class LIMN_API Framebuffer : public Object {
   /// incomplete.
   Framebuffer(Device& device, std::string_view label, std::span<const Attachment> colours,
               Attachment depth = {}, int width = 0, int height = 0);
-  Framebuffer(Framebuffer&& other) noexcept;
-  Framebuffer& operator=(Framebuffer&& other) noexcept;
-  ~Framebuffer();
 };
 
 class LIMN_API Sampler : public Object {
  public:
   Sampler() = default;
   Sampler(Device& device, GLenum minFilter, GLenum magFilter, GLenum wrap = GL_CLAMP_TO_EDGE);
-  Sampler(Sampler&& other) noexcept;
-  Sampler& operator=(Sampler&& other) noexcept;
-  ~Sampler();
 };
 
 struct VertexAttribute {
@@ -169,18 +168,12 @@ class LIMN_API VertexArray : public Object {
  public:
   VertexArray() = default;
   VertexArray(Device& device, std::span<const VertexAttribute> attributes);
-  VertexArray(VertexArray&& other) noexcept;
-  VertexArray& operator=(VertexArray&& other) noexcept;
-  ~VertexArray();
 };
 
 class LIMN_API Query : public Object {
  public:
   Query() = default;
   Query(Device& device, GLenum target);
-  Query(Query&& other) noexcept;
-  Query& operator=(Query&& other) noexcept;
-  ~Query();
   void begin();
   void end();
   bool available() const;
@@ -203,9 +196,6 @@ class LIMN_API Program : public Object {
   Program() = default;
   /// Takes ownership of a linked program object (see ShaderLibrary).
   Program(Device& device, GLuint program, std::string label);
-  Program(Program&& other) noexcept;
-  Program& operator=(Program&& other) noexcept;
-  ~Program();
   void use() const;
   const std::string& label() const { return label_; }
   /// Returns the samplers, images and blocks that the linked program uses. The first call gives each a unit

@@ -12,6 +12,9 @@
 namespace limn::gpu {
 namespace {
 
+constexpr ObjectKind kTextureKind{[](const gl::Functions& gl, GLuint id) { gl.DeleteTextures(1, &id); },
+                                  &Counters::textures, &Counters::textureBytes};
+
 int extent(int size, int level) {
   return std::max(1, size >> level);
 }
@@ -107,37 +110,18 @@ void checkTextureDesc(const Device& device, std::string_view label, const Textur
 }
 
 Texture::Texture(Device& device, std::string_view label, const TextureDesc& desc)
-    : Object(device, 0), desc_(resolved(desc)) {
+    : Object(device, kTextureKind), desc_(resolved(desc)) {
   checkTextureDesc(device, label, desc);
   const gl::Functions& gl = device.gl();
   gl.CreateTextures(desc_.target, 1, &id_);
+  count(textureBytes(desc_));
   allocate(gl, id_, desc_);
   if (outOfMemory(gl)) {
-    gl.DeleteTextures(1, &id_);
     throw Error(fmt::format("out of GPU memory for texture '{}' of {} x {} x {} ({} bytes)", label,
                             desc_.width, desc_.height, desc_.layers, textureBytes(desc_)));
   }
   setLabel(GL_TEXTURE, label);
   setSampling(desc_.levels > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST, GL_NEAREST);
-  ++device.mutableCounters().textures;
-  device.mutableCounters().textureBytes += textureBytes(desc_);
-}
-
-Texture::Texture(Texture&& other) noexcept : Object(std::move(other)), desc_(other.desc_) {}
-
-Texture& Texture::operator=(Texture&& other) noexcept {
-  Texture moved(std::move(other));
-  swap(moved);
-  std::swap(desc_, moved.desc_);
-  return *this;
-}
-
-Texture::~Texture() {
-  if (id_ == 0) return;
-  const ContextScope scope(&device_->context());
-  device_->gl().DeleteTextures(1, &id_);
-  --device_->mutableCounters().textures;
-  device_->mutableCounters().textureBytes -= textureBytes(desc_);
 }
 
 int Texture::layersOf(int level) const {
