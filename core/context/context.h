@@ -29,8 +29,8 @@ LIMN_API Backend parseBackend(std::string_view text);
 
 struct ContextOptions {
   Backend backend = Backend::egl;
-  int device = -1;  ///< EGL device index as `limn info` lists them; -1: the first GPU, or else the
-                    ///< surfaceless platform
+  int device = -1;  ///< EGL device index as `limn info` lists them; -1: the first GPU with OpenGL 4.5, or
+                    ///< else the surfaceless platform
   bool debug =
       false;         ///< KHR_debug output; errors and high-severity messages are collected, see takeErrors()
   int width = 1280;  ///< window only, pixels

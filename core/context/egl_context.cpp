@@ -13,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/context/private/backends.h"
+#include "core/context/private/first_that_works.h"
 
 namespace limn {
 namespace {
@@ -102,35 +103,32 @@ bool rendersOnProcessor(EGLDeviceEXT device) {
   return query != nullptr && listsExtension(query(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
 }
 
-/// Of the first device of this kind that opens; else EGL_NO_DISPLAY.
-EGLDisplay openFirst(bool onProcessor) {
-  for (EGLDeviceEXT device : eglDevices()) {
-    if (rendersOnProcessor(device) != onProcessor) continue;
-    const EGLDisplay display = initialisedDisplay(EGL_PLATFORM_DEVICE_EXT, device);
-    if (display != EGL_NO_DISPLAY) return display;
-  }
-  return EGL_NO_DISPLAY;
-}
+/// Where a display comes from.
+struct DisplayPlace {
+  EGLenum platform;
+  void* native;
+};
 
-/// The first GPU; else the surfaceless platform, which Mesa alone may serve where a GPU has another driver;
-/// else a device that is none.
-EGLDisplay openDefault() {
-  if (const EGLDisplay gpu = openFirst(false); gpu != EGL_NO_DISPLAY) return gpu;
-  if (clientOffers("EGL_MESA_platform_surfaceless")) {
-    const EGLDisplay display = initialisedDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY);
-    if (display != EGL_NO_DISPLAY) return display;
-  }
-  if (const EGLDisplay processor = openFirst(true); processor != EGL_NO_DISPLAY) return processor;
-  fail(
-      "no EGL driver offers the surfaceless or the device platform: install one (Debian: libegl-mesa0) or "
-      "choose "
-      "another back end (--backend osmesa)");
+/// The GPUs; then the surfaceless platform, which Mesa alone may serve where a GPU has another driver; then
+/// devices that are none.
+std::vector<DisplayPlace> defaultPlaces() {
+  std::vector<DisplayPlace> places;
+  const std::vector<EGLDeviceEXT> devices = eglDevices();
+  const auto addDevices = [&](bool onProcessor) {
+    for (EGLDeviceEXT device : devices) {
+      if (rendersOnProcessor(device) == onProcessor) places.push_back({EGL_PLATFORM_DEVICE_EXT, device});
+    }
+  };
+  addDevices(false);
+  if (clientOffers("EGL_MESA_platform_surfaceless"))
+    places.push_back({EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY});
+  addDevices(true);
+  return places;
 }
 
 class EglContext final : public Context {
  public:
-  explicit EglContext(const ContextOptions& options)
-      : display_(options.device < 0 ? openDefault() : openDevice(options.device)) {
+  EglContext(EGLDisplay display, const ContextOptions& options) : display_(display) {
     if (!listsExtension(eglQueryString(display_, EGL_EXTENSIONS), "EGL_KHR_surfaceless_context")) {
       throw Error("this EGL driver makes no context current without a surface (EGL_KHR_surfaceless_context)");
     }
@@ -194,8 +192,21 @@ class EglContext final : public Context {
 }  // namespace
 
 std::unique_ptr<Context> createEglContext(const ContextOptions& options) {
-  auto context = std::make_unique<EglContext>(options);
-  context->initialise(options);
+  const auto create = [&](EGLDisplay display) {
+    auto context = std::make_unique<EglContext>(display, options);
+    context->initialise(options);
+    return context;
+  };
+  if (options.device >= 0) return create(openDevice(options.device));
+  auto context = firstThatWorks(defaultPlaces(), [&](const DisplayPlace& place) {
+    const EGLDisplay display = initialisedDisplay(place.platform, place.native);
+    return display == EGL_NO_DISPLAY ? nullptr : create(display);
+  });
+  if (!context) {
+    fail(
+        "no EGL driver offers the surfaceless or the device platform: install one (Debian: libegl-mesa0) or "
+        "choose another back end (--backend osmesa)");
+  }
   return context;
 }
 
