@@ -127,7 +127,8 @@ void GpuScene::Implementation::updateInstances(const Pose& pose) {
       local = deform.bounds(scene, pose.deformed[d]);
     }
     const glm::mat3 linear(drawn.objectToWorld);
-    state.mirrored = glm::determinant(linear) < 0;
+    const bool mirrors = glm::determinant(linear) < 0;
+    state.mirrored = mirrors != drawn.mirroredSkin;
     state.bounds = transformed(local, drawn.objectToWorld);
     bounds.add(state.bounds);
 
@@ -137,7 +138,7 @@ void GpuScene::Implementation::updateInstances(const Pose& pose) {
     const float scale =
         std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2]), 1e-30f});
     const glm::mat3 m = linear / scale;
-    const float side = state.mirrored ? -1.f : 1.f;
+    const float side = mirrors ? -1.f : 1.f;
     out.normal_to_world = glm::mat4(glm::mat3(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
                                               side * glm::cross(m[0], m[1])));
     out.material = static_cast<uint32_t>(state.material);

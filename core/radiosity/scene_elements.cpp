@@ -30,11 +30,12 @@ struct SceneElements::Instance {
     }
     const glm::mat4& matrix = draw.objectToWorld;
     const glm::dmat3 m{glm::dmat4(matrix)};
-    mirrored = glm::determinant(m) < 0;
+    const bool mirrors = glm::determinant(m) < 0;
+    mirrored = mirrors != draw.mirroredSkin;
     // The inverse transpose but for its length, which no flat instance can make infinite.
     const double scale = std::max({glm::length(m[0]), glm::length(m[1]), glm::length(m[2]), 1e-300});
     const glm::dmat3 unit = m * (1 / scale);
-    const double side = mirrored ? -1 : 1;
+    const double side = mirrors ? -1 : 1;
     const glm::mat3 toNormal(glm::dmat3(side * glm::cross(unit[1], unit[2]),
                                         side * glm::cross(unit[2], unit[0]),
                                         side * glm::cross(unit[0], unit[1])));

@@ -108,8 +108,11 @@ void addScene(Hasher& h, const scene::Scene& scene) {
 
 void addPose(Hasher& h, const scene::Pose& pose, int lights) {
   h.add(pose.instances.size());
-  for (const auto& i : pose.instances)
+  constexpr uint32_t mirroredSkin = 0x5c14;  // where there is one, for other results are known without it
+  for (const auto& i : pose.instances) {
     h.addAll(i.node == scene::kNone, i.mesh, i.primitive, i.objectToWorld, i.deformed);
+    if (i.mirroredSkin) h.add(mirroredSkin);
+  }
   h.add(pose.deformed.size());
   for (const auto& d : pose.deformed) h.addAll(d.mesh, d.primitive, d.joints, d.morphWeights);
   for (const auto& d : pose.dynamic) addPrimitive(h, *d.primitive);

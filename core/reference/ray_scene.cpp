@@ -306,7 +306,8 @@ RayScene::RayScene(const scene::Scene& scene, const scene::Pose& pose, bool unsh
     const glm::mat4& matrix = instance.objectToWorld;
     draw.tangentToWorld = glm::mat3(matrix);
     draw.normalToWorld = normalMatrix(matrix);
-    draw.orientation = glm::determinant(glm::dmat3(glm::dmat4(matrix))) < 0 ? -1.f : 1.f;
+    const bool mirrors = glm::determinant(glm::dmat3(glm::dmat4(matrix))) < 0;
+    draw.orientation = mirrors != instance.mirroredSkin ? -1.f : 1.f;
 
     const std::pair<int, int> key{instance.mesh, instance.primitive};
     if (!dynamic && instance.deformed == scene::kNone && uses[key] > 1) {

@@ -198,6 +198,7 @@ void addInstances(const Scene& scene, const Animation* animation, double time, P
         const bool skinned =
             instance.deformed != kNone && !pose.deformed[at(instance.deformed)].joints.empty();
         instance.objectToWorld = skinned ? glm::mat4(1) : world;
+        instance.mirroredSkin = skinned && glm::determinant(glm::dmat3(world)) < 0;
         pose.instances.push_back(instance);
       }
     }

@@ -41,6 +41,7 @@ struct Bounds {
   glm::vec3 centre() const { return empty() ? glm::vec3(0) : 0.5f * (low + high); }
   /// Returns the radius of the sphere through the corners; 0 when empty.
   float radius() const { return empty() ? 0.f : 0.5f * glm::length(high - low); }
+  bool operator==(const Bounds&) const = default;
 };
 
 /// Holds an 8-bit RGBA image with its whole mip chain, built once on the CPU (averaged in linear light for
@@ -334,6 +335,10 @@ struct DrawInstance {
   glm::mat4 objectToWorld{
       1};                ///< identity for skinned primitives: their vertices are deformed into world space
   int deformed = kNone;  ///< index into Pose::deformed when skinned or morphed
+  /// Says whether front faces turn round although objectToWorld does not mirror: those of a skinned primitive
+  /// whose node does. Its transform decides on the winding, as that of rigid nodes (glTF 2.0, section 3.7.4).
+  bool mirroredSkin = false;
+  bool operator==(const DrawInstance&) const = default;
 };
 
 /// Holds the skin and morph state of one primitive instance.

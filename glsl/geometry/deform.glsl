@@ -32,7 +32,8 @@ LIMN_FN vec3 skin_normal(mat4 joint, vec3 normal) {
   return safe_normalize(dot(x, yz) < 0.0f ? -result : result, normal);
 }
 
-// Tangents lie in the surface and so move like differences of positions. w is the bitangent's sign.
+// Tangents lie in the surface and so move like differences of positions. w is the bitangent's sign, which those who draw flip
+// where the primitive's node mirrors, skinned or not.
 LIMN_FN vec4 skin_tangent(mat4 joint, vec4 tangent) {
   vec3 t = vec3(tangent);
   return vec4(safe_normalize(vec3(joint * vec4(t, 0.0f)), t), tangent.w);

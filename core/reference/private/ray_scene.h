@@ -28,8 +28,9 @@ struct Draw {
   glm::mat4 toWorld{1};
   glm::mat3 normalToWorld{1};
   glm::mat3 tangentToWorld{1};
-  float orientation =
-      1;  ///< -1 where toWorld's space is mirrored against the triangles' winding: front faces flip
+  /// Holds -1 where toWorld, or else the transform of a skinned primitive's node, mirrors: front faces and
+  /// bitangents flip.
+  float orientation = 1;
   /// Distance in metres, along the normal, that takes a point of the surface clear of it despite rounding:
   /// 2^-20 of the largest coordinate met on the way from vertices to world space.
   float rayOffset = 0;

@@ -78,6 +78,40 @@ TEST(ReferenceGeometry, InstancesEqualCopies) {
   EXPECT_GT(sum, 0);
 }
 
+/// Joints that mirror turn the winding and the bitangents round as the transform of a rigid mesh does.
+TEST(ReferenceGeometry, MirroredSkinsEqualMirroredInstances) {
+  World rigid = floorWorld();
+  rigid.scene.images.emplace_back().levels.push_back({1, 1, {160, 192, 220, 255}});
+  rigid.scene.materials[0].normalTexture.image = 0;
+  scene::Primitive& primitive = rigid.scene.meshes[0].primitives[0];
+  primitive.tangents.assign(4, {1, 0, 0, 1});
+  rigid.scene.nodes.resize(3);  // a root, its mesh and its joint
+  rigid.scene.nodes[0].transform.scale = {-1, 1, 1};
+  rigid.scene.nodes[1].parent = rigid.scene.nodes[2].parent = 0;
+  rigid.scene.nodes[1].mesh = 0;
+  World skinned = rigid;
+  scene::Primitive& bound = skinned.scene.meshes[0].primitives[0];
+  bound.joints.assign(4, glm::u16vec4(0));
+  bound.weights.assign(4, glm::vec4(1, 0, 0, 0));
+  bound.jointBounds = {bound.bounds};
+  skinned.scene.skins.push_back({{2}, {glm::mat4(1)}});
+  skinned.scene.nodes[1].skin = 0;
+  for (World* world : {&rigid, &skinned}) {
+    world->pose = scene::evaluate(world->scene, 0);
+    world->addLight(glsl::light_point, {0.5f, 1, 0.5f}, {0, -1, 0}, glm::vec3(1));
+  }
+  const Image expected = render(rigid.request(17, Term::direct, 2)).image;
+  const Image image = render(skinned.request(17, Term::direct, 2)).image;
+  EXPECT_EQ(image.at(8, 8, image.channel("coverage")), 1.f);
+  EXPECT_LT(std::abs(expected.at(8, 8, expected.channel("N.Y"))), 0.95f) << "the map tilts the normal";
+  for (const char* channel : {"coverage", "id", "N.X", "N.Y", "N.Z", "R"})
+    for (int y = 0; y < 17; ++y)
+      for (int x = 0; x < 17; ++x)
+        EXPECT_NEAR(image.at(x, y, image.channel(channel)), expected.at(x, y, expected.channel(channel)),
+                    1e-5f)
+            << channel << ' ' << x << ' ' << y;
+}
+
 TEST(ReferenceGeometry, SkinnedAndMorphedPrimitivesAreTracedDeformed) {
   World world = floorWorld();
   auto& primitive = world.scene.meshes[0].primitives[0];

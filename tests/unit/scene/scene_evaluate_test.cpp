@@ -144,6 +144,18 @@ TEST(SceneEvaluate, Skin) {
   }
 }
 
+TEST(SceneEvaluate, NodesOfSkinnedMeshesDecideOnTheWinding) {
+  Scene scene = loadBuilt(skinned());
+  EXPECT_FALSE(evaluate(scene, 0).instances[0].mirroredSkin);
+  for (scene::Node& node : scene.nodes)
+    if (node.mesh != kNone) node.transform.scale = {-1, 1, 1};
+  const Pose pose = evaluate(scene, 0);
+  EXPECT_TRUE(pose.instances[0].mirroredSkin);
+  EXPECT_EQ(pose.instances[0].objectToWorld, glm::mat4(1));
+  scene.meshes[0].primitives[0].joints.clear();
+  EXPECT_FALSE(evaluate(scene, 0).instances[0].mirroredSkin) << "rigid: objectToWorld says it";
+}
+
 TEST(SceneEvaluate, SkinNormalsFollowTheSurface) {
   const glm::mat4 m = glm::scale(glm::rotate(glm::mat4(1), 0.7f, glm::vec3(1, 2, 3)), glm::vec3(1, 3, -0.5f));
   const glm::vec3 n = glm::normalize(glm::vec3(1, 1, 1));
