@@ -89,6 +89,7 @@ struct ShadowMapService::Implementation {
   std::vector<scene::Bounds> boxes;
   std::unique_ptr<VisibleScene> visible = {};  ///< made at the first request that is fitted to it
   bool watching = false;                       ///< some request of the graph is
+  bool fitted = false;                         ///< the maps are fitted to what was taken
   std::vector<std::unique_ptr<Request>> requests;
   DerivedMaps derived;
   std::vector<KnownFourierMaps> fourier = {};
@@ -101,17 +102,27 @@ struct ShadowMapService::Implementation {
   bool lambertian() const {
     return std::ranges::all_of(scene.scene().materials, &scene::Material::lambertian);
   }
-  void take(const scene::Pose& pose) {
-    lights = pose.lights;
-    lightNames = pose.lightNames;
-    boxes.resize(scene.instanceCount());
-    for (uint32_t i = 0; i < boxes.size(); ++i) boxes[i] = scene.bounds(i);
+  /// Lights and bounds of `pose`. True if they changed.
+  bool take(const scene::Pose& pose) {
+    bool changed = !sameBytes(lights, pose.lights) || lightNames != pose.lightNames ||
+                   boxes.size() != scene.instanceCount();
+    if (changed) {
+      lights = pose.lights;
+      lightNames = pose.lightNames;
+      boxes.resize(scene.instanceCount());
+    }
+    for (uint32_t i = 0; i < boxes.size(); ++i) {
+      if (boxes[i] == scene.bounds(i)) continue;
+      boxes[i] = scene.bounds(i);
+      changed = true;
+    }
+    return changed;
   }
-  /// What the camera sees of `pose`, which the bounds belong to.
-  void see(const scene::Pose& pose) {
+  /// What the camera sees of `pose`, which the bounds belong to. True if it changed.
+  bool see(const scene::Pose& pose) {
     if (!visible) visible = std::make_unique<VisibleScene>(scene.scene());
     const glm::vec2 size(scene.frame().frame_size);
-    visible->update(pose, boxes, scene.camera(), size.x / size.y);
+    return visible->update(pose, boxes, scene.camera(), size.x / size.y);
   }
   const glsl::Light& light(uint32_t index) const {
     if (index >= lights.size())
@@ -254,6 +265,7 @@ void ShadowMapService::begin() {
   s.uncoveredHandle = {};
   s.take(context().pose);
   s.watching = false;
+  s.fitted = true;  // requests are, as they are made
 }
 
 ShadowMaps ShadowMapService::request(std::span<const uint32_t> lights, const ShadowMapDesc& desc) {
@@ -360,8 +372,9 @@ FourierMaps ShadowMapService::fourierMaps(const ShadowMaps& maps, const FourierD
 bool ShadowMapService::update(frame::FrameGraph& graph, const scene::Pose& pose) {
   Implementation& s = *implementation_;
   const bool lightsCameOrWent = pose.lights.size() != s.lights.size();
-  s.take(pose);
-  if (s.watching) s.see(pose);
+  if (s.take(pose)) s.fitted = false;
+  if (s.watching && s.see(pose)) s.fitted = false;
+  if (s.fitted) return false;
   if (lightsCameOrWent) return true;
   for (const auto& request : s.requests) {
     if (s.layoutsOf(*request) != request->layouts) return true;
@@ -372,6 +385,7 @@ bool ShadowMapService::update(frame::FrameGraph& graph, const scene::Pose& pose)
     graph.touch(request->importedViews);
     graph.touch(request->importedLights);
   }
+  s.fitted = true;
   return false;
 }
 

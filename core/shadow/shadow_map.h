@@ -154,7 +154,8 @@ class LIMN_API ShadowMapService : public FrameService {
 
  private:
   void begin() override;
-  /// Refits near, far and half angles. Returns true when a light needs another layout.
+  /// Refits near, far and half angles where lights, geometry or, for MapFit::view, the camera moved. Returns
+  /// true when a light needs another layout.
   bool update(frame::FrameGraph& graph, const scene::Pose& pose) override;
 
   struct Implementation;

@@ -64,8 +64,15 @@ VisibleScene::VisibleScene(const scene::Scene& scene) : scene_(scene) {
   }
 }
 
-void VisibleScene::update(const scene::Pose& pose, std::span<const Bounds> instanceBounds,
+bool VisibleScene::update(const scene::Pose& pose, std::span<const Bounds> instanceBounds,
                           const scene::CameraPose& camera, float aspect) {
+  const std::array<glm::vec4, 4> planes = frustum(camera, aspect);
+  if (planes == planes_ && pose.instances == instances_ &&
+      std::ranges::equal(instanceBounds, instanceBounds_))
+    return false;
+  planes_ = planes;
+  instances_ = pose.instances;
+  instanceBounds_.assign(instanceBounds.begin(), instanceBounds.end());
   parts_.clear();
   for (uint32_t i = 0; i < pose.instances.size(); ++i) {
     const scene::DrawInstance& drawn = pose.instances[i];
@@ -76,7 +83,6 @@ void VisibleScene::update(const scene::Pose& pose, std::span<const Bounds> insta
     for (const Bounds& box : boxes_[static_cast<size_t>(drawn.mesh)][static_cast<size_t>(drawn.primitive)])
       parts_.push_back({scene::transformed(box, drawn.objectToWorld), i});
   }
-  const std::array<glm::vec4, 4> planes = frustum(camera, aspect);
   visibleCount_ = 0;
   for (const ScenePart& part : parts_) {
     if (visibleCount_ == visible_.size()) visible_.emplace_back();
@@ -88,6 +94,7 @@ void VisibleScene::update(const scene::Pose& pose, std::span<const Bounds> insta
     }
     if (!seen.solid.empty()) ++visibleCount_;
   }
+  return true;
 }
 
 }  // namespace limn::shadow

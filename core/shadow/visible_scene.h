@@ -2,7 +2,9 @@
 // maps to it. No OpenGL.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
@@ -31,8 +33,9 @@ class LIMN_API VisibleScene {
   explicit VisibleScene(const scene::Scene& scene);
 
   /// Updates the parts to `pose` and the camera. `instanceBounds` are the world bounds of pose.instances;
-  /// they replace the boxes of what is deformed or dynamic. `aspect` is width over height.
-  void update(const scene::Pose& pose, std::span<const scene::Bounds> instanceBounds,
+  /// they replace the boxes of what is deformed or dynamic. `aspect` is width over height. Returns false, and
+  /// does nothing, where all of these are those of the last call.
+  bool update(const scene::Pose& pose, std::span<const scene::Bounds> instanceBounds,
               const scene::CameraPose& camera, float aspect);
 
   std::span<const ScenePart> parts() const { return parts_; }
@@ -41,6 +44,9 @@ class LIMN_API VisibleScene {
  private:
   const scene::Scene& scene_;
   std::vector<std::vector<std::vector<scene::Bounds>>> boxes_;  ///< of meshes' primitives, object space
+  std::vector<scene::DrawInstance> instances_;  ///< of the last update, as are those that follow
+  std::vector<scene::Bounds> instanceBounds_;
+  std::array<glm::vec4, 4> planes_{};
   std::vector<ScenePart> parts_;
   std::vector<VisiblePart> visible_;  ///< the first visibleCount_ are valid; the rest is kept memory
   size_t visibleCount_ = 0;

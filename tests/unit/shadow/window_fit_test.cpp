@@ -344,6 +344,35 @@ TEST(WindowFitOf, FacesStayWhatTheyAreWhileTheCameraMovesLittle) {
   EXPECT_LE(changes, 15);
 }
 
+TEST(VisibleSceneOf, FollowsWhatMovedAndIsLeftAsItIsOtherwise) {
+  Cloud cloud(1);
+  scene::CameraPose camera = scene::lookAt({0, 1.2f, 3.5f}, {0, 0.2f, 0}, 0.5f);
+  float aspect = 1.3f;
+  VisibleScene visible(cloud.scene);
+  const auto expectToFollow = [&](const char* what) {
+    SCOPED_TRACE(what);
+    EXPECT_TRUE(visible.update(cloud.pose, cloud.boxes, camera, aspect));
+    EXPECT_FALSE(visible.update(cloud.pose, cloud.boxes, camera, aspect));
+    VisibleScene anew(cloud.scene);
+    anew.update(cloud.pose, cloud.boxes, camera, aspect);
+    EXPECT_EQ(visible.visible().size(), anew.visible().size());
+    ASSERT_EQ(visible.parts().size(), anew.parts().size());
+    for (size_t i = 0; i < anew.parts().size(); ++i)
+      EXPECT_EQ(visible.parts()[i].bounds, anew.parts()[i].bounds) << i;
+  };
+  expectToFollow("the first time");
+  camera = scene::lookAt({0.5f, 1.2f, 3.5f}, {0, 0.2f, 0}, 0.5f);
+  expectToFollow("the camera");
+  aspect = 1;
+  expectToFollow("the picture's shape");
+  cloud.pose.instances[1].objectToWorld *= glm::mat4(glm::mat3(-1, 0, 0, 0, 1, 0, 0, 0, -1));
+  expectToFollow("an instance turned, within bounds that stay");
+  cloud.pose.instances[1].deformed = 0;
+  expectToFollow("an instance that is deformed now");
+  cloud.boxes[1].high.y += 1;
+  expectToFollow("its bounds");
+}
+
 TEST(WindowFitOf, CubesAndWhatSeesEverythingCoversTheScene) {
   const Cloud cloud(1);
   VisibleScene visible(cloud.scene);
