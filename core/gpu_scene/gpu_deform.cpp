@@ -1,9 +1,12 @@
 #include "core/gpu_scene/gpu_deform.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cstring>
 
+#include "core/base/error.h"
 #include "core/gpu_scene/gpu_scene_data.h"
 
 namespace limn::scene {
@@ -20,6 +23,28 @@ void store(gpu::Device& device, gpu::Buffer& buffer, const char* label, const vo
   buffer.update(0, data, bytes);
 }
 
+/// Throws where the deform pass could not reach all of a buffer.
+void checkBlock(const gpu::Device& device, const char* what, size_t words) {
+  const size_t bytes = words * sizeof(uint32_t);
+  const auto most = static_cast<size_t>(device.limits().maxStorageBlockBytes);
+  if (bytes > most)
+    throw Error(fmt::format("scene: {} take {} MiB, more than the {} MiB of a storage buffer", what,
+                            bytes >> 20, most >> 20));
+}
+
+/// Throws before memory is taken.
+void checkSizes(const gpu::Device& device, const Scene& scene) {
+  size_t skin = 0, morph = 0;
+  for (const Mesh& mesh : scene.meshes) {
+    for (const Primitive& primitive : mesh.primitives) {
+      skin += primitive.joints.size() * kSkinWords;
+      morph += primitive.morphTargets.size() * primitive.positions.size() * kMorphFloats;
+    }
+  }
+  checkBlock(device, "joints and weights of skins", skin);
+  checkBlock(device, "morph targets", morph);
+}
+
 void append(std::vector<float>& out, const std::vector<glm::vec3>& deltas, size_t i) {
   const glm::vec3 d = i < deltas.size() ? deltas[i] : glm::vec3(0);
   out.insert(out.end(), {d.x, d.y, d.z});
@@ -28,6 +53,7 @@ void append(std::vector<float>& out, const std::vector<glm::vec3>& deltas, size_
 }  // namespace
 
 GpuDeform::GpuDeform(gpu::Device& device, const Scene& scene) : device_(device) {
+  checkSizes(device, scene);
   std::vector<uint32_t> skin;
   std::vector<float> morph;
   for (size_t m = 0; m < scene.meshes.size(); ++m) {

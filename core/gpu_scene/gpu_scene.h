@@ -86,7 +86,7 @@ struct SurfacePrograms {
 class LIMN_API GpuScene {
  public:
   /// Uploads geometry, materials and textures. `scene` and `device` must outlive this object. Throws Error
-  /// when out of memory.
+  /// when out of memory, and where skins or morph targets are larger than a storage buffer of the device.
   GpuScene(gpu::Device& device, const Scene& scene);
   ~GpuScene();
   GpuScene(const GpuScene&) = delete;

@@ -1,8 +1,12 @@
 #include "core/gpu_scene/gpu_scene.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <functional>
+#include <string>
+#include <utility>
 
 #include "glsl/surface/gbuffer.glsl"
 #include "tests/gpu/gl_test.h"
@@ -12,6 +16,9 @@ namespace limn {
 namespace {
 
 using namespace limn::test;
+using ::testing::AllOf;
+using ::testing::EndsWith;
+using ::testing::StartsWith;
 
 constexpr int kSide = 128;
 
@@ -253,6 +260,58 @@ TEST_F(GpuSceneTest, SkinnedAndMorphedVerticesEqualTransformedOnes) {
     EXPECT_LT(differ, 5);  // rounding at the silhouette
     EXPECT_GT(covered, 1000);
   }
+}
+
+/// Joints that mirror turn the winding and the bitangents round as the transform of a rigid mesh does.
+TEST_F(GpuSceneTest, MirroredSkinsEqualMirroredInstances) {
+  scene::Scene rigid;
+  rigid.images.emplace_back().levels.push_back({1, 1, {160, 192, 220, 255}});
+  scene::Material material;
+  material.normalTexture.image = 0;
+  addMesh(rigid, floorPrimitive(1, addMaterial(rigid, material)));
+  rigid.nodes.resize(3);  // a root, its mesh and its joint
+  rigid.nodes[0].transform.scale = {-1, 1, 1};
+  rigid.nodes[1].parent = rigid.nodes[2].parent = 0;
+  rigid.nodes[1].mesh = 0;
+  scene::Scene skinned = rigid;
+  scene::Primitive& bound = skinned.meshes[0].primitives[0];
+  bound.joints.assign(4, glm::u16vec4(0));
+  bound.weights.assign(4, glm::vec4(1, 0, 0, 0));
+  bound.jointBounds = {bound.bounds};
+  skinned.skins.push_back({{2}, {glm::mat4(1)}});
+  skinned.nodes[1].skin = 0;
+  const auto camera = scene::lookAt({0.2f, 4, 0.3f}, {0, 0, 0}, 0.6f);
+  const Picture expected = draw(rigid, scene::evaluate(rigid, 0), camera);
+  const Picture picture = draw(skinned, scene::evaluate(skinned, 0), camera);
+  EXPECT_EQ(picture.instance[picture.at(64, 64)], 0u);
+  EXPECT_LT(std::abs(expected.shadingNormal(64, 64).y), 0.95f) << "the map tilts the normal";
+  EXPECT_EQ(picture.instance, expected.instance);
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      if (expected.instance[expected.at(x, y)] == glsl::no_instance) continue;
+      EXPECT_LT(glm::distance(picture.shadingNormal(x, y), expected.shadingNormal(x, y)), 1e-3f)
+          << x << ' ' << y;
+      EXPECT_LT(glm::distance(picture.faceNormal(x, y), expected.faceNormal(x, y)), 1e-3f) << x << ' ' << y;
+    }
+}
+
+/// Shaders reach no further into a buffer than the device's largest storage block.
+TEST_F(GpuSceneTest, SkinsAndMorphTargetsLargerThanAStorageBufferAreRefused) {
+  const auto most = static_cast<size_t>(device().limits().maxStorageBlockBytes);
+  constexpr size_t skinBytes = 4 * sizeof(uint16_t) + 4 * sizeof(float), morphBytes = 9 * sizeof(float);
+  const auto refusal = [](scene::Primitive primitive) {
+    scene::Scene scene;
+    primitive.material = addMaterial(scene);
+    addMesh(scene, std::move(primitive));
+    return errorOf([&] { const scene::GpuScene tooLarge(device(), scene); });
+  };
+  scene::Primitive skinned = floorPrimitive(1, 0), morphed = spherePrimitive(1, 0, 128);
+  skinned.joints.resize(most / skinBytes + 1);
+  morphed.morphTargets.resize(most / (morphBytes * morphed.positions.size()) + 1);
+  const std::string limit = fmt::format("more than the {} MiB of a storage buffer", most >> 20);
+  EXPECT_THAT(refusal(std::move(skinned)),
+              AllOf(StartsWith("scene: joints and weights of skins take "), EndsWith(limit)));
+  EXPECT_THAT(refusal(std::move(morphed)), AllOf(StartsWith("scene: morph targets take "), EndsWith(limit)));
 }
 
 TEST_F(GpuSceneTest, OnlyWhatMovesIsTouched) {
