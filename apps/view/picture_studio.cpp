@@ -140,7 +140,7 @@ void PictureStudio::place(const PictureOrder& order) {
   const bool turned = !placed_ || s.environmentRotation != placed_->environmentRotation ||
                       s.environmentScale != placed_->environmentScale;
   const bool painted =
-      (relit || view_->defaultLights) &&
+      (relit || session::movingRelights(*view_, s, s.time)) &&
       (changesMeshes(facts_.lights, s) || (placed_ && changesMeshes(facts_.lights, *placed_)));
   if (turned || painted) reference_.stop();  // it reads the environment and what surfaces emit
   if (!relit) {

@@ -77,17 +77,31 @@ std::string text(const glm::dvec3& v) {
   return fmt::format("{},{},{}", one(v.x), one(v.y), one(v.z));
 }
 
-void apply(scene::Scene& scene, const glsl::Light& now, const std::string& name, const LightEdit& edit,
-           scene::Node& node) {
+/// Node to world of a node whose light gets that frame, with the node's scale, which its mesh and what hangs
+/// on it have. Where there is none the frame is kept to the bit; a node that is flat has no axes to turn.
+glm::mat4 placed(const glm::mat3& axes, const glm::vec3& position, const AtRest& rest) {
+  const glm::mat3 scale = glm::transpose(axesOf(rest.light)) * glm::mat3(rest.nodeToWorld), one(1);
+  constexpr float kRounding = 1e-5f;
+  bool scaled = false;
+  for (int c = 0; c < 3; ++c)
+    scaled = scaled || glm::any(glm::greaterThan(glm::abs(scale[c] - one[c]), glm::vec3(kRounding)));
+  const bool kept = scaled && glm::determinant(glm::dmat3(scale)) != 0;
+  return frameOf(kept ? axes * scale : axes, position);
+}
+
+void apply(scene::Scene& scene, const scene::Pose& pose, int light, const std::string& name,
+           const LightEdit& edit, int index) {
+  const glsl::Light& now = pose.lights[static_cast<size_t>(light)];
+  scene::Node& node = scene.nodes[static_cast<size_t>(index)];
   scene::LightSource& source = ownSource(scene, node);
   const bool directional = source.type == glsl::light_directional;
   if (edit.position && directional)
     throw UsageError(
         fmt::format("--set-light {}.position: a directional light has none; it has rotation", name));
   if (edit.position || edit.rotation) {
-    const glm::mat3 axes = edit.rotation ? rotationOf(*edit.rotation) : axesOf(now);
-    node.placed = glm::mat4(axes);
-    (*node.placed)[3] = glm::vec4(edit.position ? glm::vec3(*edit.position - scene.origin) : now.position, 1);
+    node.placed = placed(edit.rotation ? rotationOf(*edit.rotation) : axesOf(now),
+                         edit.position ? glm::vec3(*edit.position - scene.origin) : now.position,
+                         atRest(scene, pose, light, index));
   }
   if (edit.size && directional) source.angle = edit.size->x;
   if (edit.size && !directional) node.limnArea = *edit.size;
@@ -135,7 +149,7 @@ void applyLightEdits(scene::Scene& scene, const scene::Pose& pose, const LightEd
     const int light = findNamed("light", name, pose.lightNames);
     const glsl::Light& now = pose.lights[static_cast<size_t>(light)];
     if (const int node = nodeOf(scene, light); node != scene::kNone)
-      apply(scene, now, name, edit, scene.nodes[static_cast<size_t>(node)]);
+      apply(scene, pose, light, name, edit, node);
     else if (const auto mesh = meshLightOf(scene, pose, light))
       applyToMesh(scene, pose, light, *mesh, edit);
     else
@@ -145,6 +159,13 @@ void applyLightEdits(scene::Scene& scene, const scene::Pose& pose, const LightEd
               ? "part of the environment"
               : "one of several of its mesh, or its mesh is textured, instanced or deformed"));
   }
+}
+
+bool followTime(const LightEdits& edits) {
+  return std::ranges::any_of(edits, [](const auto& named) {
+    const LightEdit& edit = named.second;
+    return (edit.position || edit.rotation || edit.size) && !(edit.position && edit.rotation);
+  });
 }
 
 bool isEditable(const scene::Scene& scene, const scene::Pose& pose, int index) {

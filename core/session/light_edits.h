@@ -14,8 +14,8 @@
 
 namespace limn::session {
 
-/// Holds the new values of one light; absent values stay those of the file. A light that is a mesh (an
-/// emissive quad) moves its whole node.
+/// Holds the new values of one light; absent values stay those of the file and of its animations. The light's
+/// whole node moves, with its mesh and with what hangs on it.
 struct LightEdit {
   std::optional<glm::dvec3>
       position;  ///< in the file's world, metres; the light then stays there and ignores animations
@@ -42,9 +42,13 @@ LIMN_API std::vector<std::string> printed(const LightEdits& edits);
 LIMN_API void giveOwnMaterials(scene::Scene& scene);
 
 /// Changes the lights of `scene`, which must be those of its file. `pose` is the pose of that scene and is
-/// not changed. Throws UsageError for a light that does not exist or cannot be changed (isEditable), and for
-/// a property that the light does not have.
+/// not changed; what edits leave of a light's placement is that of `pose` (followTime). Throws UsageError for
+/// a light that does not exist or cannot be changed (isEditable), and for a property that the light does not
+/// have.
 LIMN_API void applyLightEdits(scene::Scene& scene, const scene::Pose& pose, const LightEdits& edits);
+/// Says whether an edit sets a part of a light's placement and leaves the other one to animations, so that
+/// the edits must be applied anew at each time.
+LIMN_API bool followTime(const LightEdits& edits);
 
 /// Says whether light `index` of a pose can be edited: it belongs to a node, or it is the only light of its
 /// node's mesh, which has constant emission, is rigid and not instanced. Of lights that share a name only the

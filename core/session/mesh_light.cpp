@@ -26,12 +26,6 @@ int onlyEmitter(const scene::Scene& scene, const scene::Mesh& mesh) {
   return material.emissiveTexture.image == scene::kNone ? found : scene::kNone;
 }
 
-glm::mat4 frameOf(const glm::mat3& axes, const glm::vec3& position) {
-  glm::mat4 frame(axes);
-  frame[3] = glm::vec4(position, 1);
-  return frame;
-}
-
 glm::mat4 inverseOf(const glm::mat3& axes, const glm::vec3& position) {
   const glm::mat3 back = glm::transpose(axes);
   return frameOf(back, -(back * position));
@@ -41,16 +35,15 @@ glm::vec2 sizeOf(const glsl::Light& light) {
   return {light.length_u, light.length_v};
 }
 
-/// The light and its node where no animation has moved them yet, so that what is made of them is the same
-/// whatever the time is.
-struct AtRest {
-  glsl::Light light;
-  glm::mat4 nodeToWorld;
-};
+}  // namespace
+
 AtRest atRest(const scene::Scene& scene, const scene::Pose& pose, int light, int node) {
   const glsl::Light& now = pose.lights[at(light)];
   if (!scene.animations.empty()) {
     const scene::Pose start = scene::evaluate(scene, 0);
+    // Meshes may be no lights at some times, lights of nodes always are.
+    if ((now.flags & glsl::light_flag_geometry) == 0)
+      return {start.lights[at(light)], start.nodeToWorld[at(node)]};
     for (const glsl::Light& l : start.lights)
       if ((l.flags & glsl::light_flag_geometry) != 0 && l.own_instance == now.own_instance)
         return {l, start.nodeToWorld[at(node)]};
@@ -58,7 +51,11 @@ AtRest atRest(const scene::Scene& scene, const scene::Pose& pose, int light, int
   return {now, pose.nodeToWorld[at(node)]};
 }
 
-}  // namespace
+glm::mat4 frameOf(const glm::mat3& axes, const glm::vec3& position) {
+  glm::mat4 frame(axes);
+  frame[3] = glm::vec4(position, 1);
+  return frame;
+}
 
 void giveOwnMaterials(scene::Scene& scene) {
   std::vector<int> uses(scene.materials.size());

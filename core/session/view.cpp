@@ -202,9 +202,15 @@ void relight(View& view, const SceneQuestion& question) {
   scene::evaluate(scene, view.time, view.animation, view.pose);
 }
 
+bool movingRelights(const View& view, const SceneQuestion& question, double time) {
+  return view.defaultLights || (time != view.time && !view.scene.animations.empty() &&
+                                followTime(parseLightEdits(question.lightSettings)));
+}
+
 void moveTo(View& view, const SceneQuestion& question, double time) {
+  const bool relights = movingRelights(view, question, time);
   view.time = time;
-  if (view.defaultLights) {
+  if (relights) {
     relight(view, question);
     return;
   }

@@ -56,8 +56,11 @@ LIMN_API View open(const SceneQuestion& question, const Warn& warn = {});
 /// do not exist.
 LIMN_API void relight(View& view, const SceneQuestion& question);
 
-/// Sets time, pose and camera, and the default lights, which follow the camera.
+/// Sets time, pose and camera, and the lights that follow one of them: default lights the camera, and lights
+/// of which --set-light sets the position or rotation alone the time.
 LIMN_API void moveTo(View& view, const SceneQuestion& question, double time);
+/// Says whether moveTo() would call relight(), which may write to materials.
+LIMN_API bool movingRelights(const View& view, const SceneQuestion& question, double time);
 
 /// Sets the size of every light that has an extent (--light-size). Throws UsageError when there is none.
 LIMN_API void resizeLights(scene::Scene& scene, double size);

@@ -1,5 +1,5 @@
-// Declares how light_edits changes lights that are meshes (emissive quads): by their node's transform and by
-// the emission of their material.
+// Declares how light_edits changes the nodes of lights, and lights that are meshes (emissive quads): by their
+// node's transform and by the emission of their material.
 #pragma once
 
 #include <optional>
@@ -23,6 +23,16 @@ void applyToMesh(scene::Scene& scene, const scene::Pose& pose, int light, const 
 /// Returns the current values of such a light: without size, colour and intensity when its mesh is shared.
 LightEdit describeMesh(const scene::Scene& scene, const glsl::Light& light, const MeshLight& mesh);
 
+/// Holds a light and its node where no animation has moved them yet, so that what is made of them is the same
+/// whatever the time is.
+struct AtRest {
+  glsl::Light light;
+  glm::mat4 nodeToWorld;
+};
+AtRest atRest(const scene::Scene& scene, const scene::Pose& pose, int light, int node);
+
+/// Returns the transform to the world that a light has there.
+glm::mat4 frameOf(const glm::mat3& axes, const glm::vec3& position);
 /// Returns the right-handed axes of a light that shines along -z.
 glm::mat3 axesOf(const glsl::Light& light);
 

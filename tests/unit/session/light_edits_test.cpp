@@ -3,9 +3,13 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/scene/camera.h"
 #include "core/session/view.h"
+#include "tests/support/gltf_builder.h"
 #include "tests/support/paths.h"
 
 namespace limn::session {
@@ -75,6 +79,39 @@ TEST(LightEdits, DescribeWhatIs) {
   EXPECT_EQ(now.colour, wanted.colour);
   EXPECT_EQ(now.intensity, wanted.intensity);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR((*now.rotation)[c], (*wanted.rotation)[c], 1e-3f);
+}
+
+/// What hangs on a lamp, and its own mesh, keep their place and size where the light keeps its own.
+TEST(LightEdits, KeepTheScaleOfTheNode) {
+  scene::Scene scene = twoLights();
+  scene.nodes[1].transform.scale = glm::vec3(0.01f, -0.02f, 0.03f);
+  scene.nodes[1].transform.rotation = glm::quat(rotationOf({20, 30, -40}));
+  scene::Node bulb;
+  bulb.parent = 1;
+  bulb.transform.translation = {100, 0, 0};
+  scene.nodes.push_back(bulb);
+  const scene::Pose before = scene::evaluate(scene, 0);
+  scene::Scene moved = scene;
+  LightEdits edits;
+  edits["right"].rotation = describeLight(scene, before, 1).rotation;
+  applyLightEdits(scene, before, edits);
+  const scene::Pose pose = scene::evaluate(scene, 0);
+  for (const size_t node : {1u, 2u})
+    for (int c = 0; c < 4; ++c)
+      EXPECT_LT(glm::distance(pose.nodeToWorld[node][c], before.nodeToWorld[node][c]), 1e-5f) << node << c;
+  applyLightEdits(moved, before, parseLightEdits({"right.position=4,5,6"}));
+  const scene::Pose there = scene::evaluate(moved, 0);
+  EXPECT_EQ(there.lights[1].position, glm::vec3(4, 5, 6));
+  const glm::vec4 step = glm::vec4(4, 5, 6, 1) - before.nodeToWorld[1][3];
+  EXPECT_LT(glm::distance(there.nodeToWorld[2][3], before.nodeToWorld[2][3] + step), 1e-5f);
+}
+
+/// A node without extent shows nothing, but its light can be turned.
+TEST(LightEdits, TurnLightsOfFlatNodes) {
+  scene::Scene scene = twoLights();
+  scene.nodes[1].transform.scale = glm::vec3(1, 1, 0);
+  applyLightEdits(scene, scene::evaluate(scene, 0), parseLightEdits({"right.rotation=-90,0,0"}));
+  EXPECT_NEAR(scene::evaluate(scene, 0).lights[1].direction.y, -1, 1e-6f);
 }
 
 /// Two lamps, whose meshes share a material: an emissive quad each, turned and scaled by its node.
@@ -194,6 +231,40 @@ TEST(LightEdits, RefusalsSayWhatIsAccepted) {
   EXPECT_THAT(refusal({"left.size=0"}), HasSubstr("above 0"));
   EXPECT_THAT(refusal({"left.intensity=-1"}), HasSubstr("not negative"));
   EXPECT_THAT(refusal({"middle.intensity=1"}), HasSubstr("left"));
+}
+
+/// What --set-light leaves of a light goes on with its animation, whenever the scene was opened.
+TEST(Relight, HalvesThatAreNotSetFollowTheirAnimation) {
+  test::GltfBuilder b;
+  b.triangle();
+  b.light({{"type", "spot"}, {"intensity", 2}}, {{"name", "lamp"}});
+  const int times = b.floats({0, 2}), places = b.vec3({{0, 0, 0}, {2, 0, 0}});
+  const float s = std::sqrt(0.5f);
+  const int turns = b.vec4({{0, 0, 0, 1}, {0, s, 0, s}});
+  const int lamp = static_cast<int>(b.root["nodes"].size()) - 1;
+  b.append("animations",
+           {{"samplers", {{{"input", times}, {"output", places}}, {{"input", times}, {"output", turns}}}},
+            {"channels",
+             {{{"sampler", 0}, {"target", {{"node", lamp}, {"path", "translation"}}}},
+              {{"sampler", 1}, {"target", {{"node", lamp}, {"path", "rotation"}}}}}}});
+  SceneQuestion question;
+  question.scene = testing::TempDir() + "moving_lamp.glb";
+  writeFile(question.scene, b.glb());
+  for (const char* setting : {"lamp.rotation=-90,0,0", "lamp.position=3,4,5"}) {
+    question.lightSettings = {setting};
+    View view = open(question);
+    moveTo(view, question, 1);
+    SceneQuestion later = question;
+    later.time = 1;
+    const View opened = open(later);
+    ASSERT_EQ(view.pose.lights.size(), 1u);
+    EXPECT_EQ(view.pose.lights[0].position, opened.pose.lights[0].position) << setting;
+    EXPECT_EQ(view.pose.lights[0].direction, opened.pose.lights[0].direction) << setting;
+    if (question.lightSettings[0].starts_with("lamp.rotation"))
+      EXPECT_EQ(view.pose.lights[0].position, glm::vec3(1, 0, 0));
+    else
+      EXPECT_NEAR(view.pose.lights[0].direction.x, -s, 1e-5f);
+  }
 }
 
 /// Default lights stand where the command's camera stands, however it was reached.
