@@ -2,6 +2,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
 #include "apps/limn/commands.h"
 #include "apps/limn/interruption.h"
 #include "apps/limn/options.h"
@@ -55,6 +63,51 @@ std::size_t countOf(const std::string& information, const std::string& kind) {
   return at == std::string::npos ? 0 : std::strtoul(information.c_str() + at + kind.size() + 2, nullptr, 10);
 }
 
+/// How many textures the model's materials name, each counted once.
+std::size_t texturesOf(const std::string& information) {
+  const std::string title = "\nTexture Refs:\n";
+  const std::size_t at = information.find(title);
+  if (at == std::string::npos) return 0;
+  std::istringstream lines(information.substr(at + title.size()));
+  std::set<std::string> names;
+  for (std::string line; std::getline(lines, line) && line.starts_with("    '");) names.insert(line);
+  return names.size();
+}
+
+/// How many of the images of a scene are different ones: the same one may be there as colour and as data.
+std::size_t imagesOf(const scene::Scene& scene) {
+  std::set<std::string> names;
+  for (const scene::TextureImage& image : scene.images) names.insert(image.name);
+  return names.size();
+}
+
+/// The meshes in the JSON of a .glb that was read.
+nlohmann::json meshesOf(const fs::path& file) {
+  std::array<char, 20> header{};
+  std::uint32_t length = 0;
+  std::ifstream in(file, std::ios::binary);
+  in.read(header.data(), header.size());
+  std::memcpy(&length, &header[12], sizeof length);
+  std::string text(length, ' ');
+  in.read(text.data(), length);
+  return nlohmann::json::parse(text).value("meshes", nlohmann::json::array());
+}
+
+/// How many sets of a kind of vertex attribute the meshes have, and how many are read: one of each primitive.
+std::pair<std::size_t, std::size_t> attributeSets(const nlohmann::json& meshes, const std::string& kind) {
+  std::pair<std::size_t, std::size_t> counts;
+  for (const nlohmann::json& mesh : meshes) {
+    for (const nlohmann::json& primitive : mesh.at("primitives")) {
+      const nlohmann::json& attributes = primitive.at("attributes");
+      std::size_t sets = 0;
+      while (attributes.contains(fmt::format("{}_{}", kind, sets))) ++sets;
+      counts.first += sets;
+      counts.second += std::min<std::size_t>(sets, 1);
+    }
+  }
+  return counts;
+}
+
 std::string size(const scene::Bounds& bounds) {
   if (bounds.empty()) return "nothing to draw";
   const glm::vec3 side = bounds.high - bounds.low;
@@ -91,18 +144,21 @@ int run(const fs::path& model, fs::path out) {
       warning.replace(at, partName.size(), out.filename().string());
     warn(warning);
   }
+  const nlohmann::json meshes = meshesOf(part.path());
   fs::rename(part.path(), out);
 
   const std::pair<const char*, std::pair<std::size_t, std::size_t>> kinds[] = {
-      {"Cameras", {countOf(information, "Cameras"), scene.cameras.size()}},
-      {"Lights", {countOf(information, "Lights"), scene.lights.size()}},
-      {"Animations", {countOf(information, "Animations"), scene.animations.size()}},
-      {"Materials", {countOf(information, "Materials"), scene.materials.size()}}};
+      {"cameras", {countOf(information, "Cameras"), scene.cameras.size()}},
+      {"lights", {countOf(information, "Lights"), scene.lights.size()}},
+      {"animations", {countOf(information, "Animations"), scene.animations.size()}},
+      {"materials", {countOf(information, "Materials"), scene.materials.size()}},
+      {"textures", {texturesOf(information), imagesOf(scene)}},
+      {"sets of texture coordinates", attributeSets(meshes, "TEXCOORD")},
+      {"sets of vertex colours", attributeSets(meshes, "COLOR")}};
   std::vector<std::string> lost;
   for (const auto& [kind, counts] : kinds)
     if (counts.first > counts.second)
-      lost.push_back(fmt::format("{} of {} {}", counts.first - counts.second, counts.first,
-                                 std::string(kind).replace(0, 1, 1, static_cast<char>(std::tolower(*kind)))));
+      lost.push_back(fmt::format("{} of {} {}", counts.first - counts.second, counts.first, kind));
   fmt::print("{}: {} triangles, {} materials, {} textures, {} animations, {}; {}\n", out.string(),
              scene.triangles(), scene.materials.size(), scene.images.size(), scene.animations.size(),
              size(evaluate(scene, 0).bounds),

@@ -290,7 +290,7 @@ void Loader::takeImages(Document& document) {
     const auto view = image.find("bufferView");
     if (uri != image.end()) {
       source.uri = uri->get<std::string>();
-      if (!tinygltf::IsDataURI(source.uri)) resolve(source.uri, what);
+      if (!isDataUri(source.uri)) resolve(source.uri, what);
     } else if (view != image.end()) {
       source.view = view->get<int>();
     } else {

@@ -55,7 +55,27 @@ bool isInside(const std::filesystem::path& file, const std::filesystem::path& fo
   return part != file.end();
 }
 
+/// What a data URI holds, or nothing where that is not in base64.
+std::vector<unsigned char> dataOf(const std::string& uri) {
+  constexpr std::string_view encoding = ";base64";
+  const std::size_t comma = uri.find(',');
+  if (comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(encoding)) return {};
+  // tinygltf decodes what has a header that it knows: octets are right for all, which are told by content.
+  std::vector<unsigned char> decoded;
+  std::string type;
+  tinygltf::DecodeDataURI(&decoded, type, "data:application/octet-stream;base64," + uri.substr(comma + 1), 0,
+                          false);
+  return decoded;
+}
+
 }  // namespace
+
+bool isDataUri(std::string_view uri) {
+  constexpr std::string_view scheme = "data:";  // in capitals as well: RFC 3986, 3.1
+  return uri.size() >= scheme.size() &&
+         std::equal(scheme.begin(), scheme.end(), uri.begin(),
+                    [](char wanted, char c) { return wanted == (c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c); });
+}
 
 std::filesystem::path Loader::resolve(const std::string& uri, const std::string& what) const {
   const std::string decoded = percentDecoded(uri);
@@ -81,7 +101,7 @@ std::filesystem::path Loader::resolve(const std::string& uri, const std::string&
 
 std::vector<std::byte> Loader::uriBytes(const std::string& uri, const std::string& what,
                                         std::uint64_t maxBytes) const {
-  if (!tinygltf::IsDataURI(uri)) {
+  if (!isDataUri(uri)) {
     const std::filesystem::path file = resolve(uri, what);
     try {
       return readFile(file, maxBytes);
@@ -89,9 +109,8 @@ std::vector<std::byte> Loader::uriBytes(const std::string& uri, const std::strin
       throw Error(fmt::format("{}: {}", what, error.what()));
     }
   }
-  std::vector<unsigned char> decoded;
-  std::string type;
-  if (!tinygltf::DecodeDataURI(&decoded, type, uri, 0, false) || decoded.empty())
+  const std::vector<unsigned char> decoded = dataOf(uri);
+  if (decoded.empty())
     throw Error(fmt::format("{}: the data URI cannot be decoded; base64 is accepted", what));
   const auto bytes = std::as_bytes(std::span(decoded));
   return {bytes.begin(), bytes.end()};

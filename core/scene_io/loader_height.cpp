@@ -39,7 +39,8 @@ double real(const tinygltf::Value& extras, const char* key, double absent) {
 
 }  // namespace
 
-int Loader::readHeight(const tinygltf::Value& extras, UvUse& use, const std::string& what) {
+int Loader::readHeight(const tinygltf::Value& extras, std::vector<TextureUse>& uses,
+                       const std::string& what) {
   if (!extras.IsObject()) fail(what + ": an object {texture, scale, offset, tile} is accepted");
   for (const char* key : {"scale", "offset"}) {
     if (!extras.Has(key)) continue;
@@ -73,8 +74,10 @@ int Loader::readHeight(const tinygltf::Value& extras, UvUse& use, const std::str
   const tinygltf::Value& extensions = info.Has("extensions") ? info.Get("extensions") : none;
   const bool moved =
       extensions.Has("KHR_texture_transform") && extensions.Get("KHR_texture_transform").IsObject();
-  takeUvs(info.Has("texCoord") ? info.Get("texCoord").GetNumberAsInt() : 0,
-          moved ? &extensions.Get("KHR_texture_transform") : nullptr, use, place);
+  uses.push_back({nullptr,
+                  uvsOf(info.Has("texCoord") ? info.Get("texCoord").GetNumberAsInt() : 0,
+                        moved ? &extensions.Get("KHR_texture_transform") : nullptr, place),
+                  place});
 
   const HeightKey key{texture.source, wrap, scale, offset, tile.x, tile.y};
   const auto known = heightIndex_.find(key);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -41,7 +40,7 @@ const Loader::ImageSource& Loader::imageAt(int index, const std::string& what) c
 
 std::string Loader::imageLabel(int index) const {
   const ImageSource& source = imageSources_[static_cast<std::size_t>(index)];
-  const bool named = source.view < 0 && !tinygltf::IsDataURI(source.uri);
+  const bool named = source.view < 0 && !isDataUri(source.uri);
   return fmt::format("image {}{}{}", index, source.name.empty() ? "" : " '" + source.name + "'",
                      named ? " (" + oneLine(source.uri, 80) + ")" : "");
 }
@@ -144,39 +143,31 @@ std::pair<Wrap, Wrap> Loader::wrapsOf(const tinygltf::Texture& texture, const st
   return {wrapMode(sampler.wrapS), wrapMode(sampler.wrapT)};
 }
 
-void Loader::takeUvs(int texCoord, const tinygltf::Value* transform, UvUse& use, const std::string& what) {
-  UvUse wanted{true, texCoord, glm::vec2(0), glm::vec2(1), 0};
-  if (transform) {
-    if (transform->Has("offset")) {
-      const auto v = numbers(transform->Get("offset"), 2, what + " KHR_texture_transform offset");
-      wanted.offset = {v[0], v[1]};
-    }
-    if (transform->Has("scale")) {
-      const auto v = numbers(transform->Get("scale"), 2, what + " KHR_texture_transform scale");
-      wanted.scale = {v[0], v[1]};
-    }
-    wanted.rotation = number(get(*transform, "rotation", 0), what + " KHR_texture_transform rotation");
-    wanted.set = static_cast<int>(std::clamp(get(*transform, "texCoord", texCoord), -1., 1e6));
+UvUse Loader::uvsOf(int texCoord, const tinygltf::Value* transform, const std::string& what) const {
+  UvUse uvs{true, texCoord, glm::vec2(0), glm::vec2(1), 0};
+  if (transform == nullptr) return uvs;
+  if (transform->Has("offset")) {
+    const auto v = numbers(transform->Get("offset"), 2, what + " KHR_texture_transform offset");
+    uvs.offset = {v[0], v[1]};
   }
-  if (!use.used) {
-    use = wanted;
-  } else if (!(use == wanted)) {
-    warn(fmt::format(
-        "{}: its texture coordinates differ from those of the material's other textures, whose are used",
-        what));
+  if (transform->Has("scale")) {
+    const auto v = numbers(transform->Get("scale"), 2, what + " KHR_texture_transform scale");
+    uvs.scale = {v[0], v[1]};
   }
+  uvs.rotation = number(get(*transform, "rotation", 0), what + " KHR_texture_transform rotation");
+  uvs.set = static_cast<int>(std::clamp(get(*transform, "texCoord", texCoord), -1., 1e6));
+  return uvs;
 }
 
-TextureRef Loader::readTexture(int index, int texCoord, const tinygltf::Value* transform, bool srgb,
-                               UvUse& use, const std::string& what) {
-  TextureRef out;
-  if (index == -1) return out;
+void Loader::readTexture(int index, int texCoord, const tinygltf::Value* transform, bool srgb,
+                         TextureRef& out, std::vector<TextureUse>& uses, const std::string& what) {
+  if (index == -1) return;
   const tinygltf::Texture& texture = textureAt(index, what);
-  std::tie(out.wrapS, out.wrapT) = wrapsOf(texture, what);
-  out.image = readTextureImage(texture, srgb, what);
-  if (out.image == kNone) return {};
-  takeUvs(texCoord, transform, use, what);
-  return out;
+  const auto [wrapS, wrapT] = wrapsOf(texture, what);
+  const int image = readTextureImage(texture, srgb, what);
+  if (image == kNone) return;
+  out = {image, wrapS, wrapT};
+  uses.push_back({&out, uvsOf(texCoord, transform, what), what});
 }
 
 void Loader::readMaterialExtensions(const tinygltf::Material& source, Material& m, const std::string& what) {
@@ -213,7 +204,7 @@ void Loader::readMaterialExtensions(const tinygltf::Material& source, Material& 
 
 Material Loader::readMaterial(const tinygltf::Material& source, const std::string& what) {
   Material m;
-  UvUse use;
+  std::vector<TextureUse> uses;
   m.name = source.name;
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   if (pbr.baseColorFactor.size() == 4) {
@@ -234,34 +225,34 @@ Material Loader::readMaterial(const tinygltf::Material& source, const std::strin
     m.alphaCutoff = 0.5f;
     warn("alphaMode BLEND counts as MASK with a cutoff of 0.5");
   }
-  const auto texture = [&](const auto& info, bool srgb, const char* slot) {
-    return readTexture(info.index, info.texCoord, extension(info.extensions, "KHR_texture_transform"), srgb,
-                       use, what + " " + slot);
+  const auto texture = [&](const auto& info, bool srgb, TextureRef& out, const char* slot) {
+    readTexture(info.index, info.texCoord, extension(info.extensions, "KHR_texture_transform"), srgb, out,
+                uses, what + " " + slot);
   };
   const tinygltf::Value* glossy = extension(source.extensions, "KHR_materials_pbrSpecularGlossiness");
   if (glossy == nullptr) {
-    m.baseColourTexture = texture(pbr.baseColorTexture, true, "baseColorTexture");
-    m.metalRoughTexture = texture(pbr.metallicRoughnessTexture, false, "metallicRoughnessTexture");
+    texture(pbr.baseColorTexture, true, m.baseColourTexture, "baseColorTexture");
+    texture(pbr.metallicRoughnessTexture, false, m.metalRoughTexture, "metallicRoughnessTexture");
   }
-  m.normalTexture = texture(source.normalTexture, false, "normalTexture");
+  texture(source.normalTexture, false, m.normalTexture, "normalTexture");
   m.normalScale = number(source.normalTexture.scale, what + " normalTexture scale");
-  m.emissiveTexture = texture(source.emissiveTexture, true, "emissiveTexture");
+  texture(source.emissiveTexture, true, m.emissiveTexture, "emissiveTexture");
   readMaterialExtensions(source, m, what);
-  if (glossy != nullptr) applySpecularGlossiness(*glossy, m, use, what);
+  if (glossy != nullptr) applySpecularGlossiness(*glossy, m, uses, what);
   if (source.extras.IsObject() && source.extras.Has("limn_material")) {
     const std::string place = what + " limn_material";
     applyModel(m, readModel(source.extras.Get("limn_material"), place), place);
-    use.used = use.used || m.tangents();  // along rising u, where the file has no tangents
   }
   applySubsurface(source, m, what);
   if (source.extras.IsObject() && source.extras.Has("limn_height")) {
     const std::string place = what + " limn_height";
-    m.height = readHeight(source.extras.Get("limn_height"), use, place);
+    m.height = readHeight(source.extras.Get("limn_height"), uses, place);
     if (m.normalTexture.image != kNone)
       warn(place + ": there is a normalTexture too, from which normals are taken");
   }
+  UvUse& uvs = uvUses_.emplace_back(settleUvs(std::move(uses), m));
+  uvs.used = uvs.used || m.tangents();  // along rising u, where the file has no tangents
   if (source.extensions.contains("KHR_materials_unlit")) applyUnlit(m, what);
-  uvUses_.push_back(use);
   return m;
 }
 

@@ -123,7 +123,7 @@ glsl::MaterialModel Loader::readMeasured(const tinygltf::Value& file, const std:
   const auto known = measured_.find(uri);
   if (known != measured_.end()) return known->second;
   const std::vector<std::byte> bytes = readUri(uri, what, brdf::kLargestMeasuredFile);
-  const std::string named = tinygltf::IsDataURI(uri) ? what : fmt::format("{} '{}'", what, oneLine(uri, 80));
+  const std::string named = isDataUri(uri) ? what : fmt::format("{} '{}'", what, oneLine(uri, 80));
   brdf::MeasuredModel out;
   std::vector<glm::vec3> values;
   try {

@@ -51,7 +51,7 @@ int Loader::readGlossiness(int index, bool another, float glossiness, glm::vec3&
   return addImage(index, false, *std::move(image));
 }
 
-void Loader::applySpecularGlossiness(const tinygltf::Value& e, Material& m, UvUse& use,
+void Loader::applySpecularGlossiness(const tinygltf::Value& e, Material& m, std::vector<TextureUse>& uses,
                                      const std::string& what) {
   warn(what + ": KHR_materials_pbrSpecularGlossiness is converted to metallic-roughness");
   const auto factor = [&](const char* key, std::size_t count, float* out) {
@@ -73,8 +73,8 @@ void Loader::applySpecularGlossiness(const tinygltf::Value& e, Material& m, UvUs
   m.specularFactor = 1;
   if (e.Has("diffuseTexture")) {
     const tinygltf::Value& info = e.Get("diffuseTexture");
-    m.baseColourTexture = readTexture(indexOf(info, "index", -1), indexOf(info, "texCoord", 0),
-                                      transformOf(info), true, use, what + " diffuseTexture");
+    readTexture(indexOf(info, "index", -1), indexOf(info, "texCoord", 0), transformOf(info), true,
+                m.baseColourTexture, uses, what + " diffuseTexture");
   }
   if (!e.Has("specularGlossinessTexture")) return;
   const std::string place = what + " specularGlossinessTexture";
@@ -89,7 +89,8 @@ void Loader::applySpecularGlossiness(const tinygltf::Value& e, Material& m, UvUs
   m.metalRoughTexture = {image, wrapS, wrapT};
   m.roughness = 1;
   m.specularColour *= mean;
-  takeUvs(indexOf(info, "texCoord", 0), transformOf(info), use, place);
+  uses.push_back(
+      {&m.metalRoughTexture, uvsOf(indexOf(info, "texCoord", 0), transformOf(info), place), place});
 }
 
 }  // namespace limn::scene

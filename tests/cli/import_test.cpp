@@ -1,5 +1,6 @@
 // Models of other formats through assimp; what needs it is skipped where it is not installed.
 #include "tests/cli/limn_program.h"
+#include "tests/support/png.h"
 
 namespace limn::test {
 namespace {
@@ -54,6 +55,35 @@ TEST_F(AssimpTest, SaysWhatWasLost) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, testing::HasSubstr("b.glb: 1 triangles"));
   EXPECT_THAT(outcome.out, testing::HasSubstr("lost: 1 of 1 lights"));
+}
+
+TEST_F(AssimpTest, CountsTexturesThatWereLost) {
+  const std::vector<std::byte> pixel = png(1, 1, {1, 2, 3, 255});
+  model("pixel.png", {reinterpret_cast<const char*>(pixel.data()), pixel.size()});
+  // glTF has no place for a map of heights.
+  model("a.mtl", "newmtl m\nmap_Kd pixel.png\nmap_Bump pixel.tga\nnewmtl n\nmap_Kd missing.png\n");
+  const Outcome outcome = limn({"import", model("a.obj",
+                                                "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nvt 0 0\n"
+                                                "usemtl m\nf 1/1 2/1 3/1\nusemtl n\nf 1/1 3/1 4/1\n")});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::HasSubstr("lost: 2 of 3 textures\n"));
+}
+
+TEST_F(AssimpTest, CountsSecondSetsOfVertexAttributes) {
+  std::string collada = kCollada;
+  const auto insert = [&](const std::string& before, const std::string& what) {
+    collada.insert(collada.find(before), what);
+  };
+  insert("<vertices", R"(<source id="T"><float_array id="B" count="9">0 0 0 1 0 0 0 1 0</float_array>
+<technique_common><accessor source="#B" count="3" stride="3"><param name="R" type="float"/>
+<param name="G" type="float"/><param name="B" type="float"/></accessor></technique_common></source>)");
+  for (const std::string set : {"0", "1"})
+    for (const std::string kind : {"TEXCOORD", "COLOR"})
+      insert("<p>", "<input semantic=\"" + kind + "\" source=\"#T\" offset=\"0\" set=\"" + set + "\"/>");
+  const Outcome outcome = limn({"import", model("a.dae", collada)});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::HasSubstr("lost: 1 of 1 lights, 1 of 2 sets of texture coordinates, "
+                                              "1 of 2 sets of vertex colours\n"));
 }
 
 TEST_F(AssimpTest, NothingIsLeftOfWhatCannotBeRead) {

@@ -46,11 +46,31 @@ struct Container {
 /// GLB.
 Container openContainer(std::span<const std::byte> bytes, const std::string& name);
 
+/// Returns whether a URI holds its data itself (RFC 2397) instead of naming a file.
+bool isDataUri(std::string_view uri);
+
 /// Holds the components of one accessor, converted to float: count * components values.
 struct Floats {
   std::size_t count = 0;
   int components = 0;
   std::vector<float> values;
+};
+
+/// Holds texture coordinates as a texture or a material wants them: a set, and an affine map of it.
+struct UvUse {
+  bool used = false;
+  int set = 0;
+  glm::vec2 offset{0}, scale{1};
+  float rotation = 0;
+  bool operator==(const UvUse&) const = default;
+};
+
+/// Holds a map between texture coordinates under which an image that repeats repeats again: u and v, which
+/// trade places first where `turned` says so, times whole numbers other than 0, plus `shift` in [0, 1].
+struct UvMap {
+  bool turned = false;
+  glm::ivec2 repeats{1};
+  glm::dvec2 shift{0};
 };
 
 class Loader {
@@ -60,13 +80,11 @@ class Loader {
   Scene load(std::span<const std::byte> bytes);
 
  private:
-  /// Holds the source of a material's texture coordinates: one set and one affine map for all its textures.
-  struct UvUse {
-    bool used = false;
-    int set = 0;
-    glm::vec2 offset{0}, scale{1};
-    float rotation = 0;
-    bool operator==(const UvUse&) const = default;
+  /// Holds a texture of the material that is being read.
+  struct TextureUse {
+    TextureRef* texture = nullptr;  ///< null: a height map
+    UvUse uvs;
+    std::string what;
   };
   struct ImageSource {
     std::string name, uri;
@@ -132,8 +150,8 @@ class Loader {
   void applyUnlit(Material& material, const std::string& what);
   // loader_specular_glossiness.cpp
   /// Replaces the material's metallic-roughness by KHR_materials_pbrSpecularGlossiness.
-  void applySpecularGlossiness(const tinygltf::Value& extension, Material& material, UvUse& use,
-                               const std::string& what);
+  void applySpecularGlossiness(const tinygltf::Value& extension, Material& material,
+                               std::vector<TextureUse>& uses, const std::string& what);
   int readGlossiness(int image, bool another, float glossiness, glm::vec3& meanSpecular,
                      const std::string& what);
   // loader_material_model.cpp
@@ -158,12 +176,21 @@ class Loader {
 
   // loader_height.cpp
   /// Returns the index in Scene::heights of the map that extras.limn_height describes.
-  int readHeight(const tinygltf::Value& extras, UvUse& use, const std::string& what);
+  int readHeight(const tinygltf::Value& extras, std::vector<TextureUse>& uses, const std::string& what);
   /// Warns where the texture coordinates of a primitive do not fit the size that its material's map has.
   void checkHeightUvs(const Primitive& primitive);
 
-  TextureRef readTexture(int index, int texCoord, const tinygltf::Value* transform, bool srgb, UvUse& use,
-                         const std::string& what);
+  // loader_texture_space.cpp
+  /// Returns the texture coordinates of a material: those of the first of its textures that all others can
+  /// follow, which are resampled to them; otherwise those of the first one, with a warning for each other one
+  /// that cannot follow.
+  UvUse settleUvs(std::vector<TextureUse> uses, const Material& material);
+  /// Makes the texture one that looks at u as it did at map(u). Returns false where that would be too large.
+  bool resample(TextureRef& texture, const UvMap& map);
+
+  // loader_material.cpp
+  void readTexture(int index, int texCoord, const tinygltf::Value* transform, bool srgb, TextureRef& out,
+                   std::vector<TextureUse>& uses, const std::string& what);
   const tinygltf::Texture& textureAt(int index, const std::string& what) const;
   /// Returns the first result other than none of read(image, another): of the texture's WebP image
   /// (EXT_texture_webp), where it has one, with `another` saying whether there is one to fall back on, and
@@ -172,8 +199,8 @@ class Loader {
                  const std::function<int(int image, bool another)>& read);
   /// Returns how a texture goes on beyond its edges, along u and v.
   std::pair<Wrap, Wrap> wrapsOf(const tinygltf::Texture& texture, const std::string& what) const;
-  /// Makes these the texture coordinates of the material, or warns that it has others.
-  void takeUvs(int texCoord, const tinygltf::Value* transform, UvUse& use, const std::string& what);
+  /// Returns the texture coordinates that a texture names.
+  UvUse uvsOf(int texCoord, const tinygltf::Value* transform, const std::string& what) const;
   const ImageSource& imageAt(int index, const std::string& what) const;
   std::string imageLabel(int index) const;
   /// Returns the bytes of an image, which `storage` keeps where no buffer does. Throws Error "LABEL: ..."
@@ -256,6 +283,10 @@ class Loader {
   std::vector<std::span<const std::byte>> buffers_;
   std::vector<std::vector<std::byte>> bufferStorage_;
   std::map<std::pair<int, bool>, int> imageIndex_;  ///< (image, sRGB) to Scene::images
+  /// Holds what tells resampled images apart: the index in Scene::images of what they show, and UvMap.
+  using ResampledKey = std::tuple<int, bool, int, int, double, double>;
+  std::map<ResampledKey, int> resampledIndex_;  ///< to Scene::images
+  std::uint64_t resampledTexels_ = 0;
 
   std::map<std::string, glsl::MaterialModel> measured_;  ///< by URI
 

@@ -229,6 +229,20 @@ TEST(WebpTextures, AreReadAsTheyAreStored) {
   EXPECT_TRUE(scene.warnings.empty());
 }
 
+TEST(WebpTextures, AreReadFromDataUris) {
+  GltfBuilder b = webpMaterial(losslessWebp(1, 1, {1, 2, 3, 4}));
+  b.root["images"][0] = {
+      {"uri", "data:image/webp;base64,UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAEAdQiirUoyiBiOh/AAA="}};
+  const Scene scene = loadBuilt(b);
+  EXPECT_TRUE(scene.warnings.empty());
+  const int image = scene.materials.at(0).baseColourTexture.image;
+  ASSERT_NE(image, scene::kNone);
+  EXPECT_THAT(scene.images.at(at(image)).levels[0].rgba, ElementsAre(10, 20, 30, 40));
+  b.root["images"][0]["uri"] = "data:image/webp,RIFF";
+  EXPECT_THAT(loadBuilt(b).warnings,
+              ElementsAre(AllOf(HasSubstr("the data URI cannot be decoded"), HasSubstr("goes without it"))));
+}
+
 TEST(WebpTextures, OthersStandInWhereTheyCannotBeRead) {
   const std::vector<std::byte> webp = losslessWebp(1, 1, {10, 20, 30, 40}),
                                other = png(1, 1, {50, 60, 70, 80});
@@ -284,11 +298,12 @@ TEST(SpecularGlossiness, FactorsBecomeMetallicRoughness) {
 }
 
 TEST(SpecularGlossiness, TexturesBecomeRoughnessAndAMean) {
-  GltfBuilder b = glossy({{"diffuseTexture", {{"index", 0}}},
-                          {"specularGlossinessTexture",
-                           {{"index", 1}, {"extensions", {{"KHR_texture_transform", {{"scale", {2, 2}}}}}}}},
-                          {"glossinessFactor", 0.5},
-                          {"specularFactor", {1, 0.5, 1}}});
+  GltfBuilder b =
+      glossy({{"diffuseTexture", {{"index", 0}}},
+              {"specularGlossinessTexture",
+               {{"index", 1}, {"extensions", {{"KHR_texture_transform", {{"scale", {2, 1.5}}}}}}}},
+              {"glossinessFactor", 0.5},
+              {"specularFactor", {1, 0.5, 1}}});
   const std::vector<std::byte> diffuse = png(1, 1, {10, 20, 30, 40});
   const std::vector<std::byte> specular = png(2, 1, {255, 255, 0, 255, 0, 255, 0, 0});
   for (const auto& image : {diffuse, specular})

@@ -62,6 +62,12 @@ TEST(SceneBadInput, AccessorWithoutDataIsNoLicenceToAllocate) {
   b.root["accessors"][0].erase("bufferView");
   b.root["accessors"][0]["count"] = 1'000'000'000;
   EXPECT_THAT(loadError(b.glb()), HasSubstr("has no buffer view"));
+  const glm::vec3 value(7, 8, 9);
+  b.root["accessors"][0]["sparse"] = {
+      {"count", 1},
+      {"indices", {{"bufferView", b.view("\x01", 1)}, {"componentType", 5121}}},
+      {"values", {{"bufferView", b.view(&value, 12)}}}};
+  EXPECT_THAT(loadError(b.glb()), HasSubstr("has no buffer view"));
 }
 
 TEST(SceneBadInput, VertexLimit) {

@@ -206,6 +206,15 @@ TEST(SceneLoad, DataUri) {
   EXPECT_EQ(loadError(b.text()), "");
   b.root["buffers"][0]["byteLength"] = 4;
   EXPECT_THAT(loadError(b.text()), HasSubstr("declares 4 bytes, 3 are there"));
+  b.root["buffers"][0]["byteLength"] = 3;
+  for (const char* header : {"data:;base64,", "DATA:application/gltf-buffer;charset=x;base64,"}) {
+    b.root["buffers"][0]["uri"] = std::string(header) + "AAEC";
+    EXPECT_EQ(loadError(b.text()), "") << header;
+  }
+  for (const char* uri : {"data:,abc", "data:;base64", "data:;base64,", "data:;base64,!"}) {
+    b.root["buffers"][0]["uri"] = uri;
+    EXPECT_THAT(loadError(b.text()), HasSubstr("buffer 0: the data URI cannot be decoded; base64")) << uri;
+  }
 }
 
 TEST(SceneLoad, TextureTransform) {
