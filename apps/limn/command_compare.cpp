@@ -4,6 +4,7 @@
 #include "apps/limn/commands.h"
 #include "apps/limn/options.h"
 #include "apps/limn/provenance.h"
+#include "apps/limn/tone_flags.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/image/compare_report.h"
@@ -63,7 +64,8 @@ Action addCompareCommand(CLI::App& command) {
   command.add_option(
       "--mask-term-range", options->maskTermRange,
       "Only pixels whose reference lies in the open interval (a,b), e.g. 0.02,0.98 for penumbrae");
-  command.add_option("--exposure", options->exposure, "Exposure of the tone mapping for FLIP, EV");
+  command.add_option("--exposure", options->exposure, "Exposure of the tone mapping for FLIP, EV")
+      ->check(exposureRange());
   command
       .add_option("--max-masked", options->maxMasked,
                   "Fail above this share of pixels whose coverage, instance or depth differ, percent")

@@ -8,6 +8,7 @@
 #include "apps/limn/commands.h"
 #include "apps/limn/options.h"
 #include "apps/limn/provenance.h"
+#include "apps/limn/tone_flags.h"
 #include "core/base/error.h"
 #include "core/question/question_fields.h"
 #include "core/scene_io/load.h"
@@ -136,8 +137,7 @@ Action addEnvironmentCommand(CLI::App& command) {
   command.add_option("--width", options->width, "Width of the overlay, pixels")
       ->capture_default_str()
       ->check(CLI::Range(16, 16384));
-  command.add_option("--exposure", options->exposure, "Exposure of the overlay, EV")
-      ->check(CLI::Range(-60.0, 60.0));
+  command.add_option("--exposure", options->exposure, "Exposure of the overlay, EV")->check(exposureRange());
   command.add_flag("--json", options->json, "Print JSON instead of a table");
   return [options] { return runEnvironment(*options); };
 }

@@ -14,15 +14,29 @@ namespace {
 
 constexpr double kMostEv = 60;
 
+bool isExposure(const std::string& text) {
+  const std::optional<double> ev = parseNumber(text);
+  return ev && *ev >= -kMostEv && *ev <= kMostEv;
+}
+
 /// Empty where the text is accepted.
 std::string exposureProblem(const std::string& text) {
-  const std::optional<double> ev = parseNumber(text);
-  if (text == kAutomaticExposure || (ev && *ev >= -kMostEv && *ev <= kMostEv)) return {};
+  if (text == kAutomaticExposure || isExposure(text)) return {};
   return fmt::format("'{}' is not accepted; expected a number from {} to {}, or {}", text, -kMostEv, kMostEv,
                      kAutomaticExposure);
 }
 
 }  // namespace
+
+CLI::Validator exposureRange() {
+  // Unlike CLI::Range it refuses NaN, with which every comparison is false.
+  const auto problem = [](const std::string& text) {
+    return isExposure(text) ? std::string()
+                            : fmt::format("'{}' is not accepted; expected a number from {} to {}", text,
+                                          -kMostEv, kMostEv);
+  };
+  return CLI::Validator(problem, fmt::format("[{:g} - {:g}]", -kMostEv, kMostEv));
+}
 
 void addToneCurveFlag(CLI::App& command, ToneCurve& curve) {
   command

@@ -12,6 +12,9 @@ namespace limn::app {
 /// Holds the value of --exposure that leaves it to the picture.
 inline constexpr const char* kAutomaticExposure = "auto";
 
+/// Accepts an exposure, EV, as a number alone.
+CLI::Validator exposureRange();
+
 /// Gives the command --tonemap.
 void addToneCurveFlag(CLI::App& command, ToneCurve& curve);
 

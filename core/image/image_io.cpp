@@ -178,8 +178,13 @@ class Decoder {
     OIIO::ImageSpec wanted;
     wanted.attribute("oiio:UnassociatedAlpha", 1);
     if (!input_->open(name, spec_, wanted)) fail(input_->geterror());
+    stored_ = spec_.roi();
+    // Offsets of a PNG are those of a page that it is printed on.
+    if (format_ == Format::exr) spec_.set_roi(spec_.roi_full());
     checkSize();
   }
+
+  /// Of the whole picture: an EXR may hold a part of it, or more than it.
 
   const OIIO::ImageSpec& spec() const { return spec_; }
   bool isSrgb() const { return format_ == Format::png || format_ == Format::jpeg; }
@@ -187,18 +192,40 @@ class Decoder {
   Format format() const { return format_; }
 
   void read(const OIIO::TypeDesc& type, void* target) { readFirst(spec_.nchannels, type, target); }
+  /// Leaves what the file does not hold as it is.
   void readFirst(int channels, const OIIO::TypeDesc& type, void* target) {
-    if (!input_->read_image(0, 0, 0, channels, type, target)) fail(input_->geterror());
+    const OIIO::ROI picture = spec_.roi();
+    if (stored_ == picture) return readStored(channels, type, target);
+    const std::size_t pixelBytes = static_cast<std::size_t>(channels) * type.size();
+    std::vector<std::byte> stored(stored_.npixels() * pixelBytes);
+    readStored(channels, type, stored.data());
+    const OIIO::ROI shared = OIIO::roi_intersection(stored_, picture);
+    if (shared.xbegin >= shared.xend) return;
+    for (int y = shared.ybegin; y < shared.yend; ++y) {
+      const auto startIn = [&](const OIIO::ROI& window) {
+        const auto row = static_cast<std::size_t>(y - window.ybegin);
+        return (row * static_cast<std::size_t>(window.width()) +
+                static_cast<std::size_t>(shared.xbegin - window.xbegin)) *
+               pixelBytes;
+      };
+      std::memcpy(static_cast<std::byte*>(target) + startIn(picture), stored.data() + startIn(stored_),
+                  static_cast<std::size_t>(shared.width()) * pixelBytes);
+    }
   }
 
  private:
+  void readStored(int channels, const OIIO::TypeDesc& type, void* target) {
+    if (!input_->read_image(0, 0, 0, channels, type, target)) fail(input_->geterror());
+  }
+
   [[noreturn]] void fail(const std::string& reason) const {
     throw Error(fmt::format("{}: {}", name_, reasonOf(reason)));
   }
 
   void checkSize() const {
     if (spec_.deep || spec_.depth > 1) fail("deep and volume pictures are not accepted");
-    limn::checkSize(spec_.width, spec_.height, spec_.nchannels, memory_.size(), name_);
+    for (const OIIO::ROI& window : {stored_, spec_.roi()})
+      limn::checkSize(window.width(), window.height(), spec_.nchannels, memory_.size(), name_);
   }
 
   std::string name_;
@@ -206,6 +233,7 @@ class Decoder {
   MemoryFile memory_;
   std::unique_ptr<OIIO::ImageInput> input_;
   OIIO::ImageSpec spec_;
+  OIIO::ROI stored_;  // the pixels that the file holds
 };
 
 /// Runs a decoding step; whatever a decoder throws becomes an Error of one line that names the picture.

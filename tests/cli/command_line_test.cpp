@@ -307,6 +307,10 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
   const TemporaryFolder folder;
   expectRefused(limn({"compare", (folder / "a.exr").string(), (folder / "b.exr").string()}), 1, {"a.exr"});
   expectRefused(limn({"compare", kCornellBox, kCornellBox}), 1, {"cornell_box.glb"});
+  for (const char* ev : {"200", "-60.5", "nan"})
+    expectRefused(
+        limn({"compare", (folder / "a.exr").string(), (folder / "b.exr").string(), "--exposure", ev}), 2,
+        {"--exposure", "-60 to 60"});
 }
 
 }  // namespace

@@ -27,6 +27,7 @@ using testing::Not;
 class ExrBuilder {
  public:
   std::array<std::int32_t, 4> dataWindow{0, 0, 63, 63};
+  std::optional<std::array<std::int32_t, 4>> displayWindow;  ///< none: the same
   std::optional<std::array<std::uint32_t, 2>> tiles;
   int channels = 3;
   std::vector<std::byte> extra;
@@ -44,10 +45,11 @@ class ExrBuilder {
     list.push_back({});
     attribute(out, "channels", "chlist", list);
     attribute(out, "compression", "compression", {std::byte{3}});
-    for (const char* window : {"dataWindow", "displayWindow"}) {
+    for (const auto& [name, window] :
+         {std::pair("dataWindow", dataWindow), {"displayWindow", displayWindow.value_or(dataWindow)}}) {
       std::vector<std::byte> box;
-      for (const std::int32_t side : dataWindow) number(box, static_cast<std::uint32_t>(side));
-      attribute(out, window, "box2i", box);
+      for (const std::int32_t side : window) number(box, static_cast<std::uint32_t>(side));
+      attribute(out, name, "box2i", box);
     }
     attribute(out, "lineOrder", "lineOrder", {std::byte{0}});
     attribute(out, "pixelAspectRatio", "float",
@@ -192,6 +194,16 @@ TEST(HostileImage, SizesFarBeyondTheFile) {
   exr.dataWindow = {0, 0, 16056321, 0};
   EXPECT_THAT(refusal(exr.bytes()), HasSubstr("16056322x1 pixels; at most 32768 per side"));
   EXPECT_LT(mostMemory() - before, 200l << 20);
+}
+
+TEST(HostileImage, PicturesFarBeyondTheirPixels) {
+  const long before = mostMemory();
+  ExrBuilder exr;
+  exr.displayWindow = {0, 0, 8191, 8191};
+  EXPECT_THAT(refusal(exr.bytes()), HasSubstr("8192x8192 pixels of 3 channels in"));
+  exr.displayWindow = {-0x3ffffff0, -0x3ffffff0, 0x3ffffff0, 0x3ffffff0};
+  EXPECT_THAT(refusal(exr.bytes()), HasSubstr("2147483617x2147483617 pixels of 3 channels; at most"));
+  EXPECT_LT(mostMemory() - before, 100l << 20);
 }
 
 TEST(HostileImage, HeadersCutOffAnywhere) {

@@ -241,6 +241,40 @@ TEST_F(ImageFile, ReadsHdrJpegGreyAndAlpha) {
   EXPECT_EQ(readImage8(folder_ / "deep.png").data, (std::vector<std::uint8_t>{64, 128, 255, 255}));
 }
 
+/// Cropped files hold the same picture as whole ones, whatever part of it they leave out or add beyond it.
+TEST_F(ImageFile, ExrIsAsLargeAsItsDisplayWindow) {
+  constexpr int left = 3, top = -2, width = 8, height = 6;
+  const auto valueAt = [](int x, int y) { return static_cast<float>(100 + x + 20 * y); };
+  const fs::path file = folder_ / "a.exr";
+  const OIIO::ROI windows[] = {OIIO::ROI(left, left + width, top, top + 3),
+                               OIIO::ROI(left + 2, left + 5, top + 1, top + 5),
+                               OIIO::ROI(left - 2, left + width + 4, top - 1, top + height + 3),
+                               OIIO::ROI(left + width, left + width + 4, top, top + 4)};
+  for (const OIIO::ROI& window : windows) {
+    OIIO::ImageSpec spec(window.width(), window.height(), 3, OIIO::TypeDesc::FLOAT);
+    spec.set_roi(window);
+    spec.set_roi_full(OIIO::ROI(left, left + width, top, top + height));
+    std::vector<float> pixels;
+    for (int y = window.ybegin; y < window.yend; ++y)
+      for (int x = window.xbegin; x < window.xend; ++x) pixels.insert(pixels.end(), 3, valueAt(x, y));
+    auto output = OIIO::ImageOutput::create(file.string());
+    ASSERT_TRUE(output && output->open(file.string(), spec));
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) && output->close());
+
+    const Image image = readImage(file);
+    ASSERT_EQ(image.width(), width);
+    ASSERT_EQ(image.height(), height);
+    const ImageChannel first = readFirstChannelMemory(readFile(file), "a.exr", width * height);
+    ASSERT_EQ(first.values.size(), image.pixelCount());
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const float expected = window.contains(left + x, top + y) ? valueAt(left + x, top + y) : 0.0f;
+        for (int c = 0; c < 3; ++c) EXPECT_EQ(image.at(x, y, c), expected) << x << ' ' << y;
+        EXPECT_EQ(first.values[static_cast<std::size_t>(y * width + x)], expected) << x << ' ' << y;
+      }
+  }
+}
+
 TEST_F(ImageFile, ContentDecidesTheDecoder) {
   writePng(folder_ / "a.png", Image::rgb(2, 2));
   fs::rename(folder_ / "a.png", folder_ / "a.exr");
