@@ -1,7 +1,7 @@
 """Puts style and script into the page and their hashes into its policy: assemble.py PAGE STYLE SCRIPT OUT.
 
 The policy then lets exactly these two run, and whatever a row of results brings into the page does not (Content Security
-Policy Level 3, section 6.7.2.3). What is left for limn is the mark {{data}}.
+Policy Level 3, section 6.7.2.3). What is left for limn are the marks {{data}} and {{pictures}}.
 """
 import base64
 import hashlib

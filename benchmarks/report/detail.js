@@ -3,15 +3,19 @@ import {breakable, el, milliseconds, number} from "./dom.js";
 import {METRICS, TIMES, errorText, isNumber} from "./metrics.js";
 import {command} from "./command.js";
 import {enlarge} from "./enlarge.js";
+import {picture} from "./pictures.js";
 import {ownName, settings} from "./series.js";
 
-/** Picture `shown` of a list with the magnified windows drawn on it; pressed, it is enlarged and flips to the others. */
+/**
+ * The thumbnail of picture `shown` of a list, [{thumbnail, whole, name, text}], with the magnified windows drawn on it; pressed,
+ * the whole picture is enlarged and flips to the others.
+ */
 export function framed(table, pictures, shown) {
   const [width, height] = table.size;
   const boxes = table.windows.map(([x, y, w, h], i) => el("span", {class: `window-${i}`, "aria-hidden": "true",
     style: {left: `${100 * x / width}%`, top: `${100 * y / height}%`, width: `${100 * w / width}%`, height: `${100 * h / height}%`}}));
   return el("button", {type: "button", class: "framed", title: "Enlarge", click: () => enlarge(pictures, shown)},
-    el("img", {src: pictures[shown].uri, alt: pictures[shown].text}), boxes);
+    picture(pictures[shown].thumbnail, {alt: pictures[shown].text, style: {aspectRatio: `auto ${width} / ${height}`}}), boxes);
 }
 
 function facts(row) {
@@ -28,13 +32,13 @@ function facts(row) {
 }
 
 /** All but its name. */
-export function detail(page, table, row) {
+export function detail(table, row) {
   const pictures = [
-    {index: row.picture, name: "picture", caption: row.name, text: `Picture by ${row.name}`},
-    {index: row.difference, name: "difference", caption: "FLIP difference: black equal, light yellow wholly different",
+    {...row.picture, name: "picture", caption: row.name, text: `Picture by ${row.name}`},
+    {...row.difference, name: "difference", caption: "FLIP difference: black equal, light yellow wholly different",
      text: `Difference between ${row.name} and the reference`},
-    {index: table.reference.picture, name: "reference", caption: "reference", text: "Picture of the reference"},
-  ].filter(({index}) => index >= 0).map((picture) => ({...picture, uri: page.pictures[picture.index]}));
+    {...table.reference.picture, name: "reference", caption: "reference", text: "Picture of the reference"},
+  ].filter(({thumbnail}) => thumbnail >= 0);
   return [
     pictures.length ? el("div", {class: "pictures"}, pictures.map(({caption}, i) =>
       el("figure", {}, framed(table, pictures, i), el("figcaption", {}, caption))))

@@ -1,7 +1,8 @@
 // Pictures over the whole window, which flip in place: differences show where two of them alternate.
 import {el} from "./dom.js";
+import {put} from "./pictures.js";
 
-/** Shows `pictures`, [{uri, name, text}], beginning with number `start`. Arrow keys and the space bar flip, Escape closes. */
+/** Shows `pictures`, [{whole, name, text}], beginning with number `start`. Arrow keys and the space bar flip, Escape closes. */
 export function enlarge(pictures, start) {
   let shown = start, before = (start + 1) % pictures.length;
   const image = el("img", {class: "enlarged"});
@@ -9,7 +10,7 @@ export function enlarge(pictures, start) {
   const show = (i) => {
     if (i !== shown) before = shown;
     shown = i;
-    image.src = pictures[i].uri;
+    put(image, pictures[i].whole);
     image.alt = pictures[i].text;
     buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(k === i)));
   };

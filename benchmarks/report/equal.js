@@ -2,6 +2,7 @@
 import {breakable, el, milliseconds, number, slider} from "./dom.js";
 import {framed} from "./detail.js";
 import {errorText, measured} from "./metrics.js";
+import {picture} from "./pictures.js";
 import {ownName, settings} from "./series.js";
 import {swatch} from "./marks.js";
 
@@ -36,16 +37,16 @@ export function commonTarget(curves, metric, time, key) {
   return best?.value ?? null;
 }
 
-function magnified(page, uris, text) {
-  return uris.map((index, i) => index < 0 ? null : el("img", {class: `magnified window-${i}`, src: page.pictures[index],
-    alt: `${text}, window ${i + 1}`}));
+function magnified(windows, text) {
+  return windows.map((index, i) => index < 0 ? null
+    : picture(index, {class: `magnified window-${i}`, alt: `${text}, window ${i + 1}`}));
 }
 
-function strip(page, table, points, metric) {
+function strip(table, points, metric) {
   const reference = table.reference.windows.some((index) => index >= 0)
-    ? el("figure", {}, magnified(page, table.reference.windows, "Reference"),
+    ? el("figure", {}, magnified(table.reference.windows, "Reference"),
         el("figcaption", {}, el("strong", {}, "reference"))) : null;
-  const shown = points.map(({curve, row, ms}) => el("figure", {}, magnified(page, row.windows, row.name),
+  const shown = points.map(({curve, row, ms}) => el("figure", {}, magnified(row.windows, row.name),
     el("figcaption", {}, el("strong", {}, swatch(curve), breakable(curve.name)),
       Object.entries(settings(row)).map(([name, value]) => el("span", {}, breakable(`${ownName(row, name)} ${value}`))),
       el("span", {}, `${milliseconds(ms)}, error ${errorText(metric, row)}`))));
@@ -53,7 +54,7 @@ function strip(page, table, points, metric) {
 }
 
 /** One row of pictures with the slider that chooses its target. */
-function equalRow(page, table, curves, metric, time, kind) {
+function equalRow(table, curves, metric, time, kind) {
   const key = kind.key;
   const values = curves.flatMap((curve) => measured(curve.rows, metric, time).map((point) => point[key]))
     .filter((value) => value > 0);
@@ -65,7 +66,7 @@ function equalRow(page, table, curves, metric, time, kind) {
     const text = `${kind.name(metric, time)} ${kind.text(target)}`;
     body.replaceChildren(el("p", {class: "note", "aria-live": "polite"},
       `${text}, within a factor of ${NEAR}, ${key === "ms" ? "least error" : "quickest"} first.` +
-      (missing.length ? ` Not near it: ${missing.join(", ")}.` : "")), strip(page, table, found, metric));
+      (missing.length ? ` Not near it: ${missing.join(", ")}.` : "")), strip(table, found, metric));
   };
   const target = commonTarget(curves, metric, time, key);
   return el("div", {class: `equal equal-${key}`}, el("h3", {}, kind.title), slider(kind.label, values, target, kind.text, show), body);
@@ -77,16 +78,16 @@ const KINDS = [
 ];
 
 /** Every setting, for tables that time nothing. */
-function allRows(page, table, curves, metric) {
+function allRows(table, curves, metric) {
   const points = curves.flatMap((curve) => curve.rows.map((row) => ({curve, row, ms: null})));
-  return el("div", {}, el("h3", {}, "Every setting"), strip(page, table, points, metric));
+  return el("div", {}, el("h3", {}, "Every setting"), strip(table, points, metric));
 }
 
-export function equalRows(page, table, curves, metric, time) {
-  const rows = KINDS.map((kind) => equalRow(page, table, curves, metric, time, kind)).filter(Boolean);
-  if (rows.length === 0) rows.push(allRows(page, table, curves, metric));
-  const whole = table.reference.picture >= 0
-    ? el("figure", {class: "overview"}, framed(table, [{uri: page.pictures[table.reference.picture], name: "reference", text: "Reference"}], 0),
+export function equalRows(table, curves, metric, time) {
+  const rows = KINDS.map((kind) => equalRow(table, curves, metric, time, kind)).filter(Boolean);
+  if (rows.length === 0) rows.push(allRows(table, curves, metric));
+  const whole = table.reference.picture.thumbnail >= 0
+    ? el("figure", {class: "overview"}, framed(table, [{...table.reference.picture, name: "reference", text: "Reference"}], 0),
         el("figcaption", {}, "The reference; the frames are where the techniques' errors differ most.")) : null;
   return [whole, ...rows].filter(Boolean);
 }

@@ -33,7 +33,7 @@ for (const table of page.tables) {
   const key = JSON.stringify(table.subject);
   bySubject.set(key, [...(bySubject.get(key) ?? []), table]);
 }
-const sections = [...bySubject.values()].map((tables, i) => new Section(page, tables, `subject-${i}`));
+const sections = [...bySubject.values()].map((tables, i) => new Section(tables, `subject-${i}`));
 main.replaceChildren(
   ...summary(page.tables),
   ...(page.compressed ? [el("p", {class: "note"}, "To keep this file small, whole pictures are compressed with loss (WebP)" +

@@ -1,2 +1,2 @@
-// What `limn bench` put into the page: tables, pictures, and how metrics and columns are called.
+// What `limn bench` put into the page: tables, and how metrics and columns are called.
 export const page = JSON.parse(document.getElementById("data").textContent);

@@ -34,8 +34,7 @@ const unique = (values) => [...new Set(values)];
 
 /** Has a place on the page from the beginning and content once it is opened, so that long reports are read at once. */
 export class Section {
-  constructor(page, tables, id) {
-    this.page = page;
+  constructor(tables, id) {
     this.tables = tables;
     this.tools = el("div", {class: "tools"});
     this.body = el("div");
@@ -92,7 +91,7 @@ export class Section {
   }
 
   show() {
-    const {page, table, curves, metric, time} = this;
+    const {table, curves, metric, time} = this;
     this.showTools();
     this.chart = el("div", {class: "chart"});
     this.name = el("h3", {"aria-live": "polite"});
@@ -116,7 +115,7 @@ export class Section {
         el("div", {}, el("h3", {}, "Frequency content of the error"), this.spectrum,
           el("p", {class: "note"},
             "Strong: the setting shown; the others at equal time. Noise is level, banding stands at the left."))),
-      ...equalRows(page, table, curves, metric, time),
+      ...equalRows(table, curves, metric, time),
       el("h3", {}, "Tables"), errorTable(table, metric, time, (row) => this.visit(row)),
       framesPerSecond(others), ...(passTable(table) ?? []),
     ].filter(Boolean));
@@ -154,7 +153,7 @@ export class Section {
     this.current = row;
     this.plot.mark(row);
     this.name.replaceChildren(...breakable(row.name));
-    this.facts.replaceChildren(...detail(this.page, this.table, row));
+    this.facts.replaceChildren(...detail(this.table, row));
     for (const line of this.body.querySelectorAll("tr[data-key]")) line.classList.toggle("current", line.dataset.key === row.key);
     const {curves, metric, time} = this;
     const own = curveOf(curves, row);

@@ -21,7 +21,8 @@
 
 namespace limn::bench {
 
-/// page.html of benchmarks/report/ with its style and its script, compiled in; {{data}} is where the rows go.
+/// page.html of benchmarks/report/ with its style and its script, compiled in; {{data}} is where the rows go,
+/// {{pictures}} where the pictures go.
 std::span<const gpu::EmbeddedSource> reportSources();
 
 namespace {
@@ -55,6 +56,10 @@ Json timesAsFast(const Row* baseline, const Row& row) {
   return {{"value", ratio.value}, {"low", ratio.low}, {"high", ratio.high}};
 }
 
+Json pictureJson(const std::string& file, EmbeddedPictures& pictures) {
+  return {{"thumbnail", pictures.thumbnail(file)}, {"whole", pictures.whole(file)}};
+}
+
 /// A row as the page gets it: its line of results.jsonl less what the table says, and its pictures.
 Json rowJson(const Row& row, const std::vector<Window>& windows, EmbeddedPictures& pictures) {
   const Json line = Json::parse(toJson(row));
@@ -77,8 +82,8 @@ Json rowJson(const Row& row, const std::vector<Window>& windows, EmbeddedPicture
   }
   if (const std::optional<ReferenceTime> time = referenceTime(row))
     json["reference_ms"] = {{"value", time->ms}, {"at_least", time->atLeast}};
-  json["picture"] = pictures.whole(row.picture);
-  json["difference"] = pictures.whole(row.difference);
+  json["picture"] = pictureJson(row.picture, pictures);
+  json["difference"] = pictureJson(row.difference, pictures);
   json["windows"] = Json::array();
   for (const Window& window : windows) json["windows"].push_back(pictures.window(row.picture, window));
   return json;
@@ -101,7 +106,7 @@ Json referenceJson(const Table& table, const std::string& file, const std::vecto
   Json json = {{"spp", settings.spp},
                {"noise", settings.noise},
                {"bounces", settings.bounces},
-               {"picture", pictures.whole(file)},
+               {"picture", pictureJson(file, pictures)},
                {"windows", Json::array()}};
   for (const Window& window : windows) json["windows"].push_back(pictures.window(file, window));
   for (const Row& row : table.rows) {
@@ -149,9 +154,7 @@ Json tableJson(const Table& table, EmbeddedPictures& pictures) {
   json["windows"] = Json::array();
   for (const Window& w : windows) json["windows"].push_back({w.x, w.y, w.width, w.height});
   json["reference"] = referenceJson(table, reference, windows, pictures);
-  const auto first =
-      std::ranges::find_if(table.rows, [](const Row& r) { return r.what.baseline && isTimed(r); });
-  const Row* baseline = first == table.rows.end() ? nullptr : &*first;
+  const Row* baseline = baselineOf(table.rows);
   if (baseline != nullptr) json["baseline"] = rowName(*baseline);
   json["rows"] = Json::array();
   for (const Row& row : table.rows) {
@@ -224,7 +227,7 @@ Json stability(const std::filesystem::path& folder) {
 
 }  // namespace
 
-std::string reportData(std::span<const Row> rows, const std::filesystem::path& folder) {
+ReportData reportData(std::span<const Row> rows, const std::filesystem::path& folder) {
   std::vector<std::string> files;
   for (const Row& row : rows)
     for (const std::string& file : {row.picture, row.difference, referencePicture(row)})
@@ -232,7 +235,6 @@ std::string reportData(std::span<const Row> rows, const std::filesystem::path& f
   EmbeddedPictures pictures(folder, files);
   Json json = {{"metrics", pageMetrics()}, {"columns", pageColumns()}, {"tables", Json::array()}};
   for (const Table& table : makeTables(rows)) json["tables"].push_back(tableJson(table, pictures));
-  json["pictures"] = pictures.uris();
   json["compressed"] = pictures.compressed();
   json["reduction"] = pictures.reduction();
   json["stability"] = stability(folder);
@@ -240,13 +242,17 @@ std::string reportData(std::span<const Row> rows, const std::filesystem::path& f
   std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
   for (std::size_t i = 0; (i = text.find('<', i)) != std::string::npos; ++i)
     text.replace(i, 1, "\\u003c");  // "</script>" and "<!--" would end or change the element
-  return text;
+  return {.json = text, .pictures = pictures.elements()};
 }
 
 void writeReport(std::span<const Row> rows, const std::filesystem::path& folder) {
-  constexpr std::string_view mark = "{{data}}";
   std::string page(reportSources().front().text);
-  page.replace(page.find(mark), mark.size(), reportData(rows, folder));
+  const auto put = [&](std::string_view mark, const std::string& text) {
+    page.replace(page.find(mark), mark.size(), text);
+  };
+  const ReportData data = reportData(rows, folder);
+  put("{{pictures}}", data.pictures);  // first: they hold no mark, and rows may
+  put("{{data}}", data.json);
   writeTextFile(folder / "index.html", page);
 }
 

@@ -12,10 +12,18 @@
 
 namespace limn::bench {
 
-/// Returns what the page shows, as JSON that is safe inside a script element whatever the rows contain:
-/// tables as makeTables() groups them, the pictures of report_pictures.h, and what `limn stress` left in the
-/// folder. Throws Error if that cannot be read.
-LIMN_API std::string reportData(std::span<const Row> rows, const std::filesystem::path& folder);
+/// Holds what the page is given.
+struct ReportData {
+  /// JSON that is safe inside a script element whatever the rows contain: tables as makeTables() groups them,
+  /// and what `limn stress` left in the folder.
+  std::string json;
+  /// HTML elements with the pictures of report_pictures.h, which the JSON names by their positions. They
+  /// stand behind the page's script, so that the page is drawn before they are read.
+  std::string pictures;
+};
+
+/// Returns what the page shows. Throws Error if what `limn stress` left cannot be read.
+LIMN_API ReportData reportData(std::span<const Row> rows, const std::filesystem::path& folder);
 
 /// Writes index.html into `folder`, where the rows' pictures are found: one file that loads no other.
 LIMN_API void writeReport(std::span<const Row> rows, const std::filesystem::path& folder);

@@ -158,7 +158,9 @@ Image EmbeddedPictures::read(const std::string& file) const {
   }
 }
 
-int EmbeddedPictures::add(const std::string& name, const char* type, std::span<const std::uint8_t> file) {
+int EmbeddedPictures::add(const std::string& name, Kind kind, const char* type,
+                          std::span<const std::uint8_t> file) {
+  positions_[static_cast<std::size_t>(kind)].push_back(uris_.size());
   uris_.push_back(fmt::format("data:image/{};base64,{}", type, base64(file)));
   return known_[name] = static_cast<int>(uris_.size()) - 1;
 }
@@ -170,11 +172,21 @@ int EmbeddedPictures::whole(const std::string& file) {
   if (compressed_) {
     const Image image = read(file);
     if (image.empty()) return known_[file] = -1;
-    return add(file, "webp", encodeWebp(reduction_ > 1 ? reduced(image, reduction_) : image, file));
+    return add(file, Kind::whole, "webp",
+               encodeWebp(reduction_ > 1 ? reduced(image, reduction_) : image, file));
   }
   const std::string png = readTextFile(path);
   if (!png.starts_with("\x89PNG")) return known_[file] = -1;
-  return add(file, "png", {reinterpret_cast<const std::uint8_t*>(png.data()), png.size()});
+  return add(file, Kind::whole, "png", {reinterpret_cast<const std::uint8_t*>(png.data()), png.size()});
+}
+
+int EmbeddedPictures::thumbnail(const std::string& file) {
+  const std::string name = file + "#thumbnail";
+  if (const auto found = known_.find(name); found != known_.end()) return found->second;
+  const Image image = read(file);
+  if (image.empty()) return known_[name] = -1;
+  const int factor = (std::max(image.width(), image.height()) + kThumbnail - 1) / kThumbnail;
+  return add(name, Kind::thumbnail, "webp", encodeWebp(reduced(image, factor), name));
 }
 
 int EmbeddedPictures::window(const std::string& file, const Window& w) {
@@ -183,7 +195,15 @@ int EmbeddedPictures::window(const std::string& file, const Window& w) {
   const Image image = read(file);
   if (image.empty() || w.x < 0 || w.y < 0 || w.x + w.width > image.width() || w.y + w.height > image.height())
     return known_[name] = -1;
-  return add(name, "png", encodePng(cut(image, w), name));
+  return add(name, Kind::window, "png", encodePng(cut(image, w), name));
+}
+
+std::string EmbeddedPictures::elements() const {
+  std::string text;
+  for (const std::vector<std::size_t>& positions : positions_)
+    for (const std::size_t i : positions)
+      text += fmt::format("<script type=\"text/plain\" id=\"picture-{}\">{}</script>\n", i, uris_[i]);
+  return text;
 }
 
 }  // namespace limn::bench

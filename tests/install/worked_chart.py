@@ -44,11 +44,12 @@ def add_chart():
 def build_page():
     """Bundles and assembles the page as core/CMakeLists.txt does, and puts the data into it."""
     script, template = scratch / "page.js", scratch / "page.html"
-    run(cached("LIMN_ESBUILD"), report / "main.js", "--bundle", "--format=esm", "--charset=ascii", "--minify-whitespace",
+    run(cached("LIMN_ESBUILD"), report / "main.js", "--bundle", "--format=iife", "--charset=ascii", "--minify-whitespace",
         "--legal-comments=inline", "--log-level=warning", f"--outfile={script}", NODE_PATH=cached("LIMN_NODE_MODULES"))
     run(sys.executable, "-B", report / "assemble.py", report / "page.html", report / "page.css", script, template)
     page = scratch / "index.html"
-    page.write_text(template.read_text().replace("{{data}}", (SCRATCH / "worked_examples/report.json").read_text()))
+    data = (SCRATCH / "worked_examples/report.json").read_text()
+    page.write_text(template.read_text().replace("{{pictures}}", "").replace("{{data}}", data))
     return page
 
 

@@ -39,8 +39,14 @@ technique = "sampled_area_light"
 parameters = {samples = [1, 4], shadow_map_size = 128}
 """
 POINTS = 5
+ROWS, BEFORE_PICTURES = 400, 2 << 20  # bytes of the page that are read before it is first drawn
 HEADING = "document.querySelector('.detail h3').textContent"
-HOSTILE = "</script><img src=x onerror=\"window.harmed = true\"><script>window.harmed = true</script>{{data}}"
+# The whole pictures of all rows and references, as data URIs: a row's picture and difference, the table's reference first.
+WHOLE = """() => JSON.parse(document.getElementById('data').textContent).tables
+    .flatMap(({rows: [first, ...others], reference}) => [first.picture, first.difference, reference.picture,
+        ...others.flatMap(row => [row.picture, row.difference])])
+    .filter(p => p.whole >= 0).map(p => document.getElementById(`picture-${p.whole}`).textContent)"""
+HOSTILE = "</script><img src=x onerror=\"window.harmed = true\"><script>window.harmed = true</script>{{data}}{{pictures}}"
 
 # What a name may hold; ADDRESS is a server that counts who asks.
 HOSTILE_TEXTS = [
@@ -200,7 +206,7 @@ def enlarges_and_flips(browser):
     """A picture over the window, which the keys flip in place."""
     browser.open(page)
     source = "document.querySelector('dialog img').src"
-    pictures = browser.evaluate("[...document.querySelectorAll('.detail img')].map(i => i.src)")
+    pictures = browser.evaluate(f"({WHOLE})().slice(0, 3)")
     browser.evaluate("document.querySelector('.detail button.framed').focus()")
     browser.evaluate("document.activeElement.click()")
     check(browser.evaluate("document.querySelector('dialog').open && document.querySelector('dialog').contains(document.activeElement)"),
@@ -215,6 +221,44 @@ def enlarges_and_flips(browser):
     browser.settle()
     check(browser.evaluate("document.querySelector('dialog') === null && document.activeElement.matches('.detail button.framed')"),
           "closing does not go back")
+
+
+def loads_pictures_on_demand(browser):
+    """Many rows: the page is drawn before any picture is read, and whole pictures are decoded where somebody asks for them."""
+    first = [json.loads(line) for line in results.read_text().splitlines()]
+    rows = []
+    for i in range(ROWS):
+        row = json.loads(json.dumps(first[i % POINTS]))
+        row.update(key=f"many{i}", scene=f"scene_{i // 20}")
+        for key in ("picture", "difference"):
+            copy = f"pictures/{key}_{i}.png"
+            shutil.copy(out / row[key], out / copy)
+            row[key] = copy
+        rows.append(row)
+    count = "document.querySelectorAll('script[id^=picture-]').length"
+    drawn = browser.call("Page.addScriptToEvaluateOnNewDocument", source=f"""new MutationObserver((_, observer) => {{
+        if (!document.querySelector('section')) return;
+        window.picturesWhenDrawn = {count};
+        observer.disconnect(); }}).observe(document, {{childList: true, subtree: true}})""")
+    with reported(rows):
+        text = page.read_text()
+        before, data = text.index('<script type="text/plain" id="picture-'), text.index('id="data"')
+        check(before <= BEFORE_PICTURES, f"{before} bytes are read before the first paint, of {len(text)}")
+        check("data:image/" not in text[data:before], "a picture stands before the first paint")
+        browser.open(page)
+        browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=drawn["identifier"])
+        check(browser.evaluate("window.picturesWhenDrawn") == 0, "the page is drawn after its pictures are read")
+        check(browser.evaluate(count) >= 4 * ROWS, "pictures are missing")
+        check(browser.evaluate("[...document.images].every(i => i.complete && i.naturalWidth > 0)"), "a picture is not shown")
+        shown = f"(whole => [...document.images].filter(i => whole.has(i.src)).map(i => i.className))(new Set(({WHOLE})()))"
+        check(browser.evaluate(shown) == [], "whole pictures are decoded before anybody asks for them")
+        browser.evaluate("document.querySelector('.framed').click()")
+        browser.settle()
+        check(browser.evaluate(shown) == ["enlarged"], "the enlarged picture is not the whole one")
+        check(browser.evaluate("document.querySelector('dialog img').naturalWidth") == 64, "the whole picture is reduced")
+    for row in rows:
+        for key in ("picture", "difference"):
+            (out / row[key]).unlink()
 
 
 def is_painted(browser):
@@ -258,6 +302,9 @@ def is_accessible(browser):
             "point without a name": "document.querySelectorAll('g.point:not([aria-label])').length",
             "field without a label": "[...document.querySelectorAll('select, input')].filter(f => !f.labels.length).length",
             "table without a caption": "[...document.querySelectorAll('table')].filter(t => !t.caption).length",
+            "button without a name": "[...document.querySelectorAll('button')].filter(b => !b.textContent.trim() &&"
+                                     " !b.querySelector('img[alt]:not([alt=\"\"])')).length",
+            "picture to enlarge that is no button": "document.querySelectorAll('.framed:not(button[type=button])').length",
             "element identifier used twice": "(i => i.length - new Set(i).size)([...document.querySelectorAll('[id]')].map(e => e.id))",
     }.items():
         check(browser.evaluate(expression) == 0, what)
@@ -397,7 +444,7 @@ def shows_hostile_names_literally(browser):
                 check(browser.evaluate("window.harmed === undefined"), f"{what} ran")
                 check(browser.evaluate("document.querySelectorAll('main script, main link, main iframe, main svg svg').length") == 0,
                       f"{what} became markup")
-                check(browser.evaluate("[...document.images].every(i => i.src.startsWith('data:image/png;base64,'))"),
+                check(browser.evaluate("[...document.images].every(i => /^data:image\\/(png|webp);base64,/.test(i.src))"),
                       f"{what} became the address of a picture")
                 check(browser.evaluate("[...document.links].every(l => l.getAttribute('href').startsWith('#'))"),
                       f"{what} became a link")
@@ -433,9 +480,9 @@ def is_shut_by_its_policy(browser):
 
 bench()
 with Browser(options.chromium) as browser:
-    for step in (shows_points_and_pictures, reacts, answers_for_a_budget, enlarges_and_flips, tells_close_points_apart, is_painted,
-                 is_accessible, sets_the_reference_beside, shows_hostile_names_literally, is_shut_by_its_policy,
-                 withstands_foreign_rows):
+    for step in (shows_points_and_pictures, reacts, answers_for_a_budget, enlarges_and_flips, loads_pictures_on_demand,
+                 tells_close_points_apart, is_painted, is_accessible, sets_the_reference_beside, shows_hostile_names_literally,
+                 is_shut_by_its_policy, withstands_foreign_rows):
         step(browser)
         check(not browser.problems, f"{step.__name__}: {browser.problems}")
 print("the report page shows and does what it should")

@@ -1,6 +1,7 @@
 // Prepares the pictures of the report page, and the windows of them that are shown magnified.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -42,10 +43,11 @@ class LIMN_API WindowChooser {
 
 /// Holds pictures as data URIs, each file once. Whole pictures are PNG where their files together have at
 /// most `budget` bytes, and lossy WebP, a fifth of that, where they do not; beyond that they are halved in
-/// both directions until they fit. Windows are always PNG at full resolution.
+/// both directions until they fit. Windows are always PNG at full resolution, thumbnails lossy WebP.
 class LIMN_API EmbeddedPictures {
  public:
   static constexpr std::uintmax_t kBudget = std::uintmax_t{8} << 20;
+  static constexpr int kThumbnail = 192;  ///< the longest side of a thumbnail; page.css draws it as wide
 
   /// Takes `files`, the names in the rows, relative to `folder`. Only files inside that folder are read.
   EmbeddedPictures(const std::filesystem::path& folder, std::span<const std::string> files,
@@ -53,21 +55,27 @@ class LIMN_API EmbeddedPictures {
 
   /// Returns the picture's position in uris(), -1 where there is no such picture.
   int whole(const std::string& file);
+  int thumbnail(const std::string& file);
   int window(const std::string& file, const Window& window);
   /// Returns the picture's pixels; empty where there is no such picture.
   Image read(const std::string& file) const;
 
   const std::vector<std::string>& uris() const { return uris_; }
+  /// Returns an element for each picture, "picture-" and its position, in the order in which the page should
+  /// read them: thumbnails, windows, whole pictures.
+  std::string elements() const;
   bool compressed() const { return compressed_; }  ///< whether whole pictures are WebP
   int reduction() const { return reduction_; }     ///< 1, 2, 4, ...: pixels of the file per embedded pixel
 
  private:
-  int add(const std::string& name, const char* type, std::span<const std::uint8_t> file);
+  enum class Kind { thumbnail, window, whole };
+  int add(const std::string& name, Kind kind, const char* type, std::span<const std::uint8_t> file);
 
   std::filesystem::path folder_;
   bool compressed_ = false;
   int reduction_ = 1;
   std::vector<std::string> uris_;
+  std::array<std::vector<std::size_t>, 3> positions_;  // by Kind
   std::map<std::string, int> known_;
 };
 

@@ -86,7 +86,7 @@ TEST(WorkedMetric, IsComputedAndInEveryTable) {
   const std::vector<bench::Table> tables = bench::makeTables(std::vector{row});
   EXPECT_THAT(bench::toCsv(tables.at(0)), AllOf(HasSubstr(",worst,"), HasSubstr(",0.375,")));
   EXPECT_THAT(bench::toMarkdown(tables.at(0)), AllOf(HasSubstr("| worst |"), HasSubstr("| 0.375 |")));
-  const std::string page = bench::reportData(std::vector{row}, ".");
+  const std::string page = bench::reportData(std::vector{row}, ".").json;
   EXPECT_THAT(page, AllOf(HasSubstr("\"label\":\"worst error\""), HasSubstr("\"worst\":0.375")));
   writeTextFile("report.json", page);  // for worked_chart.py
 }

@@ -236,7 +236,7 @@ TEST(BenchColumns, XBoundIsTheRatioOfMediansWithItsInterval) {
 
 TEST(BenchColumns, XBoundIsOnThePageWhereARowHasIt) {
   const Row rows[] = {exampleRow(exampleCase()), distinctRow()};
-  const nlohmann::json page = nlohmann::json::parse(reportData(rows, "."));
+  const nlohmann::json page = nlohmann::json::parse(reportData(rows, ".").json);
   EXPECT_EQ(page["columns"]["x_bound"]["label"], "x bound");
   int with = 0;
   for (const auto& table : page["tables"])
@@ -265,7 +265,7 @@ TEST(BenchColumns, EveryColumnIsDescribedAndHasItsCells) {
 }
 
 TEST(BenchColumns, EveryMetricIsInTheTablesAndOnThePage) {
-  const nlohmann::json page = nlohmann::json::parse(reportData({}, "."));
+  const nlohmann::json page = nlohmann::json::parse(reportData({}, ".").json);
   std::set<std::string> onPage;
   for (const auto& metric : page["metrics"]) {
     onPage.insert(metric["key"].get<std::string>());

@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
+const Json kNone = {{"thumbnail", -1}, {"whole", -1}};
 constexpr const char* kScript = "</script><img src=x onerror=alert(1)>";
 
 class BenchReport : public testing::Test {
@@ -50,26 +51,38 @@ class BenchReport : public testing::Test {
     return row;
   }
 
-  Json data(const std::vector<Row>& rows) const { return Json::parse(reportData(rows, results())); }
+  Json data(const std::vector<Row>& rows) const { return Json::parse(reportData(rows, results()).json); }
 
   fs::path folder_;
 };
 
 TEST_F(BenchReport, HoldsRowsPicturesAndWindows) {
-  const Json page = data({row("pcss", 0.5f), row("vssm", 0.6f)});
+  const auto [json, pictures] = reportData(std::vector{row("pcss", 0.5f), row("vssm", 0.6f)}, results());
+  const Json page = Json::parse(json);
   ASSERT_EQ(page["tables"].size(), 1u);
   const Json& table = page["tables"][0];
   ASSERT_EQ(table["rows"].size(), 2u);
   EXPECT_EQ(table["windows"].size(), 2u);
   EXPECT_EQ(table["software"], true);
   EXPECT_EQ(table["rows"][0]["spectrum"].size(), 3u);
-  EXPECT_EQ(table["rows"][0]["difference"], -1) << "none was kept";
+  EXPECT_EQ(table["rows"][0]["difference"], kNone) << "none was kept";
   EXPECT_EQ(table["rows"][0]["command"],
             "limn render balls --technique pcss --size 48x32 --output-term visibility --out picture.png");
-  for (const int index : {table["rows"][1]["picture"].get<int>(), table["rows"][1]["windows"][1].get<int>(),
-                          table["reference"]["picture"].get<int>()}) {
-    const std::string uri = page["pictures"].at(static_cast<std::size_t>(index));
-    EXPECT_TRUE(uri.starts_with("data:image/png;base64,iVBORw0KGgo")) << uri.substr(0, 60);
+  EXPECT_FALSE(page.contains("pictures")) << "they stand behind the script";
+  const Json& picture = table["rows"][1]["picture"];
+  const std::string png = "data:image/png;base64,iVBORw0KGgo", webp = "data:image/webp;base64,UklGR";
+  std::size_t last = 0;
+  for (const auto& [index, begin] : {std::pair(picture["thumbnail"].get<int>(), webp),
+                                     std::pair(table["rows"][1]["windows"][1].get<int>(), png),
+                                     std::pair(table["reference"]["picture"]["whole"].get<int>(), png),
+                                     std::pair(picture["whole"].get<int>(), png)}) {
+    const std::string tag = "<script type=\"text/plain\" id=\"picture-" + std::to_string(index) + "\">";
+    const std::size_t at = pictures.find(tag);
+    ASSERT_NE(at, std::string::npos) << index;
+    EXPECT_GE(at, last) << "thumbnails first, whole pictures last";
+    last = at;
+    const std::string uri = pictures.substr(at + tag.size(), pictures.find('<', at + 1) - at - tag.size());
+    EXPECT_TRUE(uri.starts_with(begin)) << uri.substr(0, 60);
     EXPECT_EQ(uri.substr(uri.find(',') + 1).size() % 4, 0u);
   }
 }
@@ -90,7 +103,7 @@ TEST_F(BenchReport, TextsCannotLeaveTheScript) {
   failed.failure = std::string(kScript) + "\xff<!-- \xe2\x80\xa8 \xe2\x80\xae";  // line separator, direction
   failed.what.light = kScript;
   const std::vector<Row> rows = {bad, failed};
-  const std::string text = reportData(rows, results());
+  const std::string text = reportData(rows, results()).json;
   EXPECT_EQ(text.find('<'), std::string::npos);
   EXPECT_TRUE(std::ranges::all_of(text, [](unsigned char c) { return c < 0x80; }));
   EXPECT_EQ(Json::parse(text)["tables"][0]["subject"]["scene"], kScript);
@@ -112,7 +125,7 @@ TEST_F(BenchReport, OnlyPicturesInsideTheFolderAreRead) {
         std::string("pictures/text.txt"), std::string("pictures/missing.png"), std::string("pictures")}) {
     Row stray = row("pcss", 0.5f);
     stray.picture = file;
-    EXPECT_EQ(data({stray})["tables"][0]["rows"][0]["picture"], -1) << file;
+    EXPECT_EQ(data({stray})["tables"][0]["rows"][0]["picture"], kNone) << file;
   }
 }
 
@@ -120,7 +133,7 @@ TEST_F(BenchReport, BrokenPictureLeavesTheReportWhole) {
   const Row broken = row("pcss", 0.5f);
   writeTextFile(results() / broken.picture, "no PNG");
   const Json table = data({broken})["tables"][0];
-  EXPECT_EQ(table["rows"][0]["picture"], -1);
+  EXPECT_EQ(table["rows"][0]["picture"], kNone);
   EXPECT_TRUE(table["windows"].empty());
 }
 
@@ -142,6 +155,20 @@ TEST_F(BenchReport, PicturesBeyondTheBudgetAreCompressedThenReduced) {
   EXPECT_EQ(small.window(files[0], {0, 0, 8, 8}), 1);
   EXPECT_TRUE(small.uris()[1].starts_with("data:image/png;base64,")) << "windows are exact";
   EXPECT_EQ(small.window(files[0], {44, 0, 8, 8}), -1) << "beyond the picture";
+}
+
+TEST_F(BenchReport, ThumbnailsHaveAtMost192Pixels) {
+  const auto thumbnail = [&](int width, int height) {
+    writePng(results() / "pictures/black.png", Image::rgb(width, height));
+    EmbeddedPictures pictures(results(), {});
+    EXPECT_EQ(pictures.thumbnail("pictures/black.png"), 0);
+    EXPECT_EQ(pictures.thumbnail("pictures/black.png"), 0) << "each picture once";
+    return pictures.uris().at(0);
+  };
+  EXPECT_TRUE(thumbnail(192, 30).starts_with("data:image/webp;base64,UklGR"));
+  EXPECT_EQ(thumbnail(384, 60), thumbnail(192, 30)) << "black pictures of a size are the same file";
+  EXPECT_EQ(thumbnail(30, 194), thumbnail(15, 97));
+  EXPECT_NE(thumbnail(192, 30), thumbnail(96, 15)) << "no smaller than they need to be";
 }
 
 TEST(WindowChooser, FindsWherePicturesDiffer) {
