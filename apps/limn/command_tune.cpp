@@ -43,8 +43,7 @@ using Parameters = std::vector<std::pair<std::string, std::string>>;
 /// The metric by its key in results. Throws UsageError for another text.
 const MetricInfo& findMetric(const std::string& key) {
   std::vector<std::string> known;
-  for (const MetricInfo& metric : kMetrics) {
-    if (metric.kind == MetricKind::basis) continue;
+  for (const MetricInfo& metric : kQualityMetrics) {
     if (metric.key == key) return metric;
     known.emplace_back(metric.key);
   }

@@ -153,8 +153,7 @@ void ViewerWindow::budgetRows() {
   ImGui::SliderInt("##steps", &tuneSteps_, 0, 4, "%d", ImGuiSliderFlags_AlwaysClamp);
   nameCell("best by", tuneMetric_->help.data());
   if (ImGui::BeginCombo("##metric", tuneMetric_->label.data())) {
-    for (const MetricInfo& metric : kMetrics) {
-      if (metric.kind == MetricKind::basis) continue;
+    for (const MetricInfo& metric : kQualityMetrics) {
       if (ImGui::Selectable(metric.label.data(), &metric == tuneMetric_)) tuneMetric_ = &metric;
       tip(metric.help.data());
     }

@@ -201,8 +201,7 @@ void ViewerWindow::comparePanel() {
                          fmt::format("refining, {:.0f} %", 100 * state.fraction).c_str());
   }
   if (facts.metrics && ImGui::BeginTable("metrics", 4)) {
-    for (const MetricInfo& info : kMetrics) {
-      if (info.kind == MetricKind::basis) continue;
+    for (const MetricInfo& info : kQualityMetrics) {
       ImGui::TableNextColumn();
       ImGui::TextDisabled("%s", std::string(info.head).c_str());
       tip(fmt::format("{}; x is the left part, r the right one", info.help));

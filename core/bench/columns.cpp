@@ -193,25 +193,24 @@ bool knowsBound(const Row& row) {
   return row.cost.bound.has_value();
 }
 
-/// A column of CSV alone with one end of the interval.
-Column boundEnd(const char* csv, const char* help, double Ratio::*end) {
-  return {csv, "", help, cell([end](const Row& r) {
-            return knowsBound(r) ? fmt::format("{}", xBound(*r.cost.bound).*end) : std::string();
+/// A column of CSV with the ratio or one end of its interval.
+Column boundColumn(const char* csv, const char* help, double Ratio::*part) {
+  return {csv, "", help, cell([part](const Row& r) {
+            return knowsBound(r) ? fmt::format("{}", xBound(*r.cost.bound).*part) : std::string();
           })};
 }
 
 Columns boundColumns() {
-  Column column{
-      "x_bound", "x bound",
-      "how many times as long the technique's own passes take as the least kernel with the same "
-      "fetches and decisions",
-      cell([](const Row& r) {
-        return knowsBound(r) ? fmt::format("{}", xBound(*r.cost.bound).value) : std::string();
-      }),
-      cell([](const Row& r) { return knowsBound(r) ? ratioText(xBound(*r.cost.bound)) : std::string("-"); })};
+  Column column = boundColumn("x_bound",
+                              "how many times as long the technique's own passes take as the least kernel "
+                              "with the same fetches and decisions",
+                              &Ratio::value);
+  column.markdown = "x bound";
+  column.shown =
+      cell([](const Row& r) { return knowsBound(r) ? ratioText(xBound(*r.cost.bound)) : std::string("-"); });
   column.known = knowsBound;
-  return {column, boundEnd("x_bound_low", "lower end of its interval of 95 %", &Ratio::low),
-          boundEnd("x_bound_high", "upper end of the same", &Ratio::high)};
+  return {column, boundColumn("x_bound_low", "lower end of its interval of 95 %", &Ratio::low),
+          boundColumn("x_bound_high", "upper end of the same", &Ratio::high)};
 }
 
 Columns costColumns() {

@@ -40,12 +40,19 @@ const Metrics& errorOf(const Row& row) {
   return row.penumbra ? *row.penumbra : row.error;
 }
 
+const Row* baselineOf(std::span<const Row> rows) {
+  const auto found =
+      std::ranges::find_if(rows, [](const Row& row) { return row.what.baseline && isTimed(row); });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+std::vector<double> samplesOf(const FrameTime& time) {
+  return time.samples.empty() ? std::vector<double>{time.median} : time.samples;
+}
+
 Ratio frameRatio(const Row& slow, const Row& fast) {
-  const auto samples = [](const FrameTime& time) {
-    return time.samples.empty() ? std::vector<double>{time.median} : time.samples;
-  };
   const FrameTime &a = slow.cost.frameMs, &b = fast.cost.frameMs;
-  const std::vector<double> above = samples(a), below = samples(b);
+  const std::vector<double> above = samplesOf(a), below = samplesOf(b);
   return ratioOfMedians({above, a.turns}, {below, b.turns});
 }
 
@@ -66,8 +73,8 @@ std::string ratioText(double ratio) {
   return fmt::format("{:.2f}", ratio);
 }
 
-std::string ratioText(const Ratio& ratio) {
-  return fmt::format("{} ({} to {})", ratioText(ratio.value), ratioText(ratio.low), ratioText(ratio.high));
+std::string ratioText(const Ratio& ratio, int digits) {
+  return fmt::format("{0:.{3}f} ({1:.{3}f} to {2:.{3}f})", ratio.value, ratio.low, ratio.high, digits);
 }
 
 const Row* quickest(std::span<const Row> rows, const std::string& technique, const MetricInfo& error,
@@ -103,9 +110,8 @@ std::string settingsName(const Row& row) {
 }
 
 std::string comparisonMarkdown(std::span<const Row> rows) {
-  const auto baseline =
-      std::ranges::find_if(rows, [](const Row& row) { return row.what.baseline && isTimed(row); });
-  if (baseline == rows.end()) return "";
+  const Row* baseline = baselineOf(rows);
+  if (baseline == nullptr) return "";
   const std::string& technique = baseline->what.technique;
   const auto other = [&](const Row& row) { return isTimed(row) && row.what.technique != technique; };
   std::string text = fmt::format(
@@ -116,7 +122,7 @@ std::string comparisonMarkdown(std::span<const Row> rows) {
   if (std::ranges::none_of(rows, other)) {  // settings of one technique
     text += ":\n\n" + markdownHead({{"settings", Align::left}, {"frame"}, {"shadows"}});
     for (const Row& row : rows)
-      if (isTimed(row) && &row != &*baseline) text += markdownRow(ratioCells(row, *baseline, row));
+      if (isTimed(row) && &row != baseline) text += markdownRow(ratioCells(row, *baseline, row));
     return text;
   }
   std::vector<MarkdownHead> heads = {{"technique", Align::left}, {"frame"}, {"shadows"}};

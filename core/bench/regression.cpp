@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "core/bench/private/comparison.h"
@@ -52,6 +53,16 @@ std::string verdict(const Change& change) {
   return text;
 }
 
+std::vector<MarkdownColumn<Change>> changeColumns() {
+  return {{{"case", Align::left}, [](const Change& c) { return c.label; }},
+          {{"time, now / before (95 %)"},
+           [](const Change& c) { return c.time.value > 0 ? ratioText(c.time, 3) : "-"; }},
+          {{fmt::format("{} before", metricInfo(&Metrics::rmse).label)},
+           [](const Change& c) { return fmt::format("{:.4g}", c.errorBefore); }},
+          {{"now"}, [](const Change& c) { return fmt::format("{:.4g}", c.error); }},
+          {{"", Align::left}, verdict}};
+}
+
 bool regressed(const Change& change) {
   return change.slower || change.worse || !change.failure.empty();
 }
@@ -88,25 +99,11 @@ std::string toMarkdown(const Regression& regression) {
       "{} rows compared: {} slower, {} worse, {} failed, {} faster, {} better; {} only before, {} only now\n",
       regression.changes.size(), count(&Change::slower), count(&Change::worse), failed,
       count(&Change::faster), count(&Change::better), regression.onlyBefore, regression.onlyNow);
-  std::string rows;
-  for (const Change& change : regression.changes) {
-    const std::string verdictText = verdict(change);
-    if (verdictText.empty()) continue;
-    const std::string time =
-        change.time.value > 0
-            ? fmt::format("{:.3f} ({:.3f} to {:.3f})", change.time.value, change.time.low, change.time.high)
-            : "-";
-    rows += markdownRow({change.label, time, fmt::format("{:.4g}", change.errorBefore),
-                         fmt::format("{:.4g}", change.error), verdictText});
-  }
-  if (rows.empty()) return text;
-  return text + "\n" +
-         markdownHead({{"case", Align::left},
-                       {"time, now / before (95 %)"},
-                       {fmt::format("{} before", metricInfo(&Metrics::rmse).label)},
-                       {"now"},
-                       {"", Align::left}}) +
-         rows;
+  std::vector<Change> shown;
+  std::ranges::copy_if(regression.changes, std::back_inserter(shown),
+                       [](const Change& change) { return !verdict(change).empty(); });
+  if (shown.empty()) return text;
+  return text + "\n" + markdownTable(changeColumns(), shown);
 }
 
 }  // namespace limn::bench

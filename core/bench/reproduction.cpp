@@ -192,9 +192,7 @@ std::string verdictMarkdown() {
   static const std::vector<MarkdownColumn<VerdictInfo>> columns = {
       {{"verdict", Align::left}, [](const VerdictInfo& v) -> std::string { return v.name; }},
       {{"rule", Align::left}, [](const VerdictInfo& v) -> std::string { return v.rule; }}};
-  std::string text = markdownHead(columns);
-  for (const VerdictInfo& info : kVerdicts) text += markdownRow(columns, info);
-  return text;
+  return markdownTable(columns, kVerdicts);
 }
 
 }  // namespace

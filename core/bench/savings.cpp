@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/bench/private/columns.h"
+#include "core/bench/private/comparison.h"
 #include "core/bench/private/markdown.h"
 #include "core/image/metric_table.h"
 #include "core/image/metrics.h"
@@ -186,10 +187,7 @@ std::vector<MarkdownColumn<SavingResult>> savingColumns() {
       applied("passes", [](const SavingResult& r) { return fmt::format("{}", r.passes.size()); }),
       timeColumn("forced", &SavingResult::forced),
       timeColumn("without", &SavingResult::without),
-      applied("ratio (95 %)",
-              [](const SavingResult& r) {
-                return fmt::format("{:.3f} ({:.3f} to {:.3f})", r.ratio.value, r.ratio.low, r.ratio.high);
-              }),
+      applied("ratio (95 %)", [](const SavingResult& r) { return ratioText(r.ratio, 3); }),
       memoryColumn("forced", &SavingResult::forced),
       memoryColumn("without", &SavingResult::without),
       {{"pictures", Align::left},
@@ -262,9 +260,7 @@ std::vector<SavingResult> measureSavings(render::Renderer& renderer, const scene
 
 std::string toMarkdown(std::span<const SavingResult> results) {
   static const std::vector<MarkdownColumn<SavingResult>> columns = savingColumns();
-  std::string text = markdownHead(columns);
-  for (const SavingResult& r : results) text += markdownRow(columns, r);
-  return text;
+  return markdownTable(columns, results);
 }
 
 std::string toJson(std::span<const SavingResult> results) {

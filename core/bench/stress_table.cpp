@@ -104,9 +104,7 @@ const StressAnswer& StressResult::worst() const {
 
 std::string toMarkdown(std::span<const StressResult> results) {
   static const std::vector<MarkdownColumn<StressResult>> columns = stressColumns();
-  std::string text = markdownHead(columns);
-  for (const StressResult& r : results) text += markdownRow(columns, r);
-  return text;
+  return markdownTable(columns, results);
 }
 
 std::string toJson(std::span<const StressResult> results, const std::string& renderer) {

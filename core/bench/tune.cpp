@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/bench/private/comparison.h"
+
 namespace limn::bench {
 namespace {
 
@@ -111,7 +113,7 @@ double msAtPixels(const Row& row, double pixels, double rest) {
 
 Ratio frameMsInterval(const Row& row) {
   const FrameTime& time = row.cost.frameMs;
-  const std::vector<double> samples = time.samples.empty() ? std::vector<double>{time.median} : time.samples;
+  const std::vector<double> samples = samplesOf(time);
   const std::vector<double> one(static_cast<std::size_t>(std::max(time.turns, 1)), 1.0);
   return ratioOfMedians({samples, time.turns}, {one, time.turns});
 }

@@ -38,10 +38,10 @@ struct Known {
   bool checked = false, measured = false;
 };
 
-/// A step of the walk: the setting it begins at, and the axis that it changes.
+/// What is expected one step from a known setting: the figures of that one where nothing can be predicted.
 struct Step {
-  TuneSetting from;
-  std::size_t axis = 0;
+  TuneFigures figures;
+  bool predicted = false;
 };
 
 class Search {
@@ -243,32 +243,32 @@ class Search {
     return settings;
   }
 
-  /// Settings one step from those that the walk goes on from, and which of these; of all others that are
-  /// known, those of which something can be predicted: a quick setting far from the limit may be one step
-  /// from the answer. The defaults remain among the former, beaten or not: what single steps change is what
-  /// all predictions are made of.
+  /// Settings one step from those that the walk goes on from, with what is expected of them; of all others
+  /// that are known, those of which something can be predicted: a quick setting far from the limit may be one
+  /// step from the answer. The defaults remain among the former, beaten or not: what single steps change is
+  /// what all predictions are made of.
   std::map<TuneSetting, Step> neighbours() const {
     std::map<TuneSetting, Step> next;
-    const auto addFrom = [&](const TuneSetting& setting, auto wanted) {
+    const auto addFrom = [&](const TuneSetting& setting, bool unpredicted) {
       for (std::size_t axis = 0; axis < setting.at.size(); ++axis)
         for (const bool up : {false, true}) {
           TuneSetting other = setting;
           std::size_t& at = other.at[axis];
           if (up ? at + 1 == spaces_[setting.space].axes[axis].values.size() : at == 0) continue;
           at = up ? at + 1 : at - 1;
-          const Step step{setting, axis};
-          if (!known_.contains(other) && wanted(other, step)) next.emplace(std::move(other), step);
+          if (known_.contains(other)) continue;
+          const std::optional<TuneFigures> figures = predicted(other, setting, axis);
+          if (figures || unpredicted)
+            next.emplace(std::move(other),
+                         Step{figures.value_or(known_.at(setting).figures), figures.has_value()});
         }
     };
-    const auto any = [](const TuneSetting&, const Step&) { return true; };
-    for (const TuneSetting& setting : leading()) addFrom(setting, any);
+    for (const TuneSetting& setting : leading()) addFrom(setting, true);
     for (std::size_t space = 0; space < spaces_.size(); ++space)
       if (const TuneFigures* f = figuresOf(start(space)); f != nullptr && !isBehind(space, *f))
-        addFrom(start(space), any);
+        addFrom(start(space), true);
     for (const auto& [setting, known] : known_)
-      if (!known.figures.failed)
-        addFrom(setting,
-                [&](const TuneSetting& to, const Step& step) { return predicted(to, step).has_value(); });
+      if (!known.figures.failed) addFrom(setting, false);
     return next;
   }
 
@@ -287,11 +287,12 @@ class Search {
 
   /// What a step changes beside the defaults, it is taken to change elsewhere; nothing where that is not
   /// known.
-  std::optional<TuneFigures> predicted(const TuneSetting& setting, const Step& step) const {
-    const TuneFigures* from = alone(setting.space, step.axis, step.from.at[step.axis]);
-    const TuneFigures* to = alone(setting.space, step.axis, setting.at[step.axis]);
+  std::optional<TuneFigures> predicted(const TuneSetting& setting, const TuneSetting& origin,
+                                       std::size_t axis) const {
+    const TuneFigures* from = alone(setting.space, axis, origin.at[axis]);
+    const TuneFigures* to = alone(setting.space, axis, setting.at[axis]);
     if (from == nullptr || to == nullptr) return std::nullopt;
-    TuneFigures f = known_.at(step.from).figures;
+    TuneFigures f = known_.at(origin).figures;
     f.error *= to->error / std::max(from->error, kLeast);
     f.ms *= to->ms / std::max(from->ms, kLeast);
     return f;
@@ -313,51 +314,41 @@ class Search {
     return keeps(f) ? std::pair(false, objective(f)) : std::pair(true, distance(f));
   }
 
-  /// Settings by the objective that is expected of them, which counts for far less where they miss the limit.
-  std::vector<TuneSetting> byPromise(const std::map<TuneSetting, TuneFigures>& expected) const {
-    std::vector<TuneSetting> settings;
-    for (const auto& [setting, figures] : expected) settings.push_back(setting);
-    std::ranges::stable_sort(settings, {}, [&](const TuneSetting& setting) {
-      const TuneFigures& f = expected.at(setting);
-      const double excess = std::max(1.0, constrained(f) / bound());
-      return std::pair(excess > kLookReach,
-                       objective(f) * std::pow(excess, limit_.ms ? kLateWeight : kWrongWeight));
-    });
-    return settings;
+  /// How little is to be expected of predicted figures: the objective, which counts for far less where they
+  /// miss the limit.
+  std::pair<bool, double> predictedLateness(const TuneFigures& f) const {
+    const double excess = std::max(1.0, constrained(f) / bound());
+    return {excess > kLookReach, objective(f) * std::pow(excess, limit_.ms ? kLateWeight : kWrongWeight)};
   }
 
   /// Those that cost no more together than `count` of mean time: single steps from the defaults of which
   /// nothing can be predicted, in techniques that none is ahead of; then the best by what is predicted; where
   /// there is neither, other steps of which nothing can be predicted.
-  std::vector<TuneSetting> likeliest(const std::map<TuneSetting, Step>& settings, double count) const {
-    std::map<TuneSetting, TuneFigures> expected;
-    std::vector<TuneSetting> ahead, behind;
-    for (const auto& [setting, step] : settings) {
-      const TuneFigures& from = known_.at(step.from).figures;
-      if (const std::optional<TuneFigures> figures = predicted(setting, step))
-        expected[setting] = *figures;
+  std::vector<TuneSetting> likeliest(const std::map<TuneSetting, Step>& steps, double count) const {
+    std::vector<TuneSetting> predictable, ahead, behind;
+    for (const auto& [setting, step] : steps) {
+      if (step.predicted)
+        predictable.push_back(setting);
       else
-        (isOfStar(setting) && !isBehind(setting.space, from) ? ahead : behind).push_back(setting);
+        (isOfStar(setting) && !isBehind(setting.space, step.figures) ? ahead : behind).push_back(setting);
     }
-    std::ranges::stable_sort(ahead, {}, [&](const TuneSetting& setting) {
-      return lateness(known_.at(settings.at(setting).from).figures);
-    });
+    const auto figures = [&](const TuneSetting& s) { return steps.at(s).figures; };
+    std::ranges::stable_sort(ahead, {}, [&](const TuneSetting& s) { return lateness(figures(s)); });
+    std::ranges::stable_sort(predictable, {},
+                             [&](const TuneSetting& s) { return predictedLateness(figures(s)); });
     const double mean = meanMs();
     std::vector<TuneSetting> chosen;
-    const auto add = [&](const std::vector<TuneSetting>& more, auto price) {
+    const auto add = [&](const std::vector<TuneSetting>& more) {
       for (const TuneSetting& setting : more) {
-        const double cost = price(setting);
+        const double cost = priceOf(figures(setting), mean);
         if (cost > (1 + kRounding) * count) continue;  // a cheaper one may fit
         count -= cost;
         chosen.push_back(setting);
       }
     };
-    const auto asBefore = [&](const TuneSetting& s) {
-      return priceOf(known_.at(settings.at(s).from).figures, mean);
-    };
-    add(ahead, asBefore);
-    add(byPromise(expected), [&](const TuneSetting& s) { return priceOf(expected.at(s), mean); });
-    if (chosen.empty()) add(behind, asBefore);
+    add(ahead);
+    add(predictable);
+    if (chosen.empty()) add(behind);
     return chosen;
   }
 

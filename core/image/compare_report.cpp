@@ -13,8 +13,7 @@ namespace {
 
 std::size_t labelWidth() {
   std::size_t width = 0;
-  for (const MetricInfo& info : kMetrics)
-    if (info.kind != MetricKind::basis) width = std::max(width, labelWithUnit(info).size());
+  for (const MetricInfo& info : kQualityMetrics) width = std::max(width, labelWithUnit(info).size());
   return width;
 }
 
@@ -26,8 +25,7 @@ std::string metricsJson(const Metrics& metrics) {
 
 std::string metricsTable(const Metrics& metrics) {
   std::string text;
-  for (const MetricInfo& info : kMetrics) {
-    if (info.kind == MetricKind::basis) continue;  // in sentences below
+  for (const MetricInfo& info : kQualityMetrics) {  // the others in sentences below
     const std::optional<double> value = metricValue(info, metrics);
     text += fmt::format("{:<{}} {:>12}  {}\n", labelWithUnit(info), labelWidth(),
                         value ? fmt::format("{:.6g}", *value) : "-", info.help);

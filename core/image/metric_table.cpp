@@ -19,6 +19,9 @@ constexpr std::size_t sizeOfAll() {
   return size;
 }
 static_assert(sizeOfAll() == sizeof(Metrics), "every member of Metrics has one line in kMetrics");
+static_assert(std::all_of(std::begin(kMetrics) + kQualityMetrics.size(), std::end(kMetrics),
+                          [](const MetricInfo& info) { return info.kind == MetricKind::basis; }),
+              "kMetrics ends with the bases");
 
 template <class T>
 std::string textOf(const std::optional<T>& value, const char* format, const char* unknown) {

@@ -3,7 +3,10 @@
 // of Metrics, its computation and one line here.
 #pragma once
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -66,6 +69,11 @@ inline constexpr MetricInfo kMetrics[] = {
      "number of pixels compared"},
 };
 // clang-format on
+
+/// Holds the metrics that say how good a picture is: those before the bases, with which the table ends.
+inline constexpr std::span<const MetricInfo> kQualityMetrics(std::begin(kMetrics),
+                                                             std::ranges::find(kMetrics, MetricKind::basis,
+                                                                               &MetricInfo::kind));
 
 /// Returns the line of the table for a member. Throws std::logic_error if there is none.
 constexpr const MetricInfo& metricInfo(double Metrics::*member) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/base/export.h"
 #include "core/bench/ratio.h"
@@ -29,8 +30,13 @@ LIMN_API double shadowMs(const Row& row);
 /// Returns the errors in the penumbra where they are known, else those of the whole picture.
 LIMN_API const Metrics& errorOf(const Row& row);
 
-/// Returns how many times as long the first row's frame takes. Both rows must be timed; where the single
-/// times of one are not known, its median stands for them.
+/// Returns the timed row that the others of its table are compared with; null if there is none.
+LIMN_API const Row* baselineOf(std::span<const Row> rows);
+
+/// Returns the single times of the frames; where they are not known, the median alone.
+LIMN_API std::vector<double> samplesOf(const FrameTime& time);
+
+/// Returns how many times as long the first row's frame takes, from samplesOf() both, which must be timed.
 LIMN_API Ratio frameRatio(const Row& slow, const Row& fast);
 
 /// Returns how many times as long the technique's own passes take as those of its bound.
@@ -45,8 +51,8 @@ LIMN_API std::string shadowRatio(const Row& slow, const Row& fast);
 
 /// Returns a ratio to the digits that tables show.
 LIMN_API std::string ratioText(double ratio);
-/// Returns the same with the interval: "2.10 (1.80 to 2.40)".
-LIMN_API std::string ratioText(const Ratio& ratio);
+/// Returns the same with the interval: "2.10 (1.80 to 2.40)"; `digits` follow each point.
+LIMN_API std::string ratioText(const Ratio& ratio, int digits = 2);
 
 /// Returns the quickest timed row of the technique whose boundedError() is not above `limit` (in the
 /// penumbra, where that is known); null if there is none.

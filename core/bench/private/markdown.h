@@ -2,8 +2,10 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "core/base/export.h"
@@ -50,6 +52,15 @@ std::string markdownRow(const std::vector<MarkdownColumn<Result>>& columns, cons
   std::vector<std::string> cells;
   for (const MarkdownColumn<Result>& column : columns) cells.push_back(column.cell(result));
   return markdownRow(cells);
+}
+
+/// Returns the table of these columns with a line for each result.
+template <class Result>
+std::string markdownTable(const std::vector<MarkdownColumn<Result>>& columns,
+                          std::span<const std::type_identity_t<Result>> results) {
+  std::string text = markdownHead(columns);
+  for (const Result& result : results) text += markdownRow(columns, result);
+  return text;
 }
 
 /// Returns a picture without alternative text, "![](file)"; "" where the path is absolute or leaves the
