@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "glsl/light/environment.glsl"
+#include "glsl/light/prefiltered.glsl"
 
 namespace limn::shading {
 namespace {
@@ -109,17 +110,11 @@ std::vector<LobeSample> lobeSamples(float alpha, int count, int sourceWidth) {
   std::vector<LobeSample> samples;
   float total = 0;
   for (int i = 0; i < count; ++i) {
-    // Rank-1 lattice of the golden ratio.
-    const vec2 u((static_cast<float>(i) + 0.5f) / static_cast<float>(count),
-                 std::fmod(0.61803399f * static_cast<float>(i), 1.0f));
-    const vec3 h = glsl::sample_visible_normal(vec3(0, 0, 1), vec2(alpha), vec2(u.y, u.x));
-    const vec3 l = 2 * h.z * h - vec3(0, 0, 1);
-    if (l.z <= 0) continue;
-    const float pdf = 0.25f * glsl::ggx_distribution(h.z, h.x * h.x + h.y * h.y, alpha);
-    const float spread = 1 / (static_cast<float>(count) * std::max(pdf, 1e-12f));
-    const float level = std::max(0.0f, 0.5f * std::log2(spread / texelSolidAngle) + 0.5f);
-    samples.push_back({l, glsl::ggx_visibility(1, l.z, alpha) * l.z, level});
-    total += samples.back().weight;
+    const glsl::PrefilterSample sample = glsl::prefilter_sample(alpha, i, count);
+    if (sample.weight == 0) continue;
+    samples.push_back(
+        {sample.direction, sample.weight, glsl::prefilter_source_level(sample.spread, texelSolidAngle)});
+    total += sample.weight;
   }
   for (LobeSample& sample : samples) sample.weight /= total;
   return samples;

@@ -21,7 +21,7 @@ LIMN_FN vec3 coated_environment_base(MaterialModel m, float n_dot_v, vec3 irradi
   vec3 passing = vec3(1.0f) - coated_mirror(m, n_dot_v);
   if ((m.options & model_option_physical) == 0u) return passing * light;
   vec3 mean = dielectric_mean_reflectance(m.eta);
-  vec3 entering = entering_irradiance(m, mean, irradiance, grazing);
+  vec3 entering = entering_irradiance(m, mean_reflectance(m.eta, m.k), irradiance, grazing);
   return passing * m.kd * inverse_pi * entering * coated_escape(m, mean) / (vec3(1.0f) - mean);
 }
 

@@ -34,9 +34,10 @@ LIMN_FN vec3 coated_response(MaterialModel m, vec3 v, vec3 l) {
 // Hemispherical reflectance of the base alone.
 LIMN_FN vec3 coated_albedo(MaterialModel m) {
   if ((m.options & (model_option_blend | model_option_physical)) == 0u) return m.kd;
+  vec3 passing = vec3(1.0f) - mean_reflectance(m.eta, m.k);
+  if ((m.options & model_option_physical) == 0u) return m.kd * passing;
   vec3 mean = dielectric_mean_reflectance(m.eta);
-  vec3 albedo = m.kd * (vec3(1.0f) - mean);
-  return (m.options & model_option_physical) == 0u ? albedo : albedo * coated_escape(m, mean);
+  return m.kd * passing * passing * coated_escape(m, mean) / (vec3(1.0f) - mean);
 }
 
 LIMN_END

@@ -50,10 +50,17 @@ LIMN_FN vec3 dielectric_mean_reflectance(vec3 eta) {
   return vec3(dielectric_mean_reflectance(eta.x), dielectric_mean_reflectance(eta.y), dielectric_mean_reflectance(eta.z));
 }
 
-// The same of any interface within 0.012, by the rule of Gauss and Legendre with three nodes over cos^2.
-LIMN_FN vec3 mean_reflectance(vec3 eta, vec3 k) {
+// The same of any interface. That of a dielectric with eta < 1 follows from its other side: what is passed, times n^2, is the same
+// both ways. Where there is absorption it is the rule of Gauss and Legendre with three nodes over cos^2, within 0.012, but up to
+// 0.18 where eta is below 1 and k below 0.1: total reflection is almost cut off there.
+LIMN_FN float mean_reflectance(float eta, float k) {
+  if (k == 0.0f && eta < 1.0f) return 1.0f - eta * eta * (1.0f - dielectric_mean_reflectance(1.0f / eta));
+  if (k == 0.0f) return dielectric_mean_reflectance(eta);
   return (5.0f * fresnel(0.33571069f, eta, k) + 8.0f * fresnel(0.70710678f, eta, k) +
           5.0f * fresnel(0.94196515f, eta, k)) / 18.0f;
+}
+LIMN_FN vec3 mean_reflectance(vec3 eta, vec3 k) {
+  return vec3(mean_reflectance(eta.x, k.x), mean_reflectance(eta.y, k.y), mean_reflectance(eta.z, k.z));
 }
 
 LIMN_END

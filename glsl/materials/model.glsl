@@ -138,6 +138,20 @@ LIMN_FN vec3 model_albedo(MaterialModel m) {
   return vec3(0.0f);
 }
 
+// What kd alone reflects: f cos(l) of it, 1/sr, where l lies above the horizon, and its hemispherical reflectance.
+LIMN_FN vec3 model_diffuse_response(MaterialModel m, vec3 l) {
+#if (MATERIAL_MODELS & 8) != 0
+  if (m.kind == model_banks) return m.kd * (banks_sine(l) * l.z);
+#endif
+  return m.kd * (inverse_pi * l.z);
+}
+LIMN_FN vec3 model_diffuse_albedo(MaterialModel m) {
+#if (MATERIAL_MODELS & 8) != 0
+  if (m.kind == model_banks) return min(banks_diffuse_integral * m.kd, vec3(1.0f));
+#endif
+  return m.kd;
+}
+
 // The most light that the diffuse part and the lobe reflect together, over what arrives, in the channel that reflects most; kd
 // and ks are to be divided by it where it is above 1. Of a coat it is the base alone.
 LIMN_FN float model_excess(MaterialModel m) {

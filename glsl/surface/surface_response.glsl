@@ -9,6 +9,7 @@
 #include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/surface/reflected_parts.glsl"
 #if MATERIAL_MODELS
+#include "glsl/materials/nearest_brdf.glsl"
 #include "glsl/materials/response.glsl"
 #endif
 #if (MATERIAL_MODELS & 127) != 0
@@ -80,7 +81,7 @@ ReflectedParts surface_response_parts(SurfaceMaterial m, vec3 n, vec3 v, vec3 l)
   if (m.model.kind != model_none) {
     vec3 whole = surface_response(m, n, v, l);
     bool enters = m.model.kind == model_entry || m.model.kind == model_coated;
-    response.diffuse = enters ? whole : min(m.model.kd * (inverse_pi * n_dot_l), whole);
+    response.diffuse = enters ? whole : min(model_diffuse_response(m.model, to_local(m.frame, l)), whole);
     response.lobe = whole - response.diffuse;
     return response;
   }
@@ -96,16 +97,7 @@ ReflectedParts surface_response_parts(SurfaceMaterial m, vec3 n, vec3 v, vec3 l)
 }
 
 #if MATERIAL_MODELS
-// The metallic-roughness surface that comes next to one with a model, for light that only such surfaces are prefiltered for:
-// the model's diffuse part, and a lobe of its width that reflects the rest of its albedo.
-SurfaceBrdf nearest_brdf(SurfaceMaterial m) {
-  SurfaceBrdf s = m.brdf;
-  s.diffuse = m.model.kd;
-  s.f0 = max(s.f0 - m.model.kd, vec3(0.0));
-  s.f90 = s.f0 == vec3(0.0) ? 0.0 : 1.0;
-  s.dielectric_f0 = s.dielectric_f90 = 0.0;
-  return s;
-}
+SurfaceBrdf nearest_brdf(SurfaceMaterial m) { return nearest_brdf(m.model, m.brdf.alpha); }
 #endif
 
 #endif  // LIMN_SURFACE_RESPONSE_GLSL

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/scene/material_model.h"
 #include "core/shading_maps/shading_maps.h"
+#include "glsl/materials/material_model.glsl"
 #include "tests/gpu/environment_harness.h"
 
 namespace limn {
@@ -149,6 +151,26 @@ TEST_F(SubtractiveShadowsTest, BatchesOfAnySizeGiveTheSamePicture) {
         EXPECT_LT(rmse(with("4"), with("256")), 2e-5) << name << combine << block;
       }
   }
+}
+
+/// The lobe is a tenth of the light here. Its colour varies by a few per cent across the picture, which is
+/// all that sharing light with colours or without may change.
+TEST_F(SubtractiveShadowsTest, WeakLobesAreSharedWithoutTheirColours) {
+  glsl::MaterialModel model{};
+  model.kind = glsl::model_phong;
+  model.kd = vec3(0.3f);
+  model.ks = vec3(0.03f);
+  model.exponent = 5;
+  scene::Scene scene = lit(floor(), uniform(1), 0);
+  scene::setModel(scene.materials[0], model);
+  render::Renderer renderer(device(), scene);
+  const auto added = [&](const char* demodulate) {
+    return direct(
+        renderer, 32, 24,
+        {shadows({{"combine", "add"}, {"block", "4"}, {"lights", "64"}, {"demodulate", demodulate}})});
+  };
+  const Image plain = added("false");
+  EXPECT_LT(rmse(added("true"), plain), 0.01 * mean(plain));
 }
 
 TEST_F(SubtractiveShadowsTest, BlocksCostLittleWhereSurfacesAreSmooth) {

@@ -5,6 +5,7 @@
 #include "core/scene/camera.h"
 #include "core/scene/material_model.h"
 #include "glsl/light/ltc.glsl"
+#include "glsl/materials/nearest_brdf.glsl"
 #include "glsl/surface/lobe_samples.glsl"
 #include "tests/gpu/environment_harness.h"
 #include "tests/support/test_scenes.h"
@@ -160,6 +161,31 @@ TEST_F(UnshadowedEnvironmentTest, LobesOfModelsConvergeToSamplesOfTheEnvironment
     EXPECT_LT(rmse(light(renderer, "brdf_samples", {{"brdf_samples", "256"}}), exact), 0.02 * mean(exact))
         << kind;
     expectNear(middle(light(renderer, "cache", {{"brdf_samples", "256"}})), middle(exact), 0.03f);
+  }
+}
+
+/// Materials with a model have the filtered maps' light of the surface next to them: of Banks's diffuse
+/// coefficient 8/3, and of a weak lobe what such a surface reflects head-on.
+TEST_F(UnshadowedEnvironmentTest, FilteredMapsLightModelsByTheirAlbedo) {
+  glsl::MaterialModel banks{}, phong{};
+  banks.kind = glsl::model_banks;
+  banks.kd = vec3(0.3f, 0.2f, 0.1f);
+  banks.exponent = 20;
+  phong.kind = glsl::model_phong;
+  phong.ks = vec3(0.04f);
+  phong.exponent = 100;
+  for (const glsl::MaterialModel& model : {banks, phong}) {
+    scene::Material material;
+    scene::setModel(material, model);
+    const glsl::SurfaceBrdf s = glsl::nearest_brdf(model, brdfOf(material).alpha);
+    const vec3 expected = model.kind == glsl::model_banks
+                              ? 8.f / 3 * banks.kd
+                              : glsl::ltc_specular_reflectance(s, glsl::ltc_lookup(1, s.alpha));
+    EXPECT_GT(expected.x, 0.01f);
+    const scene::Scene scene = floorOf(material, uniform(1));
+    render::Renderer renderer(device(), scene);
+    expectNear(middle(picture(renderer, settings(kOddWidth, kOddHeight, Term::direct))), expected, 0.02f);
+    expectNear(middle(light(renderer, "prefiltered")), expected, 0.02f);
   }
 }
 

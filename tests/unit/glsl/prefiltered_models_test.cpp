@@ -243,6 +243,19 @@ double coatedFurnace(float kd, uint options, double cosine) {
   return static_cast<double>(reflected_whole(light).x);
 }
 
+/// Of uniform light under coats that absorb, and coats of a thinner medium than air.
+TEST(PrefilteredModels, BasesOfAnyPhysicalCoatGetWhatEntersIt) {
+  for (const vec2 index : {vec2(1.5f, 1), vec2(1.5f, 2), vec2(0.9f, 0), vec2(0.5f, 0)})
+    for (const double cosine : {1., 0.9, 0.5}) {
+      MaterialModel m = coatedModel(0.8f, index.x, model_option_physical);
+      m.k = vec3(index.y);
+      const vec3 light = coated_environment_base(
+          m, static_cast<float>(cosine), vec3(static_cast<float>(M_PI)), vec3(static_cast<float>(M_PI) / 21));
+      EXPECT_NEAR(static_cast<double>(light.x), furnace(m, directionAt(cosine, 0)), 0.01)
+          << index.x << ' ' << index.y << ' ' << cosine;
+    }
+}
+
 TEST(PrefilteredModels, SumsOfCoatAndBaseGainEnergyAndPhysicalOnesKeepIt) {
   EXPECT_NEAR(coatedFurnace(1, 0, 1), 1.04, 1e-4);
   EXPECT_NEAR(coatedFurnace(1, 0, 0.2), 1.34, 0.01);

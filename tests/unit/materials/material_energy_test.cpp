@@ -200,6 +200,20 @@ TEST(MaterialEnergy, CoatsHaveTheirClosedForms) {
               1.74, 0.005);
 }
 
+/// Coats that absorb, whose mean of F is within 0.0075, and coats of a thinner medium than air.
+TEST(MaterialEnergy, AlbedoOfAnyCoatIsTheMeanFurnace) {
+  for (const vec2 index : {vec2(1.5f, 1), vec2(1.5f, 2), vec2(0.9f, 0), vec2(0.5f, 0)})
+    for (const uint options : {model_option_blend, model_option_physical}) {
+      MaterialModel m = coatedModel(1, index.x, options);
+      m.k = vec3(index.y);
+      constexpr int rings = 64;
+      double mean = 0;
+      for (int i = 0; i < rings; ++i)
+        mean += furnace(m, directionAt(std::sqrt((i + 0.5) / rings), 0), 4000) / rings;
+      EXPECT_NEAR(double(model_albedo(m).x), mean, 0.015) << index.x << ' ' << index.y << ' ' << options;
+    }
+}
+
 TEST(MaterialEnergy, ReciprocalModelsAreReciprocal) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit;
