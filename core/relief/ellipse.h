@@ -39,7 +39,8 @@ LIMN_API glsl::ReliefEllipse nearestEllipse(std::span<const double> rho, const g
 /// Returns the nearest ellipse of each texel.
 LIMN_API std::vector<glsl::ReliefEllipse> nearestEllipses(const Horizons& horizons);
 
-/// Takes the mean of ellipses: areas A, A c and A (S + c c^T) average linearly, with A = 4 pi sqrt(det S).
+/// Takes the mean of ellipses: their areas A, A c and A (S + c c^T) average linearly, with A = 4 pi sqrt(det
+/// S). The mean's own area is another one than that of A, since centres that lie apart make it wider.
 class LIMN_API EllipseMean {
  public:
   void add(const glsl::ReliefEllipse& ellipse);

@@ -49,13 +49,6 @@ double horizonWithin(const HeightField& field, const glm::dvec2& place, const gl
   return most;
 }
 
-Horizons emptyHorizons(const HeightField& field, int azimuths) {
-  if (azimuths < 1) throw UsageError(fmt::format("{} azimuths of horizons: at least 1 is needed", azimuths));
-  Horizons result{.azimuths = azimuths, .texels = field.texels(), .tangents = {}};
-  result.tangents.resize(static_cast<std::size_t>(azimuths) * field.texels());
-  return result;
-}
-
 /// Sweeps along one azimuth. The axis along which the lines cover most texels is called major, the other one
 /// minor; every line has a vertex at each texel of the major axis and one at each row of the minor axis that
 /// it crosses.
@@ -183,21 +176,11 @@ double exactHorizon(const HeightField& field, const glm::dvec2& place, double az
 }
 
 Horizons sweepHorizons(const HeightField& field, int azimuths) {
-  Horizons result = emptyHorizons(field, azimuths);
+  if (azimuths < 1) throw UsageError(fmt::format("{} azimuths of horizons: at least 1 is needed", azimuths));
+  Horizons result{.azimuths = azimuths, .texels = field.texels(), .tangents = {}};
+  result.tangents.resize(static_cast<std::size_t>(azimuths) * field.texels());
   tbb::parallel_for(0, azimuths, [&](int i) {
     Sweep(field, result.angle(i)).write(result.tangents.data() + static_cast<std::size_t>(i) * result.texels);
-  });
-  return result;
-}
-
-Horizons exactHorizons(const HeightField& field, int azimuths) {
-  Horizons result = emptyHorizons(field, azimuths);
-  tbb::parallel_for(0, azimuths, [&](int i) {
-    const double angle = result.angle(i);
-    float* tangents = result.tangents.data() + static_cast<std::size_t>(i) * result.texels;
-    for (int y = 0; y < field.size().y; ++y)
-      for (int x = 0; x < field.size().x; ++x)
-        tangents[field.index({x, y})] = static_cast<float>(exactHorizon(field, {x, y}, angle));
   });
   return result;
 }

@@ -35,7 +35,4 @@ struct LIMN_API Horizons {
 /// at most 8 sizes of the map ahead. Throws UsageError for less than one azimuth.
 LIMN_API Horizons sweepHorizons(const HeightField& field, int azimuths);
 
-/// Returns the same by exactHorizon(), which is slow.
-LIMN_API Horizons exactHorizons(const HeightField& field, int azimuths);
-
 }  // namespace limn::relief

@@ -39,14 +39,6 @@ glm::dvec2 inMap(const HeightField& field, const glm::dvec2& place) {
   return place - size * glm::floor(place / size);
 }
 
-double between(const HeightField& field, const std::vector<double>& values, const glm::dvec2& place) {
-  const glm::dvec2 corner = glm::floor(place), part = place - corner;
-  const glm::ivec2 at(corner);
-  const auto value = [&](int x, int y) { return values[field.index(at + glm::ivec2(x, y))]; };
-  return glm::mix(glm::mix(value(0, 0), value(1, 0), part.x), glm::mix(value(0, 1), value(1, 1), part.x),
-                  part.y);
-}
-
 std::vector<glm::vec3> sharedDirections(BounceDirections kind, int paths, double lowest, std::uint32_t seed) {
   std::vector<glm::vec3> result;
   if (kind == BounceDirections::ownFrame) return result;
@@ -118,41 +110,6 @@ BouncePaths traceBounces(const HeightField& field, BounceDirections directions, 
       sum += cosine;
     }
     for (int i = 0; i < paths && sum > 0; ++i) first[i].weight *= static_cast<float>(std::numbers::pi / sum);
-  });
-  return result;
-}
-
-std::vector<double> gather(const HeightField& field, const BouncePaths& paths,
-                           const std::vector<double>& radiance, double sky) {
-  std::vector<double> result(field.texels());
-  forTexels(field, [&](const glm::ivec2&, std::size_t number) {
-    const BouncePath* const first = paths.list.data() + number * static_cast<std::size_t>(paths.paths);
-    double sum = 0;
-    for (const BouncePath* path = first; path != first + paths.paths; ++path)
-      sum += static_cast<double>(path->weight) * (path->hits() ? between(field, radiance, path->place) : sky);
-    result[number] = sum / std::numbers::pi;
-  });
-  return result;
-}
-
-std::vector<double> bounce(const HeightField& field, const BouncePaths& paths,
-                           const std::vector<double>& direct, double albedo, double sky, int bounces) {
-  std::vector<double> result = direct;
-  for (int i = 0; i < bounces; ++i) {
-    result = gather(field, paths, result, sky);
-    for (std::size_t texel = 0; texel < result.size(); ++texel)
-      result[texel] = direct[texel] + albedo * result[texel];
-  }
-  return result;
-}
-
-std::vector<double> directRadiance(const HeightField& field, const glm::dvec3& l, double albedo,
-                                   double irradiance) {
-  std::vector<double> result(field.texels());
-  forTexels(field, [&](const glm::ivec2& texel, std::size_t number) {
-    const double cosine = glm::dot(field.normal(texel), l);
-    if (l.z > 0 && cosine > 0 && !traceRay(field, texel, l))
-      result[number] = albedo / std::numbers::pi * cosine * irradiance;
   });
   return result;
 }

@@ -1,4 +1,4 @@
-// Declares rays from bump to bump of a height field, and the light that Lambertian bumps send along them.
+// Declares rays from bump to bump of a height field, and the paths along which light comes to its texels.
 #pragma once
 
 #include <cstdint>
@@ -44,21 +44,5 @@ struct LIMN_API BouncePaths {
 /// for less than one.
 LIMN_API BouncePaths traceBounces(const HeightField& field, BounceDirections directions, int paths,
                                   std::uint32_t seed = 1);
-
-/// Returns what each texel sees along its paths, the mean by weight: `radiance` of texels, bilinear between
-/// them, and `sky`.
-LIMN_API std::vector<double> gather(const HeightField& field, const BouncePaths& paths,
-                                    const std::vector<double>& radiance, double sky);
-
-/// Returns the radiance of a Lambertian field after `bounces` bounces, B_k = L0 + albedo gather(B_(k-1)),
-/// from B_0 = L0 = `direct`.
-LIMN_API std::vector<double> bounce(const HeightField& field, const BouncePaths& paths,
-                                    const std::vector<double>& direct, double albedo, double sky,
-                                    int bounces);
-
-/// Returns the radiance of each texel under a directional light, `irradiance` across its direction l: albedo
-/// / pi n.l where a ray towards it leaves the field, 0 elsewhere.
-LIMN_API std::vector<double> directRadiance(const HeightField& field, const glm::dvec3& l, double albedo,
-                                            double irradiance);
 
 }  // namespace limn::relief

@@ -30,15 +30,21 @@ int64_t texelsOf(const glm::ivec2& size) {
   return int64_t{size.x} * size.y;
 }
 
+/// Returns the texels of all levels.
+int64_t texelsOfLevels(const glm::ivec2& size) {
+  int64_t texels = 0;
+  for (int level = 0; level < levelsOf(size); ++level)
+    texels += texelsOf(glsl::relief_level_size(size, level));
+  return texels;
+}
+
 int64_t wordsOf(const relief::HeightField& field, const ReliefMapDesc& desc) {
   switch (desc.table) {
     case Table::moments:
-    case Table::nearest: {
-      int64_t texels = 0;
-      for (int level = 0; level < levelsOf(field.size()); ++level)
-        texels += texelsOf(glsl::relief_level_size(field.size(), level));
-      return texels * glsl::relief_ellipse_words;
-    }
+    case Table::nearest:
+      return texelsOfLevels(field.size()) * glsl::relief_ellipse_words;
+    case Table::ambient:
+      return texelsOfLevels(field.size());
     case Table::published:
       return texelsOf(field.size()) * glsl::relief_ellipse_words;
     case Table::horizons:
@@ -56,25 +62,63 @@ void append(std::vector<uint32_t>& words, const glsl::ReliefEllipse& ellipse) {
   words.insert(words.end(), {packed.x, packed.y, packed.z});
 }
 
+void append(std::vector<uint32_t>& words, float share) {
+  words.push_back(std::bit_cast<uint32_t>(share));
+}
+
+class ShareMean {
+ public:
+  void add(float share) {
+    count_ += 1;
+    sum_ += static_cast<double>(share);
+  }
+  float mean() const { return static_cast<float>(sum_ / count_); }
+
+ private:
+  double count_ = 0, sum_ = 0;
+};
+
 /// Returns the mean over what a texel of a smaller map covers, in whole texels.
-glsl::ReliefEllipse meanOf(const std::vector<glsl::ReliefEllipse>& texels, const glm::ivec2& size,
-                           const glm::ivec2& smaller, const glm::ivec2& at) {
+template <class Mean, class Texel>
+Texel meanOf(const std::vector<Texel>& texels, const glm::ivec2& size, const glm::ivec2& smaller,
+             const glm::ivec2& at) {
   const glm::ivec2 low = at * size / smaller, high = ((at + 1) * size + smaller - 1) / smaller;
-  relief::EllipseMean mean;
+  Mean mean;
   for (int y = low.y; y < high.y; ++y)
     for (int x = low.x; x < high.x; ++x) mean.add(texels[static_cast<size_t>(y * size.x + x)]);
   return mean.mean();
 }
 
 /// All levels are means of the texels themselves, so that spreads are those of all that lie below.
-void appendEllipses(std::vector<uint32_t>& words, const relief::HeightField& field,
-                    const std::vector<glsl::ReliefEllipse>& texels) {
-  for (const glsl::ReliefEllipse& ellipse : texels) append(words, ellipse);
+template <class Mean, class Texel>
+void appendLevels(std::vector<uint32_t>& words, const relief::HeightField& field,
+                  const std::vector<Texel>& texels) {
+  for (const Texel& texel : texels) append(words, texel);
   for (int level = 1; level < levelsOf(field.size()); ++level) {
     const glm::ivec2 smaller = glsl::relief_level_size(field.size(), level);
     for (int y = 0; y < smaller.y; ++y)
-      for (int x = 0; x < smaller.x; ++x) append(words, meanOf(texels, field.size(), smaller, {x, y}));
+      for (int x = 0; x < smaller.x; ++x) append(words, meanOf<Mean>(texels, field.size(), smaller, {x, y}));
   }
+}
+
+void appendEllipses(std::vector<uint32_t>& words, const relief::HeightField& field,
+                    const std::vector<glsl::ReliefEllipse>& texels) {
+  appendLevels<relief::EllipseMean>(words, field, texels);
+}
+
+/// Of the sky, weighted by the cosine, each azimuth's sector shows the square of its lit radius.
+void appendAmbient(std::vector<uint32_t>& words, const relief::HeightField& field, int azimuths) {
+  const relief::Horizons horizons = relief::sweepHorizons(field, azimuths);
+  std::vector<float> shares(field.texels());
+  for (size_t texel = 0; texel < shares.size(); ++texel) {
+    double sum = 0;
+    for (int i = 0; i < azimuths; ++i) {
+      const double radius = relief::litRadius(static_cast<double>(horizons.tangent(i, texel)));
+      sum += radius * radius;
+    }
+    shares[texel] = static_cast<float>(sum / azimuths);
+  }
+  appendLevels<ShareMean>(words, field, shares);
 }
 
 /// Returns the uniform ellipse of a fit: its variance along an axis is a quarter of the squared radius.
@@ -174,6 +218,8 @@ void appendField(std::vector<uint32_t>& words, const relief::HeightField& field,
     case Table::nearest:
       return appendEllipses(words, field,
                             relief::nearestEllipses(relief::sweepHorizons(field, desc.azimuths)));
+    case Table::ambient:
+      return appendAmbient(words, field, desc.azimuths);
     case Table::published:
       return appendPublished(words, field, desc.directions);
     case Table::horizons:
@@ -192,6 +238,7 @@ ReliefMapDesc plain(const ReliefMapDesc& desc) {
   switch (desc.table) {
     case Table::moments:
     case Table::nearest:
+    case Table::ambient:
     case Table::horizons:
       result.azimuths = desc.azimuths;
       break;
@@ -218,7 +265,8 @@ int64_t reliefTableWords(std::span<const relief::HeightField> fields, const Reli
 
 ReliefTable makeReliefTable(std::span<const relief::HeightField> fields, const ReliefMapDesc& desc) {
   ReliefTable table;
-  const bool levels = desc.table == Table::moments || desc.table == Table::nearest;
+  const bool levels =
+      desc.table == Table::moments || desc.table == Table::nearest || desc.table == Table::ambient;
   for (const relief::HeightField& field : fields) {
     table.fields.push_back({.first = static_cast<uint32_t>(table.values.size()),
                             .clamped = field.wrap() == relief::Wrap::clamped ? 1u : 0u,

@@ -22,6 +22,7 @@ enum class Table : uint8_t {
   moments,    ///< moment ellipses of the horizons, with levels of means (relief::EllipseMean)
   nearest,    ///< the ellipses that differ least from what the horizons leave (relief::nearestEllipse), too
   published,  ///< the published fit's ellipses (relief::fitPublished), as centres and covariances; one level
+  ambient,    ///< the share of the sky that the horizons leave as floats, with levels of means
   horizons,   ///< tangents of the horizons' elevations (glsl/relief/horizon_map.glsl) as halfs
   heights,    ///< metres, floats
   bounces     ///< which texels light from bump to bump comes from (glsl/relief/bounce_paths.glsl)
@@ -29,7 +30,7 @@ enum class Table : uint8_t {
 
 struct ReliefMapDesc {
   Table table = Table::moments;
-  int azimuths = 32;     ///< of ellipses from horizons, and of horizons
+  int azimuths = 32;     ///< of ellipses and of shares of the sky from horizons, and of horizons
   int directions = 256;  ///< of the published fit
   int paths = 64;        ///< of bounces, to each texel
   relief::BounceDirections bounceDirections = relief::BounceDirections::ownFrame;

@@ -60,6 +60,7 @@ frame::TextureHandle Renderer::Implementation::ask(Use& use, Term term, std::spa
                                                    const Lighting& lit, frame::TextureHandle entering) {
   TechniqueInputs inputs = inputsOf(use, lit.handles, lit.gbuffer);
   inputs.entering = entering;
+  inputs.bodyAlbedo = lit.bodyAlbedo;
   if (term == Term::specular) inputs.matte = matte;
   const TechniquePlugin& plugin = *use.settings->plugin;
   inputs.bound = settings.bound && hasBound(plugin);
@@ -221,7 +222,7 @@ std::vector<Renderer::Implementation::Lighting> Renderer::Implementation::lighti
     result.back().gbuffer = Deferred::addTranslucentView(frameOf(seen), Deferred::Boundary::reflecting);
   if (!contains(summed, Term::subsurface)) return result;
   Lighting entering{handles, Deferred::addTranslucentView(frameOf(seen), Deferred::Boundary::entering),
-                    Deferred::black(*graph, "entering light", settings.size), true};
+                    Deferred::black(*graph, "entering light", settings.size), matte.albedo};
   entering.handles.modelKinds = 1u << glsl::model_entry;
   entering.handles.models = entering.handles.measured = {};
   entering.handles.surface = nullptr;
@@ -274,8 +275,8 @@ frame::TextureHandle Renderer::Implementation::addRadiance() {
   std::vector<Lighting> lit = lightings(radiance);
   if (!lit.empty()) {
     addLight(lit, lights);
-    if (!lit.front().entering) radiance = lit.front().radiance;
-    if (lit.back().entering) radiance = addSubsurface(radiance, lit.back().radiance, lights);
+    if (!lit.front().bodyAlbedo) radiance = lit.front().radiance;
+    if (lit.back().bodyAlbedo) radiance = addSubsurface(radiance, lit.back().radiance, lights);
   }
   const Deferred::Frame frame{*graph, handles, gbuffer, settings.size};
   if (specular) {

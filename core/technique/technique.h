@@ -74,6 +74,9 @@ struct TechniqueInputs {
   /// For subsurface: RGBA32F, E / pi in W/(sr m^2) at each translucent pixel, where E is the irradiance that
   /// enters the body; 0 elsewhere.
   frame::TextureHandle entering{};
+  /// For the request for what enters translucent surfaces: the albedo of the surfaces as they are, as
+  /// GBuffer::albedo, whose colour is the share of entering light that leaves again. Empty for all others.
+  frame::TextureHandle bodyAlbedo{};
   /// Says whether shadow::addVisibilityPass() runs the technique's bound (core/technique/bound.h).
   bool bound = false;
 

@@ -27,11 +27,14 @@ LIMN_FN ivec2 relief_level_size(ivec2 size, int level) {
   return ivec2(max(size.x >> level, 1), max(size.y >> level, 1));
 }
 
-// The texel along one side that stands for texel i of a map of `size` texels.
-LIMN_FN int relief_wrapped(int i, int size, bool clamped) {
-  if (clamped) return clamp(i, 0, size - 1);
-  int inside = i - size * int(floor(float(i) / float(size)));  // within a texel of [0, size) where division rounds
-  return inside < 0 ? inside + size : inside >= size ? inside - size : inside;
+// The texel along one side that stands for texel i, a whole number, of a map of `size` texels. Rays that graze the base get
+// farther than floats or integers count texels: from 2^23 texels on, or where i is no number, it may be any texel of the map.
+LIMN_FN int relief_wrapped(float i, int size, bool clamped) {
+  float side = float(size);
+  float inside = i - side * floor(i / side);  // within a side of [0, side) where division rounds
+  inside = inside < 0.0f ? inside + side : inside >= side ? inside - side : inside;
+  if (clamped) inside = min(i, side - 1.0f);
+  return inside > 0.0f && inside < side ? int(inside) : 0;
 }
 
 // An ellipse in 16 bits a number: no covariance is above 1/2, no spread above 2.

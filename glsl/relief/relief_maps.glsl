@@ -16,11 +16,10 @@ struct ReliefTexels {
 // place: in texels of the level, texel (i, j) at (i, j).
 ReliefTexels relief_texels(ivec2 size, bool clamped, vec2 place) {
   vec2 corner = floor(place);
-  ivec2 low = ivec2(corner);
-  int x0 = relief_wrapped(low.x, size.x, clamped);
-  int x1 = relief_wrapped(low.x + 1, size.x, clamped);
-  int y0 = size.x * relief_wrapped(low.y, size.y, clamped);
-  int y1 = size.x * relief_wrapped(low.y + 1, size.y, clamped);
+  int x0 = relief_wrapped(corner.x, size.x, clamped);
+  int x1 = relief_wrapped(corner.x + 1.0, size.x, clamped);
+  int y0 = size.x * relief_wrapped(corner.y, size.y, clamped);
+  int y1 = size.x * relief_wrapped(corner.y + 1.0, size.y, clamped);
   ReliefTexels t;
   t.index = ivec4(y0 + x0, y0 + x1, y1 + x0, y1 + x1);
   t.part = place - corner;
@@ -58,9 +57,19 @@ ReliefEllipse relief_stored_ellipse(uint level_first, int texel) {
 // Of the nearest texel.
 ReliefEllipse relief_nearest_ellipse(ReliefField f, vec2 uv) {
   vec2 nearest = floor(uv * vec2(f.size));
-  int x = relief_wrapped(int(nearest.x), f.size.x, f.clamped != 0u);
-  int y = relief_wrapped(int(nearest.y), f.size.y, f.clamped != 0u);
+  int x = relief_wrapped(nearest.x, f.size.x, f.clamped != 0u);
+  int y = relief_wrapped(nearest.y, f.size.y, f.clamped != 0u);
   return relief_stored_ellipse(f.first, y * f.size.x + x);
+}
+
+// Number of the first texel of a level, which lies behind those of the levels before it.
+uint relief_level_first(ivec2 size, int level) {
+  uint first = 0u;
+  for (int i = 0; i < level; ++i) {
+    ivec2 before = relief_level_size(size, i);
+    first += uint(before.x * before.y);
+  }
+  return first;
 }
 
 // Centres, covariances and spreads linear between texels and levels.
@@ -68,11 +77,7 @@ ReliefEllipse relief_ellipse(ReliefField f, vec2 uv, float level) {
   float limited = min(level, float(f.levels - 1));
   int lower = int(limited);
   float part = limited - float(lower);
-  uint first = f.first;
-  for (int i = 0; i < lower; ++i) {
-    ivec2 size = relief_level_size(f.size, i);
-    first += uint(relief_ellipse_words * size.x * size.y);
-  }
+  uint first = f.first + uint(relief_ellipse_words) * relief_level_first(f.size, lower);
   ReliefEllipse sum = relief_ellipse_unpack(uvec3(0u));
   // A loop of one or two rounds: software renderers run both sides of an `if`, but no round that nobody is in.
   int i = 0;
@@ -83,6 +88,25 @@ ReliefEllipse relief_ellipse(ReliefField f, vec2 uv, float level) {
     for (int k = 0; k < 4; ++k)
       sum = relief_ellipse_add(sum, weights[k], relief_stored_ellipse(first, t.index[k]));
     first += uint(relief_ellipse_words * size.x * size.y);
+  } while (++i < 2 && part > 0.0);
+  return sum;
+}
+
+// Share of the sky, linear between texels and levels.
+float relief_ambient(ReliefField f, vec2 uv, float level) {
+  float limited = min(level, float(f.levels - 1));
+  int lower = int(limited);
+  float part = limited - float(lower);
+  uint first = f.first + relief_level_first(f.size, lower);
+  float sum = 0.0;
+  int i = 0;
+  do {  // as in relief_ellipse()
+    ivec2 size = relief_level_size(f.size, lower + i);
+    ReliefTexels t = relief_texels(size, f.clamped != 0u, relief_place(uv, size));
+    vec4 shares;
+    for (int k = 0; k < 4; ++k) shares[k] = uintBitsToFloat(relief_values[first + uint(t.index[k])]);
+    sum += (i == 0 ? 1.0 - part : part) * relief_bilinear(shares, t.part);
+    first += uint(size.x * size.y);
   } while (++i < 2 && part > 0.0);
   return sum;
 }

@@ -60,7 +60,7 @@ constexpr StressCase kStress[] = {
 relief_maps::ReliefMapDesc tableFor(const ParameterValues& parameters) {
   using relief_maps::Table;
   constexpr std::array tables{Table::moments, Table::published, Table::horizons, Table::heights,
-                              Table::nearest, Table::heights,   Table::moments};
+                              Table::nearest, Table::heights,   Table::ambient};
   return {.table = tables[static_cast<size_t>(parameters.choice("shape"))],
           .azimuths = parameters.integer("azimuths"),
           .directions = parameters.integer("directions")};

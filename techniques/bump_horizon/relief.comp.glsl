@@ -74,10 +74,12 @@ void main() {
   }
   vec3 position = pixel_position(pixel, pixel_depth(pixel));
   ReliefField field = relief_fields[here.height];
-#if SHAPE == 0 || SHAPE == 6
+#if SHAPE == 0
   ReliefEllipse ellipse = relief_ellipse(field, here.uv, here.level);
 #elif SHAPE == 1
   ReliefEllipse ellipse = relief_nearest_ellipse(field, here.uv);
+#elif SHAPE == 6
+  float ambient = relief_ambient(field, here.uv, here.level);
 #else
   vec2 place = relief_place(here.uv, field.size);
 #if SHAPE == 2
@@ -101,7 +103,7 @@ void main() {
 #elif SHAPE == 5
     float w = horizon_lit(l, scanned_horizon(field, place, level, l)) ? 1.0 : 0.0;
 #elif SHAPE == 6
-    float w = l.z > 0.0 ? ellipse_ambient(ellipse) : 0.0;
+    float w = l.z > 0.0 ? ambient : 0.0;
 #else
     float w = march_leaves(field, place, level, l) ? 1.0 : 0.0;
 #endif

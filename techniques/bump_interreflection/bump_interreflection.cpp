@@ -101,8 +101,15 @@ class BumpInterreflection : public Technique {
   struct BaseBuffers {
     gpu::Buffer bases, ofInstances;
   };
+  struct BaseHandles {
+    frame::BufferHandle bases, ofInstances;
+  };
+  /// Imports the flat bases, once for all requests.
+  void importBases(frame::FrameGraph& graph, const TechniqueInputs& inputs);
+
   FlatBases bases_;
   std::optional<BaseBuffers> baseBuffers_;
+  BaseHandles baseHandles_;  ///< empty: no surface is flat, or paths are followed for each pixel
 };
 
 /// Declares the passes of one graph.
@@ -166,11 +173,14 @@ class Passes {
     if (scene.models)
       pass.read(scene.models, Access::storageLoad, "MaterialModels", "albedo of material models");
     if (visibility) pass.read(visibility, Access::sampled, "visibility", "V of each light");
+    if (inputs_.bodyAlbedo)
+      pass.read(inputs_.bodyAlbedo, Access::sampled, "body_albedo", "what leaves bumps that light enters");
     if (flatBases) pass.read(basesOfInstances_, Access::storageLoad, "BasesOfInstances", "which are flat");
     std::map<std::string, std::string> defines{
         {"MATERIAL_MODELS", scene.models ? "1" : "0"},
         {"VISIBILITY", visibility ? "1" : "0"},
         {"FLAT_BASES", flatBases ? "1" : "0"},
+        {"ENTERING", inputs_.bodyAlbedo ? "1" : "0"},
         {"BETWEEN", inputs_.parameters.choice("lookup") == 0 ? "1" : "0"}};
     const scene::LightTextureInput textures(scene);
     textures.define(defines);
@@ -298,6 +308,23 @@ class Passes {
   ReliefMaps lit_, bounces_;
 };
 
+void BumpInterreflection::importBases(frame::FrameGraph& graph, const TechniqueInputs& inputs) {
+  if (baseBuffers_) return;
+  bases_ = bump_interreflection::flatBases(inputs.scene, inputs.pose);
+  if (bases_.bases.empty()) return;
+  gpu::Device& device = inputs.gpuScene.device();
+  const auto bytes = static_cast<int64_t>(bases_.texels * sizeof(float));
+  if (bytes > device.limits().maxStorageBlockBytes)
+    throw UsageError(
+        fmt::format("the texels of flat surfaces with height maps take {} MiB, more than the {} MiB of a "
+                    "storage buffer; ask for space=pixel, or smaller maps",
+                    bytes >> 20, device.limits().maxStorageBlockBytes >> 20));
+  baseBuffers_.emplace(gpu::Buffer::of<glsl::FlatBase>(device, "flat bases", bases_.bases),
+                       gpu::Buffer::of<uint32_t>(device, "bases of instances", bases_.ofInstances));
+  baseHandles_ = {.bases = graph.importBuffer("flat bases", baseBuffers_->bases),
+                  .ofInstances = graph.importBuffer("bases of instances", baseBuffers_->ofInstances)};
+}
+
 frame::TextureHandle BumpInterreflection::addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                                     const TermRequest& request) {
   const char* why = request.lights.empty()   ? "the scene has no light"
@@ -307,27 +334,12 @@ frame::TextureHandle BumpInterreflection::addPasses(frame::FrameGraph& graph, co
     graph.leaveOut("light from bump to bump", info.name, why);
     return request.target;
   }
-  frame::BufferHandle bases, ofInstances;
-  if (inputs.parameters.choice("space") == 1) {
-    bases_ = bump_interreflection::flatBases(inputs.scene, inputs.pose);
-    if (!bases_.bases.empty()) {
-      gpu::Device& device = inputs.gpuScene.device();
-      const auto bytes = static_cast<int64_t>(bases_.texels * sizeof(float));
-      if (bytes > device.limits().maxStorageBlockBytes)
-        throw UsageError(
-            fmt::format("the texels of flat surfaces with height maps take {} MiB, more than the {} MiB of a "
-                        "storage buffer; ask for space=pixel, or smaller maps",
-                        bytes >> 20, device.limits().maxStorageBlockBytes >> 20));
-      baseBuffers_.emplace(gpu::Buffer::of<glsl::FlatBase>(device, "flat bases", bases_.bases),
-                           gpu::Buffer::of<uint32_t>(device, "bases of instances", bases_.ofInstances));
-      bases = graph.importBuffer("flat bases", baseBuffers_->bases);
-      ofInstances = graph.importBuffer("bases of instances", baseBuffers_->ofInstances);
-    }
-  }
+  if (inputs.parameters.choice("space") == 1) importBases(graph, inputs);
+  const auto& [bases, ofInstances] = baseHandles_;
   Passes passes(graph, inputs, bases ? &bases_ : nullptr, bases, ofInstances);
   std::vector<uint32_t> lights(request.lights.begin(), request.lights.end());
   const auto near = std::ranges::stable_partition(lights, [&](uint32_t light) {
-    return bases && inputs.pose.lights[light].type == glsl::light_directional;
+    return baseHandles_.bases && inputs.pose.lights[light].type == glsl::light_directional;
   });
   const auto far = static_cast<size_t>(near.begin() - lights.begin());
   frame::TextureHandle target = request.target;

@@ -1,4 +1,4 @@
-// What a pass that adds light from bump to bump asks of a pixel.
+// What a pass that adds light from bump to bump asks of a pixel. ENTERING 1: the light that enters translucent bumps is asked for.
 #ifndef BUMP_PIXEL_GLSL
 #define BUMP_PIXEL_GLSL
 #include "glsl/light/light_centre.glsl"
@@ -22,6 +22,10 @@ uniform sampler2DArray visibility;
 layout(std430) readonly buffer BasesOfInstances { uint bases_of_instances[]; };
 #endif
 
+#if ENTERING
+uniform sampler2D body_albedo;
+#endif
+
 // Albedo of a pixel's Lambertian part; 0 of specular surfaces, which take no indirect light.
 vec3 pixel_albedo(ivec2 pixel) {
   GBufferSurface s = pixel_surface(pixel);
@@ -33,6 +37,16 @@ vec3 pixel_albedo(ivec2 pixel) {
   SurfaceBrdf brdf =
       surface_brdf(s.base_colour, s.metallic, s.roughness, s.specular_factor, s.specular_colour, s.ior);
   return brdf.diffuse * brdf_diffuse_weight(brdf, 1.0);
+}
+
+// Albedo of the bumps that send light to a pixel with that albedo, which look like its own: of what enters a body, here without
+// regard to directions, the body's albedo leaves again.
+vec3 sender_albedo(ivec2 pixel, vec3 albedo) {
+#if ENTERING
+  return albedo * gbuffer_colour_decode(texelFetch(body_albedo, pixel, 0).rgb);
+#else
+  return albedo;
+#endif
 }
 
 // Irradiance across the direction of a light that is number `layer` of its batch.
@@ -48,7 +62,7 @@ vec3 arriving_light(Light light, vec3 position, ivec2 pixel, int layer) {
 vec2 footprint_place(vec2 place, float size, int i) { return place + size * (r2_sequence(uint(i) + 1u) - 0.5); }
 
 uint nearest_texel(ivec2 size, bool clamped, vec2 place) {
-  ivec2 texel = ivec2(floor(place + 0.5));
+  vec2 texel = floor(place + 0.5);
   return uint(size.x * relief_wrapped(texel.y, size.y, clamped) + relief_wrapped(texel.x, size.x, clamped));
 }
 

@@ -23,6 +23,7 @@ bool isFlat(const scene::Primitive& primitive) {
   return true;
 }
 
+/// Returns null for geometry of a source, which may be another one in each frame.
 const scene::Primitive* primitiveOf(const scene::Scene& scene, const scene::DrawInstance& instance) {
   if (instance.node == scene::kNone) return nullptr;
   return &scene.meshes[static_cast<size_t>(instance.mesh)]
@@ -35,11 +36,13 @@ FlatBases flatBases(const scene::Scene& scene, const scene::Pose& pose) {
   FlatBases result;
   result.ofInstances.assign(pose.instances.size(), glsl::no_instance);
   for (size_t i = 0; i < pose.instances.size(); ++i) {
-    const scene::Primitive* const primitive = primitiveOf(scene, pose.instances[i]);
-    if (!primitive) continue;
-    const int height = scene.materials[static_cast<size_t>(primitive->material)].height;
+    const scene::DrawInstance& instance = pose.instances[i];
+    const scene::Primitive* const primitive = primitiveOf(scene, instance);
+    const int material =
+        primitive ? primitive->material : scene.dynamic[static_cast<size_t>(instance.mesh)].material;
+    const int height = scene.materials[static_cast<size_t>(material)].height;
     if (height == scene::kNone) continue;
-    if (pose.instances[i].deformed != scene::kNone || !isFlat(*primitive)) {
+    if (!primitive || instance.deformed != scene::kNone || !isFlat(*primitive)) {
       result.curved = true;
       continue;
     }

@@ -17,7 +17,7 @@ struct FlatBases {
 };
 
 /// Returns the instances of the pose whose material has a height map and all of whose vertices lie in one
-/// plane, with one normal and one tangent, and are not deformed.
+/// plane, with one normal and one tangent, and are neither deformed nor a source's.
 FlatBases flatBases(const scene::Scene& scene, const scene::Pose& pose);
 
 }  // namespace limn::bump_interreflection

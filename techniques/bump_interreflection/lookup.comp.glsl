@@ -29,6 +29,7 @@ void main() {
   uint index = bases_of_instances[pixel_instance(pixel)];
   if (index == no_instance) return;
   vec3 albedo = pixel_albedo(pixel);
+  vec3 sender = sender_albedo(pixel, albedo);
   FlatBase base = flat_bases[index];
   ReliefField field = relief_fields[here.height];
   vec2 place = relief_place(here.uv, field.size);
@@ -46,7 +47,7 @@ void main() {
 #endif
   vec3 position = pixel_position(pixel, pixel_depth(pixel));
   vec3 light = arriving_light(lights[light_index], position, pixel, layer) * (share * inverse_pi) * albedo;
-  for (int i = 0; i < bounce; ++i) light *= albedo;
+  for (int i = 0; i < bounce; ++i) light *= sender;
   if (light == vec3(0.0)) return;
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(light, 0.0));
 }

@@ -46,6 +46,7 @@ void main() {
 #endif
   vec3 albedo = pixel_albedo(pixel);
   if (albedo == vec3(0.0)) return;
+  vec3 sender = sender_albedo(pixel, albedo);
   find_lights(pixel, here.frame);
   BumpTexels texels = bump_texels(here.height);
   ReliefField field = texels.field;
@@ -66,15 +67,15 @@ void main() {
     vec3 weight = vec3(path.weight);
     int number = i;
     for (int bounce = 0; bounce < bounces && path.texel != bounce_sky && path.weight > 0.0; ++bounce) {
-      if (bounce > 0) weight *= albedo * path.weight;
+      if (bounce > 0) weight *= sender * path.weight;
       sum += weight * texel_irradiance(texels, path.texel);
       if (bounce + 1 == bounces) break;
       number = bounce_next_path(number, path.texel, paths);
       path = bounce_path(texels, path.texel, number);
     }
   } while (++i < paths);
-  // Bumps have the pixel's albedo: Lambertian, as what they send to it.
-  vec3 light = weights > 0.0 ? sum * albedo * albedo * (inverse_pi / weights) : vec3(0.0);
+  // Bumps are Lambertian, as what they send light to.
+  vec3 light = weights > 0.0 ? sum * albedo * sender * (inverse_pi / weights) : vec3(0.0);
   if (light == vec3(0.0)) return;
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(light, 0.0));
 }

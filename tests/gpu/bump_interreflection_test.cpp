@@ -1,12 +1,15 @@
 // Light from bump to bump against closed forms, the library's iteration and pictures without it.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "core/base/error.h"
-#include "core/relief/interreflection.h"
+#include "glsl/diffusion/boundary.glsl"
 #include "tests/gpu/bump_floor.h"
+#include "tests/support/relief_bounces.h"
 
 namespace limn {
 namespace {
@@ -44,6 +47,23 @@ class BumpInterreflectionTest : public BumpFloorTest {
   Image light(const scene::Scene& scene, const Values& values,
               std::vector<frame::PassReport>* passes = nullptr) {
     return drawn(scene, Term::indirect, {technique("bump_interreflection", values)}, passes);
+  }
+
+  /// The scene with bumps that scatter below their surface, whose albedo is their base colour.
+  static scene::Scene body(scene::Scene scene, float ior) {
+    scene.materials[0].ior = ior;
+    scene.materials[0].subsurface =
+        scene::Subsurface{.extinction = glm::vec3(1e6f), .absorption = glm::vec3(0.1f)};
+    return scene;
+  }
+
+  /// What leaves translucent bumps of the light that others send them, where it entered.
+  Image subsurfaceLight(const scene::Scene& scene, const Values& values) {
+    const Image direct = drawn(scene, Term::subsurface, {});
+    Image all = drawn(scene, Term::subsurface, {technique("bump_interreflection", values)});
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) all.at(x, y, 0) -= direct.at(x, y, 0);
+    return all;
   }
 
   /// The sum over the points of the floor.
@@ -89,9 +109,9 @@ class BumpInterreflectionTest : public BumpFloorTest {
                                      int bounces) {
     const glm::dvec3 l(slantedLight());
     const std::vector<double> direct =
-        relief::directRadiance(field, {l.x, l.z, l.y}, static_cast<double>(kAlbedo), kIrradiance);
+        relief::test::directRadiance(field, {l.x, l.z, l.y}, static_cast<double>(kAlbedo), kIrradiance);
     std::vector<double> result =
-        relief::bounce(field, paths, direct, static_cast<double>(kAlbedo), 0, bounces);
+        relief::test::bounce(field, paths, direct, static_cast<double>(kAlbedo), 0, bounces);
     for (size_t i = 0; i < result.size(); ++i) result[i] -= direct[i];
     return result;
   }
@@ -255,6 +275,73 @@ TEST_F(BumpInterreflectionTest, CurvedSurfacesAreAnsweredForPixelByPixelBesideFl
   }
   EXPECT_GT(differing, 1000);
   EXPECT_NEAR(sumOf(texture) / sumOf(pixel), 1, 0.01);
+}
+
+/// Geometry of a source, as metaballs are, that stands above the right half of a flat floor.
+TEST_F(BumpInterreflectionTest, SourcesAreAnsweredForPixelByPixelBesideFlatSurfaces) {
+  scene::Scene scene = bumps(slantedLight(), eggCrate());
+  scene::Primitive above = test::floorPrimitive(1, 0);
+  for (glm::vec3& p : above.positions) p += glm::vec3(1, 0.01f, 0);
+  above = test::finish(std::move(above));
+  scene.dynamic.push_back({"floor", std::make_shared<test::StillSource>(std::move(above)), 0});
+  const Image pixel = light(scene, {}), texture = light(scene, {{"space", "texture"}});
+  int lit = 0;
+  for (int y = 0; y < kSide; ++y)
+    for (int x = kSide / 2 + 2; x < kSide; ++x) {
+      ASSERT_EQ(texture.at(x, y, 0), pixel.at(x, y, 0));
+      lit += texture.at(x, y, 0) > 0;
+    }
+  EXPECT_GT(lit, 1000);
+}
+
+/// Without a boundary's reflection a translucent surface whose light leaves where it entered is a Lambertian
+/// one. Albedos are stored in 16 bits; the mean reflectance at an index of 1 is 0 to within 1e-5.
+TEST_F(BumpInterreflectionTest, BumpsOfABodySendItsAlbedo) {
+  const scene::Scene opaque = bumps({0, 1, 0}, groove());
+  for (const std::string& space : kSpaces)
+    for (const std::string bounces : {"1", "3"}) {
+      SCOPED_TRACE(space + ", " + bounces);
+      const Image expected = light(opaque, {{"space", space}, {"bounces", bounces}}),
+                  found = subsurfaceLight(body(opaque, 1), {{"space", space}, {"bounces", bounces}});
+      EXPECT_GT(sumOf(expected), 100);
+      for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) ASSERT_NEAR(found.at(x, y, 0), expected.at(x, y, 0), 2e-4f);
+    }
+}
+
+/// The whole picture asks twice: for what bumps reflect at their boundaries, and for what enters them.
+TEST_F(BumpInterreflectionTest, FinalPicturesOfBodiesAreAlikeInBothSpaces) {
+  const scene::Scene scene = body(bumps(slantedLight(), eggCrate()), 1.5f);
+  const auto whole = [&](const std::string& space) {
+    return sumOf(drawn(scene, Term::final, {technique("bump_interreflection", {{"space", space}})}));
+  };
+  EXPECT_NEAR(whole("texture") / whole("pixel"), 1, 0.01);
+}
+
+/// What an index of refraction changes of the second bounce over the first, at each pixel, is the mean share
+/// of light that another boundary lets in.
+TEST_F(BumpInterreflectionTest, EachBumpOfABodyLetsInItsBoundarysShare) {
+  constexpr float ior = 1.5f;
+  const scene::Scene opaque = bumps({0, 1, 0}, groove());
+  const auto bounced = [&](float index, const char* bounces) {
+    return subsurfaceLight(body(opaque, index), {{"space", "texture"}, {"bounces", bounces}});
+  };
+  const Image first = bounced(ior, "1"), both = bounced(ior, "2"), plainFirst = bounced(1, "1"),
+              plainBoth = bounced(1, "2");
+  const auto secondOverFirst = [](const Image& one, const Image& two, int x, int y) {
+    return two.at(x, y, 0) / one.at(x, y, 0) - 1;
+  };
+  const float share = glsl::diffusion_boundary(ior).entering;
+  int counted = 0;
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      // Near crests, which see nothing of the other wall, nothing is left to divide by.
+      if (plainFirst.at(x, y, 0) < 0.01f) continue;
+      ASSERT_NEAR(secondOverFirst(first, both, x, y) / secondOverFirst(plainFirst, plainBoth, x, y), share,
+                  0.01f);
+      ++counted;
+    }
+  EXPECT_GT(counted, 4000);
 }
 
 TEST_F(BumpInterreflectionTest, ScalesWithTheLightAndAddsUpOverLights) {

@@ -18,17 +18,6 @@ using glm::vec3;
 constexpr int kPictureSide = 64;
 constexpr float kTermIor = 1.4f;
 
-/// Triangles of a source, which never change.
-class StillSource : public scene::GeometrySource {
- public:
-  explicit StillSource(scene::Primitive primitive)
-      : primitive_(std::make_shared<const scene::Primitive>(std::move(primitive))) {}
-  std::shared_ptr<const scene::Primitive> at(double) override { return primitive_; }
-
- private:
-  std::shared_ptr<const scene::Primitive> primitive_;
-};
-
 class SubsurfaceTechniqueTest : public RenderTest {
  protected:
   static glm::vec4 albedo(const vec3& absorption, float ior) {
@@ -160,7 +149,7 @@ TEST_F(SubsurfaceTechniqueTest, SourcesScatterAsMeshesDo) {
     if (alone) mesh.nodes[1].mesh = scene::kNone;
     scene::Scene source = mesh;
     source.nodes[0].mesh = scene::kNone;
-    source.dynamic.push_back({"ball", std::make_shared<StillSource>(mesh.meshes[0].primitives[0]),
+    source.dynamic.push_back({"ball", std::make_shared<test::StillSource>(mesh.meshes[0].primitives[0]),
                               mesh.meshes[0].primitives[0].material});
     const Image local = drawn(mesh, {});
     for (const render::TechniqueUse& use : uses()) {

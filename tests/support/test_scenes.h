@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/scene/camera.h"
@@ -53,6 +55,17 @@ inline scene::Primitive spherePrimitive(float radius, int material, int rings = 
   p.material = material;
   return finish(p);
 }
+
+/// Triangles of a source, which never change.
+class StillSource : public scene::GeometrySource {
+ public:
+  explicit StillSource(scene::Primitive primitive)
+      : primitive_(std::make_shared<const scene::Primitive>(std::move(primitive))) {}
+  std::shared_ptr<const scene::Primitive> at(double) override { return primitive_; }
+
+ private:
+  std::shared_ptr<const scene::Primitive> primitive_;
+};
 
 inline int addMaterial(scene::Scene& scene, const scene::Material& material = {}) {
   scene.materials.push_back(material);

@@ -84,7 +84,9 @@ struct Renderer::Implementation {
     SceneHandles handles;
     GBuffer gbuffer;
     frame::TextureHandle radiance;
-    bool entering = false;  ///< into translucent surfaces: the radiance is E / pi
+    /// Holds the albedo of bodies if the radiance is E / pi, that of light which enters them; empty: it is
+    /// what surfaces reflect.
+    frame::TextureHandle bodyAlbedo{};
   };
   Deferred::Frame frameOf(const Lighting& lighting) {
     return {*graph, lighting.handles, lighting.gbuffer, settings.size};

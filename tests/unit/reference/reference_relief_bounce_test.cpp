@@ -6,8 +6,8 @@
 #include <functional>
 #include <numbers>
 
-#include "core/relief/interreflection.h"
 #include "glsl/relief/bounce_directions.glsl"
+#include "tests/support/relief_bounces.h"
 #include "tests/support/relief_worlds.h"
 #include "tests/unit/relief/fields.h"
 
@@ -80,9 +80,9 @@ TEST(ReferenceReliefBounce, ManyBouncesAreThoseOfTexels) {
   const dvec3 light = lightAt(60);
   shineFrom(world, toWorld(light));
   const relief::BouncePaths paths = relief::traceBounces(field, relief::BounceDirections::ownFrame, 256);
-  const std::vector<double> direct = relief::directRadiance(field, light, 0.7, 1);
+  const std::vector<double> direct = relief::test::directRadiance(field, light, 0.7, 1);
   for (const int bounces : {1, 4}) {
-    const std::vector<double> all = relief::bounce(field, paths, direct, 0.7, 0, bounces);
+    const std::vector<double> all = relief::test::bounce(field, paths, direct, 0.7, 0, bounces);
     const Result result = resultOf(world, side, 64, bounces);
     const Comparison difference = compared(result.image, [&](int x, int y) {
       const size_t texel = field.index({x, y});

@@ -80,6 +80,16 @@ inline glm::vec3 over(const glm::vec2& d) {
   return {d, std::sqrt(std::max(1 - glm::dot(d, d), 0.0f))};
 }
 
+/// Returns the horizons by exactHorizon(), which is slow.
+inline Horizons exactHorizons(const HeightField& field, int azimuths) {
+  Horizons result{.azimuths = azimuths, .texels = field.texels(), .tangents = {}};
+  for (int i = 0; i < azimuths; ++i)
+    for (int y = 0; y < field.size().y; ++y)
+      for (int x = 0; x < field.size().x; ++x)
+        result.tangents.push_back(static_cast<float>(exactHorizon(field, {x, y}, result.angle(i))));
+  return result;
+}
+
 /// Says whether a place on the field sees the direction, exactly.
 inline bool sees(const HeightField& field, const glm::dvec2& place, const glm::vec3& l) {
   const double azimuth = std::atan2(static_cast<double>(l.y), static_cast<double>(l.x));

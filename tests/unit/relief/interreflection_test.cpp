@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/relief/horizon.h"
+#include "tests/support/relief_bounces.h"
 #include "tests/unit/relief/fields.h"
 
 namespace limn::relief {

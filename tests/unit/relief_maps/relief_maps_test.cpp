@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
 #include <vector>
 
 #include "core/base/error.h"
@@ -30,8 +33,8 @@ glsl::ReliefEllipse stored(const ReliefTable& table, size_t word) {
 TEST(ReliefMapsTest, TablesAreAsLargeAsTheySay) {
   const std::vector<HeightField> fields{flat({1, 1}), flat({1, 5}), flat({6, 3}),
                                         flat({4, 4}, relief::Wrap::clamped), relief::test::eggCrate(16)};
-  for (const Table kind :
-       {Table::moments, Table::nearest, Table::published, Table::horizons, Table::heights, Table::bounces}) {
+  for (const Table kind : {Table::moments, Table::nearest, Table::published, Table::ambient, Table::horizons,
+                           Table::heights, Table::bounces}) {
     const ReliefMapDesc desc{.table = kind, .azimuths = 9, .directions = 64, .paths = 5};
     const ReliefTable table = makeReliefTable(fields, desc);
     EXPECT_EQ(static_cast<int64_t>(table.values.size()), reliefTableWords(fields, desc));
@@ -67,6 +70,33 @@ TEST(ReliefMapsTest, TheLastLevelIsTheMeanOfAllTexels) {
   EXPECT_NEAR(last.spread, mean.spread, 1e-4);
   EXPECT_NEAR(last.xx, mean.xx, 1e-4);
   EXPECT_NEAR(last.yy, mean.yy, 1e-4);
+}
+
+/// Steps of 0.2 m with a period of 0.25 m, of which the ones on top see all of the sky and the others half of
+/// it or less: shares of texels average linearly, whatever ellipses of such a mean look like.
+TEST(ReliefMapsTest, AmbientVisibilityIsTheShareOfTheSkyAtAllLevels) {
+  constexpr int kSize = 64, kPeriod = 16, kAzimuths = 32;
+  std::vector<float> values;
+  for (int x = 0; x < kSize; ++x) values.push_back(x % kPeriod < kPeriod / 2 ? 0.2f : 0.f);
+  const std::vector<HeightField> fields{flat({6, 3}), {{kSize, 1}, values, glm::dvec2(1)}};
+  const ReliefTable table = makeReliefTable(fields, {.table = Table::ambient, .azimuths = kAzimuths});
+  for (size_t word = 0; word < table.fields[1].first; ++word)
+    EXPECT_EQ(std::bit_cast<float>(table.values[word]), 1);
+  double mean = 0;
+  for (int x = 0; x < kSize; ++x) {
+    double share = 0;
+    for (int i = 0; i < kAzimuths; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kAzimuths;
+      const double radius = relief::litRadius(relief::exactHorizon(fields[1], {x, 0}, angle));
+      share += radius * radius / kAzimuths;
+    }
+    const auto word = table.fields[1].first + static_cast<uint32_t>(x);
+    EXPECT_NEAR(std::bit_cast<float>(table.values[word]), share, 0.01) << x;
+    mean += share / kSize;
+  }
+  EXPECT_EQ(table.fields[1].levels, 7);  // 64 x 1 to 1 x 1
+  EXPECT_LT(mean, 0.75);
+  EXPECT_NEAR(std::bit_cast<float>(table.values.back()), mean, 0.01);
 }
 
 TEST(ReliefMapsTest, BouncesAreTheTracedPathsToTheNearestTexel) {
@@ -144,11 +174,29 @@ TEST(ReliefMapsTest, PackedEllipsesKeepFourDigits) {
 }
 
 TEST(ReliefMapsTest, PlacesWrapAsTheirFields) {
-  for (const int size : {1, 3, 64})
-    for (int i = -200; i <= 200; ++i) {
-      EXPECT_EQ(glsl::relief_wrapped(i, size, false), ((i % size) + size) % size) << i << ' ' << size;
-      EXPECT_EQ(glsl::relief_wrapped(i, size, true), std::clamp(i, 0, size - 1)) << i << ' ' << size;
-    }
+  for (const int size : {1, 3, 6, 12, 36, 64})
+    for (const int middle : {0, -5000003, 8000000})
+      for (int i = middle - 200; i <= middle + 200; ++i) {
+        const auto texel = static_cast<float>(i);
+        EXPECT_EQ(glsl::relief_wrapped(texel, size, false), ((i % size) + size) % size) << i << ' ' << size;
+        EXPECT_EQ(glsl::relief_wrapped(texel, size, true), std::clamp(i, 0, size - 1)) << i << ' ' << size;
+      }
+}
+
+/// Rays that graze the base get farther than floats, and than integers, count texels.
+TEST(ReliefMapsTest, PlacesOfAnyDistanceAreInTheMap) {
+  const auto inMap = [](int texel, int size) { return texel >= 0 && texel < size; };
+  for (const int size : {1, 3, 6, 12, 36, 4096}) {
+    std::vector<float> places{132161216.f, 260492752.f, std::numeric_limits<float>::infinity(),
+                              std::numeric_limits<float>::quiet_NaN()};
+    for (float place = 1.7f; place < 1e38f; place *= 1.013f) places.push_back(std::floor(place));
+    for (const float place : places)
+      for (const float texel : {place, -place})
+        for (const bool clamped : {false, true})
+          ASSERT_TRUE(inMap(glsl::relief_wrapped(texel, size, clamped), size)) << texel << ' ' << size;
+    EXPECT_EQ(glsl::relief_wrapped(1e30f, size, true), size - 1);
+    EXPECT_EQ(glsl::relief_wrapped(-1e30f, size, true), 0);
+  }
 }
 
 TEST(ReliefMapsTest, PlacesOfTheGBufferComeBack) {
