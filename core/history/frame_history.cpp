@@ -40,7 +40,7 @@ struct FrameHistoryService::Kept {
     glsl::HistoryFrame view{};
   };
   int frames = 0, parts = 0;
-  bool moves = false;
+  bool moves = false;  ///< instances, or geometry: what a still camera sees may be another surface
   std::array<std::optional<Slot>, kMostFrames> slots;
   std::array<glsl::HistoryFrame, kMostFrames> found{};  ///< those before this frame, the oldest first
   int count = 0;
@@ -93,7 +93,7 @@ frame::TextureHandle FrameHistoryService::average(const GBuffer& gbuffer, frame:
   const glm::ivec2 size(desc.width, desc.height);
   kept.frames = frames;
   kept.parts = desc.layers;
-  kept.moves = !scene_.scene().animations.empty();
+  kept.moves = !scene_.scene().animations.empty() || !scene_.scene().dynamic.empty();
   const auto instanceCount = static_cast<int>(scene_.instanceCount());
   desc.layers *= frames;
   kept.light = gpu::Texture(device, "light of frames", desc);

@@ -9,6 +9,7 @@
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/gpu_scene/surface_input.h"
 #include "core/scene/scene.h"
+#include "glsl/indirect/gather.glsl"
 
 namespace limn::indirect {
 namespace {
@@ -19,6 +20,9 @@ using frame::TextureHandle;
 constexpr int kGroup = 8;
 constexpr int kSpreadWidth = 8;  // taps to either side of each tent that spreads the residual
 constexpr int kSpreadShare = 8;  // it reaches at least this part of the picture's height
+// llvmpipe leaves all loops of a thread after 65,535 steps in all; the rest is for those around a thread's
+// lights.
+constexpr int kMostSteps = 65000;
 
 bool bounded(const GatherSettings& settings) {
   return settings.clamp > 0 || settings.bound == Bound::patch;
@@ -66,7 +70,9 @@ Gather::Gather(frame::FrameGraph& graph, const TechniqueInputs& inputs, std::str
       size_(inputs.size) {
   settings_.block = usableBlock(settings.block, lights.count);
   blurred_ = settings_.blur && settings_.block > 1;
-  falling_ = blurred_ && !residual_ && settings_.history > 1 && bounded(settings_);
+  const bool byHistory = settings_.history > 1 && bounded(settings_);
+  falling_ = blurred_ && !residual_ && byHistory;
+  glossyBound_ = specular_ && byHistory;
   if (settings_.interleaving == Interleaving::split && settings_.block > 1) {
     size_ = (inputs.size + settings_.block - 1) / settings_.block * settings_.block;
     gbuffer_ = split();
@@ -127,20 +133,46 @@ void Gather::declareShading(frame::PassBuilder& pass, ShadePass& shade, const GB
   if (shade.declare) shade.declare(pass);
   defineParts(shade.program);
   shade.program.defines["GATHER_FALLING"] = falling_ ? "1" : "0";
+  shade.program.defines["GATHER_GLOSSY"] = glossyBound_ ? "1" : "0";
   shade.program.defines["GATHER_PATCH"] = settings_.bound == Bound::patch ? "1" : "0";
   shade.program.defines["LAMBERTIAN"] = specular_ ? "0" : "1";
 }
 
+/// Returns the passes that shade, whose threads take the lights of so many sub-buffers: one pass, but for
+/// software renderers. A pass ends where a sub-buffer does, where it can, since areas begin anew there. With
+/// a map for each light there is one pass, as an array has fewer layers than a loop has steps.
+std::vector<ShadePass> Gather::passesOf(const ShadePass& shade, int subBuffers) const {
+  const int block = settings_.block, most = (lights_.count + block * block - 1) / (block * block);
+  const int lights = std::min(shade.count, most);  // of a sub-buffer
+  const int ofAreas = std::min(lights, shade.areas) * shade.areaSteps;
+  if (!inputs_.gpuScene.device().software() || (lights + ofAreas) * subBuffers <= kMostSteps) return {shade};
+  const int together = std::max(kMostSteps / (lights + ofAreas), 1);  // sub-buffers
+  std::vector<ShadePass> passes;
+  for (int first = shade.first; first < shade.first + shade.count;) {
+    const auto count = static_cast<uint32_t>(lights_.count), side = static_cast<uint32_t>(block);
+    const uint32_t subBuffer = glsl::gather_sub_buffer(static_cast<uint32_t>(first), count, side);
+    const uint32_t next = glsl::gather_begin(subBuffer + static_cast<uint32_t>(together), count, side);
+    ShadePass& pass = passes.emplace_back(shade);
+    pass.first = first;
+    pass.count =
+        std::min({kMostSteps - ofAreas, static_cast<int>(next) - first, shade.first + shade.count - first});
+    first += pass.count;
+  }
+  return passes;
+}
+
 /// Returns what sets the uniforms of a program that shades.
 std::function<void(gpu::Program&)> Gather::shadingUniforms(const ShadePass& shade) const {
-  return [bind = shade.bind, lightCount = lights_.count, settings = settings_, falling = falling_,
-          glossy = specular_](gpu::Program& kernel) {
+  return [bind = shade.bind, first = shade.first, count = shade.count, lightCount = lights_.count,
+          settings = settings_, falling = falling_, glossy = glossyBound_](gpu::Program& kernel) {
     kernel.set("vpl_count", static_cast<unsigned>(lightCount));
+    kernel.set("batch_first", static_cast<unsigned>(first));
+    kernel.set("batch_count", static_cast<unsigned>(count));
     const float widest = settings.bound == Bound::patch ? std::sqrt(glsl::inverse_pi) : settings.clamp;
     const float least = widest / std::sqrt(static_cast<float>(settings.history));
     kernel.set("nearest", falling ? least * static_cast<float>(settings.block) : least);
     if (falling) kernel.set("least_nearest", least);
-    if (falling && glossy) kernel.set("glossy_nearest", widest);
+    if (glossy) kernel.set("glossy_nearest", widest);
     if (bind) bind(kernel);
   };
 }
@@ -148,6 +180,10 @@ std::function<void(gpu::Program&)> Gather::shadingUniforms(const ShadePass& shad
 void Gather::shade(ShadePass shade) {
   if (shade.count == 0) shade.count = lights_.count;
   if (shade.count == lights_.count && blurred_ && settings_.edges > 0) edges_ = shade;
+  for (ShadePass& pass : passesOf(shade, 1)) addShadePass(std::move(pass));
+}
+
+void Gather::addShadePass(ShadePass shade) {
   const bool accumulate = shade.first > 0;
   frame::PassBuilder pass = graph_.addPass("shade", technique_);
   declareShading(pass, shade, gbuffer_);
@@ -158,13 +194,11 @@ void Gather::shade(ShadePass shade) {
   shade.program.defines["GATHER_EDGES"] = "0";
   shade.program.defines["ACCUMULATE"] = accumulate ? "1" : "0";
   const auto program = pass.program(shade.program);
-  pass.execute([program, uniforms = shadingUniforms(shade), first = shade.first, count = shade.count,
-                block = settings_.block, size = inputs_.size](frame::PassContext& context) {
+  pass.execute([program, uniforms = shadingUniforms(shade), block = settings_.block,
+                size = inputs_.size](frame::PassContext& context) {
     gpu::Program& kernel = context.use(program);
     uniforms(kernel);
     kernel.set("block", static_cast<unsigned>(block));
-    kernel.set("batch_first", static_cast<unsigned>(first));
-    kernel.set("batch_count", static_cast<unsigned>(count));
     const glm::ivec2 part = (size + block - 1) / block;
     context.dispatch(part.x, part.y, block * block, 2 * kGroup, 2 * kGroup);
   });
@@ -172,17 +206,25 @@ void Gather::shade(ShadePass shade) {
 
 /// Declares the pass that gives all virtual lights to the pixels that the blur serves badly.
 TextureHandle Gather::shadeEdges(TextureHandle rows, TextureHandle columns, TextureHandle blurred) {
-  ShadePass shade = *edges_;
+  TextureHandle shaded = screen("edges shaded", inputs_.size, graph_.desc(blurred).layers);
+  for (ShadePass& shade : passesOf(*edges_, settings_.block * settings_.block))
+    shaded = addEdgePass(std::move(shade), rows, columns, blurred, shaded);
+  return shaded;
+}
+
+TextureHandle Gather::addEdgePass(ShadePass shade, TextureHandle rows, TextureHandle columns,
+                                  TextureHandle blurred, TextureHandle target) {
+  const bool accumulate = shade.first > 0;
   frame::PassBuilder pass = graph_.addPass("shade edges", technique_);
   declareShading(pass, shade, inputs_.gbuffer);
   pass.read(blurred, Access::sampled, "blurred", "light of the other pixels")
       .read(rows, Access::sampled, "rows", "where it is of other lines")
       .read(columns, Access::sampled, "columns", "the same across");
-  const TextureHandle shaded = pass.write(screen("edges shaded", inputs_.size, graph_.desc(blurred).layers),
-                                          Access::imageStore, "gathered", "edges by all virtual lights");
+  const TextureHandle shaded = pass.write(target, accumulate ? Access::imageLoadStore : Access::imageStore,
+                                          "gathered", "edges by all virtual lights");
   shade.program.defines["SPLIT"] = "0";
   shade.program.defines["GATHER_EDGES"] = "1";
-  shade.program.defines["ACCUMULATE"] = "0";
+  shade.program.defines["ACCUMULATE"] = accumulate ? "1" : "0";
   const auto program = pass.program(shade.program);
   pass.execute([program, uniforms = shadingUniforms(shade), edges = settings_.edges,
                 size = inputs_.size](frame::PassContext& context) {

@@ -105,10 +105,13 @@ LIMN_API VirtualLightDesc virtualLightDesc(const ParameterValues& parameters);
 /// virtual lights, so that every pixel has a light.
 LIMN_API int usableBlock(int block, int lights);
 
-/// Describes a pass that shades from some of the virtual lights.
+/// Describes a pass that shades from some of the virtual lights. Software renderers may take several passes
+/// for it.
 struct ShadePass {
   gpu::ProgramDesc program;  ///< a compute shader that includes glsl/indirect/gather_main.glsl
   int first = 0, count = 0;  ///< virtual lights that vpl_visibility() covers; count 0: all
+  int areas = 0;             ///< by which the lights of a sub-buffer are sorted (VPL_AREAS)
+  int areaSteps = 0;         ///< of the loops of a thread, for each of them
   std::vector<shadow::SampledTexture> sampled = {};
   std::function<void(gpu::Program&)> bind = {};           ///< sets further uniforms; may be empty
   std::function<void(frame::PassBuilder&)> declare = {};  ///< declares further reads; may be empty
@@ -129,10 +132,14 @@ class LIMN_API Gather {
   void defineParts(gpu::ProgramDesc& program) const;
   void declareShading(frame::PassBuilder& pass, ShadePass& shade, const GBuffer& from) const;
   std::function<void(gpu::Program&)> shadingUniforms(const ShadePass& shade) const;
+  std::vector<ShadePass> passesOf(const ShadePass& shade, int subBuffers) const;
+  void addShadePass(ShadePass shade);
   GBuffer split();
   frame::TextureHandle merge(frame::TextureHandle shaded);
   frame::TextureHandle shadeEdges(frame::TextureHandle rows, frame::TextureHandle columns,
                                   frame::TextureHandle blurred);
+  frame::TextureHandle addEdgePass(ShadePass shade, frame::TextureHandle rows, frame::TextureHandle columns,
+                                   frame::TextureHandle blurred, frame::TextureHandle target);
   frame::TextureHandle blur(std::string_view name, frame::TextureHandle from, int width, int stride,
                             int firstPart, int endPart, bool vertical, bool fold);
 
@@ -144,8 +151,9 @@ class LIMN_API Gather {
   bool specular_, residual_;
   bool blurred_ = false;
   bool falling_ = false;  ///< the clamp of a pixel falls with the lights of which the blur makes it the mean
-  GBuffer gbuffer_;       ///< split if the settings say so
-  glm::ivec2 size_;       ///< of the shaded screen: whole sub-buffers
+  bool glossyBound_ = false;  ///< the specular part has a bound of its own: that of one frame
+  GBuffer gbuffer_;           ///< split if the settings say so
+  glm::ivec2 size_;           ///< of the shaded screen: whole sub-buffers
   frame::TextureHandle shaded_;
   std::optional<ShadePass> edges_;  ///< what shades edges: the pass that has all virtual lights
 };

@@ -6,7 +6,8 @@
 // changed, for which older frames count less. A pixel that has a part of a frame's samples has others of them wherever the camera
 // moves: what differs there says nothing of the light.
 //
-// PARTS: layers of the light. MOVES 1: instances move; what moves with one is found where the instance was.
+// PARTS: layers of the light. MOVES 1: instances move, or their geometry does; what moves with an instance is found where that
+// was. MOVES 0: a camera that stands still sees the same surfaces.
 #include "glsl/history/history_frame.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
 

@@ -28,9 +28,12 @@ LIMN_FN float gather_geometry(float towards_light, float towards_receiver, float
   return towards_light * towards_receiver / max(d2 * max(d2, nearest2), 1e-37f);
 }
 
+// What another bound gives over what nearest2 gives.
+LIMN_FN float gather_rebound(float d2, float nearest2, float other2) { return max(d2, nearest2) / max(d2, other2); }
+
 // residual_inverse_square() over bounded_inverse_square(). least: footprint^2 / pi.
 LIMN_FN float gather_residual(float d2, float nearest2, float least) {
-  return max(max(d2, nearest2) / max(d2, least) - 1.0f, 0.0f);
+  return max(gather_rebound(d2, nearest2, least) - 1.0f, 0.0f);
 }
 
 // --- The same for lights that stand for a patch of `area` m^2 as wide as they are high: 1 / (d^2 + area / pi), which is exact
@@ -40,9 +43,14 @@ LIMN_FN float gather_patch_geometry(float towards_light, float towards_receiver,
   return towards_light * towards_receiver / max(d2 * (d2 + patch2), 1e-37f);
 }
 
+// What another patch gives over what patch2 gives.
+LIMN_FN float gather_patch_rebound(float d2, float patch2, float other2) {
+  return (d2 + patch2) / max(d2 + other2, 1e-37f);
+}
+
 // What a smaller patch, or footprint^2 / pi of a receiver, adds to that of patch2, over it.
 LIMN_FN float gather_patch_residual(float d2, float patch2, float least) {
-  return max((d2 + patch2) / max(d2 + least, 1e-37f) - 1.0f, 0.0f);
+  return max(gather_patch_rebound(d2, patch2, least) - 1.0f, 0.0f);
 }
 
 // Virtual lights of a pixel in block x block interleaved pixels (Segovia et al. 2006, Non-interleaved Deferred Shading of

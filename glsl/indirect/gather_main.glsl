@@ -5,7 +5,11 @@
 // VIRTUAL_LIGHT_COUNT: of lights, where they fit a uniform block.
 //
 // GATHER_FALLING 1: the residual is what lies between the bound of a pixel that is the mean of nothing but its own lights and that
-// of one that is the mean of all sub-buffers' (blur.comp.glsl); the specular part has a bound of its own.
+// of one that is the mean of all sub-buffers' (blur.comp.glsl).
+//
+// GATHER_GLOSSY 1: the specular part has a bound of its own, wider than that of a pixel that is the mean of several frames.
+//
+// llvmpipe leaves all loops of a thread after 65,535 steps in all: there a pass takes batch_count of the lights that a thread has.
 //
 // A thread shades four pixels of its sub-buffer, so that a light is loaded once for them: one in each quarter of what its work
 // group shades, so that neighbouring threads shade neighbours. They have names of their own in what follows: compilers keep
@@ -62,16 +66,17 @@ layout(rgba32f) writeonly uniform image2DArray gathered;
 uniform uint vpl_count;  // N
 uniform float nearest;   // part of the scene's extent; GATHER_PATCH: of the root of a light's area
 #if GATHER_FALLING
-uniform float least_nearest;   // the same, where a pixel is the mean of all sub-buffers: the residual is what lies between
+uniform float least_nearest;  // the same, where a pixel is the mean of all sub-buffers: the residual is what lies between
+#endif
+#if GATHER_GLOSSY
 uniform float glossy_nearest;  // the same, of the specular part
 #endif
 
-#if !GATHER_EDGES
-uniform uint block;        // pixels
 uniform uint batch_first;  // virtual lights that this pass may use
 uniform uint batch_count;
+#if !GATHER_EDGES
+uniform uint block;        // pixels
 #else
-const uint batch_first = 0u;     // this pass uses all virtual lights
 uniform sampler2DArray blurred;  // along both axes, along rows alone, along columns alone
 uniform sampler2DArray rows;
 uniform sampler2DArray columns;
@@ -93,8 +98,8 @@ struct Receiver {
   vec3 to_viewer;
 #endif
   float least;            // m^2: of the pixel on the surface, over pi, or the square of the least bound
-#if GATHER_FALLING
-  float glossy_least;     // m^2
+#if GATHER_GLOSSY
+  float glossy_nearest2;  // m^2: the square of the specular part's bound
 #endif
 };
 
@@ -135,9 +140,11 @@ float squared_bound(float bound) {
 #if GATHER_PATCH
 #define GATHER_GEOMETRY gather_patch_geometry
 #define GATHER_RESIDUE gather_patch_residual
+#define GATHER_REBOUND gather_patch_rebound
 #else
 #define GATHER_GEOMETRY gather_geometry
 #define GATHER_RESIDUE gather_residual
+#define GATHER_REBOUND gather_rebound
 #endif
 
 void gather_from(VirtualPointLight light, uint pixel, Receiver r, float nearest2, inout Gathered sum) {
@@ -145,7 +152,9 @@ void gather_from(VirtualPointLight light, uint pixel, Receiver r, float nearest2
   nearest2 *= light.area;
 #if GATHER_FALLING
   r.least *= light.area;
-  r.glossy_least *= light.area;
+#endif
+#if GATHER_GLOSSY
+  r.glossy_nearest2 *= light.area;
 #endif
 #endif
   VplSight sight;
@@ -176,8 +185,8 @@ void gather_from(VirtualPointLight light, uint pixel, Receiver r, float nearest2
     parts.specular = surface_response(r.material, r.normal, r.to_viewer, l) / max(dot(r.normal, l), 1e-6);
   }
 #endif
-#if GATHER_FALLING
-  float glossy = share * (1.0 + GATHER_RESIDUE(sight.d2, nearest2, r.glossy_least));
+#if GATHER_GLOSSY
+  float glossy = share * GATHER_REBOUND(sight.d2, nearest2, r.glossy_nearest2);
 #else
   float glossy = share;
 #endif
@@ -259,10 +268,12 @@ GatherPixel gather_pixel(ivec2 pixel, out Receiver r) {
 #endif
 #if GATHER_FALLING
   r.least = squared_bound(least_nearest);
-  r.glossy_least = squared_bound(glossy_nearest);
 #else
   float footprint = depth * length(frame.view_ray_dx.xyz);
   r.least = footprint * footprint * inverse_pi;
+#endif
+#if GATHER_GLOSSY
+  r.glossy_nearest2 = squared_bound(glossy_nearest);
 #endif
   return p;
 }
@@ -350,7 +361,7 @@ void main() {
   if (inside) {
     if (on_edge(own, most)) {
       edge_pixels[atomicAdd(edge_count, 1u)] = uint(own.x) | uint(own.y) << 16;
-    } else {
+    } else if (ACCUMULATE == 0) {
       for (int part = 0; part < gather_parts - GATHER_FALLING; ++part)
         imageStore(gathered, ivec3(own, part), texelFetch(blurred, ivec3(own, part), 0));
     }
@@ -361,7 +372,7 @@ void main() {
   Receiver r;
   GatherPixel p = gather_pixel(ivec2(packed_pixel & 0xffffu, packed_pixel >> 16), r);
   Gathered sum = Gathered(vec3(0.0), vec3(0.0), vec3(0.0));
-  gather_lights(0u, vpl_count, r, sum);
+  gather_lights(batch_first, min(batch_first + batch_count, vpl_count), r, sum);
   store(p, sum);
 }
 #else

@@ -1,7 +1,7 @@
 // Flux that each tile of TILE x TILE texels of each layer reflects, W.
-#define GROUP 256
-#include "glsl/indirect/group_sum.glsl"
+#define THREADS 256
 #include "glsl/indirect/reflective_texel.glsl"
+#include "glsl/numeric/work_group.glsl"
 
 layout(local_size_x = 16, local_size_y = 16) in;
 layout(std430) writeonly buffer Tiles { vec4 tiles[]; };
@@ -14,7 +14,7 @@ void main() {
   for (int y = int(gl_WorkGroupID.y) * TILE + int(gl_LocalInvocationID.y); y < last.y; y += 16)
     for (int x = int(gl_WorkGroupID.x) * TILE + int(gl_LocalInvocationID.x); x < last.x; x += 16)
       sum += reflective_texel(view, ivec2(x, y)).flux;
-  vec3 total = group_sum(sum / (float(size.x) * float(size.y)));
+  vec4 flux = total(vec4(sum / (float(size.x) * float(size.y)), 0.0));
   uint tile = (gl_WorkGroupID.z * gl_NumWorkGroups.y + gl_WorkGroupID.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-  if (gl_LocalInvocationIndex == 0u) tiles[tile] = vec4(total, 0.0);
+  if (gl_LocalInvocationIndex == 0u) tiles[tile] = flux;
 }

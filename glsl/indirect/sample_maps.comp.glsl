@@ -1,7 +1,7 @@
 // Virtual point lights at Halton points of reflective shadow maps. The third coordinate chooses the layer, in proportion
 // to the flux it reflects, group by group; the other two the texel. Such a light carries the flux of 1 / (N p) of its
-// layer, where p is the layer's share of all flux, and stands for as much of the surfaces that the layer sees. Its flux.w
-// is the group's first layer: what conserve_flux needs.
+// layer, where p is the layer's share of all flux, and stands for as much of the surfaces that the layer sees, over the number of
+// the group's layers, which all see the same. Its flux.w is the group's first layer: what conserve_flux needs.
 //
 // SETS: frame i has set i % SETS; 1: all frames have the same. The sets of a sub-buffer of interleaved pixels follow each other
 // in the sequence, so that over all sets it has the points that it would have of SETS times as many lights.
@@ -40,6 +40,7 @@ void main() {
   float before = 0.0;
   uint layer = 0u;
   uint group = 0u;
+  uint in_group = 1u;  // layers
   float weight = 0.0;
   for (uint light = 0u; light < light_count; ++light) {
     LightLayers of_light = light_layers(light);
@@ -51,6 +52,7 @@ void main() {
         if (own > 0.0 && before <= wanted) {
           layer = l;
           group = of_light.first + face;
+          in_group = of_light.points;
           weight = own;
         }
         before += own;
@@ -69,7 +71,7 @@ void main() {
   vec3 towards = parallel || lengthened <= 0.0 ? view.axis_z : normalize(ray);  // no ray: the texel holds nothing
   float slant = max(abs(dot(towards, t.normal)), reflective_map_least_cosine);
   float measure = reflective_map_measure(view, (vec2(texel) + 0.5) / float(view.size));
-  light.area = weight > 0.0 ? measure * lengthened / slant * (total / (weight * float(count))) : 0.0;
+  light.area = weight > 0.0 ? measure * lengthened / slant * (total / (weight * float(count) * float(in_group))) : 0.0;
   light.normal = t.normal;
   light.flux = vec4(weight > 0.0 ? t.flux * (total / (weight * float(count))) : vec3(0.0), float(group));
   virtual_lights[index] = light;

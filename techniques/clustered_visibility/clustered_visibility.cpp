@@ -156,7 +156,9 @@ class ClusteredVisibility : public Technique {
     const shadow::MinMaxPyramid pyramid = derived_->minMaxPyramid(graph, maps.depth, true);
     const shadow::FourierMaps fourier = fourierMaps(graph, device, maps.depth, pyramid, p);
     indirect::ShadePass pass{.program = {.files = {"techniques/clustered_visibility/shade.comp.glsl"},
-                                         .defines = fourier.defines()}};
+                                         .defines = fourier.defines()},
+                             .areas = areas.count,
+                             .areaSteps = 1 + 2 * p.integer("splits") * p.integer("splits")};
     pass.program.defines["KERNEL_THESIS"] = std::to_string(p.choice("kernel"));
     pass.program.defines["SEARCH_NEAREST"] = std::to_string(p.choice("search"));
     pass.program.defines["SPLITS"] = std::to_string(p.integer("splits"));

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -89,6 +91,27 @@ TEST_F(ClusteredVisibilityTest, APlateJustBeforeTheWallHidesIt) {
     }
     EXPECT_GT(hidden, 50) << vals;
   }
+}
+
+/// As many lights and areas as there may be, in one sub-buffer or at edges: llvmpipe leaves all loops of a
+/// thread after 65,535 steps, of which each light takes one, and each area another.
+TEST_F(ClusteredVisibilityTest, AsManyLightsAndAreasAsThereMayBeAllShine) {
+  Corner s;
+  s.camera = scene::lookAt({-20, 15, 20}, {0.8f, 0.4f, 0}, 0.7f);  // about a hundred pixels of wall
+  const auto light = [&](const std::string& name, Settings settings) {
+    const Answer v = answer(name, s, std::move(settings));
+    return std::accumulate(v.lights[0].begin(), v.lights[0].end(), 0.0);
+  };
+  // That of every 64th of them, which no loop is too short for.
+  const double all = light("reflective_shadow_map", {{"vpls", "1024"}});
+  EXPECT_GT(all, 0);
+  EXPECT_NEAR(light("reflective_shadow_map", {{"vpls", "65536"}}) / all, 1, 5e-3);
+  const Settings many{{"vpls", "65536"}, {"vals", "1024"}, {"map_size", "64"}, {"iterations", "1"}};
+  EXPECT_NEAR(light("clustered_visibility", many) / all, 1, 5e-3) << "one loop would lose 1.6 %";
+  Settings edges = many;
+  edges["block"] = "2";
+  edges["edges"] = "1e-6";
+  EXPECT_NEAR(light("clustered_visibility", edges) / all, 1, 5e-3) << "at edges";
 }
 
 /// A point of the floor that the spot lights, and its irradiance relative to others.

@@ -145,6 +145,39 @@ TEST_F(FrameHistoryTest, OneFrameHasNoPassAndNoTextureForIt) {
   }
 }
 
+/// Where balls hid the wall it was not seen before, though the camera stands still: the frame has its own
+/// light alone there. Its virtual lights are those of the first frame, as kFrames sets take turns.
+TEST_F(FrameHistoryTest, GeometryThatChangesLeavesNoTraceOnWhatItHid) {
+  const scene::Scene scene = asset("metaballs");
+  render::Renderer renderer(device(), scene);
+  const scene::CameraPose camera = renderer.pose().cameras.at(0);
+  render::Settings s = gathered(64, kFrames);
+  s.channels = true;
+  const auto at = [&](double seconds) {
+    renderer.setTime(seconds);
+    return next(renderer, camera);
+  };
+  renderer.configure(s);
+  Image before;
+  for (int frame = 0; frame < kFrames; ++frame) before = at(0);
+  const Image now = at(3);
+  renderer.configure(s);
+  const Image alone = at(3);
+  const int id = now.channel("id");
+  int changed = 0, kept = 0;
+  for (int y = 0; y < kSize.y; ++y)
+    for (int x = 0; x < kSize.x; ++x)
+      for (int c = 0; c < 3; ++c)
+        if (before.at(x, y, id) != now.at(x, y, id)) {
+          EXPECT_FLOAT_EQ(now.at(x, y, c), alone.at(x, y, c)) << x << "," << y;
+          ++changed;
+        } else {
+          kept += now.at(x, y, c) != alone.at(x, y, c);
+        }
+  EXPECT_GT(changed, 100);
+  EXPECT_GT(kept, 300) << "frames before count where the same surface was seen";
+}
+
 /// Metaballs change their topology, robots walk: light is finite and of the same amount.
 TEST_F(FrameHistoryTest, WhatMovesKeepsItsLight) {
   for (const char* name : {"metaballs", "atrium_robots"}) {

@@ -63,6 +63,32 @@ TEST_F(IndirectTest, ReceiversReflectWithTheirWholeBrdf) {
   EXPECT_GT(seen, 30);
 }
 
+/// All of the wall, which is metal and so has no other part, lies within the bound of the speck's lights; the
+/// sub-buffers of a block get nearly the same of it.
+TEST_F(IndirectTest, TheBoundOfHighlightsDoesNotFallWithAHistory) {
+  scene::Material metal = lambert(Corner::albedo);
+  metal.metallic = 1;
+  metal.roughness = 0.5f;
+  Corner s;
+  const int material = addMaterial(s.scene, metal);
+  s.scene.meshes.push_back(s.scene.meshes[0]);
+  s.scene.meshes[1].primitives[0].material = material;
+  s.pose.instances[1].mesh = 1;
+  const auto ofWall = [&](const char* block, const char* history) {
+    const Answer v = answer("reflective_shadow_map", s,
+                            {{"vpls", "64"}, {"block", block}, {"clamp", "1"}, {"history", history}});
+    double sum = 0;
+    for (size_t i = 0; i < v.instance.size(); ++i)
+      if (v.instance[i] == 1) sum += v.lights[0][i];
+    return sum;
+  };
+  for (const char* block : {"1", "2"}) {
+    const double once = ofWall(block, "1");
+    ASSERT_GT(once, 0) << block;
+    EXPECT_NEAR(ofWall(block, "16") / once, 1, 0.03) << block;
+  }
+}
+
 class PlateTest : public CornerTest {
  protected:
   void expectHides(const std::string& name, Settings settings, const Shadow& shadow) {

@@ -128,10 +128,16 @@ TEST_F(VirtualLightTest, StandForTheSurfacesThatTheLightSees) {
   scene::Pose pose;
   addBox(scene, pose, addMaterial(scene, lambert(colour)));
   addLight(pose, pointLight({0.3f, -0.2f, 0.5f}));
-  const Sampled s = sample(scene, pose, {.count = 4096});
-  double area = 0;
-  for (const glsl::VirtualPointLight& light : s.lights) area += light.area;
-  EXPECT_NEAR(area, 6 * 4, 0.02 * 6 * 4);
+  const auto area = [&](int lightSamples) {
+    double sum = 0;
+    const Sampled s = sample(scene, pose, {.count = 4096, .lightSamples = lightSamples});
+    for (const glsl::VirtualPointLight& light : s.lights) sum += light.area;
+    return sum;
+  };
+  EXPECT_NEAR(area(1), 6 * 4, 0.02 * 6 * 4);
+  // All points on a light see the same walls.
+  pose.lights = {rectangleLight({0, 0, 0}, {0, -1, 0}, 0.5f, 0.25f, true)};
+  for (const int lightSamples : {1, 16}) EXPECT_NEAR(area(lightSamples), 6 * 4, 0.02 * 6 * 4) << lightSamples;
 }
 
 TEST_F(VirtualLightTest, LightsThatSeeOnlyBackFacesReflectNothing) {

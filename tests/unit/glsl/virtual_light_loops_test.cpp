@@ -38,6 +38,8 @@ TEST_F(VirtualLightLoops, GeometryIsTheCosinesOverTheBoundedSquare) {
     const float bounded = bounded_inverse_square(d2, nearest);
     // Both are differences, of which the larger term is rounded.
     EXPECT_NEAR(bounded * share, residual, 1e-6f * (residual + bounded));
+    const float other = std::exp(uniform(-7, 3)), wider = bounded_inverse_square(d2, other);
+    EXPECT_NEAR(bounded * gather_rebound(d2, nearest * nearest, other * other), wider, 1e-5f * wider);
   }
   EXPECT_TRUE(std::isfinite(gather_geometry(1e-30f, 1e-30f, 1e-30f, 0)));
   EXPECT_EQ(gather_geometry(0, 0, 0, 0), 0);
@@ -55,6 +57,8 @@ TEST_F(VirtualLightLoops, APatchIsExactAboveTheMiddleOfADisc) {
     const float least = uniform(0, 1) * inverse_pi * area;
     EXPECT_NEAR(share * (1 + gather_patch_residual(d * d, inverse_pi * area, least)),
                 gather_patch_geometry(d, d, d * d, least), 1e-5f / (d * d + least));
+    const float wider = gather_patch_geometry(d, d, d * d, 2 * area);
+    EXPECT_NEAR(share * gather_patch_rebound(d * d, inverse_pi * area, 2 * area), wider, 1e-5f * wider);
   }
   EXPECT_TRUE(std::isfinite(gather_patch_geometry(1e-30f, 1e-30f, 1e-30f, 0)));
   EXPECT_TRUE(std::isfinite(gather_patch_residual(0, 1, 0)));
