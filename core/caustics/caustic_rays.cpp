@@ -89,7 +89,7 @@ void CausticRayService::Implementation::fit(Request& request) const {
   float mapIndex = 0;
   const shadow::ShadowMapDesc samplesDesc{.samples = request.samples};
   shadow::ShadowMapDesc desc{.size = request.desc.size, .samples = {glm::vec2(0)}};
-  std::vector<glsl::ShadowLight> unused;
+  std::vector<glsl::ShadowLight> ofPoint;
   for (const uint32_t index : request.lights) {
     const glsl::Light& light = lights[index];
     const std::vector<glm::vec2> points = shadow::samplesOf(light, samplesDesc);
@@ -99,12 +99,13 @@ void CausticRayService::Implementation::fit(Request& request) const {
       const glm::vec3 origin =
           light.position + ab.x * light.length_u * light.axis_u + ab.y * light.length_v * light.axis_v;
       const glsl::Light eye = aimed(light, origin, objects);
-      unused.clear();
+      ofPoint.clear();
       shadow::appendViews(eye, index, shadow::fitLayout(eye, boxes, desc), boxes, desc, nullptr,
-                          request.views, unused);
-      request.layers.resize(
-          request.views.size(),
-          glsl::CausticLayer{.light = mapIndex, .diameter = 2 * objects.radius(), .unused = {}});
+                          request.views, ofPoint);
+      request.layers.resize(request.views.size(), glsl::CausticLayer{.light = mapIndex,
+                                                                     .diameter = 2 * objects.radius(),
+                                                                     .first = ofPoint[0].first_layer,
+                                                                     .faces = ofPoint[0].faces});
       ++mapIndex;
     }
     // Lights without extent share one map among all samples.
@@ -133,7 +134,8 @@ frame::BufferHandle CausticRayService::Implementation::trace(const Request& requ
       .read(request.made.layerLights, Access::storageLoad, "Layers", "map of each layer")
       .read(maps.depth, Access::sampled, "scene_depth", "where rays end")
       .read(maps.views, Access::storageLoad, "SceneViews", "projections of the scene")
-      .read(maps.lights, Access::storageLoad, "SceneLights", "layers of each light");
+      .read(maps.lights, Access::storageLoad, "SceneLights", "layers of each light")
+      .cacheable();
   const std::pair<const char*, TextureHandle> specular[] = {{"front_surface", front.surface},
                                                             {"front_depth", front.depth},
                                                             {"back_surface", back.surface},
@@ -146,9 +148,14 @@ frame::BufferHandle CausticRayService::Implementation::trace(const Request& requ
       pass.write(graph.createBuffer("caustic rays",
                                     {static_cast<size_t>(request.made.count()) * sizeof(glsl::CausticRay)}),
                  Access::storageStore, "Rays", "light behind specular objects");
+  // Whether one point has several does not change while the number of views stays.
+  const bool severalViews = std::ranges::any_of(request.layers, [](const glsl::CausticLayer& layer) {
+    return layer.faces != glsl::shadow_faces_single;
+  });
   gpu::ProgramDesc source{.files = {"glsl/caustics/trace_rays.comp.glsl"},
                           .defines = {{"PATHS", std::to_string(request.desc.paths)},
                                       {"PATH_COUNT", std::to_string(request.made.paths)},
+                                      {"OBJECT_FACES", severalViews ? "1" : "0"},
                                       {"EXIT_STEPS", std::to_string(request.desc.exitSteps)}}};
   const scene::MediumInput medium(handles);
   medium.define(source.defines);

@@ -1,6 +1,6 @@
 // Declares the service that traces caustic rays: techniques request the light that some lights send through
 // or off the scene's specular objects. It is traced once per graph, however many techniques request it, and
-// kept while nothing changes (thesis, section 8.3.2).
+// kept while nothing changes, the camera included: the frame block holds the medium (thesis, section 8.3.2).
 //
 // Each layer is a view of the specular objects from a light, or from a point on a light with extent. The
 // stages are the depth of the scene without specular objects as the light sees it (ShadowMapService), the

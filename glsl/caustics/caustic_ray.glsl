@@ -24,7 +24,8 @@ struct CausticRay {
 struct CausticLayer {
   float light;     // index in the list of shadow maps' lights
   float diameter;  // of the objects, m
-  uvec2 unused;
+  uint first;      // layer of the first view from the same point
+  uint faces;      // shadow_faces_*: how these views share its surroundings
 };
 
 LIMN_CONST uint caustic_reflection = 1u;

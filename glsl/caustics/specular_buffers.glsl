@@ -33,6 +33,13 @@ vec2 body_depths(vec2 place, int layer, float instance) {
   return vec2(total.x >= 0.5 ? sum.x / total.x : -1.0, total.y >= 0.5 ? sum.y / total.y : -1.0);
 }
 
+// The views of the objects from one point. A body may lie in several of them.
+struct ObjectViews {
+  ShadowView first;
+  uint faces;  // shadow_faces_*, a constant where all points have one view
+  int layer;   // of the first view
+};
+
 // Whether a surface at p bounds no body: light stays in the medium behind it.
 bool is_sheet(ShadowView view, vec3 p, int layer, float instance) {
   vec2 depths = body_depths(float(view.size) * shadow_project(view, p).uv, layer, instance);
@@ -67,9 +74,10 @@ const int body_inside = 0;
 const int body_back = 1;   // behind the farthest surface, or beside the object
 const int body_front = 2;  // before the nearest surface
 
-// Where a place on a path through the view is, relative to an object. tolerance: metres.
-int body_side(MapPath path, MapPlace place, int layer, float instance, float tolerance) {
-  vec2 depths = body_depths(place.texel, layer, instance);
+// Where a place on a path through the views is, relative to an object. tolerance: metres.
+int body_side(ObjectViews objects, MapPath path, float t, float instance, float tolerance) {
+  MapPlace place = map_path_place(path, objects.first.projection, objects.faces, t);
+  vec2 depths = body_depths(place.texel, objects.layer + int(place.face), instance);
   bool before = depths.x >= 0.0 && map_path_behind(path, place, depths.x) < -tolerance;
   bool behind = depths.y < 0.0 || map_path_behind(path, place, depths.y) >= 0.0;
   if (behind || !map_path_inside(path, place)) return body_back;
@@ -91,22 +99,24 @@ struct BodyExit {
   vec3 normal;     // unit, out of the body; 0: not found
   bool front;      // on the nearest surface, not on the farthest
   vec2 uv;         // where
+  int layer;
 };
 
 const int exit_steps = EXIT_STEPS;
 const int exit_refinements = 10;
 
 // The first place on start + t direction, 0 < t < reach, that lies outside.
-BodyExit body_exit(ShadowView view, vec3 start, vec3 direction, float reach, int layer, float instance) {
-  MapPath path = map_path(view, start, direction);
-  float tolerance = shadow_footprint(view, path.start.z);
+BodyExit body_exit(ObjectViews objects, vec3 start, vec3 direction, float reach, float instance) {
+  MapPath path = map_path(objects.first, start, direction);
+  MapPlace entry = map_path_place(path, objects.first.projection, objects.faces, 0.0);
+  float tolerance = shadow_footprint(objects.first, entry.depth);
   float stride = reach / float(exit_steps);
   float inside = 0.0;
   float outside = reach;
   int side = body_back;
   for (int i = 1; i <= exit_steps; ++i) {
     float t = stride * float(i);
-    side = body_side(path, map_path_place(path, view.projection, shadow_faces_single, t), layer, instance, tolerance);
+    side = body_side(objects, path, t, instance, tolerance);
     if (side != body_inside) {
       outside = t;
       break;
@@ -115,8 +125,7 @@ BodyExit body_exit(ShadowView view, vec3 start, vec3 direction, float reach, int
   }
   for (int i = 0; i < exit_refinements; ++i) {
     float t = 0.5 * (inside + outside);
-    int there =
-        body_side(path, map_path_place(path, view.projection, shadow_faces_single, t), layer, instance, tolerance);
+    int there = body_side(objects, path, t, instance, tolerance);
     if (there == body_inside) {
       inside = t;
     } else {
@@ -126,10 +135,12 @@ BodyExit body_exit(ShadowView view, vec3 start, vec3 direction, float reach, int
   }
   BodyExit e;
   e.distance = 0.5 * (inside + outside);
-  e.uv = map_path_place(path, view.projection, shadow_faces_single, inside).texel / path.size;
+  MapPlace place = map_path_place(path, objects.first.projection, objects.faces, inside);
+  e.uv = place.texel / path.size;
+  e.layer = objects.layer + int(place.face);
   e.front = side == body_front;
-  e.normal = e.front ? buffer_normal(front_surface, e.uv, layer, instance)
-                     : buffer_normal(back_surface, e.uv, layer, instance);
+  e.normal = e.front ? buffer_normal(front_surface, e.uv, e.layer, instance)
+                     : buffer_normal(back_surface, e.uv, e.layer, instance);
   return e;
 }
 

@@ -1,6 +1,7 @@
 // Caustic rays: each texel of the specular buffers is a light ray, which is reflected at the front, or refracted there and
 // again where it leaves the object, and ends where it meets the rest of the scene (thesis, section 8.3.2).
-// PATHS: caustic_reflection | caustic_refraction; PATH_COUNT: how many these are.
+// PATHS: caustic_reflection | caustic_refraction; PATH_COUNT: how many these are. OBJECT_FACES 1: some points have several views of
+// the specular objects.
 #include "glsl/caustics/caustic_ray.glsl"
 #include "glsl/caustics/specular_buffers.glsl"
 #include "glsl/surface/gbuffer.glsl"
@@ -59,15 +60,16 @@ const int place_free = 0;
 const int place_scene = 1;   // behind the scene
 const int place_object = 2;  // within a specular object
 
-// A ray in the scene's maps, and in the view of the specular objects.
+// A ray in the scene's maps, and in the views of the specular objects.
 struct TracedRay {
   MapPath scene;
   MapPath objects;
 };
 
-int place_of(SceneMaps maps, ShadowView view, int layer, TracedRay ray, float t) {
-  MapPlace place = map_path_place(ray.objects, view.projection, shadow_faces_single, t);
-  bool within = within_object(ray.objects, place, layer, shadow_footprint(view, place.depth));
+int place_of(SceneMaps maps, ObjectViews objects, TracedRay ray, float t) {
+  MapPlace place = map_path_place(ray.objects, objects.first.projection, objects.faces, t);
+  int layer = objects.layer + int(place.face);
+  bool within = within_object(ray.objects, place, layer, shadow_footprint(objects.first, place.depth));
   return behind_scene(maps, ray.scene, t) > 0.0 ? place_scene : (within ? place_object : place_free);
 }
 
@@ -94,8 +96,9 @@ vec3 end_normal(SceneMaps maps, vec3 p, vec3 direction) {
 }
 
 // Ends the ray where it passes from before the scene to behind it, or into a specular object, as the light sees them.
-void find_end(SceneMaps maps, ShadowView view, int layer, inout CausticRay ray) {
-  TracedRay traced = TracedRay(map_path(maps.first, ray.start, ray.direction), map_path(view, ray.start, ray.direction));
+void find_end(SceneMaps maps, ObjectViews objects, inout CausticRay ray) {
+  TracedRay traced =
+      TracedRay(map_path(maps.first, ray.start, ray.direction), map_path(objects.first, ray.start, ray.direction));
   float stride = ray.segment_length / float(steps);
   float before = 0.0;
   float behind = -1.0;
@@ -103,7 +106,7 @@ void find_end(SceneMaps maps, ShadowView view, int layer, inout CausticRay ray) 
   bool was_free = false;  // the crossing must be seen to happen
   for (int i = 0; i <= steps; ++i) {
     float t = stride * float(i);
-    met = place_of(maps, view, layer, traced, t);
+    met = place_of(maps, objects, traced, t);
     if (met != place_free && was_free) {
       behind = t;
       break;
@@ -114,7 +117,7 @@ void find_end(SceneMaps maps, ShadowView view, int layer, inout CausticRay ray) 
   if (behind < 0.0) return;
   for (int i = 0; i < end_refinements; ++i) {
     float t = 0.5 * (before + behind);
-    int there = place_of(maps, view, layer, traced, t);
+    int there = place_of(maps, objects, traced, t);
     if (there == place_free) {
       before = t;
     } else {
@@ -135,6 +138,7 @@ CausticRay no_ray() { return CausticRay(vec3(0.0), 0.0, vec3(0.0, 0.0, 1.0), cau
 struct Incident {
   ShadowView view;
   int layer;
+  ObjectViews objects;  // that view, and the others from the same point
   vec3 position;
   vec3 direction;  // unit, of propagation
   vec3 flux;       // W
@@ -149,16 +153,16 @@ CausticRay ray_from(Medium medium, SceneMaps maps, Incident at, vec3 start, vec3
   float reach = ball_range(medium.ball, start, direction).y;
   if (!(reach > 0.0) || all(equal(power, vec3(0.0)))) return no_ray();
   CausticRay ray = CausticRay(start, reach, direction, caustic_ray_open, power, 0u);
-  find_end(maps, at.view, at.layer, ray);
+  find_end(maps, at.objects, ray);
   return ray;
 }
 
 vec3 geometric_normal_at(sampler2DArray normals, ivec3 texel) { return octahedral_decode(texelFetch(normals, texel, 0).xy); }
 
 // Of the triangle on which light leaves a body.
-vec3 exit_triangle(BodyExit leaves, int layer) {
+vec3 exit_triangle(BodyExit leaves) {
   ivec2 size = textureSize(front_geometric_normal, 0).xy;
-  ivec3 texel = ivec3(clamp(ivec2(leaves.uv * vec2(size)), ivec2(0), size - 1), layer);
+  ivec3 texel = ivec3(clamp(ivec2(leaves.uv * vec2(size)), ivec2(0), size - 1), leaves.layer);
   return leaves.front ? geometric_normal_at(front_geometric_normal, texel)
                       : geometric_normal_at(back_geometric_normal, texel);
 }
@@ -175,12 +179,12 @@ CausticRay refracted_ray(Medium medium, SceneMaps maps, Incident at, SpecularEve
   if (flux == vec3(0.0)) return no_ray();
   if (at.inside || is_sheet(at.view, at.position, at.layer, at.instance) || !(at.optics.thickness > 0.0))
     return ray_from(medium, maps, at, at.position, event.refracted, flux);
-  BodyExit leaves = body_exit(at.view, at.position, event.refracted, diameter, at.layer, at.instance);
+  BodyExit leaves = body_exit(at.objects, at.position, event.refracted, diameter, at.instance);
   if (!(dot(leaves.normal, event.refracted) > least_cosine)) return no_ray();
   SpecularEvent second = specular_event(at.optics, event.refracted, -leaves.normal, true);
   if (second.refracted == vec3(0.0)) return no_ray();
   flux *= second.transmittance * optics_absorption(at.optics, leaves.distance);
-  flux *= shading_flux(leaves.normal, exit_triangle(leaves, at.layer), event.refracted, second.refracted);
+  flux *= shading_flux(leaves.normal, exit_triangle(leaves), event.refracted, second.refracted);
   return ray_from(medium, maps, at, at.position + leaves.distance * event.refracted, second.refracted, flux);
 }
 
@@ -203,6 +207,11 @@ void main() {
     Incident incident;
     incident.view = view;
     incident.layer = at.z;
+#if OBJECT_FACES
+    incident.objects = ObjectViews(views[layer.first], layer.faces, int(layer.first));
+#else
+    incident.objects = ObjectViews(view, shadow_faces_single, at.z);
+#endif
     incident.position = view.origin + shadow_world_offset(view, local);
     bool parallel = view.projection == shadow_orthographic;
     incident.direction = parallel ? view.axis_z : normalize(incident.position - view.origin);

@@ -57,7 +57,8 @@ Way through_body(Optics optics, vec3 origin, vec3 direction, vec3 weight, float 
   Way way = Way(origin, direction, weight);
   bool inside = true;
   for (int i = 1; i < INTERFACES && inside; ++i) {
-    BodyExit leaves = body_exit(views[0], way.origin, way.direction, diameter, 0, instance);
+    ObjectViews objects = ObjectViews(views[0], shadow_faces_single, 0);
+    BodyExit leaves = body_exit(objects, way.origin, way.direction, diameter, instance);
     if (!(dot(leaves.normal, way.direction) > least_cosine)) break;
     SpecularEvent event = specular_event(optics, way.direction, -leaves.normal, true);
     way.origin += leaves.distance * way.direction;

@@ -269,7 +269,8 @@ TEST_F(SharedGlslTest, causticRaysHaveOneLayout) {
 
 TEST_F(SharedGlslTest, causticLayersHaveOneLayout) {
   expectElement("CausticLayer", "light", sizeof(glsl::CausticLayer),
-                {LIMN_MEMBER(CausticLayer, light), LIMN_MEMBER(CausticLayer, diameter)},
+                {LIMN_MEMBER(CausticLayer, light), LIMN_MEMBER(CausticLayer, diameter),
+                 LIMN_MEMBER(CausticLayer, first), LIMN_MEMBER(CausticLayer, faces)},
                 "glsl/caustics/caustic_ray.glsl");
 }
 
