@@ -22,4 +22,27 @@ Blockers blockers_at(inout ShadowCursor cursor, VisibilityQuery q, float gap, in
   return mean_blockers(sums, gap);
 }
 
+// --- Parts of a kernel that the horizon cuts ---
+
+// A part of a kernel compares all of its depths with one threshold, about the least of those in it, so that no plane blocks
+// itself. Where the receiver's horizon cuts the light the tangent plane passes through what blocks: a part that it crosses
+// there has blockers behind its threshold, and would let all of its light through. Its texels tell instead, each with the
+// threshold of its own place, one for each quarter of the part.
+struct PartQuarter {
+  vec2 low;  // texels
+  vec2 high;
+  ShadowTap tap;
+};
+
+// Quarter i of the part low..high, which lies in the map.
+PartQuarter part_quarter(ShadowCursor cursor, vec2 low, vec2 high, int i) {
+  PartQuarter quarter;
+  vec2 extent = 0.5 * (high - low);
+  quarter.low = low + extent * vec2(i & 1, i >> 1);
+  quarter.high = quarter.low + extent;
+  ivec2 texel = ivec2(quarter.low + 0.5 * extent);
+  quarter.tap = shadow_texel(cursor, clamp(texel, ivec2(0), ivec2(cursor.view.size) - 1));
+  return quarter;
+}
+
 #endif  // LIMN_LIGHT_KERNELS_GLSL

@@ -78,7 +78,9 @@ LIMN_FN vec2 map_limits(ShadowView view, MapReceiver receiver, vec2 place) {
   return vec2(plane, along > 0.0f ? min(view.far, behind / along) : view.far);
 }
 
-// shadow_threshold() at a place.
+// The stored depth below which a texel at a place blocks the receiver: the lesser of the tangent plane's, raised by the bias,
+// and the receiver's own along the light's axis. In [0, 1]. map_blocks() says the same of a point, but for what little of a
+// light lies above the tangent plane when its centre lies below: there nothing blocks.
 LIMN_FN float map_threshold(ShadowView view, MapReceiver receiver, vec2 place) {
   vec2 limits = map_limits(view, receiver, place);
   return clamp(shadow_normalise(view, min(limits.x, limits.y)), 0.0f, 1.0f);

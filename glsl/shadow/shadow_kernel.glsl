@@ -1,6 +1,6 @@
-// Kernels of prefiltered soft shadows: the box of a shadow map through which a receiver sees the light at some distance,
-// and the depth below which a texel of that box blocks. What point samples do with shadow_blocks(), these do for whole
-// boxes: the same light, tangent plane and bias.
+// Kernels of prefiltered soft shadows: the box of a shadow map through which a receiver sees the light at some distance.
+// The depths below which texels of that box block are those of glsl/shadow/map_space.glsl, and of
+// glsl/shadow/variance_kernel.glsl where they are prepared once for all texels of a view.
 #ifndef LIMN_SHADOW_KERNEL_GLSL
 #define LIMN_SHADOW_KERNEL_GLSL
 #include "glsl/numeric/language.glsl"
@@ -80,66 +80,6 @@ LIMN_FN bool shadow_kernel(ShadowView view, LightView light, vec3 receiver, floa
     kernel.weight = extent.x * extent.y * inverse * sqrt(inverse);
   }
   return true;
-}
-
-// Metres of depth at uv: where the tangent plane, raised by the bias, lies there, and where the light's axis has the
-// receiver's depth.
-LIMN_FN vec2 shadow_limits(ShadowView view, ShadowReceiver receiver, vec2 uv) {
-  // Points behind uv are start + depth * step.
-  vec3 start = vec3(0.0f);
-  vec3 step = shadow_unproject_local(view, uv, 1.0f);
-  if (view.projection == shadow_orthographic) {
-    start = vec3(step.x, step.y, 0.0f);
-    step = vec3(0.0f, 0.0f, 1.0f);
-  }
-  float axis = view.far;
-  float along = dot(receiver.axis, step);
-  if (along > 0.0f) axis = min(axis, (receiver.depth - dot(receiver.axis, start)) / along);
-  float plane = view.far;
-  float above = receiver.height - dot(receiver.normal, start);  // plane: dot(plane.xyz, step) depth > above
-  float rise = dot(receiver.normal, step);
-  if (rise < 0.0f) plane = min(plane, above / rise);
-  if (rise >= 0.0f && above >= 0.0f) plane = view.near;
-  return vec2(plane, axis);
-}
-
-// The stored depth below which a texel at uv blocks the receiver: the lesser of the tangent plane's, raised by the bias,
-// and the receiver's own along the light's axis. In [0, 1]. shadow_blocks() says the same of a point, but for what
-// little of a light lies above the tangent plane when its centre lies below: there nothing blocks.
-LIMN_FN float shadow_threshold(ShadowView view, ShadowReceiver receiver, vec2 uv) {
-  vec2 limits = shadow_limits(view, receiver, uv);
-  return clamp(shadow_normalise(view, min(limits.x, limits.y)), 0.0f, 1.0f);
-}
-
-// Metres along the light's axis from what is stored at uv to the receiver.
-LIMN_FN float shadow_gap(ShadowView view, ShadowReceiver receiver, vec2 uv, float stored) {
-  return receiver.depth - dot(receiver.axis, shadow_unproject_local(view, uv, shadow_metres(view, stored)));
-}
-
-// Bounds of the thresholds in a kernel: as map_threshold_range() (glsl/shadow/map_space.glsl), for each plane by itself.
-LIMN_FN vec2 shadow_threshold_range(ShadowView view, ShadowReceiver receiver, ShadowKernel kernel) {
-  float size = float(view.size);
-  vec2 least = vec2(view.far);
-  vec2 most = vec2(-view.far);
-  for (int i = 0; i < 4; ++i) {
-    vec2 at = vec2((i & 1) == 0 ? kernel.low.x : kernel.high.x, (i & 2) == 0 ? kernel.low.y : kernel.high.y);
-    vec2 limits = shadow_limits(view, receiver, at / size);
-    least = min(least, limits);
-    most = max(most, limits);
-  }
-  return clamp(vec2(shadow_normalise(view, min(least.x, least.y)), shadow_normalise(view, min(most.x, most.y))),
-               vec2(0.0f), vec2(1.0f));
-}
-
-// The widest gap of anything in the kernel that is stored at `least` or farther.
-LIMN_FN float shadow_gap_bound(ShadowView view, ShadowReceiver receiver, ShadowKernel kernel, float least) {
-  float size = float(view.size);
-  float gap = 0.0f;
-  for (int i = 0; i < 4; ++i) {
-    vec2 at = vec2((i & 1) == 0 ? kernel.low.x : kernel.high.x, (i & 2) == 0 ? kernel.low.y : kernel.high.y);
-    gap = max(gap, shadow_gap(view, receiver, at / size, least));
-  }
-  return gap;
 }
 
 LIMN_END

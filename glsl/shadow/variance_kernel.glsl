@@ -10,8 +10,11 @@
 #include "glsl/shadow/summed_area_table.glsl"
 LIMN_BEGIN
 
-// --- Thresholds: shadow_threshold() (glsl/shadow/shadow_kernel.glsl), prepared once for all texels of a view ---
+// --- Thresholds: map_threshold() (glsl/shadow/map_space.glsl), prepared once for all texels of a view ---
 
+// The same planes, kept as what is affine in the place, so that each of many sub-kernels has its threshold, and its slope,
+// without a division by plane. threshold_blocks() answers also where the light's centre lies beneath the plane.
+//
 // Places are in texels. Of a perspective view a plane's inverse depth is affine in the place, of an orthographic one its
 // depth: stored as (value at 0, per texel along u, along v), in 1 / metres of depth, or in metres of negated depth, so that
 // nearer is greater in both.

@@ -59,6 +59,7 @@ struct PartDepths {
   float threshold;  // series depth below which texels block
   float least;      // bound of the depths in it, at most the threshold
   float dip;        // least s that it has where nothing in it blocks
+  bool beyond;      // something in it lies before the greatest threshold at its corners
 };
 
 PartDepths part_depths(ShadowCursor cursor, KernelView k, vec2 low, vec2 high) {
@@ -79,7 +80,9 @@ PartDepths part_depths(ShadowCursor cursor, KernelView k, vec2 low, vec2 high) {
   vec2 bounds = kernel_depth_bounds(cursor, ShadowKernel(low, high, 1.0));
   vec2 uv = centre / k.size;
   float tilt = k.range.scale * 0.5 * dot(abs(vec2(k.range.change_u, k.range.change_v)), (high - low) / k.size);
-  part.least = min(fourier_depth(k.range, uv, bounds.x) - tilt, part.threshold);
+  float nearest = fourier_depth(k.range, uv, bounds.x) - tilt;
+  part.least = min(nearest, part.threshold);
+  part.beyond = nearest < most;
   float behind = max(fourier_depth(k.range, uv, bounds.y) + tilt - part.threshold, 0.0);
   part.dip = min(FOURIER_LEVEL - FOURIER_CURVATURE * before * before,
                  fourier_step(min(behind, FOURIER_VALLEY - FOURIER_DELTA))) -
@@ -88,8 +91,8 @@ PartDepths part_depths(ShadowCursor cursor, KernelView k, vec2 low, vec2 high) {
 }
 
 // Adds `texels` texels about `centre`: to a search those that block as the series sees them, to V those that hide light after
-// ringing suppression and contact.
-void add_part(inout KernelBlockers blockers, KernelView k, PartDepths part, FourierMeans means, vec2 centre, float texels,
+// ringing suppression and contact. True: there are none of them, but something lies before a greater threshold of the part.
+bool add_part(inout KernelBlockers blockers, KernelView k, PartDepths part, FourierMeans means, vec2 centre, float texels,
               int use) {
   vec2 sums = fourier_shadow(means, part.threshold);
   float blocked = 1.0 - sums.x;
@@ -109,6 +112,18 @@ void add_part(inout KernelBlockers blockers, KernelView k, PartDepths part, Four
   float hidden = use == kernel_search ? counted : texels * (1.0 - v);
   blockers.texels += hidden;
   blockers.gap += hidden * max(gap, 0.0);
+  return hidden == 0.0 && part.beyond;
+}
+
+// Adds what texels say of the part low..high, which the horizon cuts and the kernel covers by `weight`.
+void add_quarters(inout KernelBlockers blockers, ShadowCursor cursor, vec2 low, vec2 high, float weight) {
+  for (int i = 0; i < 4; ++i) {
+    PartQuarter part = part_quarter(cursor, low, high, i);
+    vec2 extent = part.high - part.low;
+    float hidden = part.tap.blocked ? weight * extent.x * extent.y : 0.0;
+    blockers.texels += hidden;
+    blockers.gap += hidden * map_gap(cursor.view, cursor.in_map, part.tap.texel, part.tap.depth);
+  }
 }
 
 // The parts of a kernel in one view.
@@ -127,6 +142,8 @@ KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, inout Sha
     low.x = clamp(fourier_part(x, i), 0.0, k.size);
     high.x = clamp(fourier_part(x, i + 1), 0.0, k.size);
     float weight = fourier_part_weight(x, i);
+    // Parts of this column that the horizon cuts, bit by bit: few pixels need texels, so they take them together.
+    uint crossed = 0u;
     int j = -cut;
     high.y = clamp(fourier_part(y, j), 0.0, k.size);
 #if FOURIER_SAT
@@ -144,9 +161,16 @@ KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, inout Sha
 #else
       FourierMeans means = fourier_means(low, high, size, k.layer);
 #endif
-      add_part(blockers, k, part_depths(cursor, k, low, high), means, 0.5 * (low + high),
-               texels * weight * fourier_part_weight(y, j), use);
+      bool beyond = add_part(blockers, k, part_depths(cursor, k, low, high), means, 0.5 * (low + high),
+                             texels * weight * fourier_part_weight(y, j), use);
+      crossed |= beyond && !q.light.whole ? 1u << uint(j + cut) : 0u;
     } while (++j < y.parts + cut);
+    for (; crossed != 0u; crossed &= crossed - 1u) {
+      int part = findLSB(crossed) - cut;
+      low.y = clamp(fourier_part(y, part), 0.0, k.size);
+      high.y = clamp(fourier_part(y, part + 1), 0.0, k.size);
+      add_quarters(blockers, cursor, low, high, weight * fourier_part_weight(y, part));
+    }
   } while (++i < x.parts + cut);
   return blockers;
 }

@@ -22,10 +22,16 @@ uniform float search_blur;
 // no more exact.
 uniform float least_gap;
 
-// A part of a kernel, in the map. The threshold is the least one in it, so that no plane blocks itself.
-MomentBlockers cell_blockers(ShadowCursor cursor, ShadowKernel cell) {
-  float d = map_threshold_range(cursor.view, cursor.in_map, cell.low, cell.high).x;
+// What rounding and bias leave of nothing and of everything.
+const float rest = 1.0 / 256.0;
+
+// A part of a kernel, in the map. The threshold is the least one in it, so that no plane blocks itself. beyond: something may
+// lie before the greatest one.
+MomentBlockers cell_blockers(ShadowCursor cursor, ShadowKernel cell, out bool beyond) {
+  vec2 thresholds = map_threshold_range(cursor.view, cursor.in_map, cell.low, cell.high);
+  float d = thresholds.x;
   vec2 depths = kernel_depth_bounds(cursor, cell);
+  beyond = depths.x < thresholds.y;
   if (d <= depths.x) return MomentBlockers(0.0, d);
   if (depths.y < d) return MomentBlockers(1.0, 0.5 * (depths.x + depths.y));
   vec4 t = moment_lookup(moment_table, cell.low, cell.high, int(cursor.layer), moment_bits);
@@ -52,6 +58,26 @@ void add_blockers(inout KernelBlockers blockers, ShadowCursor cursor, Visibility
   blockers.gap += texels * own_gap;
 }
 
+// Adds what texels say of a cell that the horizon cuts.
+void add_quarters(inout KernelBlockers blockers, ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap,
+                  int use, ShadowKernel cell) {
+  for (int i = 0; i < 4; ++i) {
+    PartQuarter part = part_quarter(cursor, cell.low, cell.high, i);
+    if (part.tap.blocked)
+      add_blockers(blockers, cursor, q, kernel, gap, use, part.low, part.high, 1.0, part.tap.depth);
+  }
+}
+
+// Cell i of parts.x x parts.y of the kernel from a to b.
+ShadowKernel kernel_cell(vec2 a, vec2 b, ivec2 parts, int i) {
+  int row = whole_quotient(i, parts.x);
+  ivec2 part = ivec2(i - row * parts.x, row);
+  ShadowKernel cell = ShadowKernel(a, b, 1.0);
+  cell.low = mix(round(mix(a, b, vec2(part) / vec2(parts))), a, equal(part, ivec2(0)));
+  cell.high = mix(round(mix(a, b, vec2(part + 1) / vec2(parts))), b, equal(part + 1, parts));
+  return cell;
+}
+
 // The kernel at `gap` in cells x cells parts, or as many as sums of the table stay exact in. What lies outside the map is
 // unoccluded.
 KernelBlockers cells_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKernel kernel, float gap, int use) {
@@ -62,18 +88,26 @@ KernelBlockers cells_blockers(ShadowCursor cursor, VisibilityQuery q, ShadowKern
   ivec2 exact = ivec2(ceil((b - a) / float(moment_largest_side(moment_bits) - 1)));
   ivec2 parts = max(exact, ivec2(cells));
   KernelBlockers blockers = KernelBlockers(0.0, 0.0);
-  for (int i = 0; i < parts.x * parts.y; ++i) {
-    int row = whole_quotient(i, parts.x);
-    ivec2 part = ivec2(i - row * parts.x, row);
-    ShadowKernel cell = kernel;
-    cell.low = mix(round(mix(a, b, vec2(part) / vec2(parts))), a, equal(part, ivec2(0)));
-    cell.high = mix(round(mix(a, b, vec2(part + 1) / vec2(parts))), b, equal(part + 1, parts));
-    if (any(lessThanEqual(cell.high, cell.low))) continue;
-    MomentBlockers found = cell_blockers(cursor, cell);
-    if (found.share > 0.0)
-      add_blockers(blockers, cursor, q, kernel, gap, use, cell.low, cell.high, found.share,
-                   shadow_metres(cursor.view, found.depth));
-  }
+  int count = parts.x * parts.y;
+  int i = 0;
+  do {
+    // Cells that have a bit each: few pixels need texels, so they take them together.
+    int first = i;
+    uint cut = 0u;  // those that the horizon cuts
+    for (; i < min(first + 32, count); ++i) {
+      ShadowKernel cell = kernel_cell(a, b, parts, i);
+      if (any(lessThanEqual(cell.high, cell.low))) continue;
+      bool beyond;
+      MomentBlockers found = cell_blockers(cursor, cell, beyond);
+      bool crossed = beyond && found.share < rest && !q.light.whole;
+      cut |= crossed ? 1u << uint(i - first) : 0u;
+      if (found.share > 0.0 && !crossed)
+        add_blockers(blockers, cursor, q, kernel, gap, use, cell.low, cell.high, found.share,
+                     shadow_metres(cursor.view, found.depth));
+    }
+    for (; cut != 0u; cut &= cut - 1u)
+      add_quarters(blockers, cursor, q, kernel, gap, use, kernel_cell(a, b, parts, first + findLSB(cut)));
+  } while (i < count);
   return blockers;
 }
 
@@ -137,7 +171,5 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   }
   // The kernel is a box around what of the light counts; what blocks hides none of the rest.
   float hidden = found.share / light_view_box_share(q.light);
-  // What rounding and bias leave of nothing and of everything.
-  const float rest = 1.0 / 256.0;
   return clamp((1.0 - hidden - rest) / (1.0 - 2.0 * rest), 0.0, 1.0);
 }

@@ -8,6 +8,7 @@
 
 #include "glsl/numeric/sampling.glsl"
 #include "glsl/shadow/shadow_kernel.glsl"
+#include "tests/unit/glsl/shadow_thresholds.h"
 
 namespace limn::glsl {
 namespace {

@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "tests/unit/glsl/shadow_thresholds.h"
+
 namespace limn::glsl {
 namespace {
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "glsl/shadow/shadow_kernel.glsl"
+#include "tests/unit/glsl/shadow_thresholds.h"
 
 namespace limn::glsl {
 namespace {
