@@ -119,7 +119,7 @@ DirectionBounds DirectionalTree::uniformBounds(const glm::vec3& axis, float cosi
   // Corners of cells that the cone meets are at most an edge away from it.
   const float sine = std::sqrt(std::max(1 - cosine * cosine, 0.f));
   const float edgeSine = std::sqrt(1 - level.edgeCosine * level.edgeCosine);
-  const float least = cosine < -level.edgeCosine ? -1 : cosine * level.edgeCosine - sine * edgeSine;
+  const float least = cosine < -level.edgeCosine ? -2 : cosine * level.edgeCosine - sine * edgeSine;
   DirectionBounds found;
   bool any = false;
   for (size_t i = 0; i < corners_.size(); ++i) {

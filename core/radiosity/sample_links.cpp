@@ -169,7 +169,8 @@ class SampleSolver::Shooting {
       const float distance = std::max(pair.distance, 1e-20f);
       const glm::vec3 towards = -pair.offset / distance;
       const float sine = (pair.receiver.reach + pair.sender.reach) / distance;
-      const float cosine = sine < 1 ? std::sqrt(1 - sine * sine) : 0;
+      // Balls around the ends that meet have lines between them in all directions.
+      const float cosine = sine < 1 ? std::sqrt(1 - sine * sine) : -1;
       const float lobes = solver_.caps_[s].most(towards, cosine);
       bounds = {(diffuse + lobes) * pair.transport, lobes * pair.transport};
       // A pair that a horizon cuts is divided for its diffuse light alone, whatever the lobes send.

@@ -11,12 +11,44 @@
 #include "glsl/surface/reflectance.glsl"
 
 namespace limn::radiosity {
+namespace {
+
+/// Areas may grow or shrink by this factor before elements are made again.
+constexpr double kAreaChange = 1.5;
+/// Of the largest area: what is smaller is none but for rounding, as across flat instances.
+constexpr double kNoArea = 1e-5;
+
+/// What a matrix makes of unit squares that are perpendicular to each axis.
+glm::dvec3 areasOf(const glm::mat4& matrix) {
+  const glm::dmat3 m{glm::dmat4(matrix)};
+  return {glm::length(glm::cross(m[1], m[2])), glm::length(glm::cross(m[2], m[0])),
+          glm::length(glm::cross(m[0], m[1]))};
+}
+
+bool alike(const glm::dvec3& a, const glm::dvec3& b) {
+  double most = 0;
+  for (int i = 0; i < 3; ++i) most = std::max({most, a[i], b[i]});
+  for (int i = 0; i < 3; ++i) {
+    const double low = std::max(std::min(a[i], b[i]), kNoArea * most);
+    if (std::max(a[i], b[i]) > kAreaChange * low) return false;
+  }
+  return true;
+}
+
+bool mirrors(const glm::mat4& matrix) {
+  return glm::determinant(glm::dmat3(glm::dmat4(matrix))) < 0;
+}
+
+}  // namespace
 
 /// One instance's vertices in world space.
 struct SceneElements::Instance {
   const scene::Primitive* primitive = nullptr;
+  /// The same of geometry sources, which fill again what nobody holds.
+  std::shared_ptr<const scene::Primitive> held;
   int material = 0;
   bool mirrored = false;
+  glm::dvec3 areas{0};  ///< factors by which the matrix changed areas when the elements were made
   std::vector<glm::vec3> positions, normals;
   std::vector<glm::vec4> tangents;  ///< nobody looks at them; deform() makes them
 
@@ -30,12 +62,11 @@ struct SceneElements::Instance {
     }
     const glm::mat4& matrix = draw.objectToWorld;
     const glm::dmat3 m{glm::dmat4(matrix)};
-    const bool mirrors = glm::determinant(m) < 0;
-    mirrored = mirrors != draw.mirroredSkin;
+    mirrored = mirrors(matrix) != draw.mirroredSkin;
     // The inverse transpose but for its length, which no flat instance can make infinite.
     const double scale = std::max({glm::length(m[0]), glm::length(m[1]), glm::length(m[2]), 1e-300});
     const glm::dmat3 unit = m * (1 / scale);
-    const double side = mirrors ? -1 : 1;
+    const double side = mirrors(matrix) ? -1 : 1;
     const glm::mat3 toNormal(glm::dmat3(side * glm::cross(unit[1], unit[2]),
                                         side * glm::cross(unit[2], unit[0]),
                                         side * glm::cross(unit[0], unit[1])));
@@ -66,8 +97,12 @@ SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose,
   for (const scene::DrawInstance& draw : pose.instances) {
     Instance& instance = instances_.emplace_back();
     instance.primitive = primitiveOf(scene, pose, draw);
-    instance.material = draw.node == scene::kNone ? scene.dynamic[static_cast<size_t>(draw.mesh)].material
-                                                  : instance.primitive->material;
+    instance.material = instance.primitive->material;
+    if (draw.node == scene::kNone) {
+      instance.held = pose.dynamic[static_cast<size_t>(draw.mesh)].primitive;
+      instance.material = scene.dynamic[static_cast<size_t>(draw.mesh)].material;
+    }
+    instance.areas = areasOf(draw.objectToWorld);
     triangles += instance.primitive->indices.size() / 3;
   }
   const auto refuse = [&](const std::string& what) {
@@ -103,11 +138,13 @@ SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose,
 
 SceneElements::~SceneElements() = default;
 
-bool SceneElements::fits(const scene::Pose& pose) const {
-  if (pose.instances.size() != instances_.size()) return false;
-  for (size_t i = 0; i < instances_.size(); ++i)
-    if (primitiveOf(scene_, pose, pose.instances[i]) != instances_[i].primitive) return false;
-  return true;
+bool SceneElements::fits(const scene::Pose& pose, std::span<const scene::DrawInstance> instances) const {
+  const auto same = [&](const scene::DrawInstance& now, const Instance& known) {
+    return primitiveOf(scene_, pose, now) == known.primitive &&
+           (mirrors(now.objectToWorld) != now.mirroredSkin) == known.mirrored &&
+           alike(areasOf(now.objectToWorld), known.areas);
+  };
+  return std::ranges::equal(instances, instances_, same);
 }
 
 void SceneElements::update(const scene::Pose& pose) {

@@ -49,8 +49,11 @@ class LIMN_API SceneElements {
                 double lift = kDefaultLift, LeafShape shape = LeafShape::disc);
   ~SceneElements();
 
-  /// Returns whether `pose` differs only in where vertices are.
-  bool fits(const scene::Pose& pose) const;
+  /// Returns whether `pose` differs only in where vertices are. It does not where an instance's matrix
+  /// mirrors it, or changes an area by more than half: elements keep the areas that they were made with.
+  bool fits(const scene::Pose& pose) const { return fits(pose, pose.instances); }
+  /// Does so for elements that were made of these instances of `pose` alone.
+  bool fits(const scene::Pose& pose, std::span<const scene::DrawInstance> instances) const;
   /// Sets the positions and normals of `pose`, which must fit. Uses all cores; allocates nothing where no
   /// instance is deformed.
   void update(const scene::Pose& pose);

@@ -250,7 +250,7 @@ RayGeometryService::Mesh RayGeometryService::addMesh(Parts& parts, const scene::
     // It has no texture coordinates: its mask is open everywhere or nowhere.
     const scene::Material& material = materialOf(scene_, pose, instance);
     mesh.transparent = material.baseColour.a < material.alphaCutoff;
-    mesh.built = &primitive;
+    mesh.built = pose.dynamic[static_cast<size_t>(instance.mesh)].primitive;
   }
   if (mesh.triangles > 0) {
     std::vector<glm::vec3> deformed, normals;
@@ -294,10 +294,12 @@ bool RayGeometryService::rebuildDynamic(const scene::Pose& pose, bool& changed) 
   for (size_t draw = 0; draw < sources_.size(); ++draw) {
     if (!sources_[draw].dynamic) continue;
     Mesh& mesh = meshes_[meshOf_[draw]];
-    const scene::Primitive& primitive = primitiveOf(scene_, pose, pose.instances[draw]);
-    if (mesh.built == &primitive) continue;
+    const auto source = static_cast<size_t>(pose.instances[draw].mesh);
+    const std::shared_ptr<const scene::Primitive>& now = pose.dynamic[source].primitive;
+    if (mesh.built == now) continue;
+    const scene::Primitive& primitive = *now;
     if (triangleCount(primitive) > mesh.capacity) return false;
-    mesh.built = &primitive;
+    mesh.built = now;
     mesh.triangles = triangleCount(primitive);
     changed = true;
     if (mesh.triangles == 0) continue;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -53,8 +54,9 @@ class LIMN_API RayGeometryService : public FrameService {
     uint32_t triangles = 0;  ///< now
     uint32_t capacity = 0;   ///< triangles that there is room for; as many nodes where it is dynamic
     uint32_t coverage = glsl::ray_opaque;
-    bool transparent = false;                 ///< rays pass all of it
-    const scene::Primitive* built = nullptr;  ///< of a dynamic mesh: what is in the buffers
+    bool transparent = false;  ///< rays pass all of it
+    /// Of a dynamic mesh: what is in the buffers. It is held, since sources fill again what nobody holds.
+    std::shared_ptr<const scene::Primitive> built;
   };
   /// What instances have to have in common with what was built.
   struct Source {

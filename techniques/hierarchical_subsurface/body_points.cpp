@@ -51,10 +51,7 @@ BodyPoints::BodyPoints(const scene::Scene& scene, const scene::Pose& pose, int c
 bool BodyPoints::fits(const scene::Pose& pose) const {
   if (pose.instances.size() != drawCount_) return false;
   return std::ranges::all_of(parts_, [&](const Body& body) {
-    const scene::DrawInstance &now = pose.instances[body.draw], &known = body.pose.instances.front();
-    if (now.node != known.node || now.mesh != known.mesh || now.primitive != known.primitive) return false;
-    const auto mesh = static_cast<size_t>(now.mesh);
-    return now.node != scene::kNone || pose.dynamic[mesh].primitive == body.pose.dynamic[mesh].primitive;
+    return body.elements->fits(pose, {&pose.instances[body.draw], 1});
   });
 }
 

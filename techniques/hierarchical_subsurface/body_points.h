@@ -20,7 +20,7 @@ class BodyPoints {
   /// halved: bodies with more vertices have more.
   BodyPoints(const scene::Scene& scene, const scene::Pose& pose, int count);
 
-  /// Returns whether `pose` differs only in where vertices are.
+  /// Returns whether `pose` differs only in where vertices are, as SceneElements has it.
   bool fits(const scene::Pose& pose) const;
   /// Moves the points to `pose`, which must fit; areas stay.
   void update(const scene::Pose& pose);

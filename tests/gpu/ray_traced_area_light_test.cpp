@@ -155,6 +155,22 @@ TEST_F(RayTracedAreaLightTest, WhatMovedIsWhatAFreshStartSees) {
   }
 }
 
+/// Sources fill again what nobody holds any more: geometry is not known by its address after frames without
+/// rays, of which nobody asks.
+TEST_F(RayTracedAreaLightTest, GeometryThatChangedWithoutRaysIsWhatAFreshStartSees) {
+  const scene::Scene scene = asset("metaballs"), other = asset("metaballs");
+  render::Renderer paused(device(), scene), fresh(device(), other);
+  paused.configure(rays(2));
+  at(paused, 0);
+  paused.configure(settings(kWidth, kHeight, Term::visibility, {technique("pcss")}, 0));
+  at(paused, 1);
+  at(paused, 2);
+  paused.configure(rays(2));
+  const Image now = at(paused, 2);
+  fresh.configure(rays(2));
+  EXPECT_EQ(values(now), values(at(fresh, 2)));
+}
+
 TEST_F(RayTracedAreaLightTest, FramesOfWhatStandsStillAreAlike) {
   const scene::Scene scene = asset("robot");
   render::Renderer renderer(device(), scene);

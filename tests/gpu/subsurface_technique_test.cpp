@@ -162,6 +162,39 @@ TEST_F(SubsurfaceTechniqueTest, SourcesScatterAsMeshesDo) {
   }
 }
 
+/// Bodies that appear, grow or are mirrored look as they do in a renderer that never saw them otherwise.
+TEST_F(SubsurfaceTechniqueTest, BodiesThatGrewAreThoseOfAFreshStart) {
+  scene::Scene scene = ball(0.1f);
+  scene.nodes[0].matrix.reset();
+  scene::Animation& animation = scene.animations.emplace_back();
+  animation.duration = 3;
+  animation.channels.push_back({scene::AnimationChannel::Path::scale,
+                                scene::AnimationChannel::Interpolation::linear,
+                                0,
+                                {0, 1, 2, 3},
+                                {0, 0, 0, 0.3f, 0.3f, 0.3f, 1, 1, 1, -1, 1, 1}});
+  for (const render::TechniqueUse& use : uses()) {
+    SCOPED_TRACE(use.plugin->info->name);
+    const auto at = [&](render::Renderer& renderer, double time) {
+      renderer.setTime(time, 0);
+      renderer.setCamera(scene::lookAt({0.5f, 1.5f, 4}, vec3(0), 0.7f));
+      renderer.render();
+      const Image image = renderer.read();
+      return std::vector<float>(image.data().begin(), image.data().end());
+    };
+    const render::Settings s = settings(kPictureSide, kPictureSide, Term::subsurface, {use});
+    render::Renderer grown(device(), scene);
+    grown.configure(s);
+    at(grown, 0);
+    for (const double time : {1, 2, 3}) {
+      render::Renderer fresh(device(), scene);
+      fresh.setTime(time, 0);
+      fresh.configure(s);
+      EXPECT_EQ(at(grown, time), at(fresh, time)) << time;
+    }
+  }
+}
+
 /// Without translucent surfaces techniques are not asked.
 TEST_F(SubsurfaceTechniqueTest, OpaqueScenesLeaveThemOut) {
   const scene::Scene scene = asset("cornell_box");

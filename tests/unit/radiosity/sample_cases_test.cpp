@@ -29,6 +29,22 @@ TEST(SampleCases, FacingMirrorsGainNoLight) {
   }
 }
 
+/// A mirror's light that a plate on it meets close to the edge alone. The pair of both as wholes, with which
+/// links begin, reach into each other: their centres lie in a direction into which the mirror sends nothing.
+TEST(SampleCases, PlatesOnMirrorsMeetTheLightOfAllOfThem) {
+  SampleWorld world({rectangleMesh({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 40),
+                     rectangleMesh({-0.9f, 0, -0.15f}, {0, 0, 0.3f}, {0, 0.3f, 0}, 12)},
+                    {metalLeaf(0.05f), diffuseLeaf(0.5f)});
+  const float elevation = glsl::pi / 9;
+  world.lightFrom(0, {-std::cos(elevation), std::sin(elevation), 0}, 0.05f, 1);
+  world.solver->reflect();
+  world.solver->shoot(FreeSight());
+  // What falls onto the tenth in front of the plate, on the plate's height, of which metal reflects 0.75.
+  const double expected = 0.75 * double(std::sin(elevation)) * 0.1 / 0.3;
+  std::printf("on the plate: %.3f of %.3f\n", world.mean(1), expected);
+  EXPECT_NEAR(world.mean(1) / expected, 1, 0.5);
+}
+
 TEST(SampleCases, ScaleChangesNothing) {
   double mean[3];
   int k = 0;

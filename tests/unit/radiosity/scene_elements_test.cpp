@@ -1,0 +1,112 @@
+// Which poses surface elements follow, and for which they are made again.
+#include "core/radiosity/scene_elements.h"
+
+#include <gtest/gtest.h>
+
+#include "core/scene/metaballs.h"
+#include "tests/support/test_scenes.h"
+
+namespace limn::radiosity {
+namespace {
+
+/// A sphere, posed by a matrix.
+struct PosedSphere {
+  scene::Scene scene;
+
+  PosedSphere() { test::addMesh(scene, test::spherePrimitive(1, test::addMaterial(scene), 8)); }
+
+  scene::Pose pose(const glm::mat4& matrix) const {
+    scene::Pose pose;
+    test::addInstance(scene, pose, 0, matrix);
+    return pose;
+  }
+  SceneElements elements(const glm::mat4& matrix) const {
+    return SceneElements(scene, pose(matrix), 10, 1u << 20);
+  }
+};
+
+glm::mat4 scaled(const glm::vec3& factors) {
+  return glm::scale(glm::mat4(1), factors);
+}
+
+/// Triangles face where their normals point, whether the instance or the joints of a skin mirror.
+TEST(SceneElementsTest, TurnTheWindingWhereTransformsMirror) {
+  scene::Scene scene;
+  scene::Primitive floor = test::floorPrimitive(1, test::addMaterial(scene));
+  floor.joints.assign(4, glm::u16vec4(0));
+  floor.weights.assign(4, glm::vec4(1, 0, 0, 0));
+  const int mesh = test::addMesh(scene, floor);
+  const glm::mat4 mirror = glm::scale(glm::mat4(1), glm::vec3(-1, 1, 1));
+  scene::Pose rigid, skinned;
+  test::addInstance(scene, rigid, mesh, mirror);
+  test::addInstance(scene, skinned, mesh);
+  skinned.instances[0].deformed = 0;
+  skinned.instances[0].mirroredSkin = true;
+  skinned.deformed.push_back({mesh, 0, {mirror}, {}});
+  for (const scene::Pose* pose : {&rigid, &skinned}) {
+    const SceneElements elements(scene, *pose, 0.5f, 1u << 20);
+    const Surfels& s = elements.surfels();
+    ASSERT_FALSE(s.triangles.empty());
+    for (size_t t = 0; t < s.triangles.size(); t += 3) {
+      const glm::vec3 a = s.vertices[s.triangles[t]], b = s.vertices[s.triangles[t + 1]],
+                      c = s.vertices[s.triangles[t + 2]];
+      EXPECT_GT(glm::dot(glm::cross(b - a, c - a), s.normals[s.triangles[t]]), 0) << t;
+    }
+  }
+}
+
+TEST(SceneElementsTest, FollowWhatKeepsItsSize) {
+  const PosedSphere world;
+  const SceneElements elements = world.elements(scaled({1, 2, 1}));
+  EXPECT_TRUE(elements.fits(world.pose(scaled({1, 2, 1}))));
+  const glm::mat4 turned = glm::rotate(test::at(3, -1, 2), 1.f, glm::normalize(glm::vec3(1, 2, 3)));
+  EXPECT_TRUE(elements.fits(world.pose(turned * scaled({1, 2, 1}))));
+  EXPECT_TRUE(elements.fits(world.pose(scaled({1.1f, 2.1f, 1.1f}))));
+  const SceneElements flat = world.elements(scaled({1, 0, 1}));
+  EXPECT_TRUE(flat.fits(world.pose(turned * scaled({1, 0, 1}))));
+  const SceneElements none = world.elements(scaled(glm::vec3(0)));
+  EXPECT_TRUE(none.fits(world.pose(scaled(glm::vec3(0)))));
+}
+
+TEST(SceneElementsTest, DoNotFitWhatGrewVanishedAppearedOrIsMirrored) {
+  const PosedSphere world;
+  const SceneElements elements = world.elements(glm::mat4(1));
+  for (const glm::vec3& factors : {glm::vec3(3), glm::vec3(0.3f), glm::vec3(2, 1, 1), glm::vec3(0),
+                                   glm::vec3(1, 0, 1), glm::vec3(-1, 1, 1), glm::vec3(-1)})
+    EXPECT_FALSE(elements.fits(world.pose(scaled(factors)))) << factors.x << " " << factors.y;
+  const SceneElements none = world.elements(scaled(glm::vec3(0)));
+  for (const float size : {1e-6f, 1.f, 1e6f})
+    EXPECT_FALSE(none.fits(world.pose(scaled(glm::vec3(size))))) << size;
+}
+
+/// Instances of a pose may stand for elements of their own.
+TEST(SceneElementsTest, FitInstancesOfAPose) {
+  const PosedSphere world;
+  scene::Pose pose = world.pose(glm::mat4(1));
+  test::addInstance(world.scene, pose, 0, scaled(glm::vec3(3)));
+  const SceneElements elements = world.elements(glm::mat4(1));
+  EXPECT_FALSE(elements.fits(pose));
+  EXPECT_TRUE(elements.fits(pose, {&pose.instances[0], 1}));
+  EXPECT_FALSE(elements.fits(pose, {&pose.instances[1], 1}));
+}
+
+/// Sources fill again what nobody holds: the address would be the same.
+TEST(SceneElementsTest, DoNotFitLaterGeometryOfASource) {
+  const std::shared_ptr<scene::GeometrySource> source = scene::makeMetaballs({});
+  scene::Scene scene;
+  scene.dynamic.push_back({"balls", source, test::addMaterial(scene)});
+  scene::Pose pose;
+  pose.instances.emplace_back().mesh = 0;
+  pose.bounds.add(glm::vec3(-1));
+  pose.bounds.add(glm::vec3(1));
+  pose.dynamic.push_back({source->at(0), pose.bounds});
+  const SceneElements elements(scene, pose, 10, 1u << 20);
+  EXPECT_TRUE(elements.fits(pose));
+  for (const double time : {1., 2., 3.}) {
+    pose.dynamic[0].primitive = source->at(time);
+    EXPECT_FALSE(elements.fits(pose)) << time;
+  }
+}
+
+}  // namespace
+}  // namespace limn::radiosity
