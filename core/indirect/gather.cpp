@@ -139,7 +139,7 @@ void Gather::declareShading(frame::PassBuilder& pass, ShadePass& shade, const GB
 }
 
 /// Returns the passes that shade, whose threads take the lights of so many sub-buffers: one pass, but for
-/// software renderers. A pass ends where a sub-buffer does, where it can, since areas begin anew there. With
+/// software renderers. A pass ends where a sub-buffer does, where it can, since areas begin again there. With
 /// a map for each light there is one pass, as an array has fewer layers than a loop has steps.
 std::vector<ShadePass> Gather::passesOf(const ShadePass& shade, int subBuffers) const {
   const int block = settings_.block, most = (lights_.count + block * block - 1) / (block * block);

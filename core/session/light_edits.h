@@ -47,7 +47,7 @@ LIMN_API void giveOwnMaterials(scene::Scene& scene);
 /// have.
 LIMN_API void applyLightEdits(scene::Scene& scene, const scene::Pose& pose, const LightEdits& edits);
 /// Says whether an edit sets a part of a light's placement and leaves the other one to animations, so that
-/// the edits must be applied anew at each time.
+/// the edits must be applied again at each time.
 LIMN_API bool followTime(const LightEdits& edits);
 
 /// Says whether light `index` of a pose can be edited: it belongs to a node, or it is the only light of its

@@ -130,9 +130,9 @@ TEST_F(MediaTest, ABodyThatLiesInTwoViewsRefractsAsOne) {
   for (scene::Node& node : scene.nodes)
     if (node.light != scene::kNone) node.transform.translation = {-1.1f, 1.75f, 0};
   render::Renderer renderer(device(), scene);
-  const Image truth = reference(renderer, scene, Term::caustic, 64);
+  const Image truth = reference(renderer, scene, Term::caustic, 1024);
   const Image ours = picture(renderer, settings(width, height, Term::caustic,
-                                                {technique("surface_caustics", {{"buffer_size", "512"}})}));
+                                                {technique("surface_caustics", {{"buffer_size", "384"}})}));
   EXPECT_NEAR(mean(ours) / mean(truth), 1, 0.03);
   EXPECT_LT(relativeRms(ours, truth), 0.15);
 }

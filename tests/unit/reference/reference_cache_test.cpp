@@ -83,6 +83,7 @@ TEST(ReferenceWork, ContentHashSeesEverythingThatMatters) {
   EXPECT_NE(plain, hash([](World& w) { w.scene.environment.texels[3].r = 7; }));
   EXPECT_NE(plain, hash([](World& w) { w.pose.lights[0].emission.x += 1; }));
   EXPECT_NE(plain, hash([](World& w) { w.pose.instances[1].objectToWorld[3].x += 1; }));
+  EXPECT_NE(plain, hash([](World& w) { w.pose.instances[1].mirroredSkin = true; }));
   EXPECT_NE(plain, hash([](World& w) { w.camera.yfov += 0.1f; }));
   Request request = world.request(16, Term::direct, 16);
   request.seed = 1;

@@ -237,11 +237,10 @@ TEST(LightEdits, RefusalsSayWhatIsAccepted) {
 TEST(Relight, HalvesThatAreNotSetFollowTheirAnimation) {
   test::GltfBuilder b;
   b.triangle();
-  b.light({{"type", "spot"}, {"intensity", 2}}, {{"name", "lamp"}});
+  const int lamp = b.light({{"type", "spot"}, {"intensity", 2}}, {{"name", "lamp"}});
   const int times = b.floats({0, 2}), places = b.vec3({{0, 0, 0}, {2, 0, 0}});
   const float s = std::sqrt(0.5f);
   const int turns = b.vec4({{0, 0, 0, 1}, {0, s, 0, s}});
-  const int lamp = static_cast<int>(b.root["nodes"].size()) - 1;
   b.append("animations",
            {{"samplers", {{{"input", times}, {"output", places}}, {{"input", times}, {"output", turns}}}},
             {"channels",
