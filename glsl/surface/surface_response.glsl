@@ -9,7 +9,7 @@
 #include "glsl/surface/gbuffer_input.glsl"
 #include "glsl/surface/reflected_parts.glsl"
 #if MATERIAL_MODELS
-#include "glsl/materials/nearest_brdf.glsl"
+#include "glsl/surface/nearest_brdf.glsl"
 #include "glsl/materials/response.glsl"
 #endif
 #if (MATERIAL_MODELS & 127) != 0

@@ -82,7 +82,7 @@ TEST_F(AssimpTest, CountsSecondSetsOfVertexAttributes) {
       insert("<p>", "<input semantic=\"" + kind + "\" source=\"#T\" offset=\"0\" set=\"" + set + "\"/>");
   const Outcome outcome = limn({"import", model("a.dae", collada)});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, testing::HasSubstr("lost: 1 of 1 lights, 1 of 2 sets of texture coordinates, "
+  EXPECT_THAT(outcome.out, testing::HasSubstr("lost: 1 of 1 lights, 1 of 2 sets of texture coordinates and "
                                               "1 of 2 sets of vertex colours\n"));
 }
 

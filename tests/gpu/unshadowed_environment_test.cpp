@@ -5,8 +5,8 @@
 #include "core/scene/camera.h"
 #include "core/scene/material_model.h"
 #include "glsl/light/ltc.glsl"
-#include "glsl/materials/nearest_brdf.glsl"
 #include "glsl/surface/lobe_samples.glsl"
+#include "glsl/surface/nearest_brdf.glsl"
 #include "tests/gpu/environment_harness.h"
 #include "tests/support/test_scenes.h"
 

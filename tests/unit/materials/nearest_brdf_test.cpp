@@ -1,5 +1,5 @@
-// Metallic-roughness surfaces that stand for material models (glsl/materials/nearest_brdf.glsl).
-#include "glsl/materials/nearest_brdf.glsl"
+// Metallic-roughness surfaces that stand for material models (glsl/surface/nearest_brdf.glsl).
+#include "glsl/surface/nearest_brdf.glsl"
 
 #include <gtest/gtest.h>
 

@@ -237,7 +237,8 @@ TEST(LightEdits, RefusalsSayWhatIsAccepted) {
 TEST(Relight, HalvesThatAreNotSetFollowTheirAnimation) {
   test::GltfBuilder b;
   b.triangle();
-  const int lamp = b.light({{"type", "spot"}, {"intensity", 2}}, {{"name", "lamp"}});
+  const int lamp =
+      b.light({{"type", "spot"}, {"spot", {{"outerConeAngle", 0.5}}}, {"intensity", 2}}, {{"name", "lamp"}});
   const int times = b.floats({0, 2}), places = b.vec3({{0, 0, 0}, {2, 0, 0}});
   const float s = std::sqrt(0.5f);
   const int turns = b.vec4({{0, 0, 0, 1}, {0, s, 0, s}});
