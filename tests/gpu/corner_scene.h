@@ -45,6 +45,13 @@ struct Corner {
     const double inner = 1 - light.cos_inner, outer = 1 - light.cos_outer;
     flux = albedo * 1000 * 2 * glsl::pi * (inner + (outer - inner) / 3);
   }
+  /// Gives the wall, which is instance 1, a material of its own.
+  void paintWall(const scene::Material& material) {
+    const int own = addMaterial(scene, material);
+    scene.meshes.push_back(scene.meshes[0]);
+    scene.meshes[1].primitives[0].material = own;
+    pose.instances[1].mesh = 1;
+  }
   /// Parallel to the wall, 0.3 m wide, at `x` m: by default halfway between the origin and the wall.
   void addPlate(float x = 0.5f) {
     addInstance(scene, pose, addMesh(scene, floorPrimitive(0.15f, 0)),

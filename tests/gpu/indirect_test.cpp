@@ -42,10 +42,7 @@ TEST_F(IndirectTest, ReceiversReflectWithTheirWholeBrdf) {
   glossy.specularFactor = 1;
   glossy.roughness = 0.5f;
   Corner s;
-  const int material = addMaterial(s.scene, glossy);
-  s.scene.meshes.push_back(s.scene.meshes[0]);
-  s.scene.meshes[1].primitives[0].material = material;
-  s.pose.instances[1].mesh = 1;
+  s.paintWall(glossy);
   const Answer v = answer("reflective_shadow_map", s, {{"vpls", "64"}, {"block", "1"}, {"clamp", "0"}});
   const vec3 eye(glm::inverse(s.camera.worldToView)[3]), n(-1, 0, 0);
   const glsl::SurfaceBrdf brdf = glsl::surface_brdf(vec3(Corner::albedo), 0, 0.5f, 1, vec3(1), 1.5f);
@@ -70,10 +67,7 @@ TEST_F(IndirectTest, TheBoundOfHighlightsDoesNotFallWithAHistory) {
   metal.metallic = 1;
   metal.roughness = 0.5f;
   Corner s;
-  const int material = addMaterial(s.scene, metal);
-  s.scene.meshes.push_back(s.scene.meshes[0]);
-  s.scene.meshes[1].primitives[0].material = material;
-  s.pose.instances[1].mesh = 1;
+  s.paintWall(metal);
   const auto ofWall = [&](const char* block, const char* history) {
     const Answer v = answer("reflective_shadow_map", s,
                             {{"vpls", "64"}, {"block", block}, {"clamp", "1"}, {"history", history}});
