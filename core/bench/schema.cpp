@@ -97,7 +97,7 @@ Json passSchema() {
 Json shadowMapSchema() {
   return object("how the shadow maps of a light were placed in the last frame",
                 {{"light", text("name of the light")},
-                 {"projection", text("perspective, orthographic, cube, hemicube or paraboloid")},
+                 {"projection", text("perspective, orthographic, cube or hemicube")},
                  {"layers", integer("number of layers")},
                  {"near", number("metres")},
                  {"far", number("metres")},

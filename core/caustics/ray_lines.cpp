@@ -83,20 +83,26 @@ CausticRays requestRays(frame::FrameGraph& graph, const TechniqueInputs& inputs,
 }
 
 frame::BufferHandle RayLines::addRule(frame::FrameGraph& graph, std::string_view technique) {
+  frame::PassBuilder clear = graph.addPass("clear line rule", technique);
+  clear.cacheable();
+  const frame::BufferHandle none =
+      clear.write(graph.createBuffer("line rule", {sizeof(uint32_t)}), Access::copyTarget, "none so far");
+  clear.execute([none](frame::PassContext& context) {
+    context.gl().ClearNamedBufferData(context.buffer(none).id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT,
+                                      nullptr);
+  });
   frame::PassBuilder pass = graph.addPass("line rule", technique);
   pass.cacheable();
   const frame::TextureHandle canvas = pass.write(
       graph.createTexture("line rule canvas", {.format = GL_R8, .width = kRuleSide, .height = kRuleSide}),
       Access::colourAttachment, "where a line is drawn");
   const frame::BufferHandle rule =
-      pass.write(graph.createBuffer("line rule", {sizeof(uint32_t)}), Access::storageStore, "LineRule",
-                 "how many fragments a diagonal line has");
+      pass.write(none, Access::storageLoadStore, "LineRule", "how many fragments a diagonal line has");
   const auto program = pass.program(
       {.files = {"glsl/caustics/line_rule.vert.glsl", "glsl/caustics/line_rule.frag.glsl"}, .defines = {}});
-  pass.execute([this, canvas, rule, program](frame::PassContext& context) {
+  pass.execute([this, canvas, program](frame::PassContext& context) {
     const gl::Functions& gl = context.gl();
     context.bindFramebuffer({{canvas}});
-    gl.ClearNamedBufferData(context.buffer(rule).id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
     context.use(program);
     gl.BindVertexArray(empty_.id());
     gl.DrawArrays(GL_LINES, 0, 2);

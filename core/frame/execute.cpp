@@ -163,6 +163,7 @@ bool FrameGraph::execute(Timing timing, const Cancelled& cancelled) {
   } catch (...) {
     graph.current = kNoIndex;
     invalidate();
+    graph.device->gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // the next frame begins anywhere
     setBaseline(graph.device->gl());
     throw;
   }

@@ -35,7 +35,6 @@ Limits queryLimits(const gl::Functions& gl) {
       .maxStorageBlockBytes = query<int64_t>(gl, GL_MAX_SHADER_STORAGE_BLOCK_SIZE),
       .maxUniformBlockBytes = query<int>(gl, GL_MAX_UNIFORM_BLOCK_SIZE),
       .maxSharedMemoryBytes = query<int>(gl, GL_MAX_COMPUTE_SHARED_MEMORY_SIZE),
-      .storageAlignment = query<int>(gl, GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT),
       .uniformAlignment = query<int>(gl, GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT),
       .layerFromVertexShader = hasExtension(gl, "GL_ARB_shader_viewport_layer_array") ||
                                hasExtension(gl, "GL_AMD_vertex_shader_layer"),

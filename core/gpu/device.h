@@ -18,7 +18,6 @@ struct Limits {
   int64_t maxStorageBlockBytes = 0;
   int maxUniformBlockBytes = 0;
   int maxSharedMemoryBytes = 0;
-  int storageAlignment = 0;
   int uniformAlignment = 0;
   bool layerFromVertexShader = false;  ///< ARB_shader_viewport_layer_array or AMD_vertex_shader_layer
 };

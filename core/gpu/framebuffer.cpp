@@ -59,7 +59,7 @@ void checkAttachment(std::string_view label, const Attachment& attachment) {
 }  // namespace
 
 Framebuffer::Framebuffer(Device& device, std::string_view label, std::span<const Attachment> colours,
-                         Attachment depth, int width, int height)
+                         Attachment depth)
     : Object(device, kFramebufferKind) {
   if (colours.size() > static_cast<size_t>(device.limits().maxColourAttachments)) {
     throw Error(fmt::format("framebuffer '{}' has {} colours: this device takes {}", label, colours.size(),
@@ -82,10 +82,6 @@ Framebuffer::Framebuffer(Device& device, std::string_view label, std::span<const
     gl.NamedFramebufferReadBuffer(id_, GL_NONE);
   } else {
     gl.NamedFramebufferDrawBuffers(id_, static_cast<GLsizei>(drawBuffers.size()), drawBuffers.data());
-  }
-  if (drawBuffers.empty() && depth.texture == nullptr) {
-    gl.NamedFramebufferParameteri(id_, GL_FRAMEBUFFER_DEFAULT_WIDTH, width);
-    gl.NamedFramebufferParameteri(id_, GL_FRAMEBUFFER_DEFAULT_HEIGHT, height);
   }
   const GLenum status = gl.CheckNamedFramebufferStatus(id_, GL_DRAW_FRAMEBUFFER);
   if (status != GL_FRAMEBUFFER_COMPLETE)

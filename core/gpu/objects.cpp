@@ -99,12 +99,6 @@ void Query::end() {
   device_->gl().EndQuery(target_);
 }
 
-bool Query::available() const {
-  GLuint available = 0;
-  device_->gl().GetQueryObjectuiv(id_, GL_QUERY_RESULT_AVAILABLE, &available);
-  return available != 0;
-}
-
 uint64_t Query::result() const {
   GLuint64 result = 0;
   device_->gl().GetQueryObjectui64v(id_, GL_QUERY_RESULT, &result);

@@ -140,11 +140,10 @@ struct Attachment {
 class LIMN_API Framebuffer : public Object {
  public:
   Framebuffer() = default;
-  /// Creates a framebuffer with any number of colour attachments and an optional depth attachment; with
-  /// neither, one without attachments of `width` x `height` pixels. Throws Error naming the status when
-  /// incomplete.
+  /// Creates a framebuffer with any number of colour attachments and an optional depth attachment. Throws
+  /// Error naming the status when incomplete, as without any.
   Framebuffer(Device& device, std::string_view label, std::span<const Attachment> colours,
-              Attachment depth = {}, int width = 0, int height = 0);
+              Attachment depth = {});
 };
 
 class LIMN_API Sampler : public Object {
@@ -176,8 +175,7 @@ class LIMN_API Query : public Object {
   Query(Device& device, GLenum target);
   void begin();
   void end();
-  bool available() const;
-  uint64_t result() const;  ///< blocks until available
+  uint64_t result() const;  ///< blocks until the GPU has it
 
  private:
   GLenum target_ = 0;

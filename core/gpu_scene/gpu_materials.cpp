@@ -137,9 +137,7 @@ GpuMaterials::GpuMaterials(gpu::Device& device, const Scene& scene) : device_(de
 }
 
 void GpuMaterials::makeBlocks() {
-  GLint alignment = 1;
-  device_.gl().GetIntegerv(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, &alignment);
-  const auto step = static_cast<size_t>(alignment);
+  const auto step = static_cast<size_t>(device_.limits().uniformAlignment);
   blockStride_ = (sizeof(glsl::Material) + step - 1) / step * step;
   std::vector<std::byte> bytes(std::max<size_t>(materials_.size(), 1) * blockStride_);
   for (size_t i = 0; i < materials_.size(); ++i)

@@ -93,9 +93,8 @@ class LIMN_API GpuScene {
   GpuScene& operator=(const GpuScene&) = delete;
 
   /// Updates the buffers to `pose` as seen by `camera`. Touches what changed in the graph for which import()
-  /// was last called (if that still lives: see forget()). Returns true if the structure changed (dynamic
-  /// geometry appeared or disappeared, or the number of lights or of deformed primitives changed), so that
-  /// the graph must be rebuilt.
+  /// was last called (if that still lives: see forget()). Returns true if the structure changed (the number
+  /// of lights or of deformed primitives), so that the graph must be rebuilt.
   bool update(const Pose& pose, const CameraPose& camera, glm::ivec2 size, uint32_t frameIndex);
 
   /// Imports the buffers and declares the deform pass (left out, with the reason, when nothing is deformed).

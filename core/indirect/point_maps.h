@@ -35,7 +35,7 @@ class LIMN_API PointMapPass {
   /// Chooses points for maps that take `points` each: `windows` times as many, so that as many maps differ.
   PointMapPass(gpu::Device& device, const scene::Scene& scene, const scene::Pose& pose, int points,
                int windows);
-  /// Chooses points again if triangles were added or removed.
+  /// Chooses points again if triangles were added or removed, or the size of an instance changed.
   void update(const scene::Pose& pose);
   /// Declares the pass that places the points where the surfaces are now; before the first add().
   void place(frame::FrameGraph& graph, const SceneHandles& handles, std::string_view technique);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/scene/instance_areas.h"
 #include "glsl/numeric/sampling.glsl"
 
 namespace limn::indirect {
@@ -71,7 +72,11 @@ frame::BufferHandle ScenePoints::import(frame::FrameGraph& graph) {
 void ScenePoints::update(const scene::Pose& pose) {
   const auto same = [](const std::shared_ptr<const scene::Primitive>& known,
                        const scene::DynamicGeometry& now) { return known == now.primitive; };
-  if (std::ranges::equal(known_, pose.dynamic, same)) return;
+  const auto alike = [](const glm::dvec3& known, const scene::DrawInstance& now) {
+    return scene::areasAlike(known, scene::areaFactors(now.objectToWorld));
+  };
+  if (std::ranges::equal(known_, pose.dynamic, same) && std::ranges::equal(areas_, pose.instances, alike))
+    return;
   choose(pose);
   buffer_.update(0, points_.data(), points_.size() * sizeof(points_[0]));
   graph_->touch(handle_);
@@ -95,6 +100,7 @@ void ScenePoints::measure(const scene::Pose& pose) {
   tables_.resize(pose.instances.size());
   stretched_.resize(pose.instances.size());
   upTo_.resize(pose.instances.size());
+  areas_.resize(pose.instances.size());
   std::vector<glm::vec3> positions, normals;
   std::vector<glm::vec4> tangents;
   double sum = 0;
@@ -111,6 +117,7 @@ void ScenePoints::measure(const scene::Pose& pose) {
       if (table.upTo.empty()) table.fill(p.positions, p.indices);
       tables_[i] = &table;
     }
+    areas_[i] = scene::areaFactors(drawn.objectToWorld);
     const glm::dmat3 toWorld{glm::dmat4(drawn.objectToWorld)};
     double scale = std::cbrt(std::abs(glm::determinant(toWorld)));
     if (!scalesAlike(toWorld)) {

@@ -29,10 +29,9 @@ struct AreaTable {
 class ScenePoints {
  public:
   /// Chooses `count` points in proportion to area at `pose`. Any run of consecutive points is spread evenly,
-  /// too. Where instances move so that their size changes, the density follows the size at the pose of the
-  /// choice.
+  /// too. Where instances change their size, the density follows the size at the pose of the last choice.
   ScenePoints(gpu::Device& device, const scene::Scene& scene, const scene::Pose& pose, int count);
-  /// Chooses again if triangles were added or removed.
+  /// Chooses again if triangles were added or removed, or an instance's areas changed by more than half.
   void update(const scene::Pose& pose);
   frame::BufferHandle import(frame::FrameGraph& graph);
   float area() const { return area_; }  ///< of all surfaces, m^2
@@ -49,6 +48,7 @@ class ScenePoints {
   std::vector<size_t> firstOfMesh_;       ///< index of each mesh's first table in fixed_
   std::vector<const AreaTable*> tables_;  ///< of each instance
   std::vector<float> upTo_;               ///< m^2 of the instances 0 to i
+  std::vector<glm::dvec3> areas_;         ///< factors of each instance, at the last choice
   std::vector<uint32_t> chosen_;          ///< points on each instance
   std::vector<std::shared_ptr<const scene::Primitive>> known_;  ///< dynamic ones, at the last choice
   std::vector<glsl::ScenePoint> points_;

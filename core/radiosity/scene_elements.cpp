@@ -7,33 +7,12 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/scene/instance_areas.h"
 #include "core/scene/texture_lookup.h"
 #include "glsl/surface/reflectance.glsl"
 
 namespace limn::radiosity {
 namespace {
-
-/// Areas may grow or shrink by this factor before elements are made again.
-constexpr double kAreaChange = 1.5;
-/// Of the largest area: what is smaller is none but for rounding, as across flat instances.
-constexpr double kNoArea = 1e-5;
-
-/// What a matrix makes of unit squares that are perpendicular to each axis.
-glm::dvec3 areasOf(const glm::mat4& matrix) {
-  const glm::dmat3 m{glm::dmat4(matrix)};
-  return {glm::length(glm::cross(m[1], m[2])), glm::length(glm::cross(m[2], m[0])),
-          glm::length(glm::cross(m[0], m[1]))};
-}
-
-bool alike(const glm::dvec3& a, const glm::dvec3& b) {
-  double most = 0;
-  for (int i = 0; i < 3; ++i) most = std::max({most, a[i], b[i]});
-  for (int i = 0; i < 3; ++i) {
-    const double low = std::max(std::min(a[i], b[i]), kNoArea * most);
-    if (std::max(a[i], b[i]) > kAreaChange * low) return false;
-  }
-  return true;
-}
 
 bool mirrors(const glm::mat4& matrix) {
   return glm::determinant(glm::dmat3(glm::dmat4(matrix))) < 0;
@@ -102,7 +81,7 @@ SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose,
       instance.held = pose.dynamic[static_cast<size_t>(draw.mesh)].primitive;
       instance.material = scene.dynamic[static_cast<size_t>(draw.mesh)].material;
     }
-    instance.areas = areasOf(draw.objectToWorld);
+    instance.areas = scene::areaFactors(draw.objectToWorld);
     triangles += instance.primitive->indices.size() / 3;
   }
   const auto refuse = [&](const std::string& what) {
@@ -142,7 +121,7 @@ bool SceneElements::fits(const scene::Pose& pose, std::span<const scene::DrawIns
   const auto same = [&](const scene::DrawInstance& now, const Instance& known) {
     return primitiveOf(scene_, pose, now) == known.primitive &&
            (mirrors(now.objectToWorld) != now.mirroredSkin) == known.mirrored &&
-           alike(areasOf(now.objectToWorld), known.areas);
+           scene::areasAlike(scene::areaFactors(now.objectToWorld), known.areas);
   };
   return std::ranges::equal(instances, instances_, same);
 }

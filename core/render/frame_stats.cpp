@@ -212,7 +212,7 @@ std::string toJson(const FrameStats& stats) {
               {"passes", passes},
               {"shadow_maps", shadowMaps},
               {"uncovered_pixels", stats.uncoveredPixels}}
-      .dump();
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 FrameStats frameStatsFromJson(const std::string& text) {

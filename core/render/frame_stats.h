@@ -38,7 +38,7 @@ struct PassStats {
 /// Describes how the shadow maps of one light were placed in the last frame.
 struct ShadowMapFit {
   std::string light;
-  std::string projection;  ///< perspective, orthographic, cube, hemicube or paraboloid
+  std::string projection;  ///< perspective, orthographic, cube or hemicube
   int layers = 0;
   double near = 0, far = 0;  ///< metres, of the first layer that shows something
   double halfAngle = 0;      ///< radians; perspective only

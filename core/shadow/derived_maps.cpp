@@ -18,7 +18,7 @@ namespace {
 using frame::Access;
 using frame::TextureHandle;
 
-enum class PyramidKind { minMax, windows, moments };
+enum class PyramidKind { minMax, windows };
 
 struct KnownTable {
   TextureHandle source;
@@ -42,19 +42,17 @@ struct KnownNBuffer {
 };
 
 std::string_view nameOf(PyramidKind kind) {
-  if (kind == PyramidKind::windows) return "min-max windows";
-  return kind == PyramidKind::minMax ? "min-max pyramid" : "moment mips";
+  return kind == PyramidKind::windows ? "min-max windows" : "min-max pyramid";
 }
 
 /// Level 0 from the shadow maps, each further level from the one before: a pass each, so that the graph puts
 /// the barriers between them.
 TextureHandle addPyramid(frame::FrameGraph& graph, TextureHandle source, PyramidKind kind, bool cacheable) {
   const gpu::TextureDesc& maps = graph.desc(source);
-  const int levels =
-      kind == PyramidKind::windows ? glsl::min_max_windows_levels(std::max(maps.width, maps.height)) : 0;
+  const bool windows = kind == PyramidKind::windows;
+  const int levels = windows ? glsl::min_max_windows_levels(std::max(maps.width, maps.height)) : 0;
   const gpu::TextureDesc desc = derivedDesc(graph, source, nameOf(kind), GL_RG32F, levels);
   TextureHandle pyramid = graph.createTexture(nameOf(kind), desc);
-  const auto is = [kind](PyramidKind other) { return kind == other ? "1" : "0"; };
   for (int level = 0; level < desc.levels; ++level) {
     frame::PassBuilder pass = graph.addPass(fmt::format("{} level {}", nameOf(kind), level), "shadow");
     pass.role(frame::PassRole::filter);
@@ -63,10 +61,9 @@ TextureHandle addPyramid(frame::FrameGraph& graph, TextureHandle source, Pyramid
                          frame::ShaderName("coarser").level(level),
                          level == 0 ? "finest level" : "next level from the one before");
     if (level > 0) pass.also(frame::ShaderName("finer").level(level - 1));
-    const frame::ProgramHandle program = pass.program({.files = {"glsl/shadow/pyramid.comp.glsl"},
-                                                       .defines = {{"BASE", level == 0 ? "1" : "0"},
-                                                                   {"MOMENTS", is(PyramidKind::moments)},
-                                                                   {"WINDOWS", is(PyramidKind::windows)}}});
+    const frame::ProgramHandle program =
+        pass.program({.files = {"glsl/shadow/pyramid.comp.glsl"},
+                      .defines = {{"BASE", level == 0 ? "1" : "0"}, {"WINDOWS", windows ? "1" : "0"}}});
     if (cacheable) pass.cacheable();
     pass.execute([program, level, desc](frame::PassContext& context) {
       context.use(program);
@@ -205,10 +202,6 @@ MomentTable DerivedMaps::momentTable(frame::FrameGraph& graph, TextureHandle dep
   }
   d.moments.push_back({depth, addMomentTable(graph, depth, cacheable, wanted, !d.device.software())});
   return d.moments.back().table;
-}
-
-TextureHandle DerivedMaps::momentMips(frame::FrameGraph& graph, TextureHandle depth, bool cacheable) {
-  return implementation_->pyramid(graph, depth, PyramidKind::moments, cacheable);
 }
 
 }  // namespace limn::shadow

@@ -1,6 +1,6 @@
 // Declares what shadow techniques look up instead of single texels of a shadow map: min-max pyramids and
-// windows, N-buffers, summed-area tables, and mip chains of moments. Each is built by passes of the frame
-// graph when the first technique requests it, and shared by all that request it.
+// windows, N-buffers, summed-area and moment tables. Each is built by passes of the frame graph when the
+// first technique requests it, and shared by all that request it.
 #pragma once
 
 #include <cstdint>
@@ -82,9 +82,6 @@ class LIMN_API DerivedMaps {
   /// Returns the moment table of `depth`. `bits` of each moment: 10 to 20; 0: chosen by the maps' size
   /// (momentBits). Throws UsageError as summedAreaTable does.
   MomentTable momentTable(frame::FrameGraph& graph, frame::TextureHandle depth, bool cacheable, int bits);
-  /// Returns an RG32F array with a full mip chain: means of z and of z^2 over equal parts of the map. The
-  /// mean over each level is that of the map, even when a size is odd.
-  frame::TextureHandle momentMips(frame::FrameGraph& graph, frame::TextureHandle depth, bool cacheable);
 
  private:
   struct Implementation;

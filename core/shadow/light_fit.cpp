@@ -34,15 +34,12 @@ Axes axesOf(const glsl::Light& light) {
 glsl::ShadowView makeView(uint32_t projection, const vec3& origin, const Axes& axes, const MapWindow& window,
                           int size, uint32_t layer, uint32_t light) {
   const float scale = 1 / (window.high.x - window.low.x);
-  float footprint = 1 / (scale * static_cast<float>(size));
-  // At the centre of a paraboloid map a texel spans 4 / size radians: uv = 1/2 + s tan(angle / 2).
-  if (projection == glsl::shadow_paraboloid) footprint *= 2;
   return {.origin = origin,
           .near = window.near,
           .axis_x = axes.x,
           .scale = scale,
           .axis_y = axes.y,
-          .footprint = footprint,
+          .footprint = 1 / (scale * static_cast<float>(size)),
           .axis_z = axes.z,
           .far = window.far,
           .middle = 0.5f - 0.5f * scale * (window.low + window.high),
@@ -171,13 +168,6 @@ bool twoSided(const glsl::Light& light) {
   return (light.flags & glsl::light_flag_two_sided) != 0;
 }
 
-LightLayout paraboloidLayout(const glsl::Light& light) {
-  const bool both = light.type == glsl::light_point || twoSided(light) ||
-                    (light.type == glsl::light_spot && light.cos_outer < 0);
-  return {glsl::shadow_paraboloid, both ? glsl::shadow_faces_pair : glsl::shadow_faces_single,
-          glsl::light_kind(light)};
-}
-
 /// Of perspective views from `origin`: all boxes that they may see, as far as there is light.
 MapWindow wholeWindow(const glsl::Light& light, const vec3& origin, const Axes& axes,
                       const LightLayout& layout, std::span<const Bounds> boxes, const ShadowMapDesc& desc) {
@@ -202,7 +192,6 @@ LightLayout fitWhole(const glsl::Light& light, std::span<const Bounds> boxes, co
   const uint32_t kind = glsl::light_kind(light);
   if (light.type == glsl::light_directional)
     return {glsl::shadow_orthographic, glsl::shadow_faces_single, kind};
-  if (desc.projection == Projection::paraboloid) return paraboloidLayout(light);
   const LightLayout cube{glsl::shadow_perspective, glsl::shadow_faces_cube, kind};
   const LightLayout single{glsl::shadow_perspective, glsl::shadow_faces_single, kind};
   if (light.type == glsl::light_point || desc.projection == Projection::cube) return cube;
@@ -274,7 +263,7 @@ void appendWhole(const glsl::Light& light, const LightLayout& layout, std::span<
   const std::vector<glm::vec2> samples = samplesOf(light, desc);
   const bool perspective = layout.projection == glsl::shadow_perspective;
   ViewFit fit;
-  const bool toView = desc.fit == MapFit::view && layout.projection != glsl::shadow_paraboloid;
+  const bool toView = desc.fit == MapFit::view;
   if (toView && layout.faces == glsl::shadow_faces_single) fit.visible = visible;
   const bool sampled = !desc.samples.empty();
   if (!sampled || perspective) fit.spread = spreadOf(light, axes, desc.lightSize);
@@ -301,13 +290,6 @@ void appendWhole(const glsl::Light& light, const LightLayout& layout, std::span<
     out.light(origin, true, layout.faces);
     // The second view of a pair looks backwards.
     const uint32_t step = layout.faces == glsl::shadow_faces_pair ? 5 : 1;
-    if (layout.projection == glsl::shadow_paraboloid) {
-      const DepthRange range = widened(pyramidRange(origin, axes, 6, 1, 1, boxes));
-      const DepthRange radial{0.5f * range.near, std::sqrt(3.f) * range.far};  // corners of the cube faces
-      for (uint32_t face = 0; face < count; ++face)
-        out.view(glsl::shadow_paraboloid, origin, faceAxes(axes, face * step), square(1, radial));
-      continue;
-    }
     const MapWindow whole = given ? *given : wholeWindow(light, origin, axes, layout, boxes, desc);
     if (window) {
       const vec3 r = origin - light.position;
@@ -336,8 +318,7 @@ glm::uvec2 partsAlongSides(const glsl::Light& light, const ShadowMapDesc& desc, 
 
 /// Whether each of several views may have a part of the light.
 bool isDivisible(const glsl::Light& light, const ShadowMapDesc& desc) {
-  return desc.views != 1 && desc.samples.empty() && desc.projection != Projection::paraboloid &&
-         glsl::light_has_extent(light) && desc.lightSize != 0;
+  return desc.views != 1 && desc.samples.empty() && glsl::light_has_extent(light) && desc.lightSize != 0;
 }
 
 /// The width of the light's kernel, texels, before blockers half way between it and the middle of the scene.
@@ -436,11 +417,9 @@ scene::CullVolume cullVolume(const glsl::ShadowView& view) {
   if (view.projection == glsl::shadow_orthographic) {
     volume.planes = {plane(x, -low.x),  plane(-x, high.x),    plane(y, -low.y),
                      plane(-y, high.y), plane(z, -view.near), plane(-z, view.far)};
-  } else if (view.projection == glsl::shadow_perspective) {
+  } else {
     volume.planes = {plane(x - low.x * z, 0),  plane(high.x * z - x, 0), plane(y - low.y * z, 0),
                      plane(high.y * z - y, 0), plane(z, -view.near),     plane(-z, view.far)};
-  } else {
-    volume.planes[0] = plane(z, 0);
   }
   return volume;
 }

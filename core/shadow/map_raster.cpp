@@ -27,33 +27,30 @@ bool layered(const gpu::Device& device) {
 
 }  // namespace
 
-void addDepthPass(const MapRaster& raster, bool paraboloid, ShadowMaps& maps) {
+void addDepthPass(const MapRaster& raster, ShadowMaps& maps) {
   frame::PassBuilder pass = raster.graph.addPass("shadow maps", "shadow");
   pass.role(frame::PassRole::map);
   const bool together = layered(raster.device);
-  const scene::DrawPrograms programs = raster.scene.declareDepth(
-      pass, raster.handles,
-      {.files = {"glsl/shadow/depth.vert.glsl", "glsl/shadow/depth.frag.glsl"},
-       .defines = {{"LAYERED", together ? "1" : "0"}, {"PARABOLOID", paraboloid ? "1" : "0"}}});
+  const scene::DrawPrograms programs =
+      raster.scene.declareDepth(pass, raster.handles,
+                                {.files = {"glsl/shadow/depth.vert.glsl", "glsl/shadow/depth.frag.glsl"},
+                                 .defines = {{"LAYERED", together ? "1" : "0"}}});
   pass.read(maps.views, Access::storageLoad, "Views", "projections");
   maps.depth =
       pass.write(createMaps(raster, maps, "shadow maps", GL_R32F), Access::colourAttachment, "linear depth");
   const TextureHandle zbuffer = pass.write(createMaps(raster, maps, "shadow map z", GL_DEPTH_COMPONENT32F),
                                            Access::depthAttachment, "hidden-surface removal");
   if (raster.cacheable) pass.cacheable();
-  pass.execute(
-      [raster, zbuffer, together, paraboloid, programs, depth = maps.depth](frame::PassContext& context) {
-        const gl::Functions& gl = context.gl();
-        context.bindFramebuffer({{depth}}, {zbuffer});
-        gl.ClearBufferfv(GL_COLOR, 0, kNothing);
-        gl.ClearBufferfv(GL_DEPTH, 0, &kFarthest);
-        if (paraboloid) gl.Enable(GL_CLIP_DISTANCE0);
-        raster.scene.drawDepth(context, programs, raster.views, raster.list, together,
-                               [&](const scene::DepthView& view) {
-                                 context.bindFramebuffer({{depth, 0, view.layer}}, {zbuffer, 0, view.layer});
-                               });
-        if (paraboloid) gl.Disable(GL_CLIP_DISTANCE0);
-      });
+  pass.execute([raster, zbuffer, together, programs, depth = maps.depth](frame::PassContext& context) {
+    const gl::Functions& gl = context.gl();
+    context.bindFramebuffer({{depth}}, {zbuffer});
+    gl.ClearBufferfv(GL_COLOR, 0, kNothing);
+    gl.ClearBufferfv(GL_DEPTH, 0, &kFarthest);
+    raster.scene.drawDepth(context, programs, raster.views, raster.list, together,
+                           [&](const scene::DepthView& view) {
+                             context.bindFramebuffer({{depth, 0, view.layer}}, {zbuffer, 0, view.layer});
+                           });
+  });
 }
 
 void addReflectivePass(const MapRaster& raster, TextureHandle ltc, bool instances, ShadowMaps& maps) {

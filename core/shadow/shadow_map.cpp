@@ -27,7 +27,6 @@ bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
 
 std::string_view projectionName(const LightLayout& layout) {
   if (layout.projection == glsl::shadow_orthographic) return "orthographic";
-  if (layout.projection == glsl::shadow_paraboloid) return "paraboloid";
   if (layout.faces == glsl::shadow_faces_cube) return "cube";
   return layout.faces == glsl::shadow_faces_hemicube ? "hemicube" : "perspective";
 }
@@ -224,7 +223,7 @@ void ShadowMapService::Implementation::check(const Request& request, size_t laye
   if (layers > most)
     throw UsageError(
         fmt::format("shadow maps in {} layers: the device has at most {} in one array", layers, most));
-  const int64_t bytes = int64_t{size} * size * 4 * static_cast<int64_t>(layers);
+  const int64_t bytes = int64_t{size} * size * bytesPerTexel(request.desc) * static_cast<int64_t>(layers);
   if (bytes > kMemoryLimit)
     throw UsageError(
         fmt::format("shadow maps of {} layers of {} x {} texels take {} MiB, more than the {} MiB that one "
@@ -247,7 +246,7 @@ void ShadowMapService::Implementation::addPasses(Request& request, const FrameCo
     addReflectivePass(raster, lambertian() ? frame::TextureHandle{} : ltcHandle, request.desc.instances,
                       maps);
   } else {
-    addDepthPass(raster, request.desc.projection == Projection::paraboloid, maps);
+    addDepthPass(raster, maps);
   }
 }
 
@@ -353,10 +352,6 @@ MomentTable ShadowMapService::momentTable(const ShadowMaps& maps, int bits) {
                                               bits);
 }
 
-frame::TextureHandle ShadowMapService::momentMips(const ShadowMaps& maps) {
-  return implementation_->derived.momentMips(context().graph, maps.depth, implementation_->cacheable(maps));
-}
-
 FourierMaps ShadowMapService::fourierMaps(const ShadowMaps& maps, const FourierDesc& desc) {
   Implementation& s = *implementation_;
   for (const KnownFourierMaps& known : s.fourier) {
@@ -378,7 +373,10 @@ bool ShadowMapService::update(frame::FrameGraph& graph, const scene::Pose& pose)
   if (lightsCameOrWent) return true;
   for (const auto& request : s.requests) {
     if (s.layoutsOf(*request) != request->layouts) return true;
-    if (!s.fit(*request)) continue;
+    const bool changed = s.fit(*request);
+    // Lights with extent have a map for each sample, others one for all, in the same layout.
+    if (request->views.size() != static_cast<size_t>(request->maps.layers)) return true;
+    if (!changed) continue;
     request->viewBuffer.update(0, request->views.data(), request->views.size() * sizeof(request->views[0]));
     request->lightBuffer.update(0, request->shadowLights.data(),
                                 request->shadowLights.size() * sizeof(request->shadowLights[0]));

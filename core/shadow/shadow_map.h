@@ -2,9 +2,9 @@
 // maps are rendered once per graph, however many techniques request them, and derived resources (min-max
 // pyramid, summed-area tables) are built when the first technique requests them.
 //
-// A map is a layer of an R32F array. It holds linear depth: distance along the view axis of its ShadowView
-// (along the ray for paraboloids), normalised to [0, 1] between the view's near and far; 1 where there is
-// nothing. Views, kernels and biases are in glsl/shadow/shadow_view.glsl.
+// A map is a layer of an R32F array. It holds linear depth: distance along the view axis of its ShadowView,
+// normalised to [0, 1] between the view's near and far; 1 where there is nothing. Views, kernels and biases
+// are in glsl/shadow/shadow_view.glsl.
 #pragma once
 
 #include <compare>
@@ -27,9 +27,8 @@
 namespace limn::shadow {
 
 enum class Projection {
-  automatic,   ///< by light: see ShadowMapService
-  cube,        ///< six faces; point, spot and rectangle
-  paraboloid,  ///< one layer per hemisphere (two for point lights); radial depth
+  automatic,  ///< by light: see ShadowMapService
+  cube,       ///< six faces; point, spot and rectangle
 };
 
 /// Says what maps of one view, and faces of samples' cubes and hemicubes, cover; others cover the whole
@@ -53,8 +52,7 @@ struct ShadowMapDesc {
   /// Says whether the maps are kept while nothing changes, as long as all kept maps fit a limit of memory.
   /// False when many batches of maps share one piece of memory.
   bool cacheable = true;
-  /// Says whether the maps also hold what reflects the light: glsl/indirect/reflective_map.glsl. Not for
-  /// paraboloids.
+  /// Says whether the maps also hold what reflects the light: glsl/indirect/reflective_map.glsl.
   bool reflective = false;
   /// Says whether reflective maps also hold which draw instance a texel shows.
   bool instances = false;
@@ -97,7 +95,7 @@ struct LightLayout {
 /// Holds what --stats reports about one light's maps.
 struct ShadowMapStats {
   std::string light;
-  std::string projection;  ///< perspective, orthographic, cube, hemicube, paraboloid
+  std::string projection;  ///< perspective, orthographic, cube, hemicube
   int layers = 0;
   float near = 0, far = 0;  ///< metres, of the first layer that shows something
   float halfAngle = 0;      ///< radians, perspective only
@@ -137,7 +135,6 @@ class LIMN_API ShadowMapService : public FrameService {
   frame::TextureHandle nBuffer(const ShadowMaps& maps);
   SummedAreaTable summedAreaTable(const ShadowMaps& maps, const SatDesc& desc);
   MomentTable momentTable(const ShadowMaps& maps, int bits);
-  frame::TextureHandle momentMips(const ShadowMaps& maps);
   FourierMaps fourierMaps(const ShadowMaps& maps, const FourierDesc& desc);
 
   /// Returns the number of layers that one light takes with this description, without requesting them.
@@ -155,7 +152,7 @@ class LIMN_API ShadowMapService : public FrameService {
  private:
   void begin() override;
   /// Refits near, far and half angles where lights, geometry or, for MapFit::view, the camera moved. Returns
-  /// true when a light needs another layout.
+  /// true when a light needs another layout, or another number of maps.
   bool update(frame::FrameGraph& graph, const scene::Pose& pose) override;
 
   struct Implementation;

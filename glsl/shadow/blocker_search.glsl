@@ -56,7 +56,7 @@ BlockerSearch blocker_search(inout ShadowCursor cursor, VisibilityQuery q, int r
     bool umbra = true;
     for (uint face = 0u; face < shadow_face_count(q.maps.faces); ++face) {
       ShadowKernel kernel;
-      if (!shadow_kernel_in_face(cursor, q, face, search.gap, kernel)) continue;
+      if (!shadow_kernel_in_face(cursor, q, face, search.gap, least_kernel_width, kernel)) continue;
       vec2 depths = kernel_depth_bounds(cursor, kernel);
       ShadowKernel centres = kernel_centres(cursor, kernel);
       vec2 thresholds = map_threshold_range(cursor.view, cursor.in_map, centres.low, centres.high);

@@ -1,5 +1,4 @@
-// Depth of the scene from the views of shadow maps. MASKED 1: passes on what an alpha test needs. PARABOLOID 1: some views are
-// paraboloids, whose clip coordinates do not cut off what lies behind them.
+// Depth of the scene from the views of shadow maps. MASKED 1: passes on what an alpha test needs.
 #include "glsl/shadow/view_vertex.glsl"
 
 #if MASKED
@@ -11,10 +10,6 @@ layout(location = 3) flat out uint material_index;
 void main() {
   ShadowView view = views[entry.y];
   vec3 world = place_vertex(view);
-#if PARABOLOID
-  vec3 local = shadow_local(view, world);
-  gl_ClipDistance[0] = view.projection == shadow_paraboloid ? local.z + 0.1 * length(local) : 1.0;
-#endif
 #if MASKED
   surface_uv = uv;
   surface_alpha = colour.a;

@@ -3,17 +3,17 @@
 #define LIMN_LIGHT_KERNELS_GLSL
 #include "glsl/shadow/kernel_blockers.glsl"
 
-// The technique's: what blocks in one view. It may widen the kernel.
+// The technique's: what blocks in one view. It may widen the kernel to whole texels.
 KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, inout ShadowKernel kernel, float gap, int use);
 
-// In the kernels at `gap` metres before the receiver; nothing where it is not wanted.
-Blockers blockers_at(inout ShadowCursor cursor, VisibilityQuery q, float gap, int use, bool wanted) {
+// In the kernels at `gap` metres before the receiver, at least `least` texels wide; nothing where it is not wanted.
+Blockers blockers_at(inout ShadowCursor cursor, VisibilityQuery q, float gap, float least, int use, bool wanted) {
   BlockerSums sums = no_blockers();
   uint faces = wanted ? shadow_face_count(q.maps.faces) : 0u;
   uint face = 0u;
   do {  // the condition comes last: software renderers run a loop's body once more where it comes first
     ShadowKernel kernel;
-    bool seen = shadow_kernel_in_face(cursor, q, face, gap, kernel) && wanted;
+    bool seen = shadow_kernel_in_face(cursor, q, face, gap, least, kernel) && wanted;
     if (seen) {
       KernelBlockers blockers = kernel_blockers(cursor, q, kernel, gap, use);
       add_kernel(sums, kernel, blockers);

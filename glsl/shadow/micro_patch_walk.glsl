@@ -112,7 +112,7 @@ bool blocker_box(inout ShadowCursor cursor, VisibilityQuery q, uint face, float 
                  out PatchProjection projection, out AlignedPatches aligned, out bool umbra) {
   umbra = true;
   ShadowKernel kernel;
-  if (!shadow_kernel_in_face(cursor, q, face, gap, kernel)) return false;
+  if (!shadow_kernel_in_face(cursor, q, face, gap, least_kernel_width, kernel)) return false;
   vec2 size = vec2(cursor.view.size);
   box.low = ivec2(floor(clamp(kernel.low, vec2(0.0), size)));
   box.high = ivec2(ceil(clamp(kernel.high, vec2(0.0), size))) - 1;
@@ -126,7 +126,7 @@ bool blocker_box(inout ShadowCursor cursor, VisibilityQuery q, uint face, float 
     ivec2 extent = box.high - box.low;
     if (4 * max(extent.x, extent.y) >= 3 * max(former.x, former.y)) break;
   }
-  if (!shadow_kernel_in_face(cursor, q, face, gap, kernel)) return false;
+  if (!shadow_kernel_in_face(cursor, q, face, gap, least_kernel_width, kernel)) return false;
   ShadowKernel centres = kernel_centres(cursor, kernel);
   umbra = kernel_depth_bounds(cursor, kernel).y <
           map_threshold_range(cursor.view, cursor.in_map, centres.low, centres.high).x;

@@ -1,7 +1,5 @@
-// One level of a pyramid over shadow maps: (min, max) of depth, in overlapping windows (WINDOWS) or not, or the means of
-// depth and its square (MOMENTS).
+// One level of a pyramid over shadow maps: (min, max) of depth, in overlapping windows (WINDOWS) or not.
 #include "glsl/shadow/min_max_windows.glsl"
-#include "glsl/numeric/mip_weights.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rg32f) writeonly uniform image2DArray coarser;
@@ -25,12 +23,7 @@ vec2 value(ivec3 at) {
   greatest.xy = max(greatest.xy, greatest.zw);
   return vec2(min(least.x, least.y), max(greatest.x, greatest.y));
 #else
-  float z = texelFetch(depth, at, 0).r;
-#if MOMENTS
-  return vec2(z, z * z);
-#else
-  return vec2(z);
-#endif
+  return vec2(texelFetch(depth, at, 0).r);
 #endif
 }
 
@@ -40,18 +33,7 @@ layout(rg32f) readonly uniform image2DArray finer;
 vec2 value(ivec3 at) {
   ivec2 fine = imageSize(finer).xy;
   ivec2 coarse = imageSize(coarser).xy;
-#if MOMENTS
-  vec3 wx = mip_weights(at.x, fine.x, coarse.x);
-  vec3 wy = mip_weights(at.y, fine.y, coarse.y);
-  vec2 sum = vec2(0.0);
-  for (int j = 0; j < 3; ++j) {
-    for (int i = 0; i < 3; ++i) {
-      float w = wx[i] * wy[j];
-      if (w > 0.0) sum += w * imageLoad(finer, ivec3(2 * at.xy + ivec2(i, j), at.z)).xy;
-    }
-  }
-  return sum;
-#elif WINDOWS
+#if WINDOWS
   // The last of the finer windows reach the map's edge.
   ivec2 first = min(2 * at.xy, fine - 1);
   ivec2 second = min(first + (1 << min_max_overlap), fine - 1);

@@ -21,16 +21,18 @@ LIMN_CONST float square_of_disc = 0.886226925f;
 // is about the least that places in the largest maps resolve.
 LIMN_CONST float least_kernel_width = 1e-3f;
 
-LIMN_FN void widen_kernel(LIMN_INOUT(ShadowKernel) kernel) {
-  vec2 widen = max(0.5f * (vec2(least_kernel_width) - (kernel.high - kernel.low)), vec2(0.0f));
+LIMN_FN void widen_kernel(LIMN_INOUT(ShadowKernel) kernel, float least) {
+  vec2 widen = max(0.5f * (vec2(least) - (kernel.high - kernel.low)), vec2(0.0f));
   kernel.low -= widen;
   kernel.high += widen;
 }
 
 // The kernel `gap` metres nearer to the light than the receiver, along the light's axis: the counted part of the light
 // (LightView::low, high) scaled down by gap / depth, projected, and boxed (framework, steps 1 and 3). False: nothing of
-// it lies in this view. whole: the view is the light's only one, so what lies beyond its edge is unoccluded.
-LIMN_FN bool shadow_kernel(ShadowView view, LightView light, vec3 receiver, float gap, bool whole,
+// it lies in this view. whole: the view is the light's only one, so what lies beyond its edge is unoccluded. least: texels,
+// least_kernel_width or more, that a kernel is wide before the face cuts it: one widened after that would reach over the edge
+// again, where nothing seems to block.
+LIMN_FN bool shadow_kernel(ShadowView view, LightView light, vec3 receiver, float gap, bool whole, float least,
                            LIMN_OUT(ShadowKernel) kernel) {
   vec3 centre = shadow_local(view, receiver);
   vec3 direction = shadow_view_axes(view, light.centre);
@@ -53,7 +55,7 @@ LIMN_FN bool shadow_kernel(ShadowView view, LightView light, vec3 receiver, floa
                       sqrt(reach_u.y * reach_u.y + reach_v.y * reach_v.y));
     kernel.low = texel - reach;
     kernel.high = texel + reach;
-    widen_kernel(kernel);
+    widen_kernel(kernel, least);
     return true;
   }
   bool seen = false;
@@ -68,7 +70,7 @@ LIMN_FN bool shadow_kernel(ShadowView view, LightView light, vec3 receiver, floa
     kernel.high = max(kernel.high, texel);
   }
   if (!seen) return false;
-  widen_kernel(kernel);
+  widen_kernel(kernel, least);
   if (!whole) {
     kernel.low = max(kernel.low, vec2(0.0f));
     kernel.high = min(kernel.high, vec2(size));

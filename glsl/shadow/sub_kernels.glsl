@@ -59,7 +59,7 @@ KernelFamily kernel_family(ShadowCursor cursor, VisibilityQuery q) {
   bool perspective = cursor.view.projection == shadow_perspective;
   float gap = perspective ? 0.5 * q.light.depth : cursor.view.far - cursor.view.near;
   ShadowKernel kernel;
-  shadow_kernel(cursor.view, q.light, q.position, gap, true, kernel);
+  shadow_kernel(cursor.view, q.light, q.position, gap, true, least_kernel_width, kernel);
   f.cone = kernel_cone(cursor.view, local, towards, kernel.low, kernel.high, gap);
   f.similar = true;
 #if !SIMILAR_KERNELS
@@ -80,10 +80,10 @@ KernelFamily kernel_family(ShadowCursor cursor, VisibilityQuery q) {
 bool family_kernel(KernelFamily f, float gap, out ShadowKernel kernel) {
   float scale = kernel_cone_scale(f.cone, gap);
   ShadowKernel scaled = ShadowKernel(f.cone.apex + scale * f.cone.low, f.cone.apex + scale * f.cone.high, 1.0);
-  widen_kernel(scaled);
+  widen_kernel(scaled, least_kernel_width);
   kernel = scaled;
 #if !SIMILAR_KERNELS
-  bool seen = shadow_kernel(f.view, f.light, f.receiver, gap, f.whole, kernel);
+  bool seen = shadow_kernel(f.view, f.light, f.receiver, gap, f.whole, least_kernel_width, kernel);
   if (!f.similar) return seen;
   kernel = scaled;
 #endif

@@ -183,14 +183,14 @@ float shadow_near_gap(ShadowCursor cursor, VisibilityQuery q) {
 
 // Techniques that filter boxes go through all views of a light, and weight what they find by ShadowKernel::weight:
 //   for (uint face = 0u; face < shadow_face_count(q.maps.faces); ++face)
-//     if (shadow_kernel_in_face(cursor, q, face, gap, kernel)) ...
+//     if (shadow_kernel_in_face(cursor, q, face, gap, least, kernel)) ...
 // which moves the cursor to a view that the kernel lies in.
-bool shadow_kernel_in_face(inout ShadowCursor cursor, VisibilityQuery q, uint face, float gap,
+bool shadow_kernel_in_face(inout ShadowCursor cursor, VisibilityQuery q, uint face, float gap, float least,
                            out ShadowKernel kernel) {
 #if !ONE_VIEW
   if (face != cursor.face) cursor = shadow_cursor_at(q, face);
 #endif
-  return shadow_kernel(cursor.view, q.light, q.position, gap, q.maps.faces == shadow_faces_single, kernel);
+  return shadow_kernel(cursor.view, q.light, q.position, gap, q.maps.faces == shadow_faces_single, least, kernel);
 }
 
 #endif  // LIMN_VISIBILITY_GLSL

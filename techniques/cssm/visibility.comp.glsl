@@ -183,7 +183,7 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   int pass = 0;
   do {
     bool last = pass == blocker_passes;
-    Blockers found = blockers_at(cursor, q, gap, last ? kernel_filter : kernel_search, open);
+    Blockers found = blockers_at(cursor, q, gap, least_kernel_width, last ? kernel_filter : kernel_search, open);
     // The kernel is a box around what of the light counts; what blocks hides none of the rest.
     if (open && last) v = clamp(1.0 - found.share / light_view_box_share(q.light), 0.0, 1.0);
     open = open && found.texels > 0.0 && !last;

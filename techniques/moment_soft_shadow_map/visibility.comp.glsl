@@ -22,6 +22,9 @@ uniform float search_blur;
 // no more exact.
 uniform float least_gap;
 
+// A penumbra kernel within a texel would make the texels' edges visible.
+const float least_filter_width = 1.0;
+
 // What rounding and bias leave of nothing and of everything.
 const float rest = 1.0 / 256.0;
 
@@ -41,7 +44,8 @@ MomentBlockers cell_blockers(ShadowCursor cursor, ShadowKernel cell, out bool be
 // How many texels of low..high lie in the cone to the light where they are, `own_gap` before the receiver.
 float texels_in_cone(ShadowCursor cursor, VisibilityQuery q, vec2 low, vec2 high, float own_gap) {
   ShadowKernel own;
-  if (!shadow_kernel(cursor.view, q.light, q.position, own_gap, q.maps.faces == shadow_faces_single, own)) return 0.0;
+  bool whole = q.maps.faces == shadow_faces_single;
+  if (!shadow_kernel(cursor.view, q.light, q.position, own_gap, whole, least_kernel_width, own)) return 0.0;
   vec2 inside = max(min(high, own.high + search_blur) - max(low, own.low - search_blur), vec2(0.0));
   return inside.x * inside.y;
 }
@@ -131,11 +135,6 @@ KernelBlockers kernel_blockers(ShadowCursor cursor, VisibilityQuery q, inout Sha
   if (use == kernel_search) {
     kernel.low = floor(kernel.low);
     kernel.high = max(ceil(kernel.high), kernel.low + 1.0);
-  } else {
-    // A kernel within a texel would make the texels' edges visible.
-    vec2 widen = max(0.5 * (1.0 - (kernel.high - kernel.low)), vec2(0.0));
-    kernel.low -= widen;
-    kernel.high += widen;
   }
   vec2 extent = kernel.high - kernel.low;
   // From texels to moments by degrees, between direct_texels and a quarter more: the two answers differ.
@@ -156,16 +155,16 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   BlockerSearch search = blocker_search(cursor, q, search_rounds);
   if (search.answer == search_lit) return 1.0;
   if (search.answer == search_umbra) return 0.0;
-  Blockers found = blockers_at(cursor, q, search.gap, kernel_search, true);
+  Blockers found = blockers_at(cursor, q, search.gap, least_kernel_width, kernel_search, true);
   if (found.texels < 0.5) return 1.0;
   float gap = found.gap;
-  found = blockers_at(cursor, q, gap, kernel_filter, true);
+  found = blockers_at(cursor, q, gap, least_filter_width, kernel_filter, true);
   for (int pass = 1; pass < passes; ++pass) {
     // By degrees between 0.9 and 0.7 of the distance before: neighbouring pixels would part there.
     float nearer = clamp(4.5 - 5.0 * found.gap / gap, 0.0, 1.0);
     if (nearer == 0.0) break;
     gap = found.gap;
-    Blockers next = blockers_at(cursor, q, gap, kernel_filter, true);
+    Blockers next = blockers_at(cursor, q, gap, least_filter_width, kernel_filter, true);
     found.share = mix(found.share, next.share, nearer);
     found.gap = mix(found.gap, next.gap, nearer);
   }

@@ -9,13 +9,14 @@
 uniform usampler2DArray shadow_table;
 
 const uint table_format = TABLE_FORMAT;
+const float least_filter_width = 1.0;  // texels: bilinear at least
 
 // P(z >= d) over the kernel, d the receiver's depth at its centre. Kernels with E(z) >= d count as lit, whatever they hold:
 // the "non-planarity" artefact.
 float kernel_light(ShadowCursor cursor, ShadowKernel kernel) {
   float size = float(cursor.view.size);
   vec2 centre = clamp(0.5 * (kernel.low + kernel.high), vec2(0.0), vec2(size));
-  vec2 half_extent = max(0.5 * (kernel.high - kernel.low), vec2(0.5));  // bilinear at least
+  vec2 half_extent = 0.5 * (kernel.high - kernel.low);
   float d = map_threshold(cursor.view, cursor.in_map, centre);
   vec2 m = sat_lookup_moments(shadow_table, centre - half_extent, centre + half_extent, int(cursor.layer), d, table_format);
   float quantum = 1.0 / float(sat_scale(table_format));
@@ -30,7 +31,7 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   uint face = 0u;
   do {
     ShadowKernel kernel;
-    if (shadow_kernel_in_face(cursor, q, face, gap, kernel)) {
+    if (shadow_kernel_in_face(cursor, q, face, gap, least_filter_width, kernel)) {
       lit += kernel.weight * kernel_light(cursor, kernel);
       weights += kernel.weight;
     }

@@ -55,35 +55,6 @@ TEST_F(DerivedMapsTest, TwoTexelsPerAxisOfTheChosenLevelCoverTheBox) {
   }
 }
 
-TEST_F(DerivedMapsTest, MomentMipsKeepTheMeansOfTheMapOnEveryLevel) {
-  for (const Size& size : kSizes) {
-    makeSource(size);
-    frame::FrameGraph graph;
-    DerivedMaps maps(device());
-    const frame::TextureHandle mips = maps.momentMips(graph, graph.importTexture("source", source_), false);
-    graph.output(mips);
-    graph.prepare(device(), shaders(), *pool_);
-    graph.execute();
-    const auto layer = static_cast<size_t>(size.width * size.height);
-    glm::dvec2 mean(0);
-    for (size_t i = 0; i < layer; ++i) mean += glm::dvec2(depth_[i], double{depth_[i]} * depth_[i]);
-    mean /= static_cast<double>(layer);
-    for (int level = 0; level < gpu::fullMipLevels(size.width, size.height); ++level) {
-      const auto values = read<glm::vec2>(graph.texture(mips), level, GL_RG, GL_FLOAT, 1);
-      const size_t count = values.size() / static_cast<size_t>(size.layers);
-      glm::dvec2 sum(0);
-      for (size_t i = 0; i < count; ++i) sum += glm::dvec2(values[i]);
-      sum /= static_cast<double>(count);
-      EXPECT_NEAR(sum.x, mean.x, 1e-6) << size.width << " level " << level;
-      EXPECT_NEAR(sum.y, mean.y, 1e-6) << size.width << " level " << level;
-      if (level == 1 && size.width == 64) {
-        const double quad = (double{depth(2, 4, 0)} + depth(3, 4, 0) + depth(2, 5, 0) + depth(3, 5, 0)) / 4;
-        EXPECT_NEAR(values[2 * 32 + 1].x, quad, 1e-7);
-      }
-    }
-  }
-}
-
 /// The words that a table must hold, from sums in 64 bits.
 std::vector<uint32_t> expectedTable(const Size& size, const std::vector<float>& depths, uint32_t format) {
   const uint64_t scale = glsl::sat_scale(format);
@@ -222,7 +193,6 @@ TEST_F(DerivedMapsTest, EachIsBuiltOnceLeftOutUnusedAndKeptWhileNothingChanges) 
   const frame::TextureHandle source = graph.importTexture("source", source_);
   const MinMaxPyramid pyramid = maps.minMaxPyramid(graph, source, true);
   EXPECT_EQ(pyramid.texture, maps.minMaxPyramid(graph, source, true).texture);
-  EXPECT_FALSE(maps.momentMips(graph, source, true) == pyramid.texture);
   const frame::TextureHandle windows = maps.nBuffer(graph, source, true);
   EXPECT_EQ(windows, maps.nBuffer(graph, source, true));
   const frame::TextureHandle overlapping = maps.minMaxWindows(graph, source, true);
@@ -242,11 +212,11 @@ TEST_F(DerivedMapsTest, EachIsBuiltOnceLeftOutUnusedAndKeptWhileNothingChanges) 
     for (const frame::PassReport& row : graph.explain()) list.emplace_back(row.name, row.state);
     return list;
   };
-  // Two pyramids of seven levels and two tables of two passes, of which the first each is wanted, an
-  // N-buffer of six levels and overlapping windows of four.
+  // A pyramid of seven levels, two tables of two passes, of which the first is wanted, an N-buffer of six
+  // levels and overlapping windows of four.
   const auto expectStates = [&](frame::PassState used) {
     const auto list = states();
-    EXPECT_EQ(list.size(), 28u);
+    EXPECT_EQ(list.size(), 21u);
     for (const auto& [name, state] : list) {
       const bool wanted = name.starts_with("min-max") || name.starts_with("N-buffer") ||
                           (name.starts_with("summed") && !name.ends_with(" 2"));

@@ -180,5 +180,25 @@ TEST_F(FrameGraphState, theDerivedBarriersAreWhatIsIssued) {
   EXPECT_THAT(BarrierRecorder::take(), ElementsAreArray(derived));
 }
 
+TEST_F(FrameGraphState, nothingIsPendingAfterAFrameThatEndedEarly) {
+  FrameGraph graph;
+  const TextureHandle start = set(graph, "start", 1);
+  PassBuilder pass = graph.addPass("fails once");
+  bool fails = true;
+  pass.read(start, Access::sampled, "").sideEffect().execute([&fails](PassContext&) {
+    if (std::exchange(fails, false)) throw Error("once");
+  });
+  prepare(graph);
+  const GLbitfield image = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT, fetch = GL_TEXTURE_FETCH_BARRIER_BIT;
+  const BarrierRecorder recorder(gl());
+  EXPECT_EQ(errorOf([&] { graph.execute(); }), "once");
+  EXPECT_THAT(BarrierRecorder::take(), ElementsAre(GL_ALL_BARRIER_BITS, fetch, GL_ALL_BARRIER_BITS));
+  int left = 1;
+  EXPECT_FALSE(graph.execute(Timing::off, [&left] { return left-- == 0; }));
+  EXPECT_THAT(BarrierRecorder::take(), ElementsAre(image, GL_ALL_BARRIER_BITS));
+  EXPECT_TRUE(graph.execute());
+  EXPECT_THAT(BarrierRecorder::take(), ElementsAre(image, fetch));
+}
+
 }  // namespace
 }  // namespace limn::frame

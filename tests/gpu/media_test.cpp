@@ -251,6 +251,17 @@ TEST_F(MediaTest, WithoutSpecularSurfacesThereAreNoLines) {
   EXPECT_EQ(stateOf(renderer, "surface_caustics", "caustic map"), "the scene has no specular surface");
 }
 
+/// A software renderer needs no barriers: the list itself is what is checked.
+TEST_F(MediaTest, TheLineRuleIsClearedBehindABarrierForClears) {
+  const scene::Scene scene = asset("glass_sphere");
+  render::Renderer renderer(device(), scene);
+  picture(renderer, settings(8, 6, Term::media, {quick("volume_caustics")}));
+  GLbitfield before = 0;
+  for (const auto& pass : renderer.explain())
+    if (pass.name == "clear line rule") before = pass.barriers;
+  EXPECT_NE(before & GL_BUFFER_UPDATE_BARRIER_BIT, 0u);
+}
+
 TEST_F(MediaTest, RaysAreTracedAgainOnlyWhereSomethingChanged) {
   const scene::Scene scene = asset("gem");
   render::Renderer renderer(device(), scene);

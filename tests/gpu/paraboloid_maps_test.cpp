@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <span>
 
 #include "core/base/error.h"
@@ -39,9 +40,10 @@ class ParaboloidMapsTest : public GlTest {
  protected:
   using Views = std::vector<glsl::ShadowView>;
 
-  /// What `add` declares for the maps of some views.
+  /// What `add` declares for the maps of some views; with `move`, of the frame after it was called.
   template <class Add>
-  Drawn make(const scene::Scene& scene, const scene::Pose& pose, const Views& views, const Add& add) {
+  Drawn make(const scene::Scene& scene, const scene::Pose& pose, const Views& views, const Add& add,
+             const std::function<void(scene::GpuScene&)>& move = {}) {
     scene::GpuScene gpuScene(device(), scene);
     gpuScene.update(pose, scene::frameBounds(pose.bounds), {64, 64}, 0);
     frame::ResourcePool pool(device());
@@ -52,6 +54,10 @@ class ParaboloidMapsTest : public GlTest {
     graph.output(maps.depth);
     graph.prepare(device(), shaders(), pool);
     graph.execute();
+    if (move) {
+      move(gpuScene);
+      graph.execute();
+    }
     Drawn out{.views = {views.begin() + maps.first, views.begin() + maps.first + maps.count},
               .size = maps.size};
     out.depth.resize(static_cast<size_t>(maps.count * maps.size * maps.size));
@@ -69,16 +75,21 @@ class ParaboloidMapsTest : public GlTest {
                     frame::BufferHandle handle) { return pass.add(graph, gpuScene, handles, handle, desc); });
   }
 
-  /// The same from points, of which each of the first `windows` maps has its own.
+  /// The same from points, of which each of the first `windows` maps has its own; at `later`, if there is
+  /// one, which follows `pose`.
   Drawn splat(const scene::Scene& scene, const scene::Pose& pose, const Views& views,
-              const indirect::PointMapDesc& desc, int windows = 1) {
+              const indirect::PointMapDesc& desc, int windows = 1, const scene::Pose* later = nullptr) {
     indirect::PointMapPass pass(device(), scene, pose, desc.points, windows);
-    return make(scene, pose, views,
-                [&](frame::FrameGraph& graph, scene::GpuScene&, const SceneHandles& handles,
-                    frame::BufferHandle handle) {
-                  pass.place(graph, handles, "indirect");
-                  return pass.add(graph, device(), handle, desc);
-                });
+    const auto add = [&](frame::FrameGraph& graph, scene::GpuScene&, const SceneHandles& handles,
+                         frame::BufferHandle handle) {
+      pass.place(graph, handles, "indirect");
+      return pass.add(graph, device(), handle, desc);
+    };
+    if (later == nullptr) return make(scene, pose, views, add);
+    return make(scene, pose, views, add, [&](scene::GpuScene& gpuScene) {
+      gpuScene.update(*later, scene::frameBounds(later->bounds), {64, 64}, 1);
+      pass.update(*later);
+    });
   }
 };
 
@@ -204,6 +215,25 @@ TEST_F(ParaboloidMapsTest, PointsAreSpreadByAreasInTheWorld) {
   int other = 0;
   for (size_t i = 0; i < expected.size(); ++i) other += std::abs(found[i] - expected[i]) > 1e-5f ? 1 : 0;
   EXPECT_LT(other, 10) << "texels, at the rims of splats";
+}
+
+/// A body that grows from nothing gets the points of its area; those of one that barely grows stay.
+TEST_F(ParaboloidMapsTest, PointsAreChosenAgainWhereABodyChangesItsSize) {
+  scene::Scene scene;
+  addMesh(scene, spherePrimitive(1, addMaterial(scene), 24));
+  const auto posed = [&](float size) {
+    scene::Pose pose;
+    addInstance(scene, pose, 0, at(-2, 0, 0));
+    addInstance(scene, pose, 0, at(2, 0, 0, size));
+    return pose;
+  };
+  const Views views = {glsl::paraboloid_view({0, -4, 0}, {0, 1, 0}, 1e-4f, 12, 0, 96)};
+  const indirect::PointMapDesc desc{.count = 1, .size = 96, .points = 2048, .splat = 16};
+  const scene::Pose now = posed(1);
+  const std::vector<float> expected = splat(scene, now, views, desc).depth;
+  for (const float before : {0.f, 0.5f, 3.f})
+    EXPECT_EQ(splat(scene, posed(before), views, desc, 1, &now).depth, expected) << before;
+  EXPECT_NE(splat(scene, posed(1.2f), views, desc, 1, &now).depth, expected);
 }
 
 TEST_F(ParaboloidMapsTest, ASphereOfSmallTriangles) {

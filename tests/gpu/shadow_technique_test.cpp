@@ -140,5 +140,73 @@ TEST_F(ShadowTechniqueTest, PartsOfALightAddUp) {
   }
 }
 
+/// A floor under a point light at (0, 2, 0), the faces of whose cube meet on it at 2 m along x and z, and on
+/// the diagonals beyond.
+struct FacesScene {
+  scene::Scene scene;
+  scene::Pose pose;
+
+  FacesScene() {
+    addMesh(scene, floorPrimitive(4, addMaterial(scene)));
+    addMesh(scene, floorPrimitive(1, 0));
+    addInstance(scene, pose, 0);
+    addLight(pose, pointLight({0, 2, 0}));
+  }
+};
+
+TEST_F(ShadowTechniqueTest, NoLightComesThroughWhereTheFacesOfACubeMeet) {
+  FacesScene s;
+  const float quarter = glm::half_pi<float>();
+  for (const glm::mat4& turn :
+       {glm::mat4(1), glm::rotate(glm::mat4(1), quarter, {1, 0, 0}),
+        glm::rotate(glm::mat4(1), 2 * quarter, {1, 0, 0}), glm::rotate(glm::mat4(1), 3 * quarter, {1, 0, 0}),
+        glm::rotate(glm::mat4(1), quarter, {0, 0, 1}), glm::rotate(glm::mat4(1), 3 * quarter, {0, 0, 1})}) {
+    // Sides of a box around the light that reach past its edges.
+    addInstance(s.scene, s.pose, 1, at(0, 2, 0) * turn * at(0, -0.5f, 0, 0.6f));
+  }
+  const auto camera = scene::lookAt({2, 4, 3.5f}, {2, 0, 2}, 0.5f);
+  for (const char* name : {"savsm", "vssm", "cssm", "moment_soft_shadow_map"}) {
+    const Answer v =
+        visibility(name, {{"shadow_map_size", "64"}, {"light_size", "0.001"}}, s.scene, s.pose, camera);
+    int floor = 0, lit = 0;
+    for (size_t i = 0; i < v.instance.size(); ++i) {
+      if (v.instance[i] != 0) continue;
+      ++floor;
+      lit += v.lights[0][i] > 0 ? 1 : 0;
+    }
+    EXPECT_EQ(v.uncovered, 0u) << name;
+    EXPECT_GT(floor, 10000) << name;
+    EXPECT_EQ(lit, 0) << name;
+  }
+}
+
+/// A search kernel wider than what blocks, so that bounds of its depths prove nothing, and a penumbra kernel
+/// within a texel.
+TEST_F(ShadowTechniqueTest, PenumbraKernelsWithinATexelAreSharedByTheFacesOfACube) {
+  FacesScene s;
+  addInstance(s.scene, s.pose, 1, at(1.8f, 0.2f, 0) * glm::scale(glm::mat4(1), {0.15f, 1, 1.5f}));
+  addInstance(s.scene, s.pose, 1, at(0, 2.3f, 0, 0.05f));  // brings the near plane to the light
+  const auto camera = scene::lookAt({3.5f, 1, 0.4f}, {2, 0, 0.4f}, 0.4f);
+  for (const TechniquePlugin* plugin : techniques()) {
+    const std::string name = plugin->info->name;
+    if (name != "savsm" && name != "moment_soft_shadow_map") continue;
+    std::map<std::string, std::string> settings{{"shadow_map_size", "128"}, {"light_size", "0.06"}};
+    if (has(*plugin, "search_rounds")) settings["search_rounds"] = "0";
+    const Answer v = visibility(name, settings, s.scene, s.pose, camera);
+    int umbra = 0;
+    float brightest = 0;
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) {
+        const vec3 p = positionOf(v, camera, s.pose.bounds, x, y);
+        if (v.instance[static_cast<size_t>(y * side + x)] != 0 || std::abs(p.x - 2) > 0.06f) continue;
+        ++umbra;
+        brightest = std::max(brightest, v.at(0, x, y));
+      }
+    }
+    EXPECT_GT(umbra, 500) << name;
+    EXPECT_LT(brightest, 0.02f) << name;
+  }
+}
+
 }  // namespace
 }  // namespace limn

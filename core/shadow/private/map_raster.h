@@ -21,7 +21,7 @@ struct MapRaster {
 };
 
 /// Declares the pass that draws linear depth; sets maps.depth.
-void addDepthPass(const MapRaster& raster, bool paraboloid, ShadowMaps& maps);
+void addDepthPass(const MapRaster& raster, ShadowMaps& maps);
 
 /// Declares the pass that draws reflective maps; sets maps.depth, normal, albedo and, where asked for,
 /// instance. `ltc` is the table of linearly transformed cosines, empty when every material of the scene is

@@ -49,7 +49,7 @@ TEST(ShadowKernel, IsAsWideAsTheFrameworkSays) {
   const LightView seen = light_view(light, receiver, vec3(0, 1, 0), -1);
   for (const float z : {1.f, 3.f, 8.f, 8.99f}) {
     ShadowKernel kernel;
-    ASSERT_TRUE(shadow_kernel(view, seen, receiver, 9 - z, true, kernel));
+    ASSERT_TRUE(shadow_kernel(view, seen, receiver, 9 - z, true, least_kernel_width, kernel));
     const float width = 512 * shadow_kernel_width(view, 2, 9, z);
     EXPECT_NEAR(kernel.high.x - kernel.low.x, width, 1e-3f * width + 1e-3f);
     EXPECT_NEAR(kernel.high.y - kernel.low.y, width, 1e-3f * width + 1e-3f);
@@ -62,8 +62,8 @@ TEST(ShadowKernel, CollapsesToTheReceiversTexelAtTheReceiver) {
     const ShadowView view = viewOf(light, kind, 0.8f, 512);
     const vec3 receiver(0.5f, 1, -2);
     ShadowKernel kernel;
-    ASSERT_TRUE(
-        shadow_kernel(view, light_view(light, receiver, vec3(0, 1, 0), -1), receiver, 0, true, kernel));
+    ASSERT_TRUE(shadow_kernel(view, light_view(light, receiver, vec3(0, 1, 0), -1), receiver, 0, true,
+                              least_kernel_width, kernel));
     const vec2 at = 512.f * shadow_project(view, receiver).uv;
     EXPECT_NEAR(kernel.low.x, at.x, 1e-2f);
     EXPECT_NEAR(kernel.high.y, at.y, 1e-2f);
@@ -79,7 +79,7 @@ TEST(ShadowKernel, LightsNarrowerThanRoundingKeepAKernelAboutTheReceiver) {
     const vec2 at = 1024.f * shadow_project(view, receiver).uv;
     for (const bool whole : {true, false}) {
       ShadowKernel kernel;
-      ASSERT_TRUE(shadow_kernel(view, seen, receiver, 0.05f, whole, kernel)) << kind;
+      ASSERT_TRUE(shadow_kernel(view, seen, receiver, 0.05f, whole, least_kernel_width, kernel)) << kind;
       for (int c = 0; c < 2; ++c) {
         EXPECT_GT(kernel.high[c] - kernel.low[c], 0.5f * least_kernel_width);
         EXPECT_LT(kernel.high[c] - kernel.low[c], 2 * least_kernel_width);
@@ -144,9 +144,18 @@ TEST(ShadowKernel, FacesOfACubeShareAKernelBetweenThem) {
   const vec3 receiver(3, 0.3f, 3);
   const LightView seen = light_view(light, receiver, normalize(-receiver), 0.5f);
   ShadowKernel a, b;
-  ASSERT_TRUE(shadow_kernel(front, seen, receiver, 2, false, a));
-  ASSERT_TRUE(shadow_kernel(side, seen, receiver, 2, false, b));
+  ASSERT_TRUE(shadow_kernel(front, seen, receiver, 2, false, least_kernel_width, a));
+  ASSERT_TRUE(shadow_kernel(side, seen, receiver, 2, false, least_kernel_width, b));
   EXPECT_NEAR(a.high.x, 256, 1e-3f);
+  EXPECT_NEAR(a.weight / b.weight, 1, 0.05f);
+  // One within a texel is widened before the faces share it.
+  const LightView narrow = light_view(light, receiver, normalize(-receiver), 1e-6f);
+  ASSERT_TRUE(shadow_kernel(front, narrow, receiver, 2, false, 1, a));
+  ASSERT_TRUE(shadow_kernel(side, narrow, receiver, 2, false, 1, b));
+  EXPECT_NEAR(a.low.x, 255.5f, 1e-2f);
+  EXPECT_EQ(a.high.x, 256);
+  EXPECT_NEAR(b.low.y, 255.5f, 1e-2f);
+  EXPECT_EQ(b.high.y, 256);
   EXPECT_NEAR(a.weight / b.weight, 1, 0.05f);
   ShadowKernel none;
   ShadowView back = front;
@@ -156,7 +165,7 @@ TEST(ShadowKernel, FacesOfACubeShareAKernelBetweenThem) {
   back.footprint = 2.f / 256;
   back.axis_z = vec3(0, 0, -1);
   back.far = 20;
-  EXPECT_FALSE(shadow_kernel(back, seen, receiver, 2, false, none));
+  EXPECT_FALSE(shadow_kernel(back, seen, receiver, 2, false, least_kernel_width, none));
 }
 
 }  // namespace

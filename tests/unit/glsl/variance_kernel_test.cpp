@@ -171,7 +171,7 @@ TEST(VarianceKernel, ConesGiveTheKernelsOfEveryGap) {
     light.high = vec2(0.5f);
     const auto kernelAt = [&](float gap) {
       ShadowKernel kernel{};
-      EXPECT_TRUE(shadow_kernel(view, light, receiver, gap, true, kernel));
+      EXPECT_TRUE(shadow_kernel(view, light, receiver, gap, true, least_kernel_width, kernel));
       return kernel;
     };
     const ShadowKernel nominal = kernelAt(4);

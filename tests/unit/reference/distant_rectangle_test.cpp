@@ -127,7 +127,7 @@ TEST(DistantRectangle, KernelsHaveTheMomentsOfTheLight) {
     const glsl::LightView view = glsl::light_view(light, receiver, -light.direction, -1);
     glsl::ShadowKernel kernel;
     const float gap = 0.4f;
-    ASSERT_TRUE(glsl::shadow_kernel(map, view, receiver, gap, true, kernel));
+    ASSERT_TRUE(glsl::shadow_kernel(map, view, receiver, gap, true, glsl::least_kernel_width, kernel));
     glm::dvec2 sum(0), squares(0);
     const int count = 20000;
     for (uint32_t i = 0; i < count; ++i) {
