@@ -98,10 +98,10 @@ std::vector<brdf::FitSettings> settingsOf(const BrdfFitsArguments& options) {
   return all;
 }
 
-/// Directional albedos over angles up to 85 degrees, at four azimuths where these matter.
+/// Directional albedos over angles up to 85 degrees, at eight azimuths around the normal where these matter.
 std::vector<glm::dvec3> albedosOf(const brdf::Response& response, bool isotropic) {
   std::vector<glm::dvec3> albedos;
-  for (int azimuth = 0; azimuth < (isotropic ? 1 : 4); ++azimuth)
+  for (int azimuth = 0; azimuth < (isotropic ? 1 : 8); ++azimuth)
     for (const int degrees : {0, 20, 40, 60, 75, 85})
       albedos.push_back(
           brdf::directionalAlbedo(response, brdf::directionAt(degrees, azimuth * std::numbers::pi / 4)));
@@ -136,7 +136,8 @@ FitRow pairsOf(const brdf::Brdf& exact, const std::vector<glm::dvec3>& albedos) 
     return glm::dvec3(table.evaluate(glm::vec3(l), glm::vec3(v))) * l.z;
   };
   return rowOf(fmt::format("pairs of directions, {0} x {0} each", kSide), response,
-               brdf::SpherePicture(exact).errorOf(response), table.values.size() * 6, albedos, false);
+               brdf::SpherePicture(exact, 128, brdf::PictureLights::heldOut).errorOf(response),
+               table.values.size() * 6, albedos, false);
 }
 
 nlohmann::ordered_json toJson(const BrdfSource& source, const std::vector<FitRow>& rows) {

@@ -81,7 +81,7 @@ dvec3 directionalAlbedo(const Response& response, const dvec3& v) {
 
 double largestAlbedo(const Response& response, bool isotropic) {
   double largest = 0;
-  for (int azimuth = 0; azimuth < (isotropic ? 1 : 4); ++azimuth)
+  for (int azimuth = 0; azimuth < (isotropic ? 1 : 8); ++azimuth)
     for (int degrees = 0; degrees <= 88; degrees += 8) {
       const double theta = degrees * std::numbers::pi / 180, phi = azimuth * std::numbers::pi / 4;
       const dvec3 albedo = directionalAlbedo(

@@ -39,8 +39,8 @@ class LIMN_API SpherePicture {
 /// `response` over l, by a rule in the half vector that resolves lobes down to a width of about 0.02.
 LIMN_API glm::dvec3 directionalAlbedo(const Response& response, const glm::dvec3& v);
 
-/// Returns the largest directional albedo of any channel, over views from head-on to 88 degrees at four
-/// azimuths (one where the response is `isotropic`).
+/// Returns the largest directional albedo of any channel, over views from head-on to 88 degrees at eight
+/// azimuths around the normal, as no symmetry is taken for granted (one where the response is `isotropic`).
 LIMN_API double largestAlbedo(const Response& response, bool isotropic);
 
 }  // namespace limn::brdf

@@ -25,11 +25,11 @@ LIMN_FN vec3 coated_environment_base(MaterialModel m, float n_dot_v, vec3 irradi
   return passing * m.kd * inverse_pi * entering * coated_escape(m, mean) / (vec3(1.0f) - mean);
 }
 
-// Light of base and coat; mirrored: radiance from the mirror direction.
+// Light of base and coat; mirrored: radiance from the mirror direction, which lies behind surfaces whose normal is turned away.
 LIMN_FN ReflectedParts coated_environment(MaterialModel m, float n_dot_v, vec3 irradiance, vec3 grazing, vec3 mirrored) {
   ReflectedParts light;
   light.diffuse = coated_environment_base(m, n_dot_v, irradiance, grazing);
-  light.lobe = coated_mirror(m, n_dot_v) * mirrored;
+  light.lobe = n_dot_v > 0.0f ? coated_mirror(m, n_dot_v) * mirrored : vec3(0.0f);
   return light;
 }
 

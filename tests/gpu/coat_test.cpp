@@ -1,5 +1,7 @@
-// Coats under the environment without a technique: what they mirror and what they leave to their base.
+// Coats under the environment: what they mirror and what they leave to their base, without a technique.
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "core/scene/camera.h"
 #include "core/scene/material_model.h"
@@ -114,6 +116,27 @@ TEST_F(CoatTest, PhysicalBasesGetWhatEntersTheCoat) {
         glsl::coated_environment(model, glm::dot(n, v), glsl::pi * (1.f + 2.f / 3 * slope),
                                  glsl::pi / 84 * (4.f + slope), linear(glm::reflect(-v, n))));
   });
+}
+
+/// A floor whose normals are turned away from the camera above it: the mirror direction lies below it.
+TEST_F(CoatTest, NormalsTurnedAwayMirrorNothing) {
+  scene::Scene scene;
+  scene::Material material;
+  scene::setModel(material, coat(vec3(0), 0));
+  scene::Primitive floor = test::floorPrimitive(1, test::addMaterial(scene, material));
+  floor.normals.assign(4, glm::normalize(vec3(0, -0.1f, -1)));
+  scene::Node node;
+  node.mesh = test::addMesh(scene, std::move(floor));
+  scene.nodes.push_back(node);
+  scene.environment = environment(linear);
+  for (const std::vector<render::TechniqueUse>& techniques :
+       {std::vector<render::TechniqueUse>{}, {technique("prefiltered_environment", {{"size", "128"}})}}) {
+    render::Renderer renderer(device(), scene);
+    renderer.configure(settings(24, 24, Term::direct, techniques));
+    renderer.setCamera(scene::lookAt({0, 3, 1}, {0, 0, 0}, 0.4f));
+    renderer.render();
+    expectWithin(renderer.read(), 0, 0);
+  }
 }
 
 }  // namespace

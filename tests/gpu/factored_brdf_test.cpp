@@ -4,8 +4,10 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "core/brdf/factor_fit.h"
+#include "core/frame/program_report.h"
 #include "core/scene/camera.h"
 #include "core/scene/material_model.h"
 #include "glsl/materials/model.glsl"
@@ -226,14 +228,26 @@ TEST_F(FactoredBrdfTest, SaysWhichMaterialsAreExact) {
 /// A scene without models keeps its picture and its programs.
 TEST_F(FactoredBrdfTest, IsLeftOutWhereNoMaterialHasAModel) {
   const scene::Scene scene = asset("cornell_box");
-  render::Renderer renderer(device(), scene);
-  renderer.configure(settings(48, 36, Term::final, {technique("factored_brdf")}));
-  renderer.setCamera(renderer.pose().cameras.at(0));
-  renderer.render();
-  bool left = false;
-  for (const frame::PassReport& pass : renderer.explain())
-    left = left || (pass.technique == "factored_brdf" && pass.reason == "no material has a model");
-  EXPECT_TRUE(left);
+  struct Drawn {
+    Image image;
+    std::vector<gpu::ProgramDesc> programs;
+    bool leftOut = false;
+  };
+  const auto drawnWith = [&](std::vector<render::TechniqueUse> techniques) {
+    render::Renderer renderer(device(), scene);
+    Drawn result{picture(renderer, settings(48, 36, Term::final, std::move(techniques))), {}};
+    for (const frame::ProgramReport& report : renderer.graph().programs())
+      result.programs.push_back(report.desc);
+    for (const frame::PassReport& pass : renderer.explain())
+      result.leftOut =
+          result.leftOut || (pass.technique == "factored_brdf" && pass.reason == "no material has a model");
+    return result;
+  };
+  const Drawn without = drawnWith({}), with = drawnWith({technique("factored_brdf")});
+  EXPECT_TRUE(with.leftOut);
+  EXPECT_EQ(rmse(with.image, without.image), 0);
+  EXPECT_FALSE(without.programs.empty());
+  EXPECT_TRUE(with.programs == without.programs);
 }
 
 }  // namespace

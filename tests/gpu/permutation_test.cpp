@@ -63,7 +63,8 @@ class PermutationTest : public EnvironmentTest {
   }
 
   /// Where the technique has something to answer. The first scene sees all combinations; each of the others
-  /// has lights, materials or a medium that core's programs depend on.
+  /// has lights, materials or a medium that core's programs depend on. Under an environment fresnel_spheres
+  /// and disk_and_sphere have every model that prefiltered_environment has a lobe or an albedo for.
   static std::vector<std::string> scenesFor(const std::string& name) {
     const auto answers = [&](Term term) { return contains(registry().find(name).info->terms, term); };
     if (answers(Term::media) || answers(Term::caustic) || answers(Term::specular))
@@ -77,7 +78,19 @@ class PermutationTest : public EnvironmentTest {
     if (answers(Term::subsurface))
       scenes = {"translucent_edge", "translucent_spheres", "translucent_checker"};
     if (answers(Term::environment)) scenes.emplace_back("balls_sky");
+    if (lightsByEnvironmentAlone(name)) scenes.insert(scenes.end(), {"fresnel_spheres", "disk_and_sphere"});
     return scenes;
+  }
+
+  static bool lightsByEnvironmentAlone(const std::string& name) {
+    return registry().find(name).info->terms == termSet(Term::environment);
+  }
+
+  /// A scene as built; under a sky where the technique answers for nothing else and the scene has none.
+  static scene::Scene sceneFor(const std::string& name, const std::string& file) {
+    scene::Scene scene = asset(file);
+    if (lightsByEnvironmentAlone(name) && !scene.environment) scene.environment = sky();
+    return scene;
   }
 
   /// Compiles what the technique needs, unless it refuses values that do not go together, which `refusals`
@@ -107,7 +120,7 @@ TEST_F(PermutationTest, EveryProgramCompiles) {
     const std::vector<std::string> scenes = scenesFor(name);
     for (const std::string& file : scenes) {
       SCOPED_TRACE(file);
-      const scene::Scene scene = asset(file);
+      const scene::Scene scene = sceneFor(name, file);
       render::Renderer renderer(device(), scene);
       compile(renderer, Term::final, {technique(name)});
       if (contains(plugin->info->terms, Term::visibility) && !renderer.pose().lights.empty())

@@ -15,6 +15,7 @@
 #include "core/brdf/factor_fit.h"
 #include "core/brdf/factor_fit_error.h"
 #include "core/brdf/model_brdf.h"
+#include "glsl/materials/factored.glsl"
 #include "tests/unit/brdf/exact_models.h"
 #include "tests/unit/materials/models.h"
 
@@ -186,6 +187,29 @@ TEST(AnisotropicTables, HundredAndTwentyEightTexelsSuffice) {
   // Linear interpolation of a lobe of width 1 / sqrt(p) errs by p over the square of the number of texels.
   EXPECT_LE(pictureError(exactBanks(hair(200)), banksTable(hair(200), 128, TableFormat::half), "banks_200"),
             2e-3 * 200 / 32);
+}
+
+// Over the root of h.l. An index of 200 has a dip of Fresnel's term at 89.7 degrees: 64 texels miss it.
+TEST(AnisotropicTables, RowsOfFresnelsTermHoldItsDip) {
+  const auto worst = [](double eta, int texels) {
+    const Ward material{.eta = dvec3(eta), .k = dvec3(0), .roughness = dvec2(0.1)};
+    const FactoredBrdf tables = wardTables(material, texels, true, TableFormat::float32);
+    double most = 0;
+    constexpr int kSteps = 100000;
+    for (int i = 0; i <= kSteps; ++i) {
+      const double root = static_cast<double>(i) / kSteps;
+      const glm::vec3 found =
+          glsl::factored_lookup(tables.tables[1], glm::vec2(static_cast<float>(root), 0.f), 0);
+      most = std::max(most, std::abs(static_cast<double>(found.x) - fresnelReflectance(root * root, eta, 0)));
+    }
+    testing::Test::RecordProperty("fresnel_" + std::to_string(int(eta)) + "_" + std::to_string(texels),
+                                  std::to_string(most));
+    return most;
+  };
+  EXPECT_LE(worst(1.5, 64), 4e-4);
+  EXPECT_LE(worst(5, 64), 7e-4);
+  EXPECT_LE(worst(200, 256), 1.6e-3);
+  EXPECT_GT(worst(200, 64), 0.02);
 }
 
 // A distribution wider than sqrt(1/2) is largest away from n; bytes end at the largest value.

@@ -215,6 +215,18 @@ TEST(PrefilteredModels, CoatsShowMirrorAndBase) {
       }
 }
 
+/// Where the normal is turned away from the viewer the mirror direction lies behind the surface, and
+/// Fresnel's reflectance is 1: only a sum still has a base, as the model has.
+TEST(PrefilteredModels, CoatsTurnedAwayMirrorNothing) {
+  for (const uint options : {0u, model_option_blend, model_option_physical})
+    for (const float cosine : {0.f, -0.1f, -1.f}) {
+      const MaterialModel m = coatedModel(0.5f, 1.5f, options);
+      const ReflectedParts light = coated_environment(m, cosine, vec3(pi), vec3(pi / 21), vec3(1));
+      EXPECT_EQ(light.lobe, vec3(0)) << options << ' ' << cosine;
+      EXPECT_NEAR(light.diffuse.x, options == 0 ? 0.5f : 0.f, 1e-6f) << options << ' ' << cosine;
+    }
+}
+
 /// The other two ways to combine coat and base, against the physical one at an index of 1.5: the sum keeps in
 /// the base what the coat mirrors, and both are too bright below an albedo of 1.
 TEST(PrefilteredModels, CoatsThatAreNotPhysicalErrByTheirBase) {
