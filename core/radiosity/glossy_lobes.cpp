@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/radiosity/private/float4.h"
+#include "glsl/indirect/sample_reflection.glsl"
 #include "glsl/light/ltc.glsl"
 #include "glsl/materials/model.glsl"
 #include "glsl/numeric/srgb.glsl"
@@ -52,15 +53,11 @@ void GlossyLobes::set(const glsl::SurfaceBrdf& surface, std::span<const glsl::In
   for (const glsl::IncidentLight& light : lights) {
     if (!arrives(light)) continue;
     const float cosine = light.direction.z;
-    glsl::SurfaceBrdf wider = surface;
-    wider.alpha = glsl::widened_alpha(surface.alpha, light.spread, cosine, widen);
+    const float alpha = glsl::widened_alpha(surface.alpha, light.spread, cosine, widen), a2 = alpha * alpha;
     const glm::vec3 reflectance =
         glsl::ltc_specular_reflectance(surface, glsl::ltc_lookup(cosine, surface.alpha));
-    const glm::vec3 widerReflectance =
-        glsl::ltc_specular_reflectance(wider, glsl::ltc_lookup(cosine, wider.alpha));
     const glm::vec3 arriving = cosine * light.irradiance;
-    const glm::vec3 weight = arriving * reflectance / glm::max(widerReflectance, 1e-20f);
-    const float a2 = wider.alpha * wider.alpha;
+    const glm::vec3 weight = arriving * glsl::widened_energy(surface, alpha, cosine);
     float* row = rows_.data() + count_;
     for (const float value :
          {light.direction.x, light.direction.y, cosine, a2, std::sqrt(cosine * cosine * (1 - a2) + a2),
@@ -69,7 +66,7 @@ void GlossyLobes::set(const glsl::SurfaceBrdf& surface, std::span<const glsl::In
       *row = value;
       row += rowLength_;
     }
-    lobes_.push_back({mirrored(light.direction), wider.alpha, glsl::luminance(arriving * reflectance)});
+    lobes_.push_back({mirrored(light.direction), alpha, glsl::luminance(arriving * reflectance)});
     flux_ += arriving * reflectance;
     all_.push_back(static_cast<uint32_t>(count_++));
   }

@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/radiosity/disc_transport.h"
 #include "core/radiosity/sample_solver.h"
+#include "glsl/indirect/illumination_sample.glsl"
 #include "glsl/materials/material_model.glsl"
 #include "glsl/numeric/sampling.glsl"
 
@@ -156,7 +157,7 @@ class SampleSolver::Shooting {
   /// Returns whether the sender is too wide for the narrowest lobe of the receiver.
   static bool wide(const Pair& pair) {
     const float up = glm::dot(pair.offset, pair.receiver.normal) / std::max(pair.distance, 1e-20f);
-    return sampleSpread(pair.sender.area, pair.distance * pair.distance) >
+    return glsl::sender_spread(pair.sender.area, pair.distance * pair.distance) >
            kSenderLobeWidths * pair.receiver.alpha * std::max(up, 0.1f);
   }
 
@@ -199,7 +200,7 @@ class SampleSolver::Shooting {
       const glm::vec3 way = to.position - from[i].position;
       const float distance2 = std::max(glm::dot(way, way), 1e-20f);
       const glm::vec3 w = way / std::sqrt(distance2);
-      const float transport = axisTransport(pair.sender.area, -glm::dot(to.normal, w), distance2) *
+      const float transport = glsl::axis_transport(pair.sender.area, -glm::dot(to.normal, w), distance2) *
                               std::max(glm::dot(from[i].normal, w), 0.f);
       glm::vec3 arrives(0);
       if (transport > 0) {
@@ -243,7 +244,7 @@ class SampleSolver::Shooting {
     const float gap = std::max(pair.distance - r.reach - s.reach, 0.f);
     const float cosine = gap > 0 ? std::min((before + slackBefore) / gap, 1.f) : 1.f;
     const float up = gap > 0 ? std::min((above + slackAbove) / gap, 1.f) : 1.f;
-    pair.transport = axisTransport(s.area, cosine, gap * gap) * up;
+    pair.transport = glsl::axis_transport(s.area, cosine, gap * gap) * up;
     return true;
   }
 
@@ -315,7 +316,7 @@ class SampleSolver::Shooting {
       const float distance2 = std::max(glm::dot(offset, offset), 1e-20f);
       const glm::vec3 w = offset / std::sqrt(distance2);
       exact += discIrradiance(offset, s.normal, s.area, from[i].normal);
-      sampled += axisTransport(s.area, -glm::dot(s.normal, w), distance2) *
+      sampled += glsl::axis_transport(s.area, -glm::dot(s.normal, w), distance2) *
                  std::max(glm::dot(from[i].normal, w), 0.f);
     }
     constexpr float kMost = 4;  // towards the horizon nothing that the sample says is left

@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/radiosity/disc_transport.h"
 #include "core/radiosity/illumination.h"
+#include "glsl/indirect/illumination_sample.glsl"
 #include "glsl/materials/material_model.glsl"
 #include "glsl/numeric/srgb.glsl"
 
@@ -208,8 +208,8 @@ void SampleSolver::visitSamples(uint32_t leaf, const First& first, const Visit& 
       const glm::vec3 w = offset / std::sqrt(distance2);
       if (!(glm::dot(e.normal, w) > 0)) continue;
       visit(glsl::IncidentLight{
-          w, sampleSpread(sender.area, distance2),
-          sample.radiance * axisTransport(sender.area, -glm::dot(sender.normal, w), distance2)});
+          w, glsl::sender_spread(sender.area, distance2),
+          sample.radiance * glsl::axis_transport(sender.area, -glm::dot(sender.normal, w), distance2)});
     }
 }
 

@@ -30,17 +30,26 @@ struct IncidentLight {
 // The widest sample that a single direction stands for, rad.
 LIMN_CONST float incident_max_spread = 1.5f;
 
-// E = g A c / (d^2 + A c / pi): the sample is taken as a disc, whose irradiance this is on its axis. `radiance`: g; `x`: the
-// point.
+// The irradiance, per unit of radiance, that a disc gives a point on its axis, on a surface that faces it: A c / (d^2 + A c / pi),
+// at most pi. `cosine`: c, at the disc, as it turns away from the point; `distance2`: d^2.
+LIMN_FN float axis_transport(float area, float cosine, float distance2) {
+  float shown = area * cosine;
+  return shown > 0.0f ? shown / (distance2 + inverse_pi * shown) : 0.0f;
+}
+
+// About the angle that a sender spans, rad.
+LIMN_FN float sender_spread(float area, float distance2) {
+  return area >= incident_max_spread * incident_max_spread * distance2 ? incident_max_spread : sqrt(area / distance2);
+}
+
+// The sample is taken as a disc on whose axis the point lies. `radiance`: g; `x`: the point.
 LIMN_FN IncidentLight incident_light(SampleSender s, vec3 radiance, vec3 x) {
   vec3 way = s.position - x;
   float distance2 = dot(way, way);
-  float per_distance = 1.0f / sqrt(max(distance2, 1e-30f));
   IncidentLight r;
-  r.direction = per_distance * way;
-  float facing = s.area * max(-dot(r.direction, vertex_unpack_normal(s.normal)), 0.0f);
-  r.irradiance = radiance * (facing > 0.0f ? facing / (distance2 + inverse_pi * facing) : 0.0f);
-  r.spread = min(sqrt(s.area) * per_distance, incident_max_spread);
+  r.direction = way / sqrt(max(distance2, 1e-30f));
+  r.irradiance = radiance * axis_transport(s.area, -dot(r.direction, vertex_unpack_normal(s.normal)), distance2);
+  r.spread = sender_spread(s.area, distance2);
   return r;
 }
 

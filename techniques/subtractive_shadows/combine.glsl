@@ -23,15 +23,18 @@
 #define SAMPLE_PARTS 0
 #endif
 #include "glsl/shadow/sampled_pixel.glsl"
+#include "glsl/surface/reflectance.glsl"
 
-// The colours by which a surface's parts reflect: albedo, and Schlick's Fresnel term of the view.
+// The colours by which a surface's parts reflect: albedo, and the mean of Schlick's Fresnel term. That of the view is next to 0 in
+// a channel without f0 where the surface faces the viewer, and changes manifold across a block where it turns away, while light of
+// other half vectors is in the lobe all over.
 ReflectedParts surface_colours(SampledPixel p) {
 #if DEMODULATE
   SurfaceBrdf s = p.material.brdf;
 #if MATERIAL_MODELS
   if (has_model(p.material)) s = nearest_brdf(p.material);
 #endif
-  return ReflectedParts(s.diffuse, mix(s.f0, vec3(s.f90), schlick_weight(dot(p.surface.normal, p.to_viewer))));
+  return ReflectedParts(s.diffuse, mix(s.f0, vec3(s.f90), mean_schlick_weight));
 #else
   return ReflectedParts(vec3(1.0), vec3(1.0));
 #endif

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "glsl/indirect/illumination_sample.glsl"
+
 namespace limn::radiosity {
 namespace {
 
@@ -47,14 +49,14 @@ TEST(DiscTransportTest, BacksSendNothing) {
 
 TEST(DiscTransportTest, OnePointIsExactOnTheAxisAndNeverTooBright) {
   for (const float area : {1e-4f, 0.1f, 1.f, 100.f, 1e6f}) {
-    const float sampled = axisTransport(area, 1, 1);
+    const float sampled = glsl::axis_transport(area, 1, 1);
     EXPECT_NEAR(sampled / discIrradiance({0, 0, 1}, {0, 0, -1}, area, kUp), 1, 0.01) << area;
     EXPECT_LE(sampled, glsl::pi);
   }
-  EXPECT_EQ(axisTransport(1, -0.5f, 1), 0);
-  EXPECT_EQ(axisTransport(0, 1, 0), 0);
-  EXPECT_EQ(sampleSpread(1e10f, 1e-10f), glsl::incident_max_spread);
-  EXPECT_FLOAT_EQ(sampleSpread(0.01f, 1), 0.1f);
+  EXPECT_EQ(glsl::axis_transport(1, -0.5f, 1), 0);
+  EXPECT_EQ(glsl::axis_transport(0, 1, 0), 0);
+  EXPECT_EQ(glsl::sender_spread(1e10f, 1e-10f), glsl::incident_max_spread);
+  EXPECT_FLOAT_EQ(glsl::sender_spread(0.01f, 1), 0.1f);
 }
 
 /// What A cos / d^2 alone, without the disc's own extent in it, makes of a disc at some of its radii.
@@ -67,7 +69,8 @@ TEST(DiscTransportTest, PointsForDiscsAreTooBrightNearBy) {
     const float disc = facing({0, 0, row.radii}, 1);
     const double point = double(glsl::pi) / double(row.radii * row.radii);
     EXPECT_NEAR(point / double(disc) - 1, row.tooBright, 0.006) << row.radii;
-    EXPECT_NEAR(double(axisTransport(glsl::pi, 1, row.radii * row.radii) / disc), 1, 0.005) << row.radii;
+    EXPECT_NEAR(double(glsl::axis_transport(glsl::pi, 1, row.radii * row.radii) / disc), 1, 0.005)
+        << row.radii;
   }
 }
 

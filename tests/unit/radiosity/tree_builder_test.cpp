@@ -187,6 +187,16 @@ TEST(TreeBuilder, KeepsAConstant) {
   }
 }
 
+/// Light that ends at the horizon, as that of surfaces does: cells along it are not split for its end.
+TEST(TreeBuilder, TakesTheHorizonForNoEdge) {
+  TreeBuilder builder;
+  DirectionalTree tree;
+  const auto light = [](const glm::vec3& w) { return w.z > 0 ? glm::vec3(1, 2, 3) : glm::vec3(0); };
+  builder.build(light, DirectionDomain::hemisphere, {}, tree);
+  EXPECT_EQ(tree.cellCount(), 64u);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(tree.flux()[c], float(c + 1) * glsl::pi, 2e-5f * float(c + 1));
+}
+
 TEST(TreeBuilder, StandsExtremes) {
   TreeBuilder builder;
   DirectionalTree tree;
