@@ -1,8 +1,12 @@
 #include "techniques/subsurface_scattering/bodies.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "core/base/error.h"
 #include "glsl/numeric/srgb.glsl"
 
 namespace limn::subsurface_scattering {
@@ -85,9 +89,22 @@ void addPoints(const DiffusionBody& body, const Colours& colours, const Drawing&
   });
 }
 
+/// Throws unless the points of those bodies that have some of their own fit a storage block.
+void checkPoints(std::span<const DiffusionBody> bodies, const Drawing& drawing, int64_t most) {
+  const int64_t count =
+      std::ranges::count_if(bodies, [](const DiffusionBody& body) { return body.textured == 0; });
+  const int64_t bytes = count * drawing.points() * int64_t{sizeof(glsl::DrawnPoint)};
+  if (bytes > most)
+    throw UsageError(fmt::format(
+        "subsurface_scattering: the points of {} materials take {} MiB, more than the {} MiB of a "
+        "storage buffer; ask for fewer samples or a smaller block",
+        count, bytes >> 20, most >> 20));
+}
+
 }  // namespace
 
-Bodies findBodies(const scene::Scene& scene, const scene::Pose& pose, const Drawing& drawing) {
+Bodies findBodies(const scene::Scene& scene, const scene::Pose& pose, const Drawing& drawing,
+                  int64_t maxStorageBlockBytes) {
   Bodies result;
   result.ofInstances.assign(pose.instances.size(), glsl::no_body);
   for (size_t i = 0; i < pose.instances.size(); ++i) {
@@ -106,6 +123,7 @@ Bodies findBodies(const scene::Scene& scene, const scene::Pose& pose, const Draw
     result.ofInstances[i] = static_cast<uint32_t>(known - result.bodies.begin());
     if (known == result.bodies.end()) result.bodies.push_back(body);
   }
+  checkPoints(result.bodies, drawing, maxStorageBlockBytes);
   bool textures = false;
   for (DiffusionBody& body : result.bodies) {
     textures = textures || body.textured != 0;

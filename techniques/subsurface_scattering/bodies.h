@@ -32,6 +32,8 @@ struct Bodies {
   std::vector<glsl::PointDraw> draws;  ///< what is random about them, for bodies with textures
 };
 
-Bodies findBodies(const scene::Scene& scene, const scene::Pose& pose, const Drawing& drawing);
+/// Refuses more points than a storage block of that size holds.
+Bodies findBodies(const scene::Scene& scene, const scene::Pose& pose, const Drawing& drawing,
+                  int64_t maxStorageBlockBytes);
 
 }  // namespace limn::subsurface_scattering

@@ -364,12 +364,13 @@ class Passes {
 
 TextureHandle SubsurfaceScattering::addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                               const TermRequest& request) {
-  bodies_ = subsurface_scattering::findBodies(inputs.scene, inputs.pose, drawingFor(inputs.parameters));
+  gpu::Device& device = inputs.gpuScene.device();
+  bodies_ = subsurface_scattering::findBodies(inputs.scene, inputs.pose, drawingFor(inputs.parameters),
+                                              device.limits().maxStorageBlockBytes);
   if (bodies_.bodies.empty()) {
     graph.leaveOut("gather", info.name, "no surface is translucent");
     return request.target;
   }
-  gpu::Device& device = inputs.gpuScene.device();
   buffers_.emplace(gpu::Buffer::of<glsl::DiffusionBody>(device, "bodies", bodies_.bodies),
                    gpu::Buffer::of<uint32_t>(device, "bodies of instances", bodies_.ofInstances),
                    gpu::Buffer::of<glsl::DrawnPoint>(device, "points of bodies", bodies_.points),

@@ -195,12 +195,15 @@ TEST_F(SubsurfaceTechniqueTest, BodiesThatGrewAreThoseOfAFreshStart) {
   }
 }
 
-/// Without translucent surfaces techniques are not asked.
+/// Without translucent surfaces techniques are not asked, and pictures are the same in all bits.
 TEST_F(SubsurfaceTechniqueTest, OpaqueScenesLeaveThemOut) {
   const scene::Scene scene = asset("cornell_box");
   render::Renderer renderer(device(), scene);
+  const Image without = picture(renderer, settings(32, 32, Term::final));
   for (const render::TechniqueUse& use : uses()) {
     SCOPED_TRACE(use.plugin->info->name);
+    EXPECT_TRUE(
+        std::ranges::equal(picture(renderer, settings(32, 32, Term::final, {use})).data(), without.data()));
     EXPECT_EQ(mean(picture(renderer, settings(32, 32, Term::subsurface, {use}))), 0);
     int passes = 0;
     for (const frame::PassReport& pass : renderer.explain())
