@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/scene/camera.h"
+#include "core/scene/tangents.h"
 #include "tests/gpu/render_test.h"
 #include "tests/support/test_scenes.h"
 
@@ -45,6 +46,13 @@ class BumpFloorTest : public RenderTest {
     scene.lights.push_back(light);
     scene.nodes.push_back(lamp);
     return scene;
+  }
+
+  /// Gives the floor's vertices the coordinates `uv` of theirs, and tangents that fit.
+  static void moveCoordinates(scene::Scene& scene, const std::function<glm::vec2(const glm::vec2&)>& uv) {
+    scene::Primitive& p = scene.meshes[0].primitives[0];
+    for (glm::vec2& own : p.uvs) own = uv(own);
+    p.tangents = scene::generateTangents(p.positions, p.normals, p.uvs, p.indices);
   }
 
   static scene::CameraPose camera() { return scene::lookAt({0, 2, 0.7f}, {0, 0, 0}, 0.7f); }

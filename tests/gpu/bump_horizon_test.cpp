@@ -140,6 +140,7 @@ TEST_F(BumpHorizonTest, ScenesWithoutHeightMapsAreLeftAlone) {
   const Image plain = drawn(scene, Term::direct, {}),
               asked = drawn(scene, Term::direct, {technique("bump_horizon")}, &passes);
   EXPECT_TRUE(same(asked, plain));
+  EXPECT_TRUE(same(drawn(scene, Term::final, {technique("bump_horizon")}), drawn(scene, Term::final, {})));
   bool said = false;
   for (const frame::PassReport& pass : passes) {
     for (const frame::AccessReport& access : pass.accesses) EXPECT_NE(access.resource, "tangent");

@@ -29,14 +29,14 @@ class BumpInterreflectionTest : public BumpFloorTest {
   }
 
   /// Bumps and dents in rows, 3 of each along an axis, whose RMS slope is 0.94.
-  static relief::HeightField eggCrate() {
+  static relief::HeightField eggCrate(double scale = 0.141) {
     constexpr int size = 64;
     std::vector<float> values;
     for (int y = 0; y < size; ++y)
       for (int x = 0; x < size; ++x)
         values.push_back(std::sin(6 * glsl::pi * (static_cast<float>(x) + 0.5f) / size) *
                          std::sin(6 * glsl::pi * (static_cast<float>(y) + 0.5f) / size));
-    return {{size, size}, values, glm::dvec2(2), 0.141};
+    return {{size, size}, values, glm::dvec2(2), scale};
   }
 
   static glm::vec3 slantedLight() {
@@ -190,6 +190,26 @@ TEST_F(BumpInterreflectionTest, SixtyFourPathsAreEnoughAndPublishedOnesLoseLight
         light(scene, {{"space", space}, {"directions", "published"}, {"paths", "512"}}), field, exact);
     EXPECT_LT(published.mean, 0.8) << space;
   }
+}
+
+// An egg-crate that is turned over is itself with u or v mirrored. Mirrored spirals err otherwise than those
+// of what is expected; a relief that lay another way would be lit on its other sides.
+TEST_F(BumpInterreflectionTest, MirroredCoordinatesMirrorTheRelief) {
+  const relief::HeightField turnedOver = eggCrate(-0.141);
+  const std::vector<double> exact =
+      bounced(turnedOver, relief::traceBounces(turnedOver, relief::BounceDirections::ownFrame, 1024), 1);
+  scene::Scene u = bumps(slantedLight(), eggCrate()), v = u;
+  moveCoordinates(u, [](const glm::vec2& uv) { return glm::vec2(1 - uv.x, uv.y); });
+  moveCoordinates(v, [](const glm::vec2& uv) { return glm::vec2(uv.x, 1 - uv.y); });
+  for (const auto& [name, scene] : {std::pair("u mirrored", u), std::pair("v mirrored", v),
+                                    std::pair("turned over", bumps(slantedLight(), turnedOver))})
+    for (const std::string& space : kSpaces) {
+      SCOPED_TRACE(name + (", " + space));
+      const Difference d =
+          difference(light(scene, {{"space", space}, {"lookup", "nearest"}}), turnedOver, exact);
+      EXPECT_LE(d.rms, 0.15);
+      EXPECT_NEAR(d.mean, 1, 0.02);
+    }
 }
 
 // Under light from the zenith both walls, of 45 degrees, are lit alike. What a strip of one receives of the
