@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "apps/limn/commands.h"
 #include "apps/limn/interruption.h"
@@ -13,6 +14,7 @@
 #include "core/bench/stress.h"
 #include "core/gpu/objects.h"
 #include "core/scene_io/load.h"
+#include "core/session/case_origins.h"
 #include "core/session/find.h"
 
 namespace limn::app {
@@ -82,15 +84,20 @@ class Table {
     std::erase_if(results_, hasFailed);
   }
 
-  bool holds(const Case& c) const {
+  /// Whether the case has a result of what it asks for and is measured with now.
+  bool holds(const Case& c, const bench::Provenance& now) const {
     return std::ranges::any_of(results_, [&](const bench::StressResult& r) {
       return r.technique == c.technique->info->name && r.name == c.stressCase->name &&
              r.scene == c.stressCase->scene && r.settings == c.stressCase->settings &&
-             r.allowed == c.stressCase->factor;
+             r.allowed == c.stressCase->factor && bench::staleness(r.provenance, now).empty();
     });
   }
 
+  /// Takes a result in the place of the case's earlier ones.
   void add(bench::StressResult result) {
+    std::erase_if(results_, [&](const bench::StressResult& r) {
+      return r.technique == result.technique && r.name == result.name && r.scene == result.scene;
+    });
     results_.push_back(std::move(result));
     write();
   }
@@ -111,12 +118,22 @@ class Table {
   std::vector<bench::StressResult> results_;
 };
 
+/// What the case is measured with now.
+bench::Provenance provenanceOf(const Case& c, session::CaseOrigins& origins) {
+  bench::Case what;
+  what.scene = c.stressCase->scene;
+  what.technique = c.technique->info->name;
+  what.defaultLights = "off";
+  return origins.of(what);
+}
+
 int runStress(const StressArguments& options) {
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
   const std::vector<Case> cases = chosenCases(registry, options);
   const auto context = Context::create(options.backend.contextOptions());
   gpu::Device device(*context);
   Table table(options.out, context->info().renderer);
+  session::CaseOrigins origins(registry);
   bench::StressRun stress(device,
                           [](const std::string& name) { return scene::load(session::findScene(name)); });
   {
@@ -130,8 +147,10 @@ int runStress(const StressArguments& options) {
       const Case& c = cases[i];
       progress.update(double(i) / double(cases.size()),
                       fmt::format("{}: {}", c.technique->info->name, c.stressCase->name));
-      if (table.holds(c)) continue;
+      bench::Provenance now = provenanceOf(c, origins);
+      if (table.holds(c, now)) continue;
       bench::StressResult result = stress.run(*c.technique, *c.stressCase, c.own);
+      result.provenance = std::move(now);
       context->throwErrors();
       table.add(std::move(result));
     }
@@ -148,8 +167,9 @@ Action addStressCommand(CLI::App& command) {
   command.add_option("--technique,--techniques", options->techniques,
                      "Techniques, comma-separated; default: all");
   command.add_option("--filter", options->filter, "Only cases whose name contains this text");
-  command.add_option("-o,--out", options->out,
-                     "Folder for stress.md and stress.json; cases that are already in it are skipped");
+  command.add_option(
+      "-o,--out", options->out,
+      "Folder for stress.md and stress.json; cases whose result in it still holds are skipped");
   options->backend.addTo(command);
   return [options] { return runStress(*options); };
 }

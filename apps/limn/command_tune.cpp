@@ -11,6 +11,7 @@
 #include "apps/limn/results_folder.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/shell.h"
 #include "core/base/text.h"
 #include "core/bench/suite_text.h"
 #include "core/bench/tune.h"
@@ -263,13 +264,20 @@ class Tuning {
 
   bench::TuneFigures figuresOf(const bench::Case& c) {
     const bench::Row& row = rowOf(c);
-    const auto value = row.failure.empty() ? metricValue(goal_.metric, row.error) : std::nullopt;
-    if (!value) {
+    // What the reference cannot tell apart does not rank; a limit is kept by the value itself.
+    const auto error = !row.failure.empty() ? std::nullopt
+                       : goal_.ofTime       ? bench::badness(goal_.metric, row.error)
+                                            : badnessAsMeasured(row);
+    if (!error) {
       if (failure_.empty()) failure_ = fmt::format("{}: {}", bench::label(c), row.failure);
       return {0, 0, true};
     }
-    return {bench::badness(goal_.metric, *value), bench::msAtPixels(row, pixelsOver(c), rest_.value_or(1)),
-            false};
+    return {*error, bench::msAtPixels(row, pixelsOver(c), rest_.value_or(1)), false};
+  }
+
+  std::optional<double> badnessAsMeasured(const bench::Row& row) const {
+    const auto value = metricValue(goal_.metric, row.error);
+    return value ? std::optional(bench::badness(goal_.metric, *value)) : std::nullopt;
   }
 
   /// How many times as many pixels the picture has that is asked for.
@@ -290,7 +298,18 @@ class Tuning {
   }
 
   std::string commandOf(const bench::TuneSetting& setting) const {
-    return renderCommand(options_.scene, techniqueOf(setting), parametersOf(setting)) + " --out tuned.png";
+    std::string command = renderCommand(options_.scene, techniqueOf(setting), parametersOf(setting));
+    for (const std::string& argument : options_.backend.arguments()) command += " " + shellQuoted(argument);
+    return command + " --out tuned.png";
+  }
+
+  /// Says that the reference cannot tell whether a setting that was measured in full keeps the limit; ""
+  /// where it can.
+  std::string doubt(const bench::TuneSetting& setting) const {
+    const std::optional<double> floor = rowOf(caseOf(setting, plan_.full)).error.noise_floor;
+    if (goal_.ofTime || !goal_.metric.floored || !floor || goal_.limit >= *floor) return {};
+    return fmt::format("the limit lies below the noise of the reference ({}), which more --spp lessens",
+                       shownText(goal_.metric, *floor));
   }
 
   /// The best setting of another technique; where there is none, the second best.
@@ -303,10 +322,12 @@ class Tuning {
 
   void say(const bench::TuneResult& result) const {
     if (!result.nearest) throw Error(fmt::format("no setting could be measured: {}", failure_));
+    const std::string doubts = doubt(*result.nearest);
     if (result.answers.empty())
-      throw Error(fmt::format("no setting {}; the nearest is {} with {}", goal_.text(),
-                              bench::label(caseOf(*result.nearest, plan_.full)),
-                              figuresText(*result.nearest)));
+      throw Error(fmt::format("no setting {}; the nearest is {} with {}{}{}", goal_.text(),
+                              bench::label(caseOf(*result.nearest, plan_.full)), figuresText(*result.nearest),
+                              doubts.empty() ? "" : "; ", doubts));
+    if (!doubts.empty()) warn(doubts);
     std::vector<bench::TuneSetting> chosen{result.answers.front()};
     if (const auto second = runnerUp(result.answers)) chosen.push_back(*second);
     const fs::path suite = options_.out / "tuned.toml";
@@ -391,12 +412,15 @@ Action addTuneCommand(CLI::App& command) {
           .add_option("--max-ms", options->maxMs,
                       "Milliseconds of a frame that the answer may take; it is the one with the least error")
           ->check(CLI::Range(1e-6, 1e9));
-  command
-      .add_option("--max-error", options->maxError,
-                  "METRIC=X, such as rmse=0.01: the error that the answer may have (PSNR: must reach); it is "
-                  "the quickest one")
-      ->excludes(maxMs);
+  CLI::Option* maxError =
+      command
+          .add_option(
+              "--max-error", options->maxError,
+              "METRIC=X, such as rmse=0.01: the error that the answer may have (PSNR: must reach); it is "
+              "the quickest one")
+          ->excludes(maxMs);
   command.add_option("--metric", options->metric, "The error that --max-ms makes least, a field of results")
+      ->excludes(maxError)
       ->capture_default_str();
   command.add_option("--techniques,--technique", options->techniques,
                      "Techniques to choose from, comma-separated; default: all that answer the term, for "

@@ -5,6 +5,7 @@
 #include "apps/limn/worker.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/bench/machine.h"
 #include "core/bench/report.h"
 #include "core/bench/tables.h"
 #include "core/session/bench_session.h"
@@ -43,7 +44,7 @@ class CaseWork {
           bench::unfinishedCases(cases_, rows, [&](const bench::Case& c) { return origins.of(c); });
       const auto missing = session::missingThings(
           unfinished, registry, [&] { report_.alive(); }, warn);
-      for (std::size_t i = 0; i + 1 < missing.size(); ++i) fmt::print(stderr, "limn: {}\n", missing[i]);
+      for (std::size_t i = 0; i + 1 < missing.size(); ++i) sayError(missing[i]);
       if (!missing.empty()) throw UsageError(missing.back());
     });
   }
@@ -82,6 +83,8 @@ class CaseWork {
     Progress bar(progressName_);
     bench::Callbacks callbacks;
     callbacks.provenance = provenance;
+    callbacks.machine = bench::machineName();
+    callbacks.driver = benchSession.driverName();
     callbacks.reference = [&](const bench::Case& c) { return benchSession.reference(c); };
     callbacks.measure = [&](const bench::Case& c) { return benchSession.measure(c); };
     callbacks.time = [&](const bench::Case& c) { return benchSession.time(c); };
@@ -95,7 +98,7 @@ class CaseWork {
                  bench::label(progress.what));
       if (progress.state != bench::Progress::State::failed) return;
       benchSession.forgetScene();
-      fmt::print(stderr, "limn: {}: {}\n", bench::label(progress.what), progress.failure);
+      sayError(fmt::format("{}: {}", bench::label(progress.what), progress.failure));
     };
     bench::runCases(cases, benchSession.rendererName(), results, callbacks);
   }
@@ -127,7 +130,7 @@ class CaseWork {
     const auto current = report_.current();
     if (!current) throw Error("no case could be started by the process that measures: " + what);
     const bench::Case& c = cases_[*current];
-    fmt::print(stderr, "limn: {}: {}\n", bench::label(c), what);
+    sayError(fmt::format("{}: {}", bench::label(c), what));
     std::erase_if(left_, [&](std::size_t i) {
       return i == *current || report_.state(i) == WorkerReport::State::failed;
     });

@@ -4,20 +4,38 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <glm/vec2.hpp>
 #include <map>
+#include <utility>
 
 #include "core/base/shell.h"
+#include "core/bench/tables.h"
 #include "core/bench/tune.h"
 #include "core/question/question_fields.h"
 #include "core/question/render_command.h"
 #include "core/question/technique_names.h"
+#include "core/reference/reference.h"
 
 namespace limn::app {
 namespace {
 
 std::string sceneName(const std::string& scene) {
   return std::filesystem::path(scene).stem().string();
+}
+
+/// What tells the tables of one scene apart, but for its renderer and machine.
+std::string measuredText(bench::Case c) {
+  c.technique.clear();
+  c.parameters.clear();
+  std::string text = bench::label(c);
+  text.pop_back();  // what divides it from the technique
+  const bench::ReferenceSettings& truth = c.reference;
+  text += truth.noise > 0 ? fmt::format(", against {} % noise", 100 * truth.noise)
+                          : fmt::format(", against {} spp", truth.spp);
+  if (reference::hasBounces(parseTerm(c.term)) && truth.bounces > 0)
+    text += fmt::format(", bounces {}", truth.bounces);
+  if (truth.interfaces != 0)
+    text += truth.interfaces < 0 ? ", interfaces all" : fmt::format(", interfaces {}", truth.interfaces);
+  return text;
 }
 
 }  // namespace
@@ -34,34 +52,27 @@ std::string MeasuredSetting::text() const {
 }
 
 std::vector<MeasuredQuestion> measuredQuestions(std::span<const bench::Row> rows, const std::string& scene) {
-  std::vector<MeasuredQuestion> questions;
-  std::map<std::string, std::size_t> places, settingPlaces;
+  std::map<std::string, std::vector<bench::Row>> own;  // lights of the environment are settings in tables
   for (const bench::Row& row : rows) {
     if (row.what.technique == bench::kSeparationFloor) continue;  // no technique can be as good
-    if (!row.failure.empty() || row.cost.frameMs.n == 0 || !sameScene(row.what.scene, scene)) continue;
-    const SceneQuestion& question = row.what;
-    const glm::ivec2 timed(row.what.timeWidth, row.what.timeHeight);
-    const std::string times = timed.x > 0 ? fmt::format(", times at {}x{}", timed.x, timed.y) : "";
-    const std::string key =
-        fmt::format("{}{}|{}|{}", questionText(question), times, row.cost.renderer, row.cost.machine);
-    const auto [place, added] = places.emplace(key, questions.size());
-    if (added)
-      questions.push_back({.question = question,
-                           .term = parseTerm(question.term),
-                           .text = subjectText(question, QuestionWording::label) + times,
-                           .renderer = row.cost.renderer,
-                           .pixels = std::int64_t{question.width} * question.height,
-                           .settings = {}});
-    const MeasuredSetting setting{row.what.technique, row.what.parameters, row.error, row.cost.frameMs.median,
-                                  row.cost.frameMs.n};
-    std::vector<MeasuredSetting>& settings = questions[place->second].settings;
-    const auto [known, first] = settingPlaces.emplace(
-        fmt::format("{}|{}|{}", key, setting.text(), row.what.dynamic), settings.size());
-    if (first)
-      settings.push_back(setting);
-    else if (setting.frames >= settings[known->second].frames)
-      settings[known->second] = setting;
+    if (row.failure.empty() && row.cost.frameMs.n > 0 && sameScene(row.what.scene, scene))
+      own[describeEnvironmentLights(row.what)].push_back(row);
   }
+  std::vector<MeasuredQuestion> questions;
+  for (const auto& [lights, some] : own)
+    for (const bench::Table& table : bench::makeTables(some)) {
+      const bench::Row& first = table.rows.front();
+      MeasuredQuestion& question = questions.emplace_back(
+          MeasuredQuestion{.question = first.what,
+                           .term = parseTerm(first.what.term),
+                           .text = measuredText(first.what),
+                           .renderer = first.cost.renderer,
+                           .pixels = std::int64_t{first.what.width} * first.what.height,
+                           .settings = {}});
+      for (const bench::Row& row : table.rows)
+        question.settings.push_back(
+            {row.what.technique, row.what.parameters, row.error, row.cost.frameMs.median});
+    }
   std::ranges::stable_sort(questions, [](const MeasuredQuestion& a, const MeasuredQuestion& b) {
     return std::pair(a.pixels, a.settings.size()) > std::pair(b.pixels, b.settings.size());
   });
@@ -70,7 +81,7 @@ std::vector<MeasuredQuestion> measuredQuestions(std::span<const bench::Row> rows
 
 BudgetAnswer bestWithin(const MeasuredQuestion& question, double ms, const MetricInfo& metric) {
   const auto badness = [&](const MeasuredSetting& setting) {
-    return bench::badness(metric, metricValue(metric, setting.error).value());
+    return bench::badness(metric, setting.error).value();
   };
   std::vector<const MeasuredSetting*> quick;
   for (const MeasuredSetting& setting : question.settings)

@@ -21,17 +21,16 @@ struct MeasuredSetting {
   std::vector<std::pair<std::string, std::string>> parameters;  ///< "technique.parameter", value
   Metrics error;
   double ms = 0;
-  int frames = 0;  ///< that ms is the median of
 
   /// Returns technique and parameters on one line.
   std::string text() const;
 };
 
-/// Holds what was measured on one machine for one question about a scene, which makes it comparable.
+/// Holds a table of the bench: what was measured in one way, on one machine, for one question about a scene.
 struct MeasuredQuestion {
   SceneQuestion question;
   Term term = Term::final;  ///< the question's
-  std::string text;         ///< camera, light, term and size
+  std::string text;         ///< camera, light, term, size, mode and reference
   std::string renderer;
   std::int64_t pixels = 0;
   std::vector<MeasuredSetting> settings;
@@ -41,9 +40,8 @@ struct MeasuredQuestion {
 bool sameScene(const std::string& a, const std::string& b);
 
 /// Returns what the rows hold of `scene`: the largest pictures first, then the questions with the most
-/// settings. Rows without a picture or a time do not count; of rows of one setting the one with the most
-/// frames does, since a search times what it checks for a shorter time. Throws UsageError for a row of a term
-/// that there is not.
+/// settings, as makeTables() keeps them apart. Rows without a picture or a time do not count. Throws
+/// UsageError for a row of a term that there is not.
 std::vector<MeasuredQuestion> measuredQuestions(std::span<const bench::Row> rows, const std::string& scene);
 
 struct BudgetAnswer {

@@ -102,7 +102,7 @@ export class Section {
     const spp = table.reference.noise > 0 ? `to ${100 * table.reference.noise} % noise` : `${table.reference.spp} samples per pixel`;
     const noise = isNumber(table.reference.noise_rms) ? `, noise ${(100 * table.reference.noise_rms).toPrecision(2)} % of the mean` : "";
     const others = this.tables.filter((other) => other.term === table.term && other.renderer === table.renderer &&
-      other.dynamic === table.dynamic);
+      other.machines.join() === table.machines.join() && other.dynamic === table.dynamic);
     this.budget = null;
     this.body.replaceChildren(...[
       takeOne(curves, metric, time, (...budget) => { this.budget = budget; this.plot?.budget(...budget); }),

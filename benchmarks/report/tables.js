@@ -18,7 +18,7 @@ const cell = (value) => el("td", {}, value);
 const text = (value) => el("td", {class: "text"}, value);
 
 function nameCell(row, onCurrent) {
-  const name = row.title || row.technique;
+  const name = `${row.title || row.technique}${row.outdated ? " †" : ""}`;
   return el("th", {scope: "row"}, onCurrent ? el("button", {type: "button", click: () => onCurrent(row)}, name) : name);
 }
 
@@ -53,11 +53,12 @@ export function errorTable(table, metric, time, onCurrent) {
       traced ? cell(referenceText(row.reference_ms)) : null, cell(isNumber(row.memory_bytes) ? number(row.memory_bytes / 2 ** 20) : "–"), cell(front.includes(row) ? "*" : ""));
   });
   const compared = table.baseline ? `Times as fast: against ${table.baseline}, with the interval of 95 %. ` : "";
-  return tableElement(`Errors and times. ${compared}* on the Pareto front of ${metric.label} and time (${time.label}); < below three ` +
+  const outdated = table.rows.some((row) => row.outdated) ? "† measured with another version of the program than the newest row. " : "";
+  return tableElement(`Errors and times. ${compared}${outdated}* on the Pareto front of ${metric.label} and time (${time.label}); < below three ` +
     "times the reference's noise", head, rows);
 }
 
-/** The thesis's form: a line per setting, a column per resolution and number of lights. One renderer and mode. */
+/** The thesis's form: a line per setting, a column per resolution and number of lights. One renderer, machine and mode. */
 export function framesPerSecond(tables) {
   const columns = new Map(), lines = new Map();
   for (const table of tables) {

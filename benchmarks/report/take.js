@@ -32,13 +32,17 @@ function settingName({row, curve}) {
 /** The middle of the values on a logarithmic scale. */
 const middle = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
-/** Asks for a kind of budget and its amount; `answer(kind, budget)` gives what stands below. */
+/** Asks for a kind of budget and its amount; `answer(kind, budget)` gives a line that is read aloud, and what stands below. */
 function asked(all, answer) {
-  const body = el("div", {"aria-live": "polite"}), tools = el("div", {class: "tools"});
+  const said = el("p", {"aria-live": "polite"}), body = el("div"), tools = el("div", {class: "tools"});
   const choose = (kind) => {
     const values = all.map((point) => point[kind.key]).filter((value) => value > 0);
     // The ends are values that rows have: rounding must not lose them.
-    const show = (value) => body.replaceChildren(...answer(kind, value * (1 + 1e-9)));
+    const show = (value) => {
+      const {line, below} = answer(kind, value * (1 + 1e-9));
+      said.replaceChildren(...line);
+      body.replaceChildren(...below);
+    };
     tools.replaceChildren(...[
       chooser("Budget", kinds.map((other) => ({value: other.key, label: other.bounded})), kind.key,
         (key) => { choose(kinds.find((other) => other.key === key)); tools.querySelector("select").focus(); }),
@@ -48,7 +52,7 @@ function asked(all, answer) {
   const kinds = KINDS.filter(({key}) => all.some((point) => point[key] > 0));
   if (kinds.length === 0) return null;
   choose(kinds[0]);
-  return [tools, body];
+  return [tools, said, body];
 }
 
 /** For one table: the setting to take, with its command, and the runner-up. `onBudget(kind.key, budget)` marks it elsewhere. */
@@ -56,12 +60,11 @@ export function takeOne(curves, metric, time, onBudget) {
   const answer = (kind, budget) => {
     onBudget(kind.key, budget);
     const {best, next} = take(curves, metric, time, kind, budget);
-    if (!best) return [el("p", {}, `Nothing measured keeps ${kind.text(budget)}.`)];
-    return [
-      el("p", {}, "Take ", settingName(best), `: ${pointText(best, metric)}.`),
+    if (!best) return {line: [`Nothing measured keeps ${kind.text(budget)}.`], below: []};
+    return {line: ["Take ", settingName(best), `: ${pointText(best, metric)}.`], below: [
       command(best.row),
       next && el("p", {class: "note"}, "Runner-up: ", settingName(next), `: ${pointText(next, metric)}.`),
-    ].filter(Boolean);
+    ].filter(Boolean)};
   };
   const parts = asked(pointsOf(curves, metric, time), answer);
   return parts && el("div", {class: "take"}, el("h3", {}, "What to take"), parts);
@@ -87,20 +90,24 @@ function takeMany(tables, metric, time, name, onVisit) {
   }).filter(({points}) => points.length > 0);
   const answer = (kind, budget) => {
     const taken = fronts.map(({curves}) => take(curves, metric, time, kind, budget));
-    const line = ({table}, {best}) => el("tr", {}, el("th", {scope: "row"}, el("button", {type: "button",
+    const lineOf = ({table}, {best}) => el("tr", {}, el("th", {scope: "row"}, el("button", {type: "button",
       click: () => onVisit(table, best?.row)}, name(table))), best
       ? [el("td", {class: "text"}, breakable(best.row.title || best.row.technique)), el("td", {class: "text"}, settingsText(best.row)),
          el("td", {}, errorText(metric, best.row)), el("td", {}, number(best.ms)), el("td", {class: "text"}, command(best.row))]
       : el("td", {class: "text", colspan: 5}, `nothing keeps ${kind.text(budget)}`));
-    const counted = tally(fronts, taken).map(([technique, {asked, front, best}]) => el("tr", {}, el("th", {scope: "row"}, technique),
+    const counts = tally(fronts, taken), [most, {best: often}] = counts[0];
+    const kept = taken.filter(({best}) => best).length;
+    const counted = counts.map(([technique, {asked, front, best}]) => el("tr", {}, el("th", {scope: "row"}, technique),
       [best, front, asked].map((value) => el("td", {}, String(value)))));
-    return [
+    const line = `${kind.text(budget)} is kept in ${kept} of ${fronts.length} scenes` +
+      (often > 0 ? `; most often, in ${often}, ${most} is the one to take.` : ".");
+    return {line: [line], below: [
       tableElement(`What to take with ${kind.text(budget)}`, [{label: "scene", text: true}, {label: "take", text: true},
         {label: "parameters", text: true}, {label: metric.label, help: metric.help}, {label: "ms"}, {label: "command", text: true}],
-        fronts.map((front, i) => line(front, taken[i]))),
+        fronts.map((front, i) => lineOf(front, taken[i]))),
       tableElement("In how many scenes a technique is the one to take, is on the Pareto front, and was measured",
         [{label: "technique", text: true}, {label: "to take"}, {label: "on the front"}, {label: "measured"}], counted),
-    ];
+    ]};
   };
   return asked(fronts.flatMap(({points}) => points), answer) ?? [el("p", {class: "note"}, "No row has both a time and this error.")];
 }

@@ -1,5 +1,7 @@
 #include "core/bench/merge.h"
 
+#include <utility>
+
 #include "core/base/file.h"
 #include "core/bench/results_file.h"
 
@@ -17,8 +19,9 @@ void bring(const fs::path& from, const fs::path& into, const std::string& name) 
 }
 
 /// Whether `row` is to take the place of `known`. Each such step leads to a row that is valid where the one
-/// before was not, else to a good one, else to one of more turns, so that merging again changes nothing. Of
-/// two good rows that others than the present program measured, nothing says which is newer.
+/// before was not, else to a good one, else to one of more turns, else to one with a picture, so that merging
+/// again changes nothing. Of two good rows that others than the present program measured, nothing says which
+/// is newer.
 bool replaces(const Row& row, const Row& known, const std::function<Provenance(const Case&)>& provenance) {
   const bool sameOrigin = staleness(known.provenance, row.provenance).empty();
   if (!sameOrigin && provenance) {
@@ -27,7 +30,8 @@ bool replaces(const Row& row, const Row& known, const std::function<Provenance(c
     if (valid != staleness(known.provenance, now).empty()) return valid;
   }
   if (!row.failure.empty()) return false;
-  return !known.failure.empty() || (sameOrigin && row.cost.frameMs.turns > known.cost.frameMs.turns);
+  const auto rank = [](const Row& of) { return std::pair(of.cost.frameMs.turns, !of.picture.empty()); };
+  return !known.failure.empty() || (sameOrigin && rank(row) > rank(known));
 }
 
 }  // namespace

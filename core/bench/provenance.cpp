@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/bench/private/provenance_json.h"
 
 namespace limn::bench {
 
@@ -20,6 +21,21 @@ std::string staleness(const Provenance& then, const Provenance& now) {
     if (then.modules[i].hash != now.modules[i].hash)
       return fmt::format("technique {} has changed", now.modules[i].technique);
   return {};
+}
+
+nlohmann::ordered_json provenanceToJson(const Provenance& provenance) {
+  nlohmann::ordered_json modules = nlohmann::ordered_json::array();
+  for (const Provenance::Module& m : provenance.modules)
+    modules.push_back({{"technique", m.technique}, {"file", m.file}, {"hash", m.hash}});
+  return {{"program", provenance.program}, {"scene", provenance.scene}, {"techniques", modules}};
+}
+
+Provenance provenanceFromJson(const nlohmann::ordered_json& json) {
+  Provenance provenance{json.at("program").get<std::string>(), json.at("scene").get<std::string>(), {}};
+  for (const nlohmann::ordered_json& m : json.at("techniques"))
+    provenance.modules.push_back({m.at("technique").get<std::string>(), m.at("file").get<std::string>(),
+                                  m.at("hash").get<std::string>()});
+  return provenance;
 }
 
 std::string hashOfFiles(std::span<const std::filesystem::path> files) {

@@ -32,6 +32,9 @@ Change compareRows(const Row& before, const Row& now, const RegressionOptions& o
   const double growth = b.rmse * b.rmse - a.rmse * a.rmse, noise = noiseOfDifference(a, b);
   change.worse = growth > noise;
   change.better = -growth > noise;
+  const std::string &there = before.cost.machine, &here = now.cost.machine;
+  change.elsewhere = !there.empty() && !here.empty() && there != here;
+  if (change.elsewhere) return change;
   const FrameTime &earlier = before.cost.frameMs, &later = now.cost.frameMs;
   if (earlier.samples.empty() || later.samples.empty()) return change;
   change.time = ratioOfMedians({later.samples, later.turns}, {earlier.samples, earlier.turns});
@@ -96,9 +99,12 @@ std::string toMarkdown(const Regression& regression) {
   const auto failed =
       std::ranges::count_if(regression.changes, [](const Change& c) { return !c.failure.empty(); });
   std::string text = fmt::format(
-      "{} rows compared: {} slower, {} worse, {} failed, {} faster, {} better; {} only before, {} only now\n",
+      "{} rows compared: {} slower, {} worse, {} failed, {} faster, {} better; {} only before, {} only now",
       regression.changes.size(), count(&Change::slower), count(&Change::worse), failed,
       count(&Change::faster), count(&Change::better), regression.onlyBefore, regression.onlyNow);
+  if (const auto elsewhere = count(&Change::elsewhere); elsewhere > 0)
+    text += fmt::format("; times of {} not compared, which two machines measured", elsewhere);
+  text += "\n";
   std::vector<Change> shown;
   std::ranges::copy_if(regression.changes, std::back_inserter(shown),
                        [](const Change& change) { return !verdict(change).empty(); });

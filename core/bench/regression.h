@@ -20,7 +20,8 @@ struct RegressionOptions {
 /// Holds the change of a row that both results have: the same case on the same renderer.
 struct Change {
   std::string label;
-  Ratio time;                         ///< later / earlier, frame; value 0: not timed in both
+  Ratio time;                         ///< later / earlier, frame; value 0: not timed in both, or elsewhere
+  bool elsewhere = false;             ///< on another machine: the times are not compared
   double errorBefore = 0, error = 0;  ///< RMSE, in the penumbra where that is known
   bool slower = false, faster = false;
   bool worse = false, better = false;
@@ -33,10 +34,10 @@ struct Regression {
   LIMN_API bool found() const;              ///< any row slower, worse or failed
 };
 
-/// Compares the later rows with the earlier ones. A difference of errors counts where it exceeds three
-/// standard deviations of what the noise of two independent references does to it: MSE_a - MSE_b has the
-/// standard deviation 2 sigma (RMSE_a + RMSE_b + sigma) / sqrt(pixels) at most, where sigma is the
-/// references' noise.
+/// Compares the later rows with the earlier ones, of two known machines the errors alone. A difference of
+/// errors counts where it exceeds three standard deviations of what the noise of two independent references
+/// does to it: MSE_a - MSE_b has the standard deviation 2 sigma (RMSE_a + RMSE_b + sigma) / sqrt(pixels) at
+/// most, where sigma is the references' noise.
 LIMN_API Regression compareResults(std::span<const Row> before, std::span<const Row> now,
                                    const RegressionOptions& options = {});
 

@@ -160,6 +160,7 @@ Json tableJson(const Table& table, EmbeddedPictures& pictures) {
   for (const Row& row : table.rows) {
     json["rows"].push_back(rowJson(row, windows, pictures));
     json["rows"].back()["times_as_fast"] = timesAsFast(baseline, row);
+    if (isOutdated(row, table)) json["rows"].back()["outdated"] = true;
   }
   return json;
 }
@@ -215,13 +216,16 @@ Json pageColumns() {
   return json;
 }
 
-/// What `limn stress` left in the folder; null if it was not run there.
+/// What `limn stress` left in the folder, less where it comes from; null if it was not run there.
 Json stability(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "stress.json";
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) return {};
   Json json = Json::parse(readTextFile(file), nullptr, false);
   if (json.is_discarded()) throw Error(fmt::format("{}: not what limn stress writes", file.string()));
+  if (json.contains("results") && json["results"].is_array())
+    for (Json& result : json["results"])
+      if (result.is_object()) result.erase("provenance");
   return json;
 }
 

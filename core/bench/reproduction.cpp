@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <ranges>
 #include <set>
@@ -24,9 +25,10 @@ constexpr const char* kReading =
     "is better. `measured` stands at the suite's settings, with its 95 % interval; `n` is the number of\n"
     "turns in which both were timed. With n = 1 a ratio is refused, since nothing says how far it\n"
     "scatters. `RMSE` is that of both, for visibility in the penumbra; below the noise of a reference it\n"
-    "is a bound. `differ in` lists every setting that both sides have and that differs. `at equal error`\n"
-    "puts in the first one's place the quickest row of its technique, of the same suite and scene, whose\n"
-    "RMSE is not above the second's. Where the rules of several verdicts apply, the later one counts.\n\n";
+    "is a bound. `differ in` lists every setting that both sides have and that differs, whether it takes\n"
+    "effect or not. `at equal error` puts in the first one's place the quickest row of its technique, of\n"
+    "the same suite and scene, whose RMSE is not above the second's. Where the rules of several verdicts\n"
+    "apply, the later one counts. `at` is the second row's scene and size with renderer and machine.\n\n";
 
 /// Whether the label contains the part; one with ^ or $ is its beginning or its end.
 bool contains(const std::string& name, std::string_view part) {
@@ -47,10 +49,8 @@ std::vector<Found> find(std::span<const Table> tables, const std::vector<std::st
   for (const Table& table : tables) {
     for (const Row& row : table.rows) {
       const std::string name = label(row.what);
-      const bool fits = row.failure.empty() && std::ranges::all_of(parts, [&](const std::string& part) {
-                          return contains(name, part);
-                        });
-      if (!fits) continue;
+      if (!std::ranges::all_of(parts, [&](const std::string& part) { return contains(name, part); }))
+        continue;
       if (!found.empty() && label(found.front().row->what) != name)
         throw Error(fmt::format("two rows fit one claim: {} and {}", label(found.front().row->what), name));
       found.push_back({&row, &table});
@@ -138,7 +138,8 @@ std::string settings(const Row& row) {
   const int width = c.timeWidth > 0 ? c.timeWidth : c.width,
             height = c.timeWidth > 0 ? c.timeHeight : c.height;
   std::string size = c.lightSize > 0 ? fmt::format(", light {}", c.lightSize) : "";
-  return fmt::format("{}{}, {}x{}, {}", c.scene, size, width, height, row.cost.renderer);
+  std::string machine = row.cost.machine.empty() ? "" : ", " + row.cost.machine;
+  return fmt::format("{}{}, {}x{}, {}{}", c.scene, size, width, height, row.cost.renderer, machine);
 }
 
 /// The cells of a claim's line.
@@ -146,6 +147,7 @@ struct Answer {
   const Claim& claim;
   std::string measured = "-", turns = "-", errors = "-", differences = "-", atEqualError = "-", verdict,
               at = "-";
+  bool answered = false;  ///< there are two rows, whatever they say
 };
 
 Answer answer(const Claim& claim, std::span<const Table> tables) {
@@ -168,7 +170,8 @@ Answer answer(const Claim& claim, std::span<const Table> tables) {
           differingSettings(*slow.row, *fast.row),
           equal.text,
           verdictInfo(judged(pair.verdict, equal.verdict)).name,
-          settings(*fast.row)};
+          settings(*fast.row),
+          true};
 }
 
 const std::vector<MarkdownColumn<Answer>>& reproductionColumns() {
@@ -195,29 +198,50 @@ std::string verdictMarkdown() {
   return markdownTable(columns, kVerdicts);
 }
 
+std::string benchCommands(const std::set<std::string>& suites) {
+  std::string commands;
+  for (const std::string& suite : suites)
+    commands +=
+        fmt::format("build/bin/limn bench {} --out {}\n", shellQuoted(suite), shellQuoted("out/" + suite));
+  return commands;
+}
+
+/// The commands that give these rows and their page, and those of the suites that have none here. The page
+/// of a run is written beside its rows, so that it does not take the place of a published one.
+std::string commandMarkdown(const std::set<std::string>& measured, const std::set<std::string>& missing) {
+  std::string markdown;
+  if (!measured.empty()) {
+    std::string folders;
+    for (const std::string& suite : measured) folders += " " + shellQuoted("out/" + suite);
+    markdown += fmt::format(
+        "\nMeasured with\n\n```sh\n{}build/bin/limn reproduction{} --out out/reproduction.md\n```\n",
+        benchCommands(measured), folders);
+  }
+  if (!missing.empty())
+    markdown += fmt::format("\nTo measure what is missing\n\n```sh\n{}```\n", benchCommands(missing));
+  return markdown;
+}
+
 }  // namespace
 
 std::string reproductionMarkdown(std::span<const Claim> claims, std::span<const Row> rows) {
-  const std::vector<Table> tables = makeTables(rows);
+  std::vector<Row> good;  // a later failure says nothing against what was measured
+  std::ranges::copy_if(rows, std::back_inserter(good), [](const Row& row) { return row.failure.empty(); });
+  const std::vector<Table> tables = makeTables(good);
   std::string markdown = kReading + verdictMarkdown(), chapter;
-  std::set<std::string> suites;
+  std::set<std::string> measured, missing;
   for (const Claim& claim : claims) {
     const std::string current = claim.where.substr(0, claim.where.find('.'));
     if (current != chapter)
       markdown +=
           fmt::format("\n## Chapter {}\n\n{}", markdownText(current), markdownHead(reproductionColumns()));
     chapter = current;
-    markdown += markdownRow(reproductionColumns(), answer(claim, tables));
-    if (!claim.suite.empty()) suites.insert(claim.suite);
+    const Answer found = answer(claim, tables);
+    markdown += markdownRow(reproductionColumns(), found);
+    if (!claim.suite.empty()) (found.answered ? measured : missing).insert(claim.suite);
   }
-  markdown += "\nMeasured with\n\n```sh\n";
-  std::string folders;
-  for (const std::string& suite : suites) {
-    const std::string folder = shellQuoted("out/" + suite);
-    markdown += fmt::format("build/bin/limn bench {} --out {}\n", shellQuoted(suite), folder);
-    folders += " " + folder;
-  }
-  return markdown + fmt::format("build/bin/limn reproduction{} --out docs/reproduction.md\n```\n", folders);
+  for (const std::string& suite : measured) missing.erase(suite);
+  return markdown + commandMarkdown(measured, missing);
 }
 
 }  // namespace limn::bench

@@ -16,7 +16,8 @@ namespace limn::bench {
 namespace {
 
 /// For each key the last row, in the order of their first appearance. A failure replaces a good row only
-/// where it records that something else was measured than then: an old answer would hide it.
+/// where it records that something else was measured than then, or a limit that the good row does not keep:
+/// an old answer would hide it.
 void remember(std::vector<Row>& rows, std::map<std::string, std::size_t>& position, Row row) {
   const auto [known, isNew] = position.emplace(row.key, rows.size());
   if (isNew) {
@@ -24,7 +25,7 @@ void remember(std::vector<Row>& rows, std::map<std::string, std::size_t>& positi
     return;
   }
   Row& before = rows[known->second];
-  if (row.failure.empty() || !before.failure.empty() ||
+  if (row.failure.empty() || !before.failure.empty() || before.error.masked_share > row.what.maxMaskedShare ||
       (!row.provenance.program.empty() && !staleness(before.provenance, row.provenance).empty()))
     before = std::move(row);
 }
@@ -52,7 +53,11 @@ std::size_t parseRows(const std::string& text, const std::filesystem::path& path
 std::vector<Row> readRows(const std::filesystem::path& path) {
   std::vector<Row> rows;
   std::map<std::string, std::size_t> position;
-  parseRows(readTextFile(path), path, [&](Row row) { remember(rows, position, std::move(row)); });
+  std::size_t lines = 0;
+  parseRows(readTextFile(path), path, [&](Row row) {
+    row.line = ++lines;
+    remember(rows, position, std::move(row));
+  });
   return rows;
 }
 
@@ -106,6 +111,7 @@ const Row* ResultsFile::find(const std::string& key) const {
 }
 
 void ResultsFile::add(Row row) {
+  row.line = ++lines_;
   remember(rows_, position_, std::move(row));
 }
 

@@ -29,7 +29,7 @@ class LIMN_API ResultsFile {
   /// Returns whether there is a successful row of that key; failed ones are to be tried again.
   bool contains(const std::string& key) const;
   /// Returns the row of that key, null if there is none: the last one, but a failure replaces a good row only
-  /// where it records another provenance.
+  /// where it records another provenance, or a largest masked share that the good row exceeds.
   const Row* find(const std::string& key) const;
   /// Writes one whole line and flushes it to the disk. Throws Error if that fails; the file then still ends
   /// in a whole line.
@@ -43,6 +43,7 @@ class LIMN_API ResultsFile {
 
   std::filesystem::path path_;
   int file_ = -1;
+  std::size_t lines_ = 0;
   std::vector<Row> rows_;
   std::map<std::string, std::size_t> position_;  ///< of a key in rows_
 };

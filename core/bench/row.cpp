@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/bench/private/comparison.h"
 #include "core/bench/private/misjudged_table.h"
+#include "core/bench/private/provenance_json.h"
 #include "core/bench/private/question_json.h"
 #include "core/image/metric_json.h"
 
@@ -95,21 +96,6 @@ Cost costFromJson(const Json& json) {
   cost.qualityParameters = json.value("quality_parameters", std::vector<std::string>{});
   cost.details = json.dump();
   return cost;
-}
-
-Json provenanceToJson(const Provenance& p) {
-  Json modules = Json::array();
-  for (const Provenance::Module& m : p.modules)
-    modules.push_back({{"technique", m.technique}, {"file", m.file}, {"hash", m.hash}});
-  return {{"program", p.program}, {"scene", p.scene}, {"techniques", modules}};
-}
-
-Provenance provenanceFromJson(const Json& json) {
-  Provenance p{json.at("program").get<std::string>(), json.at("scene").get<std::string>(), {}};
-  for (const Json& m : json.at("techniques"))
-    p.modules.push_back({m.at("technique").get<std::string>(), m.at("file").get<std::string>(),
-                         m.at("hash").get<std::string>()});
-  return p;
 }
 
 Json caseToJson(const Case& c) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <tuple>
 
 #include "core/base/error.h"
 #include "core/base/failure.h"
@@ -117,9 +118,21 @@ Row withTurn(Row row, const std::vector<double>& ms, const std::optional<BoundTi
   return row;
 }
 
-/// Whether the row is good and was measured with what the case is measured with now.
+/// Whether the row is good, has what the case asks for beside its key, and was measured with what the case is
+/// measured with now.
 bool isValid(const Row& row, const Case& c, const std::function<Provenance(const Case&)>& provenance) {
-  return row.failure.empty() && (!provenance || staleness(row.provenance, provenance(c)).empty());
+  return row.failure.empty() && (!c.picture || !row.picture.empty()) &&
+         row.error.masked_share <= c.maxMaskedShare &&
+         (!provenance || staleness(row.provenance, provenance(c)).empty());
+}
+
+bool hasAllTurns(const Row& row, const Case& c) {
+  return row.cost.frameMs.n == 0 || row.cost.frameMs.turns >= c.turns;
+}
+
+/// What is unknown differs from nothing.
+bool mayBeEqual(const std::string& a, const std::string& b) {
+  return a == b || a.empty() || b.empty();
 }
 
 class Run {
@@ -155,16 +168,35 @@ class Run {
     return callbacks_.provenance ? callbacks_.provenance(c) : Provenance();
   }
 
+  /// Whether further turns may be added to the row.
+  bool isOfThisMachine(const Row& row) const {
+    return mayBeEqual(row.cost.machine, callbacks_.machine) && mayBeEqual(row.cost.driver, callbacks_.driver);
+  }
+
   /// The row that holds for the case as it is now, null if there is none.
   const Row* finished(const Case& c, const std::string& key) const {
     const Row* row = results_.find(key);
-    return row && isValid(*row, c, callbacks_.provenance) ? row : nullptr;
+    const bool holds =
+        row && isValid(*row, c, callbacks_.provenance) && (hasAllTurns(*row, c) || isOfThisMachine(*row));
+    return holds ? row : nullptr;
+  }
+
+  /// Brings what the suite says of a row, and nothing was measured of, to what it says now.
+  void restate(const Row& row, const Case& c) {
+    const auto said = [](const Case& of) { return std::tie(of.title, of.baseline, of.maxMaskedShare); };
+    if (said(row.what) == said(c)) return;
+    Row now = row;
+    now.what.title = c.title;
+    now.what.baseline = c.baseline;
+    now.what.maxMaskedShare = c.maxMaskedShare;
+    results_.append(now);
   }
 
   void measure(std::size_t i) {
     const Case& c = cases_[i];
     const std::string key = rowKey(c, renderer_);
-    if (finished(c, key)) {
+    if (const Row* row = finished(c, key)) {
+      restate(*row, c);
       ++summary_.skipped;
       return report(i, 1, Progress::State::skipped);
     }
@@ -239,8 +271,7 @@ std::vector<Case> unfinishedCases(std::span<const Case> cases, std::span<const R
   for (const Case& c : cases) {
     const auto [begin, end] = known.equal_range(rowKey(c, ""));
     const bool finished = std::any_of(begin, end, [&](const auto& entry) {
-      const FrameTime& time = entry.second->cost.frameMs;
-      return isValid(*entry.second, c, provenance) && (time.n == 0 || time.turns >= c.turns);
+      return isValid(*entry.second, c, provenance) && hasAllTurns(*entry.second, c);
     });
     if (!finished) left.push_back(c);
   }

@@ -53,6 +53,9 @@ struct Callbacks {
   /// Returns what the case is measured with now: rows that were measured with something else are measured
   /// again. May be empty: every row then counts as valid.
   std::function<Provenance(const Case&)> provenance;
+  /// Where it is measured now, as in Cost: a row of elsewhere that lacks turns is measured again, since times
+  /// of two machines are no sample of either. Empty: not compared.
+  std::string machine, driver;
 };
 
 struct Summary {
@@ -66,12 +69,14 @@ LIMN_API std::map<std::string, int> staleRows(std::span<const Case> cases, const
                                               const std::function<Provenance(const Case&)>& provenance);
 
 /// Returns the cases for which no renderer has a row that is finished: good, measured with what `provenance`
-/// gives now, and timed in all turns that the case asks for.
+/// gives now, with the picture and within the masked share that the case asks for, and timed in all of its
+/// turns.
 LIMN_API std::vector<Case> unfinishedCases(std::span<const Case> cases, std::span<const Row> rows,
                                            const std::function<Provenance(const Case&)>& provenance);
 
 /// Runs all cases first, then further turns of timing, each of which replaces the rows by longer ones.
 /// `renderer` is recorded in the rows and part of their keys: results of another renderer are measured again.
+/// Rows that hold get the case's title, baseline and limit where these have changed.
 /// Whatever a callback other than `progress` and `provenance` throws is recorded in the case's row, and the
 /// next case is run. Throws the Error of the results file, which ends the run.
 LIMN_API Summary runCases(std::span<const Case> cases, const std::string& renderer, ResultsFile& results,

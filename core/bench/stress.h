@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/export.h"
+#include "core/bench/provenance.h"
 #include "core/image/image.h"
 #include "core/technique/registry.h"
 #include "core/technique/technique.h"
@@ -49,6 +50,7 @@ struct StressResult {
   /// Holds one for each term that was asked for. The first is the one that counts: of the worst verdict and,
   /// among these, of the largest factor.
   std::vector<StressAnswer> answers = {};
+  Provenance provenance = {};  ///< empty in results of earlier versions
 
   /// Returns the answer that counts; an empty one where nothing was asked.
   LIMN_API const StressAnswer& worst() const;
@@ -99,10 +101,11 @@ class LIMN_API StressRun {
 /// Returns a table with a line for each result; those that did not pass are explained.
 LIMN_API std::string toMarkdown(std::span<const StressResult> results);
 /// Returns {"renderer": ..., "results": [{"technique", "case", "scene", "settings", "own", "allowed",
-/// "answers": [{"term", "verdict", "error", "benign", "factor", "message"}]}]}, the worst answer first.
+/// "answers": [{"term", "verdict", "error", "benign", "factor", "message"}], "provenance": {...}}]}, the
+/// worst answer first.
 LIMN_API std::string toJson(std::span<const StressResult> results, const std::string& renderer);
-/// Returns the results in a text of toJson(); none if they come from another renderer. Results of earlier
-/// versions, which asked for one term alone, are left out. Throws Error for text that is not such a table.
+/// Returns the results in a text of toJson(). Results of earlier versions, which asked for one term alone,
+/// are left out. Throws Error for text that is not such a table, or that of another renderer.
 LIMN_API std::vector<StressResult> stressFromJson(const std::string& text, const std::string& renderer);
 
 }  // namespace limn::bench

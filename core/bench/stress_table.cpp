@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/bench/private/columns.h"
 #include "core/bench/private/markdown.h"
+#include "core/bench/private/provenance_json.h"
 #include "core/bench/stress.h"
 #include "core/image/metric_table.h"
 
@@ -119,6 +120,7 @@ std::string toJson(std::span<const StressResult> results, const std::string& ren
                     {"own", r.own},
                     {"allowed", r.allowed},
                     {"answers", std::move(answers)}});
+    if (!r.provenance.program.empty()) list.back()["provenance"] = provenanceToJson(r.provenance);
   }
   return Json{{"renderer", renderer}, {"results", list}}.dump(1, ' ', false, Json::error_handler_t::replace) +
          "\n";
@@ -128,7 +130,8 @@ std::vector<StressResult> stressFromJson(const std::string& text, const std::str
   try {
     const auto json = Json::parse(text);
     std::vector<StressResult> results;
-    if (json.at("renderer") != renderer) return results;
+    if (const std::string& other = json.at("renderer").get_ref<const std::string&>(); other != renderer)
+      throw Error(fmt::format("holds results of {}, not of {}; take another folder", other, renderer));
     for (const Json& r : json.at("results")) {
       if (!r.contains("answers")) continue;
       StressResult result{.technique = r.at("technique"),
@@ -138,6 +141,7 @@ std::vector<StressResult> stressFromJson(const std::string& text, const std::str
                           .own = r.at("own"),
                           .allowed = r.at("allowed")};
       for (const Json& answer : r.at("answers")) result.answers.push_back(answerFrom(answer));
+      if (r.contains("provenance")) result.provenance = provenanceFromJson(r["provenance"]);
       results.push_back(std::move(result));
     }
     return results;

@@ -44,6 +44,29 @@ std::string tableKey(const Row& row) {
                      timeSizeText(row.what), row.what.fps, row.cost.renderer);
 }
 
+/// What makes rows of one table the same setting: their keys, without the effort that times it.
+std::string settingKey(const Case& c) {
+  std::string text = c.technique;
+  for (const auto& [name, value] : c.parameters) text += fmt::format("\x1e{}\x1f{}", name, value);
+  return c.environmentLights > 0 ? text + "\x1c" + describeEnvironmentLights(c) : text;
+}
+
+/// Whether `row` stands in the place of one of the same setting that comes before it.
+bool supersedes(const Row& row, const Row& before) {
+  if (!row.provenance.program.empty() && !staleness(before.provenance, row.provenance).empty())
+    return row.line >= before.line;
+  if (row.failure.empty() != before.failure.empty()) return row.failure.empty();
+  const auto effort = [](const FrameTime& time) { return std::pair(time.n, time.turns); };
+  return effort(row.cost.frameMs) >= effort(before.cost.frameMs);
+}
+
+std::string newestProgram(std::span<const Row> rows) {
+  const Row* newest = nullptr;
+  for (const Row& row : rows)
+    if (!row.provenance.program.empty() && (newest == nullptr || row.line >= newest->line)) newest = &row;
+  return newest == nullptr ? std::string() : newest->provenance.program;
+}
+
 std::string slug(const std::string& title, std::set<std::string>& used) {
   std::string name;
   for (const char c : title) {
@@ -87,6 +110,7 @@ std::vector<std::string> markdownCells(const Chosen& chosen, const Row& row, con
     if (row.failure.empty() || column->failed) cells.push_back(column->shown(row, table));
   if (!row.failure.empty())
     cells.push_back("failed: " + row.failure);  // a reader fills the line with empty cells
+  if (isOutdated(row, table)) cells.front() += " \u2020";
   return cells;
 }
 
@@ -99,6 +123,10 @@ std::string csvLine(const std::vector<std::string>& fields) {
 
 }  // namespace
 
+bool isOutdated(const Row& row, const Table& table) {
+  return row.provenance.program != table.program;
+}
+
 std::vector<Table> makeTables(std::span<const Row> rows) {
   // The machines of each question in their order. Rows that do not say theirs (failures, rows of earlier
   // versions) stand with the first.
@@ -110,6 +138,7 @@ std::vector<Table> makeTables(std::span<const Row> rows) {
   }
   std::vector<Table> tables;
   std::map<std::pair<std::string, std::string>, std::size_t> byKey;
+  std::map<std::pair<std::size_t, std::string>, std::size_t> settings;  // places in the rows of a table
   std::set<std::string> names;
   for (const Row& row : rows) {
     const std::string key = tableKey(row);
@@ -117,12 +146,21 @@ std::vector<Table> makeTables(std::span<const Row> rows) {
     const std::string machine = row.cost.machine.empty() && !known.empty() ? known.front() : row.cost.machine;
     const auto [place, isNew] = byKey.emplace(std::pair(key, machine), tables.size());
     if (isNew) tables.push_back({tableTitle(row) + (known.size() > 1 ? ", " + machine : ""), "", {}});
-    tables[place->second].rows.push_back(row);
+    std::vector<Row>& kept = tables[place->second].rows;
+    const auto [same, isFirst] =
+        settings.emplace(std::pair(place->second, settingKey(row.what)), kept.size());
+    if (isFirst)
+      kept.push_back(row);
+    else if (supersedes(row, kept[same->second]))
+      kept[same->second] = row;
   }
   std::stable_sort(tables.begin(), tables.end(), [](const Table& a, const Table& b) {
     return a.rows.front().what.scene < b.rows.front().what.scene;
   });
-  for (Table& table : tables) table.fileName = slug(table.title, names);
+  for (Table& table : tables) {
+    table.fileName = slug(table.title, names);
+    table.program = newestProgram(table.rows);
+  }
   return tables;
 }
 
@@ -132,6 +170,8 @@ std::string toMarkdown(const Table& table) {
   for (const Column* column : chosen) heads.push_back({column->markdown, column->align});
   std::string text = fmt::format("### {}\n\n{}", markdownText(table.title), markdownHead(heads));
   for (const Row& row : table.rows) text += markdownRow(markdownCells(chosen, row, table));
+  if (std::ranges::any_of(table.rows, [&](const Row& row) { return isOutdated(row, table); }))
+    text += "\n\u2020 measured with another version of the program than the newest row\n";
   return text + comparisonMarkdown(table.rows);
 }
 

@@ -12,19 +12,27 @@
 namespace limn::bench {
 
 /// Holds rows that may be compared: same scene, camera, light, term, time, size, mode (dynamic or static),
-/// renderer and machine. Rows that do not say their machine stand with those of the question's first.
+/// renderer and machine, each setting once. Rows that do not say their machine stand with those of the
+/// question's first.
 struct Table {
   std::string title;     ///< for people
   std::string fileName;  ///< of the CSV, unique among the tables of one makeTables
   std::vector<Row> rows;
+  std::string program = {};  ///< Provenance::program of its newest row; "" where none records it
 };
 
-/// Returns the rows as tables, grouped by scene first; failed rows are kept and shown as failed.
+/// Returns whether another program than that of the table's newest row measured the row.
+LIMN_API bool isOutdated(const Row& row, const Table& table);
+
+/// Returns the rows as tables, grouped by scene first; failed rows are kept and shown as failed. Of rows of
+/// one setting that were measured with several efforts, the newest program's stands there, and of these the
+/// good one of most frames.
 LIMN_API std::vector<Table> makeTables(std::span<const Row> rows);
 
 /// Returns errors, frame time (median, quartiles, number of frames) and memory. Rows on the Pareto front of
 /// RMSE and time carry a star; an RMSE below three times the reference's noise is shown as that bound
-/// ("<0.001"). The column "reference ms" is referenceTime().
+/// ("<0.001"). The column "reference ms" is referenceTime(). Outdated rows have a mark that a line below
+/// explains.
 LIMN_API std::string toMarkdown(const Table& table);
 /// Returns the same numbers in full precision, with a header line (RFC 4180). Texts are written unchanged: a
 /// spreadsheet may take one that begins with =, +, - or @ for a formula; import such columns as text.

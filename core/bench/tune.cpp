@@ -103,6 +103,11 @@ double badness(const MetricInfo& metric, double value) {
   return value;
 }
 
+std::optional<double> badness(const MetricInfo& metric, const Metrics& metrics) {
+  const std::optional<double> value = boundedError(metric, metrics);
+  return value ? std::optional(badness(metric, *value)) : std::nullopt;
+}
+
 double msAtPixels(const Row& row, double pixels, double rest) {
   if (pixels == 1) return row.cost.frameMs.median;
   const CostSplit& split = row.cost.split;

@@ -84,6 +84,9 @@ struct TuneFigures {
 /// Returns a figure of the metric that is smaller for better pictures: errors as they are, deviations without
 /// their sign, and 10^(-d/20) of a likeness of d decibels.
 LIMN_API double badness(const MetricInfo& metric, double value);
+/// Returns the same of boundedError(): pictures that differ by less than the reference's noise are equally
+/// good. Returns nullopt where it is not known.
+LIMN_API std::optional<double> badness(const MetricInfo& metric, const Metrics& metrics);
 
 /// Returns the median time of the row's frames at `pixels` times as many pixels: maps and filters take as
 /// long as before, the technique's own passes grow with the pixels, and the rest, whose G-buffer is bound by
@@ -103,7 +106,8 @@ struct TuneLimit {
 using TuneMeasure = std::function<std::vector<TuneFigures>(std::span<const TuneSetting>, const TuneEffort&)>;
 
 struct TuneResult {
-  /// Holds the settings that were measured in full and keep the limit, the best first.
+  /// Holds the settings that were measured in full and keep the limit, the best first; of equally good ones
+  /// that with more of the limit left.
   std::vector<TuneSetting> answers;
   /// Holds the one measured in full that misses the limit least; unset where all failed.
   std::optional<TuneSetting> nearest;

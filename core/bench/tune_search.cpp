@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "core/bench/private/tune_allowance.h"
 #include "core/bench/tune.h"
@@ -103,7 +104,7 @@ class Search {
     for (const TuneSetting& s : measured)
       if (keeps(figures(s))) result_.answers.push_back(s);
     std::ranges::stable_sort(result_.answers, {},
-                             [&](const TuneSetting& s) { return objective(figures(s)); });
+                             [&](const TuneSetting& s) { return objectiveFirst(figures(s)); });
     const auto nearest =
         std::ranges::min_element(measured, {}, [&](const TuneSetting& s) { return constrained(figures(s)); });
     if (nearest != measured.end()) result_.nearest = *nearest;
@@ -120,6 +121,10 @@ class Search {
   double bound() const { return limit_.ms ? *limit_.ms : *limit_.error; }
   double constrained(const TuneFigures& f) const { return limit_.ms ? f.ms : f.error; }
   double objective(const TuneFigures& f) const { return limit_.ms ? f.error : f.ms; }
+  /// Errors below the reference's noise are all the same: the quicker of equals comes first.
+  std::pair<double, double> objectiveFirst(const TuneFigures& f) const {
+    return {objective(f), constrained(f)};
+  }
   bool keeps(const TuneFigures& f) const { return constrained(f) <= bound(); }
 
   bool none() const {
@@ -365,7 +370,8 @@ class Search {
     }
     const auto byObjective = [&](const TuneSetting& s) { return objective(of.at(s).figures); };
     const auto byConstrained = [&](const TuneSetting& s) { return constrained(of.at(s).figures); };
-    std::ranges::stable_sort(inside, {}, byObjective);
+    std::ranges::stable_sort(inside, {},
+                             [&](const TuneSetting& s) { return objectiveFirst(of.at(s).figures); });
     std::ranges::stable_sort(near, {}, [&](const TuneSetting& s) {
       const double excess = byConstrained(s) / bound();
       return byObjective(s) * excess * excess;

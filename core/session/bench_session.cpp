@@ -231,7 +231,7 @@ bench::Measurement BenchSession::measure(const bench::Case& c) {
   result.cost.split = bench::costSplit(stats);
   result.cost.memoryBytes = stats.memoryBytes;
   result.cost.details = render::toJson(stats);
-  result.cost.driver = context_->info().vendor + ", " + context_->info().version;
+  result.cost.driver = driverName();
   result.cost.machine = bench::machineName();
   result.cost.lights =
       loaded.view.light == scene::kNone ? static_cast<int>(loaded.view.pose.lights.size()) : 1;

@@ -33,6 +33,8 @@ class LIMN_API BenchSession {
   ~BenchSession();
 
   const std::string& rendererName() const { return context_->info().renderer; }
+  /// Returns the driver as rows record it: vendor and version.
+  std::string driverName() const { return context_->info().vendor + ", " + context_->info().version; }
   const TechniqueRegistry& registry() const { return registry_; }
   /// Discards the loaded scene, so that the next case starts from nothing: a failure may have left scene and
   /// renderer half changed.

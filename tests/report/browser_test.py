@@ -190,6 +190,9 @@ def answers_for_a_budget(browser):
         slide(browser, "#take", 100)
         lines = browser.evaluate("[...document.querySelectorAll('#take table')[0].tBodies[0].rows].map(r => r.cells[1].textContent)")
         check(lines == [setting(min(rows, key=error))] * 2, f"over both scenes {lines}")
+        check(browser.evaluate("document.querySelectorAll('[aria-live] table').length") == 0, "whole tables are read aloud")
+        said = browser.evaluate("document.querySelector('#take p[aria-live]').textContent")
+        check("2 of 2 scenes" in said and min(rows, key=error)["technique"] in said, f"aloud is said {said}")
         best = browser.evaluate("[...document.querySelectorAll('#take table')[1].tBodies[0].rows[0].cells].map(c => c.textContent)")
         check(best[:2] == [min(rows, key=error)["technique"], "2"] and best[3] == "2", f"of two scenes {best}")
         browser.evaluate("[...document.querySelectorAll('#take th button')].at(-1).click()")
@@ -229,7 +232,8 @@ def loads_pictures_on_demand(browser):
     rows = []
     for i in range(ROWS):
         row = json.loads(json.dumps(first[i % POINTS]))
-        row.update(key=f"many{i}", scene=f"scene_{i // 20}")
+        row.update(key=f"many{i}", scene=f"scene_{i // 20}",
+                   parameters={**row["parameters"], f"{row['technique']}.copy": str(i)})
         for key in ("picture", "difference"):
             copy = f"pictures/{key}_{i}.png"
             shutil.copy(out / row[key], out / copy)
@@ -350,6 +354,32 @@ def sets_the_reference_beside(browser):
         check("reference ms" in browser.evaluate("document.querySelector('table').textContent"), "no time of the reference")
 
 
+def keeps_machines_and_programs_apart(browser):
+    """Frames per second of one machine alone, and marks where another version of the program measured."""
+    speeds = """[...document.querySelectorAll('#subject-0 table')].find(t => t.caption.textContent.startsWith('Frames per second'))
+        .tHead.textContent"""
+    rows = [json.loads(line) for line in results.read_text().splitlines()]
+    others = [json.loads(json.dumps(row)) for row in rows]
+    for row in others:
+        row.update(key=row["key"] + "o", time_size=[192, 144])
+    with reported([*rows, *others]):
+        browser.open(page)
+        check("192 x 144" in browser.evaluate(speeds), "one machine's resolutions have no columns")
+        check("†" not in browser.evaluate("document.getElementById('results').textContent"), "rows of one program are marked")
+    for row in rows:
+        row["stats"]["machine"] = "a"
+    for row in others:
+        row["stats"]["machine"] = "b"
+    rows[0]["provenance"]["program"] = "another"
+    with reported([*rows, *others]):
+        browser.open(page)
+        shown = browser.evaluate(speeds)
+        check("96 x 72" in shown and "192 x 144" not in shown, f"two machines share a table: {shown}")
+        marked = browser.evaluate("[...document.querySelectorAll('#subject-0 table tbody tr[data-key] th')].map(h => h.textContent)")
+        check(len(marked) == POINTS and [name for name in marked if "†" in name] == ["Hard shadows †"], f"marked are {marked}")
+        check("† measured with another version" in browser.evaluate("document.getElementById('results').textContent"), "the mark is not explained")
+
+
 def withstands_foreign_rows(browser):
     """Texts from elsewhere stay texts, failed rows and rows of earlier versions are shown, renderers never mix."""
     rows = [json.loads(line) for line in results.read_text().splitlines()]
@@ -357,7 +387,8 @@ def withstands_foreign_rows(browser):
     hostile.update(key="1", technique=HOSTILE, title=HOSTILE, light=HOSTILE, parameters={HOSTILE: HOSTILE},
                    picture=HOSTILE + ".png")
     hostile["stats"].update(renderer=HOSTILE, machine=HOSTILE, driver=HOSTILE, passes=[{"name": HOSTILE, "technique": HOSTILE}])
-    failed.update(key="2", failure=HOSTILE, renderer=rows[0]["stats"]["renderer"])
+    failed.update(key="2", parameters={"hard_shadow_map.shadow_map_size": "64"}, failure=HOSTILE,
+                  renderer=rows[0]["stats"]["renderer"])
     for key in ("spectrum", "penumbra", "picture", "difference"):
         old.pop(key)
     for key in ("passes", "shadow_maps", "driver", "machine", "lights", "quality_parameters"):
@@ -434,7 +465,7 @@ def shows_hostile_names_literally(browser):
         for number, text in enumerate(HOSTILE_TEXTS):
             text = text.replace("ADDRESS", address)
             hostile = [dict(replaced(row, text), key=str(i)) for i, row in enumerate(rows)]
-            hostile.append(dict(hostile[0], key="failed", failure=text, renderer=text))
+            hostile.append(dict(hostile[0], key="failed", parameters={"failed": text}, failure=text, renderer=text))
             with reported([*rows, *hostile]):
                 browser.open(page)
                 what = f"hostile text {number}"
@@ -481,8 +512,8 @@ def is_shut_by_its_policy(browser):
 bench()
 with Browser(options.chromium) as browser:
     for step in (shows_points_and_pictures, reacts, answers_for_a_budget, enlarges_and_flips, loads_pictures_on_demand,
-                 tells_close_points_apart, is_painted, is_accessible, sets_the_reference_beside, shows_hostile_names_literally,
-                 is_shut_by_its_policy, withstands_foreign_rows):
+                 tells_close_points_apart, is_painted, is_accessible, sets_the_reference_beside,
+                 keeps_machines_and_programs_apart, shows_hostile_names_literally, is_shut_by_its_policy, withstands_foreign_rows):
         step(browser)
         check(not browser.problems, f"{step.__name__}: {browser.problems}")
 print("the report page shows and does what it should")

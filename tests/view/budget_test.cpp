@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <set>
+
 #include "core/base/error.h"
 #include "core/session/technique_choice.h"
 
@@ -15,6 +17,7 @@ bench::Row row(const std::string& technique, double rmse, double ms, const std::
   row.what.technique = technique;
   row.error.rmse = rmse;
   row.cost.renderer = "a card";
+  row.cost.machine = "a machine";
   row.cost.frameMs = {.median = ms, .q1 = ms, .q3 = ms, .n = 5, .samples = {}};
   return row;
 }
@@ -38,6 +41,15 @@ TEST(Budget, TakesTheLeastErrorThatIsQuickEnough) {
   EXPECT_EQ(bestWithin(questions.front(), 1, kRmse).best->technique, "hard_shadow_map");
   EXPECT_FALSE(bestWithin(questions.front(), 1, kRmse).runnerUp);
   EXPECT_FALSE(bestWithin(questions.front(), 0.5, kRmse).best);
+}
+
+/// As in tables, on the report page and in limn tune.
+TEST(Budget, NothingRanksBelowTheNoise) {
+  std::vector<bench::Row> rows{row("pcss", 0.0015, 200), row("vssm", 0.00155, 20)};
+  for (bench::Row& each : rows) each.error.noise_floor = 0.002;
+  const BudgetAnswer answer = bestWithin(measuredQuestions(rows, "balls").front(), 250, kRmse);
+  EXPECT_EQ(answer.best->technique, "vssm");
+  EXPECT_EQ(answer.runnerUp->technique, "pcss");
 }
 
 /// A PSNR is the better the larger it is.
@@ -78,6 +90,22 @@ TEST(Budget, ComparesWhatCanBeCompared) {
   ASSERT_EQ(questions.size(), 4u);
   EXPECT_EQ(questions.back().pixels, 64 * 64) << "the smallest pictures come last";
   for (const MeasuredQuestion& question : questions) EXPECT_EQ(question.settings.size(), 1u);
+}
+
+/// As the bench's tables keep apart what the viewer shows: by mode, playback and reference.
+TEST(Budget, KeepsApartWhatIsMeasuredInAnotherWay) {
+  std::vector<bench::Row> rows(6, row("pcss", 1, 1));
+  rows[1].what.dynamic = false;
+  rows[2].what.fps = 30;
+  rows[3].what.reference.spp = 16;
+  rows[4].what.reference.noise = 0.01;
+  rows[5].what.environmentLights = 0.1;
+  const auto questions = measuredQuestions(rows, "balls");
+  std::set<std::string> texts;
+  for (const MeasuredQuestion& question : questions) texts.insert(question.text);
+  EXPECT_EQ(questions.size(), rows.size());
+  EXPECT_EQ(texts.size(), rows.size());
+  EXPECT_THAT(questions.front().text, testing::HasSubstr("/dynamic, against 256 spp"));
 }
 
 /// A search times what it checks for a shorter time than what it measures in full.

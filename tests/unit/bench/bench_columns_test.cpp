@@ -168,7 +168,7 @@ TEST(BenchColumns, CsvLeavesEmptyWhatIsNotKnown) {
 TEST(BenchColumns, FailedRowsSayWhatWasAskedAndWhy) {
   Row failed = distinctRow();
   failed.failure = "he said \"no\", twice";
-  const Table table = tableOf({distinctRow(), failed});
+  const Table table{.title = "", .fileName = "", .rows = {distinctRow(), failed}};
   const NamedCells cells = readCsv(toCsv(table)).at(1), answered = readCsv(toCsv(table)).at(0);
   for (const Column& column : columns()) {
     if (column.csv.empty() || column.csv == "failure") continue;
@@ -201,7 +201,8 @@ TEST(BenchColumns, VisibilityAndBoundsHaveColumnsOfTheirOwn) {
   row.misjudged.reset();
   row.cost.bound.reset();
   const NamedCells without = readMarkdown(toMarkdown(tableOf({row}))).at(0);
-  const std::vector<NamedCells> with = readMarkdown(toMarkdown(tableOf({row, distinctRow()})));
+  const std::vector<NamedCells> with =
+      readMarkdown(toMarkdown(Table{.title = "", .fileName = "", .rows = {row, distinctRow()}}));
   ASSERT_EQ(with.size(), 2u);
   for (const Column& column : columns()) {
     if (column.markdown.empty()) continue;

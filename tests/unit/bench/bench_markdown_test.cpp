@@ -152,6 +152,7 @@ TEST(BenchMarkdown, NoPageHoldsMarkupOfARow) {
   const std::string text = "<b>|`x`\n\n# y\n";
   Row failed = hostileRow(text);
   failed.failure = text;
+  failed.what.parameters = {{text, text + "y"}};
   Row other = hostileRow(text + "z");
   const std::vector<Row> rows = {hostileRow(text), failed, other};
   Row known = hostileRow(text);

@@ -80,6 +80,15 @@ TEST_F(BenchMerge, MergingTakesWhatIsValidNowAndOfMoreTurns) {
     EXPECT_EQ(readTextFile(folder / rows[0].picture), "new, 2 turns");
     EXPECT_EQ(readTextFile(folder / rows[0].difference), "new, 2 turns");
   }
+  // A part that was to keep its pictures brings them.
+  const fs::path with = make("with a picture", now, 2), without = folder_ / "without";
+  fs::create_directories(without);
+  Row bare = readRows(with / "results.jsonl")[0];
+  bare.picture = bare.difference = "";
+  ResultsFile(without / "results.jsonl").append(bare);
+  EXPECT_EQ(merge(without, with), 0);
+  EXPECT_EQ(merge(with, without), 1);
+  EXPECT_NE(readRows(without / "results.jsonl")[0].picture, "");
   // Of good rows of two other programs nothing says which is newer: the folder keeps its own.
   const fs::path older = make("older, 9 turns", {"program 0", "scene", {}}, 9);
   EXPECT_EQ(merge(older, parts[0]), 0);

@@ -91,6 +91,22 @@ TEST(Regression, NoiseAndDriftAreNoRegression) {
   EXPECT_FALSE(compareResults(before, now).found());
 }
 
+TEST(Regression, TimesOfTwoMachinesAreNotCompared) {
+  std::vector<Row> before = {row("a", 0.1, 5)}, now = {row("a", 0.1, 10)};
+  before[0].cost.machine = "a";
+  EXPECT_TRUE(compareResults(before, now).found()) << "an earlier version did not record its machine";
+  now[0].cost.machine = "a";
+  EXPECT_TRUE(compareResults(before, now).found());
+  now[0].cost.machine = "b";
+  const Regression regression = compareResults(before, now);
+  EXPECT_FALSE(regression.found());
+  EXPECT_EQ(toMarkdown(regression),
+            "1 rows compared: 0 slower, 0 worse, 0 failed, 0 faster, 0 better; 0 only before, 0 only now; "
+            "times of 1 not compared, which two machines measured\n");
+  now[0].error.rmse = 0.2;
+  EXPECT_TRUE(compareResults(before, now).changes[0].worse) << "errors are";
+}
+
 TEST(Regression, SlowerAndWorseAreFound) {
   const std::vector<Row> before = {row("slower", 0.1, 5), row("worse", 0.1, 5), row("better", 0.1, 5)};
   const std::vector<Row> now = {row("slower", 0.1, 6), row("worse", 0.103, 5), row("better", 0.09, 4)};

@@ -115,6 +115,12 @@ TEST_F(BenchReport, TextsCannotLeaveTheScript) {
   EXPECT_EQ(page.find("unsafe-inline"), std::string::npos);
 }
 
+TEST_F(BenchReport, FilesThatMadeTheStressTableStayOutside) {
+  writeTextFile(results() / "stress.json",
+                R"({"results": [{"case": "far", "provenance": {"techniques": [{"file": "/a/t.so"}]}}, 1]})");
+  EXPECT_EQ(data({row("pcss", 0.5f)})["stability"]["results"], (Json{{{"case", "far"}}, 1}));
+}
+
 TEST_F(BenchReport, OnlyPicturesInsideTheFolderAreRead) {
   Image secret = Image::rgb(4, 4);
   writePng(folder_ / "secret.png", secret);

@@ -12,6 +12,7 @@
 namespace limn::bench {
 namespace {
 
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -57,6 +58,35 @@ TEST(Reproduction, RatiosAreMeasuredBetweenTheRowsThatFit) {
   EXPECT_THAT(page, HasSubstr("limn bench ch7 --out out/ch7"));
   for (const VerdictInfo& info : kVerdicts)
     EXPECT_THAT(page, HasSubstr(std::string("| ") + info.name + " | " + info.rule + " |"));
+}
+
+TEST(Reproduction, MeasuredWithNamesOnlySuitesThatAnswerAClaim) {
+  const std::string other =
+      "[[claims]]\nwhere = \"7.6\"\nwhat = \"other\"\nmeasure = \"frame\"\nthesis = 2\nsuite = \"ch5\"\n"
+      "slow = [\"/cssm?\"]\nfast = [\"vssm$\"]\n";
+  const auto page = [&](const std::vector<Row>& rows) {
+    return reproductionMarkdown(parseClaims(kClaim + other, "c"), rows);
+  };
+  const std::string bench5 = "build/bin/limn bench ch5 --out out/ch5\n",
+                    bench7 = "build/bin/limn bench ch7 --out out/ch7\n",
+                    missing = "\nTo measure what is missing\n\n```sh\n";
+  EXPECT_THAT(page({row("pcss", 30, "samples"), row("vssm", 2)}),
+              EndsWith("\nMeasured with\n\n```sh\n" + bench7 +
+                       "build/bin/limn reproduction out/ch7 --out out/reproduction.md\n```\n" + missing +
+                       bench5 + "```\n"));
+  EXPECT_THAT(page({row("pcss", 30, "samples"), row("cssm", 20, "order"), row("vssm", 2)}),
+              EndsWith("```sh\n" + bench5 + bench7 +
+                       "build/bin/limn reproduction out/ch5 out/ch7 --out out/reproduction.md\n```\n"));
+  const std::string none = page({});
+  EXPECT_THAT(none, EndsWith(missing + bench5 + bench7 + "```\n"));
+  EXPECT_THAT(none, Not(HasSubstr("Measured with")));
+}
+
+TEST(Reproduction, EachLineSaysItsMachine) {
+  Row slow = row("pcss", 30, "samples"), fast = row("vssm", 2);
+  EXPECT_THAT(line({slow, fast}), EndsWith("| balls, 1280x720, llvmpipe |")) << "earlier versions' rows";
+  slow.cost.machine = fast.cost.machine = "Any Processor, 2 threads";
+  EXPECT_THAT(line({slow, fast}), EndsWith("| balls, 1280x720, llvmpipe, Any Processor, 2 threads |"));
 }
 
 TEST(Reproduction, MissingAndFailedRowsAreNotMeasured) {

@@ -118,6 +118,41 @@ TEST_F(BenchRunner, FurtherTurnsLengthenTheRowsAndResume) {
   EXPECT_EQ(rowFromJson(toJson(results.rows()[0])).cost.frameMs.turns, 3);
 }
 
+TEST_F(BenchRunner, ARowThatAnotherMachineBeganIsMeasuredAgain) {
+  std::vector<Case> cases = {exampleCase("pcss", 16), exampleCase("pcss", 64)};
+  cases[0].frames = cases[1].frames = 2;
+  cases[0].turns = 3;
+  Fakes fakes;
+  const auto run = [&](const std::string& machine, const std::string& driver, bool interrupted = false) {
+    ResultsFile results(path_);
+    Callbacks callbacks = fakes.callbacks();
+    callbacks.machine = machine;
+    callbacks.driver = driver;
+    callbacks.measure = [&, measure = callbacks.measure](const Case& c) {
+      Measurement m = measure(c);
+      m.cost.machine = machine;
+      m.cost.driver = driver;
+      return m;
+    };
+    if (interrupted) callbacks.time = [](const Case&) -> std::vector<double> { throw Error("interrupted"); };
+    runCases(cases, "llvmpipe", results, callbacks);
+    return results.rows();
+  };
+  run("a", "1", true);
+  EXPECT_EQ(fakes.measurements, 2);
+  const std::vector<Row> rows = run("b", "1");
+  EXPECT_EQ(fakes.measurements, 3) << "the row of one turn lacks none";
+  EXPECT_EQ(rows[0].cost.machine, "b");
+  EXPECT_EQ(rows[0].cost.frameMs.n, 6);
+  EXPECT_EQ(rows[1].cost.machine, "a");
+  for (Case& c : cases) c.turns = 4;
+  EXPECT_EQ(run("b", "2")[0].cost.frameMs.n, 8);
+  EXPECT_EQ(fakes.measurements, 5) << "a driver is as good as a machine";
+  for (Case& c : cases) c.turns = 5;
+  EXPECT_EQ(run("b", "2")[0].cost.frameMs.n, 10);
+  EXPECT_EQ(fakes.measurements, 5);
+}
+
 TEST_F(BenchRunner, BoundsAreTimedInEveryTurnOfTheRowsThatAskForThem) {
   std::vector<Case> cases = {exampleCase("pcss", 16), exampleCase("pcss", 64), exampleCase("airlight")};
   for (Case& c : cases) c.turns = 3;
@@ -159,6 +194,48 @@ TEST_F(BenchRunner, RunnerKeepsPicturesThatAreWanted) {
   EXPECT_NE(shown.find("| ![](pictures/reference.png) | ![](" + results.rows()[0].picture + ") | |"),
             std::string::npos)
       << shown;
+}
+
+TEST_F(BenchRunner, WhatTheSuiteSaysAnewIsNotLeftAsItWas) {
+  Case asked = exampleCase();
+  Fakes fakes;
+  const auto run = [&] {
+    ResultsFile results(path_);
+    const std::vector<Case> cases = {asked};
+    const int unfinished = static_cast<int>(unfinishedCases(cases, results.rows(), {}).size());
+    const Summary summary = runCases(cases, "llvmpipe", results, fakes.callbacks());
+    EXPECT_EQ(unfinished, summary.done + summary.failed);
+    return readRows(path_).at(0);
+  };
+  EXPECT_EQ(run().picture, "");
+  asked.picture = true;
+  EXPECT_NE(run().picture, "");
+  EXPECT_EQ(fakes.measurements, 2);
+  asked.title = "PCSS";
+  asked.baseline = true;
+  EXPECT_EQ(run().what.title, "PCSS");
+  EXPECT_TRUE(run().what.baseline);
+  EXPECT_NE(run().picture, "");
+  asked.picture = false;
+  EXPECT_NE(run().picture, "") << "what was kept is there";
+  EXPECT_EQ(fakes.measurements, 2) << "nothing of this is measured";
+}
+
+TEST_F(BenchRunner, ARowBeyondTheLimitOfMaskedPixelsIsMeasuredAgain) {
+  Row row = exampleRow(exampleCase());
+  row.error.masked_share = 0.004;
+  writeTextFile(path_, toJson(row) + "\n");
+  Case strict = exampleCase();
+  strict.maxMaskedShare = 0.003;
+  Fakes fakes;
+  Callbacks callbacks = fakes.callbacks();
+  callbacks.measure = [](const Case&) -> Measurement { throw Error("masked: 0.4 % of the pixels"); };
+  ResultsFile results(path_);
+  EXPECT_EQ(runCases(std::vector{exampleCase()}, "llvmpipe", results, callbacks).skipped, 1);
+  EXPECT_EQ(unfinishedCases(std::vector{strict}, results.rows(), {}).size(), 1u);
+  EXPECT_EQ(runCases(std::vector{strict}, "llvmpipe", results, callbacks).failed, 1);
+  EXPECT_EQ(readRows(path_).at(0).failure, "masked: 0.4 % of the pixels")
+      << "the good row does not keep the limit";
 }
 
 /// JSON has no infinity: a row with one could not be read again, and its file neither.

@@ -96,7 +96,11 @@ TEST(BenchStress, JsonKeepsEveryTermAndLeavesOutResultsOfOne) {
   ASSERT_EQ(read.size(), 1u);
   EXPECT_EQ(toJson(read, "gpu"), text);
   EXPECT_EQ(read[0].worst().term, "indirect");
-  EXPECT_TRUE(stressFromJson(text, "another").empty());
+  StressResult origin = severalTerms();
+  origin.provenance = {"program", "scene", {{"t", "t.so", "hash"}}};
+  const StressResult known[] = {origin};
+  EXPECT_EQ(staleness(stressFromJson(toJson(known, "gpu"), "gpu").at(0).provenance, origin.provenance), "");
+  EXPECT_THROW(stressFromJson(text, "another"), Error);
   auto json = nlohmann::json::parse(text);
   json["results"][0].erase("answers");
   json["results"][0]["verdict"] = "pass";

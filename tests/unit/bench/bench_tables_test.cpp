@@ -38,7 +38,8 @@ TEST(BenchTables, NeverMixModesRenderersOrQuestions) {
 }
 
 TEST(BenchTables, NeverMixMachines) {
-  std::vector<Row> rows(4, exampleRow(exampleCase()));
+  std::vector<Row> rows;
+  for (const int samples : {4, 8, 16, 32}) rows.push_back(exampleRow(exampleCase("pcss", samples)));
   rows[1].cost.machine = "a";
   rows[2].cost.machine = "b";
   rows[3].cost.machine = "a";
@@ -50,6 +51,54 @@ TEST(BenchTables, NeverMixMachines) {
   EXPECT_EQ(tables[1].rows.size(), 1u);
   EXPECT_TRUE(tables[0].title.ends_with(", a")) << tables[0].title;
   EXPECT_TRUE(tables[1].title.ends_with(", b")) << tables[1].title;
+}
+
+/// As where a suite asks for fewer frames than before, and in every folder of limn tune.
+TEST(BenchTables, ASettingStandsThereOnce) {
+  const auto measured = [](int frames, const std::string& program = "", std::size_t line = 0) {
+    Case c = exampleCase();
+    c.frames = frames;
+    Row row = exampleRow(c);
+    row.cost.frameMs.n = frames;
+    row.provenance.program = program;
+    row.line = line;
+    return row;
+  };
+  const auto shown = [](const std::vector<Row>& rows) {
+    const std::vector<Table> tables = makeTables(rows);
+    EXPECT_EQ(tables.at(0).rows.size(), 1u);
+    return tables[0].rows[0];
+  };
+  EXPECT_EQ(shown({measured(20), measured(5)}).what.frames, 20);
+  EXPECT_EQ(shown({measured(5), measured(20)}).what.frames, 20);
+  EXPECT_EQ(shown({measured(20, "1", 1), measured(5, "2", 2)}).what.frames, 5) << "the newer program's";
+  EXPECT_EQ(shown({measured(20, "2", 3), measured(5, "1", 2)}).what.frames, 20) << "measured again";
+  Row failed = measured(0, "1", 2);
+  failed.failure = "lost";
+  EXPECT_EQ(shown({measured(5, "1", 1), failed}).failure, "");
+  EXPECT_EQ(shown({measured(5, "0", 1), failed}).failure, "lost") << "an old answer would hide it";
+  const std::vector<Row> others = {exampleRow(exampleCase("pcss", 16)), exampleRow(exampleCase("pcss", 64))};
+  EXPECT_EQ(makeTables(others).at(0).rows.size(), 2u);
+}
+
+TEST(BenchTables, RowsOfAnotherProgramAreMarked) {
+  std::vector<Row> rows = {exampleRow(exampleCase("old")), exampleRow(exampleCase("new")),
+                           exampleRow(exampleCase("vssm"))};
+  EXPECT_EQ(toMarkdown(makeTables(rows).front()).find("\u2020"), std::string::npos) << "none records it";
+  for (Row& row : rows) row.provenance.program = "2";
+  EXPECT_EQ(toMarkdown(makeTables(rows).front()).find("\u2020"), std::string::npos);
+  rows[0].provenance.program = "1";
+  rows[0].line = 1;
+  rows[1].line = 3;
+  rows[2].line = 2;
+  const std::string text = toMarkdown(makeTables(rows).front());
+  EXPECT_NE(text.find("| old \u2020 |"), std::string::npos) << text;
+  EXPECT_NE(text.find("| new |"), std::string::npos) << text;
+  EXPECT_NE(text.find("\n\u2020 measured with another version of the program than the newest row\n"),
+            std::string::npos)
+      << text;
+  rows[0].line = 4;  // the row was measured again, with the program of before
+  EXPECT_NE(toMarkdown(makeTables(rows).front()).find("| vssm \u2020 |"), std::string::npos);
 }
 
 TEST(BenchTables, TitlesTellTablesApart) {
@@ -163,6 +212,7 @@ TEST(BenchTables, CsvQuotesAndKeepsPrecision) {
   Row row = exampleRow(exampleCase("a,b"), 0.1 + 0.2);
   Row failed = row;
   failed.failure = "he said \"no\"";
+  failed.what.parameters.front().second = "64";
   const std::vector<Row> rows = {row, failed};
   const std::string text = toCsv(makeTables(rows).front());
   EXPECT_NE(text.find("\"a,b\""), std::string::npos);
@@ -190,6 +240,7 @@ TEST(BenchTables, CsvKeepsEveryTextAsItIs) {
     row.what.animation = row.what.sigmaA = hostile;
     Row failed = row;
     failed.failure = hostile;
+    failed.what.parameters.front().second = "64";
     const std::vector<Row> rows = {row, failed};
     const auto records = csvRecords(toCsv(makeTables(rows).front()));
     ASSERT_EQ(records.size(), 3u) << hostile;

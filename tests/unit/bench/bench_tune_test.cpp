@@ -68,6 +68,31 @@ TEST(TuneFigures, AreSmallerForBetterPictures) {
             std::numeric_limits<double>::infinity());
 }
 
+TEST(TuneFigures, NothingRanksBelowTheNoise) {
+  const MetricInfo& rmse = metricInfo(&Metrics::rmse);
+  Metrics slow, fast;
+  slow.rmse = 0.0015;
+  fast.rmse = 0.00155;
+  slow.noise_floor = fast.noise_floor = 0.002;
+  EXPECT_EQ(badness(rmse, slow), 0.002);
+  EXPECT_EQ(badness(rmse, fast), 0.002);
+  fast.rmse = 0.003;
+  EXPECT_EQ(badness(rmse, fast), 0.003);
+}
+
+TEST(TuneFigures, TheQuickerOfEqualsIsTheAnswer) {
+  const TuneSpace spaces[] = {{"slow", {}}, {"fast", {}}, {"late", {}}};
+  const auto measure = [](std::span<const TuneSetting> settings, const TuneEffort&) {
+    std::vector<TuneFigures> figures;
+    for (const TuneSetting& s : settings)
+      figures.push_back({0.002, s.space == 0 ? 200.0 : s.space == 1 ? 20.0 : 300.0});
+    return figures;
+  };
+  const TuneResult result = tuneExhaustively(spaces, {.ms = 250}, {1, 10, 3, 5}, measure);
+  ASSERT_EQ(result.answers.size(), 2u);
+  EXPECT_EQ(result.answers.front().space, 1u);
+}
+
 TEST(TuneFigures, OnlyWhatGrowsWithPixelsIsScaled) {
   Row row = test::exampleRow(test::exampleCase(), 0.1, 8);
   row.cost.split = {3, 1, 3, 1};
