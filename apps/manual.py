@@ -16,11 +16,12 @@ def said(program, *arguments):
 
 def page(program, command, description):
     name = "-".join([program.name, *command])
+    # help2man hands its last argument to a shell, to which a folder's name may mean something else.
     text = subprocess.run([help2man, "--no-info", f"--name={description[0].lower()}{description[1:]}",
-                           f"--version-string={version}", "--include=/dev/stdin", " ".join([str(program), *command])],
-                          check=True, capture_output=True, text=True,
+                           f"--version-string={version}", "--include=/dev/stdin", " ".join([f"./{program.name}", *command])],
+                          check=True, capture_output=True, text=True, cwd=program.parent,
                           input=f"[see also]\n{', '.join(f'{other}(1)' for other in pages if other != name)}\n").stdout
-    (folder / f"{name}.1").write_text(text.replace(str(program), program.name))
+    (folder / f"{name}.1").write_text(text)
 
 
 version = said(limn, "--version").split()[-1]

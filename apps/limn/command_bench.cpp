@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "apps/limn/commands.h"
-#include "apps/limn/interruption.h"
 #include "apps/limn/run_suite.h"
 #include "apps/limn/slurm.h"
 #include "core/base/error.h"
@@ -42,28 +41,18 @@ bool reportRegressions(const std::vector<bench::Row>& before, const fs::path& ou
   return regression.found();
 }
 
-/// The options as arguments.
-std::vector<std::string> printed(const BackendOptions& backend) {
-  std::vector<std::string> arguments{"--backend", backend.backend};
-  if (backend.device >= 0) arguments.insert(arguments.end(), {"--device", std::to_string(backend.device)});
-  if (backend.debug) arguments.push_back("--gl-debug");
-  return arguments;
-}
-
 int runBench(const BenchArguments& options) {
   const SuiteRun asked{.filters = options.filters,
                        .shard = options.shard.empty() ? bench::Shard{} : bench::parseShard(options.shard),
                        .stallTimeout = options.stallTimeout};
   if (options.slurm) {
     SlurmJob job = options.job;
-    job.arguments = printed(options.backend);
+    job.arguments = options.backend.arguments();
     fmt::print("{}\n", submitSuite(session::findSuite(options.suite), options.out, asked, job));
     return 0;
   }
   std::optional<std::vector<bench::Row>> before;
   if (!options.against.empty()) before = earlierRows(options.against);
-  const LastWords words(fmt::format("interrupted; the rows so far are kept in {}, the same command goes on",
-                                    (options.out / "results.jsonl").string()));
   const bench::Summary summary =
       runSuite(session::findSuite(options.suite), options.out, options.backend, asked);
   fmt::print("{} rows measured, {} were there already, {} failed; the report is {}, tables are in {}\n",

@@ -83,9 +83,7 @@ void printInfo(const BrdfSource& source, double reciprocity, const std::vector<A
 
 int info(const InfoOptions& options) {
   if (!options.picture.empty()) {
-    if (options.picture.extension() != ".png" && options.picture.extension() != ".exr")
-      throw UsageError(fmt::format("--picture '{}' is not accepted; expected a name ending in .png or .exr",
-                                   options.picture.string()));
+    checkExtension("--picture", options.picture, {".png", ".exr"});
     checkWritable(options.picture);
   }
   const BrdfSource source = openBrdf(options.choice);
@@ -134,9 +132,7 @@ struct SimulateOptions {
 };
 
 int simulate(const SimulateOptions& options) {
-  if (options.out.extension() != ".bsdf")
-    throw UsageError(
-        fmt::format("'{}' is not accepted; expected a name ending in .bsdf", options.out.string()));
+  checkExtension("--out", options.out, {".bsdf"});
   const brdf::Groove groove{.slope = static_cast<float>(options.slope * std::numbers::pi / 180),
                             .rising = parseAlbedo("--rising", options.rising),
                             .falling = parseAlbedo("--falling", options.falling),

@@ -38,7 +38,10 @@ int runCompare(const CompareArguments& options) {
   compare.exposureEv = static_cast<float>(options.exposure);
   compare.maxMaskedShare = options.maxMasked / 100;
   compare.maskTermRange = parseTermRange(options.maskTermRange);
-  if (!options.diff.empty()) checkWritable(options.diff);
+  if (!options.diff.empty()) {
+    checkExtension("--diff", options.diff, {".png"});
+    checkWritable(options.diff);
+  }
   const Image image = readImage(options.image), reference = readImage(options.reference);
   const auto term = reference.metadata().find("term");
   compare.background = term != reference.metadata().end() && hasBackground(term->second);

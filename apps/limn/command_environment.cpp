@@ -95,9 +95,7 @@ std::string toJson(const std::vector<LightRow>& rows, const EnvironmentArguments
 
 int runEnvironment(const EnvironmentArguments& options) {
   if (!options.overlay.empty()) {
-    if (options.overlay.extension() != ".png" && options.overlay.extension() != ".exr")
-      throw UsageError(fmt::format("--overlay '{}' is not accepted; expected a name ending in .png or .exr",
-                                   options.overlay.string()));
+    checkExtension("--overlay", options.overlay, {".png", ".exr"});
     checkWritable(options.overlay);
   }
   std::vector<std::string> warnings;

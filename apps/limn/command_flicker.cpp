@@ -77,17 +77,17 @@ class Sequence {
   }
 
   Frame at(double time) {
-    renderer_.setTime(time, view_.animation);
-    const scene::CameraPose camera = session::chooseCamera(options_.scene, renderer_.pose(), view_.framing);
-    Image picture = render::supersample(renderer_, camera, view_.size, view_.aa);
+    session::moveTo(view_, options_.scene, time);
+    renderer_.setTime(view_.time, view_.animation);
+    Image picture = render::supersample(renderer_, view_.camera, view_.size, view_.aa);
     context_->throwErrors();
-    return {std::move(picture), truth(camera, 0), truth(camera, 1)};
+    return {std::move(picture), truth(0), truth(1)};
   }
 
  private:
-  Image truth(const scene::CameraPose& camera, uint64_t seed) {
+  Image truth(uint64_t seed) {
     reference::Request request =
-        session::referenceRequest(view_, renderer_.pose(), camera, parseTerm(options_.scene.term));
+        session::referenceRequest(view_, view_.pose, view_.camera, parseTerm(options_.scene.term));
     if (reference::hasBounces(request.term)) request.bounces = options_.bounces;
     request.interfaces = interfaces_;
     request.spp = options_.spp;
@@ -155,6 +155,7 @@ int runFlicker(const FlickerArguments& options) {
 Action addFlickerCommand(CLI::App& command) {
   auto options = std::make_shared<FlickerArguments>();
   addSceneFlags(command, options->scene);
+  command.remove_option(command.get_option("--time"));  // --frames takes its place
   addSceneFlag(command, options->scene, "term");
   addTechniqueFlags(command, options->technique);
   options->backend.addTo(command);

@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kConverter = "assimp";
+constexpr const char* kInterrupted = "interrupted; no scene was written";
 
 /// A file that is gone when its work is done, unless it was given its name.
 class PartFile {
@@ -50,8 +51,15 @@ std::string reason(const ProgramOutput& output) {
   return oneLine(output.text.substr(start, output.text.find('\n', start) - start));
 }
 
-std::string assimp(const std::vector<std::string>& arguments, const fs::path& model) {
-  const ProgramOutput output = programOutput(kConverter, arguments);
+void endIfAsked(const Interruption& interruption) {
+  if (interruption.asked()) throw Interrupted{interruption.signal(), kInterrupted};
+}
+
+std::string assimp(const std::vector<std::string>& arguments, const fs::path& model,
+                   const Interruption& interruption) {
+  const ProgramOutput output =
+      programOutput(kConverter, arguments, false, [&] { return interruption.asked(); });
+  endIfAsked(interruption);
   if (!output.failure.empty() || output.text.find("ERROR: ") != std::string::npos)
     throw Error(fmt::format("{}: {}", model.string(), reason(output)));
   return output.text;
@@ -128,10 +136,11 @@ int run(const fs::path& model, fs::path out) {
     throw Error(
         "models of other formats are read by assimp, which is not installed: apt-get install assimp-utils");
 
-  const LastWords words("interrupted; no scene was written");
-  const std::string information = assimp({"info", model.string()}, model);
+  const LastWords words(kInterrupted);
+  const Interruption interruption;  // assimp and what it has half-written go before the program
+  const std::string information = assimp({"info", model.string()}, model, interruption);
   const PartFile part(out);
-  assimp({"export", model.string(), part.path().string(), "-fglb2", "-tri", "-gsn"}, model);
+  assimp({"export", model.string(), part.path().string(), "-fglb2", "-tri", "-gsn"}, model, interruption);
   scene::Scene scene;
   try {
     scene = scene::load(part.path());
@@ -145,6 +154,7 @@ int run(const fs::path& model, fs::path out) {
     warn(warning);
   }
   const nlohmann::json meshes = meshesOf(part.path());
+  endIfAsked(interruption);
   fs::rename(part.path(), out);
 
   const std::pair<const char*, std::pair<std::size_t, std::size_t>> kinds[] = {

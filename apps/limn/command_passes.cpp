@@ -68,6 +68,7 @@ void writeFolder(const fs::path& folder, const FrameRecord& frame, const std::st
 }
 
 int runPasses(const PassesArguments& options) {
+  checkShaderFolder(options.shaders);
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
   render::Settings settings;
   settings.techniques = options.technique.resolve(registry);

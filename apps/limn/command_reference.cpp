@@ -73,9 +73,7 @@ int runAtVertices(const ReferenceArguments& options, const session::View& view, 
 }
 
 int runReference(const ReferenceArguments& options) {
-  if (options.out.extension() != ".exr" && options.out.extension() != ".png")
-    throw UsageError(fmt::format("--out '{}' is not accepted; expected a name ending in .exr or .png",
-                                 options.out.string()));
+  checkExtension("--out", options.out, {".exr", ".png"});
   checkWritable(options.out);
   const session::View view = session::open(options.scene, warn);
   reference::Request request = makeRequest(options, view);

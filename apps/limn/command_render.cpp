@@ -181,6 +181,7 @@ void writeMovie(const RenderArguments& options, const FrameRange& frames, Writer
 
 int runRender(const RenderArguments& options) {
   checkOutputName(options);
+  checkShaderFolder(options.shaders);
   for (const fs::path& file : {options.out, options.stats, options.graph})
     if (!file.empty()) checkWritable(file);
   const auto frames = parseFrames(options.frames);

@@ -1,11 +1,7 @@
 // limn: the command line.
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <optional>
@@ -30,30 +26,9 @@ void checkCommand(const CLI::App& limn, const std::string& name) {
                          limn::joined(known));
 }
 
-/// While one lives, what anybody writes to stderr is lost.
-class SilentStderr {
- public:
-  SilentStderr() : former_(dup(STDERR_FILENO)) {
-    const int nothing = open("/dev/null", O_WRONLY | O_CLOEXEC);
-    dup2(nothing, STDERR_FILENO);
-    close(nothing);
-  }
-  ~SilentStderr() {
-    std::fflush(stderr);
-    dup2(former_, STDERR_FILENO);
-    close(former_);
-  }
-  SilentStderr(const SilentStderr&) = delete;
-  SilentStderr& operator=(const SilentStderr&) = delete;
-
- private:
-  int former_;
-};
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is that file's error, not the program's end
   limn::leaveWordsAtCrash("limn");
   CLI::App limn("limn: real-time shadows and global illumination, with their error and their cost", "limn");
   limn.set_version_flag("--version", limn::version());

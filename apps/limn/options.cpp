@@ -1,14 +1,18 @@
 #include "apps/limn/options.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <system_error>
+#include <utility>
 
 #include "apps/limn/interruption.h"
 #include "core/base/error.h"
@@ -17,6 +21,11 @@
 
 namespace limn::app {
 namespace fs = std::filesystem;
+namespace {
+
+int errorFile = STDERR_FILENO;
+
+}  // namespace
 
 fs::path programBeside(const std::string& name) {
   std::error_code unknown;
@@ -30,6 +39,22 @@ void checkWritable(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
   if (access(folder.c_str(), W_OK | X_OK) != 0)
     throw Error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+}
+
+void checkExtension(const char* option, const fs::path& file, const std::vector<std::string>& extensions) {
+  if (std::ranges::find(extensions, file.extension().string()) == extensions.end())
+    throw UsageError(fmt::format("{} '{}' is not accepted; expected a name ending in {}", option,
+                                 file.string(), joined(extensions, "or")));
+}
+
+void checkShaderFolder(const fs::path& folder) {
+  if (folder.empty()) return;
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored))
+    throw UsageError(fmt::format("--shaders '{}': no such folder", folder.string()));
+  if (!fs::is_directory(folder / "glsl", ignored) && !fs::is_directory(folder / "techniques", ignored))
+    warn(fmt::format("--shaders {}: the folder holds neither glsl/ nor techniques/ and replaces no shader",
+                     folder.string()));
 }
 
 std::optional<FrameRange> parseFrames(const std::string& text) {
@@ -77,28 +102,52 @@ ContextOptions BackendOptions::contextOptions() const {
   return options;
 }
 
+std::vector<std::string> BackendOptions::arguments() const {
+  const BackendOptions usual;
+  std::vector<std::string> arguments;
+  if (backend != usual.backend) arguments.insert(arguments.end(), {"--backend", backend});
+  if (device != usual.device) arguments.insert(arguments.end(), {"--device", std::to_string(device)});
+  if (debug) arguments.push_back("--gl-debug");
+  return arguments;
+}
+
 void warn(const std::string& message) {
   std::fputs(("limn: warning: " + message + "\n").c_str(), stderr);
 }
 
+void sayError(const std::string& message) {
+  dprintf(errorFile, "limn: %s\n", oneLine(message, 4000).c_str());
+}
+
+SilentStderr::SilentStderr() {
+  errorFile = dup(STDERR_FILENO);
+  const int nothing = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  dup2(nothing, STDERR_FILENO);
+  close(nothing);
+}
+
+SilentStderr::~SilentStderr() {
+  std::fflush(stderr);
+  dup2(errorFile, STDERR_FILENO);
+  close(std::exchange(errorFile, STDERR_FILENO));
+}
+
 int guarded(const std::function<int()>& work) {
-  const auto say = [](const std::string& message) {
-    std::fputs(("limn: " + oneLine(message, 4000) + "\n").c_str(), stderr);
-  };
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     return work();
   } catch (const Interrupted& interruption) {
-    say(interruption.message);
+    sayError(interruption.message);
     return 128 + interruption.signal;
   } catch (const UsageError& error) {
-    say(error.what());
+    sayError(error.what());
     return 2;
   } catch (const fs::filesystem_error& error) {
-    say(error.what());
+    sayError(error.what());
   } catch (const std::system_error& error) {  // of fmt::print: the buffer was full before the end
-    say("standard output cannot be written: " + error.code().message());
+    sayError("standard output cannot be written: " + error.code().message());
   } catch (...) {
-    say(currentFailure());
+    sayError(currentFailure());
   }
   return 1;
 }

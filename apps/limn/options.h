@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/context/context.h"
 #include "core/question/scene_question.h"
@@ -27,6 +28,13 @@ std::filesystem::path programBeside(const std::string& name);
 /// Throws Error unless files can be written beside `file`. It is called before long work, whose result would
 /// be lost otherwise.
 void checkWritable(const std::filesystem::path& file);
+
+/// Throws UsageError unless the name ends in one of `extensions`, such as ".png". `option` is what gave it.
+void checkExtension(const char* option, const std::filesystem::path& file,
+                    const std::vector<std::string>& extensions);
+
+/// Throws UsageError unless the value of --shaders is empty or a folder. Warns of one without any shaders.
+void checkShaderFolder(const std::filesystem::path& folder);
 
 struct FrameRange {
   int first, last;  // inclusive
@@ -50,13 +58,28 @@ struct BackendOptions {
 
   void addTo(CLI::App& command);
   ContextOptions contextOptions() const;
+  /// Returns the arguments that give these options; those that are the default are left out.
+  std::vector<std::string> arguments() const;
 };
 
 /// Writes a warning to stderr, in one line: something unusual that does not end the run.
 void warn(const std::string& message);
 
+/// Writes an error to stderr, in one line, also while a SilentStderr lives.
+void sayError(const std::string& message);
+
+/// While one lives, what anybody writes to stderr is lost, except what sayError() writes. Only one object may
+/// live at a time.
+class SilentStderr {
+ public:
+  SilentStderr();
+  ~SilentStderr();
+  SilentStderr(const SilentStderr&) = delete;
+  SilentStderr& operator=(const SilentStderr&) = delete;
+};
+
 /// Runs `work`, reports what it throws (including Interrupted) in one line on stderr, and returns the exit
-/// status.
+/// status. A file that grows beyond the limit of the process is that file's error, not the program's end.
 int guarded(const std::function<int()>& work);
 
 /// Says a line on stdout at once, for whoever started the program from a terminal.

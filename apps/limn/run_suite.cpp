@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "apps/limn/interruption.h"
 #include "apps/limn/results_folder.h"
 #include "core/base/error.h"
 
@@ -12,6 +13,8 @@ namespace fs = std::filesystem;
 
 bench::Summary runSuite(const fs::path& suite, const fs::path& out, const BackendOptions& backend,
                         const SuiteRun& run) {
+  const LastWords words(fmt::format("interrupted; the rows so far are kept in {}, the same command goes on",
+                                    (out / "results.jsonl").string()));
   const bench::Suite asked = bench::readSuite(suite);
   const auto cases = bench::selectCases(asked.cases, run.filters, run.shard);
   if (cases.empty())

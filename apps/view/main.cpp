@@ -7,6 +7,25 @@
 #include "core/base/version.h"
 #include "core/base/whereabouts.h"
 
+namespace limn::app {
+namespace {
+
+/// What could not be written when the window closes, or when F5 is pressed, is refused before it opens.
+/// `saved`: --save was given. Its folder is made when it is needed.
+void checkFiles(const ViewerOptions& options, bool saved) {
+  checkExtension("--save", options.save, {".exr", ".png"});
+  if (!options.screenshot.empty()) checkExtension("--screenshot", options.screenshot, {".png"});
+  std::filesystem::path save = saved ? options.save : std::filesystem::path();
+  std::error_code ignored;
+  while (save.has_parent_path() && !std::filesystem::exists(save.parent_path(), ignored))
+    save = save.parent_path();
+  for (const std::filesystem::path& file : {save, options.screenshot, options.stats})
+    if (!file.empty()) checkWritable(file);
+}
+
+}  // namespace
+}  // namespace limn::app
+
 int main(int argc, char** argv) {
   using namespace limn::app;
   limn::leaveWordsAtCrash("limn-view");
@@ -63,6 +82,8 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
       return program.exit(error) == 0 ? 0 : 2;
     }
+    checkShaderFolder(options.shaders);
+    checkFiles(options, program.count("--save") > 0);
     runViewer(options);
     return 0;
   });

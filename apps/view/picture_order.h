@@ -49,6 +49,13 @@ struct PictureOrder {
 bool same(const std::vector<render::TechniqueUse>& a, const std::vector<render::TechniqueUse>& b);
 bool same(const PictureOrder& a, const PictureOrder& b);
 
+/// Declares a scene that is to be opened.
+struct OpenOrder {
+  SceneQuestion scene;
+  uint64_t file = 0;    ///< the same number: the same file again, with another floor or read anew
+  bool needed = false;  ///< the program ends where it cannot be opened
+};
+
 /// Declares a picture that is to be written.
 struct SaveOrder {
   PictureOrder picture;
@@ -61,6 +68,7 @@ struct SaveOrder {
 /// Holds what is known of the open scene.
 struct SceneFacts {
   SceneQuestion options;
+  uint64_t file = 0;     ///< of the order that opened it
   glm::dvec3 origin{0};  ///< scene::Scene::origin: what bounds and cameras are counted from
   scene::Bounds bounds;
   std::vector<scene::CameraPose> cameras;  ///< at the time it was opened
@@ -119,6 +127,7 @@ struct PictureFacts {
   int compiled = 0, toCompile = 0;  ///< programs; 0, 0: none is being compiled
   std::string job;                  ///< what is going on besides the picture: "frame 3 of 60"; empty: nothing
   double jobFraction = 0;
+  uint64_t opened = 0;       ///< open orders that have been followed, or have failed
   std::string message;       ///< the last result or problem
   bool problem = false;      ///< the message is one
   uint64_t messages = 0;     ///< messages so far

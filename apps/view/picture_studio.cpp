@@ -44,12 +44,15 @@ bool changesMeshes(const std::vector<LightFacts>& lights, const SceneQuestion& o
   });
 }
 
-std::shared_ptr<const SceneFacts> factsOf(const session::View& view, const SceneQuestion& options) {
+std::shared_ptr<const SceneFacts> factsOf(const session::View& view, const OpenOrder& order) {
   auto facts = std::make_shared<SceneFacts>();
-  facts->options = options;
+  facts->options = order.scene;
+  facts->file = order.file;
   facts->origin = view.scene.origin;
   facts->bounds = view.pose.bounds;
   facts->cameras = view.pose.cameras;
+  const std::vector<std::string> names = session::findableNames(session::cameraNames(view.pose));
+  for (size_t i = 0; i < names.size(); ++i) facts->cameras[i].name = names[i];
   facts->camera = view.camera;
   facts->environment = static_cast<bool>(view.scene.environment);
   const auto& animations = view.scene.animations;
@@ -92,7 +95,8 @@ std::unique_ptr<ShownPicture> PictureStudio::makePicture(const session::View& vi
   return picture;
 }
 
-void PictureStudio::open(const SceneQuestion& wanted, bool needed) {
+void PictureStudio::open(const OpenOrder& order) {
+  const SceneQuestion& wanted = order.scene;
   facts_.job = "opening " + std::filesystem::path(wanted.scene).filename().string();
   publish();
   facts_.job.clear();
@@ -108,12 +112,13 @@ void PictureStudio::open(const SceneQuestion& wanted, bool needed) {
     rendered_.reset();
     facts_.settled = false;
     wholeMs_ = 0;
-    facts_.scene = factsOf(*view_, wanted);
+    facts_.scene = factsOf(*view_, order);
     say("opened " + wanted.scene);
   } catch (const std::exception& error) {
-    if (needed) facts_.fatal = std::current_exception();
+    if (order.needed) facts_.fatal = std::current_exception();
     say(error.what(), true);
   }
+  ++facts_.opened;
   publish();
 }
 
@@ -221,9 +226,10 @@ PictureStudio::Outcome PictureStudio::render(const PictureOrder& order,
 void PictureStudio::describe() {
   facts_.camera = view_->camera;
   facts_.lights.resize(view_->pose.lights.size());
+  const std::vector<std::string> names = session::findableNames(view_->pose.lightNames);
   for (size_t i = 0; i < facts_.lights.size(); ++i) {
     LightFacts& light = facts_.lights[i];
-    light.name = view_->pose.lightNames[i];
+    light.name = names[i];
     light.light = view_->pose.lights[i];
     light.editable = session::isEditable(view_->scene, view_->pose, static_cast<int>(i));
     light.now = session::describeLight(view_->scene, view_->pose, static_cast<int>(i));

@@ -18,8 +18,8 @@ class PictureStudio {
   PictureStudio(gpu::Device& device, std::filesystem::path shaders, std::filesystem::path cache,
                 std::function<void(const PictureFacts&)> publish, std::function<void()> news);
 
-  /// Opens another scene. Where that fails the old one goes on; the program ends if the scene is `needed`.
-  void open(const SceneQuestion& wanted, bool needed);
+  /// Opens another scene. Where that fails the old one goes on; the program ends if the scene is needed.
+  void open(const OpenOrder& order);
   /// Shows what is ordered, as far as it need not wait for anything. When `outdated` says that something else
   /// is wanted, a frame that has begun is abandoned between two of its passes. If every frame is outdated
   /// because things move, the picture is made smaller; the smallest one is never abandoned.

@@ -239,7 +239,7 @@ void PictureStudio::write(const SaveOrder& order, const std::filesystem::path& f
   const PictureOrder picture = exposed(order.picture);
   if (picture.of != facts_.scene) throw Error("not saved: another scene was opened meanwhile");
   Image image = follows ? renderNext(picture) : renderWhole(picture);
-  if (!order.command.empty()) sign(image, order.command);
+  sign(image, order.command);
   if (file.has_parent_path()) createFolder(file.parent_path());
   ToneMapping tone = picture.tone;
   if (picture.automaticExposure) tone.exposureEv = sequenceEv_.value_or(automaticExposure(image));

@@ -17,11 +17,7 @@ constexpr std::chrono::milliseconds kIdle{250};  // between looks at the shaders
 
 struct PictureThread::Mailbox {
   struct Cancel {};
-  struct Open {
-    SceneQuestion scene;
-    bool needed;
-  };
-  using Job = std::variant<Open, SaveOrder, Cancel>;
+  using Job = std::variant<OpenOrder, SaveOrder, Cancel>;
 
   std::mutex mutex;
   std::condition_variable_any wake;
@@ -94,7 +90,7 @@ void PictureThread::run(const std::stop_token& stop) {
         jobs.swap(box.jobs);
       }
       for (const Mailbox::Job& job : jobs) {
-        if (const auto* open = std::get_if<Mailbox::Open>(&job)) studio.open(open->scene, open->needed);
+        if (const auto* open = std::get_if<OpenOrder>(&job)) studio.open(*open);
         if (const auto* save = std::get_if<SaveOrder>(&job)) studio.save(*save);
         if (std::holds_alternative<Mailbox::Cancel>(job)) studio.cancelSaving();
       }
@@ -117,8 +113,8 @@ void PictureThread::show(PictureOrder order) {
   mailbox_->wake.notify_one();
 }
 
-void PictureThread::open(SceneQuestion scene, bool needed) {
-  mailbox_->push(Mailbox::Open{std::move(scene), needed});
+void PictureThread::open(OpenOrder order) {
+  mailbox_->push(std::move(order));
 }
 
 void PictureThread::save(SaveOrder order) {

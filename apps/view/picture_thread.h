@@ -37,7 +37,7 @@ class PictureThread {
   /// Replaces the previous order.
   void show(PictureOrder order);
   /// Replaces the scene, unless that fails.
-  void open(SceneQuestion scene, bool needed = false);
+  void open(OpenOrder order);
   void save(SaveOrder order);
   /// Ends a sequence that is being saved.
   void cancelSaving();

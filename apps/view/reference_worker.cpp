@@ -63,6 +63,16 @@ void ReferenceWorker::deliver(const std::stop_token& stop, reference::Result res
   });
 }
 
+void ReferenceWorker::keep(const std::stop_token& stop, const reference::Request& request,
+                           const reference::Result& result) {
+  if (cache_.empty() || request.spp < kFirstKeptSpp || !state().unkept.empty()) return;
+  try {
+    reference::Cache(cache_).put(reference::contentHash(request), result);
+  } catch (const Error& error) {
+    change(stop, [&] { state_.unkept = error.what(); });
+  }
+}
+
 int ReferenceWorker::resume(const std::stop_token& stop, const reference::Request& wanted) {
   if (cache_.empty()) return 0;
   const reference::Cache cache(cache_);
@@ -107,8 +117,7 @@ void ReferenceWorker::work(const std::stop_token& stop, const Task& task) {
     if (stop.stop_requested() || (found > 0 && state().noise < kFinest)) return;
     reference::Result result = reference::render(request);
     const double noise = result.noiseRms;
-    if (!cache_.empty() && request.spp >= kFirstKeptSpp)
-      reference::Cache(cache_).put(reference::contentHash(request), result);
+    keep(stop, request, result);
     deliver(stop, std::move(result), false);
     if (noise < kFinest) return;
   }

@@ -59,6 +59,7 @@ class ReferenceWorker {
     bool running = false;   ///< a finer one is being computed
     bool fromDisk = false;  ///< the picture
     std::string problem;    ///< why the work ended; empty: it did not
+    std::string unkept;     ///< why pictures are not kept on disk; empty: they are
     bool operator==(const State&) const = default;
   };
   State state() const;
@@ -70,6 +71,8 @@ class ReferenceWorker {
   /// Returns the samples per pixel of the finest picture on disk; 0 if there is none.
   int resume(const std::stop_token& stop, const reference::Request& request);
   void deliver(const std::stop_token& stop, reference::Result result, bool fromDisk);
+  /// Keeps the picture on disk; the first time that it cannot, state() says why.
+  void keep(const std::stop_token& stop, const reference::Request& request, const reference::Result& result);
   template <class F>
   void change(const std::stop_token& stop, const F& f);
 

@@ -23,10 +23,11 @@ void ViewerWindow::saveSequence() {
   try {
     SaveOrder wanted{.picture = order(),
                      .file = saveText_,
-                     .command = "",
+                     .command = {},
                      .frames = parseFrames(framesText_),
                      .fps = static_cast<double>(fps_)};
     if (!wanted.frames) throw Error("frames: a:b is wanted, the first and the last frame");
+    wanted.command = sequenceCommand(state_, saveText_, *wanted.frames, wanted.fps);
     wanted.picture.moving = wanted.picture.timed = false;
     wanted.picture.beside = Beside::nothing;
     wanted.picture.inspect.reset();

@@ -99,9 +99,9 @@ void ViewerWindow::samplesRow() {
 
 void ViewerWindow::floorRow() {
   nameCell("floor", questionField("floor").doc);
-  bool floor = state_.scene.floor == "on";
+  SceneQuestion wanted = awaited();
+  bool floor = wanted.floor == "on";
   if (!ImGui::Checkbox("##floor", &floor)) return;
-  SceneQuestion wanted = state_.scene;
   wanted.floor = floor ? "on" : "off";
   open(wanted);
 }
@@ -167,35 +167,37 @@ void ViewerWindow::scenePanel() {
 
 /// How lights stand for the environment, if they do.
 void ViewerWindow::environmentLightRows(SceneQuestion& wanted) {
-  if (!state_.scene.environment.empty()) {
+  if (!wanted.environment.empty()) {
     nameCell("as lights",
              "Area lights at infinity stand for it, so that every technique shadows it: how much "
              "of a light's energy a row of texels must add for it to grow; smaller: fewer lights");
-    auto threshold = static_cast<float>(state_.scene.environmentLights);
+    auto threshold = static_cast<float>(wanted.environmentLights);
     ImGui::SliderFloat("##threshold", &threshold, 0, 0.1f, threshold > 0 ? "%.3f" : "no",
                        ImGuiSliderFlags_AlwaysClamp);
     environmentThreshold_ = ImGui::IsItemActive() ? threshold : environmentThreshold_;
     if (ImGui::IsItemDeactivatedAfterEdit())
       wanted.environmentLights = environmentThreshold_ < 1e-3f ? 0 : environmentThreshold_;
   }
-  if (state_.scene.environmentLights > 0) {
+  if (wanted.environmentLights > 0) {
     const QuestionField& combine = questionField("environment_combine");
     nameCell("combined by", combine.doc);
-    if (ImGui::BeginCombo("##combine", state_.scene.environmentCombine.c_str())) {
+    const std::string now = wanted.environmentCombine;
+    if (ImGui::BeginCombo("##combine", now.c_str())) {
       for (const char* way : combine.choices)
-        if (ImGui::Selectable(way, state_.scene.environmentCombine == way)) wanted.environmentCombine = way;
+        if (ImGui::Selectable(way, now == way)) wanted.environmentCombine = way;
       ImGui::EndCombo();
     }
   }
 }
 
 void ViewerWindow::environmentPanel() {
-  SceneQuestion wanted = state_.scene;
+  const SceneQuestion before = awaited();
+  SceneQuestion wanted = before;
   if (!beginRows("environment")) return;
   nameCell("map",
            "Equirectangular .hdr or .exr: those beside the present one, and limn's own. One that is "
            "dropped on the window is taken, too");
-  const fs::path now = state_.scene.environment;
+  const fs::path now = before.environment;
   const bool lit = facts_->scene && facts_->scene->environment;
   const std::string title = !now.empty() ? now.filename().string() : lit ? "by default" : "none";
   if (ImGui::BeginCombo("##map", title.c_str())) {
@@ -225,9 +227,7 @@ void ViewerWindow::environmentPanel() {
   }
   environmentLightRows(wanted);
   endRows();
-  if (wanted.environment != state_.scene.environment ||
-      wanted.environmentLights != state_.scene.environmentLights ||
-      wanted.environmentCombine != state_.scene.environmentCombine) {
+  if (wanted != before) {
     if (wanted.environment.empty()) wanted.environmentLights = 0;
     open(wanted);
   }

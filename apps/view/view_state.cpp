@@ -6,6 +6,7 @@
 
 #include "apps/limn/tone_flags.h"
 #include "core/bench/suite_text.h"
+#include "core/question/question_fields.h"
 #include "core/question/render_command.h"
 
 namespace limn::app {
@@ -88,7 +89,27 @@ std::string renderCommand(const ViewState& state, const std::filesystem::path& o
     line += commandOption("--exposure", fmt::format("{}", state.tone.exposureEv));
   if (state.tone.curve != ToneCurve::none)
     line += commandOption("--tonemap", kToneCurves[static_cast<size_t>(state.tone.curve)]);
+  line += commandOption("--shaders", state.shaders.string());
   return line + commandOption("--out", out.string());
+}
+
+std::string sequenceCommand(const ViewState& state, const std::filesystem::path& out,
+                            const FrameRange& frames, double fps) {
+  ViewState timeless = state;
+  timeless.scene.time = SceneQuestion().time;  // --frames sets it
+  return renderCommand(timeless, out) +
+         commandOption("--frames", fmt::format("{}:{}", frames.first, frames.last)) +
+         commandOption("--fps", fmt::format("{}", fps));
+}
+
+SceneQuestion carriedOver(const SceneQuestion& now, const SceneQuestion& opened, bool sameFile) {
+  SceneQuestion question = sameFile ? now : opened;
+  if (sameFile) {
+    copyFields(QuestionEffect::scene, question, opened);
+  } else {
+    for (const char* key : {"size", "aa", "term"}) copyField(questionField(key), question, now);
+  }
+  return question;
 }
 
 std::string benchSuite(const ViewState& state) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/limn/options.h"
 #include "apps/view/orbit.h"
 #include "core/question/scene_question.h"
 #include "core/render/renderer.h"
@@ -18,6 +19,7 @@ struct ViewState {
   std::vector<render::TechniqueUse> techniques;
   ToneMapping tone;
   bool automaticExposure = false;  ///< in place of tone.exposureEv, from the picture: --exposure auto
+  std::filesystem::path shaders;   ///< folder that overrides the embedded ones; empty: none
 };
 
 /// Puts the orbit's camera into the options, so that whatever reads them gets it bit for bit.
@@ -38,6 +40,14 @@ void takeMeasured(std::vector<render::TechniqueUse>& techniques, std::vector<ren
 /// Returns the command that renders the state to `out`: one line for a shell, with arguments quoted where
 /// needed.
 std::string renderCommand(const ViewState& state, const std::filesystem::path& out);
+
+/// Returns the command that renders these frames of the animation to out.0000.png and so on.
+std::string sequenceCommand(const ViewState& state, const std::filesystem::path& out,
+                            const FrameRange& frames, double fps);
+
+/// Returns `opened`, a question that was asked some time ago, with what is to stay of `now`, the present one:
+/// of the same file all that needs no opening, of another one only the picture's size, samples and term.
+SceneQuestion carriedOver(const SceneQuestion& now, const SceneQuestion& opened, bool sameFile);
 
 /// Returns a suite for `limn bench` that measures the state's techniques in its scene: all of the state
 /// except the tone mapping.

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <tuple>
 
 #include "apps/view/display_image.h"
 #include "apps/view/pace.h"
@@ -19,6 +20,7 @@
 #include "apps/view/viewer_window.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/question/question_fields.h"
 #include "core/session/find.h"
 
 namespace limn::app {
@@ -73,6 +75,7 @@ ViewerWindow::ViewerWindow(const ViewerOptions& options)
   state_.tone = options.tone.fixed();
   state_.automaticExposure = options.tone.automatic();
   state_.techniques = options.techniques.resolve(registry_);
+  state_.shaders = options.shaders;
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;  // the layout is fixed: nothing to remember
@@ -91,7 +94,7 @@ ViewerWindow::ViewerWindow(const ViewerOptions& options)
       PictureThreadOptions{options.device, options.debug, options.shaders, options.cache});
   ownScenes_ = session::sceneNames();
   recentScenes_ = recentScenes();
-  if (!state_.scene.scene.empty()) thread_->open(state_.scene, true);
+  if (!state_.scene.scene.empty()) postOpening({.scene = state_.scene, .needed = true});
   if (!options_.steps.empty()) chooseStep(0);
   compareWith(besideNamed(options.compareWith));
   setText(sceneText_, options.scene.scene);
@@ -130,36 +133,61 @@ void ViewerWindow::listen() {
 
 /// A scene, or an environment for the one that is shown.
 void ViewerWindow::openFile(const std::filesystem::path& file) {
-  SceneQuestion wanted = state_.scene;
+  SceneQuestion wanted;
   if (isEnvironment(file)) {
+    wanted = awaited();
     wanted.environment = file.string();
+    open(wanted);
   } else {
-    wanted = SceneQuestion();
     wanted.scene = file.string();
-    wanted.aa = state_.scene.aa;
-    wanted.width = state_.scene.width;
-    wanted.height = state_.scene.height;
+    postOpening({.scene = carriedOver(state_.scene, wanted, false), .file = openings_ + 1});
   }
-  open(wanted);
 }
 
 void ViewerWindow::open(const SceneQuestion& wanted) {
-  thread_->open(wanted);
+  postOpening({.scene = wanted, .file = opening_ ? opening_->file : shownFile()});
+}
+
+void ViewerWindow::postOpening(OpenOrder order) {
+  opening_ = order;
+  ++openings_;
+  thread_->open(std::move(order));
   moved();
 }
 
-/// What follows from another scene being shown.
-void ViewerWindow::adopt(const SceneFacts& scene) {
-  const int width = state_.scene.width, height = state_.scene.height;
-  const std::string term = state_.scene.term;
-  state_.scene = scene.options;
-  state_.scene.width = width;
-  state_.scene.height = height;
-  state_.scene.term = term;
+uint64_t ViewerWindow::shownFile() const {
+  return facts_ && facts_->scene ? facts_->scene->file : 0;
+}
+
+bool ViewerWindow::opensAnotherFile() const {
+  return opening_ && opening_->file != shownFile();
+}
+
+/// The question as it will be when what was ordered is open. What is to be opened next starts from it, so
+/// that no order takes back the one before.
+SceneQuestion ViewerWindow::awaited() const {
+  return opening_ ? carriedOver(state_.scene, opening_->scene, !opensAnotherFile()) : state_.scene;
+}
+
+/// What undo goes back from: the present choice with what is being opened of the same file.
+Edit ViewerWindow::present() const {
+  Edit edit{state_, orbit_, otherTechniques_};
+  if (!opensAnotherFile()) edit.state.scene = awaited();
+  return edit;
+}
+
+/// What follows from another scene being shown than `before` (null: none). What was changed while the same
+/// file was opened again stays, and so does what undo knows.
+void ViewerWindow::adopt(const SceneFacts& scene, const SceneFacts* before) {
+  const bool sameFile = scene.file == (before != nullptr ? before->file : 0);
+  state_.scene = carriedOver(state_.scene, scene.options, sameFile);
   noteRecentScene(scene.options.scene);
   recentScenes_ = recentScenes();
-  orbit_ = Orbit(scene.camera, scene.bounds);
-  lightEdits_ = session::parseLightEdits(scene.options.lightSettings);
+  const auto viewpoint = [](const SceneQuestion& question) {
+    return std::tie(question.camera, question.eye, question.target);
+  };
+  if (viewpoint(state_.scene) == viewpoint(scene.options)) orbit_ = Orbit(scene.camera, scene.bounds);
+  lightEdits_ = session::parseLightEdits(state_.scene.lightSettings);
   chosenLight_ = scene::kNone;
   measured_.clear();
   budgetOf_.clear();  // also where the same file is shown again: with another floor, or read anew
@@ -172,22 +200,24 @@ void ViewerWindow::adopt(const SceneFacts& scene) {
       fmt::format("{} - {}", std::filesystem::path(scene.options.scene).filename().string(), options_.title)
           .c_str());
   moved();
-  history_.restart({state_, orbit_, otherTechniques_});
+  if (before == nullptr || !sameFile) history_.restart({state_, orbit_, otherTechniques_});
 }
 
 /// What undo or redo brings back; nothing where there is nothing more.
 void ViewerWindow::restore(const Edit* edit) {
   if (edit == nullptr) return;
-  const int width = state_.scene.width, height = state_.scene.height;
+  const SceneQuestion shown = state_.scene, coming = awaited();
   state_ = edit->state;
-  state_.scene.width = width;
-  state_.scene.height = height;
+  copyField(questionField("size"), state_.scene, shown);
+  const SceneQuestion wanted = state_.scene;
+  copyFields(QuestionEffect::scene, state_.scene, shown);  // until it is open
   orbit_ = edit->orbit;
   otherTechniques_ = edit->others;
   lightEdits_ = session::parseLightEdits(state_.scene.lightSettings);
   drag_.reset();
   playing_ = false;
   moved();
+  if (!sameFields(QuestionEffect::scene, wanted, coming)) open(wanted);
 }
 
 void ViewerWindow::say(std::string message, bool problem) {
@@ -202,7 +232,8 @@ void ViewerWindow::takeFacts() {
   const std::shared_ptr<const SceneFacts> shown = facts_ ? facts_->scene : nullptr;
   facts_ = std::move(newest);
   if (facts_->fatal) std::rethrow_exception(facts_->fatal);
-  if (facts_->scene && facts_->scene != shown) adopt(*facts_->scene);
+  if (facts_->opened == openings_) opening_.reset();
+  if (facts_->scene && facts_->scene != shown) adopt(*facts_->scene, shown.get());
   if (facts_->messages != messagesSeen_) say(facts_->message, facts_->problem);
   messagesSeen_ = facts_->messages;
 }
@@ -262,7 +293,7 @@ void ViewerWindow::frame() {
   if (inspection_) inspectorWindow();
   openDialog();
   if (unnoted_ && facts_->scene && !moving() && !ImGui::IsAnyItemActive()) {
-    history_.note({state_, orbit_, otherTechniques_});
+    history_.note(present());
     unnoted_ = false;
   }
   ImGui::Render();

@@ -195,7 +195,8 @@ void ViewerWindow::comparePanel() {
     if (state.spp > 0)
       wrapped(fmt::format("{} samples per pixel, noise {:.2g} % of the mean{}", state.spp, 100 * state.noise,
                           state.fromDisk ? ", from disk" : ""));
-    if (!state.problem.empty()) complaint(state.problem);
+    for (const std::string& problem : {state.problem, state.unkept})
+      if (!problem.empty()) complaint(problem);
     if (state.running)
       ImGui::ProgressBar(static_cast<float>(state.fraction), {-1, 0},
                          fmt::format("refining, {:.0f} %", 100 * state.fraction).c_str());

@@ -63,6 +63,7 @@ void ViewerWindow::drawColourBar(glm::vec2 corner, float width) const {
 }
 
 void ViewerWindow::handleMouse() {
+  if (!facts_->scene) return;
   const ImGuiIO& io = ImGui::GetIO();
   const glm::vec2 drag(io.MouseDelta.x, io.MouseDelta.y);
   bool changed = false;
@@ -90,16 +91,17 @@ void ViewerWindow::handleMouse() {
     }
   }
   if (!changed) return;
-  setCamera(state_.scene, orbit_, facts_->scene ? facts_->scene->origin : glm::dvec3(0));
+  setCamera(state_.scene, orbit_, facts_->scene->origin);
   moved();
 }
 
 void ViewerWindow::press(const KeyPress& pressed) {
   const int key = pressed.key;
   if (pressed.control) {
+    if (opensAnotherFile()) return;  // nothing is undone beyond it
     const bool back = key == GLFW_KEY_Z && !pressed.shift;
     if (back || key == GLFW_KEY_Z || key == GLFW_KEY_Y) {
-      history_.note({state_, orbit_, otherTechniques_});
+      history_.note(present());
       restore(back ? history_.undo() : history_.redo());
     }
     return;
@@ -113,7 +115,7 @@ void ViewerWindow::press(const KeyPress& pressed) {
     moved();
   }
   if (key == GLFW_KEY_F3) compareWith(static_cast<Beside>((static_cast<int>(beside_) + 1) % 3));
-  if (key == GLFW_KEY_F4) open(state_.scene);
+  if (key == GLFW_KEY_F4) open(awaited());
   if (key == GLFW_KEY_F5) save();
   if (key == GLFW_KEY_F6) saveSuite();
   if (key == GLFW_KEY_F7) copyCommand();
@@ -128,11 +130,11 @@ void ViewerWindow::press(const KeyPress& pressed) {
   if (key == GLFW_KEY_PAGE_UP && step_ > 0) chooseStep(step_ - 1);
 }
 
-/// What is pressed before the first scene is there waits for it.
+/// What is pressed before the first scene is there waits for it, unless it is typed into a text field.
 void ViewerWindow::handleKeys() {
+  if (ImGui::GetIO().WantTextInput) pressed_.clear();
   if (!facts_->scene) return;
-  if (!ImGui::GetIO().WantTextInput)
-    for (const KeyPress& key : pressed_) press(key);
+  for (const KeyPress& key : pressed_) press(key);
   pressed_.clear();
 }
 

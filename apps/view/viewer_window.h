@@ -48,11 +48,16 @@ class ViewerWindow {
   void listen();
   void frame();
   void takeFacts();
-  void adopt(const SceneFacts& scene);
+  void adopt(const SceneFacts& scene, const SceneFacts* before);
+  Edit present() const;
   void restore(const Edit* edit);
   void say(std::string message, bool problem = false);
   void openFile(const std::filesystem::path& file);
-  void open(const SceneQuestion& wanted);
+  void open(const SceneQuestion& wanted);  ///< of the same file
+  void postOpening(OpenOrder order);
+  uint64_t shownFile() const;
+  bool opensAnotherFile() const;
+  SceneQuestion awaited() const;
   void moved();  ///< something changed what is seen
   bool moving() const;
   bool minimised() const;
@@ -141,6 +146,8 @@ class ViewerWindow {
   std::shared_ptr<const PictureFacts> facts_;  ///< what is drawn
   std::optional<PictureOrder> posted_;
   uint64_t messagesSeen_ = 0;
+  std::optional<OpenOrder> opening_;  ///< the last one, until it has been followed
+  uint64_t openings_ = 0;             ///< that were ordered
 
   std::vector<render::TechniqueUse> otherTechniques_;
   Orbit orbit_;

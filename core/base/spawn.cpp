@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -100,18 +101,24 @@ std::string endProgram(pid_t process) {
   return awaitProgram(process);
 }
 
-ProgramOutput programOutput(const std::string& program, const std::vector<std::string>& arguments,
-                            bool talks) {
+ProgramOutput programOutput(const std::string& program, const std::vector<std::string>& arguments, bool talks,
+                            const std::function<bool()>& stopped) {
+  constexpr int kPatience = 100;  // milliseconds
   const PipedProgram started =
       startPiped(program, arguments, {.err = talks ? STDERR_FILENO : -1}, &StandardFiles::out);
   ProgramOutput output;
   char buffer[4096];
+  bool ends = false;
   for (ssize_t count = 1; count > 0 || (count < 0 && errno == EINTR);) {
+    ends = stopped && stopped();
+    if (ends) break;
+    pollfd readable{started.output, POLLIN, 0};
+    if (stopped && poll(&readable, 1, kPatience) <= 0) continue;
     count = read(started.output, buffer, sizeof buffer);
     if (count > 0) output.text.append(buffer, static_cast<size_t>(count));
   }
   close(started.output);
-  output.failure = awaitProgram(started.process);
+  output.failure = ends ? endProgram(started.process) : awaitProgram(started.process);
   while (output.text.ends_with('\n')) output.text.pop_back();
   return output;
 }

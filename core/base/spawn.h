@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -47,9 +48,10 @@ struct ProgramOutput {
 };
 
 /// Runs a program, as startProgram() does, to its end. What it says on standard error goes to limn's where
-/// `talks`, nowhere otherwise. Throws Error if it cannot be started.
+/// `talks`, nowhere otherwise. Where `stopped` is given, it is asked several times a second, and the program
+/// is ended once it returns true. Throws Error if the program cannot be started.
 LIMN_API ProgramOutput programOutput(const std::string& program, const std::vector<std::string>& arguments,
-                                     bool talks = false);
+                                     bool talks = false, const std::function<bool()>& stopped = {});
 
 /// Waits until the program has ended and says how it failed: "it ended with status 1", "it crashed:
 /// Segmentation fault", "it takes too long" for a program that ended itself by a limit of time. Returns ""

@@ -84,10 +84,10 @@ fs::path findEnvironment(const fs::path& nameOrFile) {
   const fs::path name = nameOrFile.filename();
   if (name == nameOrFile)
     if (const fs::path file = ownEnvironment(name.string()); !file.empty()) return file;
-  throw Error(fmt::format(
-      "environment '{}' does not exist; expected an equirectangular .exr or .hdr file, or the name of one of "
-      "limn's maps (limn list environments)",
-      nameOrFile.string()));
+  throw Error(
+      fmt::format("environment '{}' does not exist{}; expected an equirectangular .exr or .hdr file, or the "
+                  "name of one of limn's maps (limn list environments)",
+                  nameOrFile.string(), didYouMean(nameOrFile.string(), environmentNames())));
 }
 
 fs::path findDefaultEnvironment() {
@@ -105,9 +105,9 @@ fs::path findSuite(const fs::path& nameOrFile) {
   const fs::path file = findShared("benchmarks", fs::path(nameOrFile).concat(".toml"));
   if (file.empty())
     throw Error(
-        fmt::format("suite '{}' does not exist; expected a TOML file, or the name of one of limn's suites "
+        fmt::format("suite '{}' does not exist{}; expected a TOML file, or the name of one of limn's suites "
                     "(limn list suites)",
-                    nameOrFile.string()));
+                    nameOrFile.string(), didYouMean(nameOrFile.string(), suiteNames())));
   return file;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <unordered_set>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -62,13 +63,13 @@ glm::vec3 parseCoefficient(const char* option, const std::string& text, double d
   return glm::vec3(v);
 }
 
+}  // namespace
+
 std::vector<std::string> cameraNames(const scene::Pose& pose) {
   std::vector<std::string> names;
   for (const auto& camera : pose.cameras) names.push_back(camera.name);
   return names;
 }
-
-}  // namespace
 
 int findNamed(const std::string& what, const std::string& text, const std::vector<std::string>& names) {
   for (size_t i = 0; i < names.size(); ++i)
@@ -84,6 +85,13 @@ int findNamed(const std::string& what, const std::string& text, const std::vecto
       fmt::format("{} '{}' is not in the scene{}; it has {}{}", what, text, didYouMean(text, names),
                   names.empty() ? "none" : joined(shown),
                   names.size() > listed ? fmt::format(" and {} more", names.size() - listed) : ""));
+}
+
+std::vector<std::string> findableNames(std::vector<std::string> names) {
+  std::unordered_set<std::string> known;
+  for (size_t i = 0; i < names.size(); ++i)
+    if (!known.insert(names[i]).second) names[i] = fmt::format("#{}", i);
+  return names;
 }
 
 scene::CameraPose chooseCamera(const SceneQuestion& question, const scene::Pose& pose,

@@ -71,9 +71,15 @@ LIMN_API void resizeLights(scene::Scene& scene, double size);
 LIMN_API reference::Request referenceRequest(const View& view, const scene::Pose& pose,
                                              const scene::CameraPose& camera, Term term);
 
+/// Returns the names of the pose's cameras, as the file has them.
+LIMN_API std::vector<std::string> cameraNames(const scene::Pose& pose);
+
 /// Returns the index of a name or "#index" among `names`. Throws UsageError that lists them.
 LIMN_API int findNamed(const std::string& what, const std::string& text,
                        const std::vector<std::string>& names);
+
+/// Returns the texts by which findNamed() finds each of the names: "#index" where one before it is the same.
+LIMN_API std::vector<std::string> findableNames(std::vector<std::string> names);
 
 /// Returns the camera of the pose that the question names, or `framing` where the pose has none, moved to
 /// --eye and --target and given --fov. Throws UsageError for a camera that does not exist.

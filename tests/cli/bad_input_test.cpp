@@ -146,6 +146,14 @@ TEST_F(BadOutput, FullStandardOutput) {
   expectRefused(outcome, 1, {"standard output"});
 }
 
+TEST_F(BadOutput, AFileThatMayNotGrowEndsNoProgram) {
+  for (const char* name : {"limn", "limn-view", "ch7-variance-soft-shadows"}) {
+    const Outcome outcome = run({std::string(kBinaryDir) + "/bin/" + name, "--help"}, {}, 100);
+    EXPECT_NE(outcome.status, -1) << name << " died of a signal";
+    EXPECT_EQ(outcome.out.size(), 100u) << name;
+  }
+}
+
 TEST_F(BadOutput, FullDiskDuringABench) {
   std::ofstream(folder_ / "suite.toml")
       << "name = 'full'\nsizes = ['32x20']\nframes = 1\nwarmup = 0\nreference = {spp = 2}\n"

@@ -90,6 +90,15 @@ TEST_F(BenchFaults, EveryWayToFailCostsOneRow) {
   EXPECT_THAT(contents(folder_ / "out/tables.md"), HasSubstr("failed: no progress for 4 s"));
 }
 
+TEST_F(BenchFaults, WhatFailsIsSaidToTheQuietAsWell) {
+  suite(shadows() + technique("misbehaver", "way = ['number', 'crash']"));
+  const Outcome outcome = bench({"-q"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("it threw something that is no std::exception\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("way=crash: crashed: Aborted, in technique misbehaver\n"));
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 2) << outcome.err;
+}
+
 TEST_F(BenchFaults, ACrashInALaterTurnLeavesTheRow) {
   suite(technique("misbehaver", "way = 'once_there'") + shadows(), "turns = 2");
   environment_["LIMN_TEST_TRIGGER"] = folder_ / "out/results.jsonl";
@@ -133,6 +142,7 @@ TEST_F(BenchFaults, WhatIsMissingIsSaidBeforeAnythingIsMeasured) {
        {"no_such_technique", "speed", "no such light", "no such camera", "no_such_scene", "no such map"})
     EXPECT_THAT(outcome.err, HasSubstr(thing));
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 6) << outcome.err;
+  EXPECT_EQ(bench({"-q"}).err, outcome.err) << "errors, all of them";
   EXPECT_FALSE(fs::exists(folder_ / "out/results.jsonl"));
 }
 

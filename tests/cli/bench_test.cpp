@@ -95,10 +95,11 @@ TEST_F(BenchCommand, AFullDiskLosesOnlyWhatDidNotFit) {
   EXPECT_THAT(full.err, testing::HasSubstr(".png"));
   EXPECT_THAT(full.err, testing::HasSubstr("index.html"));
   EXPECT_EQ(contents(folder_ / "out" / "results.jsonl").substr(0, before.size()), before);
-  // With room again only what is missing is measured.
+  // With room again what is missing is measured: of the first row its picture.
   const Outcome after = bench("out");
   EXPECT_EQ(after.status, 0) << after.err;
-  EXPECT_THAT(after.out, testing::HasSubstr("1 rows measured, 1 were there already, 0 failed"));
+  EXPECT_THAT(after.out, testing::HasSubstr("2 rows measured, 0 were there already, 0 failed"));
+  EXPECT_THAT(bench("out").out, testing::HasSubstr("0 rows measured, 2 were there already, 0 failed"));
   EXPECT_THAT(contents(folder_ / "out" / "index.html"), testing::HasSubstr("</html>"));
   for (const auto& file : fs::recursive_directory_iterator(folder_ / "out"))
     EXPECT_THAT(file.path().string(), testing::Not(testing::EndsWith(".part")));
@@ -144,7 +145,38 @@ TEST_F(BenchCommand, StressWritesATable) {
   EXPECT_EQ(more.status, 0) << more.err;
   EXPECT_THAT(more.out, testing::AllOf(testing::HasSubstr("one triangle"), testing::HasSubstr("scale 1e-4"),
                                        testing::Not(testing::HasSubstr("scale 1e4"))));
-  std::ofstream(folder_ / "stress" / "stress.json") << "{}";
+  // A result counts while it allows what the case does and is measured with what would measure it now.
+  const fs::path file = folder_ / "stress" / "stress.json";
+  const auto rerun = [&](const std::string& pattern, const std::string& by) {
+    const std::string text = std::regex_replace(contents(file), std::regex(pattern), by);
+    std::ofstream(file) << std::regex_replace(text, std::regex("\"benign\": [0-9.e-]+"), "\"benign\": 123");
+    return limn({"stress", "--technique", "hard_shadow_map", "--filter", "one triangle", "--out",
+                 folder_ / "stress"});
+  };
+  const auto lines = [](const std::string& text) {
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = text.find("| one triangle |", at)) != std::string::npos; ++at) ++count;
+    return count;
+  };
+  const std::string line = "one triangle \\| balls \\| [^\n]*\\| 123 \\|";
+  const auto kept = [&](const std::string& text) { return std::regex_search(text, std::regex(line)); };
+  EXPECT_TRUE(kept(rerun("no such text", "").out)) << "nothing has changed";
+  for (const auto& [pattern, by] :
+       {std::pair("\"allowed\": [0-9.]+", "\"allowed\": 77"), std::pair("\"hash\": \"", "\"hash\": \"0"),
+        std::pair("\"program\": \"", "\"program\": \"0")}) {
+    const Outcome again = rerun(pattern, by);
+    EXPECT_FALSE(kept(again.out)) << again.out;
+    EXPECT_EQ(lines(again.out), 1u) << again.out;
+  }
+  const std::string ours = contents(file);
+  const std::string theirs =
+      std::regex_replace(ours, std::regex("\"renderer\": \"[^\"]*\""), "\"renderer\": \"A GPU\"");
+  std::ofstream(file) << theirs;
+  expectRefused(limn({"stress", "--technique", "hard_shadow_map", "--filter", "one triangle", "--out",
+                      folder_ / "stress"}),
+                1, {"stress.json", "results of A GPU", "another folder"});
+  EXPECT_EQ(contents(file), theirs);
+  std::ofstream(file) << "{}";
   expectRefused(limn({"stress", "--technique", "hard_shadow_map", "--out", folder_ / "stress"}), 1,
                 {"stress.json"});
   expectRefused(limn({"stress", "--filter", "no such case"}), 2, {"no such case"});

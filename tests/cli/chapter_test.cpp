@@ -24,6 +24,20 @@ TEST(Chapters, FiguresAreWrittenAsFiles) {
               testing::HasSubstr("| VSM from a summed-area table"));
 }
 
+TEST(Chapters, InterruptedTheySayWhatIsKept) {
+  const TemporaryFolder folder;
+  Process process({std::string(kBinaryDir) + "/bin/ch7-variance-soft-shadows", "--headless", "--out",
+                   folder / "out", "--filter", "512x384", "--filter", "balls", "--filter", "savsm"});
+  ASSERT_TRUE(process.waitUntil([&] { return !contents(folder / "out/ch7_figures/.lock").empty(); }))
+      << process.err();
+  process.signal(SIGTERM);
+  const Outcome outcome = process.wait();
+  EXPECT_EQ(outcome.status, 128 + SIGTERM);
+  EXPECT_THAT(outcome.err, testing::HasSubstr("interrupted; the rows so far are kept in " +
+                                              (folder / "out/ch7_figures/results.jsonl").string() +
+                                              ", the same command goes on\n"));
+}
+
 TEST(Chapters, ADisplayThatIsGoneIsNone) {
   const TemporaryFolder folder;
   const Outcome outcome =

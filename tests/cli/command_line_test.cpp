@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/limn_program.h"
+#include "tests/support/gltf_builder.h"
 
 namespace limn::test {
 namespace {
@@ -116,6 +117,7 @@ TEST(CommandLine, FlickerComparesAnimationsWithTheTruth) {
   };
   expectRefused(flicker("cornell_horse", {"--frames", "3:3"}), 2, {"--frames", "a < b"});
   expectRefused(flicker("cornell_horse", {"--output-term", "caustic"}), 2, {"caustic"});
+  expectRefused(flicker("cornell_horse", {"--time", "1"}), 2, {"--time"});
   const Outcome still = flicker("cornell_box", {"--frames", "0:1"});
   EXPECT_EQ(still.status, 1);
   EXPECT_THAT(still.err, HasSubstr("does not change beyond its noise"));
@@ -127,6 +129,36 @@ TEST(CommandLine, FlickerComparesAnimationsWithTheTruth) {
   const Outcome strict = flicker("cornell_horse", {"--frames", "0:1", "--fps", "5", "--at-most", "0.001"});
   EXPECT_EQ(strict.status, 1);
   EXPECT_THAT(strict.err, HasSubstr("at most 0.001"));
+}
+
+/// As in `limn render --frames`: what --set-light leaves of a light follows its animation.
+TEST(CommandLine, FlickerMovesLightsAsTheirAnimationsDo) {
+  GltfBuilder builder;
+  builder.triangle();
+  const int lamp = builder.light({{"type", "spot"}, {"spot", {{"outerConeAngle", 0.5}}}, {"intensity", 2}},
+                                 {{"name", "lamp"}});
+  const int times = builder.floats({0, 2}), places = builder.vec3({{0, 0, 1}, {0.6f, 0.6f, 1}});
+  builder.append("animations",
+                 {{"samplers", {{{"input", times}, {"output", places}}}},
+                  {"channels", {{{"sampler", 0}, {"target", {{"node", lamp}, {"path", "translation"}}}}}}});
+  const TemporaryFolder folder;
+  const std::string scene = folder / "moving_lamp.glb";
+  const std::vector<std::byte> bytes = builder.glb();
+  std::ofstream(scene, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  const Outcome outcome = limn({"flicker",       scene,
+                                "--technique",   "hard_shadow_map",
+                                "--output-term", "direct",
+                                "--size",        "32x24",
+                                "--eye",         "0.3,0.3,2",
+                                "--target",      "0.3,0.3,0",
+                                "--set-light",   "lamp.rotation=0,0,0",
+                                "--frames",      "0:2",
+                                "--fps",         "1",
+                                "--spp",         "16",
+                                "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_GT(nlohmann::json::parse(outcome.out)["ratio"], 0);
 }
 
 TEST(CommandLine, HelpOfEveryCommandIsComplete) {
@@ -225,6 +257,20 @@ TEST(CommandLine, InfoOfASceneNamesWhatOptionsTake) {
   expectRefused(limn({"info", "robt"}), 1, {"robot"});
 }
 
+/// JSON is UTF-8, names of files need not be.
+TEST_F(Render, NamesThatAreNotUtf8AreNoReasonToFail) {
+  const std::string scene = folder_ / "\xff.glb", stats = folder_ / "stats.json";
+  std::filesystem::copy_file(kCornellBox, scene);
+  const Outcome info = limn({"info", scene, "--json"});
+  ASSERT_EQ(info.status, 0) << info.err;
+  EXPECT_THAT(nlohmann::json::parse(info.out)["file"].get<std::string>(), testing::EndsWith("\uFFFD.glb"));
+  const Outcome rendered =
+      limn({"render", scene, "--size", "32x24", "--stats", stats, "--out", out_.string()});
+  ASSERT_EQ(rendered.status, 0) << rendered.err;
+  EXPECT_THAT(nlohmann::json::parse(contents(stats))["scene"].get<std::string>(),
+              testing::EndsWith("\uFFFD.glb"));
+}
+
 TEST_F(Render, WritesAPictureWithChannelsAndStatistics) {
   const auto stats = folder_ / "stats.json";
   const Outcome outcome = limn(command({"--stats", stats.string(), "--repeat", "2", "--explain"}));
@@ -269,6 +315,22 @@ TEST_F(Render, RefusesWhatItDoesNotUnderstand) {
   EXPECT_TRUE(listing(folder_.path()).empty());
 }
 
+TEST_F(Render, ShadersThatAreNotWhereTheyShouldBeAreNoticed) {
+  const std::string none = folder_ / "none", empty = folder_ / "empty";
+  std::filesystem::create_directory(empty);
+  expectRefused(limn(command({"--shaders", none})), 2, {"--shaders", "none", "no such folder"});
+  expectRefused(limn({"passes", kCornellBox, "--shaders", none, "--out", folder_ / "passes"}), 2,
+                {"--shaders", "none", "no such folder"});
+  expectRefused(limn({"view", kCornellBox, "--shaders", none}), 2, {"--shaders", "none", "no such folder"});
+  EXPECT_EQ(listing(folder_.path()), std::vector<std::string>{"empty"});
+  const Outcome warned = limn(command({"--shaders", empty}));
+  EXPECT_EQ(warned.status, 0);
+  EXPECT_THAT(warned.err, HasSubstr("warning: --shaders " + empty + ": the folder holds neither glsl/"));
+  const Outcome good = limn(command({"--shaders", kSourceDir}));
+  EXPECT_EQ(good.status, 0);
+  EXPECT_THAT(good.err, testing::Not(HasSubstr("--shaders")));
+}
+
 TEST_F(Render, AsksTechniquesForSomeOfTheirTerms) {
   const auto by = [&](const char* techniques) { return limn(command({"--technique", techniques})); };
   expectRefused(by("vssm,implicit_visibility"), 2,
@@ -307,6 +369,8 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
   const TemporaryFolder folder;
   expectRefused(limn({"compare", (folder / "a.exr").string(), (folder / "b.exr").string()}), 1, {"a.exr"});
   expectRefused(limn({"compare", kCornellBox, kCornellBox}), 1, {"cornell_box.glb"});
+  expectRefused(limn({"compare", kCornellBox, kCornellBox, "--diff", folder / "map.exr"}), 2,
+                {"--diff", "map.exr", ".png"});
   for (const char* ev : {"200", "-60.5", "nan"})
     expectRefused(
         limn({"compare", (folder / "a.exr").string(), (folder / "b.exr").string(), "--exposure", ev}), 2,

@@ -92,6 +92,27 @@ TEST_F(AssimpTest, NothingIsLeftOfWhatCannotBeRead) {
   EXPECT_EQ(listing(folder_.path()), (std::vector<std::string>{"a.fbx", "a.obj"}));
 }
 
+/// Neither the program that converts nor what it has half-written is left.
+TEST_F(ImportTest, NothingIsLeftAfterAnInterruption) {
+  const TemporaryFolder programs;
+  const fs::path converter = programs / "assimp", begun = programs / "begun";
+  std::ofstream(converter) << "#!/bin/sh\n[ \"$1\" = info ] && exit\necho half > \"$3\"\necho $$ > "
+                           << begun.string() << "\nexec sleep 300\n";
+  fs::permissions(converter, fs::perms::owner_all);
+  const fs::path file = model("a.obj", kObject);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    fs::remove(begun);
+    Process process({kLimnBinary, "import", file}, {{"PATH", programs.path().string() + ":/usr/bin:/bin"}});
+    ASSERT_TRUE(process.waitUntil([&] { return contents(begun).ends_with('\n'); })) << process.err();
+    process.signal(signal);
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.status, 128 + signal);
+    EXPECT_EQ(outcome.err, "limn: interrupted; no scene was written\n");
+    EXPECT_EQ(kill(std::stoi(contents(begun)), 0), -1) << "assimp goes on";
+    EXPECT_EQ(listing(folder_.path()), std::vector<std::string>{"a.obj"});
+  }
+}
+
 TEST_F(ImportTest, RefusesInOneLine) {
   expectRefused(limn({"import", folder_ / "no.obj"}), 2, {"no.obj", "no such file"});
   const fs::path file = model("a.obj", kObject);

@@ -59,6 +59,14 @@ TEST_F(TuneCommand, AnswersWithACommandItsErrorAndItsTime) {
   EXPECT_EQ(contents(folder_ / "out/results.jsonl").substr(0, whole.size()), whole);
 }
 
+TEST_F(TuneCommand, TheCommandNamesTheBackEndThatWasMeasured) {
+  const Outcome outcome =
+      tune({"--techniques", "hard_shadow_map", "--set", "hard_shadow_map.shadow_map_size=64", "--max-error",
+            "rmse=1", "--backend", "osmesa"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::HasSubstr(" --backend osmesa --out tuned.png\n"));
+}
+
 /// Times of small pictures are brought to the full size by one setting that is tried in both.
 TEST_F(TuneCommand, LargePicturesAreTriedInSmallOnes) {
   const Outcome outcome = limn({"tune", "cornell_box", "--size", "256x192", "--steps", "1", "--spp", "1",
@@ -83,12 +91,20 @@ TEST_F(TuneCommand, SaysWhatComesNearestToALimitThatNothingKeeps) {
   EXPECT_THAT(loud.err,
               testing::AllOf(testing::HasSubstr("no setting takes at most 0.001 ms"),
                              testing::HasSubstr("shadow_map_size=64"), testing::HasSubstr("direct")));
+  EXPECT_THAT(loud.err, testing::Not(testing::HasSubstr("noise"))) << "a limit of time";
+  // No reference of 4 samples tells such an error from its own.
+  const Outcome exact = tune({"--techniques", "hard_shadow_map", "--set",
+                              "hard_shadow_map.shadow_map_size=64", "--max-error", "rmse=1e-9"});
+  EXPECT_EQ(exact.status, 1);
+  EXPECT_THAT(exact.err, testing::AllOf(testing::HasSubstr("no setting has a RMSE of at most 1e-09"),
+                                        testing::HasSubstr("below the noise of the reference")));
   EXPECT_FALSE(fs::exists(folder_ / "out/tuned.toml"));
 }
 
 TEST_F(TuneCommand, QuestionsThatCannotBeAskedAreRefusedAtOnce) {
   expectRefused(tune({}), 2, {"--max-ms", "--max-error"});
   expectRefused(tune({"--max-ms", "10", "--max-error", "rmse=0.1"}), 2, {"excludes"});
+  expectRefused(tune({"--max-error", "rmse=0.1", "--metric", "flip"}), 2, {"--metric", "excludes"});
   expectRefused(tune({"--max-error", "rsme=0.1"}), 2, {"rsme", "did you mean rmse"});
   expectRefused(tune({"--max-error", "rmse"}), 2, {"METRIC=X"});
   expectRefused(tune({"--max-ms", "10", "--metric", "pixels"}), 2, {"pixels", "known are"});

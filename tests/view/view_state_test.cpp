@@ -54,6 +54,44 @@ TEST_F(ViewStateTest, SamplesFloorAndAutomaticExposureAreInTheCommand) {
             "limn render cornell_box --aa 3 --floor on --exposure auto --out a.png");
 }
 
+/// Other shaders render another picture.
+TEST_F(ViewStateTest, ShadersAreInTheCommand) {
+  state_.shaders = "my shaders";
+  EXPECT_EQ(renderCommand(state_, "a.png"), "limn render cornell_box --shaders 'my shaders' --out a.png");
+}
+
+/// The frames say the time.
+TEST_F(ViewStateTest, SequencesHaveACommand) {
+  state_.scene.time = 0.5;
+  EXPECT_EQ(sequenceCommand(state_, "a.png", {3, 7}, 24),
+            "limn render cornell_box --out a.png --frames 3:7 --fps 24");
+}
+
+/// What was changed while the same file was opened again stays; another file begins anew.
+TEST_F(ViewStateTest, ChangesWhileAFileIsOpenedStay) {
+  SceneQuestion opened = state_.scene;
+  opened.floor = "on";
+  opened.environment = "sky";
+  SceneQuestion now = state_.scene;
+  now.eye = "0,1,3";
+  now.target = "0,0,0";
+  now.time = 2;
+  now.lightSettings = {"key.intensity=3"};
+  now.environment = "studio";
+  now.aa = 3;
+  now.width = 99;
+  now.term = "direct";
+  SceneQuestion expected = now;
+  expected.floor = "on";
+  expected.environment = "sky";
+  EXPECT_EQ(carriedOver(now, opened, true), expected);
+  expected = opened;
+  expected.aa = 3;
+  expected.width = 99;
+  expected.term = "direct";
+  EXPECT_EQ(carriedOver(now, opened, false), expected);
+}
+
 TEST_F(ViewStateTest, TheNextTechniqueIsAnother) {
   use("vssm,clustered_visibility");
   std::vector<render::TechniqueUse> others = state_.techniques;

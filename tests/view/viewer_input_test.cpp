@@ -12,24 +12,31 @@ namespace {
 class ViewerInputTest : public ViewerWindowTest {};
 
 /// Files dropped on the window: a scene replaces the one that is shown, one that cannot be read leaves it, a
-/// map lights it.
+/// map lights it, also where the scene is read again before that has been loaded; it can be undone.
 TEST_F(ViewerInputTest, TakesWhatIsDroppedOnIt) {
   const std::string assets = std::string(kBinaryDir) + "/assets/";
   std::filesystem::copy_file(assets + "environments/sky.exr", folder_ / "sky.exr");
-  const Outcome outcome =
-      view("cornell_box --technique hard_shadow_map --size 160x432 --save a.exr",
-           "save first.exr; echo broken > broken.glb; drop broken.glb; hear broken.glb 1; save same.exr\n"
-           "drop " +
-               assets +
-               "teapot/teapot.glb; hear opened 2; save teapot.exr\n"
-               "drop missing.glb; hear missing.glb 1; drop sky.exr; hear opened 3; save sky.exr\n"
-               "click 372 44; click 290 68; hear opened 4; save again.exr");
+  const Outcome outcome = view(
+      "cornell_box --technique hard_shadow_map --size 160x432 --save a.exr",
+      "save first.exr; echo broken > broken.glb; drop broken.glb; hear broken.glb 1; save same.exr\n"
+      "drop " +
+          assets +
+          "teapot/teapot.glb; hear opened 2; save teapot.exr\n"
+          "drop missing.glb; hear missing.glb 1; drop sky.exr; xdotool key F4; hear opened 4; save sky.exr\n"
+          "xdotool key ctrl+z; hear opened 5; save undone.exr; xdotool key ctrl+y; hear opened 6; save "
+          "redone.exr\n"
+          "click 372 44; click 290 68; hear opened 7; save again.exr");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(colours(picture("same.exr")), colours(picture("first.exr")));
   EXPECT_THAT(command("same.exr"), testing::HasSubstr("cornell_box"));
   EXPECT_THAT(command("teapot.exr"), testing::HasSubstr("teapot.glb"));
   EXPECT_THAT(contents(folder_ / "state/limn/scenes"), testing::EndsWith("/teapot/teapot.glb\n"))
       << "it is offered from now on";
+  EXPECT_THAT(command("sky.exr"), testing::HasSubstr("sky.exr"));
+  EXPECT_NE(colours(picture("sky.exr")), colours(picture("teapot.exr")));
+  EXPECT_EQ(command("undone.exr"), command("teapot.exr"));
+  EXPECT_EQ(colours(picture("undone.exr")), colours(picture("teapot.exr")));
+  EXPECT_EQ(command("redone.exr"), command("sky.exr"));
   EXPECT_EQ(colours(picture("again.exr")), colours(picture("teapot.exr")));
 }
 
@@ -78,19 +85,22 @@ TEST_F(ViewerInputTest, ChoosesEnvironments) {
 }
 
 /// Without a scene the window says how to open one; one of limn's is chosen from its list, of two columns
-/// here, and stands in the title then.
+/// here, and stands in the title then. Keys that were typed into a field before, here F2, do nothing.
 TEST_F(ViewerInputTest, StartsWithoutAScene) {
   const std::vector<std::string> names = session::sceneNames();
   const auto entry = std::ranges::find(names, "cornell_box") - names.begin();
   const std::string place = fmt::format("{} {}", 440 + 276 * (entry % 2), 94 + 17 * (entry / 2));
   const Outcome outcome = view("--size 600x420 --technique hard_shadow_map --save a.exr",
-                               "sleep 1; xdotool mousemove " + place +
+                               "sleep 1; xdotool mousemove 200 44; sleep 1; xdotool click 1; sleep 1\n"
+                               "xdotool key F2 Escape; sleep 1; xdotool mousemove " +
+                                   place +
                                    "; sleep 1; xdotool click 1; hear opened 1\n"
                                    "save first.exr; xdotool getwindowname $window > title");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(contents(folder_ / "title"), "cornell_box - limn\n");
-  EXPECT_THAT(command("first.exr"), testing::HasSubstr("limn render cornell_box"));
+  EXPECT_THAT(command("first.exr"),
+              testing::HasSubstr("limn render cornell_box --technique hard_shadow_map "));
   EXPECT_EQ(picture("first.exr").width(), 600);
   EXPECT_EQ(picture("first.exr").height(), 420);
 }
@@ -123,6 +133,19 @@ TEST_F(ViewerInputTest, WithoutADisplayAdvisesWhatWorks) {
     EXPECT_EQ(outcome.status, 1) << name;
     EXPECT_THAT(outcome.err, testing::HasSubstr("limn render"));
   }
+}
+
+/// Files that could not be written at the end are refused at the start.
+TEST_F(ViewerInputTest, RefusesFilesThatItCannotWrite) {
+  const auto refused = [](const char* option, const char* file, int status, const char* reason) {
+    const Outcome outcome = run({kBinaries + "limn-view", "balls", option, file}, {{"DISPLAY", ""}});
+    EXPECT_EQ(outcome.status, status) << option;
+    EXPECT_THAT(outcome.err, testing::AllOf(testing::HasSubstr(file), testing::HasSubstr(reason)));
+  };
+  refused("--screenshot", "window.jpg", 2, ".png");
+  refused("--save", "picture.jpg", 2, ".exr or .png");
+  refused("--screenshot", "/nowhere/window.png", 1, "cannot be written");
+  refused("--stats", "/nowhere/stats.json", 1, "cannot be written");
 }
 
 /// Options that the window does not use are refused, and the device is the one that was named.
@@ -160,14 +183,16 @@ TEST_F(ViewerInputTest, PicturesHaveTheSizeThatIsLeft) {
   EXPECT_EQ(picture("window.png").height(), 42 + 132);
 }
 
-/// Techniques, cameras and what is compared with come back, and go again.
+/// Techniques, cameras and what is compared with come back, and go again. The scene being read anew neither
+/// takes back what is done meanwhile nor what was done before.
 TEST_F(ViewerInputTest, UndoesAndRedoes) {
   const Outcome outcome = view(
       "cornell_box --technique pcss --size 160x132 --save a.exr",
       "save first.exr; xdotool key F2; save other.exr; sleep .5\n"
       "point 470 60; xdotool mousedown 1; frames 2; point 500 70; xdotool mouseup 1; frames 2; sleep .5\n"
       "save turned.exr; xdotool key ctrl+z; save once.exr; xdotool key ctrl+z; save twice.exr\n"
-      "xdotool key ctrl+z; save first_of_all.exr; xdotool key ctrl+shift+z ctrl+y; save again.exr");
+      "xdotool key ctrl+z; save first_of_all.exr; xdotool key ctrl+shift+z ctrl+y; save again.exr\n"
+      "xdotool key F4 click 4; hear opened 2; save nearer.exr; xdotool key ctrl+z; save back.exr");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   EXPECT_NE(command("turned.exr"), command("other.exr"));
@@ -175,6 +200,8 @@ TEST_F(ViewerInputTest, UndoesAndRedoes) {
   EXPECT_EQ(command("twice.exr"), command("first.exr"));
   EXPECT_EQ(command("first_of_all.exr"), command("first.exr"));
   EXPECT_EQ(command("again.exr"), command("turned.exr"));
+  EXPECT_NE(command("nearer.exr"), command("turned.exr"));
+  EXPECT_EQ(command("back.exr"), command("turned.exr"));
   EXPECT_EQ(colours(picture("twice.exr")), colours(picture("first.exr")));
   EXPECT_EQ(colours(picture("again.exr")), colours(picture("turned.exr")));
 }

@@ -85,6 +85,7 @@ TEST_F(ViewerTest, ReloadsShaders) {
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(colours(picture("broken.exr")), colours(picture("first.exr")));
   EXPECT_NE(colours(picture("changed.exr")), colours(picture("first.exr")));
+  EXPECT_THAT(command("changed.exr"), testing::HasSubstr("--shaders . "));
 }
 
 /// Every texture that a frame writes can be looked at, and looking changes no pixel.
@@ -98,7 +99,8 @@ TEST_F(ViewerTest, InspectsEveryTexture) {
   EXPECT_EQ(colours(picture("first.exr")), colours(picture("last.exr")));
 }
 
-/// The frames of a sequence are those of limn render, also where techniques average over several of them.
+/// The frames of a sequence are those of the command that is in them, also where techniques average over
+/// several of them.
 TEST_F(ViewerTest, SavesSequences) {
   const auto expectSameFrames = [&](const std::string& question, const std::string& frames) {
     const Outcome outcome =
@@ -106,11 +108,13 @@ TEST_F(ViewerTest, SavesSequences) {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
     const Image frame = picture("a.0007.exr");
+    EXPECT_EQ(frame.metadata().count("version"), 1u);
+    std::string again = command("a.0007.exr");
+    ASSERT_THAT(again, testing::AllOf(testing::HasSubstr("a.exr"), testing::HasSubstr("--frames 0:29")));
+    again.replace(again.find("a.exr"), 5, "b.exr");
+    again.replace(again.find("0:29"), 4, frames);  // no more than are looked at
     const Outcome rendered =
-        run({"/bin/sh", "-c",
-             "cd '" + folder_.path().string() + "' && '" + kBinaries + "limn' render " + question +
-                 " --size " + std::to_string(frame.width()) + "x" + std::to_string(frame.height()) +
-                 " --frames " + frames + " --out b.exr"});
+        run({"/bin/sh", "-c", "cd '" + folder_.path().string() + "' && '" + kBinaries + "'" + again});
     ASSERT_EQ(rendered.status, 0) << rendered.err;
     EXPECT_EQ(colours(frame), colours(picture("b.0007.exr")));
   };

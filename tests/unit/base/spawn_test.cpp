@@ -31,6 +31,12 @@ TEST(Spawn, SaysHowAProgramEnded) {
   EXPECT_EQ(endProgram(startProgram("sleep", {"1000"}, {})), "it crashed: Killed");
 }
 
+TEST(Spawn, AProgramIsEndedOnceItIsToStop) {
+  int asked = 0;
+  const ProgramOutput output = programOutput("sleep", {"1000"}, false, [&] { return ++asked > 3; });
+  EXPECT_EQ(output.failure, "it crashed: Killed");
+}
+
 /// SIGTERM ends a program that interrupts reach, and no other.
 TEST(Spawn, InterruptsReachAProgramThatIsToTakeThem) {
   EXPECT_EQ(awaitProgram(startProgram("sh", {"-c", "kill -TERM $$; exit 3"}, {})), "it ended with status 3");

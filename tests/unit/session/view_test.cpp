@@ -139,12 +139,26 @@ TEST(Framing, IsTheSameAtAllTimesAndWithAFloor) {
 TEST(Find, KnowsTheNamesOfWhatCameWithLimn) {
   EXPECT_THAT(sceneNames(), testing::IsSupersetOf({"balls", "cornell_box", "robot"}));
   EXPECT_THAT(environmentNames(), testing::IsSupersetOf({"sky", "studio"}));
-  try {
-    findScene("robt");
-    ADD_FAILURE() << "it was found";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("did you mean robot"));
-  }
+  const auto expectSuggestion = [](std::filesystem::path (*find)(const std::filesystem::path&),
+                                   const char* name, const char* nearest) {
+    try {
+      find(name);
+      ADD_FAILURE() << name << " was found";
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr(std::string("did you mean ") + nearest));
+    }
+  };
+  expectSuggestion(findScene, "robt", "robot");
+  expectSuggestion(findEnvironment, "studoi", "studio");
+  expectSuggestion(findSuite, "quik", "quick");
+}
+
+TEST(Find, NamesThatRepeatAreFoundByTheirIndex) {
+  const std::vector<std::string> names{"main", "side", "main", "#3", "main"};
+  const std::vector<std::string> findable = findableNames(names);
+  EXPECT_EQ(findable, (std::vector<std::string>{"main", "side", "#2", "#3", "#4"}));
+  for (size_t i = 0; i < names.size(); ++i)
+    EXPECT_EQ(findNamed("camera", findable[i], names), static_cast<int>(i));
 }
 
 TEST(DefaultLights, BringAnEnvironmentToScenesThatHaveNone) {

@@ -1,0 +1,78 @@
+// Scripts around limn, with programs in its place that only say what they were asked.
+#include "tests/cli/limn_program.h"
+
+namespace limn::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+void writeProgram(const fs::path& file, const std::string& text) {
+  fs::create_directories(file.parent_path());
+  std::ofstream(file) << "#!/bin/sh\n" << text;
+  fs::permissions(file, fs::perms::owner_all);
+}
+
+/// A source tree with nothing but one of the scripts, and a folder beside it from which the script is called.
+class Scripts : public testing::Test {
+ protected:
+  Scripts() {
+    writeProgram(root_ / "scripts/build", "");
+    writeProgram(root_ / "scripts/gallery", "");
+    writeProgram(root_ / "build/bin/limn", "echo \"$@\" >> " + (folder_ / "said").string() + R"(
+case $1 in
+list) echo '{"techniques": []}' ;;
+info) echo '{"devices": [{"backend": "egl", "device": -1, "renderer": "none", "software": true}]}' ;;
+esac
+)");
+    for (const char* program : {"ctest", "git"}) writeProgram(folder_ / "programs" / program, "");
+    fs::create_directory(caller_);
+  }
+
+  Outcome call(const std::string& script, const std::string& arguments) const {
+    fs::copy_file(fs::path(kSourceDir) / "scripts" / script, root_ / "scripts" / script);
+    return run(
+        {"/bin/bash", "-c", "cd " + caller_.string() + " && ../root/scripts/" + script + " " + arguments},
+        {{"PATH", (folder_ / "programs").string() + ":/usr/bin:/bin"}});
+  }
+  /// What limn was asked, a line each time.
+  std::string said() const { return contents(folder_ / "said"); }
+
+  const TemporaryFolder folder_;
+  const fs::path root_ = folder_ / "root", caller_ = folder_ / "caller";
+};
+
+TEST_F(Scripts, DemoWritesWhereItIsCalled) {
+  const Outcome outcome = call("demo", "mine");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(fs::is_directory(caller_ / "mine"));
+  EXPECT_THAT(said(), testing::HasSubstr("--out " + (fs::canonical(caller_) / "mine/bench").string() + "\n"));
+}
+
+TEST_F(Scripts, GpuRunTakesSuitesOfTheFolderWhereItIsCalled) {
+  std::ofstream(caller_ / "my.toml") << "name = 'my'\n";
+  const Outcome outcome = call("gpu-run", "--software my.toml bound");
+  EXPECT_THAT(said(), testing::HasSubstr("bench " + (fs::canonical(caller_) / "my.toml").string() + " "))
+      << outcome.err;
+  EXPECT_THAT(said(), testing::HasSubstr("bench bound "));
+}
+
+TEST_F(Scripts, ManualPagesAreWrittenForProgramsInFoldersOfAnyName) {
+  const fs::path program = folder_ / "it's a folder/limn";
+  writeProgram(program, R"(
+case "$*" in
+--version) echo "limn 1.2" ;;
+--help) printf 'A renderer\n\nUsage: limn [OPTIONS]\n\nSubcommands:\n  render    Render things\n  view      See things\n' ;;
+*) printf 'Render things\n\nUsage: limn render [OPTIONS]\n' ;;
+esac
+)");
+  const Outcome outcome = run({"/usr/bin/env", "python3", "-B", std::string(kSourceDir) + "/apps/manual.py",
+                               "help2man", folder_ / "pages", program});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(listing(folder_ / "pages"), (std::vector<std::string>{"limn-render.1", "limn.1"}));
+  const std::string page = contents(folder_ / "pages/limn-render.1");
+  EXPECT_THAT(page, testing::HasSubstr("\nlimn render \\- render things\n"));
+  EXPECT_THAT(page, testing::Not(testing::HasSubstr("folder")));
+}
+
+}  // namespace
+}  // namespace limn::test
