@@ -21,7 +21,7 @@ LINKED = ["core/base/*.cpp", "core/question/*.cpp", "core/image/*.cpp", "core/br
           "core/brdf/tabulated.cpp", "core/brdf/visible_normals.cpp", "core/relief/height_field.cpp", "core/relief/slopes.cpp",
           "core/scene/*.cpp", "core/scene_io/*.cpp",
           *(f"core/bench/{name}.cpp" for name in (
-              "columns", "comparison", "markdown", "question_json", "question_toml", "ratio", "report",
+              "columns", "comparison", "markdown", "provenance", "question_json", "question_toml", "ratio", "report",
               "report_pictures", "row", "suite", "suite_toml", "tables", "toml_nesting", "toml_section")),
           *(f"core/session/{name}.cpp" for name in ("find", "light_edits", "mesh_light", "view")),
           "core/shading/environment.cpp", "core/shading/environment_decomposition.cpp", "core/reference/content_hash.cpp",
@@ -159,9 +159,10 @@ def build_check():
     kept = [source for source in linked if known[source][1] in free]
     changed = [source for source in linked if source not in kept] + COMPILED
     compiled = compile_all([HERE / "check.cpp", paths, *(tree / source for source in changed)], flags(known, linked + COMPILED))
-    program = scratch / "bin/check"  # which finds scenes as limn does: beside the folder it is in
+    program = scratch / "bin/check"  # which finds scenes and suites as limn does: beside the folder it is in
     program.parent.mkdir()
-    (scratch / "assets").symlink_to(BUILD / "assets")
+    for folder in ("assets", "benchmarks"):
+        (scratch / folder).symlink_to(BUILD / folder)
     run(options.compiler, "-Wl,--gc-sections", *compiled[:-len(COMPILED)], *(known[source][1] for source in kept),
         *(f"-l{library}" for library in LIBRARIES), "-o", program)
     print(f"{len(compiled)} files compiled, {len(kept)} objects of the build linked as they are")
