@@ -7,8 +7,8 @@
 #include "core/scene/material_model.h"
 #include "glsl/light/coated_environment.glsl"
 #include "glsl/materials/material_model.glsl"
-#include "glsl/numeric/equirectangular.glsl"
 #include "tests/gpu/render_test.h"
+#include "tests/support/environment_maps.h"
 #include "tests/support/test_scenes.h"
 
 namespace limn {
@@ -29,19 +29,6 @@ class CoatTest : public RenderTest {
     model.eta = vec3(1.5f);
     model.kd = kd;
     return model;
-  }
-
-  /// An environment of any radiance(direction).
-  template <class Radiance>
-  static scene::Environment environment(const Radiance& radiance) {
-    scene::Environment e;
-    e.width = 256;
-    e.height = 128;
-    for (int y = 0; y < e.height; ++y)
-      for (int x = 0; x < e.width; ++x)
-        e.texels.push_back(radiance(glsl::equirectangular_direction(
-            (vec2(x, y) + 0.5f) / vec2(static_cast<float>(e.width), static_cast<float>(e.height)))));
-    return e;
   }
 
   /// The picture of a ball of radius 1 at the origin, from +z.
@@ -87,7 +74,7 @@ class CoatTest : public RenderTest {
 
 /// Coats that leave all else to a white base: the ball is not seen before a white background.
 TEST_F(CoatTest, MirrorAndWhiteBaseReflectAllLight) {
-  const scene::Environment white = environment([](vec3) { return vec3(1); });
+  const scene::Environment white = test::environmentOf(256, [](vec3) { return vec3(1); });
   for (const uint32_t options : {glsl::model_option_blend, glsl::model_option_physical})
     expectWithin(ball(coat(vec3(1), options), white), 0.999f, 1.001f);
   // What the coat mirrors is gained by a sum: 0.04 head-on.
@@ -101,7 +88,7 @@ TEST_F(CoatTest, MirrorsTheEnvironment) {
   glsl::MaterialModel mirror = coat(vec3(0), 0);
   mirror.eta = vec3(1e-3f);
   mirror.k = vec3(1000);
-  expectOnBall(ball(mirror, environment(linear)), 0.2f, 0.01f,
+  expectOnBall(ball(mirror, test::environmentOf(256, linear)), 0.2f, 0.01f,
                [](vec3 n, vec3 v) { return linear(glm::reflect(-v, n)); });
 }
 
@@ -110,7 +97,7 @@ TEST_F(CoatTest, MirrorsTheEnvironment) {
 /// texels are off by 3e-4.
 TEST_F(CoatTest, PhysicalBasesGetWhatEntersTheCoat) {
   const glsl::MaterialModel model = coat(vec3(0.8f), glsl::model_option_physical);
-  expectOnBall(ball(model, environment(linear)), 0.5f, 0.003f, [&](vec3 n, vec3 v) {
+  expectOnBall(ball(model, test::environmentOf(256, linear)), 0.5f, 0.003f, [&](vec3 n, vec3 v) {
     const vec3 slope = linear(n) - 1.f;
     return glsl::reflected_whole(
         glsl::coated_environment(model, glm::dot(n, v), glsl::pi * (1.f + 2.f / 3 * slope),
@@ -128,7 +115,7 @@ TEST_F(CoatTest, NormalsTurnedAwayMirrorNothing) {
   scene::Node node;
   node.mesh = test::addMesh(scene, std::move(floor));
   scene.nodes.push_back(node);
-  scene.environment = environment(linear);
+  scene.environment = test::environmentOf(256, linear);
   for (const std::vector<render::TechniqueUse>& techniques :
        {std::vector<render::TechniqueUse>{}, {technique("prefiltered_environment", {{"size", "128"}})}}) {
     render::Renderer renderer(device(), scene);

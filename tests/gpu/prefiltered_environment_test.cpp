@@ -13,6 +13,7 @@
 #include "glsl/light/prefiltered_models.glsl"
 #include "glsl/numeric/equirectangular.glsl"
 #include "tests/gpu/render_test.h"
+#include "tests/support/environment_maps.h"
 #include "tests/support/test_scenes.h"
 
 namespace limn {
@@ -25,18 +26,6 @@ class PrefilteredEnvironmentTest : public RenderTest {
  protected:
   static constexpr int kBallSide = 40;  ///< pixels of a square around each ball
   using Models = std::vector<glsl::MaterialModel>;
-
-  template <class Radiance>
-  static scene::Environment environment(const Radiance& radiance) {
-    scene::Environment e;
-    e.width = 256;
-    e.height = 128;
-    for (int y = 0; y < e.height; ++y)
-      for (int x = 0; x < e.width; ++x)
-        e.texels.push_back(
-            radiance(glsl::equirectangular_direction((vec2(x, y) + 0.5f) / vec2(e.width, e.height))));
-    return e;
-  }
 
   static glsl::MaterialModel model(uint32_t kind, float roughness = 0.3f) {
     glsl::MaterialModel m{};
@@ -144,7 +133,7 @@ TEST_F(PrefilteredEnvironmentTest, EveryModelHasItsLightOfASmoothEnvironment) {
   for (const auto& ball : balls) models.push_back(ball.model);
   const vec3 bright = glm::normalize(vec3(1));
   const scene::Scene scene =
-      row(models, environment([&](vec3 d) { return vec3(1 + 0.8f * glm::dot(d, bright)); }));
+      row(models, test::environmentOf(256, [&](vec3 d) { return vec3(1 + 0.8f * glm::dot(d, bright)); }));
   const Image exact = traced(scene);
   for (const char* map : {"paraboloid", "equirectangular"}) {
     const Image image = drawn(scene, {{"map", map}});
@@ -164,7 +153,8 @@ TEST_F(PrefilteredEnvironmentTest, EveryModelHasItsLightOfASmoothEnvironment) {
 /// A small sun on the side of the camera: what faces it has its irradiance, and nothing is brighter than it.
 TEST_F(PrefilteredEnvironmentTest, ABrightSunKeepsItsIrradiance) {
   constexpr float kSun = 1e5f;
-  const scene::Environment sun = environment([](vec3 d) { return vec3(d.z > std::cos(0.1f) ? kSun : 0.f); });
+  const scene::Environment sun =
+      test::environmentOf(256, [](vec3 d) { return vec3(d.z > std::cos(0.1f) ? kSun : 0.f); });
   double irradiance = 0;
   for (int y = 0; y < sun.height; ++y)
     for (int x = 0; x < sun.width; ++x) {
@@ -192,7 +182,7 @@ TEST_F(PrefilteredEnvironmentTest, LobesAloneEndWhereHalfFloatsDo) {
   glsl::MaterialModel phong = model(glsl::model_phong), coat = mirrorOf(model(glsl::model_coated));
   phong.exponent = 20;
   const scene::Scene scene = row({lambert(), mirrorOf(model(glsl::model_torrance_sparrow)), phong, coat},
-                                 environment([](vec3) { return vec3(kBright); }));
+                                 test::environmentOf(256, [](vec3) { return vec3(kBright); }));
   const Image image = drawn(scene);
   const auto middle = [&](int ball) { return image.at(ball * kBallSide + kBallSide / 2, kBallSide / 2, 0); };
   const float reflected = glsl::microfacet_lobe(1, 0.3f, 1024).reflectance;

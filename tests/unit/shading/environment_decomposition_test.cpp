@@ -13,7 +13,7 @@
 #include "core/scene_io/load.h"
 #include "glsl/light/rectangle_light.glsl"
 #include "glsl/numeric/equirectangular.glsl"
-#include "tests/unit/shading/environment_maps.h"
+#include "tests/support/environment_maps.h"
 
 namespace limn::shading {
 namespace {

@@ -12,7 +12,7 @@
 #include "core/base/error.h"
 #include "core/image/image.h"
 #include "glsl/light/environment.glsl"
-#include "tests/unit/shading/environment_maps.h"
+#include "tests/support/environment_maps.h"
 
 namespace limn::shading {
 namespace {
