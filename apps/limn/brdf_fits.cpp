@@ -174,8 +174,7 @@ int runBrdfFits(const BrdfFitsArguments& options) {
   }
   if (options.kind.empty() && !source.isotropic) rows.push_back(pairsOf(source.f, exact));
   if (options.json) {
-    fmt::print("{}\n",
-               toJson(source, rows).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    printAsJson(toJson(source, rows));
   } else {
     fmt::print("{}: {}\n", source.name, source.kind);
     printFits(rows);

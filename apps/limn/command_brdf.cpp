@@ -90,8 +90,7 @@ int info(const InfoOptions& options) {
   const double reciprocity = brdf::reciprocityDefect(source.f);
   const std::vector<AlbedoRow> rows = albedosOf(source);
   if (options.json)
-    fmt::print("{}\n", infoJson(source, reciprocity, rows)
-                           .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    printAsJson(infoJson(source, reciprocity, rows));
   else
     printInfo(source, reciprocity, rows);
   if (!options.picture.empty()) {

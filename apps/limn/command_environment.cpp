@@ -73,8 +73,8 @@ void printLights(const std::vector<LightRow>& rows) {
   }
 }
 
-std::string toJson(const std::vector<LightRow>& rows, const EnvironmentArguments& options,
-                   double milliseconds) {
+nlohmann::ordered_json toJson(const std::vector<LightRow>& rows, const EnvironmentArguments& options,
+                              double milliseconds) {
   nlohmann::ordered_json json = {{"map", options.map.string()},
                                  {"threshold", options.lights.environmentLights},
                                  {"resolution", options.lights.environmentResolution},
@@ -90,7 +90,7 @@ std::string toJson(const std::vector<LightRow>& rows, const EnvironmentArguments
                               {"irradiance", {r.irradiance.x, r.irradiance.y, r.irradiance.z}},
                               {"share", r.share}});
   }
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return json;
 }
 
 int runEnvironment(const EnvironmentArguments& options) {
@@ -108,7 +108,7 @@ int runEnvironment(const EnvironmentArguments& options) {
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   const std::vector<LightRow> rows = rowsOf(lights);
   if (options.json) {
-    fmt::print("{}\n", toJson(rows, options, milliseconds));
+    printAsJson(toJson(rows, options, milliseconds));
   } else {
     printLights(rows);
     fmt::print("{}: {} lights in {:.1f} ms\n", options.map.string(), rows.size(), milliseconds);

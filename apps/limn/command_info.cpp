@@ -185,7 +185,7 @@ void runScene(const std::string& nameOrFile, bool json) {
   for (const std::string& warning : scene.warnings) warn(warning);
   const nlohmann::ordered_json described = describe(scene);
   if (json)
-    fmt::print("{}\n", described.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    printAsJson(described);
   else
     printScene(described);
 }
@@ -209,10 +209,7 @@ Action addInfoCommand(CLI::App& command) {
     const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
     const nlohmann::ordered_json techniques = modules(registry);
     if (*json) {
-      fmt::print(
-          "{}\n",
-          nlohmann::ordered_json{{"version", version()}, {"devices", devices}, {"techniques", techniques}}
-              .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+      printAsJson({{"version", version()}, {"devices", devices}, {"techniques", techniques}});
     } else {
       for (const auto& device : devices) printDevice(device);
       printModules(techniques);

@@ -57,8 +57,7 @@ void printJson(const TechniqueRegistry& registry) {
   nlohmann::ordered_json refused = nlohmann::ordered_json::array();
   for (const auto& refusal : registry.refused())
     refused.push_back({{"name", refusal.name}, {"reason", refusal.reason}});
-  fmt::print("{}\n", nlohmann::ordered_json{{"techniques", techniques}, {"refused", refused}}.dump(
-                         2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  printAsJson({{"techniques", techniques}, {"refused", refused}});
 }
 
 std::string rangeText(const Parameter& p) {

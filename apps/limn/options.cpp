@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 
@@ -109,6 +110,10 @@ std::vector<std::string> BackendOptions::arguments() const {
   if (device != usual.device) arguments.insert(arguments.end(), {"--device", std::to_string(device)});
   if (debug) arguments.push_back("--gl-debug");
   return arguments;
+}
+
+void printAsJson(const nlohmann::ordered_json& json) {
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 void warn(const std::string& message) {

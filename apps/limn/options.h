@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -81,6 +82,9 @@ class SilentStderr {
 /// Runs `work`, reports what it throws (including Interrupted) in one line on stderr, and returns the exit
 /// status. A file that grows beyond the limit of the process is that file's error, not the program's end.
 int guarded(const std::function<int()>& work);
+
+/// Prints what --json asks for on stdout. Bytes of names that are not UTF-8 are replaced.
+void printAsJson(const nlohmann::ordered_json& json);
 
 /// Says a line on stdout at once, for whoever started the program from a terminal.
 void sayInTerminal(const std::string& line);

@@ -52,7 +52,7 @@ bool same(const PictureOrder& a, const PictureOrder& b);
 /// Declares a scene that is to be opened.
 struct OpenOrder {
   SceneQuestion scene;
-  uint64_t file = 0;    ///< the same number: the same file again, with another floor or read anew
+  uint64_t file = 0;    ///< the same number: the same file again, with another floor or read once more
   bool needed = false;  ///< the program ends where it cannot be opened
 };
 

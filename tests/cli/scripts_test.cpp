@@ -31,14 +31,14 @@ esac
   Outcome call(const std::string& script, const std::string& arguments) const {
     fs::copy_file(fs::path(kSourceDir) / "scripts" / script, root_ / "scripts" / script);
     return run(
-        {"/bin/bash", "-c", "cd " + caller_.string() + " && ../root/scripts/" + script + " " + arguments},
+        {"/bin/bash", "-c", "cd " + caller_.string() + " && ../limn/scripts/" + script + " " + arguments},
         {{"PATH", (folder_ / "programs").string() + ":/usr/bin:/bin"}});
   }
   /// What limn was asked, a line each time.
   std::string said() const { return contents(folder_ / "said"); }
 
   const TemporaryFolder folder_;
-  const fs::path root_ = folder_ / "root", caller_ = folder_ / "caller";
+  const fs::path root_ = folder_ / "limn", caller_ = folder_ / "caller";
 };
 
 TEST_F(Scripts, DemoWritesWhereItIsCalled) {

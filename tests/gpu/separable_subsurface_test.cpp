@@ -7,7 +7,7 @@
 
 #include "glsl/diffusion/normalised.glsl"
 #include "techniques/separable_subsurface/line_kernel.h"
-#include "tests/gpu/bump_floor.h"
+#include "tests/gpu/two_bodies.h"
 
 namespace limn {
 namespace {
@@ -20,7 +20,7 @@ constexpr float kLit = 0.5f;   ///< radius of the spot's light on the floor, m
 constexpr float kHeight = 40;  ///< of the spot, m
 const std::vector<std::string> kProfiles{"dipole", "normalised_diffusion"};
 
-class SeparableSubsurfaceTest : public BumpFloorTest {
+class SeparableSubsurfaceTest : public TwoBodiesTest {
  protected:
   static scene::Material matter(float extinction, float absorption, float ior = kIor) {
     const glsl::WalkReflectance walk = glsl::walk_reflectance(glsl::diffusion_boundary(ior));
@@ -207,19 +207,8 @@ TEST_F(SeparableSubsurfaceTest, PixelsOfAnotherAlbedoAreWiderOrNarrower) {
 TEST_F(SeparableSubsurfaceTest, OtherBodiesGetNoLight) {
   // The shadow reaches a little further than the one of two bodies.
   const scene::Scene scene = shadowed(matter(30, 0.04f), {1, 0, 0}, 0.05f);
-  scene::Scene halves = scene;
-  halves.nodes.push_back(halves.nodes[0]);
-  halves.nodes[0].transform.translation = {-1, 0, 0};
-  halves.nodes.back().transform.translation = {1, 0, 0};
-  const auto inTheDark = [&](const Image& picture) {
-    double sum = 0;
-    forEachPoint(picture, [&](float value, const vec3& p) {
-      if (p.x < -0.02f) sum += static_cast<double>(value);
-    });
-    return sum;
-  };
   EXPECT_GT(inTheDark(belowShadow(scene)), 1);
-  EXPECT_EQ(inTheDark(belowShadow(halves)), 0);
+  EXPECT_EQ(inTheDark(belowShadow(halves(scene))), 0);
 }
 
 TEST_F(SeparableSubsurfaceTest, ExtremesStayWithinTheLightThatEnters) {

@@ -9,7 +9,7 @@
 #include "glsl/diffusion/colours.glsl"
 #include "glsl/numeric/geometry.glsl"
 #include "glsl/numeric/sampling.glsl"
-#include "tests/gpu/bump_floor.h"
+#include "tests/gpu/two_bodies.h"
 #include "tests/support/scene_nodes.h"
 
 namespace limn {
@@ -26,7 +26,7 @@ constexpr float kBallRadius = 0.7f;            ///< it fills the picture: a thir
 constexpr float kLight = 2;                    ///< irradiance across the light's direction
 const std::vector<std::string> kProfileNames{"dipole", "normalised_diffusion"};
 
-class SubsurfaceScatteringTest : public BumpFloorTest {
+class SubsurfaceScatteringTest : public TwoBodiesTest {
  protected:
   /// A floor that absorbs that share of what it does not let through, under light from straight above.
   static scene::Scene floor(float extinction, float absorption) {
@@ -405,20 +405,9 @@ TEST_F(SubsurfaceScatteringTest, WallsThatFaceEachOtherGainNothing) {
 TEST_F(SubsurfaceScatteringTest, OtherBodiesGetNoLight) {
   // The shadow reaches a little further than the one of two bodies.
   const scene::Scene scene = shadowed(floor(kExtinction, kAbsorption), 0.05f);
-  scene::Scene halves = scene;
-  halves.nodes.push_back(halves.nodes[0]);
-  halves.nodes[0].transform.translation = {-1, 0, 0};
-  halves.nodes.back().transform.translation = {1, 0, 0};
-  const auto inTheDark = [&](const Image& picture) {
-    double sum = 0;
-    forEachPoint(picture, [&](float value, const vec3& p) {
-      if (p.x < -0.02f) sum += static_cast<double>(value);
-    });
-    return sum;
-  };
   for (const char* views : {"0", "1"}) {
     EXPECT_GT(inTheDark(below(scene, {{"light_views", views}})), 1);
-    EXPECT_EQ(inTheDark(below(halves, {{"light_views", views}})), 0) << views;
+    EXPECT_EQ(inTheDark(below(halves(scene), {{"light_views", views}})), 0) << views;
   }
 }
 
