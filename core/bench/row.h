@@ -37,8 +37,8 @@ struct BoundTime {
 
 struct Cost {
   std::string renderer, backend;
-  std::string timer;      ///< "query" or "finish"
-  bool software = false;  ///< rows of software and hardware renderers never share a table
+  std::string timer = "off";  ///< "query" or "finish"; "off": untimed, as rows of the separation floor are
+  bool software = false;      ///< rows of software and hardware renderers never share a table
   FrameTime frameMs;
   CostSplit split;                 ///< of a run of its own, with pass timing
   std::optional<BoundTime> bound;  ///< where the suite asks for it and the technique has one

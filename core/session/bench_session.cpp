@@ -206,6 +206,7 @@ bench::Measurement BenchSession::measure(const bench::Case& c) {
   if (c.technique == bench::kSeparationFloor) {
     bench::Measurement floor{separationFloor(c), {}};
     floor.cost.renderer = rendererName();
+    floor.cost.backend = name(context_->info().backend);
     floor.cost.software = context_->info().software;
     return floor;
   }

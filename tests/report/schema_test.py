@@ -17,6 +17,7 @@ frames = 2
 warmup = 0
 pictures = true
 bound = true
+separation_floor = true
 reference = {spp = 4}
 term = "visibility"
 [[scenes]]
@@ -27,6 +28,11 @@ max_masked_share = 0.2
 scene = "glass_sphere"
 term = "media"
 g = 0.5
+max_masked_share = 0.2
+[[scenes]]
+scene = "balls"
+lights = ["key"]
+term = "direct"
 max_masked_share = 0.2
 [[techniques]]
 technique = "pcf"
@@ -84,6 +90,8 @@ rows = [json.loads(line) for line in (out / "results.jsonl").read_text().splitli
 for value in rows:
     check(strict_row, value, f"{value['scene']}/{value['technique']}")
 print(f"{len(rows)} new rows, {sum('failure' in value for value in rows)} of them failures")
+if not any(value["technique"] == "separation_floor" for value in rows):
+    sys.exit("FAILED: no row of the separation floor")
 if not any("x_bound" in value.get("stats", {}) for value in rows):
     sys.exit("FAILED: no row with a bound")
 
