@@ -9,155 +9,26 @@
 #include "apps/limn/commands.h"
 #include "apps/limn/interruption.h"
 #include "apps/limn/results_folder.h"
+#include "apps/limn/tune_question.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/shell.h"
-#include "core/base/text.h"
 #include "core/bench/suite_text.h"
 #include "core/bench/tune.h"
 #include "core/image/metric_table.h"
 #include "core/question/render_command.h"
 #include "core/reference/reference.h"
-#include "core/session/technique_choice.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
-
-struct TuneArguments {
-  SceneQuestion scene;
-  bool termGiven = false, json = false;
-  std::optional<double> maxMs;
-  std::string maxError, metric = "rmse";
-  std::string techniques;
-  std::vector<std::string> settings;
-  int steps = 2, spp = 256, frames = 10, turns = 5;
-  std::optional<int> bounces;
-  double maskedShare = 0.005, stallTimeout = 1800;
-  bool exhaustive = false;
-  fs::path out;
-  BackendOptions backend;
-};
-
-using Parameters = std::vector<std::pair<std::string, std::string>>;
-
-/// The metric by its key in results. Throws UsageError for another text.
-const MetricInfo& findMetric(const std::string& key) {
-  std::vector<std::string> known;
-  for (const MetricInfo& metric : kQualityMetrics) {
-    if (metric.key == key) return metric;
-    known.emplace_back(metric.key);
-  }
-  throw UsageError(
-      fmt::format("unknown metric '{}'{}; known are {}", key, didYouMean(key, known), joined(known)));
-}
-
-/// What is asked: the metric, and the limit of the error or of the time.
-struct Goal {
-  const MetricInfo& metric;
-  double limit = 0;  ///< milliseconds, or a value of the metric
-  bool ofTime = false;
-
-  bench::TuneLimit tuneLimit() const {
-    if (ofTime) return {.ms = limit};
-    return {.error = bench::badness(metric, limit)};
-  }
-  /// Continues "a setting".
-  std::string text() const {
-    return ofTime ? fmt::format("takes at most {} ms", limit)
-                  : fmt::format("has a {} of at {} {}", metric.label,
-                                metric.kind == MetricKind::likeness ? "least" : "most", limit);
-  }
-};
-
-Goal goalOf(const TuneArguments& options) {
-  if (options.maxMs.has_value() == !options.maxError.empty())
-    throw UsageError("tune needs a limit: either --max-ms or --max-error");
-  if (options.maxMs) return {findMetric(options.metric), *options.maxMs, true};
-  const std::size_t sign = options.maxError.find('=');
-  const auto value =
-      sign == std::string::npos ? std::nullopt : parseNumber(options.maxError.substr(sign + 1));
-  if (!value || *value <= 0)
-    throw UsageError(
-        fmt::format("--max-error '{}' is not accepted; expected METRIC=X with X > 0, such as "
-                    "rmse=0.01",
-                    options.maxError));
-  return {findMetric(options.maxError.substr(0, sign)), *value, false};
-}
-
-/// The terms of which a technique must answer one to change a picture of `term`.
-TermSet answering(Term term) {
-  constexpr TermSet light = Term::direct | Term::visibility;
-  return term == Term::direct || term == Term::final ? light : termSet(term);
-}
-
-std::vector<const TechniquePlugin*> chosenTechniques(const TechniqueRegistry& registry,
-                                                     const TuneArguments& options, Term term) {
-  std::vector<const TechniquePlugin*> chosen;
-  if (options.techniques.empty()) {
-    for (const TechniquePlugin* plugin : registry.all())
-      if (plugin->info->terms & answering(term)) chosen.push_back(plugin);
-    if (chosen.empty()) throw UsageError(fmt::format("no technique answers {}", name(term)));
-    return chosen;
-  }
-  for (const std::string& name : CLI::detail::split(options.techniques, ',')) {
-    chosen.push_back(&registry.find(name));
-    render::checkTechniques({{chosen.back(), {}}}, term);
-  }
-  return chosen;
-}
-
-/// What --set says of each technique, and the bounces of those that have them.
-Parameters fixedParameters(const TechniqueInfo& technique, const TuneArguments& options, int bounces) {
-  Parameters fixed;
-  const std::string own = std::string(technique.name) + ".";
-  for (const std::string& setting : options.settings)
-    if (const std::size_t sign = setting.find('='); setting.starts_with(own) && sign != std::string::npos)
-      fixed.emplace_back(setting.substr(0, sign), setting.substr(sign + 1));
-  const std::string key = own + "bounces";
-  if (bounces > 0 && std::ranges::none_of(fixed, [&](const auto& p) { return p.first == key; }))
-    for (const Parameter& parameter : technique.parameters)
-      if (key == own + parameter.name && parameter.defaultValue != bounces)
-        fixed.emplace_back(key, fmt::format("{}", bounces));
-  return fixed;
-}
-
-/// A technique's settings: what is searched, and what --set fixes.
-struct Space {
-  bench::TuneSpace searched;
-  Parameters fixed;
-};
-
-std::vector<Space> spacesOf(const TechniqueRegistry& registry, const TuneArguments& options, Term term,
-                            int bounces) {
-  const std::vector<const TechniquePlugin*> techniques = chosenTechniques(registry, options, term);
-  for (const std::string& setting : options.settings)
-    if (std::ranges::none_of(techniques, [&](const TechniquePlugin* plugin) {
-          return setting.starts_with(std::string(plugin->info->name) + ".");
-        }))
-      throw UsageError(fmt::format("--set '{}' names none of the techniques that are searched", setting));
-  std::vector<Space> spaces;
-  for (const TechniquePlugin* plugin : techniques) {
-    const TechniqueInfo& info = *plugin->info;
-    Space space{{info.name, {}}, fixedParameters(info, options, bounces)};
-    session::choiceOf(info.name, space.fixed).resolve(registry);  // for its errors
-    for (const Parameter& parameter : info.parameters) {
-      if (!parameter.tradesErrorForTime) continue;
-      bench::TuneAxis axis = bench::tuneAxis(info.name, parameter, options.steps);
-      if (std::ranges::none_of(space.fixed, [&](const auto& p) { return p.first == axis.parameter; }))
-        space.searched.axes.push_back(std::move(axis));
-    }
-    spaces.push_back(std::move(space));
-  }
-  return spaces;
-}
 
 /// Measures settings as rows of a bench, and says what became of them.
 class Tuning {
  public:
   explicit Tuning(const TuneArguments& options)
       : options_(options),
-        goal_(goalOf(options)),
+        goal_(tuneGoal(options)),
         term_(parseTerm(options.scene.term)),
         bounces_(reference::hasBounces(term_) ? options.bounces.value_or(reference::defaultBounces(term_))
                                               : 0) {
@@ -167,8 +38,8 @@ class Tuning {
       throw UsageError(
           fmt::format("the term {} is that of one light: name it with --light", options.scene.term));
     const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
-    spaces_ = spacesOf(registry, options, term_, bounces_);
-    for (const Space& space : spaces_) searched_.push_back(space.searched);
+    spaces_ = searchedTechniques(registry, options, term_, bounces_);
+    for (const SearchedTechnique& space : spaces_) searched_.push_back(space.space);
   }
 
   void run() {
@@ -216,9 +87,9 @@ class Tuning {
     return searched_[setting.space].technique;
   }
 
-  Parameters parametersOf(const bench::TuneSetting& setting) const {
-    Parameters parameters = spaces_[setting.space].fixed;
-    const Parameters changed = bench::changedParameters(searched_[setting.space], setting);
+  TuneParameters parametersOf(const bench::TuneSetting& setting) const {
+    TuneParameters parameters = spaces_[setting.space].fixed;
+    const TuneParameters changed = bench::changedParameters(searched_[setting.space], setting);
     parameters.insert(parameters.end(), changed.begin(), changed.end());
     return parameters;
   }
@@ -378,10 +249,10 @@ class Tuning {
   }
 
   const TuneArguments& options_;
-  Goal goal_;
+  TuneGoal goal_;
   Term term_;
   int bounces_;  ///< of the reference; 0: the term has none
-  std::vector<Space> spaces_;
+  std::vector<SearchedTechnique> spaces_;
   std::vector<bench::TuneSpace> searched_;
   bench::TunePlan plan_;
   bench::Case base_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/scene/bilinear.h"
 #include "glsl/numeric/equirectangular.glsl"
 #include "glsl/numeric/srgb.glsl"
 
@@ -39,27 +40,12 @@ float sampleTent(float u) {
   return u < 0.5f ? std::sqrt(2.f * u) - 1.f : 1.f - std::sqrt(std::max(2.f - 2.f * u, 0.f));
 }
 
-/// The four pixels around a place on the map, and its weights: around wraps, the poles repeat the outer rows.
-struct Neighbours {
-  int x[2], y[2];
-  float s, t;
-
-  Neighbours(glm::vec2 uv, int width, int height) {
-    const float px = uv.x * static_cast<float>(width) - 0.5f, py = uv.y * static_cast<float>(height) - 0.5f;
-    const float x0 = std::floor(px), y0 = std::floor(py);
-    s = px - x0;
-    t = py - y0;
-    for (int i = 0; i < 2; ++i) {
-      x[i] = ((static_cast<int>(x0) + i) % width + width) % width;
-      y[i] = std::clamp(static_cast<int>(y0) + i, 0, height - 1);
-    }
-  }
-  template <class Value>
-  auto blend(Value value) const {
-    return (1.f - t) * ((1.f - s) * value(x[0], y[0]) + s * value(x[1], y[0])) +
-           t * ((1.f - s) * value(x[0], y[1]) + s * value(x[1], y[1]));
-  }
-};
+/// The mean of the four pixels around a place on the map, whose values are `value(x, y)`: around wraps, the
+/// poles repeat the outer rows.
+template <class Value>
+auto bilinearOf(const Environment& map, const glm::vec2& uv, const Value& value) {
+  return bilinear({map.width, map.height}, Wrap::repeat, Wrap::clamp, uv, value);
+}
 
 }  // namespace
 
@@ -88,11 +74,10 @@ glm::vec3 EnvironmentLight::radiance(const glm::vec3& direction) const {
   if (environment_.width == 0) return glm::vec3(0);
   const glm::vec2 uv =
       glsl::equirectangular_uv(glsl::environment_lookup_direction(direction, environment_.rotation));
-  const Neighbours near(uv, environment_.width, environment_.height);
-  return environment_.scale * near.blend([&](int x, int y) {
-    return environment_
-        .texels[static_cast<size_t>(y) * static_cast<size_t>(environment_.width) + static_cast<size_t>(x)];
-  });
+  return environment_.scale * bilinearOf(environment_, uv, [&](int x, int y) {
+           return environment_.texels[static_cast<size_t>(y) * static_cast<size_t>(environment_.width) +
+                                      static_cast<size_t>(x)];
+         });
 }
 
 glm::vec3 EnvironmentLight::sample(glm::vec2 u) const {
@@ -110,8 +95,8 @@ glm::vec3 EnvironmentLight::sample(glm::vec2 u) const {
 
 float EnvironmentLight::pdf(const glm::vec3& direction) const {
   const glm::vec3 lookup = glsl::environment_lookup_direction(direction, environment_.rotation);
-  const Neighbours near(glsl::equirectangular_uv(lookup), environment_.width, environment_.height);
-  const double share = near.blend([&](int x, int y) { return static_cast<float>(weight(x, y) / total_); });
+  const double share = bilinearOf(environment_, glsl::equirectangular_uv(lookup),
+                                  [&](int x, int y) { return static_cast<float>(weight(x, y) / total_); });
   const double pixels = static_cast<double>(environment_.width) * environment_.height;
   const double sine =
       std::max(std::hypot(static_cast<double>(lookup.x), static_cast<double>(lookup.z)), 1e-12);

@@ -3,16 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/scene/bilinear.h"
 #include "glsl/numeric/srgb.glsl"
 
 namespace limn::scene {
-namespace {
-
-const glm::vec3& texelOf(const LightTexture& texture, int x, int y) {
-  return texture.texels[static_cast<size_t>(y) * LightTexture::side + static_cast<size_t>(x)];
-}
-
-}  // namespace
 
 LightTexture makeLightTexture(const TextureImage& image) {
   const TextureImage::Level& level = image.levels.at(0);
@@ -46,14 +40,10 @@ LightTexture makeLightTexture(const TextureImage& image) {
 glm::vec3 lightTextureAt(const Scene& scene, const glsl::Light& light, const glm::vec3& receiver) {
   if (light.texture_number == 0) return glm::vec3(1);
   const LightTexture& texture = scene.lightTextures.at(static_cast<size_t>(light.texture_number) - 1);
-  constexpr int last = LightTexture::side - 1;
-  const glm::vec2 place =
-      glm::clamp(glsl::light_texture_place(light, receiver) * static_cast<float>(LightTexture::side) - 0.5f,
-                 0.f, static_cast<float>(last));
-  const glm::ivec2 low(place), high = glm::min(low + 1, last);
-  const glm::vec2 w = place - glm::vec2(low);
-  return glm::mix(glm::mix(texelOf(texture, low.x, low.y), texelOf(texture, high.x, low.y), w.x),
-                  glm::mix(texelOf(texture, low.x, high.y), texelOf(texture, high.x, high.y), w.x), w.y);
+  const glm::vec2 place = glm::clamp(glsl::light_texture_place(light, receiver), 0.f, 1.f);
+  return bilinear(glm::ivec2(LightTexture::side), Wrap::clamp, Wrap::clamp, place, [&](int x, int y) {
+    return texture.texels[static_cast<size_t>(y) * LightTexture::side + static_cast<size_t>(x)];
+  });
 }
 
 }  // namespace limn::scene

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/scene/bilinear.h"
 #include "glsl/numeric/srgb.glsl"
 
 namespace limn::scene {
@@ -19,14 +20,6 @@ struct ByteTable {
   }
 };
 
-int wrapIndex(int i, int size, Wrap wrap) {
-  if (wrap == Wrap::clamp) return std::clamp(i, 0, size - 1);
-  const int period = wrap == Wrap::mirror ? 2 * size : size;
-  i %= period;
-  if (i < 0) i += period;
-  return i < size ? i : 2 * size - 1 - i;
-}
-
 /// uv brought near 0, so that texel coordinates fit an int and keep their precision.
 float reduce(float u, Wrap wrap) {
   if (!std::isfinite(u)) return 0.f;
@@ -40,21 +33,6 @@ glm::vec4 texel(const TextureImage::Level& level, bool srgb, int x, int y) {
   const uint8_t* p = level.rgba.data() + at;
   const auto& colour = srgb ? table.srgb : table.linear;
   return {colour[p[0]], colour[p[1]], colour[p[2]], table.linear[p[3]]};
-}
-
-/// The bilinear filter of a level whose texels are `texel(x, y)`.
-template <class Texel>
-auto bilinear(const glm::ivec2& size, Wrap wrapS, Wrap wrapT, const glm::vec2& uv, const Texel& texelAt) {
-  const float s = uv.x * static_cast<float>(size.x) - 0.5f;
-  const float t = uv.y * static_cast<float>(size.y) - 0.5f;
-  const float s0 = std::floor(s), t0 = std::floor(t);
-  const int x0 = wrapIndex(static_cast<int>(s0), size.x, wrapS);
-  const int x1 = wrapIndex(static_cast<int>(s0) + 1, size.x, wrapS);
-  const int y0 = wrapIndex(static_cast<int>(t0), size.y, wrapT);
-  const int y1 = wrapIndex(static_cast<int>(t0) + 1, size.y, wrapT);
-  const auto top = glm::mix(texelAt(x0, y0), texelAt(x1, y0), s - s0);
-  const auto bottom = glm::mix(texelAt(x0, y1), texelAt(x1, y1), s - s0);
-  return glm::mix(top, bottom, t - t0);
 }
 
 /// The values `at(level)` of the two levels next to `lod`, mixed.

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/scene/bilinear.h"
 #include "glsl/light/environment.glsl"
 #include "glsl/light/prefiltered.glsl"
 
@@ -26,9 +27,7 @@ constexpr int kIrradianceSourceWidth = 128;
 enum class Rows { inside, onPoles };
 
 const vec3& texel(const FilteredMap& map, int x, int y) {
-  const int wrapped = (x % map.width + map.width) % map.width;
-  return map.texels[static_cast<size_t>(std::clamp(y, 0, map.height - 1)) * static_cast<size_t>(map.width) +
-                    static_cast<size_t>(wrapped)];
+  return map.texels[static_cast<size_t>(y) * static_cast<size_t>(map.width) + static_cast<size_t>(x)];
 }
 
 vec2 texelCentre(int x, int y, int width, int height) {
@@ -217,12 +216,8 @@ FilteredMap halved(int width, int height, const std::vector<vec3>& texels) {
 }  // namespace
 
 vec3 bilinear(const FilteredMap& map, vec2 uv) {
-  const float x = uv.x * static_cast<float>(map.width) - 0.5f,
-              y = uv.y * static_cast<float>(map.height) - 0.5f;
-  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
-  const float s = x - static_cast<float>(x0), t = y - static_cast<float>(y0);
-  return glm::mix(glm::mix(texel(map, x0, y0), texel(map, x0 + 1, y0), s),
-                  glm::mix(texel(map, x0, y0 + 1), texel(map, x0 + 1, y0 + 1), s), t);
+  return scene::bilinear({map.width, map.height}, scene::Wrap::repeat, scene::Wrap::clamp, uv,
+                         [&](int x, int y) { return texel(map, x, y); });
 }
 
 vec3 FilteredMap::sample(const vec3& direction) const {

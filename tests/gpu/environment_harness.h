@@ -11,8 +11,8 @@
 
 #include "core/reference/reference.h"
 #include "core/shading/environment_decomposition.h"
-#include "glsl/numeric/equirectangular.glsl"
 #include "tests/gpu/render_test.h"
+#include "tests/support/environment_maps.h"
 
 namespace limn {
 
@@ -47,21 +47,13 @@ class EnvironmentTest : public RenderTest {
 
   /// A bluish sky with a soft sun, a window's worth of light from one side, and a dark ground.
   static scene::Environment sky() {
-    scene::Environment e;
-    e.width = 128;
-    e.height = 64;
     const glm::vec3 sun = glm::normalize(glm::vec3(0.5f, 0.8f, 0.4f));
-    for (int y = 0; y < e.height; ++y) {
-      for (int x = 0; x < e.width; ++x) {
-        const glm::vec3 d = glsl::equirectangular_direction(
-            glm::vec2((static_cast<float>(x) + 0.5f) / 128, (static_cast<float>(y) + 0.5f) / 64));
-        glm::vec3 radiance = d.y > 0 ? glm::vec3(0.3f, 0.4f, 0.6f) : glm::vec3(0.1f);
-        if (glm::dot(d, sun) > 0.98f) radiance += glm::vec3(20, 18, 15);
-        if (d.x < -0.8f && std::abs(d.y) < 0.3f) radiance += glm::vec3(3);
-        e.texels.push_back(radiance);
-      }
-    }
-    return e;
+    return test::environmentOf(128, [&](const glm::vec3& d) {
+      glm::vec3 radiance = d.y > 0 ? glm::vec3(0.3f, 0.4f, 0.6f) : glm::vec3(0.1f);
+      if (glm::dot(d, sun) > 0.98f) radiance += glm::vec3(20, 18, 15);
+      if (d.x < -0.8f && std::abs(d.y) < 0.3f) radiance += glm::vec3(3);
+      return radiance;
+    });
   }
 
   static scene::Environment uniform(float radiance) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/reference/reference.h"
@@ -36,6 +37,18 @@ class MediaHarness : public RenderTest {
       for (int x = 0; x < image.width(); ++x)
         for (int c = 0; c < 3; ++c) sum += image.at(x, y, c);
     return sum / (3.0 * image.width() * image.height());
+  }
+
+  /// Of the green channel.
+  static double relativeRms(const Image& image, const Image& truth) {
+    double difference = 0, square = 0;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const double a = double(truth.at(x, y, 1)), b = double(image.at(x, y, 1));
+        difference += (a - b) * (a - b);
+        square += a * a;
+      }
+    return std::sqrt(difference / square);
   }
 
   static bool sameBits(const Image& a, const Image& b) {

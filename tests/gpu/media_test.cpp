@@ -1,7 +1,5 @@
-// Media, volume caustics and surface caustics against the reference, and what is left out where there are
-// none.
+// Media and the light in them against the reference, alone and together with caustics, and at extremes.
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 
 #include <cmath>
 
@@ -34,18 +32,6 @@ class MediaTest : public MediaHarness {
     for (int y = 0; y < truth.height(); ++y)
       for (int x = 0; x < truth.width(); ++x) sum += truth.at(x, y, variance);
     return std::sqrt(sum) / (truth.width() * truth.height());
-  }
-
-  /// Of the green channel.
-  static double relativeRms(const Image& image, const Image& truth) {
-    double difference = 0, square = 0;
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x) {
-        const double a = double(truth.at(x, y, 1)), b = double(image.at(x, y, 1));
-        difference += (a - b) * (a - b);
-        square += a * a;
-      }
-    return std::sqrt(difference / square);
   }
 };
 
@@ -93,50 +79,6 @@ TEST_F(MediaTest, BufferAndScreenResolutionDoNotChangeTheMean) {
   }
 }
 
-/// As bright, and as sharp: of the ring's two sheets one leaves the spot's cone, and its cusp is thinner than
-/// the distance between photons.
-TEST_F(MediaTest, SurfaceCausticsAreThoseOfTheReference) {
-  struct Bound {
-    const char* scene;
-    double rms;  ///< relative, with the noise of the reference
-  };
-  for (const auto& [name, ofRms] : {Bound{"glass_sphere", 0.03}, Bound{"gem", 0.08}, Bound{"ring", 0.35}}) {
-    scene::Scene scene = asset(name);
-    scene.medium = {};
-    render::Renderer renderer(device(), scene);
-    const Image truth = reference(renderer, scene, Term::caustic, 64);
-    for (const char* splat : {"screen", "light"}) {
-      SCOPED_TRACE(fmt::format("{} {}", name, splat));
-      const Image ours = picture(renderer, settings(width, height, Term::caustic,
-                                                    {technique("surface_caustics", {{"splat", splat}})}));
-      EXPECT_NEAR(mean(ours) / mean(truth), 1, 0.03);
-      EXPECT_LT(relativeRms(ours, truth), ofRms);
-    }
-  }
-}
-
-/// A lamp between two balls has a view of its own to each side of it, and the edge between two of these cuts
-/// a ball. Light that left the glass at that edge would be 7.5 % too little, and off by 0.31.
-TEST_F(MediaTest, ABodyThatLiesInTwoViewsRefractsAsOne) {
-  scene::Scene scene = asset("glass_sphere");
-  scene.medium = {};
-  for (scene::LightSource& light : scene.lights) light.type = glsl::light_point;
-  const auto ball = std::ranges::find(scene.nodes, "ball", &scene::Node::name);
-  ASSERT_NE(ball, scene.nodes.end());
-  scene::Node other = *ball;
-  ball->transform.translation = {-0.2f, 0.65f, 0};
-  other.transform.translation = {-2, 2.45f, 0};
-  scene.nodes.push_back(other);
-  for (scene::Node& node : scene.nodes)
-    if (node.light != scene::kNone) node.transform.translation = {-1.1f, 1.75f, 0};
-  render::Renderer renderer(device(), scene);
-  const Image truth = reference(renderer, scene, Term::caustic, 1024);
-  const Image ours = picture(renderer, settings(width, height, Term::caustic,
-                                                {technique("surface_caustics", {{"buffer_size", "384"}})}));
-  EXPECT_NEAR(mean(ours) / mean(truth), 1, 0.03);
-  EXPECT_LT(relativeRms(ours, truth), 0.15);
-}
-
 /// Stretches of a viewing ray lie in the spot's cone alone, so that few are enough.
 TEST_F(MediaTest, AirlightNeedsFewStretches) {
   for (const char* name : {"glass_sphere", "ring", "gem"}) {
@@ -171,126 +113,6 @@ TEST_F(MediaTest, AirlightOfManyPointsAndStretchesIsAllThere) {
                             {{"steps", "1024"}, {"light_samples", "16"}, {"shadow_map_size", "64"}})})));
   };
   EXPECT_NEAR(brightness(eight) / brightness(one), 1, 1e-4);
-}
-
-/// All of the floor is seen by the light. Where the ring's caustic is thinner than a pixel, photons on the
-/// screen are wider than those in the map: a kernel has at least a pixel, or a texel.
-TEST_F(MediaTest, CausticMapsShowWhatPhotonsOnTheScreenDo) {
-  struct Bound {
-    const char* scene;
-    double mean, rms;  ///< relative
-  };
-  for (const auto& [name, ofMean, ofRms] :
-       {Bound{"glass_sphere", 0.01, 0.1}, Bound{"gem", 0.01, 0.1}, Bound{"ring", 0.05, 0.3}}) {
-    SCOPED_TRACE(name);
-    scene::Scene scene = asset(name);
-    scene.medium = {};
-    render::Renderer renderer(device(), scene);
-    const auto splat = [&](const char* where) {
-      return picture(renderer, settings(width, height, Term::caustic,
-                                        {technique("surface_caustics", {{"splat", where}})}));
-    };
-    const Image screen = splat("screen"), map = splat("light");
-    EXPECT_EQ(stateOf(renderer, "surface_caustics", "caustic map"), "run");
-    EXPECT_EQ(stateOf(renderer, "surface_caustics", "photons"), "unknown");
-    EXPECT_NEAR(mean(map) / mean(screen), 1, ofMean);
-    EXPECT_LT(relativeRms(map, screen), ofRms);
-  }
-}
-
-/// A point light's map is a cube: photons near its edges lie in two faces.
-TEST_F(MediaTest, CausticMapsOfCubesHaveNoSeams) {
-  scene::Scene scene = asset("glass_sphere");
-  scene.medium = {};
-  for (scene::LightSource& light : scene.lights) light.type = glsl::light_point;
-  render::Renderer renderer(device(), scene);
-  const auto brightness = [&](const char* where) {
-    return mean(picture(renderer, settings(width, height, Term::caustic,
-                                           {technique("surface_caustics", {{"splat", where}})})));
-  };
-  EXPECT_NEAR(brightness("light") / brightness("screen"), 1, 0.02);
-}
-
-TEST_F(MediaTest, AMediumThatScattersNothingCostsNothing) {
-  scene::Scene scene = asset("glass_sphere");
-  scene.medium.sigmaS = glm::vec3(0);
-  render::Renderer renderer(device(), scene);
-  const Image with =
-      picture(renderer,
-              settings(width, height, Term::final,
-                       {technique("hard_shadow_map"), technique("volume_caustics"), technique("airlight")}));
-  EXPECT_EQ(stateOf(renderer, "volume_caustics", "caustic lines"), "no medium scatters light");
-  EXPECT_EQ(stateOf(renderer, "airlight", "airlight"), "no medium scatters light");
-  EXPECT_EQ(stateOf(renderer, "core", "transmittance"), "run") << "it absorbs";
-  const Image without =
-      picture(renderer, settings(width, height, Term::final, {technique("hard_shadow_map")}));
-  EXPECT_TRUE(sameBits(with, without));
-}
-
-TEST_F(MediaTest, NoMediumIsTheSamePictureBitForBit) {
-  scene::Scene scene = asset("glass_sphere");
-  scene.medium = {};
-  render::Renderer renderer(device(), scene);
-  const Image with = picture(
-      renderer, settings(width, height, Term::final, {technique("volume_caustics"), technique("airlight")}));
-  EXPECT_EQ(stateOf(renderer, "core", "transmittance"), "the scene has no medium");
-  EXPECT_TRUE(sameBits(with, picture(renderer, settings(width, height, Term::final))));
-}
-
-TEST_F(MediaTest, WithoutSpecularSurfacesThereAreNoLines) {
-  scene::Scene scene = asset("balls");
-  scene.medium.sigmaS = glm::vec3(0.1f);
-  render::Renderer renderer(device(), scene);
-  expectWithin(picture(renderer, settings(width, height, Term::media, {technique("volume_caustics")})), 0, 0);
-  EXPECT_EQ(stateOf(renderer, "volume_caustics", "caustic lines"), "the scene has no specular surface");
-  EXPECT_EQ(stateOf(renderer, "caustics", "specular front"), "unknown");
-  for (const char* splat : {"screen", "light"})
-    expectWithin(picture(renderer, settings(width, height, Term::caustic,
-                                            {technique("surface_caustics", {{"splat", splat}})})),
-                 0, 0);
-  EXPECT_EQ(stateOf(renderer, "surface_caustics", "caustic map"), "the scene has no specular surface");
-}
-
-/// A software renderer needs no barriers: the list itself is what is checked.
-TEST_F(MediaTest, TheLineRuleIsClearedBehindABarrierForClears) {
-  const scene::Scene scene = asset("glass_sphere");
-  render::Renderer renderer(device(), scene);
-  picture(renderer, settings(8, 6, Term::media, {quick("volume_caustics")}));
-  GLbitfield before = 0;
-  for (const auto& pass : renderer.explain())
-    if (pass.name == "clear line rule") before = pass.barriers;
-  EXPECT_NE(before & GL_BUFFER_UPDATE_BARRIER_BIT, 0u);
-}
-
-TEST_F(MediaTest, RaysAreTracedAgainOnlyWhereSomethingChanged) {
-  const scene::Scene scene = asset("gem");
-  render::Renderer renderer(device(), scene);
-  render::Settings s = settings(width, height, Term::media, {technique("volume_caustics")});
-  s.dynamic = false;
-  const Image first = picture(renderer, s);
-  EXPECT_GT(mean(first), 0);
-  renderer.render();
-  for (const auto& pass : renderer.explain())
-    if (pass.technique == "caustics") {
-      EXPECT_EQ(pass.state, frame::PassState::cached) << pass.name;
-    }
-  EXPECT_LT(rmse(renderer.read(), first), 1e-5 * mean(first));
-  renderer.setTime(0.5, 0);
-  renderer.render();
-  const Image turned = renderer.read();
-  EXPECT_GT(rmse(turned, first), 0.01 * mean(first)) << "it turns";
-  s.dynamic = true;
-  EXPECT_LT(rmse(picture(renderer, s), turned), 1e-5 * mean(turned));
-}
-
-TEST_F(MediaTest, TechniquesThatShareRaysTraceThemOnce) {
-  const scene::Scene scene = asset("glass_sphere");
-  render::Renderer renderer(device(), scene);
-  picture(renderer, settings(width, height, Term::final,
-                             {technique("volume_caustics"), technique("surface_caustics")}));
-  int traced = 0;
-  for (const auto& pass : renderer.explain()) traced += pass.name == "caustic rays";
-  EXPECT_EQ(traced, 1);
 }
 
 TEST_F(MediaTest, TermsSumToTheFinalPicture) {
@@ -391,22 +213,6 @@ TEST_F(MediaTest, ExtremeResolutionsGiveFinitePictures) {
                                             {technique("airlight"), technique("surface_caustics"),
                                              technique("volume_caustics")})),
                  0, 1e6f);
-}
-
-TEST_F(MediaTest, ATurningStoneKeepsItsGraph) {
-  const scene::Scene scene = asset("gem");
-  render::Renderer renderer(device(), scene);
-  picture(renderer, settings(width, height, Term::media, {technique("volume_caustics")}));
-  const int64_t compiled = device().counters().programsCompiled;
-  std::vector<double> means;
-  for (int frame = 0; frame < 8; ++frame) {
-    renderer.setTime(frame / 30.0);
-    renderer.render();
-    means.push_back(mean(renderer.read()));
-    EXPECT_GT(means.back(), 0);
-  }
-  EXPECT_EQ(device().counters().programsCompiled, compiled);
-  EXPECT_NE(means.front(), means.back()) << "it turns";
 }
 
 TEST_F(MediaTest, ExtremesGiveFinitePictures) {

@@ -2,42 +2,23 @@
 // limit.
 #include <cmath>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
-#include "glsl/diffusion/colours.glsl"
-#include "glsl/numeric/geometry.glsl"
-#include "glsl/numeric/sampling.glsl"
-#include "tests/gpu/two_bodies.h"
+#include "tests/gpu/subsurface_harness.h"
 #include "tests/support/scene_nodes.h"
 
 namespace limn {
 namespace {
 
 using glm::vec3;
-using Choices = std::vector<std::pair<std::string, std::string>>;
 
-constexpr float kMatterIor = 1.3f;
-constexpr float kExtinction = 40;  ///< per metre; light gets 50 mm in the mean, 4 pixels
-constexpr float kAbsorption = 0.04f;
 constexpr float kDark = 0.3f, kBright = 0.8f;  ///< albedos of two colours
-constexpr float kBallRadius = 0.7f;            ///< it fills the picture: a third of the way from the camera
-constexpr float kLight = 2;                    ///< irradiance across the light's direction
 const std::vector<std::string> kProfileNames{"dipole", "normalised_diffusion"};
 
-class SubsurfaceScatteringTest : public TwoBodiesTest {
+class SubsurfaceScatteringTest : public SubsurfaceHarness {
  protected:
-  /// A floor that absorbs that share of what it does not let through, under light from straight above.
-  static scene::Scene floor(float extinction, float absorption) {
-    scene::Scene scene = floorUnder({0, 1, 0}, {});
-    scene::Material& material = scene.materials[0];
-    material.ior = kMatterIor;
-    material.baseColour = glm::vec4(vec3(albedo(absorption)), 1);
-    material.subsurface = scene::Subsurface{.extinction = vec3(extinction), .absorption = vec3(absorption)};
-    return scene;
-  }
-  /// The same with a plate above the camera, which takes the light away where x < edge.
+  /// A scene with a plate above the camera, which takes the light away where x < edge.
   static scene::Scene shadowed(scene::Scene scene, float edge) {
     scene::Node plate;
     plate.mesh = test::addMesh(scene, test::floorPrimitive(2, test::addMaterial(scene)));
@@ -55,73 +36,6 @@ class SubsurfaceScatteringTest : public TwoBodiesTest {
     for (size_t i = 0; i < 8; ++i) plane.colours.emplace_back(vec3(i < 4 ? kDark / kBright : 1), 1);
     scene.nodes[0].mesh = test::addMesh(scene, test::finish(plane));
     return scene;
-  }
-  /// A ball whose radius is so many mean distances, under light from the side.
-  static scene::Scene ball(float meanDistances) {
-    scene::Scene scene = floor(meanDistances * meanPaths() / kBallRadius, kAbsorption);
-    scene.nodes[0].mesh = test::addMesh(scene, test::spherePrimitive(kBallRadius, 0, 128));
-    scene.nodes[1].transform.rotation = glm::quatLookAt(-fromSide(), vec3(0, 0, 1));
-    return scene;
-  }
-  /// Two walls of 70 degrees that face each other across the bottom at x = 0, under light from `towards`.
-  static scene::Scene groove(const vec3& towards) {
-    scene::Scene scene = floor(kExtinction, kAbsorption);
-    const vec3 n = wallNormal();
-    scene.nodes[0].mesh = test::addMesh(
-        scene,
-        test::finish(test::joined(test::quad({-0.5f * n.y, 0.5f * n.x, 0}, {n.y, -n.x, 0}, {0, 0, -4}, 0),
-                                  test::quad({0.5f * n.y, 0.5f * n.x, 0}, {n.y, n.x, 0}, {0, 0, -4}, 0))));
-    scene.nodes[1].transform.rotation = glm::quatLookAt(-towards, vec3(0, 0, 1));
-    return scene;
-  }
-  /// Of the wall at x < 0.
-  static vec3 wallNormal() { return {std::sin(glm::radians(70.f)), std::cos(glm::radians(70.f)), 0}; }
-  static vec3 eye() { return glm::inverse(camera().worldToView)[3]; }
-  static vec3 fromSide() { return glm::normalize(vec3(1, 0.6f, 0.2f)); }
-
-  /// Light that enters under kLight where it comes at that cosine.
-  static double entering(float cosine) {
-    return cosine <= 0
-               ? 0
-               : static_cast<double>(kLight * cosine *
-                                     glsl::diffusion_entry(glsl::diffusion_boundary(kMatterIor), cosine));
-  }
-  /// What a pixel shows of the dipole's matter for a mean of entering light of 1.
-  static double shownOfOne(const vec3& p, const vec3& normal) {
-    const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(kMatterIor);
-    const float cosine = dot(normal, glm::normalize(eye() - p));
-    return static_cast<double>(glsl::diffusion_exit(boundary, cosine) *
-                               glsl::diffusion_dipole(kAbsorption, boundary).reflectance);
-  }
-  /// The mean distance of the dipole's light, in mean free paths.
-  static float meanPaths() {
-    const glsl::DiffusionDipole dipole =
-        glsl::diffusion_dipole(kAbsorption, glsl::diffusion_boundary(kMatterIor));
-    constexpr int kQuantiles = 1000;
-    float sum = 0;
-    for (int i = 0; i < kQuantiles; ++i)
-      sum += glsl::diffusion_dipole_radius(dipole, (static_cast<float>(i) + 0.5f) / kQuantiles);
-    return sum / kQuantiles;
-  }
-  /// The mean over the dipole's profile of the light that enters the ball, around the place with that normal:
-  /// the whole ball's integral, since on a sphere an area of 2 pi r dr has the chord r.
-  static double meanOverBall(const vec3& normal, float meanDistances) {
-    const glsl::DiffusionDipole dipole =
-        glsl::diffusion_dipole(kAbsorption, glsl::diffusion_boundary(kMatterIor));
-    const glsl::Frame frame = glsl::frame_around(normal);
-    const float paths = meanDistances * meanPaths();  // in a radius
-    constexpr uint32_t kDraws = 1000;
-    double sum = 0;
-    for (uint32_t i = 1; i <= kDraws; ++i) {
-      const vec3 u = glsl::r3_sequence(i);
-      const float chord = glsl::diffusion_dipole_radius(dipole, u.y) / paths;
-      if (chord > 2) continue;
-      const float angle = 2 * glsl::pi * u.x, cosine = 1 - 0.5f * chord * chord;
-      const float sine = std::sqrt(std::max(1 - cosine * cosine, 0.f));
-      const vec3 across = std::cos(angle) * frame.t + std::sin(angle) * frame.b;
-      sum += entering(dot(cosine * frame.n + sine * across, fromSide()));
-    }
-    return sum / kDraws;
   }
   /// A plate of the same matter, thick in metres and without sides, under light along `direction`.
   static scene::Scene plate(float thickness, const vec3& direction) {
@@ -142,9 +56,6 @@ class SubsurfaceScatteringTest : public TwoBodiesTest {
                        ? glsl::diffusion_dipole_share(glsl::diffusion_dipole(kAbsorption, boundary), r)
                        : glsl::normalised_diffusion_share(
                              glsl::normalised_diffusion(kAbsorption, glsl::walk_reflectance(boundary)), r));
-  }
-  static float albedo(float absorption) {
-    return glsl::walk_albedo(glsl::walk_reflectance(glsl::diffusion_boundary(kMatterIor)), absorption);
   }
   static float absorptionOf(float albedo) {
     return glsl::walk_absorption(glsl::walk_reflectance(glsl::diffusion_boundary(kMatterIor)), albedo);
@@ -171,13 +82,6 @@ class SubsurfaceScatteringTest : public TwoBodiesTest {
     }
     return sum;
   }
-  /// C of a profile over the albedo of the local limit.
-  static double reflectanceOverAlbedo(size_t profile, float absorption) {
-    if (profile == 1) return 1;
-    const glsl::DiffusionDipole dipole =
-        glsl::diffusion_dipole(absorption, glsl::diffusion_boundary(kMatterIor));
-    return static_cast<double>(dipole.reflectance / albedo(absorption));
-  }
   /// Share of the light at a distance into the lit side of an edge.
   static double besideEdge(size_t profile, double x) {
     const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(kMatterIor);
@@ -192,18 +96,6 @@ class SubsurfaceScatteringTest : public TwoBodiesTest {
       sum += r <= std::abs(x) ? (x > 0 ? 1 : 0) : 1 - std::acos(x / r) / M_PI;
     }
     return sum / kQuantiles;
-  }
-  /// The largest of |a / b / ratio - 1| over the points of the floor.
-  static double largestDifference(const Image& a, const Image& b, double ratio) {
-    std::vector<double> wanted;
-    forEachPoint(b, [&](float value, const vec3&) { wanted.push_back(static_cast<double>(value) * ratio); });
-    double largest = 0;
-    size_t i = 0;
-    forEachPoint(a, [&](float value, const vec3&) {
-      largest = std::max(largest, std::abs(static_cast<double>(value) / wanted[i++] - 1));
-    });
-    EXPECT_GT(i, 1500u);
-    return largest;
   }
   Image below(const scene::Scene& scene, const Choices& values) {
     return drawn(scene, Term::subsurface,
@@ -310,96 +202,6 @@ TEST_F(SubsurfaceScatteringTest, ColoursMixByTheRootOfBothOrStayTheirOwn) {
     EXPECT_LT(errors({}, true).rms(), 0.02);
     EXPECT_LT(errors({}, false).largest, 1e-3);
   }
-}
-
-// The picture shows 70.5 degrees of the ball. With the functions of the shader 64 points were right within
-// 0.003 in the mean and 0.005 (RMS).
-TEST_F(SubsurfaceScatteringTest, BallsUnderLightFromTheSideMeetTheirWholeIntegral) {
-  constexpr float kMeanDistances = 10;
-  const scene::Scene scene = ball(kMeanDistances);
-  struct Part {
-    double value = 0, expected = 0, squares = 0;
-    int count = 0;
-  };
-  for (const char* planes : {"tangent", "both"}) {
-    SCOPED_TRACE(planes);
-    Part middle, rim;
-    int index = 0;
-    const Image image =
-        drawn(scene, Term::subsurface,
-              {technique("subsurface_scattering", {{"planes", planes}, {"block", "1"}, {"samples", "64"}})});
-    forEachPoint(image, [&](float value, const vec3& p) {
-      if (index++ % 11 != 0) return;
-      const vec3 normal = glm::normalize(p);
-      const double mean = static_cast<double>(value) / shownOfOne(p, normal),
-                   expected = meanOverBall(normal, kMeanDistances);
-      Part& part = dot(normal, glm::normalize(eye())) < 0.5f ? rim : middle;
-      part.value += mean;
-      part.expected += expected;
-      part.squares += (mean - expected) * (mean - expected);
-      ++part.count;
-    });
-    EXPECT_GT(rim.count, 25);
-    EXPECT_GT(middle.count, 500);
-    for (const Part& part : {middle, rim}) {
-      EXPECT_NEAR(part.value / part.expected, 1, 0.03);
-      EXPECT_LT(std::sqrt(part.squares / part.count), 0.02 * entering(1));
-    }
-  }
-}
-
-TEST_F(SubsurfaceScatteringTest, BallsUnderLightFromTheSideGainNothing) {
-  const auto most = [&](float meanDistances, const Choices& values) {
-    double largest = 0;
-    forEachPoint(drawn(ball(meanDistances), Term::subsurface, {technique("subsurface_scattering", values)}),
-                 [&](float value, const vec3& p) {
-                   largest = std::max(largest, static_cast<double>(value) / shownOfOne(p, glm::normalize(p)));
-                 });
-    return largest / entering(1);
-  };
-  for (const float meanDistances : {10.f, 3.f, 0.7f}) {
-    SCOPED_TRACE(meanDistances);
-    for (const char* planes : {"tangent", "both"})
-      for (const char* block : {"1", "4"})
-        EXPECT_LE(most(meanDistances, {{"planes", planes}, {"block", block}}), 1.001) << planes << block;
-    EXPECT_GT(most(meanDistances, {{"normalise", "none"}, {"block", "1"}}), 1.2);
-  }
-}
-
-/// Under light from above as much enters one wall as the other, and so does any mean of it say. The integral
-/// of what is seen is more, since each wall gets the other one's light, too.
-TEST_F(SubsurfaceScatteringTest, WallsThatFaceEachOtherGainNothing) {
-  const scene::Scene even = groove({0, 1, 0});
-  const auto picture = [&](const scene::Scene& scene, const Choices& values) {
-    return drawn(scene, Term::subsurface, {technique("subsurface_scattering", values)});
-  };
-  const Image local = drawn(even, Term::subsurface, {});
-  for (const char* planes : {"tangent", "both"})
-    EXPECT_LT(
-        largestDifference(picture(even, {{"planes", planes}}), local, reflectanceOverAlbedo(0, kAbsorption)),
-        1e-3)
-        << planes;
-  const auto atTheBottom = [&](const Image& image) {
-    double sum = 0;
-    forEachPoint(image, [&](float value, const vec3& p) {
-      if (std::abs(p.x) < 0.04f) sum += static_cast<double>(value);
-    });
-    return sum;
-  };
-  EXPECT_GT(atTheBottom(picture(even, {{"normalise", "none"}, {"samples", "64"}})),
-            1.1 * atTheBottom(picture(even, {})));
-
-  const vec3 towards = glm::normalize(vec3(1, 1, 0));  // from behind the other wall
-  const double most = entering(dot(wallNormal(), towards));
-  double across = 0;
-  for (const char* planes : {"tangent", "both"})
-    forEachPoint(picture(groove(towards), {{"planes", planes}}), [&](float value, const vec3& p) {
-      const vec3 left = wallNormal(), normal = p.x < 0 ? left : vec3(-left.x, left.y, 0);
-      const double mean = static_cast<double>(value) / shownOfOne(p, normal);
-      EXPECT_LE(mean, 1.001 * most);
-      if (p.x > 0) across = std::max(across, mean);
-    });
-  EXPECT_GT(across, 0.2 * most) << "the dark wall";
 }
 
 TEST_F(SubsurfaceScatteringTest, OtherBodiesGetNoLight) {

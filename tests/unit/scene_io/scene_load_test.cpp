@@ -1,11 +1,7 @@
 // What a loaded scene holds: geometry, materials, textures, extras.
 #include <cmath>
-#include <cstdlib>
-#include <map>
 
 #include "core/image/image.h"
-#include "core/scene/mip_chain.h"
-#include "core/scene/tangents.h"
 #include "tests/support/png.h"
 #include "tests/support/scene_files.h"
 
@@ -227,90 +223,6 @@ TEST(SceneLoad, TextureTransform) {
               ElementsAre(glm::vec2(0.5f, 0.25f), glm::vec2(2.5f, 0.25f), glm::vec2(0.5f, 4.25f)));
 }
 
-TEST(SceneLoad, MipChainAveragesInLinearLight) {
-  scene::TextureImage image;
-  image.srgb = true;
-  image.levels.push_back({2, 1, {255, 255, 0, 255, 0, 255, 0, 0}});
-  buildMipChain(image);
-  ASSERT_EQ(image.levels.size(), 2u);
-  EXPECT_THAT(image.levels[1].rgba, ElementsAre(188, 255, 0, 128));  // 0.5 linear is 188 in sRGB
-  image.srgb = false;
-  image.levels.resize(1);
-  buildMipChain(image);
-  EXPECT_THAT(image.levels[1].rgba, ElementsAre(128, 255, 0, 128));
-}
-
-TEST(SceneLoad, MipChainOfOddSizes) {
-  scene::TextureImage image;
-  image.levels.push_back({5, 3, std::vector<std::uint8_t>(5 * 3 * 4, 77)});
-  image.levels[0].rgba[0] = 255;
-  buildMipChain(image);
-  ASSERT_EQ(image.levels.size(), 3u);  // 5x3, 2x1, 1x1
-  EXPECT_EQ(image.levels[1].width, 2);
-  EXPECT_EQ(image.levels[1].height, 1);
-  // Texel (0, 0) covers 2.5 x 3 texels; the bright one is 1 / 7.5 of that.
-  EXPECT_EQ(image.levels[1].rgba[0], std::lround(77 + (255 - 77) / 7.5));
-  EXPECT_EQ(image.levels[1].rgba[4], 77);
-  EXPECT_NEAR(image.levels[2].rgba[0], 77 + (255 - 77) / 15.0, 1);  // the mean survives
-}
-
-/// Of the direction in which v falls, which is up in the picture: the bitangent (glTF 2.0, 3.8.3 and 3.9.3).
-glm::vec3 up(const glm::vec4& tangent, const glm::vec3& normal) {
-  return tangent.w * glm::cross(normal, glm::vec3(tangent));
-}
-
-TEST(SceneLoad, TangentsFollowTheTexture) {
-  const std::vector<glm::vec3> p = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, n(3, glm::vec3(0, 0, 1));
-  const std::vector<std::uint32_t> indices = {0, 1, 2};
-  const float angle = 0.6f, c = std::cos(angle), s = std::sin(angle);
-  // u grows along (c, s, 0) and v along (-s, c, 0); upright, it falls along it.
-  std::vector<glm::vec2> mirrored, upright;
-  for (const glm::vec3& v : p) {
-    mirrored.emplace_back(3 * (c * v.x + s * v.y), c * v.y - s * v.x);
-    upright.emplace_back(mirrored.back().x, -mirrored.back().y);
-  }
-  for (const glm::vec4& t : scene::generateTangents(p, n, upright, indices)) {
-    expectNear(t, {c, s, 0});
-    EXPECT_EQ(t.w, 1) << "as most files have it";
-    expectNear(up(t, n[0]), {-s, c, 0});
-  }
-  for (const glm::vec4& t : scene::generateTangents(p, n, mirrored, indices)) {
-    expectNear(t, {c, s, 0});
-    EXPECT_EQ(t.w, -1);
-    expectNear(up(t, n[0]), {s, -c, 0});
-  }
-  for (const glm::vec4& t : scene::generateTangents(p, n, std::vector<glm::vec2>(3), indices)) {
-    EXPECT_NEAR(glm::length(glm::vec3(t)), 1, 1e-6);  // no direction in the texture: any perpendicular
-    EXPECT_NEAR(t.z, 0, 1e-6);
-    EXPECT_EQ(t.w, 1);
-  }
-}
-
-/// mikktspace.h: "vec3 bitangent = fSign * cross(vN, tangent)" points to growing v, and glTF's exporters and
-/// viewers that use it turn its sign (three.js, computeMikkTSpaceTangents, negateSign). Of a body whose
-/// halves share a mirrored texture each has its own sign; a triangle without extent in the texture has none
-/// to say.
-TEST(SceneLoad, TangentsAreThoseOfMikkTSpaceWithItsSignTurned) {
-  const std::vector<glm::vec3> p = {{-1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0, 0, 0},
-                                    {1, 0, 0},  {0, 1, 0}, {0, 2, 0}, {0, 1, 0}};
-  const std::vector<glm::vec3> n(p.size(), glm::vec3(0, 0, 1));
-  const std::vector<glm::vec2> uv = {{1, 1}, {0, 1}, {0, 0}, {0, 1}, {1, 1}, {0, 0}, {0, 0}, {0, 0}};
-  const std::vector<std::uint32_t> left = {0, 1, 2}, right = {3, 4, 5}, flat = {5, 6, 7};
-  std::vector<std::uint32_t> all;
-  for (const auto* part : {&left, &right, &flat}) all.insert(all.end(), part->begin(), part->end());
-  const std::vector<glm::vec4> tangents = scene::generateTangents(p, n, uv, all);
-  for (const std::uint32_t i : left) {
-    expectNear(tangents[i], {-1, 0, 0});
-    EXPECT_EQ(tangents[i].w, -1);
-    expectNear(up(tangents[i], n[i]), {0, 1, 0});
-  }
-  for (const std::uint32_t i : right) {
-    expectNear(tangents[i], {1, 0, 0});
-    EXPECT_EQ(tangents[i].w, 1);
-    expectNear(up(tangents[i], n[i]), {0, 1, 0});
-  }
-}
-
 TEST(SceneLoad, TangentsOnlyWithNormalMap) {
   GltfBuilder b;
   b.texturedMaterial(png(1, 1, {128, 128, 255, 255}));
@@ -394,62 +306,6 @@ TEST_F(SceneFile, EnvironmentBesideTheScene) {
   sky.at(0, 0, 0) = std::nanf("");
   writeExr(folder_ / "scene" / "sky.exr", sky);
   EXPECT_THAT(loadError(folder_ / "scene/a.glb"), HasSubstr("pixel (0, 0) is not a finite number"));
-}
-
-TEST(SceneModels, RealFiles) {
-  const char* folder = std::getenv("LIMN_MODELS");
-  if (!folder) GTEST_SKIP() << "LIMN_MODELS names no folder of glTF models";
-  const std::map<std::string, std::uint64_t> triangles = {{"AnimatedMorphSphere.glb", 960},
-                                                          {"CesiumMan.glb", 4672},
-                                                          {"Fox.glb", 576},
-                                                          {"LeePerrySmith.glb", 17684},
-                                                          {"MorphStressTest.glb", 2412},
-                                                          {"RobotExpressive.glb", 3237},
-                                                          {"ShaderBall_88k.glb", 88264},
-                                                          {"armadillo_86k.glb", 86482},
-                                                          {"buddha_100k.glb", 100000},
-                                                          {"bunny_69k.glb", 69451},
-                                                          {"dragon_202k.glb", 199626},
-                                                          {"dragon_871k.glb", 871414},
-                                                          {"emerald.glb", 140},
-                                                          {"sponza_262k.glb", 262267}};
-  int loaded = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() != ".glb") continue;
-    SCOPED_TRACE(entry.path().filename().string());
-    const Scene scene = scene::load(entry.path());
-    ++loaded;
-    if (const auto known = triangles.find(entry.path().filename().string()); known != triangles.end()) {
-      EXPECT_EQ(scene.triangles(), known->second);
-    }
-    for (const scene::Mesh& mesh : scene.meshes) {
-      for (const Primitive& p : mesh.primitives) {
-        double worst = 0;
-        for (const glm::vec3& n : p.normals)
-          worst = std::max(worst, std::abs(glm::length(glm::dvec3(n)) - 1));
-        for (const glm::vec4& t : p.tangents)
-          worst = std::max(worst, std::abs(glm::length(glm::dvec3(glm::vec3(t))) - 1));
-        EXPECT_LT(worst, 1e-5);
-        EXPECT_EQ(p.normals.size(), p.positions.size());
-        EXPECT_TRUE(std::isfinite(p.bounds.radius()));
-      }
-    }
-    const scene::Pose pose = evaluate(scene, 0.4);
-    std::vector<glm::vec3> positions, normals;
-    std::vector<glm::vec4> tangents;
-    for (const scene::Deformation& d : pose.deformed) {
-      deform(scene.meshes[static_cast<std::size_t>(d.mesh)].primitives[static_cast<std::size_t>(d.primitive)],
-             d, positions, normals, tangents);
-      for (const glm::vec3& n : normals) ASSERT_NEAR(glm::length(n), 1, 1e-4);
-      if (d.joints.empty()) continue;
-      const glm::vec3 slack(1e-3f * pose.bounds.radius());
-      for (const glm::vec3& p : positions) {
-        ASSERT_TRUE(glm::all(glm::lessThanEqual(pose.bounds.low, p + slack)));
-        ASSERT_TRUE(glm::all(glm::greaterThanEqual(pose.bounds.high, p - slack)));
-      }
-    }
-  }
-  EXPECT_GT(loaded, 0);
 }
 
 }  // namespace

@@ -1,137 +1,40 @@
-// Reading and writing picture files. OpenImageIO decodes and encodes in memory, but for WebP, which libwebp
-// decodes; files are read and written whole.
+// Reading picture files. OpenImageIO decodes in memory, but for WebP, which libwebp decodes; files are read
+// whole.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstring>
 #include <memory>
-#include <new>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/base/text.h"
 #include "core/image/image.h"
-#include "core/image/private/exr_header.h"
+#include "core/image/private/image_codec.h"
+#include "core/image/private/image_format.h"
 #include "core/image/private/webp.h"
 #include "glsl/numeric/srgb.glsl"
 
 namespace limn {
 namespace {
 
-constexpr const char* kMetadataPrefix = "limn/";
-
 /// What any file may unfold to, and what for each of its bytes beyond that. Pictures of the world stay below
 /// 30; deflate reaches 1032 where all is the same.
 constexpr std::int64_t kUnfoldedBytes = std::int64_t{1} << 28, kUnfoldedRatio = 256;
 
-enum class Format { exr, hdr, png, jpeg };
-
-const char* decoderName(Format format) {
+const char* decoderName(ImageFormat format) {
   switch (format) {
-    case Format::exr:
+    case ImageFormat::exr:
       return "openexr";
-    case Format::hdr:
+    case ImageFormat::hdr:
       return "hdr";
-    case Format::png:
+    case ImageFormat::png:
       return "png";
-    case Format::jpeg:
+    case ImageFormat::jpeg:
       return "jpeg";
   }
   return "";
-}
-
-/// By content, not by name: a wrong extension must not choose a decoder for foreign bytes.
-Format detectFormat(std::span<const std::byte> bytes, const std::string& name) {
-  const auto startsWith = [&](std::string_view magic) {
-    return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
-  };
-  if (startsWith("\x76\x2f\x31\x01")) return Format::exr;
-  if (startsWith("\x89PNG\r\n\x1a\n")) return Format::png;
-  if (startsWith("\xff\xd8\xff")) return Format::jpeg;
-  if (startsWith("#?")) return Format::hdr;
-  throw Error(fmt::format("{}: not a picture; EXR, HDR, PNG, JPEG or WebP is accepted", name));
-}
-
-/// Each scan of a progressive JPEG is a pass over the whole picture, however little it says; encoders make
-/// ten or so.
-constexpr int kMaxJpegScans = 100;
-
-/// Empty, or what is wrong. libjpeg fills what a truncated file lacks with grey. A complete one has an end
-/// marker (FF D9) after its first scan; within entropy-coded data FF is always followed by 00 or a restart
-/// marker.
-std::string jpegProblem(std::span<const std::byte> bytes) {
-  const std::string truncated = "truncated JPEG";
-  const auto at = [&](std::size_t i) { return std::to_integer<unsigned>(bytes[i]); };
-  std::size_t i = 2;
-  while (i + 4 <= bytes.size()) {  // header segments, whose thumbnails may contain end markers
-    if (at(i) != 0xff) return truncated;
-    const unsigned marker = at(i + 1);
-    if (marker == 0xff) {
-      ++i;
-      continue;
-    }
-    i += 2 + (at(i + 2) << 8 | at(i + 3));
-    if (marker == 0xda) break;
-  }
-  int scans = 1;
-  for (; i + 1 < bytes.size(); ++i) {
-    if (at(i) != 0xff) continue;
-    if (at(i + 1) == 0xd9) return {};
-    if (at(i + 1) == 0xda && ++scans > kMaxJpegScans)
-      return fmt::format("more than {} scans, which is as many as are accepted", kMaxJpegScans);
-  }
-  return truncated;
-}
-
-/// Cyclic redundancy code of PNG chunks (ISO 3309; reflected polynomial EDB88320).
-std::uint32_t chunkCode(std::span<const std::byte> bytes) {
-  static constexpr auto kTable = [] {
-    std::array<std::uint32_t, 256> table{};
-    for (std::uint32_t i = 0; i < 256; ++i) {
-      table[i] = i;
-      for (int bit = 0; bit < 8; ++bit) table[i] = table[i] >> 1 ^ (table[i] & 1 ? 0xedb88320u : 0u);
-    }
-    return table;
-  }();
-  std::uint32_t code = ~0u;
-  for (const std::byte byte : bytes)
-    code = code >> 8 ^ kTable[(code ^ std::to_integer<std::uint32_t>(byte)) & 255];
-  return ~code;
-}
-
-/// Whether every chunk up to IEND is there and undamaged. libpng would print its complaints itself and
-/// overlooks some; none of the checked files gives it a reason.
-bool pngIsComplete(std::span<const std::byte> bytes) {
-  const auto number = [&](std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
-    return value;
-  };
-  for (std::size_t at = 8; at + 12 <= bytes.size();) {
-    const std::size_t length = number(at);
-    if (length > bytes.size() - at - 12) return false;
-    if (chunkCode(bytes.subspan(at + 4, length + 4)) != number(at + 8 + length)) return false;
-    if (std::memcmp(bytes.data() + at + 4, "IEND", 4) == 0) return true;
-    at += length + 12;
-  }
-  return false;
-}
-
-/// Empty, or what a decoder should not be given the file for.
-std::string problemOf(std::span<const std::byte> bytes, Format format) {
-  if (format == Format::jpeg) return jpegProblem(bytes);
-  if (format == Format::exr) return exrHeaderProblem(bytes);
-  return format == Format::png && !pngIsComplete(bytes) ? "truncated or damaged PNG" : "";
-}
-
-std::string reasonOf(std::string_view failure) {
-  const std::string line = oneLine(failure);
-  return line.empty() ? "unreadable or truncated" : line;
 }
 
 /// What decoders read from: a file of `bytes`. OpenImageIO's reader follows offsets before the first byte,
@@ -169,8 +72,8 @@ void checkSize(std::int64_t width, std::int64_t height, std::int64_t channels, s
 class Decoder {
  public:
   Decoder(std::span<const std::byte> bytes, const std::string& name)
-      : name_(name), format_(detectFormat(bytes, name)), memory_(bytes) {
-    const std::string problem = problemOf(bytes, format_);
+      : name_(name), format_(detectImageFormat(bytes, name)), memory_(bytes) {
+    const std::string problem = imageFileProblem(bytes, format_);
     if (!problem.empty()) fail(problem);
     input_ = OIIO::ImageInput::create(decoderName(format_), false);
     if (!input_) fail(OIIO::geterror());
@@ -180,16 +83,14 @@ class Decoder {
     if (!input_->open(name, spec_, wanted)) fail(input_->geterror());
     stored_ = spec_.roi();
     // Offsets of a PNG are those of a page that it is printed on.
-    if (format_ == Format::exr) spec_.set_roi(spec_.roi_full());
+    if (format_ == ImageFormat::exr) spec_.set_roi(spec_.roi_full());
     checkSize();
   }
 
   /// Of the whole picture: an EXR may hold a part of it, or more than it.
-
   const OIIO::ImageSpec& spec() const { return spec_; }
-  bool isSrgb() const { return format_ == Format::png || format_ == Format::jpeg; }
-
-  Format format() const { return format_; }
+  bool isSrgb() const { return format_ == ImageFormat::png || format_ == ImageFormat::jpeg; }
+  ImageFormat format() const { return format_; }
 
   void read(const OIIO::TypeDesc& type, void* target) { readFirst(spec_.nchannels, type, target); }
   /// Leaves what the file does not hold as it is.
@@ -229,26 +130,12 @@ class Decoder {
   }
 
   std::string name_;
-  Format format_;
+  ImageFormat format_;
   MemoryFile memory_;
   std::unique_ptr<OIIO::ImageInput> input_;
   OIIO::ImageSpec spec_;
   OIIO::ROI stored_;  // the pixels that the file holds
 };
-
-/// Runs a decoding step; whatever a decoder throws becomes an Error of one line that names the picture.
-template <class Step>
-auto guarded(const std::string& name, Step step) {
-  try {
-    return step();
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw Error(fmt::format("{}: not enough memory", name));
-  } catch (const std::exception& failure) {
-    throw Error(fmt::format("{}: {}", name, reasonOf(failure.what())));
-  }
-}
 
 std::vector<std::string> channelNames(const Decoder& decoder) {
   if (!decoder.isSrgb()) return decoder.spec().channelnames;
@@ -346,7 +233,7 @@ Image8 decode8(std::span<const std::byte> bytes, const std::string& name) {
 ImageChannel decodeFirstChannel(std::span<const std::byte> bytes, const std::string& name,
                                 std::uint64_t mostPixels) {
   Decoder decoder(bytes, name);
-  if (decoder.format() != Format::png && decoder.format() != Format::exr)
+  if (decoder.format() != ImageFormat::png && decoder.format() != ImageFormat::exr)
     throw Error(fmt::format("{}: a PNG or an EXR is accepted", name));
   const OIIO::ImageSpec& spec = decoder.spec();
   const std::uint64_t pixels =
@@ -358,47 +245,6 @@ ImageChannel decodeFirstChannel(std::span<const std::byte> bytes, const std::str
   channel.values.resize(static_cast<std::size_t>(pixels));
   decoder.readFirst(1, OIIO::TypeDesc::FLOAT, channel.values.data());
   return channel;
-}
-
-/// Attributes of an EXR; text chunks (tEXt) of a PNG.
-void addMetadata(OIIO::ImageSpec& spec, const Image& image) {
-  for (const auto& [key, value] : image.metadata()) spec.attribute(kMetadataPrefix + key, value);
-}
-
-/// Encodes in memory: the encoder never sees the disk, so a full one is noticed when the file is written
-/// whole.
-std::vector<std::uint8_t> encode(const std::string& name, const char* encoder, const OIIO::ImageSpec& spec,
-                                 const OIIO::TypeDesc& type, const void* pixels) {
-  OIIO::Filesystem::IOVecOutput memory;
-  std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(encoder);
-  if (!output) throw Error(fmt::format("{}: {}", name, reasonOf(OIIO::geterror())));
-  output->set_ioproxy(&memory);
-  if (!output->open(name, spec) || !output->write_image(type, pixels) || !output->close()) {
-    throw Error(fmt::format("{}: {}", name, reasonOf(output->geterror())));
-  }
-  return memory.buffer();
-}
-
-/// R, G, B as a display shows them.
-std::vector<std::uint8_t> displayValues(const Image& image, const std::string& name, float exposureEv) {
-  if (image.empty()) throw Error(fmt::format("{}: cannot write an empty image", name));
-  const std::array<int, 3> rgb = image.rgbChannels(name);
-  std::vector<std::uint8_t> pixels;
-  pixels.reserve(image.pixelCount() * 3);
-  const std::size_t channels = static_cast<std::size_t>(image.channelCount());
-  for (std::size_t i = 0; i < image.pixelCount(); ++i) {
-    for (const int c : rgb) {
-      const float value = image.data()[i * channels + static_cast<std::size_t>(c)];
-      pixels.push_back(static_cast<std::uint8_t>(std::lround(255.0f * glsl::tone_map(value, exposureEv))));
-    }
-  }
-  return pixels;
-}
-
-OIIO::ImageSpec displaySpec(const Image& image) {
-  OIIO::ImageSpec spec(image.width(), image.height(), 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  return spec;
 }
 
 }  // namespace
@@ -422,46 +268,6 @@ Image8 readImage8Memory(std::span<const std::byte> bytes, const std::string& nam
 
 Image8 readImage8(const std::filesystem::path& path) {
   return readImage8Memory(readFile(path), path.string());
-}
-
-void writeExr(const std::filesystem::path& path, const Image& image) {
-  if (image.empty()) throw Error(fmt::format("{}: cannot write an empty image", path.string()));
-  OIIO::ImageSpec spec(image.width(), image.height(), image.channelCount(), OIIO::TypeDesc::FLOAT);
-  spec.channelnames = image.channels();
-  spec.attribute("compression", "zip");
-  spec.attribute("DateTime", "1970:01:01 00:00:00");  // otherwise the encoder looks at the clock
-  addMetadata(spec, image);
-  const std::vector<std::uint8_t> file = guarded(path.string(), [&] {
-    return encode(path.string(), "openexr", spec, OIIO::TypeDesc::FLOAT, image.data().data());
-  });
-  writeFile(path, std::as_bytes(std::span(file)));
-}
-
-std::vector<std::uint8_t> encodePng(const Image& image, const std::string& name, float exposureEv) {
-  const std::vector<std::uint8_t> pixels = displayValues(image, name, exposureEv);
-  OIIO::ImageSpec spec = displaySpec(image);
-  addMetadata(spec, image);
-  return guarded(name, [&] { return encode(name, "png", spec, OIIO::TypeDesc::UINT8, pixels.data()); });
-}
-
-std::vector<std::uint8_t> encodeWebp(const Image& image, const std::string& name) {
-  const std::vector<std::uint8_t> pixels = displayValues(image, name, 0);
-  OIIO::ImageSpec spec = displaySpec(image);
-  spec.attribute("compression", "webp:90");
-  return guarded(name, [&] { return encode(name, "webp", spec, OIIO::TypeDesc::UINT8, pixels.data()); });
-}
-
-void writePng(const std::filesystem::path& path, const Image& image, float exposureEv) {
-  const std::vector<std::uint8_t> file = encodePng(image, path.string(), exposureEv);
-  writeFile(path, std::as_bytes(std::span(file)));
-}
-
-void writeImage(const std::filesystem::path& path, const Image& image, float exposureEv) {
-  const std::string extension = path.extension().string();
-  if (extension == ".exr") return writeExr(path, image);
-  if (extension == ".png") return writePng(path, image, exposureEv);
-  throw UsageError(
-      fmt::format("{}: unknown picture format '{}'; .exr or .png is accepted", path.string(), extension));
 }
 
 }  // namespace limn
