@@ -10,50 +10,47 @@ namespace limn::radiosity {
 namespace {
 
 /// Adds what is below a cell: a third of a cell's weight belongs to each of its corners.
-void addCells(DirectionDomain domain, int levelsLeft, uint32_t n, const UnitCell& cell, CornerLevel& level) {
+void addCells(int levelsLeft, uint32_t n, const UnitCell& cell, CornerLevel& level) {
   if (levelsLeft > 0) {
     glm::vec3 middles[3];
     cell.middles(middles);
-    for (uint32_t k = 0; k < 4; ++k) addCells(domain, levelsLeft - 1, n, cell.child(k, middles), level);
+    for (uint32_t k = 0; k < 4; ++k) addCells(levelsLeft - 1, n, cell.child(k, middles), level);
     return;
   }
   // Corners are asked for from inside of their cell, since those of the horizon are in two lists.
   const glm::vec3 centre = cell.centre();
   const glm::uvec3 corners = glsl::octahedral_grid_place(centre, n).corner;
-  const float weight = cellWeight(domain, cell.corners[0], cell.corners[1], cell.corners[2]) / 3;
+  const float weight = cellWeight(cell.corners[0], cell.corners[1], cell.corners[2]) / 3;
   for (int i = 0; i < 3; ++i) {
     level.weights[corners[i]] += weight;
     level.edgeCosine = std::min(level.edgeCosine, glm::dot(cell.corners[i], cell.corners[(i + 1) % 3]));
   }
 }
 
-CornerLevel made(DirectionDomain domain, int levelIndex) {
+CornerLevel made(int levelIndex) {
   const uint32_t n = 1u << levelIndex, size = glsl::octahedral_grid_size(n);
   const int side = static_cast<int>(n);
-  const bool sphere = domain == DirectionDomain::sphere;
   CornerLevel level;
-  level.directions.resize(sphere ? 2 * size : size);
-  level.weights.assign(level.directions.size(), 0);
+  level.directions.resize(size);
+  level.weights.assign(size, 0);
   for (int j = -side; j <= side; ++j)
     for (int i = -(side - std::abs(j)); i <= side - std::abs(j); ++i) {
       const auto up = static_cast<float>(side - std::abs(i) - std::abs(j));
-      const uint32_t index = glsl::octahedral_grid_index({i, j}, n);
-      level.directions[index] = glm::normalize(glm::vec3(float(i), float(j), up));
-      if (sphere) level.directions[size + index] = level.directions[index] * glm::vec3(1, 1, -1);
+      level.directions[glsl::octahedral_grid_index({i, j}, n)] =
+          glm::normalize(glm::vec3(float(i), float(j), up));
     }
-  for (uint32_t face = 0; face < (sphere ? 8u : 4u); ++face)
-    addCells(domain, levelIndex, n, UnitCell::face(face), level);
+  for (uint32_t face = 0; face < DirectionalTree::kFaces; ++face)
+    addCells(levelIndex, n, UnitCell::face(face), level);
   return level;
 }
 
 }  // namespace
 
-const CornerLevel& cornerLevel(DirectionDomain domain, int level) {
-  static std::once_flag flags[2][DirectionalTree::kMaxUniformLevel + 1];
-  static CornerLevel levels[2][DirectionalTree::kMaxUniformLevel + 1];
-  const int which = domain == DirectionDomain::sphere ? 1 : 0;
-  std::call_once(flags[which][level], [&] { levels[which][level] = made(domain, level); });
-  return levels[which][level];
+const CornerLevel& cornerLevel(int level) {
+  static std::once_flag flags[DirectionalTree::kMaxUniformLevel + 1];
+  static CornerLevel levels[DirectionalTree::kMaxUniformLevel + 1];
+  std::call_once(flags[level], [&] { levels[level] = made(level); });
+  return levels[level];
 }
 
 }  // namespace limn::radiosity

@@ -86,7 +86,7 @@ struct Descent {
 
 void DirectionCaps::include(const DirectionalTree& tree, const glsl::Frame& frame) {
   if (tree.uniform()) {
-    const CornerLevel& level = cornerLevel(tree.domain(), tree.level());
+    const CornerLevel& level = cornerLevel(tree.level());
     for (size_t i = 0; i < tree.corners().size(); ++i)
       raise(most_.data(), glsl::from_local(frame, level.directions[i]), level.edgeCosine,
             glsl::largest_channel(tree.corners()[i]));
@@ -94,7 +94,7 @@ void DirectionCaps::include(const DirectionalTree& tree, const glsl::Frame& fram
   }
   if (tree.empty()) return;
   const Descent descent{tree.nodes(), frame, most_.data()};
-  for (uint32_t face = 0; face < tree.faces(); ++face) descent.visit(face, UnitCell::face(face));
+  for (uint32_t face = 0; face < DirectionalTree::kFaces; ++face) descent.visit(face, UnitCell::face(face));
 }
 
 void DirectionCaps::include(const DirectionCaps& other) {

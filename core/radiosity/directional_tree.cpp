@@ -53,32 +53,29 @@ struct ConeSearch {
 
 }  // namespace
 
-float cellWeight(DirectionDomain domain, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-  return domain == DirectionDomain::hemisphere ? std::abs(glsl::triangle_projected_angle(a, b, c).z)
-                                               : glsl::triangle_solid_angle(a, b, c);
+float cellWeight(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+  return std::abs(glsl::triangle_projected_angle(a, b, c).z);
 }
 
-void DirectionalTree::assign(DirectionDomain domain, std::span<const Node> nodes) {
-  domain_ = domain;
+void DirectionalTree::assign(std::span<const Node> nodes) {
   nodes_.assign(nodes.begin(), nodes.end());
   corners_.clear();
 }
 
-void DirectionalTree::assignUniform(DirectionDomain domain, int level, std::span<const glm::vec3> corners) {
-  domain_ = domain;
+void DirectionalTree::assignUniform(int level, std::span<const glm::vec3> corners) {
   level_ = level;
   corners_.assign(corners.begin(), corners.end());
   nodes_.clear();
 }
 
 size_t DirectionalTree::cellCount() const {
-  if (uniform()) return size_t{faces()} << (2 * level_);
-  return empty() ? 0 : faces() + 3 * ((nodes_.size() - faces()) / 4);
+  if (uniform()) return size_t{kFaces} << (2 * level_);
+  return empty() ? 0 : kFaces + 3 * ((nodes_.size() - kFaces) / 4);
 }
 
 glm::vec3 DirectionalTree::value(const glm::vec3& w) const {
   uint32_t node = glsl::octahedral_face(w);
-  if (empty() || node >= faces()) return glm::vec3(0);
+  if (empty() || node >= kFaces) return glm::vec3(0);
   if (uniform()) {
     const glsl::OctahedralGridPlace at = glsl::octahedral_grid_place(w, 1u << level_);
     return at.weight.x * corners_[at.corner.x] + at.weight.y * corners_[at.corner.y] +
@@ -91,7 +88,7 @@ glm::vec3 DirectionalTree::value(const glm::vec3& w) const {
 
 glm::vec3 DirectionalTree::smoothValue(const glm::vec3& w) const {
   const uint32_t face = glsl::octahedral_face(w);
-  if (nodes_.empty() || face >= faces()) return value(w);
+  if (nodes_.empty() || face >= kFaces) return value(w);
   const glm::vec3 signs = glsl::octahedral_signs(face), place = glsl::octahedral_place(w);
   glm::vec3 inside = place;
   float edge = 1;
@@ -100,7 +97,7 @@ glm::vec3 DirectionalTree::smoothValue(const glm::vec3& w) const {
   glm::vec3 sum(0);
   for (uint32_t i = 0; i < 6; ++i) {
     glm::vec3 tap = glsl::octahedral_tap(place, signs, edge, i);
-    if (domain_ == DirectionDomain::hemisphere) tap.z = std::abs(tap.z);  // the horizon mirrors
+    tap.z = std::abs(tap.z);  // the horizon mirrors
     sum += value(tap);
   }
   return sum / 6.f;
@@ -110,12 +107,12 @@ DirectionBounds DirectionalTree::bounds(const glm::vec3& axis, float cosine) con
   if (uniform()) return uniformBounds(axis, cosine);
   if (empty()) return {};
   ConeSearch search{nodes_, axis, cosine, std::sqrt(std::max(1 - cosine * cosine, 0.f)), false, {}};
-  for (uint32_t face = 0; face < faces(); ++face) search.visit(face, UnitCell::face(face));
+  for (uint32_t face = 0; face < kFaces; ++face) search.visit(face, UnitCell::face(face));
   return search.found;
 }
 
 DirectionBounds DirectionalTree::uniformBounds(const glm::vec3& axis, float cosine) const {
-  const CornerLevel& level = cornerLevel(domain_, level_);
+  const CornerLevel& level = cornerLevel(level_);
   // Corners of cells that the cone meets are at most an edge away from it.
   const float sine = std::sqrt(std::max(1 - cosine * cosine, 0.f));
   const float edgeSine = std::sqrt(1 - level.edgeCosine * level.edgeCosine);
@@ -134,13 +131,13 @@ DirectionBounds DirectionalTree::uniformBounds(const glm::vec3& axis, float cosi
 glm::vec3 DirectionalTree::flux() const {
   glm::vec3 sum(0);
   if (uniform()) {
-    const CornerLevel& level = cornerLevel(domain_, level_);
+    const CornerLevel& level = cornerLevel(level_);
     for (size_t i = 0; i < corners_.size(); ++i) sum += level.weights[i] * corners_[i];
     return sum;
   }
   if (empty()) return sum;
-  for (uint32_t face = 0; face < faces(); ++face) sum += nodes_[face].value;
-  return sum * (domain_ == DirectionDomain::hemisphere ? 0.25f * glsl::pi : 0.5f * glsl::pi);
+  for (uint32_t face = 0; face < kFaces; ++face) sum += nodes_[face].value;
+  return sum * (0.25f * glsl::pi);
 }
 
 float DirectionalTree::pack(std::vector<glm::uvec2>& nodes) const {
@@ -171,7 +168,7 @@ void DirectionalTree::add(const DirectionalTree& other, float weight) {
   }
   for (size_t i = 0; i < corners_.size(); ++i) corners_[i] += weight * other.corners_[i];
   if (uniform()) return;
-  for (uint32_t face = 0; face < faces(); ++face) addBelow(face, other, face, weight);
+  for (uint32_t face = 0; face < kFaces; ++face) addBelow(face, other, face, weight);
 }
 
 void DirectionalTree::addBelow(uint32_t node, const DirectionalTree& other, uint32_t otherNode,

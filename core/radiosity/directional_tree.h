@@ -1,6 +1,6 @@
-// Declares light that leaves an element as an adaptive tree over directions: a Haar basis on the octahedron
-// (Stamminger et al. 1999, Efficient Glossy Global Illumination with Interactive Viewing), or in a uniform
-// basis.
+// Declares light that leaves an element as an adaptive tree over the directions around its normal, +z: a Haar
+// basis on the upper half of the octahedron (Stamminger et al. 1999, Efficient Glossy Global Illumination
+// with Interactive Viewing), or in a uniform basis.
 #pragma once
 
 #include <cstdint>
@@ -12,43 +12,37 @@
 
 namespace limn::radiosity {
 
-/// Says which directions a tree covers.
-enum class DirectionDomain : uint8_t {
-  hemisphere,  ///< around +z, by 4 faces: radiance of a leaf, whose normal is +z; weighted by the cosine
-  sphere,      ///< by 8 faces: intensity; weighted by solid angle
-};
-
-/// Returns how much a triangle of unit directions weighs: its projected solid angle or its solid angle, sr.
-LIMN_API float cellWeight(DirectionDomain domain, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
+/// Returns how much a triangle of unit directions weighs: its projected solid angle, sr.
+LIMN_API float cellWeight(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 
 /// Holds the least and the greatest value over some directions, per channel.
 struct DirectionBounds {
   glm::vec3 low{0}, high{0};
 };
 
-/// A function over directions, constant in each cell of a tree of triangles
+/// A function over the hemisphere, constant in each cell of a tree of triangles
 /// (glsl/numeric/octahedral_cells.glsl). Without nodes it is 0 everywhere.
 class LIMN_API DirectionalTree {
  public:
-  /// Holds a cell: the mean over its directions by the domain's weight.
+  /// Holds a cell: the mean over its directions by projected angle.
   struct Node {
     glm::vec3 value{0};
     uint32_t child = 0;  ///< the first of its four children; 0: none
   };
 
-  explicit DirectionalTree(DirectionDomain domain = DirectionDomain::hemisphere) : domain_(domain) {}
+  static constexpr uint32_t kFaces = 4;  ///< of the octahedron
+
   /// Takes a tree's nodes: the faces first, children in runs of four behind their parents. Memory is kept
   /// where it suffices.
-  void assign(DirectionDomain domain, std::span<const Node> nodes);
+  void assign(std::span<const Node> nodes);
   /// Takes values at the corners of a level, 0 to kMaxUniformLevel (glsl/numeric/octahedral_grid.glsl).
-  void assignUniform(DirectionDomain domain, int level, std::span<const glm::vec3> corners);
+  void assignUniform(int level, std::span<const glm::vec3> corners);
   static constexpr int kMaxUniformLevel = 8;
   void clear() {
     nodes_.clear();
     corners_.clear();
   }
 
-  DirectionDomain domain() const { return domain_; }
   bool empty() const { return nodes_.empty() && corners_.empty(); }
   bool uniform() const { return !corners_.empty(); }
   /// Returns the level of a uniform basis.
@@ -56,21 +50,19 @@ class LIMN_API DirectionalTree {
   std::span<const Node> nodes() const { return nodes_; }
   /// Returns the values of a uniform basis.
   std::span<const glm::vec3> corners() const { return corners_; }
-  /// Returns the number of faces that the domain has.
-  uint32_t faces() const { return domain_ == DirectionDomain::hemisphere ? 4 : 8; }
   /// Returns the number of cells without children.
   size_t cellCount() const;
   /// Returns the memory that the values take, bytes.
   size_t memory() const { return nodes_.size() * sizeof(Node) + corners_.size() * sizeof(glm::vec3); }
 
-  /// Returns the value in direction w (any length but 0); 0 outside the domain.
+  /// Returns the value in direction w (any length but 0); 0 below the horizon.
   glm::vec3 value(const glm::vec3& w) const;
   /// Returns the mean of six values around w, over the footprint of its cell; uniform: the value.
   glm::vec3 smoothValue(const glm::vec3& w) const;
-  /// Returns the bounds over the directions (of the domain) less than an angle from `axis` (unit), by that
-  /// angle's cosine, and over no more than the cells that these lie in.
+  /// Returns the bounds over the directions (above the horizon) less than an angle from `axis` (unit), by
+  /// that angle's cosine, and over no more than the cells that these lie in.
   DirectionBounds bounds(const glm::vec3& axis, float cosine) const;
-  /// Returns the integral over the domain by its weight: radiosity of radiance, power of intensity.
+  /// Returns the integral over the hemisphere by projected angle: radiosity of radiance.
   glm::vec3 flux() const;
 
   /// Appends the nodes as the GPU has them (glsl/indirect/packed_tree.glsl); returns the scale of their
@@ -78,15 +70,14 @@ class LIMN_API DirectionalTree {
   float pack(std::vector<glm::uvec2>& nodes) const;
 
   void scale(const glm::vec3& factor);
-  /// Adds `weight` times a tree over the same domain, in the same frame and of the same basis and level. The
-  /// result has the cells of both.
+  /// Adds `weight` times a tree in the same frame and of the same basis and level. The result has the cells
+  /// of both.
   void add(const DirectionalTree& other, float weight = 1);
 
  private:
   DirectionBounds uniformBounds(const glm::vec3& axis, float cosine) const;
   void addBelow(uint32_t node, const DirectionalTree& other, uint32_t otherNode, float weight);
 
-  DirectionDomain domain_;
   std::vector<Node> nodes_;
   int level_ = 0;
   std::vector<glm::vec3> corners_;

@@ -5,14 +5,11 @@
 #include "core/radiosity/private/float4.h"
 #include "glsl/indirect/sample_reflection.glsl"
 #include "glsl/light/ltc.glsl"
-#include "glsl/materials/model.glsl"
+#include "glsl/materials/material_model.glsl"
 #include "glsl/numeric/srgb.glsl"
 
 namespace limn::radiosity {
 namespace {
-
-/// The width at which peaks of models without a roughness are sought.
-constexpr float kModelAlpha = 0.1f;
 
 float sumOf(Float4 v) {
   return (v[0] + v[2]) + (v[1] + v[3]);
@@ -29,23 +26,15 @@ glm::vec3 mirrored(const glm::vec3& direction) {
 
 }  // namespace
 
-void GlossyLobes::clear(std::span<const glsl::IncidentLight> lights) {
+void GlossyLobes::set(const glsl::SurfaceBrdf& surface, std::span<const glsl::IncidentLight> lights,
+                      float widen) {
   count_ = 0;
   lobes_.clear();
   all_.clear();
-  irradiance_.clear();
-  widened_.clear();
   const auto lobes = static_cast<size_t>(std::count_if(lights.begin(), lights.end(), arrives));
   lobes_.reserve(lobes);
   rowLength_ = stride(lobes);
-  model_ = nullptr;
-  measured_ = nullptr;
   flux_ = glm::vec3(0);
-}
-
-void GlossyLobes::set(const glsl::SurfaceBrdf& surface, std::span<const glsl::IncidentLight> lights,
-                      float widen) {
-  clear(lights);
   if (glsl::brdf_is_lambertian(surface)) return;
   rows_.assign(kRows * rowLength_, 0);
   // Lanes of no lobe are lobes of no light.
@@ -72,34 +61,11 @@ void GlossyLobes::set(const glsl::SurfaceBrdf& surface, std::span<const glsl::In
   }
 }
 
-void GlossyLobes::set(const glsl::MaterialModel& model, const std::vector<glm::vec3>& measured,
-                      std::span<const glsl::IncidentLight> lights, float widen) {
-  clear(lights);
-  model_ = &model;
-  measured_ = &measured;
-  const bool rough = model.kind == glsl::model_torrance_sparrow || model.kind == glsl::model_ward;
-  for (const glsl::IncidentLight& light : lights) {
-    if (!arrives(light)) continue;
-    const float cosine = light.direction.z;
-    glsl::MaterialModel wider = model;
-    if (rough)
-      for (int k = 0; k < 2; ++k)
-        wider.roughness[k] = glsl::widened_alpha(model.roughness[k], light.spread, cosine, widen);
-    irradiance_.push_back(light.irradiance);
-    widened_.push_back(wider);
-    lobes_.push_back({mirrored(light.direction),
-                      rough ? std::min(wider.roughness.x, wider.roughness.y) : kModelAlpha,
-                      glsl::luminance(cosine * light.irradiance)});
-    all_.push_back(static_cast<uint32_t>(count_++));
-  }
-}
-
 glm::vec3 GlossyLobes::radiance(const glm::vec3& w) const {
   return evaluate(w, all_, rows_.data(), nullptr);
 }
 
 void GlossyLobes::describe(std::span<const uint32_t> which, float* rows) const {
-  if (model_) return;
   const size_t length = stride(which.size());
   for (size_t r = 0; r < kRows; ++r, rows += length) {
     const float* row = rows_.data() + r * rowLength_;
@@ -111,18 +77,6 @@ void GlossyLobes::describe(std::span<const uint32_t> which, float* rows) const {
 glm::vec3 GlossyLobes::evaluate(const glm::vec3& w, std::span<const uint32_t> which, const float* rows,
                                 float* values) const {
   const size_t length = stride(which.size());
-  if (model_) {
-    glm::vec3 sum(0);
-    for (size_t i = 0; i < which.size(); ++i) {
-      const uint32_t k = which[i];
-      const glm::vec3 value =
-          irradiance_[k] * glsl::model_response(*measured_, widened_[k], w, mirrored(lobes_[k].mirror));
-      sum += value;
-      if (values)
-        for (int c = 0; c < 3; ++c) values[static_cast<size_t>(c) * length + i] = value[c];
-    }
-    return sum;
-  }
   // glsl::brdf_parts for four lobes at once, multiplied out: one division.
   const Float4 wx = splat(w.x), wy = splat(w.y), wz = splat(w.z), one = splat(1), zero = splat(0);
   const Float4 wz2 = wz * wz, scale = splat(0.5f * glsl::inverse_pi), half = splat(0.5f);

@@ -8,38 +8,28 @@
 
 #include "core/base/export.h"
 #include "glsl/indirect/illumination_sample.glsl"
-#include "glsl/materials/material_model.glsl"
 #include "glsl/surface/brdf.glsl"
 
 namespace limn::radiosity {
 
 /// The sum of one lobe per incident light: L(w) = sum f(w_k, w) (n.w_k)+ E_k, in the frame n = +z, for the
-/// specular part of the BRDF or for a material's model. Lobes of lights that spread are widened, and keep
-/// their energy.
+/// specular part of the BRDF. Lobes of lights that spread are widened, and keep their energy.
 class LIMN_API GlossyLobes {
  public:
   /// Sets the lobes of the specular part. Directions are in the local frame; lights below the horizon and
   /// black ones get no lobe. `widen`: see glsl::widened_alpha; 0: none. Memory is kept.
   void set(const glsl::SurfaceBrdf& surface, std::span<const glsl::IncidentLight> lights, float widen);
-  /// Sets the lobes of a material's model, whose tangent is +x, with its diffuse part as it stands there.
-  /// Roughness along and across is widened where the model has it (Torrance-Sparrow and Ward). The model and
-  /// the tables (Scene::measured) must outlive the use of the lobes.
-  void set(const glsl::MaterialModel& model, const std::vector<glm::vec3>& measured,
-           std::span<const glsl::IncidentLight> lights, float widen);
 
   size_t size() const { return count_; }
   /// Returns the lobes' sum in direction w, unit, w.z > 0.
   glm::vec3 radiance(const glm::vec3& w) const;
-  /// Returns what the lobes carry together, W/m^2: by the reflectance of the LTC table; of a model: 0, not
-  /// known.
+  /// Returns what the lobes carry together, W/m^2: by the reflectance of the LTC table.
   const glm::vec3& flux() const { return flux_; }
-  /// Returns whether flux() is known.
-  bool fluxKnown() const { return model_ == nullptr; }
 
   /// Returns the length of the rows in which numbers of lobes stand: a multiple of four.
   static size_t stride(size_t count) { return (count + 3) / 4 * 4; }
   /// Returns the number of rows that describe lobes.
-  size_t rows() const { return model_ ? 0 : kRows; }
+  static size_t rows() { return kRows; }
   /// Describes some lobes in rows() rows of stride(which.size()) numbers.
   void describe(std::span<const uint32_t> which, float* rows) const;
   /// Returns the sum of some lobes in direction w, unit, w.z > 0, which describe() has described. Puts their
@@ -51,7 +41,7 @@ class LIMN_API GlossyLobes {
   const glm::vec3& mirror(size_t k) const { return lobes_[k].mirror; }
   /// Returns the GGX width of a lobe.
   float alpha(size_t k) const { return lobes_[k].alpha; }
-  /// Returns what a lobe carries, luminance, W/m^2 (of a model: what arrives).
+  /// Returns what a lobe carries, luminance, W/m^2.
   float brightness(size_t k) const { return lobes_[k].brightness; }
 
  private:
@@ -62,17 +52,12 @@ class LIMN_API GlossyLobes {
     glm::vec3 mirror;
     float alpha, brightness;
   };
-  void clear(std::span<const glsl::IncidentLight> lights);
 
   size_t count_ = 0;
   std::vector<Lobe> lobes_;
   std::vector<uint32_t> all_;  ///< 0, 1, 2, ...
   std::vector<float> rows_;    ///< of all lobes, in rows of rowLength_
   size_t rowLength_ = 0;
-  std::vector<glm::vec3> irradiance_;
-  std::vector<glsl::MaterialModel> widened_;
-  const glsl::MaterialModel* model_ = nullptr;
-  const std::vector<glm::vec3>* measured_ = nullptr;
   glm::vec3 flux_{0};
 };
 

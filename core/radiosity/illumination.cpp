@@ -60,20 +60,4 @@ void pullUp(const Forest& forest, std::span<glm::vec3> outgoing) {
     });
 }
 
-std::vector<glm::vec3> illuminate(const Forest& forest, const Links& links,
-                                  std::span<const glm::vec3> emission, std::span<const glm::vec3> albedo,
-                                  int bounces, std::span<const glm::vec3> environment) {
-  const std::vector<glm::vec4> table = binTable(links.resolution());
-  std::vector<glm::vec3> outgoing(forest.slots(), glm::vec3(0)), irradiance(forest.leafSlots());
-  std::copy(emission.begin(), emission.end(), outgoing.begin());
-  pullUp(forest, outgoing);
-  for (int bounce = 0; bounce < bounces; ++bounce) {
-    gather(forest, links, table, outgoing, environment, irradiance);
-    for (size_t i = 0; i < irradiance.size(); ++i)
-      outgoing[i] = emission[i] + albedo[i] * irradiance[i] * glsl::inverse_pi;
-    pullUp(forest, outgoing);
-  }
-  return outgoing;
-}
-
 }  // namespace limn::radiosity

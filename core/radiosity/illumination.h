@@ -29,11 +29,4 @@ LIMN_API void gather(const Forest& forest, const Links& links, std::span<const g
 /// Sets the radiance of every element above the leaves: the mean of its children's, weighted by area.
 LIMN_API void pullUp(const Forest& forest, std::span<glm::vec3> outgoing);
 
-/// Returns emission plus the light of `bounces` reflections of it by Lambertian surfaces. Values are per leaf
-/// slot, the result is per slot of the forest.
-LIMN_API std::vector<glm::vec3> illuminate(const Forest& forest, const Links& links,
-                                           std::span<const glm::vec3> emission,
-                                           std::span<const glm::vec3> albedo, int bounces,
-                                           std::span<const glm::vec3> environment = {});
-
 }  // namespace limn::radiosity

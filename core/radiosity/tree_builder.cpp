@@ -41,13 +41,12 @@ double TreeBuilder::estimatedError() const {
 void TreeBuilder::build(const GlossyLobes& lobes, const TreeSettings& settings, DirectionalTree& tree,
                         float beside) {
   if (lobes.size() == 0) return tree.clear();
-  scratch_->build(LobeSource{lobes}, DirectionDomain::hemisphere, settings, tree, double(beside));
-  if (lobes.fluxKnown()) scaleToFlux(tree, lobes.flux());
+  scratch_->build(LobeSource{lobes}, settings, tree, double(beside));
+  scaleToFlux(tree, lobes.flux());
 }
 
-void TreeBuilder::build(const Function& function, DirectionDomain domain, const TreeSettings& settings,
-                        DirectionalTree& tree) {
-  scratch_->build(GivenSource(function), domain, settings, tree);
+void TreeBuilder::build(const Function& function, const TreeSettings& settings, DirectionalTree& tree) {
+  scratch_->build(GivenSource(function), settings, tree);
 }
 
 void TreeBuilder::pull(std::span<const TreePart> parts, const glsl::Frame& frame,
@@ -69,7 +68,7 @@ void TreeBuilder::pull(std::span<const TreePart> parts, const glsl::Frame& frame
     for (const TreePart& part : parts) tree.add(*part.tree, part.area / area);
     return;
   }
-  scratch_->build(SurfaceSource{{}, parts, frame, area}, DirectionDomain::hemisphere, settings, tree,
+  scratch_->build(SurfaceSource{{}, parts, frame, area}, settings, tree,
                   double(glsl::luminance(diffuse / area)));
   scaleToFlux(tree, flux / area);
 }

@@ -51,15 +51,14 @@ class LIMN_API TreeBuilder {
   TreeBuilder(TreeBuilder&&) noexcept;
   TreeBuilder& operator=(TreeBuilder&&) noexcept;
 
-  /// Builds the tree of the lobes over the hemisphere, with their flux exactly where it is known. Errors are
-  /// relative to this light and what leaves `beside` it, the same in all directions (luminance, W/(sr m^2)):
-  /// the gloss of bright paint needs fewer cells than that of metal.
+  /// Builds the tree of the lobes over the hemisphere, with their flux exactly. Errors are relative to this
+  /// light and what leaves `beside` it, the same in all directions (luminance, W/(sr m^2)): the gloss of
+  /// bright paint needs fewer cells than that of metal.
   void build(const GlossyLobes& lobes, const TreeSettings& settings, DirectionalTree& tree, float beside = 0);
 
   using Function = std::function<glm::vec3(const glm::vec3& direction)>;
-  /// Builds the tree of a function of unit directions.
-  void build(const Function& function, DirectionDomain domain, const TreeSettings& settings,
-             DirectionalTree& tree);
+  /// Builds the tree of a function of unit directions over the hemisphere.
+  void build(const Function& function, const TreeSettings& settings, DirectionalTree& tree);
 
   /// Builds the radiance that stands for all parts of a surface whose normals about agree: its flux is
   /// theirs. `frame`: of the result; diffuse radiance is left out, but counts for errors. Parts in that same

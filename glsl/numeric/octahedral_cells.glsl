@@ -89,13 +89,7 @@ LIMN_FN vec3 octahedral_tap(vec3 place, vec3 signs, float edge, uint i) {
   return signs * (place + way);
 }
 
-// Solid angle (sr) of the triangle between three unit directions (van Oosterom and Strackee 1983).
-LIMN_FN float triangle_solid_angle(vec3 a, vec3 b, vec3 c) {
-  float volume = abs(dot(a, cross(b - a, c - a)));
-  return 2.0f * atan(volume, 1.0f + dot(a, b) + dot(b, c) + dot(c, a));
-}
-
-// The integral of the unit direction over the same triangle, of either sign: its part along n is the solid angle projected
+// The integral of the unit direction over the triangle between three, of either sign: its part along n is the solid angle projected
 // along n (Lambert's formula, half the sum of edge angle times edge normal). The flat triangle and the segments between its
 // edges and their arcs are added, since the edges' terms nearly cancel where the triangle is small.
 LIMN_FN vec3 triangle_projected_angle(vec3 a, vec3 b, vec3 c) {

@@ -52,7 +52,6 @@ struct CellRefiner {
   uint64_t evaluations = 0;
 
   TreeSettings settings;
-  DirectionDomain domain = DirectionDomain::hemisphere;
   bool keeps = false;  ///< single lobes' values are kept
   double beside = 0;   ///< luminance of light that is not in the tree
   /// Sums over the cells without children.
@@ -63,7 +62,7 @@ struct CellRefiner {
   /// Evaluates lobes, and keeps their values where `block` says.
   template <class Source>
   glm::vec3 evaluate(const Source& source, glm::vec3 w, const LobeSet& lobes, size_t& block) {
-    if (domain == DirectionDomain::hemisphere) w.z = std::max(w.z, kLeastHeight);
+    w.z = std::max(w.z, kLeastHeight);
     if (keeps) block = values.take(3 * GlossyLobes::stride(lobes.count));
     evaluations += source.cost(lobes.count);
     return source.evaluate(w, {lists.at(lobes.list), lobes.count}, values.at(lobes.rows),
@@ -106,10 +105,9 @@ struct CellRefiner {
   }
 
   /// Forgets the last tree.
-  void clear(DirectionDomain over, const TreeSettings& how, double otherLight) {
+  void clear(const TreeSettings& how, double otherLight) {
     settings = how;
     beside = otherLight;
-    domain = over;
     keeps = false;
     cells.clear();
     lists.reset();
@@ -125,12 +123,11 @@ struct CellRefiner {
   }
 
   template <class Source>
-  void begin(const Source& source, DirectionDomain over, const TreeSettings& how, double otherLight) {
-    clear(over, how, otherLight);
+  void begin(const Source& source, const TreeSettings& how, double otherLight) {
+    clear(how, otherLight);
     keeps = settings.frozen && source.size() > 0;
     const LobeSet all = allOf(source);
-    const bool half = domain == DirectionDomain::hemisphere;
-    for (uint32_t face = 0; face < (half ? 4 : 8); ++face) {
+    for (uint32_t face = 0; face < DirectionalTree::kFaces; ++face) {
       TreeCell cell{};
       cell.shape = UnitCell::face(face);
       cell.lobes = all;
@@ -138,7 +135,7 @@ struct CellRefiner {
         const glm::vec3 w = i < 3 ? cell.shape.corners[i] : cell.shape.centre();
         cell.totals[i] = evaluate(source, w, all, cell.blocks[i]);
       }
-      cell.weight = half ? 0.25f * glsl::pi : 0.5f * glsl::pi;
+      cell.weight = 0.25f * glsl::pi;
       measure(cell);
       cells.push_back(cell);
     }
@@ -255,7 +252,7 @@ struct CellRefiner {
         const glm::vec3(&corners)[3] = child.shape.corners;
         child.totals[3] = (child.linear[0] + child.linear[1] + child.linear[2]) / 3.f +
                           evaluate(source, child.shape.centre(), child.lobes, child.blocks[3]);
-        child.weight = cellWeight(domain, corners[0], corners[1], corners[2]);
+        child.weight = cellWeight(corners[0], corners[1], corners[2]);
         weightLeft -= child.weight;
       }
       measure(child);
@@ -365,23 +362,21 @@ struct CellRefiner {
   }
 
   template <class Source>
-  void buildUniform(const Source& source, DirectionDomain over, const TreeSettings& how,
-                    DirectionalTree& tree) {
-    clear(over, how, 0);
+  void buildUniform(const Source& source, const TreeSettings& how, DirectionalTree& tree) {
+    clear(how, 0);
     const int level = std::min(settings.maxLevel, DirectionalTree::kMaxUniformLevel);
     const LobeSet all = allOf(source);
     cornerValues.clear();
     size_t block = 0;
-    for (const glm::vec3& w : cornerLevel(domain, level).directions)
+    for (const glm::vec3& w : cornerLevel(level).directions)
       cornerValues.push_back(evaluate(source, w, all, block));
-    tree.assignUniform(domain, level, cornerValues);
+    tree.assignUniform(level, cornerValues);
   }
 
   template <class Source>
-  void build(const Source& source, DirectionDomain over, const TreeSettings& how, DirectionalTree& tree,
-             double otherLight = 0) {
-    if (how.basis == TreeSettings::Basis::uniform) return buildUniform(source, over, how, tree);
-    begin(source, over, how, otherLight);
+  void build(const Source& source, const TreeSettings& how, DirectionalTree& tree, double otherLight = 0) {
+    if (how.basis == TreeSettings::Basis::uniform) return buildUniform(source, how, tree);
+    begin(source, how, otherLight);
     if (!faint(source)) refine(source);
     finish(tree);
   }
@@ -397,7 +392,7 @@ struct CellRefiner {
       for (uint32_t k = 0; k < 4; ++k) sum += cells[child + k].weight * nodes[child + k].value;
       nodes[i].value = sum / cells[i].weight;
     }
-    tree.assign(domain, nodes);
+    tree.assign(nodes);
   }
 };
 

@@ -9,11 +9,11 @@ namespace limn::radiosity {
 
 struct CornerLevel {
   std::vector<glm::vec3> directions;  ///< unit
-  std::vector<float> weights;  ///< the integral of the corner's hat function by the domain's weight, about
-  float edgeCosine = 1;        ///< of the longest edge
+  std::vector<float> weights;         ///< about the integral of the corner's hat function by projected angle
+  float edgeCosine = 1;               ///< of the longest edge
 };
 
 /// Returns the corners of a level, made when they are asked for first. Any thread may ask.
-const CornerLevel& cornerLevel(DirectionDomain domain, int level);
+const CornerLevel& cornerLevel(int level);
 
 }  // namespace limn::radiosity

@@ -18,7 +18,7 @@ struct LobeSource {
   const GlossyLobes& lobes;
 
   uint32_t size() const { return static_cast<uint32_t>(lobes.size()); }
-  size_t rows() const { return lobes.rows(); }
+  size_t rows() const { return GlossyLobes::rows(); }
   void describe(std::span<const uint32_t> which, float* to) const { lobes.describe(which, to); }
   glm::vec3 evaluate(const glm::vec3& w, std::span<const uint32_t> which, const float* descriptions,
                      float* values) const {

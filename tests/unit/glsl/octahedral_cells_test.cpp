@@ -26,6 +26,12 @@ void eachCell(int level, const std::function<void(OctahedralCell, const std::vec
   descend(octahedral_root());
 }
 
+/// Solid angle (sr) of the triangle between three unit directions (van Oosterom and Strackee 1983).
+float solidAngle(const vec3& a, const vec3& b, const vec3& c) {
+  const float volume = abs(dot(a, cross(b - a, c - a)));
+  return 2 * atan(volume, 1 + dot(a, b) + dot(b, c) + dot(c, a));
+}
+
 struct Sums {
   double solid = 0, projected = 0, least = 1e9, most = 0;
 };
@@ -37,7 +43,7 @@ Sums sumsOf(int level, uint faces) {
       const vec3 signs = octahedral_signs(face);
       const vec3 a = octahedral_corner(cell, signs, 0), b = octahedral_corner(cell, signs, 1),
                  c = octahedral_corner(cell, signs, 2);
-      const double solid = double(triangle_solid_angle(a, b, c));
+      const double solid = double(solidAngle(a, b, c));
       sums.solid += solid;
       sums.projected += double(abs(triangle_projected_angle(a, b, c).z));
       sums.least = std::min(sums.least, solid);

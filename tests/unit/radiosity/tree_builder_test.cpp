@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <vector>
 
-#include "glsl/materials/model.glsl"
 #include "tests/unit/glsl/random.h"
 #include "tests/unit/radiosity/lobes.h"
 
@@ -178,13 +177,9 @@ TEST(TreeBuilder, DisplayMeetsErrorsOfDarkDirections) {
 TEST(TreeBuilder, KeepsAConstant) {
   TreeBuilder builder;
   DirectionalTree tree;
-  for (const DirectionDomain domain : {DirectionDomain::hemisphere, DirectionDomain::sphere}) {
-    const bool half = domain == DirectionDomain::hemisphere;
-    builder.build([](const glm::vec3&) { return glm::vec3(1, 2, 3); }, domain, {}, tree);
-    EXPECT_EQ(tree.cellCount(), half ? 64u : 128u);  // the horizon adds none
-    for (int c = 0; c < 3; ++c)
-      EXPECT_NEAR(tree.flux()[c], float(c + 1) * glsl::pi * (half ? 1 : 4), 2e-5f * float(c + 1));
-  }
+  builder.build([](const glm::vec3&) { return glm::vec3(1, 2, 3); }, {}, tree);
+  EXPECT_EQ(tree.cellCount(), 64u);  // the horizon adds none
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(tree.flux()[c], float(c + 1) * glsl::pi, 2e-5f * float(c + 1));
 }
 
 /// Light that ends at the horizon, as that of surfaces does: cells along it are not split for its end.
@@ -192,7 +187,7 @@ TEST(TreeBuilder, TakesTheHorizonForNoEdge) {
   TreeBuilder builder;
   DirectionalTree tree;
   const auto light = [](const glm::vec3& w) { return w.z > 0 ? glm::vec3(1, 2, 3) : glm::vec3(0); };
-  builder.build(light, DirectionDomain::hemisphere, {}, tree);
+  builder.build(light, {}, tree);
   EXPECT_EQ(tree.cellCount(), 64u);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(tree.flux()[c], float(c + 1) * glsl::pi, 2e-5f * float(c + 1));
 }
@@ -224,7 +219,7 @@ TEST(TreeBuilder, OneLevelLosesNarrowLobes) {
   const GlossyLobes lobes = lobesOf(0.1f, {lightFrom(45)});
   TreeBuilder builder;
   DirectionalTree tree;
-  builder.build(radianceOf(lobes), DirectionDomain::hemisphere, levelOnly(4), tree);
+  builder.build(radianceOf(lobes), levelOnly(4), tree);
   const float kept = tree.flux().x / lobes.flux().x;
   std::printf("1024 cells keep %.2f of the energy\n", double(kept));
   EXPECT_LT(kept, 0.6f);
@@ -263,32 +258,9 @@ TEST(GlossyLobes, KeepTheirEnergyWhenWidened) {
       EXPECT_FLOAT_EQ(widened.flux().x, plain.flux().x);
       TreeBuilder builder;
       DirectionalTree tree;  // not scaled
-      builder.build(radianceOf(widened), DirectionDomain::hemisphere, {.error = 0.02f}, tree);
+      builder.build(radianceOf(widened), {.error = 0.02f}, tree);
       EXPECT_NEAR(tree.flux().x, widened.flux().x, 0.02f * widened.flux().x) << degrees << " " << spread;
     }
-}
-
-TEST(GlossyLobes, OfModelsAreTheModels) {
-  glsl::MaterialModel model{};
-  model.kind = glsl::model_ward;
-  model.ks = glm::vec3(0.5f);
-  model.roughness = glm::vec2(0.2f, 0.4f);
-  const std::vector<glm::vec3> none;
-  const std::vector<glsl::IncidentLight> lights = {lightFrom(30), lightFrom(60, {1, 2, 3}), lightFrom(120)};
-  GlossyLobes lobes;
-  lobes.set(model, none, lights, 0);
-  ASSERT_EQ(lobes.size(), 2u);
-  const glm::vec3 w = glm::normalize(glm::vec3(-0.3f, -0.2f, 0.8f));
-  const glm::vec3 exact = glsl::model_response(none, model, w, lights[0].direction) * lights[0].irradiance +
-                          glsl::model_response(none, model, w, lights[1].direction) * lights[1].irradiance;
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(lobes.radiance(w)[c], exact[c], 1e-5f * exact[c]);
-  TreeBuilder builder;
-  DirectionalTree tree;
-  builder.build(lobes, {}, tree);
-  EXPECT_LT(errorOf(tree, lobes), 0.13);
-  // Back to a BRDF: nothing of the model stays.
-  lobes.set(metal(0.3f), lights, 0);
-  EXPECT_TRUE(lobes.fluxKnown());
 }
 
 TEST(GlossyLobes, AreTheBrdf) {
