@@ -14,7 +14,8 @@ void main() {
   GBufferSurface surface = pixel_surface(pixel);
   if ((surface.flags & gbuffer_flag_specular) != 0u) return;
   vec3 v = -normalize(pixel_ray(pixel));
-  vec3 light = reflected_whole(reflected_environment(pixel_material(pixel, surface), surface.normal, v));
+  SurfaceMaterial material = pixel_material(pixel, surface);
+  vec3 light = reflected_whole(reflected_environment(material, surface.normal, surface.geometric_normal, v));
 #if MEDIUM
   Medium medium = scene_medium();
   light *= medium_transmittance(medium, medium_length(medium, pixel_position(pixel, depth), surface.normal, 3.0e38));

@@ -56,7 +56,7 @@ void main() {
     add_parts(sums.seen, scaled_parts(reflected, light_factor(pixel, i) * light_transmittance(light, position)));
   } while (++i < LIGHT_COUNT);
 #if LIGHTS_LAST
-  ReflectedParts environment = reflected_environment(material, surface.normal, v);
+  ReflectedParts environment = reflected_environment(material, surface.normal, surface.geometric_normal, v);
   vec3 left = reflected_left(environment, hidden_parts(sums.seen, sums.all));
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(left, 0.0));
 #else

@@ -45,6 +45,14 @@ LIMN_FN vec3 environment_lobe_direction(LtcTerms terms, vec3 n, vec3 v, float al
   return ltc_transform(terms, n, v, alpha).z;
 }
 
+// Share of the glossy lobe, as far as it lies above the horizon of the shading normal n, that lies above the horizon of the
+// geometric normal ng as well: no light comes from below that. 1 where both are the same, and of smooth surfaces 0 where the mirror
+// direction lies below the latter.
+LIMN_FN float environment_lobe_share(LtcTerms terms, vec3 n, vec3 ng, vec3 v, float alpha) {
+  LtcTransform lobe = ltc_transform(terms, n, v, alpha);
+  return min(ltc_share_above(lobe, ng) / ltc_share_above(lobe, n), 1.0f);
+}
+
 // Reflected radiance. irradiance: at the shading normal; filtered: radiance at the lobe's middle and level.
 LIMN_FN ReflectedParts environment_reflection(SurfaceBrdf s, LtcTerms terms, vec3 irradiance, vec3 filtered) {
   ReflectedParts light;
@@ -73,7 +81,8 @@ vec3 environment_irradiance_towards(vec3 n, float rotation, float scale) {
   return scale * textureLod(environment_irradiance, environment_irradiance_place(n, rotation), 0.0).rgb;
 }
 
-ReflectedParts environment_light(SurfaceBrdf s, vec3 n, vec3 v, float rotation, float scale) {
+// n, ng: shading and geometric normal.
+ReflectedParts environment_light(SurfaceBrdf s, vec3 n, vec3 ng, vec3 v, float rotation, float scale) {
   vec3 irradiance = environment_irradiance_towards(n, rotation, scale);
   LtcTerms terms = ltc_lookup(dot(n, v), s.alpha);
   vec3 filtered = vec3(0.0);
@@ -81,8 +90,8 @@ ReflectedParts environment_light(SurfaceBrdf s, vec3 n, vec3 v, float rotation, 
     vec3 middle = environment_lookup_direction(environment_lobe_direction(terms, n, v, s.alpha), rotation);
     float level = environment_level(s.alpha);
     int low = min(int(level), environment_levels - 2);
-    filtered = scale * mix(environment_filtered_level(middle, low),
-                           environment_filtered_level(middle, low + 1), level - float(low));
+    filtered = scale * environment_lobe_share(terms, n, ng, v, s.alpha) *
+               mix(environment_filtered_level(middle, low), environment_filtered_level(middle, low + 1), level - float(low));
   }
   return environment_reflection(s, terms, irradiance, filtered);
 }

@@ -106,6 +106,13 @@ LIMN_FN vec3 ltc_apply_inverse(LtcTransform m, vec3 p) {
   return vec3(x, dot(m.y, p) / m.m22, dot(m.z, p) - m.m13 * x);
 }
 
+// Share of the lobe D above the plane through the surface's point with that normal, which is unit: M^-1 pushes planes to planes,
+// and above one whose normal is at the angle a to its axis a clamped cosine has the share (1 + cos(a)) / 2.
+LIMN_FN float ltc_share_above(LtcTransform m, vec3 normal) {
+  float z = dot(m.z, normal);
+  return 0.5f + 0.5f * z / length(vec3(m.m11 * dot(m.x, normal) + m.m13 * z, m.m22 * dot(m.y, normal), z));
+}
+
 // What the lobe D receives from a rectangle.
 struct LtcIntegral {
   float share;  // of the lobe above the horizon that falls on the rectangle, in [0, 1]

@@ -60,6 +60,13 @@ struct PrefilteredLobe {
 
 LIMN_FN vec3 prefiltered_mirror(vec3 n, vec3 v) { return 2.0f * dot(n, v) * n - v; }
 
+// As environment_lobe_share(), of a power lobe.
+LIMN_FN float prefiltered_lobe_share(PrefilteredLobe lobe, vec3 n, vec3 ng) {
+  float p = power_lobe_exponent(lobe.alpha);
+  float above = phong_above_horizon(dot(n, lobe.towards), p).share;
+  return min(phong_above_horizon(dot(ng, lobe.towards), p).share / max(above, 1e-30f), 1.0f);
+}
+
 #if (MATERIAL_MODELS & 16) != 0
 // The whole lobe, or with prefiltered_lookup_centroid the part of it above the horizon: its middle, its width.
 LIMN_FN PrefilteredLobe phong_prefiltered_lobe(MaterialModel m, int lookup, vec3 n, vec3 v) {

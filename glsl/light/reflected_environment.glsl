@@ -17,17 +17,21 @@ vec3 grazing_light(vec3 n) {
 #endif
 
 #if (MATERIAL_MODELS & 32) != 0
-ReflectedParts coated_reflection(MaterialModel m, vec3 n, vec3 v) {
+ReflectedParts coated_reflection(MaterialModel m, vec3 n, vec3 ng, vec3 v) {
   float n_dot_v = dot(n, v);
   vec3 irradiance = environment_irradiance_towards(n, frame.environment_rotation, frame.environment_scale);
-  vec3 mirror = environment_lookup_direction(2.0 * n_dot_v * n - v, frame.environment_rotation);
-  vec3 mirrored = frame.environment_scale * environment_filtered_level(mirror, 0);
+  vec3 mirror = 2.0 * n_dot_v * n - v;
+  vec3 mirrored = vec3(0.0);
+  if (dot(ng, mirror) > 0.0) {
+    vec3 direction = environment_lookup_direction(mirror, frame.environment_rotation);
+    mirrored = frame.environment_scale * environment_filtered_level(direction, 0);
+  }
   return coated_environment(m, n_dot_v, irradiance, grazing_light(n), mirrored);
 }
 #endif
 
-// n: shading normal; v: unit, towards the viewer.
-ReflectedParts reflected_environment(SurfaceMaterial own, vec3 n, vec3 v) {
+// n, ng: shading and geometric normal: lobes have no light from below the horizon of the latter; v: unit, towards the viewer.
+ReflectedParts reflected_environment(SurfaceMaterial own, vec3 n, vec3 ng, vec3 v) {
 #if (MATERIAL_MODELS & 128) != 0
   vec3 irradiance = environment_irradiance_towards(n, frame.environment_rotation, frame.environment_scale);
   vec3 entering = entering_irradiance(own.model, vec3(1.0) - own.model.kd, irradiance, grazing_light(n));
@@ -35,12 +39,12 @@ ReflectedParts reflected_environment(SurfaceMaterial own, vec3 n, vec3 v) {
 #else
   SurfaceBrdf material = own.brdf;
 #if (MATERIAL_MODELS & 32) != 0
-  if (own.model.kind == model_coated) return coated_reflection(own.model, n, v);
+  if (own.model.kind == model_coated) return coated_reflection(own.model, n, ng, v);
 #endif
 #if MATERIAL_MODELS
   if (has_model(own)) material = nearest_brdf(own);
 #endif
-  return environment_light(material, n, v, frame.environment_rotation, frame.environment_scale);
+  return environment_light(material, n, ng, v, frame.environment_rotation, frame.environment_scale);
 #endif
 }
 

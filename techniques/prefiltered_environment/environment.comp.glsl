@@ -32,25 +32,27 @@ vec3 filtered_radiance(vec3 towards, float alpha) {
   return frame.environment_scale * mix(sharper, wider, level - float(low));
 }
 
-// Radiance that a metallic-roughness surface reflects towards v.
-vec3 brdf_reflection(SurfaceBrdf s, vec3 n, vec3 v) {
+// Radiance that a metallic-roughness surface reflects towards v. n, ng: shading and geometric normal, here and below.
+vec3 brdf_reflection(SurfaceBrdf s, vec3 n, vec3 ng, vec3 v) {
   vec3 irradiance = irradiance_towards(n);
   if (brdf_is_lambertian(s)) return s.diffuse * irradiance * inverse_pi;
   LtcTerms terms = ltc_lookup(dot(n, v), s.alpha);
   vec3 towards = prefiltered_direction(LOOKUP, terms, n, v, s.alpha);
-  return reflected_whole(environment_reflection(s, terms, irradiance, filtered_radiance(towards, s.alpha)));
+  vec3 filtered = environment_lobe_share(terms, n, ng, v, s.alpha) * filtered_radiance(towards, s.alpha);
+  return reflected_whole(environment_reflection(s, terms, irradiance, filtered));
 }
 
 #if (MATERIAL_MODELS & 22) != 0
 uniform sampler2DArray power_map;  // filtered with power lobes of the widths power_level_alpha() 0, 1, ...
 
-vec3 lobe_radiance(PrefilteredLobe lobe) {
+vec3 lobe_radiance(PrefilteredLobe lobe, vec3 n, vec3 ng) {
   vec3 direction = environment_lookup_direction(lobe.towards, frame.environment_rotation);
   PowerPlace place = power_place(lobe.alpha);
   vec3 narrower = place.wider == 0 ? prefiltered_lookup(sharp_map, direction, 0)
                                    : prefiltered_lookup(power_map, direction, max(place.wider, 1) - 1);
   vec3 wider = prefiltered_lookup(power_map, direction, place.wider);
-  return lobe.reflectance * frame.environment_scale * mix(narrower, wider, place.weight);
+  float share = prefiltered_lobe_share(lobe, n, ng);
+  return share * lobe.reflectance * frame.environment_scale * mix(narrower, wider, place.weight);
 }
 #endif
 
@@ -75,9 +77,13 @@ vec3 grazing_light(vec3 n) {
 #endif
 
 #if (MATERIAL_MODELS & 32) != 0
-vec3 coated_reflection(MaterialModel m, vec3 n, vec3 v) {
-  vec3 towards = environment_lookup_direction(prefiltered_mirror(n, v), frame.environment_rotation);
-  vec3 mirrored = frame.environment_scale * prefiltered_lookup(sharp_map, towards, 0);
+vec3 coated_reflection(MaterialModel m, vec3 n, vec3 ng, vec3 v) {
+  vec3 mirror = prefiltered_mirror(n, v);
+  vec3 mirrored = vec3(0.0);
+  if (dot(ng, mirror) > 0.0) {
+    vec3 direction = environment_lookup_direction(mirror, frame.environment_rotation);
+    mirrored = frame.environment_scale * prefiltered_lookup(sharp_map, direction, 0);
+  }
   return reflected_whole(coated_environment(m, dot(n, v), irradiance_towards(n), grazing_light(n), mirrored));
 }
 #endif
@@ -85,13 +91,13 @@ vec3 coated_reflection(MaterialModel m, vec3 n, vec3 v) {
 #if MATERIAL_MODELS
 // Radiance that a surface with a model reflects towards v; of the kinds without an answer below it is that of the
 // metallic-roughness surface next to it.
-vec3 model_reflection(SurfaceMaterial s, vec3 n, vec3 v) {
+vec3 model_reflection(SurfaceMaterial s, vec3 n, vec3 ng, vec3 v) {
   MaterialModel m = s.model;
 #if (MATERIAL_MODELS & 6) != 0
   if (m.kind == model_torrance_sparrow || m.kind == model_ward) {
     MicrofacetLobe entry = microfacet_lobe_entry(dot(n, v), microfacet_lobe_alpha(m));
     return m.kd * irradiance_towards(n) * inverse_pi +
-           lobe_radiance(microfacet_prefiltered_lobe(m, entry, LOOKUP, n, v));
+           lobe_radiance(microfacet_prefiltered_lobe(m, entry, LOOKUP, n, v), n, ng);
   }
 #endif
 #if (MATERIAL_MODELS & 8) != 0
@@ -99,15 +105,15 @@ vec3 model_reflection(SurfaceMaterial s, vec3 n, vec3 v) {
 #endif
 #if (MATERIAL_MODELS & 16) != 0
   if (m.kind == model_phong)
-    return m.kd * irradiance_towards(n) * inverse_pi + lobe_radiance(phong_prefiltered_lobe(m, LOOKUP, n, v));
+    return m.kd * irradiance_towards(n) * inverse_pi + lobe_radiance(phong_prefiltered_lobe(m, LOOKUP, n, v), n, ng);
 #endif
 #if (MATERIAL_MODELS & 32) != 0
-  if (m.kind == model_coated) return coated_reflection(m, n, v);
+  if (m.kind == model_coated) return coated_reflection(m, n, ng, v);
 #endif
 #if (MATERIAL_MODELS & 128) != 0
   return inverse_pi * entering_irradiance(m, vec3(1.0) - m.kd, irradiance_towards(n), grazing_light(n));
 #endif
-  return brdf_reflection(nearest_brdf(s), n, v);
+  return brdf_reflection(nearest_brdf(s), n, ng, v);
 }
 #endif
 
@@ -115,9 +121,9 @@ vec3 model_reflection(SurfaceMaterial s, vec3 n, vec3 v) {
 vec3 reflected_environment(ivec2 pixel, GBufferSurface surface, vec3 v) {
   SurfaceMaterial material = pixel_material(pixel, surface);
 #if MATERIAL_MODELS
-  if (has_model(material)) return model_reflection(material, surface.normal, v);
+  if (has_model(material)) return model_reflection(material, surface.normal, surface.geometric_normal, v);
 #endif
-  return brdf_reflection(material.brdf, surface.normal, v);
+  return brdf_reflection(material.brdf, surface.normal, surface.geometric_normal, v);
 }
 
 void main() {

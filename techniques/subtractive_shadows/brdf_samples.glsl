@@ -8,7 +8,7 @@
 
 ReflectedParts sampled_environment(SampledPixel p) {
   vec3 n = p.surface.normal, g = p.surface.geometric_normal, v = p.to_viewer;
-  if (is_coated(p)) return reflected_environment(p.material, n, v);
+  if (is_coated(p)) return reflected_environment(p.material, n, g, v);
   vec3 irradiance = environment_irradiance_towards(n, frame.environment_rotation, frame.environment_scale);
 #if MATERIAL_MODELS
   if (has_model(p.material)) return sampled_model(p.material, n, g, v, irradiance);

@@ -37,7 +37,8 @@ ReflectedParts unshadowed_light(ivec2 pixel, SampledPixel p) {
 #elif UNSHADOWED == UNSHADOWED_CACHE
   ReflectedParts light = cached_environment(pixel, p);
 #else
-  ReflectedParts light = reflected_environment(p.material, p.surface.normal, p.to_viewer);
+  ReflectedParts light =
+      reflected_environment(p.material, p.surface.normal, p.surface.geometric_normal, p.to_viewer);
 #endif
 #if MEDIUM
   Medium medium = scene_medium();

@@ -33,7 +33,8 @@ void main() {
   if (i >= uint(points.length())) return;
   Point p = points[i];
   SurfaceBrdf s = surface_brdf(p.base.rgb, p.base.w, p.surface.x, p.surface.y, vec3(1.0), p.surface.z);
-  results[i] = vec4(reflected_whole(environment_light(s, p.normal.xyz, p.view.xyz, rotation, scale)), 1.0);
+  vec3 n = p.normal.xyz;
+  results[i] = vec4(reflected_whole(environment_light(s, n, n, p.view.xyz, rotation, scale)), 1.0);
 }
 )";
 

@@ -138,5 +138,40 @@ TEST(Ltc, RectanglesMatchIntegrationWithinTheStatedError) {
   }
 }
 
+/// Shares of the lobe above planes that are turned from the surface by up to 1.2 radians. Measured root mean
+/// squares: 1e-4 for the smoothest, 0.006 at roughness 0.15, 0.015 at 0.4, 0.007 at 1; the worst 0.09.
+TEST(Ltc, SharesAbovePlanesMatchIntegration) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(0.f, 1.f);
+  const vec3 n(0, 0, 1);
+  for (float roughness : {0.f, 0.15f, 0.4f, 0.6f, 1.f}) {
+    const float alpha = std::max(roughness * roughness, brdf_min_alpha);
+    constexpr int kPlanes = 150, kSide = 100;
+    double squares = 0;
+    for (int i = 0; i < kPlanes; ++i) {
+      const vec3 v = atCosine(0.05f + 0.95f * unit(random), 0);
+      vec3 plane;
+      do plane = atCosine(std::cos(1.2f * unit(random)), 2 * pi * unit(random));
+      while (!(dot(plane, v) > 0));
+      double above = 0, all = 0;
+      for (int k = 0; k < kSide * kSide; ++k) {
+        const vec3 h =
+            sample_visible_normal(v, vec2(alpha), {(k % kSide + 0.5f) / kSide, (k / kSide + 0.5f) / kSide});
+        const vec3 l = 2 * dot(v, h) * h - v;
+        if (l.z <= 0) continue;
+        const double weight = l.z * ggx_visibility(v.z, l.z, alpha);
+        all += weight;
+        if (dot(l, plane) > 0) above += weight;
+      }
+      const LtcTransform lobe = ltc_transform(ltc_lookup(v.z, alpha), n, v, alpha);
+      const float share = std::min(ltc_share_above(lobe, plane) / ltc_share_above(lobe, n), 1.f);
+      const double error = static_cast<double>(share) - above / all;
+      squares += error * error;
+      EXPECT_LT(std::abs(error), 0.1) << roughness << ' ' << v.z;
+    }
+    EXPECT_LT(std::sqrt(squares / kPlanes), 0.022) << roughness;
+  }
+}
+
 }  // namespace
 }  // namespace limn::glsl
