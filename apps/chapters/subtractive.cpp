@@ -3,22 +3,31 @@
 
 int main(int argc, char** argv) {
   using limn::app::ChapterSetting;
-  constexpr const char* suites[] = {"subtractive", "subtractive_grid", "subtractive_lights"};
+  constexpr const char* suites[] = {"subtractive_figures", "subtractive", "subtractive_grid",
+                                    "subtractive_lights"};
   constexpr ChapterSetting settings[] = {
       {"U: without shadows", "", "",
        "All that the sky would give, from filtered maps. Look at --scene nine_spheres, nine_spheres_glossy, "
        "nine_spheres_metal, balls_sky and arcade_dark, too."},
+      {"S: what is hidden, by blocks", "subtractive_shadows",
+       "subtractive_shadows.combine=subtract subtractive_shadows.demodulate=false "
+       "subtractive_shadows.unshadowed=prefiltered subtractive_shadows.show=shadow_buffer",
+       "One pixel in 16 has shadows of its own: what 25 samples lack there is the shadow buffer."},
+      {"S': what is hidden, by pixels", "subtractive_shadows",
+       "subtractive_shadows.combine=subtract subtractive_shadows.demodulate=false "
+       "subtractive_shadows.unshadowed=prefiltered subtractive_shadows.show=hidden",
+       "Pixels take it from the blocks around them whose surfaces are near and alike: it ends at edges."},
+      {"U - S', as published: 1/16", "subtractive_shadows",
+       "subtractive_shadows.combine=subtract subtractive_shadows.demodulate=false "
+       "subtractive_shadows.unshadowed=prefiltered",
+       "S holds the surface's colours: the table's and the floor's are blurred. Play the animation: every "
+       "three seconds another of four materials is in front."},
       {"A: what is seen of 25 samples", "subtractive_shadows",
        "subtractive_shadows.combine=add subtractive_shadows.block=1",
        "Added up, as the baseline does: highlights are single dots, and shadows have 25 edges."},
       {"U less the hidden light", "subtractive_shadows",
        "subtractive_shadows.combine=subtract subtractive_shadows.block=1",
        "The sky's own highlights come back. Too much may be subtracted: metals have dark spots."},
-      {"As published: 1/16", "subtractive_shadows",
-       "subtractive_shadows.combine=subtract subtractive_shadows.demodulate=false "
-       "subtractive_shadows.unshadowed=prefiltered",
-       "One pixel in 16 has shadows of its own, with the surface's colours in them: the table's and the "
-       "floor's are blurred. The inspector shows the pass 'shadow buffer'."},
       {"Shadows without colours", "subtractive_shadows", "subtractive_shadows.combine=subtract",
        "What blocks share is divided by the albedo first: textures stay sharp."},
       {"The share that is seen", "subtractive_shadows", "subtractive_shadows.combine=ratio",

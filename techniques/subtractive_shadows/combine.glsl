@@ -1,5 +1,6 @@
 // How the unshadowed light U of a surface and what samples tell of its shadows make the shadowed light. COMBINE: how; DEMODULATE 1:
-// light is kept without the surface's colours, so that blocks of pixels may share it across a texture.
+// light is kept without the surface's colours, so that blocks of pixels may share it across a texture. SHOW 1: a picture may show
+// what the shadowed light is made of in its place.
 //
 // The values of the shadow buffer are 0 where nothing is in shadow: the share that is hidden (by ratio), the hidden light
 // (subtract); but the light that is seen (add). With SAMPLE_PARTS 1 there are values for the diffuse part and for the lobe; always
@@ -66,6 +67,24 @@ vec3 shadowed_light(SampledPixel p, ReflectedParts unshadowed, ReflectedParts va
 #endif
   return light + mirrored;
 #endif
+}
+
+#define SHOWN_LIGHT 0
+#define SHOWN_UNSHADOWED 1
+#define SHOWN_SHADOW_BUFFER 2  // what is hidden, as the pixel's own block alone knows it
+#define SHOWN_HIDDEN 3
+#if SHOW
+uniform int shown_part;
+#else
+const int shown_part = SHOWN_LIGHT;
+#endif
+
+// What the picture shows of the pixel: the shadowed light, the unshadowed one, or what lies between them.
+vec3 shown_light(SampledPixel p, ReflectedParts unshadowed, ReflectedParts values) {
+  vec3 light = shadowed_light(p, unshadowed, values);
+  if (shown_part == SHOWN_LIGHT) return light;
+  vec3 whole = reflected_whole(unshadowed);
+  return shown_part == SHOWN_UNSHADOWED ? whole : max(whole - light, vec3(0.0));
 }
 
 #endif  // LIMN_COMBINE_GLSL

@@ -1,4 +1,5 @@
-// Brings the shadow buffer to the pixels, and adds to the radiance what shadows leave of the unshadowed light.
+// Brings the shadow buffer to the pixels, and adds to the radiance what shadows leave of the unshadowed light, or what SHOW asks
+// for in its place.
 #include "techniques/subtractive_shadows/unshadowed.glsl"
 #include "glsl/surface/block_upsampling.glsl"
 
@@ -9,17 +10,30 @@ uniform sampler2D values;  // of each item of the grid
 uniform sampler2D lobe_values;
 #endif
 
+// The lookup of the block alone that the pixel lies in; of nothing where its middle shows nothing that is lit.
+BlockLookup own_block(ivec2 pixel) {
+  BlockLookup b;
+  b.first = pixel / BLOCK_SIDE;
+  b.own = texelFetch(block_surfaces, b.first, 0).x != no_block_surface;
+  for (int i = 0; i < 16; ++i) b.weights[i] = 0.0;
+  return b;
+}
+
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, imageSize(radiance)))) return;
   float depth = pixel_depth(pixel);
   if (!pixel_is_lit(pixel, depth)) return;
-  BlockLookup blocks = block_lookup(pixel, depth);
+  BlockLookup blocks;
+  if (shown_part == SHOWN_SHADOW_BUFFER)
+    blocks = own_block(pixel);
+  else
+    blocks = block_lookup(pixel, depth);
   ReflectedParts shadows = ReflectedParts(block_value(values, blocks), vec3(0.0));
 #if SAMPLE_PARTS
   shadows.lobe = block_value(lobe_values, blocks);
 #endif
   SampledPixel p = sampled_pixel(pixel, depth);
-  vec3 light = shadowed_light(p, unshadowed_light(pixel, p), shadows);
+  vec3 light = shown_light(p, unshadowed_light(pixel, p), shadows);
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(picture_share * light, 0.0));
 }

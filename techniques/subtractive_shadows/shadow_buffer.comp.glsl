@@ -128,7 +128,7 @@ void main() {
   imageStore(lobe_values, item, vec4(shadows.lobe, 0.0));
 #endif
 #elif SAMPLES_LAST
-  vec3 light = shadowed_light(p, unshadowed_light(pixel, p), shadows);
+  vec3 light = shown_light(p, unshadowed_light(pixel, p), shadows);
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(picture_share * light, 0.0));
 #endif
 }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/gpu_scene/pixel_blocks.h"
@@ -36,6 +37,8 @@ enum Unshadowed : int { prefiltered, brdfSamples, cache, lights };
 constexpr const char* kUnshadowed[] = {"prefiltered", "brdf_samples", "cache", "lights"};
 enum Sampling : int { importance, regions };
 constexpr const char* kSamplings[] = {"importance", "regions"};
+enum class Shown : int { light, unshadowed, shadowBuffer, hidden };
+constexpr const char* kShows[] = {"light", "unshadowed", "shadow_buffer", "hidden"};
 constexpr int kMostLights = 4096;
 
 constexpr Parameter kParameters[] = {
@@ -75,6 +78,9 @@ constexpr Parameter kParameters[] = {
     real("frame_time", 0, {0, 1e4}, "ms",
          "Time that a frame may take: lights become fewer, and blocks larger where that is not enough, until "
          "it does; 0: always all lights, as of regions"),
+    choice("show", 0, kShows,
+           "The light, or in its place that without shadows, what each block of pixels knows to be hidden of "
+           "it, or what is taken from it after pixels have looked at the blocks around them"),
     shadow::shadowMapSizeParameter(512),
     shadow::shadowMapFitParameter(),
     shadow::biasParameter(),
@@ -91,6 +97,7 @@ constexpr StressCase kStress[] = {
     {.name = "filtered maps", .settings = "unshadowed=prefiltered", .factor = 4},
     {.name = "radiance cache", .settings = "unshadowed=cache", .factor = 4},
     {.name = "added", .settings = "combine=add", .factor = 8},
+    {.name = "the shadow buffer", .settings = "show=shadow_buffer", .factor = 0},
     {.name = "maps of 16 texels", .settings = "shadow_map_size=16", .factor = 8},
     {.name = "batches of one map", .settings = "shadow_map_size=2048 memory=32"},
 };
@@ -103,6 +110,7 @@ class SubtractiveShadows : public Technique {
   const FrameBudget* budget_ = nullptr;  ///< null: all lights, whatever it takes
   int lights_ = 0;                       ///< that the graph is built for
   Fade built_;                           ///< whose blocks the graph has
+  Shown shown_ = Shown::light;
 
   TextureHandle addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                           const TermRequest& request) override {
@@ -112,6 +120,11 @@ class SubtractiveShadows : public Technique {
       return request.target;
     }
     const ParameterValues& p = inputs.parameters;
+    shown_ = static_cast<Shown>(p.choice("show"));
+    if (shown_ != Shown::light && p.choice("combine") == add)
+      throw UsageError(
+          "subtractive_shadows: show goes with combine=subtract, ratio and ratio_split; what is added up is "
+          "taken from no unshadowed light");
     chooseLevels(inputs);
     takeSamples(environment, inputs, lights_);
     if (p.choice("combine") == add && built_.more.block == 1 && !budget_)
@@ -163,8 +176,9 @@ class SubtractiveShadows : public Technique {
     if (shares) program.set("share_of_more", now.shareOfMore);
   }
 
-  /// Sets the share of a picture with blocks of that side.
-  void setPictureShare(gpu::Program& program, int block) const {
+  /// Sets what a picture with blocks of that side shows, and its share.
+  void setPicture(gpu::Program& program, int block) const {
+    if (shown_ != Shown::light) program.set("shown_part", static_cast<int>(shown_));
     if (!budget_) return;
     const Fade now = fade();
     const bool alone = now.fewer.block == now.more.block;
@@ -232,7 +246,7 @@ class SubtractiveShadows : public Technique {
           bind(context, program);
           technique.setLights(program, shares);
           if (!light) return;
-          technique.setPictureShare(program, 1);
+          technique.setPicture(program, 1);
           if (samples > 0) program.set("brdf_samples", samples);
         };
         pass.declare = [&, declare = std::move(pass.declare)](frame::PassBuilder& builder) {
@@ -281,6 +295,7 @@ class SubtractiveShadows : public Technique {
       defines["COMBINE"] = std::to_string(combine_);
       defines["DEMODULATE"] = demodulated() ? "1" : "0";
       defines["SAMPLE_FADE"] = technique_.budget_ ? "1" : "0";
+      defines["SHOW"] = technique_.shown_ != Shown::light ? "1" : "0";
       defines["UNSHADOWED"] = std::to_string(unshadowed_);
       defines["VALUE_FORMAT"] = byRatio() ? "rgba16" : "rgba32f";
     }
@@ -356,7 +371,7 @@ class SubtractiveShadows : public Technique {
                        size = inputs_.size](frame::PassContext& context) {
         gpu::Program& used = context.use(program);
         blocks.bind(used);
-        technique.setPictureShare(used, blocks.side());
+        technique.setPicture(used, blocks.side());
         if (samples > 0) used.set("brdf_samples", samples);
         context.dispatch(size.x, size.y, 1, 8, 8);
       });

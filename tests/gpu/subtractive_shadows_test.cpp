@@ -147,6 +147,45 @@ TEST_F(SubtractiveShadowsTest, LightLiesBetweenNothingAndTheUnshadowedLight) {
   }
 }
 
+/// U is what is hidden of it and what is left. In the middle of a block the shadow buffer has what is hidden
+/// there.
+TEST_F(SubtractiveShadowsTest, WhatIsShownAddsUpToTheUnshadowedLight) {
+  constexpr int kWidth = 64, kHeight = 48, kSide = 4;
+  const scene::Scene scene = lit(coarse("balls"), sky(), 0);
+  render::Renderer renderer(device(), scene);
+  const Image unshadowed = direct(renderer, kWidth, kHeight);
+  const double most = largest(unshadowed), rounding = 5e-5 * most;  // shares are kept in 16 bits
+  for (const char* combine : {"subtract", "ratio", "ratio_split"}) {
+    const auto shown = [&](const char* show, const char* block) {
+      return direct(
+          renderer, kWidth, kHeight,
+          {shadows({{"combine", combine}, {"demodulate", "false"}, {"block", block}, {"show", show}})});
+    };
+    for (const char* block : {"1", "4"}) {
+      EXPECT_LE(largestDifference(shown("unshadowed", block), unshadowed), 1e-6 * most) << combine << block;
+      Image sum = shown("hidden", block);
+      const Image left = shown("light", block);
+      EXPECT_GT(largest(sum), 10 * rounding) << combine << block;
+      for (size_t i = 0; i < sum.data().size(); ++i) sum.data()[i] += left.data()[i];
+      EXPECT_LT(largestDifference(sum, unshadowed), rounding) << combine << block;
+    }
+    const Image own = shown("hidden", "1"), buffer = shown("shadow_buffer", "4");
+    EXPECT_EQ(largestDifference(shown("shadow_buffer", "1"), own), 0) << combine;
+    EXPECT_GT(largestDifference(buffer, shown("hidden", "4")), 10 * rounding) << combine;
+    // Blocks count from below, rows of the picture from above.
+    for (int y = kSide / 2; y < kHeight; y += kSide)
+      for (int x = kSide / 2; x < kWidth; x += kSide)
+        for (int c = 0; c < 3; ++c)
+          EXPECT_NEAR(buffer.at(x, kHeight - 1 - y, c), own.at(x, kHeight - 1 - y, c), rounding)
+              << combine << ' ' << x << ' ' << y;
+  }
+  EXPECT_THAT(errorOf([&] {
+                render::Renderer refused(device(), scene);
+                direct(refused, kWidth, kHeight, {shadows({{"combine", "add"}, {"show", "hidden"}})});
+              }),
+              testing::HasSubstr("show goes with combine=subtract"));
+}
+
 TEST_F(SubtractiveShadowsTest, NoLightGetsIntoAClosedRoom) {
   const scene::Scene scene = lit(room(), sky(), 0);
   render::Renderer renderer(device(), scene);

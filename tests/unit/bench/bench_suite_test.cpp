@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
+#include <string>
 #include <tuple>
 
 #include "core/base/error.h"
@@ -428,6 +430,23 @@ TEST(BenchSuite, ChapterSixAsksEveryTechniqueWhereVisibilityMatters) {
       EXPECT_EQ(found->reference.bounces, 1);
     }
   }
+}
+
+/// The stills of the animation, each with what the shadowed light is made of.
+TEST(BenchSuite, SubtractiveFiguresShowEachPartOfFourMaterials) {
+  const Suite suite =
+      readSuite(std::filesystem::path(limn::test::kSourceDir) / "benchmarks" / "subtractive_figures.toml");
+  std::map<double, std::multiset<std::string>> shown;  // by time
+  for (const Case& c : suite.cases) {
+    EXPECT_EQ(c.scene, "robot_brdfs");
+    if (c.technique != "subtractive_shadows" || c.parameters.size() == 1) continue;
+    const auto show = std::ranges::find_if(
+        c.parameters, [](const auto& p) { return p.first == "subtractive_shadows.show"; });
+    shown[c.time].insert(show == c.parameters.end() ? "light" : show->second);
+  }
+  ASSERT_EQ(shown.size(), 4u);
+  for (const auto& [time, parts] : shown)
+    EXPECT_EQ(parts, (std::multiset<std::string>{"hidden", "light", "shadow_buffer", "unshadowed"})) << time;
 }
 
 TEST(BenchSuite, ReadsEverySuiteOfTheRepository) {
