@@ -1,6 +1,5 @@
 // limn import: models of other formats as glTF, by assimp.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -25,22 +24,6 @@ namespace {
 
 constexpr const char* kConverter = "assimp";
 constexpr const char* kInterrupted = "interrupted; no scene was written";
-
-/// A file that is gone when its work is done, unless it was given its name.
-class PartFile {
- public:
-  explicit PartFile(const fs::path& whole) : path_(beside(whole, fmt::format(".{}.part.glb", getpid()))) {}
-  ~PartFile() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
-  }
-  PartFile(const PartFile&) = delete;
-  PartFile& operator=(const PartFile&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// What assimp says went wrong, or how it ended.
 std::string reason(const ProgramOutput& output) {
@@ -139,7 +122,8 @@ int run(const fs::path& model, fs::path out) {
   const LastWords words(kInterrupted);
   const Interruption interruption;  // assimp and what it has half-written go before the program
   const std::string information = assimp({"info", model.string()}, model, interruption);
-  const PartFile part(out);
+  removeAbandonedFiles(fs::absolute(out).parent_path());
+  TemporaryFile part(out);
   assimp({"export", model.string(), part.path().string(), "-fglb2", "-tri", "-gsn"}, model, interruption);
   scene::Scene scene;
   try {
@@ -155,7 +139,7 @@ int run(const fs::path& model, fs::path out) {
   }
   const nlohmann::json meshes = meshesOf(part.path());
   endIfAsked(interruption);
-  fs::rename(part.path(), out);
+  part.keep();
 
   const std::pair<const char*, std::pair<std::size_t, std::size_t>> kinds[] = {
       {"cameras", {countOf(information, "Cameras"), scene.cameras.size()}},

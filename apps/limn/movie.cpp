@@ -79,17 +79,15 @@ void checkMovieProgram() {
 }
 
 Movie::Movie(fs::path file, double fps, std::string command)
-    : file_(std::move(file)),
-      part_(beside(file_, fmt::format(".{}.part", getpid()))),
-      fps_(fps),
-      command_(std::move(command)) {}
+    : file_(std::move(file)), fps_(fps), command_(std::move(command)) {
+  removeAbandonedFiles(fs::absolute(file_).parent_path());
+  part_.emplace(file_);
+}
 
 Movie::~Movie() {
   closeInput();
   if (process_ > 0) endProgram(process_);
   if (words_ >= 0) close(words_);
-  std::error_code ignored;
-  fs::remove(part_, ignored);
 }
 
 void Movie::closeInput() {
@@ -122,7 +120,7 @@ void Movie::start(int width, int height) {
                                         "comment=" + command_};
   const std::vector<std::string>& of = kindOf(file_)->arguments;
   arguments.insert(arguments.end(), of.begin(), of.end());
-  arguments.push_back("file:" + part_.string());
+  arguments.push_back("file:" + part_->path().string());
   try {
     process_ = startProgram(kEncoder, arguments, {ends[1], -1, words_});
   } catch (...) {
@@ -154,9 +152,7 @@ void Movie::add(const Image8& frame) {
 void Movie::finish() {
   closeInput();
   if (const std::string ending = awaitProgram(std::exchange(process_, 0)); !ending.empty()) fail(ending);
-  std::error_code error;
-  fs::rename(part_, file_, error);
-  if (error) throw Error(fmt::format("{}: cannot be written: {}", file_.string(), error.message()));
+  part_->keep();
 }
 
 }  // namespace limn::app

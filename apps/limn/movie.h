@@ -4,8 +4,10 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
+#include "core/base/file.h"
 #include "core/image/image.h"
 
 namespace limn::app {
@@ -36,7 +38,8 @@ class Movie {
   [[noreturn]] void fail(const std::string& ending);
   void closeInput();
 
-  std::filesystem::path file_, part_;
+  std::filesystem::path file_;
+  std::optional<TemporaryFile> part_;
   double fps_;
   std::string command_;
   pid_t process_ = 0;  ///< 0: not started, or ended

@@ -5,6 +5,7 @@
 
 #include <chrono>
 
+#include "apps/limn/options.h"
 #include "apps/view/picture_studio.h"
 #include "core/base/error.h"
 
@@ -55,7 +56,8 @@ PictureThread::PictureThread(const PictureThreadOptions& options)
     : options_(options), mailbox_(std::make_unique<Mailbox>()) {
   {
     const ContextScope none(nullptr);  // gives the caller its own back
-    context_ = Context::create({.backend = Backend::egl, .device = options.device, .debug = options.debug});
+    context_ = Context::create(
+        {.backend = Backend::egl, .device = options.device, .debug = options.debug, .warn = warn});
     device_ = std::make_unique<gpu::Device>(*context_);
   }
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });

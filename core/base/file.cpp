@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -124,17 +125,31 @@ std::string readTextFile(const std::filesystem::path& path, std::uint64_t maxByt
   return readInto<std::string>(path, maxBytes);
 }
 
-void writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  std::filesystem::path temporary;
-  const int file = openTemporary(path, temporary);
-  if (file < 0) failWrite(path, errno);
-  int error = writeAll(file, bytes);
+TemporaryFile::TemporaryFile(std::filesystem::path target)
+    : target_(std::move(target)), file_(openTemporary(target_, path_)) {
+  if (file_ < 0) failWrite(target_, errno);
+}
+
+TemporaryFile::~TemporaryFile() {
+  if (!kept_) ::unlink(path_.c_str());
+  ::close(file_);  // last, since it ends the lock; what it could report, fsync has reported
+}
+
+void TemporaryFile::write(std::span<const std::byte> bytes) {
+  if (const int error = writeAll(file_, bytes)) failWrite(target_, error);
+}
+
+void TemporaryFile::keep() {
   // Some file systems report a full disk only here.
-  if (error == 0 && ::fsync(file) != 0 && errno != EINVAL) error = errno;
-  if (error == 0 && ::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
-  if (error != 0) ::unlink(temporary.c_str());
-  ::close(file);  // last, since it ends the lock; what it could report, fsync has reported
-  if (error != 0) failWrite(path, error);
+  if (::fsync(file_) != 0 && errno != EINVAL) failWrite(target_, errno);
+  if (::rename(path_.c_str(), target_.c_str()) != 0) failWrite(target_, errno);
+  kept_ = true;
+}
+
+void writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  TemporaryFile file(path);
+  file.write(bytes);
+  file.keep();
 }
 
 void writeTextFile(const std::filesystem::path& path, std::string_view text) {

@@ -20,14 +20,37 @@ LIMN_API std::vector<std::byte> readFile(const std::filesystem::path& path,
 LIMN_API std::string readTextFile(const std::filesystem::path& path,
                                   std::uint64_t maxBytes = std::uint64_t{1} << 30);
 
+/// Holds a new file beside `target` that gets that name when it is whole. Other programs may write to it. It
+/// is gone when its holder ends before that; where the process is killed, removeAbandonedFiles() removes it.
+class LIMN_API TemporaryFile {
+ public:
+  /// Creates the file. Throws Error naming `target` and the reason.
+  explicit TemporaryFile(std::filesystem::path target);
+  ~TemporaryFile();
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Appends to the file. Throws Error naming the target.
+  void write(std::span<const std::byte> bytes);
+  /// Flushes the file and gives it the name of its target, in place of what has that name. Throws Error
+  /// naming the target.
+  void keep();
+
+ private:
+  std::filesystem::path target_, path_;
+  int file_;
+  bool kept_ = false;
+};
+
 /// Writes to a temporary file beside `path`, flushes it and renames it: readers see the old file or the new
 /// one, never a part. Throws Error naming `path` and the reason (no such folder, no permission, disk full)
 /// and leaves nothing behind.
 LIMN_API void writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes);
 LIMN_API void writeTextFile(const std::filesystem::path& path, std::string_view text);
 
-/// Removes from a folder the unfinished files that writeFile() left there when its process was killed and
-/// that no living writer holds. Leaves other files alone, and does nothing when the folder does not exist.
+/// Removes from a folder the temporary files that were left there when their process was killed and that no
+/// living writer holds. Leaves other files alone, and does nothing when the folder does not exist.
 LIMN_API void removeAbandonedFiles(const std::filesystem::path& folder);
 
 /// Returns where the regular file `file` of `folder` lies, or nothing where there is none or where it lies

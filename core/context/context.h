@@ -7,6 +7,7 @@
 // table is left (GL_RENDERER is then null and every picture black).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -37,6 +38,9 @@ struct ContextOptions {
   int height = 720;  ///< window only, pixels
   bool visible = true;  ///< window only
   std::string title = "limn";
+  /// Receives one line where a GPU cannot be used and another device is, none having been asked for; empty:
+  /// nothing is said.
+  std::function<void(const std::string&)> warn = {};
 };
 
 struct ContextInfo {

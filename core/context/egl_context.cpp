@@ -107,6 +107,7 @@ bool rendersOnProcessor(EGLDeviceEXT device) {
 struct DisplayPlace {
   EGLenum platform;
   void* native;
+  int gpu = -1;  ///< index of the device, if it is a GPU
 };
 
 /// The GPUs; then the surfaceless platform, which Mesa alone may serve where a GPU has another driver; then
@@ -115,8 +116,9 @@ std::vector<DisplayPlace> defaultPlaces() {
   std::vector<DisplayPlace> places;
   const std::vector<EGLDeviceEXT> devices = eglDevices();
   const auto addDevices = [&](bool onProcessor) {
-    for (EGLDeviceEXT device : devices) {
-      if (rendersOnProcessor(device) == onProcessor) places.push_back({EGL_PLATFORM_DEVICE_EXT, device});
+    for (size_t i = 0; i < devices.size(); ++i) {
+      if (rendersOnProcessor(devices[i]) == onProcessor)
+        places.push_back({EGL_PLATFORM_DEVICE_EXT, devices[i], onProcessor ? -1 : static_cast<int>(i)});
     }
   };
   addDevices(false);
@@ -198,15 +200,25 @@ std::unique_ptr<Context> createEglContext(const ContextOptions& options) {
     return context;
   };
   if (options.device >= 0) return create(openDevice(options.device));
-  auto context = firstThatWorks(defaultPlaces(), [&](const DisplayPlace& place) {
-    const EGLDisplay display = initialisedDisplay(place.platform, place.native);
-    return display == EGL_NO_DISPLAY ? nullptr : create(display);
-  });
+  std::string passedOver;
+  auto context = firstThatWorks(
+      defaultPlaces(),
+      [&](const DisplayPlace& place) {
+        const EGLDisplay display = initialisedDisplay(place.platform, place.native);
+        return display == EGL_NO_DISPLAY ? nullptr : create(display);
+      },
+      [&](const DisplayPlace& place, const std::string& why) {
+        if (place.gpu < 0 || !passedOver.empty()) return;
+        passedOver = fmt::format("the GPU of EGL device {} is not used ({})", place.gpu,
+                                 why.empty() ? errorName(eglGetError()) : why);
+      });
   if (!context) {
     fail(
         "no EGL driver offers the surfaceless or the device platform: install one (Debian: libegl-mesa0) or "
         "choose another back end (--backend osmesa)");
   }
+  if (!passedOver.empty() && options.warn)
+    options.warn(fmt::format("{}; {} renders in its place", passedOver, context->info().renderer));
   return context;
 }
 

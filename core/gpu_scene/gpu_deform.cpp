@@ -1,12 +1,9 @@
 #include "core/gpu_scene/gpu_deform.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
 
-#include "core/base/error.h"
 #include "core/gpu_scene/gpu_scene_data.h"
 
 namespace limn::scene {
@@ -23,15 +20,6 @@ void store(gpu::Device& device, gpu::Buffer& buffer, const char* label, const vo
   buffer.update(0, data, bytes);
 }
 
-/// Throws where the deform pass could not reach all of a buffer.
-void checkBlock(const gpu::Device& device, const char* what, size_t words) {
-  const size_t bytes = words * sizeof(uint32_t);
-  const auto most = static_cast<size_t>(device.limits().maxStorageBlockBytes);
-  if (bytes > most)
-    throw Error(fmt::format("scene: {} take {} MiB, more than the {} MiB of a storage buffer", what,
-                            bytes >> 20, most >> 20));
-}
-
 /// Throws before memory is taken.
 void checkSizes(const gpu::Device& device, const Scene& scene) {
   size_t skin = 0, morph = 0;
@@ -41,8 +29,8 @@ void checkSizes(const gpu::Device& device, const Scene& scene) {
       morph += primitive.morphTargets.size() * primitive.positions.size() * kMorphFloats;
     }
   }
-  checkBlock(device, "joints and weights of skins", skin);
-  checkBlock(device, "morph targets", morph);
+  checkStorageBlock(device, "joints and weights of skins", skin * sizeof(uint32_t));
+  checkStorageBlock(device, "morph targets", morph * sizeof(float));
 }
 
 void append(std::vector<float>& out, const std::vector<glm::vec3>& deltas, size_t i) {

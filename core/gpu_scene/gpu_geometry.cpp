@@ -47,8 +47,8 @@ std::vector<glm::u16vec4> packColours(const Primitive& primitive) {
 
 void checkCount(uint64_t count, const char* what) {
   if (count > std::numeric_limits<uint32_t>::max())
-    throw Error(fmt::format("scene: {} {} are more than the {} that can be drawn", count, what,
-                            std::numeric_limits<uint32_t>::max()));
+    throw UsageError(fmt::format("scene: {} {} are more than the {} that can be drawn", count, what,
+                                 std::numeric_limits<uint32_t>::max()));
 }
 
 /// A buffer filled piece by piece while the scene is uploaded.
@@ -81,21 +81,28 @@ void grow(gpu::Buffer& buffer, const char* label, size_t bytes, gpu::BufferUse u
 
 }  // namespace
 
+void checkStorageBlock(const gpu::Device& device, const char* what, uint64_t bytes) {
+  const auto most = static_cast<uint64_t>(device.limits().maxStorageBlockBytes);
+  if (bytes > most)
+    throw UsageError(fmt::format("scene: {} take {} MiB, more than the {} MiB of a storage buffer", what,
+                                 bytes >> 20, most >> 20));
+}
+
 GpuGeometry::GpuGeometry(gpu::Device& device, const Scene& scene)
     : device_(device), dynamic_(!scene.dynamic.empty()) {
   for (const Mesh& mesh : scene.meshes) {
     meshOffsets_.push_back(ranges_.size());
     for (const Primitive& primitive : mesh.primitives) {
       const uint64_t vertices = primitive.positions.size(), indices = primitive.indices.size();
-      checkCount(sceneVertices_ + vertices, "vertices");
-      checkCount(sceneIndices_ + indices, "indices");
       ranges_.push_back({static_cast<uint32_t>(sceneVertices_), static_cast<uint32_t>(vertices),
                          static_cast<uint32_t>(sceneIndices_), static_cast<uint32_t>(indices)});
       sceneVertices_ += vertices;
       sceneIndices_ += indices;
       hasColours_ = hasColours_ || !primitive.colours.empty();
+      deforms_ = deforms_ || !primitive.joints.empty() || !primitive.morphTargets.empty();
     }
   }
+  checkSizes(sceneVertices_, sceneIndices_);
   const auto use = dynamic_ ? gpu::BufferUse::updated : gpu::BufferUse::fixed;
   Upload positions(device, "vertex positions", sceneVertices_ * kPositionBytes, use);
   Upload attributes(device, "vertex attributes", sceneVertices_ * kAttributeBytes, use);
@@ -114,32 +121,37 @@ GpuGeometry::GpuGeometry(gpu::Device& device, const Scene& scene)
   attributes_ = attributes.take();
   colours_ = colours.take();
   indices_ = indices.take();
-  releaseAllocated();
 }
 
-void GpuGeometry::releaseAllocated() {
+void GpuGeometry::checkSizes(uint64_t vertices, uint64_t indices) const {
+  checkCount(vertices, "vertices");
+  checkCount(indices, "indices");
+  checkStorageBlock(device_, "positions of vertices", vertices * kPositionBytes);
+  checkStorageBlock(device_, "indices of triangles", indices * sizeof(uint32_t));
+  if (deforms_) checkStorageBlock(device_, "attributes of vertices", vertices * kAttributeBytes);
+}
+
+void GpuGeometry::reserve(uint64_t vertices, uint64_t indices) {
+  vertices += sceneVertices_;
+  indices += sceneIndices_;
+  checkSizes(vertices, indices);
+  const auto use = dynamic_ ? gpu::BufferUse::updated : gpu::BufferUse::fixed;
+  grow(positions_, "vertex positions", vertices * kPositionBytes, use);
+  grow(attributes_, "vertex attributes", vertices * kAttributeBytes, use);
+  if (hasColours_) grow(colours_, "vertex colours", vertices * kColourBytes, use);
+  grow(indices_, "indices", indices * sizeof(uint32_t), use);
   vertices_ = sceneVertices_;
   indexCount_ = sceneIndices_;
 }
 
 uint32_t GpuGeometry::allocateVertices(uint32_t count) {
-  checkCount(vertices_ + count, "vertices");
   vertices_ += count;
   return static_cast<uint32_t>(vertices_ - count);
 }
 
 uint32_t GpuGeometry::allocateIndices(uint32_t count) {
-  checkCount(indexCount_ + count, "indices");
   indexCount_ += count;
   return static_cast<uint32_t>(indexCount_ - count);
-}
-
-void GpuGeometry::commit() {
-  const auto use = dynamic_ ? gpu::BufferUse::updated : gpu::BufferUse::fixed;
-  grow(positions_, "vertex positions", vertices_ * kPositionBytes, use);
-  grow(attributes_, "vertex attributes", vertices_ * kAttributeBytes, use);
-  if (hasColours_) grow(colours_, "vertex colours", vertices_ * kColourBytes, use);
-  grow(indices_, "indices", indexCount_ * sizeof(uint32_t), use);
 }
 
 void GpuGeometry::copyColours(const GeometryRange& source, const GeometryRange& target) {

@@ -16,10 +16,13 @@ struct GeometryRange {
   uint32_t firstIndex = 0, indexCount = 0;
 };
 
+/// Throws UsageError where shaders could not reach all of a buffer with so many bytes of `what`.
+void checkStorageBlock(const gpu::Device& device, const char* what, uint64_t bytes);
+
 class GpuGeometry {
  public:
-  /// Uploads every primitive of every mesh. Throws Error beyond 2^32 vertices or indices, or when out of
-  /// memory.
+  /// Uploads every primitive of every mesh. Throws UsageError, before memory is taken, beyond 2^32 vertices
+  /// or indices and beyond what a storage block holds of them, and Error when out of memory.
   GpuGeometry(gpu::Device& device, const Scene& scene);
 
   const GeometryRange& primitive(int mesh, int primitive) const {
@@ -31,14 +34,12 @@ class GpuGeometry {
   }
   uint32_t primitiveCount() const { return static_cast<uint32_t>(ranges_.size()); }
 
-  /// Releases everything that allocateVertices() and allocateIndices() allocated.
-  void releaseAllocated();
-  /// Allocates space after the scene's own vertices or indices, for deformed and dynamic primitives, and
-  /// returns the first index of it.
+  /// Grows the buffers to hold so many vertices and indices after the scene's own, keeps their contents, and
+  /// releases everything that was allocated there. Throws as the constructor does; nothing is released then.
+  void reserve(uint64_t vertices, uint64_t indices);
+  /// Allocates reserved space for deformed and dynamic primitives, and returns the first index of it.
   uint32_t allocateVertices(uint32_t count);
   uint32_t allocateIndices(uint32_t count);
-  /// Grows the buffers to hold what was allocated, and keeps their contents.
-  void commit();
   /// Copies the colours of the scene's own range to the allocated range whose vertices are deformed from it.
   void copyColours(const GeometryRange& source, const GeometryRange& target);
   /// Writes a dynamic primitive into its allocated range.
@@ -51,12 +52,15 @@ class GpuGeometry {
   bool hasColours() const { return hasColours_; }
 
  private:
+  void checkSizes(uint64_t vertices, uint64_t indices) const;
+
   gpu::Device& device_;
   std::vector<GeometryRange> ranges_;
   std::vector<size_t> meshOffsets_;
   uint64_t sceneVertices_ = 0, sceneIndices_ = 0;
   uint64_t vertices_ = 0, indexCount_ = 0;
   bool hasColours_ = false;
+  bool deforms_ = false;  ///< skins or morph targets: a shader reads the attributes as well
   bool dynamic_ = false;
   gpu::Buffer positions_, attributes_, colours_, indices_;
 };

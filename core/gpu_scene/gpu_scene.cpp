@@ -63,7 +63,13 @@ bool GpuScene::Implementation::allocate(const Pose& pose) {
   }
   if (fits) return false;
 
-  geometry.releaseAllocated();
+  uint64_t vertices = 0, indices = 0;
+  for (const auto& [mesh, primitive] : wanted) vertices += geometry.primitive(mesh, primitive).vertexCount;
+  for (const DynamicState& d : dynamic) {
+    vertices += std::bit_ceil(static_cast<uint32_t>(d.primitive->positions.size()));
+    indices += std::bit_ceil(static_cast<uint32_t>(d.primitive->indices.size()));
+  }
+  geometry.reserve(vertices, indices);
   deformedPrimitives = std::move(wanted);
   deformedRanges.clear();
   for (const auto& [mesh, primitive] : deformedPrimitives) {
@@ -78,7 +84,6 @@ bool GpuScene::Implementation::allocate(const Pose& pose) {
     d.range.firstIndex = geometry.allocateIndices(d.indexCapacity);
     d.dirty = true;
   }
-  geometry.commit();
   for (size_t i = 0; i < deformedRanges.size(); ++i)
     geometry.copyColours(geometry.primitive(deformedPrimitives[i].first, deformedPrimitives[i].second),
                          deformedRanges[i]);

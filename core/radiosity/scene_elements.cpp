@@ -18,6 +18,17 @@ bool mirrors(const glm::mat4& matrix) {
   return glm::determinant(glm::dmat3(glm::dmat4(matrix))) < 0;
 }
 
+/// The sum of what the triangles have with these places of their vertices.
+double deformedArea(const scene::Primitive& primitive, const std::vector<glm::vec3>& positions) {
+  double twice = 0;
+  for (size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
+    const glm::dvec3 corner = positions[primitive.indices[t]];
+    twice += glm::length(glm::cross(glm::dvec3(positions[primitive.indices[t + 1]]) - corner,
+                                    glm::dvec3(positions[primitive.indices[t + 2]]) - corner));
+  }
+  return 0.5 * twice;
+}
+
 }  // namespace
 
 /// One instance's vertices in world space.
@@ -27,14 +38,18 @@ struct SceneElements::Instance {
   std::shared_ptr<const scene::Primitive> held;
   int material = 0;
   bool mirrored = false;
-  glm::dvec3 areas{0};  ///< factors by which the matrix changed areas when the elements were made
+  glm::dvec3 areas{0};             ///< factors by which the matrix changed areas when the elements were made
+  double madeArea = 0;             ///< of deformed instances, before the matrix, when the elements were made
+  double area = 0;                 ///< the same now
+  scene::Deformation deformation;  ///< by which it became so
   std::vector<glm::vec3> positions, normals;
   std::vector<glm::vec4> tangents;  ///< nobody looks at them; deform() makes them
 
   void move(const scene::Pose& pose, const scene::DrawInstance& draw) {
     if (draw.deformed != scene::kNone) {
-      scene::deform(*primitive, pose.deformed[static_cast<size_t>(draw.deformed)], positions, normals,
-                    tangents);
+      deformation = pose.deformed[static_cast<size_t>(draw.deformed)];
+      scene::deform(*primitive, deformation, positions, normals, tangents);
+      area = deformedArea(*primitive, positions);
     } else {
       positions.assign(primitive->positions.begin(), primitive->positions.end());
       normals.assign(primitive->normals.begin(), primitive->normals.end());
@@ -55,6 +70,20 @@ struct SceneElements::Instance {
       const float length = glm::length(n);
       if (length > 0) normals[i] = n / length;
     });
+  }
+
+  /// Whether a skin or morph targets leave the area nearly as it was when the elements were made.
+  bool keepsArea(const scene::Pose& pose, const scene::DrawInstance& draw) const {
+    if (draw.deformed == scene::kNone) return true;
+    const scene::Deformation& next = pose.deformed[static_cast<size_t>(draw.deformed)];
+    double nextArea = area;
+    if (next.joints != deformation.joints || next.morphWeights != deformation.morphWeights) {
+      std::vector<glm::vec3> places, directions;
+      std::vector<glm::vec4> alongs;
+      scene::deform(*primitive, next, places, directions, alongs);
+      nextArea = deformedArea(*primitive, places);
+    }
+    return scene::areasAlike(glm::dvec3(nextArea), glm::dvec3(madeArea));
   }
 };
 
@@ -91,6 +120,7 @@ SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose,
   // A closed mesh has half as many vertices as triangles.
   if (triangles / 4 > maxElements) refuse(fmt::format("the scene has {} triangles", triangles));
   moveInstances(pose);
+  for (Instance& instance : instances_) instance.madeArea = instance.area;
   std::vector<TriangleMesh> meshes(instances_.size());
   for (size_t i = 0; i < instances_.size(); ++i) {
     const Instance& instance = instances_[i];
@@ -121,7 +151,8 @@ bool SceneElements::fits(const scene::Pose& pose, std::span<const scene::DrawIns
   const auto same = [&](const scene::DrawInstance& now, const Instance& known) {
     return primitiveOf(scene_, pose, now) == known.primitive &&
            (mirrors(now.objectToWorld) != now.mirroredSkin) == known.mirrored &&
-           scene::areasAlike(scene::areaFactors(now.objectToWorld), known.areas);
+           scene::areasAlike(scene::areaFactors(now.objectToWorld), known.areas) &&
+           known.keepsArea(pose, now);
   };
   return std::ranges::equal(instances, instances_, same);
 }

@@ -50,7 +50,8 @@ class LIMN_API SceneElements {
   ~SceneElements();
 
   /// Returns whether `pose` differs only in where vertices are. It does not where an instance's matrix
-  /// mirrors it, or changes an area by more than half: elements keep the areas that they were made with.
+  /// mirrors it, or changes an area by more than half, or where a skin or morph targets change the area of
+  /// all of it by more than half: elements keep the areas that they were made with.
   bool fits(const scene::Pose& pose) const { return fits(pose, pose.instances); }
   /// Does so for elements that were made of these instances of `pose` alone.
   bool fits(const scene::Pose& pose, std::span<const scene::DrawInstance> instances) const;

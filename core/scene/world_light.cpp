@@ -56,14 +56,23 @@ std::optional<glsl::Light> quadLight(const EmissivePart& part, const Material& m
   const Quad& quad = part.quad;
   const glm::dmat3 m(objectToWorld);
   glm::dvec3 u = m * glm::dvec3(quad.sideU), v = m * glm::dvec3(quad.sideV);
-  const double lengthU = glm::length(u), lengthV = glm::length(v);
-  if (!(lengthU > 0 && lengthV > 0) || std::abs(glm::dot(u, v)) > 1e-3 * lengthU * lengthV)
-    return std::nullopt;
-  u /= lengthU;
-  v /= lengthV;
-  // A mirroring transform turns the winding around and the front face with it (glTF 2.0, section 3.7.4).
-  const glm::dvec3 front = (glm::determinant(m) < 0 ? -1.0 : 1.0) * glm::normalize(glm::cross(u, v));
-  v = glm::cross(-front, u);  // removes the last 1e-3 of skew, and cross(u, v) = -front
+  double lengthU = glm::length(u), lengthV = glm::length(v);
+  const bool area = lengthU > 0 && lengthV > 0;
+  glm::dvec3 front;
+  if (area) {
+    if (std::abs(glm::dot(u, v)) > 1e-3 * lengthU * lengthV) return std::nullopt;
+    u /= lengthU;
+    v /= lengthV;
+    // A mirroring transform turns the winding around and the front face with it (glTF 2.0, section 3.7.4).
+    front = (glm::determinant(m) < 0 ? -1.0 : 1.0) * glm::normalize(glm::cross(u, v));
+    v = glm::cross(-front, u);  // removes the last 1e-3 of skew, and cross(u, v) = -front
+  } else {
+    const glm::dmat3 axis(axes(objectToWorld));
+    lengthU = lengthV = 0;
+    u = axis[0];
+    v = axis[1];
+    front = -axis[2];
+  }
   glsl::Light light{};
   light.position = glm::vec3(objectToWorld * glm::vec4(quad.centre, 1));
   light.direction = glm::vec3(front);
@@ -71,7 +80,7 @@ std::optional<glsl::Light> quadLight(const EmissivePart& part, const Material& m
   light.length_u = static_cast<float>(lengthU);
   light.axis_v = glm::vec3(v);
   light.length_v = static_cast<float>(lengthV);
-  light.emission = material.emission * part.texture;
+  light.emission = area ? material.emission * part.texture : glm::vec3(0);
   light.cos_inner = -1;
   light.cos_outer = -1;
   const uint32_t sides = material.doubleSided ? glsl::light_flag_two_sided : 0u;

@@ -152,7 +152,7 @@ void applyLightEdits(scene::Scene& scene, const scene::Pose& pose, const LightEd
       apply(scene, pose, light, name, edit, node);
     else if (const auto mesh = meshLightOf(scene, pose, light))
       applyToMesh(scene, pose, light, *mesh, edit);
-    else
+    else if (!withoutArea(now))
       throw UsageError(fmt::format(
           "--set-light {}: only lights of nodes and emissive quads can be changed; this one is {}", name,
           (now.flags & glsl::light_flag_environment) != 0

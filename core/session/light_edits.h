@@ -42,17 +42,17 @@ LIMN_API std::vector<std::string> printed(const LightEdits& edits);
 LIMN_API void giveOwnMaterials(scene::Scene& scene);
 
 /// Changes the lights of `scene`, which must be those of its file. `pose` is the pose of that scene and is
-/// not changed; what edits leave of a light's placement is that of `pose` (followTime). Throws UsageError for
-/// a light that does not exist or cannot be changed (isEditable), and for a property that the light does not
-/// have.
+/// not changed; what edits leave of a light's placement is that of `pose` (followTime). A mesh that has no
+/// area in `pose` is left as it is. Throws UsageError for a light that does not exist or cannot be changed
+/// (isEditable), and for a property that the light does not have.
 LIMN_API void applyLightEdits(scene::Scene& scene, const scene::Pose& pose, const LightEdits& edits);
 /// Says whether an edit sets a part of a light's placement and leaves the other one to animations, so that
 /// the edits must be applied again at each time.
 LIMN_API bool followTime(const LightEdits& edits);
 
 /// Says whether light `index` of a pose can be edited: it belongs to a node, or it is the only light of its
-/// node's mesh, which has constant emission, is rigid and not instanced. Of lights that share a name only the
-/// first can be edited.
+/// node's mesh, which has constant emission and an area, is rigid and not instanced. Of lights that share a
+/// name only the first can be edited.
 LIMN_API bool isEditable(const scene::Scene& scene, const scene::Pose& pose, int index);
 /// Returns the current values of an editable light, with every property that it has. Meshes that several
 /// nodes share have neither size nor colour nor intensity here.

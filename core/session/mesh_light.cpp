@@ -37,15 +37,19 @@ glm::vec2 sizeOf(const glsl::Light& light) {
 
 }  // namespace
 
+bool withoutArea(const glsl::Light& light) {
+  return (light.flags & glsl::light_flag_geometry) != 0 && light.length_u == 0;
+}
+
 AtRest atRest(const scene::Scene& scene, const scene::Pose& pose, int light, int node) {
   const glsl::Light& now = pose.lights[at(light)];
   if (!scene.animations.empty()) {
     const scene::Pose start = scene::evaluate(scene, 0);
-    // Meshes may be no lights at some times, lights of nodes always are.
+    // Meshes may be no lights at some times, or have no area; lights of nodes always are.
     if ((now.flags & glsl::light_flag_geometry) == 0)
       return {start.lights[at(light)], start.nodeToWorld[at(node)]};
     for (const glsl::Light& l : start.lights)
-      if ((l.flags & glsl::light_flag_geometry) != 0 && l.own_instance == now.own_instance)
+      if ((l.flags & glsl::light_flag_geometry) != 0 && l.own_instance == now.own_instance && !withoutArea(l))
         return {l, start.nodeToWorld[at(node)]};
   }
   return {now, pose.nodeToWorld[at(node)]};
@@ -76,7 +80,7 @@ void giveOwnMaterials(scene::Scene& scene) {
 
 std::optional<MeshLight> meshLightOf(const scene::Scene& scene, const scene::Pose& pose, int light) {
   const glsl::Light& l = pose.lights[at(light)];
-  if ((l.flags & glsl::light_flag_geometry) == 0) return std::nullopt;
+  if ((l.flags & glsl::light_flag_geometry) == 0 || withoutArea(l)) return std::nullopt;
   const scene::DrawInstance& drawn = pose.instances[l.own_instance];
   const scene::Node& node = scene.nodes[at(drawn.node)];
   const scene::Mesh& mesh = scene.meshes[at(drawn.mesh)];

@@ -18,6 +18,7 @@
 #include "core/scene_io/load.h"
 #include "core/session/find.h"
 #include "core/session/light_edits.h"
+#include "core/session/private/mesh_light.h"
 
 namespace limn::session {
 namespace {
@@ -211,8 +212,11 @@ void relight(View& view, const SceneQuestion& question) {
 }
 
 bool movingRelights(const View& view, const SceneQuestion& question, double time) {
-  return view.defaultLights || (time != view.time && !view.scene.animations.empty() &&
-                                followTime(parseLightEdits(question.lightSettings)));
+  if (view.defaultLights) return true;
+  if (time == view.time || view.scene.animations.empty() || question.lightSettings.empty()) return false;
+  // A lamp that has no area at one time has not been edited yet.
+  return followTime(parseLightEdits(question.lightSettings)) ||
+         std::ranges::any_of(view.pose.lights, withoutArea);
 }
 
 void moveTo(View& view, const SceneQuestion& question, double time) {

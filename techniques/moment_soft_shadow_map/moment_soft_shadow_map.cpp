@@ -1,5 +1,7 @@
 // Moment soft shadow maps (Peters and Klein 2015, Peters et al. 2017): percentage-closer soft shadows of
 // which both steps are prefiltered from four power moments of depth.
+#include <cstdlib>
+
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
 
@@ -7,6 +9,7 @@ namespace {
 
 using namespace limn;
 
+constexpr const char* kMomentBits[] = {"0", "10", "11", "12", "13", "14", "15", "16", "17", "18", "19", "20"};
 constexpr Parameter kParameters[] = {
     real("moment_bias", 1e-6, {1e-7, 0.1}, "",
          "Share by which moments are pulled towards those of a well-spread distribution")
@@ -25,8 +28,7 @@ constexpr Parameter kParameters[] = {
         .logScale(),
     integer("direct_texels", 8, {0, 32}, "texels",
             "Penumbra kernels up to this width are filtered texel by texel"),
-    integer("moment_bits", 0, {0, 20}, "bits",
-            "Of each moment of a texel, 10 to 20; 0: by the size of the shadow map"),
+    choice("moment_bits", 0, kMomentBits, "Bits of each moment of a texel; 0: by the size of the shadow map"),
     shadow::shadowMapSizeParameter(),
     shadow::shadowMapFitParameter(),
     shadow::viewsParameter(),
@@ -47,8 +49,8 @@ class MomentSoftShadowMap : public Technique {
                                  const TermRequest& request) override {
     const ParameterValues& p = inputs.parameters;
     shadow::VisibilityPass pass = shadow::visibilityPass(inputs, request, info.name);
-    const shadow::MomentTable table =
-        inputs.service<shadow::ShadowMapService>().momentTable(pass.maps, p.integer("moment_bits"));
+    const shadow::MomentTable table = inputs.service<shadow::ShadowMapService>().momentTable(
+        pass.maps, std::atoi(kMomentBits[p.choice("moment_bits")]));
     pass.sampled = {
         {"shadow_min_max", inputs.service<shadow::ShadowMapService>().minMaxPyramid(pass.maps).texture,
          "least and greatest depth in a kernel"},

@@ -92,25 +92,50 @@ TEST_F(AssimpTest, NothingIsLeftOfWhatCannotBeRead) {
   EXPECT_EQ(listing(folder_.path()), (std::vector<std::string>{"a.fbx", "a.obj"}));
 }
 
-/// Neither the program that converts nor what it has half-written is left.
-TEST_F(ImportTest, NothingIsLeftAfterAnInterruption) {
-  const TemporaryFolder programs;
-  const fs::path converter = programs / "assimp", begun = programs / "begun";
-  std::ofstream(converter) << "#!/bin/sh\n[ \"$1\" = info ] && exit\necho half > \"$3\"\necho $$ > "
-                           << begun.string() << "\nexec sleep 300\n";
-  fs::permissions(converter, fs::perms::owner_all);
-  const fs::path file = model("a.obj", kObject);
-  for (const int signal : {SIGINT, SIGTERM}) {
-    fs::remove(begun);
-    Process process({kLimnBinary, "import", file}, {{"PATH", programs.path().string() + ":/usr/bin:/bin"}});
-    ASSERT_TRUE(process.waitUntil([&] { return contents(begun).ends_with('\n'); })) << process.err();
+/// In the place of assimp a program that writes half a file and then waits for ever.
+class SlowImportTest : public ImportTest {
+ protected:
+  SlowImportTest() {
+    const fs::path converter = programs_ / "assimp";
+    std::ofstream(converter) << "#!/bin/sh\n[ \"$1\" = info ] && exit\necho half > \"$3\"\necho $$ > "
+                             << begun_.string() << "\nexec sleep 300\n";
+    fs::permissions(converter, fs::perms::owner_all);
+  }
+
+  /// Ends an import by a signal when half a file is there.
+  Outcome endedBy(int signal) {
+    fs::remove(begun_);
+    Process process({kLimnBinary, "import", file_}, {{"PATH", programs_.path().string() + ":/usr/bin:/bin"}});
+    EXPECT_TRUE(process.waitUntil([&] { return contents(begun_).ends_with('\n'); })) << process.err();
     process.signal(signal);
-    const Outcome outcome = process.wait();
+    Outcome outcome = process.wait();
+    converting_ = std::stoi(contents(begun_));
+    return outcome;
+  }
+
+  const TemporaryFolder programs_;
+  const fs::path begun_ = programs_ / "begun", file_ = model("a.obj", kObject);
+  pid_t converting_ = 0;
+};
+
+/// Neither the program that converts nor what it has half-written is left.
+TEST_F(SlowImportTest, NothingIsLeftAfterAnInterruption) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const Outcome outcome = endedBy(signal);
     EXPECT_EQ(outcome.status, 128 + signal);
     EXPECT_EQ(outcome.err, "limn: interrupted; no scene was written\n");
-    EXPECT_EQ(kill(std::stoi(contents(begun)), 0), -1) << "assimp goes on";
+    EXPECT_EQ(kill(converting_, 0), -1) << "assimp goes on";
     EXPECT_EQ(listing(folder_.path()), std::vector<std::string>{"a.obj"});
   }
+}
+
+/// What a killed import left goes with the next one.
+TEST_F(SlowImportTest, TheNextImportRemovesWhatAKilledOneLeft) {
+  endedBy(SIGKILL);
+  kill(converting_, SIGKILL);
+  EXPECT_EQ(listing(folder_.path()).size(), 2u) << "half a file";
+  endedBy(SIGINT);
+  EXPECT_EQ(listing(folder_.path()), std::vector<std::string>{"a.obj"});
 }
 
 TEST_F(ImportTest, RefusesInOneLine) {

@@ -314,6 +314,52 @@ TEST_F(GpuSceneTest, SkinsAndMorphTargetsLargerThanAStorageBufferAreRefused) {
   EXPECT_THAT(refusal(std::move(morphed)), AllOf(StartsWith("scene: morph targets take "), EndsWith(limit)));
 }
 
+TEST_F(GpuSceneTest, VerticesAndTrianglesLargerThanAStorageBufferAreRefused) {
+  const auto most = static_cast<size_t>(device().limits().maxStorageBlockBytes);
+  const auto refusal = [](const scene::Primitive& primitive) {
+    scene::Scene scene;
+    addMaterial(scene);
+    addMesh(scene, primitive);
+    std::string message;
+    try {
+      const scene::GpuScene tooLarge(device(), scene);
+    } catch (const UsageError& error) {
+      message = error.what();
+    }
+    return message;
+  };
+  const std::string limit = fmt::format("more than the {} MiB of a storage buffer", most >> 20);
+  scene::Primitive vertices = floorPrimitive(1, 0), triangles = vertices;
+  vertices.positions.resize(most / sizeof(glm::vec3) + 1);
+  triangles.indices.resize(most / sizeof(uint32_t) + 1);
+  EXPECT_THAT(refusal(vertices), AllOf(StartsWith("scene: positions of vertices take "), EndsWith(limit)));
+  EXPECT_THAT(refusal(triangles), AllOf(StartsWith("scene: indices of triangles take "), EndsWith(limit)));
+}
+
+/// A skin's vertices are there twice, at rest and in their pose.
+TEST_F(GpuSceneTest, DeformedVerticesLargerThanAStorageBufferAreRefusedInEachFrame) {
+  scene::Scene scene;
+  scene::Primitive skinned = floorPrimitive(1, addMaterial(scene));
+  const size_t count = static_cast<size_t>(device().limits().maxStorageBlockBytes) / 28;
+  skinned.positions.resize(count);
+  skinned.joints.resize(count);
+  skinned.weights.resize(count, glm::vec4(1, 0, 0, 0));
+  skinned.jointBounds = {skinned.bounds};
+  addMesh(scene, std::move(skinned));
+  scene.skins.push_back({{0}, {glm::mat4(1)}});
+  scene.nodes.resize(1);
+  scene.nodes[0].mesh = scene.nodes[0].skin = 0;
+  scene::GpuScene gpuScene(device(), scene);
+  const scene::Pose pose = scene::evaluate(scene, 0);
+  const auto camera = scene::lookAt({0, 2, 4}, {0, 0, 0}, 0.6f);
+  for (int frame = 0; frame < 2; ++frame)
+    EXPECT_THAT(errorOf([&] {
+                  gpuScene.update(pose, camera, {kSide, kSide}, 0);
+                }),
+                StartsWith("scene: attributes of vertices take "))
+        << frame;
+}
+
 TEST_F(GpuSceneTest, OnlyWhatMovesIsTouched) {
   scene::Scene scene;
   addMesh(scene, floorPrimitive(1, addMaterial(scene)));

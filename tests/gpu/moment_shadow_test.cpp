@@ -2,6 +2,7 @@
 // known.
 #include "glsl/shadow/moment_shadow.glsl"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -241,6 +242,16 @@ TEST_F(MomentSoftShadowMapTest, ATableShadowsTheFloorAloneUnderALampNearTheCeili
   EXPECT_GT(penumbra, 300);
   EXPECT_LT(dark / lit, 0.001);
   EXPECT_LT(std::sqrt(squares / penumbra), 0.05);
+}
+
+/// What no table has is refused with the other values that are not accepted, before anything is drawn.
+TEST_F(MomentSoftShadowMapTest, BitsOfNoTableAreRefusedWhereTheyAreSet) {
+  ParameterValues values(name, registry().find(name).info->parameters);
+  for (const char* bits : {"1", "9", "21", "-1"})
+    EXPECT_THAT(errorOf([&] { values.set("moment_bits", bits); }),
+                testing::AllOf(testing::HasSubstr(fmt::format("moment_bits: '{}' is not accepted", bits)),
+                               testing::HasSubstr("expected 0, 10, 11"), testing::EndsWith("19 or 20")));
+  for (const char* bits : {"0", "10", "18", "20"}) EXPECT_NO_THROW(values.set("moment_bits", bits)) << bits;
 }
 
 TEST_F(MomentSoftShadowMapTest, ExtremesGiveVisibilitiesInRange) {

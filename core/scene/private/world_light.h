@@ -11,7 +11,8 @@ namespace limn::scene {
 glsl::Light punctualLight(const LightSource& source, const glm::vec2& area, const glm::mat4& nodeToWorld);
 
 /// Returns the light that a part of an emissive quad becomes, or nothing when the transformed part is not a
-/// rectangle.
+/// rectangle. One without area is a light of size 0 that emits nothing: animations may scale a lamp to 0, and
+/// the lights of a scene keep their numbers and names.
 std::optional<glsl::Light> quadLight(const EmissivePart& part, const Material& material,
                                      const glm::mat4& objectToWorld, uint32_t instance);
 

@@ -13,6 +13,9 @@ struct MeshLight {
   int node, material;
   bool shared;  ///< the mesh belongs to several nodes: its material is not this light's own
 };
+/// Says whether a light is a mesh that has no area now, and therefore gives no light and has neither size nor
+/// rotation.
+bool withoutArea(const glsl::Light& light);
 /// Returns the mesh of a light, or nothing for lights that are not such a mesh: see isEditable().
 std::optional<MeshLight> meshLightOf(const scene::Scene& scene, const scene::Pose& pose, int light);
 

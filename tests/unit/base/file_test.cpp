@@ -84,6 +84,22 @@ TEST_F(FileTest, OnlyWhatNoLivingWriterHoldsIsRemoved) {
   removeAbandonedFiles(folder_ / "missing");
 }
 
+/// Another program may write to it; whoever cleans up leaves it alone.
+TEST_F(FileTest, ATemporaryFileGetsItsNameOrIsGone) {
+  {
+    const TemporaryFile dropped(folder_ / "a");
+    EXPECT_TRUE(fs::exists(dropped.path()));
+  }
+  EXPECT_TRUE(names().empty());
+  TemporaryFile file(folder_ / "a");
+  std::ofstream(file.path()) << "content of another program";
+  removeAbandonedFiles(folder_);
+  file.keep();
+  EXPECT_EQ(names(), std::vector<std::string>{"a"});
+  EXPECT_EQ(readTextFile(folder_ / "a"), "content of another program");
+  EXPECT_THROW(TemporaryFile(folder_ / "missing" / "a"), Error);
+}
+
 TEST_F(FileTest, WritersAndCleanersInManyThreadsLoseNothing) {
   std::vector<std::jthread> threads(4);
   for (int i = 0; i < 4; ++i)

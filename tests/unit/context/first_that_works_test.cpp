@@ -17,20 +17,24 @@ struct Outcome {
 };
 using enum Outcome::Kind;
 
-/// What is chosen, and how many devices are tried for it.
+/// What is chosen, how many devices are tried for it, and what is said of those that are passed over.
 struct Choice {
   std::optional<std::string> made;
   int tried = 0;
+  std::vector<std::string> passedOver = {};
 };
 
 Choice choose(const std::vector<Outcome>& outcomes) {
   Choice choice;
-  choice.made = firstThatWorks(outcomes, [&](const Outcome& outcome) -> std::optional<std::string> {
-    ++choice.tried;
-    if (outcome.kind == fails) throw Error(outcome.text);
-    if (outcome.kind == absent) return {};
-    return outcome.text;
-  });
+  choice.made = firstThatWorks(
+      outcomes,
+      [&](const Outcome& outcome) -> std::optional<std::string> {
+        ++choice.tried;
+        if (outcome.kind == fails) throw Error(outcome.text);
+        if (outcome.kind == absent) return {};
+        return outcome.text;
+      },
+      [&](const Outcome&, const std::string& why) { choice.passedOver.push_back(why); });
   return choice;
 }
 
@@ -38,10 +42,13 @@ TEST(FirstThatWorks, TriesNothingBehindTheFirst) {
   const Choice choice = choose({{works, "a GPU"}, {works, "another"}});
   EXPECT_EQ(choice.made, "a GPU");
   EXPECT_EQ(choice.tried, 1);
+  EXPECT_TRUE(choice.passedOver.empty());
 }
 
 TEST(FirstThatWorks, GoesOnWhereADeviceIsNotThereOrDoesNotSuffice) {
-  EXPECT_EQ(choose({{absent}, {fails, "OpenGL 3.3"}, {absent}, {works, "llvmpipe"}}).made, "llvmpipe");
+  const Choice choice = choose({{absent}, {fails, "OpenGL 3.3"}, {absent}, {works, "llvmpipe"}, {absent}});
+  EXPECT_EQ(choice.made, "llvmpipe");
+  EXPECT_EQ(choice.passedOver, (std::vector<std::string>{"", "OpenGL 3.3", ""}));
 }
 
 TEST(FirstThatWorks, SaysOfNoneWhatTheFirstSaid) {

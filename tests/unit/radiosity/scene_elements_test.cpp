@@ -79,6 +79,38 @@ TEST(SceneElementsTest, DoNotFitWhatGrewVanishedAppearedOrIsMirrored) {
     EXPECT_FALSE(none.fits(world.pose(scaled(glm::vec3(size))))) << size;
 }
 
+/// Elements keep the areas that they were made with, whatever makes a surface larger.
+TEST(SceneElementsTest, DoNotFitSkinsAndMorphsThatChangeTheirArea) {
+  scene::Scene scene;
+  scene::Primitive floor = test::floorPrimitive(1, test::addMaterial(scene));
+  scene::Primitive skin = floor, morph = floor;
+  skin.joints.assign(4, glm::u16vec4(0));
+  skin.weights.assign(4, glm::vec4(1, 0, 0, 0));
+  morph.morphTargets.push_back({floor.positions, {}, {}, {}});  // weight w: 1 + w times as wide
+  const int skinned = test::addMesh(scene, skin), morphed = test::addMesh(scene, morph);
+  const auto pose = [&](const glm::mat4& joint, float weight) {
+    scene::Pose made;
+    test::addInstance(scene, made, skinned);
+    test::addInstance(scene, made, morphed, scaled(glm::vec3(5)));
+    made.instances[0].deformed = 0;
+    made.instances[1].deformed = 1;
+    made.deformed = {{skinned, 0, {joint}, {}}, {morphed, 0, {}, {weight}}};
+    return made;
+  };
+  const glm::mat4 one(1), turned = glm::rotate(test::at(3, -1, 2), 1.f, glm::normalize(glm::vec3(1, 2, 3)));
+  SceneElements elements(scene, pose(one, 0), 10, 1u << 20);
+  EXPECT_TRUE(elements.fits(pose(one, 0)));
+  EXPECT_TRUE(elements.fits(pose(turned * scaled(glm::vec3(1.2f)), 0.2f)));
+  EXPECT_FALSE(elements.fits(pose(scaled(glm::vec3(1.3f)), 0)));
+  EXPECT_FALSE(elements.fits(pose(scaled(glm::vec3(0)), 0)));
+  EXPECT_FALSE(elements.fits(pose(one, 0.3f)));
+  EXPECT_FALSE(elements.fits(pose(one, -0.3f)));
+  const scene::Pose larger = pose(scaled(glm::vec3(1.2f)), 0.2f);
+  elements.update(larger);
+  EXPECT_TRUE(elements.fits(larger));
+  EXPECT_FALSE(elements.fits(pose(scaled(glm::vec3(1.2f * 1.2f)), 0.2f))) << "compared with what was made";
+}
+
 /// Instances of a pose may stand for elements of their own.
 TEST(SceneElementsTest, FitInstancesOfAPose) {
   const PosedSphere world;

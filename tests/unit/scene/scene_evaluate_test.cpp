@@ -304,6 +304,28 @@ TEST(SceneEvaluate, EmissiveQuadVariants) {
   }
 }
 
+/// An animation may scale a lamp to nothing: it then gives no light, and no other light takes its number.
+TEST(SceneEvaluate, LampsWithoutAreaGiveNoLightAndKeepTheirNumber) {
+  for (const std::vector<float>& scale : {std::vector<float>{0, 0, 0}, {1, 0, 1}, {0, 2, 3}}) {
+    GltfBuilder b = quad(kQuad, kGlow, {{"name", "panel"}, {"translation", {1, 2, 3}}, {"scale", scale}});
+    const json mesh = b.root["nodes"].back()["mesh"];
+    b.node({{"name", "other"}, {"mesh", mesh}});
+    const Pose pose = evaluate(loadBuilt(b), 0);
+    ASSERT_THAT(pose.lightNames, testing::ElementsAre("panel", "other"));
+    const glsl::Light& light = pose.lights[0];
+    expectNear(light.emission, glm::vec3(0));
+    EXPECT_EQ(light.length_u, 0);
+    EXPECT_EQ(light.length_v, 0);
+    EXPECT_EQ(light.own_instance, 1u);
+    for (const glm::vec3& axis :
+         {glm::vec3(light.axis_u), glm::vec3(light.axis_v), glm::vec3(light.direction)})
+      EXPECT_NEAR(glm::length(axis), 1, 1e-6);
+    expectNear(glm::cross(light.axis_u, light.axis_v), -light.direction);
+    EXPECT_EQ(pose.lights[1].index, 1u);
+    expectNear(pose.lights[1].emission, {10, 5, 0});
+  }
+}
+
 TEST(SceneEvaluate, Cameras) {
   GltfBuilder b;
   b.append("cameras",

@@ -267,6 +267,33 @@ TEST(Relight, HalvesThatAreNotSetFollowTheirAnimation) {
   }
 }
 
+/// A sequence goes on while an animation scales a lamp to nothing, and edits hold from when it has an area.
+TEST(Relight, LampsWithoutAreaGiveNoLightUntilTheyHaveOne) {
+  test::GltfBuilder b;
+  b.triangle();
+  const int glow = b.append("materials", {{"emissiveFactor", {1, 0.5, 0.25}}});
+  const int quad = b.mesh({{"POSITION", b.vec3({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}})}},
+                          b.indices({0, 1, 2, 0, 2, 3}), glow);
+  const int lamp = b.node({{"name", "lamp"}, {"mesh", quad}});
+  const int times = b.floats({0, 2}), scales = b.vec3({{0, 0, 0}, {2, 2, 2}});
+  b.append("animations", {{"samplers", {{{"input", times}, {"output", scales}}}},
+                          {"channels", {{{"sampler", 0}, {"target", {{"node", lamp}, {"path", "scale"}}}}}}});
+  SceneQuestion question;
+  question.scene = testing::TempDir() + "growing_lamp.glb";
+  writeFile(question.scene, b.glb());
+  question.light = "lamp";
+  question.lightSettings = {"lamp.position=3,4,5", "lamp.rotation=0,0,0", "lamp.intensity=8"};
+  View view = open(question);
+  ASSERT_EQ(view.pose.lights.size(), 1u);
+  EXPECT_EQ(view.pose.lights[0].emission, glm::vec3(0));
+  EXPECT_FALSE(isEditable(view.scene, view.pose, 0));
+  moveTo(view, question, 1);
+  ASSERT_EQ(view.pose.lights.size(), 1u);
+  EXPECT_LT(glm::distance(glm::vec3(view.pose.lights[0].position), glm::vec3(3, 4, 5)), 1e-5f);
+  EXPECT_LT(glm::distance(glm::vec3(view.pose.lights[0].emission), glm::vec3(2, 1, 0.5f)), 1e-5f)
+      << "8 W/sr over 4 m2";
+}
+
 /// Default lights stand where the command's camera stands, however it was reached.
 TEST(Relight, DefaultLightsFollowTheCamera) {
   SceneQuestion options;
