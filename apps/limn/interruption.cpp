@@ -6,6 +6,8 @@
 #include <array>
 #include <cstring>
 
+#include "apps/limn/options.h"
+
 namespace limn::app {
 namespace {
 
@@ -14,7 +16,7 @@ volatile std::sig_atomic_t noted = 0;
 std::array<char, 1024> words{};
 
 void endAtOnce(int signal) {
-  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, words.data(), std::strlen(words.data()));
+  [[maybe_unused]] const ssize_t written = write(errorDescriptor(), words.data(), std::strlen(words.data()));
   _exit(128 + signal);
 }
 

@@ -26,9 +26,10 @@ class FormerHandlers {
   struct sigaction int_, term_;
 };
 
-/// Makes SIGINT and SIGTERM write "limn: LINE" to stderr and end the program at once while an object of this
-/// class lives; child processes that die with the program (apps/limn/worker.h) end too. The class is for work
-/// whose files are written whole or not at all. If several objects live, the innermost one writes its line.
+/// Makes SIGINT and SIGTERM write "limn: LINE" to stderr, as sayError() does, and end the program at once
+/// while an object of this class lives; child processes that die with the program (apps/limn/worker.h) end
+/// too. The class is for work whose files are written whole or not at all. If several objects live, the
+/// innermost one writes its line.
 class LastWords {
  public:
   explicit LastWords(const std::string& line);

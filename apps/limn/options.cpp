@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -24,7 +25,8 @@ namespace limn::app {
 namespace fs = std::filesystem;
 namespace {
 
-int errorFile = STDERR_FILENO;
+std::atomic<int> errorFile = STDERR_FILENO;
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler reads it");
 
 }  // namespace
 
@@ -100,6 +102,7 @@ ContextOptions BackendOptions::contextOptions() const {
   options.device = device;
   options.debug = debug;
   options.visible = false;
+  options.warn = warn;
   return options;
 }
 
@@ -124,6 +127,10 @@ void sayError(const std::string& message) {
   dprintf(errorFile, "limn: %s\n", oneLine(message, 4000).c_str());
 }
 
+int errorDescriptor() {
+  return errorFile;
+}
+
 SilentStderr::SilentStderr() {
   errorFile = dup(STDERR_FILENO);
   const int nothing = open("/dev/null", O_WRONLY | O_CLOEXEC);
@@ -134,7 +141,7 @@ SilentStderr::SilentStderr() {
 SilentStderr::~SilentStderr() {
   std::fflush(stderr);
   dup2(errorFile, STDERR_FILENO);
-  close(std::exchange(errorFile, STDERR_FILENO));
+  close(errorFile.exchange(STDERR_FILENO));
 }
 
 int guarded(const std::function<int()>& work) {

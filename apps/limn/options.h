@@ -69,8 +69,12 @@ void warn(const std::string& message);
 /// Writes an error to stderr, in one line, also while a SilentStderr lives.
 void sayError(const std::string& message);
 
-/// While one lives, what anybody writes to stderr is lost, except what sayError() writes. Only one object may
-/// live at a time.
+/// Returns the file descriptor to which errors go, also while a SilentStderr lives. A signal handler may call
+/// it.
+int errorDescriptor();
+
+/// While one lives, what anybody writes to stderr is lost, except what goes to errorDescriptor(): errors, and
+/// the last words of an interrupted command. Only one object may live at a time.
 class SilentStderr {
  public:
   SilentStderr();

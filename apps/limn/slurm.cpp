@@ -96,6 +96,10 @@ std::string submitSuite(const fs::path& suiteFile, const fs::path& folder, const
   const auto provenance = [&](const bench::Case& c) { return origins.of(c); };
   for (const fs::path& part : finishedParts(out)) bench::mergeResults(part, out, provenance);
   results.check(cases);
+  if (fs::exists(out / "results.jsonl")) {  // merging keeps the folder's rows with the labels of before
+    bench::ResultsFile merged(out / "results.jsonl");
+    bench::restateRows(cases, merged, provenance);
+  }
 
   std::set<std::string> questions;
   for (const bench::Case& c : cases) questions.insert(bench::question(c));

@@ -16,11 +16,12 @@ struct SlurmJob {
   std::vector<std::string> arguments{};
 };
 
-/// Puts what finished parts of the suite left under `out`/parts into `out`, and submits the parts with
-/// unfinished cases: an array job whose tasks have a node for themselves, and a job after it that merges. A
-/// part whose task or node dies is queued again, and goes on where it was. Returns what was done as a line
-/// for people. Throws UsageError when the suite names what does not exist, and Error where Slurm is not
-/// installed or refuses, or while an earlier job of the folder is not finished.
+/// Puts what finished parts of the suite left under `out`/parts into `out`, writes labels and baselines that
+/// the suite changed since into the rows, and submits the parts with unfinished cases: an array job whose
+/// tasks have a node for themselves, and a job after it that merges. A part whose task or node dies is queued
+/// again, and goes on where it was. Returns what was done as a line for people. Throws UsageError when the
+/// suite names what does not exist, and Error where Slurm is not installed or refuses, or while an earlier
+/// job of the folder is not finished.
 std::string submitSuite(const std::filesystem::path& suite, const std::filesystem::path& out,
                         const SuiteRun& run, const SlurmJob& job);
 

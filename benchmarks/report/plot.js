@@ -11,6 +11,7 @@ import {settingsText} from "./series.js";
 
 const MARGIN = {top: 12, right: 16, bottom: 44, left: 58};
 const REACH = 13;  // pixels around a point in which the pointer means it
+const LABEL = {width: 100, height: 16};  // pixels that "as the reference" takes at most
 
 /** From a little below the smallest to a little above the largest; at least a factor of two. */
 export function logDomain(values) {
@@ -50,15 +51,22 @@ function budgetLine(group, x, y, width, height, key, value) {
   ["x1", "x2", "y1", "y2"].forEach((name, i) => group.select("line").attr(name, across[i]));
 }
 
-/** The reference's own method, whose error falls with the square root of its time. */
-function tracedLine(svg, x, y, {ms, sigma}) {
+/**
+ * The reference's own method, whose error falls with the square root of its time. Markers are drawn over its label, which therefore
+ * stands at the first place along the line that they leave free.
+ */
+function tracedLine(svg, x, y, {ms, sigma}, markers) {
   const error = (time) => sigma * Math.sqrt(ms / time), time = (value) => ms * (sigma / value) ** 2;
   const [low, high] = y.domain();
   const start = Math.max(x.domain()[0], time(high)), end = Math.min(x.domain()[1], time(low));
   if (!(start < end)) return;
   const group = svg.append("g").attr("class", "level traced");
   group.append("line").attr("x1", x(start)).attr("x2", x(end)).attr("y1", y(error(start))).attr("y2", y(error(end)));
-  group.append("text").attr("x", x(start) + 6).attr("y", y(error(start)) - 4).text("as the reference");
+  const left = (at) => x(at) + 6, base = (at) => y(error(at)) - 4;
+  const isFree = (at) => left(at) + LABEL.width < x.range()[1] && !markers.some(([px, py]) =>
+    px > left(at) - REACH && px < left(at) + LABEL.width + REACH && Math.abs(py - base(at) + 4) < LABEL.height / 2 + REACH);
+  const place = Array.from({length: 40}, (_, i) => start * (end / start) ** (i / 40)).find(isFree) ?? start;
+  group.append("text").attr("x", left(place)).attr("y", base(place)).text("as the reference");
 }
 
 function frontLine(front, x, y) {
@@ -110,7 +118,7 @@ export function drawPlot(container, {curves, rows, metric, time, level, traced, 
   logAxes(svg, x, y, width, height, [`milliseconds, ${time.label}`, metric.label]);
   if (floor) levelLine(svg, y, floor, width, "noise", "noise of the reference (3 sigma)");
   if (level > 0) levelLine(svg, y, level, width, "separation", "separation floor");
-  if (traced) tracedLine(svg, x, y, traced);
+  if (traced) tracedLine(svg, x, y, traced, points.map((point) => [x(point.ms), place(point.error)]));
   svg.append("path").attr("class", "front").attr("d", frontLine(front, x, place));
   const bound = svg.append("g").attr("class", "level budget").style("display", "none");
   bound.append("line");

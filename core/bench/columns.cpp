@@ -238,6 +238,13 @@ Columns costColumns() {
        {},
        Align::left,
        true},
+      {"outdated",
+       "",
+       "whether another version of the program measured the row than the table's newest; `true` or `false`",
+       [](const Row& row, const Table& table) { return fmt::format("{}", isOutdated(row, table)); },
+       {},
+       Align::left,
+       true},
   };
 }
 

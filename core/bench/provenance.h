@@ -12,7 +12,9 @@ namespace limn::bench {
 
 struct Provenance {
   struct Module {
-    std::string technique, file, hash;
+    std::string technique;
+    std::string file;  ///< its name, which says nothing of the machine; in rows of earlier versions its path
+    std::string hash;
   };
   std::string program;          ///< hash of the program and limn's libraries; "" in rows of earlier versions
   std::string scene;            ///< hash of the scene with every file it names, environment map and grid

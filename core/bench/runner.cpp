@@ -130,6 +130,17 @@ bool hasAllTurns(const Row& row, const Case& c) {
   return row.cost.frameMs.n == 0 || row.cost.frameMs.turns >= c.turns;
 }
 
+/// Brings what the suite says of a row, and nothing was measured of, to what it says now.
+void restate(const Row& row, const Case& c, ResultsFile& results) {
+  const auto said = [](const Case& of) { return std::tie(of.title, of.baseline, of.maxMaskedShare); };
+  if (said(row.what) == said(c)) return;
+  Row now = row;
+  now.what.title = c.title;
+  now.what.baseline = c.baseline;
+  now.what.maxMaskedShare = c.maxMaskedShare;
+  results.append(now);
+}
+
 /// What is unknown differs from nothing.
 bool mayBeEqual(const std::string& a, const std::string& b) {
   return a == b || a.empty() || b.empty();
@@ -181,22 +192,11 @@ class Run {
     return holds ? row : nullptr;
   }
 
-  /// Brings what the suite says of a row, and nothing was measured of, to what it says now.
-  void restate(const Row& row, const Case& c) {
-    const auto said = [](const Case& of) { return std::tie(of.title, of.baseline, of.maxMaskedShare); };
-    if (said(row.what) == said(c)) return;
-    Row now = row;
-    now.what.title = c.title;
-    now.what.baseline = c.baseline;
-    now.what.maxMaskedShare = c.maxMaskedShare;
-    results_.append(now);
-  }
-
   void measure(std::size_t i) {
     const Case& c = cases_[i];
     const std::string key = rowKey(c, renderer_);
     if (const Row* row = finished(c, key)) {
-      restate(*row, c);
+      restate(*row, c, results_);
       ++summary_.skipped;
       return report(i, 1, Progress::State::skipped);
     }
@@ -276,6 +276,17 @@ std::vector<Case> unfinishedCases(std::span<const Case> cases, std::span<const R
     if (!finished) left.push_back(c);
   }
   return left;
+}
+
+void restateRows(std::span<const Case> cases, ResultsFile& results,
+                 const std::function<Provenance(const Case&)>& provenance) {
+  std::map<std::string, const Case*> asked;
+  for (const Case& c : cases) asked.emplace(rowKey(c, ""), &c);
+  for (const Row& row : results.rows()) {
+    const auto found = asked.find(rowKey(row.what, ""));
+    if (found != asked.end() && isValid(row, *found->second, provenance))
+      restate(row, *found->second, results);
+  }
 }
 
 Summary runCases(std::span<const Case> cases, const std::string& renderer, ResultsFile& results,

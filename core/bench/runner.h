@@ -74,6 +74,12 @@ LIMN_API std::map<std::string, int> staleRows(std::span<const Case> cases, const
 LIMN_API std::vector<Case> unfinishedCases(std::span<const Case> cases, std::span<const Row> rows,
                                            const std::function<Provenance(const Case&)>& provenance);
 
+/// Gives the rows of the cases, whatever their renderer, the case's title, baseline and limit where these
+/// have changed and the row holds otherwise; turns may be missing. For rows that no runCases() comes by, such
+/// as merged ones.
+LIMN_API void restateRows(std::span<const Case> cases, ResultsFile& results,
+                          const std::function<Provenance(const Case&)>& provenance);
+
 /// Runs all cases first, then further turns of timing, each of which replaces the rows by longer ones.
 /// `renderer` is recorded in the rows and part of their keys: results of another renderer are measured again.
 /// Rows that hold get the case's title, baseline and limit where these have changed.

@@ -257,7 +257,7 @@ Json rowProperties() {
                             {{"program", text("the program and limn's libraries")},
                              {"scene", text("every file of the scene")},
                              {"techniques", listOf(object("a module", {{"technique", text("its name")},
-                                                                       {"file", text("its file")},
+                                                                       {"file", text("its file's name")},
                                                                        {"hash", text("its hash")}}),
                                                    "the modules of the techniques")}})},
       {"picture", text("PNG file in the folder of the results")},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "core/base/file.h"
@@ -95,19 +96,50 @@ std::string csvField(const std::string& text) {
 
 using Chosen = std::vector<const Column*>;
 
+bool hasCell(const Row& row, const Column& column) {
+  return row.failure.empty() || column.failed;
+}
+
+/// The text that at least two rows have in the column, and no row another; nullopt if there is none. The
+/// technique and the RMSE always have a column: one names the row, in the other failed rows say why.
+std::optional<std::string> commonText(const Column& column, const Table& table) {
+  if (column.csv == "technique" || column.csv == metricInfo(&Metrics::rmse).key) return std::nullopt;
+  std::size_t rows = 0;
+  std::string common;
+  for (const Row& row : table.rows) {
+    if (!hasCell(row, column)) continue;
+    const std::string text = column.shown(row, table);
+    if (rows++ == 0) common = text;
+    if (text != common) return std::nullopt;
+  }
+  return rows > 1 ? std::optional(common) : std::nullopt;
+}
+
+/// The columns of a Markdown table, and what it says once in a line above instead of in a column.
+struct MarkdownParts {
+  Chosen columns;
+  std::string common;
+};
+
 /// Columns that no row knows are left out.
-Chosen markdownColumns(const Table& table) {
-  Chosen chosen;
-  for (const Column& column : columns())
-    if (!column.markdown.empty() && (!column.known || std::ranges::any_of(table.rows, column.known)))
-      chosen.push_back(&column);
-  return chosen;
+MarkdownParts markdownParts(const Table& table) {
+  MarkdownParts parts;
+  for (const Column& column : columns()) {
+    if (column.markdown.empty() || (column.known && std::ranges::none_of(table.rows, column.known))) continue;
+    const std::optional<std::string> text = commonText(column, table);
+    if (!text)
+      parts.columns.push_back(&column);
+    else
+      parts.common += fmt::format("{}{} {}", parts.common.empty() ? "In all rows: " : ", ", column.markdown,
+                                  text->empty() ? "-" : *text);
+  }
+  return parts;
 }
 
 std::vector<std::string> markdownCells(const Chosen& chosen, const Row& row, const Table& table) {
   std::vector<std::string> cells;
   for (const Column* column : chosen)
-    if (row.failure.empty() || column->failed) cells.push_back(column->shown(row, table));
+    if (hasCell(row, *column)) cells.push_back(column->shown(row, table));
   if (!row.failure.empty())
     cells.push_back("failed: " + row.failure);  // a reader fills the line with empty cells
   if (isOutdated(row, table)) cells.front() += " \u2020";
@@ -165,11 +197,13 @@ std::vector<Table> makeTables(std::span<const Row> rows) {
 }
 
 std::string toMarkdown(const Table& table) {
-  const Chosen chosen = markdownColumns(table);
+  const MarkdownParts parts = markdownParts(table);
   std::vector<MarkdownHead> heads;
-  for (const Column* column : chosen) heads.push_back({column->markdown, column->align});
-  std::string text = fmt::format("### {}\n\n{}", markdownText(table.title), markdownHead(heads));
-  for (const Row& row : table.rows) text += markdownRow(markdownCells(chosen, row, table));
+  for (const Column* column : parts.columns) heads.push_back({column->markdown, column->align});
+  std::string text = fmt::format("### {}\n\n", markdownText(table.title));
+  if (!parts.common.empty()) text += markdownText(parts.common) + "\n\n";
+  text += markdownHead(heads);
+  for (const Row& row : table.rows) text += markdownRow(markdownCells(parts.columns, row, table));
   if (std::ranges::any_of(table.rows, [&](const Row& row) { return isOutdated(row, table); }))
     text += "\n\u2020 measured with another version of the program than the newest row\n";
   return text + comparisonMarkdown(table.rows);
@@ -186,7 +220,7 @@ std::string toCsv(const Table& table) {
   std::string text = line([](const Column& column) { return column.csv; });
   for (const Row& row : table.rows)
     text += line([&](const Column& column) {
-      return row.failure.empty() || column.failed ? column.exact(row, table) : std::string();
+      return hasCell(row, column) ? column.exact(row, table) : std::string();
     });
   return text;
 }

@@ -31,10 +31,10 @@ LIMN_API std::vector<Table> makeTables(std::span<const Row> rows);
 
 /// Returns errors, frame time (median, quartiles, number of frames) and memory. Rows on the Pareto front of
 /// RMSE and time carry a star; an RMSE below three times the reference's noise is shown as that bound
-/// ("<0.001"). The column "reference ms" is referenceTime(). Outdated rows have a mark that a line below
-/// explains.
+/// ("<0.001"). The column "reference ms" is referenceTime(). What all rows have alike is said once in a line
+/// above them instead of in a column. Outdated rows have a mark that a line below explains.
 LIMN_API std::string toMarkdown(const Table& table);
-/// Returns the same numbers in full precision, with a header line (RFC 4180). Texts are written unchanged: a
+/// Returns all columns in full precision, with a header line (RFC 4180). Texts are written unchanged: a
 /// spreadsheet may take one that begins with =, +, - or @ for a formula; import such columns as text.
 LIMN_API std::string toCsv(const Table& table);
 

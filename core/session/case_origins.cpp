@@ -67,7 +67,7 @@ bench::Provenance::Module CaseOrigins::module(const std::string& technique) {
   found->second = {technique, "", kMissing};
   try {
     const fs::path file = registry_.fileOf(technique);
-    found->second = {technique, file.string(), bench::hashOfFiles(std::vector<fs::path>{file})};
+    found->second = {technique, file.filename(), bench::hashOfFiles(std::vector<fs::path>{file})};
   } catch (const Error&) {
     // likewise
   }

@@ -41,14 +41,16 @@ class BenchSlurm : public testing::Test {
     fs::permissions(file, fs::perms::owner_exec, fs::perm_options::add);
   }
 
-  void suite(int turns) const {
+  /// `more` are further keys of the last technique.
+  void suite(int turns, const std::string& more = "") const {
     std::ofstream(folder_ / "suite.toml")
         << "name = 'parts'\nsizes = '16x16'\nframes = 1\nwarmup = 0\nterm = 'visibility'\n"
            "reference = {spp = 2}\nturns = "
         << turns
         << "\n[[scenes]]\nscene = 'cornell_box'\nmax_masked_share = 0.5\nlights = ['#0']\n"
            "[[techniques]]\ntechnique = 'hard_shadow_map'\nparameters = {shadow_map_size = 16}\n"
-           "[[techniques]]\ntechnique = 'misbehaver'\n";
+           "[[techniques]]\ntechnique = 'misbehaver'\n"
+        << more;
   }
 
   Outcome submitted() const {
@@ -103,6 +105,19 @@ TEST_F(BenchSlurm, WhatIsMissingStaleOrShortOfTurnsIsMeasured) {
   EXPECT_THAT(merged().out, HasSubstr("2 rows added"));
   EXPECT_EQ(turns(), (std::vector{2, 2}));
   EXPECT_THAT(submitted().out, HasSubstr("all 2 rows are there"));
+}
+
+TEST_F(BenchSlurm, AChangedLabelReachesTheRowsThatAreThere) {
+  submitted();
+  ASSERT_THAT(merged().out, HasSubstr("2 rows added"));
+  const auto tables = [&] { return contents(out_ / "tables.md"); };
+  EXPECT_THAT(tables(), HasSubstr("| misbehaver |"));
+  suite(1, "label = 'Well-behaved'\nbaseline = true\n");
+  EXPECT_THAT(submitted().out, HasSubstr("all 2 rows are there"));
+  EXPECT_THAT(tables(), HasSubstr("| Well-behaved |"));
+  EXPECT_THAT(merged().out, HasSubstr("0 rows added"));
+  EXPECT_THAT(tables(), HasSubstr("| Well-behaved |")) << "the parts hold the label of before";
+  EXPECT_THAT(contents(out_ / "results.jsonl"), HasSubstr("\"title\":\"Well-behaved\",\"baseline\":true"));
 }
 
 TEST_F(BenchSlurm, MergingRefusesWhereNoFolderHasRows) {

@@ -100,6 +100,32 @@ TEST(Interruption, BenchSaysWhatIsKept) {
   EXPECT_EQ(lines(results).size(), 8u);
 }
 
+/// The program that ends at once, and the one that waits for another that measures.
+TEST(Interruption, QuietCommandsHaveLastWordsToo) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "suite.toml")
+      << "name = 'quiet'\nsizes = ['32x20']\nframes = 100000\nwarmup = 0\nreference = {spp = 2}\n"
+         "[[scenes]]\nscene = '"
+      << kCornellBox << "'\nmax_masked_share = 0.05\n[[techniques]]\ntechnique = 'hard_shadow_map'\n";
+  const std::pair<std::vector<std::string>, fs::path> commands[] = {
+      {{"render", kCornellBox, "--size", "16x12", "--frames", "0:100000", "-o", folder / "a.png"},
+       folder / "a.0002.png"},
+      {{"bench", folder / "suite.toml", "-o", folder / "out"}, folder / "out/references"}};
+  for (const auto& [arguments, sign] : commands) {
+    std::vector<std::string> command = arguments;
+    command.insert(command.begin(), kLimnBinary);
+    command.emplace_back("-q");
+    Process process(command);
+    ASSERT_TRUE(process.waitUntil([&, file = sign] { return fs::exists(file); })) << process.err();
+    process.signal(SIGINT);
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.status, 128 + SIGINT) << outcome.err;
+    EXPECT_THAT(outcome.err, testing::StartsWith("limn: interrupted; "));
+    EXPECT_THAT(outcome.err, testing::EndsWith("goes on\n"));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+}
+
 TEST(Interruption, KilledBenchLosesNoRow) {
   const TemporaryFolder folder;
   constexpr size_t cases = 16;

@@ -352,6 +352,19 @@ def sets_the_reference_beside(browser):
         browser.open(page)
         check(browser.evaluate("document.querySelectorAll('.level.traced line').length") == 1, "no line of the reference")
         check("reference ms" in browser.evaluate("document.querySelector('table').textContent"), "no time of the reference")
+    # The first point lies over the beginning of the line, where the label would stand.
+    for row, (ms, error) in zip(rows, ((1, 0.01), (100, 0.1), (100, 0.05), (50, 0.1), (50, 0.05))):
+        row["stats"]["frame_ms"].update(median=ms, q1=ms, q3=ms)
+        row["stats"]["frame_samples_ms"] = [ms] * row["stats"]["frame_ms"]["n"]
+        row["error"].update(rmse=error, noise_floor=0.003)
+        row["reference"]["seconds"] = 0.07
+    with reported(rows):
+        browser.open(page)
+        covered = browser.evaluate("""(label => [...document.querySelectorAll('g.point .marker, g.point .ring')]
+            .map(mark => mark.getBoundingClientRect()).filter(mark => mark.left < label.right && mark.right > label.left &&
+                mark.top < label.bottom && mark.bottom > label.top).length)(
+            document.querySelector('.level.traced text').getBoundingClientRect())""")
+        check(covered == 0, "a marker covers the label of the reference's line")
 
 
 def keeps_machines_and_programs_apart(browser):

@@ -28,6 +28,7 @@ namespace {
 using test::csvRecords;
 using test::exampleCase;
 using test::exampleRow;
+using test::withOtherFigures;
 
 using NamedCells = std::map<std::string, std::string>;
 
@@ -110,7 +111,8 @@ TEST(BenchColumns, CsvSaysWhatWasAsked) {
                                {"parameters", "pcss.samples=16"},
                                {"time_width", "64"},
                                {"time_height", "48"},
-                               {"failure", ""}};
+                               {"failure", ""},
+                               {"outdated", "false"}};
   for (const auto& [name, value] : expected) EXPECT_EQ(cells.at(name), value) << name;
 }
 
@@ -180,6 +182,22 @@ TEST(BenchColumns, FailedRowsSayWhatWasAskedAndWhy) {
   EXPECT_TRUE(shown.at("RMSE").starts_with("failed: ")) << shown.at("RMSE");
 }
 
+TEST(BenchColumns, CsvMarksRowsOfAnotherProgram) {
+  std::vector<Row> rows = {distinctRow(), distinctRow(), distinctRow()};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].what.parameters = {{"pcss.samples", std::to_string(i)}};
+    rows[i].provenance.program = i == 1 ? "2" : "1";
+    rows[i].line = i == 1 ? 3 : 1;
+  }
+  rows[2].failure = "lost";
+  const std::vector<NamedCells> cells = readCsv(toCsv(tableOf(rows)));
+  ASSERT_EQ(cells.size(), 3u);
+  EXPECT_EQ(cells[0].at("outdated"), "true");
+  EXPECT_EQ(cells[1].at("outdated"), "false") << "the newest";
+  EXPECT_EQ(cells[2].at("outdated"), "true") << "failed rows as well";
+  EXPECT_EQ(csvRecords(toCsv(tableOf(rows)))[0].back(), "outdated") << "the columns before keep their places";
+}
+
 TEST(BenchColumns, MarkdownHasEveryColumnUnderItsHead) {
   const Row row = distinctRow();
   const Table table = tableOf({row});
@@ -196,10 +214,9 @@ TEST(BenchColumns, MarkdownHasEveryColumnUnderItsHead) {
 }
 
 TEST(BenchColumns, VisibilityAndBoundsHaveColumnsOfTheirOwn) {
-  Row row = distinctRow();
+  Row row = withOtherFigures(exampleRow(exampleCase("pcss", 64), 0.5, 5));  // no column says the same twice
   row.penumbra.reset();
   row.misjudged.reset();
-  row.cost.bound.reset();
   const NamedCells without = readMarkdown(toMarkdown(tableOf({row}))).at(0);
   const std::vector<NamedCells> with =
       readMarkdown(toMarkdown(Table{.title = "", .fileName = "", .rows = {row, distinctRow()}}));

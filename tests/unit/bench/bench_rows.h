@@ -51,4 +51,18 @@ inline Row exampleRow(const Case& c, double rmse = 0.25, double ms = 2.5) {
   return row;
 }
 
+/// The row with other figures than exampleRow() has, except those that it is given.
+inline Row withOtherFigures(Row row) {
+  row.error.rel_mse = 0.2;
+  row.error.bias = 0.02;
+  row.error.p999 = 0.8;
+  row.error.psnr = 40;
+  row.error.flip = 0.25;
+  row.error.structured = 0.04;
+  row.misjudged = {200, 20, 100, 2};
+  row.cost.frameMs.n = 6;
+  row.cost.memoryBytes = 5 << 20;
+  return row;
+}
+
 }  // namespace limn::bench::test

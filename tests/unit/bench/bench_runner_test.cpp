@@ -379,6 +379,37 @@ TEST_F(BenchRunner, UnfinishedIsWhatLacksAValidRowOfAllTurns) {
   EXPECT_EQ(left(twice, untimed), 0u) << "there are no turns of what is not timed";
 }
 
+/// As in a folder of merged parts, whose rows no run of this process measured.
+TEST_F(BenchRunner, WhatTheSuiteSaysOfRowsIsBroughtUpToDate) {
+  const Provenance now{"program 2", "scene", {}}, then{"program 1", "scene", {}};
+  Case twice = exampleCase("pcss", 16);
+  twice.turns = 2;
+  Row holds = exampleRow(twice), elsewhere = exampleRow(exampleCase("pcss", 64)),
+      stale = exampleRow(exampleCase("vssm")), other = exampleRow(exampleCase("savsm"));
+  elsewhere.cost.renderer = "another GPU";
+  elsewhere.key = rowKey(elsewhere.what, "another GPU");
+  for (Row* row : {&holds, &elsewhere, &other}) row->provenance = now;
+  stale.provenance = then;
+  std::vector<Case> cases = {twice, elsewhere.what, stale.what};
+  for (Case& c : cases) {
+    c.title = "new label";
+    c.baseline = true;
+  }
+  ResultsFile results(path_);
+  for (const Row& row : {holds, elsewhere, stale, other}) results.append(row);
+  restateRows(cases, results, [&](const Case&) { return now; });
+  const std::vector<Row> rows = readRows(path_);
+  ASSERT_EQ(rows.size(), 4u);
+  for (const Row& row : rows) {
+    const bool changed = row.key == holds.key || row.key == elsewhere.key;
+    EXPECT_EQ(row.what.title, changed ? "new label" : "") << row.what.technique;
+    EXPECT_EQ(row.what.baseline, changed) << row.what.technique;
+  }
+  const std::string text = readTextFile(path_);
+  restateRows(cases, results, [&](const Case&) { return now; });
+  EXPECT_EQ(readTextFile(path_), text) << "nothing changed since";
+}
+
 TEST_F(BenchRunner, WhatWasMeasuredWithSomethingElseIsMeasuredAgain) {
   const std::vector<Case> cases = {exampleCase("pcss"), exampleCase("vssm")};
   Fakes fakes;

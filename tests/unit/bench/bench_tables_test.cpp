@@ -16,6 +16,7 @@ namespace {
 using test::csvRecords;
 using test::exampleCase;
 using test::exampleRow;
+using test::withOtherFigures;
 
 TEST(BenchTables, NeverMixModesRenderersOrQuestions) {
   std::vector<Row> rows = {exampleRow(exampleCase("pcss", 16)), exampleRow(exampleCase("pcss", 64))};
@@ -119,7 +120,7 @@ TEST(BenchTables, MarkdownShowsErrorTimeNoiseFloorAndFront) {
   // The second is beaten in both; the third's error is below the noise floor.
   const std::vector<Row> rows = {exampleRow(exampleCase("fast"), 0.25, 1.0),
                                  exampleRow(exampleCase("beaten"), 0.3, 1.5),
-                                 exampleRow(exampleCase("good"), 0.002, 9.0)};
+                                 withOtherFigures(exampleRow(exampleCase("good"), 0.002, 9.0))};
   const std::string text = toMarkdown(makeTables(rows).front());
   EXPECT_NE(text.find("| fast | fast.samples=16 | 0.25 | 0.1 | -0.01 | 0.7 | -inf | 0.1250 | 0.03 | 0.25 | "
                       "5.00 | 1.00 | 1.000 | 0.750 | "
@@ -140,6 +141,47 @@ TEST(BenchTables, MarkdownShowsErrorTimeNoiseFloorAndFront) {
     if (bars == 0) bars = count;
     EXPECT_EQ(count, bars) << line;
   }
+}
+
+/// A column that says the same in every row is a line above the table; CSV has it.
+TEST(BenchTables, MarkdownSaysOnceWhatAllRowsHave) {
+  std::vector<Row> rows = {exampleRow(exampleCase("a"), 0.25, 1.0), exampleRow(exampleCase("b"), 0.3, 1.5)};
+  for (Row& row : rows) {
+    row.what.parameters.clear();
+    row.referenceSeconds.reset();
+    row.cost.split.filters = 0;
+  }
+  const auto text = [&] { return toMarkdown(makeTables(rows).front()); };
+  const std::string head =
+      "| technique | RMSE | penumbra RMSE | median ms | q1 | q3 | p99 / median | fps | maps ms "
+      "| technique ms | front |\n";
+  const std::string common =
+      "\n\nIn all rows: parameters -, rel. MSE 0.1, bias -0.01, p99.9 0.7, PSNR -inf, FLIP 0.1250, "
+      "structured 0.03, lit in umbra % 5.00, dark in light % 1.00, n 5, reference ms -, filters ms 0.00, MiB "
+      "3.0\n\n";
+  EXPECT_NE(text().find(common + head), std::string::npos) << text();
+  EXPECT_NE(text().find("\n| b | 0.3 | 0.3 | 1.500 | 1.250 | 1.750 | 1.33 | 666.7 | 0.75 | 0.38 |  |\n"),
+            std::string::npos)
+      << text();
+  const std::string csv = toCsv(makeTables(rows).front());
+  for (const char* column : {",parameters,", ",rel_mse,", ",filters_ms,", ",reference_ms,"})
+    EXPECT_NE(csv.find(column), std::string::npos) << csv;
+
+  // A row that differs brings the column back. Failed rows have no say, and a column for their message.
+  rows[1].error.flip = 0.25;
+  EXPECT_NE(text().find("| FLIP |"), std::string::npos) << text();
+  EXPECT_EQ(text().find("FLIP 0.1250"), std::string::npos) << text();
+  rows[1] = rows[0];
+  rows[1].what.technique = "b";
+  rows.push_back(rows[0]);
+  rows[2].what.technique = "c";
+  rows[2].failure = "it crashed";
+  EXPECT_NE(text().find("\n\n| technique | RMSE |\n|---|--:|\n| a | 0.25 |\n| b | 0.25 |\n"
+                        "| c | failed: it crashed |\n"),
+            std::string::npos)
+      << text();
+  rows.resize(1);
+  EXPECT_EQ(text().find("In all rows"), std::string::npos) << "one row repeats nothing";
 }
 
 /// As the report page has it: what differs by less than the reference's noise is equally good.
@@ -248,7 +290,8 @@ TEST(BenchTables, CsvKeepsEveryTextAsItIs) {
     EXPECT_EQ(records[1][0], hostile);
     EXPECT_EQ(records[1][2], hostile);
     EXPECT_EQ(records[1][12], hostile);
-    EXPECT_EQ(records[2].back(), hostile);
+    const auto failure = std::ranges::find(records[0], "failure") - records[0].begin();
+    EXPECT_EQ(records[2][static_cast<std::size_t>(failure)], hostile);
   }
 }
 
