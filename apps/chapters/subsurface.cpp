@@ -32,6 +32,8 @@ int main(int argc, char** argv) {
        "Light also enters where the lights look and the camera does not: look at translucent_ear."},
       {"A separable kernel", "hard_shadow_map,separable_subsurface", "",
        "Two blurs of the picture, along rows and columns, stand for the profile."},
+      {"In a texture of the surface", "hard_shadow_map,texture_space_subsurface", "",
+       "The whole surface is lit in a texture, and six Gaussians spread the light there."},
       {"Points on the whole surface", "hard_shadow_map,hierarchical_subsurface", "",
        "A hierarchy of points on the body: light comes through thin parts from where the camera does not "
        "see, as "

@@ -6,11 +6,8 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/gpu_scene/gpu_medium.h"
 #include "core/gpu_scene/gpu_scene.h"
-#include "core/gpu_scene/light_textures.h"
-#include "core/shadow/alike_lights.h"
-#include "core/shadow/shadow_map.h"
+#include "core/shadow/entering_light.h"
 #include "core/shadow/visibility_pass.h"
 #include "core/technique/technique.h"
 #include "techniques/hierarchical_subsurface/body_points.h"
@@ -101,41 +98,23 @@ class HierarchicalSubsurface : public Technique {
 
   frame::BufferHandle addLight(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                const TermRequest& request) {
-    std::map<std::string, std::string> defines{{"LIGHT_COUNT", std::to_string(request.lights.size())},
-                                               {"MEDIUM", inputs.scene.medium.present() ? "1" : "0"}};
-    shadow::ShadowMaps maps;
-    const bool lights = !request.lights.empty();
-    if (lights)
-      maps = inputs.service<shadow::ShadowMapService>().request(
-          request.lights, {.size = inputs.parameters.integer("shadow_map_size")});
+    const shadow::EnteringLight light(inputs, request, inputs.parameters.integer("shadow_map_size"));
     frame::PassBuilder pass = graph.addPass("light points", info.name);
-    pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "which points the camera sees")
-        .read(inputs.gbuffer.depth, Access::sampled, kGBufferNames.depth, "which points the camera sees")
-        .read(inputs.gbuffer.instance, Access::sampled, kGBufferNames.instance, "and of which body")
-        .read(inputs.entering, Access::sampled, "entering", "light that enters at them")
-        .read(lit_, Access::storageLoad, "Points", "places and normals");
-    if (lights) {
-      shadow::readMaps(pass, inputs.gpuScene.device(), maps, defines);
-      pass.read(inputs.handles.lights, Access::storageLoad, "Lights", "what lights send to the others")
-          .read(bodies_, Access::storageLoad, "Bodies", "what boundaries let in");
-      const scene::LightTextureInput textures(inputs.handles);
-      textures.define(defines);
-      textures.declare(pass);
-      const scene::MediumInput medium(inputs.handles);
-      medium.define(defines);
-      if (inputs.scene.medium.present()) medium.declare(pass);
-    }
+    std::map<std::string, std::string> defines;
+    light.declare(pass, inputs, defines);
+    pass.read(lit_, Access::storageLoad, "Points", "places and normals");
+    if (!request.lights.empty()) pass.read(bodies_, Access::storageLoad, "Bodies", "what boundaries let in");
     const size_t bytes = points_->tree().nodes().size() * sizeof(glm::vec4);
     const frame::BufferHandle entering =
         pass.write(graph.createBuffer("light that enters at points", {std::max<size_t>(bytes, 16)}),
                    Access::storageStore, "Entering", "E / pi of each point");
     const auto program = pass.program(
         {.files = {"techniques/hierarchical_subsurface/light_points.comp.glsl"}, .defines = defines});
-    pass.execute([program, lights, count = points_->tree().leafCount(),
+    pass.execute([program, light, count = points_->tree().leafCount(),
                   bias = inputs.parameters.real("bias")](frame::PassContext& context) {
       gpu::Program& kernel = context.use(program);
       kernel.set("point_count", count);
-      if (lights) kernel.set("bias", bias);
+      light.set(kernel, bias);
       context.dispatch(static_cast<int>(count), 1, 1, 64, 1);
     });
     return entering;

@@ -8,52 +8,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <glm/glm.hpp>
 #include <numbers>
 #include <vector>
 
-#include "glsl/diffusion/dipole.glsl"
-#include "glsl/diffusion/normalised.glsl"
+#include "core/scene/diffusion_profile.h"
 #include "techniques/separable_subsurface/line_tap.glsl"
 
 namespace limn::separable_subsurface {
 
-/// Holds one channel of a profile over a plane.
-struct ChannelProfile {
-  double reflectance = 0;               ///< C: of all light that enters, what leaves
-  std::function<double(double)> share;  ///< of the light that leaves, what does so within a radius in metres
-};
-using Profile = std::array<ChannelProfile, 3>;
-
-/// Returns the dipole's profile of a half space, or that of normalised diffusion. `extinction`: sigma_t', per
-/// metre; `absorption`: sigma_a / sigma_t'.
-inline Profile profileOf(const glm::vec3& extinction, const glm::vec3& absorption, float ior,
-                         bool normalised) {
-  const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(ior);
-  Profile result;
-  for (int c = 0; c < 3; ++c) {
-    ChannelProfile& channel = result[static_cast<size_t>(c)];
-    const auto inMeanFreePaths = [scale = static_cast<double>(extinction[c])](double metres) {
-      return static_cast<float>(std::min(metres * scale, 1e10));
-    };
-    if (normalised) {
-      const glsl::NormalisedDiffusion profile =
-          glsl::normalised_diffusion(absorption[c], glsl::walk_reflectance(boundary));
-      channel.reflectance = static_cast<double>(profile.reflectance);
-      channel.share = [=](double radius) {
-        return static_cast<double>(glsl::normalised_diffusion_share(profile, inMeanFreePaths(radius)));
-      };
-    } else {
-      const glsl::DiffusionDipole profile = glsl::diffusion_dipole(absorption[c], boundary);
-      channel.reflectance = static_cast<double>(profile.reflectance);
-      channel.share = [=](double radius) {
-        return static_cast<double>(glsl::diffusion_dipole_share(profile, inMeanFreePaths(radius)));
-      };
-    }
-  }
-  return result;
-}
+using scene::ChannelProfile;
+using scene::Profile;
 
 /// Returns what part of the light that leaves does so within a distance of a line through where it entered,
 /// the integral of p from -distance to distance: the mean of the share within a radius over all directions,
@@ -67,17 +32,6 @@ inline double lineShare(const ChannelProfile& profile, double distance) {
     sum += 30 * u * u * rest * rest * profile.share(distance / std::sin(turn * 0.5 * std::numbers::pi));
   }
   return sum / directions;
-}
-
-/// Returns the distance from which on `holds` is true, in metres from 1e-15 to 1e12: mean free paths are 1e-9
-/// to 1e6.
-inline double leastDistance(const std::function<bool(double)>& holds) {
-  double low = std::log(1e-15), high = std::log(1e12);
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (holds(std::exp(middle)) ? high : low) = middle;
-  }
-  return std::exp(high);
 }
 
 /// Holds the taps of one material.
@@ -102,8 +56,9 @@ inline std::vector<double> tapDistances(const Profile& profile, int count) {
   std::vector<double> result(static_cast<size_t>(count), 0.0);
   if (!(all > 0) || count < 2) return result;
   const double beyond = 0.125 / count;
-  const double reach = leastDistance([&](double distance) { return outside(distance) < beyond * all; });
-  const double start = leastDistance([&](double distance) { return outside(distance) < 0.999 * all; });
+  const double reach =
+      scene::leastDistance([&](double distance) { return outside(distance) < beyond * all; });
+  const double start = scene::leastDistance([&](double distance) { return outside(distance) < 0.999 * all; });
 
   constexpr int cells = 256;  // of distances in equal ratios
   std::array<double, cells + 1> distances{}, dense{};
@@ -159,9 +114,9 @@ inline LineKernel lineKernel(const Profile& profile, int taps) {
       kernel.taps[i].weight[channel] = static_cast<float>(std::max(means[i] - means[i - 1], 0.0));
     kernel.reflectance[channel] = static_cast<float>(profile[c].reflectance);
     if (profile[c].reflectance > 0)
-      kernel.halfRadius =
-          std::max(kernel.halfRadius,
-                   static_cast<float>(leastDistance([&](double r) { return profile[c].share(r) > 0.5; })));
+      kernel.halfRadius = std::max(
+          kernel.halfRadius,
+          static_cast<float>(scene::leastDistance([&](double r) { return profile[c].share(r) > 0.5; })));
   }
   return kernel;
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "glsl/diffusion/dipole.glsl"
+#include "glsl/diffusion/normalised.glsl"
 #include "techniques/separable_subsurface/line_footprint.glsl"
 #include "techniques/separable_subsurface/line_kernel.h"
 
@@ -21,7 +23,7 @@ const vec3 kExtinction = kScattering + kAbsorption;
 constexpr float kSkinIndex = 1.3f;
 
 Profile skin(bool normalised) {
-  return profileOf(kExtinction, kAbsorption / kExtinction, kSkinIndex, normalised);
+  return scene::diffusionProfile(kExtinction, kAbsorption / kExtinction, kSkinIndex, normalised);
 }
 
 dvec3 sumOf(const LineKernel& kernel) {
@@ -57,7 +59,7 @@ TEST(SeparableSubsurface, LinesTakeWhatProfilesHaveInClosedForm) {
   // Without absorption one source's light per area is z / (2 pi s^3), whose integral along a line is
   // z / (pi (x^2 + z^2)); half of the light is that of each source.
   for (const float ior : {1.f, 1.3f, 3.f}) {
-    const Profile still = profileOf(vec3(1), vec3(0), ior, false);
+    const Profile still = scene::diffusionProfile(vec3(1), vec3(0), ior, false);
     const double height =
         static_cast<double>(glsl::diffusion_dipole(0, glsl::diffusion_boundary(ior)).virtual_height);
     for (const double x : {0.01, 0.1, 0.5, 1., 3., 10., 100.})
@@ -94,7 +96,7 @@ TEST(SeparableSubsurface, TapsHoldTheWholeReflectance) {
     for (const float ior : {1.f, 1.3f, 3.f}) {
       for (const float absorption : {0.f, 1e-6f, 0.05f, 0.5f, 1.f}) {
         const Profile profile =
-            profileOf(vec3(10, 1e3, 1e5), vec3(absorption, 0.3f, absorption), ior, normalised);
+            scene::diffusionProfile(vec3(10, 1e3, 1e5), vec3(absorption, 0.3f, absorption), ior, normalised);
         for (const int taps : {1, 2, 3, 25, 255}) {
           const LineKernel kernel = lineKernel(profile, taps);
           ASSERT_EQ(kernel.taps.size(), static_cast<size_t>(taps / 2 + 1));
@@ -144,7 +146,8 @@ TEST(SeparableSubsurface, TapsStayFiniteFarApart) {
   for (const bool normalised : {false, true}) {
     for (const vec3 extinction : {vec3(1e-6f), vec3(1e9f), vec3(1e-6f, 1, 1e9f)}) {
       for (const float absorption : {0.f, 1e-4f, 1.f}) {
-        const LineKernel kernel = lineKernel(profileOf(extinction, vec3(absorption), 1.5f, normalised), 25);
+        const LineKernel kernel =
+            lineKernel(scene::diffusionProfile(extinction, vec3(absorption), 1.5f, normalised), 25);
         EXPECT_NEAR(glm::length(sumOf(kernel) - 1.0), 0, 1e-5);
         EXPECT_TRUE(std::isfinite(kernel.halfRadius));
         for (const glsl::LineTap& tap : kernel.taps) EXPECT_TRUE(std::isfinite(tap.offset));
@@ -159,8 +162,8 @@ TEST(SeparableSubsurface, TapsStayFiniteFarApart) {
 
 TEST(SeparableSubsurface, TapsOfASceneOfAnotherScaleAreScaled) {
   const LineKernel kernel = lineKernel(skin(false), 25);
-  const LineKernel larger =
-      lineKernel(profileOf(1e-4f * kExtinction, kAbsorption / kExtinction, kSkinIndex, false), 25);
+  const LineKernel larger = lineKernel(
+      scene::diffusionProfile(1e-4f * kExtinction, kAbsorption / kExtinction, kSkinIndex, false), 25);
   EXPECT_NEAR(larger.halfRadius / kernel.halfRadius, 1e4, 1);
   for (size_t i = 0; i < kernel.taps.size(); ++i) {
     EXPECT_NEAR(larger.taps[i].offset, 1e4f * kernel.taps[i].offset, 1e-3f * kernel.taps[i].offset * 1e4f);

@@ -1,0 +1,51 @@
+// How far the light of translucent materials goes below a surface, and which materials of a scene scatter
+// alike.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace limn::scene {
+
+/// Holds one channel of a profile over a plane.
+struct ChannelProfile {
+  double reflectance = 0;               ///< C: of all light that enters, what leaves
+  std::function<double(double)> share;  ///< of the light that leaves, what does so within a radius in metres
+};
+using Profile = std::array<ChannelProfile, 3>;
+
+/// Returns the dipole's profile of a half space, or that of normalised diffusion. `extinction`: sigma_t', per
+/// metre; `absorption`: sigma_a / sigma_t'.
+LIMN_API Profile diffusionProfile(const glm::vec3& extinction, const glm::vec3& absorption, float ior,
+                                  bool normalised);
+
+/// Returns the distance from which on `holds` is true, in metres from 1e-15 to 1e12: mean free paths are 1e-9
+/// to 1e6.
+LIMN_API double leastDistance(const std::function<bool(double)>& holds);
+
+/// Holds what translucent materials that scatter alike have in common.
+struct TranslucentKind {
+  glm::vec3 extinction{0};  ///< sigma_t', per metre
+  glm::vec3 absorption{0};  ///< sigma_a / sigma_t'; of the mean albedo where that is textured
+  glm::vec3 albedo{0};      ///< the mean, where it is textured
+  float ior = 1;            ///< 1 to 3
+  bool textured = false;    ///< the albedo is the base colour of each pixel
+};
+
+/// Holds the translucent materials of a scene, those that scatter alike once.
+struct TranslucentKinds {
+  std::vector<TranslucentKind> kinds;
+  std::vector<uint32_t>
+      ofMaterials;        ///< for each material of the scene an index into `kinds`; ~0: it is opaque
+  bool textured = false;  ///< the albedo of at least one kind is
+};
+
+/// Returns the kinds of the scene's translucent materials, none where all are opaque.
+LIMN_API TranslucentKinds translucentKinds(const Scene& scene);
+
+}  // namespace limn::scene

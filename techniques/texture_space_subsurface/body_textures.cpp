@@ -1,0 +1,139 @@
+#include "techniques/texture_space_subsurface/body_textures.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/scene/charts.h"
+#include "core/scene/instance_areas.h"
+#include "glsl/diffusion/boundary.glsl"
+#include "techniques/texture_space_subsurface/gaussians.h"
+
+namespace limn::texture_space {
+namespace {
+
+/// Part of each channel's light that is looked for around a chart: more takes texels from the charts.
+constexpr double kReach = 0.95;
+/// Texels around a chart, at least, from which pixels at its border are interpolated.
+constexpr float kLeastMargin = 4;
+
+bool mirrors(const scene::DrawInstance& draw) {
+  return (glm::determinant(glm::dmat3(glm::dmat4(draw.objectToWorld))) < 0) != draw.mirroredSkin;
+}
+
+/// Returns the vertices of a draw in the world, m.
+std::vector<glm::vec3> placesOf(const scene::Primitive& primitive, const scene::Pose& pose,
+                                const scene::DrawInstance& draw) {
+  std::vector<glm::vec3> places = primitive.positions;
+  if (draw.deformed != scene::kNone) {
+    std::vector<glm::vec3> normals;
+    std::vector<glm::vec4> tangents;
+    scene::deform(primitive, pose.deformed[static_cast<size_t>(draw.deformed)], places, normals, tangents);
+  }
+  for (glm::vec3& p : places) p = glm::vec3(draw.objectToWorld * glm::vec4(p, 1));
+  return places;
+}
+
+float largestExtent(std::span<const glm::vec3> places) {
+  scene::Bounds box;
+  for (const glm::vec3& p : places) box.add(p);
+  const glm::vec3 extent = box.high - box.low;
+  return std::max({extent.x, extent.y, extent.z});
+}
+
+}  // namespace
+
+BodyMatter bodyMatter(const scene::Scene& scene, bool normalised, int count) {
+  scene::TranslucentKinds kinds = scene::translucentKinds(scene);
+  BodyMatter result;
+  result.ofMaterials = std::move(kinds.ofMaterials);
+  result.textured = kinds.textured;
+  for (const scene::TranslucentKind& kind : kinds.kinds) {
+    const scene::Profile profile =
+        scene::diffusionProfile(kind.extinction, kind.absorption, kind.ior, normalised);
+    result.kinds.push_back(
+        {.reflectance = glm::vec3(profile[0].reflectance, profile[1].reflectance, profile[2].reflectance),
+         .eta = kind.ior,
+         .entering = glsl::diffusion_boundary(kind.ior).entering,
+         .textured = kind.textured ? 1u : 0u,
+         .unused = glm::uvec2(0)});
+    for (const Gaussian& g : fitGaussians(profile, count))
+      result.gaussians.push_back({.weight = glm::vec3(g.weight), .sigma = static_cast<float>(g.sigma)});
+    double& reach = result.reach.emplace_back(0);
+    for (const scene::ChannelProfile& channel : profile)
+      if (channel.reflectance > 0) reach = std::max(reach, radiusOfShare(channel, kReach));
+  }
+  return result;
+}
+
+std::vector<LaidOutDraw> translucentDraws(const scene::Scene& scene, const scene::Pose& pose,
+                                          const BodyMatter& matter) {
+  std::vector<LaidOutDraw> result;
+  for (uint32_t draw = 0; draw < pose.instances.size(); ++draw) {
+    const scene::DrawInstance& instance = pose.instances[draw];
+    const auto mesh = static_cast<size_t>(instance.mesh);
+    LaidOutDraw laid{};
+    laid.draw = draw;
+    int material;
+    if (instance.node == scene::kNone) {
+      laid.source = pose.dynamic[mesh].primitive;
+      laid.primitive = laid.source.get();
+      material = scene.dynamic[mesh].material;
+    } else {
+      laid.primitive = &scene.meshes[mesh].primitives[static_cast<size_t>(instance.primitive)];
+      material = laid.primitive->material;
+    }
+    laid.kind = matter.ofMaterials[static_cast<size_t>(material)];
+    if (laid.kind == glsl::no_kind) continue;
+    laid.mirrored = mirrors(instance);
+    laid.areas = scene::areaFactors(instance.objectToWorld);
+    result.push_back(std::move(laid));
+  }
+  return result;
+}
+
+bool fits(const scene::Pose& pose, std::span<const LaidOutDraw> draws) {
+  return std::ranges::all_of(draws, [&](const LaidOutDraw& laid) {
+    const scene::DrawInstance& instance = pose.instances[laid.draw];
+    const bool same =
+        !laid.source || pose.dynamic[static_cast<size_t>(instance.mesh)].primitive == laid.source;
+    return same && mirrors(instance) == laid.mirrored &&
+           scene::areasAlike(scene::areaFactors(instance.objectToWorld), laid.areas);
+  });
+}
+
+BodyTextures bodyTextures(const scene::Pose& pose, std::span<const LaidOutDraw> draws,
+                          const BodyMatter& matter, int texels) {
+  BodyTextures result;
+  for (const LaidOutDraw& laid : draws) {
+    const scene::DrawInstance& instance = pose.instances[laid.draw];
+    const scene::Primitive& primitive = *laid.primitive;
+    const std::vector<glm::vec3> places = placesOf(primitive, pose, instance);
+    const double least = static_cast<double>(kLeastMargin * largestExtent(places)) / texels;
+    std::vector<scene::Chart> charts =
+        scene::makeCharts(places, primitive.indices, std::max(matter.reach[laid.kind], least));
+    const double scale = scene::packCharts(charts, texels);
+    if (!(scale > 0)) continue;
+    CornerRange range{.first = static_cast<uint32_t>(result.corners.size())};
+    const auto add = [&](std::vector<uint32_t> scene::Chart::*triangles) {
+      const size_t before = result.corners.size();
+      for (size_t c = 0; c < charts.size(); ++c)
+        for (const uint32_t t : charts[c].*triangles)
+          for (size_t k = 0; k < 3; ++k) {
+            const uint32_t vertex = primitive.indices[3 * static_cast<size_t>(t) + k];
+            const glm::dvec2 place =
+                glm::dvec2(scene::acrossAxis(places[vertex], charts[c].axis) - charts[c].lowest);
+            result.corners.push_back({.place = glm::vec2(place * scale + glm::dvec2(charts[c].corner)),
+                                      .vertex = vertex,
+                                      .chart = static_cast<uint32_t>(c + 1)});
+          }
+      return static_cast<uint32_t>(result.corners.size() - before);
+    };
+    range.surroundings = add(&scene::Chart::surroundings);
+    range.own = add(&scene::Chart::triangles);
+    result.ranges.push_back(range);
+    result.bodies.push_back({.instance = laid.draw, .kind = laid.kind, .unused = glm::uvec2(0)});
+  }
+  return result;
+}
+
+}  // namespace limn::texture_space

@@ -1,0 +1,65 @@
+// Declares the translucent bodies of a scene, laid out in textures.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/scene/diffusion_profile.h"
+#include "core/scene/scene.h"
+#include "techniques/texture_space_subsurface/body_texture.glsl"
+
+namespace limn::texture_space {
+
+/// Says which corners of BodyTextures::corners a body has.
+struct CornerRange {
+  uint32_t first = 0;
+  uint32_t surroundings = 0;  ///< these come first, so that what charts have of their own lies over them
+  uint32_t own = 0;
+};
+
+/// Holds the layout of each translucent draw of a pose; draws without area have none.
+struct BodyTextures {
+  std::vector<glsl::ChartCorner> corners;
+  std::vector<glsl::TexturedBody> bodies;
+  std::vector<CornerRange> ranges;  ///< of each body
+};
+
+/// Says what the layout of a translucent draw is made for.
+struct LaidOutDraw {
+  uint32_t draw;  ///< index into Pose::instances
+  uint32_t kind;  ///< of its material
+  std::shared_ptr<const scene::Primitive>
+      source;  ///< of dynamic geometry, whose place is then not used again
+  const scene::Primitive* primitive;
+  bool mirrored;
+  glm::dvec3 areas;  ///< scene::areaFactors() of its matrix
+};
+
+/// Holds what is known of the scene's translucent materials.
+struct BodyMatter {
+  std::vector<glsl::TexturedKind> kinds;
+  std::vector<glsl::SurfaceGaussian> gaussians;  ///< `count` for each kind
+  std::vector<double> reach;                     ///< of each kind's light, m
+  std::vector<uint32_t> ofMaterials;             ///< index into `kinds`, glsl::no_kind
+  bool textured = false;
+};
+
+/// Returns the kinds of the scene's translucent materials as sums of `count` Gaussians.
+BodyMatter bodyMatter(const scene::Scene& scene, bool normalised, int count);
+
+/// Returns the translucent draws of a pose.
+std::vector<LaidOutDraw> translucentDraws(const scene::Scene& scene, const scene::Pose& pose,
+                                          const BodyMatter& matter);
+
+/// Returns whether the layouts of draws still serve at another pose with as many instances: none has other
+/// triangles, is mirrored or has areas that changed by more than half.
+bool fits(const scene::Pose& pose, std::span<const LaidOutDraw> draws);
+
+/// Returns the layouts of draws in textures of `texels` x `texels`.
+BodyTextures bodyTextures(const scene::Pose& pose, std::span<const LaidOutDraw> draws,
+                          const BodyMatter& matter, int texels);
+
+}  // namespace limn::texture_space

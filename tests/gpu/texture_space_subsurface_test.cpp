@@ -1,0 +1,137 @@
+// Light below surfaces spread in textures: pictures against closed forms, quadratures and the local limit.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/gpu/subsurface_ball.h"
+#include "tests/gpu/subsurface_spread.h"
+
+namespace limn {
+namespace {
+
+using glm::vec3;
+
+class TextureSpaceSubsurfaceTest : public SubsurfaceSpreadTest {
+ protected:
+  TextureSpaceSubsurfaceTest() : SubsurfaceSpreadTest("texture_space_subsurface") {}
+};
+
+TEST_F(TextureSpaceSubsurfaceTest, UniformLightLeavesByTheReflectance) {
+  for (const float absorption : {0.f, 0.04f}) {
+    const scene::Material material = matter(30, absorption);
+    const scene::Scene scene = lit(material, 5);
+    const Image local = drawn(scene, Term::subsurface, {});
+    for (const bool normalised : {false, true})
+      for (const char* gaussians : {"1", "6", "12"})
+        EXPECT_LT(
+            largestDifference(below(scene, {{"profile", kProfiles[normalised]}, {"gaussians", gaussians}}),
+                              local, reflectanceOverAlbedo(material, normalised)),
+            2e-3)  // the light falls by 1 / 800 towards the corners
+            << kProfiles[normalised] << ' ' << gaussians;
+  }
+}
+
+TEST_F(TextureSpaceSubsurfaceTest, ShortPathsAreTheLocalLimit) {
+  const scene::Material material = matter(1e6f, 0.04f);
+  const scene::Scene scene = lit(material, kLit);
+  const Image local = drawn(scene, Term::subsurface, {});
+  for (const char* texels : {"16", "256"})
+    EXPECT_LT(
+        largestDifference(below(scene, {{"texels", texels}}), local, reflectanceOverAlbedo(material, false)),
+        1e-3)  // the G-buffer's index is off by up to 0.004
+        << texels;
+}
+
+TEST_F(TextureSpaceSubsurfaceTest, EdgesOfShadowsSpreadAsLineIntegralsSay) {
+  expectEdgesAsLineIntegralsSay({{"texels", "512"}}, 0.01);
+}
+
+TEST_F(TextureSpaceSubsurfaceTest, AlbedosOfTheBaseColourAreThoseOfCoefficients) {
+  for (const float absorption : {0.001f, 0.2f}) {
+    scene::Material material = matter(30, absorption);
+    const scene::Scene coefficients = lit(material, kLit);
+    material.subsurface->albedoFromBaseColour = true;
+    const scene::Scene albedo = lit(material, kLit);
+    for (const std::string& profile : kProfiles)
+      EXPECT_LT(
+          rmsDifference(below(albedo, {{"profile", profile}}), below(coefficients, {{"profile", profile}})),
+          2e-3)
+          << profile << ' ' << absorption;
+  }
+}
+
+TEST_F(TextureSpaceSubsurfaceTest, OtherBodiesGetNoLight) {
+  // The shadow reaches a little further than the one of two bodies.
+  const scene::Scene scene = shadowed(matter(30, 0.04f), {1, 0, 0}, 0.05f);
+  EXPECT_GT(inTheDark(belowShadow(scene)), 1);
+  EXPECT_EQ(inTheDark(belowShadow(halves(scene))), 0);
+}
+
+TEST_F(TextureSpaceSubsurfaceTest, LightThatEntersBesideThePictureLeavesInIt) {
+  const scene::Scene scene = shadowed(matter(8, 0.001f), {1, 0, 0}, 0.95f);
+  double entering = 0, leaving = 0;
+  forEachPoint(drawn(scene, Term::subsurface, {technique("hard_shadow_map", {{"shadow_map_size", "2048"}})}),
+               [&](float value, const vec3&) { entering += static_cast<double>(value); });
+  forEachPoint(belowShadow(scene), [&](float value, const vec3&) { leaving += static_cast<double>(value); });
+  EXPECT_EQ(entering, 0) << "the camera sees the shadow alone";
+  EXPECT_GT(leaving, 10);
+}
+
+TEST_F(TextureSpaceSubsurfaceTest, ExtremesStayWithinTheLightThatEnters) {
+  std::vector<Values> choices;
+  for (const std::string& profile : kProfiles)
+    for (const char* texels : {"16", "256"}) choices.push_back({{"profile", profile}, {"texels", texels}});
+  expectNoMoreThanEnters(choices);
+}
+
+TEST_F(TextureSpaceSubsurfaceTest, ScenesWithoutTranslucentMaterialsAreLeftAlone) {
+  expectOpaqueScenesLeftAlone();
+}
+
+TEST_F(TextureSpaceSubsurfaceTest, TexturesLargerThanTheirMemoryAreRefused) {
+  scene::Scene scene = lit(matter(30, 0.04f), kLit);
+  for (int i = 0; i < 2; ++i) scene.nodes.push_back(scene.nodes[0]);
+  try {
+    below(scene, {{"texels", "4096"}});
+    FAIL() << "three textures of 1.5 GiB";
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("4096 x 4096"), std::string::npos) << error.what();
+  }
+}
+
+class TextureSpaceBallTest : public SubsurfaceBallTest {};
+
+// Six charts: light crosses their borders.
+TEST_F(TextureSpaceBallTest, BallsUnderLightFromTheSideMeetTheirWholeIntegral) {
+  constexpr float kMeanDistances = 10;
+  double squares = 0, largest = 0;
+  int index = 0, counted = 0;
+  forEachPoint(drawn(ball(kMeanDistances), Term::subsurface,
+                     {technique("texture_space_subsurface", {{"texels", "512"}})}),
+               [&](float value, const vec3& p) {
+                 if (index++ % 11 != 0) return;
+                 const vec3 normal = glm::normalize(p);
+                 const double error = (static_cast<double>(value) / shownOfOne(p, normal) -
+                                       meanOverBall(normal, kMeanDistances)) /
+                                      entering(1);
+                 squares += error * error;
+                 largest = std::max(largest, std::abs(error));
+                 ++counted;
+               });
+  EXPECT_GT(counted, 500);
+  EXPECT_LT(std::sqrt(squares / counted), 0.02);
+  EXPECT_LT(largest, 0.1);
+}
+
+TEST_F(TextureSpaceBallTest, BallsUnderLightFromTheSideGainNothing) {
+  for (const float meanDistances : {10.f, 3.f, 0.7f})
+    forEachPoint(
+        drawn(ball(meanDistances), Term::subsurface, {technique("texture_space_subsurface")}),
+        [&](float value, const vec3& p) {
+          EXPECT_LE(static_cast<double>(value), 1.002 * shownOfOne(p, glm::normalize(p)) * entering(1))
+              << meanDistances;
+        });
+}
+
+}  // namespace
+}  // namespace limn
