@@ -18,6 +18,8 @@ using glm::vec3;
 constexpr uint32_t kNobody = std::numeric_limits<uint32_t>::max();
 constexpr double kFlat = 1e-6;        ///< height of a triangle over its longest side: less has no direction
 constexpr double kCells = 512;        ///< across a body, where layers of a chart are told apart
+constexpr double kMostCells = 4e6;    ///< of all triangles together
+constexpr float kBack = -0.999f;      ///< cosine between two faces of which one is the other's back
 constexpr float kLayer = 8;           ///< cells by which one layer lies over another; slopes make less
 constexpr float kLeastOwn = 0.2f;     ///< cosine between a chart's axis and its own triangles
 constexpr float kLeastAround = 0.1f;  ///< and those around it
@@ -103,12 +105,19 @@ class TriangleSurface {
       place[order[i]] = same ? place[order[i - 1]] : order[i];
     }
     neighbours_.assign(indices_.size(), kNobody);
-    std::unordered_map<uint64_t, size_t> open;  // edges that one triangle has so far
+    // Edges that one triangle has so far. A triangle and its own back face are no neighbours.
+    std::unordered_multimap<uint64_t, size_t> open;
     for (size_t i = 0; i < 3 * triangles_.size(); ++i) {
       if (flat(static_cast<uint32_t>(i / 3))) continue;
       const uint64_t a = place[indices_[i]], b = place[indices_[i % 3 == 2 ? i - 2 : i + 1]];
-      const auto [found, added] = open.try_emplace(std::min(a, b) << 32 | std::max(a, b), i);
-      if (added) continue;
+      const uint64_t edge = std::min(a, b) << 32 | std::max(a, b);
+      auto [found, end] = open.equal_range(edge);
+      while (found != end && glm::dot(triangles_[i / 3].normal, triangles_[found->second / 3].normal) < kBack)
+        ++found;
+      if (found == end) {
+        open.emplace(edge, i);
+        continue;
+      }
       neighbours_[i] = static_cast<uint32_t>(found->second / 3);
       neighbours_[found->second] = static_cast<uint32_t>(i / 3);
       open.erase(found);
@@ -326,8 +335,9 @@ glm::vec2 acrossAxis(const glm::vec3& point, int axis) {
   return {point[(axis + 1) % 3], point[(axis + 2) % 3]};
 }
 
-std::vector<Chart> makeCharts(std::span<const glm::vec3> positions, std::span<const uint32_t> indices,
-                              double margin) {
+std::optional<std::vector<Chart>> makeCharts(std::span<const glm::vec3> positions,
+                                             std::span<const uint32_t> indices, double margin,
+                                             const ChartLimits& most) {
   const TriangleSurface surface(positions, indices);
   vec3 low(std::numeric_limits<float>::max()), high = -low;
   for (uint32_t t = 0; t < surface.size(); ++t)
@@ -338,16 +348,18 @@ std::vector<Chart> makeCharts(std::span<const glm::vec3> positions, std::span<co
   const Axes axes(surface);
   const vec3 extent = high - low;
   const auto cell =
-      static_cast<float>(static_cast<double>(std::max({extent.x, extent.y, extent.z})) / kCells);
+      static_cast<float>(std::max(static_cast<double>(std::max({extent.x, extent.y, extent.z})) / kCells,
+                                  std::sqrt(surface.area() / kMostCells)));
   std::vector<Chart> charts;
   std::vector<uint32_t> chartOf(surface.size(), kNobody);
-  std::vector<Layers> layers;
+  size_t triangles = surface.size();
   for (uint32_t first = 0; first < surface.size(); ++first) {
     if (surface.flat(first) || chartOf[first] != kNobody) continue;
     const auto index = static_cast<uint32_t>(charts.size());
+    if (index >= most.charts) return std::nullopt;
     Chart chart;
     chart.axis = axes[first];
-    Layers& own = layers.emplace_back(surface, chart.axis, cell);
+    Layers own(surface, chart.axis, cell);
     std::deque<uint32_t> queue{first};
     while (!queue.empty()) {
       const uint32_t t = queue.front();
@@ -359,11 +371,11 @@ std::vector<Chart> makeCharts(std::span<const glm::vec3> positions, std::span<co
         if (chartOf[other] == kNobody && axes[other] == chart.axis) queue.push_back(other);
       });
     }
+    addSurroundings(surface, margin, chartOf, index, own, chart);
+    triangles += chart.surroundings.size();
+    if (triangles > most.triangles) return std::nullopt;
+    measureChart(surface, chart);
     charts.push_back(std::move(chart));
-  }
-  for (uint32_t i = 0; i < charts.size(); ++i) {
-    addSurroundings(surface, margin, chartOf, i, layers[i], charts[i]);
-    measureChart(surface, charts[i]);
   }
   return charts;
 }

@@ -8,6 +8,8 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,12 +29,19 @@ struct Chart {
 /// Returns where a point lies in the plane across an axis.
 LIMN_API glm::vec2 acrossAxis(const glm::vec3& point, int axis);
 
-/// Returns the charts of a body: `positions` in metres, `indices` three for each triangle. Triangles without
-/// area, nearly so (a millionth of the square of their longest side) or with a corner that is not finite are
-/// in none. `margin`: how far around a chart its surroundings
+/// Bounds what makeCharts() makes.
+struct ChartLimits {
+  size_t charts = std::numeric_limits<size_t>::max();
+  size_t triangles = std::numeric_limits<size_t>::max();  ///< of the body and of all surroundings
+};
+
+/// Returns the charts of a body, or nothing where it takes more than `most`: `positions` in metres, `indices`
+/// three for each triangle. Triangles without area, nearly so (a millionth of the square of their longest
+/// side) or with a corner that is not finite are in none. `margin`: how far around a chart its surroundings
 /// go, in metres.
-LIMN_API std::vector<Chart> makeCharts(std::span<const glm::vec3> positions,
-                                       std::span<const uint32_t> indices, double margin);
+LIMN_API std::optional<std::vector<Chart>> makeCharts(std::span<const glm::vec3> positions,
+                                                      std::span<const uint32_t> indices, double margin,
+                                                      const ChartLimits& most = {});
 
 /// Places the charts in a square texture of `texels` x `texels`, a texel apart, as large as they fit. Returns
 /// the texels per metre, 0 if they do not fit.

@@ -6,7 +6,7 @@
 #include "glsl/surface/gbuffer_input.glsl"
 #include "techniques/separable_subsurface/line_tap.glsl"
 #if TEXTURED
-#include "glsl/diffusion/dipole.glsl"
+#include "glsl/diffusion/albedo_reflectance.glsl"
 #include "techniques/separable_subsurface/line_width.glsl"
 #endif
 
@@ -45,10 +45,7 @@ vec3 root_reflectance(LineMaterial m, ivec2 pixel) {
   if (m.textured != 0u) {
     reflectance = gbuffer_colour_decode(texelFetch(gbuffer_albedo, pixel, 0).rgb);
 #if !NORMALISED
-    DiffusionBoundary boundary = diffusion_boundary(m.eta, m.entering);
-    WalkReflectance walk = walk_reflectance(boundary);
-    for (int c = 0; c < 3; ++c)
-      reflectance[c] = diffusion_dipole(walk_absorption(walk, reflectance[c]), boundary).reflectance;
+    reflectance = dipole_reflectance(reflectance, diffusion_boundary(m.eta, m.entering));
 #endif
   }
 #endif

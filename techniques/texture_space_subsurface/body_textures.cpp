@@ -1,8 +1,11 @@
 #include "techniques/texture_space_subsurface/body_textures.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/scene/charts.h"
 #include "core/scene/instance_areas.h"
 #include "glsl/diffusion/boundary.glsl"
@@ -13,8 +16,13 @@ namespace {
 
 /// Part of each channel's light that is looked for around a chart: more takes texels from the charts.
 constexpr double kReach = 0.95;
-/// Texels around a chart, at least, from which pixels at its border are interpolated.
+/// Of a body's extent over its texels: a chart has at least about a texel around it, from which pixels at its
+/// border are interpolated.
 constexpr float kLeastMargin = 4;
+/// A texel may get so much smaller before areas have changed by more than half in each plane: 1.5^(3/2).
+constexpr double kShrinks = 1.84;
+/// Bytes of all textures together.
+constexpr int64_t kMostBytes = int64_t{2} << 30;
 
 bool mirrors(const scene::DrawInstance& draw) {
   return (glm::determinant(glm::dmat3(glm::dmat4(draw.objectToWorld))) < 0) != draw.mirroredSkin;
@@ -101,19 +109,47 @@ bool fits(const scene::Pose& pose, std::span<const LaidOutDraw> draws) {
   });
 }
 
+int firstSpread(const BodyTextures& textures, const BodyMatter& matter, int count) {
+  const auto spreads = [&](int gaussian) {
+    for (size_t i = 0; i < textures.bodies.size(); ++i) {
+      const size_t at = textures.bodies[i].kind * static_cast<size_t>(count) + static_cast<size_t>(gaussian);
+      if (2 * static_cast<double>(matter.gaussians[at].sigma) >= textures.ranges[i].texel) return true;
+    }
+    return false;
+  };
+  int first = 0;
+  while (first < count && !spreads(first)) ++first;
+  return first;
+}
+
 BodyTextures bodyTextures(const scene::Pose& pose, std::span<const LaidOutDraw> draws,
-                          const BodyMatter& matter, int texels) {
+                          const BodyMatter& matter, int texels, const TextureLimits& limits) {
   BodyTextures result;
+  const int64_t mostLayers = std::min(limits.layers, kMostBytes / limits.layerBytes);
+  const auto mostCorners = static_cast<size_t>(limits.cornerBytes) / sizeof(glsl::ChartCorner);
+  const auto slots = static_cast<size_t>(texels / 3);  // a chart takes 3 x 3 texels at least
   for (const LaidOutDraw& laid : draws) {
     const scene::DrawInstance& instance = pose.instances[laid.draw];
     const scene::Primitive& primitive = *laid.primitive;
     const std::vector<glm::vec3> places = placesOf(primitive, pose, instance);
     const double least = static_cast<double>(kLeastMargin * largestExtent(places)) / texels;
-    std::vector<scene::Chart> charts =
-        scene::makeCharts(places, primitive.indices, std::max(matter.reach[laid.kind], least));
-    const double scale = scene::packCharts(charts, texels);
-    if (!(scale > 0)) continue;
-    CornerRange range{.first = static_cast<uint32_t>(result.corners.size())};
+    auto made =
+        scene::makeCharts(places, primitive.indices, std::max(matter.reach[laid.kind], least),
+                          {.charts = slots * slots, .triangles = (mostCorners - result.corners.size()) / 3});
+    if (made && made->empty()) continue;  // it has no area
+    const double scale = made ? scene::packCharts(*made, texels) : 0;
+    if (!(scale > 0)) {
+      ++result.tooMany;
+      continue;
+    }
+    if (static_cast<int64_t>(result.bodies.size()) >= mostLayers)
+      throw UsageError(
+          fmt::format("texture_space_subsurface: {} translucent bodies; textures of {} x {} texels are made "
+                      "for {} at most, with {} MiB",
+                      draws.size(), texels, texels, mostLayers, mostLayers * limits.layerBytes >> 20));
+    const std::vector<scene::Chart>& charts = *made;
+    CornerRange range{.first = static_cast<uint32_t>(result.corners.size()),
+                      .texel = instance.deformed == scene::kNone ? 1 / (scale * kShrinks) : 0};
     const auto add = [&](std::vector<uint32_t> scene::Chart::*triangles) {
       const size_t before = result.corners.size();
       for (size_t c = 0; c < charts.size(); ++c)

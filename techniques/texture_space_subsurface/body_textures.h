@@ -18,6 +18,7 @@ struct CornerRange {
   uint32_t first = 0;
   uint32_t surroundings = 0;  ///< these come first, so that what charts have of their own lies over them
   uint32_t own = 0;
+  double texel = 0;  ///< m: no texel gets smaller while fits() holds; 0: not known, the body deforms
 };
 
 /// Holds the layout of each translucent draw of a pose; draws without area have none.
@@ -25,6 +26,14 @@ struct BodyTextures {
   std::vector<glsl::ChartCorner> corners;
   std::vector<glsl::TexturedBody> bodies;
   std::vector<CornerRange> ranges;  ///< of each body
+  size_t tooMany = 0;               ///< draws whose charts do not fit a texture, or whose triangles a buffer
+};
+
+/// Bounds what a device takes.
+struct TextureLimits {
+  int64_t layers;       ///< of a texture
+  int64_t layerBytes;   ///< in one layer of all textures
+  int64_t cornerBytes;  ///< in a storage block
 };
 
 /// Says what the layout of a translucent draw is made for.
@@ -58,8 +67,13 @@ std::vector<LaidOutDraw> translucentDraws(const scene::Scene& scene, const scene
 /// triangles, is mirrored or has areas that changed by more than half.
 bool fits(const scene::Pose& pose, std::span<const LaidOutDraw> draws);
 
-/// Returns the layouts of draws in textures of `texels` x `texels`.
+/// Returns the first of a kind's `count` Gaussians that is spread in a texel of any body: half as wide as it
+/// or wider. `count`: none.
+int firstSpread(const BodyTextures& textures, const BodyMatter& matter, int count);
+
+/// Returns the layouts of draws in textures of `texels` x `texels`. Throws UsageError for more layers than
+/// there may be.
 BodyTextures bodyTextures(const scene::Pose& pose, std::span<const LaidOutDraw> draws,
-                          const BodyMatter& matter, int texels);
+                          const BodyMatter& matter, int texels, const TextureLimits& limits);
 
 }  // namespace limn::texture_space

@@ -2,8 +2,7 @@
 // that are narrower than texels is that of the pixel, and so is all light of bodies without charts. CHARTS 1: there are some with
 // charts. TEXTURED 1: the albedo of a material may be that of the pixel. NORMALISED 1: what it reflects is what normalised
 // diffusion does, 0: what the dipole does.
-#include "glsl/diffusion/dipole.glsl"
-#include "glsl/diffusion/normalised.glsl"
+#include "glsl/diffusion/albedo_reflectance.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
 #include "techniques/texture_space_subsurface/body_texture.glsl"
 
@@ -25,14 +24,7 @@ vec3 pixel_reflectance(TexturedKind kind, DiffusionBoundary boundary, ivec2 pixe
 #if TEXTURED
   if (kind.textured != 0u) {
     vec3 albedo = gbuffer_colour_decode(texelFetch(gbuffer_albedo, pixel, 0).rgb);
-#if NORMALISED
-    return albedo;
-#else
-    WalkReflectance walk = walk_reflectance(boundary);
-    for (int c = 0; c < 3; ++c)
-      albedo[c] = diffusion_dipole(walk_absorption(walk, albedo[c]), boundary).reflectance;
-    return albedo;
-#endif
+    return NORMALISED != 0 ? albedo : dipole_reflectance(albedo, boundary);
   }
 #endif
   return kind.reflectance;

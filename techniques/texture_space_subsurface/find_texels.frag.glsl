@@ -8,7 +8,7 @@ uniform usampler2D gbuffer_instance;
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   float depth = texelFetch(gbuffer_depth, pixel, 0).x;
-  bool seen = texelFetch(gbuffer_instance, pixel, 0).x == part.z && abs(1.0 / gl_FragCoord.w - depth) <= 0.01 * depth;
+  bool seen = texelFetch(gbuffer_instance, pixel, 0).x == part.z && abs(1.0 / gl_FragCoord.w - depth) <= 1e-4 * depth;
   if (!seen) discard;
   found = vec4(place, vec2(part.xy));
 }

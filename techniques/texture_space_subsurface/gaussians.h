@@ -36,28 +36,29 @@ inline std::vector<double> fitWeights(const scene::ChannelProfile& channel, cons
   constexpr double whole = 10;  // how much the sum counts
   const size_t count = sigmas.size();
   const double first = radiusOfShare(channel, 0.02), last = radiusOfShare(channel, 0.995);
-  std::vector<std::vector<double>> parts(count, std::vector<double>(places + 1, whole));
-  std::vector<double> rest(places + 1, whole);
+  std::vector<double> products(count * count, whole * whole), targets(count, whole * whole);
+  double squares = whole * whole;
+  std::vector<double> shares(count);
   for (int k = 0; k < places; ++k) {
-    const auto at = static_cast<size_t>(k);
-    const double r = first * std::pow(last / first, k / (places - 1.0));
-    rest[at] = channel.share(r);
-    for (size_t i = 0; i < count; ++i) parts[i][at] = gaussianShare(sigmas[i], r);
+    const double r = first * std::pow(last / first, k / (places - 1.0)), wanted = channel.share(r);
+    for (size_t i = 0; i < count; ++i) shares[i] = gaussianShare(sigmas[i], r);
+    for (size_t i = 0; i < count; ++i) {
+      targets[i] += shares[i] * wanted;
+      for (size_t j = 0; j < count; ++j) products[i * count + j] += shares[i] * shares[j];
+    }
+    squares += wanted * wanted;
   }
   std::vector<double> weights(count, 0.0);
+  const auto rest = [&](size_t i) {
+    double sum = targets[i];
+    for (size_t j = 0; j < count; ++j) sum -= products[i * count + j] * weights[j];
+    return sum;
+  };
   for (int round = 0; round < rounds; ++round)
-    for (size_t i = 0; i < count; ++i) {
-      double along = 0, square = 0;
-      for (size_t k = 0; k <= places; ++k) {
-        along += parts[i][k] * rest[k];
-        square += parts[i][k] * parts[i][k];
-      }
-      const double changed = std::max(weights[i] + along / square, 0.0) - weights[i];
-      weights[i] += changed;
-      for (size_t k = 0; k <= places; ++k) rest[k] -= changed * parts[i][k];
-    }
-  error = 0;
-  for (const double r : rest) error += r * r;
+    for (size_t i = 0; i < count; ++i)
+      weights[i] = std::max(weights[i] + rest(i) / products[i * count + i], 0.0);
+  error = squares;
+  for (size_t i = 0; i < count; ++i) error -= weights[i] * (targets[i] + rest(i));
   double sum = 0;
   for (const double w : weights) sum += w;
   for (double& w : weights) w = sum > 0 ? w / sum : 1.0 / static_cast<double>(count);

@@ -1,6 +1,6 @@
 // Spreads light along rows (ROWS 1) or columns (0) of the textures, from the Gaussian before this one to this one, and adds what
-// columns give to the light of all Gaussians. FIRST 1: this is the narrowest. Seven taps, a standard deviation apart, over the
-// chart that a texel is in (d'Eon, Luebke and Enderton 2007, section 5).
+// columns give to the light of all Gaussians. FIRST 1: this is the narrowest that is spread; LAST 1: no other follows. Seven taps,
+// a standard deviation apart, over the chart that a texel is in (d'Eon, Luebke and Enderton 2007, section 5).
 #include "glsl/scene/blocks.glsl"
 #include "techniques/texture_space_subsurface/body_texture.glsl"
 
@@ -9,7 +9,9 @@ layout(std430) readonly buffer Bodies { TexturedBody bodies[]; };
 layout(std430) readonly buffer Gaussians { SurfaceGaussian gaussians[]; };
 uniform sampler2DArray surface_frame;
 uniform sampler2DArray lit;  // a: chart
+#if !LAST
 layout(rgba32f) writeonly uniform image2DArray spread;
+#endif
 #if !ROWS
 layout(rgba32f) uniform image2DArray leaving;
 #if FIRST
@@ -68,5 +70,7 @@ void main() {
     imageStore(leaving, texel, vec4(before + part * light, here.w));
 #endif
   }
+#if !LAST
   imageStore(spread, texel, vec4(light, here.w));
+#endif
 }

@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "core/base/error.h"
 #include "core/gpu_scene/gpu_scene.h"
 #include "core/shadow/entering_light.h"
 #include "core/shadow/visibility_pass.h"
@@ -45,8 +44,8 @@ constexpr StressCase kStress[] = {
      .scene = "translucent_spheres",
      .factor = 0},
 };
-/// Of all textures together.
-constexpr int64_t kMostBytes = int64_t{2} << 30;
+/// Places, frames, light that enters, along rows and columns, and that leaves: RGBA32F each.
+constexpr int64_t kTexelBytes = 6 * 16;
 
 class TextureSpaceSubsurface : public Technique {
  public:
@@ -83,23 +82,27 @@ class Passes {
   };
 
   Passes(frame::FrameGraph& graph, const TechniqueInputs& inputs,
-         std::vector<texture_space::CornerRange> ranges, bool textured, const Handles& handles,
+         std::vector<texture_space::CornerRange> ranges, int first, bool textured, const Handles& handles,
          GLuint vertexArray)
       : graph_(graph),
         inputs_(inputs),
         ranges_(std::move(ranges)),
+        first_(first),
         textured_(textured),
         handles_(handles),
         vertexArray_(vertexArray) {}
 
   /// Adds what leaves translucent surfaces to the request's target, and returns it after that.
   TextureHandle add(const TermRequest& request) {
-    if (ranges_.empty()) return addExit({}, request.target);
+    if (first_ == gaussians()) {
+      graph_.leaveOut("lay surfaces out", kName, "no light goes as far as half a texel");
+      return addExit({}, request.target);
+    }
     addLayout();
     addLight(request);
     leaving_ = texture("light that leaves", GL_RGBA32F);
     TextureHandle lit = entered_;
-    for (int i = 0; i < gaussians(); ++i) lit = addSpread(addSpread(lit, i, true), i, false);
+    for (int i = first_; i < gaussians(); ++i) lit = addSpread(addSpread(lit, i, true), i, false);
     return addExit(addSearch(), request.target);
   }
 
@@ -177,23 +180,28 @@ class Passes {
     });
   }
 
+  /// Returns the light of a Gaussian along rows, or along both; empty where no other follows.
   TextureHandle addSpread(TextureHandle lit, int index, bool rows) {
+    const bool last = !rows && index + 1 == gaussians();
     frame::PassBuilder pass = graph_.addPass(rows ? "rows" : "columns", kName);
     gpu::ProgramDesc program{.files = {file("spread.comp")},
                              .defines = {{"ROWS", rows ? "1" : "0"},
-                                         {"FIRST", index == 0 ? "1" : "0"},
+                                         {"FIRST", index == first_ ? "1" : "0"},
+                                         {"LAST", last ? "1" : "0"},
                                          {"GAUSSIANS", std::to_string(gaussians())}}};
     pass.read(handles_.bodies, Access::storageLoad, "Bodies", "which matter layers are of")
         .read(handles_.gaussians, Access::storageLoad, "Gaussians", "how far light goes")
         .read(frame_, Access::sampled, "surface_frame", "sizes of texels")
         .read(lit, Access::sampled, "lit", "light to spread");
-    if (!rows && index == 0) pass.read(entered_, Access::sampled, "entered", "light of narrow Gaussians");
-    const TextureHandle result =
-        pass.write(texture(rows ? "light along rows" : "light along columns", GL_RGBA32F), Access::imageStore,
-                   "spread", "light of this Gaussian");
+    if (!rows && index == first_)
+      pass.read(entered_, Access::sampled, "entered", "light of narrow Gaussians");
+    TextureHandle result;
+    if (!last)
+      result = pass.write(texture(rows ? "light along rows" : "light along columns", GL_RGBA32F),
+                          Access::imageStore, "spread", "light of this Gaussian");
     if (!rows)
-      leaving_ = pass.write(leaving_, index == 0 ? Access::imageStore : Access::imageLoadStore, "leaving",
-                            "light of all Gaussians");
+      leaving_ = pass.write(leaving_, index == first_ ? Access::imageStore : Access::imageLoadStore,
+                            "leaving", "light of all Gaussians");
     const auto kernel = pass.program(std::move(program));
     pass.execute([kernel, index, texels = texels(), layers = layers()](frame::PassContext& context) {
       context.use(kernel).set("gaussian", static_cast<unsigned>(index));
@@ -244,11 +252,12 @@ class Passes {
 
   TextureHandle addExit(TextureHandle found, TextureHandle target) {
     const GBuffer& gbuffer = inputs_.gbuffer;
+    const bool charts = static_cast<bool>(found);
     frame::PassBuilder pass = graph_.addPass("exit", kName);
     gpu::ProgramDesc program{
         .files = {file("exit.comp")},
         .defines = {{"TEXTURED", textured_ ? "1" : "0"},
-                    {"CHARTS", ranges_.empty() ? "0" : "1"},
+                    {"CHARTS", charts ? "1" : "0"},
                     {"NORMALISED", inputs_.parameters.choice("profile") == normalisedDiffusion ? "1" : "0"},
                     {"GAUSSIANS", std::to_string(gaussians())}}};
     pass.read(inputs_.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
@@ -258,7 +267,7 @@ class Passes {
         .read(handles_.ofMaterials, Access::storageLoad, "KindsOfMaterials", "which are translucent")
         .read(handles_.kinds, Access::storageLoad, "Kinds", "what they reflect")
         .read(inputs_.entering, Access::sampled, "entering", "light of narrow Gaussians");
-    if (!ranges_.empty())
+    if (charts)
       pass.read(handles_.gaussians, Access::storageLoad, "Gaussians", "which are narrower than texels")
           .read(found, Access::sampled, "found", "texels of pixels")
           .read(frame_, Access::sampled, "surface_frame", "sizes of texels")
@@ -278,29 +287,12 @@ class Passes {
   frame::FrameGraph& graph_;
   const TechniqueInputs& inputs_;
   std::vector<texture_space::CornerRange> ranges_;
+  int first_;  ///< Gaussian that is spread
   bool textured_;
   Handles handles_;
   GLuint vertexArray_;
   TextureHandle place_, frame_, entered_, leaving_;
 };
-
-/// Throws UsageError where the textures are larger than a device takes.
-void checkTextures(const BodyTextures& textures, int texels, const gpu::Limits& limits) {
-  constexpr int64_t perTexel =
-      6 * 16;  // places, frames, light that enters, along rows and columns, that leaves
-  const auto bodies = static_cast<int64_t>(textures.bodies.size());
-  const int64_t bytes = bodies * texels * texels * perTexel;
-  if (bytes > kMostBytes || bodies > limits.maxArrayLayers || texels > limits.maxTextureSize)
-    throw UsageError(
-        fmt::format("texture_space_subsurface: textures of {} x {} texels for {} bodies take {} MiB; "
-                    "at most {} bodies and {} MiB",
-                    texels, texels, bodies, bytes >> 20, limits.maxArrayLayers, kMostBytes >> 20));
-  const auto corners = static_cast<int64_t>(textures.corners.size() * sizeof(glsl::ChartCorner));
-  if (corners > limits.maxStorageBlockBytes)
-    throw UsageError(
-        fmt::format("texture_space_subsurface: {} triangles take {} MiB; a storage block holds {}",
-                    textures.corners.size() / 3, corners >> 20, limits.maxStorageBlockBytes >> 20));
-}
 
 TextureHandle TextureSpaceSubsurface::addPasses(frame::FrameGraph& graph, const TechniqueInputs& inputs,
                                                 const TermRequest& request) {
@@ -314,17 +306,26 @@ TextureHandle TextureSpaceSubsurface::addPasses(frame::FrameGraph& graph, const 
   }
   const int texels = p.integer("texels");
   draws_ = texture_space::translucentDraws(inputs.scene, inputs.pose, matter);
-  const BodyTextures textures = texture_space::bodyTextures(inputs.pose, draws_, matter, texels);
-  checkTextures(textures, texels, inputs.gpuScene.device().limits());
-  if (textures.bodies.empty()) graph.leaveOut("lay surfaces out", info.name, "no translucent body has area");
   gpu::Device& device = inputs.gpuScene.device();
+  const gpu::Limits& limits = device.limits();
+  const BodyTextures textures = texture_space::bodyTextures(inputs.pose, draws_, matter, texels,
+                                                            {.layers = limits.maxArrayLayers,
+                                                             .layerBytes = kTexelBytes * texels * texels,
+                                                             .cornerBytes = limits.maxStorageBlockBytes});
+  if (textures.tooMany > 0)
+    graph.leaveOut(
+        "lay finely cut surfaces out", info.name,
+        fmt::format("{} bodies have more charts or triangles than {} x {} texels and a buffer hold: "
+                    "light leaves them where it enters",
+                    textures.tooMany, texels, texels));
   buffers_.emplace(gpu::Buffer::of<glsl::ChartCorner>(device, "corners of charts", textures.corners),
                    gpu::Buffer::of<glsl::TexturedBody>(device, "bodies of textures", textures.bodies),
                    gpu::Buffer::of<glsl::TexturedKind>(device, "kinds of matter", matter.kinds),
                    gpu::Buffer::of<glsl::SurfaceGaussian>(device, "Gaussians of matter", matter.gaussians),
                    gpu::Buffer::of<uint32_t>(device, "matter of materials", matter.ofMaterials));
   vertexArray_ = gpu::VertexArray(device, {});
-  return Passes(graph, inputs, textures.ranges, matter.textured,
+  return Passes(graph, inputs, textures.ranges,
+                texture_space::firstSpread(textures, matter, p.integer("gaussians")), matter.textured,
                 {.corners = graph.importBuffer("corners of charts", buffers_->corners),
                  .bodies = graph.importBuffer("bodies of textures", buffers_->bodies),
                  .kinds = graph.importBuffer("kinds of matter", buffers_->kinds),

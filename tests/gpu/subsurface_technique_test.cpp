@@ -162,6 +162,27 @@ TEST_F(SubsurfaceTechniqueTest, SourcesScatterAsMeshesDo) {
   }
 }
 
+/// Morphed geometry scatters what the mesh does that it comes to.
+TEST_F(SubsurfaceTechniqueTest, MorphedBodiesScatterAsMeshesDo) {
+  const scene::Scene mesh = ball(0.1f);
+  scene::Scene morphed = mesh;
+  scene::Primitive& body = morphed.meshes[0].primitives[0];
+  scene::MorphTarget& target = body.morphTargets.emplace_back();
+  for (vec3& p : body.positions) {
+    target.positions.push_back(vec3(0.3f, 0.5f * p.y, 0));
+    target.deltaBounds.add(target.positions.back());
+    p -= target.positions.back();
+  }
+  target.deltaBounds.add(vec3(0));
+  morphed.meshes[0].morphWeights = {1};
+  morphed.nodes[0].morphWeights = {1};
+  for (const render::TechniqueUse& use : uses()) {
+    SCOPED_TRACE(use.plugin->info->name);
+    const Image expected = drawn(mesh, {use});
+    EXPECT_LT(rmse(drawn(morphed, {use}), expected), 0.01 * mean(expected));
+  }
+}
+
 /// Bodies that appear, grow or are mirrored look as they do in a renderer that never saw them otherwise.
 TEST_F(SubsurfaceTechniqueTest, BodiesThatGrewAreThoseOfAFreshStart) {
   scene::Scene scene = ball(0.1f);

@@ -1,4 +1,5 @@
 // Light below surfaces spread in textures: pictures against closed forms, quadratures and the local limit.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -86,6 +87,49 @@ TEST_F(TextureSpaceSubsurfaceTest, ExtremesStayWithinTheLightThatEnters) {
 
 TEST_F(TextureSpaceSubsurfaceTest, ScenesWithoutTranslucentMaterialsAreLeftAlone) {
   expectOpaqueScenesLeftAlone();
+}
+
+TEST_F(TextureSpaceSubsurfaceTest, GaussiansThatAreNotSpreadHaveNoPasses) {
+  const auto spreads = [&](float extinction) {
+    std::vector<frame::PassReport> passes;
+    drawn(lit(matter(extinction, 0.04f), kLit), Term::subsurface, {technique("texture_space_subsurface")},
+          &passes);
+    int count = 0;
+    for (const frame::PassReport& pass : passes)
+      count += pass.technique == "texture_space_subsurface" && pass.state == frame::PassState::run &&
+               (pass.name.starts_with("rows") || pass.name.starts_with("columns"));
+    return count;
+  };
+  EXPECT_EQ(spreads(1e6f), 0);
+  EXPECT_GT(spreads(100), 2);
+  EXPECT_LT(spreads(100), 12);
+  EXPECT_EQ(spreads(1), 12);
+}
+
+TEST_F(TextureSpaceSubsurfaceTest, BodiesOfMoreChartsThanFitHaveTheLocalLimitAndAreNamed) {
+  const scene::Material material = matter(30, 0.04f);
+  scene::Scene scene = lit(material, kLit);
+  scene::Primitive& floor = scene.meshes[0].primitives[0];
+  const scene::Primitive one = floor;
+  for (int i = 1; i < 30; ++i) {  // one over the other, and none touches another
+    const auto first = static_cast<uint32_t>(floor.positions.size());
+    for (size_t k = 0; k < one.positions.size(); ++k) {
+      floor.positions.push_back(one.positions[k] - vec3(0, 0.1f * static_cast<float>(i), 0));
+      floor.normals.push_back(one.normals[k]);
+      if (!one.uvs.empty()) floor.uvs.push_back(one.uvs[k]);
+    }
+    for (const uint32_t k : one.indices) floor.indices.push_back(first + k);
+  }
+  floor = test::finish(std::move(floor));
+  std::vector<frame::PassReport> passes;
+  const Image seen =
+      drawn(scene, Term::subsurface, {technique("texture_space_subsurface", {{"texels", "16"}})}, &passes);
+  EXPECT_LT(
+      largestDifference(seen, drawn(scene, Term::subsurface, {}), reflectanceOverAlbedo(material, false)),
+      1e-3);
+  EXPECT_TRUE(std::ranges::any_of(passes, [](const frame::PassReport& pass) {
+    return pass.name == "lay finely cut surfaces out" && pass.reason.starts_with("1 bodies");
+  }));
 }
 
 TEST_F(TextureSpaceSubsurfaceTest, TexturesLargerThanTheirMemoryAreRefused) {

@@ -97,7 +97,7 @@ void expectEachOnce(const Body& body, const std::vector<Chart>& charts) {
 
 TEST(Charts, SpheresHaveSix) {
   const Body body = sphere(48);
-  std::vector<Chart> charts = makeCharts(body.positions, body.indices, 0.1);
+  std::vector<Chart> charts = *makeCharts(body.positions, body.indices, 0.1);
   EXPECT_EQ(charts.size(), 6u);
   expectEachOnce(body, charts);
   const double scale = packCharts(charts, 256);
@@ -108,7 +108,7 @@ TEST(Charts, SpheresHaveSix) {
 
 TEST(Charts, LayersOfOneSurfaceLieSideBySide) {
   const Body body = helix();
-  std::vector<Chart> charts = makeCharts(body.positions, body.indices, 0);
+  std::vector<Chart> charts = *makeCharts(body.positions, body.indices, 0);
   EXPECT_GE(charts.size(), 2u);
   EXPECT_LE(charts.size(), 8u);
   expectEachOnce(body, charts);
@@ -118,7 +118,8 @@ TEST(Charts, LayersOfOneSurfaceLieSideBySide) {
 TEST(Charts, SurroundingsReachAsFarAsTheMargin) {
   const Body body = sphere(96);
   for (const double margin : {0.05, 0.2}) {
-    for (const Chart& chart : makeCharts(body.positions, body.indices, margin)) {
+    const std::vector<Chart> charts = *makeCharts(body.positions, body.indices, margin);
+    for (const Chart& chart : charts) {
       const std::set<uint32_t> own(chart.triangles.begin(), chart.triangles.end());
       double area = 0, outline = 0;
       for (const uint32_t t : chart.surroundings) {
@@ -137,7 +138,7 @@ TEST(Charts, SmallIslandsJoinWhatIsAroundThem) {
   // Bumps of 60 degrees look along other axes than the plane that they are on.
   const Body body =
       sheet(64, [](vec2 uv) { return vec3(uv.x, 0.02f * std::sin(80 * uv.x) * std::sin(80 * uv.y), uv.y); });
-  std::vector<Chart> charts = makeCharts(body.positions, body.indices, 0.01);
+  std::vector<Chart> charts = *makeCharts(body.positions, body.indices, 0.01);
   EXPECT_LT(charts.size(), 20u);
   expectEachOnce(body, charts);
   EXPECT_EQ(doublyCovered(body, charts, 512, packCharts(charts, 512)), 0u);
@@ -145,10 +146,11 @@ TEST(Charts, SmallIslandsJoinWhatIsAroundThem) {
 
 TEST(Charts, ScaleAndPlaceDoNotMatter) {
   const Body body = sphere(24);
-  const std::vector<Chart> wanted = makeCharts(body.positions, body.indices, 0.1);
+  const std::vector<Chart> wanted = *makeCharts(body.positions, body.indices, 0.1);
   for (const float factor : {1e-4f, 1e4f}) {
     const Body other = sphere(24, factor);
-    std::vector<Chart> charts = makeCharts(other.positions, other.indices, 0.1 * static_cast<double>(factor));
+    std::vector<Chart> charts =
+        *makeCharts(other.positions, other.indices, 0.1 * static_cast<double>(factor));
     ASSERT_EQ(charts.size(), wanted.size());
     std::vector<Chart> packed = wanted;
     EXPECT_NEAR(packCharts(charts, 256) * static_cast<double>(factor) / packCharts(packed, 256), 1, 1e-4);
@@ -160,11 +162,11 @@ TEST(Charts, WhatHasNoAreaHasNoChart) {
                   most = std::numeric_limits<float>::infinity();
   const std::vector<vec3> positions{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {nan, 0, 0}, {0, most, 0}, {0, 0, 1}};
   const std::vector<uint32_t> indices{0, 1, 2, 0, 1, 3, 0, 1, 4, 0, 0, 5, 0, 5, 1};
-  std::vector<Chart> charts = makeCharts(positions, indices, 1);
+  std::vector<Chart> charts = *makeCharts(positions, indices, 1);
   ASSERT_EQ(charts.size(), 1u);
   EXPECT_EQ(charts[0].triangles, std::vector<uint32_t>{4});
   EXPECT_GT(packCharts(charts, 16), 0);
-  std::vector<Chart> none = makeCharts(positions, std::span(indices).first(12), 1);
+  std::vector<Chart> none = *makeCharts(positions, std::span(indices).first(12), 1);
   EXPECT_TRUE(none.empty());
   EXPECT_EQ(packCharts(none, 16), 0);
 }
@@ -178,10 +180,37 @@ TEST(Charts, MoreThanFitHaveNoScale) {
       body.positions.push_back(corner);
     }
   }
-  std::vector<Chart> charts = makeCharts(body.positions, body.indices, 0);
+  std::vector<Chart> charts = *makeCharts(body.positions, body.indices, 0);
   ASSERT_EQ(charts.size(), 100u);
   EXPECT_EQ(packCharts(charts, 16), 0);
   EXPECT_GT(packCharts(charts, 64), 0);
+  EXPECT_TRUE(makeCharts(body.positions, body.indices, 0, {.charts = 100}));
+  EXPECT_FALSE(makeCharts(body.positions, body.indices, 0, {.charts = 99}));
+  const Body ball = sphere(24);
+  EXPECT_TRUE(makeCharts(ball.positions, ball.indices, 1, {.triangles = 20 * ball.triangles()}));
+  EXPECT_FALSE(makeCharts(ball.positions, ball.indices, 1, {.triangles = ball.triangles() + 1}));
+}
+
+TEST(Charts, TrianglesAndTheirOwnBacksAreTwoSheets) {
+  const Body front = sheet(8, [](vec2 uv) { return vec3(uv.x, 0, uv.y); });
+  Body body = front;
+  body.indices.clear();
+  for (size_t i = 0; i < front.indices.size(); i += 3)
+    for (const size_t k : {i, i + 1, i + 2, i, i + 2, i + 1}) body.indices.push_back(front.indices[k]);
+  EXPECT_EQ(makeCharts(body.positions, body.indices, 0)->size(), 2u);
+}
+
+// Sheets that cover all cells take none of them in the end: 28 GB if they did.
+TEST(Charts, StacksTakeLittleMemoryAndTime) {
+  Body body;
+  for (uint32_t i = 0; i < 2000; ++i) {
+    const float height = static_cast<float>(i) / 2000;
+    for (const vec3& corner : {vec3(0, height, 0), vec3(0, height, 1), vec3(1, height, 0)}) {
+      body.indices.push_back(static_cast<uint32_t>(body.positions.size()));
+      body.positions.push_back(corner);
+    }
+  }
+  EXPECT_EQ(makeCharts(body.positions, body.indices, 0.1)->size(), 2000u);
 }
 
 }  // namespace
