@@ -15,7 +15,7 @@ namespace limn::scene {
 
 class GpuDeform {
  public:
-  /// Uploads the rest data. Throws Error where it is larger than a storage buffer of the device.
+  /// Uploads the rest data. Throws UsageError where it is larger than a storage buffer of the device.
   GpuDeform(gpu::Device& device, const Scene& scene);
 
   /// Collects the state of all deformed primitives, whose vertices are written to `targets` (parallel to

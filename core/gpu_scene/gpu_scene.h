@@ -85,8 +85,9 @@ struct SurfacePrograms {
 
 class LIMN_API GpuScene {
  public:
-  /// Uploads geometry, materials and textures. `scene` and `device` must outlive this object. Throws Error
-  /// when out of memory, and where skins or morph targets are larger than a storage buffer of the device.
+  /// Uploads geometry, materials and textures. `scene` and `device` must outlive this object. Throws
+  /// UsageError where vertices, triangles, skins or morph targets are more than a storage buffer of the
+  /// device holds, and Error when out of memory.
   GpuScene(gpu::Device& device, const Scene& scene);
   ~GpuScene();
   GpuScene(const GpuScene&) = delete;
@@ -94,7 +95,8 @@ class LIMN_API GpuScene {
 
   /// Updates the buffers to `pose` as seen by `camera`. Touches what changed in the graph for which import()
   /// was last called (if that still lives: see forget()). Returns true if the structure changed (the number
-  /// of lights or of deformed primitives), so that the graph must be rebuilt.
+  /// of lights or of deformed primitives), so that the graph must be rebuilt. Throws as the constructor does
+  /// where deformed and dynamic geometry makes the vertices or triangles too many.
   bool update(const Pose& pose, const CameraPose& camera, glm::ivec2 size, uint32_t frameIndex);
 
   /// Imports the buffers and declares the deform pass (left out, with the reason, when nothing is deformed).

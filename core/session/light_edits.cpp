@@ -147,15 +147,14 @@ std::vector<std::string> printed(const LightEdits& edits) {
 void applyLightEdits(scene::Scene& scene, const scene::Pose& pose, const LightEdits& edits) {
   for (const auto& [name, edit] : edits) {
     const int light = findNamed("light", name, pose.lightNames);
-    const glsl::Light& now = pose.lights[static_cast<size_t>(light)];
     if (const int node = nodeOf(scene, light); node != scene::kNone)
       apply(scene, pose, light, name, edit, node);
     else if (const auto mesh = meshLightOf(scene, pose, light))
       applyToMesh(scene, pose, light, *mesh, edit);
-    else if (!withoutArea(now))
+    else
       throw UsageError(fmt::format(
           "--set-light {}: only lights of nodes and emissive quads can be changed; this one is {}", name,
-          (now.flags & glsl::light_flag_environment) != 0
+          (pose.lights[static_cast<size_t>(light)].flags & glsl::light_flag_environment) != 0
               ? "part of the environment"
               : "one of several of its mesh, or its mesh is textured, instanced or deformed"));
   }
@@ -171,6 +170,7 @@ bool followTime(const LightEdits& edits) {
 bool isEditable(const scene::Scene& scene, const scene::Pose& pose, int index) {
   const auto first = std::ranges::find(pose.lightNames, pose.lightNames[static_cast<size_t>(index)]);
   if (first - pose.lightNames.begin() != index) return false;
+  if (withoutArea(pose.lights[static_cast<size_t>(index)])) return false;
   return nodeOf(scene, index) != scene::kNone || meshLightOf(scene, pose, index);
 }
 

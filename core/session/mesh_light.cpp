@@ -41,6 +41,18 @@ bool withoutArea(const glsl::Light& light) {
   return (light.flags & glsl::light_flag_geometry) != 0 && light.length_u == 0;
 }
 
+bool appearsLater(const scene::Scene& scene) {
+  if (scene.animations.empty()) return false;
+  const scene::Pose start = scene::evaluate(scene, 0);
+  std::ptrdiff_t parts = 0;
+  for (const scene::DrawInstance& drawn : start.instances)
+    if (drawn.node != scene::kNone)
+      parts += std::ssize(scene.meshes[at(drawn.mesh)].primitives[at(drawn.primitive)].emissiveParts);
+  return parts > std::ranges::count_if(start.lights, [](const glsl::Light& l) {
+           return (l.flags & glsl::light_flag_geometry) != 0 && !withoutArea(l);
+         });
+}
+
 AtRest atRest(const scene::Scene& scene, const scene::Pose& pose, int light, int node) {
   const glsl::Light& now = pose.lights[at(light)];
   if (!scene.animations.empty()) {
@@ -80,7 +92,7 @@ void giveOwnMaterials(scene::Scene& scene) {
 
 std::optional<MeshLight> meshLightOf(const scene::Scene& scene, const scene::Pose& pose, int light) {
   const glsl::Light& l = pose.lights[at(light)];
-  if ((l.flags & glsl::light_flag_geometry) == 0 || withoutArea(l)) return std::nullopt;
+  if ((l.flags & glsl::light_flag_geometry) == 0) return std::nullopt;
   const scene::DrawInstance& drawn = pose.instances[l.own_instance];
   const scene::Node& node = scene.nodes[at(drawn.node)];
   const scene::Mesh& mesh = scene.meshes[at(drawn.mesh)];
@@ -101,9 +113,11 @@ void applyToMesh(scene::Scene& scene, const scene::Pose& pose, int light, const 
                     pose.lightNames[at(light)]));
   const glsl::Light& now = pose.lights[at(light)];
   const AtRest rest = atRest(scene, pose, light, mesh.node);
+  if (withoutArea(rest.light)) return;
+  const glm::mat3 axes = axesOf(withoutArea(now) ? rest.light : now);
   const glm::vec2 restSize = sizeOf(rest.light), size = edit.size.value_or(restSize);
   if (edit.position || edit.rotation || edit.size) {
-    const glm::mat4 wanted = frameOf(edit.rotation ? rotationOf(*edit.rotation) : axesOf(now),
+    const glm::mat4 wanted = frameOf(edit.rotation ? rotationOf(*edit.rotation) : axes,
                                      edit.position ? glm::vec3(*edit.position - scene.origin) : now.position);
     glm::mat4 scale(1);
     scale[0][0] = size.x / restSize.x;

@@ -214,9 +214,7 @@ void relight(View& view, const SceneQuestion& question) {
 bool movingRelights(const View& view, const SceneQuestion& question, double time) {
   if (view.defaultLights) return true;
   if (time == view.time || view.scene.animations.empty() || question.lightSettings.empty()) return false;
-  // A lamp that has no area at one time has not been edited yet.
-  return followTime(parseLightEdits(question.lightSettings)) ||
-         std::ranges::any_of(view.pose.lights, withoutArea);
+  return view.file.appearsLater || followTime(parseLightEdits(question.lightSettings));
 }
 
 void moveTo(View& view, const SceneQuestion& question, double time) {
@@ -282,8 +280,12 @@ View open(const SceneQuestion& question, const Warn& warn) {
   }
   frame(question, view);
   giveOwnMaterials(view.scene);
-  view.file = {
-      view.scene.nodes, view.scene.lights, {}, view.scene.environment.rotation, view.scene.environment.scale};
+  view.file = {view.scene.nodes,
+               view.scene.lights,
+               {},
+               view.scene.environment.rotation,
+               view.scene.environment.scale,
+               appearsLater(view.scene)};
   for (const scene::Material& material : view.scene.materials)
     view.file.emission.push_back(material.emission);
   if (warn)

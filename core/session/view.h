@@ -24,6 +24,8 @@ struct FileLights {
   std::vector<scene::LightSource> lights;
   std::vector<glm::vec3> emission;  ///< of each material
   float environmentRotation = 0, environmentScale = 1;
+  /// Says whether a lamp gets its area by an animation: it is edited as it is at each time.
+  bool appearsLater = false;
 };
 
 /// Holds the answer to a SceneQuestion: the scene with its lights, its state at a time, and the camera.
@@ -56,8 +58,9 @@ LIMN_API View open(const SceneQuestion& question, const Warn& warn = {});
 /// do not exist.
 LIMN_API void relight(View& view, const SceneQuestion& question);
 
-/// Sets time, pose and camera, and the lights that follow one of them: default lights the camera, and lights
-/// of which --set-light sets the position or rotation alone the time.
+/// Sets time, pose and camera, and the lights that follow one of them, so that all is as open() makes it at
+/// that time: default lights follow the camera; lights of which --set-light sets the position or rotation
+/// alone, and those that have no area at the start of an animation, the time.
 LIMN_API void moveTo(View& view, const SceneQuestion& question, double time);
 /// Says whether moveTo() would call relight(), which may write to materials.
 LIMN_API bool movingRelights(const View& view, const SceneQuestion& question, double time);

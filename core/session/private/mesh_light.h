@@ -16,18 +16,22 @@ struct MeshLight {
 /// Says whether a light is a mesh that has no area now, and therefore gives no light and has neither size nor
 /// rotation.
 bool withoutArea(const glsl::Light& light);
-/// Returns the mesh of a light, or nothing for lights that are not such a mesh: see isEditable().
+/// Says whether an emissive quad has no area at rest, or is no light then, so that what edits make of it
+/// depends on the time at which they are applied (AtRest).
+bool appearsLater(const scene::Scene& scene);
+/// Returns the mesh of a light, or nothing for lights that are not such a mesh: see isEditable(). It may have
+/// no area in `pose`.
 std::optional<MeshLight> meshLightOf(const scene::Scene& scene, const scene::Pose& pose, int light);
 
-/// Changes the node and the material of such a light. Throws UsageError for edits that a shared mesh does not
-/// allow.
+/// Changes the node and the material of such a light; leaves one as it is that has no area, neither at rest
+/// nor in `pose`. Throws UsageError for edits that a shared mesh does not allow.
 void applyToMesh(scene::Scene& scene, const scene::Pose& pose, int light, const MeshLight& mesh,
                  const LightEdit& edit);
 /// Returns the current values of such a light: without size, colour and intensity when its mesh is shared.
 LightEdit describeMesh(const scene::Scene& scene, const glsl::Light& light, const MeshLight& mesh);
 
 /// Holds a light and its node where no animation has moved them yet, so that what is made of them is the same
-/// whatever the time is.
+/// whatever the time is. A mesh that is no light there, or has no area, is held as it is now.
 struct AtRest {
   glsl::Light light;
   glm::mat4 nodeToWorld;
