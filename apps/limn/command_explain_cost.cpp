@@ -27,14 +27,12 @@ struct ExplainCostArguments {
   fs::path out, json;
 };
 
-constexpr double kPatience = 1;  // seconds without a word where there is no terminal
-
 Image referenceImage(const ExplainCostArguments& options, const session::View& view, int interfaces) {
   reference::Request request =
       session::referenceRequest(view, view.pose, view.camera, parseTerm(options.scene.term));
   request.spp = options.spp;
   request.interfaces = interfaces;
-  Progress progress("reference", kPatience);
+  Progress progress("reference", kProgressPatience);
   request.progress = [&](const reference::Progress& state) {
     progress.update(state.fraction, fmt::format("{} spp", state.spp));
     return true;
@@ -65,7 +63,7 @@ int runExplainCost(const ExplainCostArguments& options) {
   renderer.setTime(view.time, view.animation);
   std::vector<bench::SavingResult> results;
   {
-    Progress progress("explain-cost", kPatience);
+    Progress progress("explain-cost", kProgressPatience);
     bench::SavingOptions savings = options.savings;
     savings.progress = [&](double fraction, const std::string& name) { progress.update(fraction, name); };
     results = bench::measureSavings(renderer, view.camera, settings, options.spp > 0 ? &reference : nullptr,

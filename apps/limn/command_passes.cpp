@@ -1,6 +1,7 @@
 // limn passes: the programs of a frame with what they bind, for another engine.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -87,8 +88,16 @@ int runPasses(const PassesArguments& options) {
   renderer.configure(settings);
   renderer.setCamera(view.camera);
   renderer.setTime(view.time, view.animation);
-  const FrameRecord frame = recordFrame(renderer, options.contents);
-
+  FrameRecord frame;
+  {
+    Progress progress("passes");
+    renderer.setCompileProgress([&](int compiled, int wanted) {
+      progress.update(double(compiled) / std::max(1, wanted),
+                      fmt::format("program {} of {}", compiled + 1, wanted));
+    });
+    frame = recordFrame(renderer, options.contents);
+    renderer.setCompileProgress({});
+  }
   context->throwErrors();
 
   removeFiles(options.out, earlier);

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/limn/commands.h"
 #include "apps/limn/interruption.h"
@@ -64,7 +65,15 @@ int runAtVertices(const ReferenceArguments& options, const session::View& view, 
   if (options.out.extension() != ".exr")
     throw UsageError("--at-vertices writes a list; --out takes a name ending in .exr");
   const auto points = reference::vertexPoints(view.scene, view.pose, static_cast<float>(options.longestEdge));
-  const auto irradiance = reference::irradianceAt(request, points, 1e-4f * view.pose.bounds.radius());
+  std::vector<glm::vec3> irradiance;
+  {
+    Progress progress("reference");
+    request.progress = [&](const reference::Progress& state) {
+      progress.update(state.fraction, fmt::format("{} spp, {:.0f} s left", state.spp, state.secondsLeft));
+      return true;
+    };
+    irradiance = reference::irradianceAt(request, points, 1e-4f * view.pose.bounds.radius());
+  }
   Image list = reference::vertexImage(points, irradiance, view.pose.origin);
   sign(list);
   writeImage(options.out, list, 0);

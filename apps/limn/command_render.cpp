@@ -152,6 +152,20 @@ void renderWithProgress(render::Renderer& renderer, Progress& progress, int fram
   renderer.finish();
 }
 
+/// Times `frames` frames, which are said one by one outside of their times.
+render::FrameStats measureWithProgress(render::Renderer& renderer, int frames) {
+  constexpr int warmUp = 3;
+  const int all = warmUp + 2 * frames;  // as a whole, then pass by pass
+  Progress progress("timing", kProgressPatience);
+  int shown = 0;
+  render::Playback playback;
+  playback.beforeFrame = [&] {
+    progress.update(double(shown) / all, fmt::format("frame {} of {}", shown + 1, all));
+    ++shown;
+  };
+  return render::measure(renderer, frames, warmUp, playback);
+}
+
 template <class FrameAt>
 void writeFrames(const RenderArguments& options, const FrameRange& frames, Writer& writer, FrameAt frameAt) {
   LastWords words("interrupted; no frame was written");
@@ -221,11 +235,10 @@ int runRender(const RenderArguments& options) {
     else
       writeFrames(options, *frames, writer, frameAt);
   } else {
-    constexpr double patience = 1;  // seconds
     Image picture;
     {
       const LastWords words("interrupted; no picture was written");
-      Progress progress("rendering", patience);
+      Progress progress("rendering", kProgressPatience);
       int rendered = 0;
       picture = render::supersample(renderer, view.camera, view.size, view.aa, [&] {
         renderWithProgress(renderer, progress, rendered++, framesPerPicture);
@@ -238,7 +251,7 @@ int runRender(const RenderArguments& options) {
   std::optional<render::FrameStats> stats;
   const int repeat = options.repeat > 0 ? options.repeat : (options.stats.empty() ? 0 : 10);
   if (repeat > 0) {
-    stats = render::measure(renderer, repeat);
+    stats = measureWithProgress(renderer, repeat);
     stats->scene = options.scene.scene;
     stats->framesPerPicture = framesPerPicture;
     printStats(*stats);

@@ -96,6 +96,9 @@ void sayInTerminal(const std::string& line);
 /// Says on stderr that the file has been written.
 void sayWritten(const std::filesystem::path& file);
 
+/// Holds the patience, in seconds, of Progress with work that is mostly short.
+constexpr double kProgressPatience = 1;
+
 /// Shows progress on stderr: a bar on a terminal, elsewhere plain lines (at most one every 10 %, none in the
 /// first `patience` seconds).
 class Progress {

@@ -59,6 +59,10 @@ CLI::Option* addSceneFlag(CLI::App& command, SceneQuestion& question, std::strin
     case QuestionKind::real:
     case QuestionKind::optionalReal:
       option->check(CLI::Range(field.range.low, field.range.high));
+      // A value out of the range stands for one that is not given: there is no default to show.
+      if (const auto* member = std::get_if<double SceneQuestion::*>(&field.member);
+          member && question.**member >= field.range.low && question.**member <= field.range.high)
+        option->capture_default_str();
       break;
     case QuestionKind::integer:
       option->check(CLI::Range(static_cast<int>(field.range.low), static_cast<int>(field.range.high)));

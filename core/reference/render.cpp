@@ -14,6 +14,7 @@
 #include "core/reference/private/content_hash.h"
 #include "core/reference/private/film.h"
 #include "core/reference/private/light_tracer.h"
+#include "core/reference/private/validate.h"
 #include "core/reference/reference.h"
 #include "core/scene/camera.h"
 #include "core/scene/medium.h"
@@ -75,29 +76,15 @@ void checkSubsurface(const Request& r) {
 }
 
 void validate(const Request& r) {
-  const int lights = static_cast<int>(r.pose.lights.size());
   if (r.aa < 1 || r.aa > 16) throw UsageError(fmt::format("reference: aa {} is not in 1 .. 16", r.aa));
   if (r.width < 1 || r.height < 1 || r.width > kMaxImageSide / r.aa || r.height > kMaxImageSide / r.aa)
     throw UsageError(fmt::format("reference: size {}x{} with aa {} is not in 1 .. {} per side", r.width,
                                  r.height, r.aa, kMaxImageSide));
-  if (r.spp < 1 || r.spp > (1 << 24))
-    throw UsageError(fmt::format("reference: spp {} is not in 1 .. 2^24", r.spp));
   if (!(r.noise >= 0 && r.noise <= 1))
     throw UsageError(fmt::format("reference: noise {} is not in 0 .. 1 (0: take spp samples)", r.noise));
   if (!contains(kPicturedTerms, r.term))
     throw UsageError(fmt::format("reference: no picture shows the term {} alone", name(r.term)));
-  if (isLightFactor(r.term) && (r.light < 0 || r.light >= lights))
-    throw UsageError(fmt::format("reference: {} needs one light; {} is not in 0 .. {}", name(r.term), r.light,
-                                 lights - 1));
-  checkBounces(r);
-  checkReliefPaths(r);
-  checkSubsurface(r);
-  if (!acceptsInterfaces(r.term, r.interfaces))
-    throw UsageError(fmt::format("reference: interfaces {} with the term {}; {}", r.interfaces, name(r.term),
-                                 acceptedInterfaces(r.term)));
-  if (r.light < kAllLights || r.light > lights)
-    throw UsageError(fmt::format("reference: light {} is not in 0 .. {} ({}: the environment) nor {} (all)",
-                                 r.light, lights, lights, kAllLights));
+  checkLight(r);
 }
 
 std::unique_ptr<Integrator> makeIntegrator(const RayScene& rays, const Request& request) {
@@ -315,6 +302,24 @@ int ownLights(const scene::Pose& pose) {
   };
   return static_cast<int>(std::find_if(pose.lights.begin(), pose.lights.end(), environment) -
                           pose.lights.begin());
+}
+
+void checkLight(const Request& r) {
+  const int lights = static_cast<int>(r.pose.lights.size());
+  if (r.spp < 1 || r.spp > (1 << 24))
+    throw UsageError(fmt::format("reference: spp {} is not in 1 .. 2^24", r.spp));
+  if (isLightFactor(r.term) && (r.light < 0 || r.light >= lights))
+    throw UsageError(fmt::format("reference: {} needs one light; {} is not in 0 .. {}", name(r.term), r.light,
+                                 lights - 1));
+  checkBounces(r);
+  checkReliefPaths(r);
+  checkSubsurface(r);
+  if (!acceptsInterfaces(r.term, r.interfaces))
+    throw UsageError(fmt::format("reference: interfaces {} with the term {}; {}", r.interfaces, name(r.term),
+                                 acceptedInterfaces(r.term)));
+  if (r.light < kAllLights || r.light > lights)
+    throw UsageError(fmt::format("reference: light {} is not in 0 .. {} ({}: the environment) nor {} (all)",
+                                 r.light, lights, lights, kAllLights));
 }
 
 Result render(const Request& request) {

@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <string>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "core/question/term.h"
 #include "core/radiosity/scene_elements.h"
 #include "core/reference/private/integrator.h"
+#include "core/reference/private/validate.h"
 
 namespace limn::reference {
 namespace {
@@ -33,6 +35,13 @@ Surface whiteSurface(const SurfacePoint& point, float clearance) {
   return s;
 }
 
+/// A part of a second's work, so that progress is seen, and enough of it to keep all cores busy.
+uint32_t samplesPerPass(const Request& request, size_t points) {
+  const double work = static_cast<double>(points) * static_cast<double>(1 + request.pose.lights.size()) *
+                      (1.0 + request.bounces);
+  return static_cast<uint32_t>(std::clamp(0x1p21 / std::max(work, 1.0), 1.0, 1024.0));
+}
+
 }  // namespace
 
 std::vector<glm::vec3> irradianceAt(const Request& request, std::span<const SurfacePoint> points,
@@ -40,19 +49,32 @@ std::vector<glm::vec3> irradianceAt(const Request& request, std::span<const Surf
   if (!contains(kVertexTerms, request.term))
     throw UsageError(
         fmt::format("reference: at vertices there are the terms {}", joined(termNames(kVertexTerms))));
+  checkLight(request);
   const RayScene rays(request.scene, request.pose, request.unshadowed);
   const auto integrator = makePathIntegrator(rays, request);
-  std::vector<glm::vec3> result(points.size());
+  const auto wanted = static_cast<uint32_t>(request.spp);
+  const uint32_t passSize = samplesPerPass(request, points.size());
+  std::vector<Sums> sums(points.size());
   tbb::task_arena arena(request.threads > 0 ? request.threads : tbb::task_arena::automatic);
-  arena.execute([&] {
-    tbb::parallel_for(size_t{0}, points.size(), [&](size_t i) {
-      Sums sums{};
-      Sampler sampler(request.seed, i, 0);
-      integrator->sample(whiteSurface(points[i], clearance), sampler, 0, static_cast<uint32_t>(request.spp),
-                         sums);
-      result[i] = glsl::pi * glm::vec3(integrator->estimate(sums, request.spp));
+  const auto start = std::chrono::steady_clock::now();
+  for (uint32_t done = 0; done < wanted;) {
+    const uint32_t count = std::min(passSize, wanted - done);
+    arena.execute([&] {
+      tbb::parallel_for(size_t{0}, points.size(), [&](size_t i) {
+        Sampler sampler(request.seed, i, 0);
+        integrator->sample(whiteSurface(points[i], clearance), sampler, done, count, sums[i]);
+      });
     });
-  });
+    done += count;
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    const Progress progress{.fraction = static_cast<double>(done) / wanted,
+                            .secondsLeft = spent.count() / done * (wanted - done),
+                            .spp = static_cast<int>(done)};
+    if (request.progress && !request.progress(progress) && done < wanted)
+      throw Error(fmt::format("reference: stopped after {} of {} samples per point", done, wanted));
+  }
+  std::vector<glm::vec3> result;
+  for (const Sums& sum : sums) result.push_back(glsl::pi * glm::vec3(integrator->estimate(sum, request.spp)));
   return result;
 }
 

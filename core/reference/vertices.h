@@ -18,8 +18,9 @@ struct SurfacePoint {
 
 /// Returns the irradiance of each point, W/m^2, of the request's term (direct, indirect or final without what
 /// a camera sees of emission), bounces, light, samples and seed; the request's camera and picture are
-/// ignored. Points lie `clearance` metres in front of their surfaces. Throws UsageError for the term
-/// visibility.
+/// ignored. Points lie `clearance` metres in front of their surfaces. Progress is reported after each pass
+/// over the points; the value false ends the work with Error. Throws UsageError for another term, and for
+/// what render() refuses of the light of a request.
 LIMN_API std::vector<glm::vec3> irradianceAt(const Request& request, std::span<const SurfacePoint> points,
                                              float clearance);
 

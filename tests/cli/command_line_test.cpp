@@ -2,8 +2,10 @@
 // fault it is.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/cli/limn_program.h"
 #include "tests/support/gltf_builder.h"
@@ -23,6 +25,17 @@ class Render : public testing::Test {
   TemporaryFolder folder_;
   std::filesystem::path out_ = folder_ / "picture.exr";
 };
+
+/// Names under the heading of the help, one a line, whose descriptions go on further to the right.
+std::vector<std::string> commandsOfHelp() {
+  const std::string help = limn({"--help"}).out, heading = "Subcommands:\n";
+  std::istringstream lines(help.substr(std::min(help.size(), help.find(heading))));
+  std::vector<std::string> names;
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("  ") && line.size() > 2 && line[2] != ' ')
+      names.push_back(line.substr(2, line.find(' ', 2) - 2));
+  return names;
+}
 
 TEST(CommandLine, WrongUsageIsOneLine) {
   expectRefused(limn({}), 2, {"subcommand", "--help"});
@@ -162,13 +175,13 @@ TEST(CommandLine, FlickerMovesLightsAsTheirAnimationsDo) {
 }
 
 TEST(CommandLine, HelpOfEveryCommandIsComplete) {
-  for (const char* command :
-       {"list", "info", "render", "reference", "environment", "brdf", "compare", "flicker", "bench", "stress",
-        "explain-cost", "passes", "report", "reproduction", "view"}) {
+  const std::vector<std::string> commands = commandsOfHelp();
+  EXPECT_THAT(commands, testing::IsSupersetOf({"render", "tune", "view", "completion"}));
+  for (const std::string& command : commands) {
     const Outcome outcome = limn({command, "--help"});
     EXPECT_EQ(outcome.status, 0) << command;
     EXPECT_THAT(outcome.out, HasSubstr("--help")) << command;
-    if (std::string(command) != "view") {
+    if (command != "view" && command != "completion") {
       EXPECT_THAT(outcome.out, HasSubstr("-q,--quiet")) << command;
     }
   }
@@ -296,6 +309,14 @@ TEST_F(Render, SaysWhatItWroteUnlessQuiet) {
   EXPECT_EQ(cost.status, 0) << cost.err;
   EXPECT_EQ(cost.err, "");
   EXPECT_THAT(cost.out, HasSubstr("| left out |"));
+}
+
+TEST_F(Render, SaysWhichFrameItTimes) {
+  std::vector<std::string> timed = command({"--repeat", "100000"});
+  timed.insert(timed.begin(), kLimnBinary);
+  Process process(timed);
+  EXPECT_TRUE(process.waitUntil([&] { return process.err().find("\ntiming: ") != std::string::npos; }))
+      << process.err();
 }
 
 TEST_F(Render, RefusesWhatItDoesNotUnderstand) {

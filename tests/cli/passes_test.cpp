@@ -44,6 +44,13 @@ TEST_F(Passes, SayWhatAShaderIsGiven) {
   EXPECT_TRUE(has(program["names"], {{"name", "visibility"}, {"kind", "image"}, {"written", true}}));
 }
 
+TEST_F(Passes, SayWhichProgramIsCompiledUnlessQuiet) {
+  const Outcome spoken = passes();
+  ASSERT_EQ(spoken.status, 0) << spoken.err;
+  EXPECT_THAT(spoken.err, testing::StartsWith("passes: 0% program 1 of "));
+  EXPECT_EQ(passes({"--quiet"}).err, "");
+}
+
 TEST_F(Passes, AnEarlierFolderIsWrittenAgain) {
   ASSERT_EQ(passes({"--contents", "pcss/visibility"}).status, 0);
   EXPECT_EQ(listing(out_), (std::vector<std::string>{"README.md", "contents", "passes.json", "shaders"}));
@@ -75,10 +82,11 @@ TEST_F(Passes, OtherFoldersAndUnknownPassesAreRefused) {
   out_ = out_ / "mine.txt";
   expectRefused(passes(), 2, {"is a file"});
   out_ = folder_ / "new";
-  expectRefused(passes({"--contents", "pcss/visibilty"}), 2,
+  // Frames are compiled before their passes are known, and that is said.
+  expectRefused(passes({"-q", "--contents", "pcss/visibilty"}), 2,
                 {"'pcss/visibilty'", "did you mean pcss/visibility"});
   EXPECT_FALSE(std::filesystem::exists(out_));
-  expectRefused(passes({"--contents", "core/clear uncovered pixels"}), 2, {"binds nothing to a name"});
+  expectRefused(passes({"-q", "--contents", "core/clear uncovered pixels"}), 2, {"binds nothing to a name"});
   expectRefused(passes({}, "pcs"), 2, {"'pcs'"});
 }
 

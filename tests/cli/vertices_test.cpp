@@ -28,8 +28,8 @@ class Vertices : public testing::Test {
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   }
 
-  Outcome reference(std::vector<std::string> more) const {
-    std::vector<std::string> all{"reference", scene_, "--at-vertices", "--term", "direct"};
+  Outcome reference(std::vector<std::string> more, const std::string& term = "direct") const {
+    std::vector<std::string> all{"reference", scene_, "--at-vertices", "--term", term};
     all.insert(all.end(), more.begin(), more.end());
     return limn(all);
   }
@@ -55,6 +55,7 @@ TEST_F(Vertices, OfAFloorUnderARectangleHaveItsIrradiance) {
   const Outcome outcome = reference({"--longest-edge", "0.2", "--spp", "1024", "--out", out_.string()});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, testing::HasSubstr("1024 samples each"));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("reference: 100% 1024 spp"));
   const Channels list(out_);
   size_t points = 0;
   double sum = 0, exact = 0;
@@ -74,9 +75,26 @@ TEST_F(Vertices, OfAFloorUnderARectangleHaveItsIrradiance) {
 
 TEST_F(Vertices, RefuseWhatTheyCannotShow) {
   expectRefused(reference({"--out", (folder_ / "vertices.png").string()}), 2, {"--at-vertices", ".exr"});
-  expectRefused(reference({"--term", "visibility", "--out", out_.string()}), 2, {"--term"});
-  expectRefused(reference({"--longest-edge", "0.001", "--out", out_.string()}), 2,
-                {"--longest-edge", "0.005"});
+  const auto refused = [&](const std::string& term, std::vector<std::string> more,
+                           const std::vector<std::string>& parts) {
+    more.insert(more.end(), {"--out", out_.string()});
+    expectRefused(reference(more, term), 2, parts);
+    EXPECT_FALSE(std::filesystem::exists(out_));
+  };
+  refused("visibility", {}, {"at vertices", "final, direct and indirect"});
+  refused("direct", {"--longest-edge", "0.001"}, {"--longest-edge", "0.005"});
+  refused("direct", {"--bounces", "3"}, {"bounces 3", "direct", "have bounces"});
+  refused("indirect", {"--bounces", "0"}, {"bounces 0", "1 .. 1024"});
+  refused("direct", {"--relief-paths", "relief"}, {"relief paths 'relief'", "direct"});
+  refused("direct", {"--subsurface", "walk"}, {"subsurface 'walk'", "direct"});
+  refused("direct", {"--interfaces", "all"}, {"interfaces", "direct"});
+}
+
+TEST_F(Vertices, ShowProgressUnlessQuiet) {
+  const Outcome spoken = reference({"--spp", "16", "--out", out_.string()});
+  ASSERT_EQ(spoken.status, 0) << spoken.err;
+  EXPECT_THAT(spoken.err, testing::StartsWith("reference: "));
+  EXPECT_EQ(reference({"--spp", "16", "--quiet", "--out", out_.string()}).err, "");
 }
 
 }  // namespace

@@ -4,15 +4,63 @@
 #include <set>
 
 #include "core/bench/cost_split.h"
-#include "tests/gpu/render_test.h"
+#include "core/scene/material_model.h"
+#include "glsl/materials/model.glsl"
+#include "tests/gpu/bump_floor.h"
+#include "tests/support/environment_maps.h"
+#include "tests/support/scene_nodes.h"
 
 namespace limn {
 namespace {
 
 using frame::PassRole;
 
-class PassRoleTest : public RenderTest {
+class PassRoleTest : public BumpFloorTest {
  protected:
+  /// Adds a camera that looks at the origin from above the front.
+  static scene::Scene seen(scene::Scene scene) {
+    const glm::vec3 eye(0, 2, 2);
+    scene::Node camera;
+    camera.camera = 0;
+    camera.transform.translation = eye;
+    camera.transform.rotation = glm::quatLookAt(glm::normalize(-eye), glm::vec3(0, 1, 0));
+    scene.cameras.emplace_back();
+    scene.nodes.push_back(camera);
+    return scene;
+  }
+  /// A ball of a material on a floor of it, under a lamp.
+  static scene::Scene ball(const scene::Material& material) {
+    scene::Scene scene;
+    const int index = test::addMaterial(scene, material);
+    test::show(scene, test::spherePrimitive(0.5f, index, 12));
+    test::show(scene, test::quad({0, -0.5f, 0}, {4, 0, 0}, {0, 0, -4}, index));
+    test::shine(scene, test::lamp(glsl::light_point, 9), {1, 2, 1});
+    return seen(std::move(scene));
+  }
+  static scene::Scene underASky() {
+    scene::Scene scene = ball(test::lambertian(0.5f));
+    scene.environment =
+        test::environmentOf(32, [](const glm::vec3& d) { return glm::vec3(d.y > 0 ? 1.f : 0.1f); });
+    return scene;
+  }
+  static scene::Scene translucentBall() {
+    scene::Material matter = test::lambertian(0.8f);
+    matter.ior = 1.4f;
+    matter.subsurface = scene::Subsurface{.extinction = glm::vec3(20), .absorption = glm::vec3(0.05f)};
+    return ball(matter);
+  }
+  static scene::Scene modelledBall() {
+    glsl::MaterialModel model{};
+    model.kind = glsl::model_torrance_sparrow;
+    model.eta = {0.2f, 0.92f, 1.1f};
+    model.k = {3.91f, 2.45f, 2.14f};
+    model.ks = glm::vec3(0.5f);
+    model.roughness = glm::vec2(0.3f);
+    scene::Material material;
+    scene::setModel(material, model);
+    return ball(material);
+  }
+
   static std::vector<frame::PassReport> passesOf(render::Renderer& renderer, render::Settings settings) {
     picture(renderer, std::move(settings));
     std::vector<frame::PassReport> run;
@@ -32,25 +80,32 @@ class PassRoleTest : public RenderTest {
 
 /// Beside core's own passes those are maps, and only those, that draw triangles.
 TEST_F(PassRoleTest, MapsOfEveryTechniqueAreWhatDrawsTriangles) {
-  const scene::Scene plain = asset("cornell_box"), glass = asset("glass_sphere");
-  render::Renderer plainRenderer(device(), plain), glassRenderer(device(), glass);
-  const auto check = [&](render::Renderer& renderer, const std::string& name, Term output) {
-    SCOPED_TRACE(name);
-    for (const frame::PassReport& pass : passesOf(renderer, settings(48, 32, output, {quick(name, 16)}))) {
-      SCOPED_TRACE(pass.name);
-      EXPECT_EQ(pass.role == PassRole::core, pass.technique == "core");
-      if (pass.role == PassRole::core) continue;
-      EXPECT_EQ(pass.role == PassRole::map, pass.triangles > 0);
+  const auto check = [&](const scene::Scene& scene, Term output, const std::vector<std::string>& names) {
+    render::Renderer renderer(device(), scene);
+    for (const std::string& name : names) {
+      SCOPED_TRACE(name);
+      for (const frame::PassReport& pass : passesOf(renderer, settings(48, 32, output, {quick(name, 16)}))) {
+        SCOPED_TRACE(pass.name);
+        EXPECT_EQ(pass.role == PassRole::core, pass.technique == "core");
+        if (pass.role == PassRole::core) continue;
+        EXPECT_EQ(pass.role == PassRole::map, pass.triangles > 0);
+      }
     }
   };
-  for (const std::string& name : techniquesAnswering(Term::visibility))
-    check(plainRenderer, name, Term::direct);
-  for (const std::string& name : techniquesAnswering(Term::indirect))
-    check(plainRenderer, name, Term::indirect);
-  for (const std::string& name : techniquesAnswering(Term::caustic))
-    check(glassRenderer, name, Term::caustic);
-  for (const std::string& name : techniquesAnswering(Term::specular))
-    check(glassRenderer, name, Term::specular);
+  const scene::Scene box = asset("cornell_box"), glass = asset("glass_sphere");
+  check(box, Term::direct, techniquesAnswering(Term::visibility));
+  check(box, Term::indirect, techniquesAnswering(Term::indirect));
+  check(glass, Term::caustic, techniquesAnswering(Term::caustic));
+  check(glass, Term::specular, techniquesAnswering(Term::specular));
+  check(glass, Term::media, techniquesAnswering(Term::media));
+  check(underASky(), Term::direct, techniquesAnswering(Term::environment));
+  check(translucentBall(), Term::subsurface, techniquesAnswering(Term::subsurface));
+  check(modelledBall(), Term::direct, techniquesAnswering(Term::surface));
+  const scene::Scene bumps = seen(floorUnder({1, 1, 0.5f}, {groove()}));
+  check(bumps, Term::direct, techniquesAnswering(Term::relief));
+  std::vector<std::string> betweenBumps = techniquesAnswering(Term::indirect);
+  std::erase_if(betweenBumps, [](const std::string& name) { return !lightsBumpsAlone(name); });
+  check(bumps, Term::indirect, betweenBumps);
 }
 
 TEST_F(PassRoleTest, OfShadowMapsAreMapsAndWhatIsDerivedFromThemFilters) {

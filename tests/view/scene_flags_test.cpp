@@ -12,6 +12,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 SceneQuestion parsed(std::vector<std::string> arguments) {
   CLI::App program;
@@ -85,9 +86,11 @@ TEST(SceneFlags, HelpSaysWhatIsAcceptedAndTheDefault) {
   const std::string help = program.help();
   for (const char* text :
        {"scene TEXT REQUIRED", "--fov FLOAT:FLOAT in [0.1 - 179]", "Vertical field of view, degrees",
+        "--time FLOAT:FLOAT in [-1e+06 - 1e+06]=0", "--environment-scale FLOAT:FLOAT in [0 - 1e+09]=1",
         "--size TEXT=1280x720", "--environment-resolution INT:INT in [1 - 512]=48",
         "--default-lights TEXT:{auto,on,off}=auto", "--set-light TEXT ..."})
     EXPECT_THAT(help, HasSubstr(text));
+  EXPECT_THAT(help, Not(HasSubstr("--fov FLOAT:FLOAT in [0.1 - 179]="))) << "0 stands for the camera's own";
 }
 
 }  // namespace

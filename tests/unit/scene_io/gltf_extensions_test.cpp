@@ -204,6 +204,65 @@ TEST(UnlitMaterials, AreTintedByVertexColours) {
   expectNear(glm::vec3(firstPrimitive(scene).colours.at(0)), colours[0]);
 }
 
+/// Something that is left out, as a JSON patch of a file, and what is said of it; null: nothing.
+struct LeftOut {
+  const char* name;
+  const char* patch;
+  const char* warning;
+};
+
+class LeftOutOfFiles : public testing::TestWithParam<LeftOut> {};
+
+TEST_P(LeftOutOfFiles, IsSaidAndTakesNothingElseWithIt) {
+  GltfBuilder b;
+  const int times = b.floats({0, 1}), places = b.vec3({{0, 0, 0}, {1, 0, 0}});
+  b.triangle(b.texturedMaterial(png(1, 1, {10, 20, 30, 255})));
+  b.root["materials"][0]["extensions"] = json::object();
+  b.append("animations",
+           {{"samplers", {{{"input", times}, {"output", places}}}},
+            {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
+  b.root = b.root.patch(json::parse(GetParam().patch));
+  const Scene scene = loadBuilt(b);
+  if (GetParam().warning == nullptr) {
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
+  } else {
+    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr(GetParam().warning)));
+  }
+  EXPECT_EQ(scene.triangles(), 1u);
+  EXPECT_EQ(scene.images.size(), 1u) << "of the base colour alone";
+  EXPECT_EQ(scene.animations.at(0).channels.size(), 1u);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Gltf, LeftOutOfFiles,
+    testing::Values(LeftOut{"SpecularTexture",
+                            R"([{"op": "add", "path": "/materials/0/extensions/KHR_materials_specular",
+                     "value": {"specularTexture": {"index": 0}}}])",
+                            "material 0: textures of KHR_materials_specular are ignored"},
+                    LeftOut{"SpecularColourTexture",
+                            R"([{"op": "add", "path": "/materials/0/extensions/KHR_materials_specular",
+                     "value": {"specularColorTexture": {"index": 0}}}])",
+                            "material 0: textures of KHR_materials_specular are ignored"},
+                    LeftOut{"TransmissionTexture",
+                            R"([{"op": "add", "path": "/materials/0/extensions/KHR_materials_transmission",
+                     "value": {"transmissionFactor": 0.5, "transmissionTexture": {"index": 0}}}])",
+                            "material 0: the transmission texture is ignored"},
+                    LeftOut{"ThicknessTexture",
+                            R"([{"op": "add", "path": "/materials/0/extensions/KHR_materials_volume",
+                     "value": {"thicknessFactor": 0.5, "thicknessTexture": {"index": 0}}}])",
+                            "material 0: the thickness texture is ignored"},
+                    LeftOut{
+                        "OcclusionTexture",
+                        R"([{"op": "add", "path": "/materials/0/occlusionTexture", "value": {"index": 0}}])",
+                        nullptr},
+                    LeftOut{"AnimationPointer",
+                            R"([{"op": "add", "path": "/extensionsUsed", "value": ["KHR_animation_pointer"]},
+                    {"op": "add", "path": "/animations/0/channels/-",
+                     "value": {"sampler": 0, "target": {"path": "pointer", "extensions":
+                       {"KHR_animation_pointer": {"pointer": "/nodes/0/scale"}}}}}])",
+                            "what these extensions add is not read: KHR_animation_pointer"}),
+    [](const auto& made) { return made.param.name; });
+
 /// A material whose texture is one in WebP, `webp`, and, where `other` is not empty, one for programs that
 /// read none.
 GltfBuilder webpMaterial(const std::vector<std::byte>& webp, const std::vector<std::byte>& other = {}) {
