@@ -14,6 +14,7 @@
 #include "core/base/file.h"
 #include "core/base/spawn.h"
 #include "core/base/text.h"
+#include "core/base/version.h"
 
 namespace limn::app {
 namespace fs = std::filesystem;
@@ -117,7 +118,9 @@ void Movie::start(int width, int height) {
                                         "-i",
                                         "pipe:0",
                                         "-metadata",
-                                        "comment=" + command_};
+                                        "comment=" + command_,
+                                        "-metadata",
+                                        fmt::format("description=limn {}", version())};
   const std::vector<std::string>& of = kindOf(file_)->arguments;
   arguments.insert(arguments.end(), of.begin(), of.end());
   arguments.push_back("file:" + part_->path().string());

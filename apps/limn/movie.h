@@ -22,7 +22,7 @@ void checkMovieProgram();
 /// finish() nothing is left.
 class Movie {
  public:
-  /// `command` is kept in the movie's metadata.
+  /// `command` and limn's version are kept in the metadata of .mp4 and .webm.
   Movie(std::filesystem::path file, double fps, std::string command);
   ~Movie();
   Movie(const Movie&) = delete;

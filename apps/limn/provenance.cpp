@@ -3,7 +3,7 @@
 #include <fstream>
 
 #include "core/base/shell.h"
-#include "core/base/version.h"
+#include "core/image/signature.h"
 
 namespace limn::app {
 
@@ -15,9 +15,8 @@ std::string commandLine() {
   return line;
 }
 
-void sign(Image& picture, const std::string& command) {
-  picture.metadata()["command"] = command;
-  picture.metadata()["version"] = version();
+void sign(Image& picture) {
+  limn::sign(picture, commandLine());
 }
 
 }  // namespace limn::app

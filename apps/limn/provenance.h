@@ -1,4 +1,4 @@
-// Stores in a picture how it was made.
+// Stores in a picture the command line that made it.
 #pragma once
 
 #include <string>
@@ -11,9 +11,7 @@ namespace limn::app {
 /// they were typed.
 std::string commandLine();
 
-/// Puts the command that gives the picture and limn's version into the picture's metadata ("command",
-/// "version"). The content of a signed picture depends on nothing else, in particular on no clock and no
-/// machine.
-void sign(Image& picture, const std::string& command = commandLine());
+/// Does what limn::sign() does, with the command line of this process.
+void sign(Image& picture);
 
 }  // namespace limn::app

@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
+#include <sstream>
 
 #include "apps/limn/results_folder.h"
 #include "core/base/error.h"
@@ -64,16 +66,26 @@ std::string taskScript(const fs::path& suite, const fs::path& out, int parts, co
       thisProgram(), shellQuoted(suite.string()), shellQuoted(out.string()), parts, parts, filters, more);
 }
 
-/// The job that merges is the last one: while Slurm knows it, the parts or it are waiting or running.
+std::vector<std::string> wordsOf(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), std::istream_iterator<std::string>()};
+}
+
+/// Where the numbers of the jobs that were submitted last are kept.
+fs::path jobsFile(const fs::path& out) {
+  return out / "slurm" / "job";
+}
+
+/// Refuses while Slurm knows the array that measures or the job that merges: either may be cancelled alone.
 void refuseWhileRunning(const fs::path& out) {
-  const fs::path file = out / "slurm" / "job";
-  if (!fs::exists(file)) return;
-  const std::string job = readTextFile(file);
-  const std::string queued = "\n" + output("squeue", {"--noheader", "--format=%A", "--me"}) + "\n";
-  if (queued.find("\n" + job + "\n") != std::string::npos)
-    throw Error(
-        fmt::format("job {} of folder {} is not finished; squeue --job {} shows it, scancel {} ends it", job,
-                    out.string(), job, job));
+  if (!fs::exists(jobsFile(out))) return;
+  const std::vector<std::string> jobs = wordsOf(readTextFile(jobsFile(out)));
+  // Tasks of an array have numbers of their own (%A); %F is the array's.
+  const std::vector<std::string> queued = wordsOf(output("squeue", {"--noheader", "--format=%F", "--me"}));
+  if (std::ranges::find_first_of(queued, jobs) != queued.end())
+    throw Error(fmt::format(
+        "a job of folder {} is not finished; squeue --jobs {} shows what is left, scancel {} ends it",
+        out.string(), fmt::join(jobs, ","), fmt::join(jobs, " ")));
 }
 
 }  // namespace
@@ -134,12 +146,13 @@ std::string submitSuite(const fs::path& suiteFile, const fs::path& folder, const
   const std::string array =
       submit({"--exclusive", fmt::format("--array={}%{}", fmt::join(open, ","), job.nodes),
               "--output=" + (out / "slurm" / "part-%a.log").string(), script.string()});
+  writeTextFile(jobsFile(out), array);  // now, since it also runs where the other job is refused
   const std::string merge = thisProgram() + " merge " + shellQuoted((out / "parts").string()) + "/* --out " +
                             shellQuoted(out.string());
   const std::string last =
       submit({"--dependency=afterany:" + array, "--output=" + (out / "slurm" / "merge.log").string(),
               "--wrap=bash -c " + shellQuoted(merge)});
-  writeTextFile(out / "slurm" / "job", last);
+  writeTextFile(jobsFile(out), array + "\n" + last);
   return fmt::format(
       "{} of {} rows are missing or to be measured again: job {} measures them in {} parts on {} nodes, "
       "job {} merges them; the same command goes on with what is left then",

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "apps/limn/provenance.h"
 #include "apps/view/difference.h"
 #include "apps/view/display_image.h"
 #include "apps/view/picture_studio.h"
@@ -13,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/failure.h"
 #include "core/base/file.h"
+#include "core/image/signature.h"
 #include "core/question/question_fields.h"
 
 namespace limn::app {

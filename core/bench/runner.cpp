@@ -11,6 +11,8 @@
 #include "core/base/failure.h"
 #include "core/image/error_spectrum.h"
 #include "core/image/metric_table.h"
+#include "core/image/signature.h"
+#include "core/question/render_command.h"
 #include "core/question/term.h"
 #include "core/render/frame_stats.h"
 
@@ -91,6 +93,8 @@ Row measureRow(const Case& c, const std::string& key, const Reference& reference
   if (row.penumbra) requireFinite(*row.penumbra);
   for (const double power : row.spectrum) requireFinite("spectrum of the error", power);
   if (c.picture && callbacks.keepPicture) {
+    if (c.technique != kSeparationFloor)  // which no command renders
+      sign(measurement.image, renderCommand(c, c.technique, c.parameters) + " --out " + key + ".png");
     row.picture = callbacks.keepPicture(key, measurement.image);
     row.difference = callbacks.keepPicture(key + ".difference",
                                            differenceImage(measurement.image, reference.image, options));

@@ -53,8 +53,24 @@ class BenchSlurm : public testing::Test {
         << more;
   }
 
-  Outcome submitted() const {
-    return limn({"bench", folder_ / "suite.toml", "--out", out_, "--slurm"}, environment_);
+  /// `more` are further arguments.
+  Outcome submitted(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> command = {"bench", folder_ / "suite.toml", "--out", out_, "--slurm"};
+    command.insert(command.end(), more.begin(), more.end());
+    return limn(command, environment_);
+  }
+
+  /// Jobs 41, the parts, and 42, the merging, which wait; `merging` is what is done in place of printing 42.
+  void slurmThatWaits(const std::string& merging = "echo 42") const {
+    program("sbatch",
+            "printf '%s\n' \"$@\" >>\"$0.words\"\n"
+            "case \"$*\" in *--wrap=*) " +
+                merging + ";; *) echo 41;; esac\n");
+  }
+
+  /// Slurm has nothing left but the array, whose tasks have numbers of their own.
+  void onlyTheArrayIsQueued() const {
+    program("squeue", "case \"$*\" in *--format=%F*) echo 41;; *) echo 43;; esac\n");
   }
 
   /// The last job, once the folder is free.
@@ -118,6 +134,61 @@ TEST_F(BenchSlurm, AChangedLabelReachesTheRowsThatAreThere) {
   EXPECT_THAT(merged().out, HasSubstr("0 rows added"));
   EXPECT_THAT(tables(), HasSubstr("| Well-behaved |")) << "the parts hold the label of before";
   EXPECT_THAT(contents(out_ / "results.jsonl"), HasSubstr("\"title\":\"Well-behaved\",\"baseline\":true"));
+}
+
+TEST_F(BenchSlurm, RefusesWhileThePartsRunThoughTheMergingWasCancelled) {
+  slurmThatWaits();
+  const Outcome first = submitted();
+  ASSERT_EQ(first.status, 0) << first.err;
+  onlyTheArrayIsQueued();
+  expectRefused(submitted(), 1, {"is not finished", "squeue --jobs 41,42 ", "scancel 41 42 "});
+  program("squeue", "echo 42\n");
+  expectRefused(submitted(), 1, {"is not finished", "squeue --jobs 41,42 ", "scancel 41 42 "});
+  program("squeue", "echo 412\n");  // somebody's other job
+  EXPECT_EQ(submitted().status, 0);
+}
+
+TEST_F(BenchSlurm, RefusesWhileThePartsRunThoughTheMergingWasNotTaken) {
+  slurmThatWaits("exit 1");
+  EXPECT_EQ(submitted().status, 1);
+  onlyTheArrayIsQueued();
+  expectRefused(submitted(), 1, {"is not finished", "squeue --jobs 41 ", "scancel 41 "});
+}
+
+TEST_F(BenchSlurm, TasksHaveANodeForThemselvesAndAreQueuedAgainWhereItIsLost) {
+  slurmThatWaits();
+  const Outcome outcome = submitted({"--nodes", "3"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string words = "\n" + contents(folder_ / "bin/sbatch.words");
+  const std::string array = words.substr(0, words.find("part.sh\n"));
+  for (const char* word : {"--exclusive", "--requeue", "--nodes=1", "--array=1%3"})
+    EXPECT_THAT(array, HasSubstr("\n" + std::string(word) + "\n"));
+}
+
+/// A task whose program was killed is queued again three times, one whose program failed never.
+TEST_F(BenchSlurm, TasksAreQueuedAgainThreeTimes) {
+  slurmThatWaits();
+  ASSERT_EQ(submitted().status, 0);
+  program("scontrol", "echo \"$@\" >>\"$0.words\"\n");
+  const std::string script = contents(out_ / "slurm/part.sh");
+  const auto requeued = [&](const std::string& ending, int status, const std::string& restarts) {
+    const std::size_t bench = script.find(" bench "), line = script.rfind('\n', bench) + 1;
+    const fs::path task = folder_ / "task.sh";
+    std::ofstream(task) << script.substr(0, line) << ending << script.substr(script.find('\n', bench));
+    std::map<std::string, std::string> environment = environment_;
+    environment["SLURM_ARRAY_TASK_ID"] = "7";
+    environment["SLURM_ARRAY_JOB_ID"] = "41";
+    if (!restarts.empty()) environment["SLURM_RESTART_COUNT"] = restarts;
+    const fs::path words = folder_ / "bin/scontrol.words";
+    fs::remove(words);
+    EXPECT_EQ(run({"/bin/bash", task}, environment).status, status);
+    return contents(words);
+  };
+  const std::string killed = "sh -c 'kill -KILL $$'";
+  EXPECT_EQ(requeued(killed, 137, ""), "requeue 41_7\n") << script;
+  EXPECT_EQ(requeued(killed, 137, "2"), "requeue 41_7\n");
+  EXPECT_EQ(requeued(killed, 137, "3"), "");
+  EXPECT_EQ(requeued("sh -c 'exit 1'", 1, ""), "");
 }
 
 TEST_F(BenchSlurm, MergingRefusesWhereNoFolderHasRows) {

@@ -1,6 +1,8 @@
 // Every picture holds the command that gives it.
 #include <OpenImageIO/imageio.h>
 
+#include <nlohmann/json.hpp>
+
 #include "tests/cli/limn_program.h"
 
 namespace limn::test {
@@ -21,15 +23,20 @@ Outcome shell(const fs::path& folder, const std::string& line) {
 }
 
 /// That the command in the picture gives the picture again, to the byte.
-void expectReproduced(const fs::path& folder, const std::string& line, const std::string& name) {
-  const Outcome made = shell(folder, line);
-  ASSERT_EQ(made.status, 0) << line << made.err;
+void expectGivenAgain(const fs::path& folder, const std::string& name) {
   const std::string command = text(folder / name, "command"), picture = contents(folder / name);
   EXPECT_THAT(command, testing::StartsWith("limn "));
   fs::remove(folder / name);
   const Outcome again = shell(folder, command);
   ASSERT_EQ(again.status, 0) << command << again.err;
   EXPECT_TRUE(contents(folder / name) == picture) << command;
+}
+
+/// That the line makes a picture whose command gives it again.
+void expectReproduced(const fs::path& folder, const std::string& line, const std::string& name) {
+  const Outcome made = shell(folder, line);
+  ASSERT_EQ(made.status, 0) << line << made.err;
+  expectGivenAgain(folder, name);
 }
 
 TEST(Provenance, TheCommandInsideAPictureGivesItAgain) {
@@ -56,6 +63,21 @@ TEST(Provenance, APictureNamesTheVersionAndNoPathThatNobodyTyped) {
   ASSERT_EQ(shell(folder.path(), line).status, 0);
   EXPECT_EQ(text(folder / "a.png", "command"), line);
   EXPECT_EQ(text(folder / "a.png", "version") + "\n", limn({"--version"}).out);
+}
+
+TEST(Provenance, TheCommandInsideABenchsPictureGivesItAgain) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "suite.toml")
+      << "name = 'signed'\nsizes = '33x25'\nframes = 1\nwarmup = 0\nterm = 'visibility'\npictures = true\n"
+         "reference = {spp = 2}\n"
+         "[[scenes]]\nscene = 'cornell_box'\nmax_masked_share = 0.5\nlights = ['#0']\n"
+         "[[techniques]]\ntechnique = 'hard_shadow_map'\nparameters = {shadow_map_size = 64}\n";
+  const Outcome outcome = limn({"bench", folder / "suite.toml", "--out", folder / "out"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto row = nlohmann::json::parse(contents(folder / "out/results.jsonl"));
+  const fs::path picture = folder / "out" / row["picture"].get<std::string>();
+  EXPECT_EQ(text(picture, "version") + "\n", limn({"--version"}).out);
+  expectGivenAgain(picture.parent_path(), picture.filename());
 }
 
 }  // namespace

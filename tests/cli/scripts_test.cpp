@@ -48,6 +48,21 @@ TEST_F(Scripts, DemoWritesWhereItIsCalled) {
   EXPECT_THAT(said(), testing::HasSubstr("--out " + (fs::canonical(caller_) / "mine/bench").string() + "\n"));
 }
 
+TEST_F(Scripts, TheGallerySaysThePicturesCommands) {
+  const std::string name = "cornell_box.hard_shadow_map.png";
+  const Outcome rendered = limn({"render", "cornell_box", "--technique", "hard_shadow_map", "--size", "16x12",
+                                 "--out", caller_ / name});
+  ASSERT_EQ(rendered.status, 0) << rendered.err;
+  std::ofstream(caller_ / "other.program.png") << "no picture of limn's";
+  const Outcome outcome =
+      run({"/usr/bin/env", "python3", "-B", std::string(kSourceDir) + "/scripts/gallery", caller_});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string page = contents(caller_ / "gallery.html");
+  EXPECT_THAT(page, testing::HasSubstr("<figcaption>cornell_box<code>limn render cornell_box --technique "
+                                       "hard_shadow_map --size 16x12 --out "));
+  EXPECT_THAT(page, testing::HasSubstr("<figcaption>other</figcaption>"));
+}
+
 TEST_F(Scripts, GpuRunTakesSuitesOfTheFolderWhereItIsCalled) {
   std::ofstream(caller_ / "my.toml") << "name = 'my'\n";
   const Outcome outcome = call("gpu-run", "--software my.toml bound");

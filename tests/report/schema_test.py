@@ -1,10 +1,8 @@
-"""Rows of a small bench, statistics of a frame and the stored results are as `limn schema` says; the docs' example reads rows."""
+"""Rows of a small bench, statistics of a frame and the stored results are as `limn schema` says."""
 import argparse
 import importlib.util
 import json
-import os
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
@@ -108,11 +106,3 @@ for file in sorted((options.root / "docs" / "results").glob("*/*/results.jsonl")
 broken = dict(rows[0], technique=3)
 if row.is_valid(broken) or row.is_valid({key: value for key, value in rows[0].items() if key != "error"}):
     sys.exit("FAILED: rows that are none pass")
-
-example = re.search(r"```python\n(.*?)```", (options.root / "docs" / "bench.md").read_text(), re.S).group(1)
-if importlib.util.find_spec("matplotlib") is None:
-    print("the example of docs/bench.md is not run: no matplotlib (Debian package python3-matplotlib)")
-else:
-    subprocess.run([sys.executable, "-c", example], cwd=out, check=True, env={**os.environ, "MPLBACKEND": "Agg"})
-    if not any(out.glob("*.svg")):
-        sys.exit("FAILED: the example draws nothing")

@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <new>
 #include <stdexcept>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/version.h"
 #include "core/bench/results_file.h"
 #include "core/bench/row.h"
 #include "core/bench/runner.h"
 #include "core/bench/tables.h"
+#include "core/question/render_command.h"
 #include "tests/unit/bench/bench_folder.h"
 #include "tests/unit/bench/bench_rows.h"
 
@@ -82,6 +85,27 @@ TEST_F(BenchRunner, RunnerSharesReferencesRecordsFailuresAndResumes) {
   EXPECT_EQ(row.picture, "");
   ASSERT_FALSE(row.spectrum.empty());
   EXPECT_GT(row.spectrum[0], 10 * row.spectrum[5]) << "the error is the same everywhere";
+}
+
+TEST_F(BenchRunner, PicturesOfRowsHoldTheirCommand) {
+  std::vector<Case> cases = {exampleCase("pcss", 16), exampleCase(kSeparationFloor)};
+  for (Case& c : cases) c.picture = true;
+  std::map<std::string, std::map<std::string, std::string>> kept;
+  Fakes fakes;
+  Callbacks callbacks = fakes.callbacks();
+  callbacks.keepPicture = [&](const std::string& name, const Image& image) {
+    kept[name] = image.metadata();
+    return name;
+  };
+  ResultsFile results(path_);
+  ASSERT_EQ(runCases(cases, "llvmpipe", results, callbacks).done, 2);
+  const std::string key = rowKey(cases[0], "llvmpipe"), floor = rowKey(cases[1], "llvmpipe");
+  const std::map<std::string, std::string> signature = {
+      {"command", renderCommand(cases[0], "pcss", cases[0].parameters) + " --out " + key + ".png"},
+      {"version", version()}};
+  EXPECT_EQ(kept.at(key), signature);
+  EXPECT_TRUE(kept.at(key + ".difference").empty());
+  EXPECT_TRUE(kept.at(floor).empty()) << "no command renders it";
 }
 
 TEST_F(BenchRunner, FurtherTurnsLengthenTheRowsAndResume) {
