@@ -1,5 +1,7 @@
 // Subtractive shadows: what holds to the bit, what lies between nothing and the unshadowed light, what blocks
 // of pixels cost, and levels of detail.
+#include <gmock/gmock.h>
+
 #include <algorithm>
 #include <cmath>
 
