@@ -16,7 +16,7 @@ struct GeometryRange {
   uint32_t firstIndex = 0, indexCount = 0;
 };
 
-/// Throws UsageError where shaders could not reach all of a buffer with so many bytes of `what`.
+/// Throws UsageError where shaders could not reach all of a buffer that holds `bytes` of `what`.
 void checkStorageBlock(const gpu::Device& device, const char* what, uint64_t bytes);
 
 class GpuGeometry {
@@ -34,8 +34,9 @@ class GpuGeometry {
   }
   uint32_t primitiveCount() const { return static_cast<uint32_t>(ranges_.size()); }
 
-  /// Grows the buffers to hold so many vertices and indices after the scene's own, keeps their contents, and
-  /// releases everything that was allocated there. Throws as the constructor does; nothing is released then.
+  /// Grows the buffers to hold these numbers of vertices and indices after the scene's own, keeps their
+  /// contents, and releases everything that was allocated there. Throws as the constructor does; nothing is
+  /// released then.
   void reserve(uint64_t vertices, uint64_t indices);
   /// Allocates reserved space for deformed and dynamic primitives, and returns the first index of it.
   uint32_t allocateVertices(uint32_t count);

@@ -16,7 +16,7 @@ class SubsurfaceBallTest : public SubsurfaceHarness {
   static constexpr float kBallRadius = 0.7f;  ///< it fills the picture: a third of the way from the camera
   static constexpr float kLight = 2;          ///< irradiance across the light's direction
 
-  /// A ball whose radius is so many mean distances, under light from the side.
+  /// A ball whose radius is that number of mean distances, under light from the side.
   static scene::Scene ball(float meanDistances) {
     scene::Scene scene = floor(meanDistances * meanPaths() / kBallRadius, kAbsorption);
     scene.nodes[0].mesh = test::addMesh(scene, test::spherePrimitive(kBallRadius, 0, 128));
