@@ -103,6 +103,12 @@ MapWindow swapped(const MapWindow& w) {
   return {{w.low.y, w.low.x}, {w.high.y, w.high.x}, w.near, w.far};
 }
 
+/// By how much a map is wider than what it shows: two texels more on each side, of few texels an eighth of
+/// that width, so that no map shows far more of its surroundings than of what it is for.
+float widening(int size) {
+  return 1 + std::min(4 / static_cast<float>(size), 0.25f);
+}
+
 /// What a map is fitted to besides the boxes: null, or what the camera sees, for all points of the light as
 /// far as `spread` says.
 struct ViewFit {
@@ -126,7 +132,7 @@ void appendOrthographic(const glsl::Light& light, const vec3& direction, std::sp
   }
   if (local.empty()) local = {vec3(-0.5f), vec3(0.5f)};
   const vec3 size = local.high - local.low, middle = local.centre();
-  const float width = std::max({size.x, size.y, 1e-6f * size.z}) * (1 + 4 / static_cast<float>(out.size));
+  const float width = std::max({size.x, size.y, 1e-6f * size.z}) * widening(out.size);
   const float depth = std::max(size.z, 1e-3f * width);
   // The plane z = 0 lies a tenth of the depth before everything, so that depths are positive.
   const vec3 origin = centre + middle.x * axes.x + middle.y * axes.y + (middle.z - 0.6f * depth) * axes.z;
@@ -159,9 +165,9 @@ bool hasCone(const glsl::Light& light) {
   return (light.flags & glsl::light_flag_cone) != 0 && outerHalfAngle(light) <= kLargestHalfAngle;
 }
 
-/// Of a light with hasCone(): half the width of its map at unit distance, two texels more on each side.
+/// Of a light with hasCone(): half the width of its map at unit distance.
 float coneTangent(const glsl::Light& light, int size) {
-  return std::tan(outerHalfAngle(light)) * (1 + 4 / static_cast<float>(size));
+  return std::tan(outerHalfAngle(light)) * widening(size);
 }
 
 bool twoSided(const glsl::Light& light) {
@@ -177,7 +183,7 @@ MapWindow wholeWindow(const glsl::Light& light, const vec3& origin, const Axes& 
     tangent =
         light.type == glsl::light_spot ? coneTangent(light, desc.size) : fittedTangent(origin, axes, boxes);
     if (count == 2) tangent = std::max(tangent, fittedTangent(origin, faceAxes(axes, 5), boxes));
-    if (light.type != glsl::light_spot) tangent *= 1 + 4 / static_cast<float>(desc.size);
+    if (light.type != glsl::light_spot) tangent *= widening(desc.size);
     // The cone is that of the light's centre: a sample aside of it sees what lies in it at a wider angle.
     if (hasCone(light) && count == 1 && desc.samples.empty())
       tangent = std::min(tangent, coneTangent(light, desc.size));

@@ -8,9 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/gpu_scene/surface_input.h"
 #include "core/shadow/alike_lights.h"
 #include "core/technique/bound.h"
+#include "glsl/shadow/summed_area_table.glsl"
 
 namespace limn::shadow {
 
@@ -35,6 +37,23 @@ gpu::ProgramDesc programFor(const AlikeLights& lights, gpu::ProgramDesc program)
   return program;
 }
 
+/// Texels up to which sums over a box are exact.
+int64_t largestBox(const SatDesc& table) {
+  return glsl::sat_largest_box(
+      glsl::sat_format(static_cast<uint32_t>(table.bits), static_cast<uint32_t>(table.words), 1));
+}
+
+/// The settings that hold boxes of so many texels in place of those of `table`. Two words hold the largest
+/// map at 16 bits.
+std::string settingsFor(int64_t box, const SatDesc& table) {
+  SatDesc enough{.bits = table.bits, .words = 2};
+  while (box > largestBox(enough)) --enough.bits;
+  std::string settings = table.words < enough.words ? "sat_words=2" : "";
+  if (enough.bits < table.bits)
+    settings += fmt::format("{}sat_bits={}", settings.empty() ? "" : " ", enough.bits);
+  return settings;
+}
+
 constexpr std::string_view kKernelFile = "visibility.comp.glsl";
 
 void runBound(VisibilityPass& pass, std::span<const LightLayout> layouts) {
@@ -55,6 +74,18 @@ ShadowMapDesc shadowMapDesc(const ParameterValues& parameters) {
   if (parameters.has("views")) desc.views = parameters.integer("views");
   if (desc.fit == MapFit::view || desc.views != 1) desc.lightSize = lightSize(parameters);
   return desc;
+}
+
+SummedAreaTable summedAreaTable(const TechniqueInputs& inputs, const ShadowMaps& maps, int boxSide) {
+  const ParameterValues& p = inputs.parameters;
+  const SatDesc table{.bits = p.integer("sat_bits"), .words = p.integer("sat_words")};
+  const int64_t box = int64_t{boxSide} * boxSide;
+  if (box > largestBox(table))
+    throw UsageError(fmt::format(
+        "sat_bits={} sat_words={}: sums over more than {} texels overflow, and kernels in maps of "
+        "{} x {} texels have up to {}; set {} or a smaller shadow_map_size",
+        table.bits, table.words, largestBox(table), maps.size, maps.size, box, settingsFor(box, table)));
+  return inputs.service<ShadowMapService>().summedAreaTable(maps, table);
 }
 
 VisibilityPass visibilityPass(const TechniqueInputs& inputs, const TermRequest& request,

@@ -58,6 +58,10 @@ struct SampledTexture {
 /// shadow_map_fit (default: scene), views (default: 1) and light_size.
 LIMN_API ShadowMapDesc shadowMapDesc(const ParameterValues& parameters);
 
+/// Returns the table of z and z^2 of a technique that declares sat_bits and sat_words, and looks up boxes of
+/// up to `boxSide` x `boxSide` texels. Throws UsageError where the sums over such a box may overflow.
+LIMN_API SummedAreaTable summedAreaTable(const TechniqueInputs& inputs, const ShadowMaps& maps, int boxSide);
+
 struct VisibilityPass {
   std::string_view name;                  ///< of the pass
   std::string_view technique;             ///< owner of the pass

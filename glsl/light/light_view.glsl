@@ -112,7 +112,8 @@ LIMN_FN float light_view_cone_scale(LightView v, float r2) {
 }
 
 // A point of the part of the light that counts, for u in [0, 1)^2; uniform in area (directional: in solid angle) among
-// the u for which the result is true. At least a third of them are.
+// the u for which the result is true. Of a rectangle at least half of them are, of a disc pi / 4 of the share above the tangent
+// plane, which may be as good as none.
 LIMN_FN bool light_view_sample(LightView v, vec2 u, LIMN_OUT(vec3) slope) {
   vec2 p = v.low + u * (v.high - v.low);
   float r2 = 4.0f * dot(p, p);
@@ -129,6 +130,15 @@ LIMN_FN vec3 light_view_point(LightView v, vec2 u) {
     p = 0.5f * light_view_cone_scale(v, min(dot(disc, disc), 1.0f)) * disc;
   }
   return v.centre + p.x * v.side_u + p.y * v.side_v;
+}
+
+// The point of the light that lies highest above the tangent plane.
+LIMN_FN vec3 light_view_highest(LightView v) {
+  vec3 along_u = dot(v.side_u, v.normal) < 0.0f ? -v.side_u : v.side_u;
+  vec3 along_v = dot(v.side_v, v.normal) < 0.0f ? -v.side_v : v.side_v;
+  if (!v.cone) return v.centre + 0.5f * (along_u + along_v);
+  vec3 rise = v.normal - dot(v.normal, v.centre) * v.centre;
+  return v.centre + (0.5f * light_view_cone_scale(v, 1.0f) / max(length(rise), 1e-20f)) * rise;
 }
 
 // Whether the ray with this slope meets the light, give or take `tolerance` metres per metre of depth.

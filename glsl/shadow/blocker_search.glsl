@@ -45,12 +45,13 @@ vec2 kernel_depth_bounds(ShadowCursor cursor, ShadowKernel kernel) {
   return BOUNDS_DEPTH(shadow_min_max, texels.xy, texels.zw, int(cursor.layer));
 }
 
-// The kernel starts at the near plane, as published; each of `rounds` further rounds moves it to the nearest depth that
-// was found in it, beyond which nothing can block.
+// The kernel starts at the near plane and stays there without rounds, as published; each of `rounds` moves it to the nearest depth
+// in it, beyond which nothing can block. Bounds may decide in every kernel but the last one that it moves to.
 BlockerSearch blocker_search(inout ShadowCursor cursor, VisibilityQuery q, int rounds) {
   BlockerSearch search;
   search.gap = shadow_near_gap(cursor, q);
-  for (int round = 0; round <= rounds; ++round) {
+  int round = 0;
+  do {
     float widest = 0.0;
     bool lit = true;
     bool umbra = true;
@@ -66,9 +67,9 @@ BlockerSearch blocker_search(inout ShadowCursor cursor, VisibilityQuery q, int r
                                          shadow_metres(cursor.view, depths.x)));
     }
     search.answer = lit ? search_lit : umbra ? search_umbra : search_partial;
-    if (search.answer != search_partial) return search;
+    if (search.answer != search_partial || rounds == 0) return search;
     search.gap = clamp(widest, 0.0, search.gap);
-  }
+  } while (++round < rounds);
   return search;
 }
 

@@ -133,12 +133,17 @@ vec2 shadow_place(ShadowCursor cursor, vec3 p) {
   return map_texel(cursor.view, map_axes(cursor.view, shadow_local(cursor.view, p)));
 }
 
-// The texel that holds the direction of world point p.
-ShadowTap shadow_tap(inout ShadowCursor cursor, VisibilityQuery q, vec3 p) {
+// Moves the cursor to the view that sees world point p.
+void shadow_cursor_towards(inout ShadowCursor cursor, VisibilityQuery q, vec3 p) {
 #if !ONE_VIEW
   uint face = shadow_face(q.maps.faces, q.first, p);
   if (face != cursor.face) cursor = shadow_cursor_at(q, face);
 #endif
+}
+
+// The texel that holds the direction of world point p.
+ShadowTap shadow_tap(inout ShadowCursor cursor, VisibilityQuery q, vec3 p) {
+  shadow_cursor_towards(cursor, q, p);
   return shadow_tap_at(cursor, shadow_place(cursor, p));
 }
 
@@ -148,8 +153,9 @@ uint face_of_light_point(VisibilityQuery q, LightView light, vec2 p, float gap) 
   return shadow_face(q.maps.faces, q.first, q.position + gap * slope);
 }
 
-// The four texels of the cursor's view around the direction of p, weighted bilinearly: the lit share.
-float shadow_tap_2x2(ShadowCursor cursor, vec3 p) {
+// The four texels around the direction of p in the view that sees it, weighted bilinearly: the lit share.
+float shadow_tap_2x2(inout ShadowCursor cursor, VisibilityQuery q, vec3 p) {
+  shadow_cursor_towards(cursor, q, p);
   vec2 place = shadow_place(cursor, p);
   if (!map_holds(cursor.view, place)) return 1.0;
   vec2 corner = place - 0.5;

@@ -23,7 +23,7 @@ constexpr Parameter kParameters[] = {
            "(as published), or V normalised by what a blocker at their mean depth gives"),
     real("sharpening", 30, {0, 1000}, "", "A of the power 1 + A exp(-B (d - z_avg)), contact=sharpened"),
     real("falloff", 20, {0, 1000}, "1 / range", "B of the same"),
-    integer("search_rounds", 2, {0, 8}, "rounds",
+    integer("search_rounds", 3, {0, 9}, "rounds",
             "How often the search kernel moves from the near plane to the nearest depth in it"),
     integer("blocker_passes", 2, {1, 4}, "passes",
             "Mean blocker depths in turn, each in the kernel of the one before"),

@@ -6,6 +6,6 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
 #if FILTER == 0
   return shadow_tap(cursor, q, q.position).blocked ? 0.0 : 1.0;
 #else
-  return shadow_tap_2x2(cursor, q.position);
+  return shadow_tap_2x2(cursor, q, q.position);
 #endif
 }

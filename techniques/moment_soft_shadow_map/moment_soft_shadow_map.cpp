@@ -15,7 +15,7 @@ constexpr Parameter kParameters[] = {
          "Share by which moments are pulled towards those of a well-spread distribution")
         .logScale(),
     integer("cells", 3, {1, 8}, "cells", "Kernels are divided into so many parts along each axis").quality(),
-    integer("search_rounds", 2, {0, 8}, "rounds",
+    integer("search_rounds", 3, {0, 9}, "rounds",
             "How often the search kernel is narrowed to the nearest depth in it; 0: at the near plane, as "
             "published"),
     real("search_blur", 4, {0, 1024}, "texels",

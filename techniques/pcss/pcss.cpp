@@ -19,7 +19,7 @@ constexpr Parameter kParameters[] = {
     choice("search", 1, kSearches,
            "Search at the near plane, as published, through the cone from receiver to light, keeping what "
            "lies in it, or at the nearest depth that bounds of the depths find, ending where they prove V"),
-    integer("search_rounds", 5, {0, 8}, "rounds",
+    integer("search_rounds", 6, {0, 9}, "rounds",
             "How often the nearest depth in the search kernel narrows it; search=narrowed"),
     shadow::shadowMapSizeParameter(),
     shadow::shadowMapFitParameter(1),
@@ -36,7 +36,7 @@ constexpr StressCase kStress[] = {
      .amount = 3,
      .settings = "search=near"},
     {.name = "narrowed search", .settings = "search=narrowed"},
-    {.name = "search kernel moved once", .settings = "search=narrowed search_rounds=0"},
+    {.name = "search kernel moved once", .settings = "search=narrowed search_rounds=1"},
 };
 
 class Pcss : public Technique {

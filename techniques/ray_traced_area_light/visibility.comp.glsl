@@ -43,14 +43,18 @@ bool blocked(ShadowRays r, vec3 slope) {
 float lit_share(LightView view, ShadowRays r, vec2 shift) {
   if (!view.extended) return blocked(r, view.centre) ? 0.0 : 1.0;
   int lit = 0, sent = 0;
-  // Of the box around the part above the horizon at least a third is that part.
+  // Of the box around the part of a rectangle above the horizon at least half is that part, of a disc's square maybe next to
+  // nothing: where all tries miss it, one ray goes to its highest point.
   int most = view.whole ? rays : 4 * rays;
   uint first = FRAMES > 1 ? frame.frame_index % uint(FRAMES) * uint(most) : 0u;
-  for (int i = 0; i < most && sent < rays; ++i) {
+  for (int i = 0; i <= most && sent < rays; ++i) {
     vec2 u = fract(r2_sequence(first + uint(i)) + shift);
     vec3 slope = view.centre;
     if (view.whole) {
       slope = light_view_point(view, u);
+    } else if (i == most) {
+      slope = light_view_highest(view);
+      if (sent > 0 || dot(slope, view.normal) <= 0.0) break;
     } else if (!light_view_sample(view, u, slope)) {
       continue;
     }

@@ -56,9 +56,10 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   float gap = mean_gap(cursor, q, test, rays, light_view_rise(part), pixel_noise(uint(pixel.x), uint(pixel.y), 0u));
   if (gap <= 0.0) return 1.0;
   ShadowKernel kernel = rays_box(box_rays(cursor.view, rays), gap, least_filter_width);
-  vec2 centre = clamp(0.5 * (kernel.low + kernel.high), vec2(0.0), vec2(cursor.view.size));
+  vec2 centre = 0.5 * (kernel.low + kernel.high);
   vec2 reach = 0.5 * (kernel.high - kernel.low);
-  float d = map_test_threshold(test, dot(test.plane, vec3(centre - 0.5, 1.0)));
+  vec2 place = clamp(centre, vec2(0.0), vec2(cursor.view.size));
+  float d = map_test_threshold(test, dot(test.plane, vec3(place - 0.5, 1.0)));
   vec2 m = kernel_moments(centre - reach, centre + reach, int(cursor.layer), d);
   float quantum = 1.0 / float(sat_scale(table_format));
   return m.x <= quantum ? 1.0 : clamp(1.0 - m.x * m.x / (m.y + quantum * quantum / 12.0), 0.0, 1.0);

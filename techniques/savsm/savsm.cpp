@@ -40,8 +40,8 @@ class Savsm : public Technique {
     shadow::VisibilityPass pass = shadow::visibilityPass(
         inputs, request, info.name,
         {{"PATTERN", std::to_string(p.choice("pattern"))}, {"SEARCH", std::to_string(p.choice("search"))}});
-    const shadow::SummedAreaTable table = inputs.service<shadow::ShadowMapService>().summedAreaTable(
-        pass.maps, {.bits = p.integer("sat_bits"), .words = p.integer("sat_words")});
+    // A kernel may be the whole map.
+    const shadow::SummedAreaTable table = shadow::summedAreaTable(inputs, pass.maps, pass.maps.size);
     pass.program.defines["TABLE_FORMAT"] = fmt::format("{}u", table.format);
     pass.sampled = {{"shadow_table", table.texture, "moments of kernels"}};
     pass.bind = [blockers = p.integer("blocker_samples")](frame::PassContext&, gpu::Program& program) {

@@ -11,13 +11,12 @@ uniform usampler2DArray shadow_table;
 const uint table_format = TABLE_FORMAT;
 const float least_filter_width = 1.0;  // texels: bilinear at least
 
-// P(z >= d) over the kernel, d the receiver's depth at its centre. Kernels with E(z) >= d count as lit, whatever they hold:
-// the "non-planarity" artefact.
+// P(z >= d) over the kernel, d the receiver's depth at its centre, or at the map's edge where the centre lies outside. Kernels
+// with E(z) >= d count as lit, whatever they hold: the "non-planarity" artefact.
 float kernel_light(ShadowCursor cursor, ShadowKernel kernel) {
-  float size = float(cursor.view.size);
-  vec2 centre = clamp(0.5 * (kernel.low + kernel.high), vec2(0.0), vec2(size));
+  vec2 centre = 0.5 * (kernel.low + kernel.high);
   vec2 half_extent = 0.5 * (kernel.high - kernel.low);
-  float d = map_threshold(cursor.view, cursor.in_map, centre);
+  float d = map_threshold(cursor.view, cursor.in_map, clamp(centre, vec2(0.0), vec2(cursor.view.size)));
   vec2 m = sat_lookup_moments(shadow_table, centre - half_extent, centre + half_extent, int(cursor.layer), d, table_format);
   float quantum = 1.0 / float(sat_scale(table_format));
   return m.x <= quantum ? 1.0 : clamp(1.0 - m.x * m.x / (m.y + quantum * quantum / 12.0), 0.0, 1.0);

@@ -74,7 +74,8 @@ struct Search {
   vec2 depths;    // least and greatest stored in it, metres
 };
 
-// The search kernel starts at the near plane; `search_rounds` times it moves to the nearest depth that was found in it.
+// The search kernel starts at the near plane; `search_rounds` times it moves to the nearest depth that was found in it. Bounds may
+// decide in every kernel but the last one that it moves to.
 Search search_kernel(inout ShadowCursor cursor, VisibilityQuery q, inout KernelFamily f) {
   Search search;
   search.gap = shadow_near_gap(cursor, q);
@@ -118,8 +119,8 @@ Search search_kernel(inout ShadowCursor cursor, VisibilityQuery q, inout KernelF
     umbra = umbra || (search.umbra && !lit);
     search.open = true;
 #endif
-    search.gap = search.open ? clamp(widest, 0.0, search.gap) : search.gap;
-  } while (search.open && ++round <= search_rounds);
+    search.gap = search.open && search_rounds > 0 ? clamp(widest, 0.0, search.gap) : search.gap;
+  } while (search.open && ++round < search_rounds);
 #if !EARLY_OUT
   search.lit = lit;
   search.umbra = umbra;
@@ -135,7 +136,7 @@ float contact_visibility(ShadowCursor cursor, VisibilityQuery q, float gap, vec2
   do {
     vec3 slope;
     if (light_view_sample(q.light, (vec2(i % 3, i / 3) + jitter) / 3.0, slope)) {
-      lit += shadow_tap_2x2(cursor, q.position + gap * slope);
+      lit += shadow_tap_2x2(cursor, q, q.position + gap * slope);
       total += 1.0;
     }
   } while (++i < 9);
@@ -151,11 +152,8 @@ bool contact(KernelFamily f, float gap) {
 
 float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   KernelFamily f = kernel_family(cursor, q);
-#if CONTACT
-  ShadowCursor home = cursor;
-#if !SIMILAR_KERNELS
+#if CONTACT && !SIMILAR_KERNELS
   KernelFamily home_kernels = f;
-#endif
 #endif
   // Step 1: the search kernel, and what its bounds decide.
   Search search = search_kernel(cursor, q, f);
@@ -185,7 +183,7 @@ float light_visibility(ShadowCursor cursor, VisibilityQuery q, ivec2 pixel) {
   } while (open && ++pass <= passes);
 #if CONTACT
   vec2 jitter = pixel_noise(uint(pixel.x), uint(pixel.y), 0u).xy;
-  float soft = contact_visibility(home, q, gap, jitter, narrow);
+  float soft = contact_visibility(cursor, q, gap, jitter, narrow);
   v = narrow ? soft : v;
 #endif
 #if !EARLY_OUT

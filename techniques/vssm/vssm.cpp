@@ -33,7 +33,7 @@ constexpr Parameter kParameters[] = {
         .quality(),
     integer("tree_height", 3, {1, 5}, "levels", "Of the quad-tree").quality(),
     choice("chebyshev", 0, kPoolings, "Evaluate Chebyshev's inequality for each sub-kernel or once for all"),
-    integer("search_rounds", 5, {0, 8}, "rounds",
+    integer("search_rounds", 6, {0, 9}, "rounds",
             "How often the minimum depth in the search kernel narrows it; 0: as published"),
     choice("bounds", 1, kBoundings,
            "Of the depths in the search kernel: from a min-max pyramid, from one of overlapping windows, "
@@ -72,11 +72,16 @@ constexpr StressCase kStress[] = {
      .factor = 8},
 };
 
-/// Whether the sum of depths over the largest sub-kernel may exceed one word.
-bool needsWideSums(const ParameterValues& p) {
+/// Texels along the sides of the largest sub-kernel, which is a part of the whole map.
+int largestSubKernel(const ParameterValues& p) {
   const bool uniform = p.choice("subdivision") == 0;
   const int parts = uniform ? std::min(p.integer("blocker_cells"), p.integer("visibility_cells")) : 1;
-  const int64_t side = (p.integer("shadow_map_size") + parts - 1) / parts;
+  return (p.integer("shadow_map_size") + parts - 1) / parts;
+}
+
+/// Whether the sum of depths over it may exceed one word.
+bool needsWideSums(const ParameterValues& p) {
+  const int64_t side = largestSubKernel(p);
   return side * side * ((int64_t{1} << p.integer("sat_bits")) - 1) > 0xffffffffLL;
 }
 
@@ -100,8 +105,7 @@ class Vssm : public Technique {
                                 {"BOUNDS_DEPTH", kBoundsLookups[p.choice("bounds")]},
                                 {"EARLY_OUT", p.boolean("early_out") ? "1" : "0"},
                                 {"CONTACT", std::to_string(p.choice("contact"))}});
-    const shadow::SummedAreaTable table = inputs.service<shadow::ShadowMapService>().summedAreaTable(
-        pass.maps, {.bits = p.integer("sat_bits"), .words = p.integer("sat_words")});
+    const shadow::SummedAreaTable table = shadow::summedAreaTable(inputs, pass.maps, largestSubKernel(p));
     pass.program.defines["TABLE_FORMAT"] = fmt::format("{}u", table.format);
     pass.sampled = {{"shadow_min_max",
                      depthBounds(inputs.service<shadow::ShadowMapService>(), pass.maps, p.choice("bounds")),

@@ -69,7 +69,7 @@ const Bounded kBounded[] = {
     {"pcss", {{"search", "narrowed"}}, true},
     {"pcss", {{"search", "near"}}, true},
     {"savsm", {}, true},
-    {"savsm", {{"pattern", "grid"}, {"sat_words", "1"}}, true},
+    {"savsm", {{"pattern", "grid"}, {"sat_words", "1"}, {"shadow_map_size", "256"}}, true},
     {"cssm", {}, true},
     {"cssm", {{"filter", "mip"}, {"contact", "sharpened"}}, true},
     {"cssm", {{"contact", "plain"}, {"blocker_passes", "1"}}, true},

@@ -265,7 +265,8 @@ TEST_F(MomentSoftShadowMapTest, ExtremesGiveVisibilitiesInRange) {
       inRange(visibility(technique, {{"light_size", size}}, contact.scene, contact.pose, contact.camera));
     }
   }
-  // Kernels of many exact boxes; a receiver seen edge-on; a near plane at 1e-6 of the far one.
+  // Kernels of many exact boxes; a receiver seen edge-on; a floor nearer to the light than the near plane,
+  // which is at 1e-4 of the far one.
   inRange(visibility(name, {{"light_size", "100"}, {"shadow_map_size", "4096"}}, edge.scene, edge.pose,
                      edge.camera, {0}));
   inRange(

@@ -208,5 +208,28 @@ TEST_F(RayClearanceTest, LeavesCloseToTheCameraShadeTheirFloorFarFromTheOrigin) 
   EXPECT_GT(below, 100);
 }
 
+/// Of a disc that rises by a tenth of its diameter above the floor, all tries of many pixels miss what
+/// counts.
+TEST_F(RayClearanceTest, DiscsMostlyBelowTheHorizonAreHiddenByAWall) {
+  scene::Scene scene;
+  scene::Pose pose;
+  test::addMesh(scene, test::floorPrimitive(1, test::addMaterial(scene)));
+  test::addMesh(scene, test::floorPrimitive(20, 0));
+  test::addInstance(scene, pose, 0);
+  test::addInstance(scene, pose, 1,
+                    test::at(-2, 0, 0) * glm::rotate(glm::mat4(1), -glsl::pi / 2, glm::vec3(0, 0, 1)));
+  // Its centre lies 0.8 of its half angle below the horizon, behind the wall.
+  test::addLight(pose, test::directionalLight({std::cos(0.4f), std::sin(0.4f), 0}, 1));
+  const scene::CameraPose camera = scene::lookAt({0, 2, 2}, {0, 0, 0}, 0.6f);
+  const test::Answer v = visibility("ray_traced_area_light", {{"filter", "none"}}, scene, pose, camera);
+  int floor = 0;
+  for (size_t i = 0; i < v.instance.size(); ++i) {
+    if (v.instance[i] != 0) continue;
+    ++floor;
+    ASSERT_EQ(v.lights[0][i], 0.f);
+  }
+  EXPECT_GT(floor, 1000);
+}
+
 }  // namespace
 }  // namespace limn

@@ -189,9 +189,10 @@ TEST_F(ShadowTechniqueTest, PenumbraKernelsWithinATexelAreSharedByTheFacesOfACub
   const auto camera = scene::lookAt({3.5f, 1, 0.4f}, {2, 0, 0.4f}, 0.4f);
   for (const TechniquePlugin* plugin : techniques()) {
     const std::string name = plugin->info->name;
-    if (name != "savsm" && name != "moment_soft_shadow_map") continue;
+    if (name != "savsm" && name != "vssm" && name != "moment_soft_shadow_map") continue;
     std::map<std::string, std::string> settings{{"shadow_map_size", "128"}, {"light_size", "0.06"}};
-    if (has(*plugin, "search_rounds")) settings["search_rounds"] = "0";
+    if (has(*plugin, "search_rounds")) settings["search_rounds"] = "1";
+    if (name == "vssm") settings["contact"] = "jittered";
     const Answer v = visibility(name, settings, s.scene, s.pose, camera);
     int umbra = 0;
     float brightest = 0;

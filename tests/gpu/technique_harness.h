@@ -23,6 +23,7 @@ struct Answer {
   std::vector<std::vector<float>> lights;  ///< V per light, or one layer of radiance
   uint32_t uncovered = 0;
   std::vector<std::string> passes;  ///< of the technique that ran
+  std::vector<shadow::ShadowMapStats> maps;
   float at(size_t light, int x, int y) const {
     return lights[light][static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
   }
@@ -109,7 +110,9 @@ class TechniqueTest : public OncePerRenderer<GlTest> {
     for (const frame::PassReport& pass : graph.explain())
       if (pass.technique == technique && pass.state == frame::PassState::run)
         result.passes.push_back(pass.name);
-    result.uncovered = services.get<shadow::ShadowMapService>().uncoveredPixels();
+    const auto& maps = services.get<shadow::ShadowMapService>();
+    result.uncovered = maps.uncoveredPixels();
+    result.maps = maps.stats();
     gpuScene.forget();
     return result;
   }

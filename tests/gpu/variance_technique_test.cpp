@@ -1,7 +1,9 @@
 // What soft shadows from variance shadow maps (vssm, savsm) promise beyond what every technique does.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "core/base/error.h"
 #include "glsl/light/light_view.glsl"
@@ -50,8 +52,8 @@ class VarianceTechniqueTest : public limn::test::TechniqueTest {
 
 const Settings kVariants[] = {{{"subdivision", "uniform"}}, {{"subdivision", "adaptive"}},
                               {{"subdivision", "mixed"}},   {{"chebyshev", "pooled"}},
-                              {{"search_rounds", "0"}},     {{"sat_words", "1"}},
-                              {{"sat_bits", "20"}},         {{"contact", "off"}},
+                              {{"search_rounds", "1"}},     {{"sat_bits", "15"}, {"sat_words", "1"}},
+                              {{"sat_bits", "20"}},         {{"contact", "jittered"}},
                               {{"bounds", "nbuffer"}},      {{"bounds", "mip"}}};
 
 TEST_F(VarianceTechniqueTest, ParallelPlanesAreExact) {
@@ -137,24 +139,34 @@ TEST_F(VarianceTechniqueTest, LightsLargerThanTheSceneGiveFaintShadows) {
   }
 }
 
-TEST_F(VarianceTechniqueTest, DepthRangesOfAMillionKeepTheirShadows) {
-  // A leaf just under the light and one just over the floor, at the other end of the range.
+TEST_F(VarianceTechniqueTest, DepthRangesOfTenThousandKeepTheirShadows) {
+  // A leaf as near to the light as maps show surfaces, and a panel just over the floor, at the other end of
+  // the range.
   Planes s(0.2f, 4);
-  s.addPlane(1e-6f, at(0, 4 - 4e-6f, 0));
-  s.addPlane(0.5f, at(0, 0.05f, 0));
-  const Answer v = answer(s, {{"shadow_map_size", "512"}});
+  s.addPlane(1e-6f, at(0, 4 - 4.1e-4f, 0));
+  s.addPlane(1.5f, at(0, 0.05f, 0));
+  s.camera = scene::lookAt({0, 0.04f, 2.5f}, {0, 0, 0}, 0.8f);  // under the panel
+  const Answer v = answer(s, {{"shadow_map_size", "512"}, {"views", "1"}, {"shadow_map_fit", "scene"}});
+  ASSERT_EQ(v.maps.size(), 1u);
+  EXPECT_GT(v.maps[0].far / v.maps[0].near, 9500.f);
+  int lit = 0, umbra = 0;
   for (int y = 0; y < side; ++y) {
     for (int x = 0; x < side; ++x) {
       const vec3 p = s.position(v, x, y);
       if (v.instance[static_cast<size_t>(y * side + x)] != 0) continue;
-      if (std::max(std::abs(p.x), std::abs(p.z)) > 0.6f) {
+      const float aside = std::max(std::abs(p.x), std::abs(p.z));
+      if (aside > 1.6f) {
         EXPECT_GT(v.at(0, x, y), 0.9f) << p.x << " " << p.z;
+        ++lit;
       }
-      if (std::max(std::abs(p.x), std::abs(p.z)) < 0.4f) {
+      if (aside > 0.05f && aside < 1.2f) {  // in the middle the leaf hides the panel from the light's centre
         EXPECT_LT(v.at(0, x, y), 0.1f) << p.x << " " << p.z;
+        ++umbra;
       }
     }
   }
+  EXPECT_GT(lit, 1000);
+  EXPECT_GT(umbra, 100);
 }
 
 TEST_F(VarianceTechniqueTest, SurfacesInContactDoNotShadowEachOtherOrThemselves) {
@@ -261,13 +273,99 @@ TEST_F(VarianceTechniqueTest, EarlyOutsChangeNextToNothing) {
 TEST_F(VarianceTechniqueTest, TighterBoundsChangeNextToNothing) {
   Planes s;
   s.addPlane(0.5f, at(0, 1, 0));
-  for (const char* rounds : {"0", "3"}) {
+  for (const char* rounds : {"1", "4"}) {
     const Answer mip = answer(s, {{"bounds", "mip"}, {"search_rounds", rounds}});
     for (const char* bounds : {"nbuffer", "windows"}) {
       const Answer tighter = answer(s, {{"bounds", bounds}, {"search_rounds", rounds}});
       for (size_t i = 0; i < mip.instance.size(); ++i)
         ASSERT_NEAR(mip.lights[0][i], tighter.lights[0][i], 1.f / 255) << bounds << " " << i;
     }
+  }
+}
+
+/// What lies outside the map is unoccluded. The horizon of a wall cuts a wide light, so that the middle of
+/// what counts of it lies there.
+TEST_F(VarianceTechniqueTest, KernelsAreAsLitAsTheyReachOutOfTheMap) {
+  scene::Scene scene;
+  scene::Pose pose;
+  addMesh(scene, floorPrimitive(0.5f, addMaterial(scene)));
+  addMesh(scene, floorPrimitive(1, 0));
+  addInstance(scene, pose, 0, at(0, 0.5f, 0) * glm::rotate(glm::mat4(1), -glsl::pi / 2, {0, 0, 1}));
+  addInstance(scene, pose, 1, at(0.1f, 2, 0));  // fills the map
+  addLight(pose, rectangleLight({0.1f, 4, 0}, {0, -1, 0}, 12.2f, 0.2f));
+  const scene::CameraPose camera = scene::lookAt({2, 0.05f, 0}, {0, 0.05f, 0}, 0.3f);
+  for (const bool ofBound : {false, true}) {
+    bound = ofBound;
+    const Answer v =
+        visibility("savsm", {{"shadow_map_size", "256"}, {"shadow_map_fit", "scene"}}, scene, pose, camera);
+    int foot = 0;
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) {
+        const vec3 p = positionOf(v, camera, pose.bounds, x, y);
+        // Higher up the receiver's depth is less than that of nothing, which Chebyshev's inequality needs.
+        if (v.instance[static_cast<size_t>(y * side + x)] != 0 || p.y > 0.03f) continue;
+        ++foot;
+        const float exact = 1 - 1.1f / 6.2f * (4 - p.y) / (2 - p.y);
+        EXPECT_NEAR(v.at(0, x, y), exact, 0.05f) << p.y << " " << p.z << " bound " << ofBound;
+      }
+    }
+    EXPECT_GT(foot, 200);
+  }
+}
+
+TEST_F(VarianceTechniqueTest, TablesWhoseSumsMayOverflowAreRefusedInOneLine) {
+  struct Case {
+    const char *technique, *bits, *words, *instead;
+  };
+  const Planes s;
+  for (const Case& c : {Case{"savsm", "20", "1", "set sat_words=2 or"},
+                        {"savsm", "24", "1", "set sat_words=2 sat_bits=22 or"},
+                        {"savsm", "24", "2", "set sat_bits=22 or"},
+                        {"vssm", "16", "1", "set sat_words=2 or"},
+                        {"vssm", "24", "2", "set sat_bits=23 or"}}) {
+    const Settings settings{{"sat_bits", c.bits}, {"sat_words", c.words}, {"shadow_map_size", "1024"}};
+    EXPECT_THAT(errorOf([&] { answer(s, settings, c.technique); }),
+                testing::AllOf(testing::HasSubstr(fmt::format("sat_bits={} sat_words={}", c.bits, c.words)),
+                               testing::HasSubstr("1024 x 1024"), testing::HasSubstr(c.instead),
+                               testing::Not(testing::HasSubstr("\n"))))
+        << c.technique;
+  }
+}
+
+/// The largest maps of some tables. Wide search kernels find the square from far beyond its penumbra, with as
+/// many samples that none misses it from within.
+TEST_F(VarianceTechniqueTest, TablesThatAreAcceptedHoldKernelsOfWideLights) {
+  Planes s(2, 4);
+  s.addPlane(0.5f, at(0, 1, 0));
+  s.addPlane(1e-3f, at(0, 3.5f, 0));  // brings the near plane to the light, and covers no texel
+  for (const auto& [bits, words, size] :
+       {std::tuple("20", "1", "64"), std::tuple("16", "1", "256"), std::tuple("24", "2", "256")}) {
+    const Answer v = answer(s,
+                            {{"sat_bits", bits},
+                             {"sat_words", words},
+                             {"shadow_map_size", size},
+                             {"shadow_map_fit", "scene"},
+                             {"search", "near"},
+                             {"blocker_samples", "4096"}},
+                            "savsm");
+    int lit = 0, umbra = 0;
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) {
+        const vec3 p = s.position(v, x, y);
+        if (v.instance[static_cast<size_t>(y * side + x)] != 0) continue;
+        const float aside = std::max(std::abs(p.x), std::abs(p.z));
+        if (aside > 1.5f) {
+          EXPECT_EQ(v.at(0, x, y), 1.f) << p.x << " " << p.z << " sat_bits " << bits;
+          ++lit;
+        }
+        if (aside < 0.1f) {
+          EXPECT_LT(v.at(0, x, y), 0.05f) << p.x << " " << p.z << " sat_bits " << bits;
+          ++umbra;
+        }
+      }
+    }
+    EXPECT_GT(lit, 1000);
+    EXPECT_GT(umbra, 5);
   }
 }
 

@@ -49,6 +49,7 @@ TEST(ShadowView, ProjectionAndItsInverseAgreeUnderEveryKind) {
       EXPECT_NEAR(q.depth, d, 1e-5f * d);
       EXPECT_TRUE(shadow_inside(q));
       EXPECT_NEAR(shadow_metres(v, shadow_normalise(v, d)), d, 1e-5f * d);
+      if (kind == shadow_paraboloid) continue;
       // What is rasterised lands where it is looked up.
       const vec4 clip = shadow_clip(v, v.origin + shadow_world_offset(v, offset));
       EXPECT_NEAR(0.5f * clip.x / clip.w + 0.5f, uv.x, 1e-5f);
@@ -177,6 +178,30 @@ TEST(LightView, SamplesAreOfThePartAboveTheTangentPlaneAndFillIt) {
   }
   EXPECT_TRUE(light_view(light, vec3(0, 3, 0), vec3(0, -1, 0), -1).masked) << "behind the light";
   EXPECT_TRUE(light_view(light, vec3(0), vec3(0, -1, 0), -1).masked) << "below the horizon";
+}
+
+TEST(LightView, NothingOfALightIsHigherThanItsHighestPoint) {
+  Light disc{};
+  disc.direction = normalize(vec3(0.2f, -1, 0.1f));
+  disc.angular_diameter = 1;
+  disc.type = light_directional;
+  disc.own_instance = no_instance;
+  const vec3 along = -disc.direction, across = normalize(cross(along, vec3(0, 0, 1)));
+  const Light flat = rectangle(vec3(0, 2, 0), vec3(1, 0, 0), vec3(0, 0, -1), 2, 1);
+  // Of the height of the disc's centre above the plane; that of its half angle is 0.48.
+  for (const float sine : {0.3f, -0.1f, -0.4f}) {
+    const vec3 n = sine * along + std::sqrt(1 - sine * sine) * across;
+    for (const Light& light : {disc, flat}) {
+      const LightView v = light_view(light, vec3(0.1f, 0, 0.2f), n, -1);
+      if (v.masked) continue;
+      const vec3 highest = light_view_highest(v);
+      EXPECT_GT(dot(highest, n), 0.f);
+      EXPECT_TRUE(light_view_contains(v, highest, 1e-5f));
+      for (uint32_t i = 0; i < 1000; ++i)
+        EXPECT_LE(dot(light_view_point(v, r2_sequence(i)), n), dot(highest, n) + 1e-5f);
+    }
+    EXPECT_FALSE(light_view(disc, vec3(0), n, -1).masked);
+  }
 }
 
 TEST(LightView, DirectionsAreUniformInTheCone) {

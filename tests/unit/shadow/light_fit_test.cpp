@@ -37,5 +37,25 @@ TEST(LightFit, MapsOfSamplesHoldWhatTheConeOfTheLightLights) {
   }
 }
 
+/// At most a quarter wider than what it shows: two texels on each side are more than all of a map of few.
+TEST(LightFit, MapsOfFewTexelsAreHardlyWiderThanWhatTheyShow) {
+  const std::vector<scene::Bounds> box{{vec3(-0.5f), vec3(0.5f)}};
+  const glsl::Light lights[] = {test::rectangleLight({0, 3, 0}, {0, -1, 0}, 0, 0),
+                                test::spotLight({0, 3, 0}, {0, -1, 0}, 0.3f),
+                                test::directionalLight({0, -1, 0}, 0)};
+  for (const glsl::Light& light : lights) {
+    const auto width = [&](int size) {
+      const ShadowMapDesc desc{.size = size};
+      std::vector<glsl::ShadowView> views;
+      std::vector<glsl::ShadowLight> maps;
+      appendViews(light, 0, fitLayout(light, box, desc), box, desc, nullptr, views, maps);
+      return double(1 / views.at(0).scale);
+    };
+    const double exact = width(1 << 20);
+    for (const int size : {1, 2, 3, 8, 15}) EXPECT_NEAR(width(size) / exact, 1.25, 1e-4) << size;
+    for (const int size : {16, 256}) EXPECT_NEAR(width(size) / exact, 1 + 4.0 / size, 1e-4) << size;
+  }
+}
+
 }  // namespace
 }  // namespace limn::shadow
