@@ -3,8 +3,39 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "core/scene/environment_light.h"
+#include "glsl/numeric/equirectangular.glsl"
 
 namespace limn::radiosity {
+namespace {
+
+/// Bins take the pixels of a map whole that is at least this many times as wide and as high as a face has
+/// bins: nine of them or more lie across a bin, so that those at its edge hardly matter.
+constexpr int kWholePixels = 64;
+
+/// Returns the mean of the pixels whose centres lie in each bin.
+std::vector<glm::vec4> meansOfPixels(const scene::Environment& map, const ElementSpace& space, uint32_t n) {
+  std::vector<glm::dvec4> sums(size_t{6} * n * n, glm::dvec4(0));  // w: solid angle
+  for (int y = 0; y < map.height; ++y) {
+    const double solidAngle = double(glsl::equirectangular_pixel_solid_angle(y, map.width, map.height));
+    for (int x = 0; x < map.width; ++x) {
+      const glm::vec2 uv((static_cast<float>(x) + 0.5f) / static_cast<float>(map.width),
+                         (static_cast<float>(y) + 0.5f) / static_cast<float>(map.height));
+      const glm::vec3 direction =
+          glsl::environment_world_direction(glsl::equirectangular_direction(uv), map.rotation);
+      const size_t at = static_cast<size_t>(y) * static_cast<size_t>(map.width) + static_cast<size_t>(x);
+      sums[glsl::bin_of(space.direction(direction), n)] +=
+          solidAngle * glm::dvec4(map.scale * map.texels[at], 1);
+    }
+  }
+  std::vector<glm::vec4> means;
+  for (const glm::dvec4& sum : sums) means.emplace_back(glm::dvec3(sum) / sum.w, 0);
+  return means;
+}
+
+}  // namespace
 
 std::vector<glm::vec4> binTable(int resolution) {
   const auto n = static_cast<uint32_t>(resolution);
@@ -12,6 +43,34 @@ std::vector<glm::vec4> binTable(int resolution) {
   for (uint32_t bin = 0; bin < 6 * n * n; ++bin)
     table.emplace_back(glm::normalize(glsl::bin_direction(bin, n)), glsl::bin_solid_angle(bin, n));
   return table;
+}
+
+std::vector<glm::vec4> environmentBins(const scene::Environment& environment, const ElementSpace& space,
+                                       int resolution) {
+  const auto n = static_cast<uint32_t>(resolution);
+  if (std::min(environment.width, environment.height) >= kWholePixels * resolution)
+    return meansOfPixels(environment, space, n);
+  // Four samples for each pixel of the map, so that no small bright one is missed.
+  const double pixels = double(environment.width) * environment.height;
+  const int side =
+      std::max(static_cast<int>(std::ceil(2 * std::sqrt(pixels / double(size_t{6} * n * n)))), 2);
+  const scene::EnvironmentLight light(environment);
+  std::vector<glm::vec4> bins;
+  for (uint32_t bin = 0; bin < 6 * n * n; ++bin) {
+    glm::vec3 sum(0);
+    float weights = 0;
+    for (int s = 0; s < side * side; ++s) {
+      const glm::vec2 in((static_cast<float>(s % side) + 0.5f) / float(side),
+                         (static_cast<float>(s / side) + 0.5f) / float(side));
+      const glm::vec2 place = (glm::vec2(float(bin % n), float(bin / n % n)) + in) * (2 / float(n)) - 1.f;
+      const glm::vec3 ray = glsl::bin_face_direction(bin / (n * n), place);
+      const float length2 = glm::dot(ray, ray), weight = 1 / (length2 * std::sqrt(length2));
+      sum += weight * light.radiance(glm::normalize(space.worldDirection(ray)));
+      weights += weight;
+    }
+    bins.emplace_back(sum / weights, 0);
+  }
+  return bins;
 }
 
 void gather(const Forest& forest, const Links& links, std::span<const glm::vec4> table,

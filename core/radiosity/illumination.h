@@ -10,12 +10,18 @@
 #include "core/base/export.h"
 #include "core/radiosity/forest.h"
 #include "core/radiosity/links.h"
+#include "core/scene/scene.h"
 #include "glsl/indirect/direction_bins.glsl"
 
 namespace limn::radiosity {
 
 /// Returns the unit direction (xyz) and the solid angle in sr (w) of each bin.
 LIMN_API std::vector<glm::vec4> binTable(int resolution);
+
+/// Returns the environment's mean radiance over each bin (w is 0), W/(sr m^2), of bins in the axes of
+/// `space`.
+LIMN_API std::vector<glm::vec4> environmentBins(const scene::Environment& environment,
+                                                const ElementSpace& space, int resolution);
 
 /// Computes the irradiance of every leaf, W/m^2: pi times the mean over the bins above its tangent plane of
 /// the radiance that arrives, weighted by cosine and solid angle. A filled bin is filled wholly (equation

@@ -1,5 +1,7 @@
 #include "core/radiosity/light_samples.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -102,6 +104,26 @@ void addLight(const glsl::Light& light, const LitPlace& place, const Occlusion& 
   }
   for (size_t i = first; i < sum.incident.size(); ++i) sum.incident[i].irradiance /= whole;
   if (whole > 0) sum.irradiance += irradiance * (seen / whole);
+}
+
+void lightLeaves(const SceneElements& elements, std::span<const glsl::Light> lights,
+                 const Occlusion& occlusion, int rays, SampleSolver& solver) {
+  const ElementSpace& space = elements.space();
+  tbb::parallel_for(size_t{0}, elements.leaves().size(), [&](size_t i) {
+    const Leaf& leaf = elements.leaves()[i];
+    if (!(leaf.used > 0)) return;
+    const auto slot = static_cast<uint32_t>(i);
+    const LitPlace place{.position = leaf.position,
+                         .normal = leaf.normal,
+                         .alpha = solver.glossy(slot) ? solver.brdf(slot).alpha : 1,
+                         .clearance = space.radius() * solver.clearance(slot),
+                         .seed = slot};
+    LightAtPlace sum;
+    for (const glsl::Light& light : lights) addLight(light, place, occlusion, rays, sum);
+    for (glsl::IncidentLight& incident : sum.incident)
+      incident.direction = space.direction(incident.direction);
+    solver.light(slot, sum.irradiance, sum.incident);
+  });
 }
 
 }  // namespace limn::radiosity

@@ -8,6 +8,7 @@
 #include "core/base/export.h"
 #include "core/radiosity/occlusion.h"
 #include "core/radiosity/sample_solver.h"
+#include "core/radiosity/scene_elements.h"
 #include "glsl/scene/light.glsl"
 
 namespace limn::radiosity {
@@ -30,5 +31,10 @@ struct LightAtPlace {
 /// light, to strata of its area. Light below the horizon does not arrive.
 LIMN_API void addLight(const glsl::Light& light, const LitPlace& place, const Occlusion& occlusion, int rays,
                        LightAtPlace& sum);
+
+/// Sets the light of `lights` at all leaves of a solution for these elements. Uses all cores; the result does
+/// not depend on their number.
+LIMN_API void lightLeaves(const SceneElements& elements, std::span<const glsl::Light> lights,
+                          const Occlusion& occlusion, int rays, SampleSolver& solver);
 
 }  // namespace limn::radiosity

@@ -134,11 +134,12 @@ SceneElements::SceneElements(const scene::Scene& scene, const scene::Pose& pose,
         std::swap(mesh.indices[t + 1], mesh.indices[t + 2]);
     mesh.doubleSided = scene.materials[static_cast<size_t>(instance.material)].doubleSided;
   }
-  surfels_ = createSurfels(meshes, longestEdge, lift);
-  if (surfels_.size() > maxElements)
-    refuse(fmt::format("the scene has {} surface elements", surfels_.size()));
+  surfels_ = createSurfels(meshes, longestEdge, lift, maxElements);
   bodies_ = Bodies(surfels_, lift);
   forest_ = Forest(surfels_, shape);
+  // Small clusters do not fill their groups of four, and memory is taken for every slot.
+  if (forest_.leafSlots() > maxElements)
+    refuse(fmt::format("the scene's {} take the slots of {}", surfels_.size(), forest_.leafSlots()));
   leaves_.resize(forest_.leafSlots());
   materials_.resize(forest_.leafSlots());
   setMaterials();

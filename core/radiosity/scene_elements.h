@@ -44,7 +44,7 @@ class LIMN_API SceneElements {
  public:
   /// Makes the elements. Edges of triangles longer than `longestEdge`, in radii of the scene, are halved. All
   /// lengths are in units of the radius that the scene has now. Object i is instance i of the pose. `lift` is
-  /// as Bodies has it, `shape` as Forest. Throws UsageError beyond `maxElements` leaves.
+  /// as Bodies has it, `shape` as Forest. Throws UsageError beyond `maxElements` leaf slots.
   SceneElements(const scene::Scene& scene, const scene::Pose& pose, float longestEdge, uint32_t maxElements,
                 double lift = kDefaultLift, LeafShape shape = LeafShape::disc);
   ~SceneElements();

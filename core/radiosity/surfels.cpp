@@ -1,5 +1,7 @@
 #include "core/radiosity/surfels.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -7,6 +9,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "core/base/error.h"
 #include "core/radiosity/bodies.h"
 
 namespace limn::radiosity {
@@ -53,8 +56,13 @@ using Weights = glm::vec3;
 /// One object's surfels in the making.
 class Builder {
  public:
-  Builder(Surfels& out, const TriangleMesh& mesh, uint32_t object, float side)
-      : out_(out), mesh_(mesh), object_(object), side_(side), first_(static_cast<uint32_t>(out.size())) {}
+  Builder(Surfels& out, size_t most, const TriangleMesh& mesh, uint32_t object, float side)
+      : out_(out),
+        most_(most),
+        mesh_(mesh),
+        object_(object),
+        side_(side),
+        first_(static_cast<uint32_t>(out.size())) {}
 
   void addTriangles(float longestEdge) {
     longest2_ = longestEdge * longestEdge;
@@ -200,6 +208,9 @@ class Builder {
         addOrigin(known, w, n);
         return known;
       }
+    if (out_.size() >= most_)
+      throw UsageError(
+          fmt::format("surface elements: the scene has more than the {} that fit the memory allowed", most_));
     const auto added = static_cast<uint32_t>(out_.size());
     out_.objects.push_back(object_);
     origins_.push_back({{corners_, w, side_}});
@@ -267,6 +278,7 @@ class Builder {
   }
 
   Surfels& out_;
+  size_t most_;
   const TriangleMesh& mesh_;
   uint32_t object_;
   float side_;
@@ -328,14 +340,14 @@ void placeDiscs(Surfels& s) {
 
 }  // namespace
 
-Surfels createSurfels(std::span<const TriangleMesh> objects, float longestEdge, double lift) {
+Surfels createSurfels(std::span<const TriangleMesh> objects, float longestEdge, double lift, size_t most) {
   Surfels surfels;
   for (uint32_t object = 0; object < objects.size(); ++object) {
     const TriangleMesh& mesh = objects[object];
     bool closed = mesh.doubleSided;
     for (const float side : {1.f, -1.f}) {
       if (side < 0 && !mesh.doubleSided) break;
-      Builder builder(surfels, mesh, object, side);
+      Builder builder(surfels, most, mesh, object, side);
       builder.addTriangles(longestEdge);
       builder.addClusters();
       const bool whole = builder.addPieces();

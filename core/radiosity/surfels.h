@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -91,8 +93,9 @@ struct Surfels {
 ///
 /// Clusters are the charts of the texture coordinates; for an object without any, they are its connected
 /// pieces whose normals have the same dominant axis. Clusters of fewer than 16 surfels are joined, by axis.
-/// `lift` is as Bodies has it.
+/// `lift` is as Bodies has it. Throws UsageError as soon as there are more than `most` surfels: how many
+/// halved edges make is not known before.
 LIMN_API Surfels createSurfels(std::span<const TriangleMesh> objects, float longestEdge,
-                               double lift = kDefaultLift);
+                               double lift = kDefaultLift, size_t most = std::numeric_limits<size_t>::max());
 
 }  // namespace limn::radiosity

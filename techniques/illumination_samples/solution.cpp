@@ -1,7 +1,6 @@
 #include "techniques/illumination_samples/solution.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 
@@ -76,25 +75,10 @@ void Solution::addLights(frame::FrameGraph& graph, const TechniqueInputs& inputs
 }
 
 void Solution::light(const scene::Pose& pose) {
+  std::vector<glsl::Light> lights;
+  for (const uint32_t index : lights_) lights.push_back(pose.lights[index]);
   solver_.begin();
-  const radiosity::SceneElements& elements = elements_.elements();
-  const radiosity::ElementSpace& space = elements.space();
-  tbb::parallel_for(size_t{0}, elements.leaves().size(), [&](size_t i) {
-    const radiosity::Leaf& leaf = elements.leaves()[i];
-    if (!(leaf.used > 0)) return;
-    const auto slot = static_cast<uint32_t>(i);
-    const radiosity::LitPlace place{.position = leaf.position,
-                                    .normal = leaf.normal,
-                                    .alpha = solver_.glossy(slot) ? solver_.brdf(slot).alpha : 1,
-                                    .clearance = space.radius() * solver_.clearance(slot),
-                                    .seed = slot};
-    radiosity::LightAtPlace sum;
-    for (const uint32_t index : lights_)
-      radiosity::addLight(pose.lights[index], place, elements_.occlusion(), settings_.lightRays, sum);
-    for (glsl::IncidentLight& incident : sum.incident)
-      incident.direction = space.direction(incident.direction);
-    solver_.light(slot, sum.irradiance, sum.incident);
-  });
+  radiosity::lightLeaves(elements_.elements(), lights, elements_.occlusion(), settings_.lightRays, solver_);
 }
 
 void Solution::addBounce(frame::FrameGraph& graph, gpu::Device& device) {

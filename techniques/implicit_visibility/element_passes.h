@@ -67,7 +67,8 @@ class ElementPasses {
     return settings_.glossy > 0 ? 6 * static_cast<uint32_t>(settings_.glossy * settings_.glossy) : 1;
   }
   bool glossy() const { return settings_.glossy > 0; }
-  size_t binCount() const { return binTable_.size(); }
+  /// Returns N of the 6 x N x N bins of links.
+  int resolution() const { return settings_.links.resolution; }
   /// Returns the directions and solid angles of bins, as radiosity::binTable() has them.
   std::span<const glm::vec4> binTable() const { return binTable_; }
   /// Returns the links that the processor made; none where they are made on the GPU.

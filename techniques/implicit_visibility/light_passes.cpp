@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/gpu_scene/gpu_scene.h"
-#include "core/scene/environment_light.h"
+#include "core/radiosity/illumination.h"
 #include "core/shading_maps/shading_maps.h"
 
 namespace limn::implicit_visibility {
@@ -214,7 +213,8 @@ void LightPasses::gatherChunks(frame::PassContext& context, frame::ProgramHandle
 
 const Gathered& LightPasses::sky(const PassRequest& r) {
   if (sky_) return *sky_;
-  const std::vector<glm::vec4> radiance = skyBins(r.inputs.scene);
+  const std::vector<glm::vec4> radiance = radiosity::environmentBins(
+      r.inputs.scene.environment, elements_.elements().space(), elements_.resolution());
   environment_ = gpu::Buffer::of<glm::vec4>(r.inputs.gpuScene.device(), "environment of bins", radiance);
   const BufferHandle bins = r.graph.importBuffer("environment of bins", environment_);
   const BufferHandle irradiance =
@@ -248,31 +248,6 @@ BufferHandle LightPasses::skyIrradianceOnProcessor(const PassRequest& r,
     own.gatherEnvironment(bins);
   });
   return irradiance;
-}
-
-std::vector<glm::vec4> LightPasses::skyBins(const scene::Scene& scene) const {
-  const scene::EnvironmentLight environment(scene.environment);
-  const auto n = static_cast<uint32_t>(std::lround(std::sqrt(static_cast<double>(elements_.binCount()) / 6)));
-  // Four samples for each pixel of the map, so that no small bright one is missed.
-  const double pixels = double(scene.environment.width) * scene.environment.height;
-  const int side =
-      std::clamp(static_cast<int>(std::ceil(2 * std::sqrt(pixels / double(elements_.binCount())))), 2, 64);
-  std::vector<glm::vec4> bins;
-  for (uint32_t bin = 0; bin < 6 * n * n; ++bin) {
-    glm::vec3 sum(0);
-    float weights = 0;
-    for (int s = 0; s < side * side; ++s) {
-      const glm::vec2 in((static_cast<float>(s % side) + 0.5f) / float(side),
-                         (static_cast<float>(s / side) + 0.5f) / float(side));
-      const glm::vec2 place = (glm::vec2(float(bin % n), float(bin / n % n)) + in) * (2 / float(n)) - 1.f;
-      const glm::vec3 ray = glsl::bin_face_direction(bin / (n * n), place);
-      const float length2 = glm::dot(ray, ray), weight = 1 / (length2 * std::sqrt(length2));
-      sum += weight * environment.radiance(glm::normalize(elements_.elements().space().worldDirection(ray)));
-      weights += weight;
-    }
-    bins.emplace_back(sum / weights, 0);
-  }
-  return bins;
 }
 
 }  // namespace limn::implicit_visibility

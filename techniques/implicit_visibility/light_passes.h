@@ -57,8 +57,6 @@ class LightPasses {
   frame::SlotHandle readBins(frame::PassBuilder& pass) const;
   /// Runs gather.comp.glsl for all leaves.
   void gatherChunks(frame::PassContext& context, frame::ProgramHandle program, frame::SlotHandle links) const;
-  /// Returns the environment's mean radiance over each bin.
-  std::vector<glm::vec4> skyBins(const scene::Scene& scene) const;
 
   frame::BufferHandle perSlot(const PassRequest& r, const char* name, uint32_t count = 1) const;
   /// Returns a buffer for the radiance values that elements send.

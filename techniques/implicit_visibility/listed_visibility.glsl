@@ -107,7 +107,8 @@ float listed_visibility(Light light, vec3 position, vec3 normal, uvec2 range) {
   float scaled = 1.0 / unit;
   float size = max(max(abs(position.x), abs(position.y)), abs(position.z)) * scaled + 1.0;
   float clearance2 = listed_clearance * listed_clearance * size * size;
-  float limit = reach * min(v.depth * scaled, 1e30);
+  // A disc's depth is measured from the world's origin: the light is beyond all.
+  float limit = reach * (v.cone ? 1e30 : min(v.depth * scaled, 1e30));
   for (uint t = range.x; t < range.x + range.y && any_open != 0u; ++t) {
     uint corner = 3u * (lists[t] & ~both_sides);
     vec3 a = scaled * (leaves[corners[corner]].vertex - position);

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/radiosity/illumination.h"
+#include "glsl/numeric/equirectangular.glsl"
 #include "glsl/surface/brdf.glsl"
 #include "tests/support/radiosity_meshes.h"
 #include "tests/unit/radiosity/radiosity_world.h"
@@ -79,6 +80,31 @@ TEST(RadiosityTest, LobesAtTheCentresOfBinsKeepTheirEnergy) {
     EXPECT_GT(wide.x, 0.85f);
     EXPECT_LT(wide.y, 1.15f);
   }
+}
+
+/// A single bright pixel of a large map arrives whole, wherever it lies, and a sky that is the same all round
+/// stays so. A bin of 4 a side holds 5461 pixels of the map on average, of which the 300 or so at its edge
+/// are counted with their centres.
+TEST(RadiosityTest, BinsHoldEveryPixelOfAnEnvironment) {
+  constexpr int n = 4, width = 1024, height = 512;
+  const std::vector<glm::vec4> table = binTable(n);
+  const ElementSpace space(glm::vec3(0), 1);
+  scene::Environment map;
+  map.width = width;
+  map.height = height;
+  map.scale = 2;
+  map.rotation = 1;
+  for (const glm::ivec2 bright : {glm::ivec2(300, 200), glm::ivec2(801, 255), glm::ivec2(17, 40)}) {
+    map.texels.assign(size_t{width} * height, glm::vec3(0));
+    map.texels[static_cast<size_t>(bright.y * width + bright.x)] = {1000, 0, 0};
+    const std::vector<glm::vec4> bins = environmentBins(map, space, n);
+    double power = 0;
+    for (size_t bin = 0; bin < bins.size(); ++bin) power += double(bins[bin].x) * double(table[bin].w);
+    const double exact = 2 * 1000 * double(glsl::equirectangular_pixel_solid_angle(bright.y, width, height));
+    EXPECT_NEAR(power / exact, 1, 0.01) << bright.x << " " << bright.y;
+  }
+  map.texels.assign(size_t{width} * height, glm::vec3(0.5f));
+  for (const glm::vec4& bin : environmentBins(map, space, n)) EXPECT_NEAR(bin.x, 1, 1e-6);
 }
 
 TEST(RadiosityTest, LeafAreasSumToTheMeshArea) {
@@ -350,6 +376,10 @@ TEST(RadiosityTest, AFurnaceConvergesFromBelow) {
                   c.name, albedo, low / exact, high / exact, one, tenth);
       EXPECT_GT(low / exact, 0.98);
       EXPECT_LT(high / exact, 1 + 1e-4);
+      // After k bounces albedo^(k + 1) is missing, and up to 0.4 % for good: log(0.006) is 1.11 log(0.01).
+      const double least = std::log(0.01) / std::log(double(albedo));
+      EXPECT_GE(one, std::floor(least));
+      EXPECT_LT(one, 1.15 * least);
     }
   }
 }

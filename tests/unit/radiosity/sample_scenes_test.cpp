@@ -1,7 +1,6 @@
 // Illumination samples in scenes of assets/: how many cells of directions the light takes that one surface
 // sends to another.
 #include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,9 +28,7 @@ class LitScene {
     elements_.update(pose_);
     const auto occlusion = sceneOcclusion(scene_, pose_);
     solver_.begin();
-    tbb::parallel_for(size_t{0}, elements_.leaves().size(), [&](size_t i) {
-      if (elements_.leaves()[i].used > 0) light(static_cast<uint32_t>(i), *occlusion);
-    });
+    lightLeaves(elements_, pose_.lights, *occlusion, 16, solver_);
     solver_.reflect();
     solver_.shoot(*occlusion);
   }
@@ -64,20 +61,6 @@ class LitScene {
   }
 
  private:
-  void light(uint32_t slot, const Occlusion& occlusion) {
-    const Leaf& leaf = elements_.leaves()[slot];
-    const LitPlace place{.position = leaf.position,
-                         .normal = leaf.normal,
-                         .alpha = solver_.glossy(slot) ? solver_.brdf(slot).alpha : 1,
-                         .clearance = elements_.space().radius() * solver_.clearance(slot),
-                         .seed = slot};
-    LightAtPlace sum;
-    for (const glsl::Light& light : pose_.lights) addLight(light, place, occlusion, 16, sum);
-    for (glsl::IncidentLight& incident : sum.incident)
-      incident.direction = elements_.space().direction(incident.direction);
-    solver_.light(slot, sum.irradiance, sum.incident);
-  }
-
   scene::Scene scene_;
   scene::Pose pose_;
   SceneElements elements_;

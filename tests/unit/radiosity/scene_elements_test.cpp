@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/error.h"
 #include "core/scene/metaballs.h"
 #include "tests/support/test_scenes.h"
 
@@ -120,6 +121,37 @@ TEST(SceneElementsTest, FitInstancesOfAPose) {
   EXPECT_FALSE(elements.fits(pose));
   EXPECT_TRUE(elements.fits(pose, {&pose.instances[0], 1}));
   EXPECT_FALSE(elements.fits(pose, {&pose.instances[1], 1}));
+}
+
+/// Memory is taken for every slot, and small clusters do not fill their groups of four.
+TEST(SceneElementsTest, CountTheSlotsOfSmallClusters) {
+  scene::Scene scene;
+  const int octahedron = test::addMesh(scene, test::spherePrimitive(1, test::addMaterial(scene), 2));
+  scene::Pose pose;
+  for (int i = 0; i < 100; ++i)
+    test::addInstance(scene, pose, octahedron, test::at(3 * static_cast<float>(i), 0, 0));
+  const SceneElements all(scene, pose, 10, 1u << 20);
+  ASSERT_EQ(all.surfels().size(), 600u);
+  const uint32_t slots = all.forest().leafSlots();
+  ASSERT_GT(slots, 700u);
+  EXPECT_NO_THROW(SceneElements(scene, pose, 10, slots));
+  for (const uint32_t most : {slots - 1, 600u})
+    EXPECT_THROW(SceneElements(scene, pose, 10, most), UsageError);
+}
+
+/// The message does not know how many there would have been: no more were made than are allowed.
+TEST(SceneElementsTest, AreRefusedBeforeTheyAreAllMade) {
+  scene::Scene scene;
+  const int floor = test::addMesh(scene, test::floorPrimitive(1, test::addMaterial(scene)));
+  scene::Pose pose;
+  test::addInstance(scene, pose, floor);
+  try {
+    const SceneElements elements(scene, pose, 0.01f, 100);
+    FAIL() << elements.surfels().size();
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(),
+                 "surface elements: the scene has more than the 100 that fit the memory allowed");
+  }
 }
 
 /// Sources fill again what nobody holds: the address would be the same.
