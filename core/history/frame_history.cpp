@@ -7,6 +7,7 @@
 #include <cstring>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "core/base/error.h"
 #include "glsl/history/history_frame.glsl"
@@ -27,7 +28,14 @@ glsl::HistoryFrame viewOf(const glsl::FrameBlock& frame) {
           .slot = 0,
           .still = 0,
           .age = 0,
-          .unused = 0};
+          .moved = 0};
+}
+
+std::vector<glm::mat4> placesOf(const scene::Pose& pose) {
+  std::vector<glm::mat4> places;
+  places.reserve(pose.instances.size());
+  for (const scene::DrawInstance& drawn : pose.instances) places.push_back(drawn.objectToWorld);
+  return places;
 }
 
 }  // namespace
@@ -40,7 +48,7 @@ struct FrameHistoryService::Kept {
     glsl::HistoryFrame view{};
   };
   int frames = 0, parts = 0;
-  bool moves = false;  ///< instances, or geometry: what a still camera sees may be another surface
+  bool moves = false;  ///< animations or geometry do: what a still camera sees may be another surface
   std::array<std::optional<Slot>, kMostFrames> slots;
   std::array<glsl::HistoryFrame, kMostFrames> found{};  ///< those before this frame, the oldest first
   int count = 0;
@@ -48,11 +56,12 @@ struct FrameHistoryService::Kept {
   gpu::Buffer views, instances;
 
   int slotOf(uint32_t frame) const { return static_cast<int>(frame % static_cast<uint32_t>(frames)); }
-  void find(const glsl::FrameBlock& now);
+  void find(const glsl::FrameBlock& now, uint32_t placed);
 };
 
-/// Frames that were cancelled have left nothing, so that slots may hold older ones.
-void FrameHistoryService::Kept::find(const glsl::FrameBlock& now) {
+/// Frames that were cancelled have left nothing, so that slots may hold older ones. placed: index of the
+/// first frame with the instances where they are now.
+void FrameHistoryService::Kept::find(const glsl::FrameBlock& now, uint32_t placed) {
   count = 0;
   glsl::HistoryFrame view = viewOf(now);
   for (uint32_t age = std::min(static_cast<uint32_t>(frames), now.frame_index); age > 0; --age) {
@@ -65,6 +74,7 @@ void FrameHistoryService::Kept::find(const glsl::FrameBlock& now) {
     before.slot = static_cast<uint32_t>(slot);
     before.still = still ? 1 : 0;
     before.age = age;
+    before.moved = (moves || held->frame < placed) ? 1 : 0;
   }
   if (count > 0) views.update(0, found.data(), static_cast<size_t>(count) * sizeof(found[0]));
 }
@@ -74,10 +84,16 @@ FrameHistoryService::~FrameHistoryService() = default;
 
 void FrameHistoryService::begin() {
   kept_.clear();
+  places_ = placesOf(context().pose);
+  placed_ = 0;
 }
 
-bool FrameHistoryService::update(frame::FrameGraph&, const scene::Pose&) {
-  for (const std::unique_ptr<Kept>& kept : kept_) kept->find(scene_.frame());
+bool FrameHistoryService::update(frame::FrameGraph&, const scene::Pose& pose) {
+  if (std::vector<glm::mat4> places = placesOf(pose); places != places_) {
+    places_ = std::move(places);
+    placed_ = scene_.frame().frame_index;
+  }
+  for (const std::unique_ptr<Kept>& kept : kept_) kept->find(scene_.frame(), placed_);
   return false;
 }
 
@@ -104,11 +120,8 @@ frame::TextureHandle FrameHistoryService::average(const GBuffer& gbuffer, frame:
   const frame::TextureHandle keptLight = graph.importTexture("light of frames", kept.light);
   const frame::TextureHandle keptSurfaces = graph.importTexture("surfaces of frames", kept.surfaces);
   const size_t instanceBytes = static_cast<size_t>(instanceCount) * sizeof(glsl::Instance);
-  frame::BufferHandle keptInstances;
-  if (kept.moves) {
-    kept.instances = gpu::Buffer(device, "instances of frames", static_cast<size_t>(frames) * instanceBytes);
-    keptInstances = graph.importBuffer("instances of frames", kept.instances);
-  }
+  kept.instances = gpu::Buffer(device, "instances of frames", static_cast<size_t>(frames) * instanceBytes);
+  const frame::BufferHandle keptInstances = graph.importBuffer("instances of frames", kept.instances);
   const std::string parts = std::to_string(kept.parts);
 
   frame::PassBuilder average = graph.addPass("average frames", technique);
@@ -119,19 +132,18 @@ frame::TextureHandle FrameHistoryService::average(const GBuffer& gbuffer, frame:
       .read(gbuffer.depth, Access::sampled, kGBufferNames.depth, "what is seen now")
       .read(gbuffer.geometricNormal, Access::sampled, kGBufferNames.geometricNormal, "its plane")
       .read(gbuffer.instance, Access::sampled, kGBufferNames.instance, "whose it is")
+      .read(handles.instances, Access::storageLoad, "Instances", "where it is")
+      .read(keptInstances, Access::storageLoad, "InstancesBefore", "where it was")
       .constant("HistoryFrames", kept.views);
-  if (kept.moves)
-    average.read(handles.instances, Access::storageLoad, "Instances", "where it is")
-        .read(keptInstances, Access::storageLoad, "InstancesBefore", "where it was");
   const frame::TextureHandle result = average.write(graph.createTexture("averaged", graph.desc(light)),
                                                     Access::imageStore, "averaged", "sums over frames");
-  const auto averaging = average.program({.files = {"glsl/history/average.comp.glsl"},
-                                          .defines = {{"PARTS", parts}, {"MOVES", kept.moves ? "1" : "0"}}});
+  const auto averaging =
+      average.program({.files = {"glsl/history/average.comp.glsl"}, .defines = {{"PARTS", parts}}});
   average.execute([averaging, size, instanceCount, &kept](frame::PassContext& context) {
     gpu::Program& kernel = context.use(averaging);
     kernel.set("frame_count", kept.count);
     kernel.set("frames_kept", kept.frames);
-    if (kept.moves) kernel.set("instance_count", instanceCount);
+    kernel.set("instance_count", instanceCount);
     context.dispatch(size.x, size.y, 1, kGroup, kGroup);
     kept.count = 0;  // a graph that runs again without update() knows none
   });
@@ -142,12 +154,11 @@ frame::TextureHandle FrameHistoryService::average(const GBuffer& gbuffer, frame:
       .read(gbuffer.depth, Access::sampled, kGBufferNames.depth, "what it fell on")
       .read(gbuffer.geometricNormal, Access::sampled, kGBufferNames.geometricNormal, "its plane")
       .read(gbuffer.instance, Access::sampled, kGBufferNames.instance, "whose it is")
+      .read(handles.instances, Access::copySource, "where instances are")
       .sideEffect();
-  if (kept.moves) keep.read(handles.instances, Access::copySource, "where instances are");
   (void)keep.write(keptLight, Access::imageLoadStore, "history_light", "for frames after this one");
   (void)keep.write(keptSurfaces, Access::imageLoadStore, "history_surfaces", "the same");
-  frame::BufferHandle copied;
-  if (kept.moves) copied = keep.write(keptInstances, Access::copyTarget, "the same");
+  const frame::BufferHandle copied = keep.write(keptInstances, Access::copyTarget, "the same");
   const auto keeping =
       keep.program({.files = {"glsl/history/keep.comp.glsl"}, .defines = {{"PARTS", parts}}});
   keep.execute([=, this, &kept, from = handles.instances](frame::PassContext& context) {
@@ -155,10 +166,9 @@ frame::TextureHandle FrameHistoryService::average(const GBuffer& gbuffer, frame:
     const int slot = kept.slotOf(now.frame_index);
     context.use(keeping).set("slot", slot);
     context.dispatch(size.x, size.y, 1, kGroup, kGroup);
-    if (kept.moves)
-      context.gl().CopyNamedBufferSubData(context.buffer(from).id(), context.buffer(copied).id(), 0,
-                                          static_cast<GLintptr>(static_cast<size_t>(slot) * instanceBytes),
-                                          static_cast<GLsizeiptr>(instanceBytes));
+    context.gl().CopyNamedBufferSubData(context.buffer(from).id(), context.buffer(copied).id(), 0,
+                                        static_cast<GLintptr>(static_cast<size_t>(slot) * instanceBytes),
+                                        static_cast<GLsizeiptr>(instanceBytes));
     kept.slots.at(static_cast<size_t>(slot)) = {now.frame_index, viewOf(now)};
   });
   return result;

@@ -14,6 +14,8 @@
 // samples, this holds only as long as the camera stands still.
 #pragma once
 
+#include <cstdint>
+#include <glm/glm.hpp>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -51,6 +53,8 @@ class LIMN_API FrameHistoryService : public FrameService {
 
   scene::GpuScene& scene_;
   std::vector<std::unique_ptr<Kept>> kept_;
+  std::vector<glm::mat4> places_;  ///< of the instances in the last frame
+  uint32_t placed_ = 0;            ///< index of the first frame with these
 };
 
 }  // namespace limn::history

@@ -39,7 +39,7 @@ ParaboloidMaps ParaboloidMapPass::add(frame::FrameGraph& graph, scene::GpuScene&
   ParaboloidMaps maps{
       .depth = {}, .views = views, .count = desc.count, .first = desc.first, .size = desc.size};
   gpu::TextureDesc texture{.target = GL_TEXTURE_2D_ARRAY,
-                           .format = desc.format,
+                           .format = GL_R32F,
                            .width = desc.size,
                            .height = desc.size,
                            .layers = desc.count};

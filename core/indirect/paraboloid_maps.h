@@ -17,12 +17,9 @@
 namespace limn::indirect {
 
 struct ParaboloidDesc {
-  int count = 0;   ///< maps
-  int first = 0;   ///< element of the views that the first map belongs to
-  int size = 256;  ///< texels per side
-  /// Holds the format: GL_R32F, or GL_R16 with half the memory and depths in steps of (far - near) / 65535.
-  /// At 256 texels a step is a hundredth of a texel's footprint at a depth of far / 10.
-  GLenum format = GL_R32F;
+  int count = 0;                            ///< maps
+  int first = 0;                            ///< element of the views that the first map belongs to
+  int size = 256;                           ///< texels per side
   std::string_view technique = "indirect";  ///< owner of the pass
   /// Says whether the maps are kept while nothing changes. False when batches of maps share one piece of
   /// memory.

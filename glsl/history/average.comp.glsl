@@ -6,18 +6,17 @@
 // changed, for which older frames count less. A pixel that has a part of a frame's samples has others of them wherever the camera
 // moves: what differs there says nothing of the light.
 //
-// PARTS: layers of the light. MOVES 1: instances move, or their geometry does; what moves with an instance is found where that
-// was. MOVES 0: a camera that stands still sees the same surfaces.
+// What moves with an instance is found where that was. Where nothing moved, a camera that stands still sees the same surfaces.
+//
+// PARTS: layers of the light.
 #include "glsl/history/history_frame.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(std430) readonly buffer HistoryFrames { HistoryFrame frames[]; };
-#if MOVES
 layout(std430) readonly buffer Instances { Instance instances[]; };
-layout(std430) readonly buffer InstancesBefore { Instance instances_before[]; };
+layout(std430) readonly buffer InstancesBefore { Instance instances_before[]; };  // of each slot
 uniform int instance_count;
-#endif
 uniform sampler2DArray light;  // rgb / a is the value; a: 0 where there is none, of part 0 below 1 for a part of the samples
 uniform sampler2DArray history_light;
 uniform usampler2DArray history_surfaces;
@@ -38,6 +37,19 @@ struct PlaceBefore {
   uint instance;
   float reach;  // m, that its neighbours may lie off the tangent plane
 };
+
+// Where the frame of a slot had a place of this frame. What did not move stays where it is, flat instances too, whose matrices
+// have no inverse.
+PlaceBefore place_before(PlaceBefore place, uint slot) {
+  mat4 now = instances[place.instance].object_to_world;
+  mat4 before = instances_before[int(slot) * instance_count + int(place.instance)].object_to_world;
+  if (now == before) return place;
+  vec3 own_position = inverse(mat3(now)) * (place.position - now[3].xyz);
+  vec3 own_normal = transpose(mat3(now)) * place.normal;
+  place.position = mat3(before) * own_position + before[3].xyz;
+  place.normal = normalize(transpose(inverse(mat3(before))) * own_normal);
+  return place;
+}
 
 void add_neighbour(HistoryFrame f, ivec2 pixel, float weight, PlaceBefore place, inout vec4 sums[PARTS]) {
   if (weight <= 0.0 || any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(frame.frame_size)))) return;
@@ -96,35 +108,19 @@ void main() {
     lit = lit || sum.a > 0.0;
   }
   float depth = pixel_depth(pixel);
-  uint instance = pixel_instance(pixel);
-  vec3 position = pixel_position(pixel, depth);
-  vec3 normal = pixel_geometric_normal(pixel);
-#if MOVES
-  instance = min(instance, uint(instance_count - 1));
-  mat4 now = instances[instance].object_to_world;
-  mat3 from_world = inverse(mat3(now));
-  vec3 own_position = from_world * (position - now[3].xyz);
-  vec3 own_normal = transpose(mat3(now)) * normal;
-#endif
+  PlaceBefore place = PlaceBefore(pixel_position(pixel, depth), pixel_geometric_normal(pixel),
+                                  min(pixel_instance(pixel), uint(instance_count - 1)), length(frame.view_ray_dx.xyz));
   float fade = 0.0;  // of a frame's weight, per frame that it is old
   for (int i = 0; lit && i < frame_count; ++i) {
     HistoryFrame f = frames[i];
     vec4 values[PARTS];
     for (int part = 0; part < PARTS; ++part) values[part] = vec4(0.0);
-    PlaceBefore place = PlaceBefore(position, normal, instance, length(frame.view_ray_dx.xyz));
-#if MOVES
-    mat4 before = instances_before[int(f.slot) * instance_count + int(instance)].object_to_world;
-    place.position = mat3(before) * own_position + before[3].xyz;
-    place.normal = normalize(transpose(inverse(mat3(before))) * own_normal);
-    find_place(f, place, values);
-#else
-    if (f.still == 0u) {
-      find_place(f, place, values);
+    if (f.still == 0u || f.moved != 0u) {
+      find_place(f, place_before(place, f.slot), values);
     } else {
       for (int part = 0; part < PARTS; ++part)
         values[part] = texelFetch(history_light, ivec3(pixel, int(f.slot) * PARTS + part), 0);
     }
-#endif
     if (int(f.age) == frames_kept) {
       if (whole || f.still != 0u) fade = fade_of_change * change(totals, values) / float(frames_kept);
     } else {

@@ -15,7 +15,7 @@ struct HistoryFrame {
   uint slot;  // where its light lies
   uint still;  // 1 where the view is that of this frame
   uint age;   // frames since
-  uint unused;
+  uint moved;  // 1 where instances may have been elsewhere than in this frame
 };
 
 // A surface as it is kept: view depth in metres, its geometric normal (two times 12 bits) and the low 8 bits of its

@@ -10,20 +10,10 @@
 #include "glsl/numeric/language.glsl"
 LIMN_BEGIN
 
-// 1 / m^2 at squared distance d2, as if no nearer than `nearest` metres.
-LIMN_FN float bounded_inverse_square(float d2, float nearest) { return 1.0f / max(d2, nearest * nearest); }
+// --- 1 / d^2 as if no nearer than `nearest` metres; what a receiver and all lights have in common is squared once ---
 
-// What the bound cuts off, averaged over a receiver of `footprint` metres: the mean of 1/d^2 over it is no greater than at
-// the distance footprint / sqrt(pi).
-LIMN_FN float residual_inverse_square(float d2, float nearest, float footprint) {
-  float least = footprint * footprint * inverse_pi;
-  return max(1.0f / max(d2, least) - bounded_inverse_square(d2, nearest), 0.0f);
-}
-
-// --- The same for loops: what a receiver and all lights have in common is squared once ---
-
-// (cosine at the receiver) (cosine at the light) bounded_inverse_square(), from the products of the two unit normals with
-// the offset to the other's place, both positive. nearest2: nearest^2. One division, and finite however near they are.
+// (cosine at the receiver) (cosine at the light) / max(d2, nearest2), from the products of the two unit normals with the
+// offset to the other's place, both positive. nearest2: nearest^2. One division, and finite however near they are.
 LIMN_FN float gather_geometry(float towards_light, float towards_receiver, float d2, float nearest2) {
   return towards_light * towards_receiver / max(d2 * max(d2, nearest2), 1e-37f);
 }
@@ -31,7 +21,8 @@ LIMN_FN float gather_geometry(float towards_light, float towards_receiver, float
 // What another bound gives over what nearest2 gives.
 LIMN_FN float gather_rebound(float d2, float nearest2, float other2) { return max(d2, nearest2) / max(d2, other2); }
 
-// residual_inverse_square() over bounded_inverse_square(). least: footprint^2 / pi.
+// What the bound cuts off, over what it leaves, averaged over a receiver of `footprint` metres: the mean of 1/d^2 over it
+// is no greater than at the distance footprint / sqrt(pi). least: footprint^2 / pi.
 LIMN_FN float gather_residual(float d2, float nearest2, float least) {
   return max(gather_rebound(d2, nearest2, least) - 1.0f, 0.0f);
 }

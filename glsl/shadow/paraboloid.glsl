@@ -149,21 +149,12 @@ LIMN_FN ParaboloidKernel paraboloid_kernel(vec3 direction, float alpha) {
   return k;
 }
 
-// The thesis's estimate: as if the map were equidistant. 27 % too wide on the axis, right at 55 degrees, 36 % too narrow
-// at the rim.
-LIMN_FN ParaboloidKernel paraboloid_kernel_thesis(vec3 direction, float alpha) {
-  ParaboloidKernel k;
-  k.centre = paraboloid_map(direction);
-  k.width = alpha * inverse_pi;
-  return k;
-}
-
-// The box on the map with the second moments of the penumbra of a rectangular sender in the plane of the view's axes:
+// The box on the map with the first two moments of the penumbra of a rectangular sender in the plane of the view's axes:
 // receiver in `direction` at radial distance d, blockers at z, m. xy: centre on the disc of radius 1; zw: widths, of the
 // map's side. The sender is foreshortened towards the receiver: by cos(theta) along the meridian.
 LIMN_FN vec4 paraboloid_rectangle_kernel(vec3 direction, vec2 sides, float d, float z) {
   vec3 w = direction;
-  float k = max(d - z, 0.0f) / max(d * z, 1e-30f);
+  float k = max(d - z, 0.0f) / max(d * max(z, 1e-12f * d), 1e-30f);
   vec2 p = paraboloid_map(w);
   // What the map's differential makes of the sides; over the scale: radians.
   vec2 side_x = sides.x * (vec2(1.0f - w.x * w.x, -w.x * w.y) + w.x * w.z * p);
@@ -172,11 +163,17 @@ LIMN_FN vec4 paraboloid_rectangle_kernel(vec3 direction, vec2 sides, float d, fl
   vec2 t = 0.5f * k * vec2(sqrt(side_x.x * side_x.x + side_y.x * side_y.x), sqrt(side_x.y * side_x.y + side_y.y * side_y.y));
   t = min(t, vec2(1e15f));
   vec2 c = vec2(1.0f / sqrt(1.0f + t.x * t.x), 1.0f / sqrt(1.0f + t.y * t.y));
+  // The mean of the penumbra is not the sender's middle on the map: what lies to either side of the meridian is projected
+  // farther in, and what lies towards the receiver spans more. Both follow from the sender's second moments.
+  float inward = 1.0f / (w.z + sqrt(1.0f + (t.x * t.x + t.y * t.y) / 3.0f));
+  float part = inward * k;
+  vec2 outward = part * (1.0f / d + part * w.z) / 12.0f * (sides.x * w.x * side_x + sides.y * w.y * side_y);
   float inverse = 1.0f / (w.z + min(c.x, c.y));
-  return inverse * vec4(w.x, w.y, t.x * c.x, t.y * c.y);
+  return vec4(inward * w.x + outward.x, inward * w.y + outward.y, inverse * (t.x * c.x), inverse * (t.y * c.y));
 }
 
-// The same as published: the sender always seen head-on, angles as if spread evenly over the map.
+// The same as published: the sender always seen head-on, angles as if spread evenly over the map. Narrow ones are 27 % too
+// wide on the axis, right at 55 degrees and 36 % too narrow at the rim.
 LIMN_FN vec4 paraboloid_rectangle_kernel_thesis(vec3 direction, vec2 sides, float d, float z) {
   vec2 p = paraboloid_map(direction);
   return vec4(p.x, p.y, inverse_pi * paraboloid_penumbra_angle(sides.x, d, z),

@@ -155,8 +155,8 @@ LIMN_FN vec3 shadow_texel_offset(ShadowView view, ivec2 texel, float stored) {
   return shadow_unproject_local(view, uv, shadow_metres(view, stored));
 }
 
-// Clip coordinates for rasterising the view: depth in [0, 1], reversed (near: 1, far: 0). The perspective ones keep
-// the precision of floating-point depth over any range.
+// Clip coordinates for rasterising the view, which is no paraboloid: depth in [0, 1], reversed (near: 1, far: 0). The
+// perspective ones keep the precision of floating-point depth over any range.
 LIMN_FN vec4 shadow_clip(ShadowView view, vec3 p) {
   vec3 r = shadow_local(view, p);
   float near = view.near;
@@ -167,10 +167,7 @@ LIMN_FN vec4 shadow_clip(ShadowView view, vec3 p) {
   if (view.projection == shadow_perspective) {
     return vec4(s * r.x + x * r.z, s * r.y + y * r.z, near * ((far - r.z) / (far - near)), r.z);
   }
-  if (view.projection == shadow_orthographic) return vec4(s * r.x + x, s * r.y + y, (far - r.z) / (far - near), 1.0f);
-  float depth = sqrt(dot(r, r));
-  float divisor = max(depth + r.z, 1e-6f * depth);
-  return vec4(s * r.x / divisor, s * r.y / divisor, (far - depth) / (far - near), 1.0f);
+  return vec4(s * r.x + x, s * r.y + y, (far - r.z) / (far - near), 1.0f);
 }
 
 // Side of a texel, metres, at `depth` (on a surface that faces the view).

@@ -114,6 +114,54 @@ TEST_F(ClusteredVisibilityTest, AsManyLightsAndAreasAsThereMayBeAllShine) {
   EXPECT_NEAR(light("clustered_visibility", edges) / all, 1, 5e-3) << "at edges";
 }
 
+/// The corner with a box of sides 2 `half` half a metre above the floor. Two spots light specks of opposite
+/// sides of it, instead of one of the floor.
+Corner withBox(float half) {
+  Corner corner;
+  const int plate = addMesh(corner.scene, floorPrimitive(half, 0));
+  for (int i = 0; i < 6; ++i) {
+    const float turn = 0.5f * glsl::pi * static_cast<float>(i < 4 ? i : 2 * i - 9);
+    const glm::vec3 about = i < 4 ? glm::vec3(0, 0, 1) : glm::vec3(1, 0, 0);
+    addInstance(corner.scene, corner.pose, plate,
+                at(0, 0.5f, 0) * glm::rotate(glm::mat4(1), turn, about) * at(0, half, 0));
+  }
+  corner.pose.lights.clear();
+  corner.pose.lightNames.clear();
+  for (const float x : {-0.6f, 0.6f}) {
+    glsl::Light light = spotLight({x, 0.5f, 0}, {-x, 0, 0}, 0.03f);
+    light.emission = glm::vec3(1000);
+    addLight(corner.pose, light);
+  }
+  return corner;
+}
+
+/// Nothing stands in the way of the specks on either side of a box. One area light for both lies within it:
+/// it takes no more light than there is, and none where the box is nearer than `near`. Areas of one side each
+/// take none.
+TEST_F(ClusteredVisibilityTest, AnAreaLightWithinABoxTakesNoMoreThanThereIs) {
+  constexpr float near = 0.07f;  // m: 0.02 of the scene's diagonal
+  for (const float half : {0.5f * near, 3 * near}) {
+    const Corner s = withBox(half);
+    const Answer all = answer("reflective_shadow_map", s, {{"vpls", "63"}});
+    const auto seen = [&](const char* vals) {
+      const Answer v = answer("clustered_visibility", s, {{"vpls", "63"}, {"vals", vals}, {"near", "0.02"}});
+      double light = 0, most = 0;
+      for (size_t i = 0; i < v.lights[0].size(); ++i) {
+        EXPECT_LE(v.lights[0][i], 1.001f * all.lights[0][i] + 1e-5f) << vals;
+        light += double(v.lights[0][i]), most += double(all.lights[0][i]);
+      }
+      EXPECT_GT(most, 0);
+      return light / most;
+    };
+    EXPECT_NEAR(seen("9"), 1, 0.02) << half;
+    if (half < near) {
+      EXPECT_NEAR(seen("1"), 1, 0.02);
+    } else {
+      EXPECT_LT(seen("1"), 0.9) << "the box hides one side's";
+    }
+  }
+}
+
 /// A point of the floor that the spot lights, and its irradiance relative to others.
 struct PoolPoint {
   glm::dvec3 position;

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "core/render/supersample.h"
 #include "tests/gpu/render_test.h"
@@ -36,6 +39,26 @@ class FrameHistoryTest : public RenderTest {
   static Image still(render::Renderer& renderer, render::Settings s, const scene::CameraPose& camera) {
     renderer.configure(std::move(s));
     return render::supersample(renderer, camera, kSize, 1);
+  }
+  /// Pixels of `now` that show another surface than `before` have the light of a frame `alone`, and others
+  /// that of frames before, too.
+  static void expectNoTrace(const Image& before, const Image& now, const Image& alone) {
+    const int id = now.channel("id");
+    int changed = 0, kept = 0;
+    for (int y = 0; y < kSize.y; ++y)
+      for (int x = 0; x < kSize.x; ++x)
+        for (int c = 0; c < 3; ++c)
+          if (before.at(x, y, id) != now.at(x, y, id)) {
+            EXPECT_FLOAT_EQ(now.at(x, y, c), alone.at(x, y, c)) << x << "," << y;
+            ++changed;
+          } else {
+            kept += now.at(x, y, c) != alone.at(x, y, c);
+          }
+    EXPECT_GT(changed, 100);
+    EXPECT_GT(kept, 300) << "frames before count where the same surface was seen";
+  }
+  static scene::Node& nodeOf(scene::Scene& scene, std::string_view name) {
+    return *std::ranges::find(scene.nodes, name, &scene::Node::name);
   }
 };
 
@@ -162,20 +185,42 @@ TEST_F(FrameHistoryTest, GeometryThatChangesLeavesNoTraceOnWhatItHid) {
   for (int frame = 0; frame < kFrames; ++frame) before = at(0);
   const Image now = at(3);
   renderer.configure(s);
-  const Image alone = at(3);
-  const int id = now.channel("id");
-  int changed = 0, kept = 0;
-  for (int y = 0; y < kSize.y; ++y)
-    for (int x = 0; x < kSize.x; ++x)
-      for (int c = 0; c < 3; ++c)
-        if (before.at(x, y, id) != now.at(x, y, id)) {
-          EXPECT_FLOAT_EQ(now.at(x, y, c), alone.at(x, y, c)) << x << "," << y;
-          ++changed;
-        } else {
-          kept += now.at(x, y, c) != alone.at(x, y, c);
-        }
-  EXPECT_GT(changed, 100);
-  EXPECT_GT(kept, 300) << "frames before count where the same surface was seen";
+  expectNoTrace(before, now, at(3));
+}
+
+/// Nodes that are placed by hand move without an animation: the short block, into the tall one.
+TEST_F(FrameHistoryTest, WhatIsPlacedElsewhereLeavesNoTraceOnWhatItHid) {
+  scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  const scene::CameraPose camera = renderer.pose().cameras.at(0);
+  render::Settings s = gathered(64, kFrames);
+  s.channels = true;
+  renderer.configure(s);
+  Image before;
+  for (int frame = 0; frame < kFrames; ++frame) before = next(renderer, camera);
+  const glm::mat4 inside = glm::translate(glm::mat4(1), {-0.34f, 0, -0.3f});
+  nodeOf(scene, "short_block").placed =
+      glm::translate(glm::scale(inside, glm::vec3(0.6f)), {-0.33f, 0, -0.35f});
+  renderer.setTime(0);
+  const Image now = next(renderer, camera);
+  renderer.configure(s);
+  expectNoTrace(before, now, next(renderer, camera));
+}
+
+/// Where other things may move, flat instances, whose matrices have no inverse, keep their history.
+TEST_F(FrameHistoryTest, FlatInstancesKeepTheirLight) {
+  scene::Scene scene = asset("cornell_box");
+  // The plane x = -1, in which it lies.
+  nodeOf(scene, "left_wall").placed =
+      glm::scale(glm::translate(glm::mat4(1), {-1, 0, 0}), glm::vec3(0, 1, 1));
+  scene::Scene animated = scene;
+  animated.animations.emplace_back();
+  const auto seen = [&](const scene::Scene& of) {
+    render::Renderer renderer(device(), of);
+    return still(renderer, gathered(64, kFrames), renderer.pose().cameras.at(0));
+  };
+  const Image expected = seen(scene);
+  EXPECT_LT(rmse(seen(animated), expected), 0.01 * mean(expected));
 }
 
 /// Metaballs change their topology, robots walk: light is finite and of the same amount.

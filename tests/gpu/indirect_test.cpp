@@ -142,6 +142,26 @@ TEST_F(IndirectPictureTest, InterleavingKeepsTheMean) {
   EXPECT_NEAR(mean("1", "8", "false") / mean("1", "1", "false"), 1, 1e-6) << "no more pixels than lights";
 }
 
+/// A pixel's own lights are bounded as one sub-buffer of 64; with those that the blur brings it gets what is
+/// between that bound and the one of all lights. Shares of unbounded light, so that the virtual lights' noise
+/// does not count: without the blur's part a tenth is missing.
+TEST_F(IndirectPictureTest, InterleavingKeepsTheBoundOfAHistory) {
+  const scene::Scene scene = asset("cornell_box");
+  render::Renderer renderer(device(), scene);
+  using Values = std::vector<std::pair<std::string, std::string>>;
+  for (const char* bound : {"distance", "patch"}) {
+    const auto kept = [&](const char* block) {
+      const auto mean = [&](const Values& bounds) {
+        Values values{{"block", block}, {"history", "4"}};
+        values.insert(values.end(), bounds.begin(), bounds.end());
+        return IndirectPictureTest::mean(indirect(renderer, "reflective_shadow_map", values));
+      };
+      return mean({{"bound", bound}, {"clamp", "0.05"}}) / mean({{"bound", "distance"}, {"clamp", "0"}});
+    };
+    EXPECT_NEAR(kept("8"), kept("1"), 0.03) << bound;
+  }
+}
+
 /// Pixels at edges are lit as though nothing were interleaved; where nothing is, there are none.
 TEST_F(IndirectPictureTest, EdgesGetAllVirtualLights) {
   const scene::Scene scene = asset("cornell_box");

@@ -71,7 +71,7 @@ TEST(Paraboloid, KernelIsTheProjectedCone) {
 TEST(Paraboloid, WidthOfTheThesis) {
   const auto ratio = [](float theta) {
     const vec3 d = inclined(theta, 0.3f);
-    return paraboloid_kernel_thesis(d, 0.01f).width / paraboloid_kernel(d, 0.01f).width;
+    return paraboloid_rectangle_kernel_thesis(d, vec2(0.02f), 2, 1).z / paraboloid_kernel(d, 0.01f).width;
   };
   EXPECT_NEAR(ratio(0), 1.273f, 1e-3f);
   EXPECT_NEAR(ratio(55.2f * pi / 180), 1, 2e-3f);
@@ -102,45 +102,80 @@ TEST(Paraboloid, PenumbraAngleByConstruction) {
   EXPECT_EQ(paraboloid_penumbra_angle(1, 2, 3), 0) << "a blocker behind the receiver";
 }
 
-/// Where the lines from a receiver to points of a rectangle pass at the blockers' distance.
+/// The mean on the map of where the lines from a receiver to points of a rectangle pass at the blockers'
+/// distance, and the widths of the box with their variances, of the map's side.
+struct Penumbra {
+  dvec2 mean, widths;
+};
+
+Penumbra penumbraOf(const vec3& w, const vec2& sides, float d, float z) {
+  dvec2 sum(0), squares(0);
+  constexpr int n = 24;
+  for (int a = 0; a < n * n; ++a) {
+    const vec2 at = (vec2(a % n, a / n) + 0.5f) / static_cast<float>(n) - 0.5f;
+    const vec3 from = d * w, line = vec3(sides * at, 0) - from;
+    float low = 0, high = 1;  // of the line, where its distance from the centre is z
+    for (int k = 0; k < 40; ++k) {
+      const float middle = 0.5f * (low + high);
+      (length(from + middle * line) > z ? low : high) = middle;
+    }
+    const dvec2 p = paraboloid_map(normalize(from + low * line));
+    sum += p;
+    squares += p * p;
+  }
+  const dvec2 mean = sum / double(n * n), variance = squares / double(n * n) - mean * mean;
+  // The variance of a box of width b is b^2 / 12; the map's side is 2.
+  return {mean, sqrt(12.0 * variance) / 2.0};
+}
+
 TEST(Paraboloid, RectangleKernelHasTheMomentsOfThePenumbra) {
   Random random(11);
   for (int i = 0; i < 200; ++i) {
     const float theta = random(0, 1.3f), d = random(2, 5), z = random(0.5f, 0.9f) * d;
     const vec3 w = inclined(theta, random(0, 2 * pi));
     const vec2 sides(random(0.02f, 0.8f), random(0.02f, 0.8f));
-    dvec2 sum(0), squares(0);
-    constexpr int n = 24;
-    for (int a = 0; a < n * n; ++a) {
-      const vec2 at = (vec2(a % n, a / n) + 0.5f) / static_cast<float>(n) - 0.5f;
-      const vec3 from = d * w, line = vec3(sides * at, 0) - from;
-      float low = 0, high = 1;  // of the line, where its distance from the centre is z
-      for (int k = 0; k < 40; ++k) {
-        const float middle = 0.5f * (low + high);
-        (length(from + middle * line) > z ? low : high) = middle;
-      }
-      const dvec2 p = paraboloid_map(normalize(from + low * line));
-      sum += p;
-      squares += p * p;
-    }
-    const dvec2 mean = sum / double(n * n), variance = squares / double(n * n) - mean * mean;
+    const Penumbra penumbra = penumbraOf(w, sides, d, z);
     const vec4 kernel = paraboloid_rectangle_kernel(w, sides, d, z);
-    // The variance of a box of width b is b^2 / 12; the map's side is 2.
     for (int axis = 0; axis < 2; ++axis) {
-      const double width = std::sqrt(12 * variance[axis]) / 2;
+      const double width = penumbra.widths[axis];
       EXPECT_NEAR(kernel[2 + axis], width, 0.06 * width + 2e-4) << theta << " " << z / d;
-      EXPECT_NEAR(kernel[axis], mean[axis], 0.03 * std::max(kernel.z, kernel.w) + 0.01);
+      EXPECT_NEAR(kernel[axis], penumbra.mean[axis], 0.01 * std::max(kernel.z, kernel.w) + 1e-3);
     }
   }
   // A square seen head-on is a disc's equal.
   EXPECT_NEAR(paraboloid_rectangle_kernel(vec3(0, 0, 1), vec2(0.3f), 3, 2).z,
               paraboloid_kernel(vec3(0, 0, 1), paraboloid_penumbra_angle(0.3f, 3, 2)).width, 1e-6f);
-  EXPECT_NEAR(paraboloid_rectangle_kernel_thesis(vec3(0, 0, 1), vec2(0.3f), 3, 2).z,
-              paraboloid_kernel_thesis(vec3(0, 0, 1), paraboloid_penumbra_angle(0.3f, 3, 2)).width, 1e-6f);
   // A blocker in the sender's plane hides half of the sphere, and a point has no kernel, whatever is before
   // it.
   EXPECT_NEAR(paraboloid_rectangle_kernel(vec3(0, 0, 1), vec2(0.3f), 3, 0).z, 1, 1e-6f);
   EXPECT_EQ(paraboloid_rectangle_kernel(vec3(0, 0, 1), vec2(0), 3, 0).z, 0);
+}
+
+/// Senders as wide as the receiver is far, and blockers near them: kernels lie where the penumbra does, from
+/// the side, too. Their widths are rougher.
+TEST(Paraboloid, KernelsOfWideSendersLieAboutTheMeanOfThePenumbra) {
+  Random random(11);
+  int wide = 0;
+  for (int i = 0; i < 300; ++i) {
+    const float theta = random(0, 1.3f), d = random(1, 5), z = random(0.3f, 0.9f) * d;
+    const vec3 w = inclined(theta, random(0, 2 * pi));
+    const vec2 sides(random(0.02f, 1) * d, random(0.02f, 1) * d);
+    const float widest = max(sides.x, sides.y);
+    const bool nearer = 0.5f * length(sides) < z;  // than all blockers
+    if (!nearer || 0.5f * widest * (d - z) / (d * z) > 0.6f) continue;
+    ++wide;
+    const Penumbra penumbra = penumbraOf(w, sides, d, z);
+    const vec4 kernel = paraboloid_rectangle_kernel(w, sides, d, z);
+    const double wider = std::max(penumbra.widths.x, penumbra.widths.y);
+    for (int axis = 0; axis < 2; ++axis) {
+      EXPECT_NEAR(kernel[axis], penumbra.mean[axis], 0.03 * wider + 0.01) << theta << " " << z / d;
+      EXPECT_NEAR(kernel[2 + axis], penumbra.widths[axis], 0.3 * wider) << theta << " " << z / d;
+    }
+  }
+  EXPECT_GT(wide, 100);
+  // Blockers in the sender's plane: the middle of the hemisphere, which they hide.
+  const vec4 touching = paraboloid_rectangle_kernel(inclined(1.3f, 0.5f), vec2(0.3f), 3, 0);
+  EXPECT_LT(length(vec2(touching.x, touching.y)), 0.5f);
 }
 
 TEST(Paraboloid, BoundsHoldWhatTheHemisphereSees) {

@@ -23,6 +23,16 @@ class VirtualLightLoops : public ::testing::Test {
   std::mt19937 random_{5};
 };
 
+/// 1 / m^2 at squared distance d2, as if no nearer than `nearest` metres.
+float bounded_inverse_square(float d2, float nearest) {
+  return 1 / max(d2, nearest * nearest);
+}
+
+/// What the bound cuts off: 1 / d^2 as at the distance footprint / sqrt(pi), where that is greater.
+float residual_inverse_square(float d2, float nearest, float footprint) {
+  return max(1 / max(d2, footprint * footprint * inverse_pi) - bounded_inverse_square(d2, nearest), 0.f);
+}
+
 TEST_F(VirtualLightLoops, GeometryIsTheCosinesOverTheBoundedSquare) {
   for (int i = 0; i < 20000; ++i) {
     const vec3 n = direction(), m = direction();
