@@ -34,12 +34,11 @@ glsl::Light aimed(const glsl::Light& light, const glm::vec3& origin, const scene
   const float distance = glm::length(towards);
   eye.position = origin;
   eye.direction = distance > 0 ? towards / distance : glm::vec3(0, -1, 0);
-  // Within the objects' box there are no directions without them: all faces of a cube.
-  const glm::vec3 room = 0.02f * (objects.high - objects.low);
-  const bool within = glm::all(glm::lessThanEqual(objects.low - room, origin)) &&
-                      glm::all(glm::lessThanEqual(origin, objects.high + room));
+  // Where the box, with a little room, reaches behind the eye, all faces of a cube: those of a half one end
+  // 45 degrees behind it. Within the box there are no directions without it.
+  const bool behind = distance <= glm::dot(0.52f * (objects.high - objects.low), glm::abs(eye.direction));
   eye.type = glsl::light_rectangle;
-  eye.flags = within ? glsl::light_flag_two_sided : 0u;
+  eye.flags = behind ? glsl::light_flag_two_sided : 0u;
   eye.own_instance = glsl::no_instance;
   return eye;
 }

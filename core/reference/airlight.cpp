@@ -15,9 +15,15 @@ namespace {
 /// Random numbers of airlight lie behind those of all other estimators of a pixel.
 constexpr uint32_t kFirstLightPair = 1u << 20;
 
-/// A distant rectangle as parallel light from the direction of one point on it, which is even over its area.
+/// A light from far away as parallel light from one direction of it: even over the area of a distant
+/// rectangle, or over the solid angle of a disc. Other lights as they are.
 glsl::Light fromPointOf(const glsl::Light& light, glm::vec2 u) {
+  if (light.type != glsl::light_directional) return light;
   glsl::Light part = light;
+  if (!glsl::light_is_distant_rectangle(light)) {
+    part.direction = discDirection(light, u);
+    return part;
+  }
   const glm::vec3 point = lightPoint(light, u);
   const float distance = glm::length(point);
   const float across = std::abs(glm::dot(glm::cross(light.axis_v, light.axis_u), point));
@@ -87,8 +93,7 @@ glm::dvec3 Airlight::sample(const glm::vec3& eye, const glm::vec3& direction, fl
 glm::dvec3 Airlight::ofLight(const Piece& piece, const glsl::Light& whole, const Sampler& sampler,
                              uint32_t pair) const {
   const RayMedium& medium = rays_.medium();
-  const glsl::Light light =
-      glsl::light_is_distant_rectangle(whole) ? fromPointOf(whole, sampler.pair(pair)) : whole;
+  const glsl::Light light = fromPointOf(whole, sampler.pair(pair));
   const glm::vec3 source = lightPoint(light, sampler.pair(pair));
   const glsl::AirlightRay ray =
       glsl::airlight_ray(medium.medium(), light, source, 0, piece.eye, piece.direction);

@@ -145,13 +145,18 @@ void addWork(Hasher& h, const Request& r) {
   if (r.reliefPaths != ReliefPaths::both) h.addAll(reliefPathsFollow, r.reliefPaths);
   constexpr uint32_t subsurfaceModelFollows = 0x5b5f;
   if (r.subsurface != SubsurfaceModel::bssrdf) h.addAll(subsurfaceModelFollows, r.subsurface);
-  constexpr uint32_t causticVersion = 2;
+  constexpr uint32_t causticVersion = 3;
   const bool caustics = r.term == Term::final || r.term == Term::caustic || r.term == Term::media;
   if (caustics && std::ranges::any_of(r.scene.materials, &scene::Material::specularSurface))
     h.add(causticVersion);
   constexpr uint32_t airlightVersion = 0xa162;
   const bool air = r.term == Term::final || r.term == Term::media;
   if (air && r.scene.medium.sigmaS != glm::vec3(0) && r.scene.environment) h.add(airlightVersion);
+  constexpr uint32_t discsInFogVersion = 0xd15c;
+  const bool discs = std::ranges::any_of(r.pose.lights, [](const glsl::Light& light) {
+    return glsl::light_kind(light) == glsl::light_kind_disc && light.angular_diameter > 0;
+  });
+  if (air && r.scene.medium.sigmaS != glm::vec3(0) && discs) h.add(discsInFogVersion);
 }
 
 }  // namespace

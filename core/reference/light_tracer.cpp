@@ -29,12 +29,7 @@ struct Aim {
 Aim aimAt(const glsl::Light& light, const glm::vec3& centre, float radius, float away, glm::vec2 u,
           glm::vec2 onLight) {
   if (light.type == glsl::light_directional) {
-    glm::vec3 direction(light.direction);
-    if (light.angular_diameter > 0) {
-      const float tangent = std::tan(std::min(0.5f * light.angular_diameter, 1.5f));
-      const glm::vec2 disc = tangent * glsl::sample_disc(onLight);
-      direction = glm::normalize(glsl::from_local(glsl::frame_around(direction), glm::vec3(disc, 1)));
-    }
+    const glm::vec3 direction = discDirection(light, onLight);
     const glm::vec2 disc = radius * glsl::sample_disc(u);
     const glm::vec3 across = glsl::from_local(glsl::frame_around(direction), glm::vec3(disc, 0));
     return {centre + across - away * direction, direction, glsl::pi * radius * radius};
@@ -131,10 +126,15 @@ bool LightTracer::emit(const Sampler& sampler, uint64_t index, Path& path) const
   const glm::vec3& p = path.surface.position;
   path.flux =
       glsl::light_point_intensity(light, aim.origin, p, 1) * (aim.measure * static_cast<float>(count));
+  path.flux *= glsl::light_fluence(light);
   path.flux *= scene::lightTextureAt(view_.rays.scene(), light, p);
-  path.flux *= light.type == glsl::light_directional
-                   ? view_.rays.medium().transmittanceToInfinity(p, -aim.direction)
-                   : view_.rays.medium().transmittanceBetween(aim.origin, p);
+  const glsl::Optics optics = opticsOf(*view_.rays.draws()[hit.draw].material);
+  const bool parallel = light.type == glsl::light_directional;
+  if (path.surface.back && !parallel && optics.thickness > 0)  // from within a body, which no medium fills
+    path.flux *= glsl::optics_absorption(optics, glm::distance(aim.origin, p));
+  else
+    path.flux *= parallel ? view_.rays.medium().transmittanceToInfinity(p, -aim.direction)
+                          : view_.rays.medium().transmittanceBetween(aim.origin, p);
   return path.flux != glm::vec3(0) && glm::dot(path.surface.normal, -aim.direction) > kLeastCosine;
 }
 

@@ -58,6 +58,13 @@ LIMN_FN float caustic_point_weight(vec3 a, vec3 b, float focal) {
   return integral * focal * focal / (cosine * cosine * cosine);
 }
 
+// The place on such a line, as a share of the way from a to b, up to which lies the share u of int dl / R^2: even in 1/R, since
+// the angle between a and b is small.
+LIMN_FN float caustic_point_node(vec3 a, vec3 b, float u) {
+  float from_a = u * length(a);
+  return from_a / (from_a + (1.0f - u) * length(b));
+}
+
 // One weight for all fragments, 1/m, with which lines in all directions scatter as much as with caustic_line_weight at the
 // middle of the picture, `away` metres from the camera. There a metre across the view is focal / away pixels long; in the mean
 // of all directions a metre of line has sqrt(1/2) as many columns (or rows), and pi/4 as many pixels of length (rectangles).

@@ -18,10 +18,18 @@ layout(std430) readonly buffer Rays { CausticRay rays[]; };
 
 layout(location = 0) out vec4 radiance;
 
+// Of a fragment, each of which is a LineFragment of its own. A point stands for a whole line, which may reach far in depth at one
+// place of the picture.
+#if KIND == 1
+const int line_nodes = 8;
+#else
+const int line_nodes = 1;
+#endif
+
 struct LineFragment {
   float along;  // metres from the start of the ray
   vec3 place;   // camera space
-  float share;  // of the piece that the fragment stands for: what belongs to the line and is seen; 0: nothing
+  float share;  // of the piece that the nodes stand for: what belongs to the line, to this node, and is seen; 0: nothing
 };
 
 // Of the pixel's centre, on the view plane at distance 1.
@@ -32,14 +40,16 @@ vec2 pixel_slope() {
 
 // A fragment stands for the piece of its line between two columns of pixels (or rows, or across a beam), as far as the line
 // reaches and the surface at the pixel's centre does not hide it.
-LineFragment line_fragment() {
+LineFragment line_fragment(int node) {
   LineFragment f;
   float pixel = length(frame.view_ray_dx.xyz);
   float depth = texelFetch(gbuffer_depth, ivec2(gl_FragCoord.xy), 0).x;
 #if KIND == 1
-  f.along = 0.5 * (line_range.x + line_range.y);
+  float on_line = caustic_point_node(line_origin + line_range.x * line_direction, line_origin + line_range.y * line_direction,
+                                     (float(node) + 0.5) / float(line_nodes));
+  f.along = mix(line_range.x, line_range.y, on_line);
   f.place = line_origin + f.along * line_direction;
-  f.share = depth > 0.0 && f.place.z > depth ? 0.0 : 1.0;
+  f.share = depth > 0.0 && f.place.z > depth ? 0.0 : 1.0 / float(line_nodes);
 #else
   float middle = dot(line_axis, pixel_slope());
   vec2 part = caustic_line_part(line_origin, line_direction, line_axis, line_range.xy, depth,

@@ -103,7 +103,9 @@ struct BodyExit {
 };
 
 const int exit_steps = EXIT_STEPS;
-const int exit_refinements = 10;
+// Bisections: as many as halve the stride to an eighth of a texel, which are more where `reach` spans much more than the object.
+const int least_exit_refinements = 10;
+const int most_exit_refinements = 24;
 
 // The first place on start + t direction, 0 < t < reach, that lies outside.
 BodyExit body_exit(ObjectViews objects, vec3 start, vec3 direction, float reach, float instance) {
@@ -123,7 +125,8 @@ BodyExit body_exit(ObjectViews objects, vec3 start, vec3 direction, float reach,
     }
     inside = t;
   }
-  for (int i = 0; i < exit_refinements; ++i) {
+  for (int i = 0; i < most_exit_refinements; ++i) {
+    if (i >= least_exit_refinements && outside - inside <= 0.125 * tolerance) break;
     float t = 0.5 * (inside + outside);
     int there = body_side(objects, path, t, instance, tolerance);
     if (there == body_inside) {

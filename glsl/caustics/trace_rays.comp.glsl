@@ -221,11 +221,15 @@ void main() {
     incident.geometric = geometric_normal_at(front_geometric_normal, at);
     incident.optics = material_optics(materials[instances[uint(incident.instance) - 1u].material]);
     incident.flux = light_point_intensity(light, view.origin, incident.position, light_samples) *
-                    (reflective_map_measure(view, uv) / (float(side) * float(side)));
+                    (light_fluence(light) * reflective_map_measure(view, uv) / (float(side) * float(side)));
     incident.flux *= light_texture(light, incident.position);
-    float inside = parallel ? medium_length(medium, incident.position, -incident.direction, 3.0e38)
-                            : medium_length_between(medium, view.origin, incident.position);
-    incident.flux *= medium_transmittance(medium, inside);
+    if (incident.inside && !parallel && incident.optics.thickness > 0.0) {
+      incident.flux *= optics_absorption(incident.optics, length(incident.position - view.origin));  // no medium fills a body
+    } else {
+      float inside = parallel ? medium_length(medium, incident.position, -incident.direction, 3.0e38)
+                              : medium_length_between(medium, view.origin, incident.position);
+      incident.flux *= medium_transmittance(medium, inside);
+    }
     bool dark = incident.flux == vec3(0.0) || !(dot(incident.normal, -incident.direction) > least_cosine);
     if (!dark && !light_blocked(maps, incident.position)) {
       SpecularEvent event = specular_event(incident.optics, incident.direction, incident.normal, incident.inside);

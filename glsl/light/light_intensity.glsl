@@ -18,5 +18,13 @@ LIMN_FN vec3 light_point_intensity(Light light, vec3 origin, vec3 p, int samples
   return sent * (light.length_u * light.length_v * cosine);
 }
 
+// What passes a place of a directional light's disc, whatever its direction, over the irradiance that the disc gives a surface
+// that faces it. Its radiance is even: 2 / (1 + cos) of half its diameter. 1 for other lights.
+LIMN_FN float light_fluence(Light light) {
+  if (light_kind(light) != light_kind_disc) return 1.0f;
+  float tangent = tan(min(0.25f * light.angular_diameter, 0.775f));
+  return 1.0f + tangent * tangent;
+}
+
 LIMN_END
 #endif  // LIMN_LIGHT_INTENSITY_GLSL

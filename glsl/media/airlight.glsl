@@ -100,7 +100,7 @@ LIMN_FN AirlightPoint airlight_point(Light light, AirlightRay r, float t, int sa
   AirlightPoint p;
   p.place = r.eye + t * r.direction;
   p.from = light.direction;
-  p.sent = light_point_intensity(light, r.source, p.place, samples);
+  p.sent = light_point_intensity(light, r.source, p.place, samples) * light_fluence(light);
   p.measure = 1.0f;
   if (r.parallel) return p;
   vec3 offset = p.place - r.source;

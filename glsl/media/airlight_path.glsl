@@ -47,6 +47,7 @@ LIMN_FN AirlightPath airlight_path(Medium m, Light light, uint kind, AirlightRay
   p.g = m.g;
   float share = light_has_extent(light) ? 1.0f / float(samples) : 1.0f;
   if (kind == light_kind_rectangle) share *= light.length_u * light.length_v;
+  if (kind == light_kind_disc) share *= light_fluence(light);
   // The phase function of parallel light is the same all along the ray; of other light, airlight_path_factor() has the rest.
   float phase = (1.0f - m.g * m.g) * 0.25f * inverse_pi;
   if (parallel) phase = phase_function(m.g, light.direction, -ray.direction);

@@ -1,4 +1,6 @@
-// Adds what surfaces reflect of the caustics' irradiance, diffusely.
+// Adds what surfaces reflect of the caustics' irradiance, diffusely. Where it comes from is not known any more: what Fresnel's
+// term leaves to the diffuse part is its mean over all directions of light.
+#include "glsl/light/ltc.glsl"
 #include "glsl/surface/brdf.glsl"
 #include "glsl/surface/gbuffer_input.glsl"
 
@@ -15,6 +17,11 @@ void main() {
   if ((s.flags & gbuffer_flag_specular) != 0u) return;
   SurfaceBrdf material =
       surface_brdf(s.base_colour, s.metallic, s.roughness, s.specular_factor, s.specular_colour, s.ior);
-  vec3 reflected = arriving * material.diffuse * inverse_pi;
+  float weight = 1.0;
+  if (!brdf_is_lambertian(material)) {
+    float cosine = -dot(s.normal, normalize(pixel_ray(pixel)));
+    weight = ltc_diffuse_weight(material, ltc_lookup(cosine, material.alpha));
+  }
+  vec3 reflected = arriving * (material.diffuse * weight) * inverse_pi;
   imageStore(radiance, pixel, imageLoad(radiance, pixel) + vec4(reflected, 0.0));
 }

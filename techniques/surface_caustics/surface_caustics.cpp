@@ -6,6 +6,7 @@
 #include "core/caustics/ray_lines.h"
 #include "core/caustics/ray_lists.h"
 #include "core/gpu_scene/gpu_medium.h"
+#include "core/shading_maps/shading_maps.h"
 #include "core/technique/technique.h"
 
 namespace {
@@ -170,7 +171,9 @@ class SurfaceCaustics : public Technique {
                                             frame::TextureHandle irradiance, frame::TextureHandle target) {
     frame::PassBuilder pass = graph.addPass("reflect", info.name);
     pass.read(inputs.handles.frame, Access::uniformBuffer, "FrameBlock", "camera")
-        .read(irradiance, Access::sampled, "irradiance", "what arrives");
+        .read(irradiance, Access::sampled, "irradiance", "what arrives")
+        .read(inputs.service<shading_maps::ShadingMapService>().ltcTable(), Access::sampled, "ltc_table",
+              "what Fresnel's term leaves to the diffuse part");
     readSurfaces(pass, inputs.gbuffer);
     const frame::TextureHandle result =
         pass.write(target, Access::imageLoadStore, "radiance", "reflected caustics");

@@ -35,11 +35,7 @@ vec3 shared_scattering(Medium medium, vec3 direction, float distance) {
 }
 #endif
 
-void main() {
-  LineFragment f = line_fragment();
-  if (f.share == 0.0) discard;
-  CausticRay ray = rays[ray_index];
-  Medium medium = scene_medium();
+vec3 scattered_at(Medium medium, CausticRay ray, LineFragment f) {
   vec3 place = ray.start + f.along * ray.direction;
   vec3 from_eye = place - frame.camera_position.xyz;
   float distance = length(from_eye);
@@ -49,8 +45,20 @@ void main() {
 #else
   vec3 seen = scattering_seen(medium, direction, distance);
 #endif
-  if (seen == vec3(0.0)) discard;
+  if (seen == vec3(0.0)) return vec3(0.0);
   vec3 arriving = ray.power * medium_transmittance(medium, line_medium_length(medium, ray, f));
   float phase = phase_function(medium.g, ray.direction, -direction);
-  radiance = vec4(arriving * medium.scattering * seen * (phase * line_weight(f)), 0.0);
+  return arriving * medium.scattering * seen * (phase * line_weight(f));
+}
+
+void main() {
+  CausticRay ray = rays[ray_index];
+  Medium medium = scene_medium();
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < line_nodes; ++i) {
+    LineFragment f = line_fragment(i);
+    if (f.share != 0.0) sum += scattered_at(medium, ray, f);
+  }
+  if (sum == vec3(0.0)) discard;
+  radiance = vec4(sum, 0.0);
 }

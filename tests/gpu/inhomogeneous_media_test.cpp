@@ -196,6 +196,21 @@ TEST_F(InhomogeneousMediaTest, ExtremesGiveFinitePictures) {
     }
 }
 
+/// Lines stand alone: of all light a black picture of them would pass as a part.
+TEST_F(InhomogeneousMediaTest, LinesAloneAreTheReferencesAtExtremes) {
+  for (const auto& [thickness, g] : {std::pair(1e-3f, 0.9f), std::pair(10.f, -0.9f)}) {
+    SCOPED_TRACE(fmt::format("thickness {} g {}", thickness, g));
+    scene::Scene scene = asset("smoke");
+    scene.medium.sigmaS = glm::vec3(thickness / 3);
+    scene.medium.sigmaA = glm::vec3(0);
+    scene.medium.g = g;
+    render::Renderer renderer(device(), scene);
+    const Image lines = picture(
+        renderer, settings(64, 48, Term::media, {technique("volume_caustics", {{"buffer_size", "64"}})}));
+    EXPECT_NEAR(mean(lines) / meanOfLines(renderer, scene), 1, 0.1);
+  }
+}
+
 TEST_F(InhomogeneousMediaTest, TexturedSpotsAreAsTheReferenceHasThem) {
   const scene::Scene scene = asset("stained_light");
   ASSERT_EQ(scene.lightTextures.size(), 1u);

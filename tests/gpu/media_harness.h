@@ -31,6 +31,31 @@ class MediaHarness : public RenderTest {
     return reference::render(asked).image;
   }
 
+  /// The same scene with black, matte surfaces for the specular ones, which cast the same shadows: what its
+  /// medium scatters is airlight alone.
+  static scene::Scene withoutCaustics(scene::Scene scene) {
+    for (scene::Material& m : scene.materials) {
+      if (!m.specularSurface()) continue;
+      m = {};
+      m.baseColour = glm::vec4(0, 0, 0, 1);
+      m.metallic = 0;
+      m.specularFactor = 0;
+    }
+    return scene;
+  }
+
+  /// The mean of the light of lines in a picture of 64 x 48 pixels: what the reference loses where specular
+  /// surfaces turn black. Both references have the same samples of airlight.
+  static double meanOfLines(render::Renderer& renderer, const scene::Scene& scene) {
+    const auto ofLight = [&](const scene::Scene& of) {
+      reference::Request asked = request(renderer, of, renderer.pose().cameras.at(0), Term::media, 64);
+      asked.width = 64;
+      asked.height = 48;
+      return mean(reference::render(asked).image);
+    };
+    return ofLight(scene) - ofLight(withoutCaustics(scene));
+  }
+
   static double mean(const Image& image) {
     double sum = 0;
     for (int y = 0; y < image.height(); ++y)

@@ -5,6 +5,7 @@
 #include "core/bench/private/stress_scene.h"
 #include "core/scene/camera.h"
 #include "tests/gpu/media_harness.h"
+#include "tests/support/environment_maps.h"
 #include "tests/support/scene_nodes.h"
 #include "tests/support/test_scenes.h"
 
@@ -200,6 +201,25 @@ TEST_F(SpecularTest, RaysThatTheScreenDoesNotKnowSeeTheEnvironment) {
     const Image expected = truth(other, scene, camera, 2, 2, Term::final);
     EXPECT_LT(shareOff(image, expected), 0.01) << mirror;
   }
+}
+
+/// A ball of 5 cm and, 500 m behind the camera, a pane that is glass or not: the search for where light
+/// leaves the ball spans both, and is not to be coarser than the ball's texels.
+TEST_F(SpecularTest, GlassFarAwayDoesNotBlurTheSearchThroughABall) {
+  scene::Scene scene;
+  scene.environment = test::environmentOf(64, [](const vec3& d) { return 1.f + 0.5f * d; });
+  const int ball = addGlass(scene, 1.5f), pane = addLambert(scene);
+  show(scene, test::spherePrimitive(0.025f, ball));
+  show(scene, quad({0, 0, 500}, {1, 0, 0}, {0, 1, 0}, pane));
+  const auto camera = scene::lookAt({0, 0, 0.15f}, {0, 0, 0}, 0.4f);
+  const auto seen = [&] {
+    render::Renderer renderer(device(), scene);
+    return pictureFrom(renderer, settings(width, height, Term::specular, {refraction()}), camera);
+  };
+  const Image alone = seen();
+  ASSERT_GT(mean(alone), 0);
+  scene.materials[static_cast<size_t>(pane)] = test::glass(1.5f);
+  EXPECT_LT(relativeRms(seen(), alone), 0.005);
 }
 
 TEST_F(SpecularTest, WithoutSpecularSurfacesThereAreNoPasses) {

@@ -1,6 +1,9 @@
 // Caustics on surfaces against the reference, splatted on the screen and into maps of the light.
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "core/scene/camera.h"
 #include "tests/gpu/media_harness.h"
 
 namespace limn {
@@ -50,6 +53,29 @@ TEST_F(SurfaceCausticsTest, ABodyThatLiesInTwoViewsRefractsAsOne) {
                                                 {technique("surface_caustics", {{"buffer_size", "384"}})}));
   EXPECT_NEAR(mean(ours) / mean(truth), 1, 0.03);
   EXPECT_LT(relativeRms(ours, truth), 0.15);
+}
+
+/// A floor under a layer of index 1.8 that is seen head-on: of what the layer leaves to the diffuse part,
+/// Fresnel's term at the half vector takes ((n - 1) / (n + 1))^2, and less than 0.002 more (Schlick's (1 -
+/// v.h)^5 is at most 0.0022 there, at grazing incidence).
+TEST_F(SurfaceCausticsTest, DielectricFloorsReflectWhatFresnelLeaves) {
+  scene::Scene scene = asset("glass_sphere");
+  scene.medium = {};
+  const auto brightness = [&] {
+    render::Renderer renderer(device(), scene);
+    renderer.configure(settings(width, height, Term::caustic, {technique("surface_caustics")}));
+    renderer.setCamera(scene::lookAt({0.6f, 4, 0.01f}, {0.6f, 0, 0}, 0.3f));
+    renderer.render();
+    return mean(renderer.read());
+  };
+  const double matte = brightness();
+  ASSERT_GT(matte, 0);
+  for (scene::Material& m : scene.materials) {
+    if (m.specularSurface()) continue;
+    m.specularFactor = m.roughness = 1;
+    m.ior = 1.8f;
+  }
+  EXPECT_NEAR(brightness() / matte, 1 - std::pow(0.8 / 2.8, 2), 0.004);
 }
 
 /// All of the floor is seen by the light. Where the ring's caustic is thinner than a pixel, photons on the

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/reference/reference.h"
+#include "glsl/light/light_view.glsl"
 
 namespace limn::reference {
 
@@ -22,6 +23,14 @@ inline std::vector<glsl::Light> mediumLights(const Request& request) {
 inline glm::vec3 lightPoint(const glsl::Light& light, glm::vec2 u) {
   return light.position + (u.x - 0.5f) * light.length_u * light.axis_u +
          (u.y - 0.5f) * light.length_v * light.axis_v;
+}
+
+/// Returns the unit direction that a directional light without sides shines along where u in [0, 1)^2 selects
+/// it: even over the solid angle of its disc, as ConeView has it.
+inline glm::vec3 discDirection(const glsl::Light& light, glm::vec2 u) {
+  if (!(light.angular_diameter > 0)) return light.direction;
+  const glsl::LightView view = glsl::light_view(light, glm::vec3(0), -light.direction, -1);
+  return -glm::normalize(glsl::light_view_point(view, u));
 }
 
 }  // namespace limn::reference

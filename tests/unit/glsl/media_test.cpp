@@ -24,6 +24,29 @@ double overSphere(const F& f) {
   return sum;
 }
 
+/// All directions count alike where light passes, by their cosine where it arrives: one over the mean cosine
+/// of the disc's directions.
+TEST(LightFluence, OfADiscIsOneOverItsMeanCosine) {
+  for (const double diameter : {0.01, 0.5, 2.0, 3.1}) {
+    Light sun{};
+    sun.type = light_directional;
+    sun.angular_diameter = float(diameter);
+    constexpr int n = 100000;
+    double passing = 0, arriving = 0;
+    for (int i = 0; i < n; ++i) {
+      const double angle = 0.5 * diameter * (i + 0.5) / n;
+      passing += std::sin(angle);
+      arriving += std::sin(angle) * std::cos(angle);
+    }
+    EXPECT_NEAR(double(light_fluence(sun)) * arriving / passing, 1, 1e-5) << diameter;
+  }
+  Light other{};
+  for (const uint32_t type : {light_point, light_spot, light_directional, light_rectangle}) {
+    other.type = type;
+    EXPECT_EQ(light_fluence(other), 1.f) << type;
+  }
+}
+
 TEST(PhaseFunction, IntegratesToOneAndHasItsMeanCosine) {
   for (const float g : {-0.99f, -0.7f, 0.f, 0.3f, 0.7f, 0.9f, 0.99f}) {
     const auto p = [&](double theta) {
@@ -295,6 +318,25 @@ TEST(CausticLine, FragmentsSumToTheIrradianceOfTheLineAtTheEye) {
     EXPECT_NEAR(caustic_point_weight(middle - 0.5f * piece, middle + 0.5f * piece, 4000) /
                     (little * 4000.0 * 4000.0 / std::pow(cosine, 3)),
                 1, 2e-3);
+  }
+}
+
+/// A line that is seen end-on, from 1 to 10 m, in a medium that takes light on both ways: int exp(-2 k l) dl
+/// / l^2. At its middle alone there would be a fortieth of it.
+TEST(CausticLine, NodesOfAPointShareTheIntegralOverTheSquaredDistance) {
+  constexpr int nodes = 8, steps = 100000;
+  const vec3 along = normalize(vec3(0.2f, -0.1f, 1)), a = along, b = 10.f * along;
+  for (const float k : {0.f, 0.1f, 0.5f}) {
+    double sum = 0, expected = 0;
+    for (int i = 0; i < nodes; ++i) {
+      const float share = caustic_point_node(a, b, (float(i) + 0.5f) / nodes);
+      sum += std::exp(-2 * double(k) * double(length(a + share * (b - a)))) * 0.9 / nodes;
+    }
+    for (int i = 0; i < steps; ++i) {
+      const double l = 1 + 9 * (i + 0.5) / steps;
+      expected += 9.0 / steps * std::exp(-2 * double(k) * l) / (l * l);
+    }
+    EXPECT_NEAR(sum / expected, 1, 0.003) << k;
   }
 }
 

@@ -187,6 +187,41 @@ TEST(ReferenceMedia, AirlightOfAPointSourceMeetsQuadrature) {
   }
 }
 
+/// Fog under a sun of radius 0.1 radians and half a plane 1 m above the viewing ray, whose edge lies
+/// 0.05 m aside of it: half of the disc's radius from its middle.
+TEST(ReferenceMedia, AirlightOfADiscHasThePenumbraOfAHalfPlane) {
+  World world;
+  world.addQuad({-3, 1, 0}, {6, 0, 0}, {0, 0, -12}, world.addMaterial(vec3(0), true));
+  world.pose.bounds = {vec3(-1.5f), vec3(1.5f)};
+  world.scene.medium.sigmaS = vec3(0.1f);
+  world.addLight(glsl::light_directional, {0, 0, 0}, {0, -1, 0}, vec3(1)).angular_diameter = 0.2f;
+  const auto seenBeside = [&](float x) {
+    world.camera = scene::lookAt({x, 0, 2}, {x, 0, 0}, 0.01f);
+    const Image image = render(world.request(4, Term::media, 4096)).image;
+    double sum = 0;
+    for (int i = 0; i < 16; ++i) sum += double(image.at(i % 4, i / 4, 0));
+    return sum;
+  };
+  const double cosine = 0.5, hidden = (std::acos(cosine) - cosine * std::sqrt(1 - cosine * cosine)) / M_PI;
+  const double partly = seenBeside(0.05f);
+  world.pose.instances[0].objectToWorld = glm::translate(glm::mat4(1), vec3(-3, 0, 0));
+  EXPECT_NEAR(partly / seenBeside(0.05f), 1 - hidden, 0.01);
+}
+
+/// The radiance of a disc is even, so more light passes than arrives on a surface that faces it; in so thin a
+/// fog the way that it takes does not matter.
+TEST(ReferenceMedia, AirlightOfADiscIsItsFluence) {
+  World world = floorWorld();
+  world.scene.medium.sigmaS = vec3(1e-4f);
+  world.camera = scene::lookAt({0, 1, 1}, {0, 1, 0}, 0.2f);
+  glsl::Light& sun = world.addLight(glsl::light_directional, {0, 0, 0}, {0, -1, 0}, vec3(1));
+  const auto brightness = [&](float angle) {
+    sun.angular_diameter = angle;
+    return double(render(world.request(1, Term::media, 1024)).image.at(0, 0, 0));
+  };
+  EXPECT_NEAR(brightness(2) / brightness(0), 2 / (1 + std::cos(1.0)), 3e-3);
+}
+
 /// A sphere of radius 1 and index 1.5 in a thin beam along +x from far away, seen from the side.
 TEST(ReferenceMedia, ASphereFocusesWhereALensMakersFormulaSays) {
   World world;
@@ -253,6 +288,44 @@ TEST(ReferenceCaustic, EnergyThroughASphereIsWhatFresnelLeaves) {
     }
     const double total = arrives * 2 * M_PI * 0.3 * 0.3;
     EXPECT_NEAR(causticFlux(world, 96) / total, 1, 0.01) << ior;
+  }
+}
+
+/// A lamp in the middle of a ball of glass: its light passes the surface straight, after half a metre that
+/// absorbs, and that no medium fills.
+TEST(ReferenceCaustic, LightFromWithinABodyIsAbsorbedThereAndMeetsNoMedium) {
+  World world = floorWorld();
+  const int glass = addClearGlass(world, 1.5f);
+  world.addInstance(world.addMesh(World::sphere(128, glass)),
+                    glm::translate(glm::mat4(1), vec3(0, 1, 0)) * glm::scale(glm::mat4(1), vec3(0.5f)));
+  const vec3 lamp(world.addLight(glsl::light_point, {0, 1, 0}, {0, -1, 0}, vec3(1)).position);
+  world.camera = scene::lookAt({0, 0.4f, 1.5f}, {0, 0, 0}, 0.1f);
+  constexpr int size = 3, middle = 1;
+  const auto lit = [&](int interfaces) {
+    Request request = world.request(size, Term::caustic, 16384);
+    request.interfaces = interfaces;
+    return render(request).image;
+  };
+  for (const int interfaces : {0, kAllInterfaces}) {
+    SCOPED_TRACE(interfaces);
+    scene::Material& body = world.scene.materials[static_cast<size_t>(glass)];
+    body.attenuationDistance = 0;
+    world.scene.medium = {};
+    const double clear = double(lit(interfaces).at(middle, middle, 0));
+    ASSERT_GT(clear, 0);
+    body.attenuationColour = vec3(0.5f);
+    body.attenuationDistance = 0.1f;
+    const double absorbed = double(lit(interfaces).at(middle, middle, 0));
+    body.attenuationDistance = 0;
+    world.scene.medium.sigmaA = vec3(1);
+    const Image foggy = lit(interfaces);
+    const glm::dvec3 place = positionOf(world, foggy, middle, middle);
+    const double outside =
+        glm::distance(place, glm::dvec3(lamp)) - 0.5 + glm::distance(place, glm::dvec3(0, 0.4, 1.5));
+    // Within a tenth of a metre the pixel's light comes from one place.
+    EXPECT_NEAR(double(foggy.at(middle, middle, 0)) / clear, std::exp(-outside), 0.03 * std::exp(-outside));
+    // Light that has gone around inside, without limit, is absorbed more.
+    EXPECT_NEAR(absorbed / clear, std::pow(0.5, 5), interfaces == 0 ? 1e-3 : 3e-3);
   }
 }
 
