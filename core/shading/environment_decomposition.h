@@ -32,7 +32,7 @@ LIMN_API std::array<TexelGrid, 6> cubeMap(const scene::Environment& environment,
 struct DecompositionSettings {
   double threshold = 0.015;  ///< in (0, 1): a smaller one gives fewer lights
   /// Texels along a face's side; the number of lights depends on it. With 48, thresholds of 0.015, 0.025 and
-  /// 0.035 give 29, 37 and 57 lights for limn's sky; the thesis reports about 30, 45 and 60 for its maps.
+  /// 0.035 give 29, 38 and 56 lights for limn's sky; the thesis reports about 30, 45 and 60 for its maps.
   int resolution = 48;
   RegionShape shape = RegionShape::squares;
 };

@@ -48,13 +48,6 @@ LIMN_FN float dual_paraboloid_density_towards(vec3 direction, int size) {
   return side * side;
 }
 
-// As dual_paraboloid_density, of the part inside the rim, so that the texels of both layers share the sphere; texel: a
-// centre. The sum is 4 pi within 6e-4 for 32 texels and more.
-LIMN_FN float dual_paraboloid_solid_angle(vec2 texel, int size) {
-  float inside = (1.0f - length(dual_paraboloid_disc(texel, size))) * (0.5f * float(size) - 1.0f);
-  return clamp(0.5f + inside, 0.0f, 1.0f) * dual_paraboloid_density(texel, size);
-}
-
 // --- Equirectangular maps with rows on the poles ---
 
 LIMN_FN vec3 polar_map_place(vec3 direction, int size) {
@@ -72,13 +65,6 @@ LIMN_FN vec3 polar_map_direction(vec2 texel, int size) {
 LIMN_FN float polar_map_density(vec2 texel, int size) {
   float area = pi * pi / (float(size) * float(size - 1));
   return area * max(abs(sin(polar_map_angle(texel.y, size))), 1e-6f);
-}
-
-// Exact; the sum is 4 pi. texel: a centre.
-LIMN_FN float polar_map_solid_angle(vec2 texel, int size) {
-  float low = clamp(polar_map_angle(texel.y - 0.5f, size), 0.0f, pi);
-  float high = clamp(polar_map_angle(texel.y + 0.5f, size), 0.0f, pi);
-  return pi / float(size) * (cos(low) - cos(high));
 }
 
 // --- Filtering ---
@@ -114,12 +100,13 @@ LIMN_FN float prefilter_source_level(float spread, float density) {
 LIMN_CONST int prefiltered_lookup_mirror = 0;        // along the mirror direction
 LIMN_CONST int prefiltered_lookup_normal_drawn = 1;  // drawn towards the normal by alpha^2 (Filament)
 LIMN_CONST int prefiltered_lookup_centroid = 2;      // along the middle of the lobe that was fitted to the BRDF
+LIMN_CONST int prefiltered_lookup_uncut = 3;         // as mirror, with Phong's lobe whole: not times its share above the horizon
 
 // Direction in which a GGX lobe looks into the map of its width: unit. terms: of n.v and alpha.
 LIMN_FN vec3 prefiltered_direction(int lookup, LtcTerms terms, vec3 n, vec3 v, float alpha) {
   if (lookup == prefiltered_lookup_centroid) return environment_lobe_direction(terms, n, v, alpha);
   vec3 mirror = 2.0f * dot(n, v) * n - v;
-  if (lookup == prefiltered_lookup_mirror) return mirror;
+  if (lookup != prefiltered_lookup_normal_drawn) return mirror;
   vec3 drawn = mix(mirror, n, alpha * alpha);
   float size = length(drawn);
   return size > 1e-6f ? drawn / size : n;
@@ -181,14 +168,6 @@ float prefiltered_density(vec2 texel, int size) {
   return dual_paraboloid_density(texel, size);
 #else
   return polar_map_density(texel, size);
-#endif
-}
-
-float prefiltered_solid_angle(vec2 texel, int size) {
-#if PREFILTERED_PARABOLOID
-  return dual_paraboloid_solid_angle(texel, size);
-#else
-  return polar_map_solid_angle(texel, size);
 #endif
 }
 

@@ -68,14 +68,14 @@ LIMN_FN float prefiltered_lobe_share(PrefilteredLobe lobe, vec3 n, vec3 ng) {
 }
 
 #if (MATERIAL_MODELS & 16) != 0
-// The whole lobe, or with prefiltered_lookup_centroid the part of it above the horizon: its middle, its width.
+// The whole lobe times its share above the horizon, or with prefiltered_lookup_centroid the part above: its middle, its width.
 LIMN_FN PrefilteredLobe phong_prefiltered_lobe(MaterialModel m, int lookup, vec3 n, vec3 v) {
   float n_dot_v = dot(n, v);
   PhongPart part = phong_above_horizon(n_dot_v, m.exponent);
   PrefilteredLobe lobe;
   lobe.towards = prefiltered_mirror(n, v);
   lobe.alpha = power_lobe_alpha(m.exponent);
-  lobe.reflectance = m.ks * part.share;
+  lobe.reflectance = lookup == prefiltered_lookup_uncut ? m.ks : m.ks * part.share;
   vec3 across = n - n_dot_v * lobe.towards;
   float size = length(across);
   if (lookup != prefiltered_lookup_centroid || size < 1e-6f) return lobe;

@@ -1,4 +1,4 @@
-// What coats mirror of the environment, unoccluded.
+// What coats mirror of the environment, unoccluded. MEDIUM 1: light is attenuated.
 #ifndef LIMN_MIRRORED_ENVIRONMENT_GLSL
 #define LIMN_MIRRORED_ENVIRONMENT_GLSL
 #include "glsl/shadow/sampled_pixel.glsl"
@@ -13,7 +13,12 @@ vec3 mirrored_environment(SampledPixel p) {
   vec3 mirror = 2.0 * n_dot_v * p.surface.normal - p.to_viewer;
   if (dot(p.surface.geometric_normal, mirror) <= 0.0) return vec3(0.0);
   vec2 uv = equirectangular_uv(environment_lookup_direction(mirror, frame.environment_rotation));
-  return coated_mirror(p.material.model, n_dot_v) * (frame.environment_scale * textureLod(environment_map, uv, 0.0).rgb);
+  vec3 arriving = frame.environment_scale * textureLod(environment_map, uv, 0.0).rgb;
+#if MEDIUM
+  Medium medium = scene_medium();
+  arriving *= medium_transmittance(medium, medium_length(medium, p.position, mirror, 3.0e38));
+#endif
+  return coated_mirror(p.material.model, n_dot_v) * arriving;
 }
 #endif
 

@@ -33,11 +33,11 @@ BlockLookup block_lookup(ivec2 pixel, float depth) {
 }
 
 // values: a texel for each item.
-vec3 block_value(sampler2D values, BlockLookup b) {
-  if (b.own) return texelFetch(values, b.first, 0).rgb;
-  vec3 value = vec3(0.0);
+vec4 block_value(sampler2D values, BlockLookup b) {
+  if (b.own) return texelFetch(values, b.first, 0);
+  vec4 value = vec4(0.0);
   for (int i = 0; i < 16; ++i)
-    if (b.weights[i] > 0.0) value += b.weights[i] * texelFetch(values, b.first + ivec2(i % 4, i / 4), 0).rgb;
+    if (b.weights[i] > 0.0) value += b.weights[i] * texelFetch(values, b.first + ivec2(i % 4, i / 4), 0);
   return value;
 }
 

@@ -24,9 +24,9 @@ using frame::TextureHandle;
 
 enum Map : int { paraboloid, equirectangular };
 constexpr const char* kMaps[] = {"paraboloid", "equirectangular"};
-constexpr const char* kLookups[] = {"mirror", "normal_drawn", "centroid"};
+constexpr const char* kLookups[] = {"mirror", "normal_drawn", "centroid", "uncut"};
 static_assert(glsl::prefiltered_lookup_mirror == 0 && glsl::prefiltered_lookup_normal_drawn == 1 &&
-              glsl::prefiltered_lookup_centroid == 2);
+              glsl::prefiltered_lookup_centroid == 2 && glsl::prefiltered_lookup_uncut == 3);
 
 constexpr Parameter kParameters[] = {
     choice(
@@ -42,18 +42,21 @@ constexpr Parameter kParameters[] = {
         .logScale(),
     choice("lookup", glsl::prefiltered_lookup_centroid, kLookups,
            "Where a glossy surface looks into the maps: along the mirror direction, drawn from there towards "
-           "the "
-           "normal by alpha squared, or at the middle of its lobe"),
+           "the normal by alpha squared, or at the middle of its lobe. uncut: as mirror, with Phong's lobe "
+           "whole, though part of it lies below the horizon"),
 };
 constexpr StressCase kStress[] = {
     {.name = "smallest maps", .settings = "size=128", .factor = 4},
     {.name = "fewest samples", .settings = "samples=8", .factor = 4},
     {.name = "mirror direction", .settings = "lookup=mirror", .factor = 4},
+    {.name = "drawn towards the normal", .settings = "lookup=normal_drawn", .factor = 4},
+    {.name = "lobes that the horizon does not cut", .settings = "lookup=uncut", .factor = 4},
     {.name = "equirectangular maps", .settings = "map=equirectangular", .factor = 4},
 };
 
 constexpr int kGroupSize = 8;
 constexpr int kFilteredLevels = glsl::environment_levels - 1;  ///< level 0 is the radiance itself
+/// Of maps of irradiance; and the rows of the picture that it is summed over, at least.
 constexpr int kIrradianceSize = 32;
 constexpr int kCoarsestSize = 8;  ///< of the chain, at least
 static_assert(kFilteredLevels == glsl::power_levels);
@@ -83,16 +86,18 @@ class PrefilteredEnvironment : public Technique {
     if (!sampler_)
       sampler_ = gpu::Sampler(inputs.gpuScene.device(), GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR, GL_REPEAT);
     const Filtering filtering(graph, inputs.parameters, sampler_);
-    const TextureHandle chain = filtering.addChain(
-        inputs.service<shading_maps::ShadingMapService>().radiance(), inputs.scene.environment.width);
+    const scene::Environment& picture = inputs.scene.environment;
+    const TextureHandle environment = inputs.service<shading_maps::ShadingMapService>().radianceLevels();
+    const TextureHandle chain = filtering.addChain(environment, picture.width);
     Maps maps;
     maps.sharp = chain;
-    maps.irradiance = filtering.addIrradiance(chain, Irradiance::whole);
+    maps.irradiance = filtering.addIrradiance(environment, picture.height, Irradiance::whole);
     maps.filtered = filtering.addLobes(chain, Lobes::ggx);
     const uint32_t kinds = inputs.handles.modelKinds;
     if ((kinds & kLobeKinds) != 0) maps.power = filtering.addLobes(chain, Lobes::power);
     if ((kinds & kMicrofacetKinds) != 0) maps.microfacetLobes = filtering.addMicrofacetLobes();
-    if ((kinds & kEnteredKinds) != 0) maps.grazing = filtering.addIrradiance(chain, Irradiance::grazing);
+    if ((kinds & kEnteredKinds) != 0)
+      maps.grazing = filtering.addIrradiance(environment, picture.height, Irradiance::grazing);
     return addReflection(graph, inputs, request.target, maps);
   }
 
@@ -108,7 +113,7 @@ class PrefilteredEnvironment : public Technique {
 
     /// Returns the radiance in the technique's map, each level half as large as the one before.
     TextureHandle addChain(TextureHandle environment, int sourceWidth) const {
-      const int levels = levelOf(kCoarsestSize) + 1;
+      const int levels = levelOf(size_, kCoarsestSize) + 1;
       TextureHandle chain =
           graph_.createTexture("radiance of the environment", desc(GL_RGBA32F, size_, levels));
       for (int level = 0; level < levels; ++level) {
@@ -129,20 +134,25 @@ class PrefilteredEnvironment : public Technique {
       return chain;
     }
 
-    /// Returns the irradiance of surfaces that face each direction, W/m^2.
-    TextureHandle addIrradiance(TextureHandle chain, Irradiance kind) const {
+    /// Returns the irradiance of surfaces that face each direction, W/m^2, from a picture with coarser
+    /// levels.
+    TextureHandle addIrradiance(TextureHandle environment, int sourceRows, Irradiance kind) const {
       const bool grazing = kind == Irradiance::grazing;
       const std::string name =
           grazing ? "grazing irradiance of the environment" : "irradiance of the environment";
       const gpu::TextureDesc extent = desc(GL_RGBA32F, kIrradianceSize, 1);
       frame::PassBuilder pass = addPass(name);
-      pass.read(chain, Access::sampled, "source", "radiance");
+      pass.read(environment, Access::sampled, "environment_levels_map", "radiance");
       const TextureHandle irradiance =
           pass.write(graph_.createTexture(name, extent), Access::imageStore, "irradiance",
                      grazing ? "for what lies under a coat" : "for diffuse surfaces");
       const auto program = pass.program(shader("irradiance", {{"GRAZING", grazing ? "1" : "0"}}));
-      pass.execute([=, level = levelOf(kIrradianceSize)](frame::PassContext& context) {
-        context.use(program).set("source_level", level);
+      const int level = std::max(levelOf(sourceRows, kIrradianceSize), 0);
+      const int parts = std::max((kIrradianceSize + sourceRows - 1) / sourceRows, 1);
+      pass.execute([=](frame::PassContext& context) {
+        gpu::Program& sum = context.use(program);
+        sum.set("source_level", level);
+        sum.set("parts", parts);
         dispatch(context, extent);
       });
       return irradiance;
@@ -215,8 +225,10 @@ class PrefilteredEnvironment : public Technique {
               .levels = levels};
     }
 
-    /// Returns the last level of the chain that is at least so large.
-    int levelOf(int size) const { return std::bit_width(static_cast<unsigned>(size_ / size)) - 1; }
+    /// Returns the last level of a chain that is at least `size` large; -1: none is.
+    static int levelOf(int largest, int size) {
+      return std::bit_width(static_cast<unsigned>(largest / size)) - 1;
+    }
 
     /// Returns how many samples lie along a texel of level 0, two in each pixel of the picture where the
     /// texel is widest.

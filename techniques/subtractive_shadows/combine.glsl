@@ -4,7 +4,7 @@
 //
 // The values of the shadow buffer are 0 where nothing is in shadow: the share that is hidden (by ratio), the hidden light
 // (subtract); but the light that is seen (add). With SAMPLE_PARTS 1 there are values for the diffuse part and for the lobe; always
-// so in scenes with coats, whose lobe has the hidden share of what they mirror.
+// so in scenes with coats. What coats mirror has a value of its own, by whatever way the rest is combined.
 #ifndef LIMN_COMBINE_GLSL
 #define LIMN_COMBINE_GLSL
 
@@ -48,16 +48,23 @@ uniform float picture_share;
 const float picture_share = 1.0;
 #endif
 
-// The shadowed light of the pixel; unshadowed: its U; values: of the shadow buffer.
-vec3 shadowed_light(SampledPixel p, ReflectedParts unshadowed, ReflectedParts values) {
+struct ShadowValues {
+  ReflectedParts parts;
+  float mirror;  // hidden share of what a coat mirrors, or would mirror there: blocks without a coat know it, too
+};
+
+// The shadowed light of the pixel; unshadowed: its U; shadows: of the shadow buffer.
+vec3 shadowed_light(SampledPixel p, ReflectedParts unshadowed, ShadowValues shadows) {
+  ReflectedParts values = shadows.parts;
 #if COMBINE_BY_RATIO
   if (SAMPLE_PARTS == 0) values.lobe = values.diffuse;
+  if (is_coated(p)) values.lobe = vec3(shadows.mirror);
   return reflected_left(unshadowed, values);
 #else
   ReflectedParts colours = surface_colours(p);
   vec3 mirrored = vec3(0.0);
   if (is_coated(p)) {
-    mirrored = unshadowed.lobe * share_left(values.lobe);
+    mirrored = unshadowed.lobe * share_left(vec3(shadows.mirror));
     unshadowed.lobe = values.lobe = vec3(0.0);
   }
   vec3 light = values.diffuse * colours.diffuse;
@@ -80,8 +87,8 @@ const int shown_part = SHOWN_LIGHT;
 #endif
 
 // What the picture shows of the pixel: the shadowed light, the unshadowed one, or what lies between them.
-vec3 shown_light(SampledPixel p, ReflectedParts unshadowed, ReflectedParts values) {
-  vec3 light = shadowed_light(p, unshadowed, values);
+vec3 shown_light(SampledPixel p, ReflectedParts unshadowed, ShadowValues shadows) {
+  vec3 light = shadowed_light(p, unshadowed, shadows);
   if (shown_part == SHOWN_LIGHT) return light;
   vec3 whole = reflected_whole(unshadowed);
   return shown_part == SHOWN_UNSHADOWED ? whole : max(whole - light, vec3(0.0));

@@ -54,11 +54,9 @@ bool RadianceCache::add(frame::FrameGraph& graph, const TechniqueInputs& inputs,
         technique, fmt::format("{}: its light is from filtered maps", m.why));
   if (cached.materials.empty()) return false;
   gpu::Device& device = inputs.gpuScene.device();
-  if (!materials_) {
-    materials_ = gpu::Buffer::of<uint32_t>(device, "cached materials", cached.materials);
-    places_ = gpu::Buffer::of<uint32_t>(device, "places in the radiance cache", cached.places);
-    sampler_ = gpu::Sampler(device, GL_LINEAR, GL_LINEAR);
-  }
+  materials_ = gpu::Buffer::of<uint32_t>(device, "cached materials", cached.materials);
+  places_ = gpu::Buffer::of<uint32_t>(device, "places in the radiance cache", cached.places);
+  sampler_ = gpu::Sampler(device, GL_LINEAR, GL_LINEAR);
   placesHandle_ = graph.importBuffer("places in the radiance cache", places_);
 
   frame::PassBuilder pass = graph.addPass("radiance cache", technique);

@@ -37,7 +37,7 @@ inline constexpr size_t kMostCached = 128;
 class RadianceCache {
  public:
   /// Declares the pass that makes the cache of `samples` samples a lobe, owned by `technique`, and what is
-  /// left out of it. Returns whether the cache holds anything.
+  /// left out of it. Returns whether the cache holds anything. Once per graph.
   bool add(frame::FrameGraph& graph, const TechniqueInputs& inputs, std::string_view technique, int samples);
   /// Declares what cached_environment.glsl reads besides the frame block and surfaces. `instances`: the pass
   /// has no G-buffer of instances otherwise.

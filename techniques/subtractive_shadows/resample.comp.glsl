@@ -5,7 +5,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f) uniform image2D radiance;
-uniform sampler2D values;  // of each item of the grid
+uniform sampler2D values;  // of each item of the grid: of the diffuse part, and of mirrors in the last lane
 #if SAMPLE_PARTS
 uniform sampler2D lobe_values;
 #endif
@@ -29,9 +29,10 @@ void main() {
     blocks = own_block(pixel);
   else
     blocks = block_lookup(pixel, depth);
-  ReflectedParts shadows = ReflectedParts(block_value(values, blocks), vec3(0.0));
+  vec4 diffuse_and_mirror = block_value(values, blocks);
+  ShadowValues shadows = ShadowValues(ReflectedParts(diffuse_and_mirror.rgb, vec3(0.0)), diffuse_and_mirror.a);
 #if SAMPLE_PARTS
-  shadows.lobe = block_value(lobe_values, blocks);
+  shadows.parts.lobe = block_value(lobe_values, blocks).rgb;
 #endif
   SampledPixel p = sampled_pixel(pixel, depth);
   vec3 light = shown_light(p, unshadowed_light(pixel, p), shadows);

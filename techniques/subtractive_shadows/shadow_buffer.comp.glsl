@@ -61,7 +61,7 @@ void store_sums(ivec2 place, SampleSums sums) {
 
 #if SAMPLES_LAST
 #if BLOCK_SIDE > 1
-layout(VALUE_FORMAT) writeonly uniform image2D values;
+layout(VALUE_FORMAT) writeonly uniform image2D values;  // of the diffuse part, and of mirrors in the last lane
 #if SAMPLE_PARTS
 layout(VALUE_FORMAT) writeonly uniform image2D lobe_values;
 #endif
@@ -75,7 +75,7 @@ vec3 without_colour(vec3 light, vec3 colour) {
 }
 
 // From the means over a level's samples.
-ReflectedParts shadow_values(SampledPixel p, SampleSums sums) {
+ShadowValues shadow_values(SampledPixel p, SampleSums sums) {
   ReflectedParts seen = sums.seen, all = sums.all, values;
 #if COMBINE == COMBINE_RATIO
   values.diffuse = values.lobe = hidden_share(reflected_whole(seen), reflected_whole(all), vec3(0.0));
@@ -88,10 +88,19 @@ ReflectedParts shadow_values(SampledPixel p, SampleSums sums) {
   values.lobe = without_colour(seen.lobe, colours.lobe);
 #endif
   // Where no sample is above the horizon, coats mirror nothing that is added up, and all that shadows are taken from.
-  if (is_coated(p)) values.lobe = vec3(1.0 - mirror_share(sums, SAMPLE_TOTALS == 1 ? 1.0 : 0.0));
-  return values;
+  return ShadowValues(values, 1.0 - mirror_share(sums, SAMPLE_TOTALS == 1 ? 1.0 : 0.0));
 }
 #endif
+
+// Blocks share what is hidden of diffuse light without the surface's colour, which a channel of 0 would not tell them: there the
+// surface has next to none instead.
+void keep_diffuse_part(inout SampledPixel p) {
+  const vec3 least = vec3(1e-6);
+  p.material.brdf.diffuse = max(p.material.brdf.diffuse, least);
+#if MATERIAL_MODELS
+  p.material.model.kd = max(p.material.model.kd, least);
+#endif
+}
 
 void main() {
   ivec2 item = ivec2(gl_GlobalInvocationID.xy);
@@ -101,8 +110,9 @@ void main() {
   if (depth == 0.0) return;
   SampledPixel p = sampled_pixel(pixel, depth);
   if ((p.surface.flags & gbuffer_flag_specular) != 0u) return;
+  if (BLOCK_SIDE > 1) keep_diffuse_part(p);
   SampleSums here = no_samples();
-  ReflectedParts shadows = ReflectedParts(vec3(0.0), vec3(0.0));
+  ShadowValues shadows = ShadowValues(ReflectedParts(vec3(0.0), vec3(0.0)), 0.0);
   int first = 0;
   for (int level = 0; level < SAMPLE_LEVELS; ++level) {
     int end = level_end(level);
@@ -117,15 +127,18 @@ void main() {
 #if !SAMPLES_LAST
     store_sums(sums_place(item, level), sums);
 #elif SAMPLE_FADE
-    shadows = mixed_parts(shadows, shadow_values(p, sums), level == 0 ? 1.0 : share_of_more);
+    ShadowValues values_of_level = shadow_values(p, sums);
+    float weight = level == 0 ? 1.0 : share_of_more;
+    shadows.parts = mixed_parts(shadows.parts, values_of_level.parts, weight);
+    shadows.mirror = mix(shadows.mirror, values_of_level.mirror, weight);
 #else
     shadows = shadow_values(p, sums);
 #endif
   }
 #if SAMPLES_LAST && BLOCK_SIDE > 1
-  imageStore(values, item, vec4(shadows.diffuse, 0.0));
+  imageStore(values, item, vec4(shadows.parts.diffuse, shadows.mirror));
 #if SAMPLE_PARTS
-  imageStore(lobe_values, item, vec4(shadows.lobe, 0.0));
+  imageStore(lobe_values, item, vec4(shadows.parts.lobe, 0.0));
 #endif
 #elif SAMPLES_LAST
   vec3 light = shown_light(p, unshadowed_light(pixel, p), shadows);

@@ -93,6 +93,26 @@ TEST_F(EnvironmentShadowTest, CoatsMirrorWhatIsNotHidden) {
     }
 }
 
+/// A medium takes from what coats mirror what it takes along the mirror direction.
+TEST_F(EnvironmentShadowTest, CoatsMirrorThroughTheMedium) {
+  scene::Scene scene = lit(floor(), uniform(2), 0);
+  glsl::MaterialModel mirror{};
+  mirror.kind = glsl::model_coated;
+  mirror.eta = vec3(1e-3f);
+  mirror.k = vec3(1000);
+  scene::setModel(scene.materials.front(), mirror);
+  scene.medium.sigmaA = vec3(0.005f, 0.01f, 0.02f);
+  render::Renderer renderer(device(), scene);
+  const render::Settings bare = settings(16, 12, Term::direct);
+  const Image truth = reference(scene, bare, 1);
+  EXPECT_LT(mean(truth), 1.9);
+  for (const std::string& name : shadowingTechniques()) {
+    render::Settings s = bare;
+    s.techniques = {sampled(name, 64)};
+    EXPECT_LT(rmse(picture(renderer, s), truth), 0.01 * mean(truth)) << name;
+  }
+}
+
 TEST_F(EnvironmentShadowTest, LightsReflectedFromTheirCentresAreThePublishedApproximation) {
   scene::Scene scene = lit(floor(), uniform(1), 0.02);
   scene.environment.reflectCentres = true;

@@ -62,15 +62,18 @@ class PrefilteredEnvironmentTest : public RenderTest {
     scene.environment = std::move(environment);
     return scene;
   }
-  static scene::CameraPose camera() { return scene::lookAt({0, 0, 50}, {0, 0, 0}, 2 * std::atan(0.02f)); }
+  static scene::CameraPose camera(const vec3& towards = {0, 0, 1}) {
+    return scene::lookAt(50.f * towards, {0, 0, 0}, 2 * std::atan(0.02f));
+  }
 
-  Image drawn(const scene::Scene& scene, std::vector<std::pair<std::string, std::string>> values = {}) {
+  Image drawn(const scene::Scene& scene, std::vector<std::pair<std::string, std::string>> values = {},
+              const scene::CameraPose& view = camera()) {
     values.emplace_back("size", "128");
     const int width = kBallSide * static_cast<int>(scene.nodes.size());
     render::Renderer renderer(device(), scene);
     renderer.configure(
         settings(width, kBallSide, Term::direct, {technique("prefiltered_environment", values)}));
-    renderer.setCamera(camera());
+    renderer.setCamera(view);
     renderer.render();
     return renderer.read();
   }
@@ -172,6 +175,25 @@ TEST_F(PrefilteredEnvironmentTest, ABrightSunKeepsItsIrradiance) {
     expectWithin(image, 0, 1.01f * kSun);
     const double facing = static_cast<double>(image.at(kBallSide / 2, kBallSide / 2, 0));
     EXPECT_NEAR(facing / (irradiance / M_PI), 1, 0.03) << map;
+  }
+}
+
+/// A sun of one pixel where maps have their rims and poles: a ball is seen from its side.
+TEST_F(PrefilteredEnvironmentTest, ASunOfOnePixelKeepsItsIrradianceEverywhere) {
+  constexpr int kWidth = 512, kHeight = 256;
+  constexpr glm::ivec2 kSuns[] = {{383, 101}, {383, 100}, {383, 96}, {383, 116}, {128, 128},
+                                  {447, 64},  {10, 1},    {10, 3},   {10, 5},    {300, 254}};
+  for (const glm::ivec2& at : kSuns) {
+    scene::Environment sun = test::environmentOf(kWidth, [](vec3) { return vec3(0); });
+    sun.texels[static_cast<size_t>(at.y * kWidth + at.x)] = vec3(1e5f);
+    const scene::Scene scene = row({lambert()}, sun);
+    const vec3 towards = glsl::equirectangular_direction((vec2(at) + 0.5f) / vec2(kWidth, kHeight));
+    const float facing = 1e5f * glsl::equirectangular_pixel_solid_angle(at.y, kWidth, kHeight) / glsl::pi;
+    for (const char* map : {"paraboloid", "equirectangular"}) {
+      const Image image = drawn(scene, {{"map", map}}, camera(towards));
+      EXPECT_NEAR(static_cast<double>(image.at(kBallSide / 2, kBallSide / 2, 0) / facing), 1, 0.02)
+          << map << " (" << at.x << ", " << at.y << ')';
+    }
   }
 }
 

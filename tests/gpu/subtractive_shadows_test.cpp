@@ -52,6 +52,38 @@ class SubtractiveShadowsTest : public EnvironmentTest {
     return scene;
   }
 
+  /// Gives the half of the floor on the side of -x another material.
+  static scene::Scene halved(scene::Scene scene, const scene::Material& other) {
+    scene::Primitive near = scene.meshes[0].primitives[0], far = near;
+    near.positions[1].x = near.positions[2].x = far.positions[0].x = far.positions[3].x = 0;
+    for (scene::Primitive* half : {&near, &far}) {
+      half->bounds = {};
+      for (const vec3& v : half->positions) half->bounds.add(v);
+    }
+    near.material = static_cast<int>(scene.materials.size());
+    scene.materials.push_back(other);
+    scene.nodes[0].mesh = static_cast<int>(scene.meshes.size());
+    scene.meshes.push_back({"halves of the floor", {near, far}, {}});
+    return scene;
+  }
+  static scene::Material lambertian(const glm::vec4& colour) {
+    scene::Material material;
+    material.baseColour = colour;
+    material.metallic = material.specularFactor = 0;
+    return material;
+  }
+  /// A grey base under a perfect mirror, which adds all of the light to it.
+  static scene::Material mirrored() {
+    glsl::MaterialModel model{};
+    model.kind = glsl::model_coated;
+    model.eta = vec3(1e-3f);
+    model.k = vec3(1000);
+    model.kd = vec3(0.5f);
+    scene::Material material;
+    scene::setModel(material, model);
+    return material;
+  }
+
   /// A metal ball of radius 1 around the origin instead of the floor, seen from above.
   static scene::Scene ball(const glm::vec4& colour, float roughness) {
     scene::Scene scene = floor();
@@ -198,6 +230,66 @@ TEST_F(SubtractiveShadowsTest, NoLightGetsIntoAClosedRoom) {
       EXPECT_LT(largest(direct(renderer, 32, 24, {shadows({{"combine", combine}, {"block", block}})})),
                 1e-5 * unshadowed)
           << combine << ' ' << block;
+}
+
+/// Blocks of a surface without diffuse light, or without some channel of it, tell those beside them what is
+/// hidden there.
+TEST_F(SubtractiveShadowsTest, NoLightGetsInBesideMetalsAndPureColours) {
+  for (const scene::Material& other :
+       {metal(glm::vec4(1), 0.5f), lambertian({1, 0, 0, 1}), lambertian({0, 0, 0, 1})}) {
+    const scene::Scene scene = lit(halved(room(), other), sky(), 0);
+    render::Renderer renderer(device(), scene);
+    const double unshadowed = largest(direct(renderer, 32, 24));
+    EXPECT_GT(unshadowed, 0.1);
+    for (const char* combine : {"ratio", "ratio_split"})
+      EXPECT_LT(largest(direct(renderer, 32, 24, {shadows({{"combine", combine}, {"block", "4"}})})),
+                1e-5 * unshadowed)
+          << combine << ' ' << other.metallic << ' ' << other.baseColour.r;
+  }
+}
+
+/// A block beside a black one subtracts, or adds, as much as it would alone.
+TEST_F(SubtractiveShadowsTest, BlackSurfacesLeaveTheirNeighboursLightAlone) {
+  const scene::Scene scene = lit(halved(floor(), lambertian({0, 0, 0, 1})), uniform(1), 0);
+  render::Renderer renderer(device(), scene);
+  const Image picture = direct(renderer, 32, 24, {shadows({{"combine", "add"}, {"block", "4"}})});
+  const float far = picture.at(31, 12, 0);
+  EXPECT_GT(far, 0.5f);
+  for (int x = 17; x < 32; ++x) EXPECT_NEAR(picture.at(x, 12, 0), far, 1e-4f) << x;
+}
+
+/// Half a floor of coats, on the side of -x, and half a glossy one: what is hidden of the coats' mirror is a
+/// share, and that of lobes is light.
+TEST_F(SubtractiveShadowsTest, CoatsAndLobesSideBySideKeepTheirOwnShadows) {
+  scene::Scene bare = floor();
+  bare.materials[0].specularFactor = 1;
+  bare.materials[0].roughness = 0.3f;
+  bare = halved(bare, mirrored());
+  const auto shadowed = [&](const scene::Scene& scene, const char* combine) {
+    render::Renderer renderer(device(), scene);
+    return direct(renderer, 32, 24, {shadows({{"combine", combine}, {"block", "4"}})});
+  };
+  const auto unshadowed = [&](const scene::Scene& scene) {
+    render::Renderer renderer(device(), scene);
+    return direct(renderer, 32, 24);
+  };
+  const scene::Scene weak = lit(bare, uniform(1e-3f), 0), strong = lit(bare, uniform(10), 0);
+  const Image open = unshadowed(weak);
+  for (const char* combine : {"subtract", "ratio", "ratio_split"})
+    EXPECT_LE(largestDifference(shadowed(weak, combine), open), 1e-6 * largest(open)) << combine;
+  // A roof over the coats leaves the glossy floor beside it half of the sky.
+  scene::Scene roofed = weak;
+  scene::Node roof;
+  roof.mesh = static_cast<int>(roofed.meshes.size());
+  roof.transform.translation.y = 6;
+  roofed.meshes.push_back({"roof", {roofed.meshes.back().primitives.front()}, {}});
+  roofed.nodes.push_back(roof);
+  const Image beside = shadowed(roofed, "subtract");
+  for (int x = 17; x < 22; ++x) EXPECT_GT(beside.at(x, 12, 0), 0.2f * open.at(x, 12, 0)) << x;
+  // All of what coats mirror is added, also beside bright lobes.
+  const Image bright = unshadowed(strong), added = shadowed(strong, "add");
+  for (int x = 4; x < 15; ++x)
+    EXPECT_NEAR(added.at(x, 12, 0), bright.at(x, 12, 0), 0.1f * bright.at(x, 12, 0)) << x;
 }
 
 TEST_F(SubtractiveShadowsTest, BatchesOfAnySizeGiveTheSamePicture) {

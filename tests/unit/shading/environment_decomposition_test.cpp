@@ -120,6 +120,53 @@ TEST(EnvironmentDecomposition, CubeMapsKeepTheEnergyOfTheMapAndItsPlaces) {
   }
 }
 
+TEST(EnvironmentDecomposition, CubeMapsOfUniformMapsAreUniform) {
+  for (const int width : {60, 64, 512})
+    for (const int resolution : {7, 48}) {
+      const auto faces = cubeMap(environmentOf(width, [](vec3) { return vec3(3); }), resolution);
+      for (const TexelGrid& face : faces)
+        for (size_t i = 0; i < face.energy.size(); ++i)
+          EXPECT_NEAR(face.energy[i].x / face.measure[i], 3, 3 * 0.005) << width << ' ' << resolution;
+    }
+}
+
+/// A sun of one pixel, anywhere: near a pole pixels are much narrower than texels. Its light is within a
+/// texel of it, at most sqrt(2) 2 / 48 wide, and the sky keeps its own.
+TEST(EnvironmentDecomposition, ASunOfOnePixelIsWhereItIsAndTheSkyAsItWas) {
+  constexpr int kResolution = 48;
+  for (const float around : {0.f, 1.f}) {
+    const scene::Environment sky = environmentOf(256, [&](vec3) { return vec3(around); });
+    const auto without = cubeMap(sky, kResolution);
+    for (const int y : {0, 1, 5, 20, 127})
+      for (const int x : {0, 3, 31, 129}) {
+        SCOPED_TRACE(testing::Message() << around << " (" << x << ", " << y << ')');
+        scene::Environment e = sky;
+        e.texels[static_cast<size_t>(y * 256 + x)] = vec3(1e5f + around);
+        const vec3 sun = glsl::equirectangular_direction(
+            {(static_cast<float>(x) + 0.5f) / 256, (static_cast<float>(y) + 0.5f) / 128});
+        const auto faces = cubeMap(e, kResolution);
+        double near = 0;
+        for (size_t f = 0; f < 6; ++f)
+          for (int i = 0; i < kResolution * kResolution; ++i) {
+            const double more =
+                faces[f].energy[static_cast<size_t>(i)].x - without[f].energy[static_cast<size_t>(i)].x;
+            const vec2 ab =
+                2.f / kResolution *
+                    (vec2(static_cast<float>(i % kResolution), static_cast<float>(i / kResolution)) + 0.5f) -
+                1.f;
+            const vec3 towards =
+                glm::normalize(kCubeFaces[f].n + ab.x * kCubeFaces[f].u - ab.y * kCubeFaces[f].v);
+            if (glm::distance(towards, sun) < 0.06f)
+              near += more;
+            else
+              EXPECT_LT(std::abs(more), 1e-9);
+          }
+        const double energy = energyOf(e).x - energyOf(sky).x;
+        EXPECT_NEAR(near, energy, 1e-6 * energy);
+      }
+  }
+}
+
 TEST(EnvironmentDecomposition, EnergyIsConservedForEveryMapAndSetting) {
   for (const scene::Environment& e : {sunnySky(256), noisySky(64, 1), noisySky(128, 2)}) {
     for (const RegionShape shape : {RegionShape::squares, RegionShape::rectangles}) {
