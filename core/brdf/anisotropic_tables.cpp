@@ -71,10 +71,7 @@ FactoredBrdf wardTables(const Ward& material, int texels, bool warped, TableForm
   }));
   result.tables.push_back(FactorTable::of({texels, 2, 1}, format, [&](const dvec3& place) {
     if (place.y > 0) return dvec3(cosineLambda(place.x, 1));
-    dvec3 fresnel;
-    for (int c = 0; c < 3; ++c)
-      fresnel[c] = fresnelReflectance(place.x * place.x, material.eta[c], material.k[c]);
-    return fresnel;
+    return reflectance(material.fresnel, place.x * place.x, material.eta, material.k);
   }));
   return result;
 }

@@ -14,6 +14,7 @@ struct Ward {
   glm::dvec3 k{0};            ///< its absorption; 0 for dielectrics
   glm::dvec2 roughness{0.1};  ///< along the tangent and across it, taken as at least kLeastRoughness
   Masking masking = Masking::correlated;
+  FresnelTerm fresnel = FresnelTerm::exact;
 };
 
 /// Describes fibres along the tangent (Banks 1994), with the lobe of Stalling, Zoeckler and Hege (1997).

@@ -145,6 +145,19 @@ double fresnelReflectance(double cosine, double eta, double k) {
   return std::clamp(0.5 * across * (1 + (straight - mixed) / (straight + mixed)), 0.0, 1.0);
 }
 
+double schlickReflectance(double cosine, double eta, double k) {
+  const double straight = fresnelReflectance(1, eta, k);
+  return straight + (1 - straight) * std::pow(1 - std::clamp(cosine, 0.0, 1.0), 5);
+}
+
+dvec3 reflectance(FresnelTerm term, double cosine, const dvec3& eta, const dvec3& k) {
+  dvec3 result;
+  for (int c = 0; c < 3; ++c)
+    result[c] = term == FresnelTerm::exact ? fresnelReflectance(cosine, eta[c], k[c])
+                                           : schlickReflectance(cosine, eta[c], k[c]);
+  return result;
+}
+
 double normalDistribution(const TorranceSparrow& material, double fromNormal) {
   const double m = clampedRoughness(material);
   const double cosine = 1 - fromNormal * fromNormal;
@@ -200,9 +213,8 @@ FactoredBrdf torranceSparrowTables(const TorranceSparrow& material, int width, i
   result.scale = dvec3(largest * unit);
   result.tables.push_back(FactorTable::of({width, height, 1}, format, [&](const dvec3& place) {
     const double distance = warped ? 1 - place.y : std::sqrt(1 - place.y);
-    dvec3 fresnel;
-    for (int c = 0; c < 3; ++c) fresnel[c] = fresnelReflectance(place.x, material.eta[c], material.k[c]);
-    return fresnel * (normalDistribution(material, distance) / largest);
+    return reflectance(material.fresnel, place.x, material.eta, material.k) *
+           (normalDistribution(material, distance) / largest);
   }));
   result.tables.push_back(FactorTable::of({width, height, 1}, format, [&](const dvec3& place) {
     const dvec3 cosine = warped ? place * place : place;

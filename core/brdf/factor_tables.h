@@ -90,6 +90,12 @@ enum class Masking {
   product      ///< of the two directions taken alone
 };
 
+/// Names what stands for the reflectance of the microfacets.
+enum class FresnelTerm {
+  exact,   ///< Fresnel's equations
+  schlick  ///< Schlick's approximation (1994) from the exact value at normal incidence
+};
+
 /// Describes a rough specular reflector (Torrance and Sparrow 1967).
 struct TorranceSparrow {
   glm::dvec3 eta{1.5};     ///< index of refraction
@@ -97,11 +103,17 @@ struct TorranceSparrow {
   double roughness = 0.1;  ///< m, taken as at least kLeastRoughness
   NormalDistribution distribution = NormalDistribution::beckmann;
   Masking masking = Masking::correlated;
+  FresnelTerm fresnel = FresnelTerm::exact;
 };
 constexpr double kLeastRoughness = 1e-3;
 
 /// Returns the reflectance of a smooth surface for unpolarised light: Fresnel's equations.
 LIMN_API double fresnelReflectance(double cosine, double eta, double k);
+/// Returns Schlick's approximation of it, F0 + (1 - F0) (1 - cosine)^5: off by at most 0.036 at an index of
+/// 1.5, 0.26 at 5 and 0.12 for aluminium.
+LIMN_API double schlickReflectance(double cosine, double eta, double k);
+/// Returns one or the other for each channel.
+LIMN_API glm::dvec3 reflectance(FresnelTerm term, double cosine, const glm::dvec3& eta, const glm::dvec3& k);
 /// Returns D (1/sr) where sqrt(1 - n.h) is `fromNormal`; the integral of D n.h is 1 (that of the Gaussian
 /// within 3e-6 up to m = 0.5, 1.8 % more at 1: its tail below the horizon counts as if it were not cut).
 LIMN_API double normalDistribution(const TorranceSparrow& material, double fromNormal);

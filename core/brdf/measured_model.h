@@ -12,8 +12,9 @@ struct MeasuredModel {
   /// part (kd) and the width of its lobe (roughness), which decides where samples go and how wide the surface
   /// is that comes next to it in prefiltered environments.
   glsl::MaterialModel model{};
-  /// Holds the largest share of light that is reflected to a view, in the channel that reflects most. Tables
-  /// of measurements are above 1 at grazing views now and then.
+  /// Holds the largest share of light that is reflected to a view of up to 75 degrees, in the channel that
+  /// reflects most. Tables of measurements are above 1 at grazing views now and then; those nearer to 90
+  /// degrees, where measurements are worst, do not count, or a few values would dim the whole material.
   float largestAlbedo = 0;
 };
 

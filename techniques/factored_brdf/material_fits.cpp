@@ -20,18 +20,22 @@ brdf::Masking maskingOf(const glsl::MaterialModel& m) {
   return (m.options & glsl::model_option_product) != 0 ? brdf::Masking::product : brdf::Masking::correlated;
 }
 
-brdf::TorranceSparrow torranceSparrow(const glsl::MaterialModel& m) {
+brdf::TorranceSparrow torranceSparrow(const glsl::MaterialModel& m, brdf::FresnelTerm fresnel) {
   return {.eta = dvec3(m.eta),
           .k = dvec3(m.k),
           .roughness = static_cast<double>(m.roughness.x),
           .distribution = (m.options & glsl::model_option_gaussian) != 0 ? brdf::NormalDistribution::gaussian
                                                                          : brdf::NormalDistribution::beckmann,
-          .masking = maskingOf(m)};
+          .masking = maskingOf(m),
+          .fresnel = fresnel};
 }
 
-brdf::Ward ward(const glsl::MaterialModel& m) {
-  return {
-      .eta = dvec3(m.eta), .k = dvec3(m.k), .roughness = glm::dvec2(m.roughness), .masking = maskingOf(m)};
+brdf::Ward ward(const glsl::MaterialModel& m, brdf::FresnelTerm fresnel) {
+  return {.eta = dvec3(m.eta),
+          .k = dvec3(m.k),
+          .roughness = glm::dvec2(m.roughness),
+          .masking = maskingOf(m),
+          .fresnel = fresnel};
 }
 
 /// Says whether two models have the same analytic tables. Those of microfacets hold neither kd nor ks.
@@ -66,24 +70,25 @@ std::string reasonAgainst(const glsl::MaterialModel& model, const FitChoice& cho
   return "";
 }
 
-brdf::FactoredBrdf analyticTables(const glsl::MaterialModel& model, const brdf::FitSettings& fit) {
+brdf::FactoredBrdf analyticTables(const glsl::MaterialModel& model, const FitChoice& choice) {
+  const brdf::FitSettings& fit = choice.fit;
   switch (model.kind) {
     case glsl::model_ward:
-      return brdf::wardTables(ward(model), fit.texels, fit.warped, fit.format);
+      return brdf::wardTables(ward(model, choice.fresnel), fit.texels, fit.warped, fit.format);
     case glsl::model_banks:
       return brdf::banksTable(
           {.kd = dvec3(model.kd), .ks = dvec3(model.ks), .exponent = static_cast<double>(model.exponent)},
           fit.texels, fit.format);
     default:
-      return brdf::torranceSparrowTables(torranceSparrow(model), fit.texels, fit.texels, fit.warped,
-                                         fit.format);
+      return brdf::torranceSparrowTables(torranceSparrow(model, choice.fresnel), fit.texels, fit.texels,
+                                         fit.warped, fit.format);
   }
 }
 
 /// Returns the tables of a material; nothing where there is nothing to fit.
 std::optional<brdf::FactoredBrdf> fitted(const scene::Scene& scene, const scene::Material& material,
                                          const FitChoice& choice) {
-  if (choice.analytic) return analyticTables(*material.model, choice.fit);
+  if (choice.analytic) return analyticTables(*material.model, choice);
   try {
     return brdf::fitBrdf(brdf::modelBrdf(*material.model, scene.measured), choice.fit);
   } catch (const UsageError&) {

@@ -14,6 +14,7 @@ struct FitChoice {
   /// Torrance-Sparrow, Ward and Banks alone, by their formulas; `fit` names size, coordinates and format
   /// then.
   bool analytic = true;
+  brdf::FresnelTerm fresnel = brdf::FresnelTerm::exact;  ///< of analytic tables
   brdf::FitSettings fit;
 };
 

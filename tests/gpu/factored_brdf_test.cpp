@@ -158,6 +158,22 @@ TEST_F(FactoredBrdfTest, ModelsThatTurnWithTheTangentHaveTables) {
     error(mixed, {{"texels", "2"}, {"format", "byte"}, {"coordinates", coordinates}});
 }
 
+/// At an index of 5 and where light grazes the microfacets, Schlick's reflectance is off by a quarter.
+TEST_F(FactoredBrdfTest, SchlicksReflectanceErrsMoreThanTheTables) {
+  for (const uint32_t kind : {glsl::model_torrance_sparrow, glsl::model_ward}) {
+    glsl::MaterialModel dense = copper(0.2f, kind);
+    dense.eta = glm::vec3(5);
+    dense.k = glm::vec3(0);
+    scene::Scene scene = balls({dense});
+    scene.lights[0].intensity = 0;
+    scene.nodes.back().transform.rotation =
+        glm::quatLookAt(glm::normalize(glm::vec3(-0.4f, 0, 0.92f)), glm::vec3(0, 1, 0));  // from behind
+    const double schlick = error(scene, {{"fresnel", "schlick"}});
+    EXPECT_GT(schlick, 0.05) << kind;
+    EXPECT_GT(schlick, 20 * error(scene, {{"fresnel", "exact"}})) << kind;
+  }
+}
+
 TEST_F(FactoredBrdfTest, ExtremesAreFinite) {
   for (const float roughness : {0.f, 1e-3f, 1.f})
     for (const char* format : {"float32", "half", "byte"})

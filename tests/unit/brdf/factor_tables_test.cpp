@@ -47,6 +47,32 @@ TEST(FactorTables, FresnelIsThatOfTheComplexRefractedAngle) {
   EXPECT_EQ(fresnelReflectance(0.3, 0.5, 0), 1) << "total internal reflection";
 }
 
+// Schlick's approximation is exact at normal and at grazing incidence.
+TEST(FactorTables, SchlicksReflectanceIsOffBetweenNormalAndGrazing) {
+  struct Interface {
+    double eta, k, most;
+  };
+  for (const auto& [eta, k, most] : {Interface{1.5, 0, 0.036}, {5, 0, 0.26}, {1.37, 7.62, 0.12}, {1, 0, 1}}) {
+    double worst = 0;
+    for (int i = 0; i <= 1000; ++i)
+      worst = std::max(
+          worst, std::abs(schlickReflectance(i / 1000.0, eta, k) - fresnelReflectance(i / 1000.0, eta, k)));
+    RecordProperty("schlick_" + std::to_string(eta) + "_" + std::to_string(k), std::to_string(worst));
+    EXPECT_NEAR(worst / most, 1, 0.1) << eta << ' ' << k;
+    EXPECT_DOUBLE_EQ(schlickReflectance(1, eta, k), fresnelReflectance(1, eta, k));
+  }
+  const FactoredBrdf exact = torranceSparrowTables(rough(0.3), 32, 32, true, TableFormat::float32);
+  TorranceSparrow material = rough(0.3);
+  material.fresnel = FresnelTerm::schlick;
+  const FactoredBrdf tables = torranceSparrowTables(material, 32, 32, true, TableFormat::float32);
+  for (const double cosine : {0.9, 0.5, 0.3}) {  // of both to h, which is n
+    const dvec3 l = towards(cosine, 0), v = towards(cosine, std::numbers::pi);
+    EXPECT_NEAR(tables.evaluate(l, v).x / exact.evaluate(l, v).x,
+                schlickReflectance(cosine, 1.5, 0) / fresnelReflectance(cosine, 1.5, 0), 0.01)
+        << cosine;
+  }
+}
+
 // The integral of D n.h over the hemisphere, in sqrt(1 - n.h) = q: d(omega) = 4 pi q dq.
 double projectedArea(const TorranceSparrow& material) {
   constexpr int kSteps = 200000;
