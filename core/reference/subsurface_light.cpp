@@ -29,11 +29,9 @@ struct Matter {
 Matter matterBelow(const RayScene& rays, const Surface& surface) {
   const scene::Subsurface& given = *rays.draws()[surface.draw].material->subsurface;
   Matter matter{surface.below->boundary, given.extinction, given.absorption};
-  if (given.albedoFromBaseColour) {
-    const glsl::WalkReflectance walk = glsl::walk_reflectance(matter.boundary);
-    for (int c = 0; c < 3; ++c)
-      matter.absorption[c] = glsl::walk_absorption(walk, surface.values.base_colour[c]);
-  }
+  if (given.albedoFromBaseColour)
+    matter.absorption =
+        glsl::walk_absorption(glsl::walk_reflectance(matter.boundary), surface.values.base_colour);
   return matter;
 }
 

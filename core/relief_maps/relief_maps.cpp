@@ -20,6 +20,7 @@ namespace {
 constexpr int kFitAzimuths = 64;
 constexpr uint32_t kFitSeed = 1;
 constexpr float kLargestHalf = 65504;
+constexpr int64_t kMostHorizonBytes = int64_t{4} << 30;
 
 int levelsOf(const glm::ivec2& size) {
   return std::bit_width(static_cast<unsigned>(std::max(size.x, size.y)));
@@ -55,6 +56,34 @@ int64_t wordsOf(const relief::HeightField& field, const ReliefMapDesc& desc) {
       break;
   }
   return texelsOf(field.size());
+}
+
+/// Returns the azimuths of the horizons that a table is made from; 0: it needs none.
+int azimuthsOf(const ReliefMapDesc& desc) {
+  switch (desc.table) {
+    case Table::moments:
+    case Table::nearest:
+    case Table::ambient:
+    case Table::horizons:
+      return desc.azimuths;
+    case Table::published:
+      return kFitAzimuths;
+    case Table::heights:
+    case Table::bounces:
+      break;
+  }
+  return 0;
+}
+
+/// Throws unless the horizons of each field are small enough.
+void checkHorizons(std::span<const relief::HeightField> fields, const ReliefMapDesc& desc) {
+  for (const relief::HeightField& field : fields)
+    if (const int64_t bytes = reliefHorizonBytes(field, desc); bytes > kMostHorizonBytes)
+      throw UsageError(fmt::format(
+          "the horizons of a height map of {} x {} texels along {} azimuths take {:.1f} GiB, more than "
+          "{} GiB; ask for {}a smaller map",
+          field.size().x, field.size().y, azimuthsOf(desc), static_cast<double>(bytes) / (1 << 30),
+          kMostHorizonBytes >> 30, desc.table == Table::published ? "" : "fewer azimuths or "));
 }
 
 void append(std::vector<uint32_t>& words, const glsl::ReliefEllipse& ellipse) {
@@ -263,7 +292,12 @@ int64_t reliefTableWords(std::span<const relief::HeightField> fields, const Reli
   return words;
 }
 
+int64_t reliefHorizonBytes(const relief::HeightField& field, const ReliefMapDesc& desc) {
+  return texelsOf(field.size()) * azimuthsOf(desc) * int64_t{sizeof(float)};
+}
+
 ReliefTable makeReliefTable(std::span<const relief::HeightField> fields, const ReliefMapDesc& desc) {
+  checkHorizons(fields, desc);
   ReliefTable table;
   const bool levels =
       desc.table == Table::moments || desc.table == Table::nearest || desc.table == Table::ambient;

@@ -51,7 +51,11 @@ struct ReliefTable {
 
 /// Returns the words that a table of the fields takes.
 LIMN_API int64_t reliefTableWords(std::span<const relief::HeightField> fields, const ReliefMapDesc& desc);
-/// Computes a table of the fields. Throws UsageError for bounces of a field of 2^24 - 1 texels or more.
+/// Returns the bytes of the horizons that a field's part of a table is made from; 0: it needs none. They are
+/// there until that part is made, and can be many times as large.
+LIMN_API int64_t reliefHorizonBytes(const relief::HeightField& field, const ReliefMapDesc& desc);
+/// Computes a table of the fields. Throws UsageError for horizons of a field above 4 GiB, and for bounces of
+/// one of 2^24 - 1 texels or more.
 LIMN_API ReliefTable makeReliefTable(std::span<const relief::HeightField> fields, const ReliefMapDesc& desc);
 
 class LIMN_API ReliefMapService : public FrameService {
@@ -62,7 +66,8 @@ class LIMN_API ReliefMapService : public FrameService {
   ~ReliefMapService() override;
 
   /// Returns a table of the scene's height maps, of which there is at least one. Throws UsageError when it
-  /// would take more memory than a storage buffer may, and for bounces of a map of 2^24 - 1 texels or more.
+  /// would take more memory than a storage buffer may, for horizons of a map above 4 GiB, and for bounces of
+  /// a map of 2^24 - 1 texels or more.
   ReliefMaps request(const ReliefMapDesc& desc);
 
  private:

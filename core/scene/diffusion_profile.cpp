@@ -39,8 +39,8 @@ TranslucentKind kindOf(const Scene& scene, const Material& material) {
                        .textured = s.albedoFromBaseColour};
   if (kind.textured) {
     kind.albedo = meanAlbedo(scene, material);
-    const glsl::WalkReflectance walk = glsl::walk_reflectance(glsl::diffusion_boundary(kind.ior));
-    for (int c = 0; c < 3; ++c) kind.absorption[c] = glsl::walk_absorption(walk, kind.albedo[c]);
+    kind.absorption =
+        glsl::walk_absorption(glsl::walk_reflectance(glsl::diffusion_boundary(kind.ior)), kind.albedo);
   }
   return kind;
 }

@@ -20,9 +20,7 @@ glm::vec3 subsurfaceAlbedo(const glm::vec3& absorption, float ior) {
 }
 
 glm::vec3 subsurfaceAbsorption(const glm::vec3& albedo, float ior) {
-  const glsl::WalkReflectance walk = walkOf(ior);
-  return {glsl::walk_absorption(walk, albedo.x), glsl::walk_absorption(walk, albedo.y),
-          glsl::walk_absorption(walk, albedo.z)};
+  return glsl::walk_absorption(walkOf(ior), albedo);
 }
 
 }  // namespace limn::scene

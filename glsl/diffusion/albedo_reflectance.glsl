@@ -7,10 +7,9 @@ LIMN_BEGIN
 
 // C of the dipole. Normalised diffusion reflects the albedo itself.
 LIMN_FN vec3 dipole_reflectance(vec3 albedo, DiffusionBoundary boundary) {
-  WalkReflectance walk = walk_reflectance(boundary);
-  return vec3(diffusion_dipole(walk_absorption(walk, albedo.x), boundary).reflectance,
-              diffusion_dipole(walk_absorption(walk, albedo.y), boundary).reflectance,
-              diffusion_dipole(walk_absorption(walk, albedo.z), boundary).reflectance);
+  vec3 absorption = walk_absorption(walk_reflectance(boundary), albedo);
+  return vec3(diffusion_dipole(absorption.x, boundary).reflectance, diffusion_dipole(absorption.y, boundary).reflectance,
+              diffusion_dipole(absorption.z, boundary).reflectance);
 }
 
 LIMN_END

@@ -6,10 +6,6 @@
 #include "glsl/diffusion/normalised.glsl"
 LIMN_BEGIN
 
-LIMN_FN vec3 walk_absorption(WalkReflectance w, vec3 albedo) {
-  return vec3(walk_absorption(w, albedo.x), walk_absorption(w, albedo.y), walk_absorption(w, albedo.z));
-}
-
 // The mean distance between where light enters and where it leaves, by normalised diffusion, whose mean is finite at any
 // absorption: int 2 pi r^2 R dr / A = 2.5 d.
 LIMN_FN vec3 diffusion_reach(vec3 extinction, vec3 absorption, WalkReflectance walk) {
@@ -51,7 +47,8 @@ LIMN_FN DipoleColours dipole_colours(vec3 extinction, vec3 absorption, Diffusion
   return c;
 }
 
-// Share of each channel's light per area at distance r, and the radius within which the share xi of one channel's leaves.
+// Share of each channel's light per area at distance r; of one channel's, what leaves within r, and the radius within which the
+// share xi does.
 LIMN_FN vec3 diffusion_density(DipoleColours c, float r) {
   vec3 away = min(r * c.extinction, vec3(1e10f));
   float z = c.virtual_height;
@@ -64,13 +61,19 @@ LIMN_FN vec3 diffusion_density(DipoleColours c, float r) {
   return c.strength * ((vec3(1.0f) + real_decay) * exp(-real_decay) * (real * real * real) +
                        (vec3(1.0f) + virtual_decay) * exp(-virtual_decay) * (z * image * image * image));
 }
-LIMN_FN float diffusion_radius(DipoleColours c, int channel, float xi) {
+LIMN_FN DiffusionDipole diffusion_channel(DipoleColours c, int channel) {
   DiffusionDipole d;
   d.decay = c.decay[channel];
   d.virtual_height = c.virtual_height;
   d.real_share = c.real_share[channel];
   d.reflectance = c.reflectance[channel];
-  return diffusion_dipole_radius(d, xi) / c.extinction[channel];
+  return d;
+}
+LIMN_FN float diffusion_share(DipoleColours c, int channel, float r) {
+  return diffusion_dipole_share(diffusion_channel(c, channel), min(r * c.extinction[channel], 1e10f));
+}
+LIMN_FN float diffusion_radius(DipoleColours c, int channel, float xi) {
+  return diffusion_dipole_radius(diffusion_channel(c, channel), xi) / c.extinction[channel];
 }
 
 struct NormalisedColours {
@@ -94,11 +97,17 @@ LIMN_FN vec3 diffusion_density(NormalisedColours c, float r) {
   vec3 wide = exp(vec3(-r / 3.0f) / c.width);
   return 0.125f * inverse_pi * (wide * wide * wide + wide) / (r * c.width);
 }
-LIMN_FN float diffusion_radius(NormalisedColours c, int channel, float xi) {
+LIMN_FN NormalisedDiffusion diffusion_channel(NormalisedColours c, int channel) {
   NormalisedDiffusion n;
   n.reflectance = c.reflectance[channel];
   n.width = c.width[channel];
-  return normalised_diffusion_radius(n, xi);
+  return n;
+}
+LIMN_FN float diffusion_share(NormalisedColours c, int channel, float r) {
+  return normalised_diffusion_share(diffusion_channel(c, channel), r);
+}
+LIMN_FN float diffusion_radius(NormalisedColours c, int channel, float xi) {
+  return normalised_diffusion_radius(diffusion_channel(c, channel), xi);
 }
 
 LIMN_END

@@ -14,10 +14,10 @@ LIMN_FN float entry_ratio(float light, float weights, float otherwise) {
 }
 
 // The mean from the sums of weight times light and of weights, the latter being profile over density. `here`: the light that
-// enters at the pixel itself, which is all that is known of a channel that no point tells of.
+// enters at the pixel itself, which stands for a channel that no point tells of, except where sums are over all points.
 LIMN_FN vec3 entry_mean(vec3 light, vec3 weights, float hits, float points, int normalise, vec3 here) {
-  if (hits == 0.0f) return here;
   if (normalise == entry_normalise_none) return light / points;
+  if (hits == 0.0f) return here;
   if (normalise == entry_normalise_count) return light / hits;
   return vec3(entry_ratio(light.x, weights.x, here.x), entry_ratio(light.y, weights.y, here.y),
               entry_ratio(light.z, weights.z, here.z));

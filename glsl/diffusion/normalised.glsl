@@ -39,6 +39,9 @@ LIMN_FN float walk_absorption(WalkReflectance w, float albedo) {
   float s = 2.0f * (1.0f - a) / (linear + sqrt(linear * linear + 4.0f * square * (1.0f - a)));
   return min(s * s, 1.0f);
 }
+LIMN_FN vec3 walk_absorption(WalkReflectance w, vec3 albedo) {
+  return vec3(walk_absorption(w, albedo.x), walk_absorption(w, albedo.y), walk_absorption(w, albedo.z));
+}
 
 struct NormalisedDiffusion {
   float reflectance;  // A, 0 to 1

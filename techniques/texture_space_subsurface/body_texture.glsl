@@ -35,6 +35,12 @@ struct SurfaceGaussian {
   float sigma;  // m
 };
 
+// Weights of the tap at a place and of those one to three steps away to both sides: the parts of a Gaussian in bins one standard
+// deviation wide (d'Eon, Luebke and Enderton 2007, section 5). What lies all over a bin is looked up at its middle, which would
+// widen the Gaussian by 3.9 %; steps are shorter by that, so that the taps have its variance, to which those of all steps add up.
+LIMN_CONST vec4 tap_weights = vec4(0.383f, 0.242f, 0.061f, 0.006f);
+LIMN_CONST float tap_step = 0.9627f;  // standard deviations: the root of 1.001 / (2 (0.242 + 4 * 0.061 + 9 * 0.006))
+
 // A Gaussian as wide as a texel or wider is spread in the texture, one below half a texel is left to the pixels' own light.
 // texel: its size along u and v, m.
 LIMN_FN float spread_share(float sigma, vec2 texel) {

@@ -122,11 +122,19 @@ int firstSpread(const BodyTextures& textures, const BodyMatter& matter, int coun
   return first;
 }
 
+void checkLayers(const BodyTextures& textures, int texels, const TextureLimits& limits) {
+  const int64_t most = std::min(limits.layers, kMostBytes / limits.layerBytes);
+  if (static_cast<int64_t>(textures.bodies.size()) > most)
+    throw UsageError(
+        fmt::format("texture_space_subsurface: {} translucent bodies; textures of {} x {} texels are made "
+                    "for {} at most, with {} MiB",
+                    textures.bodies.size(), texels, texels, most, most * limits.layerBytes >> 20));
+}
+
 BodyTextures bodyTextures(const scene::Pose& pose, std::span<const LaidOutDraw> draws,
-                          const BodyMatter& matter, int texels, const TextureLimits& limits) {
+                          const BodyMatter& matter, int texels, int64_t cornerBytes) {
   BodyTextures result;
-  const int64_t mostLayers = std::min(limits.layers, kMostBytes / limits.layerBytes);
-  const auto mostCorners = static_cast<size_t>(limits.cornerBytes) / sizeof(glsl::ChartCorner);
+  const auto mostCorners = static_cast<size_t>(cornerBytes) / sizeof(glsl::ChartCorner);
   const auto slots = static_cast<size_t>(texels / 3);  // a chart takes 3 x 3 texels at least
   for (const LaidOutDraw& laid : draws) {
     const scene::DrawInstance& instance = pose.instances[laid.draw];
@@ -142,11 +150,6 @@ BodyTextures bodyTextures(const scene::Pose& pose, std::span<const LaidOutDraw> 
       ++result.tooMany;
       continue;
     }
-    if (static_cast<int64_t>(result.bodies.size()) >= mostLayers)
-      throw UsageError(
-          fmt::format("texture_space_subsurface: {} translucent bodies; textures of {} x {} texels are made "
-                      "for {} at most, with {} MiB",
-                      draws.size(), texels, texels, mostLayers, mostLayers * limits.layerBytes >> 20));
     const std::vector<scene::Chart>& charts = *made;
     CornerRange range{.first = static_cast<uint32_t>(result.corners.size()),
                       .texel = instance.deformed == scene::kNone ? 1 / (scale * kShrinks) : 0};

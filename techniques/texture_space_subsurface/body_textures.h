@@ -29,11 +29,10 @@ struct BodyTextures {
   size_t tooMany = 0;               ///< draws whose charts do not fit a texture, or whose triangles a buffer
 };
 
-/// Bounds what a device takes.
+/// Bounds the layers of textures.
 struct TextureLimits {
-  int64_t layers;       ///< of a texture
-  int64_t layerBytes;   ///< in one layer of all textures
-  int64_t cornerBytes;  ///< in a storage block
+  int64_t layers;      ///< that a device takes
+  int64_t layerBytes;  ///< in one layer of all textures
 };
 
 /// Says what the layout of a translucent draw is made for.
@@ -71,9 +70,12 @@ bool fits(const scene::Pose& pose, std::span<const LaidOutDraw> draws);
 /// or wider. `count`: none.
 int firstSpread(const BodyTextures& textures, const BodyMatter& matter, int count);
 
-/// Returns the layouts of draws in textures of `texels` x `texels`. Throws UsageError for more layers than
-/// there may be.
+/// Throws UsageError for more bodies than textures of `texels` x `texels` may have layers.
+void checkLayers(const BodyTextures& textures, int texels, const TextureLimits& limits);
+
+/// Returns the layouts of draws in textures of `texels` x `texels`, with corners that take `cornerBytes` at
+/// most.
 BodyTextures bodyTextures(const scene::Pose& pose, std::span<const LaidOutDraw> draws,
-                          const BodyMatter& matter, int texels, const TextureLimits& limits);
+                          const BodyMatter& matter, int texels, int64_t cornerBytes);
 
 }  // namespace limn::texture_space

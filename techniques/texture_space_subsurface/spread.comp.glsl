@@ -1,6 +1,6 @@
 // Spreads light along rows (ROWS 1) or columns (0) of the textures, from the Gaussian before this one to this one, and adds what
-// columns give to the light of all Gaussians. FIRST 1: this is the narrowest that is spread; LAST 1: no other follows. Seven taps,
-// a standard deviation apart, over the chart that a texel is in (d'Eon, Luebke and Enderton 2007, section 5).
+// columns give to the light of all Gaussians. FIRST 1: this is the narrowest that is spread; LAST 1: no other follows. Seven taps
+// over the chart that a texel is in.
 #include "glsl/scene/blocks.glsl"
 #include "techniques/texture_space_subsurface/body_texture.glsl"
 
@@ -20,7 +20,6 @@ uniform sampler2DArray entered;  // not spread at all
 #endif
 uniform uint gaussian;
 
-const float weights[4] = float[4](0.383, 0.242, 0.061, 0.006);
 const ivec3 along = ROWS != 0 ? ivec3(1, 0, 0) : ivec3(0, 1, 0);
 
 // rgb: light between two texels, a: how much of it is on the chart.
@@ -51,10 +50,10 @@ void main() {
     float narrow = gaussian > 0u ? gaussians[first + gaussian - 1u].sigma : 0.0;
     if (2.0 * narrow < texel_size) narrow = 0.0;
     if (2.0 * wide >= texel_size) {
-      float apart = sqrt(max(wide * wide - narrow * narrow, 0.0)) / texel_size;
-      vec4 sum = weights[0] * vec4(here.rgb, 1.0);
+      float apart = tap_step * sqrt(max(wide * wide - narrow * narrow, 0.0)) / texel_size;
+      vec4 sum = tap_weights[0] * vec4(here.rgb, 1.0);
       for (int i = 1; i < 4; ++i)
-        sum += weights[i] * (light_at(texel, -float(i) * apart, here.w) + light_at(texel, float(i) * apart, here.w));
+        sum += tap_weights[i] * (light_at(texel, -float(i) * apart, here.w) + light_at(texel, float(i) * apart, here.w));
       light = sum.rgb / sum.a;
     }
 #if !ROWS

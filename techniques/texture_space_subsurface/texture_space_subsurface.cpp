@@ -298,20 +298,22 @@ TextureHandle TextureSpaceSubsurface::addPasses(frame::FrameGraph& graph, const 
                                                 const TermRequest& request) {
   const ParameterValues& p = inputs.parameters;
   drawCount_ = inputs.pose.instances.size();
-  const BodyMatter matter = texture_space::bodyMatter(
-      inputs.scene, p.choice("profile") == normalisedDiffusion, p.integer("gaussians"));
+  const int texels = p.integer("texels"), gaussians = p.integer("gaussians");
+  const BodyMatter matter =
+      texture_space::bodyMatter(inputs.scene, p.choice("profile") == normalisedDiffusion, gaussians);
   if (matter.kinds.empty()) {
     graph.leaveOut("light below surfaces", info.name, "no material is translucent");
     return request.target;
   }
-  const int texels = p.integer("texels");
   draws_ = texture_space::translucentDraws(inputs.scene, inputs.pose, matter);
   gpu::Device& device = inputs.gpuScene.device();
   const gpu::Limits& limits = device.limits();
-  const BodyTextures textures = texture_space::bodyTextures(inputs.pose, draws_, matter, texels,
-                                                            {.layers = limits.maxArrayLayers,
-                                                             .layerBytes = kTexelBytes * texels * texels,
-                                                             .cornerBytes = limits.maxStorageBlockBytes});
+  const BodyTextures textures =
+      texture_space::bodyTextures(inputs.pose, draws_, matter, texels, limits.maxStorageBlockBytes);
+  const int first = texture_space::firstSpread(textures, matter, gaussians);
+  if (first < gaussians)
+    texture_space::checkLayers(
+        textures, texels, {.layers = limits.maxArrayLayers, .layerBytes = kTexelBytes * texels * texels});
   if (textures.tooMany > 0)
     graph.leaveOut(
         "lay finely cut surfaces out", info.name,
@@ -324,8 +326,7 @@ TextureHandle TextureSpaceSubsurface::addPasses(frame::FrameGraph& graph, const 
                    gpu::Buffer::of<glsl::SurfaceGaussian>(device, "Gaussians of matter", matter.gaussians),
                    gpu::Buffer::of<uint32_t>(device, "matter of materials", matter.ofMaterials));
   vertexArray_ = gpu::VertexArray(device, {});
-  return Passes(graph, inputs, textures.ranges,
-                texture_space::firstSpread(textures, matter, p.integer("gaussians")), matter.textured,
+  return Passes(graph, inputs, textures.ranges, first, matter.textured,
                 {.corners = graph.importBuffer("corners of charts", buffers_->corners),
                  .bodies = graph.importBuffer("bodies of textures", buffers_->bodies),
                  .kinds = graph.importBuffer("kinds of matter", buffers_->kinds),

@@ -121,6 +121,25 @@ TEST_F(BumpHorizonTest, LightOfAnyHeightIsFinite) {
   }
 }
 
+/// Along a line straight up nothing is higher than where it begins, and no azimuth is its own.
+TEST_F(BumpHorizonTest, LightExactlyAtTheZenithIsSeenFromEverywhere) {
+  scene::Scene scene = floorUnder({0, 1, 0}, {groove()});
+  scene.nodes[1].transform.rotation = glm::quat(0.5f, -0.5f, 0.5f, 0.5f);  // without a rounding
+  for (const std::string& shape : kShapes) {
+    SCOPED_TRACE(shape);
+    const bool exact = shape == "horizon_map" || shape == "march" || shape == "scan";
+    for (const char* soft : {"false", "true"})
+      forEachPoint(
+          drawn(scene, Term::relief, {technique("bump_horizon", {{"shape", shape}, {"soft", soft}})}),
+          [&](float w, const glm::vec3&) {
+            ASSERT_TRUE(w >= 0 && w <= 1);
+            if (exact) {
+              ASSERT_EQ(w, 1);
+            }
+          });
+  }
+}
+
 TEST_F(BumpHorizonTest, DirectLightIsTheUnshadowedTimesW) {
   const scene::Scene scene = floorUnder({1, 0.5f, 0.3f}, {groove()});
   const render::TechniqueUse bumps = technique("bump_horizon", {{"shape", "horizon_map"}});

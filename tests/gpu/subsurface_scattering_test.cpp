@@ -97,6 +97,26 @@ class SubsurfaceScatteringTest : public SubsurfaceHarness {
     }
     return sum / kQuantiles;
   }
+  struct Ratio {
+    double mean, rms;  ///< rms: of the distances from 1
+  };
+  /// Returns what one picture's light is of another's times `share`, over the middle of the floor.
+  static Ratio ratioInTheMiddle(const Image& picture, const Image& of, double share = 1) {
+    std::vector<double> wanted;
+    forEachPoint(of, [&](float value, const vec3&) { wanted.push_back(double(value) * share); });
+    double sum = 0, squares = 0;
+    size_t index = 0;
+    int counted = 0;
+    forEachPoint(picture, [&](float value, const vec3& p) {
+      const double ratio = double(value) / wanted[index++];
+      if (std::abs(p.x) > 0.5f || std::abs(p.z) > 0.5f) return;
+      sum += ratio;
+      squares += (ratio - 1) * (ratio - 1);
+      ++counted;
+    });
+    EXPECT_GT(counted, 1500);
+    return {sum / counted, std::sqrt(squares / counted)};
+  }
   Image below(const scene::Scene& scene, const Choices& values) {
     return drawn(scene, Term::subsurface,
                  {technique("hard_shadow_map", {{"shadow_map_size", "2048"}}),
@@ -239,23 +259,50 @@ TEST_F(SubsurfaceScatteringTest, LightFromBehindComesThrough) {
       Choices values{{"profile", kProfileNames[profile]}, {"samples", "64"}};
       forEachPoint(below(scene, values), [](float value, const vec3&) { ASSERT_EQ(value, 0); });
       values.emplace_back("light_views", "1");
-      std::vector<double> wanted;
-      forEachPoint(local, [&](float value, const vec3&) { wanted.push_back(double(value) * through); });
-      double sum = 0, squares = 0;
-      size_t index = 0;
-      int counted = 0;
-      forEachPoint(below(scene, values), [&](float value, const vec3& p) {
-        const double ratio = double(value) / wanted[index++];
-        if (std::abs(p.x) > 0.5f || std::abs(p.z) > 0.5f) return;
-        sum += ratio;
-        squares += (ratio - 1) * (ratio - 1);
-        ++counted;
-      });
-      ASSERT_GT(counted, 1500);
-      EXPECT_NEAR(sum / counted, 1, 0.02);
-      EXPECT_LT(std::sqrt(squares / counted), 0.05);
+      const Ratio ratio = ratioInTheMiddle(below(scene, values), local, through);
+      EXPECT_NEAR(ratio.mean, 1, 0.02);
+      EXPECT_LT(ratio.rms, 0.05);
     }
   }
+}
+
+/// Vertex colours make the albedo that of the coefficients, and points are drawn for a brighter one, too: the
+/// means of both sets of points differ by up to 0.004.
+TEST_F(SubsurfaceScatteringTest, LightFromBehindGoesByTheAlbedosOfBaseColours) {
+  constexpr float kTint = 0.75f;
+  for (const float thickness : {0.02f, 0.1f}) {
+    const scene::Scene coefficients = plate(thickness, {0, 1, 0});
+    scene::Scene coloured = coefficients;
+    coloured.materials[0].baseColour = glm::vec4(vec3(albedo(kAbsorption) / kTint), 1);
+    coloured.materials[0].subsurface->albedoFromBaseColour = true;
+    scene::Primitive& body = coloured.meshes[static_cast<size_t>(coloured.nodes[0].mesh)].primitives[0];
+    body.colours.assign(body.positions.size(), glm::vec4(vec3(kTint), 1));
+    for (const std::string& profile : kProfileNames) {
+      const Choices values{{"profile", profile}, {"samples", "64"}, {"light_views", "1"}};
+      const Image wanted = below(coefficients, values);
+      for (const char* mixing : {"root", "own"}) {
+        Choices mixed = values;
+        mixed.emplace_back("mixing", mixing);
+        EXPECT_NEAR(ratioInTheMiddle(below(coloured, mixed), wanted).mean, 1, 0.01)
+            << profile << ' ' << thickness << ' ' << mixing;
+      }
+    }
+  }
+}
+
+/// The medium's ball lies as far below the plate as above it, so that light from both sides loses the same.
+TEST_F(SubsurfaceScatteringTest, MediaTakeOfLightFromBehind) {
+  constexpr float kThickness = 0.02f;
+  scene::Scene front = plate(kThickness, {0, -1, 0}), behind = plate(kThickness, {0, 1, 0});
+  const Image clear = drawn(front, Term::subsurface, {});
+  front.medium.sigmaA = behind.medium.sigmaA = vec3(0.5f);
+  const Image local = drawn(front, Term::subsurface, {});
+  EXPECT_NEAR(ratioInTheMiddle(local, clear).mean, 0.25, 0.05) << "half on each of two ways";
+  const double through = reflectanceOverAlbedo(0, kAbsorption) * throughPlate(0, kThickness);
+  const Ratio ratio =
+      ratioInTheMiddle(below(behind, {{"samples", "64"}, {"light_views", "1"}}), local, through);
+  EXPECT_NEAR(ratio.mean, 1, 0.02);
+  EXPECT_LT(ratio.rms, 0.05);
 }
 
 /// What the camera sees is not added a second time, at the picture's border neither, and nor are opaque

@@ -141,6 +141,8 @@ TEST_F(TextureSpaceSubsurfaceTest, TexturesLargerThanTheirMemoryAreRefused) {
   } catch (const UsageError& error) {
     EXPECT_NE(std::string(error.what()).find("4096 x 4096"), std::string::npos) << error.what();
   }
+  scene.materials[0] = matter(1e6f, 0.04f);
+  EXPECT_NO_THROW(below(scene, {{"texels", "4096"}})) << "no texture is made where no light is spread";
 }
 
 class TextureSpaceBallTest : public SubsurfaceBallTest {};

@@ -33,16 +33,6 @@ inline const Matter kSkin({0.74f, 0.88f, 1.01f}, {0.032f, 0.17f, 0.48f});
 inline const Matter kKetchup({0.18f, 0.07f, 0.03f}, {0.061f, 0.97f, 1.45f});
 inline const Matter kWhite(vec3(1), vec3(0));
 
-/// Share of a channel's light that leaves within r.
-inline float share(const DipoleColours& c, int channel, float r) {
-  DiffusionDipole d;
-  d.decay = c.decay[channel];
-  d.virtual_height = c.virtual_height;
-  d.real_share = c.real_share[channel];
-  d.reflectance = c.reflectance[channel];
-  return diffusion_dipole_share(d, r * c.extinction[channel]);
-}
-
 /// A surface point, from the eye, and the light that enters there.
 struct SeenPlace {
   vec3 place{0}, normal{0}, entering{0};

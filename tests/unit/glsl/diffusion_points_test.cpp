@@ -102,7 +102,7 @@ TEST(DrawnPoints, HaveTheirDensity) {
         }
         double expected = double(disc) * std::min(1., double(within * within) / 16), integral = 0;
         for (int c = 0; c < 3; ++c)
-          expected += double((1 - disc) * channels[c] * share(kSkin.dipole, c, within));
+          expected += double((1 - disc) * channels[c] * diffusion_share(kSkin.dipole, c, within));
         constexpr int kSteps = 4000;
         for (int i = 0; i < kSteps; ++i) {
           const float r = within * (float(i) + 0.5f) / kSteps;
@@ -139,7 +139,8 @@ TEST(EntryMean, NormalisesAsNamed) {
   EXPECT_EQ(entry_mean(light, weights, 5, 10, entry_normalise_none, here), vec3(0.2f, 0.3f, 0));
   EXPECT_EQ(entry_mean(light, weights, 5, 10, entry_normalise_count, here), vec3(0.4f, 0.6f, 0));
   EXPECT_EQ(entry_mean(light, weights, 5, 10, entry_normalise_weights, here), vec3(0.5f, 1.5f, 7));
-  for (int normalise = 0; normalise < 3; ++normalise)
+  EXPECT_EQ(entry_mean(vec3(0), vec3(0), 0, 10, entry_normalise_none, here), vec3(0));
+  for (int normalise = 1; normalise < 3; ++normalise)
     EXPECT_EQ(entry_mean(vec3(0), vec3(0), 0, 10, normalise, here), here);
 }
 

@@ -161,6 +161,29 @@ TEST(ReliefMapsTest, MapsWhoseTexelsHaveNoNumberAreRefused) {
   EXPECT_THROW(makeReliefTable(fields, {.table = Table::bounces, .paths = 1}), UsageError);
 }
 
+/// What is asked for would be 8 GiB of horizons; shares of the sky are one word per texel at any number.
+TEST(ReliefMapsTest, HorizonsThatAreTooLargeAreRefusedBeforeTheyAreMade) {
+  const std::vector<HeightField> fields{flat({64, 32})};
+  const auto bytes = [&](Table kind, int azimuths) {
+    return reliefHorizonBytes(fields[0], {.table = kind, .azimuths = azimuths});
+  };
+  for (const Table kind : {Table::moments, Table::nearest, Table::ambient, Table::horizons}) {
+    EXPECT_EQ(bytes(kind, 32), 64 * 32 * 32 * 4);
+    EXPECT_EQ(bytes(kind, 1 << 20), int64_t{8} << 30);
+  }
+  EXPECT_EQ(bytes(Table::published, 1), 64 * 32 * 64 * 4);
+  EXPECT_EQ(bytes(Table::heights, 32), 0);
+  EXPECT_EQ(bytes(Table::bounces, 32), 0);
+  try {
+    makeReliefTable(fields, {.table = Table::ambient, .azimuths = 1 << 20});
+    FAIL() << "8 GiB of horizons";
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(),
+                 "the horizons of a height map of 64 x 32 texels along 1048576 azimuths take 8.0 GiB, more "
+                 "than 4 GiB; ask for fewer azimuths or a smaller map");
+  }
+}
+
 TEST(ReliefMapsTest, PackedEllipsesKeepFourDigits) {
   const glsl::ReliefEllipse e{
       .centre = {-0.7f, 0.3f}, .xx = 0.5f, .xy = -0.21f, .yy = 0.013f, .spread = 1.5f};

@@ -319,18 +319,20 @@ TEST_F(HierarchicalSubsurface, ExtremesAreFiniteAndMakeNoLight) {
 // d/dr of what stands for all light within r is the profile's ring.
 TEST_F(HierarchicalSubsurface, BothProfilesAreTheDerivativesOfTheirShares) {
   const glsl::DiffusionBoundary boundary = glsl::diffusion_boundary(1.4f);
-  const glsl::DiffusionDipole dipole = glsl::diffusion_dipole(0.05f, boundary);
-  const glsl::NormalisedDiffusion normalised =
-      glsl::normalised_diffusion(0.05f, glsl::walk_reflectance(boundary));
-  for (const float r : {0.1f, 0.5f, 1.f, 3.f}) {
-    const float step = 0.02f * r, ring = 2 * glsl::pi * r * 2 * step;
-    const auto slope = [&](const auto& profile) {
-      return (glsl::scatter_within(profile, r + step) - glsl::scatter_within(profile, r - step)) / ring;
-    };
-    EXPECT_NEAR(slope(dipole), glsl::scatter_profile(dipole, r), 2e-3f * glsl::scatter_profile(dipole, r));
-    EXPECT_NEAR(slope(normalised), glsl::scatter_profile(normalised, r),
-                2e-3f * glsl::scatter_profile(normalised, r));
-  }
+  const glm::vec3 extinction(1, 2, 0.5f), absorption(0.05f, 0.2f, 0.01f);
+  const auto check = [](const auto& colours) {
+    for (int c = 0; c < 3; ++c)
+      for (const float r : {0.1f, 0.5f, 1.f, 3.f}) {
+        const float step = 0.01f * r, ring = 2 * glsl::pi * r * 2 * step;
+        const float slope =
+            (glsl::diffusion_share(colours, c, r + step) - glsl::diffusion_share(colours, c, r - step)) /
+            ring;
+        const float density = glsl::diffusion_density(colours, r)[c];
+        EXPECT_NEAR(slope, density, 2e-3f * density) << c << ' ' << r;
+      }
+  };
+  check(glsl::dipole_colours(extinction, absorption, boundary));
+  check(glsl::normalised_colours(extinction, absorption, boundary));
 }
 
 }  // namespace

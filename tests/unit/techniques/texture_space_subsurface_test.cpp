@@ -77,6 +77,18 @@ TEST(TextureSpaceSubsurface, ExtremeMatterHasFiniteGaussians) {
           }
 }
 
+// A step from one Gaussian to the next adds the variance that they differ by, so that all are as wide as
+// said.
+TEST(TextureSpaceSubsurface, TapsHaveTheVarianceOfTheirGaussian) {
+  float sum = glsl::tap_weights[0], squares = 0;
+  for (int i = 1; i < 4; ++i) {
+    const float place = static_cast<float>(i) * glsl::tap_step;
+    sum += 2 * glsl::tap_weights[i];
+    squares += 2 * glsl::tap_weights[i] * place * place;
+  }
+  EXPECT_NEAR(squares / sum, 1, 1e-3);
+}
+
 TEST(TextureSpaceSubsurface, GaussiansBelowHalfATexelAreNotSpread) {
   EXPECT_EQ(glsl::spread_share(0.4f, {1, 0.5f}), 0);
   EXPECT_FLOAT_EQ(glsl::spread_share(0.75f, {1, 0.5f}), 0.5f);
