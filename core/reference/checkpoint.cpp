@@ -13,16 +13,17 @@ namespace limn::reference {
 namespace {
 
 struct Header {
-  std::array<char, 8> magic{'l', 'i', 'm', 'n', 'r', 'e', 'f', '1'};
+  std::array<char, 8> magic{'l', 'i', 'm', 'n', 'r', 'e', 'f', '2'};
   std::array<char, 32> hash{};
-  uint64_t count = 0;    ///< of sums
-  uint64_t samples = 0;  ///< per pixel and half
-  uint64_t checksum = 0;
+  uint64_t count = 0;     ///< of sums
+  uint64_t samples = 0;   ///< per pixel and half
+  uint64_t checksum = 0;  ///< of this header, with 0 here, and of the sums
 };
 static_assert(sizeof(Header) == 64);
 
-uint64_t checksum(std::span<const std::byte> bytes) {
-  return XXH3_64bits(bytes.data(), bytes.size());
+uint64_t checksum(Header header, std::span<const std::byte> payload) {
+  header.checksum = 0;
+  return XXH3_64bits_withSeed(payload.data(), payload.size(), XXH3_64bits(&header, sizeof(Header)));
 }
 
 }  // namespace
@@ -33,7 +34,7 @@ void saveCheckpoint(const std::filesystem::path& file, const std::string& hash, 
   std::memcpy(header.hash.data(), hash.data(), std::min(hash.size(), header.hash.size()));
   header.count = state.sums.size();
   header.samples = state.samples;
-  header.checksum = checksum(payload);
+  header.checksum = checksum(header, payload);
   std::vector<std::byte> bytes(sizeof(Header) + payload.size());
   std::memcpy(bytes.data(), &header, sizeof(Header));
   std::memcpy(bytes.data() + sizeof(Header), payload.data(), payload.size());
@@ -57,7 +58,7 @@ bool loadCheckpoint(const std::filesystem::path& file, const std::string& hash, 
   std::memcpy(expected.hash.data(), hash.data(), std::min(hash.size(), expected.hash.size()));
   const std::span<const std::byte> payload = std::span<const std::byte>(bytes).subspan(sizeof(Header));
   if (header.magic != expected.magic || header.hash != expected.hash || header.count != state.sums.size() ||
-      header.samples > UINT32_MAX || header.checksum != checksum(payload))
+      header.samples > UINT32_MAX || header.checksum != checksum(header, payload))
     return false;
   std::memcpy(state.sums.data(), payload.data(), payload.size());
   state.samples = static_cast<uint32_t>(header.samples);

@@ -28,8 +28,8 @@ class Integrator {
 /// (DirectLight) at every surface, directions chosen with the BRDF's density, and Russian roulette from the
 /// fourth bounce on. Translucent surfaces that are seen reflect at their boundary alone and show, in the
 /// terms that hold it, what entered them (SubsurfaceLight); those met further on show their local limit.
-/// Specular surfaces, backs of single-sided ones and bumps of a height map end a path; specular surfaces that
-/// the camera sees show, with Request::interfaces, the light of others (SpecularPaths).
+/// Specular surfaces and backs of single-sided ones end a path; specular surfaces that the camera sees show,
+/// with Request::interfaces, the light of others (SpecularPaths).
 std::unique_ptr<Integrator> makePathIntegrator(const RayScene& rays, const Request& request);
 
 /// Returns whether the term is a factor of one light: V (visibility) or W (relief).

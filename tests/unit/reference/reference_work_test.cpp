@@ -172,5 +172,27 @@ TEST(ReferenceWork, ABrokenOrForeignCheckpointIsIgnored) {
   EXPECT_TRUE(sameBits(whole, render(request).image));
 }
 
+/// A bit of the number of samples, and one of the sums: with either the picture would be another.
+TEST(ReferenceWork, ACheckpointWithAFlippedBitIsIgnored) {
+  const Folder folder;
+  const World world = busyWorld();
+  Request request = world.request(16, Term::direct, 32);
+  const Image whole = render(request).image;
+  request.checkpoint = folder.path() / "work.partial";
+  for (const std::streamoff at : {48, 200}) {
+    request.progress = [](const Progress&) { return false; };
+    EXPECT_THROW(render(request), Error);
+    std::fstream file(request.checkpoint, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekg(at);
+    const int byte = file.get();
+    file.seekp(at);
+    file.put(static_cast<char>(byte ^ 1));
+    file.close();
+    ASSERT_TRUE(file);
+    request.progress = nullptr;
+    EXPECT_TRUE(sameBits(whole, render(request).image)) << at;
+  }
+}
+
 }  // namespace
 }  // namespace limn::reference
