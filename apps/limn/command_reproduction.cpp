@@ -1,11 +1,7 @@
 // limn reproduction: what the thesis found, beside what bench results say.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <iterator>
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/limn/commands.h"
@@ -30,15 +26,9 @@ int runReproduction(const ReproductionArguments& options) {
   if (claims.empty()) claims = session::findShared("benchmarks", "reproduction.claims");
   if (claims.empty())
     throw Error("reproduction.claims was not built or installed with limn; name a file with --claims");
-  std::vector<bench::Row> rows;
-  for (const fs::path& folder : options.results) {
-    std::vector<bench::Row> later = bench::readRows(folder / "results.jsonl");
-    std::set<std::string> measuredAgain;
-    for (const bench::Row& row : later)
-      if (row.failure.empty()) measuredAgain.insert(row.key);
-    std::erase_if(rows, [&](const bench::Row& row) { return measuredAgain.contains(row.key); });
-    std::ranges::move(later, std::back_inserter(rows));
-  }
+  std::vector<fs::path> files;
+  for (const fs::path& folder : options.results) files.push_back(folder / "results.jsonl");
+  const std::vector<bench::Row> rows = bench::readRows(files);
   const std::string page =
       "# What the thesis found, and what is measured here\n\n"
       "The thesis measured on GPUs of 2006 and 2009: its frame rates beside those of another renderer would "

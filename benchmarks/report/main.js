@@ -17,13 +17,13 @@ function summary(tables) {
     const failed = own.flatMap((table) => table.rows).filter((row) => row.failure).length;
     const rows = own.flatMap((table) => table.rows).length;
     const software = own.some((table) => table.software);
-    const machines = all("machines");
+    const machines = all("machines"), several = ["machines", "drivers"].filter((key) => all(key).length > 1);
     return el("div", {class: "machine"},
       el("p", {}, el("strong", {}, renderer), ` – ${software ? "software" : "hardware"} rendering. `,
         all("drivers").map((driver) => `Driver: ${driver}. `), machines.map((machine) => `Machine: ${machine}. `),
         `${rows} row${rows === 1 ? "" : "s"}${failed ? `, ${failed} failed` : ""}; `,
-        `medians of ${counts("frames")} frames a turn (turns: ${counts("turns")}), after ${counts("warmup")} to warm up.`),
-      machines.length > 1 ? el("p", {class: "note"}, "Rows of several machines: each has charts and tables of its own.") : null,
+        `medians of ${counts("frames")} frames a turn (turns: ${counts("turns") || "none"}), after ${counts("warmup")} to warm up.`),
+      several.length ? el("p", {class: "note"}, `Rows of several ${several.join(" and ")}: each has charts and tables of its own.`) : null,
       software ? el("p", {class: "note"}, "Software rendering says nothing about the times of a GPU.") : null);
   });
 }

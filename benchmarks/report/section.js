@@ -19,15 +19,18 @@ export function subjectName({scene, camera, light, light_size: size, environment
     .filter(Boolean).join(", ");
 }
 
-/** Machines have tables of their own; their names are long, and stand only where there are several. */
-const severalMachines = (table) => new Set(page.tables.filter(({renderer}) => renderer === table.renderer)
-  .flatMap(({machines}) => machines)).size > 1;
+/** Machines and drivers have tables of their own; their names are long, and stand only where there are several. */
+function placeText(table) {
+  const alike = page.tables.filter(({renderer}) => renderer === table.renderer);
+  return ["machines", "drivers"].filter((key) => new Set(alike.flatMap((other) => other[key])).size > 1)
+    .flatMap((key) => table[key]).map((name) => `, ${name}`).join("");
+}
 
 /** Size, mode and renderer: what a table is measured under. */
 export function conditions(table) {
   const timed = table.time_size.join("x") === table.size.join("x") ? "" : `, times at ${table.time_size.join(" x ")}`;
   return `${table.size.join(" x ")}${timed}, ${table.dynamic ? "dynamic" : "static"}, ${table.renderer} ` +
-    `(${table.software ? "software" : "hardware"})${severalMachines(table) ? `, ${table.machines.join(", ")}` : ""}`;
+    `(${table.software ? "software" : "hardware"})${placeText(table)}`;
 }
 
 const unique = (values) => [...new Set(values)];
@@ -102,7 +105,8 @@ export class Section {
     const spp = table.reference.noise > 0 ? `to ${100 * table.reference.noise} % noise` : `${table.reference.spp} samples per pixel`;
     const noise = isNumber(table.reference.noise_rms) ? `, noise ${(100 * table.reference.noise_rms).toPrecision(2)} % of the mean` : "";
     const others = this.tables.filter((other) => other.term === table.term && other.renderer === table.renderer &&
-      other.machines.join() === table.machines.join() && other.dynamic === table.dynamic);
+      other.machines.join() === table.machines.join() && other.drivers.join() === table.drivers.join() &&
+      other.dynamic === table.dynamic);
     this.budget = null;
     this.body.replaceChildren(...[
       takeOne(curves, metric, time, (...budget) => { this.budget = budget; this.plot?.budget(...budget); }),

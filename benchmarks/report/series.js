@@ -1,9 +1,10 @@
 // Rows to curves: one per technique over its quality parameter.
 
-/** Name to value, environment lights included; texts all. */
+/** Name to value, the environment's lights included; texts all. */
 export function settings(row) {
   const all = {...row.parameters};
   if (row.environment_lights) all["environment lights"] = String(row.environment_lights);
+  if (row.environment_settings) all["environment settings"] = row.environment_settings;
   return all;
 }
 
@@ -51,13 +52,18 @@ function groupBy(rows, key) {
   return groups;
 }
 
+/**
+ * A parameter's number, its default where the row sets none. 0 where that is not known: an environment without lights, rows of
+ * earlier versions.
+ */
+const numberOf = (row, name) => Number(settings(row)[name] ?? row.all_parameters?.[name] ?? 0);
+
 /** Lines of rows in which one parameter (or several in step) rises. */
 function lines(rows) {
   const [swept = [], ...fixed] = sweeps(rows);
   const others = fixed.flat();
-  const value = (row) => Number(settings(row)[swept[0]]);
   return [...groupBy(rows, (row) => settingsText(row, others)).values()]
-    .map((line) => [...line].sort((a, b) => value(a) - value(b)));
+    .map((line) => [...line].sort((a, b) => numberOf(a, swept[0]) - numberOf(b, swept[0])));
 }
 
 export const SEPARATION_FLOOR = "separation_floor";

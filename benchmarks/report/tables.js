@@ -24,7 +24,7 @@ function nameCell(row, onCurrent) {
 
 function ratioText(ratio) {
   if (!ratio) return "–";
-  return ratio.high > ratio.low ? `${number(ratio.value)} (${number(ratio.low)}–${number(ratio.high)})` : number(ratio.value);
+  return `${number(ratio.value)} (${ratio.turns > 1 ? `${number(ratio.low)}–${number(ratio.high)}` : `n = ${ratio.turns}`})`;
 }
 
 const referenceText = (time) => (time ? `${time.at_least ? ">" : ""}${number(time.value)}` : "–");
@@ -37,7 +37,7 @@ export function errorTable(table, metric, time, onCurrent) {
   const head = [...NAMES, ...metrics,
     {label: "spectrum", help: "power of the error over frequency, both logarithmic"},
     {label: "above 16 px", help: "share of the error's power at wavelengths above 16 pixels"},
-    ...(table.baseline ? [{label: "times as fast", help: `as ${table.baseline}, with the interval of 95 %`}] : []),
+    ...(table.baseline ? [{label: "times as fast", help: `as ${table.baseline}, with the interval of 95 %; n = 1: one turn, no interval`}] : []),
     median_ms, {label: "quartiles", help: "lower and upper quartile of the time of a frame, milliseconds"}, p99_ms, n,
     ...(traced ? [reference_ms] : []), memory_bytes, onFront];
   const rows = table.rows.map((row) => {
@@ -52,13 +52,13 @@ export function errorTable(table, metric, time, onCurrent) {
       cell(isNumber(time?.p99) ? number(time.p99 / time.median) : "–"), cell(time ? String(time.n) : "–"),
       traced ? cell(referenceText(row.reference_ms)) : null, cell(isNumber(row.memory_bytes) ? number(row.memory_bytes / 2 ** 20) : "–"), cell(front.includes(row) ? "*" : ""));
   });
-  const compared = table.baseline ? `Times as fast: against ${table.baseline}, with the interval of 95 %. ` : "";
+  const compared = table.baseline ? `Times as fast: against ${table.baseline}, with the interval of 95 % (n = 1: one turn, no interval). ` : "";
   const outdated = table.rows.some((row) => row.outdated) ? "† measured with another version of the program than the newest row. " : "";
   return tableElement(`Errors and times. ${compared}${outdated}* on the Pareto front of ${metric.label} and time (${time.label}); < below three ` +
     "times the reference's noise", head, rows);
 }
 
-/** The thesis's form: a line per setting, a column per resolution and number of lights. One renderer, machine and mode. */
+/** The thesis's form: a line per setting, a column per resolution and number of lights. One renderer, machine, driver and mode. */
 export function framesPerSecond(tables) {
   const columns = new Map(), lines = new Map();
   for (const table of tables) {

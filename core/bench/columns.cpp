@@ -193,10 +193,11 @@ bool knowsBound(const Row& row) {
   return row.cost.bound.has_value();
 }
 
-/// A column of CSV with the ratio or one end of its interval.
-Column boundColumn(const char* csv, const char* help, double Ratio::*part) {
-  return {csv, "", help, cell([part](const Row& r) {
-            return knowsBound(r) ? fmt::format("{}", xBound(*r.cost.bound).*part) : std::string();
+/// A column of CSV with the ratio of at least so many turns or one end of its interval.
+Column boundColumn(const char* csv, const char* help, double Ratio::*part, int turns) {
+  return {csv, "", help, cell([part, turns](const Row& r) {
+            const Ratio ratio = knowsBound(r) ? xBound(*r.cost.bound) : Ratio{.turns = 0};
+            return ratio.turns < turns ? std::string() : fmt::format("{}", ratio.*part);
           })};
 }
 
@@ -204,13 +205,15 @@ Columns boundColumns() {
   Column column = boundColumn("x_bound",
                               "how many times as long the technique's own passes take as the least kernel "
                               "with the same fetches and decisions",
-                              &Ratio::value);
+                              &Ratio::value, 1);
   column.markdown = "x bound";
-  column.shown =
-      cell([](const Row& r) { return knowsBound(r) ? ratioText(xBound(*r.cost.bound)) : std::string("-"); });
+  column.shown = cell(
+      [](const Row& r) { return knowsBound(r) ? measuredText(xBound(*r.cost.bound)) : std::string("-"); });
   column.known = knowsBound;
-  return {column, boundColumn("x_bound_low", "lower end of its interval of 95 %", &Ratio::low),
-          boundColumn("x_bound_high", "upper end of the same", &Ratio::high)};
+  return {column,
+          boundColumn("x_bound_low", "lower end of its interval of 95 %; empty with one turn", &Ratio::low,
+                      kFewestTurns),
+          boundColumn("x_bound_high", "upper end of the same", &Ratio::high, kFewestTurns)};
 }
 
 Columns costColumns() {

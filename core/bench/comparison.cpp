@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/bench/private/markdown.h"
+#include "core/question/question_fields.h"
 #include "core/question/technique_names.h"
 
 namespace limn::bench {
@@ -13,16 +14,9 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
-/// The ratio of the frames with its interval where the single times are known.
-std::string frameText(const Row& slow, const Row& fast) {
-  const bool single = !slow.cost.frameMs.samples.empty() && !fast.cost.frameMs.samples.empty();
-  const Ratio ratio = frameRatio(slow, fast);
-  return single ? ratioText(ratio) : ratioText(ratio.value);
-}
-
 /// The row that is shown, and how much slower than another it is: of the frame and of its shadows.
 Cells ratioCells(const Row& shown, const Row& slow, const Row& fast) {
-  return {rowName(shown), frameText(slow, fast), shadowRatio(slow, fast)};
+  return {rowName(shown), measuredText(frameRatio(slow, fast)), shadowRatio(slow, fast)};
 }
 
 void appendAtEqual(Cells& cells, const Row* row, const Row& against) {
@@ -60,10 +54,6 @@ Ratio xBound(const BoundTime& time) {
   return ratioOfMedians({time.own, time.turns}, {time.bound, time.turns});
 }
 
-int pairedTurns(const Row& a, const Row& b) {
-  return std::min(a.cost.frameMs.turns, b.cost.frameMs.turns);
-}
-
 std::string shadowRatio(const Row& slow, const Row& fast) {
   const double shadow = shadowMs(fast);
   return shadow > 0 ? ratioText(shadowMs(slow) / shadow) : "-";
@@ -75,6 +65,11 @@ std::string ratioText(double ratio) {
 
 std::string ratioText(const Ratio& ratio, int digits) {
   return fmt::format("{0:.{3}f} ({1:.{3}f} to {2:.{3}f})", ratio.value, ratio.low, ratio.high, digits);
+}
+
+std::string measuredText(const Ratio& ratio) {
+  return ratio.turns < kFewestTurns ? fmt::format("{} (n = {})", ratioText(ratio.value), ratio.turns)
+                                    : ratioText(ratio);
 }
 
 const Row* quickest(std::span<const Row> rows, const std::string& technique, const MetricInfo& error,
@@ -90,8 +85,8 @@ const Row* quickest(std::span<const Row> rows, const std::string& technique, con
 
 std::optional<ReferenceTime> referenceTime(const Row& row) {
   const Metrics& e = row.error;
-  if (!isTimed(row) || row.what.timeWidth > 0 || !row.referenceSeconds || !e.noise_floor ||
-      *e.noise_floor <= 0)
+  if (!isTimed(row) || !row.cost.software || row.what.timeWidth > 0 || !row.referenceSeconds ||
+      !e.noise_floor || *e.noise_floor <= 0)
     return std::nullopt;
   const double sigma = *e.noise_floor / 3, ms = 1000 * *row.referenceSeconds;
   const double least = 0.25 * sigma * sigma, own = e.rmse * e.rmse - sigma * sigma;
@@ -106,7 +101,8 @@ std::string settingsName(const Row& row) {
   std::string name = row.what.technique;
   for (const auto& [parameter, value] : row.what.parameters)
     name += fmt::format(" {}={}", shortParameter(row.what.technique, parameter), value);
-  return name;
+  const std::string lights = describeEnvironmentLights(row.what);
+  return lights.empty() ? name : fmt::format("{}, environment lights {}", name, lights);
 }
 
 std::string comparisonMarkdown(std::span<const Row> rows) {
@@ -115,9 +111,8 @@ std::string comparisonMarkdown(std::span<const Row> rows) {
   const std::string& technique = baseline->what.technique;
   const auto other = [&](const Row& row) { return isTimed(row) && row.what.technique != technique; };
   std::string text = fmt::format(
-      "\nTimes of {} as multiples of each row's (frame, with the 95 % interval of the samples | shadows: "
-      "maps, "
-      "filters and the technique's passes)",
+      "\nTimes of {} as multiples of each row's (frame, with its 95 % interval; n = 1: one turn, no interval "
+      "| shadows, of one turn: maps, filters and the technique's passes)",
       markdownText(rowName(*baseline)));
   if (std::ranges::none_of(rows, other)) {  // settings of one technique
     text += ":\n\n" + markdownHead({{"settings", Align::left}, {"frame"}, {"shadows"}});

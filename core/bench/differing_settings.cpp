@@ -79,6 +79,11 @@ void addQuestion(Differences& differences, const Case& first, const Case& second
   differences.add("mode", mode(first), mode(second));
   differences.add("frames", fmt::format("{}", first.frames), fmt::format("{}", second.frames));
   differences.add("warmup", fmt::format("{}", first.warmup), fmt::format("{}", second.warmup));
+  const ReferenceSettings &ours = first.reference, &theirs = second.reference;
+  differences.add("spp", fmt::format("{}", ours.spp), fmt::format("{}", theirs.spp));
+  differences.add("noise", fmt::format("{}", ours.noise), fmt::format("{}", theirs.noise));
+  differences.add("bounces", fmt::format("{}", ours.bounces), fmt::format("{}", theirs.bounces));
+  differences.add("interfaces", fmt::format("{}", ours.interfaces), fmt::format("{}", theirs.interfaces));
 }
 
 void addPlace(Differences& differences, const Row& first, const Row& second) {

@@ -17,10 +17,14 @@ std::size_t below(std::size_t limit, std::mt19937& random) {
   return random() % limit;
 }
 
+/// No turn is without a sample.
+std::size_t turnsOf(const Samples& samples) {
+  return std::clamp<std::size_t>(static_cast<std::size_t>(std::max(samples.turns, 1)), 1,
+                                 samples.values.size());
+}
+
 double resampledMedian(const Samples& samples, std::mt19937& random, std::vector<double>& scratch) {
-  const std::size_t count = samples.values.size(),
-                    turns = std::clamp<std::size_t>(static_cast<std::size_t>(std::max(samples.turns, 1)), 1,
-                                                    count);
+  const std::size_t count = samples.values.size(), turns = turnsOf(samples);
   scratch.clear();
   for (std::size_t i = 0; i < turns; ++i) {
     const std::size_t turn = turns > 1 ? below(turns, random) : 0;
@@ -34,6 +38,30 @@ double median(const Samples& samples) {
   return render::quartiles({samples.values.begin(), samples.values.end()}).median;
 }
 
+/// The t within which 95 % of Student's distribution with 2 (turns - 1) degrees of freedom lie, from its sine
+/// s, t = sqrt(df) s / sqrt(1 - s^2) (Abramowitz and Stegun, 26.7.4).
+double studentT(std::size_t turns) {
+  double low = 0, high = 1;
+  for (int step = 0; step < 50; ++step) {
+    const double s = (low + high) / 2;
+    double sum = 0, term = 1;
+    for (std::size_t k = 1; k < turns; ++k) {
+      sum += term;
+      term *= (1 - s * s) * (2 * static_cast<double>(k) - 1) / (2 * static_cast<double>(k));
+    }
+    (s * sum < 0.95 ? low : high) = s;
+  }
+  return std::sqrt(2 * static_cast<double>(turns - 1)) * low / std::sqrt(1 - low * low);
+}
+
+/// By how much the logarithms of an interval are widened that resampled turns give.
+double widening(std::size_t turns) {
+  constexpr double kNormal = 1.959964;
+  if (turns < 2) return 1;
+  const auto count = static_cast<double>(turns);
+  return std::sqrt(count / (count - 1)) * studentT(turns) / kNormal;
+}
+
 }  // namespace
 
 Ratio ratioOfMedians(const Samples& numerator, const Samples& denominator) {
@@ -45,10 +73,11 @@ Ratio ratioOfMedians(const Samples& numerator, const Samples& denominator) {
   }
   std::sort(ratios.begin(), ratios.end());
   const double value = median(numerator) / median(denominator);
-  const int turns = std::min(numerator.turns, denominator.turns);
-  const double widening = turns > 1 ? std::sqrt(turns / (turns - 1.0)) : 1;
-  const auto bound = [&](double ratio) { return value * std::pow(ratio / value, widening); };
-  return {value, bound(ratios[kResamples / 40]), bound(ratios[kResamples - 1 - kResamples / 40])};
+  const std::size_t turns = std::min(turnsOf(numerator), turnsOf(denominator));
+  const double wider = widening(turns);
+  const auto bound = [&](double ratio) { return value * std::pow(ratio / value, wider); };
+  return {value, bound(ratios[kResamples / 40]), bound(ratios[kResamples - 1 - kResamples / 40]),
+          static_cast<int>(turns)};
 }
 
 }  // namespace limn::bench

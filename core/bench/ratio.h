@@ -10,7 +10,8 @@ namespace limn::bench {
 /// Holds a ratio of medians and its bootstrap percentile interval.
 struct Ratio {
   double value = 0;
-  double low = 0, high = 0;  ///< 95 %; both equal to value where either side has one sample only
+  double low = 0, high = 0;  ///< 95 %; of one turn, of the scatter from frame to frame alone
+  int turns = 1;             ///< the smaller number of turns of the two sides
 };
 
 /// Holds samples in the order measured, taken in turns of equal length with other work in between.
@@ -22,9 +23,10 @@ struct Samples {
 /// Returns median(numerator) / median(denominator). Both are resampled with replacement, always by the same
 /// random numbers, so that equal samples give equal intervals (Efron 1979). Where there are several turns,
 /// the turns are resampled first and then their samples, since other load on the machine changes more from
-/// turn to turn than from frame to frame; the interval is then widened by sqrt(turns / (turns - 1)) in the
-/// logarithm, to correct the spread that a resample of few turns lacks (Davison and Hinkley 1997, Bootstrap
-/// Methods and their Application, section 3.8).
+/// turn to turn than from frame to frame. The interval is then widened in the logarithm: by
+/// sqrt(turns / (turns - 1)), to correct the spread that a resample of few turns lacks (Davison and Hinkley
+/// 1997, Bootstrap Methods and their Application, section 3.8), and by Student's t with 2 (turns - 1) degrees
+/// of freedom over the normal distribution's 1.96, since few turns do not tell their spread well.
 LIMN_API Ratio ratioOfMedians(const Samples& numerator, const Samples& denominator);
 
 }  // namespace limn::bench

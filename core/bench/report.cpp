@@ -49,11 +49,11 @@ Json passes(const Json& stats) {
   return list;
 }
 
-/// How many times as long the baseline's frame takes as the row's, with its interval where there are samples.
+/// How many times as long the baseline's frame takes as the row's, with its interval and turns.
 Json timesAsFast(const Row* baseline, const Row& row) {
   if (baseline == nullptr || !isTimed(row)) return {};
   const Ratio ratio = frameRatio(*baseline, row);
-  return {{"value", ratio.value}, {"low", ratio.low}, {"high", ratio.high}};
+  return {{"value", ratio.value}, {"low", ratio.low}, {"high", ratio.high}, {"turns", ratio.turns}};
 }
 
 Json pictureJson(const std::string& file, EmbeddedPictures& pictures) {
@@ -69,16 +69,20 @@ Json rowJson(const Row& row, const std::vector<Window>& windows, EmbeddedPicture
   for (const char* key : {"key", "technique", "title", "parameters", "baseline", "error", "penumbra",
                           "misjudged", "spectrum", "failure"})
     json[key] = known(line, key);
-  if (row.what.environmentLights > 0) json["environment_lights"] = row.what.environmentLights;
+  if (const std::string lights = describeEnvironmentLights(row.what); !lights.empty()) {
+    json["environment_lights"] = row.what.environmentLights;
+    json["environment_settings"] = lights.substr(lights.find(' ') + 1);  // behind the threshold
+  }
   if (line.contains("stats")) {
     const Json& stats = line["stats"];
     for (const char* key : {"frame_ms", "split_ms", "memory_bytes", "lights", "quality_parameters", "timer"})
       json[key] = known(stats, key);
     if (!row.cost.frameMs.samples.empty())
       json["frame_ms"]["p99"] = render::quantile(row.cost.frameMs.samples, 0.99);
+    json["all_parameters"] = known(stats, "parameters");
     json["passes"] = passes(stats);
     if (stats.contains("x_bound"))
-      for (const char* key : {"value", "low", "high"}) json["x_bound"][key] = stats["x_bound"][key];
+      for (const char* key : {"value", "low", "high", "turns"}) json["x_bound"][key] = stats["x_bound"][key];
   }
   if (const std::optional<ReferenceTime> time = referenceTime(row))
     json["reference_ms"] = {{"value", time->ms}, {"at_least", time->atLeast}};
@@ -135,21 +139,23 @@ Json tableJson(const Table& table, EmbeddedPictures& pictures) {
                {"time_size", {own ? c.timeWidth : c.width, own ? c.timeHeight : c.height}},
                {"dynamic", c.dynamic},
                {"frames", c.frames},
-               {"turns", c.turns},
                {"warmup", c.warmup},
                {"renderer", table.rows.front().cost.renderer}};
   std::set<std::string> machines, drivers;
+  std::set<int> turns;
   bool software = false;
   std::string reference;
   for (const Row& row : table.rows) {
     if (!row.cost.machine.empty()) machines.insert(row.cost.machine);
     if (!row.cost.driver.empty()) drivers.insert(row.cost.driver);
+    if (isTimed(row)) turns.insert(row.cost.frameMs.turns);
     software = software || row.cost.software;
     if (reference.empty()) reference = referencePicture(row);
   }
   json["software"] = software;
   json["machines"] = machines;
   json["drivers"] = drivers;
+  json["turns"] = turns;
   const std::vector<Window> windows = chooseWindows(table, reference, pictures);
   json["windows"] = Json::array();
   for (const Window& w : windows) json["windows"].push_back({w.x, w.y, w.width, w.height});

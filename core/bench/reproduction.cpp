@@ -22,8 +22,8 @@ namespace {
 constexpr const char* kReading =
     "Each line compares a first and a second row of results. `thesis` and `measured` say how many times\n"
     "as long the first one's frame takes (or how many times as much memory), so that above 1 the second\n"
-    "is better. `measured` stands at the suite's settings, with its 95 % interval; `n` is the number of\n"
-    "turns in which both were timed. With n = 1 a ratio is refused, since nothing says how far it\n"
+    "is better. `measured` stands at the suite's settings, with its 95 % interval; `n` is the smaller\n"
+    "number of turns of the two. With n = 1 a ratio is refused, since nothing says how far it\n"
     "scatters. `RMSE` is that of both, for visibility in the penumbra; below the noise of a reference it\n"
     "is a bound. `differ in` lists every setting that both sides have and that differs, whether it takes\n"
     "effect or not. `at equal error` puts in the first one's place the quickest row of its technique, of\n"
@@ -37,7 +37,7 @@ bool contains(const std::string& name, std::string_view part) {
   return name.find(part) != std::string::npos;
 }
 
-/// A row with the rows that answer the same question on the same renderer and machine.
+/// A row with the rows that answer the same question on the same renderer, machine and driver.
 struct Found {
   const Row* row = nullptr;
   const Table* table = nullptr;
@@ -59,10 +59,10 @@ std::vector<Found> find(std::span<const Table> tables, const std::vector<std::st
   return found;
 }
 
-/// As in tables, a row of an earlier version, which does not say its machine, stands with any.
+/// As in tables, a row of an earlier version, which does not say its machine or driver, stands with any.
 bool sameMachine(const Row& a, const Row& b) {
-  return a.cost.renderer == b.cost.renderer &&
-         (a.cost.machine == b.cost.machine || a.cost.machine.empty() || b.cost.machine.empty());
+  return a.cost.renderer == b.cost.renderer && mayBeEqual(a.cost.machine, b.cost.machine) &&
+         mayBeEqual(a.cost.driver, b.cost.driver);
 }
 
 struct Sides {
@@ -79,8 +79,6 @@ std::optional<Sides> findSides(const Claim& claim, std::span<const Table> tables
   return std::nullopt;
 }
 
-constexpr int kFewestTurns = 2;
-
 /// Two rows side by side: how they are shown, and what they say of the thesis's ratio.
 struct Pair {
   std::string text;
@@ -93,10 +91,9 @@ struct Pair {
 
 Pair byFrames(double thesis, const Row& slow, const Row& fast) {
   if (!isTimed(slow) || !isTimed(fast) || !(fast.cost.frameMs.median > 0)) return {.text = "not timed"};
-  const int turns = pairedTurns(slow, fast);
-  const std::string n = fmt::format("{}", turns);
-  if (turns < kFewestTurns) return {.text = fmt::format("refused: n = {}", turns), .turns = n};
   const Ratio ratio = frameRatio(slow, fast);
+  const std::string n = fmt::format("{}", ratio.turns);
+  if (ratio.turns < kFewestTurns) return {.text = fmt::format("refused: n = {}", n), .turns = n};
   return {ratioText(ratio), n, judged(thesis, ratio)};
 }
 

@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
+#include <set>
 #include <utility>
 
 #include "core/base/error.h"
@@ -58,6 +61,24 @@ std::vector<Row> readRows(const std::filesystem::path& path) {
     row.line = ++lines;
     remember(rows, position, std::move(row));
   });
+  return rows;
+}
+
+std::vector<Row> readRows(std::span<const std::filesystem::path> paths) {
+  std::vector<Row> rows;
+  std::size_t lines = 0;
+  for (const std::filesystem::path& path : paths) {
+    std::vector<Row> later = readRows(path);
+    std::set<std::string> measuredAgain;
+    const std::size_t before = lines;
+    for (Row& row : later) {
+      row.line += before;
+      lines = std::max(lines, row.line);
+      if (row.failure.empty()) measuredAgain.insert(row.key);
+    }
+    std::erase_if(rows, [&](const Row& row) { return measuredAgain.contains(row.key); });
+    std::ranges::move(later, std::back_inserter(rows));
+  }
   return rows;
 }
 

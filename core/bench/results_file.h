@@ -17,6 +17,10 @@ namespace limn::bench {
 /// for a broken line elsewhere.
 LIMN_API std::vector<Row> readRows(const std::filesystem::path& path);
 
+/// Returns the rows of several files, of which later ones are newer: Row::line goes on from file to file. Of
+/// a key that several hold the last good row counts.
+LIMN_API std::vector<Row> readRows(std::span<const std::filesystem::path> paths);
+
 class LIMN_API ResultsFile {
  public:
   /// Opens or creates the file and reads its rows. A torn last line (the writer was interrupted) is cut off.

@@ -76,7 +76,7 @@ struct Row {
   std::string difference;  ///< the same for the difference image
   std::string
       failure;  ///< not empty: why there is no picture; error and cost are then void except for the renderer
-  std::size_t line = 0;  ///< of the file it was read from, where later ones are newer; 0: from none
+  std::size_t line = 0;  ///< of the files it was read from, where later ones are newer; 0: from none
 };
 
 /// Returns one line of JSON, without the line's end.

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/failure.h"
+#include "core/bench/private/comparison.h"
 #include "core/image/error_spectrum.h"
 #include "core/image/metric_table.h"
 #include "core/image/signature.h"
@@ -143,11 +144,6 @@ void restate(const Row& row, const Case& c, ResultsFile& results) {
   now.what.baseline = c.baseline;
   now.what.maxMaskedShare = c.maxMaskedShare;
   results.append(now);
-}
-
-/// What is unknown differs from nothing.
-bool mayBeEqual(const std::string& a, const std::string& b) {
-  return a == b || a.empty() || b.empty();
 }
 
 class Run {

@@ -57,7 +57,7 @@ bool supersedes(const Row& row, const Row& before) {
   if (!row.provenance.program.empty() && !staleness(before.provenance, row.provenance).empty())
     return row.line >= before.line;
   if (row.failure.empty() != before.failure.empty()) return row.failure.empty();
-  const auto effort = [](const FrameTime& time) { return std::pair(time.n, time.turns); };
+  const auto effort = [](const FrameTime& time) { return std::pair(time.turns >= kFewestTurns, time.n); };
   return effort(row.cost.frameMs) >= effort(before.cost.frameMs);
 }
 
@@ -67,6 +67,45 @@ std::string newestProgram(std::span<const Row> rows) {
     if (!row.provenance.program.empty() && (newest == nullptr || row.line >= newest->line)) newest = &row;
   return newest == nullptr ? std::string() : newest->provenance.program;
 }
+
+/// Where rows were measured; "" is not known.
+struct Place {
+  std::string machine, driver;
+};
+
+Place placeOf(const Row& row) {
+  return {row.cost.machine, row.cost.driver};
+}
+
+bool fits(const Place& a, const Place& b) {
+  return mayBeEqual(a.machine, b.machine) && mayBeEqual(a.driver, b.driver);
+}
+
+/// The places of one question in the order of their rows.
+class Places {
+ public:
+  void add(const Place& place) {
+    const auto known = std::ranges::find_if(places_, [&](const Place& other) { return fits(place, other); });
+    if (known == places_.end()) return places_.push_back(place);
+    if (known->machine.empty()) known->machine = place.machine;
+    if (known->driver.empty()) known->driver = place.driver;
+  }
+  /// The first that fits one that was added.
+  std::size_t find(const Place& place) const {
+    const auto known = std::ranges::find_if(places_, [&](const Place& other) { return fits(place, other); });
+    return static_cast<std::size_t>(known - places_.begin());
+  }
+  /// What tells the place from the others.
+  std::string text(std::size_t index) const {
+    const Place& place = places_[index];
+    const auto alike = std::ranges::count(places_, place.machine, &Place::machine);
+    std::string text = places_.size() > 1 && !place.machine.empty() ? ", " + place.machine : "";
+    return alike > 1 ? text + ", " + place.driver : text;
+  }
+
+ private:
+  std::vector<Place> places_;
+};
 
 std::string slug(const std::string& title, std::set<std::string>& used) {
   std::string name;
@@ -160,27 +199,22 @@ bool isOutdated(const Row& row, const Table& table) {
 }
 
 std::vector<Table> makeTables(std::span<const Row> rows) {
-  // The machines of each question in their order. Rows that do not say theirs (failures, rows of earlier
-  // versions) stand with the first.
-  std::map<std::string, std::vector<std::string>> machines;
-  for (const Row& row : rows) {
-    std::vector<std::string>& known = machines[tableKey(row)];
-    if (!row.cost.machine.empty() && std::ranges::find(known, row.cost.machine) == known.end())
-      known.push_back(row.cost.machine);
-  }
+  // Failures and rows of earlier versions do not say their place.
+  std::map<std::string, Places> places;
+  for (const Row& row : rows) places[tableKey(row)].add(placeOf(row));
   std::vector<Table> tables;
-  std::map<std::pair<std::string, std::string>, std::size_t> byKey;
+  std::map<std::pair<std::string, std::size_t>, std::size_t> byKey;
   std::map<std::pair<std::size_t, std::string>, std::size_t> settings;  // places in the rows of a table
   std::set<std::string> names;
   for (const Row& row : rows) {
     const std::string key = tableKey(row);
-    const std::vector<std::string>& known = machines[key];
-    const std::string machine = row.cost.machine.empty() && !known.empty() ? known.front() : row.cost.machine;
-    const auto [place, isNew] = byKey.emplace(std::pair(key, machine), tables.size());
-    if (isNew) tables.push_back({tableTitle(row) + (known.size() > 1 ? ", " + machine : ""), "", {}});
-    std::vector<Row>& kept = tables[place->second].rows;
+    const Places& known = places[key];
+    const std::size_t place = known.find(placeOf(row));
+    const auto [table, isNew] = byKey.emplace(std::pair(key, place), tables.size());
+    if (isNew) tables.push_back({tableTitle(row) + known.text(place), "", {}});
+    std::vector<Row>& kept = tables[table->second].rows;
     const auto [same, isFirst] =
-        settings.emplace(std::pair(place->second, settingKey(row.what)), kept.size());
+        settings.emplace(std::pair(table->second, settingKey(row.what)), kept.size());
     if (isFirst)
       kept.push_back(row);
     else if (supersedes(row, kept[same->second]))

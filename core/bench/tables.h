@@ -1,4 +1,4 @@
-// Makes tables of error and time: one per question, renderer, machine and mode, never mixed.
+// Makes tables of error and time: one per question, renderer, machine, driver and mode, never mixed.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,8 @@
 namespace limn::bench {
 
 /// Holds rows that may be compared: same scene, camera, light, term, time, size, mode (dynamic or static),
-/// renderer and machine, each setting once. Rows that do not say their machine stand with those of the
-/// question's first.
+/// renderer, machine and driver, each setting once. Rows that do not say their machine or driver stand with
+/// the question's first that fits.
 struct Table {
   std::string title;     ///< for people
   std::string fileName;  ///< of the CSV, unique among the tables of one makeTables
@@ -26,7 +26,7 @@ LIMN_API bool isOutdated(const Row& row, const Table& table);
 
 /// Returns the rows as tables, grouped by scene first; failed rows are kept and shown as failed. Of rows of
 /// one setting that were measured with several efforts, the newest program's stands there, and of these the
-/// good one of most frames.
+/// good one of several turns, or else of most frames. Row::line says which is newer.
 LIMN_API std::vector<Table> makeTables(std::span<const Row> rows);
 
 /// Returns errors, frame time (median, quartiles, number of frames) and memory. Rows on the Pareto front of

@@ -345,6 +345,7 @@ def sets_the_reference_beside(browser):
     rows = [json.loads(line) for line in results.read_text().splitlines()]
     for row in rows:
         row.update(time_size=[0, 0], term="direct")
+        row["stats"]["software"] = True  # only such frames have the reference's processor
         row.pop("penumbra")
         row["reference"]["seconds"] = 2e-3 * row["stats"]["frame_ms"]["median"]
         row["error"]["noise_floor"] = 3 * row["error"]["rmse"]
@@ -391,6 +392,41 @@ def keeps_machines_and_programs_apart(browser):
         marked = browser.evaluate("[...document.querySelectorAll('#subject-0 table tbody tr[data-key] th')].map(h => h.textContent)")
         check(len(marked) == POINTS and [name for name in marked if "†" in name] == ["Hard shadows †"], f"marked are {marked}")
         check("† measured with another version" in browser.evaluate("document.getElementById('results').textContent"), "the mark is not explained")
+
+
+def tells_lights_of_the_environment_apart(browser):
+    """The same settings with the environment's light added up and by ratio: a curve and a line of frames per second for each."""
+    rows = [json.loads(line) for line in results.read_text().splitlines()]
+    others = [json.loads(json.dumps(row)) for row in rows]
+    for combine, those in (("add", rows), ("ratio", others)):
+        for row in those:
+            row.update(key=row["key"] + combine, environment={"map": "sky", "lights": 0.015, "resolution": 48, "shape": "squares",
+                                                              "reflection": "area", "combine": combine})
+    with reported([*rows, *others]):
+        browser.open(page)
+        names = browser.evaluate("[...document.querySelectorAll('.legend li')].map(l => l.textContent)")
+        check(len(names) == 6 and len([name for name in names if name.endswith("ratio")]) == 3, f"the curves are {names}")
+        lines = browser.evaluate("""[...document.querySelectorAll('#subject-0 table')]
+            .find(t => t.caption.textContent.startsWith('Frames per second')).tBodies[0].rows.length""")
+        check(lines == 2 * POINTS, f"{lines} lines of frames per second")
+
+
+def draws_defaults_in_their_place(browser):
+    """A curve runs from one value to the next, also where a row keeps the parameter's default."""
+    row = [json.loads(line) for line in results.read_text().splitlines()][0]
+    rows = []
+    for i, size in enumerate((512, 2048, 1024, 4096)):  # the default is 1024 here, and 2048 comes before it
+        rows.append(json.loads(json.dumps(row)))
+        rows[i].update(key=f"size{size}", parameters={} if size == 1024 else {"hard_shadow_map.shadow_map_size": str(size)})
+        rows[i]["stats"]["parameters"]["hard_shadow_map.shadow_map_size"] = str(size)
+        rows[i]["stats"]["quality_parameters"] = ["hard_shadow_map.shadow_map_size"]
+        rows[i]["stats"]["frame_ms"].update(median=size, q1=size, q3=size)
+        rows[i]["stats"]["frame_samples_ms"] = [size, size]
+    with reported(rows):
+        browser.open(page)
+        path = browser.evaluate("document.querySelector('svg.plot path.curve').getAttribute('d')")
+        across = [float(point.split(",")[0]) for point in path.replace("M", "L").split("L")[1:]]
+        check(len(across) == 4 and across == sorted(across), f"the curve is {path}")
 
 
 def withstands_foreign_rows(browser):
@@ -526,7 +562,8 @@ bench()
 with Browser(options.chromium) as browser:
     for step in (shows_points_and_pictures, reacts, answers_for_a_budget, enlarges_and_flips, loads_pictures_on_demand,
                  tells_close_points_apart, is_painted, is_accessible, sets_the_reference_beside,
-                 keeps_machines_and_programs_apart, shows_hostile_names_literally, is_shut_by_its_policy, withstands_foreign_rows):
+                 keeps_machines_and_programs_apart, tells_lights_of_the_environment_apart, draws_defaults_in_their_place,
+                 shows_hostile_names_literally, is_shut_by_its_policy, withstands_foreign_rows):
         step(browser)
         check(not browser.problems, f"{step.__name__}: {browser.problems}")
 print("the report page shows and does what it should")

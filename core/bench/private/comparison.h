@@ -24,6 +24,12 @@ inline bool isTimed(const Row& row) {
   return row.failure.empty() && row.cost.frameMs.n > 0;
 }
 
+/// Returns whether two texts are the same as far as they are known: rows do not always say where they were
+/// measured.
+inline bool mayBeEqual(const std::string& a, const std::string& b) {
+  return a == b || a.empty() || b.empty();
+}
+
 /// Returns the milliseconds of maps, filters and the technique's passes.
 LIMN_API double shadowMs(const Row& row);
 
@@ -42,17 +48,19 @@ LIMN_API Ratio frameRatio(const Row& slow, const Row& fast);
 /// Returns how many times as long the technique's own passes take as those of its bound.
 LIMN_API Ratio xBound(const BoundTime& time);
 
-/// Returns the number of turns in which both rows were timed.
-LIMN_API int pairedTurns(const Row& a, const Row& b);
+/// Below so many turns nothing says how far a ratio scatters.
+inline constexpr int kFewestTurns = 2;
 
-/// Returns how many times as long the first row's maps, filters and technique's passes take; "-" where those
-/// of the other take no time.
+/// Returns how many times as long the first row's maps, filters and technique's passes take, which are timed
+/// in one turn; "-" where those of the other take no time.
 LIMN_API std::string shadowRatio(const Row& slow, const Row& fast);
 
 /// Returns a ratio to the digits that tables show.
 LIMN_API std::string ratioText(double ratio);
 /// Returns the same with the interval: "2.10 (1.80 to 2.40)"; `digits` follow each point.
 LIMN_API std::string ratioText(const Ratio& ratio, int digits = 2);
+/// Returns ratioText() with the interval; of fewer than kFewestTurns "2.10 (n = 1)".
+LIMN_API std::string measuredText(const Ratio& ratio);
 
 /// Returns the quickest timed row of the technique whose boundedError() is not above `limit` (in the
 /// penumbra, where that is known); null if there is none.
@@ -68,12 +76,13 @@ struct ReferenceTime {
 /// Returns T (sigma / e)^2 for a reference that took T with the noise sigma, since the noise of independent
 /// samples falls that way. e^2 is the row's squared RMSE without sigma^2, or (sigma / 2)^2 where less
 /// remains: the smallest meaningful difference of two numbers that are known to a few percent. Returns
-/// nullopt where time or noise is unknown, and where errors and times belong to pictures of different sizes.
+/// nullopt where time or noise is unknown, where the row's frames are a GPU's, and where errors and times
+/// belong to pictures of different sizes.
 LIMN_API std::optional<ReferenceTime> referenceTime(const Row& row);
 
 /// Returns a name of the row for people: its title, or settingsName().
 LIMN_API std::string rowName(const Row& row);
-/// Returns the technique with the parameters that the suite sets.
+/// Returns the technique with the parameters and the environment's lights that the suite sets.
 LIMN_API std::string settingsName(const Row& row);
 
 /// Returns Markdown with a line for each timed row except those of the baseline's technique: frame time and

@@ -79,7 +79,7 @@ Row distinctRow() {
   row.what.timeHeight = 48;
   row.penumbra->rmse = 0.5;
   row.penumbra->structured = 0.0625;
-  row.cost.bound = BoundTime{.own = {3, 3, 3}, .bound = {2, 2, 2}, .turns = 1};
+  row.cost.bound = BoundTime{.own = {3, 3, 3}, .bound = {2, 2, 2}, .turns = 3};
   return row;
 }
 
@@ -260,6 +260,17 @@ TEST(BenchColumns, XBoundIsTheRatioOfMediansWithItsInterval) {
   EXPECT_DOUBLE_EQ(xBound({.own = time.bound, .bound = time.bound, .turns = 2}).value, 1);
 }
 
+TEST(BenchColumns, XBoundOfOneTurnHasNoInterval) {
+  Row row = distinctRow();
+  row.cost.bound->turns = 1;
+  const Table table = tableOf({row});
+  EXPECT_EQ(readMarkdown(toMarkdown(table)).at(0).at("x bound"), "1.50 (n = 1)");
+  const NamedCells cells = readCsv(toCsv(table)).at(0);
+  EXPECT_EQ(cells.at("x_bound"), "1.5");
+  EXPECT_EQ(cells.at("x_bound_low"), "");
+  EXPECT_EQ(cells.at("x_bound_high"), "");
+}
+
 TEST(BenchColumns, XBoundIsOnThePageWhereARowHasIt) {
   const Row rows[] = {exampleRow(exampleCase()), distinctRow()};
   const nlohmann::json page = nlohmann::json::parse(reportData(rows, ".").json);
@@ -269,7 +280,7 @@ TEST(BenchColumns, XBoundIsOnThePageWhereARowHasIt) {
     for (const auto& row : table["rows"]) {
       if (!row.contains("x_bound")) continue;
       ++with;
-      EXPECT_EQ(row["x_bound"], (nlohmann::json{{"value", 1.5}, {"low", 1.5}, {"high", 1.5}}));
+      EXPECT_EQ(row["x_bound"], (nlohmann::json{{"value", 1.5}, {"low", 1.5}, {"high", 1.5}, {"turns", 3}}));
     }
   EXPECT_EQ(with, 1);
 }

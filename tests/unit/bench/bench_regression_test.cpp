@@ -56,6 +56,35 @@ TEST(RatioOfMedians, TurnsTellOfDriftThatFramesDoNotSee) {
   EXPECT_LT(insideUnaware, inside);
 }
 
+/// Two sides of equal true times on a machine that is 5 % quicker or slower from turn to turn, one frame a
+/// turn: the interval holds 1 as often as it says, less three standard deviations of the count.
+TEST(RatioOfMedians, FewTurnsWidenTheIntervalByStudentsT) {
+  std::mt19937 random(1);
+  std::lognormal_distribution<double> ms(0, 0.05);
+  constexpr int kTrials = 400;
+  for (const int turns : {2, 3}) {
+    const auto side = [&] {
+      std::vector<double> samples;
+      for (int turn = 0; turn < turns; ++turn) samples.push_back(ms(random));
+      return samples;
+    };
+    int inside = 0;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const std::vector<double> slow = side(), fast = side();
+      const Ratio ratio = ratioOfMedians({slow, turns}, {fast, turns});
+      EXPECT_EQ(ratio.turns, turns);
+      inside += ratio.low <= 1 && 1 <= ratio.high;
+    }
+    EXPECT_GE(inside, 0.95 * kTrials - 3 * std::sqrt(0.95 * 0.05 * kTrials)) << turns;
+  }
+}
+
+TEST(RatioOfMedians, TheFewerTurnsOfTwoSidesCount) {
+  const double three[] = {4, 5, 6}, one[] = {2};
+  EXPECT_EQ(ratioOfMedians({three, 3}, {one}).turns, 1);
+  EXPECT_EQ(ratioOfMedians({one, 5}, {three, 3}).turns, 1) << "no turn is without a sample";
+}
+
 TEST(RatioOfMedians, OneSampleHasNoInterval) {
   const double four[] = {4}, two[] = {2};
   const Ratio ratio = ratioOfMedians({four}, {two});

@@ -87,6 +87,32 @@ TEST_F(BenchReport, HoldsRowsPicturesAndWindows) {
   }
 }
 
+TEST_F(BenchReport, HoldsWhatWasMeasuredRatherThanAskedFor) {
+  std::vector<Row> rows = {row("pcss", 0.5f), row("vssm", 0.5f), row("savsm", 0.5f)};
+  for (Row& row : rows) row.what.turns = 5;
+  rows[0].what.baseline = true;
+  rows[0].cost.frameMs = {2, 2, 2, 5, {2, 2, 2, 2, 2}, 5};
+  rows[1].cost.frameMs = {1, 1, 1, 3, {1, 1, 1}, 3};
+  rows[2].failure = "lost";
+  const Json table = data(rows)["tables"][0];
+  EXPECT_EQ(table["turns"], (Json{3, 5}));
+  EXPECT_EQ(table["rows"][1]["times_as_fast"],
+            (Json{{"value", 2.0}, {"low", 2.0}, {"high", 2.0}, {"turns", 3}}));
+}
+
+TEST_F(BenchReport, SaysHowLightsStandForTheEnvironment) {
+  Row added = row("pcss", 0.5f);
+  added.what.environment = "sky";
+  added.what.environmentLights = 0.015;
+  Row other = added;
+  other.what.environmentCombine = "ratio";
+  const Json rows = data({added, other})["tables"][0]["rows"];
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0]["environment_settings"], "48 squares area");
+  EXPECT_EQ(rows[1]["environment_settings"], "48 squares area ratio");
+  EXPECT_NE(rows[0]["name"], rows[1]["name"]);
+}
+
 TEST_F(BenchReport, SoftwareAndHardwareHaveTablesOfTheirOwn) {
   std::vector<Row> rows = {row("pcss", 0.5f), row("pcss", 0.5f)};
   rows[1].cost.renderer = "GPU";

@@ -89,6 +89,14 @@ TEST(Reproduction, EachLineSaysItsMachine) {
   EXPECT_THAT(line({slow, fast}), EndsWith("| balls, 1280x720, llvmpipe, Any Processor, 2 threads |"));
 }
 
+TEST(Reproduction, TimesOfTwoDriversAreNotCompared) {
+  Row slow = row("pcss", 30, "samples"), fast = row("vssm", 2);
+  fast.cost.driver = "GL 2";
+  EXPECT_THAT(line({slow, fast}), HasSubstr("| 15.00 (")) << "an earlier version did not record its driver";
+  slow.cost.driver = "GL 1";
+  EXPECT_THAT(line({slow, fast}), HasSubstr("| not measured |"));
+}
+
 TEST(Reproduction, MissingAndFailedRowsAreNotMeasured) {
   Row failed = row("vssm", 2);
   failed.failure = "lost";
@@ -231,9 +239,11 @@ TEST(Reproduction, EverySharedSettingThatDiffersIsNamed) {
   second.what.height = 48;
   second.what.environment = "/somewhere/sky.hdr";
   second.cost.renderer = "other";
+  second.what.reference = {1024, 0.01, 2, 3};
   const std::string all = differingSettings(first, second);
   for (const char* part : {"light_size 0 / 2", "size 1280x720 / 64x48", "environment - / sky.hdr",
-                           "renderer llvmpipe / other", "shadow_map_size 512 / 1024"})
+                           "renderer llvmpipe / other", "shadow_map_size 512 / 1024", "spp 256 / 1024",
+                           "noise 0 / 0.01", "bounces 1 / 2", "interfaces 0 / 3"})
     EXPECT_THAT(all, HasSubstr(part));
   EXPECT_THAT(all, Not(HasSubstr("somewhere")));
 }

@@ -180,6 +180,31 @@ TEST_F(BenchResults, AFailureOfAnotherProgramReplacesAGoodRow) {
   EXPECT_EQ(readRows(path_)[0].failure, "");
 }
 
+/// Lines are of a file: without going on from one to the next a longer, older file would have the newer rows.
+TEST_F(BenchResults, RowsOfLaterFilesAreNewer) {
+  const fs::path older = folder_ / "older.jsonl", newer = folder_ / "newer.jsonl";
+  Row other = exampleRow(exampleCase("vssm")), row = exampleRow(exampleCase()), again = row;
+  row.provenance.program = "1";
+  row.what.frames = 20;  // another key
+  row.key = rowKey(row.what, "llvmpipe");
+  again.provenance.program = "2";
+  Row failed = other;
+  failed.failure = "lost";
+  for (const Row& written : {other, row}) ResultsFile(older).append(written);
+  for (const Row& written : {again, failed}) ResultsFile(newer).append(written);
+  const std::vector<fs::path> files = {older, newer};
+  const std::vector<Row> rows = readRows(files);
+  ASSERT_EQ(rows.size(), 4u);
+  std::vector<std::size_t> lines;
+  for (const Row& read : rows) lines.push_back(read.line);
+  EXPECT_EQ(lines, (std::vector<std::size_t>{1, 2, 3, 4}));
+  const std::vector<Table> tables = makeTables(rows);
+  ASSERT_EQ(tables.size(), 1u);
+  EXPECT_EQ(tables[0].program, "2");
+  const std::vector<fs::path> twice = {older, older};
+  EXPECT_EQ(readRows(twice).size(), 2u) << "good rows take the place of those of their keys";
+}
+
 TEST_F(BenchResults, TablesAreWritten) {
   const std::vector<Row> rows = {exampleRow(exampleCase())};
   writeTables(rows, folder_);

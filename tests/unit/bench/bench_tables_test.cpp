@@ -54,6 +54,25 @@ TEST(BenchTables, NeverMixMachines) {
   EXPECT_TRUE(tables[1].title.ends_with(", b")) << tables[1].title;
 }
 
+TEST(BenchTables, NeverMixDrivers) {
+  std::vector<Row> rows;
+  for (const int samples : {4, 8, 16, 32}) rows.push_back(exampleRow(exampleCase("pcss", samples)));
+  for (Row& row : rows) row.cost.machine = "a";
+  rows[1].cost.driver = "GL 1";
+  rows[2].cost.driver = "GL 2";
+  rows[3].cost.driver = "GL 1";
+  std::vector<Table> tables = makeTables(rows);
+  ASSERT_EQ(tables.size(), 2u);
+  EXPECT_EQ(tables[0].rows.size(), 3u) << "a row that does not say its driver stands with the first";
+  EXPECT_EQ(tables[1].rows.size(), 1u);
+  EXPECT_TRUE(tables[0].title.ends_with(", a, GL 1")) << tables[0].title;
+  EXPECT_TRUE(tables[1].title.ends_with(", a, GL 2")) << tables[1].title;
+  rows[2].cost.machine = "b";
+  tables = makeTables(rows);
+  ASSERT_EQ(tables.size(), 2u);
+  EXPECT_TRUE(tables[1].title.ends_with(", b")) << "each machine has one driver: " << tables[1].title;
+}
+
 /// As where a suite asks for fewer frames than before, and in every folder of limn tune.
 TEST(BenchTables, ASettingStandsThereOnce) {
   const auto measured = [](int frames, const std::string& program = "", std::size_t line = 0) {
@@ -72,6 +91,10 @@ TEST(BenchTables, ASettingStandsThereOnce) {
   };
   EXPECT_EQ(shown({measured(20), measured(5)}).what.frames, 20);
   EXPECT_EQ(shown({measured(5), measured(20)}).what.frames, 20);
+  Row turns = measured(5);
+  turns.cost.frameMs.turns = 3;
+  EXPECT_EQ(shown({measured(20), turns}).what.frames, 5) << "one turn does not say how far times scatter";
+  EXPECT_EQ(shown({turns, measured(20)}).what.frames, 5);
   EXPECT_EQ(shown({measured(20, "1", 1), measured(5, "2", 2)}).what.frames, 5) << "the newer program's";
   EXPECT_EQ(shown({measured(20, "2", 3), measured(5, "1", 2)}).what.frames, 20) << "measured again";
   Row failed = measured(0, "1", 2);
@@ -220,6 +243,9 @@ TEST(BenchTables, ReferencesTakeLongerForLess) {
   row.error.noise_floor = 0;  // no noise, no Monte Carlo
   EXPECT_FALSE(referenceTime(row));
   row.error.noise_floor = 0.03;
+  row.cost.software = false;  // the reference is the processor's, the frames are not
+  EXPECT_FALSE(referenceTime(row));
+  row.cost.software = true;
   row.referenceSeconds.reset();  // of an earlier version
   EXPECT_FALSE(referenceTime(row));
 }
@@ -233,11 +259,36 @@ TEST(BenchTables, RowsAreComparedWithTheBaseline) {
   for (Row& row : rows) row.penumbra->structured = 0.5 * row.penumbra->rmse;
   rows[3].penumbra->structured = 0.01;
   rows[3].what.title = "VSSM";
-  const std::string text = comparisonMarkdown(rows);
-  EXPECT_NE(text.find("| VSSM | 8.00 (5.33 to 16.00) | 8.00 | pcss samples=64 | 4.00 (2.67 to 8.00) | 4.00 | "
-                      "none | - | - |"),
-            std::string::npos)
+  std::string text = comparisonMarkdown(rows);
+  EXPECT_NE(
+      text.find("| VSSM | 8.00 (n = 1) | 8.00 | pcss samples=64 | 4.00 (n = 1) | 4.00 | none | - | - |"),
+      std::string::npos)
       << text;
+  EXPECT_NE(text.find("n = 1: one turn, no interval | shadows, of one turn: maps,"), std::string::npos)
+      << text;
+  for (Row& row : rows) {  // five turns that do not scatter
+    row.cost.frameMs.turns = 5;
+    row.cost.frameMs.samples.assign(5, row.cost.frameMs.median);
+  }
+  rows[2].cost.frameMs = {4, 4, 4, 1, {4}};
+  text = comparisonMarkdown(rows);
+  EXPECT_NE(
+      text.find("| VSSM | 8.00 (8.00 to 8.00) | 8.00 | pcss samples=64 | 4.00 (n = 1) | 4.00 | none | - "
+                "| - |"),
+      std::string::npos)
+      << text;
+}
+
+/// The map's own light as far as its lights are seen, beside the sum of them.
+TEST(BenchTables, SettingsNameTheLightsOfTheEnvironment) {
+  Case c = exampleCase("pcss", 16);
+  c.environment = "sky";
+  c.environmentLights = 0.015;
+  std::vector<Row> rows = {exampleRow(c, 0.1, 8), exampleRow(c, 0.2, 2), exampleRow(exampleCase("vssm"))};
+  rows[1].what.environmentCombine = "ratio";
+  EXPECT_EQ(settingsName(rows[0]), "pcss samples=16, environment lights 0.015 48 squares area");
+  EXPECT_EQ(settingsName(rows[1]), "pcss samples=16, environment lights 0.015 48 squares area ratio");
+  EXPECT_EQ(settingsName(rows[2]), "vssm samples=16");
 }
 
 TEST(BenchTables, SettingsOfOneTechniqueAreComparedWithTheBaselineAmongThem) {
@@ -246,7 +297,7 @@ TEST(BenchTables, SettingsOfOneTechniqueAreComparedWithTheBaselineAmongThem) {
   rows[0].what.baseline = true;
   const std::string text = comparisonMarkdown(rows);
   EXPECT_NE(text.find("| settings | frame | shadows |\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("| pcss samples=16 | 4.00 (3.20 to 5.33) | 4.00 |\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("| pcss samples=16 | 4.00 (n = 1) | 4.00 |\n"), std::string::npos) << text;
   EXPECT_EQ(text.find("samples=1024 | "), std::string::npos) << text;
 }
 
