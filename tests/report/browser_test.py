@@ -400,8 +400,11 @@ def tells_lights_of_the_environment_apart(browser):
     others = [json.loads(json.dumps(row)) for row in rows]
     for combine, those in (("add", rows), ("ratio", others)):
         for row in those:
-            row.update(key=row["key"] + combine, environment={"map": "sky", "lights": 0.015, "resolution": 48, "shape": "squares",
-                                                              "reflection": "area", "combine": combine})
+            # Of one light alone, they would be another question.
+            row.update(key=row["key"] + combine, light="", term="direct",
+                       environment={"map": "sky", "lights": 0.015, "resolution": 48, "shape": "squares", "reflection": "area",
+                                    "combine": combine})
+            row.pop("penumbra", None)
     with reported([*rows, *others]):
         browser.open(page)
         names = browser.evaluate("[...document.querySelectorAll('.legend li')].map(l => l.textContent)")
