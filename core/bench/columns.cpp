@@ -193,7 +193,7 @@ bool knowsBound(const Row& row) {
   return row.cost.bound.has_value();
 }
 
-/// A column of CSV with the ratio of at least so many turns or one end of its interval.
+/// A column of CSV with the ratio or one end of its interval, of rows with `turns` turns or more.
 Column boundColumn(const char* csv, const char* help, double Ratio::*part, int turns) {
   return {csv, "", help, cell([part, turns](const Row& r) {
             const Ratio ratio = knowsBound(r) ? xBound(*r.cost.bound) : Ratio{.turns = 0};

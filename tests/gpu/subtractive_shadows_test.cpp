@@ -1,15 +1,12 @@
-// Subtractive shadows: what holds to the bit, what lies between nothing and the unshadowed light, what blocks
-// of pixels cost, and levels of detail.
+// Subtractive shadows: what holds to the bit, what lies between nothing and the unshadowed light, and what
+// blocks of pixels cost.
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/scene/material_model.h"
 #include "core/shading_maps/shading_maps.h"
-#include "glsl/materials/material_model.glsl"
-#include "tests/gpu/environment_harness.h"
-#include "tests/support/test_scenes.h"
+#include "tests/gpu/subtractive_harness.h"
 
 namespace limn {
 namespace {
@@ -17,98 +14,6 @@ namespace {
 using glm::vec3;
 
 constexpr const char* kCombines[] = {"subtract", "ratio", "ratio_split", "add"};
-
-class SubtractiveShadowsTest : public EnvironmentTest {
- protected:
-  using Values = std::vector<std::pair<std::string, std::string>>;
-
-  /// With the unshadowed light that core has, unless the values say otherwise.
-  static render::TechniqueUse shadows(const Values& values) {
-    Values all{{"unshadowed", "prefiltered"}};
-    all.insert(all.end(), values.begin(), values.end());
-    return technique("subtractive_shadows", all);
-  }
-  Image direct(render::Renderer& renderer, int width, int height,
-               std::vector<render::TechniqueUse> techniques = {}) {
-    return picture(renderer, settings(width, height, Term::direct, std::move(techniques)));
-  }
-
-  /// The same floor in the middle of a closed room of 20 m, whose walls are seen as well.
-  static scene::Scene room() {
-    scene::Scene scene = floor();
-    const auto wall = [&](const glm::quat& turn, const vec3& middle) {
-      scene::Node node;
-      node.mesh = 0;
-      node.transform.rotation = turn;
-      node.transform.translation = middle;
-      scene.nodes.push_back(node);
-    };
-    constexpr float right = 0.5f * glsl::pi;
-    wall(glm::angleAxis(2 * right, vec3(1, 0, 0)), {0, 20, 0});
-    wall(glm::angleAxis(right, vec3(1, 0, 0)), {0, 10, -10});
-    wall(glm::angleAxis(-right, vec3(1, 0, 0)), {0, 10, 10});
-    wall(glm::angleAxis(right, vec3(0, 0, 1)), {10, 10, 0});
-    wall(glm::angleAxis(-right, vec3(0, 0, 1)), {-10, 10, 0});
-    return scene;
-  }
-
-  /// Gives the half of the floor on the side of -x another material.
-  static scene::Scene halved(scene::Scene scene, const scene::Material& other) {
-    scene::Primitive near = scene.meshes[0].primitives[0], far = near;
-    near.positions[1].x = near.positions[2].x = far.positions[0].x = far.positions[3].x = 0;
-    for (scene::Primitive* half : {&near, &far}) {
-      half->bounds = {};
-      for (const vec3& v : half->positions) half->bounds.add(v);
-    }
-    near.material = static_cast<int>(scene.materials.size());
-    scene.materials.push_back(other);
-    scene.nodes[0].mesh = static_cast<int>(scene.meshes.size());
-    scene.meshes.push_back({"halves of the floor", {near, far}, {}});
-    return scene;
-  }
-  static scene::Material lambertian(const glm::vec4& colour) {
-    scene::Material material;
-    material.baseColour = colour;
-    material.metallic = material.specularFactor = 0;
-    return material;
-  }
-  /// A grey base under a perfect mirror, which adds all of the light to it.
-  static scene::Material mirrored() {
-    glsl::MaterialModel model{};
-    model.kind = glsl::model_coated;
-    model.eta = vec3(1e-3f);
-    model.k = vec3(1000);
-    model.kd = vec3(0.5f);
-    scene::Material material;
-    scene::setModel(material, model);
-    return material;
-  }
-
-  /// A metal ball of radius 1 around the origin instead of the floor, seen from above.
-  static scene::Scene ball(const glm::vec4& colour, float roughness) {
-    scene::Scene scene = floor();
-    scene.materials[0] = metal(colour, roughness);
-    scene.meshes[0].primitives[0] = test::spherePrimitive(1, 0);
-    return scene;
-  }
-  static scene::Material metal(const glm::vec4& colour, float roughness) {
-    scene::Material material;
-    material.baseColour = colour;
-    material.metallic = 1;
-    material.roughness = roughness;
-    return material;
-  }
-
-  static double largestDifference(const Image& a, const Image& b) {
-    double largest = 0;
-    for (size_t i = 0; i < a.data().size(); ++i)
-      largest = std::max(largest, static_cast<double>(std::abs(a.data()[i] - b.data()[i])));
-    return largest;
-  }
-  static double largest(const Image& image) {
-    return static_cast<double>(*std::ranges::max_element(image.data()));
-  }
-};
 
 TEST_F(SubtractiveShadowsTest, WhereNothingIsHiddenTheLightIsTheUnshadowedOneToTheBit) {
   const scene::Scene scene = lit(floor(), sky(), 0);
@@ -397,148 +302,6 @@ TEST_F(SubtractiveShadowsTest, RegionsStandForAllOfTheLight) {
   for (const char* combine : {"add", "ratio_split"})
     EXPECT_NEAR(mean(direct(renderer, 96, 72, {combined(combine)})), mean(truth), 0.05 * mean(truth))
         << combine;
-}
-
-/// A budget that no frame keeps leads from the best level to the least one.
-TEST_F(SubtractiveShadowsTest, LevelsBeginAtTheBestAndEndAtTheLeast) {
-  const scene::Scene scene = lit(coarse("balls"), sky(), 0);
-  render::Renderer renderer(device(), scene);
-  const auto with = [&](const char* lights, const char* time) {
-    return settings(64, 48, Term::direct,
-                    {shadows({{"shadow_map_size", "64"},
-                              {"combine", "ratio"},
-                              {"block", "32"},
-                              {"lights", lights},
-                              {"frame_time", time}})});
-  };
-  const Image best = picture(renderer, with("40", "0")), least = picture(renderer, with("8", "0"));
-  renderer.configure(with("40", "0.001"));
-  renderer.render();
-  EXPECT_LT(rmse(renderer.read(), best), 1e-6);
-  for (int frame = 1; frame < 60; ++frame) renderer.render();
-  EXPECT_LT(rmse(renderer.read(), least), 1e-6);
-}
-
-/// On the way from one level to the next, lights or blocks, each of eight frames changes the picture by an
-/// eighth of what the level changes, whichever pixels tell the lights apart, and whichever batch they are in.
-/// Light that is subtracted changes by an eighth before negative light is cut off, and what coats see changes
-/// with the width of their mirrors besides.
-TEST_F(SubtractiveShadowsTest, NoFrameChangesMoreThanItsShareOfALevel) {
-  constexpr int kFramesOfLevel = 8;
-  constexpr std::pair<const char*, const char*> kLevels[] = {
-      {"14", "2"}, {"9", "2"}, {"8", "2"}, {"8", "4"}, {"8", "8"}};
-  const auto fading = [&](const std::string& name, const Values& common, double clamped = 1) {
-    const scene::Scene scene = lit(asset(name), sky(), 0);
-    render::Renderer renderer(device(), scene);
-    const auto with = [&](const std::pair<const char*, const char*>& level, const char* time) {
-      Values values{
-          {"shadow_map_size", "128"}, {"lights", level.first}, {"block", level.second}, {"frame_time", time}};
-      values.insert(values.end(), common.begin(), common.end());
-      return settings(48, 36, Term::direct, {shadows(values)});
-    };
-    std::vector<Image> levels;
-    for (const auto& level : kLevels) levels.push_back(picture(renderer, with(level, "0")));
-    const double rounding = 5e-5 * largest(levels.front());
-    size_t level = 0;
-    double most = 0;
-    renderer.configure(with(kLevels[0], "0.001"));
-    Image before = levels.front();
-    for (int frame = 0; frame < 100 && level + 1 < levels.size(); ++frame) {
-      renderer.render();
-      Image now = renderer.read();
-      const double whole = largestDifference(levels[level], levels[level + 1]);
-      EXPECT_LT(largestDifference(now, before), clamped * whole / kFramesOfLevel + rounding)
-          << name << " from level " << level << " at frame " << frame;
-      most = std::max(most, largestDifference(now, before) / whole);
-      if (largestDifference(now, levels[level + 1]) < rounding) ++level;
-      before = std::move(now);
-    }
-    EXPECT_EQ(level + 1, levels.size()) << name;
-    return std::to_string(most);
-  };
-  RecordProperty("subtract", fading("balls", {{"combine", "subtract"}}, 2));
-  RecordProperty("ratios, in batches", fading("balls", {{"combine", "ratio_split"}, {"memory", "1"}}));
-  RecordProperty("coats", fading("fresnel_spheres", {{"combine", "ratio_split"}}, 1.2));
-}
-
-/// Light comes from the same directions wherever the camera is: as it moves by a pixel a frame, the shadows
-/// of 8 lights lie where they were, and those of blocks nearly so.
-TEST_F(SubtractiveShadowsTest, ShadowsStandStillWhereTheCameraMoves) {
-  constexpr int kWidth = 64, kHeight = 48;
-  scene::Scene scene = lit(floor(), sky(), 0);
-  scene::Node slab;  // above the camera
-  slab.mesh = 0;
-  slab.transform.translation = {0.5f, 5, 0.5f};
-  slab.transform.scale = vec3(0.02f);
-  scene.nodes.push_back(slab);
-  render::Renderer renderer(device(), scene);
-  const auto change = [&](const char* block) {
-    renderer.configure(
-        settings(kWidth, kHeight, Term::direct, {shadows({{"lights", "8"}, {"block", block}})}));
-    scene::CameraPose camera = scene::evaluate(scene, 0).cameras.at(0);
-    const float pixel = 2 * 4 * std::tan(0.5f * camera.yfov) / static_cast<float>(kHeight);
-    Image before;
-    double squares = 0, light = 0;
-    for (int frame = 0; frame <= 4; ++frame) {
-      renderer.setCamera(camera);
-      renderer.render();
-      const Image now = renderer.read();
-      for (int y = 0; frame > 0 && y < kHeight; ++y)
-        for (int x = 0; x + 1 < kWidth; ++x) {
-          const double difference = static_cast<double>(now.at(x, y, 1) - before.at(x + 1, y, 1));
-          squares += difference * difference;
-          light += static_cast<double>(now.at(x, y, 1) * now.at(x, y, 1));
-        }
-      before = now;
-      camera.worldToView[3].x -= pixel;
-    }
-    RecordProperty(block, std::to_string(std::sqrt(squares / light)));
-    return std::sqrt(squares / light);
-  };
-  EXPECT_LT(change("1"), 0.005);
-  EXPECT_LT(change("4"), 0.05);
-}
-
-/// The same as the camera rolls by quarters of a turn, which leave every pixel what it sees: a satin ball on
-/// the floor, with highlights and a shadow.
-TEST_F(SubtractiveShadowsTest, ShadowsStandStillWhereTheCameraTurns) {
-  constexpr int kSide = 64;
-  scene::Scene scene = lit(floor(), sky(), 0);
-  scene.materials.push_back(metal(glm::vec4(1, 0.8f, 0.5f, 1), 0.3f));
-  scene.meshes.push_back({"ball", {test::spherePrimitive(0.6f, 1)}, {}});
-  scene::Node ball;
-  ball.mesh = 1;
-  ball.transform.translation = {0.2f, 0.6f, -0.1f};
-  scene.nodes.push_back(ball);
-  render::Renderer renderer(device(), scene);
-  const auto change = [&](const char* block) {
-    renderer.configure(settings(kSide, kSide, Term::direct, {shadows({{"lights", "8"}, {"block", block}})}));
-    scene::CameraPose camera = scene::evaluate(scene, 0).cameras.at(0);
-    glm::mat4 quarter(1);
-    quarter[0] = {0, 1, 0, 0};
-    quarter[1] = {-1, 0, 0, 0};
-    Image before;
-    double squares = 0, light = 0, unturned = 0;
-    for (int frame = 0; frame <= 4; ++frame) {
-      renderer.setCamera(camera);
-      renderer.render();
-      const Image now = renderer.read();
-      for (int y = 0; frame > 0 && y < kSide; ++y)
-        for (int x = 0; x < kSide; ++x) {
-          const float turned = now.at(y, kSide - 1 - x, 1), own = before.at(x, y, 1);
-          squares += std::pow(double(turned) - own, 2);
-          unturned += std::pow(double(now.at(x, y, 1)) - own, 2);
-          light += double(own) * own;
-        }
-      before = now;
-      camera.worldToView = quarter * camera.worldToView;
-    }
-    RecordProperty(block, std::to_string(std::sqrt(squares / light)));
-    EXPECT_GT(std::sqrt(unturned / light), 0.1) << "the picture turns";
-    return std::sqrt(squares / light);
-  };
-  EXPECT_LT(change("1"), 0.005);
-  EXPECT_LT(change("4"), 0.05);
 }
 
 }  // namespace

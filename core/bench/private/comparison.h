@@ -48,7 +48,7 @@ LIMN_API Ratio frameRatio(const Row& slow, const Row& fast);
 /// Returns how many times as long the technique's own passes take as those of its bound.
 LIMN_API Ratio xBound(const BoundTime& time);
 
-/// Below so many turns nothing says how far a ratio scatters.
+/// Fewer turns say nothing of how far a ratio scatters.
 inline constexpr int kFewestTurns = 2;
 
 /// Returns how many times as long the first row's maps, filters and technique's passes take, which are timed
