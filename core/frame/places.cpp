@@ -114,7 +114,7 @@ Place* placeOf(Graph& graph, SlotHandle slot) {
 void findPlaces(Graph& graph, ProgramUse& use, std::vector<std::string>& problems) {
   const Pass& pass = graph.passes[use.pass];
   use.places.clear();
-  use.placesOf = use.program->id();
+  use.placesOf = use.program->serial();
   for (const gpu::ShaderResource& resource : use.program->resources()) {
     const auto found = std::ranges::find(pass.names, resource.name, &NamedResource::name);
     if (found == pass.names.end()) {
@@ -161,7 +161,7 @@ gpu::Program& PassContext::use(ProgramHandle handle) const {
   Graph& graph = *graph_.implementation_;
   gpu::Program& used = program(handle);
   ProgramUse& use = graph.programs[handle.index];
-  if (use.placesOf != used.id()) {
+  if (use.placesOf != used.serial()) {
     std::vector<std::string> problems;
     findPlaces(graph, use, problems);
     if (!problems.empty()) throw Error(joined(problems, "and"));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "core/base/error.h"
 
@@ -107,6 +108,8 @@ uint64_t Query::result() const {
 
 Program::Program(Device& device, GLuint program, std::string label)
     : Object(device, kProgramKind), label_(std::move(label)) {
+  static std::atomic<uint64_t> linked = 0;
+  serial_ = ++linked;
   id_ = program;
   count();
   setLabel(GL_PROGRAM, label_);

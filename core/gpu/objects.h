@@ -196,6 +196,9 @@ class LIMN_API Program : public Object {
   Program(Device& device, GLuint program, std::string label);
   void use() const;
   const std::string& label() const { return label_; }
+  /// Returns the number of this linking, which no other program of the process has. id() may be that of a
+  /// program that was deleted.
+  uint64_t serial() const { return serial_; }
   /// Returns the samplers, images and blocks that the linked program uses. The first call gives each a unit
   /// of its own, counted from 0 for each kind, in the order of their names.
   const std::vector<ShaderResource>& resources();
@@ -211,6 +214,7 @@ class LIMN_API Program : public Object {
  private:
   GLint location(const char* name);
   std::string label_;
+  uint64_t serial_ = 0;
   std::optional<std::vector<ShaderResource>> resources_;
   std::vector<std::pair<std::string, GLint>>
       locations_;  ///< those queried so far: a query may wait for the driver

@@ -127,7 +127,7 @@ struct ProgramUse {
   gpu::Program* program = nullptr;
 
   // After prepare().
-  GLuint placesOf = 0;  ///< the program object they were asked of: another one after shaders were reloaded
+  uint64_t placesOf = 0;  ///< serial of the program they were asked of: another after shaders were reloaded
   std::vector<Place> places;  ///< slots among them
   int dispatches = 0;         ///< in the last frame
   std::array<GLuint, 3> groups = {};
