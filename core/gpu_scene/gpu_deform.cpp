@@ -4,8 +4,6 @@
 #include <bit>
 #include <cstring>
 
-#include "core/gpu_scene/gpu_scene_data.h"
-
 namespace limn::scene {
 namespace {
 
@@ -66,52 +64,18 @@ void GpuDeform::addRest(const Primitive& primitive, Rest& rest, std::vector<uint
       const glm::vec4 w = primitive.weights[i];
       skin.push_back(uint32_t{j.x} | uint32_t{j.y} << 16);
       skin.push_back(uint32_t{j.z} | uint32_t{j.w} << 16);
-      for (int k = 0; k < 4; ++k) {
-        skin.push_back(std::bit_cast<uint32_t>(w[k]));
-        if (w[k] == 0) continue;
-        if (rest.jointBounds.size() <= j[k]) rest.jointBounds.resize(size_t{j[k]} + 1);
-        rest.jointBounds[j[k]].add(primitive.positions[i]);
-      }
+      for (int k = 0; k < 4; ++k) skin.push_back(std::bit_cast<uint32_t>(w[k]));
     }
   }
   rest.targets = static_cast<uint32_t>(primitive.morphTargets.size());
   rest.morph = static_cast<uint32_t>(morph.size());
   for (const MorphTarget& target : primitive.morphTargets) {
-    Bounds& bounds = rest.morphBounds.emplace_back();
-    bounds.add(glm::vec3(0));
-    for (const glm::vec3& d : target.positions) bounds.add(d);
     for (size_t i = 0; i < count; ++i) {
       append(morph, target.positions, i);
       append(morph, target.normals, i);
       append(morph, target.tangents, i);
     }
   }
-}
-
-Bounds GpuDeform::bounds(const Scene& scene, const Deformation& state) const {
-  const Primitive& primitive =
-      scene.meshes[static_cast<size_t>(state.mesh)].primitives[static_cast<size_t>(state.primitive)];
-  const Rest& rest = rest_.at({state.mesh, state.primitive});
-  glm::vec3 low(0), high(0);
-  for (size_t t = 0; t < std::min(rest.morphBounds.size(), state.morphWeights.size()); ++t) {
-    const glm::vec3 a = state.morphWeights[t] * rest.morphBounds[t].low;
-    const glm::vec3 b = state.morphWeights[t] * rest.morphBounds[t].high;
-    low += glm::min(a, b);
-    high += glm::max(a, b);
-  }
-  const auto morphed = [&](Bounds box) {
-    if (box.empty()) return box;
-    box.low += low;
-    box.high += high;
-    return box;
-  };
-  if (state.joints.empty()) return morphed(primitive.bounds);
-  // A skinned vertex lies in the convex hull of its images under the joints that move it.
-  Bounds result;
-  for (size_t j = 0; j < std::min(rest.jointBounds.size(), state.joints.size()); ++j) {
-    if (!rest.jointBounds[j].empty()) result.add(transformed(morphed(rest.jointBounds[j]), state.joints[j]));
-  }
-  return result;
 }
 
 bool GpuDeform::update(const Pose& pose, const GpuGeometry& geometry,

@@ -21,8 +21,6 @@ class GpuDeform {
   /// Collects the state of all deformed primitives, whose vertices are written to `targets` (parallel to
   /// Pose::deformed). Returns true if anything changed since the last call.
   bool update(const Pose& pose, const GpuGeometry& geometry, const std::vector<GeometryRange>& targets);
-  /// Returns the world bounds (object space if only morphed) of one deformation; conservative.
-  Bounds bounds(const Scene& scene, const Deformation& state) const;
 
   /// Declares the pass "deform", which writes the deformed ranges of `geometry`, and returns the new version.
   frame::BufferHandle addPass(frame::FrameGraph& graph, const GpuGeometry& streams,
@@ -37,8 +35,6 @@ class GpuDeform {
     uint32_t skin = ~0u;   ///< first word in skin_
     uint32_t morph = ~0u;  ///< first float in morph_
     uint32_t targets = 0;
-    std::vector<Bounds> jointBounds;  ///< of the rest vertices that each joint moves
-    std::vector<Bounds> morphBounds;  ///< of each target's position deltas
   };
   struct Job {
     uint32_t first_rest = 0;      ///< vertex

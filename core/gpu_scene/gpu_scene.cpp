@@ -32,14 +32,6 @@ gpu::VertexArray makeVertexArray(gpu::Device& device, bool colours) {
 
 }  // namespace
 
-Bounds transformed(const Bounds& box, const glm::mat4& matrix) {
-  if (box.empty()) return box;
-  const glm::vec3 centre(matrix * glm::vec4(box.centre(), 1.f)), half = 0.5f * (box.high - box.low);
-  const glm::vec3 extent = glm::abs(glm::vec3(matrix[0])) * half.x + glm::abs(glm::vec3(matrix[1])) * half.y +
-                           glm::abs(glm::vec3(matrix[2])) * half.z;
-  return {centre - extent, centre + extent};
-}
-
 GpuScene::Implementation::Implementation(gpu::Device& onDevice, const Scene& ofScene)
     : device(onDevice),
       scene(ofScene),
@@ -124,12 +116,12 @@ void GpuScene::Implementation::updateInstances(const Pose& pose) {
       state.primitive = geometry.primitiveIndex(drawn.mesh, drawn.primitive);
       state.material = primitive.material;
       local = primitive.bounds;
-    }
-    if (drawn.deformed != kNone) {
-      const auto d = static_cast<size_t>(drawn.deformed);
-      state.range = deformedRanges[d];
-      state.primitive = geometry.primitiveCount() + static_cast<uint32_t>(dynamic.size() + d);
-      local = deform.bounds(scene, pose.deformed[d]);
+      if (drawn.deformed != kNone) {
+        const auto d = static_cast<size_t>(drawn.deformed);
+        state.range = deformedRanges[d];
+        state.primitive = geometry.primitiveCount() + static_cast<uint32_t>(dynamic.size() + d);
+        local = deformedBounds(primitive, pose.deformed[d]);
+      }
     }
     const glm::mat3 linear(drawn.objectToWorld);
     const bool mirrors = glm::determinant(linear) < 0;

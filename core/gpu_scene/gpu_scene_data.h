@@ -110,7 +110,4 @@ struct GpuScene::Implementation {
   SceneHandles imported;
 };
 
-/// Returns the bounds of a transformed box.
-Bounds transformed(const Bounds& box, const glm::mat4& matrix);
-
 }  // namespace limn::scene

@@ -105,10 +105,10 @@ struct Image8 {
 /// Returns the image in an EXR (first part, all channels), HDR, PNG, JPEG or still WebP file. The result is
 /// linear: 8- and 16-bit colours are decoded from sRGB (alpha is not), float formats are not converted;
 /// one- and three-channel files get channels Y and R, G, B. An EXR is as large as its display window: what
-/// its pixels leave of that is 0, those beyond it are left out. Throws Error with one line naming the file if
-/// it is missing, truncated, not an image, or larger than the limits (checked before anything is allocated):
-/// at most kMaxReadValues values; above 256 MiB of them also at most 256 bytes for each byte of the file, so
-/// that a small file cannot fill the memory.
+/// its pixels leave of that is 0, those beyond it are left out. An HDR may be stored from any corner, row by
+/// row. Throws Error with one line naming the file if it is missing, truncated, not an image, or larger than
+/// the limits (checked before anything is allocated): at most kMaxReadValues values; above 256 MiB of them
+/// also at most 256 bytes for each byte of the file, so that a small file cannot fill the memory.
 LIMN_API Image readImage(const std::filesystem::path& path);
 
 /// Does the same from memory. `name` is used in messages and, by its extension, to choose the decoder;

@@ -4,6 +4,7 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <utility>
@@ -85,6 +86,10 @@ class Decoder {
     // Offsets of a PNG are those of a page that it is printed on.
     if (format_ == ImageFormat::exr) spec_.set_roi(spec_.roi_full());
     checkSize();
+    // Elsewhere it is a note beside the picture, which glTF ignores; here it is the order of what is stored.
+    if (format_ == ImageFormat::hdr) orientation_ = spec_.get_int_attribute("Orientation", 1);
+    if (orientation_ > 4)
+      fail("a size that begins with X (columns); one that begins with -Y or +Y is accepted");
   }
 
   /// Of the whole picture: an EXR may hold a part of it, or more than it.
@@ -117,6 +122,22 @@ class Decoder {
  private:
   void readStored(int channels, const OIIO::TypeDesc& type, void* target) {
     if (!input_->read_image(0, 0, 0, channels, type, target)) fail(input_->geterror());
+    turn(static_cast<std::byte*>(target), static_cast<std::size_t>(channels) * type.size());
+  }
+
+  /// Moves pixels from where the file has them to where they are seen, which OpenImageIO leaves to its
+  /// caller.
+  void turn(std::byte* pixels, std::size_t pixelBytes) const {
+    const bool fromBelow = orientation_ == 3 || orientation_ == 4;
+    const bool fromTheRight = orientation_ == 2 || orientation_ == 3;
+    const auto width = static_cast<std::size_t>(stored_.width()),
+               height = static_cast<std::size_t>(stored_.height());
+    const auto pixel = [&](std::size_t x, std::size_t y) { return pixels + (y * width + x) * pixelBytes; };
+    for (std::size_t y = 0; fromBelow && y < height / 2; ++y)
+      std::swap_ranges(pixel(0, y), pixel(width, y), pixel(0, height - 1 - y));
+    for (std::size_t y = 0; fromTheRight && y < height; ++y)
+      for (std::size_t x = 0; x < width / 2; ++x)
+        std::swap_ranges(pixel(x, y), pixel(x + 1, y), pixel(width - 1 - x, y));
   }
 
   [[noreturn]] void fail(const std::string& reason) const {
@@ -134,7 +155,8 @@ class Decoder {
   MemoryFile memory_;
   std::unique_ptr<OIIO::ImageInput> input_;
   OIIO::ImageSpec spec_;
-  OIIO::ROI stored_;  // the pixels that the file holds
+  OIIO::ROI stored_;     // the pixels that the file holds
+  int orientation_ = 1;  // of EXIF: the sides on which the first row and the first column are seen
 };
 
 std::vector<std::string> channelNames(const Decoder& decoder) {

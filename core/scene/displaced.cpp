@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -14,6 +15,9 @@
 
 namespace limn::scene {
 namespace {
+
+/// How far a triangle may lie from the map's first texel, in texels: their numbers are integers.
+constexpr double kMostPlace = 1 << 30;
 
 /// A corner of a piece of a triangle: weights of the triangle's vertices, and its place in the map in texels.
 struct Corner {
@@ -48,10 +52,12 @@ class Displacement {
     result_.emissiveParts = from.emissiveParts;
   }
 
-  /// Returns the number of cells that add() goes through; not finite where coordinates are not.
+  /// Returns the number of cells that add() goes through; infinite where texels have no numbers.
   double cells(std::size_t triangle) const {
     const auto [low, high] = lines(polygon(triangle));
-    return (high.x - low.x) * (high.y - low.y);
+    const bool numbered = glm::all(glm::greaterThan(low, glm::dvec2(-kMostPlace))) &&
+                          glm::all(glm::lessThan(high, glm::dvec2(kMostPlace)));
+    return numbered ? (high.x - low.x) * (high.y - low.y) : std::numeric_limits<double>::infinity();
   }
 
   void add(std::size_t triangle) {
@@ -140,9 +146,14 @@ Primitive displacedPrimitive(const Mesh& mesh, const Primitive& primitive, const
   const std::size_t triangles = primitive.indices.size() / 3;
   double cells = 0;
   for (std::size_t i = 0; i < triangles; ++i) cells += displacement.cells(i);
+  if (!std::isfinite(cells))
+    throw UsageError(
+        fmt::format("mesh '{}' has texture coordinates more than {:.3g} texels from its height map: it "
+                    "cannot be displaced",
+                    mesh.name, kMostPlace));
   // Two triangles a cell; those that edges cut have more, but lie in cells that are counted for each
   // triangle.
-  if (!(2 * cells <= static_cast<double>(left)))
+  if (2 * cells > static_cast<double>(left))
     throw UsageError(fmt::format("mesh '{}' has {:.3g} texels of its height map on it, too many to displace",
                                  mesh.name, cells));
   left -= static_cast<std::size_t>(2 * cells);

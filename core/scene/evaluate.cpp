@@ -17,16 +17,6 @@ std::size_t at(int index) {
   return static_cast<std::size_t>(index);
 }
 
-/// The box of a transformed box (Arvo 1990, "Transforming Axis-Aligned Bounding Boxes").
-Bounds transformed(const glm::mat4& m, const Bounds& box) {
-  if (box.empty()) return {};
-  const glm::vec3 centre(m * glm::vec4(0.5f * box.low + 0.5f * box.high, 1));
-  const glm::vec3 half = 0.5f * box.high - 0.5f * box.low;
-  const glm::vec3 extent = glm::abs(glm::vec3(m[0])) * half.x + glm::abs(glm::vec3(m[1])) * half.y +
-                           glm::abs(glm::vec3(m[2])) * half.z;
-  return {centre - extent, centre + extent};
-}
-
 Bounds morphReach(const Primitive& primitive, const std::vector<float>& weights) {
   Bounds reach{glm::vec3(0), glm::vec3(0)};
   for (std::size_t t = 0; t < std::min(weights.size(), primitive.morphTargets.size()); ++t) {
@@ -315,23 +305,35 @@ uint64_t Scene::triangles() const {
   return count;
 }
 
-Bounds instanceBounds(const Scene& scene, const Pose& pose, const DrawInstance& instance) {
-  if (instance.node == kNone) return pose.dynamic[at(instance.mesh)].bounds;
-  const Primitive& primitive = scene.meshes[at(instance.mesh)].primitives[at(instance.primitive)];
-  if (instance.deformed == kNone) return transformed(instance.objectToWorld, primitive.bounds);
-  const Deformation& state = pose.deformed[at(instance.deformed)];
+Bounds transformed(const Bounds& box, const glm::mat4& matrix) {
+  if (box.empty()) return box;
+  const glm::vec3 centre(matrix * glm::vec4(0.5f * box.low + 0.5f * box.high, 1));
+  const glm::vec3 half = 0.5f * box.high - 0.5f * box.low;
+  const glm::vec3 extent = glm::abs(glm::vec3(matrix[0])) * half.x + glm::abs(glm::vec3(matrix[1])) * half.y +
+                           glm::abs(glm::vec3(matrix[2])) * half.z;
+  return {centre - extent, centre + extent};
+}
+
+Bounds deformedBounds(const Primitive& primitive, const Deformation& state) {
   const Bounds reach = morphReach(primitive, state.morphWeights);
   const auto grown = [&](const Bounds& box) {
     return box.empty() ? box : Bounds{box.low + reach.low, box.high + reach.high};
   };
-  if (state.joints.empty()) return transformed(instance.objectToWorld, grown(primitive.bounds));
+  if (state.joints.empty()) return grown(primitive.bounds);
   // A blended position is a convex combination of what its joints make of it.
   Bounds bounds;
-  for (std::size_t j = 0; j < primitive.jointBounds.size(); ++j) {
-    if (!primitive.jointBounds[j].empty())
-      bounds.add(transformed(state.joints[j], grown(primitive.jointBounds[j])));
-  }
+  for (const auto& [joint, box] : primitive.jointBounds)
+    bounds.add(transformed(grown(box), state.joints[joint]));
   return bounds;
+}
+
+Bounds instanceBounds(const Scene& scene, const Pose& pose, const DrawInstance& instance) {
+  if (instance.node == kNone) return pose.dynamic[at(instance.mesh)].bounds;
+  const Primitive& primitive = scene.meshes[at(instance.mesh)].primitives[at(instance.primitive)];
+  if (instance.deformed == kNone) return transformed(primitive.bounds, instance.objectToWorld);
+  const Deformation& state = pose.deformed[at(instance.deformed)];
+  const Bounds bounds = deformedBounds(primitive, state);
+  return state.joints.empty() ? transformed(bounds, instance.objectToWorld) : bounds;
 }
 
 void evaluate(const Scene& scene, double time, int animation, Pose& pose) {

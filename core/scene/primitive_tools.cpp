@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "core/scene/tangents.h"
 
@@ -57,15 +58,12 @@ void computeBounds(Primitive& p) {
     target.deltaBounds.add(glm::vec3(0));
     for (const glm::vec3& v : target.positions) target.deltaBounds.add(v);
   }
-  p.jointBounds.clear();
+  std::map<std::uint16_t, Bounds> jointBounds;
   for (std::size_t i = 0; i < p.joints.size(); ++i) {
-    for (int k = 0; k < 4; ++k) {
-      if (!(p.weights[i][k] > 0)) continue;
-      const std::size_t joint = p.joints[i][k];
-      if (joint >= p.jointBounds.size()) p.jointBounds.resize(joint + 1);
-      p.jointBounds[joint].add(p.positions[i]);
-    }
+    for (int k = 0; k < 4; ++k)
+      if (p.weights[i][k] > 0) jointBounds[p.joints[i][k]].add(p.positions[i]);
   }
+  p.jointBounds.assign(jointBounds.begin(), jointBounds.end());
 }
 
 std::optional<Quad> findRectangle(const Primitive& p) {

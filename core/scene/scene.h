@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/export.h"
@@ -148,7 +149,9 @@ struct Primitive {
   std::vector<MorphTarget> morphTargets;
   int material = kNone;  ///< always valid after loading
   Bounds bounds;
-  std::vector<Bounds> jointBounds;  ///< skinned: bounds of the vertices that each joint moves
+  /// Holds, where skinned, each joint that moves a vertex, in rising order, and the bounds of those that it
+  /// moves.
+  std::vector<std::pair<std::uint16_t, Bounds>> jointBounds;
   std::vector<EmissivePart>
       emissiveParts;  ///< one, or several where the emission is textured; they may overlap
 };
@@ -388,6 +391,11 @@ LIMN_API Pose evaluate(const Scene& scene, double time, int animation = kNone);
 /// scene on.
 LIMN_API void evaluate(const Scene& scene, double time, int animation, Pose& pose);
 
+/// Returns the box around a transformed box (Arvo 1990, "Transforming Axis-Aligned Bounding Boxes").
+LIMN_API Bounds transformed(const Bounds& box, const glm::mat4& matrix);
+/// Returns conservative bounds of a deformed primitive: in world space when skinned, in object space when
+/// only morphed.
+LIMN_API Bounds deformedBounds(const Primitive& primitive, const Deformation& state);
 /// Returns the world bounds of an instance at `pose`; conservative for deformed ones.
 LIMN_API Bounds instanceBounds(const Scene& scene, const Pose& pose, const DrawInstance& instance);
 

@@ -15,7 +15,7 @@ struct LoadLimits {
   uint64_t vertices = 200'000'000;  ///< elements of all attributes, indices, morph targets and animations
   uint64_t imageTexels = 1ull << 28;
   int nodes = 1'000'000;
-  uint64_t instances = 10'000'000;  ///< drawn primitives, and joint matrices
+  uint64_t instances = 10'000'000;  ///< drawn primitives; joint matrices; morph weights
 };
 
 /// Loads glTF 2.0 (.gltf, .glb). When the centre of the drawn geometry lies more than 64 of its radii from

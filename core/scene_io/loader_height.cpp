@@ -58,26 +58,21 @@ int Loader::readHeight(const tinygltf::Value& extras, std::vector<TextureUse>& u
 
   const std::string place = what + " texture";
   const tinygltf::Value none;
-  const tinygltf::Value& info = extras.Has("texture") ? extras.Get("texture") : none;
-  if (!info.IsObject() || !info.Has("index") || !info.Get("index").IsInt() ||
-      (info.Has("texCoord") && !(info.Get("texCoord").IsInt() && info.Get("texCoord").GetNumberAsInt() >= 0)))
+  const tinygltf::Value& given = extras.Has("texture") ? extras.Get("texture") : none;
+  if (!given.IsObject() || !given.Has("index") || !given.Get("index").IsInt() ||
+      (given.Has("texCoord") &&
+       !(given.Get("texCoord").IsInt() && given.Get("texCoord").GetNumberAsInt() >= 0)))
     fail(place + ": glTF's object {index, texCoord} is accepted, of whole numbers");
-  const int index = info.Get("index").GetNumberAsInt();
-  const tinygltf::Texture& texture = textureAt(index, place);
+  const TextureInfo info = textureInfo(given);
+  const tinygltf::Texture& texture = textureAt(info.index, place);
   if (texture.source == -1)
-    fail(fmt::format("{}: texture {} has no image; PNG or EXR is accepted", place, index));
+    fail(fmt::format("{}: texture {} has no image; PNG or EXR is accepted", place, info.index));
   const auto [wrapS, wrapT] = wrapsOf(texture, place);
   if (wrapS != wrapT || wrapS == Wrap::mirror)
     fail(place +
          ": a sampler that repeats (10497) along both u and v, or clamps (33071) along both, is accepted");
   const relief::Wrap wrap = wrapS == Wrap::clamp ? relief::Wrap::clamped : relief::Wrap::periodic;
-  const tinygltf::Value& extensions = info.Has("extensions") ? info.Get("extensions") : none;
-  const bool moved =
-      extensions.Has("KHR_texture_transform") && extensions.Get("KHR_texture_transform").IsObject();
-  uses.push_back({nullptr,
-                  uvsOf(info.Has("texCoord") ? info.Get("texCoord").GetNumberAsInt() : 0,
-                        moved ? &extensions.Get("KHR_texture_transform") : nullptr, place),
-                  place});
+  uses.push_back({nullptr, uvsOf(info, place), place});
 
   const HeightKey key{texture.source, wrap, scale, offset, tile.x, tile.y};
   const auto known = heightIndex_.find(key);

@@ -143,8 +143,21 @@ std::pair<Wrap, Wrap> Loader::wrapsOf(const tinygltf::Texture& texture, const st
   return {wrapMode(sampler.wrapS), wrapMode(sampler.wrapT)};
 }
 
-UvUse Loader::uvsOf(int texCoord, const tinygltf::Value* transform, const std::string& what) const {
-  UvUse uvs{true, texCoord, glm::vec2(0), glm::vec2(1), 0};
+Loader::TextureInfo Loader::textureInfo(const tinygltf::Value& object) {
+  const auto whole = [&](const char* key, int absent) {
+    const tinygltf::Value& value = object.Get(key);
+    return value.IsNumber() ? value.GetNumberAsInt() : absent;
+  };
+  const tinygltf::Value& extensions = object.Get("extensions");
+  const bool moved =
+      extensions.Has("KHR_texture_transform") && extensions.Get("KHR_texture_transform").IsObject();
+  return {whole("index", -1), whole("texCoord", 0),
+          moved ? &extensions.Get("KHR_texture_transform") : nullptr};
+}
+
+UvUse Loader::uvsOf(const TextureInfo& info, const std::string& what) const {
+  UvUse uvs{true, info.texCoord, glm::vec2(0), glm::vec2(1), 0};
+  const tinygltf::Value* transform = info.transform;
   if (transform == nullptr) return uvs;
   if (transform->Has("offset")) {
     const auto v = numbers(transform->Get("offset"), 2, what + " KHR_texture_transform offset");
@@ -155,19 +168,19 @@ UvUse Loader::uvsOf(int texCoord, const tinygltf::Value* transform, const std::s
     uvs.scale = {v[0], v[1]};
   }
   uvs.rotation = number(get(*transform, "rotation", 0), what + " KHR_texture_transform rotation");
-  uvs.set = static_cast<int>(std::clamp(get(*transform, "texCoord", texCoord), -1., 1e6));
+  uvs.set = static_cast<int>(std::clamp(get(*transform, "texCoord", info.texCoord), -1., 1e6));
   return uvs;
 }
 
-void Loader::readTexture(int index, int texCoord, const tinygltf::Value* transform, bool srgb,
-                         TextureRef& out, std::vector<TextureUse>& uses, const std::string& what) {
-  if (index == -1) return;
-  const tinygltf::Texture& texture = textureAt(index, what);
+void Loader::readTexture(const TextureInfo& info, bool srgb, TextureRef& out, std::vector<TextureUse>& uses,
+                         const std::string& what) {
+  if (info.index == -1) return;
+  const tinygltf::Texture& texture = textureAt(info.index, what);
   const auto [wrapS, wrapT] = wrapsOf(texture, what);
   const int image = readTextureImage(texture, srgb, what);
   if (image == kNone) return;
   out = {image, wrapS, wrapT};
-  uses.push_back({&out, uvsOf(texCoord, transform, what), what});
+  uses.push_back({&out, uvsOf(info, what), what});
 }
 
 void Loader::readMaterialExtensions(const tinygltf::Material& source, Material& m, const std::string& what) {
@@ -226,7 +239,7 @@ Material Loader::readMaterial(const tinygltf::Material& source, const std::strin
     warn("alphaMode BLEND counts as MASK with a cutoff of 0.5");
   }
   const auto texture = [&](const auto& info, bool srgb, TextureRef& out, const char* slot) {
-    readTexture(info.index, info.texCoord, extension(info.extensions, "KHR_texture_transform"), srgb, out,
+    readTexture({info.index, info.texCoord, extension(info.extensions, "KHR_texture_transform")}, srgb, out,
                 uses, what + " " + slot);
   };
   const tinygltf::Value* glossy = extension(source.extensions, "KHR_materials_pbrSpecularGlossiness");

@@ -229,24 +229,32 @@ void Loader::readSkins() {
 }
 
 void Loader::checkNodeUses() {
-  std::uint64_t instances = 0, joints = 0;
-  for (Node& node : scene_.nodes) {
+  std::uint64_t instances = 0, joints = 0, weights = 0;
+  for (const Node& node : scene_.nodes) {
     if (node.mesh == kNone) continue;
     const Mesh& mesh = scene_.meshes[static_cast<std::size_t>(node.mesh)];
     instances += std::max<std::uint64_t>(1, node.instances.size()) * mesh.primitives.size();
+    weights += mesh.morphWeights.size() * mesh.primitives.size();
+    if (node.skin != kNone)
+      joints += scene_.skins[static_cast<std::size_t>(node.skin)].joints.size() * mesh.primitives.size();
+  }
+  if (std::max({instances, joints, weights}) > limits_.instances)
+    fail(
+        fmt::format("{} drawn primitives, {} joint matrices and {} morph weights; at most {} of each are "
+                    "accepted",
+                    instances, joints, weights, limits_.instances));
+  for (Node& node : scene_.nodes) {
+    if (node.mesh == kNone) continue;
+    const Mesh& mesh = scene_.meshes[static_cast<std::size_t>(node.mesh)];
     node.morphWeights.resize(node.morphWeights.empty() ? 0 : mesh.morphWeights.size(), 0.f);
     if (node.skin == kNone) continue;
-    const Skin& skin = scene_.skins[static_cast<std::size_t>(node.skin)];
-    joints += skin.joints.size() * mesh.primitives.size();
+    const std::size_t count = scene_.skins[static_cast<std::size_t>(node.skin)].joints.size();
     for (const Primitive& primitive : mesh.primitives) {
-      if (primitive.jointBounds.size() > skin.joints.size())
+      if (!primitive.jointBounds.empty() && primitive.jointBounds.back().first >= count)
         fail(fmt::format("mesh '{}': a vertex names joint {}; skin {} has {}", mesh.name,
-                         primitive.jointBounds.size() - 1, node.skin, skin.joints.size()));
+                         primitive.jointBounds.back().first, node.skin, count));
     }
   }
-  if (instances > limits_.instances || joints > limits_.instances)
-    fail(fmt::format("{} drawn primitives and {} joint matrices; at most {} of each are accepted", instances,
-                     joints, limits_.instances));
 }
 
 }  // namespace limn::scene

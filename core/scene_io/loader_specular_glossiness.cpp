@@ -10,34 +10,19 @@
 #include "glsl/numeric/srgb.glsl"
 
 namespace limn::scene {
-namespace {
-
-int indexOf(const tinygltf::Value& info, const char* key, int absent) {
-  const tinygltf::Value& value = info.Get(key);
-  return value.IsNumber() ? value.GetNumberAsInt() : absent;
-}
-
-const tinygltf::Value* transformOf(const tinygltf::Value& info) {
-  if (!info.Has("extensions") || !info.Get("extensions").IsObject()) return nullptr;
-  const tinygltf::Value& extensions = info.Get("extensions");
-  return extensions.Has("KHR_texture_transform") && extensions.Get("KHR_texture_transform").IsObject()
-             ? &extensions.Get("KHR_texture_transform")
-             : nullptr;
-}
-
-}  // namespace
 
 int Loader::readGlossiness(int index, bool another, float glossiness, glm::vec3& meanSpecular,
                            const std::string& what) {
   std::optional<Image8> image = decodeImage(index, another, what);
   if (!image) return kNone;
+  const glm::u8vec3 first(image->data[0], image->data[1], image->data[2]);
   glm::dvec3 sum(0);
   bool varies = false;
   for (std::size_t i = 0; i < image->data.size(); i += 4) {
     std::uint8_t* texel = &image->data[i];
     for (int c = 0; c < 3; ++c) {
       sum[c] += static_cast<double>(glsl::srgb_decode(static_cast<float>(texel[c]) / 255.f));
-      varies = varies || texel[c] != image->data[static_cast<std::size_t>(c)];
+      varies = varies || texel[c] != first[c];
     }
     // Roughness stands in the green channel of metallic-roughness, metalness, whose factor is 0, in the blue
     // one.
@@ -71,15 +56,13 @@ void Loader::applySpecularGlossiness(const tinygltf::Value& e, Material& m, std:
   m.roughness = 1 - glossiness;
   m.ior = 1000;  // reflects all but 0.4 % of the specular colour
   m.specularFactor = 1;
-  if (e.Has("diffuseTexture")) {
-    const tinygltf::Value& info = e.Get("diffuseTexture");
-    readTexture(indexOf(info, "index", -1), indexOf(info, "texCoord", 0), transformOf(info), true,
-                m.baseColourTexture, uses, what + " diffuseTexture");
-  }
+  if (e.Has("diffuseTexture"))
+    readTexture(textureInfo(e.Get("diffuseTexture")), true, m.baseColourTexture, uses,
+                what + " diffuseTexture");
   if (!e.Has("specularGlossinessTexture")) return;
   const std::string place = what + " specularGlossinessTexture";
-  const tinygltf::Value& info = e.Get("specularGlossinessTexture");
-  const tinygltf::Texture& texture = textureAt(indexOf(info, "index", -1), place);
+  const TextureInfo info = textureInfo(e.Get("specularGlossinessTexture"));
+  const tinygltf::Texture& texture = textureAt(info.index, place);
   glm::vec3 mean(1);
   const int image = firstImage(texture, place, [&](int index, bool another) {
     return readGlossiness(index, another, glossiness, mean, place);
@@ -89,8 +72,7 @@ void Loader::applySpecularGlossiness(const tinygltf::Value& e, Material& m, std:
   m.metalRoughTexture = {image, wrapS, wrapT};
   m.roughness = 1;
   m.specularColour *= mean;
-  uses.push_back(
-      {&m.metalRoughTexture, uvsOf(indexOf(info, "texCoord", 0), transformOf(info), place), place});
+  uses.push_back({&m.metalRoughTexture, uvsOf(info, place), place});
 }
 
 }  // namespace limn::scene

@@ -20,11 +20,12 @@ bool absent(const tinygltf::ExtensionMap& map, const char* name) {
 }
 
 /// Returns Kulla and Conty's albedo of a single event in a half space that reflects the share `albedo` (2017,
-/// Revisiting Physically Based Shading at Imageworks), which the drafts prescribe.
-float singleScattering(float albedo) {
-  const float root = std::sqrt(9.59217f + albedo * (41.6808f + 17.7126f * albedo));
-  const float s = 4.09712f + 4.20863f * albedo - root;
-  return std::clamp(1 - s * s, 0.f, 1.f);
+/// Revisiting Physically Based Shading at Imageworks), which the drafts prescribe. The half space reflects
+/// that share where events scatter with the mean cosine `anisotropy`.
+double singleScattering(double albedo, double anisotropy) {
+  const double root = std::sqrt(9.59217 + albedo * (41.6808 + 17.7126 * albedo));
+  const double s = 4.09712 + 4.20863 * albedo - root;
+  return std::clamp((1 - s * s) / (1 - anisotropy * s * s), 0., 1.);
 }
 
 }  // namespace
@@ -102,7 +103,8 @@ std::optional<Subsurface> Loader::readScatterDraft(const tinygltf::Material& sou
   Subsurface s;
   for (int c = 0; c < 3; ++c) {
     const double whole = -std::log(double(attenuation[c])) / material.attenuationDistance;
-    const double scattered = singleScattering(albedo[c]);
+    // The older draft has the albedo of events not depend on where they scatter to.
+    const double scattered = singleScattering(albedo[c], newer ? anisotropy : 0.f);
     const double reduced = 1 - scattered + (1 - anisotropy) * scattered;  // sigma_t' / sigma_t
     s.absorption[c] = static_cast<float>((1 - scattered) / reduced);
     s.extinction[c] = ranged(whole * reduced, kLeastExtinction, kMostExtinction, place + " extinction");

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "core/gpu_scene/gpu_scene_data.h"
-
 namespace limn::shadow {
 namespace {
 

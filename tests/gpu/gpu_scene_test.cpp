@@ -227,8 +227,10 @@ TEST_F(GpuSceneTest, SkinnedAndMorphedVerticesEqualTransformedOnes) {
   scene::Primitive plain = floorPrimitive(1, addMaterial(scene)), skinned = plain, morphed = plain;
   skinned.joints.assign(4, {0, 1, 0, 0});
   skinned.weights.assign(4, {0.25f, 0.75f, 0, 0});
+  skinned.jointBounds = {{0, skinned.bounds}, {1, skinned.bounds}};
   scene::MorphTarget target;
   target.positions.assign(4, {0, 1, 0});
+  target.deltaBounds = {{0, 0, 0}, {0, 1, 0}};
   morphed.morphTargets.push_back(target);
   const int plainMesh = addMesh(scene, plain), skinnedMesh = addMesh(scene, skinned),
             morphedMesh = addMesh(scene, morphed);
@@ -277,7 +279,7 @@ TEST_F(GpuSceneTest, MirroredSkinsEqualMirroredInstances) {
   scene::Primitive& bound = skinned.meshes[0].primitives[0];
   bound.joints.assign(4, glm::u16vec4(0));
   bound.weights.assign(4, glm::vec4(1, 0, 0, 0));
-  bound.jointBounds = {bound.bounds};
+  bound.jointBounds = {{0, bound.bounds}};
   skinned.skins.push_back({{2}, {glm::mat4(1)}});
   skinned.nodes[1].skin = 0;
   const auto camera = scene::lookAt({0.2f, 4, 0.3f}, {0, 0, 0}, 0.6f);
@@ -344,7 +346,7 @@ TEST_F(GpuSceneTest, DeformedVerticesLargerThanAStorageBufferAreRefusedInEachFra
   skinned.positions.resize(count);
   skinned.joints.resize(count);
   skinned.weights.resize(count, glm::vec4(1, 0, 0, 0));
-  skinned.jointBounds = {skinned.bounds};
+  skinned.jointBounds = {{0, skinned.bounds}};
   addMesh(scene, std::move(skinned));
   scene.skins.push_back({{0}, {glm::mat4(1)}});
   scene.nodes.resize(1);

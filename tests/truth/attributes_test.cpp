@@ -40,12 +40,11 @@ scene::Primitive sphere(int material, const Case& with) {
 }
 
 void skin(scene::Primitive& p) {
-  p.jointBounds.resize(2);
+  p.jointBounds = {{0, p.bounds}, {1, p.bounds}};
   for (size_t i = 0; i < p.positions.size(); ++i) {
     const float upper = 0.5f + 0.5f * p.normals[i].y;
     p.joints.emplace_back(0, 1, 0, 0);
     p.weights.emplace_back(1 - upper, upper, 0, 0);
-    for (scene::Bounds& bounds : p.jointBounds) bounds.add(p.positions[i]);
   }
 }
 

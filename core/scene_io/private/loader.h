@@ -86,6 +86,11 @@ class Loader {
     UvUse uvs;
     std::string what;
   };
+  /// Holds glTF's textureInfo.
+  struct TextureInfo {
+    int index = -1, texCoord = 0;
+    const tinygltf::Value* transform = nullptr;  ///< KHR_texture_transform; null: none
+  };
   struct ImageSource {
     std::string name, uri;
     int view = kNone;
@@ -189,8 +194,10 @@ class Loader {
   bool resample(TextureRef& texture, const UvMap& map);
 
   // loader_material.cpp
-  void readTexture(int index, int texCoord, const tinygltf::Value* transform, bool srgb, TextureRef& out,
-                   std::vector<TextureUse>& uses, const std::string& what);
+  /// Returns the textureInfo of an extension or of extras, which tinygltf leaves as it is in the file.
+  static TextureInfo textureInfo(const tinygltf::Value& object);
+  void readTexture(const TextureInfo& info, bool srgb, TextureRef& out, std::vector<TextureUse>& uses,
+                   const std::string& what);
   const tinygltf::Texture& textureAt(int index, const std::string& what) const;
   /// Returns the first result other than none of read(image, another): of the texture's WebP image
   /// (EXT_texture_webp), where it has one, with `another` saying whether there is one to fall back on, and
@@ -200,7 +207,7 @@ class Loader {
   /// Returns how a texture goes on beyond its edges, along u and v.
   std::pair<Wrap, Wrap> wrapsOf(const tinygltf::Texture& texture, const std::string& what) const;
   /// Returns the texture coordinates that a texture names.
-  UvUse uvsOf(int texCoord, const tinygltf::Value* transform, const std::string& what) const;
+  UvUse uvsOf(const TextureInfo& info, const std::string& what) const;
   const ImageSource& imageAt(int index, const std::string& what) const;
   std::string imageLabel(int index) const;
   /// Returns the bytes of an image, which `storage` keeps where no buffer does. Throws Error "LABEL: ..."

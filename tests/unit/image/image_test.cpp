@@ -241,6 +241,28 @@ TEST_F(ImageFile, ReadsHdrJpegGreyAndAlpha) {
   EXPECT_EQ(readImage8(folder_ / "deep.png").data, (std::vector<std::uint8_t>{64, 128, 255, 255}));
 }
 
+/// The size of a Radiance file says from where rows and columns are stored: "-Y" from the top, "+X" from the
+/// left.
+TEST_F(ImageFile, HdrIsTurnedAsItsSizeSays) {
+  const auto reds = [&](const std::string& size) {
+    std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + size + "\n";
+    for (int exponent = 129; exponent < 135; ++exponent)  // 1, 2, 4 and so on
+      text += {static_cast<char>(128), 0, 0, static_cast<char>(exponent)};
+    writeTextFile(folder_ / "a.hdr", text);
+    const Image image = readImage(folder_ / "a.hdr");
+    EXPECT_EQ(image.width(), 3);
+    std::vector<float> values;
+    for (std::size_t i = 0; i < image.data().size(); i += 3) values.push_back(image.data()[i]);
+    return values;
+  };
+  EXPECT_EQ(reds("-Y 2 +X 3"), (std::vector<float>{1, 2, 4, 8, 16, 32}));
+  EXPECT_EQ(reds("+Y 2 +X 3"), (std::vector<float>{8, 16, 32, 1, 2, 4}));
+  EXPECT_EQ(reds("-Y 2 -X 3"), (std::vector<float>{4, 2, 1, 32, 16, 8}));
+  EXPECT_EQ(reds("+Y 2 -X 3"), (std::vector<float>{32, 16, 8, 4, 2, 1}));
+  for (const char* columns : {"+X 2 -Y 3", "+X 2 +Y 3", "-X 2 +Y 3", "-X 2 -Y 3"})
+    expectRefusal([&] { reds(columns); }, "a.hdr: a size that begins with X");
+}
+
 /// Cropped files hold the same picture as whole ones, whatever part of it they leave out or add beyond it.
 TEST_F(ImageFile, ExrIsAsLargeAsItsDisplayWindow) {
   constexpr int left = 3, top = -2, width = 8, height = 6;

@@ -93,7 +93,7 @@ TEST(ReferenceGeometry, MirroredSkinsEqualMirroredInstances) {
   scene::Primitive& bound = skinned.scene.meshes[0].primitives[0];
   bound.joints.assign(4, glm::u16vec4(0));
   bound.weights.assign(4, glm::vec4(1, 0, 0, 0));
-  bound.jointBounds = {bound.bounds};
+  bound.jointBounds = {{0, bound.bounds}};
   skinned.scene.skins.push_back({{2}, {glm::mat4(1)}});
   skinned.scene.nodes[1].skin = 0;
   for (World* world : {&rigid, &skinned}) {

@@ -124,6 +124,10 @@ TEST(Displaced, WhatCannotBeDisplacedIsSaid) {
   const HeightField field = relief::test::noise(24, 0.5);
   EXPECT_THROW(displaced(bumpy(floorOf({1000, 1000}), field), 100000), UsageError);
   EXPECT_THROW(displaced(bumpy(floorOf({1e20f, 1e20f}), field)), UsageError);
+  // So far away that one texel more is the same number: no columns, but rows without end.
+  Primitive astray = floorOf({1, 1e12f});
+  for (glm::vec2& uv : astray.uvs) uv.x = 1e17f;
+  EXPECT_THROW(displaced(bumpy(astray, field)), UsageError);
   Scene skinned = bumpy(floorOf({1, 1}), field);
   skinned.meshes[0].primitives[0].morphTargets.emplace_back();
   EXPECT_THROW(displaced(std::move(skinned)), UsageError);

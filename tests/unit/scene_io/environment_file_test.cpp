@@ -60,6 +60,13 @@ TEST_F(EnvironmentFile, WithinTheRangeIsTakenAsItIs) {
   EXPECT_EQ(e.texels[2 * 16 + 3].y, scene::kMostEnvironmentRadiance);
 }
 
+TEST_F(EnvironmentFile, OfRowsFromBelowIsTurned) {
+  std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n+Y 2 +X 1\n";
+  for (const int byte : {128, 0, 0, 129, 0, 0, 128, 129}) text += static_cast<char>(byte);  // red, blue
+  const scene::Environment e = load(write("sky.hdr", GltfBuilder::toBytes(text)));
+  EXPECT_THAT(e.texels, ElementsAre(glm::vec3(0, 0, 1), glm::vec3(1, 0, 0)));
+}
+
 TEST_F(EnvironmentFile, BeyondTheRangeIsClampedAndCounted) {
   const scene::Environment e = load(sky({-1, 3e38f, -1e-20f, std::numeric_limits<float>::max(), 5}));
   EXPECT_THAT(warnings_, ElementsAre(AllOf(HasSubstr("sky.exr: 4 of 128 pixels"), HasSubstr("1e+12"))));

@@ -20,6 +20,7 @@ using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 const Primitive& firstPrimitive(const Scene& s) {
   return s.meshes.at(0).primitives.at(0);
@@ -381,6 +382,21 @@ TEST(SpecularGlossiness, TexturesBecomeRoughnessAndAMean) {
   EXPECT_THAT(scene.warnings,
               AllOf(Contains(HasSubstr("is converted")), Contains(HasSubstr("the mean of its")),
                     Contains(HasSubstr("texture coordinates differ"))));
+}
+
+TEST(SpecularGlossiness, WarnsOfTheMeanWhereColoursVary) {
+  const auto warnings = [](const std::vector<std::uint8_t>& texels) {
+    GltfBuilder b = glossy({{"specularGlossinessTexture", {{"index", 0}}}});
+    const std::vector<std::byte> image = png(2, 1, texels);
+    b.append("images", {{"bufferView", b.view(image.data(), image.size())}, {"mimeType", "image/png"}});
+    b.append("textures", {{"source", 0}});
+    return loadBuilt(b).warnings;
+  };
+  const auto mean = HasSubstr("the mean of its");
+  EXPECT_THAT(warnings({56, 56, 56, 128, 56, 56, 56, 128}), Not(Contains(mean)));
+  EXPECT_THAT(warnings({56, 56, 56, 128, 56, 56, 56, 0}), Not(Contains(mean)));
+  // The second colour is what the first texel holds as roughness.
+  EXPECT_THAT(warnings({200, 10, 10, 255, 0, 0, 0, 255}), Contains(mean));
 }
 
 TEST(SpecularGlossiness, RefusesWhatDoesNotExist) {

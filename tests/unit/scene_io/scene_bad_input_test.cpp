@@ -78,6 +78,18 @@ TEST(SceneBadInput, VertexLimit) {
   EXPECT_THAT(loadError(b.glb(), limits), HasSubstr("exceed the limit of 5"));
 }
 
+TEST(SceneBadInput, MorphWeightsOfAllNodesAreLimited) {
+  GltfBuilder b;
+  b.triangle();
+  b.root["meshes"][0]["primitives"][0]["targets"] = json::array_t(3, json::object());
+  for (int copy = 1; copy < 4; ++copy) b.meshNode(0);
+  scene::LoadLimits limits;
+  limits.instances = 12;
+  EXPECT_EQ(loadError(b.glb(), limits), "");
+  limits.instances = 10;
+  EXPECT_THAT(loadError(b.glb(), limits), HasSubstr("12 morph weights; at most 10"));
+}
+
 TEST(SceneBadInput, AccessorOutOfRange) {
   GltfBuilder b;
   b.triangle();
@@ -291,6 +303,17 @@ TEST(SceneBadInput, JointOutsideTheSkin) {
   b.node({{"mesh", mesh}, {"skin", 0}});
   b.append("skins", {{"joints", {0}}});
   EXPECT_THAT(loadError(b.glb()), HasSubstr("names joint 2; skin 0 has 1"));
+}
+
+TEST(SceneBadInput, BoundsOfJointsThatNoVertexNamesTakeNoMemory) {
+  GltfBuilder b;
+  b.meshNode(b.mesh({{"POSITION", b.vec3({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})},
+                     {"JOINTS_0", b.accessor(std::vector<glm::u16vec4>(3, glm::u16vec4(65535, 7, 0, 0)),
+                                             GltfBuilder::kUshort, "VEC4")},
+                     {"WEIGHTS_0", b.vec4(std::vector<glm::vec4>(3, glm::vec4(0.5f, 0.5f, 0, 0)))}}));
+  const scene::Primitive primitive = scene::loadMemory(b.glb()).meshes[0].primitives[0];
+  EXPECT_THAT(primitive.jointBounds, testing::ElementsAre(testing::Pair(7, primitive.bounds),
+                                                          testing::Pair(65535, primitive.bounds)));
 }
 
 TEST(SceneBadInput, JointsWhoseWeightVanishesNeedNotExist) {

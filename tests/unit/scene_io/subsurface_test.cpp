@@ -130,19 +130,33 @@ TEST(SceneSubsurface, DraftsOfKhronosSayTheSame) {
   }
 }
 
+scene::Subsurface anisotropic(const char* draft, const char* colour, double g) {
+  return loadBuilt(withMaterial(drafted(draft, {{colour, {0.2, 0.5, 0.9}}, {"scatterAnisotropy", g}})))
+      .materials.at(0)
+      .subsurface.value();
+}
+
 TEST(SceneSubsurface, AnisotropyOfADraftIsReduced) {
   const auto read = [](double g) {
-    return loadBuilt(
-               withMaterial(drafted("KHR_materials_volume_scatter",
-                                    {{"multiscatterColor", {0.5, 0.5, 0.5}}, {"scatterAnisotropy", g}})))
-        .materials.at(0)
-        .subsurface.value();
+    return anisotropic("KHR_materials_volume_scatter", "multiscatterColor", g);
   };
   const scene::Subsurface isotropic = read(0), forward = read(0.8);
   // Absorption per metre is the same, scattering a fifth.
   expectNear(forward.absorption * forward.extinction, isotropic.absorption * isotropic.extinction, 1e-3f);
   expectNear((1.f - forward.absorption) * forward.extinction,
              0.2f * (1.f - isotropic.absorption) * isotropic.extinction, 1e-3f);
+}
+
+TEST(SceneSubsurface, AnisotropyOfTheNewerDraftLeavesTheColour) {
+  const auto read = [](double g) {
+    return anisotropic("KHR_materials_scatter", "multiscatterColorFactor", g);
+  };
+  const scene::Subsurface isotropic = read(0), forward = read(0.8), backward = read(-0.8);
+  expectNear(forward.absorption, isotropic.absorption, 1e-6f);
+  expectNear(backward.absorption, isotropic.absorption, 1e-6f);
+  // By hand: s = 0.2971 for an albedo of 0.5, and (1 - g) / (1 - g s^2) of the extinction is left.
+  EXPECT_NEAR(isotropic.absorption.y, 0.0883f, 1e-4f);
+  EXPECT_NEAR(forward.extinction.y / isotropic.extinction.y, 0.2152f, 1e-4f);
 }
 
 TEST(SceneSubsurface, DraftsWithoutAVolumeAreIgnoredWithAWarning) {
