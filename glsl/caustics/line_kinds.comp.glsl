@@ -11,8 +11,10 @@ uint ray_kind(int index) {
   if (!(piece.range.x < piece.range.y)) return ray_kind_none;
   if (!(piece.pixels >= 1.0)) return ray_kind_point;
 #if BEAMS
-  RayBeam beam = ray_beam(beam_sides(index, ray, piece), piece);
+  BeamSides sides = beam_sides(index, ray, piece);
+  RayBeam beam = ray_beam(sides, piece);
   if (max(beam_width(beam, piece, 0.0), beam_width(beam, piece, 1.0)) > 1.0) {
+    if (!beam_in_picture(sides, piece)) return ray_kind_none;
     beams[index] = beam;
     return ray_kind_quad;
   }

@@ -28,10 +28,7 @@ float share_of_column(int index) {
 #endif
 
 // `slope`: place on the view plane at distance 1.
-vec4 clip_position(vec2 slope, float depth) {
-  vec2 half_size = 0.5 * vec2(frame.frame_size) * vec2(length(frame.view_ray_dx.xyz), length(frame.view_ray_dy.xyz));
-  return vec4(slope / half_size * depth, 0.0, depth);
-}
+vec4 clip_position(vec2 slope, float depth) { return vec4(slope / picture_reach() * depth, 0.0, depth); }
 
 void main() {
 #if KIND == 0

@@ -22,6 +22,10 @@ vec3 camera_direction(vec3 world) {
   return vec3(view.xy, -view.z);
 }
 float focal_length() { return 1.0 / length(frame.view_ray_dx.xyz); }  // pixels
+// Of the picture, half of it, on the view plane at distance 1.
+vec2 picture_reach() {
+  return 0.5 * vec2(frame.frame_size) * vec2(length(frame.view_ray_dx.xyz), length(frame.view_ray_dy.xyz));
+}
 
 // In camera space, metres.
 struct RayPiece {
@@ -82,6 +86,21 @@ BeamSides beam_sides(int index, CausticRay ray, RayPiece p) {
   sides.u_far = camera_direction(beam_side(ray, to.beside, p.range.y));
   sides.v_far = camera_direction(beam_side(ray, to.above, p.range.y));
   return sides;
+}
+
+// Whether some of a beam lies on the inner side of each plane through the eye and a side of the picture. beam_widths() takes the
+// picture of a beam to be even in its sides, which is wrong where they reach past the eye: of an eye among parallel beams, those
+// to the left and right of it would each cover the whole picture, which would be twice or three times as bright as it is.
+bool beam_in_picture(BeamSides sides, RayPiece p) {
+  vec2 reach = picture_reach();
+  for (int i = 0; i < 4; ++i) {
+    float side = (i & 1) == 0 ? 1.0 : -1.0;
+    vec3 inwards = i < 2 ? vec3(side, 0.0, reach.x) : vec3(0.0, side, reach.y);
+    float near = dot(inwards, p.a) + 0.5 * (abs(dot(inwards, sides.u_near)) + abs(dot(inwards, sides.v_near)));
+    float far = dot(inwards, p.b) + 0.5 * (abs(dot(inwards, sides.u_far)) + abs(dot(inwards, sides.v_far)));
+    if (max(near, far) <= 0.0) return false;
+  }
+  return true;
 }
 
 // Unit, perpendicular to the plane through the eye and the line; 0: the line goes through the eye.

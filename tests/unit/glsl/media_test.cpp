@@ -262,14 +262,14 @@ TEST(Airlight, DiscsSendNoMoreThanTheirSolidAngle) {
   }
 }
 
-/// The fragments of a line between two points of the picture, one per column or row that it touches; their
-/// sum with the flux, sigma_s, phase function and transmittances left out, over the pixel's solid angle. What
-/// lies behind `depth` is hidden; 0: nothing.
-double sumOfFragments(vec3 from, vec3 to, float focal, float depth = 0) {
+/// The fragments of a line between two points of the picture, one per column or row that it touches, or of
+/// `rectangles` one per pixel of length; their sum with the flux, sigma_s, phase function and transmittances
+/// left out, over the pixel's solid angle. What lies behind `depth` is hidden; 0: nothing.
+double sumOfFragments(vec3 from, vec3 to, float focal, bool rectangles, float depth = 0) {
   const vec3 direction = normalize(to - from);
   const vec2 a = vec2(from.x, from.y) / from.z, b = vec2(to.x, to.y) / to.z;
   const vec2 larger = std::abs(b.x - a.x) >= std::abs(b.y - a.y) ? vec2(1, 0) : vec2(0, 1);
-  const vec2 axis = dot(larger, b - a) < 0 ? -larger : larger;
+  const vec2 axis = rectangles ? normalize(b - a) : dot(larger, b - a) < 0 ? -larger : larger;
   double sum = 0;
   for (float u = std::floor(focal * dot(axis, a)); u < focal * dot(axis, b); ++u) {
     const vec2 part = caustic_line_part(from, direction, axis, vec2(0, length(to - from)), depth,
@@ -295,6 +295,7 @@ double irradianceOfLine(vec3 from, vec3 to, float depth = 0) {
   return sum;
 }
 
+/// In double precision fragments of these lines are off by up to 8e-5 where the focal length is 40 pixels.
 TEST(CausticLine, FragmentsSumToTheIrradianceOfTheLineAtTheEye) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> unit(-1, 1);
@@ -302,13 +303,16 @@ TEST(CausticLine, FragmentsSumToTheIrradianceOfTheLineAtTheEye) {
     const vec3 from(2 * unit(random), 2 * unit(random), 3 + 2 * unit(random));
     const vec3 to = from + vec3(unit(random), unit(random), 0.9f * unit(random));
     if (to.z < 0.5f) continue;
-    const double exact = irradianceOfLine(from, to);
-    EXPECT_NEAR(sumOfFragments(from, to, 4000) / exact, 1, 0.01) << i;
-    EXPECT_NEAR(sumOfFragments(from, to, 40) / exact, 1, 0.01) << i << ": a line of some pixels";
     const float half = 0.5f * (from.z + to.z);
-    EXPECT_NEAR(sumOfFragments(from, to, 40, half) / irradianceOfLine(from, to, half), 1, 0.01)
-        << i << ": half of it hidden";
-    EXPECT_EQ(sumOfFragments(from, to, 40, 0.9f * std::min(from.z, to.z)), 0) << i << ": all of it hidden";
+    const double exact = irradianceOfLine(from, to), exactHalf = irradianceOfLine(from, to, half);
+    for (const bool rectangles : {false, true}) {
+      SCOPED_TRACE(testing::Message() << "line " << i << (rectangles ? ", a rectangle" : ", by columns"));
+      EXPECT_NEAR(sumOfFragments(from, to, 4000, rectangles) / exact, 1, 1e-3);
+      EXPECT_NEAR(sumOfFragments(from, to, 40, rectangles) / exact, 1, 1e-3) << "a line of some pixels";
+      EXPECT_NEAR(sumOfFragments(from, to, 40, rectangles, half) / exactHalf, 1, 1e-3) << "half of it hidden";
+      EXPECT_EQ(sumOfFragments(from, to, 40, rectangles, 0.9f * std::min(from.z, to.z)), 0)
+          << "all of it hidden";
+    }
     const double cosine = [&] {
       const vec3 middle = 0.5f * (from + to);
       return double(middle.z / length(middle));
