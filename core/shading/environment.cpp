@@ -17,10 +17,12 @@ namespace {
 using glm::dvec3;
 using glm::vec2;
 using glm::vec3;
+using glm::vec4;
 
 constexpr int kGlossySamples =
     64;  // at level 1; doubled from level to level, which have a quarter of the texels each
 constexpr int kIrradianceSourceWidth = 128;
+constexpr float kLargestHalf = 65504;
 
 /// Where the first and last rows of a map lie: half a step inside the poles, as in a file, or on them, as in
 /// the result.
@@ -144,7 +146,18 @@ FilteredMap convolvedWithLobe(const std::vector<FilteredMap>& chain, int level) 
   });
 }
 
-gpu::Texture upload(gpu::Device& device, std::string_view label, GLenum format,
+/// The least power of two, 1 or more, by whose square radiance is divided to fit half floats.
+float halfFloatRoot(std::span<const FilteredMap> levels) {
+  float greatest = 0;
+  for (const FilteredMap& level : levels)
+    for (const vec3& t : level.texels) greatest = std::max({greatest, t.x, t.y, t.z});
+  float root = 1;
+  while (greatest > kLargestHalf * root * root) root *= 2;
+  return root;
+}
+
+/// Texels are divided by the square of `root`, which alpha keeps.
+gpu::Texture upload(gpu::Device& device, std::string_view label, GLenum format, float root,
                     std::span<const FilteredMap> levels) {
   gpu::Texture texture(device, label,
                        {.format = format,
@@ -154,11 +167,10 @@ gpu::Texture upload(gpu::Device& device, std::string_view label, GLenum format,
   texture.setSampling(levels.size() > 1 ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR, GL_LINEAR, GL_REPEAT,
                       GL_CLAMP_TO_EDGE);
   for (size_t i = 0; i < levels.size(); ++i) {
-    std::vector<vec3> texels = levels[i].texels;
-    if (format == GL_RGBA16F) {
-      for (vec3& t : texels) t = glm::min(t, vec3(65504.0f));
-    }
-    texture.upload(static_cast<int>(i), 0, GL_RGB, GL_FLOAT, texels.data());
+    std::vector<vec4> texels;
+    texels.reserve(levels[i].texels.size());
+    for (const vec3& t : levels[i].texels) texels.emplace_back(t / (root * root), root);
+    texture.upload(static_cast<int>(i), 0, GL_RGBA, GL_FLOAT, texels.data());
   }
   return texture;
 }
@@ -268,11 +280,12 @@ std::vector<FilteredMap> radianceLevels(const scene::Environment& environment) {
 }
 
 gpu::Texture makeIrradianceTexture(gpu::Device& device, const FilteredMap& irradiance) {
-  return upload(device, "environment irradiance", GL_RGBA32F, {&irradiance, 1});
+  return upload(device, "environment irradiance", GL_RGBA32F, 1, {&irradiance, 1});
 }
 
 gpu::Texture makeFilteredTexture(gpu::Device& device, const FilteredEnvironment& environment) {
-  return upload(device, "filtered environment", GL_RGBA16F, environment.radiance);
+  return upload(device, "filtered environment", GL_RGBA16F, halfFloatRoot(environment.radiance),
+                environment.radiance);
 }
 
 gpu::Texture makeRadianceTexture(gpu::Device& device, const scene::Environment& environment) {

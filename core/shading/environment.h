@@ -56,7 +56,7 @@ LIMN_API std::vector<FilteredMap> radianceLevels(const scene::Environment& envir
 /// glsl/deferred/environment.comp.glsl.
 LIMN_API gpu::Texture makeIrradianceTexture(gpu::Device& device, const FilteredMap& irradiance);
 /// Returns the texture of glossy levels: RGBA16F, bilinear, one level per roughness; "environment_filtered"
-/// in glsl/light/environment.glsl.
+/// in glsl/light/environment.glsl, which says what alpha holds.
 LIMN_API gpu::Texture makeFilteredTexture(gpu::Device& device, const FilteredEnvironment& environment);
 /// Returns the texture of the map and its radianceLevels(): RGB32F, trilinear, repeated around the horizon;
 /// "environment_levels_map" in glsl/light/radiance_levels.glsl. Throws Error without a map.

@@ -5,6 +5,7 @@
 // Camera space here: x right, y up, z depth along the view axis, metres. focal: focal length in pixels.
 #ifndef LIMN_CAUSTIC_LINE_GLSL
 #define LIMN_CAUSTIC_LINE_GLSL
+#include "glsl/numeric/geometry.glsl"
 #include "glsl/numeric/language.glsl"
 LIMN_BEGIN
 
@@ -50,8 +51,8 @@ LIMN_FN float caustic_line_weight(vec3 x, float rate, float focal) {
 // angle at the eye between the line's ends a and b, int dl / R^2 = (L / (R_a R_b)) span / sin(span).
 LIMN_FN float caustic_point_weight(vec3 a, vec3 b, float focal) {
   vec3 middle = 0.5f * (a + b);
-  float sine = length(cross(a, b)) / max(length(a) * length(b), 1e-30f);
-  float ratio = sine > 1e-3f ? asin(min(sine, 1.0f)) / sine : 1.0f;
+  float lengths = max(length(a) * length(b), 1e-30f);
+  float ratio = 1.0f + angle_over_sine_minus_one(length(cross(a, b)) / lengths, dot(a, b) / lengths);
   float distance = length(middle);
   float cosine = middle.z / distance;
   float integral = length(b - a) / (length(a) * length(b)) * ratio;

@@ -20,7 +20,7 @@ struct VirtualAreaLight {
 LIMN_FN float cluster_angle(vec3 a, vec3 b) {
   if (dot(b, b) == 0.0f) return 0.5f;
   vec3 chord = a - b;
-  return 2.0f * asin(min(0.5f * sqrt(dot(chord, chord)), 1.0f)) * inverse_pi;
+  return 2.0f * arc_sine(min(0.5f * sqrt(dot(chord, chord)), 1.0f)) * inverse_pi;
 }
 
 // Distance of a virtual point light from a cluster (thesis, section 6.4.1): w_x |dx| + w_a angle, |dx| in units of the

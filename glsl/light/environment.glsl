@@ -3,7 +3,8 @@
 //
 // Maps are equirectangular (glsl/numeric/equirectangular.glsl) with rows from pole to pole, in the environment's own
 // frame, by shading::filterEnvironment: irradiance in W/m^2, and radiance filtered at environment_levels
-// roughnesses from 0 to 1, one per mip level.
+// roughnesses from 0 to 1, one per mip level, in half floats: divided by the square of the alpha channel, which is the same power
+// of two everywhere and makes them fit.
 #ifndef LIMN_ENVIRONMENT_GLSL
 #define LIMN_ENVIRONMENT_GLSL
 #include "glsl/surface/brdf.glsl"
@@ -70,7 +71,8 @@ uniform sampler2D environment_filtered;
 
 vec3 environment_filtered_level(vec3 direction, int level) {
   int height = environment_filtered_width / 2 >> level;
-  return textureLod(environment_filtered, environment_place(direction, height), float(level)).rgb;
+  vec4 scaled = textureLod(environment_filtered, environment_place(direction, height), float(level));
+  return scaled.a * scaled.a * scaled.rgb;
 }
 
 // rotation in radians about +Y and scale as in FrameBlock.environment.

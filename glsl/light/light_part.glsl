@@ -33,7 +33,7 @@ LIMN_FN Light light_part(Light light, uint kind, float size, uvec2 count, uint p
     p.direction = -normalize(whole.centre + scale * (disc.x * whole.side_u + disc.y * whole.side_v));
     p.axis_u = vec3(0.0f);
     p.axis_v = vec3(0.0f);
-    p.angular_diameter = 4.0f * asin(sqrt(0.5f * whole.cap) / n);
+    p.angular_diameter = 4.0f * arc_sine(sqrt(0.5f * whole.cap) / n);
     return p;
   }
   vec2 sides = light_sides(light, kind, size);
@@ -53,7 +53,7 @@ LIMN_FN float light_view_share(LightView v) {
   float height = dot(v.centre, v.normal);
   if (v.cone) {
     float h = clamp(height / sqrt(v.cap * (2.0f - v.cap)), -1.0f, 1.0f);
-    return 1.0f - (acos(h) - h * sqrt(1.0f - h * h)) / pi;
+    return 0.5f + (arc_sine(h) + h * sqrt(1.0f - h * h)) * inverse_pi;
   }
   // The sum of two uniform variables, of which `a` reaches farther, is greater than -height.
   float u = 0.5f * abs(dot(v.side_u, v.normal));

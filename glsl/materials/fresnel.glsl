@@ -2,6 +2,7 @@
 // behind the interface, eta - i k.
 #ifndef LIMN_FRESNEL_GLSL
 #define LIMN_FRESNEL_GLSL
+#include "glsl/numeric/exp_log.glsl"
 #include "glsl/numeric/language.glsl"
 LIMN_BEGIN
 
@@ -35,7 +36,7 @@ LIMN_FN vec3 fresnel(float cosine, vec3 eta, vec3 k) {
 LIMN_FN float dielectric_mean_reflectance(float eta) {
   float n = max(eta, 1.0f);
   float rest = n - 1.0f;
-  if (rest < 0.02f) return rest * (0.33333333f + rest * (0.5f * log(max(rest, 1e-10f)) + 0.445f - 1.3f * rest));
+  if (rest < 0.04f) return rest * (0.33333333f + rest * (0.5f * log(max(rest, 1e-10f)) + 0.445f - 1.3f * rest));
   float n2 = n * n;
   float n4 = n2 * n2;
   float sum = n2 + 1.0f;
@@ -44,7 +45,7 @@ LIMN_FN float dielectric_mean_reflectance(float eta) {
   return 0.5f + rest * (3.0f * n + 1.0f) / (6.0f * (n + 1.0f) * (n + 1.0f)) +
          n2 * slope * slope / sum * log(rest / (n + 1.0f)) -
          2.0f * n * n2 * (n2 + 2.0f * n - 1.0f) / (sum * sum * difference) +
-         8.0f * n4 * (n4 + 1.0f) / (sum * sum * sum * difference * difference) * log(n);
+         8.0f * n4 * (n4 + 1.0f) / (sum * sum * sum * difference * difference) * log_one_plus(rest);
 }
 LIMN_FN vec3 dielectric_mean_reflectance(vec3 eta) {
   return vec3(dielectric_mean_reflectance(eta.x), dielectric_mean_reflectance(eta.y), dielectric_mean_reflectance(eta.z));

@@ -97,6 +97,9 @@ LIMN_FN vec3 sample_visible_normal(vec3 v, vec2 alpha, vec2 u) {
   return normalize(vec3(alpha.x * h.x, alpha.y * h.y, max(h.z, 1e-12f)));
 }
 
+// The angle in [-pi/2, pi/2] whose sine is x, by atan2, whose relative error does not grow towards 0: GLSL says nothing of asin.
+LIMN_FN float arc_sine(float x) { return atan(x, sqrt((1.0f - x) * (1.0f + x))); }
+
 // angle / sin(angle) - 1 for angle in [0, pi) given its sine and cosine, within 7.4e-7 of its value, small angles
 // included. Grows without bound towards pi; sine = 0 with a negative cosine gives a large finite number.
 //

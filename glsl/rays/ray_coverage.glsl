@@ -22,12 +22,11 @@ LIMN_CONST uint ray_wrap_repeat = 0u;
 LIMN_CONST uint ray_wrap_clamp = 1u;
 LIMN_CONST uint ray_wrap_mirror = 2u;
 
-// The texel that stands at i of a texture of `size` texels, i near the texture.
+// The texel that stands at i of a texture of `size` texels, i at most `size` below 0: GLSL leaves % of negative numbers open.
 LIMN_FN int ray_wrap(int i, int size, uint wrap) {
   if (wrap == ray_wrap_clamp) return clamp(i, 0, size - 1);
   int period = wrap == ray_wrap_mirror ? 2 * size : size;
-  i = i % period;
-  if (i < 0) i += period;
+  i = (i + period) % period;
   return i < size ? i : 2 * size - 1 - i;
 }
 

@@ -281,6 +281,41 @@ TEST_F(UnshadowedEnvironmentTest, ExtremesStayFinite) {
   }
 }
 
+/// Half floats end at 65504, the radiance of maps at 1e12.
+TEST_F(UnshadowedEnvironmentTest, FilteredMapsHoldTheBrightestLight) {
+  scene::Material matte = metal(1, vec3(1)), coated;
+  matte.metallic = 0;
+  matte.specularFactor = 0;
+  glsl::MaterialModel coat{};
+  coat.kind = glsl::model_coated;
+  coat.eta = vec3(1.5f);
+  scene::setModel(coated, coat);
+  const scene::Material smooth = metal(0.3f, vec3(1));
+  const glsl::SurfaceBrdf s = brdfOf(smooth);
+  const struct {
+    const char* name;
+    const scene::Material& material;
+    float reflectance;
+  } surfaces[] = {{"metal", smooth, glsl::ltc_specular_reflectance(s, glsl::ltc_lookup(1, s.alpha)).x},
+                  {"coat", coated, 0.04f},
+                  {"white", matte, 1}};
+  for (const float bright : {1e5f, scene::kMostEnvironmentRadiance})
+    for (const auto& surface : surfaces) {
+      const scene::Scene plain = floorOf(surface.material, uniform(bright));
+      scene::Scene ratio = lit(plain, plain.environment, 0.05);
+      ratio.environment.shadowedByRatio = true;
+      const auto expectBright = [&](const char* by, const Image& image) {
+        EXPECT_NEAR(middle(image).x / bright, surface.reflectance, 0.01f * surface.reflectance)
+            << surface.name << " by " << by << " under " << bright;
+      };
+      render::Renderer renderer(device(), plain), byRatio(device(), ratio);
+      const render::Settings direct = settings(kOddWidth, kOddHeight, Term::direct);
+      expectBright("core", picture(renderer, direct));
+      expectBright("core, by ratio", picture(byRatio, direct));
+      expectBright("subtractive_shadows", light(renderer, "prefiltered"));
+    }
+}
+
 /// What the cache leaves out is that all surfaces have the view in the middle of the picture: from far away
 /// they do.
 TEST_F(UnshadowedEnvironmentTest, TheCacheIsExactForDistantViews) {

@@ -99,8 +99,8 @@ double meanByQuadrature(double eta, double k) {
 }
 
 TEST(Fresnel, MeanOfDielectricsIsTheQuadratures) {
-  for (const float eta :
-       {1.f, 1.0001f, 1.005f, 1.019f, 1.021f, 1.05f, 1.1f, 1.33f, 1.5f, 2.4f, 5.f, 200.f, 1000.f})
+  for (const float eta : {1.f, 1.0001f, 1.005f, 1.019f, 1.021f, 1.039f, 1.041f, 1.05f, 1.1f, 1.33f, 1.5f,
+                          2.4f, 5.f, 200.f, 1000.f})
     EXPECT_NEAR(dielectric_mean_reflectance(eta), meanByQuadrature(eta, 0), 1e-5) << eta;
   EXPECT_NEAR(1 - (1 - dielectric_mean_reflectance(1.5f)) / 2.25f, 0.596, 0.0005);  // from inside
 }
