@@ -89,7 +89,8 @@ class Table {
     return std::ranges::any_of(results_, [&](const bench::StressResult& r) {
       return r.technique == c.technique->info->name && r.name == c.stressCase->name &&
              r.scene == c.stressCase->scene && r.settings == c.stressCase->settings &&
-             r.allowed == c.stressCase->factor && bench::staleness(r.provenance, now).empty();
+             r.beside == c.stressCase->beside && r.allowed == c.stressCase->factor &&
+             bench::staleness(r.provenance, now).empty();
     });
   }
 
@@ -123,6 +124,8 @@ bench::Provenance provenanceOf(const Case& c, session::CaseOrigins& origins) {
   bench::Case what;
   what.scene = c.stressCase->scene;
   what.technique = c.technique->info->name;
+  if (const std::string_view beside = c.stressCase->beside; !beside.empty())
+    what.technique = fmt::format("{},{}", beside, what.technique);
   what.defaultLights = "off";
   return origins.of(what);
 }
@@ -134,7 +137,7 @@ int runStress(const StressArguments& options) {
   gpu::Device device(*context);
   Table table(options.out, context->info().renderer);
   session::CaseOrigins origins(registry);
-  bench::StressRun stress(device,
+  bench::StressRun stress(device, registry,
                           [](const std::string& name) { return scene::load(session::findScene(name)); });
   {
     Progress progress("stress");

@@ -146,9 +146,9 @@ std::span<const StressCase> commonStressCases() {
   return kCommon;
 }
 
-StressRun::StressRun(gpu::Device& device, std::function<scene::Scene(const std::string&)> scene,
-                     StressOptions options)
-    : device_(device), scene_(std::move(scene)), options_(options) {}
+StressRun::StressRun(gpu::Device& device, const TechniqueRegistry& registry,
+                     std::function<scene::Scene(const std::string&)> scene, StressOptions options)
+    : device_(device), registry_(registry), scene_(std::move(scene)), options_(options) {}
 StressRun::~StressRun() = default;
 
 std::vector<StressRun::Asked> StressRun::askedOf(TermSet answered, StressChange change) {
@@ -210,6 +210,10 @@ double StressRun::error(const TechniquePlugin& technique, const StressCase& c, c
   settings.light = light;
   settings.channels = true;
   settings.techniques = {{&technique, parametersOf(technique, c.settings)}};
+  if (*c.beside != '\0') {
+    const TechniquePlugin& other = registry_.find(c.beside);
+    settings.techniques.push_back({&other, parametersOf(other, "")});
+  }
   const int interfaces = render::interfacesOf(term, settings.techniques);
   const int bounces = render::bouncesOf(term, settings.techniques);
   q.renderer.configure(std::move(settings));
@@ -249,17 +253,17 @@ double StressRun::error(const TechniquePlugin& technique, const StressCase& c, c
   return mean > 0 ? rmse / mean : rmse;
 }
 
-double StressRun::benign(const TechniquePlugin& technique, const char* scene, const Asked& asked) {
-  const std::string key =
-      fmt::format("{} {} {} {}", technique.info->name, scene, name(asked.answered), name(asked.shown));
+double StressRun::benign(const TechniquePlugin& technique, const StressCase& c, const Asked& asked) {
+  const std::string key = fmt::format("{} {} {} {} {}", technique.info->name, c.scene, name(asked.answered),
+                                      name(asked.shown), c.beside);
   if (const auto known = benign_.find(key); known != benign_.end()) return known->second;
-  return benign_[key] = error(technique, {.name = "unchanged", .scene = scene}, asked);
+  return benign_[key] = error(technique, {.name = "unchanged", .scene = c.scene, .beside = c.beside}, asked);
 }
 
 StressAnswer StressRun::answer(const TechniquePlugin& technique, const StressCase& c, const Asked& asked) {
   StressAnswer answer{.term = asked.name()};
   try {
-    answer.benign = benign(technique, c.scene, asked);
+    answer.benign = benign(technique, c, asked);
     const bool unchanged = c.change == StressChange::none && *c.settings == '\0';
     answer.error = unchanged ? answer.benign : error(technique, c, asked);
     answer.factor = answer.error / std::max(answer.benign, kBenignFloor);
@@ -279,6 +283,7 @@ StressResult StressRun::run(const TechniquePlugin& technique, const StressCase& 
                       .name = c.name,
                       .scene = c.scene,
                       .settings = c.settings,
+                      .beside = c.beside,
                       .own = own,
                       .allowed = c.factor};
   for (const Asked& asked : askedOf(technique.info->terms, c.change))

@@ -45,7 +45,8 @@ struct StressAnswer {
 
 struct StressResult {
   std::string technique, name, scene, settings;
-  bool own = false;  ///< declared by the technique; else one that all techniques meet
+  std::string beside = {};  ///< the technique that ran along; empty: none
+  bool own = false;         ///< declared by the technique; else one that all techniques meet
   double allowed = 0;
   /// Holds one for each term that was asked for. The first is the one that counts: of the worst verdict and,
   /// among these, of the largest factor.
@@ -67,9 +68,10 @@ struct StressOptions {
 /// Runs cases of one technique after the other; references are shared.
 class LIMN_API StressRun {
  public:
-  /// Takes `scene`, which loads an asset by name.
-  StressRun(gpu::Device& device, std::function<scene::Scene(const std::string&)> scene,
-            StressOptions options = {});
+  /// Takes `registry`, which finds techniques that run beside others and must outlive the object, and
+  /// `scene`, which loads an asset by name.
+  StressRun(gpu::Device& device, const TechniqueRegistry& registry,
+            std::function<scene::Scene(const std::string&)> scene, StressOptions options = {});
   ~StressRun();
 
   /// Asks for every term that the technique answers.
@@ -88,9 +90,10 @@ class LIMN_API StressRun {
   Question& question(const Asked& asked, const StressCase& stressCase);
   StressAnswer answer(const TechniquePlugin& technique, const StressCase& stressCase, const Asked& asked);
   double error(const TechniquePlugin& technique, const StressCase& stressCase, const Asked& asked);
-  double benign(const TechniquePlugin& technique, const char* scene, const Asked& asked);
+  double benign(const TechniquePlugin& technique, const StressCase& stressCase, const Asked& asked);
 
   gpu::Device& device_;
+  const TechniqueRegistry& registry_;
   std::function<scene::Scene(const std::string&)> scene_;
   StressOptions options_;
   std::unique_ptr<Question> question_;       ///< the last one
@@ -100,9 +103,9 @@ class LIMN_API StressRun {
 
 /// Returns a table with a line for each result; those that did not pass are explained.
 LIMN_API std::string toMarkdown(std::span<const StressResult> results);
-/// Returns {"renderer": ..., "results": [{"technique", "case", "scene", "settings", "own", "allowed",
-/// "answers": [{"term", "verdict", "error", "benign", "factor", "message"}], "provenance": {...}}]}, the
-/// worst answer first.
+/// Returns {"renderer": ..., "results": [{"technique", "case", "scene", "settings", "beside", "own",
+/// "allowed", "answers": [{"term", "verdict", "error", "benign", "factor", "message"}], "provenance":
+/// {...}}]}, the worst answer first.
 LIMN_API std::string toJson(std::span<const StressResult> results, const std::string& renderer);
 /// Returns the results in a text of toJson(). Results of earlier versions, which asked for one term alone,
 /// are left out. Throws Error for text that is not such a table, or that of another renderer.

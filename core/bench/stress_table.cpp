@@ -42,15 +42,20 @@ std::string termText(const StressResult& result) {
   return others.empty() ? result.worst().term : fmt::format("{} ({})", result.worst().term, others);
 }
 
+/// What distinguishes the case: "four steps (steps=4, beside airlight)".
+std::string caseText(const StressResult& result) {
+  std::string details = result.settings;
+  if (!result.beside.empty())
+    details += fmt::format("{}beside {}", details.empty() ? "" : ", ", result.beside);
+  return details.empty() ? result.name : fmt::format("{} ({})", result.name, details);
+}
+
 std::vector<MarkdownColumn<StressResult>> stressColumns() {
   static constexpr const MetricInfo& rmse = metricInfo(&Metrics::rmse);
   const auto isBounded = [](const StressResult& r) { return isMeasured(r.worst()) && r.allowed > 0; };
   return {
       {{headOf("technique"), Align::left}, [](const StressResult& r) { return r.technique; }},
-      {{"case", Align::left},
-       [](const StressResult& r) {
-         return r.settings.empty() ? r.name : fmt::format("{} ({})", r.name, r.settings);
-       }},
+      {{"case", Align::left}, caseText},
       {{headOf("scene"), Align::left}, [](const StressResult& r) { return r.scene; }},
       {{"verdict", Align::left},
        [](const StressResult& r) {
@@ -117,6 +122,7 @@ std::string toJson(std::span<const StressResult> results, const std::string& ren
                     {"case", r.name},
                     {"scene", r.scene},
                     {"settings", r.settings},
+                    {"beside", r.beside},
                     {"own", r.own},
                     {"allowed", r.allowed},
                     {"answers", std::move(answers)}});
@@ -138,6 +144,7 @@ std::vector<StressResult> stressFromJson(const std::string& text, const std::str
                           .name = r.at("case"),
                           .scene = r.at("scene"),
                           .settings = r.at("settings"),
+                          .beside = r.value("beside", ""),
                           .own = r.at("own"),
                           .allowed = r.at("allowed")};
       for (const Json& answer : r.at("answers")) result.answers.push_back(answerFrom(answer));

@@ -78,8 +78,9 @@ std::string stressProblem(std::span<const StressCase> cases) {
   if (cases.size() > kMostEntries || (!cases.empty() && !cases.data()))
     return fmt::format("it declares {} stability cases", cases.size());
   for (size_t i = 0; i < cases.size(); ++i)
-    if (!isText(cases[i].name) || !isText(cases[i].scene) || !isText(cases[i].settings))
-      return fmt::format("its stability case {} has no name, scene or settings", i);
+    if (!isText(cases[i].name) || !isText(cases[i].scene) || !isText(cases[i].settings) ||
+        !isText(cases[i].beside))
+      return fmt::format("its stability case {} has no name, scene, settings or technique beside it", i);
   return {};
 }
 

@@ -37,6 +37,9 @@ struct StressCase {
   double amount = 0;
   const char* scene = "balls";  ///< asset
   const char* settings = "";    ///< "NAME=VALUE NAME=VALUE" of the technique's parameters
+  /// Names a technique that runs along with its default parameters, for the light that the reference holds
+  /// besides: airlight, where caustic lines are a part of what a medium scatters. Empty: none.
+  const char* beside = "";
   /// Limits the error in each term that the technique answers, as a multiple of that of the unchanged scene
   /// with default parameters (or of 0.01, if that is more); beyond it the case counts as degraded. 0: the
   /// picture differs too much from that scene's for the error to be meaningful; only its values are checked.

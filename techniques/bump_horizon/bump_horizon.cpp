@@ -41,7 +41,7 @@ constexpr StressCase kStress[] = {
     {.name = "march of one step", .scene = "bump_wall", .settings = "shape=march steps=1", .factor = 8},
     {.name = "soft lights", .scene = "bump_wall", .settings = "soft=true"},
     {.name = "grooves", .scene = "groove", .settings = "shape=horizon_map azimuths=128"},
-    {.name = "poles of a sphere", .scene = "bump_sphere"},
+    {.name = "horizon maps of a ball", .scene = "bump_sphere", .settings = "shape=horizon_map azimuths=8"},
     {.name = "camera near a bump",
      .change = StressChange::cameraNear,
      .amount = 1.1,

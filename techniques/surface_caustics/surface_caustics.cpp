@@ -25,18 +25,27 @@ constexpr auto kParameters = caustics::rayParameters(std::to_array<Parameter>({
            "Where photons are gathered: on the screen, or in a map of the light, as large as the scene map, "
            "which surfaces look up (as published)"),
 }));
+/// In the balls of other cases the reference finds so few caustics that its noise is all there is.
+constexpr const char* kScene = "glass_sphere";
 constexpr StressCase kStress[] = {
-    {.name = "buffer of 1 texel", .settings = "buffer_size=1", .factor = 0},
-    {.name = "buffer of 16 texels", .settings = "buffer_size=16", .factor = 6},
-    {.name = "wide kernels", .settings = "kernel=8", .factor = 6},
-    {.name = "photons of a pixel", .settings = "beam_cosine=1", .factor = 20},
-    {.name = "kernels across edges", .settings = "beam_cosine=-1", .factor = 6},
-    {.name = "one point of each search", .settings = "ray_steps=1 exit_steps=1", .factor = 0},
+    {.name = "buffer of 1 texel", .scene = kScene, .settings = "buffer_size=1", .factor = 0},
+    {.name = "buffer of 16 texels", .scene = kScene, .settings = "buffer_size=16", .factor = 6},
+    {.name = "wide kernels", .scene = kScene, .settings = "kernel=8", .factor = 6},
+    {.name = "photons of a pixel", .scene = kScene, .settings = "beam_cosine=1", .factor = 20},
+    {.name = "kernels across edges", .scene = "gem", .settings = "beam_cosine=-1", .factor = 6},
+    {.name = "one point of each search",
+     .scene = kScene,
+     .settings = "ray_steps=1 exit_steps=1",
+     .factor = 0},
     {.name = "many points of each search",
+     .scene = kScene,
      .settings = "ray_steps=4096 exit_steps=1024 buffer_size=64",
      .factor = 6},
-    {.name = "caustic map", .settings = "splat=light", .factor = 2},
-    {.name = "caustic map of 16 texels", .settings = "splat=light scene_map_size=16", .factor = 20},
+    {.name = "caustic map", .scene = kScene, .settings = "splat=light", .factor = 2},
+    {.name = "caustic map of 16 texels",
+     .scene = kScene,
+     .settings = "splat=light scene_map_size=16",
+     .factor = 20},
 };
 
 /// The photons of some rays as triangles, whatever they are splatted on.

@@ -2,9 +2,11 @@
 // error; here they must end in a picture, and in one that errs by little more than they allow.
 #include "core/bench/stress.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,10 +34,18 @@ double mostFactor(const StressResult& result) {
   return kChance * (shown ? 7.1 : result.allowed);
 }
 
+/// In the place of a technique: adds nothing.
+class NoAnswer : public Technique {
+  frame::TextureHandle addPasses(frame::FrameGraph&, const TechniqueInputs&,
+                                 const TermRequest& request) override {
+    return request.target;
+  }
+};
+
 class StressTest : public RenderTest {
  protected:
   bench::StressRun stressRun() {
-    return bench::StressRun(device(), asset, {.width = 48, .height = 36, .spp = 4});
+    return bench::StressRun(device(), registry(), asset, {.width = 48, .height = 36, .spp = 4});
   }
 };
 
@@ -64,6 +74,45 @@ TEST_F(StressTest, DeclaredCasesEndInAPictureThatErrsNoMoreThanTheyAllow) {
         }
       }
     }
+}
+
+/// Caustics are a small part of some pictures, and lost in the reference's noise in others, so that a case
+/// may pass without them. The error that both are compared with is the technique's own: it is kept by name.
+TEST_F(StressTest, ACaseFindsThatCausticsAreMissing) {
+  bench::StressRun run = stressRun();
+  for (const TechniquePlugin* plugin : testedTechniques()) {
+    const std::string_view name = plugin->info->name;
+    if (!name.ends_with("_caustics")) continue;
+    TechniquePlugin missing = *plugin;
+    missing.create = []() -> std::unique_ptr<Technique> { return std::make_unique<NoAnswer>(); };
+    std::string figures;
+    bool found = false;
+    for (const StressCase& c : plugin->info->stress) {
+      if (c.factor == 0 || found) continue;
+      const StressResult with = run.run(*plugin, c, true), without = run.run(missing, c, true);
+      figures +=
+          fmt::format("{}: error {} (unchanged {}, allowed {} times), without it {}\n", c.name,
+                      with.worst().error, with.worst().benign, kChance * c.factor, without.worst().error);
+      found = without.worst().factor > kChance * c.factor;
+    }
+    EXPECT_TRUE(found) << name << "\n" << figures;
+  }
+}
+
+/// The reference of caustic lines holds airlight as well.
+TEST_F(StressTest, ATechniqueBesideAddsItsLight) {
+  bench::StressRun run = stressRun();
+  const TechniquePlugin& lines = registry().find("volume_caustics");
+  const bench::StressAnswer alone = run.run(lines, {.name = "alone", .scene = "glass_sphere"}, true).worst();
+  const StressResult both =
+      run.run(lines, {.name = "both", .scene = "glass_sphere", .beside = "airlight"}, true);
+  EXPECT_LT(both.worst().error, 0.5 * alone.error);
+  EXPECT_EQ(both.worst().factor, 1) << "the unchanged picture has it, too";
+  EXPECT_EQ(both.beside, "airlight");
+  const StressResult typo =
+      run.run(lines, {.name = "typo", .scene = "glass_sphere", .beside = "airlihgt"}, true);
+  EXPECT_EQ(typo.worst().verdict, StressVerdict::refused);
+  EXPECT_THAT(typo.worst().message, testing::HasSubstr("airlihgt"));
 }
 
 TEST_F(StressTest, CommonCasesAskEveryTechniqueSomethingItAnswers) {

@@ -87,15 +87,24 @@ TEST(BenchStress, ARowShowsTheWorstTermAndNamesTheOthers) {
   EXPECT_THAT(toMarkdown(others),
               testing::HasSubstr("| refused: too much | indirect (visibility 1.00) | - |"));
   EXPECT_EQ(StressResult{}.worst().verdict, StressVerdict::pass) << "nothing was asked";
+  StressResult accompanied = severalTerms();
+  accompanied.beside = "airlight";
+  StressResult unset = accompanied;
+  unset.settings.clear();
+  const StressResult two[] = {accompanied, unset};
+  EXPECT_THAT(toMarkdown(two), testing::HasSubstr("| three bounces (bounces=3, beside airlight) |"));
+  EXPECT_THAT(toMarkdown(two), testing::HasSubstr("| three bounces (beside airlight) |"));
 }
 
 TEST(BenchStress, JsonKeepsEveryTermAndLeavesOutResultsOfOne) {
-  const StressResult results[] = {severalTerms()};
+  StressResult results[] = {severalTerms()};
+  results[0].beside = "airlight";
   const std::string text = toJson(results, "gpu");
   const std::vector<StressResult> read = stressFromJson(text, "gpu");
   ASSERT_EQ(read.size(), 1u);
   EXPECT_EQ(toJson(read, "gpu"), text);
   EXPECT_EQ(read[0].worst().term, "indirect");
+  EXPECT_EQ(read[0].beside, "airlight");
   StressResult origin = severalTerms();
   origin.provenance = {"program", "scene", {{"t", "t.so", "hash"}}};
   const StressResult known[] = {origin};
