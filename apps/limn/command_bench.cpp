@@ -98,7 +98,7 @@ Action addBenchCommand(CLI::App& command) {
       .add_option("--stall-timeout", options->stallTimeout,
                   "Seconds without a frame or a pass of a reference after which a case is ended and fails;\n"
                   "0: never; default: the suite's, which is 1800 unless it says otherwise")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(realRange(0.0, 1e6));
   options->backend.addTo(command);
   return [options] { return runBench(*options); };
 }

@@ -157,7 +157,7 @@ std::function<int()> addSimulate(CLI::App& command) {
   command.add_option("out,-o,--out", options->out, "File to write: .bsdf")->required();
   command.add_option("--slope", options->slope, "Angle of the walls against the surface, degrees")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 89.0));
+      ->check(realRange(0.1, 89.0));
   command
       .add_option("--rising", options->rising,
                   "Albedo of the wall that rises towards +x: one number or red,green,blue")

@@ -73,7 +73,7 @@ Action addCompareCommand(CLI::App& command) {
       .add_option("--max-masked", options->maxMasked,
                   "Fail above this share of pixels whose coverage, instance or depth differ, percent")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(realRange(0.0, 100.0));
   command.footer(metricsHelp());
   return [options] { return runCompare(*options); };
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "apps/limn/commands.h"
 #include "apps/limn/interruption.h"
@@ -23,8 +24,10 @@ struct FlickerArguments {
   session::TechniqueChoice technique;
   BackendOptions backend;
   std::string frames = "0:59";
-  double fps = 30, atMost = 0;
-  int spp = 128, bounces = 1;
+  double fps = 30;
+  std::optional<double> atMost;
+  int spp = 128;
+  std::optional<int> bounces;
   bool json = false;
 };
 
@@ -88,7 +91,7 @@ class Sequence {
   Image truth(uint64_t seed) {
     reference::Request request =
         session::referenceRequest(view_, view_.pose, view_.camera, parseTerm(options_.scene.term));
-    if (reference::hasBounces(request.term)) request.bounces = options_.bounces;
+    request.bounces = options_.bounces.value_or(request.bounces);
     request.interfaces = interfaces_;
     request.spp = options_.spp;
     request.seed = seed;
@@ -123,6 +126,8 @@ int runFlicker(const FlickerArguments& options) {
   const auto range = parseFrames(options.frames);
   if (!range || range->first == range->last)
     throw UsageError(fmt::format("--frames '{}' is not accepted; expected a:b with a < b", options.frames));
+  if (options.bounces && !reference::hasBounces(parseTerm(options.scene.term)))
+    throw UsageError(fmt::format("--bounces: the term {} has none", options.scene.term));
   const TechniqueRegistry registry(TechniqueRegistry::defaultFolders(), warn);
   const auto techniques = options.technique.resolve(registry);
   render::checkTechniques(techniques, parseTerm(options.scene.term));
@@ -144,9 +149,9 @@ int runFlicker(const FlickerArguments& options) {
     throw Error("flicker: the reference does not change beyond its noise; let the light move or raise --spp");
   const double ratio = sums.picture.mean() / sums.trueChange();
   print(options, frames, sums, ratio);
-  if (options.atMost > 0 && ratio > options.atMost)
+  if (options.atMost && ratio > *options.atMost)
     throw Error(fmt::format("flicker: {:.2f} times the reference's change; at most {} is asked for", ratio,
-                            options.atMost));
+                            *options.atMost));
   return 0;
 }
 
@@ -163,16 +168,16 @@ Action addFlickerCommand(CLI::App& command) {
       ->capture_default_str();
   command.add_option("--fps", options->fps, "Frames per second of the animation")
       ->capture_default_str()
-      ->check(CLI::Range(0.001, 1e5));
+      ->check(realRange(0.001, 1e5));
   command.add_option("--spp", options->spp, "Samples per pixel of the reference, which is rendered twice")
       ->capture_default_str()
       ->check(CLI::Range(2, 1 << 22));
   command
-      .add_option("--bounces", options->bounces, "Bounces of the reference, as in limn reference --bounces")
-      ->capture_default_str()
-      ->check(CLI::Range(1, reference::kMaxBounces));
+      .add_option("--bounces", options->bounces,
+                  "Bounces of the reference, as in limn reference --bounces; default: the term's")
+      ->check(CLI::Range(0, reference::kMaxBounces));
   command.add_option("--at-most", options->atMost, "Exit with status 1 if the ratio exceeds this value")
-      ->check(CLI::Range(0.0, 1e9));
+      ->check(realRange(0.0, 1e9));
   command.add_flag("--json", options->json, "Print JSON");
   return [options] { return runFlicker(*options); };
 }

@@ -142,7 +142,7 @@ Action addReferenceCommand(CLI::App& command) {
   command
       .add_option("--noise", options->noise,
                   "Stop when the noise (RMS relative to the mean) falls to this value")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(realRange(0.0, 1.0));
   CLI::Option* atVertices = command.add_flag(
       "--at-vertices", options->atVertices,
       "Irradiance at the vertices of the scene instead of a picture: rows of 1024 of them, with positions\n"
@@ -152,7 +152,7 @@ Action addReferenceCommand(CLI::App& command) {
                   "With --at-vertices: halve triangle edges longer than this, in scene radii")
       ->needs(atVertices)
       ->capture_default_str()
-      ->check(CLI::Range(0.005, 1e3));
+      ->check(realRange(0.005, 1e3));
   command.add_option("--seed", options->seed, "Seed of the random numbers");
   command.add_option("--threads", options->threads, "0: all cores")->check(CLI::Range(0, 1024));
   options->tone.addTo(command);

@@ -115,6 +115,13 @@ class Writer {
     writePicture(file, picture, *tone_);
   }
 
+  /// Returns the option by which a command that goes on has the exposure that was found here, in place of
+  /// that of its own first picture; empty where no exposure was to be found.
+  std::string exposureFound() const {
+    const bool found = tone_ && options_.tone.automatic() && options_.out.extension() == ".png";
+    return found ? fmt::format("--exposure {} ", tone_->exposureEv) : std::string();
+  }
+
  private:
   const RenderArguments& options_;
   std::optional<ToneMapping> tone_;
@@ -171,8 +178,8 @@ void writeFrames(const RenderArguments& options, const FrameRange& frames, Write
   LastWords words("interrupted; no frame was written");
   for (int frame = frames.first; frame <= frames.last; ++frame) {
     if (frame > frames.first)
-      words.say(fmt::format("interrupted; the frames {}:{} are written, --frames {}:{} goes on", frames.first,
-                            frame - 1, frame, frames.last));
+      words.say(fmt::format("interrupted; the frames {}:{} are written, {}--frames {}:{} goes on",
+                            frames.first, frame - 1, writer.exposureFound(), frame, frames.last));
     writer.write(numbered(options.out, frame), frameAt(frame));
   }
   sayWritten(fmt::format("{} to {}", numbered(options.out, frames.first).string(),
@@ -281,7 +288,7 @@ Action addRenderCommand(CLI::App& command) {
   command.add_option("--fps", options->fps, "With --frames: frames per second of the animation")
       ->needs(frames)
       ->capture_default_str()
-      ->check(CLI::Range(0.001, 1e5));
+      ->check(realRange(0.001, 1e5));
   options->tone.addTo(command);
   command.add_option("--repeat", options->repeat, "After the picture, time this many frames")
       ->check(CLI::Range(1, 100000));

@@ -282,7 +282,7 @@ Action addTuneCommand(CLI::App& command) {
       command
           .add_option("--max-ms", options->maxMs,
                       "Milliseconds of a frame that the answer may take; it is the one with the least error")
-          ->check(CLI::Range(1e-6, 1e9));
+          ->check(realRange(1e-6, 1e9));
   CLI::Option* maxError =
       command
           .add_option(
@@ -320,7 +320,7 @@ Action addTuneCommand(CLI::App& command) {
       .add_option("--max-masked-share", options->maskedShare,
                   "Share of pixels that may differ in coverage, instance or depth and are left out")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(realRange(0.0, 1.0));
   command.add_flag("--json", options->json, "Print the answer and the runner-up as JSON");
   command.add_flag("--exhaustive", options->exhaustive, "Measure every setting in full instead of searching");
   command
@@ -333,7 +333,7 @@ Action addTuneCommand(CLI::App& command) {
                   "Seconds without a frame or a pass of a reference after which a setting is given up; 0: "
                   "never")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(realRange(0.0, 1e6));
   options->backend.addTo(command);
   return [options, term] {
     options->termGiven = term->count() > 0;

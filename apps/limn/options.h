@@ -23,6 +23,10 @@ void addSceneFlags(CLI::App& command, SceneQuestion& question);
 CLI::Option* addSceneFlag(CLI::App& command, SceneQuestion& question, std::string_view key,
                           const std::string& flag = {});
 
+/// Accepts the real numbers from `low` to `high`. CLI::Range accepts NaN as well, with which every comparison
+/// is false.
+CLI::Validator realRange(double low, double high);
+
 /// Returns the path of another of limn's programs, which lie in one folder.
 std::filesystem::path programBeside(const std::string& name);
 

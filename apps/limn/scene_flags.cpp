@@ -58,7 +58,7 @@ CLI::Option* addSceneFlag(CLI::App& command, SceneQuestion& question, std::strin
   switch (field.kind) {
     case QuestionKind::real:
     case QuestionKind::optionalReal:
-      option->check(CLI::Range(field.range.low, field.range.high));
+      option->check(realRange(field.range.low, field.range.high));
       // A value out of the range stands for one that is not given: there is no default to show.
       if (const auto* member = std::get_if<double SceneQuestion::*>(&field.member);
           member && question.**member >= field.range.low && question.**member <= field.range.high)

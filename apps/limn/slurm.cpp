@@ -71,6 +71,13 @@ std::vector<std::string> wordsOf(const std::string& text) {
   return {std::istream_iterator<std::string>(stream), std::istream_iterator<std::string>()};
 }
 
+/// The option that names where a job's output goes: a pattern, in which a % of the folder is written twice.
+std::string outputOption(const fs::path& out, const std::string& pattern) {
+  std::string folder;
+  for (const char c : (out / "slurm").string()) folder.append(c == '%' ? 2u : 1u, c);
+  return fmt::format("--output={}/{}", folder, pattern);
+}
+
 /// Where the numbers of the jobs that were submitted last are kept.
 fs::path jobsFile(const fs::path& out) {
   return out / "slurm" / "job";
@@ -145,13 +152,12 @@ std::string submitSuite(const fs::path& suiteFile, const fs::path& folder, const
   };
   const std::string array =
       submit({"--exclusive", fmt::format("--array={}%{}", fmt::join(open, ","), job.nodes),
-              "--output=" + (out / "slurm" / "part-%a.log").string(), script.string()});
+              outputOption(out, "part-%a.log"), script.string()});
   writeTextFile(jobsFile(out), array);  // now, since it also runs where the other job is refused
   const std::string merge = thisProgram() + " merge " + shellQuoted((out / "parts").string()) + "/* --out " +
                             shellQuoted(out.string());
-  const std::string last =
-      submit({"--dependency=afterany:" + array, "--output=" + (out / "slurm" / "merge.log").string(),
-              "--wrap=bash -c " + shellQuoted(merge)});
+  const std::string last = submit({"--dependency=afterany:" + array, outputOption(out, "merge.log"),
+                                   "--wrap=bash -c " + shellQuoted(merge)});
   writeTextFile(jobsFile(out), array + "\n" + last);
   return fmt::format(
       "{} of {} rows are missing or to be measured again: job {} measures them in {} parts on {} nodes, "

@@ -4,38 +4,24 @@
 #include <fmt/ranges.h>
 
 #include <cstdio>
-#include <optional>
 
-#include "core/base/error.h"
+#include "apps/limn/options.h"
 #include "core/base/text.h"
 
 namespace limn::app {
 namespace {
 
-constexpr double kMostEv = 60;
-
-bool isExposure(const std::string& text) {
-  const std::optional<double> ev = parseNumber(text);
-  return ev && *ev >= -kMostEv && *ev <= kMostEv;
-}
-
 /// Empty where the text is accepted.
 std::string exposureProblem(const std::string& text) {
-  if (text == kAutomaticExposure || isExposure(text)) return {};
-  return fmt::format("'{}' is not accepted; expected a number from {} to {}, or {}", text, -kMostEv, kMostEv,
-                     kAutomaticExposure);
+  if (text == kAutomaticExposure || exposureRange()(text).empty()) return {};
+  return fmt::format("'{}' is not accepted; expected a number from {} to {}, or {}", text, -kMostExposureEv,
+                     kMostExposureEv, kAutomaticExposure);
 }
 
 }  // namespace
 
 CLI::Validator exposureRange() {
-  // Unlike CLI::Range it refuses NaN, with which every comparison is false.
-  const auto problem = [](const std::string& text) {
-    return isExposure(text) ? std::string()
-                            : fmt::format("'{}' is not accepted; expected a number from {} to {}", text,
-                                          -kMostEv, kMostEv);
-  };
-  return CLI::Validator(problem, fmt::format("[{:g} - {:g}]", -kMostEv, kMostEv));
+  return realRange(-kMostExposureEv, kMostExposureEv);
 }
 
 void addToneCurveFlag(CLI::App& command, ToneCurve& curve) {
@@ -56,8 +42,8 @@ void ToneFlags::addTo(CLI::App& command) {
           "--exposure", exposure,
           "Exposure of a .png output, EV; or auto: the geometric mean of the first picture's luminance\n"
           "becomes middle grey, 0.18 (pixels without light and 5 % at both ends do not count)")
-      ->check(CLI::Validator(exposureProblem,
-                             fmt::format("[{:g} - {:g}] or {}", -kMostEv, kMostEv, kAutomaticExposure)))
+      ->check(CLI::Validator(exposureProblem, fmt::format("[{:g} - {:g}] or {}", -kMostExposureEv,
+                                                          kMostExposureEv, kAutomaticExposure)))
       ->capture_default_str();
 }
 

@@ -12,6 +12,9 @@ namespace limn::app {
 /// Holds the value of --exposure that leaves it to the picture.
 inline constexpr const char* kAutomaticExposure = "auto";
 
+/// Holds the largest exposure that is accepted, EV, in either direction.
+inline constexpr float kMostExposureEv = 60;
+
 /// Accepts an exposure, EV, as a number alone.
 CLI::Validator exposureRange();
 

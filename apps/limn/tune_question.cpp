@@ -40,8 +40,11 @@ std::vector<const TechniquePlugin*> chosenTechniques(const TechniqueRegistry& re
     return chosen;
   }
   for (const std::string& name : CLI::detail::split(options.techniques, ',')) {
-    chosen.push_back(&registry.find(name));
-    render::checkTechniques({{chosen.back(), {}}}, term);
+    const TechniquePlugin& plugin = registry.find(name);
+    if (std::ranges::find(chosen, &plugin) != chosen.end())
+      throw UsageError(fmt::format("technique {} is named twice; once is enough", plugin.info->name));
+    render::checkTechniques({{&plugin, {}}}, term);
+    chosen.push_back(&plugin);
   }
   return chosen;
 }
@@ -51,8 +54,10 @@ TuneParameters fixedParameters(const TechniqueInfo& technique, const TuneArgumen
   TuneParameters fixed;
   const std::string own = std::string(technique.name) + ".";
   for (const std::string& setting : options.settings)
-    if (const std::size_t sign = setting.find('='); setting.starts_with(own) && sign != std::string::npos)
+    if (setting.starts_with(own)) {
+      const std::size_t sign = setting.find('=');
       fixed.emplace_back(setting.substr(0, sign), setting.substr(sign + 1));
+    }
   const std::string key = own + "bounces";
   if (bounces > 0 && std::ranges::none_of(fixed, [&](const auto& p) { return p.first == key; }))
     for (const Parameter& parameter : technique.parameters)
@@ -92,11 +97,15 @@ TuneGoal tuneGoal(const TuneArguments& options) {
 std::vector<SearchedTechnique> searchedTechniques(const TechniqueRegistry& registry,
                                                   const TuneArguments& options, Term term, int bounces) {
   const std::vector<const TechniquePlugin*> techniques = chosenTechniques(registry, options, term);
-  for (const std::string& setting : options.settings)
+  for (const std::string& setting : options.settings) {
+    if (setting.find('=') == std::string::npos)
+      throw UsageError(
+          fmt::format("--set '{}' is not accepted; expected TECHNIQUE.PARAMETER=VALUE", setting));
     if (std::ranges::none_of(techniques, [&](const TechniquePlugin* plugin) {
           return setting.starts_with(std::string(plugin->info->name) + ".");
         }))
       throw UsageError(fmt::format("--set '{}' names none of the techniques that are searched", setting));
+  }
   std::vector<SearchedTechnique> spaces;
   for (const TechniquePlugin* plugin : techniques) {
     const TechniqueInfo& info = *plugin->info;

@@ -19,6 +19,10 @@
 namespace limn {
 namespace {
 
+[[noreturn]] void failRead(const std::filesystem::path& path, int error) {
+  throw Error(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(error)));
+}
+
 [[noreturn]] void failWrite(const std::filesystem::path& path, int error) {
   throw Error(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(error)));
 }
@@ -82,36 +86,53 @@ int writeAll(int file, std::span<const std::byte> bytes) {
   return 0;
 }
 
+/// A regular file that is open for reading.
+class SourceFile {
+ public:
+  explicit SourceFile(const std::filesystem::path& path) : path_(path) {
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) throw Error(fmt::format("{}: no such file", path.string()));
+    if (!std::filesystem::is_regular_file(path, error))
+      throw Error(fmt::format("{}: not a regular file", path.string()));
+    file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file_ < 0) failRead(path, errno);
+  }
+  ~SourceFile() { ::close(file_); }
+  SourceFile(const SourceFile&) = delete;
+  SourceFile& operator=(const SourceFile&) = delete;
+
+  std::uint64_t size() const {
+    struct stat status {};
+    if (::fstat(file_, &status) != 0) failRead(path_, errno);
+    return static_cast<std::uint64_t>(status.st_size);
+  }
+
+  /// Fills `bytes` as far as the file goes; gives how many that are.
+  std::size_t read(std::span<std::byte> bytes) {
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+      const ssize_t count = ::read(file_, bytes.data() + done, bytes.size() - done);
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) failRead(path_, errno);
+      if (count == 0) break;
+      done += static_cast<std::size_t>(count);
+    }
+    return done;
+  }
+
+ private:
+  const std::filesystem::path& path_;
+  int file_ = -1;
+};
+
 template <class Container>
 Container readInto(const std::filesystem::path& path, std::uint64_t maxBytes) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) throw Error(fmt::format("{}: no such file", path.string()));
-  if (!std::filesystem::is_regular_file(path, error)) {
-    throw Error(fmt::format("{}: not a regular file", path.string()));
-  }
-  const std::uint64_t size = std::filesystem::file_size(path, error);
-  if (error) throw Error(fmt::format("{}: cannot be read: {}", path.string(), error.message()));
-  if (size > maxBytes) {
+  SourceFile file(path);
+  const std::uint64_t size = file.size();
+  if (size > maxBytes)
     throw Error(fmt::format("{}: {} bytes, at most {} are accepted", path.string(), size, maxBytes));
-  }
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) throw Error(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
   Container content(size, typename Container::value_type{});
-  std::size_t done = 0;
-  int failure = 0;
-  while (done < size) {
-    const ssize_t count = ::read(file, content.data() + done, size - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) {
-      failure = count < 0 ? errno : EIO;
-      break;
-    }
-    done += static_cast<std::size_t>(count);
-  }
-  ::close(file);
-  if (failure != 0) {
-    throw Error(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(failure)));
-  }
+  if (file.read(std::as_writable_bytes(std::span(content))) < size) failRead(path, EIO);
   return content;
 }
 
@@ -123,6 +144,32 @@ std::vector<std::byte> readFile(const std::filesystem::path& path, std::uint64_t
 
 std::string readTextFile(const std::filesystem::path& path, std::uint64_t maxBytes) {
   return readInto<std::string>(path, maxBytes);
+}
+
+std::uint64_t readLines(const std::filesystem::path& path,
+                        const std::function<void(const std::string&)>& take, std::uint64_t maxBytes) {
+  SourceFile file(path);
+  std::vector<char> buffer(std::size_t{1} << 20);
+  std::string line;
+  std::uint64_t whole = 0;
+  const auto extend = [&](std::string_view by) {
+    line += by;
+    if (line.size() > maxBytes)
+      throw Error(
+          fmt::format("{}: a line of more than the {} bytes that are accepted", path.string(), maxBytes));
+  };
+  while (const std::size_t count = file.read(std::as_writable_bytes(std::span(buffer)))) {
+    std::string_view rest(buffer.data(), count);
+    for (std::size_t end = rest.find('\n'); end != std::string_view::npos; end = rest.find('\n')) {
+      extend(rest.substr(0, end));
+      take(line);
+      whole += line.size() + 1;
+      line.clear();
+      rest.remove_prefix(end + 1);
+    }
+    extend(rest);
+  }
+  return whole;
 }
 
 TemporaryFile::TemporaryFile(std::filesystem::path target)

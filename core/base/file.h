@@ -1,9 +1,10 @@
-// Declares functions that read whole files into memory and that write files completely or not at all.
+// Declares functions that read files and that write files completely or not at all.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,6 +20,13 @@ LIMN_API std::vector<std::byte> readFile(const std::filesystem::path& path,
                                          std::uint64_t maxBytes = std::uint64_t{1} << 34);
 LIMN_API std::string readTextFile(const std::filesystem::path& path,
                                   std::uint64_t maxBytes = std::uint64_t{1} << 30);
+
+/// Hands each line of a regular file that ends in '\n' to `take`, without that. Returns the bytes of these
+/// lines: what follows them is torn. No more than one line is held at a time. Throws Error naming the file
+/// when it is missing, unreadable or has a line of more than `maxBytes`.
+LIMN_API std::uint64_t readLines(const std::filesystem::path& path,
+                                 const std::function<void(const std::string&)>& take,
+                                 std::uint64_t maxBytes = std::uint64_t{1} << 30);
 
 /// Holds a new file beside `target` that gets that name when it is whole. Other programs may write to it. It
 /// is gone when its holder ends before that; where the process is killed, removeAbandonedFiles() removes it.

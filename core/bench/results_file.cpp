@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <iterator>
 #include <set>
@@ -36,19 +37,16 @@ void remember(std::vector<Row>& rows, std::map<std::string, std::size_t>& positi
 /// Hands every whole line's row to `take`; gives the bytes of whole lines. What follows them is torn: every
 /// finished row ends in a line's end.
 template <class Take>
-std::size_t parseRows(const std::string& text, const std::filesystem::path& path, Take take) {
-  std::size_t begin = 0;
-  for (int line = 1; begin < text.size(); ++line) {
-    const std::size_t end = text.find('\n', begin);
-    if (end == std::string::npos) break;
+std::uint64_t parseRows(const std::filesystem::path& path, Take take) {
+  int line = 0;
+  return readLines(path, [&](const std::string& text) {
+    ++line;
     try {
-      take(rowFromJson(text.substr(begin, end - begin)));
+      take(rowFromJson(text));
     } catch (const Error& error) {
       throw Error(fmt::format("{}:{}: {}", path.string(), line, error.what()));
     }
-    begin = end + 1;
-  }
-  return begin;
+  });
 }
 
 }  // namespace
@@ -57,7 +55,7 @@ std::vector<Row> readRows(const std::filesystem::path& path) {
   std::vector<Row> rows;
   std::map<std::string, std::size_t> position;
   std::size_t lines = 0;
-  parseRows(readTextFile(path), path, [&](Row row) {
+  parseRows(path, [&](Row row) {
     row.line = ++lines;
     remember(rows, position, std::move(row));
   });
@@ -94,9 +92,8 @@ ResultsFile::~ResultsFile() {
 
 void ResultsFile::readExisting() {
   if (!std::filesystem::exists(path_)) return;
-  const std::string text = readTextFile(path_);
-  const std::size_t whole = parseRows(text, path_, [this](Row row) { add(std::move(row)); });
-  if (whole < text.size()) std::filesystem::resize_file(path_, whole);
+  const std::uint64_t whole = parseRows(path_, [this](Row row) { add(std::move(row)); });
+  if (whole < std::filesystem::file_size(path_)) std::filesystem::resize_file(path_, whole);
 }
 
 void ResultsFile::append(const Row& row) {

@@ -109,8 +109,9 @@ void append(std::vector<double>& samples, const std::vector<double>& more) {
   samples.insert(samples.end(), more.begin(), more.end());
 }
 
-/// The row with the frames of a further turn.
-Row withTurn(Row row, const std::vector<double>& ms, const std::optional<BoundTime>& bound) {
+/// The row with the frames of a further turn, which the case asks for now.
+Row withTurn(Row row, const Case& c, const std::vector<double>& ms, const std::optional<BoundTime>& bound) {
+  row.what.turns = c.turns;
   if (row.cost.bound && bound) {
     append(row.cost.bound->own, bound->own);
     append(row.cost.bound->bound, bound->bound);
@@ -234,7 +235,7 @@ class Run {
     } catch (...) {  // the row stays as it is
       return report(i, turn, Progress::State::failed, currentFailure());
     }
-    append(withTurn(*row, ms, bound), key);
+    append(withTurn(*row, c, ms, bound), key);
     report(i, turn, Progress::State::done);
   }
 

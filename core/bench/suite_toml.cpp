@@ -123,6 +123,7 @@ SweptTechnique parseTechnique(const std::string& file, const toml::table& table)
   const toml::node* parameters = section.find("parameters");
   if (parameters == nullptr) return technique;
   if (!parameters->is_table()) section.fail(*parameters, "'parameters' must be a table");
+  std::set<std::string> names;
   for (const auto& [key, node] : *parameters->as_table()) {
     std::string name(key.str());
     if (oneLine(name, name.size()) != name) failAt(file, key.source(), "a parameter's name must be one line");
@@ -134,6 +135,8 @@ SweptTechnique parseTechnique(const std::string& file, const toml::table& table)
       const std::vector<NamedTechnique> named = namedTechniques(technique.name);
       name = fmt::format("{}.{}", named.empty() ? "" : named.front().name, name);
     }
+    if (!names.insert(name).second)
+      failAt(file, key.source(), fmt::format("parameter '{}' is set twice", name));
     std::vector<std::string> values;
     if (const toml::array* list = node.as_array()) {
       if (list->empty()) section.fail(node, fmt::format("parameter '{}' has an empty list", name));

@@ -21,15 +21,54 @@ std::array<fs::path, 2> sharedFolders() {
   return {prefix, prefix / "share/limn"};
 }
 
-/// Returns the sorted stems of the entries of `folder` for which `accepts` holds.
-template <class Accepts>
-std::vector<std::string> stemsIn(const fs::path& folder, const Accepts& accepts) {
+/// Files of one kind that come with limn.
+struct FileKind {
+  const char* what;
+  const char* folder;
+  const char* ending;
+  bool inOwnFolder;      ///< NAME/NAME.ENDING
+  const char* expected;  ///< what may be given
+};
+
+constexpr FileKind kSceneFiles{
+    "scene", "assets", ".glb", true,
+    "a .gltf or .glb file, or the name of one of limn's scenes (limn list scenes)"};
+constexpr FileKind kEnvironmentFiles{
+    "environment", "assets/environments", ".exr", false,
+    "an equirectangular .exr or .hdr file, or the name of one of limn's maps (limn list environments)"};
+constexpr FileKind kSuiteFiles{"suite", "benchmarks", ".toml", false,
+                               "a TOML file, or the name of one of limn's suites (limn list suites)"};
+
+/// Where the file of that name lies in the folder of its kind.
+fs::path placeOf(const FileKind& kind, const std::string& name) {
+  const fs::path file = name + kind.ending;
+  return kind.inOwnFolder ? name / file : file;
+}
+
+/// Returns the sorted names of all files of the kind.
+std::vector<std::string> namesOf(const FileKind& kind) {
   std::set<std::string> names;
   std::error_code ignored;
   for (const fs::path& share : sharedFolders())
-    for (const auto& entry : fs::directory_iterator(share / folder, ignored))
-      if (accepts(entry.path())) names.insert(entry.path().stem().string());
+    for (const auto& entry : fs::directory_iterator(share / kind.folder, ignored)) {
+      const std::string name = entry.path().stem().string();
+      if (fs::exists(share / kind.folder / placeOf(kind, name), ignored)) names.insert(name);
+    }
   return {names.begin(), names.end()};
+}
+
+/// Returns the file itself, or that of the name. A folder is neither: results often go into one that has the
+/// name of what they are of.
+fs::path findFile(const FileKind& kind, const fs::path& nameOrFile) {
+  std::error_code ignored;
+  const bool isFolder = fs::is_directory(nameOrFile, ignored);
+  if (!isFolder && fs::exists(nameOrFile, ignored)) return nameOrFile;
+  const std::string name = nameOrFile.string();
+  if (nameOrFile.filename() == nameOrFile)
+    if (const fs::path file = findShared(kind.folder, placeOf(kind, name)); !file.empty()) return file;
+  throw Error(fmt::format("{} '{}' {}{}; expected {}", kind.what, name,
+                          isFolder ? "is a folder" : "does not exist", didYouMean(name, namesOf(kind)),
+                          kind.expected));
 }
 
 }  // namespace
@@ -42,56 +81,27 @@ fs::path findShared(const fs::path& folder, const fs::path& file) {
 }
 
 std::vector<std::string> sceneNames() {
-  return stemsIn("assets", [](const fs::path& path) {
-    std::error_code ignored;
-    return fs::exists(path / path.filename().concat(".glb"), ignored);
-  });
+  return namesOf(kSceneFiles);
 }
 
 std::vector<std::string> environmentNames() {
-  return stemsIn("assets/environments", [](const fs::path& path) { return path.extension() == ".exr"; });
+  return namesOf(kEnvironmentFiles);
 }
 
 std::vector<std::string> suiteNames() {
-  return stemsIn("benchmarks", [](const fs::path& path) { return path.extension() == ".toml"; });
+  return namesOf(kSuiteFiles);
 }
-
-namespace {
-
-/// Returns the map of that name; empty when it was not built or installed with limn.
-fs::path ownEnvironment(const std::string& name) {
-  return findShared("assets/environments", name + ".exr");
-}
-
-}  // namespace
 
 fs::path findScene(const fs::path& nameOrFile) {
-  std::error_code ignored;
-  if (fs::exists(nameOrFile, ignored)) return nameOrFile;
-  const std::string name = nameOrFile.string();
-  if (name.find('/') == std::string::npos)
-    if (const fs::path file = findShared("assets", fs::path(name) / (name + ".glb")); !file.empty())
-      return file;
-  throw Error(
-      fmt::format("scene '{}' does not exist{}; expected a .gltf or .glb file, or the name of one of limn's "
-                  "scenes (limn list scenes)",
-                  name, didYouMean(name, sceneNames())));
+  return findFile(kSceneFiles, nameOrFile);
 }
 
 fs::path findEnvironment(const fs::path& nameOrFile) {
-  std::error_code ignored;
-  if (fs::exists(nameOrFile, ignored)) return nameOrFile;
-  const fs::path name = nameOrFile.filename();
-  if (name == nameOrFile)
-    if (const fs::path file = ownEnvironment(name.string()); !file.empty()) return file;
-  throw Error(
-      fmt::format("environment '{}' does not exist{}; expected an equirectangular .exr or .hdr file, or the "
-                  "name of one of limn's maps (limn list environments)",
-                  nameOrFile.string(), didYouMean(nameOrFile.string(), environmentNames())));
+  return findFile(kEnvironmentFiles, nameOrFile);
 }
 
 fs::path findDefaultEnvironment() {
-  const fs::path file = ownEnvironment("studio");
+  const fs::path file = findShared(kEnvironmentFiles.folder, placeOf(kEnvironmentFiles, "studio"));
   if (file.empty())
     throw Error(
         "limn's environment 'studio', which belongs to the default lights, is not installed; choose another "
@@ -100,15 +110,7 @@ fs::path findDefaultEnvironment() {
 }
 
 fs::path findSuite(const fs::path& nameOrFile) {
-  std::error_code ignored;
-  if (fs::exists(nameOrFile, ignored)) return nameOrFile;
-  const fs::path file = findShared("benchmarks", fs::path(nameOrFile).concat(".toml"));
-  if (file.empty())
-    throw Error(
-        fmt::format("suite '{}' does not exist{}; expected a TOML file, or the name of one of limn's suites "
-                    "(limn list suites)",
-                    nameOrFile.string(), didYouMean(nameOrFile.string(), suiteNames())));
-  return file;
+  return findFile(kSuiteFiles, nameOrFile);
 }
 
 }  // namespace limn::session

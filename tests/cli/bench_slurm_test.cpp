@@ -165,6 +165,19 @@ TEST_F(BenchSlurm, TasksHaveANodeForThemselvesAndAreQueuedAgainWhereItIsLost) {
     EXPECT_THAT(array, HasSubstr("\n" + std::string(word) + "\n"));
 }
 
+/// Names of output are patterns.
+TEST_F(BenchSlurm, FoldersMayHaveAPercentSignInTheirNames) {
+  slurmThatWaits();
+  const fs::path out = folder_ / "50%accuracy";
+  const Outcome outcome = limn({"bench", folder_ / "suite.toml", "--out", out, "--slurm"}, environment_);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string words = contents(folder_ / "bin/sbatch.words");
+  for (const char* log : {"part-%a.log", "merge.log"})
+    EXPECT_THAT(words,
+                HasSubstr("\n--output=" + folder_.path().string() + "/50%%accuracy/slurm/" + log + "\n"));
+  EXPECT_THAT(words, HasSubstr("\n" + (out / "slurm/part.sh").string() + "\n")) << "no pattern";
+}
+
 /// A task whose program was killed is queued again three times, one whose program failed never.
 TEST_F(BenchSlurm, TasksAreQueuedAgainThreeTimes) {
   slurmThatWaits();

@@ -50,6 +50,18 @@ TEST_F(BenchCommand, AgainstAnEarlierResultFindsWhatGotSlower) {
   EXPECT_THAT(faster.out, testing::HasSubstr("1 faster"));
 }
 
+/// The folder of the results has the name of the suite.
+TEST_F(BenchCommand, ASuiteThatCameWithLimnIsMeasuredIntoAFolderOfItsName) {
+  const std::string command = "cd '" + folder_.path().string() + "' && exec '" + kLimnBinary +
+                              "' bench quick --filter cornell_box --filter hard_shadow_map --out quick";
+  const Outcome first = run({"/bin/sh", "-c", command});
+  EXPECT_EQ(first.status, 0) << first.err;
+  EXPECT_THAT(first.out, testing::HasSubstr("1 rows measured"));
+  const Outcome again = run({"/bin/sh", "-c", command});
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_THAT(again.out, testing::HasSubstr("0 rows measured, 1 were there already"));
+}
+
 TEST_F(BenchCommand, AgainstNothingIsRefusedBeforeAnythingIsMeasured) {
   expectRefused(bench("now", {"--against", folder_ / "missing"}), 1, {"--against", "results.jsonl"});
   EXPECT_FALSE(fs::exists(folder_ / "now" / "results.jsonl"));

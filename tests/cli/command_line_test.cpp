@@ -1,10 +1,13 @@
 // The command line as a person meets it: what is wrong is said in one line, and the exit status tells whose
 // fault it is.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
 #include <sstream>
 
 #include "tests/cli/limn_program.h"
@@ -43,6 +46,33 @@ TEST(CommandLine, WrongUsageIsOneLine) {
   expectRefused(limn({"render"}), 2, {"scene"});
   expectRefused(limn({"render", kCornellBox, "--out", "a.png", "--fov", "200"}), 2, {"--fov", "200", "179"});
   expectRefused(limn({"render", kCornellBox, "--out", "a.png", "--colour"}), 2, {"--colour"});
+}
+
+/// No comparison holds with NaN, so that a range that asks whether a value lies outside lets it in.
+TEST(CommandLine, NoRealOptionTakesNan) {
+  std::vector<std::vector<std::string>> commands{{"brdf", "simulate"}};
+  for (const std::string& command : commandsOfHelp()) commands.push_back({command});
+  const std::regex real("^  (--[^ ,]+)[^ ]* FLOAT");
+  std::set<std::string> options;
+  for (std::vector<std::string> arguments : commands) {
+    arguments.emplace_back("--help");
+    std::istringstream help(limn(arguments).out);
+    for (std::string line; std::getline(help, line);) {
+      std::smatch match;
+      if (!std::regex_search(line, match, real)) continue;
+      const std::string option = match[1];
+      std::vector<std::string> given = arguments;
+      given.back() = option;
+      given.emplace_back("nan");
+      SCOPED_TRACE(fmt::format("{}", fmt::join(given, " ")));
+      expectRefused(limn(given), 2, {option, "nan"});
+      options.insert(option);
+    }
+  }
+  EXPECT_THAT(options, testing::IsSupersetOf({"--fov", "--light-size", "--environment-lights", "--noise",
+                                              "--longest-edge", "--fps", "--at-most", "--max-ms",
+                                              "--max-masked", "--max-masked-share", "--stall-timeout",
+                                              "--exposure", "--slope", "--scale"}));
 }
 
 TEST(CommandLine, LightSizesNeedLightsThatHaveOne) {
@@ -131,6 +161,8 @@ TEST(CommandLine, FlickerComparesAnimationsWithTheTruth) {
   expectRefused(flicker("cornell_horse", {"--frames", "3:3"}), 2, {"--frames", "a < b"});
   expectRefused(flicker("cornell_horse", {"--output-term", "caustic"}), 2, {"caustic"});
   expectRefused(flicker("cornell_horse", {"--time", "1"}), 2, {"--time"});
+  expectRefused(flicker("cornell_horse", {"--output-term", "direct", "--bounces", "1"}), 2,
+                {"--bounces", "direct"});
   const Outcome still = flicker("cornell_box", {"--frames", "0:1"});
   EXPECT_EQ(still.status, 1);
   EXPECT_THAT(still.err, HasSubstr("does not change beyond its noise"));
@@ -139,9 +171,29 @@ TEST(CommandLine, FlickerComparesAnimationsWithTheTruth) {
   const auto parsed = nlohmann::json::parse(moving.out);
   EXPECT_EQ(parsed["frames"], 3);
   EXPECT_GT(parsed["ratio"].get<double>(), 0);
-  const Outcome strict = flicker("cornell_horse", {"--frames", "0:1", "--fps", "5", "--at-most", "0.001"});
-  EXPECT_EQ(strict.status, 1);
-  EXPECT_THAT(strict.err, HasSubstr("at most 0.001"));
+  for (const std::string most : {"0.001", "0"}) {
+    const Outcome strict = flicker("cornell_horse", {"--frames", "0:1", "--fps", "5", "--at-most", most});
+    EXPECT_EQ(strict.status, 1);
+    EXPECT_THAT(strict.err, HasSubstr("at most " + most + " is asked for"));
+  }
+}
+
+/// Final pictures have none: without a technique that answers indirect light they show no bounce.
+TEST(CommandLine, FlickerComparesWithTheBouncesOfTheTerm) {
+  const auto change = [](std::vector<std::string> more) {
+    std::vector<std::string> all{
+        "flicker", "cornell_horse", "--technique", "hard_shadow_map", "--term", "final", "--size",
+        "32x24",   "--spp",         "64",          "--frames",        "0:1",    "--fps", "5",
+        "--json"};
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome outcome = limn(all);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const auto parsed = nlohmann::json::parse(outcome.out, nullptr, false);
+    return parsed.is_object() ? parsed["reference_change"].get<double>() : -1;
+  };
+  const double usual = change({});
+  EXPECT_EQ(usual, change({"--bounces", "0"}));
+  EXPECT_NE(usual, change({"--bounces", "1"}));
 }
 
 /// As in `limn render --frames`: what --set-light leaves of a light follows its animation.

@@ -1,5 +1,6 @@
 // Long work that is stopped halfway is not lost.
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 
 #include "tests/cli/limn_program.h"
@@ -72,6 +73,27 @@ TEST(Interruption, AnimationSaysWhichFramesAreThere) {
     EXPECT_THAT(outcome.err, testing::AnyOf(says(next), says(next - 1)));
     EXPECT_THAT(outcome.err, testing::EndsWith("goes on\n"));
   }
+}
+
+/// Otherwise the frames of the second command would have an exposure of their own.
+TEST(Interruption, AnimationGoesOnWithTheExposureThatItFound) {
+  const TemporaryFolder folder;
+  Process process({kLimnBinary, "render", kCornellBox, "--size", "16x12", "--frames", "0:100000",
+                   "--exposure", "auto", "-o", folder / "a.png"});
+  ASSERT_TRUE(process.waitUntil([&] { return fs::exists(folder / "a.0001.png"); })) << process.err();
+  process.signal(SIGINT);
+  const Outcome outcome = process.wait();
+  std::smatch match;
+  ASSERT_TRUE(std::regex_search(
+      outcome.err, match, std::regex(" are written, --exposure ([^ ]+) --frames [0-9]+:100000 goes on\n")))
+      << outcome.err;
+  ASSERT_EQ(limn({"render", kCornellBox, "--size", "16x12", "--frames", "1:1", "--exposure", match[1].str(),
+                  "-o", folder / "b.png"})
+                .status,
+            0);
+  const Outcome compared = limn({"compare", folder / "a.0001.png", folder / "b.0001.png", "--json"});
+  ASSERT_EQ(compared.status, 0) << compared.err;
+  EXPECT_EQ(nlohmann::json::parse(compared.out)["rmse"], 0.0);
 }
 
 TEST(Interruption, BenchSaysWhatIsKept) {

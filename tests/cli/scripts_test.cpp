@@ -1,4 +1,6 @@
 // Scripts around limn, with programs in its place that only say what they were asked.
+#include <unistd.h>
+
 #include "tests/cli/limn_program.h"
 
 namespace limn::test {
@@ -69,6 +71,17 @@ TEST_F(Scripts, GpuRunTakesSuitesOfTheFolderWhereItIsCalled) {
   EXPECT_THAT(said(), testing::HasSubstr("bench " + (fs::canonical(caller_) / "my.toml").string() + " "))
       << outcome.err;
   EXPECT_THAT(said(), testing::HasSubstr("bench bound "));
+}
+
+TEST_F(Scripts, TryPackageLeavesAFolderThatIsNoSystem) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can make a system";
+  std::ofstream(caller_ / "limn.deb") << "no package";
+  fs::create_directory(caller_ / "mine");
+  std::ofstream(caller_ / "mine/file") << "kept";
+  const Outcome outcome = call("try-package", "limn.deb mine");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, testing::HasSubstr("mine is no Debian system"));
+  EXPECT_EQ(contents(caller_ / "mine/file"), "kept");
 }
 
 TEST_F(Scripts, ManualPagesAreWrittenForProgramsInFoldersOfAnyName) {

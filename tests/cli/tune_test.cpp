@@ -114,6 +114,9 @@ TEST_F(TuneCommand, QuestionsThatCannotBeAskedAreRefusedAtOnce) {
   expectRefused(tune({"--max-ms", "10", "--bounces", "2"}), 2, {"--bounces", "direct"});
   expectRefused(tune({"--max-ms", "10", "--techniques", "pcf", "--set", "pcss.bias=1"}), 2, {"pcss.bias"});
   expectRefused(tune({"--max-ms", "10", "--techniques", "pcf", "--set", "pcf.kernel=1000"}), 2, {"kernel"});
+  expectRefused(tune({"--max-ms", "10", "--techniques", "pcf", "--set", "pcf.kernel"}), 2,
+                {"--set 'pcf.kernel'", "TECHNIQUE.PARAMETER=VALUE"});
+  expectRefused(tune({"--max-ms", "10", "--techniques", "pcf,pcss,pcf"}), 2, {"pcf is named twice"});
   EXPECT_FALSE(fs::exists(folder_ / "out/results.jsonl"));
 }
 

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -53,6 +54,29 @@ TEST_F(FileTest, EveryNameThatAFileMayHaveCanBeWritten) {
   }
   EXPECT_EQ(beside("a/b.exr", ".lock"), "a/b.exr.lock");
   EXPECT_NE(beside(std::string(254, 'n') + "1", ".lock"), beside(std::string(254, 'n') + "2", ".lock"));
+}
+
+/// Lines are limited, the whole of them is not.
+TEST_F(FileTest, LinesAreReadOneByOne) {
+  const std::string longer(std::size_t{3} << 20, 'l');  // than what is read at once
+  const std::string whole = "first\n\n" + longer + "\nlast\n";
+  const auto lines = [&](const std::string& content, std::uint64_t maxBytes) {
+    writeTextFile(folder_ / "a", content);
+    std::vector<std::string> taken;
+    EXPECT_EQ(readLines(
+                  folder_ / "a", [&](const std::string& line) { taken.push_back(line); }, maxBytes),
+              whole.size());
+    return taken;
+  };
+  const std::vector<std::string> wanted = {"first", "", longer, "last"};
+  EXPECT_EQ(lines(whole, longer.size()), wanted);
+  EXPECT_EQ(lines(whole + "torn", longer.size()), wanted);
+  const auto ignore = [](const std::string&) {};
+  EXPECT_THROW(readLines(folder_ / "a", ignore, longer.size() - 1), Error);
+  writeTextFile(folder_ / "a", "torn and too long");
+  EXPECT_THROW(readLines(folder_ / "a", ignore, 4), Error);
+  EXPECT_THROW(readLines(folder_ / "missing", ignore), Error);
+  EXPECT_THROW(readLines(folder_, ignore), Error);
 }
 
 TEST_F(FileTest, LeftoversOfAnotherProcessOfTheSameNumberDisturbNobody) {

@@ -331,6 +331,7 @@ TEST(BenchSuite, ErrorsNameFileLineAndColumn) {
   expectUsageError(good + "camera='x'\n", "s.toml:7:1: unknown key 'camera' in [[techniques]]");
   expectUsageError(good + "parameters={a=[]}\n", "'c.a' has an empty list");
   expectUsageError(good + "parameters={a={b=1}}\n", "parameter 'c.a' must be a number");
+  expectUsageError(good + "parameters={a=1,\"c.a\"=2}\n", "parameter 'c.a' is set twice");
   expectUsageError(
       "name='a'\nsizes='8x8'\n[[scenes]]\nscene='b'\n[[techniques]]\ntechnique='c,d'\nparameters={x=1}\n",
       "s.toml:7:13: parameter 'x' of a combination");

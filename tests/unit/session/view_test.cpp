@@ -3,8 +3,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -151,6 +153,27 @@ TEST(Find, KnowsTheNamesOfWhatCameWithLimn) {
   expectSuggestion(findScene, "robt", "robot");
   expectSuggestion(findEnvironment, "studoi", "studio");
   expectSuggestion(findSuite, "quik", "quick");
+}
+
+/// Results often go into a folder that has the name of what they are of.
+TEST(Find, AFolderOfTheNameIsPassedOver) {
+  namespace fs = std::filesystem;
+  const fs::path before = fs::current_path(),
+                 here = fs::temp_directory_path() / ("limn_find_" + std::to_string(::getpid()));
+  for (const char* name : {"balls", "sky", "quick"}) fs::create_directories(here / name);
+  fs::current_path(here);
+  const fs::path scene = findScene("balls"), environment = findEnvironment("sky"), suite = findSuite("quick");
+  fs::current_path(before);
+  fs::remove_all(here);
+  EXPECT_TRUE(fs::is_regular_file(scene)) << scene;
+  EXPECT_TRUE(fs::is_regular_file(environment)) << environment;
+  EXPECT_TRUE(fs::is_regular_file(suite)) << suite;
+  try {
+    findSuite(before);
+    ADD_FAILURE() << "a folder was found";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("suite '" + before.string() + "' is a folder"));
+  }
 }
 
 TEST(Find, NamesThatRepeatAreFoundByTheirIndex) {
