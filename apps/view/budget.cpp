@@ -13,7 +13,6 @@
 #include "core/question/question_fields.h"
 #include "core/question/render_command.h"
 #include "core/question/technique_names.h"
-#include "core/reference/reference.h"
 
 namespace limn::app {
 namespace {
@@ -28,14 +27,7 @@ std::string measuredText(bench::Case c) {
   c.parameters.clear();
   std::string text = bench::label(c);
   text.pop_back();  // what divides it from the technique
-  const bench::ReferenceSettings& truth = c.reference;
-  text += truth.noise > 0 ? fmt::format(", against {} % noise", 100 * truth.noise)
-                          : fmt::format(", against {} spp", truth.spp);
-  if (reference::hasBounces(parseTerm(c.term)) && truth.bounces > 0)
-    text += fmt::format(", bounces {}", truth.bounces);
-  if (truth.interfaces != 0)
-    text += truth.interfaces < 0 ? ", interfaces all" : fmt::format(", interfaces {}", truth.interfaces);
-  return text;
+  return text + ", " + bench::referenceText(c);
 }
 
 }  // namespace

@@ -24,6 +24,14 @@ export function chooser(label, options, value, onChange) {
   return el("label", {class: "chooser"}, el("span", {}, label), select);
 }
 
+/** Puts choosers, some of them null, in the place of those before them; the focus stays in the one of the same label. */
+export function putChoosers(tools, choosers) {
+  const labelOf = (element) => element.closest(".chooser")?.firstChild.textContent;
+  const focused = tools.contains(document.activeElement) ? labelOf(document.activeElement) : null;
+  tools.replaceChildren(...choosers.filter(Boolean));
+  if (focused) [...tools.querySelectorAll("select, input")].find((field) => labelOf(field) === focused)?.focus();
+}
+
 /** A name that may be broken after its underscores. */
 export function breakable(name) {
   return String(name).split(/(?<=_)/).flatMap((part, i) => (i ? [el("wbr"), part] : [part]));

@@ -18,7 +18,7 @@ export function enlarge(pictures, start) {
   const steps = {ArrowRight: () => (shown + 1) % count, ArrowLeft: () => (shown + count - 1) % count, " ": () => before};
   const dialog = el("dialog", {"aria-label": "Enlarged picture", close: () => dialog.remove(),
     keydown: (event) => {
-      if (!steps[event.key] || (event.key === " " && event.target.dataset.close)) return;
+      if (!steps[event.key] || (event.key === " " && "close" in event.target.dataset)) return;
       event.preventDefault();
       show(steps[event.key]());
     }},

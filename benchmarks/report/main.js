@@ -1,7 +1,8 @@
 // The report of a bench: reads what `limn bench` put into the page and shows it, a section per subject.
 import "./licence.js";
-import {Section, conditions, subjectName} from "./section.js";
+import {Section} from "./section.js";
 import {el} from "./dom.js";
+import {groupBy} from "./series.js";
 import {page} from "./page.js";
 import {stability} from "./stability.js";
 import {takeOverAll} from "./take.js";
@@ -16,10 +17,10 @@ function summary(tables) {
     const counts = (key) => all(key).sort((a, b) => a - b).join(", ").replace(/, (?=[^,]*$)/, " or ");
     const failed = own.flatMap((table) => table.rows).filter((row) => row.failure).length;
     const rows = own.flatMap((table) => table.rows).length;
-    const software = own.some((table) => table.software);
+    const software = own.some((table) => table.software), known = own.some((table) => table.software !== null);
     const machines = all("machines"), several = ["machines", "drivers"].filter((key) => all(key).length > 1);
     return el("div", {class: "machine"},
-      el("p", {}, el("strong", {}, renderer), ` – ${software ? "software" : "hardware"} rendering. `,
+      el("p", {}, el("strong", {}, renderer), known ? ` – ${software ? "software" : "hardware"} rendering. ` : ". ",
         all("drivers").map((driver) => `Driver: ${driver}. `), machines.map((machine) => `Machine: ${machine}. `),
         `${rows} row${rows === 1 ? "" : "s"}${failed ? `, ${failed} failed` : ""}; `,
         `medians of ${counts("frames")} frames a turn (turns: ${counts("turns") || "none"}), after ${counts("warmup")} to warm up.`),
@@ -28,11 +29,7 @@ function summary(tables) {
   });
 }
 
-const bySubject = new Map();
-for (const table of page.tables) {
-  const key = JSON.stringify(table.subject);
-  bySubject.set(key, [...(bySubject.get(key) ?? []), table]);
-}
+const bySubject = groupBy(page.tables, (table) => table.subject);
 const sections = [...bySubject.values()].map((tables, i) => new Section(tables, `subject-${i}`));
 main.replaceChildren(
   ...summary(page.tables),
@@ -40,11 +37,10 @@ main.replaceChildren(
     (page.reduction > 1 ? ` and reduced ${page.reduction} times in both directions` : "") +
     "; magnified windows are not, and pictures/ beside it has all of them whole.")] : []),
   ...[takeOverAll(page.tables, {
-    name: (table) => subjectName(table.subject), question: (table) => `${table.term}, ${conditions(table)}`,
+    question: (table) => `${table.term}, ${table.measured}`,
     onVisit: (table, row) => sections.find((section) => section.tables.includes(table)).goTo(table, row)})].filter(Boolean),
   ...(sections.length > 1 ? [el("nav", {"aria-label": "Scenes"}, el("ul", {class: "contents"}, sections.map((section, i) =>
-    el("li", {}, el("a", {href: `#subject-${i}`, click: () => section.open()},
-      subjectName([...bySubject.values()][i][0].subject))))))] : []),
+    el("li", {}, el("a", {href: `#subject-${i}`, click: () => section.open()}, section.subject)))))] : []),
   ...(sections.length ? sections.map((section) => section.element) : [el("p", {}, "No rows yet.")]),
   ...stability(page.stability));
 

@@ -1,37 +1,15 @@
 // One subject (scene, camera, light, environment): its chart, its pictures and its tables. A table of the bench is
 // shown at a time, so that terms, sizes, modes and renderers never mix.
-import {breakable, chooser, el} from "./dom.js";
+import {breakable, chooser, el, putChoosers} from "./dom.js";
 import {METRICS, TIMES, isNumber, knownMetrics, tracedBy} from "./metrics.js";
 import {SEPARATION_FLOOR, curveOf, curves as curvesOf} from "./series.js";
 import {commonTarget, equalRows, nearest} from "./equal.js";
 import {errorTable, framesPerSecond, passTable} from "./tables.js";
 import {detail} from "./detail.js";
 import {drawPlot} from "./plot.js";
-import {page} from "./page.js";
 import {drawSpectrum} from "./spectrum.js";
 import {swatch} from "./marks.js";
 import {takeOne} from "./take.js";
-
-export function subjectName({scene, camera, light, light_size: size, environment, time, fps,
-  medium, changes}) {
-  return [scene, camera && `camera ${camera}`, light && `light ${light}`, size && `light size ${size}`,
-    environment && `environment ${environment}`, time && `${time} s`, fps && `played at ${fps} fps`, medium, changes]
-    .filter(Boolean).join(", ");
-}
-
-/** Machines and drivers have tables of their own; their names are long, and stand only where there are several. */
-function placeText(table) {
-  const alike = page.tables.filter(({renderer}) => renderer === table.renderer);
-  return ["machines", "drivers"].filter((key) => new Set(alike.flatMap((other) => other[key])).size > 1)
-    .flatMap((key) => table[key]).map((name) => `, ${name}`).join("");
-}
-
-/** Size, mode and renderer: what a table is measured under. */
-export function conditions(table) {
-  const timed = table.time_size.join("x") === table.size.join("x") ? "" : `, times at ${table.time_size.join(" x ")}`;
-  return `${table.size.join(" x ")}${timed}, ${table.dynamic ? "dynamic" : "static"}, ${table.renderer} ` +
-    `(${table.software ? "software" : "hardware"})${placeText(table)}`;
-}
 
 const unique = (values) => [...new Set(values)];
 
@@ -39,10 +17,11 @@ const unique = (values) => [...new Set(values)];
 export class Section {
   constructor(tables, id) {
     this.tables = tables;
+    this.subject = tables[0].subject;
     this.tools = el("div", {class: "tools"});
     this.body = el("div");
     this.element = el("section", {id, "aria-labelledby": `${id}-name`},
-      el("h2", {id: `${id}-name`, tabindex: -1}, subjectName(tables[0].subject)), this.tools, this.body);
+      el("h2", {id: `${id}-name`, tabindex: -1}, this.subject), this.tools, this.body);
     this.time = TIMES[0];
   }
 
@@ -67,30 +46,21 @@ export class Section {
     this.show();
   }
 
-  /** Keeps the focus in the drop-down that was used. */
-  rebuild(change) {
-    const label = document.activeElement?.closest?.(".chooser")?.firstChild.textContent;
-    change();
-    for (const other of this.tools.querySelectorAll(".chooser"))
-      if (other.firstChild.textContent === label) other.querySelector("select").focus();
-  }
-
   showTools() {
     const {table, tables, metric} = this;
     const sameTerm = tables.filter((other) => other.term === table.term);
-    const pick = (list, index) => this.rebuild(() => this.choose(list[Number(index)]));
     const options = (items) => items.map(({key, label}) => ({value: key, label}));
     const terms = unique(tables.map((other) => other.term));
-    this.tools.replaceChildren(...[
+    putChoosers(this.tools, [
       chooser("Term", terms.map((term) => ({value: term, label: term})), table.term,
-        (term) => this.rebuild(() => this.choose(tables.find((other) => other.term === term)))),
-      chooser("Measured", sameTerm.map((other, i) => ({value: String(i), label: conditions(other)})),
-        String(sameTerm.indexOf(table)), (i) => pick(sameTerm, i)),
+        (term) => this.choose(tables.find((other) => other.term === term))),
+      chooser("Measured", sameTerm.map((other, i) => ({value: String(i), label: other.measured})),
+        String(sameTerm.indexOf(table)), (i) => this.choose(sameTerm[Number(i)])),
       chooser("Error", options(knownMetrics(table.rows)), metric.key,
-        (key) => this.rebuild(() => { this.metric = METRICS.find((other) => other.key === key); this.show(); })),
+        (key) => { this.metric = METRICS.find((other) => other.key === key); this.show(); }),
       chooser("Time", options(TIMES), this.time.key,
-        (key) => this.rebuild(() => { this.time = TIMES.find((other) => other.key === key); this.show(); })),
-    ].filter(Boolean));
+        (key) => { this.time = TIMES.find((other) => other.key === key); this.show(); }),
+    ]);
   }
 
   show() {
@@ -102,15 +72,15 @@ export class Section {
     this.detail = el("div", {class: "detail"}, this.name, this.facts);
     this.spectrum = el("div", {class: "chart"});
     const legend = el("ul", {class: "legend"}, curves.map((curve) => el("li", {}, swatch(curve), curve.name)));
-    const spp = table.reference.noise > 0 ? `to ${100 * table.reference.noise} % noise` : `${table.reference.spp} samples per pixel`;
-    const noise = isNumber(table.reference.noise_rms) ? `, noise ${(100 * table.reference.noise_rms).toPrecision(2)} % of the mean` : "";
-    const others = this.tables.filter((other) => other.term === table.term && other.renderer === table.renderer &&
+    const noise = isNumber(table.reference.noise_rms)
+      ? `Noise of the reference: ${(100 * table.reference.noise_rms).toPrecision(2)} % of the mean. ` : "";
+    const others = this.tables.filter((other) => other !== table && other.term === table.term && other.renderer === table.renderer &&
       other.machines.join() === table.machines.join() && other.drivers.join() === table.drivers.join() &&
       other.dynamic === table.dynamic);
     this.budget = null;
     this.body.replaceChildren(...[
       takeOne(curves, metric, time, (...budget) => { this.budget = budget; this.plot?.budget(...budget); }),
-      el("p", {class: "note"}, `Term: ${table.term}. ${conditions(table)}. Reference: ${spp}${noise}. ${metric.label}: ${metric.help}.`),
+      el("p", {class: "note"}, `Term: ${table.term}. ${table.measured}. ${noise}${metric.label}: ${metric.help}.`),
       el("div", {class: "columns"},
         el("div", {}, this.chart, legend,
           el("p", {class: "note"}, "Ringed points lie on the Pareto front; errors below the reference's noise count as equal. " +
@@ -121,7 +91,7 @@ export class Section {
             "Strong: the setting shown; the others at equal time. Noise is level, banding stands at the left."))),
       ...equalRows(table, curves, metric, time),
       el("h3", {}, "Tables"), errorTable(table, metric, time, (row) => this.visit(row)),
-      framesPerSecond(others), ...(passTable(table) ?? []),
+      framesPerSecond([table, ...others]), ...(passTable(table) ?? []),
     ].filter(Boolean));
     this.drawCharts();
   }
@@ -163,6 +133,6 @@ export class Section {
     const own = curveOf(curves, row);
     const target = time.read(row) ?? commonTarget(curves, metric, time, "ms");
     const others = target ? nearest(curves, metric, time, "ms", target).found.filter((point) => point.curve !== own) : [];
-    drawSpectrum(this.spectrum, own ? [{curve: own, row}, ...others] : others);
+    drawSpectrum(this.spectrum, own ? [{curve: own, row}, ...others] : others, row);
   }
 }

@@ -46,9 +46,9 @@ function sweeps(rows) {
                                distinct(rows.map((row) => settings(row)[a[0]])));
 }
 
-function groupBy(rows, key) {
+export function groupBy(items, key) {
   const groups = new Map();
-  for (const row of rows) groups.set(key(row), [...(groups.get(key(row)) ?? []), row]);
+  for (const item of items) groups.set(key(item), [...(groups.get(key(item)) ?? []), item]);
   return groups;
 }
 

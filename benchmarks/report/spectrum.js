@@ -19,8 +19,8 @@ export function percent(share) {
   return share === null ? "–" : `${Math.round(100 * share)} %`;
 }
 
-/** `entries`: [{curve, row}], the first one drawn strongest. */
-export function drawSpectrum(container, entries) {
+/** `entries`: [{curve, row}], the first one in front; that of the row `current` is drawn strong. */
+export function drawSpectrum(container, entries, current) {
   const shown = entries.filter((entry) => entry.row.spectrum?.length && points(entry.row.spectrum).length);
   if (shown.length === 0) {
     container.replaceChildren(el("p", {class: "note"}, "No spectrum was recorded for this setting."));
@@ -36,8 +36,8 @@ export function drawSpectrum(container, entries) {
     .attr("aria-label", "Power of the error over frequency. Share at wavelengths above 16 pixels: " +
       shown.map(({curve, row}) => `${curve.name} ${percent(lowFrequencyShare(row.spectrum))}`).join(", "));
   logAxes(svg, x, y, width, height, ["cycles per pixel", "power of the error"]);
-  for (const [i, {curve, row}] of [...shown.entries()].reverse()) {
-    svg.append("path").attr("class", i === 0 && row === entries[0].row ? "curve current" : "curve")
+  for (const {curve, row} of [...shown].reverse()) {
+    svg.append("path").attr("class", row === current ? "curve current" : "curve")
       .attr("d", path(points(row.spectrum))).attr("stroke", colour(curve)).attr("stroke-dasharray", dashes(curve));
   }
   container.replaceChildren(svg.node());

@@ -22,6 +22,12 @@ function termText(result) {
 
 const measured = (answer) => answer.verdict === "pass" || answer.verdict === "degraded";
 
+/** What distinguishes the case: "four steps (steps=4, beside airlight)". */
+function caseText(result) {
+  const details = [result.settings, result.beside && `beside ${result.beside}`].filter(Boolean).join(", ");
+  return details ? `${result.case} (${details})` : result.case;
+}
+
 function caseTable(caption, results) {
   const head = [...["technique", "case", "scene", "verdict", "term that counts (others)"].map((label) => ({label, text: true})),
     {label: "error"}, {label: "unchanged"}, {label: "factor"}, {label: "allowed"}];
@@ -29,7 +35,7 @@ function caseTable(caption, results) {
   return tableElement(caption, head, results.map((result) => {
     const answer = worst(result), known = measured(answer);
     return el("tr", {}, el("th", {scope: "row"}, String(result.technique)),
-      text(result.settings ? `${result.case} (${result.settings})` : result.case), text(result.scene),
+      text(caseText(result)), text(result.scene),
       el("td", {class: "failure"}, verdictText(answer)), text(termText(result)),
       [known ? answer.error : null, answer.benign, known ? answer.factor : null, result.allowed]
         .map((value) => el("td", {}, number(value))));

@@ -58,7 +58,10 @@ export function errorTable(table, metric, time, onCurrent) {
     "times the reference's noise", head, rows);
 }
 
-/** The thesis's form: a line per setting, a column per resolution and number of lights. One renderer, machine, driver and mode. */
+/**
+ * The thesis's form: a line per setting, a column per resolution and number of lights. One renderer, machine, driver and mode; where
+ * tables differ in their reference alone, the first one's times stand there.
+ */
 export function framesPerSecond(tables) {
   const columns = new Map(), lines = new Map();
   for (const table of tables) {
@@ -72,7 +75,8 @@ export function framesPerSecond(tables) {
       const key = `${row.title || row.technique}\n${settings}`;
       columns.set(column, table.time_size[0] * table.time_size[1] * 1e4 + (row.lights ?? 0));
       if (!lines.has(key)) lines.set(key, {row, settings, values: new Map()});
-      lines.get(key).values.set(column, ms);
+      const {values} = lines.get(key);
+      if (!values.has(column)) values.set(column, ms);
     }
   }
   if (lines.size === 0) return null;

@@ -1,5 +1,5 @@
 // What to take for a budget: a slider for time or error, and the setting, its command and the runner-up that answer it.
-import {breakable, chooser, el, milliseconds, number, slider} from "./dom.js";
+import {breakable, chooser, el, milliseconds, number, putChoosers, slider} from "./dom.js";
 import {command} from "./command.js";
 import {METRICS, TIMES, errorText, knownMetrics, measured, paretoFront} from "./metrics.js";
 import {curves as curvesOf, settingsText} from "./series.js";
@@ -43,11 +43,11 @@ function asked(all, answer) {
       said.replaceChildren(...line);
       body.replaceChildren(...below);
     };
-    tools.replaceChildren(...[
+    putChoosers(tools, [
       chooser("Budget", kinds.map((other) => ({value: other.key, label: other.bounded})), kind.key,
-        (key) => { choose(kinds.find((other) => other.key === key)); tools.querySelector("select").focus(); }),
+        (key) => choose(kinds.find((other) => other.key === key))),
       slider(kind.label, values, middle(values), kind.text, show),
-    ].filter(Boolean));
+    ]);
   };
   const kinds = KINDS.filter(({key}) => all.some((point) => point[key] > 0));
   if (kinds.length === 0) return null;
@@ -83,7 +83,7 @@ function tally(fronts, taken) {
 }
 
 /** Over all scenes that are asked the same: what to take in each, and how often each technique is taken. */
-function takeMany(tables, metric, time, name, onVisit) {
+function takeMany(tables, metric, time, onVisit) {
   const fronts = tables.map((table) => {
     const curves = curvesOf(table.rows), points = pointsOf(curves, metric, time);
     return {table, curves, points, front: paretoFront(points)};
@@ -91,7 +91,7 @@ function takeMany(tables, metric, time, name, onVisit) {
   const answer = (kind, budget) => {
     const taken = fronts.map(({curves}) => take(curves, metric, time, kind, budget));
     const lineOf = ({table}, {best}) => el("tr", {}, el("th", {scope: "row"}, el("button", {type: "button",
-      click: () => onVisit(table, best?.row)}, name(table))), best
+      click: () => onVisit(table, best?.row)}, table.subject)), best
       ? [el("td", {class: "text"}, breakable(best.row.title || best.row.technique)), el("td", {class: "text"}, settingsText(best.row)),
          el("td", {}, errorText(metric, best.row)), el("td", {}, number(best.ms)), el("td", {class: "text"}, command(best.row))]
       : el("td", {class: "text", colspan: 5}, `nothing keeps ${kind.text(budget)}`));
@@ -115,10 +115,10 @@ function takeMany(tables, metric, time, name, onVisit) {
 const distinct = (values) => [...new Set(values)];
 
 /**
- * The first answer of the page, over all scenes. `name(table)` names a scene, `question(table)` says what it was asked and how it was
- * measured, `onVisit(table, row)` goes to one. Nothing where there is only one scene: its own section says it.
+ * The first answer of the page, over all scenes. `question(table)` says what a scene was asked and how it was measured,
+ * `onVisit(table, row)` goes to one. Nothing where there is only one scene: its own section says it.
  */
-export function takeOverAll(tables, {name, question, onVisit}) {
+export function takeOverAll(tables, {question, onVisit}) {
   const questions = distinct(tables.map(question));
   const of = (text) => tables.filter((table) => question(table) === text);
   if (questions.every((text) => of(text).length < 2)) return null;
@@ -129,15 +129,12 @@ export function takeOverAll(tables, {name, question, onVisit}) {
   const show = (text) => {
     const rows = of(text).flatMap((table) => table.rows), metrics = knownMetrics(rows);
     metric = metrics.find((other) => other.key === metric.key) ?? metrics[0] ?? METRICS[0];
-    const label = document.activeElement?.closest?.(".chooser")?.firstChild.textContent;
-    tools.replaceChildren(...[
+    putChoosers(tools, [
       chooser("Question", questions.map((other) => ({value: other, label: `${other} (${of(other).length} scenes)`})), text, show),
       chooser("Error", options(metrics), metric.key, (key) => { metric = METRICS.find((other) => other.key === key); show(text); }),
       chooser("Time", options(TIMES), time.key, (key) => { time = TIMES.find((other) => other.key === key); show(text); }),
-    ].filter(Boolean));
-    for (const other of tools.querySelectorAll(".chooser"))
-      if (other.firstChild.textContent === label) other.querySelector("select").focus();
-    body.replaceChildren(...takeMany(of(text), metric, time, name, onVisit));
+    ]);
+    body.replaceChildren(...takeMany(of(text), metric, time, onVisit));
   };
   show(most);
   return el("section", {id: "take", "aria-labelledby": "take-name"}, el("h2", {id: "take-name"}, "What to take for a budget"), tools, body);

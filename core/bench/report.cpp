@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -13,6 +15,7 @@
 #include "core/bench/private/comparison.h"
 #include "core/bench/private/misjudged_table.h"
 #include "core/bench/private/report_pictures.h"
+#include "core/bench/private/table_texts.h"
 #include "core/bench/tables.h"
 #include "core/gpu/shader_source.h"
 #include "core/question/question_fields.h"
@@ -106,12 +109,7 @@ std::vector<Window> chooseWindows(const Table& table, const std::string& referen
 
 Json referenceJson(const Table& table, const std::string& file, const std::vector<Window>& windows,
                    EmbeddedPictures& pictures) {
-  const ReferenceSettings& settings = table.rows.front().what.reference;
-  Json json = {{"spp", settings.spp},
-               {"noise", settings.noise},
-               {"bounces", settings.bounces},
-               {"picture", pictureJson(file, pictures)},
-               {"windows", Json::array()}};
+  Json json = {{"picture", pictureJson(file, pictures)}, {"windows", Json::array()}};
   for (const Window& window : windows) json["windows"].push_back(pictures.window(file, window));
   for (const Row& row : table.rows) {
     if (row.referenceNoise) json["noise_rms"] = *row.referenceNoise;
@@ -120,20 +118,41 @@ Json referenceJson(const Table& table, const std::string& file, const std::vecto
   return json;
 }
 
-Json tableJson(const Table& table, EmbeddedPictures& pictures) {
+/// Where rows were measured. Failed ones do not say.
+struct Site {
+  std::set<std::string> machines, drivers;
+  std::optional<bool> software;
+
+  void add(const Table& table) {
+    for (const Row& row : table.rows) {
+      if (!row.cost.machine.empty()) machines.insert(row.cost.machine);
+      if (!row.cost.driver.empty()) drivers.insert(row.cost.driver);
+      if (row.failure.empty()) software = row.cost.software;
+    }
+  }
+};
+
+/// What tells a table from the others of its subject and term. Names of machines and drivers are long: they
+/// stand only where a renderer has several.
+std::string howMeasured(const Row& row, const Site& site, const Site& ofRenderer) {
+  std::string text =
+      fmt::format("{}, {}, {}, {}", sizesText(row.what), row.what.dynamic ? "dynamic" : "static",
+                  referenceText(row.what), row.cost.renderer);
+  if (site.software) text += *site.software ? " (software)" : " (hardware)";
+  for (const auto names : {&Site::machines, &Site::drivers})
+    if ((ofRenderer.*names).size() > 1)
+      for (const std::string& name : site.*names) text += ", " + name;
+  return text;
+}
+
+Json tableJson(const Table& table, const Site& ofRenderer, EmbeddedPictures& pictures) {
   const Case& c = table.rows.front().what;
   const bool own = c.timeWidth > 0;
+  Site site;
+  site.add(table);
   Json json = {{"title", table.title},
-               {"subject",
-                {{"scene", c.scene},
-                 {"camera", c.camera},
-                 {"light", c.light},
-                 {"light_size", c.lightSize},
-                 {"environment", std::filesystem::path(c.environment).filename().string()},
-                 {"time", c.time},
-                 {"fps", c.fps},
-                 {"medium", describe(c, QuestionGroup::medium)},
-                 {"changes", describe(c, QuestionGroup::changes)}}},
+               {"subject", tableSubject(c, QuestionWording::key)},
+               {"measured", howMeasured(table.rows.front(), site, ofRenderer)},
                {"term", c.term},
                {"size", {c.width, c.height}},
                {"time_size", {own ? c.timeWidth : c.width, own ? c.timeHeight : c.height}},
@@ -141,20 +160,15 @@ Json tableJson(const Table& table, EmbeddedPictures& pictures) {
                {"frames", c.frames},
                {"warmup", c.warmup},
                {"renderer", table.rows.front().cost.renderer}};
-  std::set<std::string> machines, drivers;
   std::set<int> turns;
-  bool software = false;
   std::string reference;
   for (const Row& row : table.rows) {
-    if (!row.cost.machine.empty()) machines.insert(row.cost.machine);
-    if (!row.cost.driver.empty()) drivers.insert(row.cost.driver);
     if (isTimed(row)) turns.insert(row.cost.frameMs.turns);
-    software = software || row.cost.software;
     if (reference.empty()) reference = referencePicture(row);
   }
-  json["software"] = software;
-  json["machines"] = machines;
-  json["drivers"] = drivers;
+  json["software"] = site.software ? Json(*site.software) : Json();
+  json["machines"] = site.machines;
+  json["drivers"] = site.drivers;
   json["turns"] = turns;
   const std::vector<Window> windows = chooseWindows(table, reference, pictures);
   json["windows"] = Json::array();
@@ -222,6 +236,12 @@ Json pageColumns() {
   return json;
 }
 
+/// Leaves only objects in a list: the page reads their fields.
+void keepObjects(Json& list) {
+  if (list.is_array())
+    std::erase_if(list.get_ref<Json::array_t&>(), [](const Json& element) { return !element.is_object(); });
+}
+
 /// What `limn stress` left in the folder, less where it comes from; null if it was not run there.
 Json stability(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "stress.json";
@@ -229,9 +249,12 @@ Json stability(const std::filesystem::path& folder) {
   if (!std::filesystem::is_regular_file(file, ignored)) return {};
   Json json = Json::parse(readTextFile(file), nullptr, false);
   if (json.is_discarded()) throw Error(fmt::format("{}: not what limn stress writes", file.string()));
-  if (json.contains("results") && json["results"].is_array())
-    for (Json& result : json["results"])
-      if (result.is_object()) result.erase("provenance");
+  if (!json.contains("results") || !json["results"].is_array()) return json;
+  keepObjects(json["results"]);
+  for (Json& result : json["results"]) {
+    result.erase("provenance");
+    if (result.contains("answers")) keepObjects(result["answers"]);
+  }
   return json;
 }
 
@@ -244,7 +267,11 @@ ReportData reportData(std::span<const Row> rows, const std::filesystem::path& fo
       if (!file.empty()) files.push_back(file);
   EmbeddedPictures pictures(folder, files);
   Json json = {{"metrics", pageMetrics()}, {"columns", pageColumns()}, {"tables", Json::array()}};
-  for (const Table& table : makeTables(rows)) json["tables"].push_back(tableJson(table, pictures));
+  const std::vector<Table> tables = makeTables(rows);
+  std::map<std::string, Site> sites;  // by renderer
+  for (const Table& table : tables) sites[table.rows.front().cost.renderer].add(table);
+  for (const Table& table : tables)
+    json["tables"].push_back(tableJson(table, sites[table.rows.front().cost.renderer], pictures));
   json["compressed"] = pictures.compressed();
   json["reduction"] = pictures.reduction();
   json["stability"] = stability(folder);

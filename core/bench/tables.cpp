@@ -6,12 +6,15 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string_view>
 
 #include "core/base/file.h"
 #include "core/bench/private/columns.h"
 #include "core/bench/private/comparison.h"
 #include "core/bench/private/markdown.h"
+#include "core/bench/private/table_texts.h"
 #include "core/question/question_fields.h"
+#include "core/question/term.h"
 
 namespace limn::bench {
 namespace {
@@ -20,23 +23,19 @@ std::string timeSizeText(const Case& c) {
   return c.timeWidth > 0 ? fmt::format(", times at {}x{}", c.timeWidth, c.timeHeight) : "";
 }
 
-std::string tableTitle(const Row& row) {
+/// Keys say what labels leave out: the folders of files and the reference.
+std::string tableTitle(const Row& row, QuestionWording wording) {
   const Case& c = row.what;
-  std::string title = c.scene;
-  if (!c.camera.empty()) title += ", camera " + c.camera;
-  if (!c.light.empty()) title += ", light " + c.light;
-  const auto describeIn = [&](QuestionGroup group, const char* before) {
-    const std::string words = describe(c, group, QuestionWording::label);
-    if (!words.empty()) title += before + words;
-  };
-  describeIn(QuestionGroup::subject, ", ");
-  describeIn(QuestionGroup::environment, ", environment ");
-  if (c.time != 0) title += fmt::format(", {} s", c.time);
-  if (c.fps > 0) title += fmt::format(", played at {} fps", c.fps);
-  describeIn(QuestionGroup::medium, ", ");
-  describeIn(QuestionGroup::changes, ", ");
-  return title + fmt::format(": {}, {}x{}{}, {}, {}", c.term, c.width, c.height, timeSizeText(c),
-                             c.dynamic ? "dynamic" : "static", row.cost.renderer);
+  return fmt::format("{}: {}, {}, {}, {}{}", tableSubject(c, wording), c.term, sizesText(c),
+                     c.dynamic ? "dynamic" : "static",
+                     wording == QuestionWording::key ? referenceText(c) + ", " : "", row.cost.renderer);
+}
+
+/// Rows may have a term that there is no more.
+bool mayHaveBounces(std::string_view term) {
+  const auto* info =
+      std::ranges::find(kTerms, term, [](const TermInfo& t) { return std::string_view(t.name); });
+  return info == std::end(kTerms) || info->bounces != TermBounces::none;
 }
 
 /// What all rows of one table share. The renderer says whether it is software.
@@ -194,6 +193,41 @@ std::string csvLine(const std::vector<std::string>& fields) {
 
 }  // namespace
 
+std::string tableSubject(const Case& c, QuestionWording wording) {
+  std::string text = c.scene;
+  const auto add = [&text](const char* before, const std::string& words) {
+    if (!words.empty()) text += before + words;
+  };
+  add(", camera ", c.camera);
+  add(", light ", c.light);
+  add(", ", describe(c, QuestionGroup::subject, wording));
+  add(", environment ", describe(c, QuestionGroup::environment, wording));
+  // Lights that stand for the environment are a setting of all light together, but decide what one light is.
+  if (wording == QuestionWording::key && !c.light.empty())
+    add(", environment lights ", describeEnvironmentLights(c));
+  if (c.time != 0) add(", ", fmt::format("{} s", c.time));
+  if (c.fps > 0) add(", ", fmt::format("played at {} fps", c.fps));
+  add(", ", describe(c, QuestionGroup::medium, wording));
+  add(", ", describe(c, QuestionGroup::changes, wording));
+  return text;
+}
+
+std::string sizesText(const Case& c) {
+  return fmt::format("{}x{}{}", c.width, c.height, timeSizeText(c));
+}
+
+std::string referenceText(const Case& c) {
+  const ReferenceSettings& settings = c.reference;
+  std::string text = settings.noise > 0
+                         ? fmt::format("against {:.4g} % noise or {} spp", 100 * settings.noise, settings.spp)
+                         : fmt::format("against {} spp", settings.spp);
+  if (settings.bounces > 0 && mayHaveBounces(c.term)) text += fmt::format(", bounces {}", settings.bounces);
+  if (settings.interfaces != 0)
+    text +=
+        settings.interfaces < 0 ? ", interfaces all" : fmt::format(", interfaces {}", settings.interfaces);
+  return text;
+}
+
 bool isOutdated(const Row& row, const Table& table) {
   return row.provenance.program != table.program;
 }
@@ -203,6 +237,7 @@ std::vector<Table> makeTables(std::span<const Row> rows) {
   std::map<std::string, Places> places;
   for (const Row& row : rows) places[tableKey(row)].add(placeOf(row));
   std::vector<Table> tables;
+  std::vector<std::string> longTitles;
   std::map<std::pair<std::string, std::size_t>, std::size_t> byKey;
   std::map<std::pair<std::size_t, std::string>, std::size_t> settings;  // places in the rows of a table
   std::set<std::string> names;
@@ -211,7 +246,10 @@ std::vector<Table> makeTables(std::span<const Row> rows) {
     const Places& known = places[key];
     const std::size_t place = known.find(placeOf(row));
     const auto [table, isNew] = byKey.emplace(std::pair(key, place), tables.size());
-    if (isNew) tables.push_back({tableTitle(row) + known.text(place), "", {}});
+    if (isNew) {
+      tables.push_back({tableTitle(row, QuestionWording::label) + known.text(place), "", {}});
+      longTitles.push_back(tableTitle(row, QuestionWording::key) + known.text(place));
+    }
     std::vector<Row>& kept = tables[table->second].rows;
     const auto [same, isFirst] =
         settings.emplace(std::pair(table->second, settingKey(row.what)), kept.size());
@@ -220,6 +258,10 @@ std::vector<Table> makeTables(std::span<const Row> rows) {
     else if (supersedes(row, kept[same->second]))
       kept[same->second] = row;
   }
+  std::map<std::string, int> uses;
+  for (const Table& table : tables) ++uses[table.title];
+  for (std::size_t i = 0; i < tables.size(); ++i)
+    if (uses[tables[i].title] > 1) tables[i].title = longTitles[i];
   std::stable_sort(tables.begin(), tables.end(), [](const Table& a, const Table& b) {
     return a.rows.front().what.scene < b.rows.front().what.scene;
   });

@@ -12,14 +12,18 @@
 namespace limn::bench {
 
 /// Holds rows that may be compared: same scene, camera, light, term, time, size, mode (dynamic or static),
-/// renderer, machine and driver, each setting once. Rows that do not say their machine or driver stand with
-/// the question's first that fits.
+/// reference, renderer, machine and driver, each setting once. Rows that do not say their machine or driver
+/// stand with the question's first that fits.
 struct Table {
-  std::string title;     ///< for people
+  std::string title;     ///< for people, with as much as tells it from the others
   std::string fileName;  ///< of the CSV, unique among the tables of one makeTables
   std::vector<Row> rows;
   std::string program = {};  ///< Provenance::program of its newest row; "" where none records it
 };
+
+/// Returns what a case's reference was asked for: "against 256 spp", "against 1 % noise or 1024 spp, bounces
+/// 2"; bounces and interfaces where its term has them.
+LIMN_API std::string referenceText(const Case& c);
 
 /// Returns whether another program than that of the table's newest row measured the row.
 LIMN_API bool isOutdated(const Row& row, const Table& table);

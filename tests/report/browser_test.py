@@ -144,7 +144,10 @@ def reacts(browser):
     browser.evaluate(f"({choose})('Error', 'flip')")
     check("FLIP" in browser.evaluate(f"{plot}.getAttribute('aria-label')"), "the error cannot be chosen")
     check(browser.evaluate(f"{plot}.outerHTML") != before, "another error, the same chart")
+    browser.evaluate("""[...document.querySelectorAll('.chooser')].find(c => c.firstChild.textContent === 'Time')
+        .querySelector('select').focus()""")
     browser.evaluate(f"({choose})('Time', 'shadows')")
+    check(browser.evaluate("document.activeElement.closest('.chooser')?.firstChild.textContent") == "Time", "a choice loses the focus")
     check("technique" in browser.evaluate(f"{plot}.querySelector('.axis').textContent"), "the time cannot be chosen")
 
     text = "document.querySelector('.equal-ms .note').textContent"
@@ -220,8 +223,8 @@ def enlarges_and_flips(browser):
         seen.append(browser.evaluate(source))
     expected = [pictures[i] for i in (0, 1, 2, 1, 2, 0, 2)]
     check(seen == expected, f"the keys flip to {[pictures.index(s) for s in seen]}")
-    browser.evaluate("document.querySelector('dialog [data-close]').click()")
-    browser.settle()
+    browser.evaluate("document.querySelector('dialog [data-close]').focus()")
+    browser.press(" ")
     check(browser.evaluate("document.querySelector('dialog') === null && document.activeElement.matches('.detail button.framed')"),
           "closing does not go back")
 
@@ -394,6 +397,28 @@ def keeps_machines_and_programs_apart(browser):
         check("† measured with another version" in browser.evaluate("document.getElementById('results').textContent"), "the mark is not explained")
 
 
+def tells_references_apart(browser):
+    """One scene with two references: one section of two tables with names of their own, and no answer over several scenes."""
+    rows = [json.loads(line) for line in results.read_text().splitlines()]
+    others = [json.loads(json.dumps(row)) for row in rows]
+    for row in others:
+        row.update(key=row["key"] + "r", quality={**row["quality"], "spp": 64})
+        row["stats"]["frame_ms"] = {key: value if key == "n" else 10 * value for key, value in row["stats"]["frame_ms"].items()}
+    with reported([*rows, *others]):
+        browser.open(page)
+        check(browser.evaluate("document.querySelectorAll('main > section').length") == 1, "a scene is two")
+        check(browser.evaluate("document.querySelector('#take')") is None, "an overview of one scene")
+        choice = """[...document.querySelectorAll('.chooser')].find(c => c.firstChild.textContent === 'Measured')
+            .querySelector('select')"""
+        names = browser.evaluate(f"[...{choice}.options].map(o => o.textContent)")
+        check(len(names) == 2 and "against 16 spp" in names[0] and "against 64 spp" in names[1], f"the tables are called {names}")
+        speeds = """[...document.querySelectorAll('#subject-0 table')]
+            .find(t => t.caption.textContent.startsWith('Frames per second')).tBodies[0].textContent"""
+        first = browser.evaluate(speeds)
+        browser.evaluate(f"(s => {{ s.value = '1'; s.dispatchEvent(new Event('change')); }})({choice})")
+        check(browser.evaluate(speeds) != first, "the times of the other reference's table")
+
+
 def tells_lights_of_the_environment_apart(browser):
     """The same settings with the environment's light added up and by ratio: a curve and a line of frames per second for each."""
     rows = [json.loads(line) for line in results.read_text().splitlines()]
@@ -454,9 +479,10 @@ def withstands_foreign_rows(browser):
         for row in (hostile, failed, old, gpu):
             file.write(json.dumps(row) + "\n")
     (out / "stress.json").write_text(json.dumps({"renderer": HOSTILE, "results": [
+        None, {"technique": "pcss", "case": "without an answer", "answers": [None]},
         {"technique": "pcss", "case": "of an earlier version", "verdict": "pass", "error": 0.1, "factor": 1.5},
         {"technique": HOSTILE, "case": HOSTILE, "scene": HOSTILE, "answers": [
-            {"term": HOSTILE, "verdict": "refused", "message": HOSTILE},
+            {"term": HOSTILE, "verdict": "refused", "message": HOSTILE}, None,
             {"term": HOSTILE, "verdict": "pass", "error": 0.1, "benign": 0.1, "factor": 1}]}]}))
     limn("report", out)
     browser.open(page)
@@ -470,6 +496,11 @@ def withstands_foreign_rows(browser):
     check(browser.evaluate(measured) == 1, "software and hardware are not told apart")
     check(browser.evaluate("document.querySelector('#subject-0').querySelectorAll('g.point').length") == POINTS,
           "software and hardware share a chart")
+    browser.evaluate("document.querySelector('#subject-0 tr[data-key=\"2\"] button').click()")
+    check("Failed" in browser.evaluate("document.querySelector('#subject-0 .detail').textContent"), "the failed row is not shown")
+    curves = "document.querySelectorAll('#subject-0 .spectrum .curve').length"
+    check(browser.evaluate(curves) > 0, "no spectra beside the failed row")
+    check(browser.evaluate(curves.replace(".curve'", ".curve.current'")) == 0, "another setting's spectrum is strong")
 
     results.write_text("")
     (out / "stress.json").unlink()
@@ -565,8 +596,8 @@ bench()
 with Browser(options.chromium) as browser:
     for step in (shows_points_and_pictures, reacts, answers_for_a_budget, enlarges_and_flips, loads_pictures_on_demand,
                  tells_close_points_apart, is_painted, is_accessible, sets_the_reference_beside,
-                 keeps_machines_and_programs_apart, tells_lights_of_the_environment_apart, draws_defaults_in_their_place,
-                 shows_hostile_names_literally, is_shut_by_its_policy, withstands_foreign_rows):
+                 keeps_machines_and_programs_apart, tells_references_apart, tells_lights_of_the_environment_apart,
+                 draws_defaults_in_their_place, shows_hostile_names_literally, is_shut_by_its_policy, withstands_foreign_rows):
         step(browser)
         check(not browser.problems, f"{step.__name__}: {browser.problems}")
 print("the report page shows and does what it should")

@@ -98,7 +98,7 @@ TEST(Budget, KeepsApartWhatIsMeasuredInAnotherWay) {
   rows[1].what.dynamic = false;
   rows[2].what.fps = 30;
   rows[3].what.reference.spp = 16;
-  rows[4].what.reference.noise = 0.01;
+  rows[4].what.reference.noise = 0.07;  // 100 times this is not 7
   rows[5].what.environmentLights = 0.1;
   const auto questions = measuredQuestions(rows, "balls");
   std::set<std::string> texts;
@@ -106,6 +106,7 @@ TEST(Budget, KeepsApartWhatIsMeasuredInAnotherWay) {
   EXPECT_EQ(questions.size(), rows.size());
   EXPECT_EQ(texts.size(), rows.size());
   EXPECT_THAT(questions.front().text, testing::HasSubstr("/dynamic, against 256 spp"));
+  EXPECT_THAT(texts, testing::Contains(testing::HasSubstr(", against 7 % noise or 256 spp")));
 }
 
 /// A search times what it checks for a shorter time than what it measures in full.

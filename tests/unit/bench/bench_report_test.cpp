@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/base/file.h"
 #include "core/bench/private/report_pictures.h"
@@ -122,6 +123,59 @@ TEST_F(BenchReport, SoftwareAndHardwareHaveTablesOfTheirOwn) {
   EXPECT_NE(page["tables"][0]["software"], page["tables"][1]["software"]);
 }
 
+/// Texts group the page's tables and stand in its lists.
+TEST_F(BenchReport, TablesOfAnotherReferenceHaveTheSameSubject) {
+  std::vector<Row> rows = {row("pcss", 0.5f), row("pcss", 0.5f)};
+  rows[1].what.reference.spp = 64;
+  const Json tables = data(rows)["tables"];
+  ASSERT_EQ(tables.size(), 2u);
+  EXPECT_EQ(tables[0]["subject"], "balls");
+  EXPECT_EQ(tables[1]["subject"], "balls");
+  EXPECT_EQ(tables[0]["measured"], "48x32, dynamic, against 256 spp, llvmpipe (software)");
+  EXPECT_EQ(tables[1]["measured"], "48x32, dynamic, against 64 spp, llvmpipe (software)");
+}
+
+TEST_F(BenchReport, SubjectsTellEnvironmentsApart) {
+  std::vector<Row> rows(5, row("pcss", 0.5f));
+  for (Row& row : rows) row.what.environment = "a/sky.hdr";
+  rows[1].what.environment = "b/sky.hdr";
+  rows[2].what.environmentRotation = 90;
+  rows[3].what.light = rows[4].what.light = "#1";
+  rows[3].what.environmentLights = 0.1;  // of which that is another light
+  std::set<std::string> subjects;
+  const Json page = data(rows);
+  for (const Json& table : page["tables"]) subjects.insert(table["subject"].get<std::string>());
+  EXPECT_EQ(subjects.size(), rows.size());
+  EXPECT_TRUE(subjects.contains("balls, environment a/sky.hdr"));
+}
+
+TEST_F(BenchReport, MachinesAndDriversStandWhereThereAreSeveral) {
+  std::vector<Row> rows(3, row("pcss", 0.5f));
+  rows[0].cost.machine = "a";
+  rows[1].cost.machine = "b";
+  rows[1].what.scene = "robot";
+  rows[2].cost.renderer = "GPU";
+  rows[2].cost.machine = "c";
+  for (Row& row : rows) row.cost.driver = "GL 1";
+  std::set<std::string> measured;
+  const Json page = data(rows);
+  for (const Json& table : page["tables"]) measured.insert(table["measured"].get<std::string>());
+  const std::string start = "48x32, dynamic, against 256 spp, ";
+  EXPECT_EQ(measured, (std::set<std::string>{start + "llvmpipe (software), a",
+                                             start + "llvmpipe (software), b", start + "GPU (software)"}));
+}
+
+TEST_F(BenchReport, FailedRowsDoNotSayWhetherTheRendererIsSoftware) {
+  Row failed = row("pcss", 0.5f);
+  failed.failure = "lost";
+  failed.cost.software = false;  // as their lines leave it
+  Json table = data({failed})["tables"][0];
+  EXPECT_TRUE(table["software"].is_null());
+  EXPECT_EQ(table["measured"], "48x32, dynamic, against 256 spp, llvmpipe");
+  table = data({failed, row("vssm", 0.5f), failed})["tables"][0];
+  EXPECT_EQ(table["software"], true);
+}
+
 TEST_F(BenchReport, TextsCannotLeaveTheScript) {
   Row bad = row("pcss", 0.5f);
   bad.what.scene = bad.what.title = bad.cost.renderer = bad.cost.machine = kScript;
@@ -132,7 +186,7 @@ TEST_F(BenchReport, TextsCannotLeaveTheScript) {
   const std::string text = reportData(rows, results()).json;
   EXPECT_EQ(text.find('<'), std::string::npos);
   EXPECT_TRUE(std::ranges::all_of(text, [](unsigned char c) { return c < 0x80; }));
-  EXPECT_EQ(Json::parse(text)["tables"][0]["subject"]["scene"], kScript);
+  EXPECT_EQ(Json::parse(text)["tables"][0]["subject"], kScript);
   writeReport(rows, results());
   const std::string page = readTextFile(results() / "index.html");
   EXPECT_EQ(page.find("<img"), std::string::npos);
@@ -144,7 +198,19 @@ TEST_F(BenchReport, TextsCannotLeaveTheScript) {
 TEST_F(BenchReport, FilesThatMadeTheStressTableStayOutside) {
   writeTextFile(results() / "stress.json",
                 R"({"results": [{"case": "far", "provenance": {"techniques": [{"file": "/a/t.so"}]}}, 1]})");
-  EXPECT_EQ(data({row("pcss", 0.5f)})["stability"]["results"], (Json{{{"case", "far"}}, 1}));
+  EXPECT_EQ(data({row("pcss", 0.5f)})["stability"]["results"], Json::array({{{"case", "far"}}}));
+}
+
+TEST_F(BenchReport, OnlyObjectsOfTheStressTableArePassedOn) {
+  writeTextFile(
+      results() / "stress.json",
+      R"({"results": [null, {"answers": [null, {"verdict": "pass"}, []]}, {"answers": 1}, "far"]})");
+  EXPECT_EQ(data({row("pcss", 0.5f)})["stability"]["results"],
+            Json::parse(R"([{"answers": [{"verdict": "pass"}]}, {"answers": 1}])"));
+  for (const char* odd : {"[]", "null", R"({"results": {"far": null}})"}) {
+    writeTextFile(results() / "stress.json", odd);
+    EXPECT_EQ(data({row("pcss", 0.5f)})["stability"], Json::parse(odd));
+  }
 }
 
 TEST_F(BenchReport, OnlyPicturesInsideTheFolderAreRead) {

@@ -126,10 +126,17 @@ TEST(BenchTables, RowsOfAnotherProgramAreMarked) {
 }
 
 TEST(BenchTables, TitlesTellTablesApart) {
-  std::vector<Row> rows(4, exampleRow(exampleCase()));
+  std::vector<Row> rows(11, exampleRow(exampleCase()));
   rows[1].what.g = -0.7;
   rows[2].what.sigmaS = "0.5";
   rows[3].what.fov = 30;
+  rows[4].what.reference.spp = 64;
+  rows[5].what.reference.noise = 0.01;
+  rows[6].what.reference.interfaces = -1;
+  rows[7].what.environment = "a/sky.hdr";
+  rows[8].what.environment = "b/sky.hdr";
+  rows[9].what.light = rows[10].what.light = "#1";
+  rows[9].what.environmentLights = 0.1;
   std::set<std::string> titles, files;
   for (const Table& table : makeTables(rows)) {
     titles.insert(table.title);
@@ -137,6 +144,40 @@ TEST(BenchTables, TitlesTellTablesApart) {
   }
   EXPECT_EQ(titles.size(), rows.size());
   EXPECT_EQ(files.size(), rows.size());
+}
+
+/// Folders of files and references make titles long.
+TEST(BenchTables, TitlesAreShortWhereThatTellsTablesApart) {
+  std::vector<Row> rows(2, exampleRow(exampleCase()));
+  rows[0].what.scene = "balls";
+  rows[0].what.environment = "maps/sky.hdr";
+  std::vector<Table> tables = makeTables(rows);
+  ASSERT_EQ(tables.size(), 2u);
+  EXPECT_EQ(tables[0].title, "balls, camera main, environment sky.hdr: visibility, 32x16, dynamic, llvmpipe");
+  EXPECT_EQ(tables[1].title, "cornell_box, camera main: visibility, 32x16, dynamic, llvmpipe");
+  rows.push_back(rows[1]);
+  rows[2].what.reference.spp = 64;
+  tables = makeTables(rows);
+  ASSERT_EQ(tables.size(), 3u);
+  EXPECT_EQ(tables[0].title.find("spp"), std::string::npos) << tables[0].title;
+  EXPECT_EQ(tables[1].title,
+            "cornell_box, camera main: visibility, 32x16, dynamic, against 256 spp, llvmpipe");
+  EXPECT_EQ(tables[2].title,
+            "cornell_box, camera main: visibility, 32x16, dynamic, against 64 spp, llvmpipe");
+}
+
+TEST(BenchTables, SayWhatReferencesWereAskedFor) {
+  Case c = exampleCase();
+  c.reference = {.spp = 1024, .noise = 0.07, .bounces = 3};  // 100 * 0.07 is not 7
+  EXPECT_EQ(referenceText(c), "against 7 % noise or 1024 spp") << "visibility has no bounces";
+  c.term = "indirect";
+  EXPECT_EQ(referenceText(c), "against 7 % noise or 1024 spp, bounces 3");
+  c.term = "of an earlier version";
+  c.reference = {.spp = 64, .bounces = 2, .interfaces = 4};
+  EXPECT_EQ(referenceText(c), "against 64 spp, bounces 2, interfaces 4");
+  c.term = "specular";
+  c.reference = {.spp = 64, .bounces = 0, .interfaces = -1};
+  EXPECT_EQ(referenceText(c), "against 64 spp, interfaces all");
 }
 
 TEST(BenchTables, MarkdownShowsErrorTimeNoiseFloorAndFront) {
