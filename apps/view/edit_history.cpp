@@ -1,8 +1,10 @@
 #include "apps/view/edit_history.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "apps/view/picture_order.h"
+#include "core/question/question_fields.h"
 
 namespace limn::app {
 
@@ -27,6 +29,17 @@ void EditHistory::note(const Edit& present) {
   if (edits_.size() == kMost) edits_.erase(edits_.begin());
   edits_.push_back(present);
   present_ = edits_.size() - 1;
+}
+
+void EditHistory::forget(const SceneQuestion& question) {
+  const auto gone = [&](const Edit& edit) {
+    return sameFields(QuestionEffect::scene, edit.state.scene, question);
+  };
+  size_t left = 0;  // up to the present one
+  for (size_t i = 0; i < edits_.size() && i <= present_; ++i)
+    if (!gone(edits_[i])) ++left;
+  std::erase_if(edits_, gone);
+  present_ = std::max<size_t>(left, 1) - 1;
 }
 
 const Edit* EditHistory::undo() {

@@ -25,6 +25,9 @@ class EditHistory {
   void restart(Edit present);
   /// Adds `present` where it differs from the edit before; what was undone is forgotten then.
   void note(const Edit& present);
+  /// Forgets the edits whose scene is to be opened as `question` says, which turned out to be impossible. The
+  /// edit before the present one takes its place if it is among them.
+  void forget(const SceneQuestion& question);
   /// Returns the edit before the present one, which it makes the present one; null where there is none.
   const Edit* undo();
   /// Returns the edit that was undone last, which it makes the present one; null where there is none.

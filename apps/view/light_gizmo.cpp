@@ -115,7 +115,8 @@ bool ViewerWindow::dragLight() {
   if (drag_) {
     const LightFacts& light = facts_->lights[static_cast<size_t>(chosenLight_)];
     const GizmoPose pose = dragged(camera, *drag_, mouse);
-    session::LightEdit edit = lightEdits_[light.name];
+    const auto found = lightEdits_.find(light.name);
+    session::LightEdit edit = found == lightEdits_.end() ? session::LightEdit{} : found->second;
     if (!isDirectional(light))
       edit.position =
           facts_->scene->origin + glm::dvec3(rounded(pose.position, facts_->scene->bounds.radius()));

@@ -7,9 +7,13 @@
 
 #include "apps/view/viewer_style.h"
 #include "apps/view/viewer_window.h"
+#include "core/question/question_fields.h"
 
 namespace limn::app {
 namespace {
+
+constexpr float kMostInSetting = 1e9f;                               // of a number of --set-light
+constexpr ImGuiSliderFlags kClamped = ImGuiSliderFlags_AlwaysClamp;  // what is typed, too
 
 bool isMesh(const LightFacts& light) {
   return (light.light.flags & glsl::light_flag_geometry) != 0;
@@ -35,9 +39,9 @@ bool lightSize(const LightFacts& light, float radius, session::LightEdit& edit) 
       directional ? "angle, rad" : "size, m",
       directional ? "Angular diameter" : "Sides; a light that had none becomes a rectangle that faces -z");
   glm::vec2 size = edit.size.value_or(*light.now.size);
-  const bool resized = directional
-                           ? ImGui::DragFloat("##size", &size.x, 0.001f, 1e-4f, 1, "%.4f")
-                           : ImGui::DragFloat2("##size", &size.x, 0.002f * radius, 1e-4f, 1e4f, "%.3f");
+  const bool resized = directional ? ImGui::DragFloat("##size", &size.x, 0.001f, 1e-4f, 1, "%.4f", kClamped)
+                                   : ImGui::DragFloat2("##size", &size.x, 0.002f * radius, 1e-4f,
+                                                       kMostInSetting, "%.3f", kClamped);
   if (!resized) return false;
   const bool square = directional || (!edit.size && *light.now.size == glm::vec2(0));
   edit.size =
@@ -51,16 +55,16 @@ bool lightColour(const LightFacts& light, session::LightEdit& edit) {
   nameCell("colour", "Linear Rec. 709");
   glm::vec3 colour = edit.colour.value_or(*light.now.colour);
   if (ImGui::ColorEdit3("##colour", &colour.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR)) {
-    edit.colour = glm::max(colour, glm::vec3(0));
+    edit.colour = glm::clamp(colour, 0.f, kMostInSetting);
     changed = true;
   }
   nameCell("intensity", directional
                             ? "Irradiance of a surface that faces the light"
                             : "Radiant intensity; that of a rectangle or mesh does not change with its size");
   float intensity = edit.intensity.value_or(*light.now.intensity);
-  if (ImGui::DragFloat("##intensity", &intensity, std::max(0.01f * intensity, 1e-3f), 0, 1e6f,
-                       directional ? "%.4g W/m2" : "%.4g W/sr")) {
-    edit.intensity = std::max(intensity, 0.f);
+  if (ImGui::DragFloat("##intensity", &intensity, std::max(0.01f * intensity, 1e-3f), 0, kMostInSetting,
+                       directional ? "%.4g W/m2" : "%.4g W/sr", kClamped)) {
+    edit.intensity = intensity;
     changed = true;
   }
   return changed;
@@ -85,7 +89,7 @@ void ViewerWindow::lightPanel() {
     auto size = static_cast<float>(state_.scene.lightSize);
     if (ImGui::SliderFloat("##size", &size, 0, 10, size > 0 ? "%.3f m" : "as in the scene",
                            ImGuiSliderFlags_Logarithmic)) {
-      state_.scene.lightSize = size;
+      state_.scene.lightSize = size > 0 ? accepted(questionField("light_size"), size) : 0;
       moved();
     }
     endRows();
@@ -139,8 +143,9 @@ void ViewerWindow::lightEditor(const LightFacts& light) {
     if (ImGui::RadioButton("turn", gizmoMode_ == GizmoMode::turn)) gizmoMode_ = GizmoMode::turn;
     nameCell("position, m", "In the world; drag the numbers, or double-click to type");
     glm::dvec3 position = edit.position.value_or(*now.position);
-    if (ImGui::DragScalarN("##position", ImGuiDataType_Double, &position.x, 3, 0.003f * radius, nullptr,
-                           nullptr, "%.3f")) {
+    const double least = -kMostInSetting, most = kMostInSetting;
+    if (ImGui::DragScalarN("##position", ImGuiDataType_Double, &position.x, 3, 0.003f * radius, &least, &most,
+                           "%.3f", kClamped)) {
       edit.position = position;
       changed = true;
     }
@@ -150,7 +155,7 @@ void ViewerWindow::lightEditor(const LightFacts& light) {
              "Pitch, yaw and roll in degrees of a light that shines along -z: rolled about z, "
              "pitched about x, turned about y");
     glm::vec3 rotation = edit.rotation.value_or(*now.rotation);
-    if (ImGui::DragFloat3("##rotation", &rotation.x, 0.5f, -360, 360, "%.1f")) {
+    if (ImGui::DragFloat3("##rotation", &rotation.x, 0.5f, -360, 360, "%.1f", kClamped)) {
       edit.rotation = rotation;
       changed = true;
     }

@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
     program
         .add_option("--scale", options.scale,
                     "Size of text and widgets; by default that of the monitor (1 at 96 dots per inch)")
-        ->check(CLI::Range(0.5, 8.0));
+        ->check(realRange(0.5, 8.0));
     addDeviceFlags(program, options.device, options.debug);
     program.add_flag("--debug", options.debug)->group("");  // the same, from before limn's name for it
     program.add_option("--save", options.save, "File to which F5 saves the picture (.exr or .png)")

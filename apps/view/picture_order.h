@@ -113,6 +113,7 @@ struct InspectedFacts {
 /// Holds everything that the window is told.
 struct PictureFacts {
   std::shared_ptr<const SceneFacts> scene;  ///< null before the first; a new object for each that was opened
+  SceneQuestion asked;                      ///< what the picture answers
   scene::CameraPose camera;                 ///< of the picture
   std::vector<LightFacts> lights;
   Shot picture, other;

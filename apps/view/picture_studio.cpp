@@ -35,13 +35,8 @@ render::Settings settingsOf(const PictureOrder& order, int reduction, int light)
 }
 
 /// Whether relight() may write to materials.
-bool changesMeshes(const std::vector<LightFacts>& lights, const SceneQuestion& options) {
-  return std::ranges::any_of(lights, [&](const LightFacts& light) {
-    return (light.light.flags & glsl::light_flag_geometry) != 0 &&
-           std::ranges::any_of(options.lightSettings, [&](const std::string& setting) {
-             return setting.starts_with(light.name + ".");
-           });
-  });
+bool changesMeshes(const session::View& view, const SceneQuestion& question) {
+  return session::changeMeshes(view.pose, session::parseLightEdits(question.lightSettings));
 }
 
 std::shared_ptr<const SceneFacts> factsOf(const session::View& view, const OpenOrder& order) {
@@ -113,6 +108,8 @@ void PictureStudio::open(const OpenOrder& order) {
     facts_.settled = false;
     wholeMs_ = 0;
     facts_.scene = factsOf(*view_, order);
+    facts_.asked = wanted;
+    facts_.camera = view_->camera;
     say("opened " + wanted.scene);
   } catch (const std::exception& error) {
     if (order.needed) facts_.fatal = std::current_exception();
@@ -144,9 +141,8 @@ void PictureStudio::place(const PictureOrder& order) {
   const bool relit = !placed_ || !sameFields(QuestionEffect::lights, s, *placed_);
   const bool turned = !placed_ || s.environmentRotation != placed_->environmentRotation ||
                       s.environmentScale != placed_->environmentScale;
-  const bool painted =
-      (relit || session::movingRelights(*view_, s, s.time)) &&
-      (changesMeshes(facts_.lights, s) || (placed_ && changesMeshes(facts_.lights, *placed_)));
+  const bool painted = (relit || session::movingRelights(*view_, s, s.time)) &&
+                       (changesMeshes(*view_, s) || (placed_ && changesMeshes(*view_, *placed_)));
   if (turned || painted) reference_.stop();  // it reads the environment and what surfaces emit
   if (!relit) {
     session::moveTo(*view_, s, s.time);
@@ -218,12 +214,13 @@ PictureStudio::Outcome PictureStudio::render(const PictureOrder& order,
   }
   wholeMs_ = ms * reduction_ * reduction_;
   ++facts_.pictures;
-  describe();
+  describe(order);
   inspect(order);
   return outcome;
 }
 
-void PictureStudio::describe() {
+void PictureStudio::describe(const PictureOrder& order) {
+  facts_.asked = order.scene;
   facts_.camera = view_->camera;
   facts_.lights.resize(view_->pose.lights.size());
   const std::vector<std::string> names = session::findableNames(view_->pose.lightNames);

@@ -44,7 +44,7 @@ class PictureStudio {
   Outcome render(const PictureOrder& order, const std::function<bool()>& cancelled = {});
   Outcome renderShot(ShownPicture& picture, const render::Settings& settings, const PictureOrder& order,
                      const std::function<bool()>& cancelled, Shot& shot);
-  void describe();
+  void describe(const PictureOrder& order);
   void inspect(const PictureOrder& order);
   bool inspectAtRest(const PictureOrder& order);
   bool follow(const PictureOrder& order, const std::function<bool()>& outdated);

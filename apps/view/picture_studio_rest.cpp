@@ -194,9 +194,12 @@ bool PictureStudio::inspectAtRest(const PictureOrder& order) {
 
 void PictureStudio::save(const SaveOrder& order) {
   if (!view_) return;
+  if (saving()) {
+    say("not saved: the frames of a sequence are being written", true);
+    publish();
+    return;
+  }
   if (order.frames) {
-    finishSaving("");
-    sequenceEv_.reset();
     sequence_ = {order, order.frames->first};
     return;
   }
@@ -230,7 +233,7 @@ Image PictureStudio::renderNext(const PictureOrder& order) {
   Image image = picture_->next(view_->camera, view_->time, view_->animation, order.scene.aa);
   facts_.picture.image = std::make_shared<const Image8>(toneMapped(image, order.tone));
   ++facts_.pictures;
-  describe();
+  describe(order);
   return image;
 }
 
@@ -274,7 +277,7 @@ void PictureStudio::finishSaving(std::string message, bool problem) {
   sequence_.reset();
   sequenceEv_.reset();
   facts_.job.clear();
-  if (!message.empty()) say(std::move(message), problem);
+  say(std::move(message), problem);
   publish();
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "apps/limn/tone_flags.h"
 #include "apps/view/viewer_style.h"
 #include "apps/view/viewer_window.h"
 #include "core/question/question_fields.h"
@@ -36,16 +37,18 @@ void ViewerWindow::cameraChooser() {
   if (!state_.scene.eye.empty()) title = "free";
   if (title.empty()) title = "frames the scene";
   if (!ImGui::BeginCombo("##camera", title.c_str())) return;
-  const auto choose = [&](const std::string& name, const scene::CameraPose& camera) {
-    state_.scene.camera = name;
-    state_.scene.eye.clear();
-    state_.scene.target.clear();
+  const auto choose = [&](const SceneQuestion& viewpoint, const scene::CameraPose& camera) {
+    for (const char* key : {"camera", "eye", "target"})
+      copyField(questionField(key), state_.scene, viewpoint);
     orbit_ = Orbit(camera, facts_->scene->bounds);
     moved();
   };
-  if (ImGui::Selectable("as opened")) choose(facts_->scene->options.camera, facts_->scene->camera);
-  for (const scene::CameraPose& camera : cameras)
-    if (ImGui::Selectable(camera.name.c_str())) choose(camera.name, camera);
+  if (ImGui::Selectable("as opened")) choose(original_->options, original_->camera);
+  for (const scene::CameraPose& camera : cameras) {
+    SceneQuestion named;
+    named.camera = camera.name;
+    if (ImGui::Selectable(camera.name.c_str())) choose(named, camera);
+  }
   ImGui::EndCombo();
 }
 
@@ -60,7 +63,7 @@ void ViewerWindow::timePanel() {
   const double seconds = facts_->scene->seconds > 0 ? facts_->scene->seconds : 10;
   auto time = static_cast<float>(state_.scene.time);
   if (ImGui::SliderFloat("##time", &time, 0, static_cast<float>(seconds), "%.2f s")) {
-    state_.scene.time = time;
+    state_.scene.time = accepted(questionField("time"), time);
     moved();
   }
 }
@@ -79,7 +82,8 @@ void ViewerWindow::exposureRow() {
   ImGui::BeginDisabled(state_.automaticExposure);
   float ev = state_.automaticExposure ? facts_->exposureEv : state_.tone.exposureEv;
   if (ImGui::SliderFloat("##exposure", &ev, -10, 10, "%.2f EV")) {
-    state_.tone.exposureEv = ev;
+    // What is typed may lie beyond the slider, but not beyond --exposure.
+    state_.tone.exposureEv = std::clamp(ev, -kMostExposureEv, kMostExposureEv);
     moved();
   }
   ImGui::EndDisabled();
@@ -220,8 +224,8 @@ void ViewerWindow::environmentPanel() {
     auto scale = static_cast<float>(state_.scene.environmentScale);
     turned |= ImGui::SliderFloat("##scale", &scale, 0, 16, "%.3g", ImGuiSliderFlags_Logarithmic);
     if (turned) {
-      state_.scene.environmentRotation = rotation;
-      state_.scene.environmentScale = scale;
+      state_.scene.environmentRotation = accepted(questionField("environment_rotation"), rotation);
+      state_.scene.environmentScale = accepted(questionField("environment_scale"), scale);
       moved();
     }
   }

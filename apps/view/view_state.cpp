@@ -6,7 +6,6 @@
 
 #include "apps/limn/tone_flags.h"
 #include "core/bench/suite_text.h"
-#include "core/question/question_fields.h"
 #include "core/question/render_command.h"
 
 namespace limn::app {
@@ -33,6 +32,14 @@ std::vector<std::pair<std::string, std::string>> changed(const std::vector<rende
 }
 
 }  // namespace
+
+double accepted(const QuestionField& field, double value) {
+  return std::clamp(value, field.range.low, field.range.high);
+}
+
+bool sameViewpoint(const SceneQuestion& a, const SceneQuestion& b) {
+  return a.camera == b.camera && a.eye == b.eye && a.target == b.target;
+}
 
 void setCamera(SceneQuestion& options, const Orbit& orbit, const glm::dvec3& origin) {
   options.eye = worldText(orbit.eye(), origin);

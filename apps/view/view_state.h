@@ -8,6 +8,7 @@
 
 #include "apps/limn/options.h"
 #include "apps/view/orbit.h"
+#include "core/question/question_fields.h"
 #include "core/question/scene_question.h"
 #include "core/render/renderer.h"
 #include "core/session/technique_choice.h"
@@ -21,6 +22,13 @@ struct ViewState {
   bool automaticExposure = false;  ///< in place of tone.exposureEv, from the picture: --exposure auto
   std::filesystem::path shaders;   ///< folder that overrides the embedded ones; empty: none
 };
+
+/// Returns what limn accepts for the field, a number, next to `value`: what is typed into a slider may lie
+/// beyond both.
+double accepted(const QuestionField& field, double value);
+
+/// Says whether both questions are asked from the same place: the same camera, or the same eye and target.
+bool sameViewpoint(const SceneQuestion& a, const SceneQuestion& b);
 
 /// Puts the orbit's camera into the options, so that whatever reads them gets it bit for bit.
 void setCamera(SceneQuestion& options, const Orbit& orbit, const glm::dvec3& origin);

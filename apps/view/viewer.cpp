@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <tuple>
 
 #include "apps/view/display_image.h"
 #include "apps/view/pace.h"
@@ -180,13 +179,14 @@ Edit ViewerWindow::present() const {
 /// file was opened again stays, and so does what undo knows.
 void ViewerWindow::adopt(const SceneFacts& scene, const SceneFacts* before) {
   const bool sameFile = scene.file == (before != nullptr ? before->file : 0);
+  const bool another = before == nullptr || !sameFile;
   state_.scene = carriedOver(state_.scene, scene.options, sameFile);
+  if (another) original_ = facts_->scene;
+  if (another || !scene.animated) playing_ = false;
+  if (!scene.animated) state_.scene.time = 0;  // neither a key nor a slider would set it
   noteRecentScene(scene.options.scene);
   recentScenes_ = recentScenes();
-  const auto viewpoint = [](const SceneQuestion& question) {
-    return std::tie(question.camera, question.eye, question.target);
-  };
-  if (viewpoint(state_.scene) == viewpoint(scene.options)) orbit_ = Orbit(scene.camera, scene.bounds);
+  if (sameViewpoint(state_.scene, scene.options)) orbit_ = Orbit(scene.camera, scene.bounds);
   lightEdits_ = session::parseLightEdits(state_.scene.lightSettings);
   chosenLight_ = scene::kNone;
   measured_.clear();
@@ -200,7 +200,7 @@ void ViewerWindow::adopt(const SceneFacts& scene, const SceneFacts* before) {
       fmt::format("{} - {}", std::filesystem::path(scene.options.scene).filename().string(), options_.title)
           .c_str());
   moved();
-  if (before == nullptr || !sameFile) history_.restart({state_, orbit_, otherTechniques_});
+  if (another) history_.restart({state_, orbit_, otherTechniques_});
 }
 
 /// What undo or redo brings back; nothing where there is nothing more.
@@ -232,7 +232,12 @@ void ViewerWindow::takeFacts() {
   const std::shared_ptr<const SceneFacts> shown = facts_ ? facts_->scene : nullptr;
   facts_ = std::move(newest);
   if (facts_->fatal) std::rethrow_exception(facts_->fatal);
-  if (facts_->opened == openings_) opening_.reset();
+  if (opening_ && facts_->opened == openings_) {
+    const bool failed =
+        !facts_->scene || !sameFields(QuestionEffect::scene, facts_->scene->options, opening_->scene);
+    if (failed) history_.forget(opening_->scene);
+    opening_.reset();
+  }
   if (facts_->scene && facts_->scene != shown) adopt(*facts_->scene, shown.get());
   if (facts_->messages != messagesSeen_) say(facts_->message, facts_->problem);
   messagesSeen_ = facts_->messages;

@@ -67,6 +67,9 @@ void ViewerWindow::handleMouse() {
   const ImGuiIO& io = ImGui::GetIO();
   const glm::vec2 drag(io.MouseDelta.x, io.MouseDelta.y);
   bool changed = false;
+  // An animation may have moved the scene's camera: the hand takes it from where it is seen.
+  if (state_.scene.eye.empty() && sameViewpoint(state_.scene, facts_->asked))
+    orbit_ = Orbit(facts_->camera, facts_->scene->bounds);
   if (ImGui::IsItemActive() && (drag.x != 0 || drag.y != 0)) {
     const glm::vec2 part = drag / glm::vec2(area_);
     if (io.MouseDown[0] && io.KeyShift)

@@ -146,8 +146,9 @@ class ViewerWindow {
   std::shared_ptr<const PictureFacts> facts_;  ///< what is drawn
   std::optional<PictureOrder> posted_;
   uint64_t messagesSeen_ = 0;
-  std::optional<OpenOrder> opening_;  ///< the last one, until it has been followed
-  uint64_t openings_ = 0;             ///< that were ordered
+  std::optional<OpenOrder> opening_;            ///< the last one, until it has been followed
+  uint64_t openings_ = 0;                       ///< that were ordered
+  std::shared_ptr<const SceneFacts> original_;  ///< the scene as its file was opened at first
 
   std::vector<render::TechniqueUse> otherTechniques_;
   Orbit orbit_;

@@ -167,6 +167,13 @@ bool followTime(const LightEdits& edits) {
   });
 }
 
+bool changeMeshes(const scene::Pose& pose, const LightEdits& edits) {
+  return std::ranges::any_of(edits, [&](const auto& named) {
+    const int light = findNamed("light", named.first, pose.lightNames);
+    return (pose.lights[static_cast<size_t>(light)].flags & glsl::light_flag_geometry) != 0;
+  });
+}
+
 bool isEditable(const scene::Scene& scene, const scene::Pose& pose, int index) {
   const auto first = std::ranges::find(pose.lightNames, pose.lightNames[static_cast<size_t>(index)]);
   if (first - pose.lightNames.begin() != index) return false;

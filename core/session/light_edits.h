@@ -49,6 +49,9 @@ LIMN_API void applyLightEdits(scene::Scene& scene, const scene::Pose& pose, cons
 /// Says whether an edit sets a part of a light's placement and leaves the other one to animations, so that
 /// the edits must be applied again at each time.
 LIMN_API bool followTime(const LightEdits& edits);
+/// Says whether an edit is one of an emissive mesh, of which applyLightEdits() may change the material.
+/// Throws UsageError for a light that does not exist.
+LIMN_API bool changeMeshes(const scene::Pose& pose, const LightEdits& edits);
 
 /// Says whether light `index` of a pose can be edited: it belongs to a node, or it is the only light of its
 /// node's mesh, which has constant emission and an area, is rigid and not instanced. Of lights that share a

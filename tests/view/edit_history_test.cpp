@@ -36,6 +36,43 @@ TEST(EditHistory, WhatWasUndoneIsForgottenWithTheNextChange) {
   EXPECT_EQ(history.undo(), nullptr);
 }
 
+Edit withEnvironment(const char* environment, double time = 0) {
+  Edit edit = withTime(time);
+  edit.state.scene.environment = environment;
+  return edit;
+}
+
+/// As if what could not be opened had never been chosen, and both ways go on beyond it.
+TEST(EditHistory, ForgetsWhatCannotBeOpened) {
+  EditHistory history;
+  history.restart(withEnvironment("a"));
+  for (const char* environment : {"gone", "b"}) history.note(withEnvironment(environment));
+  history.note(withEnvironment("gone", 1));
+  history.note(withEnvironment("c"));
+  EXPECT_EQ(history.undo()->state.scene.environment, "gone");
+  history.forget(withEnvironment("gone", 5).state.scene);
+  EXPECT_EQ(history.redo()->state.scene.environment, "c") << "from b";
+  EXPECT_EQ(history.undo()->state.scene.environment, "b");
+  EXPECT_EQ(history.undo()->state.scene.environment, "a");
+  EXPECT_EQ(history.undo(), nullptr);
+}
+
+TEST(EditHistory, MayForgetTheFirstAndAll) {
+  EditHistory history;
+  history.restart(withEnvironment("gone"));
+  history.note(withEnvironment("a"));
+  history.undo();
+  history.forget(withEnvironment("gone").state.scene);
+  history.note(withEnvironment("a"));
+  EXPECT_EQ(history.undo(), nullptr) << "a is the first now";
+  history.forget(withEnvironment("a").state.scene);
+  EXPECT_EQ(history.undo(), nullptr);
+  EXPECT_EQ(history.redo(), nullptr);
+  history.note(withEnvironment("b"));
+  history.note(withEnvironment("c"));
+  EXPECT_EQ(history.undo()->state.scene.environment, "b");
+}
+
 TEST(EditHistory, TheSizeOfTheWindowIsNoChange) {
   EditHistory history;
   history.restart(withTime(0));

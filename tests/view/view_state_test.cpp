@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <CLI/CLI.hpp>
+#include <limits>
 #include <sstream>
 
 #include "apps/view/difference.h"
@@ -58,6 +59,14 @@ TEST_F(ViewStateTest, SamplesFloorAndAutomaticExposureAreInTheCommand) {
 TEST_F(ViewStateTest, ShadersAreInTheCommand) {
   state_.shaders = "my shaders";
   EXPECT_EQ(renderCommand(state_, "a.png"), "limn render cornell_box --shaders 'my shaders' --out a.png");
+}
+
+TEST_F(ViewStateTest, TypedNumbersAreMovedIntoTheFieldsRange) {
+  EXPECT_EQ(accepted(questionField("environment_scale"), -1), 0);
+  EXPECT_EQ(accepted(questionField("environment_scale"), 20), 20);
+  EXPECT_EQ(accepted(questionField("environment_rotation"), -1e9), -1e6);
+  EXPECT_EQ(accepted(questionField("time"), std::numeric_limits<double>::infinity()), 1e6);
+  EXPECT_EQ(accepted(questionField("light_size"), 1e-9f), 1e-9) << "the float is smaller";
 }
 
 /// The frames say the time.

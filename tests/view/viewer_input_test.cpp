@@ -40,6 +40,21 @@ TEST_F(ViewerInputTest, TakesWhatIsDroppedOnIt) {
   EXPECT_EQ(colours(picture("again.exr")), colours(picture("teapot.exr")));
 }
 
+/// What plays ends with its scene: one without animation stands still, and has no time.
+TEST_F(ViewerInputTest, StopsPlayingWithTheScene) {
+  const Outcome outcome =
+      view("metaballs --technique hard_shadow_map --size 160x212 --frames 600 --save a.exr",
+           "save first.exr; xdotool key space; frames 2; sleep .5; save playing.exr\n"
+           "drop " +
+               std::string(kBinaryDir) +
+               "/assets/teapot/teapot.glb; hear opened 2; frames 2; sleep 1; save still.exr\n"
+               "while kill -0 $viewer 2> none; do sleep .1; done  # its frames are shown at last");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(command("playing.exr"), testing::HasSubstr("--time"));
+  EXPECT_THAT(command("still.exr"),
+              testing::AllOf(testing::HasSubstr("teapot.glb"), testing::Not(testing::HasSubstr("--time"))));
+}
+
 /// Minimised by a window manager and restored: no picture is made meanwhile, though the animation plays, and
 /// the window goes on afterwards.
 TEST_F(ViewerInputTest, RestsWhileMinimised) {

@@ -1,4 +1,6 @@
 // The viewer over time: responsive, of constant size, right after whatever was done to it.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -125,6 +127,17 @@ TEST_F(ViewerTest, SavesSequences) {
       "metaballs --technique instant_radiosity --set instant_radiosity.vpls=16 --set "
       "instant_radiosity.history=3 --aa 2",
       "0:7");
+}
+
+/// While a sequence is written nothing else is: neither a picture nor another sequence ends it.
+TEST_F(ViewerTest, SequencesAreWrittenToTheirEnd) {
+  const Outcome outcome = view("metaballs --technique hard_shadow_map --size 100x92 --save a.exr",
+                               "xdotool key F10 F5 F10; hear 'not saved' 2; hear 'wrote 30 frames' 1");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  for (int frame = 0; frame < 30; ++frame)
+    EXPECT_TRUE(std::filesystem::exists(folder_ / fmt::format("a.{:04}.exr", frame))) << frame;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.exr"));
 }
 
 TEST_F(ViewerTest, KeepsTheTruthOnDisk) {

@@ -196,6 +196,20 @@ TEST_F(MeshLights, StayWhereTheyArePutWhateverAnimationsSay) {
             scene::evaluate(later, 1).instances[1].objectToWorld);
 }
 
+/// Whichever way they are named.
+TEST_F(MeshLights, AreToldFromLampsThatChangeNoMaterial) {
+  scene_.lights.push_back({.name = "lamp", .type = glsl::light_point, .intensity = 3});
+  scene_.nodes.emplace_back().light = 0;
+  const scene::Pose pose = scene::evaluate(scene_, 0);
+  ASSERT_EQ(pose.lights.size(), 3u) << "lamps are the first ones";
+  const auto change = [&](const char* setting) { return changeMeshes(pose, parseLightEdits({setting})); };
+  for (const char* setting : {"right.intensity=5", "#2.intensity=5", "left.position=0,1,0", "#1.colour=1"})
+    EXPECT_TRUE(change(setting)) << setting;
+  for (const char* setting : {"lamp.intensity=5", "#0.intensity=5"}) EXPECT_FALSE(change(setting)) << setting;
+  EXPECT_FALSE(changeMeshes(pose, {}));
+  EXPECT_THROW(change("#3.intensity=5"), UsageError);
+}
+
 TEST_F(MeshLights, OfSharedMeshesCanOnlyBeMoved) {
   scene_.nodes.push_back(scene_.nodes[1]);
   scene_.nodes.back().name = "third";

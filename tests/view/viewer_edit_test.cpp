@@ -1,0 +1,148 @@
+// What is changed by hand in the window: cameras, numbers that are typed, lights in the picture, undo.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "apps/view/gizmo.h"
+#include "core/base/file.h"
+#include "core/session/view.h"
+#include "tests/support/gltf_builder.h"
+#include "tests/view/viewer_window_test.h"
+
+namespace limn::test {
+namespace {
+
+class ViewerEditTest : public ViewerWindowTest {
+ protected:
+  /// Types a number into the slider at that place, which is a text field after ctrl and a click. No key is
+  /// answered while it has the keyboard, so that its frames cannot be awaited: each takes less than a second.
+  static std::string type(const std::string& place, const std::string& number) {
+    return "point " + place +
+           "; xdotool keydown ctrl; sleep 1; xdotool click 1; sleep 1; xdotool keyup ctrl; sleep 1\n"
+           "xdotool type -- " +
+           number + "; sleep 1; xdotool key Return; sleep 1; frames 2\n";
+  }
+  /// The number that follows an option of a command.
+  static double numberAfter(const std::string& option, const std::string& command) {
+    const size_t at = command.find(option + " ");
+    return at == std::string::npos ? NAN : std::strtod(command.c_str() + at + option.size() + 1, nullptr);
+  }
+  /// Red, green and blue of the panels left of the picture in window.png.
+  std::vector<float> panels() const {
+    const Image window = picture("window.png").select({"R", "G", "B"});
+    std::vector<float> pixels;
+    for (int y = 0; y < window.height(); ++y) {
+      const auto row = window.data().begin() + std::ptrdiff_t{3} * y * window.width();
+      pixels.insert(pixels.end(), row, row + std::ptrdiff_t{3} * 400);
+    }
+    return pixels;
+  }
+};
+
+/// Also after the scene has been read again meanwhile, by which the moved camera belongs to the question.
+TEST_F(ViewerEditTest, TheCameraAsOpenedIsTheFirstOne) {
+  const Outcome outcome = view(
+      "cornell_box --technique hard_shadow_map --eye 0.3,1.2,2.5 --target 0,1,0 --size 160x212 --save a.exr",
+      std::string(kDrag) + "xdotool key F4; hear opened 2; save moved.exr\n" +
+          "click 250 67; click 250 91; save back.exr; " + kDrag + "save again.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_THAT(command("back.exr"), testing::HasSubstr("--eye 0.3,1.2,2.5 --target 0,1,0"));
+  EXPECT_NE(command("moved.exr"), command("back.exr"));
+  EXPECT_EQ(command("again.exr"), command("moved.exr")) << "the same drag from the same place";
+}
+
+/// A drag takes a camera from where an animation has brought it, not from where it was opened.
+TEST_F(ViewerEditTest, CamerasThatMoveAreTakenFromWhereTheyAre) {
+  GltfBuilder scene;
+  scene.triangle();
+  scene.light({{"type", "point"}, {"intensity", 5}}, {{"translation", {0.3, 0.3, 2}}});
+  scene.append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.01}}}});
+  const int camera = scene.node({{"name", "rail"}, {"camera", 0}});
+  const int times = scene.floats({0, 60}), places = scene.vec3({{0, 0.3f, 3}, {60, 0.3f, 3}});
+  using json = nlohmann::json;
+  scene.append("animations",
+               {{"samplers", json::array({{{"input", times}, {"output", places}}})},
+                {"channels",
+                 json::array({{{"sampler", 0}, {"target", {{"node", camera}, {"path", "translation"}}}}})}});
+  writeFile(folder_ / "rail.glb", scene.glb());
+  const Outcome outcome =
+      view("rail.glb --technique hard_shadow_map --size 160x212 --save a.exr",
+           "save first.exr; xdotool key space; frames 2; sleep 2; xdotool key space; frames 2\n"
+           "save paused.exr; point 470 100; xdotool mousedown 1; frames 2; point 471 100\n"
+           "xdotool mouseup 1; frames 2; save dragged.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const double metres = numberAfter("--time", command("paused.exr"));  // one in each second
+  EXPECT_GT(metres, 1);
+  EXPECT_NEAR(numberAfter("--eye", command("dragged.exr")), metres, 0.1);
+}
+
+/// What is typed may lie beyond a slider's ends, but not beyond what the command accepts.
+TEST_F(ViewerEditTest, TypedNumbersAreOnesThatTheCommandAccepts) {
+  const std::string question = "cornell_box --environment sky --technique hard_shadow_map --save a.exr ";
+  const Outcome scaled = view(question + "--size 160x212 --open environment",
+                              "save first.exr\n" + type("270 162", "20") + "save brighter.exr\n" +
+                                  type("270 162", "-1") + "save dark.exr");
+  ASSERT_EQ(scaled.status, 0) << scaled.err;
+  EXPECT_THAT(command("brighter.exr"), testing::HasSubstr("--environment-scale 20 "));
+  EXPECT_THAT(command("dark.exr"), testing::HasSubstr("--environment-scale 0 "));
+  const Outcome exposed = view(question + "--size 160x212 --open scene",
+                               "save first.exr\n" + type("300 113", "20") + "save brighter.exr\n" +
+                                   type("300 113", "100") + "save brightest.exr");
+  ASSERT_EQ(exposed.status, 0) << exposed.err;
+  EXPECT_THAT(command("brighter.exr"), testing::HasSubstr("--exposure 20 "));
+  EXPECT_THAT(command("brightest.exr"), testing::HasSubstr("--exposure 60 "));
+}
+
+/// A light is marked as changed when a handle has moved it, not when it was only clicked.
+TEST_F(ViewerEditTest, HandlesThatAreNotMovedChangeNothing) {
+  const glm::ivec2 size(300, 400);
+  SceneQuestion question;
+  question.scene = "cornell_box";
+  question.width = size.x;
+  question.height = size.y;
+  const session::View opened = session::open(question);
+  const app::ScreenCamera screen{opened.camera, {400, 0}, glm::vec2(size)};
+  const glm::vec3 light = opened.pose.lights.at(0).position;
+  const glm::vec3 end = app::outlineOf(screen, light, {app::GizmoHandle::Kind::axis, 0})[1];
+  const auto place = [&](const glm::vec3& point, int right) {
+    const glm::vec2 pixel = screen.pixel(point).value();
+    return fmt::format("{} {}", std::lround(pixel.x) + right, std::lround(pixel.y));
+  };
+  const auto panelsAfter = [&](const std::string& script) {
+    const Outcome outcome = view(
+        "cornell_box --technique hard_shadow_map --size 300x400 --open lights --save a.exr --screenshot "
+        "window.png",
+        "save first.exr; click " + place(light, 0) + "; point " + place(end, 0) + "\n" + script +
+            "frames 2; save last.exr");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return panels();
+  };
+  const std::string down = "xdotool mousedown 1; frames 2\n", up = "xdotool mouseup 1; frames 2\n";
+  const std::vector<float> untouched = panelsAfter("");
+  EXPECT_EQ(panelsAfter(down + up), untouched);
+  EXPECT_THAT(command("last.exr"), testing::Not(testing::HasSubstr("--set-light")));
+  EXPECT_NE(panelsAfter(down + "point " + place(end, 20) + "\n" + up), untouched);
+  EXPECT_THAT(command("last.exr"), testing::HasSubstr("--set-light"));
+}
+
+/// An environment that can no longer be read is passed over.
+TEST_F(ViewerEditTest, UndoGoesOnBeyondWhatCannotBeOpened) {
+  for (const char* name : {"gone.exr", "kept.exr"})
+    std::filesystem::copy_file(std::string(kBinaryDir) + "/assets/environments/sky.exr", folder_ / name);
+  const Outcome outcome =
+      view("cornell_box --technique hard_shadow_map --size 160x212 --save a.exr",
+           "save first.exr; drop gone.exr; hear opened 2; sleep .5; save one.exr; sleep .5\n"
+           "drop kept.exr; hear opened 3; sleep .5; save two.exr; sleep .5\n"
+           "rm gone.exr; xdotool key ctrl+z; hear gone.exr 1; save refused.exr; sleep .5\n"
+           "xdotool key ctrl+z; hear opened 4; save undone.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_THAT(command("one.exr"), testing::HasSubstr("gone.exr"));
+  EXPECT_EQ(command("refused.exr"), command("two.exr"));
+  EXPECT_EQ(command("undone.exr"), command("first.exr"));
+}
+
+}  // namespace
+}  // namespace limn::test
