@@ -1,7 +1,7 @@
 """The headers that modules compile from limn: those of module_headers.txt, what they include by quoted names, all GLSL.
 
 module_headers.py hash OUT FUNCTION ROOT...     writes a C++ file that defines `const char* FUNCTION()`, their hash
-module_headers.py install FOLDER ROOT...        copies them to FOLDER
+module_headers.py install FOLDER ROOT...        copies them to FOLDER and prints their names
 module_headers.py list ROOT...                  prints their names
 
 Names are looked up under the ROOTs and are relative to them, so that a source tree and an installed one agree. What a
@@ -87,10 +87,10 @@ def main():
     headers = interface([os.path.abspath(path) for path in rest[given:]])
     if command == "hash":
         write_hash(*rest[:2], headers)
-    elif command == "install":
+        return
+    if command == "install":
         install(rest[0], headers)
-    else:
-        print("\n".join(sorted(headers)))
+    print("\n".join(sorted(headers)))
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ check(not list(scratch.glob(".*")), "something was left behind")
 # Out of tree it is built and run as README.md says, word for word but for names and folders.
 section = (SOURCE / "README.md").read_text().split("## A technique of your own")[1]
 project = re.search("```cmake\n(.*?)```", section, re.DOTALL)[1]
-(scratch / "CMakeLists.txt").write_text(project.replace("my_technique my_technique", f"{NAME} {NAME}"))
+(scratch / "CMakeLists.txt").write_text(project.replace("other_technique other_technique", f"{NAME} {NAME}"))
 documented = re.search(r"LIMN_TECHNIQUE_PATH=\$HOME/my_techniques/(\S+)", section)[1]
 build(scratch, scratch / "build")
 path = {"LIMN_TECHNIQUE_PATH": str(scratch / documented)}
@@ -36,7 +36,7 @@ path = {"LIMN_TECHNIQUE_PATH": str(scratch / documented)}
 # A folder without sources is an error when the project is configured, not when its module is used.
 nothing = scratch / "nothing"
 nothing.mkdir()
-(nothing / "CMakeLists.txt").write_text(project.replace("my_technique my_technique", NAME))
+(nothing / "CMakeLists.txt").write_text(project.replace("other_technique other_technique", NAME))
 _, message = run("cmake", "-S", nothing, "-B", nothing / "build", "-G", options.generator,
                  f"-DCMAKE_CXX_COMPILER={options.compiler}", f"-DCMAKE_PREFIX_PATH={PREFIX}", status=1)
 message = " ".join(message.split())

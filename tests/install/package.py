@@ -7,9 +7,9 @@ import sys
 from common import SCRATCH, check, fresh, limn, options, run, techniques
 
 SKIPPED = 77
-for tool in ("cpack", "dpkg-shlibdeps", "dpkg"):
+for tool in ("cpack", "dpkg-shlibdeps", "dpkg", "file"):
     if shutil.which(tool) is None:
-        print(f"skipped: no {tool} (Debian packages cmake, dpkg-dev)")
+        print(f"skipped: no {tool} (Debian packages cmake, dpkg-dev, file)")
         sys.exit(SKIPPED)
 if os.geteuid() != 0:
     print("skipped: dpkg installs as root only")

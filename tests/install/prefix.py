@@ -1,13 +1,22 @@
 """Installs limn once for the tests beside this one. The prefix is moved: nothing in it may name where it was.
 
 Nothing else in the scratch folder is touched: tests that need no prefix may have begun there."""
+import pathlib
 import shutil
 
 from common import PREFIX, SCRATCH, check, limn, options, run, techniques
 
 for left in (SCRATCH / "prefix", PREFIX):
     shutil.rmtree(left, ignore_errors=True)
+# A header of an earlier limn goes, or the hash would never be that of this one again.
+gone = SCRATCH / "prefix/include/limn/glsl/gone.glsl"
+gone.parent.mkdir(parents=True)
+gone.touch()
 run("cmake", "--install", options.build, "--prefix", SCRATCH / "prefix")
+check(not gone.exists(), "a header that limn no longer has stays installed")
+manifest = (pathlib.Path(options.build) / "install_manifest.txt").read_text().splitlines()
+for file in (SCRATCH / "prefix").rglob("*"):
+    check(file.is_dir() or str(file) in manifest, f"install_manifest.txt does not name {file}")
 (SCRATCH / "prefix").rename(PREFIX)
 check(techniques(), "the installed limn lists no technique")
 

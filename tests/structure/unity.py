@@ -6,6 +6,7 @@ same thing, which belongs in one place, or things that deserve names of their ow
 import json
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -22,7 +23,7 @@ def sources_of(target, commands):
 
 def flags(command):
     """What of a command says how to compile, not what, nor where to."""
-    words = [word for word in command["command"].split() if not word.endswith("ccache") and word != command["file"]]
+    words = [word for word in shlex.split(command["command"]) if not word.endswith("ccache") and word != command["file"]]
     kept, drop = [], False
     for word in words:
         if not drop and word not in ("-c", "-MD"):
